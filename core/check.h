@@ -1,0 +1,19 @@
+#pragma once
+/// LUXRIG_CHECK(condition, "text", values…): a caller's bug. Prints the values and aborts; on in every build,
+/// since no check stands in an inner loop.
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <cstdlib>
+
+#define LUXRIG_CHECK(condition, ...)                                                                             \
+  do {                                                                                                           \
+    if (!(condition)) {                                                                                          \
+      std::fputs(                                                                                                \
+          fmt::format("{}:{}: check failed: {}: {}\n", __FILE__, __LINE__, #condition, fmt::format(__VA_ARGS__)) \
+              .c_str(),                                                                                          \
+          stderr);                                                                                               \
+      std::abort();                                                                                              \
+    }                                                                                                            \
+  } while (false)

@@ -1,0 +1,17 @@
+#include "core/control/devices.h"
+
+namespace luxrig {
+
+const char* name_of(Life life) {
+  switch (life) {
+    case Life::configured:
+      return "configured";
+    case Life::active:
+      return "active";
+    case Life::faulted:
+      return "faulted";
+  }
+  return "unknown";
+}
+
+}  // namespace luxrig

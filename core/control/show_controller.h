@@ -1,0 +1,99 @@
+#pragma once
+/// The show: applies plans, fades, keeps limits, believes meters with care, corrects, and goes to the
+/// safe look when something fails. Time is an argument; no thread, no device. One thread calls it.
+///
+///   idle -> fading -> settling -> measuring -> (correcting -> settling -> measuring)* -> holding
+///   any  -> frozen (a device failed: the present look is held) -> safe_fading -> safe
+///   safe/frozen -> fading, to the plan in force, when everything is back
+///   blackout lies over all of these and wins; lifting it fades back up.
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/control/devices.h"
+#include "core/control/output_program.h"
+#include "core/rig/rig.h"
+
+namespace luxrig {
+
+/// T for the controller's needs, at the rig's aims.
+struct LightModel {
+  Eigen::MatrixXd point_lux_per_level;   ///< points × fixtures
+  Eigen::MatrixXd meter_lux_per_level;   ///< luxmeters × fixtures
+  Eigen::MatrixXd point_standard_error;  ///< of each entry, same shape; empty = exact
+  Eigen::MatrixXd meter_standard_error;
+};
+
+enum class Phase { idle, fading, settling, measuring, correcting, holding, frozen, safe_fading, safe };
+[[nodiscard]] const char* name_of(Phase phase);
+
+struct Alarm {
+  bool severe = false;
+  std::string device;  ///< may be empty
+  std::string text;    ///< what is wrong, and what would mend it
+  Time since{};
+};
+
+struct PointStatus {
+  double predicted_lx = 0;            ///< model with present gain estimates, at the present levels
+  double standard_error_lx = 0;       ///< of that: transport and gain uncertainty
+  std::optional<double> measured_lx;  ///< of the meter that stands there
+  Time measured_at{};
+  bool met = false;  ///< within the control tolerance of goal, or of the best the limits allow
+  std::string why;   ///< what binds when the goal itself is not met
+};
+
+struct FixtureStatus {
+  double level = 0, drive = 0, target_level = 0;
+  double gain = 1, gain_standard_error = 0;  ///< estimated true output over rated
+};
+
+struct ShowStatus {
+  Phase phase = Phase::idle;
+  std::string detail;  ///< one line for a person
+  Time phase_since{};
+  int round = 0;           ///< correction rounds made since the last cue
+  bool converged = false;  ///< every metered goal met, or as near as limits allow
+  bool blackout = false;
+  std::vector<FixtureStatus> fixtures;
+  std::vector<PointStatus> points;
+  std::vector<std::optional<LuxReading>> luxmeters;  ///< last believed reading
+  std::vector<Alarm> alarms;
+};
+
+class ShowController {
+ public:
+  ShowController(const Rig& rig, LightModel model);
+  ~ShowController();
+  ShowController(ShowController&&) noexcept;
+
+  /// Fades to these levels (one per fixture, 0…max_level), then measures and corrects towards the rig's goals.
+  /// The levels are first reduced so that, with the rig's open-loop margin, no limited point can exceed its limit.
+  void apply(Time now, std::span<const double> levels);
+
+  /// Everything dark at once, whatever else goes on; movement goes on. Lifting it fades back.
+  void blackout(Time now, bool on);
+
+  /// Fades to the safe look and stays there until the next apply (a clean stop).
+  void go_safe(Time now);
+
+  void reading(Time now, const LuxReading& reading);
+  void health(Time now, std::span<const Health> devices);
+
+  /// Advances the state machine; call at 20 Hz or more. Corrections are solved here (milliseconds).
+  void step(Time now);
+
+  /// Hand it to the output thread whenever its revision has changed.
+  [[nodiscard]] const OutputProgram& program() const;
+  [[nodiscard]] ShowStatus status(Time now) const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace luxrig

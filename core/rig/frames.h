@@ -1,0 +1,39 @@
+#pragma once
+/// Frames of a fixture, and where a pan-tilt head must turn to look at something.
+///
+///   world    right-handed, +Z up
+///   mount    the fixture's base as hung: origin in the pan-tilt pivot, X right, Y away, Z up; identity
+///            rotation for a head that hangs straight (GDTF: the beam leaves along -Z at pan = tilt = 0)
+///   lamp     photometric frame (core/photometry/intensity.h): -Z along the beam
+///
+///   world_from_lamp.rotation = world_from_mount · Rz(pan) · Rx(tilt) · Rz(roll)
+///
+/// Pan is positive counter-clockwise seen from above, tilt positive from straight down towards +Y of
+/// the panned base. In frame mount the beam is d = (-sin p sin t, cos p sin t, -cos t).
+
+#include <optional>
+
+#include "core/geometry.h"
+
+namespace luxrig {
+
+struct PanTilt {
+  double pan_rad = 0;
+  double tilt_rad = 0;
+};
+
+struct PanTiltRange {
+  double pan_min_rad = -1.5 * kPi, pan_max_rad = 1.5 * kPi;      // ±270°, the usual moving head
+  double tilt_min_rad = -0.75 * kPi, tilt_max_rad = 0.75 * kPi;  // ±135°
+};
+
+/// Pose of the lamp of a head at the given joint angles.
+[[nodiscard]] Pose world_from_lamp(const Pose& world_from_mount, const PanTilt& joints, double roll_rad = 0);
+
+/// The joint angles, within range, that point the beam along direction_world (need not be unit, must not
+/// be zero), nearest to `from` in the larger of the two joint movements; nothing when out of reach.
+/// Straight down keeps the present pan.
+[[nodiscard]] std::optional<PanTilt> pan_tilt_towards(const Pose& world_from_mount, const Vec3& direction_world,
+                                                      const PanTiltRange& range, const PanTilt& from);
+
+}  // namespace luxrig

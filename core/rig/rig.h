@@ -1,0 +1,209 @@
+#pragma once
+/// A rig as plain values: what rig.toml says, checked once (rig_file.h reads it). Lists keep the order
+/// of the file; indices into them are used everywhere else.
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/photometry/intensity.h"
+#include "core/rig/frames.h"
+#include "core/scene/mesh_file.h"
+
+namespace luxrig {
+
+/// Where in the rig file something stands, for problems found later.
+struct Place {
+  int line = 0;
+  int column = 0;
+};
+
+struct ReflectanceRule {
+  std::string material_pattern;  ///< shell pattern: * and ?
+  Vec3 reflectance_rgb = Vec3::Constant(0.5);
+  Place place;
+};
+
+/// A thing put into the scene: a mesh file, or a box.
+struct SceneObject {
+  std::string name;
+  std::optional<MeshFile> mesh;          ///< else box_m
+  Vec3 box_m = Vec3::Zero();             ///< width (x), depth (y), height (z)
+  Vec3 position_world_m = Vec3::Zero();  ///< where the middle of its underside (bounding box) stands
+  double turn_rad = 0;                   ///< about +Z, counter-clockwise from above
+  std::optional<double> height_m;        ///< mesh scaled evenly to this height
+  std::optional<Vec3> reflectance_rgb;   ///< of all its materials; else rules and file colours apply
+  Place place;
+};
+
+struct SceneSpec {
+  std::optional<MeshFile> mesh;
+  Vec3 default_reflectance_rgb = Vec3::Constant(0.5);  ///< where neither a rule nor the file gives one
+  std::vector<ReflectanceRule> reflectances;           ///< first match wins, before the file's own colour
+  std::vector<SceneObject> objects;
+  Place place;
+};
+
+enum class LuminaireModel { ies, isotropic, spot };
+
+struct Luminaire {
+  std::string name;
+  LuminaireModel model = LuminaireModel::isotropic;
+  std::filesystem::path ies_path;                  ///< model == ies
+  double beam_angle_rad = 0, field_angle_rad = 0;  ///< model == spot, full angles to 50 % and 10 %
+  double lumens = 0;                               ///< rated flux = flux of `intensity`
+  std::optional<double> watts;
+  Intensity intensity;  ///< at rated flux; never null in a checked Rig
+  Place place;
+};
+
+/// What one DMX slot of a fixture carries.
+enum class SlotUse { dimmer, dimmer_fine, pan, pan_fine, tilt, tilt_fine, constant, unused };
+struct DmxSlot {
+  SlotUse use = SlotUse::dimmer;
+  int constant_dmx = 0;  ///< 0…255, for SlotUse::constant (an open shutter, say)
+};
+
+struct DmxPatch {
+  int universe = 1;  ///< sACN 1…63999; Art-Net port address 0…32767
+  int address = 1;   ///< first slot, 1…512
+  std::vector<DmxSlot> slots = {DmxSlot{}};
+};
+
+/// A dimmer channel behind a holding register.
+struct ModbusPatch {
+  int unit = 1;               ///< 0…255
+  int holding_register = 0;   ///< 0-based, as on the wire
+  int full_scale_raw = 1000;  ///< register value at full drive, 1…65535
+};
+
+using Patch = std::variant<DmxPatch, ModbusPatch>;
+
+/// drive (0…1, what is sent) -> level (0…1, share of rated flux), as the fixture's maker states it.
+enum class DimmerCurve { linear, square, s_curve };
+
+struct Fixture {
+  std::string name;
+  std::size_t luminaire = 0;
+  Pose world_from_mount;            ///< base as hung
+  std::optional<Vec3> aim_world_m;  ///< point looked at; else `joints` are given
+  PanTilt joints;                   ///< pan and tilt, derived from the aim when there is one
+  double roll_rad = 0;
+  bool moves = false;                                ///< has pan and tilt slots (or axes)
+  PanTiltRange range;                                ///< only when it moves
+  double pan_speed_rad_s = 0, tilt_speed_rad_s = 0;  ///< only when it moves, > 0
+  std::size_t bus = 0;
+  Patch patch;
+  DimmerCurve dimmer_curve = DimmerCurve::linear;
+  double max_level = 1.0;            ///< 0…1; no output ever above
+  std::optional<double> safe_level;  ///< overrides [safe] level
+  Place place;
+
+  [[nodiscard]] Pose world_from_lamp() const { return luxrig::world_from_lamp(world_from_mount, joints, roll_rad); }
+};
+
+/// A driver's own options, as written. Drivers check them (drivers/registry.h).
+using OptionValue = std::variant<bool, std::int64_t, double, std::string>;
+struct Option {
+  OptionValue value;
+  Place place;
+};
+
+struct Bus {
+  std::string name;
+  std::string driver;                     ///< a name in the driver registry
+  std::map<std::string, Option> options;  ///< every key but name and driver
+  Place place;
+};
+
+/// How a register pair becomes lux.
+struct ModbusMeterPatch {
+  int unit = 1;
+  bool input_registers = false;  ///< function 4, else holding registers (function 3)
+  int first_register = 0;        ///< 0-based
+  int registers = 2;             ///< 1: u16, 2: u32
+  bool low_word_first = false;   ///< word order CDAB
+  double lux_per_count = 0.001;
+};
+
+struct Luxmeter {
+  std::string name;
+  Vec3 position_world_m = Vec3::Zero();
+  Vec3 normal_world = Vec3::UnitZ();
+  std::optional<std::size_t> point;  ///< the [[point]] it stands at, when it does
+  double tolerance = 0.05;           ///< of reading, as a fraction: its true value lies within ±tolerance
+  double range_lx = 200000;          ///< full scale
+  std::size_t bus = 0;
+  ModbusMeterPatch patch;
+  Place place;
+};
+
+struct Point {
+  std::string name;
+  Vec3 position_world_m = Vec3::Zero();
+  Vec3 normal_world = Vec3::UnitZ();  ///< unit
+  std::optional<double> goal_lx;      ///< none: only reported (and limited)
+  double weight = 1;
+  std::optional<double> max_lx;  ///< hard limit
+  Place place;
+};
+
+enum class TaskKind { emittance };
+struct Task {
+  std::string name;
+  TaskKind kind = TaskKind::emittance;
+  Place place;
+};
+
+struct Limits {
+  double max_level = 1.0;          ///< over all fixtures
+  double open_loop_margin = 0.25;  ///< share of a max_lx kept free until a meter has confirmed the model there
+  Place place;
+};
+
+enum class FadeCurve { linear, s_curve };
+
+struct ControlSpec {
+  double fade_s = 3;  ///< from one look to the next
+  FadeCurve fade_curve = FadeCurve::s_curve;
+  double correction_fade_s = 1.0;          ///< between correction rounds
+  double settle_s = 0.5;                   ///< wait after a fade before a meter is believed
+  int rounds = 3;                          ///< most correction rounds after a cue
+  double tolerance = 0.02;                 ///< |measured - goal| / goal at which a round is left out
+  double gain_min = 0.6, gain_max = 1.15;  ///< what the model allows a fixture's true output to be, as a factor
+  Place place;
+};
+
+struct SafeSpec {
+  double level = 0.1;  ///< of every fixture without its own safe_level
+  double hold_s = 5;   ///< how long the last look is held after a failure
+  double fade_s = 3;
+  bool on_meter_loss = true;  ///< false: a lost meter only freezes the correction
+  Place place;
+};
+
+struct DaemonSpec {
+  int http_port = 9620;  ///< on loopback
+  Place place;
+};
+
+struct Rig {
+  std::filesystem::path file;  ///< as opened, for problems and for paths beside it
+  std::string name;
+  SceneSpec scene;
+  std::vector<Luminaire> luminaires;
+  std::vector<Bus> buses;
+  std::vector<Fixture> fixtures;
+  std::vector<Luxmeter> luxmeters;
+  std::vector<Point> points;
+  std::vector<Task> tasks;
+  Limits limits;
+  ControlSpec control;
+  SafeSpec safe;
+  DaemonSpec daemon;
+};
+
+}  // namespace luxrig

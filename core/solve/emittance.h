@@ -1,0 +1,52 @@
+#pragma once
+/// Levels of fixed lights from goals in lux, under hard limits.
+///
+///   minimise  Σ_s w_s² (T_s c + b_s − g_s)²   over points with a goal
+///   subject to 0 ≤ c_j ≤ u_j   and   T_s c + b_s ≤ m_s   for points with a limit
+///
+/// Source: Lawson & Hanson, Solving Least Squares Problems (1974), ch. 23 (NNLS, LDP, LSI); thesis §2.7.2.
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "core/stop.h"
+
+namespace luxrig {
+
+struct EmittanceProblem {
+  Eigen::MatrixXd lux_per_level;  ///< T: points × lights, ≥ 0, finite
+  Eigen::VectorXd fixed_lx;       ///< b: light that is there anyway; empty = 0
+  Eigen::VectorXd goal_lx;        ///< g; NaN where a point has no goal
+  Eigen::VectorXd weight;         ///< w ≥ 0; empty = 1
+  Eigen::VectorXd max_lx;         ///< m; +inf where there is no limit
+  Eigen::VectorXd max_level;      ///< u ≥ 0; empty = 1
+};
+
+/// Why a point misses its goal.
+enum class Binding { none, max_lux_here, max_lux_elsewhere, max_level, min_level, out_of_reach, traded };
+
+struct PointOutcome {
+  double lux = 0;
+  double shortfall_lx = 0;  ///< goal − lux where there is a goal (negative: too bright)
+  Binding binding = Binding::none;
+  std::string reason;             ///< one sentence; empty when met (within 1 %)
+  std::vector<int> limit_points;  ///< points whose max_lx binds and holds this one down (or up)
+  std::vector<int> limit_lights;  ///< lights at their max_level that hold it down
+};
+
+struct EmittanceSolution {
+  Eigen::VectorXd level;  ///< within [0, u] and T c + b ≤ m, exactly (in floating point, as written)
+  std::vector<PointOutcome> points;
+  double normalised_error = 0;  ///< ‖T c + b − g‖ / ‖g‖ over points with a goal, unweighted (thesis)
+  double kkt_residual = 0;      ///< largest violation of the KKT conditions, relative; see emittance.cpp
+  int iterations = 0;
+};
+
+/// Cause::invalid when sizes disagree, an entry is not finite or negative, or a limit is below what is there anyway
+/// (then the detail names the point).
+[[nodiscard]] Result<EmittanceSolution> solve_emittance(const EmittanceProblem& problem, const Watch& watch = {});
+
+}  // namespace luxrig

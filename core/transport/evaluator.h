@@ -1,0 +1,82 @@
+#pragma once
+/// From emitters to lux. One interface, several evaluators; solvers never know which one they use.
+///
+/// Illuminance is linear in emittance: E = T c (thesis eq. 5.1). An evaluator returns T for the given
+/// receivers and emitters, sampled until the illuminance of each receiver, under the given levels, has
+/// the wanted relative error.
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "core/photometry/intensity.h"
+#include "core/result.h"
+#include "core/scene/ray_scene.h"
+#include "core/stop.h"
+
+namespace luxrig {
+
+/// A point that receives light on the side of its normal.
+struct Receiver {
+  Vec3 position_world_m;
+  Vec3 normal_world;  ///< unit
+};
+
+/// A luminaire as hung and aimed.
+struct Emitter {
+  Intensity intensity;
+  Pose world_from_lamp;
+};
+
+struct EvaluateOptions {
+  /// Wanted standard error of each receiver's illuminance, relative to
+  /// max(its illuminance, 0.001 of the brightest receiver's). Exact evaluators ignore it.
+  double wanted_relative_error = 0.01;
+  std::uint64_t seed = 1;
+  int threads = 0;                         ///< 0 = one per core; the result does not depend on it
+  std::uint64_t max_rays = 2'000'000'000;  ///< gives up there and reports the error it has
+  std::vector<double> levels;              ///< per emitter, ≥ 0; empty = all 1
+  Watch watch;
+};
+
+/// T with its statistics. Rows are receivers, columns emitters.
+struct TransportMatrix {
+  Eigen::MatrixXd lux_per_level;  ///< total (direct and indirect)
+  Eigen::MatrixXd direct_lux_per_level;
+  /// Independent unbiased estimates of lux_per_level whose mean it is; empty when it is exact. They carry the
+  /// correlations between columns, so that the error of T c is right for every c.
+  std::vector<Eigen::MatrixXd> replicates;
+  double relative_error = 0;  ///< reached, at the options' levels; largest over receivers
+  std::uint64_t rays = 0;
+
+  [[nodiscard]] Eigen::Index receivers() const { return lux_per_level.rows(); }
+  [[nodiscard]] Eigen::Index emitters() const { return lux_per_level.cols(); }
+  [[nodiscard]] Eigen::VectorXd lux(const Eigen::VectorXd& levels) const { return lux_per_level * levels; }
+  [[nodiscard]] Eigen::VectorXd direct_lux(const Eigen::VectorXd& levels) const {
+    return direct_lux_per_level * levels;
+  }
+  /// Standard error [lx] of lux(levels); zeros when exact.
+  [[nodiscard]] Eigen::VectorXd standard_error_lux(const Eigen::VectorXd& levels) const;
+};
+
+class Evaluator {
+ public:
+  virtual ~Evaluator() = default;
+  [[nodiscard]] virtual std::string_view name() const = 0;
+  /// Cause::cancelled when stopped; Cause::invalid when an emitter lies in a receiver (its lux is infinite) or an
+  /// input is not finite.
+  [[nodiscard]] virtual Result<TransportMatrix> evaluate(std::span<const Receiver> receivers,
+                                                         std::span<const Emitter> emitters,
+                                                         const EvaluateOptions& options) const = 0;
+};
+
+/// Direct light only, one shadow ray per pair that could see each other; exact for point luminaires.
+[[nodiscard]] std::unique_ptr<Evaluator> make_direct_evaluator(const RayScene& scene);
+
+/// Direct light and diffuse interreflection: paths from the receivers, Owen-scrambled Sobol samples,
+/// next-event estimation to every emitter, Russian roulette. Unbiased; standard error from replicates.
+[[nodiscard]] std::unique_ptr<Evaluator> make_path_evaluator(const RayScene& scene);
+
+}  // namespace luxrig

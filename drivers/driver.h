@@ -1,0 +1,48 @@
+#pragma once
+/// Base of all drivers: life cycle, stated bounds, health.
+///
+/// configured --activate()--> active <--> faulted --deactivate()--> configured
+///
+/// A driver constructs without touching a device. Once activated it goes to faulted and back by itself as the device
+/// goes and returns (reconnecting inside write() and read(), within their bounds, with backoff). After a return it
+/// sends the current setpoint, never an older one. One driver serves one [[bus]]; its calls come from one thread.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/control/devices.h"
+#include "core/rig/rig.h"
+
+namespace luxrig {
+
+struct DriverBounds {
+  Duration write{};          ///< write() and move() return within
+  Duration read{};           ///< read() returns within
+  Duration write_period{};   ///< how often write() should be called (DMX 1/44 s; a Modbus dimmer 100 ms)
+  Duration read_period{};    ///< how often read() should be called; 0 = has no reader
+  Duration fault_after{};    ///< faulted at the latest this long after the peer goes
+  bool notices_loss = true;  ///< false: the protocol has no way to tell (multicast sACN)
+};
+
+class Driver {
+ public:
+  virtual ~Driver() = default;
+
+  [[nodiscard]] virtual DriverBounds bounds() const = 0;
+  /// Opens what it needs. Idempotent. A peer that is absent is not an error: the driver starts faulted and keeps
+  /// trying.
+  virtual Result<void> activate(Time now) = 0;
+  /// Says goodbye as the protocol wants (sACN: three terminated packets) and closes. Idempotent.
+  virtual void deactivate(Time now) = 0;
+  /// The bus first, then each device on it that can be told apart.
+  [[nodiscard]] virtual std::vector<Health> health(Time now) const = 0;
+
+  /// Capabilities; null when the bus has none. Owned by the driver.
+  virtual LevelOutput* level_output() { return nullptr; }
+  virtual Mover* mover() { return nullptr; }
+  virtual LuxReader* lux_reader() { return nullptr; }
+  virtual Camera* camera() { return nullptr; }
+};
+
+}  // namespace luxrig

@@ -1,0 +1,41 @@
+#pragma once
+/// The table of drivers: one line each, in registry.cpp.
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "core/rig/rig.h"
+#include "drivers/driver.h"
+
+namespace luxrig {
+
+/// Where a bus is really to be reached: instead of what the rig file says, everything goes to a stand-in on loopback.
+struct Redirect {
+  std::string host;  ///< "127.0.0.1"
+  int port = 0;
+};
+
+/// One option a driver reads from its [[bus]] entry; the rig-file reference is compared with these.
+struct OptionDoc {
+  std::string_view key, type, unit, fallback, range, summary;
+};
+
+struct DriverEntry {
+  std::string_view name;     ///< as in [[bus]] driver = "…"
+  std::string_view summary;  ///< "ANSI E1.31 over UDP, send"
+  std::span<const OptionDoc> options;
+  /// Problems with the bus's options, and with the patches of the fixtures and meters on it. Touches no device.
+  std::vector<Problem> (*check)(const Rig& rig, std::size_t bus);
+  /// requires check() to be empty.
+  std::unique_ptr<Driver> (*make)(const Rig& rig, std::size_t bus, const std::optional<Redirect>& redirect);
+};
+
+[[nodiscard]] std::span<const DriverEntry> drivers();
+[[nodiscard]] const DriverEntry* find_driver(std::string_view name);
+
+/// Every bus of the rig: driver known (else the nearest name), options and patches good.
+[[nodiscard]] std::vector<Problem> check_buses(const Rig& rig);
+
+}  // namespace luxrig
