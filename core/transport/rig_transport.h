@@ -1,0 +1,19 @@
+#pragma once
+/// A Rig as transport sees it: what shines and what is lit.
+
+#include <vector>
+
+#include "core/rig/rig.h"
+#include "core/transport/evaluator.h"
+
+namespace luxrig {
+
+/// One emitter per fixture, in the rig's order, at the luminaire's rated flux and aimed as the rig file says.
+/// Column j of a TransportMatrix is then fixture j, and a level of 1 its rated flux.
+[[nodiscard]] std::vector<Emitter> emitters_of(const Rig& rig);
+
+/// The rig's points, in order, then its luxmeters, in order: row p is points[p], and row
+/// points.size() + m is luxmeters[m] (also for a luxmeter that stands at a point).
+[[nodiscard]] std::vector<Receiver> receivers_of(const Rig& rig);
+
+}  // namespace luxrig
