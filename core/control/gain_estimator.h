@@ -1,0 +1,138 @@
+#pragma once
+/// What luxmeters teach about the rig: how much each fixture really gives, and how far off the model is where a meter
+/// stands. From that: predictions with their error, the most light that the evidence allows at a limited point, and
+/// corrected levels.
+///
+/// Model, linear and Gaussian (kriging; posterior in data space):
+///   reading_i = Σ_j M_ij · level_j · x_ij + noise      x_ij = g_j + e_ij
+/// g_j: true output over rated of fixture j, prior 1 ± a quarter of (gain_max − gain_min);
+/// e_ij: what is wrong at meter i alone (pose, reflectance), prior 0 ± a third of the rig's open_loop_margin, joined
+/// by the transport's standard error. Readings of the same meter at other levels share e_ij, so that
+/// repeating a reading does not feign certainty. Bounds that nothing crosses: g in [gain_min, gain_max], and the model
+/// without g right at every point to within a factor of 1/(1 − open_loop_margin) either way.
+///
+/// A meter's systematic tolerance does not slow the loop (the reading shall equal the goal), but limits must hold with
+/// it: the true value may be reading · (1 + tolerance).
+///
+/// Time is an argument; same calls, same result.
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/control/devices.h"
+#include "core/control/show_controller.h"
+#include "core/rig/rig.h"
+
+namespace luxrig {
+
+/// Whether a reading can be believed, and if not, why (for an alarm: what is wrong, with figures).
+struct Judgement {
+  std::size_t luxmeter = 0;
+  bool believed = false;
+  std::string why;                       ///< empty when believed
+  double predicted_lx = 0;               ///< by what was known before
+  double lowest_lx = 0, highest_lx = 0;  ///< what the model allows
+};
+
+/// Lux at a point with its standard error (transport, gains, and what is wrong locally).
+struct Prediction {
+  double lux = 0;
+  double standard_error_lx = 0;
+};
+
+/// For OutputProgram: one row per limited point.
+struct WorstCase {
+  std::vector<std::size_t> points;      ///< index in the rig, ascending
+  Eigen::MatrixXd worst_lux_per_level;  ///< points × fixtures
+  Eigen::VectorXd max_lx;
+};
+
+struct Correction {
+  std::vector<double> level;     ///< per fixture; within max_level and all limits, in the worst case of the evidence
+  std::vector<double> aimed_lx;  ///< per point of the rig: what the present estimate predicts at `level`
+  std::vector<std::string> why;  ///< per point: what keeps it from its goal; empty when it will be met or has none
+};
+
+class GainEstimator {
+ public:
+  /// Uses the rig's fixtures (max_level), luxmeters, points, limits and control. The model's matrices must have the
+  /// rig's sizes (asserted).
+  GainEstimator(const Rig& rig, const LightModel& model);
+
+  /// Would this reading be believed? `level`: per fixture, as it was (settled) when the reading was taken.
+  [[nodiscard]] Judgement judge(const LuxReading& reading, std::span<const double> level) const;
+
+  /// Judges and learns from what is believed; nothing else moves an estimate. Also remembers values, to tell a stuck
+  /// meter (the same to the last bit while the light changed). One judgement per reading, in order.
+  std::vector<Judgement> update(Time now, std::span<const LuxReading> readings, std::span<const double> level);
+
+  /// Drops what this meter taught (it is gone, or was exchanged).
+  void forget(std::size_t luxmeter);
+
+  [[nodiscard]] double gain(std::size_t fixture) const { return gain_[static_cast<Eigen::Index>(fixture)]; }
+  [[nodiscard]] double gain_standard_error(std::size_t fixture) const {
+    return gain_error_[static_cast<Eigen::Index>(fixture)];
+  }
+  /// The most that this fixture may give: estimate + 3 standard errors, at most gain_max.
+  [[nodiscard]] double upper_gain(std::size_t fixture) const;
+
+  [[nodiscard]] Prediction at_point(std::size_t point, std::span<const double> level) const;
+  [[nodiscard]] Prediction at_meter(std::size_t luxmeter, std::span<const double> level) const;
+
+  /// A meter stands at this point and at least one of its readings is believed.
+  [[nodiscard]] bool confirmed(std::size_t point) const;
+
+  /// The most lux that can truly be at this point at these levels, given bounds and evidence: without a meter there,
+  /// model with upper gains, over (1 − open_loop_margin); with one, the last believed reading · (1 + tolerance)
+  /// carried over to these levels in the worst way the bounds allow.
+  [[nodiscard]] double most_lux_at_point(std::size_t point, std::span<const double> level, Time now) const;
+
+  /// Rows that stay above the truth everywhere on the straight way `from` -> `to` (a fade moves all fixtures by the
+  /// same share), so far as bounds and evidence say.
+  [[nodiscard]] WorstCase worst_case(std::span<const double> from, std::span<const double> to, Time now) const;
+
+  /// `level` with the fixtures that light a limited point scaled down together, so that most_lux_at_point <= max_lx
+  /// everywhere.
+  [[nodiscard]] std::vector<double> within_limits(std::span<const double> level, Time now) const;
+
+  /// Levels that bring the rig's goals, as far as limits allow, starting from the present `level`; a metered goal goes
+  /// before goals that nobody measures. Never fails: where the solver is stopped or refuses, the present levels
+  /// within limits.
+  [[nodiscard]] Correction correct(std::span<const double> level, Time now) const;
+
+ private:
+  struct Evidence {
+    std::size_t luxmeter = 0;
+    double lux = 0;
+    Time taken{};
+    Eigen::VectorXd level;
+  };
+  struct Meter {
+    std::optional<double> last_lux;  ///< believed or not
+    double last_predicted_lx = 0;
+    bool stuck = false;
+  };
+
+  void estimate(Time now);
+  [[nodiscard]] const Evidence* latest(std::size_t luxmeter) const;
+  [[nodiscard]] double share_lux(Eigen::Index luxmeter, std::span<const double> level, bool upper) const;
+  [[nodiscard]] Eigen::RowVectorXd point_row(std::size_t point) const;
+
+  Eigen::MatrixXd point_, point_error_, meter_, meter_error_;
+  std::vector<Luxmeter> luxmeters_;
+  std::vector<Point> points_;
+  std::vector<std::optional<std::size_t>> meter_of_point_;
+  Eigen::VectorXd max_level_;
+  double gain_min_ = 0, gain_max_ = 1, local_ = 1;  ///< local_: 1/(1 − open_loop_margin)
+  double prior_gain_sd_ = 0, prior_local_sd_ = 0;
+
+  std::vector<Evidence> evidence_;  ///< oldest first
+  std::vector<Meter> meters_;
+  Eigen::VectorXd gain_, gain_error_;
+  Eigen::MatrixXd factor_, factor_error_;  ///< x: luxmeters × fixtures
+};
+
+}  // namespace luxrig
