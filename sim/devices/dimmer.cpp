@@ -1,0 +1,23 @@
+#include "sim/devices/dimmer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/control/output_program.h"
+#include "sim/devices/lag.h"
+
+namespace luxrig::sim {
+
+void Dimmer::set_drive(double drive) {
+  if (std::isnan(drive)) return;
+  drive_ = std::clamp(drive, 0.0, 1.0);
+  settled_level_ = std::pow(level_from_drive(nominal_, drive_), exponent_);
+}
+
+void Dimmer::step(double dt_s) {
+  level_ = lagged(level_, settled_level_, dt_s, lag_s_);
+  // An exponential never arrives; below a billionth of full light it has, and the world need not compute any more.
+  if (std::abs(level_ - settled_level_) < 1e-9) level_ = settled_level_;
+}
+
+}  // namespace luxrig::sim

@@ -1,0 +1,59 @@
+#include "sim/devices/dmx_fixture.h"
+
+namespace luxrig::sim {
+namespace {
+
+// One parameter, collected from its coarse and fine slots wherever they are.
+struct Parameter {
+  std::optional<int> coarse, fine;
+  [[nodiscard]] double share() const {
+    if (!coarse) return fine ? *fine / 65535.0 : 0.0;
+    return fine ? (*coarse * 256 + *fine) / 65535.0 : *coarse / 255.0;
+  }
+};
+
+}  // namespace
+
+DmxOrder decode_slots(const Fixture& fixture, const DmxPatch& patch, std::span<const std::uint8_t, kDmxSlots> slots) {
+  Parameter dimmer, pan, tilt;
+  bool constants_hold = true;
+  for (std::size_t i = 0; i < patch.slots.size(); ++i) {
+    const std::size_t index = static_cast<std::size_t>(patch.address - 1) + i;
+    const int value_dmx = index < slots.size() ? slots[index] : 0;
+    switch (patch.slots[i].use) {
+      case SlotUse::dimmer:
+        dimmer.coarse = value_dmx;
+        break;
+      case SlotUse::dimmer_fine:
+        dimmer.fine = value_dmx;
+        break;
+      case SlotUse::pan:
+        pan.coarse = value_dmx;
+        break;
+      case SlotUse::pan_fine:
+        pan.fine = value_dmx;
+        break;
+      case SlotUse::tilt:
+        tilt.coarse = value_dmx;
+        break;
+      case SlotUse::tilt_fine:
+        tilt.fine = value_dmx;
+        break;
+      case SlotUse::constant:
+        constants_hold = constants_hold && value_dmx == patch.slots[i].constant_dmx;
+        break;
+      case SlotUse::unused:
+        break;
+    }
+  }
+  DmxOrder order;
+  order.drive = constants_hold ? dimmer.share() : 0;
+  if (fixture.moves && pan.coarse && tilt.coarse) {
+    const PanTiltRange& range = fixture.range;
+    order.joints = PanTilt{range.pan_min_rad + pan.share() * (range.pan_max_rad - range.pan_min_rad),
+                           range.tilt_min_rad + tilt.share() * (range.tilt_max_rad - range.tilt_min_rad)};
+  }
+  return order;
+}
+
+}  // namespace luxrig::sim

@@ -1,0 +1,38 @@
+#include "sim/devices/head.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace luxrig::sim {
+namespace {
+
+double turned_towards(double from_rad, double to_rad, double most_rad) {
+  return from_rad + std::clamp(to_rad - from_rad, -most_rad, most_rad);
+}
+
+}  // namespace
+
+Head::Head(const Fixture& fixture)
+    : moves_(fixture.moves),
+      range_(fixture.range),
+      pan_speed_rad_s_(fixture.pan_speed_rad_s),
+      tilt_speed_rad_s_(fixture.tilt_speed_rad_s),
+      joints_(fixture.joints),
+      target_(fixture.joints) {
+  if (!moves_) return;
+  set_target(PanTilt{});
+  joints_ = target_;
+}
+
+void Head::set_target(const PanTilt& joints) {
+  if (!moves_ || std::isnan(joints.pan_rad) || std::isnan(joints.tilt_rad)) return;
+  target_.pan_rad = std::clamp(joints.pan_rad, range_.pan_min_rad, range_.pan_max_rad);
+  target_.tilt_rad = std::clamp(joints.tilt_rad, range_.tilt_min_rad, range_.tilt_max_rad);
+}
+
+void Head::step(double dt_s) {
+  joints_.pan_rad = turned_towards(joints_.pan_rad, target_.pan_rad, pan_speed_rad_s_ * dt_s);
+  joints_.tilt_rad = turned_towards(joints_.tilt_rad, target_.tilt_rad, tilt_speed_rad_s_ * dt_s);
+}
+
+}  // namespace luxrig::sim

@@ -1,0 +1,31 @@
+#pragma once
+/// The joints of a pan-tilt head: each turns at its own constant speed to where it was told, within its range.
+/// Acceleration is not modelled: a head that ramps arrives later by about (speed / acceleration).
+
+#include "core/rig/rig.h"
+
+namespace luxrig::sim {
+
+class Head {
+ public:
+  /// `fixture` must move (speeds > 0). It wakes at pan = tilt = 0, or as near as its range allows, as heads do when
+  /// they are switched on. A fixture that does not move stays at its joints for ever.
+  explicit Head(const Fixture& fixture);
+
+  /// Clamped to the range, as the end stops would; NaN ignored.
+  void set_target(const PanTilt& joints);
+  void step(double dt_s);
+
+  [[nodiscard]] const PanTilt& joints() const { return joints_; }
+  [[nodiscard]] bool moving() const {
+    return joints_.pan_rad != target_.pan_rad || joints_.tilt_rad != target_.tilt_rad;
+  }
+
+ private:
+  bool moves_;
+  PanTiltRange range_;
+  double pan_speed_rad_s_, tilt_speed_rad_s_;
+  PanTilt joints_, target_;
+};
+
+}  // namespace luxrig::sim

@@ -1,0 +1,140 @@
+#include "sim/faults/faults.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "sim/world/random.h"
+
+namespace luxrig::sim {
+namespace {
+
+struct FaultEntry {
+  FaultKind kind;
+  std::string_view name;
+  double fallback, least, most;  // of its value
+};
+
+constexpr std::array<FaultEntry, 8> kFaults = {{
+    {FaultKind::lost, "lost", 0.5, 0, 1},
+    {FaultKind::silent, "silent", 1, 0, 1},
+    {FaultKind::dead, "dead", 1, 0, 1},
+    {FaultKind::slow, "slow", 300, 0, 60000},
+    {FaultKind::garbled, "garbled", 1, 0, 1},
+    {FaultKind::stuck, "stuck", 1, 0, 1},
+    {FaultKind::lying, "lying", 0.5, 0, 1000},
+    {FaultKind::exception, "exception", 4, 1, 127},
+}};
+
+const FaultEntry& entry_of(FaultKind kind) {
+  return *std::find_if(kFaults.begin(), kFaults.end(), [kind](const FaultEntry& entry) { return entry.kind == kind; });
+}
+
+constexpr auto kKinds = [] {
+  std::array<FaultKind, kFaults.size()> kinds{};
+  for (std::size_t i = 0; i < kFaults.size(); ++i) kinds[i] = kFaults[i].kind;
+  return kinds;
+}();
+
+bool rig_has(const Rig& rig, const std::string& device) {
+  const auto named = [&device](const auto& item) { return item.name == device; };
+  return std::any_of(rig.fixtures.begin(), rig.fixtures.end(), named) ||
+         std::any_of(rig.luxmeters.begin(), rig.luxmeters.end(), named) ||
+         std::any_of(rig.buses.begin(), rig.buses.end(), named);
+}
+
+tl::unexpected<Fault> invalid(const std::string& device, std::string detail) {
+  return tl::unexpected(Fault{Cause::invalid, device, std::move(detail), {}});
+}
+
+}  // namespace
+
+std::string_view name_of(FaultKind kind) { return entry_of(kind).name; }
+
+std::optional<FaultKind> fault_named(std::string_view name) {
+  for (const FaultEntry& entry : kFaults) {
+    if (entry.name == name) return entry.kind;
+  }
+  return std::nullopt;
+}
+
+std::span<const FaultKind> all_faults() { return kKinds; }
+
+void Faults::set(const std::string& device, FaultKind kind, bool on, std::optional<double> value) {
+  const std::lock_guard lock(mutex_);
+  if (kind == FaultKind::stuck) stuck_at_lx_.erase(device);
+  if (on) {
+    on_[{device, kind}] = value.value_or(entry_of(kind).fallback);
+  } else {
+    on_.erase({device, kind});
+  }
+}
+
+Result<void> Faults::set_named(const Rig& rig, const std::string& device, std::string_view fault, bool on,
+                               std::optional<double> value) {
+  const auto kind = fault_named(fault);
+  if (!kind) {
+    std::string known;
+    for (const FaultEntry& entry : kFaults) known += fmt::format("{}{}", known.empty() ? "" : ", ", entry.name);
+    return invalid(device, fmt::format("unknown fault '{}': use one of {}", fault, known));
+  }
+  if (!rig_has(rig, device)) {
+    return invalid(device, fmt::format("the rig has no device '{}': name a fixture, a luxmeter or a bus", device));
+  }
+  const FaultEntry& entry = entry_of(*kind);
+  if (value && !(*value >= entry.least && *value <= entry.most)) {
+    return invalid(device, fmt::format("value {} of fault '{}' is out of range: use {} to {}", *value, fault,
+                                       entry.least, entry.most));
+  }
+  set(device, *kind, on, value);
+  return {};
+}
+
+void Faults::clear() {
+  const std::lock_guard lock(mutex_);
+  on_.clear();
+  stuck_at_lx_.clear();
+}
+
+std::optional<double> Faults::find(const std::string& device, FaultKind kind) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = on_.find({device, kind});
+  return found == on_.end() ? std::nullopt : std::optional(found->second);
+}
+
+Disturbance Faults::disturbance(std::span<const std::string> devices, std::uint64_t counter) const {
+  const std::lock_guard lock(mutex_);
+  Disturbance disturbance;
+  if (on_.empty()) return disturbance;
+  disturbance.random = random_bits(seed_, Draw::fault_garble, 0, counter);
+  for (std::size_t d = 0; d < devices.size(); ++d) {
+    const auto value = [&](FaultKind kind) {
+      const auto found = on_.find({devices[d], kind});
+      return found == on_.end() ? std::nullopt : std::optional(found->second);
+    };
+    if (value(FaultKind::silent) || value(FaultKind::dead)) disturbance.silent = true;
+    if (const auto share = value(FaultKind::lost); share && random_unit(seed_, Draw::fault_loss, d, counter) < *share) {
+      disturbance.silent = true;
+    }
+    if (const auto late_ms = value(FaultKind::slow)) {
+      disturbance.delay = std::max(disturbance.delay, from_seconds(*late_ms * 1e-3));
+    }
+    if (value(FaultKind::garbled)) disturbance.garbled = true;
+    if (const auto code = value(FaultKind::exception)) disturbance.exception = static_cast<int>(*code);
+  }
+  return disturbance;
+}
+
+double Faults::shown_lx(const std::string& meter, double honest_lx) {
+  const std::lock_guard lock(mutex_);
+  double shown_lx = honest_lx;
+  if (const auto factor = on_.find({meter, FaultKind::lying}); factor != on_.end()) shown_lx *= factor->second;
+  if (on_.contains({meter, FaultKind::stuck})) {
+    shown_lx = stuck_at_lx_.try_emplace(meter, shown_lx).first->second;
+  }
+  return shown_lx;
+}
+
+}  // namespace luxrig::sim

@@ -1,0 +1,71 @@
+#pragma once
+/// What can be made to go wrong, by name, per device: a fixture, a luxmeter or a whole bus, named as in the rig file.
+/// A scenario or the simulator's control port switches them on and off; the wires and the in-process rig obey.
+///
+///   lost       answers (or frames to it) go missing with probability value (default 0.5)
+///   silent     gets everything, answers nothing; on a bus or a DMX fixture: what is sent has no effect either
+///   dead       bus: its socket is closed (TCP refused, UDP unreachable). Device: as silent
+///   slow       answers value milliseconds late (default 300)
+///   garbled    answers with bytes changed, cut short or too long; a different way each time
+///   stuck      meter: shows for ever what it showed when this began
+///   lying      meter: shows value times what it should (default 0.5)
+///   exception  answers with Modbus exception code value (default 4, device failure)
+
+#include <map>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/result.h"
+#include "core/rig/rig.h"
+
+namespace luxrig::sim {
+
+enum class FaultKind { lost, silent, dead, slow, garbled, stuck, lying, exception };
+[[nodiscard]] std::string_view name_of(FaultKind kind);
+[[nodiscard]] std::optional<FaultKind> fault_named(std::string_view name);
+[[nodiscard]] std::span<const FaultKind> all_faults();
+
+/// How one exchange with a device goes wrong; all default = it goes well.
+struct Disturbance {
+  bool silent = false;
+  bool garbled = false;
+  std::optional<int> exception;
+  Duration delay{};
+  std::uint64_t random = 0;  ///< for whatever is to be done at random about it
+};
+
+/// May be switched from one thread and obeyed on another.
+class Faults {
+ public:
+  explicit Faults(std::uint64_t seed = 1) : seed_(seed) {}
+
+  /// Switches a fault of a device on (value: as above, default when absent) or off.
+  void set(const std::string& device, FaultKind kind, bool on, std::optional<double> value = {});
+  /// Cause::invalid, with what would mend it, for a device or fault the rig does not know or a value out of range.
+  Result<void> set_named(const Rig& rig, const std::string& device, std::string_view fault, bool on,
+                         std::optional<double> value = {});
+  void clear();
+
+  /// Its value when it is on.
+  [[nodiscard]] std::optional<double> find(const std::string& device, FaultKind kind) const;
+
+  /// What the faults of any of these devices do to one exchange. `counter`: a different number for each exchange.
+  [[nodiscard]] Disturbance disturbance(std::span<const std::string> devices, std::uint64_t counter) const;
+
+  /// What a meter shows that would honestly show `honest_lx`. Call it at least at every exchange: a stuck meter keeps
+  /// the first value it is asked about.
+  [[nodiscard]] double shown_lx(const std::string& meter, double honest_lx);
+
+ private:
+  mutable std::mutex mutex_;
+  std::uint64_t seed_;
+  std::map<std::pair<std::string, FaultKind>, double> on_;
+  std::map<std::string, double> stuck_at_lx_;
+};
+
+}  // namespace luxrig::sim
