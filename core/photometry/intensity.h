@@ -33,15 +33,19 @@ class IntensityDistribution {
 
 using Intensity = std::shared_ptr<const IntensityDistribution>;  // one file serves many fixtures
 
-/// The same in all directions: flux / 4π.
+/// The same in all directions: flux / 4π. requires flux_lm > 0.
 [[nodiscard]] Intensity make_isotropic(double flux_lm);
 
-/// A spot about -Z: I(γ) = I0 · cos^n(γ scaled so that) half of I0 is reached at half the beam angle and
-/// a tenth at half the field angle; nothing beyond the horizon of its fall-off. See intensity.cpp for the
-/// profile. requires 0 < beam_angle < field_angle < π.
+/// A spot about -Z with a soft edge. With b = half the beam angle and f = half the field angle,
+///   I(γ) = I0 · 2^-(γ/b)^p · w(γ),   p = ln(log2 10) / ln(f/b),
+/// so that I(b) is exactly I0/2 and I(f) exactly I0/10. w is 1 up to f and falls to 0 at γ = 2f along the
+/// quintic 1 - 6t⁵ + 15t⁴ - 10t³: nothing leaves at more than the full field angle from the axis. p is 2 (a
+/// Gaussian) at f/b = 1.82, larger (a flatter top) for a sharper edge. Beyond f/b = 3.3 the axis has a hot spot.
+/// I0 follows from the flux by quadrature to 1e-12.
+/// requires flux_lm > 0 and 0 < beam_angle < field_angle < π (asserted: the rig file is checked before).
 [[nodiscard]] Intensity make_spot(double flux_lm, double beam_angle_rad, double field_angle_rad);
 
-/// `of`, scaled so that its flux is flux_lm (> 0).
+/// `of`, scaled so that its flux is flux_lm. requires `of` not null, both fluxes > 0 (asserted).
 [[nodiscard]] Intensity scaled_to_flux(Intensity of, double flux_lm);
 
 }  // namespace luxrig
