@@ -1,0 +1,35 @@
+#include "core/transport/direct_light.h"
+
+namespace luxrig {
+namespace {
+
+class DirectEvaluator final : public Evaluator {
+ public:
+  explicit DirectEvaluator(const RayScene& scene) : scene_(scene) {}
+  std::string_view name() const override { return "direct"; }
+
+  Result<TransportMatrix> evaluate(std::span<const Receiver> receivers, std::span<const Emitter> emitters,
+                                   const EvaluateOptions& options) const override {
+    if (auto checked = check_evaluation(receivers, emitters, options); !checked)
+      return tl::unexpected(std::move(checked.error()));
+    const Lamps lamps(emitters);
+    auto direct = direct_light(scene_, receivers, lamps, emitters.size(), options.threads, options.watch);
+    if (!direct) return tl::unexpected(std::move(direct.error()));
+    TransportMatrix matrix;
+    matrix.direct_lux_per_level = std::move(direct->lux_per_level);
+    matrix.lux_per_level = matrix.direct_lux_per_level;
+    matrix.rays = direct->rays;
+    return matrix;
+  }
+
+ private:
+  const RayScene& scene_;
+};
+
+}  // namespace
+
+std::unique_ptr<Evaluator> make_direct_evaluator(const RayScene& scene) {
+  return std::make_unique<DirectEvaluator>(scene);
+}
+
+}  // namespace luxrig

@@ -1,0 +1,33 @@
+#pragma once
+/// Closed rooms whose light is known exactly: what tests and `luxrig bench analytic` measure evaluators against.
+
+#include "core/scene/scene.h"
+
+namespace luxrig {
+
+/// A point on a wall, with the normal that looks into the enclosure.
+struct WallPoint {
+  Vec3 position_m;
+  Vec3 normal;
+};
+
+/// Cube [-edge/2, edge/2]³, twelve triangles, one reflectance.
+[[nodiscard]] Scene make_cube(double edge_m, double reflectance);
+
+/// Sphere about the origin: an icosahedron split `splits` times (20·4^splits triangles), vertices on the sphere.
+[[nodiscard]] Scene make_icosphere(double radius_m, int splits, double reflectance);
+
+/// Sum of the triangle areas [m²].
+[[nodiscard]] double area_m2(const Scene& scene);
+
+/// `count` points spread evenly by area over the triangles, the same on each call, each looking towards `inside_m`.
+[[nodiscard]] std::vector<WallPoint> spread_over_walls(const Scene& scene, std::size_t count, const Vec3& inside_m);
+
+/// Mean illuminance [lx] of the walls of any closed enclosure of one reflectance, for a source of flux_lm inside:
+/// every reflection keeps the share ρ of the flux, so that Φ (1 + ρ + ρ² + …) = Φ/(1-ρ) falls on the area in all.
+[[nodiscard]] double mean_wall_illuminance_lx(double flux_lm, double area_m2, double reflectance);
+
+/// The reflected part of it, Φ/A · ρ/(1-ρ): in an integrating sphere, at every point of the wall.
+[[nodiscard]] double reflected_wall_illuminance_lx(double flux_lm, double area_m2, double reflectance);
+
+}  // namespace luxrig

@@ -1,0 +1,43 @@
+#pragma once
+/// Progress of work that many threads do, reported from the one that called.
+
+#include <algorithm>
+#include <atomic>
+#include <thread>
+
+#include "core/stop.h"
+
+namespace luxrig {
+
+/// One stretch of work, from share `begin` to share `end`, of `parts` equal parts. Reports rise, each by 1 % or
+/// more.
+class CallingThreadProgress {
+ public:
+  CallingThreadProgress(const Watch& watch, double begin, double end, std::size_t parts)
+      : watch_(watch), caller_(std::this_thread::get_id()), begin_(begin), end_(end), parts_(parts), last_(begin) {}
+
+  /// From any thread.
+  void one_done() {
+    const std::size_t done = done_.fetch_add(1, std::memory_order_relaxed) + 1;
+    if (!watch_.progress || std::this_thread::get_id() != caller_) return;
+    const double share = begin_ + (end_ - begin_) * static_cast<double>(done) / static_cast<double>(parts_);
+    if (share < last_ + 0.01) return;
+    last_ = share;
+    watch_.progress(std::min(share, end_));
+  }
+
+  /// From the calling thread.
+  void report_end() {
+    if (watch_.progress) watch_.progress(end_);
+  }
+
+ private:
+  const Watch& watch_;
+  std::thread::id caller_;
+  double begin_, end_;
+  std::size_t parts_;
+  double last_;  // of the calling thread
+  std::atomic<std::size_t> done_{0};
+};
+
+}  // namespace luxrig
