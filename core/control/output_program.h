@@ -18,6 +18,16 @@ namespace luxrig {
 [[nodiscard]] double level_from_drive(DimmerCurve curve, double drive);
 [[nodiscard]] double drive_from_level(DimmerCurve curve, double level);
 
+/// Scales levels down, in place, until worst_lux_per_level · level ≤ max_lx in every row, whatever the order of
+/// summation: the fixtures that light a point above its limit all give the same share.
+///
+/// worst_lux_per_level  limited points × fixtures, ≥ 0; an entry that is not finite darkens its fixture
+/// max_lx               per row; not a number or ≤ 0 darkens every fixture that lights that point
+/// level                per fixture, ≥ 0, finite
+/// Allocates nothing. With a limit below 1e-290 lx the point is darkened.
+void scale_to_limits(const Eigen::MatrixXd& worst_lux_per_level, const Eigen::VectorXd& max_lx,
+                     std::span<double> level);
+
 struct OutputProgram {
   std::uint64_t revision = 0;                ///< grows with each change
   std::vector<double> from_level, to_level;  ///< per fixture
@@ -35,6 +45,7 @@ struct OutputProgram {
 
   /// Levels at `now`, per fixture. Never above max_level; never with worst_lux_per_level · level above max_lx (the
   /// fixtures that light that point are then scaled down together). Allocates nothing.
+  /// Values that are missing or not numbers count as 0. The time before `start` counts as `start`.
   void levels_at(Time now, std::span<double> level) const;
   [[nodiscard]] bool done(Time now) const { return now >= start + duration; }
 };

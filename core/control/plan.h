@@ -57,8 +57,12 @@ struct Plan {
 /// fixture, leaves one out, or has a level outside 0…max_level.
 [[nodiscard]] Checked<std::vector<double>> levels_for(const Plan& plan, const Rig& rig, const std::string& file_name);
 
-/// JSON, keys as in design.md `solve --json`, plus "luxrig_plan": 1 and "rig". Numbers are finite or the key is absent.
+/// JSON, keys as in design.md `solve --json`, plus "luxrig_plan": 1 and "rig" (and a point's "why" when there is one).
+/// Numbers are finite or the key is absent.
 [[nodiscard]] std::string to_json(const Plan& plan);
+/// Never throws. Problems of syntax carry line and column, others a path (/tasks/0/lights/3/level) in `what`. Needed
+/// are luxrig_plan, rig, tasks, and the name and level of each light; another number that is absent becomes NaN (0 for
+/// a whole number), and unknown keys are left alone, since later versions add some.
 [[nodiscard]] Checked<Plan> plan_from_json(const std::string& text, const std::string& file_name);
 
 }  // namespace luxrig

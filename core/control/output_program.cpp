@@ -1,0 +1,105 @@
+#include "core/control/output_program.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace luxrig {
+namespace {
+
+/// 0…1; what is not a number counts as 0 (dark).
+double clamped_share(double x) { return x > 0 ? std::min(x, 1.0) : 0.0; }
+
+double smooth_step(double x) { return std::min(x * x * (3 - 2 * x), 1.0); }
+
+double at_or_zero(const std::vector<double>& values, std::size_t i) { return i < values.size() ? values[i] : 0.0; }
+
+}  // namespace
+
+double fade_share(FadeCurve curve, double x) {
+  x = clamped_share(x);
+  return curve == FadeCurve::s_curve ? smooth_step(x) : x;
+}
+
+double level_from_drive(DimmerCurve curve, double drive) {
+  drive = clamped_share(drive);
+  switch (curve) {
+    case DimmerCurve::square:
+      return drive * drive;
+    case DimmerCurve::s_curve:
+      return smooth_step(drive);
+    case DimmerCurve::linear:
+      break;
+  }
+  return drive;
+}
+
+double drive_from_level(DimmerCurve curve, double level) {
+  level = clamped_share(level);
+  switch (curve) {
+    case DimmerCurve::square:
+      return std::sqrt(level);
+    case DimmerCurve::s_curve: {
+      // y = 3x² − 2x³ has the root x = 1/2 − sin(asin(1 − 2y) / 3). With y = sin²(a/2) that becomes
+      // sin²(a/6) + √3/2 sin(a/3), which loses no digits for small y as the textbook form does.
+      if (level >= 1) return 1;  // the sum below rounds to 1 − 1e-16 there
+      const double third = 2.0 / 3.0 * std::asin(std::sqrt(level));
+      const double half_sine = std::sin(third / 2);
+      return std::min(half_sine * half_sine + std::sqrt(0.75) * std::sin(third), 1.0);
+    }
+    case DimmerCurve::linear:
+      break;
+  }
+  return level;
+}
+
+void scale_to_limits(const Eigen::MatrixXd& worst_lux_per_level, const Eigen::VectorXd& max_lx,
+                     std::span<double> level) {
+  const auto lights = std::min<Eigen::Index>(worst_lux_per_level.cols(), static_cast<Eigen::Index>(level.size()));
+  const Eigen::Index rows = std::min(worst_lux_per_level.rows(), max_lx.size());
+  // Room for rounding, so that the limit holds in whatever order somebody adds the contributions up.
+  const double rounding = 2.0 * static_cast<double>(lights + 2) * std::numeric_limits<double>::epsilon();
+  // Rows one after the other: scaling only takes light away, so a row once met stays met.
+  for (Eigen::Index row = 0; row < rows; ++row) {
+    double lux = 0;
+    bool unknown = false;
+    for (Eigen::Index j = 0; j < lights; ++j) {
+      const double worst = worst_lux_per_level(row, j);
+      if (level[static_cast<std::size_t>(j)] > 0) {
+        if (!std::isfinite(worst)) unknown = true;
+        lux += worst > 0 ? worst * level[static_cast<std::size_t>(j)] : 0.0;
+      }
+    }
+    if (!unknown && lux <= max_lx[row] * (1 - rounding)) continue;
+    if (!unknown && lux <= 0 && max_lx[row] >= 0) continue;
+    // Below the smallest normal number, products lose their relative accuracy: dark is as good.
+    const double most = max_lx[row] > 1e-290 && !unknown ? max_lx[row] * (1 - 2 * rounding) : 0.0;
+    const double share = std::isfinite(lux) && lux > 0 ? std::clamp(most / lux, 0.0, 1.0) : 0.0;
+    for (Eigen::Index j = 0; j < lights; ++j) {
+      const double worst = worst_lux_per_level(row, j);
+      if (worst > 0 || !std::isfinite(worst)) level[static_cast<std::size_t>(j)] *= share;
+    }
+  }
+}
+
+void OutputProgram::levels_at(Time now, std::span<double> level) const {
+  if (blackout) {
+    std::fill(level.begin(), level.end(), 0.0);
+    return;
+  }
+  const double share =
+      done(now) ? 1.0
+      : now <= start
+          ? 0.0
+          : fade_share(curve, static_cast<double>((now - start).count()) / static_cast<double>(duration.count()));
+  for (std::size_t i = 0; i < level.size(); ++i) {
+    const double from = at_or_zero(from_level, i), to = at_or_zero(to_level, i);
+    // Each end is met exactly: from + (to − from) · 1 need not be `to` in floating point.
+    const double wanted = share >= 1 ? to : share <= 0 ? from : from + (to - from) * share;
+    const double most = at_or_zero(max_level, i);
+    level[i] = wanted > 0 && most > 0 ? std::min(wanted, std::min(most, 1.0)) : 0.0;
+  }
+  scale_to_limits(worst_lux_per_level, max_lx, level);
+}
+
+}  // namespace luxrig

@@ -1,0 +1,386 @@
+#include "core/control/plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+
+namespace luxrig {
+namespace {
+
+using Json = nlohmann::json;
+using OrderedJson = nlohmann::ordered_json;
+
+constexpr std::size_t kMaxBytes = std::size_t{64} << 20;  // a plan of 100 000 points is about 25 MB
+constexpr std::size_t kMaxDepth = 16;                     // a plan needs 6
+constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
+
+// ---- writing ----
+
+void put(OrderedJson& object, const char* key, double value) {
+  if (std::isfinite(value)) object[key] = value;
+}
+
+void put(OrderedJson& object, const char* key, const std::optional<double>& value) {
+  if (value) put(object, key, *value);
+}
+
+void put(OrderedJson& object, const char* key, const Vec3& value) {
+  if (value.allFinite()) object[key] = {value.x(), value.y(), value.z()};
+}
+
+OrderedJson json_of(const PlannedLight& light) {
+  OrderedJson json = {{"name", light.name}, {"luminaire", light.luminaire}};
+  put(json, "position", light.position_world_m);
+  if (light.aim_world_m) put(json, "aim", *light.aim_world_m);
+  put(json, "pan_deg", light.pan_deg);
+  put(json, "tilt_deg", light.tilt_deg);
+  put(json, "level", light.level);
+  put(json, "lumens", light.lumens);
+  return json;
+}
+
+OrderedJson json_of(const PlannedTask& task) {
+  OrderedJson json = {{"name", task.name}, {"kind", task.kind}};
+  put(json, "normalised_error", task.normalised_error);
+  json["iterations"] = task.iterations;
+  put(json, "seconds", task.seconds);
+  json["lights"] = OrderedJson::array();
+  for (const PlannedLight& light : task.lights) json["lights"].push_back(json_of(light));
+  return json;
+}
+
+OrderedJson json_of(const PlannedPoint& point) {
+  OrderedJson json = {{"name", point.name}};
+  put(json, "position", point.position_world_m);
+  put(json, "normal", point.normal_world);
+  put(json, "lux", point.lux);
+  put(json, "direct_lux", point.direct_lux);
+  put(json, "standard_error_lux", point.standard_error_lux);
+  put(json, "goal_lux", point.goal_lux);
+  if (!point.why.empty()) json["why"] = point.why;
+  return json;
+}
+
+OrderedJson json_of(const PlannedLimit& limit) {
+  OrderedJson json = {{"point", limit.point}};
+  put(json, "max_lux", limit.max_lux);
+  put(json, "lux", limit.lux);
+  json["met"] = limit.met;
+  return json;
+}
+
+// ---- reading ----
+
+/// First pass over the text: finds what the document parser would throw or silently accept, with its place.
+class SyntaxCheck : public nlohmann::json_sax<Json> {
+ public:
+  std::size_t error_byte = 0;  ///< from 1; 0 = place unknown
+  std::string error;           ///< empty = well formed
+
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool string(string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool start_object(std::size_t) override { return enter(); }
+  bool start_array(std::size_t) override { return enter(); }
+  bool end_object() override { return leave(); }
+  bool end_array() override { return leave(); }
+  bool key(string_t& name) override {
+    if (keys_.back().insert(name).second) return true;
+    error = fmt::format("key \"{}\" is given twice in one object", name);
+    return false;
+  }
+  bool parse_error(std::size_t byte, const std::string& token, const nlohmann::detail::exception& e) override {
+    error_byte = byte;
+    const std::string_view text = e.what();
+    error = text.find("number overflow") != std::string_view::npos
+                ? fmt::format("number {} is too large", token)
+                : fmt::format("not valid JSON{}", token.empty() ? "" : fmt::format(" at \"{}\"", token.substr(0, 40)));
+    return false;
+  }
+
+ private:
+  std::vector<std::set<std::string>> keys_;
+
+  bool enter() {
+    keys_.emplace_back();
+    if (keys_.size() <= kMaxDepth) return true;
+    error = fmt::format("nested deeper than {}", kMaxDepth);
+    return false;
+  }
+  bool leave() {
+    keys_.pop_back();
+    return true;
+  }
+};
+
+/// Reads typed members of a document, and remembers every problem with its path (/tasks/0/lights/3/level).
+class Reader {
+ public:
+  Reader(const std::string& file_name, std::vector<Problem>& problems) : file_name_(file_name), problems_(problems) {}
+
+  void problem(std::string what, std::string mend) const {
+    // A thousand wrong entries help nobody more than the first fifty.
+    if (problems_.size() < 50) problems_.push_back({file_name_, 0, 0, std::move(what), std::move(mend)});
+  }
+
+  /// The member, or null when absent (a problem when required).
+  [[nodiscard]] const Json* member(const Json& object, const std::string& path, const char* key, bool required) const {
+    const auto found = object.find(key);
+    if (found != object.end()) return &*found;
+    if (required) problem(fmt::format("{}/{} is missing", path, key), "write the plan anew with luxrig solve");
+    return nullptr;
+  }
+
+  [[nodiscard]] std::string text(const Json& object, const std::string& path, const char* key, bool required) const {
+    const Json* value = member(object, path, key, required);
+    if (!value) return {};
+    if (value->is_string()) return value->get<std::string>();
+    wrong_type(path, key, "a text in quotes", *value);
+    return {};
+  }
+
+  /// Not a number (NaN) when absent, as a key is left out when its number is not known.
+  [[nodiscard]] double number(const Json& object, const std::string& path, const char* key, bool required) const {
+    const Json* value = member(object, path, key, required);
+    if (!value) return kAbsent;
+    if (value->is_number()) return value->get<double>();
+    wrong_type(path, key, "a number", *value);
+    return kAbsent;
+  }
+
+  [[nodiscard]] std::optional<double> optional_number(const Json& object, const std::string& path,
+                                                      const char* key) const {
+    const double value = number(object, path, key, false);
+    return std::isfinite(value) ? std::optional(value) : std::nullopt;
+  }
+
+  [[nodiscard]] std::optional<Vec3> vector(const Json& object, const std::string& path, const char* key) const {
+    const Json* value = member(object, path, key, false);
+    if (!value) return std::nullopt;
+    const auto is_number = [](const Json& entry) { return entry.is_number(); };
+    if (value->is_array() && value->size() == 3 && std::all_of(value->begin(), value->end(), is_number)) {
+      return Vec3((*value)[0].get<double>(), (*value)[1].get<double>(), (*value)[2].get<double>());
+    }
+    wrong_type(path, key, "three numbers [x, y, z]", *value);
+    return std::nullopt;
+  }
+
+  template <class Unsigned>
+  [[nodiscard]] Unsigned count(const Json& object, const std::string& path, const char* key) const {
+    const Json* value = member(object, path, key, false);
+    if (!value) return 0;
+    if (value->is_number_unsigned() &&
+        value->get<std::uint64_t>() <= static_cast<std::uint64_t>(std::numeric_limits<Unsigned>::max())) {
+      return static_cast<Unsigned>(value->get<std::uint64_t>());
+    }
+    wrong_type(path, key, "a whole number from 0", *value);
+    return 0;
+  }
+
+  /// Calls body(entry, path) for each object of the list.
+  template <class Body>
+  void each(const Json& object, const std::string& path, const char* key, bool required, Body body) const {
+    const Json* list = member(object, path, key, required);
+    if (!list) return;
+    if (!list->is_array()) return wrong_type(path, key, "a list", *list);
+    for (std::size_t i = 0; i < list->size(); ++i) {
+      const std::string entry_path = fmt::format("{}/{}/{}", path, key, i);
+      if ((*list)[i].is_object()) {
+        body((*list)[i], entry_path);
+      } else {
+        problem(fmt::format("{} is {}, not an object", entry_path, (*list)[i].type_name()),
+                "write the plan anew with luxrig solve");
+      }
+    }
+  }
+
+  void wrong_type(const std::string& path, const char* key, const char* wanted, const Json& value) const {
+    problem(fmt::format("{}/{} is {}", path, key,
+                        value.is_primitive() ? value.dump(-1, ' ', false, Json::error_handler_t::replace).substr(0, 40)
+                                             : std::string(value.type_name())),
+            fmt::format("give {}", wanted));
+  }
+
+ private:
+  const std::string& file_name_;
+  std::vector<Problem>& problems_;
+};
+
+PlannedLight light_of(const Reader& reader, const Json& json, const std::string& path) {
+  PlannedLight light;
+  light.name = reader.text(json, path, "name", true);
+  light.luminaire = reader.text(json, path, "luminaire", false);
+  light.position_world_m = reader.vector(json, path, "position").value_or(Vec3::Constant(kAbsent));
+  light.aim_world_m = reader.vector(json, path, "aim");
+  light.pan_deg = reader.optional_number(json, path, "pan_deg");
+  light.tilt_deg = reader.optional_number(json, path, "tilt_deg");
+  light.level = reader.number(json, path, "level", true);
+  light.lumens = reader.number(json, path, "lumens", false);
+  return light;
+}
+
+PlannedTask task_of(const Reader& reader, const Json& json, const std::string& path) {
+  PlannedTask task;
+  task.name = reader.text(json, path, "name", true);
+  task.kind = reader.text(json, path, "kind", false);
+  task.normalised_error = reader.number(json, path, "normalised_error", false);
+  task.iterations = reader.count<int>(json, path, "iterations");
+  task.seconds = reader.number(json, path, "seconds", false);
+  reader.each(json, path, "lights", true, [&](const Json& light, const std::string& light_path) {
+    task.lights.push_back(light_of(reader, light, light_path));
+  });
+  return task;
+}
+
+PlannedPoint point_of(const Reader& reader, const Json& json, const std::string& path) {
+  PlannedPoint point;
+  point.name = reader.text(json, path, "name", true);
+  point.position_world_m = reader.vector(json, path, "position").value_or(Vec3::Constant(kAbsent));
+  point.normal_world = reader.vector(json, path, "normal").value_or(Vec3::Constant(kAbsent));
+  point.lux = reader.number(json, path, "lux", false);
+  point.direct_lux = reader.number(json, path, "direct_lux", false);
+  point.standard_error_lux = reader.number(json, path, "standard_error_lux", false);
+  point.goal_lux = reader.optional_number(json, path, "goal_lux");
+  point.why = reader.text(json, path, "why", false);
+  return point;
+}
+
+PlannedLimit limit_of(const Reader& reader, const Json& json, const std::string& path) {
+  PlannedLimit limit;
+  limit.point = reader.text(json, path, "point", true);
+  limit.max_lux = reader.number(json, path, "max_lux", false);
+  limit.lux = reader.number(json, path, "lux", false);
+  if (const Json* met = reader.member(json, path, "met", false)) {
+    if (met->is_boolean()) {
+      limit.met = met->get<bool>();
+    } else {
+      reader.wrong_type(path, "met", "true or false", *met);
+    }
+  }
+  return limit;
+}
+
+Problem syntax_problem(const SyntaxCheck& check, const std::string& text, const std::string& file_name) {
+  Problem problem{file_name, 0, 0, check.error, "write the plan anew with luxrig solve, or mend the text here"};
+  if (check.error_byte > 0) {
+    const std::size_t end = std::min(check.error_byte - 1, text.size());
+    const auto before = std::string_view(text).substr(0, end);
+    problem.line = 1 + static_cast<int>(std::count(before.begin(), before.end(), '\n'));
+    const std::size_t line_start = before.rfind('\n') == std::string_view::npos ? 0 : before.rfind('\n') + 1;
+    problem.column = 1 + static_cast<int>(end - line_start);
+  }
+  return problem;
+}
+
+}  // namespace
+
+std::string to_json(const Plan& plan) {
+  OrderedJson json = {{"luxrig_plan", 1}, {"rig", plan.rig}};
+  for (const char* key : {"tasks", "points", "limits"}) json[key] = OrderedJson::array();
+  for (const PlannedTask& task : plan.tasks) json["tasks"].push_back(json_of(task));
+  for (const PlannedPoint& point : plan.points) json["points"].push_back(json_of(point));
+  for (const PlannedLimit& limit : plan.limits) json["limits"].push_back(json_of(limit));
+  put(json, "seconds", plan.seconds);
+  json["seed"] = plan.seed;
+  // Names come from files; one that is not UTF-8 must not make writing throw.
+  return json.dump(1, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
+}
+
+Checked<Plan> plan_from_json(const std::string& text, const std::string& file_name) {
+  std::vector<Problem> problems;
+  const Reader reader(file_name, problems);
+  if (text.size() > kMaxBytes) {
+    reader.problem(fmt::format("{} bytes are too much for a plan (at most {})", text.size(), kMaxBytes),
+                   "give a plan written by luxrig solve");
+    return tl::unexpected(problems);
+  }
+  SyntaxCheck check;
+  if (!Json::sax_parse(text, &check)) {
+    return tl::unexpected(std::vector<Problem>{syntax_problem(check, text, file_name)});
+  }
+  const Json json = Json::parse(text, nullptr, false);
+  if (!json.is_object()) {
+    reader.problem(fmt::format("a plan is an object in braces, this is {}", json.type_name()),
+                   "give a plan written by luxrig solve");
+    return tl::unexpected(problems);
+  }
+  const Json* version = reader.member(json, "", "luxrig_plan", true);
+  if (version && *version != 1) {
+    reader.problem(fmt::format("/luxrig_plan is {}, this program reads plans of version 1",
+                               version->dump(-1, ' ', false, Json::error_handler_t::replace).substr(0, 40)),
+                   "write the plan anew with luxrig solve");
+  }
+  Plan plan;
+  plan.rig = reader.text(json, "", "rig", true);
+  plan.seed = reader.count<std::uint64_t>(json, "", "seed");
+  plan.seconds = reader.number(json, "", "seconds", false);
+  reader.each(json, "", "tasks", true,
+              [&](const Json& task, const std::string& path) { plan.tasks.push_back(task_of(reader, task, path)); });
+  reader.each(json, "", "points", false, [&](const Json& point, const std::string& path) {
+    plan.points.push_back(point_of(reader, point, path));
+  });
+  reader.each(json, "", "limits", false, [&](const Json& limit, const std::string& path) {
+    plan.limits.push_back(limit_of(reader, limit, path));
+  });
+  if (!problems.empty()) return tl::unexpected(problems);
+  return plan;
+}
+
+Checked<std::vector<double>> levels_for(const Plan& plan, const Rig& rig, const std::string& file_name) {
+  std::vector<Problem> problems;
+  const Reader reader(file_name, problems);
+  if (plan.rig != rig.name) {
+    reader.problem(fmt::format("/rig: this plan is for rig \"{}\", not for \"{}\"", plan.rig, rig.name),
+                   "give a plan solved for this rig");
+    return tl::unexpected(problems);
+  }
+  std::map<std::string, std::size_t> index_of;
+  for (std::size_t i = 0; i < rig.fixtures.size(); ++i) index_of.emplace(rig.fixtures[i].name, i);
+
+  std::vector<double> levels(rig.fixtures.size(), kAbsent);
+  std::vector<bool> named(rig.fixtures.size(), false);
+  for (std::size_t t = 0; t < plan.tasks.size(); ++t) {
+    std::set<std::size_t> named_here;
+    for (std::size_t l = 0; l < plan.tasks[t].lights.size(); ++l) {
+      const PlannedLight& light = plan.tasks[t].lights[l];
+      const std::string path = fmt::format("/tasks/{}/lights/{}", t, l);
+      const auto found = index_of.find(light.name);
+      if (found == index_of.end()) {
+        reader.problem(fmt::format("{}/name: the rig has no fixture \"{}\"", path, light.name),
+                       "name a fixture of the rig, or solve again");
+        continue;
+      }
+      const std::size_t i = found->second;
+      if (!named_here.insert(i).second) {
+        reader.problem(fmt::format("{}/name: fixture \"{}\" stands twice in this task", path, light.name),
+                       "keep one of the two");
+      }
+      const double most = std::min(rig.fixtures[i].max_level, rig.limits.max_level);
+      if (!(light.level >= 0 && light.level <= most)) {
+        reader.problem(
+            fmt::format("{}/level: {} for fixture \"{}\" is outside 0…{}", path, light.level, light.name, most),
+            "give a level within the fixture's limits, or solve again");
+      }
+      levels[i] = light.level;
+      named[i] = true;
+    }
+  }
+  for (std::size_t i = 0; i < rig.fixtures.size(); ++i) {
+    if (!named[i]) {
+      reader.problem(fmt::format("/tasks: no task says what fixture \"{}\" shall do", rig.fixtures[i].name),
+                     "add it with a level, or solve again");
+    }
+  }
+  if (!problems.empty()) return tl::unexpected(problems);
+  return levels;
+}
+
+}  // namespace luxrig

@@ -1,0 +1,289 @@
+#include "core/control/plan.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace luxrig {
+namespace {
+
+Rig two_fixture_rig() {
+  Rig rig;
+  rig.name = "room";
+  rig.fixtures.resize(2);
+  rig.fixtures[0].name = "left";
+  rig.fixtures[1].name = "right";
+  rig.fixtures[1].max_level = 0.9;
+  return rig;
+}
+
+PlannedLight light(const std::string& name, double level) {
+  PlannedLight made;
+  made.name = name;
+  made.level = level;
+  return made;
+}
+
+Plan plan_for_two(double left, double right) {
+  Plan plan;
+  plan.rig = "room";
+  plan.tasks = {{.name = "levels", .kind = "emittance", .lights = {light("left", left), light("right", right)}}};
+  return plan;
+}
+
+bool same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
+bool same(const Vec3& a, const Vec3& b) { return same(a.x(), b.x()) && same(a.y(), b.y()) && same(a.z(), b.z()); }
+
+void expect_same(const Plan& a, const Plan& b) {
+  EXPECT_EQ(a.rig, b.rig);
+  EXPECT_EQ(a.seed, b.seed);
+  EXPECT_TRUE(same(a.seconds, b.seconds));
+  ASSERT_EQ(a.tasks.size(), b.tasks.size());
+  for (std::size_t t = 0; t < a.tasks.size(); ++t) {
+    EXPECT_EQ(a.tasks[t].name, b.tasks[t].name);
+    EXPECT_EQ(a.tasks[t].kind, b.tasks[t].kind);
+    EXPECT_EQ(a.tasks[t].iterations, b.tasks[t].iterations);
+    EXPECT_TRUE(same(a.tasks[t].normalised_error, b.tasks[t].normalised_error));
+    ASSERT_EQ(a.tasks[t].lights.size(), b.tasks[t].lights.size());
+    for (std::size_t l = 0; l < a.tasks[t].lights.size(); ++l) {
+      const PlannedLight &x = a.tasks[t].lights[l], &y = b.tasks[t].lights[l];
+      EXPECT_EQ(x.name, y.name);
+      EXPECT_EQ(x.luminaire, y.luminaire);
+      EXPECT_TRUE(same(x.position_world_m, y.position_world_m));
+      ASSERT_EQ(x.aim_world_m.has_value(), y.aim_world_m.has_value());
+      EXPECT_TRUE(!x.aim_world_m || same(*x.aim_world_m, *y.aim_world_m));
+      EXPECT_EQ(x.pan_deg, y.pan_deg);
+      EXPECT_EQ(x.tilt_deg, y.tilt_deg);
+      EXPECT_TRUE(same(x.level, y.level));
+      EXPECT_TRUE(same(x.lumens, y.lumens));
+    }
+  }
+  ASSERT_EQ(a.points.size(), b.points.size());
+  for (std::size_t p = 0; p < a.points.size(); ++p) {
+    EXPECT_EQ(a.points[p].name, b.points[p].name);
+    EXPECT_TRUE(same(a.points[p].position_world_m, b.points[p].position_world_m));
+    EXPECT_TRUE(same(a.points[p].normal_world, b.points[p].normal_world));
+    EXPECT_TRUE(same(a.points[p].lux, b.points[p].lux));
+    EXPECT_TRUE(same(a.points[p].direct_lux, b.points[p].direct_lux));
+    EXPECT_TRUE(same(a.points[p].standard_error_lux, b.points[p].standard_error_lux));
+    EXPECT_EQ(a.points[p].goal_lux, b.points[p].goal_lux);
+    EXPECT_EQ(a.points[p].why, b.points[p].why);
+  }
+  ASSERT_EQ(a.limits.size(), b.limits.size());
+  for (std::size_t l = 0; l < a.limits.size(); ++l) {
+    EXPECT_EQ(a.limits[l].point, b.limits[l].point);
+    EXPECT_TRUE(same(a.limits[l].max_lux, b.limits[l].max_lux));
+    EXPECT_TRUE(same(a.limits[l].lux, b.limits[l].lux));
+    EXPECT_EQ(a.limits[l].met, b.limits[l].met);
+  }
+}
+
+Plan random_plan(std::mt19937_64& random) {
+  const auto number = [&] {
+    std::uniform_real_distribution<double> exponent(-300, 300), mantissa(-1, 1);
+    return mantissa(random) * std::pow(10, exponent(random));
+  };
+  const auto vector = [&] { return Vec3(number(), number(), number()); };
+  const auto coin = [&] { return random() % 2 == 0; };
+  Plan plan;
+  plan.rig = "a \"rig\" in \\ Zürich\n";
+  plan.seed = random();
+  plan.seconds = number();
+  for (std::uint64_t t = 0; t < random() % 3; ++t) {
+    PlannedTask task{"task", "emittance", number(), static_cast<int>(random() % 1000), number(), {}};
+    for (std::uint64_t l = 0; l < random() % 5; ++l) {
+      PlannedLight made{"spot-" + std::to_string(l), "narrow", vector(), {}, {}, {}, number(), number()};
+      if (coin()) made.aim_world_m = vector();
+      if (coin()) made.pan_deg = number();
+      if (coin()) made.tilt_deg = number();
+      task.lights.push_back(made);
+    }
+    plan.tasks.push_back(task);
+  }
+  for (std::uint64_t p = 0; p < random() % 5; ++p) {
+    PlannedPoint point{"p", vector(), vector(), number(), number(), number(), {}, coin() ? "a limit binds" : ""};
+    if (coin()) point.goal_lux = number();
+    plan.points.push_back(point);
+  }
+  for (std::uint64_t l = 0; l < random() % 3; ++l) plan.limits.push_back({"p", number(), number(), coin()});
+  return plan;
+}
+
+TEST(Plan, ReadsBackEveryBitThatItWrote) {
+  std::mt19937_64 random(1);
+  for (int i = 0; i < 200; ++i) {
+    const Plan plan = random_plan(random);
+    const auto read = plan_from_json(to_json(plan), "plan.json");
+    ASSERT_TRUE(read) << read.error()[0].text();
+    expect_same(plan, *read);
+    EXPECT_EQ(to_json(*read), to_json(plan));
+  }
+}
+
+TEST(Plan, HasTheKeysOfTheContractInTheirOrder) {
+  Plan plan;
+  plan.rig = "room";
+  plan.seed = 7;
+  plan.seconds = 0.5;
+  PlannedLight spot = light("spot-1", 0.25);
+  spot.luminaire = "narrow";
+  spot.aim_world_m = Vec3(1, 2, 3);
+  spot.pan_deg = 10;
+  spot.tilt_deg = 20;
+  spot.lumens = 225;
+  plan.tasks = {{"levels", "emittance", 0.125, 3, 0.25, {spot}}};
+  plan.points = {{"desk", Vec3(0, 0, 1), Vec3(0, 0, 1), 300, 200, 1.5, 310, "why"}};
+  plan.limits = {{"desk", 400, 300, true}};
+  std::string text = to_json(plan);
+  std::erase_if(text, [](char c) { return c == '\n' || c == ' '; });
+  EXPECT_EQ(text,
+            R"({"luxrig_plan":1,"rig":"room","tasks":[{"name":"levels","kind":"emittance","normalised_error":0.125,)"
+            R"("iterations":3,"seconds":0.25,"lights":[{"name":"spot-1","luminaire":"narrow",)"
+            R"("position":[0.0,0.0,0.0],"aim":[1.0,2.0,3.0],"pan_deg":10.0,"tilt_deg":20.0,"level":0.25,)"
+            R"("lumens":225.0}]}],"points":[{"name":"desk","position":[0.0,0.0,1.0],"normal":[0.0,0.0,1.0],)"
+            R"("lux":300.0,"direct_lux":200.0,"standard_error_lux":1.5,"goal_lux":310.0,"why":"why"}],)"
+            R"("limits":[{"point":"desk","max_lux":400.0,"lux":300.0,"met":true}],"seconds":0.5,"seed":7})");
+}
+
+TEST(Plan, LeavesANumberThatIsNotFiniteOut) {
+  Plan plan = plan_for_two(0.5, 0.5);
+  plan.seconds = std::numeric_limits<double>::infinity();
+  plan.points.emplace_back();
+  plan.points[0].name = "p";
+  plan.points[0].lux = std::nan("");
+  plan.points[0].goal_lux = std::nan("");
+  const std::string text = to_json(plan);
+  EXPECT_EQ(text.find("null"), std::string::npos);
+  EXPECT_EQ(text.find("\"lux\""), std::string::npos);
+  EXPECT_EQ(text.find("goal_lux"), std::string::npos);
+  const auto read = plan_from_json(text, "plan.json");
+  ASSERT_TRUE(read);
+  EXPECT_TRUE(std::isnan(read->points[0].lux));
+  EXPECT_TRUE(std::isnan(read->seconds));
+  EXPECT_FALSE(read->points[0].goal_lux);
+}
+
+TEST(Plan, WritesANameThatIsNotUtf8WithoutThrowing) {
+  Plan plan = plan_for_two(0, 0);
+  plan.tasks[0].name = "\xff\xfe";
+  EXPECT_TRUE(plan_from_json(to_json(plan), "plan.json"));
+}
+
+TEST(Plan, PointsAtTheLineAndColumnOfASyntaxError) {
+  const auto read = plan_from_json("{\n \"luxrig_plan\": 1,\n \"rig\": }", "my.json");
+  ASSERT_FALSE(read);
+  EXPECT_EQ(read.error()[0].text().rfind("my.json:3:9: ", 0), 0u) << read.error()[0].text();
+  const auto large = plan_from_json("{\n \"luxrig_plan\": 1e999}", "my.json");
+  ASSERT_FALSE(large);
+  EXPECT_EQ(large.error()[0].line, 2) << large.error()[0].text();
+  EXPECT_NE(large.error()[0].what.find("1e999"), std::string::npos);
+}
+
+TEST(Plan, NamesThePathOfEveryWrongEntry) {
+  const auto read = plan_from_json(
+      R"({"luxrig_plan":1,"rig":"room","seed":-1,"tasks":[{"name":"t","lights":[{"name":"left","level":"full"},3,)"
+      R"({"name":7,"level":1,"position":[1,2]}]}],"points":{},"limits":[{"point":"p","met":1}]})",
+      "my.json");
+  ASSERT_FALSE(read);
+  std::string all;
+  for (const Problem& problem : read.error()) {
+    EXPECT_FALSE(problem.mend.empty());
+    all += problem.text() + "\n";
+  }
+  for (const char* path : {"/seed is -1", "/tasks/0/lights/0/level is \"full\"", "/tasks/0/lights/1 is number",
+                           "/tasks/0/lights/2/name is 7", "/tasks/0/lights/2/position is array", "/points is object",
+                           "/limits/0/met is 1"}) {
+    EXPECT_NE(all.find(path), std::string::npos) << path << " in\n" << all;
+  }
+}
+
+TEST(Plan, RefusesHostileText) {
+  const std::string deep(100000, '[');
+  const std::string bad[] = {
+      "",
+      " ",
+      "null",
+      "[]",
+      "1",
+      "\"plan\"",
+      "{}",
+      "{",
+      deep,
+      std::string("\0\0", 2),
+      "\xff\xfe{}",
+      R"({"luxrig_plan":2,"rig":"r","tasks":[]})",
+      R"({"luxrig_plan":"1","rig":"r","tasks":[]})",
+      R"({"luxrig_plan":1,"rig":null,"tasks":[]})",
+      R"({"luxrig_plan":1,"rig":"r"})",
+      R"({"luxrig_plan":1,"rig":"r","rig":"s","tasks":[]})",
+      R"({"luxrig_plan":1,"rig":"r","tasks":[]} trailing)",
+      R"({"luxrig_plan":1,"rig":"r","tasks":[],"seed":1.5})",
+      R"({"luxrig_plan":1,"rig":"r","tasks":[],"seed":99999999999999999999})",
+      R"({"luxrig_plan":1,"rig":"r","tasks":[{"name":"t","iterations":3000000000,"lights":[]}]})",
+      R"({"luxrig_plan":1,"rig":"r","tasks":[{"name":"t","lights":[{"name":"x"}]}]})"};
+  for (const std::string& text : bad) {
+    const auto read = plan_from_json(text, "bad.json");
+    ASSERT_FALSE(read) << text.substr(0, 80);
+    ASSERT_FALSE(read.error().empty());
+    EXPECT_FALSE(read.error()[0].what.empty());
+    EXPECT_FALSE(read.error()[0].mend.empty());
+  }
+}
+
+TEST(Plan, IgnoresKeysThatALaterVersionAdds) {
+  EXPECT_TRUE(plan_from_json(R"({"luxrig_plan":1,"rig":"r","tasks":[{"name":"t","lights":[],"coverage":1}],"new":{}})",
+                             "plan.json"));
+}
+
+TEST(Plan, GivesTheLevelsInTheRigsOrder) {
+  Plan plan = plan_for_two(0.25, 0.5);
+  std::swap(plan.tasks[0].lights[0], plan.tasks[0].lights[1]);
+  const auto levels = levels_for(plan, two_fixture_rig(), "plan.json");
+  ASSERT_TRUE(levels);
+  EXPECT_EQ(*levels, (std::vector<double>{0.25, 0.5}));
+}
+
+TEST(Plan, CountsTheLastTaskThatNamesAFixture) {
+  Plan plan = plan_for_two(0.25, 0.5);
+  plan.tasks.push_back({.name = "more", .kind = "emittance", .lights = {light("left", 0.75)}});
+  const auto levels = levels_for(plan, two_fixture_rig(), "plan.json");
+  ASSERT_TRUE(levels);
+  EXPECT_EQ(*levels, (std::vector<double>{0.75, 0.5}));
+}
+
+TEST(Plan, IsRefusedForAnotherRigOrWithLevelsThatTheRigCannotGive) {
+  const Rig rig = two_fixture_rig();
+  Plan other = plan_for_two(0.5, 0.5);
+  other.rig = "hall";
+  Plan unknown = plan_for_two(0.5, 0.5);
+  unknown.tasks[0].lights.push_back(light("middle", 0));
+  Plan missing = plan_for_two(0.5, 0.5);
+  missing.tasks[0].lights.pop_back();
+  Plan twice = plan_for_two(0.5, 0.5);
+  twice.tasks[0].lights.push_back(light("left", 0.5));
+  const struct {
+    Plan plan;
+    const char* says;
+  } cases[] = {{other, "\"hall\""},
+               {unknown, "\"middle\""},
+               {missing, "\"right\""},
+               {twice, "twice"},
+               {plan_for_two(-0.1, 0), "/tasks/0/lights/0/level"},
+               {plan_for_two(1.01, 0), "/tasks/0/lights/0/level"},
+               {plan_for_two(0, 0.91), "/tasks/0/lights/1/level"},
+               {plan_for_two(std::nan(""), 0), "/tasks/0/lights/0/level"}};
+  for (const auto& bad : cases) {
+    const auto levels = levels_for(bad.plan, rig, "plan.json");
+    ASSERT_FALSE(levels) << bad.says;
+    EXPECT_NE(levels.error()[0].what.find(bad.says), std::string::npos) << levels.error()[0].text();
+  }
+  Rig limited = rig;
+  limited.limits.max_level = 0.4;
+  EXPECT_FALSE(levels_for(plan_for_two(0.5, 0.3), limited, "plan.json"));
+  EXPECT_TRUE(levels_for(plan_for_two(0.4, 0.4), limited, "plan.json"));
+}
+
+}  // namespace
+}  // namespace luxrig
