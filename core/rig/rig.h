@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/photometry/intensity.h"
+#include "core/result.h"
 #include "core/rig/frames.h"
 #include "core/scene/mesh_file.h"
 
@@ -204,6 +205,7 @@ struct Rig {
   ControlSpec control;
   SafeSpec safe;
   DaemonSpec daemon;
+  std::vector<Problem> notes;  ///< legal, but worth a look (a goal above its limit, an odd IES file)
 };
 
 }  // namespace luxrig

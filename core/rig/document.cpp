@@ -1,0 +1,155 @@
+#include "core/rig/document.h"
+
+#include <algorithm>
+
+#define TOML_HEADER_ONLY 1
+#define TOML_EXCEPTIONS 0
+#define TOML_ENABLE_FORMATTERS 0
+#define TOML_MAX_NESTED_VALUES 32
+#include <toml++/toml.h>
+
+namespace luxrig {
+namespace {
+
+constexpr int kMaxDottedParts = 16;
+
+/// toml++ bounds the nesting of [ and {, but not that of a.b.c.d…, and takes its tables apart by recursion. So dotted
+/// keys are bounded here, before it sees them: dots outside strings and comments since the last separator.
+std::optional<Place> find_long_dotted_key(std::string_view text) {
+  Place here{1, 1};
+  int dots = 0;
+  std::size_t i = 0;
+  const auto at = [&](std::string_view token) { return text.substr(i, token.size()) == token; };
+  const auto step = [&] {
+    if (text[i] == '\n') {
+      ++here.line;
+      here.column = 0;
+    }
+    if ((static_cast<unsigned char>(text[i]) & 0xC0) != 0x80) ++here.column;
+    ++i;
+  };
+  const auto skip_string = [&](char quote) {
+    const std::string triple(3, quote);
+    const bool multi_line = at(triple);
+    for (int k = multi_line ? 3 : 1; k > 0; --k) step();
+    while (i < text.size()) {
+      if (quote == '"' && text[i] == '\\') {
+        step();
+        if (i < text.size()) step();
+      } else if (multi_line && at(triple)) {
+        // Up to two quotes may stand before the closing three.
+        for (int k = 0; k < 5 && i < text.size() && text[i] == quote; ++k) step();
+        return;
+      } else if (!multi_line && (text[i] == quote || text[i] == '\n')) {
+        if (text[i] == quote) step();
+        return;
+      } else {
+        step();
+      }
+    }
+  };
+  while (i < text.size()) {
+    switch (text[i]) {
+      case '"':
+      case '\'':
+        skip_string(text[i]);
+        break;
+      case '#':
+        while (i < text.size() && text[i] != '\n') step();
+        break;
+      case '.':
+        if (++dots >= kMaxDottedParts) return here;
+        step();
+        break;
+      case '\n':
+      case '=':
+      case ',':
+      case '[':
+      case ']':
+      case '{':
+      case '}':
+        dots = 0;
+        step();
+        break;
+      default:
+        step();
+    }
+  }
+  return std::nullopt;
+}
+
+Place place_of(const toml::source_region& region, const Place& otherwise) {
+  if (region.begin.line == 0) return otherwise;  // a table that only its children imply
+  return {static_cast<int>(region.begin.line), static_cast<int>(region.begin.column)};
+}
+
+NodeTable plain_table(const toml::table& table, const Place& parent);
+
+Node plain(const toml::node& node, const Place& parent) {
+  Node out;
+  out.place = place_of(node.source(), parent);
+  if (const auto* table = node.as_table()) {
+    out.value = plain_table(*table, out.place);
+  } else if (const auto* list = node.as_array()) {
+    NodeList items;
+    items.reserve(list->size());
+    for (const toml::node& item : *list) items.push_back(plain(item, out.place));
+    out.value = std::move(items);
+  } else if (const auto* text = node.as_string()) {
+    out.value = text->get();
+  } else if (const auto* integer = node.as_integer()) {
+    out.value = integer->get();
+  } else if (const auto* number = node.as_floating_point()) {
+    out.value = number->get();
+  } else if (const auto* boolean = node.as_boolean()) {
+    out.value = boolean->get();
+  } else {
+    out.value = DateOrTime{};
+  }
+  return out;
+}
+
+NodeTable plain_table(const toml::table& table, const Place& parent) {
+  NodeTable out;
+  out.reserve(table.size());
+  for (const auto& [key, node] : table) {
+    const Place key_place = place_of(key.source(), parent);
+    out.push_back({std::string(key.str()), key_place, plain(node, key_place)});
+  }
+  std::sort(out.begin(), out.end(), [](const Member& a, const Member& b) { return a.key < b.key; });
+  return out;
+}
+
+}  // namespace
+
+const Member* find(const NodeTable& table, std::string_view key) {
+  const auto at = std::lower_bound(table.begin(), table.end(), key,
+                                   [](const Member& member, std::string_view wanted) { return member.key < wanted; });
+  return at != table.end() && at->key == key ? &*at : nullptr;
+}
+
+const char* kind_of(const Node& node) {
+  static constexpr const char* kKinds[] = {"true or false", "a whole number", "a number",      "text",
+                                           "a list",        "a table",        "a date or time"};
+  return kKinds[node.value.index()];
+}
+
+Checked<NodeTable> parse_document(std::string_view text, const std::string& file_name) {
+  const auto refuse = [&](const Place& place, std::string what, std::string mend) {
+    return tl::unexpected(
+        std::vector<Problem>{{file_name, place.line, place.column, std::move(what), std::move(mend)}});
+  };
+  if (const auto place = find_long_dotted_key(text)) {
+    return refuse(*place, "a key of more than " + std::to_string(kMaxDottedParts) + " dotted parts",
+                  "no key of a rig file needs more than three");
+  }
+  const toml::parse_result result = toml::parse(text, file_name);
+  if (!result) {
+    const toml::parse_error& error = result.error();
+    return refuse(place_of(error.source(), {1, 1}), "not TOML: " + std::string(error.description()),
+                  "one `key = value` a line, text in quotes, tables as [name] or [[name]]; see toml.io");
+  }
+  return plain_table(result.table(), {1, 1});
+}
+
+}  // namespace luxrig

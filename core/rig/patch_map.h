@@ -1,0 +1,42 @@
+#pragma once
+/// Who sits where on a bus, so that no two devices share a DMX slot or a Modbus register.
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/rig/problem_list.h"
+#include "core/rig/rig.h"
+
+namespace luxrig {
+
+class PatchMap {
+ public:
+  struct Owner {
+    std::string name;  ///< as in a message: fixture "spot-1"
+    Place place;       ///< of its address
+  };
+  /// requires 1 ≤ first, first + count - 1 ≤ 512
+  void claim_slots(std::size_t bus, int universe, int first, int count, Owner owner);
+  void claim_registers(std::size_t bus, int unit, bool input_registers, int first, int count, Owner owner);
+
+  /// Reports each claim that meets an earlier one, naming both and, for DMX, an address that is free.
+  /// Cost: proportional to the slots and registers claimed.
+  void report(const std::vector<Bus>& buses, ProblemList& problems) const;
+
+ private:
+  struct Claim {
+    int first, count;
+    Owner owner;
+  };
+  struct Registers {
+    std::size_t bus;
+    int unit;
+    bool input;
+    auto operator<=>(const Registers&) const = default;
+  };
+  std::map<std::pair<std::size_t, int>, std::vector<Claim>> slots_;  ///< by bus and universe
+  std::map<Registers, std::vector<Claim>> registers_;
+};
+
+}  // namespace luxrig

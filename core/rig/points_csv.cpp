@@ -1,0 +1,262 @@
+#include "core/rig/points_csv.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <optional>
+
+#include "core/rig/nearest.h"
+#include "core/rig/problem_list.h"
+#include "core/rig/schema.h"
+#include "core/rig/section.h"
+
+namespace luxrig {
+namespace {
+
+constexpr std::size_t kMostBytes = std::size_t{64} << 20;
+
+enum Column { kName, kX, kY, kZ, kNx, kNy, kNz, kGoal, kWeight, kMax, kColumns };
+constexpr std::array<std::string_view, kColumns> kColumnNames = {"name", "x_m", "y_m",     "z_m",    "nx",
+                                                                 "ny",   "nz",  "goal_lx", "weight", "max_lx"};
+constexpr std::array<std::string_view, kColumns> kKeys = {"name",   "position_m", "position_m", "position_m", "normal",
+                                                          "normal", "normal",     "goal_lx",    "weight",     "max_lx"};
+
+struct Cell {
+  std::string text;
+  Place place;
+};
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
+  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
+  return text;
+}
+
+/// Cells of one line; nothing, and a problem, when a quote is not closed.
+std::optional<std::vector<Cell>> split(std::string_view line, int line_number, ProblemList& problems) {
+  std::vector<Cell> cells;
+  std::size_t at = 0;
+  const auto place_at = [&](std::size_t byte) {
+    return Place{line_number, 1 + static_cast<int>(length_in_characters(line.substr(0, byte)))};
+  };
+  while (true) {
+    while (at < line.size() && (line[at] == ' ' || line[at] == '\t')) ++at;
+    Cell cell{"", place_at(at)};
+    if (at < line.size() && line[at] == '"') {
+      bool closed = false;
+      for (++at; at < line.size(); ++at) {
+        if (line[at] != '"') {
+          cell.text += line[at];
+        } else if (at + 1 < line.size() && line[at + 1] == '"') {
+          cell.text += '"';
+          ++at;
+        } else {
+          closed = true;
+          ++at;
+          break;
+        }
+      }
+      const std::size_t comma = std::min(line.find(',', at), line.size());
+      if (!closed || !trimmed(line.substr(at, comma - at)).empty()) {
+        problems.add(cell.place, closed ? "text after a closing quote" : "a quote is not closed",
+                     "put the whole cell in double quotes, and write \"\" for a quote in it");
+        return std::nullopt;
+      }
+      at = comma;
+    } else {
+      const std::size_t comma = std::min(line.find(',', at), line.size());
+      cell.text = trimmed(line.substr(at, comma - at));
+      at = comma;
+    }
+    cells.push_back(std::move(cell));
+    if (at >= line.size()) return cells;
+    ++at;
+  }
+}
+
+class Reader {
+ public:
+  Reader(const std::string& file_name, std::size_t most) : problems_(file_name), most_(most) {}
+
+  void line(std::string_view text, int number) {
+    const std::string_view content = trimmed(text);
+    if (content.empty() || content.front() == '#' || stopped_) return;
+    if (text.size() > 65536) {
+      problems_.add({number, 1}, "a line of more than 65536 bytes", "write one point a line");
+      return;
+    }
+    const auto cells = split(text, number, problems_);
+    if (!has_header_) {
+      has_header_ = true;
+      if (!cells || !header(*cells)) stopped_ = true;
+    } else if (cells) {
+      row(*cells, number);
+    }
+  }
+
+  PointsTable take() {
+    if (!has_header_) {
+      problems_.add({1, 1}, "no header line", "begin with: name,x_m,y_m,z_m,nx,ny,nz,goal_lx,weight,max_lx");
+    }
+    return {std::move(rows_), problems_.take()};
+  }
+
+ private:
+  bool header(const std::vector<Cell>& cells) {
+    bool good = true;
+    const auto refuse = [&](const Place& place, std::string what, std::string mend) {
+      problems_.add(place, std::move(what), std::move(mend));
+      good = false;
+    };
+    for (const Cell& cell : cells) {
+      const auto at = std::find(kColumnNames.begin(), kColumnNames.end(), cell.text);
+      if (at == kColumnNames.end()) {
+        refuse(cell.place, fmt::format("unknown column {}", in_quotes(cell.text)),
+               mend_for_unknown(cell.text, kColumnNames, "remove it"));
+        columns_.push_back(kColumns);
+        continue;
+      }
+      const auto column = static_cast<Column>(at - kColumnNames.begin());
+      if (std::find(columns_.begin(), columns_.end(), column) != columns_.end()) {
+        refuse(cell.place, fmt::format("column {} stands there twice", cell.text), "remove one of them");
+      }
+      columns_.push_back(column);
+    }
+    const auto has = [&](Column column) {
+      return std::find(columns_.begin(), columns_.end(), column) != columns_.end();
+    };
+    for (const Column column : {kName, kX, kY, kZ}) {
+      if (!has(column)) {
+        refuse(cells.front().place, fmt::format("no column {}", kColumnNames[column]), "add it to the header line");
+      }
+    }
+    if ((has(kNx) || has(kNy) || has(kNz)) && !(has(kNx) && has(kNy) && has(kNz))) {
+      refuse(cells.front().place, "a normal needs the columns nx, ny and nz", "add those that are missing");
+    }
+    return good;
+  }
+
+  void row(const std::vector<Cell>& cells, int number) {
+    if (rows_.size() >= most_) {
+      problems_.add({number, 1}, "more than 100000 points", "leave some out");
+      stopped_ = true;
+      return;
+    }
+    if (cells.size() != columns_.size()) {
+      problems_.add(cells.front().place,
+                    fmt::format("{} cells, but the header has {} columns", cells.size(), columns_.size()),
+                    "give every line as many cells as the header");
+      return;
+    }
+    PointsTable::Row out;
+    std::array<std::optional<double>, kColumns> values;
+    Place normal_place;
+    bool good = true;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const Column column = columns_[i];
+      if (column == kName) {
+        good &= read_name(cells[i], out);
+      } else {
+        good &= read_number(cells[i], column, values[column]);
+        if (column == kNx) normal_place = cells[i].place;
+      }
+    }
+    if (!good) return;
+    Point& p = out.point;
+    p.position_world_m = {*values[kX], *values[kY], *values[kZ]};
+    if (values[kNx] || values[kNy] || values[kNz]) {
+      const Vec3 normal(values[kNx].value_or(0), values[kNy].value_or(0), values[kNz].value_or(0));
+      if (normal.stableNorm() < 1e-9) {
+        problems_.add(normal_place, "the normal has no length", "give the direction the lit side faces: 0,0,1 for up");
+        return;
+      }
+      p.normal_world = normal.stableNormalized();
+    }
+    p.goal_lx = values[kGoal];
+    p.weight = values[kWeight].value_or(p.weight);
+    p.max_lx = values[kMax];
+    rows_.push_back(std::move(out));
+  }
+
+  bool read_name(const Cell& cell, PointsTable::Row& out) {
+    const std::size_t length = length_in_characters(cell.text);
+    if (length == 0 || length > kLongestName || !is_plain_text(cell.text)) {
+      problems_.add(cell.place,
+                    length == 0             ? "a point without a name"
+                    : length > kLongestName ? fmt::format("a name of {} characters", length)
+                                            : fmt::format("name {} is not plain text", in_quotes(cell.text)),
+                    fmt::format("name it with 1 to {} printable characters in UTF-8", kLongestName));
+      return false;
+    }
+    out.point.name = cell.text;
+    out.place = cell.place;
+    return true;
+  }
+
+  bool read_number(const Cell& cell, Column column, std::optional<double>& out) {
+    const std::string_view title = kColumnNames[column];
+    const bool required = column == kX || column == kY || column == kZ;
+    if (cell.text.empty() && !required) return true;
+    double x = 0;
+    const char* end = cell.text.data() + cell.text.size();
+    const auto [stop, error] = std::from_chars(cell.text.data(), end, x);
+    if (cell.text.empty() || error != std::errc{} || stop != end || !std::isfinite(x)) {
+      problems_.add(cell.place, fmt::format("{} is {}, not a finite number", title, in_quotes(cell.text)),
+                    "write a number with a decimal point, as 1.25");
+      return false;
+    }
+    const auto point_keys = keys_of("point");
+    const auto spec =
+        std::find_if(point_keys.begin(), point_keys.end(), [&](const KeySpec& k) { return k.key == kKeys[column]; });
+    if (!spec->bounds.contain(x)) {
+      problems_.add(cell.place, fmt::format("{} is {}, which is out of range", title, x),
+                    fmt::format("allowed: {}", range_text(*spec)));
+      return false;
+    }
+    out = x;
+    return true;
+  }
+
+  ProblemList problems_;
+  std::size_t most_;
+  std::vector<Column> columns_;
+  std::vector<PointsTable::Row> rows_;
+  bool has_header_ = false, stopped_ = false;
+};
+
+}  // namespace
+
+PointsTable parse_points_csv(std::string_view text, const std::string& file_name, std::size_t most) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  Reader reader(file_name, most);
+  for (int number = 1; !text.empty(); ++number) {
+    const std::size_t end = text.find('\n');
+    std::string_view line = text.substr(0, end);
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    reader.line(line, number);
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+  }
+  return reader.take();
+}
+
+PointsTable load_points_csv(const std::filesystem::path& path, std::size_t most) {
+  const auto refuse = [&](std::string what, std::string mend) {
+    return PointsTable{{}, {{path.string(), 0, 0, std::move(what), std::move(mend)}}};
+  };
+  std::error_code error;
+  const auto size = std::filesystem::file_size(path, error);
+  if (!error && size > kMostBytes) return refuse("the file is over 64 MiB", "leave some points out");
+  std::ifstream in(path, std::ios::binary);
+  if (error || !in) return refuse("the file cannot be read", "check who may read it");
+  std::string text(size, '\0');
+  in.read(text.data(), static_cast<std::streamsize>(size));
+  if (in.bad()) return refuse("the file cannot be read", "check the disk");
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  return parse_points_csv(text, path.string(), most);
+}
+
+}  // namespace luxrig

@@ -1,0 +1,36 @@
+#pragma once
+/// Collects what is wrong with a file, in any order, and gives it back in the order of the file.
+
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "core/rig/rig.h"
+
+namespace luxrig {
+
+class ProblemList {
+ public:
+  explicit ProblemList(std::string file) : file_(std::move(file)) {}
+
+  void add(const Place& place, std::string what, std::string mend) {
+    add({file_, place.line, place.column, std::move(what), std::move(mend)});
+  }
+  void add(Problem problem);
+
+  /// So many that a person mends the first ones and runs again; more are counted, not kept.
+  [[nodiscard]] bool full() const { return problems_.size() >= kMost; }
+  [[nodiscard]] bool empty() const { return problems_.empty(); }
+  [[nodiscard]] const std::string& file() const { return file_; }
+
+  /// Those of this file by line and column, then those of other files as they came.
+  [[nodiscard]] std::vector<Problem> take();
+
+ private:
+  static constexpr std::size_t kMost = 1000;
+  std::string file_;
+  std::vector<Problem> problems_;
+  std::size_t dropped_ = 0;
+};
+
+}  // namespace luxrig

@@ -1,0 +1,210 @@
+#include "core/rig/rig_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "core/rig/nearest.h"
+#include "core/rig/rig_reader.h"
+
+namespace luxrig {
+namespace {
+
+constexpr std::size_t kMostBytes = std::size_t{16} << 20;
+
+tl::unexpected<std::vector<Problem>> refuse(const std::filesystem::path& file, std::string what, std::string mend) {
+  return tl::unexpected(std::vector<Problem>{{file.string(), 0, 0, std::move(what), std::move(mend)}});
+}
+
+}  // namespace
+
+void NameIndex::add(const std::string& name, std::size_t index, const Place& place, ProblemList& problems) {
+  const auto [at, is_new] = entries_.try_emplace(name, Entry{index, place});
+  if (is_new) return;
+  problems.add(
+      place,
+      fmt::format("a second {} is called {} (the first is in line {})", kind_, in_quotes(name), at->second.place.line),
+      fmt::format("give each {} its own name", kind_));
+}
+
+std::optional<std::size_t> NameIndex::find(const std::string& name) const {
+  const auto at = entries_.find(name);
+  return at == entries_.end() ? std::nullopt : std::optional(at->second.index);
+}
+
+std::optional<std::size_t> NameIndex::read_reference(Section& section, std::string_view key) const {
+  std::string name;
+  if (!section.read(key, name)) return std::nullopt;
+  if (const auto index = find(name)) return index;
+  if (section.problems().full()) return std::nullopt;
+  std::vector<std::string_view> known;
+  known.reserve(entries_.size());
+  for (const auto& [known_name, entry] : entries_) known.push_back(known_name);
+  // In the order of the file, whatever the hash table made of it.
+  std::sort(known.begin(), known.end(), [&](std::string_view a, std::string_view b) {
+    return entries_.find(std::string(a))->second.index < entries_.find(std::string(b))->second.index;
+  });
+  section.problems().add(section.place_of(key), fmt::format("there is no {} {}", kind_, in_quotes(name)),
+                         mend_for_unknown(name, known, fmt::format("add a [[{}]] of that name", kind_)));
+  return std::nullopt;
+}
+
+void RigReader::each(const NodeTable& table, std::string_view section, const std::function<void(Section&)>& body) {
+  const SectionSpec& spec = section_spec(section);
+  const std::size_t dot = section.rfind('.');
+  const Member* member = find(table, dot == std::string_view::npos ? section : section.substr(dot + 1));
+  if (!member) return;
+  const auto* list = std::get_if<NodeList>(&member->node.value);
+  const auto* single = std::get_if<NodeTable>(&member->node.value);
+  const auto wrong_shape = [&](const Place& place) {
+    problems.add(place, fmt::format("{} is not {}", section, spec.list ? "a list of tables" : "a table"),
+                 fmt::format("head {} with {}", spec.list ? "each entry" : "it", heading_of(spec)));
+  };
+  if (spec.list ? list == nullptr : single == nullptr) {
+    wrong_shape(member->key_place);
+    return;
+  }
+  if (single) {
+    Section entry(*single, member->node.place, section, problems);
+    body(entry);
+    return;
+  }
+  if (list->size() > spec.most) {
+    problems.add(member->key_place, fmt::format("{} entries of {}", list->size(), heading_of(spec)),
+                 fmt::format("use at most {}", spec.most));
+    return;
+  }
+  for (const Node& node : *list) {
+    if (const auto* entry_table = std::get_if<NodeTable>(&node.value)) {
+      Section entry(*entry_table, node.place, section, problems);
+      body(entry);
+    } else {
+      wrong_shape(node.place);
+    }
+  }
+}
+
+std::optional<std::filesystem::path> RigReader::read_file(Section& section, std::string_view key) {
+  std::string text;
+  if (!section.read(key, text)) return std::nullopt;
+  std::filesystem::path path = folder / text;
+  std::error_code error;
+  if (std::filesystem::is_regular_file(path, error)) return path;
+  const bool exists = !error && std::filesystem::exists(path, error);
+  problems.add(section.place_of(key),
+               fmt::format("{} {}", in_quotes(text), exists ? "is not a file" : "does not exist"),
+               fmt::format("put the file there, or correct the path (it starts from the folder of {})",
+                           rig.file.filename().empty() ? "the rig file" : rig.file.filename().string()));
+  return std::nullopt;
+}
+
+void RigReader::read_unknown_sections() {
+  std::vector<std::string_view> known;
+  for (const SectionSpec& section : sections()) {
+    if (section.name.find('.') == std::string_view::npos) known.push_back(section.name);
+  }
+  for (const Member& member : root) {
+    if (std::find(known.begin(), known.end(), member.key) != known.end()) continue;
+    if (problems.full()) return;
+    problems.add(member.key_place, fmt::format("unknown section {}", in_quotes(member.key)),
+                 mend_for_unknown(member.key, known, "remove it"));
+  }
+}
+
+void RigReader::read_tasks() {
+  NameIndex tasks("task");
+  each(root, "task", [&](Section& s) {
+    Task task;
+    task.place = s.place();
+    if (s.read("name", task.name)) tasks.add(task.name, rig.tasks.size(), s.place_of("name"), problems);
+    s.read_choice("kind", task.kind);
+    rig.tasks.push_back(std::move(task));
+  });
+  if (rig.tasks.empty()) rig.tasks.push_back({"levels", TaskKind::emittance, {}});
+}
+
+void RigReader::read_settings() {
+  if (!luxrig::find(root, "rig")) {
+    problems.add({1, 1}, "there is no [rig]", "begin with [rig] and a line name = \"…\" below it");
+  }
+  each(root, "rig", [&](Section& s) { s.read("name", rig.name); });
+  each(root, "limits", [&](Section& s) {
+    rig.limits.place = s.place();
+    s.read("max_level", rig.limits.max_level);
+    s.read("open_loop_margin", rig.limits.open_loop_margin);
+  });
+  each(root, "control", [&](Section& s) {
+    ControlSpec& c = rig.control;
+    c.place = s.place();
+    s.read("fade_s", c.fade_s);
+    s.read_choice("fade_curve", c.fade_curve);
+    s.read("correction_fade_s", c.correction_fade_s);
+    s.read("settle_s", c.settle_s);
+    s.read("rounds", c.rounds);
+    s.read("tolerance", c.tolerance);
+    s.read("gain_min", c.gain_min);
+    s.read("gain_max", c.gain_max);
+  });
+  each(root, "safe", [&](Section& s) {
+    rig.safe.place = s.place();
+    s.read("hold_s", rig.safe.hold_s);
+    s.read("fade_s", rig.safe.fade_s);
+    s.read("on_meter_loss", rig.safe.on_meter_loss);
+    if (s.read("level", rig.safe.level) && rig.safe.level > rig.limits.max_level) {
+      problems.add(s.place_of("level"),
+                   fmt::format("level {} of the safe look is above max_level {} of [limits]", rig.safe.level,
+                               rig.limits.max_level),
+                   "lower it, or raise that limit");
+    }
+  });
+  each(root, "daemon", [&](Section& s) {
+    rig.daemon.place = s.place();
+    s.read("http_port", rig.daemon.http_port);
+  });
+}
+
+void RigReader::read_all() {
+  read_unknown_sections();
+  read_settings();
+  read_scene();
+  read_luminaires();
+  read_buses();
+  read_points();  // before fixtures and meters, which name points
+  read_fixtures();
+  read_luxmeters();
+  patches.report(rig.buses, problems);
+  read_tasks();
+}
+
+Checked<Rig> parse_rig(std::string_view text, const std::filesystem::path& file, const std::filesystem::path& folder) {
+  if (text.size() > kMostBytes) {
+    return refuse(file, fmt::format("the file has {} bytes", text.size()),
+                  "a rig file may have at most 16 MiB; put many points into a [points] file");
+  }
+  const Checked<NodeTable> document = parse_document(text, file.string());
+  if (!document) return tl::unexpected(document.error());
+  RigReader reader(*document, file, folder);
+  reader.read_all();
+  if (!reader.problems.empty()) return tl::unexpected(reader.problems.take());
+  return std::move(reader.rig);
+}
+
+Checked<Rig> load_rig(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::filesystem::path file = std::filesystem::is_directory(path, error) ? path / "rig.toml" : path;
+  if (!std::filesystem::is_regular_file(file, error)) {
+    return refuse(file, std::filesystem::exists(file, error) ? "not a file" : "no such file",
+                  "name a rig file, or a folder with a rig.toml in it");
+  }
+  std::ifstream in(file, std::ios::binary);
+  std::string text;
+  // One byte more than allowed tells a file that is too long from one that just fits.
+  text.resize(kMostBytes + 1);
+  in.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (!in.is_open() || in.bad()) return refuse(file, "the file cannot be read", "check who may read it");
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  return parse_rig(text, file, file.parent_path());
+}
+
+}  // namespace luxrig

@@ -1,0 +1,80 @@
+#pragma once
+/// The pass over the document that makes the Rig. Each read_… fills its part of `rig` and reports what is wrong;
+/// entries that are wrong are kept in place, so that references to them by name still resolve and one mistake gives
+/// one problem. Private to core/rig.
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <unordered_map>
+
+#include "core/rig/document.h"
+#include "core/rig/patch_map.h"
+#include "core/rig/problem_list.h"
+#include "core/rig/rig.h"
+#include "core/rig/section.h"
+
+namespace luxrig {
+
+/// Entries of one kind by name.
+class NameIndex {
+ public:
+  /// `kind` as in "two fixtures are called …".
+  explicit NameIndex(std::string kind) : kind_(std::move(kind)) {}
+
+  /// Reports a name that is taken.
+  void add(const std::string& name, std::size_t index, const Place& place, ProblemList& problems);
+  [[nodiscard]] std::optional<std::size_t> find(const std::string& name) const;
+  /// Reads the key that names an entry; an unknown name is reported with the nearest known one.
+  std::optional<std::size_t> read_reference(Section& section, std::string_view key) const;
+
+ private:
+  std::string kind_;
+  struct Entry {
+    std::size_t index;
+    Place place;
+  };
+  std::unordered_map<std::string, Entry> entries_;
+};
+
+struct RigReader {
+  RigReader(const NodeTable& document, const std::filesystem::path& file, std::filesystem::path folder_of_files)
+      : root(document), folder(std::move(folder_of_files)), problems(file.string()) {
+    rig.file = file;
+  }
+
+  const NodeTable& root;
+  std::filesystem::path folder;
+  ProblemList problems;
+  Rig rig;
+  NameIndex luminaires{"luminaire"}, buses{"bus"}, points{"point"};
+  PatchMap patches;
+
+  void read_all();
+
+ private:
+  void read_unknown_sections();
+  void read_scene();
+  void read_luminaires();
+  void read_buses();
+  void read_points();
+  void read_points_file(Section& section);
+  void read_fixtures();
+  void read_luxmeters();
+  void read_tasks();
+  void read_settings();
+
+  /// Every entry of a list section, or the one of a plain section, in order of the file. A section of the wrong shape
+  /// or with too many entries is reported and skipped.
+  void each(const NodeTable& table, std::string_view section, const std::function<void(Section&)>& body);
+  /// The path that the key names, when there is a file.
+  std::optional<std::filesystem::path> read_file(Section& section, std::string_view key);
+  void read_mesh(Section& section, std::optional<MeshFile>& out);
+  void read_box_or_mesh(Section& section, SceneObject& object);
+  void read_distribution(Section& section, Luminaire& luminaire);
+  void read_aim(Section& section, Fixture& fixture);
+  void check_joints(Section& section, const Fixture& fixture);
+};
+
+}  // namespace luxrig

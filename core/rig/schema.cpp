@@ -1,0 +1,292 @@
+#include "core/rig/schema.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/check.h"
+
+namespace luxrig {
+namespace {
+
+using enum ValueType;
+
+constexpr Bounds kAny{};
+constexpr Bounds kPosition{-1e6, 1e6};
+constexpr Bounds kSize{0, 1e4, true};
+constexpr Bounds kReflectance{0, 0.95};
+constexpr Bounds kShare{0, 1};
+constexpr Bounds kLux{0, 1e7};
+constexpr Bounds kAngle{-3600, 3600};
+constexpr Bounds kFullCone{0, 180, true, true};
+constexpr Bounds kSeconds{0, 3600};
+constexpr Bounds kUnit{0, 255};
+constexpr Bounds kRegister{0, 65535};
+constexpr std::string_view kUnits = "m, cm, mm, in, ft";
+constexpr std::string_view kAxes = "x, y, z";
+
+constexpr SectionSpec kSections[] = {
+    {"rig", false, 1, false, "What the rig is called."},
+    {"scene", false, 1, false, "The room: a mesh, and how much light its surfaces send back. Leave it out for a void."},
+    {"scene.reflectance", true, 10000, false,
+     "Reflectance by material name. The first rule that matches wins, also over colours in the mesh file."},
+    {"scene.object", true, 10000, false, "A thing put into the room: a mesh (`file`) or a box (`box_m`)."},
+    {"luminaire", true, 10000, false, "A kind of light: what it sends where, at rated flux. Fixtures name it."},
+    {"bus", true, 1000, true, "A way to reach devices. Every further key is the driver's own: see Bus options."},
+    {"fixture", true, 10000, false,
+     "A luminaire as hung and patched: over DMX (`universe`, `address`, `slots`) or over Modbus (`unit`, `register`, "
+     "`full_scale`). Say where it looks by `aim`, by `aim_m`, or by `pan_deg` and `tilt_deg`."},
+    {"luxmeter", true, 10000, false, "A light meter on a Modbus bus. It stands at a `point`, or at `position_m`."},
+    {"point", true, 100000, false, "A place whose illuminance matters, on the side its normal points to."},
+    {"points", false, 1, false, "Further points, from a table."},
+    {"task", true, 1000, false, "What to work out. Without one: an `emittance` task called `levels`."},
+    {"limits", false, 1, false, "What holds for the whole rig."},
+    {"control", false, 1, false, "How looks change, and how readings correct them."},
+    {"safe", false, 1, false, "What the light does when something fails."},
+    {"daemon", false, 1, false, "The program that keeps the rig running."},
+};
+
+constexpr KeySpec kKeys[] = {
+    {"rig", "name", name, "", kRequired, kAny, "", "name of the rig; plans are only applied to the rig they name"},
+
+    {"scene", "file", file, "", kNone, kAny, "", "mesh of the room: OBJ, PLY, glTF or GLB"},
+    {"scene", "unit", text, "", R"("m")", kAny, kUnits, "length unit of the mesh file"},
+    {"scene", "up_axis", text, "", R"("y")", kAny, kAxes, "axis of the mesh file that points up (glTF: y)"},
+    {"scene", "default_reflectance", colour, "", "0.5", kReflectance, "",
+     "diffuse reflectance where neither a rule nor the mesh file gives one"},
+
+    {"scene.reflectance", "material", text, "", kRequired, kAny, "",
+     "name of the material; `*` stands for any letters, `?` for one"},
+    {"scene.reflectance", "reflectance", colour, "", kRequired, kReflectance, "", "diffuse reflectance"},
+
+    {"scene.object", "name", name, "", kRequired, kAny, "", "name of the object"},
+    {"scene.object", "file", file, "", kNone, kAny, "", "its mesh; either this or `box_m`"},
+    {"scene.object", "unit", text, "", R"("m")", kAny, kUnits, "length unit of the mesh file"},
+    {"scene.object", "up_axis", text, "", R"("y")", kAny, kAxes, "axis of the mesh file that points up"},
+    {"scene.object", "height_m", number, "m", kNone, kSize, "", "scales the mesh evenly to this height"},
+    {"scene.object", "box_m", vector3, "m", kNone, kSize, "", "a box instead of a mesh: width x, depth y, height z"},
+    {"scene.object", "position_m", vector3, "m", "[0, 0, 0]", kPosition, "",
+     "where the middle of its underside stands"},
+    {"scene.object", "turn_deg", number, "°", "0", kAngle, "", "turn about the vertical, counter-clockwise from above"},
+    {"scene.object", "reflectance", colour, "", kNone, kReflectance, "",
+     "of all of it; left out, the rules and the mesh file's colours apply"},
+
+    {"luminaire", "name", name, "", kRequired, kAny, "", "what fixtures call it"},
+    {"luminaire", "model", text, "", kRequired, kAny, "ies, isotropic, spot",
+     "a measured distribution (IES LM-63, type C), the same all round, or a round spot"},
+    {"luminaire", "file", file, "", kNone, kAny, "", "the IES file (only with model `ies`, and required there)"},
+    {"luminaire", "beam_angle_deg", number, "°", kNone, kFullCone, "",
+     "full angle to half the peak intensity (only with model `spot`, and required there)"},
+    {"luminaire", "field_angle_deg", number, "°", kNone, kFullCone, "",
+     "full angle to a tenth of the peak (only with model `spot`, and required there); more than the beam angle"},
+    {"luminaire",
+     "lumens",
+     number,
+     "lm",
+     kNone,
+     {0, 1e8, true},
+     "",
+     "rated flux; required, but with model `ies` it may be left out and the file's own flux holds"},
+    {"luminaire", "watts", number, "W", kNone, {0, 1e6}, "", "rated electrical power"},
+
+    {"bus", "name", name, "", kRequired, kAny, "", "what fixtures and meters call it"},
+    {"bus", "driver", text, "", kRequired, kAny, "", "what drives it; see Bus options"},
+
+    {"fixture", "name", name, "", kRequired, kAny, "", "name of the fixture"},
+    {"fixture", "luminaire", text, "", kRequired, kAny, "", "name of a `[[luminaire]]`"},
+    {"fixture", "position_m", vector3, "m", kRequired, kPosition, "",
+     "the pan-tilt pivot, which is where it shines from"},
+    {"fixture", "mount_deg", vector3, "°", "[0, 0, 0]", kAngle, "",
+     "how the base is turned: yaw about z, then pitch about its x, then roll about its y; 0 = hangs straight"},
+    {"fixture", "aim", text, "", kNone, kAny, "", "name of the point it looks at"},
+    {"fixture", "aim_m", vector3, "m", kNone, kPosition, "", "place it looks at"},
+    {"fixture", "pan_deg", number, "°", "0", kAngle, "", "turn about the base's z, counter-clockwise from above"},
+    {"fixture", "tilt_deg", number, "°", "0", kAngle, "", "from straight down (0) towards y of the panned base"},
+    {"fixture", "roll_deg", number, "°", "0", kAngle, "", "turn of the lamp about its beam"},
+    {"fixture", "bus", text, "", kRequired, kAny, "", "name of a `[[bus]]`"},
+    {"fixture",
+     "universe",
+     whole_number,
+     "",
+     "1",
+     {0, 63999},
+     "",
+     "DMX universe: sACN 1 to 63999, Art-Net port address 0 to 32767"},
+    {"fixture", "address", whole_number, "", kNone, {1, 512}, "", "first DMX slot; required over DMX"},
+    {"fixture", "slots", texts, "", R"(["dimmer"])", kAny, "",
+     "what each DMX slot carries from `address` on: `dimmer`, `dimmer-fine`, `pan`, `pan-fine`, `tilt`, `tilt-fine`, "
+     "`unused`, or `constant:N` with N from 0 to 255; one dimmer is needed, pan and tilt come together, and a fine "
+     "slot needs its coarse one"},
+    {"fixture", "unit", whole_number, "", "1", kUnit, "", "Modbus unit"},
+    {"fixture", "register", whole_number, "", kNone, kRegister, "",
+     "Modbus holding register of the dimmer, 0-based; required over Modbus"},
+    {"fixture", "full_scale", whole_number, "", "1000", {1, 65535}, "", "value of that register at full drive"},
+    {"fixture", "dimmer_curve", text, "", R"("linear")", kAny, "linear, square, s-curve",
+     "how its light follows the drive sent to it, as its maker states"},
+    {"fixture", "max_level", number, "", "1", kShare, "", "most of its rated flux that it may ever give"},
+    {"fixture", "safe_level", number, "", kNone, kShare, "",
+     "its level in the safe look, at most `max_level`; left out, `level` of `[safe]`"},
+    {"fixture", "pan_range_deg", span2, "°", "[-270, 270]", kAngle, "", "travel of the pan; only with a pan slot"},
+    {"fixture", "tilt_range_deg", span2, "°", "[-135, 135]", kAngle, "", "travel of the tilt; only with a tilt slot"},
+    {"fixture", "pan_speed_deg_s", number, "°/s", "180", {0, 3600, true}, "", "only with a pan slot"},
+    {"fixture", "tilt_speed_deg_s", number, "°/s", "120", {0, 3600, true}, "", "only with a tilt slot"},
+
+    {"luxmeter", "name", name, "", kRequired, kAny, "", "name of the meter"},
+    {"luxmeter", "point", text, "", kNone, kAny, "", "the point it stands at; either this or `position_m`"},
+    {"luxmeter", "position_m", vector3, "m", kNone, kPosition, "", "where it stands, when at no point"},
+    {"luxmeter", "normal", vector3, "", "[0, 0, 1]", kPosition, "",
+     "where its sensor looks, of any length but 0; only with `position_m`"},
+    {"luxmeter",
+     "tolerance",
+     number,
+     "",
+     "0.05",
+     {0, 0.5},
+     "",
+     "share of a reading by which it may be wrong, either way"},
+    {"luxmeter", "range_lx", number, "lx", "200000", {0, 1e7, true}, "", "full scale"},
+    {"luxmeter", "bus", text, "", kRequired, kAny, "", "name of a `[[bus]]`"},
+    {"luxmeter", "unit", whole_number, "", "1", kUnit, "", "Modbus unit"},
+    {"luxmeter", "register", whole_number, "", "0", kRegister, "", "first Modbus register, 0-based"},
+    {"luxmeter", "registers", whole_number, "", "2", {1, 2}, "", "1: 16 bits, 2: 32 bits, both unsigned"},
+    {"luxmeter", "register_kind", text, "", R"("holding")", kAny, "holding, input", "read by function 3 or 4"},
+    {"luxmeter", "word_order", text, "", R"("high-first")", kAny, "high-first, low-first", "of two registers"},
+    {"luxmeter", "lux_per_count", number, "lx", "0.001", {0, 1e6, true}, "", "what one count is worth"},
+
+    {"point", "name", name, "", kRequired, kAny, "", "name of the point"},
+    {"point", "position_m", vector3, "m", kRequired, kPosition, "", "where it is"},
+    {"point", "normal", vector3, "", "[0, 0, 1]", kPosition, "", "out of the lit side, of any length but 0"},
+    {"point",
+     "goal_lx",
+     number,
+     "lx",
+     kNone,
+     {0, 1e7, true},
+     "",
+     "wanted illuminance; left out, it is only reported. To keep a place dark, use `max_lx`"},
+    {"point", "weight", number, "", "1", {0, 1e6}, "", "how much its goal counts against others"},
+    {"point", "max_lx", number, "lx", kNone, kLux, "", "never more than this; it wins over any goal"},
+
+    {"points", "file", file, "", kRequired, kAny, "", "CSV file; see The points file"},
+
+    {"task", "name", name, "", kRequired, kAny, "", "name of the task"},
+    {"task", "kind", text, "", kRequired, kAny, "emittance", "`emittance`: the level of every fixture"},
+
+    {"limits", "max_level", number, "", "1", kShare, "", "most that any fixture may ever give, of its rated flux"},
+    {"limits",
+     "open_loop_margin",
+     number,
+     "",
+     "0.25",
+     {0, 0.9},
+     "",
+     "share of each `max_lx` kept free until a meter has confirmed the model there"},
+
+    {"control", "fade_s", number, "s", "3", kSeconds, "", "from one look to the next"},
+    {"control", "fade_curve", text, "", R"("s-curve")", kAny, "linear, s-curve", "course of a fade"},
+    {"control", "correction_fade_s", number, "s", "1", kSeconds, "", "from one correction round to the next"},
+    {"control", "settle_s", number, "s", "0.5", kSeconds, "", "wait after a fade before a meter is believed"},
+    {"control", "rounds", whole_number, "", "3", {0, 100}, "", "most correction rounds after a change of look"},
+    {"control",
+     "tolerance",
+     number,
+     "",
+     "0.02",
+     {0, 0.5, true},
+     "",
+     "difference between reading and goal, as a share of the goal, that is left as it is"},
+    {"control",
+     "gain_min",
+     number,
+     "",
+     "0.6",
+     {0, 1, true},
+     "",
+     "least true output of a fixture, over its rated one, that readings can make the program believe"},
+    {"control", "gain_max", number, "", "1.15", {1, 10}, "", "the same, most"},
+
+    {"safe", "level", number, "", "0.1", kShare, "", "of every fixture that has no `safe_level` of its own"},
+    {"safe", "hold_s", number, "s", "5", kSeconds, "", "how long the last look is held first"},
+    {"safe", "fade_s", number, "s", "3", kSeconds, "", "from there to the safe look"},
+    {"safe", "on_meter_loss", yes_no, "", "true", kAny, "",
+     "whether a lost meter also leads here; else it only stops the correction"},
+
+    {"daemon", "http_port", whole_number, "", "9620", {1, 65535}, "", "port of the page and the API, on loopback"},
+};
+
+}  // namespace
+
+std::span<const SectionSpec> sections() { return kSections; }
+
+const SectionSpec& section_spec(std::string_view section) {
+  const auto* at = std::find_if(std::begin(kSections), std::end(kSections),
+                                [&](const SectionSpec& spec) { return spec.name == section; });
+  LUXRIG_CHECK(at != std::end(kSections), "no section {}", section);
+  return *at;
+}
+
+std::span<const KeySpec> keys() { return kKeys; }
+
+std::span<const KeySpec> keys_of(std::string_view section) {
+  const auto* first =
+      std::find_if(std::begin(kKeys), std::end(kKeys), [&](const KeySpec& spec) { return spec.section == section; });
+  const auto* last = std::find_if(first, std::end(kKeys), [&](const KeySpec& spec) { return spec.section != section; });
+  return {first, last};
+}
+
+std::string heading_of(const SectionSpec& section) {
+  return section.list ? fmt::format("[[{}]]", section.name) : fmt::format("[{}]", section.name);
+}
+
+std::string range_text(const KeySpec& spec) {
+  if (spec.type == name) return "1 to 100 characters";
+  if (!spec.choices.empty()) {
+    std::string list(spec.choices);
+    if (const auto comma = list.rfind(", "); comma != std::string::npos) list.replace(comma, 2, " or ");
+    return list;
+  }
+  const Bounds& b = spec.bounds;
+  const auto plain = [](double x) {
+    return std::abs(x) < 1e15 && x == std::floor(x) ? fmt::format("{:.0f}", x) : fmt::format("{}", x);
+  };
+  const bool low = std::isfinite(b.min), high = std::isfinite(b.max);
+  if (!low && !high) return "";
+  return fmt::format("{}{}{}{}{}", low && b.above_min ? "above " : "", low ? plain(b.min) : "",
+                     low && high ? (b.below_max ? " to below " : " to ") : "", high ? plain(b.max) : "",
+                     spec.type == colour || spec.type == vector3 || spec.type == span2 ? ", each" : "");
+}
+
+std::string_view type_text(ValueType type) {
+  switch (type) {
+    case text:
+    case name:
+      return "text";
+    case file:
+      return "path";
+    case number:
+      return "number";
+    case whole_number:
+      return "whole number";
+    case yes_no:
+      return "true or false";
+    case vector3:
+      return "[x, y, z]";
+    case span2:
+      return "[from, to]";
+    case colour:
+      return "number or [r, g, b]";
+    case texts:
+      return "list of text";
+  }
+  return "";
+}
+
+std::string reference_row(const KeySpec& spec) {
+  const bool value = spec.fallback != kRequired && spec.fallback != kNone;
+  return fmt::format("| `{}` | {} | {} | {} | {} | {} |", spec.key, type_text(spec.type), spec.unit,
+                     value ? fmt::format("`{}`", spec.fallback) : std::string(spec.fallback), range_text(spec),
+                     spec.summary);
+}
+
+}  // namespace luxrig

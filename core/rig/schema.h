@@ -1,0 +1,74 @@
+#pragma once
+/// Every key of the rig file, once: type, unit, default, range and meaning. The reader checks values against this
+/// table (section.h), and a test holds rigs/REFERENCE.md against it.
+
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace luxrig {
+
+enum class ValueType {
+  text,
+  name,  ///< text a person refers to things by: 1…100 characters
+  file,  ///< path, relative to the folder of the rig file
+  number,
+  whole_number,
+  yes_no,
+  vector3,  ///< [x, y, z]
+  span2,    ///< [from, to], from < to
+  colour,   ///< one number, or [r, g, b]
+  texts     ///< list of text
+};
+
+/// Inclusive bounds of a number, or of each number of a list.
+struct Bounds {
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  bool above_min = false;  ///< min itself is not allowed
+  bool below_max = false;  ///< max itself is not allowed
+  [[nodiscard]] bool contain(double x) const {
+    return (above_min ? x > min : x >= min) && (below_max ? x < max : x <= max);
+  }
+};
+
+struct KeySpec {
+  std::string_view section;
+  std::string_view key;
+  ValueType type;
+  std::string_view unit;      ///< empty: none
+  std::string_view fallback;  ///< as TOML; or kRequired, or kNone (left out, it has no value)
+  Bounds bounds;
+  std::string_view choices;  ///< "m, cm, mm": the only texts allowed, in the order of the enumeration they become
+  std::string_view summary;
+};
+inline constexpr std::string_view kRequired = "required";
+inline constexpr std::string_view kNone = "none";
+
+struct SectionSpec {
+  std::string_view name;     ///< "fixture", "scene.object"
+  bool list;                 ///< [[name]], any number of times; else [name], at most once
+  std::size_t most;          ///< entries allowed in a list
+  bool takes_other_keys;     ///< [[bus]]: the driver's own
+  std::string_view summary;  ///< one line for the reference
+};
+
+[[nodiscard]] std::span<const SectionSpec> sections();
+[[nodiscard]] const SectionSpec& section_spec(std::string_view section);
+
+/// All keys; those of one section stand together, in the order of the reference.
+[[nodiscard]] std::span<const KeySpec> keys();
+[[nodiscard]] std::span<const KeySpec> keys_of(std::string_view section);
+
+/// "[[fixture]]", "[limits]".
+[[nodiscard]] std::string heading_of(const SectionSpec& section);
+
+/// "0 to 1", "above 0", "m, cm or mm", empty when anything goes.
+[[nodiscard]] std::string range_text(const KeySpec& spec);
+[[nodiscard]] std::string_view type_text(ValueType type);
+
+/// The row of the reference: "| `key` | type | unit | default | range | what |".
+[[nodiscard]] std::string reference_row(const KeySpec& spec);
+
+}  // namespace luxrig

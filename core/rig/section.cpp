@@ -1,0 +1,351 @@
+#include "core/rig/section.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/check.h"
+#include "core/rig/nearest.h"
+
+namespace luxrig {
+namespace {
+
+constexpr std::size_t kLongestText = 4096;  // a path
+
+/// Bytes of the character at the start of `text`; 0 when it is not sound UTF-8.
+std::size_t character_bytes(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned lead = byte(0);
+  const std::size_t size = lead < 0x80 ? 1 : lead < 0xC2 ? 0 : lead < 0xE0 ? 2 : lead < 0xF0 ? 3 : lead < 0xF5 ? 4 : 0;
+  if (size == 0 || size > text.size()) return 0;
+  for (std::size_t i = 1; i < size; ++i) {
+    if ((byte(i) & 0xC0) != 0x80) return 0;
+  }
+  if (lead == 0xE0 && byte(1) < 0xA0) return 0;   // overlong
+  if (lead == 0xED && byte(1) >= 0xA0) return 0;  // surrogate
+  if (lead == 0xF0 && byte(1) < 0x90) return 0;   // overlong
+  if (lead == 0xF4 && byte(1) >= 0x90) return 0;  // past U+10FFFF
+  return size;
+}
+
+bool is_control(std::string_view character) {
+  const unsigned char lead = static_cast<unsigned char>(character[0]);
+  return lead < 0x20 || lead == 0x7F || (lead == 0xC2 && static_cast<unsigned char>(character[1]) < 0xA0);
+}
+
+std::vector<std::string_view> split_choices(std::string_view choices) {
+  std::vector<std::string_view> out;
+  while (!choices.empty()) {
+    const std::size_t comma = choices.find(", ");
+    out.push_back(choices.substr(0, comma));
+    choices.remove_prefix(comma == std::string_view::npos ? choices.size() : comma + 2);
+  }
+  return out;
+}
+
+std::string example_of(const KeySpec& spec) {
+  switch (spec.type) {
+    case ValueType::vector3:
+      return fmt::format("write three numbers: {} = [0, 0, 1]", spec.key);
+    case ValueType::span2:
+      return fmt::format("write two numbers: {} = {}", spec.key, spec.fallback);
+    case ValueType::colour:
+      return fmt::format("write one number or three: {0} = 0.5 or {0} = [0.5, 0.5, 0.5]", spec.key);
+    case ValueType::texts:
+      return fmt::format("write a list: {} = {}", spec.key, spec.fallback);
+    case ValueType::yes_no:
+      return fmt::format("write {} = true or {} = false, without quotes", spec.key, spec.key);
+    case ValueType::number:
+      return "write a number, without quotes";
+    case ValueType::whole_number:
+      return "write a whole number, without quotes or decimal point";
+    default:
+      return "write text in quotes";
+  }
+}
+
+}  // namespace
+
+bool is_plain_text(std::string_view text) {
+  while (!text.empty()) {
+    const std::size_t size = character_bytes(text);
+    if (size == 0 || is_control(text.substr(0, size))) return false;
+    text.remove_prefix(size);
+  }
+  return true;
+}
+
+std::size_t length_in_characters(std::string_view text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+}
+
+std::string in_quotes(std::string_view text) {
+  constexpr std::size_t kShown = 60;
+  std::string out = "\"";
+  std::size_t shown = 0;
+  while (!text.empty() && shown < kShown) {
+    const std::size_t size = character_bytes(text);
+    if (size == 0 || is_control(text.substr(0, size))) {
+      out += '?';
+    } else {
+      out += text.substr(0, size);
+    }
+    text.remove_prefix(std::max<std::size_t>(size, 1));
+    ++shown;
+  }
+  return out + (text.empty() ? "\"" : "…\"");
+}
+
+Section::Section(const NodeTable& table, const Place& place, std::string_view section, ProblemList& problems)
+    : table_(table), place_(place), section_(section_spec(section)), keys_(keys_of(section)), problems_(problems) {
+  if (section_.takes_other_keys) return;
+  for (const Member& member : table_) {
+    if (problems_.full()) return;
+    const auto named = [&](const auto& spec) { return spec == member.key; };
+    std::vector<std::string_view> known;
+    for (const KeySpec& key : keys_) known.push_back(key.key);
+    for (const SectionSpec& child : sections()) {
+      if (child.name.size() > section.size() && child.name.starts_with(section) && child.name[section.size()] == '.') {
+        known.push_back(child.name.substr(section.size() + 1));
+      }
+    }
+    if (std::any_of(known.begin(), known.end(), named)) continue;
+    problems_.add(member.key_place, fmt::format("unknown key {} in {}", in_quotes(member.key), heading_of(section_)),
+                  mend_for_unknown(member.key, known, "remove it"));
+  }
+}
+
+Place Section::place_of(std::string_view key) const {
+  const Member* member = find(table_, key);
+  return member ? member->node.place : place_;
+}
+
+const KeySpec& Section::spec(std::string_view key) const {
+  const auto at = std::find_if(keys_.begin(), keys_.end(), [&](const KeySpec& k) { return k.key == key; });
+  LUXRIG_CHECK(at != keys_.end(), "no key {} in section {}", key, section_.name);
+  return *at;
+}
+
+const Node* Section::value(const KeySpec& spec) {
+  if (const Member* member = find(table_, spec.key)) return &member->node;
+  if (spec.fallback == kRequired) require(spec.key, "");
+  return nullptr;
+}
+
+void Section::require(std::string_view key, std::string_view why) {
+  const KeySpec& k = spec(key);
+  const std::string range = range_text(k);
+  problems_.add(
+      place_, fmt::format("{} has no \"{}\"{}{}", heading_of(section_), key, why.empty() ? "" : ", ", why),
+      fmt::format("add {} = ({}{}{}): {}", key, type_text(k.type), range.empty() ? "" : ", ", range, k.summary));
+}
+
+void Section::refuse(std::string_view key, std::string why, std::string mend) {
+  if (const Member* member = find(table_, key)) problems_.add(member->key_place, std::move(why), std::move(mend));
+}
+
+bool Section::number_from(const KeySpec& spec, const Node& node, double& out) {
+  double x = 0;
+  if (const auto* integer = std::get_if<std::int64_t>(&node.value)) {
+    x = static_cast<double>(*integer);
+  } else if (const auto* number = std::get_if<double>(&node.value)) {
+    x = *number;
+  } else {
+    problems_.add(node.place, fmt::format("{} must be a number, not {}", spec.key, kind_of(node)), example_of(spec));
+    return false;
+  }
+  if (!std::isfinite(x)) {
+    problems_.add(node.place, fmt::format("{} is not a finite number", spec.key),
+                  range_text(spec).empty() ? "write a finite number" : "allowed: " + range_text(spec));
+    return false;
+  }
+  if (!spec.bounds.contain(x)) {
+    problems_.add(node.place, fmt::format("{} is {}, which is out of range", spec.key, x),
+                  fmt::format("allowed: {}{}{}", range_text(spec), spec.unit.empty() ? "" : " ", spec.unit));
+    return false;
+  }
+  out = x;
+  return true;
+}
+
+bool Section::text_from(const KeySpec& spec, const Node& node, std::string& out) {
+  const auto* given = std::get_if<std::string>(&node.value);
+  if (!given) {
+    problems_.add(node.place, fmt::format("{} must be text, not {}", spec.key, kind_of(node)), "write it in quotes");
+    return false;
+  }
+  if (given->empty()) {
+    problems_.add(node.place, fmt::format("{} is empty", spec.key),
+                  spec.fallback == kRequired ? fmt::format("write {}", spec.summary) : "write it, or remove the key");
+    return false;
+  }
+  const std::size_t most = spec.type == ValueType::name ? kLongestName : kLongestText;
+  if (const std::size_t length = length_in_characters(*given); length > most) {
+    problems_.add(node.place, fmt::format("{} has {} characters", spec.key, length),
+                  fmt::format("use at most {}", most));
+    return false;
+  }
+  if (!is_plain_text(*given)) {
+    problems_.add(node.place, fmt::format("{} {} has a control character", spec.key, in_quotes(*given)),
+                  "use printable characters only");
+    return false;
+  }
+  out = *given;
+  return true;
+}
+
+bool Section::read(std::string_view key, double& out) {
+  const KeySpec& k = spec(key);
+  LUXRIG_CHECK(k.type == ValueType::number, "{} is not a number", key);
+  const Node* node = value(k);
+  return node && number_from(k, *node, out);
+}
+
+bool Section::read(std::string_view key, int& out) {
+  const KeySpec& k = spec(key);
+  LUXRIG_CHECK(k.type == ValueType::whole_number, "{} is not a whole number", key);
+  const Node* node = value(k);
+  if (!node) return false;
+  double x = 0;
+  if (!std::holds_alternative<std::int64_t>(node->value)) {
+    problems_.add(node->place, fmt::format("{} must be a whole number, not {}", key, kind_of(*node)), example_of(k));
+    return false;
+  }
+  if (!number_from(k, *node, x)) return false;
+  out = static_cast<int>(x);  // within the schema's bounds, which fit
+  return true;
+}
+
+bool Section::read(std::string_view key, bool& out) {
+  const KeySpec& k = spec(key);
+  LUXRIG_CHECK(k.type == ValueType::yes_no, "{} is not a boolean", key);
+  const Node* node = value(k);
+  if (!node) return false;
+  const bool* given = std::get_if<bool>(&node->value);
+  if (!given) {
+    problems_.add(node->place, fmt::format("{} must be true or false, not {}", key, kind_of(*node)), example_of(k));
+    return false;
+  }
+  out = *given;
+  return true;
+}
+
+bool Section::read(std::string_view key, std::string& out) {
+  const KeySpec& k = spec(key);
+  LUXRIG_CHECK(k.type == ValueType::text || k.type == ValueType::name || k.type == ValueType::file, "{} is not text",
+               key);
+  const Node* node = value(k);
+  return node && text_from(k, *node, out);
+}
+
+bool Section::read(std::string_view key, Vec3& out) {
+  const KeySpec& k = spec(key);
+  LUXRIG_CHECK(k.type == ValueType::vector3 || k.type == ValueType::colour, "{} is not a vector", key);
+  const Node* node = value(k);
+  if (!node) return false;
+  const auto* list = std::get_if<NodeList>(&node->value);
+  if (!list && k.type == ValueType::colour &&
+      (std::holds_alternative<double>(node->value) || std::holds_alternative<std::int64_t>(node->value))) {
+    double grey = 0;
+    if (!number_from(k, *node, grey)) return false;
+    out = Vec3::Constant(grey);
+    return true;
+  }
+  if (!list || list->size() != 3) {
+    problems_.add(node->place,
+                  list ? fmt::format("{} has {} entries", key, list->size())
+                       : fmt::format("{} must be {}, not {}", key, type_text(k.type), kind_of(*node)),
+                  example_of(k));
+    return false;
+  }
+  Vec3 v;
+  bool good = true;
+  for (std::size_t i = 0; i < 3; ++i) good &= number_from(k, (*list)[i], v[static_cast<Eigen::Index>(i)]);
+  if (good) out = v;
+  return good;
+}
+
+bool Section::read(std::string_view key, std::pair<double, double>& out) {
+  const KeySpec& k = spec(key);
+  LUXRIG_CHECK(k.type == ValueType::span2, "{} is not a range", key);
+  const Node* node = value(k);
+  if (!node) return false;
+  const auto* list = std::get_if<NodeList>(&node->value);
+  if (!list || list->size() != 2) {
+    problems_.add(node->place,
+                  list ? fmt::format("{} has {} entries", key, list->size())
+                       : fmt::format("{} must be [from, to], not {}", key, kind_of(*node)),
+                  example_of(k));
+    return false;
+  }
+  double from = 0, to = 0;
+  const bool from_good = number_from(k, (*list)[0], from), to_good = number_from(k, (*list)[1], to);
+  if (!from_good || !to_good) return false;
+  if (!(from < to)) {
+    problems_.add(node->place, fmt::format("{} runs from {} to {}", key, from, to),
+                  from > to ? fmt::format("write the smaller first: [{}, {}]", to, from)
+                            : "the second must be larger than the first");
+    return false;
+  }
+  out = {from, to};
+  return true;
+}
+
+int Section::choice(std::string_view key) {
+  const KeySpec& k = spec(key);
+  LUXRIG_CHECK(!k.choices.empty(), "{} has no choices", key);
+  const Node* node = value(k);
+  std::string given;
+  if (!node || !text_from(k, *node, given)) return -1;
+  const auto known = split_choices(k.choices);
+  const auto at = std::find(known.begin(), known.end(), given);
+  if (at != known.end()) return static_cast<int>(at - known.begin());
+  const std::string_view near = nearest_name(given, known);
+  problems_.add(node->place, fmt::format("{} cannot be {}", key, in_quotes(given)),
+                near.empty() ? fmt::format("allowed: {}", range_text(k))
+                             : fmt::format("did you mean \"{}\"? (allowed: {})", near, range_text(k)));
+  return -1;
+}
+
+bool Section::read_deg(std::string_view key, double& out_rad) {
+  double deg = 0;
+  if (!read(key, deg)) return false;
+  out_rad = rad_from_deg(deg);
+  return true;
+}
+
+bool Section::read_normal(std::string_view key, Vec3& out) {
+  Vec3 v;
+  if (!read(key, v)) return false;
+  if (v.stableNorm() < 1e-9) {
+    problems_.add(place_of(key), fmt::format("{} has no length", key),
+                  "give the direction the lit side faces, as [0, 0, 1] for up");
+    return false;
+  }
+  out = v.stableNormalized();
+  return true;
+}
+
+bool Section::read_texts(std::string_view key, std::vector<std::pair<std::string, Place>>& out) {
+  const KeySpec& k = spec(key);
+  LUXRIG_CHECK(k.type == ValueType::texts, "{} is not a list of text", key);
+  const Node* node = value(k);
+  if (!node) return false;
+  const auto* list = std::get_if<NodeList>(&node->value);
+  if (!list) {
+    problems_.add(node->place, fmt::format("{} must be a list of text, not {}", key, kind_of(*node)), example_of(k));
+    return false;
+  }
+  std::vector<std::pair<std::string, Place>> texts;
+  bool good = true;
+  for (const Node& item : *list) {
+    texts.emplace_back("", item.place);
+    good &= text_from(k, item, texts.back().first);
+  }
+  if (good) out = std::move(texts);
+  return good;
+}
+
+}  // namespace luxrig
