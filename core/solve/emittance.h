@@ -23,6 +23,8 @@ struct EmittanceProblem {
   Eigen::VectorXd weight;         ///< w ≥ 0; empty = 1
   Eigen::VectorXd max_lx;         ///< m; +inf where there is no limit
   Eigen::VectorXd max_level;      ///< u ≥ 0; empty = 1
+  Eigen::VectorXd near_level;     ///< where several levels give the same light: the nearest to these; empty = 0 (power)
+  std::vector<std::string> point_name, light_name;  ///< for the reasons; empty = "point 3", counted from 0
 };
 
 /// Why a point misses its goal.
@@ -45,8 +47,12 @@ struct EmittanceSolution {
   int iterations = 0;
 };
 
-/// Cause::invalid when sizes disagree, an entry is not finite or negative, or a limit is below what is there anyway
-/// (then the detail names the point).
+/// Among levels that give the same light the ones nearest to near_level are taken, and equal lights share alike (a tie
+/// term of 1e-5 of each light's column, which moves lux by about 1e-10 of it). A point without lights keeps b.
+/// A goal counts as met within 1 % of it (a goal of 0: within 1 % of the largest goal).
+///
+/// Cause::invalid when sizes disagree, an entry is negative or not finite (max_lx may be +inf), or a limit is below
+/// what is there anyway (then the detail names the point), or an entry is beyond 1e100; Cause::cancelled when stopped.
 [[nodiscard]] Result<EmittanceSolution> solve_emittance(const EmittanceProblem& problem, const Watch& watch = {});
 
 }  // namespace luxrig

@@ -1,0 +1,37 @@
+#pragma once
+/// min ‖E z − f‖₂ subject to 0 ≤ z ≤ upper and G z ≤ slack, by a primal active-set method that starts from the feasible
+/// z = 0 and stays feasible (Nocedal & Wright, Numerical Optimization (2006), algorithm 16.3; null space by QR).
+
+#include <Eigen/Core>
+#include <stop_token>
+#include <vector>
+
+namespace luxrig {
+
+struct LimitedLeastSquares {
+  Eigen::MatrixXd E;      ///< full column rank; columns of norm about 1
+  Eigen::VectorXd f;      ///< norm about 1
+  Eigen::VectorXd upper;  ///< ≥ 0, may be +inf
+  Eigen::MatrixXd G;      ///< rows of norm about 1
+  Eigen::VectorXd slack;  ///< ≥ 0: what G z may be
+};
+
+enum class BoundState : char { free, lower, upper };
+
+struct LimitedLeastSquaresResult {
+  Eigen::VectorXd z;                       ///< within bounds exactly, within the rows to rounding
+  std::vector<BoundState> state;           ///< of each variable
+  std::vector<Eigen::Index> working_rows;  ///< rows of G held as equalities
+  int iterations = 0;
+  bool converged = false;
+  bool stopped = false;
+};
+
+[[nodiscard]] LimitedLeastSquaresResult solve_limited_least_squares(const LimitedLeastSquares& problem,
+                                                                    const std::stop_token& stop);
+
+/// λ of the working rows for a gradient of the objective at z: argmin ‖gradient_F + G_WFᵀ λ‖ over the free variables.
+[[nodiscard]] Eigen::VectorXd row_multipliers(const Eigen::MatrixXd& G, const LimitedLeastSquaresResult& at,
+                                              const Eigen::VectorXd& gradient);
+
+}  // namespace luxrig
