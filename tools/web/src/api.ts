@@ -1,0 +1,228 @@
+/** The daemon's HTTP API (tools/luxrigd/README.md) as types, and the reading of it. What arrives is not trusted:
+ *  a number that is missing or not finite becomes undefined, a list that is no list becomes empty. */
+
+export type Vec3 = readonly [number, number, number];
+
+export interface Fixture {
+  name: string;
+  bus: string;
+  position?: Vec3; // [m] world
+  aim?: Vec3; // [m] world
+  level?: number; // 0…1 of rated output, now
+  target_level?: number; // where the fade goes
+  drive?: number; // 0…1 on the wire
+  gain?: number; // estimated true output over rated
+  gain_standard_error?: number;
+}
+
+export interface Point {
+  name: string;
+  position?: Vec3;
+  normal?: Vec3;
+  goal_lux?: number;
+  max_lux?: number;
+  predicted_lux?: number;
+  standard_error_lux?: number;
+  measured_lux?: number;
+  measured_age_s?: number;
+  error?: number; // fraction of the goal, signed
+  met: boolean;
+  why: string;
+}
+
+export interface Luxmeter {
+  name: string;
+  point: string;
+  lux?: number;
+  age_s?: number;
+  tolerance?: number;
+  life: string;
+}
+
+export interface Device {
+  name: string;
+  life: string;
+  detail: string;
+  since_s?: number;
+  last_ok_s?: number;
+  sent?: number;
+  received?: number;
+  errors?: number;
+}
+
+export interface Alarm {
+  severe: boolean;
+  device: string;
+  text: string;
+  since_s?: number;
+}
+
+export interface Output {
+  rate_hz?: number;
+  frames?: number;
+  p50_us?: number;
+  p99_us?: number;
+  max_us?: number;
+  realtime?: boolean;
+}
+
+export interface Status {
+  rig: string;
+  version: string;
+  phase: string;
+  detail: string;
+  time_s?: number;
+  simulated: boolean;
+  blackout: boolean;
+  round?: number;
+  rounds?: number;
+  converged: boolean;
+  fixtures: Fixture[];
+  points: Point[];
+  luxmeters: Luxmeter[];
+  devices: Device[];
+  alarms: Alarm[];
+  output: Output;
+}
+
+export interface Room {
+  name: string;
+  min: readonly [number, number]; // [m] world x, y of the picture's lower left
+  max: readonly [number, number];
+  picture?: string; // path on this server
+}
+
+type Fields = Record<string, unknown>;
+
+const fieldsOf = (value: unknown): Fields =>
+  typeof value === 'object' && value !== null && !Array.isArray(value) ? (value as Fields) : {};
+const listOf = (value: unknown): Fields[] => (Array.isArray(value) ? value.map(fieldsOf) : []);
+const text = (value: unknown): string => (typeof value === 'string' ? value : '');
+const number = (value: unknown): number | undefined =>
+  typeof value === 'number' && Number.isFinite(value) ? value : undefined;
+
+function vector(value: unknown): Vec3 | undefined {
+  if (!Array.isArray(value) || value.length !== 3) return undefined;
+  const [x, y, z] = value.map(number);
+  return x === undefined || y === undefined || z === undefined ? undefined : [x, y, z];
+}
+
+/** Copies the named numbers that are there; an absent one stays absent. */
+function numbers<K extends string>(from: Fields, ...keys: K[]): Partial<Record<K, number>> {
+  const found: Partial<Record<K, number>> = {};
+  for (const key of keys) {
+    const value = number(from[key]);
+    if (value !== undefined) found[key] = value;
+  }
+  return found;
+}
+
+function vectors<K extends string>(from: Fields, ...keys: K[]): Partial<Record<K, Vec3>> {
+  const found: Partial<Record<K, Vec3>> = {};
+  for (const key of keys) {
+    const value = vector(from[key]);
+    if (value !== undefined) found[key] = value;
+  }
+  return found;
+}
+
+/** undefined if this is no status at all. */
+export function readStatus(value: unknown): Status | undefined {
+  const s = fieldsOf(value);
+  if (typeof s['phase'] !== 'string') return undefined;
+  const output = fieldsOf(s['output']);
+  return {
+    rig: text(s['rig']),
+    version: text(s['version']),
+    phase: s['phase'],
+    detail: text(s['detail']),
+    simulated: s['simulated'] === true,
+    blackout: s['blackout'] === true,
+    converged: s['converged'] === true,
+    ...numbers(s, 'time_s', 'round', 'rounds'),
+    fixtures: listOf(s['fixtures']).map((f) => ({
+      name: text(f['name']),
+      bus: text(f['bus']),
+      ...vectors(f, 'position', 'aim'),
+      ...numbers(f, 'level', 'target_level', 'drive', 'gain', 'gain_standard_error'),
+    })),
+    points: listOf(s['points']).map((p) => ({
+      name: text(p['name']),
+      met: p['met'] === true,
+      why: text(p['why']),
+      ...vectors(p, 'position', 'normal'),
+      ...numbers(p, 'goal_lux', 'max_lux', 'predicted_lux', 'standard_error_lux', 'measured_lux', 'measured_age_s', 'error'),
+    })),
+    luxmeters: listOf(s['luxmeters']).map((m) => ({
+      name: text(m['name']),
+      point: text(m['point']),
+      life: text(m['life']),
+      ...numbers(m, 'lux', 'age_s', 'tolerance'),
+    })),
+    devices: listOf(s['devices']).map((d) => ({
+      name: text(d['name']),
+      life: text(d['life']),
+      detail: text(d['detail']),
+      ...numbers(d, 'since_s', 'last_ok_s', 'sent', 'received', 'errors'),
+    })),
+    alarms: listOf(s['alarms']).map((a) => ({
+      severe: a['severe'] === true,
+      device: text(a['device']),
+      text: text(a['text']),
+      ...numbers(a, 'since_s'),
+    })),
+    output: {
+      ...numbers(output, 'rate_hz', 'frames', 'p50_us', 'p99_us', 'max_us'),
+      ...(typeof output['realtime'] === 'boolean' ? { realtime: output['realtime'] } : {}),
+    },
+  };
+}
+
+export function readRoom(value: unknown): Room | undefined {
+  const room = fieldsOf(value);
+  const plan = fieldsOf(room['plan']);
+  const corner = (v: unknown): readonly [number, number] | undefined => {
+    if (!Array.isArray(v) || v.length < 2) return undefined;
+    const x = number(v[0]);
+    const y = number(v[1]);
+    return x === undefined || y === undefined ? undefined : [x, y];
+  };
+  const bounds = fieldsOf(room['bounds']);
+  const min = corner(plan['min']) ?? corner(bounds['min']);
+  const max = corner(plan['max']) ?? corner(bounds['max']);
+  if (!min || !max || !(max[0] > min[0]) || !(max[1] > min[1])) return undefined;
+  const url = text(plan['url']);
+  return {
+    name: text(room['name']),
+    min,
+    max,
+    // Of this server only, whatever the answer says.
+    ...(/^\/[\w./-]+$/.test(url) && !url.startsWith('//') ? { picture: url } : {}),
+  };
+}
+
+export async function fetchRoom(): Promise<Room | undefined> {
+  const answer = await fetch('/api/room', { cache: 'no-store' });
+  return answer.ok ? readRoom(await answer.json()) : undefined;
+}
+
+/** Resolves once the daemon has acknowledged; rejects with a sentence for a person. */
+export async function postBlackout(on: boolean): Promise<void> {
+  const stop = new AbortController();
+  const timer = setTimeout(() => stop.abort(), 3000);
+  try {
+    const answer = await fetch('/api/blackout', {
+      method: 'POST',
+      headers: { 'Content-Type': 'application/json' },
+      body: JSON.stringify({ on }),
+      signal: stop.signal,
+    });
+    if (!answer.ok) throw new Error(`the daemon answered ${answer.status}`);
+  } catch (error) {
+    if (stop.signal.aborted) throw new Error('the daemon did not answer within 3 s');
+    if (error instanceof TypeError) throw new Error('the daemon cannot be reached');
+    throw error;
+  } finally {
+    clearTimeout(timer);
+  }
+}

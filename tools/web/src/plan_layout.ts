@@ -1,0 +1,79 @@
+/** Where things lie on the drawn plan: world metres to picture pixels, and room for markers that coincide from above. */
+
+import type { Point, Room } from './api';
+
+export interface Spot {
+  x: number; // [px] from the left
+  y: number; // [px] from the top
+}
+
+export interface Scale {
+  width: number; // [px] of the drawn plan
+  height: number;
+  at(x_m: number, y_m: number): Spot;
+  px_per_m: number;
+}
+
+/** Fits the room into `width` × `maxHeight`, keeping its shape; world +y is up. */
+export function scaleFor(room: Room, width: number, maxHeight: number): Scale {
+  const wide_m = room.max[0] - room.min[0];
+  const deep_m = room.max[1] - room.min[1];
+  const px_per_m = Math.min(width / wide_m, maxHeight / deep_m);
+  return {
+    width: wide_m * px_per_m,
+    height: deep_m * px_per_m,
+    px_per_m,
+    at: (x_m, y_m) => ({ x: (x_m - room.min[0]) * px_per_m, y: (room.max[1] - y_m) * px_per_m }),
+  };
+}
+
+/** One place per point (undefined without a position). Points of an upright work lie over one another from above:
+ *  they are unfolded away from it along its normal, the lowest nearest to it, `gap` pixels apart. */
+export function unfold(points: readonly Point[], scale: Scale, gap: number): (Spot | undefined)[] {
+  const places: (Spot | undefined)[] = points.map(() => undefined);
+  const taken: Spot[] = [];
+  const order = points
+    .map((point, index) => ({ point, index }))
+    .sort((a, b) => (a.point.position?.[2] ?? 0) - (b.point.position?.[2] ?? 0) || a.index - b.index);
+  for (const { point, index } of order) {
+    if (!point.position) continue;
+    const start = scale.at(point.position[0], point.position[1]);
+    const [nx, ny] = point.normal ?? [0, 0, 1];
+    const flat = Math.hypot(nx, ny);
+    // Level surfaces have no side to go to: downwards on the page.
+    const step = flat > 0.3 ? { x: nx / flat, y: -ny / flat } : { x: 0, y: 1 };
+    let place = start;
+    for (let tries = 1; tries <= 24 && taken.some((t) => Math.hypot(t.x - place.x, t.y - place.y) < gap * 0.8); ++tries)
+      place = { x: start.x + step.x * gap * tries, y: start.y + step.y * gap * tries };
+    place = { x: clamp(place.x, gap, scale.width - gap), y: clamp(place.y, gap, scale.height - gap) };
+    taken.push(place);
+    places[index] = place;
+  }
+  return places;
+}
+
+const clamp = (value: number, low: number, high: number): number => Math.min(Math.max(value, low), Math.max(low, high));
+
+/** The beam's sign on the plan, a narrow triangle from the lamp to where it aims, with a blunt end. */
+export function beamPath(from: Spot, to: Spot): string {
+  const dx = to.x - from.x;
+  const dy = to.y - from.y;
+  const length = Math.hypot(dx, dy);
+  if (length < 4) return '';
+  const half = Math.min(18, Math.max(6, length * 0.16));
+  const [ox, oy] = [(-dy / length) * half, (dx / length) * half];
+  const f = (v: number): string => v.toFixed(1);
+  return (
+    `M${f(from.x)} ${f(from.y)}L${f(to.x + ox)} ${f(to.y + oy)}` +
+    `A${f(half)} ${f(half)} 0 0 0 ${f(to.x - ox)} ${f(to.y - oy)}Z`
+  );
+}
+
+/** Marker outlines about the origin, one shape per verdict, so that the plan reads without colour. */
+export const MARKER_PATHS = {
+  met: 'M-6 0A6 6 0 1 1 6 0A6 6 0 1 1 -6 0Z',
+  low: 'M-7 -5L7 -5L0 7Z',
+  high: 'M-7 5L7 5L0 -7Z',
+  over: 'M-7.5 0L0 -7.5L7.5 0L0 7.5Z',
+  none: 'M-4.5 -4.5H4.5V4.5H-4.5Z',
+} as const;

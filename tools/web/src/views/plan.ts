@@ -1,0 +1,225 @@
+/** The room from above: picture, beams, fixtures with their level, measurement points by error. */
+
+import type { Room, Status } from '../api';
+import { card, element, setAttribute, svg } from '../dom';
+import { percent } from '../format';
+import { judge } from '../judge';
+import { type Scale, type Spot, MARKER_PATHS, beamPath, scaleFor, unfold } from '../plan_layout';
+import type { Selection } from '../selection';
+import { fixtureTip, pointTip, placeTip } from './tip';
+
+const LAMP_RADIUS = 9;
+const RING_RADIUS = 11.5;
+const RING = 2 * Math.PI * RING_RADIUS;
+
+interface FixtureMark {
+  beam: SVGPathElement;
+  line: SVGLineElement;
+  glow: SVGCircleElement;
+  ring: SVGCircleElement;
+}
+
+interface PointMark {
+  group: SVGGElement;
+  shape: SVGPathElement;
+  label: SVGTextElement;
+}
+
+export class PlanView {
+  readonly root: HTMLElement;
+  private readonly stage = element('div', { class: 'plan-stage' });
+  private readonly tip = element('div', { class: 'tip', 'aria-hidden': 'true' });
+  private readonly drawing = svg('svg', { class: 'plan', role: 'img', 'aria-label': 'The room from above' });
+  private room: Room | undefined;
+  private status: Status | undefined;
+  private scale: Scale | undefined;
+  private drawnFor = '';
+  private fixtures: FixtureMark[] = [];
+  private points: PointMark[] = [];
+  private hovered: { kind: 'fixture' | 'point'; index: number; at: Spot } | undefined;
+
+  constructor(private readonly selection: Selection) {
+    this.stage.append(this.drawing, this.tip);
+    this.root = card('plan', 'Room', this.stage, legend());
+    new ResizeObserver(() => this.update()).observe(this.stage);
+    selection.onChange(() => this.showSelection());
+  }
+
+  setRoom(room: Room): void {
+    this.room = room;
+    this.drawnFor = '';
+    this.update();
+  }
+
+  show(status: Status): void {
+    this.status = status;
+    this.update();
+  }
+
+  private update(): void {
+    if (!this.room || !this.status) return;
+    const width = this.stage.clientWidth;
+    if (width < 50) return;
+    // What the drawing's skeleton depends on; only levels and verdicts change between two updates.
+    const key = JSON.stringify([
+      width,
+      window.innerHeight,
+      this.status.fixtures.map((f) => [f.name, f.position, f.aim]),
+      this.status.points.map((p) => [p.name, p.position]),
+    ]);
+    if (key !== this.drawnFor) {
+      this.drawnFor = key;
+      this.draw(this.room, this.status, width);
+    }
+    this.refresh(this.status);
+  }
+
+  private draw(room: Room, status: Status, width: number): void {
+    const scale = scaleFor(room, width, Math.max(320, window.innerHeight * 0.7));
+    this.scale = scale;
+    const { drawing } = this;
+    drawing.replaceChildren();
+    setAttribute(drawing, 'viewBox', `0 0 ${scale.width.toFixed(1)} ${scale.height.toFixed(1)}`);
+    drawing.style.width = `${scale.width}px`;
+    drawing.style.height = `${scale.height}px`;
+    if (room.picture)
+      drawing.append(
+        svg('image', { href: room.picture, width: scale.width, height: scale.height, preserveAspectRatio: 'none', class: 'plan-picture' }),
+      );
+    drawing.append(svg('rect', { class: 'plan-veil', width: scale.width, height: scale.height }));
+    const [beams, leaders, lamps, markers] = [svg('g'), svg('g', { class: 'leaders' }), svg('g'), svg('g')];
+    drawing.append(beams, leaders, markers, lamps);
+
+    this.fixtures = status.fixtures.map((fixture, index) => {
+      const at = fixture.position ? scale.at(fixture.position[0], fixture.position[1]) : undefined;
+      const aim = fixture.aim ? scale.at(fixture.aim[0], fixture.aim[1]) : undefined;
+      const beam = svg('path', { class: 'beam', d: at && aim ? beamPath(at, aim) : '' });
+      const line = svg('line', { class: 'aim', x1: at?.x ?? 0, y1: at?.y ?? 0, x2: aim?.x ?? at?.x ?? 0, y2: aim?.y ?? at?.y ?? 0 });
+      const glow = svg('circle', { class: 'lamp-glow', r: LAMP_RADIUS - 1.5 });
+      const ring = svg('circle', { class: 'lamp-ring', r: RING_RADIUS, transform: 'rotate(-90)' });
+      const group = svg(
+        'g',
+        { class: 'lamp', transform: `translate(${at?.x.toFixed(1) ?? -99} ${at?.y.toFixed(1) ?? -99})` },
+        svg('circle', { class: 'lamp-body', r: RING_RADIUS + 2 }),
+        svg('circle', { class: 'lamp-track', r: RING_RADIUS }),
+        ring,
+        glow,
+      );
+      if (at) this.watch(group, 'fixture', index, at);
+      beams.append(beam, line);
+      lamps.append(group);
+      return { beam, line, glow, ring };
+    });
+
+    const places = unfold(status.points, scale, width < 500 ? 11 : 15);
+    this.points = status.points.map((point, index) => {
+      const place = places[index];
+      const shape = svg('path', { class: 'shape' });
+      const label = svg('text', { class: 'reading', y: -12, 'text-anchor': 'middle' });
+      const group = svg('g', { class: 'point', transform: `translate(${place?.x.toFixed(1) ?? -99} ${place?.y.toFixed(1) ?? -99})` });
+      if (status.points[index]?.max_lux !== undefined) group.append(svg('circle', { class: 'limit-mark', r: 10.5 }));
+      group.append(shape, label);
+      if (place && point.position) {
+        const true_place = scale.at(point.position[0], point.position[1]);
+        if (Math.hypot(true_place.x - place.x, true_place.y - place.y) > 1)
+          leaders.append(svg('line', { x1: true_place.x, y1: true_place.y, x2: place.x, y2: place.y }));
+        this.watch(group, 'point', index, place);
+      }
+      markers.append(group);
+      return { group, shape, label };
+    });
+    this.showSelection();
+  }
+
+  private refresh(status: Status): void {
+    status.fixtures.forEach((fixture, index) => {
+      const mark = this.fixtures[index];
+      if (!mark) return;
+      const level = Math.min(1, Math.max(0, fixture.level ?? 0));
+      mark.beam.style.opacity = level > 0 ? (0.12 + 0.55 * level).toFixed(3) : '0';
+      mark.line.style.opacity = level > 0 ? '0.75' : '0.4';
+      mark.glow.style.fillOpacity = level > 0 ? (0.25 + 0.75 * level).toFixed(3) : '0';
+      setAttribute(mark.ring, 'stroke-dasharray', `${(level * RING).toFixed(2)} ${RING.toFixed(2)}`);
+    });
+    status.points.forEach((point, index) => {
+      const mark = this.points[index];
+      if (!mark) return;
+      const judged = judge(point);
+      const measured = point.measured_lux !== undefined;
+      setAttribute(mark.group, 'class', `point ${judged.verdict}${measured ? ' measured' : ''}`);
+      setAttribute(mark.shape, 'd', MARKER_PATHS[judged.verdict]);
+      // Small misses pale, large ones full.
+      const size = judged.verdict === 'low' || judged.verdict === 'high' ? Math.min(1, 0.5 + 4 * Math.abs(judged.error ?? 0)) : 1;
+      mark.shape.style.fillOpacity = size.toFixed(2);
+    });
+    const goals = status.points.filter((p) => p.goal_lux !== undefined);
+    setAttribute(
+      this.drawing,
+      'aria-label',
+      `The room from above: ${status.fixtures.length} fixtures, mean level ` +
+        `${percent(status.fixtures.reduce((sum, f) => sum + (f.level ?? 0), 0) / Math.max(1, status.fixtures.length))}; ` +
+        `${goals.filter((p) => p.met).length} of ${goals.length} goals met. The tables hold the same numbers.`,
+    );
+    this.showTip();
+  }
+
+  private watch(group: SVGGElement, kind: 'fixture' | 'point', index: number, at: Spot): void {
+    const enter = (): void => {
+      this.hovered = { kind, index, at };
+      this.selection.set({ kind, index });
+      this.showTip();
+    };
+    group.addEventListener('pointerenter', enter);
+    group.addEventListener('click', enter);
+    group.addEventListener('pointerleave', () => {
+      this.hovered = undefined;
+      this.selection.set(undefined);
+      this.showTip();
+    });
+  }
+
+  private showTip(): void {
+    const { hovered, status, scale } = this;
+    const point = hovered?.kind === 'point' ? status?.points[hovered.index] : undefined;
+    const fixture = hovered?.kind === 'fixture' ? status?.fixtures[hovered.index] : undefined;
+    if (!hovered || !scale || !(point || fixture)) {
+      this.tip.classList.remove('shown');
+      return;
+    }
+    if (point) pointTip(this.tip, point);
+    else if (fixture) fixtureTip(this.tip, fixture);
+    placeTip(this.tip, hovered.at, this.drawing, this.stage);
+  }
+
+  private showSelection(): void {
+    const chosen = this.selection.current;
+    this.points.forEach((mark, i) => mark.group.classList.toggle('chosen', chosen?.kind === 'point' && chosen.index === i));
+    this.fixtures.forEach((mark, i) => mark.beam.classList.toggle('chosen', chosen?.kind === 'fixture' && chosen.index === i));
+  }
+}
+
+function legend(): HTMLElement {
+  const entry = (verdict: keyof typeof MARKER_PATHS, words: string): HTMLElement =>
+    element(
+      'li',
+      {},
+      svg('svg', { viewBox: '-9 -9 18 18', class: 'key', 'aria-hidden': 'true' },
+        svg('g', { class: `point ${verdict}` }, svg('path', { class: 'shape', d: MARKER_PATHS[verdict] }))),
+      words,
+    );
+  const drawn = (words: string, ...parts: SVGElement[]): HTMLElement =>
+    element('li', {}, svg('svg', { viewBox: '-13 -13 26 26', class: 'key', 'aria-hidden': 'true' }, ...parts), words);
+  return element(
+    'ul',
+    { class: 'legend', 'aria-label': 'Signs on the plan' },
+    entry('met', 'goal met'),
+    entry('low', 'too dark'),
+    entry('high', 'too bright'),
+    entry('over', 'over its limit'),
+    drawn('has a limit', svg('circle', { class: 'limit-mark', r: 10 })),
+    drawn('has a meter', svg('g', { class: 'point met measured' }, svg('path', { class: 'shape', d: MARKER_PATHS.met }))),
+    drawn('lamp, ring = level', svg('circle', { class: 'lamp-track', r: 10 }),
+      svg('circle', { class: 'lamp-ring', r: 10, 'stroke-dasharray': '40 70', transform: 'rotate(-90)' }),
+      svg('circle', { class: 'lamp-glow', r: 7 })),
+  );
+}
