@@ -28,6 +28,7 @@ export interface Point {
   error?: number; // fraction of the goal, signed
   met: boolean;
   why: string;
+  meter_tolerance?: number; // of the luxmeter that stands there, from its own entry
 }
 
 export interface Luxmeter {
@@ -131,6 +132,15 @@ export function readStatus(value: unknown): Status | undefined {
   const s = fieldsOf(value);
   if (typeof s['phase'] !== 'string') return undefined;
   const output = fieldsOf(s['output']);
+  const tolerances = new Map<string, number>();
+  for (const meter of listOf(s['luxmeters'])) {
+    const tolerance = number(meter['tolerance']);
+    if (tolerance !== undefined) tolerances.set(text(meter['point']), tolerance);
+  }
+  const toleranceAt = (point: string): { meter_tolerance?: number } => {
+    const tolerance = tolerances.get(point);
+    return tolerance === undefined ? {} : { meter_tolerance: tolerance };
+  };
   return {
     rig: text(s['rig']),
     version: text(s['version']),
@@ -150,6 +160,7 @@ export function readStatus(value: unknown): Status | undefined {
       name: text(p['name']),
       met: p['met'] === true,
       why: text(p['why']),
+      ...toleranceAt(text(p['name'])),
       ...vectors(p, 'position', 'normal'),
       ...numbers(p, 'goal_lux', 'max_lux', 'predicted_lux', 'standard_error_lux', 'measured_lux', 'measured_age_s', 'error'),
     })),

@@ -20,12 +20,16 @@ export function errorOf(point: Point): number | undefined {
   return best / point.goal_lux - 1;
 }
 
+/** How far a number may lie above a limit and still tell of none broken: a reading by its meter's tolerance, the
+ *  model, whose limits the daemon keeps exactly, by rounding. */
+const slackOf = (point: Point): number => (point.measured_lux === undefined ? 1e-3 : (point.meter_tolerance ?? 0));
+
 export function judge(point: Point): Judged {
   const error = errorOf(point);
   const measured = point.measured_lux !== undefined;
   const best = point.measured_lux ?? point.predicted_lux;
   const common = { measured, ...(error === undefined ? {} : { error }) };
-  if (point.max_lux !== undefined && best !== undefined && best > point.max_lux)
+  if (point.max_lux !== undefined && best !== undefined && best > point.max_lux * (1 + slackOf(point)))
     return { ...common, verdict: 'over', words: 'over its limit' };
   if (point.goal_lux === undefined)
     return { ...common, verdict: 'none', words: point.max_lux === undefined ? 'no goal' : 'within its limit' };

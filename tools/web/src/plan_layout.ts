@@ -37,15 +37,15 @@ export function unfold(points: readonly Point[], scale: Scale, gap: number): (Sp
     .sort((a, b) => (a.point.position?.[2] ?? 0) - (b.point.position?.[2] ?? 0) || a.index - b.index);
   for (const { point, index } of order) {
     if (!point.position) continue;
-    const start = scale.at(point.position[0], point.position[1]);
+    const inside = (s: Spot): Spot => ({ x: clamp(s.x, gap, scale.width - gap), y: clamp(s.y, gap, scale.height - gap) });
+    const start = inside(scale.at(point.position[0], point.position[1]));
     const [nx, ny] = point.normal ?? [0, 0, 1];
     const flat = Math.hypot(nx, ny);
     // Level surfaces have no side to go to: downwards on the page.
     const step = flat > 0.3 ? { x: nx / flat, y: -ny / flat } : { x: 0, y: 1 };
     let place = start;
     for (let tries = 1; tries <= 24 && taken.some((t) => Math.hypot(t.x - place.x, t.y - place.y) < gap * 0.8); ++tries)
-      place = { x: start.x + step.x * gap * tries, y: start.y + step.y * gap * tries };
-    place = { x: clamp(place.x, gap, scale.width - gap), y: clamp(place.y, gap, scale.height - gap) };
+      place = inside({ x: start.x + step.x * gap * tries, y: start.y + step.y * gap * tries });
     taken.push(place);
     places[index] = place;
   }

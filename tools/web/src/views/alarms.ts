@@ -16,7 +16,7 @@ export class AlarmsView {
     const list = element('div', { id: 'alarms', role: 'alert' });
     this.lost.append(sign(true), element('div', { class: 'alarm-text' }, this.lostText, element('span', {},
       'What the page shows is old and may be wrong. The rig goes on by itself; this page tries again all the time.')), this.lostAge);
-    this.rows = new Rows(
+    this.rows = new Rows<Alarm, HTMLElement>(
       list,
       () =>
         element('div', { class: 'alarm' }, sign(false), element('div', { class: 'alarm-text' }, element('strong'), element('span')),

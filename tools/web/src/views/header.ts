@@ -5,6 +5,8 @@ import { element, setAttribute, setText } from '../dom';
 import { age } from '../format';
 import type { Line } from '../live';
 
+const FAILURE_SHOWN_MS = 10_000;
+
 export class HeaderView {
   readonly root: HTMLElement;
   readonly blackout: HTMLElement;
@@ -21,6 +23,7 @@ export class HeaderView {
   private readonly buttonState = element('span', { class: 'blackout-state' }, 'light is on');
   private readonly failure = element('p', { class: 'blackout-failure', role: 'alert' });
   private dark = false;
+  private fading: ReturnType<typeof setTimeout> | undefined;
   private asked: boolean | undefined; // sent, not yet seen in a status
 
   constructor(themeButton: HTMLElement) {
@@ -77,6 +80,8 @@ export class HeaderView {
     } catch (error) {
       this.asked = undefined;
       setText(this.failure, `Blackout ${on ? 'on' : 'off'} not confirmed: ${error instanceof Error ? error.message : 'unknown cause'}.`);
+      clearTimeout(this.fading);
+      this.fading = setTimeout(() => setText(this.failure, ''), FAILURE_SHOWN_MS);
     }
     this.showButton();
   }

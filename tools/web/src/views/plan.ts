@@ -1,8 +1,8 @@
 /** The room from above: picture, beams, fixtures with their level, measurement points by error. */
 
 import type { Room, Status } from '../api';
-import { card, element, setAttribute, svg } from '../dom';
-import { percent } from '../format';
+import { card, element, setAttribute, setText, svg } from '../dom';
+import { lux, percent } from '../format';
 import { judge } from '../judge';
 import { type Scale, type Spot, MARKER_PATHS, beamPath, scaleFor, unfold } from '../plan_layout';
 import type { Selection } from '../selection';
@@ -87,19 +87,22 @@ export class PlanView {
         svg('image', { href: room.picture, width: scale.width, height: scale.height, preserveAspectRatio: 'none', class: 'plan-picture' }),
       );
     drawing.append(svg('rect', { class: 'plan-veil', width: scale.width, height: scale.height }));
+    const marks = width < 500 ? 0.72 : 1;
     const [beams, leaders, lamps, markers] = [svg('g'), svg('g', { class: 'leaders' }), svg('g'), svg('g')];
-    drawing.append(beams, leaders, markers, lamps);
+    // Points over lamps: where both are at one place, the lux matter more.
+    drawing.append(beams, leaders, lamps, markers);
 
     this.fixtures = status.fixtures.map((fixture, index) => {
       const at = fixture.position ? scale.at(fixture.position[0], fixture.position[1]) : undefined;
       const aim = fixture.aim ? scale.at(fixture.aim[0], fixture.aim[1]) : undefined;
-      const beam = svg('path', { class: 'beam', d: at && aim ? beamPath(at, aim) : '' });
+      const beam = svg('path', { class: 'beam', d: at && aim ? beamPath(at, aim) : '', fill: `url(#beam-${index})` });
+      if (at && aim) beams.append(fading(`beam-${index}`, at, aim));
       const line = svg('line', { class: 'aim', x1: at?.x ?? 0, y1: at?.y ?? 0, x2: aim?.x ?? at?.x ?? 0, y2: aim?.y ?? at?.y ?? 0 });
       const glow = svg('circle', { class: 'lamp-glow', r: LAMP_RADIUS - 1.5 });
       const ring = svg('circle', { class: 'lamp-ring', r: RING_RADIUS, transform: 'rotate(-90)' });
       const group = svg(
         'g',
-        { class: 'lamp', transform: `translate(${at?.x.toFixed(1) ?? -99} ${at?.y.toFixed(1) ?? -99})` },
+        { class: 'lamp', transform: `${moved(at)} scale(${marks})` },
         svg('circle', { class: 'lamp-body', r: RING_RADIUS + 2 }),
         svg('circle', { class: 'lamp-track', r: RING_RADIUS }),
         ring,
@@ -115,10 +118,16 @@ export class PlanView {
     this.points = status.points.map((point, index) => {
       const place = places[index];
       const shape = svg('path', { class: 'shape' });
-      const label = svg('text', { class: 'reading', y: -12, 'text-anchor': 'middle' });
-      const group = svg('g', { class: 'point', transform: `translate(${place?.x.toFixed(1) ?? -99} ${place?.y.toFixed(1) ?? -99})` });
-      if (status.points[index]?.max_lux !== undefined) group.append(svg('circle', { class: 'limit-mark', r: 10.5 }));
-      group.append(shape, label);
+      // Beside the marker, on the side where the neighbours of an upright work are not.
+      const [nx, ny] = point.normal ?? [0, 0];
+      const beside = Math.abs(ny) > Math.abs(nx) && Math.abs(ny) > 0.3;
+      const left = (place?.x ?? 0) > scale.width - 60;
+      const label = svg('text', beside
+        ? { class: 'lux-label', x: left ? -13 : 13, y: 4, 'text-anchor': left ? 'end' : 'start' }
+        : { class: 'lux-label', y: -12, 'text-anchor': 'middle' });
+      const group = svg('g', { class: 'point', transform: `${moved(place)} scale(${marks})` });
+      if (point.max_lux !== undefined) group.append(svg('circle', { class: 'limit-mark', r: 10.5 }));
+      group.append(shape, svg('circle', { class: 'meter-mark', r: 2.6 }), label);
       if (place && point.position) {
         const true_place = scale.at(point.position[0], point.position[1]);
         if (Math.hypot(true_place.x - place.x, true_place.y - place.y) > 1)
@@ -146,7 +155,9 @@ export class PlanView {
       if (!mark) return;
       const judged = judge(point);
       const measured = point.measured_lux !== undefined;
-      setAttribute(mark.group, 'class', `point ${judged.verdict}${measured ? ' measured' : ''}`);
+      setAttribute(mark.group, 'data-verdict', judged.verdict);
+      setAttribute(mark.group, 'data-measured', String(measured));
+      setText(mark.label, measured ? lux(point.measured_lux) : '');
       setAttribute(mark.shape, 'd', MARKER_PATHS[judged.verdict]);
       // Small misses pale, large ones full.
       const size = judged.verdict === 'low' || judged.verdict === 'high' ? Math.min(1, 0.5 + 4 * Math.abs(judged.error ?? 0)) : 1;
@@ -198,13 +209,23 @@ export class PlanView {
   }
 }
 
+/** Out of sight without a place. */
+const moved = (place: Spot | undefined): string =>
+  place ? `translate(${place.x.toFixed(1)} ${place.y.toFixed(1)})` : 'translate(-99 -99)';
+
+/** Light thins out on its way. */
+function fading(id: string, from: Spot, to: Spot): SVGElement {
+  return svg('linearGradient', { id, gradientUnits: 'userSpaceOnUse', x1: from.x, y1: from.y, x2: to.x, y2: to.y },
+    svg('stop', { offset: 0, class: 'beam-near' }), svg('stop', { offset: 1, class: 'beam-far' }));
+}
+
 function legend(): HTMLElement {
   const entry = (verdict: keyof typeof MARKER_PATHS, words: string): HTMLElement =>
     element(
       'li',
       {},
       svg('svg', { viewBox: '-9 -9 18 18', class: 'key', 'aria-hidden': 'true' },
-        svg('g', { class: `point ${verdict}` }, svg('path', { class: 'shape', d: MARKER_PATHS[verdict] }))),
+        svg('g', { class: 'point', 'data-verdict': verdict }, svg('path', { class: 'shape', d: MARKER_PATHS[verdict] }))),
       words,
     );
   const drawn = (words: string, ...parts: SVGElement[]): HTMLElement =>
@@ -217,7 +238,7 @@ function legend(): HTMLElement {
     entry('high', 'too bright'),
     entry('over', 'over its limit'),
     drawn('has a limit', svg('circle', { class: 'limit-mark', r: 10 })),
-    drawn('has a meter', svg('g', { class: 'point met measured' }, svg('path', { class: 'shape', d: MARKER_PATHS.met }))),
+    drawn('has a meter', svg('g', { class: 'point', 'data-verdict': 'met', 'data-measured': 'true' }, svg('path', { class: 'shape', d: MARKER_PATHS.met }), svg('circle', { class: 'meter-mark', r: 3 }))),
     drawn('lamp, ring = level', svg('circle', { class: 'lamp-track', r: 10 }),
       svg('circle', { class: 'lamp-ring', r: 10, 'stroke-dasharray': '40 70', transform: 'rotate(-90)' }),
       svg('circle', { class: 'lamp-glow', r: 7 })),

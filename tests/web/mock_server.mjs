@@ -1,0 +1,177 @@
+// Speaks the daemon's HTTP API (tools/luxrigd/README.md) without a rig, for the page's test and for work on the page:
+//   node tests/web/mock_server.mjs [--port 9620] [--dist build/release/share/luxrig/web] [--script]
+// --script plays a whole show with faults, over and over; without it the rig holds.
+import { readFile } from 'node:fs/promises';
+import { createServer } from 'node:http';
+import path from 'node:path';
+import { fileURLToPath, pathToFileURL } from 'node:url';
+import { FIXTURES, METERED, POINTS, room, roomPng } from './mock_rig.mjs';
+
+const TYPES = { '.html': 'text/html; charset=utf-8', '.js': 'text/javascript', '.css': 'text/css', '.svg': 'image/svg+xml' };
+const wobble = (seed, t) => Math.sin(seed * 12.9898 + t * 1.7) * 0.6 + Math.sin(seed * 78.233 + t * 0.31) * 0.4;
+const round = (value, digits) => Number(value.toFixed(digits));
+
+/** The scripted show: at which second of it what happens. */
+const SCRIPT = [
+  { from: 0, phase: 'fading', share: (t) => t / 4, miss: 0.12 },
+  { from: 4, phase: 'settling', miss: 0.12 },
+  { from: 5, phase: 'measuring', miss: 0.12 },
+  { from: 7, phase: 'correcting', round: 1, miss: 0.04 },
+  { from: 9, phase: 'holding', round: 2, miss: 0 },
+  { from: 22, phase: 'frozen', round: 2, miss: 0, fault: 'dmx' },
+  { from: 26, phase: 'safe-fading', round: 2, miss: 0, fault: 'dmx' },
+  { from: 28, phase: 'safe', round: 2, miss: 0, fault: 'dmx', safe: true },
+  { from: 34, phase: 'holding', round: 2, miss: 0 },
+];
+const SCRIPT_S = 44;
+
+export class MockDaemon {
+  name = 'gallery';
+  blackout = false;
+  alarms = [];
+  faulted = new Set(); // names of devices
+  posts = []; // bodies of accepted posts
+  silent = false; // the line stays open and says nothing
+  refuse = false; // posts are answered with 503
+  scripted = false;
+  #streams = new Set();
+  #picture = roomPng();
+  #started = Date.now();
+
+  constructor(dist) {
+    this.dist = dist;
+  }
+
+  async listen(port = 0) {
+    this.server = createServer((request, response) => {
+      this.#answer(request, response).catch((error) => {
+        response.writeHead(500).end(String(error));
+      });
+    });
+    await new Promise((resolve, reject) => {
+      this.server.once('error', reject);
+      this.server.listen(port, '127.0.0.1', resolve);
+    });
+    this.timer = setInterval(() => this.#tell(), 200);
+    return this.server.address().port;
+  }
+
+  async close() {
+    clearInterval(this.timer);
+    for (const stream of this.#streams) stream.destroy();
+    this.#streams.clear();
+    this.server.closeAllConnections?.();
+    await new Promise((resolve) => this.server.close(resolve));
+  }
+
+  #tell() {
+    if (this.silent) return;
+    const text = `event: status\ndata: ${JSON.stringify(this.status())}\n\n`;
+    for (const stream of this.#streams) stream.write(text);
+  }
+
+  #scene(t) {
+    if (!this.scripted) return { phase: 'holding', round: 2, miss: 0 };
+    const at = t % SCRIPT_S;
+    const scene = SCRIPT.filter((s) => s.from <= at).at(-1);
+    return { ...scene, shown: scene.share ? scene.share(at - scene.from) : scene.safe ? 0.25 : 1 };
+  }
+
+  status() {
+    const t = (Date.now() - this.#started) / 1000;
+    const scene = this.#scene(t);
+    const faulted = new Set([...this.faulted, ...(scene.fault ? [scene.fault] : [])]);
+    const alarms = [...this.alarms];
+    for (const device of faulted)
+      alarms.push({ severe: true, device, text: `no answer for 1.2 s, bound 0.5 s: check its cable and power; the light is held, then fades to the safe look`, since_s: round(t % 60, 1) });
+    const shown = this.blackout ? 0 : (scene.shown ?? 1);
+    const points = POINTS.map((p, i) => {
+      const predicted = p.goal * shown * (1 + 0.006 * wobble(i, 0) + (i % 11 === 7 ? -0.084 : 0) + (i === 24 ? 0.051 : 0));
+      const point = { name: p.name, position: p.position, normal: p.normal, goal_lux: round(p.goal, 1),
+        predicted_lux: round(predicted, 2), standard_error_lux: round(0.004 * predicted + 0.05, 3) };
+      if (p.limit) point.max_lux = p.limit;
+      const metered = METERED.includes(p.name);
+      if (metered && !faulted.has('meters')) {
+        point.measured_lux = round(p.goal * shown * (1 + 0.006 * wobble(i, t)) * (1 - scene.miss), 2);
+        point.measured_age_s = round((t * 3.1 + i * 0.17) % 0.5, 2);
+      }
+      point.error = round((point.measured_lux ?? point.predicted_lux) / p.goal - 1, 4);
+      point.met = Math.abs(point.error) < 0.03;
+      point.why = point.met || this.blackout ? '' : i % 11 === 7 ? 'spot-3 is at 100 %' : '';
+      return point;
+    });
+    const good = points.filter((p) => p.measured_lux !== undefined && Math.abs(p.error) < 0.02).length;
+    const meters = METERED.map((name, i) => {
+      const point = points.find((p) => p.name === name);
+      return { name: `meter-${i + 1}`, point: name, position: point.position, tolerance: 0.04,
+        life: faulted.has('meters') ? 'faulted' : 'active',
+        ...(point.measured_lux === undefined ? {} : { lux: point.measured_lux, age_s: point.measured_age_s }) };
+    });
+    const device = (name, rate, both) => ({
+      name, life: faulted.has(name) ? 'faulted' : 'active', since_s: round(t, 1),
+      detail: faulted.has(name) ? 'no answer for 1.2 s, bound 0.5 s, 12 of the last 50 failed' : '',
+      last_ok_s: faulted.has(name) ? 1.2 : round((t * 7) % 0.05, 3),
+      sent: Math.floor(t * rate), received: both ? Math.floor(t * rate) : 0, errors: faulted.has(name) ? 12 : 0,
+    });
+    return {
+      rig: this.name, version: '0.1.0', phase: scene.phase, detail: `${good} of ${METERED.length} meters within 2 %`,
+      time_s: round(t, 2), simulated: true, blackout: this.blackout, round: scene.round ?? 0, rounds: 3,
+      converged: scene.phase === 'holding' && good === METERED.length,
+      fixtures: FIXTURES.map((f) => ({ name: f.name, bus: f.bus, position: f.position, aim: f.aim, pan_deg: 12.5, tilt_deg: 41,
+        level: round(f.level * shown, 4), drive: round(Math.sqrt(f.level * shown), 4),
+        target_level: this.blackout ? 0 : f.level, gain: f.gain, gain_standard_error: 0.012 })),
+      points, luxmeters: meters,
+      devices: [device('dmx', 44, false), device('dimmer', 44, true), device('meters', 4, true)],
+      alarms,
+      output: { rate_hz: 44, frames: Math.floor(t * 44), p50_us: 38, p99_us: 91, max_us: 212, realtime: true },
+    };
+  }
+
+  async #answer(request, response) {
+    const url = new URL(request.url, 'http://mock');
+    const json = (code, value) => response.writeHead(code, { 'Content-Type': 'application/json' }).end(JSON.stringify(value));
+    if (request.method === 'POST') {
+      let body = '';
+      for await (const part of request) body += part;
+      if (url.pathname !== '/api/blackout') return json(404, {});
+      if (request.headers['content-type'] !== 'application/json') return json(415, {});
+      if (this.refuse) return json(503, {});
+      this.posts.push({ path: url.pathname, body: JSON.parse(body) });
+      this.blackout = this.posts.at(-1).body.on === true;
+      return json(200, { on: this.blackout });
+    }
+    switch (url.pathname) {
+      case '/api/status':
+        return json(200, this.status());
+      case '/api/room':
+        return json(200, room(this.name));
+      case '/api/room.png':
+        return response.writeHead(200, { 'Content-Type': 'image/png' }).end(this.#picture);
+      case '/api/events':
+        response.writeHead(200, { 'Content-Type': 'text/event-stream', 'Cache-Control': 'no-store' });
+        this.#streams.add(response);
+        request.on('close', () => this.#streams.delete(response));
+        return undefined;
+    }
+    const file = path.join(this.dist, path.normalize(url.pathname === '/' ? '/index.html' : url.pathname));
+    try {
+      const content = await readFile(file);
+      response.writeHead(200, { 'Content-Type': TYPES[path.extname(file)] ?? 'application/octet-stream' }).end(content);
+    } catch {
+      response.writeHead(404).end('not found');
+    }
+    return undefined;
+  }
+}
+
+if (import.meta.url === pathToFileURL(process.argv[1] ?? '').href) {
+  const option = (name, otherwise) => {
+    const at = process.argv.indexOf(name);
+    return at > 0 ? process.argv[at + 1] : otherwise;
+  };
+  const dist = option('--dist', fileURLToPath(new URL('../../tools/web/dist', import.meta.url)));
+  const daemon = new MockDaemon(dist);
+  daemon.scripted = process.argv.includes('--script');
+  const port = await daemon.listen(Number(option('--port', '9620')));
+  console.log(`http://127.0.0.1:${port}/`);
+}

@@ -1,0 +1,171 @@
+// Drives the page in headless Chromium.
+//   node tests/web/page_test.mjs --dist DIR --out DIR                      against the mock: every check, 6 screenshots
+//   node tests/web/page_test.mjs --url URL [--screenshot FILE.png] [--leave-light]
+//                                  against a running daemon: the checks that hold for any; blackout on and off again,
+//                                  but not with --leave-light
+// Exit code 0 only if all checks held.
+import assert from 'node:assert/strict';
+import { mkdirSync } from 'node:fs';
+import path from 'node:path';
+import { eventually, openPage, startBrowser } from './browser.mjs';
+import { unreadableTexts } from './contrast.mjs';
+import { MockDaemon } from './mock_server.mjs';
+import { allChecks, fitsItsWidth, showsTheRig } from './page_checks.mjs';
+
+const option = (name) => {
+  const at = process.argv.indexOf(name);
+  return at > 0 ? process.argv[at + 1] : undefined;
+};
+const DESKTOP = { width: 1440, height: 900 };
+const PHONE = { width: 390, height: 844 };
+
+/** Prints what held; the first that does not ends the run. */
+async function check(what, body) {
+  const started = Date.now();
+  await body();
+  console.log(`ok  ${what} (${Date.now() - started} ms)`);
+}
+
+async function againstDaemon(browser, url) {
+  const { page, misdeeds, close } = await openPage(browser, url);
+  await check(`the page shows the rig at ${url}`, () =>
+    allChecks(page, url, { blackout: !process.argv.includes('--leave-light') }));
+  const file = option('--screenshot');
+  if (file) {
+    mkdirSync(path.dirname(path.resolve(file)), { recursive: true });
+    await page.screenshot({ path: file });
+  }
+  await page.setViewportSize(PHONE);
+  await check('it fits a phone', () => fitsItsWidth(page));
+  assert.deepEqual(misdeeds, []);
+  await close();
+}
+
+async function againstMock(browser, dist, out) {
+  const daemon = new MockDaemon(dist);
+  const port = await daemon.listen();
+  const url = `http://127.0.0.1:${port}/`;
+  const shot = (page, name, options = {}) => page.screenshot({ path: path.join(out, `${name}.png`), ...options });
+  mkdirSync(out, { recursive: true });
+
+  const { page, misdeeds, close } = await openPage(browser, url);
+  await check('it shows the rig, live, and blackout goes both ways', () => allChecks(page, url, { blackout: true }));
+  await check('blackout posts exactly what the API says', () =>
+    assert.deepEqual(daemon.posts, [
+      { path: '/api/blackout', body: { on: true } },
+      { path: '/api/blackout', body: { on: false } },
+    ]));
+  await shot(page, 'desktop-dark');
+
+  await check('a refused blackout is said, and the button shows the truth', async () => {
+    daemon.refuse = true;
+    await page.locator('#blackout').click();
+    await eventually('the refusal is shown', async () =>
+      /not confirmed.*503/.test(await page.locator('.blackout-failure').innerText()));
+    assert.equal(await page.locator('#blackout').getAttribute('aria-pressed'), 'false');
+    daemon.refuse = false;
+  });
+
+  await check('an alarm is shown within 2 s, first, and goes when it is over', async () => {
+    daemon.faulted.add('meters');
+    await eventually('the alarm', async () => /meters.*no answer/s.test(await page.locator('#alarms[role=alert]').innerText()), 2000);
+    const first = page.locator('.devices li').first();
+    assert.match(await first.innerText(), /faulted/, 'the faulted device leads the list');
+    const above = (await page.locator('.alarm:visible').first().boundingBox()).y < (await page.locator('main').boundingBox()).y;
+    assert.ok(above, 'alarms stand above the rest');
+    await shot(page, 'desktop-dark-alarm');
+    daemon.faulted.clear();
+    await eventually('the alarm is gone', async () => (await page.locator('#alarms .alarm').count()) === 0, 2000);
+  });
+
+  await check('a silent line is a lost line: it says so, with the age, and greys the numbers', async () => {
+    daemon.silent = true;
+    await eventually('lost', async () => (await page.locator('#line').getAttribute('data-state')) === 'lost');
+    await eventually('the age goes on', async () => /last update [34]\.\d s ago/.test(await page.locator('#lost').innerText()));
+    assert.ok(await page.locator('body').evaluate((body) => body.classList.contains('stale')));
+    await shot(page, 'desktop-dark-lost');
+    daemon.silent = false;
+    await eventually('live again', async () => (await page.locator('#line').getAttribute('data-state')) === 'live');
+    assert.equal(await page.locator('#lost').isVisible(), false);
+  });
+
+  await check('a daemon that was gone is found again by itself', async () => {
+    await daemon.close();
+    await eventually('lost', async () => (await page.locator('#line').getAttribute('data-state')) === 'lost');
+    await daemon.listen(port);
+    await eventually('live again', async () => (await page.locator('#line').getAttribute('data-state')) === 'live', 6000);
+  });
+
+  await check('markup in names and alarms is text', async () => {
+    const evil = '<img src=x onerror=alert(1)><script>alert(2)</script>"\'&amp;';
+    daemon.name = evil;
+    daemon.alarms = [{ severe: false, device: evil, text: evil, since_s: 1 }];
+    await eventually('the name as it is', async () => (await page.locator('h1').innerText()) === evil);
+    await eventually('the alarm as it is', async () => (await page.locator('#alarms').innerText()).includes(evil));
+    assert.equal(await page.locator('img, #app script').count(), 0);
+    daemon.name = 'gallery';
+    daemon.alarms = [];
+    await eventually('back', async () => (await page.locator('h1').innerText()) === 'gallery');
+  });
+
+  await check('filters leave only what they say', async () => {
+    await page.getByRole('button', { name: /with a meter/ }).click();
+    assert.equal(await page.locator('.points tbody tr:visible').count(), 6);
+    await page.getByRole('button', { name: /^all/ }).click();
+    assert.equal(await page.locator('.points tbody tr:visible').count(), 36);
+  });
+
+  await check('the theme button goes dark, light, system, and is remembered', async () => {
+    const theme = () => page.evaluate(() => document.documentElement.dataset.theme ?? 'system');
+    const seen = [];
+    for (let i = 0; i < 3; ++i) {
+      await page.locator('.theme').click();
+      seen.push(await theme());
+    }
+    assert.deepEqual(seen, ['dark', 'light', 'system']);
+    await page.locator('.theme').click();
+    await page.locator('.theme').click();
+    await page.reload();
+    assert.equal(await theme(), 'light');
+  });
+  assert.deepEqual(misdeeds, []);
+  await close();
+
+  for (const [name, options] of [
+    ['desktop-light', { viewport: DESKTOP, colorScheme: 'light' }],
+    ['phone-dark', { viewport: PHONE, colorScheme: 'dark', hasTouch: true, isMobile: true }],
+    ['phone-light', { viewport: PHONE, colorScheme: 'light', hasTouch: true, isMobile: true }],
+  ])
+    await check(`${name}: fits, readable, blackout in reach`, async () => {
+      daemon.faulted.add('dmx');
+      daemon.alarms = [{ severe: false, device: 'meter-4', text: 'drifts from the model by 9 %: clean or recalibrate it', since_s: 75 }];
+      const view = await openPage(browser, url, options);
+      await showsTheRig(view.page, url);
+      await eventually('the alarms', async () => (await view.page.locator('#alarms .alarm').count()) === 2);
+      await fitsItsWidth(view.page);
+      assert.deepEqual(await unreadableTexts(view.page), []);
+      const button = await view.page.locator('#blackout').boundingBox();
+      assert.ok(button.height >= 44 && button.y >= 0 && button.y + button.height <= options.viewport.height, JSON.stringify(button));
+      daemon.faulted.clear();
+      daemon.alarms = [];
+      await eventually('no alarm', async () => (await view.page.locator('#alarms .alarm').count()) === 0);
+      await shot(view.page, name);
+      assert.deepEqual(view.misdeeds, []);
+      await view.close();
+    });
+  await daemon.close();
+}
+
+const url = option('--url');
+const dist = option('--dist');
+if (!url && !dist) {
+  console.error('page_test.mjs: give --dist DIR (and --out DIR), or --url URL');
+  process.exit(2);
+}
+const browser = await startBrowser();
+try {
+  if (url) await againstDaemon(browser, url);
+  else await againstMock(browser, dist, option('--out') ?? path.join(dist, '..', 'web-test'));
+} finally {
+  await browser.close();
+}

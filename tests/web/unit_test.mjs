@@ -1,0 +1,110 @@
+// The page's logic without a browser: numbers to text, verdicts, reading of answers, layout of the plan.
+//   node tests/web/unit_test.mjs
+import assert from 'node:assert/strict';
+import { createRequire } from 'node:module';
+import { test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+
+const web = new URL('../../tools/web/', import.meta.url);
+const { build } = createRequire(new URL('package.json', web))('esbuild');
+
+async function load(name) {
+  const { outputFiles } = await build({ entryPoints: [fileURLToPath(new URL(`src/${name}.ts`, web))], bundle: true,
+    format: 'esm', write: false, logLevel: 'error' });
+  return import(`data:text/javascript;base64,${Buffer.from(outputFiles[0].contents).toString('base64')}`);
+}
+const [format, judge, api, plan] = await Promise.all(['format', 'judge', 'api', 'plan_layout'].map(load));
+
+test('lux has three digits and no false ones', () => {
+  const cases = [[0, '0.00'], [0.424, '0.42'], [9.994, '9.99'], [9.996, '10.0'], [48.23, '48.2'], [99.96, '100'],
+    [312.4, '312'], [9999.4, '9999'], [10400, '10\u202f400'], [1234567, '1\u202f234\u202f567'], [-3, '\u22123.00']];
+  for (const [value, text] of cases) assert.equal(format.lux(value), text);
+});
+
+test('what is not known is a dash, never a zero', () => {
+  for (const f of ['lux', 'percent', 'signedPercent', 'age', 'micros', 'count', 'withError'])
+    assert.equal(format[f](undefined), format.UNKNOWN, f);
+});
+
+test('a value is as fine as its error, with two digits of it', () => {
+  const cases = [[148.37, 1.23, '148.4 ± 1.2'], [148.37, 12.3, '148 ± 12'], [0.93, 0.021, '0.930 ± 0.021'],
+    [5, 0, '5.00 ± 0'], [313.9, 130, '314 ± 130'], [2, undefined, '2.00']];
+  for (const [value, error, text] of cases) assert.equal(format.withError(value, error), text);
+});
+
+test('errors carry their sign, and zero carries none', () => {
+  assert.equal(format.signedPercent(0.0123), '+1.2 %');
+  assert.equal(format.signedPercent(-0.007), '\u22120.7 %');
+  assert.equal(format.signedPercent(-0.0001), '0.0 %');
+});
+
+test('ages grow coarse with age and never jump back', () => {
+  const cases = [[0.04, '0.0 s'], [9.94, '9.9 s'], [9.96, '10 s'], [59.4, '59 s'], [59.6, '1 min 0 s'], [245, '4 min 5 s'],
+    [7380, '2 h 3 min'], [86400 * 3 + 3600 * 4, '3 d 4 h'], [-1, '0.0 s']];
+  for (const [seconds, text] of cases) assert.equal(format.age(seconds), text);
+});
+
+test('a point is judged by its limit first, then by its goal', () => {
+  const base = { name: 'p', met: false, why: '' };
+  assert.equal(judge.judge({ ...base, goal_lux: 45, max_lux: 50, measured_lux: 50.1, met: true }).verdict, 'over');
+  assert.equal(judge.judge({ ...base, goal_lux: 45, max_lux: 50, measured_lux: 49.9, met: true }).verdict, 'met');
+  const tolerant = { ...base, goal_lux: 50, max_lux: 50, met: true, meter_tolerance: 0.04 };
+  assert.equal(judge.judge({ ...tolerant, measured_lux: 51.9 }).verdict, 'met');
+  assert.equal(judge.judge({ ...tolerant, measured_lux: 52.1 }).verdict, 'over');
+  assert.equal(judge.judge({ ...tolerant, predicted_lux: 50.2 }).verdict, 'over', 'the tolerance is the meter\'s, not the model\'s');
+  assert.equal(judge.judge({ ...base, goal_lux: 100, predicted_lux: 90 }).verdict, 'low');
+  assert.equal(judge.judge({ ...base, goal_lux: 100, predicted_lux: 110 }).verdict, 'high');
+  assert.equal(judge.judge({ ...base, goal_lux: 100 }).verdict, 'none');
+  assert.equal(judge.judge({ ...base, max_lux: 50, predicted_lux: 20 }).verdict, 'none');
+  assert.match(judge.judge({ ...base, goal_lux: 100, error: -0.1, why: 'spot-3 is at 100 %' }).words, /too dark: spot-3/);
+});
+
+test('a meter goes before the model, the daemon\'s own error before both', () => {
+  const point = { name: 'p', met: true, why: '', goal_lux: 100, predicted_lux: 90, measured_lux: 102 };
+  assert.ok(Math.abs(judge.errorOf(point) - 0.02) < 1e-12);
+  assert.equal(judge.errorOf({ ...point, error: 0.03 }), 0.03);
+  assert.equal(judge.errorOf({ ...point, goal_lux: 0 }), undefined);
+});
+
+test('an answer that is no status is refused; numbers that are none become absent', () => {
+  for (const bad of [null, 3, 'x', [], {}, { phase: 7 }]) assert.equal(api.readStatus(bad), undefined);
+  const status = api.readStatus({ phase: 'idle', points: [{ name: 'p', goal_lux: '5', max_lux: null, position: [1, 2] }, 7], devices: 'none',
+    fixtures: [{ name: {}, level: 0.5, aim: [0, 1, 2] }], time_s: NaN });
+  assert.deepEqual(status.points[0], { name: 'p', met: false, why: '' });
+  assert.equal(status.points.length, 2);
+  assert.equal(api.readStatus({ phase: 'idle', points: [{ name: 'p' }], luxmeters: [{ point: 'p', tolerance: 0.04 }] }).points[0].meter_tolerance, 0.04);
+  assert.deepEqual(status.devices, []);
+  assert.deepEqual(status.fixtures[0], { name: '', bus: '', level: 0.5, aim: [0, 1, 2] });
+  assert.ok(!('time_s' in status));
+});
+
+test('a room without extent is refused, and its picture is this server\'s own', () => {
+  const room = (url, max = [4, 3]) => api.readRoom({ name: 'r', plan: { url, min: [0, 0], max } });
+  assert.equal(room('/api/room.png').picture, '/api/room.png');
+  for (const url of ['//elsewhere/x.png', 'http://elsewhere/x.png', 'javascript:alert(1)', 5]) assert.ok(!('picture' in room(url)), String(url));
+  assert.equal(room('/api/room.png', [0, 3]), undefined);
+});
+
+test('world x goes right and world y up, to scale', () => {
+  const scale = plan.scaleFor({ name: 'r', min: [-2, -1], max: [6, 3] }, 800, 300);
+  assert.deepEqual([scale.width, scale.height, scale.px_per_m], [600, 300, 75]);
+  assert.deepEqual(scale.at(-2, 3), { x: 0, y: 0 });
+  assert.deepEqual(scale.at(6, -1), { x: 600, y: 300 });
+});
+
+test('points over one another are unfolded along their normal, lowest nearest, and stay inside', () => {
+  const scale = plan.scaleFor({ name: 'r', min: [0, 0], max: [10, 10] }, 1000, 1000);
+  const points = [2, 1, 3].map((z) => ({ name: `z${z}`, position: [5, 9.9, z], normal: [0, -1, 0], met: true, why: '' }));
+  const places = plan.unfold(points, scale, 15);
+  assert.ok(places[1].y < places[0].y && places[0].y < places[2].y, JSON.stringify(places));
+  for (const [i, a] of places.entries()) {
+    assert.ok(a.x >= 0 && a.x <= 1000 && a.y >= 0 && a.y <= 1000);
+    for (const b of places.slice(i + 1)) assert.ok(Math.hypot(a.x - b.x, a.y - b.y) >= 12);
+  }
+  assert.equal(plan.unfold([{ name: 'nowhere', met: false, why: '' }], scale, 15)[0], undefined);
+});
+
+test('a beam onto its own lamp is no beam', () => {
+  assert.equal(plan.beamPath({ x: 5, y: 5 }, { x: 6, y: 5 }), '');
+  assert.match(plan.beamPath({ x: 0, y: 0 }, { x: 100, y: 0 }), /^M0\.0 0\.0L/);
+});

@@ -1,0 +1,79 @@
+/** Wires the live status to the views. */
+
+import { fetchRoom, type Status } from './api';
+import { element } from './dom';
+import { follow } from './live';
+import { Selection } from './selection';
+import { AlarmsView } from './views/alarms';
+import { DevicesView, MetersView } from './views/devices';
+import { FixturesView } from './views/fixtures';
+import { HeaderView } from './views/header';
+import { OutputView } from './views/output';
+import { PlanView } from './views/plan';
+import { PointsTable } from './views/points_table';
+import { themeButton } from './views/theme';
+import { TilesView } from './views/tiles';
+
+const selection = new Selection();
+const header = new HeaderView(themeButton());
+const alarms = new AlarmsView();
+const tiles = new TilesView();
+const plan = new PlanView(selection);
+const points = new PointsTable(selection);
+const fixtures = new FixturesView(selection);
+const meters = new MetersView();
+const devices = new DevicesView();
+const output = new OutputView();
+
+const main = element(
+  'main',
+  {},
+  element('div', { class: 'column wide' }, plan.root, points.root),
+  element('div', { class: 'column' }, tiles.root, fixtures.root, meters.root, devices.root, output.root),
+);
+document.getElementById('app')!.replaceChildren(header.root, alarms.root, main);
+
+/** The room is asked for until it is there, and again when the daemon turns out to be another or a newer one. */
+let roomOf: string | undefined;
+let asking = false;
+let uptime_s = -1;
+async function wantRoom(status: Status): Promise<void> {
+  const restarted = status.time_s !== undefined && status.time_s < uptime_s;
+  uptime_s = status.time_s ?? uptime_s;
+  if (restarted) roomOf = undefined;
+  if (asking || roomOf === status.rig) return;
+  asking = true;
+  try {
+    const room = await fetchRoom();
+    if (room) {
+      plan.setRoom(room);
+      roomOf = status.rig;
+    }
+  } catch {
+    // The line is down; the next status asks again.
+  } finally {
+    setTimeout(() => (asking = false), 1000);
+  }
+}
+
+follow(
+  (status) => {
+    header.show(status);
+    alarms.show(status.alarms);
+    tiles.show(status);
+    plan.show(status);
+    points.show(status.points);
+    fixtures.show(status.fixtures);
+    meters.show(status.luxmeters);
+    devices.show(status.devices);
+    output.show(status.output);
+    document.body.classList.toggle('dark-stage', status.blackout);
+    document.body.classList.add('ready');
+    void wantRoom(status);
+  },
+  (line) => {
+    header.showLine(line);
+    alarms.showLine(line);
+    document.body.classList.toggle('stale', line.state !== 'live');
+  },
+);

@@ -1,0 +1,41 @@
+/** The rig in five figures. */
+
+import type { Status } from '../api';
+import { element, setAttribute, setText } from '../dom';
+import { UNKNOWN, percent, signedPercent } from '../format';
+import { summarise } from '../judge';
+
+export class TilesView {
+  readonly root = element('section', { class: 'tiles', id: 'tiles', 'aria-label': 'Summary' });
+  private readonly goals = this.tile('goals met');
+  private readonly limits = this.tile('limits kept');
+  private readonly worst = this.tile('largest error');
+  private readonly rounds = this.tile('corrections');
+  private readonly output = this.tile('mean level');
+
+  private tile(title: string): { box: HTMLElement; value: HTMLElement; note: HTMLElement } {
+    const value = element('strong');
+    const note = element('small');
+    const box = element('div', { class: 'tile' }, element('span', {}, title), value, note);
+    this.root.append(box);
+    return { box, value, note };
+  }
+
+  show(status: Status): void {
+    const sum = summarise(status);
+    setText(this.goals.value, sum.goals ? `${sum.goalsMet} of ${sum.goals}` : UNKNOWN);
+    setText(this.goals.note, sum.goals === sum.goalsMet ? 'all' : `${sum.goals - sum.goalsMet} not met`);
+    setAttribute(this.goals.box, 'data-tone', sum.goals === sum.goalsMet ? 'good' : 'watch');
+    setText(this.limits.value, sum.limits ? `${sum.limitsKept} of ${sum.limits}` : UNKNOWN);
+    setText(this.limits.note, sum.limits === sum.limitsKept ? 'conservation limits' : 'over the limit!');
+    setAttribute(this.limits.box, 'data-tone', sum.limits === sum.limitsKept ? 'good' : 'bad');
+    setText(this.worst.value, signedPercent(sum.worst?.error));
+    setText(this.worst.note, sum.worst ? `${sum.worst.name}, ${sum.worst.measured ? 'measured' : 'model'}` : '');
+    setText(this.rounds.value, status.round === undefined ? UNKNOWN : `${status.round} of ${status.rounds ?? UNKNOWN}`);
+    setText(this.rounds.note, status.converged ? 'converged' : 'not converged');
+    setAttribute(this.rounds.box, 'data-tone', status.converged ? 'good' : '');
+    const levels = status.fixtures.flatMap((f) => (f.level === undefined ? [] : [f.level]));
+    setText(this.output.value, levels.length ? percent(levels.reduce((a, b) => a + b, 0) / levels.length) : UNKNOWN);
+    setText(this.output.note, `${status.fixtures.length} fixtures`);
+  }
+}
