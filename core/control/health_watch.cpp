@@ -1,0 +1,143 @@
+#include "core/control/health_watch.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace luxrig {
+
+HealthWatch::HealthWatch(const Rig& rig) : known_(names_of(rig)), fixtures_on_bus_(rig.buses.size(), 0) {
+  for (const Fixture& fixture : rig.fixtures) {
+    if (fixture.bus < fixtures_on_bus_.size()) ++fixtures_on_bus_[fixture.bus];
+  }
+  for (const Luxmeter& luxmeter : rig.luxmeters) {
+    meters_.emplace_back();
+    meters_.back().name = luxmeter.name;
+    meters_.back().bus = luxmeter.bus;
+  }
+}
+
+std::map<std::string, HealthWatch::Known> HealthWatch::names_of(const Rig& rig) {
+  std::map<std::string, Known> known;
+  for (std::size_t b = 0; b < rig.buses.size(); ++b) {
+    const bool lights =
+        std::any_of(rig.fixtures.begin(), rig.fixtures.end(), [&](const auto& f) { return f.bus == b; });
+    known.emplace(rig.buses[b].name, Known{lights ? Role::light_bus : Role::meter_bus, b});
+  }
+  for (std::size_t i = 0; i < rig.fixtures.size(); ++i) known.emplace(rig.fixtures[i].name, Known{Role::fixture, i});
+  for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
+    known.emplace(rig.luxmeters[i].name, Known{Role::luxmeter, i});
+  }
+  return known;
+}
+
+void HealthWatch::report(std::span<const Health> devices) { report_.assign(devices.begin(), devices.end()); }
+
+void HealthWatch::heard(std::size_t luxmeter, Time taken) {
+  meters_[luxmeter].heard = std::max(meters_[luxmeter].heard, taken);
+  meters_[luxmeter].was_garbled = false;
+}
+
+void HealthWatch::garbled(std::size_t luxmeter, Time now) {
+  meters_[luxmeter].garbled = now;
+  meters_[luxmeter].was_garbled = true;
+}
+
+void HealthWatch::judged(std::size_t luxmeter, Time now, const std::string& why) {
+  Meter& meter = meters_[luxmeter];
+  if (meter.implausible.empty() && !why.empty()) meter.implausible_since = now;
+  meter.implausible = why;
+}
+
+bool HealthWatch::any_meter_lost() const {
+  return std::any_of(meters_.begin(), meters_.end(), [](const Meter& meter) { return meter.lost; });
+}
+
+Alarm HealthWatch::alarm_of(const Health& health, const Known& known) const {
+  Alarm alarm{true, health.device, {}, health.since};
+  const std::string detail = health.detail.empty() ? "no cause given" : health.detail;
+  switch (known.role) {
+    case Role::light_bus:
+      alarm.text = fmt::format(
+          "bus \"{}\" is gone ({}): its {} fixtures cannot be controlled and do what they do without data; check its "
+          "cable, its power and its address",
+          health.device, detail, fixtures_on_bus_[known.index]);
+      break;
+    case Role::meter_bus:
+      alarm.text = fmt::format(
+          "bus \"{}\" is gone ({}): its luxmeters are not heard; check its cable, its power and "
+          "its address",
+          health.device, detail);
+      break;
+    case Role::fixture:
+      alarm.text = fmt::format(
+          "the dimmer of fixture \"{}\" does not answer ({}): it cannot be controlled; check its "
+          "power and its address",
+          health.device, detail);
+      break;
+    case Role::luxmeter:
+      alarm.text =
+          fmt::format("luxmeter \"{}\" does not answer ({}); check its power and its address", health.device, detail);
+      break;
+    case Role::unknown:
+      alarm.text = fmt::format("device \"{}\" has failed ({}); check its power and its address", health.device, detail);
+      break;
+  }
+  return alarm;
+}
+
+void HealthWatch::step_meter(Time now, std::size_t luxmeter, const Health* faulted, const Health* bus_faulted) {
+  Meter& meter = meters_[luxmeter];
+  const Duration silence = now - meter.heard;
+  const bool silent = silence > kSilentAfter;
+  const bool lost = faulted || bus_faulted || silent || !meter.implausible.empty();
+  if (lost && !meter.lost) meter.lost_since = now;
+  meter.lost = lost;
+  if (!lost || faulted || bus_faulted) return;  // the device or its bus has its own alarm
+  std::string text;
+  if (silent && meter.was_garbled && now - meter.garbled < kSilentAfter) {
+    text = fmt::format(
+        "luxmeter \"{}\" sends no usable number for {:.1f} s; check its registers and word order in the "
+        "rig file, or exchange it",
+        meter.name, to_seconds(silence));
+  } else if (silent) {
+    text = fmt::format("luxmeter \"{}\" has not been heard for {:.1f} s; check its power, its cable and its address",
+                       meter.name, to_seconds(silence));
+  } else {
+    text = fmt::format(
+        "luxmeter \"{}\" cannot be believed ({}); check that nothing covers it and that it stands where "
+        "the rig file says",
+        meter.name, meter.implausible);
+  }
+  alarms_.push_back({true, meter.name, std::move(text), silent ? meter.lost_since : meter.implausible_since});
+}
+
+void HealthWatch::step(Time now) {
+  if (!started_) {
+    started_ = true;
+    for (Meter& meter : meters_) meter.heard = std::max(meter.heard, now);
+  }
+  alarms_.clear();
+  light_lost_ = false;
+  std::vector<const Health*> meter_faulted(meters_.size(), nullptr), bus_faulted(fixtures_on_bus_.size(), nullptr);
+  for (const Health& health : report_) {
+    if (health.life != Life::faulted) continue;
+    const auto found = known_.find(health.device);
+    const Known known = found == known_.end() ? Known{} : found->second;
+    if (known.role == Role::luxmeter) meter_faulted[known.index] = &health;
+    if (known.role == Role::light_bus || known.role == Role::meter_bus) bus_faulted[known.index] = &health;
+    if (known.role != Role::luxmeter && known.role != Role::meter_bus) light_lost_ = true;
+    alarms_.push_back(alarm_of(health, known));
+  }
+  // A meter on a dead bus is lost with it; once is enough to say so.
+  std::erase_if(alarms_, [&](const Alarm& alarm) {
+    const auto found = known_.find(alarm.device);
+    return found != known_.end() && found->second.role == Role::luxmeter &&
+           meters_[found->second.index].bus < bus_faulted.size() && bus_faulted[meters_[found->second.index].bus];
+  });
+  for (std::size_t i = 0; i < meters_.size(); ++i) {
+    step_meter(now, i, meter_faulted[i], meters_[i].bus < bus_faulted.size() ? bus_faulted[meters_[i].bus] : nullptr);
+  }
+}
+
+}  // namespace luxrig

@@ -1,0 +1,75 @@
+#pragma once
+/// Which devices can be relied on: from what drivers report, and from what the luxmeters say or do not say.
+/// Decides nothing about the light; the show does that (show_controller.h).
+
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/control/devices.h"
+#include "core/control/show_controller.h"
+#include "core/rig/rig.h"
+
+namespace luxrig {
+
+class HealthWatch {
+ public:
+  /// A luxmeter that gave nothing usable for so long is lost. Alarms shall be up within 2 s.
+  static constexpr Duration kSilentAfter = std::chrono::milliseconds(1500);
+
+  explicit HealthWatch(const Rig& rig);
+
+  /// The drivers' latest report; replaces the one before.
+  void report(std::span<const Health> devices);
+
+  /// A usable reading came from this meter.
+  void heard(std::size_t luxmeter, Time taken);
+  /// Something came that is no reading (NaN, negative).
+  void garbled(std::size_t luxmeter, Time now);
+  /// What the model says to the meter's settled reading; why = empty: it can be believed.
+  void judged(std::size_t luxmeter, Time now, const std::string& why);
+
+  /// Works out the state at `now`; the time of silence counts from the first call.
+  void step(Time now);
+
+  /// A bus or device that carries light is faulted (or one that the rig does not know).
+  [[nodiscard]] bool light_lost() const { return light_lost_; }
+  [[nodiscard]] bool any_meter_lost() const;
+  [[nodiscard]] bool meter_lost(std::size_t luxmeter) const { return meters_[luxmeter].lost; }
+  /// One for each failure, those that carry light first.
+  [[nodiscard]] const std::vector<Alarm>& alarms() const { return alarms_; }
+
+ private:
+  struct Meter {
+    std::string name;
+    std::size_t bus = 0;
+    Time heard{};
+    Time garbled{};
+    bool was_garbled = false;
+    std::string implausible;  ///< why; empty = believed
+    Time implausible_since{};
+    bool lost = false;
+    Time lost_since{};
+  };
+  enum class Role { light_bus, meter_bus, fixture, luxmeter, unknown };
+  struct Known {
+    Role role = Role::unknown;
+    std::size_t index = 0;
+  };
+
+  [[nodiscard]] Alarm alarm_of(const Health& health, const Known& known) const;
+  void step_meter(Time now, std::size_t luxmeter, const Health* faulted, const Health* bus_faulted);
+
+  const std::map<std::string, Known> known_;
+  std::vector<std::size_t> fixtures_on_bus_;
+  std::vector<Meter> meters_;
+  std::vector<Health> report_;
+  std::vector<Alarm> alarms_;
+  bool light_lost_ = false;
+  bool started_ = false;
+
+  [[nodiscard]] static std::map<std::string, Known> names_of(const Rig& rig);
+};
+
+}  // namespace luxrig

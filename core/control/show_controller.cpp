@@ -1,0 +1,322 @@
+#include "core/control/show_controller.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/check.h"
+#include "core/control/show_state.h"
+
+namespace luxrig {
+namespace {
+
+// A device that comes and goes is not back; the driver's own reports come several times in this while.
+constexpr Duration kHealthyFor = std::chrono::milliseconds(500);
+// While the light stands still, the meters are looked at once a second (they are slow, and so is a lamp's ageing).
+constexpr Duration kSampleEvery = std::chrono::seconds(1);
+// A drift must be seen in three samples, so that somebody walking past a meter moves no light; and lamps drift over
+// hours, so more than one correction in ten seconds would only follow noise.
+constexpr int kDriftSamples = 3;
+constexpr Duration kDriftCorrectionEvery = std::chrono::seconds(10);
+// Level changes smaller than half a step of a 12-bit dimmer are not worth a fade.
+constexpr double kSmallestChange = 1e-4;
+
+}  // namespace
+
+const char* name_of(Phase phase) {
+  switch (phase) {
+    case Phase::idle:
+      return "idle";
+    case Phase::fading:
+      return "fading";
+    case Phase::settling:
+      return "settling";
+    case Phase::measuring:
+      return "measuring";
+    case Phase::correcting:
+      return "correcting";
+    case Phase::holding:
+      return "holding";
+    case Phase::frozen:
+      return "frozen";
+    case Phase::safe_fading:
+      return "safe_fading";
+    case Phase::safe:
+      return "safe";
+  }
+  return "unknown";
+}
+
+ShowController::State::State(const Rig& rig_in, const LightModel& model)
+    : rig(rig_in),
+      estimator(rig, model),
+      health(rig),
+      samples(rig.luxmeters.size()),
+      measured(rig.luxmeters.size()),
+      believed(rig.luxmeters.size()) {
+  const std::vector<double> dark(rig.fixtures.size(), 0.0);
+  for (const Fixture& fixture : rig.fixtures) {
+    program.max_level.push_back(std::min(fixture.max_level, rig.limits.max_level));
+    program.joints.push_back(fixture.joints);
+  }
+  fade(Time{}, dark, dark, 0, FadeCurve::linear);
+}
+
+/// Commands are obeyed whatever the clock says; time itself never goes back.
+Time ShowController::State::at_least_last(Time now) { return last = std::max(last, now); }
+
+void ShowController::State::enter(Phase next, Time now) {
+  if (phase == next) return;
+  phase = next;
+  phase_since = now;
+}
+
+/// As they would be without a blackout, so that what happens under it goes on from there.
+std::vector<double> ShowController::State::present_levels(Time now) const {
+  std::vector<double> level(rig.fixtures.size());
+  OutputProgram lit = program;
+  lit.blackout = false;
+  lit.levels_at(now, level);
+  return level;
+}
+
+void ShowController::State::fade(Time now, std::vector<double> from, std::vector<double> to, double seconds,
+                                 FadeCurve curve) {
+  WorstCase worst = estimator.worst_case(from, to, now);
+  program.worst_lux_per_level = std::move(worst.worst_lux_per_level);
+  program.max_lx = std::move(worst.max_lx);
+  program.from_level = std::move(from);
+  program.to_level = std::move(to);
+  program.start = now;
+  program.duration = from_seconds(seconds);
+  program.curve = curve;
+  ++program.revision;
+  samples.restart(program.start + program.duration + from_seconds(rig.control.settle_s));
+  drifted = 0;
+}
+
+void ShowController::State::start_cue(Time now, std::vector<double> levels) {
+  cue = std::move(levels);
+  round = 0;
+  converged = false;
+  aimed_lx.clear();
+  why.clear();
+  breaches.clear();
+  if (failing && phase != Phase::idle) return;  // frozen or safe: goes there when everything is back
+  fade(now, present_levels(now), *cue, rig.control.fade_s, rig.control.fade_curve);
+  enter(Phase::fading, now);
+}
+
+void ShowController::State::freeze(Time now) {
+  const std::vector<double> present = present_levels(now);
+  fade(now, present, present, 0, FadeCurve::linear);
+  converged = false;
+  enter(Phase::frozen, now);
+}
+
+void ShowController::State::resume(Time now) { start_cue(now, estimator.within_limits(*cue, now)); }
+
+void ShowController::State::fade_to_safe(Time now) {
+  fade(now, present_levels(now), estimator.within_limits(safe_levels(), now), rig.safe.fade_s, rig.control.fade_curve);
+  converged = false;
+  breaches.clear();
+  enter(Phase::safe_fading, now);
+}
+
+/// When every living meter has its sample: learn from it. Lost ones take part as soon as they have one, since a
+/// believable sample is how a meter that was not believed comes back.
+void ShowController::State::take_sample(Time now) {
+  if (program.blackout || !program.done(now) || health.light_lost()) return;  // not the light that was asked for
+  if (phase != Phase::measuring && now - sampled_at < kSampleEvery) return;
+  std::vector<LuxReading> readings;
+  for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
+    if (samples.ready(now, i)) {
+      readings.push_back(*samples.sample(i));
+    } else if (!health.meter_lost(i)) {
+      return;
+    }
+  }
+  if (readings.empty()) return;
+  for (const Judgement& judgement : estimator.update(now, readings, program.to_level)) {
+    health.judged(judgement.luxmeter, now, judgement.why);
+    if (!judgement.believed) {
+      measured[judgement.luxmeter].reset();
+      estimator.forget(judgement.luxmeter);
+      continue;
+    }
+    measured[judgement.luxmeter] = *samples.sample(judgement.luxmeter);
+  }
+  samples.next();
+  sampled_at = now;
+
+  std::vector<LimitBreach> present;
+  for (std::size_t p = 0; p < rig.points.size(); ++p) {
+    if (!rig.points[p].max_lx || !estimator.confirmed(p)) continue;
+    const double most_lx = estimator.most_lux_at_point(p, program.to_level, now);
+    if (most_lx <= *rig.points[p].max_lx * (1 + 1e-9)) continue;
+    const auto known =
+        std::find_if(breaches.begin(), breaches.end(), [&](const LimitBreach& breach) { return breach.point == p; });
+    present.push_back({p, most_lx, known == breaches.end() ? now : known->since});
+  }
+  breaches = std::move(present);
+}
+
+/// After a sample: another round when it would bring a metered goal nearer, or when a limit is in question.
+void ShowController::State::correct_or_hold(Time now) {
+  const bool may_correct = !health.any_meter_lost();
+  Correction correction = estimator.correct(program.to_level, now);
+  if (!may_correct) correction.level = estimator.within_limits(program.to_level, now);
+  double change = 0;
+  for (std::size_t i = 0; i < correction.level.size(); ++i) {
+    change = std::max(change, std::abs(correction.level[i] - program.to_level[i]));
+  }
+  const bool wanted = may_correct && possible_gain(correction) > rig.control.tolerance;
+  const bool worth_it = change > kSmallestChange && (wanted || !breaches.empty());
+  const bool in_rounds = phase == Phase::measuring ? round < rig.control.rounds : true;
+  aimed_lx = std::move(correction.aimed_lx);
+  why = std::move(correction.why);
+  converged = all_metered_goals_met();
+  if (!worth_it || (!in_rounds && breaches.empty())) {
+    enter(Phase::holding, now);
+    return;
+  }
+  cue = correction.level;
+  ++round;
+  corrected_at = now;
+  fade(now, present_levels(now), std::move(correction.level), rig.control.correction_fade_s, rig.control.fade_curve);
+  enter(Phase::correcting, now);
+}
+
+void ShowController::State::watch_drift(Time now) {
+  if (sampled_at != now) return;
+  converged = all_metered_goals_met();
+  if (!breaches.empty()) return correct_or_hold(now);
+  if (health.any_meter_lost()) return;
+  const Correction correction = estimator.correct(program.to_level, now);
+  drifted = possible_gain(correction) > rig.control.tolerance ? drifted + 1 : 0;
+  if (drifted >= kDriftSamples && now - corrected_at >= kDriftCorrectionEvery) correct_or_hold(now);
+}
+
+void ShowController::State::look_at_failures(Time now) {
+  health.step(now);
+  const bool was_failing = failing;
+  failing = health.light_lost() || (rig.safe.on_meter_loss && health.any_meter_lost());
+  if (was_failing && !failing) healthy_since = now;
+  if (failing && !health.alarms().empty()) failure = health.alarms().front().text;
+  for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
+    if (health.meter_lost(i)) measured[i].reset();
+  }
+}
+
+void ShowController::State::advance(Time now) {
+  const bool back = !failing && now - healthy_since >= kHealthyFor;
+  switch (phase) {
+    case Phase::idle:
+      return;
+    case Phase::frozen:
+      if (back && cue) return resume(now);
+      if (now - phase_since >= from_seconds(rig.safe.hold_s)) fade_to_safe(now);
+      return;
+    case Phase::safe_fading:
+      if (back && cue && !asked_safe) return resume(now);
+      if (program.done(now)) enter(Phase::safe, now);
+      return;
+    case Phase::safe:
+      if (back && cue && !asked_safe) resume(now);
+      return;
+    default:
+      break;
+  }
+  if (failing) return freeze(now);
+  if (program.blackout) return;  // nothing to measure in the dark; lifting it fades anew
+  switch (phase) {
+    case Phase::fading:
+    case Phase::correcting:
+      if (!program.done(now)) return;
+      enter(Phase::settling, now);
+      return;
+    case Phase::settling:
+      if (now >= program.start + program.duration + from_seconds(rig.control.settle_s)) enter(Phase::measuring, now);
+      return;
+    case Phase::measuring: {
+      bool any_living = false;
+      for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) any_living = any_living || !health.meter_lost(i);
+      if (!any_living) return enter(Phase::holding, now);  // nobody can tell; open loop
+      if (sampled_at == now) correct_or_hold(now);
+      return;
+    }
+    default:
+      watch_drift(now);
+  }
+}
+
+ShowController::ShowController(const Rig& rig, LightModel model) : state_(std::make_unique<State>(rig, model)) {}
+ShowController::~ShowController() = default;
+ShowController::ShowController(ShowController&&) noexcept = default;
+
+void ShowController::apply(Time now, std::span<const double> levels) {
+  State& state = *state_;
+  now = state.at_least_last(now);
+  LUXRIG_CHECK(levels.size() == state.rig.fixtures.size(), "{} levels for {} fixtures", levels.size(),
+               state.rig.fixtures.size());
+  std::vector<double> wanted(levels.begin(), levels.end());
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    wanted[i] = wanted[i] > 0 ? std::min(wanted[i], state.program.max_level[i]) : 0.0;  // NaN is dark
+  }
+  state.asked_safe = false;
+  state.start_cue(now, state.estimator.within_limits(wanted, now));
+}
+
+void ShowController::blackout(Time now, bool on) {
+  State& state = *state_;
+  now = state.at_least_last(now);
+  if (state.program.blackout == on) return;
+  state.program.blackout = on;
+  ++state.program.revision;
+  state.converged = false;
+  if (on || state.phase == Phase::idle) return;
+  const bool to_safe = state.phase == Phase::safe_fading || state.phase == Phase::safe;
+  state.fade(now, std::vector<double>(state.rig.fixtures.size(), 0.0), state.program.to_level,
+             to_safe ? state.rig.safe.fade_s : state.rig.control.fade_s, state.rig.control.fade_curve);
+  if (to_safe) {
+    state.enter(Phase::safe_fading, now);
+  } else if (state.phase != Phase::frozen) {
+    state.enter(Phase::fading, now);
+  }
+}
+
+void ShowController::go_safe(Time now) {
+  State& state = *state_;
+  now = state.at_least_last(now);
+  state.cue.reset();
+  state.asked_safe = true;
+  if (state.phase != Phase::safe && state.phase != Phase::safe_fading) state.fade_to_safe(now);
+}
+
+void ShowController::reading(Time now, const LuxReading& reading) {
+  State& state = *state_;
+  if (now < state.last || reading.luxmeter >= state.rig.luxmeters.size()) return;
+  if (!std::isfinite(reading.lux) || reading.lux < 0) return state.health.garbled(reading.luxmeter, now);
+  if (!state.samples.add(now, reading)) return;
+  state.health.heard(reading.luxmeter, reading.taken);
+  if (!state.health.meter_lost(reading.luxmeter)) state.believed[reading.luxmeter] = reading;
+}
+
+void ShowController::health(Time now, std::span<const Health> devices) {
+  if (now < state_->last) return;
+  state_->health.report(devices);
+}
+
+void ShowController::step(Time now) {
+  State& state = *state_;
+  if (now < state.last) return;
+  state.last = now;
+  state.take_sample(now);
+  state.look_at_failures(now);
+  state.advance(now);
+}
+
+const OutputProgram& ShowController::program() const { return state_->program; }
+
+ShowStatus ShowController::status(Time now) const { return state_->status(now); }
+
+}  // namespace luxrig

@@ -1,0 +1,81 @@
+#pragma once
+/// What a ShowController keeps; private to show_controller.cpp (what happens) and show_status.cpp (what is told).
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/control/gain_estimator.h"
+#include "core/control/health_watch.h"
+#include "core/control/meter_samples.h"
+#include "core/control/show_controller.h"
+
+namespace luxrig {
+
+/// "As near as makes no difference" for a person who asks whether a goal is met; corrections aim closer
+/// (control.tolerance).
+inline constexpr double kMetTolerance = 0.03;
+
+/// A point above its limit, by its meter; kept while it lasts.
+struct LimitBreach {
+  std::size_t point = 0;
+  double most_lx = 0;
+  Time since{};
+};
+
+struct ShowController::State {
+  State(const Rig& rig, const LightModel& model);
+
+  Rig rig;
+  GainEstimator estimator;
+  HealthWatch health;
+  MeterSamples samples;
+  OutputProgram program;
+
+  Phase phase = Phase::idle;
+  Time phase_since{};
+  Time last{};              ///< the latest instant given to any call
+  Time healthy_since{};     ///< meaningful while not failing
+  bool failing = true;      ///< something that the light depends on is lost; true until a step has looked
+  bool asked_safe = false;  ///< by go_safe: no return by itself
+  std::string failure;      ///< what froze the show, for the detail line
+  std::optional<std::vector<double>> cue;  ///< levels in force, as corrected so far
+  int round = 0;
+  bool converged = false;
+  Time corrected_at{};                              ///< when the last correction was decided
+  int drifted = 0;                                  ///< samples in a row, while holding, that ask for a correction
+  Time sampled_at{};                                ///< when the last sample was complete
+  std::vector<std::optional<LuxReading>> measured;  ///< per luxmeter: last believed sample
+  std::vector<std::optional<LuxReading>> believed;  ///< per luxmeter: last reading while it was not lost
+  std::vector<double> aimed_lx;  ///< per point: what the last correction could reach; empty before the first
+  std::vector<std::string> why;  ///< per point: what keeps it from its goal; empty before the first
+  std::vector<LimitBreach> breaches;
+
+  // What happens (show_controller.cpp).
+  [[nodiscard]] Time at_least_last(Time now);
+  void enter(Phase next, Time now);
+  [[nodiscard]] std::vector<double> present_levels(Time now) const;
+  void fade(Time now, std::vector<double> from, std::vector<double> to, double seconds, FadeCurve curve);
+  void start_cue(Time now, std::vector<double> levels);
+  void freeze(Time now);
+  void resume(Time now);
+  void fade_to_safe(Time now);
+  void take_sample(Time now);
+  void correct_or_hold(Time now);
+  void watch_drift(Time now);
+  void look_at_failures(Time now);
+  void advance(Time now);
+
+  // What is known (show_status.cpp).
+  [[nodiscard]] std::vector<double> safe_levels() const;
+  /// Largest |aimed − measured| / goal over the metered goals; 0 without any.
+  [[nodiscard]] double possible_gain(const Correction& correction) const;
+  [[nodiscard]] std::optional<std::size_t> meter_at(std::size_t point) const;
+  /// Whether a point at `lux` has its goal, or the best that the limits allow.
+  [[nodiscard]] bool goal_met(std::size_t point, double lux) const;
+  [[nodiscard]] bool all_metered_goals_met() const;
+  [[nodiscard]] std::string detail(Time now) const;
+  [[nodiscard]] ShowStatus status(Time now) const;
+};
+
+}  // namespace luxrig

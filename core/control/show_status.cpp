@@ -1,0 +1,155 @@
+// What the show knows, for a person: the status, and the judgements that the state machine shares with it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/control/show_state.h"
+
+namespace luxrig {
+
+std::vector<double> ShowController::State::safe_levels() const {
+  std::vector<double> level;
+  for (std::size_t i = 0; i < rig.fixtures.size(); ++i) {
+    level.push_back(std::clamp(rig.fixtures[i].safe_level.value_or(rig.safe.level), 0.0, program.max_level[i]));
+  }
+  return level;
+}
+
+std::optional<std::size_t> ShowController::State::meter_at(std::size_t point) const {
+  for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
+    if (rig.luxmeters[i].point == point) return i;
+  }
+  return std::nullopt;
+}
+
+double ShowController::State::possible_gain(const Correction& correction) const {
+  double most = 0;
+  for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
+    const std::optional<std::size_t> point = rig.luxmeters[i].point;
+    if (!point || !measured[i]) continue;
+    const double goal_lx = rig.points[*point].goal_lx.value_or(0);
+    if (goal_lx > 0) most = std::max(most, std::abs(correction.aimed_lx[*point] - measured[i]->lux) / goal_lx);
+  }
+  return most;
+}
+
+bool ShowController::State::goal_met(std::size_t point, double lux) const {
+  if (!rig.points[point].goal_lx) return true;
+  const double goal_lx = *rig.points[point].goal_lx;
+  const double near_lx = std::max(kMetTolerance, rig.control.tolerance) * goal_lx;
+  if (std::abs(lux - goal_lx) <= near_lx) return true;
+  return point < why.size() && !why[point].empty() && std::abs(lux - aimed_lx[point]) <= near_lx;
+}
+
+bool ShowController::State::all_metered_goals_met() const {
+  if (!breaches.empty()) return false;
+  bool any = false;
+  for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
+    const std::optional<std::size_t> point = rig.luxmeters[i].point;
+    if (!point || !rig.points[*point].goal_lx) continue;
+    if (!measured[i] || !goal_met(*point, measured[i]->lux)) return false;
+    any = true;
+  }
+  return any;
+}
+
+std::string ShowController::State::detail(Time now) const {
+  const auto remaining = [&](Duration whole) { return std::max(0.0, to_seconds(phase_since + whole - now)); };
+  std::string text;
+  switch (phase) {
+    case Phase::idle:
+      text = "no plan applied yet";
+      break;
+    case Phase::fading:
+      text = "fading to the plan";
+      break;
+    case Phase::settling:
+      text = "waiting for lamps and meters to settle";
+      break;
+    case Phase::measuring:
+      text = "measuring";
+      break;
+    case Phase::correcting:
+      text = fmt::format("correcting, round {}", round);
+      break;
+    case Phase::holding: {
+      std::size_t goals = 0, met = 0, limited = 0;
+      for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
+        const std::optional<std::size_t> point = rig.luxmeters[i].point;
+        if (!point || !rig.points[*point].goal_lx) continue;
+        ++goals;
+        if (!measured[i] || !goal_met(*point, measured[i]->lux)) continue;
+        ++met;
+        limited += std::abs(measured[i]->lux - *rig.points[*point].goal_lx) >
+                   std::max(kMetTolerance, rig.control.tolerance) * *rig.points[*point].goal_lx;
+      }
+      text = goals == 0 ? "holding, no goal has a luxmeter"
+                        : fmt::format("{} of {} measured goals within {:.0f} %", met - limited, goals,
+                                      100 * std::max(kMetTolerance, rig.control.tolerance));
+      if (limited > 0) text += fmt::format(", {} as near as the limits allow", limited);
+      if (health.any_meter_lost()) text += "; no correction while a luxmeter is lost";
+      break;
+    }
+    case Phase::frozen:
+      text = failing ? fmt::format("light held, safe look in {:.1f} s: {}", remaining(from_seconds(rig.safe.hold_s)),
+                                   failure)
+                     : "light held; everything is back, going on in a moment";
+      break;
+    case Phase::safe_fading:
+    case Phase::safe:
+      text = phase == Phase::safe ? "safe look" : "fading to the safe look";
+      text += asked_safe ? ", as asked" : failing ? ": " + failure : "; everything is back, going on in a moment";
+      break;
+  }
+  return program.blackout ? "blackout (" + text + ")" : text;
+}
+
+ShowStatus ShowController::State::status(Time now) const {
+  ShowStatus status;
+  status.phase = phase;
+  status.detail = detail(now);
+  status.phase_since = phase_since;
+  status.round = round;
+  status.converged = converged && !program.blackout;
+  status.blackout = program.blackout;
+
+  std::vector<double> level(rig.fixtures.size());
+  program.levels_at(now, level);
+  for (std::size_t i = 0; i < rig.fixtures.size(); ++i) {
+    status.fixtures.push_back({level[i], drive_from_level(rig.fixtures[i].dimmer_curve, level[i]), program.to_level[i],
+                               estimator.gain(i), estimator.gain_standard_error(i)});
+  }
+  const bool settled = !program.blackout && program.done(now);
+  for (std::size_t p = 0; p < rig.points.size(); ++p) {
+    PointStatus point;
+    const Prediction prediction = estimator.at_point(p, level);
+    point.predicted_lx = prediction.lux;
+    point.standard_error_lx = prediction.standard_error_lx;
+    if (const auto meter = meter_at(p)) {
+      const bool has_sample = settled && measured[*meter] && measured[*meter]->taken >= program.start;
+      if (const auto& reading = has_sample ? measured[*meter] : believed[*meter]) {
+        point.measured_lx = reading->lux;
+        point.measured_at = reading->taken;
+      }
+      if (health.meter_lost(*meter)) point.measured_lx.reset();
+    }
+    point.met = !program.blackout && goal_met(p, point.measured_lx.value_or(point.predicted_lx));
+    if (p < why.size()) point.why = why[p];
+    status.points.push_back(std::move(point));
+  }
+  status.luxmeters = believed;
+  status.alarms = health.alarms();
+  for (const LimitBreach& breach : breaches) {
+    const Point& point = rig.points[breach.point];
+    status.alarms.push_back(
+        {true, rig.luxmeters[*meter_at(breach.point)].name,
+         fmt::format("point \"{}\" may have {:.1f} lx by its meter, its limit is {:.1f} lx; the fixtures that light it "
+                     "are being dimmed; look for light that is not the rig's",
+                     point.name, breach.most_lx, *point.max_lx),
+         breach.since});
+  }
+  return status;
+}
+
+}  // namespace luxrig
