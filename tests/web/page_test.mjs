@@ -1,5 +1,5 @@
 // Drives the page in headless Chromium.
-//   node tests/web/page_test.mjs --dist DIR --out DIR                      against the mock: every check, 6 screenshots
+//   node tests/web/page_test.mjs --dist DIR --out DIR                      against the mock: every check, and screenshots
 //   node tests/web/page_test.mjs --url URL [--screenshot FILE.png] [--leave-light]
 //                                  against a running daemon: the checks that hold for any; blackout on and off again,
 //                                  but not with --leave-light
@@ -56,6 +56,13 @@ async function againstMock(browser, dist, out) {
       { path: '/api/blackout', body: { on: false } },
     ]));
   await shot(page, 'desktop-dark');
+
+  await check('in a blackout the button says so', async () => {
+    daemon.blackout = true;
+    await eventually('shown', async () => /BLACKOUT IS ON/.test(await page.locator('#blackout').innerText()));
+    await shot(page, 'desktop-dark-blackout');
+    daemon.blackout = false;
+  });
 
   await check('a refused blackout is said, and the button shows the truth', async () => {
     daemon.refuse = true;

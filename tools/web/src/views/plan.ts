@@ -88,9 +88,9 @@ export class PlanView {
       );
     drawing.append(svg('rect', { class: 'plan-veil', width: scale.width, height: scale.height }));
     const marks = width < 500 ? 0.72 : 1;
-    const [beams, leaders, lamps, markers] = [svg('g'), svg('g', { class: 'leaders' }), svg('g'), svg('g')];
+    const [beams, leaders, lamps, markers, labels] = [svg('g'), svg('g', { class: 'leaders' }), svg('g'), svg('g'), svg('g')];
     // Points over lamps: where both are at one place, the lux matter more.
-    drawing.append(beams, leaders, lamps, markers);
+    drawing.append(beams, leaders, lamps, markers, labels);
 
     this.fixtures = status.fixtures.map((fixture, index) => {
       const at = fixture.position ? scale.at(fixture.position[0], fixture.position[1]) : undefined;
@@ -122,12 +122,14 @@ export class PlanView {
       const [nx, ny] = point.normal ?? [0, 0];
       const beside = Math.abs(ny) > Math.abs(nx) && Math.abs(ny) > 0.3;
       const left = (place?.x ?? 0) > scale.width - 60;
+      const transform = `${moved(place)} scale(${marks})`;
       const label = svg('text', beside
-        ? { class: 'lux-label', x: left ? -13 : 13, y: 4, 'text-anchor': left ? 'end' : 'start' }
-        : { class: 'lux-label', y: -12, 'text-anchor': 'middle' });
-      const group = svg('g', { class: 'point', transform: `${moved(place)} scale(${marks})` });
+        ? { class: 'lux-label', transform, x: left ? -13 : 13, y: 4, 'text-anchor': left ? 'end' : 'start' }
+        : { class: 'lux-label', transform, y: -12, 'text-anchor': 'middle' });
+      labels.append(label);
+      const group = svg('g', { class: 'point', transform });
       if (point.max_lux !== undefined) group.append(svg('circle', { class: 'limit-mark', r: 10.5 }));
-      group.append(shape, svg('circle', { class: 'meter-mark', r: 2.6 }), label);
+      group.append(shape, svg('circle', { class: 'meter-mark', r: 2.6 }));
       if (place && point.position) {
         const true_place = scale.at(point.position[0], point.position[1]);
         if (Math.hypot(true_place.x - place.x, true_place.y - place.y) > 1)
