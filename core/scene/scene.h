@@ -13,6 +13,7 @@ namespace luxrig {
 struct Material {
   std::string name;
   Vec3 reflectance_rgb = Vec3::Constant(0.5);  ///< diffuse, linear Rec. 709, each 0…0.95
+  bool coloured = false;                       ///< reflectance_rgb was stated by the mesh file or the rig, not assumed
 
   /// Luminous reflectance: the Rec. 709 luminance of reflectance_rgb.
   [[nodiscard]] double luminous_reflectance() const {

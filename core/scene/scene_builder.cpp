@@ -1,0 +1,202 @@
+#include "core/scene/scene_builder.h"
+
+#include <fnmatch.h>
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace luxrig {
+namespace {
+
+constexpr double kMaxReflectance = 0.95;
+
+/// One mesh or box, placed in double precision; the float of its file is left behind here.
+struct Part {
+  std::vector<Vec3> vertices_world_m;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<std::uint32_t> material_of_triangle;
+  std::vector<Material> materials;
+  Cleaning cleaning;
+};
+
+Eigen::AlignedBox3d bounds_of(const Part& part) {
+  Eigen::AlignedBox3d bounds;
+  for (const auto& triangle : part.triangles) {
+    for (const std::uint32_t index : triangle) bounds.extend(part.vertices_world_m[index]);
+  }
+  return bounds;
+}
+
+Part part_from(const Scene& mesh) {
+  Part part;
+  part.vertices_world_m.reserve(mesh.vertices_m.size());
+  for (std::uint32_t i = 0; i < mesh.vertices_m.size(); ++i) part.vertices_world_m.push_back(mesh.vertex_world_m(i));
+  part.triangles = mesh.triangles;
+  part.material_of_triangle = mesh.material_of_triangle;
+  part.materials = mesh.materials;
+  part.cleaning = mesh.cleaning;
+  return part;
+}
+
+/// A closed box about the origin, normals outwards; its one material has the object's name.
+Part box(const std::string& name, const Vec3& size_m) {
+  Part part;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3 sign((corner & 1) ? 0.5 : -0.5, (corner & 2) ? 0.5 : -0.5, (corner & 4) ? 0.5 : -0.5);
+    part.vertices_world_m.push_back(sign.cwiseProduct(size_m));
+  }
+  part.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                    {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  part.material_of_triangle.assign(part.triangles.size(), 0);
+  part.materials.resize(1);
+  part.materials.front().name = name;
+  return part;
+}
+
+class Builder {
+ public:
+  explicit Builder(const Rig& rig) : rig_(rig), rule_used_(rig.scene.reflectances.size(), false) {}
+
+  Checked<Scene> build() {
+    scene_.object_names.emplace_back("scene");
+    if (rig_.scene.mesh) {
+      if (auto part = load(*rig_.scene.mesh, "scene", rig_.scene.place)) {
+        set_reflectances(*part, std::nullopt);
+        parts_.emplace_back(0, std::move(*part));
+      }
+    }
+    for (const SceneObject& object : rig_.scene.objects) add(object);
+    if (!problems_.empty()) return tl::unexpected(std::move(problems_));
+    warn_of_idle_rules();
+    join();
+    return std::move(scene_);
+  }
+
+ private:
+  void problem(const Place& place, std::string what, std::string mend) {
+    problems_.push_back({rig_.file.string(), place.line, place.column, std::move(what), std::move(mend)});
+  }
+
+  std::optional<Part> load(const MeshFile& file, const std::string& name, const Place& place) {
+    auto mesh = load_mesh(file);
+    if (!mesh) {
+      for (Problem& one : mesh.error()) {
+        problem(place, name + ": " + file.path.string() + " " + one.what, std::move(one.mend));
+      }
+      return std::nullopt;
+    }
+    for (const std::string& warning : mesh->warnings) scene_.warnings.push_back(name + ": " + warning);
+    return part_from(*mesh);
+  }
+
+  void add(const SceneObject& object) {
+    const auto index = static_cast<std::uint32_t>(scene_.object_names.size());
+    scene_.object_names.push_back(object.name);
+    if (!object.position_world_m.allFinite() || !std::isfinite(object.turn_rad)) {
+      problem(object.place, "object '" + object.name + "' stands nowhere", "give a finite position and turn");
+      return;
+    }
+    std::optional<Part> part;
+    if (object.mesh) {
+      part = load(*object.mesh, "object '" + object.name + "'", object.place);
+    } else if (object.box_m.allFinite() && object.box_m.minCoeff() > 0) {
+      part = box(object.name, object.box_m);
+    } else {
+      problem(object.place, "object '" + object.name + "' is a box without volume", "give three lengths above 0");
+    }
+    if (!part || !place(object, *part)) return;
+    set_reflectances(*part, object.reflectance_rgb);
+    parts_.emplace_back(index, std::move(*part));
+  }
+
+  /// Scales evenly to the wanted height, then puts the middle of its underside at the object's position.
+  bool place(const SceneObject& object, Part& part) {
+    const Eigen::AlignedBox3d bounds = bounds_of(part);
+    double scale = 1;
+    if (object.height_m) {
+      const double height_m = bounds.sizes().z();
+      scale = *object.height_m / height_m;
+      if (!(height_m > 0) || !std::isfinite(scale) || !(scale > 0)) {
+        problem(object.place, "object '" + object.name + "' is flat and cannot be scaled to a height",
+                "leave height_m out, or correct up_axis");
+        return false;
+      }
+    }
+    const Vec3 foot(bounds.center().x(), bounds.center().y(), bounds.min().z());
+    const Mat3 turn = Eigen::AngleAxisd(object.turn_rad, Vec3::UnitZ()).toRotationMatrix();
+    for (Vec3& vertex : part.vertices_world_m) {
+      vertex = object.position_world_m + turn * (scale * (vertex - foot));
+    }
+    return true;
+  }
+
+  void set_reflectances(Part& part, const std::optional<Vec3>& of_object) {
+    for (Material& material : part.materials) {
+      const Vec3* stated = of_object ? &*of_object : nullptr;
+      for (std::size_t i = 0; i < rig_.scene.reflectances.size(); ++i) {
+        const ReflectanceRule& rule = rig_.scene.reflectances[i];
+        if (fnmatch(rule.material_pattern.c_str(), material.name.c_str(), 0) != 0) continue;
+        rule_used_[i] = true;
+        if (stated == nullptr) stated = &rule.reflectance_rgb;
+      }
+      if (stated != nullptr) {
+        material.coloured = true;
+      } else if (!material.coloured) {
+        stated = &rig_.scene.default_reflectance_rgb;
+      }
+      if (stated == nullptr) continue;
+      material.reflectance_rgb = stated->cwiseMax(0.0).cwiseMin(kMaxReflectance);
+      if (stated->maxCoeff() > kMaxReflectance) {
+        scene_.warnings.push_back("material '" + material.name + "': reflectance above 0.95 is taken as 0.95");
+      }
+    }
+  }
+
+  void warn_of_idle_rules() {
+    for (std::size_t i = 0; i < rule_used_.size(); ++i) {
+      if (rule_used_[i]) continue;
+      const ReflectanceRule& rule = rig_.scene.reflectances[i];
+      scene_.warnings.push_back("line " + std::to_string(rule.place.line) + ": reflectance rule '" +
+                                rule.material_pattern + "' matches no material");
+    }
+  }
+
+  /// Puts the parts together about the middle of all of them, so that floats are small.
+  void join() {
+    Eigen::AlignedBox3d bounds;
+    for (const auto& [object, part] : parts_) bounds.extend(bounds_of(part));
+    if (!bounds.isEmpty()) scene_.origin_world_m = bounds.center();
+    for (auto& [object, part] : parts_) {
+      const auto vertex_base = static_cast<std::uint32_t>(scene_.vertices_m.size());
+      const auto material_base = static_cast<std::uint32_t>(scene_.materials.size());
+      for (const Vec3& vertex : part.vertices_world_m) {
+        scene_.vertices_m.push_back((vertex - scene_.origin_world_m).cast<float>());
+      }
+      for (auto triangle : part.triangles) {
+        for (std::uint32_t& index : triangle) index += vertex_base;
+        scene_.triangles.push_back(triangle);
+      }
+      for (const std::uint32_t material : part.material_of_triangle) {
+        scene_.material_of_triangle.push_back(material_base + material);
+      }
+      scene_.object_of_triangle.insert(scene_.object_of_triangle.end(), part.triangles.size(), object);
+      scene_.materials.insert(scene_.materials.end(), part.materials.begin(), part.materials.end());
+      scene_.cleaning.non_finite_vertices += part.cleaning.non_finite_vertices;
+      scene_.cleaning.bad_indices += part.cleaning.bad_indices;
+      scene_.cleaning.degenerate_triangles += part.cleaning.degenerate_triangles;
+    }
+  }
+
+  const Rig& rig_;
+  Scene scene_;
+  std::vector<std::pair<std::uint32_t, Part>> parts_;  // with the index of their object
+  std::vector<bool> rule_used_;
+  std::vector<Problem> problems_;
+};
+
+}  // namespace
+
+Checked<Scene> build_scene(const Rig& rig) { return Builder(rig).build(); }
+
+}  // namespace luxrig
