@@ -22,7 +22,11 @@ const PHONE = { width: 390, height: 844 };
 /** Prints what held; the first that does not ends the run. */
 async function check(what, body) {
   const started = Date.now();
-  await body();
+  try {
+    await body();
+  } catch (error) {
+    throw new Error(`${what}: ${error.message}`);
+  }
   console.log(`ok  ${what} (${Date.now() - started} ms)`);
 }
 
@@ -173,6 +177,9 @@ const browser = await startBrowser();
 try {
   if (url) await againstDaemon(browser, url);
   else await againstMock(browser, dist, option('--out') ?? path.join(dist, '..', 'web-test'));
+} catch (error) {
+  console.error(`FAILED: ${error.message}`);
+  process.exitCode = 1;
 } finally {
   await browser.close();
 }
