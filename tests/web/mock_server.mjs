@@ -19,7 +19,7 @@ const SCRIPT = [
   { from: 7, phase: 'correcting', round: 1, miss: 0.04 },
   { from: 9, phase: 'holding', round: 2, miss: 0 },
   { from: 22, phase: 'frozen', round: 2, miss: 0, fault: 'dmx' },
-  { from: 26, phase: 'safe-fading', round: 2, miss: 0, fault: 'dmx' },
+  { from: 26, phase: 'safe_fading', round: 2, miss: 0, fault: 'dmx' },
   { from: 28, phase: 'safe', round: 2, miss: 0, fault: 'dmx', safe: true },
   { from: 34, phase: 'holding', round: 2, miss: 0 },
 ];

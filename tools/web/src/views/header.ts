@@ -43,7 +43,7 @@ export class HeaderView {
     setText(this.rig, status.rig || 'Luxrig');
     document.title = `${status.rig} · Luxrig`;
     this.simulated.hidden = !status.simulated;
-    setText(this.phaseName, status.phase);
+    setText(this.phaseName, status.phase.replace(/[_-]/g, ' '));
     setText(this.phaseDetail, status.detail ? `: ${status.detail}` : '');
     setAttribute(this.phase, 'data-phase', status.phase);
     setText(this.clock, `up ${age(status.time_s)}`);
