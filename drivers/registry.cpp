@@ -1,1 +1,48 @@
 #include "drivers/registry.h"
+
+#include <fmt/format.h>
+
+#include "drivers/dmx/sacn/sacn_driver.h"
+#include "drivers/modbus/modbus_tcp_driver.h"
+#include "drivers/options.h"
+
+namespace luxrig {
+namespace {
+
+// One line per driver.
+const DriverEntry kDrivers[] = {
+    {"sacn", "ANSI E1.31 over UDP, send", sacn_options(), check_sacn, make_sacn},
+    {"modbus_tcp", "Modbus TCP dimmers and luxmeters", modbus_tcp_options(), check_modbus_tcp, make_modbus_tcp},
+};
+
+}  // namespace
+
+std::span<const DriverEntry> drivers() { return kDrivers; }
+
+const DriverEntry* find_driver(std::string_view name) {
+  for (const DriverEntry& entry : kDrivers) {
+    if (entry.name == name) return &entry;
+  }
+  return nullptr;
+}
+
+std::vector<Problem> check_buses(const Rig& rig) {
+  std::vector<std::string_view> names;
+  for (const DriverEntry& entry : kDrivers) names.push_back(entry.name);
+  std::vector<Problem> problems;
+  for (std::size_t i = 0; i < rig.buses.size(); ++i) {
+    const Bus& bus = rig.buses[i];
+    const DriverEntry* entry = find_driver(bus.driver);
+    if (entry == nullptr) {
+      problems.push_back({rig.file.string(), bus.place.line, bus.place.column,
+                          fmt::format("bus \"{}\" has an unknown driver \"{}\"", bus.name, bus.driver),
+                          fmt::format("did you mean \"{}\"?", nearest_name(bus.driver, names))});
+      continue;
+    }
+    const std::vector<Problem> found = entry->check(rig, i);
+    problems.insert(problems.end(), found.begin(), found.end());
+  }
+  return problems;
+}
+
+}  // namespace luxrig

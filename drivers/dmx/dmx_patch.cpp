@@ -1,0 +1,178 @@
+#include "drivers/dmx/dmx_patch.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "core/check.h"
+
+namespace luxrig {
+namespace {
+
+constexpr double kAngleSlack_rad = 1e-6;
+
+bool uses(const DmxPatch& patch, SlotUse use) {
+  return std::any_of(patch.slots.begin(), patch.slots.end(), [&](const DmxSlot& slot) { return slot.use == use; });
+}
+
+/// The coarse byte of a value that has a fine one is its high byte; alone it is the whole value in 8 bits.
+int coarse(double value, bool has_fine) { return has_fine ? encode_16bit(value) >> 8 : encode_8bit(value); }
+int fine(double value) { return encode_16bit(value) & 0xFF; }
+
+}  // namespace
+
+int encode_8bit(double value) { return static_cast<int>(std::lround(value * 255.0)); }
+int encode_16bit(double value) { return static_cast<int>(std::lround(value * 65535.0)); }
+
+double share_of_travel(double angle_rad, double from_rad, double to_rad) {
+  if (to_rad == from_rad) return 0;
+  return std::clamp((angle_rad - from_rad) / (to_rad - from_rad), 0.0, 1.0);
+}
+
+DmxPatchbay::DmxPatchbay(const Rig& rig, std::size_t bus) : bus_(rig.buses[bus].name) {
+  std::set<int> numbers;
+  for (const Fixture& fixture : rig.fixtures) {
+    if (fixture.bus == bus) numbers.insert(std::get<DmxPatch>(fixture.patch).universe);
+  }
+  for (const int number : numbers) universes_.push_back({number, {}});
+
+  for (std::size_t i = 0; i < rig.fixtures.size(); ++i) {
+    const Fixture& fixture = rig.fixtures[i];
+    if (fixture.bus != bus) continue;
+    Entry entry;
+    entry.name = fixture.name;
+    entry.patch = std::get<DmxPatch>(fixture.patch);
+    entry.range = fixture.range;
+    entry.moves = fixture.moves;
+    entry.fine_dimmer = uses(entry.patch, SlotUse::dimmer_fine);
+    entry.fine_pan = uses(entry.patch, SlotUse::pan_fine);
+    entry.fine_tilt = uses(entry.patch, SlotUse::tilt_fine);
+    entry.universe = static_cast<std::size_t>(std::distance(numbers.begin(), numbers.find(entry.patch.universe)));
+    entry.joints = fixture.joints;
+    has_heads_ = has_heads_ || fixture.moves;
+    encode(entry);
+    entries_.emplace(i, std::move(entry));
+  }
+}
+
+Fault DmxPatchbay::invalid(std::size_t fixture, std::string detail) const {
+  const auto found = entries_.find(fixture);
+  return {Cause::invalid, found == entries_.end() ? bus_ : found->second.name, std::move(detail), {}};
+}
+
+Result<void> DmxPatchbay::set_levels(std::span<const LevelCommand> commands) {
+  for (const LevelCommand& command : commands) {
+    if (!entries_.contains(command.fixture)) {
+      return tl::unexpected(invalid(command.fixture, fmt::format("fixture {} is not on this bus", command.fixture)));
+    }
+    if (!(command.drive >= 0 && command.drive <= 1)) {  // also when NaN
+      return tl::unexpected(invalid(command.fixture, fmt::format("drive {} is outside 0…1", command.drive)));
+    }
+  }
+  for (const LevelCommand& command : commands) entries_.at(command.fixture).drive = command.drive;
+  for (const auto& [index, entry] : entries_) encode(entry);
+  return {};
+}
+
+Result<void> DmxPatchbay::set_aims(std::span<const AimCommand> commands) {
+  const auto within = [](double angle, double lowest, double highest) {
+    return angle >= lowest - kAngleSlack_rad && angle <= highest + kAngleSlack_rad;
+  };
+  for (const AimCommand& command : commands) {
+    const auto found = entries_.find(command.fixture);
+    if (found == entries_.end()) {
+      return tl::unexpected(invalid(command.fixture, fmt::format("fixture {} is not on this bus", command.fixture)));
+    }
+    const Entry& entry = found->second;
+    if (!entry.moves) return tl::unexpected(invalid(command.fixture, "this fixture has no pan and tilt"));
+    const auto [pan, tilt] = command.joints;
+    if (!within(pan, entry.range.pan_min_rad, entry.range.pan_max_rad)) {
+      return tl::unexpected(invalid(
+          command.fixture, fmt::format("pan {}° is outside {}…{}°", deg_from_rad(pan),
+                                       deg_from_rad(entry.range.pan_min_rad), deg_from_rad(entry.range.pan_max_rad))));
+    }
+    if (!within(tilt, entry.range.tilt_min_rad, entry.range.tilt_max_rad)) {
+      return tl::unexpected(invalid(command.fixture, fmt::format("tilt {}° is outside {}…{}°", deg_from_rad(tilt),
+                                                                 deg_from_rad(entry.range.tilt_min_rad),
+                                                                 deg_from_rad(entry.range.tilt_max_rad))));
+    }
+  }
+  for (const AimCommand& command : commands) entries_.at(command.fixture).joints = command.joints;
+  return {};
+}
+
+void DmxPatchbay::encode(const Entry& entry) {
+  const double pan = share_of_travel(entry.joints.pan_rad, entry.range.pan_min_rad, entry.range.pan_max_rad);
+  const double tilt = share_of_travel(entry.joints.tilt_rad, entry.range.tilt_min_rad, entry.range.tilt_max_rad);
+  const auto byte_of = [&](const DmxSlot& slot) {
+    switch (slot.use) {
+      case SlotUse::dimmer:
+        return coarse(entry.drive, entry.fine_dimmer);
+      case SlotUse::dimmer_fine:
+        return fine(entry.drive);
+      case SlotUse::pan:
+        return coarse(pan, entry.fine_pan);
+      case SlotUse::pan_fine:
+        return fine(pan);
+      case SlotUse::tilt:
+        return coarse(tilt, entry.fine_tilt);
+      case SlotUse::tilt_fine:
+        return fine(tilt);
+      case SlotUse::constant:
+        return slot.constant_dmx;
+      case SlotUse::unused:
+        break;
+    }
+    return 0;
+  };
+  DmxSlots& out = universes_[entry.universe].slots;
+  for (std::size_t i = 0; i < entry.patch.slots.size(); ++i) {
+    const DmxSlot& slot = entry.patch.slots[i];
+    if (slot.use == SlotUse::unused) continue;
+    out[static_cast<std::size_t>(entry.patch.address - 1) + i] = static_cast<std::uint8_t>(byte_of(slot));
+  }
+}
+
+std::vector<Problem> check_dmx_patch(const Rig& rig, std::size_t bus, int lowest_universe, int highest_universe) {
+  std::vector<Problem> problems;
+  const std::string& name = rig.buses[bus].name;
+  const auto report = [&](const Place& place, std::string what, std::string mend) {
+    problems.push_back({rig.file.string(), place.line, place.column, std::move(what), std::move(mend)});
+  };
+  for (const Fixture& fixture : rig.fixtures) {
+    if (fixture.bus != bus) continue;
+    const auto* patch = std::get_if<DmxPatch>(&fixture.patch);
+    if (patch == nullptr) {
+      report(fixture.place,
+             fmt::format("fixture \"{}\" has a Modbus register, but its bus \"{}\" carries DMX", fixture.name, name),
+             "give it universe and address in place of unit and register, or another bus");
+      continue;
+    }
+    if (patch->universe < lowest_universe || patch->universe > highest_universe) {
+      report(fixture.place,
+             fmt::format("fixture \"{}\": universe {} does not exist on a {} bus", fixture.name, patch->universe,
+                         rig.buses[bus].driver),
+             fmt::format("choose a universe in {}…{}", lowest_universe, highest_universe));
+    }
+    const auto last = patch->address + static_cast<std::int64_t>(patch->slots.size()) - 1;
+    if (patch->address < 1 || last > static_cast<std::int64_t>(kDmxSlots)) {
+      report(fixture.place,
+             fmt::format("fixture \"{}\" takes slots {}…{} of a universe that has 1…512", fixture.name, patch->address,
+                         last),
+             fmt::format("choose an address in 1…{}",
+                         static_cast<std::int64_t>(kDmxSlots) + 1 - static_cast<std::int64_t>(patch->slots.size())));
+    }
+  }
+  for (const Luxmeter& meter : rig.luxmeters) {
+    if (meter.bus != bus) continue;
+    report(meter.place,
+           fmt::format("luxmeter \"{}\" is on the bus \"{}\", which carries DMX and cannot be read from", meter.name,
+                       name),
+           "put it on a bus with driver = \"modbus_tcp\"");
+  }
+  return problems;
+}
+
+}  // namespace luxrig

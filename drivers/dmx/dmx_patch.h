@@ -1,0 +1,75 @@
+#pragma once
+/// What the fixtures of one bus put into which DMX slots.
+///
+/// Drives and joint angles in, whole 512-slot universes out: DMX512-A receivers keep the slots that a short packet
+/// leaves out, so none is sent. A 16-bit value is encoded once, so its two bytes always travel in the same frame.
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <vector>
+
+#include "core/control/devices.h"
+#include "core/rig/rig.h"
+
+namespace luxrig {
+
+inline constexpr std::size_t kDmxSlots = 512;
+using DmxSlots = std::array<std::uint8_t, kDmxSlots>;  ///< [0] is address 1
+
+/// The fastest that E1.11 allows a full universe to repeat: break 92 µs + mark 12 µs + 513 slots · 44 µs.
+inline constexpr Duration kDmxShortestPeriod = std::chrono::microseconds(22676);
+
+struct DmxUniverse {
+  int number = 0;  ///< as patched
+  DmxSlots slots{};
+};
+
+/// value 0…1 to the nearest of 0…255, or 0…65535.
+[[nodiscard]] int encode_8bit(double value);
+[[nodiscard]] int encode_16bit(double value);
+
+/// Share 0…1 of a joint's travel: the inverse of angle = from + v/65535·(to − from), clamped to the travel.
+[[nodiscard]] double share_of_travel(double angle_rad, double from_rad, double to_rad);
+
+class DmxPatchbay {
+ public:
+  /// requires the patch to be checked (check_dmx_patch). Every fixture starts dark, heads where the rig file aims them.
+  DmxPatchbay(const Rig& rig, std::size_t bus);
+
+  /// All or nothing: Cause::invalid names the fixture and what is wrong with its value.
+  Result<void> set_levels(std::span<const LevelCommand> commands);
+  /// The same for heads; takes effect with the next set_levels. Angles may pass the range by 1e-6 rad (rounding).
+  Result<void> set_aims(std::span<const AimCommand> commands);
+
+  /// Every universe that a fixture of the bus uses, in ascending order.
+  [[nodiscard]] std::span<const DmxUniverse> universes() const { return universes_; }
+  [[nodiscard]] bool has_heads() const { return has_heads_; }
+
+ private:
+  struct Entry {
+    std::string name;
+    DmxPatch patch;
+    PanTiltRange range;
+    bool moves = false;
+    bool fine_dimmer = false, fine_pan = false, fine_tilt = false;
+    std::size_t universe = 0;  ///< index in universes_
+    double drive = 0;
+    PanTilt joints;
+  };
+  void encode(const Entry& entry);
+  [[nodiscard]] Fault invalid(std::size_t fixture, std::string detail) const;
+
+  std::string bus_;
+  std::map<std::size_t, Entry> entries_;  ///< by fixture index in the rig
+  std::vector<DmxUniverse> universes_;
+  bool has_heads_ = false;
+};
+
+/// Problems of the fixtures and meters on a DMX bus: a Modbus patch, a luxmeter, a universe outside the range given,
+/// a fixture that runs past slot 512.
+[[nodiscard]] std::vector<Problem> check_dmx_patch(const Rig& rig, std::size_t bus, int lowest_universe,
+                                                   int highest_universe);
+
+}  // namespace luxrig

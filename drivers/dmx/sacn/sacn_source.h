@@ -1,0 +1,59 @@
+#pragma once
+/// What an sACN source sends when: sequence numbers, rate, suppression, goodbye. `now` and slots in, packets out.
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "drivers/dmx/sacn/sacn_codec.h"
+#include "drivers/dmx/send_rate.h"
+
+namespace luxrig::sacn {
+
+struct SourceSettings {
+  Cid cid{};
+  std::string source_name;
+  int priority = 100;      ///< 0…200
+  bool continuous = true;  ///< false: transmission is suppressed while nothing changes (clause 6.6.2)
+};
+
+/// A component identifier that stays over restarts and differs between hosts, rigs and buses: a UUID of version 8
+/// (RFC 9562) hashed from the three.
+[[nodiscard]] Cid derive_cid(std::string_view host, std::string_view rig, std::string_view bus);
+
+/// "6ba7b810-9dad-11d1-80b4-00c04fd430c8" -> its bytes.
+[[nodiscard]] std::optional<Cid> parse_cid(std::string_view text);
+
+class Source {
+ public:
+  explicit Source(SourceSettings settings) : settings_(std::move(settings)) {}
+
+  /// The packet of this universe that is due at `now`, if one is.
+  [[nodiscard]] std::optional<std::vector<std::uint8_t>> due(Time now, int universe, const DmxSlots& slots);
+
+  /// The goodbye of a universe that has sent before: one packet with the stream-terminated bit; clause 6.2.6 wants
+  /// three of them. Nothing for a universe that never sent or has said goodbye.
+  [[nodiscard]] std::optional<std::vector<std::uint8_t>> goodbye(int universe);
+  /// After the goodbyes: each universe starts afresh with its next packet, and goes on counting.
+  void rest();
+
+ private:
+  struct Stream {
+    DmxSlots slots{};
+    std::uint8_t sequence = 0;  ///< of the next packet
+    std::uint64_t packets = 0;
+    bool sending = false;
+    int repeats_left = 0;  ///< identical packets still owed after the last change
+    Time last{};
+    SendRate rate;
+  };
+  [[nodiscard]] std::vector<std::uint8_t> next_packet(int universe, Stream& stream, bool terminated);
+
+  SourceSettings settings_;
+  std::map<int, Stream> streams_;
+};
+
+}  // namespace luxrig::sacn

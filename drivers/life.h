@@ -1,0 +1,49 @@
+#pragma once
+/// Where one device stands in its life cycle, with the counters that its health report shows.
+
+#include <optional>
+#include <string>
+
+#include "core/control/devices.h"
+
+namespace luxrig {
+
+class LifeRecord {
+ public:
+  explicit LifeRecord(std::string device) { health_.device = std::move(device); }
+
+  void configured(Time now) { enter(Life::configured, now, {}); }
+  void active(Time now) { enter(Life::active, now, {}); }
+  /// `since` stays when it is faulted already; the text is the newest. Counts an error.
+  void faulted(Time now, const Fault& fault) {
+    ++health_.errors;
+    enter(Life::faulted, now, std::string(name_of(fault.cause)) + ": " + fault.detail);
+    cause_ = fault.cause;
+  }
+
+  void count_sent() { ++health_.sent; }
+  void count_received(Time now) {
+    ++health_.received;
+    health_.last_ok = now;
+  }
+  /// A success where the protocol has no answers.
+  void mark_ok(Time now) { health_.last_ok = now; }
+  void count_error() { ++health_.errors; }
+
+  [[nodiscard]] Life life() const { return health_.life; }
+  [[nodiscard]] const Health& health() const { return health_; }
+  /// requires life() == Life::faulted.
+  [[nodiscard]] Fault fault() const { return {cause_, health_.device, health_.detail, health_.since}; }
+
+ private:
+  void enter(Life life, Time now, std::string detail) {
+    if (health_.life != life) health_.since = now;
+    health_.life = life;
+    health_.detail = std::move(detail);
+  }
+
+  Health health_;
+  Cause cause_ = Cause::system;
+};
+
+}  // namespace luxrig

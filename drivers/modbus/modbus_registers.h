@@ -1,0 +1,24 @@
+#pragma once
+/// Register values <-> drives and lux. Pure.
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/rig/rig.h"
+
+namespace luxrig::modbus {
+
+/// drive 0…1 to the nearest of 0…full_scale_raw.
+[[nodiscard]] std::uint16_t raw_from_drive(double drive, int full_scale_raw);
+
+/// The lux that a meter's registers stand for, exact for every u16 and u32.
+/// requires raw.size() == patch.registers (1 or 2).
+[[nodiscard]] double lux_from_registers(const ModbusMeterPatch& patch, std::span<const std::uint16_t> raw);
+
+/// What a reading says about the light: up to 5 % over full scale it is full scale (instruments clip there, and their
+/// own gain error may carry them past it). Beyond, it is no reading: sensors show 0xFFFF… when they are broken.
+[[nodiscard]] std::optional<double> plausible_lux(double lux, double range_lx);
+
+}  // namespace luxrig::modbus

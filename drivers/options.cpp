@@ -1,0 +1,149 @@
+#include "drivers/options.h"
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+#include <numeric>
+
+#include "core/check.h"
+
+namespace luxrig {
+namespace {
+
+constexpr std::string_view kTo = "…";
+constexpr std::string_view kRequired = "required";
+
+std::int64_t number_in(std::string_view text) {
+  std::int64_t value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  LUXRIG_CHECK(error == std::errc() && end == text.data() + text.size(), "option table: \"{}\" is no integer", text);
+  return value;
+}
+
+std::pair<std::int64_t, std::int64_t> range_of(const OptionDoc& doc) {
+  const auto split = doc.range.find(kTo);
+  LUXRIG_CHECK(split != std::string_view::npos, "option table: range of {} is \"{}\"", doc.key, doc.range);
+  return {number_in(doc.range.substr(0, split)), number_in(doc.range.substr(split + kTo.size()))};
+}
+
+std::string_view type_of(const OptionValue& value) {
+  switch (value.index()) {
+    case 0:
+      return "boolean";
+    case 1:
+      return "integer";
+    case 2:
+      return "number with a fraction";
+    default:
+      return "string";
+  }
+}
+
+std::string with_article(std::string_view type) { return (type == "integer" ? "an " : "a ") + std::string(type); }
+
+std::string example_of(const OptionDoc& doc) {
+  if (doc.fallback != kRequired) return "write " + std::string(doc.key) + " = " + std::string(doc.fallback);
+  return "write " + std::string(doc.key) + " = …, " + std::string(doc.summary);
+}
+
+const OptionDoc& find(std::span<const OptionDoc> docs, std::string_view key, std::string_view type) {
+  const auto found = std::find_if(docs.begin(), docs.end(), [&](const OptionDoc& doc) { return doc.key == key; });
+  LUXRIG_CHECK(found != docs.end() && found->type == type, "option table: no {} \"{}\"", type, key);
+  return *found;
+}
+
+const Option* find(const Bus& bus, std::string_view key) {
+  const auto found = bus.options.find(std::string(key));
+  return found == bus.options.end() ? nullptr : &found->second;
+}
+
+}  // namespace
+
+std::string nearest_name(std::string_view word, std::span<const std::string_view> candidates) {
+  std::string best;
+  std::size_t best_edits = std::numeric_limits<std::size_t>::max();
+  for (const std::string_view candidate : candidates) {
+    // Levenshtein distance, one row at a time.
+    std::vector<std::size_t> row(candidate.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 0; i < word.size(); ++i) {
+      std::size_t diagonal = row[0];
+      row[0] = i + 1;
+      for (std::size_t j = 0; j < candidate.size(); ++j) {
+        const std::size_t swapped = diagonal + (word[i] == candidate[j] ? 0 : 1);
+        diagonal = row[j + 1];
+        row[j + 1] = std::min({row[j + 1] + 1, row[j] + 1, swapped});
+      }
+    }
+    if (row.back() < best_edits) {
+      best_edits = row.back();
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+Problem problem_at(const Rig& rig, const Bus& bus, std::string_view key, std::string what, std::string mend) {
+  const Option* option = find(bus, key);
+  const Place place = option != nullptr ? option->place : bus.place;
+  return {rig.file.string(), place.line, place.column, std::move(what), std::move(mend)};
+}
+
+std::vector<Problem> check_options(const Rig& rig, const Bus& bus, std::span<const OptionDoc> docs) {
+  std::vector<Problem> problems;
+  std::vector<std::string_view> known;
+  for (const OptionDoc& doc : docs) known.push_back(doc.key);
+
+  for (const auto& [key, option] : bus.options) {
+    const auto doc = std::find_if(docs.begin(), docs.end(), [&](const OptionDoc& d) { return d.key == key; });
+    if (doc == docs.end()) {
+      problems.push_back(problem_at(rig, bus, key, "bus \"" + bus.name + "\" has an unknown option \"" + key + "\"",
+                                    "did you mean \"" + nearest_name(key, known) + "\"?"));
+      continue;
+    }
+    if (type_of(option.value) != doc->type) {
+      problems.push_back(problem_at(
+          rig, bus, key,
+          key + " is " + with_article(type_of(option.value)) + " where " + with_article(doc->type) + " is wanted",
+          example_of(*doc)));
+      continue;
+    }
+    if (doc->type == "integer") {
+      const auto [lowest, highest] = range_of(*doc);
+      const std::int64_t value = std::get<std::int64_t>(option.value);
+      if (value < lowest || value > highest) {
+        problems.push_back(problem_at(rig, bus, key, key + " = " + std::to_string(value) + " is out of range",
+                                      "choose a value in " + std::string(doc->range)));
+      }
+    }
+  }
+  for (const OptionDoc& doc : docs) {
+    if (doc.fallback == kRequired && find(bus, doc.key) == nullptr) {
+      problems.push_back(problem_at(rig, bus, doc.key,
+                                    "bus \"" + bus.name + "\" lacks the option \"" + std::string(doc.key) + "\"",
+                                    example_of(doc)));
+    }
+  }
+  return problems;
+}
+
+std::string string_option(const Bus& bus, std::span<const OptionDoc> docs, std::string_view key) {
+  const OptionDoc& doc = find(docs, key, "string");
+  if (const Option* option = find(bus, key)) return std::get<std::string>(option->value);
+  LUXRIG_CHECK(doc.fallback.size() >= 2, "option table: {} has no fallback", key);
+  return std::string(doc.fallback.substr(1, doc.fallback.size() - 2));  // without its quotes
+}
+
+std::int64_t integer_option(const Bus& bus, std::span<const OptionDoc> docs, std::string_view key) {
+  const OptionDoc& doc = find(docs, key, "integer");
+  if (const Option* option = find(bus, key)) return std::get<std::int64_t>(option->value);
+  return number_in(doc.fallback);
+}
+
+bool boolean_option(const Bus& bus, std::span<const OptionDoc> docs, std::string_view key) {
+  const OptionDoc& doc = find(docs, key, "boolean");
+  if (const Option* option = find(bus, key)) return std::get<bool>(option->value);
+  return doc.fallback == "true";
+}
+
+}  // namespace luxrig

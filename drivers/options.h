@@ -1,0 +1,35 @@
+#pragma once
+/// A bus's options against the table that documents them. The table is the only place where type, default and range
+/// stand, so the reference cannot say one thing and the code do another.
+///
+///   type     "string", "integer" or "boolean"
+///   range    of an integer: "lowest…highest"; of a string: words for a person (the driver checks it)
+///   fallback value when absent, as it would be written; "required" when there is none
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/result.h"
+#include "drivers/registry.h"
+
+namespace luxrig {
+
+/// Unknown keys (with the nearest known one), wrong types, integers out of range, required keys that are absent.
+[[nodiscard]] std::vector<Problem> check_options(const Rig& rig, const Bus& bus, std::span<const OptionDoc> docs);
+
+/// The option's value, or its fallback. requires check_options() to be empty and `key` in `docs` with that type.
+[[nodiscard]] std::string string_option(const Bus& bus, std::span<const OptionDoc> docs, std::string_view key);
+[[nodiscard]] std::int64_t integer_option(const Bus& bus, std::span<const OptionDoc> docs, std::string_view key);
+[[nodiscard]] bool boolean_option(const Bus& bus, std::span<const OptionDoc> docs, std::string_view key);
+
+/// A problem at an option if it is written, else at its bus.
+[[nodiscard]] Problem problem_at(const Rig& rig, const Bus& bus, std::string_view key, std::string what,
+                                 std::string mend);
+
+/// The candidate with the fewest single-letter edits to `word`; empty without candidates.
+[[nodiscard]] std::string nearest_name(std::string_view word, std::span<const std::string_view> candidates);
+
+}  // namespace luxrig

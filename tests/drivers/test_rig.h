@@ -1,0 +1,76 @@
+#pragma once
+/// Rigs built in code: a test of a driver needs no file.
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/rig/rig.h"
+
+namespace luxrig {
+
+inline Time at_ms(double ms) { return Time{} + from_seconds(1000.0 + ms / 1000.0); }
+
+inline Bus bus_of(std::string driver, std::vector<std::pair<std::string, OptionValue>> options = {}) {
+  Bus bus;
+  bus.name = "the-bus";
+  bus.driver = std::move(driver);
+  bus.place = {7, 1};
+  int line = 8;
+  for (auto& [key, value] : options) bus.options[key] = {value, {line++, 5}};
+  return bus;
+}
+
+inline Rig rig_with(Bus bus) {
+  Rig rig;
+  rig.file = "a/rig.toml";
+  rig.name = "test";
+  rig.buses.push_back(std::move(bus));
+  return rig;
+}
+
+inline Fixture& add_dmx(Rig& rig, std::string name, int universe, int address,
+                        std::vector<DmxSlot> slots = {DmxSlot{}}) {
+  Fixture fixture;
+  fixture.name = std::move(name);
+  fixture.patch = DmxPatch{universe, address, std::move(slots)};
+  fixture.place = {20 + static_cast<int>(rig.fixtures.size()), 3};
+  rig.fixtures.push_back(std::move(fixture));
+  return rig.fixtures.back();
+}
+
+inline Fixture& add_head(Rig& rig, std::string name, int universe, int address) {
+  Fixture& fixture = add_dmx(rig, std::move(name), universe, address,
+                             {{SlotUse::pan},
+                              {SlotUse::pan_fine},
+                              {SlotUse::tilt},
+                              {SlotUse::tilt_fine},
+                              {SlotUse::dimmer},
+                              {SlotUse::dimmer_fine},
+                              {SlotUse::constant, 255}});
+  fixture.moves = true;
+  fixture.pan_speed_rad_s = fixture.tilt_speed_rad_s = 3;
+  return fixture;
+}
+
+inline Fixture& add_modbus(Rig& rig, std::string name, int unit, int reg, int full_scale = 1000) {
+  Fixture fixture;
+  fixture.name = std::move(name);
+  fixture.patch = ModbusPatch{unit, reg, full_scale};
+  fixture.place = {20 + static_cast<int>(rig.fixtures.size()), 3};
+  rig.fixtures.push_back(std::move(fixture));
+  return rig.fixtures.back();
+}
+
+inline Luxmeter& add_meter(Rig& rig, std::string name, int unit, int first_register) {
+  Luxmeter meter;
+  meter.name = std::move(name);
+  meter.patch.unit = unit;
+  meter.patch.first_register = first_register;
+  meter.range_lx = 100000;
+  meter.place = {40 + static_cast<int>(rig.luxmeters.size()), 3};
+  rig.luxmeters.push_back(std::move(meter));
+  return rig.luxmeters.back();
+}
+
+}  // namespace luxrig
