@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/rig/plain_text.h"
+
 #define TOML_HEADER_ONLY 1
 #define TOML_EXCEPTIONS 0
 #define TOML_ENABLE_FORMATTERS 0
@@ -146,7 +148,7 @@ Checked<NodeTable> parse_document(std::string_view text, const std::string& file
   const toml::parse_result result = toml::parse(text, file_name);
   if (!result) {
     const toml::parse_error& error = result.error();
-    return refuse(place_of(error.source(), {1, 1}), "not TOML: " + std::string(error.description()),
+    return refuse(place_of(error.source(), {1, 1}), "not TOML: " + made_plain(error.description()),
                   "one `key = value` a line, text in quotes, tables as [name] or [[name]]; see toml.io");
   }
   return plain_table(result.table(), {1, 1});

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "core/rig/document.h"
+#include "core/rig/plain_text.h"
 #include "core/rig/problem_list.h"
 #include "core/rig/schema.h"
 
@@ -78,13 +79,5 @@ class Section {
   std::span<const KeySpec> keys_;
   ProblemList& problems_;
 };
-
-/// Whether a text holds only printable characters and sound UTF-8 (a name, a path, a CSV cell).
-[[nodiscard]] bool is_plain_text(std::string_view text);
-/// Characters, not bytes, of sound UTF-8.
-[[nodiscard]] std::size_t length_in_characters(std::string_view text);
-inline constexpr std::size_t kLongestName = 100;
-/// `text` in quotes, cut when long, with nothing that a terminal would obey.
-[[nodiscard]] std::string in_quotes(std::string_view text);
 
 }  // namespace luxrig
