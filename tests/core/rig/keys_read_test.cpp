@@ -1,0 +1,333 @@
+// Every key of the schema is really read: changing its value changes the Rig, and leaving it out is the same as
+// writing the default that the reference states.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <set>
+
+#include "core/rig/rig_file.h"
+#include "core/rig/schema.h"
+
+namespace luxrig {
+namespace {
+
+// Each line "key = value  #> other" gives a second value that the key may have in this place; " ; " begins a line that
+// the second value needs.
+constexpr const char* kKitchenSink = R"(
+[rig]
+name = "sink"  #> "other"
+[scene]
+file = "a.obj"  #> "b.obj"
+unit = "cm"  #> "ft"
+up_axis = "z"  #> "x"
+default_reflectance = 0.4  #> [0.1, 0.2, 0.3]
+[[scene.reflectance]]
+material = "wall*"  #> "floor"
+reflectance = 0.6  #> [0.6, 0.6, 0.5]
+[[scene.object]]
+name = "vase"  #> "jug"
+file = "a.obj"  #> "b.obj"
+unit = "mm"  #> "in"
+up_axis = "x"  #> "z"
+height_m = 0.3  #> 0.4
+position_m = [1, 2, 3]  #> [1, 2, 4]
+turn_deg = 30  #> -30
+reflectance = 0.2  #> 0.3
+[[scene.object]]
+name = "plinth"
+box_m = [1, 2, 3]  #> [1, 2, 4]
+[[luminaire]]
+name = "measured"
+model = "ies"
+file = "a.ies"  #> "b.ies"
+lumens = 500  #> 600
+watts = 10  #> 11
+[[luminaire]]
+name = "spot"
+model = "spot"
+beam_angle_deg = 20  #> 21
+field_angle_deg = 40  #> 41
+lumens = 900  #> 901
+[[luminaire]]
+name = "bulb"  #> "lamp"
+model = "isotropic"  #> "spot" ; beam_angle_deg = 20 ; field_angle_deg = 40
+lumens = 700
+[[bus]]
+name = "dmx"  #> "net"
+driver = "sacn"  #> "artnet"
+priority = 100
+[[bus]]
+name = "field"
+driver = "modbus_tcp"
+[[fixture]]
+name = "fixed"  #> "still"
+luminaire = "spot"  #> "measured"
+position_m = [0, 0, 3]  #> [0, 0.5, 3]
+mount_deg = [10, 20, 30]  #> [10, 20, 31]
+pan_deg = 5  #> 6
+tilt_deg = 7  #> 8
+roll_deg = 9  #> 10
+bus = "field"  #> "dmx"
+unit = 4  #> 5
+register = 6  #> 7
+full_scale = 255  #> 256
+dimmer_curve = "square"  #> "s-curve"
+max_level = 0.9  #> 0.8
+safe_level = 0.3  #> 0.4
+[[fixture]]
+name = "head"
+luminaire = "spot"
+position_m = [1, 0, 3]
+aim = "desk"  #> "floor"
+bus = "dmx"
+universe = 2  #> 3
+address = 20  #> 21
+slots = ["pan", "tilt", "dimmer"]  #> ["tilt", "pan", "dimmer"]
+pan_range_deg = [-180, 180]  #> [-180, 170]
+tilt_range_deg = [-100, 100]  #> [-100, 90]
+pan_speed_deg_s = 90  #> 91
+tilt_speed_deg_s = 80  #> 81
+[[fixture]]
+name = "aimed"
+luminaire = "spot"
+position_m = [1, 0, 3]
+aim_m = [0, 0, 0]  #> [0, 1, 0]
+bus = "dmx"
+address = 1
+slots = ["dimmer", "unused"]  #> ["dimmer"]
+[[luxmeter]]
+name = "meter"  #> "sensor"
+point = "desk"  #> "floor"
+tolerance = 0.03  #> 0.04
+range_lx = 1000  #> 2000
+bus = "field"  #> "dmx"
+unit = 2  #> 3
+register = 5  #> 6
+registers = 1  #> 2
+register_kind = "input"  #> "holding"
+word_order = "low-first"  #> "high-first"
+lux_per_count = 0.1  #> 0.2
+[[luxmeter]]
+name = "free"
+position_m = [1, 1, 1]  #> [1, 1, 2]
+normal = [1, 0, 0]  #> [0, 1, 0]
+bus = "field"
+unit = 9
+[[point]]
+name = "desk"
+position_m = [1, 1, 0.8]  #> [1, 1, 0.9]
+normal = [0, 1, 1]  #> [0, 1, 2]
+goal_lx = 300  #> 301
+weight = 2  #> 3
+max_lx = 400  #> 401
+[[point]]
+name = "floor"
+position_m = [0.5, 0, 0]
+[[point]]
+name = "spare"  #> "third"
+position_m = [5, 0, 0]
+[points]
+file = "a.csv"  #> "b.csv"
+[[task]]
+name = "look"  #> "other"
+kind = "emittance"
+[limits]
+max_level = 0.95  #> 0.9
+open_loop_margin = 0.1  #> 0.2
+[control]
+fade_s = 4  #> 5
+fade_curve = "linear"  #> "s-curve"
+correction_fade_s = 2  #> 3
+settle_s = 0.7  #> 0.8
+rounds = 4  #> 5
+tolerance = 0.03  #> 0.04
+gain_min = 0.5  #> 0.4
+gain_max = 1.3  #> 1.4
+[safe]
+level = 0.2  #> 0.3
+hold_s = 6  #> 7
+fade_s = 8  #> 9
+on_meter_loss = false  #> true
+[daemon]
+http_port = 1234  #> 1235
+)";
+
+struct Line {
+  std::string section, key, text, other;  ///< text: the whole line without its mark; other: second value
+};
+
+std::vector<Line> kitchen_sink() {
+  std::vector<Line> lines;
+  std::string section, rest = kKitchenSink;
+  while (!rest.empty()) {
+    std::string text = rest.substr(0, rest.find('\n'));
+    rest.erase(0, text.size() + 1);
+    Line line;
+    if (const auto mark = text.find("  #> "); mark != std::string::npos) {
+      line.other = text.substr(mark + 5);
+      for (auto at = line.other.find(" ; "); at != std::string::npos; at = line.other.find(" ; ")) {
+        line.other.replace(at, 3, "\n");
+      }
+      text.resize(mark);
+    }
+    if (text.starts_with('['))
+      section = text.substr(text.find_first_not_of('['), text.find(']') - text.find_first_not_of('['));
+    line.section = section;
+    line.key = text.substr(0, text.find(" = "));
+    line.text = text;
+    lines.push_back(line);
+  }
+  return lines;
+}
+
+std::string text_of(const Vec3& v) { return fmt::format("({},{},{})", v.x(), v.y(), v.z()); }
+template <class T>
+std::string text_of(const std::optional<T>& value) {
+  if (!value) return "none";
+  if constexpr (std::is_same_v<T, Vec3>) {
+    return text_of(*value);
+  } else {
+    return fmt::format("{}", *value);
+  }
+}
+std::string text_of(const std::optional<MeshFile>& mesh) {
+  return mesh ? fmt::format("{} {} {}", mesh->path.string(), mesh->metres_per_unit, static_cast<int>(mesh->up_axis))
+              : "none";
+}
+
+/// Everything in a Rig but places, as text.
+std::string dump(const Rig& rig) {
+  std::string out;
+  const auto add = [&](const auto&... values) { ((out += fmt::format("{} ", values)), ...), out += '\n'; };
+  add(rig.name, text_of(rig.scene.mesh), text_of(rig.scene.default_reflectance_rgb));
+  for (const auto& r : rig.scene.reflectances) add(r.material_pattern, text_of(r.reflectance_rgb));
+  for (const auto& o : rig.scene.objects) {
+    add(o.name, text_of(o.mesh), text_of(o.box_m), text_of(o.position_world_m), o.turn_rad, text_of(o.height_m),
+        text_of(o.reflectance_rgb));
+  }
+  for (const auto& l : rig.luminaires) {
+    add(l.name, static_cast<int>(l.model), l.ies_path.string(), l.beam_angle_rad, l.field_angle_rad, l.lumens,
+        text_of(l.watts), l.intensity->flux_lm(), l.intensity->intensity_cd(Vec3(0.1, 0, -1).normalized()));
+  }
+  for (const auto& b : rig.buses) {
+    add(b.name, b.driver, b.options.size());
+  }
+  for (const auto& f : rig.fixtures) {
+    add(f.name, f.luminaire, text_of(f.world_from_mount.translation_m),
+        text_of(Vec3(f.world_from_mount.rotation.col(0))), text_of(Vec3(f.world_from_mount.rotation.col(1))),
+        text_of(f.aim_world_m), f.joints.pan_rad, f.joints.tilt_rad, f.roll_rad, f.moves, f.range.pan_min_rad,
+        f.range.pan_max_rad, f.range.tilt_min_rad, f.range.tilt_max_rad, f.pan_speed_rad_s, f.tilt_speed_rad_s, f.bus,
+        static_cast<int>(f.dimmer_curve), f.max_level, text_of(f.safe_level));
+    if (const auto* dmx = std::get_if<DmxPatch>(&f.patch)) {
+      add("dmx", dmx->universe, dmx->address);
+      for (const DmxSlot& slot : dmx->slots) add(static_cast<int>(slot.use), slot.constant_dmx);
+    } else {
+      const auto& modbus = std::get<ModbusPatch>(f.patch);
+      add("modbus", modbus.unit, modbus.holding_register, modbus.full_scale_raw);
+    }
+  }
+  for (const auto& m : rig.luxmeters) {
+    add(m.name, text_of(m.position_world_m), text_of(m.normal_world), text_of(m.point), m.tolerance, m.range_lx, m.bus,
+        m.patch.unit, m.patch.input_registers, m.patch.first_register, m.patch.registers, m.patch.low_word_first,
+        m.patch.lux_per_count);
+  }
+  for (const auto& p : rig.points) {
+    add(p.name, text_of(p.position_world_m), text_of(p.normal_world), text_of(p.goal_lx), p.weight, text_of(p.max_lx));
+  }
+  for (const auto& t : rig.tasks) add(t.name, static_cast<int>(t.kind));
+  add(rig.limits.max_level, rig.limits.open_loop_margin);
+  const ControlSpec& c = rig.control;
+  add(c.fade_s, static_cast<int>(c.fade_curve), c.correction_fade_s, c.settle_s, c.rounds, c.tolerance, c.gain_min,
+      c.gain_max);
+  add(rig.safe.level, rig.safe.hold_s, rig.safe.fade_s, rig.safe.on_meter_loss, rig.daemon.http_port);
+  return out;
+}
+
+class KeysRead : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::filesystem::create_directories(folder_);
+    for (const char* name : {"a", "b"}) {
+      std::ofstream(folder_ / (std::string(name) + ".obj")) << "v 0 0 0\n";
+      std::ofstream(folder_ / (std::string(name) + ".csv")) << "name,x_m,y_m,z_m\n" << name << ",1,2,3\n";
+      std::ofstream(folder_ / (std::string(name) + ".ies")) << "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 1 1 2 0 0 0\n"
+                                                               "1 1 10\n0 45 90\n0\n100 "
+                                                            << (*name == 'a' ? 50 : 20) << " 0\n";
+    }
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  /// The sink with some of its lines replaced, as a dump; or its problems.
+  std::string read(const std::vector<Line>& lines) {
+    std::string text;
+    for (const Line& line : lines) text += line.text + "\n";
+    const Checked<Rig> rig = parse_rig(text, "sink.toml", folder_);
+    if (rig) return dump(*rig);
+    std::string problems;
+    for (const Problem& problem : rig.error()) problems += problem.text() + "\n";
+    return "REFUSED " + problems;
+  }
+
+  /// Renaming or repointing something must not only be noticed as a dangling reference.
+  static void rename(std::vector<Line>& lines, const Line& renamed) {
+    const std::string old = renamed.text.substr(renamed.text.find(" = ") + 3);
+    for (Line& line : lines) {
+      const bool refers = line.key == "bus" || line.key == "luminaire" || line.key == "point" || line.key == "aim";
+      if (refers && line.text.ends_with(" = " + old)) line.text = line.key + " = " + renamed.other;
+    }
+  }
+
+  const std::filesystem::path folder_ =
+      std::filesystem::path(testing::TempDir()) /
+      (std::string("luxrig_keys_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+};
+
+TEST_F(KeysRead, ChangingAnyKeyChangesTheRig) {
+  const auto sink = kitchen_sink();
+  const std::string before = read(sink);
+  ASSERT_FALSE(before.starts_with("REFUSED")) << before;
+  std::set<std::pair<std::string, std::string>> changed;
+  for (std::size_t i = 0; i < sink.size(); ++i) {
+    if (sink[i].other.empty()) continue;
+    auto lines = sink;
+    if (sink[i].key == "name") rename(lines, sink[i]);
+    lines[i].text = sink[i].key + " = " + sink[i].other;
+    const std::string after = read(lines);
+    EXPECT_FALSE(after.starts_with("REFUSED")) << lines[i].text << ": " << after;
+    EXPECT_NE(after, before) << "[" << sink[i].section << "] " << lines[i].text << " changes nothing";
+    changed.emplace(sink[i].section, sink[i].key);
+  }
+  for (const KeySpec& key : keys()) {
+    if (key.section == "task" && key.key == "kind") continue;  // has one value only; refused otherwise (bad rigs)
+    EXPECT_TRUE(changed.contains({std::string(key.section), std::string(key.key)}))
+        << "the kitchen sink does not try [" << key.section << "] " << key.key;
+  }
+}
+
+TEST_F(KeysRead, LeavingAKeyOutIsWritingItsDefault) {
+  const auto sink = kitchen_sink();
+  std::set<std::pair<std::string, std::string>> tried;
+  for (std::size_t i = 0; i < sink.size(); ++i) {
+    for (const KeySpec& key : keys()) {
+      if (key.section != sink[i].section || key.key != sink[i].key) continue;
+      auto without = sink, with = sink;
+      without[i].text.clear();
+      if (key.fallback == kRequired) {
+        EXPECT_TRUE(read(without).starts_with("REFUSED")) << sink[i].section << " " << sink[i].key;
+      } else if (key.fallback != kNone) {
+        with[i].text = sink[i].key + " = " + std::string(key.fallback);
+        const std::string written = read(with);
+        if (written.starts_with("REFUSED")) continue;  // a default may not suit the rest here; it must somewhere
+        EXPECT_EQ(read(without), written) << "[" << sink[i].section << "] " << with[i].text;
+      }
+      tried.emplace(key.section, key.key);
+    }
+  }
+  for (const KeySpec& key : keys()) {
+    EXPECT_TRUE(tried.contains({std::string(key.section), std::string(key.key)})) << key.section << " " << key.key;
+  }
+}
+
+}  // namespace
+}  // namespace luxrig

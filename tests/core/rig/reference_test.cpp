@@ -1,0 +1,91 @@
+// rigs/REFERENCE.md against the schema, and its examples against the parser.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "core/rig/rig_file.h"
+#include "core/rig/schema.h"
+
+namespace luxrig {
+namespace {
+
+const std::filesystem::path kSource = LUXRIG_SOURCE_DIR;
+
+/// Lines of the page up to the drivers' own part, which the drivers' tests compare.
+std::vector<std::string> lines_of_reference() {
+  std::vector<std::string> lines;
+  std::ifstream in(kSource / "rigs/REFERENCE.md");
+  for (std::string line; std::getline(in, line) && line != "## Bus options";) lines.push_back(line);
+  return lines;
+}
+
+/// Fenced blocks of one language, joined.
+std::string blocks(const std::string& language) {
+  std::string out;
+  bool inside = false;
+  for (const std::string& line : lines_of_reference()) {
+    if (line.starts_with("```")) {
+      inside = line == "```" + language;
+    } else if (inside) {
+      out += line + "\n";
+    }
+  }
+  return out;
+}
+
+TEST(Reference, DocumentsExactlyTheKeysOfTheSchema) {
+  std::map<std::string, std::vector<std::string>> documented;  // by heading
+  std::string heading;
+  for (const std::string& line : lines_of_reference()) {
+    if (line.starts_with("## ")) heading = line.substr(3);
+    if (line.starts_with("| `")) documented[heading].push_back(line);
+  }
+  std::set<std::string> headings;
+  for (const SectionSpec& section : sections()) {
+    const std::string wanted_heading = "`" + heading_of(section) + "`";
+    headings.insert(wanted_heading);
+    std::vector<std::string> wanted;
+    for (const KeySpec& key : keys_of(section.name)) wanted.push_back(reference_row(key));
+    std::string table;
+    for (const std::string& row : wanted) table += row + "\n";
+    EXPECT_EQ(documented[wanted_heading], wanted) << "below ## " << wanted_heading << " there must be:\n" << table;
+  }
+  for (const auto& [found, rows] : documented) {
+    EXPECT_TRUE(headings.contains(found)) << found << " is documented, but no section of the schema";
+  }
+}
+
+TEST(Reference, ItsExamplesMakeOneRig) {
+  const auto folder = std::filesystem::path(testing::TempDir()) / "luxrig_reference_example";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "room.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  std::ofstream(folder / "points.csv") << blocks("csv");
+  std::ofstream(folder / "track-spot.ies") << "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 1 1 2 0 0 0\n1 1 10\n"
+                                              "0 45 90\n0\n100 50 0\n";
+  const Checked<Rig> rig = parse_rig(blocks("toml"), "REFERENCE.md", folder);
+  std::string problems;
+  if (!rig) {
+    for (const Problem& problem : rig.error()) problems += problem.text() + "\n";
+  }
+  ASSERT_TRUE(rig) << problems << blocks("toml");
+  EXPECT_EQ(rig->fixtures.size(), 3u);
+  EXPECT_EQ(rig->points.size(), 4u);
+  EXPECT_EQ(rig->points[3].name, "shelf 2, top");
+  EXPECT_NEAR(rig->luminaires[0].intensity->flux_lm(), 1000, 1e-6);
+  EXPECT_TRUE(rig->notes.empty()) << rig->notes[0].text();
+  std::filesystem::remove_all(folder);
+}
+
+TEST(Schema, NamesEachKeyOnceAndKeepsSectionsTogether) {
+  std::set<std::pair<std::string_view, std::string_view>> seen;
+  std::size_t counted = 0;
+  for (const KeySpec& key : keys()) EXPECT_TRUE(seen.emplace(key.section, key.key).second) << key.section << key.key;
+  for (const SectionSpec& section : sections()) counted += keys_of(section.name).size();
+  EXPECT_EQ(counted, keys().size());
+}
+
+}  // namespace
+}  // namespace luxrig
