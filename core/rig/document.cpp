@@ -112,13 +112,12 @@ Node plain(const toml::node& node, const Place& parent) {
 }
 
 NodeTable plain_table(const toml::table& table, const Place& parent) {
-  NodeTable out;
+  NodeTable out;  // sorted, as toml++ keeps its tables
   out.reserve(table.size());
   for (const auto& [key, node] : table) {
     const Place key_place = place_of(key.source(), parent);
     out.push_back({std::string(key.str()), key_place, plain(node, key_place)});
   }
-  std::sort(out.begin(), out.end(), [](const Member& a, const Member& b) { return a.key < b.key; });
   return out;
 }
 

@@ -35,6 +35,12 @@ std::size_t distance(std::string_view a, std::string_view b) {
 std::string_view nearest_name(std::string_view wanted, std::span<const std::string_view> known) {
   std::string_view best;
   if (wanted.size() > kLongestCompared) return best;
+  // A unit left off: "beam_angle" for "beam_angle_deg".
+  for (const std::string_view name : known) {
+    if (!wanted.empty() && name.size() > wanted.size() && name.starts_with(wanted) && name[wanted.size()] == '_') {
+      return name;
+    }
+  }
   std::size_t best_distance = std::max<std::size_t>(2, wanted.size() / 3) + 1;
   for (const std::string_view name : known) {
     const std::size_t longer = std::max(name.size(), wanted.size()), shorter = std::min(name.size(), wanted.size());

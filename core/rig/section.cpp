@@ -49,17 +49,22 @@ std::string example_of(const KeySpec& spec) {
 Section::Section(const NodeTable& table, const Place& place, std::string_view section, ProblemList& problems)
     : table_(table), place_(place), section_(section_spec(section)), keys_(keys_of(section)), problems_(problems) {
   if (section_.takes_other_keys) return;
-  for (const Member& member : table_) {
-    if (problems_.full()) return;
-    const auto named = [&](const auto& spec) { return spec == member.key; };
-    std::vector<std::string_view> known;
-    for (const KeySpec& key : keys_) known.push_back(key.key);
+  const auto children = [&] {
+    std::vector<std::string_view> names;
     for (const SectionSpec& child : sections()) {
       if (child.name.size() > section.size() && child.name.starts_with(section) && child.name[section.size()] == '.') {
-        known.push_back(child.name.substr(section.size() + 1));
+        names.push_back(child.name.substr(section.size() + 1));
       }
     }
-    if (std::any_of(known.begin(), known.end(), named)) continue;
+    return names;
+  };
+  for (const Member& member : table_) {
+    if (problems_.full()) return;
+    const auto is_it = [&](const KeySpec& spec) { return spec.key == member.key; };
+    if (std::any_of(keys_.begin(), keys_.end(), is_it)) continue;
+    std::vector<std::string_view> known = children();
+    if (std::find(known.begin(), known.end(), member.key) != known.end()) continue;
+    for (const KeySpec& key : keys_) known.push_back(key.key);
     problems_.add(member.key_place, fmt::format("unknown key {} in {}", in_quotes(member.key), heading_of(section_)),
                   mend_for_unknown(member.key, known, "remove it"));
   }

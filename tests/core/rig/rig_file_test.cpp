@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <ctime>
+#include <fstream>
+#include <random>
 #include <string>
 
 namespace luxrig {
@@ -63,6 +67,211 @@ TEST(RigFile, AimsFixturesAtTheirPoints) {
     const Vec3 wanted = (*fixture.aim_world_m - fixture.world_from_mount.translation_m).normalized();
     EXPECT_LT((fixture.world_from_lamp().direction(-Vec3::UnitZ()) - wanted).norm(), 1e-9);
   }
+}
+
+/// parse_rig in a folder without files.
+Checked<Rig> parse(const std::string& text) { return parse_rig(text, "rig.toml", "/nonexistent"); }
+
+const std::string kSmall = R"([rig]
+name = "small"
+[[luminaire]]
+name = "bulb"
+model = "isotropic"
+lumens = 800
+[[bus]]
+name = "dmx"
+driver = "sacn"
+)";
+
+std::string fixture(const std::string& name, const std::string& keys) {
+  return "[[fixture]]\nname = \"" + name + "\"\nluminaire = \"bulb\"\nposition_m = [0, 0, 3]\nbus = \"dmx\"\n" + keys +
+         "\n";
+}
+
+TEST(RigFile, ARigThatOnlyHasANameIsARig) {
+  const Checked<Rig> rig = parse("[rig]\nname = \"empty\"\n");
+  ASSERT_TRUE(rig) << listed(rig.error());
+  ASSERT_EQ(rig->tasks.size(), 1u);
+  EXPECT_EQ(rig->tasks[0].name, "levels");
+  EXPECT_EQ(rig->tasks[0].kind, TaskKind::emittance);
+  EXPECT_FALSE(rig->scene.mesh);
+}
+
+TEST(RigFile, SaysWhichFileWasNotFound) {
+  for (const std::filesystem::path& path : {kRooms / "nowhere.toml", kRooms.parent_path(), std::filesystem::path()}) {
+    const Checked<Rig> rig = load_rig(path);
+    ASSERT_FALSE(rig);
+    ASSERT_EQ(rig.error().size(), 1u);
+    EXPECT_EQ(rig.error()[0].what, "no such file");
+    EXPECT_FALSE(rig.error()[0].mend.empty());
+  }
+  const Checked<Rig> device = load_rig("/dev/zero");
+  ASSERT_FALSE(device);
+  EXPECT_EQ(device.error()[0].what, "not a file");
+}
+
+TEST(RigFile, RefusesAFileOver16MiBUnread) {
+  const auto start = std::chrono::steady_clock::now();
+  std::string text = kSmall;
+  text.resize((std::size_t{16} << 20) + 1, '\n');
+  const Checked<Rig> rig = parse(text);
+  ASSERT_FALSE(rig);
+  EXPECT_NE(rig.error()[0].mend.find("16 MiB"), std::string::npos);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(1));
+}
+
+TEST(RigFile, RefusesMoreEntriesThanARigCanHave) {
+  std::string text = kSmall;
+  for (int i = 0; i < 10001; ++i) text += "[[task]]\n";
+  const Checked<Rig> rig = parse(text);
+  ASSERT_FALSE(rig);
+  ASSERT_EQ(rig.error().size(), 1u);
+  EXPECT_EQ(rig.error()[0].what, "10001 entries of [[task]]");
+}
+
+TEST(RigFile, ShowsAThousandProblemsAndCountsTheRest) {
+  std::string text = kSmall;
+  for (int i = 0; i < 3000; ++i) text += "[[luminaire]]\nname = \"l" + std::to_string(i) + "\"\n";
+  const Checked<Rig> rig = parse(text);
+  ASSERT_FALSE(rig);
+  ASSERT_EQ(rig.error().size(), 1001u);
+  EXPECT_EQ(rig.error().back().what, "2000 more problems are not shown");
+}
+
+TEST(RigFile, ReportsProblemsInTheOrderOfTheFile) {
+  const Checked<Rig> rig = parse(kSmall + fixture("a", "address = 0\nmax_level = 2") + "[limits]\nmax_level = -1\n");
+  ASSERT_FALSE(rig);
+  ASSERT_EQ(rig.error().size(), 3u) << listed(rig.error());
+  EXPECT_LT(rig.error()[0].line, rig.error()[1].line);
+  EXPECT_LT(rig.error()[1].line, rig.error()[2].line);
+}
+
+TEST(RigFile, NotesAGoalAboveItsLimitAndLetsTheLimitWin) {
+  const Checked<Rig> rig =
+      parse(kSmall + "[[point]]\nname = \"p\"\nposition_m = [0, 0, 0]\ngoal_lx = 60\nmax_lx = 50\n");
+  ASSERT_TRUE(rig) << listed(rig.error());
+  ASSERT_EQ(rig->notes.size(), 1u);
+  EXPECT_EQ(rig->notes[0].text(),
+            "rig.toml:10:1: point \"p\" has a goal of 60 lx above its max_lx of 50 lx: the limit "
+            "wins; lower the goal if that is not meant");
+}
+
+TEST(RigFile, SendsTwoClashingFixturesToDifferentFreeAddresses) {
+  const std::string two = "address = 1\nslots = [\"dimmer\", \"dimmer-fine\"]";
+  const Checked<Rig> rig = parse(kSmall + fixture("a", two) + fixture("b", two) + fixture("c", two));
+  ASSERT_FALSE(rig);
+  ASSERT_EQ(rig.error().size(), 2u);
+  EXPECT_EQ(rig.error()[0].mend, "address 3 is free for it");
+  EXPECT_EQ(rig.error()[1].mend, "address 5 is free for it");
+}
+
+TEST(RigFile, SaysWhenAUniverseIsFull) {
+  std::string all = "address = 1\nslots = [\"dimmer\"";
+  for (int i = 1; i < 512; ++i) all += ", \"unused\"";
+  const Checked<Rig> rig = parse(kSmall + fixture("a", all + "]") + fixture("b", "address = 512"));
+  ASSERT_FALSE(rig);
+  ASSERT_EQ(rig.error().size(), 1u);
+  EXPECT_EQ(rig.error()[0].mend, "universe 1 has no room for it: use another");
+}
+
+TEST(RigFile, LetsUniversesAndBusesShareNumbers) {
+  const Checked<Rig> rig = parse(kSmall + "[[bus]]\nname = \"other\"\ndriver = \"sacn\"\n" +
+                                 fixture("a", "address = 1") + fixture("b", "universe = 2\naddress = 1") +
+                                 "[[fixture]]\nname = \"c\"\nluminaire = \"bulb\"\nposition_m = [0, 0, 3]\n"
+                                 "bus = \"other\"\naddress = 1\n");
+  EXPECT_TRUE(rig) << listed(rig.error());
+}
+
+TEST(RigFile, HangsABaseTurnedAsTheReferenceSays) {
+  // Yaw 90° turns the base's y (away) from the world's +y to -x; tilt 90° then looks along it.
+  const Checked<Rig> yawed = parse(kSmall + fixture("a", "address = 1\nmount_deg = [90, 0, 0]\ntilt_deg = 90"));
+  ASSERT_TRUE(yawed) << listed(yawed.error());
+  EXPECT_LT((yawed->fixtures[0].world_from_lamp().direction(-Vec3::UnitZ()) + Vec3::UnitX()).norm(), 1e-12);
+  // Pitch 180° stands it on its head: the beam of the untilted head goes up.
+  const Checked<Rig> standing = parse(kSmall + fixture("a", "address = 1\nmount_deg = [0, 180, 0]"));
+  ASSERT_TRUE(standing) << listed(standing.error());
+  EXPECT_LT((standing->fixtures[0].world_from_lamp().direction(-Vec3::UnitZ()) - Vec3::UnitZ()).norm(), 1e-12);
+  // Roll 90° about y alone: straight down becomes -x.
+  const Checked<Rig> rolled = parse(kSmall + fixture("a", "address = 1\nmount_deg = [0, 0, 90]"));
+  ASSERT_TRUE(rolled) << listed(rolled.error());
+  EXPECT_LT((rolled->fixtures[0].world_from_lamp().direction(-Vec3::UnitZ()) + Vec3::UnitX()).norm(), 1e-12);
+}
+
+TEST(RigFile, AStandingHeadReachesWhatAHangingOneCannot) {
+  const std::string mover = "address = 1\nslots = [\"pan\", \"tilt\", \"dimmer\"]\naim_m = [0.1, 0, 9]";
+  EXPECT_FALSE(parse(kSmall + fixture("a", mover)));
+  const Checked<Rig> rig = parse(kSmall + fixture("a", mover + "\nmount_deg = [0, 180, 0]"));
+  EXPECT_TRUE(rig) << listed(rig.error());
+}
+
+TEST(RigFile, ReadsDefaultSpeedsOnlyIntoFixturesThatMove) {
+  const Checked<Rig> rig = parse(kSmall + fixture("a", "address = 1") +
+                                 fixture("b", "address = 2\nslots = [\"pan\", \"tilt\", \"dimmer\"]"));
+  ASSERT_TRUE(rig) << listed(rig.error());
+  EXPECT_EQ(rig->fixtures[0].pan_speed_rad_s, 0);
+  EXPECT_NEAR(rig->fixtures[1].pan_speed_rad_s, kPi, 1e-12);
+}
+
+TEST(RigFile, SurvivesEveryTruncationAndManyChangedBytes) {
+  std::ifstream in(kRooms / "rig.toml", std::ios::binary);
+  const std::string room((std::istreambuf_iterator<char>(in)), {});
+  ASSERT_GT(room.size(), 1000u);
+  int refused = 0;
+  for (std::size_t size = 0; size < room.size(); size += 13) {
+    const Checked<Rig> rig = parse_rig(room.substr(0, size), "rig.toml", kRooms);
+    if (!rig) {
+      ++refused;
+      for (const Problem& problem : rig.error()) EXPECT_FALSE(problem.mend.empty());
+    }
+  }
+  EXPECT_GT(refused, 100);
+  std::mt19937 random(4);
+  for (int i = 0; i < 300; ++i) {
+    std::string changed = room;
+    changed[random() % changed.size()] = static_cast<char>(random());
+    (void)parse_rig(changed, "rig.toml", kRooms);
+  }
+}
+
+TEST(RigFile, SurvivesDeepNestingOfEveryKind) {
+  const auto repeated = [](const std::string& part, int times) {
+    std::string out;
+    for (int i = 0; i < times; ++i) out += part;
+    return out;
+  };
+  constexpr int kDeep = 100000;
+  for (const std::string& text :
+       {"x = " + repeated("[", kDeep), "x = " + repeated("[", kDeep) + repeated("]", kDeep),
+        "x = " + repeated("{a=", kDeep), "a" + repeated(".a", kDeep) + " = 1", "[a" + repeated(".a", kDeep) + "]",
+        "[[a" + repeated(" . \"a\"", kDeep) + "]]", "x = " + repeated("{a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a=", kDeep),
+        "s = \"\"\"\"\"\n" + ("a" + repeated(".'='", kDeep)) + "=1", repeated("[[a]]\n", kDeep)}) {
+    const Checked<Rig> rig = parse(text);
+    EXPECT_FALSE(rig);
+  }
+}
+
+TEST(RigFile, LoadsFiveHundredFixturesAndTwentyThousandPointsInWellUnderASecond) {
+  std::string text = kSmall;
+  for (int i = 0; i < 512; ++i) {
+    text += fixture("fixture-" + std::to_string(i),
+                    "universe = " + std::to_string(1 + i / 64) + "\naddress = " + std::to_string(1 + i % 64 * 8) +
+                        "\nslots = [\"pan\", \"pan-fine\", \"tilt\", \"tilt-fine\", \"dimmer\", \"dimmer-fine\", "
+                        "\"constant:255\", \"unused\"]\naim = \"point-" +
+                        std::to_string(i * 39) + "\"");
+  }
+  for (int i = 0; i < 20000; ++i) {
+    text += "[[point]]\nname = \"point-" + std::to_string(i) + "\"\nposition_m = [" + std::to_string(i % 100 * 0.1) +
+            ", " + std::to_string(i / 100 * 0.1) + ", 0.8]\nnormal = [0, 0, 1]\ngoal_lx = 300\nmax_lx = 500\n";
+  }
+  // Processor time: the machine may be shared.
+  const std::clock_t start = std::clock();
+  const Checked<Rig> rig = parse(text);
+  const double took_s = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  ASSERT_TRUE(rig) << listed(rig.error());
+  EXPECT_EQ(rig->points.size(), 20000u);
+  EXPECT_NE(rig->fixtures[511].joints.tilt_rad, 0);
+  RecordProperty("cpu_seconds", std::to_string(took_s));
+  EXPECT_LT(took_s, 2.0) << "0.2 to 0.5 s is usual; sanitizers take some times as long";
 }
 
 }  // namespace
