@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <charconv>
-#include <limits>
-#include <numeric>
 
 #include "core/check.h"
+#include "core/rig/nearest.h"
 
 namespace luxrig {
 namespace {
@@ -59,30 +58,6 @@ const Option* find(const Bus& bus, std::string_view key) {
 
 }  // namespace
 
-std::string nearest_name(std::string_view word, std::span<const std::string_view> candidates) {
-  std::string best;
-  std::size_t best_edits = std::numeric_limits<std::size_t>::max();
-  for (const std::string_view candidate : candidates) {
-    // Levenshtein distance, one row at a time.
-    std::vector<std::size_t> row(candidate.size() + 1);
-    std::iota(row.begin(), row.end(), std::size_t{0});
-    for (std::size_t i = 0; i < word.size(); ++i) {
-      std::size_t diagonal = row[0];
-      row[0] = i + 1;
-      for (std::size_t j = 0; j < candidate.size(); ++j) {
-        const std::size_t swapped = diagonal + (word[i] == candidate[j] ? 0 : 1);
-        diagonal = row[j + 1];
-        row[j + 1] = std::min({row[j + 1] + 1, row[j] + 1, swapped});
-      }
-    }
-    if (row.back() < best_edits) {
-      best_edits = row.back();
-      best = candidate;
-    }
-  }
-  return best;
-}
-
 Problem problem_at(const Rig& rig, const Bus& bus, std::string_view key, std::string what, std::string mend) {
   const Option* option = find(bus, key);
   const Place place = option != nullptr ? option->place : bus.place;
@@ -98,7 +73,7 @@ std::vector<Problem> check_options(const Rig& rig, const Bus& bus, std::span<con
     const auto doc = std::find_if(docs.begin(), docs.end(), [&](const OptionDoc& d) { return d.key == key; });
     if (doc == docs.end()) {
       problems.push_back(problem_at(rig, bus, key, "bus \"" + bus.name + "\" has an unknown option \"" + key + "\"",
-                                    "did you mean \"" + nearest_name(key, known) + "\"?"));
+                                    mend_for_unknown(key, known, "leave it out")));
       continue;
     }
     if (type_of(option.value) != doc->type) {

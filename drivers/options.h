@@ -29,7 +29,4 @@ namespace luxrig {
 [[nodiscard]] Problem problem_at(const Rig& rig, const Bus& bus, std::string_view key, std::string what,
                                  std::string mend);
 
-/// The candidate with the fewest single-letter edits to `word`; empty without candidates.
-[[nodiscard]] std::string nearest_name(std::string_view word, std::span<const std::string_view> candidates);
-
 }  // namespace luxrig

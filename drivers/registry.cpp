@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "core/rig/nearest.h"
 #include "drivers/dmx/sacn/sacn_driver.h"
 #include "drivers/modbus/modbus_tcp_driver.h"
-#include "drivers/options.h"
 
 namespace luxrig {
 namespace {
@@ -36,7 +36,7 @@ std::vector<Problem> check_buses(const Rig& rig) {
     if (entry == nullptr) {
       problems.push_back({rig.file.string(), bus.place.line, bus.place.column,
                           fmt::format("bus \"{}\" has an unknown driver \"{}\"", bus.name, bus.driver),
-                          fmt::format("did you mean \"{}\"?", nearest_name(bus.driver, names))});
+                          mend_for_unknown(bus.driver, names, "no driver is built in")});
       continue;
     }
     const std::vector<Problem> found = entry->check(rig, i);

@@ -55,13 +55,5 @@ TEST(Registry, EveryDefaultOfAnOptionIsGoodItself) {
   }
 }
 
-TEST(Options, FindTheNearestName) {
-  const std::string_view names[] = {"destination", "port", "priority"};
-  EXPECT_EQ(nearest_name("prot", names), "port");
-  EXPECT_EQ(nearest_name("destinatoin", names), "destination");
-  EXPECT_EQ(nearest_name("", names), "port");
-  EXPECT_EQ(nearest_name("x", {}), "");
-}
-
 }  // namespace
 }  // namespace luxrig
