@@ -4,6 +4,7 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
+#include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cmath>
 #include <exception>
@@ -49,9 +50,12 @@ class MeshReader {
       if (const auto refusal = why_not_opened(file_.path)) return refuse(refusal->what, refusal->mend);
       Assimp::Importer importer;
       AllowedFiles* const files = restrict_to(importer, file_.path);
-      importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-      const aiScene* const source =
-          importer.ReadFile(file_.path.string(), aiProcess_Triangulate | aiProcess_SortByPType);
+      // No post-processing yet: assimp's steps follow bad indices out of their arrays.
+      const aiScene* source = importer.ReadFile(file_.path.string(), 0);
+      if (source != nullptr) {
+        drop_unusable_faces(*source);
+        source = importer.ApplyPostProcessing(aiProcess_Triangulate);
+      }
       if (source == nullptr || source->mRootNode == nullptr) {
         return refuse("is no mesh that can be read: " + first_line(importer.GetErrorString()),
                       "export it again as OBJ, PLY, STL or glTF");
@@ -102,6 +106,7 @@ class MeshReader {
     }
   }
 
+  /// After triangulation, so faces are triangles; a mesh counts once for each node that shows it.
   static std::size_t count_triangles(const aiScene& source) {
     std::size_t count = 0;
     for_each_node(source, [&](const Placed& placed) {
@@ -111,6 +116,29 @@ class MeshReader {
       }
     });
     return count;
+  }
+
+  /// Faces with an index past the vertices (counted), and points and lines, which carry no light. In place:
+  /// the importer owns the meshes, and hands out as const what it made as not.
+  void drop_unusable_faces(const aiScene& source) {
+    for (unsigned i = 0; i < source.mNumMeshes; ++i) {
+      aiMesh& mesh = *source.mMeshes[i];
+      unsigned kept = 0;
+      bool polygons = false;
+      for (unsigned j = 0; j < mesh.mNumFaces; ++j) {
+        aiFace& face = mesh.mFaces[j];
+        const bool bad = std::any_of(face.mIndices, face.mIndices + face.mNumIndices,
+                                     [&](unsigned index) { return index >= mesh.mNumVertices; });
+        scene_.cleaning.bad_indices += bad ? 1 : 0;
+        if (bad || face.mNumIndices < 3) continue;
+        polygons = polygons || face.mNumIndices > 3;
+        aiFace& to = mesh.mFaces[kept++];
+        std::swap(to.mIndices, face.mIndices);
+        std::swap(to.mNumIndices, face.mNumIndices);
+      }
+      mesh.mNumFaces = kept;
+      mesh.mPrimitiveTypes = polygons ? aiPrimitiveType_POLYGON : aiPrimitiveType_TRIANGLE;
+    }
   }
 
   void read_materials(const aiScene& source, const AllowedFiles& files) {
