@@ -12,10 +12,11 @@
 /// without g right at every point to within a factor of 1/(1 − open_loop_margin) either way.
 ///
 /// A meter's systematic tolerance does not slow the loop (the reading shall equal the goal), but limits must hold with
-/// it: the true value may be reading · (1 + tolerance).
+/// it: the true value may be reading / (1 − tolerance).
 ///
 /// Time is an argument; same calls, same result.
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <optional>
 #include <span>
@@ -86,12 +87,13 @@ class GainEstimator {
   [[nodiscard]] bool confirmed(std::size_t point) const;
 
   /// The most lux that can truly be at this point at these levels, given bounds and evidence: without a meter there,
-  /// model with upper gains, over (1 − open_loop_margin); with one, the last believed reading · (1 + tolerance)
+  /// model with upper gains, over (1 − open_loop_margin); with one, the last believed reading / (1 − tolerance)
   /// carried over to these levels in the worst way the bounds allow.
   [[nodiscard]] double most_lux_at_point(std::size_t point, std::span<const double> level, Time now) const;
 
-  /// Rows that stay above the truth everywhere on the straight way `from` -> `to` (a fade moves all fixtures by the
-  /// same share), so far as bounds and evidence say.
+  /// Rows for OutputProgram: as long as row · level ≤ max_lx, no level on the straight way `from` -> `to` (a fade moves
+  /// all fixtures by the same share), nor a share of one, can bring more than max_lx, so far as bounds and evidence
+  /// say.
   [[nodiscard]] WorstCase worst_case(std::span<const double> from, std::span<const double> to, Time now) const;
 
   /// `level` with the fixtures that light a limited point scaled down together, so that most_lux_at_point <= max_lx
@@ -111,26 +113,40 @@ class GainEstimator {
     Eigen::VectorXd level;
   };
   struct Meter {
-    std::optional<double> last_lux;  ///< believed or not
-    double last_predicted_lx = 0;
-    bool stuck = false;
+    std::optional<double> lux;  ///< last value, believed or not
+    double predicted_lx = 0;    ///< when that value first came
   };
 
-  void estimate(Time now);
+  /// Rows of M and of the transport's standard error, with what is known of x there.
+  struct Row {
+    Eigen::RowVectorXd lux_per_level, standard_error;
+    Eigen::RowVectorXd factor, factor_error;  ///< x and its standard error, within bounds
+    std::optional<std::size_t> luxmeter;      ///< whose evidence holds here
+  };
+  [[nodiscard]] Row row_of_meter(std::size_t luxmeter) const;
+  [[nodiscard]] Row row_of_point(std::size_t point) const;
+  [[nodiscard]] Prediction predict(const Row& row, const Eigen::VectorXd& level) const;
+  [[nodiscard]] Eigen::RowVectorXd unmeasured_worst(const Row& row) const;
+  [[nodiscard]] double most_lux(const Row& row, const Eigen::VectorXd& level, Time now) const;
   [[nodiscard]] const Evidence* latest(std::size_t luxmeter) const;
-  [[nodiscard]] double share_lux(Eigen::Index luxmeter, std::span<const double> level, bool upper) const;
-  [[nodiscard]] Eigen::RowVectorXd point_row(std::size_t point) const;
+  [[nodiscard]] double covariance(const Row& one, const Eigen::VectorXd& one_level, const Evidence& other) const;
+  [[nodiscard]] Eigen::VectorXd vector_of(std::span<const double> level) const;
+  void learn(const LuxReading& reading, const Eigen::VectorXd& level);
+  void estimate(Time now);
 
   Eigen::MatrixXd point_, point_error_, meter_, meter_error_;
   std::vector<Luxmeter> luxmeters_;
   std::vector<Point> points_;
+  std::vector<std::string> fixture_names_;
   std::vector<std::optional<std::size_t>> meter_of_point_;
   Eigen::VectorXd max_level_;
-  double gain_min_ = 0, gain_max_ = 1, local_ = 1;  ///< local_: 1/(1 − open_loop_margin)
-  double prior_gain_sd_ = 0, prior_local_sd_ = 0;
+  double gain_min_ = 0, gain_max_ = 1;
+  double local_ = 1;  ///< 1/(1 − open_loop_margin)
+  double prior_gain_ = 1, prior_gain_sd_ = 0, prior_local_sd_ = 0;
 
-  std::vector<Evidence> evidence_;  ///< oldest first
+  std::vector<Evidence> evidence_;  ///< in the order in which it came
   std::vector<Meter> meters_;
+  Eigen::LDLT<Eigen::MatrixXd> innovation_;  ///< covariance of the evidence
   Eigen::VectorXd gain_, gain_error_;
   Eigen::MatrixXd factor_, factor_error_;  ///< x: luxmeters × fixtures
 };

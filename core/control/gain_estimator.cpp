@@ -1,0 +1,450 @@
+#include "core/control/gain_estimator.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/check.h"
+#include "core/control/output_program.h"
+#include "core/solve/emittance.h"
+
+namespace luxrig {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::RowVectorXd;
+using Eigen::VectorXd;
+
+constexpr double kRepeatability = 0.005;   ///< of a reading, standard deviation; the systematic part is its tolerance
+constexpr double kDriftPerMinute = 0.001;  ///< of a lamp: old evidence loses weight, old limits grow
+constexpr double kCurveError = 0.1;        ///< how far the exponent of level -> true output may be from 1
+constexpr double kLeastLocalSd = 0.02;     ///< even a rig that trusts its model fully does not trust it further
+constexpr double kDark_lx = 0.5;           ///< what a meter may show in the dark (offset, stray light)
+constexpr double kStuckChange = 0.05;      ///< a value that stays while the light changes by this share is stuck
+constexpr double kJump = 0.2;              ///< less than this share off what is expected is never called a jump
+constexpr double kSameLevels = 0.005;      ///< evidence at levels nearer than this share replaces the former
+constexpr std::size_t kMostEvidence = 6;   ///< per meter; older goes
+constexpr double kMeteredWeight = 30;      ///< a metered goal goes before goals that nobody measures
+constexpr int kLimitRounds = 6;
+constexpr int kFadeSamples = 8;
+
+double minutes_between(Time from, Time to) { return std::max(0.0, to_seconds(to - from) / 60); }
+
+/// |ln(b/a)|, at most 1; 1 where one of them is 0.
+double log_ratio(double a, double b) {
+  if (a == b) return 0;
+  return a > 0 && b > 0 ? std::min(1.0, std::abs(std::log(b / a))) : 1.0;
+}
+
+MatrixXd matrix_or_zero(const MatrixXd& matrix, Index rows, Index columns, const char* what) {
+  if (matrix.size() == 0) return MatrixXd::Zero(rows, columns);
+  LUXRIG_CHECK(matrix.rows() == rows && matrix.cols() == columns, "{} is {} × {}, the rig needs {} × {}", what,
+               matrix.rows(), matrix.cols(), rows, columns);
+  return matrix;
+}
+
+std::vector<double> list_of(const VectorXd& level) { return {level.data(), level.data() + level.size()}; }
+
+}  // namespace
+
+GainEstimator::GainEstimator(const Rig& rig, const LightModel& model)
+    : luxmeters_(rig.luxmeters),
+      points_(rig.points),
+      meter_of_point_(rig.points.size()),
+      meters_(rig.luxmeters.size()) {
+  const auto fixtures = static_cast<Index>(rig.fixtures.size()), points = static_cast<Index>(points_.size()),
+             meters = static_cast<Index>(luxmeters_.size());
+  point_ = matrix_or_zero(model.point_lux_per_level, points, fixtures, "point_lux_per_level");
+  meter_ = matrix_or_zero(model.meter_lux_per_level, meters, fixtures, "meter_lux_per_level");
+  point_error_ = matrix_or_zero(model.point_standard_error, points, fixtures, "point_standard_error");
+  meter_error_ = matrix_or_zero(model.meter_standard_error, meters, fixtures, "meter_standard_error");
+  max_level_.resize(fixtures);
+  for (Index j = 0; j < fixtures; ++j) {
+    const Fixture& fixture = rig.fixtures[static_cast<std::size_t>(j)];
+    max_level_[j] = std::min(fixture.max_level, rig.limits.max_level);
+    fixture_names_.push_back(fixture.name);
+  }
+  for (std::size_t i = 0; i < luxmeters_.size(); ++i)
+    if (luxmeters_[i].point && !meter_of_point_[*luxmeters_[i].point]) meter_of_point_[*luxmeters_[i].point] = i;
+  gain_min_ = rig.control.gain_min;
+  gain_max_ = rig.control.gain_max;
+  const double margin = std::clamp(rig.limits.open_loop_margin, 0.0, 0.9);
+  local_ = 1 / (1 - margin);
+  prior_gain_ = std::clamp(1.0, gain_min_, gain_max_);
+  prior_gain_sd_ = (gain_max_ - gain_min_) / 4;
+  prior_local_sd_ = std::max(kLeastLocalSd, margin / 3);
+  estimate(Time{});
+}
+
+VectorXd GainEstimator::vector_of(std::span<const double> level) const {
+  LUXRIG_CHECK(static_cast<Index>(level.size()) == max_level_.size(), "{} levels, {} fixtures", level.size(),
+               max_level_.size());
+  return Eigen::Map<const VectorXd>(level.data(), static_cast<Index>(level.size()));
+}
+
+GainEstimator::Row GainEstimator::row_of_meter(std::size_t luxmeter) const {
+  const auto i = static_cast<Index>(luxmeter);
+  return {meter_.row(i), meter_error_.row(i), factor_.row(i), factor_error_.row(i), luxmeter};
+}
+
+GainEstimator::Row GainEstimator::row_of_point(std::size_t point) const {
+  if (confirmed(point)) return row_of_meter(*meter_of_point_[point]);
+  const auto i = static_cast<Index>(point);
+  const RowVectorXd error = (gain_error_.array().square() + prior_local_sd_ * prior_local_sd_).sqrt().transpose();
+  return {point_.row(i), point_error_.row(i), gain_.transpose(), error, std::nullopt};
+}
+
+const GainEstimator::Evidence* GainEstimator::latest(std::size_t luxmeter) const {
+  for (auto it = evidence_.rbegin(); it != evidence_.rend(); ++it)
+    if (it->luxmeter == luxmeter) return &*it;
+  return nullptr;
+}
+
+bool GainEstimator::confirmed(std::size_t point) const {
+  return meter_of_point_[point] && latest(*meter_of_point_[point]) != nullptr;
+}
+
+double GainEstimator::upper_gain(std::size_t fixture) const {
+  return std::min(gain_max_, gain(fixture) + 3 * gain_standard_error(fixture));
+}
+
+/// Prior covariance of the light at a row at some levels with the light behind a reading.
+double GainEstimator::covariance(const Row& one, const VectorXd& one_level, const Evidence& other) const {
+  const auto i = static_cast<Index>(other.luxmeter);
+  const bool same = one.luxmeter == other.luxmeter;
+  double sum = 0;
+  for (Index j = 0; j < one_level.size(); ++j) {
+    const double levels = one_level[j] * other.level[j], lux = one.lux_per_level[j] * meter_(i, j);
+    sum += levels * lux * prior_gain_sd_ * prior_gain_sd_;
+    if (same) sum += levels * (lux * prior_local_sd_ * prior_local_sd_ + one.standard_error[j] * one.standard_error[j]);
+  }
+  return sum;
+}
+
+void GainEstimator::estimate(Time now) {
+  const Index fixtures = max_level_.size(), meters = meter_.rows(), count = static_cast<Index>(evidence_.size());
+  gain_ = VectorXd::Constant(fixtures, prior_gain_);
+  gain_error_ = VectorXd::Constant(fixtures, prior_gain_sd_);
+  factor_ = MatrixXd::Constant(meters, fixtures, prior_gain_);
+  MatrixXd local_variance = MatrixXd::Constant(meters, fixtures, prior_local_sd_ * prior_local_sd_);
+  for (Index i = 0; i < meters; ++i)
+    for (Index j = 0; j < fixtures; ++j)
+      if (meter_(i, j) > 0) local_variance(i, j) += std::pow(meter_error_(i, j) / meter_(i, j), 2);
+  factor_error_ = (local_variance.array() + prior_gain_sd_ * prior_gain_sd_).sqrt();
+  if (count == 0) return;
+
+  MatrixXd light(count, fixtures);  // H: what each fixture gives to each reading, at rated output
+  VectorXd surprise(count);
+  for (Index k = 0; k < count; ++k) {
+    const Evidence& e = evidence_[static_cast<std::size_t>(k)];
+    light.row(k) = meter_.row(static_cast<Index>(e.luxmeter)).cwiseProduct(e.level.transpose());
+    surprise[k] = e.lux - prior_gain_ * light.row(k).sum();
+  }
+  MatrixXd total(count, count);
+  for (Index k = 0; k < count; ++k) {
+    const Evidence& e = evidence_[static_cast<std::size_t>(k)];
+    Row row = row_of_meter(e.luxmeter);
+    for (Index l = 0; l < count; ++l) total(k, l) = covariance(row, e.level, evidence_[static_cast<std::size_t>(l)]);
+    const double expected = std::max(e.lux, prior_gain_ * light.row(k).sum());
+    const double minutes = minutes_between(e.taken, now);
+    double noise = std::pow(kRepeatability * expected, 2) + std::pow(kDriftPerMinute * minutes * expected, 2) +
+                   std::pow(luxmeters_[e.luxmeter].patch.lux_per_count, 2) / 12;
+    // At levels other than the present ones the dimmer's true curve makes the gain another one.
+    const VectorXd& present = latest(e.luxmeter)->level;
+    for (Index j = 0; j < fixtures; ++j)
+      noise += std::pow(light(k, j) * kCurveError * log_ratio(e.level[j], present[j]), 2);
+    total(k, k) += std::max(noise, 1e-300);
+  }
+  innovation_.compute(total);
+  const VectorXd weight = innovation_.solve(surprise);
+  const double gain_variance = prior_gain_sd_ * prior_gain_sd_;
+  for (Index j = 0; j < fixtures; ++j) {
+    const VectorXd with_gain = gain_variance * light.col(j);
+    gain_[j] = std::clamp(prior_gain_ + with_gain.dot(weight), gain_min_, gain_max_);
+    gain_error_[j] = std::sqrt(std::max(0.0, gain_variance - with_gain.dot(innovation_.solve(with_gain))));
+    for (Index i = 0; i < meters; ++i) {
+      VectorXd with_factor = with_gain;
+      for (Index k = 0; k < count; ++k)
+        if (static_cast<Index>(evidence_[static_cast<std::size_t>(k)].luxmeter) == i)
+          with_factor[k] += local_variance(i, j) * light(k, j);
+      factor_(i, j) = std::clamp(prior_gain_ + with_factor.dot(weight), gain_min_ / local_, gain_max_ * local_);
+      const double variance = gain_variance + local_variance(i, j) - with_factor.dot(innovation_.solve(with_factor));
+      factor_error_(i, j) = std::sqrt(std::max(0.0, variance));
+    }
+  }
+}
+
+Prediction GainEstimator::predict(const Row& row, const VectorXd& level) const {
+  Prediction prediction;
+  prediction.lux = row.lux_per_level.cwiseProduct(row.factor).dot(level);
+  double variance = 0;
+  for (Index j = 0; j < level.size(); ++j)
+    variance += level[j] * level[j] *
+                (row.lux_per_level[j] * row.lux_per_level[j] *
+                     (prior_gain_sd_ * prior_gain_sd_ + prior_local_sd_ * prior_local_sd_) +
+                 row.standard_error[j] * row.standard_error[j]);
+  if (!evidence_.empty()) {
+    VectorXd shared(static_cast<Index>(evidence_.size()));
+    for (Index k = 0; k < shared.size(); ++k)
+      shared[k] = covariance(row, level, evidence_[static_cast<std::size_t>(k)]);
+    variance -= shared.dot(innovation_.solve(shared));
+  }
+  prediction.standard_error_lx = std::sqrt(std::max(0.0, variance));
+  return prediction;
+}
+
+Prediction GainEstimator::at_point(std::size_t point, std::span<const double> level) const {
+  return predict(row_of_point(point), vector_of(level));
+}
+
+Prediction GainEstimator::at_meter(std::size_t luxmeter, std::span<const double> level) const {
+  return predict(row_of_meter(luxmeter), vector_of(level));
+}
+
+Judgement GainEstimator::judge(const LuxReading& reading, std::span<const double> given_level) const {
+  const VectorXd level = vector_of(given_level);
+  const Luxmeter& luxmeter = luxmeters_.at(reading.luxmeter);
+  const Meter& meter = meters_[reading.luxmeter];
+  const Row row = row_of_meter(reading.luxmeter);
+  Judgement judgement;
+  judgement.luxmeter = reading.luxmeter;
+  const Prediction expected = predict(row, level);
+  judgement.predicted_lx = expected.lux;
+  const double low = (row.lux_per_level - 3 * row.standard_error).cwiseMax(0).dot(level) * gain_min_ / local_;
+  const double high = (row.lux_per_level + 3 * row.standard_error).dot(level) * gain_max_ * local_;
+  judgement.lowest_lx = std::max(0.0, low * (1 - luxmeter.tolerance) - kDark_lx);
+  judgement.highest_lx = high * (1 + luxmeter.tolerance) + kDark_lx;
+
+  const auto reject = [&](std::string why) {
+    judgement.why = std::move(why);
+    return judgement;
+  };
+  if (!std::isfinite(reading.lux)) return reject("its reading is not a number");
+  if (reading.lux < 0) return reject(fmt::format("it reads {:.4g} lx, less than nothing", reading.lux));
+  if (reading.lux > luxmeter.range_lx)
+    return reject(fmt::format("it reads {:.4g} lx, beyond its range of {:.4g} lx", reading.lux, luxmeter.range_lx));
+  if (meter.lux && *meter.lux == reading.lux) {
+    const double change = std::abs(expected.lux - meter.predicted_lx);
+    const double visible = std::max(
+        {kStuckChange * std::max(expected.lux, meter.predicted_lx), kDark_lx, 3 * luxmeter.patch.lux_per_count});
+    if (change > visible)
+      return reject(fmt::format("it is stuck: still {:.4g} lx while the light there went from {:.4g} to {:.4g} lx",
+                                reading.lux, meter.predicted_lx, expected.lux));
+  }
+  if (reading.lux < judgement.lowest_lx || reading.lux > judgement.highest_lx)
+    return reject(
+        fmt::format("it reads {:.4g} lx where the model allows {:.4g} to {:.4g} lx: a covered or wrong meter, "
+                    "a dead lamp or other light",
+                    reading.lux, judgement.lowest_lx, judgement.highest_lx));
+  if (latest(reading.luxmeter) != nullptr) {
+    const double allowed = std::max({kJump * expected.lux, 4 * expected.standard_error_lx, kDark_lx});
+    if (std::abs(reading.lux - expected.lux) > allowed)
+      return reject(fmt::format("it reads {:.4g} lx where {:.4g} ± {:.2g} lx are expected from what it read before",
+                                reading.lux, expected.lux, allowed));
+  }
+  judgement.believed = true;
+  return judgement;
+}
+
+void GainEstimator::learn(const LuxReading& reading, const VectorXd& level) {
+  const auto i = static_cast<Index>(reading.luxmeter);
+  const RowVectorXd light = meter_.row(i).cwiseProduct(level.transpose());
+  const auto same = [&](const Evidence& e) {
+    const RowVectorXd other = meter_.row(i).cwiseProduct(e.level.transpose());
+    return e.luxmeter == reading.luxmeter && (other - light).norm() <= kSameLevels * light.norm();
+  };
+  std::erase_if(evidence_, same);
+  const auto of_meter = [&](const Evidence& e) { return e.luxmeter == reading.luxmeter; };
+  if (static_cast<std::size_t>(std::count_if(evidence_.begin(), evidence_.end(), of_meter)) >= kMostEvidence)
+    evidence_.erase(std::find_if(evidence_.begin(), evidence_.end(), of_meter));
+  evidence_.push_back({reading.luxmeter, reading.lux, reading.taken, level});
+}
+
+std::vector<Judgement> GainEstimator::update(Time now, std::span<const LuxReading> readings,
+                                             std::span<const double> level) {
+  const VectorXd at = vector_of(level);
+  std::vector<Judgement> judgements;
+  std::vector<const LuxReading*> believed;
+  // All are judged by what was known before, so that their order does not matter.
+  for (const LuxReading& reading : readings) {
+    const Judgement judgement = judge(reading, level);
+    Meter& meter = meters_[reading.luxmeter];
+    if (!meter.lux || *meter.lux != reading.lux) {  // while a value stays, the light it first came with counts
+      meter.lux = reading.lux;
+      meter.predicted_lx = judgement.predicted_lx;
+    }
+    if (judgement.believed) believed.push_back(&reading);
+    judgements.push_back(judgement);
+  }
+  for (std::size_t k = 0; k < readings.size(); ++k)
+    // What a stuck meter said before cannot be trusted either.
+    if (!judgements[k].believed && meters_[readings[k].luxmeter].lux == readings[k].lux &&
+        judgements[k].why.starts_with("it is stuck"))
+      std::erase_if(evidence_, [&](const Evidence& e) { return e.luxmeter == readings[k].luxmeter; });
+  for (const LuxReading* reading : believed)
+    // In the dark there is nothing to learn but the meter's offset.
+    if (meter_.row(static_cast<Index>(reading->luxmeter)).dot(at) > 2 * kDark_lx) learn(*reading, at);
+  estimate(now);
+  return judgements;
+}
+
+void GainEstimator::forget(std::size_t luxmeter) {
+  std::erase_if(evidence_, [&](const Evidence& e) { return e.luxmeter == luxmeter; });
+  meters_.at(luxmeter) = Meter{};
+  Time newest{};
+  for (const Evidence& e : evidence_) newest = std::max(newest, e.taken);
+  estimate(newest);
+}
+
+RowVectorXd GainEstimator::unmeasured_worst(const Row& row) const {
+  RowVectorXd worst = row.lux_per_level + 3 * row.standard_error;
+  for (Index j = 0; j < worst.size(); ++j) worst[j] *= upper_gain(static_cast<std::size_t>(j)) * local_;
+  return worst;
+}
+
+double GainEstimator::most_lux(const Row& row, const VectorXd& level, Time now) const {
+  const double unmeasured = unmeasured_worst(row).dot(level);
+  if (!row.luxmeter || latest(*row.luxmeter) == nullptr) return unmeasured;
+  const Evidence& e = *latest(*row.luxmeter);
+  // max Σ A_j w_j over lower ≤ A ≤ upper, A · (levels of the reading) ≤ what it can truly have been: a fractional
+  // knapsack, filled by best w_j per level. w_j: level, times what the dimmer's true curve may add on the way there.
+  const Index n = level.size();
+  VectorXd lower(n), upper(n), w(n);
+  double least = 0;
+  for (Index j = 0; j < n; ++j) {
+    const double m = row.lux_per_level[j], x = row.factor[j], sd = row.factor_error[j];
+    upper[j] = m * std::min(gain_max_ * local_, x + 3 * sd) + (m > 0 ? 0 : 3 * row.standard_error[j] * gain_max_);
+    lower[j] = std::min(upper[j], m * std::max(gain_min_ / local_, x - 3 * sd));
+    w[j] = level[j] *
+           std::exp(e.level[j] > 0 && level[j] > 0 ? kCurveError * std::abs(std::log(level[j] / e.level[j])) : 0);
+    least += lower[j] * e.level[j];
+  }
+  const double truth = e.lux / (1 - std::min(0.9, luxmeters_[e.luxmeter].tolerance)) *
+                       (1 + kDriftPerMinute * minutes_between(e.taken, now));
+  if (least > truth) lower *= truth / least;
+  double left = std::max(0.0, truth - least);
+  std::vector<Index> order(static_cast<std::size_t>(n));
+  std::iota(order.begin(), order.end(), Index{0});
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return w[a] * e.level[b] > w[b] * e.level[a]; });
+  double most = lower.dot(w);
+  for (const Index j : order) {
+    const double room = upper[j] - lower[j];
+    const double taken = e.level[j] > 0 ? std::min(room, left / e.level[j]) : room;
+    most += taken * w[j];
+    left = std::max(0.0, left - taken * e.level[j]);
+  }
+  return most;
+}
+
+double GainEstimator::most_lux_at_point(std::size_t point, std::span<const double> level, Time now) const {
+  return most_lux(row_of_point(point), vector_of(level), now);
+}
+
+WorstCase GainEstimator::worst_case(std::span<const double> from, std::span<const double> to, Time now) const {
+  const VectorXd begin = vector_of(from), end = vector_of(to);
+  WorstCase worst;
+  for (std::size_t p = 0; p < points_.size(); ++p)
+    if (points_[p].max_lx) worst.points.push_back(p);
+  const auto count = static_cast<Index>(worst.points.size());
+  worst.worst_lux_per_level.resize(count, begin.size());
+  worst.max_lx.resize(count);
+  for (Index k = 0; k < count; ++k) {
+    const std::size_t p = worst.points[static_cast<std::size_t>(k)];
+    const double max_lx = *points_[p].max_lx;
+    worst.max_lx[k] = max_lx;
+    const Row row = row_of_point(p);
+    worst.worst_lux_per_level.row(k) = unmeasured_worst(row);
+    if (!row.luxmeter) continue;
+    // One factor on the best estimate, large enough wherever on the way the limit could be near.
+    const RowVectorXd estimate = row.lux_per_level.cwiseProduct(row.factor) + 3 * row.standard_error;
+    double factor = 0;
+    for (int s = 0; s <= kFadeSamples; ++s) {
+      const VectorXd level = begin + (end - begin) * (static_cast<double>(s) / kFadeSamples);
+      const double lux = estimate.dot(level), most = most_lux(row, level, now);
+      if (lux > 0 && (s == kFadeSamples || most >= 0.9 * max_lx)) factor = std::max(factor, most / lux);
+    }
+    if (factor > 0) worst.worst_lux_per_level.row(k) = factor * estimate;
+  }
+  return worst;
+}
+
+std::vector<double> GainEstimator::within_limits(std::span<const double> given, Time now) const {
+  std::vector<double> level = list_of(vector_of(given).cwiseMax(0).cwiseMin(max_level_));
+  for (int round = 0; round < kLimitRounds; ++round) {
+    const WorstCase worst = worst_case(level, level, now);
+    const std::vector<double> before = level;
+    scale_to_limits(worst.worst_lux_per_level, worst.max_lx, level);
+    if (level == before) return level;
+  }
+  // Not settled: scaling down may need a little more each time (the curve's uncertainty). A last step that is certain.
+  for (std::size_t p = 0; p < points_.size(); ++p) {
+    if (!points_[p].max_lx) continue;
+    const Row row = row_of_point(p);
+    const double most = most_lux(row, vector_of(level), now);
+    if (most <= *points_[p].max_lx) continue;
+    const double share = std::pow(*points_[p].max_lx / most, 1 / (1 - kCurveError));
+    for (std::size_t j = 0; j < level.size(); ++j)
+      if (row.lux_per_level[static_cast<Index>(j)] > 0) level[j] *= share;
+  }
+  return level;
+}
+
+Correction GainEstimator::correct(std::span<const double> present, Time now) const {
+  EmittanceProblem problem;
+  const auto points = static_cast<Index>(points_.size());
+  problem.lux_per_level.resize(points, max_level_.size());
+  problem.goal_lx.setConstant(points, std::numeric_limits<double>::quiet_NaN());
+  problem.weight.resize(points);
+  problem.max_lx.setConstant(points, std::numeric_limits<double>::infinity());
+  problem.max_level = max_level_;
+  problem.near_level = vector_of(present).cwiseMax(0).cwiseMin(max_level_);
+  problem.light_name = fixture_names_;
+  std::vector<Row> rows;
+  for (Index i = 0; i < points; ++i) {
+    const Point& point = points_[static_cast<std::size_t>(i)];
+    rows.push_back(row_of_point(static_cast<std::size_t>(i)));
+    problem.lux_per_level.row(i) = rows.back().lux_per_level.cwiseProduct(rows.back().factor);
+    problem.weight[i] = point.weight * (rows.back().luxmeter ? kMeteredWeight : 1);
+    if (point.goal_lx) problem.goal_lx[i] = *point.goal_lx;
+    problem.point_name.push_back(point.name);
+  }
+
+  Correction correction;
+  correction.why.resize(points_.size());
+  VectorXd level = problem.near_level;
+  // The limits hold for the worst case, which depends on where the levels go: solve, look, tighten, solve again.
+  for (int round = 0; round < kLimitRounds; ++round) {
+    bool over = round == 0;
+    for (Index i = 0; i < points; ++i) {
+      const auto& max_lx = points_[static_cast<std::size_t>(i)].max_lx;
+      if (!max_lx) continue;
+      const double lux = problem.lux_per_level.row(i).dot(level);
+      const double most = most_lux(rows[static_cast<std::size_t>(i)], level, now);
+      over = over || most > *max_lx;
+      problem.max_lx[i] = lux > 0 && most > 0 ? *max_lx * std::min(1.0, lux / most) : *max_lx / local_;
+    }
+    if (!over) break;
+    const auto solution = solve_emittance(problem);
+    if (!solution) break;
+    level = solution->level;
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      const PointOutcome& outcome = solution->points[i];
+      correction.why[i] = outcome.reason;
+      if (outcome.limit_points.empty()) continue;
+      const auto first = static_cast<std::size_t>(outcome.limit_points.front());
+      correction.why[i] +=
+          fmt::format(" (of the limit of {:.4g} lx, {:.3g} lx are kept free for the error of {})",
+                      *points_[first].max_lx, *points_[first].max_lx - problem.max_lx[static_cast<Index>(first)],
+                      rows[first].luxmeter ? "the meter" : "the model: no meter confirms it");
+    }
+  }
+  correction.level = within_limits(list_of(level), now);
+  const VectorXd aimed = problem.lux_per_level * vector_of(correction.level);
+  correction.aimed_lx = list_of(aimed);
+  return correction;
+}
+
+}  // namespace luxrig
