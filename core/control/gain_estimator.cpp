@@ -28,6 +28,10 @@ constexpr double kJump = 0.2;              ///< less than this share off what is
 constexpr double kSameLevels = 0.005;      ///< evidence at levels nearer than this share replaces the former
 constexpr std::size_t kMostEvidence = 6;   ///< per meter; older goes
 constexpr double kMeteredWeight = 30;      ///< a metered goal goes before goals that nobody measures
+/// Weight of "stay at the present level" against a goal that nobody measures, in units of the fixture's brightest
+/// point. Without it such goals move levels so far in one round that the next reading surprises (of 500 simulated rigs,
+/// five instead of one or none missed a metered goal by more than 2 % after three rounds).
+constexpr double kCaution = 0.5;
 constexpr int kLimitRounds = 6;
 constexpr int kFadeSamples = 8;
 
@@ -227,12 +231,14 @@ Judgement GainEstimator::judge(const LuxReading& reading, std::span<const double
   if (reading.lux > luxmeter.range_lx)
     return reject(fmt::format("it reads {:.4g} lx, beyond its range of {:.4g} lx", reading.lux, luxmeter.range_lx));
   if (meter.lux && *meter.lux == reading.lux) {
-    const double change = std::abs(expected.lux - meter.predicted_lx);
-    const double visible = std::max(
-        {kStuckChange * std::max(expected.lux, meter.predicted_lx), kDark_lx, 3 * luxmeter.patch.lux_per_count});
+    // Both by the present estimate: what was learned in between is no change of the light.
+    const double former = predict(row, meter.level).lux;
+    const double change = std::abs(expected.lux - former);
+    const double visible =
+        std::max({kStuckChange * std::max(expected.lux, former), kDark_lx, 3 * luxmeter.patch.lux_per_count});
     if (change > visible)
       return reject(fmt::format("it is stuck: still {:.4g} lx while the light there went from {:.4g} to {:.4g} lx",
-                                reading.lux, meter.predicted_lx, expected.lux));
+                                reading.lux, former, expected.lux));
   }
   if (reading.lux < judgement.lowest_lx || reading.lux > judgement.highest_lx)
     return reject(
@@ -274,7 +280,7 @@ std::vector<Judgement> GainEstimator::update(Time now, std::span<const LuxReadin
     Meter& meter = meters_[reading.luxmeter];
     if (!meter.lux || *meter.lux != reading.lux) {  // while a value stays, the light it first came with counts
       meter.lux = reading.lux;
-      meter.predicted_lx = judgement.predicted_lx;
+      meter.level = at;
     }
     if (judgement.believed) believed.push_back(&reading);
     judgements.push_back(judgement);
@@ -323,7 +329,7 @@ double GainEstimator::most_lux(const Row& row, const VectorXd& level, Time now) 
     least += lower[j] * e.level[j];
   }
   const double truth = e.lux / (1 - std::min(0.9, luxmeters_[e.luxmeter].tolerance)) *
-                       (1 + kDriftPerMinute * minutes_between(e.taken, now));
+                       (1 + 2 * kRepeatability + kDriftPerMinute * minutes_between(e.taken, now));
   if (least > truth) lower *= truth / least;
   double left = std::max(0.0, truth - least);
   std::vector<Index> order(static_cast<std::size_t>(n));
@@ -395,10 +401,12 @@ std::vector<double> GainEstimator::within_limits(std::span<const double> given, 
 Correction GainEstimator::correct(std::span<const double> present, Time now) const {
   EmittanceProblem problem;
   const auto points = static_cast<Index>(points_.size());
-  problem.lux_per_level.resize(points, max_level_.size());
-  problem.goal_lx.setConstant(points, std::numeric_limits<double>::quiet_NaN());
-  problem.weight.resize(points);
-  problem.max_lx.setConstant(points, std::numeric_limits<double>::infinity());
+  // After the points one row per fixture, whose goal is its present level.
+  const Index fixtures = max_level_.size(), all = points + fixtures;
+  problem.lux_per_level.setZero(all, fixtures);
+  problem.goal_lx.setConstant(all, std::numeric_limits<double>::quiet_NaN());
+  problem.weight.setConstant(all, kCaution);
+  problem.max_lx.setConstant(all, std::numeric_limits<double>::infinity());
   problem.max_level = max_level_;
   problem.near_level = vector_of(present).cwiseMax(0).cwiseMin(max_level_);
   problem.light_name = fixture_names_;
@@ -410,6 +418,11 @@ Correction GainEstimator::correct(std::span<const double> present, Time now) con
     problem.weight[i] = point.weight * (rows.back().luxmeter ? kMeteredWeight : 1);
     if (point.goal_lx) problem.goal_lx[i] = *point.goal_lx;
     problem.point_name.push_back(point.name);
+  }
+  for (Index j = 0; j < fixtures && points > 0; ++j) {
+    const double brightest = problem.lux_per_level.col(j).head(points).maxCoeff();
+    problem.lux_per_level(points + j, j) = brightest;
+    if (brightest > 0) problem.goal_lx[points + j] = brightest * problem.near_level[j];
   }
 
   Correction correction;
@@ -442,7 +455,7 @@ Correction GainEstimator::correct(std::span<const double> present, Time now) con
     }
   }
   correction.level = within_limits(list_of(level), now);
-  const VectorXd aimed = problem.lux_per_level * vector_of(correction.level);
+  const VectorXd aimed = problem.lux_per_level.topRows(points) * vector_of(correction.level);
   correction.aimed_lx = list_of(aimed);
   return correction;
 }

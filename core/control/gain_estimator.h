@@ -87,8 +87,8 @@ class GainEstimator {
   [[nodiscard]] bool confirmed(std::size_t point) const;
 
   /// The most lux that can truly be at this point at these levels, given bounds and evidence: without a meter there,
-  /// model with upper gains, over (1 − open_loop_margin); with one, the last believed reading / (1 − tolerance)
-  /// carried over to these levels in the worst way the bounds allow.
+  /// model with upper gains, over (1 − open_loop_margin); with one, the last believed reading / (1 − tolerance), plus 1
+  /// % for its noise, carried over to these levels in the worst way the bounds allow.
   [[nodiscard]] double most_lux_at_point(std::size_t point, std::span<const double> level, Time now) const;
 
   /// Rows for OutputProgram: as long as row · level ≤ max_lx, no level on the straight way `from` -> `to` (a fade moves
@@ -114,7 +114,7 @@ class GainEstimator {
   };
   struct Meter {
     std::optional<double> lux;  ///< last value, believed or not
-    double predicted_lx = 0;    ///< when that value first came
+    Eigen::VectorXd level;      ///< when that value first came
   };
 
   /// Rows of M and of the transport's standard error, with what is known of x there.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -110,8 +111,8 @@ struct World {
 };
 
 struct Outcome {
-  double worst_error = 0;           ///< of a metered reading against its goal
-  double worst_error_unlimited = 0;  ///< of those whose goal no limit keeps back
+  double worst_error = 0;        ///< of a metered reading against its goal
+  double worst_error_aimed = 0;  ///< the same, but where a reason was given against what was then aimed at
   double most_share_metered = 0, most_share = 0;
   int rejected = 0;
 };
@@ -131,7 +132,7 @@ Outcome run(World& world, int rounds, const Spoil& spoil = nullptr) {
   };
   std::vector<double> level = estimator.within_limits(world.plan, at_s(0));
   fade(std::vector<double>(level.size(), 0), level);
-  std::vector<std::string> why(world.rig.points.size());
+  Correction last;
   for (int round = 0; round < rounds; ++round) {
     now_s += 2;
     std::vector<LuxReading> readings = world.readings(level, at_s(now_s));
@@ -143,7 +144,7 @@ Outcome run(World& world, int rounds, const Spoil& spoil = nullptr) {
     const Correction correction = estimator.correct(level, at_s(now_s));
     fade(level, correction.level);
     level = correction.level;
-    why = correction.why;
+    last = correction;
   }
   const VectorXd lux = world.true_lux(level);
   for (std::size_t i = 0; i < world.rig.luxmeters.size(); ++i) {
@@ -151,31 +152,204 @@ Outcome run(World& world, int rounds, const Spoil& spoil = nullptr) {
     const double goal = *world.rig.points[i].goal_lx;
     const double error = std::abs(lux[at] * world.meter_scale[at] / goal - 1);
     outcome.worst_error = std::max(outcome.worst_error, error);
-    if (why[i].empty()) outcome.worst_error_unlimited = std::max(outcome.worst_error_unlimited, error);
+    const double aimed = last.why[i].empty() ? goal : last.aimed_lx[i];
+    outcome.worst_error_aimed =
+        std::max(outcome.worst_error_aimed, std::abs(lux[at] * world.meter_scale[at] / aimed - 1));
   }
   return outcome;
 }
 
 TEST(GainEstimator, BringsMeteredGoalsWithinTwoPercentInThreeRoundsAndNeverExceedsALimit) {
+  constexpr unsigned kRigs = 500;
   int met = 0, met_or_said = 0, over_metered = 0, over = 0, rejected = 0;
   double most = 0;
-  for (unsigned seed = 0; seed < 500; ++seed) {
+  for (unsigned seed = 0; seed < kRigs; ++seed) {
     World world(seed);
     const Outcome outcome = run(world, 3);
     met += outcome.worst_error <= 0.02;
-    met_or_said += outcome.worst_error_unlimited <= 0.02;
+    met_or_said += outcome.worst_error_aimed <= 0.02;
     over_metered += outcome.most_share_metered > 1;
     over += outcome.most_share > 1;
     most = std::max(most, outcome.most_share);
     rejected += outcome.rejected;
   }
-  std::printf("of 500 rigs: %d with all six metered goals within 2 %%, %d with those that no limit keeps back; "
-              "%d over a metered limit, %d over any; most light %.3f of the limit; %d readings rejected\n",
-              met, met_or_said, over_metered, over, most, rejected);
-  EXPECT_GT(met_or_said, 495);
-  EXPECT_GT(met, 495);
+  std::printf(
+      "of %u rigs: %d with all six metered goals within 2 %%, %d within 2 %% of goal or of the best that limits "
+      "allow; "
+      "%d over a metered limit, %d over any; most light %.3f of the limit; %d readings rejected\n",
+      kRigs, met, met_or_said, over_metered, over, most, rejected);
+  EXPECT_GT(met_or_said, 0.99 * kRigs);
   EXPECT_EQ(over_metered, 0);
   EXPECT_EQ(over, 0);
+}
+
+TEST(GainEstimator, CannotBeDrivenOverALimitByMetersThatAreDeadStuckOrWrong) {
+  const struct {
+    const char* name;
+    std::function<double(double truth, double first)> says;
+  } kinds[] = {{"dead", [](double, double) { return 0.0; }},
+               {"not a number", [](double, double) { return kNan; }},
+               {"infinite", [](double, double) { return std::numeric_limits<double>::infinity(); }},
+               {"negative", [](double truth, double) { return -truth; }},
+               {"ten times", [](double truth, double) { return 10 * truth; }},
+               {"a tenth", [](double truth, double) { return truth / 10; }},
+               {"stuck", [](double, double first) { return first; }}};
+  for (const auto& kind : kinds) {
+    for (unsigned seed = 0; seed < 6; ++seed) {
+      World world(seed);
+      std::vector<double> first(world.rig.luxmeters.size());
+      const Outcome outcome = run(world, 4, [&](int round, std::vector<LuxReading>& readings) {
+        for (LuxReading& reading : readings) {
+          if (round == 0) first[reading.luxmeter] = reading.lux;
+          reading.lux = kind.says(reading.lux, first[reading.luxmeter]);
+        }
+      });
+      EXPECT_LE(outcome.most_share, 1) << kind.name << " seed " << seed;
+      EXPECT_GT(outcome.rejected, 0) << kind.name << " seed " << seed;
+    }
+  }
+}
+
+TEST(GainEstimator, LearnsNothingFromARejectedReading) {
+  World world(1);
+  GainEstimator estimator(world.rig, world.model);
+  for (const double bad : {0.0, kNan, -1.0, 1e4, 1e9}) {
+    const LuxReading reading{0, bad, at_s(1)};
+    const auto judgement = estimator.update(at_s(1), std::span(&reading, 1), world.plan);
+    EXPECT_FALSE(judgement.front().believed) << bad;
+    EXPECT_FALSE(judgement.front().why.empty()) << bad;
+  }
+  for (std::size_t j = 0; j < world.plan.size(); ++j) EXPECT_EQ(estimator.gain(j), 1);
+  EXPECT_FALSE(estimator.confirmed(0));
+}
+
+TEST(GainEstimator, CallsAMeterStuckThatKeepsItsValueWhileTheLightCreeps) {
+  World world(2);
+  GainEstimator estimator(world.rig, world.model);
+  std::vector<double> level = world.plan;
+  const double lux = world.readings(level, at_s(0))[0].lux;
+  int believed = 0;
+  for (int k = 0; k < 12; ++k) {
+    const LuxReading reading{0, lux, at_s(k)};
+    believed += estimator.update(at_s(k), std::span(&reading, 1), level).front().believed;
+    for (double& each : level) each *= 1.01;
+  }
+  EXPECT_GE(believed, 4);  // up to 5 % of change could be noise
+  EXPECT_LE(believed, 7);
+  EXPECT_FALSE(estimator.confirmed(0));
+}
+
+TEST(GainEstimator, FindsTheOutputOfASingleLampAndSaysHowSureItIs) {
+  Rig rig;
+  rig.fixtures.resize(1);
+  rig.luxmeters.resize(1);
+  rig.points.resize(1);
+  rig.luxmeters[0].point = 0;
+  rig.control.gain_min = 0.6;
+  rig.control.gain_max = 1.15;
+  rig.limits.open_loop_margin = 0;  // the model is right but for the lamp
+  LightModel model;
+  model.meter_lux_per_level = model.point_lux_per_level = MatrixXd::Constant(1, 1, 200.0);
+  GainEstimator estimator(rig, model);
+  const std::vector<double> level = {0.5};
+  const double before = estimator.gain_standard_error(0);
+  const LuxReading reading{0, 0.8 * 100, at_s(1)};
+  ASSERT_TRUE(estimator.update(at_s(1), std::span(&reading, 1), level).front().believed);
+  // Two measurements of one number, prior 1 ± 0.1375 and 0.8 ± the local error of 2 % and noise of 0.5 %.
+  const double variance = 0.02 * 0.02 + 0.005 * 0.005, prior = 0.1375 * 0.1375;
+  EXPECT_NEAR(estimator.gain(0), (0.8 * prior + variance) / (prior + variance), 1e-3);
+  EXPECT_NEAR(estimator.gain_standard_error(0), std::sqrt(prior * variance / (prior + variance)), 1e-3);
+  EXPECT_LT(estimator.gain_standard_error(0), before);
+  EXPECT_NEAR(estimator.at_meter(0, level).lux, 80, 0.2);
+  // Repeating it does not make the lamp known better than the model is.
+  const double once = estimator.gain_standard_error(0);
+  for (int k = 2; k < 50; ++k) {
+    const LuxReading again{0, 80 + 0.001 * k, at_s(k)};
+    estimator.update(at_s(k), std::span(&again, 1), level);
+  }
+  EXPECT_NEAR(estimator.gain_standard_error(0), once, 1e-4);
+}
+
+TEST(GainEstimator, KeepsGainsWithinTheRigsBounds) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    World world(seed, 0.5);
+    GainEstimator estimator(world.rig, world.model);
+    const auto readings = world.readings(world.plan, at_s(1));
+    estimator.update(at_s(1), readings, world.plan);
+    for (std::size_t j = 0; j < world.plan.size(); ++j) {
+      EXPECT_GE(estimator.gain(j), 0.6);
+      EXPECT_LE(estimator.gain(j), 1.15);
+      EXPECT_LE(estimator.upper_gain(j), 1.15);
+      EXPECT_TRUE(std::isfinite(estimator.gain_standard_error(j)));
+    }
+  }
+}
+
+TEST(GainEstimator, PredictsReadingsWithinItsStatedError) {
+  int within = 0, all = 0;
+  for (unsigned seed = 0; seed < 100; ++seed) {
+    World world(seed);
+    GainEstimator estimator(world.rig, world.model);
+    estimator.update(at_s(1), world.readings(world.plan, at_s(1)), world.plan);
+    std::vector<double> level = world.plan;
+    for (std::size_t j = 0; j < level.size(); ++j) level[j] *= j % 2 == 0 ? 1.3 : 0.8;
+    const VectorXd lux = world.true_lux(level);
+    for (std::size_t i = 0; i < world.rig.luxmeters.size(); ++i) {
+      const Prediction prediction = estimator.at_meter(i, level);
+      const double seen = lux[static_cast<Index>(i)] * world.meter_scale[static_cast<Index>(i)];
+      within += std::abs(seen - prediction.lux) <= 2 * prediction.standard_error_lx;
+      ++all;
+    }
+  }
+  EXPECT_GT(within, 0.9 * all) << within << " of " << all;
+}
+
+TEST(GainEstimator, DoesNotCareInWhichOrderReadingsCome) {
+  World world(5);
+  GainEstimator one(world.rig, world.model), other(world.rig, world.model);
+  auto readings = world.readings(world.plan, at_s(1));
+  one.update(at_s(1), readings, world.plan);
+  std::reverse(readings.begin(), readings.end());
+  other.update(at_s(1), readings, world.plan);
+  for (std::size_t j = 0; j < world.plan.size(); ++j) EXPECT_NEAR(one.gain(j), other.gain(j), 1e-12);
+}
+
+TEST(GainEstimator, ForgetsWhatAMeterTaught) {
+  World world(5);
+  GainEstimator estimator(world.rig, world.model);
+  estimator.update(at_s(1), world.readings(world.plan, at_s(1)), world.plan);
+  EXPECT_TRUE(estimator.confirmed(0));
+  for (std::size_t i = 0; i < world.rig.luxmeters.size(); ++i) estimator.forget(i);
+  EXPECT_FALSE(estimator.confirmed(0));
+  EXPECT_EQ(estimator.gain(3), 1);
+}
+
+TEST(GainEstimator, BoundsLightAtOnceAboveTheTruthAndNearItWhereItWasMeasured) {
+  for (unsigned seed = 0; seed < 50; ++seed) {
+    World world(seed);
+    GainEstimator estimator(world.rig, world.model);
+    const double before = estimator.most_lux_at_point(0, world.plan, at_s(1));
+    estimator.update(at_s(1), world.readings(world.plan, at_s(1)), world.plan);
+    const double truth = world.true_lux(world.plan)[0];
+    const double after = estimator.most_lux_at_point(0, world.plan, at_s(1));
+    EXPECT_GE(after, truth);
+    EXPECT_LE(after, truth * 1.11);
+    EXPECT_GT(before, after);
+  }
+}
+
+TEST(GainEstimator, HandlesARigWithoutMetersPointsOrFixtures) {
+  Rig rig;
+  GainEstimator nothing(rig, LightModel{});
+  EXPECT_TRUE(nothing.correct({}, at_s(0)).level.empty());
+  rig.fixtures.resize(2);
+  rig.points.resize(1);
+  rig.points[0].goal_lx = 60;
+  LightModel model;
+  model.point_lux_per_level = MatrixXd{{100.0, 20.0}};
+  GainEstimator estimator(rig, model);
+  const std::vector<double> level = {0.5, 0.5};
+  EXPECT_NEAR(estimator.correct(level, at_s(0)).aimed_lx[0], 60, 1e-6);
 }
 
 }  // namespace
