@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-
-#include "core/transport/sobol.h"
+#include <numbers>
 
 namespace luxrig {
 namespace {
@@ -78,6 +77,21 @@ Scene make_icosphere(double radius_m, int splits, double reflectance) {
   return scene_of(std::move(vertices_m), std::move(triangles), reflectance);
 }
 
+std::vector<WallPoint> cube_wall_grid(double edge_m, int per_edge) {
+  std::vector<WallPoint> points;
+  const double step_m = edge_m / per_edge;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {-1.0, 1.0})
+      for (int i = 0; i < per_edge; ++i)
+        for (int j = 0; j < per_edge; ++j) {
+          Vec3 position_m = side * edge_m / 2 * Vec3::Unit(axis);
+          position_m[(axis + 1) % 3] = (i + 0.5) * step_m - edge_m / 2;
+          position_m[(axis + 2) % 3] = (j + 0.5) * step_m - edge_m / 2;
+          points.push_back({position_m, -side * Vec3::Unit(axis)});
+        }
+  return points;
+}
+
 double area_m2(const Scene& scene) {
   double sum_m2 = 0;
   for (std::size_t t = 0; t < scene.triangles.size(); ++t) sum_m2 += area_normal_m2(scene, t).norm();
@@ -91,13 +105,14 @@ std::vector<WallPoint> spread_over_walls(const Scene& scene, std::size_t count, 
     area_up_to_m2.push_back(sum_m2 += area_normal_m2(scene, t).norm());
   std::vector<WallPoint> points;
   for (std::size_t i = 0; i < count && sum_m2 > 0; ++i) {
-    // Stratified along the area; within the triangle by a Sobol pair (square folded into the triangle).
+    // Stratified along the area; within the triangle by a square folded into it.
     const double at_m2 = sum_m2 * (static_cast<double>(i) + 0.5) / static_cast<double>(count);
     const auto found = std::upper_bound(area_up_to_m2.begin(), area_up_to_m2.end(), at_m2);
     const auto t = static_cast<std::size_t>(found - area_up_to_m2.begin());
     const auto [a, b, c] = corners_m(scene, t);
-    double u = (sobol_bits(static_cast<std::uint32_t>(i), 0) + 0.5) * 0x1p-32;
-    double v = (sobol_bits(static_cast<std::uint32_t>(i), 1) + 0.5) * 0x1p-32;
+    // Additive recurrence with the plastic number's powers, which fills the square evenly and without a bias.
+    double u = std::fmod(0.5 + 0.7548776662466927 * static_cast<double>(i), 1.0);
+    double v = std::fmod(0.5 + 0.5698402909980532 * static_cast<double>(i), 1.0);
     if (u + v > 1) u = 1 - u, v = 1 - v;
     const Vec3 position_m = a + u * (b - a) + v * (c - a);
     const Vec3 normal = area_normal_m2(scene, t).normalized();

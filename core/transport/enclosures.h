@@ -17,6 +17,9 @@ struct WallPoint {
 /// Sphere about the origin: an icosahedron split `splits` times (20·4^splits triangles), vertices on the sphere.
 [[nodiscard]] Scene make_icosphere(double radius_m, int splits, double reflectance);
 
+/// Middles of a grid of per_edge² equal squares on each face of make_cube(edge_m): their mean is the midpoint rule.
+[[nodiscard]] std::vector<WallPoint> cube_wall_grid(double edge_m, int per_edge);
+
 /// Sum of the triangle areas [m²].
 [[nodiscard]] double area_m2(const Scene& scene);
 

@@ -11,7 +11,7 @@ namespace luxrig {
 /// normal estimates.
 [[nodiscard]] double standard_error_of_mean(std::span<const double> estimates);
 
-/// Quantile of Student's t distribution at 0.975 for ν ≥ 3 degrees of freedom, to 0.6 % (Cornish–Fisher expansion,
+/// Quantile of Student's t distribution at 0.975 for ν ≥ 3 degrees of freedom, to 1 % (Cornish–Fisher expansion,
 /// Abramowitz and Stegun 26.7.5).
 [[nodiscard]] double student_t_975(double degrees_of_freedom);
 

@@ -1,0 +1,57 @@
+#pragma once
+/// Pictures of a lit scene: what a person would see, not a measurement. Direct light is exact per sample; diffuse
+/// interreflection is path traced at sparse points of the picture and smoothed along surfaces, so it is soft
+/// and a few per cent off in places. Numbers come from an Evaluator.
+
+#include <vector>
+
+#include "core/transport/evaluator.h"
+
+namespace luxrig {
+
+struct Camera {
+  Vec3 eye_world_m = Vec3::Zero();
+  Vec3 target_world_m = Vec3::UnitY();
+  double vertical_fov_rad = 1.0;  ///< 0 … π
+  int width_px = 960, height_px = 600;
+};
+
+/// Direction of the ray through a place of the picture; x and y in pixels from the top left corner. Up is +Z, or +Y for
+/// a camera that looks straight up or down.
+[[nodiscard]] Vec3 ray_direction(const Camera& camera, double x_px, double y_px);
+
+struct PictureOptions {
+  int samples_per_pixel_edge = 2;  ///< direct light: squared per pixel, for smooth edges
+  int indirect_step_px = 8;        ///< one point of interreflection per square of this edge
+  int indirect_paths = 64;         ///< per such point
+  std::uint64_t seed = 1;
+  int threads = 0;
+  Watch watch;
+};
+
+/// Rows from the top, pixels from the left.
+struct Picture {
+  int width_px = 0, height_px = 0;
+  std::vector<Vec3f> luminance_cd_m2;  ///< linear Rec. 709, of diffuse surfaces; zero where nothing is seen
+  std::vector<float> illuminance_lx;   ///< of the surface seen, on the side seen; negative where nothing is seen
+};
+
+/// levels: one per emitter, ≥ 0. Cause::invalid for bad sizes or numbers, Cause::cancelled when stopped.
+[[nodiscard]] Result<Picture> render_picture(const RayScene& scene, std::span<const Emitter> emitters,
+                                             std::span<const double> levels, const Camera& camera,
+                                             const PictureOptions& options);
+
+/// The room from straight above without what is over the cut: +X to the right, +Y up in the picture.
+struct PlanView {
+  int width_px = 0, height_px = 0;
+  double metres_per_px = 0;
+  double left_x_world_m = 0, top_y_world_m = 0;  ///< of the picture's top left corner
+  std::vector<float> shade;                      ///< 0 black … 1 white: walls at the cut dark, open floor light
+};
+
+/// longest_edge_px sets the scale; cut_z_world_m defaults to 1.2 m above the lowest point, at most to 0.6 of the
+/// scene's height. An empty scene gives a white picture of one pixel.
+[[nodiscard]] PlanView render_plan_view(const RayScene& scene, int longest_edge_px,
+                                        std::optional<double> cut_z_world_m = std::nullopt, int threads = 0);
+
+}  // namespace luxrig

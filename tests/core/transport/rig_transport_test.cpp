@@ -1,0 +1,55 @@
+#include "core/transport/rig_transport.h"
+
+#include <gtest/gtest.h>
+
+namespace luxrig {
+namespace {
+
+Rig small_rig() {
+  Rig rig;
+  rig.luminaires.resize(2);
+  rig.luminaires[0].intensity = make_isotropic(100);
+  rig.luminaires[1].intensity = make_isotropic(200);
+  rig.fixtures.resize(3);
+  rig.fixtures[0].luminaire = 1;
+  rig.fixtures[1].luminaire = 0;
+  rig.fixtures[2].luminaire = 1;
+  for (int i = 0; i < 3; ++i) rig.fixtures[i].world_from_mount.translation_m = {1.0 * i, 2.0, 3.0};
+  rig.fixtures[1].joints = {0, kPi / 2};
+  rig.points.resize(2);
+  rig.points[1].position_world_m = {4, 5, 6};
+  rig.points[1].normal_world = Vec3::UnitX();
+  rig.luxmeters.resize(1);
+  rig.luxmeters[0].position_world_m = {7, 8, 9};
+  rig.luxmeters[0].normal_world = -Vec3::UnitZ();
+  return rig;
+}
+
+TEST(RigTransport, EmittersFollowTheOrderOfTheFixturesAndTheirAim) {
+  const Rig rig = small_rig();
+  const auto emitters = emitters_of(rig);
+  ASSERT_EQ(emitters.size(), 3u);
+  EXPECT_EQ(emitters[0].intensity, rig.luminaires[1].intensity);
+  EXPECT_EQ(emitters[1].intensity, rig.luminaires[0].intensity);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(emitters[i].world_from_lamp.translation_m, Vec3(i, 2, 3));
+  // Tilted by 90° a head looks along +Y of its base (frames.h).
+  EXPECT_LT((emitters[1].world_from_lamp.direction(-Vec3::UnitZ()) - Vec3::UnitY()).norm(), 1e-12);
+  EXPECT_LT((emitters[0].world_from_lamp.direction(-Vec3::UnitZ()) + Vec3::UnitZ()).norm(), 1e-12);
+}
+
+TEST(RigTransport, ReceiversArePointsThenLuxmeters) {
+  const auto receivers = receivers_of(small_rig());
+  ASSERT_EQ(receivers.size(), 3u);
+  EXPECT_EQ(receivers[1].position_world_m, Vec3(4, 5, 6));
+  EXPECT_EQ(receivers[1].normal_world, Vec3::UnitX());
+  EXPECT_EQ(receivers[2].position_world_m, Vec3(7, 8, 9));
+  EXPECT_EQ(receivers[2].normal_world, -Vec3::UnitZ());
+}
+
+TEST(RigTransport, AnEmptyRigHasNeither) {
+  EXPECT_TRUE(emitters_of(Rig{}).empty());
+  EXPECT_TRUE(receivers_of(Rig{}).empty());
+}
+
+}  // namespace
+}  // namespace luxrig
