@@ -14,9 +14,10 @@ class LifeRecord {
 
   void configured(Time now) { enter(Life::configured, now, {}); }
   void active(Time now) { enter(Life::active, now, {}); }
-  /// `since` stays when it is faulted already; the text is the newest. Counts an error.
-  void faulted(Time now, const Fault& fault) {
-    ++health_.errors;
+  /// `since` stays when it is faulted already; the text is the newest. Counts an error, unless it is an old one whose
+  /// figures have grown.
+  void faulted(Time now, const Fault& fault, bool is_new = true) {
+    if (is_new) ++health_.errors;
     enter(Life::faulted, now, std::string(name_of(fault.cause)) + ": " + fault.detail);
     cause_ = fault.cause;
   }

@@ -9,7 +9,7 @@
 namespace luxrig {
 namespace {
 
-constexpr std::string_view kTo = "…";
+constexpr std::string_view kTo = " to ";
 constexpr std::string_view kRequired = "required";
 
 std::int64_t number_in(std::string_view text) {
@@ -28,17 +28,20 @@ std::pair<std::int64_t, std::int64_t> range_of(const OptionDoc& doc) {
 std::string_view type_of(const OptionValue& value) {
   switch (value.index()) {
     case 0:
-      return "boolean";
+      return "true or false";
     case 1:
-      return "integer";
+      return "whole number";
     case 2:
       return "number with a fraction";
     default:
-      return "string";
+      return "text";
   }
 }
 
-std::string with_article(std::string_view type) { return (type == "integer" ? "an " : "a ") + std::string(type); }
+std::string with_article(std::string_view type) {
+  const bool counts = type.find("number") != std::string_view::npos;
+  return (counts ? "a " : "") + std::string(type);
+}
 
 std::string example_of(const OptionDoc& doc) {
   if (doc.fallback != kRequired) return "write " + std::string(doc.key) + " = " + std::string(doc.fallback);
@@ -83,7 +86,7 @@ std::vector<Problem> check_options(const Rig& rig, const Bus& bus, std::span<con
           example_of(*doc)));
       continue;
     }
-    if (doc->type == "integer") {
+    if (doc->type == "whole number") {
       const auto [lowest, highest] = range_of(*doc);
       const std::int64_t value = std::get<std::int64_t>(option.value);
       if (value < lowest || value > highest) {
@@ -103,20 +106,20 @@ std::vector<Problem> check_options(const Rig& rig, const Bus& bus, std::span<con
 }
 
 std::string string_option(const Bus& bus, std::span<const OptionDoc> docs, std::string_view key) {
-  const OptionDoc& doc = find(docs, key, "string");
+  const OptionDoc& doc = find(docs, key, "text");
   if (const Option* option = find(bus, key)) return std::get<std::string>(option->value);
   LUXRIG_CHECK(doc.fallback.size() >= 2, "option table: {} has no fallback", key);
   return std::string(doc.fallback.substr(1, doc.fallback.size() - 2));  // without its quotes
 }
 
 std::int64_t integer_option(const Bus& bus, std::span<const OptionDoc> docs, std::string_view key) {
-  const OptionDoc& doc = find(docs, key, "integer");
+  const OptionDoc& doc = find(docs, key, "whole number");
   if (const Option* option = find(bus, key)) return std::get<std::int64_t>(option->value);
   return number_in(doc.fallback);
 }
 
 bool boolean_option(const Bus& bus, std::span<const OptionDoc> docs, std::string_view key) {
-  const OptionDoc& doc = find(docs, key, "boolean");
+  const OptionDoc& doc = find(docs, key, "true or false");
   if (const Option* option = find(bus, key)) return std::get<bool>(option->value);
   return doc.fallback == "true";
 }

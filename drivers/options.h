@@ -2,8 +2,8 @@
 /// A bus's options against the table that documents them. The table is the only place where type, default and range
 /// stand, so the reference cannot say one thing and the code do another.
 ///
-///   type     "string", "integer" or "boolean"
-///   range    of an integer: "lowest…highest"; of a string: words for a person (the driver checks it)
+///   type     "text", "whole number" or "true or false"
+///   range    of a whole number: "lowest to highest"; of text: words for a person (the driver checks it)
 ///   fallback value when absent, as it would be written; "required" when there is none
 
 #include <cstdint>

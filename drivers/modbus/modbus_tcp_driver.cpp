@@ -23,13 +23,13 @@ using modbus::WriteSchedule;
 using std::chrono::milliseconds;
 
 constexpr OptionDoc kOptions[] = {
-    {"host", "string", "", "required", "an IPv4 address", "the Modbus TCP server: a device or a gateway"},
-    {"port", "integer", "", "502", "1…65535", "its TCP port"},
-    {"response_timeout_ms", "integer", "ms", "200", "20…5000",
+    {"host", "text", "", "required", "an IPv4 address", "the Modbus TCP server: a device or a gateway"},
+    {"port", "whole number", "", "502", "1 to 65535", "its TCP port"},
+    {"response_timeout_ms", "whole number", "ms", "200", "20 to 5000",
      "how long one request may take; gateways to slow serial lines need up to 1000"},
-    {"refresh_ms", "integer", "ms", "400", "100…10000",
+    {"refresh_ms", "whole number", "ms", "400", "100 to 10000",
      "unchanged dimmer values are written again this often, so that a restarted dimmer gets its level back"},
-    {"poll_ms", "integer", "ms", "200", "20…10000", "each luxmeter is read this often"},
+    {"poll_ms", "whole number", "ms", "200", "20 to 10000", "each luxmeter is read this often"},
 };
 
 constexpr Duration kWritePeriod = milliseconds(100);

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <set>
+#include <string>
 
 #include "drivers/options.h"
 #include "tests/drivers/test_rig.h"
@@ -42,9 +44,9 @@ TEST(Registry, EveryDefaultOfAnOptionIsGoodItself) {
       EXPECT_FALSE(doc.summary.empty()) << doc.key;
       if (doc.fallback == "required") {
         bus.options[std::string(doc.key)] = {std::string("127.0.0.1"), {}};
-      } else if (doc.type == "integer") {
+      } else if (doc.type == "whole number") {
         bus.options[std::string(doc.key)] = {integer_option(bus, entry.options, doc.key), {}};
-      } else if (doc.type == "boolean") {
+      } else if (doc.type == "true or false") {
         bus.options[std::string(doc.key)] = {boolean_option(bus, entry.options, doc.key), {}};
       } else {
         bus.options[std::string(doc.key)] = {string_option(bus, entry.options, doc.key), {}};
@@ -52,6 +54,31 @@ TEST(Registry, EveryDefaultOfAnOptionIsGoodItself) {
     }
     const Rig rig = rig_with(bus);
     for (const Problem& problem : entry.check(rig, 0)) ADD_FAILURE() << problem.text();
+  }
+}
+
+/// The rows of the options table under `### driver = "name"` in the rig-file reference.
+std::vector<std::string> reference_rows(std::string_view name) {
+  std::ifstream in(std::string(LUXRIG_SOURCE_DIR) + "/rigs/REFERENCE.md");
+  const std::string heading = "### driver = \"" + std::string(name) + "\"";
+  std::vector<std::string> rows;
+  bool inside = false;
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with("#")) inside = line == heading;
+    if (inside && line.starts_with("| `")) rows.push_back(line);
+  }
+  return rows;
+}
+
+TEST(Registry, IsDocumentedOptionByOptionInTheReference) {
+  for (const DriverEntry& entry : drivers()) {
+    std::vector<std::string> wanted;
+    for (const OptionDoc& doc : entry.options) {
+      const std::string fallback = doc.fallback == "required" ? "required" : "`" + std::string(doc.fallback) + "`";
+      wanted.push_back("| `" + std::string(doc.key) + "` | " + std::string(doc.type) + " | " + std::string(doc.unit) +
+                       " | " + fallback + " | " + std::string(doc.range) + " | " + std::string(doc.summary) + " |");
+    }
+    EXPECT_EQ(reference_rows(entry.name), wanted) << "rigs/REFERENCE.md, ### driver = \"" << entry.name << "\"";
   }
 }
 

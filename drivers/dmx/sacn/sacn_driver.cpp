@@ -13,18 +13,18 @@ namespace luxrig {
 namespace {
 
 constexpr OptionDoc kOptions[] = {
-    {"destination", "string", "", "\"multicast\"", "\"multicast\", or an IPv4 address",
+    {"destination", "text", "", "\"multicast\"", "\"multicast\", or an IPv4 address",
      "where packets go: each universe to its multicast group 239.255.x.y, or all to one receiver"},
-    {"port", "integer", "", "5568", "1…65535", "UDP port of the receivers"},
-    {"interface", "string", "", "\"\"", "a name (eth0), or the interface's IPv4 address",
+    {"port", "whole number", "", "5568", "1 to 65535", "UDP port of the receivers"},
+    {"interface", "text", "", "\"\"", "a name (eth0), or the interface's IPv4 address",
      "network interface that multicast leaves by; empty: the system chooses"},
-    {"ttl", "integer", "hops", "8", "1…255", "how many routers a multicast packet may pass"},
-    {"priority", "integer", "", "100", "0…200", "the source with the highest priority wins at the receiver"},
-    {"source_name", "string", "", "\"\"", "at most 63 bytes of UTF-8",
+    {"ttl", "whole number", "hops", "8", "1 to 255", "how many routers a multicast packet may pass"},
+    {"priority", "whole number", "", "100", "0 to 200", "the source with the highest priority wins at the receiver"},
+    {"source_name", "text", "", "\"\"", "at most 63 bytes of UTF-8",
      "what receivers show as the sender; empty: Luxrig and the rig's name"},
-    {"cid", "string", "", "\"\"", "a UUID, 8-4-4-4-12 hexadecimal digits",
+    {"cid", "text", "", "\"\"", "a UUID, 8-4-4-4-12 hexadecimal digits",
      "component identifier; empty: derived from host, rig and bus, the same after every restart"},
-    {"continuous", "boolean", "", "true", "true, false",
+    {"continuous", "true or false", "", "true", "",
      "send every cycle; false: only changes, three repeats, then a keep-alive every 0.88 s"},
 };
 

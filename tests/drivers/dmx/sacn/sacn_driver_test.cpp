@@ -182,9 +182,10 @@ TEST(SacnDriver, RefusesOptionsThatCannotWork) {
   EXPECT_EQ(problem("prority", std::int64_t{100}),
             "a/rig.toml:8:5: bus \"the-bus\" has an unknown option \"prority\": did you mean \"priority\"?");
   EXPECT_EQ(problem("priority", std::int64_t{201}),
-            "a/rig.toml:8:5: priority = 201 is out of range: choose a value in 0…200");
-  EXPECT_EQ(problem("priority", 1.5),
-            "a/rig.toml:8:5: priority is a number with a fraction where an integer is wanted: write priority = 100");
+            "a/rig.toml:8:5: priority = 201 is out of range: choose a value in 0 to 200");
+  EXPECT_EQ(
+      problem("priority", 1.5),
+      "a/rig.toml:8:5: priority is a number with a fraction where a whole number is wanted: write priority = 100");
   problem("destination", std::string("node.local"));
   problem("destination", std::string("239.255.0.1"));
   problem("interface", std::string("an interface name"));

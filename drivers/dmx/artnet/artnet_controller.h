@@ -1,0 +1,70 @@
+#pragma once
+/// What an Art-Net controller sends when, and which nodes it knows. `now`, slots and replies in, packets out.
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/dmx/artnet/artnet_codec.h"
+#include "drivers/dmx/send_rate.h"
+#include "drivers/io/datagram.h"
+
+namespace luxrig::artnet {
+
+/// A controller polls every 2.5…3 s; a node may take 1 s to answer; one unheard for three polls is gone.
+inline constexpr Duration kPollPeriod = std::chrono::milliseconds(2500);
+inline constexpr Duration kNodeGone = 3 * kPollPeriod + std::chrono::milliseconds(1000);
+/// Unchanged data is repeated this often. The specification says 4 s; nodes in the field blank earlier.
+inline constexpr Duration kKeepAlive = std::chrono::milliseconds(1000);
+
+struct Node {
+  std::string name;
+  std::map<int, std::vector<int>> outputs;  ///< port addresses by bind index
+  Time last_seen{};
+  Time since{};  ///< last change between there and gone
+  bool gone = false;
+  std::uint64_t replies = 0;
+
+  [[nodiscard]] bool puts_out(int port_address) const;
+};
+
+class Controller {
+ public:
+  /// continuous: send every cycle in place of on change and every kKeepAlive.
+  explicit Controller(bool continuous) : continuous_(continuous) {}
+
+  /// True when an ArtPoll is to be sent now; it then counts as sent. Also notices which nodes are gone.
+  [[nodiscard]] bool poll_due(Time now);
+
+  /// A datagram that has arrived; false when it is no ArtPollReply. A node that is new or back gets data at once.
+  bool hear(Time now, const Datagram& datagram);
+
+  /// The ArtDmx of this universe that is due at `now`, if one is.
+  [[nodiscard]] std::optional<std::vector<std::uint8_t>> due(Time now, int port_address, const DmxSlots& slots);
+
+  [[nodiscard]] const std::map<SocketAddress, Node>& nodes() const { return nodes_; }
+  /// Where the nodes are that put this universe out.
+  [[nodiscard]] std::vector<SocketAddress> subscribers(int port_address) const;
+
+  /// Forgets all nodes; every universe is sent afresh, and goes on counting.
+  void rest();
+
+ private:
+  struct Stream {
+    DmxSlots slots{};
+    std::uint8_t sequence = 1;  ///< of the next packet
+    std::uint64_t packets = 0;
+    bool wanted = true;  ///< whatever the keep-alive says
+    Time last{};
+    SendRate rate;
+  };
+
+  bool continuous_;
+  std::map<int, Stream> streams_;
+  std::map<SocketAddress, Node> nodes_;
+  std::optional<Time> last_poll_;
+};
+
+}  // namespace luxrig::artnet

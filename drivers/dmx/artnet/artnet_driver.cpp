@@ -1,0 +1,261 @@
+#include "drivers/dmx/artnet/artnet_driver.h"
+
+#include <fmt/format.h>
+
+#include "drivers/dmx/artnet/artnet_controller.h"
+#include "drivers/dmx/dmx_patch.h"
+#include "drivers/io/udp.h"
+#include "drivers/life.h"
+#include "drivers/options.h"
+
+namespace luxrig {
+namespace {
+
+constexpr OptionDoc kOptions[] = {
+    {"destination", "text", "", "\"auto\"", "\"auto\", or an IPv4 address",
+     "where ArtDmx goes: to every node that says it puts the universe out, or to this one address"},
+    {"broadcast", "text", "", "\"255.255.255.255\"", "an IPv4 address",
+     "where \"auto\" asks for nodes: the broadcast address of the lighting network"},
+    {"expect_reply", "true or false", "", "true", "",
+     "false: the receiver at destination does not answer ArtPoll, and its silence is no fault"},
+    {"continuous", "true or false", "", "false", "", "send every cycle; false: changes at once, the rest every second"},
+};
+
+constexpr Duration kWritePeriod = std::chrono::nanoseconds(22727273);  // 1/44 s
+constexpr Duration kReopenEvery = std::chrono::seconds(1);
+constexpr Duration kQuietBeforeRecovery = std::chrono::milliseconds(1200);  // as for sACN
+constexpr int kDatagramsPerCycle = 64;
+
+class ArtnetDriver final : public Driver, public LevelOutput, public Mover {
+ public:
+  ArtnetDriver(std::unique_ptr<DatagramChannel> channel, const Rig& rig, std::size_t bus,
+               const std::optional<Redirect>& redirect)
+      : channel_(std::move(channel)),
+        bay_(rig, bus),
+        life_(rig.buses[bus].name),
+        controller_(boolean_option(rig.buses[bus], kOptions, "continuous")) {
+    const Bus& entry = rig.buses[bus];
+    expect_reply_ = boolean_option(entry, kOptions, "expect_reply");
+    poll_to_ = {parse_ipv4(string_option(entry, kOptions, "broadcast")).value_or(0xFFFFFFFF), artnet::kPort};
+    if (redirect) {
+      destination_ =
+          SocketAddress{parse_ipv4(redirect->host).value_or(0x7F000001), static_cast<std::uint16_t>(redirect->port)};
+    } else if (const auto address = parse_ipv4(string_option(entry, kOptions, "destination"))) {
+      destination_ = SocketAddress{*address, artnet::kPort};
+    }
+    if (destination_) poll_to_ = *destination_;
+  }
+  ~ArtnetDriver() override { channel_->close(); }
+  ArtnetDriver(const ArtnetDriver&) = delete;
+  ArtnetDriver& operator=(const ArtnetDriver&) = delete;
+
+  DriverBounds bounds() const override {
+    DriverBounds bounds;
+    bounds.write = std::chrono::milliseconds(5) +
+                   std::chrono::microseconds(100) * static_cast<std::int64_t>(bay_.universes().size());
+    bounds.write_period = kWritePeriod;
+    bounds.fault_after = artnet::kNodeGone + 2 * kWritePeriod;
+    bounds.notices_loss = expect_reply_ || !destination_;
+    return bounds;
+  }
+
+  Result<void> activate(Time now) override {
+    if (life_.life() != Life::configured) return {};
+    life_.active(now);
+    activated_ = now;
+    last_error_.reset();
+    open(now);
+    return {};
+  }
+
+  void deactivate(Time now) override {
+    if (life_.life() == Life::configured) return;
+    channel_->close();
+    controller_.rest();
+    life_.configured(now);
+  }
+
+  std::vector<Health> health(Time) const override {
+    std::vector<Health> all{life_.health()};
+    for (const auto& [address, node] : controller_.nodes()) {
+      Health health;
+      health.device = fmt::format("{}: {} ({})", life_.health().device, node.name, text_of(address.ipv4));
+      health.life = node.gone ? Life::faulted : Life::active;
+      if (node.gone) health.detail = "timeout: three polls without an answer";
+      health.since = node.since;
+      health.last_ok = node.last_seen;
+      health.received = node.replies;
+      all.push_back(std::move(health));
+    }
+    return all;
+  }
+
+  LevelOutput* level_output() override { return this; }
+  Mover* mover() override { return bay_.has_heads() ? this : nullptr; }
+
+  Result<void> move(Time, std::span<const AimCommand> commands) override {
+    if (life_.life() == Life::configured) return tl::unexpected(inactive());
+    return bay_.set_aims(commands);
+  }
+
+  Result<void> write(Time now, std::span<const LevelCommand> commands) override {
+    if (life_.life() == Life::configured) return tl::unexpected(inactive());
+    if (auto set = bay_.set_levels(commands); !set) return set;
+    if (!channel_->is_open()) {
+      if (now < reopen_at_) return tl::unexpected(life_.fault());
+      open(now);
+      if (!channel_->is_open()) return tl::unexpected(life_.fault());
+    }
+    listen(now);
+    if (controller_.poll_due(now)) send(now, poll_to_, artnet::encode_poll());
+    for (const DmxUniverse& universe : bay_.universes()) send_universe(now, universe);
+    update_life(now);
+    if (life_.life() == Life::faulted) return tl::unexpected(life_.fault());
+    return {};
+  }
+
+ private:
+  Fault inactive() const { return {Cause::inactive, life_.health().device, "the driver is not active", {}}; }
+
+  void open(Time now) {
+    reopen_at_ = now + kReopenEvery;
+    if (auto opened = channel_->open(); !opened) note_error(now, opened.error());
+  }
+
+  void listen(Time now) {
+    for (int i = 0; i < kDatagramsPerCycle; ++i) {
+      const auto error = channel_->take_error();
+      if (!error) break;
+      note_error(now, *error);
+    }
+    for (int i = 0; i < kDatagramsPerCycle; ++i) {
+      const auto datagram = channel_->receive();
+      if (!datagram) break;
+      if (controller_.hear(now, *datagram)) life_.count_received(now);
+    }
+  }
+
+  void send(Time now, const SocketAddress& to, std::span<const std::uint8_t> bytes) {
+    if (auto sent = channel_->send(to, bytes); !sent) {
+      note_error(now, sent.error());
+    } else {
+      life_.count_sent();
+    }
+  }
+
+  void send_universe(Time now, const DmxUniverse& universe) {
+    if (destination_) {
+      if (const auto packet = controller_.due(now, universe.number, universe.slots)) send(now, *destination_, *packet);
+      return;
+    }
+    const std::vector<SocketAddress> nodes = controller_.subscribers(universe.number);
+    if (nodes.empty()) return;
+    const auto packet = controller_.due(now, universe.number, universe.slots);
+    if (!packet) return;
+    for (const SocketAddress& node : nodes) send(now, node, *packet);
+  }
+
+  void note_error(Time now, const Fault& fault) {
+    last_error_ = now;
+    Fault with_figures = fault;
+    with_figures.detail += fmt::format(" ({} errors, {} packets)", life_.health().errors + 1, life_.health().sent);
+    life_.faulted(now, with_figures);
+  }
+
+  /// What keeps data from reaching a lamp, if anything does.
+  std::optional<std::string> missing(Time now) const {
+    if (!expect_reply_ && destination_) return std::nullopt;
+    if (destination_) {
+      Time last = activated_;
+      std::string name = "the node at " + text_of(*destination_);
+      for (const auto& [address, node] : controller_.nodes()) {
+        if (address.ipv4 != destination_->ipv4) continue;
+        last = std::max(last, node.last_seen);
+        name = fmt::format("node \"{}\" at {}", node.name, text_of(*destination_));
+      }
+      if (now - last <= artnet::kNodeGone) return std::nullopt;
+      return fmt::format("{} has answered no poll for {:.1f} s", name, to_seconds(now - last));
+    }
+    if (now - activated_ <= artnet::kNodeGone) return std::nullopt;
+    for (const DmxUniverse& universe : bay_.universes()) {
+      if (!controller_.subscribers(universe.number).empty()) continue;
+      for (const auto& [address, node] : controller_.nodes()) {
+        if (node.gone && node.puts_out(universe.number)) {
+          return fmt::format("node \"{}\" at {} has answered no poll for {:.1f} s", node.name, text_of(address),
+                             to_seconds(now - node.last_seen));
+        }
+      }
+      return fmt::format("no node puts out universe {} ({})", universe.number,
+                         artnet::text_of_port_address(universe.number));
+    }
+    return std::nullopt;
+  }
+
+  void update_life(Time now) {
+    if (const auto what = missing(now)) {
+      life_.faulted(now, {Cause::timeout, {}, *what, {}}, life_.life() != Life::faulted);
+      return;
+    }
+    if (life_.life() == Life::faulted && (!last_error_ || now - *last_error_ >= kQuietBeforeRecovery)) {
+      life_.active(now);
+      last_error_.reset();
+    }
+  }
+
+  std::unique_ptr<DatagramChannel> channel_;
+  DmxPatchbay bay_;
+  LifeRecord life_;
+  artnet::Controller controller_;
+  bool expect_reply_ = true;
+  SocketAddress poll_to_;
+  std::optional<SocketAddress> destination_;  ///< nothing: to subscribers
+  Time activated_{};
+  std::optional<Time> last_error_;
+  Time reopen_at_{};
+};
+
+}  // namespace
+
+std::span<const OptionDoc> artnet_options() { return kOptions; }
+
+std::vector<Problem> check_artnet(const Rig& rig, std::size_t bus) {
+  const Bus& entry = rig.buses[bus];
+  std::vector<Problem> problems = check_options(rig, entry, kOptions);
+  std::vector<Problem> patch = check_dmx_patch(rig, bus, 0, artnet::kHighestPortAddress);
+  if (problems.empty()) {
+    const auto check_address = [&](std::string_view key, const std::string& text) {
+      const auto address = parse_ipv4(text);
+      if (address && *address != 0 && !is_multicast(*address)) return;
+      problems.push_back(problem_at(rig, entry, key,
+                                    fmt::format("{} = \"{}\" is no IPv4 address to send to", key, text),
+                                    "write numbers, such as \"2.0.0.10\""));
+    };
+    const std::string destination = string_option(entry, kOptions, "destination");
+    if (destination != "auto") check_address("destination", destination);
+    check_address("broadcast", string_option(entry, kOptions, "broadcast"));
+    if (destination == "auto" && !boolean_option(entry, kOptions, "expect_reply")) {
+      problems.push_back(problem_at(rig, entry, "expect_reply",
+                                    "expect_reply = false needs a destination: \"auto\" finds nodes by their replies",
+                                    "write destination = the node's IPv4 address"));
+    }
+  }
+  problems.insert(problems.end(), patch.begin(), patch.end());
+  return problems;
+}
+
+std::unique_ptr<Driver> make_artnet_over(std::unique_ptr<DatagramChannel> channel, const Rig& rig, std::size_t bus,
+                                         const std::optional<Redirect>& redirect) {
+  return std::make_unique<ArtnetDriver>(std::move(channel), rig, bus, redirect);
+}
+
+std::unique_ptr<Driver> make_artnet(const Rig& rig, std::size_t bus, const std::optional<Redirect>& redirect) {
+  UdpSettings settings;
+  settings.broadcast = true;
+  if (!redirect) {
+    settings.local_port = artnet::kPort;  // nodes answer to this port, some by broadcast
+    settings.share_local_port = true;
+  }
+  return make_artnet_over(make_udp(std::move(settings)), rig, bus, redirect);
+}
+
+}  // namespace luxrig

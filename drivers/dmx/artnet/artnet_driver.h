@@ -1,0 +1,22 @@
+#pragma once
+/// Sends the fixtures of one bus by Art-Net 4 over UDP to nodes that it finds, or to one it is told. See README.md.
+
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "drivers/io/datagram.h"
+#include "drivers/registry.h"
+
+namespace luxrig {
+
+[[nodiscard]] std::span<const OptionDoc> artnet_options();
+[[nodiscard]] std::vector<Problem> check_artnet(const Rig& rig, std::size_t bus);
+[[nodiscard]] std::unique_ptr<Driver> make_artnet(const Rig& rig, std::size_t bus,
+                                                  const std::optional<Redirect>& redirect);
+
+/// The same over a channel of the caller's.
+[[nodiscard]] std::unique_ptr<Driver> make_artnet_over(std::unique_ptr<DatagramChannel> channel, const Rig& rig,
+                                                       std::size_t bus, const std::optional<Redirect>& redirect);
+
+}  // namespace luxrig

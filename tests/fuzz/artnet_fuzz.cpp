@@ -1,0 +1,23 @@
+/// Art-Net decoders: no packet may crash them, none yields a port address that does not exist, and an accepted ArtDmx
+/// encodes to the same bytes (but for a protocol version above 14).
+#include <cstdlib>
+
+#include "drivers/dmx/artnet/artnet_codec.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace luxrig::artnet;
+  if (const auto reply = decode_poll_reply({data, size})) {
+    if (reply->output_port_addresses.size() > 4) std::abort();
+    for (const int port_address : reply->output_port_addresses) {
+      if (port_address < 0 || port_address > kHighestPortAddress) std::abort();
+    }
+  }
+  if (const auto dmx = decode_dmx({data, size})) {
+    const auto bytes = encode(*dmx);
+    const auto again = decode_dmx(bytes);
+    if (bytes.size() != size || !again || again->slots != dmx->slots || again->port_address != dmx->port_address) {
+      std::abort();
+    }
+  }
+  return 0;
+}
