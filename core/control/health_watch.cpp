@@ -8,6 +8,7 @@ namespace luxrig {
 
 HealthWatch::HealthWatch(const Rig& rig) : known_(names_of(rig)), fixtures_on_bus_(rig.buses.size(), 0) {
   for (const Fixture& fixture : rig.fixtures) {
+    bus_of_fixture_.push_back(fixture.bus);
     if (fixture.bus < fixtures_on_bus_.size()) ++fixtures_on_bus_[fixture.bus];
   }
   for (const Luxmeter& luxmeter : rig.luxmeters) {
@@ -105,8 +106,8 @@ void HealthWatch::step_meter(Time now, std::size_t luxmeter, const Health* fault
                        meter.name, to_seconds(silence));
   } else {
     text = fmt::format(
-        "luxmeter \"{}\" cannot be believed ({}); check that nothing covers it and that it stands where "
-        "the rig file says",
+        "luxmeter \"{}\" cannot be believed ({}); check that nothing covers it and that it stands where the rig file "
+        "says; if it is right as it is, apply the plan again to measure afresh",
         meter.name, meter.implausible);
   }
   alarms_.push_back({true, meter.name, std::move(text), silent ? meter.lost_since : meter.implausible_since});
@@ -129,11 +130,14 @@ void HealthWatch::step(Time now) {
     if (known.role != Role::luxmeter && known.role != Role::meter_bus) light_lost_ = true;
     alarms_.push_back(alarm_of(health, known));
   }
-  // A meter on a dead bus is lost with it; once is enough to say so.
+  // What hangs on a dead bus is lost with it; once is enough to say so.
   std::erase_if(alarms_, [&](const Alarm& alarm) {
     const auto found = known_.find(alarm.device);
-    return found != known_.end() && found->second.role == Role::luxmeter &&
-           meters_[found->second.index].bus < bus_faulted.size() && bus_faulted[meters_[found->second.index].bus];
+    if (found == known_.end()) return false;
+    const auto [role, index] = found->second;
+    if (role != Role::luxmeter && role != Role::fixture) return false;
+    const std::size_t bus = role == Role::luxmeter ? meters_[index].bus : bus_of_fixture_[index];
+    return bus < bus_faulted.size() && bus_faulted[bus] != nullptr;
   });
   for (std::size_t i = 0; i < meters_.size(); ++i) {
     step_meter(now, i, meter_faulted[i], meters_[i].bus < bus_faulted.size() ? bus_faulted[meters_[i].bus] : nullptr);

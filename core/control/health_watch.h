@@ -37,6 +37,7 @@ class HealthWatch {
   [[nodiscard]] bool light_lost() const { return light_lost_; }
   [[nodiscard]] bool any_meter_lost() const;
   [[nodiscard]] bool meter_lost(std::size_t luxmeter) const { return meters_[luxmeter].lost; }
+  [[nodiscard]] bool meter_implausible(std::size_t luxmeter) const { return !meters_[luxmeter].implausible.empty(); }
   /// One for each failure, those that carry light first.
   [[nodiscard]] const std::vector<Alarm>& alarms() const { return alarms_; }
 
@@ -62,7 +63,7 @@ class HealthWatch {
   void step_meter(Time now, std::size_t luxmeter, const Health* faulted, const Health* bus_faulted);
 
   const std::map<std::string, Known> known_;
-  std::vector<std::size_t> fixtures_on_bus_;
+  std::vector<std::size_t> bus_of_fixture_, fixtures_on_bus_;
   std::vector<Meter> meters_;
   std::vector<Health> report_;
   std::vector<Alarm> alarms_;

@@ -52,6 +52,8 @@ ShowController::State::State(const Rig& rig_in, const LightModel& model)
       health(rig),
       samples(rig.luxmeters.size()),
       measured(rig.luxmeters.size()),
+      sampled_lx(rig.luxmeters.size()),
+      sample_changed(rig.luxmeters.size(), false),
       believed(rig.luxmeters.size()) {
   const std::vector<double> dark(rig.fixtures.size(), 0.0);
   for (const Fixture& fixture : rig.fixtures) {
@@ -81,9 +83,7 @@ std::vector<double> ShowController::State::present_levels(Time now) const {
 
 void ShowController::State::fade(Time now, std::vector<double> from, std::vector<double> to, double seconds,
                                  FadeCurve curve) {
-  WorstCase worst = estimator.worst_case(from, to, now);
-  program.worst_lux_per_level = std::move(worst.worst_lux_per_level);
-  program.max_lx = std::move(worst.max_lx);
+  guard(now, from, to);
   program.from_level = std::move(from);
   program.to_level = std::move(to);
   program.start = now;
@@ -92,6 +92,30 @@ void ShowController::State::fade(Time now, std::vector<double> from, std::vector
   ++program.revision;
   samples.restart(program.start + program.duration + from_seconds(rig.control.settle_s));
   drifted = 0;
+}
+
+/// Rows for the output. Where evidence shows that the whole way stays within a limit, the row is loosened until it just
+/// lets both ends pass: a row is one factor for all levels, and what it must assume for the dim end would dim the
+/// bright one, with a jump, at the moment the fade starts.
+void ShowController::State::guard(Time now, const std::vector<double>& from, const std::vector<double>& to) {
+  constexpr int kSamples = 8;
+  WorstCase worst = estimator.worst_case(from, to, now);
+  const auto lights = static_cast<Eigen::Index>(from.size());
+  const Eigen::Map<const Eigen::VectorXd> begin(from.data(), lights), end(to.data(), lights);
+  for (std::size_t k = 0; k < worst.points.size(); ++k) {
+    auto row = worst.worst_lux_per_level.row(static_cast<Eigen::Index>(k));
+    const double max_lx = worst.max_lx[static_cast<Eigen::Index>(k)];
+    const double ends_lx = std::max(row.dot(begin), row.dot(end));
+    if (ends_lx <= max_lx) continue;
+    bool safe = true;
+    for (int s = 0; s <= kSamples && safe; ++s) {
+      const Eigen::VectorXd level = begin + (end - begin) * (static_cast<double>(s) / kSamples);
+      safe = estimator.most_lux_at_point(worst.points[k], {level.data(), from.size()}, now) <= max_lx;
+    }
+    if (safe) row *= max_lx / ends_lx * (1 - 1e-9);
+  }
+  program.worst_lux_per_level = std::move(worst.worst_lux_per_level);
+  program.max_lx = std::move(worst.max_lx);
 }
 
 void ShowController::State::start_cue(Time now, std::vector<double> levels) {
@@ -136,17 +160,23 @@ void ShowController::State::take_sample(Time now) {
     }
   }
   if (readings.empty()) return;
+  for (const LuxReading& reading : readings) {
+    sample_changed[reading.luxmeter] = sampled_lx[reading.luxmeter] != reading.lux;
+    sampled_lx[reading.luxmeter] = reading.lux;
+  }
   for (const Judgement& judgement : estimator.update(now, readings, program.to_level)) {
     health.judged(judgement.luxmeter, now, judgement.why);
     if (!judgement.believed) {
-      measured[judgement.luxmeter].reset();
-      estimator.forget(judgement.luxmeter);
+      measured[judgement.luxmeter].reset();  // what it taught before stays: the limits rest on it
       continue;
     }
     measured[judgement.luxmeter] = *samples.sample(judgement.luxmeter);
   }
   samples.next();
   sampled_at = now;
+  bool all_believed = true;
+  for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) all_believed = all_believed && measured[i].has_value();
+  afresh = afresh && !all_believed;
 
   std::vector<LimitBreach> present;
   for (std::size_t p = 0; p < rig.points.size(); ++p) {
@@ -196,6 +226,16 @@ void ShowController::State::watch_drift(Time now) {
   if (drifted >= kDriftSamples && now - corrected_at >= kDriftCorrectionEvery) correct_or_hold(now);
 }
 
+/// A meter that contradicts only what it said before may have been right before or now; taking its word now could drive
+/// the light up (somebody's coat over it), so a person must ask for that by applying the plan again. Only in the safe
+/// look, where no limit rests on what it taught; and never one whose value stood still while the light changed.
+void ShowController::State::doubt_the_past(Time now) {
+  if (!afresh || sampled_at != now) return;
+  for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
+    if (health.meter_implausible(i) && sample_changed[i]) estimator.forget(i);
+  }
+}
+
 void ShowController::State::look_at_failures(Time now) {
   health.step(now);
   const bool was_failing = failing;
@@ -205,6 +245,7 @@ void ShowController::State::look_at_failures(Time now) {
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
     if (health.meter_lost(i)) measured[i].reset();
   }
+  converged = converged && all_metered_goals_met();
 }
 
 void ShowController::State::advance(Time now) {
@@ -221,6 +262,7 @@ void ShowController::State::advance(Time now) {
       if (program.done(now)) enter(Phase::safe, now);
       return;
     case Phase::safe:
+      doubt_the_past(now);
       if (back && cue && !asked_safe) resume(now);
       return;
     default:
@@ -263,6 +305,7 @@ void ShowController::apply(Time now, std::span<const double> levels) {
     wanted[i] = wanted[i] > 0 ? std::min(wanted[i], state.program.max_level[i]) : 0.0;  // NaN is dark
   }
   state.asked_safe = false;
+  state.afresh = true;
   state.start_cue(now, state.estimator.within_limits(wanted, now));
 }
 

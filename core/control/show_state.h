@@ -40,12 +40,15 @@ struct ShowController::State {
   bool asked_safe = false;  ///< by go_safe: no return by itself
   std::string failure;      ///< what froze the show, for the detail line
   std::optional<std::vector<double>> cue;  ///< levels in force, as corrected so far
+  bool afresh = false;                     ///< a person applied a plan, and the meters have not all been believed since
   int round = 0;
   bool converged = false;
   Time corrected_at{};                              ///< when the last correction was decided
   int drifted = 0;                                  ///< samples in a row, while holding, that ask for a correction
   Time sampled_at{};                                ///< when the last sample was complete
   std::vector<std::optional<LuxReading>> measured;  ///< per luxmeter: last believed sample
+  std::vector<std::optional<double>> sampled_lx;    ///< per luxmeter: last sample, believed or not
+  std::vector<bool> sample_changed;                 ///< whether it differed from the one before
   std::vector<std::optional<LuxReading>> believed;  ///< per luxmeter: last reading while it was not lost
   std::vector<double> aimed_lx;  ///< per point: what the last correction could reach; empty before the first
   std::vector<std::string> why;  ///< per point: what keeps it from its goal; empty before the first
@@ -56,6 +59,7 @@ struct ShowController::State {
   void enter(Phase next, Time now);
   [[nodiscard]] std::vector<double> present_levels(Time now) const;
   void fade(Time now, std::vector<double> from, std::vector<double> to, double seconds, FadeCurve curve);
+  void guard(Time now, const std::vector<double>& from, const std::vector<double>& to);
   void start_cue(Time now, std::vector<double> levels);
   void freeze(Time now);
   void resume(Time now);
@@ -63,6 +67,7 @@ struct ShowController::State {
   void take_sample(Time now);
   void correct_or_hold(Time now);
   void watch_drift(Time now);
+  void doubt_the_past(Time now);
   void look_at_failures(Time now);
   void advance(Time now);
 

@@ -13,6 +13,10 @@
 
 namespace luxrig::scenarios {
 
+/// More than any fade here changes a level in the 20 ms between two outputs: the fastest, an s-curve over 0.8 s, has a
+/// greatest slope of 1.5 · 0.02 / 0.8.
+inline constexpr double kLargestStep = 0.0376;
+
 class ClosedLoop {
  public:
   ClosedLoop(const Hall& hall_in, const sim::Deviations& deviations)
@@ -37,7 +41,9 @@ class ClosedLoop {
     devices.faults().set(device, kind, on, value);
   }
 
-  void run(double run_s) { run_until([] { return false; }, run_s); }
+  void run(double run_s) {
+    run_until([] { return false; }, run_s);
+  }
 
   /// Until it is so, or for so long; returns whether it is so.
   bool run_until(const std::function<bool()>& so, double at_most_s) {
@@ -74,6 +80,23 @@ class ClosedLoop {
     return worst;
   }
 
+  /// The same in the truth, at the last tick.
+  [[nodiscard]] double worst_true_error() const {
+    double worst = 0;
+    const std::vector<sim::PointTruth> points = devices_world().points();
+    for (const Luxmeter& luxmeter : hall.rig.luxmeters) {
+      worst = std::max(worst, std::abs(points[*luxmeter.point].lux / *hall.rig.points[*luxmeter.point].goal_lx - 1));
+    }
+    return worst;
+  }
+
+  /// What goes out now.
+  [[nodiscard]] std::vector<double> levels() const {
+    std::vector<double> level(hall.rig.fixtures.size());
+    show.program().levels_at(now, level);
+    return level;
+  }
+
   [[nodiscard]] std::string describe() const {
     const ShowStatus present = status();
     std::string text = fmt::format("at {:.2f} s: {} ({}), round {}\n", seconds(), name_of(present.phase),
@@ -82,11 +105,11 @@ class ClosedLoop {
     const std::vector<sim::PointTruth> points = devices_world().points();
     for (std::size_t m = 0; m < hall.rig.luxmeters.size(); ++m) {
       const std::size_t p = *hall.rig.luxmeters[m].point;
-      text += fmt::format("  {}: goal {:.2f} measured {:.2f} true {:.2f} most {:.2f} predicted {:.2f} ± {:.2f} met {} {}\n",
-                          hall.rig.points[p].name, *hall.rig.points[p].goal_lx,
-                          present.points[p].measured_lx.value_or(-1), points[p].lux, points[p].max_lux_seen,
-                          present.points[p].predicted_lx, present.points[p].standard_error_lx, present.points[p].met,
-                          present.points[p].why);
+      text +=
+          fmt::format("  {}: goal {:.2f} measured {:.2f} true {:.2f} most {:.2f} predicted {:.2f} ± {:.2f} met {} {}\n",
+                      hall.rig.points[p].name, *hall.rig.points[p].goal_lx, present.points[p].measured_lx.value_or(-1),
+                      points[p].lux, points[p].max_lux_seen, present.points[p].predicted_lx,
+                      present.points[p].standard_error_lx, present.points[p].met, present.points[p].why);
     }
     return text;
   }

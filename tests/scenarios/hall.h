@@ -16,8 +16,8 @@ namespace luxrig::scenarios {
 struct Hall {
   Rig rig;
   LightModel model;
-  Eigen::MatrixXd truth;      ///< points, then luxmeters × fixtures: the model, wrong by a few percent
-  std::vector<double> plan;   ///< levels that bring the goals in the model
+  Eigen::MatrixXd truth;     ///< points, then luxmeters × fixtures: the model, wrong by a few percent
+  std::vector<double> plan;  ///< levels that bring the goals in the model
 };
 
 inline constexpr std::size_t kWorks = 4;  ///< points 0…3, each with a luxmeter, max_lx 50
@@ -60,7 +60,8 @@ inline Hall make_hall(std::uint64_t seed, const HallOptions& options = {}) {
     // The works hang below one fixture each, far from one another; two more meters stand below others.
     const std::size_t below[] = {0, 3, 5, 10, 8, 7};
     if (p < 6) {
-      point.position_world_m = rig.fixtures[below[p]].world_from_mount.translation_m + Vec3(unit() - 0.5, unit() - 0.5, -2.2);
+      point.position_world_m =
+          rig.fixtures[below[p]].world_from_mount.translation_m + Vec3(unit() - 0.5, unit() - 0.5, -2.2);
     }
     if (p < kWorks) point.max_lx = 50;
     rig.points.push_back(point);
@@ -93,14 +94,10 @@ inline Hall make_hall(std::uint64_t seed, const HallOptions& options = {}) {
   Eigen::VectorXd level(fixtures);
   for (Eigen::Index j = 0; j < fixtures; ++j) level[j] = 0.25 + 0.45 * unit();
   const Eigen::Index over_work[] = {0, 3, 5, 10};
-  for (int round = 0; round < 100; ++round) {
+  for (int round = 0; round < 20; ++round) {
     for (Eigen::Index w = 0; w < static_cast<Eigen::Index>(kWorks); ++w) {
       const double missing_lx = options.work_goal_lx - lux.row(w).dot(level);
       level[over_work[w]] = std::max(0.02, level[over_work[w]] + missing_lx / lux(w, over_work[w]));
-    }
-    // Neighbours that alone are too bright for a work are dimmed.
-    for (Eigen::Index w = 0; w < static_cast<Eigen::Index>(kWorks); ++w) {
-      if (lux.row(w).dot(level) > 1.001 * options.work_goal_lx) level *= 0.95;
     }
   }
   const Eigen::VectorXd goal = lux * level;

@@ -1,0 +1,136 @@
+// Whole shows without a fault: light, measure, correct, hold.
+#include <gtest/gtest.h>
+
+#include "tests/scenarios/closed_loop.h"
+
+namespace luxrig::scenarios {
+namespace {
+
+sim::Deviations seeded(std::uint64_t seed) {
+  sim::Deviations deviations;
+  deviations.seed = seed;
+  return deviations;
+}
+
+TEST(Show, BringsEveryMeteredGoalWithinThreePercentAndNeverExceedsALimitForFiftySeeds) {
+  double worst_error = 0, worst_share = 0, longest_s = 0;
+  int most_rounds = 0;
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    ClosedLoop loop(make_hall(seed), seeded(seed));
+    loop.run(1);
+    loop.apply();
+    ASSERT_TRUE(loop.run_until(Phase::holding, 30)) << "seed " << seed << " " << loop.describe();
+    const ShowStatus status = loop.status();
+    EXPECT_TRUE(status.converged) << "seed " << seed << " " << loop.describe();
+    EXPECT_TRUE(status.alarms.empty()) << "seed " << seed << " " << loop.describe();
+    EXPECT_LE(status.round, loop.hall.rig.control.rounds);
+    EXPECT_GE(status.round, 1) << "open loop cannot be right, the truth is 10 % off";
+    longest_s = std::max(longest_s, loop.seconds() - 1);
+    most_rounds = std::max(most_rounds, status.round);
+    loop.run(5);
+    EXPECT_LE(loop.worst_measured_error(), 0.03) << "seed " << seed << " " << loop.describe();
+    // The truth can be further off by what the meter itself may be wrong.
+    EXPECT_LE(loop.worst_true_error(), 0.03 + 0.04) << "seed " << seed << " " << loop.describe();
+    EXPECT_LE(loop.worst_limit_share(), 1) << "seed " << seed << " " << loop.describe();
+    EXPECT_TRUE(loop.devices.world().violations().empty()) << "seed " << seed;
+    EXPECT_LE(loop.largest_step, kLargestStep) << "seed " << seed;
+    worst_error = std::max(worst_error, loop.worst_measured_error());
+    worst_share = std::max(worst_share, loop.worst_limit_share());
+  }
+  std::printf("50 seeds: worst measured error %.2f %%, most lux over limit %.3f, longest %.1f s, most rounds %d\n",
+              100 * worst_error, worst_share, longest_s, most_rounds);
+}
+
+TEST(Show, GoesAsNearToAGoalAtItsLimitAsTheMetersToleranceLetsItAndSaysSo) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    ClosedLoop loop(make_hall(seed, {.work_goal_lx = 50}), seeded(seed));
+    loop.apply();
+    ASSERT_TRUE(loop.run_until(Phase::holding, 30)) << loop.describe();
+    loop.run(20);
+    const ShowStatus status = loop.status();
+    EXPECT_TRUE(status.converged) << "seed " << seed << " " << loop.describe();
+    EXPECT_LE(loop.worst_limit_share(), 1) << "seed " << seed << " " << loop.describe();
+    for (std::size_t work = 0; work < kWorks; ++work) {
+      EXPECT_TRUE(status.points[work].met);
+      EXPECT_NE(status.points[work].why.find("limit"), std::string::npos) << status.points[work].why;
+      // 50 lx with a meter that may be 4 % wrong: 48 lx shown is the most. Another round is left out when it would
+      // bring less than 2 % of the goal (1 lx); and 2 % stay free for what the next levels may do to the dimmers' gain.
+      EXPECT_GE(*status.points[work].measured_lx, 0.98 * (48 - 1)) << "seed " << seed << " " << loop.describe();
+      EXPECT_LE(*status.points[work].measured_lx, 1.01 * 48) << "seed " << seed << " " << loop.describe();
+    }
+  }
+}
+
+TEST(Show, NeverExceedsALimitThatNoMeterWatches) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Hall hall = make_hall(seed);
+    for (std::size_t p = 20; p < 24; ++p) hall.rig.points[p].max_lx = 0.9 * *hall.rig.points[p].goal_lx;
+    ClosedLoop loop(hall, seeded(seed));
+    loop.apply();
+    ASSERT_TRUE(loop.run_until(Phase::holding, 40)) << loop.describe();
+    loop.run(15);
+    EXPECT_LE(loop.worst_limit_share(), 1) << "seed " << seed << " " << loop.describe();
+    EXPECT_TRUE(loop.devices.world().violations().empty());
+  }
+}
+
+TEST(Show, FollowsALampThatAgesByAnotherCorrection) {
+  ClosedLoop loop(make_hall(3), seeded(3));
+  loop.apply();
+  ASSERT_TRUE(loop.run_until(Phase::holding, 30));
+  const int rounds = loop.status().round;
+  // Every meter slowly shows less, as if all lamps lost 6 % in ten minutes: years of ageing, faster than in life.
+  const double begin_s = loop.seconds();
+  loop.corrupt = [&](LuxReading& reading) {
+    reading.lux *= 1 - 0.06 * std::min(1.0, (loop.seconds() - begin_s) / 600);
+  };
+  loop.run(660);
+  EXPECT_GT(loop.status().round, rounds);
+  EXPECT_LE(loop.status().round, rounds + 6) << "one for each tolerance's worth of drift, with as many to spare";
+  EXPECT_TRUE(loop.run_until(Phase::holding, 10)) << loop.describe();
+  EXPECT_LE(loop.worst_measured_error(), 0.03) << loop.describe();
+  EXPECT_LE(loop.largest_step, kLargestStep);
+}
+
+TEST(Show, LeavesLevelsAloneWhileNothingDrifts) {
+  ClosedLoop loop(make_hall(4), seeded(4));
+  loop.apply();
+  ASSERT_TRUE(loop.run_until(Phase::holding, 30));
+  loop.run(2);
+  const std::uint64_t revision = loop.show.program().revision;
+  loop.run(60);
+  EXPECT_EQ(loop.show.program().revision, revision) << loop.describe();
+}
+
+TEST(Show, AppliedAgainDuringEveryPhaseConvergesAndKeepsTheLimits) {
+  for (const double after_s : {0.5, 1.9, 2.2, 3.0, 3.7, 4.5, 7.0, 12.0}) {
+    ClosedLoop loop(make_hall(5), seeded(5));
+    loop.apply();
+    loop.run(after_s);
+    loop.show.apply(loop.now, std::vector<double>(12, 0.05));
+    loop.run(0.7);
+    loop.apply();
+    ASSERT_TRUE(loop.run_until(Phase::holding, 30)) << after_s << loop.describe();
+    EXPECT_TRUE(loop.status().converged) << after_s << loop.describe();
+    EXPECT_LE(loop.worst_limit_share(), 1) << after_s;
+    EXPECT_LE(loop.largest_step, kLargestStep) << after_s;
+  }
+}
+
+TEST(Show, SendsTheSameBytesForTheSameSeed) {
+  std::string logs[2];
+  for (std::string& log : logs) {
+    ClosedLoop loop(make_hall(6), seeded(6));
+    loop.keep_log = true;
+    loop.apply();
+    loop.run(6);
+    loop.fault("meter-2", sim::FaultKind::lying, true, 10);
+    loop.run(6);
+    log = loop.log;
+  }
+  EXPECT_GT(logs[0].size(), 10000u);
+  EXPECT_EQ(logs[0], logs[1]);
+}
+
+}  // namespace
+}  // namespace luxrig::scenarios
