@@ -94,11 +94,14 @@ void ShowController::State::fade(Time now, std::vector<double> from, std::vector
   drifted = 0;
 }
 
-/// Rows for the output. Where evidence shows that the whole way stays within a limit, the row is loosened until it just
-/// lets both ends pass: a row is one factor for all levels, and what it must assume for the dim end would dim the
-/// bright one, with a jump, at the moment the fade starts.
+/// Rows for the output. Where the whole way is known to stay within a limit, the row is loosened until it just lets
+/// both ends pass: a row is one factor for all levels, and what it must assume for the dim end would dim the bright
+/// one, with a jump, at the moment the fade starts. Levels that the rows in force let pass stay allowed until a meter
+/// says more.
 void ShowController::State::guard(Time now, const std::vector<double>& from, const std::vector<double>& to) {
   constexpr int kSamples = 8;
+  constexpr double kRounding = 1 + 1e-9;
+  const bool nothing_new = sampled_at <= program.start;  // a correction starts at the instant of its sample
   WorstCase worst = estimator.worst_case(from, to, now);
   const auto lights = static_cast<Eigen::Index>(from.size());
   const Eigen::Map<const Eigen::VectorXd> begin(from.data(), lights), end(to.data(), lights);
@@ -108,9 +111,9 @@ void ShowController::State::guard(Time now, const std::vector<double>& from, con
     const double ends_lx = std::max(row.dot(begin), row.dot(end));
     if (ends_lx <= max_lx) continue;
     bool safe = true;
-    for (int s = 0; s <= kSamples && safe; ++s) {
+    for (int s = nothing_new ? 1 : 0; s <= kSamples && safe; ++s) {
       const Eigen::VectorXd level = begin + (end - begin) * (static_cast<double>(s) / kSamples);
-      safe = estimator.most_lux_at_point(worst.points[k], {level.data(), from.size()}, now) <= max_lx;
+      safe = estimator.most_lux_at_point(worst.points[k], {level.data(), from.size()}, now) <= max_lx * kRounding;
     }
     if (safe) row *= max_lx / ends_lx * (1 - 1e-9);
   }

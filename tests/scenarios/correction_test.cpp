@@ -53,9 +53,9 @@ TEST(Show, GoesAsNearToAGoalAtItsLimitAsTheMetersToleranceLetsItAndSaysSo) {
     for (std::size_t work = 0; work < kWorks; ++work) {
       EXPECT_TRUE(status.points[work].met);
       EXPECT_NE(status.points[work].why.find("limit"), std::string::npos) << status.points[work].why;
-      // 50 lx with a meter that may be 4 % wrong: 48 lx shown is the most. Another round is left out when it would
-      // bring less than 2 % of the goal (1 lx); and 2 % stay free for what the next levels may do to the dimmers' gain.
-      EXPECT_GE(*status.points[work].measured_lx, 0.98 * (48 - 1)) << "seed " << seed << " " << loop.describe();
+      // 50 lx with a meter that may be 4 % wrong: 48 lx shown is the most. Of that, 2 % (control.tolerance) are not
+      // worth another round, and up to 3 % stay free for noise and for what the next levels may do to a dimmer's gain.
+      EXPECT_GE(*status.points[work].measured_lx, 0.95 * 48) << "seed " << seed << " " << loop.describe();
       EXPECT_LE(*status.points[work].measured_lx, 1.01 * 48) << "seed " << seed << " " << loop.describe();
     }
   }
