@@ -1,0 +1,55 @@
+#include "tools/bench/bench.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <fstream>
+
+#include "tools/bench/suites.h"
+
+namespace luxrig {
+namespace {
+
+struct Suite {
+  const char* name;
+  const char* summary;
+  std::vector<BenchRow> (*run)(const BenchOptions& options);
+};
+constexpr Suite kSuites[] = {
+    {"analytic", "evaluators against closed forms: point source, cube, integrating sphere", bench_analytic},
+};
+
+int finish(const Suite& suite, const std::vector<BenchRow>& rows, const BenchOptions& options) {
+  fmt::print("{}", table_of(rows));
+  int code = 0;
+  for (const BenchRow& row : rows)
+    if (row.met() == std::optional(false)) code = 1;
+  if (!options.csv_file.empty()) {
+    std::ofstream out(options.csv_file, std::ios::binary);
+    out << csv_of(rows);
+    out.close();
+    if (!out) {
+      fmt::print(stderr, "{}:0:0: cannot be written: name a file in a folder that exists\n", options.csv_file.string());
+      code = 1;
+    }
+  }
+  if (!options.plot_file.empty()) {
+    if (const std::string trouble = write_plot(rows, suite.name, options.plot_file); !trouble.empty()) {
+      fmt::print(stderr, "{}:0:0: {}: name a file in a folder that exists\n", options.plot_file.string(), trouble);
+      code = 1;
+    }
+  }
+  return code;
+}
+
+}  // namespace
+
+int run_bench(const std::string& suite, const BenchOptions& options) {
+  for (const Suite& known : kSuites)
+    if (suite == known.name) return finish(known, known.run(options), options);
+  fmt::print(stderr, "no bench suite is called \"{}\"; there are:\n", suite);
+  for (const Suite& known : kSuites) fmt::print(stderr, "  {:<12}{}\n", known.name, known.summary);
+  return 2;
+}
+
+}  // namespace luxrig

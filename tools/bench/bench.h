@@ -1,0 +1,19 @@
+#pragma once
+/// Run time against error, on named suites.
+
+#include <filesystem>
+#include <string>
+
+namespace luxrig {
+
+struct BenchOptions {
+  bool quick = false;                         ///< fewer and coarser runs, same columns, under a minute
+  std::filesystem::path csv_file, plot_file;  ///< written when not empty
+  int threads = 0;                            ///< 0 = one per core
+};
+
+/// Runs a suite and prints its table on stdout. Exit code: 0, 1 when a target was missed or a file could not be
+/// written, 2 for an unknown suite (the known ones are named on stderr).
+int run_bench(const std::string& suite, const BenchOptions& options);
+
+}  // namespace luxrig

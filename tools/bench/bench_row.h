@@ -1,0 +1,33 @@
+#pragma once
+/// One measurement, and what every suite does with a list of them.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace luxrig {
+
+struct BenchRow {
+  std::string case_name, method;
+  double error = 0;  ///< as a fraction
+  double seconds = 0;
+  std::optional<double> target_error, target_seconds;
+  std::vector<std::pair<std::string, std::string>> further;  ///< columns the suite adds, the same on each row
+
+  /// Both targets kept; nothing when there is none.
+  [[nodiscard]] std::optional<bool> met() const;
+};
+
+/// `case,method,error,seconds,target_error,target_seconds,met` and the further columns.
+[[nodiscard]] std::string csv_of(const std::vector<BenchRow>& rows);
+
+/// The same, aligned for reading.
+[[nodiscard]] std::string table_of(const std::vector<BenchRow>& rows);
+
+/// Error over seconds, both logarithmic; one line per case and method. Returns an empty string, or why not written.
+[[nodiscard]] std::string write_plot(const std::vector<BenchRow>& rows, const std::string& title,
+                                     const std::filesystem::path& file);
+
+}  // namespace luxrig

@@ -1,0 +1,174 @@
+#include "tools/luxrig/picture_png.h"
+
+#include <cairo.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+
+namespace luxrig {
+namespace {
+
+using Surface = std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)>;
+using Pen = std::unique_ptr<cairo_t, decltype(&cairo_destroy)>;
+
+constexpr int kLegendWidth_px = 96;
+
+Surface make_surface(int width_px, int height_px) {
+  return {cairo_image_surface_create(CAIRO_FORMAT_RGB24, width_px, height_px), &cairo_surface_destroy};
+}
+
+std::string write(const Surface& surface, const std::filesystem::path& file) {
+  const cairo_status_t status = cairo_surface_write_to_png(surface.get(), file.c_str());
+  return status == CAIRO_STATUS_SUCCESS ? "" : std::string(cairo_status_to_string(status));
+}
+
+/// colour_of(x, y) gives sRGB 0…1.
+template <class ColourOf>
+void paint(cairo_surface_t* surface, int width_px, int height_px, const ColourOf& colour_of) {
+  cairo_surface_flush(surface);
+  unsigned char* bytes = cairo_image_surface_get_data(surface);
+  const int stride = cairo_image_surface_get_stride(surface);
+  for (int y = 0; y < height_px && bytes; ++y) {
+    auto* row = reinterpret_cast<std::uint32_t*>(bytes + static_cast<std::ptrdiff_t>(y) * stride);
+    for (int x = 0; x < width_px; ++x) {
+      const Vec3 colour = colour_of(x, y);
+      std::uint32_t rgb = 0;
+      for (int c = 0; c < 3; ++c)
+        rgb = (rgb << 8) | static_cast<std::uint32_t>(std::lround(255 * std::clamp(colour[c], 0.0, 1.0)));
+      row[x] = rgb;
+    }
+  }
+  cairo_surface_mark_dirty(surface);
+}
+
+void write_title(cairo_t* pen, const std::string& title, int height_px) {
+  if (title.empty()) return;
+  cairo_select_font_face(pen, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+  cairo_set_font_size(pen, 14);
+  cairo_text_extents_t size;
+  cairo_text_extents(pen, title.c_str(), &size);
+  cairo_set_source_rgba(pen, 0, 0, 0, 0.55);
+  cairo_rectangle(pen, 8, height_px - 30, size.x_advance + 16, 22);
+  cairo_fill(pen);
+  cairo_set_source_rgb(pen, 1, 1, 1);
+  cairo_move_to(pen, 16, height_px - 14);
+  cairo_show_text(pen, title.c_str());
+}
+
+double srgb(double linear) { return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055; }
+
+double luminance_of(const Vec3f& rgb) { return 0.2126 * rgb.x() + 0.7152 * rgb.y() + 0.0722 * rgb.z(); }
+
+}  // namespace
+
+Vec3 viridis(double at) {
+  constexpr std::array<std::array<int, 3>, 9> kTable = {{{68, 1, 84},
+                                                         {71, 45, 123},
+                                                         {59, 82, 139},
+                                                         {44, 114, 142},
+                                                         {33, 145, 140},
+                                                         {39, 173, 129},
+                                                         {94, 201, 98},
+                                                         {170, 220, 50},
+                                                         {253, 231, 37}}};
+  const double scaled = std::clamp(at, 0.0, 1.0) * 8;
+  const auto low = std::min<std::size_t>(7, static_cast<std::size_t>(scaled));
+  const double share = scaled - static_cast<double>(low);
+  Vec3 colour;
+  for (std::size_t c = 0; c < 3; ++c)
+    colour[static_cast<Eigen::Index>(c)] = ((1 - share) * kTable[low][c] + share * kTable[low + 1][c]) / 255;
+  return colour;
+}
+
+double round_up_1_2_5(double value) {
+  const double decade = std::pow(10, std::floor(std::log10(value)));
+  for (const double step : {1.0, 2.0, 5.0})
+    if (step * decade >= value * (1 - 1e-9)) return step * decade;
+  return 10 * decade;
+}
+
+double log_average_luminance_cd_m2(const Picture& picture) {
+  std::vector<double> logs;
+  for (const Vec3f& rgb : picture.luminance_cd_m2)
+    if (const double luminance = luminance_of(rgb); luminance > 0) logs.push_back(std::log(luminance));
+  if (logs.empty()) return 1;
+  std::sort(logs.begin(), logs.end());
+  const std::size_t cut = logs.size() / 100;
+  double sum = 0;
+  for (std::size_t i = cut; i < logs.size() - cut; ++i) sum += logs[i];
+  return std::exp(sum / static_cast<double>(logs.size() - 2 * cut));
+}
+
+std::string write_photograph(const Picture& picture, const std::string& title, std::optional<double> grey_cd_m2,
+                             const std::filesystem::path& file) {
+  const double exposure = 0.18 / grey_cd_m2.value_or(log_average_luminance_cd_m2(picture));
+  constexpr double kWhite = 6;  // exposed luminance that becomes white
+  const Surface surface = make_surface(picture.width_px, picture.height_px);
+  paint(surface.get(), picture.width_px, picture.height_px, [&](int x, int y) {
+    const Vec3f& rgb = picture.luminance_cd_m2[static_cast<std::size_t>(y * picture.width_px + x)];
+    const double exposed = exposure * luminance_of(rgb);
+    if (!(exposed > 0)) return Vec3(Vec3::Zero());
+    const double shown = exposed * (1 + exposed / (kWhite * kWhite)) / (1 + exposed);
+    const Vec3 linear = rgb.cast<double>() * (exposure * shown / exposed);
+    return Vec3(srgb(linear.x()), srgb(linear.y()), srgb(linear.z()));
+  });
+  const Pen pen(cairo_create(surface.get()), &cairo_destroy);
+  write_title(pen.get(), title, picture.height_px);
+  return write(surface, file);
+}
+
+std::string write_false_colour(const Picture& picture, const std::string& title, std::optional<double> max_lx,
+                               const std::filesystem::path& file) {
+  if (!max_lx) {
+    std::vector<float> lux;
+    for (const float lx : picture.illuminance_lx)
+      if (lx > 0) lux.push_back(lx);
+    std::sort(lux.begin(), lux.end());
+    max_lx =
+        lux.empty() ? 100 : round_up_1_2_5(lux[static_cast<std::size_t>(0.995 * static_cast<double>(lux.size() - 1))]);
+  }
+  const double top_lx = *max_lx, bottom_lx = top_lx / 100;
+  const auto place = [&](double lux) { return lux > 0 ? std::log(lux / bottom_lx) / std::log(top_lx / bottom_lx) : 0; };
+  const Surface surface = make_surface(picture.width_px + kLegendWidth_px, picture.height_px);
+  const Pen pen(cairo_create(surface.get()), &cairo_destroy);
+  cairo_set_source_rgb(pen.get(), 0.1, 0.1, 0.1);
+  cairo_paint(pen.get());
+  paint(surface.get(), picture.width_px, picture.height_px, [&](int x, int y) {
+    const float lx = picture.illuminance_lx[static_cast<std::size_t>(y * picture.width_px + x)];
+    return lx < 0 ? Vec3(Vec3::Zero()) : viridis(place(lx));
+  });
+  const double left = picture.width_px + 12, top = 40, height = std::max(40, picture.height_px - 60);
+  for (int i = 0; i < static_cast<int>(height); ++i) {
+    const Vec3 colour = viridis(1 - (i + 0.5) / height);
+    cairo_set_source_rgb(pen.get(), colour.x(), colour.y(), colour.z());
+    cairo_rectangle(pen.get(), left, top + i, 20, 1);
+    cairo_fill(pen.get());
+  }
+  cairo_select_font_face(pen.get(), "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+  cairo_set_font_size(pen.get(), 13);
+  cairo_set_source_rgb(pen.get(), 1, 1, 1);
+  cairo_move_to(pen.get(), left, 24);
+  cairo_show_text(pen.get(), "lux");
+  for (double tick = round_up_1_2_5(bottom_lx); tick <= top_lx * 1.001; tick = round_up_1_2_5(tick * 1.5)) {
+    const double y = top + (1 - place(tick)) * height;
+    cairo_rectangle(pen.get(), left + 20, y - 0.5, 5, 1);
+    cairo_fill(pen.get());
+    cairo_move_to(pen.get(), left + 29, y + 4.5);
+    cairo_show_text(pen.get(), fmt::format("{:g}", tick).c_str());
+  }
+  write_title(pen.get(), title, picture.height_px);
+  return write(surface, file);
+}
+
+std::string write_plan_view(const PlanView& view, const std::filesystem::path& file) {
+  const Surface surface = make_surface(view.width_px, view.height_px);
+  paint(surface.get(), view.width_px, view.height_px, [&](int x, int y) {
+    return Vec3(Vec3::Constant(view.shade[static_cast<std::size_t>(y * view.width_px + x)]));
+  });
+  return write(surface, file);
+}
+
+}  // namespace luxrig

@@ -1,0 +1,34 @@
+#pragma once
+/// Pictures as PNG files: tone mapping, false colour with its scale, plan views.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "core/transport/picture.h"
+
+namespace luxrig {
+
+/// Luminance that maps to middle grey: the log-average of what is seen, without the darkest and brightest 1 %.
+[[nodiscard]] double log_average_luminance_cd_m2(const Picture& picture);
+
+/// As a photograph: exposure so that `grey_cd_m2` becomes middle grey (log-average when empty), highlights rolled off
+/// (E. Reinhard et al. 2002, eq. 4), sRGB. `title` is written in the corner; may be empty.
+/// Returns an empty string, or why the file could not be written.
+[[nodiscard]] std::string write_photograph(const Picture& picture, const std::string& title,
+                                           std::optional<double> grey_cd_m2, const std::filesystem::path& file);
+
+/// Illuminance in colours of the viridis scale, logarithmic, with a legend in lux. max_lx (top of the scale) defaults
+/// to the 99.5th percentile, rounded up to 1, 2 or 5 times a power of ten; the scale spans two decades.
+[[nodiscard]] std::string write_false_colour(const Picture& picture, const std::string& title,
+                                             std::optional<double> max_lx, const std::filesystem::path& file);
+
+[[nodiscard]] std::string write_plan_view(const PlanView& view, const std::filesystem::path& file);
+
+/// Colour of the viridis scale at 0 … 1, sRGB 0 … 1: linear between nine of its table's entries.
+[[nodiscard]] Vec3 viridis(double at);
+
+/// Smallest of 1, 2, 5 × 10^k that is at least `value` (> 0).
+[[nodiscard]] double round_up_1_2_5(double value);
+
+}  // namespace luxrig

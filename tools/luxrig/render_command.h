@@ -1,0 +1,33 @@
+#pragma once
+/// `luxrig render`: a picture of the lit rig, or its lux in false colour.
+
+#include <filesystem>
+#include <optional>
+
+#include "core/rig/rig.h"
+#include "core/transport/picture.h"
+
+namespace luxrig {
+
+struct RenderOptions {
+  std::filesystem::path rig;
+  std::optional<std::filesystem::path> plan;  ///< none: every fixture at its highest allowed level
+  std::filesystem::path output_png;
+  bool false_colour = false;  ///< lux map with a scale
+  int width_px = 960, height_px = 600;
+  std::optional<Vec3> eye_world_m, target_world_m;  ///< none: a view of the room that shows most of its points
+  double vertical_fov_deg = 60;
+  std::optional<double> grey_cd_m2;  ///< luminance shown as middle grey; none: from the picture
+  std::optional<double> max_lx;      ///< top of the false colour scale; none: from the picture
+  int threads = 0;
+};
+
+/// Returns the exit code: 0, 2 for bad input (told on stderr), 1 when the file cannot be written.
+int run_render(const RenderOptions& options);
+
+/// A view from the corner of the room, inside it, from which most of the rig's points (or lamps, if it has none) are
+/// seen.
+[[nodiscard]] Camera automatic_camera(const RayScene& scene, const Rig& rig, int width_px, int height_px,
+                                      double vertical_fov_rad);
+
+}  // namespace luxrig
