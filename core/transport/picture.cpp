@@ -105,7 +105,7 @@ class Renderer {
 
   /// Mean of the sparse points around, weighted by nearness in the picture and by how well they lie in the same plane.
   Vec3 interpolated_lx(const Hit& at, double x_px, double y_px) const {
-    constexpr int kReach = 3;
+    constexpr int kReach = 4;
     const double step_px = options_.indirect_step_px;
     const double bx = x_px / step_px - 0.5, by = y_px / step_px - 0.5;
     const double pixel_m = at.distance_m * 2 * std::tan(camera_.vertical_fov_rad / 2) / camera_.height_px;
@@ -122,7 +122,7 @@ class Renderer {
         const double height_m = std::abs(at.normal_world.dot(apart_m));
         if (along < 0.7 || height_m > out_of_plane_m) continue;
         const double nearness = (i - bx) * (i - bx) + (j - by) * (j - by);
-        const double weight = std::exp(-nearness / 2.5) * (along - 0.7) * (1 - height_m / out_of_plane_m);
+        const double weight = std::exp(-nearness / 5) * (along - 0.7) * (1 - height_m / out_of_plane_m);
         sum_lx += weight * g.irradiance_lx;
         weights += weight;
       }

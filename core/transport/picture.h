@@ -23,7 +23,7 @@ struct Camera {
 struct PictureOptions {
   int samples_per_pixel_edge = 2;  ///< direct light: squared per pixel, for smooth edges
   int indirect_step_px = 8;        ///< one point of interreflection per square of this edge
-  int indirect_paths = 64;         ///< per such point
+  int indirect_paths = 160;        ///< per such point
   std::uint64_t seed = 1;
   int threads = 0;
   Watch watch;

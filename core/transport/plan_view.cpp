@@ -8,10 +8,10 @@
 namespace luxrig {
 namespace {
 
-/// Something upright crosses the cut within half a pixel's edge around the point.
+/// Something upright crosses the cut so near that a line of about three pixels is drawn.
 bool wall_at(const RayScene& scene, const Vec3& at_world_m, double metres_per_px) {
   for (const Vec3& direction : {Vec3(Vec3::UnitX()), Vec3(-Vec3::UnitX()), Vec3(Vec3::UnitY()), Vec3(-Vec3::UnitY())})
-    if (scene.occluded(at_world_m, Vec3::Zero(), at_world_m + 0.75 * metres_per_px * direction)) return true;
+    if (scene.occluded(at_world_m, Vec3::Zero(), at_world_m + 1.5 * metres_per_px * direction)) return true;
   return false;
 }
 

@@ -1,0 +1,105 @@
+#include "core/transport/picture.h"
+
+#include <gtest/gtest.h>
+
+#include "core/transport/enclosures.h"
+#include "tests/core/transport/lamp_pose.h"
+
+namespace luxrig {
+namespace {
+
+Camera looking(const Vec3& eye_m, const Vec3& target_m) {
+  Camera camera;
+  camera.eye_world_m = eye_m;
+  camera.target_world_m = target_m;
+  camera.width_px = 33;
+  camera.height_px = 21;
+  return camera;
+}
+
+const std::vector<Emitter> kBulb = {{make_isotropic(1000), {Mat3::Identity(), {0.2, 0.1, 0.3}}}};
+
+TEST(Picture, ShowsTheIlluminanceThatTheEvaluatorMeasures) {
+  const RayScene rays(make_cube(2, 0.6));
+  const Vec3 target_m(0.3, 0.2, -1);
+  PictureOptions options;
+  options.indirect_paths = 64;
+  const auto picture = render_picture(rays, kBulb, std::vector{0.5}, looking({-0.7, -0.6, 0.4}, target_m), options);
+  ASSERT_TRUE(picture.has_value());
+  const auto measured =
+      make_path_evaluator(rays)->evaluate(std::vector<Receiver>{{target_m, Vec3::UnitZ()}}, kBulb, {});
+  const double expected_lx = 0.5 * measured->lux_per_level(0, 0);
+  const std::size_t middle = 10 * 33 + 16;
+  EXPECT_NEAR(picture->illuminance_lx[middle], expected_lx, 0.05 * expected_lx);
+  EXPECT_NEAR(picture->luminance_cd_m2[middle].x(), 0.6 * picture->illuminance_lx[middle] / kPi, 1e-3 * expected_lx);
+}
+
+TEST(Picture, IsTheSameForAnyNumberOfThreads) {
+  const RayScene rays(make_cube(2, 0.6));
+  PictureOptions options;
+  options.threads = 1;
+  const auto one = render_picture(rays, kBulb, std::vector{1.0}, looking({-0.7, -0.6, 0.4}, {0, 0, -1}), options);
+  options.threads = 3;
+  const auto three = render_picture(rays, kBulb, std::vector{1.0}, looking({-0.7, -0.6, 0.4}, {0, 0, -1}), options);
+  EXPECT_EQ(one->illuminance_lx, three->illuminance_lx);
+}
+
+TEST(Picture, WhereNothingIsSeenThereIsNoIlluminance) {
+  const RayScene rays{Scene{}};
+  const auto picture = render_picture(rays, kBulb, std::vector{1.0}, looking({0, 0, 0}, {1, 0, 0}), {});
+  ASSERT_TRUE(picture.has_value());
+  for (const float lx : picture->illuminance_lx) EXPECT_LT(lx, 0);
+}
+
+TEST(Picture, RefusesImpossibleCamerasAndLevels) {
+  const RayScene rays{Scene{}};
+  const auto cause_of = [&](const Camera& camera, const std::vector<double>& levels) {
+    const auto picture = render_picture(rays, kBulb, levels, camera, {});
+    return picture ? Cause::system : picture.error().cause;
+  };
+  Camera camera = looking({0, 0, 0}, {1, 0, 0});
+  EXPECT_EQ(cause_of(camera, {}), Cause::invalid);
+  EXPECT_EQ(cause_of(camera, {-1}), Cause::invalid);
+  EXPECT_EQ(cause_of(looking({1, 2, 3}, {1, 2, 3}), {1}), Cause::invalid);
+  camera.vertical_fov_rad = 4;
+  EXPECT_EQ(cause_of(camera, {1}), Cause::invalid);
+  camera = looking({0, 0, 0}, {1, 0, 0});
+  camera.width_px = 0;
+  EXPECT_EQ(cause_of(camera, {1}), Cause::invalid);
+}
+
+TEST(Picture, StopsWhenAsked) {
+  const RayScene rays(make_cube(2, 0.6));
+  std::stop_source stop;
+  stop.request_stop();
+  PictureOptions options;
+  options.watch.stop = stop.get_token();
+  const auto picture = render_picture(rays, kBulb, std::vector{1.0}, looking({-0.7, -0.6, 0.4}, {0, 0, -1}), options);
+  ASSERT_FALSE(picture.has_value());
+  EXPECT_EQ(picture.error().cause, Cause::cancelled);
+}
+
+TEST(PlanView, DrawsWallsDarkAndOpenFloorLightInTheirPlaces) {
+  Scene cube = make_cube(4, 0.5);
+  cube.origin_world_m = {100, -50, 7};
+  const RayScene rays(cube);
+  const PlanView view = render_plan_view(rays, 104);
+  ASSERT_EQ(view.shade.size(), static_cast<std::size_t>(view.width_px * view.height_px));
+  const auto at = [&](double x_m, double y_m) {
+    const auto x = static_cast<int>((x_m - view.left_x_world_m) / view.metres_per_px);
+    const auto y = static_cast<int>((view.top_y_world_m - y_m) / view.metres_per_px);
+    return view.shade.at(static_cast<std::size_t>(y * view.width_px + x));
+  };
+  EXPECT_GT(at(100, -50), 0.9);
+  EXPECT_LT(at(98.02, -50), 0.3);
+  EXPECT_LT(at(100.7, -48.02), 0.3);
+  EXPECT_GT(at(100, -50), at(98.15, -50.1)) << "corners are shaded";
+}
+
+TEST(PlanView, OfNothingIsAWhitePixel) {
+  const RayScene rays{Scene{}};
+  EXPECT_EQ(render_plan_view(rays, 500).shade, std::vector{1.0f});
+}
+
+}  // namespace
+}  // namespace luxrig
