@@ -294,7 +294,7 @@ TEST_P(EvaluatorConformance, ASceneWithoutTrianglesIsOpenAir) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, EvaluatorConformance, testing::ValuesIn(kEvaluators),
-                         [](const testing::TestParamInfo<Entry>& info) { return std::string(info.param.name); });
+                         [](const testing::TestParamInfo<Entry>& one) { return std::string(one.param.name); });
 
 }  // namespace
 }  // namespace luxrig

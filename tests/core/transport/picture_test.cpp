@@ -23,7 +23,7 @@ TEST(Picture, ShowsTheIlluminanceThatTheEvaluatorMeasures) {
   const RayScene rays(make_cube(2, 0.6));
   const Vec3 target_m(0.3, 0.2, -1);
   PictureOptions options;
-  options.indirect_paths = 64;
+  options.indirect_step_px = 2;  // the picture is small
   const auto picture = render_picture(rays, kBulb, std::vector{0.5}, looking({-0.7, -0.6, 0.4}, target_m), options);
   ASSERT_TRUE(picture.has_value());
   const auto measured =
