@@ -91,6 +91,7 @@ std::string write_plot(const std::vector<BenchRow>& rows, const std::string& tit
     cairo_set_source_rgb(pen, colour[0], colour[1], colour[2]);
     std::sort(points.begin(), points.end(),
               [](const BenchRow* a, const BenchRow* b) { return a->seconds < b->seconds; });
+    cairo_new_path(pen);  // text leaves a current point behind
     for (const BenchRow* row : points) cairo_line_to(pen, x.at(seconds_of(*row)), y.at(error_of(*row)));
     cairo_stroke(pen);
     for (const BenchRow* row : points) {
