@@ -61,6 +61,7 @@ class ScriptedPeer {
 
   [[nodiscard]] int port() const { return port_; }
   [[nodiscard]] int connections() const { return connections_; }
+  [[nodiscard]] int closed() const { return closed_; }  ///< by itself, after an answer
   [[nodiscard]] std::vector<std::vector<std::uint8_t>> requests() const {
     const std::lock_guard lock(mutex_);
     return requests_;
@@ -121,7 +122,10 @@ class ScriptedPeer {
             if (::send(client, &byte, 1, MSG_NOSIGNAL) != 1 || !pause(answer.between)) break;
           }
         }
-        if (answer.close) drop();
+        if (answer.close) {
+          drop();
+          ++closed_;
+        }
       }
     }
     drop();
@@ -129,7 +133,7 @@ class ScriptedPeer {
 
   Script script_;
   int listener_ = -1, stop_ = -1, port_ = 0;
-  std::atomic<int> connections_{0};
+  std::atomic<int> connections_{0}, closed_{0};
   std::atomic<bool> stopping_{false};
   mutable std::mutex mutex_;
   std::vector<std::vector<std::uint8_t>> requests_;
