@@ -1,0 +1,94 @@
+#include "sim/wire/dmx_endpoint.h"
+
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <cerrno>
+
+#include "sim/devices/dmx_fixture.h"
+
+namespace luxrig::sim {
+namespace {
+
+constexpr int kMostPacketsAtOnce = 256;     // per serve(), so that a flood cannot hold up the world
+constexpr std::size_t kMostArrived = 4096;  // waiting under the fault `slow`
+
+}  // namespace
+
+DmxEndpoint::DmxEndpoint(const EndpointParts& parts, BoundSocket socket)
+    : parts_(parts), socket_(std::move(socket)), port_(socket_.port) {}
+
+void DmxEndpoint::serve(Time now) {
+  const std::string& bus = parts_.rig.buses[parts_.bus].name;
+  if (parts_.faults.find(bus, FaultKind::dead)) {
+    socket_.descriptor.reset();
+    arrived_.clear();
+    return;
+  }
+  if (!socket_.descriptor.open()) {
+    if (auto again = bind_udp(port_)) socket_ = std::move(*again);
+  }
+  take(now);
+  bool any = false;
+  while (!arrived_.empty() && arrived_.front().due <= now) {
+    const Arrived packet = std::move(arrived_.front());
+    arrived_.pop_front();
+    any = true;
+    sockaddr_in to{};
+    to.sin_family = AF_INET;
+    to.sin_addr.s_addr = htonl(packet.address);
+    to.sin_port = htons(packet.port);
+    for (const Packet& answer : receive(now, packet.address, packet.bytes)) {
+      ::sendto(socket_.descriptor.get(), answer.data(), answer.size(), MSG_NOSIGNAL | MSG_DONTWAIT,
+               reinterpret_cast<const sockaddr*>(&to), sizeof to);
+    }
+  }
+  if (any) apply_to_fixtures(now);
+}
+
+void DmxEndpoint::take(Time now) {
+  std::array<std::uint8_t, 2048> buffer;
+  for (int i = 0; i < kMostPacketsAtOnce && socket_.descriptor.open(); ++i) {
+    sockaddr_in from{};
+    socklen_t from_length = sizeof from;
+    const auto received = ::recvfrom(socket_.descriptor.get(), buffer.data(), buffer.size(), 0,
+                                     reinterpret_cast<sockaddr*>(&from), &from_length);
+    if (received < 0) {
+      if (errno == EINTR || errno == ECONNREFUSED) continue;  // an answer of ours met a closed port: not our trouble
+      break;
+    }
+    const Disturbance disturbance = parts_.faults.disturbance({&parts_.rig.buses[parts_.bus].name, 1}, packets_++);
+    if (disturbance.silent || arrived_.size() >= kMostArrived) continue;
+    Packet bytes(buffer.begin(), buffer.begin() + received);
+    // UDP has a checksum of its own, so what a fault spoils here is what a broken sender would send: the header.
+    if (disturbance.garbled && !bytes.empty())
+      bytes[disturbance.random % std::min<std::size_t>(bytes.size(), 8)] ^= 0xff;
+    Time due = now + disturbance.delay;
+    if (!arrived_.empty()) due = std::max(due, arrived_.back().due);
+    arrived_.push_back({due, ntohl(from.sin_addr.s_addr), ntohs(from.sin_port), std::move(bytes)});
+  }
+}
+
+void DmxEndpoint::apply_to_fixtures(Time now) {
+  ++frames_;
+  for (std::size_t f = 0; f < parts_.rig.fixtures.size(); ++f) {
+    const Fixture& fixture = parts_.rig.fixtures[f];
+    const auto* patch = std::get_if<DmxPatch>(&fixture.patch);
+    if (fixture.bus != parts_.bus || patch == nullptr) continue;
+    // A fixture has no way to be late on DMX, and a broken line to it is silence.
+    const Disturbance disturbance = parts_.faults.disturbance({&fixture.name, 1}, frames_);
+    if (disturbance.silent || disturbance.garbled) continue;
+    const auto slots = levels(patch->universe, now);
+    if (!slots) continue;
+    const DmxOrder order = decode_slots(fixture, *patch, *slots);
+    parts_.world.set_drive(f, order.drive);
+    if (order.joints) parts_.world.set_aim_target(f, *order.joints);
+  }
+}
+
+void DmxEndpoint::descriptors(std::vector<int>& into) const {
+  if (socket_.descriptor.open()) into.push_back(socket_.descriptor.get());
+}
+
+}  // namespace luxrig::sim

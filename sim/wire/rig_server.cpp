@@ -1,0 +1,37 @@
+#include "sim/wire/rig_server.h"
+
+namespace luxrig::sim {
+
+Result<std::unique_ptr<RigServer>> RigServer::open(const Rig& rig, World& world, Faults& faults,
+                                                   const std::map<std::string, int>& ports) {
+  auto server = std::make_unique<RigServer>();
+  for (std::size_t b = 0; b < rig.buses.size(); ++b) {
+    const auto wanted = ports.find(rig.buses[b].name);
+    auto endpoint = open_endpoint({rig, b, world, faults}, wanted == ports.end() ? 0 : wanted->second);
+    if (!endpoint) {
+      Fault fault = endpoint.error();
+      fault.device = rig.buses[b].name;
+      return tl::unexpected(std::move(fault));
+    }
+    server->endpoints_.emplace_back(rig.buses[b].name, std::move(*endpoint));
+  }
+  return server;
+}
+
+std::map<std::string, int> RigServer::ports() const {
+  std::map<std::string, int> ports;
+  for (const auto& [bus, endpoint] : endpoints_) ports[bus] = endpoint->port();
+  return ports;
+}
+
+void RigServer::serve(Time now) {
+  for (const auto& [bus, endpoint] : endpoints_) endpoint->serve(now);
+}
+
+std::vector<int> RigServer::descriptors() const {
+  std::vector<int> descriptors;
+  for (const auto& [bus, endpoint] : endpoints_) endpoint->descriptors(descriptors);
+  return descriptors;
+}
+
+}  // namespace luxrig::sim

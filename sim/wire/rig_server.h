@@ -1,0 +1,29 @@
+#pragma once
+/// A simulated rig on the wire: one loopback endpoint per [[bus]], all on one World. The caller owns the clock:
+///
+///   world.advance(now); server->serve(now); … poll(server->descriptors(), until the next tick) …
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim/wire/bus_endpoint.h"
+
+namespace luxrig::sim {
+
+class RigServer {
+ public:
+  /// `ports`: by bus name, where an endpoint shall be; any other gets a free port. All arguments outlive the server.
+  static Result<std::unique_ptr<RigServer>> open(const Rig& rig, World& world, Faults& faults,
+                                                 const std::map<std::string, int>& ports = {});
+
+  [[nodiscard]] std::map<std::string, int> ports() const;  ///< by bus name
+  void serve(Time now);                                    ///< never blocks
+  [[nodiscard]] std::vector<int> descriptors() const;      ///< to poll for reading
+
+ private:
+  std::vector<std::pair<std::string, std::unique_ptr<BusEndpoint>>> endpoints_;
+};
+
+}  // namespace luxrig::sim

@@ -1,0 +1,37 @@
+#pragma once
+/// What a pan-tilt head gives every receiver, wherever it looks, without a ray being traced while it turns.
+///
+/// Direct part: exact. The lamp sits in the pivot, so what is hidden from it does not depend on the aim; visibility is
+/// found once, and the column is I(ω) cosθ / d² in closed form.
+/// Indirect part: known at a set of aims, and in between the average of those, weighted by the inverse fourth power of
+/// the angle between the beams (Shepard 1968). At an aim of the set it is that aim's own value; the set holds the aim
+/// that the rig file gives and `spread_aims` of the head's range. In a room where interreflection is a sixth of the
+/// light this is good to a few per cent of the whole off the set; tests/sim/world/head_light_test.cpp measures it.
+
+#include <vector>
+
+#include "sim/world/world.h"
+
+namespace luxrig::sim {
+
+/// One head: where it hangs, what it sees, and its indirect light at some aims.
+struct HeadSamples {
+  std::size_t fixture = 0;
+  Pose world_from_mount;  ///< true
+  double roll_rad = 0;
+  Intensity intensity;
+  std::vector<bool> sees;                  ///< per receiver: nothing stands in between
+  std::vector<Vec3> aims_mount;            ///< unit beam directions
+  Eigen::MatrixXd indirect_lux_per_level;  ///< receivers × aims
+};
+
+[[nodiscard]] std::unique_ptr<const HeadLight> make_head_light(std::vector<Receiver> receivers,
+                                                               std::vector<HeadSamples> heads);
+
+/// Beam direction in frame mount (core/rig/frames.h).
+[[nodiscard]] Vec3 beam_mount(const PanTilt& joints);
+
+/// About `count` joint settings whose beams are spread evenly over what the head can reach.
+[[nodiscard]] std::vector<PanTilt> spread_aims(const PanTiltRange& range, int count);
+
+}  // namespace luxrig::sim
