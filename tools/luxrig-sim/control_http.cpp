@@ -1,0 +1,105 @@
+#include "tools/luxrig-sim/control_http.h"
+
+#include <httplib.h>
+
+#include <nlohmann/json.hpp>
+#include <thread>
+
+namespace luxrig::sim {
+namespace {
+
+constexpr const char* kLoopback = "127.0.0.1";
+constexpr const char* kJson = "application/json";
+
+void answer(httplib::Response& response, int status, const nlohmann::json& json) {
+  response.status = status;
+  response.set_content(json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), kJson);
+}
+
+class Server final : public ControlHttp {
+ public:
+  Server(const Rig& rig, World& world, Faults& faults, std::mutex& world_mutex)
+      : rig_(rig), world_(world), faults_(faults), world_mutex_(world_mutex) {
+    server_.new_task_queue = [] { return new httplib::ThreadPool(4); };  // httplib deletes it
+    server_.set_payload_max_length(65536);
+    // Not SO_REUSEPORT, the library's own choice: with it a second simulator would silently share the port.
+    server_.set_socket_options([](socket_t socket) {
+      const int yes = 1;
+      ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+    });
+    server_.Get("/truth", [this](const httplib::Request&, httplib::Response& response) {
+      const std::lock_guard lock(world_mutex_);
+      response.set_content(truth_json(rig_, world_), kJson);
+    });
+    server_.Post("/fault", [this](const httplib::Request& request, httplib::Response& response) {
+      switch_fault(request.body, response);
+    });
+    server_.Post("/clear_faults", [this](const httplib::Request&, httplib::Response& response) {
+      faults_.clear();
+      answer(response, 200, {{"ok", true}});
+    });
+    server_.Post("/reset_peaks", [this](const httplib::Request&, httplib::Response& response) {
+      const std::lock_guard lock(world_mutex_);
+      world_.reset_peaks();
+      answer(response, 200, {{"ok", true}});
+    });
+  }
+
+  ~Server() override {
+    server_.stop();
+    if (thread_.joinable()) thread_.join();
+  }
+
+  Result<void> open(int port) {
+    port_ = port > 0 ? (server_.bind_to_port(kLoopback, port) ? port : -1) : server_.bind_to_any_port(kLoopback);
+    if (port_ <= 0) {
+      return tl::unexpected(
+          Fault{Cause::system, "", "control port " + std::to_string(port) + " on 127.0.0.1 cannot be had", {}});
+    }
+    thread_ = std::thread([this] { server_.listen_after_bind(); });
+    // stop() before the thread listens would be lost.
+    while (!server_.is_running()) std::this_thread::yield();
+    return {};
+  }
+
+  [[nodiscard]] int port() const override { return port_; }
+
+ private:
+  void switch_fault(const std::string& body, httplib::Response& response) {
+    const auto json = nlohmann::json::parse(body, nullptr, /*allow_exceptions=*/false);
+    if (!json.is_object() || !json.contains("device") || !json["device"].is_string() || !json.contains("fault") ||
+        !json["fault"].is_string() || !json.contains("on") || !json["on"].is_boolean() ||
+        (json.contains("value") && !json["value"].is_number())) {
+      answer(response, 400, {{"error", R"(send {"device":"…","fault":"…","on":true or false,"value":number?})"}});
+      return;
+    }
+    std::optional<double> value;
+    if (json.contains("value")) value = json["value"].get<double>();
+    const auto set = faults_.set_named(rig_, json["device"].get<std::string>(), json["fault"].get<std::string>(),
+                                       json["on"].get<bool>(), value);
+    if (set) {
+      answer(response, 200, {{"ok", true}});
+    } else {
+      answer(response, 400, {{"error", set.error().detail}});
+    }
+  }
+
+  const Rig& rig_;
+  World& world_;
+  Faults& faults_;
+  std::mutex& world_mutex_;
+  httplib::Server server_;
+  std::thread thread_;
+  int port_ = 0;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<ControlHttp>> ControlHttp::open(const Rig& rig, World& world, Faults& faults,
+                                                       std::mutex& world_mutex, int port) {
+  auto server = std::make_unique<Server>(rig, world, faults, world_mutex);
+  if (auto opened = server->open(port); !opened) return tl::unexpected(opened.error());
+  return server;
+}
+
+}  // namespace luxrig::sim

@@ -1,0 +1,27 @@
+#pragma once
+/// The simulator's control port: HTTP on loopback, through which a test looks at the truth and makes things go wrong.
+/// Routes: README.md.
+
+#include <functional>
+#include <memory>
+#include <mutex>
+
+#include "core/rig/rig.h"
+#include "sim/faults/faults.h"
+#include "sim/world/world.h"
+
+namespace luxrig::sim {
+
+class ControlHttp {
+ public:
+  /// Serves on its own threads from here to the destructor. `world_mutex` guards `world`; all outlive this.
+  static Result<std::unique_ptr<ControlHttp>> open(const Rig& rig, World& world, Faults& faults,
+                                                   std::mutex& world_mutex, int port);
+  virtual ~ControlHttp() = default;
+  [[nodiscard]] virtual int port() const = 0;
+};
+
+/// What GET /truth answers.
+[[nodiscard]] std::string truth_json(const Rig& rig, const World& world);
+
+}  // namespace luxrig::sim

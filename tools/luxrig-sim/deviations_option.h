@@ -1,0 +1,15 @@
+#pragma once
+/// `--deviations`: how far the truth is from the rig file.
+
+#include <string>
+
+#include "core/result.h"
+#include "sim/world/world.h"
+
+namespace luxrig::sim {
+
+/// "usual", "none", or either followed by changes: "none,meter_noise=0.003,lamp_lag_s=0.05". Keys are the fields of
+/// Deviations (sim/world/world.h). The seed stays 1.
+[[nodiscard]] Checked<Deviations> parse_deviations(const std::string& text);
+
+}  // namespace luxrig::sim

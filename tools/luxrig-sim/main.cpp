@@ -1,0 +1,147 @@
+// luxrig-sim: a rig's devices on loopback ports, behaving as the simulated world makes them. See README.md.
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <cstdio>
+
+#include "core/rig/rig_file.h"
+#include "sim/wire/rig_server.h"
+#include "tools/luxrig-sim/control_http.h"
+#include "tools/luxrig-sim/deviations_option.h"
+#include "tools/luxrig-sim/ports_file.h"
+
+namespace {
+
+using namespace luxrig;
+using Clock = std::chrono::steady_clock;
+
+constexpr int kExitFailed = 1, kExitBadInput = 2;
+
+volatile std::sig_atomic_t stop_asked = 0;
+void ask_to_stop(int) { stop_asked = 1; }
+
+struct Options {
+  std::string rig;
+  std::uint64_t seed = 1;
+  std::string ports_file;
+  int control_port = 0;
+  double max_error = 0.01;
+  std::string deviations = "usual";
+  bool with_parent = false;
+};
+
+int failed(const Fault& fault) {
+  fmt::print(stderr, "luxrig-sim: {}{}{}\n", fault.device, fault.device.empty() ? "" : ": ", fault.detail);
+  return kExitFailed;
+}
+
+int refused(const std::vector<Problem>& problems) {
+  for (const Problem& problem : problems) fmt::print(stderr, "{}\n", problem.text());
+  return kExitBadInput;
+}
+
+Progress progress_on_stderr() {
+  return [last = -1](double done) mutable {
+    const int tenth = static_cast<int>(done * 10);
+    if (tenth <= last) return;
+    last = tenth;
+    fmt::print(stderr, "luxrig-sim: light {} %\n", tenth * 10);
+  };
+}
+
+// Steps the world at 100 Hz of real time and serves the wires as packets arrive, until asked to stop.
+void run(sim::World& world, sim::RigServer& server, std::mutex& world_mutex) {
+  const auto start = Clock::now();
+  std::vector<pollfd> waiting;
+  while (stop_asked == 0) {
+    const auto elapsed = Clock::now() - start;
+    const Time now = Time{} + std::chrono::duration_cast<Duration>(elapsed);
+    {
+      const std::lock_guard lock(world_mutex);
+      world.advance(now);
+      server.serve(now);
+    }
+    waiting.clear();
+    for (const int descriptor : server.descriptors()) waiting.push_back({descriptor, POLLIN, 0});
+    const auto rest = sim::kTick - elapsed % sim::kTick;
+    const timespec until_tick{0, std::chrono::duration_cast<std::chrono::nanoseconds>(rest).count()};
+    ::ppoll(waiting.data(), waiting.size(), &until_tick, nullptr);
+  }
+}
+
+int simulate(const Options& options) {
+  auto deviations = sim::parse_deviations(options.deviations);
+  if (!deviations) return refused(deviations.error());
+  deviations->seed = options.seed;
+  sim::Ports ports;
+  if (!options.ports_file.empty()) {
+    const auto before = sim::read_ports(options.ports_file);
+    if (!before) return refused(before.error());
+    if (*before) ports = **before;
+  }
+  if (options.control_port != 0) ports.control = options.control_port;
+  ports.seed = options.seed;
+
+  const auto rig = load_rig(options.rig);
+  if (!rig) return refused(rig.error());
+  const auto begun = Clock::now();
+  Watch watch;
+  watch.progress = progress_on_stderr();
+  auto world = sim::World::make(*rig, *deviations, options.max_error, watch);
+  if (!world) return failed(world.error());
+  fmt::print(stderr, "luxrig-sim: world made in {:.1f} s\n",
+             std::chrono::duration<double>(Clock::now() - begun).count());
+
+  sim::Faults faults(options.seed);
+  auto server = sim::RigServer::open(*rig, **world, faults, ports.buses);
+  if (!server) return failed(server.error());
+  ports.buses = (*server)->ports();
+  std::mutex world_mutex;
+  auto control = sim::ControlHttp::open(*rig, **world, faults, world_mutex, ports.control);
+  if (!control) return failed(control.error());
+  ports.control = (*control)->port();
+  if (!options.ports_file.empty()) {
+    if (const auto written = sim::write_ports(options.ports_file, ports); !written) return failed(written.error());
+  }
+  fmt::print("ready {}\n", sim::to_json(ports));
+  std::fflush(stdout);
+  run(**world, **server, world_mutex);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app("A simulated rig on loopback ports: sACN, Art-Net and Modbus TCP devices in a seeded true world.");
+  app.add_option("RIG", options.rig, "rig.toml, or the folder it is in")->required();
+  app.add_option("--seed", options.seed, "of everything that differs from the rig file (1)");
+  app.add_option("--ports-file", options.ports_file, "JSON: taken from there when it exists, written when ready");
+  app.add_option("--control-port", options.control_port, "HTTP control port (any free one)")
+      ->check(CLI::Range(0, 65535));
+  app.add_option("--max-error", options.max_error, "relative error of the true light transport (0.01)")
+      ->check(CLI::Range(1e-4, 1.0));
+  app.add_option("--deviations", options.deviations, "usual, none, or changes: none,meter_noise=0.003");
+  app.add_flag("--with-parent", options.with_parent, "end when the program that started this ends");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kExitBadInput;
+  }
+
+  struct sigaction action {};
+  action.sa_handler = ask_to_stop;
+  ::sigaction(SIGTERM, &action, nullptr);
+  ::sigaction(SIGINT, &action, nullptr);
+  std::signal(SIGPIPE, SIG_IGN);
+  if (options.with_parent) {
+    const pid_t parent = ::getppid();
+    ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+    if (::getppid() != parent) return kExitFailed;  // it ended before we had asked
+  }
+  return simulate(options);
+}

@@ -1,0 +1,53 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tools/luxrig-sim/control_http.h"
+
+namespace luxrig::sim {
+
+std::string truth_json(const Rig& rig, const World& world) {
+  using Json = nlohmann::ordered_json;
+  Json json;
+  json["time_s"] = to_seconds(world.now() - Time{});
+  json["points"] = Json::array();
+  const std::vector<PointTruth> points = world.points();
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    Json point = {{"name", rig.points[p].name}, {"lux", points[p].lux}, {"max_lux_seen", points[p].max_lux_seen}};
+    if (rig.points[p].max_lx) point["max_lux"] = *rig.points[p].max_lx;
+    json["points"].push_back(std::move(point));
+  }
+  json["luxmeters"] = Json::array();
+  const std::vector<PointTruth> meters = world.luxmeters();
+  for (std::size_t m = 0; m < meters.size(); ++m) {
+    json["luxmeters"].push_back({{"name", rig.luxmeters[m].name},
+                                 {"lux", meters[m].lux},
+                                 {"max_lux_seen", meters[m].max_lux_seen},
+                                 {"reading", world.meter_reading_lx(m)},
+                                 {"gain", world.meter_gains()[m]}});
+  }
+  json["fixtures"] = Json::array();
+  const std::vector<double> drives = world.drives(), levels = world.levels();
+  const std::vector<PanTilt> joints = world.joints();
+  for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
+    Json fixture = {{"name", rig.fixtures[f].name},
+                    {"drive", drives[f]},
+                    {"level", levels[f]},
+                    {"output", world.fixtures()[f].output},
+                    {"curve_exponent", world.fixtures()[f].curve_exponent}};
+    if (rig.fixtures[f].moves) {
+      fixture["pan_deg"] = deg_from_rad(joints[f].pan_rad);
+      fixture["tilt_deg"] = deg_from_rad(joints[f].tilt_rad);
+    }
+    json["fixtures"].push_back(std::move(fixture));
+  }
+  json["violations"] = Json::array();
+  for (const Violation& violation : world.violations()) {
+    json["violations"].push_back({{"point", rig.points[violation.point].name},
+                                  {"max_lux", violation.max_lx},
+                                  {"lux", violation.lux},
+                                  {"time_s", to_seconds(violation.began - Time{})}});
+  }
+  return json.dump();
+}
+
+}  // namespace luxrig::sim
