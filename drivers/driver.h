@@ -42,7 +42,7 @@ class Driver {
   virtual LevelOutput* level_output() { return nullptr; }
   virtual Mover* mover() { return nullptr; }
   virtual LuxReader* lux_reader() { return nullptr; }
-  virtual Camera* camera() { return nullptr; }
+  virtual PictureTaker* picture_taker() { return nullptr; }
 };
 
 }  // namespace luxrig

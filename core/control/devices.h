@@ -55,16 +55,16 @@ class LuxReader {
 };
 
 /// A linear-light picture; no driver makes one yet.
-struct Picture {
+struct TakenPicture {
   int width = 0, height = 0;
   std::vector<float> luminance_cd_m2;  ///< row by row from the top
   Time taken{};
 };
 
-class Camera {
+class PictureTaker {
  public:
-  virtual ~Camera() = default;
-  virtual Result<Picture> take(Time now) = 0;
+  virtual ~PictureTaker() = default;
+  virtual Result<TakenPicture> take(Time now) = 0;
 };
 
 enum class Life { configured, active, faulted };
