@@ -163,12 +163,31 @@ std::string write_false_colour(const Picture& picture, const std::string& title,
   return write(surface, file);
 }
 
-std::string write_plan_view(const PlanView& view, const std::filesystem::path& file) {
-  const Surface surface = make_surface(view.width_px, view.height_px);
+namespace {
+
+Surface plan_surface(const PlanView& view) {
+  Surface surface = make_surface(view.width_px, view.height_px);
   paint(surface.get(), view.width_px, view.height_px, [&](int x, int y) {
     return Vec3(Vec3::Constant(view.shade[static_cast<std::size_t>(y * view.width_px + x)]));
   });
-  return write(surface, file);
+  return surface;
+}
+
+}  // namespace
+
+std::string write_plan_view(const PlanView& view, const std::filesystem::path& file) {
+  return write(plan_surface(view), file);
+}
+
+std::string plan_view_png(const PlanView& view) {
+  std::string bytes;
+  const auto append = [](void* to, const unsigned char* data, unsigned int size) {
+    static_cast<std::string*>(to)->append(reinterpret_cast<const char*>(data), size);
+    return CAIRO_STATUS_SUCCESS;
+  };
+  const Surface surface = plan_surface(view);
+  if (cairo_surface_write_to_png_stream(surface.get(), append, &bytes) != CAIRO_STATUS_SUCCESS) bytes.clear();
+  return bytes;
 }
 
 }  // namespace luxrig

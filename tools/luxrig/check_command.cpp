@@ -1,0 +1,105 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "drivers/registry.h"
+#include "tools/luxrig/command.h"
+#include "tools/luxrig/commands.h"
+#include "tools/luxrig/table.h"
+
+namespace luxrig {
+namespace {
+
+std::string address_text(const Patch& patch) {
+  if (const auto* dmx = std::get_if<DmxPatch>(&patch)) {
+    const auto last = dmx->address + static_cast<int>(dmx->slots.size()) - 1;
+    return last > dmx->address ? fmt::format("{}.{}-{}", dmx->universe, dmx->address, last)
+                               : fmt::format("{}.{}", dmx->universe, dmx->address);
+  }
+  const auto& modbus = std::get<ModbusPatch>(patch);
+  return fmt::format("unit {} register {}", modbus.unit, modbus.holding_register);
+}
+
+std::string place_text(const Vec3& p) { return fmt::format("{:.2f} {:.2f} {:.2f}", p.x(), p.y(), p.z()); }
+
+}  // namespace
+
+int run_check(const CheckArguments& arguments) {
+  const auto session = open_session(arguments.rig);
+  if (!session) {
+    if (arguments.json) {
+      nlohmann::json out = {{"ok", false}, {"problems", nlohmann::json::array()}};
+      for (const Problem& p : session.error()) {
+        out["problems"].push_back(
+            {{"file", p.file}, {"line", p.line}, {"column", p.column}, {"what", p.what}, {"mend", p.mend}});
+      }
+      fmt::print("{}\n", out.dump(1));
+      return kExitBadInput;
+    }
+    return report(session.error());
+  }
+  const Rig& rig = session->rig;
+  const Scene& scene = session->scene;
+  if (arguments.json) {
+    const nlohmann::json out = {{"ok", true},
+                                {"rig", rig.name},
+                                {"triangles", scene.triangles.size()},
+                                {"luminaires", rig.luminaires.size()},
+                                {"fixtures", rig.fixtures.size()},
+                                {"buses", rig.buses.size()},
+                                {"luxmeters", rig.luxmeters.size()},
+                                {"points", rig.points.size()},
+                                {"warnings", scene.warnings}};
+    fmt::print("{}\n", out.dump(1));
+    return kExitOk;
+  }
+  const auto bounds = session->rays->bounds_world_m();
+  fmt::print("{}: {}\n", rig.file.string(), rig.name);
+  if (scene.triangles.empty()) {
+    fmt::print("  scene      empty: light meets nothing\n");
+  } else {
+    const Vec3 size = bounds.sizes();
+    fmt::print("  scene      {} triangles, {} materials, {:.2f} x {:.2f} x {:.2f} m\n", scene.triangles.size(),
+               scene.materials.size(), size.x(), size.y(), size.z());
+  }
+  if (const Cleaning& c = scene.cleaning; c.total() > 0) {
+    fmt::print("  cleaned    {} vertices not finite, {} triangles with a bad index, {} without area\n",
+               c.non_finite_vertices, c.bad_indices, c.degenerate_triangles);
+  }
+  for (const std::string& warning : scene.warnings) fmt::print("  warning    {}\n", warning);
+  for (const Problem& note : rig.notes) fmt::print("  note       {}\n", note.text());
+  fmt::print("  counts     {} luminaires, {} fixtures, {} buses, {} luxmeters, {} points, {} tasks\n\n",
+             rig.luminaires.size(), rig.fixtures.size(), rig.buses.size(), rig.luxmeters.size(), rig.points.size(),
+             rig.tasks.size());
+  Table materials({"material", ">luminous reflectance"});
+  for (const Material& m : scene.materials) materials.row({m.name, fmt::format("{:.2f}", m.luminous_reflectance())});
+  if (!scene.materials.empty()) fmt::print("{}\n", materials.text());
+  Table luminaires({"luminaire", ">lumens", ">peak cd", ">watts"});
+  for (const Luminaire& l : rig.luminaires) {
+    luminaires.row({l.name, fmt::format("{:.0f}", l.lumens), fmt::format("{:.0f}", l.intensity->max_intensity_cd()),
+                    l.watts ? fmt::format("{:.0f}", *l.watts) : "-"});
+  }
+  fmt::print("{}\n", luminaires.text());
+  Table fixtures({"fixture", "luminaire", "position m", ">pan", ">tilt", "bus", "address"});
+  for (const Fixture& f : rig.fixtures) {
+    fixtures.row({f.name, rig.luminaires[f.luminaire].name, place_text(f.world_from_mount.translation_m),
+                  fmt::format("{:.1f}°", deg_from_rad(f.joints.pan_rad)),
+                  fmt::format("{:.1f}°", deg_from_rad(f.joints.tilt_rad)),
+                  rig.buses[f.bus].name + " (" + rig.buses[f.bus].driver + ")", address_text(f.patch)});
+  }
+  fmt::print("{}\n", fixtures.text());
+  Table points({"point", "position m", ">goal lx", ">max lx", "luxmeter"});
+  for (std::size_t i = 0; i < rig.points.size(); ++i) {
+    const Point& p = rig.points[i];
+    std::string meter;
+    for (const Luxmeter& m : rig.luxmeters) {
+      if (m.point == i) meter = m.name;
+    }
+    points.row({p.name, place_text(p.position_world_m), p.goal_lx ? fmt::format("{:g}", *p.goal_lx) : "-",
+                p.max_lx ? fmt::format("{:g}", *p.max_lx) : "-", meter});
+  }
+  fmt::print("{}\n{}: no problems found\n", points.text(), rig.name);
+  return kExitOk;
+}
+
+}  // namespace luxrig

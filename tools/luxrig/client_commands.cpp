@@ -1,0 +1,108 @@
+// status, blackout, apply: the commands that talk to a running daemon.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tools/luxrig/command.h"
+#include "tools/luxrig/commands.h"
+#include "tools/luxrig/http_client.h"
+#include "tools/luxrig/table.h"
+
+namespace luxrig {
+namespace {
+
+using nlohmann::json;
+
+int no_daemon(int port) {
+  fmt::print(stderr, "luxrig: no daemon answers on 127.0.0.1:{}: start one with `luxrig run RIG`, or give its --port\n",
+             port);
+  return kExitFailed;
+}
+
+int post(const ClientArguments& arguments, const char* route, const std::string& body, const std::string& done) {
+  const auto answer = http_post_json("127.0.0.1", arguments.port, route, body);
+  if (!answer) return no_daemon(arguments.port);
+  if (answer->status != 200) {
+    fmt::print(stderr, "luxrig: refused by the daemon: {}\n", answer->body);
+    return answer->status == 400 ? kExitBadInput : kExitFailed;
+  }
+  fmt::print("{}\n", arguments.json ? answer->body : done);
+  return kExitOk;
+}
+
+/// A number of an object of the status, or nothing.
+std::optional<double> number(const json& object, const char* key) {
+  const auto it = object.find(key);
+  if (it == object.end() || !it->is_number()) return {};
+  return it->get<double>();
+}
+std::string text(const json& object, const char* key) {
+  const auto it = object.find(key);
+  return it != object.end() && it->is_string() ? it->get<std::string>() : "";
+}
+std::string shown(std::optional<double> value, const char* format) {
+  return value ? fmt::format(fmt::runtime(format), *value) : "-";
+}
+json list(const json& object, const char* key) { return object.value(key, json::array()); }
+
+void print_status(const json& status) {
+  fmt::print("{}: {}{}: {}\n", text(status, "rig"), text(status, "phase"),
+             status.value("blackout", false) ? ", BLACKOUT" : "", text(status, "detail"));
+  for (const json& alarm : list(status, "alarms")) {
+    fmt::print("{}  {} ({} s ago)\n", alarm.value("severe", false) ? "ALARM  " : "warning", text(alarm, "text"),
+               shown(number(alarm, "since_s"), "{:.1f}"));
+  }
+  Table devices({"device", "state", ">last ok s ago", ">sent", ">received", ">errors", "detail"});
+  for (const json& d : list(status, "devices")) {
+    devices.row({text(d, "name"), text(d, "life"), shown(number(d, "last_ok_s"), "{:.2f}"),
+                 shown(number(d, "sent"), "{:.0f}"), shown(number(d, "received"), "{:.0f}"),
+                 shown(number(d, "errors"), "{:.0f}"), text(d, "detail")});
+  }
+  Table fixtures({"fixture", "bus", ">level", ">drive", ">gain", ">± se"});
+  for (const json& f : list(status, "fixtures")) {
+    fixtures.row({text(f, "name"), text(f, "bus"), shown(number(f, "level"), "{:.3f}"),
+                  shown(number(f, "drive"), "{:.3f}"), shown(number(f, "gain"), "{:.3f}"),
+                  shown(number(f, "gain_standard_error"), "{:.3f}")});
+  }
+  Table points({"point", ">goal lx", ">predicted", ">± se", ">measured", ">age s", ">error", ">max lx", "why"});
+  for (const json& p : list(status, "points")) {
+    const auto error = number(p, "error");
+    points.row({text(p, "name"), shown(number(p, "goal_lux"), "{:g}"), shown(number(p, "predicted_lux"), "{:.1f}"),
+                shown(number(p, "standard_error_lux"), "{:.1f}"), shown(number(p, "measured_lux"), "{:.1f}"),
+                shown(number(p, "measured_age_s"), "{:.1f}"), error ? fmt::format("{:+.1f} %", 100 * *error) : "-",
+                shown(number(p, "max_lux"), "{:g}"), text(p, "why")});
+  }
+  fmt::print("\n{}\n{}\n{}", devices.text(), fixtures.text(), points.text());
+}
+
+}  // namespace
+
+int run_status(const ClientArguments& arguments) {
+  const auto answer = http_get("127.0.0.1", arguments.port, "/api/status");
+  if (!answer) return no_daemon(arguments.port);
+  if (arguments.json) {
+    fmt::print("{}\n", answer->body);
+    return kExitOk;
+  }
+  const json status = json::parse(answer->body, nullptr, false);
+  if (!status.is_object()) {
+    fmt::print(stderr, "luxrig: what answers on port {} is not a Luxrig daemon\n", arguments.port);
+    return kExitFailed;
+  }
+  print_status(status);
+  return kExitOk;
+}
+
+int run_blackout(const ClientArguments& arguments, bool on) {
+  return post(arguments, "/api/blackout", json{{"on", on}}.dump(), on ? "blackout" : "blackout lifted");
+}
+
+int run_apply(const ClientArguments& arguments, const std::filesystem::path& plan) {
+  const auto body = read_file(plan);
+  if (!body) return report(body.error());
+  // Checked here first: the messages then carry the file's name.
+  if (const auto parsed = plan_from_json(*body, plan.string()); !parsed) return report(parsed.error());
+  return post(arguments, "/api/apply", *body, "applied: " + plan.string());
+}
+
+}  // namespace luxrig

@@ -1,0 +1,28 @@
+#pragma once
+/// What the subcommands share: exit codes, how problems and faults are told to a person, progress.
+
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "core/stop.h"
+
+namespace luxrig {
+
+inline constexpr int kExitOk = 0;
+inline constexpr int kExitFailed = 1;    ///< the world failed, or goals were not met
+inline constexpr int kExitBadInput = 2;  ///< a file or an argument is wrong; nothing has moved
+
+/// One line each on standard error; returns kExitBadInput.
+int report(const std::vector<Problem>& problems);
+/// Returns kExitFailed.
+int report(const Fault& fault);
+
+/// A progress line on standard error, rewritten in place on a terminal, and a line per quarter elsewhere; silent for
+/// the first half second.
+[[nodiscard]] Progress progress_line(std::string what);
+
+/// Stops when the process gets SIGINT or SIGTERM. Install once.
+[[nodiscard]] std::stop_token stop_on_signals();
+
+}  // namespace luxrig

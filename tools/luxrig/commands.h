@@ -1,0 +1,48 @@
+#pragma once
+/// One function per subcommand; each returns the exit code. `render` is in render_command.h, `bench` in tools/bench.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "tools/luxrig/session.h"
+
+namespace luxrig {
+
+struct CheckArguments {
+  std::filesystem::path rig;
+  bool json = false;
+};
+int run_check(const CheckArguments& arguments);
+
+struct EvaluateArguments {
+  std::filesystem::path rig;
+  std::optional<std::filesystem::path> levels_plan;  ///< else every fixture at 1
+  ComputeOptions compute;
+  bool json = false;
+};
+int run_evaluate(const EvaluateArguments& arguments);
+
+struct SolveArguments {
+  std::filesystem::path rig;
+  std::optional<std::filesystem::path> output;
+  ComputeOptions compute;
+  bool json = false;
+};
+int run_solve(const SolveArguments& arguments);
+
+/// Talks to a running daemon on loopback.
+struct ClientArguments {
+  int port = 9620;
+  bool json = false;
+};
+int run_status(const ClientArguments& arguments);
+int run_blackout(const ClientArguments& arguments, bool on);
+int run_apply(const ClientArguments& arguments, const std::filesystem::path& plan);
+
+/// Writes text to a file so that a reader sees the old content or the new, never half; a fault when it cannot.
+[[nodiscard]] Result<void> write_file(const std::filesystem::path& path, const std::string& text);
+/// Reads a file of at most 64 MiB.
+[[nodiscard]] Checked<std::string> read_file(const std::filesystem::path& path);
+
+}  // namespace luxrig

@@ -1,0 +1,82 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+
+#include "core/parallel.h"
+#include "tools/luxrig/command.h"
+#include "tools/luxrig/commands.h"
+#include "tools/luxrig/table.h"
+
+namespace luxrig {
+namespace {
+
+nlohmann::json array_of(const Vec3& v) { return nlohmann::json::array({v.x(), v.y(), v.z()}); }
+
+/// Levels from a plan, or all 1.
+Checked<std::vector<double>> wanted_levels(const EvaluateArguments& arguments, const Rig& rig) {
+  if (!arguments.levels_plan) return std::vector<double>(rig.fixtures.size(), 1.0);
+  auto text = read_file(*arguments.levels_plan);
+  if (!text) return tl::unexpected(std::move(text.error()));
+  const auto plan = plan_from_json(*text, arguments.levels_plan->string());
+  if (!plan) return tl::unexpected(plan.error());
+  return levels_for(*plan, rig, arguments.levels_plan->string());
+}
+
+}  // namespace
+
+int run_evaluate(const EvaluateArguments& arguments) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto session = open_session(arguments.rig);
+  if (!session) return report(session.error());
+  const Rig& rig = session->rig;
+  const auto levels = wanted_levels(arguments, rig);
+  if (!levels) return report(levels.error());
+
+  ComputeOptions compute = arguments.compute;
+  compute.watch = {stop_on_signals(), progress_line("evaluating")};
+  const auto transport = compute_transport(*session, compute, *levels);
+  if (!transport) return report(transport.error());
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+
+  const Eigen::VectorXd level =
+      Eigen::Map<const Eigen::VectorXd>(levels->data(), static_cast<Eigen::Index>(levels->size()));
+  const Eigen::VectorXd lux = transport->lux(level);
+  const Eigen::VectorXd direct = transport->direct_lux(level);
+  const Eigen::VectorXd error = transport->standard_error_lux(level);
+  const char* model = compute.model == Model::direct ? "direct" : "path";
+  nlohmann::json points = nlohmann::json::array();
+  Table table({"point", ">lux", ">± se", ">direct", ">goal lx", ">max lx"});
+  const auto add = [&](const std::string& name, const Vec3& position, const Vec3& normal, std::size_t index,
+                       std::optional<double> goal, std::optional<double> max) {
+    const auto i = static_cast<Eigen::Index>(index);
+    nlohmann::json point = {{"name", name},  {"position", array_of(position)}, {"normal", array_of(normal)},
+                            {"lux", lux[i]}, {"direct_lux", direct[i]},        {"standard_error_lux", error[i]}};
+    if (goal) point["goal_lux"] = *goal;
+    if (max) point["max_lux"] = *max;
+    points.push_back(std::move(point));
+    table.row({name, fmt::format("{:.2f}", lux[i]), fmt::format("{:.2f}", error[i]), fmt::format("{:.2f}", direct[i]),
+               goal ? fmt::format("{:g}", *goal) : "", max ? fmt::format("{:g}", *max) : ""});
+  };
+  for (std::size_t i = 0; i < rig.points.size(); ++i) {
+    const Point& p = rig.points[i];
+    add(p.name, p.position_world_m, p.normal_world, i, p.goal_lx, p.max_lx);
+  }
+  for (std::size_t m = 0; m < rig.luxmeters.size(); ++m) {
+    const Luxmeter& meter = rig.luxmeters[m];
+    add(meter.name, meter.position_world_m, meter.normal_world, rig.points.size() + m, {}, {});
+  }
+  const int threads = thread_count(compute.threads);
+  if (arguments.json) {
+    const nlohmann::json out = {
+        {"model", model},          {"points", std::move(points)}, {"relative_error", transport->relative_error},
+        {"rays", transport->rays}, {"seconds", seconds},          {"threads", threads}};
+    fmt::print("{}\n", out.dump(1));
+  } else {
+    fmt::print("{}\n{} model: relative error {:.2g} (wanted {:.2g}), {} rays, {:.2f} s, {} threads\n", table.text(),
+               model, transport->relative_error, compute.max_error, transport->rays, seconds, threads);
+  }
+  return kExitOk;
+}
+
+}  // namespace luxrig

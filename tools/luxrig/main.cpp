@@ -1,0 +1,123 @@
+// luxrig: the table of subcommands.
+#include <CLI/CLI.hpp>
+
+#include "tools/bench/bench.h"
+#include "tools/luxrig/command.h"
+#include "tools/luxrig/commands.h"
+#include "tools/luxrig/render_command.h"
+#include "tools/luxrigd/run_options.h"
+
+namespace {
+
+using namespace luxrig;
+
+void add_compute(CLI::App& command, ComputeOptions& compute) {
+  static const std::map<std::string, Model> models = {{"direct", Model::direct}, {"path", Model::path}};
+  command.add_option("--model", compute.model, "direct, or path (with interreflection)")
+      ->transform(CLI::CheckedTransformer(models));
+  command.add_option("--max-error", compute.max_error, "wanted relative standard error")->check(CLI::Range(1e-4, 1.0));
+  command.add_option("--seed", compute.seed, "seed of the samples");
+  command.add_option("--threads", compute.threads, "threads (0: one per core)")->check(CLI::Range(0, 1024));
+}
+
+void add_client(CLI::App& command, ClientArguments& client) {
+  command.add_option("--port", client.port, "port of the daemon's page")->check(CLI::Range(1, 65535));
+  command.add_flag("--json", client.json, "print what the daemon answers");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Luxrig: sets a lighting rig to goals in lux, measures and corrects it");
+  app.set_version_flag("--version", LUXRIG_VERSION);
+  app.require_subcommand(1);
+  int code = kExitOk;
+  const char* rig_help = "rig file, or a folder with a rig.toml";
+
+  CheckArguments check;
+  auto* command = app.add_subcommand("check", "validate a rig and print what was understood");
+  command->add_option("RIG", check.rig, rig_help)->required();
+  command->add_flag("--json", check.json, "print JSON");
+  command->callback([&] { code = run_check(check); });
+
+  EvaluateArguments evaluate;
+  command = app.add_subcommand("evaluate", "lux at every measurement point and luxmeter");
+  command->add_option("RIG", evaluate.rig, rig_help)->required();
+  command->add_option("--levels", evaluate.levels_plan, "levels of this plan (else every fixture at 100 %)");
+  add_compute(*command, evaluate.compute);
+  command->add_flag("--json", evaluate.json, "print JSON");
+  command->callback([&] { code = run_evaluate(evaluate); });
+
+  SolveArguments solve;
+  command = app.add_subcommand("solve", "do what the rig's tasks ask, and write a plan");
+  command->add_option("RIG", solve.rig, rig_help)->required();
+  command->add_option("-o,--output", solve.output, "write the plan here");
+  add_compute(*command, solve.compute);
+  command->add_flag("--json", solve.json, "print the plan");
+  command->callback([&] { code = run_solve(solve); });
+
+  RenderOptions render;
+  std::filesystem::path render_plan;
+  std::vector<double> eye, target;
+  std::string false_colour;
+  command = app.add_subcommand("render", "a picture of the lit rig, or a false-colour map of lux");
+  command->add_option("RIG", render.rig, rig_help)->required();
+  auto* with_plan =
+      command->add_option("PLAN", render_plan, "levels of this plan (else every fixture at its highest level)");
+  command->add_option("-o,--output", render.output_png, "PNG file")->required();
+  command->add_option("--false-colour", false_colour, "lux: a map of illuminance with a scale")
+      ->check(CLI::IsMember({"lux"}));
+  command->add_option("--width", render.width_px, "pixels")->check(CLI::Range(16, 8192));
+  command->add_option("--height", render.height_px, "pixels")->check(CLI::Range(16, 8192));
+  auto* with_eye = command->add_option("--eye", eye, "x y z [m] of the viewer")->expected(3);
+  auto* with_target = command->add_option("--target", target, "x y z [m] looked at")->expected(3);
+  command->add_option("--fov-deg", render.vertical_fov_deg, "vertical field of view")->check(CLI::Range(1.0, 170.0));
+  command->add_option("--max-lx", render.max_lx, "top of the false-colour scale")->check(CLI::PositiveNumber);
+  command->add_option("--threads", render.threads, "threads (0: one per core)")->check(CLI::Range(0, 1024));
+  command->callback([&] {
+    if (*with_plan) render.plan = render_plan;
+    if (*with_eye) render.eye_world_m = Vec3(eye[0], eye[1], eye[2]);
+    if (*with_target) render.target_world_m = Vec3(target[0], target[1], target[2]);
+    render.false_colour = !false_colour.empty();
+    code = run_render(render);
+  });
+
+  RunArguments run;
+  command = app.add_subcommand("run", "run the rig: light, measure, correct, hold (the daemon in the foreground)");
+  add_run_options(*command, run);
+  command->callback([&] { code = run_rig(run); });
+
+  ClientArguments client;
+  std::filesystem::path plan;
+  command = app.add_subcommand("apply", "have the running daemon fade to a plan");
+  command->add_option("PLAN", plan, "plan file (JSON)")->required();
+  add_client(*command, client);
+  command->callback([&] { code = run_apply(client, plan); });
+
+  command = app.add_subcommand("status", "what the running daemon does and how its devices are");
+  add_client(*command, client);
+  command->callback([&] { code = run_status(client); });
+
+  bool lift = false;
+  command = app.add_subcommand("blackout", "all light off at once; --off lifts it");
+  command->add_flag("--off", lift, "lift the blackout");
+  add_client(*command, client);
+  command->callback([&] { code = run_blackout(client, !lift); });
+
+  BenchOptions bench;
+  std::string suite;
+  command = app.add_subcommand("bench", "run time against error, on a named suite");
+  command->add_option("SUITE", suite, "which")->required()->check(CLI::IsMember(bench_suites()));
+  command->add_flag("--quick", bench.quick, "under a minute, same columns");
+  command->add_option("--csv", bench.csv_file, "write the rows here");
+  command->add_option("--plot", bench.plot_file, "draw error over time here (PNG)");
+  command->add_option("--threads", bench.threads, "threads (0: one per core)")->check(CLI::Range(0, 1024));
+  command->callback([&] { code = run_bench(suite, bench); });
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kExitOk : kExitBadInput;
+  }
+  return code;
+}

@@ -1,0 +1,51 @@
+#pragma once
+/// From a rig file to something that can be computed with; what every command starts from.
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "core/control/plan.h"
+#include "core/control/show_controller.h"
+#include "core/rig/rig.h"
+#include "core/scene/ray_scene.h"
+#include "core/scene/scene.h"
+#include "core/transport/evaluator.h"
+
+namespace luxrig {
+
+struct Session {
+  Rig rig;
+  Scene scene;
+  std::unique_ptr<RayScene> rays;
+};
+
+/// Reads and checks everything: rig, photometry, buses, meshes. All problems, or a Session.
+[[nodiscard]] Checked<Session> open_session(const std::filesystem::path& rig_path);
+
+enum class Model { direct, path };
+
+struct ComputeOptions {
+  Model model = Model::path;
+  double max_error = 0.01;
+  std::uint64_t seed = 1;
+  int threads = 0;
+  Watch watch;
+};
+
+/// T of the rig's points (first) and luxmeters at its aims; `levels` as in EvaluateOptions.
+[[nodiscard]] Result<TransportMatrix> compute_transport(const Session& session, const ComputeOptions& options,
+                                                        const std::vector<double>& levels = {});
+
+/// Does what the rig's tasks ask, on a transport made by compute_transport.
+[[nodiscard]] Result<Plan> solve_tasks(const Session& session, const TransportMatrix& transport,
+                                       const ComputeOptions& options);
+
+/// The controller's share of a transport.
+[[nodiscard]] LightModel light_model(const Rig& rig, const TransportMatrix& transport);
+
+/// What the rig's points get at given levels.
+[[nodiscard]] std::vector<PlannedPoint> predicted_points(const Rig& rig, const TransportMatrix& transport,
+                                                         const Eigen::VectorXd& levels);
+
+}  // namespace luxrig
