@@ -1,0 +1,119 @@
+#include "tools/luxrigd/bus_thread.h"
+
+#include <algorithm>
+
+#include "tools/luxrigd/clock.h"
+#include "tools/luxrigd/scheduling.h"
+
+namespace luxrig {
+namespace {
+
+constexpr int kOutputPriority = 50;
+constexpr Duration kHealthPeriod = std::chrono::milliseconds(200);
+constexpr std::size_t kMostUnsentReadings = 1000;
+
+}  // namespace
+
+BusThread::BusThread(const Rig& rig, std::size_t bus, std::unique_ptr<Driver> driver, ProgramMailbox& programs)
+    : rig_(rig),
+      driver_(std::move(driver)),
+      programs_(programs),
+      bounds_(driver_->bounds()),
+      statistics_(bounds_.write_period),
+      levels_(rig.fixtures.size()) {
+  for (std::size_t i = 0; i < rig.fixtures.size(); ++i) {
+    if (rig.fixtures[i].bus != bus) continue;
+    fixtures_.push_back(i);
+    level_commands_.push_back({i, 0});
+    if (rig.fixtures[i].moves) aim_commands_.push_back({i, rig.fixtures[i].joints});
+  }
+  writes_ = driver_->level_output() != nullptr && !fixtures_.empty();
+}
+
+BusThread::~BusThread() { stop(); }
+
+void BusThread::start() {
+  thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+}
+
+void BusThread::stop() {
+  if (!thread_.joinable()) return;
+  thread_.request_stop();
+  thread_.join();
+}
+
+void BusThread::run(const std::stop_token& stop) {
+  // Fast, non-blocking buses get real-time scheduling; one that waits for a device's answer would gain nothing.
+  if (bounds_.write_period > Duration::zero() && bounds_.write_period < std::chrono::milliseconds(60)) {
+    realtime_ = make_realtime(kOutputPriority);
+  }
+  // A fault of activation is in the health report, and the driver goes on trying.
+  (void)driver_->activate(now());
+  const Duration cycle =
+      writes_ ? bounds_.write_period : std::max(bounds_.read_period, Duration(std::chrono::milliseconds(20)));
+  Time next = now();
+  Time last_start{};
+  Time next_read = next, next_health = next;
+  while (!stop.stop_requested()) {
+    const Time at = now();
+    if (writes_) {
+      if (last_start != Time{}) statistics_.record(at - last_start);
+      last_start = at;
+      write(at);
+    }
+    if (driver_->lux_reader() != nullptr && at >= next_read) {
+      read(now());
+      next_read = std::max(next_read + bounds_.read_period, now());
+    }
+    if (at >= next_health) {
+      publish_health(now());
+      next_health = at + kHealthPeriod;
+    }
+    next += cycle;
+    // After a stall go on from here: a burst of old frames helps nobody.
+    if (const Time late = now(); late > next + cycle) next = late;
+    sleep_until(next);
+  }
+  driver_->deactivate(now());
+}
+
+void BusThread::write(Time at) {
+  programs_.take(program_);
+  if (program_.revision == 0) return;  // nobody has said yet what the light shall be: leave it as it is
+  program_.levels_at(at, levels_);
+  for (LevelCommand& command : level_commands_) {
+    command.drive = drive_from_level(rig_.fixtures[command.fixture].dimmer_curve, levels_[command.fixture]);
+  }
+  for (AimCommand& command : aim_commands_) command.joints = program_.joints[command.fixture];
+  // Faults show in the health report.
+  if (Mover* mover = driver_->mover(); mover != nullptr && !aim_commands_.empty()) (void)mover->move(at, aim_commands_);
+  (void)driver_->level_output()->write(at, level_commands_);
+}
+
+void BusThread::read(Time at) {
+  auto fresh = driver_->lux_reader()->read(at);
+  if (fresh) unsent_readings_.insert(unsent_readings_.end(), fresh->begin(), fresh->end());
+  const std::unique_lock lock(mutex_, std::try_to_lock);
+  if (!lock) return;
+  readings_.insert(readings_.end(), unsent_readings_.begin(), unsent_readings_.end());
+  if (readings_.size() > kMostUnsentReadings) readings_.erase(readings_.begin(), readings_.end() - kMostUnsentReadings);
+  unsent_readings_.clear();
+}
+
+void BusThread::publish_health(Time at) {
+  auto report = driver_->health(at);
+  const std::unique_lock lock(mutex_, std::try_to_lock);
+  if (lock) health_ = std::move(report);
+}
+
+std::vector<LuxReading> BusThread::take_readings() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(readings_, {});
+}
+
+std::vector<Health> BusThread::health() const {
+  const std::lock_guard lock(mutex_);
+  return health_;
+}
+
+}  // namespace luxrig

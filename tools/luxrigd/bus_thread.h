@@ -1,0 +1,61 @@
+#pragma once
+/// One thread per bus: evaluates the output program at the bus's rate, writes, reads meters, reports health. A slow bus
+/// delays no other.
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "drivers/driver.h"
+#include "tools/luxrigd/cycle_statistics.h"
+#include "tools/luxrigd/program_mailbox.h"
+
+namespace luxrig {
+
+class BusThread {
+ public:
+  /// The rig and the mailbox must outlive the thread.
+  BusThread(const Rig& rig, std::size_t bus, std::unique_ptr<Driver> driver, ProgramMailbox& programs);
+  ~BusThread();  ///< stops, and lets the driver say goodbye
+
+  void start();
+  void stop();
+
+  /// Readings since the last call, and the newest health report.
+  std::vector<LuxReading> take_readings();
+  [[nodiscard]] std::vector<Health> health() const;
+  [[nodiscard]] const CycleStatistics& statistics() const { return statistics_; }
+  [[nodiscard]] bool realtime() const { return realtime_; }
+  [[nodiscard]] bool writes() const { return writes_; }
+
+ private:
+  void run(const std::stop_token& stop);
+  void write(Time at);
+  void read(Time at);
+  void publish_health(Time at);
+
+  const Rig& rig_;
+  std::unique_ptr<Driver> driver_;
+  ProgramMailbox& programs_;
+  DriverBounds bounds_;
+  CycleStatistics statistics_;
+  bool writes_ = false;
+  std::atomic<bool> realtime_{false};
+
+  std::vector<std::size_t> fixtures_;  ///< of the rig, on this bus
+  std::vector<double> levels_;         ///< of all fixtures
+  std::vector<LevelCommand> level_commands_;
+  std::vector<AimCommand> aim_commands_;
+  OutputProgram program_;
+
+  mutable std::mutex mutex_;  ///< guards the two below; the thread only tries it
+  std::vector<LuxReading> readings_;
+  std::vector<Health> health_;
+  std::vector<LuxReading> unsent_readings_;  ///< the thread's own, until the mutex is free
+
+  std::jthread thread_;
+};
+
+}  // namespace luxrig

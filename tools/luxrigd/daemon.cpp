@@ -1,0 +1,186 @@
+#include "tools/luxrigd/daemon.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "drivers/registry.h"
+#include "tools/luxrigd/clock.h"
+#include "tools/luxrigd/room_view.h"
+#include "tools/luxrigd/scheduling.h"
+#include "tools/luxrigd/status_json.h"
+
+namespace luxrig {
+namespace {
+
+constexpr Duration kPublishPeriod = std::chrono::milliseconds(100);
+constexpr auto kCommandBound = std::chrono::seconds(2);
+
+std::filesystem::path web_folder() {
+  std::error_code error;
+  const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
+  return self.parent_path().parent_path() / "share/luxrig/web";
+}
+
+}  // namespace
+
+Daemon::Daemon(const Session& session, LightModel model, DaemonOptions options)
+    : session_(session), options_(std::move(options)), controller_(session.rig, std::move(model)) {
+  if (options_.state_folder) journal_.emplace(*options_.state_folder);
+}
+
+Daemon::~Daemon() { stop(); }
+
+Result<int> Daemon::start() {
+  started_ = now();
+  // The page's port first: when it is taken, nothing has been opened yet.
+  http_ = std::make_unique<HttpApi>(handlers(), web_folder());
+  const auto port = http_->start(options_.http_port);
+  if (!port) return port;
+  lock_memory();
+  const Rig& rig = session_.rig;
+  for (std::size_t b = 0; b < rig.buses.size(); ++b) {
+    const DriverEntry* entry = find_driver(rig.buses[b].driver);
+    std::optional<Redirect> redirect;
+    if (const auto it = options_.redirects.find(rig.buses[b].name); it != options_.redirects.end())
+      redirect = it->second;
+    buses_.push_back(std::make_unique<BusThread>(rig, b, entry->make(rig, b, redirect), programs_));
+  }
+  for (const auto& bus : buses_) bus->start();
+  return port;
+}
+
+Checked<bool> Daemon::resume() {
+  if (!journal_) return false;
+  const auto state = journal_->load();
+  if (!state) return tl::unexpected(state.error());
+  if (!*state) return false;
+  const JournalState& saved = **state;
+  if (!saved.plan_json.empty()) {
+    if (auto applied = apply_json(saved.plan_json); !applied) return tl::unexpected(std::move(applied.error()));
+  }
+  if (saved.blackout) {
+    controller_.blackout(now(), true);
+    const std::lock_guard lock(mutex_);
+    remembered_.blackout = true;
+  }
+  return !saved.plan_json.empty();
+}
+
+Checked<void> Daemon::apply(const Plan& plan) { return apply_json(to_json(plan)); }
+
+Checked<void> Daemon::apply_json(const std::string& plan_json) {
+  const auto plan = plan_from_json(plan_json, "plan");
+  if (!plan) return tl::unexpected(plan.error());
+  const auto levels = levels_for(*plan, session_.rig, "plan");
+  if (!levels) return tl::unexpected(levels.error());
+  {
+    const std::lock_guard lock(mutex_);
+    remembered_.plan_json = plan_json;
+  }
+  // Acknowledged means: it survives a power cut.
+  if (const auto saved = remember(); !saved) {
+    return tl::unexpected(
+        std::vector<Problem>{{"plan", 0, 0, saved.error().detail, "free disk space or mend the permissions"}});
+  }
+  on_control_thread([this, chosen = *levels](Time at) { controller_.apply(at, chosen); });
+  return {};
+}
+
+Result<void> Daemon::remember() {
+  if (!journal_) return {};
+  JournalState state;
+  {
+    const std::lock_guard lock(mutex_);
+    state = remembered_;
+  }
+  return journal_->save(state);
+}
+
+/// Runs something between two ticks, and waits until it was done. Called from the control thread itself (no other
+/// thread ticks then), it would wait for ever: there the queue is just filled.
+void Daemon::on_control_thread(std::function<void(Time)> run) {
+  std::future<void> done;
+  {
+    const std::lock_guard lock(mutex_);
+    commands_.push_back({std::move(run), {}});
+    done = commands_.back().done.get_future();
+  }
+  if (std::this_thread::get_id() != control_thread_) done.wait_for(kCommandBound);
+}
+
+HttpHandlers Daemon::handlers() {
+  HttpHandlers handlers;
+  handlers.status = [this] {
+    const std::lock_guard lock(mutex_);
+    return status_json_;
+  };
+  const RoomView room = draw_room(session_);
+  handlers.room_json = room.json;
+  handlers.room_png = room.png;
+  handlers.blackout = [this](bool on) -> Result<void> {
+    // The light first, the disk after.
+    on_control_thread([this, on](Time at) { controller_.blackout(at, on); });
+    {
+      const std::lock_guard lock(mutex_);
+      remembered_.blackout = on;
+    }
+    return remember();
+  };
+  handlers.apply = [this](const std::string& plan_json) { return apply_json(plan_json); };
+  return handlers;
+}
+
+void Daemon::tick() {
+  const Time at = now();
+  std::deque<Command> commands;
+  {
+    const std::lock_guard lock(mutex_);
+    commands.swap(commands_);
+  }
+  for (Command& command : commands) {
+    command.run(at);
+    command.done.set_value();
+  }
+  devices_.clear();
+  for (const auto& bus : buses_) {
+    for (const LuxReading& reading : bus->take_readings()) controller_.reading(at, reading);
+    const auto health = bus->health();
+    devices_.insert(devices_.end(), health.begin(), health.end());
+  }
+  controller_.health(at, devices_);
+  controller_.step(at);
+  if (controller_.program().revision != sent_revision_) {
+    programs_.put(controller_.program());
+    sent_revision_ = controller_.program().revision;
+  }
+  if (at - last_publish_ >= kPublishPeriod || !commands.empty()) publish(at);
+}
+
+void Daemon::publish(Time at) {
+  last_publish_ = at;
+  status_ = controller_.status(at);
+  OutputFigures output;
+  for (const auto& bus : buses_) {
+    // The figures of the fastest writing bus.
+    const CycleStatistics& cycle = bus->statistics();
+    if (!bus->writes()) continue;
+    const double rate_hz = 1.0 / to_seconds(cycle.period());
+    if (rate_hz <= output.rate_hz) continue;
+    output = {rate_hz, cycle.count(), cycle.quantile_us(0.5), cycle.quantile_us(0.99), cycle.max_us(), bus->realtime()};
+  }
+  std::string text = status_json({session_.rig, status_, devices_, output, options_.simulated, started_, at});
+  const std::lock_guard lock(mutex_);
+  status_json_ = std::move(text);
+}
+
+void Daemon::go_safe() { controller_.go_safe(now()); }
+
+void Daemon::stop() {
+  if (stopped_) return;
+  stopped_ = true;
+  if (http_) http_->stop();
+  buses_.clear();
+}
+
+}  // namespace luxrig

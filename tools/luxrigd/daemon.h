@@ -1,0 +1,87 @@
+#pragma once
+/// The running rig: drivers on their threads, the controller, the page. One thread (the caller's) drives it with
+/// tick().
+
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <future>
+#include <map>
+#include <memory>
+#include <optional>
+#include <thread>
+
+#include "core/control/show_controller.h"
+#include "drivers/registry.h"
+#include "tools/luxrig/session.h"
+#include "tools/luxrigd/bus_thread.h"
+#include "tools/luxrigd/http_api.h"
+#include "tools/luxrigd/journal.h"
+
+namespace luxrig {
+
+struct DaemonOptions {
+  bool simulated = false;
+  std::map<std::string, Redirect> redirects;          ///< by bus name; empty for the real devices
+  std::optional<std::filesystem::path> state_folder;  ///< none: nothing is remembered
+  int http_port = 9620;                               ///< 0 = any
+};
+
+class Daemon {
+ public:
+  /// The session must outlive the daemon.
+  Daemon(const Session& session, LightModel model, DaemonOptions options);
+  ~Daemon();
+
+  /// Starts drivers and the page; returns the page's port. Sends nothing until the first plan.
+  [[nodiscard]] Result<int> start();
+
+  /// The plan and the blackout that were in force when the last daemon stopped, taken up again. False: there was none.
+  [[nodiscard]] Checked<bool> resume();
+
+  /// Applies a plan as if a client had sent it.
+  [[nodiscard]] Checked<void> apply(const Plan& plan);
+
+  /// One turn of the control loop; call every 20 ms or so.
+  void tick();
+  [[nodiscard]] const ShowStatus& status() const { return status_; }
+  [[nodiscard]] const std::vector<Health>& devices() const { return devices_; }
+
+  void go_safe();
+  /// Ends output (each driver says goodbye) and the page.
+  void stop();
+
+ private:
+  struct Command {
+    std::function<void(Time)> run;
+    std::promise<void> done;
+  };
+  void on_control_thread(std::function<void(Time)> run);
+  void publish(Time at);
+  [[nodiscard]] HttpHandlers handlers();
+  [[nodiscard]] Checked<void> apply_json(const std::string& plan_json);
+  [[nodiscard]] Result<void> remember();
+
+  const Session& session_;
+  DaemonOptions options_;
+  ShowController controller_;
+  ProgramMailbox programs_;
+  std::vector<std::unique_ptr<BusThread>> buses_;
+  std::unique_ptr<HttpApi> http_;
+  std::optional<Journal> journal_;
+  std::thread::id control_thread_ = std::this_thread::get_id();
+  Time started_{};
+  Time last_publish_{};
+  std::uint64_t sent_revision_ = 0;
+  bool stopped_ = false;
+
+  ShowStatus status_;            // control thread only
+  std::vector<Health> devices_;  // control thread only
+
+  std::mutex mutex_;  // guards the three below
+  std::string status_json_ = "{}";
+  std::deque<Command> commands_;
+  JournalState remembered_;
+};
+
+}  // namespace luxrig

@@ -1,0 +1,177 @@
+#include "tools/luxrigd/http_api.h"
+
+#include <fmt/format.h>
+#include <httplib.h>
+
+#include <atomic>
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+namespace luxrig {
+namespace {
+
+constexpr std::size_t kServerThreads = 32;
+constexpr int kMostStreams = 16;  // each holds a thread
+constexpr auto kStreamPeriod = std::chrono::milliseconds(200);
+constexpr std::size_t kMostBody = 16u << 20;
+
+/// Host part of "host[:port]" or "http://host[:port]" is this machine's loopback.
+bool is_loopback(std::string_view text) {
+  if (const auto scheme = text.find("://"); scheme != std::string_view::npos) text.remove_prefix(scheme + 3);
+  for (const std::string_view host : {"127.0.0.1", "localhost", "[::1]"}) {
+    if (text == host) return true;
+    if (text.size() > host.size() && text.substr(0, host.size()) == host && text[host.size()] == ':') return true;
+  }
+  return false;
+}
+
+void refuse(httplib::Response& response, int status, const std::string& what) {
+  response.status = status;
+  response.set_content(nlohmann::json{{"error", what}}.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace),
+                       "application/json");
+}
+
+}  // namespace
+
+struct HttpApi::State {
+  HttpHandlers handlers;
+  httplib::Server server;
+  std::atomic<bool> running{true};
+  std::atomic<int> streams{0};
+  std::jthread thread;
+
+  /// A page of another site must not reach the rig through the browser: names other than loopback are refused (DNS
+  /// rebinding), and so are posts from another origin.
+  httplib::Server::HandlerResponse guard(const httplib::Request& request, httplib::Response& response) {
+    using Verdict = httplib::Server::HandlerResponse;
+    if (!is_loopback(request.get_header_value("Host"))) {
+      refuse(response, 403, "only reachable by its loopback address");
+      return Verdict::Handled;
+    }
+    if (request.method == "POST") {
+      if (request.has_header("Origin") && !is_loopback(request.get_header_value("Origin"))) {
+        refuse(response, 403, "refused from another origin");
+        return Verdict::Handled;
+      }
+      if (request.get_header_value("Content-Type").rfind("application/json", 0) != 0) {
+        refuse(response, 415, "send it with Content-Type: application/json");
+        return Verdict::Handled;
+      }
+    }
+    return Verdict::Unhandled;
+  }
+
+  void stream(httplib::Response& response) {
+    if (streams.fetch_add(1) >= kMostStreams) {
+      streams.fetch_sub(1);
+      refuse(response, 503, "too many pages are open");
+      return;
+    }
+    response.set_header("Cache-Control", "no-store");
+    response.set_chunked_content_provider(
+        "text/event-stream",
+        [this](std::size_t, httplib::DataSink& sink) {
+          if (!running) {
+            sink.done();
+            return true;
+          }
+          const std::string event = "event: status\ndata: " + handlers.status() + "\n\n";
+          if (!sink.write(event.data(), event.size())) return false;
+          std::this_thread::sleep_for(kStreamPeriod);
+          return true;
+        },
+        [this](bool) { streams.fetch_sub(1); });
+  }
+
+  void routes() {
+    server.set_pre_routing_handler([this](const auto& request, auto& response) { return guard(request, response); });
+    server.Get("/api/status", [this](const httplib::Request&, httplib::Response& response) {
+      response.set_header("Cache-Control", "no-store");
+      response.set_content(handlers.status(), "application/json");
+    });
+    server.Get("/api/events", [this](const httplib::Request&, httplib::Response& response) { stream(response); });
+    server.Get("/api/room", [this](const httplib::Request&, httplib::Response& response) {
+      response.set_content(handlers.room_json, "application/json");
+    });
+    server.Get("/api/room.png", [this](const httplib::Request&, httplib::Response& response) {
+      if (handlers.room_png.empty()) return refuse(response, 404, "this rig has no scene to draw");
+      response.set_content(handlers.room_png, "image/png");
+    });
+    server.Post("/api/blackout", [this](const httplib::Request& request, httplib::Response& response) {
+      const auto body = nlohmann::json::parse(request.body, nullptr, false);
+      if (!body.is_object() || !body.contains("on") || !body["on"].is_boolean()) {
+        return refuse(response, 400, "send {\"on\": true} or {\"on\": false}");
+      }
+      const bool on = body["on"].get<bool>();
+      if (const auto done = handlers.blackout(on); !done) return refuse(response, 500, done.error().detail);
+      response.set_content(nlohmann::json{{"blackout", on}}.dump(), "application/json");
+    });
+    server.Post("/api/apply", [this](const httplib::Request& request, httplib::Response& response) {
+      const auto done = handlers.apply(request.body);
+      if (done) {
+        response.set_content("{\"applied\":true}", "application/json");
+        return;
+      }
+      std::string text;
+      for (const Problem& problem : done.error()) text += (text.empty() ? "" : "\n") + problem.text();
+      refuse(response, 400, text);
+    });
+  }
+};
+
+HttpApi::HttpApi(HttpHandlers handlers, std::filesystem::path web_folder) : state_(std::make_unique<State>()) {
+  state_->handlers = std::move(handlers);
+  auto& server = state_->server;
+  server.new_task_queue = [] { return new httplib::ThreadPool(kServerThreads); };
+  server.set_payload_max_length(kMostBody);
+  server.set_read_timeout(5);
+  server.set_write_timeout(5);
+  server.set_default_headers({{"X-Content-Type-Options", "nosniff"},
+                              {"X-Frame-Options", "DENY"},
+                              {"Referrer-Policy", "no-referrer"},
+                              {"Content-Security-Policy",
+                               "default-src 'self'; img-src 'self' data:; style-src 'self' 'unsafe-inline'; "
+                               "frame-ancestors 'none'"}});
+  state_->routes();
+  if (!server.set_mount_point("/", web_folder.string())) {
+    server.Get("/", [](const httplib::Request&, httplib::Response& response) {
+      response.set_content("The page was not built (tools/web needs node and npm). GET /api/status works.\n",
+                           "text/plain");
+    });
+  }
+}
+
+HttpApi::~HttpApi() { stop(); }
+
+Result<int> HttpApi::start(int port) {
+  auto& server = state_->server;
+  // Two daemons must not share a port (httplib's default SO_REUSEPORT would let them).
+  server.set_socket_options([](socket_t socket) {
+    const int yes = 1;
+    setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  });
+  int bound = port;
+  if (port == 0) {
+    bound = server.bind_to_any_port("127.0.0.1");
+  } else if (!server.bind_to_port("127.0.0.1", port)) {
+    bound = -1;
+  }
+  if (bound <= 0) {
+    return tl::unexpected(
+        Fault{Cause::system,
+              {},
+              fmt::format("port {} of 127.0.0.1 is taken, perhaps by another luxrig: stop that, or give --port", port),
+              {}});
+  }
+  state_->thread = std::jthread([this] { state_->server.listen_after_bind(); });
+  return bound;
+}
+
+void HttpApi::stop() {
+  state_->running = false;
+  state_->server.stop();
+  if (state_->thread.joinable()) state_->thread.join();
+}
+
+}  // namespace luxrig

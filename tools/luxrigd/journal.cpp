@@ -1,0 +1,44 @@
+#include "tools/luxrigd/journal.h"
+
+#include <cctype>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "tools/luxrig/commands.h"
+
+namespace luxrig {
+
+Result<void> Journal::save(const JournalState& state) const {
+  std::error_code error;
+  std::filesystem::create_directories(folder_, error);
+  if (error) {
+    return tl::unexpected(Fault{Cause::system, {}, "cannot make " + folder_.string() + ": " + error.message(), {}});
+  }
+  const nlohmann::json out = {{"luxrig_state", 1}, {"plan", state.plan_json}, {"blackout", state.blackout}};
+  return write_file(file(), out.dump(1));
+}
+
+Checked<std::optional<JournalState>> Journal::load() const {
+  std::error_code error;
+  if (!std::filesystem::exists(file(), error)) return std::nullopt;
+  const auto text = read_file(file());
+  if (!text) return tl::unexpected(text.error());
+  const auto json = nlohmann::json::parse(*text, nullptr, false);
+  if (!json.is_object() || json.value("luxrig_state", 0) != 1 || !json.contains("plan") || !json["plan"].is_string() ||
+      !json.contains("blackout") || !json["blackout"].is_boolean()) {
+    return tl::unexpected(std::vector<Problem>{
+        {file().string(), 0, 0, "is not a saved state of this program", "move it away to start without it"}});
+  }
+  return JournalState{json["plan"].get<std::string>(), json["blackout"].get<bool>()};
+}
+
+std::filesystem::path default_state_folder(const std::string& rig_name) {
+  std::string name;
+  for (const char c : rig_name) name += std::isalnum(static_cast<unsigned char>(c)) != 0 ? c : '-';
+  const char* state = std::getenv("XDG_STATE_HOME");
+  if (state != nullptr && *state != '\0') return std::filesystem::path(state) / "luxrig" / name;
+  const char* home = std::getenv("HOME");
+  return std::filesystem::path(home != nullptr ? home : "/var/lib") / ".local/state/luxrig" / name;
+}
+
+}  // namespace luxrig

@@ -1,0 +1,35 @@
+#pragma once
+/// What must survive a power cut: the plan in force and the blackout switch.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "core/result.h"
+
+namespace luxrig {
+
+struct JournalState {
+  std::string plan_json;  ///< empty: none applied yet
+  bool blackout = false;
+};
+
+class Journal {
+ public:
+  /// Keeps its one file in `folder` (made when missing).
+  explicit Journal(std::filesystem::path folder) : folder_(std::move(folder)) {}
+
+  /// On disk when it returns; the old state stays when it fails.
+  [[nodiscard]] Result<void> save(const JournalState& state) const;
+  /// Nothing when there is none; problems when the file is damaged (it is left as it is).
+  [[nodiscard]] Checked<std::optional<JournalState>> load() const;
+
+ private:
+  [[nodiscard]] std::filesystem::path file() const { return folder_ / "state.json"; }
+  std::filesystem::path folder_;
+};
+
+/// $XDG_STATE_HOME/luxrig/NAME, or ~/.local/state/luxrig/NAME.
+[[nodiscard]] std::filesystem::path default_state_folder(const std::string& rig_name);
+
+}  // namespace luxrig

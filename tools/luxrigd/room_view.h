@@ -1,0 +1,17 @@
+#pragma once
+/// The room seen from above, for the page.
+
+#include <string>
+
+#include "tools/luxrig/session.h"
+
+namespace luxrig {
+
+struct RoomView {
+  std::string json;  ///< as GET /api/room answers
+  std::string png;   ///< empty when the scene is
+};
+
+[[nodiscard]] RoomView draw_room(const Session& session);
+
+}  // namespace luxrig

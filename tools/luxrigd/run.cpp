@@ -1,0 +1,192 @@
+#include "tools/luxrigd/run.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <thread>
+
+#include "core/parallel.h"
+#include "tools/luxrig/command.h"
+#include "tools/luxrig/commands.h"
+#include "tools/luxrigd/daemon.h"
+#include "tools/luxrigd/run_report.h"
+#include "tools/luxrigd/scheduling.h"
+
+namespace luxrig {
+namespace {
+
+constexpr Duration kTick = std::chrono::milliseconds(20);
+constexpr Duration kMostOnce = std::chrono::seconds(120);
+
+/// Runs work on a thread of low priority, so that output and control come first even while it uses all cores.
+template <class T>
+T in_background(const std::function<T()>& work) {
+  std::optional<T> result;
+  std::thread([&] {
+    make_background();
+    result.emplace(work());
+  }).join();
+  return std::move(*result);
+}
+
+Checked<Plan> plan_of_file(const std::filesystem::path& path) {
+  const auto text = read_file(path);
+  if (!text) return tl::unexpected(text.error());
+  return plan_from_json(*text, path.string());
+}
+
+/// Ticks until `done` says so.
+void tick_until(Daemon& daemon, const std::function<bool(Time)>& done) {
+  Time next = now();
+  while (true) {
+    daemon.tick();
+    if (done(now())) return;
+    next += kTick;
+    if (const Time late = now(); late > next) next = late;
+    sleep_until(next);
+  }
+}
+
+}  // namespace
+
+int run_rig(const RunArguments& arguments) {
+  const Time process_start = now();
+  const std::stop_token stop = stop_on_signals();
+  const auto session = open_session(arguments.rig);
+  if (!session) return report(session.error());
+  const Rig& rig = session->rig;
+  RunReport say(rig, process_start);
+  say.say(fmt::format("{}: {} triangles, {} fixtures, {} points, {} luxmeters", rig.name,
+                      session->scene.triangles.size(), rig.fixtures.size(), rig.points.size(), rig.luxmeters.size()));
+
+  // 1. The simulated rig works out its own truth while we work out the plan.
+  DaemonOptions options;
+  std::optional<SimProcess> sim;
+  std::optional<SimPorts> ports;
+  if (arguments.sim_ports) {
+    auto known = read_sim_ports(*arguments.sim_ports);
+    if (!known) return report(known.error());
+    ports = std::move(*known);
+  } else if (arguments.sim) {
+    auto started = SimProcess::start(rig.file, arguments.sim_seed);
+    if (!started) return report(started.error());
+    sim.emplace(std::move(*started));
+    say.say(
+        fmt::format("simulated rig started, seed {}: its lamps, curves and poses are not quite what the rig file says",
+                    arguments.sim_seed));
+  }
+
+  // 2. Transport and plan.
+  ComputeOptions compute = arguments.compute;
+  compute.watch = {stop, progress_line("  transport")};
+  const auto transport = in_background<Result<TransportMatrix>>([&] { return compute_transport(*session, compute); });
+  if (!transport) return report(transport.error());
+  say.say(fmt::format("transport: {} x {}, relative error {:.2g}, {} rays, {} threads", transport->receivers(),
+                      transport->emitters(), transport->relative_error, transport->rays,
+                      thread_count(compute.threads)));
+  compute.watch.progress = nullptr;
+  std::optional<Plan> plan;
+  if (arguments.plan) {
+    auto read = plan_of_file(*arguments.plan);
+    if (!read) return report(read.error());
+    plan = std::move(*read);
+  } else {
+    auto solved = solve_tasks(*session, *transport, compute);
+    if (!solved) return report(solved.error());
+    plan = std::move(*solved);
+    for (const PlannedTask& task : plan->tasks) {
+      say.say(fmt::format("task {}: normalised error {:.2f} %, {} iterations, {:.1f} ms", task.name,
+                          100 * task.normalised_error, task.iterations, 1000 * task.seconds));
+    }
+    for (const PlannedPoint& point : plan->points) {
+      const double goal = point.goal_lux.value_or(0);
+      if (!point.why.empty() && std::abs(point.lux - goal) > 0.03 * goal) {
+        say.say(fmt::format("  {}: {}", point.name, point.why));
+      }
+    }
+  }
+  if (sim) {
+    auto ready = sim->wait_ready({stop, nullptr});
+    if (!ready) return report(ready.error());
+    ports = std::move(*ready);
+    say.say("simulated rig ready");
+  }
+
+  // 3. The daemon.
+  if (ports) options.redirects = ports->buses;
+  options.simulated = ports.has_value();
+  options.http_port = arguments.http_port.value_or(rig.daemon.http_port);
+  if (arguments.state_folder) {
+    options.state_folder = arguments.state_folder;
+  } else if (!options.simulated) {
+    options.state_folder = default_state_folder(rig.name);
+  }
+  Daemon daemon(*session, light_model(rig, *transport), options);
+  const auto port = daemon.start();
+  if (!port) return report(port.error());
+  say.say(fmt::format("page and status: http://127.0.0.1:{}/", *port));
+  bool resumed = false;
+  if (!arguments.plan && !arguments.once) {
+    const auto state = daemon.resume();
+    // A damaged or outdated state must not keep the rig dark: say so and go on with the fresh plan.
+    if (!state) report(state.error());
+    resumed = state.value_or(false);
+    if (resumed) say.say("resumed the plan that was in force");
+  }
+  if (!resumed) {
+    if (const auto applied = daemon.apply(*plan); !applied) return report(applied.error());
+  }
+
+  // 4. Light, measure, correct, hold.
+  double converged_s = 0;
+  bool shown = false;
+  const auto truth = [&]() -> std::optional<SimTruth> { return ports ? ask_truth(ports->control) : std::nullopt; };
+  tick_until(daemon, [&](Time at) {
+    say.follow(daemon.status(), at);
+    const bool settled = daemon.status().phase == Phase::holding;
+    if (settled && !shown) {
+      shown = true;
+      converged_s = to_seconds(at - process_start);
+      if (!arguments.once) {
+        fmt::print("\n{}\n", say.table(daemon.status(), truth()));
+        say.say(fmt::format("{} in {:.1f} s; page: http://127.0.0.1:{}/ (Ctrl-C fades to the safe look and ends)",
+                            daemon.status().converged ? "goals met" : "not all goals met", converged_s, *port));
+      }
+    }
+    return stop.stop_requested() || (arguments.once && (settled || at - process_start > kMostOnce));
+  });
+  const ShowStatus final_status = daemon.status();
+
+  // 5. Out: the safe look, then each driver's goodbye.
+  const auto seen = arguments.once ? truth() : std::nullopt;
+  say.say("fading to the safe look");
+  daemon.go_safe();
+  const Duration most = from_seconds(rig.safe.fade_s + 2);
+  const Time fade_start = now();
+  tick_until(daemon, [&](Time at) { return daemon.status().phase == Phase::safe || at - fade_start > most; });
+  const auto after = arguments.once ? truth() : std::nullopt;
+  daemon.stop();
+  if (!arguments.once) return kExitOk;
+
+  // The values are those of the held look; the peaks and the limits are those of the whole run.
+  auto whole = seen;
+  if (whole && after) {
+    for (std::size_t i = 0; i < whole->points.size(); ++i)
+      whole->points[i].max_lux_seen = after->points[i].max_lux_seen;
+    whole->violations = after->violations;
+  }
+  const bool met = final_status.converged && (!whole || whole->violations == 0);
+  fmt::print("\n{}\n", say.table(final_status, whole));
+  say.say(
+      fmt::format("{} after {} correction rounds, {:.1f} s from process start{}", met ? "goals met" : "goals NOT met",
+                  final_status.round, converged_s,
+                  whole ? fmt::format("; limits exceeded in the simulator's truth: {} times", whole->violations) : ""));
+  if (arguments.json) {
+    const auto written = write_file(*arguments.json, say.json(final_status, whole, met, converged_s));
+    if (!written) return report(written.error());
+    say.say("table as JSON: " + arguments.json->string());
+  }
+  return met ? kExitOk : kExitFailed;
+}
+
+}  // namespace luxrig

@@ -1,0 +1,28 @@
+#pragma once
+/// `luxrig run` and luxrigd: load, solve, light up, correct, hold, and end with a fade.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "tools/luxrig/session.h"
+
+namespace luxrig {
+
+struct RunArguments {
+  std::filesystem::path rig;
+  bool sim = false;  ///< start a simulated rig and send everything there
+  std::uint64_t sim_seed = 1;
+  std::optional<std::filesystem::path> sim_ports;     ///< use the simulator that wrote this file instead
+  std::optional<std::filesystem::path> plan;          ///< apply this instead of solving
+  std::optional<std::filesystem::path> state_folder;  ///< default: a folder of the user's; none with --sim
+  std::optional<int> http_port;                       ///< default: the rig's
+  bool once = false;                                  ///< end when the goals are met, or cannot be
+  std::optional<std::filesystem::path> json;          ///< where the table goes with `once`
+  ComputeOptions compute;
+};
+
+/// Exit code 0: ended on request, or with `once`: goals met and no limit exceeded.
+int run_rig(const RunArguments& arguments);
+
+}  // namespace luxrig

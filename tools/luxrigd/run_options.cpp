@@ -1,0 +1,24 @@
+#include "tools/luxrigd/run_options.h"
+
+#include <CLI/CLI.hpp>
+
+namespace luxrig {
+
+void add_run_options(CLI::App& app, RunArguments& arguments) {
+  app.add_option("RIG", arguments.rig, "rig file, or a folder with a rig.toml")->required();
+  app.add_flag("--sim", arguments.sim, "start a simulated rig and send everything there instead of to the devices");
+  app.add_option("--sim-seed", arguments.sim_seed, "seed of the simulated rig's deviations");
+  app.add_option("--sim-ports", arguments.sim_ports, "use the running luxrig-sim that wrote this file");
+  app.add_option("--plan", arguments.plan, "apply this plan instead of solving");
+  app.add_option("--state", arguments.state_folder, "folder that remembers the plan in force (none with --sim)");
+  app.add_option("--port", arguments.http_port, "port of the page, on loopback (0: any)")->check(CLI::Range(0, 65535));
+  app.add_flag("--once", arguments.once, "light, measure, correct, then end: exit code 0 when the goals were met");
+  app.add_option("--json", arguments.json, "with --once: write the table here");
+  app.add_option("--max-error", arguments.compute.max_error, "wanted relative error of the transport")
+      ->check(CLI::Range(1e-4, 1.0));
+  app.add_option("--seed", arguments.compute.seed, "seed of the samples");
+  app.add_option("--threads", arguments.compute.threads, "threads to compute with (0: one per core)")
+      ->check(CLI::Range(0, 1024));
+}
+
+}  // namespace luxrig

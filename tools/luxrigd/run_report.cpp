@@ -1,0 +1,112 @@
+#include "tools/luxrigd/run_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "tools/luxrig/table.h"
+
+namespace luxrig {
+namespace {
+
+constexpr double kMissWorthAReason = 0.03;
+
+std::optional<double> error_of(const Point& point, const PointStatus& status) {
+  if (!point.goal_lx || *point.goal_lx <= 0) return {};
+  return status.measured_lx.value_or(status.predicted_lx) / *point.goal_lx - 1;
+}
+
+}  // namespace
+
+void RunReport::say(const std::string& line) const {
+  fmt::print("{:6.1f} s  {}\n", to_seconds(now() - start_), line);
+  std::fflush(stdout);
+}
+
+void RunReport::say_readings(const ShowStatus& status) const {
+  for (std::size_t i = 0; i < status.points.size(); ++i) {
+    const Point& point = rig_.points[i];
+    const PointStatus& p = status.points[i];
+    if (!p.measured_lx) continue;
+    const auto error = error_of(point, p);
+    say(fmt::format("  {:<24} {:7.1f} lx measured{}{}", point.name, *p.measured_lx,
+                    point.goal_lx ? fmt::format(", goal {:g}", *point.goal_lx) : "",
+                    error ? fmt::format(" ({:+.1f} %)", 100 * *error) : ""));
+  }
+}
+
+void RunReport::follow(const ShowStatus& status, Time at) {
+  (void)at;
+  std::vector<std::string> alarms;
+  for (const Alarm& alarm : status.alarms) {
+    alarms.push_back(alarm.text);
+    if (std::find(alarms_.begin(), alarms_.end(), alarm.text) == alarms_.end()) {
+      say((alarm.severe ? "ALARM  " : "warning  ") + alarm.text);
+    }
+  }
+  alarms_ = std::move(alarms);
+  if (status.phase == phase_ && status.round == round_) return;
+  const Phase before = phase_;
+  phase_ = status.phase;
+  round_ = status.round;
+  // The readings a correction starts from, and those it ends with.
+  if (phase_ == Phase::correcting || (phase_ == Phase::holding && before != Phase::holding)) say_readings(status);
+  say(fmt::format("{}: {}", name_of(status.phase), status.detail));
+}
+
+std::string RunReport::table(const ShowStatus& status, const std::optional<SimTruth>& truth) const {
+  Table table({"point", ">goal lx", ">predicted lx", ">± se", ">measured lx", ">error", ">limit lx",
+               truth ? ">truth lx" : "", truth ? ">truth max" : "", ""});
+  for (std::size_t i = 0; i < status.points.size(); ++i) {
+    const Point& point = rig_.points[i];
+    const PointStatus& p = status.points[i];
+    const auto error = error_of(point, p);
+    // A reason belongs to a miss that matters; the JSON has them all.
+    std::string note = error && std::abs(*error) > kMissWorthAReason ? p.why : "";
+    if (!p.measured_lx && note.empty()) note = "no luxmeter here: by the model";
+    const PointTruthSeen* seen = truth && i < truth->points.size() ? &truth->points[i] : nullptr;
+    table.row(
+        {point.name, point.goal_lx ? fmt::format("{:g}", *point.goal_lx) : "-", fmt::format("{:.1f}", p.predicted_lx),
+         fmt::format("{:.1f}", p.standard_error_lx), p.measured_lx ? fmt::format("{:.1f}", *p.measured_lx) : "-",
+         error ? fmt::format("{:+.1f} %", 100 * *error) : "-", point.max_lx ? fmt::format("{:g}", *point.max_lx) : "-",
+         seen != nullptr ? fmt::format("{:.1f}", seen->lux) : "",
+         seen != nullptr ? fmt::format("{:.1f}", seen->max_lux_seen) : "", note});
+  }
+  return table.text();
+}
+
+std::string RunReport::json(const ShowStatus& status, const std::optional<SimTruth>& truth, bool met,
+                            double converged_s) const {
+  nlohmann::json out = {{"rig", rig_.name},
+                        {"goals_met", met},
+                        {"converged", status.converged},
+                        {"rounds", status.round},
+                        {"seconds_to_converged", converged_s}};
+  if (truth) out["limit_violations_in_truth"] = truth->violations;
+  auto& points = out["points"] = nlohmann::json::array();
+  const auto set = [](nlohmann::json& object, const char* key, std::optional<double> value) {
+    if (value && std::isfinite(*value)) object[key] = *value;
+  };
+  for (std::size_t i = 0; i < status.points.size(); ++i) {
+    const Point& point = rig_.points[i];
+    const PointStatus& p = status.points[i];
+    nlohmann::json entry = {{"name", point.name}, {"met", p.met}, {"why", p.why}};
+    set(entry, "goal_lux", point.goal_lx);
+    set(entry, "predicted_lux", p.predicted_lx);
+    set(entry, "standard_error_lux", p.standard_error_lx);
+    set(entry, "measured_lux", p.measured_lx);
+    set(entry, "error", error_of(point, p));
+    set(entry, "max_lux", point.max_lx);
+    if (truth && i < truth->points.size()) {
+      set(entry, "truth_lux", truth->points[i].lux);
+      set(entry, "truth_max_lux", truth->points[i].max_lux_seen);
+    }
+    points.push_back(std::move(entry));
+  }
+  return out.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace luxrig

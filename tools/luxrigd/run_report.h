@@ -1,0 +1,39 @@
+#pragma once
+/// What a person at the terminal sees of a run, and its table as JSON.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "core/control/show_controller.h"
+#include "core/rig/rig.h"
+#include "tools/luxrigd/clock.h"
+#include "tools/luxrigd/sim_process.h"
+
+namespace luxrig {
+
+class RunReport {
+ public:
+  RunReport(const Rig& rig, Time process_start) : rig_(rig), start_(process_start) {}
+
+  /// One line, with the seconds since the process began.
+  void say(const std::string& line) const;
+  /// Says what is new since the last call: phase, first readings, rounds, alarms.
+  void follow(const ShowStatus& status, Time now);
+  /// The table: point, goal, predicted, measured, error, limit, truth when known.
+  [[nodiscard]] std::string table(const ShowStatus& status, const std::optional<SimTruth>& truth) const;
+  /// The same as JSON; `converged_s`: seconds from process start to the end of the correction.
+  [[nodiscard]] std::string json(const ShowStatus& status, const std::optional<SimTruth>& truth, bool met,
+                                 double converged_s) const;
+
+ private:
+  void say_readings(const ShowStatus& status) const;
+
+  const Rig& rig_;
+  Time start_;
+  Phase phase_ = Phase::idle;
+  int round_ = -1;
+  std::vector<std::string> alarms_;
+};
+
+}  // namespace luxrig

@@ -1,0 +1,25 @@
+#include "tools/luxrigd/scheduling.h"
+
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+namespace luxrig {
+
+bool make_realtime(int priority) {
+  sched_param parameter{};
+  parameter.sched_priority = priority;
+  return pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter) == 0;
+}
+
+bool lock_memory() { return mlockall(MCL_CURRENT | MCL_FUTURE) == 0; }
+
+void make_background() {
+  // Linux keeps the nice value per thread; children inherit it.
+  setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), 15);
+}
+
+}  // namespace luxrig

@@ -1,0 +1,127 @@
+#include "tools/luxrigd/status_json.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace luxrig {
+namespace {
+
+using nlohmann::json;
+
+json array_of(const Vec3& v) { return json::array({v.x(), v.y(), v.z()}); }
+
+/// Sets a number, or leaves the key out when it is not finite.
+void set(json& object, const char* key, double value) {
+  if (std::isfinite(value)) object[key] = value;
+}
+
+json fixture_json(const Rig& rig, std::size_t index, const FixtureStatus& status) {
+  const Fixture& fixture = rig.fixtures[index];
+  json out = {{"name", fixture.name},
+              {"bus", rig.buses[fixture.bus].name},
+              {"luminaire", rig.luminaires[fixture.luminaire].name},
+              {"position", array_of(fixture.world_from_mount.translation_m)},
+              {"pan_deg", deg_from_rad(fixture.joints.pan_rad)},
+              {"tilt_deg", deg_from_rad(fixture.joints.tilt_rad)}};
+  if (fixture.aim_world_m) out["aim"] = array_of(*fixture.aim_world_m);
+  set(out, "level", status.level);
+  set(out, "drive", status.drive);
+  set(out, "target_level", status.target_level);
+  set(out, "gain", status.gain);
+  set(out, "gain_standard_error", status.gain_standard_error);
+  return out;
+}
+
+json point_json(const Point& point, const PointStatus& status, Time now) {
+  json out = {{"name", point.name},
+              {"position", array_of(point.position_world_m)},
+              {"normal", array_of(point.normal_world)},
+              {"met", status.met},
+              {"why", status.why}};
+  if (point.goal_lx) out["goal_lux"] = *point.goal_lx;
+  if (point.max_lx) out["max_lux"] = *point.max_lx;
+  set(out, "predicted_lux", status.predicted_lx);
+  set(out, "standard_error_lux", status.standard_error_lx);
+  if (status.measured_lx) {
+    set(out, "measured_lux", *status.measured_lx);
+    set(out, "measured_age_s", to_seconds(now - status.measured_at));
+  }
+  if (point.goal_lx && *point.goal_lx > 0) {
+    set(out, "error", status.measured_lx.value_or(status.predicted_lx) / *point.goal_lx - 1);
+  }
+  return out;
+}
+
+/// Life of a meter: its own health line, else that of its bus.
+std::string meter_life(const Rig& rig, const Luxmeter& meter, const std::vector<Health>& devices) {
+  std::string life = name_of(Life::configured);
+  for (const Health& device : devices) {
+    if (device.device == rig.buses[meter.bus].name) life = name_of(device.life);
+  }
+  for (const Health& device : devices) {
+    if (device.device == meter.name) life = name_of(device.life);
+  }
+  return life;
+}
+
+json health_json(const Health& health, Time now) {
+  json out = {{"name", health.device}, {"life", name_of(health.life)}, {"detail", health.detail},
+              {"sent", health.sent},   {"received", health.received},  {"errors", health.errors}};
+  if (health.since != Time{}) set(out, "since_s", to_seconds(now - health.since));
+  if (health.last_ok != Time{}) set(out, "last_ok_s", to_seconds(now - health.last_ok));
+  return out;
+}
+
+}  // namespace
+
+std::string status_json(const StatusInput& input) {
+  const Rig& rig = input.rig;
+  const ShowStatus& show = input.show;
+  json out = {{"rig", rig.name},
+              {"version", LUXRIG_VERSION},
+              {"phase", name_of(show.phase)},
+              {"detail", show.detail},
+              {"time_s", to_seconds(input.now - input.started)},
+              {"phase_s", to_seconds(input.now - show.phase_since)},
+              {"simulated", input.simulated},
+              {"blackout", show.blackout},
+              {"round", show.round},
+              {"rounds", rig.control.rounds},
+              {"converged", show.converged}};
+  json& fixtures = out["fixtures"] = json::array();
+  for (std::size_t i = 0; i < show.fixtures.size(); ++i) fixtures.push_back(fixture_json(rig, i, show.fixtures[i]));
+  json& points = out["points"] = json::array();
+  for (std::size_t i = 0; i < show.points.size(); ++i) {
+    points.push_back(point_json(rig.points[i], show.points[i], input.now));
+  }
+  json& meters = out["luxmeters"] = json::array();
+  for (std::size_t m = 0; m < rig.luxmeters.size(); ++m) {
+    const Luxmeter& meter = rig.luxmeters[m];
+    json entry = {{"name", meter.name},
+                  {"position", array_of(meter.position_world_m)},
+                  {"tolerance", meter.tolerance},
+                  {"life", meter_life(rig, meter, input.devices)}};
+    if (meter.point) entry["point"] = rig.points[*meter.point].name;
+    if (m < show.luxmeters.size() && show.luxmeters[m]) {
+      set(entry, "lux", show.luxmeters[m]->lux);
+      set(entry, "age_s", to_seconds(input.now - show.luxmeters[m]->taken));
+    }
+    meters.push_back(std::move(entry));
+  }
+  json& devices = out["devices"] = json::array();
+  for (const Health& device : input.devices) devices.push_back(health_json(device, input.now));
+  json& alarms = out["alarms"] = json::array();
+  for (const Alarm& alarm : show.alarms) {
+    alarms.push_back({{"severe", alarm.severe},
+                      {"device", alarm.device},
+                      {"text", alarm.text},
+                      {"since_s", to_seconds(input.now - alarm.since)}});
+  }
+  out["output"] = {{"rate_hz", input.output.rate_hz}, {"frames", input.output.frames},
+                   {"p50_us", input.output.p50_us},   {"p99_us", input.output.p99_us},
+                   {"max_us", input.output.max_us},   {"realtime", input.output.realtime}};
+  // Names come from files: bytes that are not UTF-8 are replaced, never thrown over.
+  return out.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+}  // namespace luxrig

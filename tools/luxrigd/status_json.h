@@ -1,0 +1,31 @@
+#pragma once
+/// The status as JSON; keys are listed in README.md beside this file and are a contract.
+
+#include <string>
+#include <vector>
+
+#include "core/control/show_controller.h"
+#include "core/rig/rig.h"
+
+namespace luxrig {
+
+struct OutputFigures {
+  double rate_hz = 0;
+  std::uint64_t frames = 0;
+  std::int64_t p50_us = 0, p99_us = 0, max_us = 0;
+  bool realtime = false;
+};
+
+struct StatusInput {
+  const Rig& rig;
+  const ShowStatus& show;
+  const std::vector<Health>& devices;
+  OutputFigures output;
+  bool simulated = false;
+  Time started{};
+  Time now{};
+};
+
+[[nodiscard]] std::string status_json(const StatusInput& input);
+
+}  // namespace luxrig
