@@ -17,6 +17,7 @@ struct Suite {
 };
 constexpr Suite kSuites[] = {
     {"analytic", "evaluators against closed forms: point source, cube, integrating sphere", bench_analytic},
+    {"buses", "output cycle: 4 universes at 44 Hz while a solver uses every core", bench_buses},
 };
 
 int finish(const Suite& suite, const std::vector<BenchRow>& rows, const BenchOptions& options) {
@@ -43,6 +44,12 @@ int finish(const Suite& suite, const std::vector<BenchRow>& rows, const BenchOpt
 }
 
 }  // namespace
+
+std::vector<std::string> bench_suites() {
+  std::vector<std::string> names;
+  for (const Suite& suite : kSuites) names.emplace_back(suite.name);
+  return names;
+}
 
 int run_bench(const std::string& suite, const BenchOptions& options) {
   for (const Suite& known : kSuites)

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace luxrig {
 
@@ -11,6 +12,9 @@ struct BenchOptions {
   std::filesystem::path csv_file, plot_file;  ///< written when not empty
   int threads = 0;                            ///< 0 = one per core
 };
+
+/// Names of the suites.
+[[nodiscard]] std::vector<std::string> bench_suites();
 
 /// Runs a suite and prints its table on stdout. Exit code: 0, 1 when a target was missed or a file could not be
 /// written, 2 for an unknown suite (the known ones are named on stderr).
