@@ -1,0 +1,86 @@
+// The commands' contract: names, JSON keys, exit codes.
+#include <filesystem>
+
+#include "tests/tools/programs/live_rig.h"
+
+namespace luxrig::testing {
+namespace {
+
+TEST(Commands, EvaluateJsonHasTheContractsKeys) {
+  const Ran ran =
+      luxrig::testing::run({program("luxrig"), "evaluate", source("tests/rigs/room"), "--max-error", "0.05", "--json"});
+  ASSERT_EQ(ran.code, 0) << ran.output;
+  const json out = json::parse(ran.output, nullptr, false);
+  ASSERT_TRUE(out.is_object()) << ran.output;
+  for (const char* key : {"model", "points", "relative_error", "rays", "seconds", "threads"})
+    EXPECT_TRUE(out.contains(key)) << key;
+  ASSERT_EQ(out["points"].size(), 4u) << "points, then luxmeters";
+  for (const char* key : {"name", "position", "normal", "lux", "direct_lux", "standard_error_lux", "goal_lux"}) {
+    EXPECT_TRUE(out["points"][0].contains(key)) << key;
+  }
+  EXPECT_LE(out["relative_error"].get<double>(), 0.05);
+}
+
+TEST(Commands, SolveJsonHasTheContractsKeysAndEvaluateAgreesWithIt) {
+  const Folder folder;
+  const auto plan = (folder / "plan.json").string();
+  const Ran ran = luxrig::testing::run({program("luxrig"), "solve", source("tests/rigs/room"), "-o", plan, "--json"});
+  ASSERT_EQ(ran.code, 0) << ran.output;
+  const json out = json::parse(text_of(plan), nullptr, false);
+  ASSERT_TRUE(out.is_object());
+  for (const char* key : {"tasks", "points", "limits", "seconds", "seed"}) EXPECT_TRUE(out.contains(key)) << key;
+  for (const char* key : {"name", "kind", "normalised_error", "iterations", "seconds", "lights"}) {
+    EXPECT_TRUE(out["tasks"][0].contains(key)) << key;
+  }
+  for (const char* key : {"name", "luminaire", "position", "level", "lumens"}) {
+    EXPECT_TRUE(out["tasks"][0]["lights"][0].contains(key)) << key;
+  }
+  const Ran again =
+      luxrig::testing::run({program("luxrig"), "evaluate", source("tests/rigs/room"), "--levels", plan, "--json"});
+  ASSERT_EQ(again.code, 0) << again.output;
+  const json lux = json::parse(again.output, nullptr, false);
+  for (std::size_t i = 0; i < out["points"].size(); ++i) {
+    EXPECT_NEAR(lux["points"][i]["lux"].get<double>(), out["points"][i]["lux"].get<double>(),
+                0.04 * out["points"][i]["lux"].get<double>());
+  }
+}
+
+TEST(Commands, SameSeedSameBytesWhateverTheThreads) {
+  const auto lux = [](const char* threads) {
+    const Ran ran = luxrig::testing::run({program("luxrig"), "evaluate", source("tests/rigs/room"), "--max-error",
+                                          "0.02", "--threads", threads, "--json"});
+    json out = json::parse(ran.output, nullptr, false);
+    return out.is_object() ? out["points"].dump() : ran.output;
+  };
+  EXPECT_EQ(lux("1"), lux("3"));
+}
+
+TEST(Commands, BadRigsAreRefusedWithTheirPlaceBeforeAnythingMoves) {
+  int seen = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(source("tests/rigs/bad"))) {
+    if (entry.path().extension() != ".toml") continue;
+    const Ran ran =
+        luxrig::testing::run({program("luxrig"), "run", entry.path().string(), "--sim", "--once", "--port", "0"}, 10s);
+    EXPECT_EQ(ran.code, 2) << entry.path() << ran.output;
+    EXPECT_NE(ran.output.find(entry.path().filename().string() + ":"), std::string::npos) << entry.path() << ran.output;
+    EXPECT_EQ(ran.output.find("simulated rig started"), std::string::npos) << entry.path();
+    EXPECT_LT(ran.seconds, 1.0) << entry.path();
+    ++seen;
+  }
+  EXPECT_GE(seen, 30);
+}
+
+TEST(Commands, ClientsSayWhatToDoWhenThereIsNoDaemon) {
+  const Ran ran = luxrig::testing::run({program("luxrig"), "status", "--port", "9"});
+  EXPECT_EQ(ran.code, 1);
+  EXPECT_NE(ran.output.find("luxrig run"), std::string::npos) << ran.output;
+}
+
+TEST(Commands, WrongArgumentsAreBadInput) {
+  EXPECT_EQ(luxrig::testing::run({program("luxrig"), "solve"}).code, 2);
+  EXPECT_EQ(luxrig::testing::run({program("luxrig"), "no-such"}).code, 2);
+  EXPECT_EQ(luxrig::testing::run({program("luxrig"), "solve", source("tests/rigs/room"), "--max-error", "7"}).code, 2);
+}
+
+}  // namespace
+}  // namespace luxrig::testing

@@ -1,0 +1,94 @@
+#pragma once
+/// A daemon on a simulator that a test can kill, cut and restart.
+
+#include <nlohmann/json.hpp>
+
+#include "tests/tools/programs/process.h"
+#include "tools/luxrig/http_client.h"
+
+namespace luxrig::testing {
+
+using nlohmann::json;
+
+class LiveRig {
+ public:
+  explicit LiveRig(std::string rig) : rig_(std::move(rig)) {
+    start_sim();
+    daemon_ = std::make_unique<Process>(
+        std::vector<std::string>{program("luxrig"), "run", rig_, "--sim-ports", ports().string(), "--port", "0",
+                                 "--max-error", "0.02", "--state", (folder_ / "state").string()},
+        folder_ / "daemon.log");
+  }
+
+  void start_sim() {
+    sim_ = std::make_unique<Process>(std::vector<std::string>{program("luxrig-sim"), rig_, "--seed", "3",
+                                                              "--ports-file", ports().string(), "--max-error", "0.02"},
+                                     folder_ / "sim.log");
+    ASSERT_TRUE(wait_for([&] { return sim_->output().find("ready") != std::string::npos; }, 60s)) << sim_->output();
+  }
+  void kill_sim() { sim_.reset(); }
+
+  /// Status of the daemon; null when it does not answer.
+  json status() {
+    if (port_ == 0) find_port();
+    if (port_ == 0) return {};
+    const auto answer = http_get("127.0.0.1", port_, "/api/status");
+    return answer ? json::parse(answer->body, nullptr, false) : json();
+  }
+  bool wait_status(const std::function<bool(const json&)>& wanted, std::chrono::milliseconds bound) {
+    return wait_for(
+        [&] {
+          last_ = status();
+          return last_.is_object() && last_.contains("phase") && wanted(last_);
+        },
+        bound);
+  }
+  bool wait_phase(const std::string& phase, std::chrono::milliseconds bound) {
+    return wait_status([&](const json& s) { return s["phase"] == phase; }, bound);
+  }
+  bool has_severe_alarm() const {
+    for (const json& alarm : last_.value("alarms", json::array())) {
+      if (alarm.value("severe", false)) return true;
+    }
+    return false;
+  }
+  void fault(const std::string& device, const std::string& name, bool on, double value = 0) {
+    const auto control = json::parse(text_of(ports()))["control"];
+    const json body = {{"device", device}, {"fault", name}, {"on", on}, {"value", value}};
+    const auto answer = http_post_json("127.0.0.1", control["port"], "/fault", body.dump());
+    ASSERT_TRUE(answer && answer->status == 200) << (answer ? answer->body : "no answer");
+  }
+  json truth() {
+    const auto control = json::parse(text_of(ports()))["control"];
+    const auto answer = http_get("127.0.0.1", control["port"], "/truth");
+    return answer ? json::parse(answer->body, nullptr, false) : json();
+  }
+  double level_sum() const {
+    double sum = 0;
+    for (const json& f : last_.value("fixtures", json::array())) sum += f.value("level", 0.0);
+    return sum;
+  }
+  [[nodiscard]] const json& last() const { return last_; }
+  [[nodiscard]] int port() const { return port_; }
+  Process& daemon() { return *daemon_; }
+  [[nodiscard]] std::filesystem::path file(const std::string& name) const { return folder_ / name; }
+
+ private:
+  std::filesystem::path ports() const { return folder_ / "ports.json"; }
+  void find_port() {
+    const std::string log = daemon_->output();
+    const std::string mark = "http://127.0.0.1:";
+    const auto at = log.find(mark);
+    if (at != std::string::npos && log.find('/', at + mark.size()) != std::string::npos) {
+      port_ = std::atoi(log.c_str() + at + mark.size());
+    }
+  }
+
+  Folder folder_;
+  std::string rig_;
+  std::unique_ptr<Process> sim_, daemon_;
+  int port_ = 0;
+  json last_;
+};
+
+}  // namespace luxrig::testing

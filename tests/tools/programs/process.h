@@ -1,0 +1,123 @@
+#pragma once
+/// Programs under test, started and ended by it.
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace luxrig::testing {
+
+using namespace std::chrono_literals;
+
+inline std::string program(const std::string& name) { return std::string(LUXRIG_BIN_DIR) + "/" + name; }
+inline std::string source(const std::string& path) { return std::string(LUXRIG_SOURCE_DIR) + "/" + path; }
+
+inline std::string text_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// A folder that goes with the test.
+class Folder {
+ public:
+  Folder() {
+    std::string name = (std::filesystem::temp_directory_path() / "luxrig-test-XXXXXX").string();
+    path_ = ::mkdtemp(name.data());
+  }
+  ~Folder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  [[nodiscard]] std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// Waits until `done`, at most `bound`; false when it never was.
+inline bool wait_for(const std::function<bool()>& done, std::chrono::milliseconds bound) {
+  const auto end = std::chrono::steady_clock::now() + bound;
+  while (!done()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(20ms);
+  }
+  return true;
+}
+
+class Process {
+ public:
+  /// words[0] is the program's path; its output goes to `log`.
+  Process(std::vector<std::string> words, std::filesystem::path log) : log_(std::move(log)) {
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    pid_ = ::fork();
+    if (pid_ == 0) {
+      const int out = ::open(log_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+      ::dup2(out, STDOUT_FILENO);
+      ::dup2(out, STDERR_FILENO);
+      ::execv(argv[0], argv.data());
+      ::_exit(127);
+    }
+  }
+  ~Process() {
+    if (pid_ > 0) {
+      ::kill(pid_, SIGKILL);
+      ::waitpid(pid_, nullptr, 0);
+    }
+  }
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+
+  void signal(int number) const { ::kill(pid_, number); }
+
+  /// Exit code; -1 when it had to be killed after `bound`, -2 when a signal ended it.
+  int wait(std::chrono::seconds bound) {
+    int status = 0;
+    const bool ended = wait_for([&] { return ::waitpid(pid_, &status, WNOHANG) == pid_; }, bound);
+    if (!ended) {
+      ::kill(pid_, SIGKILL);
+      ::waitpid(pid_, &status, 0);
+      pid_ = -1;
+      return -1;
+    }
+    pid_ = -1;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -2;
+  }
+  [[nodiscard]] std::string output() const { return text_of(log_); }
+
+ private:
+  pid_t pid_ = -1;
+  std::filesystem::path log_;
+};
+
+struct Ran {
+  int code = 0;
+  std::string output;
+  double seconds = 0;
+};
+
+/// Runs to its end.
+inline Ran run(const std::vector<std::string>& words, std::chrono::seconds bound = 60s) {
+  const Folder folder;
+  const auto start = std::chrono::steady_clock::now();
+  Process process(words, folder / "log");
+  Ran ran;
+  ran.code = process.wait(bound);
+  ran.output = process.output();
+  ran.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return ran;
+}
+
+}  // namespace luxrig::testing

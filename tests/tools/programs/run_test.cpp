@@ -1,0 +1,109 @@
+// `luxrig run` as a user starts it: on a simulated rig, over the real protocols, in real time.
+#include "tests/tools/programs/live_rig.h"
+
+namespace luxrig::testing {
+namespace {
+
+TEST(Run, OnceReachesTheGoalsWritesTheTableAndEndsCleanly) {
+  const Folder folder;
+  const auto table = folder / "table.json";
+  const Ran ran = luxrig::testing::run(
+      {program("luxrig"), "run", source("tests/rigs/room"), "--sim", "--once", "--port", "0", "--json", table.string()},
+      90s);
+  ASSERT_EQ(ran.code, 0) << ran.output;
+  const json out = json::parse(text_of(table), nullptr, false);
+  ASSERT_TRUE(out.is_object()) << ran.output;
+  EXPECT_TRUE(out["goals_met"].get<bool>());
+  EXPECT_EQ(out["limit_violations_in_truth"], 0);
+  bool metered = false;
+  for (const json& point : out["points"]) {
+    if (!point.contains("measured_lux")) continue;
+    metered = true;
+    if (point["why"] == "") {
+      EXPECT_NEAR(point["error"].get<double>(), 0, 0.03) << point;
+    }
+  }
+  EXPECT_TRUE(metered);
+}
+
+TEST(Run, KilledSimulatorHoldsThenSafeThenResumesByItself) {
+  LiveRig rig(source("tests/rigs/room"));
+  ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
+  const double lit = rig.level_sum();
+  ASSERT_GT(lit, 0.1);
+  rig.kill_sim();
+  ASSERT_TRUE(rig.wait_status([&](const json& s) { return s["phase"] == "frozen" && !s["alarms"].empty(); }, 2s))
+      << rig.last().dump(1);
+  EXPECT_TRUE(rig.has_severe_alarm());
+  EXPECT_NEAR(rig.level_sum(), lit, 1e-6) << "the light must be held, not changed";
+  ASSERT_TRUE(rig.wait_phase("safe", 10s)) << rig.last().dump(1);
+  rig.start_sim();
+  ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.last().dump(1);
+  EXPECT_TRUE(rig.last()["alarms"].empty()) << rig.last()["alarms"];
+  EXPECT_NEAR(rig.level_sum(), lit, 0.1 * lit);
+}
+
+TEST(Run, CutAndGarbledMetersAreNamedWithinTwoSecondsAndForgottenWhenWell) {
+  LiveRig rig(source("tests/rigs/room"));
+  ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
+  for (const char* fault : {"silent", "garbled"}) {
+    const double before = rig.level_sum();
+    rig.fault("meter-1", fault, true);
+    ASSERT_TRUE(rig.wait_status([&](const json& s) { return !s["alarms"].empty(); }, 2s))
+        << fault << rig.last().dump(1);
+    EXPECT_LE(rig.level_sum(), before + 1e-6) << fault;
+    rig.fault("meter-1", fault, false);
+    ASSERT_TRUE(rig.wait_status([&](const json& s) { return s["phase"] == "holding" && s["alarms"].empty(); }, 30s))
+        << fault << rig.last().dump(1);
+  }
+}
+
+TEST(Run, BlackoutWinsAndIsLiftedByTheCommand) {
+  LiveRig rig(source("tests/rigs/room"));
+  ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
+  const std::string port = std::to_string(rig.port());
+  ASSERT_EQ(luxrig::testing::run({program("luxrig"), "blackout", "--port", port}).code, 0);
+  ASSERT_TRUE(rig.wait_status([&](const json& s) { return s["blackout"] == true; }, 1s));
+  EXPECT_EQ(rig.level_sum(), 0);
+  EXPECT_TRUE(wait_for(
+      [&] {
+        double lux = 0;
+        for (const json& p : rig.truth()["points"]) lux += p["lux"].get<double>();
+        return lux < 0.5;
+      },
+      3s))
+      << "the room itself must be dark";
+  ASSERT_EQ(luxrig::testing::run({program("luxrig"), "blackout", "--off", "--port", port}).code, 0);
+  ASSERT_TRUE(rig.wait_status([&](const json& s) { return s["blackout"] == false && s["phase"] == "holding"; }, 30s));
+  const Ran status = luxrig::testing::run({program("luxrig"), "status", "--port", port});
+  EXPECT_EQ(status.code, 0);
+  EXPECT_NE(status.output.find("room: holding"), std::string::npos) << status.output;
+}
+
+TEST(Run, AppliedPlanIsAcknowledgedOnDiskAndResumed) {
+  LiveRig rig(source("tests/rigs/room"));
+  ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
+  const auto plan = rig.file("plan.json").string();
+  ASSERT_EQ(
+      luxrig::testing::run({program("luxrig"), "solve", source("tests/rigs/room"), "-o", plan, "--max-error", "0.05"})
+          .code,
+      0);
+  const Ran applied = luxrig::testing::run({program("luxrig"), "apply", plan, "--port", std::to_string(rig.port())});
+  ASSERT_EQ(applied.code, 0) << applied.output;
+  // A power cut right after the acknowledgement.
+  rig.daemon().signal(SIGKILL);
+  const json state = json::parse(text_of(rig.file("state") / "state.json"), nullptr, false);
+  ASSERT_TRUE(state.is_object());
+  EXPECT_EQ(json::parse(state["plan"].get<std::string>()), json::parse(text_of(plan)));
+}
+
+TEST(Run, EndsOnCtrlCThroughTheSafeLook) {
+  LiveRig rig(source("tests/rigs/room"));
+  ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
+  rig.daemon().signal(SIGINT);
+  EXPECT_EQ(rig.daemon().wait(15s), 0) << rig.daemon().output();
+  EXPECT_NE(rig.daemon().output().find("safe"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace luxrig::testing
