@@ -1,0 +1,103 @@
+#pragma once
+/// A simulated far end of one bus, served by a thread of its own: a driver may block while it waits for an answer.
+
+#include <poll.h>
+
+#include <atomic>
+#include <chrono>
+#include <memory>
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "sim/faults/faults.h"
+#include "sim/wire/bus_endpoint.h"
+#include "sim/world/world.h"
+
+namespace luxrig {
+
+class FarEnd {
+ public:
+  /// Meters see 100 lx from each fixture at full level. The world has no deviations: what is set is what is.
+  explicit FarEnd(const Rig& rig) : rig_(rig) {
+    const auto rows = static_cast<Eigen::Index>(rig.points.size() + rig.luxmeters.size());
+    const Eigen::MatrixXd light = Eigen::MatrixXd::Constant(rows, static_cast<Eigen::Index>(rig.fixtures.size()), 100);
+    auto world = sim::World::make(rig, sim::Deviations::none(), light);
+    if (!world) throw std::runtime_error(world.error().detail);
+    world_ = std::move(*world);
+    auto endpoint = sim::open_endpoint({rig_, 0, *world_, faults_}, 0);
+    if (!endpoint) throw std::runtime_error(endpoint.error().detail);
+    endpoint_ = std::move(*endpoint);
+    port_ = endpoint_->port();
+    thread_ = std::thread([this] { run(); });
+  }
+  ~FarEnd() {
+    stopping_ = true;
+    thread_.join();
+  }
+  FarEnd(const FarEnd&) = delete;
+  FarEnd& operator=(const FarEnd&) = delete;
+
+  [[nodiscard]] int port() const { return port_; }
+  sim::Faults& faults() { return faults_; }
+
+  /// The far end's clock: at `now`, and on from there in real time, never back. Returns once everything that had
+  /// arrived has been served.
+  void step_to(Time now) {
+    std::uint64_t wanted = 0;
+    {
+      const std::lock_guard lock(mutex_);
+      base_ = now;
+      base_real_ = std::chrono::steady_clock::now();
+      wanted = rounds_ + 2;
+    }
+    while (rounds_ < wanted) std::this_thread::yield();
+  }
+  [[nodiscard]] std::vector<double> drives() const {
+    const std::lock_guard lock(mutex_);
+    return world_->drives();
+  }
+  [[nodiscard]] std::vector<PanTilt> joints() const {
+    const std::lock_guard lock(mutex_);
+    return world_->joints();
+  }
+  [[nodiscard]] double meter_lx(std::size_t luxmeter) const {
+    const std::lock_guard lock(mutex_);
+    return world_->meter_reading_lx(luxmeter);
+  }
+
+ private:
+  void run() {
+    while (!stopping_) {
+      std::vector<pollfd> waits;
+      {
+        const std::lock_guard lock(mutex_);
+        now_ =
+            std::max(now_, base_ + std::chrono::duration_cast<Duration>(std::chrono::steady_clock::now() - base_real_));
+        endpoint_->serve(now_);
+        world_->advance(now_);
+        std::vector<int> descriptors;
+        endpoint_->descriptors(descriptors);
+        for (const int fd : descriptors) waits.push_back({fd, POLLIN, 0});
+      }
+      ++rounds_;
+      ::poll(waits.data(), waits.size(), 1);
+    }
+  }
+
+  Rig rig_;
+  sim::Faults faults_;
+  std::unique_ptr<sim::World> world_;
+  std::unique_ptr<sim::BusEndpoint> endpoint_;
+  int port_ = 0;
+  mutable std::mutex mutex_;
+  Time base_{}, now_{};
+  std::chrono::steady_clock::time_point base_real_ = std::chrono::steady_clock::now();
+  std::atomic<std::uint64_t> rounds_{0};
+  std::atomic<bool> stopping_{false};
+  std::thread thread_;
+};
+
+}  // namespace luxrig
