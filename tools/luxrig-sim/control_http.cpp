@@ -2,6 +2,8 @@
 
 #include <httplib.h>
 
+#include <atomic>
+#include <chrono>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -9,6 +11,7 @@ namespace luxrig::sim {
 namespace {
 
 constexpr const char* kLoopback = "127.0.0.1";
+constexpr std::chrono::seconds kMostWait{5};  // until the control port listens
 constexpr const char* kJson = "application/json";
 
 void answer(httplib::Response& response, int status, const nlohmann::json& json) {
@@ -46,8 +49,11 @@ class Server final : public ControlHttp {
   }
 
   ~Server() override {
+    if (!thread_.joinable()) return;
+    // stop() before the thread listens would be lost.
+    while (!server_.is_running() && !ended_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     server_.stop();
-    if (thread_.joinable()) thread_.join();
+    thread_.join();
   }
 
   Result<void> open(int port) {
@@ -56,9 +62,18 @@ class Server final : public ControlHttp {
       return tl::unexpected(
           Fault{Cause::system, "", "control port " + std::to_string(port) + " on 127.0.0.1 cannot be had", {}});
     }
-    thread_ = std::thread([this] { server_.listen_after_bind(); });
-    // stop() before the thread listens would be lost.
-    while (!server_.is_running()) std::this_thread::yield();
+    thread_ = std::thread([this] {
+      server_.listen_after_bind();
+      ended_ = true;
+    });
+    const auto give_up = std::chrono::steady_clock::now() + kMostWait;
+    while (!server_.is_running()) {
+      if (ended_ || std::chrono::steady_clock::now() > give_up) {
+        return tl::unexpected(
+            Fault{Cause::system, "", "control port " + std::to_string(port_) + " on 127.0.0.1 does not listen", {}});
+      }
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
     return {};
   }
 
@@ -90,6 +105,7 @@ class Server final : public ControlHttp {
   std::mutex& world_mutex_;
   httplib::Server server_;
   std::thread thread_;
+  std::atomic<bool> ended_ = false;  // the thread has nothing more to do
   int port_ = 0;
 };
 

@@ -54,12 +54,14 @@ ArtnetNode::ArtnetNode(std::vector<int> port_addresses) {
 }
 
 std::vector<std::vector<std::uint8_t>> ArtnetNode::receive(Time now, std::uint32_t from, Bytes packet) {
+  forget_lost(now);
   if (is_art_poll(packet)) return poll_replies();
   if (is_art_sync(packet)) {
-    last_sync_ = now;
     for (auto& [port_address, port] : ports_) {
-      // A node that merges does not synchronise.
-      if (port.held && port.sources.size() < 2) port.look = port.held;
+      // Only the controller whose data a port shows may synchronise it, and a port that merges does not synchronise.
+      if (port.sources.size() != 1 || port.sources[0].address != from) continue;
+      port.last_sync = now;
+      if (port.held) port.look = port.held;
       port.held.reset();
     }
   } else if (const auto dmx = decode_art_dmx(packet)) {
@@ -72,7 +74,6 @@ void ArtnetNode::take(Time now, std::uint32_t from, const ArtDmx& dmx) {
   const auto found = ports_.find(dmx.port_address);
   if (found == ports_.end()) return;
   Port& port = found->second;
-  std::erase_if(port.sources, [now](const Source& source) { return now - source.last_seen > kSourceTimeout; });
   auto source = std::find_if(port.sources.begin(), port.sources.end(),
                              [from](const Source& known) { return known.address == from; });
   if (source == port.sources.end()) {
@@ -80,6 +81,7 @@ void ArtnetNode::take(Time now, std::uint32_t from, const ArtDmx& dmx) {
     // What a first source leaves unsaid stays as it was held; a second one says nothing about it.
     const Levels unsaid = port.sources.empty() ? port.look.value_or(Levels{}) : Levels{};
     source = port.sources.insert(port.sources.end(), Source{from, now, 0, unsaid});
+    if (port.sources.size() > 1) port.held.reset();  // merging starts, synchronisation ends
   } else if (out_of_order(dmx.sequence, source->sequence)) {
     return;
   }
@@ -88,23 +90,34 @@ void ArtnetNode::take(Time now, std::uint32_t from, const ArtDmx& dmx) {
   // A packet with fewer slots leaves the others as they were.
   std::copy(dmx.slots.begin(), dmx.slots.end(), source->slots.begin());
   ++accepted_;
-  Levels merged{};
-  for (const Source& each : port.sources) {
-    for (std::size_t slot = 0; slot < merged.size(); ++slot) merged[slot] = std::max(merged[slot], each.slots[slot]);
+  const bool synchronised = port.last_sync && now - *port.last_sync <= kSyncTimeout && port.sources.size() < 2;
+  (synchronised ? port.held : port.look) = merged(port);
+}
+
+ArtnetNode::Levels ArtnetNode::merged(const Port& port) {
+  Levels levels{};
+  for (const Source& source : port.sources) {
+    for (std::size_t slot = 0; slot < levels.size(); ++slot) levels[slot] = std::max(levels[slot], source.slots[slot]);
   }
-  const bool synchronised = last_sync_ && now - *last_sync_ <= kSyncTimeout && port.sources.size() < 2;
-  (synchronised ? port.held : port.look) = merged;
+  return levels;
+}
+
+void ArtnetNode::forget_lost(Time now) {
+  for (auto& [port_address, port] : ports_) {
+    const auto gone =
+        std::erase_if(port.sources, [now](const Source& source) { return now - source.last_seen > kSourceTimeout; });
+    if (gone > 0 && !port.sources.empty()) port.look = merged(port);            // with none left the look is held
+    if (port.held && port.last_sync && now - *port.last_sync > kSyncTimeout) {  // back to immediate mode
+      port.look = port.held;
+      port.held.reset();
+    }
+  }
 }
 
 std::optional<ArtnetNode::Levels> ArtnetNode::levels(int port_address, Time now) {
+  forget_lost(now);
   const auto found = ports_.find(port_address);
-  if (found == ports_.end()) return std::nullopt;
-  Port& port = found->second;
-  if (port.held && last_sync_ && now - *last_sync_ > kSyncTimeout) {  // ArtSync stopped: back to immediate mode
-    port.look = port.held;
-    port.held.reset();
-  }
-  return port.look;
+  return found == ports_.end() ? std::nullopt : found->second.look;
 }
 
 std::vector<std::vector<std::uint8_t>> ArtnetNode::poll_replies() const {

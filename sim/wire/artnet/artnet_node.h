@@ -3,7 +3,8 @@
 /// Source: Art-Net 4 specification (Artistic Licence).
 ///
 /// Kept: ArtPoll -> one ArtPollReply per page of four ports of the same net and sub-net, ArtDmx with its sequence rule,
-/// merge of at most two sources by address (HTP, 10 s), ArtSync with its 4 s way back. With no source left the last
+/// merge of at most two sources by address (HTP, 10 s), ArtSync (from the one controller whose
+/// data a port shows) with its 4 s way back. With no source left the last
 /// look is held, and the replies say so (failsafe: hold).
 /// Answers at once instead of after a random 0…1 s, so that tests and tools need not wait.
 
@@ -53,15 +54,17 @@ class ArtnetNode {
     Levels slots{};
   };
   struct Port {
-    std::vector<Source> sources;  ///< at most two
-    std::optional<Levels> look, held;
+    std::vector<Source> sources;       ///< at most two
+    std::optional<Levels> look, held;  ///< `held` waits for ArtSync
+    std::optional<Time> last_sync;     ///< from its source
   };
 
+  void forget_lost(Time now);
+  static Levels merged(const Port& port);
   void take(Time now, std::uint32_t from, const ArtDmx& dmx);
   [[nodiscard]] std::vector<std::vector<std::uint8_t>> poll_replies() const;
 
   std::map<int, Port> ports_;
-  std::optional<Time> last_sync_;
   std::uint64_t accepted_ = 0;
 };
 

@@ -1,0 +1,200 @@
+#include "sim/world/head_light.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "core/transport/enclosures.h"
+#include "core/transport/evaluator.h"
+
+namespace luxrig::sim {
+namespace {
+
+const PanTiltRange kRange;  // ±270°, ±135°
+constexpr double kRoll_rad = 0.3;
+constexpr std::size_t kFixture = 5;  // any
+
+// A spot of 24° below the ceiling of a cube of 4 m edge of one reflectance; a dozen receivers on floor and walls.
+struct Room {
+  explicit Room(double reflectance) : rays(make_cube(4, reflectance)) {
+    pose = {(Eigen::AngleAxisd(0.4, Vec3::UnitZ()) * Eigen::AngleAxisd(0.2, Vec3::UnitX())).toRotationMatrix(),
+            {0.3, -0.2, 1.7}};
+    for (const double x_m : {-1.2, 0.1, 1.3}) {
+      for (const double y_m : {-1.1, 0.9}) receivers.push_back({{x_m, y_m, -2}, Vec3::UnitZ()});
+      receivers.push_back({{x_m, 2, -0.5}, -Vec3::UnitY()});
+      receivers.push_back({{2, x_m, 0.3}, -Vec3::UnitX()});
+    }
+  }
+
+  [[nodiscard]] TransportMatrix evaluate(const std::vector<PanTilt>& aims, std::uint64_t max_rays) const {
+    std::vector<Emitter> emitters;
+    for (const PanTilt& joints : aims) emitters.push_back({spot, world_from_lamp(pose, joints, kRoll_rad)});
+    EvaluateOptions options;
+    options.wanted_relative_error = 1e-4;  // max_rays says when to stop
+    options.max_rays = max_rays;
+    auto result = make_path_evaluator(rays)->evaluate(receivers, emitters, options);
+    EXPECT_TRUE(result) << (result ? "" : result.error().detail);
+    return result ? *result : TransportMatrix{};
+  }
+
+  [[nodiscard]] std::unique_ptr<const HeadLight> head_light(const std::vector<PanTilt>& aims,
+                                                            Eigen::MatrixXd indirect) const {
+    HeadSamples head;
+    head.fixture = kFixture;
+    head.world_from_mount = pose;
+    head.roll_rad = kRoll_rad;
+    head.intensity = spot;
+    for (const Receiver& receiver : receivers) {
+      head.sees.push_back(!rays.occluded(receiver.position_world_m, receiver.normal_world, pose.translation_m));
+    }
+    for (const PanTilt& joints : aims) head.aims_mount.push_back(beam_mount(joints));
+    head.indirect_lux_per_level = std::move(indirect);
+    return make_head_light(receivers, {head});
+  }
+
+  [[nodiscard]] Eigen::VectorXd zeros() const {
+    return Eigen::VectorXd::Zero(static_cast<Eigen::Index>(receivers.size()));
+  }
+
+  RayScene rays;
+  Pose pose;
+  Intensity spot = make_spot(900, rad_from_deg(24), rad_from_deg(40));
+  std::vector<Receiver> receivers;
+};
+
+std::vector<PanTilt> random_aims(int count, unsigned seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> pan_rad(kRange.pan_min_rad, kRange.pan_max_rad),
+      tilt_rad(kRange.tilt_min_rad, kRange.tilt_max_rad);
+  std::vector<PanTilt> aims;
+  for (int i = 0; i < count; ++i) aims.push_back({pan_rad(random), tilt_rad(random)});
+  return aims;
+}
+
+TEST(HeadLight, DirectPartIsThatOfTheDirectEvaluatorAtAnyAim) {
+  const Room room(0.5);
+  const std::vector<PanTilt> aims = random_aims(500, 3);
+  std::vector<Emitter> emitters;
+  for (const PanTilt& joints : aims) emitters.push_back({room.spot, world_from_lamp(room.pose, joints, kRoll_rad)});
+  const auto direct = make_direct_evaluator(room.rays)->evaluate(room.receivers, emitters, {});
+  ASSERT_TRUE(direct);
+  const auto light = room.head_light({{}}, room.zeros());  // no indirect light at all
+  const double brightest_lx = direct->lux_per_level.maxCoeff();
+  ASSERT_GT(brightest_lx, 100);
+  for (std::size_t a = 0; a < aims.size(); ++a) {
+    Eigen::VectorXd lux = Eigen::VectorXd::Constant(room.zeros().size(), 77);  // what was there before is overwritten
+    light->column(kFixture, aims[a], lux);
+    for (Eigen::Index r = 0; r < lux.size(); ++r) {
+      const double exact_lx = direct->lux_per_level(r, static_cast<Eigen::Index>(a));
+      EXPECT_NEAR(lux[r], exact_lx, 1e-6 * std::max(exact_lx, 1e-3 * brightest_lx)) << "aim " << a << ", row " << r;
+    }
+  }
+}
+
+TEST(HeadLight, AReceiverThatTheHeadCannotSeeHasNoDirectLight) {
+  const Room room(0.5);
+  HeadSamples head;
+  head.world_from_mount = room.pose;
+  head.intensity = make_isotropic(1000);
+  head.sees.assign(room.receivers.size(), true);
+  head.sees[2] = false;
+  head.aims_mount = {beam_mount({})};
+  head.indirect_lux_per_level = room.zeros();
+  Eigen::VectorXd lux = room.zeros();
+  make_head_light(room.receivers, {head})->column(0, {}, lux);
+  EXPECT_EQ(lux[2], 0);
+  EXPECT_GT(lux[1], 0);
+}
+
+TEST(HeadLight, AtAnAimOfItsSetTheIndirectPartIsThatAimsOwn) {
+  const Room room(0.5);
+  const std::vector<PanTilt> set = spread_aims(kRange, 32);
+  const auto count = static_cast<Eigen::Index>(set.size());
+  Eigen::MatrixXd indirect(room.zeros().size(), count);
+  for (Eigen::Index a = 0; a < count; ++a) indirect.col(a).setConstant(10.0 + static_cast<double>(a));
+  const auto light = room.head_light(set, indirect), dark = room.head_light(set, 0 * indirect);
+  Eigen::VectorXd lux = room.zeros(), direct = room.zeros();
+  for (Eigen::Index a = 0; a < count; ++a) {
+    light->column(kFixture, set[static_cast<std::size_t>(a)], lux);
+    dark->column(kFixture, set[static_cast<std::size_t>(a)], direct);
+    EXPECT_LT((lux - direct - indirect.col(a)).cwiseAbs().maxCoeff(), 1e-9) << a;
+  }
+  for (const PanTilt& joints : random_aims(200, 4)) {  // in between: an average, never outside what is known
+    light->column(kFixture, joints, lux);
+    dark->column(kFixture, joints, direct);
+    EXPECT_GE((lux - direct).minCoeff(), 10 - 1e-9);
+    EXPECT_LE((lux - direct).maxCoeff(), 10 + static_cast<double>(count - 1) + 1e-9);
+  }
+}
+
+// The figure that head_light.h states. Interpolation blurs the patch that the beam lights: the darker the walls, the
+// more of the indirect light is that patch's own.
+TEST(HeadLight, InBetweenTheIndirectPartIsAsFarOffAsTheHeaderStates) {
+  const Room room(0.5);
+  const std::vector<PanTilt> set = spread_aims(kRange, 32), aims = random_aims(48, 1);
+  const TransportMatrix known = room.evaluate(set, 1'500'000), fresh = room.evaluate(aims, 1'500'000);
+  ASSERT_EQ(known.emitters(), static_cast<Eigen::Index>(set.size()));
+  ASSERT_EQ(fresh.emitters(), static_cast<Eigen::Index>(aims.size()));
+  const auto light = room.head_light(set, known.lux_per_level - known.direct_lux_per_level);
+  const Eigen::MatrixXd indirect = fresh.lux_per_level - fresh.direct_lux_per_level;
+  Eigen::MatrixXd error(indirect.rows(), indirect.cols());
+  Eigen::VectorXd lux = room.zeros();
+  for (std::size_t a = 0; a < aims.size(); ++a) {
+    light->column(kFixture, aims[a], lux);
+    error.col(static_cast<Eigen::Index>(a)) = lux - fresh.lux_per_level.col(static_cast<Eigen::Index>(a));
+  }
+  const double rms_lx = std::sqrt(error.squaredNorm() / static_cast<double>(error.size()));
+  const double share = rms_lx / indirect.mean(), bias = error.mean() / indirect.mean();
+  RecordProperty("rms_error_over_mean_indirect", std::to_string(share));
+  RecordProperty("bias_over_mean_indirect", std::to_string(bias));
+  EXPECT_LT(share, 0.22);
+  EXPECT_GT(share, 0.05) << "better than stated by far: mend the header";
+  EXPECT_LT(std::abs(bias), 0.05);
+}
+
+TEST(SpreadAims, StayInRangeAndReachAllOfIt) {
+  const PanTiltRange ranges[] = {
+      kRange,       {-kPi, kPi, -kPi / 2, kPi / 2}, {-kPi, kPi, 0, kPi}, {-kPi, kPi, -0.1, 0.1}, {-0.5, 0.8, -0.2, 1.5},
+      {0, 0, 0, 0},
+  };
+  for (const PanTiltRange& range : ranges) {
+    for (const int count : {0, 1, 8, 32, 500}) {
+      const std::vector<PanTilt> aims = spread_aims(range, count);
+      EXPECT_LE(aims.size(), static_cast<std::size_t>(count));
+      for (const PanTilt& joints : aims) {
+        EXPECT_GE(joints.pan_rad, range.pan_min_rad);
+        EXPECT_LE(joints.pan_rad, range.pan_max_rad);
+        EXPECT_GE(joints.tilt_rad, range.tilt_min_rad);
+        EXPECT_LE(joints.tilt_rad, range.tilt_max_rad);
+      }
+    }
+  }
+}
+
+TEST(SpreadAims, LeaveNoGapWiderThanTheirNumberMakes) {
+  const std::vector<PanTilt> aims = spread_aims(kRange, 32);
+  ASSERT_EQ(aims.size(), 32u);
+  double widest_rad = 0;
+  for (const PanTilt& joints : random_aims(2000, 5)) {
+    double nearest_rad = kPi;
+    for (const PanTilt& aim : aims) {
+      const double cosine = beam_mount(joints).dot(beam_mount(aim));
+      nearest_rad = std::min(nearest_rad, std::acos(std::clamp(cosine, -1.0, 1.0)));
+    }
+    widest_rad = std::max(widest_rad, nearest_rad);
+  }
+  // 32 equal caps over the same area, 2π(1 - cos 135°), have a radius of 0.47 rad; a lattice leaves corners.
+  EXPECT_LT(widest_rad, 1.6 * std::acos(1 - (1 - std::cos(0.75 * kPi)) / 32));
+}
+
+TEST(BeamMount, IsMinusZOfTheLampInFrameMount) {
+  for (const PanTilt& joints : random_aims(100, 6)) {
+    const Vec3 beam = -world_from_lamp(Pose{}, joints, kRoll_rad).rotation.col(2);
+    EXPECT_LT((beam - beam_mount(joints)).norm(), 1e-12);
+  }
+}
+
+}  // namespace
+}  // namespace luxrig::sim
