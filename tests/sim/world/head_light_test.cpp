@@ -132,26 +132,25 @@ TEST(HeadLight, AtAnAimOfItsSetTheIndirectPartIsThatAimsOwn) {
 // The figure that head_light.h states. Interpolation blurs the patch that the beam lights: the darker the walls, the
 // more of the indirect light is that patch's own.
 TEST(HeadLight, InBetweenTheIndirectPartIsAsFarOffAsTheHeaderStates) {
-  const Room room(0.5);
   const std::vector<PanTilt> set = spread_aims(kRange, 32), aims = random_aims(48, 1);
-  const TransportMatrix known = room.evaluate(set, 1'500'000), fresh = room.evaluate(aims, 1'500'000);
-  ASSERT_EQ(known.emitters(), static_cast<Eigen::Index>(set.size()));
-  ASSERT_EQ(fresh.emitters(), static_cast<Eigen::Index>(aims.size()));
-  const auto light = room.head_light(set, known.lux_per_level - known.direct_lux_per_level);
-  const Eigen::MatrixXd indirect = fresh.lux_per_level - fresh.direct_lux_per_level;
-  Eigen::MatrixXd error(indirect.rows(), indirect.cols());
-  Eigen::VectorXd lux = room.zeros();
-  for (std::size_t a = 0; a < aims.size(); ++a) {
-    light->column(kFixture, aims[a], lux);
-    error.col(static_cast<Eigen::Index>(a)) = lux - fresh.lux_per_level.col(static_cast<Eigen::Index>(a));
+  for (const auto& [reflectance, stated] : {std::pair{0.3, 0.23}, {0.5, 0.17}, {0.7, 0.10}}) {
+    const Room room(reflectance);
+    const TransportMatrix known = room.evaluate(set, 800'000), fresh = room.evaluate(aims, 800'000);
+    ASSERT_EQ(known.emitters(), static_cast<Eigen::Index>(set.size()));
+    ASSERT_EQ(fresh.emitters(), static_cast<Eigen::Index>(aims.size()));
+    const auto light = room.head_light(set, known.lux_per_level - known.direct_lux_per_level);
+    const double indirect_lx = (fresh.lux_per_level - fresh.direct_lux_per_level).mean();
+    Eigen::MatrixXd error_lx(fresh.receivers(), fresh.emitters());
+    Eigen::VectorXd lux = room.zeros();
+    for (Eigen::Index a = 0; a < fresh.emitters(); ++a) {
+      light->column(kFixture, aims[static_cast<std::size_t>(a)], lux);
+      error_lx.col(a) = lux - fresh.lux_per_level.col(a);
+    }
+    const double rms_lx = std::sqrt(error_lx.squaredNorm() / static_cast<double>(error_lx.size()));
+    // A quarter either way: other aims differ by a tenth, and the evaluations themselves are good to 2 %.
+    EXPECT_NEAR(rms_lx / indirect_lx, stated, 0.25 * stated) << "reflectance " << reflectance;
+    EXPECT_LT(std::abs(error_lx.mean()) / indirect_lx, 0.05) << "reflectance " << reflectance;
   }
-  const double rms_lx = std::sqrt(error.squaredNorm() / static_cast<double>(error.size()));
-  const double share = rms_lx / indirect.mean(), bias = error.mean() / indirect.mean();
-  RecordProperty("rms_error_over_mean_indirect", std::to_string(share));
-  RecordProperty("bias_over_mean_indirect", std::to_string(bias));
-  EXPECT_LT(share, 0.22);
-  EXPECT_GT(share, 0.05) << "better than stated by far: mend the header";
-  EXPECT_LT(std::abs(bias), 0.05);
 }
 
 TEST(SpreadAims, StayInRangeAndReachAllOfIt) {
