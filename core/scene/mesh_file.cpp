@@ -8,9 +8,13 @@
 #include <assimp/Importer.hpp>
 #include <cmath>
 #include <exception>
+#include <limits>
 #include <utility>
 
+#include "core/rig/plain_text.h"
 #include "core/scene/mesh_files_allowed.h"
+#include "core/scene/ply_file.h"
+#include "core/scene/ply_importer.h"
 
 namespace luxrig {
 namespace {
@@ -50,10 +54,18 @@ class MeshReader {
       if (const auto refusal = why_not_opened(file_.path)) return refuse(refusal->what, refusal->mend);
       Assimp::Importer importer;
       AllowedFiles* const files = restrict_to(importer, file_.path);
+      if (extension_of(file_.path) == "ply") {
+        auto ply = read_ply(file_.path);
+        if (!ply) return tl::unexpected(std::move(ply.error()));
+        give_ply(importer, std::move(*ply));
+      }
       // No post-processing yet: assimp's steps follow bad indices out of their arrays.
       const aiScene* source = importer.ReadFile(file_.path.string(), 0);
       if (source != nullptr) {
-        drop_unusable_faces(*source);
+        if (!drop_unusable_faces(*source)) {
+          return refuse("has a face with more than " + std::to_string(kMaxCorners) + " corners",
+                        "export it as triangles");
+        }
         source = importer.ApplyPostProcessing(aiProcess_Triangulate);
       }
       if (source == nullptr || source->mRootNode == nullptr) {
@@ -74,6 +86,7 @@ class MeshReader {
       return refuse("holds no usable triangle (" + std::to_string(scene_.cleaning.total()) + " faults)",
                     "give a mesh with faces");
     }
+    drop_idle_materials();
     note_cleaning();
     return std::move(scene_);
   }
@@ -84,7 +97,7 @@ class MeshReader {
   }
 
   static std::string first_line(std::string text) {
-    return text.substr(0, std::min(text.find('\n'), std::size_t{200}));
+    return made_plain(text.substr(0, std::min(text.find('\n'), std::size_t{200})));
   }
 
   /// Each node with its transform from the root's frame; a list, since a hostile tree is deep.
@@ -120,7 +133,8 @@ class MeshReader {
 
   /// Faces with an index past the vertices (counted), and points and lines, which carry no light. In place:
   /// the importer owns the meshes, and hands out as const what it made as not.
-  void drop_unusable_faces(const aiScene& source) {
+  /// returns  whether each face left has few enough corners to be split
+  bool drop_unusable_faces(const aiScene& source) {
     for (unsigned i = 0; i < source.mNumMeshes; ++i) {
       aiMesh& mesh = *source.mMeshes[i];
       unsigned kept = 0;
@@ -131,6 +145,7 @@ class MeshReader {
                                      [&](unsigned index) { return index >= mesh.mNumVertices; });
         scene_.cleaning.bad_indices += bad ? 1 : 0;
         if (bad || face.mNumIndices < 3) continue;
+        if (face.mNumIndices > kMaxCorners) return false;
         polygons = polygons || face.mNumIndices > 3;
         aiFace& to = mesh.mFaces[kept++];
         std::swap(to.mIndices, face.mIndices);
@@ -139,11 +154,11 @@ class MeshReader {
       mesh.mNumFaces = kept;
       mesh.mPrimitiveTypes = polygons ? aiPrimitiveType_POLYGON : aiPrimitiveType_TRIANGLE;
     }
+    return true;
   }
 
   void read_materials(const aiScene& source, const AllowedFiles& files) {
     const auto stated = files.materials_with_colour();
-    std::size_t too_bright = 0;
     for (unsigned i = 0; i < source.mNumMaterials; ++i) {
       const aiMaterial& from = *source.mMaterials[i];
       Material material;
@@ -157,16 +172,28 @@ class MeshReader {
           !has_base && from.Get(AI_MATKEY_COLOR_DIFFUSE, colour) == AI_SUCCESS && stated.count(material.name) > 0;
       const Vec3 rgb(colour.r, colour.g, colour.b);
       if ((has_base || has_diffuse) && rgb.allFinite()) {
-        too_bright += rgb.maxCoeff() > kMaxReflectance ? 1 : 0;
+        material.too_bright = rgb.maxCoeff() > kMaxReflectance;
         material.reflectance_rgb = rgb.cwiseMax(0.0).cwiseMin(kMaxReflectance);
         material.coloured = true;
       }
       scene_.materials.push_back(std::move(material));
     }
     if (scene_.materials.empty()) scene_.materials.emplace_back();
-    if (too_bright > 0) {
-      scene_.warnings.push_back(std::to_string(too_bright) + " material colours above 0.95 are taken as 0.95");
+  }
+
+  /// assimp adds a material of its own to some files, and a file may hold more than its mesh shows.
+  void drop_idle_materials() {
+    constexpr std::uint32_t kIdle = std::numeric_limits<std::uint32_t>::max();
+    std::vector<std::uint32_t> place(scene_.materials.size(), kIdle);
+    for (const std::uint32_t material : scene_.material_of_triangle) place[material] = 0;
+    std::uint32_t kept = 0;
+    for (std::size_t i = 0; i < place.size(); ++i) {
+      if (place[i] == kIdle) continue;
+      if (kept != i) scene_.materials[kept] = std::move(scene_.materials[i]);
+      place[i] = kept++;
     }
+    scene_.materials.resize(kept);
+    for (std::uint32_t& material : scene_.material_of_triangle) material = place[material];
   }
 
   void read_nodes(const aiScene& source) {

@@ -12,9 +12,9 @@ namespace luxrig {
 namespace {
 
 constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{8} << 30;
-constexpr std::size_t kMaxTriangles = 50'000'000;
-constexpr std::size_t kMaxPlyHeaderBytes = 1u << 16;
 constexpr std::array<const char*, 5> kExtensions = {"obj", "ply", "stl", "gltf", "glb"};
+
+}  // namespace
 
 std::string extension_of(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
@@ -22,34 +22,6 @@ std::string extension_of(const std::filesystem::path& path) {
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
   return extension.empty() ? extension : extension.substr(1);
 }
-
-std::optional<Refusal> why_not_ply(const std::filesystem::path& path, std::uintmax_t bytes) {
-  std::ifstream in(path, std::ios::binary);
-  std::string header(std::min<std::uintmax_t>(bytes, kMaxPlyHeaderBytes), '\0');
-  in.read(header.data(), static_cast<std::streamsize>(header.size()));
-  const std::size_t end = header.find("end_header");
-  if (header.rfind("ply", 0) != 0 || end == std::string::npos) {
-    return Refusal{"has no PLY header", "give a whole PLY file"};
-  }
-  std::istringstream lines(header.substr(0, end));
-  for (std::string line; std::getline(lines, line);) {
-    std::istringstream words(line);
-    std::string key, name;
-    double count = 0;
-    if (!(words >> key) || key != "element") continue;
-    if (!(words >> name >> count) || !(count >= 0))
-      return Refusal{"has a PLY element without a count", "export it again"};
-    if (name == "face" && count > static_cast<double>(kMaxTriangles)) {
-      return Refusal{"has more than 50 million faces", "give a simplified mesh"};
-    }
-    if (count > static_cast<double>(bytes)) {
-      return Refusal{"is cut short: its header promises more elements than it has bytes", "give the whole file"};
-    }
-  }
-  return std::nullopt;
-}
-
-}  // namespace
 
 std::optional<Refusal> why_not_opened(const std::filesystem::path& path) {
   std::error_code error;
@@ -63,7 +35,6 @@ std::optional<Refusal> why_not_opened(const std::filesystem::path& path) {
   const auto bytes = std::filesystem::file_size(path, error);
   if (error || bytes == 0) return Refusal{"is empty", "give the whole file"};
   if (bytes > kMaxFileBytes) return Refusal{"is larger than 8 GiB", "give a simplified mesh"};
-  if (extension == "ply") return why_not_ply(path, bytes);
   return std::nullopt;
 }
 

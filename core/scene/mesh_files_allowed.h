@@ -17,8 +17,10 @@ struct Refusal {
   std::string mend;
 };
 
-/// Why a mesh file is not even opened: absent, not a regular file, of no known kind, or a PLY whose header
-/// promises more than the file can hold or than we take (its reader would set the memory aside first).
+/// In lower case, without its dot.
+[[nodiscard]] std::string extension_of(const std::filesystem::path& path);
+
+/// Why a mesh file is not even opened: absent, not a regular file, of no known kind, empty or huge.
 [[nodiscard]] std::optional<Refusal> why_not_opened(const std::filesystem::path& path);
 
 /// Reads, and only below one folder: a mesh names further files (.mtl, .bin), which must not reach elsewhere.

@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "core/rig/plain_text.h"
+
 namespace luxrig {
 namespace {
 
@@ -62,7 +64,7 @@ class Builder {
     scene_.object_names.emplace_back("scene");
     if (rig_.scene.mesh) {
       if (auto part = load(*rig_.scene.mesh, "scene", rig_.scene.place)) {
-        set_reflectances(*part, std::nullopt);
+        set_reflectances(*part, "scene", std::nullopt);
         parts_.emplace_back(0, std::move(*part));
       }
     }
@@ -82,7 +84,8 @@ class Builder {
     auto mesh = load_mesh(file);
     if (!mesh) {
       for (Problem& one : mesh.error()) {
-        problem(place, name + ": " + file.path.string() + " " + one.what, std::move(one.mend));
+        const std::string line = one.line > 0 ? ", line " + std::to_string(one.line) : "";
+        problem(place, name + ": " + file.path.string() + line + " " + one.what, std::move(one.mend));
       }
       return std::nullopt;
     }
@@ -106,7 +109,7 @@ class Builder {
       problem(object.place, "object '" + object.name + "' is a box without volume", "give three lengths above 0");
     }
     if (!part || !place(object, *part)) return;
-    set_reflectances(*part, object.reflectance_rgb);
+    set_reflectances(*part, "object '" + object.name + "'", object.reflectance_rgb);
     parts_.emplace_back(index, std::move(*part));
   }
 
@@ -131,7 +134,7 @@ class Builder {
     return true;
   }
 
-  void set_reflectances(Part& part, const std::optional<Vec3>& of_object) {
+  void set_reflectances(Part& part, const std::string& whose, const std::optional<Vec3>& of_object) {
     for (Material& material : part.materials) {
       const Vec3* stated = of_object ? &*of_object : nullptr;
       for (std::size_t i = 0; i < rig_.scene.reflectances.size(); ++i) {
@@ -145,7 +148,13 @@ class Builder {
       } else if (!material.coloured) {
         stated = &rig_.scene.default_reflectance_rgb;
       }
-      if (stated == nullptr) continue;
+      if (stated == nullptr) {  // what the file says counts
+        if (material.too_bright) {
+          scene_.warnings.push_back(whose + ": material " + in_quotes(material.name) +
+                                    ": its colour above 0.95 is taken as 0.95");
+        }
+        continue;
+      }
       material.reflectance_rgb = stated->cwiseMax(0.0).cwiseMin(kMaxReflectance);
       if (stated->maxCoeff() > kMaxReflectance) {
         scene_.warnings.push_back("material '" + material.name + "': reflectance above 0.95 is taken as 0.95");

@@ -230,6 +230,34 @@ TEST_F(MeshFiles, RefusesWhatIsNoMeshWithAProblem) {
   EXPECT_FALSE(load_mesh({folder_, 1, UpAxis::z}).has_value());
 }
 
+TEST_F(MeshFiles, KeepsOnlyTheMaterialsThatATriangleUses) {
+  write("paint.mtl",
+        "newmtl idle\nKd 1 1 1\nnewmtl oak\nKd 0.4 0.3 0.2\nnewmtl thin\nKd 1 1 1\nnewmtl snow\nKd 1 1 1\n");
+  const auto scene = load("a.obj",
+                          "mtllib paint.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nusemtl thin\nf 1 2 4\n"
+                          "usemtl snow\nf 1 2 3\nusemtl oak\nf 1 3 2\nusemtl snow\nf 2 3 4\n");
+  ASSERT_TRUE(scene.has_value()) << scene.error().front().text();
+  ASSERT_EQ(scene->materials.size(), 2u);  // idle has no face, and that of thin no area
+  ASSERT_EQ(scene->triangles.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Material& material = scene->materials[scene->material_of_triangle[i]];
+    const auto& index = scene->triangles[i];
+    // The one oak face is the one that looks down.
+    const Vec3f a = scene->vertices_m[index[0]];
+    const float up = (scene->vertices_m[index[1]] - a).cross(scene->vertices_m[index[2]] - a).z();
+    EXPECT_EQ(material.name, up < 0 ? "oak" : "snow");
+    EXPECT_EQ(material.too_bright, up > 0);
+  }
+}
+
+TEST_F(MeshFiles, DropsTheMaterialThatGltfReadersAdd) {
+  write("one.bin", triangle_bytes());
+  const auto scene = load("a.gltf", triangle_gltf(R"({"mesh":0})", "one.bin"));
+  ASSERT_TRUE(scene.has_value()) << scene.error().front().text();
+  ASSERT_EQ(scene->materials.size(), 1u);
+  EXPECT_EQ(scene->materials.front().name, "plaster");
+}
+
 TEST_F(MeshFiles, LoadsAMillionTrianglesInSeconds) {
   const auto path = write("million.ply", sheet_ply(708));
   const auto began = std::chrono::steady_clock::now();
@@ -241,6 +269,20 @@ TEST_F(MeshFiles, LoadsAMillionTrianglesInSeconds) {
   RecordProperty("seconds", std::to_string(took.count()));
   std::printf("%zu triangles in %.2f s\n", scene->triangles.size(), took.count());
   EXPECT_LT(took.count(), 60);  // 2 s on two old cores; the sanitizers take many times that
+}
+
+TEST_F(MeshFiles, RefusesAFaceThatTakesTooLongToSplit) {
+  std::string text;
+  std::string face = "f";
+  for (int i = 0; i < 1001; ++i) {
+    const double turn_rad = 2 * 3.14159265358979 * i / 1001;
+    text += "v " + std::to_string(std::cos(turn_rad)) + " " + std::to_string(std::sin(turn_rad)) + " 0\n";
+    face += " " + std::to_string(i + 1);
+  }
+  EXPECT_FALSE(load("many.obj", text + face + "\n").has_value());
+  const auto split = load("fewer.obj", text + face.substr(0, face.rfind(' ')) + "\n");
+  ASSERT_TRUE(split.has_value()) << split.error().front().text();
+  EXPECT_EQ(split->triangles.size() + split->cleaning.degenerate_triangles, 998u);
 }
 
 TEST_F(MeshFiles, LoadsBothFormsOfStl) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 
 #include "core/scene/ray_scene.h"
@@ -146,6 +147,26 @@ TEST(SceneBuilder, FallsBackToTheDefaultAndClampsWhatNoPaintReaches) {
   EXPECT_EQ(material_named(*scene, "floor")->reflectance_rgb, Vec3::Constant(0.33));
   EXPECT_EQ(material_named(*scene, "wall")->reflectance_rgb, Vec3::Constant(0.95));
   EXPECT_TRUE(warns_of(*scene, "material 'wall': reflectance above 0.95"));
+}
+
+TEST(SceneBuilder, NamesTheMaterialWhoseColourTheFileStatesTooBrightUnlessTheRigStatesIt) {
+  std::string name = (std::filesystem::temp_directory_path() / "luxrig-builder-XXXXXX").string();
+  const std::filesystem::path folder = mkdtemp(name.data());
+  std::ofstream(folder / "p.mtl") << "newmtl snow\nKd 1 1 1\nnewmtl idle\nKd 1 1 1\n";
+  std::ofstream(folder / "p.obj") << "mtllib p.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 1\nusemtl snow\nf 1 2 3\n";
+  Rig rig;
+  SceneObject object = box_object("bust", {1, 1, 1}, {0, 0, 0});
+  object.mesh = MeshFile{folder / "p.obj", 1, UpAxis::z};
+  rig.scene.objects = {object};
+  const auto scene = build_scene(rig);
+  rig.scene.objects[0].reflectance_rgb = Vec3::Constant(0.7);
+  const auto stated = build_scene(rig);
+  std::filesystem::remove_all(folder);
+  ASSERT_TRUE(scene.has_value() && stated.has_value());
+  EXPECT_EQ(scene->warnings,
+            std::vector<std::string>{"object 'bust': material \"snow\": its colour above 0.95 is taken as 0.95"});
+  EXPECT_EQ(stated->warnings, std::vector<std::string>{});
+  EXPECT_EQ(scene->materials.size(), 1u);
 }
 
 TEST(SceneBuilder, NamesTheRigFileAndThePlaceOfEveryProblem) {
