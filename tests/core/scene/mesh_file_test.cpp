@@ -235,7 +235,7 @@ TEST_F(MeshFiles, KeepsOnlyTheMaterialsThatATriangleUses) {
         "newmtl idle\nKd 1 1 1\nnewmtl oak\nKd 0.4 0.3 0.2\nnewmtl thin\nKd 1 1 1\nnewmtl snow\nKd 1 1 1\n");
   const auto scene = load("a.obj",
                           "mtllib paint.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nusemtl thin\nf 1 2 4\n"
-                          "usemtl snow\nf 1 2 3\nusemtl oak\nf 1 3 2\nusemtl snow\nf 2 3 4\n");
+                          "usemtl snow\nf 1 2 3\nusemtl oak\nf 1 3 2\nusemtl snow\nf 2 4 3\n");
   ASSERT_TRUE(scene.has_value()) << scene.error().front().text();
   ASSERT_EQ(scene->materials.size(), 2u);  // idle has no face, and that of thin no area
   ASSERT_EQ(scene->triangles.size(), 3u);
