@@ -72,7 +72,9 @@ std::vector<Problem> check_options(const Rig& rig, const Bus& bus, std::span<con
   std::vector<std::string_view> known;
   for (const OptionDoc& doc : docs) known.push_back(doc.key);
 
-  for (const auto& [key, option] : bus.options) {
+  for (const auto& entry : bus.options) {
+    const std::string& key = entry.first;
+    const Option& option = entry.second;
     const auto doc = std::find_if(docs.begin(), docs.end(), [&](const OptionDoc& d) { return d.key == key; });
     if (doc == docs.end()) {
       problems.push_back(problem_at(rig, bus, key, "bus \"" + bus.name + "\" has an unknown option \"" + key + "\"",

@@ -86,8 +86,10 @@ export async function blackoutGoesBothWays(page, url) {
 
 /** Nothing sticks out sideways at this window's width. */
 export async function fitsItsWidth(page) {
-  const [content, window_] = await page.evaluate(() => [document.documentElement.scrollWidth, window.innerWidth]);
-  assert.ok(content <= window_, `content ${content} px in a window of ${window_} px`);
+  await eventually('the content is as wide as its window', async () => {
+    const [content, window_] = await page.evaluate(() => [document.documentElement.scrollWidth, window.innerWidth]);
+    return content <= window_ || `content ${content} px in a window of ${window_} px`;
+  });
 }
 
 export async function allChecks(page, url, { blackout }) {

@@ -92,7 +92,7 @@ export class PointsTable {
     setText(cell(1), format.lux(point.goal_lux));
     setText(cell(2), format.withError(point.predicted_lux, point.standard_error_lux));
     setText(cell(3).children[0]!, format.lux(point.measured_lux));
-    setText(cell(3).children[1]!, point.measured_lux === undefined ? '' : `${format.age(point.measured_age_s)} ago`);
+    setText(cell(3).children[1]!, point.measured_lux === undefined ? '' : ` ${format.age(point.measured_age_s)} ago`);
     setText(cell(4).children[0]!, format.signedPercent(judged.error));
     setText(cell(4).children[1]!, judged.error === undefined || judged.measured ? '' : 'model');
     setText(cell(5), point.max_lux === undefined ? format.UNKNOWN : `≤ ${format.lux(point.max_lux)}`);
