@@ -165,6 +165,11 @@ Result<int> HttpApi::start(int port) {
               {}});
   }
   state_->thread = std::jthread([this] { state_->server.listen_after_bind(); });
+  // stop() does nothing to a server that does not run yet, and it would then run for ever.
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+  while (!server.is_running() && std::chrono::steady_clock::now() < end) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
   return bound;
 }
 

@@ -137,6 +137,12 @@ int run_rig(const RunArguments& arguments) {
     if (const auto applied = daemon.apply(*plan); !applied) return report(applied.error());
   }
 
+  if (!realtime_allowed()) {
+    say.say(
+        "warning  real-time scheduling is refused: output may be some ms late under load; allow it with "
+        "CAP_SYS_NICE or an rtprio limit");
+  }
+
   // 4. Light, measure, correct, hold.
   double converged_s = 0;
   bool shown = false;
@@ -166,6 +172,7 @@ int run_rig(const RunArguments& arguments) {
   tick_until(daemon, [&](Time at) { return daemon.status().phase == Phase::safe || at - fade_start > most; });
   const auto after = arguments.once ? truth() : std::nullopt;
   daemon.stop();
+  say.say(daemon.status().phase == Phase::safe ? "ended in the safe look" : "ended before the safe look was reached");
   if (!arguments.once) return kExitOk;
 
   // The values are those of the held look; the peaks and the limits are those of the whole run.

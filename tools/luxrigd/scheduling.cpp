@@ -7,12 +7,20 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <thread>
+
 namespace luxrig {
 
 bool make_realtime(int priority) {
   sched_param parameter{};
   parameter.sched_priority = priority;
   return pthread_setschedparam(pthread_self(), SCHED_FIFO, &parameter) == 0;
+}
+
+bool realtime_allowed() {
+  bool allowed = false;
+  std::thread([&] { allowed = make_realtime(1); }).join();
+  return allowed;
 }
 
 bool lock_memory() { return mlockall(MCL_CURRENT | MCL_FUTURE) == 0; }

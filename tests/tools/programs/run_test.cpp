@@ -1,4 +1,6 @@
 // `luxrig run` as a user starts it: on a simulated rig, over the real protocols, in real time.
+#include <cmath>
+
 #include "tests/tools/programs/live_rig.h"
 
 namespace luxrig::testing {
@@ -24,6 +26,38 @@ TEST(Run, OnceReachesTheGoalsWritesTheTableAndEndsCleanly) {
     }
   }
   EXPECT_TRUE(metered);
+}
+
+TEST(Run, GalleryAndStudioReachTheirGoalsWithinTheirLimits) {
+  for (const char* name : {"gallery", "studio"}) {
+    const Folder folder;
+    const auto table = folder / "table.json";
+    const Ran ran = luxrig::testing::run({program("luxrig"), "run", source(std::string("rigs/") + name), "--sim",
+                                          "--once", "--sim-seed", "11", "--port", "0", "--json", table.string()},
+                                         120s);
+    ASSERT_EQ(ran.code, 0) << ran.output;
+    const json out = json::parse(text_of(table), nullptr, false);
+    EXPECT_EQ(out["limit_violations_in_truth"], 0) << name;
+    for (const json& point : out["points"]) {
+      if (!point.contains("measured_lux")) continue;
+      EXPECT_TRUE(std::abs(point["error"].get<double>()) <= 0.03 || point["why"] != "") << point;
+      if (point.contains("max_lux")) {
+        EXPECT_LE(point["truth_max_lux"].get<double>(), point["max_lux"].get<double>());
+      }
+    }
+  }
+}
+
+TEST(Run, PageShowsTheRunningRig) {
+  LiveRig rig(source("tests/rigs/room"));
+  ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
+  const std::string url = "http://127.0.0.1:" + std::to_string(rig.port());
+  std::filesystem::create_directories(program("../screenshots"));
+  const Ran page = luxrig::testing::run({"/usr/bin/env", "node", source("tests/web/page_test.mjs"), "--url", url,
+                                         "--screenshot", program("../screenshots/daemon.png")},
+                                        90s);
+  EXPECT_EQ(page.code, 0) << page.output;
+  EXPECT_GT(std::filesystem::file_size(program("../screenshots/daemon.png")), 10'000u);
 }
 
 TEST(Run, KilledSimulatorHoldsThenSafeThenResumesByItself) {

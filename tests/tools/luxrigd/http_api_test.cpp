@@ -1,0 +1,119 @@
+// The HTTP API against hostile and honest clients, over a real socket.
+#include "tools/luxrigd/http_api.h"
+
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <string>
+#include <thread>
+
+namespace luxrig {
+namespace {
+
+/// Sends raw bytes, returns the answer's first line and body.
+std::string ask(int port, const std::string& request, bool wait_for_end = true) {
+  const int client = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in to{};
+  to.sin_family = AF_INET;
+  to.sin_port = htons(static_cast<std::uint16_t>(port));
+  to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  std::string answer;
+  if (::connect(client, reinterpret_cast<sockaddr*>(&to), sizeof to) == 0) {
+    (void)::send(client, request.data(), request.size(), MSG_NOSIGNAL);
+    char buffer[4096];
+    ssize_t n = 0;
+    while ((n = ::recv(client, buffer, sizeof buffer, 0)) > 0) {
+      answer.append(buffer, static_cast<std::size_t>(n));
+      if (!wait_for_end) break;
+    }
+  }
+  ::close(client);
+  return answer;
+}
+
+std::string post(const std::string& route, const std::string& body, const std::string& headers) {
+  return "POST " + route + " HTTP/1.1\r\nConnection: close\r\n" + headers +
+         "Content-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body;
+}
+
+constexpr const char* kJson = "Host: 127.0.0.1\r\nContent-Type: application/json\r\n";
+
+class HttpApiTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    HttpHandlers handlers;
+    handlers.status = [] { return std::string("{\"phase\":\"holding\"}"); };
+    handlers.room_json = "{}";
+    handlers.blackout = [this](bool on) -> Result<void> {
+      blackouts += on ? 1 : 100;
+      return {};
+    };
+    handlers.apply = [this](const std::string& plan) -> Checked<void> {
+      ++applied;
+      if (plan == "{}") return {};
+      return tl::unexpected(std::vector<Problem>{{"plan", 1, 2, "is not a plan", "send one"}});
+    };
+    api = std::make_unique<HttpApi>(std::move(handlers), "/nonexistent");
+    const auto bound = api->start(0);
+    ASSERT_TRUE(bound) << bound.error().detail;
+    port = *bound;
+  }
+  std::unique_ptr<HttpApi> api;
+  int port = 0;
+  std::atomic<int> blackouts{0}, applied{0};
+};
+
+TEST_F(HttpApiTest, AnswersStatusAndBlackout) {
+  EXPECT_NE(ask(port, "GET /api/status HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n").find("holding"),
+            std::string::npos);
+  EXPECT_NE(ask(port, post("/api/blackout", "{\"on\":true}", kJson)).find(" 200 "), std::string::npos);
+  EXPECT_EQ(blackouts, 1);
+}
+
+TEST_F(HttpApiTest, RefusesOtherHostsOriginsAndContentTypes) {
+  const std::string on = "{\"on\":false}";
+  EXPECT_NE(ask(port, "GET /api/status HTTP/1.1\r\nHost: evil.example\r\nConnection: close\r\n\r\n").find(" 403 "),
+            std::string::npos);
+  EXPECT_NE(ask(port, post("/api/blackout", on, std::string(kJson) + "Origin: http://evil.example\r\n")).find(" 403 "),
+            std::string::npos);
+  EXPECT_NE(ask(port, post("/api/blackout", on, std::string(kJson) + "Origin: http://127.0.0.1.evil.example\r\n"))
+                .find(" 403 "),
+            std::string::npos);
+  EXPECT_NE(ask(port, post("/api/blackout", on, "Host: 127.0.0.1\r\nContent-Type: text/plain\r\n")).find(" 415 "),
+            std::string::npos);
+  EXPECT_EQ(blackouts, 0);
+}
+
+TEST_F(HttpApiTest, RefusesBadBodiesWithAReason) {
+  for (const char* body : {"", "{", "[]", "{\"on\":1}", "{\"on\":\"yes\"}", "null"}) {
+    EXPECT_NE(ask(port, post("/api/blackout", body, kJson)).find(" 400 "), std::string::npos) << body;
+  }
+  EXPECT_EQ(blackouts, 0);
+  const std::string answer = ask(port, post("/api/apply", "nonsense", kJson));
+  EXPECT_NE(answer.find(" 400 "), std::string::npos);
+  EXPECT_NE(answer.find("plan:1:2: is not a plan: send one"), std::string::npos) << answer;
+}
+
+TEST_F(HttpApiTest, StreamsEventsAndStopsWhileAClientListens) {
+  const std::string first =
+      ask(port, "GET /api/events HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n", false);
+  EXPECT_NE(first.find("200 OK"), std::string::npos);
+  std::thread listener(
+      [&] { (void)ask(port, "GET /api/events HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n"); });
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  api->stop();
+  listener.join();
+}
+
+TEST_F(HttpApiTest, SecondServerOnTheSamePortIsRefused) {
+  HttpApi second({}, "/nonexistent");
+  const auto bound = second.start(port);
+  ASSERT_FALSE(bound);
+  EXPECT_NE(bound.error().detail.find(std::to_string(port)), std::string::npos);
+}
+
+}  // namespace
+}  // namespace luxrig
