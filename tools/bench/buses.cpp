@@ -45,8 +45,7 @@ class Sink {
     thread_ = std::jthread([this](const std::stop_token& stop) { receive(stop); });
   }
   ~Sink() {
-    thread_.request_stop();
-    thread_.join();
+    (void)finish();
     ::close(socket_);
   }
   [[nodiscard]] bool ok() const { return ok_; }
