@@ -19,17 +19,6 @@ int no_daemon(int port) {
   return kExitFailed;
 }
 
-int post(const ClientArguments& arguments, const char* route, const std::string& body, const std::string& done) {
-  const auto answer = http_post_json("127.0.0.1", arguments.port, route, body);
-  if (!answer) return no_daemon(arguments.port);
-  if (answer->status != 200) {
-    fmt::print(stderr, "luxrig: refused by the daemon: {}\n", answer->body);
-    return answer->status == 400 ? kExitBadInput : kExitFailed;
-  }
-  fmt::print("{}\n", arguments.json ? answer->body : done);
-  return kExitOk;
-}
-
 /// A number of an object of the status, or nothing.
 std::optional<double> number(const json& object, const char* key) {
   const auto it = object.find(key);
@@ -44,6 +33,19 @@ std::string shown(std::optional<double> value, const char* format) {
   return value ? fmt::format(fmt::runtime(format), *value) : "-";
 }
 json list(const json& object, const char* key) { return object.value(key, json::array()); }
+
+int post(const ClientArguments& arguments, const char* route, const std::string& body, const std::string& done) {
+  const auto answer = http_post_json("127.0.0.1", arguments.port, route, body);
+  if (!answer) return no_daemon(arguments.port);
+  if (answer->status != 200) {
+    const json body_json = json::parse(answer->body, nullptr, false);
+    const std::string reason = body_json.is_object() ? text(body_json, "error") : answer->body;
+    fmt::print(stderr, "luxrig: refused by the daemon: {}\n", reason);
+    return answer->status == 400 ? kExitBadInput : kExitFailed;
+  }
+  fmt::print("{}\n", arguments.json ? answer->body : done);
+  return kExitOk;
+}
 
 void print_status(const json& status) {
   fmt::print("{}: {}{}: {}\n", text(status, "rig"), text(status, "phase"),
