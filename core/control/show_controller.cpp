@@ -18,6 +18,9 @@ constexpr Duration kSampleEvery = std::chrono::seconds(1);
 constexpr int kDriftSamples = 3;
 constexpr Duration kDriftCorrectionEvery = std::chrono::seconds(10);
 // Level changes smaller than half a step of a 12-bit dimmer are not worth a fade.
+/// most_lux_at_point holds 1 % for a meter's noise on top of its tolerance, and corrections aim at the limit itself: half
+/// of that may be used up before a reading counts, or noise alone would start one correction after another.
+constexpr double kBreachSlack = 0.005;
 constexpr double kSmallestChange = 1e-4;
 
 }  // namespace
@@ -185,7 +188,7 @@ void ShowController::State::take_sample(Time now) {
   for (std::size_t p = 0; p < rig.points.size(); ++p) {
     if (!rig.points[p].max_lx || !estimator.confirmed(p)) continue;
     const double most_lx = estimator.most_lux_at_point(p, program.to_level, now);
-    if (most_lx <= *rig.points[p].max_lx * (1 + 1e-9)) continue;
+    if (most_lx <= *rig.points[p].max_lx * (1 + kBreachSlack)) continue;
     const auto known =
         std::find_if(breaches.begin(), breaches.end(), [&](const LimitBreach& breach) { return breach.point == p; });
     present.push_back({p, most_lx, known == breaches.end() ? now : known->since});

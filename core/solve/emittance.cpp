@@ -111,8 +111,8 @@ Scaled scaled(const EmittanceProblem& p) {
   }
   LimitedLeastSquares& q = s.least_squares;
   q.E.resize(rows + lights, lights);
-  q.E.topRows(rows) = s.objective;
-  q.E.bottomRows(lights) = kTie * MatrixXd::Identity(lights, lights);
+  if (rows > 0) q.E.topRows(rows) = s.objective;
+  if (lights > 0) q.E.bottomRows(lights) = kTie * MatrixXd::Identity(lights, lights);
   q.f.resize(rows + lights);
   q.f.head(rows) = s.target;
   q.f.tail(lights) = kTie * p.near_level.cwiseProduct(s.unit);
