@@ -86,7 +86,8 @@ TEST(Show, FollowsALampThatAgesByAnotherCorrection) {
   };
   loop.run(660);
   EXPECT_GT(loop.status().round, rounds);
-  EXPECT_LE(loop.status().round, rounds + 6) << "one for each tolerance's worth of drift, with as many to spare";
+  // 6 % are three tolerances; each of the six meters may cross each of them at a time of its own.
+  EXPECT_LE(loop.status().round, rounds + 3 * 6) << loop.describe();
   EXPECT_TRUE(loop.run_until(Phase::holding, 10)) << loop.describe();
   EXPECT_LE(loop.worst_measured_error(), 0.03) << loop.describe();
   EXPECT_LE(loop.largest_step, kLargestStep);
