@@ -140,4 +140,17 @@ Intensity scaled_to_flux(Intensity of, double flux_lm) {
   return std::make_shared<Scaled>(std::move(of), flux_lm);
 }
 
+DirectionSample IntensityDistribution::sample(double u, double v) const {
+  const double cos_half_cone = std::cos(0.5 * emission_cone_rad());
+  const double z = 1 - v * (1 - cos_half_cone);
+  const double radius = std::sqrt(std::max(0.0, 1 - z * z));
+  const double angle = 2 * kPi * u;
+  return {{radius * std::cos(angle), radius * std::sin(angle), -z}, 1 / (2 * kPi * (1 - cos_half_cone))};
+}
+
+double IntensityDistribution::density_per_sr(const Vec3& direction_lamp) const {
+  const double cos_half_cone = std::cos(0.5 * emission_cone_rad());
+  return -direction_lamp.z() >= cos_half_cone ? 1 / (2 * kPi * (1 - cos_half_cone)) : 0;
+}
+
 }  // namespace luxrig

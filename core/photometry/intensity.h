@@ -11,6 +11,12 @@
 
 namespace luxrig {
 
+/// A direction drawn at random, with the density [1/sr] with which it is drawn.
+struct DirectionSample {
+  Vec3 direction = Vec3::UnitZ();  ///< unit
+  double density_per_sr = 0;       ///< 0: no direction could be drawn
+};
+
 class IntensityDistribution {
  public:
   virtual ~IntensityDistribution() = default;
@@ -29,6 +35,14 @@ class IntensityDistribution {
   /// Full angle [rad] of the cone about -Z outside which nothing is emitted (2π when it emits upwards
   /// too). Lets a caller skip receivers that can get nothing.
   [[nodiscard]] virtual double emission_cone_rad() const = 0;
+
+  /// Direction in frame lamp for a point of the unit square, drawn with density_per_sr(). Nearby points give nearby
+  /// directions, so that the square's strata survive. The base class draws evenly from the emission cone.
+  [[nodiscard]] virtual DirectionSample sample(double u, double v) const;
+
+  /// Density [1/sr] with which sample() draws a direction: positive wherever the intensity is, and as nearly
+  /// proportional to it as can be had cheaply.
+  [[nodiscard]] virtual double density_per_sr(const Vec3& direction_lamp) const;
 };
 
 using Intensity = std::shared_ptr<const IntensityDistribution>;  // one file serves many fixtures

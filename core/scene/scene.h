@@ -13,6 +13,11 @@ namespace luxrig {
 struct Material {
   std::string name;
   Vec3 reflectance_rgb = Vec3::Constant(0.5);  ///< diffuse, linear Rec. 709, each 0…0.95
+  /// Gloss: a GGX microfacet coat over the diffuse body, which gets what the coat lets through. Its reflectance at
+  /// normal incidence, 0…0.95 (0: matt; varnish and polished floors 0.04; metals more), and the roughness
+  /// α = roughness², 0.05…1.
+  double specular_reflectance = 0;
+  double roughness = 0.3;
   bool coloured = false;                       ///< reflectance_rgb was stated by the mesh file or the rig, not assumed
   bool too_bright = false;                     ///< the mesh file stated more than 0.95, which was taken as 0.95
 

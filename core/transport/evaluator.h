@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "core/photometry/intensity.h"
+#include "core/photometry/luminous_shape.h"
+#include "core/photometry/sky_luminance.h"
 #include "core/result.h"
 #include "core/scene/ray_scene.h"
 #include "core/stop.h"
@@ -24,10 +26,14 @@ struct Receiver {
   Vec3 normal_world;  ///< unit
 };
 
-/// A luminaire as hung and aimed.
+/// A luminaire as hung and aimed, or a sky.
 struct Emitter {
   Intensity intensity;
   Pose world_from_lamp;
+  LuminousShape shape{};
+  /// Colour of its light in linear Rec. 709, with a luminance of 1: 0.2126 r + 0.7152 g + 0.0722 b = 1.
+  Vec3 colour_rgb = Vec3::Ones();
+  Sky sky{};  ///< when set, this is a sky: intensity, pose and shape are not looked at
 };
 
 struct EvaluateOptions {
@@ -38,6 +44,7 @@ struct EvaluateOptions {
   int threads = 0;                         ///< 0 = one per core; the result does not depend on it
   std::uint64_t max_rays = 2'000'000'000;  ///< gives up there and reports the error it has
   std::vector<double> levels;              ///< per emitter, ≥ 0; empty = all 1
+  bool colour = false;                     ///< also fill TransportMatrix::rgb_per_level
   Watch watch;
 };
 
@@ -48,6 +55,9 @@ struct TransportMatrix {
   /// Independent unbiased estimates of lux_per_level whose mean it is; empty when it is exact. They carry the
   /// correlations between columns, so that the error of T c is right for every c.
   std::vector<Eigen::MatrixXd> replicates;
+  /// With EvaluateOptions::colour, lux_per_level by linear Rec. 709 primary: the three, weighted with 0.2126, 0.7152
+  /// and 0.0722, add up to it. Else empty.
+  std::vector<Eigen::MatrixXd> rgb_per_level;
   double relative_error = 0;  ///< reached, at the options' levels; largest over receivers
   std::uint64_t rays = 0;
 
