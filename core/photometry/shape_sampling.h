@@ -15,9 +15,10 @@ struct ShapeSample {
   double density_per_sr = 0;       ///< 0: no place of the shape can be seen from there
 };
 
-/// A place on the shape as seen from a point, drawn over the solid angle that the shape fills there (evenly where that
-/// can be had: sphere, rectangle and disk exactly; cylinder over its visible surface). A point that lies in or on the
-/// shape gets density 0. Continuous in (u, v), so that strata survive. Not for Kind::point.
+/// A place on the shape as seen from a point, drawn over the solid angle that the shape fills there: evenly for sphere
+/// and rectangle, evenly to a third for a disk and roughly for a cylinder, always with the density that is stated. A
+/// point that lies in the shape, on it or in its plane gets density 0. Continuous in (u, v), so that strata survive (a
+/// cylinder's wall and its end are two pieces). Not for Kind::point.
 [[nodiscard]] ShapeSample sample_seen_from(const LuminousShape& shape, const Vec3& point_lamp_m, double u, double v);
 
 /// Density with which sample_seen_from() draws a direction; 0 when the direction misses the shape.
