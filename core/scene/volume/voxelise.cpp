@@ -71,9 +71,9 @@ class Rasteriser {
       const Vec3& p = corners[i];
       const Vec3 along = turn * (corners[(i + 1) % 3] - p);
       const double na = -along[b], nb = along[a];
-      edges[i] = {na, nb,
-                  -(na * p[a] + nb * p[b]) + std::max(na, 0.0) + std::max(nb, 0.0) +
-                      kSlack * (std::abs(na) + std::abs(nb))};
+      edges[i] = {
+          na, nb,
+          -(na * p[a] + nb * p[b]) + std::max(na, 0.0) + std::max(nb, 0.0) + kSlack * (std::abs(na) + std::abs(nb))};
     }
     const double slope_a = -normal[a] / normal[depth], slope_b = -normal[b] / normal[depth];
     const double half = 0.5 * (std::abs(slope_a) + std::abs(slope_b));
@@ -111,8 +111,7 @@ BitVolume voxelise(const Scene& scene, const VoxelGrid& grid) {
   Rasteriser rasteriser(volume);
   for (const auto& triangle : scene.triangles) {
     Corners corners;
-    for (std::size_t i = 0; i < 3; ++i)
-      corners[i] = grid.grid_from_scene(scene.vertices_m[triangle[i]].cast<double>());
+    for (std::size_t i = 0; i < 3; ++i) corners[i] = grid.grid_from_scene(scene.vertices_m[triangle[i]].cast<double>());
     rasteriser.add(corners);
   }
   return volume;

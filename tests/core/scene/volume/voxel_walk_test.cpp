@@ -27,10 +27,12 @@ struct Segments {
   Eigen::Vector3i size{13, 9, 11};
   std::pair<Vec3, Vec3> next(int i) {
     std::uniform_real_distribution<double> unit(-0.4, 1.4);
-    const auto any = [&]() -> Vec3 { return Vec3(unit(random), unit(random), unit(random)).cwiseProduct(size.cast<double>()); };
+    const auto any = [&]() -> Vec3 {
+      return Vec3(unit(random), unit(random), unit(random)).cwiseProduct(size.cast<double>());
+    };
     Vec3 from = any(), to = any();
     if (i % 4 == 1) to[i % 3] = from[i % 3];                                // parallel to a plane of the grid
-    if (i % 8 == 2) to = from + Vec3::Unit(i % 3) * (i % 2 ? 9.0 : -9.0);  // along an axis
+    if (i % 8 == 2) to = from + Vec3::Unit(i % 3) * (i % 2 ? 9.0 : -9.0);   // along an axis
     if (i % 16 == 3) from = from.array().round(), to = to.array().round();  // through corners of voxels
     return {from, to};
   }

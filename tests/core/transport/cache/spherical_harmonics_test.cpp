@@ -7,7 +7,7 @@
 namespace luxrig {
 namespace {
 
-/// Mean over directions of a product grid that integrates polynomials of this degree exactly, times 4π.
+/// Mean over a grid of directions, times 4π: exact around, the midpoint rule in height.
 template <class F>
 auto integral_over_sphere(const F& f) {
   constexpr int kLevels = 600, kTurns = 64;
@@ -28,15 +28,15 @@ Vec3 any_direction(std::mt19937& random) {
 TEST(SphericalHarmonics, AreOrthonormal) {
   using Gram = Eigen::Matrix<double, 9, 9>;
   const Gram gram = integral_over_sphere([](const Vec3& d) -> Gram { return harmonics(d) * harmonics(d).transpose(); });
-  EXPECT_LT((gram - Gram::Identity()).cwiseAbs().maxCoeff(), 1e-5);
+  EXPECT_LT((gram - Gram::Identity()).cwiseAbs().maxCoeff(), 3e-5);
 }
 
 TEST(SphericalHarmonics, CosineLobeIsTheProjectionOfTheClampedCosine) {
   std::mt19937 random(1);
   for (int i = 0; i < 20; ++i) {
     const Vec3 axis = any_direction(random);
-    const Harmonics projected = integral_over_sphere(
-        [&](const Vec3& d) -> Harmonics { return harmonics(d) * std::max(0.0, d.dot(axis)); });
+    const Harmonics projected =
+        integral_over_sphere([&](const Vec3& d) -> Harmonics { return harmonics(d) * std::max(0.0, d.dot(axis)); });
     EXPECT_LT((projected - cosine_lobe(axis)).cwiseAbs().maxCoeff(), 2e-3);
     // 99.2 % of the lobe's energy, 2π/3, is in three orders.
     EXPECT_NEAR(cosine_lobe(axis).squaredNorm() / (2 * kPi / 3), 0.9922, 1e-4);
@@ -57,8 +57,8 @@ TEST(SphericalHarmonics, IlluminanceOfAnyRadianceOfThreeOrdersIsThatOfNumericInt
     Harmonics radiance;
     for (int k = 0; k < 9; ++k) radiance[k] = normal(random);
     const Vec3 axis = any_direction(random);
-    const double lux = integral_over_sphere(
-        [&](const Vec3& d) { return radiance.dot(harmonics(d)) * std::max(0.0, d.dot(axis)); });
+    const double lux =
+        integral_over_sphere([&](const Vec3& d) { return radiance.dot(harmonics(d)) * std::max(0.0, d.dot(axis)); });
     EXPECT_NEAR(cosine_lobe(axis).dot(radiance), lux, 1e-2);
   }
 }
