@@ -296,7 +296,8 @@ class Parser {
   }
 
   bool check_flux() {
-    const double flux_lm = make_intensity(file_)->flux_lm();
+    const double largest_cd = *std::max_element(file_.candela.begin(), file_.candela.end());
+    const double flux_lm = 4 * kPi * largest_cd < kMinFlux_lm ? 0 : make_intensity(file_)->flux_lm();
     if (!(flux_lm >= kMinFlux_lm)) {
       problem({}, "the luminaire gives no light: " + text_of(flux_lm) + " lm", "give a file with candela values");
       return false;

@@ -50,6 +50,12 @@ using Intensity = std::shared_ptr<const IntensityDistribution>;  // one file ser
 /// The same in all directions: flux / 4π. requires flux_lm > 0.
 [[nodiscard]] Intensity make_isotropic(double flux_lm);
 
+/// I0 cosγ below the horizontal: a plane diffuser that faces down. I0 = flux / π. requires flux_lm > 0.
+[[nodiscard]] Intensity make_lambertian(double flux_lm);
+
+/// I0 cosⁿγ below the horizontal, I0 = flux (n + 1) / 2π. requires flux_lm > 0 and 0 ≤ exponent ≤ 1e6.
+[[nodiscard]] Intensity make_cosine_power(double flux_lm, double exponent);
+
 /// A spot about -Z with a soft edge. With b = half the beam angle and f = half the field angle,
 ///   I(γ) = I0 · 2^-(γ/b)^p · w(γ),   p = ln(log2 10) / ln(f/b),
 /// so that I(b) is exactly I0/2 and I(f) exactly I0/10. w is 1 up to f and falls to 0 at γ = 2f along the

@@ -1,0 +1,93 @@
+#include "core/photometry/grid_intensity.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace luxrig {
+namespace {
+
+Vec3 table_from_lamp(GridAxes axes, const Vec3& d) {
+  switch (axes) {
+    case GridAxes::b:
+      return {-d.z(), d.x(), d.y()};
+    case GridAxes::a:
+      return {d.x(), -d.y(), -d.z()};
+    default:
+      return {d.x(), d.y(), -d.z()};
+  }
+}
+
+Vec3 lamp_from_table(GridAxes axes, const Vec3& d) {
+  return axes == GridAxes::b ? Vec3(d.y(), d.z(), -d.x()) : table_from_lamp(axes, d);  // the others are mirrors
+}
+
+/// Largest angle from -Z at which a table in axes A or C shines.
+double half_cone_about_pole_rad(const SphereTable& table) {
+  const auto& polar = table.polar_rad();
+  const std::size_t columns = table.symmetry() == SphereTable::Symmetry::round ? 1 : table.azimuth_rad().size();
+  std::size_t dark_from = 0;  // first polar index from which every column is 0
+  for (std::size_t a = 0; a < columns; ++a) {
+    for (std::size_t p = dark_from; p < polar.size(); ++p) {
+      if (table.value(a, p) > 0) dark_from = p + 1;
+    }
+  }
+  return polar[std::min(dark_from, polar.size() - 1)];
+}
+
+/// The same in axes B, where the cosine of that angle is sin(polar) cos(azimuth).
+double half_cone_across_pole_rad(const SphereTable& table) {
+  const auto& polar = table.polar_rad();
+  const auto& azimuth = table.azimuth_rad();
+  const bool round = table.symmetry() == SphereTable::Symmetry::round;
+  double least_cosine = 1;
+  for (std::size_t p = 0; p + 1 < polar.size(); ++p) {
+    const double sine = std::max(0.0, std::min(std::sin(polar[p]), std::sin(polar[p + 1])));
+    for (std::size_t a = 0; a + 1 < azimuth.size(); ++a) {
+      const std::size_t last = round ? 0 : a + 1;
+      const std::size_t first = round ? 0 : a;
+      const bool dark = table.value(first, p) == 0 && table.value(first, p + 1) == 0 && table.value(last, p) == 0 &&
+                        table.value(last, p + 1) == 0;
+      if (dark) continue;
+      const double cosine = round ? -1 : std::min(std::cos(azimuth[a]), std::cos(azimuth[a + 1]));
+      least_cosine = std::min(least_cosine, cosine < 0 ? -1 : sine * cosine);
+    }
+  }
+  return std::acos(least_cosine);
+}
+
+class GridIntensity final : public IntensityDistribution {
+ public:
+  GridIntensity(SphereTable table, GridAxes axes) : table_(std::move(table)), axes_(axes) {
+    const double half_rad = axes_ == GridAxes::b ? half_cone_across_pole_rad(table_) : half_cone_about_pole_rad(table_);
+    emission_cone_rad_ = half_rad > 0.5 * kPi + 1e-9 ? 2 * kPi : std::min(kPi, 2 * half_rad);
+  }
+
+  double intensity_cd(const Vec3& direction_lamp) const override {
+    return table_.at(table_from_lamp(axes_, direction_lamp));
+  }
+  double flux_lm() const override { return table_.integral(); }
+  double max_intensity_cd() const override { return table_.largest(); }
+  double emission_cone_rad() const override { return emission_cone_rad_; }
+
+  DirectionSample sample(double u, double v) const override {
+    const SphereTable::Sample drawn = table_.sample(u, v);
+    return {lamp_from_table(axes_, drawn.direction), drawn.value / table_.integral()};
+  }
+  double density_per_sr(const Vec3& direction_lamp) const override {
+    return intensity_cd(direction_lamp) / table_.integral();
+  }
+
+ private:
+  SphereTable table_;
+  GridAxes axes_;
+  double emission_cone_rad_ = 0;
+};
+
+}  // namespace
+
+Intensity make_grid_intensity(SphereTable table, GridAxes axes) {
+  return std::make_shared<GridIntensity>(std::move(table), axes);
+}
+
+}  // namespace luxrig
