@@ -1,0 +1,30 @@
+#pragma once
+/// Choosing how finely to look, and building the importance fields.
+
+#include "core/transport/candidates/air_regions.h"
+#include "core/transport/candidates/indirect_columns.h"
+
+namespace luxrig {
+
+struct IndirectSettings {
+  double cell_m = 0;
+  std::uint32_t rays_per_cell = 32;
+  std::uint32_t rays_per_replicate = 32;
+};
+
+/// Edge of cells of which `cells` cover the scene's area.
+[[nodiscard]] double cell_size_m(const Scene& scene, std::size_t cells);
+
+/// Fields for the settings, one after another seeded; Cause::cancelled when stopped.
+[[nodiscard]] Result<std::vector<std::unique_ptr<SurfaceImportance>>> importance_fields(
+    const Scene& scene, const VisibilityScene& visibility, std::span<const Receiver> receivers,
+    std::span<const Vec3> also_from_world_m, const IndirectSettings& settings, const CandidateOptions& options);
+
+/// The cheapest settings that give the wanted error on a few of the candidates, and what they need. Adds to statistics.
+[[nodiscard]] Result<IndirectColumns> plan_indirect(const Scene& scene, const VisibilityScene& visibility,
+                                                    std::span<const Receiver> receivers, const CandidateSet& candidates,
+                                                    std::span<const CandidateLuminaire> luminaires,
+                                                    const ReceiversAir* air, const CandidateOptions& options,
+                                                    CandidateStatistics& statistics);
+
+}  // namespace luxrig

@@ -1,0 +1,176 @@
+#include "core/transport/candidates/surface_cells.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/transport/sobol.h"
+
+namespace luxrig {
+namespace {
+
+constexpr std::uint32_t kSeveral = SurfaceCells::kNone - 1;
+/// Cubes are looked at with this much round them, of their size; lifts of less stay within what was looked at.
+constexpr double kMargin = 0.06;
+constexpr double kLift = 0.03;
+/// More cubes than this are not looked at (all then count as having several planes).
+constexpr double kMostCubes = 5e7;
+constexpr std::uint32_t kMostPieces = 8;
+
+/// Separating axes of a triangle and a cube (T. Akenine-Möller, "Fast 3D Triangle-Box Overlap Testing", 2001).
+bool overlaps(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& middle, double half) {
+  const Vec3 v[3] = {a - middle, b - middle, c - middle};
+  const auto apart = [&](const Vec3& axis) {
+    const double p = axis.dot(v[0]), q = axis.dot(v[1]), r = axis.dot(v[2]);
+    return std::max(-std::max({p, q, r}), std::min({p, q, r})) > half * axis.cwiseAbs().sum();
+  };
+  for (int k = 0; k < 3; ++k)
+    if (apart(Vec3::Unit(k))) return false;
+  if (apart((v[1] - v[0]).cross(v[2] - v[0]))) return false;
+  for (int e = 0; e < 3; ++e)
+    for (int k = 0; k < 3; ++k)
+      if (apart((v[(e + 1) % 3] - v[e]).cross(Vec3::Unit(k)))) return false;
+  return true;
+}
+
+}  // namespace
+
+SurfaceCells::SurfaceCells(const Scene& scene, const RayScene& rays, double cell_m, const Vec3& offset_share)
+    : rays_(&rays), cell_m_(cell_m), slots_(1024) {
+  const Eigen::AlignedBox3d bounds_m = rays.bounds_world_m();
+  start_world_m_ = (bounds_m.isEmpty() ? Vec3(Vec3::Zero()) : bounds_m.min()) - cell_m * (offset_share + Vec3::Ones());
+  mark_cubes(scene);
+}
+
+SurfaceCells::Cube SurfaceCells::cube_at(const Vec3& position_world_m) const {
+  return ((position_world_m - start_world_m_) / cell_m_).array().floor().cast<int>();
+}
+
+std::uint64_t SurfaceCells::key_of(const Cube& cube, const Vec3& normal) {
+  Eigen::Index axis = 0;
+  normal.cwiseAbs().maxCoeff(&axis);
+  const auto facing = static_cast<std::uint64_t>(2 * axis + (normal[axis] < 0 ? 1 : 0));
+  std::uint64_t key = facing + 1;  // never 0
+  for (int k = 0; k < 3; ++k) key = key << 20 | (static_cast<std::uint64_t>(cube[k]) & 0xfffff);
+  return key;
+}
+
+void SurfaceCells::mark_cubes(const Scene& scene) {
+  const Eigen::AlignedBox3d bounds_m = rays_->bounds_world_m();
+  if (bounds_m.isEmpty()) return;
+  const Vec3 extent = ((bounds_m.max() - start_world_m_) / cell_m_).array().floor() + 2;
+  if (!(extent.prod() < kMostCubes)) return;
+  size_ = extent.cast<int>();
+  plane_in_cube_.assign(static_cast<std::size_t>(extent.prod()), kNone);
+  const double half_m = cell_m_ * (0.5 + kMargin);
+  const auto corner_m = [&](std::uint32_t t, std::size_t k) { return scene.vertex_world_m(scene.triangles[t][k]); };
+  const auto normal_of = [&](std::uint32_t t) {
+    return Vec3((corner_m(t, 1) - corner_m(t, 0)).cross(corner_m(t, 2) - corner_m(t, 0)).normalized());
+  };
+  for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
+    const Vec3 a = corner_m(t, 0), b = corner_m(t, 1), c = corner_m(t, 2), normal = normal_of(t);
+    const Vec3 margin_m = Vec3::Constant(kMargin * cell_m_);
+    const Cube low = cube_at(a.cwiseMin(b).cwiseMin(c) - margin_m).cwiseMax(0);
+    const Cube high = cube_at(a.cwiseMax(b).cwiseMax(c) + margin_m).cwiseMin(size_ - Cube::Ones());
+    for (int z = low.z(); z <= high.z(); ++z)
+      for (int y = low.y(); y <= high.y(); ++y)
+        for (int x = low.x(); x <= high.x(); ++x) {
+          const Vec3 middle_m = start_world_m_ + cell_m_ * Vec3(x + 0.5, y + 0.5, z + 0.5);
+          // Most cubes in a slanting triangle's box are far from its plane.
+          if (std::abs(normal.dot(middle_m - a)) > half_m * normal.cwiseAbs().sum()) continue;
+          if (!overlaps(a, b, c, middle_m, half_m)) continue;
+          std::uint32_t& plane = plane_in_cube_[static_cast<std::size_t>(x + size_.x() * (y + size_.y() * z))];
+          if (plane == kNone) {
+            plane = t;
+          } else if (plane != kSeveral) {
+            const Vec3 other = normal_of(plane);
+            const bool same =
+                normal.cross(other).norm() < 1e-3 && std::abs(other.dot(a - corner_m(plane, 0))) < 1e-3 * cell_m_;
+            if (!same) plane = kSeveral;
+          }
+        }
+  }
+}
+
+bool SurfaceCells::simple(const Cube& cube) const {
+  if ((cube.array() < 0).any() || (cube.array() >= size_.array()).any()) return false;
+  return plane_in_cube_[static_cast<std::size_t>(cube.x() + size_.x() * (cube.y() + size_.y() * cube.z()))] < kSeveral;
+}
+
+std::size_t SurfaceCells::slot_of(std::uint64_t key) const {
+  std::size_t slot = mixed(0, key) & (slots_.size() - 1);
+  while (slots_[slot].key != 0 && slots_[slot].key != key) slot = (slot + 1) & (slots_.size() - 1);
+  return slot;
+}
+
+void SurfaceCells::grow() {
+  std::vector<Slot> old(2 * slots_.size());
+  old.swap(slots_);
+  for (const Slot& slot : old)
+    if (slot.key != 0) slots_[slot_of(slot.key)] = slot;
+}
+
+bool SurfaceCells::sees(const Vec3& position_world_m, const Vec3& normal_world, const Cell& cell) const {
+  const double lift_m = kLift * cell_m_;
+  return !rays_->occluded(position_world_m + lift_m * normal_world, Vec3::Zero(),
+                          cell.position_world_m + lift_m * cell.normal_world);
+}
+
+std::uint32_t SurfaceCells::piece(std::uint32_t first, bool simple, const Vec3& position_world_m,
+                                  const Vec3& normal_world, std::uint64_t& rays) const {
+  if (simple) return first;
+  for (std::uint32_t c = first; c != kNone; c = cells_[c].next) {
+    ++rays;
+    if (sees(position_world_m, normal_world, cells_[c])) return c;
+  }
+  return kNone;
+}
+
+std::uint32_t SurfaceCells::cell_at(const Vec3& position_world_m, const Vec3& normal_world, std::uint32_t most_cells) {
+  const Cube cube = cube_at(position_world_m);
+  const std::uint64_t key = key_of(cube, normal_world);
+  const std::size_t slot = slot_of(key);
+  std::uint32_t first = slots_[slot].key == key ? slots_[slot].first : kNone;
+  if (first != kNone) {
+    const std::uint32_t found = piece(first, simple(cube), position_world_m, normal_world, rays_cast_);
+    if (found != kNone) return found;
+    std::uint32_t pieces = 0;
+    for (std::uint32_t c = first; c != kNone; c = cells_[c].next) ++pieces;
+    if (pieces >= kMostPieces) return kNone;
+  }
+  if (cells_.size() >= most_cells) return kNone;
+  const auto made = static_cast<std::uint32_t>(cells_.size());
+  cells_.push_back({position_world_m, normal_world, first});
+  slots_used_ += slots_[slot].key == 0;
+  slots_[slot] = {key, made};
+  if (2 * slots_used_ > slots_.size()) grow();
+  return made;
+}
+
+std::uint32_t SurfaceCells::find(const Vec3& position_world_m, const Vec3& normal_world, std::uint64_t& rays) const {
+  const Cube cube = cube_at(position_world_m);
+  const Slot& slot = slots_[slot_of(key_of(cube, normal_world))];
+  if (slot.key != 0) {
+    const std::uint32_t found = piece(slot.first, simple(cube), position_world_m, normal_world, rays);
+    if (found != kNone) return found;
+  }
+  // A corner that no ray has found: the nearest cell about it that faces the same way and sees it.
+  std::uint32_t nearest = kNone;
+  double nearest_m2 = HUGE_VAL;
+  for (int z = -1; z <= 1; ++z)
+    for (int y = -1; y <= 1; ++y)
+      for (int x = -1; x <= 1; ++x) {
+        const Slot& about = slots_[slot_of(key_of(cube + Cube(x, y, z), normal_world))];
+        if (about.key == 0) continue;
+        for (std::uint32_t c = about.first; c != kNone; c = cells_[c].next) {
+          const double distance_m2 = (cells_[c].position_world_m - position_world_m).squaredNorm();
+          if (distance_m2 >= nearest_m2) continue;
+          ++rays;
+          if (!sees(position_world_m, normal_world, cells_[c])) continue;
+          nearest = c;
+          nearest_m2 = distance_m2;
+        }
+      }
+  return nearest;
+}
+
+}  // namespace luxrig

@@ -1,0 +1,71 @@
+#pragma once
+/// Surfaces cut into small cells by a grid: where light is taken to be the same.
+///
+/// A cell is the part of the surfaces within one cube of a grid that faces roughly one way (the axis nearest to its
+/// normal). Where that part falls into pieces that do not see each other, such as a floor under a wall, each is a cell
+/// of its own, so that no light leaks through walls thinner than a cell. Cells come into being where rays hit; surfaces
+/// that light never reaches cost nothing. The place that stands for a cell is where it was hit first: at random, spread
+/// like light is.
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/scene/ray_scene.h"
+
+namespace luxrig {
+
+class SurfaceCells {
+ public:
+  static constexpr std::uint32_t kNone = ~0u;
+
+  struct Cell {
+    Vec3 position_world_m;
+    Vec3 normal_world;
+    std::uint32_t next = kNone;  ///< another piece in the same cube that faces the same way
+  };
+
+  /// offset_share   where the grid starts, as a share of a cell in each axis
+  SurfaceCells(const Scene& scene, const RayScene& rays, double cell_m, const Vec3& offset_share);
+
+  /// The cell of a place on a surface, made if there is none yet and there are fewer than `most_cells`.
+  std::uint32_t cell_at(const Vec3& position_world_m, const Vec3& normal_world, std::uint32_t most_cells);
+
+  /// The same, or the nearest cell about it, or kNone. Adds the rays cast to `rays`.
+  [[nodiscard]] std::uint32_t find(const Vec3& position_world_m, const Vec3& normal_world, std::uint64_t& rays) const;
+
+  [[nodiscard]] const std::vector<Cell>& cells() const { return cells_; }
+  [[nodiscard]] double cell_m() const { return cell_m_; }
+  [[nodiscard]] std::uint64_t rays_cast() const { return rays_cast_; }
+
+ private:
+  using Cube = Eigen::Matrix<int, 3, 1>;
+  struct Slot {
+    std::uint64_t key = 0;  ///< 0: empty
+    std::uint32_t first = kNone;
+  };
+
+  [[nodiscard]] Cube cube_at(const Vec3& position_world_m) const;
+  [[nodiscard]] static std::uint64_t key_of(const Cube& cube, const Vec3& normal);
+  [[nodiscard]] std::size_t slot_of(std::uint64_t key) const;
+  /// True when only one plane passes through the cube, with a margin: then all of it is one cell.
+  [[nodiscard]] bool simple(const Cube& cube) const;
+  [[nodiscard]] bool sees(const Vec3& position_world_m, const Vec3& normal_world, const Cell& cell) const;
+  /// Piece of the cell chain that the place belongs to.
+  [[nodiscard]] std::uint32_t piece(std::uint32_t first, bool simple, const Vec3& position_world_m,
+                                    const Vec3& normal_world, std::uint64_t& rays) const;
+  void mark_cubes(const Scene& scene);
+  void grow();
+
+  const RayScene* rays_;
+  double cell_m_;
+  Vec3 start_world_m_;
+  Cube size_ = Cube::Zero();
+  std::vector<std::uint32_t> plane_in_cube_;  ///< a triangle whose plane it is; kNone none, kSeveral several
+  std::vector<Cell> cells_;
+  std::vector<Slot> slots_;
+  std::size_t slots_used_ = 0;
+  std::uint64_t rays_cast_ = 0;
+};
+
+}  // namespace luxrig

@@ -1,0 +1,95 @@
+#pragma once
+/// Which of many points a receiver sees, with as few rays as can be.
+
+#include <cmath>
+#include <optional>
+
+#include "core/transport/candidates/blockers.h"
+#include "core/transport/candidates/candidate_transport.h"
+#include "core/transport/candidates/point_tree.h"
+
+namespace luxrig {
+
+/// What all visibility questions have in common.
+struct VisibilityScene {
+  const RayScene* rays;      ///< null: nothing can stand in between
+  const Blockers* blockers;  ///< null: no groups are decided together
+};
+
+class VisiblePoints {
+ public:
+  /// peak_cd, least_lux   groups so far off that a source of peak_cd there brings less than least_lux are left out
+  VisiblePoints(const VisibilityScene& scene, const Receiver& from, const CandidateSkips& skips, double peak_cd,
+                double least_lux)
+      : scene_(scene), from_(from), skips_(skips), peak_cd_(peak_cd), least_lux_(skips.reach ? least_lux : 0) {}
+
+  /// Calls wants(point) for each point in front of the receiver that no group test has settled; true has a shadow ray
+  /// cast, and then seen(point) if nothing is in between. Counts what is skipped, in points.
+  template <class Wants, class Seen>
+  void visit(const PointTree& tree, std::span<const Vec3> points_world_m, Wants&& wants, Seen&& seen) {
+    if (!tree.nodes.empty()) visit_node(tree, points_world_m, 0, wants, seen);
+  }
+
+  std::uint64_t behind = 0, out_of_reach = 0, blocked_in_groups = 0, traced = 0, lit = 0, rays = 0;
+
+ private:
+  template <class Wants, class Seen>
+  void visit_node(const PointTree& tree, std::span<const Vec3> points_world_m, std::uint32_t index, Wants& wants,
+                  Seen& seen) {
+    const PointTree::Node& node = tree.nodes[index];
+    const std::uint32_t size = node.end - node.begin;
+    if (skips_.behind && wholly_behind(node)) {
+      behind += size;
+      return;
+    }
+    if (least_lux_ > 0 && wholly_out_of_reach(node)) {
+      out_of_reach += size;
+      return;
+    }
+    if (scene_.blockers && skips_.blockers && hidden(node)) {
+      blocked_in_groups += size;
+      return;
+    }
+    if (node.right != 0) {
+      visit_node(tree, points_world_m, index + 1, wants, seen);
+      visit_node(tree, points_world_m, node.right, wants, seen);
+      return;
+    }
+    for (std::uint32_t i = node.begin; i < node.end; ++i) {
+      const std::uint32_t point = tree.order[i];
+      const Vec3& at_m = points_world_m[point];
+      if (!(from_.normal_world.dot(at_m - from_.position_world_m) > 0)) {
+        ++behind;
+        continue;
+      }
+      if (!wants(point)) continue;
+      ++traced;
+      if (scene_.rays) {
+        ++rays;
+        if (scene_.rays->occluded(from_.position_world_m, from_.normal_world, at_m)) continue;
+      }
+      ++lit;
+      seen(point);
+    }
+  }
+
+  [[nodiscard]] bool wholly_behind(const PointTree::Node& node) const;
+  [[nodiscard]] bool wholly_out_of_reach(const PointTree::Node& node) const;
+  /// In the shadow of a blocker that has served before, or of what a ray to its middle meets.
+  [[nodiscard]] bool hidden(const PointTree::Node& node);
+
+  static constexpr std::size_t kRemembered = 6;
+
+  VisibilityScene scene_;
+  const Receiver& from_;
+  const CandidateSkips& skips_;
+  double peak_cd_, least_lux_;
+  struct Remembered {
+    std::uint32_t blocker = ~0u;
+    BlockerShadow shadow;
+  };
+  std::array<Remembered, kRemembered> remembered_;
+  std::size_t oldest_ = 0;
+};
+
+}  // namespace luxrig
