@@ -13,13 +13,17 @@ Vec3 table_from_lamp(GridAxes axes, const Vec3& d) {
       return {-d.z(), d.x(), d.y()};
     case GridAxes::a:
       return {d.x(), -d.y(), -d.z()};
+    case GridAxes::about_x:
+      return {d.y(), d.z(), d.x()};
     default:
       return {d.x(), d.y(), -d.z()};
   }
 }
 
 Vec3 lamp_from_table(GridAxes axes, const Vec3& d) {
-  return axes == GridAxes::b ? Vec3(d.y(), d.z(), -d.x()) : table_from_lamp(axes, d);  // the others are mirrors
+  if (axes == GridAxes::b) return {d.y(), d.z(), -d.x()};
+  if (axes == GridAxes::about_x) return {d.z(), d.x(), d.y()};
+  return table_from_lamp(axes, d);  // these two are mirrors, their own inverse
 }
 
 /// Largest angle from -Z at which a table in axes A or C shines.
@@ -59,7 +63,9 @@ double half_cone_across_pole_rad(const SphereTable& table) {
 class GridIntensity final : public IntensityDistribution {
  public:
   GridIntensity(SphereTable table, GridAxes axes) : table_(std::move(table)), axes_(axes) {
-    const double half_rad = axes_ == GridAxes::b ? half_cone_across_pole_rad(table_) : half_cone_about_pole_rad(table_);
+    const double half_rad = axes_ == GridAxes::b         ? half_cone_across_pole_rad(table_)
+                            : axes_ == GridAxes::about_x ? kPi
+                                                         : half_cone_about_pole_rad(table_);
     emission_cone_rad_ = half_rad > 0.5 * kPi + 1e-9 ? 2 * kPi : std::min(kPi, 2 * half_rad);
   }
 

@@ -10,9 +10,10 @@ namespace luxrig {
 /// vertical and horizontal angles of (0, 0) point to the nadir in types B and C and horizontally along +X in type A;
 /// horizontal angles turn counter-clockwise seen from above in type C and clockwise in types A and B.
 enum class GridAxes {
-  c,  ///< polar axis -Z: polar = γ, azimuth = C from +X towards +Y
-  b,  ///< polar axis +Y: polar = H + 90° (H towards -Y), azimuth = V from -Z towards +X
-  a   ///< polar axis -Z: polar = Y + 90° (Y upwards), azimuth = X from +X towards -Y
+  c,       ///< polar axis -Z: polar = γ, azimuth = C from +X towards +Y
+  b,       ///< polar axis +Y: polar = H + 90° (H towards -Y), azimuth = V from -Z towards +X
+  a,       ///< polar axis -Z: polar = Y + 90° (Y upwards), azimuth = X from +X towards -Y
+  about_x  ///< polar axis +X, for round tables: a round beam of type A
 };
 
 /// Intensity [cd] from a table in those axes. Flux is the table's integral; directions are drawn with exactly

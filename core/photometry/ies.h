@@ -1,45 +1,83 @@
 #pragma once
-/// IES LM-63 photometric files (1986 … 2019), type C. Clauses as in ANSI/IES LM-63-2019.
+/// IES LM-63 photometric files (1986 … 2019), types A, B and C. Clauses as in ANSI/IES LM-63-2019.
+///
+/// How their angles lie in frame lamp (LM-63-2002 §3, LM-75): type C counts γ from -Z upwards, and C from +X towards
+/// +Y (counter-clockwise seen from above). In types A and B horizontal angles turn clockwise. Type B has (0, 0) at -Z,
+/// V rises from there towards +X, H goes towards -Y, and the half-planes of V meet in the horizontal axis Y:
+///   direction = (cos H sin V, -sin H, -cos H cos V).
+/// Type A has (0, 0) at +X (a luminaire whose beam lies level), its planes of X meet in the vertical axis:
+///   direction = (cos Y cos X, -cos Y sin X, sin Y).
 
 #include <filesystem>
+#include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/photometry/intensity.h"
+#include "core/photometry/luminous_opening.h"
 #include "core/result.h"
 
 namespace luxrig {
 
+/// How a lamp's output depends on how far its luminaire hangs off upright (TILT=INCLUDE).
+struct LampTilt {
+  /// 1: the lamp stands upright, 2: it lies and keeps lying when the luminaire is tilted, 3: it lies and is tilted with
+  /// the luminaire. The angles below are the luminaire's in all three.
+  int geometry = 1;
+  std::vector<double> angle_deg;  ///< ascending, 0…180
+  std::vector<double> factor;     ///< > 0 at the first
+
+  /// Factor at a tilt [rad, 0…π], over the factor of an upright luminaire: linear between the angles, held beyond them;
+  /// a list that ends at 90° is mirrored there.
+  [[nodiscard]] double over_upright(double tilt_rad) const;
+};
+
 /// What a file says, before it becomes a distribution. Candela values have all factors applied.
 struct IesFile {
+  enum class Type { c = 1, b = 2, a = 3 };
   std::string edition;                ///< first line, "" for LM-63-1986
   std::vector<std::string> keywords;  ///< header lines in order: "[KEY] text", or free text in LM-63-1986
+  Type type = Type::c;
   int lamps = 1;
-  double lumens_per_lamp = -1;                     ///< -1 = absolute photometry
-  std::vector<double> vertical_deg;                ///< ascending
-  std::vector<double> horizontal_deg;              ///< ascending
-  std::vector<double> candela;                     ///< [horizontal][vertical], multiplier and factors applied
+  double lumens_per_lamp = -1;         ///< -1 = absolute photometry
+  std::vector<double> vertical_deg;    ///< ascending; type C 0…180, A and B -90…90
+  std::vector<double> horizontal_deg;  ///< ascending; type C 0…360, A and B -90…90
+  /// [horizontal][vertical]: multiplier and factors applied, the tilt factor of an upright luminaire among them
+  std::vector<double> candela;
   double width_m = 0, length_m = 0, height_m = 0;  ///< luminous opening, signs as in the file
   double input_w = 0;
+  std::optional<LampTilt> tilt;
   std::vector<std::string> warnings;  ///< e.g. flux contradicts the lamp lumens by more than 5 %
 };
 
-/// Parses the text of a file. `file_name` is only for problems. Refuses what is not type C photometry: types
-/// A and B, radiometric files (W/sr), TILT from another file; and what no luminaire is: counts outside 1…10 000
-/// (at least two vertical angles, at most 4 million values), angles that do not ascend or fit no symmetry,
-/// values that are negative or not finite, no light at all. Numbers after the last candela value are ignored.
-/// TILT=INCLUDE: the factor for a lamp that is not tilted (0°) is applied, with a warning when others differ.
-[[nodiscard]] Checked<IesFile> parse_ies(std::string_view text, const std::string& file_name);
+/// Text of the tilt file that TILT=<name> asks for; nothing when there is none.
+using TiltFiles = std::function<std::optional<std::string>(std::string_view name)>;
 
-/// The distribution of a parsed file: bilinear in the two angles, 0 outside the vertical range. Symmetry by the
-/// horizontal range: one plane = round about the axis; 0…90 = mirrored into four quadrants; 0…180 = mirrored
-/// about the plane 0–180; 90…270 = mirrored about the plane 90–270; 0…360, or 0 and planes that stop one
-/// spacing short of 360 = as it is. Its flux is the exact integral of that interpolant.
+/// Parses the text of a file. `file_name` is only for problems. Refuses radiometric files (W/sr: far-UVC sources), TILT
+/// from a file that `tilt_files` does not have, and what no luminaire is: counts outside 1…10 000 (at least two
+/// vertical angles, at most 4 million values), angles that do not ascend or fit no symmetry, values that are negative
+/// or not finite, no light at all. Numbers after the last candela value are ignored.
+/// The last factor but one multiplies in LM-63-1986 and 1991 (ballast-lamp photometric factor); later it is 1, and
+/// since 2019 a code for how the file was made.
+[[nodiscard]] Checked<IesFile> parse_ies(std::string_view text, const std::string& file_name,
+                                         const TiltFiles& tilt_files = {});
+
+/// The distribution of a parsed file: bilinear in its two angles, 0 outside their range.
+/// Type C, by the horizontal range: one plane = round about the axis; 0…90 = mirrored into four quadrants; 0…180 =
+/// mirrored about the plane 0–180; 90…270 = mirrored about the plane 90–270; 0…360, or 0 and planes that stop one
+/// spacing short of 360 = as it is. Types A and B: an angle from 0 is mirrored to negative ones; one horizontal angle =
+/// round about the direction of (0, 0). Its flux is the exact integral of that interpolant.
 /// requires a file that parse_ies returned.
 [[nodiscard]] Intensity make_intensity(const IesFile& file);
 
-/// Reads and parses. Refuses files over 64 MiB.
+/// The luminous opening by the signs of its sizes (LM-63-2002 table 1, and what 1986…1995 wrote), length along x and
+/// width along y: as the nearest shape there is. A box with shining sides becomes the rectangle below, an ellipse the
+/// disk of its area, a lying cylinder the rectangle of its outline, what stands upright a point.
+[[nodiscard]] LuminousOpening luminous_opening(const IesFile& file);
+
+/// Reads and parses; TILT=<name> is looked for beside the file. Refuses files over 64 MiB.
 [[nodiscard]] Checked<IesFile> load_ies(const std::filesystem::path& path);
 
 }  // namespace luxrig

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <utility>
 
 #include "core/check.h"
@@ -17,13 +18,12 @@ Symmetry symmetry_of(const std::vector<double>& horizontal_deg) {
   return Symmetry::none;
 }
 
-}  // namespace
+std::vector<double> radians(std::vector<double> degrees, double offset_deg = 0) {
+  for (double& angle : degrees) angle = rad_from_deg(angle + offset_deg);
+  return degrees;
+}
 
-Intensity make_intensity(const IesFile& file) {
-  LUXRIG_CHECK(file.vertical_deg.size() >= 2 && !file.horizontal_deg.empty() &&
-                   file.candela.size() == file.vertical_deg.size() * file.horizontal_deg.size(),
-               "{} vertical and {} horizontal angles, {} values", file.vertical_deg.size(), file.horizontal_deg.size(),
-               file.candela.size());
+Intensity type_c(const IesFile& file) {
   const Symmetry symmetry = symmetry_of(file.horizontal_deg);
   std::vector<double> horizontal_deg = file.horizontal_deg;
   std::vector<double> candela = file.candela;
@@ -32,11 +32,62 @@ Intensity make_intensity(const IesFile& file) {
     candela.reserve(candela.size() + file.vertical_deg.size());
     for (std::size_t i = 0; i < file.vertical_deg.size(); ++i) candela.push_back(file.candela[i]);
   }
-  std::vector<double> vertical_deg = file.vertical_deg;
-  for (double& angle : horizontal_deg) angle = rad_from_deg(angle);
-  for (double& angle : vertical_deg) angle = rad_from_deg(angle);
   return make_grid_intensity(
-      SphereTable(symmetry, std::move(vertical_deg), std::move(horizontal_deg), std::move(candela)), GridAxes::c);
+      SphereTable(symmetry, radians(file.vertical_deg), radians(std::move(horizontal_deg)), std::move(candela)),
+      GridAxes::c);
+}
+
+/// A range that starts at 0 is mirrored: its angles from the negative of the last on, and for each where its values
+/// are.
+struct BothSides {
+  explicit BothSides(const std::vector<double>& angles_deg) {
+    if (angles_deg.front() == 0) {
+      for (std::size_t i = angles_deg.size() - 1; i > 0; --i) {
+        deg.push_back(-angles_deg[i]);
+        source.push_back(i);
+      }
+    }
+    for (std::size_t i = 0; i < angles_deg.size(); ++i) {
+      deg.push_back(angles_deg[i]);
+      source.push_back(i);
+    }
+  }
+  std::vector<double> deg;
+  std::vector<std::size_t> source;
+};
+
+Intensity type_a_or_b(const IesFile& file) {
+  const bool b = file.type == IesFile::Type::b;
+  const std::size_t verticals = file.vertical_deg.size();
+  if (file.horizontal_deg.size() == 1) {
+    return make_grid_intensity(SphereTable(Symmetry::round, radians(file.vertical_deg), {}, file.candela),
+                               b ? GridAxes::c : GridAxes::about_x);
+  }
+  const BothSides vertical(file.vertical_deg);
+  const BothSides horizontal(file.horizontal_deg);
+  // Planes share the polar axis: H runs from pole to pole in type B, Y (vertical) in type A.
+  const BothSides& polar = b ? horizontal : vertical;
+  const BothSides& azimuth = b ? vertical : horizontal;
+  std::vector<double> values;
+  values.reserve(polar.deg.size() * azimuth.deg.size());
+  for (const std::size_t a : azimuth.source) {
+    for (const std::size_t p : polar.source) {
+      values.push_back(b ? file.candela[p * verticals + a] : file.candela[a * verticals + p]);
+    }
+  }
+  return make_grid_intensity(
+      SphereTable(Symmetry::part, radians(polar.deg, 90), radians(azimuth.deg), std::move(values)),
+      b ? GridAxes::b : GridAxes::a);
+}
+
+}  // namespace
+
+Intensity make_intensity(const IesFile& file) {
+  LUXRIG_CHECK(file.vertical_deg.size() >= 2 && !file.horizontal_deg.empty() &&
+                   file.candela.size() == file.vertical_deg.size() * file.horizontal_deg.size(),
+               "{} vertical and {} horizontal angles, {} values", file.vertical_deg.size(), file.horizontal_deg.size(),
+               file.candela.size());
+  return file.type == IesFile::Type::c ? type_c(file) : type_a_or_b(file);
 }
 
 }  // namespace luxrig

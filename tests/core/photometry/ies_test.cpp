@@ -117,6 +117,7 @@ const RealFile kRealFiles[] = {
     {"parallel_beam.ies", "IESNA:LM-63-2002", 19, 7, 3259.8},
     {"soft_arrow.ies", "IESNA91", 36, 1, 796.5},
     {"three_lobe_umbrella.ies", "IESNA:LM-63-1995", 37, 1, 1005.1},
+    {"LightProfile.ies", "IES:LM-63-2019", 10, 1, 8749.7},
     {"tilt_include_geometry2.ies", "IES:LM-63-2019", 7, 5, 13227.6},
     {"trapezoid.ies", "IESNA:LM-63-2002", 25, 21, 14428.9},
     {"x_arrow.ies", "IESNA:LM-63-1995", 73, 1, 524.6},
@@ -128,17 +129,13 @@ INSTANTIATE_TEST_SUITE_P(Of, RealFiles, testing::ValuesIn(kRealFiles), [](const 
   return name;
 });
 
-TEST(Ies, RefusesWhatIsNotTypeCPhotometry) {
-  const auto type_b = load_ies(data_file("type_b_full.ies"));
-  ASSERT_FALSE(type_b.has_value());
-  EXPECT_EQ(type_b.error().front().what, "type B photometry");
-  EXPECT_EQ(type_b.error().front().line, 12);
-  EXPECT_EQ(type_b.error().front().column, 14);
-  EXPECT_EQ(type_b.error().front().mend, "convert the file to type C");
-
-  const auto far_uvc = load_ies(data_file("B1 module.ies"));
-  ASSERT_FALSE(far_uvc.has_value());
-  EXPECT_NE(far_uvc.error().front().what.find("radiometric"), std::string::npos);
+TEST(Ies, RefusesRadiometricFilesOfFarUvcSources) {
+  for (const char* name : {"B1 module.ies", "LLIA001477-002.ies", "aerolamp.ies"}) {
+    const auto far_uvc = load_ies(data_file(name));
+    ASSERT_FALSE(far_uvc.has_value());
+    EXPECT_NE(far_uvc.error().front().what.find("radiometric"), std::string::npos);
+    EXPECT_GT(far_uvc.error().front().line, 1);
+  }
 }
 
 TEST(Ies, AppliesMultiplierAndBallastFactorAndTheSecondFactorOnlyInOldEditions) {
@@ -318,7 +315,13 @@ TEST(Ies, SaysWhereAndWhatIsWrong) {
       {"more than 4 million", 0, 0, head + "1 -1 1 9999 9999 1 2 0 0 0\n1 1 1\n"},
       {"number of vertical angles is not a whole number", 3, 8, head + "1 -1 1 2.5 1 1 2 0 0 0\n1 1 1\n0 90 0 1 1"},
       {"one vertical angle", 0, 0, head + "1 -1 1 1 1 1 2 0 0 0\n1 1 1\n0 0 1"},
-      {"type A photometry", 3, 12, head + "1 -1 1 2 1 3 2 0 0 0\n1 1 1\n0 90\n0\n1 1\n"},
+      {"fit no symmetry of type A", 5, 1, head + "1 -1 1 2 2 3 2 0 0 0\n1 1 1\n10 90\n0 90\n1 1 1 1\n"},
+      {"fit no symmetry of type B", 6, 1, head + "1 -1 1 2 2 2 2 0 0 0\n1 1 1\n0 90\n10 90\n1 1 1 1\n"},
+      {"vertical angle '100'", 5, 3, head + "1 -1 1 2 2 2 2 0 0 0\n1 1 1\n0 100\n0 90\n1 1 1 1\n"},
+      {"one horizontal angle, and vertical", 5, 1, head + "1 -1 1 2 1 2 2 0 0 0\n1 1 1\n-90 90\n0\n1 1\n"},
+      {"tilt angles do not ascend", 5, 1, "IESNA91\nTILT=INCLUDE\n1\n2\n90 0\n1 1\n"},
+      {"lamp-to-luminaire geometry '4'", 3, 1, "IESNA91\nTILT=INCLUDE\n4\n2\n0 90\n1 1\n"},
+      {"the tilt factor at 0", 2, 1, "IESNA91\nTILT=INCLUDE\n1\n2\n0 90\n0 1\n"},
       {"photometric type '7'", 3, 12, head + "1 -1 1 2 1 7 2 0 0 0\n1 1 1\n0 90\n0\n1 1\n"},
       {"lumens per lamp", 0, 0, head + "1 -0.5 1 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n1 1\n"},
       {"a multiplier or ballast factor is 0", 0, 0, head + "1 -1 0 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n1 1\n"},
