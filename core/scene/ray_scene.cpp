@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <vector>
 
 #include "core/check.h"
@@ -43,6 +44,8 @@ struct RayScene::State {
   std::vector<Material> materials;
   Eigen::AlignedBox3d bounds_m;  // relative to the origin
   double longest_edge_m = 0;
+  mutable std::once_flag tree_built;
+  mutable TriangleTree tree;
 
   State() = default;
   State(const State&) = delete;
@@ -195,6 +198,70 @@ bool RayScene::occluded(const Vec3& from_world_m, const Vec3& from_normal_world,
   rtcInitIntersectContext(&context);
   rtcOccluded1(state.scene, &context, &ray);
   return ray.tfar < 0;
+}
+
+void RayScene::occluded_many(const Vec3& from_world_m, const Vec3& from_normal_world, std::span<const Vec3> to_world_m,
+                             std::span<std::uint8_t> occluded) const {
+  LUXRIG_CHECK(occluded.size() == to_world_m.size(), "{} answers for {} targets", occluded.size(), to_world_m.size());
+  for (std::size_t i = 0; i < to_world_m.size(); ++i)
+    occluded[i] = this->occluded(from_world_m, from_normal_world, to_world_m[i]);
+}
+
+bool RayScene::surely_clear(const Shaft& shaft) const {
+  const State& state = *state_;
+  if (state.triangles.empty()) return true;
+  std::call_once(state.tree_built, [&] {
+    state.tree = TriangleTree(std::span(state.vertices_m).first(state.vertices_m.size() - 1), state.triangles,
+                              state.origin_world_m);
+  });
+  double error_m = 0;
+  for (const Vec3& corner : shaft.corners_world_m) error_m = std::max(error_m, surface_error_m(corner));
+  return state.tree.keeps_out_of(shaft, 2 * error_m);
+}
+
+bool RayScene::surely_blocked(const Vec3& from_world_m, const Vec3& from_normal_world,
+                              std::span<const Vec3> corners_world_m, std::uint64_t& rays) const {
+  const State& state = *state_;
+  std::array<std::uint32_t, 2> ids{};
+  std::size_t count = 0;
+  std::array<std::size_t, 8> of_corner{};
+  LUXRIG_CHECK(corners_world_m.size() <= of_corner.size(), "{} corners", corners_world_m.size());
+  for (std::size_t i = 0; i < corners_world_m.size(); ++i) {
+    const Vec3 way_m = corners_world_m[i] - from_world_m;
+    const double distance_m = way_m.norm();
+    if (!(way_m.dot(from_normal_world) > 0) && !from_normal_world.isZero(0)) return false;
+    ++rays;
+    const auto hit = nearest(from_world_m, way_m / distance_m, from_normal_world);
+    if (!hit || !(hit->distance_m < distance_m - kEndErrors * surface_error_m(corners_world_m[i]))) return false;
+    const auto known = std::find(ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(count), hit->triangle);
+    of_corner[i] = static_cast<std::size_t>(known - ids.begin());
+    if (of_corner[i] < count) continue;
+    if (count == ids.size()) return false;
+    ids[count++] = hit->triangle;
+  }
+  std::array<std::array<std::uint32_t, 3>, 2> vertices{};
+  for (std::size_t i = 0; i < count; ++i) vertices[i] = state.triangles[ids[i]];
+  if (count == 2) {
+    // Both turned so that the shared edge comes first.
+    const auto place = [&](std::uint32_t vertex) { return state.vertices_m[vertex]; };
+    bool found = false;
+    for (int i = 0; i < 3 && !found; ++i) {
+      for (int j = 0; j < 3 && !found; ++j) {
+        const auto &a = vertices[0], &b = vertices[1];
+        found = (place(a[0]) == place(b[0]) && place(a[1]) == place(b[1])) ||
+                (place(a[0]) == place(b[1]) && place(a[1]) == place(b[0]));
+        if (!found) std::rotate(vertices[1].begin(), vertices[1].begin() + 1, vertices[1].end());
+      }
+      if (!found) std::rotate(vertices[0].begin(), vertices[0].begin() + 1, vertices[0].end());
+    }
+    if (!found) return false;
+  }
+  std::array<std::array<Vec3, 3>, 2> triangles_m;
+  for (std::size_t i = 0; i < count; ++i)
+    for (std::size_t k = 0; k < 3; ++k)
+      triangles_m[i][k] = state.vertices_m[vertices[i][k]].cast<double>() + state.origin_world_m;
+  return hull_lies_behind(from_world_m, corners_world_m, std::span(triangles_m).first(count),
+                          std::span(of_corner).first(corners_world_m.size()));
 }
 
 const Material& RayScene::material_of(std::uint32_t triangle) const {

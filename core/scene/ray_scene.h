@@ -9,8 +9,10 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "core/scene/scene.h"
+#include "core/scene/shaft.h"
 
 namespace luxrig {
 
@@ -39,6 +41,21 @@ class RayScene {
   /// True if anything stands on the open segment between a surface point (with its normal, which may be
   /// zero) and another point, which may itself lie on a surface (a lamp flush with the ceiling).
   [[nodiscard]] bool occluded(const Vec3& from_world_m, const Vec3& from_normal_world, const Vec3& to_world_m) const;
+
+  /// occluded() for many targets from one place: faster where they lie in similar directions.
+  /// occluded   one per target: 1 or 0
+  void occluded_many(const Vec3& from_world_m, const Vec3& from_normal_world, std::span<const Vec3> to_world_m,
+                     std::span<std::uint8_t> occluded) const;
+
+  /// True only if no ray within the shaft can be stopped: then none need be cast. Casts none itself; the first call
+  /// builds a tree of boxes. Agrees with occluded() about what stands nearer to a surface than it can be told.
+  [[nodiscard]] bool surely_clear(const Shaft& shaft) const;
+
+  /// True only if no ray from a surface point to any place within the convex hull of `corners` gets through: proven
+  /// when all corners are seen through one triangle, or through two that share an edge. Adds the rays cast, at most one
+  /// per corner.
+  [[nodiscard]] bool surely_blocked(const Vec3& from_world_m, const Vec3& from_normal_world,
+                                    std::span<const Vec3> corners_world_m, std::uint64_t& rays) const;
 
   /// Luminous reflectance and colour of a triangle's material.
   [[nodiscard]] const Material& material_of(std::uint32_t triangle) const;

@@ -12,13 +12,20 @@ class DirectEvaluator final : public Evaluator {
                                    const EvaluateOptions& options) const override {
     if (auto checked = check_evaluation(receivers, emitters, options); !checked)
       return tl::unexpected(std::move(checked.error()));
-    const Lamps lamps(emitters);
-    auto direct = direct_light(scene_, receivers, lamps, emitters.size(), options.threads, options.watch);
+    auto direct = direct_light(scene_, receivers, emitters, options);
     if (!direct) return tl::unexpected(std::move(direct.error()));
     TransportMatrix matrix;
     matrix.direct_lux_per_level = std::move(direct->lux_per_level);
     matrix.lux_per_level = matrix.direct_lux_per_level;
+    matrix.replicates = std::move(direct->replicates);
+    matrix.relative_error = direct->relative_error;
     matrix.rays = direct->rays;
+    if (options.colour)
+      for (int primary = 0; primary < 3; ++primary) {
+        Eigen::MatrixXd& of = matrix.rgb_per_level.emplace_back(matrix.lux_per_level);
+        for (std::size_t e = 0; e < emitters.size(); ++e)
+          of.col(static_cast<Eigen::Index>(e)) *= emitters[e].colour_rgb[primary];
+      }
     return matrix;
   }
 

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "core/photometry/shape_sampling.h"
-#include "tests/core/transport/lamp_pose.h"
+#include "tests/core/transport/closed_forms.h"
 
 namespace luxrig {
 namespace {
@@ -68,44 +68,6 @@ class Random {
   std::mt19937_64 engine_;
 };
 
-// The closed forms, for luminance 1.
-
-/// Rectangle: contour integral over its outline cut at the horizon (J. H. Lambert 1760; in vector form P. Moon 1936).
-double rectangle_form(double x_m, double y_m, const Vec3& p, const Vec3& n) {
-  std::vector<Vec3> corners, kept;
-  for (const auto& [i, j] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}})
-    corners.push_back(Vec3(i * x_m / 2, j * y_m / 2, 0) - p);
-  for (std::size_t k = 0; k < 4; ++k) {
-    const Vec3 &a = corners[k], &b = corners[(k + 1) % 4];
-    if (n.dot(a) >= 0) kept.push_back(a);
-    if ((n.dot(a) >= 0) != (n.dot(b) >= 0)) kept.push_back(a + n.dot(a) / (n.dot(a) - n.dot(b)) * (b - a));
-  }
-  double sum = 0;
-  for (std::size_t k = 0; k < kept.size(); ++k) {
-    const Vec3 &a = kept[k], &b = kept[(k + 1) % kept.size()];
-    const Vec3 cross = a.cross(b);
-    if (cross.norm() > 0) sum += std::atan2(cross.norm(), a.dot(b)) * n.dot(cross) / cross.norm();
-  }
-  return std::abs(sum) / 2;
-}
-
-/// Disk of radius r on its axis's parallel, receiver facing it: (H. H. Higbie 1934) with distance h and offset a.
-double parallel_disk_form(double r, double h, double a) {
-  const double s = h * h + a * a + r * r;
-  return kPi / 2 * (1 - (h * h + a * a - r * r) / std::sqrt(s * s - 4 * a * a * r * r));
-}
-
-/// Sphere above the horizon wholly: π (R/d)² cos β. Partly: J. R. Howell, configuration factor B-43 (after
-/// W. Juul 1979 and others).
-double sphere_form(double radius, double distance, double cos_beta) {
-  const double h = distance / radius, beta = std::acos(cos_beta);
-  if (cos_beta * h >= 1) return kPi * cos_beta / (h * h);
-  if (cos_beta * h <= -1) return 0;
-  const double x = std::sqrt(h * h - 1), y = -x / std::tan(beta);
-  return (cos_beta * std::acos(y) - x * std::sin(beta) * std::sqrt(1 - y * y)) / (h * h) +
-         std::atan(std::sin(beta) * std::sqrt(1 - y * y) / x);
-}
-
 TEST(ShapeLight, DiffuseRectanglesFollowTheContourIntegralWhereverTheReceiverIs) {
   Random random(1);
   int lit = 0;
@@ -114,7 +76,7 @@ TEST(ShapeLight, DiffuseRectanglesFollowTheContourIntegralWhereverTheReceiverIs)
     const double x_m = std::exp(random.between(-2, 2)), y_m = std::exp(random.between(-2, 2));
     const Vec3 p = std::exp(random.between(-3, 3)) * random.direction(), n = random.direction();
     const Emitter emitter{std::make_shared<Diffuser>(x_m * y_m, true), {}, rectangle(x_m, y_m)};
-    const double expected = rectangle_form(x_m, y_m, p, n);
+    const double expected = rectangle_form(-x_m / 2, x_m / 2, -y_m / 2, y_m / 2, 0, p, n);
     const auto light = shape_light(p, n, emitter, {1e-6, 100'000});
     EXPECT_NEAR(light.lux, expected, 1e-6 * expected + 1e-12) << p.transpose() << " n " << n.transpose();
     if (expected < 1e-6) continue;
