@@ -41,7 +41,8 @@ void line(cairo_t* pen, double x0, double y0, double x1, double y1) {
 }  // namespace
 
 std::string write_plot(const std::vector<BenchRow>& rows, const std::string& title, const std::filesystem::path& file) {
-  if (rows.empty()) return "nothing to draw";
+  if (std::all_of(rows.begin(), rows.end(), [](const BenchRow& row) { return std::isnan(row.error); }))
+    return "nothing to draw";
   // Logarithms need something above zero: exact results are drawn at 1e-16.
   const auto error_of = [](const BenchRow& row) { return std::clamp(row.error, 1e-16, 1e16); };
   const auto seconds_of = [](const BenchRow& row) { return std::max(row.seconds, 1e-6); };
@@ -49,6 +50,7 @@ std::string write_plot(const std::vector<BenchRow>& rows, const std::string& tit
   double least_s = 1e9, most_s = 1e-9, least = 1e9, most = 1e-16;
   std::map<std::string, std::vector<const BenchRow*>> lines;
   for (const BenchRow& row : rows) {
+    if (std::isnan(row.error)) continue;
     least_s = std::min(least_s, seconds_of(row));
     most_s = std::max(most_s, seconds_of(row));
     least = std::min(least, error_of(row));

@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace luxrig {
 namespace {
 
-std::string number(std::optional<double> value) { return value ? fmt::format("{:.6g}", *value) : ""; }
+std::string number(std::optional<double> value) {
+  return value && std::isfinite(*value) ? fmt::format("{:.6g}", *value) : "";
+}
 
 std::vector<std::vector<std::string>> cells_of(const std::vector<BenchRow>& rows) {
   std::vector<std::vector<std::string>> cells = {

@@ -11,7 +11,7 @@ namespace luxrig {
 
 struct BenchRow {
   std::string case_name, method;
-  double error = 0;  ///< as a fraction
+  double error = 0;  ///< as a fraction; NaN = none, an empty field
   double seconds = 0;
   std::optional<double> target_error, target_seconds;
   std::vector<std::pair<std::string, std::string>> further;  ///< columns the suite adds, the same on each row

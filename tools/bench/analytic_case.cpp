@@ -1,0 +1,53 @@
+#include "tools/bench/analytic_case.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace luxrig {
+namespace {
+
+/// With quick, interreflection is asked for, and judged, this much more loosely.
+constexpr double kQuickFactor = 4;
+
+}  // namespace
+
+double worst_error(const AnalyticCase& one, const TransportMatrix& matrix) {
+  const Eigen::VectorXd levels = Eigen::VectorXd::Ones(matrix.emitters());
+  const Eigen::VectorXd direct_lx = matrix.direct_lux(levels), all_lx = matrix.lux(levels);
+  const double brightest_lx = *std::max_element(one.exact_lx.begin(), one.exact_lx.end());
+  double worst = 0;
+  for (Eigen::Index r = 0; r < matrix.receivers(); ++r) {
+    const double exact_lx = one.exact_lx[static_cast<std::size_t>(r)];
+    const double lux = one.part == AnalyticCase::Part::total    ? all_lx[r]
+                       : one.part == AnalyticCase::Part::direct ? direct_lx[r]
+                                                                : all_lx[r] - direct_lx[r];
+    const double error = std::abs(lux - exact_lx) / std::max(exact_lx, 1e-3 * brightest_lx);
+    if (!(error <= worst)) worst = error;  // a NaN stays
+  }
+  return worst;
+}
+
+void measure_case(const AnalyticCase& one, const BenchOptions& options, std::vector<BenchRow>& rows) {
+  const RayScene rays(one.scene);
+  for (const Method& method : methods()) {
+    if (one.reflects && !method.reflects) continue;
+    const double tightest = method.reflected_target / 3 * one.reflected_share;
+    std::vector<double> wanted_errors = {0.001};
+    if (one.reflects && options.quick) wanted_errors = {kQuickFactor * tightest};
+    if (one.reflects && !options.quick) wanted_errors = {27 * tightest, 9 * tightest, 3 * tightest, tightest};
+    for (const double wanted : wanted_errors) {
+      EvaluateOptions evaluate;
+      evaluate.wanted_relative_error = wanted;
+      evaluate.threads = options.threads;
+      const Measured run = measure(method, rays, one.receivers, one.emitters, evaluate);
+      std::optional<double> target;
+      if (!one.reflects) target = one.direct_target;
+      if (one.reflects && wanted == wanted_errors.back())
+        target = options.quick ? kQuickFactor * method.reflected_target : method.reflected_target;
+      rows.push_back(row_of(one.name, method.name, run.refused.empty() ? worst_error(one, run.matrix) : 0, run,
+                            one.reflects ? std::optional(wanted) : std::nullopt, target));
+    }
+  }
+}
+
+}  // namespace luxrig

@@ -1,0 +1,40 @@
+#pragma once
+/// A scene whose light is known in closed form (or by a quadrature far finer than what it judges), and the rows that
+/// measuring it gives.
+
+#include "tools/bench/bench.h"
+#include "tools/bench/measured.h"
+
+namespace luxrig {
+
+struct AnalyticCase {
+  enum class Part { total, direct, reflected };
+  std::string name;
+  Scene scene;
+  std::vector<Receiver> receivers;
+  std::vector<Emitter> emitters;  ///< all at level 1
+  std::vector<double> exact_lx;   ///< one per receiver
+  Part part = Part::total;        ///< which part of a method's answer exact_lx is
+  bool reflects = false;          ///< only for methods that claim interreflection
+  double reflected_share = 1;     ///< of exact_lx in the illuminance whose error is wanted; less: wants more
+  double direct_target = 1e-6;    ///< where nothing is reflected
+};
+
+/// Largest relative error over the receivers, each relative to max(exact, 0.001 of the brightest).
+[[nodiscard]] double worst_error(const AnalyticCase& one, const TransportMatrix& matrix);
+
+/// Every method that claims the case. Without reflection one run; with it a curve, the last point of which, with a
+/// third of the method's target as wanted error, has that target.
+void measure_case(const AnalyticCase& one, const BenchOptions& options, std::vector<BenchRow>& rows);
+
+/// Families of cases, a file each.
+void add_point_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
+void add_area_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
+void add_flux_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
+void add_enclosure_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
+void add_furnace_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
+void add_reflection_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
+void add_daylight_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
+void add_error_bar_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
+
+}  // namespace luxrig

@@ -1,0 +1,67 @@
+/// Are reported errors honest? Many seeds on one cheap room: how often the truth is within two reported standard
+/// errors.
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/transport/enclosures.h"
+#include "tools/bench/analytic_case.h"
+#include "tools/bench/box_radiosity.h"
+
+namespace luxrig {
+
+void add_error_bar_rows(const BenchOptions& options, std::vector<BenchRow>& rows) {
+  const int seeds = options.quick ? 200 : 1000;
+  const double edge_m = 3, reflectance = 0.6, wanted = 0.02;
+  const Vec3 source_m(1.7, 1.2, 2.0);
+  Scene scene = make_cube(edge_m, reflectance);
+  scene.origin_world_m = Vec3::Constant(edge_m / 2);
+  const RayScene rays(scene);
+  std::array<double, 6> same;
+  same.fill(reflectance);
+  const BoxRadiosity exact({Vec3::Constant(edge_m), same, 1000, source_m}, 8);
+  std::vector<Receiver> receivers;
+  std::vector<double> exact_lx;
+  for (const WallPoint& p : cube_wall_grid(edge_m, 1)) {
+    const Vec3 shift = Vec3(0.37, -0.61, 0.23),
+               at_m = p.position_m + shift - shift.dot(p.normal) * p.normal + scene.origin_world_m;
+    receivers.push_back({at_m, p.normal});
+    exact_lx.push_back(exact.direct_lx(at_m, p.normal) + exact.reflected_lx(at_m, p.normal));
+  }
+  const std::vector<Emitter> source = {{make_isotropic(1000), {Mat3::Identity(), source_m}}};
+  for (const Method& method : methods()) {
+    if (!method.reflects) continue;
+    Measured all;
+    double seconds = 0, squares = 0;
+    std::uint64_t traced = 0;
+    int within = 0, count = 0;
+    for (int seed = 1; seed <= seeds && all.refused.empty(); ++seed) {
+      EvaluateOptions evaluate;
+      evaluate.wanted_relative_error = wanted;
+      evaluate.seed = static_cast<std::uint64_t>(seed);
+      evaluate.threads = options.threads;
+      all = measure(method, rays, receivers, source, evaluate);
+      seconds += all.seconds, traced += all.matrix.rays;
+      if (!all.refused.empty()) break;
+      const Eigen::VectorXd levels = Eigen::VectorXd::Ones(1), lux = all.matrix.lux(levels);
+      const Eigen::VectorXd bar_lx = all.matrix.standard_error_lux(levels);
+      for (std::size_t r = 0; r < receivers.size(); ++r, ++count) {
+        const auto row = static_cast<Eigen::Index>(r);
+        const double off_lx = std::abs(lux[row] - exact_lx[r]);
+        within += off_lx <= 2 * bar_lx[row];
+        squares += std::pow(off_lx / exact_lx[r], 2);
+      }
+    }
+    all.seconds = seconds, all.matrix.rays = traced;
+    const double share = count ? static_cast<double>(within) / count : 0;
+    BenchRow row =
+        row_of(fmt::format("error-bars-{}-seeds", seeds), method.name, std::abs(share - 0.95), all, wanted, 0.02);
+    if (all.refused.empty())
+      row.further.back().second = fmt::format("within two standard errors: {:.2f} %; rms error {:.2e}", 100 * share,
+                                              std::sqrt(squares / std::max(count, 1)));
+    rows.push_back(row);
+  }
+}
+
+}  // namespace luxrig

@@ -1,0 +1,29 @@
+#pragma once
+/// The fifteen skies of CIE S 011/E:2003 (ISO 15469), written here once more so that the answers of
+/// `luxrig bench analytic` do not come from the code under test.
+
+#include "core/photometry/sky_luminance.h"
+
+namespace luxrig {
+
+/// A general sky of type 1 … 15, of 1 cd/m² in the zenith times `zenith_cd_m2`, without the sun's disk.
+class ReferenceSky final : public SkyLuminance {
+ public:
+  ReferenceSky(int type, const Vec3& towards_sun_world, double zenith_cd_m2);
+  double luminance_cd_m2(const Vec3& direction_world) const override;
+  double horizontal_illuminance_lx() const override { return horizontal_lx_; }
+  /// Cosine-weighted over the upper hemisphere.
+  DirectionSample sample(double u, double v) const override;
+  double density_per_sr(const Vec3& direction_world) const override;
+
+ private:
+  struct Parameters {
+    double a, b, c, d, e;
+  };
+  static const Parameters kTypes[15];
+  Parameters type_;
+  Vec3 sun_;
+  double scale_cd_m2_ = 1, horizontal_lx_ = 0;
+};
+
+}  // namespace luxrig
