@@ -16,7 +16,8 @@ struct Suite {
   std::vector<BenchRow> (*run)(const BenchOptions& options);
 };
 constexpr Suite kSuites[] = {
-    {"analytic", "evaluators against closed forms: point source, cube, integrating sphere", bench_analytic},
+    {"analytic", "evaluators against closed forms: sources, flux, enclosures, furnace, CIE 171", bench_analytic},
+    {"transport", "evaluators in furnished rooms against converged path tracing", bench_transport},
     {"buses", "output cycle: 4 universes at 44 Hz while a solver uses every core", bench_buses},
 };
 

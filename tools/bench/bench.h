@@ -11,6 +11,10 @@ struct BenchOptions {
   bool quick = false;                         ///< fewer and coarser runs, same columns, under a minute
   std::filesystem::path csv_file, plot_file;  ///< written when not empty
   int threads = 0;                            ///< 0 = one per core
+  std::filesystem::path references_folder;    ///< transport: converged references are kept here, by scene
+  std::filesystem::path export_folder;        ///< transport: writes its rooms here for Radiance instead of measuring
+  std::vector<std::filesystem::path> rigs;    ///< transport: rig files whose scenes are measured too
+  std::string only;                           ///< transport: measures only cases whose name begins so
 };
 
 /// Names of the suites.

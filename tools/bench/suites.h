@@ -10,6 +10,9 @@ namespace luxrig {
 
 [[nodiscard]] std::vector<BenchRow> bench_analytic(const BenchOptions& options);
 
+/// Time against error of every evaluator in furnished rooms, against converged path tracing; what must hold besides.
+[[nodiscard]] std::vector<BenchRow> bench_transport(const BenchOptions& options);
+
 /// 60 s (6 s with quick) of four sACN universes at 44 Hz to a sink on loopback, path tracing on all cores meanwhile.
 /// Prints the histogram of the intervals by the kernel's arrival stamps. error: p99 deviation over the period.
 [[nodiscard]] std::vector<BenchRow> bench_buses(const BenchOptions& options);

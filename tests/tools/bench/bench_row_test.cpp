@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 
 #include "tools/bench/bench.h"
@@ -18,6 +19,14 @@ TEST(BenchRow, CsvHasTheContractsColumnsFirst) {
             "cube,path,0.004,1.5,0.005,2,1,12\n"
             "cube,slow,0.004,2.5,0.005,2,0,13\n"
             "free,path,0.5,0.25,,,,14\n");
+}
+
+TEST(BenchRow, ARefusedCaseHasAnEmptyErrorAndNeitherMeetsNorMissesATarget) {
+  const std::vector<BenchRow> rows = {{"sky", "direct", std::nan(""), 0, {}, {}, {{"note", "refused"}}}};
+  EXPECT_EQ(csv_of(rows),
+            "case,method,error,seconds,target_error,target_seconds,met,note\n"
+            "sky,direct,,0,,,,refused\n");
+  EXPECT_NE(write_plot(rows, "test", testing::TempDir() + "/bench_nothing.png"), "");
 }
 
 TEST(BenchRow, OfNoRowsCsvIsTheHeader) {

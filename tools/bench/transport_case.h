@@ -1,0 +1,56 @@
+#pragma once
+/// A lit room with the converged illuminance of its receivers, and the rows that `luxrig bench transport` makes of it.
+
+#include <functional>
+
+#include "core/transport/rooms/lit_room.h"
+#include "tools/bench/bench.h"
+#include "tools/bench/measured.h"
+
+namespace luxrig {
+
+/// What all methods are measured against: path tracing with a small wanted error and a seed of its own, all lamps at
+/// level 1.
+struct Reference {
+  Eigen::VectorXd lux;
+  double rms_error = 0;  ///< its own, by its standard errors; relative as below
+  double seconds = 0;    ///< what it took; 0 when it came from a file
+  std::string refused;   ///< why there is none
+};
+
+struct TransportCase {
+  explicit TransportCase(LitRoom lit) : room(std::move(lit)), rays(room.scene) {}
+  LitRoom room;
+  RayScene rays;
+};
+
+/// Relative to max(lux, 1 % of the mean): rms over the receivers, and the mean with its sign.
+struct RoomError {
+  double rms = 0, bias = 0;
+};
+[[nodiscard]] RoomError error_of(const Eigen::VectorXd& lux, const Eigen::VectorXd& reference_lux);
+
+/// 64 bits that change with the geometry, the materials, the lamps or the receivers.
+[[nodiscard]] std::uint64_t hash_of(const LitRoom& room);
+
+/// With options.references_folder, from its file there when one as good is kept; else computed, and kept.
+[[nodiscard]] Reference reference_of(const TransportCase& one, const BenchOptions& options);
+
+/// A row of the transport suite: measured.h's columns, then bias and reference_error, and `note` last.
+[[nodiscard]] BenchRow transport_row(const std::string& case_name, const std::string& method, double error,
+                                     const Measured& run, std::optional<double> wanted_error,
+                                     std::optional<double> target_error, const RoomError& bias = {},
+                                     double reference_error = 0);
+
+/// Parts of the suite, a file each.
+void add_curve_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
+void add_identity_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
+void add_candidate_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
+
+/// Writes what Radiance needs to compute the same receivers: NAME.rad, NAME.pts, NAME.lux. Empty, or what went wrong.
+[[nodiscard]] std::string export_for_radiance(const LitRoom& room, const std::filesystem::path& folder);
+
+/// True unless options.only says otherwise.
+[[nodiscard]] bool wanted_case(const BenchOptions& options, const std::string& case_name);
+
+}  // namespace luxrig
