@@ -1,0 +1,115 @@
+/// Ten thousand hostile scenes: whatever the mesh, an evaluator ends, and its numbers are numbers.
+
+#include "tests/core/transport/stress/hostile_scene.h"
+
+#include <gtest/gtest.h>
+
+namespace luxrig {
+namespace {
+
+// Sanitizers make each scene many times slower and look at each access, not at chance: a share of the scenes will do.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr int kScenes = 100;
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+constexpr int kScenes = 100;
+#else
+constexpr int kScenes = 1000;
+#endif
+#else
+constexpr int kScenes = 1000;
+#endif
+
+struct Entry {
+  const char* name;
+  std::unique_ptr<Evaluator> (*make)(const RayScene&);
+};
+constexpr Entry kEvaluators[] = {{"direct", make_direct_evaluator}, {"path", make_path_evaluator}};
+
+EvaluateOptions few_rays(const HostileScene& made, std::uint64_t seed, int threads) {
+  EvaluateOptions options;
+  options.seed = seed;
+  options.threads = threads;
+  options.wanted_relative_error = 0.1;
+  options.max_rays = 1'000;
+  options.levels.assign(made.emitters.size(), 0.5);
+  options.colour = seed % 3 == 0;
+  return options;
+}
+
+bool fine(const Eigen::MatrixXd& matrix) { return matrix.allFinite() && (matrix.array() >= 0).all(); }
+
+void expect_sound(const TransportMatrix& matrix, const HostileScene& made, const EvaluateOptions& options) {
+  const Eigen::VectorXd levels = Eigen::VectorXd::Constant(matrix.emitters(), 0.5);
+  ASSERT_EQ(matrix.receivers(), made.receivers.size());
+  ASSERT_EQ(matrix.emitters(), made.emitters.size());
+  ASSERT_TRUE(fine(matrix.lux_per_level)) << matrix.lux_per_level;
+  ASSERT_TRUE(fine(matrix.direct_lux_per_level)) << matrix.direct_lux_per_level;
+  for (const auto& replicate : matrix.replicates) ASSERT_TRUE(replicate.allFinite()) << replicate;
+  ASSERT_TRUE(fine(matrix.standard_error_lux(levels)));
+  ASSERT_TRUE(std::isfinite(matrix.relative_error) && matrix.relative_error >= 0);
+  // Direct light is part of the whole.
+  const double slack = 1e-9 * (matrix.direct_lux_per_level.maxCoeff() + matrix.lux_per_level.maxCoeff());
+  ASSERT_GE((matrix.lux_per_level - matrix.direct_lux_per_level).minCoeff(), -slack);
+  if (options.colour && !matrix.rgb_per_level.empty()) {
+    const Eigen::MatrixXd sum =
+        0.2126 * matrix.rgb_per_level[0] + 0.7152 * matrix.rgb_per_level[1] + 0.0722 * matrix.rgb_per_level[2];
+    for (const auto& channel : matrix.rgb_per_level) ASSERT_TRUE(channel.allFinite());
+    ASSERT_LE((sum - matrix.lux_per_level).cwiseAbs().maxCoeff(), 1e-6 * matrix.lux_per_level.maxCoeff());
+  }
+}
+
+/// One share of the scenes, so that several processors can work on them.
+class HostileShare : public testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(OfTen, HostileShare, testing::Range(0, 10));
+
+TEST_P(HostileShare, OfScenesGivesNoNaNNothingNegativeAndNothingInfinite) {
+  int refused = 0;
+  for (int i = 0; i < kScenes; ++i) {
+    const auto seed = static_cast<std::uint64_t>(GetParam() * 1000 + i);
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    const HostileScene made = HostileScenes(seed).next();
+    const RayScene rays(made.scene);
+    const EvaluateOptions options = few_rays(made, seed, 1);
+    std::optional<Eigen::MatrixXd> direct_lx;
+    for (const Entry& entry : kEvaluators) {
+      SCOPED_TRACE(entry.name);
+      const auto matrix = entry.make(rays)->evaluate(made.receivers, made.emitters, options);
+      if (!matrix) {
+        ASSERT_EQ(matrix.error().cause, Cause::invalid) << matrix.error().detail;
+        ASSERT_TRUE(made.may_be_refused) << matrix.error().detail;
+        ++refused;
+        continue;
+      }
+      expect_sound(*matrix, made, options);
+      if (HasFatalFailure()) return;
+      // Whoever computes it, direct light of a point is the same.
+      if (!direct_lx) direct_lx = matrix->direct_lux_per_level;
+      ASSERT_LE((*direct_lx - matrix->direct_lux_per_level).cwiseAbs().maxCoeff(), 1e-9 * direct_lx->maxCoeff());
+    }
+  }
+  EXPECT_LT(refused, kScenes / 2);
+}
+
+TEST(HostileScenes, GiveTheSameBytesForOneTwoAndEightThreads) {
+  for (std::uint64_t seed = 50'000; seed < 50'040; ++seed) {
+    const HostileScene made = HostileScenes(seed).next();
+    const RayScene rays(made.scene);
+    for (const Entry& entry : kEvaluators) {
+      const auto one = entry.make(rays)->evaluate(made.receivers, made.emitters, few_rays(made, seed, 1));
+      for (const int threads : {2, 8}) {
+        const auto many = entry.make(rays)->evaluate(made.receivers, made.emitters, few_rays(made, seed, threads));
+        ASSERT_EQ(one.has_value(), many.has_value());
+        if (!one) continue;
+        EXPECT_EQ(one->lux_per_level, many->lux_per_level) << entry.name << ", seed " << seed;
+        EXPECT_EQ(one->direct_lux_per_level, many->direct_lux_per_level);
+        EXPECT_EQ(one->rays, many->rays);
+        ASSERT_EQ(one->replicates.size(), many->replicates.size());
+        for (std::size_t k = 0; k < one->replicates.size(); ++k) EXPECT_EQ(one->replicates[k], many->replicates[k]);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace luxrig
