@@ -8,6 +8,7 @@
 #include <cmath>
 #include <memory>
 
+#include "core/photometry/sky.h"
 #include "tools/bench/analytic_case.h"
 #include "tools/bench/closed_forms.h"
 #include "tools/bench/rectangle_scene.h"
@@ -24,9 +25,10 @@ std::shared_ptr<const ReferenceSky> sky_of(int type) {
       type, Vec3(std::cos(up) * std::cos(turn), std::cos(up) * std::sin(turn), std::sin(up)), 3000.0);
 }
 
-Emitter daylight(const Sky& sky) {
+/// The sky under test of the same type, sun and illuminance.
+Emitter daylight(int type, const ReferenceSky& like) {
   Emitter emitter;
-  emitter.sky = sky;
+  emitter.sky = make_general_sky(type, like.towards_sun_world(), like.horizontal_illuminance_lx());
   return emitter;
 }
 
@@ -49,7 +51,7 @@ AnalyticCase roof(int type, double edge_m) {
   room.add({far_m, near_m, 3}, {near_m, 0, 0}, {0, edge_m, 0}, 0);
   one.scene = room.scene();
   const auto sky = sky_of(type);
-  one.emitters.push_back(daylight(sky));
+  one.emitters.push_back(daylight(type, *sky));
   const GaussRule rule = gauss_rule(40);
   const auto expect = [&](const Vec3& at_m, const Vec3& normal) {
     one.receivers.push_back({at_m, normal});
@@ -93,7 +95,7 @@ AnalyticCase facade(int type, Mask mask) {
   if (mask == Mask::opposite) room.add({-200, -kAway_m, kTop_m - 3}, {400, 0, 0}, {0, 0, 3}, 0);
   one.scene = room.scene();
   const auto sky = sky_of(type);
-  one.emitters.push_back(daylight(sky));
+  one.emitters.push_back(daylight(type, *sky));
   const double ground_cd_m2 = kGround / kPi * sky->horizontal_illuminance_lx();
   const auto seen_cd_m2 = [&](const Vec3& from_m, const Vec3& direction) {
     if (mask == Mask::overhang && direction.z() > 0) {

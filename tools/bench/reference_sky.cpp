@@ -34,11 +34,4 @@ double ReferenceSky::luminance_cd_m2(const Vec3& direction) const {
   return scale_cd_m2_ * gradation * indicatrix;
 }
 
-DirectionSample ReferenceSky::sample(double u, double v) const {
-  const double flat = std::sqrt(u), up = std::sqrt(1 - u), turn = 2 * kPi * v;
-  return {{flat * std::cos(turn), flat * std::sin(turn), up}, up / kPi};
-}
-
-double ReferenceSky::density_per_sr(const Vec3& direction) const { return std::max(0.0, direction.z()) / kPi; }
-
 }  // namespace luxrig

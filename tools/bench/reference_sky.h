@@ -2,19 +2,17 @@
 /// The fifteen skies of CIE S 011/E:2003 (ISO 15469), written here once more so that the answers of
 /// `luxrig bench analytic` do not come from the code under test.
 
-#include "core/photometry/sky_luminance.h"
+#include "core/geometry.h"
 
 namespace luxrig {
 
 /// A general sky of type 1 … 15, of 1 cd/m² in the zenith times `zenith_cd_m2`, without the sun's disk.
-class ReferenceSky final : public SkyLuminance {
+class ReferenceSky {
  public:
   ReferenceSky(int type, const Vec3& towards_sun_world, double zenith_cd_m2);
-  double luminance_cd_m2(const Vec3& direction_world) const override;
-  double horizontal_illuminance_lx() const override { return horizontal_lx_; }
-  /// Cosine-weighted over the upper hemisphere.
-  DirectionSample sample(double u, double v) const override;
-  double density_per_sr(const Vec3& direction_world) const override;
+  [[nodiscard]] double luminance_cd_m2(const Vec3& direction_world) const;
+  [[nodiscard]] double horizontal_illuminance_lx() const { return horizontal_lx_; }
+  [[nodiscard]] const Vec3& towards_sun_world() const { return sun_; }
 
  private:
   struct Parameters {
