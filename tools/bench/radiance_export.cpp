@@ -1,8 +1,8 @@
 /// A room as Radiance's input: surfaces, lamps and measuring points, and our own answer's units.
 ///
-/// Radiance counts watts per steradian and square metre; its convention is 179 lm/W, and `rtrace -I` prints irradiance
-/// by channel, so that lux = 179 (0.265 r + 0.670 g + 0.065 b). All is grey there: reflectances are luminous ones,
-/// since its weights are not Rec. 709's.
+/// Radiance counts watts per steradian and square metre by channel; its convention is 179 lm/W. Lamps shine white
+/// there, so that 179 times a channel of `rtrace -I` is the lux by that channel's reflectances; weighted as Rec. 709's
+/// luminance, the three are what evaluators here mean by lux.
 
 #include <fmt/format.h>
 
@@ -51,9 +51,10 @@ std::string export_for_radiance(const LitRoom& room, const std::filesystem::path
   std::string rad = fmt::format("# {}\n", room.name);
   for (std::size_t m = 0; m < scene.materials.size(); ++m) {
     const Material& material = scene.materials[m];
-    const double body = material.luminous_reflectance();
-    rad += fmt::format("void plastic material{} 0 0 5 {:.9g} {:.9g} {:.9g} {:.9g} {:.9g}\n", m, body, body, body,
-                       material.specular_reflectance, material.specular_reflectance > 0 ? material.roughness : 0.0);
+    const Vec3& body = material.reflectance_rgb;
+    rad += fmt::format("void plastic material{} 0 0 5 {:.9g} {:.9g} {:.9g} {:.9g} {:.9g}\n", m, body.x(), body.y(),
+                       body.z(), material.specular_reflectance,
+                       material.specular_reflectance > 0 ? material.roughness : 0.0);
   }
   for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
     rad += fmt::format("material{} polygon t{} 0 0 9", scene.material_of_triangle[t], t);
