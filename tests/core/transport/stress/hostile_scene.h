@@ -16,6 +16,8 @@ struct HostileScene {
   std::vector<Emitter> emitters;
   /// A lamp is so near a receiver, for the size of their coordinates, that an evaluator may refuse it.
   bool may_be_refused = false;
+  /// A lamp has size, or there is a sky: direct light is then sampled where something stands in between.
+  bool sized = false;
 };
 
 class HostileScenes {
@@ -44,6 +46,7 @@ class HostileScenes {
     const int receivers = 1 + below(4), emitters = 1 + below(3);
     for (int i = 0; i < receivers; ++i) made.receivers.push_back({place(made.scene), normal(made.scene)});
     for (int i = 0; i < emitters; ++i) made.emitters.push_back(lamp(made.scene));
+    if (below(4) == 0) give_size(made);
     for (const Receiver& r : made.receivers)
       for (const Emitter& e : made.emitters) {
         const double distance_m = (r.position_world_m - e.world_from_lamp.translation_m).norm();
@@ -169,6 +172,23 @@ class HostileScenes {
     const Vec3 weight(between(0, 1), between(0, 1), between(0, 1));
     made.colour_rgb = weight / (0.2126 * weight.x() + 0.7152 * weight.y() + 0.0722 * weight.z());
     return made;
+  }
+
+  /// A luminous surface, flat to the point of having no width, or a sky.
+  void give_size(HostileScene& made) {
+    made.sized = true;
+    Emitter& lamp = made.emitters.front();
+    const auto edge_m = [&] { return size_m_ * std::pow(10, between(-6, 0.5)); };
+    using Kind = LuminousShape::Kind;
+    constexpr Kind kKinds[] = {Kind::rectangle, Kind::disk, Kind::sphere, Kind::cylinder};
+    if (below(4)) {
+      lamp.shape = {kKinds[below(4)], {edge_m(), edge_m(), edge_m()}};
+    } else if (below(2)) {
+      lamp.sky =
+          make_general_sky(1 + below(15), Vec3(0.3, between(-1, 1), 0.5).normalized(), std::pow(10, between(0, 5)));
+    } else {
+      lamp.sky = make_sun(Vec3(0.3, between(-1, 1), between(0.05, 1)).normalized(), 1e5);
+    }
   }
 
   std::mt19937_64 bits_;
