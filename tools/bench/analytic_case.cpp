@@ -22,7 +22,8 @@ double worst_error(const AnalyticCase& one, const TransportMatrix& matrix) {
                        : one.part == AnalyticCase::Part::direct ? direct_lx[r]
                                                                 : all_lx[r] - direct_lx[r];
     const double error = std::abs(lux - exact_lx) / std::max(exact_lx, 1e-3 * brightest_lx);
-    if (!(error <= worst)) worst = error;  // a NaN stays
+    if (std::isnan(error)) return error;
+    worst = std::max(worst, error);
   }
   return worst;
 }
