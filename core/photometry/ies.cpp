@@ -75,7 +75,7 @@ class Parser {
     const std::string value(cursor_.take_token());
     const std::string small = lower(value);
     if (small == "none") return true;
-    if (small == "include") return parse_tilt_section(cursor_, problems_, at);
+    if (small == "include") return parse_tilt_section(cursor_, problems_);
     const std::string name(trimmed(line_start.take_line()));  // may hold blanks
     const std::optional<std::string> text = tilt_files_ ? tilt_files_(name) : std::nullopt;
     if (!text) {
@@ -86,7 +86,7 @@ class Parser {
     cursor_ = line_start;
     Cursor cursor(*text);
     ProblemLog problems(name);
-    if (parse_tilt_section(cursor, problems, {})) return true;
+    if (parse_tilt_section(cursor, problems)) return true;
     for (Problem& problem : problems.take()) {
       problems_.add(at, "tilt file " + excerpt(name) + ", line " + std::to_string(problem.line) + ": " + problem.what,
                     problem.mend);
@@ -94,7 +94,7 @@ class Parser {
     return false;
   }
 
-  bool parse_tilt_section(Cursor& cursor, ProblemLog& problems, At at) {
+  bool parse_tilt_section(Cursor& cursor, ProblemLog& problems) {
     NumberReader read(cursor, problems);
     LampTilt tilt;
     const auto geometry = read.whole("lamp-to-luminaire geometry", 1, 3);
@@ -104,11 +104,7 @@ class Parser {
     const At angles_at = read.place();
     if (!read.numbers("tilt angle", *count, 0, 180, tilt.angle_deg) ||
         !check_ascending("tilt", tilt.angle_deg, angles_at, problems) ||
-        !read.numbers("tilt factor", *count, 0, 10, tilt.factor)) {
-      return false;
-    }
-    if (!(tilt.factor.front() > 0)) {
-      problems.add(at, "the tilt factor at 0° is 0", "give the factor of the lamp hung straight, usually 1");
+        !read.numbers("tilt factor", *count, 0.001, 10, tilt.factor)) {
       return false;
     }
     upright_factor_ = tilt.factor.front();

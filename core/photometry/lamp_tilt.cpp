@@ -1,6 +1,8 @@
+#include "core/photometry/lamp_tilt.h"
+
 #include <algorithm>
 
-#include "core/photometry/ies.h"
+#include "core/geometry.h"
 
 namespace luxrig {
 

@@ -4,6 +4,7 @@
 
 #include "core/photometry/eulumdat.h"
 #include "core/photometry/file_text.h"
+#include "core/photometry/ies.h"
 
 namespace luxrig {
 

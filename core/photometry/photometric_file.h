@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "core/photometry/ies.h"
 #include "core/photometry/intensity.h"
+#include "core/photometry/lamp_tilt.h"
 #include "core/photometry/luminous_opening.h"
 #include "core/result.h"
 

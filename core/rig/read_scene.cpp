@@ -49,6 +49,8 @@ void RigReader::read_scene() {
       rule.place = s.place();
       s.read("material", rule.material_pattern);
       s.read("reflectance", rule.reflectance_rgb);
+      s.read("specular", rule.specular);
+      s.read("roughness", rule.roughness);
       rig.scene.reflectances.push_back(std::move(rule));
     });
     each(table, "scene.object", [&](Section& s) {

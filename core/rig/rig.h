@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "core/photometry/intensity.h"
+#include "core/photometry/lamp_tilt.h"
+#include "core/photometry/luminous_shape.h"
 #include "core/result.h"
 #include "core/rig/frames.h"
 #include "core/scene/mesh_file.h"
@@ -26,6 +28,8 @@ struct ReflectanceRule {
   std::string material_pattern;  ///< shell pattern: * and ?
   Vec3 reflectance_rgb = Vec3::Constant(0.5);
   Place place;
+  double specular = 0;     ///< gloss: reflectance of the coat at normal incidence, 0…0.95
+  double roughness = 0.3;  ///< of the coat, 0.05…1
 };
 
 /// A thing put into the scene: a mesh file, or a box.
@@ -48,16 +52,21 @@ struct SceneSpec {
   Place place;
 };
 
-enum class LuminaireModel { ies, isotropic, spot };
+/// ies: a measured file, IES LM-63 or EULUMDAT. The last four are surfaces of one luminance: a rectangle or disk that
+/// faces down, a sphere, an upright cylinder.
+enum class LuminaireModel { ies, isotropic, spot, rectangle, disk, sphere, cylinder };
 
 struct Luminaire {
   std::string name;
   LuminaireModel model = LuminaireModel::isotropic;
-  std::filesystem::path ies_path;                  ///< model == ies
+  std::filesystem::path ies_path;                  ///< model == ies: .ies, or .ldt for EULUMDAT
   double beam_angle_rad = 0, field_angle_rad = 0;  ///< model == spot, full angles to 50 % and 10 %
   double lumens = 0;                               ///< rated flux = flux of `intensity`
   std::optional<double> watts;
   Intensity intensity;  ///< at rated flux; never null in a checked Rig
+  LuminousShape shape;  ///< a point, unless the model has a size or a file's opening is asked for (near_field)
+  Vec3 colour_rgb = Vec3::Ones();  ///< of its light, linear Rec. 709 with a luminance of 1
+  std::optional<LampTilt> tilt;    ///< model == ies: output by how far it hangs off upright
   Place place;
 };
 
@@ -186,6 +195,17 @@ struct SafeSpec {
   Place place;
 };
 
+/// Light from outside. Directions are resolved: north and the time of day have had their say.
+struct Daylight {
+  enum class SkyKind { none, uniform, overcast, clear, general };
+  SkyKind sky = SkyKind::none;
+  int general_type = 12;     ///< 1…15 of ISO 15469, for SkyKind::general
+  double horizontal_lx = 0;  ///< of the sky without the sun, on an unobstructed horizontal plane; > 0 with a sky
+  double sun_normal_lx = 0;  ///< of the sun, on a plane that faces it; 0: no sun
+  Vec3 towards_sun_world = Vec3::UnitZ();  ///< unit; below the horizon there is no sun
+  Place place;
+};
+
 struct DaemonSpec {
   int http_port = 9620;  ///< on loopback
   Place place;
@@ -199,6 +219,7 @@ struct Rig {
   std::vector<Bus> buses;
   std::vector<Fixture> fixtures;
   std::vector<Luxmeter> luxmeters;
+  std::optional<Daylight> daylight;
   std::vector<Point> points;
   std::vector<Task> tasks;
   Limits limits;

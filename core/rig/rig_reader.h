@@ -73,6 +73,11 @@ struct RigReader {
   void read_mesh(Section& section, std::optional<MeshFile>& out);
   void read_box_or_mesh(Section& section, SceneObject& object);
   void read_distribution(Section& section, Luminaire& luminaire);
+  void check_model_keys(Section& section, LuminaireModel model);
+  void read_spot(Section& section, Luminaire& luminaire);
+  void read_photometric_file(Section& section, Luminaire& luminaire);
+  void read_luminous_surface(Section& section, Luminaire& luminaire);
+  void read_colour(Section& section, Luminaire& luminaire);
   void read_aim(Section& section, Fixture& fixture);
   void check_joints(Section& section, const Fixture& fixture);
 };

@@ -16,6 +16,8 @@ constexpr Bounds kAny{};
 constexpr Bounds kPosition{-1e6, 1e6};
 constexpr Bounds kSize{0, 1e4, true};
 constexpr Bounds kReflectance{0, 0.95};
+constexpr Bounds kRoughness{0.05, 1};
+constexpr Bounds kLuminousSize{0.001, 100};
 constexpr Bounds kShare{0, 1};
 constexpr Bounds kLux{0, 1e7};
 constexpr Bounds kAngle{-3600, 3600};
@@ -59,6 +61,10 @@ constexpr KeySpec kKeys[] = {
     {"scene.reflectance", "material", text, "", kRequired, kAny, "",
      "name of the material; `*` stands for any letters, `?` for one"},
     {"scene.reflectance", "reflectance", colour, "", kRequired, kReflectance, "", "diffuse reflectance"},
+    {"scene.reflectance", "specular", number, "", "0", kReflectance, "",
+     "gloss: what a coat over it mirrors at normal incidence (varnish, polished floors 0.04; metals more); 0 is matt"},
+    {"scene.reflectance", "roughness", number, "", "0.3", kRoughness, "",
+     "how much the coat scatters what it mirrors: 0.05 nearly a mirror, 1 nearly matt"},
 
     {"scene.object", "name", name, "", kRequired, kAny, "", "name of the object"},
     {"scene.object", "file", file, "", kNone, kAny, "", "its mesh; either this or `box_m`"},
@@ -73,13 +79,25 @@ constexpr KeySpec kKeys[] = {
      "of all of it; left out, the rules and the mesh file's colours apply"},
 
     {"luminaire", "name", name, "", kRequired, kAny, "", "what fixtures call it"},
-    {"luminaire", "model", text, "", kRequired, kAny, "ies, isotropic, spot",
-     "a measured distribution (IES LM-63, type C), the same all round, or a round spot"},
-    {"luminaire", "file", file, "", kNone, kAny, "", "the IES file (only with model `ies`, and required there)"},
+    {"luminaire", "model", text, "", kRequired, kAny, "ies, isotropic, spot, rectangle, disk, sphere, cylinder",
+     "a measured distribution, the same all round, a round spot, or an evenly shining surface: a rectangle or disk "
+     "that "
+     "faces down, a sphere, an upright cylinder"},
+    {"luminaire", "file", file, "", kNone, kAny, "",
+     "IES LM-63 file, or EULUMDAT when it ends in .ldt (only with model `ies`, and required there)"},
     {"luminaire", "beam_angle_deg", number, "°", kNone, kFullCone, "",
      "full angle to half the peak intensity (only with model `spot`, and required there)"},
     {"luminaire", "field_angle_deg", number, "°", kNone, kFullCone, "",
      "full angle to a tenth of the peak (only with model `spot`, and required there); more than the beam angle"},
+    {"luminaire", "length_m", number, "m", kNone, kLuminousSize, "",
+     "size of a `rectangle` along the lamp's x, or of a `cylinder` along its axis (only there, and required)"},
+    {"luminaire", "width_m", number, "m", kNone, kLuminousSize, "",
+     "size of a `rectangle` along the lamp's y (only there, and required)"},
+    {"luminaire", "diameter_m", number, "m", kNone, kLuminousSize, "",
+     "of a `disk`, `sphere` or `cylinder` (only there, and required)"},
+    {"luminaire", "near_field", yes_no, "", "false", kAny, "",
+     "light comes from the whole luminous opening that the file states; else from its middle, which is right from "
+     "five times its size on (only with model `ies`)"},
     {"luminaire",
      "lumens",
      number,
@@ -89,6 +107,22 @@ constexpr KeySpec kKeys[] = {
      "",
      "rated flux; required, but with model `ies` it may be left out and the file's own flux holds"},
     {"luminaire", "watts", number, "W", kNone, {0, 1e6}, "", "rated electrical power"},
+    {"luminaire",
+     "cct_k",
+     number,
+     "K",
+     kNone,
+     {1667, 25000},
+     "",
+     "colour of its light as that of a black body; left out, white (D65)"},
+    {"luminaire",
+     "colour",
+     colour,
+     "",
+     kNone,
+     {0, 1000},
+     "",
+     "the same as linear Rec. 709 [red, green, blue] in any scale; instead of `cct_k`"},
 
     {"bus", "name", name, "", kRequired, kAny, "", "what fixtures and meters call it"},
     {"bus", "driver", text, "", kRequired, kAny, "", "what drives it; see Bus options"},

@@ -141,7 +141,10 @@ class Builder {
         const ReflectanceRule& rule = rig_.scene.reflectances[i];
         if (fnmatch(rule.material_pattern.c_str(), material.name.c_str(), 0) != 0) continue;
         rule_used_[i] = true;
-        if (stated == nullptr) stated = &rule.reflectance_rgb;
+        if (stated != nullptr) continue;
+        stated = &rule.reflectance_rgb;
+        material.specular_reflectance = rule.specular;
+        material.roughness = rule.roughness;
       }
       if (stated != nullptr) {
         material.coloured = true;

@@ -1,12 +1,66 @@
 #include "core/transport/rig_transport.h"
 
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/photometry/sky.h"
+
 namespace luxrig {
+namespace {
+
+/// Between the lamp's own up and the world's.
+double tilt_off_upright_rad(const Pose& world_from_lamp) {
+  const Vec3 up_world = world_from_lamp.rotation.col(2);
+  return std::atan2(std::hypot(up_world.x(), up_world.y()), up_world.z());
+}
+
+}  // namespace
 
 std::vector<Emitter> emitters_of(const Rig& rig) {
   std::vector<Emitter> emitters;
   emitters.reserve(rig.fixtures.size());
-  for (const Fixture& fixture : rig.fixtures)
-    emitters.push_back({rig.luminaires.at(fixture.luminaire).intensity, fixture.world_from_lamp()});
+  for (const Fixture& fixture : rig.fixtures) {
+    const Luminaire& luminaire = rig.luminaires.at(fixture.luminaire);
+    Emitter emitter{luminaire.intensity, fixture.world_from_lamp(), luminaire.shape, luminaire.colour_rgb};
+    if (luminaire.tilt) {
+      const double factor = luminaire.tilt->over_upright(tilt_off_upright_rad(emitter.world_from_lamp));
+      if (factor != 1) emitter.intensity = scaled_to_flux(luminaire.intensity, factor * luminaire.intensity->flux_lm());
+    }
+    emitters.push_back(std::move(emitter));
+  }
+  return emitters;
+}
+
+std::vector<Emitter> daylight_emitters_of(const Rig& rig) {
+  std::vector<Emitter> emitters;
+  if (!rig.daylight) return emitters;
+  const Daylight& daylight = *rig.daylight;
+  const auto add = [&](Sky sky) {
+    Emitter emitter;
+    emitter.sky = std::move(sky);
+    emitters.push_back(std::move(emitter));
+  };
+  Vec3 sun = daylight.towards_sun_world;
+  sun.z() = std::max(sun.z(), 1e-6);
+  sun.normalize();
+  switch (daylight.sky) {
+    case Daylight::SkyKind::none:
+      break;
+    case Daylight::SkyKind::uniform:
+      add(make_uniform_sky(daylight.horizontal_lx));
+      break;
+    case Daylight::SkyKind::overcast:
+      add(make_overcast_sky(daylight.horizontal_lx));
+      break;
+    case Daylight::SkyKind::clear:
+      add(make_clear_sky(sun, daylight.horizontal_lx));
+      break;
+    case Daylight::SkyKind::general:
+      add(make_general_sky(daylight.general_type, sun, daylight.horizontal_lx));
+      break;
+  }
+  if (daylight.sun_normal_lx > 0 && daylight.towards_sun_world.z() > 0) add(make_sun(sun, daylight.sun_normal_lx));
   return emitters;
 }
 

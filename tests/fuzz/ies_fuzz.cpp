@@ -1,39 +1,32 @@
-// Any bytes as a photometric file: refused with a place and a remedy, or a distribution whose every value is
-// finite and not negative, whose flux is positive, and which is dark outside its cone.
-#include <cmath>
+// Any bytes as a photometric file: refused with a place and a remedy, or a sound distribution.
 #include <cstdint>
-#include <cstdlib>
+#include <string>
 #include <string_view>
 
 #include "core/photometry/ies.h"
-
-namespace {
-void require(bool condition) {
-  if (!condition) std::abort();
-}
-}  // namespace
+#include "tests/fuzz/photometry_properties.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace luxrig;
-  const auto file = parse_ies(std::string_view(reinterpret_cast<const char*>(data), size), "fuzz.ies");
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  // What stands after the first NUL is the tilt file, should the file ask for one.
+  const std::size_t nul = text.find('\0');
+  const TiltFiles tilt_files = [&](std::string_view) -> std::optional<std::string> {
+    if (nul == std::string_view::npos) return std::nullopt;
+    return std::string(text.substr(nul + 1));
+  };
+  const auto file = parse_ies(text, "fuzz.ies", tilt_files);
   if (!file) {
-    require(!file.error().empty());
-    for (const Problem& problem : file.error()) {
-      require(!problem.what.empty() && !problem.mend.empty() && problem.line >= 0 && problem.column >= 0);
-    }
+    fuzz::require_said(file.error());
     return 0;
   }
-  const Intensity light = make_intensity(*file);
-  require(std::isfinite(light->flux_lm()) && light->flux_lm() > 0);
-  const double most_cd = light->max_intensity_cd() * (1 + 1e-9);
-  for (int i = 0; i <= 24; ++i) {
-    for (int j = -12; j <= 12; ++j) {
-      const double gamma = i * kPi / 24;
-      const double c = j * kPi / 12;
-      const Vec3 direction(std::sin(gamma) * std::cos(c), std::sin(gamma) * std::sin(c), -std::cos(gamma));
-      const double intensity_cd = light->intensity_cd(direction);
-      require(std::isfinite(intensity_cd) && intensity_cd >= 0 && intensity_cd <= most_cd);
-      require(gamma <= 0.5 * light->emission_cone_rad() + 1e-6 || intensity_cd == 0);
+  fuzz::require_sound(*make_intensity(*file));
+  const LuminousOpening opening = luminous_opening(*file);
+  fuzz::require(opening.shape.size_m.allFinite() && opening.shape.size_m.minCoeff() >= 0);
+  if (file->tilt) {
+    for (int deg = 0; deg <= 180; deg += 15) {
+      const double factor = file->tilt->over_upright(rad_from_deg(deg));
+      fuzz::require(std::isfinite(factor) && factor > 0);
     }
   }
   return 0;

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/photometry/beam.h"
 #include "drivers/registry.h"
 #include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
@@ -18,6 +19,13 @@ std::string address_text(const Patch& patch) {
   }
   const auto& modbus = std::get<ModbusPatch>(patch);
   return fmt::format("unit {} register {}", modbus.unit, modbus.holding_register);
+}
+
+/// In the planes C0 and C90; once when they are alike.
+std::string angles_text(const PlaneAngles& angles) {
+  const std::string c0 = fmt::format("{:.1f}°", deg_from_rad(angles.c0_rad));
+  const std::string c90 = fmt::format("{:.1f}°", deg_from_rad(angles.c90_rad));
+  return c0 == c90 ? c0 : c0 + " x " + c90;
 }
 
 std::string place_text(const Vec3& p) { return fmt::format("{:.2f} {:.2f} {:.2f}", p.x(), p.y(), p.z()); }
@@ -74,9 +82,10 @@ int run_check(const CheckArguments& arguments) {
   Table materials({"material", ">luminous reflectance"});
   for (const Material& m : scene.materials) materials.row({m.name, fmt::format("{:.2f}", m.luminous_reflectance())});
   if (!scene.materials.empty()) fmt::print("{}\n", materials.text());
-  Table luminaires({"luminaire", ">lumens", ">peak cd", ">watts"});
+  Table luminaires({"luminaire", ">lumens", ">peak cd", ">beam", ">field", ">watts"});
   for (const Luminaire& l : rig.luminaires) {
     luminaires.row({l.name, fmt::format("{:.0f}", l.lumens), fmt::format("{:.0f}", l.intensity->max_intensity_cd()),
+                    angles_text(beam_angles(*l.intensity)), angles_text(field_angles(*l.intensity)),
                     l.watts ? fmt::format("{:.0f}", *l.watts) : "-"});
   }
   fmt::print("{}\n", luminaires.text());

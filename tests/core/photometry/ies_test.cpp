@@ -321,7 +321,7 @@ TEST(Ies, SaysWhereAndWhatIsWrong) {
       {"one horizontal angle, and vertical", 5, 1, head + "1 -1 1 2 1 2 2 0 0 0\n1 1 1\n-90 90\n0\n1 1\n"},
       {"tilt angles do not ascend", 5, 1, "IESNA91\nTILT=INCLUDE\n1\n2\n90 0\n1 1\n"},
       {"lamp-to-luminaire geometry '4'", 3, 1, "IESNA91\nTILT=INCLUDE\n4\n2\n0 90\n1 1\n"},
-      {"the tilt factor at 0", 2, 1, "IESNA91\nTILT=INCLUDE\n1\n2\n0 90\n0 1\n"},
+      {"tilt factor '0' is out of range", 6, 1, "IESNA91\nTILT=INCLUDE\n1\n2\n0 90\n0 1\n"},
       {"photometric type '7'", 3, 12, head + "1 -1 1 2 1 7 2 0 0 0\n1 1 1\n0 90\n0\n1 1\n"},
       {"lumens per lamp", 0, 0, head + "1 -0.5 1 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n1 1\n"},
       {"a multiplier or ballast factor is 0", 0, 0, head + "1 -1 0 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n1 1\n"},

@@ -182,6 +182,7 @@ const Case kCases[] = {
     {"lambertian", [] { return make_lambertian(800); }, kExact},
     {"cosine_8", [] { return make_cosine_power(800, 8); }, kExact},
     {"cosine_half", [] { return make_cosine_power(800, 0.5); }, kExact},
+    {"cylinder", [] { return make_lambertian_cylinder(900, 0.3, 0.8); }, 1e-6},
     {"spot_24_40", [] { return make_spot(1000, rad_from_deg(24), rad_from_deg(40)); }, 1e-5},
     {"spot_1_2", [] { return make_spot(1000, rad_from_deg(1), rad_from_deg(2)); }, 1e-5},
     {"spot_sharp", [] { return make_spot(1000, rad_from_deg(35.9), rad_from_deg(36)); }, 1e-4},
@@ -198,6 +199,17 @@ const Case kCases[] = {
 };
 INSTANTIATE_TEST_SUITE_P(Of, Sampling, testing::ValuesIn(kCases),
                          [](const auto& of) { return std::string(of.param.name); });
+
+TEST(LambertianCylinder, HasTheFluxOfItsWholeSurface) {
+  for (const auto& [d, l] : {std::pair{0.04, 1.2}, {0.5, 0.01}, {0.3, 0.3}}) {
+    const Intensity light = make_lambertian_cylinder(700, d, l);
+    const auto intensity = [&](const Vec3& direction) { return light->intensity_cd(direction); };
+    EXPECT_NEAR(ring_integral(intensity, 0, kPi, 0, 2 * kPi, 2000, 1), 700, 1e-6);
+    // Brightest where its outline is largest: tan γ = 4 l / (π d).
+    const double gamma = std::atan2(l, kPi / 4 * d);
+    EXPECT_NEAR(light->intensity_cd(direction(std::cos(gamma), 1)), light->max_intensity_cd(), 1e-9);
+  }
+}
 
 TEST(CosinePower, HasItsFluxAndPeakInClosedForm) {
   for (const double exponent : {0.0, 0.5, 1.0, 3.0, 40.0, 2000.0}) {

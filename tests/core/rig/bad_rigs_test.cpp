@@ -64,7 +64,7 @@ TEST_P(BadRig, IsRefusedWithPlaceAndMendAndNothingElse) {
   }
   for (const Problem& problem : rig.error()) {
     EXPECT_FALSE(problem.mend.empty()) << problem.text();
-    const bool of_ies = problem.file.ends_with(".ies");
+    const bool of_ies = problem.file.ends_with(".ies") || problem.file.ends_with(".ldt");
     EXPECT_TRUE(of_ies || std::any_of(expected.begin(), expected.end(),
                                       [&](const std::string& wanted) { return meets(problem, wanted); }))
         << "not expected: " << problem.text();

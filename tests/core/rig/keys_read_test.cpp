@@ -25,6 +25,8 @@ default_reflectance = 0.4  #> [0.1, 0.2, 0.3]
 [[scene.reflectance]]
 material = "wall*"  #> "floor"
 reflectance = 0.6  #> [0.6, 0.6, 0.5]
+specular = 0.04  #> 0.05
+roughness = 0.2  #> 0.4
 [[scene.object]]
 name = "vase"  #> "jug"
 file = "a.obj"  #> "b.obj"
@@ -41,8 +43,10 @@ box_m = [1, 2, 3]  #> [1, 2, 4]
 name = "measured"
 model = "ies"
 file = "a.ies"  #> "b.ies"
+near_field = true  #> false
 lumens = 500  #> 600
 watts = 10  #> 11
+cct_k = 3000  #> 4000
 [[luminaire]]
 name = "spot"
 model = "spot"
@@ -53,6 +57,19 @@ lumens = 900  #> 901
 name = "bulb"  #> "lamp"
 model = "isotropic"  #> "spot" ; beam_angle_deg = 20 ; field_angle_deg = 40
 lumens = 700
+colour = [1, 0.9, 0.8]  #> [1, 0.9, 0.7]
+[[luminaire]]
+name = "panel"
+model = "rectangle"
+length_m = 1.2  #> 1.3
+width_m = 0.3  #> 0.4
+lumens = 900
+[[luminaire]]
+name = "tube"
+model = "cylinder"
+diameter_m = 0.04  #> 0.05
+length_m = 1.2
+lumens = 900
 [[bus]]
 name = "dmx"  #> "net"
 driver = "sacn"  #> "artnet"
@@ -201,14 +218,17 @@ std::string dump(const Rig& rig) {
   std::string out;
   const auto add = [&](const auto&... values) { ((out += fmt::format("{} ", values)), ...), out += '\n'; };
   add(rig.name, text_of(rig.scene.mesh), text_of(rig.scene.default_reflectance_rgb));
-  for (const auto& r : rig.scene.reflectances) add(r.material_pattern, text_of(r.reflectance_rgb));
+  for (const auto& r : rig.scene.reflectances) {
+    add(r.material_pattern, text_of(r.reflectance_rgb), r.specular, r.roughness);
+  }
   for (const auto& o : rig.scene.objects) {
     add(o.name, text_of(o.mesh), text_of(o.box_m), text_of(o.position_world_m), o.turn_rad, text_of(o.height_m),
         text_of(o.reflectance_rgb));
   }
   for (const auto& l : rig.luminaires) {
     add(l.name, static_cast<int>(l.model), l.ies_path.string(), l.beam_angle_rad, l.field_angle_rad, l.lumens,
-        text_of(l.watts), l.intensity->flux_lm(), l.intensity->intensity_cd(Vec3(0.1, 0, -1).normalized()));
+        text_of(l.watts), l.intensity->flux_lm(), l.intensity->intensity_cd(Vec3(0.1, 0, -1).normalized()),
+        static_cast<int>(l.shape.kind), text_of(l.shape.size_m), text_of(l.colour_rgb));
   }
   for (const auto& b : rig.buses) {
     add(b.name, b.driver, b.options.size());
@@ -251,7 +271,7 @@ class KeysRead : public testing::Test {
     for (const char* name : {"a", "b"}) {
       std::ofstream(folder_ / (std::string(name) + ".obj")) << "v 0 0 0\n";
       std::ofstream(folder_ / (std::string(name) + ".csv")) << "name,x_m,y_m,z_m\n" << name << ",1,2,3\n";
-      std::ofstream(folder_ / (std::string(name) + ".ies")) << "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 1 1 2 0 0 0\n"
+      std::ofstream(folder_ / (std::string(name) + ".ies")) << "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 1 1 2 .1 .1 0\n"
                                                                "1 1 10\n0 45 90\n0\n100 "
                                                             << (*name == 'a' ? 50 : 20) << " 0\n";
     }

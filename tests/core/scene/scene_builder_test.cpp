@@ -138,6 +138,30 @@ TEST(SceneBuilder, FirstMatchingReflectanceRuleWins) {
   EXPECT_EQ(scene->warnings.size(), 1u);
 }
 
+TEST(SceneBuilder, GivesGlossByTheRuleThatGivesTheReflectance) {
+  Rig rig = rig_with_room();
+  rig.scene.reflectances = {{"wa?l", Vec3::Constant(0.6), {8, 1}, 0.04, 0.2},
+                            {"*l*", Vec3::Constant(0.2), {9, 1}, 0.5, 0.7}};
+  rig.scene.objects = {box_object("wall", {1, 1, 1}, {0, 0, 0})};
+  rig.scene.objects[0].reflectance_rgb = Vec3::Constant(0.3);
+  const auto scene = build_scene(rig);
+  ASSERT_TRUE(scene.has_value());
+  int own = 0;
+  for (const Material& material : scene->materials) {
+    if (material.name == "wall" && material.reflectance_rgb == Vec3::Constant(0.3)) {
+      EXPECT_EQ(material.specular_reflectance, 0);  // an object's own reflectance leaves the rules out
+      ++own;
+    } else if (material.name == "wall") {
+      EXPECT_EQ(material.specular_reflectance, 0.04);
+      EXPECT_EQ(material.roughness, 0.2);
+    } else if (material.name == "floor") {
+      EXPECT_EQ(material.specular_reflectance, 0.5);
+      EXPECT_EQ(material.roughness, 0.7);
+    }
+  }
+  EXPECT_EQ(own, 1);
+}
+
 TEST(SceneBuilder, FallsBackToTheDefaultAndClampsWhatNoPaintReaches) {
   Rig rig = rig_with_room();
   rig.scene.default_reflectance_rgb = Vec3::Constant(0.33);

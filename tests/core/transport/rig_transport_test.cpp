@@ -37,6 +37,52 @@ TEST(RigTransport, EmittersFollowTheOrderOfTheFixturesAndTheirAim) {
   EXPECT_LT((emitters[0].world_from_lamp.direction(-Vec3::UnitZ()) + Vec3::UnitZ()).norm(), 1e-12);
 }
 
+TEST(RigTransport, EmittersHaveTheShapeAndColourOfTheirLuminaire) {
+  Rig rig = small_rig();
+  rig.luminaires[0].shape = {LuminousShape::Kind::disk, Vec3(0.2, 0, 0)};
+  rig.luminaires[0].colour_rgb = Vec3(2, 0.7, 0.3);
+  const auto emitters = emitters_of(rig);
+  EXPECT_EQ(emitters[1].shape, rig.luminaires[0].shape);
+  EXPECT_EQ(emitters[1].colour_rgb, rig.luminaires[0].colour_rgb);
+  EXPECT_EQ(emitters[0].shape, LuminousShape{});
+  EXPECT_EQ(emitters[0].colour_rgb, Vec3::Ones());
+}
+
+TEST(RigTransport, ATiltedLampGivesWhatItsFactorsSay) {
+  Rig rig = small_rig();
+  rig.luminaires[0].tilt = LampTilt{3, {0, 90, 180}, {0.8, 0.6, 0.4}};
+  rig.luminaires[1].tilt = rig.luminaires[0].tilt;
+  const auto emitters = emitters_of(rig);
+  EXPECT_EQ(emitters[0].intensity, rig.luminaires[1].intensity);         // hangs straight
+  EXPECT_NEAR(emitters[1].intensity->flux_lm(), 100 * 0.6 / 0.8, 1e-9);  // looks level
+  rig.fixtures[0].joints = {1, rad_from_deg(135)};
+  EXPECT_NEAR(emitters_of(rig)[0].intensity->flux_lm(), 200 * 0.5 / 0.8, 1e-9);
+}
+
+TEST(RigTransport, DaylightIsASkyAndASunOfTheirOwn) {
+  Rig rig;
+  EXPECT_TRUE(daylight_emitters_of(rig).empty());
+  rig.daylight = Daylight{};
+  EXPECT_TRUE(daylight_emitters_of(rig).empty());
+  rig.daylight->towards_sun_world = Vec3(0, 0.6, 0.8);
+  rig.daylight->horizontal_lx = 12'000;
+  rig.daylight->sun_normal_lx = 80'000;
+  using Kind = Daylight::SkyKind;
+  for (const Kind kind : {Kind::uniform, Kind::overcast, Kind::clear, Kind::general}) {
+    rig.daylight->sky = kind;
+    const auto emitters = daylight_emitters_of(rig);
+    ASSERT_EQ(emitters.size(), 2u);
+    EXPECT_EQ(emitters[0].sky->horizontal_illuminance_lx(), 12'000);
+    EXPECT_NEAR(emitters[1].sky->horizontal_illuminance_lx(), 80'000 * 0.8, 1e-6);
+  }
+  rig.daylight->towards_sun_world = Vec3(0, 0.8, -0.6);  // dusk: the sky alone
+  EXPECT_EQ(daylight_emitters_of(rig).size(), 1u);
+  rig.daylight->towards_sun_world = Vec3(0, 0.6, 0.8);
+  rig.daylight->sky = Kind::none;
+  ASSERT_EQ(daylight_emitters_of(rig).size(), 1u);
+  EXPECT_GT(daylight_emitters_of(rig)[0].sky->luminance_cd_m2(Vec3(0, 0.6, 0.8)), 1e6);
+}
+
 TEST(RigTransport, ReceiversArePointsThenLuxmeters) {
   const auto receivers = receivers_of(small_rig());
   ASSERT_EQ(receivers.size(), 3u);

@@ -1,0 +1,26 @@
+#pragma once
+/// Colour of light in linear Rec. 709, scaled to a luminance of 1.
+
+#include <optional>
+
+#include "core/geometry.h"
+
+namespace luxrig {
+
+/// Luminance of a linear Rec. 709 colour.
+[[nodiscard]] inline double luminance_of_rgb(const Vec3& rgb) {
+  return 0.2126 * rgb.x() + 0.7152 * rgb.y() + 0.0722 * rgb.z();
+}
+
+/// `rgb` scaled to a luminance of 1; nothing when it has none or is not finite or negative.
+[[nodiscard]] std::optional<Vec3> with_luminance_1(const Vec3& rgb);
+
+inline constexpr double kLeastCct_k = 1667, kMostCct_k = 25000;
+
+/// Colour of a black body. Primaries that would be negative (below 1900 K) are 0.
+/// requires   kLeastCct_k ≤ cct_k ≤ kMostCct_k (asserted)
+/// accuracy   0.001 in x and y
+/// source     cubic fit of the Planckian locus by Kim et al., US patent 7024034 (2006); Rec. 709 primaries, white D65
+[[nodiscard]] Vec3 rgb_of_cct(double cct_k);
+
+}  // namespace luxrig
