@@ -269,6 +269,12 @@ const Material& RayScene::material_of(std::uint32_t triangle) const {
   return state_->materials[state_->material_of_triangle[triangle]];
 }
 
+std::span<const Material> RayScene::materials() const { return state_->materials; }
+
+std::uint32_t RayScene::material_index_of(std::uint32_t triangle) const {
+  return state_->material_of_triangle[triangle];
+}
+
 Eigen::AlignedBox3d RayScene::bounds_world_m() const {
   Eigen::AlignedBox3d bounds = state_->bounds_m;
   if (!bounds.isEmpty()) bounds.translate(state_->origin_world_m);

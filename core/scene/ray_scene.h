@@ -60,6 +60,10 @@ class RayScene {
   /// Luminous reflectance and colour of a triangle's material.
   [[nodiscard]] const Material& material_of(std::uint32_t triangle) const;
 
+  /// All materials, and the index of a triangle's into them.
+  [[nodiscard]] std::span<const Material> materials() const;
+  [[nodiscard]] std::uint32_t material_index_of(std::uint32_t triangle) const;
+
   /// Bounding box in world coordinates; empty box when there are no triangles.
   [[nodiscard]] Eigen::AlignedBox3d bounds_world_m() const;
 

@@ -7,8 +7,15 @@
 #include <numeric>
 #include <tuple>
 
+#include "core/photometry/shape_sampling.h"
+#include "core/transport/bsdf.h"
+#include "core/transport/sobol.h"
+
 namespace luxrig {
 namespace {
+
+/// Importance of a lamp that is off, relative to the brightest: its column is wanted, but not at the others' cost.
+constexpr double kLeastImportance = 0.02;
 
 auto place_of(const Emitter& emitter) {
   const Vec3& p = emitter.world_from_lamp.translation_m;
@@ -23,23 +30,240 @@ std::string text_of(const Vec3& v) { return fmt::format("({:g}, {:g}, {:g})", v.
 
 }  // namespace
 
-Lamps::Lamps(std::span<const Emitter> emitters) {
+Lamps::Lamps(std::span<const Emitter> emitters, std::span<const double> levels,
+             const Eigen::AlignedBox3d& bounds_world_m) {
+  if (!bounds_world_m.isEmpty()) {
+    centre_world_m_ = bounds_world_m.center();
+    radius_m_ = 0.5 * bounds_world_m.diagonal().norm();
+  }
+  double brightest = 0;
+  for (const double level : levels) brightest = std::max(brightest, level);
+  const auto importance_of = [&](std::size_t e) {
+    if (levels.empty() || !(brightest > 0)) return 1.0;
+    return std::max(levels[e], kLeastImportance * brightest);
+  };
   std::vector<std::size_t> order(emitters.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t a, std::size_t b) { return place_of(emitters[a]) < place_of(emitters[b]); });
   lamps_.reserve(order.size());
+  place_of_emitter_.resize(emitters.size());
+  colours_rgb_.resize(emitters.size());
+  importances_.resize(emitters.size());
   for (const std::size_t e : order) {
     const Emitter& emitter = emitters[e];
-    const double half_cone_rad = emitter.intensity->emission_cone_rad() / 2;
-    // The margin keeps rounding from cutting off the rim of the cone, where intensity_cd() decides.
-    const double cos_half_cone = half_cone_rad < kPi ? std::cos(half_cone_rad) - 1e-9 : -2.0;
-    if (groups_.empty() || groups_.back().position_world_m != emitter.world_from_lamp.translation_m)
-      groups_.push_back({emitter.world_from_lamp.translation_m, lamps_.size(), lamps_.size()});
-    lamps_.push_back({e, emitter.world_from_lamp.direction(-Vec3::UnitZ()), cos_half_cone,
-                      emitter.world_from_lamp.rotation.transpose(), emitter.intensity.get()});
-    groups_.back().end = lamps_.size();
+    const bool sky = emitter.sky != nullptr;
+    const bool point = !sky && emitter.shape.kind == LuminousShape::Kind::point;
+    const Vec3& position_world_m = emitter.world_from_lamp.translation_m;
+    have_size_ = have_size_ || !point;
+    if (!point || places_.empty() || places_.back().kind != Kind::point ||
+        places_.back().position_world_m != position_world_m) {
+      Place place{sky     ? Kind::sky
+                  : point ? Kind::point
+                          : Kind::shape,
+                  position_world_m,
+                  lamps_.size(),
+                  lamps_.size(),
+                  emitter.shape,
+                  0.5 * emitter.shape.size_m.norm(),
+                  emitter.world_from_lamp.rotation};
+      places_.push_back(place);
+    }
+    Lamp lamp{e, -Vec3::UnitZ(), -2, Mat3::Identity(), emitter.intensity.get(), emitter.sky.get(), importance_of(e), 0,
+              0};
+    if (!sky) {
+      const double half_cone_rad = emitter.intensity->emission_cone_rad() / 2;
+      // The margin keeps rounding from cutting off the rim of the cone, where intensity_cd() decides.
+      lamp.cos_half_cone = half_cone_rad < kPi ? std::cos(half_cone_rad) - 1e-9 : -2.0;
+      lamp.axis_world = emitter.world_from_lamp.direction(-Vec3::UnitZ());
+      lamp.lamp_from_world = emitter.world_from_lamp.rotation.transpose();
+    }
+    lamps_.push_back(lamp);
+    places_.back().end = lamps_.size();
+    place_of_emitter_[e] = places_.size() - 1;
+    colours_rgb_[e] = emitter.colour_rgb;
+    importances_[e] = lamps_.back().importance;
   }
+  share_out();
+}
+
+void Lamps::share_out() {
+  double luminaires = 0;
+  std::size_t skies = 0;
+  for (const Place& place : places_)
+    for (std::size_t i = place.begin; i < place.end; ++i) {
+      Lamp& lamp = lamps_[i];
+      if (lamp.sky) ++skies;
+      if (lamp.sky) continue;
+      lamp.share = lamp.importance * lamp.intensity->flux_lm() * inward_share(lamp, place);
+      luminaires += lamp.share;
+    }
+  // Most light of a sky falls outside: together they get half of what the luminaires get.
+  const double per_sky = skies == 0 ? 0 : luminaires > 0 ? 0.5 * luminaires / static_cast<double>(skies) : 1.0;
+  double sum = 0;
+  for (Lamp& lamp : lamps_) sum += lamp.share = lamp.sky ? per_sky : lamp.share;
+  if (!(sum > 0)) return;  // no light can be traced; paths find it all
+  double before = 0;
+  for (Lamp& lamp : lamps_) {
+    lamp.share /= sum;
+    lamp.share_begin = before;
+    before += lamp.share;
+  }
+}
+
+double Lamps::inward_share(const Lamp& lamp, const Place& place) const {
+  if ((place.position_world_m - centre_world_m_).norm() <= radius_m_) return 1;
+  constexpr std::uint32_t kProbes = 64;
+  const SobolSequence probes(0x1a4b);
+  int inward = 0;
+  for (std::uint32_t k = 0; k < kProbes; ++k) {
+    const auto [u, v] = probes.pair(k, 0, 0);
+    const DirectionSample sample = lamp.intensity->sample(u, v);
+    if (!(sample.density_per_sr > 0)) continue;
+    // Does the ray pass the sphere around all geometry, widened by the lamp's size?
+    const Vec3 direction_world = lamp.lamp_from_world.transpose() * sample.direction;
+    const Vec3 to_centre_m = centre_world_m_ - place.position_world_m;
+    const double along_m = to_centre_m.dot(direction_world);
+    inward += along_m > 0 && (to_centre_m - along_m * direction_world).norm() <= radius_m_ + place.radius_m;
+  }
+  return static_cast<double>(inward) / kProbes;
+}
+
+double Lamps::weigh(const Vec3& position_world_m, const Vec3& normal_world, Weights& weights) const {
+  weights.assign(places_.size(), 0.0);
+  double sum = 0;
+  for (std::size_t p = 0; p < places_.size(); ++p) {
+    const Place& place = places_[p];
+    double weight = 0;
+    if (place.kind == Kind::sky) {
+      if (normal_world.z() > -0.99999)
+        for (std::size_t i = place.begin; i < place.end; ++i)
+          weight += lamps_[i].importance * lamps_[i].sky->horizontal_illuminance_lx();
+    } else {
+      const Vec3 towards_m = place.position_world_m - position_world_m;
+      const double height_m = normal_world.dot(towards_m) + place.radius_m;
+      if (!(height_m > 0)) continue;
+      const double distance_m = std::max(towards_m.norm(), place.radius_m);
+      const double lux_per_candela = height_m / (distance_m * distance_m * distance_m);
+      if (!std::isfinite(lux_per_candela)) continue;
+      const Vec3 direction_world = towards_m / distance_m;
+      for (std::size_t i = place.begin; i < place.end; ++i) {
+        const Lamp& lamp = lamps_[i];
+        if (place.kind == Kind::point && -lamp.axis_world.dot(direction_world) < lamp.cos_half_cone) continue;
+        double candela = lamp.intensity->intensity_cd(-(lamp.lamp_from_world * direction_world));
+        // Other places of a shape see the point under other angles.
+        if (place.kind == Kind::shape) candela = std::max(candela, 0.05 * lamp.intensity->max_intensity_cd());
+        weight += lamp.importance * lux_per_candela * candela;
+      }
+    }
+    weights[p] = weight;
+    sum += weight;
+  }
+  return sum;
+}
+
+LampChoice Lamps::choose(const Vec3& position_world_m, const Vec3& normal_world, const Weights& weights, double sum,
+                         double select, double u, double v) const {
+  LampChoice choice;
+  if (!(sum > 0)) return choice;
+  double left = select * sum;
+  choice.place = places_.size();
+  for (std::size_t p = 0; p < places_.size(); ++p) {
+    if (!(weights[p] > 0)) continue;
+    choice.place = p;
+    if (left < weights[p]) break;
+    left -= weights[p];
+  }
+  const Place& place = places_[choice.place];
+  const double probability = weights[choice.place] / sum;
+  if (place.kind == Kind::point) {
+    const Vec3 towards_m = place.position_world_m - position_world_m;
+    const double distance_m = towards_m.norm();
+    choice.direction_world = towards_m / distance_m;
+    choice.target_world_m = place.position_world_m;
+    choice.factor = normal_world.dot(choice.direction_world) / (distance_m * distance_m);
+    choice.hit_factor = choice.factor;
+    choice.density = choice.factor > 0 ? probability : 0;
+  } else if (place.kind == Kind::shape) {
+    const Vec3 at_lamp_m = place.world_from_lamp.transpose() * (position_world_m - place.position_world_m);
+    const ShapeSample seen = sample_seen_from(place.shape, at_lamp_m, u, v);
+    if (!(seen.density_per_sr > 0)) return choice;
+    choice.direction_world = place.world_from_lamp * seen.direction;
+    choice.target_world_m = position_world_m + seen.distance_m * choice.direction_world;
+    const double cosine = normal_world.dot(choice.direction_world);
+    const double area_m2 = projected_area_m2(place.shape, -seen.direction);
+    if (!(cosine > 0) || !(area_m2 > 0)) return choice;
+    choice.factor = cosine / area_m2;
+    choice.hit_factor = choice.factor;
+    choice.density = probability * seen.density_per_sr;
+  } else {
+    const DirectionSample sample = lamps_[place.begin].sky->sample(u, v);
+    const double cosine = normal_world.dot(sample.direction);
+    if (!(sample.density_per_sr > 0) || !(cosine > 0)) return choice;
+    choice.direction_world = sample.direction;
+    choice.target_world_m = beyond_world_m(position_world_m, sample.direction);
+    choice.factor = cosine;
+    choice.hit_factor = cosine / (kPi * radius_m_ * radius_m_);
+    choice.density = probability * sample.density_per_sr;
+  }
+  return choice;
+}
+
+Vec3 Lamps::beyond_world_m(const Vec3& position_world_m, const Vec3& direction_world) const {
+  return position_world_m + (2 * radius_m_ + (position_world_m - centre_world_m_).norm()) * direction_world;
+}
+
+double Lamps::choice_density(std::size_t emitter, const Vec3& position_world_m, const Vec3& direction_world,
+                             const Weights& weights, double sum) const {
+  const std::size_t p = place_of_emitter_[emitter];
+  if (!(weights[p] > 0)) return 0;
+  const Place& place = places_[p];
+  const double probability = weights[p] / sum;
+  if (place.kind == Kind::point) return probability;
+  if (place.kind == Kind::sky) return probability * lamps_[place.begin].sky->density_per_sr(direction_world);
+  const Vec3 at_lamp_m = place.world_from_lamp.transpose() * (position_world_m - place.position_world_m);
+  return probability * density_seen_from(place.shape, at_lamp_m, place.world_from_lamp.transpose() * direction_world);
+}
+
+LampRay Lamps::emit(double u, double v, double s, double t) const {
+  LampRay ray;
+  if (lamps_.empty()) return ray;
+  const auto after = std::upper_bound(lamps_.begin(), lamps_.end(), u,
+                                      [](double at, const Lamp& lamp) { return at < lamp.share_begin; });
+  const Lamp& lamp = *(after - 1);
+  if (!(lamp.share > 0)) return ray;
+  // What is left of u after the choice is as good a number as u was.
+  const double rest = std::clamp((u - lamp.share_begin) / lamp.share, 0.0, 1 - 0x1p-53);
+  ray.emitter = lamp.emitter;
+  const Place& place = places_[place_of_emitter_[lamp.emitter]];
+  if (place.kind == Kind::sky) {
+    const DirectionSample sample = lamp.sky->sample(rest, v);
+    if (!(sample.density_per_sr > 0)) return ray;
+    const Eigen::Vector2d disk = concentric_disk(s, t);
+    const Vec3 across = Frame(sample.direction).world({disk.x(), disk.y(), 0});
+    ray.from_world_m = centre_world_m_ + radius_m_ * (across + sample.direction);
+    ray.direction_world = -sample.direction;
+    ray.density = lamp.share * sample.density_per_sr;
+    ray.per_area = 1 / (kPi * radius_m_ * radius_m_);
+    ray.flux_lm = lamp.sky->luminance_cd_m2(sample.direction) / (ray.density * ray.per_area);
+    return ray;
+  }
+  const DirectionSample sample = lamp.intensity->sample(rest, v);
+  if (!(sample.density_per_sr > 0)) return ray;
+  ray.direction_world = lamp.lamp_from_world.transpose() * sample.direction;
+  ray.from_world_m = place.position_world_m;
+  ray.density = lamp.share * sample.density_per_sr;
+  ray.flux_lm = lamp.intensity->intensity_cd(sample.direction) / ray.density;
+  if (place.kind == Kind::shape) {
+    const double area_m2 = projected_area_m2(place.shape, sample.direction);
+    if (!(area_m2 > 0)) {
+      ray.flux_lm = 0;
+      return ray;
+    }
+    ray.per_area = 1 / area_m2;
+    ray.from_world_m += place.world_from_lamp * sample_leaving_place_m(place.shape, sample.direction, s, t);
+  }
+  return ray;
 }
 
 double smallest_distance_m(const Vec3& a_world_m, const Vec3& b_world_m) {
@@ -68,12 +292,18 @@ Result<void> check_evaluation(std::span<const Receiver> receivers, std::span<con
   }
   for (std::size_t e = 0; e < emitters.size(); ++e) {
     const Emitter& emitter = emitters[e];
+    if (!emitter.colour_rgb.allFinite() || emitter.colour_rgb.minCoeff() < 0)
+      return refusal(fmt::format("colour of emitter {} is {}", e, text_of(emitter.colour_rgb)));
+    if (emitter.sky) continue;
+    if (!emitter.shape.size_m.allFinite() || emitter.shape.size_m.minCoeff() < 0)
+      return refusal(fmt::format("size of emitter {} is {}", e, text_of(emitter.shape.size_m)));
     if (!emitter.intensity) return refusal(fmt::format("emitter {} has no intensity distribution", e));
     const Pose& pose = emitter.world_from_lamp;
     if (!pose.rotation.allFinite() || !pose.translation_m.allFinite())
       return refusal(fmt::format("pose of emitter {} is not finite", e));
     if (!(pose.rotation.transpose() * pose.rotation).isIdentity(1e-6))
       return refusal(fmt::format("rotation of emitter {} is not a rotation", e));
+    if (emitter.shape.kind != LuminousShape::Kind::point) continue;  // its lux is finite everywhere
     for (std::size_t r = 0; r < receivers.size(); ++r) {
       const Vec3& at = receivers[r].position_world_m;
       const double distance_m = (at - pose.translation_m).norm();

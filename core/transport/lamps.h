@@ -1,5 +1,8 @@
 #pragma once
-/// Emitters made ready for many questions "what reaches this point directly?".
+/// Emitters made ready for many questions "what reaches this point directly?" and "where does this light land first?".
+///
+/// Lamps in one place, such as the candidate aims of one head, see the same: they form one Place. A luminaire with size
+/// and a sky are each a place of their own.
 
 #include <cmath>
 #include <cstdint>
@@ -10,12 +13,35 @@
 
 namespace luxrig {
 
+/// One place of light, or one point or direction of it, asked for from a surface point (next-event estimation).
+struct LampChoice {
+  std::size_t place = 0;
+  Vec3 direction_world = Vec3::UnitZ();  ///< unit, towards the light
+  Vec3 target_world_m = Vec3::Zero();    ///< where a shadow ray ends
+  double density = 0;     ///< probability of the place, times the density per sr of the direction where it has a choice
+  double factor = 0;      ///< lux = intensity [cd] (of a sky: luminance [cd/m²]) times this, per 1 / density
+  double hit_factor = 0;  ///< density of light-traced first hits = share times direction density times this
+};
+
+/// A ray of light as it leaves a lamp.
+struct LampRay {
+  std::size_t emitter = 0;
+  Vec3 from_world_m = Vec3::Zero();
+  Vec3 direction_world = Vec3::UnitZ();
+  double flux_lm = 0;   ///< of this sample: mean over samples = flux of all lamps together; 0: nothing leaves
+  double density = 0;   ///< probability of the lamp times the density per sr of the direction
+  double per_area = 0;  ///< 1 / projected area [1/m²] for what has size; 0 for a point
+};
+
 /// Keeps pointers into the emitters' distributions: the emitters must outlive it.
 class Lamps {
  public:
-  explicit Lamps(std::span<const Emitter> emitters);
+  /// levels    what the light is for: lamps are chosen by it. Empty = all 1. Lamps at 0 are chosen seldom, not never.
+  /// bounds    of all geometry: a sky's light enters through the sphere around it
+  explicit Lamps(std::span<const Emitter> emitters, std::span<const double> levels = {},
+                 const Eigen::AlignedBox3d& bounds_world_m = {});
 
-  /// Direct illuminance [lx at level 1] at a surface point from each emitter that lights it,
+  /// Direct illuminance [lx at level 1] at a surface point from each point luminaire that lights it,
   ///   E = I(ω) cosθ V / d²   (photometric distance law)
   ///
   /// scene         what can stand in between; null = nothing can, and no ray is cast
@@ -26,8 +52,9 @@ class Lamps {
   template <class Lit>
   std::uint64_t light(const RayScene* scene, const Vec3& position_world_m, const Vec3& normal_world, Lit&& lit) const {
     std::uint64_t rays = 0;
-    for (const Group& group : groups_) {
-      const Vec3 towards_m = group.position_world_m - position_world_m;
+    for (const Place& place : places_) {
+      if (place.kind != Kind::point) continue;
+      const Vec3 towards_m = place.position_world_m - position_world_m;
       const double height_m = normal_world.dot(towards_m);
       if (!(height_m > 0)) continue;
       const double distance_squared_m2 = towards_m.squaredNorm();
@@ -36,14 +63,14 @@ class Lamps {
       const double lux_per_candela = height_m * per_distance / distance_squared_m2;
       if (!std::isfinite(lux_per_candela)) continue;
       bool sees = scene == nullptr;
-      for (std::size_t i = group.begin; i < group.end; ++i) {
+      for (std::size_t i = place.begin; i < place.end; ++i) {
         const Lamp& lamp = lamps_[i];
         if (-lamp.axis_world.dot(direction_world) < lamp.cos_half_cone) continue;
         const double lux = lux_per_candela * lamp.intensity->intensity_cd(-(lamp.lamp_from_world * direction_world));
         if (!(lux > 0)) continue;
         if (!sees) {
           ++rays;
-          if (scene->occluded(position_world_m, normal_world, group.position_world_m)) break;
+          if (scene->occluded(position_world_m, normal_world, place.position_world_m)) break;
           sees = true;
         }
         lit(lamp.emitter, lux);
@@ -52,21 +79,90 @@ class Lamps {
     return rays;
   }
 
+  /// Weights of the places for one surface point, in place order; reused from call to call.
+  using Weights = std::vector<double>;
+
+  /// About the lux (times level) that each place would give unshadowed; above 0 for every place that could give any.
+  /// Returns their sum.
+  double weigh(const Vec3& position_world_m, const Vec3& normal_world, Weights& weights) const;
+
+  /// A place by `select` in [0, 1), of those weighed, and for what has size a direction by u and v. density 0: none.
+  [[nodiscard]] LampChoice choose(const Vec3& position_world_m, const Vec3& normal_world, const Weights& weights,
+                                  double sum, double select, double u, double v) const;
+
+  /// What each lamp of the chosen place gives unshadowed, as lit(emitter, lux / choice.density, density with which
+  /// emit() makes a first hit just there, in the unit of choice.density).
+  template <class Lit>
+  void light(const LampChoice& choice, Lit&& lit) const {
+    const Place& place = places_[choice.place];
+    const double per_density = choice.factor / choice.density;
+    for (std::size_t i = place.begin; i < place.end; ++i) {
+      const Lamp& lamp = lamps_[i];
+      if (place.kind == Kind::sky) {
+        const double lux = per_density * lamp.sky->luminance_cd_m2(choice.direction_world);
+        if (lux > 0)
+          lit(lamp.emitter, lux, lamp.share * lamp.sky->density_per_sr(choice.direction_world) * choice.hit_factor);
+        continue;
+      }
+      if (-lamp.axis_world.dot(choice.direction_world) < lamp.cos_half_cone) continue;
+      const Vec3 leaving_lamp = -(lamp.lamp_from_world * choice.direction_world);
+      const double lux = per_density * lamp.intensity->intensity_cd(leaving_lamp);
+      if (lux > 0)
+        lit(lamp.emitter, lux, lamp.share * lamp.intensity->density_per_sr(leaving_lamp) * choice.hit_factor);
+    }
+  }
+
+  /// Light as it leaves: a lamp by its share and a direction by (u, v), a place on it by (s, t).
+  [[nodiscard]] LampRay emit(double u, double v, double s, double t) const;
+
+  /// Density with which choose() asks the place of an emitter from a surface point in a direction. Weights as from
+  /// weigh() there.
+  [[nodiscard]] double choice_density(std::size_t emitter, const Vec3& position_world_m, const Vec3& direction_world,
+                                      const Weights& weights, double sum) const;
+
+  [[nodiscard]] const Vec3& colour_rgb(std::size_t emitter) const { return colours_rgb_[emitter]; }
+  /// Level of an emitter as far as choices go: above 0 for all.
+  [[nodiscard]] double importance(std::size_t emitter) const { return importances_[emitter]; }
+  [[nodiscard]] std::size_t emitters() const { return colours_rgb_.size(); }
+  /// Whether choose() looks at u and v at all.
+  [[nodiscard]] bool have_size() const { return have_size_; }
+  [[nodiscard]] bool any() const { return !lamps_.empty(); }
+
  private:
+  enum class Kind { point, shape, sky };
   struct Lamp {
     std::size_t emitter;
     Vec3 axis_world;  ///< -Z of the lamp
     double cos_half_cone;
     Mat3 lamp_from_world;
     const IntensityDistribution* intensity;
+    const SkyLuminance* sky;
+    double importance;   ///< level, or a little where that is 0
+    double share;        ///< probability that emit() takes it
+    double share_begin;  ///< sum of the shares before it
   };
-  /// Lamps in one place, such as the candidate aims of one head: they see the same.
-  struct Group {
+  struct Place {
+    Kind kind;
     Vec3 position_world_m;
     std::size_t begin, end;  ///< into lamps_
+    LuminousShape shape;
+    double radius_m;  ///< about the position: all of the shape
+    Mat3 world_from_lamp;
   };
+  void share_out();
+  /// Share of a lamp's light, about, that can meet the sphere around all geometry.
+  [[nodiscard]] double inward_share(const Lamp& lamp, const Place& place) const;
+  /// A place outside of all geometry.
+  [[nodiscard]] Vec3 beyond_world_m(const Vec3& position_world_m, const Vec3& direction_world) const;
+
   std::vector<Lamp> lamps_;
-  std::vector<Group> groups_;
+  std::vector<Place> places_;
+  std::vector<std::size_t> place_of_emitter_;
+  std::vector<Vec3> colours_rgb_;
+  std::vector<double> importances_;
+  Vec3 centre_world_m_ = Vec3::Zero();  ///< of the sphere around all geometry
+  double radius_m_ = 1;
+  bool have_size_ = false;
 };
 
 /// Refuses what evaluators cannot work on, naming receiver or emitter and the figure: not finite, a normal or

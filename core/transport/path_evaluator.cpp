@@ -1,4 +1,4 @@
-/// Path tracing with randomised quasi-Monte-Carlo samples, spent where the error is.
+/// Bidirectional path tracing with randomised quasi-Monte-Carlo samples, spent where the error is.
 ///
 /// Each receiver has 16 replicates: estimates from independent scrambles of one Sobol sequence. Their spread gives the
 /// standard error. All replicates of a receiver have the same number of samples, which doubles until the error is as
@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 #include "core/parallel.h"
@@ -20,16 +21,24 @@ namespace luxrig {
 namespace {
 
 constexpr std::size_t kReplicates = 16;
-/// First number of samples per replicate: 512 paths see most of what a hemisphere has to show.
-constexpr std::uint32_t kFirstSamples = 32;
+/// First number of samples per replicate: 256 paths say roughly how bright it is, which later rounds build on.
+constexpr std::uint32_t kFirstSamples = 16;
 /// Where nothing reflected was found at all, an error of zero proves nothing yet; it is believed from here on.
 constexpr std::uint32_t kSamplesToBelieveNothing = 256;
 constexpr std::uint32_t kMostSamples = 1u << 30;
+/// Samples that are taken from one filling of the pools of light hits.
+constexpr std::uint32_t kChunk = 2048;
+/// Hits cost one ray and serve all receivers, so that pools hold more than one receiver needs: receivers then err less
+/// in the same direction, and paths are joined with more different hits. For each this many receivers one share more.
+constexpr std::size_t kReceiversPerShare = 8;
+constexpr std::uint32_t kMostHits = 2 * kChunk * PathSampler::kHitsPerPath;  ///< of a pool
 /// A receiver is done when this many of its standard errors are within the wanted error. One would keep the contract
 /// on average; 2.5 makes the error itself, not only its standard deviation, stay below the wanted one for 98 of 100
 /// receivers, and leaves room for the estimate from 16 replicates to be too low by 1.44 (χ², 15 degrees of freedom,
-/// 5 %), which stopping at the first low estimate would make the rule. Costs about twice the rays.
+/// 5 %), which stopping at the first low estimate would make the rule.
 constexpr double kStopMargin = 2.5;
+/// Connections worth less than this share of a path's mean are made only now and then.
+constexpr double kCut = 0.1;
 
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -37,7 +46,8 @@ using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::R
 struct Spent {
   std::uint32_t samples = 0;  ///< per replicate
   std::uint64_t rays = 0;
-  double lux = 0;       ///< under the options' levels
+  double lux = 0;  ///< under the options' levels
+  double direct_lx = 0;
   double error_lx = 0;  ///< standard error of lux
 };
 
@@ -45,13 +55,23 @@ class Evaluation {
  public:
   Evaluation(const RayScene& scene, std::span<const Receiver> receivers, std::span<const Emitter> emitters,
              const EvaluateOptions& options)
-      : scene_(scene), receivers_(receivers), emitters_(emitters), options_(options), lamps_(emitters) {
+      : scene_(scene),
+        receivers_(receivers),
+        emitters_(emitters),
+        options_(options),
+        lamps_(emitters, options.levels, scene.bounds_world_m()),
+        bsdfs_(bsdfs_of(scene)),
+        channels_(options.colour ? 3 : 1),
+        columns_(emitters.size() * channels_) {
     levels_ = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(emitters.size()));
     for (std::size_t e = 0; e < options.levels.size(); ++e) levels_[static_cast<Eigen::Index>(e)] = options.levels[e];
+    importance_.assign(emitters.size(), 0.0);
+    for (std::size_t e = 0; e < emitters.size(); ++e) importance_[e] = lamps_.importance(e);
   }
 
   Result<TransportMatrix> run() {
-    const bool reflects = obstacles_in(scene_) && !emitters_.empty() && !receivers_.empty();
+    const bool reflects = obstacles_in(scene_) && !emitters_.empty() && !receivers_.empty() &&
+                          std::any_of(bsdfs_.begin(), bsdfs_.end(), [](const Bsdf& b) { return !b.black(); });
     auto direct = direct_light(scene_, receivers_, lamps_, emitters_.size(), options_.threads, options_.watch,
                                reflects ? 0.02 : 1.0);
     if (!direct) return tl::unexpected(std::move(direct.error()));
@@ -59,11 +79,12 @@ class Evaluation {
     matrix_.rays = direct->rays;
     if (!reflects) {
       matrix_.lux_per_level = matrix_.direct_lux_per_level;
+      if (channels_ == 3) start_colours();
       return std::move(matrix_);
     }
     spent_.resize(receivers_.size());
     const auto rows = static_cast<Eigen::Index>(receivers_.size());
-    sums_.assign(kReplicates, RowMatrix::Zero(rows, static_cast<Eigen::Index>(emitters_.size())));
+    sums_.assign(kReplicates, RowMatrix::Zero(rows, static_cast<Eigen::Index>(columns_)));
     done_ = 0.02;
     for (auto round = first_round(); !round.empty(); round = next_round())
       if (!sample(round)) return tl::unexpected(Fault{Cause::cancelled, "", "stopped while tracing paths", {}});
@@ -76,8 +97,8 @@ class Evaluation {
     std::vector<std::size_t> all(receivers_.size());
     std::iota(all.begin(), all.end(), std::size_t{0});
     first_samples_ = kFirstSamples;
-    // A path has seldom more than 4 vertices, each with a ray to reach it and one to each lamp.
-    const std::uint64_t rays_per_sample = 4 * (emitters_.size() + 1) * kReplicates * all.size();
+    // A path has seldom more than 4 vertices, each with a ray to reach it, one to a lamp and one to a light hit.
+    const std::uint64_t rays_per_sample = (12 * all.size() + PathSampler::kHitsPerPath) * kReplicates;
     const std::uint64_t rays_left = options_.max_rays > matrix_.rays ? options_.max_rays - matrix_.rays : 0;
     while (first_samples_ > 1 && rays_per_sample * first_samples_ > rays_left) first_samples_ /= 2;
     return all;
@@ -120,33 +141,21 @@ class Evaluation {
     return sums_[replicate].row(static_cast<Eigen::Index>(r));
   }
 
+  /// Gives each receiver of the round as many samples again as it has.
   bool sample(const std::vector<std::size_t>& round) {
-    const std::size_t tasks = round.size() * kReplicates;
-    std::vector<std::uint64_t> rays(tasks, 0);
-    CallingThreadProgress progress(options_.watch, done_, done_after(round), tasks);
-    const PathSampler sampler(scene_, lamps_);
-    parallel_for(tasks, options_.threads, [&](std::size_t task) {
-      const std::size_t r = round[task / kReplicates], k = task % kReplicates;
-      const std::uint32_t begin = spent_[r].samples, end = begin == 0 ? first_samples_ : 2 * begin;
-      const SobolSequence samples(mixed(mixed(options_.seed, r), k));
-      std::vector<double> sums(emitters_.size(), 0.0);
-      for (std::uint32_t i = begin; i < end; ++i) {
-        if (options_.watch.stop.stop_requested()) return;
-        rays[task] += sampler.add_path(receivers_[r], samples, i, sums);
-      }
-      sums_[k].row(static_cast<Eigen::Index>(r)) +=
-          Eigen::Map<const Eigen::RowVectorXd>(sums.data(), static_cast<Eigen::Index>(sums.size()));
-      progress.one_done();
-    });
+    // Receivers at the same sample share light hits; nearly always that is all of them.
+    std::map<std::uint32_t, std::vector<std::size_t>> at_sample;
+    for (const std::size_t r : round) at_sample[spent_[r].samples].push_back(r);
+    CallingThreadProgress progress(options_.watch, done_, done_after(round), parts_of(at_sample));
+    for (const auto& [begin, group] : at_sample) {
+      const std::uint32_t end = end_after(begin);
+      for (std::uint32_t at = begin; at < end; at += kChunk)
+        sample_chunk(group, at, std::min(end, at + kChunk), progress);
+    }
     if (options_.watch.stop.stop_requested()) return false;
-    for (std::size_t i = 0; i < round.size(); ++i) {
-      Spent& spent = spent_[round[i]];
-      spent.samples = spent.samples == 0 ? first_samples_ : 2 * spent.samples;
-      for (std::size_t k = 0; k < kReplicates; ++k) {
-        spent.rays += rays[i * kReplicates + k];
-        matrix_.rays += rays[i * kReplicates + k];
-      }
-      estimate(round[i]);
+    for (const std::size_t r : round) {
+      spent_[r].samples = end_after(spent_[r].samples);
+      estimate(r);
     }
     done_ = done_after({});
     brightest_lx_ = 0;
@@ -154,31 +163,136 @@ class Evaluation {
     return true;
   }
 
+  std::uint32_t end_after(std::uint32_t begin) const { return begin == 0 ? first_samples_ : 2 * begin; }
+
+  std::size_t parts_of(const std::map<std::uint32_t, std::vector<std::size_t>>& at_sample) const {
+    std::size_t parts = 0;
+    for (const auto& [begin, group] : at_sample)
+      parts += (end_after(begin) - begin + kChunk - 1) / kChunk * kReplicates * group.size();
+    return parts;
+  }
+
+  SobolSequence samples_of_lights(std::size_t replicate) const {
+    return SobolSequence(mixed(mixed(options_.seed, 0x11647), replicate));
+  }
+
+  void sample_chunk(const std::vector<std::size_t>& group, std::uint32_t begin, std::uint32_t end,
+                    CallingThreadProgress& progress) {
+    const std::uint32_t shares = shares_of(end - begin);
+    trace_lights(begin * shares, end * shares);
+    std::vector<std::uint64_t> rays(group.size() * kReplicates, 0);
+    const PathSampler sampler(scene_, lamps_, bsdfs_, importance_);
+    parallel_for(rays.size(), options_.threads, [&](std::size_t task) {
+      const std::size_t r = group[task / kReplicates], k = task % kReplicates;
+      const SobolSequence samples(mixed(mixed(options_.seed, r), k));
+      PathScratch scratch;
+      std::vector<double> values(columns_, 0.0);
+      const PathSums sums{values, channels_};
+      const std::size_t first_hit = (r % shares) * std::size_t{end - begin} * PathSampler::kHitsPerPath;
+      const double cut_lx = kCut * (spent_[r].lux - spent_[r].direct_lx);
+      for (std::uint32_t i = begin; i < end; ++i) {
+        if (options_.watch.stop.stop_requested()) return;
+        rays[task] += sampler.add_path(receivers_[r], samples, i, pools_[k],
+                                       first_hit + std::size_t{i - begin} * PathSampler::kHitsPerPath, cut_lx, scratch,
+                                       sums);
+      }
+      sums_[k].row(static_cast<Eigen::Index>(r)) +=
+          Eigen::Map<const Eigen::RowVectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+      progress.one_done();
+    });
+    for (std::size_t task = 0; task < rays.size(); ++task) {
+      spent_[group[task / kReplicates]].rays += rays[task];
+      matrix_.rays += rays[task];
+    }
+  }
+
+  /// Shares of a pool for different receivers; a power of two, which keeps the strata of each.
+  std::uint32_t shares_of(std::uint32_t samples) const {
+    std::uint32_t shares = 1;
+    while (2 * shares * kReceiversPerShare <= receivers_.size() &&
+           2 * shares * samples * PathSampler::kHitsPerPath <= kMostHits)
+      shares *= 2;
+    return shares;
+  }
+
+  /// Fills the pools with the light hits of samples [begin, end).
+  void trace_lights(std::uint32_t begin, std::uint32_t end) {
+    const LightHits lights(scene_, lamps_, bsdfs_);
+    pools_.resize(kReplicates);
+    std::vector<std::uint64_t> rays(kReplicates, 0);
+    parallel_for(kReplicates, options_.threads, [&](std::size_t k) {
+      HitPool& pool = pools_[k];
+      pool.hits.clear();
+      pool.shining.clear();
+      const SobolSequence samples = samples_of_lights(k);
+      Lamps::Weights weights;
+      for (std::uint32_t i = begin * PathSampler::kHitsPerPath; i < end * PathSampler::kHitsPerPath; ++i) {
+        if (options_.watch.stop.stop_requested()) return;
+        pool.hits.push_back(lights.trace(samples, i, weights, rays[k]));
+        if (pool.hits.back().shines()) pool.shining.push_back(static_cast<std::uint32_t>(pool.hits.size() - 1));
+      }
+    });
+    for (const std::uint64_t n : rays) matrix_.rays += n;
+  }
+
+  /// Reflected lux at the levels in one replicate.
+  double reflected_lx(std::size_t replicate, std::size_t r) const {
+    const auto row = row_of(replicate, r);
+    double sum = 0;
+    for (Eigen::Index e = 0; e < levels_.size(); ++e) sum += levels_[e] * luminance(row, e);
+    return sum / spent_[r].samples;
+  }
+
+  template <class Row>
+  double luminance(const Row& row, Eigen::Index emitter) const {
+    if (channels_ == 1) return row[emitter];
+    return 0.2126 * row[3 * emitter] + 0.7152 * row[3 * emitter + 1] + 0.0722 * row[3 * emitter + 2];
+  }
+
   void estimate(std::size_t r) {
-    std::array<double, kReplicates> reflected_lx{};
+    std::array<double, kReplicates> reflected{};
     double mean_lx = 0;
     for (std::size_t k = 0; k < kReplicates; ++k) {
-      reflected_lx[k] = row_of(k, r).dot(levels_) / spent_[r].samples;
-      mean_lx += reflected_lx[k] / kReplicates;
+      reflected[k] = reflected_lx(k, r);
+      mean_lx += reflected[k] / kReplicates;
     }
-    spent_[r].lux = mean_lx + matrix_.direct_lux_per_level.row(static_cast<Eigen::Index>(r)).dot(levels_);
-    spent_[r].error_lx = standard_error_of_mean(reflected_lx);
+    spent_[r].direct_lx = matrix_.direct_lux_per_level.row(static_cast<Eigen::Index>(r)).dot(levels_);
+    spent_[r].lux = mean_lx + spent_[r].direct_lx;
+    spent_[r].error_lx = standard_error_of_mean(reflected);
   }
 
   void finish() {
     const auto n = static_cast<Eigen::Index>(receivers_.size());
     Eigen::MatrixXd reflected = Eigen::MatrixXd::Zero(n, levels_.size());
+    if (channels_ == 3) start_colours();
     for (std::size_t k = 0; k < kReplicates; ++k) {
-      Eigen::MatrixXd& replicate = matrix_.replicates.emplace_back(sums_[k]);
+      Eigen::MatrixXd replicate(n, levels_.size());
+      for (Eigen::Index r = 0; r < n; ++r) {
+        const auto row = sums_[k].row(r);
+        const double samples = spent_[static_cast<std::size_t>(r)].samples;
+        for (Eigen::Index e = 0; e < levels_.size(); ++e) {
+          replicate(r, e) = luminance(row, e) / samples;
+          for (std::size_t c = 0; c < 3 && channels_ == 3; ++c)
+            matrix_.rgb_per_level[c](r, e) += row[3 * e + static_cast<Eigen::Index>(c)] / (samples * kReplicates);
+        }
+      }
       sums_[k].resize(0, 0);
-      for (Eigen::Index r = 0; r < n; ++r) replicate.row(r) /= spent_[static_cast<std::size_t>(r)].samples;
       reflected += replicate / kReplicates;
-      replicate += matrix_.direct_lux_per_level;
+      matrix_.replicates.emplace_back(replicate + matrix_.direct_lux_per_level);
     }
     matrix_.lux_per_level = matrix_.direct_lux_per_level + reflected;
     for (std::size_t r = 0; r < receivers_.size(); ++r)
       matrix_.relative_error = std::max(matrix_.relative_error, relative_error(r));
     if (options_.watch.progress) options_.watch.progress(1.0);
+  }
+
+  /// The direct part by primary.
+  void start_colours() {
+    matrix_.rgb_per_level.assign(3, matrix_.direct_lux_per_level);
+    for (std::size_t c = 0; c < 3; ++c)
+      for (Eigen::Index e = 0; e < levels_.size(); ++e)
+        matrix_.rgb_per_level[c].col(e) *=
+            emitters_[static_cast<std::size_t>(e)].colour_rgb[static_cast<Eigen::Index>(c)];
   }
 
   /// Share of the whole work done so far, or after a round: error falls at least with the root of the samples.
@@ -200,7 +314,11 @@ class Evaluation {
   std::span<const Emitter> emitters_;
   const EvaluateOptions& options_;
   Lamps lamps_;
+  std::vector<Bsdf> bsdfs_;
+  std::size_t channels_, columns_;
   Eigen::VectorXd levels_;
+  std::vector<double> importance_;
+  std::vector<HitPool> pools_;
   TransportMatrix matrix_;
   std::vector<Spent> spent_;
   std::vector<RowMatrix> sums_;  ///< per replicate: reflected light, receivers × emitters, summed over samples

@@ -1,59 +1,161 @@
 #include "core/transport/path_sampler.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace luxrig {
 namespace {
 
-// Sets of four Sobol dimensions: directions of two bounces share a set, roulette of four bounces share one.
-constexpr std::uint32_t kRouletteSets = 1u << 16;
+double luminance(const Vec3& rgb) { return 0.2126 * rgb.x() + 0.7152 * rgb.y() + 0.0722 * rgb.z(); }
 
-double roulette_number(const SobolSequence& samples, std::uint32_t index, std::uint32_t bounce) {
-  return samples.pair(index, kRouletteSets + bounce / 4, (bounce / 2) % 2)[bounce % 2];
+/// Sets of four Sobol dimensions per bounce; far bounces matter little and take plain random numbers.
+constexpr std::uint32_t kSetsPerBounce = 3;
+constexpr std::uint32_t kSobolBounces = 4;
+
+/// The random numbers of one path.
+class Dice {
+ public:
+  Dice(const SobolSequence& samples, std::uint32_t index)
+      : samples_(samples), index_(index), state_(samples.number(index)) {}
+
+  std::array<double, 2> pair(std::uint32_t bounce, std::uint32_t of_bounce) {
+    if (bounce >= kSobolBounces) return {plain(), plain()};
+    return samples_.pair(index_, kSetsPerBounce * bounce + of_bounce / 2, of_bounce % 2);
+  }
+  double plain() {
+    state_ += 0x9e3779b97f4a7c15ull;
+    std::uint64_t z = state_;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
+    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
+  }
+
+ private:
+  const SobolSequence& samples_;
+  std::uint32_t index_;
+  std::uint64_t state_;
+};
+
+/// Whether a connection worth `value` is made; if so, by what it counts.
+double kept(double value, double cut, double chance) {
+  if (value >= cut) return 1;
+  return chance * cut < value ? cut / value : 0;
 }
 
 }  // namespace
 
-Vec3 cosine_direction(const Vec3& normal_world, double u, double v) {
-  const double a = 2 * u - 1, b = 2 * v - 1;
-  double x = 0, y = 0;
-  if (a != 0 || b != 0) {
-    const bool wide = std::abs(a) > std::abs(b);
-    const double radius = wide ? a : b;
-    const double angle = wide ? kPi / 4 * (b / a) : kPi / 2 - kPi / 4 * (a / b);
-    x = radius * std::cos(angle);
-    y = radius * std::sin(angle);
+std::uint64_t PathSampler::join(const Vertex& vertex, const LightHit& hit, double hits, double cut_lx, double chance,
+                                const PathSums& sums) const {
+  const Vec3 towards_m = hit.position_world_m - vertex.position_world_m;
+  const double height_m = vertex.normal_world.dot(towards_m);
+  const double hit_height_m = -hit.normal_world.dot(towards_m);
+  if (!(height_m > 0) || !(hit_height_m > 0)) return 0;
+  const double per_distance2 = 1 / towards_m.squaredNorm();
+  const double per_distance = std::sqrt(per_distance2);
+  const Vec3 direction = towards_m * per_distance;
+  const double cosine = height_m * per_distance, hit_cosine = hit_height_m * per_distance;
+  Vec3 rgb = vertex.through_rgb;
+  double density = cosine / kPi;
+  if (vertex.bsdf) {
+    rgb = rgb.cwiseProduct(vertex.bsdf->value(vertex.normal_world, vertex.out_world, direction));
+    density = vertex.bsdf->density(vertex.normal_world, vertex.out_world, direction);
   }
-  const double z = std::sqrt(std::max(0.0, 1 - x * x - y * y));
-  // Tangents without a branch on the normal (T. Duff et al., JCGT 6(1), 2017).
-  const Vec3& n = normal_world;
-  const double sign = std::copysign(1.0, n.z());
-  const double p = -1 / (sign + n.z()), q = n.x() * n.y() * p;
-  const Vec3 tangent(1 + sign * n.x() * n.x() * p, sign * q, -sign * n.x());
-  const Vec3 bitangent(q, sign + n.y() * n.y() * p, -n.y());
-  return (x * tangent + y * bitangent + z * n).normalized();
+  rgb = rgb.cwiseProduct(hit.bsdf->value(hit.normal_world, -direction, hit.to_light_world)).cwiseProduct(hit.flux_rgb);
+  const double geometry = cosine * hit_cosine * per_distance2;
+  const double by_hit = hits * hit.density;
+  const double by_path = density * hit_cosine * per_distance2 * hit.choice_density;
+  const double factor = geometry / hits * (by_hit / (by_hit + by_path));
+  if (!(factor > 0) || !std::isfinite(factor)) return 0;
+  rgb *= factor;
+  const double worth = luminance(rgb) * level(hit.emitter);
+  if (!(worth > 0)) return 0;
+  const double counts = kept(worth, cut_lx, chance);
+  if (counts == 0) return 0;
+  if (!scene_.occluded(vertex.position_world_m, vertex.normal_world, hit.position_world_m))
+    sums.add(hit.emitter, counts * rgb);
+  return 1;
+}
+
+std::uint64_t PathSampler::ask_lamps(const Vertex& vertex, double density_per_m2, double hits, double cut_lx,
+                                     double select, double u, double v, double chance, PathScratch& scratch,
+                                     const PathSums& sums) const {
+  const double sum = lamps_.weigh(vertex.position_world_m, vertex.normal_world, scratch.weights);
+  const LampChoice choice =
+      lamps_.choose(vertex.position_world_m, vertex.normal_world, scratch.weights, sum, select, u, v);
+  if (!(choice.density > 0)) return 0;
+  const Vec3 per_lux = vertex.through_rgb.cwiseProduct(
+      vertex.bsdf->value(vertex.normal_world, vertex.out_world, choice.direction_world));
+  const double by_path = density_per_m2 * choice.density;
+  scratch.lit.clear();
+  double worth = 0;
+  lamps_.light(choice, [&](std::size_t emitter, double lux, double hit_density) {
+    const double share = by_path / (by_path + hits * hit_density);
+    const Vec3 rgb = share * lux * per_lux.cwiseProduct(lamps_.colour_rgb(emitter));
+    worth += luminance(rgb) * level(emitter);
+    scratch.lit.push_back({emitter, rgb});
+  });
+  if (!(worth > 0) || !std::isfinite(worth)) return 0;
+  const double counts = kept(worth, cut_lx, chance);
+  if (counts == 0) return 0;
+  if (!scene_.occluded(vertex.position_world_m, vertex.normal_world, choice.target_world_m))
+    for (const PathScratch::Lit& lit : scratch.lit) sums.add(lit.emitter, counts * lit.rgb);
+  return 1;
 }
 
 std::uint64_t PathSampler::add_path(const Receiver& from, const SobolSequence& samples, std::uint32_t index,
-                                    std::span<double> sums) const {
+                                    const HitPool& pool, std::size_t pool_index, double cut_lx, PathScratch& scratch,
+                                    const PathSums& sums) const {
   std::uint64_t rays = 0;
-  Vec3 position_world_m = from.position_world_m, normal_world = from.normal_world;
-  double throughput = 1;
+  Dice dice(samples, index);
+  Vertex vertex{from.position_world_m, from.normal_world, from.normal_world};
   for (std::uint32_t bounce = 0; bounce < kLongestPath; ++bounce) {
-    const auto [u, v] = samples.pair(index, bounce / 2, bounce % 2);
-    ++rays;
-    const auto hit = scene_.nearest(position_world_m, cosine_direction(normal_world, u, v), normal_world);
-    if (!hit) break;
-    throughput *= scene_.material_of(hit->triangle).luminous_reflectance();
-    if (!(throughput > 0)) break;
-    position_world_m = hit->position_world_m;
-    normal_world = hit->normal_world;
-    rays += lamps_.light(&scene_, position_world_m, normal_world,
-                         [&](std::size_t emitter, double lux) { sums[emitter] += throughput * lux; });
-    if (throughput < kRouletteBelow) {
-      if (roulette_number(samples, index, bounce) * kRouletteBelow >= throughput) break;
-      throughput = kRouletteBelow;
+    double hits = 1;
+    if (bounce == 0) {
+      hits = kHitsPerPath;
+      for (std::size_t h = pool_index; h < pool_index + kHitsPerPath; ++h)
+        if (const LightHit& hit = pool.hits[h]; hit.shines())
+          rays += join(vertex, hit, hits, cut_lx, dice.plain(), sums);
+    } else if (!pool.shining.empty()) {
+      // Hits without flux count as drawn: of all samples, so many shine.
+      const auto pick = static_cast<std::size_t>(dice.pair(bounce, 3)[0] * static_cast<double>(pool.shining.size()));
+      const LightHit& hit = pool.hits[pool.shining[std::min(pick, pool.shining.size() - 1)]];
+      Vertex weighed = vertex;
+      weighed.through_rgb *= static_cast<double>(pool.shining.size()) / static_cast<double>(pool.hits.size());
+      rays += join(weighed, hit, hits, cut_lx, dice.plain(), sums);
     }
+    const auto [u, v] = dice.pair(bounce, 0);
+    Bsdf::Sample next;
+    if (vertex.bsdf) {
+      next = vertex.bsdf->sample(vertex.normal_world, vertex.out_world, u, v,
+                                 vertex.bsdf->matt() ? 0 : dice.pair(bounce, 4)[0]);
+    } else {
+      next.in = cosine_direction(vertex.normal_world, u, v);
+      next.weight_rgb = Vec3::Constant(kPi);
+      next.density_per_sr = vertex.normal_world.dot(next.in) / kPi;
+    }
+    if (!(next.density_per_sr > 0)) break;
+    ++rays;
+    const auto hit = scene_.nearest(vertex.position_world_m, next.in, vertex.normal_world);
+    if (!hit) break;
+    const Bsdf& bsdf = bsdfs_[scene_.material_index_of(hit->triangle)];
+    if (bsdf.black()) break;
+    Vertex reached{hit->position_world_m, hit->normal_world, -next.in, &bsdf,
+                   vertex.through_rgb.cwiseProduct(next.weight_rgb)};
+    const double cosine = reached.normal_world.dot(reached.out_world);
+    const double distance2_m2 = (reached.position_world_m - vertex.position_world_m).squaredNorm();
+    const double density_per_m2 = next.density_per_sr * cosine / distance2_m2;
+    const auto [select, chance] = dice.pair(bounce, 1);
+    const auto [s, t] = lamps_.have_size() ? dice.pair(bounce, 2) : std::array<double, 2>{};
+    // In a corner, where the distance rounds to nothing, the path is the sharper way.
+    rays += ask_lamps(reached, std::min(density_per_m2, 1e200), hits, cut_lx, select, s, t, chance, scratch, sums);
+    const double throughput = reached.through_rgb.cwiseProduct(bsdf.body_rgb()).maxCoeff() / kPi +
+                              (bsdf.matt() ? 0 : reached.through_rgb.maxCoeff() / kPi * bsdf.coat_albedo(cosine));
+    if (throughput < kRouletteBelow) {
+      const double goes_on = throughput / kRouletteBelow;
+      if (dice.pair(bounce, 3)[1] >= goes_on) break;
+      reached.through_rgb /= goes_on;
+    }
+    vertex = reached;
   }
   return rays;
 }

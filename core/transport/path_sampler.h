@@ -1,18 +1,49 @@
 #pragma once
-/// Light that reaches a surface after diffuse reflection, by paths that start there.
+/// Light that reaches a surface after reflection: paths that start there, joined with light traced from the lamps.
+///
+/// With L the radiance that arrives, E = ∫ L cosθ dω, and every surface sends on L = ∫ f L' cosθ' dω'. A path follows
+/// that recursion from the receiver. At each vertex y the light of the next surface z comes in two ways:
+///   a  the path goes on to z by chance and there asks a lamp for its direct light (next-event estimation);
+///   b  y is joined with a first hit z of light that was traced from the lamps.
+/// Both densities at z are known, so they share the work by the balance heuristic (E. Veach, L. Guibas 1995): b finds
+/// the bright patches that lamps make on what is near them, a the light of wide and far surfaces and corners. Hits are
+/// shared by all receivers (as the light vertex cache of T. Davidovič et al. 2014, with subpaths of one hit).
+/// Unbiased, whatever the roulettes.
 
-#include "core/transport/lamps.h"
-#include "core/transport/sobol.h"
+#include "core/transport/light_hits.h"
 
 namespace luxrig {
 
-/// Direction in the hemisphere about `normal_world`, with density cosθ/π, for a point of the unit square (concentric
-/// map of P. Shirley and K. Chiu, 1997, which keeps the square's strata).
-[[nodiscard]] Vec3 cosine_direction(const Vec3& normal_world, double u, double v);
+/// The light hits that one replicate's paths may be joined with.
+struct HitPool {
+  std::vector<LightHit> hits;          ///< in sample order; kHitsPerPath for each path
+  std::vector<std::uint32_t> shining;  ///< indices of those with flux
+};
 
-/// With E(x) the illuminance at x and ρ the luminous reflectance, a diffuse surface has radiance ρE/π, so that
-///   E(x) = E_direct(x) + ∫ ρ(y)/π E(y) cosθ dω = E_direct(x) + mean of ρ(y) E(y) over cosine-weighted directions.
-/// A path follows that recursion; at each vertex every lamp is asked for its direct light.
+/// Memory of one worker, reused from path to path.
+struct PathScratch {
+  struct Lit {
+    std::size_t emitter;
+    Vec3 rgb;  ///< lux at level 1 by primary, MIS weight included
+  };
+  Lamps::Weights weights;
+  std::vector<Lit> lit;
+};
+
+/// What is added up: luminance only, or three primaries.
+struct PathSums {
+  std::span<double> values;  ///< emitters × channels
+  std::size_t channels = 1;  ///< 1 or 3
+
+  void add(std::size_t emitter, const Vec3& rgb) const {
+    if (channels == 1) {
+      values[emitter] += 0.2126 * rgb.x() + 0.7152 * rgb.y() + 0.0722 * rgb.z();
+    } else {
+      for (std::size_t c = 0; c < 3; ++c) values[3 * emitter + c] += rgb[static_cast<Eigen::Index>(c)];
+    }
+  }
+};
+
 class PathSampler {
  public:
   /// No path is longer. Reflectances are at most 0.95 (core/scene/scene.h), so what is cut off is below
@@ -23,16 +54,38 @@ class PathSampler {
   /// throughput / kRouletteBelow, at throughput kRouletteBelow.
   static constexpr double kRouletteBelow = 0.4;
 
-  PathSampler(const RayScene& scene, const Lamps& lamps) : scene_(scene), lamps_(lamps) {}
+  /// Hits that the receiver itself is joined with, per path; further vertices are joined with one.
+  static constexpr std::uint32_t kHitsPerPath = 2;
 
-  /// Adds one unbiased estimate of the reflected illuminance [lx at level 1] of each emitter to sums[emitter].
+  PathSampler(const RayScene& scene, const Lamps& lamps, const std::vector<Bsdf>& bsdfs, std::span<const double> levels)
+      : scene_(scene), lamps_(lamps), bsdfs_(bsdfs), levels_(levels) {}
+
+  /// Adds one unbiased estimate of the reflected illuminance [lx at level 1] of each emitter to the sums.
+  ///
+  /// pool       hits traced from the same replicate's samples
+  /// pool_index of the first of this path's kHitsPerPath hits
+  /// cut_lx     a connection worth less (under the levels) is made only now and then, and counts more then; 0: never
   /// Returns the rays cast.
-  std::uint64_t add_path(const Receiver& from, const SobolSequence& samples, std::uint32_t index,
-                         std::span<double> sums) const;
+  std::uint64_t add_path(const Receiver& from, const SobolSequence& samples, std::uint32_t index, const HitPool& pool,
+                         std::size_t pool_index, double cut_lx, PathScratch& scratch, const PathSums& sums) const;
 
  private:
+  struct Vertex {
+    Vec3 position_world_m, normal_world;
+    Vec3 out_world;                   ///< unit, where the path came from
+    const Bsdf* bsdf = nullptr;       ///< null: the receiver, which weighs by the cosine alone
+    Vec3 through_rgb = Vec3::Ones();  ///< lux at the receiver per radiance that leaves the vertex towards out_world
+  };
+  std::uint64_t join(const Vertex& vertex, const LightHit& hit, double hits, double cut_lx, double chance,
+                     const PathSums& sums) const;
+  std::uint64_t ask_lamps(const Vertex& vertex, double density_per_m2, double hits, double cut_lx, double select,
+                          double u, double v, double chance, PathScratch& scratch, const PathSums& sums) const;
+  [[nodiscard]] double level(std::size_t emitter) const { return levels_[emitter]; }
+
   const RayScene& scene_;
   const Lamps& lamps_;
+  const std::vector<Bsdf>& bsdfs_;
+  std::span<const double> levels_;  ///< of importance: above 0 for all
 };
 
 }  // namespace luxrig

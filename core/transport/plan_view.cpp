@@ -2,7 +2,8 @@
 #include <cmath>
 
 #include "core/parallel.h"
-#include "core/transport/path_sampler.h"
+#include "core/transport/bsdf.h"
+#include "core/transport/sobol.h"
 #include "core/transport/picture.h"
 
 namespace luxrig {

@@ -29,6 +29,9 @@ class SobolSequence {
   /// Two of them, for less: coordinates 4·set + 2·half and the next; half is 0 or 1.
   [[nodiscard]] std::array<double, 2> pair(std::uint32_t index, std::uint32_t set, std::uint32_t half) const;
 
+  /// 64 random bits that belong to a point: to seed what needs no strata.
+  [[nodiscard]] std::uint64_t number(std::uint32_t index) const { return mixed(key_, 0x100000000ull + index); }
+
  private:
   std::uint64_t key_;
 };

@@ -1,0 +1,75 @@
+#pragma once
+/// How a surface sends light on: a diffuse body under a rough glossy coat.
+///
+/// f(i, o) = ρ/π (1 - Es(i)) (1 - Es(o)) / (1 - Ēs)  +  D(h) F(i·h) G(i, o) / (4 cos i cos o)
+///
+/// The coat: GGX distribution D, height-correlated Smith G (B. Walter et al. 2007; E. Heitz 2014), F after Schlick from
+/// the reflectance at normal incidence, the same for all colours. Es(o) is the share of light from o that the coat
+/// reflects, Ēs its cosine-weighted mean; the body gets what is left (C. Kelemen, L. Szirmay-Kalos 2001). So f is
+/// reciprocal, and the whole reflects Es(o) + ρ (1 - Es(o)) of the light from o: less than all of it for ρ < 1.
+
+#include <array>
+
+#include "core/scene/scene.h"
+
+namespace luxrig {
+
+class Bsdf {
+ public:
+  explicit Bsdf(const Material& material);
+
+  /// Without gloss f is ρ/π whatever the directions, and sampling is by the cosine.
+  [[nodiscard]] bool matt() const { return specular_ <= 0; }
+  [[nodiscard]] bool black() const { return matt() && !(body_rgb_.maxCoeff() > 0); }
+  [[nodiscard]] const Vec3& body_rgb() const { return body_rgb_; }
+
+  /// f [1/sr] by linear Rec. 709 primary. Both directions are unit, point away from the surface, and lie on the side
+  /// of `normal`, or f is zero.
+  [[nodiscard]] Vec3 value(const Vec3& normal, const Vec3& out, const Vec3& in) const;
+
+  /// Density [1/sr] with which sample() draws `in` when light leaves towards `out`.
+  [[nodiscard]] double density(const Vec3& normal, const Vec3& out, const Vec3& in) const;
+
+  struct Sample {
+    Vec3 in = Vec3::UnitZ();
+    Vec3 weight_rgb = Vec3::Zero();  ///< f cosθ / density; zero when nothing could be drawn
+    double density_per_sr = 0;
+  };
+  /// Direction from which light comes that leaves towards `out`.
+  /// lobe   0…1, chooses between body and coat; not used when matt
+  [[nodiscard]] Sample sample(const Vec3& normal, const Vec3& out, double u, double v, double lobe) const;
+
+  /// Es(cosθ), and the share of samples that go to the coat there.
+  [[nodiscard]] double coat_albedo(double cosine) const;
+  [[nodiscard]] double coat_share(double cosine) const;
+
+ private:
+  static constexpr std::size_t kSteps = 64;
+  [[nodiscard]] double coat(double cos_in, double cos_out, double cos_half, double in_half) const;
+
+  Vec3 body_rgb_;
+  double specular_ = 0, alpha_ = 1;
+  double mean_albedo_ = 0;
+  std::array<double, kSteps + 1> albedo_{};  ///< over the cosine, even steps
+};
+
+/// Tangents of a unit normal, without a branch on it (T. Duff et al., JCGT 6(1), 2017).
+struct Frame {
+  Vec3 tangent, bitangent, normal;
+  explicit Frame(const Vec3& n);
+  [[nodiscard]] Vec3 world(const Vec3& local) const {
+    return local.x() * tangent + local.y() * bitangent + local.z() * normal;
+  }
+  [[nodiscard]] Vec3 local(const Vec3& world) const {
+    return {tangent.dot(world), bitangent.dot(world), normal.dot(world)};
+  }
+};
+
+/// Point of the unit disk for a point of the unit square (concentric map of P. Shirley and K. Chiu, 1997, which keeps
+/// the square's strata).
+[[nodiscard]] Eigen::Vector2d concentric_disk(double u, double v);
+
+/// Direction in the hemisphere about `normal_world`, with density cosθ/π.
+[[nodiscard]] Vec3 cosine_direction(const Vec3& normal_world, double u, double v);
+
+}  // namespace luxrig

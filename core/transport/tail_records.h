@@ -1,0 +1,61 @@
+#pragma once
+/// Reflected illuminance at places of the surfaces that receivers see: what points learn from each other.
+///
+/// Paths from neighbouring places see the same rest of the room. A record holds the reflected illuminance of one place
+/// (a path's second vertex), estimated once by a few full paths for each replicate; a path that arrives nearby takes
+/// the record's value instead of going on. Records differ between replicates in noise, so that replicates still
+/// show it; what they all share is the bias of looking a little beside the place (irradiance as G. Ward et al. 1988
+/// cache it, with the first reflection from lamps left to the exact connections).
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/geometry.h"
+
+namespace luxrig {
+
+class TailRecords {
+ public:
+  struct Place {
+    Vec3 position_world_m;
+    Vec3 normal_world;
+    double clear_m;  ///< up to this distance nothing stands between the record and its neighbours on the surface
+  };
+
+  TailRecords() = default;
+  /// columns: emitters × channels. Values are set afterwards.
+  TailRecords(std::vector<Place> places, std::size_t replicates, std::size_t columns);
+
+  struct Found {
+    std::uint32_t record;
+    double distance_m;
+  };
+  /// The nearest record on a surface that lies alike: normals within 25°, within about half a spacing of its plane.
+  [[nodiscard]] std::optional<Found> nearest(const Vec3& position_world_m, const Vec3& normal_world) const;
+
+  [[nodiscard]] std::size_t size() const { return places_.size(); }
+  [[nodiscard]] const Place& place(std::size_t record) const { return places_[record]; }
+
+  /// Reflected lux at level 1, by emitter and channel.
+  [[nodiscard]] std::span<float> values(std::size_t replicate, std::size_t record) {
+    return {values_.data() + (replicate * places_.size() + record) * columns_, columns_};
+  }
+  [[nodiscard]] std::span<const float> values(std::size_t replicate, std::size_t record) const {
+    return {values_.data() + (replicate * places_.size() + record) * columns_, columns_};
+  }
+
+ private:
+  [[nodiscard]] std::array<std::int64_t, 3> cell_of(const Vec3& position_world_m) const;
+  [[nodiscard]] std::span<const std::uint32_t> in_cell(const std::array<std::int64_t, 3>& cell) const;
+
+  std::vector<Place> places_;
+  std::size_t columns_ = 0;
+  std::vector<float> values_;
+  Vec3 origin_world_m_ = Vec3::Zero();
+  double cell_m_ = 1;
+  std::vector<std::uint32_t> bucket_begin_, order_;  ///< hashed grid
+};
+
+}  // namespace luxrig
