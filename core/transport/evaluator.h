@@ -85,8 +85,12 @@ class Evaluator {
 /// Direct light only, one shadow ray per pair that could see each other; exact for point luminaires.
 [[nodiscard]] std::unique_ptr<Evaluator> make_direct_evaluator(const RayScene& scene);
 
-/// Direct light and diffuse interreflection: paths from the receivers, Owen-scrambled Sobol samples,
-/// next-event estimation to every emitter, Russian roulette. Unbiased; standard error from replicates.
+/// Direct light and interreflection, diffuse and glossy: paths from the receivers joined with light traced from the
+/// emitters, Owen-scrambled Sobol samples, Russian roulette. Unbiased; standard error from replicates. The reference.
 [[nodiscard]] std::unique_ptr<Evaluator> make_path_evaluator(const RayScene& scene);
+
+/// The same, but what paths find beyond their second vertex is shared among all receivers, by records on the surfaces
+/// that they see. Several times cheaper for tens of receivers and more; biased by a fraction of a per cent.
+[[nodiscard]] std::unique_ptr<Evaluator> make_gather_evaluator(const RayScene& scene);
 
 }  // namespace luxrig

@@ -16,13 +16,14 @@
 #include "core/transport/path_sampler.h"
 #include "core/transport/progress.h"
 #include "core/transport/replicate_error.h"
+#include "core/transport/shared_tails.h"
 
 namespace luxrig {
 namespace {
 
 constexpr std::size_t kReplicates = 16;
-/// First number of samples per replicate: 256 paths say roughly how bright it is, which later rounds build on.
-constexpr std::uint32_t kFirstSamples = 16;
+/// First number of samples per replicate: 128 paths say roughly how bright it is, which later rounds build on.
+constexpr std::uint32_t kFirstSamples = 8;
 /// Where nothing reflected was found at all, an error of zero proves nothing yet; it is believed from here on.
 constexpr std::uint32_t kSamplesToBelieveNothing = 256;
 constexpr std::uint32_t kMostSamples = 1u << 30;
@@ -39,6 +40,19 @@ constexpr std::uint32_t kMostHits = 2 * kChunk * PathSampler::kHitsPerPath;  ///
 constexpr double kStopMargin = 2.5;
 /// Connections worth less than this share of a path's mean are made only now and then.
 constexpr double kCut = 0.1;
+/// With shared tails: records per receiver at first, then one for so many paths of the receivers (and a replicate),
+/// each with so many paths of its own. Fewer records let their distance count more. With few paths of their own,
+/// records that end in one another would follow the same few ways and err together.
+constexpr std::size_t kFirstRecords = 16;
+constexpr std::size_t kFewestRecords = 256;
+constexpr std::size_t kPathsPerRecord = 4;
+constexpr std::uint32_t kRecordPaths = 2;
+/// Fewer receivers than this at work have more to gain from paths of their own than from shared noise.
+constexpr std::size_t kFewestSharing = 24;
+constexpr std::size_t kMostRecords = 1u << 15;
+constexpr std::size_t kMostRecordBytes = 256u << 20;
+/// Every so many paths one goes on beside its record, to tell how far records are off.
+constexpr std::uint32_t kCheckedPaths = 8;
 
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -49,12 +63,13 @@ struct Spent {
   double lux = 0;  ///< under the options' levels
   double direct_lx = 0;
   double error_lx = 0;  ///< standard error of lux
+  double taken_lx = 0;  ///< from tail records, summed over samples and replicates
 };
 
 class Evaluation {
  public:
   Evaluation(const RayScene& scene, std::span<const Receiver> receivers, std::span<const Emitter> emitters,
-             const EvaluateOptions& options)
+             const EvaluateOptions& options, bool shares_tails)
       : scene_(scene),
         receivers_(receivers),
         emitters_(emitters),
@@ -62,11 +77,13 @@ class Evaluation {
         lamps_(emitters, options.levels, scene.bounds_world_m()),
         bsdfs_(bsdfs_of(scene)),
         channels_(options.colour ? 3 : 1),
-        columns_(emitters.size() * channels_) {
+        columns_(emitters.size() * channels_),
+        importance_(emitters.size()),
+        sampler_(scene, lamps_, bsdfs_, importance_) {
     levels_ = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(emitters.size()));
     for (std::size_t e = 0; e < options.levels.size(); ++e) levels_[static_cast<Eigen::Index>(e)] = options.levels[e];
-    importance_.assign(emitters.size(), 0.0);
     for (std::size_t e = 0; e < emitters.size(); ++e) importance_[e] = lamps_.importance(e);
+    if (shares_tails) tails_.emplace(scene_, sampler_, bsdfs_, emitters.size(), kReplicates, options.seed);
   }
 
   Result<TransportMatrix> run() {
@@ -178,10 +195,12 @@ class Evaluation {
 
   void sample_chunk(const std::vector<std::size_t>& group, std::uint32_t begin, std::uint32_t end,
                     CallingThreadProgress& progress) {
-    const std::uint32_t shares = shares_of(end - begin);
+    const std::uint32_t shares = shares_of(group.size(), end - begin);
     trace_lights(begin * shares, end * shares);
+    const bool shares_now = tails_ && group.size() >= kFewestSharing;
+    if (shares_now) grow_tails(group, begin, end);
     std::vector<std::uint64_t> rays(group.size() * kReplicates, 0);
-    const PathSampler sampler(scene_, lamps_, bsdfs_, importance_);
+    std::vector<TailShare> told(rays.size());
     parallel_for(rays.size(), options_.threads, [&](std::size_t task) {
       const std::size_t r = group[task / kReplicates], k = task % kReplicates;
       const SobolSequence samples(mixed(mixed(options_.seed, r), k));
@@ -190,26 +209,47 @@ class Evaluation {
       const PathSums sums{values, channels_};
       const std::size_t first_hit = (r % shares) * std::size_t{end - begin} * PathSampler::kHitsPerPath;
       const double cut_lx = kCut * (spent_[r].lux - spent_[r].direct_lx);
+      TailShare tails;
+      if (shares_now) tails.records = &tails_->records();
+      tails.replicate = k;
       for (std::uint32_t i = begin; i < end; ++i) {
         if (options_.watch.stop.stop_requested()) return;
-        rays[task] += sampler.add_path(receivers_[r], samples, i, pools_[k],
-                                       first_hit + std::size_t{i - begin} * PathSampler::kHitsPerPath, cut_lx, scratch,
-                                       sums);
+        tails.check = i % kCheckedPaths == r % kCheckedPaths;
+        rays[task] += sampler_.add_path(receivers_[r], samples, i, pools_[k],
+                                        first_hit + std::size_t{i - begin} * PathSampler::kHitsPerPath, cut_lx, scratch,
+                                        sums, &tails);
       }
+      told[task] = tails;
       sums_[k].row(static_cast<Eigen::Index>(r)) +=
           Eigen::Map<const Eigen::RowVectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
       progress.one_done();
     });
     for (std::size_t task = 0; task < rays.size(); ++task) {
-      spent_[group[task / kReplicates]].rays += rays[task];
+      Spent& spent = spent_[group[task / kReplicates]];
+      spent.rays += rays[task];
+      spent.taken_lx += told[task].taken_lx;
+      by_record_lx_[task % kReplicates] += told[task].by_record_lx;
+      by_path_lx_[task % kReplicates] += told[task].by_path_lx;
       matrix_.rays += rays[task];
     }
   }
 
+  /// Adds records for a chunk: many at first, that all receivers have one near wherever they look, then as many as
+  /// keeps their noise and distance in step with the receivers' own noise.
+  void grow_tails(const std::vector<std::size_t>& group, std::uint32_t begin, std::uint32_t end) {
+    std::vector<Receiver> from;
+    for (const std::size_t r : group) from.push_back(receivers_[r]);
+    const std::size_t wanted = begin == 0 ? std::max(kFewestRecords, kFirstRecords * group.size())
+                                          : group.size() * (end - begin) / kPathsPerRecord;
+    const std::size_t memory_allows = kMostRecordBytes / (kReplicates * 3 * sizeof(float) * emitters_.size());
+    const std::size_t room = std::min(kMostRecords, memory_allows) - std::min(kMostRecords, tails_->records().size());
+    matrix_.rays += tails_->grow(from, std::min(wanted, room), kRecordPaths, pools_, options_.threads, options_.watch);
+  }
+
   /// Shares of a pool for different receivers; a power of two, which keeps the strata of each.
-  std::uint32_t shares_of(std::uint32_t samples) const {
+  static std::uint32_t shares_of(std::size_t receivers, std::uint32_t samples) {
     std::uint32_t shares = 1;
-    while (2 * shares * kReceiversPerShare <= receivers_.size() &&
+    while (2 * shares * kReceiversPerShare <= receivers &&
            2 * shares * samples * PathSampler::kHitsPerPath <= kMostHits)
       shares *= 2;
     return shares;
@@ -281,9 +321,41 @@ class Evaluation {
       matrix_.replicates.emplace_back(replicate + matrix_.direct_lux_per_level);
     }
     matrix_.lux_per_level = matrix_.direct_lux_per_level + reflected;
+    if (tails_) own_up_to_bias();
     for (std::size_t r = 0; r < receivers_.size(); ++r)
       matrix_.relative_error = std::max(matrix_.relative_error, relative_error(r));
     if (options_.watch.progress) options_.watch.progress(1.0);
+  }
+
+  /// Takes the records' common bias, as the checked paths show it, out of what was taken from them, as far as it stands
+  /// out of its own noise; and adds what remains unsure to every replicate, up and down in turn, so that standard
+  /// errors contain it.
+  void own_up_to_bias() {
+    std::vector<double> biases;
+    for (std::size_t k = 0; k < kReplicates; ++k)
+      if (by_path_lx_[k] > 0) biases.push_back(by_record_lx_[k] / by_path_lx_[k] - 1);
+    if (biases.size() < kReplicates) return;
+    double mean = 0;
+    for (const double b : biases) mean += b / kReplicates;
+    const double error = standard_error_of_mean(biases);
+    const double bias = mean * std::max(0.0, 1 - 4 * error * error / std::max(mean * mean, 1e-300));
+    // Half up and half down by `a` gives a standard error of a · √(16/15) / 4, times Student's factor.
+    const double up_and_down = error * 4 / (std::sqrt(16.0 / 15) * student_t_975(kReplicates - 1) / student_t_975(1e9));
+    for (std::size_t r = 0; r < receivers_.size(); ++r) {
+      Spent& spent = spent_[r];
+      const double reflected_lx = spent.lux - spent.direct_lx;
+      if (!(spent.taken_lx > 0) || !(reflected_lx > 0)) continue;
+      const double taken_lx = spent.taken_lx / (kReplicates * static_cast<double>(spent.samples));
+      const double share = std::min(1.0, taken_lx / reflected_lx);
+      const auto row = static_cast<Eigen::Index>(r);
+      const auto reflected = (matrix_.lux_per_level.row(row) - matrix_.direct_lux_per_level.row(row)).eval();
+      matrix_.lux_per_level.row(row) -= share * bias / (1 + bias) * reflected;
+      for (auto& rgb : matrix_.rgb_per_level) rgb.row(row) *= 1 - share * bias / (1 + bias) * reflected_lx / spent.lux;
+      for (std::size_t k = 0; k < kReplicates; ++k)
+        matrix_.replicates[k].row(row) -=
+            share * (bias / (1 + bias) + (k % 2 == 0 ? up_and_down : -up_and_down)) * reflected;
+      spent.error_lx = std::hypot(spent.error_lx, share * error * reflected_lx);
+    }
   }
 
   /// The direct part by primary.
@@ -316,9 +388,12 @@ class Evaluation {
   Lamps lamps_;
   std::vector<Bsdf> bsdfs_;
   std::size_t channels_, columns_;
-  Eigen::VectorXd levels_;
   std::vector<double> importance_;
+  PathSampler sampler_;
+  Eigen::VectorXd levels_;
   std::vector<HitPool> pools_;
+  std::optional<SharedTails> tails_;
+  std::array<double, kReplicates> by_record_lx_{}, by_path_lx_{};  ///< of checked paths, all receivers
   TransportMatrix matrix_;
   std::vector<Spent> spent_;
   std::vector<RowMatrix> sums_;  ///< per replicate: reflected light, receivers × emitters, summed over samples
@@ -329,22 +404,29 @@ class Evaluation {
 
 class PathEvaluator final : public Evaluator {
  public:
-  explicit PathEvaluator(const RayScene& scene) : scene_(scene) {}
-  std::string_view name() const override { return "path"; }
+  PathEvaluator(const RayScene& scene, bool shares_tails) : scene_(scene), shares_tails_(shares_tails) {}
+  std::string_view name() const override { return shares_tails_ ? "gather" : "path"; }
 
   Result<TransportMatrix> evaluate(std::span<const Receiver> receivers, std::span<const Emitter> emitters,
                                    const EvaluateOptions& options) const override {
     if (auto checked = check_evaluation(receivers, emitters, options); !checked)
       return tl::unexpected(std::move(checked.error()));
-    return Evaluation(scene_, receivers, emitters, options).run();
+    return Evaluation(scene_, receivers, emitters, options, shares_tails_).run();
   }
 
  private:
   const RayScene& scene_;
+  bool shares_tails_;
 };
 
 }  // namespace
 
-std::unique_ptr<Evaluator> make_path_evaluator(const RayScene& scene) { return std::make_unique<PathEvaluator>(scene); }
+std::unique_ptr<Evaluator> make_path_evaluator(const RayScene& scene) {
+  return std::make_unique<PathEvaluator>(scene, false);
+}
+
+std::unique_ptr<Evaluator> make_gather_evaluator(const RayScene& scene) {
+  return std::make_unique<PathEvaluator>(scene, true);
+}
 
 }  // namespace luxrig

@@ -104,10 +104,14 @@ std::uint64_t PathSampler::ask_lamps(const Vertex& vertex, double density_per_m2
 
 std::uint64_t PathSampler::add_path(const Receiver& from, const SobolSequence& samples, std::uint32_t index,
                                     const HitPool& pool, std::size_t pool_index, double cut_lx, PathScratch& scratch,
-                                    const PathSums& sums) const {
+                                    const PathSums& sums, TailShare* tails) const {
   std::uint64_t rays = 0;
+  scratch.first_leg_m = HUGE_VAL;
   Dice dice(samples, index);
   Vertex vertex{from.position_world_m, from.normal_world, from.normal_world};
+  if (tails != nullptr) tails->linked.reset();
+  double before_tail = 0;
+  bool checking = false;
   for (std::uint32_t bounce = 0; bounce < kLongestPath; ++bounce) {
     double hits = 1;
     if (bounce == 0) {
@@ -148,6 +152,25 @@ std::uint64_t PathSampler::add_path(const Receiver& from, const SobolSequence& s
     const auto [s, t] = lamps_.have_size() ? dice.pair(bounce, 2) : std::array<double, 2>{};
     // In a corner, where the distance rounds to nothing, the path is the sharper way.
     rays += ask_lamps(reached, std::min(density_per_m2, 1e200), hits, cut_lx, select, s, t, chance, scratch, sums);
+    if (bounce == 0) scratch.first_leg_m = std::sqrt(distance2_m2);
+    if (bounce == 0 && tails != nullptr && tails->records != nullptr && bsdf.matt()) {
+      if (const auto record = record_for(reached, *tails->records, rays)) {
+        const Vec3 per_lux_rgb = reached.through_rgb.cwiseProduct(bsdf.body_rgb()) / kPi;
+        if (tails->link) {
+          tails->linked = record;
+          tails->per_lux_rgb = per_lux_rgb;
+          break;
+        }
+        const auto values = tails->records->values(tails->replicate, *record);
+        if (!tails->check) {
+          tails->taken_lx += add_record(per_lux_rgb, values, sums);
+          break;
+        }
+        tails->by_record_lx += add_record(per_lux_rgb, values, PathSums{{}, 0});
+        before_tail = worth_of(sums);
+        checking = true;
+      }
+    }
     const double throughput = reached.through_rgb.cwiseProduct(bsdf.body_rgb()).maxCoeff() / kPi +
                               (bsdf.matt() ? 0 : reached.through_rgb.maxCoeff() / kPi * bsdf.coat_albedo(cosine));
     if (throughput < kRouletteBelow) {
@@ -157,7 +180,42 @@ std::uint64_t PathSampler::add_path(const Receiver& from, const SobolSequence& s
     }
     vertex = reached;
   }
+  if (checking) tails->by_path_lx += worth_of(sums) - before_tail;
   return rays;
+}
+
+double PathSampler::worth_of(const PathSums& sums) const {
+  double worth = 0;
+  for (std::size_t e = 0; e < levels_.size(); ++e) {
+    const double* const v = sums.values.data() + e * sums.channels;
+    worth += levels_[e] * (sums.channels == 1 ? v[0] : luminance({v[0], v[1], v[2]}));
+  }
+  return worth;
+}
+
+std::optional<std::uint32_t> PathSampler::record_for(const Vertex& vertex, const TailRecords& records,
+                                                     std::uint64_t& rays) const {
+  const auto found = records.nearest(vertex.position_world_m, vertex.normal_world);
+  if (!found) return std::nullopt;
+  const TailRecords::Place& place = records.place(found->record);
+  if (found->distance_m <= place.clear_m) return found->record;
+  // Above both surfaces by a part of their distance, so that what is nearly plane does not stand in its own way.
+  const double lift_m = 0.05 * found->distance_m;
+  ++rays;
+  if (scene_.occluded(vertex.position_world_m + lift_m * vertex.normal_world, vertex.normal_world,
+                      place.position_world_m + lift_m * place.normal_world))
+    return std::nullopt;
+  return found->record;
+}
+
+double PathSampler::add_record(const Vec3& per_lux_rgb, std::span<const float> values, const PathSums& sums) const {
+  double worth = 0;
+  for (std::size_t e = 0; e < levels_.size(); ++e) {
+    const Vec3 rgb = per_lux_rgb.cwiseProduct(Vec3(values[3 * e], values[3 * e + 1], values[3 * e + 2]));
+    if (sums.channels > 0) sums.add(e, rgb);
+    worth += levels_[e] * luminance(rgb);
+  }
+  return worth;
 }
 
 }  // namespace luxrig

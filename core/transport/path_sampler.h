@@ -11,6 +11,7 @@
 /// Unbiased, whatever the roulettes.
 
 #include "core/transport/light_hits.h"
+#include "core/transport/tail_records.h"
 
 namespace luxrig {
 
@@ -28,6 +29,21 @@ struct PathScratch {
   };
   Lamps::Weights weights;
   std::vector<Lit> lit;
+  double first_leg_m = 0;  ///< of the last path; infinite when it met nothing
+};
+
+/// Records that a path may end in at its second vertex.
+struct TailShare {
+  const TailRecords* records = nullptr;  ///< of three channels; null: paths end by themselves
+  std::size_t replicate = 0;
+  bool link = false;   ///< do not add what the record says, only tell which it is
+  bool check = false;  ///< go on all the same, and tell both
+  /// With link: the record that the last path ended in, and what its reflected lux counts at the path's start.
+  std::optional<std::uint32_t> linked;
+  Vec3 per_lux_rgb = Vec3::Zero();
+  /// With check: luminous lux at the levels by the record and by the path itself, added up.
+  double by_record_lx = 0, by_path_lx = 0;
+  double taken_lx = 0;  ///< what was added from records, added up
 };
 
 /// What is added up: luminance only, or three primaries.
@@ -55,7 +71,7 @@ class PathSampler {
   static constexpr double kRouletteBelow = 0.4;
 
   /// Hits that the receiver itself is joined with, per path; further vertices are joined with one.
-  static constexpr std::uint32_t kHitsPerPath = 2;
+  static constexpr std::uint32_t kHitsPerPath = 8;
 
   PathSampler(const RayScene& scene, const Lamps& lamps, const std::vector<Bsdf>& bsdfs, std::span<const double> levels)
       : scene_(scene), lamps_(lamps), bsdfs_(bsdfs), levels_(levels) {}
@@ -66,8 +82,10 @@ class PathSampler {
   /// pool_index of the first of this path's kHitsPerPath hits
   /// cut_lx     a connection worth less (under the levels) is made only now and then, and counts more then; 0: never
   /// Returns the rays cast.
+  /// tails      where given, what comes after the second vertex is taken from there when a record is near
   std::uint64_t add_path(const Receiver& from, const SobolSequence& samples, std::uint32_t index, const HitPool& pool,
-                         std::size_t pool_index, double cut_lx, PathScratch& scratch, const PathSums& sums) const;
+                         std::size_t pool_index, double cut_lx, PathScratch& scratch, const PathSums& sums,
+                         TailShare* tails = nullptr) const;
 
  private:
   struct Vertex {
@@ -80,6 +98,13 @@ class PathSampler {
                      const PathSums& sums) const;
   std::uint64_t ask_lamps(const Vertex& vertex, double density_per_m2, double hits, double cut_lx, double select,
                           double u, double v, double chance, PathScratch& scratch, const PathSums& sums) const;
+  /// The record that speaks for a vertex, if one is near and nothing stands in between.
+  [[nodiscard]] std::optional<std::uint32_t> record_for(const Vertex& vertex, const TailRecords& records,
+                                                        std::uint64_t& rays) const;
+  /// Adds what the record says; returns its luminous lux at the levels.
+  double add_record(const Vec3& per_lux_rgb, std::span<const float> values, const PathSums& sums) const;
+  /// Luminous lux of sums at the levels.
+  [[nodiscard]] double worth_of(const PathSums& sums) const;
   [[nodiscard]] double level(std::size_t emitter) const { return levels_[emitter]; }
 
   const RayScene& scene_;

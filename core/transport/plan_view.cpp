@@ -3,8 +3,8 @@
 
 #include "core/parallel.h"
 #include "core/transport/bsdf.h"
-#include "core/transport/sobol.h"
 #include "core/transport/picture.h"
+#include "core/transport/sobol.h"
 
 namespace luxrig {
 namespace {

@@ -17,8 +17,11 @@ std::size_t bucket_of(const std::array<std::int64_t, 3>& cell, std::size_t bucke
 
 }  // namespace
 
-TailRecords::TailRecords(std::vector<Place> places, std::size_t replicates, std::size_t columns)
-    : places_(std::move(places)), columns_(columns), values_(replicates * places_.size() * columns, 0.0f) {
+void TailRecords::append(std::span<const Place> places, std::size_t replicates, std::size_t columns) {
+  places_.insert(places_.end(), places.begin(), places.end());
+  columns_ = columns;
+  values_.resize(replicates);
+  for (auto& values : values_) values.resize(places_.size() * columns, 0.0f);
   if (places_.empty()) return;
   Eigen::AlignedBox3d box;
   for (const Place& place : places_) box.extend(place.position_world_m);

@@ -24,9 +24,9 @@ class TailRecords {
     double clear_m;  ///< up to this distance nothing stands between the record and its neighbours on the surface
   };
 
-  TailRecords() = default;
-  /// columns: emitters × channels. Values are set afterwards.
-  TailRecords(std::vector<Place> places, std::size_t replicates, std::size_t columns);
+  /// Adds records of value 0; what is there keeps its index and value.
+  /// columns: emitters × channels, the same each time; so with replicates
+  void append(std::span<const Place> places, std::size_t replicates, std::size_t columns);
 
   struct Found {
     std::uint32_t record;
@@ -38,12 +38,14 @@ class TailRecords {
   [[nodiscard]] std::size_t size() const { return places_.size(); }
   [[nodiscard]] const Place& place(std::size_t record) const { return places_[record]; }
 
+  void set_clear_m(std::size_t record, double clear_m) { places_[record].clear_m = clear_m; }
+
   /// Reflected lux at level 1, by emitter and channel.
   [[nodiscard]] std::span<float> values(std::size_t replicate, std::size_t record) {
-    return {values_.data() + (replicate * places_.size() + record) * columns_, columns_};
+    return {values_[replicate].data() + record * columns_, columns_};
   }
   [[nodiscard]] std::span<const float> values(std::size_t replicate, std::size_t record) const {
-    return {values_.data() + (replicate * places_.size() + record) * columns_, columns_};
+    return {values_[replicate].data() + record * columns_, columns_};
   }
 
  private:
@@ -52,7 +54,7 @@ class TailRecords {
 
   std::vector<Place> places_;
   std::size_t columns_ = 0;
-  std::vector<float> values_;
+  std::vector<std::vector<float>> values_;  ///< by replicate
   Vec3 origin_world_m_ = Vec3::Zero();
   double cell_m_ = 1;
   std::vector<std::uint32_t> bucket_begin_, order_;  ///< hashed grid

@@ -1,0 +1,50 @@
+#pragma once
+/// Fills tail records: what receivers see beyond their paths' second vertices, worked out once for all of them.
+
+#include "core/stop.h"
+#include "core/transport/path_sampler.h"
+
+namespace luxrig {
+
+class SharedTails {
+ public:
+  SharedTails(const RayScene& scene, const PathSampler& sampler, const std::vector<Bsdf>& bsdfs, std::size_t emitters,
+              std::size_t replicates, std::uint64_t seed)
+      : scene_(scene), sampler_(sampler), bsdfs_(bsdfs), columns_(3 * emitters), seed_(seed), replicates_(replicates) {}
+
+  /// Adds up to `count` records where first legs of paths from the receivers end, samples each by `paths` paths per
+  /// replicate (which may end in other records), and settles all records with each other.
+  /// pools    light hits, one per replicate
+  /// Returns the rays cast. When stopped, the records are of no use.
+  std::uint64_t grow(std::span<const Receiver> receivers, std::size_t count, std::uint32_t paths,
+                     std::span<const HitPool> pools, int threads, const Watch& watch);
+
+  [[nodiscard]] const TailRecords& records() const { return records_; }
+
+ private:
+  /// One record's light by way of another's.
+  struct Link {
+    std::uint32_t to, from;
+    Vec3f per_lux_rgb;
+  };
+  struct Replicate {
+    std::vector<float> heads;  ///< records × columns: lux of first reflections, or of whole paths that found no record
+    std::vector<Link> links;   ///< by `to`
+    std::uint64_t rays = 0;
+  };
+  std::uint64_t add_places(std::span<const Receiver> receivers, std::size_t count, int threads);
+  void sample(std::size_t k, std::uint32_t first, std::uint32_t paths, const HitPool& pool,
+              std::vector<float>& shortest_m, const Watch& watch);
+  void settle(std::size_t k);
+
+  const RayScene& scene_;
+  const PathSampler& sampler_;
+  const std::vector<Bsdf>& bsdfs_;
+  std::size_t columns_;
+  std::uint64_t seed_;
+  TailRecords records_;
+  std::vector<Replicate> replicates_;
+  std::uint32_t drawn_ = 0;  ///< first legs so far
+};
+
+}  // namespace luxrig
