@@ -38,6 +38,8 @@ constexpr std::uint32_t kMostHits = 2 * kChunk * PathSampler::kHitsPerPath;  ///
 /// receivers, and leaves room for the estimate from 16 replicates to be too low by 1.44 (χ², 15 degrees of freedom,
 /// 5 %), which stopping at the first low estimate would make the rule.
 constexpr double kStopMargin = 2.5;
+/// Light of sources with size is sampled, too: closer than the whole is wanted, so that it does not keep it waiting.
+constexpr double kDirectMargin = 5;
 /// Connections worth less than this share of a path's mean are made only now and then.
 constexpr double kCut = 0.1;
 /// With shared tails: records per receiver at first, then one for so many paths of the receivers (and a replicate),
@@ -89,20 +91,24 @@ class Evaluation {
   Result<TransportMatrix> run() {
     const bool reflects = obstacles_in(scene_) && !emitters_.empty() && !receivers_.empty() &&
                           std::any_of(bsdfs_.begin(), bsdfs_.end(), [](const Bsdf& b) { return !b.black(); });
-    auto direct = direct_light(scene_, receivers_, lamps_, emitters_.size(), options_.threads, options_.watch,
-                               reflects ? 0.02 : 1.0);
+    EvaluateOptions direct_options = options_;
+    direct_options.wanted_relative_error /= reflects ? kDirectMargin : 1;
+    auto direct = direct_light(scene_, receivers_, emitters_, direct_options, reflects ? 0.05 : 1.0);
     if (!direct) return tl::unexpected(std::move(direct.error()));
     matrix_.direct_lux_per_level = std::move(direct->lux_per_level);
+    direct_replicates_ = std::move(direct->replicates);
     matrix_.rays = direct->rays;
     if (!reflects) {
       matrix_.lux_per_level = matrix_.direct_lux_per_level;
+      matrix_.replicates = std::move(direct_replicates_);
+      matrix_.relative_error = direct->relative_error;
       if (channels_ == 3) start_colours();
       return std::move(matrix_);
     }
     spent_.resize(receivers_.size());
     const auto rows = static_cast<Eigen::Index>(receivers_.size());
     sums_.assign(kReplicates, RowMatrix::Zero(rows, static_cast<Eigen::Index>(columns_)));
-    done_ = 0.02;
+    done_ = 0.05;
     for (auto round = first_round(); !round.empty(); round = next_round())
       if (!sample(round)) return tl::unexpected(Fault{Cause::cancelled, "", "stopped while tracing paths", {}});
     finish();
@@ -318,9 +324,14 @@ class Evaluation {
       }
       sums_[k].resize(0, 0);
       reflected += replicate / kReplicates;
-      matrix_.replicates.emplace_back(replicate + matrix_.direct_lux_per_level);
+      matrix_.replicates.emplace_back(
+          replicate + (direct_replicates_.empty() ? matrix_.direct_lux_per_level : direct_replicates_[k]));
     }
     matrix_.lux_per_level = matrix_.direct_lux_per_level + reflected;
+    if (!direct_replicates_.empty()) {
+      const Eigen::VectorXd error_lx = matrix_.standard_error_lux(levels_);
+      for (std::size_t r = 0; r < receivers_.size(); ++r) spent_[r].error_lx = error_lx[static_cast<Eigen::Index>(r)];
+    }
     if (tails_) own_up_to_bias();
     for (std::size_t r = 0; r < receivers_.size(); ++r)
       matrix_.relative_error = std::max(matrix_.relative_error, relative_error(r));
@@ -396,6 +407,7 @@ class Evaluation {
   std::array<double, kReplicates> by_record_lx_{}, by_path_lx_{};  ///< of checked paths, all receivers
   TransportMatrix matrix_;
   std::vector<Spent> spent_;
+  std::vector<Eigen::MatrixXd> direct_replicates_;  ///< empty when the direct part is exact
   std::vector<RowMatrix> sums_;  ///< per replicate: reflected light, receivers × emitters, summed over samples
   double brightest_lx_ = 0;
   double done_ = 0;
