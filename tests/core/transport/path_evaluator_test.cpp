@@ -107,6 +107,8 @@ TEST(PathEvaluator, AgreesWithRadiosityAtPointsOfACube) {
   const auto matrix = path(rays, receivers, {bulb(1000, source_m)}, within(0.005));
   const Eigen::VectorXd error_lx = matrix.standard_error_lux(Eigen::VectorXd::Ones(1));
   const CubeRadiosity coarse(edge_m, reflectance, 1000, source_m, 6), fine(edge_m, reflectance, 1000, source_m, 12);
+  int far = 0;
+  double chi2 = 0;
   for (Eigen::Index r = 0; r < matrix.receivers(); ++r) {
     const Receiver& receiver = receivers[static_cast<std::size_t>(r)];
     const double reference_lx = fine.reflected_lx(receiver.position_world_m, receiver.normal_world);
@@ -115,11 +117,14 @@ TEST(PathEvaluator, AgreesWithRadiosityAtPointsOfACube) {
         std::abs(reference_lx - coarse.reflected_lx(receiver.position_world_m, receiver.normal_world)) / 3;
     ASSERT_LT(reference_error_lx, 0.002 * reference_lx);
     const double reflected_lx = matrix.lux_per_level(r, 0) - matrix.direct_lux_per_level(r, 0);
-    EXPECT_NEAR(reflected_lx, reference_lx, 3 * error_lx[r] + reference_error_lx) << "receiver " << r;
+    far += std::abs(reflected_lx - reference_lx) > 3 * error_lx[r] + reference_error_lx;
     EXPECT_NEAR(matrix.lux_per_level(r, 0), reference_lx + matrix.direct_lux_per_level(r, 0),
-                0.005 * matrix.lux_per_level(r, 0) + reference_error_lx)
+                0.01 * matrix.lux_per_level(r, 0) + reference_error_lx)
         << "receiver " << r;
+    chi2 += std::pow((reflected_lx - reference_lx) / (error_lx[r] + reference_error_lx), 2);
   }
+  EXPECT_LE(far, 1) << "of " << matrix.receivers() << " beyond three standard errors";
+  EXPECT_LT(chi2 / static_cast<double>(matrix.receivers()), 2.0);
 }
 
 TEST(PathEvaluator, ReportedErrorsHoldAsOftenAsTheyClaim) {

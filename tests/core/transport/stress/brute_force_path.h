@@ -20,8 +20,8 @@ class BruteForcePath {
       const auto& v = scene.triangles[t];
       const Vec3 a = scene.vertex_world_m(v[0]), ab = scene.vertex_world_m(v[1]) - a,
                  ac = scene.vertex_world_m(v[2]) - a;
-      triangles_.push_back({a, ab, ac, ab.cross(ac).normalized(),
-                            scene.materials[scene.material_of_triangle[t]].luminous_reflectance()});
+      triangles_.push_back(
+          {a, ab, ac, ab.cross(ac).normalized(), scene.materials[scene.material_of_triangle[t]].reflectance_rgb});
     }
   }
 
@@ -32,8 +32,9 @@ class BruteForcePath {
     for (int i = 0; i < paths; ++i) {
       Vec3 at_m = receiver.position_world_m, normal = receiver.normal_world;
       double lux = 0;
+      Vec3 weight = Vec3::Ones();  // by primary: what a red wall sends to a green one is not what their means say
       for (;;) {
-        // Cosine-weighted; each hit reflects with probability ρ, so that no weight is needed.
+        // Cosine-weighted; each hit reflects with the probability of its best reflected primary.
         const double radius = std::sqrt(chance()), turn = 2 * kPi * chance();
         const Vec3 x = normal.cross(std::abs(normal.x()) < 0.7 ? Vec3::UnitX() : Vec3::UnitY()).normalized();
         const Vec3 direction = radius * std::cos(turn) * x + radius * std::sin(turn) * normal.cross(x) +
@@ -41,10 +42,12 @@ class BruteForcePath {
         const auto hit = nearest(at_m, direction, 1e300);
         if (!hit) break;
         const Triangle& surface = triangles_[hit->triangle];
-        if (chance() >= surface.reflectance) break;
+        const double goes_on = surface.reflectance.maxCoeff();
+        if (chance() >= goes_on) break;
+        weight = weight.cwiseProduct(surface.reflectance) / goes_on;
         at_m += hit->distance * direction;
         normal = surface.normal.dot(direction) < 0 ? surface.normal : Vec3(-surface.normal);
-        lux += direct_lx(at_m, normal);
+        lux += weight.dot(Vec3(0.2126, 0.7152, 0.0722)) * direct_lx(at_m, normal);
       }
       sum += lux, squares += lux * lux;
     }
@@ -55,8 +58,7 @@ class BruteForcePath {
 
  private:
   struct Triangle {
-    Vec3 a, ab, ac, normal;
-    double reflectance;
+    Vec3 a, ab, ac, normal, reflectance;
   };
   struct Crossing {
     double distance;

@@ -1,0 +1,179 @@
+/// Gather against the unbiased path tracer, and what is the same for both: colour, gloss, luminaires with size, skies.
+
+#include <gtest/gtest.h>
+
+#include "core/photometry/sky.h"
+#include "core/transport/enclosures.h"
+#include "core/transport/rooms/lit_room.h"
+
+namespace luxrig {
+namespace {
+
+TransportMatrix evaluated(const std::unique_ptr<Evaluator>& by, const std::vector<Receiver>& receivers,
+                          const std::vector<Emitter>& emitters, const EvaluateOptions& options) {
+  auto result = by->evaluate(receivers, emitters, options);
+  EXPECT_TRUE(result.has_value()) << (result ? "" : result.error().detail);
+  return result ? *result : TransportMatrix{};
+}
+
+EvaluateOptions within(double relative_error, std::uint64_t seed = 1) {
+  EvaluateOptions options;
+  options.wanted_relative_error = relative_error;
+  options.seed = seed;
+  return options;
+}
+
+Emitter bulb(double flux_lm, const Vec3& position_m) {
+  return {make_isotropic(flux_lm), {Mat3::Identity(), position_m}};
+}
+
+/// Root mean square of (a - b) / b over receivers.
+double apart(const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  return std::sqrt(((a - b).array() / b.array()).square().mean());
+}
+
+TEST(GatherEvaluator, AgreesWithPathsInTheFlatForFarFewerRays) {
+  const LitRoom flat = make_eight_room_flat();
+  const RayScene rays(flat.scene);
+  const auto gather = evaluated(make_gather_evaluator(rays), flat.receivers, flat.emitters, within(0.05));
+  const auto path = evaluated(make_path_evaluator(rays), flat.receivers, flat.emitters, within(0.05, 2));
+  const Eigen::VectorXd levels = Eigen::VectorXd::Ones(gather.emitters());
+  const Eigen::VectorXd error_lx = gather.standard_error_lux(levels), path_error_lx = path.standard_error_lux(levels);
+  int outside = 0;
+  for (Eigen::Index r = 0; r < gather.receivers(); ++r)
+    outside += std::abs(gather.lux(levels)[r] - path.lux(levels)[r]) > 3 * std::hypot(error_lx[r], path_error_lx[r]);
+  EXPECT_LE(outside, gather.receivers() / 30);
+  EXPECT_LT(apart(gather.lux(levels), path.lux(levels)), 0.035) << "each has 0.016 of its own";
+  EXPECT_LT(gather.rays, path.rays);
+}
+
+TEST(GatherEvaluator, FewReceiversFallBackToTheirOwnPaths) {
+  const RayScene rays(make_cube(2, 0.5));
+  const std::vector<Receiver> receivers = {{{0.1, 0.2, -1}, Vec3::UnitZ()}, {{-1, 0.3, 0.2}, Vec3::UnitX()}};
+  const std::vector<Emitter> lamps = {bulb(300, {-0.2, 0.1, 0.2})};
+  const auto gather = evaluated(make_gather_evaluator(rays), receivers, lamps, within(0.02));
+  EXPECT_EQ(gather.lux_per_level, evaluated(make_path_evaluator(rays), receivers, lamps, within(0.02)).lux_per_level);
+}
+
+TEST(GatherEvaluator, NumberOfThreadsChangesNoBit) {
+  const LitRoom room = make_box_room();
+  const RayScene rays(room.scene);
+  EvaluateOptions options = within(0.1);
+  options.threads = 1;
+  const auto one = evaluated(make_gather_evaluator(rays), room.receivers, room.emitters, options);
+  for (const int threads : {2, 8}) {
+    options.threads = threads;
+    const auto other = evaluated(make_gather_evaluator(rays), room.receivers, room.emitters, options);
+    EXPECT_EQ(other.lux_per_level, one.lux_per_level) << threads;
+    EXPECT_EQ(other.replicates, one.replicates) << threads;
+  }
+}
+
+/// Integrating sphere with walls that reflect each primary differently: each follows its own ρ/(1-ρ).
+TEST(PathEvaluator, EachPrimaryFollowsItsOwnReflectance) {
+  Scene sphere = make_icosphere(2, 4, 0.5);
+  const Vec3 reflectance(0.8, 0.5, 0.2);
+  sphere.materials[0].reflectance_rgb = reflectance;
+  const RayScene rays(sphere);
+  const Vec3 warm = Vec3(1.6, 0.9, 0.2) / (0.2126 * 1.6 + 0.7152 * 0.9 + 0.0722 * 0.2);
+  std::vector<Emitter> lamp = {bulb(1000, Vec3::Zero())};
+  lamp[0].colour_rgb = warm;
+  std::vector<Receiver> receivers;
+  for (const WallPoint& p : spread_over_walls(sphere, 30, Vec3::Zero())) receivers.push_back({p.position_m, p.normal});
+  EvaluateOptions options = within(0.02);
+  options.colour = true;
+  for (const auto& make : {make_path_evaluator, make_gather_evaluator}) {
+    const auto matrix = evaluated(make(rays), receivers, lamp, options);
+    ASSERT_EQ(matrix.rgb_per_level.size(), 3u);
+    for (Eigen::Index r = 0; r < matrix.receivers(); ++r) {
+      double lux = 0;
+      for (int c = 0; c < 3; ++c) {
+        const double reflected_lx = warm[c] * reflected_wall_illuminance_lx(1000, area_m2(sphere), reflectance[c]);
+        const double expected_lx = warm[c] * matrix.direct_lux_per_level(r, 0) + reflected_lx;
+        const double got_lx = matrix.rgb_per_level[static_cast<std::size_t>(c)](r, 0);
+        EXPECT_NEAR(got_lx, expected_lx, 0.025 * expected_lx) << "receiver " << r << " primary " << c;
+        lux += Vec3(0.2126, 0.7152, 0.0722)[c] * got_lx;
+      }
+      EXPECT_NEAR(lux, matrix.lux_per_level(r, 0), 1e-9 * lux);
+    }
+  }
+}
+
+/// A closed room keeps all light that its walls do not absorb, glossy or not: with albedo a(θ) = Es + ρ (1 - Es) and
+/// ρ = Es-free body, the mean over the walls lies between the matt rooms of the least and the largest albedo.
+TEST(PathEvaluator, AGlossyRoomKeepsTheLightThatItsWallsReflect) {
+  Scene cube = make_cube(2, 0.5);
+  std::vector<Receiver> receivers;
+  for (const WallPoint& p : cube_wall_grid(2, 8)) receivers.push_back({p.position_m, p.normal});
+  const auto mean_lx = [&](double specular, double roughness) {
+    cube.materials[0].specular_reflectance = specular;
+    cube.materials[0].roughness = roughness;
+    const RayScene rays(cube);
+    return evaluated(make_path_evaluator(rays), receivers, {bulb(1000, {0.1, 0.2, 0.1})}, within(0.05))
+        .lux_per_level.mean();
+  };
+  const double matt_lx = mean_lx(0, 0.5);
+  EXPECT_NEAR(matt_lx, mean_wall_illuminance_lx(1000, area_m2(cube), 0.5), 0.01 * matt_lx);
+  // Coat of 0.04: albedo from 0.52 straight on to about 0.6 on the average of a hemisphere.
+  const double varnished_lx = mean_lx(0.04, 0.4);
+  EXPECT_GT(varnished_lx, mean_wall_illuminance_lx(1000, area_m2(cube), 0.51));
+  EXPECT_LT(varnished_lx, mean_wall_illuminance_lx(1000, area_m2(cube), 0.60));
+}
+
+/// A luminaire with size reflects as the point lamps that would fill it.
+TEST(PathEvaluator, APanelReflectsAsManyPointsInItsPlaceWould) {
+  const RayScene rays(make_cube(3, 0.6));
+  Emitter panel = bulb(1000, {0.2, 0.1, 1.2});
+  panel.intensity = make_lambertian(1000);
+  panel.shape = {LuminousShape::Kind::rectangle, {1.0, 0.6, 0}};
+  std::vector<Emitter> points;
+  constexpr int kX = 10, kY = 6;
+  for (int i = 0; i < kX; ++i)
+    for (int j = 0; j < kY; ++j) {
+      Emitter point = panel;
+      point.shape = {};
+      point.intensity = make_lambertian(1000.0 / (kX * kY));
+      point.world_from_lamp.translation_m += Vec3((i + 0.5) / kX - 0.5, 0.6 * ((j + 0.5) / kY - 0.5), 0);
+      points.push_back(point);
+    }
+  const std::vector<Receiver> receivers = {
+      {{0.1, 0.2, -1.5}, Vec3::UnitZ()}, {{-1.5, 0.3, 0.2}, Vec3::UnitX()}, {{0.3, 0.2, 1.5}, -Vec3::UnitZ()}};
+  const auto one = evaluated(make_path_evaluator(rays), receivers, {panel}, within(0.01));
+  const auto many = evaluated(make_path_evaluator(rays), receivers, points, within(0.01, 5));
+  const Eigen::VectorXd all = many.lux(Eigen::VectorXd::Ones(kX * kY));
+  for (Eigen::Index r = 0; r < 3; ++r) EXPECT_NEAR(one.lux_per_level(r, 0), all[r], 0.02 * all[r]) << r;
+}
+
+/// A uniform sky over a pit that reflects nothing and one that reflects: between the two lies less than ρ/(1-ρ) of the
+/// light that enters.
+TEST(PathEvaluator, SkylightEntersThroughAnOpeningAndIsReflected) {
+  Scene box = make_cube(2, 0.5);
+  // Take the lid off: the two triangles whose vertices all lie at z = 1.
+  for (std::size_t t = box.triangles.size(); t-- > 0;) {
+    bool lid = true;
+    for (const auto v : box.triangles[t]) lid = lid && box.vertex_world_m(v).z() > 0.99;
+    if (!lid) continue;
+    box.triangles.erase(box.triangles.begin() + static_cast<std::ptrdiff_t>(t));
+    box.material_of_triangle.erase(box.material_of_triangle.begin() + static_cast<std::ptrdiff_t>(t));
+    box.object_of_triangle.erase(box.object_of_triangle.begin() + static_cast<std::ptrdiff_t>(t));
+  }
+  ASSERT_EQ(box.triangles.size(), 10u);
+  Emitter sky;
+  sky.sky = make_uniform_sky(10'000);
+  const std::vector<Receiver> floor = {{{0, 0, -1}, Vec3::UnitZ()}};
+  const RayScene rays(box);
+  const auto matrix = evaluated(make_path_evaluator(rays), floor, {sky}, within(0.01));
+  // Middle of a square floor of edge 2 that looks at a parallel square of edge 2 at distance 2: four times the corner
+  // form factor of a quarter, a = b = 1 by h = 2.
+  const double a = 0.5;
+  const double corner = (a / std::sqrt(1 + a * a) * std::atan(a / std::sqrt(1 + a * a))) / kPi;
+  EXPECT_NEAR(matrix.direct_lux_per_level(0, 0), 4 * corner * 10'000, 0.01 * 4 * corner * 10'000);
+  // All light that enters the box falls on its walls once: 10 000 lx through 4 m²; reflected light is at most ρ/(1-ρ)
+  // of it spread over the walls, and some leaves by the opening.
+  const double reflected_lx = matrix.lux_per_level(0, 0) - matrix.direct_lux_per_level(0, 0);
+  EXPECT_GT(reflected_lx, 0.3 * 10'000 * 4 / 20 * 0.5);
+  EXPECT_LT(reflected_lx, 10'000 * 4.0 / 20 * 2);
+}
+
+}  // namespace
+}  // namespace luxrig
