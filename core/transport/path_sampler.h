@@ -71,7 +71,7 @@ class PathSampler {
   static constexpr double kRouletteBelow = 0.4;
 
   /// Hits that the receiver itself is joined with, per path; further vertices are joined with one.
-  static constexpr std::uint32_t kHitsPerPath = 8;
+  static constexpr std::uint32_t kHitsPerPath = 4;
 
   PathSampler(const RayScene& scene, const Lamps& lamps, const std::vector<Bsdf>& bsdfs, std::span<const double> levels)
       : scene_(scene), lamps_(lamps), bsdfs_(bsdfs), levels_(levels) {}

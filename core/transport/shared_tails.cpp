@@ -10,6 +10,9 @@ namespace {
 
 constexpr std::uint64_t kPlaceKey = 0x7a11, kPathKey = 0x7a12;
 
+/// Mean change, relative to the mean, at which records count as settled: far below their noise.
+constexpr double kSettled = 3e-4;
+
 /// A record speaks for its neighbours without a ray up to this share of the shortest leg that its paths found.
 constexpr double kClearShare = 0.5;
 
@@ -106,7 +109,7 @@ void SharedTails::settle(std::size_t k) {
         values[c] = sum[c];
       }
     }
-    if (moved <= 1e-5 * all) return;
+    if (moved <= kSettled * all) return;
   }
 }
 

@@ -7,6 +7,7 @@
 /// show it; what they all share is the bias of looking a little beside the place (irradiance as G. Ward et al. 1988
 /// cache it, with the first reflection from lamps left to the exact connections).
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -49,15 +50,24 @@ class TailRecords {
   }
 
  private:
-  [[nodiscard]] std::array<std::int64_t, 3> cell_of(const Vec3& position_world_m) const;
-  [[nodiscard]] std::span<const std::uint32_t> in_cell(const std::array<std::int64_t, 3>& cell) const;
+  using Cell = std::array<std::int32_t, 3>;
+  [[nodiscard]] Cell cell_of(const Vec3f& position_m) const;
+  [[nodiscard]] std::size_t bucket_of(const Cell& cell) const;
+  void build_grid();
 
   std::vector<Place> places_;
   std::size_t columns_ = 0;
   std::vector<std::vector<float>> values_;  ///< by replicate
   Vec3 origin_world_m_ = Vec3::Zero();
-  double cell_m_ = 1;
-  std::vector<std::uint32_t> bucket_begin_, order_;  ///< hashed grid
+  float cell_m_ = 1;
+  /// What a search looks at, packed by bucket of a hashed grid.
+  struct Packed {
+    Vec3f position_m;  ///< from the grid's origin
+    Vec3f normal;
+    std::uint32_t record;
+  };
+  std::vector<std::uint32_t> bucket_begin_;
+  std::vector<Packed> packed_;
 };
 
 }  // namespace luxrig
