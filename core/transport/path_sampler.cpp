@@ -105,10 +105,17 @@ std::uint64_t PathSampler::ask_lamps(const Vertex& vertex, double density_per_m2
 std::uint64_t PathSampler::add_path(const Receiver& from, const SobolSequence& samples, std::uint32_t index,
                                     const HitPool& pool, std::size_t pool_index, double cut_lx, PathScratch& scratch,
                                     const PathSums& sums, TailShare* tails) const {
+  return add_path(Vertex{from.position_world_m, from.normal_world, from.normal_world}, samples, index, pool, pool_index,
+                  cut_lx, scratch, sums, tails);
+}
+
+std::uint64_t PathSampler::add_path(const Vertex& start, const SobolSequence& samples, std::uint32_t index,
+                                    const HitPool& pool, std::size_t pool_index, double cut_lx, PathScratch& scratch,
+                                    const PathSums& sums, TailShare* tails) const {
   std::uint64_t rays = 0;
   scratch.first_leg_m = HUGE_VAL;
   Dice dice(samples, index);
-  Vertex vertex{from.position_world_m, from.normal_world, from.normal_world};
+  Vertex vertex = start;
   if (tails != nullptr) tails->linked.reset();
   double before_tail = 0;
   bool checking = false;

@@ -87,13 +87,20 @@ class PathSampler {
                          std::size_t pool_index, double cut_lx, PathScratch& scratch, const PathSums& sums,
                          TailShare* tails = nullptr) const;
 
- private:
   struct Vertex {
     Vec3 position_world_m, normal_world;
     Vec3 out_world;                   ///< unit, where the path came from
     const Bsdf* bsdf = nullptr;       ///< null: the receiver, which weighs by the cosine alone
     Vec3 through_rgb = Vec3::Ones();  ///< lux at the receiver per radiance that leaves the vertex towards out_world
   };
+
+  /// The same for the luminance [cd/m² at level 1] of reflected light that leaves a surface towards start.out_world;
+  /// start.bsdf is that surface's.
+  std::uint64_t add_path(const Vertex& start, const SobolSequence& samples, std::uint32_t index, const HitPool& pool,
+                         std::size_t pool_index, double cut_lx, PathScratch& scratch, const PathSums& sums,
+                         TailShare* tails = nullptr) const;
+
+ private:
   std::uint64_t join(const Vertex& vertex, const LightHit& hit, double hits, double cut_lx, double chance,
                      const PathSums& sums) const;
   std::uint64_t ask_lamps(const Vertex& vertex, double density_per_m2, double hits, double cut_lx, double select,

@@ -2,165 +2,258 @@
 
 #include <fmt/format.h>
 
-#include <atomic>
+#include <bit>
 #include <cmath>
 
 #include "core/parallel.h"
-#include "core/transport/direct_light.h"
 #include "core/transport/path_sampler.h"
-#include "core/transport/progress.h"
+#include "core/transport/shared_tails.h"
 
 namespace luxrig {
 namespace {
 
-/// One sparse point where interreflection is known.
-struct Gathered {
-  bool seen = false;
-  Vec3 position_world_m, normal_world;
-  Vec3 irradiance_lx = Vec3::Zero();  ///< reflected light, linear Rec. 709
-};
+/// Light hits of a pass; pixels take stretches of them in turn.
+constexpr std::uint32_t kHitsPerPass = 1u << 14;
+/// Tail records at first, and added each time the passes double.
+constexpr std::size_t kFirstRecords = 6000, kMoreRecords = 2000;
+constexpr std::uint32_t kRecordPaths = 8;
+/// Connections worth less than this share of the mean reflected light are made only now and then.
+constexpr double kCut = 0.05;
+
+double luminance(const Vec3& rgb) { return 0.2126 * rgb.x() + 0.7152 * rgb.y() + 0.0722 * rgb.z(); }
+
+std::vector<Emitter> of_kind(const std::vector<Emitter>& emitters, bool point) {
+  std::vector<Emitter> some;
+  for (const Emitter& e : emitters)
+    if ((!e.sky && e.shape.kind == LuminousShape::Kind::point) == point) some.push_back(e);
+  return some;
+}
 
 class Renderer {
  public:
-  Renderer(const RayScene& scene, std::vector<Emitter> emitters, std::vector<double> levels, const Camera& camera,
-           const PictureOptions& options)
+  /// emitters at their levels: colour_rgb times level
+  Renderer(const RayScene& scene, std::vector<Emitter> emitters, const Camera& camera, const PictureOptions& options)
       : scene_(scene),
         emitters_(std::move(emitters)),
-        levels_(std::move(levels)),
-        lamps_(emitters_),
+        points_(of_kind(emitters_, true)),
+        sized_(of_kind(emitters_, false)),
+        lamps_(emitters_, {}, scene.bounds_world_m()),
+        point_lamps_(points_, {}, scene.bounds_world_m()),
+        sized_lamps_(sized_, {}, scene.bounds_world_m()),
+        bsdfs_(bsdfs_of(scene)),
+        importance_(emitters_.size(), 1.0),
+        sampler_(scene, lamps_, bsdfs_, importance_),
+        tails_(scene, sampler_, bsdfs_, emitters_.size(), 1, options.seed),
         camera_(camera),
-        options_(options),
-        blocks_x_((camera.width_px + options.indirect_step_px - 1) / options.indirect_step_px),
-        blocks_y_((camera.height_px + options.indirect_step_px - 1) / options.indirect_step_px) {}
+        options_(options) {}
 
   Result<Picture> run() {
-    gathered_.resize(static_cast<std::size_t>(blocks_x_) * static_cast<std::size_t>(blocks_y_));
-    CallingThreadProgress gathering(options_.watch, 0, 0.5, gathered_.size());
-    parallel_for(gathered_.size(), options_.threads, [&](std::size_t block) {
-      if (options_.watch.stop.stop_requested()) return;
-      gather(block);
-      gathering.one_done();
-    });
-    Picture picture;
-    picture.width_px = camera_.width_px;
-    picture.height_px = camera_.height_px;
+    picture_.width_px = camera_.width_px;
+    picture_.height_px = camera_.height_px;
     const auto pixels = static_cast<std::size_t>(camera_.width_px) * static_cast<std::size_t>(camera_.height_px);
-    picture.luminance_cd_m2.assign(pixels, Vec3f::Zero());
-    picture.illuminance_lx.assign(pixels, -1.0f);
-    CallingThreadProgress shading(options_.watch, 0.5, 1, static_cast<std::size_t>(camera_.height_px));
-    parallel_for(static_cast<std::size_t>(camera_.height_px), options_.threads, [&](std::size_t row) {
-      if (options_.watch.stop.stop_requested()) return;
-      for (int x = 0; x < camera_.width_px; ++x) shade(x, static_cast<int>(row), picture);
-      shading.one_done();
-    });
-    if (options_.watch.stop.stop_requested())
-      return tl::unexpected(Fault{Cause::cancelled, "", "stopped while rendering", {}});
-    shading.report_end();
-    return picture;
+    sums_.assign(pixels, {});
+    bool more = true;
+    while (more && picture_.passes < options_.most_passes) {
+      if (!pass()) return tl::unexpected(Fault{Cause::cancelled, "", "stopped while rendering", {}});
+      ++picture_.passes;
+      picture_.relative_error = noise();
+      more = picture_.passes < 4 || picture_.relative_error > options_.wanted_relative_error;
+      if (options_.after_pass) {
+        const double by_passes = static_cast<double>(picture_.passes) / options_.most_passes;
+        const double by_noise = std::pow(options_.wanted_relative_error / std::max(picture_.relative_error, 1e-9), 2);
+        more =
+            options_.after_pass(more ? std::min(1.0, std::max(by_passes, by_noise)) : 1.0, picture_.relative_error) &&
+            more;
+      }
+    }
+    finish();
+    return std::move(picture_);
   }
 
  private:
+  struct PixelSum {
+    Vec3f luminance_cd_m2 = Vec3f::Zero();
+    float lux = 0, squares = 0;
+    int seen = 0;
+  };
+
   std::optional<Hit> seen_at(double x_px, double y_px) const {
     return scene_.nearest(camera_.eye_world_m, ray_direction(camera_, x_px, y_px), Vec3::Zero());
   }
 
-  double direct_lx(const Vec3& position_world_m, const Vec3& normal_world) const {
+  /// One sample of every pixel. False when stopped.
+  bool pass() {
+    const auto index = static_cast<std::uint32_t>(picture_.passes);
+    const bool lit = lamps_.any();
+    if (lit) trace_lights(index);
+    if (lit && std::has_single_bit(index + 1)) grow_tails(index);
+    const auto rows = static_cast<std::size_t>(camera_.height_px);
+    std::vector<double> reflected_lx(rows, 0.0);
+    parallel_for(rows, options_.threads, [&](std::size_t row) {
+      Scratch scratch;
+      scratch.sums.resize(3 * emitters_.size());
+      for (int x = 0; x < camera_.width_px; ++x) {
+        if (options_.watch.stop.stop_requested()) return;
+        reflected_lx[row] += sample_pixel(x, static_cast<int>(row), index, scratch);
+      }
+    });
     double sum_lx = 0;
-    lamps_.light(&scene_, position_world_m, normal_world,
-                 [&](std::size_t e, double lux) { sum_lx += levels_[e] * lux; });
-    return sum_lx;
+    for (const double lx : reflected_lx) sum_lx += lx;
+    mean_reflected_lx_ = sum_lx / static_cast<double>(sums_.size());
+    return !options_.watch.stop.stop_requested();
   }
 
-  void gather(std::size_t block) {
-    const auto columns = static_cast<std::size_t>(blocks_x_);
-    const double step_px = options_.indirect_step_px;
-    const auto hit = seen_at((static_cast<double>(block % columns) + 0.5) * step_px,
-                             (static_cast<double>(block / columns) + 0.5) * step_px);
-    if (!hit) return;
-    gathered_[block] = {true, hit->position_world_m, hit->normal_world,
-                        reflected_lx(*hit, mixed(options_.seed, block), options_.indirect_paths)};
+  void trace_lights(std::uint32_t index) {
+    const LightHits lights(scene_, lamps_, bsdfs_);
+    const SobolSequence samples(mixed(options_.seed, 0x11647));
+    pool_.hits.resize(kHitsPerPass);
+    parallel_for(64, options_.threads, [&](std::size_t part) {
+      Lamps::Weights weights;
+      std::uint64_t rays = 0;
+      for (auto i = static_cast<std::uint32_t>(part); i < kHitsPerPass; i += 64)
+        pool_.hits[i] = lights.trace(samples, index * kHitsPerPass + i, weights, rays);
+    });
+    pool_.shining.clear();
+    for (std::uint32_t i = 0; i < kHitsPerPass; ++i)
+      if (pool_.hits[i].shines()) pool_.shining.push_back(i);
   }
 
-  /// As PathSampler, in three channels and with the levels applied.
-  Vec3 reflected_lx(const Hit& at, std::uint64_t key, int paths) const {
-    const SobolSequence samples(key);
-    Vec3 sum_lx = Vec3::Zero();
-    for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(paths); ++i) {
-      Vec3 position_world_m = at.position_world_m, normal_world = at.normal_world, throughput = Vec3::Ones();
-      for (std::uint32_t bounce = 0; bounce < 64; ++bounce) {
-        const auto [u, v] = samples.pair(i, bounce / 2, bounce % 2);
-        const auto hit = scene_.nearest(position_world_m, cosine_direction(normal_world, u, v), normal_world);
-        if (!hit) break;
-        throughput = throughput.cwiseProduct(scene_.material_of(hit->triangle).reflectance_rgb);
-        position_world_m = hit->position_world_m;
-        normal_world = hit->normal_world;
-        sum_lx += throughput * direct_lx(position_world_m, normal_world);
-        const double goes_on = std::min(1.0, throughput.maxCoeff() / 0.5);
-        if (samples.pair(i, 100 + bounce, 0)[0] >= goes_on) break;
-        throughput /= goes_on;
-      }
+  /// Records where first legs from the surfaces in view end.
+  void grow_tails(std::uint32_t index) {
+    const std::size_t count = index == 0 ? kFirstRecords : kMoreRecords;
+    const SobolSequence samples(mixed(options_.seed, 0x7a113 + index));
+    std::vector<Receiver> in_view;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const auto [u, v] = samples.pair(i, 0, 0);
+      if (const auto hit = seen_at(u * camera_.width_px, v * camera_.height_px))
+        in_view.push_back({hit->position_world_m, hit->normal_world});
     }
-    return sum_lx / paths;
+    if (in_view.empty()) return;
+    tails_.grow(in_view, in_view.size(), kRecordPaths, {&pool_, 1}, options_.threads, options_.watch);
   }
 
-  /// Mean of the sparse points around, weighted by nearness in the picture and by how well they lie in the same plane.
-  Vec3 interpolated_lx(const Hit& at, double x_px, double y_px) const {
-    constexpr int kReach = 4;
-    const double step_px = options_.indirect_step_px;
-    const double bx = x_px / step_px - 0.5, by = y_px / step_px - 0.5;
-    const double pixel_m = at.distance_m * 2 * std::tan(camera_.vertical_fov_rad / 2) / camera_.height_px;
-    const double out_of_plane_m = 4 * step_px * pixel_m;
-    Vec3 sum_lx = Vec3::Zero();
-    double weights = 0;
-    for (int j = static_cast<int>(std::floor(by)) - kReach + 1; j <= static_cast<int>(std::floor(by)) + kReach; ++j)
-      for (int i = static_cast<int>(std::floor(bx)) - kReach + 1; i <= static_cast<int>(std::floor(bx)) + kReach; ++i) {
-        if (i < 0 || j < 0 || i >= blocks_x_ || j >= blocks_y_) continue;
-        const Gathered& g = gathered_[static_cast<std::size_t>(j * blocks_x_ + i)];
-        if (!g.seen) continue;
-        const double along = g.normal_world.dot(at.normal_world);
-        const Vec3 apart_m = g.position_world_m - at.position_world_m;
-        const double height_m = std::abs(at.normal_world.dot(apart_m));
-        if (along < 0.7 || height_m > out_of_plane_m) continue;
-        const double nearness = (i - bx) * (i - bx) + (j - by) * (j - by);
-        const double weight = std::exp(-nearness / 5) * (along - 0.7) * (1 - height_m / out_of_plane_m);
-        sum_lx += weight * g.irradiance_lx;
-        weights += weight;
-      }
-    if (weights > 0.01) return sum_lx / weights;
-    // A thing too small for the sparse points: its own few paths.
-    return reflected_lx(at, mixed(options_.seed ^ 0x5eed, static_cast<std::uint64_t>(y_px * 65536 + x_px)), 16);
+  struct Scratch {
+    PathScratch path;
+    Lamps::Weights weights;
+    std::vector<double> sums;
+  };
+
+  /// Direct light that leaves towards `out`, and its illuminance, by primary.
+  struct Direct {
+    Vec3 luminance_cd_m2 = Vec3::Zero(), lux = Vec3::Zero();
+  };
+  Direct direct(const Hit& hit, const Bsdf& bsdf, const Vec3& out, double select, double u, double v,
+                Scratch& scratch) const {
+    Direct sum;
+    const auto add = [&](const Vec3& lux, const Vec3& from_world) {
+      sum.lux += lux;
+      sum.luminance_cd_m2 += lux.cwiseProduct(bsdf.value(hit.normal_world, out, from_world));
+    };
+    point_lamps_.light(&scene_, hit.position_world_m, hit.normal_world, [&](std::size_t e, double lux) {
+      const Vec3& at_m = points_[e].world_from_lamp.translation_m;
+      add(lux * points_[e].colour_rgb, (at_m - hit.position_world_m).normalized());
+    });
+    if (!sized_lamps_.any()) return sum;
+    const double weight = sized_lamps_.weigh(hit.position_world_m, hit.normal_world, scratch.weights);
+    const LampChoice choice =
+        sized_lamps_.choose(hit.position_world_m, hit.normal_world, scratch.weights, weight, select, u, v);
+    if (!(choice.density > 0) || scene_.occluded(hit.position_world_m, hit.normal_world, choice.target_world_m))
+      return sum;
+    sized_lamps_.light(
+        choice, [&](std::size_t e, double lux, double) { add(lux * sized_[e].colour_rgb, choice.direction_world); });
+    return sum;
   }
 
-  void shade(int x, int y, Picture& picture) const {
-    const int edge = options_.samples_per_pixel_edge;
-    Vec3 luminance_cd_m2 = Vec3::Zero();
-    double illuminance_lx = 0;
-    int seen = 0;
-    for (int s = 0; s < edge * edge; ++s) {
-      const double x_px = x + (s % edge + 0.5) / edge, y_px = y + (s / edge + 0.5) / edge;
-      const auto hit = seen_at(x_px, y_px);
-      if (!hit) continue;
-      const Vec3 lux =
-          Vec3::Constant(direct_lx(hit->position_world_m, hit->normal_world)) + interpolated_lx(*hit, x_px, y_px);
-      luminance_cd_m2 += scene_.material_of(hit->triangle).reflectance_rgb.cwiseProduct(lux) / kPi;
-      illuminance_lx += 0.2126 * lux.x() + 0.7152 * lux.y() + 0.0722 * lux.z();
-      ++seen;
-    }
-    if (seen == 0) return;
+  /// Light reflected before, of one path that starts at `start`, by primary.
+  Vec3 reflected(const PathSampler::Vertex& start, const SobolSequence& samples, std::uint32_t index,
+                 std::size_t pool_index, Scratch& scratch) const {
+    std::fill(scratch.sums.begin(), scratch.sums.end(), 0.0);
+    TailShare share;
+    if (tails_.records().size() > 0) share.records = &tails_.records();
+    sampler_.add_path(start, samples, index, pool_, pool_index, kCut * mean_reflected_lx_, scratch.path,
+                      {scratch.sums, 3}, &share);
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t i = 0; i < scratch.sums.size(); ++i) sum[static_cast<Eigen::Index>(i % 3)] += scratch.sums[i];
+    return sum;
+  }
+
+  /// Returns the reflected lux.
+  double sample_pixel(int x, int y, std::uint32_t index, Scratch& scratch) {
     const auto pixel =
         static_cast<std::size_t>(y) * static_cast<std::size_t>(camera_.width_px) + static_cast<std::size_t>(x);
-    picture.luminance_cd_m2[pixel] = (luminance_cd_m2 / (edge * edge)).cast<float>();
-    picture.illuminance_lx[pixel] = static_cast<float>(illuminance_lx / seen);
+    const SobolSequence samples(mixed(mixed(options_.seed, 0x91c7), pixel));
+    constexpr std::uint32_t kPictureSet = 1u << 18;
+    const auto [dx, dy, select, other] = samples.set(index, kPictureSet);
+    const auto hit = seen_at(x + dx, y + dy);
+    if (!hit) return 0;
+    const Bsdf& bsdf = bsdfs_[scene_.material_index_of(hit->triangle)];
+    const Vec3 out = (camera_.eye_world_m - hit->position_world_m).normalized();
+    PixelSum& sum = sums_[pixel];
+    ++sum.seen;
+    if (!lamps_.any()) return 0;
+    const auto [u, v] = samples.pair(index, kPictureSet + 1, 0);
+    const Direct at = direct(*hit, bsdf, out, select, u, v, scratch);
+    const std::size_t stretch = mixed(pixel, index) % (kHitsPerPass / PathSampler::kHitsPerPath);
+    const std::size_t pool_index = stretch * PathSampler::kHitsPerPath;
+    const Vec3 lux =
+        reflected({hit->position_world_m, hit->normal_world, hit->normal_world}, samples, index, pool_index, scratch);
+    Vec3 luminance_cd_m2 = at.luminance_cd_m2;
+    if (bsdf.matt()) {
+      luminance_cd_m2 += lux.cwiseProduct(bsdf.body_rgb()) / kPi;
+    } else {
+      const SobolSequence glossy(mixed(mixed(options_.seed, 0x91c8), pixel));
+      luminance_cd_m2 += reflected({hit->position_world_m, hit->normal_world, out, &bsdf, Vec3::Ones()}, glossy, index,
+                                   pool_index, scratch);
+    }
+    const auto all_lx = static_cast<float>(luminance(at.lux + lux));
+    sum.luminance_cd_m2 += luminance_cd_m2.cast<float>();
+    sum.lux += all_lx;
+    sum.squares += all_lx * all_lx;
+    return luminance(lux);
+  }
+
+  double noise() const {
+    double mean_lx = 0, count = 0;
+    for (const PixelSum& s : sums_)
+      if (s.seen > 0) mean_lx += static_cast<double>(s.lux) / s.seen, ++count;
+    if (!(mean_lx > 0)) return 0;
+    mean_lx /= count;
+    double squares = 0, of = 0;
+    for (const PixelSum& s : sums_) {
+      if (s.seen < 2) continue;
+      const double mean = static_cast<double>(s.lux) / s.seen;
+      const double variance = std::max(0.0, static_cast<double>(s.squares) / s.seen - mean * mean) / (s.seen - 1);
+      const double scale = std::max(mean, 0.05 * mean_lx);
+      squares += variance / (scale * scale), ++of;
+    }
+    return of > 0 ? std::sqrt(squares / of) : 1;
+  }
+
+  void finish() {
+    picture_.luminance_cd_m2.assign(sums_.size(), Vec3f::Zero());
+    picture_.illuminance_lx.assign(sums_.size(), -1.0f);
+    for (std::size_t i = 0; i < sums_.size(); ++i) {
+      const PixelSum& s = sums_[i];
+      if (s.seen == 0) continue;
+      // Where an edge crosses the pixel, what lies beyond is black; its lux is that of what is seen.
+      picture_.luminance_cd_m2[i] = s.luminance_cd_m2 / static_cast<float>(picture_.passes);
+      picture_.illuminance_lx[i] = s.lux / static_cast<float>(s.seen);
+    }
   }
 
   const RayScene& scene_;
-  std::vector<Emitter> emitters_;
-  std::vector<double> levels_;
-  Lamps lamps_;
+  std::vector<Emitter> emitters_, points_, sized_;
+  Lamps lamps_, point_lamps_, sized_lamps_;
+  std::vector<Bsdf> bsdfs_;
+  std::vector<double> importance_;
+  PathSampler sampler_;
+  SharedTails tails_;
+  HitPool pool_;
   const Camera& camera_;
   const PictureOptions& options_;
-  int blocks_x_, blocks_y_;
-  std::vector<Gathered> gathered_;
+  std::vector<PixelSum> sums_;
+  double mean_reflected_lx_ = 0;
+  Picture picture_;
 };
 
 tl::unexpected<Fault> refusal(std::string detail) {
@@ -186,21 +279,19 @@ Result<Picture> render_picture(const RayScene& scene, std::span<const Emitter> e
     return refusal(fmt::format("field of view of {:g}°; above 0 and below 180", deg_from_rad(camera.vertical_fov_rad)));
   const double ahead_m = (camera.target_world_m - camera.eye_world_m).norm();
   if (!(ahead_m > 0) || !std::isfinite(ahead_m)) return refusal("camera's target lies in its eye, or is not finite");
-  if (options.samples_per_pixel_edge < 1 || options.indirect_step_px < 1 || options.indirect_paths < 1)
-    return refusal("samples, step and paths must be at least 1");
+  if (options.most_passes < 1) return refusal("passes must be at least 1");
   if (levels.size() != emitters.size())
     return refusal(fmt::format("{} levels for {} emitters", levels.size(), emitters.size()));
   EvaluateOptions checked;
   checked.levels.assign(levels.begin(), levels.end());
   if (auto fine = check_evaluation({}, emitters, checked); !fine) return tl::unexpected(std::move(fine.error()));
   std::vector<Emitter> lit;
-  std::vector<double> lit_levels;
   for (std::size_t e = 0; e < emitters.size(); ++e)
     if (levels[e] > 0) {
       lit.push_back(emitters[e]);
-      lit_levels.push_back(levels[e]);
+      lit.back().colour_rgb *= levels[e];
     }
-  return Renderer(scene, std::move(lit), std::move(lit_levels), camera, options).run();
+  return Renderer(scene, std::move(lit), camera, options).run();
 }
 
 }  // namespace luxrig

@@ -1,8 +1,9 @@
 #pragma once
-/// Pictures of a lit scene: what a person would see, not a measurement. Direct light is exact per sample; diffuse
-/// interreflection is path traced at sparse points of the picture and smoothed along surfaces, so it is soft
-/// and a few per cent off in places. Numbers come from an Evaluator.
+/// Pictures of a lit scene. Every pixel is sampled by itself, by the estimators of the evaluators (direct light of
+/// points exactly, paths joined with traced light, tails shared by records on surfaces); nothing is smoothed over
+/// pixels afterwards, so what a pixel says of lux is a measurement with a known noise.
 
+#include <functional>
 #include <vector>
 
 #include "core/transport/evaluator.h"
@@ -21,19 +22,25 @@ struct Camera {
 [[nodiscard]] Vec3 ray_direction(const Camera& camera, double x_px, double y_px);
 
 struct PictureOptions {
-  int samples_per_pixel_edge = 2;  ///< direct light: squared per pixel, for smooth edges
-  int indirect_step_px = 8;        ///< one point of interreflection per square of this edge
-  int indirect_paths = 160;        ///< per such point
+  int most_passes = 64;                 ///< samples per pixel
+  double wanted_relative_error = 0.02;  ///< stops when the picture's noise (Picture::relative_error) is as low
+  /// After each pass, with the share of the way to the end (0…1) and the noise so far: false ends the picture there.
+  /// A caller with a clock keeps a time budget with it.
+  std::function<bool(double done, double relative_error)> after_pass;
   std::uint64_t seed = 1;
   int threads = 0;
-  Watch watch;
+  Watch watch;  ///< progress is not called; see after_pass
 };
 
 /// Rows from the top, pixels from the left.
 struct Picture {
   int width_px = 0, height_px = 0;
-  std::vector<Vec3f> luminance_cd_m2;  ///< linear Rec. 709, of diffuse surfaces; zero where nothing is seen
+  std::vector<Vec3f> luminance_cd_m2;  ///< linear Rec. 709, towards the camera; zero where nothing is seen
   std::vector<float> illuminance_lx;   ///< of the surface seen, on the side seen; negative where nothing is seen
+  int passes = 0;
+  /// Root mean square over what is seen of the standard error of a pixel's lux, relative to it (or to a twentieth of
+  /// the mean where it is darker).
+  double relative_error = 0;
 };
 
 /// levels: one per emitter, ≥ 0. Cause::invalid for bad sizes or numbers, Cause::cancelled when stopped.

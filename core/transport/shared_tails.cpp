@@ -76,8 +76,8 @@ void SharedTails::sample(std::size_t k, std::uint32_t first, std::uint32_t paths
     std::fill(values.begin(), values.end(), 0.0);
     for (std::uint32_t p = 0; p < paths; ++p) {
       const std::size_t hit = (std::size_t{record} * paths + p) % stretches * PathSampler::kHitsPerPath;
-      replicate.rays += sampler_.add_path({place.position_world_m, place.normal_world}, samples, p, pool, hit, 0,
-                                          scratch, {values, 3}, &share);
+      replicate.rays += sampler_.add_path(Receiver{place.position_world_m, place.normal_world}, samples, p, pool, hit,
+                                          0, scratch, {values, 3}, &share);
       if (share.linked) replicate.links.push_back({record, *share.linked, (share.per_lux_rgb / paths).cast<float>()});
       shortest_m[record - first] = std::min(shortest_m[record - first], static_cast<float>(scratch.first_leg_m));
     }

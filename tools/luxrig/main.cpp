@@ -73,6 +73,14 @@ int main(int argc, char** argv) {
   auto* with_target = command->add_option("--target", target, "x y z [m] looked at")->expected(3);
   command->add_option("--fov-deg", render.vertical_fov_deg, "vertical field of view")->check(CLI::Range(1.0, 170.0));
   command->add_option("--max-lx", render.max_lx, "top of the false-colour scale")->check(CLI::PositiveNumber);
+  command->add_option("--max-error", render.max_error, "noise at which the picture is done")
+      ->check(CLI::Range(1e-4, 1.0))
+      ->capture_default_str();
+  command->add_option("--seconds", render.seconds, "or after this time")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_option("--passes", render.passes, "or after so many samples per pixel, whatever the time")
+      ->check(CLI::Range(1, 65536));
   command->add_option("--threads", render.threads, "threads (0: one per core)")->check(CLI::Range(0, 1024));
   command->callback([&] {
     if (*with_plan) render.plan = render_plan;

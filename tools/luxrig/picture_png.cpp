@@ -120,6 +120,68 @@ std::string write_photograph(const Picture& picture, const std::string& title, s
   return write(surface, file);
 }
 
+namespace {
+
+/// Lux averaged over 5 × 5 pixels, for lines only: they are drawn where the eye would draw them, not along noise.
+std::vector<float> calmed(const Picture& picture) {
+  constexpr int kReach = 2;
+  std::vector<float> lux(picture.illuminance_lx.size(), -1.0f);
+  for (int y = 0; y < picture.height_px; ++y)
+    for (int x = 0; x < picture.width_px; ++x) {
+      const auto at = [&](int i, int j) {
+        return picture.illuminance_lx[static_cast<std::size_t>(j * picture.width_px + i)];
+      };
+      const float here = at(x, y);
+      if (here < 0) continue;
+      float sum = 0;
+      int count = 0;
+      for (int j = std::max(0, y - kReach); j <= std::min(picture.height_px - 1, y + kReach); ++j)
+        for (int i = std::max(0, x - kReach); i <= std::min(picture.width_px - 1, x + kReach); ++i)
+          if (const float there = at(i, j); there >= 0) sum += there, ++count;
+      lux[static_cast<std::size_t>(y * picture.width_px + x)] = sum / static_cast<float>(count);
+    }
+  return lux;
+}
+
+/// Lines of equal lux at 1, 2, 5 × 10^k, each labelled once where it has room.
+void draw_isolux_lines(cairo_t* pen, const Picture& picture, double bottom_lx, double top_lx) {
+  const std::vector<float> lux = calmed(picture);
+  const auto at = [&](int x, int y) { return lux[static_cast<std::size_t>(y * picture.width_px + x)]; };
+  cairo_select_font_face(pen, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+  cairo_set_font_size(pen, 11);
+  for (double level = round_up_1_2_5(bottom_lx); level <= top_lx * 1.001; level = round_up_1_2_5(level * 1.5)) {
+    const auto line_lx = static_cast<float>(level);
+    int best_x = -1, best_y = -1, best_distance = 1 << 30;
+    cairo_set_source_rgba(pen, 1, 1, 1, 0.75);
+    for (int y = 0; y + 1 < picture.height_px; ++y)
+      for (int x = 0; x + 1 < picture.width_px; ++x) {
+        const float here = at(x, y), right = at(x + 1, y), below = at(x, y + 1);
+        if (here < 0 || right < 0 || below < 0) continue;
+        // A step of more than a third between neighbours is an edge of things, not a line of light.
+        const float steepest = std::max(std::abs(right - here), std::abs(below - here));
+        const bool crosses = (here < line_lx) != (right < line_lx) || (here < line_lx) != (below < line_lx);
+        if (!crosses || steepest > here / 3) continue;
+        cairo_rectangle(pen, x, y, 1, 1);
+        const int distance = std::abs(x - picture.width_px / 2) + std::abs(y - picture.height_px / 2);
+        if (distance < best_distance && x > 20 && y > 14 && x < picture.width_px - 40)
+          best_distance = distance, best_x = x, best_y = y;
+      }
+    cairo_fill(pen);
+    if (best_x < 0) continue;
+    const std::string label = fmt::format("{:g}", level);
+    cairo_text_extents_t extents;
+    cairo_text_extents(pen, label.c_str(), &extents);
+    cairo_set_source_rgba(pen, 0, 0, 0, 0.6);
+    cairo_rectangle(pen, best_x + 2, best_y - extents.height / 2 - 3, extents.width + 6, extents.height + 6);
+    cairo_fill(pen);
+    cairo_set_source_rgb(pen, 1, 1, 1);
+    cairo_move_to(pen, best_x + 5, best_y + extents.height / 2);
+    cairo_show_text(pen, label.c_str());
+  }
+}
+
+}  // namespace
+
 std::string write_false_colour(const Picture& picture, const std::string& title, std::optional<double> max_lx,
                                const std::filesystem::path& file) {
   if (!max_lx) {
@@ -140,6 +202,7 @@ std::string write_false_colour(const Picture& picture, const std::string& title,
     const float lx = picture.illuminance_lx[static_cast<std::size_t>(y * picture.width_px + x)];
     return lx < 0 ? Vec3(Vec3::Zero()) : viridis(place(lx));
   });
+  draw_isolux_lines(pen.get(), picture, bottom_lx, top_lx);
   const double left = picture.width_px + 12, top = 40, height = std::max(40, picture.height_px - 60);
   for (int i = 0; i < static_cast<int>(height); ++i) {
     const Vec3 colour = viridis(1 - (i + 0.5) / height);

@@ -18,8 +18,8 @@ namespace luxrig {
 [[nodiscard]] std::string write_photograph(const Picture& picture, const std::string& title,
                                            std::optional<double> grey_cd_m2, const std::filesystem::path& file);
 
-/// Illuminance in colours of the viridis scale, logarithmic, with a legend in lux. max_lx (top of the scale) defaults
-/// to the 99.5th percentile, rounded up to 1, 2 or 5 times a power of ten; the scale spans two decades.
+/// Illuminance in colours of the viridis scale, logarithmic, with lines of equal lux and a legend. max_lx (top of the
+/// scale) defaults to the 99.5th percentile, rounded up to 1, 2 or 5 times a power of ten; the scale spans two decades.
 [[nodiscard]] std::string write_false_colour(const Picture& picture, const std::string& title,
                                              std::optional<double> max_lx, const std::filesystem::path& file);
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -12,10 +13,13 @@
 #include "core/rig/rig_file.h"
 #include "core/scene/scene_builder.h"
 #include "core/transport/rig_transport.h"
+#include "tools/luxrig/command.h"
 #include "tools/luxrig/picture_png.h"
 
 namespace luxrig {
 namespace {
+
+constexpr int kMostPasses = 4096;
 
 int refuse(const std::vector<Problem>& problems) {
   for (const Problem& problem : problems) fmt::print(stderr, "{}\n", problem.text());
@@ -124,6 +128,17 @@ int run_render(const RenderOptions& options) {
   if (options.target_world_m) camera.target_world_m = *options.target_world_m;
   PictureOptions how;
   how.threads = options.threads;
+  how.wanted_relative_error = options.max_error;
+  how.watch.stop = stop_on_signals();
+  how.most_passes = options.passes.value_or(kMostPasses);
+  const Progress progress = progress_line("rendering");
+  const auto start = std::chrono::steady_clock::now();
+  how.after_pass = [&](double done, double) {
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double by_time = options.passes ? 0 : seconds / options.seconds;
+    progress(std::min(1.0, std::max(done, by_time)));
+    return by_time < 1;
+  };
   const auto picture = render_picture(rays, emitters, *levels, camera, how);
   if (!picture) {
     fmt::print(stderr, "luxrig render: {}\n", picture.error().detail);
@@ -138,6 +153,8 @@ int run_render(const RenderOptions& options) {
                options.output_png.string(), trouble);
     return 1;
   }
+  fmt::print("{}: {} samples per pixel, noise {:.2g} of a pixel's lux (root mean square)\n",
+             options.output_png.string(), picture->passes, picture->relative_error);
   return 0;
 }
 

@@ -19,6 +19,9 @@ struct RenderOptions {
   double vertical_fov_deg = 60;
   std::optional<double> grey_cd_m2;  ///< luminance shown as middle grey; none: from the picture
   std::optional<double> max_lx;      ///< top of the false colour scale; none: from the picture
+  double max_error = 0.02;           ///< noise of the picture at which it is done
+  double seconds = 20;               ///< or after this time
+  std::optional<int> passes;         ///< or after so many samples per pixel: the same picture each time
   int threads = 0;
 };
 

@@ -23,7 +23,8 @@ TEST(Picture, ShowsTheIlluminanceThatTheEvaluatorMeasures) {
   const RayScene rays(make_cube(2, 0.6));
   const Vec3 target_m(0.3, 0.2, -1);
   PictureOptions options;
-  options.indirect_step_px = 2;  // the picture is small
+  options.wanted_relative_error = 0.005;
+  options.most_passes = 2000;
   const auto picture = render_picture(rays, kBulb, std::vector{0.5}, looking({-0.7, -0.6, 0.4}, target_m), options);
   ASSERT_TRUE(picture.has_value());
   const auto measured =
@@ -32,6 +33,57 @@ TEST(Picture, ShowsTheIlluminanceThatTheEvaluatorMeasures) {
   const std::size_t middle = 10 * 33 + 16;
   EXPECT_NEAR(picture->illuminance_lx[middle], expected_lx, 0.05 * expected_lx);
   EXPECT_NEAR(picture->luminance_cd_m2[middle].x(), 0.6 * picture->illuminance_lx[middle] / kPi, 1e-3 * expected_lx);
+}
+
+TEST(Picture, StopsAtTheWantedNoiseAndSaysIt) {
+  const RayScene rays(make_cube(2, 0.6));
+  int passes_before = 0;
+  for (const double wanted : {0.2, 0.05, 0.02}) {
+    PictureOptions options;
+    options.wanted_relative_error = wanted;
+    options.most_passes = 1000;
+    const auto picture = render_picture(rays, kBulb, std::vector{1.0}, looking({-0.7, -0.6, 0.4}, {0, 0, -1}), options);
+    ASSERT_TRUE(picture.has_value());
+    EXPECT_LE(picture->relative_error, wanted);
+    EXPECT_GE(picture->passes, passes_before);
+    passes_before = picture->passes;
+  }
+  EXPECT_GT(passes_before, 4);
+}
+
+TEST(Picture, TheCallerMayEndItAfterAnyPass) {
+  const RayScene rays(make_cube(2, 0.6));
+  PictureOptions options;
+  options.wanted_relative_error = 0;
+  int calls = 0;
+  options.after_pass = [&](double done, double) {
+    EXPECT_GE(done, 0);
+    EXPECT_LE(done, 1);
+    return ++calls < 3;
+  };
+  const auto picture = render_picture(rays, kBulb, std::vector{1.0}, looking({-0.7, -0.6, 0.4}, {0, 0, -1}), options);
+  ASSERT_TRUE(picture.has_value());
+  EXPECT_EQ(picture->passes, 3);
+}
+
+// A mirror-like floor shows the lit wall behind it: its luminance varies although its illuminance hardly does.
+TEST(Picture, AGlossyFloorReflectsTheRoom) {
+  Scene cube = make_cube(2, 0.5);
+  const auto contrast = [&](double specular) {
+    cube.materials[0].specular_reflectance = specular;
+    cube.materials[0].roughness = 0.2;
+    const RayScene rays(cube);
+    PictureOptions options;
+    options.most_passes = 16;
+    const auto picture =
+        render_picture(rays, kBulb, std::vector{1.0}, looking({-0.7, -0.6, 0.4}, {0.3, 0.2, -1}), options);
+    float ratio = 0;
+    for (std::size_t i = 0; i < picture->illuminance_lx.size(); ++i)
+      ratio = std::max(ratio, picture->luminance_cd_m2[i].y() / picture->illuminance_lx[i]);
+    return ratio * static_cast<float>(kPi) / 0.5f;
+  };
+  EXPECT_NEAR(contrast(0), 1, 1e-3) << "matt: luminance is ρE/π everywhere";
+  EXPECT_GT(contrast(0.3), 1.3);
 }
 
 TEST(Picture, IsTheSameForAnyNumberOfThreads) {
