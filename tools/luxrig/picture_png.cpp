@@ -122,9 +122,11 @@ std::string write_photograph(const Picture& picture, const std::string& title, s
 
 namespace {
 
-/// Lux averaged over 5 × 5 pixels, for lines only: they are drawn where the eye would draw them, not along noise.
+/// Lux averaged over like neighbours, as many as the picture's noise asks for; for lines only: they are drawn where the
+/// eye would draw them, not along noise.
 std::vector<float> calmed(const Picture& picture) {
-  constexpr int kReach = 2;
+  constexpr double kCalm = 0.01;
+  const int reach = std::clamp(static_cast<int>(std::ceil(picture.relative_error / kCalm / 2)), 2, 8);
   std::vector<float> lux(picture.illuminance_lx.size(), -1.0f);
   for (int y = 0; y < picture.height_px; ++y)
     for (int x = 0; x < picture.width_px; ++x) {
@@ -135,10 +137,10 @@ std::vector<float> calmed(const Picture& picture) {
       if (here < 0) continue;
       float sum = 0;
       int count = 0;
-      for (int j = std::max(0, y - kReach); j <= std::min(picture.height_px - 1, y + kReach); ++j)
-        for (int i = std::max(0, x - kReach); i <= std::min(picture.width_px - 1, x + kReach); ++i)
-          if (const float there = at(i, j); there >= 0) sum += there, ++count;
-      lux[static_cast<std::size_t>(y * picture.width_px + x)] = sum / static_cast<float>(count);
+      for (int j = std::max(0, y - reach); j <= std::min(picture.height_px - 1, y + reach); ++j)
+        for (int i = std::max(0, x - reach); i <= std::min(picture.width_px - 1, x + reach); ++i)
+          if (const float there = at(i, j); there > 0.5f * here && there < 2 * here) sum += there, ++count;
+      lux[static_cast<std::size_t>(y * picture.width_px + x)] = count > 0 ? sum / static_cast<float>(count) : here;
     }
   return lux;
 }
