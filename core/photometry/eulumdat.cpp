@@ -15,6 +15,7 @@ using namespace file_text;
 constexpr std::size_t kMaxAngles = 10'000;
 constexpr std::size_t kMaxValues = 4'000'000;
 constexpr std::size_t kMaxLampSets = 100;
+constexpr double kMaxLamps = 1e6;
 constexpr double kMaxIntensity = 1e9;  // cd per 1000 lm
 constexpr double kMinFlux_lm = 1e-6;   // below it nobody sees or dims anything
 constexpr double kMaxFlux_lm = 1e12;
@@ -181,7 +182,8 @@ class Parser {
       EulumdatFile::LampSet set;
       double lamps = 0;
       const At lamps_at = cursor_.at();
-      if (!number("number of lamps (field 26a)", -1e6, 1e6, lamps) || !text("lamp type", set.type)) return false;
+      if (!number("number of lamps (field 26a)", -kMaxLamps, kMaxLamps, lamps) || !text("lamp type", set.type))
+        return false;
       const At flux_at = cursor_.at();
       if (!number("lamp flux (field 26c)", 0, kMaxFlux_lm, set.flux_lm) || !text("lamp colour", set.colour) ||
           !text("colour rendering", set.colour_rendering) ||
@@ -194,7 +196,7 @@ class Parser {
       }
       if (!(set.flux_lm > 0)) problems_.add(flux_at, "the lamp flux is 0", "give the lumens of the lamps");
       set.absolute = lamps < 0;
-      set.lamps = static_cast<int>(std::abs(lamps));
+      set.lamps = static_cast<int>(std::min(std::abs(lamps), kMaxLamps));
       file_.lamp_sets.push_back(std::move(set));
     }
     for (double& ratio : file_.direct_ratios) {

@@ -230,6 +230,7 @@ TEST(Eulumdat, SaysWhereAndWhatIsWrong) {
       {24, "0", "the conversion factor is 0"},
       {26, "0", "number of lamp sets"},
       {27, "0", "is no count"},
+      {27, "-1e20", "number of lamps (field 26a) '-1e20' is out of range"},
       {29, "0", "the lamp flux is 0"},
       {29, "nan", "is not a number"},
       {43, "10", "C plane 1 of 8 is at 10"},
