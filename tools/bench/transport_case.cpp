@@ -93,7 +93,7 @@ Reference reference_of(const TransportCase& one, const BenchOptions& options) {
   evaluate.wanted_relative_error = wanted;
   evaluate.seed = 0xC0FFEE;
   evaluate.threads = options.threads;
-  evaluate.max_rays = options.quick ? 80'000'000 : 20'000'000'000;
+  evaluate.max_rays = options.quick ? 30'000'000 : 20'000'000'000;
   const Method path = {"path", make_path_evaluator, true, 0};
   const Measured run = measure(path, one.rays, one.room.receivers, one.room.emitters, evaluate);
   Reference reference;

@@ -39,7 +39,7 @@ Point measured_at(const TransportCase& one, const Method& method, const Referenc
     evaluate.wanted_relative_error = wanted;
     evaluate.seed = static_cast<std::uint64_t>(i + 1);
     evaluate.threads = options.threads;
-    if (options.quick) evaluate.max_rays = 30'000'000;
+    if (options.quick) evaluate.max_rays = 8'000'000;
     point.wanted = wanted;
     point.run = measure(method, one.rays, one.room.receivers, one.room.emitters, evaluate);
     if (point.run.refused.empty())

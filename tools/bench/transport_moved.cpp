@@ -35,7 +35,7 @@ void add_moved_rows(const BenchOptions& options, std::vector<BenchRow>& rows) {
   good.wanted_relative_error = options.quick ? 0.03 : 0.005;
   good.seed = 0xC0FFEE;
   good.threads = options.threads;
-  if (options.quick) good.max_rays = 40'000'000;
+  if (options.quick) good.max_rays = 10'000'000;
   const auto reference = make_path_evaluator(one.rays);
   const auto all = reference->evaluate(one.room.receivers, one.room.emitters, good);
   const auto exact = reference->evaluate(one.room.receivers, moved, good);
@@ -56,7 +56,7 @@ void add_moved_rows(const BenchOptions& options, std::vector<BenchRow>& rows) {
     EvaluateOptions before;
     before.wanted_relative_error = kError;
     before.threads = options.threads;
-    before.max_rays = 20'000'000;
+    before.max_rays = options.quick ? 5'000'000 : 50'000'000;
     (void)evaluator->evaluate(one.room.receivers, one.room.emitters, before);
     std::optional<BenchRow> best;
     for (const double wanted : {0.5, 0.2, 0.1, 0.05, 0.02}) {
