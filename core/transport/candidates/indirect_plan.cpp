@@ -1,16 +1,63 @@
 #include "core/transport/candidates/indirect_plan.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "core/parallel.h"
+#include "core/transport/candidates/error_histogram.h"
 #include "core/transport/sobol.h"
 
 namespace luxrig {
 namespace {
 
-/// Candidates that cells are also grown from.
+/// Candidates that cells are also grown from, and those on which rays are counted out.
 constexpr std::size_t kGrownFrom = 256;
+constexpr std::size_t kTried = 48;
+/// More rays are worth it only if they bring the error down by this.
+constexpr double kWorthIt = 0.9;
+constexpr std::uint32_t kFirstRaysPerReplicate = 32;
+constexpr std::size_t kFewestCells = 200;
+
+/// Median of standard error / lux over the entries of some candidates.
+double median_error(const IndirectColumns& indirect, const VisibilityScene& visibility,
+                    std::span<const Receiver> receivers, std::span<const Vec3> positions_m,
+                    std::span<const CandidateLuminaire> luminaires, std::uint32_t rays_per_replicate,
+                    const CandidateOptions& options, std::uint64_t& rays) {
+  std::vector<ErrorHistogram> errors(positions_m.size());
+  std::vector<std::uint64_t> cast(positions_m.size(), 0);
+  const double least_lux = options.skips.reach ? options.least_lux : 0;
+  parallel_for(positions_m.size(), options.threads, [&](std::size_t i) {
+    if (options.watch.stop.stop_requested()) return;
+    const CandidateLuminaire& luminaire = luminaires[i % luminaires.size()];
+    const Vec3 at_m = positions_m[i] + luminaire.offset_world_m;
+    IndirectColumns::Column column;
+    indirect.evaluate(indirect.prepare(luminaire, rays_per_replicate), at_m,
+                      indirect.guide(luminaire, std::span(&at_m, 1), cast[i]), options.skips.unlit, column);
+    cast[i] += column.rays;
+    for (std::size_t r = 0; r < receivers.size(); ++r) {
+      double lux = unobstructed_lux(luminaire, at_m, receivers[r]);
+      if (lux > 0) {
+        ++cast[i];
+        if (visibility.rays->occluded(receivers[r].position_world_m, receivers[r].normal_world, at_m)) lux = 0;
+      }
+      lux += static_cast<double>(column.lux[r]);
+      if (lux > 0 && lux >= least_lux) errors[i].add(static_cast<double>(column.standard_error_lux[r]) / lux);
+    }
+  });
+  ErrorHistogram all;
+  for (const ErrorHistogram& one : errors) all.add(one);
+  for (const std::uint64_t n : cast) rays += n;
+  return all.median();
+}
+
+std::vector<Vec3> spread(std::span<const Vec3> positions_m, std::size_t most) {
+  std::vector<Vec3> some_m;
+  const std::size_t count = std::min(positions_m.size(), most);
+  for (std::size_t i = 0; i < count; ++i) some_m.push_back(positions_m[i * positions_m.size() / count]);
+  return some_m;
+}
 
 }  // namespace
 
@@ -31,6 +78,7 @@ Result<std::vector<std::unique_ptr<SurfaceImportance>>> importance_fields(
     ImportanceSettings one;
     one.cell_m = settings.cell_m;
     one.rays_per_cell = settings.rays_per_cell;
+    one.guided_rays_per_cell = settings.guided_rays_per_cell;
     one.seed = mixed(options.seed, k);
     fields[k] = std::make_unique<SurfaceImportance>(scene, visibility, receivers, also_from_world_m, one, options.skips,
                                                     options.watch.stop);
@@ -44,23 +92,44 @@ Result<IndirectColumns> plan_indirect(const Scene& scene, const VisibilityScene&
                                       std::span<const Receiver> receivers, const CandidateSet& candidates,
                                       std::span<const CandidateLuminaire> luminaires, const ReceiversAir* air,
                                       const CandidateOptions& options, CandidateStatistics& statistics) {
-  std::vector<Vec3> some_m;
-  const std::size_t positions = candidates.positions_world_m.size();
-  const std::size_t wanted = std::min(positions, kGrownFrom);
-  for (std::size_t i = 0; i < wanted; ++i) {
-    const Vec3& at = candidates.positions_world_m[i * positions / wanted];
-    if (!air || air->reaches(at)) some_m.push_back(at);
-  }
+  std::vector<Vec3> grown_from_m = spread(candidates.positions_world_m, kGrownFrom);
+  if (air) std::erase_if(grown_from_m, [&](const Vec3& at_m) { return !air->reaches(at_m); });
+  const std::size_t bytes_per_cell =
+      2 * IndirectColumns::kReplicates * (receivers.size() + kRowUnit) * sizeof(float) + sizeof(SurfaceCells::Cell);
+  const std::size_t cells_in_bound = options.memory_bound_bytes / 2 / bytes_per_cell;
+  if (cells_in_bound < kFewestCells)
+    return tl::unexpected(
+        Fault{Cause::invalid,
+              "",
+              fmt::format("the surfaces' importance for {} receivers needs {} bytes; the bound is {}", receivers.size(),
+                          2 * kFewestCells * bytes_per_cell, options.memory_bound_bytes),
+              {}});
   IndirectSettings settings;
-  settings.cell_m = cell_size_m(scene, 10'000);
-  auto fields = importance_fields(scene, visibility, receivers, some_m, settings, options);
+  settings.cell_m =
+      cell_size_m(scene, std::clamp(options.surface_cells, kFewestCells, std::max(kFewestCells, cells_in_bound)));
+  auto fields = importance_fields(scene, visibility, receivers, grown_from_m, settings, options);
   if (!fields) return tl::unexpected(std::move(fields.error()));
   for (const auto& field : *fields) {
     statistics.rays += field->rays();
     statistics.surface_cells += field->surfaces().cells().size();
   }
-  statistics.rays_per_candidate = settings.rays_per_replicate * IndirectColumns::kReplicates;
-  return IndirectColumns(*visibility.rays, std::move(*fields), luminaires, settings.rays_per_replicate, options.seed);
+  IndirectColumns indirect(*visibility.rays, std::move(*fields), options.seed);
+
+  const std::vector<Vec3> tried_m = spread(grown_from_m, kTried);
+  constexpr auto kReplicates = static_cast<std::uint32_t>(IndirectColumns::kReplicates);
+  std::uint32_t rays = kFirstRaysPerReplicate;
+  double error = median_error(indirect, visibility, receivers, tried_m, luminaires, rays, options, statistics.rays);
+  while (error > options.wanted_relative_error && 2 * rays * kReplicates <= options.most_rays_per_candidate) {
+    const double with_more =
+        median_error(indirect, visibility, receivers, tried_m, luminaires, 2 * rays, options, statistics.rays);
+    if (with_more > kWorthIt * error) break;
+    rays *= 2;
+    error = with_more;
+  }
+  if (options.watch.stop.stop_requested())
+    return tl::unexpected(Fault{Cause::cancelled, "", "stopped while counting out the rays of candidates", {}});
+  statistics.rays_per_candidate = rays * kReplicates;
+  return indirect;
 }
 
 }  // namespace luxrig

@@ -8,7 +8,8 @@ namespace luxrig {
 
 struct IndirectSettings {
   double cell_m = 0;
-  std::uint32_t rays_per_cell = 32;
+  std::uint32_t rays_per_cell = 16;
+  std::uint32_t guided_rays_per_cell = 32;
   std::uint32_t rays_per_replicate = 32;
 };
 

@@ -19,6 +19,9 @@ constexpr std::size_t kMostPositionsPerBlock = 8192;
 /// Bytes per receiver and column in a block: direct light, indirect light and its error, and an entry of the result.
 constexpr std::size_t kBytesPerPair = 3 * sizeof(float) + sizeof(std::uint32_t) + 3 * sizeof(float);
 
+/// Candidates that share what pilot rays found.
+constexpr std::uint32_t kPerGuide = 64;
+
 tl::unexpected<Fault> refusal(std::string detail) {
   return tl::unexpected(Fault{Cause::invalid, "", std::move(detail), {}});
 }
@@ -72,6 +75,10 @@ class Stream {
       if (!planned) return tl::unexpected(std::move(planned.error()));
       indirect_.emplace(std::move(*planned));
       fixed_bytes = indirect_->bytes();
+      for (const CandidateLuminaire& luminaire : luminaires_)
+        luminaire_rays_.push_back(
+            indirect_->prepare(luminaire, statistics_.rays_per_candidate / IndirectColumns::kReplicates));
+      make_groups();
       report(0.2);
     }
     const std::size_t per_position =
@@ -111,7 +118,7 @@ class Stream {
     const std::size_t columns = count * luminaires_.size(), rows = receivers_.size();
     indirect_lux_.assign(indirect_ ? columns * rows : 0, 0.0f);
     indirect_error_lux_.assign(indirect_ ? columns * rows : 0, 0.0f);
-    if (indirect_ && !reflected(positions_m)) return false;
+    if (indirect_ && !reflected(first, positions_m)) return false;
     gather(first, columns);
     return true;
   }
@@ -123,7 +130,46 @@ class Stream {
     });
   }
 
-  bool reflected(std::span<const Vec3> positions_m) {
+  /// Neighbouring candidates that share a guide, and the guides, once they are made.
+  void make_groups() {
+    const PointTree tree(candidates_.positions_world_m);
+    group_of_.resize(candidates_.positions_world_m.size());
+    for (std::size_t n = 0; n < tree.nodes.size(); ++n) {
+      const PointTree::Node& node = tree.nodes[n];
+      const bool within_group = !groups_.empty() && node.begin < groups_.back().end;
+      if (within_group || (node.right != 0 && node.end - node.begin > kPerGuide)) continue;
+      for (std::uint32_t i = node.begin; i < node.end; ++i)
+        group_of_[tree.order[i]] = static_cast<std::uint32_t>(groups_.size());
+      groups_.push_back({node.begin, node.end, {}});
+    }
+    group_order_ = tree.order;
+  }
+
+  /// Guides of the groups that the block's positions belong to. The same whatever the block.
+  void make_guides(std::size_t first, std::size_t count) {
+    std::vector<std::uint32_t> wanted;
+    for (std::size_t p = 0; p < count; ++p)
+      if (use_[p] && groups_[group_of_[first + p]].guides.empty()) wanted.push_back(group_of_[first + p]);
+    std::sort(wanted.begin(), wanted.end());
+    wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+    std::vector<std::uint64_t> cast(wanted.size(), 0);
+    parallel_for(wanted.size(), options_.threads, [&](std::size_t w) {
+      if (options_.watch.stop.stop_requested()) return;
+      Group& group = groups_[wanted[w]];
+      for (std::size_t l = 0; l < luminaires_.size(); ++l) {
+        std::vector<Vec3> lamps_m;
+        for (std::uint32_t i = group.begin; i < group.end; ++i) {
+          const Vec3& position_m = candidates_.positions_world_m[group_order_[i]];
+          if (!air_ || use(position_m)) lamps_m.push_back(position_m + luminaires_[l].offset_world_m);
+        }
+        group.guides.push_back(indirect_->guide(luminaires_[l], lamps_m, cast[w]));
+      }
+    });
+    statistics_.rays += std::accumulate(cast.begin(), cast.end(), std::uint64_t{0});
+  }
+
+  bool reflected(std::size_t first, std::span<const Vec3> positions_m) {
+    make_guides(first, positions_m.size());
     const std::size_t kinds = luminaires_.size(), rows = receivers_.size();
     constexpr std::size_t kPerTask = 16;
     const std::size_t tasks = (positions_m.size() + kPerTask - 1) / kPerTask;
@@ -134,8 +180,8 @@ class Stream {
         if (!use_[p] || options_.watch.stop.stop_requested()) continue;
         for (std::size_t l = 0; l < kinds; ++l) {
           const std::size_t c = p * kinds + l;
-          indirect_->evaluate(l, positions_m[p] + luminaires_[l].offset_world_m, options_.skips.unlit && !lit(c),
-                              column);
+          indirect_->evaluate(luminaire_rays_[l], positions_m[p] + luminaires_[l].offset_world_m,
+                              groups_[group_of_[first + p]].guides[l], options_.skips.unlit && !lit(c), column);
           std::copy_n(column.lux.begin(), rows, indirect_lux_.begin() + static_cast<std::ptrdiff_t>(c * rows));
           std::copy_n(column.standard_error_lux.begin(), rows,
                       indirect_error_lux_.begin() + static_cast<std::ptrdiff_t>(c * rows));
@@ -212,6 +258,14 @@ class Stream {
   VisibilityScene visibility_{};
   std::optional<ReceiversAir> air_;
   std::optional<IndirectColumns> indirect_;
+  std::vector<LuminaireRays> luminaire_rays_;
+  struct Group {
+    std::uint32_t begin, end;            ///< into group_order_
+    std::vector<DirectionGuide> guides;  ///< per luminaire; empty until made
+  };
+  std::vector<Group> groups_;
+  std::vector<std::uint32_t> group_of_;  ///< per position
+  std::vector<std::uint32_t> group_order_;
   CandidateStatistics statistics_;
   ErrorHistogram errors_;
   // Of the block at hand:

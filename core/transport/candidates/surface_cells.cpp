@@ -112,7 +112,7 @@ void SurfaceCells::grow() {
 bool SurfaceCells::sees(const Vec3& position_world_m, const Vec3& normal_world, const Cell& cell) const {
   const double lift_m = kLift * cell_m_;
   return !rays_->occluded(position_world_m + lift_m * normal_world, Vec3::Zero(),
-                          cell.position_world_m + lift_m * cell.normal_world);
+                          cell.first_world_m + lift_m * cell.first_normal_world);
 }
 
 std::uint32_t SurfaceCells::piece(std::uint32_t first, bool simple, const Vec3& position_world_m,
@@ -132,14 +132,23 @@ std::uint32_t SurfaceCells::cell_at(const Vec3& position_world_m, const Vec3& no
   std::uint32_t first = slots_[slot].key == key ? slots_[slot].first : kNone;
   if (first != kNone) {
     const std::uint32_t found = piece(first, simple(cube), position_world_m, normal_world, rays_cast_);
-    if (found != kNone) return found;
+    if (found != kNone) {
+      Cell& cell = cells_[found];
+      // One of n with the same chance for each: the n-th replaces what was drawn before with chance 1/n.
+      ++cell.hits;
+      if (mixed(key, cell.hits) % cell.hits == 0) {
+        cell.position_world_m = position_world_m;
+        cell.normal_world = normal_world;
+      }
+      return found;
+    }
     std::uint32_t pieces = 0;
     for (std::uint32_t c = first; c != kNone; c = cells_[c].next) ++pieces;
     if (pieces >= kMostPieces) return kNone;
   }
   if (cells_.size() >= most_cells) return kNone;
   const auto made = static_cast<std::uint32_t>(cells_.size());
-  cells_.push_back({position_world_m, normal_world, first});
+  cells_.push_back({position_world_m, normal_world, position_world_m, normal_world, 1, first});
   slots_used_ += slots_[slot].key == 0;
   slots_[slot] = {key, made};
   if (2 * slots_used_ > slots_.size()) grow();
@@ -162,7 +171,7 @@ std::uint32_t SurfaceCells::find(const Vec3& position_world_m, const Vec3& norma
         const Slot& about = slots_[slot_of(key_of(cube + Cube(x, y, z), normal_world))];
         if (about.key == 0) continue;
         for (std::uint32_t c = about.first; c != kNone; c = cells_[c].next) {
-          const double distance_m2 = (cells_[c].position_world_m - position_world_m).squaredNorm();
+          const double distance_m2 = (cells_[c].first_world_m - position_world_m).squaredNorm();
           if (distance_m2 >= nearest_m2) continue;
           ++rays;
           if (!sees(position_world_m, normal_world, cells_[c])) continue;

@@ -6,13 +6,15 @@
 /// the surface at y and is not absorbed there (ρ left out),
 ///   W(r, y) = cosθr cosθy V / (π d²) + mean over cosine-weighted directions at y of ρ(z) W(r, z),   z = what they hit,
 ///   E_reflected(r) = ∫ ρ(y) W(r, y) dΦ(y),   Φ = flux that comes straight from the emitter.
-/// W is solved on cells (surface_cells.h): the first term at a cell's place with a visibility ray per receiver, the
-/// second with a fixed set of rays per cell, iterated to convergence. Emitters then cast rays and look up W where these
-/// hit; so the bright spot that a lamp makes on a ceiling close by is sampled where it is.
+/// The first term is kept at the place of each cell (surface_cells.h), with a visibility ray per receiver. The second
+/// is smooth: it is kept on patches, cells of a coarser grid, and solved by iteration with rays cast once from every
+/// cell. Emitters then cast rays and look up W where these hit; so the bright spot that a lamp makes on a ceiling close
+/// by is sampled where it is.
 ///
 /// One field is one independent estimate: its grid, places and rays are random. Errors come from several (replicates):
 /// their spread holds the error of cells being flat, of visibility asked at one place per cell, and of all rays.
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -20,12 +22,16 @@
 #include "core/transport/candidates/candidate_transport.h"
 #include "core/transport/candidates/surface_cells.h"
 #include "core/transport/candidates/visible_points.h"
+#include "core/transport/candidates/weighted_rows.h"
 
 namespace luxrig {
 
 struct ImportanceSettings {
   double cell_m = 0.25;
-  std::uint32_t rays_per_cell = 32;
+  /// Rays by the cosine that find cells and directions; then as many again, together with guided_rays_per_cell where
+  /// the first found much, that light is gathered with.
+  std::uint32_t rays_per_cell = 16;
+  std::uint32_t guided_rays_per_cell = 32;
   std::uint32_t most_cells = 200'000;
   std::uint64_t seed = 1;  ///< of this field
 };
@@ -37,11 +43,16 @@ class SurfaceImportance {
                     std::span<const Vec3> also_from_world_m, const ImportanceSettings& settings,
                     const CandidateSkips& skips, const std::stop_token& stop);
 
-  /// Number of floats in row(): receivers, rounded up to a multiple of 8.
+  /// The receiver of this index (which the span given to the constructor now shows) is elsewhere: its column of both
+  /// terms is computed again. Cells stay as they are.
+  void update_receiver(const VisibilityScene& visibility, std::size_t receiver, const CandidateSkips& skips);
+
+  /// Receivers, rounded up to a multiple of kRowUnit: the length of the rows below.
   [[nodiscard]] std::size_t stride() const { return stride_; }
-  [[nodiscard]] std::span<const float> row(std::uint32_t cell) const {
-    return {lux_per_lumen_.data() + cell * stride_, stride_};
-  }
+  /// W = row `cell` of first_rows() + row patch_of(cell) of further_rows().
+  [[nodiscard]] const float* first_rows() const { return first_.data(); }
+  [[nodiscard]] const float* further_rows() const { return further_.data(); }
+  [[nodiscard]] std::uint32_t patch_of(std::uint32_t cell) const { return patch_of_cell_[cell]; }
   /// W of the cell is above 0 for a receiver.
   [[nodiscard]] bool live(std::uint32_t cell) const { return live_[cell] != 0; }
   [[nodiscard]] const SurfaceCells& surfaces() const { return surfaces_; }
@@ -50,16 +61,29 @@ class SurfaceImportance {
   [[nodiscard]] std::size_t bytes() const;
 
  private:
+  /// A ray that leaves a cell.
   struct Bounce {
+    std::array<float, 3> direction_world;
     std::uint32_t cell;  ///< SurfaceCells::kNone: nothing was hit
-    float share;         ///< ρ / rays per cell
+    float reflectance;   ///< of what was hit
+    float weight;        ///< in the mean over cosine-weighted directions, with the reflectance
   };
 
   void discover(std::span<const Vec3> also_from_world_m);
   void trace_bounces(std::uint32_t cell);
+  [[nodiscard]] Bounce trace(std::uint32_t cell, const Vec3& direction, bool may_make_cells);
+  void make_patches(const Scene& scene);
+  void gather_bounces();
+  void see_receiver(const VisibilityScene& visibility, const PointTree& tree, std::span<const Vec3> places_m,
+                    std::size_t receiver, const CandidateSkips& skips);
   void see_receivers(const VisibilityScene& visibility, const CandidateSkips& skips);
+  [[nodiscard]] std::vector<Vec3> places_m() const;
+  void link_patches();
+  void mark_live();
   [[nodiscard]] double kernel(const Receiver& receiver, const SurfaceCells::Cell& cell) const;
-  void solve();
+  void solve(double converged);
+
+  static constexpr Bounce kNothing{{0, 0, 1}, SurfaceCells::kNone, 0, 0};
 
   const RayScene& scene_;
   std::span<const Receiver> receivers_;
@@ -67,9 +91,12 @@ class SurfaceImportance {
   std::stop_token stop_;
   SurfaceCells surfaces_;
   std::size_t stride_;
-  std::vector<Bounce> bounces_;        ///< rays_per_cell for each cell
-  std::vector<float> seen_per_lumen_;  ///< first term of W, cells × stride
-  std::vector<float> lux_per_lumen_;   ///< W, cells × stride
+  std::vector<Bounce> bounces_;  ///< as many for each cell
+  std::vector<std::uint32_t> patch_of_cell_;
+  std::uint32_t patches_ = 0;
+  std::vector<std::vector<WeightedRow>> from_cells_, from_patches_;  ///< per patch: what its rays meet, with weights
+  std::vector<float> first_;                                         ///< first term of W, cells × stride
+  std::vector<float> further_;                                       ///< second term, patches × stride
   std::vector<std::uint8_t> live_;
   std::uint64_t rays_ = 0;
   std::uint32_t sweeps_ = 0;

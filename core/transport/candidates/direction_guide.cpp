@@ -1,0 +1,74 @@
+#include "core/transport/candidates/direction_guide.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace luxrig {
+namespace {
+
+/// Share that is drawn evenly whatever was worth it.
+constexpr double kEven = 0.1;
+/// Of a direction's worth, what goes to the bins about its own.
+constexpr double kSpread = 0.5;
+constexpr std::size_t kBins = DirectionGuide::kRings * DirectionGuide::kSectors;
+
+}  // namespace
+
+std::size_t DirectionGuide::ring_of(const Vec3& direction) {
+  return std::min(kRings - 1, static_cast<std::size_t>(std::max(0.0, (direction.z() + 1) / 2 * kRings)));
+}
+
+std::size_t DirectionGuide::sector_of(const Vec3& direction) {
+  const double turn = std::atan2(direction.y(), direction.x()) / (2 * kPi) + 0.5;
+  return std::min(kSectors - 1, static_cast<std::size_t>(std::max(0.0, turn * kSectors)));
+}
+
+void DirectionGuide::add(const Vec3& direction, double worth) {
+  if (!(worth > 0) || !std::isfinite(worth)) return;
+  const std::size_t ring = ring_of(direction), sector = sector_of(direction);
+  share_[ring * kSectors + sector] += static_cast<float>((1 - kSpread) * worth);
+  const auto about = static_cast<float>(kSpread / 4 * worth);
+  share_[ring * kSectors + (sector + 1) % kSectors] += about;
+  share_[ring * kSectors + (sector + kSectors - 1) % kSectors] += about;
+  share_[std::min(ring + 1, kRings - 1) * kSectors + sector] += about;
+  share_[(ring > 0 ? ring - 1 : 0) * kSectors + sector] += about;
+  empty_ = false;
+}
+
+void DirectionGuide::finish() {
+  double sum = 0;
+  for (const float s : share_) sum += s;
+  for (float& s : share_) s = static_cast<float>(sum > 0 ? kEven / kBins + (1 - kEven) * s / sum : 1.0 / kBins);
+  float below = 0;
+  for (std::size_t ring = 0; ring < kRings; ++ring) {
+    for (std::size_t s = 0; s < kSectors; ++s) below += share_[ring * kSectors + s];
+    up_to_ring_[ring] = below;
+  }
+}
+
+DirectionSample DirectionGuide::sample(double u, double v) const {
+  const double at = v * up_to_ring_.back();
+  std::size_t ring = 0;
+  while (ring + 1 < kRings && at >= up_to_ring_[ring]) ++ring;
+  const double ring_from = ring > 0 ? up_to_ring_[ring - 1] : 0;
+  const double ring_share = up_to_ring_[ring] - ring_from;
+  const double in_ring = std::clamp((at - ring_from) / ring_share, 0.0, 1.0);
+  double along = 0;
+  for (std::size_t s = 0; s < kSectors; ++s) along += share_[ring * kSectors + s];
+  along *= u;
+  std::size_t sector = 0;
+  while (sector + 1 < kSectors && along >= share_[ring * kSectors + sector])
+    along -= share_[ring * kSectors + sector++];
+  const double in_sector = std::clamp(along / share_[ring * kSectors + sector], 0.0, 1.0);
+  const double z = std::clamp(2 * (static_cast<double>(ring) + in_ring) / kRings - 1, -1.0, 1.0);
+  const double angle = 2 * kPi * ((static_cast<double>(sector) + in_sector) / kSectors - 0.5);
+  const double radius = std::sqrt(std::max(0.0, 1 - z * z));
+  const Vec3 direction(radius * std::cos(angle), radius * std::sin(angle), z);
+  return {direction, density_per_sr(direction)};
+}
+
+double DirectionGuide::density_per_sr(const Vec3& direction) const {
+  return share_[ring_of(direction) * kSectors + sector_of(direction)] * (kBins / (4 * kPi));
+}
+
+}  // namespace luxrig

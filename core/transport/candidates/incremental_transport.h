@@ -1,0 +1,67 @@
+#pragma once
+/// Light of single luminaires at fixed receivers, again and again: a lamp that is moved, aimed or tried is a matter of
+/// milliseconds, since all that depends on scene and receivers is kept.
+///
+/// Same mathematics and same limits as stream_candidates(). What depends on what:
+///   a luminaire          its column: a shadow ray per receiver, and rays that look up the importance of surfaces
+///   a receiver           one row of the importance: visibility of the cells from there, and their interreflection
+///   an object            direct light where a line of sight meets it; reflected light everywhere: make() again
+
+#include <memory>
+
+#include "core/transport/candidates/candidate_transport.h"
+
+namespace luxrig {
+
+struct IncrementalOptions {
+  bool indirect = true;
+  /// Surface cells per estimate, and rays per cell: see surface_importance.h. Finer is slower to begin with, not per
+  /// column.
+  std::size_t cells = 10'000;
+  std::uint32_t rays_per_cell = 48;
+  std::uint32_t rays_per_column = 16'384;  ///< of a luminaire, in all
+  std::uint64_t seed = 1;
+  int threads = 0;  ///< 0 = one per core; results do not depend on it
+};
+
+/// lux at all receivers, per unit emittance.
+struct LuminaireColumn {
+  Eigen::VectorXd direct_lux;
+  Eigen::VectorXd total_lux;
+  Eigen::VectorXd standard_error_lux;  ///< of total_lux
+  std::uint64_t rays = 0;
+};
+
+class IncrementalTransport {
+ public:
+  /// Solves the importance of surfaces. scene and rays must outlive it.
+  /// Cause::invalid for what check_evaluation() refuses; Cause::cancelled when stopped.
+  [[nodiscard]] static Result<std::unique_ptr<IncrementalTransport>> make(const Scene& scene, const RayScene& rays,
+                                                                          std::span<const Receiver> receivers,
+                                                                          const IncrementalOptions& options,
+                                                                          const Watch& watch = {});
+  virtual ~IncrementalTransport() = default;
+
+  /// Cause::invalid for an emitter that check_evaluation() refuses, a shape or a sky. May be called from several
+  /// threads at once. The same emitter gives the same bytes, whatever was asked before.
+  [[nodiscard]] virtual Result<LuminaireColumn> column(const Emitter& emitter) const = 0;
+  /// The exact direct part alone: direct_lux, and the same as total_lux.
+  [[nodiscard]] virtual Result<LuminaireColumn> direct_column(const Emitter& emitter) const = 0;
+
+  /// Another place or normal for one receiver. Cells that only it sees are not added: move receivers within the air
+  /// that the others are in.
+  [[nodiscard]] virtual Result<void> move_receiver(std::size_t receiver, const Receiver& to) = 0;
+
+  /// Direct columns of many luminaires when the scene changed within a box only (what moved, where it was and where it
+  /// is now; its surfaces included): entries whose line of sight misses the box are kept, the others traced in `rays`.
+  /// Returns the shadow rays cast. lux: receivers × emitters.
+  [[nodiscard]] virtual std::uint64_t update_direct(std::span<const Emitter> emitters, const RayScene& rays,
+                                                    const Eigen::AlignedBox3d& changed_world_m,
+                                                    Eigen::MatrixXd& lux) const = 0;
+
+  /// Rays cast by the last make() or move_receiver().
+  [[nodiscard]] virtual std::uint64_t rays() const = 0;
+  [[nodiscard]] virtual std::size_t bytes() const = 0;
+};
+
+}  // namespace luxrig
