@@ -58,12 +58,14 @@ class Incremental final : public IncrementalTransport {
     wanted.watch = watch;
     IndirectSettings settings;
     settings.cell_m = cell_size_m(scene_, options_.cells);
+    settings.keep_links = true;
     settings.rays_per_cell = options_.rays_per_cell / 3;
     settings.guided_rays_per_cell = options_.rays_per_cell - settings.rays_per_cell;
     auto fields = importance_fields(scene_, visibility_, receivers_, {}, settings, wanted);
     if (!fields) return tl::unexpected(std::move(fields.error()));
     for (const auto& field : *fields) rays_cast_ += field->rays();
-    indirect_ = std::make_unique<IndirectColumns>(rays_, std::move(*fields), options_.seed);
+    indirect_ =
+        std::make_unique<IndirectColumns>(rays_, std::move(*fields), flatness_error(options_.cells), options_.seed);
     return {};
   }
 

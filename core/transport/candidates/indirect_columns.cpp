@@ -24,8 +24,8 @@ Vec3 world_direction(const CandidateLuminaire& luminaire, const Vec3& direction_
 }  // namespace
 
 IndirectColumns::IndirectColumns(const RayScene& scene, std::vector<std::unique_ptr<SurfaceImportance>> fields,
-                                 std::uint64_t seed)
-    : scene_(scene), fields_(std::move(fields)), seed_(seed) {}
+                                 double flatness_error, std::uint64_t seed)
+    : scene_(scene), fields_(std::move(fields)), flatness_error_(flatness_error), seed_(seed) {}
 
 LuminaireRays IndirectColumns::prepare(const CandidateLuminaire& luminaire, std::uint32_t rays_per_replicate) const {
   LuminaireRays rays{luminaire, {}, {}};
@@ -155,8 +155,8 @@ void IndirectColumns::evaluate(const LuminaireRays& luminaire, const Vec3& lamp_
       squares += off * off;
     }
     column.lux[r] = static_cast<float>(mean);
-    column.standard_error_lux[r] =
-        static_cast<float>(widened * std::sqrt(squares / (kReplicates * (kReplicates - 1.0))));
+    column.standard_error_lux[r] = static_cast<float>(
+        std::hypot(widened * std::sqrt(squares / (kReplicates * (kReplicates - 1.0))), flatness_error_ * mean));
   }
 }
 

@@ -32,7 +32,9 @@ class IndirectColumns {
   /// Rays of the first replicate after which a candidate may be given up as unlit.
   static constexpr std::uint32_t kFirstRays = 16;
 
-  IndirectColumns(const RayScene& scene, std::vector<std::unique_ptr<SurfaceImportance>> fields, std::uint64_t seed);
+  /// flatness_error   relative; added to what the replicates show
+  IndirectColumns(const RayScene& scene, std::vector<std::unique_ptr<SurfaceImportance>> fields, double flatness_error,
+                  std::uint64_t seed);
 
   /// rays_per_replicate   of both strategies together, even
   [[nodiscard]] LuminaireRays prepare(const CandidateLuminaire& luminaire, std::uint32_t rays_per_replicate) const;
@@ -71,6 +73,7 @@ class IndirectColumns {
 
   const RayScene& scene_;
   std::vector<std::unique_ptr<SurfaceImportance>> fields_;
+  double flatness_error_;
   std::uint64_t seed_;
 };
 

@@ -70,6 +70,8 @@ double cell_size_m(const Scene& scene, std::size_t cells) {
   return std::max(std::sqrt(area_m2 / static_cast<double>(cells)), 1e-9);
 }
 
+double flatness_error(std::size_t cells) { return 0.01 * std::sqrt(10'000 / static_cast<double>(cells)); }
+
 Result<std::vector<std::unique_ptr<SurfaceImportance>>> importance_fields(
     const Scene& scene, const VisibilityScene& visibility, std::span<const Receiver> receivers,
     std::span<const Vec3> also_from_world_m, const IndirectSettings& settings, const CandidateOptions& options) {
@@ -79,6 +81,7 @@ Result<std::vector<std::unique_ptr<SurfaceImportance>>> importance_fields(
     one.cell_m = settings.cell_m;
     one.rays_per_cell = settings.rays_per_cell;
     one.guided_rays_per_cell = settings.guided_rays_per_cell;
+    one.keep_links = settings.keep_links;
     one.seed = mixed(options.seed, k);
     fields[k] = std::make_unique<SurfaceImportance>(scene, visibility, receivers, also_from_world_m, one, options.skips,
                                                     options.watch.stop);
@@ -105,15 +108,15 @@ Result<IndirectColumns> plan_indirect(const Scene& scene, const VisibilityScene&
                           2 * kFewestCells * bytes_per_cell, options.memory_bound_bytes),
               {}});
   IndirectSettings settings;
-  settings.cell_m =
-      cell_size_m(scene, std::clamp(options.surface_cells, kFewestCells, std::max(kFewestCells, cells_in_bound)));
+  const std::size_t cells = std::clamp(options.surface_cells, kFewestCells, std::max(kFewestCells, cells_in_bound));
+  settings.cell_m = cell_size_m(scene, cells);
   auto fields = importance_fields(scene, visibility, receivers, grown_from_m, settings, options);
   if (!fields) return tl::unexpected(std::move(fields.error()));
   for (const auto& field : *fields) {
     statistics.rays += field->rays();
     statistics.surface_cells += field->surfaces().cells().size();
   }
-  IndirectColumns indirect(*visibility.rays, std::move(*fields), options.seed);
+  IndirectColumns indirect(*visibility.rays, std::move(*fields), flatness_error(cells), options.seed);
 
   const std::vector<Vec3> tried_m = spread(grown_from_m, kTried);
   constexpr auto kReplicates = static_cast<std::uint32_t>(IndirectColumns::kReplicates);

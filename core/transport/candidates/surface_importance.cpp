@@ -69,6 +69,11 @@ SurfaceImportance::SurfaceImportance(const Scene& scene, const VisibilityScene& 
   gather_bounces();
   solve(kConverged);
   rays_ += surfaces_.rays_cast();
+  std::vector<Bounce>().swap(bounces_);
+  if (!settings_.keep_links) {
+    from_cells_.clear();
+    from_patches_.clear();
+  }
 }
 
 /// Cells of a grid kCellsPerPatch times as coarse, of which the cells are parts.
@@ -354,7 +359,7 @@ void SurfaceImportance::solve(double converged) {
 
 std::size_t SurfaceImportance::bytes() const {
   std::size_t links = 0;
-  for (std::uint32_t p = 0; p < patches_; ++p) links += from_cells_[p].size() + from_patches_[p].size();
+  for (std::size_t p = 0; p < from_cells_.size(); ++p) links += from_cells_[p].size() + from_patches_[p].size();
   return (first_.size() + further_.size()) * sizeof(float) + bounces_.size() * sizeof(Bounce) +
          links * sizeof(WeightedRow) + surfaces_.cells().size() * 2 * sizeof(SurfaceCells::Cell);
 }

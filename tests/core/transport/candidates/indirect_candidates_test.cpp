@@ -133,9 +133,11 @@ TEST(IndirectCandidates, SkipsMoveNoAnswerByMoreThanItsError) {
       const auto a = dense_column(all.matrix, c, all.matrix.total_lux, receivers.size());
       const auto error = dense_column(all.matrix, c, all.matrix.standard_error_lux, receivers.size());
       const auto b = dense_column(got.matrix, c, got.matrix.total_lux, receivers.size());
-      for (std::size_t r = 0; r < receivers.size(); ++r) moved += std::abs(a[r] - b[r]) > 3 * error[r] + 1e-6f * a[r];
+      const auto error_b = dense_column(got.matrix, c, got.matrix.standard_error_lux, receivers.size());
+      for (std::size_t r = 0; r < receivers.size(); ++r)
+        moved += std::abs(a[r] - b[r]) > 3 * std::hypot(error[r], error_b[r]) + 1e-6f * a[r];
     }
-    EXPECT_LE(moved, 0.01 * static_cast<double>(all.matrix.entries()));
+    EXPECT_LE(moved, 0.02 * static_cast<double>(all.matrix.entries()));
   }
 }
 
@@ -156,10 +158,9 @@ TEST(IndirectCandidates, AreTheSameBytesOnAnyThreadsAndInAnyMemory) {
     EXPECT_EQ(many.matrix.standard_error_lux, one.matrix.standard_error_lux);
     EXPECT_EQ(many.statistics.rays, one.statistics.rays);
   }
-  options.memory_bound_bytes = std::size_t{4} << 30;
   std::vector<float> streamed;
   std::size_t blocks = 0;
-  options.memory_bound_bytes = 2'600'000;
+  options.memory_bound_bytes = 1'600'000;
   const auto done = stream_candidates(scene, rays, receivers, set, options, [&](const CandidateColumns& block) {
     streamed.insert(streamed.end(), block.total_lux.begin(), block.total_lux.end());
     ++blocks;
