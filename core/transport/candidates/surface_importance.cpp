@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/transport/candidates/direction_guide.h"
-#include "core/transport/path_sampler.h"
+#include "core/transport/bsdf.h"
 #include "core/transport/sobol.h"
 
 namespace luxrig {
