@@ -36,7 +36,7 @@ Scene soup(double size_m, std::size_t count, Random& random) {
 TEST(Shaft, WhereItIsClearNoRayIsStoppedAndWhereItIsBlockedNoneGetsThrough) {
   Random random(1);
   int clear = 0, blocked = 0, unknown = 0, missed_clear = 0;
-  for (int i = 0; i < 10'000; ++i) {
+  for (int i = 0; i < 2'000; ++i) {
     const double size_m = std::pow(10, random.between(-3, 4));
     Scene scene = soup(size_m, i % 3 == 0 ? 3 : 12, random);
     if (i % 2 == 0) scene.origin_world_m = 1e4 * size_m * random.in_cube();
@@ -93,10 +93,10 @@ TEST(Shaft, WhereItIsClearNoRayIsStoppedAndWhereItIsBlockedNoneGetsThrough) {
     unknown += !is_clear && !is_blocked;
     missed_clear += !is_clear && stopped == 0 && through > 0;
   }
-  EXPECT_GT(clear, 2000);
-  EXPECT_GT(blocked, 200);
+  EXPECT_GT(clear, 400);
+  EXPECT_GT(blocked, 40);
   EXPECT_LT(missed_clear, clear / 3) << "the test is not only safe but of use";
-  EXPECT_GT(unknown, 200);
+  EXPECT_GT(unknown, 40);
 }
 
 TEST(Shaft, TwoTrianglesThatShareAnEdgeBlockOnlyWhatLiesBehindBoth) {

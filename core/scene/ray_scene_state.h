@@ -1,0 +1,83 @@
+#pragma once
+/// Internal to ray_scene*.cpp: what a RayScene holds, and how far float may see a surface from where it is.
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <mutex>
+#include <vector>
+
+#include "core/scene/ray_scene.h"
+
+namespace luxrig {
+
+// With u = 2^-24 (half a unit in the last place), p the point at which it matters and L the longest edge, so that every
+// vertex of a triangle there is within |p| + L of the origin:
+//   the vertices were rounded to float              √3 u (|p| + L)
+//   the start of the ray is rounded to float        √3 u |p|
+//   Embree subtracts the start from the vertices    √3 u L
+//   its triangle normal (cross product of edges)     6 u L   a sliver's normal is worse, but only about its
+//                                                            long side, where it moves points within the
+//                                                            sliver by no more than this
+//   its dot product with that normal, and division   6 u L
+// together u (3.5 |p| + 15.5 L), rounded up. World coordinates, in double, are off by 2^-53 of their size; a point that
+// was computed from others there, by a few of that.
+inline constexpr double kUnit = 0x1p-24;
+inline constexpr double kPerPosition = 4;
+inline constexpr double kPerEdge = 16;
+inline constexpr double kWorldUnit = 0x1p-50;
+
+inline constexpr double kStartErrors = 2;  // the start is lifted by so many e, then set back by one (see `start`)
+
+struct RayScene::State {
+  /// All of a hit triangle in one line of the cache.
+  struct alignas(64) Triangle {
+    std::array<Vec3f, 3> corners_m;
+    std::uint32_t material = 0;
+    std::array<double, 3> normal{};  ///< unit; zero without area
+  };
+
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+  Vec3 origin_world_m = Vec3::Zero();
+  std::vector<Vec3f> vertices_m;  // shared with Embree; one more than used, since it reads 16 bytes per vertex
+  std::vector<std::array<std::uint32_t, 3>> indices;
+  std::vector<Triangle> triangles;
+  std::vector<Material> materials;
+  Eigen::AlignedBox3d bounds_m;  // relative to the origin
+  double edge_error_m = 0;       // e(0)
+  mutable std::once_flag tree_built;
+  mutable TriangleTree tree;
+
+  State() = default;
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+  ~State() {
+    if (scene) rtcReleaseScene(scene);
+    if (device) rtcReleaseDevice(device);
+  }
+
+  void measure(const std::vector<std::uint32_t>& material_of_triangle);
+  void build();
+
+  // Shadow rays: ray_scene_occlusion.cpp.
+  struct Targets;
+  static void pass_what_holds_the_target(const RTCFilterFunctionNArguments* arguments);
+  [[nodiscard]] bool aim(const Vec3& from_m, const Vec3& normal, const Vec3& to_m, double error_m, RTCRay& ray) const;
+
+  [[nodiscard]] double error_m(const Vec3& point_m) const {
+    return kUnit * kPerPosition * point_m.cwiseAbs().maxCoeff() + edge_error_m;
+  }
+
+  /// Lifts the start off its surface by 2 e along the normal, then sets it back by e along the ray: still e
+  /// above the surface, but now in front of any other surface that it touches in a corner, through which it
+  /// would slip otherwise.
+  [[nodiscard]] Vec3 start(const Vec3& from_m, const Vec3& direction, const Vec3& normal) const {
+    if (normal.isZero(0)) return from_m;
+    return from_m + error_m(from_m) * (kStartErrors * normal - direction);
+  }
+};
+
+}  // namespace luxrig
