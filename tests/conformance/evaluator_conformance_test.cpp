@@ -6,6 +6,7 @@
 #include <limits>
 #include <thread>
 
+#include "core/transport/cache/radiance_cache.h"
 #include "core/transport/evaluator.h"
 #include "tests/core/transport/lamp_pose.h"
 
@@ -14,10 +15,13 @@ namespace {
 
 struct Entry {
   const char* name;
-  std::unique_ptr<Evaluator> (*make)(const RayScene&);
+  std::unique_ptr<Evaluator> (*make)(const Scene&, const RayScene&);  ///< keeps references to both
 };
 constexpr Entry kEvaluators[] = {
-    {"direct", make_direct_evaluator}, {"path", make_path_evaluator}, {"gather", make_gather_evaluator}};
+    {"direct", [](const Scene&, const RayScene& rays) { return make_direct_evaluator(rays); }},
+    {"path", [](const Scene&, const RayScene& rays) { return make_path_evaluator(rays); }},
+    {"gather", [](const Scene&, const RayScene& rays) { return make_gather_evaluator(rays); }},
+    {"cache", [](const Scene& scene, const RayScene& rays) { return make_cache_evaluator(scene, rays); }}};
 
 void PrintTo(const Entry& entry, std::ostream* out) { *out << entry.name; }
 
@@ -89,8 +93,9 @@ class EvaluatorConformance : public testing::TestWithParam<Entry> {
     return options;
   }
   static Result<TransportMatrix> evaluate(const Room& room, const EvaluateOptions& options = quick()) {
-    const RayScene rays(room.scene());
-    return GetParam().make(rays)->evaluate(room.receivers, room.emitters, options);
+    const Scene scene = room.scene();
+    const RayScene rays(scene);
+    return GetParam().make(scene, rays)->evaluate(room.receivers, room.emitters, options);
   }
   static TransportMatrix matrix(const Room& room, const EvaluateOptions& options = quick()) {
     auto result = evaluate(room, options);
@@ -115,8 +120,9 @@ class EvaluatorConformance : public testing::TestWithParam<Entry> {
 };
 
 TEST_P(EvaluatorConformance, NamesItself) {
-  const RayScene rays{Scene{}};
-  EXPECT_EQ(GetParam().make(rays)->name(), GetParam().name);
+  const Scene nothing;
+  const RayScene rays(nothing);
+  EXPECT_EQ(GetParam().make(nothing, rays)->name(), GetParam().name);
 }
 
 TEST_P(EvaluatorConformance, GivesFiniteLuxOfAtLeastZeroAndNoLessThanDirect) {

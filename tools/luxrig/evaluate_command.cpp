@@ -44,7 +44,7 @@ int run_evaluate(const EvaluateArguments& arguments) {
   const Eigen::VectorXd lux = transport->lux(level);
   const Eigen::VectorXd direct = transport->direct_lux(level);
   const Eigen::VectorXd error = transport->standard_error_lux(level);
-  const char* model = compute.model == Model::direct ? "direct" : "path";
+  const char* model = name_of(compute.model);
   nlohmann::json points = nlohmann::json::array();
   Table table({"point", ">lux", ">± se", ">direct", ">goal lx", ">max lx"});
   const auto add = [&](const std::string& name, const Vec3& position, const Vec3& normal, std::size_t index,

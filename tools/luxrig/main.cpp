@@ -12,8 +12,9 @@ namespace {
 using namespace luxrig;
 
 void add_compute(CLI::App& command, ComputeOptions& compute) {
-  static const std::map<std::string, Model> models = {{"direct", Model::direct}, {"path", Model::path}};
-  command.add_option("--model", compute.model, "direct, or path (with interreflection)")
+  static const std::map<std::string, Model> models = {
+      {"direct", Model::direct}, {"path", Model::path}, {"cache", Model::cache}};
+  command.add_option("--model", compute.model, "direct; path or cache (with interreflection)")
       ->transform(CLI::CheckedTransformer(models));
   command.add_option("--max-error", compute.max_error, "wanted relative standard error")->check(CLI::Range(1e-4, 1.0));
   command.add_option("--seed", compute.seed, "seed of the samples");

@@ -7,6 +7,7 @@
 #include "core/rig/rig_file.h"
 #include "core/scene/scene_builder.h"
 #include "core/solve/emittance.h"
+#include "core/transport/cache/radiance_cache.h"
 #include "core/transport/rig_transport.h"
 #include "drivers/registry.h"
 
@@ -65,10 +66,15 @@ Checked<Session> open_session(const std::filesystem::path& rig_path) {
   return session;
 }
 
+const char* name_of(Model model) {
+  return model == Model::direct ? "direct" : model == Model::cache ? "cache" : "path";
+}
+
 Result<TransportMatrix> compute_transport(const Session& session, const ComputeOptions& options,
                                           const std::vector<double>& levels) {
-  const auto evaluator =
-      options.model == Model::direct ? make_direct_evaluator(*session.rays) : make_path_evaluator(*session.rays);
+  const auto evaluator = options.model == Model::direct  ? make_direct_evaluator(*session.rays)
+                         : options.model == Model::cache ? make_cache_evaluator(session.scene, *session.rays)
+                                                         : make_path_evaluator(*session.rays);
   EvaluateOptions evaluate;
   evaluate.wanted_relative_error = options.max_error;
   evaluate.seed = options.seed;

@@ -23,7 +23,10 @@ struct Session {
 /// Reads and checks everything: rig, photometry, buses, meshes. All problems, or a Session.
 [[nodiscard]] Checked<Session> open_session(const std::filesystem::path& rig_path);
 
-enum class Model { direct, path };
+enum class Model { direct, path, cache };
+
+/// As written at the command line.
+[[nodiscard]] const char* name_of(Model model);
 
 struct ComputeOptions {
   Model model = Model::path;

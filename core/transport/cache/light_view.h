@@ -1,0 +1,39 @@
+#pragma once
+/// The scene as a lamp sees it: where its light first falls (thesis §3.2.1, "reflective shadow map"), sampled by
+/// direction with low discrepancy instead of rendered.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/scene/ray_scene.h"
+#include "core/transport/evaluator.h"
+#include "core/transport/sobol.h"
+
+namespace luxrig {
+
+/// A share of an emitter's flux where it first meets a surface.
+struct LightHit {
+  Vec3 position_world_m;
+  Vec3 normal_world;  ///< unit, on the lit side
+  std::uint32_t triangle;
+  double flux_lm;  ///< that arrives, at level 1
+};
+
+struct LightView {
+  std::vector<LightHit> hits;  ///< of light that meets something; in the order of the samples
+  std::uint64_t rays = 0;
+};
+
+/// The light of one emitter by the first `count` points of `samples`. Unbiased: the sum of flux_lm near a
+/// place is in the mean the flux that falls there. Equal emitters give equal hits for equal samples. The light of a sky
+/// comes from all over a disk as wide as the scene, so few of its samples find a small window.
+[[nodiscard]] LightView light_view(const RayScene& scene, const Emitter& emitter, const SobolSequence& samples,
+                                   std::uint32_t count);
+
+/// Reflectance by linear Rec. 709 primary with which the cache reflects: all of it diffuse. A coat is taken for a
+/// diffuse surface of its reflectance at normal incidence over the body: exact where gloss does not point at a receiver
+/// what it takes from elsewhere, which the cache cannot know.
+[[nodiscard]] Vec3 diffuse_equivalent_rgb(const Material& material);
+
+}  // namespace luxrig
