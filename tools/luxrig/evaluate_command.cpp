@@ -35,7 +35,8 @@ int run_evaluate(const EvaluateArguments& arguments) {
 
   ComputeOptions compute = arguments.compute;
   compute.watch = {stop_on_signals(), progress_line("evaluating")};
-  const auto transport = compute_transport(*session, compute, *levels);
+  ModelUsed used;
+  const auto transport = compute_transport(*session, compute, *levels, &used);
   if (!transport) return report(transport.error());
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
@@ -44,7 +45,6 @@ int run_evaluate(const EvaluateArguments& arguments) {
   const Eigen::VectorXd lux = transport->lux(level);
   const Eigen::VectorXd direct = transport->direct_lux(level);
   const Eigen::VectorXd error = transport->standard_error_lux(level);
-  const char* model = name_of(compute.model);
   nlohmann::json points = nlohmann::json::array();
   Table table({"point", ">lux", ">± se", ">direct", ">goal lx", ">max lx"});
   const auto add = [&](const std::string& name, const Vec3& position, const Vec3& normal, std::size_t index,
@@ -68,13 +68,15 @@ int run_evaluate(const EvaluateArguments& arguments) {
   }
   const int threads = thread_count(compute.threads);
   if (arguments.json) {
-    const nlohmann::json out = {
-        {"model", model},          {"points", std::move(points)}, {"relative_error", transport->relative_error},
-        {"rays", transport->rays}, {"seconds", seconds},          {"threads", threads}};
+    const nlohmann::json out = {{"model", used.name},          {"model_reason", used.reason},
+                                {"points", std::move(points)}, {"rays", transport->rays},
+                                {"seconds", seconds},          {"relative_error", transport->relative_error},
+                                {"threads", threads}};
     fmt::print("{}\n", out.dump(1));
   } else {
-    fmt::print("{}\n{} model: relative error {:.2g} (wanted {:.2g}), {} rays, {:.2f} s, {} threads\n", table.text(),
-               model, transport->relative_error, compute.max_error, transport->rays, seconds, threads);
+    fmt::print("{}\n{} model ({}): relative error {:.2g} (wanted {:.2g}), {} rays, {:.2f} s, {} threads\n",
+               table.text(), used.name, used.reason, transport->relative_error, compute.max_error, transport->rays,
+               seconds, threads);
   }
   return kExitOk;
 }

@@ -12,9 +12,14 @@ namespace {
 using namespace luxrig;
 
 void add_compute(CLI::App& command, ComputeOptions& compute) {
-  static const std::map<std::string, Model> models = {
-      {"direct", Model::direct}, {"path", Model::path}, {"cache", Model::cache}};
-  command.add_option("--model", compute.model, "direct; path or cache (with interreflection)")
+  static const std::map<std::string, Model> models = {{"auto", Model::automatic},
+                                                      {"direct", Model::direct},
+                                                      {"gather", Model::gather},
+                                                      {"path", Model::path},
+                                                      {"cache", Model::cache}};
+  command
+      .add_option("--model", compute.model,
+                  "auto: the cheapest that meets the error; direct: no interreflection; gather, path, cache")
       ->transform(CLI::CheckedTransformer(models));
   command.add_option("--max-error", compute.max_error, "wanted relative standard error")->check(CLI::Range(1e-4, 1.0));
   command.add_option("--seed", compute.seed, "seed of the samples");

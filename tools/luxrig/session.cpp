@@ -8,6 +8,7 @@
 #include "core/scene/scene_builder.h"
 #include "core/solve/emittance.h"
 #include "core/transport/cache/radiance_cache.h"
+#include "core/transport/evaluator_choice.h"
 #include "core/transport/rig_transport.h"
 #include "drivers/registry.h"
 
@@ -66,15 +67,8 @@ Checked<Session> open_session(const std::filesystem::path& rig_path) {
   return session;
 }
 
-const char* name_of(Model model) {
-  return model == Model::direct ? "direct" : model == Model::cache ? "cache" : "path";
-}
-
 Result<TransportMatrix> compute_transport(const Session& session, const ComputeOptions& options,
-                                          const std::vector<double>& levels) {
-  const auto evaluator = options.model == Model::direct  ? make_direct_evaluator(*session.rays)
-                         : options.model == Model::cache ? make_cache_evaluator(session.scene, *session.rays)
-                                                         : make_path_evaluator(*session.rays);
+                                          const std::vector<double>& levels, ModelUsed* used) {
   EvaluateOptions evaluate;
   evaluate.wanted_relative_error = options.max_error;
   evaluate.seed = options.seed;
@@ -83,7 +77,29 @@ Result<TransportMatrix> compute_transport(const Session& session, const ComputeO
   evaluate.watch = options.watch;
   const auto receivers = receivers_of(session.rig);
   const auto emitters = emitters_of(session.rig);
-  return evaluator->evaluate(receivers, emitters, evaluate);
+  EvaluatorChoice choice{nullptr, "asked for"};
+  switch (options.model) {
+    case Model::automatic: {
+      auto chosen = choose_evaluator(*session.rays, receivers, emitters, evaluate);
+      if (!chosen) return tl::unexpected(std::move(chosen.error()));
+      choice = std::move(*chosen);
+      break;
+    }
+    case Model::direct:
+      choice.evaluator = make_direct_evaluator(*session.rays);
+      break;
+    case Model::gather:
+      choice.evaluator = make_gather_evaluator(*session.rays);
+      break;
+    case Model::path:
+      choice.evaluator = make_path_evaluator(*session.rays);
+      break;
+    case Model::cache:
+      choice.evaluator = make_cache_evaluator(session.scene, *session.rays);
+      break;
+  }
+  if (used) *used = {std::string(choice.evaluator->name()), choice.reason};
+  return choice.evaluator->evaluate(receivers, emitters, evaluate);
 }
 
 std::vector<PlannedPoint> predicted_points(const Rig& rig, const TransportMatrix& transport,

@@ -23,22 +23,25 @@ struct Session {
 /// Reads and checks everything: rig, photometry, buses, meshes. All problems, or a Session.
 [[nodiscard]] Checked<Session> open_session(const std::filesystem::path& rig_path);
 
-enum class Model { direct, path, cache };
-
-/// As written at the command line.
-[[nodiscard]] const char* name_of(Model model);
+enum class Model { automatic, direct, gather, path, cache };
 
 struct ComputeOptions {
-  Model model = Model::path;
+  Model model = Model::automatic;
   double max_error = 0.01;
   std::uint64_t seed = 1;
   int threads = 0;
   Watch watch;
 };
 
+/// Which evaluator did it, and why that one.
+struct ModelUsed {
+  std::string name, reason;
+};
+
 /// T of the rig's points (first) and luxmeters at its aims; `levels` as in EvaluateOptions.
 [[nodiscard]] Result<TransportMatrix> compute_transport(const Session& session, const ComputeOptions& options,
-                                                        const std::vector<double>& levels = {});
+                                                        const std::vector<double>& levels = {},
+                                                        ModelUsed* used = nullptr);
 
 /// Does what the rig's tasks ask, on a transport made by compute_transport.
 [[nodiscard]] Result<Plan> solve_tasks(const Session& session, const TransportMatrix& transport,

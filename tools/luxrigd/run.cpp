@@ -79,10 +79,12 @@ int run_rig(const RunArguments& arguments) {
   // 2. Transport and plan.
   ComputeOptions compute = arguments.compute;
   compute.watch = {stop, progress_line("  transport")};
-  const auto transport = in_background<Result<TransportMatrix>>([&] { return compute_transport(*session, compute); });
+  ModelUsed used;
+  const auto transport =
+      in_background<Result<TransportMatrix>>([&] { return compute_transport(*session, compute, {}, &used); });
   if (!transport) return report(transport.error());
-  say.say(fmt::format("transport: {} x {}, relative error {:.2g}, {} rays, {} threads", transport->receivers(),
-                      transport->emitters(), transport->relative_error, transport->rays,
+  say.say(fmt::format("transport: {} x {} by {}, relative error {:.2g}, {} rays, {} threads", transport->receivers(),
+                      transport->emitters(), used.name, transport->relative_error, transport->rays,
                       thread_count(compute.threads)));
   compute.watch.progress = nullptr;
   std::optional<Plan> plan;
