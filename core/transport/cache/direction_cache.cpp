@@ -170,7 +170,7 @@ class DirectionCache final : public RadianceCache::Method {
       if (!cells_.needed(c) || options.watch.stop.stop_requested()) return;
       std::uint64_t key = mixed(mixed(seed_, kPlaceSamples), c);
       for (std::size_t k = 0; k < kReplicates; ++k)
-        for (const LightHit& hit : views[k].hits) {
+        for (const LightViewHit& hit : views[k].hits) {
           const double u = number(key = mixed(seed_, key)), v = number(key = mixed(seed_, key)),
                        w = number(key = mixed(seed_, key)), jitter = number(key = mixed(seed_, key));
           const Vec3 at_m = cells_.place_m(c, u, v, w), hit_m = hit.position_world_m - cells_.origin_world_m();

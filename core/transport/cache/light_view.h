@@ -13,7 +13,7 @@
 namespace luxrig {
 
 /// A share of an emitter's flux where it first meets a surface.
-struct LightHit {
+struct LightViewHit {
   Vec3 position_world_m;
   Vec3 normal_world;  ///< unit, on the lit side
   std::uint32_t triangle;
@@ -21,7 +21,7 @@ struct LightHit {
 };
 
 struct LightView {
-  std::vector<LightHit> hits;  ///< of light that meets something; in the order of the samples
+  std::vector<LightViewHit> hits;  ///< of light that meets something; in the order of the samples
   std::uint64_t rays = 0;
 };
 

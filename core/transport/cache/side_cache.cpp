@@ -206,7 +206,7 @@ class SideCache final : public RadianceCache::Method {
     const LightView view = light_view(*rays, emitter, samples, count);
     cast += view.rays;
     std::vector<std::pair<std::uint32_t, Eigen::Vector3f>> falls;
-    for (const LightHit& hit : view.hits) {
+    for (const LightViewHit& hit : view.hits) {
       const std::uint32_t side = sides_.side_at(hit.position_world_m, hit.normal_world, cast);
       if (side == SurfaceSides::kNone || exchange_->row_of_group(sides_.group_of_side(side)) == SurfaceSides::kNone)
         continue;

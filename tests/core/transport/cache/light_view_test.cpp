@@ -11,7 +11,7 @@ namespace {
 
 double flux_lm(const LightView& view) {
   double sum = 0;
-  for (const LightHit& hit : view.hits) sum += hit.flux_lm;
+  for (const LightViewHit& hit : view.hits) sum += hit.flux_lm;
   return sum;
 }
 
@@ -46,7 +46,7 @@ TEST(LightView, FluxFallsOnEachFaceAsTheDistanceLawSays) {
       for (std::size_t i = 0; i < walls.size(); ++i)
         if (walls[i].normal[axis] == -side)
           expected_lm += direct->lux_per_level(static_cast<Eigen::Index>(i), 0) * 0.01;
-      for (const LightHit& hit : view.hits)
+      for (const LightViewHit& hit : view.hits)
         if (hit.normal_world[axis] * side < -0.5) hit_lm += hit.flux_lm;
       EXPECT_NEAR(hit_lm, expected_lm, 0.01 * expected_lm);
     }
@@ -58,7 +58,7 @@ TEST(LightView, ALampFlushWithTheCeilingLightsTheRoomAndNotItsOwnCeiling) {
   const Emitter emitter{make_spot(800, rad_from_deg(60), rad_from_deg(89)), lamp_at({0.2, 0.1, 1}, {0.2, 0.1, -1})};
   const LightView view = light_view(rays, emitter, SobolSequence(9), 1024);
   EXPECT_NEAR(flux_lm(view), 800, 8);
-  for (const LightHit& hit : view.hits) EXPECT_LT(hit.position_world_m.z(), 1 - 1e-6);
+  for (const LightViewHit& hit : view.hits) EXPECT_LT(hit.position_world_m.z(), 1 - 1e-6);
 }
 
 TEST(LightView, InOpenAirThereIsNothingToFallOn) {
