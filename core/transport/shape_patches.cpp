@@ -33,12 +33,12 @@ double asin_within(double sine) { return std::asin(std::clamp(sine, -1.0, 1.0));
 struct Along {
   double y, per_w;
 };
-Along along_line(const Limits& limits, double d, double w, bool far) {
+Along along_line(const PatchLimits& limits, double d, double w, bool far) {
   if (far) {
     const double y = limits.at(w), r2 = d * d + y * y;
     return {y, limits.width() * d * d / (r2 * std::sqrt(r2))};
   }
-  const Limits angle{std::asinh(limits.low / d), std::asinh(limits.high / d)};
+  const PatchLimits angle{std::asinh(limits.low / d), std::asinh(limits.high / d)};
   const double y = d * std::sinh(angle.at(w));
   return {y, angle.width() * d * d / (d * d + y * y)};
 }
@@ -63,8 +63,8 @@ std::vector<Point> clipped(const std::vector<Point>& polygon, double a, double b
 }
 
 /// y of a convex polygon's outline at x: the lower and the upper one.
-Limits outline(const std::vector<Point>& polygon, double x) {
-  Limits y{HUGE_VAL, -HUGE_VAL};
+PatchLimits outline(const std::vector<Point>& polygon, double x) {
+  PatchLimits y{HUGE_VAL, -HUGE_VAL};
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const Point p = polygon[i], q = polygon[(i + 1) % polygon.size()];
     if (x < std::min(p.x, q.x) || x > std::max(p.x, q.x)) continue;
@@ -89,8 +89,8 @@ void cut_rectangle(double half_x_m, double half_y_m, const Viewer& viewer, std::
   if (!(height_m > 0) || !(half_x_m > 0) || !(half_y_m > 0)) return;
   const double towards = p.z() > 0 ? -1 : 1;
   const double reach_m = reach_in_plane_m(viewer, height_m);
-  const Limits x{std::max(-half_x_m - p.x(), -reach_m), std::min(half_x_m - p.x(), reach_m)};
-  const Limits y{std::max(-half_y_m - p.y(), -reach_m), std::min(half_y_m - p.y(), reach_m)};
+  const PatchLimits x{std::max(-half_x_m - p.x(), -reach_m), std::min(half_x_m - p.x(), reach_m)};
+  const PatchLimits y{std::max(-half_y_m - p.y(), -reach_m), std::min(half_y_m - p.y(), reach_m)};
   if (x.empty() || y.empty()) return;
   const std::vector<Point> seen = clipped({{x.low, y.low}, {x.high, y.low}, {x.high, y.high}, {x.low, y.high}},
                                           viewer.normal.x(), viewer.normal.y(), viewer.normal.z() * towards * height_m);
@@ -107,7 +107,7 @@ void cut_rectangle(double half_x_m, double half_y_m, const Viewer& viewer, std::
     if (!(strip.along.width() > 1e-14 * (x.high - x.low))) continue;
     // Just inside, so that an upright edge at a cut belongs to one side only.
     const double inset = 1e-9 * strip.along.width();
-    const Limits at_low = outline(seen, cuts[i] + inset), at_high = outline(seen, cuts[i + 1] - inset);
+    const PatchLimits at_low = outline(seen, cuts[i] + inset), at_high = outline(seen, cuts[i + 1] - inset);
     strip.low_edge = {at_low.low, at_high.low};
     strip.high_edge = {at_low.high, at_high.high};
     patches.push_back(strip);
@@ -194,7 +194,7 @@ PatchPlace at_disk(const ShapePatch& disk, double t, double w) {
   const double chord_m = disk.radius_m * std::cos(angle);
   const double x = disk.middle_x_m + disk.radius_m * std::sin(angle);
   const double d2 = x * x + squared(disk.height_m), d = std::sqrt(d2);
-  const Limits limits{std::max(disk.middle_y_m - chord_m, -disk.reach_m),
+  const PatchLimits limits{std::max(disk.middle_y_m - chord_m, -disk.reach_m),
                       std::min(disk.middle_y_m + chord_m, disk.reach_m)};
   if (limits.empty()) return {disk.x_axis, 0};
   const Along y = along_line(limits, d, w, disk.far);
@@ -217,7 +217,7 @@ PatchPlace at_wall(const ShapePatch& wall, double t, double w) {
   const double cos_eta = std::sqrt(std::max(0.0, 1 - sin_eta * sin_eta));
   const double d = wall.tangent_squared_m2 / (wall.rho_m * cos_eta + wall.radius_m * std::cos(angle));
   const Vec3 level = cos_eta * wall.x_axis + sin_eta * wall.y_axis;
-  Limits climb_m = wall.climb_m;
+  PatchLimits climb_m = wall.climb_m;
   const double facing = wall.normal.dot(level), upwards = wall.normal.z();
   if (upwards > 1e-12)
     climb_m.low = std::max(climb_m.low, -facing * d / upwards);

@@ -14,8 +14,8 @@ struct PatchPlace {
   double sr;  ///< ≥ 0
 };
 
-/// Limits of what is seen along one coordinate of a patch: low + t·(high - low), t in 0…1.
-struct Limits {
+/// PatchLimits of what is seen along one coordinate of a patch: low + t·(high - low), t in 0…1.
+struct PatchLimits {
   double low = 0, high = 0;
   [[nodiscard]] double at(double t) const { return low + t * (high - low); }
   [[nodiscard]] double width() const { return high - low; }
@@ -42,8 +42,8 @@ class ShapePatch {
   Vec3 x_axis = Vec3::UnitX(), y_axis = Vec3::UnitY();
   double height_m = 0;         ///< > 0
   double towards = 1;          ///< ±1: along +z or -z from the receiver
-  Limits along;                ///< strip: x [m]; disk, ball, wall: angle t [rad], see the .cpp
-  Limits low_edge, high_edge;  ///< strip: y [m] of its two edges, at either end of `along`
+  PatchLimits along;                ///< strip: x [m]; disk, ball, wall: angle t [rad], see the .cpp
+  PatchLimits low_edge, high_edge;  ///< strip: y [m] of its two edges, at either end of `along`
   double radius_m = 0;
   double middle_x_m = 0, middle_y_m = 0;  ///< disk
   double reach_m = HUGE_VAL;              ///< disk: |y| of what a beam reaches the receiver from
@@ -54,7 +54,7 @@ class ShapePatch {
 
   // wall: x_axis to the cylinder's axis, y_axis sideways, both level
   double rho_m = 0, tangent_squared_m2 = 0;
-  Limits climb_m;
+  PatchLimits climb_m;
   Vec3 normal = Vec3::UnitZ();
 };
 

@@ -52,7 +52,7 @@ AnalyticCase roof(int type, double edge_m) {
   one.scene = room.scene();
   const auto sky = sky_of(type);
   one.emitters.push_back(daylight(type, *sky));
-  const GaussRule rule = gauss_rule(40);
+  const GaussNodes rule = gauss_rule(40);
   const auto expect = [&](const Vec3& at_m, const Vec3& normal) {
     one.receivers.push_back({at_m, normal});
     one.exact_lx.push_back(integral(rule, near_m, far_m, near_m, far_m, [&](double x, double y) {
@@ -110,7 +110,7 @@ AnalyticCase facade(int type, Mask mask) {
     const Vec3 at_m = from_m + (from_m.z() + kBelow_m) / -direction.z() * direction;
     return std::max(std::abs(at_m.x()), std::abs(at_m.y())) < kGroundHalf_m ? ground_cd_m2 : 0.0;
   };
-  const GaussRule rule = gauss_rule(40);
+  const GaussNodes rule = gauss_rule(40);
   const auto expect = [&](const Vec3& at_m, const Vec3& normal) {
     // The heights of the window at which what is seen through it changes: the horizon, the ground's end, the masks.
     std::vector<double> levels = {1, 2};

@@ -78,7 +78,7 @@ void add_cube_means(const BenchOptions& options, std::vector<BenchRow>& rows) {
   const double edge_m = 3, reflectance = 0.5;
   const Scene scene = make_cube(edge_m, reflectance);
   const RayScene rays(scene);
-  const GaussRule rule = gauss_rule(6);
+  const GaussNodes rule = gauss_rule(6);
   std::vector<Receiver> receivers;
   std::vector<double> weights;
   for (int axis = 0; axis < 3; ++axis)

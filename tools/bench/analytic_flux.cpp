@@ -14,7 +14,7 @@ constexpr double kFlux_lm = 1000;
 /// its kinks, and even steps round about. One row, whose error is that of their weighted sum.
 void add_flux(const std::string& name, const Emitter& lamp, double radius_m, std::vector<double> breaks_rad,
               double target, const BenchOptions& options, std::vector<BenchRow>& rows) {
-  const GaussRule rule = gauss_rule(24);
+  const GaussNodes rule = gauss_rule(24);
   constexpr int kAround = 48;
   std::vector<Receiver> receivers;
   std::vector<double> weights_m2;

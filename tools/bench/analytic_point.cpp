@@ -82,7 +82,7 @@ double spot_candela(double gamma_rad, double) {
     return std::exp2(-std::pow(g / b, p)) * smooth;
   };
   static const double flux = [&] {
-    const GaussRule rule = gauss_rule(60);
+    const GaussNodes rule = gauss_rule(60);
     double sum = 0;
     for (const double from : {0.0, f})
       sum += integral(rule, from, from + f, 0, 1, [&](double g, double) { return 2 * kPi * shape(g) * std::sin(g); });

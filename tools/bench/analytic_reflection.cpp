@@ -20,7 +20,7 @@ void add_opening_flux(const BenchOptions& options, std::vector<BenchRow>& rows) 
   const RayScene rays(scene);
   Emitter opening{make_lambertian(kFlux_lm), {Mat3::Identity(), {2, 2, 3}}};
   opening.shape = {LuminousShape::Kind::rectangle, {1, 1, 0}};
-  const GaussRule rule = gauss_rule(24);
+  const GaussNodes rule = gauss_rule(24);
   std::vector<Receiver> receivers;
   std::vector<double> weights_m2;
   for (int axis = 0; axis < 3; ++axis)
@@ -65,7 +65,7 @@ AnalyticCase one_reflection(const std::string& name, double half_m, bool obstruc
   const double z = std::cos(rad_from_deg(35));
   const Vec3 lamp_m = 20 * Vec3(0.3, -std::sqrt(1 - 0.09 - z * z), z);
   one.emitters.push_back({make_isotropic(kFlux_lm), {Mat3::Identity(), lamp_m}});
-  const GaussRule rule = gauss_rule(40);
+  const GaussNodes rule = gauss_rule(40);
   const auto expect = [&](const Vec3& at_m, const Vec3& normal) {
     double right_m = half_m;
     if (obstructed && at_m.x() > kScreenX_m) {

@@ -38,8 +38,8 @@ double form_factor_of_sphere(double r, double d, double theta) {
              (kPi * h * h);
 }
 
-GaussRule gauss_rule(int count) {
-  GaussRule rule;
+GaussNodes gauss_rule(int count) {
+  GaussNodes rule;
   for (int i = 0; i < count; ++i) {
     double x = std::cos(kPi * (i + 0.75) / (count + 0.5)), slope = 1;
     for (int step = 0; step < 100; ++step) {

@@ -26,14 +26,14 @@ namespace luxrig {
 [[nodiscard]] double form_factor_of_sphere(double r_m, double d_m, double theta_rad);
 
 /// Nodes and weights of Gauss and Legendre on [-1, 1].
-struct GaussRule {
+struct GaussNodes {
   std::vector<double> nodes, weights;
 };
-[[nodiscard]] GaussRule gauss_rule(int count);
+[[nodiscard]] GaussNodes gauss_rule(int count);
 
 /// ∫∫ f over [a, b] × [c, d] by `count` nodes each way; f(x, y).
 template <class F>
-[[nodiscard]] double integral(const GaussRule& rule, double a, double b, double c, double d, F&& f) {
+[[nodiscard]] double integral(const GaussNodes& rule, double a, double b, double c, double d, F&& f) {
   double sum = 0;
   for (std::size_t i = 0; i < rule.nodes.size(); ++i)
     for (std::size_t j = 0; j < rule.nodes.size(); ++j)

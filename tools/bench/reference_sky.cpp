@@ -18,7 +18,7 @@ const ReferenceSky::Parameters ReferenceSky::kTypes[15] = {
 ReferenceSky::ReferenceSky(int type, const Vec3& towards_sun_world, double zenith_cd_m2)
     : type_(kTypes[type - 1]), sun_(towards_sun_world.normalized()) {
   scale_cd_m2_ = zenith_cd_m2 / luminance_cd_m2(Vec3::UnitZ());
-  const GaussRule rule = gauss_rule(96);
+  const GaussNodes rule = gauss_rule(96);
   horizontal_lx_ = integral(rule, 0, 1, 0, 2 * kPi, [&](double up, double turn) {
     const double flat = std::sqrt(1 - up * up);
     return up * luminance_cd_m2({flat * std::cos(turn), flat * std::sin(turn), up});

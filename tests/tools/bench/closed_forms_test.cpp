@@ -16,9 +16,9 @@ double by_quadrature(const Vec3& normal, double h, double x0, double x1, double 
   });
 }
 
-TEST(GaussRule, IsExactForPolynomialsOfTwiceItsDegree) {
+TEST(GaussNodes, IsExactForPolynomialsOfTwiceItsDegree) {
   for (const int n : {1, 2, 5, 24, 64}) {
-    const GaussRule rule = gauss_rule(n);
+    const GaussNodes rule = gauss_rule(n);
     for (int power = 0; power < 2 * n; ++power) {
       double sum = 0;
       for (std::size_t i = 0; i < rule.nodes.size(); ++i) sum += rule.weights[i] * std::pow(rule.nodes[i], power);
@@ -52,7 +52,7 @@ TEST(ClosedForms, OfDisksAndRectanglesAreTheirIntegrals) {
 }
 
 TEST(ClosedForms, OfASphereIsItsIntegralAlsoWhenTheHorizonCutsIt) {
-  const GaussRule rule = gauss_rule(200);
+  const GaussNodes rule = gauss_rule(200);
   for (const double d : {1.05, 1.5, 4.0})
     for (const double theta : {0.0, 0.5, 1.2, 1.5, 1.8, 2.4}) {
       const Vec3 normal(std::sin(theta), 0, std::cos(theta));
@@ -71,7 +71,7 @@ TEST(BoxRadiosity, ConservesFluxAndHasConverged) {
   const std::array<double, 6> same = {0.6, 0.6, 0.6, 0.6, 0.6, 0.6};
   const BoxRoom room{size_m, same, 1000, {1.7, 1.1, 1.4}};
   const BoxRadiosity coarse(room, 4), fine(room, 8);
-  const GaussRule rule = gauss_rule(6);
+  const GaussNodes rule = gauss_rule(6);
   double flux_lm = 0, area_m2 = 0, largest = 0;
   for (int axis = 0; axis < 3; ++axis)
     for (const int side : {0, 1}) {
