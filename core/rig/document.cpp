@@ -1,6 +1,7 @@
 #include "core/rig/document.h"
 
 #include <algorithm>
+#include <cctype>
 
 #include "core/rig/plain_text.h"
 
@@ -29,7 +30,8 @@ struct Refusal {
 ///   - dotted keys of very many parts: it bounds the nesting of [ and {, but not that of a.b.c.d…, and takes its tables
 ///     apart by recursion;
 ///   - letters outside ASCII, which TOML does not allow there: its test for other white space runs into code that it
-///     declares unreachable (found by fuzzing).
+///     declares unreachable (found by fuzzing);
+///   - quotes within a word, where it does not see the beginning of a text (found by fuzzing).
 std::optional<Refusal> look_ahead(std::string_view text) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   Place here{1, 1};
@@ -68,6 +70,11 @@ std::optional<Refusal> look_ahead(std::string_view text) {
     switch (text[i]) {
       case '"':
       case '\'':
+        // Within a word or right after a text, toml++ does not see the quote that we would see.
+        if (i > 0 && (std::isalnum(static_cast<unsigned char>(text[i - 1])) ||
+                      std::string_view("_-+:\"'").find(text[i - 1]) != std::string_view::npos)) {
+          return Refusal{here, "not TOML: a quote right after a word or a text", "put a space, = or , in between"};
+        }
         skip_string(text[i]);
         break;
       case '#':
