@@ -97,7 +97,8 @@ Scaled scaled(const EmittanceProblem& p) {
   for (Index k = 0; k < rows; ++k) {
     const Index i = goals[static_cast<std::size_t>(k)];
     s.objective.row(k) = p.weight[i] * p.lux_per_level.row(i);
-    s.target[k] = p.weight[i] * (p.goal_lx[i] - p.fixed_lx[i]);
+    // Lights only add: a point that has more than its goal without them asks for none, and holds no other point down.
+    s.target[k] = p.weight[i] * std::max(0.0, p.goal_lx[i] - p.fixed_lx[i]);
   }
   const double right =
       s.target.size() > 0 && s.target.cwiseAbs().maxCoeff() > 0 ? power_of_two_near(s.target.stableNorm()) : 1.0;

@@ -1,7 +1,7 @@
 #pragma once
 /// Levels of fixed lights from goals in lux, under hard limits.
 ///
-///   minimise  Σ_s w_s² (T_s c + b_s − g_s)²   over points with a goal
+///   minimise  Σ_s w_s² (T_s c + b_s − max(g_s, b_s))²   over points with a goal
 ///   subject to 0 ≤ c_j ≤ u_j   and   T_s c + b_s ≤ m_s   for points with a limit
 ///
 /// Source: Lawson & Hanson, Solving Least Squares Problems (1974), ch. 23 (NNLS, LDP, LSI); thesis §2.7.2.

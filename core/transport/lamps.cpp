@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <tuple>
 
@@ -19,7 +20,7 @@ constexpr double kLeastImportance = 0.02;
 
 auto place_of(const Emitter& emitter) {
   const Vec3& p = emitter.world_from_lamp.translation_m;
-  return std::tuple(p.x(), p.y(), p.z());
+  return std::tuple(emitter.sky != nullptr, p.x(), p.y(), p.z());
 }
 
 tl::unexpected<Fault> refusal(std::string detail) {
@@ -84,7 +85,69 @@ Lamps::Lamps(std::span<const Emitter> emitters, std::span<const double> levels,
     colours_rgb_[e] = emitter.colour_rgb;
     importances_[e] = lamps_.back().importance;
   }
+  form_groups();
+  form_profiles();
   share_out();
+}
+
+Lamps::Profile Lamps::Profile::of(const IntensityDistribution& intensity, bool sized) {
+  constexpr int kAzimuths = 16, kAngles = 2;
+  Profile profile;
+  // Other places of a shape see a point under other angles.
+  const auto least = static_cast<float>((sized ? 0.05 : 0.01) * intensity.max_intensity_cd());
+  for (std::size_t bin = 0; bin < kBins; ++bin) {
+    double most = 0;
+    for (int a = 0; a <= kAngles; ++a) {
+      const double half_sine = (static_cast<double>(bin) + static_cast<double>(a) / kAngles) / kBins;
+      const double angle = 2 * std::asin(std::min(half_sine, 1.0));
+      for (int b = 0; b < kAzimuths; ++b) {
+        const double azimuth = 2 * kPi * b / kAzimuths;
+        most = std::max(most, intensity.intensity_cd({std::sin(angle) * std::cos(azimuth),
+                                                      std::sin(angle) * std::sin(azimuth), -std::cos(angle)}));
+      }
+    }
+    profile.candela[bin] = std::max(static_cast<float>(most), least);
+  }
+  return profile;
+}
+
+void Lamps::form_profiles() {
+  std::map<const IntensityDistribution*, std::uint32_t> profile_of;
+  for (std::size_t p = 0; p < places_.size(); ++p) {
+    const Place& place = places_[p];
+    if (place.kind == Kind::sky) continue;
+    for (std::size_t i = place.begin; i < place.end; ++i) {
+      const Lamp& lamp = lamps_[i];
+      const auto [known, fresh] = profile_of.try_emplace(lamp.intensity, static_cast<std::uint32_t>(profiles_.size()));
+      if (fresh) profiles_.push_back(Profile::of(*lamp.intensity, place.kind == Kind::shape));
+      Weighed& w = weighed_;
+      w.x_m.push_back(place.position_world_m.x());
+      w.y_m.push_back(place.position_world_m.y());
+      w.z_m.push_back(place.position_world_m.z());
+      w.axis_x.push_back(static_cast<float>(lamp.axis_world.x()));
+      w.axis_y.push_back(static_cast<float>(lamp.axis_world.y()));
+      w.axis_z.push_back(static_cast<float>(lamp.axis_world.z()));
+      // Margins keep rounding from cutting off what the intensity itself decides.
+      w.cos_half_cone.push_back(place.kind == Kind::shape ? -2.0f : static_cast<float>(lamp.cos_half_cone) - 1e-5f);
+      w.importance.push_back(static_cast<float>(lamp.importance));
+      w.radius_m.push_back(static_cast<float>(place.radius_m));
+      w.place.push_back(static_cast<std::uint32_t>(p));
+      w.profile.push_back(known->second);
+    }
+  }
+}
+
+void Lamps::form_groups() {
+  const auto skies = static_cast<std::size_t>(
+      std::count_if(places_.begin(), places_.end(), [](const Place& p) { return p.kind == Kind::sky; }));
+  const std::size_t luminaires = places_.size() - skies, groups = std::min(luminaires, kMostGroups);
+  group_of_emitter_.resize(place_of_emitter_.size());
+  for (std::size_t p = 0; p < places_.size(); ++p) {
+    const std::size_t g = p < luminaires ? p * groups / luminaires : groups + p - luminaires;
+    if (g == groups_.size()) groups_.push_back({0, places_[p].begin, places_[p].end});
+    groups_[g].end = places_[p].end;
+    for (std::size_t i = places_[p].begin; i < places_[p].end; ++i) group_of_emitter_[lamps_[i].emitter] = g;
+  }
 }
 
 void Lamps::share_out() {
@@ -103,11 +166,15 @@ void Lamps::share_out() {
   double sum = 0;
   for (Lamp& lamp : lamps_) sum += lamp.share = lamp.sky ? per_sky : lamp.share;
   if (!(sum > 0)) return;  // no light can be traced; paths find it all
-  double before = 0;
-  for (Lamp& lamp : lamps_) {
-    lamp.share /= sum;
-    lamp.share_begin = before;
-    before += lamp.share;
+  for (Group& group : groups_) {
+    double of_group = 0, before = 0;
+    for (std::size_t i = group.begin; i < group.end; ++i) of_group += lamps_[i].share;
+    group.share = of_group / sum;
+    for (std::size_t i = group.begin; i < group.end; ++i) {
+      if (of_group > 0) lamps_[i].share /= of_group;
+      lamps_[i].share_begin = before;
+      before += lamps_[i].share;
+    }
   }
 }
 
@@ -131,34 +198,41 @@ double Lamps::inward_share(const Lamp& lamp, const Place& place) const {
 
 double Lamps::weigh(const Vec3& position_world_m, const Vec3& normal_world, Weights& weights) const {
   weights.assign(places_.size(), 0.0);
-  double sum = 0;
-  for (std::size_t p = 0; p < places_.size(); ++p) {
-    const Place& place = places_[p];
-    double weight = 0;
-    if (place.kind == Kind::sky) {
-      if (normal_world.z() > -0.99999)
-        for (std::size_t i = place.begin; i < place.end; ++i)
-          weight += lamps_[i].importance * lamps_[i].sky->horizontal_illuminance_lx();
-    } else {
-      const Vec3 towards_m = place.position_world_m - position_world_m;
-      const double height_m = normal_world.dot(towards_m) + place.radius_m;
-      if (!(height_m > 0)) continue;
-      const double distance_m = std::max(towards_m.norm(), place.radius_m);
-      const double lux_per_candela = height_m / (distance_m * distance_m * distance_m);
-      if (!std::isfinite(lux_per_candela)) continue;
-      const Vec3 direction_world = towards_m / distance_m;
-      for (std::size_t i = place.begin; i < place.end; ++i) {
-        const Lamp& lamp = lamps_[i];
-        if (place.kind == Kind::point && -lamp.axis_world.dot(direction_world) < lamp.cos_half_cone) continue;
-        double candela = lamp.intensity->intensity_cd(-(lamp.lamp_from_world * direction_world));
-        // Other places of a shape see the point under other angles.
-        if (place.kind == Kind::shape) candela = std::max(candela, 0.05 * lamp.intensity->max_intensity_cd());
-        weight += lamp.importance * lux_per_candela * candela;
-      }
+  constexpr std::size_t kAtOnce = 32;
+  std::array<float, kAtOnce> weight, half_sine;
+  const double at_x = position_world_m.x(), at_y = position_world_m.y(), at_z = position_world_m.z();
+  const Vec3f normal = normal_world.cast<float>();
+  const float normal_x = normal.x(), normal_y = normal.y(), normal_z = normal.z();
+  const Weighed& w = weighed_;
+  for (std::size_t begin = 0; begin < w.place.size(); begin += kAtOnce) {
+    const std::size_t count = std::min(kAtOnce, w.place.size() - begin);
+    // No branches and no calls: the compiler makes vector instructions of it.
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t i = begin + k;
+      const auto x = static_cast<float>(w.x_m[i] - at_x), y = static_cast<float>(w.y_m[i] - at_y),
+                 z = static_cast<float>(w.z_m[i] - at_z);
+      const float radius_m = w.radius_m[i];
+      const float distance_m = std::max(std::sqrt(x * x + y * y + z * z), radius_m);
+      const float per_distance = 1 / distance_m;
+      const float height_m = normal_x * x + normal_y * y + normal_z * z + radius_m + 1e-6f * distance_m;
+      const float cosine = -(w.axis_x[i] * x + w.axis_y[i] * y + w.axis_z[i] * z) * per_distance;
+      const bool sees = height_m > 0 && cosine >= w.cos_half_cone[i];
+      weight[k] = sees ? w.importance[i] * height_m * per_distance * per_distance * per_distance : 0;
+      half_sine[k] = std::sqrt(std::max(0.0f, 0.5f - 0.5f * cosine));
     }
-    weights[p] = weight;
-    sum += weight;
+    for (std::size_t k = 0; k < count; ++k) {
+      if (!(weight[k] > 0)) continue;
+      const float candela = profiles_[w.profile[begin + k]].candela[Profile::bin_of(half_sine[k])];
+      const double product = static_cast<double>(weight[k]) * static_cast<double>(candela);
+      if (std::isfinite(product)) weights[w.place[begin + k]] += product;
+    }
   }
+  for (std::size_t p = places_.size(); p > 0 && places_[p - 1].kind == Kind::sky; --p)
+    if (normal_world.z() > -0.99999)
+      for (std::size_t i = places_[p - 1].begin; i < places_[p - 1].end; ++i)
+        weights[p - 1] += lamps_[i].importance * lamps_[i].sky->horizontal_illuminance_lx();
+  double sum = 0;
+  for (const double one : weights) sum += one;
   return sum;
 }
 
@@ -225,11 +299,11 @@ double Lamps::choice_density(std::size_t emitter, const Vec3& position_world_m, 
   return probability * density_seen_from(place.shape, at_lamp_m, place.world_from_lamp.transpose() * direction_world);
 }
 
-LampRay Lamps::emit(double u, double v, double s, double t) const {
+LampRay Lamps::emit(std::size_t group, double u, double v, double s, double t) const {
   LampRay ray;
-  if (lamps_.empty()) return ray;
-  const auto after = std::upper_bound(lamps_.begin(), lamps_.end(), u,
-                                      [](double at, const Lamp& lamp) { return at < lamp.share_begin; });
+  const auto begin = lamps_.begin() + static_cast<std::ptrdiff_t>(groups_[group].begin);
+  const auto end = lamps_.begin() + static_cast<std::ptrdiff_t>(groups_[group].end);
+  const auto after = std::upper_bound(begin, end, u, [](double at, const Lamp& lamp) { return at < lamp.share_begin; });
   const Lamp& lamp = *(after - 1);
   if (!(lamp.share > 0)) return ray;
   // What is left of u after the choice is as good a number as u was.

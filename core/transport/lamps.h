@@ -2,8 +2,11 @@
 /// Emitters made ready for many questions "what reaches this point directly?" and "where does this light land first?".
 ///
 /// Lamps in one place, such as the candidate aims of one head, see the same: they form one Place. A luminaire with size
-/// and a sky are each a place of their own.
+/// and a sky are each a place of their own. Places form groups, from which light is traced: one group each, as long as
+/// there are few.
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -20,7 +23,7 @@ struct LampChoice {
   Vec3 target_world_m = Vec3::Zero();    ///< where a shadow ray ends
   double density = 0;     ///< probability of the place, times the density per sr of the direction where it has a choice
   double factor = 0;      ///< lux = intensity [cd] (of a sky: luminance [cd/m²]) times this, per 1 / density
-  double hit_factor = 0;  ///< density of light-traced first hits = share times direction density times this
+  double hit_factor = 0;  ///< density of light-traced first hits of the group = direction density times this
 };
 
 /// A ray of light as it leaves a lamp.
@@ -28,8 +31,8 @@ struct LampRay {
   std::size_t emitter = 0;
   Vec3 from_world_m = Vec3::Zero();
   Vec3 direction_world = Vec3::UnitZ();
-  double flux_lm = 0;   ///< of this sample: mean over samples = flux of all lamps together; 0: nothing leaves
-  double density = 0;   ///< probability of the lamp times the density per sr of the direction
+  double flux_lm = 0;   ///< of this sample: mean over samples = flux of all lamps of the group; 0: nothing leaves
+  double density = 0;   ///< probability of the lamp in its group times the density per sr of the direction
   double per_area = 0;  ///< 1 / projected area [1/m²] for what has size; 0 for a point
 };
 
@@ -91,7 +94,7 @@ class Lamps {
                                   double sum, double select, double u, double v) const;
 
   /// What each lamp of the chosen place gives unshadowed, as lit(emitter, lux / choice.density, density with which
-  /// emit() makes a first hit just there, in the unit of choice.density).
+  /// emit() of its group makes a first hit just there, in the unit of choice.density).
   template <class Lit>
   void light(const LampChoice& choice, Lit&& lit) const {
     const Place& place = places_[choice.place];
@@ -112,8 +115,15 @@ class Lamps {
     }
   }
 
-  /// Light as it leaves: a lamp by its share and a direction by (u, v), a place on it by (s, t).
-  [[nodiscard]] LampRay emit(double u, double v, double s, double t) const;
+  /// Light as it leaves a group: a lamp by its share and a direction by (u, v), a place on it by (s, t).
+  [[nodiscard]] LampRay emit(std::size_t group, double u, double v, double s, double t) const;
+
+  static constexpr std::size_t kMostGroups = 64;  ///< of luminaires; each sky is one more
+  [[nodiscard]] std::size_t groups() const { return groups_.size(); }
+  /// Part of all light, times importance, that a group gives: about, and above 0 unless it gives none. They add up
+  /// to 1.
+  [[nodiscard]] double group_share(std::size_t group) const { return groups_[group].share; }
+  [[nodiscard]] std::size_t group_of(std::size_t emitter) const { return group_of_emitter_[emitter]; }
 
   /// Density with which choose() asks the place of an emitter from a surface point in a direction. Weights as from
   /// weigh() there.
@@ -130,6 +140,21 @@ class Lamps {
 
  private:
   enum class Kind { point, shape, sky };
+  /// Intensity about, by the angle from the axis: enough to choose by, and quick.
+  struct Profile {
+    static constexpr std::size_t kBins = 128;
+    std::array<float, kBins> candela{};  ///< over sin(angle / 2), at least a hundredth of the largest
+    static Profile of(const IntensityDistribution& intensity, bool sized);
+    [[nodiscard]] static std::size_t bin_of(float half_sine) {
+      return std::min(static_cast<std::size_t>(half_sine * kBins), kBins - 1);
+    }
+  };
+  /// All lamps of luminaires in arrays, to weigh several at a time.
+  struct Weighed {
+    std::vector<double> x_m, y_m, z_m;
+    std::vector<float> axis_x, axis_y, axis_z, cos_half_cone, importance, radius_m;
+    std::vector<std::uint32_t> place, profile;
+  };
   struct Lamp {
     std::size_t emitter;
     Vec3 axis_world;  ///< -Z of the lamp
@@ -138,8 +163,12 @@ class Lamps {
     const IntensityDistribution* intensity;
     const SkyLuminance* sky;
     double importance;   ///< level, or a little where that is 0
-    double share;        ///< probability that emit() takes it
-    double share_begin;  ///< sum of the shares before it
+    double share;        ///< probability that emit() takes it, of its group
+    double share_begin;  ///< sum of the shares before it in the group
+  };
+  struct Group {
+    double share;
+    std::size_t begin, end;  ///< into lamps_
   };
   struct Place {
     Kind kind;
@@ -149,6 +178,8 @@ class Lamps {
     double radius_m;  ///< about the position: all of the shape
     Mat3 world_from_lamp;
   };
+  void form_groups();
+  void form_profiles();
   void share_out();
   /// Share of a lamp's light, about, that can meet the sphere around all geometry.
   [[nodiscard]] double inward_share(const Lamp& lamp, const Place& place) const;
@@ -157,7 +188,10 @@ class Lamps {
 
   std::vector<Lamp> lamps_;
   std::vector<Place> places_;
-  std::vector<std::size_t> place_of_emitter_;
+  std::vector<Profile> profiles_;
+  Weighed weighed_;
+  std::vector<Group> groups_;
+  std::vector<std::size_t> place_of_emitter_, group_of_emitter_;
   std::vector<Vec3> colours_rgb_;
   std::vector<double> importances_;
   Vec3 centre_world_m_ = Vec3::Zero();  ///< of the sphere around all geometry

@@ -33,14 +33,16 @@ std::vector<Bsdf> bsdfs_of(const RayScene& scene) {
   return bsdfs;
 }
 
-LightHit LightHits::trace(const SobolSequence& samples, std::uint32_t index, Lamps::Weights& weights,
+LightHit LightHits::trace(std::size_t group, const SobolSequence& samples, std::uint32_t index, Lamps::Weights& weights,
                           std::uint64_t& rays) const {
   LightHit light;
-  const auto [u, v, s, t] = samples.set(index, kLightSet);
-  const LampRay ray = lamps_.emit(u, v, s, t);
+  const auto [u, v] = samples.pair(index, kLightSet, 0);
+  const auto [s, t] = lamps_.have_size() ? samples.pair(index, kLightSet, 1) : std::array<double, 2>{};
+  const LampRay ray = lamps_.emit(group, u, v, s, t);
   if (!(ray.flux_lm > 0) || !meets(bounds_world_m_, ray.from_world_m, ray.direction_world)) return light;
   ++rays;
-  const auto hit = scene_.nearest(ray.from_world_m, ray.direction_world, Vec3::Zero());
+  // Moved off along the ray: a panel may lie flush in a wall, which must not stop its light where that begins.
+  const auto hit = scene_.nearest(ray.from_world_m, ray.direction_world, ray.direction_world);
   if (!hit) return light;
   const Bsdf& bsdf = bsdfs_[scene_.material_index_of(hit->triangle)];
   if (bsdf.black()) return light;
@@ -57,6 +59,7 @@ LightHit LightHits::trace(const SobolSequence& samples, std::uint32_t index, Lam
   light.choice_density = lamps_.choice_density(ray.emitter, light.position_world_m, light.to_light_world, weights, sum);
   if (!std::isfinite(light.density)) return light;
   light.flux_rgb = ray.flux_lm * lamps_.colour_rgb(ray.emitter);
+  light.matt_rgb = light.flux_rgb.cwiseProduct(bsdf.body_rgb()) / kPi;
   return light;
 }
 

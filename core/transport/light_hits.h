@@ -17,10 +17,11 @@ struct LightHit {
   Vec3 position_world_m = Vec3::Zero();
   Vec3 normal_world = Vec3::UnitZ();    ///< on the lit side
   Vec3 to_light_world = Vec3::UnitZ();  ///< unit, where the light came from
-  Vec3 flux_rgb = Vec3::Zero();         ///< [lm] per sample: the mean over samples is the flux of all lamps
+  Vec3 flux_rgb = Vec3::Zero();         ///< [lm] per sample: the mean over samples is the flux of the group
+  Vec3 matt_rgb = Vec3::Zero();         ///< flux_rgb times f of a matt surface
   const Bsdf* bsdf = nullptr;
   std::size_t emitter = 0;
-  double density = 0;         ///< with which samples fall here: per m², and per sr for what has size
+  double density = 0;         ///< with which the group's samples fall here: per m², and per sr for what has size
   double choice_density = 0;  ///< with which next-event estimation here would ask for the same light
 
   [[nodiscard]] bool shines() const { return bsdf != nullptr && flux_rgb.maxCoeff() > 0; }
@@ -31,9 +32,9 @@ class LightHits {
   LightHits(const RayScene& scene, const Lamps& lamps, const std::vector<Bsdf>& bsdfs)
       : scene_(scene), lamps_(lamps), bsdfs_(bsdfs), bounds_world_m_(scene.bounds_world_m()) {}
 
-  /// The hit of one sample. Adds the rays it cost: none when it can meet no geometry.
-  [[nodiscard]] LightHit trace(const SobolSequence& samples, std::uint32_t index, Lamps::Weights& weights,
-                               std::uint64_t& rays) const;
+  /// The hit of one sample of a group of lamps. Adds the rays it cost: none when it can meet no geometry.
+  [[nodiscard]] LightHit trace(std::size_t group, const SobolSequence& samples, std::uint32_t index,
+                               Lamps::Weights& weights, std::uint64_t& rays) const;
 
  private:
   const RayScene& scene_;

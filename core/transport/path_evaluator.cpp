@@ -8,31 +8,32 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <numeric>
 
 #include "core/parallel.h"
 #include "core/transport/direct_light.h"
 #include "core/transport/path_sampler.h"
 #include "core/transport/progress.h"
+#include "core/transport/receiver_hits.h"
+#include "core/transport/record_bias.h"
 #include "core/transport/replicate_error.h"
 #include "core/transport/shared_tails.h"
 
 namespace luxrig {
 namespace {
 
-constexpr std::size_t kReplicates = 16;
+constexpr std::size_t kReplicates = RecordBias::kReplicates;
 /// First number of samples per replicate: 128 paths say roughly how bright it is, which later rounds build on.
 constexpr std::uint32_t kFirstSamples = 8;
 /// Where nothing reflected was found at all, an error of zero proves nothing yet; it is believed from here on.
 constexpr std::uint32_t kSamplesToBelieveNothing = 256;
 constexpr std::uint32_t kMostSamples = 1u << 30;
+/// Rounds end at so many steps between as many samples as before and twice as many, a little beyond what is needed.
+constexpr int kStepsToDouble = 8;
+constexpr double kStepMargin = 1.05;
 /// Samples that are taken from one filling of the pools of light hits.
-constexpr std::uint32_t kChunk = 2048;
-/// Hits cost one ray and serve all receivers, so that pools hold more than one receiver needs: receivers then err less
-/// in the same direction, and paths are joined with more different hits. For each this many receivers one share more.
-constexpr std::size_t kReceiversPerShare = 8;
-constexpr std::uint32_t kMostHits = 2 * kChunk * PathSampler::kHitsPerPath;  ///< of a pool
+constexpr std::uint32_t kChunk = 512;
+/// Hits that a receiver is joined with, for each of its paths.
+constexpr std::uint32_t kHitsPerPath = 4;
 /// A receiver is done when this many of its standard errors are within the wanted error. One would keep the contract
 /// on average; 2.5 makes the error itself, not only its standard deviation, stay below the wanted one for 98 of 100
 /// receivers, and leaves room for the estimate from 16 replicates to be too low by 1.44 (χ², 15 degrees of freedom,
@@ -45,16 +46,22 @@ constexpr double kCut = 0.1;
 /// With shared tails: records per receiver at first, then one for so many paths of the receivers (and a replicate),
 /// each with so many paths of its own. Fewer records let their distance count more. With few paths of their own,
 /// records that end in one another would follow the same few ways and err together.
-constexpr std::size_t kFirstRecords = 16;
+constexpr std::size_t kFirstRecords = 8;
 constexpr std::size_t kFewestRecords = 256;
 constexpr std::size_t kPathsPerRecord = 4;
-constexpr std::uint32_t kRecordPaths = 2;
-/// Fewer receivers than this at work have more to gain from paths of their own than from shared noise.
+constexpr std::uint32_t kRecordPaths = 4, kHitsPerRecordPath = 4;
+/// Fewer receivers than this have more to gain from paths of their own than from shared noise.
 constexpr std::size_t kFewestSharing = 24;
+/// A receiver that sees few records does not err less by more paths that end in them: when error² × samples has grown
+/// so much, it goes on without.
+constexpr double kMostScatter = 3;
+constexpr std::uint32_t kSamplesToTellScatter = 32;
 constexpr std::size_t kMostRecords = 1u << 15;
 constexpr std::size_t kMostRecordBytes = 256u << 20;
-/// Every so many paths one goes on beside its record, to tell how far records are off.
-constexpr std::uint32_t kCheckedPaths = 8;
+/// Every so many paths one goes on beside its record, to tell how far records are off; fewer once that is known to this
+/// part of the error that is left to the receivers.
+constexpr std::uint32_t kCheckedPaths = 8, kSeldomCheckedPaths = 64;
+constexpr double kBiasPart = 0.3;
 
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -64,8 +71,11 @@ struct Spent {
   std::uint64_t rays = 0;
   double lux = 0;  ///< under the options' levels
   double direct_lx = 0;
-  double error_lx = 0;  ///< standard error of lux
-  double taken_lx = 0;  ///< from tail records, summed over samples and replicates
+  double reflected_lx = 0;          ///< lux without direct_lx; of a first round's hits alone before there is more
+  double error_lx = 0;              ///< standard error of lux
+  double taken_lx = 0;              ///< from tail records, summed over samples and replicates
+  double least_scatter = HUGE_VAL;  ///< least so far of error² × samples
+  bool alone = false;               ///< records' noise has become its own: paths go on by themselves from here on
 };
 
 class Evaluation {
@@ -81,7 +91,8 @@ class Evaluation {
         channels_(options.colour ? 3 : 1),
         columns_(emitters.size() * channels_),
         importance_(emitters.size()),
-        sampler_(scene, lamps_, bsdfs_, importance_) {
+        sampler_(scene, lamps_, bsdfs_, importance_),
+        hits_(lamps_, receivers.size()) {
     levels_ = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(emitters.size()));
     for (std::size_t e = 0; e < options.levels.size(); ++e) levels_[static_cast<Eigen::Index>(e)] = options.levels[e];
     for (std::size_t e = 0; e < emitters.size(); ++e) importance_[e] = lamps_.importance(e);
@@ -116,32 +127,45 @@ class Evaluation {
   }
 
  private:
-  std::vector<std::size_t> first_round() {
-    std::vector<std::size_t> all(receivers_.size());
-    std::iota(all.begin(), all.end(), std::size_t{0});
-    first_samples_ = kFirstSamples;
+  /// Samples that a receiver gets in a round: [begin, end) of each of its replicates.
+  struct Task {
+    std::size_t receiver;
+    std::uint32_t begin, end;
+  };
+
+  std::vector<Task> first_round() {
     // A path has seldom more than 4 vertices, each with a ray to reach it, one to a lamp and one to a light hit.
-    const std::uint64_t rays_per_sample = (12 * all.size() + PathSampler::kHitsPerPath) * kReplicates;
+    const std::uint64_t rays_per_sample = 12 * receivers_.size() * kReplicates;
     const std::uint64_t rays_left = options_.max_rays > matrix_.rays ? options_.max_rays - matrix_.rays : 0;
-    while (first_samples_ > 1 && rays_per_sample * first_samples_ > rays_left) first_samples_ /= 2;
+    std::uint32_t samples = kFirstSamples;
+    while (samples > 1 && rays_per_sample * samples > rays_left) samples /= 2;
+    std::vector<Task> all;
+    for (std::size_t r = 0; r < receivers_.size(); ++r) all.push_back({r, 0, samples});
     return all;
   }
 
-  /// The receivers to be sampled as often again as they have been.
-  std::vector<std::size_t> next_round() {
-    std::vector<std::size_t> wanting;
-    for (std::size_t r = 0; r < receivers_.size(); ++r)
-      if (overshoot(r) > 1 && spent_[r].samples < kMostSamples) wanting.push_back(r);
+  /// The receivers that want more samples: as many as would do by the error so far, up to as many as they have.
+  std::vector<Task> next_round() {
+    std::vector<Task> wanting;
+    for (std::size_t r = 0; r < receivers_.size(); ++r) {
+      const std::uint32_t have = spent_[r].samples;
+      const double over = overshoot(r);
+      if (!(over > 1) || have >= kMostSamples) continue;
+      const double parts = std::ceil(kStepsToDouble * (over * over * kStepMargin - 1));
+      const double share = std::clamp(parts, 1.0, static_cast<double>(kStepsToDouble)) / kStepsToDouble;
+      wanting.push_back({r, have, have + std::max(1u, static_cast<std::uint32_t>(have * share))});
+    }
     // As many as the remaining rays allow, the worst first.
     std::stable_sort(wanting.begin(), wanting.end(),
-                     [&](std::size_t a, std::size_t b) { return overshoot(a) > overshoot(b); });
+                     [&](const Task& a, const Task& b) { return overshoot(a.receiver) > overshoot(b.receiver); });
     std::uint64_t rays_left = options_.max_rays > matrix_.rays ? options_.max_rays - matrix_.rays : 0;
-    std::erase_if(wanting, [&](std::size_t r) {
-      if (spent_[r].rays > rays_left) return true;
-      rays_left -= spent_[r].rays;
+    std::erase_if(wanting, [&](const Task& task) {
+      const std::uint64_t rays = spent_[task.receiver].rays * (task.end - task.begin) / task.begin;
+      if (rays > rays_left) return true;
+      rays_left -= rays;
       return false;
     });
-    std::sort(wanting.begin(), wanting.end());
+    std::sort(wanting.begin(), wanting.end(), [](const Task& a, const Task& b) { return a.receiver < b.receiver; });
     return wanting;
   }
 
@@ -164,21 +188,22 @@ class Evaluation {
     return sums_[replicate].row(static_cast<Eigen::Index>(r));
   }
 
-  /// Gives each receiver of the round as many samples again as it has.
-  bool sample(const std::vector<std::size_t>& round) {
-    // Receivers at the same sample share light hits; nearly always that is all of them.
-    std::map<std::uint32_t, std::vector<std::size_t>> at_sample;
-    for (const std::size_t r : round) at_sample[spent_[r].samples].push_back(r);
-    CallingThreadProgress progress(options_.watch, done_, done_after(round), parts_of(at_sample));
-    for (const auto& [begin, group] : at_sample) {
-      const std::uint32_t end = end_after(begin);
-      for (std::uint32_t at = begin; at < end; at += kChunk)
-        sample_chunk(group, at, std::min(end, at + kChunk), progress);
+  /// Works through the tasks of a round, a chunk of each at a time.
+  bool sample(const std::vector<Task>& round) {
+    std::size_t parts = 0;
+    for (const Task& task : round) parts += (task.end - task.begin + kChunk - 1) / kChunk * kReplicates;
+    CallingThreadProgress progress(options_.watch, done_, done_after(round), parts);
+    for (std::vector<Task> left = round; !left.empty();) {
+      std::vector<Task> chunk = left;
+      for (Task& task : chunk) task.end = std::min(task.end, task.begin + kChunk);
+      sample_chunk(chunk, progress);
+      for (std::size_t i = 0; i < left.size(); ++i) left[i].begin = chunk[i].end;
+      std::erase_if(left, [](const Task& task) { return task.begin == task.end; });
     }
     if (options_.watch.stop.stop_requested()) return false;
-    for (const std::size_t r : round) {
-      spent_[r].samples = end_after(spent_[r].samples);
-      estimate(r);
+    for (const Task& task : round) {
+      spent_[task.receiver].samples = task.end;
+      estimate(task.receiver);
     }
     done_ = done_after({});
     brightest_lx_ = 0;
@@ -186,125 +211,168 @@ class Evaluation {
     return true;
   }
 
-  std::uint32_t end_after(std::uint32_t begin) const { return begin == 0 ? first_samples_ : 2 * begin; }
-
-  std::size_t parts_of(const std::map<std::uint32_t, std::vector<std::size_t>>& at_sample) const {
-    std::size_t parts = 0;
-    for (const auto& [begin, group] : at_sample)
-      parts += (end_after(begin) - begin + kChunk - 1) / kChunk * kReplicates * group.size();
-    return parts;
+  void sample_chunk(const std::vector<Task>& chunk, CallingThreadProgress& progress) {
+    plans_.clear();
+    for (const Task& task : chunk) plans_.push_back(hits_.plan(task.receiver, kHitsPerPath, task.end - task.begin));
+    fill_pools(chunk);
+    join_hits(chunk);
+    const bool shares_now = tails_ && (chunk.size() >= kFewestSharing || tails_->records().size() > 0);
+    if (shares_now) grow_tails(chunk);
+    trace_paths(chunk, shares_now, progress);
   }
 
-  SobolSequence samples_of_lights(std::size_t replicate) const {
-    return SobolSequence(mixed(mixed(options_.seed, 0x11647), replicate));
-  }
-
-  void sample_chunk(const std::vector<std::size_t>& group, std::uint32_t begin, std::uint32_t end,
-                    CallingThreadProgress& progress) {
-    const std::uint32_t shares = shares_of(group.size(), end - begin);
-    trace_lights(begin * shares, end * shares);
-    const bool shares_now = tails_ && group.size() >= kFewestSharing;
-    if (shares_now) grow_tails(group, begin, end);
-    std::vector<std::uint64_t> rays(group.size() * kReplicates, 0);
+  void trace_paths(const std::vector<Task>& chunk, bool shares_now, CallingThreadProgress& progress) {
+    std::vector<std::uint64_t> rays(chunk.size() * kReplicates, 0);
     std::vector<TailShare> told(rays.size());
+    const std::uint32_t checked = bias_is_known() ? kSeldomCheckedPaths : kCheckedPaths;
     parallel_for(rays.size(), options_.threads, [&](std::size_t task) {
-      const std::size_t r = group[task / kReplicates], k = task % kReplicates;
+      const auto& [r, begin, end] = chunk[task / kReplicates];
+      const std::size_t k = task % kReplicates;
       const SobolSequence samples(mixed(mixed(options_.seed, r), k));
       PathScratch scratch;
       std::vector<double> values(columns_, 0.0);
-      const PathSums sums{values, channels_};
-      const std::size_t first_hit = (r % shares) * std::size_t{end - begin} * PathSampler::kHitsPerPath;
-      const double cut_lx = kCut * (spent_[r].lux - spent_[r].direct_lx);
       TailShare tails;
-      if (shares_now) tails.records = &tails_->records();
+      if (shares_now && !spent_[r].alone) tails.records = &tails_->records();
       tails.replicate = k;
+      const auto start = PathSampler::at(receivers_[r]);
       for (std::uint32_t i = begin; i < end; ++i) {
         if (options_.watch.stop.stop_requested()) return;
-        tails.check = i % kCheckedPaths == r % kCheckedPaths;
-        rays[task] += sampler_.add_path(receivers_[r], samples, i, pools_[k],
-                                        first_hit + std::size_t{i - begin} * PathSampler::kHitsPerPath, cut_lx, scratch,
-                                        sums, &tails);
+        tails.check = i % checked == r % checked;
+        rays[task] += sampler_.add_path(start, samples, i, pools_[k], plans_[task / kReplicates], cut_lx(r), scratch,
+                                        {values, channels_}, &tails);
       }
       told[task] = tails;
-      sums_[k].row(static_cast<Eigen::Index>(r)) +=
-          Eigen::Map<const Eigen::RowVectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+      add_sums(k, r, values);
       progress.one_done();
     });
+    std::vector<double> reflected_lx;
+    for (const Task& task : chunk) reflected_lx.push_back(mean_reflected_lx(task));
     for (std::size_t task = 0; task < rays.size(); ++task) {
-      Spent& spent = spent_[group[task / kReplicates]];
+      Spent& spent = spent_[chunk[task / kReplicates].receiver];
       spent.rays += rays[task];
       spent.taken_lx += told[task].taken_lx;
-      by_record_lx_[task % kReplicates] += told[task].by_record_lx;
-      by_path_lx_[task % kReplicates] += told[task].by_path_lx;
       matrix_.rays += rays[task];
+      // Relative to each receiver's light: errors are to be right for the dim ones, too.
+      if (!(reflected_lx[task / kReplicates] > 0)) continue;
+      record_bias_.add(task % kReplicates, told[task].by_record_lx / reflected_lx[task / kReplicates],
+                       told[task].by_path_lx / reflected_lx[task / kReplicates]);
+    }
+  }
+
+  void add_sums(std::size_t replicate, std::size_t r, const std::vector<double>& values) {
+    sums_[replicate].row(static_cast<Eigen::Index>(r)) +=
+        Eigen::Map<const Eigen::RowVectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+  }
+
+  /// Connections of a receiver's paths that are worth less are made only now and then.
+  double cut_lx(std::size_t r) const { return kCut * spent_[r].reflected_lx; }
+
+  /// Fills the pools with light hits, as many as the plans ask for.
+  void fill_pools(const std::vector<Task>& chunk) {
+    std::vector<std::uint32_t> paths;
+    for (const Task& task : chunk) paths.push_back(task.end - task.begin);
+    const auto counts = ReceiverHits::pool_counts(lamps_, plans_, paths);
+    const LightHits lights(scene_, lamps_, bsdfs_);
+    pools_.resize(kReplicates);
+    std::vector<std::uint64_t> rays(kReplicates, 0);
+    parallel_for(kReplicates, options_.threads, [&](std::size_t k) {
+      Lamps::Weights weights;
+      if (!options_.watch.stop.stop_requested())
+        rays[k] = pools_[k].refill(lights, mixed(mixed(options_.seed, 0x11647), k), counts, weights);
+    });
+    for (const std::uint64_t n : rays) matrix_.rays += n;
+  }
+
+  /// Joins the receivers with light hits, and learns from it which lamps matter to whom.
+  void join_hits(const std::vector<Task>& chunk) {
+    if (options_.watch.stop.stop_requested()) return;
+    const std::size_t groups = lamps_.groups();
+    std::vector<std::uint64_t> rays(chunk.size(), 0);
+    parallel_for(chunk.size(), options_.threads, [&](std::size_t i) {
+      const auto& [r, begin, end] = chunk[i];
+      const std::uint32_t samples = end - begin;
+      Spent& spent = spent_[r];
+      std::vector<HitStretch> stretches;
+      std::vector<double> squares(groups);
+      std::vector<double> values(columns_);
+      for (std::size_t k = 0; k < kReplicates; ++k) {
+        const std::uint64_t key = mixed(mixed(mixed(options_.seed, r), k), 0x101a + begin);
+        draw_stretches(plans_[i], pools_[k], samples, key, stretches);
+        std::fill(values.begin(), values.end(), 0.0);
+        std::fill(squares.begin(), squares.end(), 0.0);
+        rays[i] += sampler_.join_start(PathSampler::at(receivers_[r]), pools_[k], plans_[i], stretches, cut_lx(r),
+                                       mixed(key, groups), {values, channels_}, squares);
+        hits_.learn(r, squares, stretches);
+        add_sums(k, r, values);
+      }
+      if (begin == 0) spent.reflected_lx = mean_reflected_lx(chunk[i]);
+    });
+    for (std::size_t i = 0; i < chunk.size(); ++i) {
+      spent_[chunk[i].receiver].rays += rays[i];
+      matrix_.rays += rays[i];
     }
   }
 
   /// Adds records for a chunk: many at first, that all receivers have one near wherever they look, then as many as
   /// keeps their noise and distance in step with the receivers' own noise.
-  void grow_tails(const std::vector<std::size_t>& group, std::uint32_t begin, std::uint32_t end) {
+  void grow_tails(const std::vector<Task>& chunk) {
     std::vector<Receiver> from;
-    for (const std::size_t r : group) from.push_back(receivers_[r]);
-    const std::size_t wanted = begin == 0 ? std::max(kFewestRecords, kFirstRecords * group.size())
-                                          : group.size() * (end - begin) / kPathsPerRecord;
+    std::vector<HitPlan> plans;
+    std::vector<double> cuts_lx;
+    std::size_t paths = 0;
+    for (const Task& task : chunk) {
+      if (spent_[task.receiver].alone) continue;
+      from.push_back(receivers_[task.receiver]);
+      plans.push_back(hits_.plan(task.receiver, kHitsPerRecordPath, kRecordPaths));
+      cuts_lx.push_back(cut_lx(task.receiver));
+      paths += task.end - task.begin;
+    }
+    const std::size_t wanted = tails_->records().size() == 0
+                                   ? std::max(kFewestRecords, kFirstRecords * chunk.size())
+                                   : paths / (chunk.size() < kFewestSharing ? kPathsPerRecord / 2 : kPathsPerRecord);
     const std::size_t memory_allows = kMostRecordBytes / (kReplicates * 3 * sizeof(float) * emitters_.size());
     const std::size_t room = std::min(kMostRecords, memory_allows) - std::min(kMostRecords, tails_->records().size());
-    matrix_.rays += tails_->grow(from, std::min(wanted, room), kRecordPaths, pools_, options_.threads, options_.watch);
+    matrix_.rays += tails_->grow(from, std::min(wanted, room), kRecordPaths, pools_, plans, cuts_lx, options_.threads,
+                                 options_.watch);
   }
 
-  /// Shares of a pool for different receivers; a power of two, which keeps the strata of each.
-  static std::uint32_t shares_of(std::size_t receivers, std::uint32_t samples) {
-    std::uint32_t shares = 1;
-    while (2 * shares * kReceiversPerShare <= receivers &&
-           2 * shares * samples * PathSampler::kHitsPerPath <= kMostHits)
-      shares *= 2;
-    return shares;
-  }
-
-  /// Fills the pools with the light hits of samples [begin, end).
-  void trace_lights(std::uint32_t begin, std::uint32_t end) {
-    const LightHits lights(scene_, lamps_, bsdfs_);
-    pools_.resize(kReplicates);
-    std::vector<std::uint64_t> rays(kReplicates, 0);
-    parallel_for(kReplicates, options_.threads, [&](std::size_t k) {
-      HitPool& pool = pools_[k];
-      pool.hits.clear();
-      pool.shining.clear();
-      const SobolSequence samples = samples_of_lights(k);
-      Lamps::Weights weights;
-      for (std::uint32_t i = begin * PathSampler::kHitsPerPath; i < end * PathSampler::kHitsPerPath; ++i) {
-        if (options_.watch.stop.stop_requested()) return;
-        pool.hits.push_back(lights.trace(samples, i, weights, rays[k]));
-        if (pool.hits.back().shines()) pool.shining.push_back(static_cast<std::uint32_t>(pool.hits.size() - 1));
-      }
-    });
-    for (const std::uint64_t n : rays) matrix_.rays += n;
-  }
-
-  /// Reflected lux at the levels in one replicate.
-  double reflected_lx(std::size_t replicate, std::size_t r) const {
+  /// Reflected lux at the levels in one replicate, summed over samples.
+  double sum_lx(std::size_t replicate, std::size_t r) const {
     const auto row = row_of(replicate, r);
     double sum = 0;
     for (Eigen::Index e = 0; e < levels_.size(); ++e) sum += levels_[e] * luminance(row, e);
-    return sum / spent_[r].samples;
+    return sum;
   }
 
   template <class Row>
   double luminance(const Row& row, Eigen::Index emitter) const {
     if (channels_ == 1) return row[emitter];
-    return 0.2126 * row[3 * emitter] + 0.7152 * row[3 * emitter + 1] + 0.0722 * row[3 * emitter + 2];
+    const Eigen::Index n = levels_.size();
+    return 0.2126 * row[emitter] + 0.7152 * row[n + emitter] + 0.0722 * row[2 * n + emitter];
+  }
+
+  /// Over all replicates, the task included.
+  double mean_reflected_lx(const Task& task) const {
+    double sum = 0;
+    for (std::size_t k = 0; k < kReplicates; ++k) sum += sum_lx(k, task.receiver);
+    return sum / (static_cast<double>(kReplicates) * task.end);
   }
 
   void estimate(std::size_t r) {
     std::array<double, kReplicates> reflected{};
     double mean_lx = 0;
     for (std::size_t k = 0; k < kReplicates; ++k) {
-      reflected[k] = reflected_lx(k, r);
+      reflected[k] = sum_lx(k, r) / spent_[r].samples;
       mean_lx += reflected[k] / kReplicates;
     }
     spent_[r].direct_lx = matrix_.direct_lux_per_level.row(static_cast<Eigen::Index>(r)).dot(levels_);
+    spent_[r].reflected_lx = mean_lx;
     spent_[r].lux = mean_lx + spent_[r].direct_lx;
     spent_[r].error_lx = standard_error_of_mean(reflected);
+    const double scatter = spent_[r].error_lx * spent_[r].error_lx * spent_[r].samples;
+    if (!tails_ || spent_[r].samples < kSamplesToTellScatter) return;
+    spent_[r].least_scatter = std::min(spent_[r].least_scatter, scatter);
+    spent_[r].alone = spent_[r].alone || scatter > kMostScatter * spent_[r].least_scatter;
   }
 
   void finish() {
@@ -319,7 +387,8 @@ class Evaluation {
         for (Eigen::Index e = 0; e < levels_.size(); ++e) {
           replicate(r, e) = luminance(row, e) / samples;
           for (std::size_t c = 0; c < 3 && channels_ == 3; ++c)
-            matrix_.rgb_per_level[c](r, e) += row[3 * e + static_cast<Eigen::Index>(c)] / (samples * kReplicates);
+            matrix_.rgb_per_level[c](r, e) +=
+                row[static_cast<Eigen::Index>(c) * levels_.size() + e] / (samples * kReplicates);
         }
       }
       sums_[k].resize(0, 0);
@@ -338,23 +407,22 @@ class Evaluation {
     if (options_.watch.progress) options_.watch.progress(1.0);
   }
 
-  /// Takes the records' common bias, as the checked paths show it, out of what was taken from them, as far as it stands
-  /// out of its own noise; and adds what remains unsure to every replicate, up and down in turn, so that standard
-  /// errors contain it.
+  bool bias_is_known() const {
+    const auto bias = record_bias_.measured();
+    return bias && bias->error < kBiasPart * options_.wanted_relative_error / kStopMargin;
+  }
+
+  /// Takes the records' common bias, as the checked paths show it, out of what was taken from them; and adds what
+  /// remains unsure to every replicate, up and down in turn, so that standard errors contain it.
   void own_up_to_bias() {
-    std::vector<double> biases;
-    for (std::size_t k = 0; k < kReplicates; ++k)
-      if (by_path_lx_[k] > 0) biases.push_back(by_record_lx_[k] / by_path_lx_[k] - 1);
-    if (biases.size() < kReplicates) return;
-    double mean = 0;
-    for (const double b : biases) mean += b / kReplicates;
-    const double error = standard_error_of_mean(biases);
-    const double bias = mean * std::max(0.0, 1 - 4 * error * error / std::max(mean * mean, 1e-300));
+    const auto believed = record_bias_.believed();
+    if (!believed) return;
+    const auto [bias, error] = *believed;
     // Half up and half down by `a` gives a standard error of a · √(16/15) / 4, times Student's factor.
     const double up_and_down = error * 4 / (std::sqrt(16.0 / 15) * student_t_975(kReplicates - 1) / student_t_975(1e9));
     for (std::size_t r = 0; r < receivers_.size(); ++r) {
       Spent& spent = spent_[r];
-      const double reflected_lx = spent.lux - spent.direct_lx;
+      const double reflected_lx = spent.reflected_lx;
       if (!(spent.taken_lx > 0) || !(reflected_lx > 0)) continue;
       const double taken_lx = spent.taken_lx / (kReplicates * static_cast<double>(spent.samples));
       const double share = std::min(1.0, taken_lx / reflected_lx);
@@ -379,7 +447,7 @@ class Evaluation {
   }
 
   /// Share of the whole work done so far, or after a round: error falls at least with the root of the samples.
-  double done_after(const std::vector<std::size_t>& round) const {
+  double done_after(const std::vector<Task>& round) const {
     double spent = 0, left = 0;
     for (std::size_t r = 0; r < receivers_.size(); ++r) {
       spent += spent_[r].samples;
@@ -387,7 +455,7 @@ class Evaluation {
       if (factor > 1) left += spent_[r].samples * std::max(1.0, factor * factor - 1);
     }
     double part = 0;
-    for (const std::size_t r : round) part += spent_[r].samples;
+    for (const Task& task : round) part += task.end - task.begin;
     if (spent == 0) return round.empty() ? done_ : 0.1;
     return std::clamp((spent + part) / (spent + std::max(left, part)), done_, 1.0);
   }
@@ -402,16 +470,17 @@ class Evaluation {
   std::vector<double> importance_;
   PathSampler sampler_;
   Eigen::VectorXd levels_;
-  std::vector<HitPool> pools_;
+  ReceiverHits hits_;
+  std::vector<HitPool> pools_;  ///< by replicate
+  std::vector<HitPlan> plans_;  ///< by task of the chunk
   std::optional<SharedTails> tails_;
-  std::array<double, kReplicates> by_record_lx_{}, by_path_lx_{};  ///< of checked paths, all receivers
+  RecordBias record_bias_;
   TransportMatrix matrix_;
   std::vector<Spent> spent_;
   std::vector<Eigen::MatrixXd> direct_replicates_;  ///< empty when the direct part is exact
   std::vector<RowMatrix> sums_;  ///< per replicate: reflected light, receivers × emitters, summed over samples
   double brightest_lx_ = 0;
   double done_ = 0;
-  std::uint32_t first_samples_ = kFirstSamples;
 };
 
 class PathEvaluator final : public Evaluator {

@@ -3,25 +3,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/photometry/light_colour.h"
+
 namespace luxrig {
 namespace {
 
-double luminance(const Vec3& rgb) { return 0.2126 * rgb.x() + 0.7152 * rgb.y() + 0.0722 * rgb.z(); }
+constexpr std::array<double, 3> kLuminance = {0.2126, 0.7152, 0.0722};
 
 /// Sets of four Sobol dimensions per bounce; far bounces matter little and take plain random numbers.
 constexpr std::uint32_t kSetsPerBounce = 3;
 constexpr std::uint32_t kSobolBounces = 4;
 
-/// The random numbers of one path.
+/// Random numbers without strata.
 class Dice {
  public:
-  Dice(const SobolSequence& samples, std::uint32_t index)
-      : samples_(samples), index_(index), state_(samples.number(index)) {}
-
-  std::array<double, 2> pair(std::uint32_t bounce, std::uint32_t of_bounce) {
-    if (bounce >= kSobolBounces) return {plain(), plain()};
-    return samples_.pair(index_, kSetsPerBounce * bounce + of_bounce / 2, of_bounce % 2);
-  }
+  explicit Dice(std::uint64_t seed) : state_(seed) {}
   double plain() {
     state_ += 0x9e3779b97f4a7c15ull;
     std::uint64_t z = state_;
@@ -31,9 +27,23 @@ class Dice {
   }
 
  private:
+  std::uint64_t state_;
+};
+
+/// The random numbers of one path.
+class PathDice : public Dice {
+ public:
+  PathDice(const SobolSequence& samples, std::uint32_t index)
+      : Dice(samples.number(index)), samples_(samples), index_(index) {}
+
+  std::array<double, 2> pair(std::uint32_t bounce, std::uint32_t of_bounce) {
+    if (bounce >= kSobolBounces) return {plain(), plain()};
+    return samples_.pair(index_, kSetsPerBounce * bounce + of_bounce / 2, of_bounce % 2);
+  }
+
+ private:
   const SobolSequence& samples_;
   std::uint32_t index_;
-  std::uint64_t state_;
 };
 
 /// Whether a connection worth `value` is made; if so, by what it counts.
@@ -44,40 +54,77 @@ double kept(double value, double cut, double chance) {
 
 }  // namespace
 
-std::uint64_t PathSampler::join(const Vertex& vertex, const LightHit& hit, double hits, double cut_lx, double chance,
-                                const PathSums& sums) const {
+PathSampler::Joined PathSampler::join(const Vertex& vertex, const LightHit& hit, double hits, double cut, double chance,
+                                      const PathSums& sums) const {
   const Vec3 towards_m = hit.position_world_m - vertex.position_world_m;
   const double height_m = vertex.normal_world.dot(towards_m);
   const double hit_height_m = -hit.normal_world.dot(towards_m);
-  if (!(height_m > 0) || !(hit_height_m > 0)) return 0;
+  if (!(height_m > 0) || !(hit_height_m > 0)) return {};
   const double per_distance2 = 1 / towards_m.squaredNorm();
-  const double per_distance = std::sqrt(per_distance2);
-  const Vec3 direction = towards_m * per_distance;
-  const double cosine = height_m * per_distance, hit_cosine = hit_height_m * per_distance;
-  Vec3 rgb = vertex.through_rgb;
-  double density = cosine / kPi;
-  if (vertex.bsdf) {
-    rgb = rgb.cwiseProduct(vertex.bsdf->value(vertex.normal_world, vertex.out_world, direction));
-    density = vertex.bsdf->density(vertex.normal_world, vertex.out_world, direction);
-  }
-  rgb = rgb.cwiseProduct(hit.bsdf->value(hit.normal_world, -direction, hit.to_light_world)).cwiseProduct(hit.flux_rgb);
-  const double geometry = cosine * hit_cosine * per_distance2;
+  const double geometry = height_m * hit_height_m * per_distance2 * per_distance2;
   const double by_hit = hits * hit.density;
-  const double by_path = density * hit_cosine * per_distance2 * hit.choice_density;
+  double by_path = geometry / kPi * hit.choice_density;
+  Vec3 rgb = vertex.through_rgb;
+  if (hit.bsdf->matt() && (vertex.bsdf == nullptr || vertex.bsdf->matt())) {
+    rgb = rgb.cwiseProduct(hit.matt_rgb);
+    if (vertex.bsdf) rgb = rgb.cwiseProduct(vertex.bsdf->body_rgb()) / kPi;
+  } else {
+    const Vec3 direction = towards_m * std::sqrt(per_distance2);
+    rgb =
+        rgb.cwiseProduct(hit.bsdf->value(hit.normal_world, -direction, hit.to_light_world)).cwiseProduct(hit.flux_rgb);
+    if (vertex.bsdf) {
+      rgb = rgb.cwiseProduct(vertex.bsdf->value(vertex.normal_world, vertex.out_world, direction));
+      const double density = vertex.bsdf->density(vertex.normal_world, vertex.out_world, direction);
+      by_path = density * hit_height_m * per_distance2 * std::sqrt(per_distance2) * hit.choice_density;
+    }
+  }
   const double factor = geometry / hits * (by_hit / (by_hit + by_path));
-  if (!(factor > 0) || !std::isfinite(factor)) return 0;
+  if (!(factor > 0) || !std::isfinite(factor)) return {};
   rgb *= factor;
-  const double worth = luminance(rgb) * level(hit.emitter);
-  if (!(worth > 0)) return 0;
-  const double counts = kept(worth, cut_lx, chance);
-  if (counts == 0) return 0;
-  if (!scene_.occluded(vertex.position_world_m, vertex.normal_world, hit.position_world_m))
-    sums.add(hit.emitter, counts * rgb);
-  return 1;
+  const double worth = luminance_of_rgb(rgb) * level(hit.emitter);
+  if (!(worth > 0)) return {};
+  const double counts = kept(worth, cut, chance);
+  if (counts == 0) return {};
+  if (scene_.occluded(vertex.position_world_m, vertex.normal_world, hit.position_world_m)) return {1, 0};
+  sums.add(hit.emitter, counts * rgb);
+  return {1, counts * worth};
 }
 
-std::uint64_t PathSampler::ask_lamps(const Vertex& vertex, double density_per_m2, double hits, double cut_lx,
-                                     double select, double u, double v, double chance, PathScratch& scratch,
+std::uint64_t PathSampler::join_start(const Vertex& start, const HitPool& pool, const HitPlan& plan,
+                                      std::span<const HitStretch> stretches, double cut, std::uint64_t key,
+                                      const PathSums& sums, std::span<double> squares) const {
+  std::uint64_t rays = 0;
+  Dice dice(key);
+  for (std::size_t g = 0; g < stretches.size(); ++g) {
+    double group_squares = 0;
+    for (const LightHit& hit : pool.hits(g).subspan(stretches[g].begin, stretches[g].count)) {
+      if (!hit.shines()) continue;
+      const Joined joined = join(start, hit, plan.at_start[g], cut, dice.plain(), sums);
+      rays += joined.rays;
+      group_squares += joined.worth * joined.worth;
+    }
+    if (!squares.empty()) squares[g] += group_squares * plan.at_start[g] * plan.at_start[g];
+  }
+  return rays;
+}
+
+std::uint64_t PathSampler::join_deeper(const Vertex& vertex, const HitPool& pool, const HitPlan& plan, double cut,
+                                       double select, double chance, const PathSums& sums) const {
+  std::size_t g = 0;
+  while (g + 1 < pool.groups() && select >= plan.deeper[g]) select -= plan.deeper[g++];
+  const auto shining = pool.shining(g);
+  if (shining.empty() || !(plan.deeper[g] > 0)) return 0;
+  // What is left of the number after the choice is as good as it was.
+  const double rest = std::clamp(select / plan.deeper[g], 0.0, 1 - 0x1p-53);
+  const auto pick = static_cast<std::size_t>(rest * static_cast<double>(shining.size()));
+  // Hits without flux count as drawn: of all samples, so many shine.
+  Vertex weighed = vertex;
+  weighed.through_rgb *= static_cast<double>(shining.size()) / pool.count(g);
+  return join(weighed, pool.hits(g)[shining[pick]], plan.deeper[g], cut, chance, sums).rays;
+}
+
+std::uint64_t PathSampler::ask_lamps(const Vertex& vertex, double density_per_m2, std::span<const double> hits,
+                                     double cut, double select, double u, double v, double chance, PathScratch& scratch,
                                      const PathSums& sums) const {
   const double sum = lamps_.weigh(vertex.position_world_m, vertex.normal_world, scratch.weights);
   const LampChoice choice =
@@ -89,51 +136,31 @@ std::uint64_t PathSampler::ask_lamps(const Vertex& vertex, double density_per_m2
   scratch.lit.clear();
   double worth = 0;
   lamps_.light(choice, [&](std::size_t emitter, double lux, double hit_density) {
-    const double share = by_path / (by_path + hits * hit_density);
+    const double share = by_path / (by_path + hits[lamps_.group_of(emitter)] * hit_density);
     const Vec3 rgb = share * lux * per_lux.cwiseProduct(lamps_.colour_rgb(emitter));
-    worth += luminance(rgb) * level(emitter);
+    worth += luminance_of_rgb(rgb) * level(emitter);
     scratch.lit.push_back({emitter, rgb});
   });
   if (!(worth > 0) || !std::isfinite(worth)) return 0;
-  const double counts = kept(worth, cut_lx, chance);
+  const double counts = kept(worth, cut, chance);
   if (counts == 0) return 0;
   if (!scene_.occluded(vertex.position_world_m, vertex.normal_world, choice.target_world_m))
     for (const PathScratch::Lit& lit : scratch.lit) sums.add(lit.emitter, counts * lit.rgb);
   return 1;
 }
 
-std::uint64_t PathSampler::add_path(const Receiver& from, const SobolSequence& samples, std::uint32_t index,
-                                    const HitPool& pool, std::size_t pool_index, double cut_lx, PathScratch& scratch,
-                                    const PathSums& sums, TailShare* tails) const {
-  return add_path(Vertex{from.position_world_m, from.normal_world, from.normal_world}, samples, index, pool, pool_index,
-                  cut_lx, scratch, sums, tails);
-}
-
 std::uint64_t PathSampler::add_path(const Vertex& start, const SobolSequence& samples, std::uint32_t index,
-                                    const HitPool& pool, std::size_t pool_index, double cut_lx, PathScratch& scratch,
+                                    const HitPool& pool, const HitPlan& plan, double cut, PathScratch& scratch,
                                     const PathSums& sums, TailShare* tails) const {
   std::uint64_t rays = 0;
   scratch.first_leg_m = HUGE_VAL;
-  Dice dice(samples, index);
+  PathDice dice(samples, index);
   Vertex vertex = start;
   if (tails != nullptr) tails->linked.reset();
   double before_tail = 0;
   bool checking = false;
   for (std::uint32_t bounce = 0; bounce < kLongestPath; ++bounce) {
-    double hits = 1;
-    if (bounce == 0) {
-      hits = kHitsPerPath;
-      for (std::size_t h = pool_index; h < pool_index + kHitsPerPath; ++h)
-        if (const LightHit& hit = pool.hits[h]; hit.shines())
-          rays += join(vertex, hit, hits, cut_lx, dice.plain(), sums);
-    } else if (!pool.shining.empty()) {
-      // Hits without flux count as drawn: of all samples, so many shine.
-      const auto pick = static_cast<std::size_t>(dice.pair(bounce, 3)[0] * static_cast<double>(pool.shining.size()));
-      const LightHit& hit = pool.hits[pool.shining[std::min(pick, pool.shining.size() - 1)]];
-      Vertex weighed = vertex;
-      weighed.through_rgb *= static_cast<double>(pool.shining.size()) / static_cast<double>(pool.hits.size());
-      rays += join(weighed, hit, hits, cut_lx, dice.plain(), sums);
-    }
+    if (bounce > 0) rays += join_deeper(vertex, pool, plan, cut, dice.pair(bounce, 3)[0], dice.plain(), sums);
     const auto [u, v] = dice.pair(bounce, 0);
     Bsdf::Sample next;
     if (vertex.bsdf) {
@@ -158,9 +185,10 @@ std::uint64_t PathSampler::add_path(const Vertex& start, const SobolSequence& sa
     const auto [select, chance] = dice.pair(bounce, 1);
     const auto [s, t] = lamps_.have_size() ? dice.pair(bounce, 2) : std::array<double, 2>{};
     // In a corner, where the distance rounds to nothing, the path is the sharper way.
-    rays += ask_lamps(reached, std::min(density_per_m2, 1e200), hits, cut_lx, select, s, t, chance, scratch, sums);
+    rays += ask_lamps(reached, std::min(density_per_m2, 1e200), bounce == 0 ? plan.at_start : plan.deeper, cut, select,
+                      s, t, chance, scratch, sums);
     if (bounce == 0) scratch.first_leg_m = std::sqrt(distance2_m2);
-    if (bounce == 0 && tails != nullptr && tails->records != nullptr && bsdf.matt()) {
+    if (tails != nullptr && tails->records != nullptr && !checking && bsdf.matt()) {
       if (const auto record = record_for(reached, *tails->records, rays)) {
         const Vec3 per_lux_rgb = reached.through_rgb.cwiseProduct(bsdf.body_rgb()) / kPi;
         if (tails->link) {
@@ -173,7 +201,7 @@ std::uint64_t PathSampler::add_path(const Vertex& start, const SobolSequence& sa
           tails->taken_lx += add_record(per_lux_rgb, values, sums);
           break;
         }
-        tails->by_record_lx += add_record(per_lux_rgb, values, PathSums{{}, 0});
+        tails->by_record_lx += add_record(per_lux_rgb, values, PathSums{{}, 3});
         before_tail = worth_of(sums);
         checking = true;
       }
@@ -192,10 +220,11 @@ std::uint64_t PathSampler::add_path(const Vertex& start, const SobolSequence& sa
 }
 
 double PathSampler::worth_of(const PathSums& sums) const {
+  const std::size_t emitters = levels_.size();
   double worth = 0;
-  for (std::size_t e = 0; e < levels_.size(); ++e) {
-    const double* const v = sums.values.data() + e * sums.channels;
-    worth += levels_[e] * (sums.channels == 1 ? v[0] : luminance({v[0], v[1], v[2]}));
+  for (std::size_t c = 0; c < sums.channels; ++c) {
+    const double weight = sums.channels == 1 ? 1 : kLuminance[c];
+    for (std::size_t e = 0; e < emitters; ++e) worth += weight * levels_[e] * sums.values[c * emitters + e];
   }
   return worth;
 }
@@ -216,11 +245,20 @@ std::optional<std::uint32_t> PathSampler::record_for(const Vertex& vertex, const
 }
 
 double PathSampler::add_record(const Vec3& per_lux_rgb, std::span<const float> values, const PathSums& sums) const {
+  // Plain loops over arrays that lie together, which the compiler makes into vector instructions.
+  const std::size_t emitters = levels_.size();
+  const double* const levels = levels_.data();
   double worth = 0;
-  for (std::size_t e = 0; e < levels_.size(); ++e) {
-    const Vec3 rgb = per_lux_rgb.cwiseProduct(Vec3(values[3 * e], values[3 * e + 1], values[3 * e + 2]));
-    if (sums.channels > 0) sums.add(e, rgb);
-    worth += levels_[e] * luminance(rgb);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double per_lux = per_lux_rgb[static_cast<Eigen::Index>(c)], luminous = kLuminance[c] * per_lux;
+    const float* const from = values.data() + c * emitters;
+    double of_channel = 0;
+    for (std::size_t e = 0; e < emitters; ++e) of_channel += levels[e] * static_cast<double>(from[e]);
+    worth += luminous * of_channel;
+    if (sums.values.empty()) continue;
+    double* const to = sums.values.data() + (sums.channels == 1 ? 0 : c * emitters);
+    const double factor = sums.channels == 1 ? luminous : per_lux;
+    for (std::size_t e = 0; e < emitters; ++e) to[e] += factor * static_cast<double>(from[e]);
   }
   return worth;
 }

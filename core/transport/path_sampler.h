@@ -7,19 +7,14 @@
 ///   b  y is joined with a first hit z of light that was traced from the lamps.
 /// Both densities at z are known, so they share the work by the balance heuristic (E. Veach, L. Guibas 1995): b finds
 /// the bright patches that lamps make on what is near them, a the light of wide and far surfaces and corners. Hits are
-/// shared by all receivers (as the light vertex cache of T. Davidovič et al. 2014, with subpaths of one hit).
+/// shared by all receivers (as the light vertex cache of T. Davidovič et al. 2014, with subpaths of one hit). A plan
+/// says how many hits of which lamps: those that matter at the receiver.
 /// Unbiased, whatever the roulettes.
 
-#include "core/transport/light_hits.h"
+#include "core/transport/hit_pool.h"
 #include "core/transport/tail_records.h"
 
 namespace luxrig {
-
-/// The light hits that one replicate's paths may be joined with.
-struct HitPool {
-  std::vector<LightHit> hits;          ///< in sample order; kHitsPerPath for each path
-  std::vector<std::uint32_t> shining;  ///< indices of those with flux
-};
 
 /// Memory of one worker, reused from path to path.
 struct PathScratch {
@@ -32,7 +27,7 @@ struct PathScratch {
   double first_leg_m = 0;  ///< of the last path; infinite when it met nothing
 };
 
-/// Records that a path may end in at its second vertex.
+/// Records that a path may end in, at its second vertex or where it next finds one.
 struct TailShare {
   const TailRecords* records = nullptr;  ///< of three channels; null: paths end by themselves
   std::size_t replicate = 0;
@@ -48,14 +43,15 @@ struct TailShare {
 
 /// What is added up: luminance only, or three primaries.
 struct PathSums {
-  std::span<double> values;  ///< emitters × channels
-  std::size_t channels = 1;  ///< 1 or 3
+  std::span<double> values;  ///< channels × emitters: all emitters of a channel together
+  std::size_t channels = 1;  ///< 1 or 3; with 3, sums may also be left out (empty values)
 
+  [[nodiscard]] std::size_t emitters() const { return values.size() / channels; }
   void add(std::size_t emitter, const Vec3& rgb) const {
     if (channels == 1) {
       values[emitter] += 0.2126 * rgb.x() + 0.7152 * rgb.y() + 0.0722 * rgb.z();
     } else {
-      for (std::size_t c = 0; c < 3; ++c) values[3 * emitter + c] += rgb[static_cast<Eigen::Index>(c)];
+      for (std::size_t c = 0; c < 3; ++c) values[c * emitters() + emitter] += rgb[static_cast<Eigen::Index>(c)];
     }
   }
 };
@@ -70,22 +66,8 @@ class PathSampler {
   /// throughput / kRouletteBelow, at throughput kRouletteBelow.
   static constexpr double kRouletteBelow = 0.4;
 
-  /// Hits that the receiver itself is joined with, per path; further vertices are joined with one.
-  static constexpr std::uint32_t kHitsPerPath = 4;
-
   PathSampler(const RayScene& scene, const Lamps& lamps, const std::vector<Bsdf>& bsdfs, std::span<const double> levels)
       : scene_(scene), lamps_(lamps), bsdfs_(bsdfs), levels_(levels) {}
-
-  /// Adds one unbiased estimate of the reflected illuminance [lx at level 1] of each emitter to the sums.
-  ///
-  /// pool       hits traced from the same replicate's samples
-  /// pool_index of the first of this path's kHitsPerPath hits
-  /// cut_lx     a connection worth less (under the levels) is made only now and then, and counts more then; 0: never
-  /// Returns the rays cast.
-  /// tails      where given, what comes after the second vertex is taken from there when a record is near
-  std::uint64_t add_path(const Receiver& from, const SobolSequence& samples, std::uint32_t index, const HitPool& pool,
-                         std::size_t pool_index, double cut_lx, PathScratch& scratch, const PathSums& sums,
-                         TailShare* tails = nullptr) const;
 
   struct Vertex {
     Vec3 position_world_m, normal_world;
@@ -94,17 +76,43 @@ class PathSampler {
     Vec3 through_rgb = Vec3::Ones();  ///< lux at the receiver per radiance that leaves the vertex towards out_world
   };
 
-  /// The same for the luminance [cd/m² at level 1] of reflected light that leaves a surface towards start.out_world;
-  /// start.bsdf is that surface's.
+  /// Vertex of a receiver: sums become illuminance.
+  [[nodiscard]] static Vertex at(const Receiver& receiver) {
+    return {receiver.position_world_m, receiver.normal_world, receiver.normal_world};
+  }
+
+  /// Joins a start with light hits: what is called b above, for as many paths as the stretches serve.
+  ///
+  /// cut       a connection worth less (under the levels) is made only now and then, and counts more then; 0: never
+  /// squares   where given, sums of the squares of what one hit for each path would give, by group
+  /// Returns the rays cast.
+  std::uint64_t join_start(const Vertex& start, const HitPool& pool, const HitPlan& plan,
+                           std::span<const HitStretch> stretches, double cut, std::uint64_t key, const PathSums& sums,
+                           std::span<double> squares = {}) const;
+
+  /// Adds one path: with join_start() an unbiased estimate of the reflected light that leaves `start` towards
+  /// out_world, by emitter at level 1: the illuminance [lx] of a receiver, the luminance [cd/m²] of a surface.
+  ///
+  /// pool      hits traced from the same replicate's samples; plan as given to join_start()
+  /// tails     where given, what comes after a vertex is taken from there when a record is near
+  /// Returns the rays cast.
   std::uint64_t add_path(const Vertex& start, const SobolSequence& samples, std::uint32_t index, const HitPool& pool,
-                         std::size_t pool_index, double cut_lx, PathScratch& scratch, const PathSums& sums,
+                         const HitPlan& plan, double cut, PathScratch& scratch, const PathSums& sums,
                          TailShare* tails = nullptr) const;
 
  private:
-  std::uint64_t join(const Vertex& vertex, const LightHit& hit, double hits, double cut_lx, double chance,
-                     const PathSums& sums) const;
-  std::uint64_t ask_lamps(const Vertex& vertex, double density_per_m2, double hits, double cut_lx, double select,
-                          double u, double v, double chance, PathScratch& scratch, const PathSums& sums) const;
+  /// hits      expected number of hits of the group, for each path
+  struct Joined {
+    std::uint64_t rays = 0;
+    double worth = 0;  ///< luminance at the levels
+  };
+  Joined join(const Vertex& vertex, const LightHit& hit, double hits, double cut, double chance,
+              const PathSums& sums) const;
+  std::uint64_t join_deeper(const Vertex& vertex, const HitPool& pool, const HitPlan& plan, double cut, double select,
+                            double chance, const PathSums& sums) const;
+  std::uint64_t ask_lamps(const Vertex& vertex, double density_per_m2, std::span<const double> hits, double cut,
+                          double select, double u, double v, double chance, PathScratch& scratch,
+                          const PathSums& sums) const;
   /// The record that speaks for a vertex, if one is near and nothing stands in between.
   [[nodiscard]] std::optional<std::uint32_t> record_for(const Vertex& vertex, const TailRecords& records,
                                                         std::uint64_t& rays) const;

@@ -6,27 +6,33 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "core/photometry/light_colour.h"
 #include "core/transport/path_sampler.h"
 #include "core/transport/shared_tails.h"
 
 namespace luxrig {
 namespace {
 
-/// Light hits of a pass; pixels take stretches of them in turn.
+/// Light hits of a pass, from which each pixel takes its own; those a pixel is joined with, for each path.
 constexpr std::uint32_t kHitsPerPass = 1u << 14;
+constexpr std::uint32_t kHitsPerPath = 4;
 /// Tail records at first, and added each time the passes double.
 constexpr std::size_t kFirstRecords = 6000, kMoreRecords = 2000;
 constexpr std::uint32_t kRecordPaths = 8;
 /// Connections worth less than this share of the mean reflected light are made only now and then.
 constexpr double kCut = 0.05;
 
-double luminance(const Vec3& rgb) { return 0.2126 * rgb.x() + 0.7152 * rgb.y() + 0.0722 * rgb.z(); }
-
 std::vector<Emitter> of_kind(const std::vector<Emitter>& emitters, bool point) {
   std::vector<Emitter> some;
   for (const Emitter& e : emitters)
     if ((!e.sky && e.shape.kind == LuminousShape::Kind::point) == point) some.push_back(e);
   return some;
+}
+
+std::vector<double> light_of(const Lamps& lamps) {
+  std::vector<double> shares;
+  for (std::size_t g = 0; g < lamps.groups(); ++g) shares.push_back(lamps.group_share(g));
+  return shares;
 }
 
 class Renderer {
@@ -42,6 +48,8 @@ class Renderer {
         sized_lamps_(sized_, {}, scene.bounds_world_m()),
         bsdfs_(bsdfs_of(scene)),
         importance_(emitters_.size(), 1.0),
+        by_light_(light_of(lamps_)),
+        plan_(HitPlan::of(lamps_, by_light_, kHitsPerPath, 1)),
         sampler_(scene, lamps_, bsdfs_, importance_),
         tails_(scene, sampler_, bsdfs_, emitters_.size(), 1, options.seed),
         camera_(camera),
@@ -85,7 +93,7 @@ class Renderer {
   bool pass() {
     const auto index = static_cast<std::uint32_t>(picture_.passes);
     const bool lit = lamps_.any();
-    if (lit) trace_lights(index);
+    if (lit) trace_lights();
     if (lit && std::has_single_bit(index + 1)) grow_tails(index);
     const auto rows = static_cast<std::size_t>(camera_.height_px);
     std::vector<double> reflected_lx(rows, 0.0);
@@ -103,19 +111,14 @@ class Renderer {
     return !options_.watch.stop.stop_requested();
   }
 
-  void trace_lights(std::uint32_t index) {
-    const LightHits lights(scene_, lamps_, bsdfs_);
-    const SobolSequence samples(mixed(options_.seed, 0x11647));
-    pool_.hits.resize(kHitsPerPass);
-    parallel_for(64, options_.threads, [&](std::size_t part) {
-      Lamps::Weights weights;
-      std::uint64_t rays = 0;
-      for (auto i = static_cast<std::uint32_t>(part); i < kHitsPerPass; i += 64)
-        pool_.hits[i] = lights.trace(samples, index * kHitsPerPass + i, weights, rays);
-    });
-    pool_.shining.clear();
-    for (std::uint32_t i = 0; i < kHitsPerPass; ++i)
-      if (pool_.hits[i].shines()) pool_.shining.push_back(i);
+  void trace_lights() {
+    std::vector<std::uint32_t> counts;
+    for (std::size_t g = 0; g < lamps_.groups(); ++g)
+      counts.push_back(!(lamps_.group_share(g) > 0)
+                           ? 0
+                           : std::bit_ceil(static_cast<std::uint32_t>(16 + kHitsPerPass * lamps_.group_share(g))));
+    Lamps::Weights weights;
+    pool_.refill(LightHits(scene_, lamps_, bsdfs_), mixed(options_.seed, 0x11647), counts, weights);
   }
 
   /// Records where first legs from the surfaces in view end.
@@ -129,13 +132,17 @@ class Renderer {
         in_view.push_back({hit->position_world_m, hit->normal_world});
     }
     if (in_view.empty()) return;
-    tails_.grow(in_view, in_view.size(), kRecordPaths, {&pool_, 1}, options_.threads, options_.watch);
+    const std::vector<HitPlan> plans(in_view.size(),
+                                     HitPlan::of(lamps_, by_light_, kHitsPerPath * kRecordPaths, kRecordPaths));
+    const std::vector<double> cuts_lx(in_view.size(), 0.0);
+    tails_.grow(in_view, in_view.size(), kRecordPaths, {&pool_, 1}, plans, cuts_lx, options_.threads, options_.watch);
   }
 
   struct Scratch {
     PathScratch path;
     Lamps::Weights weights;
     std::vector<double> sums;
+    std::vector<HitStretch> stretches;
   };
 
   /// Direct light that leaves towards `out`, and its illuminance, by primary.
@@ -165,15 +172,25 @@ class Renderer {
   }
 
   /// Light reflected before, of one path that starts at `start`, by primary.
-  Vec3 reflected(const PathSampler::Vertex& start, const SobolSequence& samples, std::uint32_t index,
-                 std::size_t pool_index, Scratch& scratch) const {
+  Vec3 reflected(const PathSampler::Vertex& start, const SobolSequence& samples, std::uint32_t index, std::uint64_t key,
+                 Scratch& scratch) const {
     std::fill(scratch.sums.begin(), scratch.sums.end(), 0.0);
     TailShare share;
     if (tails_.records().size() > 0) share.records = &tails_.records();
-    sampler_.add_path(start, samples, index, pool_, pool_index, kCut * mean_reflected_lx_, scratch.path,
-                      {scratch.sums, 3}, &share);
+    const double cut = kCut * mean_reflected_lx_;
+    draw_stretches(plan_, pool_, 1, key, scratch.stretches);
+    sampler_.join_start(start, pool_, plan_, scratch.stretches, cut, mixed(key, pool_.groups()), {scratch.sums, 3});
+    sampler_.add_path(start, samples, index, pool_, plan_, cut, scratch.path, {scratch.sums, 3}, &share);
     Vec3 sum = Vec3::Zero();
-    for (std::size_t i = 0; i < scratch.sums.size(); ++i) sum[static_cast<Eigen::Index>(i % 3)] += scratch.sums[i];
+    for (std::size_t i = 0; i < scratch.sums.size(); ++i)
+      sum[static_cast<Eigen::Index>(i / emitters_.size())] += scratch.sums[i];
+    return sum;
+  }
+
+  Vec3 sky_cd_m2(const Vec3& direction_world) const {
+    Vec3 sum = Vec3::Zero();
+    for (const Emitter& e : emitters_)
+      if (e.sky) sum += e.sky->luminance_cd_m2(direction_world) * e.colour_rgb;
     return sum;
   }
 
@@ -185,7 +202,10 @@ class Renderer {
     constexpr std::uint32_t kPictureSet = 1u << 18;
     const auto [dx, dy, select, other] = samples.set(index, kPictureSet);
     const auto hit = seen_at(x + dx, y + dy);
-    if (!hit) return 0;
+    if (!hit) {
+      sums_[pixel].luminance_cd_m2 += sky_cd_m2(ray_direction(camera_, x + dx, y + dy)).cast<float>();
+      return 0;
+    }
     const Bsdf& bsdf = bsdfs_[scene_.material_index_of(hit->triangle)];
     const Vec3 out = (camera_.eye_world_m - hit->position_world_m).normalized();
     PixelSum& sum = sums_[pixel];
@@ -193,23 +213,22 @@ class Renderer {
     if (!lamps_.any()) return 0;
     const auto [u, v] = samples.pair(index, kPictureSet + 1, 0);
     const Direct at = direct(*hit, bsdf, out, select, u, v, scratch);
-    const std::size_t stretch = mixed(pixel, index) % (kHitsPerPass / PathSampler::kHitsPerPath);
-    const std::size_t pool_index = stretch * PathSampler::kHitsPerPath;
+    const std::uint64_t key = mixed(mixed(pixel, index), options_.seed);
     const Vec3 lux =
-        reflected({hit->position_world_m, hit->normal_world, hit->normal_world}, samples, index, pool_index, scratch);
+        reflected({hit->position_world_m, hit->normal_world, hit->normal_world}, samples, index, key, scratch);
     Vec3 luminance_cd_m2 = at.luminance_cd_m2;
     if (bsdf.matt()) {
       luminance_cd_m2 += lux.cwiseProduct(bsdf.body_rgb()) / kPi;
     } else {
       const SobolSequence glossy(mixed(mixed(options_.seed, 0x91c8), pixel));
-      luminance_cd_m2 += reflected({hit->position_world_m, hit->normal_world, out, &bsdf, Vec3::Ones()}, glossy, index,
-                                   pool_index, scratch);
+      luminance_cd_m2 +=
+          reflected({hit->position_world_m, hit->normal_world, out, &bsdf, Vec3::Ones()}, glossy, index, key, scratch);
     }
-    const auto all_lx = static_cast<float>(luminance(at.lux + lux));
+    const auto all_lx = static_cast<float>(luminance_of_rgb(at.lux + lux));
     sum.luminance_cd_m2 += luminance_cd_m2.cast<float>();
     sum.lux += all_lx;
     sum.squares += all_lx * all_lx;
-    return luminance(lux);
+    return luminance_of_rgb(lux);
   }
 
   double noise() const {
@@ -234,10 +253,9 @@ class Renderer {
     picture_.illuminance_lx.assign(sums_.size(), -1.0f);
     for (std::size_t i = 0; i < sums_.size(); ++i) {
       const PixelSum& s = sums_[i];
-      if (s.seen == 0) continue;
-      // Where an edge crosses the pixel, what lies beyond is black; its lux is that of what is seen.
+      // Where an edge crosses the pixel, what lies beyond is sky or black; its lux is that of what is seen.
       picture_.luminance_cd_m2[i] = s.luminance_cd_m2 / static_cast<float>(picture_.passes);
-      picture_.illuminance_lx[i] = s.lux / static_cast<float>(s.seen);
+      if (s.seen > 0) picture_.illuminance_lx[i] = s.lux / static_cast<float>(s.seen);
     }
   }
 
@@ -246,6 +264,8 @@ class Renderer {
   Lamps lamps_, point_lamps_, sized_lamps_;
   std::vector<Bsdf> bsdfs_;
   std::vector<double> importance_;
+  std::vector<double> by_light_;  ///< shares of the groups of lamps
+  HitPlan plan_;
   PathSampler sampler_;
   SharedTails tails_;
   HitPool pool_;

@@ -35,7 +35,7 @@ struct PictureOptions {
 /// Rows from the top, pixels from the left.
 struct Picture {
   int width_px = 0, height_px = 0;
-  std::vector<Vec3f> luminance_cd_m2;  ///< linear Rec. 709, towards the camera; zero where nothing is seen
+  std::vector<Vec3f> luminance_cd_m2;  ///< linear Rec. 709, towards the camera; the sky where nothing is seen
   std::vector<float> illuminance_lx;   ///< of the surface seen, on the side seen; negative where nothing is seen
   int passes = 0;
   /// Root mean square over what is seen of the standard error of a pixel's lux, relative to it (or to a twentieth of

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/check.h"
 #include "core/photometry/sky.h"
 
 namespace luxrig {
@@ -17,18 +18,20 @@ double tilt_off_upright_rad(const Pose& world_from_lamp) {
 
 }  // namespace
 
+Emitter emitter_of(const Luminaire& luminaire, const Pose& world_from_lamp) {
+  Emitter emitter{luminaire.intensity, world_from_lamp, luminaire.shape, luminaire.colour_rgb};
+  if (luminaire.tilt) {
+    const double factor = luminaire.tilt->over_upright(tilt_off_upright_rad(world_from_lamp));
+    if (factor != 1) emitter.intensity = scaled_to_flux(luminaire.intensity, factor * luminaire.intensity->flux_lm());
+  }
+  return emitter;
+}
+
 std::vector<Emitter> emitters_of(const Rig& rig) {
   std::vector<Emitter> emitters;
   emitters.reserve(rig.fixtures.size());
-  for (const Fixture& fixture : rig.fixtures) {
-    const Luminaire& luminaire = rig.luminaires.at(fixture.luminaire);
-    Emitter emitter{luminaire.intensity, fixture.world_from_lamp(), luminaire.shape, luminaire.colour_rgb};
-    if (luminaire.tilt) {
-      const double factor = luminaire.tilt->over_upright(tilt_off_upright_rad(emitter.world_from_lamp));
-      if (factor != 1) emitter.intensity = scaled_to_flux(luminaire.intensity, factor * luminaire.intensity->flux_lm());
-    }
-    emitters.push_back(std::move(emitter));
-  }
+  for (const Fixture& fixture : rig.fixtures)
+    emitters.push_back(emitter_of(rig.luminaires.at(fixture.luminaire), fixture.world_from_lamp()));
   return emitters;
 }
 
@@ -62,6 +65,24 @@ std::vector<Emitter> daylight_emitters_of(const Rig& rig) {
   }
   if (daylight.sun_normal_lx > 0 && daylight.towards_sun_world.z() > 0) add(make_sun(sun, daylight.sun_normal_lx));
   return emitters;
+}
+
+std::vector<Emitter> all_emitters_of(const Rig& rig) {
+  std::vector<Emitter> emitters = emitters_of(rig);
+  for (Emitter& emitter : daylight_emitters_of(rig)) emitters.push_back(std::move(emitter));
+  return emitters;
+}
+
+Eigen::VectorXd levels_with_daylight(const TransportMatrix& transport, const Eigen::VectorXd& levels) {
+  LUXRIG_CHECK(levels.size() <= transport.emitters(), "{} levels for {} emitters", levels.size(), transport.emitters());
+  Eigen::VectorXd all = Eigen::VectorXd::Ones(transport.emitters());
+  all.head(levels.size()) = levels;
+  return all;
+}
+
+Eigen::VectorXd daylight_lux(const Rig& rig, const TransportMatrix& transport) {
+  const auto fixtures = static_cast<Eigen::Index>(rig.fixtures.size());
+  return transport.lux(levels_with_daylight(transport, Eigen::VectorXd::Zero(fixtures)));
 }
 
 std::vector<Receiver> receivers_of(const Rig& rig) {

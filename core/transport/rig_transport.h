@@ -8,6 +8,10 @@
 
 namespace luxrig {
 
+/// A luminaire hung and aimed so: at its rated flux, with its shape, colour, and its TILT factor at that pose. Planner
+/// and simulated truth both make their emitters here.
+[[nodiscard]] Emitter emitter_of(const Luminaire& luminaire, const Pose& world_from_lamp);
+
 /// One emitter per fixture, in the rig's order, at the luminaire's rated flux and aimed as the rig file says; with the
 /// luminaire's shape and colour, and its TILT factor at that aim.
 /// Column j of a TransportMatrix is then fixture j, and a level of 1 its rated flux.
@@ -16,6 +20,15 @@ namespace luxrig {
 /// Sky and sun as separate emitters (Emitter::sky), those of them that shine: none without daylight. A clear or general
 /// sky whose sun is below the horizon is taken with the sun on it.
 [[nodiscard]] std::vector<Emitter> daylight_emitters_of(const Rig& rig);
+
+/// emitters_of(rig), then daylight_emitters_of(rig): columns from fixtures.size() on are daylight, at level 1.
+[[nodiscard]] std::vector<Emitter> all_emitters_of(const Rig& rig);
+
+/// Of a transport of all_emitters_of(rig): levels of all its columns, when the fixtures have these.
+[[nodiscard]] Eigen::VectorXd levels_with_daylight(const TransportMatrix& transport, const Eigen::VectorXd& levels);
+
+/// Of such a transport: what daylight alone gives each receiver [lx]; zeros without any.
+[[nodiscard]] Eigen::VectorXd daylight_lux(const Rig& rig, const TransportMatrix& transport);
 
 /// The rig's points, in order, then its luxmeters, in order: row p is points[p], and row
 /// points.size() + m is luxmeters[m] (also for a luxmeter that stands at a point).

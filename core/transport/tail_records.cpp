@@ -61,6 +61,7 @@ std::size_t TailRecords::bucket_of(const Cell& cell) const {
 std::optional<TailRecords::Found> TailRecords::nearest(const Vec3& position_world_m, const Vec3& normal_world) const {
   if (places_.empty()) return std::nullopt;
   constexpr float kAlike = 0.9f;  // cos 25°
+  constexpr float kFlat = 0.95f;
   const Vec3f position_m = (position_world_m - origin_world_m_).cast<float>(), normal = normal_world.cast<float>();
   const float off_plane_m = 0.3f * cell_m_;
   float best_m2 = cell_m_ * cell_m_;
@@ -78,21 +79,31 @@ std::optional<TailRecords::Found> TailRecords::nearest(const Vec3& position_worl
     }
   };
   const Cell cell = cell_of(position_m);
-  look_in(cell);
-  // Neighbouring cells only as far as the best so far reaches.
-  std::array<std::array<float, 3>, 3> gap_m{};
+  // Neighbouring cells only as far as the best so far reaches, those on the nearer side first; above and below the
+  // surface only as far as its plane may be off.
+  struct Side {
+    std::int32_t step;
+    float gap2_m2;
+  };
+  std::array<std::array<Side, 3>, 3> sides{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const float in_cell_m = position_m[static_cast<Eigen::Index>(axis)] - static_cast<float>(cell[axis]) * cell_m_;
-    gap_m[axis] = {in_cell_m, 0, cell_m_ - in_cell_m};
+    const bool flat = std::abs(normal[static_cast<Eigen::Index>(axis)]) > kFlat;
+    const auto gap2_m2 = [&](float gap_m) { return flat && gap_m > off_plane_m ? HUGE_VALF : gap_m * gap_m; };
+    const Side low{-1, gap2_m2(in_cell_m)}, high{1, gap2_m2(cell_m_ - in_cell_m)};
+    const bool low_first = in_cell_m < cell_m_ - in_cell_m;
+    sides[axis] = {Side{0, 0}, low_first ? low : high, low_first ? high : low};
   }
-  for (int dz = -1; dz <= 1; ++dz)
-    for (int dy = -1; dy <= 1; ++dy)
-      for (int dx = -1; dx <= 1; ++dx) {
-        if (dx == 0 && dy == 0 && dz == 0) continue;
-        const float x = gap_m[0][static_cast<std::size_t>(dx + 1)], y = gap_m[1][static_cast<std::size_t>(dy + 1)],
-                    z = gap_m[2][static_cast<std::size_t>(dz + 1)];
-        if (x * x + y * y + z * z < best_m2) look_in({cell[0] + dx, cell[1] + dy, cell[2] + dz});
+  for (const Side& z : sides[2]) {
+    if (z.gap2_m2 >= best_m2) break;
+    for (const Side& y : sides[1]) {
+      if (y.gap2_m2 + z.gap2_m2 >= best_m2) break;
+      for (const Side& x : sides[0]) {
+        if (x.gap2_m2 + y.gap2_m2 + z.gap2_m2 >= best_m2) break;
+        look_in({cell[0] + x.step, cell[1] + y.step, cell[2] + z.step});
       }
+    }
+  }
   if (!best) return std::nullopt;
   return Found{*best, static_cast<double>(std::sqrt(best_m2))};
 }

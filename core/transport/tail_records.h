@@ -41,7 +41,7 @@ class TailRecords {
 
   void set_clear_m(std::size_t record, double clear_m) { places_[record].clear_m = clear_m; }
 
-  /// Reflected lux at level 1, by emitter and channel.
+  /// Reflected lux at level 1, channels × emitters: all emitters of a channel together.
   [[nodiscard]] std::span<float> values(std::size_t replicate, std::size_t record) {
     return {values_[replicate].data() + record * columns_, columns_};
   }

@@ -4,13 +4,6 @@
 #include <cmath>
 
 namespace luxrig {
-namespace {
-
-/// With quick, interreflection is asked for, and judged, this much more loosely.
-constexpr double kQuickFactor = 4;
-
-}  // namespace
-
 double worst_error(const AnalyticCase& one, const TransportMatrix& matrix) {
   const Eigen::VectorXd levels = Eigen::VectorXd::Ones(matrix.emitters());
   const Eigen::VectorXd direct_lx = matrix.direct_lux(levels), all_lx = matrix.lux(levels);
@@ -28,13 +21,28 @@ double worst_error(const AnalyticCase& one, const TransportMatrix& matrix) {
   return worst;
 }
 
+AnalyticCase with_receivers(AnalyticCase one, std::size_t most) {
+  const std::size_t all = one.receivers.size();
+  if (all <= most) return one;
+  for (std::size_t k = 0; k < most; ++k) {
+    const std::size_t from = (2 * k + 1) * all / (2 * most);
+    one.receivers[k] = one.receivers[from];
+    one.exact_lx[k] = one.exact_lx[from];
+  }
+  one.receivers.resize(most);
+  one.exact_lx.resize(most);
+  return one;
+}
+
 void measure_case(const AnalyticCase& one, const BenchOptions& options, std::vector<BenchRow>& rows) {
   const RayScene rays(one.scene);
+  bool sampled = one.part == AnalyticCase::Part::direct;
   for (const Method& method : methods()) {
     if (one.reflects && !method.reflects) continue;
+    if (options.quick && !one.reflects && method.reflects && sampled) continue;
     const double tightest = method.reflected_target / 3 * one.reflected_share;
     std::vector<double> wanted_errors = {0.001};
-    if (one.reflects && options.quick) wanted_errors = {kQuickFactor * tightest};
+    if (one.reflects && options.quick) wanted_errors = {tightest};
     if (one.reflects && !options.quick) wanted_errors = {27 * tightest, 9 * tightest, 3 * tightest, tightest};
     for (const double wanted : wanted_errors) {
       EvaluateOptions evaluate;
@@ -43,8 +51,8 @@ void measure_case(const AnalyticCase& one, const BenchOptions& options, std::vec
       const Measured run = measure(method, rays, one.receivers, one.emitters, evaluate);
       std::optional<double> target;
       if (!one.reflects) target = one.direct_target;
-      if (one.reflects && wanted == wanted_errors.back())
-        target = options.quick ? kQuickFactor * method.reflected_target : method.reflected_target;
+      if (one.reflects && wanted == wanted_errors.back()) target = method.reflected_target;
+      sampled = sampled || run.matrix.rays > 0;
       rows.push_back(row_of(one.name, method.name, run.refused.empty() ? worst_error(one, run.matrix) : 0, run,
                             one.reflects ? std::optional(wanted) : std::nullopt, target));
     }

@@ -23,8 +23,12 @@ struct AnalyticCase {
 /// Largest relative error over the receivers, each relative to max(exact, 0.001 of the brightest).
 [[nodiscard]] double worst_error(const AnalyticCase& one, const TransportMatrix& matrix);
 
+/// The same case with at most so many of its receivers, spread evenly over the list: for quick runs.
+[[nodiscard]] AnalyticCase with_receivers(AnalyticCase one, std::size_t most);
+
 /// Every method that claims the case. Without reflection one run; with it a curve, the last point of which, with a
-/// third of the method's target as wanted error, has that target.
+/// third of the method's target as wanted error, has that target. With quick only that last point is run, and of direct
+/// light that has to be sampled only the direct method's (the others have the same).
 void measure_case(const AnalyticCase& one, const BenchOptions& options, std::vector<BenchRow>& rows);
 
 /// Families of cases, a file each.

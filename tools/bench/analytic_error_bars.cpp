@@ -11,9 +11,11 @@
 
 namespace luxrig {
 
-void add_error_bar_rows(const BenchOptions& options, std::vector<BenchRow>& rows) {
-  const int seeds = options.quick ? 200 : 1000;
-  const double edge_m = 3, reflectance = 0.6, wanted = 0.02;
+namespace {
+
+/// per_edge    receivers along each edge of each wall: `gather` shares what it finds from some dozens on
+void add_rows(int seeds, int per_edge, double wanted, const BenchOptions& options, std::vector<BenchRow>& rows) {
+  const double edge_m = 3, reflectance = 0.6;
   const Vec3 source_m(1.7, 1.2, 2.0);
   Scene scene = make_cube(edge_m, reflectance);
   scene.origin_world_m = Vec3::Constant(edge_m / 2);
@@ -23,8 +25,8 @@ void add_error_bar_rows(const BenchOptions& options, std::vector<BenchRow>& rows
   const BoxRadiosity exact({Vec3::Constant(edge_m), same, 1000, source_m}, 8);
   std::vector<Receiver> receivers;
   std::vector<double> exact_lx;
-  for (const WallPoint& p : cube_wall_grid(edge_m, 1)) {
-    const Vec3 shift = Vec3(0.37, -0.61, 0.23),
+  for (const WallPoint& p : cube_wall_grid(edge_m, per_edge)) {
+    const Vec3 shift = Vec3(0.37, -0.61, 0.23) / per_edge,
                at_m = p.position_m + shift - shift.dot(p.normal) * p.normal + scene.origin_world_m;
     receivers.push_back({at_m, p.normal});
     exact_lx.push_back(exact.direct_lx(at_m, p.normal) + exact.reflected_lx(at_m, p.normal));
@@ -55,13 +57,20 @@ void add_error_bar_rows(const BenchOptions& options, std::vector<BenchRow>& rows
     }
     all.seconds = seconds, all.matrix.rays = traced;
     const double share = count ? static_cast<double>(within) / count : 0;
-    BenchRow row =
-        row_of(fmt::format("error-bars-{}-seeds", seeds), method.name, std::abs(share - 0.95), all, wanted, 0.02);
+    BenchRow row = row_of(fmt::format("error-bars-{}-seeds-{}-points", seeds, receivers.size()), method.name,
+                          std::abs(share - 0.95), all, wanted, 0.02);
     if (all.refused.empty())
       row.further.back().second = fmt::format("within two standard errors: {:.2f} %; rms error {:.2e}", 100 * share,
                                               std::sqrt(squares / std::max(count, 1)));
     rows.push_back(row);
   }
+}
+
+}  // namespace
+
+void add_error_bar_rows(const BenchOptions& options, std::vector<BenchRow>& rows) {
+  add_rows(options.quick ? 200 : 1000, 1, 0.02, options, rows);
+  add_rows(options.quick ? 20 : 200, 3, 0.05, options, rows);
 }
 
 }  // namespace luxrig

@@ -93,9 +93,10 @@ AnalyticCase one_reflection(const std::string& name, double half_m, bool obstruc
 
 void add_reflection_rows(const BenchOptions& options, std::vector<BenchRow>& rows) {
   add_opening_flux(options, rows);
-  measure_case(one_reflection("cie171-5.6-reflection-4m", 2, false), options, rows);
+  const std::size_t receivers = options.quick ? 3 : 16;
+  measure_case(with_receivers(one_reflection("cie171-5.6-reflection-4m", 2, false), receivers), options, rows);
   if (!options.quick) measure_case(one_reflection("cie171-5.6-reflection-0.5m", 0.25, false), options, rows);
-  measure_case(one_reflection("cie171-5.7-obstruction", 2, true), options, rows);
+  measure_case(with_receivers(one_reflection("cie171-5.7-obstruction", 2, true), receivers), options, rows);
 }
 
 }  // namespace luxrig

@@ -12,9 +12,10 @@ struct BenchOptions {
   std::filesystem::path csv_file, plot_file;  ///< written when not empty
   int threads = 0;                            ///< 0 = one per core
   std::filesystem::path references_folder;    ///< transport: converged references are kept here, by scene
+  double reference_error = 0.0005;            ///< transport: standard error of converged references
   std::filesystem::path export_folder;        ///< transport: writes its rooms here for Radiance instead of measuring
   std::vector<std::filesystem::path> rigs;    ///< transport: rig files whose scenes are measured too
-  std::string only;                           ///< transport: measures only cases whose name begins so
+  std::string only;                           ///< transport: only cases whose name begins so; analytic: only such families
 };
 
 /// Names of the suites.

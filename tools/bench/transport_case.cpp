@@ -85,7 +85,8 @@ RoomError error_of(const Eigen::VectorXd& lux, const Eigen::VectorXd& reference_
 }
 
 Reference reference_of(const TransportCase& one, const BenchOptions& options) {
-  const double wanted = options.quick ? 0.004 : 0.0005;
+  // Path tracing stops at 2.5 standard errors within the wanted error.
+  const double wanted = 2.5 * (options.quick ? 0.0016 : options.reference_error);
   if (!options.references_folder.empty())
     if (auto kept = read_reference(file_of(one, options), one.room.receivers.size(), wanted)) return *kept;
   fmt::print(stderr, "{}: converged reference, wanted error {:g} …\n", one.room.name, wanted);

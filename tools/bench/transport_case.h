@@ -46,6 +46,7 @@ struct RoomError {
 void add_curve_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
 void add_identity_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
 void add_moved_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
+void add_cache_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
 void add_candidate_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
 
 /// Writes what Radiance needs to compute the same receivers: NAME.rad, NAME.pts, NAME.lux. Empty, or what went wrong.

@@ -22,6 +22,8 @@ constexpr double kDust = 1e-9;
 /// Sides of less than this share of a cell's face join a larger neighbour whose normal is within 37°.
 constexpr double kSmall = 0.2;
 constexpr double kSameWay = 0.8;
+/// Places within this of a plane [cells] lie in it.
+constexpr double kFlat = 1e-4;
 constexpr std::size_t kTrianglesPerTask = 256;
 
 struct RawPiece {
@@ -172,7 +174,7 @@ void SurfaceSides::cut_up(const Scene& scene, int threads) {
   pieces_.reserve(all.size());
   for (const RawPiece& raw : all) {
     if (slots_.empty() || slots_.back().cell != raw.cell || slots_.back().facing != raw.facing)
-      slots_.push_back({raw.cell, raw.facing, static_cast<std::uint32_t>(pieces_.size()), 0});
+      slots_.push_back({raw.cell, raw.facing, false, static_cast<std::uint32_t>(pieces_.size()), 0});
     pieces_.push_back(raw.piece);
     slots_.back().end_place = static_cast<std::uint32_t>(pieces_.size());
   }
@@ -185,6 +187,16 @@ bool SurfaceSides::sees(const Vec3& a_world_m, const Vec3& normal_a, const Vec3&
 
 void SurfaceSides::make_sides(int threads) {
   // Slots hold ranges of pieces as yet. Within each, pieces are numbered by the first piece that they see.
+  for (std::size_t begin = 0, end = 0; begin < slots_.size(); begin = end) {
+    while (end < slots_.size() && slots_[end].cell == slots_[begin].cell) ++end;
+    const SurfacePiece& first = pieces_[slots_[begin].first_place];
+    const Vec3 normal = first.normal_world.cast<double>();
+    bool plain = true;
+    for (std::size_t s = begin; s < end && plain; ++s)
+      for (std::uint32_t i = slots_[s].first_place; i < slots_[s].end_place && plain; ++i)
+        plain = std::abs(normal.dot(pieces_[i].position_world_m - first.position_world_m)) < kFlat * cells_.voxel_m;
+    for (std::size_t s = begin; s < end; ++s) slots_[s].plain = plain;
+  }
   std::vector<std::uint32_t> sides_of_slot(slots_.size(), 0);
   parallel_for(slots_.size(), threads, [&](std::size_t s) {
     std::vector<std::uint32_t> first;
@@ -321,12 +333,8 @@ std::span<const SurfaceSides::Slot> SurfaceSides::slots_of_cell(std::uint32_t ce
   return std::span(slots_).subspan(first_slot_[cell], first_slot_[cell + 1] - first_slot_[cell]);
 }
 
-std::uint32_t SurfaceSides::nearest_in(const Slot& slot, const Vec3& position_world_m, const Vec3& normal_world,
-                                       std::uint64_t& rays) const {
-  if (slot.end_place - slot.first_place == 1) return side_of_place_[slot.first_place];
-  // The nearest that is seen; if none is, the nearest.
-  std::uint32_t nearest = kNone, nearest_seen = kNone;
-  double least = HUGE_VAL, least_seen = HUGE_VAL;
+void SurfaceSides::look_in(const Slot& slot, const Vec3& position_world_m, const Vec3& normal_world,
+                           std::uint64_t& rays, Found& seen, Found& nearest) const {
   for (std::uint32_t place = slot.first_place; place < slot.end_place; ++place) {
     const std::uint32_t side = side_of_place_[place];
     const SurfacePiece* closest = nullptr;
@@ -338,47 +346,49 @@ std::uint32_t SurfaceSides::nearest_in(const Slot& slot, const Vec3& position_wo
         closest = &piece;
       }
     }
-    if (distance < least) {
-      least = distance;
-      nearest = side;
-    }
-    if (!(distance < least_seen)) continue;
+    if (distance < nearest.distance_squared_m2) nearest = {side, distance};
+    if (!(distance < seen.distance_squared_m2)) continue;
     ++rays;
-    if (!sees(position_world_m, normal_world, closest->position_world_m, closest->normal_world.cast<double>(),
-              kLift * cells_.voxel_m))
-      continue;
-    least_seen = distance;
-    nearest_seen = side;
+    if (sees(position_world_m, normal_world, closest->position_world_m, closest->normal_world.cast<double>(),
+             kLift * cells_.voxel_m))
+      seen = {side, distance};
   }
-  return nearest_seen != kNone ? nearest_seen : nearest;
 }
 
 std::uint32_t SurfaceSides::side_at(const Vec3& position_world_m, const Vec3& normal_world, std::uint64_t& rays) const {
   if (cells_.count() == 0) return kNone;
   const Eigen::Vector3i here = cells_.nearest_voxel(position_world_m - origin_world_m_);
   const std::uint32_t facing = facing_of(normal_world);
-  for (const Slot& slot : slots_of_cell(static_cast<std::uint32_t>(cells_.index(here))))
-    if (slot.facing == facing) return nearest_in(slot, position_world_m, normal_world, rays);
-  // Rounding put the place into the next cell, or its normal into the next part.
-  std::uint32_t best = kNone;
-  double least = HUGE_VAL;
-  for (int dz = -1; dz <= 1; ++dz)
-    for (int dy = -1; dy <= 1; ++dy)
-      for (int dx = -1; dx <= 1; ++dx) {
-        const Eigen::Vector3i cell = here + Eigen::Vector3i(dx, dy, dz);
-        if (!cells_.contains(cell)) continue;
-        for (const Slot& slot : slots_of_cell(static_cast<std::uint32_t>(cells_.index(cell))))
-          for (std::uint32_t place = slot.first_place; place < slot.end_place; ++place)
-            for (const SurfacePiece& piece : pieces_of_side(side_of_place_[place])) {
-              if (piece.normal_world.cast<double>().dot(normal_world) < 0.5) continue;
-              const double distance = (piece.position_world_m - position_world_m).squaredNorm();
-              if (distance < least) {
-                least = distance;
-                best = side_of_place_[place];
-              }
-            }
-      }
-  return best;
+  Found seen, nearest;
+  for (const Slot& slot : slots_of_cell(static_cast<std::uint32_t>(cells_.index(here)))) {
+    if (slot.facing != facing) continue;
+    if (slot.plain && slot.end_place - slot.first_place == 1) return side_of_place_[slot.first_place];
+    look_in(slot, position_world_m, normal_world, rays, seen, nearest);
+  }
+  if (seen.side != kNone) return seen.side;
+  // No place of the cell is seen: a corner between solids that cut each other, too small to have a place of its own; or
+  // rounding put the place into the next cell. What the next cells show to it is the same surface.
+  for (int n = 0; n < 27; ++n) {
+    const Eigen::Vector3i cell = here + Eigen::Vector3i(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+    if (cell == here || !cells_.contains(cell)) continue;
+    for (const Slot& slot : slots_of_cell(static_cast<std::uint32_t>(cells_.index(cell))))
+      if (slot.facing == facing) look_in(slot, position_world_m, normal_world, rays, seen, nearest);
+  }
+  if (seen.side != kNone) return seen.side;
+  if (nearest.side != kNone) return nearest.side;
+  // Rounding put its normal into the next part of the cube.
+  for (int n = 0; n < 27; ++n) {
+    const Eigen::Vector3i cell = here + Eigen::Vector3i(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
+    if (!cells_.contains(cell)) continue;
+    for (const Slot& slot : slots_of_cell(static_cast<std::uint32_t>(cells_.index(cell))))
+      for (std::uint32_t place = slot.first_place; place < slot.end_place; ++place)
+        for (const SurfacePiece& piece : pieces_of_side(side_of_place_[place])) {
+          if (piece.normal_world.cast<double>().dot(normal_world) < 0.5) continue;
+          const double distance = (piece.position_world_m - position_world_m).squaredNorm();
+          if (distance < nearest.distance_squared_m2) nearest = {side_of_place_[place], distance};
+        }
+  }
+  return nearest.side;
 }
 
 std::size_t SurfaceSides::bytes() const {

@@ -1,6 +1,7 @@
 #pragma once
 /// The surfaces of a scene cut up by the cells of a grid into sides: patches that light is stored on.
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -53,13 +54,19 @@ class SurfaceSides {
   struct Slot {
     std::uint32_t cell;
     std::uint32_t facing;
+    bool plain = false;  ///< all surfaces of the cell lie in one plane: nothing can come between its places
     std::uint32_t first_place, end_place;  ///< into side_of_place_; while sides are made, into pieces_
   };
   [[nodiscard]] bool sees(const Vec3& a_world_m, const Vec3& normal_a, const Vec3& b_world_m, const Vec3& normal_b,
                           double lift_m) const;
   [[nodiscard]] std::span<const Slot> slots_of_cell(std::uint32_t cell) const;
-  [[nodiscard]] std::uint32_t nearest_in(const Slot& slot, const Vec3& position_world_m, const Vec3& normal_world,
-                                         std::uint64_t& rays) const;
+  /// The side whose nearest place a place sees, and how far that is; none when it sees no side of the slot.
+  struct Found {
+    std::uint32_t side = kNone;
+    double distance_squared_m2 = HUGE_VAL;
+  };
+  void look_in(const Slot& slot, const Vec3& position_world_m, const Vec3& normal_world, std::uint64_t& rays,
+               Found& seen, Found& nearest) const;
   void cut_up(const Scene& scene, int threads);
   void make_sides(int threads);
   void join_small_sides(int threads);

@@ -53,7 +53,7 @@ struct CandidateOptions {
   /// About how many cells the surfaces are cut into, for each of eight estimates. Light and importance that both vary
   /// within a cell (the edge of a shadow that falls on both) make reflected light a little too low, by about a tenth of
   /// the cells' size in metres in furnished rooms: -1 % at 25 cm. Fewer are used where memory_bound_bytes wants it.
-  std::size_t surface_cells = 10'000;
+  std::size_t surface_cells = 20'000;
   /// Entries below this [lx per unit emittance] are left out; direct light that must stay below it is not traced, so
   /// that it moves no entry by more. 0: everything is kept.
   double least_lux = 0;
@@ -97,7 +97,11 @@ struct CandidateStatistics {
   std::uint64_t rays = 0;                     ///< of every kind
   std::uint64_t surface_cells = 0;            ///< of all replicates together
   std::uint32_t rays_per_candidate = 0;       ///< of all replicates together
-  double median_relative_error = 0;           ///< over the entries kept; 0 when exact. To 3 %.
+  /// Columns whose reflected light was looked at with rays of their own; the others' is interpolated between `nodes`
+  /// positions where it was.
+  std::uint64_t columns_looked_at = 0;
+  std::uint64_t nodes = 0;
+  double median_relative_error = 0;  ///< over the entries kept; 0 when exact. To 3 %.
 
   void add(const CandidateStatistics& other);
 };

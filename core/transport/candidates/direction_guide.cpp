@@ -41,7 +41,12 @@ void DirectionGuide::finish() {
   for (float& s : share_) s = static_cast<float>(sum > 0 ? kEven / kBins + (1 - kEven) * s / sum : 1.0 / kBins);
   float below = 0;
   for (std::size_t ring = 0; ring < kRings; ++ring) {
-    for (std::size_t s = 0; s < kSectors; ++s) below += share_[ring * kSectors + s];
+    float in_ring = 0;
+    for (std::size_t s = 0; s < kSectors; ++s) {
+      in_ring += share_[ring * kSectors + s];
+      up_to_[ring * kSectors + s] = in_ring;
+    }
+    below += in_ring;
     up_to_ring_[ring] = below;
   }
 }
@@ -53,18 +58,18 @@ DirectionSample DirectionGuide::sample(double u, double v) const {
   const double ring_from = ring > 0 ? up_to_ring_[ring - 1] : 0;
   const double ring_share = up_to_ring_[ring] - ring_from;
   const double in_ring = std::clamp((at - ring_from) / ring_share, 0.0, 1.0);
-  double along = 0;
-  for (std::size_t s = 0; s < kSectors; ++s) along += share_[ring * kSectors + s];
-  along *= u;
-  std::size_t sector = 0;
-  while (sector + 1 < kSectors && along >= share_[ring * kSectors + sector])
-    along -= share_[ring * kSectors + sector++];
-  const double in_sector = std::clamp(along / share_[ring * kSectors + sector], 0.0, 1.0);
+  const float* up_to = up_to_.data() + ring * kSectors;
+  const double along = u * static_cast<double>(up_to[kSectors - 1]);
+  const auto sector =
+      std::min(static_cast<std::size_t>(std::upper_bound(up_to, up_to + kSectors, along) - up_to), kSectors - 1);
+  const float share = share_[ring * kSectors + sector];
+  const double before = sector > 0 ? static_cast<double>(up_to[sector - 1]) : 0.0;
+  const double in_sector = std::clamp((along - before) / static_cast<double>(share), 0.0, 1.0);
   const double z = std::clamp(2 * (static_cast<double>(ring) + in_ring) / kRings - 1, -1.0, 1.0);
   const double angle = 2 * kPi * ((static_cast<double>(sector) + in_sector) / kSectors - 0.5);
   const double radius = std::sqrt(std::max(0.0, 1 - z * z));
   const Vec3 direction(radius * std::cos(angle), radius * std::sin(angle), z);
-  return {direction, density_per_sr(direction)};
+  return {direction, share * (kBins / (4 * kPi))};
 }
 
 double DirectionGuide::density_per_sr(const Vec3& direction) const {

@@ -30,6 +30,7 @@ class DirectionGuide {
   [[nodiscard]] static std::size_t sector_of(const Vec3& direction);
 
   std::array<float, kRings * kSectors> share_{};  ///< probability of each bin, rings first
+  std::array<float, kRings * kSectors> up_to_{};  ///< cumulative within each ring, the bin included
   std::array<float, kRings> up_to_ring_{};        ///< cumulative
   bool empty_ = true;
 };

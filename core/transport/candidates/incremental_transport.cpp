@@ -20,7 +20,8 @@ Result<void> check_point_luminaire(const Emitter& emitter) {
   if (auto checked = check_evaluation({}, std::span(&emitter, 1), {}); !checked) return checked;
   if (emitter.sky) return refusal("the emitter is a sky, not a luminaire");
   if (emitter.shape.kind != LuminousShape::Kind::point)
-    return refusal("the luminaire has a size; only points are known");
+    return refusal(
+        "the luminaire has a size; take its far field as a point, or evaluate it with core/transport/evaluator.h");
   return {};
 }
 
@@ -80,16 +81,17 @@ class Incremental final : public IncrementalTransport {
     LuminaireColumn column = direct(luminaire);
     if (!indirect_) return column;
     const Vec3& at_m = luminaire.offset_world_m;
-    const LuminaireRays rays = indirect_->prepare(
-        luminaire, options_.rays_per_column / static_cast<std::uint32_t>(IndirectColumns::kReplicates));
     const DirectionGuide guide = indirect_->guide(luminaire, std::span(&at_m, 1), column.rays);
-    IndirectColumns::Column reflected;
-    indirect_->evaluate(rays, at_m, guide, false, reflected);
-    column.rays += reflected.rays;
+    std::vector<float> replicates(IndirectColumns::kReplicates * indirect_->stride()), lux(receivers_.size()),
+        error_lux(receivers_.size());
+    constexpr auto kReplicates = static_cast<std::uint32_t>(IndirectColumns::kReplicates);
+    column.rays +=
+        indirect_->evaluate(luminaire, at_m, guide, {options_.rays_per_column / kReplicates, 0, false}, replicates);
+    indirect_->summarise(replicates, {}, lux, error_lux);
     for (std::size_t r = 0; r < receivers_.size(); ++r) {
       const auto row = static_cast<Eigen::Index>(r);
-      column.total_lux[row] += static_cast<double>(reflected.lux[r]);
-      column.standard_error_lux[row] = static_cast<double>(reflected.standard_error_lux[r]);
+      column.total_lux[row] += static_cast<double>(lux[r]);
+      column.standard_error_lux[row] = static_cast<double>(error_lux[r]);
     }
     return column;
   }
@@ -108,8 +110,17 @@ class Incremental final : public IncrementalTransport {
     return {};
   }
 
-  std::uint64_t update_direct(std::span<const Emitter> emitters, const RayScene& rays,
-                              const Eigen::AlignedBox3d& changed_world_m, Eigen::MatrixXd& lux) const override {
+  Result<std::uint64_t> update_direct(std::span<const Emitter> emitters, const RayScene& rays,
+                                      const Eigen::AlignedBox3d& changed_world_m, Eigen::MatrixXd& lux) const override {
+    for (const Emitter& emitter : emitters)
+      if (auto checked = check_point_luminaire(emitter); !checked) return tl::unexpected(std::move(checked.error()));
+    if (lux.rows() != static_cast<Eigen::Index>(receivers_.size()) ||
+        lux.cols() != static_cast<Eigen::Index>(emitters.size()))
+      return refusal(fmt::format("lux is {} × {} for {} receivers and {} luminaires", lux.rows(), lux.cols(),
+                                 receivers_.size(), emitters.size()));
+    if (changed_world_m.isEmpty()) return 0;
+    if (!changed_world_m.min().allFinite() || !changed_world_m.max().allFinite())
+      return refusal("the box in which the scene changed is not finite");
     const auto luminaires = luminaires_ready(emitters);
     std::atomic<std::uint64_t> cast{0};
     parallel_for(receivers_.size(), options_.threads, [&](std::size_t r) {
@@ -126,7 +137,7 @@ class Incremental final : public IncrementalTransport {
       }
       cast += of_row;
     });
-    return cast;
+    return cast.load();
   }
 
   std::uint64_t rays() const override { return rays_cast_; }

@@ -54,10 +54,12 @@ class IncrementalTransport {
 
   /// Direct columns of many luminaires when the scene changed within a box only (what moved, where it was and where it
   /// is now; its surfaces included): entries whose line of sight misses the box are kept, the others traced in `rays`.
-  /// Returns the shadow rays cast. lux: receivers × emitters.
-  [[nodiscard]] virtual std::uint64_t update_direct(std::span<const Emitter> emitters, const RayScene& rays,
-                                                    const Eigen::AlignedBox3d& changed_world_m,
-                                                    Eigen::MatrixXd& lux) const = 0;
+  /// Returns the shadow rays cast. lux: receivers × emitters. Cause::invalid, with nothing changed, for an emitter that
+  /// column() refuses, a matrix of another size, or a box that is not finite. Reflected light is not kept up with an
+  /// object that moves: column() goes on answering for the scene of make().
+  [[nodiscard]] virtual Result<std::uint64_t> update_direct(std::span<const Emitter> emitters, const RayScene& rays,
+                                                            const Eigen::AlignedBox3d& changed_world_m,
+                                                            Eigen::MatrixXd& lux) const = 0;
 
   /// Rays cast by the last make() or move_receiver().
   [[nodiscard]] virtual std::uint64_t rays() const = 0;

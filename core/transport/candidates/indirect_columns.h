@@ -4,7 +4,6 @@
 /// A candidate's rays are drawn by two strategies, weighted by the balance heuristic: half by the luminaire's
 /// intensity, half where pilot rays from about there found surfaces that matter (direction_guide.h).
 
-#include <array>
 #include <memory>
 
 #include "core/transport/candidates/direct_columns.h"
@@ -12,19 +11,6 @@
 #include "core/transport/candidates/surface_importance.h"
 
 namespace luxrig {
-
-/// A luminaire's rays for all replicates, made once for all places where it hangs.
-struct LuminaireRays {
-  /// A direction drawn by the luminaire's intensity.
-  struct Leaving {
-    Vec3 direction_world;
-    double candela;
-    double density_per_sr;
-  };
-  CandidateLuminaire luminaire;
-  std::vector<std::vector<Leaving>> leaving;               ///< per replicate
-  std::vector<std::vector<std::array<double, 2>>> guided;  ///< points of the unit square, per replicate; as many
-};
 
 class IndirectColumns {
  public:
@@ -36,29 +22,31 @@ class IndirectColumns {
   IndirectColumns(const RayScene& scene, std::vector<std::unique_ptr<SurfaceImportance>> fields, double flatness_error,
                   std::uint64_t seed);
 
-  /// rays_per_replicate   of both strategies together, even
-  [[nodiscard]] LuminaireRays prepare(const CandidateLuminaire& luminaire, std::uint32_t rays_per_replicate) const;
-
   /// What is worth looking at from about some places. Adds the rays cast to `rays`.
   [[nodiscard]] DirectionGuide guide(const CandidateLuminaire& luminaire, std::span<const Vec3> lamps_world_m,
                                      std::uint64_t& rays) const;
 
-  struct Column {
-    std::vector<float> lux;                 ///< per receiver (and some zeros), mean of the replicates
-    std::vector<float> standard_error_lux;  ///< of it, widened for so few replicates (replicate_error.h)
-    std::uint64_t rays = 0;
-    bool given_up = false;
-
-    std::vector<float> replicates;                    ///< kReplicates × stride
-    std::vector<WeightedRow> met_cells, met_patches;  ///< scratch
+  /// How a candidate is looked at.
+  struct Rays {
+    std::uint32_t per_replicate;  ///< of both strategies together, even
+    std::uint64_t key;            ///< candidates with different keys err independently, but for the fields
+    bool may_give_up;  ///< stop after a few rays if they and the pilot rays met no surface from which light comes
   };
+  /// One replicate; the fields are large, so that it pays to ask for it for many candidates before the next.
+  /// lux   overwritten: stride() floats. Returns the rays cast.
+  std::uint64_t evaluate(std::size_t replicate, const CandidateLuminaire& luminaire, const Vec3& lamp_world_m,
+                         const DirectionGuide& guide, const Rays& rays, std::span<float> lux) const;
+  /// All of them, one behind the other.
+  std::uint64_t evaluate(const CandidateLuminaire& luminaire, const Vec3& lamp_world_m, const DirectionGuide& guide,
+                         const Rays& rays, std::span<float> replicates) const;
 
-  /// Overwrites `column`.
-  /// lamp_world_m   where the luminaire hangs
-  /// may_give_up    stop after a few rays if they and the pilot rays met no surface that matters
-  void evaluate(const LuminaireRays& luminaire, const Vec3& lamp_world_m, const DirectionGuide& guide, bool may_give_up,
-                Column& column) const;
+  /// Mean of the replicates, and its standard error, widened for so few of them (replicate_error.h).
+  /// further_squared_lux2   per receiver, or empty: square of what else may be wrong
+  void summarise(std::span<const float> replicates, std::span<const float> further_squared_lux2, std::span<float> lux,
+                 std::span<float> standard_error_lux) const;
 
+  /// Receivers, rounded up: the length of a replicate.
+  [[nodiscard]] std::size_t stride() const { return fields_.front()->stride(); }
   [[nodiscard]] std::vector<std::unique_ptr<SurfaceImportance>>& fields() { return fields_; }
   [[nodiscard]] const std::vector<std::unique_ptr<SurfaceImportance>>& fields() const { return fields_; }
   [[nodiscard]] std::size_t bytes() const;
@@ -68,8 +56,8 @@ class IndirectColumns {
     std::uint32_t cell;  ///< SurfaceCells::kNone: nothing that matters
     double reflectance;
   };
-  [[nodiscard]] Met meet(const SurfaceImportance& field, const Vec3& lamp_world_m, double off_lamp_m,
-                         const Vec3& direction, std::uint64_t& rays) const;
+  [[nodiscard]] Met meet(const SurfaceImportance& field, const Vec3& from_world_m, const Vec3& direction,
+                         std::uint64_t& rays) const;
 
   const RayScene& scene_;
   std::vector<std::unique_ptr<SurfaceImportance>> fields_;

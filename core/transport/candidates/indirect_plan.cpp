@@ -32,18 +32,19 @@ double median_error(const IndirectColumns& indirect, const VisibilityScene& visi
     if (options.watch.stop.stop_requested()) return;
     const CandidateLuminaire& luminaire = luminaires[i % luminaires.size()];
     const Vec3 at_m = positions_m[i] + luminaire.offset_world_m;
-    IndirectColumns::Column column;
-    indirect.evaluate(indirect.prepare(luminaire, rays_per_replicate), at_m,
-                      indirect.guide(luminaire, std::span(&at_m, 1), cast[i]), options.skips.unlit, column);
-    cast[i] += column.rays;
+    std::vector<float> replicates(IndirectColumns::kReplicates * indirect.stride()), lux(receivers.size()),
+        error_lux(receivers.size());
+    cast[i] += indirect.evaluate(luminaire, at_m, indirect.guide(luminaire, std::span(&at_m, 1), cast[i]),
+                                 {rays_per_replicate, i, options.skips.unlit}, replicates);
+    indirect.summarise(replicates, {}, lux, error_lux);
     for (std::size_t r = 0; r < receivers.size(); ++r) {
-      double lux = unobstructed_lux(luminaire, at_m, receivers[r]);
-      if (lux > 0) {
+      double all_lux = unobstructed_lux(luminaire, at_m, receivers[r]);
+      if (all_lux > 0) {
         ++cast[i];
-        if (visibility.rays->occluded(receivers[r].position_world_m, receivers[r].normal_world, at_m)) lux = 0;
+        if (visibility.rays->occluded(receivers[r].position_world_m, receivers[r].normal_world, at_m)) all_lux = 0;
       }
-      lux += static_cast<double>(column.lux[r]);
-      if (lux > 0 && lux >= least_lux) errors[i].add(static_cast<double>(column.standard_error_lux[r]) / lux);
+      all_lux += static_cast<double>(lux[r]);
+      if (all_lux > 0 && all_lux >= least_lux) errors[i].add(static_cast<double>(error_lux[r]) / all_lux);
     }
   });
   ErrorHistogram all;
@@ -93,10 +94,13 @@ Result<std::vector<std::unique_ptr<SurfaceImportance>>> importance_fields(
 
 Result<IndirectColumns> plan_indirect(const Scene& scene, const VisibilityScene& visibility,
                                       std::span<const Receiver> receivers, const CandidateSet& candidates,
-                                      std::span<const CandidateLuminaire> luminaires, const ReceiversAir* air,
-                                      const CandidateOptions& options, CandidateStatistics& statistics) {
-  std::vector<Vec3> grown_from_m = spread(candidates.positions_world_m, kGrownFrom);
-  if (air) std::erase_if(grown_from_m, [&](const Vec3& at_m) { return !air->reaches(at_m); });
+                                      std::span<const CandidateLuminaire> luminaires,
+                                      std::span<const std::uint8_t> usable, const CandidateOptions& options,
+                                      CandidateStatistics& statistics) {
+  std::vector<Vec3> usable_m;
+  for (std::size_t p = 0; p < usable.size(); ++p)
+    if (usable[p]) usable_m.push_back(candidates.positions_world_m[p]);
+  const std::vector<Vec3> grown_from_m = spread(usable_m, kGrownFrom);
   const std::size_t bytes_per_cell =
       2 * IndirectColumns::kReplicates * (receivers.size() + kRowUnit) * sizeof(float) + sizeof(SurfaceCells::Cell);
   const std::size_t cells_in_bound = options.memory_bound_bytes / 2 / bytes_per_cell;

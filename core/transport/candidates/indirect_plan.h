@@ -1,7 +1,6 @@
 #pragma once
 /// Choosing how finely to look, and building the importance fields.
 
-#include "core/transport/candidates/air_regions.h"
 #include "core/transport/candidates/indirect_columns.h"
 
 namespace luxrig {
@@ -9,7 +8,7 @@ namespace luxrig {
 struct IndirectSettings {
   double cell_m = 0;
   std::uint32_t rays_per_cell = 16;
-  std::uint32_t guided_rays_per_cell = 32;
+  std::uint32_t guided_rays_per_cell = 64;
   bool keep_links = false;  ///< so that receivers can move
 };
 
@@ -30,7 +29,7 @@ struct IndirectSettings {
 [[nodiscard]] Result<IndirectColumns> plan_indirect(const Scene& scene, const VisibilityScene& visibility,
                                                     std::span<const Receiver> receivers, const CandidateSet& candidates,
                                                     std::span<const CandidateLuminaire> luminaires,
-                                                    const ReceiversAir* air, const CandidateOptions& options,
-                                                    CandidateStatistics& statistics);
+                                                    std::span<const std::uint8_t> usable,
+                                                    const CandidateOptions& options, CandidateStatistics& statistics);
 
 }  // namespace luxrig

@@ -8,8 +8,8 @@
 #include "core/parallel.h"
 #include "core/transport/candidates/air_regions.h"
 #include "core/transport/candidates/error_histogram.h"
-#include "core/transport/candidates/indirect_columns.h"
 #include "core/transport/candidates/indirect_plan.h"
+#include "core/transport/candidates/reflected_columns.h"
 #include "core/transport/lamps.h"
 
 namespace luxrig {
@@ -18,9 +18,6 @@ namespace {
 constexpr std::size_t kMostPositionsPerBlock = 8192;
 /// Bytes per receiver and column in a block: direct light, indirect light and its error, and an entry of the result.
 constexpr std::size_t kBytesPerPair = 3 * sizeof(float) + sizeof(std::uint32_t) + 3 * sizeof(float);
-
-/// Candidates that share what pilot rays found.
-constexpr std::uint32_t kPerGuide = 64;
 
 tl::unexpected<Fault> refusal(std::string detail) {
   return tl::unexpected(Fault{Cause::invalid, "", std::move(detail), {}});
@@ -36,7 +33,7 @@ Result<void> check(std::span<const Receiver> receivers, const CandidateSet& cand
   for (std::size_t l = 0; l < candidates.luminaires.size(); ++l) {
     if (candidates.luminaires[l].sky) return refusal(fmt::format("luminaire {} is a sky; it hangs nowhere", l));
     if (candidates.luminaires[l].shape.kind != LuminousShape::Kind::point)
-      return refusal(fmt::format("luminaire {} has a size; candidates are points", l));
+      return refusal(fmt::format("luminaire {} has a size; candidates are points: take its far field as one", l));
   }
   for (std::size_t p = 0; p < candidates.positions_world_m.size(); ++p)
     if (!candidates.positions_world_m[p].allFinite())
@@ -68,18 +65,17 @@ class Stream {
     if (!empty_scene && options_.skips.blockers) blockers_.emplace(scene_);
     visibility_ = {empty_scene ? nullptr : &rays_, blockers_ ? &*blockers_ : nullptr};
     if (!empty_scene && options_.skips.other_air && !receivers_.empty()) air_.emplace(scene_, rays_, receivers_);
+    find_usable();
     std::size_t fixed_bytes = 0;
     if (options_.indirect && !empty_scene && positions > 0 && !receivers_.empty()) {
-      auto planned = plan_indirect(scene_, visibility_, receivers_, candidates_, luminaires_, air_ ? &*air_ : nullptr,
-                                   options_, statistics_);
+      auto planned =
+          plan_indirect(scene_, visibility_, receivers_, candidates_, luminaires_, usable_, options_, statistics_);
       if (!planned) return tl::unexpected(std::move(planned.error()));
-      indirect_.emplace(std::move(*planned));
-      fixed_bytes = indirect_->bytes();
-      for (const CandidateLuminaire& luminaire : luminaires_)
-        luminaire_rays_.push_back(
-            indirect_->prepare(luminaire, statistics_.rays_per_candidate / IndirectColumns::kReplicates));
-      make_groups();
-      report(0.2);
+      report(0.1);
+      reflected_.emplace(rays_, std::move(*planned), candidates_, luminaires_, usable_, options_, statistics_);
+      if (options_.watch.stop.stop_requested()) return cancelled();
+      fixed_bytes = reflected_->bytes();
+      report(0.5);
     }
     const std::size_t per_position =
         std::max<std::size_t>(1, receivers_.size() * luminaires_.size()) * kBytesPerPair + sizeof(Vec3);
@@ -88,7 +84,7 @@ class Stream {
     if (per_block == 0 && positions > 0)
       return refusal(fmt::format("one candidate position needs {} bytes besides {} for the surfaces; the bound is {}",
                                  per_position, fixed_bytes, options_.memory_bound_bytes));
-    const double begun = indirect_ ? 0.2 : 0.0;
+    const double begun = reflected_ ? 0.5 : 0.0;
     for (std::size_t first = 0; first < positions; first += per_block) {
       const std::size_t count = std::min(per_block, positions - first);
       if (!block(first, count)) return cancelled();
@@ -106,101 +102,36 @@ class Stream {
 
   bool block(std::size_t first, std::size_t count) {
     const std::span<const Vec3> positions_m(candidates_.positions_world_m.data() + first, count);
-    use_.assign(count, 1);
-    if (air_)
-      parallel_for((count + 255) / 256, options_.threads, [&](std::size_t part) {
-        for (std::size_t p = 256 * part; p < std::min(count, 256 * part + 256); ++p) use_[p] = use(positions_m[p]);
-      });
+    use_.assign(usable_.begin() + static_cast<std::ptrdiff_t>(first),
+                usable_.begin() + static_cast<std::ptrdiff_t>(first + count));
     for (const std::uint8_t used : use_)
       if (!used) statistics_.columns_other_air += luminaires_.size();
     if (!direct_of_block(visibility_, receivers_, positions_m, use_, luminaires_, options_, direct_lux_, statistics_))
       return false;
     const std::size_t columns = count * luminaires_.size(), rows = receivers_.size();
-    indirect_lux_.assign(indirect_ ? columns * rows : 0, 0.0f);
-    indirect_error_lux_.assign(indirect_ ? columns * rows : 0, 0.0f);
-    if (indirect_ && !reflected(first, positions_m)) return false;
+    indirect_lux_.assign(reflected_ ? columns * rows : 0, 0.0f);
+    indirect_error_lux_.assign(reflected_ ? columns * rows : 0, 0.0f);
+    if (reflected_ && !reflected_->block(first, count, rows, indirect_lux_, indirect_error_lux_)) return false;
     gather(first, columns);
     return true;
   }
 
   /// A position may be used if any of its luminaires hangs in air that reaches a receiver.
-  bool use(const Vec3& position_m) const {
-    return std::any_of(luminaires_.begin(), luminaires_.end(), [&](const CandidateLuminaire& luminaire) {
-      return air_->reaches(position_m + luminaire.offset_world_m);
+  void find_usable() {
+    const std::size_t positions = candidates_.positions_world_m.size();
+    usable_.assign(positions, 1);
+    if (!air_) return;
+    constexpr std::size_t kPerTask = 256;
+    parallel_for((positions + kPerTask - 1) / kPerTask, options_.threads, [&](std::size_t task) {
+      for (std::size_t p = kPerTask * task; p < std::min(positions, kPerTask * (task + 1)); ++p)
+        usable_[p] = std::any_of(luminaires_.begin(), luminaires_.end(), [&](const CandidateLuminaire& luminaire) {
+          return air_->reaches(candidates_.positions_world_m[p] + luminaire.offset_world_m);
+        });
     });
-  }
-
-  /// Neighbouring candidates that share a guide, and the guides, once they are made.
-  void make_groups() {
-    const PointTree tree(candidates_.positions_world_m);
-    group_of_.resize(candidates_.positions_world_m.size());
-    for (std::size_t n = 0; n < tree.nodes.size(); ++n) {
-      const PointTree::Node& node = tree.nodes[n];
-      const bool within_group = !groups_.empty() && node.begin < groups_.back().end;
-      if (within_group || (node.right != 0 && node.end - node.begin > kPerGuide)) continue;
-      for (std::uint32_t i = node.begin; i < node.end; ++i)
-        group_of_[tree.order[i]] = static_cast<std::uint32_t>(groups_.size());
-      groups_.push_back({node.begin, node.end, {}});
-    }
-    group_order_ = tree.order;
-  }
-
-  /// Guides of the groups that the block's positions belong to. The same whatever the block.
-  void make_guides(std::size_t first, std::size_t count) {
-    std::vector<std::uint32_t> wanted;
-    for (std::size_t p = 0; p < count; ++p)
-      if (use_[p] && groups_[group_of_[first + p]].guides.empty()) wanted.push_back(group_of_[first + p]);
-    std::sort(wanted.begin(), wanted.end());
-    wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
-    std::vector<std::uint64_t> cast(wanted.size(), 0);
-    parallel_for(wanted.size(), options_.threads, [&](std::size_t w) {
-      if (options_.watch.stop.stop_requested()) return;
-      Group& group = groups_[wanted[w]];
-      for (std::size_t l = 0; l < luminaires_.size(); ++l) {
-        std::vector<Vec3> lamps_m;
-        for (std::uint32_t i = group.begin; i < group.end; ++i) {
-          const Vec3& position_m = candidates_.positions_world_m[group_order_[i]];
-          if (!air_ || use(position_m)) lamps_m.push_back(position_m + luminaires_[l].offset_world_m);
-        }
-        group.guides.push_back(indirect_->guide(luminaires_[l], lamps_m, cast[w]));
-      }
-    });
-    statistics_.rays += std::accumulate(cast.begin(), cast.end(), std::uint64_t{0});
-  }
-
-  bool reflected(std::size_t first, std::span<const Vec3> positions_m) {
-    make_guides(first, positions_m.size());
-    const std::size_t kinds = luminaires_.size(), rows = receivers_.size();
-    constexpr std::size_t kPerTask = 16;
-    const std::size_t tasks = (positions_m.size() + kPerTask - 1) / kPerTask;
-    std::vector<std::uint64_t> cast(tasks, 0);
-    parallel_for(tasks, options_.threads, [&](std::size_t task) {
-      IndirectColumns::Column column;
-      for (std::size_t p = kPerTask * task; p < std::min(positions_m.size(), kPerTask * (task + 1)); ++p) {
-        if (!use_[p] || options_.watch.stop.stop_requested()) continue;
-        for (std::size_t l = 0; l < kinds; ++l) {
-          const std::size_t c = p * kinds + l;
-          indirect_->evaluate(luminaire_rays_[l], positions_m[p] + luminaires_[l].offset_world_m,
-                              groups_[group_of_[first + p]].guides[l], options_.skips.unlit && !lit(c), column);
-          std::copy_n(column.lux.begin(), rows, indirect_lux_.begin() + static_cast<std::ptrdiff_t>(c * rows));
-          std::copy_n(column.standard_error_lux.begin(), rows,
-                      indirect_error_lux_.begin() + static_cast<std::ptrdiff_t>(c * rows));
-          cast[task] += column.rays;
-        }
-      }
-    });
-    statistics_.rays += std::accumulate(cast.begin(), cast.end(), std::uint64_t{0});
-    return !options_.watch.stop.stop_requested();
   }
 
   float direct(std::size_t r, std::size_t column) const {
     return direct_lux_[r * (direct_lux_.size() / receivers_.size()) + column];
-  }
-
-  bool lit(std::size_t column) const {
-    for (std::size_t r = 0; r < receivers_.size(); ++r)
-      if (direct(r, column) > 0) return true;
-    return false;
   }
 
   /// Entries of the block, columns in order.
@@ -208,7 +139,7 @@ class Stream {
     const std::size_t rows = receivers_.size();
     const auto least = static_cast<float>(options_.skips.reach ? options_.least_lux : 0);
     const auto total = [&](std::size_t r, std::size_t c) {
-      return direct(r, c) + (indirect_ ? indirect_lux_[c * rows + r] : 0.0f);
+      return direct(r, c) + (reflected_ ? indirect_lux_[c * rows + r] : 0.0f);
     };
     columns_.first_column = first_position * luminaires_.size();
     columns_.begin.assign(columns + 1, 0);
@@ -235,7 +166,7 @@ class Stream {
         for (std::size_t r = 0; r < rows; ++r) {
           const float lux = total(r, c);
           if (!kept(lux)) continue;
-          const float error = indirect_ ? indirect_error_lux_[c * rows + r] : 0.0f;
+          const float error = reflected_ ? indirect_error_lux_[c * rows + r] : 0.0f;
           columns_.receiver[at] = static_cast<std::uint32_t>(r);
           columns_.direct_lux[at] = direct(r, c);
           columns_.total_lux[at] = lux;
@@ -257,15 +188,8 @@ class Stream {
   std::optional<Blockers> blockers_;
   VisibilityScene visibility_{};
   std::optional<ReceiversAir> air_;
-  std::optional<IndirectColumns> indirect_;
-  std::vector<LuminaireRays> luminaire_rays_;
-  struct Group {
-    std::uint32_t begin, end;            ///< into group_order_
-    std::vector<DirectionGuide> guides;  ///< per luminaire; empty until made
-  };
-  std::vector<Group> groups_;
-  std::vector<std::uint32_t> group_of_;  ///< per position
-  std::vector<std::uint32_t> group_order_;
+  std::vector<std::uint8_t> usable_;  ///< per position
+  std::optional<ReflectedColumns> reflected_;
   CandidateStatistics statistics_;
   ErrorHistogram errors_;
   // Of the block at hand:

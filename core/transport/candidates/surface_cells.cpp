@@ -8,7 +8,9 @@
 namespace luxrig {
 namespace {
 
-constexpr std::uint32_t kSeveral = SurfaceCells::kNone - 1;
+constexpr std::uint32_t kSeveral = 0x80000000;
+/// Longer lists are not walked: a ray is quicker.
+constexpr std::size_t kMostListed = 48;
 /// Cubes are looked at with this much round them, of their size; lifts of less stay within what was looked at.
 constexpr double kMargin = 0.06;
 constexpr double kLift = 0.03;
@@ -66,6 +68,10 @@ void SurfaceCells::mark_cubes(const Scene& scene) {
   const auto normal_of = [&](std::uint32_t t) {
     return Vec3((corner_m(t, 1) - corner_m(t, 0)).cross(corner_m(t, 2) - corner_m(t, 0)).normalized());
   };
+  struct Overlap {
+    std::uint32_t cube, triangle;
+  };
+  std::vector<Overlap> overlapping;
   for (std::uint32_t t = 0; t < scene.triangles.size(); ++t) {
     const Vec3 a = corner_m(t, 0), b = corner_m(t, 1), c = corner_m(t, 2), normal = normal_of(t);
     const Vec3 margin_m = Vec3::Constant(kMargin * cell_m_);
@@ -78,7 +84,9 @@ void SurfaceCells::mark_cubes(const Scene& scene) {
           // Most cubes in a slanting triangle's box are far from its plane.
           if (std::abs(normal.dot(middle_m - a)) > half_m * normal.cwiseAbs().sum()) continue;
           if (!overlaps(a, b, c, middle_m, half_m)) continue;
-          std::uint32_t& plane = plane_in_cube_[static_cast<std::size_t>(x + size_.x() * (y + size_.y() * z))];
+          const auto index = static_cast<std::uint32_t>(x + size_.x() * (y + size_.y() * z));
+          overlapping.push_back({index, t});
+          std::uint32_t& plane = plane_in_cube_[index];
           if (plane == kNone) {
             plane = t;
           } else if (plane != kSeveral) {
@@ -89,12 +97,24 @@ void SurfaceCells::mark_cubes(const Scene& scene) {
           }
         }
   }
+  std::erase_if(overlapping, [&](const Overlap& one) { return plane_in_cube_[one.cube] != kSeveral; });
+  std::stable_sort(overlapping.begin(), overlapping.end(),
+                   [](const Overlap& p, const Overlap& q) { return p.cube < q.cube; });
+  for (std::size_t i = 0; i < overlapping.size(); ++i) {
+    const auto [cube, t] = overlapping[i];
+    listed_.push_back({corner_m(t, 0), corner_m(t, 1) - corner_m(t, 0), corner_m(t, 2) - corner_m(t, 0)});
+    if (i + 1 < overlapping.size() && overlapping[i + 1].cube == cube) continue;
+    plane_in_cube_[cube] = kSeveral + static_cast<std::uint32_t>(list_begin_.size() - 1);
+    list_begin_.push_back(static_cast<std::uint32_t>(listed_.size()));
+  }
 }
 
-bool SurfaceCells::simple(const Cube& cube) const {
-  if ((cube.array() < 0).any() || (cube.array() >= size_.array()).any()) return false;
-  return plane_in_cube_[static_cast<std::size_t>(cube.x() + size_.x() * (cube.y() + size_.y() * cube.z()))] < kSeveral;
+std::uint32_t SurfaceCells::plane_in(const Cube& cube) const {
+  if ((cube.array() < 0).any() || (cube.array() >= size_.array()).any()) return kNone;
+  return plane_in_cube_[static_cast<std::size_t>(cube.x() + size_.x() * (cube.y() + size_.y() * cube.z()))];
 }
+
+bool SurfaceCells::simple(const Cube& cube) const { return plane_in(cube) < kSeveral; }
 
 std::size_t SurfaceCells::slot_of(std::uint64_t key) const {
   std::size_t slot = mixed(0, key) & (slots_.size() - 1);
@@ -109,19 +129,49 @@ void SurfaceCells::grow() {
     if (slot.key != 0) slots_[slot_of(slot.key)] = slot;
 }
 
-bool SurfaceCells::sees(const Vec3& position_world_m, const Vec3& normal_world, const Cell& cell) const {
+bool SurfaceCells::sees(const Vec3& position_world_m, const Vec3& normal_world, const Cell& cell,
+                        std::uint64_t& rays) const {
   const double lift_m = kLift * cell_m_;
+  ++rays;
   return !rays_->occluded(position_world_m + lift_m * normal_world, Vec3::Zero(),
                           cell.first_world_m + lift_m * cell.first_normal_world);
 }
 
-std::uint32_t SurfaceCells::piece(std::uint32_t first, bool simple, const Vec3& position_world_m,
-                                  const Vec3& normal_world, std::uint64_t& rays) const {
-  if (simple) return first;
-  for (std::uint32_t c = first; c != kNone; c = cells_[c].next) {
-    ++rays;
-    if (sees(position_world_m, normal_world, cells_[c])) return c;
+/// Segment and triangle: T. Möller and B. Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997; edges
+/// belong to both of their triangles, so that nothing passes between.
+bool SurfaceCells::sees_within(const Cube& cube, const Vec3& position_world_m, const Vec3& normal_world,
+                               const Cell& cell, std::uint64_t& rays) const {
+  const std::uint32_t plane = plane_in(cube);
+  const bool listed = plane >= kSeveral && plane != kNone;
+  const std::size_t begin = listed ? list_begin_[plane - kSeveral] : 0,
+                    end = listed ? list_begin_[plane - kSeveral + 1] : 0;
+  if (!listed || end - begin > kMostListed) return sees(position_world_m, normal_world, cell, rays);
+  const double lift_m = kLift * cell_m_;
+  const Vec3 from_m = position_world_m + lift_m * normal_world;
+  const Vec3 way_m = cell.first_world_m + lift_m * cell.first_normal_world - from_m;
+  constexpr double kEdge = 1e-9;
+  for (std::size_t i = begin; i < end; ++i) {
+    const auto& [a_m, ab_m, ac_m] = listed_[i];
+    const Vec3 across = way_m.cross(ac_m);
+    const double determinant = ab_m.dot(across);
+    if (determinant == 0) continue;
+    const Vec3 off_m = from_m - a_m;
+    const double u = off_m.dot(across) / determinant;
+    if (u < -kEdge || u > 1 + kEdge) continue;
+    const Vec3 turned = off_m.cross(ab_m);
+    const double v = way_m.dot(turned) / determinant;
+    if (v < -kEdge || u + v > 1 + kEdge) continue;
+    const double t = ac_m.dot(turned) / determinant;
+    if (t >= 0 && t <= 1) return false;
   }
+  return true;
+}
+
+std::uint32_t SurfaceCells::piece(std::uint32_t first, const Cube& cube, const Vec3& position_world_m,
+                                  const Vec3& normal_world, std::uint64_t& rays) const {
+  if (simple(cube)) return first;
+  for (std::uint32_t c = first; c != kNone; c = cells_[c].next)
+    if (sees_within(cube, position_world_m, normal_world, cells_[c], rays)) return c;
   return kNone;
 }
 
@@ -131,7 +181,7 @@ std::uint32_t SurfaceCells::cell_at(const Vec3& position_world_m, const Vec3& no
   const std::size_t slot = slot_of(key);
   std::uint32_t first = slots_[slot].key == key ? slots_[slot].first : kNone;
   if (first != kNone) {
-    const std::uint32_t found = piece(first, simple(cube), position_world_m, normal_world, rays_cast_);
+    const std::uint32_t found = piece(first, cube, position_world_m, normal_world, rays_cast_);
     if (found != kNone) {
       Cell& cell = cells_[found];
       // One of n with the same chance for each: the n-th replaces what was drawn before with chance 1/n.
@@ -159,7 +209,7 @@ std::uint32_t SurfaceCells::find(const Vec3& position_world_m, const Vec3& norma
   const Cube cube = cube_at(position_world_m);
   const Slot& slot = slots_[slot_of(key_of(cube, normal_world))];
   if (slot.key != 0) {
-    const std::uint32_t found = piece(slot.first, simple(cube), position_world_m, normal_world, rays);
+    const std::uint32_t found = piece(slot.first, cube, position_world_m, normal_world, rays);
     if (found != kNone) return found;
   }
   // A corner that no ray has found: the nearest cell about it that faces the same way and sees it.
@@ -173,8 +223,7 @@ std::uint32_t SurfaceCells::find(const Vec3& position_world_m, const Vec3& norma
         for (std::uint32_t c = about.first; c != kNone; c = cells_[c].next) {
           const double distance_m2 = (cells_[c].first_world_m - position_world_m).squaredNorm();
           if (distance_m2 >= nearest_m2) continue;
-          ++rays;
-          if (!sees(position_world_m, normal_world, cells_[c])) continue;
+          if (!sees(position_world_m, normal_world, cells_[c], rays)) continue;
           nearest = c;
           nearest_m2 = distance_m2;
         }

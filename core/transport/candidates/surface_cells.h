@@ -52,11 +52,16 @@ class SurfaceCells {
   [[nodiscard]] Cube cube_at(const Vec3& position_world_m) const;
   [[nodiscard]] static std::uint64_t key_of(const Cube& cube, const Vec3& normal);
   [[nodiscard]] std::size_t slot_of(std::uint64_t key) const;
+  [[nodiscard]] std::uint32_t plane_in(const Cube& cube) const;
   /// True when only one plane passes through the cube, with a margin: then all of it is one cell.
   [[nodiscard]] bool simple(const Cube& cube) const;
-  [[nodiscard]] bool sees(const Vec3& position_world_m, const Vec3& normal_world, const Cell& cell) const;
+  [[nodiscard]] bool sees(const Vec3& position_world_m, const Vec3& normal_world, const Cell& cell,
+                          std::uint64_t& rays) const;
+  /// The same within a cube: only what lies in the cube can stand between.
+  [[nodiscard]] bool sees_within(const Cube& cube, const Vec3& position_world_m, const Vec3& normal_world,
+                                 const Cell& cell, std::uint64_t& rays) const;
   /// Piece of the cell chain that the place belongs to.
-  [[nodiscard]] std::uint32_t piece(std::uint32_t first, bool simple, const Vec3& position_world_m,
+  [[nodiscard]] std::uint32_t piece(std::uint32_t first, const Cube& cube, const Vec3& position_world_m,
                                     const Vec3& normal_world, std::uint64_t& rays) const;
   void mark_cubes(const Scene& scene);
   void grow();
@@ -65,7 +70,13 @@ class SurfaceCells {
   double cell_m_;
   Vec3 start_world_m_;
   Cube size_ = Cube::Zero();
-  std::vector<std::uint32_t> plane_in_cube_;  ///< a triangle whose plane it is; kNone none, kSeveral several
+  /// Per cube: a triangle whose plane it is; kNone: none; from kSeveral on: several, of the list with that number.
+  std::vector<std::uint32_t> plane_in_cube_;
+  struct Corners {
+    Vec3 a_world_m, ab_m, ac_m;
+  };
+  std::vector<std::uint32_t> list_begin_ = {0};
+  std::vector<Corners> listed_;
   std::vector<Cell> cells_;
   std::vector<Slot> slots_;
   std::size_t slots_used_ = 0;

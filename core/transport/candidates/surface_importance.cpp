@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/transport/candidates/direction_guide.h"
 #include "core/transport/bsdf.h"
+#include "core/transport/candidates/direction_guide.h"
 #include "core/transport/sobol.h"
 
 namespace luxrig {
@@ -16,8 +16,10 @@ constexpr std::uint32_t kRaysPerPlace = 32;
 constexpr double kNearCells = 4;
 constexpr int kNearGrid = 4;
 /// Sweeps end when one changes the sum of W by less than this.
-constexpr double kConverged = 2e-5;
-constexpr double kRoughlyConverged = 1e-3;
+constexpr double kConverged = 1e-4;
+constexpr double kRoughlyConverged = 2e-2;  ///< to say where rays are worth while
+/// Columns that are solved together: few enough for the rows of all patches to stay in a core's own cache.
+constexpr std::size_t kStrip = 2 * kRowUnit;
 /// Neighbouring cells that share what their rays found.
 constexpr std::uint32_t kCellsPerGuide = 32;
 constexpr std::uint32_t kMostSweeps = 400;
@@ -70,9 +72,11 @@ SurfaceImportance::SurfaceImportance(const Scene& scene, const VisibilityScene& 
   solve(kConverged);
   rays_ += surfaces_.rays_cast();
   std::vector<Bounce>().swap(bounces_);
+  add_terms();
   if (!settings_.keep_links) {
     from_cells_.clear();
     from_patches_.clear();
+    std::vector<float>().swap(further_);
   }
 }
 
@@ -187,13 +191,13 @@ void SurfaceImportance::gather_bounces() {
     for (std::uint32_t i = node.begin; i < node.end; ++i) {
       const std::uint32_t c = tree.order[i];
       const Vec3& normal = cells[c].normal_world;
-      const auto weighted = [&](const Vec3& direction) {
+      const auto weighted = [&](const Vec3& direction, double guide_density) {
         const double cosine_density = std::max(0.0, normal.dot(direction)) / kPi;
         if (!(cosine_density > 0)) return kNothing;
         Bounce bounce = trace(c, direction, false);
-        bounce.weight = static_cast<float>(bounce.reflectance * cosine_density /
-                                           (static_cast<double>(first) * cosine_density +
-                                            static_cast<double>(guided) * guide.density_per_sr(direction)));
+        bounce.weight = static_cast<float>(
+            bounce.reflectance * cosine_density /
+            (static_cast<double>(first) * cosine_density + static_cast<double>(guided) * guide_density));
         return bounce;
       };
       const SobolSequence again(mixed(mixed(settings_.seed, kAgainKey), c));
@@ -201,11 +205,13 @@ void SurfaceImportance::gather_bounces() {
       Bounce* of_cell = fresh.data() + c * (first + guided);
       for (std::uint32_t q = 0; q < first; ++q) {
         const auto [u, v] = again.pair(q, 0, 0);
-        of_cell[q] = weighted(cosine_direction(normal, u, v));
+        const Vec3 direction = cosine_direction(normal, u, v);
+        of_cell[q] = weighted(direction, guide.density_per_sr(direction));
       }
       for (std::uint32_t q = 0; q < guided; ++q) {
         const auto [u, v] = where_worth.pair(q, 0, 0);
-        of_cell[first + q] = weighted(guide.sample(u, v).direction);
+        const DirectionSample drawn = guide.sample(u, v);
+        of_cell[first + q] = weighted(drawn.direction, drawn.density_per_sr);
       }
     }
   }
@@ -282,7 +288,7 @@ void SurfaceImportance::update_receiver(const VisibilityScene& visibility, std::
     if (change <= kConverged * sum) break;
   }
   for (std::uint32_t p = 0; p < patches_; ++p) further_[p * stride_ + receiver] = value[p];
-  mark_live();
+  add_terms();
 }
 
 /// What the rays of each patch's cells meet: cells, for the first term; patches, for the second.
@@ -316,35 +322,38 @@ void SurfaceImportance::link_patches() {
   }
 }
 
-void SurfaceImportance::mark_live() {
-  const auto any = [&](const std::vector<float>& rows, std::size_t row) {
-    const auto begin = rows.begin() + static_cast<std::ptrdiff_t>(row * stride_);
-    return std::any_of(begin, begin + static_cast<std::ptrdiff_t>(stride_), [](float w) { return w > 0; });
-  };
-  std::vector<std::uint8_t> live_patch(patches_);
-  for (std::uint32_t p = 0; p < patches_; ++p) live_patch[p] = any(further_, p);
-  live_.resize(surfaces_.cells().size());
-  for (std::size_t c = 0; c < live_.size(); ++c) live_[c] = live_patch[patch_of_cell_[c]] || any(first_, c);
-}
-
 /// The second term: what a patch gathers of the first term by its cells' rays, and then of itself, by Gauss and
-/// Seidel's iteration, there and back in turn.
+/// Seidel's iteration, there and back in turn. Receivers are independent of each other.
 void SurfaceImportance::solve(double converged) {
   link_patches();
-  std::vector<float> gathered(patches_ * stride_, 0.0f);
-  for (std::uint32_t p = 0; p < patches_ && !stop_.stop_requested(); ++p)
-    add_weighted_rows(first_.data(), from_cells_[p], std::span(gathered).subspan(p * stride_, stride_));
-  if (further_.empty()) further_ = gathered;
-  std::vector<float> fresh(stride_);
+  further_.resize(patches_ * stride_, 0.0f);
+  for (std::size_t from = 0; from < stride_ && !stop_.stop_requested(); from += kStrip)
+    solve_strip(from, std::min(kStrip, stride_ - from), converged);
+}
+
+void SurfaceImportance::solve_strip(std::size_t from, std::size_t width, double converged) {
+  const auto packed = [&](const std::vector<float>& rows) {
+    std::vector<float> strip(rows.size() / stride_ * width);
+    for (std::size_t row = 0; row * width < strip.size(); ++row)
+      std::copy_n(rows.data() + row * stride_ + from, width, strip.data() + row * width);
+    return strip;
+  };
+  std::vector<float> gathered(patches_ * width, 0.0f), value = packed(further_);
+  {
+    const std::vector<float> first = packed(first_);
+    for (std::uint32_t p = 0; p < patches_; ++p)
+      add_weighted_rows(first.data(), from_cells_[p], std::span(gathered).subspan(p * width, width));
+  }
+  std::array<float, kStrip> fresh{};
   for (std::uint32_t sweep = 0; sweep < kMostSweeps && !stop_.stop_requested(); ++sweep, ++sweeps_) {
     double change = 0, sum = 0;
     for (std::uint32_t i = 0; i < patches_; ++i) {
       const std::size_t p = sweep % 2 == 0 ? i : patches_ - 1 - i;
-      std::copy_n(gathered.data() + p * stride_, stride_, fresh.data());
-      add_weighted_rows(further_.data(), from_patches_[p], fresh);
-      float* to = further_.data() + p * stride_;
+      std::copy_n(gathered.data() + p * width, width, fresh.data());
+      add_weighted_rows(value.data(), from_patches_[p], std::span(fresh).first(width));
+      float* to = value.data() + p * width;
       float patch_change[4] = {}, patch_sum[4] = {};
-      for (std::size_t r = 0; r < stride_; r += 4)
+      for (std::size_t r = 0; r < width; r += 4)
         for (std::size_t k = 0; k < 4; ++k) {
           patch_change[k] += std::abs(fresh[r + k] - to[r + k]);
           patch_sum[k] += fresh[r + k];
@@ -354,13 +363,25 @@ void SurfaceImportance::solve(double converged) {
     }
     if (change <= converged * sum) break;
   }
-  mark_live();
+  for (std::size_t p = 0; p < patches_; ++p)
+    std::copy_n(value.data() + p * width, width, further_.data() + p * stride_ + from);
+}
+
+void SurfaceImportance::add_terms() {
+  std::vector<float>& sum = settings_.keep_links ? both_ = first_ : first_;
+  live_.resize(surfaces_.cells().size());
+  for (std::size_t c = 0; c < live_.size(); ++c) {
+    float* row = sum.data() + c * stride_;
+    const float* further = further_.data() + patch_of_cell_[c] * stride_;
+    for (std::size_t r = 0; r < stride_; ++r) row[r] += further[r];
+    live_[c] = std::any_of(row, row + stride_, [](float w) { return w > 0; });
+  }
 }
 
 std::size_t SurfaceImportance::bytes() const {
   std::size_t links = 0;
   for (std::size_t p = 0; p < from_cells_.size(); ++p) links += from_cells_[p].size() + from_patches_[p].size();
-  return (first_.size() + further_.size()) * sizeof(float) + bounces_.size() * sizeof(Bounce) +
+  return (first_.size() + further_.size() + both_.size()) * sizeof(float) + bounces_.size() * sizeof(Bounce) +
          links * sizeof(WeightedRow) + surfaces_.cells().size() * 2 * sizeof(SurfaceCells::Cell);
 }
 

@@ -50,10 +50,8 @@ class SurfaceImportance {
 
   /// Receivers, rounded up to a multiple of kRowUnit: the length of the rows below.
   [[nodiscard]] std::size_t stride() const { return stride_; }
-  /// W = row `cell` of first_rows() + row patch_of(cell) of further_rows().
-  [[nodiscard]] const float* first_rows() const { return first_.data(); }
-  [[nodiscard]] const float* further_rows() const { return further_.data(); }
-  [[nodiscard]] std::uint32_t patch_of(std::uint32_t cell) const { return patch_of_cell_[cell]; }
+  /// W [lx/lm], cells × stride().
+  [[nodiscard]] const float* rows() const { return settings_.keep_links ? both_.data() : first_.data(); }
   /// W of the cell is above 0 for a receiver.
   [[nodiscard]] bool live(std::uint32_t cell) const { return live_[cell] != 0; }
   [[nodiscard]] const SurfaceCells& surfaces() const { return surfaces_; }
@@ -80,9 +78,10 @@ class SurfaceImportance {
   void see_receivers(const VisibilityScene& visibility, const CandidateSkips& skips);
   [[nodiscard]] std::vector<Vec3> places_m() const;
   void link_patches();
-  void mark_live();
   [[nodiscard]] double kernel(const Receiver& receiver, const SurfaceCells::Cell& cell) const;
   void solve(double converged);
+  void solve_strip(std::size_t from, std::size_t width, double converged);
+  void add_terms();
 
   static constexpr Bounce kNothing{{0, 0, 1}, SurfaceCells::kNone, 0, 0};
 
@@ -96,8 +95,9 @@ class SurfaceImportance {
   std::vector<std::uint32_t> patch_of_cell_;
   std::uint32_t patches_ = 0;
   std::vector<std::vector<WeightedRow>> from_cells_, from_patches_;  ///< per patch: what its rays meet, with weights
-  std::vector<float> first_;                                         ///< first term of W, cells × stride
-  std::vector<float> further_;                                       ///< second term, patches × stride
+  std::vector<float> first_;  ///< first term of W, cells × stride; with the second added at the end, unless links stay
+  std::vector<float> further_;  ///< second term, patches × stride
+  std::vector<float> both_;     ///< their sum, when links stay: cells × stride
   std::vector<std::uint8_t> live_;
   std::uint64_t rays_ = 0;
   std::uint32_t sweeps_ = 0;

@@ -62,18 +62,23 @@ EmittanceProblem random_problem(int seed, Index most_points, Index most_lights) 
   return p;
 }
 
+/// What lights are asked to add at a point: nothing where there is more than the goal without them.
+double missing_lx(const EmittanceProblem& p, Index point) {
+  return std::max(0.0, p.goal_lx[point] - p.fixed_lx[point]);
+}
+
 double objective(const EmittanceProblem& p, const VectorXd& level) {
   double sum = 0;
   for (Index i = 0; i < p.goal_lx.size(); ++i)
     if (!std::isnan(p.goal_lx[i]))
-      sum += std::pow(p.weight[i] * (p.lux_per_level.row(i).dot(level) + p.fixed_lx[i] - p.goal_lx[i]), 2);
+      sum += std::pow(p.weight[i] * (p.lux_per_level.row(i).dot(level) - missing_lx(p, i)), 2);
   return sum;
 }
 
 double goals_squared(const EmittanceProblem& p) {
   double sum = 0;
   for (Index i = 0; i < p.goal_lx.size(); ++i)
-    if (!std::isnan(p.goal_lx[i])) sum += std::pow(p.weight[i] * (p.goal_lx[i] - p.fixed_lx[i]), 2);
+    if (!std::isnan(p.goal_lx[i])) sum += std::pow(p.weight[i] * missing_lx(p, i), 2);
   return sum;
 }
 
@@ -108,7 +113,7 @@ double kkt_violation(const EmittanceProblem& p, const VectorXd& level) {
     if (std::isnan(p.goal_lx[i])) continue;
     const VectorXd row = p.weight[i] * p.lux_per_level.row(i).transpose();
     norm += row.cwiseAbs2();
-    gradient += row * p.weight[i] * (p.lux_per_level.row(i).dot(level) + p.fixed_lx[i] - p.goal_lx[i]);
+    gradient += row * p.weight[i] * (p.lux_per_level.row(i).dot(level) - missing_lx(p, i));
   }
   norm = norm.cwiseSqrt();
   for (Index j = 0; j < n; ++j)
@@ -142,7 +147,7 @@ double enumerated_objective(const EmittanceProblem& p) {
   for (Index k = 0; k < E.rows(); ++k) {
     const Index i = goals[static_cast<std::size_t>(k)];
     E.row(k) = p.weight[i] * p.lux_per_level.row(i);
-    f[k] = p.weight[i] * (p.goal_lx[i] - p.fixed_lx[i]);
+    f[k] = p.weight[i] * missing_lx(p, i);
   }
   double least = objective(p, VectorXd::Zero(n));
   int bounds = 1;
@@ -252,9 +257,24 @@ TEST(Emittance, EqualsNnlsWhereNothingBindsFromAbove) {
     for (double& goal : p.goal_lx) goal = std::isnan(goal) ? 1 : goal;
     const auto solution = solve_emittance(p);
     ASSERT_TRUE(solution);
-    const NnlsResult nnls = solve_nnls(p.lux_per_level, p.goal_lx - p.fixed_lx);
+    const NnlsResult nnls = solve_nnls(p.lux_per_level, (p.goal_lx - p.fixed_lx).cwiseMax(0.0));
     EXPECT_NEAR(std::sqrt(objective(p, solution->level)), nnls.residual_norm, 1e-7 * std::sqrt(goals_squared(p)));
   }
+}
+
+TEST(Emittance, APointThatDaylightOverfillsHoldsNoOtherDown) {
+  EmittanceProblem p;
+  p.lux_per_level = MatrixXd{{20.0, 1.0}, {2.0, 100.0}};
+  p.fixed_lx = VectorXd{{5000, 100}};
+  p.goal_lx = VectorXd{{500, 150}};
+  p.max_lx = VectorXd::Constant(2, kInf);
+  const auto solution = solve_emittance(p);
+  ASSERT_TRUE(solution) << solution.error().detail;
+  // The first is bright whatever happens; the second gets its goal, but for what spills over to the first.
+  EXPECT_NEAR(solution->points[1].lux, 150, 0.02);
+  EXPECT_LT(solution->level[0], 1e-9);
+  EXPECT_NE(solution->points[0].reason.find("5000 lx are there with all its lights off"), std::string::npos)
+      << solution->points[0].reason;
 }
 
 EmittanceProblem two_points_one_light() {

@@ -76,6 +76,34 @@ TEST(PathEvaluator, IntegratingSphereReflectsTheSameLightEverywhere) {
 }
 
 // Walls of one radiance ρE/π all around: every receiver inside, wherever it looks, gets ρE of reflected light.
+// Panels that fill the walls they lie in: every place gets M directly and M ρ/(1 − ρ) reflected.
+TEST(PathEvaluator, LightOfPanelsFlushWithTheWallsIsReflectedInFull) {
+  constexpr double kEdge_m = 3, kReflectance = 0.5, kExitance_lm_m2 = 100;
+  const Scene scene = make_cube(kEdge_m, kReflectance);
+  const RayScene rays(scene);
+  std::vector<Emitter> panels;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {-1.0, 1.0}) {
+      Emitter panel{make_lambertian(kExitance_lm_m2 * kEdge_m * kEdge_m), {}};
+      panel.shape = {LuminousShape::Kind::rectangle, {kEdge_m, kEdge_m, 0}};
+      const Vec3 x = Vec3::Unit((axis + 1) % 3), z = side * Vec3::Unit(axis);  // light leaves along -z
+      panel.world_from_lamp.rotation << x, z.cross(x), z;
+      panel.world_from_lamp.translation_m = side * kEdge_m / 2 * Vec3::Unit(axis);
+      panels.push_back(panel);
+    }
+  const std::vector<Receiver> receivers = {
+      {{0.2, -0.3, 0.1}, Vec3::UnitZ()}, {{-0.8, 0.5, -0.9}, Vec3(1, 1, 1).normalized()}, {{1, 1, 1}, -Vec3::UnitX()}};
+  EvaluateOptions options;
+  options.wanted_relative_error = 0.003;
+  for (const bool gather : {false, true}) {
+    const auto made =
+        (gather ? make_gather_evaluator(rays) : make_path_evaluator(rays))->evaluate(receivers, panels, options);
+    ASSERT_TRUE(made) << made.error().detail;
+    const Eigen::VectorXd lux = made->lux(Eigen::VectorXd::Ones(6));
+    for (Eigen::Index r = 0; r < lux.size(); ++r) EXPECT_NEAR(lux[r], kExitance_lm_m2 / (1 - kReflectance), 3) << r;
+  }
+}
+
 TEST(PathEvaluator, InAFurnaceEveryPlaceAndDirectionGetsTheSameReflectedLight) {
   const double reflectance = 0.7;
   const Scene sphere = make_icosphere(2, 4, reflectance);

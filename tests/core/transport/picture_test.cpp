@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/photometry/sky.h"
 #include "core/transport/enclosures.h"
 #include "tests/core/transport/lamp_pose.h"
 
@@ -101,6 +102,19 @@ TEST(Picture, WhereNothingIsSeenThereIsNoIlluminance) {
   const auto picture = render_picture(rays, kBulb, std::vector{1.0}, looking({0, 0, 0}, {1, 0, 0}), {});
   ASSERT_TRUE(picture.has_value());
   for (const float lx : picture->illuminance_lx) EXPECT_LT(lx, 0);
+}
+
+TEST(Picture, TheSkyShowsWhereNothingIsHit) {
+  Emitter sky;
+  sky.sky = make_uniform_sky(1000);
+  const RayScene nothing{Scene{}};
+  const auto picture =
+      render_picture(nothing, std::vector{sky}, std::vector{0.5}, looking({0, 0, 0}, {1, 0, 0.001}), {});
+  ASSERT_TRUE(picture.has_value());
+  // A uniform sky of 1000 lx has 1000/π cd/m²; half of that at level 0.5. The lower rows look below the horizon.
+  EXPECT_NEAR(picture->luminance_cd_m2[2 * 33 + 16].y(), 500 / kPi, 0.01);
+  EXPECT_EQ(picture->luminance_cd_m2[19 * 33 + 16].y(), 0);
+  EXPECT_LT(picture->illuminance_lx[2 * 33 + 16], 0);
 }
 
 TEST(Picture, RefusesImpossibleCamerasAndLevels) {

@@ -83,6 +83,24 @@ TEST(RigTransport, DaylightIsASkyAndASunOfTheirOwn) {
   EXPECT_GT(daylight_emitters_of(rig)[0].sky->luminance_cd_m2(Vec3(0, 0.6, 0.8)), 1e6);
 }
 
+TEST(RigTransport, DaylightStandsAfterTheFixturesAndIsAlwaysThere) {
+  Rig rig = small_rig();
+  EXPECT_EQ(all_emitters_of(rig).size(), 3u);
+  rig.daylight = Daylight{};
+  rig.daylight->sky = Daylight::SkyKind::overcast;
+  rig.daylight->horizontal_lx = 5000;
+  rig.daylight->sun_normal_lx = 1000;
+  const auto emitters = all_emitters_of(rig);
+  ASSERT_EQ(emitters.size(), 5u);
+  for (std::size_t e = 0; e < 5; ++e) EXPECT_EQ(emitters[e].sky != nullptr, e >= 3);
+  TransportMatrix transport;
+  transport.lux_per_level = Eigen::MatrixXd{{1, 2, 3, 40, 500}, {6, 7, 8, 0, 9}};
+  EXPECT_EQ(levels_with_daylight(transport, Eigen::Vector3d(0.1, 0.2, 0.3)), (Eigen::VectorXd{{0.1, 0.2, 0.3, 1, 1}}));
+  EXPECT_EQ(daylight_lux(rig, transport), (Eigen::VectorXd{{540, 9}}));
+  transport.lux_per_level.conservativeResize(2, 3);
+  EXPECT_EQ(daylight_lux(rig, transport), (Eigen::VectorXd{{0, 0}}));
+}
+
 TEST(RigTransport, ReceiversArePointsThenLuxmeters) {
   const auto receivers = receivers_of(small_rig());
   ASSERT_EQ(receivers.size(), 3u);

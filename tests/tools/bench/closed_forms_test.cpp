@@ -72,11 +72,10 @@ TEST(BoxRadiosity, ConservesFluxAndHasConverged) {
   const BoxRoom room{size_m, same, 1000, {1.7, 1.1, 1.4}};
   const BoxRadiosity coarse(room, 4), fine(room, 8);
   const GaussNodes rule = gauss_rule(6);
-  double flux_lm = 0, area_m2 = 0, largest = 0;
+  double flux_lm = 0, largest = 0;
   for (int axis = 0; axis < 3; ++axis)
     for (const int side : {0, 1}) {
       const int a = (axis + 1) % 3, b = (axis + 2) % 3;
-      area_m2 += size_m[a] * size_m[b];
       flux_lm += integral(rule, 0, size_m[a], 0, size_m[b], [&](double u, double v) {
         Vec3 at_m = side * size_m[axis] * Vec3::Unit(axis);
         at_m[a] = u, at_m[b] = v;

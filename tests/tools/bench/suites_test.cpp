@@ -54,6 +54,20 @@ TEST(AnalyticCase, WorstErrorIsOverTheReceiversAndOfThePartAskedFor) {
   EXPECT_TRUE(std::isnan(worst_error(one, matrix)));
 }
 
+TEST(AnalyticCase, FewerReceiversAreSpreadOverAllAndKeepTheirExactLux) {
+  AnalyticCase one;
+  for (int i = 0; i < 10; ++i) {
+    one.receivers.push_back({Vec3(i, 0, 0), Vec3::UnitZ()});
+    one.exact_lx.push_back(100.0 + i);
+  }
+  const AnalyticCase few = with_receivers(one, 3);
+  ASSERT_EQ(few.receivers.size(), 3u);
+  EXPECT_EQ(few.exact_lx, (std::vector<double>{101, 105, 108}));
+  for (std::size_t r = 0; r < 3; ++r) EXPECT_EQ(few.receivers[r].position_world_m.x(), few.exact_lx[r] - 100);
+  EXPECT_EQ(with_receivers(one, 10).exact_lx, one.exact_lx);
+  EXPECT_EQ(with_receivers(one, 99).exact_lx, one.exact_lx);
+}
+
 TEST(TransportCase, ErrorIsRelativeToTheLuxOrOnePerCentOfItsMean) {
   Eigen::VectorXd lux(2), reference(2);
   reference << 199, 1;

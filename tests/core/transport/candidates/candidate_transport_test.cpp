@@ -267,6 +267,8 @@ TEST(CandidateTransport, CandidatesInReceiversAndOnSurfacesGiveFiniteNumbers) {
   for (const bool indirect : {false, true}) {
     CandidateOptions options;
     options.indirect = indirect;
+    options.surface_cells = 500;  // nothing here asks for accuracy
+    options.most_rays_per_candidate = 256;
     const auto got = computed(scene, rays, receivers, set, options);
     EXPECT_GT(got.matrix.entries(), 0u);
     for (const auto* part : {&got.matrix.total_lux, &got.matrix.direct_lux, &got.matrix.standard_error_lux})

@@ -1,0 +1,64 @@
+#pragma once
+/// Reflected light of all candidates, block by block: looked at where it must be, interpolated where it can be.
+
+#include <memory>
+
+#include "core/transport/candidates/indirect_columns.h"
+#include "core/transport/candidates/interpolation_nodes.h"
+#include "core/transport/candidates/point_tree.h"
+
+namespace luxrig {
+
+class ReflectedColumns {
+ public:
+  /// usable   per position; the others stay dark
+  /// All references must outlive it. Adds to statistics.rays and sets statistics.nodes.
+  ReflectedColumns(const RayScene& scene, IndirectColumns indirect, const CandidateSet& candidates,
+                   std::span<const CandidateLuminaire> luminaires, std::span<const std::uint8_t> usable,
+                   const CandidateOptions& options, CandidateStatistics& statistics);
+
+  /// Of the positions from `first`: rows of `receivers` floats, one per column; those of unusable positions are left
+  /// alone. False when stopped.
+  [[nodiscard]] bool block(std::size_t first, std::size_t count, std::size_t receivers, std::span<float> lux,
+                           std::span<float> standard_error_lux);
+
+  [[nodiscard]] std::size_t bytes() const;
+
+ private:
+  struct Asked {
+    std::uint32_t position, luminaire;
+  };
+  /// Neighbouring positions that share what pilot rays found.
+  struct Group {
+    std::uint32_t begin, end;                             ///< into group_order_
+    std::vector<std::unique_ptr<DirectionGuide>> guides;  ///< per luminaire; null until made
+  };
+
+  void make_groups(std::size_t places);
+  void make_guides(std::span<const Asked> asked);
+  /// Replicates of each into its place; of none when stopped.
+  void evaluate(std::span<const Asked> asked, const std::function<std::span<float>(std::size_t)>& replicates_of);
+  void choose_nodes();
+  void find_errors();
+  [[nodiscard]] bool interpolate(const Asked& one, std::span<const WeightedRow> shares, std::span<float> replicates,
+                                 std::span<float> squared_error_lux2) const;
+  [[nodiscard]] bool stopped() const { return options_.watch.stop.stop_requested(); }
+
+  const RayScene& scene_;
+  IndirectColumns indirect_;
+  std::span<const Vec3> positions_world_m_;
+  std::span<const CandidateLuminaire> luminaires_;
+  std::span<const std::uint8_t> usable_;
+  const CandidateOptions& options_;
+  CandidateStatistics& statistics_;
+  std::size_t row_;  ///< floats of all replicates of a column
+  std::vector<Group> groups_;
+  std::vector<std::uint32_t> group_of_;  ///< per position
+  std::vector<std::uint32_t> group_order_;
+  std::size_t guides_made_ = 0;
+  InterpolationNodes nodes_;
+  std::vector<std::vector<float>> values_;          ///< per luminaire: nodes × row_
+  std::vector<std::vector<float>> squared_errors_;  ///< per luminaire: nodes × stride [lx²], see find_errors()
+};
+
+}  // namespace luxrig
