@@ -50,6 +50,14 @@ MatrixXd matrix_or_zero(const MatrixXd& matrix, Index rows, Index columns, const
   return matrix;
 }
 
+/// With one more column, unless nothing at all is given for it.
+MatrixXd joined(const MatrixXd& lit, const VectorXd& fixed, bool any_fixed, const char* what) {
+  if (!any_fixed) return lit;
+  MatrixXd all(lit.rows(), lit.cols() + 1);
+  all << lit, matrix_or_zero(fixed, lit.rows(), 1, what);
+  return all;
+}
+
 std::vector<double> list_of(const VectorXd& level) { return {level.data(), level.data() + level.size()}; }
 
 }  // namespace
@@ -61,10 +69,15 @@ GainEstimator::GainEstimator(const Rig& rig, const LightModel& model)
       meters_(rig.luxmeters.size()) {
   const auto fixtures = static_cast<Index>(rig.fixtures.size()), points = static_cast<Index>(points_.size()),
              meters = static_cast<Index>(luxmeters_.size());
-  point_ = matrix_or_zero(model.point_lux_per_level, points, fixtures, "point_lux_per_level");
-  meter_ = matrix_or_zero(model.meter_lux_per_level, meters, fixtures, "meter_lux_per_level");
-  point_error_ = matrix_or_zero(model.point_standard_error, points, fixtures, "point_standard_error");
-  meter_error_ = matrix_or_zero(model.meter_standard_error, meters, fixtures, "meter_standard_error");
+  const bool fixed = model.point_fixed_lx.size() > 0 || model.meter_fixed_lx.size() > 0;
+  point_ = joined(matrix_or_zero(model.point_lux_per_level, points, fixtures, "point_lux_per_level"),
+                  model.point_fixed_lx, fixed, "point_fixed_lx");
+  meter_ = joined(matrix_or_zero(model.meter_lux_per_level, meters, fixtures, "meter_lux_per_level"),
+                  model.meter_fixed_lx, fixed, "meter_fixed_lx");
+  point_error_ = joined(matrix_or_zero(model.point_standard_error, points, fixtures, "point_standard_error"),
+                        model.point_fixed_error_lx, fixed, "point_fixed_error_lx");
+  meter_error_ = joined(matrix_or_zero(model.meter_standard_error, meters, fixtures, "meter_standard_error"),
+                        model.meter_fixed_error_lx, fixed, "meter_fixed_error_lx");
   max_level_.resize(fixtures);
   for (Index j = 0; j < fixtures; ++j) {
     const Fixture& fixture = rig.fixtures[static_cast<std::size_t>(j)];
@@ -84,9 +97,10 @@ GainEstimator::GainEstimator(const Rig& rig, const LightModel& model)
 }
 
 VectorXd GainEstimator::vector_of(std::span<const double> level) const {
-  LUXRIG_CHECK(static_cast<Index>(level.size()) == max_level_.size(), "{} levels, {} fixtures", level.size(),
-               max_level_.size());
-  return Eigen::Map<const VectorXd>(level.data(), static_cast<Index>(level.size()));
+  LUXRIG_CHECK(static_cast<Index>(level.size()) == fixtures(), "{} levels, {} fixtures", level.size(), fixtures());
+  VectorXd all = VectorXd::Ones(meter_.cols());
+  all.head(fixtures()) = Eigen::Map<const VectorXd>(level.data(), fixtures());
+  return all;
 }
 
 GainEstimator::Row GainEstimator::row_of_meter(std::size_t luxmeter) const {
@@ -129,18 +143,18 @@ double GainEstimator::covariance(const Row& one, const VectorXd& one_level, cons
 }
 
 void GainEstimator::estimate(Time now) {
-  const Index fixtures = max_level_.size(), meters = meter_.rows(), count = static_cast<Index>(evidence_.size());
-  gain_ = VectorXd::Constant(fixtures, prior_gain_);
-  gain_error_ = VectorXd::Constant(fixtures, prior_gain_sd_);
-  factor_ = MatrixXd::Constant(meters, fixtures, prior_gain_);
-  MatrixXd local_variance = MatrixXd::Constant(meters, fixtures, prior_local_sd_ * prior_local_sd_);
+  const Index columns = meter_.cols(), meters = meter_.rows(), count = static_cast<Index>(evidence_.size());
+  gain_ = VectorXd::Constant(columns, prior_gain_);
+  gain_error_ = VectorXd::Constant(columns, prior_gain_sd_);
+  factor_ = MatrixXd::Constant(meters, columns, prior_gain_);
+  MatrixXd local_variance = MatrixXd::Constant(meters, columns, prior_local_sd_ * prior_local_sd_);
   for (Index i = 0; i < meters; ++i)
-    for (Index j = 0; j < fixtures; ++j)
+    for (Index j = 0; j < columns; ++j)
       if (meter_(i, j) > 0) local_variance(i, j) += std::pow(meter_error_(i, j) / meter_(i, j), 2);
   factor_error_ = (local_variance.array() + prior_gain_sd_ * prior_gain_sd_).sqrt();
   if (count == 0) return;
 
-  MatrixXd light(count, fixtures);  // H: what each fixture gives to each reading, at rated output
+  MatrixXd light(count, columns);  // H: what each fixture gives to each reading, at rated output
   VectorXd surprise(count);
   for (Index k = 0; k < count; ++k) {
     const Evidence& e = evidence_[static_cast<std::size_t>(k)];
@@ -158,14 +172,14 @@ void GainEstimator::estimate(Time now) {
                    std::pow(luxmeters_[e.luxmeter].patch.lux_per_count, 2) / 12;
     // At levels other than the present ones the dimmer's true curve makes the gain another one.
     const VectorXd& present = latest(e.luxmeter)->level;
-    for (Index j = 0; j < fixtures; ++j)
+    for (Index j = 0; j < columns; ++j)
       noise += std::pow(light(k, j) * kCurveError * log_ratio(e.level[j], present[j]), 2);
     total(k, k) += std::max(noise, 1e-300);
   }
   innovation_.compute(total);
   const VectorXd weight = innovation_.solve(surprise);
   const double gain_variance = prior_gain_sd_ * prior_gain_sd_;
-  for (Index j = 0; j < fixtures; ++j) {
+  for (Index j = 0; j < columns; ++j) {
     const VectorXd with_gain = gain_variance * light.col(j);
     gain_[j] = std::clamp(prior_gain_ + with_gain.dot(weight), gain_min_, gain_max_);
     gain_error_[j] = std::sqrt(std::max(0.0, gain_variance - with_gain.dot(innovation_.solve(with_gain))));
@@ -345,6 +359,11 @@ double GainEstimator::most_lux(const Row& row, const VectorXd& level, Time now) 
   return most;
 }
 
+double GainEstimator::most_without_fixtures(const Row& row, Time now) const {
+  if (meter_.cols() == fixtures()) return 0;
+  return most_lux(row, vector_of(std::vector<double>(static_cast<std::size_t>(fixtures()), 0.0)), now);
+}
+
 double GainEstimator::most_lux_at_point(std::size_t point, std::span<const double> level, Time now) const {
   return most_lux(row_of_point(point), vector_of(level), now);
 }
@@ -355,22 +374,24 @@ WorstCase GainEstimator::worst_case(std::span<const double> from, std::span<cons
   for (std::size_t p = 0; p < points_.size(); ++p)
     if (points_[p].max_lx) worst.points.push_back(p);
   const auto count = static_cast<Index>(worst.points.size());
-  worst.worst_lux_per_level.resize(count, begin.size());
+  worst.worst_lux_per_level.resize(count, fixtures());
   worst.max_lx.resize(count);
   for (Index k = 0; k < count; ++k) {
     const std::size_t p = worst.points[static_cast<std::size_t>(k)];
     const double max_lx = *points_[p].max_lx;
-    worst.max_lx[k] = max_lx;
     const Row row = row_of_point(p);
-    worst.worst_lux_per_level.row(k) = unmeasured_worst(row);
+    // most_lux() is convex in the levels: above what it is without fixtures it grows at most in proportion.
+    const double daylight_lx = most_without_fixtures(row, now);
+    worst.max_lx[k] = std::max(0.0, max_lx - daylight_lx);
+    worst.worst_lux_per_level.row(k) = unmeasured_worst(row).head(fixtures());
     if (!row.luxmeter) continue;
     // One factor on the best estimate, large enough wherever on the way the limit could be near.
-    const RowVectorXd estimate = row.lux_per_level.cwiseProduct(row.factor) + 3 * row.standard_error;
+    const RowVectorXd estimate = (row.lux_per_level.cwiseProduct(row.factor) + 3 * row.standard_error).head(fixtures());
     double factor = 0;
     for (int s = 0; s <= kFadeSamples; ++s) {
       const VectorXd level = begin + (end - begin) * (static_cast<double>(s) / kFadeSamples);
-      const double lux = estimate.dot(level), most = most_lux(row, level, now);
-      if (lux > 0 && (s == kFadeSamples || most >= 0.9 * max_lx)) factor = std::max(factor, most / lux);
+      const double lux = estimate.dot(level.head(fixtures())), most = most_lux(row, level, now);
+      if (lux > 0 && (s == kFadeSamples || most >= 0.9 * max_lx)) factor = std::max(factor, (most - daylight_lx) / lux);
     }
     if (factor > 0) worst.worst_lux_per_level.row(k) = factor * estimate;
   }
@@ -378,7 +399,7 @@ WorstCase GainEstimator::worst_case(std::span<const double> from, std::span<cons
 }
 
 std::vector<double> GainEstimator::within_limits(std::span<const double> given, Time now) const {
-  std::vector<double> level = list_of(vector_of(given).cwiseMax(0).cwiseMin(max_level_));
+  std::vector<double> level = list_of(vector_of(given).head(fixtures()).cwiseMax(0).cwiseMin(max_level_));
   for (int round = 0; round < kLimitRounds; ++round) {
     const WorstCase worst = worst_case(level, level, now);
     const std::vector<double> before = level;
@@ -391,7 +412,8 @@ std::vector<double> GainEstimator::within_limits(std::span<const double> given, 
     const Row row = row_of_point(p);
     const double most = most_lux(row, vector_of(level), now);
     if (most <= *points_[p].max_lx) continue;
-    const double share = std::pow(*points_[p].max_lx / most, 1 / (1 - kCurveError));
+    const double daylight_lx = most_without_fixtures(row, now), room = *points_[p].max_lx - daylight_lx;
+    const double share = room > 0 ? std::pow(room / (most - daylight_lx), 1 / (1 - kCurveError)) : 0;
     for (std::size_t j = 0; j < level.size(); ++j)
       if (row.lux_per_level[static_cast<Index>(j)] > 0) level[j] *= share;
   }
@@ -402,24 +424,27 @@ Correction GainEstimator::correct(std::span<const double> present, Time now) con
   EmittanceProblem problem;
   const auto points = static_cast<Index>(points_.size());
   // After the points one row per fixture, whose goal is its present level.
-  const Index fixtures = max_level_.size(), all = points + fixtures;
-  problem.lux_per_level.setZero(all, fixtures);
+  const Index lights = fixtures(), all = points + lights;
+  problem.lux_per_level.setZero(all, lights);
+  problem.fixed_lx.setZero(all);
   problem.goal_lx.setConstant(all, std::numeric_limits<double>::quiet_NaN());
   problem.weight.setConstant(all, kCaution);
   problem.max_lx.setConstant(all, std::numeric_limits<double>::infinity());
   problem.max_level = max_level_;
-  problem.near_level = vector_of(present).cwiseMax(0).cwiseMin(max_level_);
+  problem.near_level = vector_of(present).head(lights).cwiseMax(0).cwiseMin(max_level_);
   problem.light_name = fixture_names_;
   std::vector<Row> rows;
   for (Index i = 0; i < points; ++i) {
     const Point& point = points_[static_cast<std::size_t>(i)];
     rows.push_back(row_of_point(static_cast<std::size_t>(i)));
-    problem.lux_per_level.row(i) = rows.back().lux_per_level.cwiseProduct(rows.back().factor);
+    const RowVectorXd lux = rows.back().lux_per_level.cwiseProduct(rows.back().factor);
+    problem.lux_per_level.row(i) = lux.head(lights);
+    if (lux.size() > lights) problem.fixed_lx[i] = lux[lights];
     problem.weight[i] = point.weight * (rows.back().luxmeter ? kMeteredWeight : 1);
     if (point.goal_lx) problem.goal_lx[i] = *point.goal_lx;
     problem.point_name.push_back(point.name);
   }
-  for (Index j = 0; j < fixtures && points > 0; ++j) {
+  for (Index j = 0; j < lights && points > 0; ++j) {
     const double brightest = problem.lux_per_level.col(j).head(points).maxCoeff();
     problem.lux_per_level(points + j, j) = brightest;
     if (brightest > 0) problem.goal_lx[points + j] = brightest * problem.near_level[j];
@@ -434,10 +459,13 @@ Correction GainEstimator::correct(std::span<const double> present, Time now) con
     for (Index i = 0; i < points; ++i) {
       const auto& max_lx = points_[static_cast<std::size_t>(i)].max_lx;
       if (!max_lx) continue;
+      const Row& row = rows[static_cast<std::size_t>(i)];
+      const double daylight_lx = most_without_fixtures(row, now), room = std::max(0.0, *max_lx - daylight_lx);
       const double lux = problem.lux_per_level.row(i).dot(level);
-      const double most = most_lux(rows[static_cast<std::size_t>(i)], level, now);
-      over = over || most > *max_lx;
-      problem.max_lx[i] = lux > 0 && most > 0 ? *max_lx * std::min(1.0, lux / most) : *max_lx / local_;
+      const double most = most_lux(row, vector_of(list_of(level)), now) - daylight_lx;
+      over = over || most > room;
+      problem.max_lx[i] =
+          problem.fixed_lx[i] + (lux > 0 && most > 0 ? room * std::min(1.0, lux / most) : room / local_);
     }
     if (!over) break;
     const auto solution = solve_emittance(problem);
@@ -455,7 +483,8 @@ Correction GainEstimator::correct(std::span<const double> present, Time now) con
     }
   }
   correction.level = within_limits(list_of(level), now);
-  const VectorXd aimed = problem.lux_per_level.topRows(points) * vector_of(correction.level);
+  const VectorXd aimed =
+      problem.lux_per_level.topRows(points) * vector_of(correction.level).head(lights) + problem.fixed_lx.head(points);
   correction.aimed_lx = list_of(aimed);
   return correction;
 }

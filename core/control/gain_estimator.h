@@ -11,6 +11,10 @@
 /// repeating a reading does not feign certainty. Bounds that nothing crosses: g in [gain_min, gain_max], and the model
 /// without g right at every point to within a factor of 1/(1 − open_loop_margin) either way.
 ///
+/// Light that no fixture gives (daylight, LightModel::point_fixed_lx) counts as one more fixture, always at level 1: it
+/// may be off by the same factors, readings teach how far, and what limits leave for fixtures is less by the most of
+/// it.
+///
 /// A meter's systematic tolerance does not slow the loop (the reading shall equal the goal), but limits must hold with
 /// it: the true value may be reading / (1 − tolerance).
 ///
@@ -44,7 +48,7 @@ struct Prediction {
   double standard_error_lx = 0;
 };
 
-/// For OutputProgram: one row per limited point.
+/// For OutputProgram: one row per limited point. max_lx is what daylight leaves of the limit, 0 when it leaves nothing.
 struct WorstCase {
   std::vector<std::size_t> points;      ///< index in the rig, ascending
   Eigen::MatrixXd worst_lux_per_level;  ///< points × fixtures
@@ -60,7 +64,7 @@ struct Correction {
 class GainEstimator {
  public:
   /// Uses the rig's fixtures (max_level), luxmeters, points, limits and control. The model's matrices must have the
-  /// rig's sizes (asserted).
+  /// rig's sizes (asserted), or be empty.
   GainEstimator(const Rig& rig, const LightModel& model);
 
   /// Would this reading be believed? `level`: per fixture, as it was (settled) when the reading was taken.
@@ -130,11 +134,13 @@ class GainEstimator {
   [[nodiscard]] double most_lux(const Row& row, const Eigen::VectorXd& level, Time now) const;
   [[nodiscard]] const Evidence* latest(std::size_t luxmeter) const;
   [[nodiscard]] double covariance(const Row& one, const Eigen::VectorXd& one_level, const Evidence& other) const;
-  [[nodiscard]] Eigen::VectorXd vector_of(std::span<const double> level) const;
+  [[nodiscard]] Eigen::VectorXd vector_of(std::span<const double> level) const;  ///< with the 1 of daylight
+  [[nodiscard]] Eigen::Index fixtures() const { return max_level_.size(); }
+  [[nodiscard]] double most_without_fixtures(const Row& row, Time now) const;
   void learn(const LuxReading& reading, const Eigen::VectorXd& level);
   void estimate(Time now);
 
-  Eigen::MatrixXd point_, point_error_, meter_, meter_error_;
+  Eigen::MatrixXd point_, point_error_, meter_, meter_error_;  ///< a column per fixture, then daylight's, if any
   std::vector<Luxmeter> luxmeters_;
   std::vector<Point> points_;
   std::vector<std::string> fixture_names_;
@@ -148,7 +154,7 @@ class GainEstimator {
   std::vector<Meter> meters_;
   Eigen::LDLT<Eigen::MatrixXd> innovation_;  ///< covariance of the evidence
   Eigen::VectorXd gain_, gain_error_;
-  Eigen::MatrixXd factor_, factor_error_;  ///< x: luxmeters × fixtures
+  Eigen::MatrixXd factor_, factor_error_;  ///< x: luxmeters × columns
 };
 
 }  // namespace luxrig

@@ -35,7 +35,8 @@ struct PlannedPoint {
   Vec3 normal_world = Vec3::UnitZ();
   double lux = 0, direct_lux = 0, standard_error_lux = 0;
   std::optional<double> goal_lux;
-  std::string why;  ///< empty when met; else what binds
+  std::string why;                       ///< empty when met; else what binds
+  std::optional<double> daylight_lux{};  ///< what of lux is daylight; none in a rig without
 };
 
 struct PlannedLimit {

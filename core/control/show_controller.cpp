@@ -116,7 +116,8 @@ void ShowController::State::guard(Time now, const std::vector<double>& from, con
     bool safe = true;
     for (int s = nothing_new ? 1 : 0; s <= kSamples && safe; ++s) {
       const Eigen::VectorXd level = begin + (end - begin) * (static_cast<double>(s) / kSamples);
-      safe = estimator.most_lux_at_point(worst.points[k], {level.data(), from.size()}, now) <= max_lx * kRounding;
+      const double most_lx = estimator.most_lux_at_point(worst.points[k], {level.data(), from.size()}, now);
+      safe = most_lx <= *rig.points[worst.points[k]].max_lx * kRounding;  // all light; the row's limit lacks daylight
     }
     if (safe) row *= max_lx / ends_lx * (1 - 1e-9);
   }

@@ -168,6 +168,7 @@ void RigReader::read_all() {
   read_unknown_sections();
   read_settings();
   read_scene();
+  read_daylight();
   read_luminaires();
   read_buses();
   read_points();  // before fixtures and meters, which name points

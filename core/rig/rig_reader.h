@@ -62,6 +62,7 @@ struct RigReader {
   void read_points_file(Section& section);
   void read_fixtures();
   void read_luxmeters();
+  void read_daylight();
   void read_tasks();
   void read_settings();
 

@@ -20,7 +20,10 @@ constexpr Bounds kRoughness{0.05, 1};
 constexpr Bounds kLuminousSize{0.001, 100};
 constexpr Bounds kShare{0, 1};
 constexpr Bounds kLux{0, 1e7};
+constexpr Bounds kOutdoors{0, 200'000, true};  // the sun above the air gives 127,500 lx
 constexpr Bounds kAngle{-3600, 3600};
+constexpr Bounds kBearing{-360, 360};
+constexpr Bounds kQuarterTurn{-90, 90};
 constexpr Bounds kFullCone{0, 180, true, true};
 constexpr Bounds kSeconds{0, 3600};
 constexpr Bounds kUnit{0, 255};
@@ -34,6 +37,9 @@ constexpr SectionSpec kSections[] = {
     {"scene.reflectance", true, 10000, false,
      "Reflectance by material name. The first rule that matches wins, also over colours in the mesh file."},
     {"scene.object", true, 10000, false, "A thing put into the room: a mesh (`file`) or a box (`box_m`)."},
+    {"daylight", false, 1, false,
+     "Light from outside, through whatever openings the mesh leaves: a sky of the CIE, and the sun. It cannot be "
+     "dimmed."},
     {"luminaire", true, 10000, false, "A kind of light: what it sends where, at rated flux. Fixtures name it."},
     {"bus", true, 1000, true, "A way to reach devices. Every further key is the driver's own: see Bus options."},
     {"fixture", true, 10000, false,
@@ -77,6 +83,33 @@ constexpr KeySpec kKeys[] = {
     {"scene.object", "turn_deg", number, "°", "0", kAngle, "", "turn about the vertical, counter-clockwise from above"},
     {"scene.object", "reflectance", colour, "", kNone, kReflectance, "",
      "of all of it; left out, the rules and the mesh file's colours apply"},
+
+    {"daylight", "sky", text, "", kRequired, kAny, "uniform, overcast, clear, general",
+     "how its brightness is spread: the same everywhere, CIE overcast, CIE clear, or a type of the CIE general sky"},
+    {"daylight",
+     "sky_type",
+     whole_number,
+     "",
+     kNone,
+     {1, 15},
+     "",
+     "type of ISO 15469 / CIE S 011: 1 to 5 overcast, 6 to 10 partly cloudy, 11 to 15 clear (only with sky `general`, "
+     "and required there)"},
+    {"daylight", "horizontal_lx", number, "lx", kNone, kOutdoors, "",
+     "what the sky alone gives an open horizontal plane; left out, the mean for the sun's elevation"},
+    {"daylight", "sun", yes_no, "", "true", kAny, "", "whether the sun itself shines; else only the sky"},
+    {"daylight", "sun_normal_lx", number, "lx", kNone, kOutdoors, "",
+     "what the sun gives a plane that faces it; left out, the mean for its elevation under a clear or partly cloudy "
+     "sky, nothing under an overcast one"},
+    {"daylight", "sun_azimuth_deg", number, "°", kNone, kBearing, "",
+     "where the sun stands, from north over east; with `sun_elevation_deg`"},
+    {"daylight", "sun_elevation_deg", number, "°", kNone, kQuarterTurn, "", "its height above the horizon"},
+    {"daylight", "latitude_deg", number, "°", kNone, kQuarterTurn, "",
+     "north positive; with `longitude_deg` and `time`, instead of the sun's angles"},
+    {"daylight", "longitude_deg", number, "°", kNone, {-180, 180}, "", "east positive"},
+    {"daylight", "time", text, "", kNone, kAny, "", "date, time and offset from UTC: `2026-06-21T12:00:00+02:00`"},
+    {"daylight", "north_deg", number, "°", "0", kAngle, "",
+     "where north lies in the model: turned from +y, counter-clockwise from above (-90: north is +x)"},
 
     {"luminaire", "name", name, "", kRequired, kAny, "", "what fixtures call it"},
     {"luminaire", "model", text, "", kRequired, kAny, "ies, isotropic, spot, rectangle, disk, sphere, cylinder",

@@ -3,8 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/photometry/shape_sampling.h"
+#include "core/transport/rig_transport.h"
+#include "core/transport/shape_light.h"
+
 namespace luxrig::sim {
 namespace {
+
+constexpr double kShapeError = 1e-3;
+constexpr int kSeenRays = 64;
 
 class SampledHeadLight final : public HeadLight {
  public:
@@ -17,15 +24,12 @@ class SampledHeadLight final : public HeadLight {
     if (head == heads_.end()) return;
     add_indirect(*head, beam_mount(joints), lux);
     const Pose world_from_lamp = luxrig::world_from_lamp(head->world_from_mount, joints, head->roll_rad);
+    const Emitter emitter = emitter_of(head->luminaire, world_from_lamp);
     for (std::size_t r = 0; r < receivers_.size(); ++r) {
-      if (!head->sees[r]) continue;
-      const Vec3 to_receiver = receivers_[r].position_world_m - world_from_lamp.translation_m;
-      const double distance_m = to_receiver.norm();
-      const double cosine = -receivers_[r].normal_world.dot(to_receiver) / distance_m;
-      if (!(cosine > 0)) continue;
-      const Vec3 direction_lamp = world_from_lamp.inverse_direction(to_receiver / distance_m);
+      if (!(head->sees[r] > 0)) continue;
       lux[static_cast<Eigen::Index>(r)] +=
-          head->intensity->intensity_cd(direction_lamp) * cosine / (distance_m * distance_m);
+          head->sees[r] *
+          illuminance_lx(receivers_[r].position_world_m, receivers_[r].normal_world, emitter, kShapeError);
     }
   }
 
@@ -55,6 +59,30 @@ class SampledHeadLight final : public HeadLight {
 
 std::unique_ptr<const HeadLight> make_head_light(std::vector<Receiver> receivers, std::vector<HeadSamples> heads) {
   return std::make_unique<SampledHeadLight>(std::move(receivers), std::move(heads));
+}
+
+std::vector<double> seen_shares(const RayScene& scene, const std::vector<Receiver>& receivers, const Emitter& head) {
+  const Pose& pose = head.world_from_lamp;
+  const auto sees = [&](const Receiver& receiver, const Vec3& at_m) {
+    return !scene.occluded(receiver.position_world_m, receiver.normal_world, at_m);
+  };
+  std::vector<double> shares;
+  for (const Receiver& receiver : receivers) {
+    int seen = 0, asked = 0;
+    for (int k = 0; k < kSeenRays && head.shape.kind != LuminousShape::Kind::point; ++k) {
+      // Points of the R2 sequence (Roberts 2018): even over the square without a generator.
+      const double u = std::fmod(0.5 + 0.7548776662466927 * k, 1.0), v = std::fmod(0.5 + 0.5698402909980532 * k, 1.0);
+      const Vec3 from_lamp_m = pose.inverse_direction(receiver.position_world_m - pose.translation_m);
+      const ShapeSample sample = sample_seen_from(head.shape, from_lamp_m, u, v);
+      if (!(sample.density_per_sr > 0)) continue;
+      const Vec3 to_world = pose.direction(sample.direction);
+      if (!(receiver.normal_world.dot(to_world) > 0)) continue;
+      ++asked;
+      seen += sees(receiver, receiver.position_world_m + sample.distance_m * to_world);
+    }
+    shares.push_back(asked > 0 ? static_cast<double>(seen) / asked : sees(receiver, pose.translation_m) ? 1.0 : 0.0);
+  }
+  return shares;
 }
 
 Vec3 beam_mount(const PanTilt& joints) {

@@ -1,8 +1,9 @@
 #pragma once
 /// What a pan-tilt head gives every receiver, wherever it looks, without a ray being traced while it turns.
 ///
-/// Direct part: exact. The lamp sits in the pivot, so what is hidden from it does not depend on the aim; visibility is
-/// found once, and the column is I(ω) cosθ / d² in closed form.
+/// Direct part: exact for a point. The lamp sits in the pivot, so what is hidden from it does not depend on the aim;
+/// visibility is found once, and the column is I(ω) cosθ / d² in closed form. A lamp with size gets the quadrature of
+/// shape_light.h (to 1e-3) times the share of it that is seen, which is found once, at the aim of the rig file.
 /// Indirect part: known at a set of aims, and in between the average of those, weighted by the inverse fourth power of
 /// the angle between the beams (Shepard 1968). At an aim of the set it is that aim's own value; the set holds the aim
 /// that the rig file gives and `spread_aims` of the head's range. Off the set it blurs the patch that the beam lights:
@@ -22,14 +23,18 @@ struct HeadSamples {
   std::size_t fixture = 0;
   Pose world_from_mount;  ///< true
   double roll_rad = 0;
-  Intensity intensity;
-  std::vector<bool> sees;                  ///< per receiver: nothing stands in between
+  Luminaire luminaire;                     ///< its size, colour and TILT count
+  std::vector<double> sees;                ///< per receiver: share of the lamp with nothing in between, 0…1
   std::vector<Vec3> aims_mount;            ///< unit beam directions
   Eigen::MatrixXd indirect_lux_per_level;  ///< receivers × aims
 };
 
 [[nodiscard]] std::unique_ptr<const HeadLight> make_head_light(std::vector<Receiver> receivers,
                                                                std::vector<HeadSamples> heads);
+
+/// What a head, aimed so, shows each receiver of its lamp: HeadSamples::sees.
+[[nodiscard]] std::vector<double> seen_shares(const RayScene& scene, const std::vector<Receiver>& receivers,
+                                              const Emitter& head);
 
 /// Beam direction in frame mount (core/rig/frames.h).
 [[nodiscard]] Vec3 beam_mount(const PanTilt& joints);

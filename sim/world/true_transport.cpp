@@ -45,17 +45,15 @@ Result<std::unique_ptr<const HeadLight>> light_of_heads(const Rig& rig, const st
     head.fixture = f;
     head.world_from_mount = truths[f].world_from_mount;
     head.roll_rad = fixture.roll_rad;
-    head.intensity = rig.luminaires[fixture.luminaire].intensity;
-    for (const Receiver& receiver : receivers) {
-      head.sees.push_back(
-          !scene.occluded(receiver.position_world_m, receiver.normal_world, head.world_from_mount.translation_m));
-    }
+    head.luminaire = rig.luminaires[fixture.luminaire];
+    const auto emitter_at = [&](const PanTilt& joints) {
+      return emitter_of(head.luminaire, world_from_lamp(head.world_from_mount, joints, head.roll_rad));
+    };
+    head.sees = seen_shares(scene, receivers, emitter_at(fixture.joints));
     const std::vector<PanTilt> aims = aims_of(fixture);
     for (std::size_t a = 0; a < aims.size(); ++a) {
       head.aims_mount.push_back(beam_mount(aims[a]));
-      if (a > 0) {
-        emitters.push_back({head.intensity, world_from_lamp(head.world_from_mount, aims[a], head.roll_rad)});
-      }
+      if (a > 0) emitters.push_back(emitter_at(aims[a]));
     }
     heads.push_back(std::move(head));
   }
@@ -101,14 +99,16 @@ Result<std::unique_ptr<World>> World::make(const Rig& rig, const Deviations& dev
   options.wanted_relative_error = max_error;
   options.seed = deviations.seed;
   options.watch = part_of(watch, 0, any_moves ? 0.5 : 1);
-  const auto transport = make_path_evaluator(scene)->evaluate(receivers, emitters_of(true_rig), options);
+  const auto transport = make_path_evaluator(scene)->evaluate(receivers, all_emitters_of(true_rig), options);
   if (!transport) return tl::unexpected(transport.error());
 
   options.wanted_relative_error = max_error * kSpreadErrorFactor;
   options.watch = part_of(watch, 0.5, 1);
   auto heads = light_of_heads(rig, truths, scene, receivers, *transport, options);
   if (!heads) return tl::unexpected(heads.error());
-  return make(rig, deviations, transport->lux_per_level, std::move(*heads));
+  const auto fixtures = static_cast<Eigen::Index>(rig.fixtures.size());
+  return make(rig, deviations, transport->lux_per_level.leftCols(fixtures), std::move(*heads),
+              daylight_lux(true_rig, *transport));
 }
 
 }  // namespace luxrig::sim

@@ -19,13 +19,14 @@ constexpr int kTicksPerSample = 20;  // 5 readings a second
 class MatrixWorld final : public World {
  public:
   MatrixWorld(const Rig& rig, const Deviations& deviations, const Eigen::MatrixXd& lux_per_level,
-              std::unique_ptr<const HeadLight> heads)
+              std::unique_ptr<const HeadLight> heads, Eigen::VectorXd fixed_lx)
       : points_(rig.points.size()),
         truths_(draw_fixtures(rig, deviations)),
         lux_per_level_(lux_per_level),
         head_light_(std::move(heads)),
+        fixed_lx_(std::move(fixed_lx)),
         level_(Eigen::VectorXd::Zero(lux_per_level.cols())),
-        lux_(Eigen::VectorXd::Zero(lux_per_level.rows())),
+        lux_(fixed_lx_),
         peak_lx_(lux_) {
     for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
       dimmers_.emplace_back(rig.fixtures[f].dimmer_curve, truths_[f].curve_exponent, deviations.lamp_lag_s);
@@ -53,6 +54,7 @@ class MatrixWorld final : public World {
     }
     for (const Point& point : rig.points) limits_lx_.push_back(point.max_lx);
     open_violation_.assign(points_, false);
+    watch_limits();  // daylight may be above one
   }
 
   void set_drive(std::size_t fixture, double drive) override {
@@ -128,6 +130,7 @@ class MatrixWorld final : public World {
     }
     if (changed) {  // a rig at rest costs nothing but its meters
       lux_.noalias() = lux_per_level_ * level_;
+      lux_ += fixed_lx_;
       peak_lx_ = peak_lx_.cwiseMax(lux_);
       watch_limits();
     }
@@ -177,7 +180,7 @@ class MatrixWorld final : public World {
   std::vector<LuxmeterDevice> meters_;
   std::vector<double> meter_gains_;
   std::vector<std::optional<double>> limits_lx_;
-  Eigen::VectorXd level_, lux_, peak_lx_;
+  Eigen::VectorXd fixed_lx_, level_, lux_, peak_lx_;
   std::vector<Violation> violations_;
   std::vector<bool> open_violation_;
   std::uint64_t tick_ = 0;
@@ -220,8 +223,8 @@ std::vector<FixtureTruth> draw_fixtures(const Rig& rig, const Deviations& deviat
 }
 
 Result<std::unique_ptr<World>> World::make(const Rig& rig, const Deviations& deviations,
-                                           const Eigen::MatrixXd& lux_per_level,
-                                           std::unique_ptr<const HeadLight> heads) {
+                                           const Eigen::MatrixXd& lux_per_level, std::unique_ptr<const HeadLight> heads,
+                                           const Eigen::VectorXd& fixed_lx) {
   const auto rows = static_cast<Eigen::Index>(rig.points.size() + rig.luxmeters.size());
   const auto columns = static_cast<Eigen::Index>(rig.fixtures.size());
   if (lux_per_level.rows() != rows || lux_per_level.cols() != columns) {
@@ -234,7 +237,12 @@ Result<std::unique_ptr<World>> World::make(const Rig& rig, const Deviations& dev
   if (lux_per_level.size() > 0 && !(lux_per_level.allFinite() && lux_per_level.minCoeff() >= 0)) {
     return tl::unexpected(Fault{Cause::invalid, "", "transport has an entry that is negative or not finite", {}});
   }
-  return std::make_unique<MatrixWorld>(rig, deviations, lux_per_level, std::move(heads));
+  Eigen::VectorXd fixed = fixed_lx.size() == 0 ? Eigen::VectorXd::Zero(rows) : fixed_lx;
+  if (fixed.size() != rows || (rows > 0 && !(fixed.allFinite() && fixed.minCoeff() >= 0))) {
+    return tl::unexpected(
+        Fault{Cause::invalid, "", "the fixed light has another size, or an entry that is negative or not finite", {}});
+  }
+  return std::make_unique<MatrixWorld>(rig, deviations, lux_per_level, std::move(heads), std::move(fixed));
 }
 
 }  // namespace luxrig::sim

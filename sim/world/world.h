@@ -69,15 +69,18 @@ class HeadLight {
 class World {
  public:
   /// Loads the scene and computes the true transport with the true poses (seconds). `max_error`: of that transport.
+  /// Luminaires and daylight are made as for the planner (core/transport/rig_transport.h).
   static Result<std::unique_ptr<World>> make(const Rig& rig, const Deviations& deviations, double max_error,
                                              const Watch& watch = {});
 
   /// The same from a transport that is given: `lux_per_level` has a row per point of the rig, then one per luxmeter,
   /// and a column per fixture, at rated flux. Without `heads`, turning a head changes no light.
+  /// fixed_lx   light that is there whatever the fixtures do (daylight), per row; empty = none
   /// Cause::invalid when the shape does not fit or an entry is negative or not finite.
   static Result<std::unique_ptr<World>> make(const Rig& rig, const Deviations& deviations,
                                              const Eigen::MatrixXd& lux_per_level,
-                                             std::unique_ptr<const HeadLight> heads = nullptr);
+                                             std::unique_ptr<const HeadLight> heads = nullptr,
+                                             const Eigen::VectorXd& fixed_lx = {});
 
   virtual ~World() = default;
   /// What the wires carry to the fixtures. Values out of range are clamped, as a device would.

@@ -7,6 +7,7 @@
 #include "core/check.h"
 #include "core/rig/plain_text.h"
 #include "core/rig/rig_file.h"
+#include "core/transport/rig_transport.h"
 
 namespace {
 
@@ -50,6 +51,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (const luxrig::Point& point : rig->points) {
     LUXRIG_CHECK(point.position_world_m.allFinite(), "{}", point.name);
     LUXRIG_CHECK(std::abs(point.normal_world.norm() - 1) < 1e-9, "{}", point.name);
+  }
+  if (rig->daylight) {
+    const luxrig::Daylight& d = *rig->daylight;
+    LUXRIG_CHECK(std::abs(d.towards_sun_world.norm() - 1) < 1e-9, "sun");
+    LUXRIG_CHECK(d.sky == luxrig::Daylight::SkyKind::none || d.horizontal_lx > 0, "{} lx", d.horizontal_lx);
+    LUXRIG_CHECK(d.sun_normal_lx >= 0 && d.sun_normal_lx <= 200'000, "{} lx", d.sun_normal_lx);
+    LUXRIG_CHECK(d.general_type >= 1 && d.general_type <= 15, "{}", d.general_type);
+    static_cast<void>(luxrig::daylight_emitters_of(*rig));  // they can be made
   }
   LUXRIG_CHECK(!rig->tasks.empty(), "no task");
   return 0;

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "core/photometry/beam.h"
@@ -26,6 +28,33 @@ std::string angles_text(const PlaneAngles& angles) {
   const std::string c0 = fmt::format("{:.1f}°", deg_from_rad(angles.c0_rad));
   const std::string c90 = fmt::format("{:.1f}°", deg_from_rad(angles.c90_rad));
   return c0 == c90 ? c0 : c0 + " x " + c90;
+}
+
+std::string daylight_text(const Daylight& daylight) {
+  using Kind = Daylight::SkyKind;
+  std::string text;
+  switch (daylight.sky) {
+    case Kind::none:
+      text = "no sky";
+      break;
+    case Kind::uniform:
+      text = "uniform sky";
+      break;
+    case Kind::overcast:
+      text = "overcast sky";
+      break;
+    case Kind::clear:
+      text = "clear sky";
+      break;
+    case Kind::general:
+      text = fmt::format("general sky of type {}", daylight.general_type);
+      break;
+  }
+  if (daylight.sky != Kind::none) text += fmt::format(" of {:.0f} lx", daylight.horizontal_lx);
+  if (!(daylight.sun_normal_lx > 0)) return text + ", no sun";
+  const Vec3& sun = daylight.towards_sun_world;
+  return text + fmt::format(", sun of {:.0f} lx, {:.1f}° high, towards x {:.2f}, y {:.2f}", daylight.sun_normal_lx,
+                            deg_from_rad(std::asin(std::clamp(sun.z(), -1.0, 1.0))), sun.x(), sun.y());
 }
 
 std::string place_text(const Vec3& p) { return fmt::format("{:.2f} {:.2f} {:.2f}", p.x(), p.y(), p.z()); }
@@ -76,6 +105,7 @@ int run_check(const CheckArguments& arguments) {
   }
   for (const std::string& warning : scene.warnings) fmt::print("  warning    {}\n", warning);
   for (const Problem& note : rig.notes) fmt::print("  note       {}\n", note.text());
+  if (rig.daylight) fmt::print("  daylight   {}\n", daylight_text(*rig.daylight));
   fmt::print("  counts     {} luminaires, {} fixtures, {} buses, {} luxmeters, {} points, {} tasks\n\n",
              rig.luminaires.size(), rig.fixtures.size(), rig.buses.size(), rig.luxmeters.size(), rig.points.size(),
              rig.tasks.size());

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/parallel.h"
+#include "core/transport/rig_transport.h"
 #include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
 #include "tools/luxrig/table.h"
@@ -40,23 +41,32 @@ int run_evaluate(const EvaluateArguments& arguments) {
   if (!transport) return report(transport.error());
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
-  const Eigen::VectorXd level =
-      Eigen::Map<const Eigen::VectorXd>(levels->data(), static_cast<Eigen::Index>(levels->size()));
+  const Eigen::VectorXd level = levels_with_daylight(
+      *transport, Eigen::Map<const Eigen::VectorXd>(levels->data(), static_cast<Eigen::Index>(levels->size())));
   const Eigen::VectorXd lux = transport->lux(level);
   const Eigen::VectorXd direct = transport->direct_lux(level);
   const Eigen::VectorXd error = transport->standard_error_lux(level);
+  const Eigen::VectorXd daylight_lx = daylight_lux(rig, *transport);
   nlohmann::json points = nlohmann::json::array();
-  Table table({"point", ">lux", ">± se", ">direct", ">goal lx", ">max lx"});
+  std::vector<std::string> heads = {"point", ">lux", ">± se", ">direct"};
+  if (rig.daylight) heads.push_back(">daylight");
+  heads.insert(heads.end(), {">goal lx", ">max lx"});
+  Table table(std::move(heads));
   const auto add = [&](const std::string& name, const Vec3& position, const Vec3& normal, std::size_t index,
                        std::optional<double> goal, std::optional<double> max) {
     const auto i = static_cast<Eigen::Index>(index);
     nlohmann::json point = {{"name", name},  {"position", array_of(position)}, {"normal", array_of(normal)},
                             {"lux", lux[i]}, {"direct_lux", direct[i]},        {"standard_error_lux", error[i]}};
+    if (rig.daylight) point["daylight_lux"] = daylight_lx[i];
     if (goal) point["goal_lux"] = *goal;
     if (max) point["max_lux"] = *max;
     points.push_back(std::move(point));
-    table.row({name, fmt::format("{:.2f}", lux[i]), fmt::format("{:.2f}", error[i]), fmt::format("{:.2f}", direct[i]),
-               goal ? fmt::format("{:g}", *goal) : "", max ? fmt::format("{:g}", *max) : ""});
+    std::vector<std::string> cells = {name, fmt::format("{:.2f}", lux[i]), fmt::format("{:.2f}", error[i]),
+                                      fmt::format("{:.2f}", direct[i])};
+    if (rig.daylight) cells.push_back(fmt::format("{:.2f}", daylight_lx[i]));
+    cells.push_back(goal ? fmt::format("{:g}", *goal) : "");
+    cells.push_back(max ? fmt::format("{:g}", *max) : "");
+    table.row(std::move(cells));
   };
   for (std::size_t i = 0; i < rig.points.size(); ++i) {
     const Point& p = rig.points[i];

@@ -92,8 +92,11 @@ double round_up_1_2_5(double value) {
 
 double log_average_luminance_cd_m2(const Picture& picture) {
   std::vector<double> logs;
-  for (const Vec3f& rgb : picture.luminance_cd_m2)
-    if (const double luminance = luminance_of(rgb); luminance > 0) logs.push_back(std::log(luminance));
+  // A sky in the window is brighter than any room: exposed is for what the light falls on.
+  for (std::size_t i = 0; i < picture.luminance_cd_m2.size(); ++i)
+    if (const double luminance = luminance_of(picture.luminance_cd_m2[i]);
+        luminance > 0 && picture.illuminance_lx[i] >= 0)
+      logs.push_back(std::log(luminance));
   if (logs.empty()) return 1;
   std::sort(logs.begin(), logs.end());
   const std::size_t cut = logs.size() / 100;

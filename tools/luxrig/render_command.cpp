@@ -120,7 +120,9 @@ int run_render(const RenderOptions& options) {
   const auto scene = build_scene(*rig);
   if (!scene) return refuse(scene.error());
   const RayScene rays(*scene);
-  const std::vector<Emitter> emitters = emitters_of(*rig);
+  const std::vector<Emitter> emitters = all_emitters_of(*rig);
+  std::vector<double> all_levels = *levels;
+  all_levels.resize(emitters.size(), 1.0);  // daylight
 
   Camera camera =
       automatic_camera(rays, *rig, options.width_px, options.height_px, rad_from_deg(options.vertical_fov_deg));
@@ -139,7 +141,7 @@ int run_render(const RenderOptions& options) {
     progress(std::min(1.0, std::max(done, by_time)));
     return by_time < 1;
   };
-  const auto picture = render_picture(rays, emitters, *levels, camera, how);
+  const auto picture = render_picture(rays, emitters, all_levels, camera, how);
   if (!picture) {
     fmt::print(stderr, "luxrig render: {}\n", picture.error().detail);
     return 2;

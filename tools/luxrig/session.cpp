@@ -1,5 +1,7 @@
 #include "tools/luxrig/session.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <limits>
@@ -23,7 +25,8 @@ EmittanceProblem problem_of(const Rig& rig, const TransportMatrix& transport) {
   const auto points = static_cast<Eigen::Index>(rig.points.size());
   const auto lights = static_cast<Eigen::Index>(rig.fixtures.size());
   EmittanceProblem problem;
-  problem.lux_per_level = transport.lux_per_level.topRows(points);
+  problem.lux_per_level = transport.lux_per_level.topLeftCorner(points, lights);
+  problem.fixed_lx = daylight_lux(rig, transport).head(points);
   problem.goal_lx.setConstant(points, std::numeric_limits<double>::quiet_NaN());
   problem.weight.setOnes(points);
   problem.max_lx.setConstant(points, std::numeric_limits<double>::infinity());
@@ -38,6 +41,19 @@ EmittanceProblem problem_of(const Rig& rig, const TransportMatrix& transport) {
     problem.max_level[j] = std::min(rig.fixtures[static_cast<std::size_t>(j)].max_level, rig.limits.max_level);
   }
   return problem;
+}
+
+/// Limits that daylight alone breaks; empty when there are none.
+std::string broken_by_daylight(const Rig& rig, const EmittanceProblem& problem) {
+  std::string broken;
+  for (std::size_t i = 0; i < rig.points.size(); ++i) {
+    const double fixed_lx = problem.fixed_lx[static_cast<Eigen::Index>(i)];
+    if (!rig.points[i].max_lx || fixed_lx <= *rig.points[i].max_lx) continue;
+    broken += fmt::format("{}point \"{}\" has {:.4g} lx of daylight alone, its limit is {:.4g} lx",
+                          broken.empty() ? "" : "; ", rig.points[i].name, fixed_lx, *rig.points[i].max_lx);
+  }
+  if (!broken.empty()) broken += ": shade the opening, move the point or raise its max_lx";
+  return broken;
 }
 
 PlannedLight planned_light(const Rig& rig, const Fixture& fixture, double level) {
@@ -76,7 +92,8 @@ Result<TransportMatrix> compute_transport(const Session& session, const ComputeO
   evaluate.levels = levels;
   evaluate.watch = options.watch;
   const auto receivers = receivers_of(session.rig);
-  const auto emitters = emitters_of(session.rig);
+  const auto emitters = all_emitters_of(session.rig);
+  if (!levels.empty()) evaluate.levels.resize(emitters.size(), 1.0);
   EvaluatorChoice choice{nullptr, "asked for"};
   switch (options.model) {
     case Model::automatic: {
@@ -104,9 +121,11 @@ Result<TransportMatrix> compute_transport(const Session& session, const ComputeO
 
 std::vector<PlannedPoint> predicted_points(const Rig& rig, const TransportMatrix& transport,
                                            const Eigen::VectorXd& levels) {
-  const Eigen::VectorXd lux = transport.lux(levels);
-  const Eigen::VectorXd direct = transport.direct_lux(levels);
-  const Eigen::VectorXd error = transport.standard_error_lux(levels);
+  const Eigen::VectorXd all_levels = levels_with_daylight(transport, levels);
+  const Eigen::VectorXd lux = transport.lux(all_levels);
+  const Eigen::VectorXd direct = transport.direct_lux(all_levels);
+  const Eigen::VectorXd error = transport.standard_error_lux(all_levels);
+  const Eigen::VectorXd daylight_lx = daylight_lux(rig, transport);
   std::vector<PlannedPoint> points;
   points.reserve(rig.points.size());
   for (std::size_t i = 0; i < rig.points.size(); ++i) {
@@ -118,6 +137,7 @@ std::vector<PlannedPoint> predicted_points(const Rig& rig, const TransportMatrix
     point.lux = lux[row];
     point.direct_lux = direct[row];
     point.standard_error_lux = error[row];
+    if (rig.daylight) point.daylight_lux = daylight_lx[row];
     point.goal_lux = rig.points[i].goal_lx;
     points.push_back(std::move(point));
   }
@@ -131,6 +151,9 @@ Result<Plan> solve_tasks(const Session& session, const TransportMatrix& transpor
   plan.rig = rig.name;
   plan.seed = options.seed;
   EmittanceProblem problem = problem_of(rig, transport);
+  if (std::string broken = broken_by_daylight(rig, problem); !broken.empty()) {
+    return tl::unexpected(Fault{Cause::invalid, "", std::move(broken), {}});
+  }
   for (const Point& point : rig.points) problem.point_name.push_back(point.name);
   for (const Fixture& fixture : rig.fixtures) problem.light_name.push_back(fixture.name);
   Eigen::VectorXd level = Eigen::VectorXd::Zero(problem.lux_per_level.cols());
@@ -166,18 +189,34 @@ Result<Plan> solve_tasks(const Session& session, const TransportMatrix& transpor
 LightModel light_model(const Rig& rig, const TransportMatrix& transport) {
   const auto points = static_cast<Eigen::Index>(rig.points.size());
   const auto meters = static_cast<Eigen::Index>(rig.luxmeters.size());
+  const auto lights = static_cast<Eigen::Index>(rig.fixtures.size());
+  // Fixtures, then daylight in one column.
+  const auto joined = [&](const Eigen::MatrixXd& lux_per_level) {
+    Eigen::MatrixXd columns(points + meters, lights + 1);
+    columns.leftCols(lights) = lux_per_level.leftCols(lights);
+    columns.col(lights) = lux_per_level.rightCols(lux_per_level.cols() - lights).rowwise().sum();
+    return columns;
+  };
+  const Eigen::MatrixXd lux = joined(transport.lux_per_level);
   LightModel model;
-  model.point_lux_per_level = transport.lux_per_level.topRows(points);
-  model.meter_lux_per_level = transport.lux_per_level.bottomRows(meters);
+  model.point_lux_per_level = lux.topLeftCorner(points, lights);
+  model.meter_lux_per_level = lux.bottomLeftCorner(meters, lights);
+  const bool daylit = transport.emitters() > lights;
+  if (daylit) {
+    model.point_fixed_lx = lux.topRightCorner(points, 1);
+    model.meter_fixed_lx = lux.bottomRightCorner(meters, 1);
+  }
   if (!transport.replicates.empty()) {
     const auto count = static_cast<double>(transport.replicates.size());
-    Eigen::MatrixXd variance = Eigen::MatrixXd::Zero(points + meters, transport.emitters());
-    for (const auto& replicate : transport.replicates) {
-      variance += (replicate - transport.lux_per_level).cwiseAbs2();
-    }
+    Eigen::MatrixXd variance = Eigen::MatrixXd::Zero(points + meters, lights + 1);
+    for (const auto& replicate : transport.replicates) variance += (joined(replicate) - lux).cwiseAbs2();
     const Eigen::MatrixXd error = (variance / (count * std::max(1.0, count - 1))).cwiseSqrt();
-    model.point_standard_error = error.topRows(points);
-    model.meter_standard_error = error.bottomRows(meters);
+    model.point_standard_error = error.topLeftCorner(points, lights);
+    model.meter_standard_error = error.bottomLeftCorner(meters, lights);
+    if (daylit) {
+      model.point_fixed_error_lx = error.topRightCorner(points, 1);
+      model.meter_fixed_error_lx = error.bottomRightCorner(meters, 1);
+    }
   }
   return model;
 }

@@ -38,19 +38,21 @@ struct ModelUsed {
   std::string name, reason;
 };
 
-/// T of the rig's points (first) and luxmeters at its aims; `levels` as in EvaluateOptions.
+/// T of the rig's points (first) and luxmeters at its aims: a column per fixture, then daylight's
+/// (rig_transport.h, all_emitters_of). `levels`: of the fixtures, as in EvaluateOptions.
 [[nodiscard]] Result<TransportMatrix> compute_transport(const Session& session, const ComputeOptions& options,
                                                         const std::vector<double>& levels = {},
                                                         ModelUsed* used = nullptr);
 
-/// Does what the rig's tasks ask, on a transport made by compute_transport.
+/// Does what the rig's tasks ask, on a transport made by compute_transport. Goals and limits count all light, daylight
+/// too. Cause::invalid when daylight alone is above a limit: no level of any fixture could keep it.
 [[nodiscard]] Result<Plan> solve_tasks(const Session& session, const TransportMatrix& transport,
                                        const ComputeOptions& options);
 
 /// The controller's share of a transport.
 [[nodiscard]] LightModel light_model(const Rig& rig, const TransportMatrix& transport);
 
-/// What the rig's points get at given levels.
+/// What the rig's points get at given levels of the fixtures, daylight included.
 [[nodiscard]] std::vector<PlannedPoint> predicted_points(const Rig& rig, const TransportMatrix& transport,
                                                          const Eigen::VectorXd& levels);
 

@@ -36,14 +36,22 @@ int run_solve(const SolveArguments& arguments) {
     lights.row(
         {light.name, light.luminaire, fmt::format("{:.1f} %", 100 * light.level), fmt::format("{:.0f}", light.lumens)});
   }
-  Table points({"point", ">goal lx", ">lux", ">± se", ">error", ">max lx", "why"});
+  std::vector<std::string> heads = {"point", ">goal lx", ">lux", ">± se", ">error", ">max lx", "why"};
+  if (session->rig.daylight) heads.insert(heads.begin() + 4, ">daylight");
+  Table points(std::move(heads));
   for (std::size_t i = 0; i < plan->points.size(); ++i) {
     const PlannedPoint& p = plan->points[i];
     const auto& max = session->rig.points[i].max_lx;
-    points.row({p.name, p.goal_lux ? fmt::format("{:g}", *p.goal_lux) : "-", fmt::format("{:.1f}", p.lux),
-                fmt::format("{:.1f}", p.standard_error_lux),
-                p.goal_lux && *p.goal_lux > 0 ? fmt::format("{:+.1f} %", 100 * (p.lux / *p.goal_lux - 1)) : "",
-                max ? fmt::format("{:g}", *max) : "", p.why});
+    std::vector<std::string> cells = {
+        p.name,
+        p.goal_lux ? fmt::format("{:g}", *p.goal_lux) : "-",
+        fmt::format("{:.1f}", p.lux),
+        fmt::format("{:.1f}", p.standard_error_lux),
+        p.goal_lux && *p.goal_lux > 0 ? fmt::format("{:+.1f} %", 100 * (p.lux / *p.goal_lux - 1)) : "",
+        max ? fmt::format("{:g}", *max) : "",
+        p.why};
+    if (p.daylight_lux) cells.insert(cells.begin() + 4, fmt::format("{:.1f}", *p.daylight_lux));
+    points.row(std::move(cells));
   }
   fmt::print("{}\n{}\n", lights.text(), points.text());
   for (const PlannedTask& task : plan->tasks) {

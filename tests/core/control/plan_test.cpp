@@ -70,6 +70,7 @@ void expect_same(const Plan& a, const Plan& b) {
     EXPECT_TRUE(same(a.points[p].standard_error_lux, b.points[p].standard_error_lux));
     EXPECT_EQ(a.points[p].goal_lux, b.points[p].goal_lux);
     EXPECT_EQ(a.points[p].why, b.points[p].why);
+    EXPECT_EQ(a.points[p].daylight_lux, b.points[p].daylight_lux);
   }
   ASSERT_EQ(a.limits.size(), b.limits.size());
   for (std::size_t l = 0; l < a.limits.size(); ++l) {
@@ -105,6 +106,7 @@ Plan random_plan(std::mt19937_64& random) {
   for (std::uint64_t p = 0; p < random() % 5; ++p) {
     PlannedPoint point{"p", vector(), vector(), number(), number(), number(), {}, coin() ? "a limit binds" : ""};
     if (coin()) point.goal_lux = number();
+    if (coin()) point.daylight_lux = number();
     plan.points.push_back(point);
   }
   for (std::uint64_t l = 0; l < random() % 3; ++l) plan.limits.push_back({"p", number(), number(), coin()});

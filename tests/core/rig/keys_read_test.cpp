@@ -170,13 +170,32 @@ on_meter_loss = false  #> true
 http_port = 1234  #> 1235
 )";
 
+// The sun's angles and its place and time exclude one another: the second way, in place of the first.
+constexpr const char* kSunByAngles = R"([daylight]
+sky = "general"
+sky_type = 13  #> 14
+horizontal_lx = 12000  #> 13000
+sun_normal_lx = 70000  #> 71000
+sun_azimuth_deg = 150  #> 160
+sun_elevation_deg = 40  #> 41
+north_deg = 10  #> 11
+)";
+constexpr const char* kSunByPlace = R"([daylight]
+sky = "clear"  #> "overcast"
+sun = true  #> false
+latitude_deg = 52.5  #> 51
+longitude_deg = 13.4  #> 12
+time = "2026-06-21T12:00:00+02:00"  #> "2026-06-21T12:30:00+02:00"
+north_deg = -90  #> 90
+)";
+
 struct Line {
   std::string section, key, text, other;  ///< text: the whole line without its mark; other: second value
 };
 
-std::vector<Line> kitchen_sink() {
+std::vector<Line> kitchen_sink(const char* daylight) {
   std::vector<Line> lines;
-  std::string section, rest = kKitchenSink;
+  std::string section, rest = std::string(kKitchenSink) + daylight;
   while (!rest.empty()) {
     std::string text = rest.substr(0, rest.find('\n'));
     rest.erase(0, text.size() + 1);
@@ -260,6 +279,10 @@ std::string dump(const Rig& rig) {
   const ControlSpec& c = rig.control;
   add(c.fade_s, static_cast<int>(c.fade_curve), c.correction_fade_s, c.settle_s, c.rounds, c.tolerance, c.gain_min,
       c.gain_max);
+  if (rig.daylight) {
+    const Daylight& d = *rig.daylight;
+    add(static_cast<int>(d.sky), d.general_type, d.horizontal_lx, d.sun_normal_lx, text_of(d.towards_sun_world));
+  }
   add(rig.safe.level, rig.safe.hold_s, rig.safe.fade_s, rig.safe.on_meter_loss, rig.daemon.http_port);
   return out;
 }
@@ -304,19 +327,21 @@ class KeysRead : public testing::Test {
 };
 
 TEST_F(KeysRead, ChangingAnyKeyChangesTheRig) {
-  const auto sink = kitchen_sink();
-  const std::string before = read(sink);
-  ASSERT_FALSE(before.starts_with("REFUSED")) << before;
   std::set<std::pair<std::string, std::string>> changed;
-  for (std::size_t i = 0; i < sink.size(); ++i) {
-    if (sink[i].other.empty()) continue;
-    auto lines = sink;
-    if (sink[i].key == "name") rename(lines, sink[i]);
-    lines[i].text = sink[i].key + " = " + sink[i].other;
-    const std::string after = read(lines);
-    EXPECT_FALSE(after.starts_with("REFUSED")) << lines[i].text << ": " << after;
-    EXPECT_NE(after, before) << "[" << sink[i].section << "] " << lines[i].text << " changes nothing";
-    changed.emplace(sink[i].section, sink[i].key);
+  for (const char* daylight : {kSunByAngles, kSunByPlace}) {
+    const auto sink = kitchen_sink(daylight);
+    const std::string before = read(sink);
+    ASSERT_FALSE(before.starts_with("REFUSED")) << before;
+    for (std::size_t i = 0; i < sink.size(); ++i) {
+      if (sink[i].other.empty()) continue;
+      auto lines = sink;
+      if (sink[i].key == "name") rename(lines, sink[i]);
+      lines[i].text = sink[i].key + " = " + sink[i].other;
+      const std::string after = read(lines);
+      EXPECT_FALSE(after.starts_with("REFUSED")) << lines[i].text << ": " << after;
+      EXPECT_NE(after, before) << "[" << sink[i].section << "] " << lines[i].text << " changes nothing";
+      changed.emplace(sink[i].section, sink[i].key);
+    }
   }
   for (const KeySpec& key : keys()) {
     if (key.section == "task" && key.key == "kind") continue;  // has one value only; refused otherwise (bad rigs)
@@ -326,22 +351,24 @@ TEST_F(KeysRead, ChangingAnyKeyChangesTheRig) {
 }
 
 TEST_F(KeysRead, LeavingAKeyOutIsWritingItsDefault) {
-  const auto sink = kitchen_sink();
   std::set<std::pair<std::string, std::string>> tried;
-  for (std::size_t i = 0; i < sink.size(); ++i) {
-    for (const KeySpec& key : keys()) {
-      if (key.section != sink[i].section || key.key != sink[i].key) continue;
-      auto without = sink, with = sink;
-      without[i].text.clear();
-      if (key.fallback == kRequired) {
-        EXPECT_TRUE(read(without).starts_with("REFUSED")) << sink[i].section << " " << sink[i].key;
-      } else if (key.fallback != kNone) {
-        with[i].text = sink[i].key + " = " + std::string(key.fallback);
-        const std::string written = read(with);
-        if (written.starts_with("REFUSED")) continue;  // a default may not suit the rest here; it must somewhere
-        EXPECT_EQ(read(without), written) << "[" << sink[i].section << "] " << with[i].text;
+  for (const char* daylight : {kSunByAngles, kSunByPlace}) {
+    const auto sink = kitchen_sink(daylight);
+    for (std::size_t i = 0; i < sink.size(); ++i) {
+      for (const KeySpec& key : keys()) {
+        if (key.section != sink[i].section || key.key != sink[i].key) continue;
+        auto without = sink, with = sink;
+        without[i].text.clear();
+        if (key.fallback == kRequired) {
+          EXPECT_TRUE(read(without).starts_with("REFUSED")) << sink[i].section << " " << sink[i].key;
+        } else if (key.fallback != kNone) {
+          with[i].text = sink[i].key + " = " + std::string(key.fallback);
+          const std::string written = read(with);
+          if (written.starts_with("REFUSED")) continue;  // a default may not suit the rest here; it must somewhere
+          EXPECT_EQ(read(without), written) << "[" << sink[i].section << "] " << with[i].text;
+        }
+        tried.emplace(key.section, key.key);
       }
-      tried.emplace(key.section, key.key);
     }
   }
   for (const KeySpec& key : keys()) {

@@ -8,6 +8,7 @@
 
 #include "core/transport/enclosures.h"
 #include "core/transport/evaluator.h"
+#include "core/transport/rig_transport.h"
 
 namespace luxrig::sim {
 namespace {
@@ -45,7 +46,7 @@ struct Room {
     head.fixture = kFixture;
     head.world_from_mount = pose;
     head.roll_rad = kRoll_rad;
-    head.intensity = spot;
+    head.luminaire.intensity = spot;
     for (const Receiver& receiver : receivers) {
       head.sees.push_back(!rays.occluded(receiver.position_world_m, receiver.normal_world, pose.translation_m));
     }
@@ -93,13 +94,69 @@ TEST(HeadLight, DirectPartIsThatOfTheDirectEvaluatorAtAnyAim) {
   }
 }
 
+TEST(HeadLight, DirectPartOfALampWithSizeAndTiltIsThePlannersToo) {
+  const Room room(0.5);
+  HeadSamples head;
+  head.fixture = kFixture;
+  head.world_from_mount = room.pose;
+  head.roll_rad = kRoll_rad;
+  head.luminaire.intensity = make_lambertian(900);
+  head.luminaire.shape = {LuminousShape::Kind::rectangle, Vec3(1.2, 0.4, 0)};
+  head.luminaire.colour_rgb = Vec3(1.3, 0.95, 0.6);
+  head.luminaire.tilt = LampTilt{3, {0, 90, 180}, {1.0, 0.7, 0.5}};
+  head.aims_mount = {beam_mount({})};
+  head.indirect_lux_per_level = room.zeros();
+  std::vector<PanTilt> aims = random_aims(30, 5);
+  std::vector<Emitter> emitters;
+  for (const PanTilt& joints : aims)
+    emitters.push_back(emitter_of(head.luminaire, world_from_lamp(room.pose, joints, kRoll_rad)));
+  EXPECT_NE(emitters[0].intensity->flux_lm(), 900) << "the factor counts";
+  EvaluateOptions options;
+  options.wanted_relative_error = 1e-3;
+  // Without the room: a panel of this size would poke into its ceiling when it turns.
+  const Scene nothing;
+  const RayScene empty(nothing);
+  head.sees = seen_shares(empty, room.receivers, emitters[0]);
+  EXPECT_EQ(head.sees, std::vector<double>(room.receivers.size(), 1.0));
+  const auto direct = make_direct_evaluator(empty)->evaluate(room.receivers, emitters, options);
+  ASSERT_TRUE(direct);
+  const auto light = make_head_light(room.receivers, {head});
+  const double brightest_lx = direct->lux_per_level.maxCoeff();
+  ASSERT_GT(brightest_lx, 20);
+  Eigen::VectorXd lux = room.zeros();
+  for (std::size_t a = 0; a < aims.size(); ++a) {
+    light->column(kFixture, aims[a], lux);
+    EXPECT_LT((lux - direct->lux_per_level.col(static_cast<Eigen::Index>(a))).cwiseAbs().maxCoeff(),
+              3e-3 * brightest_lx)
+        << "aim " << a;
+  }
+}
+
+TEST(HeadLight, OfALampWithSizeAScreenHidesItsShare) {
+  // A disk of 1 m; a screen half way to the receiver below its middle covers x < 0.
+  const Emitter lamp{
+      make_lambertian(1000), {Mat3::Identity(), Vec3::Zero()}, {LuminousShape::Kind::disk, Vec3(1, 0, 0)}};
+  const std::vector<Receiver> below = {{{0, 0, -1.9}, Vec3::UnitZ()}};
+  Scene scene;
+  scene.vertices_m = {{-5, -5, -0.95f}, {0, -5, -0.95f}, {0, 5, -0.95f}, {-5, 5, -0.95f}};
+  scene.triangles = {{0, 1, 2}, {0, 2, 3}};
+  scene.material_of_triangle = scene.object_of_triangle = {0, 0};
+  scene.materials.resize(1);
+  scene.object_names = {"scene"};
+  const auto share = [&](const Scene& in) { return seen_shares(RayScene(in), below, lamp)[0]; };
+  EXPECT_EQ(share(Scene{}), 1);
+  EXPECT_NEAR(share(scene), 0.5, 0.05);
+  for (Vec3f& vertex : scene.vertices_m) vertex.x() += 2;  // now x < 2: all of it
+  EXPECT_EQ(share(scene), 0);
+}
+
 TEST(HeadLight, AReceiverThatTheHeadCannotSeeHasNoDirectLight) {
   const Room room(0.5);
   HeadSamples head;
   head.world_from_mount = room.pose;
-  head.intensity = make_isotropic(1000);
-  head.sees.assign(room.receivers.size(), true);
-  head.sees[2] = false;
+  head.luminaire.intensity = make_isotropic(1000);
+  head.sees.assign(room.receivers.size(), 1.0);
+  head.sees[2] = 0;
   head.aims_mount = {beam_mount({})};
   head.indirect_lux_per_level = room.zeros();
   Eigen::VectorXd lux = room.zeros();

@@ -84,6 +84,34 @@ TEST(World, WithoutDeviationsLightIsTheMatrixTimesTheLevels) {
   EXPECT_DOUBLE_EQ(world->luxmeters()[1].lux, 0.5 * 30 + 0.25 * 20);
 }
 
+TEST(World, DaylightIsThereWhateverTheDrives) {
+  const Rig rig = tiny_rig();  // table: at most 200 lx
+  const Eigen::VectorXd daylight_lx{{150, 140, 30}};
+  const auto made = World::make(rig, Deviations::none(), tiny_light(), nullptr, daylight_lx);
+  ASSERT_TRUE(made);
+  World& world = **made;
+  EXPECT_EQ(world.points()[0].lux, 150);
+  EXPECT_EQ(world.points()[0].max_lux_seen, 150);
+  world.advance(at_s(1));
+  EXPECT_NEAR(world.meter_reading_lx(0), 140, 1e-9);
+  world.set_drive(0, 0.5);
+  world.advance(at_s(2));
+  EXPECT_DOUBLE_EQ(world.points()[0].lux, 150 + 0.5 * 100);
+  EXPECT_DOUBLE_EQ(world.luxmeters()[1].lux, 30 + 0.5 * 30);
+  EXPECT_TRUE(world.violations().empty());
+  world.set_drive(1, 0.1);
+  world.advance(at_s(3));
+  ASSERT_EQ(world.violations().size(), 1u);
+  EXPECT_DOUBLE_EQ(world.violations()[0].lux, 205);
+}
+
+TEST(World, DaylightAboveALimitIsAViolationFromTheStart) {
+  const auto world = World::make(tiny_rig(), Deviations::none(), tiny_light(), nullptr, Eigen::VectorXd{{250, 250, 0}});
+  ASSERT_TRUE(world);
+  ASSERT_EQ((*world)->violations().size(), 1u);
+  EXPECT_EQ((*world)->violations()[0].began, Time{});
+}
+
 TEST(World, LampsFollowWithAFirstOrderLag) {
   const Rig rig = tiny_rig();
   Deviations deviations = Deviations::none();
@@ -148,6 +176,8 @@ TEST(World, ATransportOfAnotherShapeOrWithNonsenseIsRefused) {
   EXPECT_FALSE(World::make(rig, none, Eigen::MatrixXd::Zero(2, 3)));
   EXPECT_FALSE(World::make(rig, none, Eigen::MatrixXd::Zero(3, 2)));
   EXPECT_FALSE(World::make(rig, none, Eigen::MatrixXd::Constant(3, 3, -1)));
+  EXPECT_FALSE(World::make(rig, none, Eigen::MatrixXd::Zero(3, 3), nullptr, Eigen::VectorXd::Zero(2)));
+  EXPECT_FALSE(World::make(rig, none, Eigen::MatrixXd::Zero(3, 3), nullptr, Eigen::VectorXd::Constant(3, -1)));
   EXPECT_FALSE(World::make(rig, none, Eigen::MatrixXd::Constant(3, 3, std::numeric_limits<double>::quiet_NaN())));
 }
 

@@ -1,5 +1,6 @@
 // The commands' contract: names, JSON keys, exit codes.
 #include <filesystem>
+#include <fstream>
 #include <regex>
 
 #include "tests/tools/programs/live_rig.h"
@@ -50,6 +51,53 @@ TEST(Commands, SolveJsonHasTheContractsKeysAndEvaluateAgreesWithIt) {
     EXPECT_NEAR(lux["points"][i]["lux"].get<double>(), out["points"][i]["lux"].get<double>(),
                 0.04 * out["points"][i]["lux"].get<double>());
   }
+}
+
+TEST(Commands, DaylightIsReportedByItselfAndCountedInEverything) {
+  const Folder folder;
+  const auto plan = (folder / "plan.json").string();
+  const Ran solved = luxrig::testing::run(
+      {program("luxrig"), "solve", source("rigs/reading-room"), "--max-error", "0.03", "-o", plan, "--json"});
+  ASSERT_EQ(solved.code, 0) << solved.output;
+  const json out = json::parse(text_of(plan), nullptr, false);
+  const Ran lit = luxrig::testing::run(
+      {program("luxrig"), "evaluate", source("rigs/reading-room"), "--max-error", "0.03", "--levels", plan, "--json"});
+  ASSERT_EQ(lit.code, 0) << lit.output;
+  const json points = json_of(lit)["points"];
+  ASSERT_EQ(points.size(), 11u);
+  double window_lx = 0, inner_lx = 0;
+  for (std::size_t i = 0; i < out["points"].size(); ++i) {
+    const json& at = points[i];
+    const double lux = at["lux"].get<double>(), daylight_lux = at["daylight_lux"].get<double>();
+    EXPECT_GT(daylight_lux, 50) << at;
+    EXPECT_GT(lux, daylight_lux + 50) << at;
+    EXPECT_NEAR(lux, out["points"][i]["lux"].get<double>(), 0.1 * lux) << at;
+    if (at["name"] == "window-west") window_lx = daylight_lux;
+    if (at["name"] == "inner-west") inner_lx = daylight_lux;
+    EXPECT_NEAR(lux, at.value("goal_lux", lux), 0.2 * lux) << at;
+  }
+  EXPECT_GT(window_lx, 3 * inner_lx);
+  double window_level = 1, inner_level = 0;
+  for (const json& light : out["tasks"][0]["lights"]) {
+    if (light["name"] == "panel window-west") window_level = light["level"].get<double>();
+    if (light["name"] == "panel inner-west") inner_level = light["level"].get<double>();
+  }
+  EXPECT_LT(window_level, 0.2);
+  EXPECT_GT(inner_level, 0.5);
+  ASSERT_EQ(out["limits"].size(), 1u);
+  EXPECT_TRUE(out["limits"][0]["met"].get<bool>()) << out["limits"][0];
+}
+
+TEST(Commands, ALimitThatDaylightAloneBreaksIsSaidAndNotSolved) {
+  const Folder folder;
+  std::filesystem::copy(source("rigs/reading-room"), folder / "room");
+  std::string text = text_of(folder / "room/rig.toml");
+  text.replace(text.find("max_lx = 350"), 12, "max_lx = 60 ");
+  std::ofstream(folder / "room/rig.toml") << text;
+  const Ran ran = luxrig::testing::run({program("luxrig"), "solve", (folder / "room").string(), "--max-error", "0.05"});
+  EXPECT_NE(ran.code, 0);
+  EXPECT_NE(ran.output.find("point \"print\" has"), std::string::npos) << ran.output;
+  EXPECT_NE(ran.output.find("of daylight alone, its limit is 60 lx"), std::string::npos) << ran.output;
 }
 
 TEST(Commands, SameSeedSameBytesWhateverTheThreads) {
