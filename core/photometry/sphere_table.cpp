@@ -158,7 +158,9 @@ SphereTable::SphereTable(Symmetry symmetry, std::vector<double> polar_rad, std::
 void SphereTable::add_pieces(std::size_t band, double ring_lower, double ring_upper) {
   const double from = polar_.knots()[band];
   const double width = polar_.knots()[band + 1] - from;
-  const int count = std::max(1, static_cast<int>(std::ceil(width / kWidestPiece_rad)));
+  // A band that is dark at one end and has a pole at the other gives nothing at either: its middle must show it.
+  const int fewest = ring_lower > 0 && ring_upper > 0 ? 1 : 2;
+  const int count = std::max(fewest, static_cast<int>(std::ceil(width / kWidestPiece_rad)));
   const double slope = (ring_upper - ring_lower) / width;
   for (int i = 0; i < count; ++i) {
     Piece piece{};

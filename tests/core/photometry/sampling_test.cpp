@@ -1,5 +1,6 @@
 // Directions drawn from distributions: the density is what sample() draws with, it integrates to one, and weighing by
 // it gives the flux. Every property is checked on every kind of distribution.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,6 +21,15 @@ Intensity from_file(const std::string& name) {
     ADD_FAILURE() << file.error().front().text();
     return make_isotropic(1);
   }
+  return make_intensity(*file);
+}
+
+/// One band of angles, falling linearly from one candela value to the other.
+Intensity round_band(double from_deg, double to_deg, double from_cd, double to_cd) {
+  const auto file = parse_ies(fmt::format("IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0 1 1 10\n{} {}\n0\n{} {}\n",
+                                          from_deg, to_deg, from_cd, to_cd),
+                              "band.ies");
+  EXPECT_TRUE(file);
   return make_intensity(*file);
 }
 
@@ -195,10 +205,20 @@ const Case kCases[] = {
     {"file_half_0_180", [] { return from_file("trapezoid.ies"); }, kExact},
     {"file_quadrant", [] { return from_file("comet.ies"); }, kExact},
     {"file_beam", [] { return from_file("parallel_beam.ies"); }, kExact},
+    {"pencil_down", [] { return round_band(0, 1, 1000, 0); }, kExact},
+    {"pencil_up", [] { return round_band(179, 180, 0, 1000); }, kExact},
     {"file_lobes", [] { return from_file("three_lobe_umbrella.ies"); }, kExact},
 };
 INSTANTIATE_TEST_SUITE_P(Of, Sampling, testing::ValuesIn(kCases),
                          [](const auto& of) { return std::string(of.param.name); });
+
+TEST(PencilBeam, HasTheFluxOfItsOnlyBand) {
+  // ∫₀ʷ (1 - x / w) sin x dx = 1 - sin w / w, at either pole.
+  const double width = rad_from_deg(1);
+  const double expected_lm = 2 * kPi * 1000 * (1 - std::sin(width) / width);
+  EXPECT_NEAR(round_band(0, 1, 1000, 0)->flux_lm() / expected_lm, 1, 1e-9);
+  EXPECT_NEAR(round_band(179, 180, 0, 1000)->flux_lm() / expected_lm, 1, 1e-9);
+}
 
 TEST(LambertianCylinder, HasTheFluxOfItsWholeSurface) {
   for (const auto& [d, l] : {std::pair{0.04, 1.2}, {0.5, 0.01}, {0.3, 0.3}}) {
