@@ -43,12 +43,10 @@ IndirectColumns::Met IndirectColumns::meet(const SurfaceImportance& field, const
                                            const Vec3& direction, std::uint64_t& rays) const {
   ++rays;
   const auto hit = scene_.nearest(from_world_m, direction, Vec3::Zero());
-  if (!hit) return {SurfaceCells::kNone, 0};
+  if (!hit) return {SurfaceImportance::kNoRow, 0};
   const double reflectance = diffuse_reflectance(scene_.material_of(hit->triangle));
-  if (!(reflectance > 0)) return {SurfaceCells::kNone, 0};
-  const std::uint32_t cell = field.surfaces().find(hit->position_world_m, hit->normal_world, rays);
-  if (cell == SurfaceCells::kNone || !field.live(cell)) return {SurfaceCells::kNone, 0};
-  return {cell, reflectance};
+  if (!(reflectance > 0)) return {SurfaceImportance::kNoRow, 0};
+  return {field.row_at(hit->position_world_m, hit->normal_world, rays), reflectance};
 }
 
 /// Worth of a direction: what its light brings to each receiver, as a share of what all pilot rays bring there, summed
@@ -68,9 +66,9 @@ DirectionGuide IndirectColumns::guide(const CandidateLuminaire& luminaire, std::
     const Vec3& lamp_m = lamps_world_m[i % lamps_world_m.size()];
     const double off_lamp_m = kErrorsFromLamp * scene_.surface_error_m(lamp_m);
     const Met one = meet(field, lamp_m + off_lamp_m * ray.direction_world, ray.direction_world, rays);
-    if (one.cell == SurfaceCells::kNone) continue;
+    if (one.row == SurfaceImportance::kNoRow) continue;
     directions.push_back(ray.direction_world);
-    met.push_back({one.cell, static_cast<float>(ray.candela / ray.density_per_sr * one.reflectance)});
+    met.push_back({one.row, static_cast<float>(ray.candela / ray.density_per_sr * one.reflectance)});
   }
   std::vector<float> per_share(field.stride(), 0.0f);
   add_weighted_rows(field.rows(), met, per_share);
@@ -99,9 +97,9 @@ std::uint64_t IndirectColumns::evaluate(std::size_t replicate, const CandidateLu
   met.reserve(2 * half);
   const auto look = [&](const Vec3& direction, double candela, double own_density, double guide_density) {
     const Met one = meet(field, lamp_world_m + off_lamp_m * direction, direction, cast);
-    if (one.cell == SurfaceCells::kNone) return;
+    if (one.row == SurfaceImportance::kNoRow) return;
     const double lumens = candela / (half * (own_density + guide_density));
-    met.push_back({one.cell, static_cast<float>(lumens * one.reflectance)});
+    met.push_back({one.row, static_cast<float>(lumens * one.reflectance)});
   };
   for (std::uint32_t i = 0; i < half; ++i) {
     if (i == kFirstRays && rays.may_give_up && guide.empty() && met.empty()) return cast;

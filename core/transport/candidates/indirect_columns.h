@@ -53,7 +53,7 @@ class IndirectColumns {
 
  private:
   struct Met {
-    std::uint32_t cell;  ///< SurfaceCells::kNone: nothing that matters
+    std::uint32_t row;  ///< of the field; SurfaceImportance::kNoRow: nothing that matters
     double reflectance;
   };
   [[nodiscard]] Met meet(const SurfaceImportance& field, const Vec3& from_world_m, const Vec3& direction,

@@ -15,10 +15,20 @@ namespace {
 /// Candidates that cells are also grown from, and those on which rays are counted out.
 constexpr std::size_t kGrownFrom = 256;
 constexpr std::size_t kTried = 48;
-/// More rays are worth it only if they bring the error down by this.
-constexpr double kWorthIt = 0.9;
-constexpr std::uint32_t kFirstRaysPerReplicate = 32;
+/// Rays per replicate with which they are tried.
+constexpr std::uint32_t kFewTried = 32, kManyTried = 256;
+/// Where the fields' own error leaves nothing to rays, these may still add this share of its square: less would cost
+/// rays and bring little.
+constexpr double kLeastShare = 0.25;
+constexpr double kAloneShare = 0.5;
 constexpr std::size_t kFewestCells = 200;
+/// As many nodes as this share of the positions; where there are many positions, fewer, as then even sparser nodes are
+/// close together.
+constexpr std::size_t kPositionsPerNode = 3;
+constexpr std::size_t kManyNodes = 16'384, kManyPositionsPerNode = 16;
+constexpr std::size_t kFewestPositions = 256;
+/// Of the memory bound, for the nodes' values.
+constexpr std::size_t kNodesShare = 4;
 
 /// Median of standard error / lux over the entries of some candidates.
 double median_error(const IndirectColumns& indirect, const VisibilityScene& visibility,
@@ -53,6 +63,25 @@ double median_error(const IndirectColumns& indirect, const VisibilityScene& visi
   return all.median();
 }
 
+/// What is left of the nodes' noise (squared) in the answers made of them; 1 where most answers have none.
+double noise_share(const InterpolationNodes& nodes, const VisibilityScene& visibility,
+                   std::span<const Vec3> positions_m, std::span<const CandidateLuminaire> luminaires,
+                   std::uint64_t& rays) {
+  std::vector<double> noises;
+  std::vector<WeightedRow> shares;
+  for (const Vec3& at_m : positions_m) {
+    nodes.shares(*visibility.rays, at_m, luminaires.front().offset_world_m, shares, rays);
+    double noise = shares.empty() ? 1 : 0;
+    for (const WeightedRow& share : shares)
+      noise += static_cast<double>(share.weight) * static_cast<double>(share.weight);
+    noises.push_back(std::min(noise, 1.0));
+  }
+  if (noises.empty()) return 1;
+  const auto middle = noises.begin() + static_cast<std::ptrdiff_t>(noises.size() / 2);
+  std::nth_element(noises.begin(), middle, noises.end());
+  return *middle;
+}
+
 std::vector<Vec3> spread(std::span<const Vec3> positions_m, std::size_t most) {
   std::vector<Vec3> some_m;
   const std::size_t count = std::min(positions_m.size(), most);
@@ -71,7 +100,21 @@ double cell_size_m(const Scene& scene, std::size_t cells) {
   return std::max(std::sqrt(area_m2 / static_cast<double>(cells)), 1e-9);
 }
 
-double flatness_error(std::size_t cells) { return 0.01 * std::sqrt(10'000 / static_cast<double>(cells)); }
+InterpolationNodes choose_nodes(const CandidateSet& candidates, std::span<const std::uint8_t> usable,
+                                std::size_t receivers, const CandidateOptions& options) {
+  const auto count = static_cast<std::size_t>(std::count(usable.begin(), usable.end(), std::uint8_t{1}));
+  if (count < kFewestPositions) return {};
+  const std::size_t floats = (IndirectColumns::kReplicates + 1) * (receivers + kRowUnit) * candidates.luminaires.size();
+  const std::size_t fit = options.memory_bound_bytes / kNodesShare / (floats * sizeof(float));
+  const double step_m = InterpolationNodes::step_for(
+      candidates.positions_world_m, usable,
+      std::min({fit, count / kPositionsPerNode, std::max(kManyNodes, count / kManyPositionsPerNode)}));
+  return step_m > 0 ? InterpolationNodes(candidates.positions_world_m, usable, step_m) : InterpolationNodes();
+}
+
+double flatness_error(std::size_t cells) {
+  return 0.02 * std::sqrt(10'000 / static_cast<double>(cells * SurfaceCells::kPlaces));
+}
 
 Result<std::vector<std::unique_ptr<SurfaceImportance>>> importance_fields(
     const Scene& scene, const VisibilityScene& visibility, std::span<const Receiver> receivers,
@@ -95,14 +138,15 @@ Result<std::vector<std::unique_ptr<SurfaceImportance>>> importance_fields(
 Result<IndirectColumns> plan_indirect(const Scene& scene, const VisibilityScene& visibility,
                                       std::span<const Receiver> receivers, const CandidateSet& candidates,
                                       std::span<const CandidateLuminaire> luminaires,
-                                      std::span<const std::uint8_t> usable, const CandidateOptions& options,
-                                      CandidateStatistics& statistics) {
+                                      std::span<const std::uint8_t> usable, const InterpolationNodes& nodes,
+                                      const CandidateOptions& options, CandidateStatistics& statistics) {
   std::vector<Vec3> usable_m;
   for (std::size_t p = 0; p < usable.size(); ++p)
     if (usable[p]) usable_m.push_back(candidates.positions_world_m[p]);
   const std::vector<Vec3> grown_from_m = spread(usable_m, kGrownFrom);
   const std::size_t bytes_per_cell =
-      2 * IndirectColumns::kReplicates * (receivers.size() + kRowUnit) * sizeof(float) + sizeof(SurfaceCells::Cell);
+      (SurfaceCells::kPlaces + 1) * IndirectColumns::kReplicates * (receivers.size() + kRowUnit) * sizeof(float) +
+      sizeof(SurfaceCells::Cell);
   const std::size_t cells_in_bound = options.memory_bound_bytes / 2 / bytes_per_cell;
   if (cells_in_bound < kFewestCells)
     return tl::unexpected(
@@ -123,19 +167,26 @@ Result<IndirectColumns> plan_indirect(const Scene& scene, const VisibilityScene&
   IndirectColumns indirect(*visibility.rays, std::move(*fields), flatness_error(cells), options.seed);
 
   const std::vector<Vec3> tried_m = spread(grown_from_m, kTried);
-  constexpr auto kReplicates = static_cast<std::uint32_t>(IndirectColumns::kReplicates);
-  std::uint32_t rays = kFirstRaysPerReplicate;
-  double error = median_error(indirect, visibility, receivers, tried_m, luminaires, rays, options, statistics.rays);
-  while (error > options.wanted_relative_error && 2 * rays * kReplicates <= options.most_rays_per_candidate) {
-    const double with_more =
-        median_error(indirect, visibility, receivers, tried_m, luminaires, 2 * rays, options, statistics.rays);
-    if (with_more > kWorthIt * error) break;
-    rays *= 2;
-    error = with_more;
-  }
+  const auto error_with = [&](std::uint32_t rays) {
+    return median_error(indirect, visibility, receivers, tried_m, luminaires, rays, options, statistics.rays);
+  };
+  const double few = error_with(kFewTried), many = error_with(kManyTried);
   if (options.watch.stop.stop_requested())
     return tl::unexpected(Fault{Cause::cancelled, "", "stopped while counting out the rays of candidates", {}});
-  statistics.rays_per_candidate = rays * kReplicates;
+  // Squares add: what rays make of it goes down with their number, what the fields make of it stays.
+  const double of_one_ray = std::max(0.0, (few * few - many * many) / (1.0 / kFewTried - 1.0 / kManyTried));
+  const double of_fields = std::max(0.0, many * many - of_one_ray / kManyTried);
+  const double wanted = options.wanted_relative_error;
+  const double left = std::max({wanted * wanted - of_fields, kLeastShare * of_fields, 1e-12});
+  const double most =
+      std::max(2.0, options.most_rays_per_candidate / static_cast<double>(IndirectColumns::kReplicates));
+  const auto rays_for = [&](double share) {
+    const double rays = std::clamp(share * of_one_ray / left, std::min<double>(kFewTried, most), most);
+    return static_cast<std::uint32_t>(IndirectColumns::kReplicates) * 2 * static_cast<std::uint32_t>(rays / 2);
+  };
+  // Those looked at by themselves are few: they may err a little more than the others.
+  statistics.rays_per_candidate = rays_for(kAloneShare);
+  statistics.rays_per_node = rays_for(noise_share(nodes, visibility, tried_m, luminaires, statistics.rays));
   return indirect;
 }
 

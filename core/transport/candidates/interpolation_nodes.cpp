@@ -9,7 +9,8 @@ namespace luxrig {
 namespace {
 
 /// Nodes count up to this many steps away, less with distance.
-constexpr double kReach = 1.5;
+constexpr double kReach = 1.8;
+constexpr std::int64_t kReachCubes = 2;
 /// A slope may follow from nodes that lie this little apart, as a share of the reach (squared): less is taken as flat.
 constexpr double kRidge = 1e-3;
 /// Noise of the nodes together, as a share of that of one (squared): more means that the place is beside its nodes.
@@ -89,9 +90,9 @@ void InterpolationNodes::shares(const RayScene& scene, const Vec3& position_worl
   const double reach_m = kReach * step_m_;
   Eigen::Matrix4d moments = Eigen::Matrix4d::Zero();
   std::vector<Eigen::Vector4d> bases;
-  for (std::int64_t z = -1; z <= 1; ++z)
-    for (std::int64_t y = -1; y <= 1; ++y)
-      for (std::int64_t x = -1; x <= 1; ++x) {
+  for (std::int64_t z = -kReachCubes; z <= kReachCubes; ++z)
+    for (std::int64_t y = -kReachCubes; y <= kReachCubes; ++y)
+      for (std::int64_t x = -kReachCubes; x <= kReachCubes; ++x) {
         const auto found = node_in_cube_.find(key_of(cube + Cube(x, y, z)));
         if (found == node_in_cube_.end() || found->second == without) continue;
         const Vec3& node_m = node_world_m_[found->second];

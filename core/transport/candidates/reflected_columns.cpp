@@ -9,18 +9,17 @@
 namespace luxrig {
 namespace {
 
-/// As many nodes as this share of the positions; where there are many positions, fewer, as then even sparser nodes are
-/// close together.
-constexpr std::size_t kPositionsPerNode = 6;
-constexpr std::size_t kManyNodes = 4096, kManyPositionsPerNode = 16;
-constexpr std::size_t kFewestPositions = 256;
-/// Of the memory bound, for the nodes' values and for guides.
-constexpr std::size_t kNodesShare = 4, kGuidesShare = 16;
+/// Of the memory bound, for guides.
+constexpr std::size_t kGuidesShare = 16;
 /// A node is foretold from nodes a step away; other positions lie about half as far from theirs, and the error of a
 /// straight line goes with the square of the distance.
 constexpr double kErrorShare = 0.35;
-/// What interpolation may add to the median entry of a candidate, as a share of the wanted error.
-constexpr double kMostError = 1.25;
+/// What interpolation may add to a typical entry of a candidate, as a share of the wanted error; and how many times its
+/// square one receiver may count.
+constexpr double kMostError = 1;
+constexpr double kMostCounted = 4;
+/// Of the weights of the nodes that an answer is made of, those whose error is known make up at least so much.
+constexpr float kLeastForetold = 0.5f;
 constexpr std::size_t kPlacesPerGuide = 8;
 constexpr std::size_t kFewestPerGuide = 64;
 constexpr std::size_t kPerTask = 16;
@@ -29,7 +28,8 @@ constexpr std::size_t kPerTask = 16;
 
 ReflectedColumns::ReflectedColumns(const RayScene& scene, IndirectColumns indirect, const CandidateSet& candidates,
                                    std::span<const CandidateLuminaire> luminaires, std::span<const std::uint8_t> usable,
-                                   const CandidateOptions& options, CandidateStatistics& statistics)
+                                   InterpolationNodes nodes, const CandidateOptions& options,
+                                   CandidateStatistics& statistics)
     : scene_(scene),
       indirect_(std::move(indirect)),
       positions_world_m_(candidates.positions_world_m),
@@ -37,8 +37,9 @@ ReflectedColumns::ReflectedColumns(const RayScene& scene, IndirectColumns indire
       usable_(usable),
       options_(options),
       statistics_(statistics),
-      row_(IndirectColumns::kReplicates * indirect_.stride()) {
-  choose_nodes();
+      row_(IndirectColumns::kReplicates * indirect_.stride()),
+      nodes_(std::move(nodes)) {
+  look_at_nodes();
 }
 
 void ReflectedColumns::make_groups(std::size_t places) {
@@ -55,6 +56,8 @@ void ReflectedColumns::make_groups(std::size_t places) {
     groups_.push_back({node.begin, node.end, {}});
   }
   group_order_ = tree.order;
+  place_in_order_.resize(tree.order.size());
+  for (std::uint32_t i = 0; i < tree.order.size(); ++i) place_in_order_[tree.order[i]] = i;
   guides_made_ = 0;
 }
 
@@ -89,17 +92,24 @@ void ReflectedColumns::make_guides(std::span<const Asked> asked) {
   statistics_.rays += std::accumulate(cast.begin(), cast.end(), std::uint64_t{0});
 }
 
-void ReflectedColumns::evaluate(std::span<const Asked> asked,
+void ReflectedColumns::evaluate(std::span<const Asked> asked, std::uint32_t rays_each,
                                 const std::function<std::span<float>(std::size_t)>& replicates_of) {
   make_guides(asked);
   if (stopped()) return;
-  const std::uint32_t per_replicate = statistics_.rays_per_candidate / IndirectColumns::kReplicates;
+  const std::uint32_t per_replicate = rays_each / IndirectColumns::kReplicates;
   const std::size_t stride = indirect_.stride();
   std::vector<std::uint64_t> cast(asked.size(), 0);
+  // Neighbours one after the other: they look at the same surfaces, whose rows then stay in the cache.
+  std::vector<std::uint32_t> order(asked.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return place_in_order_[asked[a].position] < place_in_order_[asked[b].position];
+  });
   for (std::size_t k = 0; k < IndirectColumns::kReplicates; ++k)
     parallel_for((asked.size() + kPerTask - 1) / kPerTask, options_.threads, [&](std::size_t task) {
-      for (std::size_t i = kPerTask * task; i < std::min(asked.size(), kPerTask * (task + 1)); ++i) {
+      for (std::size_t at = kPerTask * task; at < std::min(asked.size(), kPerTask * (task + 1)); ++at) {
         if (stopped()) return;
+        const std::size_t i = order[at];
         const auto [p, l] = asked[i];
         cast[i] += indirect_.evaluate(k, luminaires_[l], positions_world_m_[p] + luminaires_[l].offset_world_m,
                                       *groups_[group_of_[p]].guides[l],
@@ -110,18 +120,10 @@ void ReflectedColumns::evaluate(std::span<const Asked> asked,
   statistics_.rays += std::accumulate(cast.begin(), cast.end(), std::uint64_t{0});
 }
 
-/// A grid of nodes, and what is reflected from them.
-void ReflectedColumns::choose_nodes() {
+/// What is reflected from each node, and how well the others foretell it.
+void ReflectedColumns::look_at_nodes() {
   const auto usable = static_cast<std::size_t>(std::count(usable_.begin(), usable_.end(), std::uint8_t{1}));
-  const std::size_t kinds = luminaires_.size(), stride = indirect_.stride();
-  const std::size_t fit = options_.memory_bound_bytes / kNodesShare / (kinds * (row_ + stride) * sizeof(float));
-  const double step_m =
-      usable < kFewestPositions
-          ? 0
-          : InterpolationNodes::step_for(
-                positions_world_m_, usable_,
-                std::min({fit, usable / kPositionsPerNode, std::max(kManyNodes, usable / kManyPositionsPerNode)}));
-  if (step_m > 0) nodes_ = InterpolationNodes(positions_world_m_, usable_, step_m);
+  const std::size_t kinds = luminaires_.size();
   make_groups(nodes_.size() > 0 ? nodes_.size() : usable);
   statistics_.nodes = nodes_.size();
   if (nodes_.size() == 0) return;
@@ -129,7 +131,7 @@ void ReflectedColumns::choose_nodes() {
   std::vector<Asked> asked;
   for (std::uint32_t l = 0; l < kinds; ++l)
     for (std::uint32_t n = 0; n < nodes_.size(); ++n) asked.push_back({nodes_.position(n), l});
-  evaluate(asked, [&](std::size_t i) {
+  evaluate(asked, statistics_.rays_per_node, [&](std::size_t i) {
     return std::span(values_[i / nodes_.size()]).subspan(i % nodes_.size() * row_, row_);
   });
   if (!stopped()) find_errors();
@@ -139,6 +141,7 @@ void ReflectedColumns::choose_nodes() {
 void ReflectedColumns::find_errors() {
   const std::size_t kinds = luminaires_.size(), stride = indirect_.stride();
   squared_errors_.assign(kinds, std::vector<float>(nodes_.size() * stride));
+  foretold_.assign(kinds * nodes_.size(), 0);
   constexpr double kCount = IndirectColumns::kReplicates;
   std::vector<std::uint64_t> cast(nodes_.size(), 0);
   parallel_for(nodes_.size(), options_.threads, [&](std::size_t n) {
@@ -148,6 +151,8 @@ void ReflectedColumns::find_errors() {
       if (l == 0 || luminaires_[l].offset_world_m != luminaires_[l - 1].offset_world_m)
         nodes_.shares(scene_, positions_world_m_[nodes_.position(n)], luminaires_[l].offset_world_m, shares, cast[n],
                       static_cast<std::uint32_t>(n));
+      foretold_[l * nodes_.size() + n] = !shares.empty();
+      if (shares.empty()) continue;
       std::fill(foretold.begin(), foretold.end(), 0.0f);
       add_weighted_rows(values_[l].data(), shares, foretold);
       const float* own = values_[l].data() + n * row_;
@@ -173,25 +178,42 @@ bool ReflectedColumns::interpolate(const Asked& one, std::span<const WeightedRow
   if (shares.empty()) return false;
   std::fill(replicates.begin(), replicates.end(), 0.0f);
   add_weighted_rows(values_[one.luminaire].data(), shares, replicates);
-  std::vector<WeightedRow> error_shares(shares.begin(), shares.end());
+  std::vector<WeightedRow> error_shares;
   float sum = 0;
-  for (WeightedRow& share : error_shares) sum += share.weight = std::abs(share.weight);
+  for (const WeightedRow& share : shares)
+    if (foretold_[one.luminaire * nodes_.size() + share.row]) {
+      error_shares.push_back({share.row, std::abs(share.weight)});
+      sum += error_shares.back().weight;
+    }
+  if (!(sum > kLeastForetold)) return false;
   for (WeightedRow& share : error_shares) share.weight /= sum;
   std::fill(squared_error_lux2.begin(), squared_error_lux2.end(), 0.0f);
   add_weighted_rows(squared_errors_[one.luminaire].data(), error_shares, squared_error_lux2);
+  // Errors of each receiver are mostly noise, of either sign; their mean is not. Each counts for little, so that a few
+  // at the edge of a shadow, whose error is stated, do not decide for all.
+  const std::size_t stride = indirect_.stride();
+  constexpr double kCount = IndirectColumns::kReplicates;
+  const double most = kMostError * options_.wanted_relative_error;
+  double off = 0;
+  std::size_t lit = 0;
+  for (std::size_t r = 0; r < stride; ++r) {
+    double mean = 0, squares = 0;
+    for (std::size_t k = 0; k < IndirectColumns::kReplicates; ++k) {
+      const auto lux = static_cast<double>(replicates[k * stride + r]);
+      mean += lux / kCount;
+      squares += lux * lux;
+    }
+    if (!(mean > 0)) continue;
+    const double noise = (squares - kCount * mean * mean) / (kCount * (kCount - 1));
+    off += std::clamp(static_cast<double>(squared_error_lux2[r]) / (most * most * (mean * mean + noise)), -kMostCounted,
+                      kMostCounted);
+    ++lit;
+  }
+  if (off > static_cast<double>(lit)) return false;
   // Noise of a slope may reach below nothing.
   for (float& lux : replicates) lux = std::max(lux, 0.0f);
   for (float& square : squared_error_lux2) square = std::max(square, 0.0f);
-  const std::size_t stride = indirect_.stride();
-  std::size_t lit = 0, near = 0;
-  const auto most = static_cast<float>(kMostError * options_.wanted_relative_error / IndirectColumns::kReplicates);
-  for (std::size_t r = 0; r < stride; ++r) {
-    float lux = 0;
-    for (std::size_t k = 0; k < IndirectColumns::kReplicates; ++k) lux += replicates[k * stride + r];
-    lit += lux > 0;
-    near += lux > 0 && std::sqrt(squared_error_lux2[r]) <= most * lux;
-  }
-  return 2 * near >= lit;
+  return true;
 }
 
 bool ReflectedColumns::block(std::size_t first, std::size_t count, std::size_t receivers, std::span<float> lux,
@@ -230,7 +252,7 @@ bool ReflectedColumns::block(std::size_t first, std::size_t count, std::size_t r
     const std::span<const Asked> some =
         std::span<const Asked>(asked).subspan(from, std::min(kAtOnce, asked.size() - from));
     const auto row = [&](std::size_t i) { return std::span(replicates).subspan(i * row_, row_); };
-    evaluate(some, row);
+    evaluate(some, statistics_.rays_per_candidate, row);
     parallel_for(some.size(), options_.threads, [&](std::size_t i) { write(column_of(some[i]), row(i), {}); });
   }
   return !stopped();

@@ -12,10 +12,11 @@ namespace luxrig {
 class ReflectedColumns {
  public:
   /// usable   per position; the others stay dark
-  /// All references must outlive it. Adds to statistics.rays and sets statistics.nodes.
+  /// All references must outlive it. Casts statistics.rays_per_node and rays_per_candidate; adds to statistics.rays and
+  /// sets statistics.nodes.
   ReflectedColumns(const RayScene& scene, IndirectColumns indirect, const CandidateSet& candidates,
                    std::span<const CandidateLuminaire> luminaires, std::span<const std::uint8_t> usable,
-                   const CandidateOptions& options, CandidateStatistics& statistics);
+                   InterpolationNodes nodes, const CandidateOptions& options, CandidateStatistics& statistics);
 
   /// Of the positions from `first`: rows of `receivers` floats, one per column; those of unusable positions are left
   /// alone. False when stopped.
@@ -37,8 +38,9 @@ class ReflectedColumns {
   void make_groups(std::size_t places);
   void make_guides(std::span<const Asked> asked);
   /// Replicates of each into its place; of none when stopped.
-  void evaluate(std::span<const Asked> asked, const std::function<std::span<float>(std::size_t)>& replicates_of);
-  void choose_nodes();
+  void evaluate(std::span<const Asked> asked, std::uint32_t rays_each,
+                const std::function<std::span<float>(std::size_t)>& replicates_of);
+  void look_at_nodes();
   void find_errors();
   [[nodiscard]] bool interpolate(const Asked& one, std::span<const WeightedRow> shares, std::span<float> replicates,
                                  std::span<float> squared_error_lux2) const;
@@ -53,12 +55,14 @@ class ReflectedColumns {
   CandidateStatistics& statistics_;
   std::size_t row_;  ///< floats of all replicates of a column
   std::vector<Group> groups_;
-  std::vector<std::uint32_t> group_of_;  ///< per position
-  std::vector<std::uint32_t> group_order_;
+  std::vector<std::uint32_t> group_of_;        ///< per position
+  std::vector<std::uint32_t> group_order_;     ///< positions, neighbours together
+  std::vector<std::uint32_t> place_in_order_;  ///< per position
   std::size_t guides_made_ = 0;
   InterpolationNodes nodes_;
   std::vector<std::vector<float>> values_;          ///< per luminaire: nodes × row_
   std::vector<std::vector<float>> squared_errors_;  ///< per luminaire: nodes × stride [lx²], see find_errors()
+  std::vector<std::uint8_t> foretold_;              ///< luminaires × nodes: whether that error is known
 };
 
 }  // namespace luxrig

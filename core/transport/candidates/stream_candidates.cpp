@@ -68,11 +68,13 @@ class Stream {
     find_usable();
     std::size_t fixed_bytes = 0;
     if (options_.indirect && !empty_scene && positions > 0 && !receivers_.empty()) {
-      auto planned =
-          plan_indirect(scene_, visibility_, receivers_, candidates_, luminaires_, usable_, options_, statistics_);
+      InterpolationNodes nodes = choose_nodes(candidates_, usable_, receivers_.size(), options_);
+      auto planned = plan_indirect(scene_, visibility_, receivers_, candidates_, luminaires_, usable_, nodes, options_,
+                                   statistics_);
       if (!planned) return tl::unexpected(std::move(planned.error()));
       report(0.1);
-      reflected_.emplace(rays_, std::move(*planned), candidates_, luminaires_, usable_, options_, statistics_);
+      reflected_.emplace(rays_, std::move(*planned), candidates_, luminaires_, usable_, std::move(nodes), options_,
+                         statistics_);
       if (options_.watch.stop.stop_requested()) return cancelled();
       fixed_bytes = reflected_->bytes();
       report(0.5);

@@ -175,7 +175,20 @@ std::uint32_t SurfaceCells::piece(std::uint32_t first, const Cube& cube, const V
   return kNone;
 }
 
-std::uint32_t SurfaceCells::cell_at(const Vec3& position_world_m, const Vec3& normal_world, std::uint32_t most_cells) {
+/// A place that was found may come to stand for its cell. Each one of n with the same chance for each: the n-th
+/// replaces what was drawn before with chance 1/n.
+void SurfaceCells::stand_in(Cell& cell, std::uint64_t key, const Place& place, Found by) {
+  if (by == Found::from_receiver) return;
+  const bool lamp = by == Found::from_lamp;
+  const std::uint32_t n = ++(lamp ? cell.hits_from_lamps : cell.hits_from_surfaces);
+  const bool for_all = (lamp ? cell.hits_from_surfaces : cell.hits_from_lamps) == 0;
+  const std::size_t from = lamp && !for_all ? kPlaces / 2 : 0, to = lamp || for_all ? kPlaces : kPlaces / 2;
+  for (std::size_t i = from; i < to; ++i)
+    if (mixed(key + i, 2 * n + lamp) % n == 0) cell.places[i] = place;
+}
+
+std::uint32_t SurfaceCells::cell_at(const Vec3& position_world_m, const Vec3& normal_world, std::uint32_t most_cells,
+                                    Found by) {
   const Cube cube = cube_at(position_world_m);
   const std::uint64_t key = key_of(cube, normal_world);
   const std::size_t slot = slot_of(key);
@@ -183,13 +196,7 @@ std::uint32_t SurfaceCells::cell_at(const Vec3& position_world_m, const Vec3& no
   if (first != kNone) {
     const std::uint32_t found = piece(first, cube, position_world_m, normal_world, rays_cast_);
     if (found != kNone) {
-      Cell& cell = cells_[found];
-      // One of n with the same chance for each: the n-th replaces what was drawn before with chance 1/n.
-      ++cell.hits;
-      if (mixed(key, cell.hits) % cell.hits == 0) {
-        cell.position_world_m = position_world_m;
-        cell.normal_world = normal_world;
-      }
+      stand_in(cells_[found], key, {position_world_m, normal_world}, by);
       return found;
     }
     std::uint32_t pieces = 0;
@@ -198,7 +205,10 @@ std::uint32_t SurfaceCells::cell_at(const Vec3& position_world_m, const Vec3& no
   }
   if (cells_.size() >= most_cells) return kNone;
   const auto made = static_cast<std::uint32_t>(cells_.size());
-  cells_.push_back({position_world_m, normal_world, position_world_m, normal_world, 1, first});
+  Cell cell{{}, position_world_m, normal_world, 0, 0, first};
+  cell.places.fill({position_world_m, normal_world});
+  stand_in(cell, key, cell.places[0], by);
+  cells_.push_back(cell);
   slots_used_ += slots_[slot].key == 0;
   slots_[slot] = {key, made};
   if (2 * slots_used_ > slots_.size()) grow();

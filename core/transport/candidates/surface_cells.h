@@ -4,10 +4,10 @@
 /// A cell is the part of the surfaces within one cube of a grid that faces roughly one way (the axis nearest to its
 /// normal). Where that part falls into pieces that do not see each other, such as a floor under a wall, each is a cell
 /// of its own, so that no light leaks through walls thinner than a cell. Cells come into being where rays hit; surfaces
-/// that light never reaches cost nothing. The place that stands for a cell is one of all that were hit, drawn evenly:
-/// the one hit first would be a place that a receiver sees, and light would come out too bright (by 1 % in a flat of
-/// eight rooms, by more behind doors).
+/// that light never reaches cost nothing. The places that stand for a cell are some of all that were hit, drawn evenly.
+/// There are several, since a doorway's edge cuts through many cells.
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -20,12 +20,23 @@ class SurfaceCells {
  public:
   static constexpr std::uint32_t kNone = ~0u;
 
-  struct Cell {
-    Vec3 position_world_m;  ///< stands for the cell
+  /// How a place was found. One that is known to be seen by a receiver does not come to stand for a cell, but for want
+  /// of others: light would come out too bright (by 1 % in a flat of eight rooms, by more behind doors).
+  enum class Found { from_receiver, from_surface, from_lamp };
+
+  /// The first half of a cell's places are of those found from surfaces; the others of those found from lamps, if any:
+  /// of a cell that is partly under a table, light of lamps falls on the other part.
+  static constexpr std::size_t kPlaces = 4;
+
+  struct Place {
+    Vec3 position_world_m;
     Vec3 normal_world;
-    Vec3 first_world_m;  ///< hit first; what sees it belongs to the cell
+  };
+  struct Cell {
+    std::array<Place, kPlaces> places;  ///< stand for the cell; the same one twice where few were hit
+    Vec3 first_world_m;                 ///< hit first; what sees it belongs to the cell
     Vec3 first_normal_world;
-    std::uint32_t hits = 1;
+    std::uint32_t hits_from_surfaces = 0, hits_from_lamps = 0;
     std::uint32_t next = kNone;  ///< another piece in the same cube that faces the same way
   };
 
@@ -33,7 +44,7 @@ class SurfaceCells {
   SurfaceCells(const Scene& scene, const RayScene& rays, double cell_m, const Vec3& offset_share);
 
   /// The cell of a place on a surface, made if there is none yet and there are fewer than `most_cells`.
-  std::uint32_t cell_at(const Vec3& position_world_m, const Vec3& normal_world, std::uint32_t most_cells);
+  std::uint32_t cell_at(const Vec3& position_world_m, const Vec3& normal_world, std::uint32_t most_cells, Found by);
 
   /// The same, or the nearest cell about it, or kNone. Adds the rays cast to `rays`.
   [[nodiscard]] std::uint32_t find(const Vec3& position_world_m, const Vec3& normal_world, std::uint64_t& rays) const;
@@ -63,6 +74,7 @@ class SurfaceCells {
   /// Piece of the cell chain that the place belongs to.
   [[nodiscard]] std::uint32_t piece(std::uint32_t first, const Cube& cube, const Vec3& position_world_m,
                                     const Vec3& normal_world, std::uint64_t& rays) const;
+  static void stand_in(Cell& cell, std::uint64_t key, const Place& place, Found by);
   void mark_cubes(const Scene& scene);
   void grow();
 

@@ -11,13 +11,15 @@ namespace luxrig {
 namespace {
 
 constexpr std::uint32_t kRaysPerReceiver = 128;
-constexpr std::uint32_t kRaysPerPlace = 32;
+constexpr std::uint32_t kRaysPerPlace = 128;
 /// Nearer than this many cells, the kernel is averaged over a cell's square instead of taken at its middle.
 constexpr double kNearCells = 4;
 constexpr int kNearGrid = 4;
-/// Sweeps end when one changes the sum of W by less than this.
-constexpr double kConverged = 1e-4;
-constexpr double kRoughlyConverged = 2e-2;  ///< to say where rays are worth while
+/// Sweeps end when one changes W by less than this, relative, on average over all patches and receivers: those behind
+/// two doors, which light reaches last, count as much as those that have most of it.
+constexpr double kConverged = 3e-4;
+constexpr double kRoughlyConverged = 5e-2;  ///< to say where rays are worth while
+constexpr float kLeast = 1e-30f;            ///< nothing, where it is divided by
 /// Columns that are solved together: few enough for the rows of all patches to stay in a core's own cache.
 constexpr std::size_t kStrip = 2 * kRowUnit;
 /// Neighbouring cells that share what their rays found.
@@ -74,7 +76,7 @@ SurfaceImportance::SurfaceImportance(const Scene& scene, const VisibilityScene& 
   std::vector<Bounce>().swap(bounces_);
   add_terms();
   if (!settings_.keep_links) {
-    from_cells_.clear();
+    from_rows_.clear();
     from_patches_.clear();
     std::vector<float>().swap(further_);
   }
@@ -84,7 +86,8 @@ SurfaceImportance::SurfaceImportance(const Scene& scene, const VisibilityScene& 
 void SurfaceImportance::make_patches(const Scene& scene) {
   SurfaceCells coarse(scene, scene_, kCellsPerPatch * settings_.cell_m, grid_offset(mixed(settings_.seed, kPatchKey)));
   for (const auto& cell : surfaces_.cells())
-    patch_of_cell_.push_back(coarse.cell_at(cell.position_world_m, cell.normal_world, settings_.most_cells));
+    patch_of_cell_.push_back(coarse.cell_at(cell.places[0].position_world_m, cell.places[0].normal_world,
+                                            settings_.most_cells, SurfaceCells::Found::from_surface));
   patches_ = static_cast<std::uint32_t>(coarse.cells().size());
   for (std::uint32_t& patch : patch_of_cell_)
     if (patch == SurfaceCells::kNone) patch = patches_++;  // in a cube with too many pieces: a patch of its own
@@ -93,54 +96,76 @@ void SurfaceImportance::make_patches(const Scene& scene) {
 
 /// Cells that receivers see, places see, and cells see, until there are no more.
 void SurfaceImportance::discover(std::span<const Vec3> also_from_world_m) {
-  const auto look = [&](const Vec3& from_m, const Vec3& direction, const Vec3& normal) {
+  const auto look = [&](const Vec3& from_m, const Vec3& direction, const Vec3& normal, SurfaceCells::Found by) {
     ++rays_;
     if (const auto hit = scene_.nearest(from_m, direction, normal))
-      surfaces_.cell_at(hit->position_world_m, hit->normal_world, settings_.most_cells);
+      surfaces_.cell_at(hit->position_world_m, hit->normal_world, settings_.most_cells, by);
   };
   for (std::size_t r = 0; r < receivers_.size(); ++r) {
     const SobolSequence samples(mixed(mixed(settings_.seed, kReceiverKey), r));
     for (std::uint32_t i = 0; i < kRaysPerReceiver; ++i) {
       const auto [u, v] = samples.pair(i, 0, 0);
       look(receivers_[r].position_world_m, cosine_direction(receivers_[r].normal_world, u, v),
-           receivers_[r].normal_world);
+           receivers_[r].normal_world, SurfaceCells::Found::from_receiver);
     }
   }
   for (std::size_t p = 0; p < also_from_world_m.size() && !stop_.stop_requested(); ++p) {
     const SobolSequence samples(mixed(mixed(settings_.seed, kPlaceKey), p));
     for (std::uint32_t i = 0; i < kRaysPerPlace; ++i) {
       const auto [u, v] = samples.pair(i, 0, 0);
-      look(also_from_world_m[p], sphere_direction(u, v), Vec3::Zero());
+      look(also_from_world_m[p], sphere_direction(u, v), Vec3::Zero(), SurfaceCells::Found::from_lamp);
     }
   }
   for (std::uint32_t c = 0; c < surfaces_.cells().size() && !stop_.stop_requested(); ++c) trace_bounces(c);
   bounces_.resize(surfaces_.cells().size() * settings_.rays_per_cell, kNothing);
 }
 
-SurfaceImportance::Bounce SurfaceImportance::trace(std::uint32_t cell, const Vec3& direction, bool may_make_cells) {
-  const Vec3 from_m = surfaces_.cells()[cell].position_world_m, normal = surfaces_.cells()[cell].normal_world;
+SurfaceImportance::Bounce SurfaceImportance::trace(const SurfaceCells::Place& from, const Vec3& direction,
+                                                   bool may_make_cells) {
   Bounce bounce{
       {static_cast<float>(direction.x()), static_cast<float>(direction.y()), static_cast<float>(direction.z())},
-      SurfaceCells::kNone,
+      kNoRow,
       0,
       0};
   ++rays_;
-  const auto hit = scene_.nearest(from_m, direction, normal);
+  const auto hit = scene_.nearest(from.position_world_m, direction, from.normal_world);
   if (!hit) return bounce;
   bounce.reflectance = static_cast<float>(diffuse_reflectance(scene_.material_of(hit->triangle)));
-  if (bounce.reflectance > 0)
-    bounce.cell = may_make_cells ? surfaces_.cell_at(hit->position_world_m, hit->normal_world, settings_.most_cells)
-                                 : surfaces_.find(hit->position_world_m, hit->normal_world, rays_);
+  if (!(bounce.reflectance > 0)) return bounce;
+  const Vec3 &at_m = hit->position_world_m, &facing = hit->normal_world;
+  const std::uint32_t cell =
+      may_make_cells ? surfaces_.cell_at(at_m, facing, settings_.most_cells, SurfaceCells::Found::from_surface)
+                     : surfaces_.find(at_m, facing, rays_);
+  if (cell != SurfaceCells::kNone) bounce.row = nearest_row(cell, at_m);
   return bounce;
 }
 
+std::uint32_t SurfaceImportance::nearest_row(std::uint32_t cell, const Vec3& position_world_m) const {
+  const auto& places = surfaces_.cells()[cell].places;
+  std::uint32_t nearest = 0;
+  double nearest_m2 = HUGE_VAL;
+  for (std::uint32_t i = 0; i < kPlaces; ++i) {
+    const double away_m2 = (places[i].position_world_m - position_world_m).squaredNorm();
+    if (away_m2 < nearest_m2) nearest = i, nearest_m2 = away_m2;
+  }
+  return cell * kPlaces + nearest;
+}
+
+std::uint32_t SurfaceImportance::row_at(const Vec3& position_world_m, const Vec3& normal_world,
+                                        std::uint64_t& rays) const {
+  const std::uint32_t cell = surfaces_.find(position_world_m, normal_world, rays);
+  if (cell == SurfaceCells::kNone) return kNoRow;
+  const std::uint32_t row = nearest_row(cell, position_world_m);
+  return live_[row] ? row : kNoRow;
+}
+
 void SurfaceImportance::trace_bounces(std::uint32_t cell) {
-  const Vec3 normal = surfaces_.cells()[cell].normal_world;
   const SobolSequence samples(mixed(mixed(settings_.seed, kCellKey), cell));
   for (std::uint32_t i = 0; i < settings_.rays_per_cell; ++i) {
     const auto [u, v] = samples.pair(i, 0, 0);
-    // From where the cell stands now: another place may come to stand for it.
-    Bounce bounce = trace(cell, cosine_direction(normal, u, v), true);
+    // A copy, from where the cell stands now: another place may come to stand for it, and cells may move.
+    const SurfaceCells::Place from = surfaces_.cells()[cell].places[i % kPlaces];
+    Bounce bounce = trace(from, cosine_direction(from.normal_world, u, v), true);
     bounce.weight = bounce.reflectance / static_cast<float>(settings_.rays_per_cell);
     bounces_.push_back(bounce);
   }
@@ -153,7 +178,9 @@ void SurfaceImportance::trace_bounces(std::uint32_t cell) {
 void SurfaceImportance::gather_bounces() {
   const auto& cells = surfaces_.cells();
   const std::size_t first = settings_.rays_per_cell, guided = settings_.guided_rays_per_cell;
-  const PointTree tree(places_m());
+  std::vector<Vec3> middles_m;
+  for (const auto& cell : cells) middles_m.push_back(cell.places[0].position_world_m);
+  const PointTree tree(middles_m);
   std::vector<Bounce> fresh(cells.size() * (first + guided), kNothing);
   std::vector<float> per_share(stride_);
   std::vector<WeightedRow> met, met_patches;
@@ -169,12 +196,12 @@ void SurfaceImportance::gather_bounces() {
     const auto each_bounce = [&](auto&& visit) {
       for (std::uint32_t i = node.begin; i < node.end; ++i)
         for (std::size_t q = 0; q < first; ++q)
-          if (const Bounce& b = bounces_[tree.order[i] * first + q]; b.cell != SurfaceCells::kNone) visit(b);
+          if (const Bounce& b = bounces_[tree.order[i] * first + q]; b.row != kNoRow) visit(b);
     };
     if (guided > 0)
       each_bounce([&](const Bounce& b) {
-        met.push_back({b.cell, b.reflectance});
-        met_patches.push_back({patch_of_cell_[b.cell], b.reflectance});
+        met.push_back({b.row, b.reflectance});
+        met_patches.push_back({patch_of_cell_[b.row / kPlaces], b.reflectance});
       });
     std::fill(per_share.begin(), per_share.end(), 0.0f);
     add_weighted_rows(first_.data(), met, per_share);
@@ -182,7 +209,8 @@ void SurfaceImportance::gather_bounces() {
     for (float& sum : per_share) sum = sum > 0 ? 1 / sum : 0;
     if (guided > 0)
       each_bounce([&](const Bounce& b) {
-        const float *a = first_.data() + b.cell * stride_, *f = further_.data() + patch_of_cell_[b.cell] * stride_;
+        const float* a = first_.data() + b.row * stride_;
+        const float* f = further_.data() + patch_of_cell_[b.row / kPlaces] * stride_;
         float worth = 0;
         for (std::size_t r = 0; r < stride_; ++r) worth += per_share[r] * (a[r] + f[r]);
         guide.add(Vec3(b.direction_world[0], b.direction_world[1], b.direction_world[2]), b.reflectance * worth);
@@ -190,11 +218,10 @@ void SurfaceImportance::gather_bounces() {
     guide.finish();
     for (std::uint32_t i = node.begin; i < node.end; ++i) {
       const std::uint32_t c = tree.order[i];
-      const Vec3& normal = cells[c].normal_world;
-      const auto weighted = [&](const Vec3& direction, double guide_density) {
-        const double cosine_density = std::max(0.0, normal.dot(direction)) / kPi;
+      const auto weighted = [&](const SurfaceCells::Place& from, const Vec3& direction, double guide_density) {
+        const double cosine_density = std::max(0.0, from.normal_world.dot(direction)) / kPi;
         if (!(cosine_density > 0)) return kNothing;
-        Bounce bounce = trace(c, direction, false);
+        Bounce bounce = trace(from, direction, false);
         bounce.weight = static_cast<float>(
             bounce.reflectance * cosine_density /
             (static_cast<double>(first) * cosine_density + static_cast<double>(guided) * guide_density));
@@ -205,42 +232,44 @@ void SurfaceImportance::gather_bounces() {
       Bounce* of_cell = fresh.data() + c * (first + guided);
       for (std::uint32_t q = 0; q < first; ++q) {
         const auto [u, v] = again.pair(q, 0, 0);
-        const Vec3 direction = cosine_direction(normal, u, v);
-        of_cell[q] = weighted(direction, guide.density_per_sr(direction));
+        const auto& from = cells[c].places[q % kPlaces];
+        const Vec3 direction = cosine_direction(from.normal_world, u, v);
+        of_cell[q] = weighted(from, direction, guide.density_per_sr(direction));
       }
       for (std::uint32_t q = 0; q < guided; ++q) {
         const auto [u, v] = where_worth.pair(q, 0, 0);
         const DirectionSample drawn = guide.sample(u, v);
-        of_cell[first + q] = weighted(drawn.direction, drawn.density_per_sr);
+        of_cell[first + q] = weighted(cells[c].places[q % kPlaces], drawn.direction, drawn.density_per_sr);
       }
     }
   }
   bounces_ = std::move(fresh);
 }
 
-/// cosθr cosθy / (π d²), at the cell's place; near by, its mean over a square of the cell's size there.
-double SurfaceImportance::kernel(const Receiver& receiver, const SurfaceCells::Cell& cell) const {
-  const auto at = [&](const Vec3& place_m) {
-    const Vec3 towards_m = place_m - receiver.position_world_m;
+/// cosθr cosθy / (π d²), at a place; near by, its mean over a square of the size that it stands for.
+double SurfaceImportance::kernel(const Receiver& receiver, const SurfaceCells::Place& place) const {
+  const auto at = [&](const Vec3& at_m) {
+    const Vec3 towards_m = at_m - receiver.position_world_m;
     const double squared_m2 = towards_m.squaredNorm();
-    const double cosines = receiver.normal_world.dot(towards_m) * -cell.normal_world.dot(towards_m);
+    const double cosines = receiver.normal_world.dot(towards_m) * -place.normal_world.dot(towards_m);
     return receiver.normal_world.dot(towards_m) > 0 && cosines > 0 ? cosines / (kPi * squared_m2 * squared_m2) : 0.0;
   };
-  const double size_m = settings_.cell_m;
-  if ((cell.position_world_m - receiver.position_world_m).squaredNorm() >= kNearCells * kNearCells * size_m * size_m)
-    return at(cell.position_world_m);
-  const Vec3 u = cell.normal_world.unitOrthogonal(), v = cell.normal_world.cross(u);
+  const double size_m = settings_.cell_m / std::sqrt(kPlaces);
+  if ((place.position_world_m - receiver.position_world_m).squaredNorm() >= kNearCells * kNearCells * size_m * size_m)
+    return at(place.position_world_m);
+  const Vec3 u = place.normal_world.unitOrthogonal(), v = place.normal_world.cross(u);
   double sum = 0;
   for (int i = 0; i < kNearGrid; ++i)
     for (int j = 0; j < kNearGrid; ++j)
       sum +=
-          at(cell.position_world_m + size_m * (((i + 0.5) / kNearGrid - 0.5) * u + ((j + 0.5) / kNearGrid - 0.5) * v));
+          at(place.position_world_m + size_m * (((i + 0.5) / kNearGrid - 0.5) * u + ((j + 0.5) / kNearGrid - 0.5) * v));
   return sum / (kNearGrid * kNearGrid);
 }
 
 std::vector<Vec3> SurfaceImportance::places_m() const {
   std::vector<Vec3> places_m;
-  for (const auto& cell : surfaces_.cells()) places_m.push_back(cell.position_world_m);
+  for (const auto& cell : surfaces_.cells())
+    for (const auto& place : cell.places) places_m.push_back(place.position_world_m);
   return places_m;
 }
 
@@ -250,14 +279,18 @@ void SurfaceImportance::see_receiver(const VisibilityScene& visibility, const Po
   VisiblePoints visible(visibility, receivers_[receiver], skips, 0, 0);
   double value = 0;
   visible.visit(
-      tree, places_m, [&](std::uint32_t c) { return (value = kernel(receivers_[receiver], surfaces_.cells()[c])) > 0; },
-      [&](std::uint32_t c) { first_[c * stride_ + receiver] = static_cast<float>(value); });
+      tree, places_m,
+      [&](std::uint32_t row) {
+        const SurfaceCells::Place& place = surfaces_.cells()[row / kPlaces].places[row % kPlaces];
+        return (value = kernel(receivers_[receiver], place)) > 0;
+      },
+      [&](std::uint32_t row) { first_[row * stride_ + receiver] = static_cast<float>(value); });
   rays_ += visible.rays;
 }
 
 void SurfaceImportance::see_receivers(const VisibilityScene& visibility, const CandidateSkips& skips) {
   const std::vector<Vec3> places = places_m();
-  first_.assign(places.size() * stride_, 0.0f);
+  first_.assign(rows_count() * stride_, 0.0f);
   const PointTree tree(places);
   for (std::size_t r = 0; r < receivers_.size() && !stop_.stop_requested(); ++r)
     see_receiver(visibility, tree, places, r, skips);
@@ -267,58 +300,65 @@ void SurfaceImportance::update_receiver(const VisibilityScene& visibility, std::
                                         const CandidateSkips& skips) {
   rays_ = 0;
   const std::vector<Vec3> places = places_m();
-  const std::size_t cells = places.size();
-  for (std::size_t c = 0; c < cells; ++c) first_[c * stride_ + receiver] = 0;
+  for (std::size_t row = 0; row < rows_count(); ++row) first_[row * stride_ + receiver] = 0;
   see_receiver(visibility, PointTree(places), places, receiver, skips);
   std::vector<float> gathered(patches_, 0.0f), value(patches_, 0.0f);
   for (std::uint32_t p = 0; p < patches_; ++p) {
-    for (const WeightedRow& from : from_cells_[p]) gathered[p] += from.weight * first_[from.row * stride_ + receiver];
+    for (const WeightedRow& from : from_rows_[p]) gathered[p] += from.weight * first_[from.row * stride_ + receiver];
     value[p] = gathered[p];
   }
   for (std::uint32_t sweep = 0; sweep < kMostSweeps; ++sweep) {
-    double change = 0, sum = 0;
+    double change = 0, count = 0;
     for (std::uint32_t i = 0; i < patches_; ++i) {
       const std::size_t p = sweep % 2 == 0 ? i : patches_ - 1 - i;
       float fresh = gathered[p];
       for (const WeightedRow& from : from_patches_[p]) fresh += from.weight * value[from.row];
-      change += std::abs(fresh - value[p]);
-      sum += fresh;
+      change += std::abs(fresh - value[p]) / std::max(fresh, kLeast);
+      count += fresh > 0;
       value[p] = fresh;
     }
-    if (change <= kConverged * sum) break;
+    if (change <= kConverged * count) break;
   }
   for (std::uint32_t p = 0; p < patches_; ++p) further_[p * stride_ + receiver] = value[p];
   add_terms();
 }
 
-/// What the rays of each patch's cells meet: cells, for the first term; patches, for the second.
+/// What the rays of each patch's cells meet: rows, for the first term; patches, for the second.
 void SurfaceImportance::link_patches() {
   const std::size_t cells = surfaces_.cells().size(), per_cell = cells == 0 ? 0 : bounces_.size() / cells;
   std::vector<std::vector<std::uint32_t>> cells_of_patch(patches_);
   for (std::uint32_t c = 0; c < cells; ++c) cells_of_patch[patch_of_cell_[c]].push_back(c);
-  from_cells_.assign(patches_, {});
+  from_rows_.assign(patches_, {});
   from_patches_.assign(patches_, {});
-  const auto merge = [](std::vector<WeightedRow>& list) {
-    std::stable_sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return a.row < b.row; });
-    std::size_t kept = 0;
-    for (const WeightedRow entry : list)
-      if (kept > 0 && list[kept - 1].row == entry.row)
-        list[kept - 1].weight += entry.weight;
-      else
-        list[kept++] = entry;
-    list.resize(kept);
-    list.shrink_to_fit();
+  const auto hits_of = [&](std::uint32_t cell) {
+    return static_cast<float>(surfaces_.cells()[cell].hits_from_surfaces + 1);
+  };
+  // Where a row stands in the list at hand; stale where that list does not have it there.
+  std::vector<std::uint32_t> place(std::max<std::size_t>(rows_count(), patches_), 0);
+  std::vector<WeightedRow> gathered;
+  const auto add = [&](std::uint32_t row, float weight) {
+    std::uint32_t& at = place[row];
+    if (at < gathered.size() && gathered[at].row == row) {
+      gathered[at].weight += weight;
+    } else {
+      at = static_cast<std::uint32_t>(gathered.size());
+      gathered.push_back({row, weight});
+    }
   };
   for (std::uint32_t p = 0; p < patches_; ++p) {
-    const auto share = 1 / static_cast<float>(cells_of_patch[p].size());
-    for (const std::uint32_t c : cells_of_patch[p])
-      for (std::size_t q = 0; q < per_cell; ++q)
-        if (const Bounce& b = bounces_[c * per_cell + q]; b.cell != SurfaceCells::kNone && b.weight > 0) {
-          from_cells_[p].push_back({b.cell, share * b.weight});
-          from_patches_[p].push_back({patch_of_cell_[b.cell], share * b.weight});
-        }
-    merge(from_cells_[p]);
-    merge(from_patches_[p]);
+    // A sliver of a cell at the edge of a wall counts by how often it was hit, which goes with its area.
+    float hits = 0;
+    for (const std::uint32_t c : cells_of_patch[p]) hits += hits_of(c);
+    const auto gather = [&](std::vector<WeightedRow>& list, const auto& row_of) {
+      gathered.clear();
+      for (const std::uint32_t c : cells_of_patch[p])
+        for (std::size_t q = 0; q < per_cell; ++q)
+          if (const Bounce& b = bounces_[c * per_cell + q]; b.row != kNoRow && b.weight > 0)
+            add(row_of(b.row), hits_of(c) / hits * b.weight);
+      list = gathered;
+    };
+    gather(from_rows_[p], [](std::uint32_t row) { return row; });
+    gather(from_patches_[p], [&](std::uint32_t row) { return patch_of_cell_[row / kPlaces]; });
   }
 }
 
@@ -342,26 +382,26 @@ void SurfaceImportance::solve_strip(std::size_t from, std::size_t width, double 
   {
     const std::vector<float> first = packed(first_);
     for (std::uint32_t p = 0; p < patches_; ++p)
-      add_weighted_rows(first.data(), from_cells_[p], std::span(gathered).subspan(p * width, width));
+      add_weighted_rows(first.data(), from_rows_[p], std::span(gathered).subspan(p * width, width));
   }
   std::array<float, kStrip> fresh{};
   for (std::uint32_t sweep = 0; sweep < kMostSweeps && !stop_.stop_requested(); ++sweep, ++sweeps_) {
-    double change = 0, sum = 0;
+    double change = 0, count = 0;
     for (std::uint32_t i = 0; i < patches_; ++i) {
       const std::size_t p = sweep % 2 == 0 ? i : patches_ - 1 - i;
       std::copy_n(gathered.data() + p * width, width, fresh.data());
       add_weighted_rows(value.data(), from_patches_[p], std::span(fresh).first(width));
       float* to = value.data() + p * width;
-      float patch_change[4] = {}, patch_sum[4] = {};
+      float patch_change[4] = {}, patch_count[4] = {};
       for (std::size_t r = 0; r < width; r += 4)
         for (std::size_t k = 0; k < 4; ++k) {
-          patch_change[k] += std::abs(fresh[r + k] - to[r + k]);
-          patch_sum[k] += fresh[r + k];
+          patch_change[k] += std::abs(fresh[r + k] - to[r + k]) / std::max(fresh[r + k], kLeast);
+          patch_count[k] += fresh[r + k] > 0 ? 1.0f : 0.0f;
           to[r + k] = fresh[r + k];
         }
-      for (std::size_t k = 0; k < 4; ++k) change += patch_change[k], sum += patch_sum[k];
+      for (std::size_t k = 0; k < 4; ++k) change += patch_change[k], count += patch_count[k];
     }
-    if (change <= converged * sum) break;
+    if (change <= converged * count) break;
   }
   for (std::size_t p = 0; p < patches_; ++p)
     std::copy_n(value.data() + p * width, width, further_.data() + p * stride_ + from);
@@ -369,18 +409,18 @@ void SurfaceImportance::solve_strip(std::size_t from, std::size_t width, double 
 
 void SurfaceImportance::add_terms() {
   std::vector<float>& sum = settings_.keep_links ? both_ = first_ : first_;
-  live_.resize(surfaces_.cells().size());
-  for (std::size_t c = 0; c < live_.size(); ++c) {
-    float* row = sum.data() + c * stride_;
-    const float* further = further_.data() + patch_of_cell_[c] * stride_;
+  live_.resize(rows_count());
+  for (std::size_t i = 0; i < live_.size(); ++i) {
+    float* row = sum.data() + i * stride_;
+    const float* further = further_.data() + patch_of_cell_[i / kPlaces] * stride_;
     for (std::size_t r = 0; r < stride_; ++r) row[r] += further[r];
-    live_[c] = std::any_of(row, row + stride_, [](float w) { return w > 0; });
+    live_[i] = std::any_of(row, row + stride_, [](float w) { return w > 0; });
   }
 }
 
 std::size_t SurfaceImportance::bytes() const {
   std::size_t links = 0;
-  for (std::size_t p = 0; p < from_cells_.size(); ++p) links += from_cells_[p].size() + from_patches_[p].size();
+  for (std::size_t p = 0; p < from_rows_.size(); ++p) links += from_rows_[p].size() + from_patches_[p].size();
   return (first_.size() + further_.size() + both_.size()) * sizeof(float) + bounces_.size() * sizeof(Bounce) +
          links * sizeof(WeightedRow) + surfaces_.cells().size() * 2 * sizeof(SurfaceCells::Cell);
 }

@@ -6,10 +6,10 @@
 /// the surface at y and is not absorbed there (ρ left out),
 ///   W(r, y) = cosθr cosθy V / (π d²) + mean over cosine-weighted directions at y of ρ(z) W(r, z),   z = what they hit,
 ///   E_reflected(r) = ∫ ρ(y) W(r, y) dΦ(y),   Φ = flux that comes straight from the emitter.
-/// The first term is kept at the place of each cell (surface_cells.h), with a visibility ray per receiver. The second
-/// is smooth: it is kept on patches, cells of a coarser grid, and solved by iteration with rays cast once from every
-/// cell. Emitters then cast rays and look up W where these hit; so the bright spot that a lamp makes on a ceiling close
-/// by is sampled where it is.
+/// The first term is kept for each of a cell's places (surface_cells.h), with a visibility ray per receiver, and holds
+/// for what lies nearest to that place. The second is smooth: it is kept on patches, cells of a coarser grid, and
+/// solved by iteration with rays cast once from every cell. Emitters then cast rays and look up W where these hit; so
+/// the bright spot that a lamp makes on a ceiling close by is sampled where it is.
 ///
 /// One field is one independent estimate: its grid, places and rays are random. Errors come from several (replicates):
 /// their spread holds the error of cells being flat, of visibility asked at one place per cell, and of all rays.
@@ -50,10 +50,11 @@ class SurfaceImportance {
 
   /// Receivers, rounded up to a multiple of kRowUnit: the length of the rows below.
   [[nodiscard]] std::size_t stride() const { return stride_; }
-  /// W [lx/lm], cells × stride().
+  /// W [lx/lm], a row of stride() for each place of each cell.
   [[nodiscard]] const float* rows() const { return settings_.keep_links ? both_.data() : first_.data(); }
-  /// W of the cell is above 0 for a receiver.
-  [[nodiscard]] bool live(std::uint32_t cell) const { return live_[cell] != 0; }
+  /// The row that holds for a place on a surface, or kNoRow where no light gets from to a receiver. Adds the rays cast.
+  [[nodiscard]] std::uint32_t row_at(const Vec3& position_world_m, const Vec3& normal_world, std::uint64_t& rays) const;
+  static constexpr std::uint32_t kNoRow = ~0u;
   [[nodiscard]] const SurfaceCells& surfaces() const { return surfaces_; }
   [[nodiscard]] std::uint64_t rays() const { return rays_; }
   [[nodiscard]] std::uint32_t sweeps() const { return sweeps_; }
@@ -63,27 +64,30 @@ class SurfaceImportance {
   /// A ray that leaves a cell.
   struct Bounce {
     std::array<float, 3> direction_world;
-    std::uint32_t cell;  ///< SurfaceCells::kNone: nothing was hit
-    float reflectance;   ///< of what was hit
-    float weight;        ///< in the mean over cosine-weighted directions, with the reflectance
+    std::uint32_t row;  ///< of what was hit; kNoRow: nothing
+    float reflectance;  ///< of what was hit
+    float weight;       ///< in the mean over cosine-weighted directions, with the reflectance
   };
 
   void discover(std::span<const Vec3> also_from_world_m);
   void trace_bounces(std::uint32_t cell);
-  [[nodiscard]] Bounce trace(std::uint32_t cell, const Vec3& direction, bool may_make_cells);
+  [[nodiscard]] Bounce trace(const SurfaceCells::Place& from, const Vec3& direction, bool may_make_cells);
   void make_patches(const Scene& scene);
   void gather_bounces();
   void see_receiver(const VisibilityScene& visibility, const PointTree& tree, std::span<const Vec3> places_m,
                     std::size_t receiver, const CandidateSkips& skips);
   void see_receivers(const VisibilityScene& visibility, const CandidateSkips& skips);
-  [[nodiscard]] std::vector<Vec3> places_m() const;
+  [[nodiscard]] std::vector<Vec3> places_m() const;  ///< of all rows
+  [[nodiscard]] std::size_t rows_count() const { return surfaces_.cells().size() * kPlaces; }
+  [[nodiscard]] std::uint32_t nearest_row(std::uint32_t cell, const Vec3& position_world_m) const;
   void link_patches();
-  [[nodiscard]] double kernel(const Receiver& receiver, const SurfaceCells::Cell& cell) const;
+  [[nodiscard]] double kernel(const Receiver& receiver, const SurfaceCells::Place& place) const;
   void solve(double converged);
   void solve_strip(std::size_t from, std::size_t width, double converged);
   void add_terms();
 
-  static constexpr Bounce kNothing{{0, 0, 1}, SurfaceCells::kNone, 0, 0};
+  static constexpr Bounce kNothing{{0, 0, 1}, kNoRow, 0, 0};
+  static constexpr auto kPlaces = static_cast<std::uint32_t>(SurfaceCells::kPlaces);
 
   const RayScene& scene_;
   std::span<const Receiver> receivers_;
@@ -94,11 +98,11 @@ class SurfaceImportance {
   std::vector<Bounce> bounces_;  ///< as many for each cell
   std::vector<std::uint32_t> patch_of_cell_;
   std::uint32_t patches_ = 0;
-  std::vector<std::vector<WeightedRow>> from_cells_, from_patches_;  ///< per patch: what its rays meet, with weights
-  std::vector<float> first_;  ///< first term of W, cells × stride; with the second added at the end, unless links stay
-  std::vector<float> further_;  ///< second term, patches × stride
-  std::vector<float> both_;     ///< their sum, when links stay: cells × stride
-  std::vector<std::uint8_t> live_;
+  std::vector<std::vector<WeightedRow>> from_rows_, from_patches_;  ///< per patch: what its rays meet, with weights
+  std::vector<float> first_;  ///< first term of W, rows × stride; with the second added at the end, unless links stay
+  std::vector<float> further_;      ///< second term, patches × stride
+  std::vector<float> both_;         ///< their sum, when links stay: rows × stride
+  std::vector<std::uint8_t> live_;  ///< per row: W is above 0 for a receiver
   std::uint64_t rays_ = 0;
   std::uint32_t sweeps_ = 0;
 };

@@ -161,7 +161,7 @@ TEST(IndirectCandidates, AreTheSameBytesOnAnyThreadsAndInAnyMemory) {
   }
   std::vector<float> streamed;
   std::size_t blocks = 0;
-  options.memory_bound_bytes = 1'600'000;
+  options.memory_bound_bytes = 4'000'000;
   const auto done = stream_candidates(scene, rays, receivers, set, options, [&](const CandidateColumns& block) {
     streamed.insert(streamed.end(), block.total_lux.begin(), block.total_lux.end());
     ++blocks;
@@ -196,35 +196,38 @@ TEST(IndirectCandidates, InterpolatedColumnsAreWhatLookingGives) {
   CandidateOptions options = coarse();
   options.surface_cells = 1000;
   options.wanted_relative_error = 0.04;
-  const auto got = computed(scene, rays, receivers, all, options);
-  EXPECT_GT(got.statistics.nodes, 200u);
-  EXPECT_LT(got.statistics.columns_looked_at * 2, all.columns()) << "most are interpolated";
-  // Too few to interpolate between: the same fields, each with rays of its own.
+  // Too few to interpolate between: each with rays of its own.
   CandidateSet few{{}, all.luminaires};
   std::vector<std::size_t> column_of;
   for (std::size_t c = 7; c < all.columns(); c += all.columns() / 120) {
     few.positions_world_m.push_back(all.positions_world_m[c]);
     column_of.push_back(c);
   }
-  const auto looked = computed(scene, rays, receivers, few, options);
-  EXPECT_EQ(looked.statistics.nodes, 0u);
   int inside = 0, entries = 0;
   double sum = 0, looked_sum = 0;
-  for (std::size_t i = 0; i < column_of.size(); ++i) {
-    const auto a = dense_column(got.matrix, column_of[i], got.matrix.total_lux, receivers.size());
-    const auto error = dense_column(got.matrix, column_of[i], got.matrix.standard_error_lux, receivers.size());
-    const auto b = dense_column(looked.matrix, i, looked.matrix.total_lux, receivers.size());
-    const auto error_b = dense_column(looked.matrix, i, looked.matrix.standard_error_lux, receivers.size());
-    for (std::size_t r = 0; r < receivers.size(); ++r) {
-      if (!(b[r] > 0)) continue;
-      inside += std::abs(a[r] - b[r]) <= 2 * std::hypot(error[r], error_b[r]);
-      ++entries;
-      sum += static_cast<double>(a[r]), looked_sum += static_cast<double>(b[r]);
+  for (options.seed = 1; options.seed <= 4; ++options.seed) {
+    const auto got = computed(scene, rays, receivers, all, options);
+    EXPECT_GT(got.statistics.nodes, 200u);
+    EXPECT_LT(got.statistics.columns_looked_at * 2, all.columns()) << "most are interpolated";
+    const auto looked = computed(scene, rays, receivers, few, options);
+    EXPECT_EQ(looked.statistics.nodes, 0u);
+    for (std::size_t i = 0; i < column_of.size(); ++i) {
+      const auto a = dense_column(got.matrix, column_of[i], got.matrix.total_lux, receivers.size());
+      const auto error = dense_column(got.matrix, column_of[i], got.matrix.standard_error_lux, receivers.size());
+      const auto b = dense_column(looked.matrix, i, looked.matrix.total_lux, receivers.size());
+      const auto error_b = dense_column(looked.matrix, i, looked.matrix.standard_error_lux, receivers.size());
+      for (std::size_t r = 0; r < receivers.size(); ++r) {
+        if (!(b[r] > 0)) continue;
+        inside += std::abs(a[r] - b[r]) <= 2 * std::hypot(error[r], error_b[r]);
+        ++entries;
+        sum += static_cast<double>(a[r]), looked_sum += static_cast<double>(b[r]);
+      }
     }
   }
-  EXPECT_GT(entries, 800);
+  EXPECT_GT(entries, 3200);
   EXPECT_GE(inside, 0.93 * entries);
-  EXPECT_NEAR(sum, looked_sum, 0.005 * looked_sum);
+  // Surfaces are cut up anew for each set, into few cells here: that differs by 1 % between seeds.
+  EXPECT_NEAR(sum, looked_sum, 0.01 * looked_sum);
 }
 
 TEST(IncrementalTransport, AColumnIsWhatTheEvaluatorsSay) {

@@ -23,7 +23,7 @@ TEST(SurfaceCells, AWallPartsTheFloorUnderIt) {
     for (int i = 0; i < 400; ++i) {
       const bool on_left = i % 2 == 0;
       const Vec3 at(on_left ? 3.4 + 0.6 * unit(random) : 4.15 + 0.6 * unit(random), 3 * unit(random), 0);
-      const auto cell = cells.cell_at(at, Vec3::UnitZ(), 10'000);
+      const auto cell = cells.cell_at(at, Vec3::UnitZ(), 10'000, SurfaceCells::Found::from_surface);
       (on_left ? left : right).insert(cell);
       places.emplace_back(at, cell);
     }
@@ -43,12 +43,13 @@ TEST(SurfaceCells, TheSidesOfAThinThingAreApart) {
   const Scene scene = two_rooms(0.5, true);
   const RayScene rays(scene);
   SurfaceCells cells(scene, rays, 0.5, Vec3::Constant(0.3));
-  const auto above = cells.cell_at({1.7, 1.4, 0.75}, Vec3::UnitZ(), 100);
-  const auto below = cells.cell_at({1.7, 1.4, 0.70}, -Vec3::UnitZ(), 100);
+  const auto above = cells.cell_at({1.7, 1.4, 0.75}, Vec3::UnitZ(), 100, SurfaceCells::Found::from_surface);
+  const auto below = cells.cell_at({1.7, 1.4, 0.70}, -Vec3::UnitZ(), 100, SurfaceCells::Found::from_surface);
   EXPECT_NE(above, below);
-  EXPECT_EQ(cells.cell_at({1.71, 1.41, 0.75}, Vec3::UnitZ(), 100), above);
-  EXPECT_EQ(cells.cells()[above].hits, 2u);
-  EXPECT_EQ(cells.cell_at({3, 2.9, 0}, Vec3::UnitZ(), 2), SurfaceCells::kNone) << "no more than were allowed";
+  EXPECT_EQ(cells.cell_at({1.71, 1.41, 0.75}, Vec3::UnitZ(), 100, SurfaceCells::Found::from_surface), above);
+  EXPECT_EQ(cells.cells()[above].hits_from_surfaces, 2u);
+  EXPECT_EQ(cells.cell_at({3, 2.9, 0}, Vec3::UnitZ(), 2, SurfaceCells::Found::from_surface), SurfaceCells::kNone)
+      << "no more than were allowed";
 }
 
 }  // namespace
