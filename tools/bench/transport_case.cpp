@@ -117,6 +117,12 @@ Reference reference_of(const TransportCase& one, const BenchOptions& options) {
   return reference;
 }
 
+void set_note(BenchRow& row, std::string note) {
+  for (char& c : note)
+    if (c == ',' || c == '\n') c = ';';
+  row.further.back().second = std::move(note);
+}
+
 BenchRow transport_row(const std::string& case_name, const std::string& method, double error, const Measured& run,
                        std::optional<double> wanted_error, std::optional<double> target_error, const RoomError& bias,
                        double reference_error) {
@@ -125,6 +131,7 @@ BenchRow transport_row(const std::string& case_name, const std::string& method, 
   row.further.pop_back();
   row.further.emplace_back("bias", bias.bias != 0 ? fmt::format("{:.3g}", bias.bias) : "");
   row.further.emplace_back("reference_error", reference_error != 0 ? fmt::format("{:.3g}", reference_error) : "");
+  row.further.emplace_back("cpu_seconds", run.cpu_seconds > 0 ? fmt::format("{:.3g}", run.cpu_seconds) : "");
   row.further.push_back(note);
   return row;
 }
