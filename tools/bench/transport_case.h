@@ -9,13 +9,18 @@
 
 namespace luxrig {
 
-/// What all methods are measured against: path tracing with a small wanted error and a seed of its own, all lamps at
-/// level 1.
+/// What all methods are measured against: path tracing with a small wanted error and a seed of its own.
 struct Reference {
   Eigen::VectorXd lux;
   double rms_error = 0;  ///< its own, by its standard errors; relative as below
   double seconds = 0;    ///< what it took; 0 when it came from a file
   std::string refused;   ///< why there is none
+};
+
+/// Which lamps a reference is of; empty = all at level 1.
+struct ReferenceLevels {
+  std::vector<double> wanted;    ///< levels at which lux is given
+  std::vector<double> steering;  ///< levels under which path tracing reaches the wanted error
 };
 
 struct TransportCase {
@@ -34,7 +39,8 @@ struct RoomError {
 [[nodiscard]] std::uint64_t hash_of(const LitRoom& room);
 
 /// With options.references_folder, from its file there when one as good is kept; else computed, and kept.
-[[nodiscard]] Reference reference_of(const TransportCase& one, const BenchOptions& options);
+[[nodiscard]] Reference reference_of(const TransportCase& one, const BenchOptions& options,
+                                     const ReferenceLevels& of_lamps = {});
 
 /// A row of the transport suite: measured.h's columns, then bias, reference_error and cpu_seconds, and `note` last.
 [[nodiscard]] BenchRow transport_row(const std::string& case_name, const std::string& method, double error,

@@ -63,7 +63,7 @@ MatrixRun run_of(const TransportCase& one, const CandidateSet& set, const Candid
 }
 
 void add_skips(const TransportCase& one, bool indirect, const BenchOptions& options, std::vector<BenchRow>& rows) {
-  const CandidateSet set = places_in(one, options.quick ? 500 : indirect ? 1'000 : 10'000);
+  const CandidateSet set = places_in(one, options.quick ? 300 : indirect ? 500 : 10'000);
   CandidateOptions of = candidate_options(options, indirect);
   of.least_lux = kLeastLux;
   if (options.quick) of.surface_cells = 2'000;
