@@ -31,8 +31,9 @@ void add_matrix(const TransportCase& one, const BenchOptions& options, std::vect
     const CandidateOptions direct = candidate_options(options, false);
     const StreamedCandidates run = median_of_streams(options.quick ? 1 : 3, one, receivers, many, direct);
     rows.push_back(candidate_row(
-        "matrix-direct-300x20000", entry_error(one, receivers, many, direct, run.first_columns), run, std::nullopt, 1e-6,
-        0.5, fmt::format("{} pairs traced of {}", run.statistics.pairs_traced, receivers.size() * many.columns())));
+        "matrix-direct-300x20000", entry_error(one, receivers, many, direct, run.first_columns), run, std::nullopt,
+        1e-6, 0.5,
+        fmt::format("{} pairs traced of {}", run.statistics.pairs_traced, receivers.size() * many.columns())));
   }
   if (wanted_case(options, "matrix-indirect-300x20000")) {
     const CandidateOptions indirect = candidate_options(options, true);
@@ -70,9 +71,8 @@ StreamedCandidates median_of_streams(int runs, const TransportCase& one, std::sp
   std::vector<StreamedCandidates> all;
   for (int i = 0; i < runs; ++i) all.push_back(stream_measured(one, receivers, set, options));
   const auto middle = all.begin() + runs / 2;
-  std::nth_element(all.begin(), middle, all.end(), [](const StreamedCandidates& a, const StreamedCandidates& b) {
-    return a.took.wall < b.took.wall;
-  });
+  std::nth_element(all.begin(), middle, all.end(),
+                   [](const StreamedCandidates& a, const StreamedCandidates& b) { return a.took.wall < b.took.wall; });
   return std::move(*middle);
 }
 

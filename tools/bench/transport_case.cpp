@@ -107,8 +107,7 @@ Reference reference_of(const TransportCase& one, const BenchOptions& options, co
   reference.refused = run.refused;
   if (!run.refused.empty()) return reference;
   Eigen::VectorXd levels = Eigen::VectorXd::Ones(run.matrix.emitters());
-  for (std::size_t e = 0; e < of_lamps.wanted.size(); ++e)
-    levels[static_cast<Eigen::Index>(e)] = of_lamps.wanted[e];
+  for (std::size_t e = 0; e < of_lamps.wanted.size(); ++e) levels[static_cast<Eigen::Index>(e)] = of_lamps.wanted[e];
   reference.lux = run.matrix.lux(levels);
   const Eigen::ArrayXd bars = run.matrix.standard_error_lux(levels).array();
   reference.rms_error = std::sqrt((bars / reference.lux.array().max(0.01 * reference.lux.mean())).square().mean());
@@ -120,7 +119,8 @@ Reference reference_of(const TransportCase& one, const BenchOptions& options, co
     for (const double lux : reference.lux) out << fmt::format("{:.17g}\n", lux);
     out.close();
     if (!out)
-      fmt::print(stderr, "{}:0:0: cannot be written: name a folder that can be\n", file_of(one, options, of_lamps).string());
+      fmt::print(stderr, "{}:0:0: cannot be written: name a folder that can be\n",
+                 file_of(one, options, of_lamps).string());
   }
   return reference;
 }

@@ -88,35 +88,35 @@ ColumnMethod cached(const TransportCase& one, const BenchOptions& options) {
 }
 
 ColumnMethod incremental(const TransportCase& one, const BenchOptions& options) {
-  return {"incremental", [&one, &options](std::size_t step) -> std::optional<ColumnWay> {
-            constexpr std::uint32_t kRays[] = {1024, 4096, 16384, 65536};
-            if (step >= std::size(kRays)) return std::nullopt;
-            IncrementalOptions settings;
-            settings.rays_per_column = kRays[step];
-            settings.threads = options.threads;
-            Result<std::unique_ptr<IncrementalTransport>> made = tl::unexpected(Fault{});
-            const CallSeconds took = timed(
-                [&] { made = IncrementalTransport::make(one.room.scene, one.rays, one.room.receivers, settings); });
-            if (!made) return std::nullopt;
-            const std::shared_ptr<IncrementalTransport> transport = std::move(*made);
-            return ColumnWay{
-                [transport](const Emitter& lamp, std::uint64_t) -> Result<TransportMatrix> {
-                  const auto column = transport->column(lamp);
-                  if (!column) return tl::unexpected(column.error());
-                  TransportMatrix matrix;
-                  matrix.lux_per_level = column->total_lux;
-                  matrix.direct_lux_per_level = column->direct_lux;
-                  matrix.rays = column->rays;
-                  matrix.relative_error =
-                      (column->standard_error_lux.array() / column->total_lux.array().max(1e-3 * column->total_lux.maxCoeff()))
-                          .maxCoeff();
-                  return matrix;
-                },
-                std::nullopt,
-                fmt::format("{} rays per column; {:.0f} MB", settings.rays_per_column,
-                            static_cast<double>(transport->bytes()) / 1e6),
-                took};
-          }};
+  return {
+      "incremental", [&one, &options](std::size_t step) -> std::optional<ColumnWay> {
+        constexpr std::uint32_t kRays[] = {1024, 4096, 16384, 65536};
+        if (step >= std::size(kRays)) return std::nullopt;
+        IncrementalOptions settings;
+        settings.rays_per_column = kRays[step];
+        settings.threads = options.threads;
+        Result<std::unique_ptr<IncrementalTransport>> made = tl::unexpected(Fault{});
+        const CallSeconds took =
+            timed([&] { made = IncrementalTransport::make(one.room.scene, one.rays, one.room.receivers, settings); });
+        if (!made) return std::nullopt;
+        const std::shared_ptr<IncrementalTransport> transport = std::move(*made);
+        return ColumnWay{[transport](const Emitter& lamp, std::uint64_t) -> Result<TransportMatrix> {
+                           const auto column = transport->column(lamp);
+                           if (!column) return tl::unexpected(column.error());
+                           TransportMatrix matrix;
+                           matrix.lux_per_level = column->total_lux;
+                           matrix.direct_lux_per_level = column->direct_lux;
+                           matrix.rays = column->rays;
+                           matrix.relative_error = (column->standard_error_lux.array() /
+                                                    column->total_lux.array().max(1e-3 * column->total_lux.maxCoeff()))
+                                                       .maxCoeff();
+                           return matrix;
+                         },
+                         std::nullopt,
+                         fmt::format("{} rays per column; {:.0f} MB", settings.rays_per_column,
+                                     static_cast<double>(transport->bytes()) / 1e6),
+                         took};
+      }};
 }
 
 /// Medians of three runs, error and times each by itself.
@@ -156,7 +156,8 @@ ColumnCost cost_of(const ColumnWay& way, const Emitter& lamp, const Reference& r
 /// lamp's light, which no figure here looks at, need then not be known to a per cent.
 Reference column_reference(TransportCase& one, std::size_t number, const Emitter& lamp, const BenchOptions& options) {
   BenchOptions fine = options;
-  fine.reference_error = std::max(options.reference_error, 0.008);
+  fine.quick = false;
+  fine.reference_error = options.quick ? 0.02 : std::max(options.reference_error, 0.008);
   ReferenceLevels of;
   of.wanted.assign(one.room.emitters.size(), 0.0);
   of.steering.assign(one.room.emitters.size(), 0.02);
@@ -221,11 +222,12 @@ void add_changed_lamp(LitRoom lit, const BenchOptions& options, std::vector<Benc
   double path_seconds = 0, worst = 0;
   for (const ColumnCost& cost : found[0]) worst = std::max(worst, cost.error.rms);
   for (std::size_t m = 1; m < all.size(); ++m) {
-    note += fmt::format("; {} takes {:.3g} times as long ({:.3g} in cpu)", all[m].name,
-                        median(m, [](const ColumnCost& a, const ColumnCost& b) { return a.run.seconds / b.run.seconds; }),
-                        median(m, [](const ColumnCost& a, const ColumnCost& b) {
-                          return a.run.cpu_seconds / std::max(1e-6, b.run.cpu_seconds);
-                        }));
+    note +=
+        fmt::format("; {} takes {:.3g} times as long ({:.3g} in cpu)", all[m].name,
+                    median(m, [](const ColumnCost& a, const ColumnCost& b) { return a.run.seconds / b.run.seconds; }),
+                    median(m, [](const ColumnCost& a, const ColumnCost& b) {
+                      return a.run.cpu_seconds / std::max(1e-6, b.run.cpu_seconds);
+                    }));
     if (all[m].name == "path")
       path_seconds = median(m, [](const ColumnCost& cost, const ColumnCost&) { return cost.run.seconds; });
   }

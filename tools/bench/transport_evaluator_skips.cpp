@@ -40,8 +40,8 @@ void add_direct(const TransportCase& one, const BenchOptions& options, std::vect
   EvaluateOptions evaluate;
   evaluate.threads = 1;
   Result<TransportMatrix> got = TransportMatrix{};
-  const CallSeconds with = median_time(
-      options, [&] { got = make_direct_evaluator(one.rays)->evaluate(receivers, lamps, evaluate); });
+  const CallSeconds with =
+      median_time(options, [&] { got = make_direct_evaluator(one.rays)->evaluate(receivers, lamps, evaluate); });
   if (!got) return;
   Eigen::MatrixXd all = Eigen::MatrixXd::Zero(got->receivers(), got->emitters());
   std::uint64_t behind = 0, dark = 0;
@@ -55,7 +55,8 @@ void add_direct(const TransportCase& one, const BenchOptions& options, std::vect
         const bool seen = !one.rays.occluded(receiver.position_world_m, receiver.normal_world, at_m);
         const Vec3 towards_m = at_m - receiver.position_world_m;
         const double distance_m = towards_m.norm(), cosine = receiver.normal_world.dot(towards_m) / distance_m;
-        const double candela = lamp.intensity->intensity_cd(lamp.world_from_lamp.inverse_direction(-towards_m / distance_m));
+        const double candela =
+            lamp.intensity->intensity_cd(lamp.world_from_lamp.inverse_direction(-towards_m / distance_m));
         behind += !(cosine > 0);
         dark += cosine > 0 && !(candela > 0);
         all(r, e) = seen && cosine > 0 ? candela * cosine / (distance_m * distance_m) : 0;
@@ -64,12 +65,12 @@ void add_direct(const TransportCase& one, const BenchOptions& options, std::vect
   const auto pairs = static_cast<std::uint64_t>(all.size());
   rows.push_back(skip_row("skip-" + one.room.name + "-direct-evaluator", "direct",
                           (all - got->lux_per_level).cwiseAbs().maxCoeff() / all.maxCoeff(), 1e-9, with, without,
-                          got->rays, pairs,
-                          fmt::format("of {} pairs {} behind and {} dark", pairs, behind, dark)));
+                          got->rays, pairs, fmt::format("of {} pairs {} behind and {} dark", pairs, behind, dark)));
 }
 
-/// The room's lamps as disks of 30 cm, each way to a receiver sampled with 1 024 rays; with proofs, a way that is proven
-/// clear takes none and one proven blocked takes one to a corner. The samples are the same, so the light must be too.
+/// The room's lamps as disks of 30 cm, each way to a receiver sampled with 1 024 rays; with proofs, a way that is
+/// proven clear takes none and one proven blocked takes one to a corner. The samples are the same, so the light must be
+/// too.
 void add_proofs(const TransportCase& one, const BenchOptions& options, std::vector<BenchRow>& rows) {
   std::vector<Emitter> disks = one.room.emitters;
   for (Emitter& disk : disks) {
@@ -82,8 +83,8 @@ void add_proofs(const TransportCase& one, const BenchOptions& options, std::vect
   std::uint64_t ways = 0, clear = 0, blocked = 0, rays[2] = {0, 0};
   Eigen::MatrixXd lux[2];
   const auto sample_all = [&](bool prove) {
-    Eigen::MatrixXd& all = lux[prove] = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(receivers.size()),
-                                                             static_cast<Eigen::Index>(disks.size()));
+    Eigen::MatrixXd& all = lux[prove] =
+        Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(receivers.size()), static_cast<Eigen::Index>(disks.size()));
     ways = clear = blocked = rays[prove] = 0;
     for (std::size_t r = 0; r < receivers.size(); ++r)
       for (std::size_t e = 0; e < disks.size(); ++e) {
@@ -143,12 +144,12 @@ void add_cells(const TransportCase& one, const BenchOptions& options, std::vecto
   const Eigen::ArrayXd lux = with->matrix.lux(levels).array(), other = without->matrix.lux(levels).array(),
                        bar = with->matrix.standard_error_lux(levels).array();
   const double scale = std::max(1e-300, bar.square().sum());
-  BenchRow row = skip_row(
-      "skip-" + one.room.name + "-cache-cells", "cache", std::sqrt((lux - other).square().sum() / scale), 1.0,
-      with->took, without->took, with->report.rays, without->report.rays,
-      fmt::format("{} cells instead of {}; {:.3g} MB instead of {:.3g}; error in standard errors stated",
-                  with->report.cells, without->report.cells, static_cast<double>(with->report.bytes) / 1e6,
-                  static_cast<double>(without->report.bytes) / 1e6));
+  BenchRow row =
+      skip_row("skip-" + one.room.name + "-cache-cells", "cache", std::sqrt((lux - other).square().sum() / scale), 1.0,
+               with->took, without->took, with->report.rays, without->report.rays,
+               fmt::format("{} cells instead of {}; {:.3g} MB instead of {:.3g}; error in standard errors stated",
+                           with->report.cells, without->report.cells, static_cast<double>(with->report.bytes) / 1e6,
+                           static_cast<double>(without->report.bytes) / 1e6));
   rows.push_back(std::move(row));
 }
 

@@ -30,14 +30,14 @@ class Growth {
     if (!options_.quick && options_.only != "matrix" && run.took.cpu < 30)
       run = median_of_streams(3, one_, receivers, set, of);
     const double entries = static_cast<double>(points) * static_cast<double>(candidates);
-    const double error = indirect_ ? run.statistics.median_relative_error
-                                   : entry_error(one_, receivers, set, of, run.first_columns);
-    rows_.push_back(candidate_row(
-        fmt::format("{}-{}x{}", name(), points, candidates), error, run,
-        indirect_ ? std::optional(of.wanted_relative_error) : std::nullopt, std::nullopt, std::nullopt,
-        fmt::format("{:.3g} µs of cpu per candidate; {:.3g} ns per entry; peak resident {:.2f} GiB{}",
-                    1e6 * run.took.cpu / static_cast<double>(candidates), 1e9 * run.took.cpu / entries, run.peak_gib,
-                    indirect_ ? "; error as reported" : "")));
+    const double error =
+        indirect_ ? run.statistics.median_relative_error : entry_error(one_, receivers, set, of, run.first_columns);
+    rows_.push_back(
+        candidate_row(fmt::format("{}-{}x{}", name(), points, candidates), error, run,
+                      indirect_ ? std::optional(of.wanted_relative_error) : std::nullopt, std::nullopt, std::nullopt,
+                      fmt::format("{:.3g} µs of cpu per candidate; {:.3g} ns per entry; peak resident {:.2f} GiB{}",
+                                  1e6 * run.took.cpu / static_cast<double>(candidates), 1e9 * run.took.cpu / entries,
+                                  run.peak_gib, indirect_ ? "; error as reported" : "")));
     cpu_seconds_[{points, candidates}] = run.took.cpu;
     last_ = std::move(run);
   }
@@ -56,9 +56,7 @@ class Growth {
   }
 
  private:
-  [[nodiscard]] std::string name() const {
-    return fmt::format("matrix-growth-{}", indirect_ ? "indirect" : "direct");
-  }
+  [[nodiscard]] std::string name() const { return fmt::format("matrix-growth-{}", indirect_ ? "indirect" : "direct"); }
   const TransportCase& one_;
   bool indirect_;
   const BenchOptions& options_;
@@ -93,13 +91,13 @@ void add_million(const TransportCase& one, bool indirect, const BenchOptions& op
   CandidateOptions of = candidate_options(options, indirect);
   of.memory_bound_bytes = static_cast<std::size_t>(kBoundGib * (1 << 30));
   const StreamedCandidates run = stream_measured(one, one.room.receivers, very_many, of);
-  rows.push_back(candidate_row(fmt::format("matrix-million-{}", indirect ? "indirect" : "direct"),
-                               std::max(0.0, run.peak_gib / kBoundGib - 1), run, std::nullopt, 0.0, std::nullopt,
-                               fmt::format("{} candidates; peak resident {:.2f} GiB of {:g}; {:.3g} µs of cpu per "
-                                           "candidate; reported median entry error {:.3g}",
-                                           count, run.peak_gib, kBoundGib,
-                                           1e6 * run.took.cpu / static_cast<double>(count),
-                                           run.statistics.median_relative_error)));
+  rows.push_back(
+      candidate_row(fmt::format("matrix-million-{}", indirect ? "indirect" : "direct"),
+                    std::max(0.0, run.peak_gib / kBoundGib - 1), run, std::nullopt, 0.0, std::nullopt,
+                    fmt::format("{} candidates; peak resident {:.2f} GiB of {:g}; {:.3g} µs of cpu per "
+                                "candidate; reported median entry error {:.3g}",
+                                count, run.peak_gib, kBoundGib, 1e6 * run.took.cpu / static_cast<double>(count),
+                                run.statistics.median_relative_error)));
 }
 
 }  // namespace
@@ -110,11 +108,11 @@ void add_growth_rows(const BenchOptions& options, std::vector<BenchRow>& rows) {
   };
   const bool direct = wanted_case(options, "matrix-growth-direct"),
              // Takes minutes; a first look at it is in matrix-indirect.
-             indirect = asked_by_name("matrix-growth-indirect") ||
-                        (options.only.empty() && !options.quick && wanted_case(options, "matrix-growth-indirect")),
+      indirect = asked_by_name("matrix-growth-indirect") ||
+                 (options.only.empty() && !options.quick && wanted_case(options, "matrix-growth-indirect")),
              million = asked_by_name("matrix-million-direct"),
              // Longer still, so by its full name.
-             million_indirect = options.only == "matrix-million-indirect";
+      million_indirect = options.only == "matrix-million-indirect";
   if (!direct && !indirect && !million && !million_indirect) return;
   const TransportCase flat(make_eight_room_flat());
   if (direct) add_growth(flat, false, options, rows);

@@ -10,6 +10,7 @@ struct MovedTruth {
   Eigen::VectorXd lux;         ///< of it alone, converged
   Eigen::VectorXd direct_lux;  ///< its direct part, exact
   Eigen::VectorXd total_lux;   ///< of all lamps, with this one where it hangs now
+  double reference_error = 0;  ///< standard error of lux, rms, relative as RoomError
 };
 
 /// rms of the moved lamp's error, relative to what the receivers get in all.

@@ -53,8 +53,8 @@ MatrixRun run_of(const TransportCase& one, const CandidateSet& set, const Candid
   std::vector<CallSeconds> took;
   for (int i = 0; i < runs && run.refused.empty(); ++i) {
     Result<CandidateTransport> done = CandidateTransport{};
-    took.push_back(timed(
-        [&] { done = candidate_transport(one.room.scene, one.rays, one.room.receivers, set, options); }));
+    took.push_back(
+        timed([&] { done = candidate_transport(one.room.scene, one.rays, one.room.receivers, set, options); }));
     if (!done) run.refused = done.error().detail;
     if (done) run.transport = std::move(*done);
   }

@@ -16,10 +16,10 @@ TEST(DirectSkips, LightIsThatOfAShadowRayForEveryPair) {
     const auto got = make_direct_evaluator(rays)->evaluate(room.receivers, room.emitters, {});
     ASSERT_TRUE(got);
     const auto pairs = static_cast<std::uint64_t>(got->lux_per_level.size());
-    // Of few lamps in one room of little furniture, all may light everything.
+    // Bare lamps above receivers that all look up leave nothing to skip; spots do.
     EXPECT_LE(got->rays, pairs) << room.name;
-    if (room.name != "box") {
-      EXPECT_LT(got->rays, pairs * 9 / 10) << room.name;
+    if (room.name == "gallery") {
+      EXPECT_LT(got->rays, pairs / 2) << room.name;
     }
     double largest = 0;
     for (std::size_t r = 0; r < room.receivers.size(); ++r)
@@ -28,11 +28,12 @@ TEST(DirectSkips, LightIsThatOfAShadowRayForEveryPair) {
         const Pose& pose = room.emitters[e].world_from_lamp;
         const Vec3 towards_m = pose.translation_m - receiver.position_world_m;
         const double distance_m = towards_m.norm(), cosine = receiver.normal_world.dot(towards_m) / distance_m;
-        const double candela = room.emitters[e].intensity->intensity_cd(pose.inverse_direction(-towards_m / distance_m));
+        const double candela =
+            room.emitters[e].intensity->intensity_cd(pose.inverse_direction(-towards_m / distance_m));
         const bool seen = !rays.occluded(receiver.position_world_m, receiver.normal_world, pose.translation_m);
         const double lux = seen && cosine > 0 ? candela * cosine / (distance_m * distance_m) : 0;
-        largest = std::max(largest, std::abs(lux - got->lux_per_level(static_cast<Eigen::Index>(r),
-                                                                      static_cast<Eigen::Index>(e))));
+        largest = std::max(
+            largest, std::abs(lux - got->lux_per_level(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(e))));
       }
     EXPECT_LT(largest, 1e-9 * got->lux_per_level.maxCoeff()) << room.name;
   }
@@ -83,8 +84,7 @@ TEST(PathSkips, LampsThatMatterToNoReceiverCostFewRaysAndMoveNothingBeyondItsErr
   EvaluateOptions options;
   options.wanted_relative_error = 0.03;
   const auto alone = make_path_evaluator(rays)->evaluate(room.receivers, lamps, options);
-  for (int i = 0; i < 7; ++i)
-    lamps.push_back({make_isotropic(900), {Mat3::Identity(), {2 + 0.2 * (i - 3), 1.5, 9.1}}});
+  for (int i = 0; i < 7; ++i) lamps.push_back({make_isotropic(900), {Mat3::Identity(), {2 + 0.2 * (i - 3), 1.5, 9.1}}});
   const auto among = make_path_evaluator(rays)->evaluate(room.receivers, lamps, options);
   ASSERT_TRUE(alone && among);
   EXPECT_EQ(among->lux_per_level.rightCols(7).maxCoeff(), 0);

@@ -115,8 +115,8 @@ TEST(TransportRows, AChangedLampHasARowPerMethodAndTheirComparison) {
 
 TEST(TransportRows, GrowthIsToldWithCandidatesAndPoints) {
   const auto rows = rows_of(add_growth_rows, "matrix-growth-direct");
-  for (const char* name : {"matrix-growth-direct-300x1000", "matrix-growth-direct-150x10000",
-                           "matrix-growth-direct-300x10000"}) {
+  for (const char* name :
+       {"matrix-growth-direct-300x1000", "matrix-growth-direct-150x10000", "matrix-growth-direct-300x10000"}) {
     ASSERT_TRUE(row_named(rows, name)) << name;
     EXPECT_LT(row_named(rows, name)->error, 1e-6) << "direct light against the direct evaluator";
   }
