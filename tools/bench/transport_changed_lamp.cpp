@@ -15,6 +15,8 @@ namespace luxrig {
 namespace {
 
 constexpr double kEqualError = 0.03, kTimesFaster = 5;
+/// A run of more than this is the last of its method: finer ones would each take several times as long.
+constexpr double kLongestSeconds = 10;
 
 /// The lamp 40 cm to a side, where nothing is near; as it was when there is no such side.
 Emitter hung_elsewhere(const TransportCase& one, std::size_t lamp) {
@@ -188,7 +190,8 @@ void add_changed_lamp(LitRoom lit, const BenchOptions& options, std::vector<Benc
   std::vector<std::vector<ColumnCost>> found;
   for (const ColumnMethod& method : all) {
     std::vector<std::optional<ColumnCost>> best(lamps.size());
-    for (std::size_t step = 0;; ++step) {
+    double longest = 0;
+    for (std::size_t step = 0; longest <= kLongestSeconds; ++step) {
       bool enough = true;
       for (const auto& cost : best) enough = enough && cost && cost->error.rms <= kEqualError;
       if (enough) break;
@@ -197,6 +200,7 @@ void add_changed_lamp(LitRoom lit, const BenchOptions& options, std::vector<Benc
       for (std::size_t k = 0; k < lamps.size(); ++k) {
         if (best[k] && best[k]->error.rms <= kEqualError) continue;
         ColumnCost cost = cost_of(*way, lamps[k], references[k], options);
+        longest = std::max(longest, cost.run.cpu_seconds);
         if (!best[k] || cost.error.rms < best[k]->error.rms) best[k] = std::move(cost);
       }
     }
