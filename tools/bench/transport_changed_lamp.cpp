@@ -5,11 +5,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <utility>
 
 #include "core/transport/cache/radiance_cache.h"
 #include "core/transport/candidates/incremental_transport.h"
-#include "tools/bench/transport_case.h"
+#include "tools/bench/transport_moved.h"
 
 namespace luxrig {
 namespace {
@@ -152,22 +151,6 @@ ColumnCost cost_of(const ColumnWay& way, const Emitter& lamp, const Reference& r
   if (!way.setting.empty())
     cost.note = fmt::format("{}; built once in {:.3g} s ({:.3g} s of cpu)", way.setting, way.built.wall, way.built.cpu);
   return cost;
-}
-
-/// The column of a lamp, converged. All lamps are sampled, the others at a fiftieth: rooms that get a millionth of the
-/// lamp's light, which no figure here looks at, need then not be known to a per cent.
-Reference column_reference(TransportCase& one, std::size_t number, const Emitter& lamp, const BenchOptions& options) {
-  BenchOptions fine = options;
-  fine.quick = false;
-  fine.reference_error = options.quick ? 0.02 : std::max(options.reference_error, 0.008);
-  ReferenceLevels of;
-  of.wanted.assign(one.room.emitters.size(), 0.0);
-  of.steering.assign(one.room.emitters.size(), 0.02);
-  of.wanted[number] = of.steering[number] = 1;
-  const Emitter before = std::exchange(one.room.emitters[number], lamp);
-  Reference reference = reference_of(one, fine, of);
-  one.room.emitters[number] = before;
-  return reference;
 }
 
 void add_changed_lamp(LitRoom lit, const BenchOptions& options, std::vector<BenchRow>& rows) {

@@ -13,6 +13,12 @@ struct MovedTruth {
   double reference_error = 0;  ///< standard error of lux, rms, relative as RoomError
 };
 
+/// The column of a lamp that hangs elsewhere, converged. All lamps are sampled, the others at a fiftieth: rooms that
+/// get a millionth of the lamp's light, which no figure here looks at, need then not be known to a per cent. `one` is
+/// as before when it returns.
+[[nodiscard]] Reference column_reference(TransportCase& one, std::size_t number, const Emitter& lamp,
+                                         const BenchOptions& options);
+
 /// rms of the moved lamp's error, relative to what the receivers get in all.
 [[nodiscard]] double error_of_moved(const Eigen::VectorXd& lux, const Eigen::VectorXd& exact_lx,
                                     const Eigen::VectorXd& total_lx);
