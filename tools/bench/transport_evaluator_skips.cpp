@@ -68,7 +68,7 @@ void add_direct(const TransportCase& one, const BenchOptions& options, std::vect
                           got->rays, pairs, fmt::format("of {} pairs {} behind and {} dark", pairs, behind, dark)));
 }
 
-/// The room's lamps as disks of 30 cm, each way to a receiver sampled with 1 024 rays; with proofs, a way that is
+/// The room's lamps as disks of 30 cm, each way to a receiver sampled with 256 rays; with proofs, a way that is
 /// proven clear takes none and one proven blocked takes one to a corner. The samples are the same, so the light must be
 /// too.
 void add_proofs(const TransportCase& one, const BenchOptions& options, std::vector<BenchRow>& rows) {
@@ -80,6 +80,7 @@ void add_proofs(const TransportCase& one, const BenchOptions& options, std::vect
   const auto& receivers = one.room.receivers;
   const DirectSources sources(disks);
   DirectSources::Scratch scratch;
+  constexpr std::uint32_t kRays = 256;
   std::uint64_t ways = 0, clear = 0, blocked = 0, rays[2] = {0, 0};
   Eigen::MatrixXd lux[2];
   const auto sample_all = [&](bool prove) {
@@ -95,9 +96,9 @@ void add_proofs(const TransportCase& one, const BenchOptions& options, std::vect
         blocked += way == Way::blocked;
         if (way == Way::blocked) continue;
         const DirectSum sum = sample_direct(one.rays, receivers[r], disks[e], way,
-                                            SobolSequence(mixed(7, r * disks.size() + e)), 0, 1024, scratch);
+                                            SobolSequence(mixed(7, r * disks.size() + e)), 0, kRays, scratch);
         rays[prove] += sum.rays;
-        all(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(e)) = sum.lux / 1024;
+        all(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(e)) = sum.lux / kRays;
       }
   };
   sample_all(true);  // the first proof builds a tree
