@@ -2,17 +2,41 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <limits>
 
 namespace luxrig {
 
+CallSeconds timed(const std::function<void()>& call) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t cpu_start = std::clock();
+  call();
+  return {std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
+          static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC};
+}
+
+double median_of(std::vector<double> values) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+CallSeconds median_of(std::span<const CallSeconds> calls) {
+  std::vector<double> wall, cpu;
+  for (const CallSeconds& one : calls) wall.push_back(one.wall), cpu.push_back(one.cpu);
+  return {median_of(std::move(wall)), median_of(std::move(cpu))};
+}
+
 Measured measure(const Method& method, const RayScene& rays, std::span<const Receiver> receivers,
                  std::span<const Emitter> emitters, const EvaluateOptions& options) {
   Measured run;
-  const auto start = std::chrono::steady_clock::now();
-  auto result = method.make(rays)->evaluate(receivers, emitters, options);
-  run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  Result<TransportMatrix> result = TransportMatrix{};
+  const CallSeconds took = timed([&] { result = method.make(rays)->evaluate(receivers, emitters, options); });
+  run.seconds = took.wall;
+  run.cpu_seconds = took.cpu;
   if (result) {
     run.matrix = std::move(*result);
   } else {

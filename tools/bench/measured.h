@@ -1,6 +1,7 @@
 #pragma once
 /// The evaluators under measurement, and one evaluation with its clock.
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -22,10 +23,23 @@ struct Method {
 /// Each with its line in methods.cpp.
 [[nodiscard]] std::span<const Method> methods();
 
+/// What a call took, by the wall and by the processors: on a machine with other work only the second means much.
+struct CallSeconds {
+  double wall = 0;
+  double cpu = 0;  ///< of all threads of the process
+};
+[[nodiscard]] CallSeconds timed(const std::function<void()>& call);
+
+/// Middle of three, upper middle of an even number; NaN of none.
+[[nodiscard]] double median_of(std::vector<double> values);
+/// Of wall and processor time each by itself.
+[[nodiscard]] CallSeconds median_of(std::span<const CallSeconds> calls);
+
 struct Measured {
   TransportMatrix matrix;
-  double seconds = 0;   ///< making the evaluator and evaluating; the RayScene was there before
-  std::string refused;  ///< what the evaluator said when it did not take the case
+  double seconds = 0;      ///< making the evaluator and evaluating; the RayScene was there before
+  double cpu_seconds = 0;  ///< the same in processor time; 0 when not measured
+  std::string refused;     ///< what the evaluator said when it did not take the case
 };
 
 [[nodiscard]] Measured measure(const Method& method, const RayScene& rays, std::span<const Receiver> receivers,

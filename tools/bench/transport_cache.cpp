@@ -18,8 +18,6 @@ double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-void set_note(BenchRow& row, std::string note) { row.further.back().second = std::move(note); }
-
 BenchRow cache_row(const std::string& case_name, const AblationRow& measured, double seconds, double reference_error) {
   Measured run;
   run.seconds = seconds;

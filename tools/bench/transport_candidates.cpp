@@ -1,69 +1,15 @@
-/// The matrix for placement: time and memory for very many candidates, growth, accuracy, and what each skip saves.
+#include "tools/bench/transport_candidates.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <fstream>
-#include <random>
 
-#include "core/transport/candidates/candidate_transport.h"
-#include "tools/bench/transport_case.h"
+#include "core/transport/rooms/room_plan.h"
 
 namespace luxrig {
 namespace {
-
-struct Streamed {
-  CandidateStatistics statistics;
-  double seconds = 0, lux_sum = 0;
-  CandidateColumns first_columns;  ///< of the first block: to be held against an evaluator
-  std::string refused;
-};
-
-/// Places below the ceilings of the flat, evenly at random; one isotropic lamp of 1 000 lm.
-CandidateSet places_in_the_flat(std::size_t count) {
-  CandidateSet set;
-  std::mt19937_64 random(17);
-  const auto between = [&](double low, double high) {
-    return low + (high - low) * (static_cast<double>(random() >> 11) * 0x1p-53);
-  };
-  while (set.positions_world_m.size() < count)
-    set.positions_world_m.emplace_back(between(0, 14.6), between(0, 9.4), between(1.8, 2.55));
-  set.luminaires.push_back({make_isotropic(1000), {}});
-  return set;
-}
-
-Streamed streamed(const TransportCase& one, const CandidateSet& set, const CandidateOptions& options) {
-  Streamed run;
-  const auto start = std::chrono::steady_clock::now();
-  const auto done =
-      stream_candidates(one.room.scene, one.rays, one.room.receivers, set, options, [&](const CandidateColumns& block) {
-        for (const float lux : block.total_lux) run.lux_sum += static_cast<double>(lux);
-        if (block.first_column == 0) run.first_columns = block;
-        return true;
-      });
-  run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (done) run.statistics = *done;
-  if (!done) run.refused = done.error().detail;
-  return run;
-}
-
-BenchRow candidate_row(const std::string& name, double error, const Streamed& run, std::optional<double> wanted,
-                       std::optional<double> target_error, std::optional<double> target_seconds,
-                       const std::string& note) {
-  Measured as;
-  as.seconds = run.seconds;
-  as.refused = run.refused;
-  as.matrix.rays = run.statistics.rays;
-  as.matrix.relative_error = run.statistics.median_relative_error;
-  BenchRow row = transport_row(name, "candidates", error, as, wanted, target_error);
-  if (run.refused.empty()) {
-    row.target_seconds = target_seconds;
-    row.further.back().second = note;
-  }
-  return row;
-}
 
 /// Largest resident set of this process so far, in GiB; from the kernel.
 double peak_gib() {
@@ -75,17 +21,98 @@ double peak_gib() {
 /// Starts the count anew; where the kernel does not allow it, peak_gib() is that of the whole process.
 void forget_peak() { std::ofstream("/proc/self/clear_refs") << "5"; }
 
-CandidateOptions options_of(const BenchOptions& options, bool indirect) {
+/// Time and accuracy of the matrix that placement searches in.
+void add_matrix(const TransportCase& one, const BenchOptions& options, std::vector<BenchRow>& rows) {
+  // Asked for as `matrix` alone it is to be quick: fewer runs, and no path tracing, which takes longer than the matrix.
+  const bool brief = options.quick || options.only == "matrix";
+  const CandidateSet many = places_in_the_flat(20'000);
+  const std::span<const Receiver> receivers = one.room.receivers;
+  if (wanted_case(options, "matrix-direct-300x20000")) {
+    const CandidateOptions direct = candidate_options(options, false);
+    const StreamedCandidates run = median_of_streams(options.quick ? 1 : 3, one, receivers, many, direct);
+    rows.push_back(candidate_row(
+        "matrix-direct-300x20000", entry_error(one, receivers, many, direct, run.first_columns), run, std::nullopt,
+        1e-6, 0.5,
+        fmt::format("{} pairs traced of {}", run.statistics.pairs_traced, receivers.size() * many.columns())));
+  }
+  if (wanted_case(options, "matrix-indirect-300x20000")) {
+    const CandidateOptions indirect = candidate_options(options, true);
+    const StreamedCandidates run = median_of_streams(brief ? 1 : 3, one, receivers, many, indirect);
+    const double reported = run.statistics.median_relative_error;
+    const double error = brief ? reported : entry_error(one, receivers, many, indirect, run.first_columns);
+    rows.push_back(candidate_row("matrix-indirect-300x20000", error, run, indirect.wanted_relative_error, 0.02, 10,
+                                 fmt::format("reported median entry error {:.3g}{}", reported,
+                                             brief ? "" : "; error measured on 24 candidates by path tracing")));
+  }
+}
+
+}  // namespace
+
+StreamedCandidates stream_measured(const TransportCase& one, std::span<const Receiver> receivers,
+                                   const CandidateSet& set, const CandidateOptions& options) {
+  StreamedCandidates run;
+  forget_peak();
+  run.took = timed([&] {
+    const auto done =
+        stream_candidates(one.room.scene, one.rays, receivers, set, options, [&](const CandidateColumns& block) {
+          for (const float lux : block.total_lux) run.lux_sum += static_cast<double>(lux);
+          if (block.first_column == 0) run.first_columns = block;
+          return true;
+        });
+    if (done) run.statistics = *done;
+    if (!done) run.refused = done.error().detail;
+  });
+  run.peak_gib = peak_gib();
+  return run;
+}
+
+StreamedCandidates median_of_streams(int runs, const TransportCase& one, std::span<const Receiver> receivers,
+                                     const CandidateSet& set, const CandidateOptions& options) {
+  std::vector<StreamedCandidates> all;
+  for (int i = 0; i < runs; ++i) all.push_back(stream_measured(one, receivers, set, options));
+  const auto middle = all.begin() + runs / 2;
+  std::nth_element(all.begin(), middle, all.end(),
+                   [](const StreamedCandidates& a, const StreamedCandidates& b) { return a.took.wall < b.took.wall; });
+  return std::move(*middle);
+}
+
+CandidateSet places_in_the_flat(std::size_t count) {
+  CandidateSet set;
+  RoomDice dice(17);
+  while (set.positions_world_m.size() < count) {
+    const double x = dice.between(0, 14.6), y = dice.between(0, 9.4);
+    set.positions_world_m.emplace_back(x, y, dice.between(1.8, 2.55));
+  }
+  set.luminaires.push_back({make_isotropic(1000), {}});
+  return set;
+}
+
+CandidateOptions candidate_options(const BenchOptions& options, bool indirect) {
   CandidateOptions of;
   of.indirect = indirect;
   of.threads = options.threads;
   return of;
 }
 
-/// Entries of 24 candidates against an evaluator that gets each as a lamp: largest for direct light, relative to the
-/// brightest; for all light the median of the relative errors where the evaluator itself is good to 1 %.
-double entry_error(const TransportCase& one, const CandidateSet& set, const CandidateOptions& options,
-                   const CandidateColumns& got) {
+BenchRow candidate_row(const std::string& name, double error, const StreamedCandidates& run,
+                       std::optional<double> wanted, std::optional<double> target_error,
+                       std::optional<double> target_seconds, const std::string& note) {
+  Measured as;
+  as.seconds = run.took.wall;
+  as.cpu_seconds = run.took.cpu;
+  as.refused = run.refused;
+  as.matrix.rays = run.statistics.rays;
+  as.matrix.relative_error = run.statistics.median_relative_error;
+  BenchRow row = transport_row(name, "candidates", error, as, wanted, target_error);
+  if (run.refused.empty()) {
+    row.target_seconds = target_seconds;
+    set_note(row, note);
+  }
+  return row;
+}
+
+double entry_error(const TransportCase& one, std::span<const Receiver> receivers, const CandidateSet& set,
+                   const CandidateOptions& options, const CandidateColumns& got) {
   std::vector<Emitter> lamps;
   for (std::size_t p = 0; p < std::min<std::size_t>(24, got.columns()); ++p) {
     lamps.push_back(set.luminaires.front());
@@ -96,7 +123,7 @@ double entry_error(const TransportCase& one, const CandidateSet& set, const Cand
   evaluate.threads = options.threads;
   evaluate.seed = 99;
   const auto evaluator = options.indirect ? make_path_evaluator(one.rays) : make_direct_evaluator(one.rays);
-  const auto truth = evaluator->evaluate(one.room.receivers, lamps, evaluate);
+  const auto truth = evaluator->evaluate(receivers, lamps, evaluate);
   if (lamps.empty() || !truth) return std::nan("");
   std::vector<double> errors;
   double largest = 0;
@@ -112,105 +139,32 @@ double entry_error(const TransportCase& one, const CandidateSet& set, const Cand
       if (exact_lx[r] > 0 && bar_lx[r] < 0.01 * exact_lx[r]) errors.push_back(std::abs(lux[r] / exact_lx[r] - 1));
     }
   }
-  if (!options.indirect) return largest;
-  if (errors.empty()) return std::nan("");
-  const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
-  std::nth_element(errors.begin(), middle, errors.end());
-  return *middle;
+  return options.indirect ? median_of(std::move(errors)) : largest;
 }
 
-void add_matrix(const TransportCase& one, const BenchOptions& options, std::vector<BenchRow>& rows) {
-  const CandidateSet many = places_in_the_flat(20'000);
-  // Median of three, as the machine may be busy.
-  const auto median = [&](const CandidateSet& set, const CandidateOptions& of) {
-    std::vector<Streamed> runs;
-    for (int i = 0; i < (options.quick ? 1 : 3); ++i) runs.push_back(streamed(one, set, of));
-    std::sort(runs.begin(), runs.end(), [](const Streamed& a, const Streamed& b) { return a.seconds < b.seconds; });
-    return runs[runs.size() / 2];
-  };
-  const CandidateOptions shadows = options_of(options, false);
-  const Streamed direct = median(many, shadows);
-  rows.push_back(candidate_row("matrix-direct-300x20000", entry_error(one, many, shadows, direct.first_columns), direct,
-                               std::nullopt, 1e-6, 0.5,
-                               fmt::format("{} pairs traced of 6000000", direct.statistics.pairs_traced)));
-  const CandidateOptions indirect = options_of(options, true);
-  const Streamed all = median(many, indirect);
-  // Path tracing of 24 columns takes longer than the matrix: with quick the reported error stands for the measured one.
-  const double error =
-      options.quick ? all.statistics.median_relative_error : entry_error(one, many, indirect, all.first_columns);
-  rows.push_back(candidate_row("matrix-indirect-300x20000", error, all, indirect.wanted_relative_error, 0.02, 10,
-                               fmt::format("reported median entry error {:.3g}{}", all.statistics.median_relative_error,
-                                           options.quick ? "" : "; error measured on 24 candidates by path tracing")));
-  // Growth: twice the work may take twice the time, and 15 % for the clock.
-  const CandidateSet fewer = places_in_the_flat(10'000);
-  for (const bool reflected : {false, true}) {
-    if (reflected && options.quick) continue;
-    const Streamed half = median(fewer, options_of(options, reflected));
-    const Streamed& whole = reflected ? all : direct;
-    const double growth = whole.seconds / half.seconds;
-    rows.push_back(candidate_row(reflected ? "matrix-growth-indirect" : "matrix-growth-direct",
-                                 std::max(0.0, growth / 2 - 1), whole, std::nullopt, 0.15, std::nullopt,
-                                 fmt::format("twice the candidates take {:.2f} times as long", growth)));
+std::vector<Receiver> this_many_receivers(const TransportCase& one, std::size_t count) {
+  const std::vector<Receiver>& all = one.room.receivers;
+  std::vector<Receiver> some;
+  if (count <= all.size()) {
+    for (std::size_t i = 0; i < count; ++i) some.push_back(all[i * all.size() / count]);
+    return some;
   }
-}
-
-void add_million(const TransportCase& one, const BenchOptions& options, std::vector<BenchRow>& rows) {
-  const std::size_t count = options.quick ? 100'000 : 1'000'000;
-  const CandidateSet very_many = places_in_the_flat(count);
-  for (const bool indirect : {false, true}) {
-    if (options.quick && indirect) continue;
-    forget_peak();
-    const Streamed run = streamed(one, very_many, options_of(options, indirect));
-    const double peak = peak_gib();
-    BenchRow row = candidate_row(fmt::format("matrix-{}-{}-peak", indirect ? "indirect" : "direct", count),
-                                 std::max(0.0, peak / 4 - 1), run, std::nullopt, 0.0, std::nullopt,
-                                 fmt::format("peak resident {:.2f} GiB of 4", peak));
-    rows.push_back(row);
+  some = all;
+  RoomDice dice(5);
+  for (std::size_t i = 0; some.size() < count; ++i) {
+    Receiver beside = all[i % all.size()];
+    const Vec3 aside_m(dice.between(-0.5, 0.5), dice.between(-0.5, 0.5), dice.between(0.01, 0.2));
+    const Vec3 to_m = beside.position_world_m + aside_m;
+    if (one.rays.occluded(beside.position_world_m, beside.normal_world, to_m)) continue;
+    beside.position_world_m = to_m;
+    some.push_back(beside);
   }
+  return some;
 }
-
-/// Each skip off by itself: what it saves, and how far the sum of all entries moves. Skips that are exact for direct
-/// light still change where the rays for reflected light go, and so move it within its error. With quick, direct light
-/// only.
-void add_skips(const TransportCase& one, const BenchOptions& options, std::vector<BenchRow>& rows) {
-  const CandidateSet set = places_in_the_flat(options.quick ? 20'000 : 10'000);
-  struct Skip {
-    const char* name;
-    bool CandidateSkips::*field;
-    double may_move;  ///< the sum of all entries, relative
-  };
-  constexpr Skip kSkips[] = {{"other-air", &CandidateSkips::other_air, 1e-3},
-                             {"behind", &CandidateSkips::behind, 1e-3},
-                             {"blockers", &CandidateSkips::blockers, 1e-3},
-                             {"reach", &CandidateSkips::reach, 1e-2},
-                             {"unlit", &CandidateSkips::unlit, 1e-3}};
-  const auto with = [&](bool CandidateSkips::*off) {
-    CandidateOptions of = options_of(options, !options.quick);
-    of.least_lux = 0.01;
-    if (off) of.skips.*off = false;
-    return streamed(one, set, of);
-  };
-  const Streamed all = with(nullptr);
-  for (const Skip& skip : kSkips) {
-    const Streamed without = with(skip.field);
-    rows.push_back(candidate_row(fmt::format("skip-{}-{}", one.room.name, skip.name),
-                                 std::abs(all.lux_sum / without.lux_sum - 1), all, std::nullopt, skip.may_move,
-                                 std::nullopt,
-                                 fmt::format("{:.3f} s without it; {} rays instead of {}", without.seconds,
-                                             without.statistics.rays, all.statistics.rays)));
-  }
-}
-
-}  // namespace
 
 void add_candidate_rows(const BenchOptions& options, std::vector<BenchRow>& rows) {
-  if (!wanted_case(options, "matrix") && !wanted_case(options, "skip")) return;
-  const TransportCase flat(make_eight_room_flat());
-  if (wanted_case(options, "matrix")) {
-    add_matrix(flat, options, rows);
-    add_million(flat, options, rows);
-  }
-  if (wanted_case(options, "skip")) add_skips(flat, options, rows);
+  if (wanted_case(options, "matrix-direct-300x20000") || wanted_case(options, "matrix-indirect-300x20000"))
+    add_matrix(TransportCase(make_eight_room_flat()), options, rows);
 }
 
 }  // namespace luxrig

@@ -27,8 +27,13 @@ class Hash {
 };
 
 /// One number per line: the error wanted of it, its own error, then the lux of each receiver.
-std::filesystem::path file_of(const TransportCase& one, const BenchOptions& options) {
-  return options.references_folder / fmt::format("{}-{:016x}.txt", one.room.name, hash_of(one.room));
+std::filesystem::path file_of(const TransportCase& one, const BenchOptions& options, const ReferenceLevels& levels) {
+  Hash of_levels;
+  for (const double level : levels.wanted) of_levels.add(level);
+  for (const double level : levels.steering) of_levels.add(level);
+  const bool all_one = levels.wanted.empty() && levels.steering.empty();
+  return options.references_folder /
+         fmt::format("{}-{:016x}.txt", one.room.name, hash_of(one.room) ^ (all_one ? 0 : of_levels.bits()));
 }
 
 std::optional<Reference> read_reference(const std::filesystem::path& file, std::size_t receivers, double wanted) {
@@ -84,37 +89,46 @@ RoomError error_of(const Eigen::VectorXd& lux, const Eigen::VectorXd& reference_
   return {std::sqrt(relative.square().mean()), relative.mean()};
 }
 
-Reference reference_of(const TransportCase& one, const BenchOptions& options) {
+Reference reference_of(const TransportCase& one, const BenchOptions& options, const ReferenceLevels& of_lamps) {
   // Path tracing stops at 2.5 standard errors within the wanted error.
   const double wanted = 2.5 * (options.quick ? 0.0016 : options.reference_error);
   if (!options.references_folder.empty())
-    if (auto kept = read_reference(file_of(one, options), one.room.receivers.size(), wanted)) return *kept;
+    if (auto kept = read_reference(file_of(one, options, of_lamps), one.room.receivers.size(), wanted)) return *kept;
   fmt::print(stderr, "{}: converged reference, wanted error {:g} …\n", one.room.name, wanted);
   EvaluateOptions evaluate;
   evaluate.wanted_relative_error = wanted;
   evaluate.seed = 0xC0FFEE;
   evaluate.threads = options.threads;
+  evaluate.levels = of_lamps.steering;
   evaluate.max_rays = options.quick ? 30'000'000 : 20'000'000'000;
   const Method path = {"path", make_path_evaluator, true, 0};
   const Measured run = measure(path, one.rays, one.room.receivers, one.room.emitters, evaluate);
   Reference reference;
   reference.refused = run.refused;
   if (!run.refused.empty()) return reference;
-  const Eigen::VectorXd levels = Eigen::VectorXd::Ones(run.matrix.emitters());
+  Eigen::VectorXd levels = Eigen::VectorXd::Ones(run.matrix.emitters());
+  for (std::size_t e = 0; e < of_lamps.wanted.size(); ++e) levels[static_cast<Eigen::Index>(e)] = of_lamps.wanted[e];
   reference.lux = run.matrix.lux(levels);
   const Eigen::ArrayXd bars = run.matrix.standard_error_lux(levels).array();
   reference.rms_error = std::sqrt((bars / reference.lux.array().max(0.01 * reference.lux.mean())).square().mean());
   reference.seconds = run.seconds;
   if (!options.references_folder.empty() && !options.quick) {
     std::filesystem::create_directories(options.references_folder);
-    std::ofstream out(file_of(one, options));
+    std::ofstream out(file_of(one, options, of_lamps));
     out << fmt::format("{:.17g}\n{:.17g}\n", wanted, reference.rms_error);
     for (const double lux : reference.lux) out << fmt::format("{:.17g}\n", lux);
     out.close();
     if (!out)
-      fmt::print(stderr, "{}:0:0: cannot be written: name a folder that can be\n", file_of(one, options).string());
+      fmt::print(stderr, "{}:0:0: cannot be written: name a folder that can be\n",
+                 file_of(one, options, of_lamps).string());
   }
   return reference;
+}
+
+void set_note(BenchRow& row, std::string note) {
+  for (char& c : note)
+    if (c == ',' || c == '\n') c = ';';
+  row.further.back().second = std::move(note);
 }
 
 BenchRow transport_row(const std::string& case_name, const std::string& method, double error, const Measured& run,
@@ -125,6 +139,7 @@ BenchRow transport_row(const std::string& case_name, const std::string& method, 
   row.further.pop_back();
   row.further.emplace_back("bias", bias.bias != 0 ? fmt::format("{:.3g}", bias.bias) : "");
   row.further.emplace_back("reference_error", reference_error != 0 ? fmt::format("{:.3g}", reference_error) : "");
+  row.further.emplace_back("cpu_seconds", run.cpu_seconds > 0 ? fmt::format("{:.3g}", run.cpu_seconds) : "");
   row.further.push_back(note);
   return row;
 }

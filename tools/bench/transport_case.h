@@ -9,13 +9,18 @@
 
 namespace luxrig {
 
-/// What all methods are measured against: path tracing with a small wanted error and a seed of its own, all lamps at
-/// level 1.
+/// What all methods are measured against: path tracing with a small wanted error and a seed of its own.
 struct Reference {
   Eigen::VectorXd lux;
   double rms_error = 0;  ///< its own, by its standard errors; relative as below
   double seconds = 0;    ///< what it took; 0 when it came from a file
   std::string refused;   ///< why there is none
+};
+
+/// Which lamps a reference is of; empty = all at level 1.
+struct ReferenceLevels {
+  std::vector<double> wanted;    ///< levels at which lux is given
+  std::vector<double> steering;  ///< levels under which path tracing reaches the wanted error
 };
 
 struct TransportCase {
@@ -34,20 +39,26 @@ struct RoomError {
 [[nodiscard]] std::uint64_t hash_of(const LitRoom& room);
 
 /// With options.references_folder, from its file there when one as good is kept; else computed, and kept.
-[[nodiscard]] Reference reference_of(const TransportCase& one, const BenchOptions& options);
+[[nodiscard]] Reference reference_of(const TransportCase& one, const BenchOptions& options,
+                                     const ReferenceLevels& of_lamps = {});
 
-/// A row of the transport suite: measured.h's columns, then bias and reference_error, and `note` last.
+/// A row of the transport suite: measured.h's columns, then bias, reference_error and cpu_seconds, and `note` last.
 [[nodiscard]] BenchRow transport_row(const std::string& case_name, const std::string& method, double error,
                                      const Measured& run, std::optional<double> wanted_error,
                                      std::optional<double> target_error, const RoomError& bias = {},
                                      double reference_error = 0);
+void set_note(BenchRow& row, std::string note);
 
 /// Parts of the suite, a file each.
 void add_curve_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
 void add_identity_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
 void add_moved_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
+void add_changed_lamp_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
 void add_cache_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
 void add_candidate_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
+void add_growth_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
+void add_candidate_skip_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
+void add_evaluator_skip_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
 
 /// Writes what Radiance needs to compute the same receivers: NAME.rad, NAME.pts, NAME.lux. Empty, or what went wrong.
 [[nodiscard]] std::string export_for_radiance(const LitRoom& room, const std::filesystem::path& folder);

@@ -1,60 +1,77 @@
 /// One luminaire of the gallery's twelve moves: what it takes to know its light at all receivers anew. The others'
 /// columns stay, since illuminance is linear in them.
 
+#include "tools/bench/transport_moved.h"
+
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "core/transport/rooms/room_plan.h"
-#include "tools/bench/transport_case.h"
 
 namespace luxrig {
 namespace {
 
-constexpr double kDirectSeconds = 0.005, kSeconds = 0.1, kError = 0.02;
 constexpr std::size_t kMoved = 4;
 
-/// rms of the moved lamp's error, relative to what the receivers get in all.
+}  // namespace
+
+Reference column_reference(TransportCase& one, std::size_t number, const Emitter& lamp, const BenchOptions& options) {
+  BenchOptions fine = options;
+  fine.quick = false;
+  fine.reference_error = options.quick ? 0.02 : std::max(options.reference_error, 0.008);
+  ReferenceLevels of;
+  of.wanted.assign(one.room.emitters.size(), 0.0);
+  of.steering.assign(one.room.emitters.size(), 0.02);
+  of.wanted[number] = of.steering[number] = 1;
+  const Emitter before = std::exchange(one.room.emitters[number], lamp);
+  Reference reference = reference_of(one, fine, of);
+  one.room.emitters[number] = before;
+  return reference;
+}
+
 double error_of_moved(const Eigen::VectorXd& lux, const Eigen::VectorXd& exact_lx, const Eigen::VectorXd& total_lx) {
   const Eigen::ArrayXd scale = total_lx.array().max(0.01 * total_lx.mean());
   return std::sqrt(((lux - exact_lx).array() / scale).square().mean());
 }
 
-}  // namespace
-
 void add_moved_rows(const BenchOptions& options, std::vector<BenchRow>& rows) {
-  if (!wanted_case(options, "moved")) return;
-  const TransportCase one(make_gallery_hall());
+  const bool lamps_wanted = wanted_case(options, "moved-lamp-of-12");
+  if (!lamps_wanted && !wanted_case(options, "moved-receiver") && !wanted_case(options, "moved-object-direct")) return;
+  TransportCase one(make_gallery_hall());
   std::vector<Emitter> moved = {one.room.emitters[kMoved]};
   const Vec3 at_m = moved[0].world_from_lamp.translation_m + Vec3(0.4, 0, 0);
   moved[0].world_from_lamp = aimed(at_m, at_m + Vec3(0.2, at_m.y() < 6 ? -1.8 : 1.8, -2.6));
 
-  EvaluateOptions good;
-  good.wanted_relative_error = options.quick ? 0.03 : 0.005;
-  good.seed = 0xC0FFEE;
-  good.threads = options.threads;
-  if (options.quick) good.max_rays = 10'000'000;
-  const auto reference = make_path_evaluator(one.rays);
-  const auto all = reference->evaluate(one.room.receivers, one.room.emitters, good);
-  const auto exact = reference->evaluate(one.room.receivers, moved, good);
-  if (!all || !exact) {
+  if (!lamps_wanted) {
+    add_incremental_rows(one, {moved[0], {}, {}, {}, 0}, options, rows);
+    return;
+  }
+  const Reference reference = column_reference(one, kMoved, moved[0], options);
+  const auto direct = make_direct_evaluator(one.rays)->evaluate(one.room.receivers, moved, {});
+  // What receivers get in all is only a scale: any evaluator will do.
+  std::vector<Emitter> all_lamps = one.room.emitters;
+  all_lamps[kMoved] = moved[0];
+  EvaluateOptions coarse;
+  coarse.wanted_relative_error = 0.05;
+  coarse.threads = options.threads;
+  const auto all = make_gather_evaluator(one.rays)->evaluate(one.room.receivers, all_lamps, coarse);
+  if (!reference.refused.empty() || !direct || !all) {
     Measured none;
-    none.refused = (all ? exact : all).error().detail;
+    none.refused = !reference.refused.empty() ? reference.refused : (direct ? all : direct).error().detail;
     rows.push_back(transport_row("moved-lamp-of-12", "path", 0, none, std::nullopt, std::nullopt));
     return;
   }
-  Eigen::VectorXd others = Eigen::VectorXd::Ones(all->emitters());
-  others[static_cast<Eigen::Index>(kMoved)] = 0;
-  const Eigen::VectorXd lamp = Eigen::VectorXd::Ones(1), exact_lx = exact->lux(lamp),
-                        total_lx = all->lux(others) + exact_lx;
-
+  const Eigen::VectorXd lamp = Eigen::VectorXd::Ones(1), &exact_lx = reference.lux,
+                        direct_lx = direct->direct_lux(lamp),
+                        total_lx = all->lux(Eigen::VectorXd::Ones(all->emitters()));
+  add_incremental_rows(one, {moved[0], exact_lx, direct_lx, total_lx, reference.rms_error}, options, rows);
   for (const Method& method : methods()) {
     // The evaluator may keep what it learns about the scene from the lamps as they hung before.
     const auto evaluator = method.make(one.rays);
     EvaluateOptions before;
-    before.wanted_relative_error = kError;
+    before.wanted_relative_error = kMovedError;
     before.threads = options.threads;
     before.max_rays = options.quick ? 5'000'000 : 50'000'000;
     (void)evaluator->evaluate(one.room.receivers, one.room.emitters, before);
@@ -62,25 +79,24 @@ void add_moved_rows(const BenchOptions& options, std::vector<BenchRow>& rows) {
     for (const double wanted : {0.5, 0.2, 0.1, 0.05, 0.02}) {
       EvaluateOptions after = before;
       after.wanted_relative_error = wanted;
-      std::vector<double> seconds;
+      std::vector<CallSeconds> took;
       Measured run;
       for (int i = 0; i < 3; ++i) {
-        const auto start = std::chrono::steady_clock::now();
-        auto result = evaluator->evaluate(one.room.receivers, moved, after);
-        seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+        Result<TransportMatrix> result = TransportMatrix{};
+        took.push_back(timed([&] { result = evaluator->evaluate(one.room.receivers, moved, after); }));
         if (!result) run.refused = result.error().detail;
         if (result) run.matrix = std::move(*result);
       }
-      std::nth_element(seconds.begin(), seconds.begin() + 1, seconds.end());
-      run.seconds = seconds[1];
+      run.seconds = median_of(took).wall;
+      run.cpu_seconds = median_of(took).cpu;
       const bool found = run.refused.empty();
-      const Eigen::VectorXd against = method.reflects ? exact_lx : exact->direct_lux(lamp);
+      const Eigen::VectorXd against = method.reflects ? exact_lx : direct_lx;
       const double error = found ? error_of_moved(run.matrix.lux(lamp), against, total_lx) : 0;
       BenchRow row = transport_row(method.reflects ? "moved-lamp-of-12" : "moved-lamp-of-12-direct", method.name, error,
-                                   run, method.reflects ? std::optional(wanted) : std::nullopt, kError);
-      if (found) row.target_seconds = method.reflects ? kSeconds : kDirectSeconds;
+                                   run, method.reflects ? std::optional(wanted) : std::nullopt, kMovedError);
+      if (found) row.target_seconds = method.reflects ? kMovedSeconds : kMovedDirectSeconds;
       if (!best || error < best->error) best = row;
-      if (!found || !method.reflects || error <= kError) break;
+      if (!found || !method.reflects || error <= kMovedError) break;
     }
     rows.push_back(*best);
   }
