@@ -178,6 +178,10 @@ void ColumnsView::add(Index column, long double times, long double* to) const {
                                                  times * static_cast<long double>(a.value(k)));
 }
 
+void ColumnsView::clear(Index column, double* to) const {
+  LUXRIG_WITH_COLUMNS(const auto a = of(column); for (std::size_t k = 0; k < a.count; ++k) to[a.row(k)] = 0);
+}
+
 double ColumnsView::squared_norm(Index column, const double* weight) const {
   double sum = 0;
   LUXRIG_WITH_COLUMNS(const auto a = of(column);

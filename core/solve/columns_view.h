@@ -34,6 +34,8 @@ class ColumnsView {
   /// to += times · a_j
   void add(Index column, double times, double* to) const;
   void add(Index column, long double times, long double* to) const;
+  /// to = 0 where the column has entries
+  void clear(Index column, double* to) const;
   /// Σ_i weight_i a_ij²
   [[nodiscard]] double squared_norm(Index column, const double* weight) const;
   /// Largest |a_ij|

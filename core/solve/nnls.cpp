@@ -45,6 +45,20 @@ std::string NnlsProblem::complaint() const {
   return entry_complaint(upper, "upper bound", std::numeric_limits<double>::infinity(), false);
 }
 
+void KktResiduals::add(double z, double upper, double g) {
+  if (!(upper > 0)) return;
+  primal = std::max({primal, -z, z - upper});
+  if (z <= 0)
+    gradient = std::max(gradient, g);
+  else if (z >= upper)
+    gradient = std::max(gradient, -g);
+  else
+    stationarity = std::max(stationarity, std::abs(g));
+  // The multiplier of a bound times the distance from it.
+  const double room = g < 0 ? z : upper - z;
+  if (std::isfinite(room)) complementarity = std::max(complementarity, std::abs(g * room));
+}
+
 double KktResiduals::worst() const { return std::max({stationarity, gradient, primal, complementarity}); }
 
 struct NnlsSolver::State {

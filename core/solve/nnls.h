@@ -40,6 +40,8 @@ struct KktResiduals {
   double complementarity = 0;  ///< largest multiplier times the room its bound or limit leaves
 
   [[nodiscard]] double worst() const;
+  /// Takes account of one column: gradient is how fast half the squared error falls with z, 0 ≤ z ≤ upper.
+  void add(double z, double upper, double gradient);
 };
 
 struct NnlsSolution {

@@ -65,20 +65,7 @@ KktResiduals ScaledColumns::kkt(const VectorXd& z, const VectorXd& residual) con
   if (nothing_wanted()) return kkt;
   VectorXd g;
   gradient(residual, g);
-  for (Index j = 0; j < columns(); ++j) {
-    if (!(upper_[j] > 0)) continue;
-    const double below = std::max(0.0, -z[j]), above = std::max(0.0, z[j] - upper_[j]);
-    kkt.primal = std::max({kkt.primal, below, above});
-    if (z[j] <= 0)
-      kkt.gradient = std::max(kkt.gradient, g[j]);
-    else if (z[j] >= upper_[j])
-      kkt.gradient = std::max(kkt.gradient, -g[j]);
-    else
-      kkt.stationarity = std::max(kkt.stationarity, std::abs(g[j]));
-    // The multiplier of a bound times the distance from it.
-    const double room = g[j] < 0 ? z[j] : upper_[j] - z[j];
-    if (std::isfinite(room)) kkt.complementarity = std::max(kkt.complementarity, std::abs(g[j] * room));
-  }
+  for (Index j = 0; j < columns(); ++j) kkt.add(z[j], upper_[j], g[j]);
   return kkt;
 }
 

@@ -23,6 +23,7 @@ class ScaledColumns {
   [[nodiscard]] Index columns() const { return view_.columns(); }
   [[nodiscard]] const ColumnsView& view() const { return view_; }
   [[nodiscard]] const VectorXd& squared_weight() const { return squared_weight_; }
+  [[nodiscard]] bool unweighted() const { return unweighted_; }
   [[nodiscard]] const VectorXd& goal() const { return goal_; }
   [[nodiscard]] double inverse_norm(Index j) const { return inverse_norm_[j]; }
   /// Bounds of z; 0 for columns that cannot count: zero ones, and those too short for their x to be a double.
