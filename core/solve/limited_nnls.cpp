@@ -38,7 +38,7 @@ struct BuiltColumns {
   [[nodiscard]] ColumnsView view(Index rows) const { return {rows, begin, row, std::span<const double>(value)}; }
 };
 
-/// The limits in z: rows of norm 1, infinite ones left out.
+/// The limits in z: rows brought to about 1, infinite ones left out.
 struct ScaledLimits {
   Eigen::SparseMatrix<double> rows;  ///< kept limits × (columns and auxiliaries)
   VectorXd most;
@@ -62,8 +62,11 @@ ScaledLimits scaled_limits(const ScaledColumns& p, const NnlsProblem& problem, c
       norm = largest > 0 ? largest : 1;
     }
     s.z_per_x.push_back(norm);
+    // What a column can give at most is what counts of it: a bound may hold it far below the goal.
+    const double upper = j < n && problem.upper.size() > 0 ? problem.upper[j] : kInfinity;
+    const double most = p.nothing_wanted() ? 1 : std::min(1.0, upper * (norm / p.in_units(1)));
     for (Eigen::SparseMatrix<double>::InnerIterator it(limits.rows, j); it; ++it)
-      squares[it.row()] += std::pow(it.value() / norm, 2);
+      squares[it.row()] += std::pow(it.value() / norm * most, 2);
   }
   std::vector<Index> place(static_cast<std::size_t>(limits.rows.rows()), -1);
   for (Index i = 0; i < limits.rows.rows(); ++i) {

@@ -275,10 +275,12 @@ void NnlsOfFew::optimise() {
     from_matrix_ = false;
     std::fill(z_.begin(), z_.end(), 0.0);
   }
-  if (!problem_->scaled().nothing_wanted() && !search()) solve_from_matrix();
-  double fitted = 0;
-  for (std::size_t a = 0; a < column_.size(); ++a) fitted += z_[a] * (problem_->pull(column_[a]) + gradient_[a]);
-  squared_error_ = problem_->scaled().nothing_wanted() ? 0 : 1 - fitted;
+  squared_error_ = 0;
+  if (problem_->scaled().nothing_wanted()) return;
+  if (!search()) solve_from_matrix();
+  squared_error_ = 1;
+  for (std::size_t a = 0; a < column_.size(); ++a)
+    squared_error_ -= z_[a] * (problem_->pull(column_[a]) + gradient_[a]);
   if (squared_error_ < kSmallSquaredError || from_matrix_) {
     const double norm = problem_->scaled().norm(scaled_residual());
     squared_error_ = norm * norm;

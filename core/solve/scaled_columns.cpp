@@ -23,7 +23,7 @@ ScaledColumns::ScaledColumns(const NnlsProblem& problem) : view_(problem.columns
 
 void ScaledColumns::set_goal(const VectorXd& goal) {
   scale_ = std::sqrt(goal.cwiseAbs2().dot(squared_weight_));
-  goal_ = scale_ > 0 ? VectorXd(goal / scale_) : VectorXd::Zero(goal.size());
+  goal_ = goal / (scale_ > 0 ? scale_ : 1);
   inverse_norm_.resize(columns());
   upper_.resize(columns());
   for (Index j = 0; j < columns(); ++j) {

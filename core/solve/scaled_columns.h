@@ -49,7 +49,7 @@ class ScaledColumns {
   [[nodiscard]] double x_of(Index j, double z) const;
   [[nodiscard]] double z_of(Index j, double x) const;
   /// A norm of ours in the units of the problem.
-  [[nodiscard]] double in_units(double norm) const { return norm * scale_; }
+  [[nodiscard]] double in_units(double norm) const { return scale_ > 0 ? norm * scale_ : norm; }
 
  private:
   ColumnsView view_;
