@@ -124,18 +124,13 @@ void NnlsSearch::run(const NnlsOptions& options) {
 /// The columns by which the error falls fastest.
 std::vector<Index> NnlsSearch::entering(std::size_t most) {
   p_.gradient(residual_, gradient_);
-  double unsolved = 0;
-  for (const Index j : passive_->order()) unsolved = std::max(unsolved, std::abs(gradient_[j]));
   std::vector<Index> columns;
-  double best = 0;
   const auto pull = [&](Index j) { return place_[at(j)] == Place::upper ? -gradient_[j] : gradient_[j]; };
   for (Index j = 0; j < gradient_.size(); ++j) {
     if (place_[at(j)] == Place::passive || refused_[at(j)] || !allowed_[at(j)] || !(p_.upper(j) > 0)) continue;
     if (!(pull(j) > kGradientTolerance)) continue;
     columns.push_back(j);
-    best = std::max(best, pull(j));
   }
-  (void)unsolved;
   const auto steeper = [&](Index a, Index b) { return pull(a) != pull(b) ? pull(a) > pull(b) : a < b; };
   const auto room = static_cast<std::size_t>(std::max<Index>(1, p_.rows() - passive_->size()));
   const std::size_t count = std::min({most, columns.size(), room});
@@ -262,7 +257,7 @@ void NnlsSearch::after_round(const std::vector<Index>& columns, std::size_t most
 void NnlsSearch::polish() {
   if (passive_->size() == 0) return;
   residual_ = p_.exact_residual(z_, support());
-  double worst = p_.kkt(z_, residual_).worst();
+  double worst = p_.kkt(z_, residual_, allowed_).worst();
   for (int round = 0; round < 5 && worst > 2 * kEpsilon; ++round) {
     const VectorXd d = passive_->step(residual_).d;
     if (!d.allFinite()) return;
@@ -272,7 +267,7 @@ void NnlsSearch::polish() {
       z[j] = std::clamp(z_[j] + d[k], 0.0, p_.upper(j));
     }
     VectorXd residual = p_.exact_residual(z, support());
-    const double now = p_.kkt(z, residual).worst();
+    const double now = p_.kkt(z, residual, allowed_).worst();
     if (!(now < worst)) return;
     z_ = std::move(z);
     residual_ = std::move(residual);
@@ -285,7 +280,7 @@ NnlsSolution NnlsSearch::solution() const {
   solution.x = x();
   solution.residual = residual_ * p_.in_units(1);
   solution.residual_norm = p_.in_units(p_.norm(residual_));
-  solution.kkt = p_.kkt(z_, residual_);
+  solution.kkt = p_.kkt(z_, residual_, allowed_);
   solution.iterations = iterations_;
   solution.converged = converged_;
   return solution;

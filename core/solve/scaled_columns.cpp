@@ -60,12 +60,13 @@ double ScaledColumns::norm(const VectorXd& residual) const {
   return std::sqrt(residual.cwiseAbs2().dot(squared_weight_));
 }
 
-KktResiduals ScaledColumns::kkt(const VectorXd& z, const VectorXd& residual) const {
+KktResiduals ScaledColumns::kkt(const VectorXd& z, const VectorXd& residual, const std::vector<char>& allowed) const {
   KktResiduals kkt;
   if (nothing_wanted()) return kkt;
   VectorXd g;
   gradient(residual, g);
-  for (Index j = 0; j < columns(); ++j) kkt.add(z[j], upper_[j], g[j]);
+  for (Index j = 0; j < columns(); ++j)
+    if (allowed[static_cast<std::size_t>(j)]) kkt.add(z[j], upper_[j], g[j]);
   return kkt;
 }
 

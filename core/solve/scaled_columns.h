@@ -45,7 +45,8 @@ class ScaledColumns {
   /// ‖W residual‖
   [[nodiscard]] double norm(const VectorXd& residual) const;
 
-  [[nodiscard]] KktResiduals kkt(const VectorXd& z, const VectorXd& residual) const;
+  /// Columns that are not allowed have no condition to meet.
+  [[nodiscard]] KktResiduals kkt(const VectorXd& z, const VectorXd& residual, const std::vector<char>& allowed) const;
   [[nodiscard]] double x_of(Index j, double z) const;
   [[nodiscard]] double z_of(Index j, double x) const;
   /// A norm of ours in the units of the problem.

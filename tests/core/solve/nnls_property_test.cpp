@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "core/solve/nnls.h"
+#include "core/solve/nnls_search.h"
 #include "tests/core/solve/least_squares_problem.h"
 
 namespace luxrig {
@@ -113,6 +114,24 @@ TEST(NnlsProperties, FindsWhatProjectedGradientsConvergeTo) {
   }
 }
 
+/// The way out that none of the problems above needs: it must be as good.
+TEST(NnlsProperties, OrthogonalFactorsFindTheSame) {
+  double worst = 0;
+  for (int seed = 0; seed < 1200; ++seed) {
+    const LeastSquaresCase c = least_squares_case(seed, 30, seed % 3 == 0 ? 60 : 12);
+    const NnlsProblem problem = c.sparse();
+    const ScaledColumns scaled(problem);
+    NnlsSearch search(scaled, make_orthogonal_columns(scaled));
+    search.run({1, {}});
+    const NnlsSolution solution = search.solution();
+    ASSERT_TRUE(solution.converged) << seed;
+    ASSERT_LT(kkt_violation(c, solution.x), 1e-10) << seed;
+    ASSERT_NEAR(solution.residual_norm, solve_nnls(problem)->residual_norm, 1e-10 * weighted_goal(c)) << seed;
+    worst = std::max(worst, kkt_violation(c, solution.x));
+  }
+  std::printf("1200 problems by orthogonal factors: worst KKT violation %.2e\n", worst);
+}
+
 TEST(NnlsProperties, OneAtATimeAndManyAtATimeEndTheSame) {
   for (int seed = 0; seed < 40; ++seed) {
     const LeastSquaresCase c = least_squares_case(12 * seed + 2, 120, 600);
@@ -144,6 +163,9 @@ TEST(NnlsProperties, GoesOnFromWhereItEnded) {
   solver->allow(strongest, false);
   const NnlsSolution without = solver->solve();
   EXPECT_EQ(without.x[strongest], 0);
+  EXPECT_LT(without.kkt.worst(), 1e-12);
+  EXPECT_FALSE(without.orthogonal);
+  EXPECT_LT(without.iterations, 10);
   EXPECT_GT(without.residual_norm, warm.residual_norm);
   LeastSquaresCase less = c;
   less.upper = VectorXd::Constant(c.A.cols(), std::numeric_limits<double>::infinity());
