@@ -26,8 +26,9 @@ class ColumnsView {
   [[nodiscard]] Index columns() const { return columns_; }
 
   /// Empty, or what is wrong: sizes that disagree, rows that do not rise or are out of range, entries that are not
-  /// finite. Reads everything once.
+  /// finite or too large to be squared. Reads everything once.
   [[nodiscard]] std::string complaint() const;
+  static constexpr double kLargestEntry = 1e140;
 
   /// Σ_i a_ij vector_i
   [[nodiscard]] double dot(Index column, const double* vector) const;
@@ -38,8 +39,6 @@ class ColumnsView {
   void clear(Index column, double* to) const;
   /// Σ_i weight_i a_ij²
   [[nodiscard]] double squared_norm(Index column, const double* weight) const;
-  /// Largest |a_ij|
-  [[nodiscard]] double largest(Index column) const;
   /// result_j = scale_j Σ_i a_ij vector_i for all columns: one pass over the matrix.
   void dot_all(const double* vector, const double* scale, double* result) const;
 

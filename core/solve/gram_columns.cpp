@@ -19,8 +19,8 @@ class Products {
  public:
   explicit Products(const ScaledColumns& problem) : p_(problem) {}
 
-  /// result = A_withᵀ W² A_of, columns of norm 1.
-  void of(std::span<const Index> with, std::span<const Index> columns, MatrixXd& result) {
+  /// result = A_withᵀ W² A_of, columns of norm 1; `lower`: only what is not above the diagonal.
+  void of(std::span<const Index> with, std::span<const Index> columns, bool lower, MatrixXd& result) {
     constexpr Index kTile = ColumnsView::kTile;
     result.resize(static_cast<Index>(with.size()), static_cast<Index>(columns.size()));
     spread_.resize(p_.rows());
@@ -35,10 +35,11 @@ class Products {
         p_.view().add(column, p_.inverse_norm(column), spread_.data());
         tile_.row(c) = spread_.cwiseProduct(p_.squared_weight()).transpose();
       }
-      p_.view().dot_tile(with, tile_.data(), products_.data());
+      const Index from = lower ? first : 0;
+      p_.view().dot_tile(with.subspan(static_cast<std::size_t>(from)), tile_.data(), products_.data());
       for (Index c = 0; c < count; ++c)
-        for (Index a = 0; a < result.rows(); ++a)
-          result(a, first + c) = products_(c, a) * p_.inverse_norm(with[static_cast<std::size_t>(a)]);
+        for (Index a = from; a < result.rows(); ++a)
+          result(a, first + c) = products_(c, a - from) * p_.inverse_norm(with[static_cast<std::size_t>(a)]);
     }
   }
 
@@ -53,13 +54,13 @@ class GramColumns final : public PassiveColumns {
   explicit GramColumns(const ScaledColumns& problem) : p_(problem), products_(problem) {}
 
   std::vector<char> append(std::span<const Index> columns) override {
-    products_.of(order_, columns, cross_);
+    products_.of(order_, columns, false, cross_);
     if (columns.size() == 1) {
       const bool taken = append_one(columns.front());
       return std::vector<char>(1, taken ? 1 : 0);
     }
     MatrixXd own;
-    products_.of(columns, columns, own);
+    products_.of(columns, columns, true, own);
     std::vector<char> taken = factor_.append(cross_, own, kLeastGramPivot);
     for (std::size_t k = 0; k < columns.size(); ++k)
       if (taken[k]) order_.push_back(columns[k]);

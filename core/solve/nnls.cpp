@@ -16,8 +16,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Squares and their sums must be doubles.
-constexpr double kLargestEntry = 1e140;
+constexpr double kLargestEntry = ColumnsView::kLargestEntry;
 /// A worse answer than this is sought again with orthogonal factors.
 constexpr double kGoodEnough = 1e-12;
 
@@ -37,9 +36,6 @@ std::string NnlsProblem::complaint() const {
   if (upper.size() != 0 && upper.size() != columns.columns())
     return fmt::format("{} upper bounds for {} columns", upper.size(), columns.columns());
   if (auto text = columns.complaint(); !text.empty()) return text;
-  for (Index j = 0; j < columns.columns(); ++j)
-    if (const double largest = columns.largest(j); largest > kLargestEntry)
-      return fmt::format("column {} has an entry of {}", j, largest);
   if (auto text = entry_complaint(goal, "goal", kLargestEntry, true); !text.empty()) return text;
   if (auto text = entry_complaint(row_weight, "weight", 1e70, false); !text.empty()) return text;
   return entry_complaint(upper, "upper bound", std::numeric_limits<double>::infinity(), false);

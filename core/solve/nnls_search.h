@@ -38,7 +38,7 @@ class NnlsSearch {
   bool leave_at_bounds(const VectorXd& d);
   void renew_residual();
   [[nodiscard]] std::vector<Index> support() const;
-  void after_round(const std::vector<Index>& columns, std::size_t most);
+  void after_round(const std::vector<Index>& columns);
   void polish();
 
   const ScaledColumns& p_;
@@ -49,8 +49,8 @@ class NnlsSearch {
   std::vector<Index> at_upper_;
   std::unordered_set<std::uint64_t> visited_;
   std::uint64_t key_ = 0;
-  std::size_t block_ = 1;
-  double least_ = 0;  ///< smallest error reached
+  std::size_t block_ = 1, most_ = 1;  ///< columns to enter at a time, now and at most
+  double least_ = 0;                  ///< smallest error reached
   int iterations_ = 0;
   bool converged_ = false, stopped_ = false, careful_ = false;
 };

@@ -186,6 +186,7 @@ TEST(NnlsProperties, RefusesWhatIsNoNumberAndSizesThatDisagree) {
   };
   const VectorXd two = VectorXd::Ones(2), three = VectorXd::Ones(3), bad = VectorXd::Constant(2, NAN);
   EXPECT_EQ(detail({ColumnsView(A), two, {}, {}}), "taken");
+  EXPECT_EQ(detail({}), "taken");
   EXPECT_EQ(detail({ColumnsView(A), three, {}, {}}), "3 goals for 2 rows");
   EXPECT_EQ(detail({ColumnsView(A), two, three, {}}), "3 weights for 2 rows");
   EXPECT_EQ(detail({ColumnsView(A), two, {}, three}), "3 upper bounds for 2 columns");
@@ -195,7 +196,7 @@ TEST(NnlsProperties, RefusesWhatIsNoNumberAndSizesThatDisagree) {
   A(1, 0) = std::numeric_limits<double>::infinity();
   EXPECT_EQ(detail({ColumnsView(A), two, {}, {}}), "entry (1, 0) is inf");
   A(1, 0) = 1e141;
-  EXPECT_EQ(detail({ColumnsView(A), two, {}, {}}), "column 0 has an entry of 1e+141");
+  EXPECT_EQ(detail({ColumnsView(A), two, {}, {}}), "entry (1, 0) is 1e+141");
   const std::vector<std::uint64_t> begin = {0, 2};
   const std::vector<float> value = {1, 1};
   const std::vector<std::uint32_t> order = {1, 0}, range = {0, 2};
