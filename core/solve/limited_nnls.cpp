@@ -179,6 +179,7 @@ class Multipliers {
   }
 
   void run(const NnlsOptions& options) {
+    options_.stop = options.stop;
     renew(100, VectorXd());
     double before = kInfinity;
     for (; rounds < kMostRounds; ++rounds) {
@@ -232,7 +233,7 @@ class Multipliers {
     problem.columns = columns_.view(problem.goal.size());
     problem.upper = VectorXd::Constant(problem.columns.columns(), kInfinity);
     for (std::size_t j = 0; j < s_.upper.size(); ++j) problem.upper[static_cast<Index>(j)] = s_.upper[j];
-    auto made = NnlsSolver::make(problem);
+    auto made = NnlsSolver::make(problem, options_);
     LUXRIG_CHECK(made.has_value(), "{}", made.has_value() ? "" : made.error().detail);
     solver_.emplace(std::move(*made));
     if (start.size() > 0) solver_->start_from(start);
@@ -240,6 +241,7 @@ class Multipliers {
 
   const ScaledColumns& p_;
   const ScaledLimits& s_;
+  NnlsOptions options_;
   double rho_ = 1;
   VectorXd lambda_, goal_;
   BuiltColumns columns_;

@@ -89,7 +89,10 @@ void NnlsSolver::set_goal(const VectorXd& goal) {
   state_->search.goal_changed(x);
 }
 
-void NnlsSolver::allow(Index column, bool allowed) { state_->search.allow(column, allowed); }
+void NnlsSolver::allow(Index column, bool allowed) {
+  LUXRIG_CHECK(column >= 0 && column < state_->scaled.columns(), "column {} of {}", column, state_->scaled.columns());
+  state_->search.allow(column, allowed);
+}
 
 void NnlsSolver::start_from(const VectorXd& x) {
   LUXRIG_CHECK(x.size() == state_->scaled.columns(), "{} levels for {} columns", x.size(), state_->scaled.columns());

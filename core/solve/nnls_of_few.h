@@ -30,7 +30,8 @@ class SharedProblem {
 /// Cause::invalid with the problem's complaint.
 [[nodiscard]] Result<std::shared_ptr<const SharedProblem>> share_problem(const NnlsProblem& problem);
 
-/// A copy costs a few hundred bytes, so that a state can be kept to return to. Each thread needs one of its own.
+/// A copy is a state to return to; it costs as many numbers as there are rows, and a few hundred. Each thread needs one
+/// of its own.
 class NnlsOfFew {
  public:
   using Index = Eigen::Index;

@@ -59,13 +59,19 @@ void NnlsSearch::start_from(const VectorXd& x) {
   key_ = 0;
   z_.setZero();
   for (Index j = 0; j < z_.size(); ++j)
-    if (x[j] > 0 && allowed_[at(j)] && p_.upper(j) > 0) positive.push_back(j);
-  const std::vector<char> taken = passive_->append(positive);
-  for (std::size_t k = 0; k < positive.size(); ++k) {
-    if (!taken[k]) continue;
-    place_[at(positive[k])] = Place::passive;
-    key_ ^= key_of(positive[k]);
-    z_[positive[k]] = std::min(p_.z_of(positive[k], x[positive[k]]), p_.upper(positive[k]));
+    if (x[j] > 0 && std::isfinite(x[j]) && allowed_[at(j)] && p_.upper(j) > 0) positive.push_back(j);
+  // In parts: the products of all with all could be more than memory holds.
+  constexpr std::size_t kPart = 256;
+  for (std::size_t first = 0; first < positive.size() && passive_->size() < p_.rows(); first += kPart) {
+    const std::size_t count = std::min(kPart, positive.size() - first);
+    const std::vector<char> taken = passive_->append({positive.data() + first, count});
+    for (std::size_t k = 0; k < count; ++k) {
+      const Index j = positive[first + k];
+      if (!taken[k]) continue;
+      place_[at(j)] = Place::passive;
+      key_ ^= key_of(j);
+      z_[j] = std::min(p_.z_of(j, x[j]), p_.upper(j));
+    }
   }
 }
 

@@ -174,6 +174,8 @@ TEST(NnlsProperties, GoesOnFromWhereItEnded) {
   EXPECT_LT(kkt_violation(less, without.x), 1e-12);
   solver->allow(strongest, true);
   EXPECT_NEAR(solver->solve().residual_norm, cold->residual_norm, 1e-12 * other.norm());
+  solver->start_from(VectorXd::Constant(c.A.cols(), 1e3));
+  EXPECT_NEAR(solver->solve().residual_norm, cold->residual_norm, 1e-12 * other.norm());
   solver->start_from(first.x);
   EXPECT_NEAR(solver->solve().residual_norm, cold->residual_norm, 1e-12 * other.norm());
 }
