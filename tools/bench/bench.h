@@ -13,9 +13,10 @@ struct BenchOptions {
   int threads = 0;                            ///< 0 = one per core
   std::filesystem::path references_folder;    ///< transport: converged references are kept here, by scene
   double reference_error = 0.0005;            ///< transport: standard error of converged references
-  std::filesystem::path export_folder;        ///< transport: writes its rooms here for Radiance instead of measuring
+  std::filesystem::path export_folder;        ///< transport: writes its rooms here for Radiance instead of
+                                              ///< measuring; nnls: writes its problems here for scipy
   std::vector<std::filesystem::path> rigs;    ///< transport: rig files whose scenes are measured too
-  std::string only;                           ///< transport: only cases whose name begins so; analytic: only such families
+  std::string only;                           ///< transport, nnls: only cases whose name begins so; analytic: only such families
 };
 
 /// Names of the suites.

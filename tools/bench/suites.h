@@ -13,6 +13,9 @@ namespace luxrig {
 /// Time against error of every evaluator in furnished rooms, against converged path tracing; what must hold besides.
 [[nodiscard]] std::vector<BenchRow> bench_transport(const BenchOptions& options);
 
+/// Non-negative least squares, cold, warm and limited: error is the worst KKT residual, seconds are of the processor.
+[[nodiscard]] std::vector<BenchRow> bench_nnls(const BenchOptions& options);
+
 /// 60 s (6 s with quick) of four sACN universes at 44 Hz to a sink on loopback, path tracing on all cores meanwhile.
 /// Prints the histogram of the intervals by the kernel's arrival stamps. error: p99 deviation over the period.
 [[nodiscard]] std::vector<BenchRow> bench_buses(const BenchOptions& options);
