@@ -9,6 +9,7 @@
 #include "core/transport/progress.h"
 #include "core/transport/replicate_error.h"
 #include "core/transport/shape_light.h"
+#include "core/transport/sky_opening_finder.h"
 
 namespace luxrig {
 
@@ -76,13 +77,14 @@ struct Pair {
 class Evaluation {
  public:
   Evaluation(const RayScene& scene, std::span<const Receiver> receivers, std::span<const Emitter> emitters,
-             const EvaluateOptions& options, double progress_end)
+             const EvaluateOptions& options, double progress_end, const SkyOpenings* openings)
       : scene_(scene),
         receivers_(receivers),
         emitters_(emitters),
         options_(options),
         progress_end_(progress_end),
         sources_(emitters),
+        openings_(openings),
         levels_(emitters.size(), 1.0) {
     if (!options.levels.empty()) levels_ = options.levels;
   }
@@ -98,6 +100,7 @@ class Evaluation {
     }
     exact_lux_ = lux_;
     done_ = exact_share * progress_end_;
+    if (!openings_) find_openings();
     for (auto round = all_pairs(); !round.empty(); round = next_round())
       if (!sample(round)) return stopped();
     finish();
@@ -145,6 +148,15 @@ class Evaluation {
     return true;
   }
 
+  void find_openings() {
+    openings_ = &found_;
+    const bool sky =
+        std::any_of(pairs_.begin(), pairs_.end(), [&](const Pair& p) { return emitters_[p.emitter].sky != nullptr; });
+    if (sky && obstacles_in(scene_))
+      found_ = find_sky_openings(scene_, receivers_, emitters_, options_.seed, options_.threads,
+                                 options_.watch, direct_.rays);
+  }
+
   std::vector<std::size_t> all_pairs() const {
     std::vector<std::size_t> all(pairs_.size());
     for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
@@ -165,7 +177,7 @@ class Evaluation {
         for (std::uint32_t from = begin; from < last; from += std::min(last - from, 4096u)) {
           if (options_.watch.stop.stop_requested()) return;
           const DirectSum sum = sample_direct(scene_, receivers_[pair.receiver], emitters_[pair.emitter], pair.way,
-                                              samples, from, from + std::min(last - from, 4096u), scratch);
+                                              *openings_, samples, from, from + std::min(last - from, 4096u), scratch);
           pair.lux[k] += sum.lux;
           pair.unobstructed[k] += sum.unobstructed_lux;
           pair.rays += sum.rays;
@@ -244,6 +256,8 @@ class Evaluation {
   const EvaluateOptions& options_;
   double progress_end_;
   DirectSources sources_;
+  const SkyOpenings* openings_;
+  SkyOpenings found_;
   std::vector<double> levels_;
   DirectLight direct_;
   std::vector<Pair> pairs_;              ///< by receiver
@@ -256,9 +270,9 @@ class Evaluation {
 }  // namespace
 
 Result<DirectLight> direct_light(const RayScene& scene, std::span<const Receiver> receivers,
-                                 std::span<const Emitter> emitters, const EvaluateOptions& options,
-                                 double progress_end) {
-  return Evaluation(scene, receivers, emitters, options, progress_end).run();
+                                 std::span<const Emitter> emitters, const EvaluateOptions& options, double progress_end,
+                                 const SkyOpenings* openings) {
+  return Evaluation(scene, receivers, emitters, options, progress_end, openings).run();
 }
 
 Result<DirectLight> direct_light(const RayScene& scene, std::span<const Receiver> receivers, const Lamps& lamps,

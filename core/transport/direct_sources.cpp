@@ -134,9 +134,46 @@ Way way_between(const RayScene& scene, const Receiver& receiver, const Emitter& 
   return scene.surely_blocked(from, receiver.normal_world, corners, rays) ? Way::blocked : Way::unknown;
 }
 
+namespace {
+
+/// Directions towards a sky, as add(direction, density of all strategies together [1/sr per sample]); balance heuristic
+/// (E. Veach, 1997). Where openings show the sky, one through them each time, one of the sky's own and one by the cosine
+/// only every few times; elsewhere one of the latter each, each time.
+template <class Add>
+void draw_sky_directions(const SkyLuminance& sky, const Receiver& receiver, const SkyOpenings& openings,
+                         const SobolSequence& samples, std::uint32_t begin, std::uint32_t end,
+                         SkyOpenings::View& view, Add&& add) {
+  constexpr std::uint32_t kSeldom = 4;
+  const Vec3& normal = receiver.normal_world;
+  if (!openings.empty()) openings.view(receiver.position_world_m, normal, view);
+  const bool through = !openings.empty() && openings.whole_sky_share(view) < 0.5 && !only_direction(sky);
+  const std::uint32_t seldom = through ? kSeldom : 1;
+  const auto add_direction = [&](const Vec3& d) {
+    const double cosine = normal.dot(d);
+    if (!(cosine > 0)) return;
+    const double whole = (sky.density_per_sr(d) + cosine / kPi) / seldom;
+    add(d, through ? whole + openings.density_per_sr(view, receiver.position_world_m, d) : whole);
+  };
+  for (std::uint32_t i = begin; i < end; ++i) {
+    if (through) {
+      const auto [u, v] = samples.pair(i, 1, 0);
+      const DirectionSample drawn =
+          openings.sample(view, receiver.position_world_m, samples.pair(i, 1, 1)[0], u, v);
+      if (drawn.density_per_sr > 0) add_direction(drawn.direction);
+      if (i % kSeldom != 0) continue;
+    }
+    const auto uv = samples.set(i / seldom, 0);
+    const DirectionSample drawn = sky.sample(uv[0], uv[1]);
+    if (drawn.density_per_sr > 0) add_direction(drawn.direction);
+    add_direction(cosine_direction(normal, uv[2], uv[3]));
+  }
+}
+
+}  // namespace
+
 DirectSum sample_direct(const RayScene& scene, const Receiver& receiver, const Emitter& emitter, Way way,
-                        const SobolSequence& samples, std::uint32_t begin, std::uint32_t end,
-                        DirectSources::Scratch& scratch) {
+                        const SkyOpenings& openings, const SobolSequence& samples, std::uint32_t begin,
+                        std::uint32_t end, DirectSources::Scratch& scratch) {
   const Vec3 &from = receiver.position_world_m, &normal = receiver.normal_world;
   scratch.targets_world_m.clear();
   scratch.values.clear();
@@ -148,18 +185,9 @@ DirectSum sample_direct(const RayScene& scene, const Receiver& receiver, const E
   if (emitter.sky) {
     const SkyLuminance& sky = *emitter.sky;
     const double far_m = way == Way::clear ? 1 : beyond_m(scene.bounds_world_m(), from);
-    // Balance heuristic of one sample each (E. Veach, 1997).
-    const auto add_direction = [&](const Vec3& d, double of_sky) {
-      const double cosine = normal.dot(d);
-      if (cosine > 0) add(from + far_m * d, sky.luminance_cd_m2(d) * cosine / (of_sky + cosine / kPi));
-    };
-    for (std::uint32_t i = begin; i < end; ++i) {
-      const auto uv = samples.set(i, 0);
-      const DirectionSample drawn = sky.sample(uv[0], uv[1]);
-      if (drawn.density_per_sr > 0) add_direction(drawn.direction, drawn.density_per_sr);
-      const Vec3 d = cosine_direction(normal, uv[2], uv[3]);
-      add_direction(d, sky.density_per_sr(d));
-    }
+    draw_sky_directions(sky, receiver, openings, samples, begin, end, scratch.view, [&](const Vec3& d, double density) {
+      add(from + far_m * d, sky.luminance_cd_m2(d) * normal.dot(d) / density);
+    });
   } else {
     const Pose& pose = emitter.world_from_lamp;
     const Vec3 from_lamp = pose.inverse_direction(from - pose.translation_m), n = pose.inverse_direction(normal);

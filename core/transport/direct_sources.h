@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/transport/evaluator.h"
+#include "core/transport/sky_openings.h"
 #include "core/transport/sobol.h"
 
 namespace luxrig {
@@ -25,6 +26,7 @@ class DirectSources {
     std::vector<Vec3> targets_world_m;
     std::vector<double> values;
     std::vector<std::uint8_t> occluded;
+    SkyOpenings::View view;
   };
 
   /// Illuminance from each point luminaire [lx at level 1], called as lit(emitter, lux > 0). Returns the shadow rays
@@ -79,9 +81,10 @@ struct DirectSum {
   double unobstructed_lux = 0;  ///< of what would arrive if nothing stood in the way
   std::uint64_t rays = 0;
 };
-/// way   clear: no ray is cast
+/// way        clear: no ray is cast
+/// openings   through which skies may be seen
 [[nodiscard]] DirectSum sample_direct(const RayScene& scene, const Receiver& receiver, const Emitter& emitter, Way way,
-                                      const SobolSequence& samples, std::uint32_t begin, std::uint32_t end,
-                                      DirectSources::Scratch& scratch);
+                                      const SkyOpenings& openings, const SobolSequence& samples, std::uint32_t begin,
+                                      std::uint32_t end, DirectSources::Scratch& scratch);
 
 }  // namespace luxrig
