@@ -40,7 +40,7 @@ struct Pair {
   Way way;
   std::uint32_t samples = 0;              ///< per replicate
   std::array<double, kReplicates> lux{};  ///< sums over samples
-  std::array<double, kReplicates> unobstructed{};
+  std::array<DirectSum::Part, DirectSum::kParts> parts{};  ///< sums over samples and replicates
   std::uint64_t rays = 0;
 
   [[nodiscard]] double mean_lux() const {
@@ -49,13 +49,14 @@ struct Pair {
     return samples > 0 ? sum / (static_cast<double>(kReplicates) * samples) : 0;
   }
   [[nodiscard]] double doubt_lx() const {
-    double arrived = 0, sent = 0;
-    for (std::size_t k = 0; k < kReplicates; ++k) {
-      arrived += lux[k];
-      sent += unobstructed[k];
+    double doubt = 0;
+    for (const DirectSum::Part& part : parts) {
+      const double strata = static_cast<double>(part.samples) / kReplicates;
+      const bool all_or_nothing = part.lux == 0 || part.lux == part.unobstructed_lux;
+      if (way == Way::clear || !(strata > 0) || (all_or_nothing && strata >= kSamplesToBelieve)) continue;
+      doubt += kDoubtPerStratum * part.unobstructed_lux / (static_cast<double>(kReplicates) * samples) / strata;
     }
-    if (way == Way::clear || ((arrived == 0 || arrived == sent) && samples >= kSamplesToBelieve)) return 0;
-    return kDoubtPerStratum * sent / (static_cast<double>(kReplicates) * samples) / samples;
+    return doubt;
   }
 
   /// The replicates' estimates, with the doubt put into their spread in an even pattern, other for each pair.
@@ -178,8 +179,12 @@ class Evaluation {
           if (options_.watch.stop.stop_requested()) return;
           const DirectSum sum = sample_direct(scene_, receivers_[pair.receiver], emitters_[pair.emitter], pair.way,
                                               *openings_, samples, from, from + std::min(last - from, 4096u), scratch);
-          pair.lux[k] += sum.lux;
-          pair.unobstructed[k] += sum.unobstructed_lux;
+          for (std::size_t part = 0; part < DirectSum::kParts; ++part) {
+            pair.lux[k] += sum.parts[part].lux;
+            pair.parts[part].lux += sum.parts[part].lux;
+            pair.parts[part].unobstructed_lux += sum.parts[part].unobstructed_lux;
+            pair.parts[part].samples += sum.parts[part].samples;
+          }
           pair.rays += sum.rays;
         }
       }

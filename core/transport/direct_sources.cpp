@@ -136,36 +136,39 @@ Way way_between(const RayScene& scene, const Receiver& receiver, const Emitter& 
 
 namespace {
 
-/// Directions towards a sky, as add(direction, density of all strategies together [1/sr per sample]); balance heuristic
-/// (E. Veach, 1997). Where openings show the sky, one through them each time, one of the sky's own and one by the cosine
-/// only every few times; elsewhere one of the latter each, each time.
+/// Where openings show the sky, the rest of it is looked at once in so many samples.
+constexpr std::uint32_t kSeldom = 4;
+
+/// Directions towards a sky, as add(direction, weight / density [sr] per sample, part). The sky's own directions and
+/// cosine-weighted ones share the work by the balance heuristic. Where openings show the sky, there is a third strategy,
+/// which is by far the best where it applies: it shares with both by the power heuristic (E. Veach, 1997, §9.2.3), since
+/// even a few of the others' samples there would be most of the noise.
 template <class Add>
-void draw_sky_directions(const SkyLuminance& sky, const Receiver& receiver, const SkyOpenings& openings,
+void draw_sky_directions(const SkyLuminance& sky, const Receiver& receiver, const SkyOpenings& openings, bool through,
                          const SobolSequence& samples, std::uint32_t begin, std::uint32_t end,
-                         SkyOpenings::View& view, Add&& add) {
-  constexpr std::uint32_t kSeldom = 4;
+                         const SkyOpenings::View& view, Add&& add) {
   const Vec3& normal = receiver.normal_world;
-  if (!openings.empty()) openings.view(receiver.position_world_m, normal, view);
-  const bool through = !openings.empty() && openings.whole_sky_share(view) < 0.5 && !only_direction(sky);
   const std::uint32_t seldom = through ? kSeldom : 1;
-  const auto add_direction = [&](const Vec3& d) {
+  const auto add_direction = [&](const Vec3& d, bool from_opening) {
     const double cosine = normal.dot(d);
     if (!(cosine > 0)) return;
     const double whole = (sky.density_per_sr(d) + cosine / kPi) / seldom;
-    add(d, through ? whole + openings.density_per_sr(view, receiver.position_world_m, d) : whole);
+    if (!through) return add(d, 1 / whole, 0);
+    const double opening = openings.density_per_sr(view, receiver.position_world_m, d);
+    const double own = from_opening ? opening : whole;
+    add(d, own / (opening * opening + whole * whole), opening > 0 ? 0 : 1);
   };
   for (std::uint32_t i = begin; i < end; ++i) {
     if (through) {
-      const auto [u, v] = samples.pair(i, 1, 0);
-      const DirectionSample drawn =
-          openings.sample(view, receiver.position_world_m, samples.pair(i, 1, 1)[0], u, v);
-      if (drawn.density_per_sr > 0) add_direction(drawn.direction);
+      const auto uv = samples.set(i, 1);
+      const DirectionSample drawn = openings.sample(view, receiver.position_world_m, uv[2], uv[0], uv[1]);
+      if (drawn.density_per_sr > 0) add_direction(drawn.direction, true);
       if (i % kSeldom != 0) continue;
     }
     const auto uv = samples.set(i / seldom, 0);
     const DirectionSample drawn = sky.sample(uv[0], uv[1]);
-    if (drawn.density_per_sr > 0) add_direction(drawn.direction);
-    add_direction(cosine_direction(normal, uv[2], uv[3]));
+    if (drawn.density_per_sr > 0) add_direction(drawn.direction, false);
+    add_direction(cosine_direction(normal, uv[2], uv[3]), false);
   }
 }
 
@@ -177,17 +180,28 @@ DirectSum sample_direct(const RayScene& scene, const Receiver& receiver, const E
   const Vec3 &from = receiver.position_world_m, &normal = receiver.normal_world;
   scratch.targets_world_m.clear();
   scratch.values.clear();
-  const auto add = [&](const Vec3& target_world_m, double lux) {
+  scratch.parts.clear();
+  DirectSum sum;
+  sum.parts[0].samples = end - begin;
+  const auto add = [&](const Vec3& target_world_m, double lux, std::uint8_t part = 0) {
     if (!(lux > 0) || !std::isfinite(lux)) return;
+    scratch.parts.push_back(part);
     scratch.targets_world_m.push_back(target_world_m);
     scratch.values.push_back(lux);
   };
   if (emitter.sky) {
     const SkyLuminance& sky = *emitter.sky;
     const double far_m = way == Way::clear ? 1 : beyond_m(scene.bounds_world_m(), from);
-    draw_sky_directions(sky, receiver, openings, samples, begin, end, scratch.view, [&](const Vec3& d, double density) {
-      add(from + far_m * d, sky.luminance_cd_m2(d) * normal.dot(d) / density);
-    });
+    bool through = false;
+    if (!openings.empty() && way != Way::clear && !only_direction(sky)) {
+      openings.view(from, normal, scratch.view);
+      through = openings.whole_sky_share(scratch.view) < 0.5;
+    }
+    if (through) sum.parts[1].samples = (end - begin) / kSeldom;
+    draw_sky_directions(sky, receiver, openings, through, samples, begin, end, scratch.view,
+                        [&](const Vec3& d, double per_density, std::uint8_t part) {
+                          add(from + far_m * d, sky.luminance_cd_m2(d) * normal.dot(d) * per_density, part);
+                        });
   } else {
     const Pose& pose = emitter.world_from_lamp;
     const Vec3 from_lamp = pose.inverse_direction(from - pose.translation_m), n = pose.inverse_direction(normal);
@@ -201,15 +215,15 @@ DirectSum sample_direct(const RayScene& scene, const Receiver& receiver, const E
       add(from + s.distance_m * pose.direction(s.direction), luminance_cd_m2 * cosine / s.density_per_sr);
     }
   }
-  DirectSum sum;
   scratch.occluded.assign(scratch.values.size(), 0);
   if (way != Way::clear && !scratch.values.empty()) {
     scene.occluded_many(from, normal, scratch.targets_world_m, scratch.occluded);
     sum.rays = scratch.values.size();
   }
   for (std::size_t i = 0; i < scratch.values.size(); ++i) {
-    sum.unobstructed_lux += scratch.values[i];
-    if (!scratch.occluded[i]) sum.lux += scratch.values[i];
+    DirectSum::Part& part = sum.parts[scratch.parts[i]];
+    part.unobstructed_lux += scratch.values[i];
+    if (!scratch.occluded[i]) part.lux += scratch.values[i];
   }
   return sum;
 }
