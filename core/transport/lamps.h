@@ -142,6 +142,8 @@ class Lamps {
   /// Whether choose() looks at u and v at all.
   [[nodiscard]] bool have_size() const { return have_size_; }
   [[nodiscard]] bool any() const { return !lamps_.empty(); }
+  /// Through which skies shine into rooms; null when none are known.
+  [[nodiscard]] const SkyOpenings* openings() const { return openings_; }
 
  private:
   enum class Kind { point, shape, sky };

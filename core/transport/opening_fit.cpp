@@ -17,6 +17,7 @@ constexpr double kLeastGain = 1.0;  ///< mean of log(2π / solid angle)
 constexpr double kLeftOver = 0.01;
 /// Rays this far beside a rectangle, as a part of its size, still belong to it; so much is added in the end.
 constexpr double kBeside = 0.1, kMargin = 0.02;
+constexpr int kMostGrowth = 32;
 /// Planes are given up that are seen edge-on.
 constexpr double kLeastSlope = 0.1;
 
@@ -64,7 +65,7 @@ class OpeningFit {
     for (const OpeningRim& rim : rims) rim_of_[rim.glimpse] = &rim;
   }
 
-  SkyOpenings run() {
+  FoundOpenings run() {
     std::vector<Candidate> candidates;
     for (const OpeningRim& rim : rims_) propose(rim, candidates);
     std::vector<SkyOpening> openings;
@@ -142,7 +143,7 @@ class OpeningFit {
 
   /// Takes in the rays that pass it or just miss it, and the rims about them, until it no longer grows.
   void grow(Candidate& candidate) const {
-    for (int round = 0; round < 4; ++round) {
+    for (int round = 0; round < kMostGrowth; ++round) {
       const Box2 reach = widened(candidate.box, kBeside);
       Box2 grown = candidate.box;
       for (std::size_t i = 0; i < glimpses_.size(); ++i) {
@@ -189,13 +190,6 @@ class OpeningFit {
         candidate.plane.origin_world_m + candidate.plane.axes * Vec3(box.center().x(), box.center().y(), 0);
     opening.half_x_m = 0.5 * box.sizes().x();
     opening.half_y_m = 0.5 * box.sizes().y();
-    Eigen::AlignedBox3d from_m;
-    for (const SkyGlimpse& g : glimpses_) {
-      const auto at = candidate.plane.met(g.from_world_m, g.direction_world);
-      if (at && box.contains(*at)) from_m.extend(g.from_world_m);
-    }
-    const Vec3 margin_m = Vec3::Constant(0.02 * from_m.diagonal().norm());
-    opening.seen_from_world_m = {from_m.min() - margin_m, from_m.max() + margin_m};
     return opening;
   }
 
@@ -207,7 +201,7 @@ class OpeningFit {
 
 }  // namespace
 
-SkyOpenings fit_openings(const std::vector<SkyGlimpse>& glimpses, const std::vector<OpeningRim>& rims) {
+FoundOpenings fit_openings(const std::vector<SkyGlimpse>& glimpses, const std::vector<OpeningRim>& rims) {
   return OpeningFit(glimpses, rims).run();
 }
 

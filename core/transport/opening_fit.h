@@ -20,7 +20,11 @@ struct OpeningRim {
   std::vector<Stop> stops;       ///< what just stops those beyond them
 };
 
+struct FoundOpenings {
+  std::vector<SkyOpening> openings;
+  double missed_share = 1;  ///< of the glimpses, about
+};
 /// Rectangles, most explaining first, until few glimpses are left that pass through none.
-[[nodiscard]] SkyOpenings fit_openings(const std::vector<SkyGlimpse>& glimpses, const std::vector<OpeningRim>& rims);
+[[nodiscard]] FoundOpenings fit_openings(const std::vector<SkyGlimpse>& glimpses, const std::vector<OpeningRim>& rims);
 
 }  // namespace luxrig

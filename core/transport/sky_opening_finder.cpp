@@ -1,6 +1,7 @@
 #include "core/transport/sky_opening_finder.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/parallel.h"
@@ -21,6 +22,8 @@ constexpr std::uint32_t kOpenProbes = 12;
 /// Glimpses whose opening's rim is felt for, in so many directions.
 constexpr std::size_t kFelt = 64;
 constexpr int kSpokes = 8;
+/// Added to where an opening was seen from, as a part of that.
+constexpr double kMargin = 0.02;
 
 class Finder {
  public:
@@ -35,10 +38,17 @@ class Finder {
     const std::vector<OpeningRim> rims = feel_rims(glimpses);
     rays += rays_;
     if (watch_.stop.stop_requested()) return {};
-    return fit_openings(glimpses, rims);
+    FoundOpenings found = fit_openings(glimpses, rims);
+    for (SkyOpening& opening : found.openings) look_through(opening);
+    return {std::move(found.openings), found.missed_share};
   }
 
  private:
+  struct Leg {
+    Vec3 from_world_m, direction_world;
+    double distance_m;  ///< infinite where nothing was met
+  };
+
   /// Places from which a little of the sky is seen, and in which direction.
   std::vector<SkyGlimpse> look_around() {
     std::vector<SkyGlimpse> glimpses;
@@ -47,10 +57,12 @@ class Finder {
       const std::size_t count = round == 0 ? kFirstPaths : kPathsPerRound;
       std::vector<std::optional<SkyGlimpse>> found(count);
       std::vector<std::uint8_t> open(count, 0);
+      std::vector<std::vector<Leg>> legs(count);
       std::vector<std::uint64_t> rays(count, 0);
       parallel_for(count, threads_, [&](std::size_t i) {
         if (watch_.stop.stop_requested()) return;
-        found[i] = look(paths + i, rays[i]);
+        found[i] = look(paths + i, legs[i]);
+        rays[i] += legs[i].size();
         if (found[i]) open[i] = in_the_open(*found[i], mixed(mixed(seed_, 0x0b3), paths + i), rays[i]);
       });
       for (const std::uint64_t n : rays) rays_ += n;
@@ -58,6 +70,7 @@ class Finder {
       paths += count;
       std::size_t seen = 0, from_rooms = 0;
       for (std::size_t i = 0; i < count; ++i) {
+        legs_.insert(legs_.end(), legs[i].begin(), legs[i].end());
         seen += found[i].has_value();
         if (!found[i] || open[i]) continue;
         ++from_rooms;
@@ -70,14 +83,14 @@ class Finder {
     return glimpses;
   }
 
-  std::optional<SkyGlimpse> look(std::size_t path, std::uint64_t& rays) const {
+  std::optional<SkyGlimpse> look(std::size_t path, std::vector<Leg>& legs) const {
     const SobolSequence samples(mixed(seed_, 0x5e3));
     Receiver from = receivers_[path % receivers_.size()];
     for (std::uint32_t leg = 0; leg < kLegs; ++leg) {
       const auto [u, v] = samples.pair(static_cast<std::uint32_t>(path), leg, 0);
       const Vec3 direction = cosine_direction(from.normal_world, u, v);
-      ++rays;
       const auto hit = scene_.nearest(from.position_world_m, direction, from.normal_world);
+      legs.push_back({from.position_world_m, direction, hit ? hit->distance_m : HUGE_VAL});
       if (!hit) {
         if (!(direction.z() > 0)) return std::nullopt;
         return SkyGlimpse{from.position_world_m, from.normal_world, direction};
@@ -100,6 +113,27 @@ class Finder {
       seen += !scene_.nearest(glimpse.from_world_m, direction, glimpse.normal_world);
     }
     return seen > kOpenShare * kOpenProbes;
+  }
+
+  /// Completes an opening with what is seen through it, sky or surfaces, and from where.
+  void look_through(SkyOpening& opening) const {
+    std::array<double, 2> surfaces{}, all{};
+    Eigen::AlignedBox3d from_m;
+    for (const Leg& leg : legs_) {
+      const double slope = opening.outwards_world().dot(leg.direction_world);
+      const double before_m = opening.outwards_world().dot(opening.centre_world_m - leg.from_world_m);
+      if (!(slope > 0) || !(before_m > 0) || !(leg.distance_m * slope > 1.001 * before_m)) continue;
+      if (!opening.passed_by(leg.from_world_m, leg.direction_world)) continue;
+      from_m.extend(leg.from_world_m);
+      const std::size_t above = leg.direction_world.z() > 0 ? 1 : 0;
+      all[above] += 1;
+      surfaces[above] += std::isfinite(leg.distance_m);
+    }
+    if (from_m.isEmpty()) return;
+    opening.surfaces_below = surfaces[0] / std::max(all[0], 1.0);
+    opening.surfaces_above = surfaces[1] / std::max(all[1], 1.0);
+    const Vec3 margin_m = Vec3::Constant(kMargin * from_m.diagonal().norm());
+    opening.seen_from_world_m = {from_m.min() - margin_m, from_m.max() + margin_m};
   }
 
   std::vector<OpeningRim> feel_rims(const std::vector<SkyGlimpse>& glimpses) {
@@ -158,6 +192,7 @@ class Finder {
   std::uint64_t seed_;
   int threads_;
   const Watch& watch_;
+  std::vector<Leg> legs_;
   std::uint64_t rays_ = 0;
 };
 

@@ -11,37 +11,64 @@ namespace luxrig {
 namespace {
 
 /// Least share of directions that are drawn over the whole sky where openings are known.
-constexpr double kLeastWholeShare = 0.06;
+constexpr double kLeastWholeShare = 0.12;
 /// Least share of the sky that counts as seen, where no opening shows any.
 constexpr double kLeastLitShare = 0.02;
 
-/// The part of an opening that lies above a point's horizon, as a shape about its own centre.
-struct Above {
+/// The part of an opening that lies above or below a point's horizon, as a shape about its own centre.
+struct SeenPart {
   Vec3 from_m;  ///< the point as seen from that centre, in the opening's frame
   LuminousShape shape;
 };
 
-std::optional<Above> above_horizon(const SkyOpening& opening, const Vec3& position_world_m) {
+std::optional<SeenPart> part_of(const SkyOpening& opening, const Vec3& position_world_m, bool above) {
   Vec3 from_m = opening.local_m(position_world_m);
   if (!(from_m.z() < 0)) return std::nullopt;
-  double low_m = -opening.half_y_m;
+  double low_m = -opening.half_y_m, high_m = opening.half_y_m;
   const double rise = opening.world_from_opening(2, 1), above_m = opening.centre_world_m.z() - position_world_m.z();
-  if (above_m + rise * low_m < 0) low_m = rise > 1e-9 ? -above_m / rise : HUGE_VAL;
-  if (!(low_m < opening.half_y_m)) return std::nullopt;
-  from_m.y() -= 0.5 * (low_m + opening.half_y_m);
-  return Above{from_m, {LuminousShape::Kind::rectangle, {2 * opening.half_x_m, opening.half_y_m - low_m, 0}}};
+  if (rise > 1e-9) {
+    (above ? low_m : high_m) = std::clamp(-above_m / rise, low_m, high_m);
+  } else if ((above_m > 0) != above) {
+    return std::nullopt;
+  }
+  if (!(low_m < high_m)) return std::nullopt;
+  from_m.y() -= 0.5 * (low_m + high_m);
+  return SeenPart{from_m, {LuminousShape::Kind::rectangle, {2 * opening.half_x_m, high_m - low_m, 0}}};
 }
 
 /// Mean cosine over the corners and the middle, of those that the surface faces.
-double mean_cosine(const Above& above, const Vec3& normal) {
-  const double x = 0.5 * above.shape.size_m.x(), y = 0.5 * above.shape.size_m.y();
+double mean_cosine(const SeenPart& part, const Vec3& normal) {
+  const double x = 0.5 * part.shape.size_m.x(), y = 0.5 * part.shape.size_m.y();
   double sum = 0;
   for (const auto& [i, j] : {std::pair{0, 0}, {-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) {
-    const Vec3 to_m = Vec3(i * x, j * y, 0) - above.from_m;
+    const Vec3 to_m = Vec3(i * x, j * y, 0) - part.from_m;
     const double height_m = normal.dot(to_m);
     if (height_m > 0) sum += height_m / to_m.norm();
   }
   return sum / 5;
+}
+
+/// ∫ cosθ dω over a part, about.
+double weight_of(const SeenPart& part, const Vec3& normal) {
+  const double area_m2 = part.shape.size_m.x() * part.shape.size_m.y(), distance_m = part.from_m.norm();
+  // Of a disk of that area seen from its axis, times the slope: not above the half space.
+  const double solid_angle = area_m2 * -part.from_m.z() / (distance_m * (distance_m * distance_m + area_m2 / (2 * kPi)));
+  const double weight = solid_angle * mean_cosine(part, normal);
+  return weight > 0 && std::isfinite(weight) ? weight : 0;
+}
+
+/// Takes a number's choice out of it by weights; what is left is as good as it was.
+std::size_t chosen_by(std::span<const double> weights, double sum, double& number) {
+  double left = number * sum;
+  std::size_t chosen = 0;
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    if (!(weights[i] > 0)) continue;
+    chosen = i;
+    if (left < weights[i]) break;
+    left -= weights[i];
+  }
+  number = std::clamp(left / weights[chosen], 0.0, 1 - 0x1p-53);
+  return chosen;
 }
 
 }  // namespace
@@ -67,35 +94,21 @@ void SkyOpenings::view(const Vec3& position_world_m, const Vec3& normal_world, V
     if (!opening.seen_from_world_m.contains(position_world_m)) continue;
     if (!(opening.outwards_world().dot(position_world_m - opening.centre_world_m) < 0)) continue;
     view.within = true;
-    const auto above = above_horizon(opening, position_world_m);
+    const auto above = part_of(opening, position_world_m, true);
     if (!above) continue;
-    const double area_m2 = above->shape.size_m.x() * above->shape.size_m.y();
-    const double distance_m = above->from_m.norm();
-    // Of a disk of that area seen from its axis, times the slope: not above the half space.
-    const double solid_angle =
-        area_m2 * -above->from_m.z() / (distance_m * (distance_m * distance_m + area_m2 / (2 * kPi)));
-    const double weight = solid_angle * mean_cosine(*above, opening.world_from_opening.transpose() * normal_world);
-    if (!(weight > 0) || !std::isfinite(weight)) continue;
-    view.weights[i] = weight;
-    view.sum += weight;
+    view.weights[i] = weight_of(*above, opening.world_from_opening.transpose() * normal_world);
+    view.sum += view.weights[i];
   }
 }
 
 DirectionSample SkyOpenings::sample(const View& view, const Vec3& position_world_m, double select, double u,
                                     double v) const {
-  double left = select * view.sum;
-  std::size_t chosen = 0;
-  for (std::size_t i = 0; i < openings_.size(); ++i) {
-    if (!(view.weights[i] > 0)) continue;
-    chosen = i;
-    if (left < view.weights[i]) break;
-    left -= view.weights[i];
-  }
-  const auto above = above_horizon(openings_[chosen], position_world_m);
+  const SkyOpening& opening = openings_[chosen_by(view.weights, view.sum, select)];
+  const auto above = part_of(opening, position_world_m, true);
   if (!above) return {};
   const ShapeSample seen = sample_seen_from(above->shape, above->from_m, u, v);
   if (!(seen.density_per_sr > 0)) return {};
-  const Vec3 direction_world = openings_[chosen].world_from_opening * seen.direction;
+  const Vec3 direction_world = opening.world_from_opening * seen.direction;
   return {direction_world, density_per_sr(view, position_world_m, direction_world)};
 }
 
@@ -104,11 +117,56 @@ double SkyOpenings::density_per_sr(const View& view, const Vec3& position_world_
   for (std::size_t i = 0; i < openings_.size(); ++i) {
     if (!(view.weights[i] > 0)) continue;
     const SkyOpening& opening = openings_[i];
-    const Vec3 d = opening.world_from_opening.transpose() * direction_world;
     // Cheap first: most directions miss most openings.
-    if (!(d.z() > 0) || !opening.passed_by(position_world_m, direction_world, 1e-9 * opening.half_x_m)) continue;
-    if (const auto above = above_horizon(opening, position_world_m))
-      density += view.weights[i] / view.sum * density_seen_from(above->shape, above->from_m, d);
+    if (!opening.passed_by(position_world_m, direction_world, 1e-9 * opening.half_x_m)) continue;
+    if (const auto above = part_of(opening, position_world_m, true))
+      density += view.weights[i] / view.sum *
+                 density_seen_from(above->shape, above->from_m, opening.world_from_opening.transpose() * direction_world);
+  }
+  return density;
+}
+
+void SkyOpenings::look_outside(const Vec3& position_world_m, const Vec3& normal_world, Outside& outside) const {
+  outside.sum = 0;
+  outside.weights.assign(2 * openings_.size(), 0.0);
+  for (std::size_t i = 0; i < openings_.size(); ++i) {
+    const SkyOpening& opening = openings_[i];
+    if (!opening.seen_from_world_m.contains(position_world_m)) continue;
+    for (const bool above : {false, true}) {
+      const double surfaces = above ? opening.surfaces_above : opening.surfaces_below;
+      if (!(surfaces > 0)) continue;
+      const auto part = part_of(opening, position_world_m, above);
+      if (!part) continue;
+      const double weight = surfaces * weight_of(*part, opening.world_from_opening.transpose() * normal_world);
+      outside.weights[2 * i + above] = weight;
+      outside.sum += weight;
+    }
+  }
+}
+
+DirectionSample SkyOpenings::sample_outside(const Outside& outside, const Vec3& position_world_m, double u,
+                                            double v) const {
+  const std::size_t chosen = chosen_by(outside.weights, outside.sum, u);
+  const SkyOpening& opening = openings_[chosen / 2];
+  const auto part = part_of(opening, position_world_m, chosen % 2 == 1);
+  if (!part) return {};
+  const ShapeSample seen = sample_seen_from(part->shape, part->from_m, u, v);
+  if (!(seen.density_per_sr > 0)) return {};
+  const Vec3 direction_world = opening.world_from_opening * seen.direction;
+  return {direction_world, outside_density_per_sr(outside, position_world_m, direction_world)};
+}
+
+double SkyOpenings::outside_density_per_sr(const Outside& outside, const Vec3& position_world_m,
+                                           const Vec3& direction_world) const {
+  double density = 0;
+  for (std::size_t i = 0; i < openings_.size(); ++i) {
+    const SkyOpening& opening = openings_[i];
+    if (!(outside.weights[2 * i] + outside.weights[2 * i + 1] > 0)) continue;
+    if (!opening.passed_by(position_world_m, direction_world, 1e-9 * opening.half_x_m)) continue;
+    for (const bool above : {false, true})
+      if (const auto part = part_of(opening, position_world_m, above); part && outside.weights[2 * i + above] > 0)
+        density += outside.weights[2 * i + above] / outside.sum *
+                   density_seen_from(part->shape, part->from_m, opening.world_from_opening.transpose() * direction_world);
   }
   return density;
 }

@@ -22,6 +22,8 @@ struct SkyOpening {
   Mat3 world_from_opening = Mat3::Identity();  ///< x level, y up along the slope (if any), z outwards
   double half_x_m = 0, half_y_m = 0;
   Eigen::AlignedBox3d seen_from_world_m;  ///< where surfaces are that see the sky through it
+  /// Of what is seen through it below and above the horizon, the shares that are surfaces outside, not sky or nothing.
+  double surfaces_below = 0, surfaces_above = 0;
 
   [[nodiscard]] Vec3 outwards_world() const { return world_from_opening.col(2); }
   [[nodiscard]] double area_m2() const { return 4 * half_x_m * half_y_m; }
@@ -51,6 +53,18 @@ class SkyOpenings {
   };
   /// The part of an opening below the point's horizon, where no sky shines, does not count.
   void view(const Vec3& position_world_m, const Vec3& normal_world, View& view) const;
+
+  /// What lies outside of the openings and reflects, as a surface point sees it.
+  struct Outside {
+    double sum = 0;
+    std::vector<double> weights;  ///< by opening: below the horizon, above it
+  };
+  void look_outside(const Vec3& position_world_m, const Vec3& normal_world, Outside& outside) const;
+  /// A direction towards it; requires outside.sum > 0. The density is that of all openings together.
+  [[nodiscard]] DirectionSample sample_outside(const Outside& outside, const Vec3& position_world_m, double u,
+                                               double v) const;
+  [[nodiscard]] double outside_density_per_sr(const Outside& outside, const Vec3& position_world_m,
+                                              const Vec3& direction_world) const;
 
   /// Share of the directions towards the sky that are drawn over all of it, not through openings.
   [[nodiscard]] double whole_sky_share(const View& view) const {
