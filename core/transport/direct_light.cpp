@@ -224,7 +224,10 @@ class Evaluation {
     std::uint64_t left =
         options_.max_rays > direct_.rays + rays_sampled_ ? options_.max_rays - direct_.rays - rays_sampled_ : 0;
     for (std::size_t r = 0; r < receivers_.size(); ++r) {
-      if (!(relative_error(r) * kStopMargin > options_.wanted_relative_error)) continue;
+      // Where all is dark so far, any doubt is too much.
+      const bool dark = lux_[r] == 0 && brightest_lx_ == 0;
+      const bool wants = dark ? error_lx(r) > 0 : relative_error(r) * kStopMargin > options_.wanted_relative_error;
+      if (!wants) continue;
       double most = 0;
       for (std::size_t i = pairs_of_[r]; i < pairs_of_[r + 1]; ++i)
         most = std::max(most, levels_[pairs_[i].emitter] * pairs_[i].error_lx());
