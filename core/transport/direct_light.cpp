@@ -38,8 +38,8 @@ tl::unexpected<Fault> stopped() {
 struct Pair {
   std::size_t receiver, emitter;
   Way way;
-  std::uint32_t samples = 0;              ///< per replicate
-  std::array<double, kReplicates> lux{};  ///< sums over samples
+  std::uint32_t samples = 0;                               ///< per replicate
+  std::array<double, kReplicates> lux{};                   ///< sums over samples
   std::array<DirectSum::Part, DirectSum::kParts> parts{};  ///< sums over samples and replicates
   std::uint64_t rays = 0;
 
@@ -154,8 +154,8 @@ class Evaluation {
     const bool sky =
         std::any_of(pairs_.begin(), pairs_.end(), [&](const Pair& p) { return emitters_[p.emitter].sky != nullptr; });
     if (sky && obstacles_in(scene_))
-      found_ = find_sky_openings(scene_, receivers_, emitters_, options_.seed, options_.threads,
-                                 options_.watch, direct_.rays);
+      found_ = find_sky_openings(scene_, receivers_, emitters_, options_.seed, options_.threads, options_.watch,
+                                 direct_.rays);
   }
 
   std::vector<std::size_t> all_pairs() const {

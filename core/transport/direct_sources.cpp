@@ -140,9 +140,9 @@ namespace {
 constexpr std::uint32_t kSeldom = 4;
 
 /// Directions towards a sky, as add(direction, weight / density [sr] per sample, part). The sky's own directions and
-/// cosine-weighted ones share the work by the balance heuristic. Where openings show the sky, there is a third strategy,
-/// which is by far the best where it applies: it shares with both by the power heuristic (E. Veach, 1997, §9.2.3), since
-/// even a few of the others' samples there would be most of the noise.
+/// cosine-weighted ones share the work by the balance heuristic. Where openings show the sky, there is a third
+/// strategy, which is by far the best where it applies: it shares with both by the power heuristic (E. Veach, 1997,
+/// §9.2.3), since even a few of the others' samples there would be most of the noise.
 template <class Add>
 void draw_sky_directions(const SkyLuminance& sky, const Receiver& receiver, const SkyOpenings& openings, bool through,
                          const SobolSequence& samples, std::uint32_t begin, std::uint32_t end,

@@ -273,9 +273,9 @@ LampChoice Lamps::choose(const Vec3& position_world_m, const Vec3& normal_world,
     const double whole = whole_sky_share(place, weights);
     // What is left of the number after each choice is as good as it was.
     const double rest = std::clamp(left / weights.places[choice.place], 0.0, 1 - 0x1p-53);
-    DirectionSample sample = rest < whole ? lamps_[place.begin].sky->sample(u, v)
-                                          : openings_->sample(weights.view, position_world_m,
-                                                              (rest - whole) / (1 - whole), u, v);
+    DirectionSample sample =
+        rest < whole ? lamps_[place.begin].sky->sample(u, v)
+                     : openings_->sample(weights.view, position_world_m, (rest - whole) / (1 - whole), u, v);
     const double cosine = normal_world.dot(sample.direction);
     if (!(sample.density_per_sr > 0) || !(cosine > 0)) return choice;
     if (whole < 1) sample.density_per_sr = sky_density_per_sr(place, position_world_m, sample.direction, weights);

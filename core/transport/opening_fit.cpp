@@ -70,13 +70,15 @@ class OpeningFit {
     for (const OpeningRim& rim : rims_) propose(rim, candidates);
     std::vector<SkyOpening> openings;
     std::size_t left = glimpses_.size();
-    while (openings.size() < kMostOpenings && static_cast<double>(left) > kLeftOver * static_cast<double>(glimpses_.size())) {
+    while (openings.size() < kMostOpenings &&
+           static_cast<double>(left) > kLeftOver * static_cast<double>(glimpses_.size())) {
       Candidate* best = nullptr;
       for (Candidate& candidate : candidates) {
         rate(candidate);
         if (!best || candidate.gain > best->gain) best = &candidate;
       }
-      if (!best || best->through < kFewestThrough || best->gain < kLeastGain * static_cast<double>(best->through)) break;
+      if (!best || best->through < kFewestThrough || best->gain < kLeastGain * static_cast<double>(best->through))
+        break;
       openings.push_back(opening_of(*best));
       for (std::size_t i = 0; i < glimpses_.size(); ++i) {
         const SkyGlimpse& g = glimpses_[i];
@@ -166,16 +168,17 @@ class OpeningFit {
     candidate.gain = 0;
     candidate.through = 0;
     const Vec3 middle_m(candidate.box.center().x(), candidate.box.center().y(), 0);
-    const LuminousShape shape{LuminousShape::Kind::rectangle, {candidate.box.sizes().x(), candidate.box.sizes().y(), 0}};
+    const LuminousShape shape{LuminousShape::Kind::rectangle,
+                              {candidate.box.sizes().x(), candidate.box.sizes().y(), 0}};
     if (!(shape.size_m.head<2>().minCoeff() > 0)) return;
     for (std::size_t i = 0; i < glimpses_.size(); ++i) {
       if (!left_[i]) continue;
       const SkyGlimpse& g = glimpses_[i];
       const auto at = candidate.plane.met(g.from_world_m, g.direction_world);
       if (!at || !candidate.box.contains(*at)) continue;
-      const Vec3 from_m = candidate.plane.axes.transpose() * (g.from_world_m - candidate.plane.origin_world_m) - middle_m;
-      const double density =
-          density_seen_from(shape, from_m, candidate.plane.axes.transpose() * g.direction_world);
+      const Vec3 from_m =
+          candidate.plane.axes.transpose() * (g.from_world_m - candidate.plane.origin_world_m) - middle_m;
+      const double density = density_seen_from(shape, from_m, candidate.plane.axes.transpose() * g.direction_world);
       if (!(density > 0)) continue;
       ++candidate.through;
       candidate.gain += std::log(2 * kPi * density);

@@ -88,8 +88,8 @@ class Evaluation {
         emitters_(emitters),
         options_(options),
         bsdfs_(bsdfs_of(scene)),
-        openings_(find_sky_openings(scene, receivers, emitters, options.seed, options.threads, options.watch,
-                                    matrix_.rays)),
+        openings_(
+            find_sky_openings(scene, receivers, emitters, options.seed, options.threads, options.watch, matrix_.rays)),
         lamps_(emitters, options.levels, scene.bounds_world_m(), &openings_),
         channels_(options.colour ? 3 : 1),
         columns_(emitters.size() * channels_),

@@ -107,7 +107,8 @@ double PathSampler::next_density_per_sr(const Vertex& vertex, const Vec3& direct
 Bsdf::Sample PathSampler::next_direction(const Vertex& vertex, double u, double v, double lobe) const {
   Bsdf::Sample next;
   if (vertex.outside && u < kOutsideShare) {
-    next.in = lamps_.openings()->sample_outside(*vertex.outside, vertex.position_world_m, u / kOutsideShare, v).direction;
+    next.in =
+        lamps_.openings()->sample_outside(*vertex.outside, vertex.position_world_m, u / kOutsideShare, v).direction;
     const double cosine = vertex.normal_world.dot(next.in);
     if (!(cosine > 0)) return {};
     next.density_per_sr =

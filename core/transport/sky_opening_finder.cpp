@@ -145,7 +145,8 @@ class Finder {
       rims[i].glimpse = i * glimpses.size() / count;
       const SkyGlimpse& glimpse = glimpses[rims[i].glimpse];
       const Frame frame(glimpse.direction_world);
-      for (int spoke = 0; spoke < kSpokes; ++spoke) feel(glimpse, frame, 2 * kPi * (spoke + 0.5) / kSpokes, rims[i], rays[i]);
+      for (int spoke = 0; spoke < kSpokes; ++spoke)
+        feel(glimpse, frame, 2 * kPi * (spoke + 0.5) / kSpokes, rims[i], rays[i]);
     });
     rays_ = 0;
     for (const std::uint64_t n : rays) rays_ += n;

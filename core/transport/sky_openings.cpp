@@ -52,7 +52,8 @@ double mean_cosine(const SeenPart& part, const Vec3& normal) {
 double weight_of(const SeenPart& part, const Vec3& normal) {
   const double area_m2 = part.shape.size_m.x() * part.shape.size_m.y(), distance_m = part.from_m.norm();
   // Of a disk of that area seen from its axis, times the slope: not above the half space.
-  const double solid_angle = area_m2 * -part.from_m.z() / (distance_m * (distance_m * distance_m + area_m2 / (2 * kPi)));
+  const double solid_angle =
+      area_m2 * -part.from_m.z() / (distance_m * (distance_m * distance_m + area_m2 / (2 * kPi)));
   const double weight = solid_angle * mean_cosine(part, normal);
   return weight > 0 && std::isfinite(weight) ? weight : 0;
 }
@@ -120,8 +121,9 @@ double SkyOpenings::density_per_sr(const View& view, const Vec3& position_world_
     // Cheap first: most directions miss most openings.
     if (!opening.passed_by(position_world_m, direction_world, 1e-9 * opening.half_x_m)) continue;
     if (const auto above = part_of(opening, position_world_m, true))
-      density += view.weights[i] / view.sum *
-                 density_seen_from(above->shape, above->from_m, opening.world_from_opening.transpose() * direction_world);
+      density +=
+          view.weights[i] / view.sum *
+          density_seen_from(above->shape, above->from_m, opening.world_from_opening.transpose() * direction_world);
   }
   return density;
 }
@@ -165,8 +167,9 @@ double SkyOpenings::outside_density_per_sr(const Outside& outside, const Vec3& p
     if (!opening.passed_by(position_world_m, direction_world, 1e-9 * opening.half_x_m)) continue;
     for (const bool above : {false, true})
       if (const auto part = part_of(opening, position_world_m, above); part && outside.weights[2 * i + above] > 0)
-        density += outside.weights[2 * i + above] / outside.sum *
-                   density_seen_from(part->shape, part->from_m, opening.world_from_opening.transpose() * direction_world);
+        density +=
+            outside.weights[2 * i + above] / outside.sum *
+            density_seen_from(part->shape, part->from_m, opening.world_from_opening.transpose() * direction_world);
   }
   return density;
 }

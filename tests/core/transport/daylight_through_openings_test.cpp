@@ -65,12 +65,15 @@ TEST(DaylightThroughOpenings, OvercastSkyThroughAWindowIsItsConfigurationFactor)
       double expected_lx = 0;
       for (int i = 0; i < kGrid; ++i)
         for (int j = 0; j < kGrid; ++j) {
-          const Vec3 to_m = Vec3(w[0] + (w[1] - w[0]) * (i + 0.5) / kGrid, 0, w[2] + (w[3] - w[2]) * (j + 0.5) / kGrid) -
-                            desk.position_world_m;
+          const Vec3 to_m =
+              Vec3(w[0] + (w[1] - w[0]) * (i + 0.5) / kGrid, 0, w[2] + (w[3] - w[2]) * (j + 0.5) / kGrid) -
+              desk.position_world_m;
           const double distance_m = to_m.norm(), cosine = desk.normal_world.dot(to_m) / distance_m;
-          const double slope = -to_m.y() / distance_m, luminance = 9 * 7000 / (7 * kPi) * (1 + 2 * to_m.z() / distance_m) / 3;
+          const double slope = -to_m.y() / distance_m,
+                       luminance = 9 * 7000 / (7 * kPi) * (1 + 2 * to_m.z() / distance_m) / 3;
           if (cosine > 0 && to_m.z() > 0)
-            expected_lx += luminance * cosine * slope / (distance_m * distance_m) * (w[1] - w[0]) * (w[3] - w[2]) / (kGrid * kGrid);
+            expected_lx += luminance * cosine * slope / (distance_m * distance_m) * (w[1] - w[0]) * (w[3] - w[2]) /
+                           (kGrid * kGrid);
         }
       const auto row = static_cast<Eigen::Index>(r);
       EXPECT_NEAR(matrix.lux_per_level(row, 0), expected_lx, 3.5 * error_lx[row] + 2e-4 * expected_lx) << r;
@@ -92,7 +95,8 @@ class Daylit : public testing::TestWithParam<OfRoom> {};
 INSTANTIATE_TEST_SUITE_P(
     All, Daylit,
     testing::Values(OfRoom{"small_window", with_a_small_window, make_overcast_sky(10'000), 1'000'000},
-                    OfRoom{"small_window_clear_sky", with_a_small_window, make_clear_sky(kTowardsSun, 10'000), 1'000'000},
+                    OfRoom{"small_window_clear_sky", with_a_small_window, make_clear_sky(kTowardsSun, 10'000),
+                           1'000'000},
                     OfRoom{"opposite_windows", with_windows_that_face_each_other, make_overcast_sky(10'000), 200'000},
                     OfRoom{"no_roof", without_a_roof, make_clear_sky(kTowardsSun, 10'000), 50'000}),
     [](const auto& of) { return of.param.name; });
@@ -120,7 +124,8 @@ TEST_P(Daylit, AgreesWithPlainPathsWithinTheStatedErrors) {
 TEST(DaylightThroughOpenings, TheSunThroughAWindowLightsTheRoomAsPlainPathsFromItsPatchSay) {
   const RoomWithWindows room = with_a_small_window();
   const RayScene rays(room.scene());
-  const auto matrix = evaluated(*make_path_evaluator(rays), room.desks(), under(make_sun(kTowardsSun, 50'000)), within(0.02));
+  const auto matrix =
+      evaluated(*make_path_evaluator(rays), room.desks(), under(make_sun(kTowardsSun, 50'000)), within(0.02));
   const Eigen::VectorXd error_lx = matrix.standard_error_lux(Eigen::VectorXd::Ones(1));
   EXPECT_LE(matrix.relative_error, 0.02);
   // Plain paths that look for the sun from each surface they meet: it is a point for what is no penumbra.
@@ -134,11 +139,13 @@ TEST(DaylightThroughOpenings, TheSunThroughAWindowLightsTheRoomAsPlainPathsFromI
       double lux = 0, through = 1;
       while (true) {
         const double cosine = at.normal_world.dot(kTowardsSun);
-        if (cosine > 0 && !rays.nearest(at.position_world_m, kTowardsSun, at.normal_world)) lux += through * 50'000 * cosine;
+        if (cosine > 0 && !rays.nearest(at.position_world_m, kTowardsSun, at.normal_world))
+          lux += through * 50'000 * cosine;
         const double radius = std::sqrt(unit(random)), angle = 2 * kPi * unit(random);
         const Vec3 u = at.normal_world.unitOrthogonal(), v = at.normal_world.cross(u);
         const Vec3 d = (radius * (std::cos(angle) * u + std::sin(angle) * v) +
-                        std::sqrt(std::max(0.0, 1 - radius * radius)) * at.normal_world).normalized();
+                        std::sqrt(std::max(0.0, 1 - radius * radius)) * at.normal_world)
+                           .normalized();
         const auto hit = rays.nearest(at.position_world_m, d, at.normal_world);
         if (!hit || unit(random) >= rays.material_of(hit->triangle).reflectance_rgb.x()) break;
         at = {hit->position_world_m, hit->normal_world};
@@ -147,7 +154,8 @@ TEST(DaylightThroughOpenings, TheSunThroughAWindowLightsTheRoomAsPlainPathsFromI
     }
     const double mean = sum / kPaths, plain_error_lx = std::sqrt((squares / kPaths - mean * mean) / kPaths);
     const auto row = static_cast<Eigen::Index>(r);
-    EXPECT_NEAR(matrix.lux_per_level(row, 0), mean, 3.5 * std::hypot(plain_error_lx, error_lx[row]) + 0.005 * mean) << r;
+    EXPECT_NEAR(matrix.lux_per_level(row, 0), mean, 3.5 * std::hypot(plain_error_lx, error_lx[row]) + 0.005 * mean)
+        << r;
   }
 }
 
@@ -190,7 +198,8 @@ TEST(DaylightThroughOpenings, SameBytesForAnyNumberOfThreads) {
 TEST(DaylightThroughOpenings, DirectLightThroughASmallWindowTakesFewRays) {
   const RoomWithWindows room = with_a_small_window();
   const RayScene rays(room.scene());
-  const auto matrix = evaluated(*make_direct_evaluator(rays), room.desks(), under(make_overcast_sky(10'000)), within(0.01));
+  const auto matrix =
+      evaluated(*make_direct_evaluator(rays), room.desks(), under(make_overcast_sky(10'000)), within(0.01));
   EXPECT_LE(matrix.relative_error, 0.01);
   EXPECT_LT(matrix.rays, 250'000u);
 }
@@ -211,8 +220,7 @@ TEST(DaylightThroughOpenings, APictureShowsTheIlluminanceThatTheEvaluatorMeasure
   ASSERT_TRUE(picture.has_value());
   double mean_lx = 0;
   for (const float lux : picture->illuminance_lx) mean_lx += static_cast<double>(lux) / 25;
-  const auto matrix =
-      evaluated(*make_path_evaluator(rays), {{{1.5, 1.5, 0}, Vec3::UnitZ()}}, emitters, within(0.01));
+  const auto matrix = evaluated(*make_path_evaluator(rays), {{{1.5, 1.5, 0}, Vec3::UnitZ()}}, emitters, within(0.01));
   EXPECT_NEAR(mean_lx, matrix.lux_per_level(0, 0), 0.03 * mean_lx);
 }
 

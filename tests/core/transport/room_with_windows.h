@@ -16,9 +16,7 @@ struct RoomWithWindows {
   std::array<double, 4> skylight_m{};                     ///< x from, x to, y from, y to
   double reflectance = 0.5, ground_reflectance = 0.2, turned_rad = 0;
 
-  [[nodiscard]] Vec3 world(const Vec3& room_m) const {
-    return Eigen::AngleAxisd(turned_rad, Vec3::UnitZ()) * room_m;
-  }
+  [[nodiscard]] Vec3 world(const Vec3& room_m) const { return Eigen::AngleAxisd(turned_rad, Vec3::UnitZ()) * room_m; }
 
   [[nodiscard]] Scene scene() const {
     Scene scene;

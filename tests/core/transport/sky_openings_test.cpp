@@ -65,7 +65,8 @@ TEST(SkyOpenings, SamplesAndTheirDensityMeasureTheFormFactor) {
     constexpr int kZ = 1200, kTurn = 2400;
     for (int i = 0; i < kZ; ++i)
       for (int j = 0; j < kTurn; ++j) {
-        const double height = (i + 0.5) / kZ, angle = 2 * kPi * (j + 0.5) / kTurn, level = std::sqrt(1 - height * height);
+        const double height = (i + 0.5) / kZ, angle = 2 * kPi * (j + 0.5) / kTurn,
+                     level = std::sqrt(1 - height * height);
         const Vec3 d(level * std::cos(angle), level * std::sin(angle), height);
         const bool passes = d.y() < 0 && (window().passed_by(at_m, d) || other.passed_by(at_m, d));
         if (passes) expected += std::max(0.0, normal.dot(d)) * 2 * kPi / kZ / kTurn;
@@ -127,8 +128,9 @@ TEST(SkyOpenings, TwoWindowsAndASkylightAreFoundEachByItself) {
   room.skylight_m = {2, 3, 2.5, 3.5};
   const SkyOpenings openings = found(room);
   ASSERT_EQ(openings.openings().size(), 3u);
-  for (const auto& [middle_m, outwards] :
-       {std::pair{Vec3(2, 0, 1.5), Vec3(-Vec3::UnitY())}, {Vec3(1, 5, 1.8), Vec3::UnitY()}, {Vec3(2.5, 3, 3), Vec3::UnitZ()}}) {
+  for (const auto& [middle_m, outwards] : {std::pair{Vec3(2, 0, 1.5), Vec3(-Vec3::UnitY())},
+                                           {Vec3(1, 5, 1.8), Vec3::UnitY()},
+                                           {Vec3(2.5, 3, 3), Vec3::UnitZ()}}) {
     int as_expected = 0;
     for (const SkyOpening& one : openings.openings())
       as_expected += (one.centre_world_m - middle_m).norm() < 0.06 && one.outwards_world().dot(outwards) > 0.998;
