@@ -9,6 +9,7 @@
 #include "core/transport/progress.h"
 #include "core/transport/replicate_error.h"
 #include "core/transport/shape_light.h"
+#include "core/transport/sky_opening_finder.h"
 
 namespace luxrig {
 
@@ -37,9 +38,9 @@ tl::unexpected<Fault> stopped() {
 struct Pair {
   std::size_t receiver, emitter;
   Way way;
-  std::uint32_t samples = 0;              ///< per replicate
-  std::array<double, kReplicates> lux{};  ///< sums over samples
-  std::array<double, kReplicates> unobstructed{};
+  std::uint32_t samples = 0;                               ///< per replicate
+  std::array<double, kReplicates> lux{};                   ///< sums over samples
+  std::array<DirectSum::Part, DirectSum::kParts> parts{};  ///< sums over samples and replicates
   std::uint64_t rays = 0;
 
   [[nodiscard]] double mean_lux() const {
@@ -48,13 +49,14 @@ struct Pair {
     return samples > 0 ? sum / (static_cast<double>(kReplicates) * samples) : 0;
   }
   [[nodiscard]] double doubt_lx() const {
-    double arrived = 0, sent = 0;
-    for (std::size_t k = 0; k < kReplicates; ++k) {
-      arrived += lux[k];
-      sent += unobstructed[k];
+    double doubt = 0;
+    for (const DirectSum::Part& part : parts) {
+      const double strata = static_cast<double>(part.samples) / kReplicates;
+      const bool all_or_nothing = part.lux == 0 || part.lux == part.unobstructed_lux;
+      if (way == Way::clear || !(strata > 0) || (all_or_nothing && strata >= kSamplesToBelieve)) continue;
+      doubt += kDoubtPerStratum * part.unobstructed_lux / (static_cast<double>(kReplicates) * samples) / strata;
     }
-    if (way == Way::clear || ((arrived == 0 || arrived == sent) && samples >= kSamplesToBelieve)) return 0;
-    return kDoubtPerStratum * sent / (static_cast<double>(kReplicates) * samples) / samples;
+    return doubt;
   }
 
   /// The replicates' estimates, with the doubt put into their spread in an even pattern, other for each pair.
@@ -76,13 +78,14 @@ struct Pair {
 class Evaluation {
  public:
   Evaluation(const RayScene& scene, std::span<const Receiver> receivers, std::span<const Emitter> emitters,
-             const EvaluateOptions& options, double progress_end)
+             const EvaluateOptions& options, double progress_end, const SkyOpenings* openings)
       : scene_(scene),
         receivers_(receivers),
         emitters_(emitters),
         options_(options),
         progress_end_(progress_end),
         sources_(emitters),
+        openings_(openings),
         levels_(emitters.size(), 1.0) {
     if (!options.levels.empty()) levels_ = options.levels;
   }
@@ -98,6 +101,7 @@ class Evaluation {
     }
     exact_lux_ = lux_;
     done_ = exact_share * progress_end_;
+    if (!openings_) find_openings();
     for (auto round = all_pairs(); !round.empty(); round = next_round())
       if (!sample(round)) return stopped();
     finish();
@@ -145,6 +149,15 @@ class Evaluation {
     return true;
   }
 
+  void find_openings() {
+    openings_ = &found_;
+    const bool sky =
+        std::any_of(pairs_.begin(), pairs_.end(), [&](const Pair& p) { return emitters_[p.emitter].sky != nullptr; });
+    if (sky && obstacles_in(scene_))
+      found_ = find_sky_openings(scene_, receivers_, emitters_, options_.seed, options_.threads, options_.watch,
+                                 direct_.rays);
+  }
+
   std::vector<std::size_t> all_pairs() const {
     std::vector<std::size_t> all(pairs_.size());
     for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
@@ -165,9 +178,13 @@ class Evaluation {
         for (std::uint32_t from = begin; from < last; from += std::min(last - from, 4096u)) {
           if (options_.watch.stop.stop_requested()) return;
           const DirectSum sum = sample_direct(scene_, receivers_[pair.receiver], emitters_[pair.emitter], pair.way,
-                                              samples, from, from + std::min(last - from, 4096u), scratch);
-          pair.lux[k] += sum.lux;
-          pair.unobstructed[k] += sum.unobstructed_lux;
+                                              *openings_, samples, from, from + std::min(last - from, 4096u), scratch);
+          for (std::size_t part = 0; part < DirectSum::kParts; ++part) {
+            pair.lux[k] += sum.parts[part].lux;
+            pair.parts[part].lux += sum.parts[part].lux;
+            pair.parts[part].unobstructed_lux += sum.parts[part].unobstructed_lux;
+            pair.parts[part].samples += sum.parts[part].samples;
+          }
           pair.rays += sum.rays;
         }
       }
@@ -207,7 +224,10 @@ class Evaluation {
     std::uint64_t left =
         options_.max_rays > direct_.rays + rays_sampled_ ? options_.max_rays - direct_.rays - rays_sampled_ : 0;
     for (std::size_t r = 0; r < receivers_.size(); ++r) {
-      if (!(relative_error(r) * kStopMargin > options_.wanted_relative_error)) continue;
+      // Where all is dark so far, any doubt is too much.
+      const bool dark = lux_[r] == 0 && brightest_lx_ == 0;
+      const bool wants = dark ? error_lx(r) > 0 : relative_error(r) * kStopMargin > options_.wanted_relative_error;
+      if (!wants) continue;
       double most = 0;
       for (std::size_t i = pairs_of_[r]; i < pairs_of_[r + 1]; ++i)
         most = std::max(most, levels_[pairs_[i].emitter] * pairs_[i].error_lx());
@@ -244,6 +264,8 @@ class Evaluation {
   const EvaluateOptions& options_;
   double progress_end_;
   DirectSources sources_;
+  const SkyOpenings* openings_;
+  SkyOpenings found_;
   std::vector<double> levels_;
   DirectLight direct_;
   std::vector<Pair> pairs_;              ///< by receiver
@@ -256,9 +278,9 @@ class Evaluation {
 }  // namespace
 
 Result<DirectLight> direct_light(const RayScene& scene, std::span<const Receiver> receivers,
-                                 std::span<const Emitter> emitters, const EvaluateOptions& options,
-                                 double progress_end) {
-  return Evaluation(scene, receivers, emitters, options, progress_end).run();
+                                 std::span<const Emitter> emitters, const EvaluateOptions& options, double progress_end,
+                                 const SkyOpenings* openings) {
+  return Evaluation(scene, receivers, emitters, options, progress_end, openings).run();
 }
 
 Result<DirectLight> direct_light(const RayScene& scene, std::span<const Receiver> receivers, const Lamps& lamps,

@@ -1,11 +1,13 @@
 #pragma once
 /// Internal to direct light: emitters made ready for one receiver after another.
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "core/transport/evaluator.h"
+#include "core/transport/sky_openings.h"
 #include "core/transport/sobol.h"
 
 namespace luxrig {
@@ -25,6 +27,8 @@ class DirectSources {
     std::vector<Vec3> targets_world_m;
     std::vector<double> values;
     std::vector<std::uint8_t> occluded;
+    std::vector<std::uint8_t> parts;
+    SkyOpenings::View view;
   };
 
   /// Illuminance from each point luminaire [lx at level 1], called as lit(emitter, lux > 0). Returns the shadow rays
@@ -75,13 +79,20 @@ enum class Way { clear, blocked, unknown };
 
 /// Sums over samples begin … end - 1.
 struct DirectSum {
-  double lux = 0;               ///< of what arrives
-  double unobstructed_lux = 0;  ///< of what would arrive if nothing stood in the way
+  /// Light that is sampled in strata of its own: that which openings show, and the rest of a sky. All else is one part.
+  static constexpr std::size_t kParts = 2;
+  struct Part {
+    double lux = 0;               ///< of what arrives
+    double unobstructed_lux = 0;  ///< of what would arrive if nothing stood in the way
+    std::uint32_t samples = 0;    ///< strata
+  };
+  std::array<Part, kParts> parts{};
   std::uint64_t rays = 0;
 };
-/// way   clear: no ray is cast
+/// way        clear: no ray is cast
+/// openings   through which skies may be seen
 [[nodiscard]] DirectSum sample_direct(const RayScene& scene, const Receiver& receiver, const Emitter& emitter, Way way,
-                                      const SobolSequence& samples, std::uint32_t begin, std::uint32_t end,
-                                      DirectSources::Scratch& scratch);
+                                      const SkyOpenings& openings, const SobolSequence& samples, std::uint32_t begin,
+                                      std::uint32_t end, DirectSources::Scratch& scratch);
 
 }  // namespace luxrig

@@ -32,7 +32,8 @@ std::string text_of(const Vec3& v) { return fmt::format("({:g}, {:g}, {:g})", v.
 }  // namespace
 
 Lamps::Lamps(std::span<const Emitter> emitters, std::span<const double> levels,
-             const Eigen::AlignedBox3d& bounds_world_m) {
+             const Eigen::AlignedBox3d& bounds_world_m, const SkyOpenings* openings)
+    : openings_(openings && !openings->empty() ? openings : nullptr) {
   if (!bounds_world_m.isEmpty()) {
     centre_world_m_ = bounds_world_m.center();
     radius_m_ = 0.5 * bounds_world_m.diagonal().norm();
@@ -67,7 +68,8 @@ Lamps::Lamps(std::span<const Emitter> emitters, std::span<const double> levels,
                   lamps_.size(),
                   emitter.shape,
                   0.5 * emitter.shape.size_m.norm(),
-                  emitter.world_from_lamp.rotation};
+                  emitter.world_from_lamp.rotation,
+                  sky ? only_direction(*emitter.sky) : std::nullopt};
       places_.push_back(place);
     }
     Lamp lamp{e, -Vec3::UnitZ(), -2, Mat3::Identity(), emitter.intensity.get(), emitter.sky.get(), importance_of(e), 0,
@@ -197,7 +199,7 @@ double Lamps::inward_share(const Lamp& lamp, const Place& place) const {
 }
 
 double Lamps::weigh(const Vec3& position_world_m, const Vec3& normal_world, Weights& weights) const {
-  weights.assign(places_.size(), 0.0);
+  weights.places.assign(places_.size(), 0.0);
   constexpr std::size_t kAtOnce = 32;
   std::array<float, kAtOnce> weight, half_sine;
   const double at_x = position_world_m.x(), at_y = position_world_m.y(), at_z = position_world_m.z();
@@ -224,15 +226,12 @@ double Lamps::weigh(const Vec3& position_world_m, const Vec3& normal_world, Weig
       if (!(weight[k] > 0)) continue;
       const float candela = profiles_[w.profile[begin + k]].candela[Profile::bin_of(half_sine[k])];
       const double product = static_cast<double>(weight[k]) * static_cast<double>(candela);
-      if (std::isfinite(product)) weights[w.place[begin + k]] += product;
+      if (std::isfinite(product)) weights.places[w.place[begin + k]] += product;
     }
   }
-  for (std::size_t p = places_.size(); p > 0 && places_[p - 1].kind == Kind::sky; --p)
-    if (normal_world.z() > -0.99999)
-      for (std::size_t i = places_[p - 1].begin; i < places_[p - 1].end; ++i)
-        weights[p - 1] += lamps_[i].importance * lamps_[i].sky->horizontal_illuminance_lx();
+  if (!places_.empty() && places_.back().kind == Kind::sky) weigh_skies(position_world_m, normal_world, weights);
   double sum = 0;
-  for (const double one : weights) sum += one;
+  for (const double one : weights.places) sum += one;
   return sum;
 }
 
@@ -243,13 +242,13 @@ LampChoice Lamps::choose(const Vec3& position_world_m, const Vec3& normal_world,
   double left = select * sum;
   choice.place = places_.size();
   for (std::size_t p = 0; p < places_.size(); ++p) {
-    if (!(weights[p] > 0)) continue;
+    if (!(weights.places[p] > 0)) continue;
     choice.place = p;
-    if (left < weights[p]) break;
-    left -= weights[p];
+    if (left < weights.places[p]) break;
+    left -= weights.places[p];
   }
   const Place& place = places_[choice.place];
-  const double probability = weights[choice.place] / sum;
+  const double probability = weights.places[choice.place] / sum;
   if (place.kind == Kind::point) {
     const Vec3 towards_m = place.position_world_m - position_world_m;
     const double distance_m = towards_m.norm();
@@ -271,13 +270,19 @@ LampChoice Lamps::choose(const Vec3& position_world_m, const Vec3& normal_world,
     choice.hit_factor = choice.factor;
     choice.density = probability * seen.density_per_sr;
   } else {
-    const DirectionSample sample = lamps_[place.begin].sky->sample(u, v);
+    const double whole = whole_sky_share(place, weights);
+    // What is left of the number after each choice is as good as it was.
+    const double rest = std::clamp(left / weights.places[choice.place], 0.0, 1 - 0x1p-53);
+    DirectionSample sample =
+        rest < whole ? lamps_[place.begin].sky->sample(u, v)
+                     : openings_->sample(weights.view, position_world_m, (rest - whole) / (1 - whole), u, v);
     const double cosine = normal_world.dot(sample.direction);
     if (!(sample.density_per_sr > 0) || !(cosine > 0)) return choice;
+    if (whole < 1) sample.density_per_sr = sky_density_per_sr(place, position_world_m, sample.direction, weights);
     choice.direction_world = sample.direction;
     choice.target_world_m = beyond_world_m(position_world_m, sample.direction);
     choice.factor = cosine;
-    choice.hit_factor = cosine / (kPi * radius_m_ * radius_m_);
+    choice.hit_factor = cosine * line_density_per_m2(sample.direction, position_world_m);
     choice.density = probability * sample.density_per_sr;
   }
   return choice;
@@ -290,11 +295,12 @@ Vec3 Lamps::beyond_world_m(const Vec3& position_world_m, const Vec3& direction_w
 double Lamps::choice_density(std::size_t emitter, const Vec3& position_world_m, const Vec3& direction_world,
                              const Weights& weights, double sum) const {
   const std::size_t p = place_of_emitter_[emitter];
-  if (!(weights[p] > 0)) return 0;
+  if (!(weights.places[p] > 0)) return 0;
   const Place& place = places_[p];
-  const double probability = weights[p] / sum;
+  const double probability = weights.places[p] / sum;
   if (place.kind == Kind::point) return probability;
-  if (place.kind == Kind::sky) return probability * lamps_[place.begin].sky->density_per_sr(direction_world);
+  if (place.kind == Kind::sky)
+    return probability * sky_density_per_sr(place, position_world_m, direction_world, weights);
   const Vec3 at_lamp_m = place.world_from_lamp.transpose() * (position_world_m - place.position_world_m);
   return probability * density_seen_from(place.shape, at_lamp_m, place.world_from_lamp.transpose() * direction_world);
 }
@@ -310,18 +316,7 @@ LampRay Lamps::emit(std::size_t group, double u, double v, double s, double t) c
   const double rest = std::clamp((u - lamp.share_begin) / lamp.share, 0.0, 1 - 0x1p-53);
   ray.emitter = lamp.emitter;
   const Place& place = places_[place_of_emitter_[lamp.emitter]];
-  if (place.kind == Kind::sky) {
-    const DirectionSample sample = lamp.sky->sample(rest, v);
-    if (!(sample.density_per_sr > 0)) return ray;
-    const Eigen::Vector2d disk = concentric_disk(s, t);
-    const Vec3 across = Frame(sample.direction).world({disk.x(), disk.y(), 0});
-    ray.from_world_m = centre_world_m_ + radius_m_ * (across + sample.direction);
-    ray.direction_world = -sample.direction;
-    ray.density = lamp.share * sample.density_per_sr;
-    ray.per_area = 1 / (kPi * radius_m_ * radius_m_);
-    ray.flux_lm = lamp.sky->luminance_cd_m2(sample.direction) / (ray.density * ray.per_area);
-    return ray;
-  }
+  if (place.kind == Kind::sky) return emit_sky(lamp, rest, v, s, t);
   const DirectionSample sample = lamp.intensity->sample(rest, v);
   if (!(sample.density_per_sr > 0)) return ray;
   ray.direction_world = lamp.lamp_from_world.transpose() * sample.direction;

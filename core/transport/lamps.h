@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/transport/evaluator.h"
+#include "core/transport/sky_openings.h"
 
 namespace luxrig {
 
@@ -36,13 +37,14 @@ struct LampRay {
   double per_area = 0;  ///< 1 / projected area [1/m²] for what has size; 0 for a point
 };
 
-/// Keeps pointers into the emitters' distributions: the emitters must outlive it.
+/// Keeps pointers into the emitters' distributions and to the openings: they must outlive it.
 class Lamps {
  public:
   /// levels    what the light is for: lamps are chosen by it. Empty = all 1. Lamps at 0 are chosen seldom, not never.
   /// bounds    of all geometry: a sky's light enters through the sphere around it
+  /// openings  where skies shine into rooms; null or empty = not known
   explicit Lamps(std::span<const Emitter> emitters, std::span<const double> levels = {},
-                 const Eigen::AlignedBox3d& bounds_world_m = {});
+                 const Eigen::AlignedBox3d& bounds_world_m = {}, const SkyOpenings* openings = nullptr);
 
   /// Direct illuminance [lx at level 1] at a surface point from each point luminaire that lights it,
   ///   E = I(ω) cosθ V / d²   (photometric distance law)
@@ -82,8 +84,11 @@ class Lamps {
     return rays;
   }
 
-  /// Weights of the places for one surface point, in place order; reused from call to call.
-  using Weights = std::vector<double>;
+  /// Weights of the places for one surface point, in place order, and the openings it sees; reused from call to call.
+  struct Weights {
+    std::vector<double> places;
+    SkyOpenings::View view;
+  };
 
   /// About the lux (times level) that each place would give unshadowed; above 0 for every place that could give any.
   /// Returns their sum.
@@ -137,6 +142,8 @@ class Lamps {
   /// Whether choose() looks at u and v at all.
   [[nodiscard]] bool have_size() const { return have_size_; }
   [[nodiscard]] bool any() const { return !lamps_.empty(); }
+  /// Through which skies shine into rooms; null when none are known.
+  [[nodiscard]] const SkyOpenings* openings() const { return openings_; }
 
  private:
   enum class Kind { point, shape, sky };
@@ -177,12 +184,24 @@ class Lamps {
     LuminousShape shape;
     double radius_m;  ///< about the position: all of the shape
     Mat3 world_from_lamp;
+    std::optional<Vec3> towards_sun_world;  ///< of a sky whose light comes from one direction
   };
   void form_groups();
   void form_profiles();
   void share_out();
   /// Share of a lamp's light, about, that can meet the sphere around all geometry.
   [[nodiscard]] double inward_share(const Lamp& lamp, const Place& place) const;
+  void weigh_skies(const Vec3& position_world_m, const Vec3& normal_world, Weights& weights) const;
+  [[nodiscard]] LampRay emit_sky(const Lamp& lamp, double u, double v, double s, double t) const;
+  /// Density [1/sr] with which choose() draws a direction towards the sky.
+  [[nodiscard]] double sky_density_per_sr(const Place& place, const Vec3& position_world_m, const Vec3& direction_world,
+                                          const Weights& weights) const;
+  /// Share of the directions towards the sky that are drawn from all of it.
+  [[nodiscard]] double whole_sky_share(const Place& place, const Weights& weights) const {
+    return openings_ && !place.towards_sun_world ? openings_->whole_sky_share(weights.view) : 1;
+  }
+  /// Density [1/m², across it] with which emit() draws the line of light through a point.
+  [[nodiscard]] double line_density_per_m2(const Vec3& towards_world, const Vec3& position_world_m) const;
   /// A place outside of all geometry.
   [[nodiscard]] Vec3 beyond_world_m(const Vec3& position_world_m, const Vec3& direction_world) const;
 
@@ -196,6 +215,7 @@ class Lamps {
   std::vector<double> importances_;
   Vec3 centre_world_m_ = Vec3::Zero();  ///< of the sphere around all geometry
   double radius_m_ = 1;
+  const SkyOpenings* openings_ = nullptr;  ///< null when there are none
   bool have_size_ = false;
 };
 

@@ -17,6 +17,7 @@
 #include "core/transport/record_bias.h"
 #include "core/transport/replicate_error.h"
 #include "core/transport/shared_tails.h"
+#include "core/transport/sky_opening_finder.h"
 
 namespace luxrig {
 namespace {
@@ -86,8 +87,10 @@ class Evaluation {
         receivers_(receivers),
         emitters_(emitters),
         options_(options),
-        lamps_(emitters, options.levels, scene.bounds_world_m()),
         bsdfs_(bsdfs_of(scene)),
+        openings_(
+            find_sky_openings(scene, receivers, emitters, options.seed, options.threads, options.watch, matrix_.rays)),
+        lamps_(emitters, options.levels, scene.bounds_world_m(), &openings_),
         channels_(options.colour ? 3 : 1),
         columns_(emitters.size() * channels_),
         importance_(emitters.size()),
@@ -104,11 +107,11 @@ class Evaluation {
                           std::any_of(bsdfs_.begin(), bsdfs_.end(), [](const Bsdf& b) { return !b.black(); });
     EvaluateOptions direct_options = options_;
     direct_options.wanted_relative_error /= reflects ? kDirectMargin : 1;
-    auto direct = direct_light(scene_, receivers_, emitters_, direct_options, reflects ? 0.05 : 1.0);
+    auto direct = direct_light(scene_, receivers_, emitters_, direct_options, reflects ? 0.05 : 1.0, &openings_);
     if (!direct) return tl::unexpected(std::move(direct.error()));
     matrix_.direct_lux_per_level = std::move(direct->lux_per_level);
     direct_replicates_ = std::move(direct->replicates);
-    matrix_.rays = direct->rays;
+    matrix_.rays += direct->rays;
     if (!reflects) {
       matrix_.lux_per_level = matrix_.direct_lux_per_level;
       matrix_.replicates = std::move(direct_replicates_);
@@ -464,8 +467,10 @@ class Evaluation {
   std::span<const Receiver> receivers_;
   std::span<const Emitter> emitters_;
   const EvaluateOptions& options_;
-  Lamps lamps_;
+  TransportMatrix matrix_;
   std::vector<Bsdf> bsdfs_;
+  SkyOpenings openings_;
+  Lamps lamps_;
   std::size_t channels_, columns_;
   std::vector<double> importance_;
   PathSampler sampler_;
@@ -475,7 +480,6 @@ class Evaluation {
   std::vector<HitPlan> plans_;  ///< by task of the chunk
   std::optional<SharedTails> tails_;
   RecordBias record_bias_;
-  TransportMatrix matrix_;
   std::vector<Spent> spent_;
   std::vector<Eigen::MatrixXd> direct_replicates_;  ///< empty when the direct part is exact
   std::vector<RowMatrix> sums_;  ///< per replicate: reflected light, receivers × emitters, summed over samples

@@ -63,7 +63,7 @@ PathSampler::Joined PathSampler::join(const Vertex& vertex, const LightHit& hit,
   const double per_distance2 = 1 / towards_m.squaredNorm();
   const double geometry = height_m * hit_height_m * per_distance2 * per_distance2;
   const double by_hit = hits * hit.density;
-  double by_path = geometry / kPi * hit.choice_density;
+  double of_surface = height_m * std::sqrt(per_distance2) / kPi;
   Vec3 rgb = vertex.through_rgb;
   if (hit.bsdf->matt() && (vertex.bsdf == nullptr || vertex.bsdf->matt())) {
     rgb = rgb.cwiseProduct(hit.matt_rgb);
@@ -74,10 +74,12 @@ PathSampler::Joined PathSampler::join(const Vertex& vertex, const LightHit& hit,
         rgb.cwiseProduct(hit.bsdf->value(hit.normal_world, -direction, hit.to_light_world)).cwiseProduct(hit.flux_rgb);
     if (vertex.bsdf) {
       rgb = rgb.cwiseProduct(vertex.bsdf->value(vertex.normal_world, vertex.out_world, direction));
-      const double density = vertex.bsdf->density(vertex.normal_world, vertex.out_world, direction);
-      by_path = density * hit_height_m * per_distance2 * std::sqrt(per_distance2) * hit.choice_density;
+      of_surface = vertex.bsdf->density(vertex.normal_world, vertex.out_world, direction);
     }
   }
+  const double density =
+      vertex.outside ? next_density_per_sr(vertex, towards_m * std::sqrt(per_distance2), of_surface) : of_surface;
+  const double by_path = density * hit_height_m * per_distance2 * std::sqrt(per_distance2) * hit.choice_density;
   const double factor = geometry / hits * (by_hit / (by_hit + by_path));
   if (!(factor > 0) || !std::isfinite(factor)) return {};
   rgb *= factor;
@@ -90,16 +92,63 @@ PathSampler::Joined PathSampler::join(const Vertex& vertex, const LightHit& hit,
   return {1, counts * worth};
 }
 
+void PathSampler::look_outside(Vertex& vertex, SkyOpenings::Outside& outside) const {
+  vertex.outside = nullptr;
+  if (!lamps_.openings()) return;
+  lamps_.openings()->look_outside(vertex.position_world_m, vertex.normal_world, outside);
+  if (outside.sum > 0) vertex.outside = &outside;
+}
+
+double PathSampler::next_density_per_sr(const Vertex& vertex, const Vec3& direction, double of_surface) const {
+  return (1 - kOutsideShare) * of_surface +
+         kOutsideShare * lamps_.openings()->outside_density_per_sr(*vertex.outside, vertex.position_world_m, direction);
+}
+
+Bsdf::Sample PathSampler::next_direction(const Vertex& vertex, double u, double v, double lobe) const {
+  Bsdf::Sample next;
+  if (vertex.outside && u < kOutsideShare) {
+    next.in =
+        lamps_.openings()->sample_outside(*vertex.outside, vertex.position_world_m, u / kOutsideShare, v).direction;
+    const double cosine = vertex.normal_world.dot(next.in);
+    if (!(cosine > 0)) return {};
+    next.density_per_sr =
+        vertex.bsdf ? vertex.bsdf->density(vertex.normal_world, vertex.out_world, next.in) : cosine / kPi;
+    next.weight_rgb = cosine * (vertex.bsdf ? vertex.bsdf->value(vertex.normal_world, vertex.out_world, next.in)
+                                            : Vec3(Vec3::Ones()));
+    next.density_per_sr = next_density_per_sr(vertex, next.in, next.density_per_sr);
+    if (!(next.density_per_sr > 0)) return {};
+    next.weight_rgb /= next.density_per_sr;
+    return next;
+  }
+  if (vertex.outside) u = (u - kOutsideShare) / (1 - kOutsideShare);
+  if (vertex.bsdf) {
+    next = vertex.bsdf->sample(vertex.normal_world, vertex.out_world, u, v, lobe);
+  } else {
+    next.in = cosine_direction(vertex.normal_world, u, v);
+    next.weight_rgb = Vec3::Constant(kPi);
+    next.density_per_sr = vertex.normal_world.dot(next.in) / kPi;
+  }
+  if (vertex.outside && next.density_per_sr > 0) {
+    const double density = next_density_per_sr(vertex, next.in, next.density_per_sr);
+    next.weight_rgb *= next.density_per_sr / density;
+    next.density_per_sr = density;
+  }
+  return next;
+}
+
 std::uint64_t PathSampler::join_start(const Vertex& start, const HitPool& pool, const HitPlan& plan,
                                       std::span<const HitStretch> stretches, double cut, std::uint64_t key,
                                       const PathSums& sums, std::span<double> squares) const {
   std::uint64_t rays = 0;
   Dice dice(key);
+  Vertex vertex = start;
+  SkyOpenings::Outside outside;
+  look_outside(vertex, outside);
   for (std::size_t g = 0; g < stretches.size(); ++g) {
     double group_squares = 0;
     for (const LightHit& hit : pool.hits(g).subspan(stretches[g].begin, stretches[g].count)) {
       if (!hit.shines()) continue;
-      const Joined joined = join(start, hit, plan.at_start[g], cut, dice.plain(), sums);
+      const Joined joined = join(vertex, hit, plan.at_start[g], cut, dice.plain(), sums);
       rays += joined.rays;
       group_squares += joined.worth * joined.worth;
     }
@@ -160,17 +209,11 @@ std::uint64_t PathSampler::add_path(const Vertex& start, const SobolSequence& sa
   double before_tail = 0;
   bool checking = false;
   for (std::uint32_t bounce = 0; bounce < kLongestPath; ++bounce) {
+    look_outside(vertex, scratch.outside);
     if (bounce > 0) rays += join_deeper(vertex, pool, plan, cut, dice.pair(bounce, 3)[0], dice.plain(), sums);
     const auto [u, v] = dice.pair(bounce, 0);
-    Bsdf::Sample next;
-    if (vertex.bsdf) {
-      next = vertex.bsdf->sample(vertex.normal_world, vertex.out_world, u, v,
-                                 vertex.bsdf->matt() ? 0 : dice.pair(bounce, 4)[0]);
-    } else {
-      next.in = cosine_direction(vertex.normal_world, u, v);
-      next.weight_rgb = Vec3::Constant(kPi);
-      next.density_per_sr = vertex.normal_world.dot(next.in) / kPi;
-    }
+    const double lobe = vertex.bsdf && !vertex.bsdf->matt() ? dice.pair(bounce, 4)[0] : 0;
+    const Bsdf::Sample next = next_direction(vertex, u, v, lobe);
     if (!(next.density_per_sr > 0)) break;
     ++rays;
     const auto hit = scene_.nearest(vertex.position_world_m, next.in, vertex.normal_world);

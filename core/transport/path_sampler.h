@@ -23,6 +23,7 @@ struct PathScratch {
     Vec3 rgb;  ///< lux at level 1 by primary, MIS weight included
   };
   Lamps::Weights weights;
+  SkyOpenings::Outside outside;
   std::vector<Lit> lit;
   double first_leg_m = 0;  ///< of the last path; infinite when it met nothing
 };
@@ -66,6 +67,10 @@ class PathSampler {
   /// throughput / kRouletteBelow, at throughput kRouletteBelow.
   static constexpr double kRouletteBelow = 0.4;
 
+  /// Share of the paths that leave a room by its openings, where something outside is seen: it is a bright part of what
+  /// lights the room, and a small part of what a path would meet by chance.
+  static constexpr double kOutsideShare = 0.2;
+
   PathSampler(const RayScene& scene, const Lamps& lamps, const std::vector<Bsdf>& bsdfs, std::span<const double> levels)
       : scene_(scene), lamps_(lamps), bsdfs_(bsdfs), levels_(levels) {}
 
@@ -74,6 +79,8 @@ class PathSampler {
     Vec3 out_world;                   ///< unit, where the path came from
     const Bsdf* bsdf = nullptr;       ///< null: the receiver, which weighs by the cosine alone
     Vec3 through_rgb = Vec3::Ones();  ///< lux at the receiver per radiance that leaves the vertex towards out_world
+    /// What is seen of the outside, towards which some paths go on; null: nothing.
+    const SkyOpenings::Outside* outside = nullptr;
   };
 
   /// Vertex of a receiver: sums become illuminance.
@@ -113,6 +120,12 @@ class PathSampler {
   std::uint64_t ask_lamps(const Vertex& vertex, double density_per_m2, std::span<const double> hits, double cut,
                           double select, double u, double v, double chance, PathScratch& scratch,
                           const PathSums& sums) const;
+  /// Where a path goes on from a vertex; the weight is f cosθ / density of all ways to draw it.
+  [[nodiscard]] Bsdf::Sample next_direction(const Vertex& vertex, double u, double v, double lobe) const;
+  /// Density with which it goes there, given that of the surface's own way to draw it.
+  [[nodiscard]] double next_density_per_sr(const Vertex& vertex, const Vec3& direction, double of_surface) const;
+  /// Looks outside from a vertex, if there are openings.
+  void look_outside(Vertex& vertex, SkyOpenings::Outside& outside) const;
   /// The record that speaks for a vertex, if one is near and nothing stands in between.
   [[nodiscard]] std::optional<std::uint32_t> record_for(const Vertex& vertex, const TailRecords& records,
                                                         std::uint64_t& rays) const;

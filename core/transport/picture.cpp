@@ -9,6 +9,7 @@
 #include "core/photometry/light_colour.h"
 #include "core/transport/path_sampler.h"
 #include "core/transport/shared_tails.h"
+#include "core/transport/sky_opening_finder.h"
 
 namespace luxrig {
 namespace {
@@ -35,6 +36,21 @@ std::vector<double> light_of(const Lamps& lamps) {
   return shares;
 }
 
+/// Through which the surfaces in view see the sky.
+SkyOpenings openings_in_view(const RayScene& scene, const std::vector<Emitter>& emitters, const Camera& camera,
+                             const PictureOptions& options) {
+  constexpr int kAcross = 16;
+  std::vector<Receiver> in_view;
+  for (int i = 0; i < kAcross * kAcross; ++i) {
+    const double x_px = (i % kAcross + 0.5) / kAcross * camera.width_px;
+    const double y_px = (i / kAcross + 0.5) / kAcross * camera.height_px;
+    if (const auto hit = scene.nearest(camera.eye_world_m, ray_direction(camera, x_px, y_px), Vec3::Zero()))
+      in_view.push_back({hit->position_world_m, hit->normal_world});
+  }
+  std::uint64_t rays = 0;
+  return find_sky_openings(scene, in_view, emitters, options.seed, options.threads, options.watch, rays);
+}
+
 class Renderer {
  public:
   /// emitters at their levels: colour_rgb times level
@@ -43,10 +59,11 @@ class Renderer {
         emitters_(std::move(emitters)),
         points_(of_kind(emitters_, true)),
         sized_(of_kind(emitters_, false)),
-        lamps_(emitters_, {}, scene.bounds_world_m()),
-        point_lamps_(points_, {}, scene.bounds_world_m()),
-        sized_lamps_(sized_, {}, scene.bounds_world_m()),
         bsdfs_(bsdfs_of(scene)),
+        openings_(openings_in_view(scene, emitters_, camera, options)),
+        lamps_(emitters_, {}, scene.bounds_world_m(), &openings_),
+        point_lamps_(points_, {}, scene.bounds_world_m()),
+        sized_lamps_(sized_, {}, scene.bounds_world_m(), &openings_),
         importance_(emitters_.size(), 1.0),
         by_light_(light_of(lamps_)),
         plan_(HitPlan::of(lamps_, by_light_, kHitsPerPath, 1)),
@@ -261,8 +278,9 @@ class Renderer {
 
   const RayScene& scene_;
   std::vector<Emitter> emitters_, points_, sized_;
-  Lamps lamps_, point_lamps_, sized_lamps_;
   std::vector<Bsdf> bsdfs_;
+  SkyOpenings openings_;
+  Lamps lamps_, point_lamps_, sized_lamps_;
   std::vector<double> importance_;
   std::vector<double> by_light_;  ///< shares of the groups of lamps
   HitPlan plan_;

@@ -61,7 +61,7 @@ TEST(LampGroups, WeighingFindsEveryLampThatLights) {
     lamps.weigh(at_m, normal, weights);
     lamps.light(nullptr, at_m, normal, [&](std::size_t e, double lux) {
       ++lit;
-      const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+      const double sum = std::accumulate(weights.places.begin(), weights.places.end(), 0.0);
       EXPECT_GT(lamps.choice_density(e, at_m, Vec3::UnitZ(), weights, sum), 0) << "spot " << e << ": " << lux << " lx";
     });
   }
