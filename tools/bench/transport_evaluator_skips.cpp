@@ -95,10 +95,11 @@ void add_proofs(const TransportCase& one, const BenchOptions& options, std::vect
         clear += way == Way::clear;
         blocked += way == Way::blocked;
         if (way == Way::blocked) continue;
-        const DirectSum sum = sample_direct(one.rays, receivers[r], disks[e], way,
+        const DirectSum sum = sample_direct(one.rays, receivers[r], disks[e], way, SkyOpenings(),
                                             SobolSequence(mixed(7, r * disks.size() + e)), 0, kRays, scratch);
         rays[prove] += sum.rays;
-        all(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(e)) = sum.lux / kRays;
+        for (const DirectSum::Part& part : sum.parts)
+          all(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(e)) += part.lux / kRays;
       }
   };
   sample_all(true);  // the first proof builds a tree
