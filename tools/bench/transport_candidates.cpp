@@ -90,6 +90,8 @@ CandidateSet places_in_the_flat(std::size_t count) {
 CandidateOptions candidate_options(const BenchOptions& options, bool indirect) {
   CandidateOptions of;
   of.indirect = indirect;
+  // A ten-thousandth of the brightest entries: what is dimmer does not show among the lux that a lamp is hung for.
+  if (indirect) of.least_lux = 0.01;
   of.threads = options.threads;
   return of;
 }

@@ -136,6 +136,7 @@ TEST(TransportRows, AMovedObjectIsAskedAboutOnlyWhereItMatters) {
   ASSERT_EQ(rows.size(), 1u);
   EXPECT_EQ(rows[0].met(), std::optional(true)) << rows[0].error;
   EXPECT_EQ(rows[0].method, "incremental");
+  EXPECT_GT(std::stoi(rows[0].further.back().second), 0) << "the note begins with how many entries change";
 }
 
 }  // namespace
