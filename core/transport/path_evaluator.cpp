@@ -11,35 +11,24 @@
 
 #include "core/parallel.h"
 #include "core/transport/direct_light.h"
+#include "core/transport/path_rounds.h"
 #include "core/transport/path_sampler.h"
 #include "core/transport/progress.h"
 #include "core/transport/receiver_hits.h"
 #include "core/transport/record_bias.h"
 #include "core/transport/replicate_error.h"
+#include "core/transport/replicate_sums.h"
 #include "core/transport/shared_tails.h"
 #include "core/transport/sky_opening_finder.h"
 
 namespace luxrig {
 namespace {
 
-constexpr std::size_t kReplicates = RecordBias::kReplicates;
-/// First number of samples per replicate: 128 paths say roughly how bright it is, which later rounds build on.
-constexpr std::uint32_t kFirstSamples = 8;
-/// Where nothing reflected was found at all, an error of zero proves nothing yet; it is believed from here on.
-constexpr std::uint32_t kSamplesToBelieveNothing = 256;
-constexpr std::uint32_t kMostSamples = 1u << 30;
-/// Rounds end at so many steps between as many samples as before and twice as many, a little beyond what is needed.
-constexpr int kStepsToDouble = 8;
-constexpr double kStepMargin = 1.05;
+constexpr std::size_t kReplicates = ReplicateSums::kReplicates;
 /// Samples that are taken from one filling of the pools of light hits.
 constexpr std::uint32_t kChunk = 512;
 /// Hits that a receiver is joined with, for each of its paths.
 constexpr std::uint32_t kHitsPerPath = 4;
-/// A receiver is done when this many of its standard errors are within the wanted error. One would keep the contract
-/// on average; 2.5 makes the error itself, not only its standard deviation, stay below the wanted one for 98 of 100
-/// receivers, and leaves room for the estimate from 16 replicates to be too low by 1.44 (χ², 15 degrees of freedom,
-/// 5 %), which stopping at the first low estimate would make the rule.
-constexpr double kStopMargin = 2.5;
 /// Light of sources with size is sampled, too: closer than the whole is wanted, so that it does not keep it waiting.
 constexpr double kDirectMargin = 5;
 /// Connections worth less than this share of a path's mean are made only now and then.
@@ -64,20 +53,11 @@ constexpr std::size_t kMostRecordBytes = 256u << 20;
 constexpr std::uint32_t kCheckedPaths = 8, kSeldomCheckedPaths = 64;
 constexpr double kBiasPart = 0.3;
 
-using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-/// How far a receiver has come.
-struct Spent {
-  std::uint32_t samples = 0;  ///< per replicate
-  std::uint64_t rays = 0;
-  double lux = 0;  ///< under the options' levels
-  double direct_lx = 0;
-  double reflected_lx = 0;          ///< lux without direct_lx; of a first round's hits alone before there is more
-  double error_lx = 0;              ///< standard error of lux
-  double taken_lx = 0;              ///< from tail records, summed over samples and replicates
-  double least_scatter = HUGE_VAL;  ///< least so far of error² × samples
-  bool alone = false;               ///< records' noise has become its own: paths go on by themselves from here on
-};
+Eigen::VectorXd levels_of(const EvaluateOptions& options, std::size_t emitters) {
+  Eigen::VectorXd levels = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(emitters));
+  for (std::size_t e = 0; e < options.levels.size(); ++e) levels[static_cast<Eigen::Index>(e)] = options.levels[e];
+  return levels;
+}
 
 class Evaluation {
  public:
@@ -95,9 +75,10 @@ class Evaluation {
         columns_(emitters.size() * channels_),
         importance_(emitters.size()),
         sampler_(scene, lamps_, bsdfs_, importance_),
-        hits_(lamps_, receivers.size()) {
-    levels_ = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(emitters.size()));
-    for (std::size_t e = 0; e < options.levels.size(); ++e) levels_[static_cast<Eigen::Index>(e)] = options.levels[e];
+        levels_(levels_of(options, emitters.size())),
+        hits_(lamps_, receivers.size()),
+        spent_(receivers.size(), options),
+        sums_(0, channels_, levels_) {
     for (std::size_t e = 0; e < emitters.size(); ++e) importance_[e] = lamps_.importance(e);
     if (shares_tails) tails_.emplace(scene_, sampler_, bsdfs_, emitters.size(), kReplicates, options.seed);
   }
@@ -119,104 +100,40 @@ class Evaluation {
       if (channels_ == 3) start_colours();
       return std::move(matrix_);
     }
-    spent_.resize(receivers_.size());
-    const auto rows = static_cast<Eigen::Index>(receivers_.size());
-    sums_.assign(kReplicates, RowMatrix::Zero(rows, static_cast<Eigen::Index>(columns_)));
+    sums_ = ReplicateSums(receivers_.size(), channels_, levels_);
     done_ = 0.05;
-    for (auto round = first_round(); !round.empty(); round = next_round())
+    for (auto round = spent_.first(matrix_.rays); !round.empty(); round = spent_.next(matrix_.rays))
       if (!sample(round)) return tl::unexpected(Fault{Cause::cancelled, "", "stopped while tracing paths", {}});
     finish();
     return std::move(matrix_);
   }
 
  private:
-  /// Samples that a receiver gets in a round: [begin, end) of each of its replicates.
-  struct Task {
-    std::size_t receiver;
-    std::uint32_t begin, end;
-  };
-
-  std::vector<Task> first_round() {
-    // A path has seldom more than 4 vertices, each with a ray to reach it, one to a lamp and one to a light hit.
-    const std::uint64_t rays_per_sample = 12 * receivers_.size() * kReplicates;
-    const std::uint64_t rays_left = options_.max_rays > matrix_.rays ? options_.max_rays - matrix_.rays : 0;
-    std::uint32_t samples = kFirstSamples;
-    while (samples > 1 && rays_per_sample * samples > rays_left) samples /= 2;
-    std::vector<Task> all;
-    for (std::size_t r = 0; r < receivers_.size(); ++r) all.push_back({r, 0, samples});
-    return all;
-  }
-
-  /// The receivers that want more samples: as many as would do by the error so far, up to as many as they have.
-  std::vector<Task> next_round() {
-    std::vector<Task> wanting;
-    for (std::size_t r = 0; r < receivers_.size(); ++r) {
-      const std::uint32_t have = spent_[r].samples;
-      const double over = overshoot(r);
-      if (!(over > 1) || have >= kMostSamples) continue;
-      const double parts = std::ceil(kStepsToDouble * (over * over * kStepMargin - 1));
-      const double share = std::clamp(parts, 1.0, static_cast<double>(kStepsToDouble)) / kStepsToDouble;
-      wanting.push_back({r, have, have + std::max(1u, static_cast<std::uint32_t>(have * share))});
-    }
-    // As many as the remaining rays allow, the worst first.
-    std::stable_sort(wanting.begin(), wanting.end(),
-                     [&](const Task& a, const Task& b) { return overshoot(a.receiver) > overshoot(b.receiver); });
-    std::uint64_t rays_left = options_.max_rays > matrix_.rays ? options_.max_rays - matrix_.rays : 0;
-    std::erase_if(wanting, [&](const Task& task) {
-      const std::uint64_t rays = spent_[task.receiver].rays * (task.end - task.begin) / task.begin;
-      if (rays > rays_left) return true;
-      rays_left -= rays;
-      return false;
-    });
-    std::sort(wanting.begin(), wanting.end(), [](const Task& a, const Task& b) { return a.receiver < b.receiver; });
-    return wanting;
-  }
-
-  /// Estimated error relative to that at which the receiver is done; infinite when nothing is known yet.
-  double overshoot(std::size_t r) const {
-    const Spent& spent = spent_[r];
-    if (spent.error_lx == 0) {
-      const bool found = (row_of(0, r).array() != 0).any();
-      return found || spent.samples >= kSamplesToBelieveNothing ? 0 : HUGE_VAL;
-    }
-    return relative_error(r) * kStopMargin / options_.wanted_relative_error;
-  }
-
-  double relative_error(std::size_t r) const {
-    const double scale_lx = std::max(spent_[r].lux, 0.001 * brightest_lx_);
-    return scale_lx > 0 ? spent_[r].error_lx / scale_lx : 0;
-  }
-
-  RowMatrix::ConstRowXpr row_of(std::size_t replicate, std::size_t r) const {
-    return sums_[replicate].row(static_cast<Eigen::Index>(r));
-  }
-
   /// Works through the tasks of a round, a chunk of each at a time.
-  bool sample(const std::vector<Task>& round) {
+  bool sample(const std::vector<PathTask>& round) {
     std::size_t parts = 0;
-    for (const Task& task : round) parts += (task.end - task.begin + kChunk - 1) / kChunk * kReplicates;
-    CallingThreadProgress progress(options_.watch, done_, done_after(round), parts);
-    for (std::vector<Task> left = round; !left.empty();) {
-      std::vector<Task> chunk = left;
-      for (Task& task : chunk) task.end = std::min(task.end, task.begin + kChunk);
+    for (const PathTask& task : round) parts += (task.end - task.begin + kChunk - 1) / kChunk * kReplicates;
+    CallingThreadProgress progress(options_.watch, done_, spent_.done_after(round, done_), parts);
+    for (std::vector<PathTask> left = round; !left.empty();) {
+      std::vector<PathTask> chunk = left;
+      for (PathTask& task : chunk) task.end = std::min(task.end, task.begin + kChunk);
       sample_chunk(chunk, progress);
       for (std::size_t i = 0; i < left.size(); ++i) left[i].begin = chunk[i].end;
-      std::erase_if(left, [](const Task& task) { return task.begin == task.end; });
+      std::erase_if(left, [](const PathTask& task) { return task.begin == task.end; });
     }
     if (options_.watch.stop.stop_requested()) return false;
-    for (const Task& task : round) {
+    for (const PathTask& task : round) {
       spent_[task.receiver].samples = task.end;
       estimate(task.receiver);
     }
-    done_ = done_after({});
-    brightest_lx_ = 0;
-    for (const Spent& spent : spent_) brightest_lx_ = std::max(brightest_lx_, spent.lux);
+    done_ = spent_.done_after({}, done_);
+    spent_.find_brightest();
     return true;
   }
 
-  void sample_chunk(const std::vector<Task>& chunk, CallingThreadProgress& progress) {
+  void sample_chunk(const std::vector<PathTask>& chunk, CallingThreadProgress& progress) {
     plans_.clear();
-    for (const Task& task : chunk) plans_.push_back(hits_.plan(task.receiver, kHitsPerPath, task.end - task.begin));
+    for (const PathTask& task : chunk) plans_.push_back(hits_.plan(task.receiver, kHitsPerPath, task.end - task.begin));
     fill_pools(chunk);
     join_hits(chunk);
     const bool shares_now = tails_ && (chunk.size() >= kFewestSharing || tails_->records().size() > 0);
@@ -224,7 +141,7 @@ class Evaluation {
     trace_paths(chunk, shares_now, progress);
   }
 
-  void trace_paths(const std::vector<Task>& chunk, bool shares_now, CallingThreadProgress& progress) {
+  void trace_paths(const std::vector<PathTask>& chunk, bool shares_now, CallingThreadProgress& progress) {
     std::vector<std::uint64_t> rays(chunk.size() * kReplicates, 0);
     std::vector<TailShare> told(rays.size());
     const std::uint32_t checked = bias_is_known() ? kSeldomCheckedPaths : kCheckedPaths;
@@ -245,13 +162,13 @@ class Evaluation {
                                         {values, channels_}, &tails);
       }
       told[task] = tails;
-      add_sums(k, r, values);
+      sums_.add(k, r, values);
       progress.one_done();
     });
     std::vector<double> reflected_lx;
-    for (const Task& task : chunk) reflected_lx.push_back(mean_reflected_lx(task));
+    for (const PathTask& task : chunk) reflected_lx.push_back(sums_.mean_reflected_lx(task.receiver, task.end));
     for (std::size_t task = 0; task < rays.size(); ++task) {
-      Spent& spent = spent_[chunk[task / kReplicates].receiver];
+      ReceiverProgress& spent = spent_[chunk[task / kReplicates].receiver];
       spent.rays += rays[task];
       spent.taken_lx += told[task].taken_lx;
       matrix_.rays += rays[task];
@@ -262,18 +179,13 @@ class Evaluation {
     }
   }
 
-  void add_sums(std::size_t replicate, std::size_t r, const std::vector<double>& values) {
-    sums_[replicate].row(static_cast<Eigen::Index>(r)) +=
-        Eigen::Map<const Eigen::RowVectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
-  }
-
   /// Connections of a receiver's paths that are worth less are made only now and then.
   double cut_lx(std::size_t r) const { return kCut * spent_[r].reflected_lx; }
 
   /// Fills the pools with light hits, as many as the plans ask for.
-  void fill_pools(const std::vector<Task>& chunk) {
+  void fill_pools(const std::vector<PathTask>& chunk) {
     std::vector<std::uint32_t> paths;
-    for (const Task& task : chunk) paths.push_back(task.end - task.begin);
+    for (const PathTask& task : chunk) paths.push_back(task.end - task.begin);
     const auto counts = ReceiverHits::pool_counts(lamps_, plans_, paths);
     const LightHits lights(scene_, lamps_, bsdfs_);
     pools_.resize(kReplicates);
@@ -287,14 +199,14 @@ class Evaluation {
   }
 
   /// Joins the receivers with light hits, and learns from it which lamps matter to whom.
-  void join_hits(const std::vector<Task>& chunk) {
+  void join_hits(const std::vector<PathTask>& chunk) {
     if (options_.watch.stop.stop_requested()) return;
     const std::size_t groups = lamps_.groups();
     std::vector<std::uint64_t> rays(chunk.size(), 0);
     parallel_for(chunk.size(), options_.threads, [&](std::size_t i) {
       const auto& [r, begin, end] = chunk[i];
       const std::uint32_t samples = end - begin;
-      Spent& spent = spent_[r];
+      ReceiverProgress& spent = spent_[r];
       std::vector<HitStretch> stretches;
       std::vector<double> squares(groups);
       std::vector<double> values(columns_);
@@ -306,9 +218,9 @@ class Evaluation {
         rays[i] += sampler_.join_start(PathSampler::at(receivers_[r]), pools_[k], plans_[i], stretches, cut_lx(r),
                                        mixed(key, groups), {values, channels_}, squares);
         hits_.learn(r, squares, stretches);
-        add_sums(k, r, values);
+        sums_.add(k, r, values);
       }
-      if (begin == 0) spent.reflected_lx = mean_reflected_lx(chunk[i]);
+      if (begin == 0) spent.reflected_lx = sums_.mean_reflected_lx(r, end);
     });
     for (std::size_t i = 0; i < chunk.size(); ++i) {
       spent_[chunk[i].receiver].rays += rays[i];
@@ -318,12 +230,12 @@ class Evaluation {
 
   /// Adds records for a chunk: many at first, that all receivers have one near wherever they look, then as many as
   /// keeps their noise and distance in step with the receivers' own noise.
-  void grow_tails(const std::vector<Task>& chunk) {
+  void grow_tails(const std::vector<PathTask>& chunk) {
     std::vector<Receiver> from;
     std::vector<HitPlan> plans;
     std::vector<double> cuts_lx;
     std::size_t paths = 0;
-    for (const Task& task : chunk) {
+    for (const PathTask& task : chunk) {
       if (spent_[task.receiver].alone) continue;
       from.push_back(receivers_[task.receiver]);
       plans.push_back(hits_.plan(task.receiver, kHitsPerRecordPath, kRecordPaths));
@@ -339,35 +251,11 @@ class Evaluation {
                                  options_.watch);
   }
 
-  /// Reflected lux at the levels in one replicate, summed over samples.
-  double sum_lx(std::size_t replicate, std::size_t r) const {
-    const auto row = row_of(replicate, r);
-    double sum = 0;
-    for (Eigen::Index e = 0; e < levels_.size(); ++e) sum += levels_[e] * luminance(row, e);
-    return sum;
-  }
-
-  template <class Row>
-  double luminance(const Row& row, Eigen::Index emitter) const {
-    if (channels_ == 1) return row[emitter];
-    const Eigen::Index n = levels_.size();
-    return 0.2126 * row[emitter] + 0.7152 * row[n + emitter] + 0.0722 * row[2 * n + emitter];
-  }
-
-  /// Over all replicates, the task included.
-  double mean_reflected_lx(const Task& task) const {
-    double sum = 0;
-    for (std::size_t k = 0; k < kReplicates; ++k) sum += sum_lx(k, task.receiver);
-    return sum / (static_cast<double>(kReplicates) * task.end);
-  }
-
   void estimate(std::size_t r) {
-    std::array<double, kReplicates> reflected{};
+    const auto reflected = sums_.reflected_lx(r, spent_[r].samples);
     double mean_lx = 0;
-    for (std::size_t k = 0; k < kReplicates; ++k) {
-      reflected[k] = sum_lx(k, r) / spent_[r].samples;
-      mean_lx += reflected[k] / kReplicates;
-    }
+    for (const double lux : reflected) mean_lx += lux / kReplicates;
+    spent_[r].found = sums_.found(r);
     spent_[r].direct_lx = matrix_.direct_lux_per_level.row(static_cast<Eigen::Index>(r)).dot(levels_);
     spent_[r].reflected_lx = mean_lx;
     spent_[r].lux = mean_lx + spent_[r].direct_lx;
@@ -382,19 +270,10 @@ class Evaluation {
     const auto n = static_cast<Eigen::Index>(receivers_.size());
     Eigen::MatrixXd reflected = Eigen::MatrixXd::Zero(n, levels_.size());
     if (channels_ == 3) start_colours();
+    std::vector<std::uint32_t> samples;
+    for (std::size_t r = 0; r < receivers_.size(); ++r) samples.push_back(spent_[r].samples);
     for (std::size_t k = 0; k < kReplicates; ++k) {
-      Eigen::MatrixXd replicate(n, levels_.size());
-      for (Eigen::Index r = 0; r < n; ++r) {
-        const auto row = sums_[k].row(r);
-        const double samples = spent_[static_cast<std::size_t>(r)].samples;
-        for (Eigen::Index e = 0; e < levels_.size(); ++e) {
-          replicate(r, e) = luminance(row, e) / samples;
-          for (std::size_t c = 0; c < 3 && channels_ == 3; ++c)
-            matrix_.rgb_per_level[c](r, e) +=
-                row[static_cast<Eigen::Index>(c) * levels_.size() + e] / (samples * kReplicates);
-        }
-      }
-      sums_[k].resize(0, 0);
+      const Eigen::MatrixXd replicate = sums_.take(k, samples, matrix_.rgb_per_level);
       reflected += replicate / kReplicates;
       matrix_.replicates.emplace_back(
           replicate + (direct_replicates_.empty() ? matrix_.direct_lux_per_level : direct_replicates_[k]));
@@ -406,13 +285,13 @@ class Evaluation {
     }
     if (tails_) own_up_to_bias();
     for (std::size_t r = 0; r < receivers_.size(); ++r)
-      matrix_.relative_error = std::max(matrix_.relative_error, relative_error(r));
+      matrix_.relative_error = std::max(matrix_.relative_error, spent_.relative_error(r));
     if (options_.watch.progress) options_.watch.progress(1.0);
   }
 
   bool bias_is_known() const {
     const auto bias = record_bias_.measured();
-    return bias && bias->error < kBiasPart * options_.wanted_relative_error / kStopMargin;
+    return bias && bias->error < kBiasPart * options_.wanted_relative_error / PathRounds::kStopMargin;
   }
 
   /// Takes the records' common bias, as the checked paths show it, out of what was taken from them; and adds what
@@ -424,7 +303,7 @@ class Evaluation {
     // Half up and half down by `a` gives a standard error of a · √(16/15) / 4, times Student's factor.
     const double up_and_down = error * 4 / (std::sqrt(16.0 / 15) * student_t_975(kReplicates - 1) / student_t_975(1e9));
     for (std::size_t r = 0; r < receivers_.size(); ++r) {
-      Spent& spent = spent_[r];
+      ReceiverProgress& spent = spent_[r];
       const double reflected_lx = spent.reflected_lx;
       if (!(spent.taken_lx > 0) || !(reflected_lx > 0)) continue;
       const double taken_lx = spent.taken_lx / (kReplicates * static_cast<double>(spent.samples));
@@ -449,20 +328,6 @@ class Evaluation {
             emitters_[static_cast<std::size_t>(e)].colour_rgb[static_cast<Eigen::Index>(c)];
   }
 
-  /// Share of the whole work done so far, or after a round: error falls at least with the root of the samples.
-  double done_after(const std::vector<Task>& round) const {
-    double spent = 0, left = 0;
-    for (std::size_t r = 0; r < receivers_.size(); ++r) {
-      spent += spent_[r].samples;
-      const double factor = std::min(overshoot(r), 1e3);
-      if (factor > 1) left += spent_[r].samples * std::max(1.0, factor * factor - 1);
-    }
-    double part = 0;
-    for (const Task& task : round) part += task.end - task.begin;
-    if (spent == 0) return round.empty() ? done_ : 0.1;
-    return std::clamp((spent + part) / (spent + std::max(left, part)), done_, 1.0);
-  }
-
   const RayScene& scene_;
   std::span<const Receiver> receivers_;
   std::span<const Emitter> emitters_;
@@ -480,10 +345,9 @@ class Evaluation {
   std::vector<HitPlan> plans_;  ///< by task of the chunk
   std::optional<SharedTails> tails_;
   RecordBias record_bias_;
-  std::vector<Spent> spent_;
+  PathRounds spent_;
   std::vector<Eigen::MatrixXd> direct_replicates_;  ///< empty when the direct part is exact
-  std::vector<RowMatrix> sums_;  ///< per replicate: reflected light, receivers × emitters, summed over samples
-  double brightest_lx_ = 0;
+  ReplicateSums sums_;
   double done_ = 0;
 };
 

@@ -1,0 +1,70 @@
+#pragma once
+/// Who gets how many samples: rounds that go where the error is, until it is as small as wanted or the rays are used
+/// up.
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "core/transport/evaluator.h"
+
+namespace luxrig {
+
+/// How far a receiver has come.
+struct ReceiverProgress {
+  std::uint32_t samples = 0;  ///< per replicate
+  std::uint64_t rays = 0;
+  double lux = 0;  ///< under the options' levels
+  double direct_lx = 0;
+  double reflected_lx = 0;          ///< lux without direct_lx; of a first round's hits alone before there is more
+  double error_lx = 0;              ///< standard error of lux
+  double taken_lx = 0;              ///< from tail records, summed over samples and replicates
+  double least_scatter = HUGE_VAL;  ///< least so far of error² × samples
+  bool found = false;               ///< any reflected light
+  bool alone = false;               ///< records' noise has become its own: paths go on by themselves from here on
+};
+
+/// Samples that a receiver gets in a round: [begin, end) of each of its replicates.
+struct PathTask {
+  std::size_t receiver;
+  std::uint32_t begin, end;
+};
+
+class PathRounds {
+ public:
+  /// A receiver is done when this many of its standard errors are within the wanted error. One would keep the contract
+  /// on average; 2.5 makes the error itself, not only its standard deviation, stay below the wanted one for 98 of 100
+  /// receivers, and leaves room for the estimate from 16 replicates to be too low by 1.44 (χ², 15 degrees of freedom,
+  /// 5 %), which stopping at the first low estimate would make the rule.
+  static constexpr double kStopMargin = 2.5;
+
+  /// options   must outlive it
+  PathRounds(std::size_t receivers, const EvaluateOptions& options) : options_(options), progress_(receivers) {}
+
+  [[nodiscard]] ReceiverProgress& operator[](std::size_t receiver) { return progress_[receiver]; }
+  [[nodiscard]] const ReceiverProgress& operator[](std::size_t receiver) const { return progress_[receiver]; }
+
+  /// All receivers. rays_cast: so far, by whatever else.
+  [[nodiscard]] std::vector<PathTask> first(std::uint64_t rays_cast) const;
+  /// The receivers that want more samples: as many as would do by the error so far, up to as many as they have.
+  [[nodiscard]] std::vector<PathTask> next(std::uint64_t rays_cast) const;
+  /// To be called when the lux of receivers is known anew.
+  void find_brightest();
+
+  /// Relative to the receiver's lux or a thousandth of the brightest receiver's.
+  [[nodiscard]] double relative_error(std::size_t receiver) const;
+  /// Share of the whole work done so far, or after a round: error falls at least with the root of the samples. At least
+  /// `before`.
+  [[nodiscard]] double done_after(const std::vector<PathTask>& round, double before) const;
+
+ private:
+  [[nodiscard]] std::uint64_t rays_left(std::uint64_t rays_cast) const;
+  /// Estimated error relative to that at which the receiver is done; infinite when nothing is known yet.
+  [[nodiscard]] double overshoot(std::size_t receiver) const;
+
+  const EvaluateOptions& options_;
+  std::vector<ReceiverProgress> progress_;
+  double brightest_lx_ = 0;
+};
+
+}  // namespace luxrig
