@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <fstream>
 
+#include "tools/bench/row_progress.h"
 #include "tools/bench/suites.h"
 
 namespace luxrig {
@@ -23,6 +24,7 @@ constexpr Suite kSuites[] = {
 };
 
 int finish(const Suite& suite, const std::vector<BenchRow>& rows, const BenchOptions& options) {
+  end_row_progress();
   fmt::print("{}", table_of(rows));
   int code = 0;
   for (const BenchRow& row : rows)

@@ -7,6 +7,8 @@
 #include <ctime>
 #include <limits>
 
+#include "tools/bench/row_progress.h"
+
 namespace luxrig {
 
 CallSeconds timed(const std::function<void()>& call) {
@@ -47,6 +49,7 @@ Measured measure(const Method& method, const RayScene& rays, std::span<const Rec
 
 BenchRow row_of(const std::string& case_name, const std::string& method, double error, const Measured& run,
                 std::optional<double> wanted_error, std::optional<double> target_error) {
+  say_row_made(case_name, method);
   const bool refused = !run.refused.empty();
   const double rays = static_cast<double>(run.matrix.rays);
   std::string note = run.refused;

@@ -10,6 +10,7 @@
 #include "core/solve/lux_limits.h"
 #include "core/solve/nnls_of_few.h"
 #include "tools/bench/nnls_problems.h"
+#include "tools/bench/row_progress.h"
 #include "tools/bench/suites.h"
 
 namespace luxrig {
@@ -35,6 +36,7 @@ double median_seconds(int runs, const Work& work) {
 BenchRow nnls_row(const NnlsBenchProblem& one, const std::string& method, double kkt, double seconds,
                   std::optional<double> target_seconds, double residual_norm, std::size_t in_use, int rounds,
                   const std::string& note) {
+  say_row_made(one.name, method);
   BenchRow row;
   row.case_name = one.name;
   row.method = method;
