@@ -22,7 +22,8 @@ constexpr CandidateSkip kSkips[] = {
     {"behind", &CandidateSkips::behind, &CandidateStatistics::pairs_behind, "pairs"},
     {"blockers", &CandidateSkips::blockers, &CandidateStatistics::pairs_blocked_in_groups, "pairs"},
     {"reach", &CandidateSkips::reach, &CandidateStatistics::pairs_out_of_reach, "pairs"},
-    {"unlit", &CandidateSkips::unlit, &CandidateStatistics::columns_unlit, "columns"}};
+    {"unlit", &CandidateSkips::unlit, &CandidateStatistics::columns_unlit, "columns"},
+    {"foretold", &CandidateSkips::foretold, &CandidateStatistics::nodes, "nodes for all other positions"}};
 /// Entries left out by `reach`: far below what anybody wants to know.
 constexpr double kLeastLux = 0.01;
 
@@ -91,7 +92,8 @@ void add_skips(const TransportCase& one, bool indirect, const BenchOptions& opti
                     static_cast<double>(a.rays) / static_cast<double>(std::max<std::uint64_t>(1, b.rays)), moves.sum)));
   };
   for (const CandidateSkip& skip : kSkips) {
-    if (!indirect && skip.field == &CandidateSkips::unlit) continue;  // of reflected light
+    if (!indirect && (skip.field == &CandidateSkips::unlit || skip.field == &CandidateSkips::foretold))
+      continue;  // of reflected light
     CandidateSkips skips;
     skips.*skip.field = false;
     const std::uint64_t of_all =

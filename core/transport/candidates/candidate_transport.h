@@ -42,6 +42,9 @@ struct CandidateSkips {
   /// Candidates none of whose first few rays falls on a surface from which light gets to a receiver have no indirect
   /// light. Within the standard error.
   bool unlit = true;
+  /// Reflected light of a position that follows from that at others about it (interpolation_nodes.h) is not looked at.
+  /// Within the standard error.
+  bool foretold = true;
 };
 
 struct CandidateOptions {

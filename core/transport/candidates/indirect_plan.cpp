@@ -103,7 +103,7 @@ double cell_size_m(const Scene& scene, std::size_t cells) {
 InterpolationNodes choose_nodes(const CandidateSet& candidates, std::span<const std::uint8_t> usable,
                                 std::size_t receivers, const CandidateOptions& options) {
   const auto count = static_cast<std::size_t>(std::count(usable.begin(), usable.end(), std::uint8_t{1}));
-  if (count < kFewestPositions) return {};
+  if (!options.skips.foretold || count < kFewestPositions) return {};
   const std::size_t floats = (IndirectColumns::kReplicates + 1) * (receivers + kRowUnit) * candidates.luminaires.size();
   const std::size_t fit = options.memory_bound_bytes / kNodesShare / (floats * sizeof(float));
   const double step_m = InterpolationNodes::step_for(

@@ -80,7 +80,7 @@ TEST(CandidateSkips, InAFurnishedRoomReflectedLightStaysWithinItsErrorWithoutAny
   const RayScene rays(room.scene);
   const CandidateSet set = places_in(rays, 60);
   CandidateOptions options;
-  options.surface_cells = 1500;
+  options.surface_cells = 700;
   options.most_rays_per_candidate = 256;
   options.least_lux = 0.05;
   const auto all = candidate_transport(room.scene, rays, room.receivers, set, options);
