@@ -23,7 +23,7 @@ constexpr CandidateSkip kSkips[] = {
     {"blockers", &CandidateSkips::blockers, &CandidateStatistics::pairs_blocked_in_groups, "pairs"},
     {"reach", &CandidateSkips::reach, &CandidateStatistics::pairs_out_of_reach, "pairs"},
     {"unlit", &CandidateSkips::unlit, &CandidateStatistics::columns_unlit, "columns"},
-    {"foretold", &CandidateSkips::foretold, &CandidateStatistics::nodes, "nodes for all other positions"}};
+    {"foretold", &CandidateSkips::foretold, nullptr, ""}};
 /// Entries left out by `reach`: far below what anybody wants to know.
 constexpr double kLeastLux = 0.01;
 
@@ -96,12 +96,15 @@ void add_skips(const TransportCase& one, bool indirect, const BenchOptions& opti
       continue;  // of reflected light
     CandidateSkips skips;
     skips.*skip.field = false;
+    const CandidateStatistics& statistics = with.transport.statistics;
     const std::uint64_t of_all =
         set.columns() * (std::string_view(skip.what) == "pairs" ? one.room.receivers.size() : 1);
     add(skip.name, skips, skip.field == &CandidateSkips::reach ? kLeastLux : 0,
-        fmt::format("skips {} of {} {}; ", with.transport.statistics.*skip.count, of_all, skip.what));
+        skip.count ? fmt::format("skips {} of {} {}; ", statistics.*skip.count, of_all, skip.what)
+                   : fmt::format("{} nodes and {} others of {} columns looked at; ", statistics.nodes,
+                                 statistics.columns_looked_at, of_all));
   }
-  add("all", {false, false, false, false, false}, kLeastLux, "");
+  add("all", {false, false, false, false, false, false}, kLeastLux, "");
 }
 
 }  // namespace
