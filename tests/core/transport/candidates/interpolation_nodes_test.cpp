@@ -40,7 +40,7 @@ TEST(InterpolationNodes, GiveBackWhatIsLinearInThePlace) {
     }
     EXPECT_NEAR(sum, 1, 1e-5);
     // The ridge pulls slopes towards none by about a hundredth of what they make out over the nodes' spread.
-    EXPECT_NEAR(value, linear(places_m[p]), 0.02);
+    EXPECT_NEAR(value, linear(places_m[p]), 0.03);
   }
   EXPECT_GT(interpolated, places_m.size() / 7 * 8 / 10);  // not in corners
 }
