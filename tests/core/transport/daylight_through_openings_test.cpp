@@ -166,14 +166,14 @@ TEST(DaylightThroughOpenings, StatedErrorsHoldTheTruthAsOftenAsTheyShould) {
   const auto emitters = under(make_overcast_sky(10'000));
   const auto truth = evaluated(*evaluator, room.desks(), emitters, within(0.01, 999));
   int inside = 0, all = 0;
-  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     const auto matrix = evaluated(*evaluator, room.desks(), emitters, within(0.1, seed));
     const Eigen::VectorXd error_lx = matrix.standard_error_lux(Eigen::VectorXd::Ones(1));
     for (Eigen::Index r = 0; r < matrix.receivers(); ++r, ++all)
       inside += std::abs(matrix.lux_per_level(r, 0) - truth.lux_per_level(r, 0)) <= 2 * error_lx[r];
   }
-  // 95 % would be 380; those of one seed are not independent. Measured: 92 % of these, 94.4 % of 1 600 of other seeds.
-  EXPECT_GE(inside, 348) << all;
+  // 95 % would be 152; those of one seed are not independent. Measured: 92 % of 400, 94.4 % of 1 600 of other seeds.
+  EXPECT_GE(inside, 138) << all;
   EXPECT_LT(inside, all);
 }
 
