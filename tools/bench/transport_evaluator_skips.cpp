@@ -34,7 +34,8 @@ BenchRow skip_row(const std::string& name, const char* method, double error, dou
 
 /// A shadow ray for each pair of receiver and lamp, then the distance law: nothing is looked at before it.
 void add_direct(const TransportCase& one, const BenchOptions& options, std::vector<BenchRow>& rows) {
-  const auto& [receivers, lamps] = std::tie(one.room.receivers, one.room.emitters);
+  const auto& receivers = one.room.receivers;
+  const auto& lamps = one.room.emitters;
   for (const Emitter& lamp : lamps)
     if (lamp.sky || lamp.shape.kind != LuminousShape::Kind::point) return;
   EvaluateOptions evaluate;
