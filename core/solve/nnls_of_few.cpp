@@ -75,23 +75,21 @@ void NnlsOfFew::choose(std::span<const Index> columns) {
   passive_.clear();
   z_.clear();
   is_passive_.clear();
-  for (const Index column : columns) {
-    column_.push_back(column);
-    z_.push_back(0);
-    is_passive_.push_back(0);
-    reserve(column_.size());
-    fill(column_.size() - 1);
-  }
+  for (const Index column : columns) append(column);
   optimise();
 }
 
 void NnlsOfFew::add(Index column) {
+  append(column);
+  optimise();
+}
+
+void NnlsOfFew::append(Index column) {
   column_.push_back(column);
   z_.push_back(0);
   is_passive_.push_back(0);
   reserve(column_.size());
   fill(column_.size() - 1);
-  optimise();
 }
 
 void NnlsOfFew::exchange(std::size_t place, Index column) {

@@ -56,6 +56,7 @@ class NnlsOfFew {
   [[nodiscard]] double product(std::size_t a, std::size_t b) const { return gram_[a * capacity_ + b]; }
   [[nodiscard]] double upper(std::size_t place) const { return problem_->scaled().upper(column_[place]); }
   void reserve(std::size_t count);
+  void append(Index column);
   void fill(std::size_t place);
   void optimise();
   bool search();

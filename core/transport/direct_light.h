@@ -19,8 +19,9 @@ struct DirectLight {
 /// multiple importance sampling between its own directions, cosine-weighted ones and those through openings) until the
 /// error of the receiver's illuminance is as options want it, samples going where the error is. No ray is cast for what
 /// lies behind the receiver, whose emission cone misses it, or that sends nothing there. The inputs must have passed
-/// check_evaluation(). Cause::cancelled when stopped. Progress goes from 0 to `progress_end`. openings   through which
-/// skies are seen, as found before; null: they are looked for when a sky must be sampled
+/// check_evaluation(). Cause::cancelled when stopped. Progress goes from 0 to `progress_end`.
+///
+/// openings   through which skies are seen, as found before; null: they are looked for when a sky must be sampled
 [[nodiscard]] Result<DirectLight> direct_light(const RayScene& scene, std::span<const Receiver> receivers,
                                                std::span<const Emitter> emitters, const EvaluateOptions& options,
                                                double progress_end = 1.0, const SkyOpenings* openings = nullptr);
