@@ -4,6 +4,7 @@
 
 #include <string>
 #include <tl/expected.hpp>
+#include <utility>
 #include <vector>
 
 #include "core/time.h"
@@ -51,5 +52,10 @@ struct Fault {
 
 template <class T>
 using Result = tl::expected<T, Fault>;
+
+/// What was asked cannot be done as asked: no device is at fault.
+[[nodiscard]] inline tl::unexpected<Fault> refusal(std::string detail) {
+  return tl::unexpected(Fault{Cause::invalid, "", std::move(detail), {}});
+}
 
 }  // namespace luxrig

@@ -36,9 +36,10 @@ std::size_t stored_planes_of(EulumdatFile::Symmetry symmetry, std::size_t planes
 }
 
 /// One field a line.
-class Parser {
+class EulumdatParser {
  public:
-  Parser(std::string_view text, const std::string& file_name) : cursor_(without_bom(text)), problems_(file_name) {}
+  EulumdatParser(std::string_view text, const std::string& file_name)
+      : cursor_(without_bom(text)), problems_(file_name) {}
 
   Checked<EulumdatFile> parse() {
     if (parse_all() && problems_.empty()) return std::move(file_);
@@ -301,7 +302,7 @@ std::size_t EulumdatFile::stored_first() const {
 std::size_t EulumdatFile::stored_planes() const { return stored_planes_of(symmetry, c_deg.size()); }
 
 Checked<EulumdatFile> parse_eulumdat(std::string_view text, const std::string& file_name) {
-  return Parser(text, file_name).parse();
+  return EulumdatParser(text, file_name).parse();
 }
 
 Checked<EulumdatFile> load_eulumdat(const std::filesystem::path& path) {

@@ -7,15 +7,6 @@
 #include "core/photometry/grid_intensity.h"
 
 namespace luxrig {
-namespace {
-
-std::vector<double> radians(std::vector<double> degrees) {
-  for (double& angle : degrees) angle = rad_from_deg(angle);
-  return degrees;
-}
-
-}  // namespace
-
 Intensity make_intensity(const EulumdatFile& file, std::size_t lamp_set) {
   using Table = SphereTable::Symmetry;
   const std::size_t gammas = file.gamma_deg.size();

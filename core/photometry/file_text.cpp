@@ -11,7 +11,7 @@ namespace luxrig::file_text {
 namespace {
 
 constexpr std::size_t kMaxProblems = 20;
-constexpr std::uintmax_t kMaxFileBytes = 64u << 20;
+constexpr std::uintmax_t kMaxPhotometryBytes = 64u << 20;
 constexpr double kMinSpacing_deg = 1e-6;
 
 // Old files hold form feeds, NUL and ^Z; commas separate as blanks do.
@@ -175,7 +175,8 @@ Checked<std::string> read_text(const std::filesystem::path& path, const char* ki
     return refuse("no such photometric file", "correct its name, relative to the rig file");
   }
   const auto bytes = std::filesystem::file_size(path, error);
-  if (error || bytes > kMaxFileBytes) return refuse("larger than 64 MiB", std::string("give an ") + kind + " file");
+  if (error || bytes > kMaxPhotometryBytes)
+    return refuse("larger than 64 MiB", std::string("give an ") + kind + " file");
   std::ifstream in(path, std::ios::binary);
   std::string text((std::istreambuf_iterator<char>(in)), {});
   if (!in.good() && !in.eof()) return refuse("cannot be read", "check that you may read it");

@@ -96,4 +96,9 @@ Intensity make_grid_intensity(SphereTable table, GridAxes axes) {
   return std::make_shared<GridIntensity>(std::move(table), axes);
 }
 
+std::vector<double> radians(std::vector<double> degrees, double offset_deg) {
+  for (double& angle : degrees) angle = rad_from_deg(angle + offset_deg);
+  return degrees;
+}
+
 }  // namespace luxrig

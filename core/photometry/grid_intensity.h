@@ -1,6 +1,8 @@
 #pragma once
 /// Measured intensities on a grid of angles as a distribution: what every photometric file ends in.
 
+#include <vector>
+
 #include "core/photometry/intensity.h"
 #include "core/photometry/sphere_table.h"
 
@@ -19,5 +21,8 @@ enum class GridAxes {
 /// Intensity [cd] from a table in those axes. Flux is the table's integral; directions are drawn with exactly
 /// intensity / flux per steradian.
 [[nodiscard]] Intensity make_grid_intensity(SphereTable table, GridAxes axes);
+
+/// The table's angles from the file's.
+[[nodiscard]] std::vector<double> radians(std::vector<double> degrees, double offset_deg = 0);
 
 }  // namespace luxrig

@@ -11,16 +11,16 @@ namespace {
 
 using namespace file_text;
 
-constexpr std::size_t kMaxAngles = 10'000;
-constexpr std::size_t kMaxValues = 4'000'000;
-constexpr double kMaxCandela = 1e12;     // a lighthouse has 1e7
-constexpr double kMinFlux_lm = 1e-6;     // below it nobody sees or dims anything
-constexpr double kFluxTolerance = 1.05;  // how far photometry may exceed its lamps' lumens
+constexpr std::size_t kMaxIesAngles = 10'000;
+constexpr std::size_t kMaxIesValues = 4'000'000;
+constexpr double kMaxCandela = 1e12;        // a lighthouse has 1e7
+constexpr double kMinIesFlux_lm = 1e-6;     // below it nobody sees or dims anything
+constexpr double kIesFluxTolerance = 1.05;  // how far photometry may exceed its lamps' lumens
 constexpr double kMetresPerFoot = 0.3048;
 
-class Parser {
+class IesParser {
  public:
-  Parser(std::string_view text, const std::string& file_name, const TiltFiles& tilt_files)
+  IesParser(std::string_view text, const std::string& file_name, const TiltFiles& tilt_files)
       : cursor_(without_bom(text)), problems_(file_name), read_(cursor_, problems_), tilt_files_(tilt_files) {}
 
   Checked<IesFile> parse() {
@@ -98,7 +98,7 @@ class Parser {
     NumberReader read(cursor, problems);
     LampTilt tilt;
     const auto geometry = read.whole("lamp-to-luminaire geometry", 1, 3);
-    const auto count = read.whole("number of tilt angles", 1, kMaxAngles);
+    const auto count = read.whole("number of tilt angles", 1, kMaxIesAngles);
     if (!geometry || !count || !problems.empty()) return false;
     tilt.geometry = static_cast<int>(*geometry);
     const At angles_at = read.place();
@@ -118,8 +118,8 @@ class Parser {
     const auto lamps = read_.whole("number of lamps", 1, 1'000'000);
     const auto lumens = read_.number("lumens per lamp", -1, 1e12);
     const auto multiplier = read_.number("candela multiplier", 0, 1e9);
-    const auto vertical = read_.whole("number of vertical angles", 1, kMaxAngles);
-    const auto horizontal = read_.whole("number of horizontal angles", 1, kMaxAngles);
+    const auto vertical = read_.whole("number of vertical angles", 1, kMaxIesAngles);
+    const auto horizontal = read_.whole("number of horizontal angles", 1, kMaxIesAngles);
     const auto type = read_.whole("photometric type", 1, 3);
     const auto units = read_.whole("units type", 1, 2);
     const auto width = read_.number("luminous width", -1e6, 1e6);
@@ -131,7 +131,7 @@ class Parser {
     if (!watts || !problems_.empty()) return false;  // `watts` is the last: without it the stream ended or broke
     const At whole_file;
     if (*vertical < 2) problems_.add(whole_file, "one vertical angle makes no distribution", "give two or more");
-    if (*vertical * *horizontal > kMaxValues) {
+    if (*vertical * *horizontal > kMaxIesValues) {
       problems_.add(whole_file,
                     std::to_string(*vertical) + " x " + std::to_string(*horizontal) + " values, more than 4 million",
                     "give a coarser grid");
@@ -185,14 +185,14 @@ class Parser {
 
   bool check_flux() {
     const double largest_cd = *std::max_element(file_.candela.begin(), file_.candela.end());
-    const double flux_lm = 4 * kPi * largest_cd < kMinFlux_lm ? 0 : make_intensity(file_)->flux_lm();
-    if (!(flux_lm >= kMinFlux_lm)) {
+    const double flux_lm = 4 * kPi * largest_cd < kMinIesFlux_lm ? 0 : make_intensity(file_)->flux_lm();
+    if (!(flux_lm >= kMinIesFlux_lm)) {
       problems_.add({}, "the luminaire gives no light: " + number_text(flux_lm) + " lm",
                     "give a file with candela values");
       return false;
     }
     const double lamps_lm = file_.lumens_per_lamp * file_.lamps;
-    if (lamps_lm >= 0 && flux_lm > kFluxTolerance * lamps_lm) {
+    if (lamps_lm >= 0 && flux_lm > kIesFluxTolerance * lamps_lm) {
       file_.warnings.push_back("the distribution holds " + number_text(flux_lm) + " lm, its lamps only " +
                                number_text(lamps_lm) + " lm");
     }
@@ -213,7 +213,7 @@ class Parser {
 }  // namespace
 
 Checked<IesFile> parse_ies(std::string_view text, const std::string& file_name, const TiltFiles& tilt_files) {
-  return Parser(text, file_name, tilt_files).parse();
+  return IesParser(text, file_name, tilt_files).parse();
 }
 
 Checked<IesFile> load_ies(const std::filesystem::path& path) {

@@ -18,11 +18,6 @@ Symmetry symmetry_of(const std::vector<double>& horizontal_deg) {
   return Symmetry::none;
 }
 
-std::vector<double> radians(std::vector<double> degrees, double offset_deg = 0) {
-  for (double& angle : degrees) angle = rad_from_deg(angle + offset_deg);
-  return degrees;
-}
-
 Intensity type_c(const IesFile& file) {
   const Symmetry symmetry = symmetry_of(file.horizontal_deg);
   std::vector<double> horizontal_deg = file.horizontal_deg;

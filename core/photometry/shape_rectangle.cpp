@@ -19,7 +19,7 @@ namespace {
 /// over the area, which for a rectangle that far away is as good.
 constexpr double kSmall = 1e-7;
 /// A direction that was aimed at the rim may pass it by rounding.
-constexpr double kRim = 1 + 1e-12;
+constexpr double kRectangleRim = 1 + 1e-12;
 
 /// y/√(y²+d²) with its distance from ±1, both to full precision.
 struct Sine {
@@ -34,8 +34,8 @@ struct Sine {
   }
 };
 
-struct Seen {
-  Seen(const Rectangle& rectangle, const Vec3& from_m)
+struct SeenRectangle {
+  SeenRectangle(const Rectangle& rectangle, const Vec3& from_m)
       : x0(-rectangle.half_x_m - from_m.x()),
         x1(rectangle.half_x_m - from_m.x()),
         y0(-rectangle.half_y_m - from_m.y()),
@@ -66,7 +66,7 @@ struct Seen {
   bool by_area = true;
 };
 
-double place_at(const Seen& seen, double part) {
+double place_at(const SeenRectangle& seen, double part) {
   const double g = seen.at_x0 + part * seen.solid_angle;
   const Sine b0(seen.y0, seen.height), b1(seen.y1, seen.height);
   const double half = std::sin(0.5 * g), cos_half = std::cos(0.5 * g);
@@ -79,7 +79,7 @@ double place_at(const Seen& seen, double part) {
 }
 
 /// Even in y/√(y²+d²), with d the distance from the line x = const.
-double along_line(const Seen& seen, double x, double part) {
+double along_line(const SeenRectangle& seen, double x, double part) {
   const double d = std::hypot(x, seen.height);
   const Sine h0(seen.y0, d), h1(seen.y1, d);
   double y;
@@ -96,7 +96,7 @@ double along_line(const Seen& seen, double x, double part) {
 }  // namespace
 
 ShapeSample sample_seen_from(const Rectangle& rectangle, const Vec3& from_m, double u, double v) {
-  const Seen seen(rectangle, from_m);
+  const SeenRectangle seen(rectangle, from_m);
   if (!seen.visible()) return {};
   Vec3 way_m(0, 0, seen.towards * seen.height);
   if (seen.by_area) {
@@ -112,13 +112,13 @@ ShapeSample sample_seen_from(const Rectangle& rectangle, const Vec3& from_m, dou
 }
 
 double density_seen_from(const Rectangle& rectangle, const Vec3& from_m, const Vec3& direction) {
-  const Seen seen(rectangle, from_m);
+  const SeenRectangle seen(rectangle, from_m);
   const double cosine = seen.towards * direction.z();
   if (!seen.visible() || !(cosine > 0)) return 0;
   const double distance_m = seen.height / cosine;
   const double rim_m = 1e-15 * (from_m.norm() + distance_m);
-  if (!(std::abs(from_m.x() + distance_m * direction.x()) <= kRim * rectangle.half_x_m + rim_m)) return 0;
-  if (!(std::abs(from_m.y() + distance_m * direction.y()) <= kRim * rectangle.half_y_m + rim_m)) return 0;
+  if (!(std::abs(from_m.x() + distance_m * direction.x()) <= kRectangleRim * rectangle.half_x_m + rim_m)) return 0;
+  if (!(std::abs(from_m.y() + distance_m * direction.y()) <= kRectangleRim * rectangle.half_y_m + rim_m)) return 0;
   return seen.by_area ? seen.area_density(distance_m, cosine) : 1 / seen.solid_angle;
 }
 

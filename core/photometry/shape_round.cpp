@@ -9,7 +9,7 @@ namespace luxrig {
 namespace {
 
 /// A direction that was aimed at the rim may pass it by rounding.
-constexpr double kRim = 1 + 1e-12;
+constexpr double kRoundRim = 1 + 1e-12;
 
 /// 1 - cos θ from tan² θ, θ ≤ π/2, to full precision.
 double versine_from_tan2(double tan2) {
@@ -90,7 +90,7 @@ double DiskCone::density_per_sr(const Vec3& direction) const {
   const double c = direction.dot(across_), s = direction.dot(along_);
   const double sine = std::hypot(c, s);
   if (sine == 0) return density_at(1, 0);
-  if (!(sine * sine / (1 + forward) <= kRim * rim(c / sine, s / sine))) return 0;
+  if (!(sine * sine / (1 + forward) <= kRoundRim * rim(c / sine, s / sine))) return 0;
   return density_at(c / sine, s / sine);
 }
 
@@ -141,7 +141,7 @@ double density_seen_from(const Ball& ball, const Vec3& from_m, const Vec3& direc
   const BallCone cone(ball, from_m);
   if (!(cone.density_per_sr > 0) || !(direction.dot(from_m) < 0)) return 0;
   const double sine = direction.cross(from_m).norm() / cone.distance_m;
-  return sine <= kRim * (cone.radius_m / cone.distance_m) ? cone.density_per_sr : 0;
+  return sine <= kRoundRim * (cone.radius_m / cone.distance_m) ? cone.density_per_sr : 0;
 }
 
 }  // namespace luxrig

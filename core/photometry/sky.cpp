@@ -206,7 +206,7 @@ class Sun final : public SkyLuminance {
   double horizontal_lx_ = 0;
 };
 
-bool positive(double value) { return value > 0 && std::isfinite(value); }
+bool gives_light(double value) { return value > 0 && std::isfinite(value); }
 
 void check_direction(const Vec3& towards_sun) {
   LUXRIG_CHECK(std::abs(towards_sun.norm() - 1) < 1e-6 && towards_sun.z() > 0, "sun at ({}, {}, {})", towards_sun.x(),
@@ -237,17 +237,17 @@ GeneralSkyParameters general_sky_parameters(int type) {
 }
 
 Sky make_uniform_sky(double horizontal_lx) {
-  LUXRIG_CHECK(positive(horizontal_lx), "{} lx", horizontal_lx);
+  LUXRIG_CHECK(gives_light(horizontal_lx), "{} lx", horizontal_lx);
   return std::make_shared<UniformSky>(horizontal_lx);
 }
 
 Sky make_overcast_sky(double horizontal_lx) {
-  LUXRIG_CHECK(positive(horizontal_lx), "{} lx", horizontal_lx);
+  LUXRIG_CHECK(gives_light(horizontal_lx), "{} lx", horizontal_lx);
   return std::make_shared<FormulaSky<OvercastProfile>>(OvercastProfile{}, horizontal_lx);
 }
 
 Sky make_general_sky(int type, const Vec3& towards_sun_world, double horizontal_lx) {
-  LUXRIG_CHECK(positive(horizontal_lx), "{} lx", horizontal_lx);
+  LUXRIG_CHECK(gives_light(horizontal_lx), "{} lx", horizontal_lx);
   check_direction(towards_sun_world);
   const GeneralProfile profile{general_sky_parameters(type), towards_sun_world.normalized()};
   return std::make_shared<FormulaSky<GeneralProfile>>(profile, horizontal_lx);
@@ -258,7 +258,7 @@ Sky make_clear_sky(const Vec3& towards_sun_world, double horizontal_lx) {
 }
 
 Sky make_sun(const Vec3& towards_sun_world, double normal_lx) {
-  LUXRIG_CHECK(positive(normal_lx), "{} lx", normal_lx);
+  LUXRIG_CHECK(gives_light(normal_lx), "{} lx", normal_lx);
   check_direction(towards_sun_world);
   return std::make_shared<Sun>(towards_sun_world.normalized(), normal_lx);
 }

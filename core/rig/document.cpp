@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kMaxDottedParts = 16;
 
-struct Refusal {
+struct ParseRefusal {
   Place place;
   std::string what, mend;
 };
@@ -32,7 +32,7 @@ struct Refusal {
 ///   - letters outside ASCII, which TOML does not allow there: its test for other white space runs into code that it
 ///     declares unreachable (found by fuzzing);
 ///   - quotes within a word, where it does not see the beginning of a text (found by fuzzing).
-std::optional<Refusal> look_ahead(std::string_view text) {
+std::optional<ParseRefusal> look_ahead(std::string_view text) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   Place here{1, 1};
   int dots = 0;
@@ -73,7 +73,7 @@ std::optional<Refusal> look_ahead(std::string_view text) {
         // Within a word or right after a text, toml++ does not see the quote that we would see.
         if (i > 0 && (std::isalnum(static_cast<unsigned char>(text[i - 1])) ||
                       std::string_view("_-+:\"'").find(text[i - 1]) != std::string_view::npos)) {
-          return Refusal{here, "not TOML: a quote right after a word or a text", "put a space, = or , in between"};
+          return ParseRefusal{here, "not TOML: a quote right after a word or a text", "put a space, = or , in between"};
         }
         skip_string(text[i]);
         break;
@@ -82,8 +82,8 @@ std::optional<Refusal> look_ahead(std::string_view text) {
         break;
       case '.':
         if (++dots >= kMaxDottedParts) {
-          return Refusal{here, "a key of more than " + std::to_string(kMaxDottedParts) + " dotted parts",
-                         "no key of a rig file needs more than three"};
+          return ParseRefusal{here, "a key of more than " + std::to_string(kMaxDottedParts) + " dotted parts",
+                              "no key of a rig file needs more than three"};
         }
         step();
         break;
@@ -99,7 +99,8 @@ std::optional<Refusal> look_ahead(std::string_view text) {
         break;
       default:
         if (static_cast<unsigned char>(text[i]) >= 0x80) {
-          return Refusal{here, "not TOML: a letter outside ASCII that stands in no text", "put the text in quotes"};
+          return ParseRefusal{here, "not TOML: a letter outside ASCII that stands in no text",
+                              "put the text in quotes"};
         }
         step();
     }

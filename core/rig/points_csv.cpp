@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kMostBytes = std::size_t{64} << 20;
 
-enum Column { kName, kX, kY, kZ, kNx, kNy, kNz, kGoal, kWeight, kMax, kColumns };
+enum Column { kName, kX, kY, kZ, kNx, kNy, kNz, kGoal, kWeightColumn, kMax, kColumns };
 constexpr std::array<std::string_view, kColumns> kColumnNames = {"name", "x_m", "y_m",     "z_m",    "nx",
                                                                  "ny",   "nz",  "goal_lx", "weight", "max_lx"};
 constexpr std::array<std::string_view, kColumns> kKeys = {"name",   "position_m", "position_m", "position_m", "normal",
@@ -78,9 +78,9 @@ std::optional<std::vector<Cell>> split(std::string_view line, int line_number, P
   }
 }
 
-class Reader {
+class PointsReader {
  public:
-  Reader(const std::string& file_name, std::size_t most) : problems_(file_name), most_(most) {}
+  PointsReader(const std::string& file_name, std::size_t most) : problems_(file_name), most_(most) {}
 
   void line(std::string_view text, int number) {
     const std::string_view content = trimmed(text);
@@ -177,7 +177,7 @@ class Reader {
       p.normal_world = normal.stableNormalized();
     }
     p.goal_lx = values[kGoal];
-    p.weight = values[kWeight].value_or(p.weight);
+    p.weight = values[kWeightColumn].value_or(p.weight);
     p.max_lx = values[kMax];
     rows_.push_back(std::move(out));
   }
@@ -232,7 +232,7 @@ class Reader {
 
 PointsTable parse_points_csv(std::string_view text, const std::string& file_name, std::size_t most) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-  Reader reader(file_name, most);
+  PointsReader reader(file_name, most);
   for (int number = 1; !text.empty(); ++number) {
     const std::size_t end = text.find('\n');
     std::string_view line = text.substr(0, end);

@@ -22,7 +22,7 @@ constexpr const char* kHowToGiveTheSun =
 /// A sun that gives less is none.
 constexpr double kLeastSun_lx = 1e-3;
 
-struct Sun {
+struct SunOfMoment {
   SunPosition position;
   double orbit_factor = 1;
 };
@@ -38,14 +38,14 @@ void require_all(Section& s, std::span<const char* const> keys) {
     if (!s.has(key)) s.require(key, fmt::format("which {} needs", given));
 }
 
-std::optional<Sun> sun_by_angles(Section& s) {
-  Sun sun;
+std::optional<SunOfMoment> sun_by_angles(Section& s) {
+  SunOfMoment sun;
   const bool azimuth = s.read_deg("sun_azimuth_deg", sun.position.azimuth_rad);
   const bool altitude = s.read_deg("sun_elevation_deg", sun.position.altitude_rad);
   return azimuth && altitude ? std::optional(sun) : std::nullopt;
 }
 
-std::optional<Sun> sun_by_place(Section& s) {
+std::optional<SunOfMoment> sun_by_place(Section& s) {
   double latitude_rad = 0, longitude_rad = 0;
   std::string text;
   const bool latitude = s.read_deg("latitude_deg", latitude_rad);
@@ -59,7 +59,7 @@ std::optional<Sun> sun_by_place(Section& s) {
     return std::nullopt;
   }
   if (!latitude || !longitude) return std::nullopt;
-  return Sun{sun_position(*time, latitude_rad, longitude_rad), solar_orbit_factor(day_of_year(*time))};
+  return SunOfMoment{sun_position(*time, latitude_rad, longitude_rad), solar_orbit_factor(day_of_year(*time))};
 }
 
 CloudCover cover_of(const Daylight& daylight) {
@@ -102,7 +102,7 @@ void RigReader::read_daylight() {
     }
 
     const bool by_angles = has_any(s, kByAngles), by_place = has_any(s, kByPlace);
-    std::optional<Sun> sun;
+    std::optional<SunOfMoment> sun;
     if (by_angles && by_place) {
       const auto* at = std::find_if(kByPlace.begin(), kByPlace.end(), [&](const char* key) { return s.has(key); });
       problems.add(s.place_of(*at), "the sun's position is given both by angles and by place and time",

@@ -26,7 +26,7 @@ constexpr Bounds kBearing{-360, 360};
 constexpr Bounds kQuarterTurn{-90, 90};
 constexpr Bounds kFullCone{0, 180, true, true};
 constexpr Bounds kSeconds{0, 3600};
-constexpr Bounds kUnit{0, 255};
+constexpr Bounds kUnitAddress{0, 255};
 constexpr Bounds kRegister{0, 65535};
 constexpr std::string_view kUnits = "m, cm, mm, in, ft";
 constexpr std::string_view kAxes = "x, y, z";
@@ -55,7 +55,7 @@ constexpr SectionSpec kSections[] = {
     {"daemon", false, 1, false, "The program that keeps the rig running."},
 };
 
-constexpr KeySpec kKeys[] = {
+constexpr KeySpec kRigKeys[] = {
     {"rig", "name", name, "", kRequired, kAny, "", "name of the rig; plans are only applied to the rig they name"},
 
     {"scene", "file", file, "", kNone, kAny, "", "mesh of the room: OBJ, PLY, glTF or GLB"},
@@ -185,7 +185,7 @@ constexpr KeySpec kKeys[] = {
      "what each DMX slot carries from `address` on: `dimmer`, `dimmer-fine`, `pan`, `pan-fine`, `tilt`, `tilt-fine`, "
      "`unused`, or `constant:N` with N from 0 to 255; one dimmer is needed, pan and tilt come together, and a fine "
      "slot needs its coarse one"},
-    {"fixture", "unit", whole_number, "", "1", kUnit, "", "Modbus unit"},
+    {"fixture", "unit", whole_number, "", "1", kUnitAddress, "", "Modbus unit"},
     {"fixture", "register", whole_number, "", kNone, kRegister, "",
      "Modbus holding register of the dimmer, 0-based; required over Modbus"},
     {"fixture", "full_scale", whole_number, "", "1000", {1, 65535}, "", "value of that register at full drive"},
@@ -214,7 +214,7 @@ constexpr KeySpec kKeys[] = {
      "share of a reading by which it may be wrong, either way"},
     {"luxmeter", "range_lx", number, "lx", "200000", {0, 1e7, true}, "", "full scale"},
     {"luxmeter", "bus", text, "", kRequired, kAny, "", "name of a `[[bus]]`"},
-    {"luxmeter", "unit", whole_number, "", "1", kUnit, "", "Modbus unit"},
+    {"luxmeter", "unit", whole_number, "", "1", kUnitAddress, "", "Modbus unit"},
     {"luxmeter", "register", whole_number, "", "0", kRegister, "", "first Modbus register, 0-based"},
     {"luxmeter", "registers", whole_number, "", "2", {1, 2}, "", "1: 16 bits, 2: 32 bits, both unsigned"},
     {"luxmeter", "register_kind", text, "", R"("holding")", kAny, "holding, input", "read by function 3 or 4"},
@@ -293,12 +293,13 @@ const SectionSpec& section_spec(std::string_view section) {
   return *at;
 }
 
-std::span<const KeySpec> keys() { return kKeys; }
+std::span<const KeySpec> keys() { return kRigKeys; }
 
 std::span<const KeySpec> keys_of(std::string_view section) {
-  const auto* first =
-      std::find_if(std::begin(kKeys), std::end(kKeys), [&](const KeySpec& spec) { return spec.section == section; });
-  const auto* last = std::find_if(first, std::end(kKeys), [&](const KeySpec& spec) { return spec.section != section; });
+  const auto* first = std::find_if(std::begin(kRigKeys), std::end(kRigKeys),
+                                   [&](const KeySpec& spec) { return spec.section == section; });
+  const auto* last =
+      std::find_if(first, std::end(kRigKeys), [&](const KeySpec& spec) { return spec.section != section; });
   return {first, last};
 }
 

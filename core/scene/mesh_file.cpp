@@ -20,7 +20,6 @@ namespace luxrig {
 namespace {
 
 constexpr std::size_t kMaxTriangles = 50'000'000;
-constexpr double kMaxReflectance = 0.95;
 constexpr double kMaxCoordinate_m = 1e9;  // beyond it a mesh is broken, or its unit wrong
 
 /// world_from_mesh for the up axis: a proper rotation that turns it to +Z.

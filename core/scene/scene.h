@@ -10,6 +10,9 @@
 
 namespace luxrig {
 
+/// Whiter paint there is not, and a closed room of it would hardly absorb.
+inline constexpr double kMaxReflectance = 0.95;
+
 struct Material {
   std::string name;
   Vec3 reflectance_rgb = Vec3::Constant(0.5);  ///< diffuse, linear Rec. 709, each 0…0.95
@@ -18,8 +21,8 @@ struct Material {
   /// α = roughness², 0.05…1.
   double specular_reflectance = 0;
   double roughness = 0.3;
-  bool coloured = false;                       ///< reflectance_rgb was stated by the mesh file or the rig, not assumed
-  bool too_bright = false;                     ///< the mesh file stated more than 0.95, which was taken as 0.95
+  bool coloured = false;    ///< reflectance_rgb was stated by the mesh file or the rig, not assumed
+  bool too_bright = false;  ///< the mesh file stated more than 0.95, which was taken as 0.95
 
   /// Luminous reflectance: the Rec. 709 luminance of reflectance_rgb.
   [[nodiscard]] double luminous_reflectance() const {

@@ -11,8 +11,6 @@
 namespace luxrig {
 namespace {
 
-constexpr double kMaxReflectance = 0.95;
-
 /// One mesh or box, placed in double precision; the float of its file is left behind here.
 struct Part {
   std::vector<Vec3> vertices_world_m;

@@ -74,7 +74,7 @@ EmittanceProblem completed(EmittanceProblem p) {
 double power_of_two_near(double value) { return value > 0 ? std::ldexp(1.0, std::ilogb(value)) : 0; }
 
 /// The problem in variables z_j = level_j · unit_j, in which every light's column and the right-hand side are about 1.
-struct Scaled {
+struct ScaledProblem {
   LimitedLeastSquares least_squares;
   MatrixXd objective;  ///< W T without tie rows
   VectorXd target;     ///< W (g − b)
@@ -82,8 +82,8 @@ struct Scaled {
   std::vector<Index> limited;  ///< points of the rows of G
 };
 
-Scaled scaled(const EmittanceProblem& p) {
-  Scaled s;
+ScaledProblem scaled(const EmittanceProblem& p) {
+  ScaledProblem s;
   const Index lights = p.lux_per_level.cols();
   std::vector<Index> goals;
   for (Index i = 0; i < p.goal_lx.size(); ++i) {
@@ -130,7 +130,7 @@ Scaled scaled(const EmittanceProblem& p) {
   return s;
 }
 
-VectorXd levels_of(const EmittanceProblem& p, const Scaled& s, const LimitedLeastSquaresResult& at) {
+VectorXd levels_of(const EmittanceProblem& p, const ScaledProblem& s, const LimitedLeastSquaresResult& at) {
   VectorXd level = at.z.cwiseQuotient(s.unit).cwiseMin(p.max_level);
   for (Index j = 0; j < level.size(); ++j)
     if (at.state[static_cast<std::size_t>(j)] == BoundState::upper) level[j] = p.max_level[j];
@@ -158,7 +158,7 @@ void keep_limits(const EmittanceProblem& p, VectorXd& level) {
 
 /// Largest violation of stationarity, signs and complementarity of the problem without tie term, in scaled variables:
 /// relative to the columns' norms times the norm of the right-hand side.
-double kkt_residual(const Scaled& s, const LimitedLeastSquaresResult& at, const VectorXd& level) {
+double kkt_residual(const ScaledProblem& s, const LimitedLeastSquaresResult& at, const VectorXd& level) {
   if (at.z.size() == 0) return 0;
   const LimitedLeastSquares& q = s.least_squares;
   const VectorXd z = level.cwiseProduct(s.unit);
@@ -191,7 +191,7 @@ Fault fault(Cause cause, std::string detail) {
 Result<VectorXd> lux_without(EmittanceProblem p, bool max_lx, bool max_level, const Watch& watch) {
   if (max_lx) p.max_lx.setConstant(kInfinity);
   if (max_level) p.max_level.setConstant(kInfinity);
-  const Scaled s = scaled(p);
+  const ScaledProblem s = scaled(p);
   const LimitedLeastSquaresResult at = solve_limited_least_squares(s.least_squares, watch.stop);
   if (at.stopped) return tl::unexpected(fault(Cause::cancelled, "stopped on request"));
   return VectorXd(p.lux_per_level * levels_of(p, s, at) + p.fixed_lx);
@@ -211,7 +211,7 @@ Result<EmittanceSolution> solve_emittance(const EmittanceProblem& given, const W
   const EmittanceProblem p = completed(given);
   if (auto text = complaint(p)) return tl::unexpected(fault(Cause::invalid, *text));
 
-  const Scaled s = scaled(p);
+  const ScaledProblem s = scaled(p);
   const LimitedLeastSquaresResult at = solve_limited_least_squares(s.least_squares, watch.stop);
   if (at.stopped) return tl::unexpected(fault(Cause::cancelled, "stopped on request"));
 

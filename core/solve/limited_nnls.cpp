@@ -16,7 +16,7 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNoBound = std::numeric_limits<double>::infinity();
 /// Violations and changes of multipliers below this (rows have norm 1, the goal too) are rounding.
 constexpr double kTolerance = 1e-14;
 /// The least violation of limits that can be kept is rounding; that of a conflict is above this, relative to d.
@@ -63,14 +63,14 @@ ScaledLimits scaled_limits(const ScaledColumns& p, const NnlsProblem& problem, c
     }
     s.z_per_x.push_back(norm);
     // What a column can give at most is what counts of it: a bound may hold it far below the goal.
-    const double upper = j < n && problem.upper.size() > 0 ? problem.upper[j] : kInfinity;
+    const double upper = j < n && problem.upper.size() > 0 ? problem.upper[j] : kNoBound;
     const double most = p.nothing_wanted() ? 1 : std::min(1.0, upper * (norm / p.in_units(1)));
     for (Eigen::SparseMatrix<double>::InnerIterator it(limits.rows, j); it; ++it)
       squares[it.row()] += std::pow(it.value() / norm * most, 2);
   }
   std::vector<Index> place(static_cast<std::size_t>(limits.rows.rows()), -1);
   for (Index i = 0; i < limits.rows.rows(); ++i) {
-    if (limits.most[i] == kInfinity) continue;
+    if (limits.most[i] == kNoBound) continue;
     place[static_cast<std::size_t>(i)] = static_cast<Index>(s.which.size());
     s.which.push_back(i);
     s.factor.push_back(squares[i] > 0 ? 1 / std::sqrt(squares[i]) : 1);
@@ -87,7 +87,7 @@ ScaledLimits scaled_limits(const ScaledColumns& p, const NnlsProblem& problem, c
   std::vector<Eigen::Triplet<double>> entries;
   for (Index j = 0; j < all; ++j) {
     const double norm = s.z_per_x[static_cast<std::size_t>(j)];
-    s.upper.push_back(j < n && problem.upper.size() > 0 ? problem.upper[j] * (norm / s.scale) : kInfinity);
+    s.upper.push_back(j < n && problem.upper.size() > 0 ? problem.upper[j] * (norm / s.scale) : kNoBound);
     for (Eigen::SparseMatrix<double>::InnerIterator it(limits.rows, j); it; ++it) {
       const Index k = place[static_cast<std::size_t>(it.row())];
       if (k >= 0) entries.emplace_back(k, j, it.value() / norm * s.factor[static_cast<std::size_t>(k)]);
@@ -121,7 +121,7 @@ LeastViolation least_violation(const ScaledLimits& s, const std::vector<Index>& 
     built.put(k, 1);
     built.end_column();
     problem.goal[k] = s.most[which[static_cast<std::size_t>(k)]];
-    problem.upper[s.rows.cols() + k] = kInfinity;
+    problem.upper[s.rows.cols() + k] = kNoBound;
   }
   problem.columns = built.view(rows);
   const auto solution = solve_nnls(problem, options);
@@ -181,7 +181,7 @@ class Multipliers {
   void run(const NnlsOptions& options) {
     options_.stop = options.stop;
     renew(100, VectorXd());
-    double before = kInfinity;
+    double before = kNoBound;
     for (; rounds < kMostRounds; ++rounds) {
       solver_->set_goal(stacked_goal());
       const NnlsSolution inner = solver_->solve();
@@ -200,7 +200,7 @@ class Multipliers {
       // Far from linear convergence at a good rate: limits weigh more. Not near the end, where rounding is all.
       if (change > 0.25 * before && rho_ < 1e5 && change > 1e-12) {
         renew(rho_ * 10, inner.x);
-        before = kInfinity;
+        before = kNoBound;
       } else if (change > 0.9 * before && change < 1e-12) {
         converged = true;  // as near as doubles come
         return;
@@ -231,7 +231,7 @@ class Multipliers {
     NnlsProblem problem;
     problem.goal = stacked_goal();
     problem.columns = columns_.view(problem.goal.size());
-    problem.upper = VectorXd::Constant(problem.columns.columns(), kInfinity);
+    problem.upper = VectorXd::Constant(problem.columns.columns(), kNoBound);
     for (std::size_t j = 0; j < s_.upper.size(); ++j) problem.upper[static_cast<Index>(j)] = s_.upper[j];
     auto made = NnlsSolver::make(problem, options_);
     LUXRIG_CHECK(made.has_value(), "{}", made.has_value() ? "" : made.error().detail);
@@ -276,7 +276,7 @@ std::string limits_complaint(const NnlsProblem& problem, const LinearLimits& lim
       if (!(std::abs(it.value()) <= 1e140))
         return fmt::format("limit {} has an entry of {} for column {}", it.row(), it.value(), j);
   for (Index i = 0; i < limits.most.size(); ++i)
-    if (!(std::abs(limits.most[i]) <= 1e140 || limits.most[i] == kInfinity))
+    if (!(std::abs(limits.most[i]) <= 1e140 || limits.most[i] == kNoBound))
       return fmt::format("limit {} is {}", i, limits.most[i]);
   return {};
 }

@@ -16,7 +16,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kLargestEntry = ColumnsView::kLargestEntry;
+constexpr double kLargestGramEntry = ColumnsView::kLargestEntry;
 /// A worse answer than this is sought again with orthogonal factors.
 constexpr double kGoodEnough = 1e-12;
 
@@ -36,7 +36,7 @@ std::string NnlsProblem::complaint() const {
   if (upper.size() != 0 && upper.size() != columns.columns())
     return fmt::format("{} upper bounds for {} columns", upper.size(), columns.columns());
   if (auto text = columns.complaint(); !text.empty()) return text;
-  if (auto text = entry_complaint(goal, "goal", kLargestEntry, true); !text.empty()) return text;
+  if (auto text = entry_complaint(goal, "goal", kLargestGramEntry, true); !text.empty()) return text;
   if (auto text = entry_complaint(row_weight, "weight", 1e70, false); !text.empty()) return text;
   return entry_complaint(upper, "upper bound", std::numeric_limits<double>::infinity(), false);
 }
@@ -83,7 +83,7 @@ Result<NnlsSolver> NnlsSolver::make(const NnlsProblem& problem, const NnlsOption
 
 void NnlsSolver::set_goal(const VectorXd& goal) {
   LUXRIG_CHECK(goal.size() == state_->scaled.rows(), "{} goals for {} rows", goal.size(), state_->scaled.rows());
-  LUXRIG_CHECK(entry_complaint(goal, "goal", kLargestEntry, true).empty(), "a goal is not finite");
+  LUXRIG_CHECK(entry_complaint(goal, "goal", kLargestGramEntry, true).empty(), "a goal is not finite");
   const VectorXd x = state_->search.x();
   state_->scaled.set_goal(goal);
   state_->search.goal_changed(x);

@@ -12,7 +12,7 @@ using Eigen::VectorXd;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 /// A gradient below this is rounding: columns and goal have norm 1.
-constexpr double kGradientTolerance = 1e-13;
+constexpr double kSearchTolerance = 1e-13;
 
 /// Number of a set of columns, by which a set already visited is known again (Zobrist).
 std::uint64_t key_of(Index column) {
@@ -135,7 +135,7 @@ std::vector<Index> NnlsSearch::entering(std::size_t most) {
   const auto pull = [&](Index j) { return place_[at(j)] == Place::upper ? -gradient_[j] : gradient_[j]; };
   for (Index j = 0; j < gradient_.size(); ++j) {
     if (place_[at(j)] == Place::passive || refused_[at(j)] || !allowed_[at(j)] || !(p_.upper(j) > 0)) continue;
-    if (!(pull(j) > kGradientTolerance)) continue;
+    if (!(pull(j) > kSearchTolerance)) continue;
     columns.push_back(j);
   }
   const auto steeper = [&](Index a, Index b) { return pull(a) != pull(b) ? pull(a) > pull(b) : a < b; };

@@ -17,7 +17,7 @@ const RayScene* obstacles_in(const RayScene& scene) { return scene.bounds_world_
 
 namespace {
 
-constexpr std::size_t kReplicates = 16;
+constexpr std::size_t kDirectReplicates = 16;
 constexpr std::uint32_t kFirstSamples = 16;  ///< per replicate
 constexpr std::uint32_t kMostSamples = 1u << 26;
 /// As in the path evaluator: done when this many standard errors are within what is wanted.
@@ -39,32 +39,32 @@ struct Pair {
   std::size_t receiver, emitter;
   Way way;
   std::uint32_t samples = 0;                               ///< per replicate
-  std::array<double, kReplicates> lux{};                   ///< sums over samples
+  std::array<double, kDirectReplicates> lux{};             ///< sums over samples
   std::array<DirectSum::Part, DirectSum::kParts> parts{};  ///< sums over samples and replicates
   std::uint64_t rays = 0;
 
   [[nodiscard]] double mean_lux() const {
     double sum = 0;
     for (const double one : lux) sum += one;
-    return samples > 0 ? sum / (static_cast<double>(kReplicates) * samples) : 0;
+    return samples > 0 ? sum / (static_cast<double>(kDirectReplicates) * samples) : 0;
   }
   [[nodiscard]] double doubt_lx() const {
     double doubt = 0;
     for (const DirectSum::Part& part : parts) {
-      const double strata = static_cast<double>(part.samples) / kReplicates;
+      const double strata = static_cast<double>(part.samples) / kDirectReplicates;
       const bool all_or_nothing = part.lux == 0 || part.lux == part.unobstructed_lux;
       if (way == Way::clear || !(strata > 0) || (all_or_nothing && strata >= kSamplesToBelieve)) continue;
-      doubt += kDoubtPerStratum * part.unobstructed_lux / (static_cast<double>(kReplicates) * samples) / strata;
+      doubt += kDoubtPerStratum * part.unobstructed_lux / (static_cast<double>(kDirectReplicates) * samples) / strata;
     }
     return doubt;
   }
 
   /// The replicates' estimates, with the doubt put into their spread in an even pattern, other for each pair.
-  [[nodiscard]] std::array<double, kReplicates> estimates() const {
-    std::array<double, kReplicates> means{};
-    const double spread = doubt_lx() * std::sqrt(kReplicates - 1.0);
+  [[nodiscard]] std::array<double, kDirectReplicates> estimates() const {
+    std::array<double, kDirectReplicates> means{};
+    const double spread = doubt_lx() * std::sqrt(kDirectReplicates - 1.0);
     std::uint64_t sign = mixed(receiver, emitter);
-    for (std::size_t k = 0; k < kReplicates; k += 2, sign >>= 1) {
+    for (std::size_t k = 0; k < kDirectReplicates; k += 2, sign >>= 1) {
       means[k] = lux[k] / samples + (sign & 1 ? spread : -spread);
       means[k + 1] = lux[k + 1] / samples - (sign & 1 ? spread : -spread);
     }
@@ -171,7 +171,7 @@ class Evaluation {
       Pair& pair = pairs_[round[i]];
       const std::uint32_t begin = pair.samples, last = begin == 0 ? kFirstSamples : 2 * begin;
       DirectSources::Scratch scratch;
-      for (std::size_t k = 0; k < kReplicates; ++k) {
+      for (std::size_t k = 0; k < kDirectReplicates; ++k) {
         if (options_.watch.stop.stop_requested()) return;
         const SobolSequence samples(mixed(mixed(mixed(options_.seed, pair.receiver), pair.emitter + 0x5a1a), k));
         // In stretches, so that room and the answer to a stop stay small.
@@ -245,10 +245,10 @@ class Evaluation {
   void finish() {
     direct_.rays += rays_sampled_;
     if (!pairs_.empty()) {
-      direct_.replicates.assign(kReplicates, direct_.lux_per_level);
+      direct_.replicates.assign(kDirectReplicates, direct_.lux_per_level);
       for (const Pair& pair : pairs_) {
         const auto estimates = pair.estimates();
-        for (std::size_t k = 0; k < kReplicates; ++k)
+        for (std::size_t k = 0; k < kDirectReplicates; ++k)
           direct_.replicates[k](index(pair.receiver), index(pair.emitter)) = estimates[k];
         direct_.lux_per_level(index(pair.receiver), index(pair.emitter)) = pair.mean_lux();
       }

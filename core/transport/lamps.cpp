@@ -18,13 +18,9 @@ namespace {
 /// Importance of a lamp that is off, relative to the brightest: its column is wanted, but not at the others' cost.
 constexpr double kLeastImportance = 0.02;
 
-auto place_of(const Emitter& emitter) {
+auto kind_and_place_of(const Emitter& emitter) {
   const Vec3& p = emitter.world_from_lamp.translation_m;
   return std::tuple(emitter.sky != nullptr, p.x(), p.y(), p.z());
-}
-
-tl::unexpected<Fault> refusal(std::string detail) {
-  return tl::unexpected(Fault{Cause::invalid, "", std::move(detail), {}});
 }
 
 std::string text_of(const Vec3& v) { return fmt::format("({:g}, {:g}, {:g})", v.x(), v.y(), v.z()); }
@@ -46,8 +42,9 @@ Lamps::Lamps(std::span<const Emitter> emitters, std::span<const double> levels,
   };
   std::vector<std::size_t> order(emitters.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return place_of(emitters[a]) < place_of(emitters[b]); });
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return kind_and_place_of(emitters[a]) < kind_and_place_of(emitters[b]);
+  });
   lamps_.reserve(order.size());
   place_of_emitter_.resize(emitters.size());
   colours_rgb_.resize(emitters.size());

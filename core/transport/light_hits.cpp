@@ -9,7 +9,7 @@ namespace {
 /// Dimensions of their own, apart from those of paths.
 constexpr std::uint32_t kLightSet = 1u << 17;
 
-bool meets(const Eigen::AlignedBox3d& box, const Vec3& from, const Vec3& direction) {
+bool box_meets(const Eigen::AlignedBox3d& box, const Vec3& from, const Vec3& direction) {
   double near = 0, far = HUGE_VAL;
   for (int axis = 0; axis < 3; ++axis) {
     if (direction[axis] == 0) {
@@ -39,7 +39,7 @@ LightHit LightHits::trace(std::size_t group, const SobolSequence& samples, std::
   const auto [u, v] = samples.pair(index, kLightSet, 0);
   const auto [s, t] = lamps_.have_size() ? samples.pair(index, kLightSet, 1) : std::array<double, 2>{};
   const LampRay ray = lamps_.emit(group, u, v, s, t);
-  if (!(ray.flux_lm > 0) || !meets(bounds_world_m_, ray.from_world_m, ray.direction_world)) return light;
+  if (!(ray.flux_lm > 0) || !box_meets(bounds_world_m_, ray.from_world_m, ray.direction_world)) return light;
   ++rays;
   // Moved off along the ray: a panel may lie flush in a wall, which must not stop its light where that begins.
   const auto hit = scene_.nearest(ray.from_world_m, ray.direction_world, ray.direction_world);

@@ -16,7 +16,7 @@ constexpr double kLeastGain = 1.0;  ///< mean of log(2π / solid angle)
 /// Glimpses left over that need no explanation.
 constexpr double kLeftOver = 0.01;
 /// Rays this far beside a rectangle, as a part of its size, still belong to it; so much is added in the end.
-constexpr double kBeside = 0.1, kMargin = 0.02;
+constexpr double kBeside = 0.1, kFitMargin = 0.02;
 constexpr int kMostGrowth = 32;
 /// Planes are given up that are seen edge-on.
 constexpr double kLeastSlope = 0.1;
@@ -186,7 +186,7 @@ class OpeningFit {
   }
 
   SkyOpening opening_of(const Candidate& candidate) const {
-    const Box2 box = widened(candidate.box, kMargin);
+    const Box2 box = widened(candidate.box, kFitMargin);
     SkyOpening opening;
     opening.world_from_opening = candidate.plane.axes;
     opening.centre_world_m =

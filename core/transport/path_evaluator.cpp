@@ -24,7 +24,7 @@
 namespace luxrig {
 namespace {
 
-constexpr std::size_t kReplicates = ReplicateSums::kReplicates;
+constexpr std::size_t kPathReplicates = ReplicateSums::kReplicates;
 /// Samples that are taken from one filling of the pools of light hits.
 constexpr std::uint32_t kChunk = 512;
 /// Hits that a receiver is joined with, for each of its paths.
@@ -59,10 +59,10 @@ Eigen::VectorXd levels_of(const EvaluateOptions& options, std::size_t emitters) 
   return levels;
 }
 
-class Evaluation {
+class PathEvaluation {
  public:
-  Evaluation(const RayScene& scene, std::span<const Receiver> receivers, std::span<const Emitter> emitters,
-             const EvaluateOptions& options, bool shares_tails)
+  PathEvaluation(const RayScene& scene, std::span<const Receiver> receivers, std::span<const Emitter> emitters,
+                 const EvaluateOptions& options, bool shares_tails)
       : scene_(scene),
         receivers_(receivers),
         emitters_(emitters),
@@ -80,7 +80,7 @@ class Evaluation {
         spent_(receivers.size(), options),
         sums_(0, channels_, levels_) {
     for (std::size_t e = 0; e < emitters.size(); ++e) importance_[e] = lamps_.importance(e);
-    if (shares_tails) tails_.emplace(scene_, sampler_, bsdfs_, emitters.size(), kReplicates, options.seed);
+    if (shares_tails) tails_.emplace(scene_, sampler_, bsdfs_, emitters.size(), kPathReplicates, options.seed);
   }
 
   Result<TransportMatrix> run() {
@@ -112,7 +112,7 @@ class Evaluation {
   /// Works through the tasks of a round, a chunk of each at a time.
   bool sample(const std::vector<PathTask>& round) {
     std::size_t parts = 0;
-    for (const PathTask& task : round) parts += (task.end - task.begin + kChunk - 1) / kChunk * kReplicates;
+    for (const PathTask& task : round) parts += (task.end - task.begin + kChunk - 1) / kChunk * kPathReplicates;
     CallingThreadProgress progress(options_.watch, done_, spent_.done_after(round, done_), parts);
     for (std::vector<PathTask> left = round; !left.empty();) {
       std::vector<PathTask> chunk = left;
@@ -142,12 +142,12 @@ class Evaluation {
   }
 
   void trace_paths(const std::vector<PathTask>& chunk, bool shares_now, CallingThreadProgress& progress) {
-    std::vector<std::uint64_t> rays(chunk.size() * kReplicates, 0);
+    std::vector<std::uint64_t> rays(chunk.size() * kPathReplicates, 0);
     std::vector<TailShare> told(rays.size());
     const std::uint32_t checked = bias_is_known() ? kSeldomCheckedPaths : kCheckedPaths;
     parallel_for(rays.size(), options_.threads, [&](std::size_t task) {
-      const auto& [r, begin, end] = chunk[task / kReplicates];
-      const std::size_t k = task % kReplicates;
+      const auto& [r, begin, end] = chunk[task / kPathReplicates];
+      const std::size_t k = task % kPathReplicates;
       const SobolSequence samples(mixed(mixed(options_.seed, r), k));
       PathScratch scratch;
       std::vector<double> values(columns_, 0.0);
@@ -158,8 +158,8 @@ class Evaluation {
       for (std::uint32_t i = begin; i < end; ++i) {
         if (options_.watch.stop.stop_requested()) return;
         tails.check = i % checked == r % checked;
-        rays[task] += sampler_.add_path(start, samples, i, pools_[k], plans_[task / kReplicates], cut_lx(r), scratch,
-                                        {values, channels_}, &tails);
+        rays[task] += sampler_.add_path(start, samples, i, pools_[k], plans_[task / kPathReplicates], cut_lx(r),
+                                        scratch, {values, channels_}, &tails);
       }
       told[task] = tails;
       sums_.add(k, r, values);
@@ -168,14 +168,14 @@ class Evaluation {
     std::vector<double> reflected_lx;
     for (const PathTask& task : chunk) reflected_lx.push_back(sums_.mean_reflected_lx(task.receiver, task.end));
     for (std::size_t task = 0; task < rays.size(); ++task) {
-      ReceiverProgress& spent = spent_[chunk[task / kReplicates].receiver];
+      ReceiverProgress& spent = spent_[chunk[task / kPathReplicates].receiver];
       spent.rays += rays[task];
       spent.taken_lx += told[task].taken_lx;
       matrix_.rays += rays[task];
       // Relative to each receiver's light: errors are to be right for the dim ones, too.
-      if (!(reflected_lx[task / kReplicates] > 0)) continue;
-      record_bias_.add(task % kReplicates, told[task].by_record_lx / reflected_lx[task / kReplicates],
-                       told[task].by_path_lx / reflected_lx[task / kReplicates]);
+      if (!(reflected_lx[task / kPathReplicates] > 0)) continue;
+      record_bias_.add(task % kPathReplicates, told[task].by_record_lx / reflected_lx[task / kPathReplicates],
+                       told[task].by_path_lx / reflected_lx[task / kPathReplicates]);
     }
   }
 
@@ -188,9 +188,9 @@ class Evaluation {
     for (const PathTask& task : chunk) paths.push_back(task.end - task.begin);
     const auto counts = ReceiverHits::pool_counts(lamps_, plans_, paths);
     const LightHits lights(scene_, lamps_, bsdfs_);
-    pools_.resize(kReplicates);
-    std::vector<std::uint64_t> rays(kReplicates, 0);
-    parallel_for(kReplicates, options_.threads, [&](std::size_t k) {
+    pools_.resize(kPathReplicates);
+    std::vector<std::uint64_t> rays(kPathReplicates, 0);
+    parallel_for(kPathReplicates, options_.threads, [&](std::size_t k) {
       Lamps::Weights weights;
       if (!options_.watch.stop.stop_requested())
         rays[k] = pools_[k].refill(lights, mixed(mixed(options_.seed, 0x11647), k), counts, weights);
@@ -210,7 +210,7 @@ class Evaluation {
       std::vector<HitStretch> stretches;
       std::vector<double> squares(groups);
       std::vector<double> values(columns_);
-      for (std::size_t k = 0; k < kReplicates; ++k) {
+      for (std::size_t k = 0; k < kPathReplicates; ++k) {
         const std::uint64_t key = mixed(mixed(mixed(options_.seed, r), k), 0x101a + begin);
         draw_stretches(plans_[i], pools_[k], samples, key, stretches);
         std::fill(values.begin(), values.end(), 0.0);
@@ -245,7 +245,7 @@ class Evaluation {
     const std::size_t wanted = tails_->records().size() == 0
                                    ? std::max(kFewestRecords, kFirstRecords * chunk.size())
                                    : paths / (chunk.size() < kFewestSharing ? kPathsPerRecord / 2 : kPathsPerRecord);
-    const std::size_t memory_allows = kMostRecordBytes / (kReplicates * 3 * sizeof(float) * emitters_.size());
+    const std::size_t memory_allows = kMostRecordBytes / (kPathReplicates * 3 * sizeof(float) * emitters_.size());
     const std::size_t room = std::min(kMostRecords, memory_allows) - std::min(kMostRecords, tails_->records().size());
     matrix_.rays += tails_->grow(from, std::min(wanted, room), kRecordPaths, pools_, plans, cuts_lx, options_.threads,
                                  options_.watch);
@@ -254,7 +254,7 @@ class Evaluation {
   void estimate(std::size_t r) {
     const auto reflected = sums_.reflected_lx(r, spent_[r].samples);
     double mean_lx = 0;
-    for (const double lux : reflected) mean_lx += lux / kReplicates;
+    for (const double lux : reflected) mean_lx += lux / kPathReplicates;
     spent_[r].found = sums_.found(r);
     spent_[r].direct_lx = matrix_.direct_lux_per_level.row(static_cast<Eigen::Index>(r)).dot(levels_);
     spent_[r].reflected_lx = mean_lx;
@@ -272,9 +272,9 @@ class Evaluation {
     if (channels_ == 3) start_colours();
     std::vector<std::uint32_t> samples;
     for (std::size_t r = 0; r < receivers_.size(); ++r) samples.push_back(spent_[r].samples);
-    for (std::size_t k = 0; k < kReplicates; ++k) {
+    for (std::size_t k = 0; k < kPathReplicates; ++k) {
       const Eigen::MatrixXd replicate = sums_.take(k, samples, matrix_.rgb_per_level);
-      reflected += replicate / kReplicates;
+      reflected += replicate / kPathReplicates;
       matrix_.replicates.emplace_back(
           replicate + (direct_replicates_.empty() ? matrix_.direct_lux_per_level : direct_replicates_[k]));
     }
@@ -301,18 +301,19 @@ class Evaluation {
     if (!believed) return;
     const auto [bias, error] = *believed;
     // Half up and half down by `a` gives a standard error of a · √(16/15) / 4, times Student's factor.
-    const double up_and_down = error * 4 / (std::sqrt(16.0 / 15) * student_t_975(kReplicates - 1) / student_t_975(1e9));
+    const double up_and_down =
+        error * 4 / (std::sqrt(16.0 / 15) * student_t_975(kPathReplicates - 1) / student_t_975(1e9));
     for (std::size_t r = 0; r < receivers_.size(); ++r) {
       ReceiverProgress& spent = spent_[r];
       const double reflected_lx = spent.reflected_lx;
       if (!(spent.taken_lx > 0) || !(reflected_lx > 0)) continue;
-      const double taken_lx = spent.taken_lx / (kReplicates * static_cast<double>(spent.samples));
+      const double taken_lx = spent.taken_lx / (kPathReplicates * static_cast<double>(spent.samples));
       const double share = std::min(1.0, taken_lx / reflected_lx);
       const auto row = static_cast<Eigen::Index>(r);
       const auto reflected = (matrix_.lux_per_level.row(row) - matrix_.direct_lux_per_level.row(row)).eval();
       matrix_.lux_per_level.row(row) -= share * bias / (1 + bias) * reflected;
       for (auto& rgb : matrix_.rgb_per_level) rgb.row(row) *= 1 - share * bias / (1 + bias) * reflected_lx / spent.lux;
-      for (std::size_t k = 0; k < kReplicates; ++k)
+      for (std::size_t k = 0; k < kPathReplicates; ++k)
         matrix_.replicates[k].row(row) -=
             share * (bias / (1 + bias) + (k % 2 == 0 ? up_and_down : -up_and_down)) * reflected;
       spent.error_lx = std::hypot(spent.error_lx, share * error * reflected_lx);
@@ -360,7 +361,7 @@ class PathEvaluator final : public Evaluator {
                                    const EvaluateOptions& options) const override {
     if (auto checked = check_evaluation(receivers, emitters, options); !checked)
       return tl::unexpected(std::move(checked.error()));
-    return Evaluation(scene_, receivers, emitters, options, shares_tails_).run();
+    return PathEvaluation(scene_, receivers, emitters, options, shares_tails_).run();
   }
 
  private:

@@ -8,12 +8,12 @@ namespace luxrig {
 namespace {
 
 /// First number of samples per replicate: 128 paths say roughly how bright it is, which later rounds build on.
-constexpr std::uint32_t kFirstSamples = 8;
+constexpr std::uint32_t kFirstRoundSamples = 8;
 /// A path has seldom more than 4 vertices, each with a ray to reach it, one to a lamp and one to a light hit.
 constexpr std::uint64_t kRaysPerPath = 12;
 /// Where nothing reflected was found at all, an error of zero proves nothing yet; it is believed from here on.
 constexpr std::uint32_t kSamplesToBelieveNothing = 256;
-constexpr std::uint32_t kMostSamples = 1u << 30;
+constexpr std::uint32_t kMostRoundSamples = 1u << 30;
 /// Rounds end at so many steps between as many samples as before and twice as many, a little beyond what is needed.
 constexpr int kStepsToDouble = 8;
 constexpr double kStepMargin = 1.05;
@@ -26,7 +26,7 @@ std::uint64_t PathRounds::rays_left(std::uint64_t rays_cast) const {
 
 std::vector<PathTask> PathRounds::first(std::uint64_t rays_cast) const {
   const std::uint64_t rays_per_sample = kRaysPerPath * progress_.size() * RecordBias::kReplicates;
-  std::uint32_t samples = kFirstSamples;
+  std::uint32_t samples = kFirstRoundSamples;
   while (samples > 1 && rays_per_sample * samples > rays_left(rays_cast)) samples /= 2;
   std::vector<PathTask> all;
   for (std::size_t r = 0; r < progress_.size(); ++r) all.push_back({r, 0, samples});
@@ -38,7 +38,7 @@ std::vector<PathTask> PathRounds::next(std::uint64_t rays_cast) const {
   for (std::size_t r = 0; r < progress_.size(); ++r) {
     const std::uint32_t have = progress_[r].samples;
     const double over = overshoot(r);
-    if (!(over > 1) || have >= kMostSamples) continue;
+    if (!(over > 1) || have >= kMostRoundSamples) continue;
     const double parts = std::ceil(kStepsToDouble * (over * over * kStepMargin - 1));
     const double share = std::clamp(parts, 1.0, static_cast<double>(kStepsToDouble)) / kStepsToDouble;
     wanting.push_back({r, have, have + std::max(1u, static_cast<std::uint32_t>(have * share))});

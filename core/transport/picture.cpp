@@ -16,12 +16,12 @@ namespace {
 
 /// Light hits of a pass, from which each pixel takes its own; those a pixel is joined with, for each path.
 constexpr std::uint32_t kHitsPerPass = 1u << 14;
-constexpr std::uint32_t kHitsPerPath = 4;
+constexpr std::uint32_t kPictureHitsPerPath = 4;
 /// Tail records at first, and added each time the passes double.
-constexpr std::size_t kFirstRecords = 6000, kMoreRecords = 2000;
-constexpr std::uint32_t kRecordPaths = 8;
+constexpr std::size_t kFirstPictureRecords = 6000, kMoreRecords = 2000;
+constexpr std::uint32_t kPictureRecordPaths = 8;
 /// Connections worth less than this share of the mean reflected light are made only now and then.
-constexpr double kCut = 0.05;
+constexpr double kPictureCut = 0.05;
 
 std::vector<Emitter> of_kind(const std::vector<Emitter>& emitters, bool point) {
   std::vector<Emitter> some;
@@ -66,7 +66,7 @@ class Renderer {
         sized_lamps_(sized_, {}, scene.bounds_world_m(), &openings_),
         importance_(emitters_.size(), 1.0),
         by_light_(light_of(lamps_)),
-        plan_(HitPlan::of(lamps_, by_light_, kHitsPerPath, 1)),
+        plan_(HitPlan::of(lamps_, by_light_, kPictureHitsPerPath, 1)),
         sampler_(scene, lamps_, bsdfs_, importance_),
         tails_(scene, sampler_, bsdfs_, emitters_.size(), 1, options.seed),
         camera_(camera),
@@ -140,7 +140,7 @@ class Renderer {
 
   /// Records where first legs from the surfaces in view end.
   void grow_tails(std::uint32_t index) {
-    const std::size_t count = index == 0 ? kFirstRecords : kMoreRecords;
+    const std::size_t count = index == 0 ? kFirstPictureRecords : kMoreRecords;
     const SobolSequence samples(mixed(options_.seed, 0x7a113 + index));
     std::vector<Receiver> in_view;
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -149,10 +149,11 @@ class Renderer {
         in_view.push_back({hit->position_world_m, hit->normal_world});
     }
     if (in_view.empty()) return;
-    const std::vector<HitPlan> plans(in_view.size(),
-                                     HitPlan::of(lamps_, by_light_, kHitsPerPath * kRecordPaths, kRecordPaths));
+    const std::vector<HitPlan> plans(
+        in_view.size(), HitPlan::of(lamps_, by_light_, kPictureHitsPerPath * kPictureRecordPaths, kPictureRecordPaths));
     const std::vector<double> cuts_lx(in_view.size(), 0.0);
-    tails_.grow(in_view, in_view.size(), kRecordPaths, {&pool_, 1}, plans, cuts_lx, options_.threads, options_.watch);
+    tails_.grow(in_view, in_view.size(), kPictureRecordPaths, {&pool_, 1}, plans, cuts_lx, options_.threads,
+                options_.watch);
   }
 
   struct Scratch {
@@ -194,7 +195,7 @@ class Renderer {
     std::fill(scratch.sums.begin(), scratch.sums.end(), 0.0);
     TailShare share;
     if (tails_.records().size() > 0) share.records = &tails_.records();
-    const double cut = kCut * mean_reflected_lx_;
+    const double cut = kPictureCut * mean_reflected_lx_;
     draw_stretches(plan_, pool_, 1, key, scratch.stretches);
     sampler_.join_start(start, pool_, plan_, scratch.stretches, cut, mixed(key, pool_.groups()), {scratch.sums, 3});
     sampler_.add_path(start, samples, index, pool_, plan_, cut, scratch.path, {scratch.sums, 3}, &share);
@@ -293,10 +294,6 @@ class Renderer {
   double mean_reflected_lx_ = 0;
   Picture picture_;
 };
-
-tl::unexpected<Fault> refusal(std::string detail) {
-  return tl::unexpected(Fault{Cause::invalid, "", std::move(detail), {}});
-}
 
 }  // namespace
 

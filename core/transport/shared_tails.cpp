@@ -8,7 +8,7 @@
 namespace luxrig {
 namespace {
 
-constexpr std::uint64_t kPlaceKey = 0x7a11, kPathKey = 0x7a12, kHitKey = 0x7a13, kCutKey = 0x7a14;
+constexpr std::uint64_t kTailPlaceKey = 0x7a11, kPathKey = 0x7a12, kHitKey = 0x7a13, kCutKey = 0x7a14;
 
 /// Mean change, relative to the mean, at which records count as settled: far below their noise.
 constexpr double kSettled = 3e-4;
@@ -44,7 +44,7 @@ std::uint64_t SharedTails::grow(std::span<const Receiver> receivers, std::size_t
 
 std::uint64_t SharedTails::add_places(std::span<const Receiver> receivers, std::size_t count, int threads) {
   std::vector<std::optional<TailRecords::Place>> found(count);
-  const SobolSequence samples(mixed(seed_, kPlaceKey));
+  const SobolSequence samples(mixed(seed_, kTailPlaceKey));
   parallel_for(count, threads, [&](std::size_t i) {
     Receiver from = receivers[i % receivers.size()];
     const std::uint32_t index = drawn_ + static_cast<std::uint32_t>(i);

@@ -13,7 +13,7 @@ namespace luxrig {
 namespace {
 
 /// Paths that feel for the sky: few first, that tell open country from rooms, then more until enough of them see it.
-constexpr std::size_t kFirstPaths = 256, kPathsPerRound = 2048, kMostRounds = 8, kRoundsToBelieveNothing = 2;
+constexpr std::size_t kFirstPaths = 256, kPathsPerRound = 2048, kMostFinderRounds = 8, kRoundsToBelieveNothing = 2;
 constexpr std::uint32_t kLegs = 3;
 constexpr std::size_t kWantedGlimpses = 400, kFewestGlimpses = 12;
 /// From where more of the cosine-weighted hemisphere is sky than this, the whole sky is a good enough target.
@@ -23,7 +23,7 @@ constexpr std::uint32_t kOpenProbes = 12;
 constexpr std::size_t kFelt = 64;
 constexpr int kSpokes = 8;
 /// Added to where an opening was seen from, as a part of that.
-constexpr double kMargin = 0.02;
+constexpr double kFinderMargin = 0.02;
 
 class Finder {
  public:
@@ -53,7 +53,7 @@ class Finder {
   std::vector<SkyGlimpse> look_around() {
     std::vector<SkyGlimpse> glimpses;
     std::size_t paths = 0;
-    for (std::size_t round = 0; round <= kMostRounds; ++round) {
+    for (std::size_t round = 0; round <= kMostFinderRounds; ++round) {
       const std::size_t count = round == 0 ? kFirstPaths : kPathsPerRound;
       std::vector<std::optional<SkyGlimpse>> found(count);
       std::vector<std::uint8_t> open(count, 0);
@@ -132,7 +132,7 @@ class Finder {
     if (from_m.isEmpty()) return;
     opening.surfaces_below = surfaces[0] / std::max(all[0], 1.0);
     opening.surfaces_above = surfaces[1] / std::max(all[1], 1.0);
-    const Vec3 margin_m = Vec3::Constant(kMargin * from_m.diagonal().norm());
+    const Vec3 margin_m = Vec3::Constant(kFinderMargin * from_m.diagonal().norm());
     opening.seen_from_world_m = {from_m.min() - margin_m, from_m.max() + margin_m};
   }
 

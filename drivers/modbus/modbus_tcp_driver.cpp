@@ -22,7 +22,7 @@ using modbus::Request;
 using modbus::WriteSchedule;
 using std::chrono::milliseconds;
 
-constexpr OptionDoc kOptions[] = {
+constexpr OptionDoc kModbusOptions[] = {
     {"host", "text", "", "required", "an IPv4 address", "the Modbus TCP server: a device or a gateway"},
     {"port", "whole number", "", "502", "1 to 65535", "its TCP port"},
     {"response_timeout_ms", "whole number", "ms", "200", "20 to 5000",
@@ -32,7 +32,7 @@ constexpr OptionDoc kOptions[] = {
     {"poll_ms", "whole number", "ms", "200", "20 to 10000", "each luxmeter is read this often"},
 };
 
-constexpr Duration kWritePeriod = milliseconds(100);
+constexpr Duration kModbusWritePeriod = milliseconds(100);
 constexpr Duration kShortestBackoff = milliseconds(100), kLongestBackoff = milliseconds(1000);
 constexpr milliseconds kSchedulingSlack(50);
 /// A bus is gone when nobody has answered for this long (or for two rounds, if rounds are longer) and a request timed
@@ -43,11 +43,11 @@ constexpr Duration kReconnectSilentAfter = milliseconds(1000);
 class ModbusTcpDriver final : public Driver, public LevelOutput, public LuxReader {
  public:
   ModbusTcpDriver(const Rig& rig, std::size_t bus, const std::optional<Redirect>& redirect)
-      : timeout_(integer_option(rig.buses[bus], kOptions, "response_timeout_ms")),
-        refresh_(milliseconds(integer_option(rig.buses[bus], kOptions, "refresh_ms"))),
-        poll_(milliseconds(integer_option(rig.buses[bus], kOptions, "poll_ms"))),
-        link_(redirect ? redirect->host : string_option(rig.buses[bus], kOptions, "host"),
-              redirect ? redirect->port : static_cast<int>(integer_option(rig.buses[bus], kOptions, "port"))),
+      : timeout_(integer_option(rig.buses[bus], kModbusOptions, "response_timeout_ms")),
+        refresh_(milliseconds(integer_option(rig.buses[bus], kModbusOptions, "refresh_ms"))),
+        poll_(milliseconds(integer_option(rig.buses[bus], kModbusOptions, "poll_ms"))),
+        link_(redirect ? redirect->host : string_option(rig.buses[bus], kModbusOptions, "host"),
+              redirect ? redirect->port : static_cast<int>(integer_option(rig.buses[bus], kModbusOptions, "port"))),
         writes_(rig, bus, refresh_),
         life_(rig.buses[bus].name) {
     for (const modbus::Channel& channel : writes_.channels()) {
@@ -65,9 +65,9 @@ class ModbusTcpDriver final : public Driver, public LevelOutput, public LuxReade
     DriverBounds bounds;
     // A request starts only within the first timeout, and takes one at most.
     bounds.write = bounds.read = 2 * timeout_ + kSchedulingSlack;
-    bounds.write_period = kWritePeriod;
+    bounds.write_period = kModbusWritePeriod;
     bounds.read_period = meters_.empty() ? Duration{} : poll_;
-    bounds.fault_after = asked_every() + silence_allowed() + bounds.write + kWritePeriod;
+    bounds.fault_after = asked_every() + silence_allowed() + bounds.write + kModbusWritePeriod;
     return bounds;
   }
 
@@ -370,16 +370,16 @@ class ModbusTcpDriver final : public Driver, public LevelOutput, public LuxReade
 
 }  // namespace
 
-std::span<const OptionDoc> modbus_tcp_options() { return kOptions; }
+std::span<const OptionDoc> modbus_tcp_options() { return kModbusOptions; }
 
 std::vector<Problem> check_modbus_tcp(const Rig& rig, std::size_t bus) {
   const Bus& entry = rig.buses[bus];
-  std::vector<Problem> problems = check_options(rig, entry, kOptions);
+  std::vector<Problem> problems = check_options(rig, entry, kModbusOptions);
   const auto report = [&](const Place& place, std::string what, std::string mend) {
     problems.push_back({rig.file.string(), place.line, place.column, std::move(what), std::move(mend)});
   };
   if (problems.empty()) {
-    const std::string host = string_option(entry, kOptions, "host");
+    const std::string host = string_option(entry, kModbusOptions, "host");
     const auto address = parse_ipv4(host);
     if (!address || *address == 0 || is_multicast(*address) || *address == 0xFFFFFFFF) {
       problems.push_back(problem_at(rig, entry, "host", fmt::format("host = \"{}\" is no IPv4 address", host),

@@ -8,6 +8,7 @@
 
 #include "drivers/options.h"
 #include "tests/drivers/test_rig.h"
+#include "tests/folders.h"
 
 namespace luxrig {
 namespace {
@@ -59,7 +60,7 @@ TEST(Registry, EveryDefaultOfAnOptionIsGoodItself) {
 
 /// The rows of the options table under `### driver = "name"` in the rig-file reference.
 std::vector<std::string> reference_rows(std::string_view name) {
-  std::ifstream in(std::string(LUXRIG_SOURCE_DIR) + "/rigs/REFERENCE.md");
+  std::ifstream in(test::source_folder() / "rigs/REFERENCE.md");
   const std::string heading = "### driver = \"" + std::string(name) + "\"";
   std::vector<std::string> rows;
   bool inside = false;

@@ -17,6 +17,12 @@ namespace luxrig::scenarios {
 /// greatest slope of 1.5 · 0.02 / 0.8.
 inline constexpr double kLargestStep = 0.0376;
 
+inline sim::Deviations seeded(std::uint64_t seed) {
+  sim::Deviations deviations;
+  deviations.seed = seed;
+  return deviations;
+}
+
 class ClosedLoop {
  public:
   ClosedLoop(const Hall& hall_in, const sim::Deviations& deviations)

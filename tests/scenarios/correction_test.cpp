@@ -6,12 +6,6 @@
 namespace luxrig::scenarios {
 namespace {
 
-sim::Deviations seeded(std::uint64_t seed) {
-  sim::Deviations deviations;
-  deviations.seed = seed;
-  return deviations;
-}
-
 TEST(Show, BringsEveryMeteredGoalWithinThreePercentAndNeverExceedsALimitForFiftySeeds) {
   double worst_error = 0, worst_share = 0, longest_s = 0;
   int most_rounds = 0;

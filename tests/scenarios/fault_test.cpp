@@ -11,12 +11,6 @@
 namespace luxrig::scenarios {
 namespace {
 
-sim::Deviations seeded(std::uint64_t seed) {
-  sim::Deviations deviations;
-  deviations.seed = seed;
-  return deviations;
-}
-
 struct FaultCase {
   const char* name;
   const char* device;

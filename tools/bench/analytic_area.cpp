@@ -8,7 +8,7 @@
 namespace luxrig {
 namespace {
 
-constexpr double kFlux_lm = 1000, kAreaTarget = 1e-4;
+constexpr double kPanel_lm = 1000, kAreaTarget = 1e-4;
 
 using Kind = LuminousShape::Kind;
 
@@ -17,7 +17,7 @@ AnalyticCase flat_lamp(const std::string& name, Kind kind, const Vec3& size_m) {
   AnalyticCase one;
   one.name = name;
   one.direct_target = kAreaTarget;
-  Emitter lamp{make_lambertian(kFlux_lm), {}};
+  Emitter lamp{make_lambertian(kPanel_lm), {}};
   lamp.shape = {kind, size_m};
   one.emitters.push_back(lamp);
   return one;
@@ -26,7 +26,7 @@ AnalyticCase flat_lamp(const std::string& name, Kind kind, const Vec3& size_m) {
 /// E of an element for its form factor: a surface of area A and luminance Φ/(πA) gives Φ/A · F.
 void expect(AnalyticCase& one, const Vec3& at_m, const Vec3& normal, double form_factor, double area_m2) {
   one.receivers.push_back({at_m, normal});
-  one.exact_lx.push_back(kFlux_lm / area_m2 * form_factor);
+  one.exact_lx.push_back(kPanel_lm / area_m2 * form_factor);
 }
 
 void disks(const BenchOptions& options, std::vector<BenchRow>& rows) {
@@ -77,7 +77,7 @@ void spheres(const BenchOptions& options, std::vector<BenchRow>& rows) {
   AnalyticCase whole, cut;
   whole.name = "sphere-whole", cut.name = "sphere-cut";
   whole.direct_target = cut.direct_target = kAreaTarget;
-  Emitter lamp{make_isotropic(kFlux_lm), {}};
+  Emitter lamp{make_isotropic(kPanel_lm), {}};
   lamp.shape = {Kind::sphere, {2 * r, 0, 0}};
   whole.emitters = cut.emitters = {lamp};
   for (const double d : {0.2002, 0.21, 0.25, 0.4, 1.0, 4.0, 50.0})

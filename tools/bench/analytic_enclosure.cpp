@@ -12,9 +12,9 @@
 namespace luxrig {
 namespace {
 
-constexpr double kFlux_lm = 1000;
+constexpr double kBulb_lm = 1000;
 
-Emitter bulb(const Vec3& position_m) { return {make_isotropic(kFlux_lm), {Mat3::Identity(), position_m}}; }
+Emitter bulb(const Vec3& position_m) { return {make_isotropic(kBulb_lm), {Mat3::Identity(), position_m}}; }
 
 /// E = Φ/A (direct + ρ/(1-ρ)): a sphere of 20 480 facets round a source at its centre. The facets are seen slightly
 /// tilted, which makes the wall uneven by the square of their half angle, 1e-4. Both the whole, and the reflected part
@@ -26,7 +26,7 @@ void add_spheres(const BenchOptions& options, std::vector<BenchRow>& rows) {
     one.scene = make_icosphere(2, 5, reflectance);
     one.emitters = {bulb(Vec3::Zero())};
     one.reflects = true;
-    const double reflected_lx = reflected_wall_illuminance_lx(kFlux_lm, area_m2(one.scene), reflectance);
+    const double reflected_lx = reflected_wall_illuminance_lx(kBulb_lm, area_m2(one.scene), reflectance);
     for (const WallPoint& p : spread_over_walls(one.scene, options.quick ? 2 : 16, Vec3::Zero())) {
       one.receivers.push_back({p.position_m, p.normal});
       one.exact_lx.push_back(reflected_lx);
@@ -37,7 +37,7 @@ void add_spheres(const BenchOptions& options, std::vector<BenchRow>& rows) {
     if (!options.quick) measure_case(one, options, rows);
     for (std::size_t r = 0; r < one.receivers.size(); ++r) {
       const Vec3& at = one.receivers[r].position_world_m;
-      one.exact_lx[r] += kFlux_lm / (4 * kPi) * -one.receivers[r].normal_world.dot(at) / std::pow(at.norm(), 3);
+      one.exact_lx[r] += kBulb_lm / (4 * kPi) * -one.receivers[r].normal_world.dot(at) / std::pow(at.norm(), 3);
     }
     one.part = AnalyticCase::Part::total;
     one.reflected_share = 1;
@@ -61,7 +61,7 @@ void add_cubes(const BenchOptions& options, std::vector<BenchRow>& rows) {
       one.reflects = true;
       std::array<double, 6> same;
       same.fill(reflectance);
-      const BoxRadiosity exact({Vec3::Constant(edge_m), same, kFlux_lm, source_m}, 8);
+      const BoxRadiosity exact({Vec3::Constant(edge_m), same, kBulb_lm, source_m}, 8);
       for (const WallPoint& p : cube_wall_grid(edge_m, options.quick ? 1 : 2)) {
         // Off the middles of patches and their edges.
         const Vec3 shift = Vec3(0.31, -0.23, 0.17),
@@ -92,7 +92,7 @@ void add_cube_means(const BenchOptions& options, std::vector<BenchRow>& rows) {
           receivers.push_back({position_m, -side * Vec3::Unit(axis)});
           weights.push_back(rule.weights[i] * rule.weights[j] / 24);
         }
-  const double exact_lx = mean_wall_illuminance_lx(kFlux_lm, area_m2(scene), reflectance);
+  const double exact_lx = mean_wall_illuminance_lx(kBulb_lm, area_m2(scene), reflectance);
   const std::vector<Emitter> source = {bulb({0.3, -0.2, 0.4})};
   for (const Method& method : methods()) {
     if (!method.reflects) continue;

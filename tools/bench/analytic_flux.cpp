@@ -8,7 +8,7 @@
 namespace luxrig {
 namespace {
 
-constexpr double kFlux_lm = 1000;
+constexpr double kSource_lm = 1000;
 
 /// Receivers on a sphere of radius_m: Gauss' rule in the cosine of γ between `breaks_rad`, where the distribution has
 /// its kinks, and even steps round about. One row, whose error is that of their weighted sum.
@@ -51,13 +51,13 @@ void add_flux(const std::string& name, const Emitter& lamp, double radius_m, std
 
 void add_flux_rows(const BenchOptions& options, std::vector<BenchRow>& rows) {
   const Pose pose{Eigen::AngleAxisd(0.6, Vec3(1, 2, 3).normalized()).toRotationMatrix(), {4, 5, 6}};
-  constexpr double kPointTarget = 1e-6, kAreaTarget = 1e-4;
+  constexpr double kFluxTarget = 1e-6, kSizedTarget = 1e-4;
   const double down = kPi / 2;
-  add_flux("flux-isotropic", {make_isotropic(kFlux_lm), pose}, 3, {down}, kPointTarget, options, rows);
-  add_flux("flux-lambertian", {make_lambertian(kFlux_lm), pose}, 3, {down}, kPointTarget, options, rows);
-  add_flux("flux-cosine-power-20", {make_cosine_power(kFlux_lm, 20), pose}, 3, {down}, kPointTarget, options, rows);
+  add_flux("flux-isotropic", {make_isotropic(kSource_lm), pose}, 3, {down}, kFluxTarget, options, rows);
+  add_flux("flux-lambertian", {make_lambertian(kSource_lm), pose}, 3, {down}, kFluxTarget, options, rows);
+  add_flux("flux-cosine-power-20", {make_cosine_power(kSource_lm, 20), pose}, 3, {down}, kFluxTarget, options, rows);
   const double field = rad_from_deg(54);
-  add_flux("flux-spot", {make_spot(kFlux_lm, rad_from_deg(30), field), pose}, 3, {field / 2, field}, kPointTarget,
+  add_flux("flux-spot", {make_spot(kSource_lm, rad_from_deg(30), field), pose}, 3, {field / 2, field}, kFluxTarget,
            options, rows);
   // The whole sphere round a luminaire with size, from well within five times its size.
   const auto sized = [&](const Intensity& intensity, LuminousShape::Kind kind, const Vec3& size_m) {
@@ -65,12 +65,13 @@ void add_flux_rows(const BenchOptions& options, std::vector<BenchRow>& rows) {
     lamp.shape = {kind, size_m};
     return lamp;
   };
-  const Intensity flat = make_lambertian(kFlux_lm), round = make_isotropic(kFlux_lm);
-  using Kind = LuminousShape::Kind;
-  add_flux("flux-disk", sized(flat, Kind::disk, {0.6, 0, 0}), 1, {down}, kAreaTarget, options, rows);
-  add_flux("flux-rectangle", sized(flat, Kind::rectangle, {1.2, 0.3, 0}), 1, {down}, kAreaTarget, options, rows);
-  add_flux("flux-sphere", sized(round, Kind::sphere, {0.5, 0, 0}), 1, {down}, kAreaTarget, options, rows);
-  add_flux("flux-cylinder", sized(round, Kind::cylinder, {0.1, 0, 1.2}), 1, {down}, 1e-3, options, rows);
+  const Intensity flat = make_lambertian(kSource_lm), round = make_isotropic(kSource_lm);
+  add_flux("flux-disk", sized(flat, LuminousShape::Kind::disk, {0.6, 0, 0}), 1, {down}, kSizedTarget, options, rows);
+  add_flux("flux-rectangle", sized(flat, LuminousShape::Kind::rectangle, {1.2, 0.3, 0}), 1, {down}, kSizedTarget,
+           options, rows);
+  add_flux("flux-sphere", sized(round, LuminousShape::Kind::sphere, {0.5, 0, 0}), 1, {down}, kSizedTarget, options,
+           rows);
+  add_flux("flux-cylinder", sized(round, LuminousShape::Kind::cylinder, {0.1, 0, 1.2}), 1, {down}, 1e-3, options, rows);
 }
 
 }  // namespace luxrig

@@ -10,7 +10,7 @@
 namespace luxrig {
 namespace {
 
-constexpr double kExitance_lm_m2 = 50, kReflectance = 0.6;
+constexpr double kExitance_lm_m2 = 50, kWallReflectance = 0.6;
 
 /// A box's faces: rectangles that shine outwards (or inwards), and the mesh they lie on.
 void add_shining_box(const Vec3& low_m, const Vec3& high_m, bool inwards, RectangleScene& scene, AnalyticCase& one) {
@@ -22,7 +22,7 @@ void add_shining_box(const Vec3& low_m, const Vec3& high_m, bool inwards, Rectan
       const int a = (axis + 1) % 3, b = (axis + 2) % 3;
       const Vec3 corner_m = low_m + side * size_m[axis] * Vec3::Unit(axis);
       const Vec3 u_m = size_m[a] * Vec3::Unit(a), v_m = size_m[b] * Vec3::Unit(b);
-      scene.add(corner_m, u_m, v_m, kReflectance);
+      scene.add(corner_m, u_m, v_m, kWallReflectance);
       Emitter face{make_lambertian(kExitance_lm_m2 * size_m[a] * size_m[b]), {}};
       face.shape = {LuminousShape::Kind::rectangle, {size_m[a], size_m[b], 0}};
       const Vec3 z = (inwards == (side == 0) ? -1.0 : 1.0) * Vec3::Unit(axis);  // light leaves along -Z
@@ -72,7 +72,7 @@ void add_furnace_rows(const BenchOptions& options, std::vector<BenchRow>& rows) 
     measure_case(one, options, rows);
     one.name = bumpy ? "furnace-bumpy" : "furnace";
     one.part = AnalyticCase::Part::total;
-    one.exact_lx.assign(one.receivers.size(), kExitance_lm_m2 / (1 - kReflectance));
+    one.exact_lx.assign(one.receivers.size(), kExitance_lm_m2 / (1 - kWallReflectance));
     one.reflects = true;
     if (!(options.quick && bumpy)) measure_case(one, options, rows);
   }

@@ -12,7 +12,7 @@
 namespace luxrig {
 namespace {
 
-constexpr double kFlux_lm = 1000, kPointTarget = 1e-6;
+constexpr double kPoint_lm = 1000, kPointTarget = 1e-6;
 
 /// E = Φ/4π cosθ/d² in open air, for 1 000 random pairs from millimetres to kilometres: the largest relative error.
 void add_pairs(const BenchOptions& options, std::vector<BenchRow>& rows) {
@@ -31,7 +31,7 @@ void add_pairs(const BenchOptions& options, std::vector<BenchRow>& rows) {
       EvaluateOptions evaluate;
       evaluate.threads = options.threads;
       const std::vector<Receiver> receiver = {{Vec3::Zero(), normal}};
-      const std::vector<Emitter> bulb = {{make_isotropic(kFlux_lm), {Mat3::Identity(), to_m}}};
+      const std::vector<Emitter> bulb = {{make_isotropic(kPoint_lm), {Mat3::Identity(), to_m}}};
       all = measure(method, open_air, receiver, bulb, evaluate);
       seconds += all.seconds;
       if (!all.refused.empty()) break;
@@ -40,7 +40,7 @@ void add_pairs(const BenchOptions& options, std::vector<BenchRow>& rows) {
         d2 += static_cast<long double>(to_m[k]) * to_m[k];
         height += static_cast<long double>(normal[k]) * to_m[k];
       }
-      const long double exact_lx = kFlux_lm / (4 * std::numbers::pi_v<long double>)*height / (d2 * std::sqrt(d2));
+      const long double exact_lx = kPoint_lm / (4 * std::numbers::pi_v<long double>)*height / (d2 * std::sqrt(d2));
       worst = std::max(worst, static_cast<double>(std::abs(all.matrix.lux_per_level(0, 0) / exact_lx - 1)));
     }
     all.seconds = seconds;
@@ -69,7 +69,7 @@ AnalyticCase over_a_floor(const std::string& name, const Intensity& intensity, c
 
 template <int kExponent>
 double cosine_power(double gamma_rad, double) {
-  return gamma_rad < kPi / 2 ? kFlux_lm * (kExponent + 1) / (2 * kPi) * std::pow(std::cos(gamma_rad), kExponent) : 0;
+  return gamma_rad < kPi / 2 ? kPoint_lm * (kExponent + 1) / (2 * kPi) * std::pow(std::cos(gamma_rad), kExponent) : 0;
 }
 
 /// The formula of make_spot's header for a beam of 30° and a field of 54°, its flux by Gauss' rule over the two pieces
@@ -88,7 +88,7 @@ double spot_candela(double gamma_rad, double) {
       sum += integral(rule, from, from + f, 0, 1, [&](double g, double) { return 2 * kPi * shape(g) * std::sin(g); });
     return sum;
   }();
-  return kFlux_lm / flux * shape(gamma_rad);
+  return kPoint_lm / flux * shape(gamma_rad);
 }
 
 constexpr int kPlanes = 13, kAngles = 19;  ///< every 30° round about, every 5° from the nadir to the horizon
@@ -140,10 +140,11 @@ AnalyticCase on_the_grid(const Intensity& intensity, const Mat3& turn) {
 void add_point_rows(const BenchOptions& options, std::vector<BenchRow>& rows) {
   add_pairs(options, rows);
   const Mat3 turn = (Eigen::AngleAxisd(0.7, Vec3::UnitZ()) * Eigen::AngleAxisd(0.4, Vec3::UnitX())).toRotationMatrix();
-  measure_case(over_a_floor("lambertian", make_lambertian(kFlux_lm), turn, cosine_power<1>), options, rows);
-  measure_case(over_a_floor("cosine-power-4", make_cosine_power(kFlux_lm, 4), turn, cosine_power<4>), options, rows);
-  measure_case(over_a_floor("cosine-power-60", make_cosine_power(kFlux_lm, 60), turn, cosine_power<60>), options, rows);
-  measure_case(over_a_floor("spot-30-54", make_spot(kFlux_lm, rad_from_deg(30), rad_from_deg(54)), turn, spot_candela),
+  measure_case(over_a_floor("lambertian", make_lambertian(kPoint_lm), turn, cosine_power<1>), options, rows);
+  measure_case(over_a_floor("cosine-power-4", make_cosine_power(kPoint_lm, 4), turn, cosine_power<4>), options, rows);
+  measure_case(over_a_floor("cosine-power-60", make_cosine_power(kPoint_lm, 60), turn, cosine_power<60>), options,
+               rows);
+  measure_case(over_a_floor("spot-30-54", make_spot(kPoint_lm, rad_from_deg(30), rad_from_deg(54)), turn, spot_candela),
                options, rows);
   const auto file = parse_ies(table_file(), "bench.ies");
   if (!file) {

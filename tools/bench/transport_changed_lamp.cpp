@@ -13,7 +13,7 @@
 namespace luxrig {
 namespace {
 
-constexpr double kEqualError = 0.03, kTimesFaster = 5;
+constexpr double kChangedLampError = 0.03, kChangedLampTimesFaster = 5;
 /// A run of more than this is the last of its method: finer ones would each take several times as long.
 constexpr double kLongestSeconds = 10;
 
@@ -176,12 +176,12 @@ void add_changed_lamp(LitRoom lit, const BenchOptions& options, std::vector<Benc
     double longest = 0;
     for (std::size_t step = 0; longest <= kLongestSeconds; ++step) {
       bool enough = true;
-      for (const auto& cost : best) enough = enough && cost && cost->error.rms <= kEqualError;
+      for (const auto& cost : best) enough = enough && cost && cost->error.rms <= kChangedLampError;
       if (enough) break;
       const auto way = method.way(step);
       if (!way) break;
       for (std::size_t k = 0; k < lamps.size(); ++k) {
-        if (best[k] && best[k]->error.rms <= kEqualError) continue;
+        if (best[k] && best[k]->error.rms <= kChangedLampError) continue;
         ColumnCost cost = cost_of(*way, lamps[k], references[k], options);
         longest = std::max(longest, cost.run.cpu_seconds);
         if (!best[k] || cost.error.rms < best[k]->error.rms) best[k] = std::move(cost);
@@ -218,8 +218,8 @@ void add_changed_lamp(LitRoom lit, const BenchOptions& options, std::vector<Benc
     if (all[m].name == "path")
       path_seconds = median(m, [](const ColumnCost& cost, const ColumnCost&) { return cost.run.seconds; });
   }
-  rows.push_back(transport_row(name + "-to-0.03", "cache", worst, run, std::nullopt, kEqualError));
-  rows.back().target_seconds = path_seconds / kTimesFaster;
+  rows.push_back(transport_row(name + "-to-0.03", "cache", worst, run, std::nullopt, kChangedLampError));
+  rows.back().target_seconds = path_seconds / kChangedLampTimesFaster;
   set_note(rows.back(), note);
 }
 

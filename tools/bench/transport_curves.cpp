@@ -19,7 +19,7 @@ struct Target {
   double error, seconds;
 };
 /// A run of more than this is the last of its method: finer ones would each take several times as long.
-constexpr double kLongestSeconds = 20;
+constexpr double kLongestCurveSeconds = 20;
 
 constexpr Target kTargets[] = {{"flat", "gather", 0.01, 0.5},
                                {"flat", "gather", 0.003, 5},
@@ -48,7 +48,7 @@ Point measured_at(const TransportCase& one, const Method& method, const Referenc
     if (point.run.refused.empty())
       point.error = error_of(point.run.matrix.lux(Eigen::VectorXd::Ones(point.run.matrix.emitters())), reference.lux);
     points.push_back(std::move(point));
-    if (points.back().run.seconds > kLongestSeconds) break;
+    if (points.back().run.seconds > kLongestCurveSeconds) break;
   }
   const auto middle = points.begin() + static_cast<std::ptrdiff_t>(points.size() / 2);
   std::nth_element(points.begin(), middle, points.end(),
@@ -62,7 +62,7 @@ Point measured_at(const TransportCase& one, const Method& method, const Referenc
 }
 
 /// Direct light of every method against the direct evaluator's, which is exact for lamps without size.
-void add_direct(const TransportCase& one, const BenchOptions& options, std::vector<BenchRow>& rows) {
+void add_direct_curve(const TransportCase& one, const BenchOptions& options, std::vector<BenchRow>& rows) {
   EvaluateOptions evaluate;
   evaluate.wanted_relative_error = 0.3;
   evaluate.threads = options.threads;
@@ -81,7 +81,7 @@ void add_direct(const TransportCase& one, const BenchOptions& options, std::vect
 }
 
 void add_curves(const TransportCase& one, const BenchOptions& options, std::vector<BenchRow>& rows) {
-  add_direct(one, options, rows);
+  add_direct_curve(one, options, rows);
   const Reference reference = reference_of(one, options);
   if (!reference.refused.empty()) {
     Measured none;
@@ -100,7 +100,7 @@ void add_curves(const TransportCase& one, const BenchOptions& options, std::vect
       const Point& point = points.back();
       rows.push_back(transport_row(one.room.name, method.name, point.error.rms, point.run, wanted, std::nullopt,
                                    point.error, reference.rms_error));
-      if (!point.run.refused.empty() || point.run.seconds > kLongestSeconds) break;
+      if (!point.run.refused.empty() || point.run.seconds > kLongestCurveSeconds) break;
     }
     for (const Target& target : kTargets) {
       if (one.room.name != target.room || std::string(method.name) != target.method) continue;

@@ -11,15 +11,15 @@
 namespace luxrig::sim {
 namespace {
 
-constexpr const char* kLoopback = "127.0.0.1";
+constexpr const char* kPortsHost = "127.0.0.1";
 
 }  // namespace
 
 std::string to_json(const Ports& ports) {
   nlohmann::ordered_json json;
   json["buses"] = nlohmann::ordered_json::object();
-  for (const auto& [bus, port] : ports.buses) json["buses"][bus] = {{"host", kLoopback}, {"port", port}};
-  json["control"] = {{"host", kLoopback}, {"port", ports.control}};
+  for (const auto& [bus, port] : ports.buses) json["buses"][bus] = {{"host", kPortsHost}, {"port", port}};
+  json["control"] = {{"host", kPortsHost}, {"port", ports.control}};
   json["seed"] = ports.seed;
   return json.dump();
 }

@@ -19,7 +19,9 @@ struct Line {
   Vec3 from_grid, to_grid;  ///< of the shortened line
 };
 
-double number(std::uint64_t seed, std::uint64_t key) { return static_cast<double>(mixed(seed, key) >> 11) * 0x1p-53; }
+double unit_number_of(std::uint64_t seed, std::uint64_t key) {
+  return static_cast<double>(mixed(seed, key) >> 11) * 0x1p-53;
+}
 
 /// Between places that lie half a cell off random surfaces: where the cache has its cells.
 std::vector<Line> lines_in(const Scene& scene, const VoxelGrid& grid, std::size_t count, std::uint64_t seed) {
@@ -32,7 +34,7 @@ std::vector<Line> lines_in(const Scene& scene, const VoxelGrid& grid, std::size_
       const WallPoint& p = near[k];
       return p.position_m - scene.origin_world_m + 0.5 * cell_m * p.normal;
     };
-    const auto other = static_cast<std::size_t>(number(seed, i) * static_cast<double>(near.size()));
+    const auto other = static_cast<std::size_t>(unit_number_of(seed, i) * static_cast<double>(near.size()));
     Line line{place(2 * i), place(std::min(other, near.size() - 1)), {}, {}};
     const Vec3 way = line.to_m - line.from_m;
     if (way.norm() <= 2.5 * cell_m) continue;
@@ -183,7 +185,7 @@ std::vector<TraversalRow> compare_traversals(const Scene& scene, const RayScene&
   });
   for (const int steps : {6, 12, 48})
     measure(fmt::format("march of {} looks", steps), [&](const Line& line, std::size_t i) {
-      return first_voxel_by_march(geometry, line.from_grid, line.to_grid, steps, number(seed, ~i)).has_value();
+      return first_voxel_by_march(geometry, line.from_grid, line.to_grid, steps, unit_number_of(seed, ~i)).has_value();
     });
   return rows;
 }

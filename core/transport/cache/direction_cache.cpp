@@ -23,7 +23,7 @@ constexpr std::size_t kReplicates = kCacheReplicates;
 constexpr double kNegligible = 1e-3;
 constexpr int kMostReflections = 24;
 
-double number(std::uint64_t key) { return static_cast<double>(key >> 11) * 0x1p-53; }
+double unit_number(std::uint64_t key) { return static_cast<double>(key >> 11) * 0x1p-53; }
 
 /// Radiance numbers by cell, one row each.
 using Field = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -171,8 +171,8 @@ class DirectionCache final : public RadianceCache::Method {
       std::uint64_t key = mixed(mixed(seed_, kPlaceSamples), c);
       for (std::size_t k = 0; k < kReplicates; ++k)
         for (const LightViewHit& hit : views[k].hits) {
-          const double u = number(key = mixed(seed_, key)), v = number(key = mixed(seed_, key)),
-                       w = number(key = mixed(seed_, key)), jitter = number(key = mixed(seed_, key));
+          const double u = unit_number(key = mixed(seed_, key)), v = unit_number(key = mixed(seed_, key)),
+                       w = unit_number(key = mixed(seed_, key)), jitter = unit_number(key = mixed(seed_, key));
           const Vec3 at_m = cells_.place_m(c, u, v, w), hit_m = hit.position_world_m - cells_.origin_world_m();
           const Vec3 way = hit_m - at_m;
           const double cosine = -way.dot(hit.normal_world);

@@ -12,10 +12,6 @@
 namespace luxrig {
 namespace {
 
-tl::unexpected<Fault> refusal(Cause cause, std::string detail) {
-  return tl::unexpected(Fault{cause, "", std::move(detail), {}});
-}
-
 Result<void> check(const CacheSettings& s) {
   struct Range {
     const char* name;
@@ -36,8 +32,7 @@ Result<void> check(const CacheSettings& s) {
                           {"hemisphere_samples", s.hemisphere_samples, 1, 10000}};
   for (const Range& r : ranges)
     if (r.value < r.least || r.value > r.most)
-      return refusal(Cause::invalid,
-                     fmt::format("radiance cache: {} is {}; it must be {} to {}", r.name, r.value, r.least, r.most));
+      return refusal(fmt::format("radiance cache: {} is {}; it must be {} to {}", r.name, r.value, r.least, r.most));
   return {};
 }
 
@@ -98,7 +93,7 @@ Result<TransportMatrix> RadianceCache::evaluate(std::span<const Emitter> emitter
     return matrix;
   }
   auto light = method_->reflected(emitters, options);
-  if (!light) return refusal(Cause::cancelled, "stopped while evaluating the radiance cache");
+  if (!light) return tl::unexpected(Fault{Cause::cancelled, "", "stopped while evaluating the radiance cache", {}});
   matrix.rays += light->rays;
   // Illuminance is never negative; harmonics may make it so where it is nearly nothing.
   for (Eigen::MatrixXd& lux : light->lux_per_level) lux = lux.cwiseMax(0.0);

@@ -18,8 +18,9 @@
 namespace luxrig {
 namespace {
 
-constexpr std::uint64_t kGatherSamples = 0x676174686572, kLightSamples = 0x6c69676874, kBrightSamples = 0x627269676874;
-constexpr std::size_t kReplicates = kCacheReplicates;
+constexpr std::uint64_t kGatherSamples = 0x676174686572, kSideLightSamples = 0x6c69676874,
+                        kBrightSamples = 0x627269676874;
+constexpr std::size_t kSideReplicates = kCacheReplicates;
 
 /// A side is bright for an emitter when it throws back at least this share of what the emitter's light does.
 constexpr double kBrightShare = 1.0 / 256;
@@ -35,7 +36,7 @@ constexpr std::size_t kMostSolvedRows = 2048, kMostSolvedReads = 20'000'000;
 /// Radiosity of one side's first reflection, from one emitter.
 struct SideLight {
   std::uint32_t side;
-  Eigen::Matrix<float, kReplicates, 1> of_replicate[3];  ///< [lm/m²], per channel
+  Eigen::Matrix<float, kSideReplicates, 1> of_replicate[3];  ///< [lm/m²], per channel
 };
 
 class SideCache final : public RadianceCache::Method {
@@ -52,8 +53,8 @@ class SideCache final : public RadianceCache::Method {
     receivers.assign(points.begin(), points.end());
     materials_ = scene.materials;
     material_of_triangle_ = scene.material_of_triangle;
-    rays_per_replicate_ =
-        static_cast<std::uint32_t>((static_cast<std::size_t>(settings.gather_rays) + kReplicates - 1) / kReplicates);
+    rays_per_replicate_ = static_cast<std::uint32_t>(
+        (static_cast<std::size_t>(settings.gather_rays) + kSideReplicates - 1) / kSideReplicates);
   }
 
   /// False when stopped.
@@ -82,25 +83,25 @@ class SideCache final : public RadianceCache::Method {
     const auto n = static_cast<Eigen::Index>(receivers.size()), m = static_cast<Eigen::Index>(emitters.size());
     ReflectedLight light;
     light.lux_per_level.assign(static_cast<std::size_t>(channels_), Eigen::MatrixXd::Zero(n, m));
-    light.replicates.assign(kReplicates, Eigen::MatrixXd::Zero(n, m));
+    light.replicates.assign(kSideReplicates, Eigen::MatrixXd::Zero(n, m));
     light.coarser = Eigen::MatrixXd::Zero(n, m);
     light.share_of_difference = share_of_difference(settings_.group_cells);
-    const std::size_t tasks = emitters.size() * kReplicates;
+    const std::size_t tasks = emitters.size() * kSideReplicates;
     std::vector<std::vector<std::pair<std::uint32_t, Eigen::Vector3f>>> falls(tasks);
-    std::vector<std::uint64_t> cast(tasks + emitters.size() * kReplicates, 0);
+    std::vector<std::uint64_t> cast(tasks + emitters.size() * kSideReplicates, 0);
     CallingThreadProgress progress(options.watch, 0.5, 1, tasks);
     parallel_for(tasks, options.threads, [&](std::size_t task) {
       if (options.watch.stop.stop_requested()) return;
-      falls[task] = first_reflection(emitters[task / kReplicates], task % kReplicates, cast[task]);
+      falls[task] = first_reflection(emitters[task / kSideReplicates], task % kSideReplicates, cast[task]);
     });
     std::vector<std::vector<SideLight>> sides_light(emitters.size());
     std::vector<ByGroups> later(emitters.size());
     parallel_for(emitters.size(), options.threads, [&](std::size_t e) {
-      sides_light[e] = merged(std::span(falls).subspan(e * kReplicates, kReplicates));
+      sides_light[e] = merged(std::span(falls).subspan(e * kSideReplicates, kSideReplicates));
       later[e] = by_groups(sides_light[e]);
     });
     // Receivers in blocks, so that one emitter alone keeps all threads busy.
-    const std::size_t blocks = std::clamp<std::size_t>(receivers.size() / 32, 1, kReplicates);
+    const std::size_t blocks = std::clamp<std::size_t>(receivers.size() / 32, 1, kSideReplicates);
     parallel_for(emitters.size() * blocks, options.threads, [&](std::size_t task) {
       if (options.watch.stop.stop_requested()) return;
       const std::size_t e = task / blocks, block = task % blocks;
@@ -147,7 +148,7 @@ class SideCache final : public RadianceCache::Method {
     parallel_for(receivers.size(), options.threads, [&](std::size_t r) {
       const Receiver& receiver = receivers[r];
       std::vector<std::uint32_t> sides;
-      for (std::uint32_t k = 0; k < kReplicates; ++k) {
+      for (std::uint32_t k = 0; k < kSideReplicates; ++k) {
         if (options.watch.stop.stop_requested()) return;
         const SobolSequence samples(mixed(mixed(mixed(options.seed, kGatherSamples), r), k));
         sides.clear();
@@ -191,7 +192,7 @@ class SideCache final : public RadianceCache::Method {
       const std::uint32_t row = exchange_->row_of_group(sides_.group_of_side(side));
       for (std::size_t i = first_read_[side]; i < first_read_[side + 1]; ++i)
         triplets.emplace_back(static_cast<int>(reads_[i].receiver), static_cast<int>(row),
-                              reads_[i].share / static_cast<float>(kReplicates));
+                              reads_[i].share / static_cast<float>(kSideReplicates));
     }
     group_reads_.resize(static_cast<Eigen::Index>(receivers.size()), static_cast<Eigen::Index>(exchange_->rows()));
     group_reads_.setFromTriplets(triplets.begin(), triplets.end());
@@ -200,9 +201,9 @@ class SideCache final : public RadianceCache::Method {
   /// Radiosity that the emitter's first hits leave on sides, by side.
   std::vector<std::pair<std::uint32_t, Eigen::Vector3f>> first_reflection(const Emitter& emitter, std::size_t replicate,
                                                                           std::uint64_t& cast) const {
-    const SobolSequence samples(mixed(mixed(seed_, kLightSamples), replicate));
-    const auto count =
-        static_cast<std::uint32_t>((static_cast<std::size_t>(settings_.light_samples) + kReplicates - 1) / kReplicates);
+    const SobolSequence samples(mixed(mixed(seed_, kSideLightSamples), replicate));
+    const auto count = static_cast<std::uint32_t>(
+        (static_cast<std::size_t>(settings_.light_samples) + kSideReplicates - 1) / kSideReplicates);
     const LightView view = light_view(*rays, emitter, samples, count);
     cast += view.rays;
     std::vector<std::pair<std::uint32_t, Eigen::Vector3f>> falls;
@@ -279,8 +280,8 @@ class SideCache final : public RadianceCache::Method {
                      Eigen::Index emitter, ReflectedLight& out) const {
     std::uint64_t cast = 0;
     const auto n = static_cast<Eigen::Index>(end - begin);
-    using Estimates = Eigen::Matrix<double, Eigen::Dynamic, kReplicates, Eigen::RowMajor>;
-    Estimates own = Estimates::Zero(n, kReplicates);  // G of replicate k, B of replicate k
+    using Estimates = Eigen::Matrix<double, Eigen::Dynamic, kSideReplicates, Eigen::RowMajor>;
+    Estimates own = Estimates::Zero(n, kSideReplicates);  // G of replicate k, B of replicate k
     Eigen::Matrix<double, Eigen::Dynamic, 3> all =
         Eigen::Matrix<double, Eigen::Dynamic, 3>::Zero(n, 3);  // means of both
     Vec3 whole_lm = Vec3::Zero();
@@ -291,9 +292,9 @@ class SideCache final : public RadianceCache::Method {
     for (const SideLight& side : light) {
       const double area_m2 = sides_.area_of_side_m2(side.side);
       Vec3 sum = Vec3::Zero();
-      Eigen::Matrix<double, kReplicates, 1> of_replicate = Eigen::Matrix<double, kReplicates, 1>::Zero();
+      Eigen::Matrix<double, kSideReplicates, 1> of_replicate = Eigen::Matrix<double, kSideReplicates, 1>::Zero();
       for (int c = 0; c < channels_; ++c) {
-        const Eigen::Matrix<double, kReplicates, 1> lm_m2 = side.of_replicate[c].cast<double>();
+        const Eigen::Matrix<double, kSideReplicates, 1> lm_m2 = side.of_replicate[c].cast<double>();
         sum[c] = lm_m2.mean();
         of_replicate += (channels_ == 1 ? 1.0 : kLuminanceOfRgb[c]) * lm_m2;
       }
@@ -305,7 +306,7 @@ class SideCache final : public RadianceCache::Method {
         const auto r = static_cast<Eigen::Index>(entry.receiver - begin);
         if (bright && measured[static_cast<std::size_t>(r)]) continue;
         own(r, entry.replicate) += static_cast<double>(entry.share) * of_replicate[entry.replicate];
-        all.row(r) += static_cast<double>(entry.share) / kReplicates * sum.transpose();
+        all.row(r) += static_cast<double>(entry.share) / kSideReplicates * sum.transpose();
       }
     }
     const auto first = static_cast<Eigen::Index>(begin);
@@ -313,7 +314,7 @@ class SideCache final : public RadianceCache::Method {
     for (int c = 0; c < channels_; ++c)
       out.lux_per_level[static_cast<std::size_t>(c)].col(emitter).segment(first, n) =
           all.col(c) + later.of_channel[c].segment(first, n);
-    for (std::size_t k = 0; k < kReplicates; ++k)
+    for (std::size_t k = 0; k < kSideReplicates; ++k)
       out.replicates[k].col(emitter).segment(first, n) = own.col(static_cast<Eigen::Index>(k)) + added;
     out.coarser.col(emitter).segment(first, n) = later.first_by_group.segment(first, n) + added;
     return cast;
@@ -323,12 +324,12 @@ class SideCache final : public RadianceCache::Method {
   /// rays would seldom meet it; `measured` says which.
   template <class Own, class All>
   std::uint64_t read_bright(std::uint32_t side, std::size_t begin, std::size_t end, const Vec3& sum,
-                            const Eigen::Matrix<double, kReplicates, 1>& of_replicate, std::vector<bool>& measured,
+                            const Eigen::Matrix<double, kSideReplicates, 1>& of_replicate, std::vector<bool>& measured,
                             Own& own, All& all) const {
     std::uint64_t cast = 0;
     const auto pieces = sides_.pieces_of_side(side);
     const double area_m2 = sides_.area_of_side_m2(side);
-    const double most_rays = kRaysThatMeasure / (static_cast<double>(rays_per_replicate_) * kReplicates);
+    const double most_rays = kRaysThatMeasure / (static_cast<double>(rays_per_replicate_) * kSideReplicates);
     for (std::size_t r = begin; r < end; ++r) {
       const Receiver& receiver = receivers[r];
       const auto share_of = [&](const SurfacePiece& piece) {
@@ -343,11 +344,12 @@ class SideCache final : public RadianceCache::Method {
       const bool measure = most < most_rays;
       measured[r - begin] = measure;
       if (!measure || most == 0) continue;
-      for (std::uint32_t k = 0; k < kReplicates; ++k) {
+      for (std::uint32_t k = 0; k < kSideReplicates; ++k) {
         // One draw in so many equal parts of the area for each replicate.
         const double jitter =
-            static_cast<double>(mixed(mixed(mixed(seed_, kBrightSamples), r), side * kReplicates + k) >> 11) * 0x1p-53;
-        double left = (k + jitter) / kReplicates * area_m2;
+            static_cast<double>(mixed(mixed(mixed(seed_, kBrightSamples), r), side * kSideReplicates + k) >> 11) *
+            0x1p-53;
+        double left = (k + jitter) / kSideReplicates * area_m2;
         std::size_t i = 0;
         while (i + 1 < pieces.size() && left > static_cast<double>(pieces[i].area_m2))
           left -= static_cast<double>(pieces[i++].area_m2);
@@ -357,7 +359,7 @@ class SideCache final : public RadianceCache::Method {
         if (rays->occluded(receiver.position_world_m, receiver.normal_world, pieces[i].position_world_m)) continue;
         const auto row = static_cast<Eigen::Index>(r - begin);
         own(row, static_cast<Eigen::Index>(k)) += share * of_replicate[static_cast<Eigen::Index>(k)];
-        all.row(row) += share / kReplicates * sum.transpose();
+        all.row(row) += share / kSideReplicates * sum.transpose();
       }
     }
     return cast;

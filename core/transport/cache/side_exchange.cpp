@@ -12,10 +12,10 @@
 namespace luxrig {
 namespace {
 
-constexpr std::uint64_t kLinkSamples = 0x6c696e6b73;  // keeps these random numbers apart from others
+constexpr std::uint64_t kExchangeSamples = 0x6c696e6b73;  // keeps these random numbers apart from others
 /// Reflections after which the rest is below this share of the first are left out.
-constexpr double kNegligible = 1e-5;
-constexpr int kMostReflections = 400;
+constexpr double kNegligibleShare = 1e-5;
+constexpr int kMostExchanges = 400;
 
 /// Pieces of each group, by rising sum of area, to draw places from.
 struct GroupPlaces {
@@ -70,7 +70,7 @@ SideExchange::SideExchange(const Scene& scene, const RayScene& rays, const Surfa
       if (stop.stop_requested()) return;
       Row& row = rows[begin + i];
       const std::uint32_t group = group_of_row_[begin + i];
-      const SobolSequence samples(mixed(mixed(seed, kLinkSamples), group));
+      const SobolSequence samples(mixed(mixed(seed, kExchangeSamples), group));
       std::vector<std::uint32_t> met;
       for (std::uint32_t s = 0; s < static_cast<std::uint32_t>(rays_per_group); ++s) {
         const auto [u, v, w, unused] = samples.set(s, 0);
@@ -121,8 +121,8 @@ SideExchange::SideExchange(const Scene& scene, const RayScene& rays, const Surfa
 Eigen::VectorXd SideExchange::later(const Eigen::VectorXd& first, int channel) const {
   const Eigen::VectorXd& reflectance = reflectance_[static_cast<std::size_t>(channel)];
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(first.size()), last = first, next(first.size());
-  const double negligible = kNegligible * first.lpNorm<1>();
-  const int most = reflections_ > 0 ? reflections_ - 1 : kMostReflections;
+  const double negligible = kNegligibleShare * first.lpNorm<1>();
+  const int most = reflections_ > 0 ? reflections_ - 1 : kMostExchanges;
   for (int reflection = 0; reflection < most; ++reflection) {
     for (Eigen::Index row = 0; row < first.size(); ++row) {
       double lux = 0;

@@ -20,7 +20,7 @@ constexpr double kThin = 1e-9;
 /// rounding leaves slivers whose places may lie outside.
 constexpr double kDust = 1e-9;
 /// Sides of less than this share of a cell's face join a larger neighbour whose normal is within 37°.
-constexpr double kSmall = 0.2;
+constexpr double kSmallSide = 0.2;
 constexpr double kSameWay = 0.8;
 /// Places within this of a plane [cells] lie in it.
 constexpr double kFlat = 1e-4;
@@ -242,7 +242,7 @@ void SurfaceSides::index_pieces() {
 }
 
 void SurfaceSides::join_small_sides(int threads) {
-  const double small_m2 = kSmall * cells_.voxel_m * cells_.voxel_m;
+  const double small_m2 = kSmallSide * cells_.voxel_m * cells_.voxel_m;
   std::vector<std::uint32_t> joined(sides());
   std::iota(joined.begin(), joined.end(), 0u);
   parallel_for(slots_.size(), threads, [&](std::size_t s) {

@@ -12,10 +12,6 @@
 namespace luxrig {
 namespace {
 
-tl::unexpected<Fault> refusal(std::string detail) {
-  return tl::unexpected(Fault{Cause::invalid, "", std::move(detail), {}});
-}
-
 Result<void> check_point_luminaire(const Emitter& emitter) {
   if (auto checked = check_evaluation({}, std::span(&emitter, 1), {}); !checked) return checked;
   if (emitter.sky) return refusal("the emitter is a sky, not a luminaire");

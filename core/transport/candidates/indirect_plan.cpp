@@ -19,7 +19,7 @@ constexpr std::size_t kTried = 48;
 constexpr std::uint32_t kFewTried = 32, kManyTried = 256;
 /// Where the fields' own error leaves nothing to rays, these may still add this share of its square: less would cost
 /// rays and bring little.
-constexpr double kLeastShare = 0.25;
+constexpr double kLeastRayShare = 0.25;
 constexpr double kAloneShare = 0.5;
 constexpr std::size_t kFewestCells = 200;
 /// As many nodes as this share of the positions; where there are many positions, fewer, as then even sparser nodes are
@@ -177,7 +177,7 @@ Result<IndirectColumns> plan_indirect(const Scene& scene, const VisibilityScene&
   const double of_one_ray = std::max(0.0, (few * few - many * many) / (1.0 / kFewTried - 1.0 / kManyTried));
   const double of_fields = std::max(0.0, many * many - of_one_ray / kManyTried);
   const double wanted = options.wanted_relative_error;
-  const double left = std::max({wanted * wanted - of_fields, kLeastShare * of_fields, 1e-12});
+  const double left = std::max({wanted * wanted - of_fields, kLeastRayShare * of_fields, 1e-12});
   const double most =
       std::max(2.0, options.most_rays_per_candidate / static_cast<double>(IndirectColumns::kReplicates));
   const auto rays_for = [&](double share) {

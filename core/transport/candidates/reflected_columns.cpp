@@ -22,7 +22,7 @@ constexpr double kMostCounted = 4;
 constexpr float kLeastForetold = 0.5f;
 constexpr std::size_t kPlacesPerGuide = 8;
 constexpr std::size_t kFewestPerGuide = 64;
-constexpr std::size_t kPerTask = 16;
+constexpr std::size_t kPositionsPerTask = 16;
 
 }  // namespace
 
@@ -106,8 +106,9 @@ void ReflectedColumns::evaluate(std::span<const Asked> asked, std::uint32_t rays
     return place_in_order_[asked[a].position] < place_in_order_[asked[b].position];
   });
   for (std::size_t k = 0; k < IndirectColumns::kReplicates; ++k)
-    parallel_for((asked.size() + kPerTask - 1) / kPerTask, options_.threads, [&](std::size_t task) {
-      for (std::size_t at = kPerTask * task; at < std::min(asked.size(), kPerTask * (task + 1)); ++at) {
+    parallel_for((asked.size() + kPositionsPerTask - 1) / kPositionsPerTask, options_.threads, [&](std::size_t task) {
+      for (std::size_t at = kPositionsPerTask * task; at < std::min(asked.size(), kPositionsPerTask * (task + 1));
+           ++at) {
         if (stopped()) return;
         const std::size_t i = order[at];
         const auto [p, l] = asked[i];
@@ -218,7 +219,7 @@ bool ReflectedColumns::interpolate(const Asked& one, std::span<const WeightedRow
 
 bool ReflectedColumns::block(std::size_t first, std::size_t count, std::size_t receivers, std::span<float> lux,
                              std::span<float> standard_error_lux) {
-  const std::size_t kinds = luminaires_.size(), tasks = (count + kPerTask - 1) / kPerTask;
+  const std::size_t kinds = luminaires_.size(), tasks = (count + kPositionsPerTask - 1) / kPositionsPerTask;
   const auto column_of = [&](const Asked& one) { return (one.position - first) * kinds + one.luminaire; };
   const auto write = [&](std::size_t column, std::span<const float> replicates, std::span<const float> squared_lux2) {
     indirect_.summarise(replicates, squared_lux2, lux.subspan(column * receivers, receivers),
@@ -229,7 +230,8 @@ bool ReflectedColumns::block(std::size_t first, std::size_t count, std::size_t r
   parallel_for(tasks, options_.threads, [&](std::size_t task) {
     std::vector<WeightedRow> shares;
     std::vector<float> sums(row_), squared(indirect_.stride());
-    for (std::size_t p = first + kPerTask * task; p < first + std::min(count, kPerTask * (task + 1)); ++p) {
+    for (std::size_t p = first + kPositionsPerTask * task; p < first + std::min(count, kPositionsPerTask * (task + 1));
+         ++p) {
       if (!usable_[p] || stopped()) continue;
       for (std::uint32_t l = 0; l < kinds; ++l) {
         const Asked one{static_cast<std::uint32_t>(p), l};

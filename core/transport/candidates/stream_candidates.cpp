@@ -19,10 +19,6 @@ constexpr std::size_t kMostPositionsPerBlock = 8192;
 /// Bytes per receiver and column in a block: direct light, indirect light and its error, and an entry of the result.
 constexpr std::size_t kBytesPerPair = 3 * sizeof(float) + sizeof(std::uint32_t) + 3 * sizeof(float);
 
-tl::unexpected<Fault> refusal(std::string detail) {
-  return tl::unexpected(Fault{Cause::invalid, "", std::move(detail), {}});
-}
-
 Result<void> check(std::span<const Receiver> receivers, const CandidateSet& candidates,
                    const CandidateOptions& options) {
   EvaluateOptions limits;

@@ -13,7 +13,7 @@ constexpr std::uint32_t kSeveral = 0x80000000;
 constexpr std::size_t kMostListed = 48;
 /// Cubes are looked at with this much round them, of their size; lifts of less stay within what was looked at.
 constexpr double kMargin = 0.06;
-constexpr double kLift = 0.03;
+constexpr double kCellLift = 0.03;
 /// More cubes than this are not looked at (all then count as having several planes).
 constexpr double kMostCubes = 5e7;
 constexpr std::uint32_t kMostPieces = 8;
@@ -131,7 +131,7 @@ void SurfaceCells::grow() {
 
 bool SurfaceCells::sees(const Vec3& position_world_m, const Vec3& normal_world, const Cell& cell,
                         std::uint64_t& rays) const {
-  const double lift_m = kLift * cell_m_;
+  const double lift_m = kCellLift * cell_m_;
   ++rays;
   return !rays_->occluded(position_world_m + lift_m * normal_world, Vec3::Zero(),
                           cell.first_world_m + lift_m * cell.first_normal_world);
@@ -146,7 +146,7 @@ bool SurfaceCells::sees_within(const Cube& cube, const Vec3& position_world_m, c
   const std::size_t begin = listed ? list_begin_[plane - kSeveral] : 0,
                     end = listed ? list_begin_[plane - kSeveral + 1] : 0;
   if (!listed || end - begin > kMostListed) return sees(position_world_m, normal_world, cell, rays);
-  const double lift_m = kLift * cell_m_;
+  const double lift_m = kCellLift * cell_m_;
   const Vec3 from_m = position_world_m + lift_m * normal_world;
   const Vec3 way_m = cell.first_world_m + lift_m * cell.first_normal_world - from_m;
   constexpr double kEdge = 1e-9;

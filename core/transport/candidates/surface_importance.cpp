@@ -28,7 +28,7 @@ constexpr std::uint32_t kMostSweeps = 400;
 constexpr double kCellsPerPatch = 1.5;
 
 constexpr std::uint64_t kGridKey = 0x67726964, kReceiverKey = 0x72656376, kPlaceKey = 0x706c6163, kCellKey = 0x63656c6c,
-                        kGuidedKey = 0x67756964, kAgainKey = 0x61676169, kPatchKey = 0x70617463;
+                        kGuideKey = 0x67756964, kAgainKey = 0x61676169, kPatchKey = 0x70617463;
 
 Vec3 grid_offset(std::uint64_t seed) {
   const SobolSequence random(mixed(seed, kGridKey));
@@ -228,7 +228,7 @@ void SurfaceImportance::gather_bounces() {
         return bounce;
       };
       const SobolSequence again(mixed(mixed(settings_.seed, kAgainKey), c));
-      const SobolSequence where_worth(mixed(mixed(settings_.seed, kGuidedKey), c));
+      const SobolSequence where_worth(mixed(mixed(settings_.seed, kGuideKey), c));
       Bounce* of_cell = fresh.data() + c * (first + guided);
       for (std::uint32_t q = 0; q < first; ++q) {
         const auto [u, v] = again.pair(q, 0, 0);

@@ -5,9 +5,9 @@
 namespace luxrig {
 namespace {
 
-constexpr double kLength_m = 30, kWidth_m = 20, kStorey_m = 3.5, kSlab_m = 0.3, kWall_m = 0.3;
+constexpr double kAtriumLength_m = 30, kAtriumWidth_m = 20, kStorey_m = 3.5, kSlab_m = 0.3, kWall_m = 0.3;
 constexpr int kStoreys = 4;
-constexpr double kHeight_m = kStorey_m * kStoreys;
+constexpr double kAtriumHeight_m = kStorey_m * kStoreys;
 /// The court within the balconies, and the opening in the roof.
 constexpr double kCourtLow_m[2] = {8, 6}, kCourtHigh_m[2] = {22, 14}, kSkyLow_m[2] = {10, 7.5},
                  kSkyHigh_m[2] = {20, 12.5};
@@ -53,25 +53,26 @@ class Atrium {
 
   void shell() {
     model_.begin_object("shell");
-    constexpr double kOutLow[2] = {-kWall_m, -kWall_m}, kOutHigh[2] = {kLength_m + kWall_m, kWidth_m + kWall_m};
-    constexpr double kInLow[2] = {0, 0}, kInHigh[2] = {kLength_m, kWidth_m};
-    model_.box({-kWall_m - 0.05, -kWall_m - 0.05, -0.4}, {kLength_m + kWall_m + 0.05, kWidth_m + kWall_m + 0.05, 0},
-               stone_);
-    ring(kOutLow, kOutHigh, kInLow, kInHigh, -0.1, kHeight_m + 0.1, plaster_);
+    constexpr double kOutLow[2] = {-kWall_m, -kWall_m},
+                     kOutHigh[2] = {kAtriumLength_m + kWall_m, kAtriumWidth_m + kWall_m};
+    constexpr double kInLow[2] = {0, 0}, kInHigh[2] = {kAtriumLength_m, kAtriumWidth_m};
+    model_.box({-kWall_m - 0.05, -kWall_m - 0.05, -0.4},
+               {kAtriumLength_m + kWall_m + 0.05, kAtriumWidth_m + kWall_m + 0.05, 0}, stone_);
+    ring(kOutLow, kOutHigh, kInLow, kInHigh, -0.1, kAtriumHeight_m + 0.1, plaster_);
     constexpr double kRoofLow[2] = {-kWall_m - 0.05, -kWall_m - 0.05},
-                     kRoofHigh[2] = {kLength_m + kWall_m + 0.05, kWidth_m + kWall_m + 0.05};
-    ring(kRoofLow, kRoofHigh, kSkyLow_m, kSkyHigh_m, kHeight_m, kHeight_m + 0.4, plaster_);
+                     kRoofHigh[2] = {kAtriumLength_m + kWall_m + 0.05, kAtriumWidth_m + kWall_m + 0.05};
+    ring(kRoofLow, kRoofHigh, kSkyLow_m, kSkyHigh_m, kAtriumHeight_m, kAtriumHeight_m + 0.4, plaster_);
     model_.begin_object("glazing bars");
     for (int i = 1; i < 5; ++i) {
       const double x = kSkyLow_m[0] + 2.0 * i;
-      model_.box({x - 0.03, kSkyLow_m[1] - 0.05, kHeight_m + 0.1}, {x + 0.03, kSkyHigh_m[1] + 0.05, kHeight_m + 0.25},
-                 rail_);
+      model_.box({x - 0.03, kSkyLow_m[1] - 0.05, kAtriumHeight_m + 0.1},
+                 {x + 0.03, kSkyHigh_m[1] + 0.05, kAtriumHeight_m + 0.25}, rail_);
     }
   }
 
   void balconies(int storey) {
     const double z = storey * kStorey_m;
-    constexpr double kLow[2] = {-0.05, -0.05}, kHigh[2] = {kLength_m + 0.05, kWidth_m + 0.05};
+    constexpr double kLow[2] = {-0.05, -0.05}, kHigh[2] = {kAtriumLength_m + 0.05, kAtriumWidth_m + 0.05};
     model_.begin_object("balconies");
     ring(kLow, kHigh, kCourtLow_m, kCourtHigh_m, z - kSlab_m, z, concrete_);
     model_.begin_object("balustrades");
@@ -106,7 +107,7 @@ class Atrium {
     model_.begin_object("columns");
     for (int i = 0; i < 4; ++i)
       for (const double y : {kCourtLow_m[1] - 0.5, kCourtHigh_m[1] + 0.5})
-        model_.column({kCourtLow_m[0] - 0.5 + 5.0 * i, y, -0.05}, 0.22, kHeight_m + 0.1, 32, concrete_);
+        model_.column({kCourtLow_m[0] - 0.5 + 5.0 * i, y, -0.05}, 0.22, kAtriumHeight_m + 0.1, 32, concrete_);
   }
 
   /// A flight along the wall at X = 0, through the slab's level beside the court.
@@ -151,11 +152,11 @@ class Atrium {
       for (int i = 0; i < 5; ++i)
         for (const double y : {3.0, 17.0}) downlight({3.0 + 6.0 * i, y, z}, 1400);
     }
-    for (const double x : {4.0, 26.0}) downlight({x, 10, kHeight_m - 0.05}, 2600);
+    for (const double x : {4.0, 26.0}) downlight({x, 10, kAtriumHeight_m - 0.05}, 2600);
     for (const double y : {7.0, 13.0})
       for (const double x : {9.0, 21.0})
         room_.emitters.push_back({make_spot(4500, rad_from_deg(30), rad_from_deg(52)),
-                                  aimed({x, y, kHeight_m - 0.3}, {15 + dice_.between(-1, 1), 10, 0})});
+                                  aimed({x, y, kAtriumHeight_m - 0.3}, {15 + dice_.between(-1, 1), 10, 0})});
   }
 
   void downlight(const Vec3& at_m, double flux_lm) {
@@ -181,8 +182,8 @@ class Atrium {
         level(15, 0.3, 29.7, y, y + 5.3, z + kOffSurface_m, floor);
         level(10, 0.3, 29.7, y, y + 5.3, z + 0.75, plane);
       }
-      spread_receivers(room_, 20, {0.3, kWidth_m - kOffSurface_m, z + 0.5}, {29.4, 0, 0}, {0, 0, 2}, -Vec3::UnitY(),
-                       dice_, free_wall);
+      spread_receivers(room_, 20, {0.3, kAtriumWidth_m - kOffSurface_m, z + 0.5}, {29.4, 0, 0}, {0, 0, 2},
+                       -Vec3::UnitY(), dice_, free_wall);
     }
   }
 

@@ -5,7 +5,7 @@
 namespace luxrig {
 namespace {
 
-constexpr double kLength_m = 14.6, kWidth_m = 9.4, kHeight_m = 2.6, kReach_m = 0.05;
+constexpr double kFlatLength_m = 14.6, kFlatWidth_m = 9.4, kFlatHeight_m = 2.6, kReach_m = 0.05;
 constexpr double kHallLow_m = 3.9, kHallHigh_m = 5.5, kHallWall_m = 0.12, kPartition_m = 0.10;
 constexpr double kDoorWidth_m = 0.9, kDoorHeight_m = 2.05;
 constexpr double kRoomWidths_m[2][4] = {{4.2, 3.2, 3.6, 3.3}, {3.0, 4.0, 3.2, 4.1}};
@@ -26,7 +26,8 @@ class Flat {
     white_ = model_.material("white paint", {0.78, 0.77, 0.73});
     door_ = model_.material("door", {0.62, 0.60, 0.55});
     model_.begin_object("flat");
-    model_.shell(Vec3::Zero(), {kLength_m, kWidth_m, kHeight_m}, 0.3, oak, ceiling, {white_, white_, white_, white_});
+    model_.shell(Vec3::Zero(), {kFlatLength_m, kFlatWidth_m, kFlatHeight_m}, 0.3, oak, ceiling,
+                 {white_, white_, white_, white_});
     for (const int side : {0, 1}) divide(side);
     furnish();
     room_.emitters.push_back(lamp({3.6, 4.7}));
@@ -43,7 +44,7 @@ class Flat {
   /// Hallway wall with its four doors, and the partitions behind it.
   void divide(int side) {
     const double hall_y = side == 0 ? kHallLow_m - kHallWall_m : kHallHigh_m;
-    const double front = side == 0 ? hall_y : hall_y + kHallWall_m, back = side == 0 ? 0 : kWidth_m;
+    const double front = side == 0 ? hall_y : hall_y + kHallWall_m, back = side == 0 ? 0 : kFlatWidth_m;
     std::vector<WallGap> gaps;
     double left = 0;
     for (int r = 0; r < 4; ++r) {
@@ -53,12 +54,12 @@ class Flat {
       gaps.push_back({door, door + kDoorWidth_m, -kReach_m, kDoorHeight_m});
       left = right + kPartition_m;
     }
-    model_.wall({-kReach_m, hall_y, -kReach_m}, {kLength_m + kReach_m, hall_y + kHallWall_m, kHeight_m + kReach_m},
-                gaps, white_);
+    model_.wall({-kReach_m, hall_y, -kReach_m},
+                {kFlatLength_m + kReach_m, hall_y + kHallWall_m, kFlatHeight_m + kReach_m}, gaps, white_);
     for (std::size_t r = 0; r < 3; ++r) {
       const Floor& floor = floors_[floors_.size() - 4 + r];
       model_.box({floor.right_m, std::min(front, back) - kReach_m, -kReach_m},
-                 {floor.right_m + kPartition_m, std::max(front, back) + kReach_m, kHeight_m + kReach_m}, white_);
+                 {floor.right_m + kPartition_m, std::max(front, back) + kReach_m, kFlatHeight_m + kReach_m}, white_);
     }
     for (std::size_t r = 0; r < 4; ++r) {
       // Hinged at its left jamb, ajar into the room.
@@ -109,13 +110,13 @@ class Flat {
     desk(5, dice_.between(1.0, 1.6), 0, 1.8, beech);
     piece(5, "shelf", 0, 0.8, {0.35, 1.3, 1.9}, dark);
     piece(6, "bed", dice_.between(0.8, 1.1), 0.05, {1.4, 2.05, 0.5}, blue);
-    piece(7, "blue wall", 4.08, 0.02, {0.04, 3.6, kHeight_m - 0.05}, blue);
+    piece(7, "blue wall", 4.08, 0.02, {0.04, 3.6, kFlatHeight_m - 0.05}, blue);
     desk(7, dice_.between(0.6, 1.2), 0.6, 1.7, dark);
   }
 
   Emitter lamp(const Eigen::Vector2d& at_m) {
     return {make_isotropic(dice_.between(650, 1150)),
-            {Mat3::Identity(), {at_m.x(), at_m.y(), kHeight_m - dice_.between(0.15, 0.30)}}};
+            {Mat3::Identity(), {at_m.x(), at_m.y(), kFlatHeight_m - dice_.between(0.15, 0.30)}}};
   }
 
   void measure() {
@@ -133,8 +134,8 @@ class Flat {
     }
     for (const auto& [low, high] : desks_)
       area(8, low.x() + 0.05, high.x() - 0.05, low.y() + 0.05, high.y() - 0.05, high.z() + kOffSurface_m, anywhere);
-    area(18, 0.1, kLength_m - 0.1, kHallLow_m + 0.1, kHallHigh_m - 0.1, 0.75, free);
-    area(18, 0.1, kLength_m - 0.1, kHallLow_m + 0.1, kHallHigh_m - 0.1, kOffSurface_m, free_floor);
+    area(18, 0.1, kFlatLength_m - 0.1, kHallLow_m + 0.1, kHallHigh_m - 0.1, 0.75, free);
+    area(18, 0.1, kFlatLength_m - 0.1, kHallLow_m + 0.1, kHallHigh_m - 0.1, kOffSurface_m, free_floor);
   }
 
   RoomDice dice_;

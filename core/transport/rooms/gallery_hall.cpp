@@ -5,7 +5,7 @@
 namespace luxrig {
 namespace {
 
-constexpr double kLength_m = 20, kWidth_m = 12, kHeight_m = 4.5, kPlinth_m = 1.05, kPictures_z_m = 1.55;
+constexpr double kHallLength_m = 20, kHallWidth_m = 12, kHallHeight_m = 4.5, kPlinth_m = 1.05, kPictures_z_m = 1.55;
 
 class Gallery {
  public:
@@ -17,7 +17,7 @@ class Gallery {
     const auto ceiling = model_.material("ceiling", {0.75, 0.75, 0.73});
     dark_red_ = model_.material("dark red wall", {0.30, 0.045, 0.04});
     model_.begin_object("hall");
-    model_.shell(Vec3::Zero(), {kLength_m, kWidth_m, kHeight_m}, 0.3, parquet, ceiling,
+    model_.shell(Vec3::Zero(), {kHallLength_m, kHallWidth_m, kHallHeight_m}, 0.3, parquet, ceiling,
                  {white_, dark_red_, white_, white_});
     partitions();
     pictures();
@@ -71,8 +71,8 @@ class Gallery {
       }
     };
     row(0, true, 1, 1, 19, 6);
-    row(kWidth_m, true, -1, 0.8, 8.6, 3);
-    row(kWidth_m, true, -1, 10, 19, 3);
+    row(kHallWidth_m, true, -1, 0.8, 8.6, 3);
+    row(kHallWidth_m, true, -1, 10, 19, 3);
     row(0, false, 1, 2, 10, 3);
     row(5.2, false, 1, 3.2, 7.8, 2);
     row(5.0, true, -1, 8.4, 12, 2);
@@ -121,8 +121,8 @@ class Gallery {
     const auto track = model_.material("track", {0.05, 0.05, 0.05});
     model_.begin_object("track");
     for (const double y : {2.0, 10.0})
-      model_.box({1.0, y - 0.02, kHeight_m - 0.3}, {19.0, y + 0.02, kHeight_m - 0.26}, track);
-    const double z = kHeight_m - 0.36;
+      model_.box({1.0, y - 0.02, kHallHeight_m - 0.3}, {19.0, y + 0.02, kHallHeight_m - 0.26}, track);
+    const double z = kHallHeight_m - 0.36;
     const auto spot = [&](double beam_deg) {
       return make_spot(dice_.between(1200, 2200), rad_from_deg(beam_deg), rad_from_deg(1.8 * beam_deg));
     };
@@ -146,10 +146,10 @@ class Gallery {
                        dice_, clear);
     };
     wall(44, {0.3, 0, 0}, {19.7, 0, 0}, Vec3::UnitY());
-    wall(20, {0.3, kWidth_m, 0}, {8.8, kWidth_m, 0}, -Vec3::UnitY());
-    wall(24, {9.4, kWidth_m, 0}, {19.7, kWidth_m, 0}, -Vec3::UnitY());
+    wall(20, {0.3, kHallWidth_m, 0}, {8.8, kHallWidth_m, 0}, -Vec3::UnitY());
+    wall(24, {9.4, kHallWidth_m, 0}, {19.7, kHallWidth_m, 0}, -Vec3::UnitY());
     wall(16, {0, 0.3, 0}, {0, 11.7, 0}, Vec3::UnitX());
-    wall(16, {kLength_m, 0.3, 0}, {kLength_m, 11.7, 0}, -Vec3::UnitX());
+    wall(16, {kHallLength_m, 0.3, 0}, {kHallLength_m, 11.7, 0}, -Vec3::UnitX());
     wall(12, {5.0, 3.2, 0}, {5.0, 7.8, 0}, -Vec3::UnitX());
     wall(12, {5.2, 3.2, 0}, {5.2, 7.8, 0}, Vec3::UnitX());
     wall(10, {8.4, 5.0, 0}, {12.0, 5.0, 0}, -Vec3::UnitY());

@@ -12,7 +12,7 @@
 namespace luxrig {
 namespace {
 
-constexpr OptionDoc kOptions[] = {
+constexpr OptionDoc kSacnOptions[] = {
     {"destination", "text", "", "\"multicast\"", "\"multicast\", or an IPv4 address",
      "where packets go: each universe to its multicast group 239.255.x.y, or all to one receiver"},
     {"port", "whole number", "", "5568", "1 to 65535", "UDP port of the receivers"},
@@ -28,11 +28,11 @@ constexpr OptionDoc kOptions[] = {
      "send every cycle; false: only changes, three repeats, then a keep-alive every 0.88 s"},
 };
 
-constexpr Duration kWritePeriod = std::chrono::nanoseconds(22727273);  // 1/44 s
-constexpr Duration kReopenEvery = std::chrono::seconds(1);
+constexpr Duration kSacnWritePeriod = std::chrono::nanoseconds(22727273);  // 1/44 s
+constexpr Duration kReopenSacnEvery = std::chrono::seconds(1);
 // The network may answer as seldom as once a second (Linux limits its ICMP to that), so silence counts as recovery
 // only after more than a second.
-constexpr Duration kQuietBeforeRecovery = std::chrono::milliseconds(1200);
+constexpr Duration kQuietBeforeSacnRecovery = std::chrono::milliseconds(1200);
 constexpr int kErrorsPerCycle = 64;
 constexpr int kGoodbyes = 3;  // clause 6.2.6
 
@@ -43,17 +43,17 @@ class SacnDriver final : public Driver, public LevelOutput, public Mover {
       : channel_(std::move(channel)), bay_(rig, bus), life_(rig.buses[bus].name) {
     const Bus& entry = rig.buses[bus];
     rig_name_ = rig.name;
-    port_ = static_cast<std::uint16_t>(integer_option(entry, kOptions, "port"));
-    unicast_ = parse_ipv4(string_option(entry, kOptions, "destination"));
+    port_ = static_cast<std::uint16_t>(integer_option(entry, kSacnOptions, "port"));
+    unicast_ = parse_ipv4(string_option(entry, kSacnOptions, "destination"));
     if (redirect) {
       unicast_ = parse_ipv4(redirect->host).value_or(0x7F000001);
       port_ = static_cast<std::uint16_t>(redirect->port);
     }
-    settings_.priority = static_cast<int>(integer_option(entry, kOptions, "priority"));
-    settings_.continuous = boolean_option(entry, kOptions, "continuous");
-    settings_.source_name = string_option(entry, kOptions, "source_name");
+    settings_.priority = static_cast<int>(integer_option(entry, kSacnOptions, "priority"));
+    settings_.continuous = boolean_option(entry, kSacnOptions, "continuous");
+    settings_.source_name = string_option(entry, kSacnOptions, "source_name");
     if (settings_.source_name.empty()) settings_.source_name = "Luxrig " + rig.name;
-    cid_ = sacn::parse_cid(string_option(entry, kOptions, "cid"));
+    cid_ = sacn::parse_cid(string_option(entry, kSacnOptions, "cid"));
   }
   ~SacnDriver() override { close(); }
   SacnDriver(const SacnDriver&) = delete;
@@ -64,7 +64,7 @@ class SacnDriver final : public Driver, public LevelOutput, public Mover {
     // Sends never block; 0.1 ms a universe is ten times what a send costs.
     bounds.write = std::chrono::milliseconds(5) +
                    std::chrono::microseconds(100) * static_cast<std::int64_t>(bay_.universes().size());
-    bounds.write_period = kWritePeriod;
+    bounds.write_period = kSacnWritePeriod;
     bounds.fault_after = std::chrono::milliseconds(500);
     bounds.notices_loss = unicast_.has_value();
     return bounds;
@@ -117,7 +117,7 @@ class SacnDriver final : public Driver, public LevelOutput, public Mover {
         if (!last_error_ || *last_error_ != now) life_.mark_ok(now);
       }
     }
-    if (life_.life() == Life::faulted && now - *last_error_ >= kQuietBeforeRecovery) {
+    if (life_.life() == Life::faulted && now - *last_error_ >= kQuietBeforeSacnRecovery) {
       life_.active(now);
       last_error_.reset();
     }
@@ -133,7 +133,7 @@ class SacnDriver final : public Driver, public LevelOutput, public Mover {
   }
 
   void open(Time now) {
-    reopen_at_ = now + kReopenEvery;
+    reopen_at_ = now + kReopenSacnEvery;
     if (auto opened = channel_->open(); !opened) note_error(now, opened.error());
   }
 
@@ -182,34 +182,34 @@ class SacnDriver final : public Driver, public LevelOutput, public Mover {
 
 }  // namespace
 
-std::span<const OptionDoc> sacn_options() { return kOptions; }
+std::span<const OptionDoc> sacn_options() { return kSacnOptions; }
 
 std::vector<Problem> check_sacn(const Rig& rig, std::size_t bus) {
   const Bus& entry = rig.buses[bus];
-  std::vector<Problem> problems = check_options(rig, entry, kOptions);
+  std::vector<Problem> problems = check_options(rig, entry, kSacnOptions);
   std::vector<Problem> patch = check_dmx_patch(rig, bus, sacn::kLowestUniverse, sacn::kHighestUniverse);
   if (problems.empty()) {
     const auto report = [&](std::string_view key, std::string what, std::string mend) {
       problems.push_back(problem_at(rig, entry, key, std::move(what), std::move(mend)));
     };
-    const std::string destination = string_option(entry, kOptions, "destination");
+    const std::string destination = string_option(entry, kSacnOptions, "destination");
     const auto address = parse_ipv4(destination);
     if (destination != "multicast" && (!address || *address == 0 || is_multicast(*address) || *address == 0xFFFFFFFF)) {
       report("destination",
              fmt::format("destination = \"{}\" is neither \"multicast\" nor a receiver's IPv4 address", destination),
              "write \"multicast\", or an address such as \"192.168.1.20\"");
     }
-    const std::string interface = string_option(entry, kOptions, "interface");
+    const std::string interface = string_option(entry, kSacnOptions, "interface");
     if (interface.size() > 15 || interface.find_first_of(" /") != std::string::npos) {
       report("interface", fmt::format("interface = \"{}\" cannot be the name of a network interface", interface),
              "write a name as `ip link` lists it, such as \"eth0\", or its IPv4 address");
     }
-    const std::string cid = string_option(entry, kOptions, "cid");
+    const std::string cid = string_option(entry, kSacnOptions, "cid");
     if (!cid.empty() && !sacn::parse_cid(cid)) {
       report("cid", fmt::format("cid = \"{}\" is not a UUID", cid),
              "write one as `uuidgen` prints it, or leave the option out");
     }
-    const std::string source_name = string_option(entry, kOptions, "source_name");
+    const std::string source_name = string_option(entry, kSacnOptions, "source_name");
     if (source_name.size() >= sacn::kSourceNameBytes) {
       report("source_name", fmt::format("source_name has {} bytes", source_name.size()), "keep it to 63 bytes");
     }
@@ -225,9 +225,9 @@ std::unique_ptr<Driver> make_sacn_over(std::unique_ptr<DatagramChannel> channel,
 
 std::unique_ptr<Driver> make_sacn(const Rig& rig, std::size_t bus, const std::optional<Redirect>& redirect) {
   UdpSettings settings;
-  settings.multicast_ttl = static_cast<int>(integer_option(rig.buses[bus], kOptions, "ttl"));
+  settings.multicast_ttl = static_cast<int>(integer_option(rig.buses[bus], kSacnOptions, "ttl"));
   // Towards a stand-in on loopback the interface named for the real network does not matter, and may not exist.
-  if (!redirect) settings.multicast_interface = string_option(rig.buses[bus], kOptions, "interface");
+  if (!redirect) settings.multicast_interface = string_option(rig.buses[bus], kSacnOptions, "interface");
   return make_sacn_over(make_udp(std::move(settings)), rig, bus, redirect);
 }
 

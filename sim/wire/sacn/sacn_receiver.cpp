@@ -11,7 +11,7 @@ namespace {
 using Bytes = std::span<const std::uint8_t>;
 
 // Nobody needs more than this many sources or universes at once; a flood of forged ones must not eat the memory.
-constexpr std::size_t kMostSources = 16;
+constexpr std::size_t kMostSacnSources = 16;
 constexpr std::size_t kMostUniverses = 256;
 
 // Flags are 0x7; the length counts from the field itself to the end of the PDU (E1.31 §4.1, E1.17 §2.2).
@@ -36,7 +36,7 @@ std::array<std::uint8_t, size> copied(Bytes packet, std::size_t offset) {
 }
 
 // §6.7.2: out of order when the distance to the last number is in (-20, 0].
-bool out_of_order(std::uint8_t sequence, std::uint8_t last) {
+bool sacn_out_of_order(std::uint8_t sequence, std::uint8_t last) {
   const auto distance = static_cast<std::int8_t>(sequence - last);
   return distance <= 0 && distance > -20;
 }
@@ -44,8 +44,8 @@ bool out_of_order(std::uint8_t sequence, std::uint8_t last) {
 }  // namespace
 
 std::optional<SacnData> decode_sacn_data(Bytes packet) {
-  constexpr std::size_t kHeader = 126;  // up to and with the start code
-  if (packet.size() < kHeader || packet.size() > kHeader + kDmxSlots) return std::nullopt;
+  constexpr std::size_t kDataHeader = 126;  // up to and with the start code
+  if (packet.size() < kDataHeader || packet.size() > kDataHeader + kDmxSlots) return std::nullopt;
   if (!root_layer_fits(packet, 0x00000004)) return std::nullopt;  // VECTOR_ROOT_E131_DATA
   // Framing layer, §6.2: VECTOR_E131_DATA_PACKET.
   if (!flags_and_length_fit(packet, 38) || big_endian_32(packet, 40) != 0x00000002) return std::nullopt;
@@ -66,7 +66,7 @@ std::optional<SacnData> decode_sacn_data(Bytes packet) {
   if (big_endian_16(packet, 119) != 0 || big_endian_16(packet, 121) != 1) return std::nullopt;
   if (static_cast<std::size_t>(big_endian_16(packet, 123)) != packet.size() - 125) return std::nullopt;
   data.start_code = packet[125];
-  data.slots = packet.subspan(kHeader);
+  data.slots = packet.subspan(kDataHeader);
   return data;
 }
 
@@ -104,7 +104,7 @@ SacnReceiver::Verdict SacnReceiver::receive(Time now, Bytes packet) {
   Universe& universe = universes_[data->universe];
   forget_lost(universe, now);  // so that a source that returns is new, and its numbers start afresh (§6.7.1)
   const auto known = universe.sources.find(data->cid);
-  if (known != universe.sources.end() && out_of_order(data->sequence, known->second.sequence)) {
+  if (known != universe.sources.end() && sacn_out_of_order(data->sequence, known->second.sequence)) {
     return Verdict::out_of_order;
   }
   if (data->terminated) {  // §6.2.6: levels in it are not used, the source is gone at once
@@ -112,7 +112,7 @@ SacnReceiver::Verdict SacnReceiver::receive(Time now, Bytes packet) {
     merge(universe);
     return Verdict::terminated;
   }
-  if (known == universe.sources.end() && universe.sources.size() >= kMostSources) return Verdict::ignored;
+  if (known == universe.sources.end() && universe.sources.size() >= kMostSacnSources) return Verdict::ignored;
 
   Source& source = universe.sources[data->cid];
   source.last_seen = now;

@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/core/control/at.h"
+
 namespace luxrig {
 namespace {
-
-Time at(double seconds) { return Time(from_seconds(seconds)); }
 
 /// Two fixtures on "track", two meters on "field".
 Rig small_rig() {

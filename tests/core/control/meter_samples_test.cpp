@@ -5,10 +5,10 @@
 #include <cmath>
 #include <limits>
 
+#include "tests/core/control/at.h"
+
 namespace luxrig {
 namespace {
-
-Time at(double seconds) { return Time(from_seconds(seconds)); }
 
 LuxReading reading(double lux, double taken_s, std::size_t luxmeter = 0) { return {luxmeter, lux, at(taken_s)}; }
 

@@ -9,6 +9,8 @@
 #include <new>
 #include <random>
 
+#include "tests/core/control/at.h"
+
 // Counts what this program allocates, to show that the output path allocates nothing. Not inlined: g++ would compare
 // malloc in one with free in the other and warn of a mismatch.
 static std::atomic<std::size_t> allocations{0};
@@ -32,8 +34,6 @@ namespace luxrig {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-Time at(double seconds) { return Time(from_seconds(seconds)); }
 
 OutputProgram random_program(std::mt19937_64& random) {
   std::uniform_real_distribution<double> share(0, 1);

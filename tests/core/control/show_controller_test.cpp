@@ -6,10 +6,10 @@
 #include <limits>
 #include <random>
 
+#include "tests/core/control/at.h"
+
 namespace luxrig {
 namespace {
-
-Time at(double seconds) { return Time(from_seconds(seconds)); }
 
 /// Two fixtures, each over one point with a meter, 100 lx per level and 10 lx of the other's.
 struct SmallShow {

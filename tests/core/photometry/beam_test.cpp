@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/photometry/ies.h"
+#include "tests/folders.h"
 
 namespace luxrig {
 namespace {
@@ -64,7 +65,7 @@ TEST(ConeOfFlux, OfANarrowGaussianFollowsItsTail) {
 }
 
 TEST(ConeOfFlux, HoldsTheShareInAMeasuredFile) {
-  const auto file = load_ies(std::filesystem::path(LUXRIG_SOURCE_DIR) / "tests/data/photometry/trapezoid.ies");
+  const auto file = load_ies(test::source_folder() / "tests/data/photometry/trapezoid.ies");
   ASSERT_TRUE(file.has_value());
   const Intensity light = make_intensity(*file);
   const double half = 0.5 * cone_of_flux_rad(*light, 0.9);

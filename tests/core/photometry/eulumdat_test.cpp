@@ -8,18 +8,10 @@
 #include <iterator>
 #include <sstream>
 
+#include "tests/core/photometry/photometric_data.h"
+
 namespace luxrig {
 namespace {
-
-std::filesystem::path data_file(const std::string& name) {
-  return std::filesystem::path(LUXRIG_SOURCE_DIR) / "tests/data/photometry" / name;
-}
-
-Vec3 direction(double gamma_deg, double c_deg) {
-  const double gamma = rad_from_deg(gamma_deg);
-  const double c = rad_from_deg(c_deg);
-  return {std::sin(gamma) * std::cos(c), std::sin(gamma) * std::sin(c), -std::cos(gamma)};
-}
 
 /// The lines of a file with the given grid: 500 lm lamps, conversion factor 2, so that the values are candela.
 struct Text {
@@ -75,7 +67,7 @@ struct Text {
   }
 };
 
-EulumdatFile parsed(const std::string& text) {
+EulumdatFile parsed_eulumdat(const std::string& text) {
   const auto file = parse_eulumdat(text, "test.ldt");
   if (!file) {
     ADD_FAILURE() << file.error().front().text();
@@ -91,7 +83,7 @@ TEST(Eulumdat, TakesItsFieldsInUnitsOfOurs) {
   text.lines[21] = "87.5";
   text.lines[13] = "250";
   text.lines[24] = "15";
-  const EulumdatFile file = parsed(text.joined());
+  const EulumdatFile file = parsed_eulumdat(text.joined());
   EXPECT_EQ(file.company, "maker");
   EXPECT_EQ(file.name, "name");
   EXPECT_DOUBLE_EQ(file.length_m, 0.3);
@@ -111,7 +103,7 @@ TEST(Eulumdat, ScalesByTheLampSetThatIsChosen) {
   Text text(1, {0}, {0, 90}, {100, 100});
   text.lines[25] = "2";
   text.lines.insert(text.lines.begin() + 32, {"-2", "LED", "1500", "4000 K", "90", "20"});
-  const EulumdatFile file = parsed(text.joined());
+  const EulumdatFile file = parsed_eulumdat(text.joined());
   ASSERT_EQ(file.lamp_sets.size(), 2u);
   EXPECT_FALSE(file.lamp_sets[0].absolute);
   EXPECT_TRUE(file.lamp_sets[1].absolute);
@@ -122,20 +114,21 @@ TEST(Eulumdat, ScalesByTheLampSetThatIsChosen) {
 }
 
 TEST(EulumdatSymmetry, None) {
-  const Intensity light = make_intensity(parsed(Text(0, {0, 120, 240}, {0, 90}, {10, 20, 10, 30, 10, 40}).joined()));
+  const Intensity light =
+      make_intensity(parsed_eulumdat(Text(0, {0, 120, 240}, {0, 90}, {10, 20, 10, 30, 10, 40}).joined()));
   EXPECT_NEAR(light->intensity_cd(direction(90, 120)), 30, 1e-9);
   EXPECT_NEAR(light->intensity_cd(direction(90, 300)), 30, 1e-9);
   EXPECT_NEAR(light->intensity_cd(direction(90, 360)), 20, 1e-9);
 }
 
 TEST(EulumdatSymmetry, RoundKeepsOnePlaneOfMany) {
-  const EulumdatFile file = parsed(Text(1, kEight, {0, 90}, {10, 20}).joined());
+  const EulumdatFile file = parsed_eulumdat(Text(1, kEight, {0, 90}, {10, 20}).joined());
   EXPECT_EQ(file.stored_planes(), 1u);
   EXPECT_NEAR(make_intensity(file)->intensity_cd(direction(90, 200)), 20, 1e-9);
 }
 
 TEST(EulumdatSymmetry, AboutC0C180) {
-  const EulumdatFile file = parsed(Text(2, kEight, {0, 90}, {1, 10, 1, 20, 1, 30, 1, 40, 1, 50}).joined());
+  const EulumdatFile file = parsed_eulumdat(Text(2, kEight, {0, 90}, {1, 10, 1, 20, 1, 30, 1, 40, 1, 50}).joined());
   EXPECT_EQ(file.stored_planes(), 5u);
   const Intensity light = make_intensity(file);
   for (const auto& [c, cd] : std::vector<std::pair<double, double>>{{0, 10}, {90, 30}, {180, 50}, {270, 30}, {315, 20}})
@@ -144,7 +137,7 @@ TEST(EulumdatSymmetry, AboutC0C180) {
 
 TEST(EulumdatSymmetry, AboutC90C270HoldsTheHalfThroughC0) {
   // In the order of the file: C270, C315, C0, C45, C90.
-  const EulumdatFile file = parsed(Text(3, kEight, {0, 90}, {1, 10, 1, 20, 1, 30, 1, 40, 1, 50}).joined());
+  const EulumdatFile file = parsed_eulumdat(Text(3, kEight, {0, 90}, {1, 10, 1, 20, 1, 30, 1, 40, 1, 50}).joined());
   EXPECT_EQ(file.stored_first(), 6u);
   const Intensity light = make_intensity(file);
   for (const auto& [c, cd] : std::vector<std::pair<double, double>>{
@@ -153,21 +146,22 @@ TEST(EulumdatSymmetry, AboutC90C270HoldsTheHalfThroughC0) {
 }
 
 TEST(EulumdatSymmetry, Both) {
-  const Intensity light = make_intensity(parsed(Text(4, kEight, {0, 90}, {1, 10, 1, 20, 1, 30}).joined()));
+  const Intensity light = make_intensity(parsed_eulumdat(Text(4, kEight, {0, 90}, {1, 10, 1, 20, 1, 30}).joined()));
   for (const double c : {45.0, 135.0, 225.0, 315.0}) EXPECT_NEAR(light->intensity_cd(direction(90, c)), 20, 1e-9) << c;
   EXPECT_NEAR(light->intensity_cd(direction(90, 270)), 30, 1e-9);
 }
 
 TEST(EulumdatSymmetry, OnePlaneIsRoundWhateverTheFieldSays) {
   for (int symmetry = 0; symmetry <= 4; ++symmetry) {
-    const Intensity light = make_intensity(parsed(Text(symmetry, {0}, {0, 90}, {10, 20}).joined()));
-    EXPECT_NEAR(light->flux_lm(), make_intensity(parsed(Text(1, {0}, {0, 90}, {10, 20}).joined()))->flux_lm(), 1e-9);
+    const Intensity light = make_intensity(parsed_eulumdat(Text(symmetry, {0}, {0, 90}, {10, 20}).joined()));
+    EXPECT_NEAR(light->flux_lm(), make_intensity(parsed_eulumdat(Text(1, {0}, {0, 90}, {10, 20}).joined()))->flux_lm(),
+                1e-9);
   }
 }
 
 TEST(Eulumdat, ToleratesTheFormsThatRealFilesHave) {
   const Text plain(1, {0}, {0, 90}, {100.5, 100.5});
-  const double flux_lm = make_intensity(parsed(plain.joined()))->flux_lm();
+  const double flux_lm = make_intensity(parsed_eulumdat(plain.joined()))->flux_lm();
   Text odd = plain;
   for (std::string& line : odd.lines) {
     if (line == "100.5") line = "  100,5\t";
@@ -177,7 +171,7 @@ TEST(Eulumdat, ToleratesTheFormsThatRealFilesHave) {
   odd.lines[31] = "";
   for (const std::string end : {"\n", "\r", "\r\n"}) {
     for (const std::string start : {"", "\xEF\xBB\xBF"}) {
-      EXPECT_DOUBLE_EQ(make_intensity(parsed(start + odd.joined(end) + end + "  " + end))->flux_lm(), flux_lm);
+      EXPECT_DOUBLE_EQ(make_intensity(parsed_eulumdat(start + odd.joined(end) + end + "  " + end))->flux_lm(), flux_lm);
     }
   }
 }
@@ -185,9 +179,9 @@ TEST(Eulumdat, ToleratesTheFormsThatRealFilesHave) {
 TEST(Eulumdat, WarnsWhenItsIntensitiesContradictItsLampFlux) {
   // Uniform below: 2π · 79.577 cd = 500 lm.
   const double cd = 500 / (2 * kPi);
-  EXPECT_TRUE(parsed(Text(1, {0}, {0, 90}, {cd, cd}).joined()).warnings.empty());
+  EXPECT_TRUE(parsed_eulumdat(Text(1, {0}, {0, 90}, {cd, cd}).joined()).warnings.empty());
   for (const double factor : {0.9, 1.1}) {
-    const EulumdatFile file = parsed(Text(1, {0}, {0, 90}, {factor * cd, factor * cd}).joined());
+    const EulumdatFile file = parsed_eulumdat(Text(1, {0}, {0, 90}, {factor * cd, factor * cd}).joined());
     ASSERT_EQ(file.warnings.size(), 1u);
     EXPECT_NE(file.warnings[0].find("of the lamps' flux is 500 lm"), std::string::npos) << file.warnings[0];
   }

@@ -9,18 +9,10 @@
 #include <limits>
 #include <random>
 
+#include "tests/core/photometry/photometric_data.h"
+
 namespace luxrig {
 namespace {
-
-std::filesystem::path data_file(const std::string& name) {
-  return std::filesystem::path(LUXRIG_SOURCE_DIR) / "tests/data/photometry" / name;
-}
-
-Vec3 direction(double gamma_deg, double c_deg) {
-  const double gamma = rad_from_deg(gamma_deg);
-  const double c = rad_from_deg(c_deg);
-  return {std::sin(gamma) * std::cos(c), std::sin(gamma) * std::sin(c), -std::cos(gamma)};
-}
 
 Intensity intensity_of(const std::string& text) {
   const auto file = parse_ies(text, "test.ies");

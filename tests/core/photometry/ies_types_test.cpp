@@ -21,7 +21,7 @@ IesFile parsed(const std::string& text) {
   return *file;
 }
 
-std::string joined(const std::vector<double>& values) {
+std::string joined_numbers(const std::vector<double>& values) {
   std::ostringstream text;
   for (const double value : values) text << value << " ";
   return text.str() + "\n";
@@ -32,7 +32,7 @@ IesFile grid_file(int type, const std::vector<double>& vertical, const std::vect
                   const std::vector<double>& candela) {
   return parsed("IES:LM-63-2019\nTILT=NONE\n1 -1 1 " + std::to_string(vertical.size()) + " " +
                 std::to_string(horizontal.size()) + " " + std::to_string(type) + " 2 0 0 0\n1 1 9\n" +
-                joined(vertical) + joined(horizontal) + joined(candela));
+                joined_numbers(vertical) + joined_numbers(horizontal) + joined_numbers(candela));
 }
 
 /// Formulas of the header, written out once more.

@@ -7,10 +7,12 @@
 #include <map>
 #include <set>
 
+#include "tests/folders.h"
+
 namespace luxrig {
 namespace {
 
-std::filesystem::path folder() { return std::filesystem::path(LUXRIG_SOURCE_DIR) / "tests/data/photometry"; }
+std::filesystem::path folder() { return test::source_folder() / "tests/data/photometry"; }
 
 /// Flux [lm] by zones, or why the file is refused.
 struct Expected {

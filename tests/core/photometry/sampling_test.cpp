@@ -11,12 +11,13 @@
 
 #include "core/photometry/ies.h"
 #include "core/photometry/intensity.h"
+#include "tests/folders.h"
 
 namespace luxrig {
 namespace {
 
 Intensity from_file(const std::string& name) {
-  const auto file = load_ies(std::filesystem::path(LUXRIG_SOURCE_DIR) / "tests/data/photometry" / name);
+  const auto file = load_ies(test::source_folder() / "tests/data/photometry" / name);
   if (!file) {
     ADD_FAILURE() << file.error().front().text();
     return make_isotropic(1);
@@ -44,7 +45,7 @@ class Sampling : public testing::TestWithParam<Case> {
   Intensity light = GetParam().make();
 };
 
-Vec3 direction(double cosine, double angle) {
+Vec3 direction_of(double cosine, double angle) {
   const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
   return {sine * std::cos(angle), sine * std::sin(angle), -cosine};
 }
@@ -62,7 +63,7 @@ double ring_integral(const F& f, double from_rad, double to_rad, double from_azi
     for (int n = 0; n < 3; ++n) {
       const double gamma = from_rad + (i + 0.5 + 0.5 * kNode[n]) * width;
       double of_ring = 0;
-      for (int j = 0; j < spokes; ++j) of_ring += f(direction(std::cos(gamma), from_azimuth + (j + 0.5) * spoke));
+      for (int j = 0; j < spokes; ++j) of_ring += f(direction_of(std::cos(gamma), from_azimuth + (j + 0.5) * spoke));
       sum += kWeight[n] * width * std::sin(gamma) * spoke * of_ring;
     }
   }
@@ -152,7 +153,7 @@ TEST_P(Sampling, HasADensityWhereverThereIsLight) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> unit(0, 1);
   for (int i = 0; i < 20'000; ++i) {
-    const Vec3 d = direction(2 * unit(random) - 1, 2 * kPi * unit(random));
+    const Vec3 d = direction_of(2 * unit(random) - 1, 2 * kPi * unit(random));
     if (light->intensity_cd(d) > 0) {
       ASSERT_GT(light->density_per_sr(d), 0) << d.transpose();
     }
@@ -227,7 +228,7 @@ TEST(LambertianCylinder, HasTheFluxOfItsWholeSurface) {
     EXPECT_NEAR(ring_integral(intensity, 0, kPi, 0, 2 * kPi, 2000, 1), 700, 1e-6);
     // Brightest where its outline is largest: tan γ = 4 l / (π d).
     const double gamma = std::atan2(l, kPi / 4 * d);
-    EXPECT_NEAR(light->intensity_cd(direction(std::cos(gamma), 1)), light->max_intensity_cd(), 1e-9);
+    EXPECT_NEAR(light->intensity_cd(direction_of(std::cos(gamma), 1)), light->max_intensity_cd(), 1e-9);
   }
 }
 
@@ -236,7 +237,7 @@ TEST(CosinePower, HasItsFluxAndPeakInClosedForm) {
     const Intensity light = make_cosine_power(600, exponent);
     EXPECT_DOUBLE_EQ(light->max_intensity_cd(), 600 * (exponent + 1) / (2 * kPi));
     EXPECT_DOUBLE_EQ(light->intensity_cd(-Vec3::UnitZ()), light->max_intensity_cd());
-    EXPECT_NEAR(light->intensity_cd(direction(std::cos(0.7), 2)),
+    EXPECT_NEAR(light->intensity_cd(direction_of(std::cos(0.7), 2)),
                 light->max_intensity_cd() * std::pow(std::cos(0.7), exponent), 1e-9);
     EXPECT_EQ(light->intensity_cd(Vec3::UnitZ()), 0);
     const auto intensity = [&](const Vec3& d) { return light->intensity_cd(d); };

@@ -7,6 +7,8 @@
 #include <optional>
 #include <random>
 
+#include "tests/random.h"
+
 namespace luxrig {
 namespace {
 
@@ -16,20 +18,6 @@ LuminousShape rectangle(double x_m, double y_m) { return {Kind::rectangle, {x_m,
 LuminousShape disk(double diameter_m) { return {Kind::disk, {diameter_m, 0, 0}}; }
 LuminousShape sphere(double diameter_m) { return {Kind::sphere, {diameter_m, 0, 0}}; }
 LuminousShape cylinder(double diameter_m, double length_m) { return {Kind::cylinder, {diameter_m, 0, length_m}}; }
-
-class Random {
- public:
-  explicit Random(unsigned seed) : engine_(seed) {}
-  double between(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
-  double log_between(double low, double high) { return std::exp(between(std::log(low), std::log(high))); }
-  Vec3 direction() {
-    const double z = between(-1, 1), angle = between(-kPi, kPi), r = std::sqrt(1 - z * z);
-    return {r * std::cos(angle), r * std::sin(angle), z};
-  }
-
- private:
-  std::mt19937_64 engine_;
-};
 
 /// Distance to the nearest place of the shape along a ray, from the shape's definition; written for the test.
 std::optional<double> met_at_m(const LuminousShape& shape, const Vec3& from_m, const Vec3& d) {

@@ -10,11 +10,12 @@
 #include <fstream>
 
 #include "core/rig/rig_file.h"
+#include "tests/folders.h"
 
 namespace luxrig {
 namespace {
 
-const std::filesystem::path kFolder = std::filesystem::path(LUXRIG_SOURCE_DIR) / "tests/rigs/bad";
+const std::filesystem::path kFolder = test::source_folder() / "tests/rigs/bad";
 
 std::vector<std::string> bad_rigs() {
   std::vector<std::string> names;

@@ -6,11 +6,12 @@
 
 #include "core/photometry/light_colour.h"
 #include "core/rig/rig_file.h"
+#include "tests/folders.h"
 
 namespace luxrig {
 namespace {
 
-const std::filesystem::path kData = std::filesystem::path(LUXRIG_SOURCE_DIR) / "tests/data/photometry";
+const std::filesystem::path kData = test::source_folder() / "tests/data/photometry";
 
 Luminaire luminaire_of(const std::string& keys) {
   const Checked<Rig> rig = parse_rig("[rig]\nname = \"r\"\n[[luminaire]]\nname = \"l\"\n" + keys, "rig.toml", kData);

@@ -8,11 +8,12 @@
 
 #include "core/rig/rig_file.h"
 #include "core/rig/schema.h"
+#include "tests/folders.h"
 
 namespace luxrig {
 namespace {
 
-const std::filesystem::path kSource = LUXRIG_SOURCE_DIR;
+const std::filesystem::path kSource = test::source_folder();
 
 /// Lines of the page up to the drivers' own part, which the drivers' tests compare.
 std::vector<std::string> lines_of_reference() {

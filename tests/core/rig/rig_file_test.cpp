@@ -8,10 +8,12 @@
 #include <random>
 #include <string>
 
+#include "tests/folders.h"
+
 namespace luxrig {
 namespace {
 
-const std::filesystem::path kRooms = std::filesystem::path(LUXRIG_SOURCE_DIR) / "tests/rigs/room";
+const std::filesystem::path kRooms = test::source_folder() / "tests/rigs/room";
 
 std::string listed(const std::vector<Problem>& problems) {
   std::string out;

@@ -6,26 +6,10 @@
 #include <random>
 
 #include "core/scene/ray_scene.h"
+#include "tests/random.h"
 
 namespace luxrig {
 namespace {
-
-class Random {
- public:
-  explicit Random(unsigned seed) : engine_(seed) {}
-  double between(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
-  std::size_t below(std::size_t count) { return std::uniform_int_distribution<std::size_t>(0, count - 1)(engine_); }
-  Vec3 in_cube() { return {between(-1, 1), between(-1, 1), between(-1, 1)}; }
-  Mat3 rotation() {
-    Mat3 m;
-    const Vec3 z = in_cube().normalized(), x = z.unitOrthogonal();
-    m << x, z.cross(x), z;
-    return m;
-  }
-
- private:
-  std::mt19937_64 engine_;
-};
 
 /// A closed box, turned and placed at random, from millimetres to ten kilometres.
 struct Box {

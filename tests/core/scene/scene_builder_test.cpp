@@ -8,11 +8,12 @@
 #include <fstream>
 
 #include "core/scene/ray_scene.h"
+#include "tests/folders.h"
 
 namespace luxrig {
 namespace {
 
-std::filesystem::path source_file(const std::string& name) { return std::filesystem::path(LUXRIG_SOURCE_DIR) / name; }
+std::filesystem::path source_file(const std::string& name) { return test::source_folder() / name; }
 
 MeshFile room() { return {source_file("tests/rigs/room/room.obj"), 1.0, UpAxis::z}; }
 

@@ -5,19 +5,10 @@
 #include <random>
 
 #include "core/scene/ray_scene.h"
+#include "tests/random.h"
 
 namespace luxrig {
 namespace {
-
-class Random {
- public:
-  explicit Random(unsigned seed) : engine_(seed) {}
-  double between(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
-  Vec3 in_cube() { return {between(-1, 1), between(-1, 1), between(-1, 1)}; }
-
- private:
-  std::mt19937_64 engine_;
-};
 
 Scene soup(double size_m, std::size_t count, Random& random) {
   Scene scene;

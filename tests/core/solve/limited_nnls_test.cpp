@@ -14,7 +14,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 struct LimitedCase {
   LeastSquaresCase least_squares;
@@ -50,7 +50,7 @@ LimitedCase limited_case(int seed, Index most_rows, Index most_columns, Index mo
   for (Index i = 0; i < k; ++i) {
     c.limits.most[i] = c.C.row(i).dot(keeps) + (uniform(random) < 0.3 ? 0 : uniform(random)) * ls.goal.norm();
     if (seed % 3 == 2) c.limits.most[i] -= 2 * uniform(random) * ls.goal.norm();
-    if (uniform(random) < 0.1) c.limits.most[i] = kInf;
+    if (uniform(random) < 0.1) c.limits.most[i] = kUnlimited;
   }
   c.limits.rows = c.C.sparseView(1, 1e-300);
   return c;
@@ -71,7 +71,7 @@ VectorXd violation(const LimitedCase& c, const VectorXd& x) {
       squares += std::pow(c.C(i, j) * most, 2);
     }
     const double scale = std::sqrt(squares);
-    if (scale > 0 && c.limits.most[i] < kInf) over[i] = (c.C.row(i).dot(x) - c.limits.most[i]) / scale;
+    if (scale > 0 && c.limits.most[i] < kUnlimited) over[i] = (c.C.row(i).dot(x) - c.limits.most[i]) / scale;
   }
   return over;
 }
@@ -122,7 +122,7 @@ TEST(LimitedNnls, FindsWhatThePrimalMethodFinds) {
     const VectorXd norm = ls.A.colwise().norm();
     primal.E = ls.A.colwise().normalized();
     primal.f = ls.goal.normalized();
-    primal.upper = VectorXd::Constant(norm.size(), kInf);
+    primal.upper = VectorXd::Constant(norm.size(), kUnlimited);
     if (ls.upper.size() > 0) primal.upper = ls.upper.cwiseProduct(norm) / ls.goal.norm();
     primal.G = c.C * norm.cwiseInverse().asDiagonal();
     primal.slack = c.limits.most / ls.goal.norm();

@@ -3,6 +3,7 @@
 #include "core/photometry/sky.h"
 #include "core/transport/picture.h"
 #include "tests/core/transport/room_with_windows.h"
+#include "tests/core/transport/within.h"
 
 namespace luxrig {
 namespace {
@@ -11,13 +12,6 @@ std::vector<Emitter> under(const Sky& sky) {
   std::vector<Emitter> emitters(1);
   emitters[0].sky = sky;
   return emitters;
-}
-
-EvaluateOptions within(double relative_error, std::uint64_t seed = 1) {
-  EvaluateOptions options;
-  options.wanted_relative_error = relative_error;
-  options.seed = seed;
-  return options;
 }
 
 TransportMatrix evaluated(const Evaluator& evaluator, const std::vector<Receiver>& receivers,

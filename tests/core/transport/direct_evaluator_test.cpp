@@ -22,8 +22,8 @@ Scene wall_at_x(double x_m, double half_size_m) {
   return scene;
 }
 
-TransportMatrix direct(const Scene& scene, const std::vector<Receiver>& receivers,
-                       const std::vector<Emitter>& emitters) {
+TransportMatrix direct_matrix(const Scene& scene, const std::vector<Receiver>& receivers,
+                              const std::vector<Emitter>& emitters) {
   const RayScene rays(scene);
   auto result = make_direct_evaluator(rays)->evaluate(receivers, emitters, {});
   EXPECT_TRUE(result.has_value()) << (result ? "" : result.error().detail);
@@ -78,7 +78,7 @@ TEST(DirectEvaluator, AWallBetweenCastsItsShadowAndOneBesideDoesNot) {
                                            {{0, 5, 0}, Vec3::UnitX()},    // the line to the lamp passes the wall's edge
                                            {{1.5, 0, 0}, Vec3::UnitX()},  // between wall and lamp
                                            {{1, 0, 0.25}, Vec3::UnitX()}};  // on the wall, lit side
-  const auto matrix = direct(wall_at_x(1, 0.5), receivers, lamp);
+  const auto matrix = direct_matrix(wall_at_x(1, 0.5), receivers, lamp);
   EXPECT_EQ(matrix.lux_per_level(0, 0), 0);
   EXPECT_NEAR(matrix.lux_per_level(1, 0), 2 / std::pow(29, 1.5), 1e-12);
   EXPECT_NEAR(matrix.lux_per_level(2, 0), 4, 1e-12);
@@ -97,19 +97,19 @@ TEST(DirectEvaluator, WhatCannotContributeCastsNoRay) {
   const Emitter in_plane{make_isotropic(100), {Mat3::Identity(), {3, 0, 0}}};
   const Emitter aimed_here{spot, lamp_at({0, 0, 3}, {0, 0, 0})};
   const Emitter aimed_away{spot, lamp_at({1, 0, 3}, {1, 0, 9})};
-  EXPECT_EQ(direct(wall, {up}, {above}).rays, 1u);
-  EXPECT_EQ(direct(wall, {up}, {below}).rays, 0u);
-  EXPECT_EQ(direct(wall, {up}, {in_plane}).rays, 0u);
-  EXPECT_EQ(direct(wall, {up}, {aimed_here}).rays, 1u);
-  EXPECT_EQ(direct(wall, {up}, {aimed_away}).rays, 0u);
-  EXPECT_EQ(direct(Scene{}, {up}, {above}).rays, 0u) << "an empty scene needs no ray";
+  EXPECT_EQ(direct_matrix(wall, {up}, {above}).rays, 1u);
+  EXPECT_EQ(direct_matrix(wall, {up}, {below}).rays, 0u);
+  EXPECT_EQ(direct_matrix(wall, {up}, {in_plane}).rays, 0u);
+  EXPECT_EQ(direct_matrix(wall, {up}, {aimed_here}).rays, 1u);
+  EXPECT_EQ(direct_matrix(wall, {up}, {aimed_away}).rays, 0u);
+  EXPECT_EQ(direct_matrix(Scene{}, {up}, {above}).rays, 0u) << "an empty scene needs no ray";
 }
 
 TEST(DirectEvaluator, LampsInOnePlaceShareOneShadowRay) {
   const auto spot = make_spot(1000, rad_from_deg(60), rad_from_deg(80));
   std::vector<Emitter> aims;
   for (int i = 0; i < 50; ++i) aims.push_back({spot, lamp_at({0, 0, 3}, {0.01 * i, 0, 0})});
-  const auto matrix = direct(wall_at_x(100, 0.5), {{{0, 0, 0}, Vec3::UnitZ()}}, aims);
+  const auto matrix = direct_matrix(wall_at_x(100, 0.5), {{{0, 0, 0}, Vec3::UnitZ()}}, aims);
   EXPECT_EQ(matrix.rays, 1u);
   EXPECT_GT(matrix.lux_per_level.minCoeff(), 0);
 }

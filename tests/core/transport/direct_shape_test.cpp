@@ -9,28 +9,13 @@
 #include "core/transport/evaluator.h"
 #include "core/transport/shape_light.h"
 #include "tests/core/transport/closed_forms.h"
+#include "tests/core/transport/diffuser.h"
 #include "tests/core/transport/lamp_pose.h"
 
 namespace luxrig {
 namespace {
 
 using Kind = LuminousShape::Kind;
-
-LuminousShape rectangle(double x_m, double y_m) { return {Kind::rectangle, {x_m, y_m, 0}}; }
-
-/// I0 cos γ below the horizontal.
-class Diffuser final : public IntensityDistribution {
- public:
-  explicit Diffuser(double peak_cd) : peak_cd_(peak_cd) {}
-  double intensity_cd(const Vec3& d) const override { return peak_cd_ * std::max(0.0, -d.z()); }
-  double flux_lm() const override { return kPi * peak_cd_; }
-  double max_intensity_cd() const override { return peak_cd_; }
-  double emission_cone_rad() const override { return kPi; }
-
- private:
-  double peak_cd_;
-};
-Intensity diffuser(double peak_cd) { return std::make_shared<Diffuser>(peak_cd); }
 
 /// The same luminance everywhere above the horizon.
 class UniformSky final : public SkyLuminance {

@@ -5,6 +5,7 @@
 #include "core/photometry/sky.h"
 #include "core/transport/enclosures.h"
 #include "core/transport/rooms/lit_room.h"
+#include "tests/core/transport/within.h"
 
 namespace luxrig {
 namespace {
@@ -14,13 +15,6 @@ TransportMatrix evaluated(const std::unique_ptr<Evaluator>& by, const std::vecto
   auto result = by->evaluate(receivers, emitters, options);
   EXPECT_TRUE(result.has_value()) << (result ? "" : result.error().detail);
   return result ? *result : TransportMatrix{};
-}
-
-EvaluateOptions within(double relative_error, std::uint64_t seed = 1) {
-  EvaluateOptions options;
-  options.wanted_relative_error = relative_error;
-  options.seed = seed;
-  return options;
 }
 
 Emitter bulb(double flux_lm, const Vec3& position_m) {

@@ -7,6 +7,7 @@
 #include "core/transport/replicate_error.h"
 #include "tests/core/transport/cube_radiosity.h"
 #include "tests/core/transport/lamp_pose.h"
+#include "tests/core/transport/within.h"
 
 namespace luxrig {
 namespace {
@@ -18,7 +19,7 @@ std::vector<Receiver> receivers_on(const Scene& scene, std::size_t count) {
   return receivers;
 }
 
-Emitter bulb(double flux_lm, const Vec3& position_m) {
+Emitter bulb_at(double flux_lm, const Vec3& position_m) {
   return {make_isotropic(flux_lm), {Mat3::Identity(), position_m}};
 }
 
@@ -27,13 +28,6 @@ TransportMatrix path(const RayScene& scene, const std::vector<Receiver>& receive
   auto result = make_path_evaluator(scene)->evaluate(receivers, emitters, options);
   EXPECT_TRUE(result.has_value()) << (result ? "" : result.error().detail);
   return result ? *result : TransportMatrix{};
-}
-
-EvaluateOptions within(double relative_error, std::uint64_t seed = 1) {
-  EvaluateOptions options;
-  options.wanted_relative_error = relative_error;
-  options.seed = seed;
-  return options;
 }
 
 // Flux is conserved in any closed enclosure, so the mean over its walls is known for any place of the source. Few paths
@@ -47,7 +41,7 @@ TEST(PathEvaluator, MeanOfAClosedCubeIsFluxOverAreaTimesOneMinusReflectance) {
     const double expected_lx = mean_wall_illuminance_lx(1000, area_m2(cube), reflectance);
     EvaluateOptions options = within(0.005);
     options.max_rays = 2'000'000;
-    const auto matrix = path(rays, receivers, {bulb(1000, {0.3, -0.2, 0.4})}, options);
+    const auto matrix = path(rays, receivers, {bulb_at(1000, {0.3, -0.2, 0.4})}, options);
     // Receivers share light hits, so their errors go together: the error of the mean is that of the replicates' means.
     std::vector<double> means_lx;
     for (const auto& replicate : matrix.replicates) means_lx.push_back(replicate.mean());
@@ -64,7 +58,7 @@ TEST(PathEvaluator, IntegratingSphereReflectsTheSameLightEverywhere) {
     const double ideal_lx = reflected_wall_illuminance_lx(1000, 4 * kPi * 4, reflectance);
     const double tessellated_lx = reflected_wall_illuminance_lx(1000, area_m2(sphere), reflectance);
     EXPECT_NEAR(tessellated_lx, ideal_lx, 0.005 * ideal_lx);
-    const auto matrix = path(rays, receivers_on(sphere, 4), {bulb(1000, Vec3::Zero())}, within(0.005));
+    const auto matrix = path(rays, receivers_on(sphere, 4), {bulb_at(1000, Vec3::Zero())}, within(0.005));
     const Eigen::VectorXd error_lx = matrix.standard_error_lux(Eigen::VectorXd::Ones(1));
     for (Eigen::Index r = 0; r < matrix.receivers(); ++r) {
       const double reflected_lx = matrix.lux_per_level(r, 0) - matrix.direct_lux_per_level(r, 0);
@@ -114,7 +108,7 @@ TEST(PathEvaluator, InAFurnaceEveryPlaceAndDirectionGetsTheSameReflectedLight) {
   for (int i = 0; i < 12; ++i)
     receivers.push_back({0.9 * Vec3(unit(random), unit(random), unit(random)),
                          Vec3(unit(random), unit(random), unit(random)).normalized()});
-  const auto matrix = path(rays, receivers, {bulb(1000, Vec3::Zero())}, within(0.005));
+  const auto matrix = path(rays, receivers, {bulb_at(1000, Vec3::Zero())}, within(0.005));
   const double expected_lx = reflected_wall_illuminance_lx(1000, area_m2(sphere), reflectance);
   const Eigen::VectorXd error_lx = matrix.standard_error_lux(Eigen::VectorXd::Ones(1));
   for (Eigen::Index r = 0; r < matrix.receivers(); ++r)
@@ -132,7 +126,7 @@ TEST(PathEvaluator, AgreesWithRadiosityAtPointsOfACube) {
     return (r.position_world_m.cwiseAbs().array() > 0.8).count() > 1;
   });
   ASSERT_GT(receivers.size(), 20u);
-  const auto matrix = path(rays, receivers, {bulb(1000, source_m)}, within(0.005));
+  const auto matrix = path(rays, receivers, {bulb_at(1000, source_m)}, within(0.005));
   const Eigen::VectorXd error_lx = matrix.standard_error_lux(Eigen::VectorXd::Ones(1));
   const CubeRadiosity coarse(edge_m, reflectance, 1000, source_m, 6), fine(edge_m, reflectance, 1000, source_m, 12);
   int far = 0;
@@ -161,7 +155,7 @@ TEST(PathEvaluator, ReportedErrorsHoldAsOftenAsTheyClaim) {
   // A narrow spot makes a small bright patch, a hard case for sampling; the receiver sees it but is not lit by it.
   const std::vector<Emitter> emitters = {
       {make_spot(900, rad_from_deg(24), rad_from_deg(40)), lamp_at({0.3, 0.2, 0.9}, {0.4, -0.3, -1})},
-      bulb(300, {-0.5, 0.1, 0.2})};
+      bulb_at(300, {-0.5, 0.1, 0.2})};
   const std::vector<Receiver> receivers = {{{0.1, 0.2, -1}, Vec3::UnitZ()}, {{-1, 0.3, 0.2}, Vec3::UnitX()}};
   const Eigen::VectorXd levels = Eigen::VectorXd::Ones(2);
   const auto truth = path(rays, receivers, emitters, within(0.004, 4711));
@@ -189,7 +183,7 @@ TEST(PathEvaluator, TheMeanOverSeedsHasNoBias) {
   constexpr int kSeeds = 100;
   for (int seed = 0; seed < kSeeds; ++seed) {
     options.seed = 1000 + seed;
-    const auto matrix = path(rays, {receiver}, {bulb(1000, source_m)}, options);
+    const auto matrix = path(rays, {receiver}, {bulb_at(1000, source_m)}, options);
     const double lux = matrix.lux_per_level(0, 0) - matrix.direct_lux_per_level(0, 0);
     sum += lux / kSeeds;
     squares += lux * lux / kSeeds;
@@ -202,8 +196,8 @@ TEST(PathEvaluator, TheMeanOverSeedsHasNoBias) {
 
 TEST(PathEvaluator, TheMatrixIsTheMeanOfItsReplicates) {
   const RayScene rays(make_cube(2, 0.5));
-  const auto matrix =
-      path(rays, {{{0.1, 0.2, -1}, Vec3::UnitZ()}}, {bulb(100, {0, 0, 0}), bulb(50, {0.5, 0.5, 0.5})}, within(0.05));
+  const auto matrix = path(rays, {{{0.1, 0.2, -1}, Vec3::UnitZ()}},
+                           {bulb_at(100, {0, 0, 0}), bulb_at(50, {0.5, 0.5, 0.5})}, within(0.05));
   ASSERT_EQ(matrix.replicates.size(), 16u);
   Eigen::MatrixXd mean = Eigen::MatrixXd::Zero(1, 2);
   for (const auto& replicate : matrix.replicates) mean += replicate / 16;
@@ -229,7 +223,7 @@ TEST(PathEvaluator, ErrorsOfLampsThatAreOffCostNothing) {
   const RayScene rays(make_cube(2, 0.5));
   const std::vector<Receiver> receivers = {{{0.1, 0.2, -1}, Vec3::UnitZ()}};
   const std::vector<Emitter> emitters = {
-      bulb(300, {-0.2, 0.1, 0.2}),
+      bulb_at(300, {-0.2, 0.1, 0.2}),
       {make_spot(9000, rad_from_deg(16), rad_from_deg(24)), lamp_at({0.3, 0.2, 0.9}, {0.5, -0.6, -1})}};
   auto options = within(0.02);
   const auto both = path(rays, receivers, emitters, options);
@@ -244,7 +238,7 @@ TEST(PathEvaluator, StopsAtMostRaysAndSaysWhatErrorItHas) {
   auto options = within(1e-5);
   options.max_rays = 200'000;
   const auto matrix = path(rays, {{{0.1, 0.2, -1}, Vec3::UnitZ()}, {{-1, 0.2, 0}, Vec3::UnitX()}},
-                           {bulb(300, {-0.2, 0.1, 0.2})}, options);
+                           {bulb_at(300, {-0.2, 0.1, 0.2})}, options);
   EXPECT_LT(matrix.rays, 220'000u);
   EXPECT_GT(matrix.rays, 50'000u);
   EXPECT_GT(matrix.relative_error, 1e-5);
@@ -253,7 +247,7 @@ TEST(PathEvaluator, StopsAtMostRaysAndSaysWhatErrorItHas) {
 
 TEST(PathEvaluator, BlackRoomsCostNoPath) {
   const RayScene rays(make_cube(2, 0));
-  const auto matrix = path(rays, {{{0.1, 0.2, -1}, Vec3::UnitZ()}}, {bulb(300, {-0.2, 0.1, 0.2})}, within(1e-6));
+  const auto matrix = path(rays, {{{0.1, 0.2, -1}, Vec3::UnitZ()}}, {bulb_at(300, {-0.2, 0.1, 0.2})}, within(1e-6));
   EXPECT_EQ(matrix.lux_per_level, matrix.direct_lux_per_level);
   EXPECT_LE(matrix.rays, 1u) << "the shadow ray of the direct light; what reflects nothing costs nothing";
 }
@@ -262,8 +256,8 @@ TEST(PathEvaluator, LampsThatReachNothingCastNoShadowRays) {
   const RayScene rays(make_cube(2, 0.5));
   const std::vector<Receiver> receivers = {{{0.1, 0.2, -1}, Vec3::UnitZ()}};
   const auto options = within(10);
-  const auto alone = path(rays, receivers, {bulb(300, {-0.2, 0.1, 0.2})}, options);
-  std::vector<Emitter> many = {bulb(300, {-0.2, 0.1, 0.2})};
+  const auto alone = path(rays, receivers, {bulb_at(300, {-0.2, 0.1, 0.2})}, options);
+  std::vector<Emitter> many = {bulb_at(300, {-0.2, 0.1, 0.2})};
   // Outside the room, shining away from it.
   for (int i = 0; i < 200; ++i)
     many.push_back({make_spot(900, rad_from_deg(24), rad_from_deg(40)), lamp_at({0.01 * i, 0, 5}, {0.01 * i, 0, 9})});
@@ -273,7 +267,7 @@ TEST(PathEvaluator, LampsThatReachNothingCastNoShadowRays) {
 TEST(PathEvaluator, NumberOfThreadsAndRepetitionChangeNoBit) {
   const RayScene rays(make_cube(2, 0.5));
   const auto receivers = receivers_on(make_cube(2, 0.5), 5);
-  const std::vector<Emitter> emitters = {bulb(300, {-0.2, 0.1, 0.2}), bulb(200, {0.2, 0.4, 0.5})};
+  const std::vector<Emitter> emitters = {bulb_at(300, {-0.2, 0.1, 0.2}), bulb_at(200, {0.2, 0.4, 0.5})};
   auto options = within(0.05);
   options.threads = 1;
   const auto one = path(rays, receivers, emitters, options);
@@ -290,7 +284,7 @@ TEST(PathEvaluator, NumberOfThreadsAndRepetitionChangeNoBit) {
 
 TEST(PathEvaluator, AnEmptySceneCostsNoRaysAndIsExact) {
   const RayScene rays{Scene{}};
-  const auto matrix = path(rays, {{{0, 0, 0}, Vec3::UnitZ()}}, {bulb(4 * kPi, {0, 0, 2})}, within(0.01));
+  const auto matrix = path(rays, {{{0, 0, 0}, Vec3::UnitZ()}}, {bulb_at(4 * kPi, {0, 0, 2})}, within(0.01));
   EXPECT_EQ(matrix.rays, 0u);
   EXPECT_DOUBLE_EQ(matrix.lux_per_level(0, 0), 0.25);
   EXPECT_EQ(matrix.standard_error_lux(Eigen::VectorXd::Ones(1))[0], 0);

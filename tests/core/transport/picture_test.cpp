@@ -18,7 +18,7 @@ Camera looking(const Vec3& eye_m, const Vec3& target_m) {
   return camera;
 }
 
-const std::vector<Emitter> kBulb = {{make_isotropic(1000), {Mat3::Identity(), {0.2, 0.1, 0.3}}}};
+const std::vector<Emitter> kPictureBulb = {{make_isotropic(1000), {Mat3::Identity(), {0.2, 0.1, 0.3}}}};
 
 TEST(Picture, ShowsTheIlluminanceThatTheEvaluatorMeasures) {
   const RayScene rays(make_cube(2, 0.6));
@@ -26,10 +26,11 @@ TEST(Picture, ShowsTheIlluminanceThatTheEvaluatorMeasures) {
   PictureOptions options;
   options.wanted_relative_error = 0.005;
   options.most_passes = 2000;
-  const auto picture = render_picture(rays, kBulb, std::vector{0.5}, looking({-0.7, -0.6, 0.4}, target_m), options);
+  const auto picture =
+      render_picture(rays, kPictureBulb, std::vector{0.5}, looking({-0.7, -0.6, 0.4}, target_m), options);
   ASSERT_TRUE(picture.has_value());
   const auto measured =
-      make_path_evaluator(rays)->evaluate(std::vector<Receiver>{{target_m, Vec3::UnitZ()}}, kBulb, {});
+      make_path_evaluator(rays)->evaluate(std::vector<Receiver>{{target_m, Vec3::UnitZ()}}, kPictureBulb, {});
   const double expected_lx = 0.5 * measured->lux_per_level(0, 0);
   const std::size_t middle = 10 * 33 + 16;
   EXPECT_NEAR(picture->illuminance_lx[middle], expected_lx, 0.05 * expected_lx);
@@ -43,7 +44,8 @@ TEST(Picture, StopsAtTheWantedNoiseAndSaysIt) {
     PictureOptions options;
     options.wanted_relative_error = wanted;
     options.most_passes = 1000;
-    const auto picture = render_picture(rays, kBulb, std::vector{1.0}, looking({-0.7, -0.6, 0.4}, {0, 0, -1}), options);
+    const auto picture =
+        render_picture(rays, kPictureBulb, std::vector{1.0}, looking({-0.7, -0.6, 0.4}, {0, 0, -1}), options);
     ASSERT_TRUE(picture.has_value());
     EXPECT_LE(picture->relative_error, wanted);
     EXPECT_GE(picture->passes, passes_before);
@@ -62,7 +64,8 @@ TEST(Picture, TheCallerMayEndItAfterAnyPass) {
     EXPECT_LE(done, 1);
     return ++calls < 3;
   };
-  const auto picture = render_picture(rays, kBulb, std::vector{1.0}, looking({-0.7, -0.6, 0.4}, {0, 0, -1}), options);
+  const auto picture =
+      render_picture(rays, kPictureBulb, std::vector{1.0}, looking({-0.7, -0.6, 0.4}, {0, 0, -1}), options);
   ASSERT_TRUE(picture.has_value());
   EXPECT_EQ(picture->passes, 3);
 }
@@ -77,7 +80,7 @@ TEST(Picture, AGlossyFloorReflectsTheRoom) {
     PictureOptions options;
     options.most_passes = 16;
     const auto picture =
-        render_picture(rays, kBulb, std::vector{1.0}, looking({-0.7, -0.6, 0.4}, {0.3, 0.2, -1}), options);
+        render_picture(rays, kPictureBulb, std::vector{1.0}, looking({-0.7, -0.6, 0.4}, {0.3, 0.2, -1}), options);
     float ratio = 0;
     for (std::size_t i = 0; i < picture->illuminance_lx.size(); ++i)
       ratio = std::max(ratio, picture->luminance_cd_m2[i].y() / picture->illuminance_lx[i]);
@@ -91,15 +94,17 @@ TEST(Picture, IsTheSameForAnyNumberOfThreads) {
   const RayScene rays(make_cube(2, 0.6));
   PictureOptions options;
   options.threads = 1;
-  const auto one = render_picture(rays, kBulb, std::vector{1.0}, looking({-0.7, -0.6, 0.4}, {0, 0, -1}), options);
+  const auto one =
+      render_picture(rays, kPictureBulb, std::vector{1.0}, looking({-0.7, -0.6, 0.4}, {0, 0, -1}), options);
   options.threads = 3;
-  const auto three = render_picture(rays, kBulb, std::vector{1.0}, looking({-0.7, -0.6, 0.4}, {0, 0, -1}), options);
+  const auto three =
+      render_picture(rays, kPictureBulb, std::vector{1.0}, looking({-0.7, -0.6, 0.4}, {0, 0, -1}), options);
   EXPECT_EQ(one->illuminance_lx, three->illuminance_lx);
 }
 
 TEST(Picture, WhereNothingIsSeenThereIsNoIlluminance) {
   const RayScene rays{Scene{}};
-  const auto picture = render_picture(rays, kBulb, std::vector{1.0}, looking({0, 0, 0}, {1, 0, 0}), {});
+  const auto picture = render_picture(rays, kPictureBulb, std::vector{1.0}, looking({0, 0, 0}, {1, 0, 0}), {});
   ASSERT_TRUE(picture.has_value());
   for (const float lx : picture->illuminance_lx) EXPECT_LT(lx, 0);
 }
@@ -120,7 +125,7 @@ TEST(Picture, TheSkyShowsWhereNothingIsHit) {
 TEST(Picture, RefusesImpossibleCamerasAndLevels) {
   const RayScene rays{Scene{}};
   const auto cause_of = [&](const Camera& camera, const std::vector<double>& levels) {
-    const auto picture = render_picture(rays, kBulb, levels, camera, {});
+    const auto picture = render_picture(rays, kPictureBulb, levels, camera, {});
     return picture ? Cause::system : picture.error().cause;
   };
   Camera camera = looking({0, 0, 0}, {1, 0, 0});
@@ -140,7 +145,8 @@ TEST(Picture, StopsWhenAsked) {
   stop.request_stop();
   PictureOptions options;
   options.watch.stop = stop.get_token();
-  const auto picture = render_picture(rays, kBulb, std::vector{1.0}, looking({-0.7, -0.6, 0.4}, {0, 0, -1}), options);
+  const auto picture =
+      render_picture(rays, kPictureBulb, std::vector{1.0}, looking({-0.7, -0.6, 0.4}, {0, 0, -1}), options);
   ASSERT_FALSE(picture.has_value());
   EXPECT_EQ(picture.error().cause, Cause::cancelled);
 }

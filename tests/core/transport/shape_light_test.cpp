@@ -7,32 +7,17 @@
 
 #include "core/photometry/shape_sampling.h"
 #include "tests/core/transport/closed_forms.h"
+#include "tests/core/transport/diffuser.h"
+#include "tests/random.h"
 
 namespace luxrig {
 namespace {
 
 using Kind = LuminousShape::Kind;
 
-LuminousShape rectangle(double x_m, double y_m) { return {Kind::rectangle, {x_m, y_m, 0}}; }
 LuminousShape disk(double diameter_m) { return {Kind::disk, {diameter_m, 0, 0}}; }
 LuminousShape sphere(double diameter_m) { return {Kind::sphere, {diameter_m, 0, 0}}; }
 LuminousShape cylinder(double diameter_m, double length_m) { return {Kind::cylinder, {diameter_m, 0, length_m}}; }
-
-/// I0 cos γ about -Z, on both sides or below only.
-class Diffuser final : public IntensityDistribution {
- public:
-  explicit Diffuser(double peak_cd, bool both_sides = false) : peak_cd_(peak_cd), both_sides_(both_sides) {}
-  double intensity_cd(const Vec3& d) const override {
-    return peak_cd_ * (both_sides_ ? std::abs(d.z()) : std::max(0.0, -d.z()));
-  }
-  double flux_lm() const override { return (both_sides_ ? 2 : 1) * kPi * peak_cd_; }
-  double max_intensity_cd() const override { return peak_cd_; }
-  double emission_cone_rad() const override { return both_sides_ ? 2 * kPi : kPi; }
-
- private:
-  double peak_cd_;
-  bool both_sides_;
-};
 
 /// cosⁿ γ below the horizontal.
 class Power final : public IntensityDistribution {
@@ -45,27 +30,6 @@ class Power final : public IntensityDistribution {
 
  private:
   double n_;
-};
-
-Intensity diffuser(double peak_cd) { return std::make_shared<Diffuser>(peak_cd); }
-
-class Random {
- public:
-  explicit Random(unsigned seed) : engine_(seed) {}
-  double between(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
-  Vec3 direction() {
-    const double z = between(-1, 1), angle = between(-kPi, kPi), r = std::sqrt(1 - z * z);
-    return {r * std::cos(angle), r * std::sin(angle), z};
-  }
-  Mat3 rotation() {
-    Mat3 m;
-    const Vec3 z = direction(), x = z.cross(direction()).normalized();
-    m << x, z.cross(x), z;
-    return m;
-  }
-
- private:
-  std::mt19937_64 engine_;
 };
 
 TEST(ShapeLight, DiffuseRectanglesFollowTheContourIntegralWhereverTheReceiverIs) {

@@ -12,7 +12,7 @@
 namespace luxrig {
 namespace {
 
-Emitter under(const Sky& sky) {
+Emitter lit_by(const Sky& sky) {
   Emitter emitter;
   emitter.sky = sky;
   return emitter;
@@ -20,7 +20,7 @@ Emitter under(const Sky& sky) {
 
 SkyOpenings found(const RoomWithWindows& room, std::uint64_t seed = 1, std::uint64_t* rays = nullptr, int threads = 1) {
   const RayScene scene(room.scene());
-  const std::vector<Emitter> sky = {under(make_overcast_sky(10'000))};
+  const std::vector<Emitter> sky = {lit_by(make_overcast_sky(10'000))};
   std::uint64_t cast = 0;
   const SkyOpenings openings = find_sky_openings(scene, room.desks(), sky, seed, threads, {}, cast);
   if (rays) *rays = cast;
@@ -146,7 +146,7 @@ TEST(SkyOpenings, NoneWhereThereIsNothingToGainAndNoRayWithoutASky) {
   std::uint64_t rays = 0;
   std::vector<Receiver> outside = {{{-8, -8, 1}, Vec3::UnitZ()}, {{12, 3, 0}, Vec3(1, 0, 1).normalized()}};
   const RayScene scene(room.scene());
-  const std::vector<Emitter> sky = {under(make_uniform_sky(1000))};
+  const std::vector<Emitter> sky = {lit_by(make_uniform_sky(1000))};
   EXPECT_TRUE(find_sky_openings(scene, outside, sky, 1, 1, {}, rays).empty());
   EXPECT_LT(rays, 5000u);
   rays = 0;

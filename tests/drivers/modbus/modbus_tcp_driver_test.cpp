@@ -43,8 +43,8 @@ Bytes exception_answer(const Bytes& request, int code) {
   return answer;
 }
 
-struct Bench {
-  explicit Bench(ScriptedPeer::Script script, std::int64_t timeout_ms = 60) : peer(std::move(script)) {
+struct ModbusBench {
+  explicit ModbusBench(ScriptedPeer::Script script, std::int64_t timeout_ms = 60) : peer(std::move(script)) {
     rig = rig_with(bus_of("modbus_tcp", {{"host", std::string("127.0.0.1")},
                                          {"port", std::int64_t{peer.port()}},
                                          {"response_timeout_ms", timeout_ms}}));
@@ -74,7 +74,7 @@ struct Bench {
 };
 
 TEST(ModbusTcpDriver, WritesNeighboursTogetherAndLoneRegistersAlone) {
-  Bench bench(well);
+  ModbusBench bench(well);
   add_modbus(bench.rig, "b", 10, 1);
   add_modbus(bench.rig, "a", 10, 0);
   add_modbus(bench.rig, "c", 10, 5, 255);
@@ -90,7 +90,7 @@ TEST(ModbusTcpDriver, WritesNeighboursTogetherAndLoneRegistersAlone) {
 }
 
 TEST(ModbusTcpDriver, WritesAgainOnlyWhatChangedOrNeedsRefreshing) {
-  Bench bench(well);
+  ModbusBench bench(well);
   add_modbus(bench.rig, "a", 1, 0);
   bench.start();
   ASSERT_TRUE(bench.write(0, 0.5));
@@ -105,7 +105,7 @@ TEST(ModbusTcpDriver, WritesAgainOnlyWhatChangedOrNeedsRefreshing) {
 }
 
 TEST(ModbusTcpDriver, WritesARegisterAtMostTwentyTimesASecond) {
-  Bench bench(well);
+  ModbusBench bench(well);
   add_modbus(bench.rig, "a", 1, 0);
   bench.start();
   for (int ms = 0; ms < 1000; ms += 5) ASSERT_TRUE(bench.write(ms, ms / 1000.0));
@@ -113,7 +113,7 @@ TEST(ModbusTcpDriver, WritesARegisterAtMostTwentyTimesASecond) {
 }
 
 TEST(ModbusTcpDriver, ReadsMetersOfBothKindsAndWordOrders) {
-  Bench bench([](const Bytes& request) {
+  ModbusBench bench([](const Bytes& request) {
     ScriptedAnswer answer{right_answer(request)};
     if (request[6] == 2)
       std::swap_ranges(answer.bytes.begin() + 9, answer.bytes.begin() + 11, answer.bytes.begin() + 11);
@@ -163,7 +163,7 @@ TEST(ModbusTcpDriver, ReturnsWithinItsBoundFromEveryKindOfBadPeer) {
        }},
   };
   for (const auto& [name, script] : peers) {
-    Bench bench(script);
+    ModbusBench bench(script);
     for (int unit = 1; unit <= 4; ++unit) add_modbus(bench.rig, "dimmer-" + std::to_string(unit), unit, 0);
     for (int unit = 5; unit <= 8; ++unit) add_meter(bench.rig, "meter-" + std::to_string(unit), unit, 2);
     bench.start();
@@ -201,7 +201,7 @@ TEST(ModbusTcpDriver, TakesEveryGarbledAnswerForAProtocolFaultAndResumes) {
        }},
   };
   for (const auto& [name, change] : spoil) {
-    Bench bench([change = change](const Bytes& request) {
+    ModbusBench bench([change = change](const Bytes& request) {
       ScriptedAnswer answer{right_answer(request)};
       change(answer.bytes);
       return answer;
@@ -223,7 +223,7 @@ TEST(ModbusTcpDriver, TakesEveryGarbledAnswerForAProtocolFaultAndResumes) {
 }
 
 TEST(ModbusTcpDriver, LeavesASilentUnitAloneForASecondSoThatTheOthersKeepTheirPace) {
-  Bench bench([](const Bytes& request) { return request[6] == 2 ? ScriptedAnswer{} : well(request); });
+  ModbusBench bench([](const Bytes& request) { return request[6] == 2 ? ScriptedAnswer{} : well(request); });
   for (int unit = 1; unit <= 3; ++unit) add_meter(bench.rig, "meter-" + std::to_string(unit), unit, 2);
   bench.start();
   std::map<std::size_t, int> readings;
@@ -251,7 +251,7 @@ TEST(ModbusTcpDriver, LeavesASilentUnitAloneForASecondSoThatTheOthersKeepTheirPa
 
 TEST(ModbusTcpDriver, SkipsALateAnswerToAnEarlierRequest) {
   // Unit 2 answers after its timeout, with a value that must not be taken for unit 1's.
-  Bench bench([](const Bytes& request) {
+  ModbusBench bench([](const Bytes& request) {
     ScriptedAnswer answer{right_answer(request)};
     if (request[6] == 2) {
       answer.bytes[9] = 0x00;
@@ -278,7 +278,7 @@ TEST(ModbusTcpDriver, SkipsALateAnswerToAnEarlierRequest) {
 }
 
 TEST(ModbusTcpDriver, NamesAnExceptionAndGoesOnWithTheOthers) {
-  Bench bench([](const Bytes& request) {
+  ModbusBench bench([](const Bytes& request) {
     return request[6] == 1 ? ScriptedAnswer{exception_answer(request, 4)} : well(request);
   });
   add_modbus(bench.rig, "broken", 1, 0);
@@ -295,7 +295,7 @@ TEST(ModbusTcpDriver, NamesAnExceptionAndGoesOnWithTheOthers) {
 }
 
 TEST(ModbusTcpDriver, WritesSinglyToADeviceThatDoesNotKnowFunction16) {
-  Bench bench([](const Bytes& request) {
+  ModbusBench bench([](const Bytes& request) {
     return request[7] == 16 ? ScriptedAnswer{exception_answer(request, 1)} : well(request);
   });
   add_modbus(bench.rig, "a", 1, 0);
@@ -310,7 +310,7 @@ TEST(ModbusTcpDriver, WritesSinglyToADeviceThatDoesNotKnowFunction16) {
 
 TEST(ModbusTcpDriver, ReconnectsAtOnceWhenThePeerHasClosedAnIdleConnection) {
   bool close = true;
-  Bench bench([&close](const Bytes& request) {
+  ModbusBench bench([&close](const Bytes& request) {
     return ScriptedAnswer{right_answer(request), milliseconds(0), milliseconds(0), close};
   });
   add_meter(bench.rig, "meter", 1, 2);
@@ -348,7 +348,7 @@ TEST(ModbusTcpDriver, StartsFaultedWithoutAPeerAndConnectsByItselfWhenOneAppears
 }
 
 TEST(ModbusTcpDriver, BelievesNoReadingFarBeyondTheMetersRange) {
-  Bench bench([](const Bytes& request) {
+  ModbusBench bench([](const Bytes& request) {
     ScriptedAnswer answer{right_answer(request)};
     std::fill(answer.bytes.begin() + 9, answer.bytes.end(), std::uint8_t{0xFF});
     return answer;
@@ -363,7 +363,7 @@ TEST(ModbusTcpDriver, BelievesNoReadingFarBeyondTheMetersRange) {
 }
 
 TEST(ModbusTcpDriver, SendsNothingForASetpointThatCannotBeSent) {
-  Bench bench(well);
+  ModbusBench bench(well);
   add_modbus(bench.rig, "a", 1, 0);
   bench.start();
   EXPECT_EQ(bench.write(0, std::numeric_limits<double>::quiet_NaN()).error().cause, Cause::invalid);

@@ -16,12 +16,14 @@
 #include <thread>
 #include <vector>
 
+#include "tests/folders.h"
+
 namespace luxrig::testing {
 
 using namespace std::chrono_literals;
 
-inline std::string program(const std::string& name) { return std::string(LUXRIG_BIN_DIR) + "/" + name; }
-inline std::string source(const std::string& path) { return std::string(LUXRIG_SOURCE_DIR) + "/" + path; }
+inline std::string program(const std::string& name) { return (test::program_folder() / name).string(); }
+inline std::string source(const std::string& path) { return (test::source_folder() / path).string(); }
 
 inline std::string text_of(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);

@@ -20,10 +20,10 @@ BitVolume random_volume(const Eigen::Vector3i& size, double share, unsigned seed
   return volume;
 }
 
-const Eigen::Vector3i kSizes[] = {{130, 7, 5}, {64, 9, 3}, {1, 1, 1}, {63, 2, 11}, {65, 6, 6}};
+const Eigen::Vector3i kVolumeSizes[] = {{130, 7, 5}, {64, 9, 3}, {1, 1, 1}, {63, 2, 11}, {65, 6, 6}};
 
 TEST(BitVolume, VisitsAndCountsExactlyWhatWasSet) {
-  for (const auto& size : kSizes) {
+  for (const auto& size : kVolumeSizes) {
     const BitVolume volume = random_volume(size, 0.2, 1);
     BitVolume copy(size);
     std::size_t n = 0;
@@ -37,7 +37,7 @@ TEST(BitVolume, VisitsAndCountsExactlyWhatWasSet) {
 }
 
 TEST(BitVolume, DilationSetsTheNeighboursAndNothingElse) {
-  for (const auto& size : kSizes) {
+  for (const auto& size : kVolumeSizes) {
     const BitVolume volume = random_volume(size, 0.03, 2), dilated = volume.dilated();
     std::size_t n = 0;
     for (int z = 0; z < size.z(); ++z)
@@ -55,7 +55,7 @@ TEST(BitVolume, DilationSetsTheNeighboursAndNothingElse) {
 }
 
 TEST(BitVolume, ReductionIsTheOrOfEachBlock) {
-  for (const auto& size : kSizes) {
+  for (const auto& size : kVolumeSizes) {
     const BitVolume volume = random_volume(size, 0.02, 3), cells = volume.reduced(4);
     EXPECT_EQ(cells.size(), Eigen::Vector3i((size.array() + 3) / 4));
     BitVolume expected(cells.size());

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "tests/core/transport/candidates/box_rooms.h"
+#include "tests/core/transport/candidates/computed.h"
 
 namespace luxrig {
 namespace {
@@ -13,13 +14,6 @@ CandidateOptions direct_only() {
   CandidateOptions options;
   options.indirect = false;
   return options;
-}
-
-CandidateTransport computed(const Scene& scene, const RayScene& rays, std::span<const Receiver> receivers,
-                            const CandidateSet& set, const CandidateOptions& options) {
-  auto result = candidate_transport(scene, rays, receivers, set, options);
-  EXPECT_TRUE(result) << result.error().detail;
-  return result ? std::move(*result) : CandidateTransport{};
 }
 
 void expect_same_bytes(const CandidateColumns& a, const CandidateColumns& b) {

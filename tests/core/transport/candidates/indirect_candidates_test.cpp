@@ -8,17 +8,11 @@
 #include "core/transport/candidates/incremental_transport.h"
 #include "core/transport/enclosures.h"
 #include "tests/core/transport/candidates/box_rooms.h"
+#include "tests/core/transport/candidates/computed.h"
 #include "tests/core/transport/cube_radiosity.h"
 
 namespace luxrig {
 namespace {
-
-CandidateTransport computed(const Scene& scene, const RayScene& rays, std::span<const Receiver> receivers,
-                            const CandidateSet& set, const CandidateOptions& options) {
-  auto result = candidate_transport(scene, rays, receivers, set, options);
-  EXPECT_TRUE(result) << result.error().detail;
-  return result ? std::move(*result) : CandidateTransport{};
-}
 
 CandidateOptions coarse() {
   CandidateOptions options;

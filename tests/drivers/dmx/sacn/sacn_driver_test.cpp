@@ -11,9 +11,9 @@
 namespace luxrig {
 namespace {
 
-struct Bench {
-  explicit Bench(std::vector<std::pair<std::string, OptionValue>> options = {},
-                 std::optional<Redirect> redirect = std::nullopt) {
+struct SacnBench {
+  explicit SacnBench(std::vector<std::pair<std::string, OptionValue>> options = {},
+                     std::optional<Redirect> redirect = std::nullopt) {
     rig = rig_with(bus_of("sacn", std::move(options)));
     add_dmx(rig, "spot", 1, 5);
     add_dmx(rig, "far", 300, 1);
@@ -36,7 +36,7 @@ struct Bench {
 const Fault kRefused{Cause::network, {}, "a packet to 127.0.0.1:5568: Connection refused", {}};
 
 TEST(SacnDriver, SendsEachUniverseToItsGroup) {
-  Bench bench;
+  SacnBench bench;
   ASSERT_TRUE(bench.driver->activate(at_ms(0)));
   EXPECT_TRUE(bench.net->sent.empty());
   ASSERT_TRUE(bench.write(10, 1.0));
@@ -50,11 +50,11 @@ TEST(SacnDriver, SendsEachUniverseToItsGroup) {
 }
 
 TEST(SacnDriver, TakesItsOptions) {
-  Bench bench({{"destination", std::string("10.1.2.3")},
-               {"port", std::int64_t{7777}},
-               {"priority", std::int64_t{150}},
-               {"source_name", std::string("north wall")},
-               {"cid", std::string("6ba7b810-9dad-11d1-80b4-00c04fd430c8")}});
+  SacnBench bench({{"destination", std::string("10.1.2.3")},
+                   {"port", std::int64_t{7777}},
+                   {"priority", std::int64_t{150}},
+                   {"source_name", std::string("north wall")},
+                   {"cid", std::string("6ba7b810-9dad-11d1-80b4-00c04fd430c8")}});
   ASSERT_TRUE(bench.driver->activate(at_ms(0)));
   ASSERT_TRUE(bench.write(0, 0.5));
   EXPECT_EQ(text_of(bench.net->sent.at(1).to), "10.1.2.3:7777");
@@ -65,7 +65,7 @@ TEST(SacnDriver, TakesItsOptions) {
 }
 
 TEST(SacnDriver, SendsEverythingToTheStandInWhenRedirected) {
-  Bench bench({{"interface", std::string("no-such-0")}}, Redirect{"127.0.0.1", 4444});
+  SacnBench bench({{"interface", std::string("no-such-0")}}, Redirect{"127.0.0.1", 4444});
   ASSERT_TRUE(bench.driver->activate(at_ms(0)));
   ASSERT_TRUE(bench.write(0, 0.5));
   EXPECT_EQ(text_of(bench.net->sent.at(0).to), "127.0.0.1:4444");
@@ -73,7 +73,7 @@ TEST(SacnDriver, SendsEverythingToTheStandInWhenRedirected) {
 }
 
 TEST(SacnDriver, SaysGoodbyeThreeTimesPerUniverseAndOnlyOnce) {
-  Bench bench;
+  SacnBench bench;
   ASSERT_TRUE(bench.driver->activate(at_ms(0)));
   ASSERT_TRUE(bench.write(0, 1.0));
   bench.net->sent.clear();
@@ -90,7 +90,7 @@ TEST(SacnDriver, SaysGoodbyeThreeTimesPerUniverseAndOnlyOnce) {
 }
 
 TEST(SacnDriver, SaysGoodbyeWhenDestroyedWhileActive) {
-  Bench bench;
+  SacnBench bench;
   ASSERT_TRUE(bench.driver->activate(at_ms(0)));
   ASSERT_TRUE(bench.write(0, 1.0));
   bench.driver.reset();
@@ -99,7 +99,7 @@ TEST(SacnDriver, SaysGoodbyeWhenDestroyedWhileActive) {
 }
 
 TEST(SacnDriver, WritesNothingBeforeItIsActiveOrAfter) {
-  Bench bench;
+  SacnBench bench;
   EXPECT_EQ(bench.write(0, 1.0).error().cause, Cause::inactive);
   ASSERT_TRUE(bench.driver->activate(at_ms(0)));
   bench.driver->deactivate(at_ms(1));
@@ -108,7 +108,7 @@ TEST(SacnDriver, WritesNothingBeforeItIsActiveOrAfter) {
 }
 
 TEST(SacnDriver, SendsNothingForASetpointThatCannotBeSent) {
-  Bench bench;
+  SacnBench bench;
   ASSERT_TRUE(bench.driver->activate(at_ms(0)));
   EXPECT_EQ(bench.write(0, std::numeric_limits<double>::quiet_NaN()).error().cause, Cause::invalid);
   EXPECT_EQ(bench.write(0, 1.01).error().cause, Cause::invalid);
@@ -117,7 +117,7 @@ TEST(SacnDriver, SendsNothingForASetpointThatCannotBeSent) {
 }
 
 TEST(SacnDriver, IsFaultedWhileTheReceiversPortIsClosedAndKeepsSending) {
-  Bench bench({{"destination", std::string("127.0.0.1")}});
+  SacnBench bench({{"destination", std::string("127.0.0.1")}});
   ASSERT_TRUE(bench.driver->activate(at_ms(0)));
   ASSERT_TRUE(bench.write(0, 0.1));
   bench.net->errors.push_back(kRefused);
@@ -133,7 +133,7 @@ TEST(SacnDriver, IsFaultedWhileTheReceiversPortIsClosedAndKeepsSending) {
 }
 
 TEST(SacnDriver, IsActiveAgainOnceTheNetworkHasBeenQuietAndSendsTheCurrentSetpoint) {
-  Bench bench({{"destination", std::string("127.0.0.1")}});
+  SacnBench bench({{"destination", std::string("127.0.0.1")}});
   ASSERT_TRUE(bench.driver->activate(at_ms(0)));
   ASSERT_TRUE(bench.write(0, 0.1));
   bench.net->errors.push_back(kRefused);
@@ -147,7 +147,7 @@ TEST(SacnDriver, IsActiveAgainOnceTheNetworkHasBeenQuietAndSendsTheCurrentSetpoi
 }
 
 TEST(SacnDriver, ReportsAnUnreachableNetworkAndRecovers) {
-  Bench bench;
+  SacnBench bench;
   ASSERT_TRUE(bench.driver->activate(at_ms(0)));
   bench.net->send_fails = Fault{Cause::network, {}, "sending: Network is unreachable", {}};
   EXPECT_FALSE(bench.write(0, 1.0));
@@ -159,7 +159,7 @@ TEST(SacnDriver, ReportsAnUnreachableNetworkAndRecovers) {
 }
 
 TEST(SacnDriver, StartsFaultedWithoutItsInterfaceAndTriesAgainEverySecond) {
-  Bench bench;
+  SacnBench bench;
   bench.net->open_fails = Fault{Cause::network, {}, "looking up the interface \"eth9\": No such device", {}};
   ASSERT_TRUE(bench.driver->activate(at_ms(0)));
   EXPECT_EQ(bench.health(0).life, Life::faulted);

@@ -1,0 +1,14 @@
+#pragma once
+#include "core/transport/evaluator.h"
+
+namespace luxrig {
+
+/// What an evaluator is asked for: the error, and a seed.
+inline EvaluateOptions within(double relative_error, std::uint64_t seed = 1) {
+  EvaluateOptions options;
+  options.wanted_relative_error = relative_error;
+  options.seed = seed;
+  return options;
+}
+
+}  // namespace luxrig

@@ -1,0 +1,10 @@
+// Where tests find the project's files and programs.
+#pragma once
+#include <filesystem>
+
+namespace luxrig::test {
+
+std::filesystem::path source_folder();   // the project's own
+std::filesystem::path program_folder();  // of the build that this test is from
+
+}  // namespace luxrig::test
