@@ -1,0 +1,55 @@
+#pragma once
+/// A room whose lights are known, for placement: the hall of the box room, candidates on a lattice, lux without
+/// reflection.
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <vector>
+
+#include "core/solve/placement/complement_search.h"
+#include "core/solve/placement/scene_light.h"
+#include "core/transport/rooms/lit_room.h"
+
+namespace luxrig {
+
+struct LitHall {
+  LitRoom room;
+  RayScene rays;
+  std::unique_ptr<IncrementalTransport> transport;
+  std::unique_ptr<SceneLight> light;
+  CandidateSet set;
+  CandidateColumns columns;
+
+  LitHall(LitRoom room_in, double lattice_m, Emitter luminaire = {make_isotropic(1), {}})
+      : room(std::move(room_in)), rays(room.scene) {
+    IncrementalOptions direct_only;
+    direct_only.indirect = false;
+    transport = std::move(*IncrementalTransport::make(room.scene, rays, room.receivers, direct_only));
+    light = std::make_unique<SceneLight>(*transport, room.receivers, luminaire, false);
+    set.luminaires = {luminaire};
+    const Eigen::AlignedBox3d box_m = rays.bounds_world_m();
+    const Vec3 first_m = box_m.min() + Vec3::Constant(lattice_m / 2);
+    for (double z = first_m.z(); z < box_m.max().z(); z += lattice_m)
+      for (double y = first_m.y(); y < box_m.max().y(); y += lattice_m)
+        for (double x = first_m.x(); x < box_m.max().x(); x += lattice_m) set.positions_world_m.push_back({x, y, z});
+    CandidateOptions options;
+    options.indirect = false;
+    columns = std::move(candidate_transport(room.scene, rays, room.receivers, set, options)->matrix);
+  }
+
+  [[nodiscard]] ColumnsView view() const {
+    return ColumnsView(light->points(), columns.begin, columns.receiver, columns.total_lux);
+  }
+  [[nodiscard]] LightingGoal goal_of(const std::vector<Vec3>& places_m, const std::vector<double>& levels) const {
+    LightingGoal goal{Eigen::VectorXd::Zero(light->points()), {}};
+    Eigen::VectorXd lux;
+    for (std::size_t k = 0; k < places_m.size(); ++k) {
+      EXPECT_TRUE(light->column(places_m[k], lux, nullptr));
+      goal.lux += levels[k] * lux;
+    }
+    return goal;
+  }
+};
+
+}  // namespace luxrig

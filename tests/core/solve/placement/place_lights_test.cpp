@@ -1,0 +1,136 @@
+#include "core/solve/placement/place_lights.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "tests/core/solve/placement/lit_hall.h"
+
+namespace luxrig {
+namespace {
+
+/// From each of these places to the nearest light.
+double farthest_off_m(const std::vector<Vec3>& places_m, const PlacedLights& lights) {
+  double farthest_m = 0;
+  for (const Vec3& place_m : places_m) {
+    double nearest_m = std::numeric_limits<double>::infinity();
+    for (const Vec3& at_m : lights.places_world_m()) nearest_m = std::min(nearest_m, (at_m - place_m).norm());
+    farthest_m = std::max(farthest_m, nearest_m);
+  }
+  return farthest_m;
+}
+
+TEST(PlaceLights, FindsKnownLightsOfAFurnishedRoom) {
+  const LitHall hall(make_box_room(3), 0.25);
+  const std::vector<Vec3> places_m = {{0.9, 0.8, 2.1}, {3.1, 2.2, 1.9}, {2.2, 1.4, 2.3}};
+  const LightingGoal goal = hall.goal_of(places_m, {800, 500, 300});
+  const ComplementSearch candidates(hall.view(), hall.set.positions_world_m, goal);
+  PlaceOptions options;
+  options.lights = 3;
+  const Placement got = place_lights(*hall.light, goal, candidates, options);
+  EXPECT_LE(got.lights.error(), 1e-4);
+  EXPECT_LE(farthest_off_m(places_m, got.lights), 0.01);
+}
+
+TEST(PlaceLights, AgreesWithTheTenLampsOfAFlat) {
+  const LitRoom flat = make_eight_room_flat(2);
+  std::vector<Vec3> places_m;
+  std::vector<double> levels;
+  for (const Emitter& lamp : flat.emitters) {
+    places_m.push_back(lamp.world_from_lamp.translation_m);
+    levels.push_back(lamp.intensity->flux_lm());
+  }
+  const LitHall hall(flat, 0.25);
+  const LightingGoal goal = hall.goal_of(places_m, levels);
+  const ComplementSearch candidates(hall.view(), hall.set.positions_world_m, goal);
+  PlaceOptions options;
+  options.lights = 10;
+  const Placement got = place_lights(*hall.light, goal, candidates, options);
+  EXPECT_LE(got.lights.error(), 0.002);
+  EXPECT_LE(farthest_off_m(places_m, got.lights), 0.03);
+}
+
+TEST(PlaceLights, GivesTheSameBytesForAnyNumberOfThreads) {
+  const LitHall hall(make_box_room(1), 0.4);
+  const LightingGoal goal{Eigen::VectorXd::Constant(hall.light->points(), 200), {}};
+  const ComplementSearch candidates(hall.view(), hall.set.positions_world_m, goal);
+  std::vector<Placement> got;
+  for (const int threads : {1, 2, 8}) {
+    PlaceOptions options;
+    options.lights = 3;
+    options.most_columns = 1000;
+    options.threads = threads;
+    got.push_back(place_lights(*hall.light, goal, candidates, options));
+  }
+  for (const Placement& other : got) {
+    EXPECT_EQ(other.lights.places_world_m(), got[0].lights.places_world_m());
+    EXPECT_EQ(other.lights.levels(), got[0].lights.levels());
+    EXPECT_EQ(other.columns, got[0].columns);
+  }
+}
+
+TEST(PlaceLights, TellsOfBetterOnesAsItGoesAndReturnsTheBestWhenStopped) {
+  const LitHall hall(make_box_room(1), 0.4);
+  const LightingGoal goal{Eigen::VectorXd::Constant(hall.light->points(), 200), {}};
+  const ComplementSearch candidates(hall.view(), hall.set.positions_world_m, goal);
+  std::stop_source stop;
+  PlaceOptions options;
+  options.lights = 2;
+  options.wanted_error = 0;
+  options.stop = stop.get_token();
+  double last = 2;
+  int told = 0;
+  options.better = [&](const PlacedLights& best, std::size_t) {
+    EXPECT_LT(best.error(), last);
+    last = best.error();
+    ++told;
+    stop.request_stop();
+  };
+  const Placement got = place_lights(*hall.light, goal, candidates, options);
+  EXPECT_GE(told, 1);
+  EXPECT_EQ(got.lights.error(), last);
+}
+
+TEST(PlaceLights, TakesGoalsOfZeroPointsOutOfReachAndEqualCandidates) {
+  LitHall hall(make_box_room(1), 0.5);
+  const Eigen::Index points = hall.light->points();
+  // Twice each candidate.
+  CandidateColumns twice;
+  std::vector<Vec3> places_m;
+  for (std::size_t c = 0; c < hall.columns.columns(); ++c)
+    for (int copy = 0; copy < 2; ++copy) {
+      for (std::uint64_t e = hall.columns.begin[c]; e < hall.columns.begin[c + 1]; ++e) {
+        twice.receiver.push_back(hall.columns.receiver[e]);
+        twice.total_lux.push_back(hall.columns.total_lux[e]);
+      }
+      twice.begin.push_back(twice.receiver.size());
+      places_m.push_back(hall.set.positions_world_m[c]);
+    }
+  const ColumnsView view(points, twice.begin, twice.receiver, twice.total_lux);
+  LightingGoal zero{Eigen::VectorXd::Zero(points), {}};
+  LightingGoal one{Eigen::VectorXd::Zero(points), Eigen::VectorXd::Zero(points)};
+  one.lux[0] = 100;
+  one.row_weight[0] = 1;
+  for (const LightingGoal& goal : {zero, one}) {
+    const ComplementSearch candidates(view, places_m, goal);
+    PlaceOptions options;
+    options.lights = 4;
+    options.most_columns = 2000;
+    const Placement got = place_lights(*hall.light, goal, candidates, options);
+    EXPECT_LE(got.lights.error(), 1e-4);
+    EXPECT_TRUE(got.lights.levels().allFinite());
+    EXPECT_TRUE((got.lights.levels().array() >= 0).all());
+  }
+  // Candidates of which none lights anything.
+  const std::vector<std::uint64_t> begin = {0, 0};
+  const std::vector<Vec3> outside_m = {{100, 100, 100}};
+  const ColumnsView dark(points, begin, std::span<const std::uint32_t>(), std::span<const float>());
+  const LightingGoal goal{Eigen::VectorXd::Constant(points, 100), {}};
+  const Placement none = place_lights(*hall.light, goal, ComplementSearch(dark, outside_m, goal), {});
+  EXPECT_EQ(none.lights.size(), 0u);
+  EXPECT_EQ(none.lights.error(), 1);
+}
+
+}  // namespace
+}  // namespace luxrig
