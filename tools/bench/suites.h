@@ -16,6 +16,10 @@ namespace luxrig {
 /// Non-negative least squares, cold, warm and limited: error is the worst KKT residual, seconds are of the processor.
 [[nodiscard]] std::vector<BenchRow> bench_nnls(const BenchOptions& options);
 
+/// Known lights found again: a row for each of 100 flats (6 with quick), then the median, the 90th percentile (which is
+/// judged) and the worst of every column by itself; `found` is the share found again within 3 cm and 2 % of flux.
+[[nodiscard]] std::vector<BenchRow> bench_placement(const BenchOptions& options);
+
 /// 60 s (6 s with quick) of four sACN universes at 44 Hz to a sink on loopback, path tracing on all cores meanwhile.
 /// Prints the histogram of the intervals by the kernel's arrival stamps. error: p99 deviation over the period.
 [[nodiscard]] std::vector<BenchRow> bench_buses(const BenchOptions& options);

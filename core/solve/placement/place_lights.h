@@ -5,8 +5,8 @@
 /// together with all levels (a sliding Frank–Wolfe: Boyd, Schiebinger & Recht 2017; Denoyelle et al. 2020). That ends
 /// in basins which shadows cut off. So lights are then taken out in turn and put where they do most for what is left
 /// over: at a candidate anywhere, or at a fresh place near by, which may lie beyond an edge of a shadow. Whatever
-/// lowers the error after refinement is kept. When nothing does, a start of its own begins, with other choices among
-/// the best.
+/// lowers the error after refinement is kept. When nothing does, two lights that share points are taken out together;
+/// when that does not help either, another start begins, with other choices among the best.
 
 #include <functional>
 #include <stop_token>
