@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/solve/placement/lattice.h"
 #include "core/solve/placement/place_lights.h"
 #include "core/solve/placement/scene_light.h"
 #include "core/transport/rooms/lit_room.h"
@@ -36,15 +37,6 @@ struct Recovery {
     return error <= kPlacementError && farthest_m <= kFoundWithin_m && worst_flux <= kFoundFlux;
   }
 };
-
-std::vector<Vec3> lattice_in(const Eigen::AlignedBox3d& box_m) {
-  std::vector<Vec3> places_m;
-  const Vec3 first_m = box_m.min() + Vec3::Constant(kLattice_m / 2);
-  for (double z = first_m.z(); z < box_m.max().z(); z += kLattice_m)
-    for (double y = first_m.y(); y < box_m.max().y(); y += kLattice_m)
-      for (double x = first_m.x(); x < box_m.max().x(); x += kLattice_m) places_m.emplace_back(x, y, z);
-  return places_m;
-}
 
 void compare(const KnownLights& known, const PlacedLights& found, Recovery& recovery) {
   for (std::size_t k = 0; k < known.places_m.size(); ++k) {
@@ -83,7 +75,7 @@ Recovery recover(const LitRoom& room, std::uint64_t seed, int threads) {
   recovery.seconds = timed([&] {
     const auto transport = IncrementalTransport::make(room.scene, rays, room.receivers, direct_only);
     const SceneLight light(**transport, room.receivers, lumen, false);
-    CandidateSet set{lattice_in(rays.bounds_world_m()), {lumen}};
+    CandidateSet set{lattice_in(rays.bounds_world_m(), kLattice_m), {lumen}};
     CandidateOptions options;
     options.indirect = false;
     options.threads = threads;

@@ -132,6 +132,7 @@ class Search {
     };
     std::vector<Vec3> places_m = in_place(better.front());
     lights.move(places_m);
+    best_.columns += lights.size();
     for (std::size_t i = 1; i < better.size(); ++i) {
       PlacedLights both = lights;
       places_m = lights.places_world_m();

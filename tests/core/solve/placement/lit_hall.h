@@ -1,6 +1,5 @@
 #pragma once
-/// A room whose lights are known, for placement: the hall of the box room, candidates on a lattice, lux without
-/// reflection.
+/// A room to place lights in: candidates on a lattice, lux without reflection.
 
 #include <gtest/gtest.h>
 
@@ -8,6 +7,7 @@
 #include <vector>
 
 #include "core/solve/placement/complement_search.h"
+#include "core/solve/placement/lattice.h"
 #include "core/solve/placement/scene_light.h"
 #include "core/transport/rooms/lit_room.h"
 
@@ -28,11 +28,7 @@ struct LitHall {
     transport = std::move(*IncrementalTransport::make(room.scene, rays, room.receivers, direct_only));
     light = std::make_unique<SceneLight>(*transport, room.receivers, luminaire, false);
     set.luminaires = {luminaire};
-    const Eigen::AlignedBox3d box_m = rays.bounds_world_m();
-    const Vec3 first_m = box_m.min() + Vec3::Constant(lattice_m / 2);
-    for (double z = first_m.z(); z < box_m.max().z(); z += lattice_m)
-      for (double y = first_m.y(); y < box_m.max().y(); y += lattice_m)
-        for (double x = first_m.x(); x < box_m.max().x(); x += lattice_m) set.positions_world_m.push_back({x, y, z});
+    set.positions_world_m = lattice_in(rays.bounds_world_m(), lattice_m);
     CandidateOptions options;
     options.indirect = false;
     columns = std::move(candidate_transport(room.scene, rays, room.receivers, set, options)->matrix);
