@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
+#include <ctime>
 #include <fstream>
 
 #include "core/rig/rig_file.h"
@@ -54,9 +54,9 @@ TEST_P(BadRig, IsRefusedWithPlaceAndMendAndNothingElse) {
   const auto expected = expectations(path);
   ASSERT_FALSE(expected.empty()) << "its first line must be # expect: line:column: text";
 
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();  // of the processor: a busy machine is not the reader's fault
   const Checked<Rig> rig = load_rig(path);
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(1));
+  EXPECT_LT(std::clock() - start, CLOCKS_PER_SEC);
 
   ASSERT_FALSE(rig.has_value()) << "accepted";
   for (const std::string& wanted : expected) {

@@ -2,9 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
 #include <ctime>
-#include <fstream>
 #include <random>
 #include <string>
 
@@ -113,13 +111,13 @@ TEST(RigFile, SaysWhichFileWasNotFound) {
 }
 
 TEST(RigFile, RefusesAFileOver16MiBUnread) {
-  const auto start = std::chrono::steady_clock::now();
+  const std::clock_t start = std::clock();  // of the processor: a busy machine is not the reader's fault
   std::string text = kSmall;
   text.resize((std::size_t{16} << 20) + 1, '\n');
   const Checked<Rig> rig = parse(text);
   ASSERT_FALSE(rig);
   EXPECT_NE(rig.error()[0].mend.find("16 MiB"), std::string::npos);
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(1));
+  EXPECT_LT(std::clock() - start, CLOCKS_PER_SEC);
 }
 
 TEST(RigFile, RefusesMoreEntriesThanARigCanHave) {
