@@ -2,6 +2,7 @@
 
 #include <Eigen/QR>
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "core/check.h"
@@ -11,6 +12,8 @@ namespace {
 
 /// A column with less than this left of its square is a mix of the chosen ones: nothing but rounding to gain.
 constexpr double kLeastLeft = 1e-4;
+
+const double kSameWay = std::cos(rad_from_deg(30));
 
 /// Orthonormal, of the columns whose level is above 0.
 Eigen::MatrixXd basis_of(const PlacedLights& chosen) {
@@ -26,55 +29,74 @@ Eigen::MatrixXd basis_of(const PlacedLights& chosen) {
 
 }  // namespace
 
-ComplementSearch::ComplementSearch(const ColumnsView& columns, std::span<const Vec3> places_world_m,
+ComplementSearch::ComplementSearch(const ColumnsView& columns, std::span<const LightPose> poses,
                                    const LightingGoal& goal)
-    : columns_(columns), places_m_(places_world_m), row_weight_(goal.row_weight) {
-  LUXRIG_CHECK(static_cast<std::size_t>(columns.columns()) == places_world_m.size(), "{} columns, {} places",
-               columns.columns(), places_world_m.size());
-  LUXRIG_CHECK(columns.rows() == goal.lux.size(), "{} rows, {} goals", columns.rows(), goal.lux.size());
-  if (row_weight_.size() == 0) row_weight_ = Eigen::VectorXd::Ones(columns.rows());
-  const Eigen::VectorXd squared_weight = row_weight_.cwiseAbs2();
-  squared_norm_.resize(columns.columns());
+    : columns_(columns), poses_(poses), goal_(&goal), row_weight_(goal.row_weight) {
+  LUXRIG_CHECK(static_cast<std::size_t>(columns.columns()) == poses.size(), "{} columns, {} poses", columns.columns(),
+               poses.size());
+  LUXRIG_CHECK(columns.rows() * goal.channels() == goal.lux.size(), "{} rows, {} goals", columns.rows(),
+               goal.lux.size());
+  if (row_weight_.size() == 0) row_weight_ = Eigen::VectorXd::Ones(goal.lux.size());
+  const Eigen::MatrixXd emitters = goal.emitters.cwiseAbs2();
+  Eigen::VectorXd of_channel(goal.channels());
+  squared_norm_.resize(columns.columns(), emitters.cols());
+  const Eigen::MatrixXd squared_weight = row_weight_.cwiseAbs2().reshaped(columns.rows(), goal.channels());
   for (ColumnsView::Index c = 0; c < columns.columns(); ++c) {
-    squared_norm_[c] = columns.squared_norm(c, squared_weight.data());
-    if (squared_norm_[c] > 0) lit_.push_back(c);
+    for (Eigen::Index k = 0; k < of_channel.size(); ++k)
+      of_channel[k] = columns.squared_norm(c, squared_weight.col(k).data());
+    const auto row = static_cast<Eigen::Index>(lit_.size());
+    squared_norm_.row(row) = of_channel.transpose() * emitters;
+    if (squared_norm_.row(row).maxCoeff() > 0) lit_.push_back(c);
   }
+  squared_norm_.conservativeResize(static_cast<Eigen::Index>(lit_.size()), Eigen::NoChange);
 }
 
-Eigen::VectorXd ComplementSearch::gains(const PlacedLights& chosen) const {
+/// Of lit columns with vectors over points: lit × vectors.
+Eigen::MatrixXd ComplementSearch::products(const Eigen::MatrixXd& vectors) const {
   constexpr Eigen::Index kTile = ColumnsView::kTile;
-  Eigen::MatrixXd vectors(row_weight_.size(), 1);
-  vectors.col(0) = chosen.residual();
-  const Eigen::MatrixXd basis = basis_of(chosen);
-  vectors.conservativeResize(Eigen::NoChange, 1 + basis.cols());
-  vectors.rightCols(basis.cols()) = basis;
-
   const auto lit = static_cast<Eigen::Index>(lit_.size());
-  Eigen::VectorXd pull(lit), left(lit);
-  for (Eigen::Index i = 0; i < lit; ++i) left[i] = squared_norm_[lit_[static_cast<std::size_t>(i)]];
+  Eigen::MatrixXd of_all(lit, vectors.cols());
   std::vector<double> tile(static_cast<std::size_t>(kTile * vectors.rows()));
-  std::vector<double> products(static_cast<std::size_t>(kTile * lit));
+  std::vector<double> of_tile(static_cast<std::size_t>(kTile * lit));
   for (Eigen::Index first = 0; first < vectors.cols(); first += kTile) {
     const Eigen::Index used = std::min(kTile, vectors.cols() - first);
     for (Eigen::Index row = 0; row < vectors.rows(); ++row)
       for (Eigen::Index k = 0; k < kTile; ++k)
-        tile[static_cast<std::size_t>(kTile * row + k)] = k < used ? row_weight_[row] * vectors(row, first + k) : 0;
-    columns_.dot_tile(lit_, tile.data(), products.data());
-    for (Eigen::Index i = 0; i < lit; ++i) {
-      const double* of = products.data() + kTile * i;
-      for (Eigen::Index k = 0; k < used; ++k) {
-        if (first + k == 0)
-          pull[i] = of[k];
-        else
-          left[i] -= of[k] * of[k];
-      }
+        tile[static_cast<std::size_t>(kTile * row + k)] = k < used ? vectors(row, first + k) : 0;
+    columns_.dot_tile(lit_, tile.data(), of_tile.data());
+    for (Eigen::Index i = 0; i < lit; ++i)
+      for (Eigen::Index k = 0; k < used; ++k) of_all(i, first + k) = of_tile[static_cast<std::size_t>(kTile * i + k)];
+  }
+  return of_all;
+}
+
+Eigen::VectorXd ComplementSearch::gains(const PlacedLights& chosen) const {
+  const auto lit = static_cast<Eigen::Index>(lit_.size());
+  const Eigen::MatrixXd basis = basis_of(chosen);
+  const Eigen::Index points = columns_.rows(), channels = goal_->channels(), vectors = 1 + basis.cols();
+  // Channel by channel: of the residual, then of the basis.
+  Eigen::MatrixXd weighted(points, vectors * channels);
+  for (Eigen::Index c = 0; c < channels; ++c) {
+    const auto weight = row_weight_.segment(c * points, points);
+    weighted.col(c * vectors) = weight.cwiseProduct(chosen.residual().segment(c * points, points));
+    if (basis.cols() > 0)
+      weighted.middleCols(c * vectors + 1, basis.cols()) = weight.asDiagonal() * basis.middleRows(c * points, points);
+  }
+  const Eigen::MatrixXd of_channels = products(weighted);
+  Eigen::VectorXd gain = Eigen::VectorXd::Zero(lit);
+  Eigen::VectorXd of_vectors(vectors);
+  for (Eigen::Index i = 0; i < lit; ++i) {
+    for (Eigen::Index e = 0; e < goal_->emitters.cols(); ++e) {
+      const double whole = squared_norm_(i, e);
+      of_vectors.setZero();
+      for (Eigen::Index c = 0; c < channels; ++c)
+        if (goal_->emitters(c, e) != 0)
+          of_vectors += goal_->emitters(c, e) * of_channels.row(i).segment(c * vectors, vectors).transpose();
+      const double pull = of_vectors[0], left = whole - of_vectors.tail(vectors - 1).squaredNorm();
+      if (pull > 0 && left > kLeastLeft * whole) gain[i] += pull * pull / left;
     }
   }
-  for (Eigen::Index i = 0; i < lit; ++i) {
-    const double whole = squared_norm_[lit_[static_cast<std::size_t>(i)]];
-    pull[i] = pull[i] > 0 && left[i] > kLeastLeft * whole ? pull[i] * pull[i] / left[i] : 0;
-  }
-  return pull;
+  return gain;
 }
 
 std::vector<Complement> ComplementSearch::best(const PlacedLights& chosen, std::size_t count, double apart_m) const {
@@ -99,7 +121,9 @@ std::vector<Complement> ComplementSearch::best(const PlacedLights& chosen, std::
     if (!(of > 0)) break;
     const auto candidate = static_cast<std::size_t>(lit_[order[i]]);
     const bool apart = std::all_of(found.begin(), found.end(), [&](const Complement& better) {
-      return (places_m_[better.candidate] - places_m_[candidate]).norm() >= apart_m;
+      const LightPose &first = poses_[better.candidate], &second = poses_[candidate];
+      return (first.position_world_m - second.position_world_m).norm() >= apart_m ||
+             first.aim_world.dot(second.aim_world) < kSameWay;
     });
     if (apart) found.push_back({candidate, of});
   }

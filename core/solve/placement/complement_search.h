@@ -4,7 +4,8 @@
 /// A candidate with column a lowers the squared error, when all levels are free to follow, by
 ///   (aᵀr)² / (‖a‖² − ‖Qᵀa‖²),
 /// with r the residual and Q an orthonormal basis of the columns in use (orthogonal least squares: Chen, Cowan & Grant
-/// 1991). It holds as long as no level would have to fall below 0.
+/// 1991). It holds as long as no level would have to fall below 0. A candidate with several emitters counts the sum of
+/// theirs, which is exact where they share no channel.
 ///
 /// The thesis asks for the candidate whose normalised column is nearest to the residual, that is the largest aᵀr/‖a‖:
 /// the same without the chosen lights in the denominator.
@@ -24,23 +25,26 @@ struct Complement {
 
 class ComplementSearch {
  public:
-  /// The matrix and the places must outlive it. columns: lux per unit emittance, one row per point; a place per column.
-  ComplementSearch(const ColumnsView& columns, std::span<const Vec3> places_world_m, const LightingGoal& goal);
+  /// All must outlive it. columns: lux per unit emittance, one row per point; a pose per column.
+  ComplementSearch(const ColumnsView& columns, std::span<const LightPose> poses, const LightingGoal& goal);
 
-  [[nodiscard]] std::size_t candidates() const { return places_m_.size(); }
-  [[nodiscard]] const Vec3& place_world_m(std::size_t candidate) const { return places_m_[candidate]; }
+  [[nodiscard]] std::size_t candidates() const { return poses_.size(); }
+  [[nodiscard]] const LightPose& pose(std::size_t candidate) const { return poses_[candidate]; }
 
-  /// The best by gain, falling, none within `apart_m` of a better one; fewer when no more gain anything.
+  /// The best by gain, falling; fewer when no more gain anything. None within `apart_m` of a better one that points
+  /// the same way (to 30°).
   [[nodiscard]] std::vector<Complement> best(const PlacedLights& chosen, std::size_t count, double apart_m) const;
 
  private:
   [[nodiscard]] Eigen::VectorXd gains(const PlacedLights& chosen) const;
+  [[nodiscard]] Eigen::MatrixXd products(const Eigen::MatrixXd& vectors) const;
 
   ColumnsView columns_;
-  std::span<const Vec3> places_m_;
+  std::span<const LightPose> poses_;
+  const LightingGoal* goal_;
   Eigen::VectorXd row_weight_;           ///< W
-  Eigen::VectorXd squared_norm_;         ///< of W a
   std::vector<ColumnsView::Index> lit_;  ///< candidates with any light
+  Eigen::MatrixXd squared_norm_;         ///< of W a: lit_ × emitters
 };
 
 }  // namespace luxrig

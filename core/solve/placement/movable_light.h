@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "core/geometry.h"
+#include "core/solve/placement/light_pose.h"
 
 namespace luxrig {
 
@@ -11,12 +11,15 @@ class MovableLight {
  public:
   virtual ~MovableLight() = default;
   [[nodiscard]] virtual Eigen::Index points() const = 0;
+  /// What a pose may change in, as moved() takes it: 3 where the aim does not matter, else 5.
+  [[nodiscard]] virtual Eigen::Index freedoms() const { return 3; }
 
-  /// lux           per unit emittance at every point, with the light at that place
-  /// lux_per_m     points × 3; nullptr: not asked for. How lux changes while what is lit and what is in shadow stays
+  /// lux        per unit emittance at every point, with the light in that pose
+  /// slopes     points × freedoms(); nullptr: not asked for. How lux changes while what is lit and what is in shadow
+  ///            stays
   /// False where no light may hang or can be worked out; then both are as they were. From any thread, and always the
-  /// same for the same place.
-  virtual bool column(const Vec3& place_world_m, Eigen::VectorXd& lux, Eigen::MatrixX3d* lux_per_m) const = 0;
+  /// same for the same pose.
+  virtual bool column(const LightPose& pose, Eigen::VectorXd& lux, Eigen::MatrixXd* slopes) const = 0;
 };
 
 }  // namespace luxrig

@@ -6,59 +6,77 @@
 namespace luxrig {
 
 PlacedLights::PlacedLights(const MovableLight& light, const LightingGoal& goal)
-    : light_(&light), goal_(&goal), weighted_goal_(goal.weighted()), goal_norm_(weighted_goal_.norm()) {
-  LUXRIG_CHECK(goal.lux.size() == light.points(), "{} goals for {} points", goal.lux.size(), light.points());
-  columns_.resize(light.points(), 0);
+    : light_(&light), goal_(&goal), weighted_goal_(goal.weighted()), goal_norm_(goal.weighted(goal.lux).norm()) {
+  LUXRIG_CHECK(goal.lux.size() == light.points() * goal.channels(), "{} goals for {} points", goal.lux.size(),
+               light.points());
+  columns_.resize(goal.lux.size(), 0);
   solve();
 }
 
-bool PlacedLights::add(const Vec3& place_world_m) {
+bool PlacedLights::add(const LightPose& pose) {
   Eigen::VectorXd lux;
-  if (!light_->column(place_world_m, lux, nullptr)) return false;
-  places_m_.push_back(place_world_m);
-  columns_.conservativeResize(Eigen::NoChange, columns_.cols() + 1);
-  columns_.rightCols(1) = goal_->weighted(lux);
+  if (!light_->column(pose, lux, nullptr)) return false;
+  poses_.push_back(pose);
+  columns_.conservativeResize(Eigen::NoChange, columns_.cols() + emitters());
+  block(size() - 1) = goal_->weighted_columns(lux);
+  solve();
+  return true;
+}
+
+bool PlacedLights::replace(std::size_t light, const LightPose& pose) {
+  LUXRIG_CHECK(light < size(), "light {} of {}", light, size());
+  Eigen::VectorXd lux;
+  if (!light_->column(pose, lux, nullptr)) return false;
+  poses_[light] = pose;
+  block(light) = goal_->weighted_columns(lux);
   solve();
   return true;
 }
 
 void PlacedLights::drop(std::size_t light) {
   LUXRIG_CHECK(light < size(), "light {} of {}", light, size());
-  const auto at = static_cast<Eigen::Index>(light);
-  places_m_.erase(places_m_.begin() + at);
-  const Eigen::Index behind = columns_.cols() - at - 1;
-  columns_.middleCols(at, behind) = columns_.rightCols(behind).eval();
-  columns_.conservativeResize(Eigen::NoChange, columns_.cols() - 1);
+  for (std::size_t k = light; k + 1 < size(); ++k) block(k) = block(k + 1).eval();
+  poses_.erase(poses_.begin() + static_cast<std::ptrdiff_t>(light));
+  columns_.conservativeResize(Eigen::NoChange, columns_.cols() - emitters());
   solve();
 }
 
-void PlacedLights::move(const std::vector<Vec3>& places_world_m) {
-  LUXRIG_CHECK(places_world_m.size() == size(), "{} places for {} lights", places_world_m.size(), size());
+void PlacedLights::move(const std::vector<LightPose>& poses) {
+  LUXRIG_CHECK(poses.size() == size(), "{} poses for {} lights", poses.size(), size());
   Eigen::VectorXd lux;
   for (std::size_t k = 0; k < size(); ++k) {
-    if (places_world_m[k] == places_m_[k] || !light_->column(places_world_m[k], lux, nullptr)) continue;
-    places_m_[k] = places_world_m[k];
-    columns_.col(static_cast<Eigen::Index>(k)) = goal_->weighted(lux);
+    if (poses[k] == poses_[k] || !light_->column(poses[k], lux, nullptr)) continue;
+    poses_[k] = poses[k];
+    block(k) = goal_->weighted_columns(lux);
   }
   solve();
 }
 
-Eigen::MatrixX3d PlacedLights::derivatives(std::size_t light) const {
+Eigen::MatrixXd PlacedLights::slopes(std::size_t light) const {
+  Eigen::MatrixXd of_rows = Eigen::MatrixXd::Zero(goal_->lux.size(), freedoms());
   Eigen::VectorXd lux;
-  Eigen::MatrixX3d lux_per_m;
-  if (!light_->column(places_m_[light], lux, &lux_per_m)) return Eigen::MatrixX3d::Zero(light_->points(), 3);
-  if (goal_->row_weight.size() > 0) lux_per_m = goal_->row_weight.asDiagonal() * lux_per_m;
-  return lux_per_m;
+  Eigen::MatrixXd of_points;
+  if (!light_->column(poses_[light], lux, &of_points)) return of_rows;
+  const Eigen::VectorXd colour =
+      goal_->emitters * levels_.segment(static_cast<Eigen::Index>(light) * emitters(), emitters());
+  for (Eigen::Index c = 0; c < goal_->channels(); ++c)
+    of_rows.middleRows(c * of_points.rows(), of_points.rows()) = colour[c] * of_points;
+  if (goal_->row_weight.size() > 0) of_rows = goal_->row_weight.asDiagonal() * of_rows;
+  return of_rows;
 }
 
 void PlacedLights::solve() {
   if (columns_.cols() == 0) {
     levels_.resize(0);
     residual_ = weighted_goal_;
-  } else {
+  } else if (goal_->max_level == std::numeric_limits<double>::infinity()) {
     levels_ = solve_nnls(columns_, weighted_goal_).x;
-    residual_ = weighted_goal_ - columns_ * levels_;
+  } else {
+    NnlsProblem problem{
+        ColumnsView(columns_), weighted_goal_, {}, Eigen::VectorXd::Constant(columns_.cols(), goal_->max_level)};
+    levels_ = solve_nnls(problem)->x;
   }
+  if (columns_.cols() > 0) residual_ = weighted_goal_ - columns_ * levels_;
   const double norm = residual_.norm();
   error_ = goal_norm_ > 0 ? norm / goal_norm_ : norm;
 }

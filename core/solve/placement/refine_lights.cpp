@@ -11,30 +11,31 @@ constexpr double kFirstDamping = 1e-2, kMostDamping = 1e8, kLeastDamping = 1e-9;
 
 /// One linear model about the present places.
 struct PlaceModel {
-  std::vector<std::size_t> lit;  ///< lights whose place matters: their level is above 0
+  Eigen::Index freedoms;
+  std::vector<std::size_t> lit;  ///< lights whose pose matters: a level is above 0
   Eigen::MatrixXd products;      ///< JᵀJ
   Eigen::VectorXd slope;         ///< Jᵀr
 
-  explicit PlaceModel(const PlacedLights& lights) {
+  explicit PlaceModel(const PlacedLights& lights) : freedoms(lights.freedoms()) {
     for (std::size_t k = 0; k < lights.size(); ++k)
-      if (lights.levels()[static_cast<Eigen::Index>(k)] > 0) lit.push_back(k);
-    const auto count = static_cast<Eigen::Index>(lit.size());
-    const Eigen::Index points = lights.columns().rows();
-    Eigen::MatrixXd lit_columns(points, count), jacobian(points, 3 * count);
-    for (Eigen::Index i = 0; i < count; ++i) {
-      const auto k = static_cast<Eigen::Index>(lit[static_cast<std::size_t>(i)]);
-      lit_columns.col(i) = lights.columns().col(k);
-      jacobian.middleCols(3 * i, 3) = lights.levels()[k] * lights.derivatives(static_cast<std::size_t>(k));
-    }
+      if (lights.lit(k)) lit.push_back(k);
+    const Eigen::Index rows = lights.columns().rows();
+    Eigen::MatrixXd jacobian(rows, freedoms * static_cast<Eigen::Index>(lit.size()));
+    for (std::size_t i = 0; i < lit.size(); ++i)
+      jacobian.middleCols(freedoms * static_cast<Eigen::Index>(i), freedoms) = lights.slopes(lit[i]);
     // What a change of levels can do, is not a place's to do.
-    const Eigen::HouseholderQR<Eigen::MatrixXd> factor(lit_columns);
-    const Eigen::MatrixXd basis = factor.householderQ() * Eigen::MatrixXd::Identity(points, std::min(points, count));
+    Eigen::MatrixXd in_use(rows, lights.columns().cols());
+    Eigen::Index count = 0;
+    for (Eigen::Index k = 0; k < in_use.cols(); ++k)
+      if (lights.levels()[k] > 0) in_use.col(count++) = lights.columns().col(k);
+    const Eigen::HouseholderQR<Eigen::MatrixXd> factor(in_use.leftCols(count));
+    const Eigen::MatrixXd basis = factor.householderQ() * Eigen::MatrixXd::Identity(rows, std::min(rows, count));
     jacobian -= basis * (basis.transpose() * jacobian);
     products = jacobian.transpose() * jacobian;
     slope = jacobian.transpose() * lights.residual();
   }
 
-  /// Moves of the lit lights, three numbers each.
+  /// Moves of the lit lights, as moved() takes them.
   [[nodiscard]] Eigen::VectorXd step(double damping) const {
     Eigen::MatrixXd damped = products;
     const double least = 1e-12 * std::max(products.diagonal().maxCoeff(), 1e-300);
@@ -56,22 +57,24 @@ std::size_t refine_lights(PlacedLights& lights, const RefineOptions& options) {
     bool better = false;
     while (!better && damping <= kMostDamping) {
       if (options.stop.stop_requested()) return columns;
-      const Eigen::VectorXd moves_m = model.step(damping);
-      if (!moves_m.allFinite()) {
+      const Eigen::VectorXd moves = model.step(damping);
+      if (!moves.allFinite()) {
         damping *= 10;
         continue;
       }
-      std::vector<Vec3> places_m = lights.places_world_m();
-      double longest_m = 0;
+      std::vector<LightPose> poses = lights.poses();
+      double longest = 0;
       for (std::size_t i = 0; i < model.lit.size(); ++i) {
-        Vec3 move_m = moves_m.segment<3>(3 * static_cast<Eigen::Index>(i));
-        if (const double length_m = move_m.norm(); length_m > options.longest_step_m)
-          move_m *= options.longest_step_m / length_m;
-        longest_m = std::max(longest_m, move_m.norm());
-        places_m[model.lit[i]] += move_m;
+        Eigen::VectorXd move = moves.segment(model.freedoms * static_cast<Eigen::Index>(i), model.freedoms);
+        if (const double length_m = move.head<3>().norm(); length_m > options.longest_step_m)
+          move *= options.longest_step_m / length_m;
+        if (const double turn_rad = move.tail(model.freedoms - 3).norm(); turn_rad > options.longest_turn_rad)
+          move *= options.longest_turn_rad / turn_rad;
+        longest = std::max(longest, move.norm());
+        poses[model.lit[i]] = luxrig::moved(poses[model.lit[i]], move);
       }
       PlacedLights moved = lights;
-      moved.move(places_m);
+      moved.move(poses);
       columns += model.lit.size();
       if (moved.error() < lights.error()) {
         small = moved.error() > (1 - options.least_improvement) * lights.error() ? small + 1 : 0;
@@ -80,7 +83,7 @@ std::size_t refine_lights(PlacedLights& lights, const RefineOptions& options) {
         better = true;
       } else {
         damping *= 6;
-        if (longest_m < 1e-9) return columns;
+        if (longest < 1e-9) return columns;
       }
     }
     if (!better || small >= 2) break;

@@ -15,6 +15,7 @@ namespace luxrig {
 struct RefineOptions {
   int most_steps = 30;
   double longest_step_m = 0.5;      ///< of one light in one step
+  double longest_turn_rad = 0.3;    ///< of its aim
   double least_error = 1e-7;        ///< PlacedLights::error() at which it ends
   double least_improvement = 1e-3;  ///< share of the error; two steps in turn below it end it, too
   std::stop_token stop;

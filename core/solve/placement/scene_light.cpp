@@ -8,48 +8,75 @@ namespace {
 /// A step in which intensity hardly changes and rounding hardly counts.
 constexpr double kTurn = 1e-4;
 
+/// `hung` turned the shortest way so that its -Z points along `aim`.
+Mat3 aimed_rotation(const Mat3& hung, const Vec3& aim) {
+  return Eigen::Quaterniond::FromTwoVectors(-hung.col(2), aim).toRotationMatrix() * hung;
+}
+
 }  // namespace
 
 SceneLight::SceneLight(const IncrementalTransport& transport, std::vector<Receiver> receivers, Emitter luminaire,
-                       bool indirect, std::function<bool(const Vec3&)> may_hang)
+                       bool indirect, bool aimed, std::function<bool(const Vec3&)> may_hang)
     : transport_(&transport),
       receivers_(std::move(receivers)),
       luminaire_(std::move(luminaire)),
       indirect_(indirect),
+      aimed_(aimed),
       may_hang_(std::move(may_hang)) {}
 
-bool SceneLight::column(const Vec3& place_world_m, Eigen::VectorXd& lux, Eigen::MatrixX3d* lux_per_m) const {
-  if (!place_world_m.allFinite() || (may_hang_ && !may_hang_(place_world_m))) return false;
+Emitter SceneLight::hung(const LightPose& pose) const {
   Emitter hung = luminaire_;
-  hung.world_from_lamp.translation_m = place_world_m;
-  auto found = indirect_ ? transport_->column(hung) : transport_->direct_column(hung);
+  hung.world_from_lamp.translation_m = pose.position_world_m;
+  if (aimed_) hung.world_from_lamp.rotation = aimed_rotation(luminaire_.world_from_lamp.rotation, pose.aim_world);
+  return hung;
+}
+
+bool SceneLight::column(const LightPose& pose, Eigen::VectorXd& lux, Eigen::MatrixXd* slopes) const {
+  const Vec3& position_m = pose.position_world_m;
+  if (!position_m.allFinite() || (may_hang_ && !may_hang_(position_m))) return false;
+  const Emitter emitter = hung(pose);
+  auto found = indirect_ ? transport_->column(emitter) : transport_->direct_column(emitter);
   if (!found || !found->total_lux.allFinite()) return false;
-  if (lux_per_m) {
-    lux_per_m->setZero(points(), 3);
-    for (Eigen::Index i = 0; i < points(); ++i)
-      if (found->direct_lux[i] > 0)
-        lux_per_m->row(i) = derivative(receivers_[static_cast<std::size_t>(i)], hung, found->direct_lux[i]);
-  }
+  if (slopes) *slopes = slopes_at(pose, found->direct_lux);
   lux = std::move(found->total_lux);
   return true;
 }
 
 /// Of E = I(-d) n·d / |d|³ with d from the receiver to the light.
-Eigen::RowVector3d SceneLight::derivative(const Receiver& receiver, const Emitter& hung, double lux) const {
-  const Vec3 d_m = hung.world_from_lamp.translation_m - receiver.position_world_m;
-  const double squared_m2 = d_m.squaredNorm(), height_m = receiver.normal_world.dot(d_m);
-  Vec3 of_log = receiver.normal_world / height_m - 3 / squared_m2 * d_m;
-  const Mat3 lamp_from_world = hung.world_from_lamp.rotation.transpose();
-  const double step_m = kTurn * std::sqrt(squared_m2);
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto intensity_cd = [&](double side) {
-      const Vec3 moved_m = d_m + side * step_m * Vec3::Unit(axis);
-      return hung.intensity->intensity_cd(lamp_from_world * -moved_m.normalized());
-    };
-    const double ahead = intensity_cd(1), behind = intensity_cd(-1);
-    if (ahead + behind > 0) of_log[axis] += (ahead - behind) / (step_m * (ahead + behind));
+Eigen::MatrixXd SceneLight::slopes_at(const LightPose& pose, const Eigen::VectorXd& direct_lux) const {
+  const Mat3 lamp_from_world = hung(pose).world_from_lamp.rotation.transpose();
+  std::vector<Mat3> turned;  // behind and ahead of each freedom of the aim
+  for (Eigen::Index i = 3; i < freedoms(); ++i)
+    for (const double side : {-1.0, 1.0})
+      turned.push_back(
+          hung(moved(pose, side * kTurn * Eigen::VectorXd::Unit(freedoms(), i))).world_from_lamp.rotation.transpose());
+  const auto of_log = [](double ahead, double behind, double step) {
+    return ahead + behind > 0 ? (ahead - behind) / (step * (ahead + behind)) : 0;
+  };
+  Eigen::MatrixXd slopes = Eigen::MatrixXd::Zero(points(), freedoms());
+  for (Eigen::Index r = 0; r < points(); ++r) {
+    if (!(direct_lux[r] > 0)) continue;
+    const Receiver& receiver = receivers_[static_cast<std::size_t>(r)];
+    const Vec3 d_m = pose.position_world_m - receiver.position_world_m;
+    const double squared_m2 = d_m.squaredNorm(), step_m = kTurn * std::sqrt(squared_m2);
+    slopes.row(r).head<3>() = receiver.normal_world / receiver.normal_world.dot(d_m) - 3 / squared_m2 * d_m;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto intensity_cd = [&](double side) {
+        return luminaire_.intensity->intensity_cd(lamp_from_world *
+                                                  -(d_m + side * step_m * Vec3::Unit(axis)).normalized());
+      };
+      slopes(r, axis) += of_log(intensity_cd(1), intensity_cd(-1), step_m);
+    }
+    for (Eigen::Index i = 3; i < freedoms(); ++i) {
+      const auto intensity_cd = [&](Eigen::Index side) {
+        return luminaire_.intensity->intensity_cd(turned[static_cast<std::size_t>(2 * (i - 3) + side)] *
+                                                  -d_m.normalized());
+      };
+      slopes(r, i) += of_log(intensity_cd(1), intensity_cd(0), kTurn);
+    }
+    slopes.row(r) *= direct_lux[r];
   }
-  return lux * of_log.transpose();
+  return slopes;
 }
 
 }  // namespace luxrig

@@ -13,22 +13,27 @@ namespace luxrig {
 class SceneLight final : public MovableLight {
  public:
   /// transport     must outlive it, made for these receivers
-  /// luminaire     hung with its own rotation; its translation is not used. No shape, no sky.
+  /// luminaire     hung with its own rotation, and turned from there the shortest way to a pose's aim if it is aimed;
+  ///               its translation is not used. No shape, no sky.
   /// indirect      reflected light, too: by rays, milliseconds a column; its derivatives are left out
+  /// aimed         its aim matters
   /// may_hang      where; empty: wherever light gets to a receiver
   SceneLight(const IncrementalTransport& transport, std::vector<Receiver> receivers, Emitter luminaire, bool indirect,
-             std::function<bool(const Vec3&)> may_hang = {});
+             bool aimed = false, std::function<bool(const Vec3&)> may_hang = {});
 
   [[nodiscard]] Eigen::Index points() const override { return static_cast<Eigen::Index>(receivers_.size()); }
-  bool column(const Vec3& place_world_m, Eigen::VectorXd& lux, Eigen::MatrixX3d* lux_per_m) const override;
+  [[nodiscard]] Eigen::Index freedoms() const override { return aimed_ ? 5 : 3; }
+  bool column(const LightPose& pose, Eigen::VectorXd& lux, Eigen::MatrixXd* slopes) const override;
+  /// The luminaire in a pose.
+  [[nodiscard]] Emitter hung(const LightPose& pose) const;
 
  private:
-  [[nodiscard]] Eigen::RowVector3d derivative(const Receiver& receiver, const Emitter& hung, double lux) const;
+  [[nodiscard]] Eigen::MatrixXd slopes_at(const LightPose& pose, const Eigen::VectorXd& direct_lux) const;
 
   const IncrementalTransport* transport_;
   std::vector<Receiver> receivers_;
   Emitter luminaire_;
-  bool indirect_;
+  bool indirect_, aimed_;
   std::function<bool(const Vec3&)> may_hang_;
 };
 

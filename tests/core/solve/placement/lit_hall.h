@@ -19,6 +19,7 @@ struct LitHall {
   std::unique_ptr<IncrementalTransport> transport;
   std::unique_ptr<SceneLight> light;
   CandidateSet set;
+  std::vector<LightPose> poses;
   CandidateColumns columns;
 
   LitHall(LitRoom room_in, double lattice_m, Emitter luminaire = {make_isotropic(1), {}})
@@ -29,6 +30,7 @@ struct LitHall {
     light = std::make_unique<SceneLight>(*transport, room.receivers, luminaire, false);
     set.luminaires = {luminaire};
     set.positions_world_m = lattice_in(rays.bounds_world_m(), lattice_m);
+    for (const Vec3& position_m : set.positions_world_m) poses.push_back({position_m});
     CandidateOptions options;
     options.indirect = false;
     columns = std::move(candidate_transport(room.scene, rays, room.receivers, set, options)->matrix);
@@ -38,10 +40,11 @@ struct LitHall {
     return ColumnsView(light->points(), columns.begin, columns.receiver, columns.total_lux);
   }
   [[nodiscard]] LightingGoal goal_of(const std::vector<Vec3>& places_m, const std::vector<double>& levels) const {
-    LightingGoal goal{Eigen::VectorXd::Zero(light->points()), {}};
+    LightingGoal goal;
+    goal.lux = Eigen::VectorXd::Zero(light->points());
     Eigen::VectorXd lux;
     for (std::size_t k = 0; k < places_m.size(); ++k) {
-      EXPECT_TRUE(light->column(places_m[k], lux, nullptr));
+      EXPECT_TRUE(light->column({places_m[k]}, lux, nullptr));
       goal.lux += levels[k] * lux;
     }
     return goal;

@@ -15,7 +15,8 @@ double farthest_off_m(const std::vector<Vec3>& places_m, const PlacedLights& lig
   double farthest_m = 0;
   for (const Vec3& place_m : places_m) {
     double nearest_m = std::numeric_limits<double>::infinity();
-    for (const Vec3& at_m : lights.places_world_m()) nearest_m = std::min(nearest_m, (at_m - place_m).norm());
+    for (const LightPose& pose : lights.poses())
+      nearest_m = std::min(nearest_m, (pose.position_world_m - place_m).norm());
     farthest_m = std::max(farthest_m, nearest_m);
   }
   return farthest_m;
@@ -25,7 +26,7 @@ TEST(PlaceLights, FindsKnownLightsOfAFurnishedRoom) {
   const LitHall hall(make_box_room(3), 0.25);
   const std::vector<Vec3> places_m = {{0.9, 0.8, 2.1}, {3.1, 2.2, 1.9}, {2.2, 1.4, 2.3}};
   const LightingGoal goal = hall.goal_of(places_m, {800, 500, 300});
-  const ComplementSearch candidates(hall.view(), hall.set.positions_world_m, goal);
+  const ComplementSearch candidates(hall.view(), hall.poses, goal);
   PlaceOptions options;
   options.lights = 3;
   const Placement got = place_lights(*hall.light, goal, candidates, options);
@@ -43,7 +44,7 @@ TEST(PlaceLights, AgreesWithTheTenLampsOfAFlat) {
   }
   const LitHall hall(flat, 0.25);
   const LightingGoal goal = hall.goal_of(places_m, levels);
-  const ComplementSearch candidates(hall.view(), hall.set.positions_world_m, goal);
+  const ComplementSearch candidates(hall.view(), hall.poses, goal);
   PlaceOptions options;
   options.lights = 10;
   const Placement got = place_lights(*hall.light, goal, candidates, options);
@@ -54,17 +55,17 @@ TEST(PlaceLights, AgreesWithTheTenLampsOfAFlat) {
 TEST(PlaceLights, GivesTheSameBytesForAnyNumberOfThreads) {
   const LitHall hall(make_box_room(1), 0.4);
   const LightingGoal goal{Eigen::VectorXd::Constant(hall.light->points(), 200), {}};
-  const ComplementSearch candidates(hall.view(), hall.set.positions_world_m, goal);
+  const ComplementSearch candidates(hall.view(), hall.poses, goal);
   std::vector<Placement> got;
   for (const int threads : {1, 2, 8}) {
     PlaceOptions options;
     options.lights = 3;
     options.most_columns = 1000;
-    options.threads = threads;
+    options.exchange.threads = threads;
     got.push_back(place_lights(*hall.light, goal, candidates, options));
   }
   for (const Placement& other : got) {
-    EXPECT_EQ(other.lights.places_world_m(), got[0].lights.places_world_m());
+    EXPECT_EQ(other.lights.poses(), got[0].lights.poses());
     EXPECT_EQ(other.lights.levels(), got[0].lights.levels());
     EXPECT_EQ(other.columns, got[0].columns);
   }
@@ -73,12 +74,12 @@ TEST(PlaceLights, GivesTheSameBytesForAnyNumberOfThreads) {
 TEST(PlaceLights, TellsOfBetterOnesAsItGoesAndReturnsTheBestWhenStopped) {
   const LitHall hall(make_box_room(1), 0.4);
   const LightingGoal goal{Eigen::VectorXd::Constant(hall.light->points(), 200), {}};
-  const ComplementSearch candidates(hall.view(), hall.set.positions_world_m, goal);
+  const ComplementSearch candidates(hall.view(), hall.poses, goal);
   std::stop_source stop;
   PlaceOptions options;
   options.lights = 2;
   options.wanted_error = 0;
-  options.stop = stop.get_token();
+  options.exchange.stop = stop.get_token();
   double last = 2;
   int told = 0;
   options.better = [&](const PlacedLights& best, std::size_t) {
@@ -97,7 +98,7 @@ TEST(PlaceLights, TakesGoalsOfZeroPointsOutOfReachAndEqualCandidates) {
   const Eigen::Index points = hall.light->points();
   // Twice each candidate.
   CandidateColumns twice;
-  std::vector<Vec3> places_m;
+  std::vector<LightPose> poses;
   for (std::size_t c = 0; c < hall.columns.columns(); ++c)
     for (int copy = 0; copy < 2; ++copy) {
       for (std::uint64_t e = hall.columns.begin[c]; e < hall.columns.begin[c + 1]; ++e) {
@@ -105,7 +106,7 @@ TEST(PlaceLights, TakesGoalsOfZeroPointsOutOfReachAndEqualCandidates) {
         twice.total_lux.push_back(hall.columns.total_lux[e]);
       }
       twice.begin.push_back(twice.receiver.size());
-      places_m.push_back(hall.set.positions_world_m[c]);
+      poses.push_back(hall.poses[c]);
     }
   const ColumnsView view(points, twice.begin, twice.receiver, twice.total_lux);
   LightingGoal zero{Eigen::VectorXd::Zero(points), {}};
@@ -113,7 +114,7 @@ TEST(PlaceLights, TakesGoalsOfZeroPointsOutOfReachAndEqualCandidates) {
   one.lux[0] = 100;
   one.row_weight[0] = 1;
   for (const LightingGoal& goal : {zero, one}) {
-    const ComplementSearch candidates(view, places_m, goal);
+    const ComplementSearch candidates(view, poses, goal);
     PlaceOptions options;
     options.lights = 4;
     options.most_columns = 2000;
@@ -124,10 +125,11 @@ TEST(PlaceLights, TakesGoalsOfZeroPointsOutOfReachAndEqualCandidates) {
   }
   // Candidates of which none lights anything.
   const std::vector<std::uint64_t> begin = {0, 0};
-  const std::vector<Vec3> outside_m = {{100, 100, 100}};
+  const std::vector<LightPose> outside = {{{100, 100, 100}}};
   const ColumnsView dark(points, begin, std::span<const std::uint32_t>(), std::span<const float>());
   const LightingGoal goal{Eigen::VectorXd::Constant(points, 100), {}};
-  const Placement none = place_lights(*hall.light, goal, ComplementSearch(dark, outside_m, goal), {});
+  const ComplementSearch candidates(dark, outside, goal);
+  const Placement none = place_lights(*hall.light, goal, candidates, {});
   EXPECT_EQ(none.lights.size(), 0u);
   EXPECT_EQ(none.lights.error(), 1);
 }

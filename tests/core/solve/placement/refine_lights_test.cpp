@@ -19,12 +19,12 @@ TEST(SceneLight, DerivativesAreThoseOfItsColumns) {
     for (int trial = 0; trial < 20; ++trial) {
       const Vec3 at_m(random.between(0.5, 3.5), random.between(0.5, 2.5), random.between(1.5, 2.4));
       Eigen::VectorXd lux, ahead, behind;
-      Eigen::MatrixX3d lux_per_m;
-      ASSERT_TRUE(hall.light->column(at_m, lux, &lux_per_m));
+      Eigen::MatrixXd lux_per_m;
+      ASSERT_TRUE(hall.light->column({at_m}, lux, &lux_per_m));
       for (int axis = 0; axis < 3; ++axis) {
         constexpr double kStep_m = 1e-5;
-        ASSERT_TRUE(hall.light->column(at_m + kStep_m * Vec3::Unit(axis), ahead, nullptr));
-        ASSERT_TRUE(hall.light->column(at_m - kStep_m * Vec3::Unit(axis), behind, nullptr));
+        ASSERT_TRUE(hall.light->column({at_m + kStep_m * Vec3::Unit(axis)}, ahead, nullptr));
+        ASSERT_TRUE(hall.light->column({at_m - kStep_m * Vec3::Unit(axis)}, behind, nullptr));
         for (Eigen::Index i = 0; i < lux.size(); ++i) {
           if (lux[i] == 0 || ahead[i] == 0 || behind[i] == 0) continue;
           EXPECT_NEAR(lux_per_m(i, axis), (ahead[i] - behind[i]) / (2 * kStep_m),
@@ -44,12 +44,12 @@ TEST(RefineLights, BringsLightsBackFromTwentyCentimetresWhereNothingShadows) {
     std::vector<Vec3> places_m = {{1, 1, 2}, {3, 2, 2.2}};
     const LightingGoal goal = hall.goal_of(places_m, {700, 400});
     PlacedLights lights(*hall.light, goal);
-    for (const Vec3& place_m : places_m) ASSERT_TRUE(lights.add(place_m + 0.2 * random.direction()));
+    for (const Vec3& place_m : places_m) ASSERT_TRUE(lights.add({place_m + 0.2 * random.direction()}));
     const double before = lights.error();
     EXPECT_GT(before, 0.005);
     refine_lights(lights);
     EXPECT_LE(lights.error(), 1e-6);
-    for (std::size_t k = 0; k < 2; ++k) EXPECT_LE((lights.places_world_m()[k] - places_m[k]).norm(), 1e-5);
+    for (std::size_t k = 0; k < 2; ++k) EXPECT_LE((lights.poses()[k].position_world_m - places_m[k]).norm(), 1e-5);
     EXPECT_NEAR(lights.levels()[0], 700, 0.01);
   }
 }
@@ -61,7 +61,7 @@ TEST(RefineLights, NeverMakesTheErrorLargerAmongShadows) {
   for (int trial = 0; trial < 20; ++trial) {
     PlacedLights lights(*hall.light, goal);
     while (lights.size() < 4)
-      lights.add({random.between(0.1, 3.9), random.between(0.1, 2.9), random.between(0.1, 2.4)});
+      lights.add({{random.between(0.1, 3.9), random.between(0.1, 2.9), random.between(0.1, 2.4)}});
     const double before = lights.error();
     refine_lights(lights);
     EXPECT_LE(lights.error(), before);
@@ -78,7 +78,7 @@ TEST(ComplementSearch, GivesTheFallOfTheErrorOfEveryCandidateAndTheBestFirst) {
     goal.lux[i] = random.between(100, 500);
     goal.row_weight[i] = random.between(0.2, 2);
   }
-  const ComplementSearch search(hall.view(), hall.set.positions_world_m, goal);
+  const ComplementSearch search(hall.view(), hall.poses, goal);
   PlacedLights lights(*hall.light, goal);
   for (int chosen = 0; chosen < 4; ++chosen) {
     const auto all = search.best(lights, search.candidates(), 0);
@@ -89,7 +89,7 @@ TEST(ComplementSearch, GivesTheFallOfTheErrorOfEveryCandidateAndTheBestFirst) {
         EXPECT_LE(all[i].gain, all[i - 1].gain);
       }
       PlacedLights with = lights;
-      ASSERT_TRUE(with.add(search.place_world_m(all[i].candidate)));
+      ASSERT_TRUE(with.add(search.pose(all[i].candidate)));
       if ((with.levels().array() <= 0).any()) continue;  // a level met its bound: the formula does not hold
       // Candidates are kept in float.
       EXPECT_NEAR(squared - with.residual().squaredNorm(), all[i].gain, 1e-5 * squared) << chosen << " " << i;
@@ -99,8 +99,10 @@ TEST(ComplementSearch, GivesTheFallOfTheErrorOfEveryCandidateAndTheBestFirst) {
     EXPECT_EQ(apart[0].candidate, all[0].candidate);
     for (int a = 0; a < 4; ++a)
       for (int b = 0; b < a; ++b)
-        EXPECT_GE((search.place_world_m(apart[a].candidate) - search.place_world_m(apart[b].candidate)).norm(), 1.0);
-    ASSERT_TRUE(lights.add(search.place_world_m(all[0].candidate)));
+        EXPECT_GE((search.pose(apart[a].candidate).position_world_m - search.pose(apart[b].candidate).position_world_m)
+                      .norm(),
+                  1.0);
+    ASSERT_TRUE(lights.add(search.pose(all[0].candidate)));
   }
 }
 

@@ -1,0 +1,123 @@
+#include "core/solve/placement/choose_lights.h"
+
+#include <algorithm>
+
+#include "core/check.h"
+
+namespace luxrig {
+namespace {
+
+/// Lights beyond what is chosen that the way up goes: a share of them, and at least this many.
+constexpr std::size_t kLeastBeyond = 2;
+constexpr std::size_t kBeyondOf = 5;
+/// Of least_improvement, where the error is coarse: the first lights of many rooms each do little.
+constexpr double kCoarseShare = 0.05;
+
+class Choice {
+ public:
+  Choice(const MovableLight& light, const LightingGoal& goal, const ComplementSearch& candidates,
+         const ChooseOptions& options)
+      : options_(options), exchange_(candidates, options.exchange), random_(options.seed) {
+    curve_.cuts.emplace_back(light, goal);
+  }
+
+  LightCurve run() {
+    PlacedLights lights = way_up();
+    way_down(std::move(lights));
+    while (!ended() && better_at(curve_.chosen)) {
+    }
+    curve_.columns = exchange_.columns();
+    return std::move(curve_);
+  }
+
+ private:
+  [[nodiscard]] bool ended() const {
+    return options_.exchange.stop.stop_requested() || exchange_.columns() >= options_.most_columns;
+  }
+  [[nodiscard]] double error(std::size_t lights) const {
+    return curve_.cuts[std::min(lights, curve_.cuts.size() - 1)].error();
+  }
+
+  /// Keeps them if they are the best of their number. True when they are.
+  bool offer(const PlacedLights& lights) {
+    const std::size_t count = lights.size();
+    while (curve_.cuts.size() < count) curve_.cuts.push_back(curve_.cuts.back());
+    if (curve_.cuts.size() == count)
+      curve_.cuts.push_back(lights);
+    else if (lights.error() < curve_.cuts[count].error())
+      curve_.cuts[count] = lights;
+    else
+      return false;
+    for (std::size_t more = count + 1; more < curve_.cuts.size() && lights.error() < curve_.cuts[more].error(); ++more)
+      curve_.cuts[more] = lights;
+    const std::size_t was = curve_.chosen;
+    const double was_error = chosen_error_;
+    curve_.chosen = choose();
+    chosen_error_ = error(curve_.chosen);
+    if (options_.better && (curve_.chosen != was || chosen_error_ < was_error))
+      options_.better(curve_.cuts[curve_.chosen], exchange_.columns());
+    return true;
+  }
+
+  [[nodiscard]] std::size_t choose() const {
+    const std::size_t last = curve_.cuts.size() - 1;
+    for (std::size_t k = 0; k <= last; ++k)
+      if (error(k) <= options_.wanted_error) return k;
+    for (std::size_t k = 0; k < last; ++k) {
+      const double least =
+          error(k) > options_.coarse_error ? kCoarseShare * options_.least_improvement : options_.least_improvement;
+      const double keep = 1 - least;
+      if (error(k + 1) > keep * error(k) && (k + 2 > last || error(k + 2) > keep * keep * error(k))) return k;
+    }
+    return last;
+  }
+
+  PlacedLights way_up() {
+    PlacedLights lights = curve_.cuts.front();
+    while (!ended() && lights.size() < options_.most_lights) {
+      if (!exchange_.with_one_more(lights, 1, random_)) break;
+      offer(lights);
+      if (lights.error() <= options_.wanted_error) break;
+      if (lights.size() >= curve_.chosen + std::max(kLeastBeyond, curve_.chosen / kBeyondOf)) break;
+    }
+    return lights;
+  }
+
+  /// From more lights than are needed to one fewer than are chosen.
+  void way_down(PlacedLights lights) {
+    exchange_.refine(lights);
+    offer(lights);
+    while (!ended() && lights.size() > 1 && lights.size() + 1 > curve_.chosen) {
+      lights = exchange_.without_one(lights);
+      exchange_.singly(lights, random_);
+      if (lights.size() < curve_.cuts.size() && error(lights.size()) < lights.error())
+        lights = curve_.cuts[lights.size()];
+      offer(lights);
+    }
+  }
+
+  bool better_at(std::size_t count) {
+    PlacedLights lights = curve_.cuts[count];
+    if (lights.error() <= options_.wanted_error || lights.size() == 0) return false;
+    if (!exchange_.singly(lights, random_) && !exchange_.by_twos(lights) &&
+        !exchange_.through_more(lights, kLeastBeyond, random_))
+      return false;
+    return offer(lights);
+  }
+
+  const ChooseOptions& options_;
+  LightExchange exchange_;
+  std::mt19937_64 random_;
+  LightCurve curve_;
+  double chosen_error_ = 1;
+};
+
+}  // namespace
+
+LightCurve choose_lights(const MovableLight& light, const LightingGoal& goal, const ComplementSearch& candidates,
+                         const ChooseOptions& options) {
+  LUXRIG_CHECK(options.most_lights > 0, "{} lights", options.most_lights);
+  return Choice(light, goal, candidates, options).run();
+}
+
+}  // namespace luxrig
