@@ -54,7 +54,7 @@ TEST(PlaceLights, AgreesWithTheTenLampsOfAFlat) {
 
 TEST(PlaceLights, GivesTheSameBytesForAnyNumberOfThreads) {
   const LitHall hall(make_box_room(1), 0.4);
-  const LightingGoal goal{Eigen::VectorXd::Constant(hall.light->points(), 200), {}};
+  const LightingGoal goal{Eigen::VectorXd::Constant(hall.light->points(), 200)};
   const ComplementSearch candidates(hall.view(), hall.poses, goal);
   std::vector<Placement> got;
   for (const int threads : {1, 2, 8}) {
@@ -73,7 +73,7 @@ TEST(PlaceLights, GivesTheSameBytesForAnyNumberOfThreads) {
 
 TEST(PlaceLights, TellsOfBetterOnesAsItGoesAndReturnsTheBestWhenStopped) {
   const LitHall hall(make_box_room(1), 0.4);
-  const LightingGoal goal{Eigen::VectorXd::Constant(hall.light->points(), 200), {}};
+  const LightingGoal goal{Eigen::VectorXd::Constant(hall.light->points(), 200)};
   const ComplementSearch candidates(hall.view(), hall.poses, goal);
   std::stop_source stop;
   PlaceOptions options;
@@ -109,7 +109,7 @@ TEST(PlaceLights, TakesGoalsOfZeroPointsOutOfReachAndEqualCandidates) {
       poses.push_back(hall.poses[c]);
     }
   const ColumnsView view(points, twice.begin, twice.receiver, twice.total_lux);
-  LightingGoal zero{Eigen::VectorXd::Zero(points), {}};
+  LightingGoal zero{Eigen::VectorXd::Zero(points)};
   LightingGoal one{Eigen::VectorXd::Zero(points), Eigen::VectorXd::Zero(points)};
   one.lux[0] = 100;
   one.row_weight[0] = 1;
@@ -127,7 +127,7 @@ TEST(PlaceLights, TakesGoalsOfZeroPointsOutOfReachAndEqualCandidates) {
   const std::vector<std::uint64_t> begin = {0, 0};
   const std::vector<LightPose> outside = {{{100, 100, 100}}};
   const ColumnsView dark(points, begin, std::span<const std::uint32_t>(), std::span<const float>());
-  const LightingGoal goal{Eigen::VectorXd::Constant(points, 100), {}};
+  const LightingGoal goal{Eigen::VectorXd::Constant(points, 100)};
   const ComplementSearch candidates(dark, outside, goal);
   const Placement none = place_lights(*hall.light, goal, candidates, {});
   EXPECT_EQ(none.lights.size(), 0u);

@@ -56,7 +56,7 @@ TEST(RefineLights, BringsLightsBackFromTwentyCentimetresWhereNothingShadows) {
 
 TEST(RefineLights, NeverMakesTheErrorLargerAmongShadows) {
   const LitHall hall(make_box_room(2), 10);
-  const LightingGoal goal{Eigen::VectorXd::Constant(hall.light->points(), 300), {}};
+  const LightingGoal goal{Eigen::VectorXd::Constant(hall.light->points(), 300)};
   Random random(9);
   for (int trial = 0; trial < 20; ++trial) {
     PlacedLights lights(*hall.light, goal);
