@@ -76,7 +76,7 @@ Recovery recover(const LitRoom& room, bool number_known, std::uint64_t seed, int
   Recovery recovery;
   recovery.seconds = timed([&] {
     const auto transport = IncrementalTransport::make(room.scene, rays, room.receivers, direct_only);
-    const SceneLight light(**transport, room.receivers, lumen, false);
+    const SceneLight light(**transport, room.receivers, lumen);
     CandidateSet set{lattice_in(rays.bounds_world_m(), kLattice_m), {lumen}};
     CandidateOptions options;
     options.indirect = false;

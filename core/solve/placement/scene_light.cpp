@@ -16,28 +16,36 @@ Mat3 aimed_rotation(const Mat3& hung, const Vec3& aim) {
 }  // namespace
 
 SceneLight::SceneLight(const IncrementalTransport& transport, std::vector<Receiver> receivers, Emitter luminaire,
-                       bool indirect, bool aimed, std::function<bool(const Vec3&)> may_hang)
+                       SceneLightOptions options)
     : transport_(&transport),
       receivers_(std::move(receivers)),
       luminaire_(std::move(luminaire)),
-      indirect_(indirect),
-      aimed_(aimed),
-      may_hang_(std::move(may_hang)) {}
+      options_(std::move(options)) {}
 
 Emitter SceneLight::hung(const LightPose& pose) const {
   Emitter hung = luminaire_;
   hung.world_from_lamp.translation_m = pose.position_world_m;
-  if (aimed_) hung.world_from_lamp.rotation = aimed_rotation(luminaire_.world_from_lamp.rotation, pose.aim_world);
+  if (options_.aimed)
+    hung.world_from_lamp.rotation = aimed_rotation(luminaire_.world_from_lamp.rotation, pose.aim_world);
   return hung;
 }
 
 bool SceneLight::column(const LightPose& pose, Eigen::VectorXd& lux, Eigen::MatrixXd* slopes) const {
   const Vec3& position_m = pose.position_world_m;
-  if (!position_m.allFinite() || (may_hang_ && !may_hang_(position_m))) return false;
+  if (!position_m.allFinite() || (options_.may_hang && !options_.may_hang(position_m))) return false;
   const Emitter emitter = hung(pose);
-  auto found = indirect_ ? transport_->column(emitter) : transport_->direct_column(emitter);
+  auto found = transport_->direct_column(emitter);
   if (!found || !found->total_lux.allFinite()) return false;
-  if (slopes) *slopes = slopes_at(pose, found->direct_lux);
+  Eigen::MatrixXd rises;
+  if (slopes) rises = slopes_at(pose, found->direct_lux);
+  if (options_.indirect) {
+    Eigen::MatrixXd* of_reflected = slopes ? &rises : nullptr;
+    if (options_.aimed || !options_.reflected || !options_.reflected->add(position_m, found->total_lux, of_reflected)) {
+      found = transport_->column(emitter);
+      if (!found || !found->total_lux.allFinite()) return false;
+    }
+  }
+  if (slopes) *slopes = std::move(rises);
   lux = std::move(found->total_lux);
   return true;
 }

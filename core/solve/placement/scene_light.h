@@ -7,22 +7,28 @@
 
 #include "core/solve/placement/movable_light.h"
 #include "core/transport/candidates/incremental_transport.h"
+#include "core/transport/candidates/reflected_field.h"
 
 namespace luxrig {
+
+struct SceneLightOptions {
+  bool aimed = false;     ///< its aim matters: it is turned the shortest way from its own rotation to that of a pose
+  bool indirect = false;  ///< reflected light, too
+  /// Where reflected light is taken from, made for the same luminaire and receivers. Without one, of an aimed light and
+  /// beside its nodes: by rays, milliseconds a column, and without its slopes.
+  const ReflectedField* reflected = nullptr;
+  std::function<bool(const Vec3&)> may_hang{};  ///< empty: wherever light gets to a receiver
+};
 
 class SceneLight final : public MovableLight {
  public:
   /// transport     must outlive it, made for these receivers
-  /// luminaire     hung with its own rotation, and turned from there the shortest way to a pose's aim if it is aimed;
-  ///               its translation is not used. No shape, no sky.
-  /// indirect      reflected light, too: by rays, milliseconds a column; its derivatives are left out
-  /// aimed         its aim matters
-  /// may_hang      where; empty: wherever light gets to a receiver
-  SceneLight(const IncrementalTransport& transport, std::vector<Receiver> receivers, Emitter luminaire, bool indirect,
-             bool aimed = false, std::function<bool(const Vec3&)> may_hang = {});
+  /// luminaire     hung with its own rotation; its translation is not used. No shape, no sky.
+  SceneLight(const IncrementalTransport& transport, std::vector<Receiver> receivers, Emitter luminaire,
+             SceneLightOptions options = {});
 
   [[nodiscard]] Eigen::Index points() const override { return static_cast<Eigen::Index>(receivers_.size()); }
-  [[nodiscard]] Eigen::Index freedoms() const override { return aimed_ ? 5 : 3; }
+  [[nodiscard]] Eigen::Index freedoms() const override { return options_.aimed ? 5 : 3; }
   bool column(const LightPose& pose, Eigen::VectorXd& lux, Eigen::MatrixXd* slopes) const override;
   /// The luminaire in a pose.
   [[nodiscard]] Emitter hung(const LightPose& pose) const;
@@ -33,8 +39,7 @@ class SceneLight final : public MovableLight {
   const IncrementalTransport* transport_;
   std::vector<Receiver> receivers_;
   Emitter luminaire_;
-  bool indirect_, aimed_;
-  std::function<bool(const Vec3&)> may_hang_;
+  SceneLightOptions options_;
 };
 
 }  // namespace luxrig

@@ -83,7 +83,8 @@ double InterpolationNodes::step_for(std::span<const Vec3> positions_world_m, std
 }
 
 void InterpolationNodes::shares(const RayScene& scene, const Vec3& position_world_m, const Vec3& offset_world_m,
-                                std::vector<WeightedRow>& shares, std::uint64_t& rays, std::uint32_t without) const {
+                                std::vector<WeightedRow>& shares, std::uint64_t& rays, std::uint32_t without,
+                                std::vector<Vec3>* slopes_per_m) const {
   shares.clear();
   if (nodes_.empty()) return;
   const Cube cube = cube_of(position_world_m, start_world_m_, step_m_);
@@ -111,7 +112,14 @@ void InterpolationNodes::shares(const RayScene& scene, const Vec3& position_worl
       }
   if (shares.size() < kFewestNodes) return shares.clear();
   for (int k = 1; k < 4; ++k) moments(k, k) += kRidge * moments(0, 0);
-  const Eigen::Vector4d first = moments.ldlt().solve(Eigen::Vector4d::UnitX());
+  const Eigen::LDLT<Eigen::Matrix4d> factor(moments);
+  const Eigen::Vector4d first = factor.solve(Eigen::Vector4d::UnitX());
+  if (slopes_per_m) {
+    const Eigen::Matrix<double, 4, 3> rises = factor.solve(Eigen::Matrix4d::Identity().rightCols<3>()) / reach_m;
+    slopes_per_m->resize(shares.size());
+    for (std::size_t i = 0; i < shares.size(); ++i)
+      (*slopes_per_m)[i] = static_cast<double>(shares[i].weight) * rises.transpose() * bases[i];
+  }
   double noise = 0;
   for (std::size_t i = 0; i < shares.size(); ++i) {
     shares[i].weight *= static_cast<float>(first.dot(bases[i]));

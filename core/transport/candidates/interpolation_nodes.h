@@ -36,8 +36,10 @@ class InterpolationNodes {
   /// Nodes (as rows) and their weights, which add up to 1. Empty where too few can be seen, or only on one side.
   /// offset_world_m   what lamps hang off their positions
   /// without          a node that is not to take part
+  /// slopes_per_m     when asked for: how the plane rises along x, y and z, as a weight for each node of shares
   void shares(const RayScene& scene, const Vec3& position_world_m, const Vec3& offset_world_m,
-              std::vector<WeightedRow>& shares, std::uint64_t& rays, std::uint32_t without = ~0u) const;
+              std::vector<WeightedRow>& shares, std::uint64_t& rays, std::uint32_t without = ~0u,
+              std::vector<Vec3>* slopes_per_m = nullptr) const;
 
  private:
   std::vector<std::uint32_t> nodes_;

@@ -27,7 +27,7 @@ struct LitHall {
     IncrementalOptions direct_only;
     direct_only.indirect = false;
     transport = std::move(*IncrementalTransport::make(room.scene, rays, room.receivers, direct_only));
-    light = std::make_unique<SceneLight>(*transport, room.receivers, luminaire, false);
+    light = std::make_unique<SceneLight>(*transport, room.receivers, luminaire);
     set.luminaires = {luminaire};
     set.positions_world_m = lattice_in(rays.bounds_world_m(), lattice_m);
     for (const Vec3& position_m : set.positions_world_m) poses.push_back({position_m});

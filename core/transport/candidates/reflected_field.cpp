@@ -1,0 +1,67 @@
+#include "core/transport/candidates/reflected_field.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/check.h"
+#include "core/transport/candidates/air_regions.h"
+#include "core/transport/candidates/weighted_rows.h"
+
+namespace luxrig {
+
+Result<ReflectedField> ReflectedField::make(const Scene& scene, const RayScene& rays,
+                                            std::span<const Receiver> receivers, const Emitter& luminaire,
+                                            std::span<const Vec3> places_world_m, double step_m,
+                                            const CandidateOptions& options) {
+  LUXRIG_CHECK(std::isfinite(step_m) && step_m > 0, "step of {} m", step_m);
+  std::vector<std::uint8_t> usable(places_world_m.size());
+  const ReceiversAir air(scene, rays, receivers);
+  for (std::size_t p = 0; p < usable.size(); ++p) usable[p] = air.reaches(places_world_m[p]);
+
+  ReflectedField field;
+  field.rays_ = &rays;
+  field.nodes_ = InterpolationNodes(places_world_m, usable, step_m);
+  field.receivers_ = receivers.size();
+  field.stride_ = (receivers.size() + kRowUnit - 1) / kRowUnit * kRowUnit;
+  field.lux_.assign(field.nodes_.size() * field.stride_, 0);
+  CandidateSet set{{}, {luminaire}};
+  set.luminaires[0].world_from_lamp.translation_m = Vec3::Zero();
+  for (std::size_t n = 0; n < field.nodes_.size(); ++n)
+    set.positions_world_m.push_back(places_world_m[field.nodes_.position(n)]);
+  CandidateOptions looked_at = options;
+  looked_at.indirect = true;
+  looked_at.skips.foretold = false;  // nodes are the few places that are looked at
+  auto statistics = stream_candidates(scene, rays, receivers, set, looked_at, [&](const CandidateColumns& block) {
+    for (std::size_t c = 0; c < block.columns(); ++c) {
+      float* to = field.lux_.data() + (block.first_column + c) * field.stride_;
+      for (std::uint64_t e = block.begin[c]; e < block.begin[c + 1]; ++e)
+        to[block.receiver[e]] = block.total_lux[e] - block.direct_lux[e];
+    }
+    return true;
+  });
+  if (!statistics) return tl::unexpected(statistics.error());
+  field.statistics_ = *statistics;
+  return field;
+}
+
+bool ReflectedField::add(const Vec3& place_world_m, Eigen::VectorXd& lux, Eigen::MatrixXd* slopes) const {
+  std::vector<WeightedRow> shares;
+  std::vector<Vec3> rises_per_m;
+  std::uint64_t rays = 0;
+  nodes_.shares(*rays_, place_world_m, Vec3::Zero(), shares, rays, ~0u, slopes ? &rises_per_m : nullptr);
+  if (shares.empty()) return false;
+  std::vector<float> sums(stride_, 0.0F);
+  add_weighted_rows(lux_.data(), shares, sums);
+  const auto count = static_cast<Eigen::Index>(receivers_);
+  // A plane through noise may dip below 0 where there is hardly any light.
+  for (Eigen::Index r = 0; r < count; ++r)
+    lux[r] += std::max(0.0, static_cast<double>(sums[static_cast<std::size_t>(r)]));
+  if (slopes)
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+      const Eigen::Map<const Eigen::VectorXf> of_node(lux_.data() + shares[i].row * stride_, count);
+      for (int axis = 0; axis < 3; ++axis) slopes->col(axis) += rises_per_m[i][axis] * of_node.cast<double>();
+    }
+  return true;
+}
+
+}  // namespace luxrig
