@@ -4,9 +4,11 @@
 #include <Eigen/Core>
 #include <limits>
 
+#include "core/photometry/light_colour.h"
+
 namespace luxrig {
 
-/// min ‖W (A(poses) x + f − b)‖₂ with 0 ≤ x ≤ max_level.
+/// min ‖W (A(poses) x + f − b)‖₂ with 0 ≤ x ≤ max_level, under limits of lux and of power.
 ///
 /// One channel: lux at every point, and a level for each light. More (red, green and blue, linear Rec. 709, with E in
 /// each for white of E lux): the channels of all points one behind the other, and a light has a level per emitter, each
@@ -18,9 +20,29 @@ struct LightingGoal {
   Eigen::MatrixXd emitters = Eigen::MatrixXd::Ones(1, 1);
   Eigen::VectorXd fixed_lux{};  ///< f: light that is there anyway (daylight, lights that stay); empty = none
   double max_level = std::numeric_limits<double>::infinity();  ///< of every emitter of a light
+  Eigen::VectorXd max_lux{};  ///< hard limit at every point, of all light together; +inf or empty = none
+  Eigen::VectorXd watts{};    ///< of each emitter at level 1; empty = 0
+  double max_watts = std::numeric_limits<double>::infinity();  ///< hard limit of all lights together
 
   [[nodiscard]] Eigen::Index channels() const { return emitters.rows(); }
   [[nodiscard]] Eigen::Index points() const { return lux.size() / channels(); }
+
+  [[nodiscard]] bool limited() const {
+    return max_watts < std::numeric_limits<double>::infinity() ||
+           (max_lux.size() > 0 && max_lux.minCoeff() < std::numeric_limits<double>::infinity());
+  }
+  /// Lux at every point of values by channel.
+  [[nodiscard]] Eigen::VectorXd luminous(const Eigen::VectorXd& by_channel) const {
+    const Eigen::MatrixXd channel = by_channel.reshaped(points(), channels());
+    if (channels() != 3) return channel.rowwise().sum();
+    Eigen::VectorXd lux_of_points(points());
+    for (Eigen::Index p = 0; p < points(); ++p) lux_of_points[p] = luminance_of_rgb(channel.row(p).transpose());
+    return lux_of_points;
+  }
+  /// The same of an emitter, per lux of its light's column.
+  [[nodiscard]] double luminous_emitter(Eigen::Index emitter) const {
+    return channels() == 3 ? luminance_of_rgb(emitters.col(emitter)) : emitters.col(emitter).sum();
+  }
 
   /// W v
   [[nodiscard]] Eigen::VectorXd weighted(const Eigen::VectorXd& v) const {

@@ -1,6 +1,9 @@
 #include "core/solve/placement/placed_lights.h"
 
+#include <limits>
+
 #include "core/check.h"
+#include "core/solve/lux_limits.h"
 #include "core/solve/nnls.h"
 
 namespace luxrig {
@@ -10,6 +13,7 @@ PlacedLights::PlacedLights(const MovableLight& light, const LightingGoal& goal)
   LUXRIG_CHECK(goal.lux.size() == light.points() * goal.channels(), "{} goals for {} points", goal.lux.size(),
                light.points());
   columns_.resize(goal.lux.size(), 0);
+  lux_.resize(light.points(), 0);
   solve();
 }
 
@@ -18,7 +22,8 @@ bool PlacedLights::add(const LightPose& pose) {
   if (!light_->column(pose, lux, nullptr)) return false;
   poses_.push_back(pose);
   columns_.conservativeResize(Eigen::NoChange, columns_.cols() + emitters());
-  block(size() - 1) = goal_->weighted_columns(lux);
+  lux_.conservativeResize(Eigen::NoChange, lux_.cols() + 1);
+  set_column(size() - 1, lux);
   solve();
   return true;
 }
@@ -28,14 +33,18 @@ bool PlacedLights::replace(std::size_t light, const LightPose& pose) {
   Eigen::VectorXd lux;
   if (!light_->column(pose, lux, nullptr)) return false;
   poses_[light] = pose;
-  block(light) = goal_->weighted_columns(lux);
+  set_column(light, lux);
   solve();
   return true;
 }
 
 void PlacedLights::drop(std::size_t light) {
   LUXRIG_CHECK(light < size(), "light {} of {}", light, size());
-  for (std::size_t k = light; k + 1 < size(); ++k) block(k) = block(k + 1).eval();
+  for (std::size_t k = light; k + 1 < size(); ++k) {
+    block(k) = block(k + 1).eval();
+    lux_.col(static_cast<Eigen::Index>(k)) = lux_.col(static_cast<Eigen::Index>(k + 1)).eval();
+  }
+  lux_.conservativeResize(Eigen::NoChange, lux_.cols() - 1);
   poses_.erase(poses_.begin() + static_cast<std::ptrdiff_t>(light));
   columns_.conservativeResize(Eigen::NoChange, columns_.cols() - emitters());
   solve();
@@ -47,7 +56,7 @@ void PlacedLights::move(const std::vector<LightPose>& poses) {
   for (std::size_t k = 0; k < size(); ++k) {
     if (poses[k] == poses_[k] || !light_->column(poses[k], lux, nullptr)) continue;
     poses_[k] = poses[k];
-    block(k) = goal_->weighted_columns(lux);
+    set_column(k, lux);
   }
   solve();
 }
@@ -65,18 +74,71 @@ Eigen::MatrixXd PlacedLights::slopes(std::size_t light) const {
   return of_rows;
 }
 
+void PlacedLights::set_column(std::size_t light, const Eigen::VectorXd& lux) {
+  lux_.col(static_cast<Eigen::Index>(light)) = lux;
+  block(light) = goal_->weighted_columns(lux);
+}
+
+Eigen::VectorXd PlacedLights::watts_per_level() const {
+  if (goal_->watts.size() == 0) return Eigen::VectorXd::Zero(levels_.size());
+  return goal_->watts.replicate(static_cast<Eigen::Index>(size()), 1);
+}
+
+double PlacedLights::watts() const { return watts_per_level().dot(levels_); }
+
+bool PlacedLights::keeps_limits() const {
+  if (watts() > goal_->max_watts) return false;
+  if (goal_->max_lux.size() == 0) return true;
+  Eigen::VectorXd lux =
+      goal_->fixed_lux.size() == 0 ? Eigen::VectorXd::Zero(goal_->points()) : goal_->luminous(goal_->fixed_lux);
+  for (Eigen::Index k = 0; k < lux_.cols(); ++k)
+    for (Eigen::Index e = 0; e < emitters(); ++e)
+      lux += goal_->luminous_emitter(e) * levels_[k * emitters() + e] * lux_.col(k);
+  return (lux.array() <= goal_->max_lux.array()).all();
+}
+
+void PlacedLights::solve_limited() {
+  Eigen::MatrixXd luminous(lux_.rows(), columns_.cols());
+  for (Eigen::Index k = 0; k < lux_.cols(); ++k)
+    for (Eigen::Index e = 0; e < emitters(); ++e)
+      luminous.col(k * emitters() + e) = goal_->luminous_emitter(e) * lux_.col(k);
+  LuxLimits limits{ColumnsView(luminous),
+                   goal_->fixed_lux.size() == 0 ? Eigen::VectorXd() : goal_->luminous(goal_->fixed_lux)};
+  for (Eigen::Index p = 0; p < goal_->max_lux.size(); ++p)
+    if (goal_->max_lux[p] < std::numeric_limits<double>::infinity()) limits.at_most(p, goal_->max_lux[p]);
+  if (goal_->max_watts < std::numeric_limits<double>::infinity())
+    limits.power_at_most(watts_per_level(), goal_->max_watts);
+  const NnlsProblem problem{
+      ColumnsView(columns_), weighted_goal_, {}, Eigen::VectorXd::Constant(columns_.cols(), goal_->max_level)};
+  const auto solved = solve_limited_nnls(problem, limits.limits());
+  // What is there anyway may break a limit by itself: then nothing is added.
+  if (!solved || !solved->conflict.empty()) {
+    levels_.setZero(columns_.cols());
+    return;
+  }
+  levels_ = solved->least_squares.x;
+  // Limits hold to the solver's rounding; a hair less light makes them hold.
+  for (double less = 1e-12; less < 1e-3 && !keeps_limits(); less *= 10) levels_ *= 1 - less;
+  if (!keeps_limits()) levels_.setZero();
+}
+
 void PlacedLights::solve() {
   if (columns_.cols() == 0) {
     levels_.resize(0);
     residual_ = weighted_goal_;
-  } else if (goal_->max_level == std::numeric_limits<double>::infinity()) {
-    levels_ = solve_nnls(columns_, weighted_goal_).x;
   } else {
-    NnlsProblem problem{
-        ColumnsView(columns_), weighted_goal_, {}, Eigen::VectorXd::Constant(columns_.cols(), goal_->max_level)};
-    levels_ = solve_nnls(problem)->x;
+    if (goal_->max_level == std::numeric_limits<double>::infinity())
+      levels_ = solve_nnls(columns_, weighted_goal_).x;
+    else
+      levels_ = solve_nnls(NnlsProblem{ColumnsView(columns_),
+                                       weighted_goal_,
+                                       {},
+                                       Eigen::VectorXd::Constant(columns_.cols(), goal_->max_level)})
+                    ->x;
+    // The best without limits is the best within them if it keeps them.
+    if (goal_->limited() && !keeps_limits()) solve_limited();
+    residual_ = weighted_goal_ - columns_ * levels_;
   }
-  if (columns_.cols() > 0) residual_ = weighted_goal_ - columns_ * levels_;
   const double norm = residual_.norm();
   error_ = goal_norm_ > 0 ? norm / goal_norm_ : norm;
 }

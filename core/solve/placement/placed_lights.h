@@ -26,6 +26,8 @@ class PlacedLights {
   /// ‖W (A x + f − b)‖ / ‖W b‖; 0 for a goal of zero that no light disturbs.
   [[nodiscard]] double error() const { return error_; }
   [[nodiscard]] const Eigen::MatrixXd& columns() const { return columns_; }  ///< W A, ordered as levels()
+  /// Of all lights together, without what is there anyway.
+  [[nodiscard]] double watts() const;
 
   /// False, and nothing changed, where no light may hang. Levels are the best ones after each.
   bool add(const LightPose& pose);
@@ -40,6 +42,10 @@ class PlacedLights {
 
  private:
   void solve();
+  void solve_limited();
+  [[nodiscard]] bool keeps_limits() const;
+  [[nodiscard]] Eigen::VectorXd watts_per_level() const;
+  void set_column(std::size_t light, const Eigen::VectorXd& lux);
   [[nodiscard]] auto block(std::size_t light) {
     return columns_.middleCols(static_cast<Eigen::Index>(light) * emitters(), emitters());
   }
@@ -49,7 +55,7 @@ class PlacedLights {
   Eigen::VectorXd weighted_goal_;
   double goal_norm_;
   std::vector<LightPose> poses_;
-  Eigen::MatrixXd columns_;
+  Eigen::MatrixXd columns_, lux_;  ///< lux_: unweighted, a column per light
   Eigen::VectorXd levels_, residual_;
   double error_ = 1;
 };

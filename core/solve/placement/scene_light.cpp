@@ -1,12 +1,18 @@
 #include "core/solve/placement/scene_light.h"
 
-#include <algorithm>
+#include <vector>
+
+#include "core/check.h"
+#include "core/transport/direct_light.h"
 
 namespace luxrig {
 namespace {
 
 /// A step in which intensity hardly changes and rounding hardly counts.
 constexpr double kTurn = 1e-4;
+
+/// Wanted of a luminaire with size where something may stand in between.
+constexpr double kSizeError = 0.003;
 
 /// `hung` turned the shortest way so that its -Z points along `aim`.
 Mat3 aimed_rotation(const Mat3& hung, const Vec3& aim) {
@@ -20,7 +26,21 @@ SceneLight::SceneLight(const IncrementalTransport& transport, std::vector<Receiv
     : transport_(&transport),
       receivers_(std::move(receivers)),
       luminaire_(std::move(luminaire)),
-      options_(std::move(options)) {}
+      options_(std::move(options)) {
+  const bool has_size = luminaire_.shape.kind != LuminousShape::Kind::point;
+  LUXRIG_CHECK(!has_size || (options_.rays && !options_.indirect), "a luminaire with size and {}",
+               options_.rays ? "reflected light" : "no scene");
+}
+
+Result<LuminaireColumn> SceneLight::direct_of(const Emitter& emitter) const {
+  if (emitter.shape.kind == LuminousShape::Kind::point) return transport_->direct_column(emitter);
+  EvaluateOptions options;
+  options.wanted_relative_error = kSizeError;
+  options.threads = 1;
+  auto light = direct_light(*options_.rays, receivers_, {&emitter, 1}, options);
+  if (!light) return tl::unexpected(light.error());
+  return LuminaireColumn{light->lux_per_level.col(0), light->lux_per_level.col(0), {}, light->rays};
+}
 
 Emitter SceneLight::hung(const LightPose& pose) const {
   Emitter hung = luminaire_;
@@ -34,7 +54,7 @@ bool SceneLight::column(const LightPose& pose, Eigen::VectorXd& lux, Eigen::Matr
   const Vec3& position_m = pose.position_world_m;
   if (!position_m.allFinite() || (options_.may_hang && !options_.may_hang(position_m))) return false;
   const Emitter emitter = hung(pose);
-  auto found = transport_->direct_column(emitter);
+  auto found = direct_of(emitter);
   if (!found || !found->total_lux.allFinite()) return false;
   Eigen::MatrixXd rises;
   if (slopes) rises = slopes_at(pose, found->direct_lux);

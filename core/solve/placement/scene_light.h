@@ -17,13 +17,17 @@ struct SceneLightOptions {
   /// Where reflected light is taken from, made for the same luminaire and receivers. Without one, of an aimed light and
   /// beside its nodes: by rays, milliseconds a column, and without its slopes.
   const ReflectedField* reflected = nullptr;
+  /// For a luminaire with size: its direct light is then that of its surface, without reflected light; it is moved by
+  /// the slopes of a point.
+  const RayScene* rays = nullptr;
   std::function<bool(const Vec3&)> may_hang{};  ///< empty: wherever light gets to a receiver
 };
 
 class SceneLight final : public MovableLight {
  public:
   /// transport     must outlive it, made for these receivers
-  /// luminaire     hung with its own rotation; its translation is not used. No shape, no sky.
+  /// luminaire     hung with its own rotation; its translation is not used. No sky; a shape is asserted to come with
+  /// rays.
   SceneLight(const IncrementalTransport& transport, std::vector<Receiver> receivers, Emitter luminaire,
              SceneLightOptions options = {});
 
@@ -34,6 +38,7 @@ class SceneLight final : public MovableLight {
   [[nodiscard]] Emitter hung(const LightPose& pose) const;
 
  private:
+  [[nodiscard]] Result<LuminaireColumn> direct_of(const Emitter& emitter) const;
   [[nodiscard]] Eigen::MatrixXd slopes_at(const LightPose& pose, const Eigen::VectorXd& direct_lux) const;
 
   const IncrementalTransport* transport_;

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "core/photometry/intensity.h"
+#include "core/solve/placement/energy_front.h"
 #include "core/solve/placement/place_lights.h"
 #include "tests/core/solve/placement/lit_hall.h"
 #include "tests/random.h"
@@ -174,6 +175,91 @@ TEST(PlacedLights, AddsToLightThatIsThereAndKeepsTheLargestLevel) {
   lights.move(poses);
   EXPECT_LE(lights.levels().maxCoeff(), 350);
   EXPECT_EQ(lights.levels()[0], 350);
+}
+
+TEST(PlacedLights, KeepLimitsOfLuxAndPowerAndAreTheBestThatDo) {
+  const LitHall hall(make_box_room(2), 0.5);
+  Random random(8);
+  for (int trial = 0; trial < 30; ++trial) {
+    LightingGoal goal;
+    goal.lux = Eigen::VectorXd::Constant(hall.light->points(), 300);
+    goal.watts = Eigen::VectorXd::Constant(1, 0.01);
+    PlacedLights free(*hall.light, goal);
+    while (free.size() < 3) free.add({{random.between(0.3, 3.7), random.between(0.3, 2.7), random.between(1.5, 2.4)}});
+    LightingGoal limited = goal;
+    limited.max_lux = Eigen::VectorXd::Constant(goal.lux.size(), random.between(250, 900));
+    limited.max_watts = random.between(0.5, 1.2) * free.watts();
+    limited.fixed_lux = Eigen::VectorXd::Constant(goal.lux.size(), 20);
+    PlacedLights lights(*hall.light, limited);
+    for (const LightPose& pose : free.poses()) ASSERT_TRUE(lights.add(pose));
+    const Eigen::VectorXd lux = lights.columns() * lights.levels() + limited.fixed_lux;
+    EXPECT_LE((lux - limited.max_lux).maxCoeff(), 0);
+    EXPECT_LE(lights.watts(), limited.max_watts);
+    // No level can change by itself without breaking a limit or raising the error.
+    for (Eigen::Index k = 0; k < lights.levels().size(); ++k)
+      for (const double by : {-1e-3, 1e-3}) {
+        Eigen::VectorXd other = lights.levels();
+        other[k] = std::max(0.0, other[k] * (1 + by));
+        const Eigen::VectorXd lit = lights.columns() * other + limited.fixed_lux;
+        if ((lit - limited.max_lux).maxCoeff() > 0 || 0.01 * other.sum() > limited.max_watts) continue;
+        EXPECT_GE((lit - limited.lux).norm(), (lux - limited.lux).norm() * (1 - 1e-9));
+      }
+  }
+  // Light that is there anyway and breaks the limit alone: nothing is added.
+  LightingGoal broken;
+  broken.lux = Eigen::VectorXd::Constant(hall.light->points(), 300);
+  broken.fixed_lux = Eigen::VectorXd::Constant(hall.light->points(), 120);
+  broken.max_lux = Eigen::VectorXd::Constant(hall.light->points(), 100);
+  PlacedLights none(*hall.light, broken);
+  ASSERT_TRUE(none.add({{2, 1.5, 2}}));
+  EXPECT_EQ(none.levels().maxCoeff(), 0);
+}
+
+TEST(EnergyFront, ErrorsRiseAsPowerFallsAndEveryLimitIsKept) {
+  const LitHall hall(make_box_room(2), 0.4);
+  LightingGoal goal;
+  goal.lux = Eigen::VectorXd::Constant(hall.light->points(), 300);
+  goal.watts = Eigen::VectorXd::Constant(1, 0.01);
+  const ComplementSearch candidates(hall.view(), hall.poses, goal);
+  const Placement placed = place_lights(*hall.light, goal, candidates, place_count(3));
+  const ExchangeOptions options;
+  LightExchange exchange(candidates, options);
+  std::vector<double> watts;
+  for (const double share : {1.0, 0.8, 0.6, 0.4, 0.2, 0.0}) watts.push_back(share * placed.lights.watts());
+  const auto front = energy_front(*hall.light, goal, placed.lights, watts, exchange, 2, 1);
+  ASSERT_EQ(front.size(), watts.size());
+  for (std::size_t i = 0; i < front.size(); ++i) {
+    EXPECT_LE(front[i].lights.watts(), watts[i]);
+    if (i > 0) {
+      EXPECT_GE(front[i].lights.error(), front[i - 1].lights.error());
+    }
+  }
+  EXPECT_LE(front[0].lights.error(), placed.lights.error() * (1 + 1e-9));
+  EXPECT_EQ(front.back().lights.error(), 1);
+  // Moving the lights is worth something: only dimming those that were placed is worse.
+  LightingGoal dimmed = goal;
+  dimmed.max_watts = watts[2];
+  PlacedLights still(*hall.light, dimmed);
+  for (const LightPose& pose : placed.lights.poses()) ASSERT_TRUE(still.add(pose));
+  EXPECT_LT(front[2].lights.error(), still.error());
+}
+
+TEST(SceneLight, APanelIsThePointFarAwayAndItsSurfaceNearBy) {
+  const LitHall hall(empty_room(), 0.5);
+  Emitter panel{make_cosine_power(1, 1), {}};
+  const SceneLight point(*hall.transport, hall.room.receivers, panel);
+  panel.shape = {LuminousShape::Kind::rectangle, {0.6, 0.6, 0}};
+  SceneLightOptions options;
+  options.rays = &hall.rays;
+  const SceneLight surface(*hall.transport, hall.room.receivers, panel, options);
+  Eigen::VectorXd of_point, of_surface;
+  Eigen::MatrixXd slopes;
+  ASSERT_TRUE(point.column({{2, 1.5, 40}}, of_point, nullptr));
+  ASSERT_TRUE(surface.column({{2, 1.5, 40}}, of_surface, &slopes));
+  EXPECT_LE((of_point - of_surface).norm(), 2e-3 * of_point.norm());
+  ASSERT_TRUE(point.column({{2, 1.5, 2.3}}, of_point, nullptr));
+  ASSERT_TRUE(surface.column({{2, 1.5, 2.3}}, of_surface, nullptr));
+  EXPECT_GE((of_point - of_surface).norm(), 1e-3 * of_point.norm());
 }
 
 }  // namespace
