@@ -1,9 +1,7 @@
 #include "core/transport/candidates/reflected_field.h"
 
 #include <algorithm>
-#include <cmath>
 
-#include "core/check.h"
 #include "core/transport/candidates/air_regions.h"
 #include "core/transport/candidates/weighted_rows.h"
 
@@ -11,16 +9,16 @@ namespace luxrig {
 
 Result<ReflectedField> ReflectedField::make(const Scene& scene, const RayScene& rays,
                                             std::span<const Receiver> receivers, const Emitter& luminaire,
-                                            std::span<const Vec3> places_world_m, double step_m,
+                                            std::span<const Vec3> places_world_m, std::size_t most_nodes,
                                             const CandidateOptions& options) {
-  LUXRIG_CHECK(std::isfinite(step_m) && step_m > 0, "step of {} m", step_m);
   std::vector<std::uint8_t> usable(places_world_m.size());
   const ReceiversAir air(scene, rays, receivers);
   for (std::size_t p = 0; p < usable.size(); ++p) usable[p] = air.reaches(places_world_m[p]);
 
   ReflectedField field;
   field.rays_ = &rays;
-  field.nodes_ = InterpolationNodes(places_world_m, usable, step_m);
+  const double step_m = InterpolationNodes::step_for(places_world_m, usable, most_nodes);
+  if (step_m > 0) field.nodes_ = InterpolationNodes(places_world_m, usable, step_m);
   field.receivers_ = receivers.size();
   field.stride_ = (receivers.size() + kRowUnit - 1) / kRowUnit * kRowUnit;
   field.lux_.assign(field.nodes_.size() * field.stride_, 0);

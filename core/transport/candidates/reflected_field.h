@@ -16,11 +16,11 @@ class ReflectedField {
  public:
   /// scene, rays   the same geometry; rays must outlive it
   /// luminaire     hung with its own rotation, here and later. No shape, no sky
-  /// places        among which nodes are chosen, one in each cube of step_m
+  /// places        among which nodes are chosen, evenly spread, `most_nodes` at most
   /// options       as for candidate_transport(), whose errors these are
   [[nodiscard]] static Result<ReflectedField> make(const Scene& scene, const RayScene& rays,
                                                    std::span<const Receiver> receivers, const Emitter& luminaire,
-                                                   std::span<const Vec3> places_world_m, double step_m,
+                                                   std::span<const Vec3> places_world_m, std::size_t most_nodes,
                                                    const CandidateOptions& options);
 
   /// Adds reflected lux per unit emittance and, when asked for, its slopes (receivers × 3 first columns). False, and

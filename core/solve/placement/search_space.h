@@ -1,0 +1,63 @@
+#pragma once
+/// Everything a search for lights in a scene needs, made once: the light that is moved, and candidates with their
+/// columns.
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/solve/columns_view.h"
+#include "core/solve/placement/movable_light.h"
+#include "core/solve/placement/scene_light.h"
+
+namespace luxrig {
+
+struct SearchSpaceOptions {
+  /// Directions to try at each place, for a light that is aimed; empty: it is hung as its luminaire is.
+  std::vector<Vec3> aims_world;
+  bool indirect = false;
+  /// Of reflected light: places at which it is looked at, cells that surfaces are cut into (candidate_transport.h), and
+  /// its wanted relative error there.
+  std::size_t most_nodes = 1'000;
+  std::size_t surface_cells = 5'000;
+  double reflected_error = 0.1;
+  std::function<bool(const Vec3&)> may_hang;  ///< for places that are not candidates; empty: anywhere
+  std::uint64_t seed = 1;
+  int threads = 0;  ///< 0 = one per core; the result does not depend on it
+  Watch watch;
+};
+
+class SearchSpace {
+ public:
+  /// scene, rays   the same geometry; both must outlive it
+  /// luminaire     with size: candidates are taken as points, and there is no reflected light
+  /// places        to try
+  /// Cause::invalid as candidate_transport(); Cause::cancelled when stopped.
+  [[nodiscard]] static Result<SearchSpace> make(const Scene& scene, const RayScene& rays,
+                                                std::span<const Receiver> receivers, const Emitter& luminaire,
+                                                std::span<const Vec3> places_world_m,
+                                                const SearchSpaceOptions& options);
+
+  [[nodiscard]] const SceneLight& light() const { return *light_; }
+  /// Lux per unit emittance, a column per pose. Reflected light below a thousandth of a column's brightest is left out.
+  [[nodiscard]] const ColumnsView& columns() const { return view_; }
+  [[nodiscard]] std::span<const LightPose> poses() const { return poses_; }
+
+ private:
+  SearchSpace() = default;
+
+  std::unique_ptr<IncrementalTransport> transport_;
+  std::unique_ptr<ReflectedField> reflected_;
+  std::unique_ptr<SceneLight> light_;
+  std::vector<LightPose> poses_;
+  std::vector<std::uint64_t> begin_;
+  std::vector<std::uint32_t> row_;
+  std::vector<float> lux_;
+  ColumnsView view_;
+};
+
+/// Directions spread evenly over the sphere, straight down first (a spherical Fibonacci lattice: González 2010).
+[[nodiscard]] std::vector<Vec3> aims_over_sphere(std::size_t count);
+
+}  // namespace luxrig
