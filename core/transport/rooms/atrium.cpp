@@ -37,20 +37,12 @@ class Atrium {
       above.sky = sky;
       room_.emitters.push_back(std::move(above));
     }
+    room_.interior_m = Eigen::AlignedBox3d(Vec3::Zero(), Vec3(kAtriumLength_m, kAtriumWidth_m, kAtriumHeight_m));
     room_.scene = model_.scene();
     return std::move(room_);
   }
 
  private:
-  /// Four boxes round a rectangular hole; those along X take the corners.
-  void ring(const double low[2], const double high[2], const double hole_low[2], const double hole_high[2], double z0,
-            double z1, SolidModel::MaterialIndex material) {
-    model_.box({low[0], low[1], z0}, {high[0], hole_low[1], z1}, material);
-    model_.box({low[0], hole_high[1], z0}, {high[0], high[1], z1}, material);
-    model_.box({low[0], hole_low[1], z0}, {hole_low[0], hole_high[1], z1}, material);
-    model_.box({hole_high[0], hole_low[1], z0}, {high[0], hole_high[1], z1}, material);
-  }
-
   void shell() {
     model_.begin_object("shell");
     constexpr double kOutLow[2] = {-kWall_m, -kWall_m},
@@ -58,10 +50,10 @@ class Atrium {
     constexpr double kInLow[2] = {0, 0}, kInHigh[2] = {kAtriumLength_m, kAtriumWidth_m};
     model_.box({-kWall_m - 0.05, -kWall_m - 0.05, -0.4},
                {kAtriumLength_m + kWall_m + 0.05, kAtriumWidth_m + kWall_m + 0.05, 0}, stone_);
-    ring(kOutLow, kOutHigh, kInLow, kInHigh, -0.1, kAtriumHeight_m + 0.1, plaster_);
+    model_.ring(kOutLow, kOutHigh, kInLow, kInHigh, -0.1, kAtriumHeight_m + 0.1, plaster_);
     constexpr double kRoofLow[2] = {-kWall_m - 0.05, -kWall_m - 0.05},
                      kRoofHigh[2] = {kAtriumLength_m + kWall_m + 0.05, kAtriumWidth_m + kWall_m + 0.05};
-    ring(kRoofLow, kRoofHigh, kSkyLow_m, kSkyHigh_m, kAtriumHeight_m, kAtriumHeight_m + 0.4, plaster_);
+    model_.ring(kRoofLow, kRoofHigh, kSkyLow_m, kSkyHigh_m, kAtriumHeight_m, kAtriumHeight_m + 0.4, plaster_);
     model_.begin_object("glazing bars");
     for (int i = 1; i < 5; ++i) {
       const double x = kSkyLow_m[0] + 2.0 * i;
@@ -74,14 +66,14 @@ class Atrium {
     const double z = storey * kStorey_m;
     constexpr double kLow[2] = {-0.05, -0.05}, kHigh[2] = {kAtriumLength_m + 0.05, kAtriumWidth_m + 0.05};
     model_.begin_object("balconies");
-    ring(kLow, kHigh, kCourtLow_m, kCourtHigh_m, z - kSlab_m, z, concrete_);
+    model_.ring(kLow, kHigh, kCourtLow_m, kCourtHigh_m, z - kSlab_m, z, concrete_);
     model_.begin_object("balustrades");
     constexpr double kRailLow[2] = {kCourtLow_m[0] - 0.12, kCourtLow_m[1] - 0.12},
                      kRailHigh[2] = {kCourtHigh_m[0] + 0.12, kCourtHigh_m[1] + 0.12};
     constexpr double kEdgeLow[2] = {kCourtLow_m[0] - 0.02, kCourtLow_m[1] - 0.02},
                      kEdgeHigh[2] = {kCourtHigh_m[0] + 0.02, kCourtHigh_m[1] + 0.02};
     // The balustrade stands 10 cm off the floor.
-    ring(kRailLow, kRailHigh, kEdgeLow, kEdgeHigh, z + 0.1, z + 1.05, rail_);
+    model_.ring(kRailLow, kRailHigh, kEdgeLow, kEdgeHigh, z + 0.1, z + 1.05, rail_);
   }
 
   /// Cross walls with doorways behind the balconies, one in four painted, and a shelf in each bay.

@@ -39,6 +39,7 @@ LitRoom make_box_room(std::uint64_t seed) {
                    dice, on_table);
   spread_receivers(room, 12, {0.4, kWidth_m - kOffSurface_m, 0.8}, {3.2, 0, 0}, {0, 0, 1.3}, -Vec3::UnitY(), dice,
                    on_table);
+  room.interior_m = Eigen::AlignedBox3d(Vec3::Zero(), Vec3(kLength_m, kWidth_m, kHeight_m));
   room.scene = model.scene();
   return room;
 }

@@ -36,6 +36,11 @@ class Flat {
       room_.emitters.push_back(lamp({(floor.left_m + floor.right_m) / 2 + dice_.between(-0.4, 0.4),
                                      (floor.front_m + floor.back_m) / 2 + dice_.between(-0.4, 0.4)}));
     measure();
+    room_.interior_m = Eigen::AlignedBox3d(Vec3::Zero(), Vec3(kFlatLength_m, kFlatWidth_m, kFlatHeight_m));
+    for (const Floor& f : floors_)
+      room_.regions_m.emplace_back(Vec3(f.left_m, std::min(f.front_m, f.back_m), 0),
+                                   Vec3(f.right_m, std::max(f.front_m, f.back_m), kFlatHeight_m));
+    room_.regions_m.emplace_back(Vec3(0, kHallLow_m, 0), Vec3(kFlatLength_m, kHallHigh_m, kFlatHeight_m));
     room_.scene = model_.scene();
     return std::move(room_);
   }

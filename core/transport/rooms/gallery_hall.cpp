@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "core/transport/rooms/figures.h"
 #include "core/transport/rooms/room_plan.h"
 
 namespace luxrig {
@@ -24,6 +25,7 @@ class Gallery {
     sculptures();
     lamps();
     measure();
+    room_.interior_m = Eigen::AlignedBox3d(Vec3::Zero(), Vec3(kHallLength_m, kHallWidth_m, kHallHeight_m));
     room_.scene = model_.scene();
     return std::move(room_);
   }
@@ -99,21 +101,12 @@ class Gallery {
         model_.column(top, 0.03, 0.1, 24, bronze);
         model_.knot(top + Vec3(0, 0, 0.23), 0.11, 96, 20, i % 2 ? bronze : glaze);
       } else if (i % 3 == 1) {
-        vase(top, i % 2 ? clay : glaze, 3 + static_cast<int>(i));
+        add_vase(model_, top, 0.42, i % 2 ? clay : glaze, 3 + static_cast<int>(i));
       } else {
         model_.column(top, 0.06, 0.06, 24, bronze);
         model_.ball(top + Vec3(0, 0, 0.19), 0.15, 48, marble);
       }
     }
-  }
-
-  void vase(const Vec3& base_m, SolidModel::MaterialIndex material, int flutes) {
-    std::vector<Eigen::Vector2d> profile;
-    for (int i = 0; i <= 29; ++i) {
-      const double t = i / 29.0;
-      profile.emplace_back(0.06 + 0.09 * std::sin(kPi * std::pow(t, 0.8)) + 0.03 * t * t * t, 0.42 * t);
-    }
-    model_.turned_body(base_m, profile, 60, material, flutes, 0.06);
   }
 
   /// Spots on two tracks below the ceiling: eight at pictures, four at sculptures.

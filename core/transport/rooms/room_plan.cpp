@@ -16,6 +16,10 @@ Pose aimed(const Vec3& position_m, const Vec3& aim_m) {
   return pose;
 }
 
+Emitter bare_lamp(const Vec3& position_m, double flux_lm) {
+  return {make_isotropic(flux_lm), {Mat3::Identity(), position_m}};
+}
+
 void spread_receivers(LitRoom& room, int count, const Vec3& corner_m, const Vec3& across_m, const Vec3& up_m,
                       const Vec3& normal, RoomDice& dice, const std::function<bool(const Vec3&)>& fits) {
   const double shape = across_m.norm() / up_m.norm();

@@ -27,6 +27,9 @@ class RoomDice {
 /// A lamp at one place whose beam (-Z) goes through another.
 [[nodiscard]] Pose aimed(const Vec3& position_m, const Vec3& aim_m);
 
+/// An isotropic lamp.
+[[nodiscard]] Emitter bare_lamp(const Vec3& position_m, double flux_lm);
+
 /// Adds `count` receivers on a jittered grid over the rectangle corner + [0,1] across + [0,1] up, its cells about
 /// square; a place that `fits` refuses is drawn again in its cell, and where a whole cell is refused its receiver goes
 /// to the next one.

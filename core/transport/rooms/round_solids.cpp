@@ -49,6 +49,47 @@ void SolidModel::ball(const Vec3& centre_m, double radius_m, int segments, Mater
   turned_body(centre_m, profile, segments, material);
 }
 
+void SolidModel::arch(const Vec3& low, const Vec3& high, double pier_m, int segments, MaterialIndex material) {
+  const int along = high.x() - low.x() > high.y() - low.y() ? 0 : 1, across = 1 - along;
+  const double length_m = high[along] - low[along], radius_m = length_m / 2 - pier_m;
+  LUXRIG_CHECK(pier_m > 0 && radius_m > 0 && high.z() - low.z() > radius_m && segments >= 2, "pier {} m", pier_m);
+  // The underside from end to end: along the arch, and above low.z().
+  std::vector<Eigen::Vector2d> under_m = {{0, 0}};
+  for (int s = 0; s <= segments; ++s) {
+    const double angle = kPi * s / segments;
+    under_m.emplace_back(pier_m + radius_m * (1 - std::cos(angle)),
+                         s == 0 || s == segments ? 0 : radius_m * std::sin(angle));
+  }
+  under_m.emplace_back(length_m, 0);
+  // Per station four corners: under and top, on the near and the far face.
+  std::vector<Vec3> v;
+  const auto stations = static_cast<std::uint32_t>(under_m.size());
+  for (const Eigen::Vector2d& at : under_m)
+    for (const double y : {low[across], high[across]})
+      for (const double z : {low.z() + at.y(), high.z()}) {
+        Vec3 corner(0, 0, z);
+        corner[along] = low[along] + at.x(), corner[across] = y;
+        v.push_back(corner);
+      }
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  const auto quad = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+    triangles.insert(triangles.end(), {{a, b, c}, {a, c, d}});
+  };
+  // Corners of a station: 0 near under, 1 near top, 2 far under, 3 far top.
+  for (std::uint32_t i = 0; i + 1 < stations; ++i) {
+    const std::uint32_t a = 4 * i, b = a + 4;
+    quad(a, b, b + 1, a + 1);
+    quad(a + 2, a + 3, b + 3, b + 2);
+    quad(a, a + 2, b + 2, b);
+    quad(a + 1, b + 1, b + 3, a + 3);
+    occupy({v.begin() + a, v.begin() + b + 4});
+  }
+  const std::uint32_t last = 4 * (stations - 1);
+  quad(0, 1, 3, 2);
+  quad(last, last + 2, last + 3, last + 1);
+  closed(v, std::move(triangles), material);
+}
+
 void SolidModel::knot(const Vec3& centre_m, double size_m, int along, int around, MaterialIndex material) {
   const double radius_m = 0.22 * size_m;
   const auto torus_m = [&](double t) {

@@ -19,6 +19,13 @@ Triangles box_triangles() {
   return triangles;
 }
 
+std::vector<Vec3> box_corners_m(const Vec3& low_m, const Vec3& high_m) {
+  std::vector<Vec3> v;
+  for (int i = 0; i < 8; ++i)
+    v.emplace_back(i & 1 ? high_m.x() : low_m.x(), i & 2 ? high_m.y() : low_m.y(), i & 4 ? high_m.z() : low_m.z());
+  return v;
+}
+
 double volume_m3(const std::vector<Vec3>& v, const Triangles& triangles) {
   double six = 0;
   for (const auto& [a, b, c] : triangles) six += (v[a] - v[0]).dot((v[b] - v[0]).cross(v[c] - v[0]));
@@ -42,9 +49,13 @@ SolidModel::MaterialIndex SolidModel::material(const std::string& name, const Ve
 void SolidModel::begin_object(const std::string& name) { scene_.object_names.push_back(name); }
 
 void SolidModel::closed(const std::vector<Vec3>& vertices_m, Triangles triangles, MaterialIndex material) {
-  LUXRIG_CHECK(!scene_.object_names.empty() && material < scene_.materials.size(), "material {}", material);
   if (volume_m3(vertices_m, triangles) < 0)
     for (auto& t : triangles) std::swap(t[1], t[2]);
+  append(vertices_m, triangles, material);
+}
+
+void SolidModel::append(const std::vector<Vec3>& vertices_m, const Triangles& triangles, MaterialIndex material) {
+  LUXRIG_CHECK(!scene_.object_names.empty() && material < scene_.materials.size(), "material {}", material);
   const auto first = static_cast<std::uint32_t>(scene_.vertices_m.size());
   for (const Vec3& v : vertices_m) scene_.vertices_m.push_back(v.cast<float>());
   for (const auto& [a, b, c] : triangles) scene_.triangles.push_back({first + a, first + b, first + c});
@@ -59,9 +70,7 @@ void SolidModel::occupy(const std::vector<Vec3>& vertices_m) {
 }
 
 void SolidModel::box(const Vec3& low_m, const Vec3& high_m, MaterialIndex material) {
-  std::vector<Vec3> v;
-  for (int i = 0; i < 8; ++i)
-    v.emplace_back(i & 1 ? high_m.x() : low_m.x(), i & 2 ? high_m.y() : low_m.y(), i & 4 ? high_m.z() : low_m.z());
+  const std::vector<Vec3> v = box_corners_m(low_m, high_m);
   closed(v, box_triangles(), material);
   occupy(v);
 }
@@ -95,6 +104,14 @@ void SolidModel::wall(const Vec3& low_m, const Vec3& high_m, std::span<const Wal
   part(from_m, high_m[along], low_m.z(), high_m.z());
 }
 
+void SolidModel::ring(const double low[2], const double high[2], const double hole_low[2], const double hole_high[2],
+                      double bottom_m, double top_m, MaterialIndex material) {
+  box({low[0], low[1], bottom_m}, {high[0], hole_low[1], top_m}, material);
+  box({low[0], hole_high[1], bottom_m}, {high[0], high[1], top_m}, material);
+  box({low[0], hole_low[1], bottom_m}, {hole_low[0], hole_high[1], top_m}, material);
+  box({hole_high[0], hole_low[1], bottom_m}, {high[0], hole_high[1], top_m}, material);
+}
+
 void SolidModel::shell(const Vec3& low, const Vec3& high, double thickness_m, MaterialIndex floor,
                        MaterialIndex ceiling, const std::array<MaterialIndex, 4>& walls) {
   const double t = thickness_m, w = 0.9 * t, half = 0.5 * t;
@@ -105,6 +122,19 @@ void SolidModel::shell(const Vec3& low, const Vec3& high, double thickness_m, Ma
   box({high.x(), low.y() - half, bottom}, {high.x() + w, high.y() + half, top}, walls[1]);
   box({low.x() - w, low.y() - w, bottom}, {high.x() + w, low.y(), top}, walls[2]);
   box({low.x() - w, high.y(), bottom}, {high.x() + w, high.y() + w, top}, walls[3]);
+}
+
+void SolidModel::body(const ClosedMesh& mesh, MaterialIndex material) {
+  closed(mesh.vertices_m, mesh.triangles, material);
+  occupy(mesh.vertices_m);
+}
+
+void SolidModel::hollow_block(const Vec3& low_m, const Vec3& high_m, const ClosedMesh& cavity, MaterialIndex material) {
+  closed(box_corners_m(low_m, high_m), box_triangles(), material);
+  Triangles inward = cavity.triangles;
+  if (volume_m3(cavity.vertices_m, inward) > 0)
+    for (auto& t : inward) std::swap(t[1], t[2]);
+  append(cavity.vertices_m, inward, material);
 }
 
 void SolidModel::moulding(const HangingPlace& place, double width_m, double height_m, double moulding_m, double depth_m,

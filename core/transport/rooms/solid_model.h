@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/scene/scene.h"
+#include "core/transport/rooms/level_set.h"
 
 namespace luxrig {
 
@@ -33,6 +34,9 @@ class SolidModel {
   void turned_box(const Vec3& base_m, const Vec3& size_m, double turn_rad, MaterialIndex material);
   /// Boxes that fill low…high but for the gaps, which must not overlap and lie in order.
   void wall(const Vec3& low_m, const Vec3& high_m, std::span<const WallGap> gaps, MaterialIndex material);
+  /// Four boxes round a rectangular hole, in x and y; those along X take the corners.
+  void ring(const double low_m[2], const double high_m[2], const double hole_low_m[2], const double hole_high_m[2],
+            double bottom_m, double top_m, MaterialIndex material);
   /// Floor, ceiling and four walls round a room; thickness_m is that of floor and ceiling, walls have nine tenths.
   /// Walls reach into floor and ceiling and each other, so that no seam is a gap. walls   in the order -X, +X, -Y, +Y
   void shell(const Vec3& inner_low_m, const Vec3& inner_high_m, double thickness_m, MaterialIndex floor,
@@ -50,6 +54,14 @@ class SolidModel {
   void moulding(const HangingPlace& place, double width_m, double height_m, double moulding_m, double depth_m,
                 int profile_points, MaterialIndex material);
 
+  /// A block with a round arch cut out from below, as deep as the block: its span is along the longer horizontal axis,
+  /// pier_m less at both ends; the arch springs at low_m.z(), and its crown is half its span higher, below high_m.z().
+  void arch(const Vec3& low_m, const Vec3& high_m, double pier_m, int segments, MaterialIndex material);
+  /// Any closed surface.
+  void body(const ClosedMesh& mesh, MaterialIndex material);
+  /// A block with a cavity: neither occupied() nor open_above() knows of it.
+  void hollow_block(const Vec3& low_m, const Vec3& high_m, const ClosedMesh& cavity, MaterialIndex material);
+
   /// True within margin_m of a solid's bounding box (of one side of a moulding, for those).
   [[nodiscard]] bool occupied(const Vec3& point_m, double margin_m) const;
   /// True when no solid's bounding box is above the point by less than headroom_m.
@@ -60,6 +72,8 @@ class SolidModel {
  private:
   /// Adds a closed surface, turned so that its volume is positive.
   void closed(const std::vector<Vec3>& vertices_m, std::vector<std::array<std::uint32_t, 3>> triangles,
+              MaterialIndex material);
+  void append(const std::vector<Vec3>& vertices_m, const std::vector<std::array<std::uint32_t, 3>>& triangles,
               MaterialIndex material);
   void occupy(const std::vector<Vec3>& vertices_m);
 
