@@ -14,7 +14,7 @@ namespace {
 PlacementCaseOptions quick_options() {
   PlacementCaseOptions options;
   options.data_folder = test::source_folder() / "tools/bench/data";
-  options.goal_error = 0.05;
+  options.goal_error = 0.1;
   return options;
 }
 
@@ -106,8 +106,8 @@ TEST(KnownLights, GlobalGoalIsAboveTheDirectOneAndSaysItsError) {
   const Eigen::VectorXd reflected = global.goal_lux.col(0) - direct.goal_lux.col(0);
   EXPECT_GT((reflected + 4 * global.goal_standard_error_lux).minCoeff(), 0);
   EXPECT_GT(reflected.mean(), 0.2 * direct.goal_lux.mean());  // a light ceiling over dark carpet
-  // Asked for 5 % of each receiver's lux.
-  EXPECT_LT((global.goal_standard_error_lux.array() / global.goal_lux.col(0).array()).maxCoeff(), 0.06);
+  // Asked for 10 % of each receiver's lux.
+  EXPECT_LT((global.goal_standard_error_lux.array() / global.goal_lux.col(0).array()).maxCoeff(), 0.12);
 }
 
 TEST(WantedLight, ColoursChangeFromRegionToRegionOnly) {

@@ -34,7 +34,7 @@ struct PlacementCaseOptions {
   /// Holds office-scan.obj and apartment.glb (data/README.md); cases that need what is not there are refused.
   std::filesystem::path data_folder;
   /// Wanted standard error of the goal of a `…-known-global` case, relative as in EvaluateOptions.
-  double goal_error = 0.002;
+  double goal_error = 0.02;
   int threads = 0;  ///< 0 = one per core; the case does not depend on it
   Watch watch;
 };

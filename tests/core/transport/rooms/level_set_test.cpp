@@ -36,14 +36,15 @@ Eigen::AlignedBox3d box_of(double half_m) { return {Vec3::Constant(-half_m), Vec
 TEST(LevelSet, OfABallHasItsVolumeToSecondOrderAndLooksOutward) {
   double errors[2] = {};
   for (const int halving : {0, 1}) {
-    const ClosedMesh ball =
-        mesh_level_set(box_of(1.3), 0.2 / (1 + halving), [](const Vec3& p) { return p.norm() - 1; });
+    const double cell_m = 0.2 / (1 + halving);
+    const ClosedMesh ball = mesh_level_set(box_of(1.3), cell_m, [](const Vec3& p) { return p.norm() - 1; });
     EXPECT_TRUE(is_closed(ball));
     const double exact_m3 = 4 * kPi / 3;
     errors[halving] = std::abs(volume_of(ball) / exact_m3 - 1);  // positive: outward
-    for (const Vec3& v : ball.vertices_m) EXPECT_NEAR(v.norm(), 1, 0.01);
+    // The mean of points of the ball that share a cell: under it by the sagitta of the cell's diagonal at most.
+    for (const Vec3& v : ball.vertices_m) EXPECT_NEAR(v.norm(), 1, 3 * cell_m * cell_m / 8 + 1e-3);
   }
-  EXPECT_LT(errors[0], 0.03);
+  EXPECT_LT(errors[0], 0.05);
   EXPECT_LT(errors[1], 0.35 * errors[0]);
 }
 

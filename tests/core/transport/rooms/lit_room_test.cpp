@@ -122,7 +122,10 @@ int solids_around(const Scene& scene, const Vec3& point_m) {
 TEST_P(LitRooms, HaveReceiversAndLampsInFreeSpace) {
   for (const std::uint64_t seed : {1, 2}) {
     const LitRoom room = GetParam().make(seed);
-    for (const Receiver& r : room.receivers) {
+    // Brute force: of large rooms some receivers only. AirRegions judges all of them above.
+    const std::size_t step = 1 + room.scene.triangles.size() / 20'000;
+    for (std::size_t i = 0; i < room.receivers.size(); i += step) {
+      const Receiver& r = room.receivers[i];
       EXPECT_NEAR(r.normal_world.norm(), 1, 1e-12);
       ASSERT_EQ(solids_around(room.scene, r.position_world_m), 0) << r.position_world_m.transpose();
     }
