@@ -119,6 +119,7 @@ double quantile(std::vector<double> values, double share) {
 }  // namespace
 
 std::vector<BenchRow> bench_placement(const BenchOptions& options) {
+  if (options.only == "index") return bench_placement_index(options);
   const std::string name = "apartment-known-lights";
   if (name.rfind(options.only, 0) != 0) return {};
   const int cases = options.quick ? 6 : 100;

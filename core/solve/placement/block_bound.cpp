@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "core/check.h"
@@ -28,10 +27,11 @@ BlockBound::BlockBound(const VectorXd& goal, std::vector<BlockLight> home, const
     : goal_(goal), home_(home.size()), most_foreign_(most_foreign), rounding_(rounding) {
   sort_into_cells(home);
   const auto prices_row = static_cast<std::uint32_t>(goal.size());
-  bool priced = false;
-  for (const auto* lights : {&const_cast<const std::vector<BlockLight>&>(home), &foreign})
-    for (const BlockLight& light : *lights)
-      for (const double price : light.price) priced = priced || price != 0;
+  const auto is_priced = [](const BlockLight& light) {
+    return std::any_of(light.price.begin(), light.price.end(), [](double price) { return price != 0; });
+  };
+  const bool priced =
+      std::any_of(home.begin(), home.end(), is_priced) || std::any_of(foreign.begin(), foreign.end(), is_priced);
   price_goal_ = priced ? kPriceGoal * std::max(goal.norm(), 1e-3) : 0;
   const auto take = [&](const BlockLight& light, double sign) {
     column_begin_.push_back(static_cast<std::uint32_t>(most_.size()));
@@ -76,7 +76,7 @@ std::uint32_t BlockBound::cell_of(std::vector<std::uint32_t>& order, std::uint32
   const auto index = static_cast<std::uint32_t>(cells_.size());
   cells_.push_back({first, count});
   if (count < 2) return index;
-  const auto begin = order.begin() + first, end = begin + count;
+  const auto begin = order.begin() + first;
   // The view is of the lights' first columns, of norm 1, in their own order; made by sort_into_cells.
   const ColumnsView lights(goal_.size(), begin_, row_, std::span<const double>(value_));
   const auto dots_with = [&](std::uint32_t light) {
@@ -96,7 +96,6 @@ std::uint32_t BlockBound::cell_of(std::vector<std::uint32_t>& order, std::uint32
   for (std::uint32_t k = 0; k < count; ++k) sorted.emplace_back(side[k], *(begin + k));
   std::sort(sorted.begin(), sorted.end());
   std::transform(sorted.begin(), sorted.end(), begin, [](const auto& s) { return s.second; });
-  (void)end;
   const std::uint32_t left = cell_of(order, first, count / 2);
   const std::uint32_t right = cell_of(order, first + count / 2, count - count / 2);
   cells_[index].left = left;
@@ -244,13 +243,24 @@ void BlockBound::push(Tree& tree, Node node) {
 BlockBound::Tree& BlockBound::tree(std::size_t count) {
   if (trees_.size() <= count) trees_.resize(count + 1);
   Tree& tree = trees_[count];
-  if (!tree.made) {
-    tree.made = true;
-    Node node;
-    if (home_ > 0) node.cells.assign(count, root_);
+  if (tree.made) return tree;
+  tree.made = true;
+  Node node;
+  node.cells.assign(count, root_);
+  if (count == 0) {
     evaluate(node, {});
-    push(tree, std::move(node));
+  } else {  // whatever the count, at first any number may burn
+    if (root_residual_.size() == 0) {
+      evaluate(node, {});
+      anywhere_ = node;
+      root_residual_ = few_->residual();
+    }
+    node.support = anywhere_.support;
+    node.level = anywhere_.level;
+    node.bound = proven(node, root_residual_);
+    node.closed = is_integral(node);
   }
+  push(tree, std::move(node));
   return tree;
 }
 

@@ -15,6 +15,7 @@
 /// and columns for which rounding left aᵀy + p > 0 or aᵀy > q are charged at the largest level they can have.
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -22,6 +23,11 @@
 #include "core/solve/nnls_of_few.h"
 
 namespace luxrig {
+
+/// How far off a sum over so many rows may be, relative to the sum of magnitudes; with room for what is done to it.
+[[nodiscard]] inline double rounding_of_sums(Eigen::Index rows) {
+  return 4 * static_cast<double>(rows + 16) * std::numeric_limits<double>::epsilon();
+}
 
 /// A light's columns in one block.
 struct BlockLight {
@@ -96,6 +102,8 @@ class BlockBound {
   std::vector<Cell> cells_ = {Cell{0, 0}};   ///< the first is nothing
   std::vector<Tree> trees_;                  ///< by count
   std::unique_ptr<NnlsOfFew> few_;
+  Node anywhere_;                  ///< the node of all trees but that of no light to begin with
+  Eigen::VectorXd root_residual_;  ///< of that node
   Eigen::VectorXd product_;
   std::size_t evaluated_ = 0;
   std::uint32_t root_ = 0;

@@ -17,6 +17,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <stop_token>
+#include <string>
 #include <vector>
 
 #include "core/solve/columns_view.h"
@@ -34,6 +35,7 @@ struct CandidateLights {
 
   /// Empty, or what is wrong: sizes, entries that are negative or not finite.
   [[nodiscard]] std::string complaint() const;
+  [[nodiscard]] Eigen::VectorXd weights() const;  ///< never empty
 };
 
 /// Rows of weight above 0 that no candidate reaches. They stay dark with any lights, which the bounds account for.
