@@ -35,46 +35,55 @@ ComplementSearch::ComplementSearch(const ColumnsView& columns, std::span<const V
   if (row_weight_.size() == 0) row_weight_ = Eigen::VectorXd::Ones(columns.rows());
   const Eigen::VectorXd squared_weight = row_weight_.cwiseAbs2();
   squared_norm_.resize(columns.columns());
+  lit_scale_ = Eigen::VectorXd::Zero(columns.columns());
   for (ColumnsView::Index c = 0; c < columns.columns(); ++c) {
     squared_norm_[c] = columns.squared_norm(c, squared_weight.data());
-    if (squared_norm_[c] > 0) lit_.push_back(c);
+    if (!(squared_norm_[c] > 0)) continue;
+    lit_.push_back(c);
+    lit_scale_[c] = 1;
   }
 }
 
 Eigen::VectorXd ComplementSearch::gains(const PlacedLights& chosen) const {
   constexpr Eigen::Index kTile = ColumnsView::kTile;
-  Eigen::MatrixXd vectors(row_weight_.size(), 1);
-  vectors.col(0) = chosen.residual();
-  const Eigen::MatrixXd basis = basis_of(chosen);
-  vectors.conservativeResize(Eigen::NoChange, 1 + basis.cols());
-  vectors.rightCols(basis.cols()) = basis;
-
+  const Eigen::VectorXd residual = row_weight_.cwiseProduct(chosen.residual());
+  Eigen::VectorXd all(columns_.columns());
+  columns_.dot_all(residual.data(), lit_scale_.data(), all.data());
   const auto lit = static_cast<Eigen::Index>(lit_.size());
-  Eigen::VectorXd pull(lit), left(lit);
-  for (Eigen::Index i = 0; i < lit; ++i) left[i] = squared_norm_[lit_[static_cast<std::size_t>(i)]];
-  std::vector<double> tile(static_cast<std::size_t>(kTile * vectors.rows()));
-  std::vector<double> products(static_cast<std::size_t>(kTile * lit));
-  for (Eigen::Index first = 0; first < vectors.cols(); first += kTile) {
-    const Eigen::Index used = std::min(kTile, vectors.cols() - first);
-    for (Eigen::Index row = 0; row < vectors.rows(); ++row)
-      for (Eigen::Index k = 0; k < kTile; ++k)
-        tile[static_cast<std::size_t>(kTile * row + k)] = k < used ? row_weight_[row] * vectors(row, first + k) : 0;
-    columns_.dot_tile(lit_, tile.data(), products.data());
-    for (Eigen::Index i = 0; i < lit; ++i) {
-      const double* of = products.data() + kTile * i;
-      for (Eigen::Index k = 0; k < used; ++k) {
-        if (first + k == 0)
-          pull[i] = of[k];
-        else
-          left[i] -= of[k] * of[k];
-      }
+  Eigen::VectorXd gain = Eigen::VectorXd::Zero(lit);
+  // Levels cannot fall below 0: a candidate that does not pull gains nothing, whatever the chosen lights do.
+  std::vector<Eigen::Index> place;
+  std::vector<ColumnsView::Index> pulling;
+  for (Eigen::Index i = 0; i < lit; ++i)
+    if (const auto candidate = lit_[static_cast<std::size_t>(i)]; all[candidate] > 0) {
+      place.push_back(i);
+      pulling.push_back(candidate);
     }
+
+  const auto count = static_cast<Eigen::Index>(pulling.size());
+  const Eigen::MatrixXd basis = basis_of(chosen);
+  Eigen::VectorXd left(count);
+  for (Eigen::Index i = 0; i < count; ++i) left[i] = squared_norm_[pulling[static_cast<std::size_t>(i)]];
+  std::vector<double> tile(static_cast<std::size_t>(kTile * basis.rows()));
+  std::vector<double> products(static_cast<std::size_t>(kTile * count));
+  for (Eigen::Index first = 0; first < basis.cols(); first += kTile) {
+    const Eigen::Index used = std::min(kTile, basis.cols() - first);
+    for (Eigen::Index row = 0; row < basis.rows(); ++row)
+      for (Eigen::Index k = 0; k < kTile; ++k)
+        tile[static_cast<std::size_t>(kTile * row + k)] = k < used ? row_weight_[row] * basis(row, first + k) : 0;
+    columns_.dot_tile(pulling, tile.data(), products.data());
+    for (Eigen::Index i = 0; i < count; ++i)
+      for (Eigen::Index k = 0; k < used; ++k) {
+        const double product = products[static_cast<std::size_t>(kTile * i + k)];
+        left[i] -= product * product;
+      }
   }
-  for (Eigen::Index i = 0; i < lit; ++i) {
-    const double whole = squared_norm_[lit_[static_cast<std::size_t>(i)]];
-    pull[i] = pull[i] > 0 && left[i] > kLeastLeft * whole ? pull[i] * pull[i] / left[i] : 0;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const auto candidate = pulling[static_cast<std::size_t>(i)];
+    if (left[i] > kLeastLeft * squared_norm_[candidate])
+      gain[place[static_cast<std::size_t>(i)]] = all[candidate] * all[candidate] / left[i];
   }
-  return pull;
+  return gain;
 }
 
 std::vector<Complement> ComplementSearch::best(const PlacedLights& chosen, std::size_t count, double apart_m) const {

@@ -40,6 +40,7 @@ class ComplementSearch {
   std::span<const Vec3> places_m_;
   Eigen::VectorXd row_weight_;           ///< W
   Eigen::VectorXd squared_norm_;         ///< of W a
+  Eigen::VectorXd lit_scale_;            ///< 1 for candidates with any light, 0 for others
   std::vector<ColumnsView::Index> lit_;  ///< candidates with any light
 };
 
