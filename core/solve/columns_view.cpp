@@ -191,6 +191,15 @@ void ColumnsView::clear(Index column, double* to) const {
   LUXRIG_WITH_COLUMNS(const auto a = of(column); for (std::size_t k = 0; k < a.count; ++k) to[a.row(k)] = 0);
 }
 
+void ColumnsView::entries(Index column, std::vector<std::uint32_t>& rows, std::vector<double>& values) const {
+  rows.clear();
+  values.clear();
+  LUXRIG_WITH_COLUMNS(const auto a = of(column); for (std::size_t k = 0; k < a.count; ++k) if (a.value(k) != 0) {
+    rows.push_back(static_cast<std::uint32_t>(a.row(k)));
+    values.push_back(a.value(k));
+  });
+}
+
 double ColumnsView::squared_norm(Index column, const double* weight) const {
   double sum = 0;
   LUXRIG_WITH_COLUMNS(const auto a = of(column);

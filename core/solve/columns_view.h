@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace luxrig {
 
@@ -37,6 +38,8 @@ class ColumnsView {
   void add(Index column, long double times, long double* to) const;
   /// to = 0 where the column has entries
   void clear(Index column, double* to) const;
+  /// What the column holds that is not 0, by rising rows; replaces what was in the vectors.
+  void entries(Index column, std::vector<std::uint32_t>& rows, std::vector<double>& values) const;
   /// Σ_i weight_i a_ij²
   [[nodiscard]] double squared_norm(Index column, const double* weight) const;
   /// result_j = scale_j Σ_i a_ij vector_i for all columns: one pass over the matrix.

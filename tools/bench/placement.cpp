@@ -172,6 +172,7 @@ std::vector<BenchRow> recovery_rows(const std::string& name, bool number_known, 
 }  // namespace
 
 std::vector<BenchRow> bench_placement(const BenchOptions& options) {
+  if (options.only == "index") return bench_placement_index(options);
   std::vector<BenchRow> rows;
   for (const bool number_known : {true, false}) {
     const std::string name = number_known ? "apartment-known-lights" : "apartment-number-unknown";

@@ -20,6 +20,11 @@ namespace luxrig {
 /// judged) and the worst of every column by itself; `found` is the share found again within 3 cm and 2 % of flux.
 [[nodiscard]] std::vector<BenchRow> bench_placement(const BenchOptions& options);
 
+/// The best complement of a residual, by scans and by a k-d tree (`--only index`): error is the largest share of the
+/// best product that an answer lacks; seconds of the processor, of the query in the middle of ten. quick: no 3 000
+/// points.
+[[nodiscard]] std::vector<BenchRow> bench_placement_index(const BenchOptions& options);
+
 /// 60 s (6 s with quick) of four sACN universes at 44 Hz to a sink on loopback, path tracing on all cores meanwhile.
 /// Prints the histogram of the intervals by the kernel's arrival stamps. error: p99 deviation over the period.
 [[nodiscard]] std::vector<BenchRow> bench_buses(const BenchOptions& options);

@@ -51,50 +51,64 @@ ComplementSearch::ComplementSearch(const ColumnsView& columns, std::span<const L
   squared_norm_.conservativeResize(static_cast<Eigen::Index>(lit_.size()), Eigen::NoChange);
 }
 
-/// Of lit columns with vectors over points: lit × vectors.
-Eigen::MatrixXd ComplementSearch::products(const Eigen::MatrixXd& vectors) const {
+/// With vectors over points: columns × vectors.
+Eigen::MatrixXd ComplementSearch::products(const std::vector<ColumnsView::Index>& columns,
+                                           const Eigen::MatrixXd& vectors) const {
   constexpr Eigen::Index kTile = ColumnsView::kTile;
-  const auto lit = static_cast<Eigen::Index>(lit_.size());
-  Eigen::MatrixXd of_all(lit, vectors.cols());
+  const auto count = static_cast<Eigen::Index>(columns.size());
+  Eigen::MatrixXd of_all(count, vectors.cols());
   std::vector<double> tile(static_cast<std::size_t>(kTile * vectors.rows()));
-  std::vector<double> of_tile(static_cast<std::size_t>(kTile * lit));
+  std::vector<double> of_tile(static_cast<std::size_t>(kTile * count));
   for (Eigen::Index first = 0; first < vectors.cols(); first += kTile) {
     const Eigen::Index used = std::min(kTile, vectors.cols() - first);
     for (Eigen::Index row = 0; row < vectors.rows(); ++row)
       for (Eigen::Index k = 0; k < kTile; ++k)
         tile[static_cast<std::size_t>(kTile * row + k)] = k < used ? vectors(row, first + k) : 0;
-    columns_.dot_tile(lit_, tile.data(), of_tile.data());
-    for (Eigen::Index i = 0; i < lit; ++i)
-      for (Eigen::Index k = 0; k < used; ++k) of_all(i, first + k) = of_tile[static_cast<std::size_t>(kTile * i + k)];
+    columns_.dot_tile(columns, tile.data(), of_tile.data());
+    for (Eigen::Index k = 0; k < used; ++k)
+      for (Eigen::Index i = 0; i < count; ++i) of_all(i, first + k) = of_tile[static_cast<std::size_t>(kTile * i + k)];
   }
   return of_all;
 }
 
 Eigen::VectorXd ComplementSearch::gains(const PlacedLights& chosen) const {
   const auto lit = static_cast<Eigen::Index>(lit_.size());
-  const Eigen::MatrixXd basis = basis_of(chosen);
-  const Eigen::Index points = columns_.rows(), channels = goal_->channels(), vectors = 1 + basis.cols();
-  // Channel by channel: of the residual, then of the basis.
-  Eigen::MatrixXd weighted(points, vectors * channels);
-  for (Eigen::Index c = 0; c < channels; ++c) {
-    const auto weight = row_weight_.segment(c * points, points);
-    weighted.col(c * vectors) = weight.cwiseProduct(chosen.residual().segment(c * points, points));
-    if (basis.cols() > 0)
-      weighted.middleCols(c * vectors + 1, basis.cols()) = weight.asDiagonal() * basis.middleRows(c * points, points);
-  }
-  const Eigen::MatrixXd of_channels = products(weighted);
-  Eigen::VectorXd gain = Eigen::VectorXd::Zero(lit);
-  Eigen::VectorXd of_vectors(vectors);
+  const Eigen::Index points = columns_.rows(), channels = goal_->channels(), emitters = goal_->emitters.cols();
+  // Levels cannot fall below 0: an emitter that does not pull gains nothing, whatever the chosen lights do.
+  const Eigen::VectorXd weighted_residual = row_weight_.cwiseProduct(chosen.residual());
+  const Eigen::MatrixXd pull = products(lit_, weighted_residual.reshaped(points, channels)) * goal_->emitters;
+  std::vector<Eigen::Index> place;
+  std::vector<ColumnsView::Index> pulling;
   for (Eigen::Index i = 0; i < lit; ++i) {
-    for (Eigen::Index e = 0; e < goal_->emitters.cols(); ++e) {
-      const double whole = squared_norm_(i, e);
-      of_vectors.setZero();
+    if (!(pull.row(i).maxCoeff() > 0)) continue;
+    place.push_back(i);
+    pulling.push_back(lit_[static_cast<std::size_t>(i)]);
+  }
+
+  const Eigen::MatrixXd basis = row_weight_.asDiagonal() * basis_of(chosen);
+  const auto count = static_cast<Eigen::Index>(pulling.size());
+  Eigen::MatrixXd left(count, emitters);
+  for (Eigen::Index i = 0; i < count; ++i) left.row(i) = squared_norm_.row(place[static_cast<std::size_t>(i)]);
+  if (channels == 1) {
+    const Eigen::VectorXd of_basis = products(pulling, basis).rowwise().squaredNorm();
+    left -= of_basis * goal_->emitters.cwiseAbs2();
+  } else {
+    std::vector<Eigen::MatrixXd> of_channel;
+    for (Eigen::Index c = 0; c < channels; ++c)
+      of_channel.push_back(products(pulling, basis.middleRows(c * points, points)));
+    for (Eigen::Index e = 0; e < emitters; ++e) {
+      Eigen::MatrixXd of_emitter = Eigen::MatrixXd::Zero(count, basis.cols());
       for (Eigen::Index c = 0; c < channels; ++c)
-        if (goal_->emitters(c, e) != 0)
-          of_vectors += goal_->emitters(c, e) * of_channels.row(i).segment(c * vectors, vectors).transpose();
-      const double pull = of_vectors[0], left = whole - of_vectors.tail(vectors - 1).squaredNorm();
-      if (pull > 0 && left > kLeastLeft * whole) gain[i] += pull * pull / left;
+        if (goal_->emitters(c, e) != 0) of_emitter += goal_->emitters(c, e) * of_channel[static_cast<std::size_t>(c)];
+      left.col(e) -= of_emitter.rowwise().squaredNorm();
     }
+  }
+  Eigen::VectorXd gain = Eigen::VectorXd::Zero(lit);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Eigen::Index at = place[static_cast<std::size_t>(i)];
+    for (Eigen::Index e = 0; e < emitters; ++e)
+      if (pull(at, e) > 0 && left(i, e) > kLeastLeft * squared_norm_(at, e))
+        gain[at] += pull(at, e) * pull(at, e) / left(i, e);
   }
   return gain;
 }

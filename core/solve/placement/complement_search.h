@@ -37,7 +37,8 @@ class ComplementSearch {
 
  private:
   [[nodiscard]] Eigen::VectorXd gains(const PlacedLights& chosen) const;
-  [[nodiscard]] Eigen::MatrixXd products(const Eigen::MatrixXd& vectors) const;
+  [[nodiscard]] Eigen::MatrixXd products(const std::vector<ColumnsView::Index>& columns,
+                                         const Eigen::MatrixXd& vectors) const;
 
   ColumnsView columns_;
   std::span<const LightPose> poses_;
