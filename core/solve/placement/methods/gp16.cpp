@@ -1,0 +1,82 @@
+#include "core/solve/placement/methods/anneal_candidates.h"
+#include "core/solve/placement/methods/baselines.h"
+#include "core/solve/placement/methods/light_tree.h"
+#include "core/solve/placement/methods/method_parts.h"
+#include "core/solve/placement/methods/starts.h"
+
+namespace luxrig {
+namespace {
+
+constexpr int kCutIterations = 1000;
+
+class CutWalk {
+ public:
+  CutWalk(const PlacementProblem& problem, const PlacementOptions& options, const PlacementStart& start,
+          const std::shared_ptr<const CandidateLights>& candidates)
+      : problem_(problem), options_(options), start_(start), candidates_(candidates), random_(start.seed) {
+    annealing_.iterations = options.iterations > 0 ? options.iterations : kCutIterations;
+    annealing_.wanted_error = options.wanted_error;
+    annealing_.stop = options.stop;
+    annealing_.better = reporter(start.better, columns_);
+  }
+
+  FoundLights at(const std::vector<TreeCut>& cuts, std::size_t lights) {
+    ChosenCandidates state(candidates_);
+    for (const TreeCut& cut : cuts)
+      if (cut.candidates.size() <= lights) state.choose(cut.candidates);
+    pursue(state, lights, options_.wanted_error, options_.stop);
+    return refined(anneal(std::move(state), annealing_, random_), {});
+  }
+
+  FoundLights down(const std::vector<TreeCut>& cuts) {
+    ChosenCandidates chosen(candidates_);
+    std::vector<PlacedLights> looked_at;
+    for (std::size_t i = 0; i < cuts.size() && cuts[i].candidates.size() <= options_.most_lights; ++i) {
+      const bool last = i + 1 == cuts.size() || cuts[i + 1].candidates.size() > options_.most_lights;
+      if (cuts[i].error > options_.coarse_error && !(last && chosen.size() == 0)) continue;
+      ChosenCandidates state(candidates_);
+      state.choose(cuts[i].candidates);
+      state = anneal(std::move(state), annealing_, random_);
+      const double was = chosen.error();
+      looked_at.push_back(state.placed(columns_));
+      if (chosen.size() > 0 && !(state.error() <= (1 - options_.least_improvement) * was)) break;
+      chosen = std::move(state);
+      if (chosen.error() <= options_.wanted_error || options_.stop.stop_requested()) break;
+    }
+    return refined(chosen, std::move(looked_at));
+  }
+
+ private:
+  FoundLights refined(const ChosenCandidates& chosen, std::vector<PlacedLights> looked_at) {
+    FoundLights found{chosen.placed(columns_)};
+    columns_ +=
+        refine_by_simplex(found.lights, simplex_of(problem_, options_, start_.most_columns, columns_, start_.better));
+    found.columns = columns_;
+    found.cuts = std::move(looked_at);
+    return found;
+  }
+
+  const PlacementProblem& problem_;
+  const PlacementOptions& options_;
+  const PlacementStart& start_;
+  const std::shared_ptr<const CandidateLights>& candidates_;
+  std::mt19937_64 random_;
+  AnnealOptions annealing_;
+  std::size_t columns_ = 0;
+};
+
+}  // namespace
+
+Result<FoundLights> place_by_gp16(const PlacementProblem& problem, const PlacementOptions& options) {
+  const auto candidates = CandidateLights::make(problem);
+  if (!candidates) return tl::unexpected(candidates.error());
+  const std::vector<TreeCut> cuts = light_tree_cuts(*candidates, options.stop);
+  FoundLights found = best_of_starts(options, [&](const PlacementStart& start) {
+    CutWalk walk(problem, options, start, *candidates);
+    return options.lights > 0 ? walk.at(cuts, options.lights) : walk.down(cuts);
+  });
+  for (const TreeCut& cut : cuts) found.tree.emplace_back(cut.candidates.size(), cut.error);
+  return found;
+}
+
+}  // namespace luxrig

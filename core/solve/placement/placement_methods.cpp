@@ -1,0 +1,73 @@
+#include "core/solve/placement/placement_methods.h"
+
+#include "core/solve/placement/choose_lights.h"
+#include "core/solve/placement/methods/baselines.h"
+#include "core/solve/placement/place_lights.h"
+
+namespace luxrig {
+namespace {
+
+std::function<void(const PlacedLights&, std::size_t)> passed_on(const PlacementOptions& options) {
+  if (!options.better) return {};
+  return [&options](const PlacedLights& best, std::size_t columns) {
+    options.better({best.error(), best.poses(), best.levels(), columns});
+  };
+}
+
+Result<FoundLights> place_by_luxrig(const PlacementProblem& problem, const PlacementOptions& options) {
+  if (std::string text = problem.complaint(); !text.empty()) {
+    Fault fault;
+    fault.cause = Cause::invalid;
+    fault.detail = std::move(text);
+    return tl::unexpected(fault);
+  }
+  const ComplementSearch candidates(problem.columns, problem.poses, *problem.goal);
+  ExchangeOptions exchange;
+  exchange.threads = options.threads;
+  exchange.stop = options.stop;
+  if (options.lights > 0) {
+    PlaceOptions place;
+    place.lights = options.lights;
+    place.wanted_error = options.wanted_error;
+    place.most_columns = options.most_columns;
+    place.seed = options.seed;
+    place.exchange = exchange;
+    place.better = passed_on(options);
+    Placement got = place_lights(*problem.light, *problem.goal, candidates, place);
+    return FoundLights{std::move(got.lights), got.columns};
+  }
+  ChooseOptions choose;
+  choose.most_lights = options.most_lights;
+  choose.wanted_error = options.wanted_error;
+  choose.least_improvement = options.least_improvement;
+  choose.coarse_error = options.coarse_error;
+  choose.most_columns = options.most_columns;
+  choose.seed = options.seed;
+  choose.exchange = exchange;
+  choose.better = passed_on(options);
+  LightCurve got = choose_lights(*problem.light, *problem.goal, candidates, choose);
+  FoundLights found{got.cuts[got.chosen], got.columns};
+  found.cuts = std::move(got.cuts);
+  return found;
+}
+
+constexpr PlacementMethod kMethods[] = {
+    {"luxrig", "one by one, all refined by least squares, exchanged", true, true, place_by_luxrig},
+    {"gpk15", "Gkaravelis, Papaioannou & Kalampokis 2015: annealing by complements", true, false, place_by_gpk15},
+    {"gp16", "Gkaravelis & Papaioannou 2016: light tree, annealed cuts", true, true, place_by_gp16},
+    {"lin2013", "Lin et al. 2013: coarse to fine, light tree, simplex", true, true, place_by_lin2013},
+    {"annealing", "annealing by random mutations", true, false, place_by_annealing},
+    {"pursuit", "non-negative orthogonal matching pursuit over candidates", true, true, place_by_pursuit},
+};
+
+}  // namespace
+
+std::span<const PlacementMethod> placement_methods() { return kMethods; }
+
+const PlacementMethod* find_placement_method(std::string_view name) {
+  for (const PlacementMethod& method : kMethods)
+    if (name == method.name) return &method;
+  return nullptr;
+}
+
+}  // namespace luxrig

@@ -1,0 +1,17 @@
+#pragma once
+/// All ways to place lights, by name: luxrig's own and those it is compared with.
+
+#include <span>
+#include <string_view>
+
+#include "core/solve/placement/methods/placement_method.h"
+
+namespace luxrig {
+
+/// Luxrig's own first.
+[[nodiscard]] std::span<const PlacementMethod> placement_methods();
+
+/// nullptr: there is none of that name.
+[[nodiscard]] const PlacementMethod* find_placement_method(std::string_view name);
+
+}  // namespace luxrig
