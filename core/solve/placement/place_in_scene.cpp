@@ -19,6 +19,9 @@ constexpr std::size_t kDirectColumnsOfTrial = 5'000, kIndirectColumnsOfTrial = 1
 constexpr std::size_t kLightsOfMostColumns = 10;
 constexpr std::size_t kLookAhead = 2;
 
+/// The search tries thousands of places, each a column; what it ends with is evaluated anew.
+constexpr std::uint32_t kRaysPerColumn = 4096;
+
 /// A light that hangs at the mounting's place nearest to the one it is asked for, so that a search that steps out of
 /// the mounting slides along its edge.
 class MountedLight final : public MovableLight {
@@ -48,6 +51,12 @@ std::size_t number_worth_it(const std::vector<LightsAndError>& numbers, double i
   return chosen;
 }
 
+bool reflects(const RayScene& rays) {
+  return std::any_of(rays.materials().begin(), rays.materials().end(), [](const Material& material) {
+    return material.reflectance_rgb.maxCoeff() > 0 || material.specular_reflectance > 0;
+  });
+}
+
 PlacedInScene found_by(const Placement& placement, const Mounting& mounting) {
   PlacedInScene found;
   found.error = placement.lights.error();
@@ -72,18 +81,20 @@ Result<PlacedInScene> place_in_scene(const Scene& scene, const RayScene& rays, c
   lamp.world_from_lamp.translation_m.setZero();
   const Watch watch{options.stop, {}};
 
+  const bool indirect = options.indirect && reflects(rays);
   IncrementalOptions incremental;
-  incremental.indirect = options.indirect;
+  incremental.indirect = indirect;
+  incremental.rays_per_column = kRaysPerColumn;
   incremental.seed = options.seed;
   incremental.threads = options.threads;
   const auto transport = IncrementalTransport::make(scene, rays, receivers, incremental, watch);
   if (!transport) return tl::unexpected(transport.error());
-  const SceneLight anywhere(**transport, {receivers.begin(), receivers.end()}, lamp, options.indirect);
+  const SceneLight anywhere(**transport, {receivers.begin(), receivers.end()}, lamp, indirect);
   const MountedLight light(anywhere, mounting);
 
   const CandidateSet set{std::move(*places_m), {lamp}};
   CandidateOptions how;
-  how.indirect = options.indirect;
+  how.indirect = indirect;
   how.seed = options.seed;
   how.threads = options.threads;
   how.watch = watch;
@@ -105,11 +116,10 @@ Result<PlacedInScene> place_in_scene(const Scene& scene, const RayScene& rays, c
   if (options.better)
     place.better = [&](const PlacedLights& best, std::size_t) { options.better(best.size(), best.error()); };
   const std::size_t first = options.lights.value_or(1), last = options.lights.value_or(options.max_lights);
-  const std::size_t columns_per_light = options.lights
-                                            ? options.indirect ? kIndirectColumnsPerLight : kDirectColumnsPerLight
-                                        : options.indirect ? kIndirectColumnsOfTrial
-                                                           : kDirectColumnsOfTrial;
-  if (options.indirect) {  // fewer tries for the dearer columns
+  const std::size_t columns_per_light = options.lights ? indirect ? kIndirectColumnsPerLight : kDirectColumnsPerLight
+                                        : indirect     ? kIndirectColumnsOfTrial
+                                                       : kDirectColumnsOfTrial;
+  if (indirect) {  // fewer tries for the dearer columns
     place.complements = 3;
     place.near_places = 12;
   }
