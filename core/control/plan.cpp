@@ -50,6 +50,12 @@ OrderedJson json_of(const PlannedTask& task) {
   put(json, "seconds", task.seconds);
   json["lights"] = OrderedJson::array();
   for (const PlannedLight& light : task.lights) json["lights"].push_back(json_of(light));
+  for (const PlannedLight& light : task.fixtures) json["fixtures"].push_back(json_of(light));
+  for (const PlannedNumber& number : task.numbers) {
+    OrderedJson tried = {{"lights", number.lights}};
+    put(tried, "normalised_error", number.normalised_error);
+    json["numbers"].push_back(std::move(tried));
+  }
   return json;
 }
 
@@ -238,6 +244,13 @@ PlannedTask task_of(const Reader& reader, const Json& json, const std::string& p
   reader.each(json, path, "lights", true, [&](const Json& light, const std::string& light_path) {
     task.lights.push_back(light_of(reader, light, light_path));
   });
+  reader.each(json, path, "fixtures", false, [&](const Json& light, const std::string& light_path) {
+    task.fixtures.push_back(light_of(reader, light, light_path));
+  });
+  reader.each(json, path, "numbers", false, [&](const Json& number, const std::string& number_path) {
+    task.numbers.push_back({reader.count<int>(number, number_path, "lights"),
+                            reader.number(number, number_path, "normalised_error", false)});
+  });
   return task;
 }
 
@@ -334,55 +347,6 @@ Checked<Plan> plan_from_json(const std::string& text, const std::string& file_na
   });
   if (!problems.empty()) return tl::unexpected(problems);
   return plan;
-}
-
-Checked<std::vector<double>> levels_for(const Plan& plan, const Rig& rig, const std::string& file_name) {
-  std::vector<Problem> problems;
-  const Reader reader(file_name, problems);
-  if (plan.rig != rig.name) {
-    reader.problem(fmt::format("/rig: this plan is for rig \"{}\", not for \"{}\"", plan.rig, rig.name),
-                   "give a plan solved for this rig");
-    return tl::unexpected(problems);
-  }
-  std::map<std::string, std::size_t> index_of;
-  for (std::size_t i = 0; i < rig.fixtures.size(); ++i) index_of.emplace(rig.fixtures[i].name, i);
-
-  std::vector<double> levels(rig.fixtures.size(), kAbsent);
-  std::vector<bool> named(rig.fixtures.size(), false);
-  for (std::size_t t = 0; t < plan.tasks.size(); ++t) {
-    std::set<std::size_t> named_here;
-    for (std::size_t l = 0; l < plan.tasks[t].lights.size(); ++l) {
-      const PlannedLight& light = plan.tasks[t].lights[l];
-      const std::string path = fmt::format("/tasks/{}/lights/{}", t, l);
-      const auto found = index_of.find(light.name);
-      if (found == index_of.end()) {
-        reader.problem(fmt::format("{}/name: the rig has no fixture \"{}\"", path, light.name),
-                       "name a fixture of the rig, or solve again");
-        continue;
-      }
-      const std::size_t i = found->second;
-      if (!named_here.insert(i).second) {
-        reader.problem(fmt::format("{}/name: fixture \"{}\" stands twice in this task", path, light.name),
-                       "keep one of the two");
-      }
-      const double most = std::min(rig.fixtures[i].max_level, rig.limits.max_level);
-      if (!(light.level >= 0 && light.level <= most)) {
-        reader.problem(
-            fmt::format("{}/level: {} for fixture \"{}\" is outside 0…{}", path, light.level, light.name, most),
-            "give a level within the fixture's limits, or solve again");
-      }
-      levels[i] = light.level;
-      named[i] = true;
-    }
-  }
-  for (std::size_t i = 0; i < rig.fixtures.size(); ++i) {
-    if (!named[i]) {
-      reader.problem(fmt::format("/tasks: no task says what fixture \"{}\" shall do", rig.fixtures[i].name),
-                     "add it with a level, or solve again");
-    }
-  }
-  if (!problems.empty()) return tl::unexpected(problems);
-  return levels;
 }
 
 }  // namespace luxrig

@@ -12,7 +12,7 @@
 namespace luxrig {
 
 struct PlannedLight {
-  std::string name;  ///< fixture
+  std::string name;  ///< fixture, or what it is to be called
   std::string luminaire;
   Vec3 position_world_m = Vec3::Zero();
   std::optional<Vec3> aim_world_m;
@@ -21,12 +21,22 @@ struct PlannedLight {
   double lumens = 0;  ///< level × rated flux
 };
 
+/// So many lights would leave so much of the error (normalised, levels not bounded).
+struct PlannedNumber {
+  int lights = 0;
+  double normalised_error = 0;
+};
+
 struct PlannedTask {
   std::string name, kind;
   double normalised_error = 0;
   int iterations = 0;
   double seconds = 0;
-  std::vector<PlannedLight> lights;
+  std::vector<PlannedLight> lights;  ///< of an emittance task, fixtures; of a placement, lights that need not hang yet
+  /// kind "placement": what the rig's fixtures give meanwhile.
+  std::vector<PlannedLight> fixtures{};
+  /// kind "placement": the best with other numbers of lights, so that a person can choose.
+  std::vector<PlannedNumber> numbers{};
 };
 
 struct PlannedPoint {
@@ -55,11 +65,21 @@ struct Plan {
 };
 
 /// Level of every fixture of the rig, in the rig's order; problems when the plan is for another rig, names an unknown
-/// fixture, leaves one out, or has a level outside 0…max_level.
+/// fixture (or a placed light that does not hang yet: then the mend says where and how), leaves one out, or has a level
+/// outside 0…max_level.
 [[nodiscard]] Checked<std::vector<double>> levels_for(const Plan& plan, const Rig& rig, const std::string& file_name);
 
-/// JSON, keys as in design.md `solve --json`, plus "luxrig_plan": 1 and "rig" (and a point's "why" when there is one).
-/// Numbers are finite or the key is absent.
+/// The same with each placed light that is no fixture of the rig hung at its place first: `rig` gets a fixture more for
+/// each, after its own. They have no bus (their `bus` is past the last one): for light in the model, never for output.
+[[nodiscard]] Checked<std::vector<double>> levels_when_hung(const Plan& plan, Rig& rig, const std::string& file_name);
+
+/// A fixture without a bus: a luminaire at a place, straight down or looking at an aim. requires luminaire < the rig's.
+[[nodiscard]] Fixture hung_light(const Rig& rig, const std::string& name, std::size_t luminaire,
+                                 const Vec3& position_world_m, const std::optional<Vec3>& aim_world_m);
+
+/// JSON, keys as in design.md `solve --json`, plus "luxrig_plan": 1 and "rig" (and a point's "why" when there is one,
+/// and a placement's "fixtures", like "lights", and "numbers": [{"lights", "normalised_error"}]). Numbers are finite or
+/// the key is absent.
 [[nodiscard]] std::string to_json(const Plan& plan);
 /// Never throws. Problems of syntax carry line and column, others a path (/tasks/0/lights/3/level) in `what`. Needed
 /// are luxrig_plan, rig, tasks, and the name and level of each light; another number that is absent becomes NaN (0 for

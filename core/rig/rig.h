@@ -2,6 +2,7 @@
 /// A rig as plain values: what rig.toml says, checked once (rig_file.h reads it). Lists keep the order
 /// of the file; indices into them are used everywhere else.
 
+#include <Eigen/Geometry>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -161,10 +162,44 @@ struct Point {
   Place place;
 };
 
-enum class TaskKind { emittance };
+enum class PlacementMethod { luxrig };
+
+/// What the rig's own fixtures do while lights are placed: what the tasks before have set (dark, where none has), dark,
+/// or all they may.
+enum class FixturesMeanwhile { as_set, off, full };
+
+/// kind == placement: lights that are not hung yet.
+struct PlacementSpec {
+  std::size_t luminaire = 0;
+  std::optional<int> lights;    ///< else as few as will do
+  int max_lights = 20;          ///< without `lights`
+  double error_wanted = 0.001;  ///< normalised error at which the search ends
+  double improvement = 0.05;    ///< without `lights`: share of the error that one more light must take away
+  PlacementMethod method = PlacementMethod::luxrig;
+  bool indirect = true;  ///< reflected light counts in the search
+  FixturesMeanwhile fixtures = FixturesMeanwhile::as_set;
+  std::optional<double> seconds;  ///< after which the search ends with the best so far
+};
+
+enum class TaskKind { emittance, placement };
 struct Task {
   std::string name;
   TaskKind kind = TaskKind::emittance;
+  Place place;
+  PlacementSpec placement{};
+};
+
+/// Where lights may be placed.
+struct MountingSpec {
+  struct Pattern {
+    std::string text;  ///< shell pattern: * and ?
+    Place place;
+  };
+  std::optional<Eigen::AlignedBox3d> box_world_m;   ///< else the scene's bounds
+  std::vector<Pattern> surfaces;                    ///< by name of material or object; empty: anywhere in the air
+  double offset_min_m = 0.05, offset_max_m = 0.15;  ///< from those surfaces
+  double clearance_m = 0.1;                         ///< from all others
+  std::optional<double> spacing_m;                  ///< of the places that are tried first
   Place place;
 };
 
@@ -222,6 +257,7 @@ struct Rig {
   std::optional<Daylight> daylight;
   std::vector<Point> points;
   std::vector<Task> tasks;
+  MountingSpec mounting;
   Limits limits;
   ControlSpec control;
   SafeSpec safe;

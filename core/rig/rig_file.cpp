@@ -112,18 +112,6 @@ void RigReader::read_unknown_sections() {
   }
 }
 
-void RigReader::read_tasks() {
-  NameIndex tasks("task");
-  each(root, "task", [&](Section& s) {
-    Task task;
-    task.place = s.place();
-    if (s.read("name", task.name)) tasks.add(task.name, rig.tasks.size(), s.place_of("name"), problems);
-    s.read_choice("kind", task.kind);
-    rig.tasks.push_back(std::move(task));
-  });
-  if (rig.tasks.empty()) rig.tasks.push_back({"levels", TaskKind::emittance, {}});
-}
-
 void RigReader::read_settings() {
   if (!luxrig::find(root, "rig")) {
     problems.add({1, 1}, "there is no [rig]", "begin with [rig] and a line name = \"…\" below it");
@@ -175,7 +163,8 @@ void RigReader::read_all() {
   read_fixtures();
   read_luxmeters();
   patches.report(rig.buses, problems);
-  read_tasks();
+  read_mounting();
+  read_tasks();  // which name luminaires, and need goals
 }
 
 Checked<Rig> parse_rig(std::string_view text, const std::filesystem::path& file, const std::filesystem::path& folder) {

@@ -64,6 +64,8 @@ struct RigReader {
   void read_luxmeters();
   void read_daylight();
   void read_tasks();
+  void read_placement(Section& section, PlacementSpec& placement);
+  void read_mounting();
   void read_settings();
 
   /// Every entry of a list section, or the one of a plain section, in order of the file. A section of the wrong shape

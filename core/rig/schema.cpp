@@ -28,6 +28,7 @@ constexpr Bounds kFullCone{0, 180, true, true};
 constexpr Bounds kSeconds{0, 3600};
 constexpr Bounds kUnitAddress{0, 255};
 constexpr Bounds kRegister{0, 65535};
+constexpr Bounds kLights{1, 1000};
 constexpr std::string_view kUnits = "m, cm, mm, in, ft";
 constexpr std::string_view kAxes = "x, y, z";
 
@@ -49,6 +50,9 @@ constexpr SectionSpec kSections[] = {
     {"point", true, 100000, false, "A place whose illuminance matters, on the side its normal points to."},
     {"points", false, 1, false, "Further points, from a table."},
     {"task", true, 1000, false, "What to work out. Without one: an `emittance` task called `levels`."},
+    {"mounting", false, 1, false,
+     "Where a `placement` task may hang lights. Without it: in the air within the scene's bounding box, 0.1 m off "
+     "everything. Places behind closed surfaces, from which no light gets to a point with a goal, cost nothing."},
     {"limits", false, 1, false, "What holds for the whole rig."},
     {"control", false, 1, false, "How looks change, and how readings correct them."},
     {"safe", false, 1, false, "What the light does when something fails."},
@@ -238,7 +242,70 @@ constexpr KeySpec kRigKeys[] = {
     {"points", "file", file, "", kRequired, kAny, "", "CSV file; see The points file"},
 
     {"task", "name", name, "", kRequired, kAny, "", "name of the task"},
-    {"task", "kind", text, "", kRequired, kAny, "emittance", "`emittance`: the level of every fixture"},
+    {"task", "kind", text, "", kRequired, kAny, "emittance, placement",
+     "`emittance`: the level of every fixture; `placement`: where further lights should hang, and their levels"},
+    {"task", "luminaire", text, "", kNone, kAny, "",
+     "name of the `[[luminaire]]` to place (only with kind `placement`, as all keys below; required there)"},
+    {"task", "lights", whole_number, "", kNone, kLights, "", "how many; left out, as few as will do"},
+    {"task", "max_lights", whole_number, "", "20", kLights, "", "most of them, when `lights` is left out"},
+    {"task", "error_wanted", number, "", "0.001", kShare, "",
+     "normalised error at which the search ends: root mean square of what is missing over that of the goals"},
+    {"task",
+     "improvement",
+     number,
+     "",
+     "0.05",
+     {0, 1, false, true},
+     "",
+     "share of the error that one more light must take away to be worth hanging, when `lights` is left out"},
+    {"task", "method", text, "", R"("luxrig")", kAny, "luxrig",
+     "how places are searched: one light after the other, all refined together, taken out and put back"},
+    {"task", "indirect", yes_no, "", "true", kAny, "",
+     "whether the search counts reflected light, too, which takes longer; predicted lux always do"},
+    {"task", "fixtures", text, "", R"("as-set")", kAny, "as-set, off, full",
+     "what the rig's own fixtures do meanwhile: what the tasks before this one have set (dark, where none has), dark, "
+     "or the most they may give"},
+    {"task",
+     "seconds",
+     number,
+     "s",
+     kNone,
+     {0, 86400, true},
+     "",
+     "ends the search after this time with the best so far; left out, after a fixed amount of work, so that the result "
+     "does not depend on the machine"},
+
+    {"mounting", "box_m", box, "m", kNone, kPosition, "",
+     "two opposite corners of a box that lights stay in; left out, the scene's bounding box"},
+    {"mounting", "surfaces", texts, "", "[]", kAny, "",
+     "materials or scene objects that lights hang off, by name; `*` stands for any letters, `?` for one; none: "
+     "anywhere in the air"},
+    {"mounting",
+     "offset_m",
+     span2,
+     "m",
+     "[0.05, 0.15]",
+     {0.001, 1000},
+     "",
+     "least and largest distance of a light's middle from those surfaces, on both of their sides (only with "
+     "`surfaces`)"},
+    {"mounting",
+     "clearance_m",
+     number,
+     "m",
+     "0.1",
+     {0, 1000},
+     "",
+     "least distance of a light's middle from all (other) surfaces"},
+    {"mounting",
+     "spacing_m",
+     number,
+     "m",
+     kNone,
+     {0.001, 1000},
+     "",
+     "of the lattice of places that are tried first; lights then move freely. Left out, about 20 000 places in the "
+     "air, 5 000 off surfaces; at most 1 000 000"},
 
     {"limits", "max_level", number, "", "1", kShare, "", "most that any fixture may ever give, of its rated flux"},
     {"limits",
@@ -320,9 +387,10 @@ std::string range_text(const KeySpec& spec) {
   };
   const bool low = std::isfinite(b.min), high = std::isfinite(b.max);
   if (!low && !high) return "";
-  return fmt::format("{}{}{}{}{}", low && b.above_min ? "above " : "", low ? plain(b.min) : "",
-                     low && high ? (b.below_max ? " to below " : " to ") : "", high ? plain(b.max) : "",
-                     spec.type == colour || spec.type == vector3 || spec.type == span2 ? ", each" : "");
+  return fmt::format(
+      "{}{}{}{}{}", low && b.above_min ? "above " : "", low ? plain(b.min) : "",
+      low && high ? (b.below_max ? " to below " : " to ") : "", high ? plain(b.max) : "",
+      spec.type == colour || spec.type == vector3 || spec.type == span2 || spec.type == box ? ", each" : "");
 }
 
 std::string_view type_text(ValueType type) {
@@ -342,6 +410,8 @@ std::string_view type_text(ValueType type) {
       return "[x, y, z]";
     case span2:
       return "[from, to]";
+    case box:
+      return "[[x, y, z], [x, y, z]]";
     case colour:
       return "number or [r, g, b]";
     case texts:

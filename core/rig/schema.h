@@ -18,6 +18,7 @@ enum class ValueType {
   yes_no,
   vector3,  ///< [x, y, z]
   span2,    ///< [from, to], from < to
+  box,      ///< [[x, y, z], [x, y, z]], two opposite corners
   colour,   ///< one number, or [r, g, b]
   texts     ///< list of text
 };

@@ -29,6 +29,8 @@ std::string example_of(const KeySpec& spec) {
       return fmt::format("write three numbers: {} = [0, 0, 1]", spec.key);
     case ValueType::span2:
       return fmt::format("write two numbers: {} = {}", spec.key, spec.fallback);
+    case ValueType::box:
+      return fmt::format("write two corners: {} = [[0, 0, 2], [5, 4, 3]]", spec.key);
     case ValueType::colour:
       return fmt::format("write one number or three: {0} = 0.5 or {0} = [0.5, 0.5, 0.5]", spec.key);
     case ValueType::texts:
@@ -206,18 +208,51 @@ bool Section::read(std::string_view key, Vec3& out) {
     out = Vec3::Constant(grey);
     return true;
   }
+  return three_numbers_from(k, *node, out);
+}
+
+bool Section::three_numbers_from(const KeySpec& spec, const Node& node, Vec3& out) {
+  const auto* list = std::get_if<NodeList>(&node.value);
   if (!list || list->size() != 3) {
-    problems_.add(node->place,
-                  list ? fmt::format("{} has {} entries", key, list->size())
-                       : fmt::format("{} must be {}, not {}", key, type_text(k.type), kind_of(*node)),
-                  example_of(k));
+    const std::string_view what = spec.type == ValueType::box ? "a corner of " : "";
+    problems_.add(node.place,
+                  list ? fmt::format("{}{} has {} entries", what, spec.key, list->size())
+                       : fmt::format("{}{} must be {}, not {}", what, spec.key,
+                                     what.empty() ? type_text(spec.type) : "[x, y, z]", kind_of(node)),
+                  example_of(spec));
     return false;
   }
   Vec3 v;
   bool good = true;
-  for (std::size_t i = 0; i < 3; ++i) good &= number_from(k, (*list)[i], v[static_cast<Eigen::Index>(i)]);
+  for (std::size_t i = 0; i < 3; ++i) good &= number_from(spec, (*list)[i], v[static_cast<Eigen::Index>(i)]);
   if (good) out = v;
   return good;
+}
+
+bool Section::read(std::string_view key, Eigen::AlignedBox3d& out) {
+  const KeySpec& k = spec(key);
+  LUXRIG_CHECK(k.type == ValueType::box, "{} is not a box", key);
+  const Node* node = value(k);
+  if (!node) return false;
+  const auto* list = std::get_if<NodeList>(&node->value);
+  if (!list || list->size() != 2) {
+    problems_.add(node->place,
+                  list ? fmt::format("{} has {} corners", key, list->size())
+                       : fmt::format("{} must be {}, not {}", key, type_text(k.type), kind_of(*node)),
+                  example_of(k));
+    return false;
+  }
+  Vec3 one, other;
+  const bool one_good = three_numbers_from(k, (*list)[0], one), other_good = three_numbers_from(k, (*list)[1], other);
+  if (!one_good || !other_good) return false;
+  const Eigen::AlignedBox3d box(one.cwiseMin(other), one.cwiseMax(other));
+  if (!(box.sizes().minCoeff() > 0)) {
+    problems_.add(node->place, fmt::format("{} has no volume", key),
+                  "give two opposite corners that differ in x, y and z");
+    return false;
+  }
+  out = box;
+  return true;
 }
 
 bool Section::read(std::string_view key, std::pair<double, double>& out) {

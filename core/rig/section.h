@@ -7,6 +7,7 @@
 /// Every read reports what is wrong with its value, once. Naming a key that the schema does not have, or reading it
 /// as another type, is a bug of the reader (asserted).
 
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -40,6 +41,8 @@ class Section {
   bool read(std::string_view key, std::string& out);
   bool read(std::string_view key, Vec3& out);  ///< vector3 or colour
   bool read(std::string_view key, std::pair<double, double>& out);
+  bool read(std::string_view key,
+            Eigen::AlignedBox3d& out);  ///< corners in any order; a box without volume is reported
   template <class T>
   bool read(std::string_view key, std::optional<T>& out) {
     T value{};
@@ -71,6 +74,7 @@ class Section {
   const Node* value(const KeySpec& spec);
   bool number_from(const KeySpec& spec, const Node& node, double& out);
   bool text_from(const KeySpec& spec, const Node& node, std::string& out);
+  bool three_numbers_from(const KeySpec& spec, const Node& node, Vec3& out);
   int choice(std::string_view key);
 
   const NodeTable& table_;

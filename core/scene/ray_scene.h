@@ -23,6 +23,12 @@ struct Hit {
   Vec3 normal_world;  ///< unit geometric normal, turned towards where the ray came from
 };
 
+struct NearestSurface {
+  double distance_m;
+  std::uint32_t triangle;
+  Vec3 position_world_m;  ///< on it
+};
+
 /// Immutable after construction; every query may be called from many threads at once. No ray passes a shared edge, but
 /// of rays that are aimed at a corner of three surfaces, which no sample is, about 1 in 10 000 does (Embree's
 /// rounding).
@@ -59,6 +65,11 @@ class RayScene {
   [[nodiscard]] bool surely_blocked(const Vec3& from_world_m, const Vec3& from_normal_world,
                                     std::span<const Vec3> corners_world_m, std::uint64_t& rays) const;
 
+  /// The surface nearest to a place, if there is one within so far (which may be infinite). Computed in double from
+  /// the triangles as they are held. of_triangles: one mark per triangle, others count as if not there; empty: all.
+  [[nodiscard]] std::optional<NearestSurface> nearest_surface(const Vec3& from_world_m, double within_m,
+                                                              std::span<const std::uint8_t> of_triangles = {}) const;
+
   /// Luminous reflectance and colour of a triangle's material.
   [[nodiscard]] const Material& material_of(std::uint32_t triangle) const;
 
@@ -74,6 +85,7 @@ class RayScene {
 
  private:
   struct State;
+  struct NearestQuery;
   std::unique_ptr<State> state_;
 };
 

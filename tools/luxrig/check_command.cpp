@@ -57,6 +57,14 @@ std::string daylight_text(const Daylight& daylight) {
                             deg_from_rad(std::asin(std::clamp(sun.z(), -1.0, 1.0))), sun.x(), sun.y());
 }
 
+std::string mounting_text(const MountingSpec& mounting) {
+  std::string text;
+  for (const auto& surface : mounting.surfaces) text += fmt::format("{}{}", text.empty() ? "" : ", ", surface.text);
+  text = text.empty() ? "in the air"
+                      : fmt::format("{:g} to {:g} m off {}", mounting.offset_min_m, mounting.offset_max_m, text);
+  return text + (mounting.box_world_m ? " within box_m" : "");
+}
+
 std::string place_text(const Vec3& p) { return fmt::format("{:.2f} {:.2f} {:.2f}", p.x(), p.y(), p.z()); }
 
 }  // namespace
@@ -106,9 +114,17 @@ int run_check(const CheckArguments& arguments) {
   for (const std::string& warning : scene.warnings) fmt::print("  warning    {}\n", warning);
   for (const Problem& note : rig.notes) fmt::print("  note       {}\n", note.text());
   if (rig.daylight) fmt::print("  daylight   {}\n", daylight_text(*rig.daylight));
-  fmt::print("  counts     {} luminaires, {} fixtures, {} buses, {} luxmeters, {} points, {} tasks\n\n",
+  fmt::print("  counts     {} luminaires, {} fixtures, {} buses, {} luxmeters, {} points, {} tasks\n",
              rig.luminaires.size(), rig.fixtures.size(), rig.buses.size(), rig.luxmeters.size(), rig.points.size(),
              rig.tasks.size());
+  for (const Task& task : rig.tasks) {
+    if (task.kind != TaskKind::placement) continue;
+    const PlacementSpec& p = task.placement;
+    fmt::print("  placement  {}: {} of {}, {}\n", task.name,
+               p.lights ? fmt::format("{}", *p.lights) : fmt::format("as few as will do, at most {},", p.max_lights),
+               rig.luminaires[p.luminaire].name, mounting_text(rig.mounting));
+  }
+  fmt::print("\n");
   Table materials({"material", ">luminous reflectance"});
   for (const Material& m : scene.materials) materials.row({m.name, fmt::format("{:.2f}", m.luminous_reflectance())});
   if (!scene.materials.empty()) fmt::print("{}\n", materials.text());

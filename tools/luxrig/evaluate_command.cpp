@@ -14,25 +14,25 @@ namespace {
 
 nlohmann::json array_of(const Vec3& v) { return nlohmann::json::array({v.x(), v.y(), v.z()}); }
 
-/// Levels from a plan, or all 1.
-Checked<std::vector<double>> wanted_levels(const EvaluateArguments& arguments, const Rig& rig) {
+/// Levels from a plan, whose placed lights are hung for it; or all 1.
+Checked<std::vector<double>> wanted_levels(const EvaluateArguments& arguments, Rig& rig) {
   if (!arguments.levels_plan) return std::vector<double>(rig.fixtures.size(), 1.0);
   auto text = read_file(*arguments.levels_plan);
   if (!text) return tl::unexpected(std::move(text.error()));
   const auto plan = plan_from_json(*text, arguments.levels_plan->string());
   if (!plan) return tl::unexpected(plan.error());
-  return levels_for(*plan, rig, arguments.levels_plan->string());
+  return levels_when_hung(*plan, rig, arguments.levels_plan->string());
 }
 
 }  // namespace
 
 int run_evaluate(const EvaluateArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
-  const auto session = open_session(arguments.rig);
+  auto session = open_session(arguments.rig);
   if (!session) return report(session.error());
-  const Rig& rig = session->rig;
-  const auto levels = wanted_levels(arguments, rig);
+  const auto levels = wanted_levels(arguments, session->rig);
   if (!levels) return report(levels.error());
+  const Rig& rig = session->rig;
 
   ComputeOptions compute = arguments.compute;
   compute.watch = {stop_on_signals(), progress_line("evaluating")};

@@ -26,7 +26,8 @@ int refuse(const std::vector<Problem>& problems) {
   return 2;
 }
 
-Checked<std::vector<double>> levels_of(const RenderOptions& options, const Rig& rig) {
+/// Those of a plan, whose placed lights are hung for it; or each fixture's highest.
+Checked<std::vector<double>> levels_of(const RenderOptions& options, Rig& rig) {
   if (!options.plan) {
     std::vector<double> levels;
     for (const Fixture& fixture : rig.fixtures) levels.push_back(std::min(fixture.max_level, rig.limits.max_level));
@@ -39,7 +40,7 @@ Checked<std::vector<double>> levels_of(const RenderOptions& options, const Rig& 
     return tl::unexpected(std::vector{Problem{options.plan->string(), 0, 0, "cannot be read", "name a plan file"}});
   const auto plan = plan_from_json(text.str(), options.plan->string());
   if (!plan) return tl::unexpected(plan.error());
-  return levels_for(*plan, rig, options.plan->string());
+  return levels_when_hung(*plan, rig, options.plan->string());
 }
 
 /// Share of `wanted_m` in the picture with nothing in front; a wish seen from nearby or behind does not count.
@@ -113,7 +114,7 @@ Camera automatic_camera(const RayScene& scene, const Rig& rig, int width_px, int
 }
 
 int run_render(const RenderOptions& options) {
-  const auto rig = load_rig(options.rig);
+  auto rig = load_rig(options.rig);
   if (!rig) return refuse(rig.error());
   const auto levels = levels_of(options, *rig);
   if (!levels) return refuse(levels.error());

@@ -20,7 +20,7 @@ struct Session {
   std::unique_ptr<RayScene> rays;
 };
 
-/// Reads and checks everything: rig, photometry, buses, meshes. All problems, or a Session.
+/// Reads and checks everything: rig, photometry, buses, meshes, where lights may hang. All problems, or a Session.
 [[nodiscard]] Checked<Session> open_session(const std::filesystem::path& rig_path);
 
 enum class Model { automatic, direct, gather, path, cache };
@@ -44,10 +44,11 @@ struct ModelUsed {
                                                         const std::vector<double>& levels = {},
                                                         ModelUsed* used = nullptr);
 
-/// Does what the rig's tasks ask, on a transport made by compute_transport. Goals and limits count all light, daylight
-/// too. Cause::invalid when daylight alone is above a limit: no level of any fixture could keep it.
-[[nodiscard]] Result<Plan> solve_tasks(const Session& session, const TransportMatrix& transport,
-                                       const ComputeOptions& options);
+/// The same for a rig in a scene, with lights hung that the session's rig does not have.
+[[nodiscard]] Result<TransportMatrix> compute_transport(const Rig& rig, const Scene& scene, const RayScene& rays,
+                                                        const ComputeOptions& options,
+                                                        const std::vector<double>& levels = {},
+                                                        ModelUsed* used = nullptr);
 
 /// The controller's share of a transport.
 [[nodiscard]] LightModel light_model(const Rig& rig, const TransportMatrix& transport);

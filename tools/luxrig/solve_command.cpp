@@ -1,12 +1,58 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 
 #include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
+#include "tools/luxrig/solve_tasks.h"
 #include "tools/luxrig/table.h"
 
 namespace luxrig {
+namespace {
+
+std::string percent(double share) { return fmt::format("{:.1f} %", 100 * share); }
+
+/// What the last task to set fixtures has set them to.
+void print_levels(const PlannedTask& task) {
+  Table lights({"fixture", "luminaire", ">level", ">lumens"});
+  for (const PlannedLight& light : task.lights)
+    lights.row({light.name, light.luminaire, percent(light.level), fmt::format("{:.0f}", light.lumens)});
+  fmt::print("{}\n", lights.text());
+}
+
+void print_placement(const PlannedTask& task, const PlacementSpec& spec) {
+  if (task.lights.empty()) {
+    fmt::print("{}: every goal is met without a further light\n\n", task.name);
+    return;
+  }
+  Table lights({"hang", "luminaire", ">x m", ">y m", ">z m", "aim", ">level", ">lumens"});
+  std::size_t dark = 0;
+  for (const PlannedLight& light : task.lights) {
+    const Vec3& at = light.position_world_m;
+    std::string aim = "down";
+    if (light.aim_world_m)
+      aim = fmt::format("{:.2f} {:.2f} {:.2f}", light.aim_world_m->x(), light.aim_world_m->y(), light.aim_world_m->z());
+    lights.row({light.name, light.luminaire, fmt::format("{:.3f}", at.x()), fmt::format("{:.3f}", at.y()),
+                fmt::format("{:.3f}", at.z()), aim, percent(light.level), fmt::format("{:.0f}", light.lumens)});
+    dark += light.level > 0 ? 0 : 1;
+  }
+  fmt::print("{}\n", lights.text());
+  if (dark > 0) fmt::print("{} of them would give no light: leave them out\n", dark);
+  if (!spec.lights) {
+    std::string tried;
+    for (const PlannedNumber& number : task.numbers)
+      tried += fmt::format("{}{}: {}", tried.empty() ? "" : ", ", number.lights, percent(number.normalised_error));
+    fmt::print("lights and what they leave of the error, at any flux: {}\n", tried);
+  }
+  fmt::print(
+      "{} hang{} nowhere yet: render and evaluate show the plan. To run it, hang each at its place, patch it, and add "
+      "it "
+      "to the rig as a [[fixture]] of its name\n\n",
+      task.lights.size() == 1 ? "it" : "they", task.lights.size() == 1 ? "s" : "");
+}
+
+}  // namespace
 
 int run_solve(const SolveArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
@@ -19,6 +65,7 @@ int run_solve(const SolveArguments& arguments) {
   compute.watch.progress = nullptr;
   auto plan = solve_tasks(*session, *transport, compute);
   if (!plan) return report(plan.error());
+  if (stop_on_signals().stop_requested()) fmt::print(stderr, "stopped: this is the best so far\n");
   plan->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
   if (arguments.output) {
@@ -30,11 +77,6 @@ int run_solve(const SolveArguments& arguments) {
   if (arguments.json) {
     fmt::print("{}\n", to_json(*plan));
     return kExitOk;
-  }
-  Table lights({"fixture", "luminaire", ">level", ">lumens"});
-  for (const PlannedLight& light : plan->tasks.empty() ? std::vector<PlannedLight>{} : plan->tasks.back().lights) {
-    lights.row(
-        {light.name, light.luminaire, fmt::format("{:.1f} %", 100 * light.level), fmt::format("{:.0f}", light.lumens)});
   }
   std::vector<std::string> heads = {"point", ">goal lx", ">lux", ">± se", ">error", ">max lx", "why"};
   if (session->rig.daylight) heads.insert(heads.begin() + 4, ">daylight");
@@ -53,7 +95,12 @@ int run_solve(const SolveArguments& arguments) {
     if (p.daylight_lux) cells.insert(cells.begin() + 4, fmt::format("{:.1f}", *p.daylight_lux));
     points.row(std::move(cells));
   }
-  fmt::print("{}\n{}\n", lights.text(), points.text());
+  const auto last_levels = std::find_if(plan->tasks.rbegin(), plan->tasks.rend(),
+                                        [](const PlannedTask& task) { return task.kind == "emittance"; });
+  if (last_levels != plan->tasks.rend()) print_levels(*last_levels);
+  for (std::size_t t = 0; t < plan->tasks.size(); ++t)
+    if (plan->tasks[t].kind == "placement") print_placement(plan->tasks[t], session->rig.tasks[t].placement);
+  fmt::print("{}\n", points.text());
   for (const PlannedTask& task : plan->tasks) {
     fmt::print("{} ({}): normalised error {:.2f} %, {} iterations, {:.1f} ms\n", task.name, task.kind,
                100 * task.normalised_error, task.iterations, 1000 * task.seconds);

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <thread>
 
 #include "core/parallel.h"
 #include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
+#include "tools/luxrig/solve_tasks.h"
 #include "tools/luxrigd/daemon.h"
 #include "tools/luxrigd/run_report.h"
 #include "tools/luxrigd/scheduling.h"
@@ -55,6 +57,13 @@ int run_rig(const RunArguments& arguments) {
   const auto session = open_session(arguments.rig);
   if (!session) return report(session.error());
   const Rig& rig = session->rig;
+  const bool places = std::any_of(rig.tasks.begin(), rig.tasks.end(),
+                                  [](const Task& task) { return task.kind == TaskKind::placement; });
+  if (rig.fixtures.empty() && places) {
+    return report(std::vector<Problem>{
+        {rig.file.string(), 1, 1, "nothing hangs in this rig yet: it has tasks that place lights, and no [[fixture]]",
+         "have luxrig solve place them, hang and patch them, and write a [[fixture]] for each"}});
+  }
   RunReport say(rig, process_start);
   say.say(fmt::format("{}: {} triangles, {} fixtures, {} points, {} luxmeters", rig.name,
                       session->scene.triangles.size(), rig.fixtures.size(), rig.points.size(), rig.luxmeters.size()));
@@ -93,9 +102,14 @@ int run_rig(const RunArguments& arguments) {
     if (!read) return report(read.error());
     plan = std::move(*read);
   } else {
-    auto solved = solve_tasks(*session, *transport, compute);
+    auto solved = solve_levels(*session, *transport, compute);
     if (!solved) return report(solved.error());
     plan = std::move(*solved);
+    for (const Task& task : rig.tasks) {
+      if (task.kind == TaskKind::placement)
+        say.say(fmt::format("task {}: left out, since it places lights that do not hang yet: luxrig solve does it",
+                            task.name));
+    }
     for (const PlannedTask& task : plan->tasks) {
       say.say(fmt::format("task {}: normalised error {:.2f} %, {} iterations, {:.1f} ms", task.name,
                           100 * task.normalised_error, task.iterations, 1000 * task.seconds));

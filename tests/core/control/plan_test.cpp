@@ -287,5 +287,99 @@ TEST(Plan, IsRefusedForAnotherRigOrWithLevelsThatTheRigCannotGive) {
   EXPECT_TRUE(levels_for(plan_for_two(0.4, 0.4), limited, "plan.json"));
 }
 
+/// "left" and "right" at these levels, and a bulb that hangs nowhere yet.
+Plan plan_that_places() {
+  Plan plan = plan_for_two(0.25, 0.5);
+  PlannedLight placed = light("more 1", 0.75);
+  placed.luminaire = "bulb";
+  placed.position_world_m = Vec3(1, 2, 2.5);
+  placed.aim_world_m = Vec3(1, 3, 2.5);
+  plan.tasks.push_back({.name = "more", .kind = "placement", .lights = {placed}});
+  plan.tasks.back().fixtures = {light("left", 0.25), light("right", 0)};
+  plan.tasks.back().numbers = {{1, 0.5}, {2, 0.25}};
+  return plan;
+}
+
+Rig rig_with_a_bulb() {
+  Rig rig = two_fixture_rig();
+  rig.buses.resize(1);
+  rig.luminaires.resize(2);
+  rig.luminaires[1].name = "bulb";
+  return rig;
+}
+
+TEST(Plan, KeepsWhatAPlacementFound) {
+  const Plan plan = plan_that_places();
+  const auto read = plan_from_json(to_json(plan), "plan.json");
+  ASSERT_TRUE(read);
+  expect_same(plan, *read);
+  ASSERT_EQ(read->tasks[1].fixtures.size(), 2u);
+  EXPECT_EQ(read->tasks[1].fixtures[0].name, "left");
+  EXPECT_EQ(read->tasks[1].fixtures[0].level, 0.25);
+  ASSERT_EQ(read->tasks[1].numbers.size(), 2u);
+  EXPECT_EQ(read->tasks[1].numbers[1].lights, 2);
+  EXPECT_EQ(read->tasks[1].numbers[1].normalised_error, 0.25);
+}
+
+TEST(Plan, WithLightsThatDoNotHangYetIsRefusedAndSaysWhatToDo) {
+  const auto levels = levels_for(plan_that_places(), rig_with_a_bulb(), "plan.json");
+  ASSERT_FALSE(levels);
+  ASSERT_EQ(levels.error().size(), 1u);
+  EXPECT_EQ(levels.error()[0].what, "/tasks/1/lights/0/name: light \"more 1\" does not hang yet");
+  for (const char* part : {"hang a bulb at [1.000, 2.000, 2.500]", "[[fixture]]", "\"more 1\""})
+    EXPECT_NE(levels.error()[0].mend.find(part), std::string::npos) << levels.error()[0].mend;
+}
+
+TEST(Plan, SetsAPlacedLightOnceItHangs) {
+  Rig rig = rig_with_a_bulb();
+  rig.fixtures.push_back(rig.fixtures[0]);
+  rig.fixtures[2].name = "more 1";
+  const auto levels = levels_for(plan_that_places(), rig, "plan.json");
+  ASSERT_TRUE(levels);
+  EXPECT_EQ(*levels, (std::vector<double>{0.25, 0, 0.75})) << "fixtures as they were meanwhile";
+  const auto in_model = levels_when_hung(plan_that_places(), rig, "plan.json");
+  ASSERT_TRUE(in_model);
+  EXPECT_EQ(rig.fixtures.size(), 3u) << "nothing is hung twice";
+}
+
+TEST(Plan, HangsPlacedLightsInTheModel) {
+  Rig rig = rig_with_a_bulb();
+  const auto levels = levels_when_hung(plan_that_places(), rig, "plan.json");
+  ASSERT_TRUE(levels);
+  EXPECT_EQ(*levels, (std::vector<double>{0.25, 0, 0.75}));
+  ASSERT_EQ(rig.fixtures.size(), 3u);
+  const Fixture& hung = rig.fixtures[2];
+  EXPECT_EQ(hung.name, "more 1");
+  EXPECT_EQ(hung.luminaire, 1u);
+  EXPECT_EQ(hung.bus, rig.buses.size()) << "it has none";
+  const Pose pose = hung.world_from_lamp();
+  EXPECT_EQ(pose.translation_m, Vec3(1, 2, 2.5));
+  EXPECT_LE((pose.rotation * Vec3(0, 0, -1) - Vec3(0, 1, 0)).norm(), 1e-12);
+}
+
+TEST(Plan, RefusesToHangWhatItCannot) {
+  Plan unknown = plan_that_places(), nowhere = plan_that_places(), bright = plan_that_places(),
+       itself = plan_that_places(), levels_task = plan_that_places();
+  unknown.tasks[1].lights[0].luminaire = "blub";
+  nowhere.tasks[1].lights[0].position_world_m.setConstant(std::nan(""));
+  bright.tasks[1].lights[0].level = 1.2;
+  itself.tasks[1].lights[0].aim_world_m = itself.tasks[1].lights[0].position_world_m;
+  levels_task.tasks[1].kind = "emittance";
+  const struct {
+    Plan plan;
+    const char* says;
+  } cases[] = {{unknown, "no luminaire \"blub\""},
+               {nowhere, "/tasks/1/lights/0/position"},
+               {bright, "/tasks/1/lights/0/level"},
+               {itself, "/tasks/1/lights/0/aim"},
+               {levels_task, "the rig has no fixture \"more 1\""}};
+  for (const auto& bad : cases) {
+    Rig rig = rig_with_a_bulb();
+    const auto levels = levels_when_hung(bad.plan, rig, "plan.json");
+    ASSERT_FALSE(levels) << bad.says;
+    EXPECT_NE(levels.error()[0].what.find(bad.says), std::string::npos) << levels.error()[0].text();
+  }
+}
+
 }  // namespace
 }  // namespace luxrig

@@ -1,8 +1,10 @@
 // The commands' contract: names, JSON keys, exit codes.
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <regex>
 
+#include "core/geometry.h"
 #include "tests/tools/programs/live_rig.h"
 
 namespace luxrig::testing {
@@ -98,6 +100,102 @@ TEST(Commands, ALimitThatDaylightAloneBreaksIsSaidAndNotSolved) {
   EXPECT_NE(ran.code, 0);
   EXPECT_NE(ran.output.find("point \"print\" has"), std::string::npos) << ran.output;
   EXPECT_NE(ran.output.find("of daylight alone, its limit is 60 lx"), std::string::npos) << ran.output;
+}
+
+/// Solves tests/rigs/hang to a plan; its JSON.
+json places_found(const std::filesystem::path& plan, const std::vector<std::string>& further = {}) {
+  std::vector<std::string> words = {program("luxrig"), "solve", source("tests/rigs/hang"), "-o", plan.string()};
+  words.insert(words.end(), further.begin(), further.end());
+  const Ran ran = luxrig::testing::run(words);
+  EXPECT_EQ(ran.code, 0) << ran.output;
+  return json::parse(text_of(plan), nullptr, false);
+}
+
+TEST(Commands, SolvePlacesLightsAndEvaluateAndRenderShowThem) {
+  const Folder folder;
+  const auto plan = folder / "plan.json";
+  const json out = places_found(plan);
+  ASSERT_TRUE(out.is_object());
+  const json& task = out["tasks"][0];
+  EXPECT_EQ(task["kind"], "placement");
+  for (const char* key : {"name", "kind", "normalised_error", "iterations", "seconds", "lights"})
+    EXPECT_TRUE(task.contains(key)) << key;
+  EXPECT_LE(task["normalised_error"].get<double>(), 0.002);
+  ASSERT_EQ(task["lights"].size(), 3u);
+  // The lights that the goals were made with: tests/rigs/hang.
+  const struct {
+    Vec3 at;
+    double level;
+  } known[] = {{{-1.2, -0.8, 2.1}, 0.9}, {{1.1, 0.7, 1.9}, 0.6}, {{0.3, -0.4, 2.2}, 0.4}};
+  for (const auto& lamp : known) {
+    double nearest_m = 10, level = 0;
+    for (const json& light : task["lights"]) {
+      for (const char* key : {"name", "luminaire", "position", "level", "lumens"}) EXPECT_TRUE(light.contains(key));
+      const auto p = light["position"].get<std::vector<double>>();
+      const double off_m = (Vec3(p[0], p[1], p[2]) - lamp.at).norm();
+      if (off_m < nearest_m) level = light["level"].get<double>();
+      nearest_m = std::min(nearest_m, off_m);
+    }
+    EXPECT_LE(nearest_m, 0.03);
+    EXPECT_NEAR(level, lamp.level, 0.02 * lamp.level);
+  }
+  const Ran lit = luxrig::testing::run(
+      {program("luxrig"), "evaluate", source("tests/rigs/hang"), "--levels", plan.string(), "--json"});
+  ASSERT_EQ(lit.code, 0) << lit.output;
+  const json points = json_of(lit)["points"];
+  ASSERT_EQ(points.size(), 20u);
+  for (const json& point : points)
+    EXPECT_NEAR(point["lux"].get<double>(), point["goal_lux"].get<double>(), 0.01 * point["goal_lux"].get<double>());
+  const Ran picture =
+      luxrig::testing::run({program("luxrig"), "render", source("tests/rigs/hang"), plan.string(), "-o",
+                            (folder / "hang.png").string(), "--passes", "1", "--width", "32", "--height", "32"});
+  EXPECT_EQ(picture.code, 0) << picture.output;
+}
+
+TEST(Commands, PlacesDoNotDependOnTheThreads) {
+  const Folder folder;
+  const auto lights = [&](const char* threads) {
+    return places_found(folder / "plan.json", {"--threads", threads})["tasks"][0]["lights"].dump();
+  };
+  EXPECT_EQ(lights("1"), lights("3"));
+}
+
+TEST(Commands, ARigWhoseLightsAreYetToBeHungCannotRun) {
+  const Ran ran = luxrig::testing::run({program("luxrig"), "run", source("tests/rigs/hang"), "--sim", "--once"});
+  EXPECT_EQ(ran.code, 2);
+  EXPECT_NE(ran.output.find("nothing hangs in this rig yet"), std::string::npos) << ran.output;
+}
+
+TEST(Commands, AnInterruptEndsASearchForPlacesWithTheBestSoFar) {
+  const Folder folder;
+  std::filesystem::copy(source("tests/rigs/hang"), folder / "hang");
+  std::string text = text_of(folder / "hang/rig.toml");
+  // Two lights cannot do what three did: the search goes on until its work is done.
+  text.replace(text.find("lights = 3"), 10, "lights = 2");
+  std::ofstream(folder / "hang/rig.toml") << text;
+  const auto plan = folder / "plan.json";
+  Process solve({program("luxrig"), "solve", (folder / "hang").string(), "-o", plan.string()}, folder / "log");
+  std::this_thread::sleep_for(1s);
+  solve.signal(SIGINT);
+  ASSERT_EQ(solve.wait(30s), 0) << solve.output();
+  const json out = json::parse(text_of(plan), nullptr, false);
+  ASSERT_TRUE(out.is_object());
+  EXPECT_EQ(out["tasks"][0]["lights"].size(), 2u);
+}
+
+TEST(Commands, ASurfaceThatIsNotThereIsRefusedWithItsPlace) {
+  const Folder folder;
+  std::filesystem::copy(source("tests/rigs/hang"), folder / "hang");
+  std::string text = text_of(folder / "hang/rig.toml");
+  text.replace(text.find("spacing_m = 0.25"), 16, "surfaces = [\"rome\"]");
+  std::ofstream(folder / "hang/rig.toml") << text;
+  for (const char* command : {"check", "solve"}) {
+    const Ran ran = luxrig::testing::run({program("luxrig"), command, (folder / "hang").string()});
+    EXPECT_EQ(ran.code, 2);
+    EXPECT_TRUE(std::regex_search(ran.output, std::regex("rig.toml:[0-9]+:13: surfaces \"rome\" fits no material or "
+                                                         "object of the scene: did you mean \"room\"")))
+        << ran.output;
+  }
 }
 
 TEST(Commands, SameSeedSameBytesWhateverTheThreads) {

@@ -1,0 +1,158 @@
+// A plan's levels for a rig, with or without the lights that it wants hung.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+
+#include "core/control/plan.h"
+#include "core/rig/nearest.h"
+#include "core/rig/plain_text.h"
+
+namespace luxrig {
+namespace {
+
+constexpr double kUnset = std::numeric_limits<double>::quiet_NaN();
+
+class PlanLevels {
+ public:
+  PlanLevels(const Plan& plan, const std::string& file_name) : plan_(plan), file_name_(file_name) {}
+
+  /// With `hang` null, a light that is no fixture is a problem.
+  Checked<std::vector<double>> read(const Rig& rig, Rig* hang) {
+    if (plan_.rig != rig.name) {
+      problem(fmt::format("/rig: this plan is for rig \"{}\", not for \"{}\"", plan_.rig, rig.name),
+              "give a plan solved for this rig");
+      return tl::unexpected(std::move(problems_));
+    }
+    for (std::size_t i = 0; i < rig.fixtures.size(); ++i) index_of_.emplace(rig.fixtures[i].name, i);
+    std::vector<double> levels(rig.fixtures.size(), kUnset);
+    std::vector<bool> named(rig.fixtures.size(), false);
+    const auto set = [&](std::size_t fixture, double level) {
+      levels.resize(rig.fixtures.size(), kUnset);
+      named.resize(rig.fixtures.size(), false);
+      levels[fixture] = level;
+      named[fixture] = true;
+    };
+    for (std::size_t t = 0; t < plan_.tasks.size(); ++t) {
+      const PlannedTask& task = plan_.tasks[t];
+      const bool places = task.kind == "placement";
+      each(rig, task.fixtures, fmt::format("/tasks/{}/fixtures", t), nullptr, false, set);
+      each(rig, task.lights, fmt::format("/tasks/{}/lights", t), places ? hang : nullptr, places, set);
+    }
+    for (std::size_t i = 0; i < rig.fixtures.size(); ++i) {
+      if (named.size() > i && named[i]) continue;
+      problem(fmt::format("/tasks: no task says what fixture \"{}\" shall do", rig.fixtures[i].name),
+              "add it with a level, or solve again");
+    }
+    if (!problems_.empty()) return tl::unexpected(std::move(problems_));
+    return levels;
+  }
+
+ private:
+  void problem(std::string what, std::string mend) {
+    // A thousand wrong entries help nobody more than the first fifty.
+    if (problems_.size() < 50) problems_.push_back({file_name_, 0, 0, std::move(what), std::move(mend)});
+  }
+
+  template <class Set>
+  void each(const Rig& rig, const std::vector<PlannedLight>& lights, const std::string& list, Rig* hang, bool placed,
+            const Set& set) {
+    std::set<std::size_t> named_here;
+    for (std::size_t l = 0; l < lights.size(); ++l) {
+      const PlannedLight& light = lights[l];
+      const std::string path = fmt::format("{}/{}", list, l);
+      auto found = index_of_.find(light.name);
+      if (found == index_of_.end() && hang && hung(*hang, light, path)) found = index_of_.find(light.name);
+      if (found == index_of_.end()) {
+        if (!hang) unknown(light, path, placed);
+        continue;
+      }
+      const std::size_t i = found->second;
+      if (!named_here.insert(i).second) {
+        problem(fmt::format("{}/name: fixture \"{}\" stands twice in this task", path, light.name),
+                "keep one of the two");
+      }
+      const double most = std::min(rig.fixtures[i].max_level, rig.limits.max_level);
+      if (!(light.level >= 0 && light.level <= most)) {
+        problem(fmt::format("{}/level: {} for fixture \"{}\" is outside 0…{}", path, light.level, light.name, most),
+                "give a level within the fixture's limits, or solve again");
+      }
+      set(i, light.level);
+    }
+  }
+
+  void unknown(const PlannedLight& light, const std::string& path, bool placed) {
+    if (!placed || !light.position_world_m.allFinite()) {
+      return problem(fmt::format("{}/name: the rig has no fixture \"{}\"", path, light.name),
+                     "name a fixture of the rig, or solve again");
+    }
+    const Vec3& at = light.position_world_m;
+    problem(
+        fmt::format("{}/name: light \"{}\" does not hang yet", path, light.name),
+        fmt::format("hang a {} at [{:.3f}, {:.3f}, {:.3f}], patch it, and add it to the rig as a [[fixture]] called "
+                    "\"{}\" (until then, luxrig render and luxrig evaluate show this plan)",
+                    light.luminaire, at.x(), at.y(), at.z(), light.name));
+  }
+
+  bool hung(Rig& rig, const PlannedLight& light, const std::string& path) {
+    std::vector<std::string_view> known;
+    for (const Luminaire& luminaire : rig.luminaires) known.push_back(luminaire.name);
+    const auto at = std::find(known.begin(), known.end(), light.luminaire);
+    if (at == known.end()) {
+      problem(fmt::format("{}/luminaire: there is no luminaire {}", path, in_quotes(light.luminaire)),
+              mend_for_unknown(light.luminaire, known, "solve again"));
+      return false;
+    }
+    if (!light.position_world_m.allFinite()) {
+      problem(fmt::format("{}/position is missing, and the rig has no fixture {}", path, in_quotes(light.name)),
+              "say where it hangs, or solve again");
+      return false;
+    }
+    if (light.aim_world_m &&
+        !(light.aim_world_m->allFinite() && (*light.aim_world_m - light.position_world_m).norm() > 0)) {
+      problem(fmt::format("{}/aim: it looks at itself", path), "give a place elsewhere, or solve again");
+      return false;
+    }
+    index_of_.emplace(light.name, rig.fixtures.size());
+    rig.fixtures.push_back(hung_light(rig, light.name, static_cast<std::size_t>(at - known.begin()),
+                                      light.position_world_m, light.aim_world_m));
+    return true;
+  }
+
+  const Plan& plan_;
+  const std::string& file_name_;
+  std::map<std::string, std::size_t> index_of_;
+  std::vector<Problem> problems_;
+};
+
+}  // namespace
+
+Fixture hung_light(const Rig& rig, const std::string& name, std::size_t luminaire, const Vec3& position_world_m,
+                   const std::optional<Vec3>& aim_world_m) {
+  Fixture fixture;
+  fixture.name = name;
+  fixture.luminaire = luminaire;
+  fixture.world_from_mount.translation_m = position_world_m;
+  fixture.bus = rig.buses.size();
+  fixture.aim_world_m = aim_world_m;
+  if (aim_world_m) {
+    // It is hung so: no joint stops it.
+    const PanTiltRange any{-kPi, kPi, -kPi, kPi};
+    if (const auto joints = pan_tilt_towards(fixture.world_from_mount, *aim_world_m - position_world_m, any, {}))
+      fixture.joints = *joints;
+  }
+  return fixture;
+}
+
+Checked<std::vector<double>> levels_for(const Plan& plan, const Rig& rig, const std::string& file_name) {
+  return PlanLevels(plan, file_name).read(rig, nullptr);
+}
+
+Checked<std::vector<double>> levels_when_hung(const Plan& plan, Rig& rig, const std::string& file_name) {
+  return PlanLevels(plan, file_name).read(rig, &rig);
+}
+
+}  // namespace luxrig

@@ -1,0 +1,76 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "core/rig/rig_reader.h"
+
+namespace luxrig {
+namespace {
+
+constexpr std::array kOfPlacement = {"luminaire", "lights",   "max_lights", "error_wanted", "improvement",
+                                     "method",    "indirect", "fixtures",   "seconds"};
+
+}  // namespace
+
+void RigReader::read_placement(Section& s, PlacementSpec& placement) {
+  if (const auto luminaire = luminaires.read_reference(s, "luminaire")) placement.luminaire = *luminaire;
+  if (!s.has("luminaire")) s.require("luminaire", "which kind = \"placement\" needs");
+  s.read("lights", placement.lights);
+  if (s.has("lights")) {
+    for (const char* key : {"max_lights", "improvement"})
+      s.refuse(key, fmt::format("{} has no effect when the number of lights is given", key), "remove it, or lights");
+  }
+  s.read("max_lights", placement.max_lights);
+  s.read("error_wanted", placement.error_wanted);
+  s.read("improvement", placement.improvement);
+  s.read_choice("method", placement.method);
+  s.read("indirect", placement.indirect);
+  s.read_choice("fixtures", placement.fixtures);
+  s.read("seconds", placement.seconds);
+  if (std::none_of(rig.points.begin(), rig.points.end(), [](const Point& p) { return p.goal_lx && p.weight > 0; })) {
+    problems.add(s.place(), "there is nothing to place lights for: no point has a goal",
+                 "give each [[point]] that matters a goal_lx");
+  }
+}
+
+void RigReader::read_tasks() {
+  NameIndex tasks("task");
+  each(root, "task", [&](Section& s) {
+    Task task;
+    task.place = s.place();
+    if (s.read("name", task.name)) tasks.add(task.name, rig.tasks.size(), s.place_of("name"), problems);
+    if (s.read_choice("kind", task.kind)) {
+      if (task.kind == TaskKind::placement) {
+        read_placement(s, task.placement);
+      } else {
+        for (const char* key : kOfPlacement)
+          s.refuse(key, fmt::format("{} has no effect: only with kind = \"placement\"", key),
+                   "remove it, or change the kind");
+      }
+    }
+    rig.tasks.push_back(std::move(task));
+  });
+  if (rig.tasks.empty()) rig.tasks.push_back({"levels", TaskKind::emittance, {}, {}});
+}
+
+void RigReader::read_mounting() {
+  each(root, "mounting", [&](Section& s) {
+    MountingSpec& mounting = rig.mounting;
+    mounting.place = s.place();
+    s.read("box_m", mounting.box_world_m);
+    std::vector<std::pair<std::string, Place>> patterns;
+    const bool surfaces_known = s.read_texts("surfaces", patterns) || !s.has("surfaces");
+    for (auto& [text, place] : patterns) mounting.surfaces.push_back({std::move(text), place});
+    std::pair<double, double> offset_m{mounting.offset_min_m, mounting.offset_max_m};
+    s.read("offset_m", offset_m);
+    mounting.offset_min_m = offset_m.first;
+    mounting.offset_max_m = offset_m.second;
+    if (surfaces_known && patterns.empty())
+      s.refuse("offset_m", "offset_m has no effect without surfaces", "add surfaces = [\"…\"], or remove it");
+    s.read("clearance_m", mounting.clearance_m);
+    s.read("spacing_m", mounting.spacing_m);
+  });
+}
+
+}  // namespace luxrig

@@ -1,0 +1,68 @@
+#pragma once
+/// Where a luminaire may hang in a scene: `[mounting]` of the rig file, made ready to be asked about many places.
+///
+/// A place may be hung at when it is
+///   within the box, or the scene's bounds without one;
+///   with surfaces: within the offsets of the nearest of them, and `clearance_m` or more from all others;
+///   without: `clearance_m` or more from everything.
+/// Distances are of the luminaire's middle. Nothing is said of which side of a wall a place is on: behind closed
+/// surfaces a light lights no point, and candidates there cost nothing (core/transport/candidates/air_regions.h).
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/geometry.h"
+#include "core/result.h"
+#include "core/rig/rig.h"
+#include "core/scene/ray_scene.h"
+#include "core/scene/scene.h"
+
+namespace luxrig {
+
+class Mounting {
+ public:
+  static constexpr std::size_t kMostPlaces = 1'000'000;
+
+  /// scene, rays   the same geometry; `rays` must outlive it
+  /// rig_file      for problems: a pattern that fits no material or object, or nothing that bounds the places
+  [[nodiscard]] static Checked<Mounting> make(const MountingSpec& spec, const std::filesystem::path& rig_file,
+                                              const Scene& scene, const RayScene& rays);
+
+  [[nodiscard]] bool may_hang(const Vec3& place_world_m) const;
+
+  struct Snapped {
+    Vec3 place_world_m;
+    /// d place / d wanted: the identity within the mounting, else without the directions that box or offsets hold.
+    Mat3 per_wanted;
+  };
+  /// The place nearest to a wanted one where a light may hang, as far as box and offsets go; nothing when something
+  /// else stands too near there. Keeps a wanted place that is good as it is, to the last bit.
+  [[nodiscard]] std::optional<Snapped> snapped(const Vec3& wanted_world_m) const;
+
+  /// Places to try, evenly spread: a lattice in the box, or one laid on each of the surfaces and lifted off both of
+  /// its sides. All of them may be hung at. Always the same, whatever the threads.
+  /// Cause::invalid, with the figures, when the spacing makes more than kMostPlaces, or no place is left.
+  [[nodiscard]] Result<std::vector<Vec3>> candidates(int threads) const;
+
+  [[nodiscard]] const Eigen::AlignedBox3d& box_world_m() const { return box_world_m_; }
+
+ private:
+  Mounting() = default;
+  [[nodiscard]] bool clear_of_others(const Vec3& place_world_m) const;
+  [[nodiscard]] double default_spacing_m() const;
+  [[nodiscard]] double places_at(double spacing_m) const;
+  [[nodiscard]] std::vector<Vec3> places_in_air(double spacing_m) const;
+  [[nodiscard]] std::vector<Vec3> places_off_surfaces(double spacing_m) const;
+
+  using Triangle = std::array<Vec3, 3>;
+
+  MountingSpec spec_;
+  const RayScene* rays_ = nullptr;
+  Eigen::AlignedBox3d box_world_m_;
+  std::vector<std::uint8_t> is_surface_, is_other_;  ///< per triangle; empty without surfaces
+  std::vector<Triangle> surfaces_world_m_;
+};
+
+}  // namespace luxrig

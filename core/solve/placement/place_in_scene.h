@@ -1,0 +1,61 @@
+#pragma once
+/// A placement task done in a scene: candidates where lights may hang, their transport, the search, and how many lights
+/// are worth hanging.
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <vector>
+
+#include "core/result.h"
+#include "core/solve/placement/mounting.h"
+#include "core/solve/placement/placed_lights.h"
+#include "core/transport/evaluator.h"
+
+namespace luxrig {
+
+struct LightInScene {
+  Vec3 position_world_m = Vec3::Zero();
+  std::optional<Vec3> aim_world_m;  ///< a place it looks at; none: straight down
+  double level = 0;                 ///< emittance factor ≥ 0, not bounded by 1
+};
+
+struct PlaceInSceneOptions {
+  std::optional<std::size_t> lights;  ///< else as few as will do
+  std::size_t max_lights = 20;        ///< without `lights`
+  double error_wanted = 0.001;        ///< normalised, weighted (PlacedLights::error()), at which the search ends
+  double improvement = 0.05;          ///< without `lights`: share of the error that one more light must take away
+  bool indirect = true;
+  std::uint64_t seed = 1;
+  int threads = 0;       ///< 0 = one per core; the result does not depend on it
+  std::stop_token stop;  ///< ends the search with the best so far
+  /// Called from the calling thread when there is something better of so many lights.
+  std::function<void(std::size_t lights, double error)> better;
+};
+
+/// The best that was found with so many lights.
+struct LightsAndError {
+  std::size_t lights = 0;
+  double error = 0;
+};
+
+struct PlacedInScene {
+  std::vector<LightInScene> lights;
+  double error = 0;                     ///< of these lights, levels not bounded
+  std::vector<LightsAndError> numbers;  ///< that were tried, rising; one when the number was given
+  std::size_t candidates = 0, columns = 0;
+  bool stopped = false;  ///< before the search was at its end
+};
+
+/// luminaire   at rated flux, hung with its own rotation; a shape is taken as a point in its middle
+/// receivers   one per row of the goal
+/// Without a number, one light more is tried for as long as it is worth it; two are looked ahead, since some goals need
+/// lights in pairs.
+/// Cause::cancelled when stopped before any light was placed; Cause::invalid as Mounting::candidates and
+/// candidate_transport, and when no candidate lights any receiver.
+[[nodiscard]] Result<PlacedInScene> place_in_scene(const Scene& scene, const RayScene& rays, const Mounting& mounting,
+                                                   const Emitter& luminaire, std::span<const Receiver> receivers,
+                                                   const LightingGoal& goal, const PlaceInSceneOptions& options);
+
+}  // namespace luxrig
