@@ -9,7 +9,7 @@ namespace luxrig {
 namespace {
 
 constexpr std::array kOfPlacement = {"luminaire", "lights",   "max_lights", "error_wanted", "improvement",
-                                     "method",    "indirect", "fixtures",   "seconds"};
+                                     "method",    "indirect", "fixtures",   "seconds", "aimed"};
 
 }  // namespace
 
@@ -24,7 +24,11 @@ void RigReader::read_placement(Section& s, PlacementSpec& placement) {
   s.read("max_lights", placement.max_lights);
   s.read("error_wanted", placement.error_wanted);
   s.read("improvement", placement.improvement);
-  s.read_choice("method", placement.method);
+  if (s.read_choice("method", placement.method) && !s.has("lights") &&
+      (placement.method == PlacementSearch::gpk15 || placement.method == PlacementSearch::annealing))
+    s.refuse("method", fmt::format("{} does not choose how many lights", name_of(placement.method)),
+             "add lights = N, or choose another method");
+  s.read("aimed", placement.aimed);
   s.read("indirect", placement.indirect);
   s.read_choice("fixtures", placement.fixtures);
   s.read("seconds", placement.seconds);

@@ -162,7 +162,12 @@ struct Point {
   Place place;
 };
 
-enum class PlacementMethod { luxrig };
+enum class PlacementSearch { luxrig, gpk15, gp16, lin2013, annealing, pursuit };
+/// As core/solve/placement/placement_methods.h names them.
+[[nodiscard]] constexpr const char* name_of(PlacementSearch search) {
+  constexpr const char* kNames[] = {"luxrig", "gpk15", "gp16", "lin2013", "annealing", "pursuit"};
+  return kNames[static_cast<int>(search)];
+}
 
 /// What the rig's own fixtures do while lights are placed: what the tasks before have set (dark, where none has), dark,
 /// or all they may.
@@ -175,7 +180,8 @@ struct PlacementSpec {
   int max_lights = 20;          ///< without `lights`
   double error_wanted = 0.001;  ///< normalised error at which the search ends
   double improvement = 0.05;    ///< without `lights`: share of the error that one more light must take away
-  PlacementMethod method = PlacementMethod::luxrig;
+  PlacementSearch method = PlacementSearch::luxrig;
+  bool aimed = false;    ///< what it looks at is searched, too
   bool indirect = true;  ///< reflected light counts in the search
   FixturesMeanwhile fixtures = FixturesMeanwhile::as_set;
   std::optional<double> seconds;  ///< after which the search ends with the best so far

@@ -9,7 +9,7 @@
 
 #include "core/solve/placement/complement_search.h"
 #include "core/solve/placement/lattice.h"
-#include "core/solve/placement/scene_light.h"
+#include "core/solve/placement/search_space.h"
 #include "tools/bench/row_progress.h"
 #include "tools/bench/suites.h"
 #include "tools/bench/transport_candidates.h"
@@ -48,7 +48,7 @@ IndexCase index_case(const ColumnsView& columns, const MovableLight& light, cons
   while (of.chosen.size() < kIndexQueries) {
     PlacedLights more = of.chosen.back();
     const auto best = search.best(more, 1, 0);
-    if (best.empty() || !more.add(search.place_world_m(best.front().candidate))) break;
+    if (best.empty() || !more.add(search.pose(best.front().candidate))) break;
     of.chosen.push_back(std::move(more));
   }
   return of;
@@ -109,25 +109,19 @@ BenchRow index_row(const std::string& name, const char* method, double build_sec
 void add_index_rows(std::size_t points, int threads, std::vector<BenchRow>& rows) {
   const TransportCase one(make_eight_room_flat());
   const std::vector<Receiver> receivers = this_many_receivers(one, points);
-  const Emitter lumen{make_isotropic(1), {}};
-  IncrementalOptions direct_only;
-  direct_only.indirect = false;
-  direct_only.threads = threads;
-  const auto transport = IncrementalTransport::make(one.room.scene, one.rays, receivers, direct_only);
-  const SceneLight light(**transport, receivers, lumen, false);
-  const CandidateSet set{lattice_in(one.rays.bounds_world_m(), kIndexLattice_m), {lumen}};
-  CandidateOptions options;
-  options.indirect = false;
-  options.threads = threads;
-  const auto matrix = candidate_transport(one.room.scene, one.rays, receivers, set, options);
-  const CandidateColumns& got = matrix->matrix;
-  const ColumnsView columns(light.points(), got.begin, got.receiver, got.total_lux);
-  const LightingGoal goal{VectorXd::Constant(light.points(), kIndexGoal_lux), {}};
-  const std::string name = fmt::format("index-{}x{}", receivers.size(), set.positions_world_m.size());
+  const auto places_m = lattice_in(one.rays.bounds_world_m(), kIndexLattice_m);
+  SearchSpaceOptions of_space;
+  of_space.threads = threads;
+  const auto space =
+      SearchSpace::make(one.room.scene, one.rays, receivers, {make_isotropic(1), {}}, places_m, of_space);
+  const SceneLight& light = space->light();
+  const ColumnsView& columns = space->columns();
+  const LightingGoal goal{VectorXd::Constant(light.points(), kIndexGoal_lux)};
+  const std::string name = fmt::format("index-{}x{}", receivers.size(), places_m.size());
 
   std::unique_ptr<ComplementSearch> search;
   const double search_build =
-      timed([&] { search = std::make_unique<ComplementSearch>(columns, set.positions_world_m, goal); }).cpu;
+      timed([&] { search = std::make_unique<ComplementSearch>(columns, space->poses(), goal); }).cpu;
   const IndexCase of = index_case(columns, light, goal, *search);
   const VectorXd inverse_norm = of.norm.cwiseInverse();
 

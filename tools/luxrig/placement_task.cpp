@@ -7,6 +7,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdio>
+#include <limits>
 #include <mutex>
 #include <thread>
 
@@ -76,19 +77,26 @@ Result<PlacedInScene> search_places(const Rig& rig, const Scene& scene, const Ra
                                     const Task& task, const Eigen::VectorXd& fixed_lx, const ComputeOptions& options) {
   const PlacementSpec& spec = task.placement;
   std::vector<Receiver> receivers;
-  std::vector<double> missing_lx, weight;
+  std::vector<double> goal_lx, there_lx, weight, most_lx;
   for (std::size_t i = 0; i < rig.points.size(); ++i) {
     const Point& point = rig.points[i];
-    if (!point.goal_lx || !(point.weight > 0)) continue;
+    const bool wanted = point.goal_lx && point.weight > 0;
+    if (!wanted && !point.max_lx) continue;
+    const double is_lx = fixed_lx[static_cast<Eigen::Index>(i)];
     receivers.push_back({point.position_world_m, point.normal_world});
-    missing_lx.push_back(std::max(0.0, *point.goal_lx - fixed_lx[static_cast<Eigen::Index>(i)]));
-    weight.push_back(point.weight);
+    // What is there beyond a goal is not the placed lights' fault.
+    goal_lx.push_back(wanted ? *point.goal_lx : 0);
+    there_lx.push_back(wanted ? std::min(*point.goal_lx, is_lx) : is_lx);
+    weight.push_back(wanted ? point.weight : 0);
+    most_lx.push_back(point.max_lx.value_or(std::numeric_limits<double>::infinity()));
   }
   const auto vector = [](const std::vector<double>& values) {
     return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
   };
-  const LightingGoal goal{vector(missing_lx), vector(weight)};
-  if (!(goal.lux.maxCoeff() > 0)) return PlacedInScene{};
+  LightingGoal goal{vector(goal_lx), vector(weight)};
+  goal.fixed_lux = vector(there_lx);
+  goal.max_lux = vector(most_lx);
+  if (!(goal.weighted().maxCoeff() > 0)) return PlacedInScene{};
 
   SearchWatch watch(task.name, spec.seconds, options.watch.stop);
   PlaceInSceneOptions place;
@@ -96,6 +104,8 @@ Result<PlacedInScene> search_places(const Rig& rig, const Scene& scene, const Ra
   place.max_lights = static_cast<std::size_t>(spec.max_lights);
   place.error_wanted = spec.error_wanted;
   place.improvement = spec.improvement;
+  place.method = name_of(spec.method);
+  place.aimed = spec.aimed;
   place.indirect = spec.indirect && options.model != Model::direct;
   place.seed = options.seed;
   place.threads = options.threads;

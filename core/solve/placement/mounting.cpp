@@ -180,7 +180,7 @@ std::vector<Vec3> Mounting::places_off_surfaces(double spacing_m) const {
 }
 
 Result<std::vector<Vec3>> Mounting::candidates(int threads) const {
-  double spacing_m = spec_.spacing_m.value_or(default_spacing_m());
+  double spacing_m = this->spacing_m();
   const double count = places_at(spacing_m);
   if (count > static_cast<double>(kMostPlaces)) {
     return refusal(

@@ -46,6 +46,8 @@ class Mounting {
   /// Cause::invalid, with the figures, when the spacing makes more than kMostPlaces, or no place is left.
   [[nodiscard]] Result<std::vector<Vec3>> candidates(int threads) const;
 
+  /// Between neighbouring candidates.
+  [[nodiscard]] double spacing_m() const { return spec_.spacing_m.value_or(default_spacing_m()); }
   [[nodiscard]] const Eigen::AlignedBox3d& box_world_m() const { return box_world_m_; }
 
  private:

@@ -1,26 +1,21 @@
 #include "core/solve/placement/place_in_scene.h"
 
-#include <algorithm>
-#include <cmath>
+#include <fmt/format.h>
 
-#include "core/solve/placement/complement_search.h"
-#include "core/solve/placement/place_lights.h"
-#include "core/solve/placement/scene_light.h"
-#include "core/transport/candidates/candidate_transport.h"
+#include <algorithm>
+
+#include "core/solve/placement/placement_methods.h"
+#include "core/solve/placement/search_space.h"
 
 namespace luxrig {
 namespace {
 
-/// Columns of a search, which are what its time goes into: for each of its lights, up to those of ten. Reflected ones
-/// cost some hundred times as much.
-constexpr std::size_t kDirectColumnsPerLight = 15'000, kIndirectColumnsPerLight = 400;
-/// The same when the number is to be found, of each number that is tried.
-constexpr std::size_t kDirectColumnsOfTrial = 5'000, kIndirectColumnsOfTrial = 150;
-constexpr std::size_t kLightsOfMostColumns = 10;
-constexpr std::size_t kLookAhead = 2;
+/// Directions that are tried at each place with an aimed light.
+constexpr std::size_t kAims = 26;
 
-/// The search tries thousands of places, each a column; what it ends with is evaluated anew.
-constexpr std::uint32_t kRaysPerColumn = 4096;
+/// Columns of a search, which are what its time goes into. Reflected light of an aimed one costs some hundred times as
+/// much.
+constexpr std::size_t kMostColumns = 150'000, kMostTracedColumns = 4'000;
 
 /// A light that hangs at the mounting's place nearest to the one it is asked for, so that a search that steps out of
 /// the mounting slides along its edge.
@@ -29,10 +24,11 @@ class MountedLight final : public MovableLight {
   MountedLight(const MovableLight& light, const Mounting& mounting) : light_(light), mounting_(mounting) {}
 
   [[nodiscard]] Eigen::Index points() const override { return light_.points(); }
-  bool column(const Vec3& place_world_m, Eigen::VectorXd& lux, Eigen::MatrixX3d* lux_per_m) const override {
-    const auto at = mounting_.snapped(place_world_m);
-    if (!at || !light_.column(at->place_world_m, lux, lux_per_m)) return false;
-    if (lux_per_m) *lux_per_m = *lux_per_m * at->per_wanted;
+  [[nodiscard]] Eigen::Index freedoms() const override { return light_.freedoms(); }
+  bool column(const LightPose& pose, Eigen::VectorXd& lux, Eigen::MatrixXd* slopes) const override {
+    const auto at = mounting_.snapped(pose.position_world_m);
+    if (!at || !light_.column({at->place_world_m, pose.aim_world}, lux, slopes)) return false;
+    if (slopes) slopes->leftCols<3>() = (slopes->leftCols<3>() * at->per_wanted).eval();
     return true;
   }
 
@@ -41,32 +37,25 @@ class MountedLight final : public MovableLight {
   const Mounting& mounting_;
 };
 
-/// The number of those tried at which to stop: the next one that is worth its lights takes its place.
-std::size_t number_worth_it(const std::vector<LightsAndError>& numbers, double improvement) {
-  std::size_t chosen = 0;
-  for (std::size_t i = 1; i < numbers.size(); ++i) {
-    const auto further = static_cast<double>(numbers[i].lights - numbers[chosen].lights);
-    if (numbers[i].error <= numbers[chosen].error * std::pow(1 - improvement, further)) chosen = i;
-  }
-  return chosen;
-}
-
 bool reflects(const RayScene& rays) {
   return std::any_of(rays.materials().begin(), rays.materials().end(), [](const Material& material) {
     return material.reflectance_rgb.maxCoeff() > 0 || material.specular_reflectance > 0;
   });
 }
 
-PlacedInScene found_by(const Placement& placement, const Mounting& mounting) {
-  PlacedInScene found;
-  found.error = placement.lights.error();
-  for (std::size_t i = 0; i < placement.lights.size(); ++i) {
-    const double level = placement.lights.levels()[static_cast<Eigen::Index>(i)];
-    const Vec3& wanted_m = placement.lights.places_world_m()[i];
+/// Emittance factors of lights as they hang; dark ones are left out.
+std::vector<LightInScene> lit_ones(const PlacedLights& lights, const Mounting& mounting, bool aimed) {
+  std::vector<LightInScene> lit;
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    const double level = lights.levels()[static_cast<Eigen::Index>(i)];
+    if (!(level > 0)) continue;
+    const LightPose& pose = lights.poses()[i];
     // It was added there, so it may hang there.
-    if (level > 0) found.lights.push_back({mounting.snapped(wanted_m)->place_world_m, std::nullopt, level});
+    LightInScene light{mounting.snapped(pose.position_world_m)->place_world_m, std::nullopt, level};
+    if (aimed) light.aim_world_m = light.position_world_m + pose.aim_world;
+    lit.push_back(light);
   }
-  return found;
+  return lit;
 }
 
 }  // namespace
@@ -74,83 +63,62 @@ PlacedInScene found_by(const Placement& placement, const Mounting& mounting) {
 Result<PlacedInScene> place_in_scene(const Scene& scene, const RayScene& rays, const Mounting& mounting,
                                      const Emitter& luminaire, std::span<const Receiver> receivers,
                                      const LightingGoal& goal, const PlaceInSceneOptions& options) {
+  const PlacementMethod* method = find_placement_method(options.method);
+  if (!method) return refusal(fmt::format("no method of placement is called \"{}\"", options.method));
   auto places_m = mounting.candidates(options.threads);
   if (!places_m) return tl::unexpected(std::move(places_m.error()));
-  Emitter lamp = luminaire;
-  lamp.shape = {};
-  lamp.world_from_lamp.translation_m.setZero();
-  const Watch watch{options.stop, {}};
 
-  const bool indirect = options.indirect && reflects(rays);
-  IncrementalOptions incremental;
-  incremental.indirect = indirect;
-  incremental.rays_per_column = kRaysPerColumn;
-  incremental.seed = options.seed;
-  incremental.threads = options.threads;
-  const auto transport = IncrementalTransport::make(scene, rays, receivers, incremental, watch);
-  if (!transport) return tl::unexpected(transport.error());
-  const SceneLight anywhere(**transport, {receivers.begin(), receivers.end()}, lamp, indirect);
-  const MountedLight light(anywhere, mounting);
+  SearchSpaceOptions of_space;
+  of_space.indirect = options.indirect && reflects(rays);
+  if (options.aimed) of_space.aims_world = aims_over_sphere(kAims);
+  of_space.seed = options.seed;
+  of_space.threads = options.threads;
+  of_space.watch = Watch{options.stop, {}};
+  const auto space = SearchSpace::make(scene, rays, receivers, luminaire, *places_m, of_space);
+  if (!space) return tl::unexpected(space.error());
+  const MountedLight light(space->light(), mounting);
 
-  const CandidateSet set{std::move(*places_m), {lamp}};
-  CandidateOptions how;
-  how.indirect = indirect;
-  how.seed = options.seed;
-  how.threads = options.threads;
-  how.watch = watch;
-  const auto matrix = candidate_transport(scene, rays, receivers, set, how);
-  if (!matrix) return tl::unexpected(matrix.error());
-  const CandidateColumns& columns = matrix->matrix;
-  if (columns.entries() == 0)
+  PlacementProblem problem;
+  problem.light = &light;
+  problem.goal = &goal;
+  problem.columns = space->columns();
+  problem.poses.assign(space->poses().begin(), space->poses().end());
+  problem.spacing_m = mounting.spacing_m();
+  if (!space->lights_anything())
     return refusal(
         "from none of the places where a light may hang does light get to a point with a goal: let [mounting] "
         "reach into the room that the points are in");
-  const ColumnsView view(light.points(), columns.begin, columns.receiver, columns.total_lux);
-  const ComplementSearch candidates(view, set.positions_world_m, goal);
 
-  PlaceOptions place;
+  PlacementOptions place;
+  place.lights = options.lights.value_or(0);
+  place.most_lights = options.max_lights;
   place.wanted_error = options.error_wanted;
+  place.least_improvement = options.improvement;
+  place.most_columns = of_space.indirect && options.aimed ? kMostTracedColumns : kMostColumns;
   place.seed = options.seed;
   place.threads = options.threads;
   place.stop = options.stop;
   if (options.better)
-    place.better = [&](const PlacedLights& best, std::size_t) { options.better(best.size(), best.error()); };
-  const std::size_t first = options.lights.value_or(1), last = options.lights.value_or(options.max_lights);
-  const std::size_t columns_per_light = options.lights ? indirect ? kIndirectColumnsPerLight : kDirectColumnsPerLight
-                                        : indirect     ? kIndirectColumnsOfTrial
-                                                       : kDirectColumnsOfTrial;
-  if (indirect) {  // fewer tries for the dearer columns
-    place.complements = 3;
-    place.near_places = 12;
-  }
-  std::vector<PlacedInScene> of_number;
-  std::vector<LightsAndError> numbers;
-  std::size_t all_columns = 0;
-  for (std::size_t lights = first; lights <= last && !options.stop.stop_requested(); ++lights) {
-    place.lights = lights;
-    place.most_columns = columns_per_light * std::min(lights, kLightsOfMostColumns);
-    const Placement placement = place_lights(light, goal, candidates, place);
-    all_columns += placement.columns;
-    PlacedInScene found = found_by(placement, mounting);
-    if (found.lights.empty()) break;
-    // Cut short: what was there before may be the better one.
-    if (!numbers.empty() && found.error >= numbers.back().error && options.stop.stop_requested()) break;
-    numbers.push_back({lights, found.error});
-    of_number.push_back(std::move(found));
-    if (numbers.back().error <= options.error_wanted) break;
-    if (numbers.size() - 1 - number_worth_it(numbers, options.improvement) >= kLookAhead) break;
-  }
-  if (of_number.empty()) {
+    place.better = [&](const BestSoFar& best) { options.better(best.poses.size(), best.error); };
+  const auto found = method->run(problem, place);
+  if (!found) return tl::unexpected(found.error());
+
+  PlacedInScene placed;
+  placed.lights = lit_ones(found->lights, mounting, options.aimed);
+  if (placed.lights.empty()) {
     if (options.stop.stop_requested())
       return tl::unexpected(Fault{Cause::cancelled, "", "stopped before any light was placed", {}});
     return refusal("no light anywhere brings the points nearer to their goals");
   }
-  PlacedInScene best = std::move(of_number[number_worth_it(numbers, options.improvement)]);
-  best.numbers = std::move(numbers);
-  best.candidates = set.positions_world_m.size();
-  best.columns = all_columns;
-  best.stopped = options.stop.stop_requested();
-  return best;
+  placed.error = found->lights.error();
+  for (const PlacedLights& cut : found->cuts)
+    if (cut.size() > (placed.numbers.empty() ? 0 : placed.numbers.back().lights))
+      placed.numbers.push_back({cut.size(), cut.error()});
+  if (placed.numbers.empty()) placed.numbers.push_back({found->lights.size(), placed.error});
+  placed.candidates = problem.poses.size();
+  placed.columns = found->columns;
+  placed.stopped = options.stop.stop_requested();
+  return placed;
 }
 
 }  // namespace luxrig

@@ -26,6 +26,8 @@ struct PlaceInSceneOptions {
   std::size_t max_lights = 20;        ///< without `lights`
   double error_wanted = 0.001;        ///< normalised, weighted (PlacedLights::error()), at which the search ends
   double improvement = 0.05;          ///< without `lights`: share of the error that one more light must take away
+  const char* method = "luxrig";      ///< a name in placement_methods.h
+  bool aimed = false;                 ///< what lights look at is searched, too
   bool indirect = true;
   std::uint64_t seed = 1;
   int threads = 0;       ///< 0 = one per core; the result does not depend on it
@@ -48,12 +50,10 @@ struct PlacedInScene {
   bool stopped = false;  ///< before the search was at its end
 };
 
-/// luminaire   at rated flux, hung with its own rotation; a shape is taken as a point in its middle
-/// receivers   one per row of the goal
-/// Without a number, one light more is tried for as long as it is worth it; two are looked ahead, since some goals need
-/// lights in pairs.
+/// luminaire   at rated flux, hung with its own rotation unless aimed; of one with size, direct light only
+/// receivers   one per point of the goal
 /// Cause::cancelled when stopped before any light was placed; Cause::invalid as Mounting::candidates and
-/// candidate_transport, and when no candidate lights any receiver.
+/// candidate_transport, for an unknown method, and when no candidate lights any receiver.
 [[nodiscard]] Result<PlacedInScene> place_in_scene(const Scene& scene, const RayScene& rays, const Mounting& mounting,
                                                    const Emitter& luminaire, std::span<const Receiver> receivers,
                                                    const LightingGoal& goal, const PlaceInSceneOptions& options);

@@ -43,6 +43,7 @@ class SearchSpace {
   /// Lux per unit emittance, a column per pose. Reflected light below a thousandth of a column's brightest is left out.
   [[nodiscard]] const ColumnsView& columns() const { return view_; }
   [[nodiscard]] std::span<const LightPose> poses() const { return poses_; }
+  [[nodiscard]] bool lights_anything() const { return !row_.empty(); }
 
  private:
   SearchSpace() = default;
