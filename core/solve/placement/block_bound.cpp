@@ -9,8 +9,8 @@
 namespace luxrig {
 namespace {
 
+using Eigen::Index;
 using Eigen::VectorXd;
-using Index = ColumnsView::Index;
 
 /// The row of prices has this goal, in norms of the block's: then its own residual hardly changes, as a linear term's.
 constexpr double kPriceGoal = 300;

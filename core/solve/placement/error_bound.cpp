@@ -9,9 +9,12 @@
 #include "core/solve/placement/block_bound.h"
 
 namespace luxrig {
+namespace {
 
 using Eigen::Index;
 using Eigen::VectorXd;
+
+}  // namespace
 
 VectorXd CandidateLights::weights() const { return row_weight.size() > 0 ? row_weight : VectorXd::Ones(goal.size()); }
 

@@ -18,12 +18,12 @@ using Eigen::VectorXd;
 constexpr double kPriceOfGoal = 0.1;
 
 /// Squared error, and how many lights each block has, where the blocks' bounds are least together.
-struct Shares {
+struct LightShares {
   double squared_error = 0;
   std::vector<std::size_t> lights;  ///< by block
 };
 
-Shares share_out(const std::vector<std::vector<double>>& value, std::size_t lights) {
+LightShares share_out_lights(const std::vector<std::vector<double>>& value, std::size_t lights) {
   std::vector<double> least(lights + 1, 0.0);
   std::vector<std::vector<std::size_t>> taken(value.size(), std::vector<std::size_t>(lights + 1, 0));
   for (std::size_t b = 0; b < value.size(); ++b) {
@@ -36,7 +36,7 @@ Shares share_out(const std::vector<std::vector<double>>& value, std::size_t ligh
         }
     least.swap(next);
   }
-  Shares shares{least[lights], std::vector<std::size_t>(value.size(), 0)};
+  LightShares shares{least[lights], std::vector<std::size_t>(value.size(), 0)};
   for (std::size_t b = value.size(), left = lights; b-- > 0;) {
     shares.lights[b] = taken[b][left];
     left -= taken[b][left];
@@ -61,13 +61,13 @@ class PricedBounds {
   }
 
   [[nodiscard]] double squared_error(std::size_t lights) const {
-    return share_out(value_, lights).squared_error + dark_;
+    return share_out_lights(value_, lights).squared_error + dark_;
   }
 
   /// Where the least is, is looked into, until nothing there can be told better.
   void refine(std::size_t lights, std::size_t most_nodes) {
     for (std::size_t nodes = 0; nodes < most_nodes && !options_.stop.stop_requested();) {
-      const Shares shares = share_out(value_, lights);
+      const LightShares shares = share_out_lights(value_, lights);
       std::vector<std::size_t> before(bounds_.size()), after(bounds_.size());
       parallel_for(bounds_.size(), options_.threads, [&](std::size_t b) {
         before[b] = bounds_[b]->nodes();
@@ -86,7 +86,7 @@ class PricedBounds {
   /// should rise. Half the slope of the squared error by price, where `lights` are.
   VectorXd scarcity(std::size_t lights, const BlockedLights& all) {
     VectorXd scarce = VectorXd::Zero(all.goal.size());
-    const Shares shares = share_out(value_, lights);
+    const LightShares shares = share_out_lights(value_, lights);
     for (std::size_t b = 0; b < bounds_.size(); ++b)
       for (const BurningColumn& burning : bounds_[b]->burning(shares.lights[b])) {
         const std::uint32_t light = all.light_of[burning.column];
