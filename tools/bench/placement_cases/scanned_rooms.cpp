@@ -44,8 +44,8 @@ Result<PlacementCase> real_apartment_case(const std::string& name, std::uint64_t
                                           const PlacementCaseOptions& options) {
   // The file also holds a figure several metres off the flat. Walls are hollow, with lids: floor is what sees the sky.
   ScannedRoom room{"apartment.glb", {}, {8, 6, 1.6}, {}, 400};
-  room.interior_world_m = Eigen::AlignedBox3d(Vec3(4.56, 2.43, 0), Vec3(12.5, 11.13, 2.5));
-  room.lit.box_world_m = Eigen::AlignedBox3d(Vec3(4.56, 2.43, -0.05), Vec3(12.5, 11.13, 0.12));
+  room.interior_world_m = Eigen::AlignedBox3d(Vec3(4.56, 2.43, 0), Vec3(12.5, 10.7, 2.5));
+  room.lit.box_world_m = Eigen::AlignedBox3d(Vec3(4.56, 2.43, -0.05), Vec3(12.5, 10.7, 0.12));
   room.lit.either_side = true;
   room.lit.headroom_m = 100;
   return uniform_case(name, room, seed, options);
