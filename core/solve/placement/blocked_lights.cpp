@@ -16,7 +16,7 @@ constexpr double kShortestCandidate = 1e-140;
 
 }  // namespace
 
-BlockedLights::BlockedLights(const CandidateLights& of, double goal_norm, double least_similarity) {
+BlockedLights::BlockedLights(const BoundProblem& of, double goal_norm, double least_similarity) {
   const VectorXd weight = of.weights();
   goal = weight.cwiseProduct(of.goal) / goal_norm;
   std::vector<std::uint32_t> light = of.light_of_column;

@@ -33,7 +33,7 @@ struct BlockedLights {
   double dark = 0;  ///< squared error of what nothing reaches
 
   /// of must have no complaint(), goal_norm is ‖W b‖ > 0.
-  BlockedLights(const CandidateLights& of, double goal_norm, double least_similarity);
+  BlockedLights(const BoundProblem& of, double goal_norm, double least_similarity);
   /// A bound for each block, with light that falls from one to another at these prices, which may be any.
   [[nodiscard]] std::vector<std::unique_ptr<BlockBound>> priced(const Eigen::VectorXd& price_of_row,
                                                                 std::size_t most_lights, int threads) const;

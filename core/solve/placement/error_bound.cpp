@@ -16,9 +16,9 @@ using Eigen::VectorXd;
 
 }  // namespace
 
-VectorXd CandidateLights::weights() const { return row_weight.size() > 0 ? row_weight : VectorXd::Ones(goal.size()); }
+VectorXd BoundProblem::weights() const { return row_weight.size() > 0 ? row_weight : VectorXd::Ones(goal.size()); }
 
-std::string CandidateLights::complaint() const {
+std::string BoundProblem::complaint() const {
   if (goal.size() != columns.rows()) return fmt::format("{} goals for {} rows", goal.size(), columns.rows());
   if (row_weight.size() != 0 && row_weight.size() != goal.size())
     return fmt::format("{} weights for {} rows", row_weight.size(), goal.size());
@@ -40,7 +40,7 @@ std::string CandidateLights::complaint() const {
   return {};
 }
 
-std::vector<Index> unreachable_rows(const CandidateLights& of) {
+std::vector<Index> unreachable_rows(const BoundProblem& of) {
   std::vector<char> reached(static_cast<std::size_t>(of.goal.size()), 0);
   std::vector<std::uint32_t> rows;
   std::vector<double> values;
@@ -54,7 +54,7 @@ std::vector<Index> unreachable_rows(const CandidateLights& of) {
   return dark;
 }
 
-double error_bound(const CandidateLights& of, const VectorXd& x) {
+double error_bound(const BoundProblem& of, const VectorXd& x) {
   LUXRIG_CHECK(of.complaint().empty(), "{}", of.complaint());
   LUXRIG_CHECK(x.size() == of.columns.columns(), "{} levels for {} columns", x.size(), of.columns.columns());
   const VectorXd weight = of.weights();

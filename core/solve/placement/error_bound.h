@@ -25,7 +25,7 @@
 namespace luxrig {
 
 /// A, b and W. Entries of A are ≥ 0; a column whose norm in W A is below 1e-140 counts as zero.
-struct CandidateLights {
+struct BoundProblem {
   ColumnsView columns;
   Eigen::VectorXd goal;
   Eigen::VectorXd row_weight;  ///< ≥ 0; empty = 1
@@ -39,11 +39,11 @@ struct CandidateLights {
 };
 
 /// Rows of weight above 0 that no candidate reaches. They stay dark with any lights, which the bounds account for.
-[[nodiscard]] std::vector<Eigen::Index> unreachable_rows(const CandidateLights& of);
+[[nodiscard]] std::vector<Eigen::Index> unreachable_rows(const BoundProblem& of);
 
 /// With any number of lights. x: levels as good as one has them, ≥ 0 or not. 0 for a goal of zero.
 /// Asserted: no complaint(), and as many levels as columns.
-[[nodiscard]] double error_bound(const CandidateLights& of, const Eigen::VectorXd& x);
+[[nodiscard]] double error_bound(const BoundProblem& of, const Eigen::VectorXd& x);
 
 /// A solution by whose residual light between blocks is priced: of a search, say. Need not be of these candidates.
 struct PriceGuess {
@@ -66,6 +66,6 @@ struct CountBoundOptions {
 };
 
 /// [k], k = 0 … most_lights: no k lights come closer. Never rises. Asserted: no complaint().
-[[nodiscard]] std::vector<double> error_bounds_by_count(const CandidateLights& of, const CountBoundOptions& options);
+[[nodiscard]] std::vector<double> error_bounds_by_count(const BoundProblem& of, const CountBoundOptions& options);
 
 }  // namespace luxrig

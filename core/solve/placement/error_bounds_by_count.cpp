@@ -116,7 +116,7 @@ class PricedBounds {
 
 /// Solutions of most_lights, three quarters, half and a quarter of it: each time the light whose column is nearest to
 /// what is left over.
-std::vector<PriceGuess> greedy_guesses(const CandidateLights& of, const BlockedLights& lights,
+std::vector<PriceGuess> greedy_guesses(const BoundProblem& of, const BlockedLights& lights,
                                        std::size_t most_lights) {
   auto shared = share_problem({of.columns, of.goal, of.row_weight, {}});
   LUXRIG_CHECK(shared.has_value(), "{}", shared.has_value() ? "" : shared.error().detail);
@@ -175,7 +175,7 @@ VectorXd better_prices(const BlockedLights& lights, VectorXd price, const PriceG
 
 }  // namespace
 
-std::vector<double> error_bounds_by_count(const CandidateLights& of, const CountBoundOptions& options) {
+std::vector<double> error_bounds_by_count(const BoundProblem& of, const CountBoundOptions& options) {
   LUXRIG_CHECK(of.complaint().empty(), "{}", of.complaint());
   std::vector<double> bounds(options.most_lights + 1, 0.0);
   const double goal_norm = of.weights().cwiseProduct(of.goal).norm();

@@ -65,7 +65,7 @@ struct TinyLights {
     }
   }
 
-  [[nodiscard]] CandidateLights candidates() const { return {ColumnsView(A), goal, weight, light}; }
+  [[nodiscard]] BoundProblem candidates() const { return {ColumnsView(A), goal, weight, light}; }
   [[nodiscard]] MatrixXd weighted() const { return weight.size() > 0 ? MatrixXd(weight.asDiagonal() * A) : A; }
   [[nodiscard]] VectorXd weighted_goal() const {
     return weight.size() > 0 ? VectorXd(weight.cwiseProduct(goal)) : goal;
@@ -197,7 +197,7 @@ TEST(ErrorBound, NamesRowsThatNothingReachesAndCountsThem) {
   MatrixXd A(3, 2);
   A << 1, 2, 0, 0, 1, 1;
   const VectorXd goal = VectorXd::Ones(3);
-  const CandidateLights of{ColumnsView(A), goal, {}, {}};
+  const BoundProblem of{ColumnsView(A), goal, {}, {}};
   EXPECT_EQ(unreachable_rows(of), std::vector<Index>{1});
   EXPECT_NEAR(error_bound(of, VectorXd::Unit(2, 0)), std::sqrt(1.0 / 3), 1e-12);
   CountBoundOptions options;
@@ -211,12 +211,12 @@ TEST(ErrorBound, RefusesWhatItCannotProveAnythingAbout) {
   MatrixXd A(1, 2);
   A << 1, -1;
   const VectorXd goal = VectorXd::Ones(1);
-  EXPECT_NE(CandidateLights({ColumnsView(A), goal, {}, {}}).complaint(), "");
+  EXPECT_NE(BoundProblem({ColumnsView(A), goal, {}, {}}).complaint(), "");
   A(0, 1) = 1;
-  EXPECT_EQ(CandidateLights({ColumnsView(A), goal, {}, {}}).complaint(), "");
-  EXPECT_NE(CandidateLights({ColumnsView(A), goal, {}, {0}}).complaint(), "");
-  EXPECT_NE(CandidateLights({ColumnsView(A), goal, -goal, {}}).complaint(), "");
-  EXPECT_NE(CandidateLights({ColumnsView(A), VectorXd::Ones(2), {}, {}}).complaint(), "");
+  EXPECT_EQ(BoundProblem({ColumnsView(A), goal, {}, {}}).complaint(), "");
+  EXPECT_NE(BoundProblem({ColumnsView(A), goal, {}, {0}}).complaint(), "");
+  EXPECT_NE(BoundProblem({ColumnsView(A), goal, -goal, {}}).complaint(), "");
+  EXPECT_NE(BoundProblem({ColumnsView(A), VectorXd::Ones(2), {}, {}}).complaint(), "");
 }
 
 }  // namespace
