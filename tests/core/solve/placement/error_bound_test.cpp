@@ -153,7 +153,9 @@ TEST(ErrorBoundsByCount, AreNeverAboveWhatAnyChoiceOfLightsReaches) {
     ASSERT_EQ(bound.size(), kMost + 1);
     for (std::size_t k = 0; k <= kMost; ++k) {
       EXPECT_LE(bound[k], least[k] + kEnumerationRounding) << seed << ", " << k << " lights";
-      if (k > 0) EXPECT_LE(bound[k], bound[k - 1]) << seed;
+      if (k > 0) {
+        EXPECT_LE(bound[k], bound[k - 1]) << seed;
+      }
       if (!made_up && options.nodes > 30) bound_sum += bound[k], least_sum += least[k];
     }
   }
