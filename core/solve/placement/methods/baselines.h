@@ -8,8 +8,8 @@
 
 namespace luxrig {
 
-/// Gkaravelis, Papaioannou & Kalampokis 2015 (thesis §5.4): annealing over candidates by complements, then Nelder–Mead on
-/// positions within a cell, best levels throughout. The first start anneals from lights added one by one, later ones
+/// Gkaravelis, Papaioannou & Kalampokis 2015 (thesis §5.4): annealing over candidates by complements, then Nelder–Mead
+/// on positions within a cell, best levels throughout. The first start anneals from lights added one by one, later ones
 /// from drawn ones. A given number of lights.
 [[nodiscard]] Result<FoundLights> place_by_gpk15(const PlacementProblem& problem, const PlacementOptions& options);
 

@@ -13,6 +13,7 @@ std::optional<Fault> missing_number(const PlacementOptions& options) {
 SimplexOptions simplex_of(const PlacementProblem& problem, const PlacementOptions& options, std::size_t most_columns,
                           std::size_t columns, const std::function<void(const BestSoFar&)>& better) {
   SimplexOptions simplex;
+  simplex.subplex = options.subplex;
   simplex.cell_m = problem.spacing_m;
   simplex.wanted_error = options.wanted_error;
   simplex.most_columns = most_columns > columns ? most_columns - columns : 0;

@@ -42,6 +42,9 @@ struct PlacementOptions {
   int iterations = 0;                  ///< of one annealing; 0: as many as the method was described or tuned with
   /// How often a method that draws at random begins anew; the best stays, and most_columns is for all together.
   int starts = 1;
+  /// Of baselines that refine by Nelder & Mead's simplex: Rowan's subplex (1990) instead, which runs that simplex in
+  /// subspaces of a few unknowns and does not fail with thirty of them.
+  bool subplex = false;
   std::uint64_t seed = 1;
   int threads = 0;  ///< 0 = one per core; the result does not depend on it
   std::stop_token stop;

@@ -12,7 +12,7 @@ namespace luxrig {
 namespace {
 
 /// Of the first simplex, as a share of the way to the bounds.
-constexpr double kFirstStep = 0.25;
+constexpr double kFirstStep = 0.5;
 /// A level rises by at most this many times where it starts.
 constexpr double kMostRise = 3;
 
@@ -37,8 +37,8 @@ double simplex_error(unsigned count, const double* unknowns, double*, void* data
 /// The problem keeps what was best: NLopt's own answer is not needed.
 void run_simplex(const SimplexProblem& problem, const SimplexOptions& options) {
   const auto count = static_cast<unsigned>(problem.lower.size());
-  const std::unique_ptr<nlopt_opt_s, void (*)(nlopt_opt)> solver(nlopt_create(NLOPT_LN_NELDERMEAD, count),
-                                                                 nlopt_destroy);
+  const std::unique_ptr<nlopt_opt_s, void (*)(nlopt_opt)> solver(
+      nlopt_create(options.subplex ? NLOPT_LN_SBPLX : NLOPT_LN_NELDERMEAD, count), nlopt_destroy);
   LUXRIG_CHECK(solver != nullptr, "no simplex of {} unknowns", count);
   SimplexCall call{&problem, solver.get()};
   Eigen::VectorXd unknowns = Eigen::VectorXd::Zero(count);

@@ -12,6 +12,7 @@
 namespace luxrig {
 
 struct SimplexOptions {
+  bool subplex = false;        ///< Rowan's: the simplex in one subspace of a few unknowns after the other
   double cell_m = 0.3;         ///< farthest a light moves along each axis
   double turn_rad = 0.3;       ///< farthest its aim turns about each of two axes
   double wanted_error = 1e-4;  ///< at which it ends

@@ -55,7 +55,8 @@ TEST(PlacementMethods, FindKnownLightsAsWellAsTheyShould) {
   const LightingGoal goal = hall.goal_of({{0.9, 0.8, 2.1}, {3.1, 2.2, 1.9}, {2.2, 1.4, 2.3}}, {800, 500, 300});
   // None of the lights is at a candidate. What moves lights gets near, what does not stays with the lattice.
   const std::vector<std::pair<std::string, double>> reached = {
-      {"luxrig", 1e-4}, {"gpk15", 0.03}, {"gp16", 0.03}, {"lin2013", 0.15}, {"annealing", 0.03}, {"pursuit", 0.2}};
+      {"luxrig", 1e-4},       {"gpk15", 0.03},   {"gp16", 0.03},      {"gpk15-subplex", 0.01},
+      {"gp16-subplex", 0.01}, {"lin2013", 0.15}, {"annealing", 0.03}, {"pursuit", 0.2}};
   ASSERT_EQ(reached.size(), placement_methods().size());
   for (const auto& [name, error] : reached) {
     const PlacementMethod& method = *find_placement_method(name);
@@ -312,10 +313,12 @@ TEST(SimplexRefine, StaysWithinACellAndLowersTheError) {
   SimplexOptions options;
   options.cell_m = 0.2;
   options.wanted_error = 1e-3;
-  PlacedLights hybrid = start, joint = start;
+  PlacedLights hybrid = start, joint = start, by_subplex = start;
   EXPECT_GT(refine_by_simplex(hybrid, options), 0u);
   EXPECT_GT(refine_with_levels_by_simplex(joint, *hall.light, goal, options), 0u);
-  for (const PlacedLights& lights : {hybrid, joint}) {
+  options.subplex = true;
+  EXPECT_GT(refine_by_simplex(by_subplex, options), 0u);
+  for (const PlacedLights& lights : {hybrid, joint, by_subplex}) {
     EXPECT_LE(lights.error(), 0.01);
     EXPECT_LE((lights.poses()[0].position_world_m - place_m).norm(), 0.01);
   }
