@@ -96,6 +96,7 @@ Result<PlacedInScene> search_places(const Rig& rig, const Scene& scene, const Ra
   place.max_lights = static_cast<std::size_t>(spec.max_lights);
   place.error_wanted = spec.error_wanted;
   place.improvement = spec.improvement;
+  place.max_level = rig.limits.max_level;
   place.indirect = spec.indirect && options.model != Model::direct;
   place.seed = options.seed;
   place.threads = options.threads;

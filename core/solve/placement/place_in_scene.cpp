@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/solve/nnls.h"
 #include "core/solve/placement/complement_search.h"
 #include "core/solve/placement/place_lights.h"
 #include "core/solve/placement/scene_light.h"
@@ -57,14 +58,22 @@ bool reflects(const RayScene& rays) {
   });
 }
 
-PlacedInScene found_by(const Placement& placement, const Mounting& mounting) {
+/// With the best levels that the lights can give.
+Result<PlacedInScene> found_by(const Placement& placement, const Mounting& mounting, const LightingGoal& goal,
+                               double max_level) {
   PlacedInScene found;
-  found.error = placement.lights.error();
-  for (std::size_t i = 0; i < placement.lights.size(); ++i) {
-    const double level = placement.lights.levels()[static_cast<Eigen::Index>(i)];
-    const Vec3& wanted_m = placement.lights.places_world_m()[i];
+  const PlacedLights& lights = placement.lights;
+  NnlsProblem bounded{ColumnsView(lights.columns()), goal.weighted(), {}, {}};
+  bounded.upper.setConstant(lights.columns().cols(), max_level);
+  const auto solved = solve_nnls(bounded);
+  if (!solved) return tl::unexpected(solved.error());
+  found.error = solved->residual_norm / bounded.goal.norm();
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
     // It was added there, so it may hang there.
-    if (level > 0) found.lights.push_back({mounting.snapped(wanted_m)->place_world_m, std::nullopt, level});
+    if (lights.levels()[row] > 0 || solved->x[row] > 0)
+      found.lights.push_back(
+          {mounting.snapped(lights.places_world_m()[i])->place_world_m, std::nullopt, solved->x[row]});
   }
   return found;
 }
@@ -131,7 +140,10 @@ Result<PlacedInScene> place_in_scene(const Scene& scene, const RayScene& rays, c
     place.most_columns = columns_per_light * std::min(lights, kLightsOfMostColumns);
     const Placement placement = place_lights(light, goal, candidates, place);
     all_columns += placement.columns;
-    PlacedInScene found = found_by(placement, mounting);
+    if (placement.lights.size() == 0) break;
+    auto bounded = found_by(placement, mounting, goal, options.max_level);
+    if (!bounded) return tl::unexpected(std::move(bounded.error()));
+    PlacedInScene& found = *bounded;
     if (found.lights.empty()) break;
     // Cut short: what was there before may be the better one.
     if (!numbers.empty() && found.error >= numbers.back().error && options.stop.stop_requested()) break;

@@ -18,7 +18,7 @@ namespace luxrig {
 struct LightInScene {
   Vec3 position_world_m = Vec3::Zero();
   std::optional<Vec3> aim_world_m;  ///< a place it looks at; none: straight down
-  double level = 0;                 ///< emittance factor ≥ 0, not bounded by 1
+  double level = 0;                 ///< emittance factor, 0…max_level
 };
 
 struct PlaceInSceneOptions {
@@ -26,6 +26,7 @@ struct PlaceInSceneOptions {
   std::size_t max_lights = 20;        ///< without `lights`
   double error_wanted = 0.001;        ///< normalised, weighted (PlacedLights::error()), at which the search ends
   double improvement = 0.05;          ///< without `lights`: share of the error that one more light must take away
+  double max_level = 1;               ///< of each light; places are sought as if there were none
   bool indirect = true;
   std::uint64_t seed = 1;
   int threads = 0;       ///< 0 = one per core; the result does not depend on it
@@ -34,7 +35,7 @@ struct PlaceInSceneOptions {
   std::function<void(std::size_t lights, double error)> better;
 };
 
-/// The best that was found with so many lights.
+/// The best that was found with so many lights, none above its highest level.
 struct LightsAndError {
   std::size_t lights = 0;
   double error = 0;
@@ -42,7 +43,7 @@ struct LightsAndError {
 
 struct PlacedInScene {
   std::vector<LightInScene> lights;
-  double error = 0;                     ///< of these lights, levels not bounded
+  double error = 0;                     ///< of these lights, at these levels
   std::vector<LightsAndError> numbers;  ///< that were tried, rising; one when the number was given
   std::size_t candidates = 0, columns = 0;
   bool stopped = false;  ///< before the search was at its end
