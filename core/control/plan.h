@@ -21,7 +21,7 @@ struct PlannedLight {
   double lumens = 0;  ///< level × rated flux
 };
 
-/// So many lights would leave so much of the error (normalised, levels not bounded).
+/// So many lights would leave so much of the error (normalised, weighted, none above its highest level).
 struct PlannedNumber {
   int lights = 0;
   double normalised_error = 0;

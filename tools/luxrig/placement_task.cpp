@@ -104,6 +104,7 @@ Result<PlacedInScene> search_places(const Rig& rig, const Scene& scene, const Ra
   place.max_lights = static_cast<std::size_t>(spec.max_lights);
   place.error_wanted = spec.error_wanted;
   place.improvement = spec.improvement;
+  place.max_level = rig.limits.max_level;
   place.method = name_of(spec.method);
   place.aimed = spec.aimed;
   place.indirect = spec.indirect && options.model != Model::direct;

@@ -10,7 +10,7 @@
 namespace luxrig {
 
 /// fixed_lx   of every point of the rig: light that is there anyway
-/// lights     with levels that nothing bounds; none when fixed_lx meets every goal
+/// lights     none when fixed_lx meets every goal
 /// options.watch.stop and the task's `seconds` end the search.
 [[nodiscard]] Result<PlacedInScene> search_places(const Rig& rig, const Scene& scene, const RayScene& rays,
                                                   const Mounting& mounting, const Task& task,

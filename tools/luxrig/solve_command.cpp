@@ -43,7 +43,7 @@ void print_placement(const PlannedTask& task, const PlacementSpec& spec) {
     std::string tried;
     for (const PlannedNumber& number : task.numbers)
       tried += fmt::format("{}{}: {}", tried.empty() ? "" : ", ", number.lights, percent(number.normalised_error));
-    fmt::print("lights and what they leave of the error, at any flux: {}\n", tried);
+    fmt::print("lights and what they leave of the error: {}\n", tried);
   }
   fmt::print(
       "{} hang{} nowhere yet: render and evaluate show the plan. To run it, hang each at its place, patch it, and add "

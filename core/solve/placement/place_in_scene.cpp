@@ -77,10 +77,12 @@ Result<PlacedInScene> place_in_scene(const Scene& scene, const RayScene& rays, c
   const auto space = SearchSpace::make(scene, rays, receivers, luminaire, *places_m, of_space);
   if (!space) return tl::unexpected(space.error());
   const MountedLight light(space->light(), mounting);
+  LightingGoal bounded = goal;
+  bounded.max_level = std::min(goal.max_level, options.max_level);
 
   PlacementProblem problem;
   problem.light = &light;
-  problem.goal = &goal;
+  problem.goal = &bounded;
   problem.columns = space->columns();
   problem.poses.assign(space->poses().begin(), space->poses().end());
   problem.spacing_m = mounting.spacing_m();

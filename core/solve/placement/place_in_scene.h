@@ -18,7 +18,7 @@ namespace luxrig {
 struct LightInScene {
   Vec3 position_world_m = Vec3::Zero();
   std::optional<Vec3> aim_world_m;  ///< a place it looks at; none: straight down
-  double level = 0;                 ///< emittance factor ≥ 0, not bounded by 1
+  double level = 0;                 ///< emittance factor, 0…max_level
 };
 
 struct PlaceInSceneOptions {
@@ -26,6 +26,7 @@ struct PlaceInSceneOptions {
   std::size_t max_lights = 20;        ///< without `lights`
   double error_wanted = 0.001;        ///< normalised, weighted (PlacedLights::error()), at which the search ends
   double improvement = 0.05;          ///< without `lights`: share of the error that one more light must take away
+  double max_level = 1;               ///< of each light
   const char* method = "luxrig";      ///< a name in placement_methods.h
   bool aimed = false;                 ///< what lights look at is searched, too
   bool indirect = true;
@@ -44,7 +45,7 @@ struct LightsAndError {
 
 struct PlacedInScene {
   std::vector<LightInScene> lights;
-  double error = 0;                     ///< of these lights, levels not bounded
+  double error = 0;                     ///< of these lights, at these levels
   std::vector<LightsAndError> numbers;  ///< that were tried, rising; one when the number was given
   std::size_t candidates = 0, columns = 0;
   bool stopped = false;  ///< before the search was at its end

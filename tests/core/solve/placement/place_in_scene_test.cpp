@@ -47,6 +47,7 @@ struct LitFloor {
 
 PlaceInSceneOptions direct_light() {
   PlaceInSceneOptions options;
+  options.max_level = 1e6;  // of one lumen each
   options.indirect = false;
   return options;
 }
@@ -99,6 +100,20 @@ TEST(PlaceInScene, HangsNoMoreThanIsWorthIt) {
   ASSERT_TRUE(found);
   EXPECT_EQ(found->lights.size(), 1u);
   EXPECT_GE(found->numbers.size(), 2u) << "more were looked at";
+}
+
+TEST(PlaceInScene, HangsMoreWhereOneCannotGiveEnough) {
+  const LitFloor room;
+  PlaceInSceneOptions options = direct_light();
+  options.max_level = 250;
+  options.max_lights = 4;
+  const auto found = room.place(room.goal_of({{{2, 1.5, 2.3}, {}, 500}}), options);
+  ASSERT_TRUE(found);
+  ASSERT_GE(found->numbers.size(), 2u);
+  // Half of its light leaves half of the error.
+  EXPECT_NEAR(found->numbers[0].error, 0.5, 0.01);
+  EXPECT_GE(found->lights.size(), 2u);
+  for (const LightInScene& light : found->lights) EXPECT_LE(light.level, 250);
 }
 
 TEST(PlaceInScene, LightsThatLieOutsideAreSoughtAtTheEdge) {
