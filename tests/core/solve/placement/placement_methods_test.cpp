@@ -55,7 +55,7 @@ TEST(PlacementMethods, FindKnownLightsAsWellAsTheyShould) {
   const LightingGoal goal = hall.goal_of({{0.9, 0.8, 2.1}, {3.1, 2.2, 1.9}, {2.2, 1.4, 2.3}}, {800, 500, 300});
   // None of the lights is at a candidate. What moves lights gets near, what does not stays with the lattice.
   const std::vector<std::pair<std::string, double>> reached = {
-      {"luxrig", 1e-4},       {"gpk15", 0.03},   {"gp16", 0.03},      {"gpk15-subplex", 0.01},
+      {"luxrig", 1e-4},       {"gpk15", 0.05},   {"gp16", 0.03},      {"gpk15-subplex", 0.05},
       {"gp16-subplex", 0.01}, {"lin2013", 0.15}, {"annealing", 0.03}, {"pursuit", 0.2}};
   ASSERT_EQ(reached.size(), placement_methods().size());
   for (const auto& [name, error] : reached) {
@@ -74,6 +74,7 @@ TEST(PlacementMethods, ChooseANumberWhereTheyCan) {
   for (const PlacementMethod& method : placement_methods()) {
     PlacementOptions options = options_of(method, 0);
     options.lights = 0;
+    options.most_columns = 6000;
     const auto got = method.run(problem_of(hall, goal), options);
     ASSERT_EQ(got.has_value(), method.chooses_number) << method.name;
     if (!got) {
@@ -174,7 +175,10 @@ TEST(PlacementMethods, KeepToColours) {
   goal.lux.tail(points) = 200 * lux;
   goal.fixed_lux = Eigen::VectorXd::Constant(3 * points, 1);
   for (const PlacementMethod& method : placement_methods()) {
-    const auto got = method.run(problem_of(hall, goal), options_of(method, 2));
+    PlacementOptions options = options_of(method, 2);
+    options.most_columns = 1000;
+    options.iterations = 300;
+    const auto got = method.run(problem_of(hall, goal), options);
     ASSERT_TRUE(got.has_value()) << method.name;
     EXPECT_LE(got->lights.error(), 0.3) << method.name;
     EXPECT_NEAR(got->lights.error(), error_from_scratch(hall, goal, got->lights), 1e-9) << method.name;
@@ -214,7 +218,7 @@ TEST(PlacementMethods, TakeHostileInput) {
     for (const LightingGoal& goal : {uniform, zero, bounded, too_bright, nothing_counts, off})
       for (const auto& [columns, poses] : sets) {
         PlacementOptions options = options_of(method, 2);
-        options.most_columns = 300;
+        options.most_columns = 100;
         options.iterations = 50;
         const auto got = method.run({hall.light.get(), &goal, columns, poses, kHallLattice_m}, options);
         ASSERT_TRUE(got.has_value()) << method.name << ": " << got.error().detail;
