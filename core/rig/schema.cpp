@@ -281,9 +281,9 @@ constexpr KeySpec kRigKeys[] = {
 
     {"mounting", "box_m", box, "m", kNone, kPosition, "",
      "two opposite corners of a box that lights stay in; left out, the scene's bounding box"},
-    {"mounting", "surfaces", texts, "", "[]", kAny, "",
-     "materials or scene objects that lights hang off, by name; `*` stands for any letters, `?` for one; none: "
-     "anywhere in the air"},
+    {"mounting", "surfaces", texts, "", kNone, kAny, "",
+     "materials or scene objects that lights hang off, by name; `*` stands for any letters, `?` for one; left "
+     "out, anywhere in the air"},
     {"mounting",
      "offset_m",
      span2,

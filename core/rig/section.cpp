@@ -34,7 +34,8 @@ std::string example_of(const KeySpec& spec) {
     case ValueType::colour:
       return fmt::format("write one number or three: {0} = 0.5 or {0} = [0.5, 0.5, 0.5]", spec.key);
     case ValueType::texts:
-      return fmt::format("write a list: {} = {}", spec.key, spec.fallback);
+      return fmt::format("write a list: {} = {}", spec.key,
+                         spec.fallback == kNone || spec.fallback == kRequired ? R"(["one", "other"])" : spec.fallback);
     case ValueType::yes_no:
       return fmt::format("write {} = true or {} = false, without quotes", spec.key, spec.key);
     case ValueType::number:
