@@ -24,8 +24,10 @@ class Choice {
   LightCurve run() {
     PlacedLights lights = way_up();
     way_down(std::move(lights));
-    while (!ended() && better_at(curve_.chosen)) {
-    }
+    do {
+      while (!ended() && better_at(curve_.chosen)) {
+      }
+    } while (!ended() && look_ahead());
     curve_.columns = exchange_.columns();
     return std::move(curve_);
   }
@@ -96,13 +98,27 @@ class Choice {
     }
   }
 
+  /// Whether, from the best there is now, more lights are worth it after all.
+  bool look_ahead() {
+    const std::size_t was = curve_.chosen;
+    PlacedLights lights = curve_.cuts[was];
+    if (lights.error() <= options_.wanted_error) return false;
+    for (int more = 0; more < 2 && lights.size() < options_.most_lights && !ended(); ++more) {
+      if (!exchange_.with_one_more(lights, 1, random_)) break;
+      exchange_.singly(lights, random_);
+      offer(lights);
+    }
+    return curve_.chosen > was;
+  }
+
   bool better_at(std::size_t count) {
     PlacedLights lights = curve_.cuts[count];
-    if (lights.error() <= options_.wanted_error || lights.size() == 0) return false;
+    const double was = lights.error();
+    if (was <= options_.wanted_error || lights.size() == 0) return false;
     if (!exchange_.singly(lights, random_) && !exchange_.by_twos(lights) &&
         !exchange_.through_more(lights, kLeastBeyond, random_))
       return false;
-    return offer(lights);
+    return offer(lights) && lights.error() < (1 - options_.least_progress) * was;
   }
 
   const ChooseOptions& options_;

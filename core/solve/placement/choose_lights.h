@@ -20,6 +20,7 @@ struct ChooseOptions {
   double least_improvement = 0.1;
   /// Above this (the thesis's ε_opt) far less of an improvement is asked for.
   double coarse_error = 0.3;
+  double least_progress = 0.003;  ///< share of the error that a round over all lights must take away, or is the last
   /// Columns to work out before it ends anyway; it may go over by those of one round.
   std::size_t most_columns = 400'000;
   std::uint64_t seed = 1;

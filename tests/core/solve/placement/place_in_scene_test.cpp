@@ -110,8 +110,9 @@ TEST(PlaceInScene, HangsMoreWhereOneCannotGiveEnough) {
   const auto found = room.place(room.goal_of({{{2, 1.5, 2.3}, {}, 500}}), options);
   ASSERT_TRUE(found);
   ASSERT_GE(found->numbers.size(), 2u);
-  // Half of its light leaves half of the error.
-  EXPECT_NEAR(found->numbers[0].error, 0.5, 0.01);
+  // Half of its light leaves half of the error in its place, and a little less nearer to the floor.
+  EXPECT_LE(found->numbers[0].error, 0.5);
+  EXPECT_GE(found->numbers[0].error, 0.4);
   EXPECT_GE(found->lights.size(), 2u);
   for (const LightInScene& light : found->lights) EXPECT_LE(light.level, 250);
 }
