@@ -76,10 +76,14 @@ class Choice {
 
   PlacedLights way_up() {
     PlacedLights lights = curve_.cuts.front();
-    while (!ended() && lights.size() < options_.most_lights) {
+    for (const LightPose& pose : options_.start) lights.add(pose);
+    if (lights.size() > 0) {
+      exchange_.refine(lights);
+      offer(lights);
+    }
+    while (!ended() && lights.size() < options_.most_lights && lights.error() > options_.wanted_error) {
       if (!exchange_.with_one_more(lights, 1, random_)) break;
       offer(lights);
-      if (lights.error() <= options_.wanted_error) break;
       if (lights.size() >= curve_.chosen + std::max(kLeastBeyond, curve_.chosen / kBeyondOf)) break;
     }
     return lights;

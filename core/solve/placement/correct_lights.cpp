@@ -13,12 +13,11 @@ double error_of(const LightingGoal& goal, const Eigen::VectorXd& lux) {
 }  // namespace
 
 Result<CorrectedLights> correct_lights(const MovableLight& light, const LightingGoal& goal, const PlacedLights& lights,
-                                       const LuxOfLights& lux_of, LightExchange& exchange,
+                                       const LuxOfLights& lux_of, const SearchAgain& search_again,
                                        const CorrectOptions& options) {
   const Eigen::VectorXd fixed = goal.fixed_lux.size() == 0 ? Eigen::VectorXd::Zero(goal.lux.size()) : goal.fixed_lux;
   LightingGoal unweighted = goal;
   unweighted.row_weight = {};
-  std::mt19937_64 random(options.seed);
   std::optional<CorrectedLights> best;
   auto of_present = std::make_unique<LightingGoal>(goal);
   PlacedLights present(light, *of_present);
@@ -43,10 +42,8 @@ Result<CorrectedLights> correct_lights(const MovableLight& light, const Lighting
     if (better) best = CorrectedLights{std::move(of_present), present, *lux + fixed, error, 0};
     best->rounds = round;
     if (last) break;
-    exchange.singly(next, random);
-    exchange.refine(next);
+    present = search_again(*corrected, next);
     of_present = std::move(corrected);
-    present = std::move(next);
   }
   return std::move(*best);
 }

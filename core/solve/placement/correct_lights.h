@@ -10,13 +10,16 @@
 #include <span>
 
 #include "core/result.h"
-#include "core/solve/placement/exchange_lights.h"
+#include "core/solve/placement/placed_lights.h"
 
 namespace luxrig {
 
 /// Lux of lights at these poses and levels by the better model, without fixed_lux: points × channels.
 using LuxOfLights =
     std::function<Result<Eigen::VectorXd>(std::span<const LightPose> poses, const Eigen::VectorXd& levels)>;
+
+/// Lights for a goal by the quick model, from those there are; they refer to that goal.
+using SearchAgain = std::function<PlacedLights(const LightingGoal& goal, const PlacedLights& start)>;
 
 struct CorrectedLights {
   std::unique_ptr<LightingGoal> goal;  ///< the lights' own, with the fault as fixed light
@@ -29,13 +32,13 @@ struct CorrectedLights {
 struct CorrectOptions {
   int most_rounds = 4;
   double least_improvement = 0.05;  ///< share of the error; a round below it is the last
-  std::uint64_t seed = 1;
 };
 
 /// The best of the rounds by the better model; never worse than the lights as they came.
 /// Cause: that of lux_of, when its first call fails; later failures end it with the best so far.
 [[nodiscard]] Result<CorrectedLights> correct_lights(const MovableLight& light, const LightingGoal& goal,
                                                      const PlacedLights& lights, const LuxOfLights& lux_of,
-                                                     LightExchange& exchange, const CorrectOptions& options = {});
+                                                     const SearchAgain& search_again,
+                                                     const CorrectOptions& options = {});
 
 }  // namespace luxrig

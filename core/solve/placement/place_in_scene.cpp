@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/solve/placement/mounted_light.h"
 #include "core/solve/placement/placement_methods.h"
 #include "core/solve/placement/search_space.h"
 
@@ -16,26 +17,6 @@ constexpr std::size_t kAims = 26;
 /// Columns of a search, which are what its time goes into. Reflected light of an aimed one costs some hundred times as
 /// much.
 constexpr std::size_t kMostColumns = 150'000, kMostTracedColumns = 4'000;
-
-/// A light that hangs at the mounting's place nearest to the one it is asked for, so that a search that steps out of
-/// the mounting slides along its edge.
-class MountedLight final : public MovableLight {
- public:
-  MountedLight(const MovableLight& light, const Mounting& mounting) : light_(light), mounting_(mounting) {}
-
-  [[nodiscard]] Eigen::Index points() const override { return light_.points(); }
-  [[nodiscard]] Eigen::Index freedoms() const override { return light_.freedoms(); }
-  bool column(const LightPose& pose, Eigen::VectorXd& lux, Eigen::MatrixXd* slopes) const override {
-    const auto at = mounting_.snapped(pose.position_world_m);
-    if (!at || !light_.column({at->place_world_m, pose.aim_world}, lux, slopes)) return false;
-    if (slopes) slopes->leftCols<3>() = (slopes->leftCols<3>() * at->per_wanted).eval();
-    return true;
-  }
-
- private:
-  const MovableLight& light_;
-  const Mounting& mounting_;
-};
 
 bool reflects(const RayScene& rays) {
   return std::any_of(rays.materials().begin(), rays.materials().end(), [](const Material& material) {

@@ -1,0 +1,156 @@
+#include "tools/bench/placement_solve.h"
+
+#include <chrono>
+
+#include "core/solve/placement/correct_lights.h"
+
+namespace luxrig {
+namespace {
+
+constexpr double kGatherError = 0.01;
+constexpr std::size_t kSearchColumns = 150'000;
+
+MountingSpec mounting_of(const PlacementCase& one) {
+  MountingSpec spec;
+  spec.box_world_m = one.lights_in_world_m;
+  spec.clearance_m = one.clearance_m;
+  if (one.near_surfaces_m) {
+    spec.surfaces = {{"*", {}}};
+    spec.offset_min_m = one.clearance_m;
+    spec.offset_max_m = *one.near_surfaces_m;
+  }
+  return spec;
+}
+
+/// Of isotropic lights, by gathered light.
+Result<Eigen::VectorXd> gathered_lux(const ReadyCase& ready, std::span<const LightPose> poses,
+                                     const Eigen::VectorXd& levels, int threads) {
+  std::vector<Emitter> lamps;
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    if (const double lumens = levels[static_cast<Eigen::Index>(i)]; lumens > 0)
+      lamps.push_back({make_isotropic(lumens), {Mat3::Identity(), poses[i].position_world_m}});
+  if (lamps.empty()) return Eigen::VectorXd::Zero(ready.goal().lux.size());
+  EvaluateOptions options;
+  options.wanted_relative_error = kGatherError;
+  options.threads = threads;
+  const auto matrix = make_gather_evaluator(ready.rays())->evaluate(ready.of().receivers, lamps, options);
+  if (!matrix) return tl::unexpected(matrix.error());
+  return matrix->lux(Eigen::VectorXd::Ones(static_cast<Eigen::Index>(lamps.size())));
+}
+
+void take(const FoundLights& found, Solved& solved) {
+  solved.poses = found.lights.poses();
+  solved.levels = found.lights.levels();
+  solved.error = found.lights.error();
+  solved.residual = found.lights.residual();
+  solved.columns += found.columns;
+  solved.cuts.clear();
+  for (const PlacedLights& cut : found.cuts) {
+    if (solved.cuts.size() <= cut.size()) solved.cuts.resize(cut.size() + 1, 1);
+    solved.cuts[cut.size()] = cut.error();
+  }
+}
+
+}  // namespace
+
+Result<std::unique_ptr<ReadyCase>> ReadyCase::make(PlacementCase one, int threads) {
+  std::unique_ptr<ReadyCase> ready(new ReadyCase(std::move(one)));
+  const PlacementCase& of = ready->case_;
+  ready->goal_.lux = of.goal_lux.reshaped();
+  if (of.goal_lux.cols() == 3) ready->goal_.emitters = Eigen::Matrix3d::Identity();
+  std::optional<Fault> fault;
+  ready->seconds_ = timed([&] {
+    auto mounting = Mounting::make(mounting_of(of), "bench", of.scene, ready->rays_);
+    if (!mounting) {
+      fault = Fault{Cause::invalid, "", mounting.error().front().text(), {}};
+      return;
+    }
+    ready->mounting_ = std::move(*mounting);
+    const auto places_m = ready->mounting_->candidates(threads);
+    if (!places_m) {
+      fault = places_m.error();
+      return;
+    }
+    SearchSpaceOptions options;
+    options.indirect = of.global;
+    options.threads = threads;
+    auto space = SearchSpace::make(of.scene, ready->rays_, of.receivers, {make_isotropic(1), {}}, *places_m, options);
+    if (!space) {
+      fault = space.error();
+      return;
+    }
+    ready->space_ = std::move(*space);
+    ready->light_ = std::make_unique<MountedLight>(ready->space_->light(), *ready->mounting_);
+    ready->problem_.light = ready->light_.get();
+    ready->problem_.goal = &ready->goal_;
+    ready->problem_.columns = ready->space_->columns();
+    ready->problem_.poses.assign(ready->space_->poses().begin(), ready->space_->poses().end());
+    ready->problem_.spacing_m = ready->mounting_->spacing_m();
+  });
+  if (fault) return tl::unexpected(*fault);
+  return ready;
+}
+
+std::size_t ReadyCase::lit_candidates() const {
+  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(problem_.columns.rows());
+  std::size_t lit = 0;
+  for (Eigen::Index c = 0; c < problem_.columns.columns(); ++c)
+    if (problem_.columns.squared_norm(c, ones.data()) > 0) ++lit;
+  return lit;
+}
+
+Solved solve_case(const ReadyCase& ready, const PlacementMethod& method, std::size_t lights, std::uint64_t seed,
+                  int threads, double wanted_error) {
+  using Steady = std::chrono::steady_clock;
+  Solved solved;
+  PlacementOptions options;
+  options.lights = lights;
+  options.seed = seed;
+  options.threads = threads;
+  options.wanted_error = wanted_error;
+  options.most_columns = kSearchColumns;
+  const auto start = Steady::now();
+  options.better = [&](const BestSoFar& best) {
+    solved.curve.push_back(
+        {std::chrono::duration<double>(Steady::now() - start).count(), best.error, best.poses.size()});
+  };
+  solved.seconds = timed([&] {
+    const auto found = method.run(ready.problem(), options);
+    if (!found) {
+      solved.refused = found.error().detail;
+      return;
+    }
+    take(*found, solved);
+    if (!ready.of().global) return;
+    const auto search_again = [&](const LightingGoal& goal, const PlacedLights& from) {
+      PlacementProblem problem = ready.problem();
+      problem.goal = &goal;
+      PlacementOptions again = options;
+      again.better = {};
+      again.start = from.poses();
+      const auto more = method.run(problem, again);
+      if (!more) return from;
+      solved.columns += more->columns;
+      return more->lights;
+    };
+    const auto corrected = correct_lights(
+        *ready.problem().light, ready.goal(), found->lights,
+        [&](std::span<const LightPose> poses, const Eigen::VectorXd& levels) {
+          return gathered_lux(ready, poses, levels, threads);
+        },
+        search_again);
+    if (!corrected) {
+      solved.refused = corrected.error().detail;
+      return;
+    }
+    solved.poses = corrected->lights.poses();
+    solved.levels = corrected->lights.levels();
+    solved.error = corrected->error;
+    solved.evaluations = corrected->rounds;
+  });
+  solved.seconds.wall += ready.seconds().wall;
+  solved.seconds.cpu += ready.seconds().cpu;
+  return solved;
+}
+
+}  // namespace luxrig

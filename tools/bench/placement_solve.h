@@ -1,0 +1,68 @@
+#pragma once
+/// A placement case made ready for any method, and one solve with its clock.
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/solve/placement/mounted_light.h"
+#include "core/solve/placement/placement_methods.h"
+#include "core/solve/placement/search_space.h"
+#include "tools/bench/measured.h"
+#include "tools/bench/placement_cases/placement_case.h"
+
+namespace luxrig {
+
+/// Everything but the scene's tree of rays counts: places and clearance, transport of the candidates.
+class ReadyCase {
+ public:
+  [[nodiscard]] static Result<std::unique_ptr<ReadyCase>> make(PlacementCase one, int threads);
+
+  [[nodiscard]] const PlacementCase& of() const { return case_; }
+  [[nodiscard]] const PlacementProblem& problem() const { return problem_; }
+  [[nodiscard]] const LightingGoal& goal() const { return goal_; }
+  [[nodiscard]] const RayScene& rays() const { return rays_; }
+  [[nodiscard]] CallSeconds seconds() const { return seconds_; }
+  /// Lit at all; of a matrix with a column each.
+  [[nodiscard]] std::size_t lit_candidates() const;
+
+ private:
+  explicit ReadyCase(PlacementCase one) : case_(std::move(one)), rays_(case_.scene) {}
+
+  PlacementCase case_;
+  RayScene rays_;
+  LightingGoal goal_;
+  std::optional<Mounting> mounting_;
+  std::optional<SearchSpace> space_;
+  std::unique_ptr<MountedLight> light_;
+  PlacementProblem problem_;
+  CallSeconds seconds_;
+};
+
+/// The best there was at a time.
+struct BetterAt {
+  double seconds = 0;  ///< wall, of the search
+  double error = 1;
+  std::size_t lights = 0;
+};
+
+struct Solved {
+  std::vector<LightPose> poses;
+  Eigen::VectorXd levels;
+  double error = 1;              ///< of the light that the case is to be judged by
+  std::vector<double> cuts;      ///< error of [k] lights, where the number was open
+  Eigen::VectorXd residual;      ///< by the search's own model
+  std::size_t columns = 0;
+  int evaluations = 0;           ///< of a better model, in a global case
+  CallSeconds seconds;           ///< the case made ready included
+  std::vector<BetterAt> curve;   ///< as the search went, by its own model
+  std::string refused;
+};
+
+/// lights   0: the number is the method's to choose
+/// Global cases end with correct_lights() against gathered light of 1 %.
+[[nodiscard]] Solved solve_case(const ReadyCase& ready, const PlacementMethod& method, std::size_t lights,
+                                std::uint64_t seed, int threads, double wanted_error);
+
+}  // namespace luxrig
