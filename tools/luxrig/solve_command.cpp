@@ -56,16 +56,18 @@ void print_placement(const PlannedTask& task, const PlacementSpec& spec) {
 
 int run_solve(const SolveArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
+  // First of all: a thread that there is before (the ray tracer's) would take the signal, and the process would end.
+  const std::stop_token stop = stop_on_signals();
   const auto session = open_session(arguments.rig);
   if (!session) return report(session.error());
   ComputeOptions compute = arguments.compute;
-  compute.watch = {stop_on_signals(), progress_line("transport")};
+  compute.watch = {stop, progress_line("transport")};
   const auto transport = compute_transport(*session, compute);
   if (!transport) return report(transport.error());
   compute.watch.progress = nullptr;
   auto plan = solve_tasks(*session, *transport, compute);
   if (!plan) return report(plan.error());
-  if (stop_on_signals().stop_requested()) fmt::print(stderr, "stopped: this is the best so far\n");
+  if (stop.stop_requested()) fmt::print(stderr, "stopped: this is the best so far\n");
   plan->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
   if (arguments.output) {
