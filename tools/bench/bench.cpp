@@ -20,7 +20,7 @@ constexpr Suite kSuites[] = {
     {"analytic", "evaluators against closed forms: sources, flux, enclosures, furnace, CIE 171", bench_analytic},
     {"transport", "evaluators in furnished rooms against converged path tracing", bench_transport},
     {"nnls", "non-negative least squares: cold, warm, one column exchanged, under limits", bench_nnls},
-    {"placement", "known lights of a furnished flat, found again from their lux", bench_placement},
+    {"placement", "known lights found again; every scene by every method, with bounds", bench_placement},
     {"buses", "output cycle: 4 universes at 44 Hz while a solver uses every core", bench_buses},
 };
 

@@ -16,6 +16,7 @@ struct BenchOptions {
   std::filesystem::path export_folder;        ///< transport: writes its rooms here for Radiance instead of
                                               ///< measuring; nnls: writes its problems here for scipy
   std::vector<std::filesystem::path> rigs;    ///< transport: rig files whose scenes are measured too
+  std::filesystem::path data_folder;          ///< placement: scenes that are read from files
   std::string only;                           ///< transport, nnls: only cases whose name begins so; analytic: only such families
 };
 

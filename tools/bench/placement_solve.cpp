@@ -53,14 +53,16 @@ void take(const FoundLights& found, Solved& solved) {
 
 }  // namespace
 
-Result<std::unique_ptr<ReadyCase>> ReadyCase::make(PlacementCase one, int threads) {
+Result<std::unique_ptr<ReadyCase>> ReadyCase::make(PlacementCase one, int threads, std::optional<double> spacing_m) {
   std::unique_ptr<ReadyCase> ready(new ReadyCase(std::move(one)));
   const PlacementCase& of = ready->case_;
   ready->goal_.lux = of.goal_lux.reshaped();
   if (of.goal_lux.cols() == 3) ready->goal_.emitters = Eigen::Matrix3d::Identity();
   std::optional<Fault> fault;
   ready->seconds_ = timed([&] {
-    auto mounting = Mounting::make(mounting_of(of), "bench", of.scene, ready->rays_);
+    MountingSpec spec = mounting_of(of);
+    spec.spacing_m = spacing_m;
+    auto mounting = Mounting::make(spec, "bench", of.scene, ready->rays_);
     if (!mounting) {
       fault = Fault{Cause::invalid, "", mounting.error().front().text(), {}};
       return;
@@ -89,14 +91,6 @@ Result<std::unique_ptr<ReadyCase>> ReadyCase::make(PlacementCase one, int thread
   });
   if (fault) return tl::unexpected(*fault);
   return ready;
-}
-
-std::size_t ReadyCase::lit_candidates() const {
-  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(problem_.columns.rows());
-  std::size_t lit = 0;
-  for (Eigen::Index c = 0; c < problem_.columns.columns(); ++c)
-    if (problem_.columns.squared_norm(c, ones.data()) > 0) ++lit;
-  return lit;
 }
 
 Solved solve_case(const ReadyCase& ready, const PlacementMethod& method, std::size_t lights, std::uint64_t seed,

@@ -17,15 +17,15 @@ namespace luxrig {
 /// Everything but the scene's tree of rays counts: places and clearance, transport of the candidates.
 class ReadyCase {
  public:
-  [[nodiscard]] static Result<std::unique_ptr<ReadyCase>> make(PlacementCase one, int threads);
+  /// spacing_m   of candidates; none: about 20 000 of them
+  [[nodiscard]] static Result<std::unique_ptr<ReadyCase>> make(PlacementCase one, int threads,
+                                                               std::optional<double> spacing_m = {});
 
   [[nodiscard]] const PlacementCase& of() const { return case_; }
   [[nodiscard]] const PlacementProblem& problem() const { return problem_; }
   [[nodiscard]] const LightingGoal& goal() const { return goal_; }
   [[nodiscard]] const RayScene& rays() const { return rays_; }
   [[nodiscard]] CallSeconds seconds() const { return seconds_; }
-  /// Lit at all; of a matrix with a column each.
-  [[nodiscard]] std::size_t lit_candidates() const;
 
  private:
   explicit ReadyCase(PlacementCase one) : case_(std::move(one)), rays_(case_.scene) {}
@@ -50,13 +50,13 @@ struct BetterAt {
 struct Solved {
   std::vector<LightPose> poses;
   Eigen::VectorXd levels;
-  double error = 1;              ///< of the light that the case is to be judged by
-  std::vector<double> cuts;      ///< error of [k] lights, where the number was open
-  Eigen::VectorXd residual;      ///< by the search's own model
+  double error = 1;          ///< of the light that the case is to be judged by
+  std::vector<double> cuts;  ///< error of [k] lights, where the number was open
+  Eigen::VectorXd residual;  ///< by the search's own model
   std::size_t columns = 0;
-  int evaluations = 0;           ///< of a better model, in a global case
-  CallSeconds seconds;           ///< the case made ready included
-  std::vector<BetterAt> curve;   ///< as the search went, by its own model
+  int evaluations = 0;          ///< of a better model, in a global case
+  CallSeconds seconds;          ///< the case made ready included
+  std::vector<BetterAt> curve;  ///< as the search went, by its own model
   std::string refused;
 };
 

@@ -16,9 +16,22 @@ namespace luxrig {
 /// Non-negative least squares, cold, warm and limited: error is the worst KKT residual, seconds are of the processor.
 [[nodiscard]] std::vector<BenchRow> bench_nnls(const BenchOptions& options);
 
-/// Known lights found again: a row for each of 100 flats (6 with quick), then the median, the 90th percentile (which is
-/// judged) and the worst of every column by itself; `found` is the share found again within 3 cm and 2 % of flux.
+/// All of the placement suite: recovery and scenes; index, curves and growth by name only.
 [[nodiscard]] std::vector<BenchRow> bench_placement(const BenchOptions& options);
+
+/// Known lights found again, their number given and open: a row for each of 100 rooms (3 with quick), then the median,
+/// the 90th percentile (which is judged) and the worst of every column by itself; `found` is the share found again
+/// within 3 cm and 2 % of flux.
+[[nodiscard]] std::vector<BenchRow> bench_placement_recovery(const BenchOptions& options);
+
+/// Every scene and goal by every method, with the certified bound for as many lights. quick: the first scene.
+[[nodiscard]] std::vector<BenchRow> bench_placement_scenes(const BenchOptions& options);
+
+/// Error against time, 20 seeds; `note` has the quartiles.
+[[nodiscard]] std::vector<BenchRow> bench_placement_curves(const BenchOptions& options);
+
+/// Candidates from 10⁴ to 10⁶, points from 10² to 10⁴.
+[[nodiscard]] std::vector<BenchRow> bench_placement_growth(const BenchOptions& options);
 
 /// The best complement of a residual, by scans and by a k-d tree (`--only index`): error is the largest share of the
 /// best product that an answer lacks; seconds of the processor, of the query in the middle of ten. quick: no 3 000

@@ -129,8 +129,11 @@ int main(int argc, char** argv) {
   command->add_option("--references", bench.references_folder, "transport: keep converged references in this folder");
   command->add_option("--reference-error", bench.reference_error, "transport: standard error of those (default 0.0005)")
       ->check(CLI::Range(1e-5, 0.1));
-  command->add_option("--export", bench.export_folder, "transport: write the rooms here for Radiance, measure nothing; nnls: the problems");
+  command->add_option("--export", bench.export_folder,
+                      "transport: write the rooms here for Radiance, measure nothing; nnls: the problems");
   command->add_option("--rig", bench.rigs, "transport: measure this rig's scene too");
+  command->add_option("--data", bench.data_folder,
+                      "placement: folder of office-scan.obj (tools/bench/data) and apartment.glb");
   command->add_option("--only", bench.only, "only cases (analytic: families) whose name begins so");
   command->callback([&] { code = run_bench(suite, bench); });
 

@@ -25,7 +25,7 @@ struct ChooseOptions {
   std::size_t most_columns = 400'000;
   std::uint64_t seed = 1;
   std::vector<LightPose> start;  ///< lights to begin with; none: from the first
-  ExchangeOptions exchange;  ///< its stop ends the search, with the best so far
+  ExchangeOptions exchange;      ///< its stop ends the search, with the best so far
   /// Called when the lights it would choose now are better, from the calling thread.
   std::function<void(const PlacedLights& best, std::size_t columns)> better;
 };

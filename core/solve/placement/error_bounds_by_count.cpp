@@ -116,8 +116,7 @@ class PricedBounds {
 
 /// Solutions of most_lights, three quarters, half and a quarter of it: each time the light whose column is nearest to
 /// what is left over.
-std::vector<PriceGuess> greedy_guesses(const BoundProblem& of, const BlockedLights& lights,
-                                       std::size_t most_lights) {
+std::vector<PriceGuess> greedy_guesses(const BoundProblem& of, const BlockedLights& lights, std::size_t most_lights) {
   auto shared = share_problem({of.columns, of.goal, of.row_weight, {}});
   LUXRIG_CHECK(shared.has_value(), "{}", shared.has_value() ? "" : shared.error().detail);
   const ScaledColumns& scaled = (*shared)->scaled();

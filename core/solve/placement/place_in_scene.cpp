@@ -81,8 +81,7 @@ Result<PlacedInScene> place_in_scene(const Scene& scene, const RayScene& rays, c
   place.seed = options.seed;
   place.threads = options.threads;
   place.stop = options.stop;
-  if (options.better)
-    place.better = [&](const BestSoFar& best) { options.better(best.poses.size(), best.error); };
+  if (options.better) place.better = [&](const BestSoFar& best) { options.better(best.poses.size(), best.error); };
   const auto found = method->run(problem, place);
   if (!found) return tl::unexpected(found.error());
 

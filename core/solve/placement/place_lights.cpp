@@ -42,6 +42,9 @@ class Search {
   /// The first start takes the best each time, later ones one of the three best.
   PlacedLights added_one_by_one(std::uint64_t start, std::mt19937_64& random) {
     PlacedLights lights = none_;
+    if (start == 0)
+      for (const LightPose& pose : options_.start)
+        if (lights.size() < options_.lights) lights.add(pose);
     while (lights.size() < options_.lights && !options_.exchange.stop.stop_requested())
       if (!exchange_.with_one_more(lights, start == 0 ? 1 : 3, random)) break;
     exchange_.refine(lights);

@@ -18,7 +18,8 @@ struct PlaceOptions {
   /// Columns to work out before it ends anyway; it may go over by those of one round.
   std::size_t most_columns = 200'000;
   std::uint64_t seed = 1;
-  ExchangeOptions exchange;  ///< its stop ends the search, with the best so far
+  std::vector<LightPose> start{};  ///< lights to begin with, as many as are wanted or fewer; none: from the first
+  ExchangeOptions exchange;        ///< its stop ends the search, with the best so far
   /// Called with the best so far when there is a better one, from the calling thread.
   std::function<void(const PlacedLights& best, std::size_t columns)> better;
 };

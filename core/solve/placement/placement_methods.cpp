@@ -31,6 +31,7 @@ Result<FoundLights> place_by_luxrig(const PlacementProblem& problem, const Place
     place.wanted_error = options.wanted_error;
     place.most_columns = options.most_columns;
     place.seed = options.seed;
+    place.start = options.start;
     place.exchange = exchange;
     place.better = passed_on(options);
     Placement got = place_lights(*problem.light, *problem.goal, candidates, place);
@@ -43,6 +44,7 @@ Result<FoundLights> place_by_luxrig(const PlacementProblem& problem, const Place
   choose.coarse_error = options.coarse_error;
   choose.most_columns = options.most_columns;
   choose.seed = options.seed;
+  choose.start = options.start;
   choose.exchange = exchange;
   choose.better = passed_on(options);
   LightCurve got = choose_lights(*problem.light, *problem.goal, candidates, choose);

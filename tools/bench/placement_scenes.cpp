@@ -1,0 +1,129 @@
+/// Every scene and goal by every method, in one run, with the certified bound for as many lights as Luxrig takes.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/solve/placement/error_bound.h"
+#include "tools/bench/placement_rows.h"
+#include "tools/bench/row_progress.h"
+#include "tools/bench/suites.h"
+
+namespace luxrig {
+namespace {
+
+struct SceneTarget {
+  const char* case_name;
+  std::size_t lights;  ///< given; 0: open
+  std::optional<double> most_error, most_seconds;
+};
+const SceneTarget kSceneTargets[] = {
+    {"apartment-known", 8, 0.08, {}},  {"apartment-known", 0, 0.002, 4.0},
+    {"office-known", 0, 0.003, 3.0},   {"office-known-global", 0, 0.015, 20.0},
+    {"sewers-uniform", 0, 0.073, 5.0}, {"sewers-uniform-global", 0, 0.153, 20.0},
+    {"apartment-uniform", 0, {}, {}},  {"apartment-colour", 0, {}, {}},
+    {"atrium-uniform", 0, {}, {}},     {"atrium-colour", 0, {}, {}},
+    {"cloister-statue", 0, {}, {}},    {"museum-near-surfaces", 0, {}, {}},
+    {"studio-two-lights", 2, {}, {}},  {"real-apartment", 0, {}, {}},
+    {"real-office", 0, {}, {}},
+};
+/// Of three channels columns are three times as many; of global cases methods other than luxrig's would be corrected,
+/// too, which none of them was made for.
+constexpr const char* kOpenMethods[] = {"luxrig", "gp16", "gp16-subplex", "lin2013", "pursuit"};
+constexpr const char* kGivenMethods[] = {"luxrig",       "gpk15",   "gpk15-subplex", "gp16",
+                                         "gp16-subplex", "lin2013", "annealing",     "pursuit"};
+
+/// Columns of all emitters, rows channel after channel.
+struct EmitterColumns {
+  std::vector<std::uint64_t> begin = {0};
+  std::vector<std::uint32_t> row, light;
+  std::vector<double> value;
+};
+
+EmitterColumns emitter_columns(const ColumnsView& columns, const LightingGoal& goal) {
+  EmitterColumns all;
+  Eigen::VectorXd lux(columns.rows());
+  for (Eigen::Index j = 0; j < columns.columns(); ++j) {
+    lux.setZero();
+    columns.add(j, 1.0, lux.data());
+    for (Eigen::Index e = 0; e < goal.emitters.cols(); ++e) {
+      for (Eigen::Index c = 0; c < goal.channels(); ++c)
+        for (Eigen::Index r = 0; r < lux.size(); ++r)
+          if (const double of = goal.emitters(c, e) * lux[r]; of > 0) {
+            all.row.push_back(static_cast<std::uint32_t>(c * lux.size() + r));
+            all.value.push_back(of);
+          }
+      all.begin.push_back(all.row.size());
+      all.light.push_back(static_cast<std::uint32_t>(j));
+    }
+  }
+  return all;
+}
+
+double bound_for(const ReadyCase& ready, const Solved& solved, bool quick) {
+  const LightingGoal& goal = ready.goal();
+  const EmitterColumns all = emitter_columns(ready.problem().columns, goal);
+  BoundProblem problem;
+  problem.columns = ColumnsView(goal.lux.size(), all.begin, all.row, all.value);
+  problem.goal = goal.lux;
+  if (goal.emitters.cols() > 1) problem.light_of_column = all.light;
+  CountBoundOptions options;
+  options.most_lights = solved.poses.size();
+  options.guesses = {{solved.poses.size(), solved.residual}};
+  if (quick) {
+    options.price_rounds = 3;
+    options.nodes_a_round = options.nodes = 50;
+  }
+  return error_bounds_by_count(problem, options).back();
+}
+
+}  // namespace
+
+std::vector<BenchRow> bench_placement_scenes(const BenchOptions& options) {
+  std::vector<BenchRow> rows;
+  PlacementCaseOptions of_case;
+  of_case.data_folder = options.data_folder;
+  of_case.threads = options.threads;
+  for (const SceneTarget& target : kSceneTargets) {
+    const std::string name = target.lights > 0 ? fmt::format("scene-{}-{}-lights", target.case_name, target.lights)
+                                               : fmt::format("scene-{}", target.case_name);
+    if (name.rfind(options.only, 0) != 0) continue;
+    const bool first_only = options.quick && &target != kSceneTargets;
+    if (first_only && name != options.only) continue;
+    auto one = make_placement_case(target.case_name, 1, of_case);
+    if (!one) {
+      rows.push_back(empty_placement_row(name, "luxrig"));
+      set_further(rows.back(), "note", one.error().detail);
+      continue;
+    }
+    const bool global = one->global;
+    const auto ready = ReadyCase::make(std::move(*one), options.threads);
+    if (!ready) {
+      rows.push_back(empty_placement_row(name, "luxrig"));
+      set_further(rows.back(), "note", ready.error().detail);
+      continue;
+    }
+    const auto run = [&](const char* method_name) {
+      const PlacementMethod& method = *find_placement_method(method_name);
+      const Solved solved = solve_case(**ready, method, target.lights, 1, options.threads, 1e-4);
+      std::optional<double> bound;
+      const bool ours = std::string_view(method_name) == "luxrig";
+      if (ours && !global && (*ready)->of().known_lumens.empty() && solved.refused.empty())
+        bound = bound_for(**ready, solved, options.quick);
+      rows.push_back(placement_row(name, method_name, **ready, solved, bound));
+      if (ours) {
+        rows.back().target_error = target.most_error;
+        rows.back().target_seconds = target.most_seconds;
+      }
+      say_row_made(name, method_name);
+    };
+    if (target.lights > 0)
+      for (const char* method : kGivenMethods) run(method);
+    else
+      for (const char* method : kOpenMethods) run(method);
+  }
+  return rows;
+}
+
+}  // namespace luxrig
