@@ -16,6 +16,8 @@ struct BenchOptions {
   std::filesystem::path export_folder;        ///< transport: writes its rooms here for Radiance instead of
                                               ///< measuring; nnls: writes its problems here for scipy
   std::vector<std::filesystem::path> rigs;    ///< transport: rig files whose scenes are measured too
+  std::string method;                         ///< placement scenes: only this one
+  bool bounds = true;                         ///< placement scenes: with certified bounds, which take longest
   std::filesystem::path data_folder;          ///< placement: scenes that are read from files
   std::string only;                           ///< transport, nnls: only cases whose name begins so; analytic: only such families
 };

@@ -105,11 +105,12 @@ std::vector<BenchRow> bench_placement_scenes(const BenchOptions& options) {
       continue;
     }
     const auto run = [&](const char* method_name) {
+      if (!options.method.empty() && options.method != method_name) return;
       const PlacementMethod& method = *find_placement_method(method_name);
       const Solved solved = solve_case(**ready, method, target.lights, 1, options.threads, 1e-4);
       std::optional<double> bound;
       const bool ours = std::string_view(method_name) == "luxrig";
-      if (ours && !global && (*ready)->of().known_lumens.empty() && solved.refused.empty())
+      if (options.bounds && ours && !global && solved.refused.empty() && solved.error > kRecoveredError)
         bound = bound_for(**ready, solved, options.quick);
       rows.push_back(placement_row(name, method_name, **ready, solved, bound));
       if (ours) {

@@ -7,8 +7,11 @@
 namespace luxrig {
 namespace {
 
-constexpr double kGatherError = 0.01;
+constexpr double kGatherError = 0.015;
+constexpr int kGatherRounds = 3;
 constexpr std::size_t kSearchColumns = 150'000;
+/// With reflected light, which a model corrects later anyway: of the first search, and of those after a correction.
+constexpr std::size_t kGlobalColumns = 80'000, kCorrectedColumns = 40'000;
 
 MountingSpec mounting_of(const PlacementCase& one) {
   MountingSpec spec;
@@ -102,7 +105,7 @@ Solved solve_case(const ReadyCase& ready, const PlacementMethod& method, std::si
   options.seed = seed;
   options.threads = threads;
   options.wanted_error = wanted_error;
-  options.most_columns = kSearchColumns;
+  options.most_columns = ready.of().global ? kGlobalColumns : kSearchColumns;
   const auto start = Steady::now();
   options.better = [&](const BestSoFar& best) {
     solved.curve.push_back(
@@ -122,17 +125,17 @@ Solved solve_case(const ReadyCase& ready, const PlacementMethod& method, std::si
       PlacementOptions again = options;
       again.better = {};
       again.start = from.poses();
+      again.most_columns = kCorrectedColumns;
       const auto more = method.run(problem, again);
       if (!more) return from;
       solved.columns += more->columns;
       return more->lights;
     };
-    const auto corrected = correct_lights(
-        *ready.problem().light, ready.goal(), found->lights,
-        [&](std::span<const LightPose> poses, const Eigen::VectorXd& levels) {
-          return gathered_lux(ready, poses, levels, threads);
-        },
-        search_again);
+    const auto corrected = correct_lights(*ready.problem().light, ready.goal(), found->lights,
+                                          [&](std::span<const LightPose> poses, const Eigen::VectorXd& levels) {
+                                            return gathered_lux(ready, poses, levels, threads);
+                                          },
+                                          search_again, {.most_rounds = kGatherRounds});
     if (!corrected) {
       solved.refused = corrected.error().detail;
       return;

@@ -132,6 +132,8 @@ int main(int argc, char** argv) {
   command->add_option("--export", bench.export_folder,
                       "transport: write the rooms here for Radiance, measure nothing; nnls: the problems");
   command->add_option("--rig", bench.rigs, "transport: measure this rig's scene too");
+  command->add_option("--method", bench.method, "placement: only this method on scenes");
+  command->add_flag("!--no-bounds", bench.bounds, "placement: without certified bounds");
   command->add_option("--data", bench.data_folder,
                       "placement: folder of office-scan.obj (tools/bench/data) and apartment.glb");
   command->add_option("--only", bench.only, "only cases (analytic: families) whose name begins so");

@@ -14,14 +14,16 @@ class Search {
       : options_(options), exchange_(candidates, options.exchange), none_(light, goal), best_{none_, 0, 0} {}
 
   Placement run() {
-    for (std::uint64_t start = 0; !ended() && start < kMostStarts; ++start) {
+    int idle = 0;
+    for (std::uint64_t start = 0; !ended() && start < kMostStarts && idle < options_.most_idle_starts; ++start) {
       ++best_.starts;
+      const double best_error = best_.lights.error();
       std::mt19937_64 random(options_.seed * 0x9E3779B97F4A7C15ull + start);
       PlacedLights lights = added_one_by_one(start, random);
       offer(lights);
-      while (!ended() && (exchange_.singly(lights, random) || exchange_.by_twos(lights) ||
-                          exchange_.through_more(lights, 2, random) || exchange_.through_more(lights, 4, random)))
-        offer(lights);
+      while (!ended() && exchanged(lights, random)) offer(lights);
+      offer(lights);
+      idle = best_.lights.error() < (1 - options_.least_progress) * best_error ? 0 : idle + 1;
     }
     best_.columns = exchange_.columns();
     return std::move(best_);
@@ -31,6 +33,15 @@ class Search {
   [[nodiscard]] bool ended() const {
     return options_.exchange.stop.stop_requested() || best_.lights.error() <= options_.wanted_error ||
            exchange_.columns() >= options_.most_columns;
+  }
+
+  /// False when nothing makes it much better.
+  bool exchanged(PlacedLights& lights, std::mt19937_64& random) {
+    const double enough = (1 - options_.least_progress) * lights.error();
+    const auto more_than_enough = [&](bool changed) { return changed && lights.error() < enough; };
+    return more_than_enough(exchange_.singly(lights, random)) || more_than_enough(exchange_.by_twos(lights)) ||
+           more_than_enough(exchange_.through_more(lights, 2, random)) ||
+           more_than_enough(exchange_.through_more(lights, 4, random));
   }
 
   void offer(const PlacedLights& lights) {

@@ -17,6 +17,8 @@ struct PlaceOptions {
   double wanted_error = 1e-4;  ///< PlacedLights::error() at which the search ends
   /// Columns to work out before it ends anyway; it may go over by those of one round.
   std::size_t most_columns = 200'000;
+  int most_idle_starts = 2;       ///< starts in a row that find nothing better end it, too
+  double least_progress = 0.003;  ///< share of the error that a round over all lights must take away, or is the last
   std::uint64_t seed = 1;
   std::vector<LightPose> start{};  ///< lights to begin with, as many as are wanted or fewer; none: from the first
   ExchangeOptions exchange;        ///< its stop ends the search, with the best so far
