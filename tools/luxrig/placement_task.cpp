@@ -11,6 +11,7 @@
 #include <mutex>
 #include <thread>
 
+#include "core/transport/evaluator_choice.h"
 #include "core/transport/rig_transport.h"
 
 namespace luxrig {
@@ -112,8 +113,34 @@ Result<PlacedInScene> search_places(const Rig& rig, const Scene& scene, const Ra
   place.threads = options.threads;
   place.stop = watch.stop();
   place.better = [&](std::size_t lights, double error) { watch.better(lights, error); };
-  return place_in_scene(scene, rays, mounting, emitter_of(rig.luminaires[spec.luminaire], Pose{}), receivers, goal,
-                        place);
+  const Luminaire& luminaire = rig.luminaires[spec.luminaire];
+  place.lux_of = [&](std::span<const LightPose> poses, const Eigen::VectorXd& levels) -> Result<Eigen::VectorXd> {
+    std::vector<Emitter> lamps;
+    EvaluateOptions evaluate;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      const double level = levels[static_cast<Eigen::Index>(i)];
+      if (!(level > 0)) continue;
+      lamps.push_back(emitter_of(luminaire, {aimed_rotation(Mat3::Identity(), poses[i].aim_world),
+                                             mounting.snapped(poses[i].position_world_m)->place_world_m}));
+      evaluate.levels.push_back(level);
+    }
+    if (lamps.empty()) return Eigen::VectorXd::Zero(static_cast<Eigen::Index>(receivers.size()));
+    evaluate.wanted_relative_error = options.max_error;
+    evaluate.seed = options.seed;
+    evaluate.threads = options.threads;
+    evaluate.watch.stop = watch.stop();
+    std::unique_ptr<Evaluator> evaluator = make_direct_evaluator(rays);
+    if (place.indirect) {
+      auto chosen = choose_evaluator(rays, receivers, lamps, evaluate);
+      if (!chosen) return tl::unexpected(chosen.error());
+      evaluator = std::move(chosen->evaluator);
+    }
+    const auto lit = evaluator->evaluate(receivers, lamps, evaluate);
+    if (!lit) return tl::unexpected(lit.error());
+    return lit->lux(
+        Eigen::Map<const Eigen::VectorXd>(evaluate.levels.data(), static_cast<Eigen::Index>(evaluate.levels.size())));
+  };
+  return place_in_scene(scene, rays, mounting, emitter_of(luminaire, Pose{}), receivers, goal, place);
 }
 
 }  // namespace luxrig

@@ -46,6 +46,7 @@ void keep_best_ways(std::vector<PlacedLights>& ways, std::size_t count) {
 RefineOptions LightExchange::steps(int most) const {
   RefineOptions refine;
   refine.most_steps = most;
+  refine.longest_step_m = options_.longest_step_m;
   refine.stop = options_.stop;
   return refine;
 }

@@ -23,8 +23,17 @@ struct ExchangeOptions {
   double apart_m = 0.5;          ///< between candidates that are tried
   double near_m = 0.4;           ///< of those places: standard deviation along each axis
   double near_rad = 0.3;         ///< and of their aims, about each of two axes
+  double longest_step_m = 0.5;   ///< of a light in one step of refinement
   int threads = 0;               ///< 0 = one per core; the result does not depend on it
   std::stop_token stop;
+
+  /// Lengths that suit candidates so far apart.
+  [[nodiscard]] static ExchangeOptions for_spacing(double spacing_m) {
+    ExchangeOptions options;
+    options.apart_m = options.longest_step_m = 5.0 / 3 * spacing_m;
+    options.near_m = 4.0 / 3 * spacing_m;
+    return options;
+  }
 };
 
 class LightExchange {

@@ -2,6 +2,7 @@
 /// Where a light hangs and where it points.
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cmath>
 
 #include "core/geometry.h"
@@ -28,6 +29,11 @@ struct LightPose {
   basis.col(1) = Vec3(b, sign + unit.y() * unit.y() * a, -unit.y());
   basis.col(2) = unit;
   return basis;
+}
+
+/// `hung` turned the shortest way so that its -Z points along `aim`.
+[[nodiscard]] inline Mat3 aimed_rotation(const Mat3& hung, const Vec3& aim) {
+  return Eigen::Quaterniond::FromTwoVectors(-hung.col(2), aim).toRotationMatrix() * hung;
 }
 
 /// The pose moved by step: metres along x, y and z, and, if it has five numbers, radians in which the aim turns towards

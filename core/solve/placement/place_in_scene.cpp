@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "core/solve/placement/mounted_light.h"
 #include "core/solve/placement/placement_methods.h"
@@ -16,7 +17,10 @@ constexpr std::size_t kAims = 26;
 
 /// Columns of a search, which are what its time goes into. Reflected light of an aimed one costs some hundred times as
 /// much.
-constexpr std::size_t kMostColumns = 150'000, kMostTracedColumns = 4'000;
+constexpr std::size_t kMostColumns = 150'000, kReflectedColumns = 80'000, kMostTracedColumns = 4'000;
+/// Of searches that go on after a correction.
+constexpr std::size_t kCorrectedShare = 2;
+constexpr int kCorrections = 3;
 
 bool reflects(const RayScene& rays) {
   return std::any_of(rays.materials().begin(), rays.materials().end(), [](const Material& material) {
@@ -55,7 +59,11 @@ Result<PlacedInScene> place_in_scene(const Scene& scene, const RayScene& rays, c
   of_space.seed = options.seed;
   of_space.threads = options.threads;
   of_space.watch = Watch{options.stop, {}};
-  const auto space = SearchSpace::make(scene, rays, receivers, luminaire, *places_m, of_space);
+  // A shape counts when what is found is corrected; the search would be a hundred times as long with it.
+  Emitter lamp = luminaire;
+  lamp.shape = {};
+  const bool has_size = luminaire.shape.kind != LuminousShape::Kind::point;
+  const auto space = SearchSpace::make(scene, rays, receivers, lamp, *places_m, of_space);
   if (!space) return tl::unexpected(space.error());
   const MountedLight light(space->light(), mounting);
   LightingGoal bounded = goal;
@@ -77,7 +85,7 @@ Result<PlacedInScene> place_in_scene(const Scene& scene, const RayScene& rays, c
   place.most_lights = options.max_lights;
   place.wanted_error = options.error_wanted;
   place.least_improvement = options.improvement;
-  place.most_columns = of_space.indirect && options.aimed ? kMostTracedColumns : kMostColumns;
+  place.most_columns = !of_space.indirect ? kMostColumns : options.aimed ? kMostTracedColumns : kReflectedColumns;
   place.seed = options.seed;
   place.threads = options.threads;
   place.stop = options.stop;
@@ -86,19 +94,39 @@ Result<PlacedInScene> place_in_scene(const Scene& scene, const RayScene& rays, c
   if (!found) return tl::unexpected(found.error());
 
   PlacedInScene placed;
-  placed.lights = lit_ones(found->lights, mounting, options.aimed);
+  placed.columns = found->columns;
+  std::optional<CorrectedLights> corrected;
+  if (options.lux_of && (of_space.indirect || has_size) && !options.stop.stop_requested()) {
+    const auto search_again = [&](const LightingGoal& again_goal, const PlacedLights& from) {
+      PlacementProblem again = problem;
+      again.goal = &again_goal;
+      PlacementOptions how = place;
+      how.better = {};
+      how.start = from.poses();
+      how.most_columns = place.most_columns / kCorrectedShare;
+      const auto more = method->run(again, how);
+      if (!more) return from;
+      placed.columns += more->columns;
+      return more->lights;
+    };
+    CorrectOptions rounds;
+    rounds.most_rounds = kCorrections;
+    auto by_lux = correct_lights(light, bounded, found->lights, options.lux_of, search_again, rounds);
+    if (by_lux) corrected = std::move(*by_lux);
+  }
+  const PlacedLights& lights = corrected ? corrected->lights : found->lights;
+  placed.lights = lit_ones(lights, mounting, options.aimed);
   if (placed.lights.empty()) {
     if (options.stop.stop_requested())
       return tl::unexpected(Fault{Cause::cancelled, "", "stopped before any light was placed", {}});
     return refusal("no light anywhere brings the points nearer to their goals");
   }
-  placed.error = found->lights.error();
+  placed.error = corrected ? corrected->error : lights.error();
   for (const PlacedLights& cut : found->cuts)
     if (cut.size() > (placed.numbers.empty() ? 0 : placed.numbers.back().lights))
       placed.numbers.push_back({cut.size(), cut.error()});
-  if (placed.numbers.empty()) placed.numbers.push_back({found->lights.size(), placed.error});
+  if (placed.numbers.empty()) placed.numbers.push_back({lights.size(), placed.error});
   placed.candidates = problem.poses.size();
-  placed.columns = found->columns;
   placed.stopped = options.stop.stop_requested();
   return placed;
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/result.h"
+#include "core/solve/placement/correct_lights.h"
 #include "core/solve/placement/mounting.h"
 #include "core/solve/placement/placed_lights.h"
 #include "core/transport/evaluator.h"
@@ -30,6 +31,9 @@ struct PlaceInSceneOptions {
   const char* method = "luxrig";      ///< a name in placement_methods.h
   bool aimed = false;                 ///< what lights look at is searched, too
   bool indirect = true;
+  /// With reflected light or a luminaire with size: what the lights found are corrected by (correct_lights.h); none:
+  /// the search's own model, which is good to a few per cent.
+  LuxOfLights lux_of;
   std::uint64_t seed = 1;
   int threads = 0;       ///< 0 = one per core; the result does not depend on it
   std::stop_token stop;  ///< ends the search with the best so far
@@ -51,10 +55,10 @@ struct PlacedInScene {
   bool stopped = false;  ///< before the search was at its end
 };
 
-/// luminaire   at rated flux, hung with its own rotation unless aimed; of one with size, direct light only
-/// receivers   one per point of the goal
-/// Cause::cancelled when stopped before any light was placed; Cause::invalid as Mounting::candidates and
-/// candidate_transport, for an unknown method, and when no candidate lights any receiver.
+/// luminaire   at rated flux, hung with its own rotation unless aimed; one with size is searched as a point in its
+/// middle receivers   one per point of the goal Cause::cancelled when stopped before any light was placed;
+/// Cause::invalid as Mounting::candidates and candidate_transport, for an unknown method, and when no candidate lights
+/// any receiver.
 [[nodiscard]] Result<PlacedInScene> place_in_scene(const Scene& scene, const RayScene& rays, const Mounting& mounting,
                                                    const Emitter& luminaire, std::span<const Receiver> receivers,
                                                    const LightingGoal& goal, const PlaceInSceneOptions& options);

@@ -22,7 +22,8 @@ Result<FoundLights> place_by_luxrig(const PlacementProblem& problem, const Place
     return tl::unexpected(fault);
   }
   const ComplementSearch candidates(problem.columns, problem.poses, *problem.goal);
-  ExchangeOptions exchange;
+  ExchangeOptions exchange =
+      problem.spacing_m > 0 ? ExchangeOptions::for_spacing(problem.spacing_m) : ExchangeOptions{};
   exchange.threads = options.threads;
   exchange.stop = options.stop;
   if (options.lights > 0) {

@@ -14,11 +14,6 @@ constexpr double kTurn = 1e-4;
 /// Wanted of a luminaire with size where something may stand in between.
 constexpr double kSizeError = 0.003;
 
-/// `hung` turned the shortest way so that its -Z points along `aim`.
-Mat3 aimed_rotation(const Mat3& hung, const Vec3& aim) {
-  return Eigen::Quaterniond::FromTwoVectors(-hung.col(2), aim).toRotationMatrix() * hung;
-}
-
 }  // namespace
 
 SceneLight::SceneLight(const IncrementalTransport& transport, std::vector<Receiver> receivers, Emitter luminaire,

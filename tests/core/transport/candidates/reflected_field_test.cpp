@@ -1,0 +1,94 @@
+#include "core/transport/candidates/reflected_field.h"
+
+#include <gtest/gtest.h>
+
+#include "core/transport/candidates/incremental_transport.h"
+#include "tests/core/transport/candidates/box_rooms.h"
+#include "tests/random.h"
+
+namespace luxrig {
+namespace {
+
+struct FieldOfTwoRooms {
+  Scene scene = two_rooms(0.5, true);
+  RayScene rays{scene};
+  std::vector<Receiver> receivers;
+  Emitter lumen{make_isotropic(1), {}};
+  std::vector<Vec3> places_m;
+  CandidateOptions options;
+
+  FieldOfTwoRooms() {
+    for (double x = 0.5; x < 8; x += 1)
+      for (double y = 0.5; y < 3; y += 1)
+        if (x < 3.9 || x > 4.3) receivers.push_back({{x, y, 0.001}, Vec3::UnitZ()});
+    for (double x = 0.3; x < 8; x += 0.3)
+      for (double y = 0.3; y < 3; y += 0.3)
+        for (double z = 1; z < 2.4; z += 0.3) places_m.emplace_back(x, y, z);
+    options.wanted_relative_error = 0.03;
+    options.surface_cells = 4000;
+  }
+  [[nodiscard]] ReflectedField field(std::size_t nodes) const {
+    return std::move(*ReflectedField::make(scene, rays, receivers, lumen, places_m, nodes, options));
+  }
+};
+
+// Against light worked out for that place by itself.
+TEST(ReflectedField, AgreesWithRaysFromThePlaceItself) {
+  const FieldOfTwoRooms two;
+  const ReflectedField field = two.field(400);
+  EXPECT_LE(field.nodes(), 400u);
+  EXPECT_GE(field.nodes(), 100u);
+  IncrementalOptions incremental;
+  incremental.rays_per_cell = 96;
+  const auto exact = IncrementalTransport::make(two.scene, two.rays, two.receivers, incremental);
+  Random random(4);
+  double off = 0, all = 0;
+  for (int trial = 0; trial < 25; ++trial) {
+    const Vec3 at_m(random.between(0.5, 3.5), random.between(0.5, 2.5), random.between(1.2, 2.2));
+    Eigen::VectorXd lux = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(two.receivers.size()));
+    ASSERT_TRUE(field.add(at_m, lux, nullptr));
+    const auto column = (*exact)->column({two.lumen.intensity, {Mat3::Identity(), at_m}});
+    const Eigen::VectorXd reflected = column->total_lux - column->direct_lux;
+    off += (lux - reflected).squaredNorm();
+    all += reflected.squaredNorm();
+  }
+  EXPECT_LE(std::sqrt(off / all), 0.05);
+}
+
+TEST(ReflectedField, SlopesAreThoseOfWhatItSays) {
+  const FieldOfTwoRooms two;
+  const ReflectedField field = two.field(200);
+  Random random(6);
+  double off = 0, all = 0;
+  for (int trial = 0; trial < 20; ++trial) {
+    const Vec3 at_m(random.between(0.8, 3.2), random.between(0.8, 2.2), random.between(1.3, 2.1));
+    const auto count = static_cast<Eigen::Index>(two.receivers.size());
+    const auto lux_at = [&](const Vec3& place_m) {
+      Eigen::VectorXd lux = Eigen::VectorXd::Zero(count);
+      EXPECT_TRUE(field.add(place_m, lux, nullptr));
+      return lux;
+    };
+    Eigen::VectorXd lux = Eigen::VectorXd::Zero(count);
+    Eigen::MatrixXd slopes = Eigen::MatrixXd::Zero(count, 3);
+    ASSERT_TRUE(field.add(at_m, lux, &slopes));
+    for (int axis = 0; axis < 3; ++axis) {
+      constexpr double kStep_m = 0.15;  // the plane changes from place to place: slopes over a stretch
+      const Eigen::VectorXd rise =
+          (lux_at(at_m + kStep_m * Vec3::Unit(axis)) - lux_at(at_m - kStep_m * Vec3::Unit(axis))) / (2 * kStep_m);
+      off += (slopes.col(axis) - rise).squaredNorm();
+      all += rise.squaredNorm();
+    }
+  }
+  EXPECT_LE(std::sqrt(off / all), 0.5);
+}
+
+TEST(ReflectedField, SaysNothingBesideItsNodesAndOfNone) {
+  const FieldOfTwoRooms two;
+  Eigen::VectorXd lux = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(two.receivers.size()));
+  EXPECT_FALSE(two.field(200).add({50, 50, 50}, lux, nullptr));
+  EXPECT_FALSE(two.field(0).add({1, 1, 1.5}, lux, nullptr));
+  EXPECT_EQ(lux.norm(), 0);
+}
+
+}  // namespace
+}  // namespace luxrig
