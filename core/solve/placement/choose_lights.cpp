@@ -10,6 +10,8 @@ namespace {
 /// Lights beyond what is chosen that the way up goes: a share of them, and at least this many.
 constexpr std::size_t kLeastBeyond = 2;
 constexpr std::size_t kBeyondOf = 5;
+/// Times the wanted error.
+constexpr double kNearlyWanted = 10;
 /// Of least_improvement, where the error is coarse: the first lights of many rooms each do little.
 constexpr double kCoarseShare = 0.05;
 
@@ -28,6 +30,9 @@ class Choice {
       while (!ended() && better_at(curve_.chosen)) {
       }
     } while (!ended() && look_ahead());
+    while (!ended() && fewer_will_do()) {
+    }
+    if (options_.whole_curve) fill_curve();
     curve_.columns = exchange_.columns();
     return std::move(curve_);
   }
@@ -113,6 +118,25 @@ class Choice {
       offer(lights);
     }
     return curve_.chosen > was;
+  }
+
+  void fill_curve() {
+    for (std::size_t k = curve_.chosen; k-- > 1 && !ended();) {
+      PlacedLights lights = exchange_.without_one(curve_.cuts[k + 1]);
+      if (error(k) < lights.error()) lights = curve_.cuts[k];
+      exchange_.singly(lights, random_);
+      offer(lights);
+    }
+  }
+
+  /// Whether one light fewer, nearly good enough, comes to be so.
+  bool fewer_will_do() {
+    const std::size_t was = curve_.chosen;
+    if (was < 2 || chosen_error_ > options_.wanted_error || error(was - 1) > kNearlyWanted * options_.wanted_error)
+      return false;
+    while (!ended() && better_at(was - 1)) {
+    }
+    return curve_.chosen < was;
   }
 
   bool better_at(std::size_t count) {

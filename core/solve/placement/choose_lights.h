@@ -23,6 +23,8 @@ struct ChooseOptions {
   double least_progress = 0.003;  ///< share of the error that a round over all lights must take away, or is the last
   /// Columns to work out before it ends anyway; it may go over by those of one round.
   std::size_t most_columns = 400'000;
+  /// Fewer lights than are chosen are looked at as closely as more: for a person who picks another number.
+  bool whole_curve = false;
   std::uint64_t seed = 1;
   std::vector<LightPose> start;  ///< lights to begin with; none: from the first
   ExchangeOptions exchange;      ///< its stop ends the search, with the best so far

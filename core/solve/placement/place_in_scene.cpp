@@ -86,6 +86,7 @@ Result<PlacedInScene> place_in_scene(const Scene& scene, const RayScene& rays, c
   place.wanted_error = options.error_wanted;
   place.least_improvement = options.improvement;
   place.most_columns = !of_space.indirect ? kMostColumns : options.aimed ? kMostTracedColumns : kReflectedColumns;
+  place.whole_curve = true;
   place.seed = options.seed;
   place.threads = options.threads;
   place.stop = options.stop;
@@ -102,6 +103,7 @@ Result<PlacedInScene> place_in_scene(const Scene& scene, const RayScene& rays, c
       again.goal = &again_goal;
       PlacementOptions how = place;
       how.better = {};
+      how.whole_curve = false;
       how.start = from.poses();
       how.most_columns = place.most_columns / kCorrectedShare;
       const auto more = method->run(again, how);

@@ -46,6 +46,7 @@ Result<FoundLights> place_by_luxrig(const PlacementProblem& problem, const Place
   choose.most_columns = options.most_columns;
   choose.seed = options.seed;
   choose.start = options.start;
+  choose.whole_curve = options.whole_curve;
   choose.exchange = exchange;
   choose.better = passed_on(options);
   LightCurve got = choose_lights(*problem.light, *problem.goal, candidates, choose);

@@ -45,6 +45,7 @@ struct PlacementOptions {
   /// Of baselines that refine by Nelder & Mead's simplex: Rowan's subplex (1990) instead, which runs that simplex in
   /// subspaces of a few unknowns and does not fail with thirty of them.
   bool subplex = false;
+  bool whole_curve = false;        ///< ChooseOptions::whole_curve, of luxrig's own
   std::vector<LightPose> start{};  ///< lights to begin with, of methods that can (luxrig's own)
   std::uint64_t seed = 1;
   int threads = 0;  ///< 0 = one per core; the result does not depend on it

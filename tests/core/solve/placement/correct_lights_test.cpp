@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/solve/placement/place_lights.h"
 #include "tests/core/solve/placement/lit_hall.h"
 
@@ -17,7 +20,7 @@ LuxOfLights better_lux(const LitHall& hall) {
       const double level = levels[static_cast<Eigen::Index>(k)];
       EXPECT_TRUE(hall.light->column(poses[k], lux, nullptr));
       all += 1.1 * level * lux;
-      all.array() += level * 0.002 * (3 + poses[k].position_world_m.x());
+      all.array() += level * 0.0004 * (3 + std::sin(poses[k].position_world_m.x()));
     }
     return all;
   };

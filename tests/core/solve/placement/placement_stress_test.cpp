@@ -55,7 +55,7 @@ TEST(PlacementStress, PointsThatNothingReachesStayDarkAndTheOthersAreLit) {
   const LitHall whole(make_box_room(1), 0.4);
   LitRoom room = make_box_room(1);
   room.receivers.resize(20);
-  for (int i = 0; i < 5; ++i) room.receivers.push_back({{50.0 + i, 50, 50}, -Vec3::UnitZ()});
+  for (int i = 0; i < 5; ++i) room.receivers.push_back({{50.0 + i, 50, 50}, Vec3::UnitZ()});
   const LitHall hall(room, 0.4);
   LightingGoal goal;
   goal.lux = Eigen::VectorXd::Constant(hall.light->points(), 100);
@@ -78,8 +78,8 @@ TEST(PlacementStress, LightsOnSurfacesAndInPointsAreRefusedOrFinite) {
   Eigen::MatrixXd slopes;
   Random random(3);
   for (int trial = 0; trial < 300; ++trial) {
-    const Receiver& receiver =
-        hall.room.receivers[static_cast<std::size_t>(random.between(0, 1) * (hall.room.receivers.size() - 1))];
+    const Receiver& receiver = hall.room.receivers[static_cast<std::size_t>(
+        random.between(0, static_cast<double>(hall.room.receivers.size() - 1)))];
     const double off_m = trial % 3 == 0 ? 0 : std::pow(10, random.between(-12, -1));
     LightPose pose{receiver.position_world_m + off_m * random.direction()};
     if (hall.light->column(pose, lux, &slopes)) {

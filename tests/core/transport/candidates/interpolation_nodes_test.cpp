@@ -45,6 +45,30 @@ TEST(InterpolationNodes, GiveBackWhatIsLinearInThePlace) {
   EXPECT_GT(interpolated, places_m.size() / 7 * 8 / 10);  // not in corners
 }
 
+TEST(InterpolationNodes, GiveTheSlopeOfWhatIsLinearInThePlace) {
+  const Scene scene = two_rooms(0.5, true);
+  const RayScene rays(scene);
+  const Vec3 slope(0.3, -0.7, 0.2);
+  const auto places_m = random_places({0.1, 0.1, 0.9}, {3.9, 2.9, 2.4}, 4000);
+  const std::vector<std::uint8_t> usable(places_m.size(), 1);
+  const InterpolationNodes nodes(places_m, usable, 0.4);
+  std::vector<WeightedRow> shares;
+  std::vector<Vec3> slopes_per_m;
+  std::uint64_t cast = 0;
+  std::size_t near = 0, all = 0;
+  for (std::uint32_t p = 0; p < places_m.size(); p += 7) {
+    nodes.shares(rays, places_m[p], Vec3::Zero(), shares, cast, ~0u, &slopes_per_m);
+    if (shares.empty()) continue;
+    ASSERT_EQ(slopes_per_m.size(), shares.size());
+    Vec3 found = Vec3::Zero();
+    for (std::size_t i = 0; i < shares.size(); ++i)
+      found += slopes_per_m[i] * places_m[nodes.position(shares[i].row)].dot(slope);
+    ++all;
+    if ((found - slope).norm() < 0.1 * slope.norm()) ++near;  // the ridge takes some per cent
+  }
+  EXPECT_GE(near, all * 9 / 10);
+}
+
 TEST(InterpolationNodes, DoNotSpeakThroughAWallNorForThemselvesWhenLeftOut) {
   const Scene scene = two_rooms(0.5, false);
   const RayScene rays(scene);
