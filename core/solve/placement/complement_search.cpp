@@ -89,7 +89,9 @@ Eigen::VectorXd ComplementSearch::gains(const PlacedLights& chosen) const {
   const auto count = static_cast<Eigen::Index>(pulling.size());
   Eigen::MatrixXd left(count, emitters);
   for (Eigen::Index i = 0; i < count; ++i) left.row(i) = squared_norm_.row(place[static_cast<std::size_t>(i)]);
-  if (channels == 1) {
+  if (basis.cols() == 0) {
+    // Nothing is chosen yet.
+  } else if (channels == 1) {
     const Eigen::VectorXd of_basis = products(pulling, basis).rowwise().squaredNorm();
     left -= of_basis * goal_->emitters.cwiseAbs2();
   } else {
