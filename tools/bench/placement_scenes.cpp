@@ -28,8 +28,7 @@ const SceneTarget kSceneTargets[] = {
     {"studio-two-lights", 2, {}, {}},  {"real-apartment", 0, {}, {}},
     {"real-office", 0, {}, {}},
 };
-/// Of three channels columns are three times as many; of global cases methods other than luxrig's would be corrected,
-/// too, which none of them was made for.
+/// In global cases all of them are corrected by gathered light, though only luxrig's goes on from where it was.
 constexpr const char* kOpenMethods[] = {"luxrig", "gp16", "gp16-subplex", "lin2013", "pursuit"};
 constexpr const char* kGivenMethods[] = {"luxrig",       "gpk15",   "gpk15-subplex", "gp16",
                                          "gp16-subplex", "lin2013", "annealing",     "pursuit"};
