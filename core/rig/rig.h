@@ -185,6 +185,7 @@ struct PlacementSpec {
   bool indirect = true;  ///< reflected light counts in the search
   FixturesMeanwhile fixtures = FixturesMeanwhile::as_set;
   std::optional<double> seconds;  ///< after which the search ends with the best so far
+  bool bound = false;             ///< prove, too, how close as many lights could come
 };
 
 enum class TaskKind { emittance, placement };

@@ -258,8 +258,7 @@ constexpr KeySpec kRigKeys[] = {
      {0, 1, false, true},
      "",
      "share of the error that one more light must take away to be worth hanging, when `lights` is left out"},
-    {"task", "method", text, "", R"("luxrig")", kAny,
-     "luxrig, gpk15, gp16, lin2013, annealing, pursuit",
+    {"task", "method", text, "", R"("luxrig")", kAny, "luxrig, gpk15, gp16, lin2013, annealing, pursuit",
      "how places are searched. `luxrig`: one light after the other, all refined together, taken out and put back; the "
      "others are published methods to compare with (`gpk15` and `annealing` need `lights`)"},
     {"task", "aimed", yes_no, "", "false", kAny, "",
@@ -278,6 +277,9 @@ constexpr KeySpec kRigKeys[] = {
      "",
      "ends the search after this time with the best so far; left out, after a fixed amount of work, so that the result "
      "does not depend on the machine"},
+    {"task", "bound", yes_no, "", "false", kAny, "",
+     "whether to prove, too, how close as many lights could come at all (seconds to a minute); how close any number "
+     "could is always worked out where the goal was not reached"},
 
     {"mounting", "box_m", box, "m", kNone, kPosition, "",
      "two opposite corners of a box that lights stay in; left out, the scene's bounding box"},

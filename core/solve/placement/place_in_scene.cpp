@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/solve/placement/corrected_placement.h"
+#include "core/solve/placement/goal_bounds.h"
 #include "core/solve/placement/mounted_light.h"
 #include "core/solve/placement/placement_methods.h"
 #include "core/solve/placement/search_space.h"
@@ -108,6 +109,19 @@ Result<PlacedInScene> place_in_scene(const Scene& scene, const RayScene& rays, c
     if (cut.size() > (placed.numbers.empty() ? 0 : placed.numbers.back().lights))
       placed.numbers.push_back({cut.size(), cut.error()});
   if (placed.numbers.empty()) placed.numbers.push_back({lights.size(), placed.error});
+  if (placed.error > options.error_wanted && !options.stop.stop_requested()) {
+    placed.lower_bound = goal_error_bound(problem.columns, bounded, options.stop);
+    if (options.bound_of_number) {
+      CountBoundOptions counted;
+      counted.most_lights = placed.lights.size();
+      // By the search's own light: the residual of corrected lights is the evaluator's.
+      counted.guesses = {{placed.lights.size(), done->found.lights.residual()}};
+      counted.threads = options.threads;
+      counted.stop = options.stop;
+      placed.lower_bound_of_number =
+          std::max(*placed.lower_bound, goal_error_bounds_by_count(problem.columns, bounded, counted).back());
+    }
+  }
   placed.candidates = problem.poses.size();
   placed.stopped = options.stop.stop_requested();
   return placed;

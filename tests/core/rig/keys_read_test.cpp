@@ -161,6 +161,7 @@ aimed = true  #> false
 indirect = false  #> true
 fixtures = "off"  #> "full"
 seconds = 5  #> 6
+bound = true  #> false
 [[task]]
 name = "four"
 kind = "placement"
@@ -300,7 +301,7 @@ std::string dump(const Rig& rig) {
   for (const auto& t : rig.tasks) {
     const PlacementSpec& p = t.placement;
     add(t.name, static_cast<int>(t.kind), p.luminaire, text_of(p.lights), p.max_lights, p.error_wanted, p.improvement,
-        static_cast<int>(p.method), p.aimed, p.indirect, static_cast<int>(p.fixtures), text_of(p.seconds));
+        static_cast<int>(p.method), p.aimed, p.indirect, static_cast<int>(p.fixtures), text_of(p.seconds), p.bound);
   }
   const MountingSpec& mounting = rig.mounting;
   if (mounting.box_world_m) add(text_of(Vec3(mounting.box_world_m->min())), text_of(Vec3(mounting.box_world_m->max())));
