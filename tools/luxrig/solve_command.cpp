@@ -46,7 +46,7 @@ void print_placement(const PlannedTask& task, const PlacementSpec& spec) {
     fmt::print("lights and what they leave of the error: {}\n", tried);
   }
   if (task.lower_bound)
-    fmt::print("proven by the search's own light: no lights at the places it tried leave less than {}\n",
+    fmt::print("proven: no lights at the places on its lattice leave less than {} (those found may lie between)\n",
                percent(*task.lower_bound));
   if (task.lower_bound_of_number)
     fmt::print("and no {} of them less than {}\n", task.lights.size(), percent(*task.lower_bound_of_number));

@@ -19,7 +19,7 @@ struct SearchSpaceOptions {
   bool indirect = false;
   /// Of reflected light: places at which it is looked at, cells that surfaces are cut into (candidate_transport.h), and
   /// its wanted relative error there.
-  std::size_t most_nodes = 700;
+  std::size_t most_nodes = 4'000;
   std::size_t surface_cells = 1'500;
   double reflected_error = 0.1;
   std::function<bool(const Vec3&)> may_hang;  ///< for places that are not candidates; empty: anywhere

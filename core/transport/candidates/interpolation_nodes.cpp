@@ -16,6 +16,8 @@ constexpr double kRidge = 1e-3;
 /// Noise of the nodes together, as a share of that of one (squared): more means that the place is beside its nodes.
 constexpr double kMostNoise = 0.6;
 constexpr std::size_t kFewestNodes = 4;
+/// Of means where no plane can be laid, in steps.
+constexpr double kMeanReach = 3;
 constexpr double kFiner = 0.8;
 constexpr double kMostCubesPerSide = 1 << 20;
 
@@ -129,6 +131,22 @@ void InterpolationNodes::shares(const RayScene& scene, const Vec3& position_worl
   float sum = 0;
   for (const WeightedRow& share : shares) sum += share.weight;
   if (!(sum > 0.5f) || !(noise < kMostNoise)) return shares.clear();
+  for (WeightedRow& share : shares) share.weight /= sum;
+}
+
+void InterpolationNodes::mean_shares(const RayScene& scene, const Vec3& position_world_m,
+                                     std::vector<WeightedRow>& shares) const {
+  shares.clear();
+  const double reach_m2 = std::pow(kMeanReach * step_m_, 2);
+  float sum = 0;
+  for (std::uint32_t n = 0; n < nodes_.size(); ++n) {
+    const double distance_m2 = (node_world_m_[n] - position_world_m).squaredNorm();
+    if (!(distance_m2 < reach_m2)) continue;
+    if (distance_m2 > 0 && scene.occluded(position_world_m, Vec3::Zero(), node_world_m_[n])) continue;
+    const auto weight = static_cast<float>(std::pow(1 - distance_m2 / reach_m2, 4));
+    shares.push_back({n, weight});
+    sum += weight;
+  }
   for (WeightedRow& share : shares) share.weight /= sum;
 }
 

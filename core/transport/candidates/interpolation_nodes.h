@@ -41,6 +41,10 @@ class InterpolationNodes {
               std::vector<WeightedRow>& shares, std::uint64_t& rays, std::uint32_t without = ~0u,
               std::vector<Vec3>* slopes_per_m = nullptr) const;
 
+  /// For where no plane can be laid: the mean of the nodes about it that can be seen, the nearer the more. Empty where
+  /// there is none: behind a wall, say.
+  void mean_shares(const RayScene& scene, const Vec3& position_world_m, std::vector<WeightedRow>& shares) const;
+
  private:
   std::vector<std::uint32_t> nodes_;
   std::vector<Vec3> node_world_m_;

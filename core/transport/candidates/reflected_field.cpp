@@ -47,6 +47,10 @@ bool ReflectedField::add(const Vec3& place_world_m, Eigen::VectorXd& lux, Eigen:
   std::vector<Vec3> rises_per_m;
   std::uint64_t rays = 0;
   nodes_.shares(*rays_, place_world_m, Vec3::Zero(), shares, rays, ~0u, slopes ? &rises_per_m : nullptr);
+  if (shares.empty()) {
+    nodes_.mean_shares(*rays_, place_world_m, shares);
+    rises_per_m.assign(shares.size(), Vec3::Zero());
+  }
   if (shares.empty()) return false;
   std::vector<float> sums(stride_, 0.0F);
   add_weighted_rows(lux_.data(), shares, sums);

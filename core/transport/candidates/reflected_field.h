@@ -23,8 +23,8 @@ class ReflectedField {
                                                    std::span<const Vec3> places_world_m, std::size_t most_nodes,
                                                    const CandidateOptions& options);
 
-  /// Adds reflected lux per unit emittance and, when asked for, its slopes (receivers × 3 first columns). False, and
-  /// nothing added, beside the nodes. From any thread.
+  /// Adds reflected lux per unit emittance and, when asked for, its slopes (receivers × 3 first columns). From any
+  /// thread. False, and nothing added, where no node can be seen.
   bool add(const Vec3& place_world_m, Eigen::VectorXd& lux, Eigen::MatrixXd* slopes) const;
 
   [[nodiscard]] std::size_t nodes() const { return nodes_.size(); }

@@ -58,6 +58,23 @@ TEST(ReflectedField, AgreesWithRaysFromThePlaceItself) {
   EXPECT_LE(std::sqrt(off / all), 0.05);
 }
 
+// Nodes as fine as the places leave many of them without enough neighbours for a plane, in a narrow room most of all.
+TEST(ReflectedField, LeavesNoPlaceWithoutReflectedLight) {
+  const FieldOfTwoRooms two;
+  for (const std::size_t nodes : {100u, 400u, 4000u}) {
+    const ReflectedField field = two.field(nodes);
+    int told = 0;
+    for (const Vec3& at_m : two.places_m) {
+      Eigen::VectorXd lux = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(two.receivers.size()));
+      if (field.add(at_m, lux, nullptr)) {
+        EXPECT_GT(lux.sum(), 0) << at_m.transpose();
+        ++told;
+      }
+    }
+    EXPECT_GT(told, 0.95 * static_cast<double>(two.places_m.size())) << nodes;
+  }
+}
+
 TEST(ReflectedField, SaysNothingBesideItsNodesAndOfNone) {
   const FieldOfTwoRooms two;
   Eigen::VectorXd lux = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(two.receivers.size()));
