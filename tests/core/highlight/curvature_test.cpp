@@ -62,7 +62,7 @@ Errors errors_against(const Measured& m, const std::function<std::optional<Truth
 constexpr auto kEverywhereOne = [](const Vec3&) { return std::optional(Truth{1.0, 1.0}); };
 
 TEST(Curvature, OfASphereIsOneOverItsRadiusAtAnyResolutionAndScale) {
-  for (const int rings : {40, 60, 120}) {
+  for (const int rings : {40, 90}) {
     for (const double radius_m : {0.1, 0.2, 0.4}) {
       if (radius_m < 2 * kPi / rings) continue;
       const Errors e = errors_against(measured(uv_sphere(1, rings), radius_m), kEverywhereOne);
