@@ -46,6 +46,8 @@ OrderedJson json_of(const PlannedLight& light) {
 OrderedJson json_of(const PlannedTask& task) {
   OrderedJson json = {{"name", task.name}, {"kind", task.kind}};
   put(json, "normalised_error", task.normalised_error);
+  put(json, "lower_bound", task.lower_bound);
+  put(json, "lower_bound_of_number", task.lower_bound_of_number);
   json["iterations"] = task.iterations;
   put(json, "seconds", task.seconds);
   json["lights"] = OrderedJson::array();
@@ -239,6 +241,8 @@ PlannedTask task_of(const Reader& reader, const Json& json, const std::string& p
   task.name = reader.text(json, path, "name", true);
   task.kind = reader.text(json, path, "kind", false);
   task.normalised_error = reader.number(json, path, "normalised_error", false);
+  task.lower_bound = reader.optional_number(json, path, "lower_bound");
+  task.lower_bound_of_number = reader.optional_number(json, path, "lower_bound_of_number");
   task.iterations = reader.count<int>(json, path, "iterations");
   task.seconds = reader.number(json, path, "seconds", false);
   reader.each(json, path, "lights", true, [&](const Json& light, const std::string& light_path) {

@@ -37,6 +37,9 @@ struct PlannedTask {
   std::vector<PlannedLight> fixtures{};
   /// kind "placement": the best with other numbers of lights, so that a person can choose.
   std::vector<PlannedNumber> numbers{};
+  /// kind "placement": proven by the search's own light: no number of lights at the places it tried comes closer, and
+  /// none up to this task's number does.
+  std::optional<double> lower_bound{}, lower_bound_of_number{};
 };
 
 struct PlannedPoint {
@@ -78,7 +81,8 @@ struct Plan {
                                  const Vec3& position_world_m, const std::optional<Vec3>& aim_world_m);
 
 /// JSON, keys as in design.md `solve --json`, plus "luxrig_plan": 1 and "rig" (and a point's "why" when there is one,
-/// and a placement's "fixtures", like "lights", and "numbers": [{"lights", "normalised_error"}]). Numbers are finite or
+/// and a placement's "fixtures", like "lights", and "numbers": [{"lights", "normalised_error"}],
+/// "lower_bound" and "lower_bound_of_number"). Numbers are finite or
 /// the key is absent.
 [[nodiscard]] std::string to_json(const Plan& plan);
 /// Never throws. Problems of syntax carry line and column, others a path (/tasks/0/lights/3/level) in `what`. Needed

@@ -8,8 +8,10 @@
 namespace luxrig {
 namespace {
 
-constexpr std::array kOfPlacement = {"luminaire", "lights",   "max_lights", "error_wanted", "improvement", "method",
-                                     "indirect",  "fixtures", "seconds",    "aimed",        "energy_front"};
+constexpr std::array kOfPlacement = {"luminaire", "lights",   "max_lights", "error_wanted", "improvement",  "method",
+                                     "indirect",  "fixtures", "seconds",    "aimed",        "energy_front", "bound"};
+"indirect", "fixtures", "seconds", "aimed", "bound"
+};
 
 }  // namespace
 
@@ -33,6 +35,7 @@ void RigReader::read_placement(Section& s, PlacementSpec& placement) {
   s.read_choice("fixtures", placement.fixtures);
   s.read("seconds", placement.seconds);
   s.read("energy_front", placement.energy_front);
+  s.read("bound", placement.bound);
   if (std::none_of(rig.points.begin(), rig.points.end(), [](const Point& p) { return p.goal_lx && p.weight > 0; })) {
     problems.add(s.place(), "there is nothing to place lights for: no point has a goal",
                  "give each [[point]] that matters a goal_lx");

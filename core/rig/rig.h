@@ -196,6 +196,7 @@ struct PlacementSpec {
   FixturesMeanwhile fixtures = FixturesMeanwhile::as_set;
   std::optional<double> seconds;  ///< after which the search ends with the best so far
   int energy_front = 0;           ///< power limits to search anew with, below what the lights found take
+  bool bound = false;             ///< prove, too, how close as many lights could come
 };
 
 enum class TaskKind { emittance, placement };

@@ -317,6 +317,9 @@ constexpr KeySpec kRigKeys[] = {
      "so many power limits, falling evenly from what the lights found take, are searched with, too: what each watt "
      "less "
      "costs in error"},
+    {"task", "bound", yes_no, "", "false", kAny, "",
+     "whether to prove, too, how close as many lights could come at all (seconds to a minute); how close any number "
+     "could is always worked out where the goal was not reached"},
 
     {"mounting", "box_m", box, "m", kNone, kPosition, "",
      "two opposite corners of a box that lights stay in; left out, the scene's bounding box"},

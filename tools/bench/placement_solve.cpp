@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-#include "core/solve/placement/correct_lights.h"
+#include "core/solve/placement/corrected_placement.h"
 
 namespace luxrig {
 namespace {
@@ -10,8 +10,8 @@ namespace {
 constexpr double kGatherError = 0.015;
 constexpr int kGatherRounds = 3;
 constexpr std::size_t kSearchColumns = 150'000;
-/// With reflected light, which a model corrects later anyway: of the first search, and of those after a correction.
-constexpr std::size_t kGlobalColumns = 80'000, kCorrectedColumns = 40'000;
+/// With reflected light, which a model corrects later anyway.
+constexpr std::size_t kGlobalColumns = 80'000;
 
 MountingSpec mounting_of(const PlacementCase& one) {
   MountingSpec spec;
@@ -39,19 +39,6 @@ Result<Eigen::VectorXd> gathered_lux(const ReadyCase& ready, std::span<const Lig
   const auto matrix = make_gather_evaluator(ready.rays())->evaluate(ready.of().receivers, lamps, options);
   if (!matrix) return tl::unexpected(matrix.error());
   return matrix->lux(Eigen::VectorXd::Ones(static_cast<Eigen::Index>(lamps.size())));
-}
-
-void take(const FoundLights& found, Solved& solved) {
-  solved.poses = found.lights.poses();
-  solved.levels = found.lights.levels();
-  solved.error = found.lights.error();
-  solved.residual = found.lights.residual();
-  solved.columns += found.columns;
-  solved.cuts.clear();
-  for (const PlacedLights& cut : found.cuts) {
-    if (solved.cuts.size() <= cut.size()) solved.cuts.resize(cut.size() + 1, 1);
-    solved.cuts[cut.size()] = cut.error();
-  }
 }
 
 }  // namespace
@@ -104,7 +91,7 @@ Solved solve_case(const ReadyCase& ready, const PlacementMethod& method, std::si
   options.lights = lights;
   options.seed = seed;
   options.threads = threads;
-  options.wanted_error = wanted_error;
+  options.number.wanted_error = wanted_error;
   options.most_columns = ready.of().global ? kGlobalColumns : kSearchColumns;
   const auto start = Steady::now();
   options.better = [&](const BestSoFar& best) {
@@ -112,38 +99,24 @@ Solved solve_case(const ReadyCase& ready, const PlacementMethod& method, std::si
         {std::chrono::duration<double>(Steady::now() - start).count(), best.error, best.poses.size()});
   };
   solved.seconds = timed([&] {
-    const auto found = method.run(ready.problem(), options);
-    if (!found) {
-      solved.refused = found.error().detail;
+    CorrectedPlacementOptions correction;
+    correction.most_rounds = kGatherRounds;
+    if (ready.of().global)
+      correction.lux_of = [&](std::span<const LightPose> poses, const Eigen::VectorXd& levels) {
+        return gathered_lux(ready, poses, levels, threads);
+      };
+    const auto done = place_and_correct(method, ready.problem(), options, correction);
+    if (!done || done->failed) {
+      solved.refused = done ? done->failed->detail : done.error().detail;
       return;
     }
-    take(*found, solved);
-    if (!ready.of().global) return;
-    const auto search_again = [&](const LightingGoal& goal, const PlacedLights& from) {
-      PlacementProblem problem = ready.problem();
-      problem.goal = &goal;
-      PlacementOptions again = options;
-      again.better = {};
-      again.start = from.poses();
-      again.most_columns = kCorrectedColumns;
-      const auto more = method.run(problem, again);
-      if (!more) return from;
-      solved.columns += more->columns;
-      return more->lights;
-    };
-    const auto corrected = correct_lights(*ready.problem().light, ready.goal(), found->lights,
-                                          [&](std::span<const LightPose> poses, const Eigen::VectorXd& levels) {
-                                            return gathered_lux(ready, poses, levels, threads);
-                                          },
-                                          search_again, {.most_rounds = kGatherRounds});
-    if (!corrected) {
-      solved.refused = corrected.error().detail;
-      return;
-    }
-    solved.poses = corrected->lights.poses();
-    solved.levels = corrected->lights.levels();
-    solved.error = corrected->error;
-    solved.evaluations = corrected->rounds;
+    const PlacedLights& best = done->corrected ? done->corrected->lights : done->found.lights;
+    solved.poses = best.poses();
+    solved.levels = best.levels();
+    solved.error = done->corrected ? done->corrected->error : best.error();
+    solved.residual = best.residual();
+    solved.columns = done->columns;
+    if (done->corrected) solved.evaluations = done->corrected->rounds;
   });
   solved.seconds.wall += ready.seconds().wall;
   solved.seconds.cpu += ready.seconds().cpu;

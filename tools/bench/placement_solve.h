@@ -51,7 +51,6 @@ struct Solved {
   std::vector<LightPose> poses;
   Eigen::VectorXd levels;
   double error = 1;          ///< of the light that the case is to be judged by
-  std::vector<double> cuts;  ///< error of [k] lights, where the number was open
   Eigen::VectorXd residual;  ///< by the search's own model
   std::size_t columns = 0;
   int evaluations = 0;          ///< of a better model, in a global case

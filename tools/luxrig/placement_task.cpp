@@ -109,6 +109,7 @@ Result<PlacedInScene> search_places(const Rig& rig, const Scene& scene, const Ra
   place.method = name_of(spec.method);
   place.aimed = spec.aimed;
   place.indirect = spec.indirect && options.model != Model::direct;
+  place.bound_of_number = spec.bound;
   place.seed = options.seed;
   place.threads = options.threads;
   place.stop = watch.stop();

@@ -45,6 +45,11 @@ void print_placement(const PlannedTask& task, const PlacementSpec& spec) {
       tried += fmt::format("{}{}: {}", tried.empty() ? "" : ", ", number.lights, percent(number.normalised_error));
     fmt::print("lights and what they leave of the error: {}\n", tried);
   }
+  if (task.lower_bound)
+    fmt::print("proven by the search's own light: no lights at the places it tried leave less than {}\n",
+               percent(*task.lower_bound));
+  if (task.lower_bound_of_number)
+    fmt::print("and no {} of them less than {}\n", task.lights.size(), percent(*task.lower_bound_of_number));
   fmt::print(
       "{} hang{} nowhere yet: render and evaluate show the plan. To run it, hang each at its place, patch it, and add "
       "it "

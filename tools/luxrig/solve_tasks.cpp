@@ -78,6 +78,8 @@ class TaskSolver {
     for (Index j = 0; j < own_; ++j) planned.fixtures.push_back(light_of(j));
     for (const LightsAndError& tried : placed->numbers)
       planned.numbers.push_back({static_cast<int>(tried.lights), tried.error});
+    planned.lower_bound = placed->lower_bound;
+    planned.lower_bound_of_number = placed->lower_bound_of_number;
     planned.iterations =
         static_cast<int>(std::min(placed->columns, static_cast<std::size_t>(std::numeric_limits<int>::max())));
     planned.seconds = seconds_since(start);

@@ -12,8 +12,6 @@ constexpr std::size_t kLeastBeyond = 2;
 constexpr std::size_t kBeyondOf = 5;
 /// Times the wanted error.
 constexpr double kNearlyWanted = 10;
-/// Of least_improvement, where the error is coarse: the first lights of many rooms each do little.
-constexpr double kCoarseShare = 0.05;
 
 class Choice {
  public:
@@ -59,24 +57,12 @@ class Choice {
       curve_.cuts[more] = lights;
     const std::size_t was = curve_.chosen;
     const double was_error = chosen_error_;
-    curve_.chosen = choose();
+    curve_.chosen = fewest_worth_it(
+        curve_.cuts.size(), [&](std::size_t k) { return error(k); }, options_.number);
     chosen_error_ = error(curve_.chosen);
     if (options_.better && (curve_.chosen != was || chosen_error_ < was_error))
       options_.better(curve_.cuts[curve_.chosen], exchange_.columns());
     return true;
-  }
-
-  [[nodiscard]] std::size_t choose() const {
-    const std::size_t last = curve_.cuts.size() - 1;
-    for (std::size_t k = 0; k <= last; ++k)
-      if (error(k) <= options_.wanted_error) return k;
-    for (std::size_t k = 0; k < last; ++k) {
-      const double least =
-          error(k) > options_.coarse_error ? kCoarseShare * options_.least_improvement : options_.least_improvement;
-      const double keep = 1 - least;
-      if (error(k + 1) > keep * error(k) && (k + 2 > last || error(k + 2) > keep * keep * error(k))) return k;
-    }
-    return last;
   }
 
   PlacedLights way_up() {
@@ -86,7 +72,7 @@ class Choice {
       exchange_.refine(lights);
       offer(lights);
     }
-    while (!ended() && lights.size() < options_.most_lights && lights.error() > options_.wanted_error) {
+    while (!ended() && lights.size() < options_.most_lights && lights.error() > options_.number.wanted_error) {
       if (!exchange_.with_one_more(lights, 1, random_)) break;
       offer(lights);
       if (lights.size() >= curve_.chosen + std::max(kLeastBeyond, curve_.chosen / kBeyondOf)) break;
@@ -111,7 +97,7 @@ class Choice {
   bool look_ahead() {
     const std::size_t was = curve_.chosen;
     PlacedLights lights = curve_.cuts[was];
-    if (lights.error() <= options_.wanted_error) return false;
+    if (lights.error() <= options_.number.wanted_error) return false;
     for (int more = 0; more < 2 && lights.size() < options_.most_lights && !ended(); ++more) {
       if (!exchange_.with_one_more(lights, 1, random_)) break;
       exchange_.singly(lights, random_);
@@ -132,7 +118,8 @@ class Choice {
   /// Whether one light fewer, nearly good enough, comes to be so.
   bool fewer_will_do() {
     const std::size_t was = curve_.chosen;
-    if (was < 2 || chosen_error_ > options_.wanted_error || error(was - 1) > kNearlyWanted * options_.wanted_error)
+    if (was < 2 || chosen_error_ > options_.number.wanted_error ||
+        error(was - 1) > kNearlyWanted * options_.number.wanted_error)
       return false;
     while (!ended() && better_at(was - 1)) {
     }
@@ -142,7 +129,7 @@ class Choice {
   bool better_at(std::size_t count) {
     PlacedLights lights = curve_.cuts[count];
     const double was = lights.error();
-    if (was <= options_.wanted_error || lights.size() == 0) return false;
+    if (was <= options_.number.wanted_error || lights.size() == 0) return false;
     if (!exchange_.singly(lights, random_) && !exchange_.by_twos(lights) &&
         !exchange_.through_more(lights, kLeastBeyond, random_))
       return false;

@@ -10,16 +10,13 @@
 #include <vector>
 
 #include "core/solve/placement/exchange_lights.h"
+#include "core/solve/placement/number_of_lights.h"
 
 namespace luxrig {
 
 struct ChooseOptions {
   std::size_t most_lights = 64;
-  double wanted_error = 1e-4;  ///< the fewest lights with this error or less are chosen
-  /// Else the fewest of which the next two do not lower the error by this share each: the thesis's ε_improv.
-  double least_improvement = 0.1;
-  /// Above this (the thesis's ε_opt) far less of an improvement is asked for.
-  double coarse_error = 0.3;
+  NumberRule number;
   double least_progress = 0.003;  ///< share of the error that a round over all lights must take away, or is the last
   /// Columns to work out before it ends anyway; it may go over by those of one round.
   std::size_t most_columns = 400'000;

@@ -16,8 +16,6 @@ Result<CorrectedLights> correct_lights(const MovableLight& light, const Lighting
                                        const LuxOfLights& lux_of, const SearchAgain& search_again,
                                        const CorrectOptions& options) {
   const Eigen::VectorXd fixed = goal.fixed_lux.size() == 0 ? Eigen::VectorXd::Zero(goal.lux.size()) : goal.fixed_lux;
-  LightingGoal unweighted = goal;
-  unweighted.row_weight = {};
   std::optional<CorrectedLights> best;
   auto of_present = std::make_unique<LightingGoal>(goal);
   PlacedLights present(light, *of_present);
@@ -28,10 +26,7 @@ Result<CorrectedLights> correct_lights(const MovableLight& light, const Lighting
       if (!best) return tl::unexpected(lux.error());
       break;
     }
-    // What the quick model says of the same lights.
-    PlacedLights quick(light, unweighted);
-    for (const LightPose& pose : present.poses()) quick.add(pose);
-    const Eigen::VectorXd fault = *lux - quick.columns() * present.levels();
+    const Eigen::VectorXd fault = *lux - present.lux();
     const double error = error_of(goal, *lux + fixed);
     const bool better = !best || error < best->error;
     const bool last = best && error > (1 - options.least_improvement) * best->error;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "core/solve/placement/corrected_placement.h"
+#include "core/solve/placement/goal_bounds.h"
 #include "core/solve/placement/mounted_light.h"
 #include "core/solve/placement/placement_methods.h"
 #include "core/solve/placement/search_space.h"
@@ -18,9 +20,6 @@ constexpr std::size_t kAims = 26;
 /// Columns of a search, which are what its time goes into. Reflected light of an aimed one costs some hundred times as
 /// much.
 constexpr std::size_t kMostColumns = 150'000, kReflectedColumns = 80'000, kMostTracedColumns = 4'000;
-/// Of searches that go on after a correction.
-constexpr std::size_t kCorrectedShare = 2;
-constexpr int kCorrections = 3;
 
 bool reflects(const RayScene& rays) {
   return std::any_of(rays.materials().begin(), rays.materials().end(), [](const Material& material) {
@@ -83,51 +82,46 @@ Result<PlacedInScene> place_in_scene(const Scene& scene, const RayScene& rays, c
   PlacementOptions place;
   place.lights = options.lights.value_or(0);
   place.most_lights = options.max_lights;
-  place.wanted_error = options.error_wanted;
-  place.least_improvement = options.improvement;
+  place.number.wanted_error = options.error_wanted;
+  place.number.least_improvement = options.improvement;
   place.most_columns = !of_space.indirect ? kMostColumns : options.aimed ? kMostTracedColumns : kReflectedColumns;
   place.whole_curve = true;
   place.seed = options.seed;
   place.threads = options.threads;
   place.stop = options.stop;
   if (options.better) place.better = [&](const BestSoFar& best) { options.better(best.poses.size(), best.error); };
-  const auto found = method->run(problem, place);
-  if (!found) return tl::unexpected(found.error());
+  CorrectedPlacementOptions correction;
+  if (of_space.indirect || has_size) correction.lux_of = options.lux_of;
+  const auto done = place_and_correct(*method, problem, place, correction);
+  if (!done) return tl::unexpected(done.error());
 
   PlacedInScene placed;
-  placed.columns = found->columns;
-  std::optional<CorrectedLights> corrected;
-  if (options.lux_of && (of_space.indirect || has_size) && !options.stop.stop_requested()) {
-    const auto search_again = [&](const LightingGoal& again_goal, const PlacedLights& from) {
-      PlacementProblem again = problem;
-      again.goal = &again_goal;
-      PlacementOptions how = place;
-      how.better = {};
-      how.whole_curve = false;
-      how.start = from.poses();
-      how.most_columns = place.most_columns / kCorrectedShare;
-      const auto more = method->run(again, how);
-      if (!more) return from;
-      placed.columns += more->columns;
-      return more->lights;
-    };
-    CorrectOptions rounds;
-    rounds.most_rounds = kCorrections;
-    auto by_lux = correct_lights(light, bounded, found->lights, options.lux_of, search_again, rounds);
-    if (by_lux) corrected = std::move(*by_lux);
-  }
-  const PlacedLights& lights = corrected ? corrected->lights : found->lights;
+  placed.columns = done->columns;
+  const PlacedLights& lights = done->corrected ? done->corrected->lights : done->found.lights;
   placed.lights = lit_ones(lights, mounting, options.aimed);
   if (placed.lights.empty()) {
     if (options.stop.stop_requested())
       return tl::unexpected(Fault{Cause::cancelled, "", "stopped before any light was placed", {}});
     return refusal("no light anywhere brings the points nearer to their goals");
   }
-  placed.error = corrected ? corrected->error : lights.error();
-  for (const PlacedLights& cut : found->cuts)
+  placed.error = done->corrected ? done->corrected->error : lights.error();
+  for (const PlacedLights& cut : done->found.cuts)
     if (cut.size() > (placed.numbers.empty() ? 0 : placed.numbers.back().lights))
       placed.numbers.push_back({cut.size(), cut.error()});
   if (placed.numbers.empty()) placed.numbers.push_back({lights.size(), placed.error});
+  if (placed.error > options.error_wanted && !options.stop.stop_requested()) {
+    placed.lower_bound = goal_error_bound(problem.columns, bounded, options.stop);
+    if (options.bound_of_number) {
+      CountBoundOptions counted;
+      counted.most_lights = placed.lights.size();
+      // By the search's own light: the residual of corrected lights is the evaluator's.
+      counted.guesses = {{placed.lights.size(), done->found.lights.residual()}};
+      counted.threads = options.threads;
+      counted.stop = options.stop;
+      placed.lower_bound_of_number =
+          std::max(*placed.lower_bound, goal_error_bounds_by_count(problem.columns, bounded, counted).back());
+    }
+  }
   placed.candidates = problem.poses.size();
   placed.stopped = options.stop.stop_requested();
   return placed;

@@ -34,6 +34,7 @@ struct PlaceInSceneOptions {
   /// With reflected light or a luminaire with size: what the lights found are corrected by (correct_lights.h); none:
   /// the search's own model, which is good to a few per cent.
   LuxOfLights lux_of;
+  bool bound_of_number = false;  ///< prove PlacedInScene::lower_bound_of_number, too
   std::uint64_t seed = 1;
   int threads = 0;       ///< 0 = one per core; the result does not depend on it
   std::stop_token stop;  ///< ends the search with the best so far
@@ -51,6 +52,9 @@ struct PlacedInScene {
   std::vector<LightInScene> lights;
   double error = 0;                     ///< of these lights, at these levels
   std::vector<LightsAndError> numbers;  ///< that were tried, rising; one when the number was given
+  /// Proven by the search's own light: no number of lights at its candidates comes closer, and none up to the number
+  /// of these lights. Only where these did not reach the wanted error.
+  std::optional<double> lower_bound, lower_bound_of_number;
   std::size_t candidates = 0, columns = 0;
   bool stopped = false;  ///< before the search was at its end
 };

@@ -86,15 +86,17 @@ Eigen::VectorXd PlacedLights::watts_per_level() const {
 
 double PlacedLights::watts() const { return watts_per_level().dot(levels_); }
 
+Eigen::VectorXd PlacedLights::lux() const {
+  const Eigen::MatrixXd by_light = levels_.reshaped(emitters(), lux_.cols()).transpose();
+  return Eigen::MatrixXd(lux_ * by_light * goal_->emitters.transpose()).reshaped();
+}
+
 bool PlacedLights::keeps_limits() const {
   if (watts() > goal_->max_watts) return false;
   if (goal_->max_lux.size() == 0) return true;
-  Eigen::VectorXd lux =
-      goal_->fixed_lux.size() == 0 ? Eigen::VectorXd::Zero(goal_->points()) : goal_->luminous(goal_->fixed_lux);
-  for (Eigen::Index k = 0; k < lux_.cols(); ++k)
-    for (Eigen::Index e = 0; e < emitters(); ++e)
-      lux += goal_->luminous_emitter(e) * levels_[k * emitters() + e] * lux_.col(k);
-  return (lux.array() <= goal_->max_lux.array()).all();
+  Eigen::VectorXd all = lux();
+  if (goal_->fixed_lux.size() > 0) all += goal_->fixed_lux;
+  return (goal_->luminous(all).array() <= goal_->max_lux.array()).all();
 }
 
 void PlacedLights::solve_limited() {

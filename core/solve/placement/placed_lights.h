@@ -28,6 +28,7 @@ class PlacedLights {
   [[nodiscard]] const Eigen::MatrixXd& columns() const { return columns_; }  ///< W A, ordered as levels()
   /// Of all lights together, without what is there anyway.
   [[nodiscard]] double watts() const;
+  [[nodiscard]] Eigen::VectorXd lux() const;  ///< A x, points × channels: the same
 
   /// False, and nothing changed, where no light may hang. Levels are the best ones after each.
   bool add(const LightPose& pose);

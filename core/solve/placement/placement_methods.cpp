@@ -15,12 +15,7 @@ std::function<void(const PlacedLights&, std::size_t)> passed_on(const PlacementO
 }
 
 Result<FoundLights> place_by_luxrig(const PlacementProblem& problem, const PlacementOptions& options) {
-  if (std::string text = problem.complaint(); !text.empty()) {
-    Fault fault;
-    fault.cause = Cause::invalid;
-    fault.detail = std::move(text);
-    return tl::unexpected(fault);
-  }
+  if (const std::string text = problem.complaint(); !text.empty()) return refusal(text);
   const ComplementSearch candidates(problem.columns, problem.poses, *problem.goal);
   ExchangeOptions exchange =
       problem.spacing_m > 0 ? ExchangeOptions::for_spacing(problem.spacing_m) : ExchangeOptions{};
@@ -29,7 +24,7 @@ Result<FoundLights> place_by_luxrig(const PlacementProblem& problem, const Place
   if (options.lights > 0) {
     PlaceOptions place;
     place.lights = options.lights;
-    place.wanted_error = options.wanted_error;
+    place.wanted_error = options.number.wanted_error;
     place.most_columns = options.most_columns;
     place.seed = options.seed;
     place.start = options.start;
@@ -40,9 +35,7 @@ Result<FoundLights> place_by_luxrig(const PlacementProblem& problem, const Place
   }
   ChooseOptions choose;
   choose.most_lights = options.most_lights;
-  choose.wanted_error = options.wanted_error;
-  choose.least_improvement = options.least_improvement;
-  choose.coarse_error = options.coarse_error;
+  choose.number = options.number;
   choose.most_columns = options.most_columns;
   choose.seed = options.seed;
   choose.start = options.start;

@@ -297,6 +297,8 @@ Plan plan_that_places() {
   plan.tasks.push_back({.name = "more", .kind = "placement", .lights = {placed}});
   plan.tasks.back().fixtures = {light("left", 0.25), light("right", 0)};
   plan.tasks.back().numbers = {{1, 0.5}, {2, 0.25}};
+  plan.tasks.back().lower_bound = 0.0625;
+  plan.tasks.back().lower_bound_of_number = 0.125;
   return plan;
 }
 
@@ -319,6 +321,9 @@ TEST(Plan, KeepsWhatAPlacementFound) {
   ASSERT_EQ(read->tasks[1].numbers.size(), 2u);
   EXPECT_EQ(read->tasks[1].numbers[1].lights, 2);
   EXPECT_EQ(read->tasks[1].numbers[1].normalised_error, 0.25);
+  EXPECT_EQ(read->tasks[1].lower_bound, 0.0625);
+  EXPECT_EQ(read->tasks[1].lower_bound_of_number, 0.125);
+  EXPECT_FALSE(read->tasks[0].lower_bound);
 }
 
 TEST(Plan, WithLightsThatDoNotHangYetIsRefusedAndSaysWhatToDo) {

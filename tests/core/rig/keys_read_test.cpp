@@ -190,6 +190,7 @@ indirect = false  #> true
 fixtures = "off"  #> "full"
 seconds = 5  #> 6
 energy_front = 3  #> 4
+bound = true  #> false
 [[task]]
 name = "four"
 kind = "placement"
@@ -333,7 +334,7 @@ std::string dump(const Rig& rig) {
     const PlacementSpec& p = t.placement;
     add(t.name, static_cast<int>(t.kind), p.luminaire, text_of(p.lights), p.max_lights, p.error_wanted, p.improvement,
         static_cast<int>(p.method), p.aimed, p.indirect, static_cast<int>(p.fixtures), text_of(p.seconds),
-        p.energy_front, text_of(t.max_watts));
+        p.energy_front, p.bound, text_of(t.max_watts));
   }
   const MountingSpec& mounting = rig.mounting;
   if (mounting.box_world_m) add(text_of(Vec3(mounting.box_world_m->min())), text_of(Vec3(mounting.box_world_m->max())));

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <ctime>
 #include <random>
 #include <string>
@@ -250,28 +251,41 @@ TEST(RigFile, SurvivesDeepNestingOfEveryKind) {
   }
 }
 
-TEST(RigFile, LoadsFiveHundredFixturesAndTwentyThousandPointsInWellUnderASecond) {
+std::string text_of_large_rig(int fixtures, int points) {
   std::string text = kSmall;
-  for (int i = 0; i < 512; ++i) {
+  for (int i = 0; i < fixtures; ++i) {
     text += fixture("fixture-" + std::to_string(i),
                     "universe = " + std::to_string(1 + i / 64) + "\naddress = " + std::to_string(1 + i % 64 * 8) +
                         "\nslots = [\"pan\", \"pan-fine\", \"tilt\", \"tilt-fine\", \"dimmer\", \"dimmer-fine\", "
                         "\"constant:255\", \"unused\"]\naim = \"point-" +
-                        std::to_string(i * 39) + "\"");
+                        std::to_string(i * (points / fixtures)) + "\"");
   }
-  for (int i = 0; i < 20000; ++i) {
+  for (int i = 0; i < points; ++i) {
     text += "[[point]]\nname = \"point-" + std::to_string(i) + "\"\nposition_m = [" + std::to_string(i % 100 * 0.1) +
             ", " + std::to_string(i / 100 * 0.1) + ", 0.8]\nnormal = [0, 0, 1]\ngoal_lx = 300\nmax_lx = 500\n";
   }
-  // Processor time: the machine may be shared.
-  const std::clock_t start = std::clock();
-  const Checked<Rig> rig = parse(text);
-  const double took_s = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  return text;
+}
+
+/// Processor time of the quickest of three, since the machine may be shared.
+double seconds_to_load(const std::string& text) {
+  double least_s = 1e9;
+  for (int i = 0; i < 3; ++i) {
+    const std::clock_t start = std::clock();
+    EXPECT_TRUE(parse(text));
+    least_s = std::min(least_s, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
+  }
+  return least_s;
+}
+
+TEST(RigFile, LoadsFiveHundredFixturesAndTwentyThousandPointsInTimeThatGrowsAsTheFile) {
+  const std::string large = text_of_large_rig(512, 20000);
+  const Checked<Rig> rig = parse(large);
   ASSERT_TRUE(rig) << listed(rig.error());
   EXPECT_EQ(rig->points.size(), 20000u);
   EXPECT_NE(rig->fixtures[511].joints.tilt_rad, 0);
-  RecordProperty("cpu_seconds", std::to_string(took_s));
-  EXPECT_LT(took_s, 2.0) << "0.2 to 0.5 s is usual; sanitizers take some times as long";
+  // Four times the file: 16 would be quadratic.
+  EXPECT_LT(seconds_to_load(large), 9 * seconds_to_load(text_of_large_rig(128, 5000)));
 }
 
 }  // namespace

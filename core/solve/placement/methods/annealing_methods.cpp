@@ -15,7 +15,7 @@ Result<FoundLights> annealed_and_refined(const PlacementProblem& problem, const 
   const auto candidates = CandidateLights::make(problem);
   if (!candidates) return tl::unexpected(candidates.error());
   if (options.iterations > 0) annealing.iterations = options.iterations;
-  annealing.wanted_error = options.wanted_error;
+  annealing.wanted_error = options.number.wanted_error;
   annealing.stop = options.stop;
   return best_of_starts(options, [&](const PlacementStart& start) {
     std::mt19937_64 random(start.seed);
@@ -24,8 +24,8 @@ Result<FoundLights> annealed_and_refined(const PlacementProblem& problem, const 
     of_start.better = reporter(start.better, columns);
     ChosenCandidates first(*candidates);
     if (annealing.nearest > 0 && start.index == 0)
-      pursue(first, options.lights, options.wanted_error, options.stop, of_start.better);
-    if (first.size() < options.lights && first.error() > options.wanted_error) {
+      pursue(first, options.lights, options.number.wanted_error, options.stop, of_start.better);
+    if (first.size() < options.lights && first.error() > options.number.wanted_error) {
       std::vector<std::size_t> lights = first.chosen();
       for (const std::size_t drawn : drawn_candidates(**candidates, options.lights, random))
         if (lights.size() < options.lights && !first.holds(drawn)) lights.push_back(drawn);

@@ -15,7 +15,7 @@ class CutWalk {
           const std::shared_ptr<const CandidateLights>& candidates)
       : problem_(problem), options_(options), start_(start), candidates_(candidates), random_(start.seed) {
     annealing_.iterations = options.iterations > 0 ? options.iterations : kCutIterations;
-    annealing_.wanted_error = options.wanted_error;
+    annealing_.wanted_error = options.number.wanted_error;
     annealing_.stop = options.stop;
     annealing_.better = reporter(start.better, columns_);
   }
@@ -24,29 +24,36 @@ class CutWalk {
     ChosenCandidates state(candidates_);
     for (const TreeCut& cut : cuts)
       if (cut.candidates.size() <= lights) state.choose(cut.candidates);
-    pursue(state, lights, options_.wanted_error, options_.stop);
+    pursue(state, lights, options_.number.wanted_error, options_.stop);
     return refined(anneal(std::move(state), annealing_, random_), {});
   }
 
   FoundLights down(const std::vector<TreeCut>& cuts) {
     ChosenCandidates chosen(candidates_);
     std::vector<PlacedLights> looked_at;
-    for (std::size_t i = 0; i < cuts.size() && cuts[i].candidates.size() <= options_.most_lights; ++i) {
-      const bool last = i + 1 == cuts.size() || cuts[i + 1].candidates.size() > options_.most_lights;
-      if (cuts[i].error > options_.coarse_error && !(last && chosen.size() == 0)) continue;
+    std::size_t within = 0;
+    while (within < cuts.size() && cuts[within].candidates.size() <= options_.most_lights) ++within;
+    for (std::size_t i = first_cut(cuts, within); i < within; ++i) {
       ChosenCandidates state(candidates_);
       state.choose(cuts[i].candidates);
       state = anneal(std::move(state), annealing_, random_);
       const double was = chosen.error();
       looked_at.push_back(state.placed(columns_));
-      if (chosen.size() > 0 && !(state.error() <= (1 - options_.least_improvement) * was)) break;
+      if (chosen.size() > 0 && !(state.error() <= (1 - options_.number.least_improvement) * was)) break;
       chosen = std::move(state);
-      if (chosen.error() <= options_.wanted_error || options_.stop.stop_requested()) break;
+      if (chosen.error() <= options_.number.wanted_error || options_.stop.stop_requested()) break;
     }
     return refined(chosen, std::move(looked_at));
   }
 
  private:
+  /// The first below ε_opt. Where a goal is so hard that none is, the one that the tree's own errors suggest.
+  [[nodiscard]] std::size_t first_cut(const std::vector<TreeCut>& cuts, std::size_t within) const {
+    for (std::size_t i = 0; i < within; ++i)
+      if (cuts[i].error <= options_.number.coarse_error) return i;
+    return fewest_worth_it(
+        within, [&](std::size_t i) { return cuts[i].error; }, options_.number);
+  }
   FoundLights refined(const ChosenCandidates& chosen, std::vector<PlacedLights> looked_at) {
     FoundLights found{chosen.placed(columns_)};
     columns_ +=

@@ -47,13 +47,13 @@ Result<FoundLights> place_by_lin2013(const PlacementProblem& problem, const Plac
   if (!cuts.empty()) {
     std::size_t cut = cuts.size() - 1;
     if (options.lights == 0)
-      cut = fewest_that_do({tree.begin(), tree.begin() + static_cast<std::ptrdiff_t>(cuts.size())}, options);
+      cut = fewest_worth_it({tree.begin(), tree.begin() + static_cast<std::ptrdiff_t>(cuts.size())}, options);
     found.lights = at.refined(cuts[cut]);
     if (options.lights == 0) {
       found.cuts.push_back(found.lights);
-      while (++cut < cuts.size() && !at.ended() && found.lights.error() > options.wanted_error) {
+      while (++cut < cuts.size() && !at.ended() && found.lights.error() > options.number.wanted_error) {
         found.cuts.push_back(at.refined(cuts[cut]));
-        if (found.cuts.back().error() > (1 - options.least_improvement) * found.lights.error()) break;
+        if (found.cuts.back().error() > (1 - options.number.least_improvement) * found.lights.error()) break;
         found.lights = found.cuts.back();
       }
     }

@@ -20,9 +20,8 @@ namespace luxrig {
 [[nodiscard]] std::function<void(const ChosenCandidates&)> reporter(const std::function<void(const BestSoFar&)>& better,
                                                                     const std::size_t& columns);
 
-/// Of (lights, error), fewest first: the fewest that reach the wanted error, else the fewest after which the next two
-/// each lower it by less than least_improvement; never one above coarse_error while others are below.
-[[nodiscard]] std::size_t fewest_that_do(const std::vector<std::pair<std::size_t, double>>& cuts,
-                                         const PlacementOptions& options);
+/// Of (lights, error), fewest first: by the rule of luxrig's own (number_of_lights.h).
+[[nodiscard]] std::size_t fewest_worth_it(const std::vector<std::pair<std::size_t, double>>& cuts,
+                                          const PlacementOptions& options);
 
 }  // namespace luxrig

@@ -8,6 +8,7 @@
 
 #include "core/result.h"
 #include "core/solve/columns_view.h"
+#include "core/solve/placement/number_of_lights.h"
 #include "core/solve/placement/placed_lights.h"
 
 namespace luxrig {
@@ -33,11 +34,11 @@ struct BestSoFar {
 };
 
 struct PlacementOptions {
-  std::size_t lights = 0;              ///< 0: the method is to choose the number
-  std::size_t most_lights = 64;        ///< that it may choose
-  double wanted_error = 1e-4;          ///< PlacedLights::error() at which it ends
-  double least_improvement = 0.1;      ///< ε_improv: share by which one more light must lower the error
-  double coarse_error = 0.3;           ///< ε_opt: with more error than this a number of lights is not looked at closer
+  std::size_t lights = 0;        ///< 0: the method is to choose the number
+  std::size_t most_lights = 64;  ///< that it may choose
+  /// wanted_error is also that at which a search of a given number ends; coarse_error is GP16's ε_opt, above which it
+  /// does not look at a number of lights closer.
+  NumberRule number;
   std::size_t most_columns = 200'000;  ///< to work out before it ends anyway; it may go over by those of one step
   int iterations = 0;                  ///< of one annealing; 0: as many as the method was described or tuned with
   /// How often a method that draws at random begins anew; the best stays, and most_columns is for all together.

@@ -10,13 +10,13 @@ Result<FoundLights> place_by_pursuit(const PlacementProblem& problem, const Plac
   const auto report = reporter(options.better, columns);
   ChosenCandidates chosen(*candidates);
   std::vector<std::pair<std::size_t, double>> cuts = {{0, chosen.error()}};
-  pursue(chosen, options.lights > 0 ? options.lights : options.most_lights, options.wanted_error, options.stop,
+  pursue(chosen, options.lights > 0 ? options.lights : options.most_lights, options.number.wanted_error, options.stop,
          [&](const ChosenCandidates& so_far) {
            cuts.emplace_back(so_far.size(), so_far.error());
            if (report) report(so_far);
          });
   if (options.lights == 0)
-    while (chosen.size() > cuts[fewest_that_do(cuts, options)].first) chosen.drop(chosen.size() - 1);
+    while (chosen.size() > cuts[fewest_worth_it(cuts, options)].first) chosen.drop(chosen.size() - 1);
   FoundLights found{chosen.placed(columns)};
   found.columns = columns;
   found.tree = std::move(cuts);

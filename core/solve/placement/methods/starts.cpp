@@ -34,7 +34,7 @@ FoundLights best_of_starts(const PlacementOptions& options,
         options.better(of_all);
       };
     found[i] = run(start);
-    if (found[i]->lights.error() > options.wanted_error) return;
+    if (found[i]->lights.error() > options.number.wanted_error) return;
     for (std::size_t was = first_to_reach; i < was && !first_to_reach.compare_exchange_weak(was, i);) {
     }
   });

@@ -8,8 +8,10 @@
 #include <optional>
 #include <string>
 
+#include "core/rig/rig.h"
 #include "core/solve/placement/methods/anneal_candidates.h"
 #include "core/solve/placement/methods/simplex_refine.h"
+#include "core/solve/placement/number_of_lights.h"
 #include "tests/core/solve/placement/lit_hall.h"
 
 namespace luxrig {
@@ -136,7 +138,7 @@ TEST(PlacementMethods, TellOfBetterOnesAndEndWhenStopped) {
   for (const PlacementMethod& method : placement_methods()) {
     std::stop_source stop;
     PlacementOptions options = options_of(method, 3);
-    options.wanted_error = 0;
+    options.number.wanted_error = 0;
     options.starts = 1000;  // more than a test has time for
     options.most_columns = 1'000'000'000;
     options.iterations = 100;
@@ -307,6 +309,25 @@ TEST(CandidateLights, NearestIsWhatComparingAllGives) {
   const auto found = candidates->nearest(residual, 10);
   ASSERT_EQ(found.size(), 10u);
   for (std::size_t i = 0; i < found.size(); ++i) EXPECT_EQ(found[i], all[i].second) << i;
+}
+
+TEST(PlacementMethods, OfARigFileAreAllThere) {
+  for (int i = 0; i <= static_cast<int>(PlacementSearch::pursuit); ++i) {
+    const char* name = name_of(static_cast<PlacementSearch>(i));
+    EXPECT_NE(find_placement_method(name), nullptr) << name;
+  }
+}
+
+TEST(NumberOfLights, IsTheFewestThatDoOrAfterWhichTwoMoreHardlyHelp) {
+  const auto chosen = [](const std::vector<double>& errors, double coarse_error) {
+    return fewest_worth_it(errors.size(), [&](std::size_t k) { return errors[k]; }, {1e-3, 0.1, coarse_error});
+  };
+  EXPECT_EQ(chosen({}, 1), 0u);
+  EXPECT_EQ(chosen({1}, 1), 0u);
+  EXPECT_EQ(chosen({1, 0.5, 1e-3, 1e-5}, 1), 2u);
+  EXPECT_EQ(chosen({1, 0.5, 0.48, 0.47, 0.1}, 1), 1u);
+  EXPECT_EQ(chosen({1, 0.5, 0.48, 0.3, 0.29, 0.28}, 1), 3u) << "one of the next two helps";
+  EXPECT_EQ(chosen({1, 0.95, 0.9, 0.2, 0.19, 0.185}, 0.3), 3u) << "little is enough where the error is coarse";
 }
 
 TEST(SimplexRefine, StaysWithinACellAndLowersTheError) {

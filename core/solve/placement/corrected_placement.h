@@ -1,0 +1,30 @@
+#pragma once
+/// Any method's lights, corrected by what a better model of light says of them (correct_lights.h).
+
+#include <optional>
+
+#include "core/solve/placement/correct_lights.h"
+#include "core/solve/placement/methods/placement_method.h"
+
+namespace luxrig {
+
+struct CorrectedPlacement {
+  FoundLights found;                         ///< as the method gave them, by the problem's own model
+  std::optional<CorrectedLights> corrected;  ///< none: no better model was given, or it failed
+  std::optional<Fault> failed;               ///< why it did
+  std::size_t columns = 0;                   ///< of all searches
+};
+
+struct CorrectedPlacementOptions {
+  LuxOfLights lux_of;   ///< the better model; none: nothing is corrected
+  int most_rounds = 3;  ///< evaluations of it
+  double share = 0.5;   ///< of most_columns, for each search that goes on after a correction
+};
+
+/// Cause as the method's.
+[[nodiscard]] Result<CorrectedPlacement> place_and_correct(const PlacementMethod& method,
+                                                           const PlacementProblem& problem,
+                                                           const PlacementOptions& options,
+                                                           const CorrectedPlacementOptions& correction);
+
+}  // namespace luxrig
