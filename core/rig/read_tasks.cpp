@@ -10,8 +10,6 @@ namespace {
 
 constexpr std::array kOfPlacement = {"luminaire", "lights",   "max_lights", "error_wanted", "improvement",  "method",
                                      "indirect",  "fixtures", "seconds",    "aimed",        "energy_front", "bound"};
-"indirect", "fixtures", "seconds", "aimed", "bound"
-};
 
 }  // namespace
 
