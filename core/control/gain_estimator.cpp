@@ -79,9 +79,13 @@ GainEstimator::GainEstimator(const Rig& rig, const LightModel& model)
   meter_error_ = joined(matrix_or_zero(model.meter_standard_error, meters, fixtures, "meter_standard_error"),
                         model.meter_fixed_error_lx, fixed, "meter_fixed_error_lx");
   max_level_.resize(fixtures);
+  watts_.resize(fixtures);
+  max_watts_ = rig.limits.max_watts.value_or(std::numeric_limits<double>::infinity());
   for (Index j = 0; j < fixtures; ++j) {
     const Fixture& fixture = rig.fixtures[static_cast<std::size_t>(j)];
     max_level_[j] = std::min(fixture.max_level, rig.limits.max_level);
+    watts_[j] = rig.limits.max_watts ? rig.luminaires[fixture.luminaire].watts.value_or(0) : 0;
+    housing_.push_back(fixture.housing.value_or(static_cast<std::size_t>(j)));
     fixture_names_.push_back(fixture.name);
   }
   for (std::size_t i = 0; i < luxmeters_.size(); ++i)
@@ -420,26 +424,57 @@ std::vector<double> GainEstimator::within_limits(std::span<const double> given, 
   return level;
 }
 
+/// Fixtures × lights: what a fixture gives per level of a light. Emitters of one housing are one light, at the shares
+/// they have at present (a meter sees no colour, and must not change it); one that is dark stays so.
+MatrixXd GainEstimator::fixtures_per_light(const VectorXd& present) const {
+  MatrixXd per_light = MatrixXd::Zero(fixtures(), fixtures());
+  Index lights = 0;
+  for (Index first = 0, end = 0; first < fixtures(); first = end) {
+    const std::size_t housing = housing_[static_cast<std::size_t>(first)];
+    while (end < fixtures() && housing_[static_cast<std::size_t>(end)] == housing) ++end;
+    const auto levels = present.segment(first, end - first);
+    const double brightest = levels.maxCoeff();
+    if (end - first == 1) {
+      per_light(first, lights++) = 1;
+    } else if (brightest > 0) {
+      per_light.block(first, lights++, end - first, 1) = levels / brightest;
+    }
+  }
+  return per_light.leftCols(lights);
+}
+
 Correction GainEstimator::correct(std::span<const double> present, Time now) const {
   EmittanceProblem problem;
   const auto points = static_cast<Index>(points_.size());
-  // After the points one row per fixture, whose goal is its present level.
-  const Index lights = fixtures(), all = points + lights;
+  const VectorXd present_level = vector_of(present).head(fixtures()).cwiseMax(0).cwiseMin(max_level_);
+  const MatrixXd per_light = fixtures_per_light(present_level);
+  // After the points one row per light, whose goal is its present level.
+  const Index lights = per_light.cols(), all = points + lights;
   problem.lux_per_level.setZero(all, lights);
   problem.fixed_lx.setZero(all);
   problem.goal_lx.setConstant(all, std::numeric_limits<double>::quiet_NaN());
   problem.weight.setConstant(all, kCaution);
   problem.max_lx.setConstant(all, std::numeric_limits<double>::infinity());
-  problem.max_level = max_level_;
-  problem.near_level = vector_of(present).head(lights).cwiseMax(0).cwiseMin(max_level_);
-  problem.light_name = fixture_names_;
+  problem.max_level.resize(lights);
+  problem.near_level.resize(lights);
+  for (Index k = 0; k < lights; ++k) {
+    Index brightest = 0;
+    per_light.col(k).maxCoeff(&brightest);  // its share is 1
+    problem.near_level[k] = present_level[brightest];
+    problem.max_level[k] = std::numeric_limits<double>::infinity();
+    for (Index j = 0; j < fixtures(); ++j)
+      if (per_light(j, k) > 0) problem.max_level[k] = std::min(problem.max_level[k], max_level_[j] / per_light(j, k));
+    problem.light_name.push_back(fixture_names_[static_cast<std::size_t>(brightest)]);
+  }
+  problem.watts = (watts_.transpose() * per_light).transpose();
+  problem.max_watts = max_watts_;
   std::vector<Row> rows;
   for (Index i = 0; i < points; ++i) {
     const Point& point = points_[static_cast<std::size_t>(i)];
     rows.push_back(row_of_point(static_cast<std::size_t>(i)));
     const RowVectorXd lux = rows.back().lux_per_level.cwiseProduct(rows.back().factor);
-    problem.lux_per_level.row(i) = lux.head(lights);
-    if (lux.size() > lights) problem.fixed_lx[i] = lux[lights];
+    problem.lux_per_level.row(i) = lux.head(fixtures()) * per_light;
+    if (lux.size() > fixtures()) problem.fixed_lx[i] = lux[fixtures()];
     problem.weight[i] = point.weight * (rows.back().luxmeter ? kMeteredWeight : 1);
     if (point.goal_lx) problem.goal_lx[i] = *point.goal_lx;
     problem.point_name.push_back(point.name);
@@ -462,7 +497,7 @@ Correction GainEstimator::correct(std::span<const double> present, Time now) con
       const Row& row = rows[static_cast<std::size_t>(i)];
       const double daylight_lx = most_without_fixtures(row, now), room = std::max(0.0, *max_lx - daylight_lx);
       const double lux = problem.lux_per_level.row(i).dot(level);
-      const double most = most_lux(row, vector_of(list_of(level)), now) - daylight_lx;
+      const double most = most_lux(row, vector_of(list_of(per_light * level)), now) - daylight_lx;
       over = over || most > room;
       problem.max_lx[i] =
           problem.fixed_lx[i] + (lux > 0 && most > 0 ? room * std::min(1.0, lux / most) : room / local_);
@@ -482,10 +517,10 @@ Correction GainEstimator::correct(std::span<const double> present, Time now) con
                       rows[first].luxmeter ? "the meter" : "the model: no meter confirms it");
     }
   }
-  correction.level = within_limits(list_of(level), now);
-  const VectorXd aimed =
-      problem.lux_per_level.topRows(points) * vector_of(correction.level).head(lights) + problem.fixed_lx.head(points);
-  correction.aimed_lx = list_of(aimed);
+  correction.level = within_limits(list_of((per_light * level).cwiseMin(max_level_)), now);
+  const VectorXd corrected = vector_of(correction.level);
+  for (const Row& row : rows)
+    correction.aimed_lx.push_back(row.lux_per_level.cwiseProduct(row.factor).dot(corrected.transpose()));
   return correction;
 }
 

@@ -104,9 +104,9 @@ class GainEstimator {
   /// everywhere.
   [[nodiscard]] std::vector<double> within_limits(std::span<const double> level, Time now) const;
 
-  /// Levels that bring the rig's goals, as far as limits allow, starting from the present `level`; a metered goal goes
-  /// before goals that nobody measures. Never fails: where the solver is stopped or refuses, the present levels
-  /// within limits.
+  /// Levels that bring the rig's goals (in lux: emitters of one housing keep their shares, and with them its colour),
+  /// as far as limits allow, starting from the present `level`; a metered goal goes before goals that nobody measures.
+  /// Never fails: where the solver is stopped or refuses, the present levels within limits.
   [[nodiscard]] Correction correct(std::span<const double> level, Time now) const;
 
  private:
@@ -136,6 +136,7 @@ class GainEstimator {
   [[nodiscard]] double covariance(const Row& one, const Eigen::VectorXd& one_level, const Evidence& other) const;
   [[nodiscard]] Eigen::VectorXd vector_of(std::span<const double> level) const;  ///< with the 1 of daylight
   [[nodiscard]] Eigen::Index fixtures() const { return max_level_.size(); }
+  [[nodiscard]] Eigen::MatrixXd fixtures_per_light(const Eigen::VectorXd& present) const;
   [[nodiscard]] double most_without_fixtures(const Row& row, Time now) const;
   void learn(const LuxReading& reading, const Eigen::VectorXd& level);
   void estimate(Time now);
@@ -145,7 +146,9 @@ class GainEstimator {
   std::vector<Point> points_;
   std::vector<std::string> fixture_names_;
   std::vector<std::optional<std::size_t>> meter_of_point_;
-  Eigen::VectorXd max_level_;
+  Eigen::VectorXd max_level_, watts_;
+  double max_watts_;                  ///< of the rig; +inf without a limit
+  std::vector<std::size_t> housing_;  ///< per fixture: the first of those that change together
   double gain_min_ = 0, gain_max_ = 1;
   double local_ = 1;  ///< 1/(1 − open_loop_margin)
   double prior_gain_ = 1, prior_gain_sd_ = 0, prior_local_sd_ = 0;

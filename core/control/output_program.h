@@ -40,6 +40,7 @@ struct OutputProgram {
 
   /// Conservation limits: rows = limited points; the most lux per level that the model allows there now
   /// (gain bounds, meter tolerance, standard errors included), and the limit itself.
+  /// A limit of power is a row of its own, of watts per level, and watts.
   Eigen::MatrixXd worst_lux_per_level;
   Eigen::VectorXd max_lx;
 

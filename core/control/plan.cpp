@@ -32,6 +32,10 @@ void put(OrderedJson& object, const char* key, const Vec3& value) {
   if (value.allFinite()) object[key] = {value.x(), value.y(), value.z()};
 }
 
+void put(OrderedJson& object, const char* key, const std::optional<Chromaticity>& xy) {
+  if (xy && xy->allFinite()) object[key] = {xy->x(), xy->y()};
+}
+
 OrderedJson json_of(const PlannedLight& light) {
   OrderedJson json = {{"name", light.name}, {"luminaire", light.luminaire}};
   put(json, "position", light.position_world_m);
@@ -40,6 +44,15 @@ OrderedJson json_of(const PlannedLight& light) {
   put(json, "tilt_deg", light.tilt_deg);
   put(json, "level", light.level);
   put(json, "lumens", light.lumens);
+  put(json, "watts", light.watts);
+  return json;
+}
+
+OrderedJson json_of(const PlannedPower& power) {
+  OrderedJson json = OrderedJson::object();
+  put(json, "max_watts", power.max_watts);
+  put(json, "watts", power.watts);
+  put(json, "normalised_error", power.normalised_error);
   return json;
 }
 
@@ -50,6 +63,7 @@ OrderedJson json_of(const PlannedTask& task) {
   put(json, "lower_bound_of_number", task.lower_bound_of_number);
   json["iterations"] = task.iterations;
   put(json, "seconds", task.seconds);
+  put(json, "watts", task.watts);
   json["lights"] = OrderedJson::array();
   for (const PlannedLight& light : task.lights) json["lights"].push_back(json_of(light));
   for (const PlannedLight& light : task.fixtures) json["fixtures"].push_back(json_of(light));
@@ -58,6 +72,7 @@ OrderedJson json_of(const PlannedTask& task) {
     put(tried, "normalised_error", number.normalised_error);
     json["numbers"].push_back(std::move(tried));
   }
+  for (const PlannedPower& power : task.front) json["front"].push_back(json_of(power));
   return json;
 }
 
@@ -70,6 +85,8 @@ OrderedJson json_of(const PlannedPoint& point) {
   put(json, "standard_error_lux", point.standard_error_lux);
   put(json, "daylight_lux", point.daylight_lux);
   put(json, "goal_lux", point.goal_lux);
+  put(json, "xy", point.xy);
+  put(json, "goal_xy", point.goal_xy);
   if (!point.why.empty()) json["why"] = point.why;
   return json;
 }
@@ -172,14 +189,11 @@ class Reader {
   }
 
   [[nodiscard]] std::optional<Vec3> vector(const Json& object, const std::string& path, const char* key) const {
-    const Json* value = member(object, path, key, false);
-    if (!value) return std::nullopt;
-    const auto is_number = [](const Json& entry) { return entry.is_number(); };
-    if (value->is_array() && value->size() == 3 && std::all_of(value->begin(), value->end(), is_number)) {
-      return Vec3((*value)[0].get<double>(), (*value)[1].get<double>(), (*value)[2].get<double>());
-    }
-    wrong_type(path, key, "three numbers [x, y, z]", *value);
-    return std::nullopt;
+    return numbers<3>(object, path, key, "three numbers [x, y, z]");
+  }
+  [[nodiscard]] std::optional<Chromaticity> chromaticity(const Json& object, const std::string& path,
+                                                         const char* key) const {
+    return numbers<2>(object, path, key, "two numbers [x, y]");
   }
 
   template <class Unsigned>
@@ -219,6 +233,21 @@ class Reader {
   }
 
  private:
+  template <int count>
+  [[nodiscard]] std::optional<Eigen::Vector<double, count>> numbers(const Json& object, const std::string& path,
+                                                                    const char* key, const char* wanted) const {
+    const Json* value = member(object, path, key, false);
+    if (!value) return std::nullopt;
+    const auto is_number = [](const Json& entry) { return entry.is_number(); };
+    if (!value->is_array() || value->size() != count || !std::all_of(value->begin(), value->end(), is_number)) {
+      wrong_type(path, key, wanted, *value);
+      return std::nullopt;
+    }
+    Eigen::Vector<double, count> out;
+    for (int i = 0; i < count; ++i) out[i] = (*value)[static_cast<std::size_t>(i)].get<double>();
+    return out;
+  }
+
   const std::string& file_name_;
   std::vector<Problem>& problems_;
 };
@@ -233,6 +262,7 @@ PlannedLight light_of(const Reader& reader, const Json& json, const std::string&
   light.tilt_deg = reader.optional_number(json, path, "tilt_deg");
   light.level = reader.number(json, path, "level", true);
   light.lumens = reader.number(json, path, "lumens", false);
+  light.watts = reader.optional_number(json, path, "watts");
   return light;
 }
 
@@ -255,6 +285,12 @@ PlannedTask task_of(const Reader& reader, const Json& json, const std::string& p
     task.numbers.push_back({reader.count<int>(number, number_path, "lights"),
                             reader.number(number, number_path, "normalised_error", false)});
   });
+  task.watts = reader.optional_number(json, path, "watts");
+  reader.each(json, path, "front", false, [&](const Json& power, const std::string& power_path) {
+    task.front.push_back({reader.number(power, power_path, "max_watts", false),
+                          reader.number(power, power_path, "watts", false),
+                          reader.number(power, power_path, "normalised_error", false)});
+  });
   return task;
 }
 
@@ -268,6 +304,8 @@ PlannedPoint point_of(const Reader& reader, const Json& json, const std::string&
   point.standard_error_lux = reader.number(json, path, "standard_error_lux", false);
   point.daylight_lux = reader.optional_number(json, path, "daylight_lux");
   point.goal_lux = reader.optional_number(json, path, "goal_lux");
+  point.xy = reader.chromaticity(json, path, "xy");
+  point.goal_xy = reader.chromaticity(json, path, "goal_xy");
   point.why = reader.text(json, path, "why", false);
   return point;
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/photometry/light_colour.h"
 #include "core/result.h"
 #include "core/rig/rig.h"
 
@@ -17,13 +18,20 @@ struct PlannedLight {
   Vec3 position_world_m = Vec3::Zero();
   std::optional<Vec3> aim_world_m;
   std::optional<double> pan_deg, tilt_deg;
-  double level = 0;   ///< emittance factor 0…1
-  double lumens = 0;  ///< level × rated flux
+  double level = 0;               ///< emittance factor 0…1
+  double lumens = 0;              ///< level × rated flux
+  std::optional<double> watts{};  ///< level × rated power; none when that is not known
 };
 
 /// So many lights would leave so much of the error (normalised, weighted, none above its highest level).
 struct PlannedNumber {
   int lights = 0;
+  double normalised_error = 0;
+};
+
+/// Within so much power the lights would leave so much of the error.
+struct PlannedPower {
+  double max_watts = 0, watts = 0;
   double normalised_error = 0;
 };
 
@@ -40,6 +48,8 @@ struct PlannedTask {
   /// kind "placement": proven by the search's own light: no number of lights at the places it tried comes closer, and
   /// none up to this task's number does.
   std::optional<double> lower_bound{}, lower_bound_of_number{};
+  std::optional<double> watts{};      ///< of its lights together; none when one's is not known
+  std::vector<PlannedPower> front{};  ///< kind "placement": what each watt less would cost
 };
 
 struct PlannedPoint {
@@ -48,8 +58,9 @@ struct PlannedPoint {
   Vec3 normal_world = Vec3::UnitZ();
   double lux = 0, direct_lux = 0, standard_error_lux = 0;
   std::optional<double> goal_lux;
-  std::string why;                       ///< empty when met; else what binds
-  std::optional<double> daylight_lux{};  ///< what of lux is daylight; none in a rig without
+  std::string why;                              ///< empty when met; else what binds
+  std::optional<double> daylight_lux{};         ///< what of lux is daylight; none in a rig without
+  std::optional<Chromaticity> xy{}, goal_xy{};  ///< in a rig whose goals have colours
 };
 
 struct PlannedLimit {
@@ -82,7 +93,8 @@ struct Plan {
 
 /// JSON, keys as in design.md `solve --json`, plus "luxrig_plan": 1 and "rig" (and a point's "why" when there is one,
 /// and a placement's "fixtures", like "lights", and "numbers": [{"lights", "normalised_error"}],
-/// "lower_bound" and "lower_bound_of_number"). Numbers are finite or
+/// "lower_bound" and "lower_bound_of_number", "front": [{"max_watts", "watts", "normalised_error"}], "watts" of lights
+/// and tasks, and with goals of a colour a point's "xy" and "goal_xy"). Numbers are finite or
 /// the key is absent.
 [[nodiscard]] std::string to_json(const Plan& plan);
 /// Never throws. Problems of syntax carry line and column, others a path (/tasks/0/lights/3/level) in `what`. Needed

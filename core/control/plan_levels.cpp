@@ -67,7 +67,7 @@ class PlanLevels {
       auto found = index_of_.find(light.name);
       if (found == index_of_.end() && hang && hung(*hang, light, path)) found = index_of_.find(light.name);
       if (found == index_of_.end()) {
-        if (!hang) unknown(light, path, placed);
+        if (!hang) unknown(rig, light, path, placed);
         continue;
       }
       const std::size_t i = found->second;
@@ -84,17 +84,25 @@ class PlanLevels {
     }
   }
 
-  void unknown(const PlannedLight& light, const std::string& path, bool placed) {
+  void unknown(const Rig& rig, const PlannedLight& light, const std::string& path, bool placed) {
     if (!placed || !light.position_world_m.allFinite()) {
       return problem(fmt::format("{}/name: the rig has no fixture \"{}\"", path, light.name),
                      "name a fixture of the rig, or solve again");
     }
     const Vec3& at = light.position_world_m;
+    // An emitter hangs with its housing.
+    std::string hangs = light.luminaire, called = light.name;
+    for (const Luminaire& luminaire : rig.luminaires) {
+      if (luminaire.name != light.luminaire || !luminaire.emitter_of) continue;
+      hangs = rig.luminaires[*luminaire.emitter_of].name;
+      const std::string emitter = luminaire.name.substr(hangs.size());
+      if (called.ends_with(emitter)) called.resize(called.size() - emitter.size());
+    }
     problem(
         fmt::format("{}/name: light \"{}\" does not hang yet", path, light.name),
         fmt::format("hang a {} at [{:.3f}, {:.3f}, {:.3f}], patch it, and add it to the rig as a [[fixture]] called "
                     "\"{}\" (until then, luxrig render and luxrig evaluate show this plan)",
-                    light.luminaire, at.x(), at.y(), at.z(), light.name));
+                    hangs, at.x(), at.y(), at.z(), called));
   }
 
   bool hung(Rig& rig, const PlannedLight& light, const std::string& path) {

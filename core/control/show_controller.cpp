@@ -18,8 +18,8 @@ constexpr Duration kSampleEvery = std::chrono::seconds(1);
 constexpr int kDriftSamples = 3;
 constexpr Duration kDriftCorrectionEvery = std::chrono::seconds(10);
 // Level changes smaller than half a step of a 12-bit dimmer are not worth a fade.
-/// most_lux_at_point holds 1 % for a meter's noise on top of its tolerance, and corrections aim at the limit itself: half
-/// of that may be used up before a reading counts, or noise alone would start one correction after another.
+/// most_lux_at_point holds 1 % for a meter's noise on top of its tolerance, and corrections aim at the limit itself:
+/// half of that may be used up before a reading counts, or noise alone would start one correction after another.
 constexpr double kBreachSlack = 0.005;
 constexpr double kSmallestChange = 1e-4;
 
@@ -123,6 +123,15 @@ void ShowController::State::guard(Time now, const std::vector<double>& from, con
   }
   program.worst_lux_per_level = std::move(worst.worst_lux_per_level);
   program.max_lx = std::move(worst.max_lx);
+  if (!rig.limits.max_watts) return;
+  // A limit of power is one more row: watts per level.
+  const Eigen::Index row = program.max_lx.size();
+  program.worst_lux_per_level.conservativeResize(row + 1, lights);
+  program.max_lx.conservativeResize(row + 1);
+  for (Eigen::Index j = 0; j < lights; ++j)
+    program.worst_lux_per_level(row, j) =
+        rig.luminaires[rig.fixtures[static_cast<std::size_t>(j)].luminaire].watts.value_or(0);
+  program.max_lx[row] = *rig.limits.max_watts;
 }
 
 void ShowController::State::start_cue(Time now, std::vector<double> levels) {

@@ -17,6 +17,22 @@ namespace luxrig {
 
 inline constexpr double kLeastCct_k = 1667, kMostCct_k = 25000;
 
+/// Chromaticity, CIE 1931 2° observer.
+using Chromaticity = Eigen::Vector2d;  ///< x, y
+
+/// Colour of a chromaticity, with a luminance of 1. A primary is negative where it lies outside Rec. 709.
+/// requires   y > 0 (asserted)
+[[nodiscard]] Vec3 rgb_of_xy(const Chromaticity& xy);
+/// The inverse, whatever the luminance. requires   a sum of tristimulus values above 0, as any light has
+[[nodiscard]] Chromaticity xy_of_rgb(const Vec3& rgb);
+
+/// A colour as it can be computed with: primaries that would be negative are 0, luminance 1.
+struct ColourWithin709 {
+  Vec3 rgb;
+  bool moved = false;  ///< it lay outside by more than rounding
+};
+[[nodiscard]] ColourWithin709 within_rec709(const Vec3& rgb);
+
 /// Colour of a black body. Primaries that would be negative (below 1900 K) are 0.
 /// requires   kLeastCct_k ≤ cct_k ≤ kMostCct_k (asserted)
 /// accuracy   0.001 in x and y

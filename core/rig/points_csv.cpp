@@ -19,11 +19,12 @@ namespace {
 
 constexpr std::size_t kMostBytes = std::size_t{64} << 20;
 
-enum Column { kName, kX, kY, kZ, kNx, kNy, kNz, kGoal, kWeightColumn, kMax, kColumns };
-constexpr std::array<std::string_view, kColumns> kColumnNames = {"name", "x_m", "y_m",     "z_m",    "nx",
-                                                                 "ny",   "nz",  "goal_lx", "weight", "max_lx"};
-constexpr std::array<std::string_view, kColumns> kKeys = {"name",   "position_m", "position_m", "position_m", "normal",
-                                                          "normal", "normal",     "goal_lx",    "weight",     "max_lx"};
+enum Column { kName, kX, kY, kZ, kNx, kNy, kNz, kGoal, kGoalX, kGoalY, kGoalCct, kWeightColumn, kMax, kColumns };
+constexpr std::array<std::string_view, kColumns> kColumnNames = {
+    "name", "x_m", "y_m", "z_m", "nx", "ny", "nz", "goal_lx", "goal_x", "goal_y", "goal_cct_k", "weight", "max_lx"};
+constexpr std::array<std::string_view, kColumns> kKeys = {
+    "name",    "position_m", "position_m", "position_m", "normal", "normal", "normal",
+    "goal_lx", "goal_xy",    "goal_xy",    "goal_cct_k", "weight", "max_lx"};
 
 struct Cell {
   std::string text;
@@ -137,6 +138,9 @@ class PointsReader {
     if ((has(kNx) || has(kNy) || has(kNz)) && !(has(kNx) && has(kNy) && has(kNz))) {
       refuse(cells.front().place, "a normal needs the columns nx, ny and nz", "add those that are missing");
     }
+    if (has(kGoalX) != has(kGoalY)) {
+      refuse(cells.front().place, "a chromaticity needs the columns goal_x and goal_y", "add the one that is missing");
+    }
     return good;
   }
 
@@ -177,9 +181,33 @@ class PointsReader {
       p.normal_world = normal.stableNormalized();
     }
     p.goal_lx = values[kGoal];
+    if (!read_colour(cells, values, out)) return;
     p.weight = values[kWeightColumn].value_or(p.weight);
     p.max_lx = values[kMax];
     rows_.push_back(std::move(out));
+  }
+
+  bool read_colour(const std::vector<Cell>& cells, const std::array<std::optional<double>, kColumns>& values,
+                   PointsTable::Row& out) {
+    const auto &x = values[kGoalX], &y = values[kGoalY], &cct_k = values[kGoalCct];
+    if (!x && !y && !cct_k) return true;
+    const auto refuse = [&](Column at, std::string what, std::string mend) {
+      const auto column = std::find(columns_.begin(), columns_.end(), at) - columns_.begin();
+      problems_.add(cells[static_cast<std::size_t>(column)].place, std::move(what), std::move(mend));
+      return false;
+    };
+    if (x.has_value() != y.has_value())
+      return refuse(x ? kGoalY : kGoalX, "half a chromaticity", "give goal_x and goal_y, or neither");
+    if (x && cct_k)
+      return refuse(kGoalCct, "goal_x and goal_cct_k both say what colour the goal has", "leave one of the two empty");
+    if (!values[kGoal])
+      return refuse(x ? kGoalX : kGoalCct, "the colour of a goal without goal_lx", "add goal_lx, or leave it empty");
+    if (x && *x + *y > 1)
+      return refuse(kGoalX, fmt::format("goal_x {:g} and goal_y {:g} add up to {:g}", *x, *y, *x + *y),
+                    "x and y of a chromaticity (CIE 1931) add up to 1 at most");
+    if (x) out.goal_xy = Chromaticity(*x, *y);
+    if (cct_k) out.point.goal_rgb = rgb_of_cct(*cct_k);
+    return true;
   }
 
   bool read_name(const Cell& cell, PointsTable::Row& out) {

@@ -1,9 +1,6 @@
 #include <fmt/format.h>
 
-#include <charconv>
-#include <set>
-
-#include "core/rig/nearest.h"
+#include "core/rig/dmx_slots.h"
 #include "core/rig/rig_reader.h"
 
 namespace luxrig {
@@ -14,91 +11,20 @@ constexpr std::string_view kModbusKeys[] = {"unit", "register", "full_scale"};
 constexpr std::string_view kTravelKeys[] = {"pan_range_deg", "tilt_range_deg", "pan_speed_deg_s", "tilt_speed_deg_s"};
 constexpr double kNearest_m = 0.001;  // an aim nearer than this has no direction worth the name
 
-// In the order of SlotUse; a constant carries its number.
-constexpr std::string_view kSlotNames[] = {"dimmer", "dimmer-fine", "pan",       "pan-fine",
-                                           "tilt",   "tilt-fine",   "constant:", "unused"};
-
-std::string_view name_of(SlotUse use) { return kSlotNames[static_cast<std::size_t>(use)]; }
-
-std::optional<DmxSlot> slot_from(const std::string& text, const Place& place, ProblemList& problems) {
-  const std::string_view constant = name_of(SlotUse::constant);
-  if (text.starts_with(constant)) {
-    int value = -1;
-    const char* end = text.data() + text.size();
-    const auto [stop, error] = std::from_chars(text.data() + constant.size(), end, value);
-    if (error == std::errc{} && stop == end && value >= 0 && value <= 255) return DmxSlot{SlotUse::constant, value};
-    problems.add(place, fmt::format("slot {} has no value from 0 to 255", in_quotes(text)),
-                 "write it as \"constant:255\"");
-    return std::nullopt;
-  }
-  for (std::size_t i = 0; i < std::size(kSlotNames); ++i) {
-    if (text == kSlotNames[i]) return DmxSlot{static_cast<SlotUse>(i), 0};
-  }
-  problems.add(place, fmt::format("no slot is called {}", in_quotes(text)), mend_for_unknown(text, kSlotNames, ""));
-  return std::nullopt;
-}
-
-/// What the slots of a fixture need of one another.
-bool check_slots(const std::vector<DmxSlot>& slots, const std::vector<Place>& places, const Place& list,
-                 ProblemList& problems) {
-  bool good = true;
-  std::set<SlotUse> uses;
-  for (std::size_t i = 0; i < slots.size(); ++i) {
-    const SlotUse use = slots[i].use;
-    if (use == SlotUse::constant || use == SlotUse::unused || uses.insert(use).second) continue;
-    problems.add(places[i], fmt::format("a second {} slot", name_of(use)),
-                 "leave one; a further cell or lamp is a fixture of its own");
-    good = false;
-  }
-  for (const auto& [fine, coarse] :
-       {std::pair{SlotUse::dimmer_fine, SlotUse::dimmer}, std::pair{SlotUse::pan_fine, SlotUse::pan},
-        std::pair{SlotUse::tilt_fine, SlotUse::tilt}}) {
-    if (!uses.contains(fine) || uses.contains(coarse)) continue;
-    problems.add(list, fmt::format("a {} slot without a {} slot", name_of(fine), name_of(coarse)),
-                 fmt::format("add \"{}\" where the coarse byte is, or make the fine one \"unused\"", name_of(coarse)));
-    good = false;
-  }
-  if (!uses.contains(SlotUse::dimmer) && !uses.contains(SlotUse::dimmer_fine)) {
-    problems.add(list, "no dimmer slot", "add \"dimmer\": every fixture is set by its level");
-    good = false;
-  }
-  if (uses.contains(SlotUse::pan) != uses.contains(SlotUse::tilt)) {
-    problems.add(list,
-                 uses.contains(SlotUse::pan) ? "a pan slot without a tilt slot" : "a tilt slot without a pan slot",
-                 "give both, or hold the one with \"constant:N\"");
-    good = false;
-  }
-  return good;
-}
-
-/// Reads the DMX patch; true when its slots can be claimed.
-bool read_dmx(Section& s, Fixture& fixture, ProblemList& problems) {
+/// Reads the DMX patch, and its slots as they are named; true when they can be claimed.
+bool read_dmx(Section& s, const std::optional<SlotOwner>& owner, Fixture& fixture, std::vector<NamedSlot>& named) {
   DmxPatch patch;
-  bool good = true;
   s.read("universe", patch.universe);
   if (!s.has("address")) s.require("address", "which DMX needs");
-  good &= s.read("address", patch.address);
-  std::vector<std::pair<std::string, Place>> names;
-  if (s.read_texts("slots", names)) {
-    std::vector<Place> places;
-    patch.slots.clear();
-    for (const auto& [name, place] : names) {
-      if (const auto slot = slot_from(name, place, problems)) {
-        patch.slots.push_back(*slot);
-        places.push_back(place);
-      }
-      if (problems.full()) break;
-    }
-    good &= patch.slots.size() == names.size() && check_slots(patch.slots, places, s.place_of("slots"), problems);
-  } else {
-    good &= !s.has("slots");
-  }
+  bool good = s.read("address", patch.address);
+  good &= read_slots(s, owner, named);
+  patch.slots = slots_of(named, named.empty() || !owner || owner->emitters.empty() ? std::nullopt : std::optional(0ul));
   const auto count = static_cast<int>(std::min<std::size_t>(patch.slots.size(), 10000));
   if (good && patch.address + count - 1 > 512) {
-    problems.add(s.place_of("address"),
-                 fmt::format("{} slots from address {} end at {}, past slot 512", count, patch.address,
-                             patch.address + count - 1),
-                 count <= 512 ? fmt::format("use address {} or lower", 513 - count) : "a universe has 512 slots");
+    s.problems().add(s.place_of("address"),
+                     fmt::format("{} slots from address {} end at {}, past slot 512", count, patch.address,
+                                 patch.address + count - 1),
+                     count <= 512 ? fmt::format("use address {} or lower", 513 - count) : "a universe has 512 slots");
     good = false;
   }
   for (const DmxSlot& slot : patch.slots) fixture.moves |= slot.use == SlotUse::pan || slot.use == SlotUse::tilt;
@@ -106,8 +32,16 @@ bool read_dmx(Section& s, Fixture& fixture, ProblemList& problems) {
   return good;
 }
 
-bool read_modbus(Section& s, Fixture& fixture) {
+bool read_modbus(Section& s, const std::optional<SlotOwner>& owner, Fixture& fixture) {
   ModbusPatch patch;
+  if (owner && !owner->emitters.empty()) {
+    s.problems().add(s.place_of("register"),
+                     fmt::format("luminaire {} has {} emitters, and a Modbus register holds one level",
+                                 in_quotes(owner->luminaire), owner->emitters.size()),
+                     fmt::format("make each emitter a [[fixture]] of its own, as luminaire = {}",
+                                 in_quotes(owner->luminaire + "/" + owner->emitters.front())));
+    return false;
+  }
   bool good = s.read("unit", patch.unit) || !s.has("unit");
   if (!s.has("register")) s.require("register", "which a Modbus dimmer needs");
   good &= s.read("register", patch.holding_register);
@@ -153,6 +87,13 @@ void read_travel(Section& s, Fixture& fixture) {
   fixture.tilt_speed_rad_s = rad_from_deg(120);
   s.read_deg("pan_speed_deg_s", fixture.pan_speed_rad_s);
   s.read_deg("tilt_speed_deg_s", fixture.tilt_speed_rad_s);
+}
+
+SlotOwner slot_owner_of(const Rig& rig, std::size_t luminaire) {
+  SlotOwner owner{rig.luminaires[luminaire].name, {}};
+  for (const std::size_t emitter : rig.luminaires[luminaire].emitters)
+    owner.emitters.push_back(rig.luminaires[emitter].name.substr(owner.luminaire.size() + 1));
+  return owner;
 }
 
 }  // namespace
@@ -219,7 +160,11 @@ void RigReader::read_fixtures() {
     Fixture fixture;
     fixture.place = s.place();
     if (s.read("name", fixture.name)) fixtures.add(fixture.name, rig.fixtures.size(), s.place_of("name"), problems);
-    if (const auto index = luminaires.read_reference(s, "luminaire")) fixture.luminaire = *index;
+    std::optional<SlotOwner> slot_owner;
+    if (const auto index = luminaires.read_reference(s, "luminaire")) {
+      fixture.luminaire = *index;
+      slot_owner = slot_owner_of(rig, *index);
+    }
     const auto bus = buses.read_reference(s, "bus");
     if (bus) fixture.bus = *bus;
 
@@ -236,10 +181,11 @@ void RigReader::read_fixtures() {
     const PatchMap::Owner owner{"fixture " + in_quotes(fixture.name),
                                 s.place_of(s.has("address") ? "address" : "register")};
     const PatchKind kind = patch_kind(s, problems);
-    if (kind == PatchKind::dmx && read_dmx(s, fixture, problems) && bus) {
+    std::vector<NamedSlot> slots;
+    if (kind == PatchKind::dmx && read_dmx(s, slot_owner, fixture, slots) && bus) {
       const auto& dmx = std::get<DmxPatch>(fixture.patch);
       patches.claim_slots(*bus, dmx.universe, dmx.address, static_cast<int>(dmx.slots.size()), owner);
-    } else if (kind == PatchKind::modbus && read_modbus(s, fixture) && bus) {
+    } else if (kind == PatchKind::modbus && read_modbus(s, slot_owner, fixture) && bus) {
       const auto& modbus = std::get<ModbusPatch>(fixture.patch);
       patches.claim_registers(*bus, modbus.unit, false, modbus.holding_register, 1, owner);
     }
@@ -253,7 +199,20 @@ void RigReader::read_fixtures() {
                    fmt::format("safe_level {} is above max_level {}", *fixture.safe_level, fixture.max_level),
                    "lower safe_level, or raise max_level");
     }
-    rig.fixtures.push_back(std::move(fixture));
+    if (!slot_owner || slot_owner->emitters.empty()) {
+      rig.fixtures.push_back(std::move(fixture));
+      return;
+    }
+    const std::size_t housing = rig.fixtures.size();
+    for (std::size_t e = 0; e < slot_owner->emitters.size(); ++e) {
+      Fixture part = fixture;
+      part.name = fixture.name + "/" + slot_owner->emitters[e];
+      part.luminaire = rig.luminaires[fixture.luminaire].emitters[e];
+      part.housing = housing;
+      if (auto* dmx = std::get_if<DmxPatch>(&part.patch)) dmx->slots = slots_of(slots, e);
+      fixtures.add(part.name, rig.fixtures.size(), s.place_of("name"), problems);
+      rig.fixtures.push_back(std::move(part));
+    }
   });
 }
 

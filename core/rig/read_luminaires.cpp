@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <string_view>
 
 #include "core/photometry/light_colour.h"
@@ -51,7 +52,8 @@ void RigReader::check_model_keys(Section& s, LuminaireModel model) {
       s.require(key.key, fmt::format("which model \"{}\" needs", name));
     }
   }
-  if (model != LuminaireModel::ies && !s.has("lumens")) s.require("lumens", "which this model needs");
+  if (model != LuminaireModel::ies && !s.has("lumens") && !s.has("emitters"))
+    s.require("lumens", "which this model needs");
 }
 
 void RigReader::read_spot(Section& s, Luminaire& luminaire) {
@@ -100,7 +102,7 @@ void RigReader::read_photometric_file(Section& s, Luminaire& luminaire) {
     luminaire.intensity = scaled_to_flux(std::move(file->intensity), luminaire.lumens);
   } else {
     luminaire.intensity = std::move(file->intensity);
-    if (!s.has("lumens")) luminaire.lumens = flux_lm;
+    if (!s.has("lumens") && !s.has("emitters")) luminaire.lumens = flux_lm;
   }
 }
 
@@ -132,17 +134,39 @@ void RigReader::read_luminous_surface(Section& s, Luminaire& luminaire) {
   }
 }
 
-void RigReader::read_colour(Section& s, Luminaire& luminaire) {
-  if (s.has("cct_k") && s.has("colour")) {
-    problems.add(s.place_of("colour"), "cct_k and colour both say what colour its light has", "remove one of the two");
-    return;
+void RigReader::note_colour_moved(const std::string& file, const Place& place, const std::string& whose,
+                                  const Chromaticity& wanted, const Vec3& taken_rgb) {
+  const Chromaticity taken = xy_of_rgb(taken_rgb);
+  rig.notes.push_back(
+      {file, place.line, place.column,
+       fmt::format("{} xy [{:g}, {:g}] lies outside Rec. 709, in which colours are computed: [{:.4f}, {:.4f}] is taken",
+                   whose, wanted.x(), wanted.y(), taken.x(), taken.y()),
+       "lux stay right; expect the real colour to be more saturated than predicted"});
+}
+
+void RigReader::read_colour(Section& s, Vec3& colour_rgb) {
+  const char* given = nullptr;
+  for (const char* key : {"cct_k", "xy", "colour"}) {
+    if (!s.has(key)) continue;
+    if (given) {
+      problems.add(s.place_of(key), fmt::format("{} and {} both say what colour its light has", given, key),
+                   "remove one of the two");
+      return;
+    }
+    given = key;
   }
   double cct_k = 0;
-  if (s.read("cct_k", cct_k)) luminaire.colour_rgb = rgb_of_cct(cct_k);
+  if (s.read("cct_k", cct_k)) colour_rgb = rgb_of_cct(cct_k);
+  Chromaticity xy;
+  if (s.read("xy", xy)) {
+    const ColourWithin709 colour = within_rec709(rgb_of_xy(xy));
+    colour_rgb = colour.rgb;
+    if (colour.moved) note_colour_moved(problems.file(), s.place_of("xy"), "the colour", xy, colour.rgb);
+  }
   Vec3 rgb = Vec3::Ones();
   if (!s.read("colour", rgb)) return;
   if (const auto scaled = with_luminance_1(rgb)) {
-    luminaire.colour_rgb = *scaled;
+    colour_rgb = *scaled;
   } else {
     problems.add(s.place_of("colour"), "a colour of light cannot be black", "give at least one number above 0");
   }
@@ -151,7 +175,7 @@ void RigReader::read_colour(Section& s, Luminaire& luminaire) {
 void RigReader::read_distribution(Section& s, Luminaire& luminaire) {
   if (!s.read_choice("model", luminaire.model)) return;
   check_model_keys(s, luminaire.model);
-  s.read("lumens", luminaire.lumens);  // stays 0 when it is absent or wrong
+  if (!s.has("emitters")) s.read("lumens", luminaire.lumens);  // stays 0 when it is absent or wrong
   switch (luminaire.model) {
     case LuminaireModel::ies:
       read_photometric_file(s, luminaire);
@@ -165,7 +189,47 @@ void RigReader::read_distribution(Section& s, Luminaire& luminaire) {
     default:
       read_luminous_surface(s, luminaire);
   }
-  read_colour(s, luminaire);
+}
+
+std::vector<Luminaire> RigReader::read_emitters(Section& s, const std::string& luminaire_name) {
+  std::vector<Luminaire> emitters;
+  if (!s.has("emitters")) return emitters;
+  for (const char* key : {"lumens", "watts", "cct_k", "xy", "colour"})
+    s.refuse(key, fmt::format("{} has no effect beside emitters", key), "remove it: each emitter has its own");
+  NameIndex names("emitter");
+  each(s.table(), "luminaire.emitters", [&](Section& e) {
+    Luminaire emitter;
+    emitter.place = e.place();
+    std::string name;
+    if (e.read("name", name)) {
+      names.add(name, emitters.size(), e.place_of("name"), problems);
+      if (name.ends_with("-fine"))
+        problems.add(e.place_of("name"), fmt::format("emitter {} ends in -fine", in_quotes(name)),
+                     "name it otherwise: slots call the low byte of an emitter \"emitter:NAME-fine\"");
+    }
+    emitter.name = luminaire_name + "/" + name;
+    e.read("lumens", emitter.lumens);
+    e.read("watts", emitter.watts);
+    read_colour(e, emitter.colour_rgb);
+    emitters.push_back(std::move(emitter));
+  });
+  if (emitters.empty() && problems.empty())
+    problems.add(s.place_of("emitters"), "emitters is empty", "list at least one, or remove it and give lumens");
+  return emitters;
+}
+
+/// All emitters at full, for what asks after the luminaire as a whole.
+void RigReader::add_up(const std::vector<Luminaire>& emitters, Luminaire& luminaire) {
+  luminaire.lumens = 0;
+  luminaire.watts = 0;
+  Vec3 light_rgb = Vec3::Zero();
+  for (const Luminaire& emitter : emitters) {
+    luminaire.lumens += emitter.lumens;
+    if (luminaire.watts)
+      luminaire.watts = emitter.watts ? std::optional(*luminaire.watts + *emitter.watts) : std::nullopt;
+    light_rgb += emitter.lumens * emitter.colour_rgb;
+  }
+  luminaire.colour_rgb = with_luminance_1(light_rgb).value_or(Vec3::Ones());
 }
 
 void RigReader::read_luminaires() {
@@ -175,9 +239,33 @@ void RigReader::read_luminaires() {
     if (s.read("name", luminaire.name)) {
       luminaires.add(luminaire.name, rig.luminaires.size(), s.place_of("name"), problems);
     }
+    std::vector<Luminaire> emitters = read_emitters(s, luminaire.name);
+    if (emitters.empty()) {
+      read_colour(s, luminaire.colour_rgb);
+      s.read("watts", luminaire.watts);
+    } else {
+      add_up(emitters, luminaire);
+    }
     read_distribution(s, luminaire);
-    s.read("watts", luminaire.watts);
-    rig.luminaires.push_back(std::move(luminaire));
+    const std::size_t whole = rig.luminaires.size();
+    for (std::size_t e = 0; e < emitters.size(); ++e) luminaire.emitters.push_back(whole + 1 + e);
+    rig.luminaires.push_back(luminaire);
+    for (auto at = emitters.begin(); at != emitters.end(); ++at) {
+      const Luminaire& emitter = *at;
+      const auto is_called_so = [&](const Luminaire& other) { return other.name == emitter.name; };
+      if (std::none_of(emitters.begin(), at, is_called_so))  // else it is reported
+        luminaires.add(emitter.name, rig.luminaires.size(), emitter.place, problems);
+      Luminaire part = luminaire;
+      part.name = emitter.name;
+      part.lumens = emitter.lumens;
+      part.watts = emitter.watts;
+      part.colour_rgb = emitter.colour_rgb;
+      if (part.intensity && part.lumens > 0) part.intensity = scaled_to_flux(part.intensity, part.lumens);
+      part.emitters.clear();
+      part.emitter_of = whole;
+      part.place = emitter.place;
+      rig.luminaires.push_back(std::move(part));
+    }
   });
 }
 

@@ -8,8 +8,8 @@
 namespace luxrig {
 namespace {
 
-constexpr std::array kOfPlacement = {"luminaire", "lights",   "max_lights", "error_wanted", "improvement", "method",
-                                     "indirect",  "fixtures", "seconds",    "aimed",        "bound"};
+constexpr std::array kOfPlacement = {"luminaire", "lights",   "max_lights", "error_wanted", "improvement",  "method",
+                                     "indirect",  "fixtures", "seconds",    "aimed",        "energy_front", "bound"};
 
 }  // namespace
 
@@ -32,11 +32,27 @@ void RigReader::read_placement(Section& s, PlacementSpec& placement) {
   s.read("indirect", placement.indirect);
   s.read_choice("fixtures", placement.fixtures);
   s.read("seconds", placement.seconds);
+  s.read("energy_front", placement.energy_front);
   s.read("bound", placement.bound);
   if (std::none_of(rig.points.begin(), rig.points.end(), [](const Point& p) { return p.goal_lx && p.weight > 0; })) {
     problems.add(s.place(), "there is nothing to place lights for: no point has a goal",
                  "give each [[point]] that matters a goal_lx");
   }
+}
+
+void RigReader::need_watts_of(std::size_t luminaire, const Place& place, const std::string& what) {
+  // After another problem, an entry may stand for one that is not there.
+  if (!problems.empty() && lacks_watts.empty()) return;
+  const Luminaire& lamp = rig.luminaires[luminaire];
+  if (lamp.watts || !lacks_watts.insert(lamp.emitter_of.value_or(luminaire)).second) return;
+  const Luminaire& whole = rig.luminaires[lamp.emitter_of.value_or(luminaire)];
+  problems.add(place, fmt::format("{} needs the watts of luminaire {}", what, in_quotes(whole.name)),
+               fmt::format("add watts to {} (line {}), or remove the limit",
+                           whole.emitters.empty() ? "it" : "each of its emitters", whole.place.line));
+}
+
+void RigReader::need_watts_of_fixtures(const Place& place, const std::string& what) {
+  for (const Fixture& fixture : rig.fixtures) need_watts_of(fixture.luminaire, place, what);
 }
 
 void RigReader::read_tasks() {
@@ -54,8 +70,20 @@ void RigReader::read_tasks() {
                    "remove it, or change the kind");
       }
     }
+    if (s.read("max_watts", task.max_watts)) {
+      if (task.kind == TaskKind::placement) {
+        need_watts_of(task.placement.luminaire, s.place_of("max_watts"), "max_watts of this task");
+      } else {
+        need_watts_of_fixtures(s.place_of("max_watts"), "max_watts of this task");
+      }
+    } else if (task.placement.energy_front > 0) {
+      need_watts_of(task.placement.luminaire, s.place_of("energy_front"), "energy_front");
+    }
+    if (rig.limits.max_watts && task.kind == TaskKind::placement)
+      need_watts_of(task.placement.luminaire, rig.limits.place, "max_watts of [limits]");
     rig.tasks.push_back(std::move(task));
   });
+  if (rig.limits.max_watts) need_watts_of_fixtures(rig.limits.place, "max_watts of [limits]");
   if (rig.tasks.empty()) rig.tasks.push_back({"levels", TaskKind::emittance, {}, {}});
 }
 

@@ -3,6 +3,7 @@
 /// of the file; indices into them are used everywhere else.
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -68,6 +69,10 @@ struct Luminaire {
   LuminousShape shape;  ///< a point, unless the model has a size or a file's opening is asked for (near_field)
   Vec3 colour_rgb = Vec3::Ones();  ///< of its light, linear Rec. 709 with a luminance of 1
   std::optional<LampTilt> tilt;    ///< model == ies: output by how far it hangs off upright
+  /// With emitters that are set one by one: for each a luminaire of the rig, called "<name>/<emitter>" and right after
+  /// this one. This one is then all of them at their rated flux.
+  std::vector<std::size_t> emitters{};
+  std::optional<std::size_t> emitter_of{};  ///< the luminaire that has this one among its emitters
   Place place;
 };
 
@@ -76,6 +81,7 @@ enum class SlotUse { dimmer, dimmer_fine, pan, pan_fine, tilt, tilt_fine, consta
 struct DmxSlot {
   SlotUse use = SlotUse::dimmer;
   int constant_dmx = 0;  ///< 0…255, for SlotUse::constant (an open shutter, say)
+  bool sent = true;      ///< false: obeyed, but sent for the first fixture of the housing
 };
 
 struct DmxPatch {
@@ -96,12 +102,15 @@ using Patch = std::variant<DmxPatch, ModbusPatch>;
 /// drive (0…1, what is sent) -> level (0…1, share of rated flux), as the fixture's maker states it.
 enum class DimmerCurve { linear, square, s_curve };
 
+/// What hangs and is set by one level. A [[fixture]] whose luminaire has emitters becomes one Fixture for each, called
+/// "<name>/<emitter>": they stand one after the other and share place, aim and address.
 struct Fixture {
   std::string name;
   std::size_t luminaire = 0;
-  Pose world_from_mount;            ///< base as hung
-  std::optional<Vec3> aim_world_m;  ///< point looked at; else `joints` are given
-  PanTilt joints;                   ///< pan and tilt, derived from the aim when there is one
+  std::optional<std::size_t> housing{};  ///< of an emitter: the fixture that is the first of its housing
+  Pose world_from_mount;                 ///< base as hung
+  std::optional<Vec3> aim_world_m;       ///< point looked at; else `joints` are given
+  PanTilt joints;                        ///< pan and tilt, derived from the aim when there is one
   double roll_rad = 0;
   bool moves = false;                                ///< has pan and tilt slots (or axes)
   PanTiltRange range;                                ///< only when it moves
@@ -157,6 +166,7 @@ struct Point {
   Vec3 position_world_m = Vec3::Zero();
   Vec3 normal_world = Vec3::UnitZ();  ///< unit
   std::optional<double> goal_lx;      ///< none: only reported (and limited)
+  std::optional<Vec3> goal_rgb{};     ///< colour of that goal, linear Rec. 709 with a luminance of 1; none: any
   double weight = 1;
   std::optional<double> max_lx;  ///< hard limit
   Place place;
@@ -185,6 +195,7 @@ struct PlacementSpec {
   bool indirect = true;  ///< reflected light counts in the search
   FixturesMeanwhile fixtures = FixturesMeanwhile::as_set;
   std::optional<double> seconds;  ///< after which the search ends with the best so far
+  int energy_front = 0;           ///< power limits to search anew with, below what the lights found take
   bool bound = false;             ///< prove, too, how close as many lights could come
 };
 
@@ -194,6 +205,7 @@ struct Task {
   TaskKind kind = TaskKind::emittance;
   Place place;
   PlacementSpec placement{};
+  std::optional<double> max_watts{};  ///< of the lights that it sets or places, together
 };
 
 /// Where lights may be placed.
@@ -213,6 +225,8 @@ struct MountingSpec {
 struct Limits {
   double max_level = 1.0;          ///< over all fixtures
   double open_loop_margin = 0.25;  ///< share of a max_lx kept free until a meter has confirmed the model there
+  /// Electrical power of all fixtures, and lights that are placed, together. Taken as rated watts times level.
+  std::optional<double> max_watts{};
   Place place;
 };
 
@@ -270,6 +284,16 @@ struct Rig {
   SafeSpec safe;
   DaemonSpec daemon;
   std::vector<Problem> notes;  ///< legal, but worth a look (a goal above its limit, an odd IES file)
+
+  /// Goals say a colour: then every point with a goal that counts has one.
+  [[nodiscard]] bool colour_goals() const {
+    return std::any_of(points.begin(), points.end(), [](const Point& p) { return p.goal_lx && p.goal_rgb; });
+  }
+  /// What of a luminaire is set one by one: its emitters, or the luminaire itself.
+  [[nodiscard]] std::vector<std::size_t> emitters_or_itself(std::size_t luminaire) const {
+    const std::vector<std::size_t>& emitters = luminaires[luminaire].emitters;
+    return emitters.empty() ? std::vector<std::size_t>{luminaire} : emitters;
+  }
 };
 
 }  // namespace luxrig

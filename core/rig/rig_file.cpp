@@ -121,6 +121,7 @@ void RigReader::read_settings() {
     rig.limits.place = s.place();
     s.read("max_level", rig.limits.max_level);
     s.read("open_loop_margin", rig.limits.open_loop_margin);
+    s.read("max_watts", rig.limits.max_watts);
   });
   each(root, "control", [&](Section& s) {
     ControlSpec& c = rig.control;

@@ -6,9 +6,13 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <unordered_map>
+#include <utility>
+#include <vector>
 
+#include "core/photometry/light_colour.h"
 #include "core/rig/document.h"
 #include "core/rig/patch_map.h"
 #include "core/rig/problem_list.h"
@@ -50,6 +54,9 @@ struct RigReader {
   Rig rig;
   NameIndex luminaires{"luminaire"}, buses{"bus"}, points{"point"};
   PatchMap patches;
+  /// Where each point stands: the rig file, or the points file.
+  std::vector<std::pair<std::string, Place>> point_places;
+  std::set<std::size_t> lacks_watts;  ///< luminaires that this was reported of
 
   void read_all();
 
@@ -80,7 +87,18 @@ struct RigReader {
   void read_spot(Section& section, Luminaire& luminaire);
   void read_photometric_file(Section& section, Luminaire& luminaire);
   void read_luminous_surface(Section& section, Luminaire& luminaire);
-  void read_colour(Section& section, Luminaire& luminaire);
+  void read_colour(Section& section, Vec3& colour_rgb);
+  void note_colour_moved(const std::string& file, const Place& place, const std::string& whose,
+                         const Chromaticity& wanted, const Vec3& taken_rgb);
+  /// Only what is an emitter's own.
+  std::vector<Luminaire> read_emitters(Section& section, const std::string& luminaire_name);
+  static void add_up(const std::vector<Luminaire>& emitters, Luminaire& luminaire);
+  void read_goal(Section& section, Point& point);
+  void set_goal_xy(Point& point, const Chromaticity& xy, const std::string& file, const Place& place);
+  void check_goal_colours();
+  /// Reports a luminaire without, once.
+  void need_watts_of(std::size_t luminaire, const Place& place, const std::string& what);
+  void need_watts_of_fixtures(const Place& place, const std::string& what);
   void read_aim(Section& section, Fixture& fixture);
   void check_joints(Section& section, const Fixture& fixture);
 };

@@ -29,6 +29,10 @@ constexpr Bounds kSeconds{0, 3600};
 constexpr Bounds kUnitAddress{0, 255};
 constexpr Bounds kRegister{0, 65535};
 constexpr Bounds kLights{1, 1000};
+constexpr Bounds kChromaticity{0, 1, true, true};
+constexpr Bounds kKelvin{1667, 25000};
+constexpr Bounds kFlux{0, 1e8, true};
+constexpr Bounds kWatts{0, 1e6};
 constexpr std::string_view kUnits = "m, cm, mm, in, ft";
 constexpr std::string_view kAxes = "x, y, z";
 
@@ -42,6 +46,10 @@ constexpr SectionSpec kSections[] = {
      "Light from outside, through whatever openings the mesh leaves: a sky of the CIE, and the sun. It cannot be "
      "dimmed."},
     {"luminaire", true, 10000, false, "A kind of light: what it sends where, at rated flux. Fixtures name it."},
+    {"luminaire.emitters", true, 64, false,
+     "Emitters of a luminaire that are set one by one, as the red, green, blue and white of a stage light: each with "
+     "its flux and colour, all with the luminaire's distribution, which then has no `lumens`, `watts` or colour of its "
+     "own. `emitters = [{ … }, { … }]` on one line is the same."},
     {"bus", true, 1000, true, "A way to reach devices. Every further key is the driver's own: see Bus options."},
     {"fixture", true, 10000, false,
      "A luminaire as hung and patched: over DMX (`universe`, `address`, `slots`) or over Modbus (`unit`, `register`, "
@@ -135,22 +143,10 @@ constexpr KeySpec kRigKeys[] = {
     {"luminaire", "near_field", yes_no, "", "false", kAny, "",
      "light comes from the whole luminous opening that the file states; else from its middle, which is right from "
      "five times its size on (only with model `ies`)"},
-    {"luminaire",
-     "lumens",
-     number,
-     "lm",
-     kNone,
-     {0, 1e8, true},
-     "",
+    {"luminaire", "lumens", number, "lm", kNone, kFlux, "",
      "rated flux; required, but with model `ies` it may be left out and the file's own flux holds"},
-    {"luminaire", "watts", number, "W", kNone, {0, 1e6}, "", "rated electrical power"},
-    {"luminaire",
-     "cct_k",
-     number,
-     "K",
-     kNone,
-     {1667, 25000},
-     "",
+    {"luminaire", "watts", number, "W", kNone, kWatts, "", "rated electrical power"},
+    {"luminaire", "cct_k", number, "K", kNone, kKelvin, "",
      "colour of its light as that of a black body; left out, white (D65)"},
     {"luminaire",
      "colour",
@@ -160,6 +156,27 @@ constexpr KeySpec kRigKeys[] = {
      {0, 1000},
      "",
      "the same as linear Rec. 709 [red, green, blue] in any scale; instead of `cct_k`"},
+    {"luminaire", "xy", chromaticity, "", kNone, kChromaticity, "",
+     "the same as a chromaticity of CIE 1931; instead of `cct_k`. A colour outside Rec. 709 is moved to its edge, with "
+     "a "
+     "note"},
+
+    {"luminaire.emitters", "name", name, "", kRequired, kAny, "",
+     "what slots call it: `emitter:NAME`; it is the light `FIXTURE/NAME`"},
+    {"luminaire.emitters", "lumens", number, "lm", kRequired, kFlux, "", "rated flux of this emitter alone"},
+    {"luminaire.emitters", "watts", number, "W", kNone, kWatts, "", "its rated electrical power"},
+    {"luminaire.emitters", "cct_k", number, "K", kNone, kKelvin, "",
+     "colour of its light as that of a black body; left out, white (D65)"},
+    {"luminaire.emitters",
+     "colour",
+     colour,
+     "",
+     kNone,
+     {0, 1000},
+     "",
+     "the same as linear Rec. 709 [red, green, blue] in any scale; instead of `cct_k`"},
+    {"luminaire.emitters", "xy", chromaticity, "", kNone, kChromaticity, "",
+     "the same as a chromaticity of CIE 1931; instead of `cct_k`"},
 
     {"bus", "name", name, "", kRequired, kAny, "", "what fixtures and meters call it"},
     {"bus", "driver", text, "", kRequired, kAny, "", "what drives it; see Bus options"},
@@ -188,7 +205,8 @@ constexpr KeySpec kRigKeys[] = {
     {"fixture", "slots", texts, "", R"(["dimmer"])", kAny, "",
      "what each DMX slot carries from `address` on: `dimmer`, `dimmer-fine`, `pan`, `pan-fine`, `tilt`, `tilt-fine`, "
      "`unused`, or `constant:N` with N from 0 to 255; one dimmer is needed, pan and tilt come together, and a fine "
-     "slot needs its coarse one"},
+     "slot needs its coarse one. With a luminaire that has emitters, instead of the dimmer: `emitter:NAME` and "
+     "`emitter:NAME-fine`, one for each; hold a master dimmer open with `constant:255`"},
     {"fixture", "unit", whole_number, "", "1", kUnitAddress, "", "Modbus unit"},
     {"fixture", "register", whole_number, "", kNone, kRegister, "",
      "Modbus holding register of the dimmer, 0-based; required over Modbus"},
@@ -236,6 +254,9 @@ constexpr KeySpec kRigKeys[] = {
      {0, 1e7, true},
      "",
      "wanted illuminance; left out, it is only reported. To keep a place dark, use `max_lx`"},
+    {"point", "goal_xy", chromaticity, "", kNone, kChromaticity, "",
+     "wanted chromaticity (CIE 1931), beside `goal_lx`; once one goal has a colour, all that count must"},
+    {"point", "goal_cct_k", number, "K", kNone, kKelvin, "", "the same as that of a black body; instead of `goal_xy`"},
     {"point", "weight", number, "", "1", {0, 1e6}, "", "how much its goal counts against others"},
     {"point", "max_lx", number, "lx", kNone, kLux, "", "never more than this; it wins over any goal"},
 
@@ -244,6 +265,15 @@ constexpr KeySpec kRigKeys[] = {
     {"task", "name", name, "", kRequired, kAny, "", "name of the task"},
     {"task", "kind", text, "", kRequired, kAny, "emittance, placement",
      "`emittance`: the level of every fixture; `placement`: where further lights should hang, and their levels"},
+    {"task",
+     "max_watts",
+     number,
+     "W",
+     kNone,
+     {0, 1e9},
+     "",
+     "most electrical power of the lights that this task sets or places, taken as rated `watts` times level; every "
+     "luminaire of theirs must have `watts`"},
     {"task", "luminaire", text, "", kNone, kAny, "",
      "name of the `[[luminaire]]` to place (only with kind `placement`, as all keys below; required there)"},
     {"task", "lights", whole_number, "", kNone, kLights, "", "how many; left out, as few as will do"},
@@ -277,6 +307,16 @@ constexpr KeySpec kRigKeys[] = {
      "",
      "ends the search after this time with the best so far; left out, after a fixed amount of work, so that the result "
      "does not depend on the machine"},
+    {"task",
+     "energy_front",
+     whole_number,
+     "",
+     "0",
+     {0, 100},
+     "",
+     "so many power limits, falling evenly from what the lights found take, are searched with, too: what each watt "
+     "less "
+     "costs in error"},
     {"task", "bound", yes_no, "", "false", kAny, "",
      "whether to prove, too, how close as many lights could come at all (seconds to a minute); how close any number "
      "could is always worked out where the goal was not reached"},
@@ -322,6 +362,15 @@ constexpr KeySpec kRigKeys[] = {
      {0, 0.9},
      "",
      "share of each `max_lx` kept free until a meter has confirmed the model there"},
+    {"limits",
+     "max_watts",
+     number,
+     "W",
+     kNone,
+     {0, 1e9},
+     "",
+     "most electrical power of all fixtures and placed lights together, taken as rated `watts` times level; every "
+     "luminaire of theirs must have `watts`"},
 
     {"control", "fade_s", number, "s", "3", kSeconds, "", "from one look to the next"},
     {"control", "fade_curve", text, "", R"("s-curve")", kAny, "linear, s-curve", "course of a fade"},
@@ -396,7 +445,9 @@ std::string range_text(const KeySpec& spec) {
   return fmt::format(
       "{}{}{}{}{}", low && b.above_min ? "above " : "", low ? plain(b.min) : "",
       low && high ? (b.below_max ? " to below " : " to ") : "", high ? plain(b.max) : "",
-      spec.type == colour || spec.type == vector3 || spec.type == span2 || spec.type == box ? ", each" : "");
+      spec.type == colour || spec.type == vector3 || spec.type == span2 || spec.type == box || spec.type == chromaticity
+          ? ", each"
+          : "");
 }
 
 std::string_view type_text(ValueType type) {
@@ -420,6 +471,8 @@ std::string_view type_text(ValueType type) {
       return "[[x, y, z], [x, y, z]]";
     case colour:
       return "number or [r, g, b]";
+    case chromaticity:
+      return "[x, y]";
     case texts:
       return "list of text";
   }

@@ -16,11 +16,12 @@ enum class ValueType {
   number,
   whole_number,
   yes_no,
-  vector3,  ///< [x, y, z]
-  span2,    ///< [from, to], from < to
-  box,      ///< [[x, y, z], [x, y, z]], two opposite corners
-  colour,   ///< one number, or [r, g, b]
-  texts     ///< list of text
+  vector3,       ///< [x, y, z]
+  span2,         ///< [from, to], from < to
+  box,           ///< [[x, y, z], [x, y, z]], two opposite corners
+  colour,        ///< one number, or [r, g, b]
+  chromaticity,  ///< [x, y] of CIE 1931
+  texts          ///< list of text
 };
 
 /// Inclusive bounds of a number, or of each number of a list.

@@ -33,6 +33,8 @@ std::string example_of(const KeySpec& spec) {
       return fmt::format("write two corners: {} = [[0, 0, 2], [5, 4, 3]]", spec.key);
     case ValueType::colour:
       return fmt::format("write one number or three: {0} = 0.5 or {0} = [0.5, 0.5, 0.5]", spec.key);
+    case ValueType::chromaticity:
+      return fmt::format("write two numbers: {} = [0.3127, 0.329] is daylight white", spec.key);
     case ValueType::texts:
       return fmt::format("write a list: {} = {}", spec.key,
                          spec.fallback == kNone || spec.fallback == kRequired ? R"(["one", "other"])" : spec.fallback);
@@ -279,6 +281,31 @@ bool Section::read(std::string_view key, std::pair<double, double>& out) {
     return false;
   }
   out = {from, to};
+  return true;
+}
+
+bool Section::read(std::string_view key, Eigen::Vector2d& out) {
+  const KeySpec& k = spec(key);
+  LUXRIG_CHECK(k.type == ValueType::chromaticity, "{} is not a chromaticity", key);
+  const Node* node = value(k);
+  if (!node) return false;
+  const auto* list = std::get_if<NodeList>(&node->value);
+  if (!list || list->size() != 2) {
+    problems_.add(node->place,
+                  list ? fmt::format("{} has {} entries", key, list->size())
+                       : fmt::format("{} must be {}, not {}", key, type_text(k.type), kind_of(*node)),
+                  example_of(k));
+    return false;
+  }
+  Eigen::Vector2d xy;
+  const bool x_good = number_from(k, (*list)[0], xy[0]), y_good = number_from(k, (*list)[1], xy[1]);
+  if (!x_good || !y_good) return false;
+  if (xy.sum() > 1) {
+    problems_.add(node->place, fmt::format("{} [{:g}, {:g}] add up to {:g}", key, xy[0], xy[1], xy.sum()),
+                  "x and y of a chromaticity (CIE 1931) add up to 1 at most");
+    return false;
+  }
+  out = xy;
   return true;
 }
 

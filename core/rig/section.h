@@ -41,6 +41,7 @@ class Section {
   bool read(std::string_view key, std::string& out);
   bool read(std::string_view key, Vec3& out);  ///< vector3 or colour
   bool read(std::string_view key, std::pair<double, double>& out);
+  bool read(std::string_view key, Eigen::Vector2d& out);  ///< chromaticity: x + y ≤ 1
   bool read(std::string_view key,
             Eigen::AlignedBox3d& out);  ///< corners in any order; a box without volume is reported
   template <class T>

@@ -26,6 +26,24 @@ std::string point_text(const EmittanceProblem& p, Index i) {
   return at < p.point_name.size() ? fmt::format("point '{}'", p.point_name[at]) : fmt::format("point {}", i);
 }
 
+std::optional<std::string> complaint_of_colour(const EmittanceProblem& p) {
+  const Index points = p.lux_per_level.rows(), lights = p.lux_per_level.cols();
+  if (p.rgb_per_level.empty()) return std::nullopt;
+  if (p.rgb_per_level.size() != 3) return fmt::format("rgb_per_level has {} primaries", p.rgb_per_level.size());
+  const auto bad = [](const MatrixXd& m, Index rows, Index columns) {
+    return m.rows() != rows || m.cols() != columns || !m.allFinite() ||
+           (m.size() > 0 && m.cwiseAbs().maxCoeff() > kLargestEntry);
+  };
+  for (const MatrixXd& primary : p.rgb_per_level)
+    if (bad(primary, points, lights)) return "rgb_per_level has the wrong size, or an entry that is not finite";
+  if (bad(p.fixed_rgb, points, 3)) return "fixed_rgb has the wrong size, or an entry that is not finite";
+  if (p.goal_rgb.rows() != points || p.goal_rgb.cols() != 3) return "goal_rgb has the wrong size";
+  for (Index i = 0; i < points; ++i)
+    if (!std::isnan(p.goal_lx[i]) && !(p.goal_rgb.row(i).allFinite() && p.goal_rgb.row(i).minCoeff() >= 0))
+      return fmt::format("{}: its goal has no colour, or a negative one", point_text(p, i));
+  return std::nullopt;
+}
+
 std::optional<std::string> complaint(const EmittanceProblem& p) {
   const Index points = p.lux_per_level.rows(), lights = p.lux_per_level.cols();
   const auto entries = [](const auto& values, const char* what) -> std::optional<std::string> {
@@ -50,6 +68,10 @@ std::optional<std::string> complaint(const EmittanceProblem& p) {
   if (auto text = entries(p.weight, "weight")) return text;
   if (auto text = entries(p.max_level, "max_level")) return text;
   if (auto text = entries(p.near_level, "near_level")) return text;
+  if (p.watts.size() != lights) return size("watts", p.watts.size(), lights);
+  if (auto text = entries(p.watts, "watts")) return text;
+  if (!(p.max_watts >= 0)) return fmt::format("a limit of {:g} W", p.max_watts);
+  if (auto text = complaint_of_colour(p)) return text;
   for (Index i = 0; i < points; ++i) {
     if (!std::isnan(p.goal_lx[i]) && !(p.goal_lx[i] >= 0 && p.goal_lx[i] <= kLargestEntry))
       return fmt::format("{}: a goal of {:g} lx", point_text(p, i), p.goal_lx[i]);
@@ -68,6 +90,8 @@ EmittanceProblem completed(EmittanceProblem p) {
   if (p.max_lx.size() == 0) p.max_lx = VectorXd::Constant(points, kInfinity);
   if (p.max_level.size() == 0) p.max_level = VectorXd::Ones(lights);
   if (p.near_level.size() == 0) p.near_level = VectorXd::Zero(lights);
+  if (p.watts.size() == 0) p.watts = VectorXd::Zero(lights);
+  if (!p.rgb_per_level.empty() && p.fixed_rgb.size() == 0) p.fixed_rgb = MatrixXd::Zero(points, 3);
   return p;
 }
 
@@ -79,8 +103,33 @@ struct ScaledProblem {
   MatrixXd objective;  ///< W T without tie rows
   VectorXd target;     ///< W (g − b)
   VectorXd unit;
-  std::vector<Index> limited;  ///< points of the rows of G
+  std::vector<Index> limited;  ///< points of the rows of G, but for a last one that limits power
 };
+
+bool power_limited(const EmittanceProblem& p) {
+  return std::isfinite(p.max_watts) && p.watts.size() > 0 && p.watts.maxCoeff() > 0;
+}
+
+/// W T and W (g − b) of the points with goals; with colour, their three primaries one after the other.
+void set_goals(const EmittanceProblem& p, const std::vector<Index>& goals, ScaledProblem& s) {
+  const Index channels = p.rgb_per_level.empty() ? 1 : 3;
+  s.objective.resize(static_cast<Index>(goals.size()) * channels, p.lux_per_level.cols());
+  s.target.resize(s.objective.rows());
+  Index row = 0;
+  // Lights only add: a point that has more than its goal without them asks for none, and holds no other point down.
+  for (const Index i : goals) {
+    if (channels == 1) {
+      s.objective.row(row) = p.weight[i] * p.lux_per_level.row(i);
+      s.target[row++] = p.weight[i] * std::max(0.0, p.goal_lx[i] - p.fixed_lx[i]);
+      continue;
+    }
+    const double weight = p.weight[i] / std::sqrt(3.0);
+    for (Index c = 0; c < 3; ++c) {
+      s.objective.row(row) = weight * p.rgb_per_level[static_cast<std::size_t>(c)].row(i);
+      s.target[row++] = weight * std::max(0.0, p.goal_lx[i] * p.goal_rgb(i, c) - p.fixed_rgb(i, c));
+    }
+  }
+}
 
 ScaledProblem scaled(const EmittanceProblem& p) {
   ScaledProblem s;
@@ -91,15 +140,8 @@ ScaledProblem scaled(const EmittanceProblem& p) {
     if (std::isfinite(p.max_lx[i]) && p.lux_per_level.row(i).size() > 0 && p.lux_per_level.row(i).maxCoeff() > 0)
       s.limited.push_back(i);
   }
-  const auto rows = static_cast<Index>(goals.size()), limits = static_cast<Index>(s.limited.size());
-  s.objective.resize(rows, lights);
-  s.target.resize(rows);
-  for (Index k = 0; k < rows; ++k) {
-    const Index i = goals[static_cast<std::size_t>(k)];
-    s.objective.row(k) = p.weight[i] * p.lux_per_level.row(i);
-    // Lights only add: a point that has more than its goal without them asks for none, and holds no other point down.
-    s.target[k] = p.weight[i] * std::max(0.0, p.goal_lx[i] - p.fixed_lx[i]);
-  }
+  set_goals(p, goals, s);
+  const auto rows = s.objective.rows(), limits = static_cast<Index>(s.limited.size());
   const double right =
       s.target.size() > 0 && s.target.cwiseAbs().maxCoeff() > 0 ? power_of_two_near(s.target.stableNorm()) : 1.0;
   s.target /= right;
@@ -118,14 +160,20 @@ ScaledProblem scaled(const EmittanceProblem& p) {
   q.f.head(rows) = s.target;
   q.f.tail(lights) = kTie * p.near_level.cwiseProduct(s.unit);
   q.upper = p.max_level.cwiseProduct(s.unit);
-  q.G.resize(limits, lights);
-  q.slack.resize(limits);
+  q.G.resize(limits + (power_limited(p) ? 1 : 0), lights);
+  q.slack.resize(q.G.rows());
   for (Index k = 0; k < limits; ++k) {
     const Index i = s.limited[static_cast<std::size_t>(k)];
     q.G.row(k) = p.lux_per_level.row(i).cwiseQuotient(s.unit.transpose());
     const double norm = power_of_two_near(q.G.row(k).stableNorm());
     q.G.row(k) /= norm;
     q.slack[k] = (p.max_lx[i] - p.fixed_lx[i]) / norm;
+  }
+  if (power_limited(p)) {
+    q.G.row(limits) = p.watts.cwiseQuotient(s.unit).transpose();
+    const double norm = power_of_two_near(q.G.row(limits).stableNorm());
+    q.G.row(limits) /= norm;
+    q.slack[limits] = p.max_watts / norm;
   }
   return s;
 }
@@ -137,23 +185,24 @@ VectorXd levels_of(const EmittanceProblem& p, const ScaledProblem& s, const Limi
   return level;
 }
 
-/// Takes the last rounding off: T_i c + b_i ≤ m_i holds whatever the order of summation, since the room left is more
-/// than the error of a sum of so many terms.
+/// Takes the last rounding off: row · c ≤ room holds whatever the order of summation, since the room left is more than
+/// the error of a sum of so many terms.
+void keep_limit(const Eigen::RowVectorXd& row, double room, VectorXd& level) {
+  for (int attempt = 0;; ++attempt) {
+    const double used = row.dot(level);
+    if (used <= room || used == 0) return;
+    const double share = room <= 0 || attempt > 20 ? 0 : room / used * (1 - 4 * std::numeric_limits<double>::epsilon());
+    for (Index j = 0; j < level.size(); ++j)
+      if (row[j] > 0) level[j] *= share;
+  }
+}
+
 void keep_limits(const EmittanceProblem& p, VectorXd& level) {
   const double rounding = static_cast<double>(level.size() + 4) * std::numeric_limits<double>::epsilon();
-  for (Index i = 0; i < p.max_lx.size(); ++i) {
-    if (!std::isfinite(p.max_lx[i])) continue;
-    const auto row = p.lux_per_level.row(i);
-    const double room = (p.max_lx[i] - p.fixed_lx[i]) - rounding * p.max_lx[i];
-    for (int attempt = 0;; ++attempt) {
-      const double lux = row.dot(level);
-      if (lux <= room || lux == 0) break;
-      const double share =
-          room <= 0 || attempt > 20 ? 0 : room / lux * (1 - 4 * std::numeric_limits<double>::epsilon());
-      for (Index j = 0; j < level.size(); ++j)
-        if (row[j] > 0) level[j] *= share;
-    }
-  }
+  for (Index i = 0; i < p.max_lx.size(); ++i)
+    if (std::isfinite(p.max_lx[i]))
+      keep_limit(p.lux_per_level.row(i), (p.max_lx[i] - p.fixed_lx[i]) - rounding * p.max_lx[i], level);
+  if (power_limited(p)) keep_limit(p.watts.transpose(), p.max_watts * (1 - rounding), level);
 }
 
 /// Largest violation of stationarity, signs and complementarity of the problem without tie term, in scaled variables:
@@ -187,14 +236,32 @@ Fault fault(Cause cause, std::string detail) {
   return f;
 }
 
-/// Lux of the same problem with some constraints lifted.
-Result<VectorXd> lux_without(EmittanceProblem p, bool max_lx, bool max_level, const Watch& watch) {
+/// Light of the same problem with some constraints lifted.
+Result<LightAtPoints> light_without(EmittanceProblem p, bool max_lx, bool max_level, bool max_watts,
+                                    const Watch& watch) {
   if (max_lx) p.max_lx.setConstant(kInfinity);
   if (max_level) p.max_level.setConstant(kInfinity);
+  if (max_watts) p.max_watts = kInfinity;
   const ScaledProblem s = scaled(p);
   const LimitedLeastSquaresResult at = solve_limited_least_squares(s.least_squares, watch.stop);
   if (at.stopped) return tl::unexpected(fault(Cause::cancelled, "stopped on request"));
-  return VectorXd(p.lux_per_level * levels_of(p, s, at) + p.fixed_lx);
+  return light_at_points(p, levels_of(p, s, at));
+}
+
+Result<WhatIf> what_if_lifted(const EmittanceProblem& p, const Held& held, const Watch& watch) {
+  WhatIf what_if;
+  const auto solve = [&](bool max_lx, bool max_level, bool max_watts, LightAtPoints& light) -> Result<void> {
+    auto lifted = light_without(p, max_lx, max_level, max_watts, watch);
+    if (!lifted) return tl::unexpected(lifted.error());
+    light = std::move(*lifted);
+    return {};
+  };
+  if (auto done = solve(true, false, false, what_if.no_max_lx); !done) return tl::unexpected(done.error());
+  if (auto done = solve(false, true, false, what_if.no_max_level); !done) return tl::unexpected(done.error());
+  if (auto done = solve(true, true, true, what_if.none); !done) return tl::unexpected(done.error());
+  if (!held.power) return what_if;
+  if (auto done = solve(false, false, true, what_if.no_max_watts); !done) return tl::unexpected(done.error());
+  return what_if;
 }
 
 Held held_at(const EmittanceProblem& p, const VectorXd& level, const VectorXd& lux) {
@@ -202,6 +269,7 @@ Held held_at(const EmittanceProblem& p, const VectorXd& level, const VectorXd& l
   Held held;
   for (Index i = 0; i < lux.size(); ++i) held.point.push_back(lux[i] >= p.max_lx[i] * (1 - kTouching));
   for (Index j = 0; j < level.size(); ++j) held.light_at_max.push_back(level[j] >= p.max_level[j] * (1 - kTouching));
+  held.power = power_limited(p) && p.watts.dot(level) >= p.max_watts * (1 - kTouching);
   return held;
 }
 
@@ -221,27 +289,25 @@ Result<EmittanceSolution> solve_emittance(const EmittanceProblem& given, const W
   solution.iterations = at.iterations;
   solution.kkt_residual = kkt_residual(s, at, solution.level);
 
-  const VectorXd lux = p.lux_per_level * solution.level + p.fixed_lx;
-  const Held held = held_at(p, solution.level, lux);
+  const LightAtPoints light = light_at_points(p, solution.level);
+  const Held held = held_at(p, solution.level, light.lux);
   std::optional<WhatIf> what_if;
   double error = 0, goals = 0;
-  for (Index i = 0; i < lux.size(); ++i) {
+  for (Index i = 0; i < light.lux.size(); ++i) {
     PointOutcome outcome;
-    outcome.lux = lux[i];
+    outcome.lux = light.lux[i];
     if (!std::isnan(p.goal_lx[i])) {
-      outcome.shortfall_lx = p.goal_lx[i] - lux[i];
-      error = std::hypot(error, outcome.shortfall_lx);
-      goals = std::hypot(goals, p.goal_lx[i]);
+      outcome.shortfall_lx = p.goal_lx[i] - outcome.lux;
+      error = std::hypot(error, distance_lx(p, i, light));
+      goals = std::hypot(goals, goal_norm_lx(p, i));
     }
-    if (misses_goal(p, i, lux[i])) {
+    if (misses_goal(p, i, light)) {
       if (!what_if) {
-        auto no_max_lx = lux_without(p, true, false, watch), no_max_level = lux_without(p, false, true, watch),
-             neither = lux_without(p, true, true, watch);
-        for (const auto* each : {&no_max_lx, &no_max_level, &neither})
-          if (!*each) return tl::unexpected(each->error());
-        what_if = WhatIf{*no_max_lx, *no_max_level, *neither};
+        auto lifted = what_if_lifted(p, held, watch);
+        if (!lifted) return tl::unexpected(lifted.error());
+        what_if = std::move(*lifted);
       }
-      explain(p, solution.level, held, *what_if, i, outcome);
+      explain(p, solution.level, held, *what_if, light, i, outcome);
     }
     solution.points.push_back(std::move(outcome));
   }

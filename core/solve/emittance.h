@@ -2,11 +2,15 @@
 /// Levels of fixed lights from goals in lux, under hard limits.
 ///
 ///   minimise  Σ_s w_s² (T_s c + b_s − max(g_s, b_s))²   over points with a goal
-///   subject to 0 ≤ c_j ≤ u_j   and   T_s c + b_s ≤ m_s   for points with a limit
+///   subject to 0 ≤ c_j ≤ u_j   and   T_s c + b_s ≤ m_s   for points with a limit   and   Σ_j p_j c_j ≤ P
+///
+/// With goals of a colour the sum is over the three primaries of each, with w_s² / 3: what is wrong in white light
+/// then counts as it does without. Limits stay limits of lux.
 ///
 /// Source: Lawson & Hanson, Solving Least Squares Problems (1974), ch. 23 (NNLS, LDP, LSI); thesis §2.7.2.
 
 #include <Eigen/Core>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,11 +28,28 @@ struct EmittanceProblem {
   Eigen::VectorXd max_lx;         ///< m; +inf where there is no limit
   Eigen::VectorXd max_level;      ///< u ≥ 0; empty = 1
   Eigen::VectorXd near_level;     ///< where several levels give the same light: the nearest to these; empty = 0 (power)
-  std::vector<std::string> point_name, light_name;  ///< for the reasons; empty = "point 3", counted from 0
+  /// Colour, linear Rec. 709 with E in each primary for white of E lux: T by primary (three), points × lights; empty:
+  /// goals have none. lux_per_level and fixed_lx are the luminances of all this.
+  std::vector<Eigen::MatrixXd> rgb_per_level{};
+  Eigen::MatrixXd fixed_rgb{};                                 ///< points × 3; empty = 0
+  Eigen::MatrixXd goal_rgb{};                                  ///< points × 3: of each goal, with a luminance of 1
+  Eigen::VectorXd watts{};                                     ///< p ≥ 0: power of each light at level 1; empty = 0
+  double max_watts = std::numeric_limits<double>::infinity();  ///< P ≥ 0
+  std::vector<std::string> point_name, light_name;             ///< for the reasons; empty = "point 3", counted from 0
 };
 
 /// Why a point misses its goal.
-enum class Binding { none, max_lux_here, max_lux_elsewhere, max_level, min_level, out_of_reach, traded };
+enum class Binding {
+  none,
+  max_lux_here,
+  max_lux_elsewhere,
+  max_level,
+  min_level,
+  out_of_reach,
+  traded,
+  power,
+  colour  ///< no mix of the lights that reach it comes near the colour
+};
 
 struct PointOutcome {
   double lux = 0;
@@ -42,14 +63,15 @@ struct PointOutcome {
 struct EmittanceSolution {
   Eigen::VectorXd level;  ///< within [0, u] and T c + b ≤ m, exactly (in floating point, as written)
   std::vector<PointOutcome> points;
-  double normalised_error = 0;  ///< ‖T c + b − g‖ / ‖g‖ over points with a goal, unweighted (thesis)
-  double kkt_residual = 0;      ///< largest violation of the KKT conditions, relative; see emittance.cpp
+  double normalised_error = 0;  ///< ‖T c + b − g‖ / ‖g‖ over points (and primaries) with a goal, unweighted (thesis)
+  double kkt_residual = 0;  ///< largest violation of the KKT conditions, relative; see emittance.cpp
   int iterations = 0;
 };
 
 /// Among levels that give the same light the ones nearest to near_level are taken, and equal lights share alike (a tie
 /// term of 1e-5 of each light's column, which moves lux by about 1e-10 of it). A point without lights keeps b.
-/// A goal counts as met within 1 % of it (a goal of 0: within 1 % of the largest goal).
+/// A goal counts as met within 1 % of it (a goal of 0: within 1 % of the largest goal); one with a colour, when the
+/// distance of the primaries is within 1 % of their norm.
 ///
 /// Cause::invalid when sizes disagree, an entry is negative or not finite (max_lx may be +inf), or a limit is below
 /// what is there anyway (then the detail names the point), or an entry is beyond 1e100; Cause::cancelled when stopped.

@@ -1,14 +1,20 @@
 #include "core/solve/emittance_reasons.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+
+#include "core/photometry/light_colour.h"
+#include "core/solve/nnls.h"
 
 namespace luxrig {
 namespace {
 
 using Eigen::Index;
+using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kMet = 0.01;
@@ -40,24 +46,66 @@ bool share_a_light(const EmittanceProblem& problem, Index one, Index other) {
   return (problem.lux_per_level.row(one).array() > 0 && problem.lux_per_level.row(other).array() > 0).any();
 }
 
+Vec3 goal_rgb_lx(const EmittanceProblem& problem, Index point) {
+  return problem.goal_lx[point] * problem.goal_rgb.row(point).transpose();
+}
+
+/// "312 lx", and of what colour where that matters.
+std::string light_text(double lux, const std::optional<Vec3>& rgb) {
+  if (!rgb || !(rgb->sum() > 0)) return fmt::format("{:.4g} lx", lux);
+  const Chromaticity xy = xy_of_rgb(*rgb);
+  return fmt::format("{:.4g} lx of xy ({:.3f}, {:.3f})", lux, xy.x(), xy.y());
+}
+
+double met_within_lx(const EmittanceProblem& problem, Index point) {
+  double scale = goal_norm_lx(problem, point);
+  if (scale == 0)
+    for (const double other : problem.goal_lx) scale = std::max(scale, std::isnan(other) ? 0 : other);
+  return kMet * scale;
+}
+
+/// The nearest that the lights which reach a point could bring it by themselves, whatever else they do.
+double nearest_mix_lx(const EmittanceProblem& problem, Index point) {
+  MatrixXd columns(3, problem.lux_per_level.cols());
+  for (Index c = 0; c < 3; ++c) columns.row(c) = problem.rgb_per_level[static_cast<std::size_t>(c)].row(point);
+  const VectorXd wanted = (goal_rgb_lx(problem, point) - problem.fixed_rgb.row(point).transpose());
+  return solve_nnls(columns, wanted).residual_norm / std::sqrt(3.0);
+}
+
 }  // namespace
 
-bool misses_goal(const EmittanceProblem& problem, Index point, double lux) {
-  const double goal = problem.goal_lx[point];
-  if (std::isnan(goal)) return false;
-  double scale = goal;
-  if (goal == 0)
-    for (const double other : problem.goal_lx) scale = std::max(scale, std::isnan(other) ? 0 : other);
-  return std::abs(goal - lux) > kMet * scale;
+LightAtPoints light_at_points(const EmittanceProblem& problem, const VectorXd& level) {
+  LightAtPoints light{problem.lux_per_level * level + problem.fixed_lx, {}};
+  if (problem.rgb_per_level.empty()) return light;
+  light.rgb = problem.fixed_rgb;
+  for (Index c = 0; c < 3; ++c) light.rgb.col(c) += problem.rgb_per_level[static_cast<std::size_t>(c)] * level;
+  return light;
+}
+
+double distance_lx(const EmittanceProblem& problem, Index point, const LightAtPoints& light) {
+  if (light.rgb.size() == 0) return std::abs(problem.goal_lx[point] - light.lux[point]);
+  return (goal_rgb_lx(problem, point) - light.rgb.row(point).transpose()).norm() / std::sqrt(3.0);
+}
+
+double goal_norm_lx(const EmittanceProblem& problem, Index point) {
+  if (problem.rgb_per_level.empty()) return problem.goal_lx[point];
+  return goal_rgb_lx(problem, point).norm() / std::sqrt(3.0);
+}
+
+bool misses_goal(const EmittanceProblem& problem, Index point, const LightAtPoints& light) {
+  return !std::isnan(problem.goal_lx[point]) && distance_lx(problem, point, light) > met_within_lx(problem, point);
 }
 
 void explain(const EmittanceProblem& problem, const VectorXd& level, const Held& held, const WhatIf& what_if,
-             Index point, PointOutcome& outcome) {
+             const LightAtPoints& light, Index point, PointOutcome& outcome) {
   const auto row = problem.lux_per_level.row(point);
-  const double goal = problem.goal_lx[point];
-  const double miss = std::abs(outcome.shortfall_lx);
+  const bool coloured = light.rgb.size() > 0;
+  const double goal = problem.goal_lx[point], miss = distance_lx(problem, point, light);
   const bool dark = outcome.shortfall_lx > 0;
-  const std::string wanted = fmt::format("goal {:.4g} lx", goal);
+  const auto text_of = [&](double lux, const MatrixXd& rgb) {
+    return light_text(lux, coloured ? std::optional<Vec3>(rgb.row(point).transpose()) : std::nullopt);
+  };
+  const std::string wanted = "goal " + text_of(goal, problem.goal_rgb), is = text_of(outcome.lux, light.rgb);
 
   for (Index j = 0; j < row.size(); ++j)
     if (row[j] > 0 && held.light_at_max[static_cast<std::size_t>(j)])
@@ -75,24 +123,31 @@ void explain(const EmittanceProblem& problem, const VectorXd& level, const Held&
 
   if (dark && !(row.size() > 0 && row.maxCoeff() > 0))
     return set(Binding::out_of_reach, false, false,
-               fmt::format("no light reaches it: {:.4g} lx there anyway, {}", outcome.lux, wanted));
+               fmt::format("no light reaches it: {} there anyway, {}", is, wanted));
   const bool all_off = !(row.size() > 0 && (row.transpose().array() > 0 && level.array() > 0).any());
-  if (!dark && (all_off || misses_goal(problem, point, std::max(goal, problem.fixed_lx[point]))))
+  const double too_bright_lx = problem.fixed_lx[point] - goal;
+  if (!dark && (all_off || too_bright_lx > met_within_lx(problem, point)))
     return set(Binding::min_level, false, false,
-               fmt::format("{:.4g} lx are there with all its lights off, {}", problem.fixed_lx[point], wanted));
+               fmt::format("{} are there with all its lights off, {}",
+                           text_of(problem.fixed_lx[point], problem.fixed_rgb), wanted));
 
   // Which relief would help? More than half of the miss gone counts as "it binds".
-  const auto left = [&](const VectorXd& lux) { return std::abs(goal - lux[point]); };
+  const auto left = [&](const LightAtPoints& lifted) { return distance_lx(problem, point, lifted); };
   const double without_limits = left(what_if.no_max_lx), without_levels = left(what_if.no_max_level);
+  const double without_power = held.power ? left(what_if.no_max_watts) : miss;
   const bool limits = without_limits < 0.5 * miss && !outcome.limit_points.empty();
   const bool levels = without_levels < 0.5 * miss && !outcome.limit_lights.empty();
-  const bool together = left(what_if.neither) < 0.5 * miss;
+  const bool power = without_power < 0.5 * miss;
+  const bool together = left(what_if.none) < 0.5 * miss;
   const bool own = dark && held.point[static_cast<std::size_t>(point)];
-  const std::string verb = fmt::format("held at {:.4g} lx by", outcome.lux);
+  const std::string verb = fmt::format("held at {} by", is);
+  const std::string of_power = fmt::format("the limit of {:g} W on power", problem.max_watts);
 
-  if (own && (limits || together))
+  if (own && (limits || (together && !power)))
     return set(Binding::max_lux_here, true, false,
                fmt::format("{} its own limit of {:.4g} lx, {}", verb, problem.max_lx[point], wanted));
+  if (power && (!limits || without_power <= without_limits) && (!levels || without_power <= without_levels))
+    return set(Binding::power, false, false, fmt::format("{} {}, {}", verb, of_power, wanted));
   if (limits && (!levels || without_limits <= without_levels))
     return set(Binding::max_lux_elsewhere, true, levels,
                fmt::format("{} {}, {}", verb, limits_text(problem, outcome.limit_points), wanted));
@@ -100,16 +155,22 @@ void explain(const EmittanceProblem& problem, const VectorXd& level, const Held&
     return set(Binding::max_level, limits, true,
                fmt::format("{} the highest level of {}, {}", verb,
                            list(problem.light_name, outcome.limit_lights, "light"), wanted));
-  if (together && !outcome.limit_points.empty() && !outcome.limit_lights.empty())
-    return set(
-        Binding::max_lux_elsewhere, true, true,
-        fmt::format("{} {} together with the highest level of {}, {}", verb, limits_text(problem, outcome.limit_points),
-                    list(problem.light_name, outcome.limit_lights, "light"), wanted));
+  const bool any_points = !outcome.limit_points.empty(), any_lights = !outcome.limit_lights.empty();
+  if (together && any_points + any_lights + held.power > 1) {
+    std::vector<std::string> parts;
+    if (any_points) parts.push_back(limits_text(problem, outcome.limit_points));
+    if (any_lights) parts.push_back("the highest level of " + list(problem.light_name, outcome.limit_lights, "light"));
+    if (held.power) parts.push_back(of_power);
+    return set(any_points ? Binding::max_lux_elsewhere : Binding::power, true, true,
+               fmt::format("{} {}, {}", verb, fmt::join(parts, " together with "), wanted));
+  }
   if (problem.weight[point] == 0)
-    return set(Binding::traded, false, false, fmt::format("its weight is 0: {:.4g} lx, {}", outcome.lux, wanted));
+    return set(Binding::traded, false, false, fmt::format("its weight is 0: {}, {}", is, wanted));
+  if (coloured && nearest_mix_lx(problem, point) > 0.5 * miss)
+    return set(Binding::colour, false, false,
+               fmt::format("no mix of the lights that reach it comes nearer in colour than {}, {}", is, wanted));
   set(Binding::traded, false, false,
-      fmt::format("{:.4g} lx is the compromise with the goals of other points that the same lights reach, {}",
-                  outcome.lux, wanted));
+      fmt::format("{} is the compromise with the goals of other points that the same lights reach, {}", is, wanted));
 }
 
 }  // namespace luxrig

@@ -130,7 +130,7 @@ void DmxPatchbay::encode(const Entry& entry) {
   DmxSlots& out = universes_[entry.universe].slots;
   for (std::size_t i = 0; i < entry.patch.slots.size(); ++i) {
     const DmxSlot& slot = entry.patch.slots[i];
-    if (slot.use == SlotUse::unused) continue;
+    if (slot.use == SlotUse::unused || !slot.sent) continue;
     out[static_cast<std::size_t>(entry.patch.address - 1) + i] = static_cast<std::uint8_t>(byte_of(slot));
   }
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <condition_variable>
 #include <cstdio>
 #include <limits>
@@ -72,32 +73,70 @@ class SearchWatch {
   std::thread thread_;  // last: it uses all of these
 };
 
+/// The goal of the points that have one, or a limit; with colour, three channels.
+struct GoalOfPoints {
+  std::vector<Receiver> receivers;
+  LightingGoal goal;
+};
+
+GoalOfPoints goal_of_points(const Rig& rig, const LightThere& there) {
+  GoalOfPoints of;
+  std::vector<Eigen::Index> rows;
+  for (std::size_t i = 0; i < rig.points.size(); ++i) {
+    const Point& point = rig.points[i];
+    if (!(point.goal_lx && point.weight > 0) && !point.max_lx) continue;
+    of.receivers.push_back({point.position_world_m, point.normal_world});
+    rows.push_back(static_cast<Eigen::Index>(i));
+  }
+  const auto points = static_cast<Eigen::Index>(rows.size());
+  const Eigen::Index channels = rig.colour_goals() ? 3 : 1;
+  LightingGoal& goal = of.goal;
+  goal.lux = goal.fixed_lux = goal.row_weight = Eigen::VectorXd::Zero(points * channels);
+  goal.max_lux.resize(points);
+  for (Eigen::Index k = 0; k < points; ++k) {
+    const Eigen::Index i = rows[static_cast<std::size_t>(k)];
+    const Point& point = rig.points[static_cast<std::size_t>(i)];
+    goal.max_lux[k] = point.max_lx.value_or(std::numeric_limits<double>::infinity());
+    for (Eigen::Index c = 0; c < channels; ++c) {
+      const Eigen::Index row = c * points + k;
+      const double is = channels == 1 ? there.lux[i] : there.rgb(i, c);
+      goal.fixed_lux[row] = is;
+      if (!(point.goal_lx && point.weight > 0)) continue;
+      goal.lux[row] = *point.goal_lx * (channels == 1 ? 1.0 : (*point.goal_rgb)[c]);
+      // What is there beyond a goal is not the placed lights' fault.
+      goal.fixed_lux[row] = std::min(is, goal.lux[row]);
+      goal.row_weight[row] = point.weight / std::sqrt(static_cast<double>(channels));
+    }
+  }
+  return of;
+}
+
+/// What each emitter of a luminaire gives, per unit of the luminaire with all of them at rated flux.
+void set_emitters(const Rig& rig, std::size_t luminaire, LightingGoal& goal, Eigen::Index channels) {
+  const std::vector<std::size_t> emitters = rig.emitters_or_itself(luminaire);
+  const auto count = static_cast<Eigen::Index>(emitters.size());
+  goal.emitters.resize(channels, count);
+  goal.watts = Eigen::VectorXd::Zero(count);
+  for (Eigen::Index e = 0; e < count; ++e) {
+    const Luminaire& emitter = rig.luminaires[emitters[static_cast<std::size_t>(e)]];
+    const double share = emitter.lumens / rig.luminaires[luminaire].lumens;
+    goal.emitters.col(e) =
+        channels == 1 ? Eigen::VectorXd::Constant(1, share) : Eigen::VectorXd(share * emitter.colour_rgb);
+    goal.watts[e] = emitter.watts.value_or(0);
+  }
+}
+
 }  // namespace
 
 Result<PlacedInScene> search_places(const Rig& rig, const Scene& scene, const RayScene& rays, const Mounting& mounting,
-                                    const Task& task, const Eigen::VectorXd& fixed_lx, const ComputeOptions& options) {
+                                    const Task& task, const LightThere& there, double max_watts,
+                                    const ComputeOptions& options) {
   const PlacementSpec& spec = task.placement;
-  std::vector<Receiver> receivers;
-  std::vector<double> goal_lx, there_lx, weight, most_lx;
-  for (std::size_t i = 0; i < rig.points.size(); ++i) {
-    const Point& point = rig.points[i];
-    const bool wanted = point.goal_lx && point.weight > 0;
-    if (!wanted && !point.max_lx) continue;
-    const double is_lx = fixed_lx[static_cast<Eigen::Index>(i)];
-    receivers.push_back({point.position_world_m, point.normal_world});
-    // What is there beyond a goal is not the placed lights' fault.
-    goal_lx.push_back(wanted ? *point.goal_lx : 0);
-    there_lx.push_back(wanted ? std::min(*point.goal_lx, is_lx) : is_lx);
-    weight.push_back(wanted ? point.weight : 0);
-    most_lx.push_back(point.max_lx.value_or(std::numeric_limits<double>::infinity()));
-  }
-  const auto vector = [](const std::vector<double>& values) {
-    return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size())));
-  };
-  LightingGoal goal{vector(goal_lx), vector(weight)};
-  goal.fixed_lux = vector(there_lx);
-  goal.max_lux = vector(most_lx);
+  const Eigen::Index channels = rig.colour_goals() ? 3 : 1;
+  auto [receivers, goal] = goal_of_points(rig, there);
   if (!(goal.weighted().maxCoeff() > 0)) return PlacedInScene{};
+  set_emitters(rig, spec.luminaire, goal, channels);
+  goal.max_watts = max_watts;
 
   SearchWatch watch(task.name, spec.seconds, options.watch.stop);
   PlaceInSceneOptions place;
@@ -114,18 +153,26 @@ Result<PlacedInScene> search_places(const Rig& rig, const Scene& scene, const Ra
   place.threads = options.threads;
   place.stop = watch.stop();
   place.better = [&](std::size_t lights, double error) { watch.better(lights, error); };
+  place.front_limits = static_cast<std::size_t>(spec.energy_front);
   const Luminaire& luminaire = rig.luminaires[spec.luminaire];
-  place.lux_of = [&](std::span<const LightPose> poses, const Eigen::VectorXd& levels) -> Result<Eigen::VectorXd> {
+  const auto points = static_cast<Eigen::Index>(receivers.size());
+  place.lux_of = [&, &receivers = receivers, &goal = goal](std::span<const LightPose> poses,
+                                                           const Eigen::VectorXd& levels) -> Result<Eigen::VectorXd> {
     std::vector<Emitter> lamps;
     EvaluateOptions evaluate;
+    evaluate.colour = channels == 3;
     for (std::size_t i = 0; i < poses.size(); ++i) {
-      const double level = levels[static_cast<Eigen::Index>(i)];
+      // A lamp's emitters shine alike but in colour: together they are one lamp of their mixture.
+      const Eigen::VectorXd light =
+          goal.emitters * levels.segment(static_cast<Eigen::Index>(i) * goal.emitters.cols(), goal.emitters.cols());
+      const double level = channels == 3 ? luminance_of_rgb(light) : light[0];
       if (!(level > 0)) continue;
       lamps.push_back(emitter_of(luminaire, {aimed_rotation(Mat3::Identity(), poses[i].aim_world),
                                              mounting.snapped(poses[i].position_world_m)->place_world_m}));
+      if (channels == 3) lamps.back().colour_rgb = light / level;
       evaluate.levels.push_back(level);
     }
-    if (lamps.empty()) return Eigen::VectorXd::Zero(static_cast<Eigen::Index>(receivers.size()));
+    if (lamps.empty()) return Eigen::VectorXd::Zero(points * channels);
     evaluate.wanted_relative_error = options.max_error;
     evaluate.seed = options.seed;
     evaluate.threads = options.threads;
@@ -138,8 +185,13 @@ Result<PlacedInScene> search_places(const Rig& rig, const Scene& scene, const Ra
     }
     const auto lit = evaluator->evaluate(receivers, lamps, evaluate);
     if (!lit) return tl::unexpected(lit.error());
-    return lit->lux(
-        Eigen::Map<const Eigen::VectorXd>(evaluate.levels.data(), static_cast<Eigen::Index>(evaluate.levels.size())));
+    const Eigen::Map<const Eigen::VectorXd> at(evaluate.levels.data(),
+                                               static_cast<Eigen::Index>(evaluate.levels.size()));
+    if (channels == 1) return Eigen::VectorXd(lit->lux(at));
+    Eigen::VectorXd rgb(points * channels);
+    for (Eigen::Index c = 0; c < channels; ++c)
+      rgb.segment(c * points, points) = lit->rgb_per_level[static_cast<std::size_t>(c)] * at;
+    return rgb;
   };
   return place_in_scene(scene, rays, mounting, emitter_of(luminaire, Pose{}), receivers, goal, place);
 }

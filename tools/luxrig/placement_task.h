@@ -9,11 +9,18 @@
 
 namespace luxrig {
 
-/// fixed_lx   of every point of the rig: light that is there anyway
-/// lights     none when fixed_lx meets every goal
+/// Light that does not come from the lights that are sought.
+struct LightThere {
+  Eigen::VectorXd lux;
+  Eigen::MatrixXd rgb;  ///< points × 3, linear Rec. 709; empty when no goal has a colour
+};
+
+/// there       of every point of the rig: light that is there anyway
+/// max_watts   of the lights that are to be placed, together
+/// lights      none when it meets every goal
 /// options.watch.stop and the task's `seconds` end the search.
 [[nodiscard]] Result<PlacedInScene> search_places(const Rig& rig, const Scene& scene, const RayScene& rays,
-                                                  const Mounting& mounting, const Task& task,
-                                                  const Eigen::VectorXd& fixed_lx, const ComputeOptions& options);
+                                                  const Mounting& mounting, const Task& task, const LightThere& there,
+                                                  double max_watts, const ComputeOptions& options);
 
 }  // namespace luxrig

@@ -43,6 +43,7 @@ Result<TransportMatrix> compute_transport(const Rig& rig, const Scene& scene, co
   evaluate.threads = options.threads;
   evaluate.levels = levels;
   evaluate.watch = options.watch;
+  evaluate.colour = rig.colour_goals();
   const auto receivers = receivers_of(rig);
   const auto emitters = all_emitters_of(rig);
   if (emitters.empty()) {  // a rig in which all light is yet to be placed
@@ -50,6 +51,7 @@ Result<TransportMatrix> compute_transport(const Rig& rig, const Scene& scene, co
     TransportMatrix dark;
     dark.lux_per_level = dark.direct_lux_per_level =
         Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(receivers.size()), 0);
+    if (evaluate.colour) dark.rgb_per_level.assign(3, dark.lux_per_level);
     return dark;
   }
   if (!levels.empty()) evaluate.levels.resize(emitters.size(), 1.0);
@@ -85,6 +87,9 @@ std::vector<PlannedPoint> predicted_points(const Rig& rig, const TransportMatrix
   const Eigen::VectorXd direct = transport.direct_lux(all_levels);
   const Eigen::VectorXd error = transport.standard_error_lux(all_levels);
   const Eigen::VectorXd daylight_lx = daylight_lux(rig, transport);
+  Eigen::MatrixXd rgb(lux.size(), static_cast<Eigen::Index>(transport.rgb_per_level.size()));
+  for (Eigen::Index c = 0; c < rgb.cols(); ++c)
+    rgb.col(c) = transport.rgb_per_level[static_cast<std::size_t>(c)] * all_levels;
   std::vector<PlannedPoint> points;
   points.reserve(rig.points.size());
   for (std::size_t i = 0; i < rig.points.size(); ++i) {
@@ -98,6 +103,8 @@ std::vector<PlannedPoint> predicted_points(const Rig& rig, const TransportMatrix
     point.standard_error_lux = error[row];
     if (rig.daylight) point.daylight_lux = daylight_lx[row];
     point.goal_lux = rig.points[i].goal_lx;
+    if (const auto& goal_rgb = rig.points[i].goal_rgb) point.goal_xy = xy_of_rgb(*goal_rgb);
+    if (rgb.cols() == 3 && lux[row] > 0) point.xy = xy_of_rgb(rgb.row(row).transpose());
     points.push_back(std::move(point));
   }
   return points;

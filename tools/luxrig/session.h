@@ -53,7 +53,8 @@ struct ModelUsed {
 /// The controller's share of a transport.
 [[nodiscard]] LightModel light_model(const Rig& rig, const TransportMatrix& transport);
 
-/// What the rig's points get at given levels of the fixtures, daylight included.
+/// What the rig's points get at given levels of the fixtures, daylight included. With a transport by primary, also in
+/// which colour.
 [[nodiscard]] std::vector<PlannedPoint> predicted_points(const Rig& rig, const TransportMatrix& transport,
                                                          const Eigen::VectorXd& levels);
 

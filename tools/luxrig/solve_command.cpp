@@ -13,20 +13,27 @@ namespace {
 
 std::string percent(double share) { return fmt::format("{:.1f} %", 100 * share); }
 
+std::string watts_text(const std::optional<double>& watts) { return watts ? fmt::format("{:.1f}", *watts) : "-"; }
+
+std::string xy_text(const std::optional<Chromaticity>& xy) {
+  return xy ? fmt::format("{:.4f} {:.4f}", xy->x(), xy->y()) : "-";
+}
+
 /// What the last task to set fixtures has set them to.
 void print_levels(const PlannedTask& task) {
-  Table lights({"fixture", "luminaire", ">level", ">lumens"});
+  Table lights({"fixture", "luminaire", ">level", ">lumens", ">watts"});
   for (const PlannedLight& light : task.lights)
-    lights.row({light.name, light.luminaire, percent(light.level), fmt::format("{:.0f}", light.lumens)});
+    lights.row({light.name, light.luminaire, percent(light.level), fmt::format("{:.0f}", light.lumens),
+                watts_text(light.watts)});
   fmt::print("{}\n", lights.text());
 }
 
-void print_placement(const PlannedTask& task, const PlacementSpec& spec) {
+void print_placement(const PlannedTask& task, const PlacementSpec& spec, bool has_emitters) {
   if (task.lights.empty()) {
     fmt::print("{}: every goal is met without a further light\n\n", task.name);
     return;
   }
-  Table lights({"hang", "luminaire", ">x m", ">y m", ">z m", "aim", ">level", ">lumens"});
+  Table lights({"hang", "luminaire", ">x m", ">y m", ">z m", "aim", ">level", ">lumens", ">watts"});
   std::size_t dark = 0;
   for (const PlannedLight& light : task.lights) {
     const Vec3& at = light.position_world_m;
@@ -34,17 +41,27 @@ void print_placement(const PlannedTask& task, const PlacementSpec& spec) {
     if (light.aim_world_m)
       aim = fmt::format("{:.2f} {:.2f} {:.2f}", light.aim_world_m->x(), light.aim_world_m->y(), light.aim_world_m->z());
     lights.row({light.name, light.luminaire, fmt::format("{:.3f}", at.x()), fmt::format("{:.3f}", at.y()),
-                fmt::format("{:.3f}", at.z()), aim, percent(light.level), fmt::format("{:.0f}", light.lumens)});
+                fmt::format("{:.3f}", at.z()), aim, percent(light.level), fmt::format("{:.0f}", light.lumens),
+                watts_text(light.watts)});
     dark += light.level > 0 ? 0 : 1;
   }
   fmt::print("{}\n", lights.text());
-  if (dark > 0) fmt::print("{} of them would give no light: leave them out\n", dark);
+  if (dark > 0 && !has_emitters) fmt::print("{} of them would give no light: leave them out\n", dark);
   if (!spec.lights) {
     std::string tried;
     for (const PlannedNumber& number : task.numbers)
       tried += fmt::format("{}{}: {}", tried.empty() ? "" : ", ", number.lights, percent(number.normalised_error));
     fmt::print("lights and what they leave of the error: {}\n", tried);
   }
+  if (!task.front.empty()) {
+    Table front({">power limit W", ">taken W", ">error left"});
+    for (const PlannedPower& power : task.front)
+      front.row({fmt::format("{:.1f}", power.max_watts), fmt::format("{:.1f}", power.watts),
+                 percent(power.normalised_error)});
+    fmt::print("what less power would cost (by the search's own light):\n{}\n", front.text());
+  }
+  if (spec.energy_front > 0 && task.front.empty())
+    fmt::print("no time was left to search with less power (energy_front)\n");
   if (task.lower_bound)
     fmt::print("proven: no lights at the places on its lattice leave less than {} (those found may lie between)\n",
                percent(*task.lower_bound));
@@ -53,8 +70,9 @@ void print_placement(const PlannedTask& task, const PlacementSpec& spec) {
   fmt::print(
       "{} hang{} nowhere yet: render and evaluate show the plan. To run it, hang each at its place, patch it, and add "
       "it "
-      "to the rig as a [[fixture]] of its name\n\n",
-      task.lights.size() == 1 ? "it" : "they", task.lights.size() == 1 ? "s" : "");
+      "to the rig as a [[fixture]] of its name{}\n\n",
+      task.lights.size() == 1 ? "it" : "they", task.lights.size() == 1 ? "s" : "",
+      has_emitters ? " (what stands before the slash: its emitters are one fixture)" : "");
 }
 
 }  // namespace
@@ -87,6 +105,8 @@ int run_solve(const SolveArguments& arguments) {
   }
   std::vector<std::string> heads = {"point", ">goal lx", ">lux", ">± se", ">error", ">max lx", "why"};
   if (session->rig.daylight) heads.insert(heads.begin() + 4, ">daylight");
+  const bool coloured = session->rig.colour_goals();
+  if (coloured) heads.insert(heads.end() - 2, {">goal xy", ">xy"});
   Table points(std::move(heads));
   for (std::size_t i = 0; i < plan->points.size(); ++i) {
     const PlannedPoint& p = plan->points[i];
@@ -100,17 +120,22 @@ int run_solve(const SolveArguments& arguments) {
         max ? fmt::format("{:g}", *max) : "",
         p.why};
     if (p.daylight_lux) cells.insert(cells.begin() + 4, fmt::format("{:.1f}", *p.daylight_lux));
+    if (coloured) cells.insert(cells.end() - 2, {xy_text(p.goal_xy), xy_text(p.xy)});
     points.row(std::move(cells));
   }
   const auto last_levels = std::find_if(plan->tasks.rbegin(), plan->tasks.rend(),
                                         [](const PlannedTask& task) { return task.kind == "emittance"; });
   if (last_levels != plan->tasks.rend()) print_levels(*last_levels);
   for (std::size_t t = 0; t < plan->tasks.size(); ++t)
-    if (plan->tasks[t].kind == "placement") print_placement(plan->tasks[t], session->rig.tasks[t].placement);
+    if (plan->tasks[t].kind == "placement") {
+      const PlacementSpec& spec = session->rig.tasks[t].placement;
+      print_placement(plan->tasks[t], spec, !session->rig.luminaires[spec.luminaire].emitters.empty());
+    }
   fmt::print("{}\n", points.text());
   for (const PlannedTask& task : plan->tasks) {
-    fmt::print("{} ({}): normalised error {:.2f} %, {} iterations, {:.1f} ms\n", task.name, task.kind,
-               100 * task.normalised_error, task.iterations, 1000 * task.seconds);
+    fmt::print("{} ({}): normalised error {:.2f} %{}, {} iterations, {:.1f} ms\n", task.name, task.kind,
+               100 * task.normalised_error, task.watts ? fmt::format(", {:.1f} W", *task.watts) : "", task.iterations,
+               1000 * task.seconds);
   }
   fmt::print("{} in {:.2f} s{}\n", met ? "every goal met" : "not every goal can be met: see why", plan->seconds,
              arguments.output ? ", plan in " + arguments.output->string() : "");

@@ -29,6 +29,7 @@ PlannedLight planned_light(const Rig& rig, const Fixture& fixture, double level)
   light.tilt_deg = deg_from_rad(fixture.joints.tilt_rad);
   light.level = level;
   light.lumens = level * luminaire.lumens;
+  if (luminaire.watts) light.watts = level * *luminaire.watts;
   return light;
 }
 
@@ -51,7 +52,9 @@ class TaskSolver {
     PlannedTask planned;
     planned.name = task.name;
     planned.kind = "emittance";
-    if (auto solved = solve_levels_of(0, own_, planned); !solved) return solved;
+    const auto max_watts = watts_left(0, own_, task);
+    if (!max_watts) return tl::unexpected(max_watts.error());
+    if (auto solved = solve_levels_of(0, own_, *max_watts, planned); !solved) return solved;
     planned.seconds = seconds_since(start);
     plan_.tasks.push_back(std::move(planned));
     return {};
@@ -65,19 +68,24 @@ class TaskSolver {
     for (Index j = 0; j < own_ && spec.fixtures != FixturesMeanwhile::as_set; ++j)
       level_[j] = spec.fixtures == FixturesMeanwhile::full ? most_level(j) : 0;
     const Index before = level_.size();
-    const Eigen::VectorXd fixed_lx = problem_of(before, before).fixed_lx;
-    if (auto kept = limits_left(fixed_lx); !kept) return kept;
-    auto placed = search_places(rig_, session_.scene, *session_.rays, *mounting, task, fixed_lx, options_);
+    const EmittanceProblem nothing_yet = problem_of(before, before);
+    if (auto kept = limits_left(nothing_yet.fixed_lx); !kept) return kept;
+    const auto max_watts = watts_left(before, before, task);
+    if (!max_watts) return tl::unexpected(max_watts.error());
+    auto placed = search_places(rig_, session_.scene, *session_.rays, *mounting, task,
+                                {nothing_yet.fixed_lx, nothing_yet.fixed_rgb}, *max_watts, options_);
     if (!placed) return tl::unexpected(std::move(placed.error()));
 
     PlannedTask planned;
     planned.name = task.name;
     planned.kind = "placement";
     if (auto hung = hang(task, *placed); !hung) return hung;
-    if (auto solved = solve_levels_of(before, level_.size(), planned); !solved) return solved;
+    if (auto solved = solve_levels_of(before, level_.size(), *max_watts, planned); !solved) return solved;
     for (Index j = 0; j < own_; ++j) planned.fixtures.push_back(light_of(j));
     for (const LightsAndError& tried : placed->numbers)
       planned.numbers.push_back({static_cast<int>(tried.lights), tried.error});
+    for (const PowerAndError& power : placed->front)
+      planned.front.push_back({power.max_watts, power.watts, power.error});
     planned.lower_bound = placed->lower_bound;
     planned.lower_bound_of_number = placed->lower_bound_of_number;
     planned.iterations =
@@ -103,6 +111,9 @@ class TaskSolver {
   [[nodiscard]] double most_level(Index light) const {
     return std::min(rig_.fixtures[static_cast<std::size_t>(light)].max_level, rig_.limits.max_level);
   }
+  [[nodiscard]] std::optional<double> watts_of(Index light) const {
+    return rig_.luminaires[rig_.fixtures[static_cast<std::size_t>(light)].luminaire].watts;
+  }
   [[nodiscard]] PlannedLight light_of(Index light) const {
     return planned_light(rig_, rig_.fixtures[static_cast<std::size_t>(light)], level_[light]);
   }
@@ -118,16 +129,30 @@ class TaskSolver {
     problem.goal_lx.setConstant(points, std::numeric_limits<double>::quiet_NaN());
     problem.weight.setOnes(points);
     problem.max_lx.setConstant(points, std::numeric_limits<double>::infinity());
+    const bool coloured = rig_.colour_goals();
+    if (coloured) {
+      problem.goal_rgb.setOnes(points, 3);
+      problem.fixed_rgb.resize(points, 3);
+      for (Index c = 0; c < 3; ++c) {
+        const Eigen::MatrixXd& primary = transport_.rgb_per_level[static_cast<std::size_t>(c)];
+        problem.rgb_per_level.push_back(primary.block(0, begin, points, end - begin));
+        problem.fixed_rgb.col(c) = (primary * levels_with_daylight(transport_, others)).head(points);
+      }
+    }
     for (Index i = 0; i < points; ++i) {
       const Point& point = rig_.points[static_cast<std::size_t>(i)];
-      if (point.goal_lx) problem.goal_lx[i] = *point.goal_lx;
+      // A goal without colour among others that have one does not count, and is only reported.
+      if (point.goal_lx && (point.goal_rgb || !coloured)) problem.goal_lx[i] = *point.goal_lx;
+      if (point.goal_rgb) problem.goal_rgb.row(i) = point.goal_rgb->transpose();
       if (point.max_lx) problem.max_lx[i] = *point.max_lx;
       problem.weight[i] = point.weight;
       problem.point_name.push_back(point.name);
     }
     problem.max_level.resize(end - begin);
+    problem.watts.resize(end - begin);
     for (Index j = begin; j < end; ++j) {
       problem.max_level[j - begin] = most_level(j);
+      problem.watts[j - begin] = watts_of(j).value_or(0);
       problem.light_name.push_back(rig_.fixtures[static_cast<std::size_t>(j)].name);
     }
     return problem;
@@ -152,8 +177,24 @@ class TaskSolver {
                                          : ": dim what is there (fixtures = \"off\"), or raise its max_lx"));
   }
 
-  Result<void> solve_levels_of(Index begin, Index end, PlannedTask& planned) {
-    const EmittanceProblem problem = problem_of(begin, end);
+  /// Power that a task's lights from `begin` to `end` may take: +inf where nothing limits it.
+  [[nodiscard]] Result<double> watts_left(Index begin, Index end, const Task& task) const {
+    double watts = task.max_watts.value_or(std::numeric_limits<double>::infinity());
+    if (!rig_.limits.max_watts) return watts;
+    double others = 0;
+    for (Index j = 0; j < level_.size(); ++j)
+      if (j < begin || j >= end) others += level_[j] * watts_of(j).value_or(0);
+    if (others > *rig_.limits.max_watts)
+      return refusal(fmt::format(
+          "task \"{}\": lights that stay as they are take {:.4g} W, max_watts of [limits] is {:g} W: dim them "
+          "(fixtures = \"off\"), or raise it",
+          task.name, others, *rig_.limits.max_watts));
+    return std::min(watts, *rig_.limits.max_watts - others);
+  }
+
+  Result<void> solve_levels_of(Index begin, Index end, double max_watts, PlannedTask& planned) {
+    EmittanceProblem problem = problem_of(begin, end);
+    problem.max_watts = max_watts;
     if (auto kept = limits_left(problem.fixed_lx); !kept) return kept;
     // An interrupt has ended the search, not what becomes of it.
     auto solution = solve_emittance(problem, planned.kind == "placement" ? Watch{} : options_.watch);
@@ -161,7 +202,12 @@ class TaskSolver {
     level_.segment(begin, end - begin) = solution->level;
     planned.normalised_error = solution->normalised_error;
     planned.iterations = solution->iterations;
-    for (Index j = begin; j < end; ++j) planned.lights.push_back(light_of(j));
+    planned.watts = 0;
+    for (Index j = begin; j < end; ++j) {
+      planned.lights.push_back(light_of(j));
+      if (!watts_of(j)) planned.watts.reset();
+      if (planned.watts) *planned.watts += *planned.lights.back().watts;
+    }
     for (std::size_t i = 0; i < why_.size(); ++i) why_[i] = solution->points[i].reason;
     return {};
   }
@@ -171,16 +217,22 @@ class TaskSolver {
     if (placed.lights.empty()) return {};
     int number = 0;
     const auto taken = [&](const std::string& name) {
-      return std::any_of(rig_.fixtures.begin(), rig_.fixtures.end(), [&](const Fixture& f) { return f.name == name; });
+      return std::any_of(rig_.fixtures.begin(), rig_.fixtures.end(),
+                         [&](const Fixture& f) { return f.name == name || f.name.starts_with(name + "/"); });
     };
     std::vector<double> levels(level_.data(), level_.data() + level_.size());
     for (const LightInScene& light : placed.lights) {
       std::string name;
       do name = fmt::format("{} {}", task.name, ++number);
       while (taken(name));
-      rig_.fixtures.push_back(
-          hung_light(rig_, name, task.placement.luminaire, light.position_world_m, light.aim_world_m));
-      levels.push_back(std::min(light.level, most_level(static_cast<Index>(rig_.fixtures.size()) - 1)));
+      const std::string& luminaire = rig_.luminaires[task.placement.luminaire].name;
+      const auto parts = rig_.emitters_or_itself(task.placement.luminaire);
+      for (std::size_t e = 0; e < parts.size(); ++e) {
+        // As the rig file will call them: "<name>/<emitter>".
+        const std::string called = name + rig_.luminaires[parts[e]].name.substr(luminaire.size());
+        rig_.fixtures.push_back(hung_light(rig_, called, parts[e], light.position_world_m, light.aim_world_m));
+        levels.push_back(std::min(light.levels[e], most_level(static_cast<Index>(rig_.fixtures.size()) - 1)));
+      }
     }
     ComputeOptions compute = options_;
     compute.watch = {};

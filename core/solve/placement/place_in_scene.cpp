@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/solve/placement/corrected_placement.h"
+#include "core/solve/placement/energy_front.h"
 #include "core/solve/placement/goal_bounds.h"
 #include "core/solve/placement/mounted_light.h"
 #include "core/solve/placement/placement_methods.h"
@@ -31,15 +32,39 @@ bool reflects(const RayScene& rays) {
 std::vector<LightInScene> lit_ones(const PlacedLights& lights, const Mounting& mounting, bool aimed) {
   std::vector<LightInScene> lit;
   for (std::size_t i = 0; i < lights.size(); ++i) {
-    const double level = lights.levels()[static_cast<Eigen::Index>(i)];
-    if (!(level > 0)) continue;
+    const auto levels = lights.levels().segment(static_cast<Eigen::Index>(i) * lights.emitters(), lights.emitters());
+    if (!(levels.maxCoeff() > 0)) continue;
     const LightPose& pose = lights.poses()[i];
     // It was added there, so it may hang there.
-    LightInScene light{mounting.snapped(pose.position_world_m)->place_world_m, std::nullopt, level};
+    LightInScene light{mounting.snapped(pose.position_world_m)->place_world_m,
+                       std::nullopt,
+                       levels.maxCoeff(),
+                       {levels.begin(), levels.end()}};
     if (aimed) light.aim_world_m = light.position_world_m + pose.aim_world;
     lit.push_back(light);
   }
   return lit;
+}
+
+/// What each watt less costs, from the lights found.
+std::vector<PowerAndError> front_of(const PlacementProblem& problem, const LightingGoal& goal,
+                                    const PlacedLights& lights, const PlaceInSceneOptions& options) {
+  constexpr int kRounds = 2;
+  const double watts = lights.watts();
+  if (options.front_limits == 0 || !(watts > 0) || options.stop.stop_requested()) return {};
+  const ComplementSearch candidates(problem.columns, problem.poses, goal);
+  ExchangeOptions of_exchange = ExchangeOptions::for_spacing(problem.spacing_m);
+  of_exchange.threads = options.threads;
+  of_exchange.stop = options.stop;
+  LightExchange exchange(candidates, of_exchange);
+  std::vector<double> limits;
+  for (std::size_t k = 0; k <= options.front_limits; ++k)
+    limits.push_back(watts * (1 - static_cast<double>(k) / static_cast<double>(options.front_limits + 1)));
+  const auto found = energy_front(*problem.light, goal, lights, limits, exchange, kRounds, options.seed);
+  std::vector<PowerAndError> front;
+  for (std::size_t k = 0; k < found.size(); ++k)
+    front.push_back({limits[k], found[k].lights.watts(), found[k].lights.error()});
+  return front;
 }
 
 }  // namespace
@@ -122,6 +147,7 @@ Result<PlacedInScene> place_in_scene(const Scene& scene, const RayScene& rays, c
           std::max(*placed.lower_bound, goal_error_bounds_by_count(problem.columns, bounded, counted).back());
     }
   }
+  placed.front = front_of(problem, done->corrected ? *done->corrected->goal : bounded, lights, options);
   placed.candidates = problem.poses.size();
   placed.stopped = options.stop.stop_requested();
   return placed;

@@ -19,7 +19,8 @@ namespace luxrig {
 struct LightInScene {
   Vec3 position_world_m = Vec3::Zero();
   std::optional<Vec3> aim_world_m;  ///< a place it looks at; none: straight down
-  double level = 0;                 ///< emittance factor, 0…max_level
+  double level = 0;                 ///< emittance factor, 0…max_level; of its brightest emitter
+  std::vector<double> levels{};     ///< of each emitter of the goal
 };
 
 struct PlaceInSceneOptions {
@@ -34,6 +35,9 @@ struct PlaceInSceneOptions {
   /// With reflected light or a luminaire with size: what the lights found are corrected by (correct_lights.h); none:
   /// the search's own model, which is good to a few per cent.
   LuxOfLights lux_of;
+  /// So many power limits below what the lights found take, falling evenly, are searched with, too (energy_front.h).
+  /// Needs the goal's watts.
+  std::size_t front_limits = 0;
   bool bound_of_number = false;  ///< prove PlacedInScene::lower_bound_of_number, too
   std::uint64_t seed = 1;
   int threads = 0;       ///< 0 = one per core; the result does not depend on it
@@ -48,6 +52,12 @@ struct LightsAndError {
   double error = 0;
 };
 
+/// The best that was found within a limit of power.
+struct PowerAndError {
+  double max_watts = 0, watts = 0;
+  double error = 0;
+};
+
 struct PlacedInScene {
   std::vector<LightInScene> lights;
   double error = 0;                     ///< of these lights, at these levels
@@ -55,6 +65,8 @@ struct PlacedInScene {
   /// Proven by the search's own light: no number of lights at its candidates comes closer, and none up to the number
   /// of these lights. Only where these did not reach the wanted error.
   std::optional<double> lower_bound, lower_bound_of_number;
+  /// With front_limits: what the lights found take, then each limit. Errors never fall along it.
+  std::vector<PowerAndError> front{};
   std::size_t candidates = 0, columns = 0;
   bool stopped = false;  ///< before the search was at its end
 };

@@ -434,5 +434,52 @@ TEST(GainEstimator, HandlesARigWithoutMetersPointsOrFixtures) {
   EXPECT_NEAR(estimator.correct(level, at_s(0)).aimed_lx[0], 60, 1e-6);
 }
 
+// A meter sees no colour: what it asks for is more or less of the light there is.
+TEST(GainEstimator, CorrectsTheEmittersOfAHousingTogether) {
+  Rig rig;
+  rig.fixtures.resize(4);
+  for (std::size_t j = 0; j < 4; ++j) rig.fixtures[j].name = "light " + std::to_string(j);
+  for (std::size_t j = 0; j < 3; ++j) rig.fixtures[j].housing = 0;
+  rig.fixtures[1].max_level = 0.5;
+  rig.points.resize(1);
+  rig.points[0].name = "singer";
+  rig.points[0].goal_lx = 180;
+  LightModel model;
+  model.point_lux_per_level = MatrixXd{{100, 200, 50, 60}};
+  const GainEstimator estimator(rig, model);
+  const std::vector<double> present = {0.8, 0.2, 0.1, 0.3};
+  const Correction correction = estimator.correct(present, Time{});
+  const double share = correction.level[0] / present[0];
+  EXPECT_GT(share, 1.01) << "143 lx are there";
+  EXPECT_NEAR(correction.level[1] / present[1], share, 1e-9);
+  EXPECT_NEAR(correction.level[2] / present[2], share, 1e-9);
+  EXPECT_LE(correction.level[0], 1);
+  EXPECT_NEAR(correction.aimed_lx[0],
+              model.point_lux_per_level.row(0).dot(Eigen::Map<const Eigen::RowVectorXd>(correction.level.data(), 4)) *
+                  estimator.gain(0),
+              1e-6);
+  // A dark lamp has no colour to keep, and stays dark.
+  const Correction dark = estimator.correct(std::vector<double>{0, 0, 0, 0.3}, Time{});
+  EXPECT_EQ(dark.level[0] + dark.level[1] + dark.level[2], 0);
+  EXPECT_GT(dark.level[3], 0.3);
+}
+
+TEST(GainEstimator, CorrectsWithinALimitOfPower) {
+  Rig rig;
+  rig.luminaires.resize(1);
+  rig.luminaires[0].watts = 20;
+  rig.fixtures.resize(2);
+  rig.points.resize(1);
+  rig.points[0].goal_lx = 150;
+  rig.limits.max_watts = 24;
+  LightModel model;
+  model.point_lux_per_level = MatrixXd{{100, 90}};
+  const GainEstimator estimator(rig, model);
+  const Correction correction = estimator.correct(std::vector<double>{0.5, 0.5}, Time{});
+  EXPECT_LE(20 * (correction.level[0] + correction.level[1]), 24);
+  EXPECT_GT(20 * (correction.level[0] + correction.level[1]), 23.9);
+  EXPECT_NE(correction.why[0].find("24 W"), std::string::npos) << correction.why[0];
+}
+
 }  // namespace
 }  // namespace luxrig

@@ -386,5 +386,58 @@ TEST(Plan, RefusesToHangWhatItCannot) {
   }
 }
 
+TEST(Plan, CarriesPowerAndColour) {
+  Plan plan = plan_for_two(0.5, 0.25);
+  plan.tasks[0].lights[0].watts = 6;
+  plan.tasks[0].watts = 9.5;
+  plan.tasks[0].front = {{12, 11.5, 0.1}, {6, 6, 0.4}};
+  PlannedPoint point;
+  point.name = "desk";
+  point.xy = Chromaticity(0.44, 0.4);
+  point.goal_xy = Chromaticity(0.45, 0.41);
+  plan.points = {point};
+  const std::string text = to_json(plan);
+  const auto back = plan_from_json(text, "plan.json");
+  ASSERT_TRUE(back) << back.error()[0].text();
+  EXPECT_EQ(back->tasks[0].lights[0].watts, 6);
+  EXPECT_FALSE(back->tasks[0].lights[1].watts);
+  EXPECT_EQ(back->tasks[0].watts, 9.5);
+  ASSERT_EQ(back->tasks[0].front.size(), 2u);
+  EXPECT_EQ(back->tasks[0].front[1].max_watts, 6);
+  EXPECT_EQ(back->tasks[0].front[0].watts, 11.5);
+  EXPECT_EQ(back->tasks[0].front[1].normalised_error, 0.4);
+  EXPECT_EQ(back->points[0].xy, point.xy);
+  EXPECT_EQ(back->points[0].goal_xy, point.goal_xy);
+  // One from before there were colours says nothing of them.
+  const auto old = plan_from_json(to_json(plan_for_two(0.5, 0.25)), "plan.json");
+  ASSERT_TRUE(old);
+  EXPECT_FALSE(old->tasks[0].watts);
+  EXPECT_TRUE(old->tasks[0].front.empty());
+  const auto wrong = plan_from_json(
+      R"({"luxrig_plan":1,"rig":"r","tasks":[],"points":[{"name":"p","xy":[0.3]},{"name":"q","goal_xy":"red"}]})",
+      "plan.json");
+  ASSERT_FALSE(wrong);
+  ASSERT_EQ(wrong.error().size(), 2u);
+  EXPECT_NE(wrong.error()[0].text().find("/points/0/xy"), std::string::npos) << wrong.error()[0].text();
+}
+
+// What a stranger is told to hang is the lamp, not one of its emitters.
+TEST(Plan, NamesTheHousingOfEmittersThatDoNotHangYet) {
+  Rig rig = two_fixture_rig();
+  rig.luminaires.resize(2);
+  rig.luminaires[0].name = "par";
+  rig.luminaires[0].emitters = {1};
+  rig.luminaires[1].name = "par/red";
+  rig.luminaires[1].emitter_of = 0;
+  Plan plan = plan_for_two(0.5, 0.25);
+  PlannedLight placed = light("more 1/red", 0.5);
+  placed.luminaire = "par/red";
+  plan.tasks.push_back({.name = "more", .kind = "placement", .lights = {placed}});
+  const auto levels = levels_for(plan, rig, "plan.json");
+  ASSERT_FALSE(levels);
+  EXPECT_NE(levels.error()[0].mend.find("hang a par at"), std::string::npos) << levels.error()[0].text();
+  EXPECT_NE(levels.error()[0].mend.find("called \"more 1\""), std::string::npos) << levels.error()[0].text();
+}
+
 }  // namespace
 }  // namespace luxrig

@@ -53,6 +53,7 @@ model = "spot"
 beam_angle_deg = 20  #> 21
 field_angle_deg = 40  #> 41
 lumens = 900  #> 901
+watts = 12
 [[luminaire]]
 name = "bulb"  #> "lamp"
 model = "isotropic"  #> "spot" ; beam_angle_deg = 20 ; field_angle_deg = 40
@@ -70,6 +71,29 @@ model = "cylinder"
 diameter_m = 0.04  #> 0.05
 length_m = 1.2
 lumens = 900
+[[luminaire]]
+name = "daylight"
+model = "isotropic"
+lumens = 900
+xy = [0.33, 0.34]  #> [0.33, 0.35]
+[[luminaire]]
+name = "par"
+model = "isotropic"
+[[luminaire.emitters]]
+name = "warm"  #> "amber"
+lumens = 100  #> 200
+watts = 4  #> 5
+cct_k = 2700  #> 3000
+[[luminaire.emitters]]
+name = "red"
+lumens = 50
+watts = 5
+colour = [1, 0.1, 0]  #> [1, 0.2, 0]
+[[luminaire.emitters]]
+name = "blue"
+lumens = 10
+watts = 5
+xy = [0.16, 0.07]  #> [0.16, 0.08]
 [[bus]]
 name = "dmx"  #> "net"
 driver = "sacn"  #> "artnet"
@@ -136,6 +160,7 @@ name = "desk"
 position_m = [1, 1, 0.8]  #> [1, 1, 0.9]
 normal = [0, 1, 1]  #> [0, 1, 2]
 goal_lx = 300  #> 301
+goal_xy = [0.4, 0.38]  #> [0.4, 0.39]
 weight = 2  #> 3
 max_lx = 400  #> 401
 [[point]]
@@ -144,11 +169,14 @@ position_m = [0.5, 0, 0]
 [[point]]
 name = "spare"  #> "third"
 position_m = [5, 0, 0]
+goal_lx = 100
+goal_cct_k = 3000  #> 4000
 [points]
 file = "a.csv"  #> "b.csv"
 [[task]]
 name = "look"  #> "other"
-kind = "emittance"  #> "placement" ; luminaire = "bulb"
+kind = "emittance"  #> "placement" ; luminaire = "spot"
+max_watts = 100  #> 90
 [[task]]
 name = "some"
 kind = "placement"
@@ -161,6 +189,7 @@ aimed = true  #> false
 indirect = false  #> true
 fixtures = "off"  #> "full"
 seconds = 5  #> 6
+energy_front = 3  #> 4
 bound = true  #> false
 [[task]]
 name = "four"
@@ -176,6 +205,7 @@ spacing_m = 0.25  #> 0.5
 [limits]
 max_level = 0.95  #> 0.9
 open_loop_margin = 0.1  #> 0.2
+max_watts = 500  #> 400
 [control]
 fade_s = 4  #> 5
 fade_curve = "linear"  #> "s-curve"
@@ -271,7 +301,8 @@ std::string dump(const Rig& rig) {
   for (const auto& l : rig.luminaires) {
     add(l.name, static_cast<int>(l.model), l.ies_path.string(), l.beam_angle_rad, l.field_angle_rad, l.lumens,
         text_of(l.watts), l.intensity->flux_lm(), l.intensity->intensity_cd(Vec3(0.1, 0, -1).normalized()),
-        static_cast<int>(l.shape.kind), text_of(l.shape.size_m), text_of(l.colour_rgb));
+        static_cast<int>(l.shape.kind), text_of(l.shape.size_m), text_of(l.colour_rgb), l.emitters.size(),
+        text_of(l.emitter_of));
   }
   for (const auto& b : rig.buses) {
     add(b.name, b.driver, b.options.size());
@@ -296,18 +327,20 @@ std::string dump(const Rig& rig) {
         m.patch.lux_per_count);
   }
   for (const auto& p : rig.points) {
-    add(p.name, text_of(p.position_world_m), text_of(p.normal_world), text_of(p.goal_lx), p.weight, text_of(p.max_lx));
+    add(p.name, text_of(p.position_world_m), text_of(p.normal_world), text_of(p.goal_lx), text_of(p.goal_rgb), p.weight,
+        text_of(p.max_lx));
   }
   for (const auto& t : rig.tasks) {
     const PlacementSpec& p = t.placement;
     add(t.name, static_cast<int>(t.kind), p.luminaire, text_of(p.lights), p.max_lights, p.error_wanted, p.improvement,
-        static_cast<int>(p.method), p.aimed, p.indirect, static_cast<int>(p.fixtures), text_of(p.seconds), p.bound);
+        static_cast<int>(p.method), p.aimed, p.indirect, static_cast<int>(p.fixtures), text_of(p.seconds),
+        p.energy_front, p.bound, text_of(t.max_watts));
   }
   const MountingSpec& mounting = rig.mounting;
   if (mounting.box_world_m) add(text_of(Vec3(mounting.box_world_m->min())), text_of(Vec3(mounting.box_world_m->max())));
   for (const auto& surface : mounting.surfaces) add(surface.text);
   add(mounting.offset_min_m, mounting.offset_max_m, mounting.clearance_m, text_of(mounting.spacing_m));
-  add(rig.limits.max_level, rig.limits.open_loop_margin);
+  add(rig.limits.max_level, rig.limits.open_loop_margin, text_of(rig.limits.max_watts));
   const ControlSpec& c = rig.control;
   add(c.fade_s, static_cast<int>(c.fade_curve), c.correction_fade_s, c.settle_s, c.rounds, c.tolerance, c.gain_min,
       c.gain_max);

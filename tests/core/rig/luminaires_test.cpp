@@ -1,4 +1,4 @@
-// What [[luminaire]] becomes: distribution, shape and colour.
+// What [[luminaire]] becomes: distribution, shape and colour, and fixtures of luminaires with emitters.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -82,6 +82,137 @@ TEST(Luminaires, HaveAColourWithALuminanceOfOne) {
   const Vec3 stated = luminaire_of("model = \"isotropic\"\nlumens = 1\ncolour = [4, 2, 1]\n").colour_rgb;
   EXPECT_NEAR(luminance_of_rgb(stated), 1, 1e-12);
   EXPECT_NEAR(stated.x() / stated.z(), 4, 1e-12);
+}
+
+TEST(Luminaires, TakeAChromaticity) {
+  const Vec3 inside = luminaire_of("model = \"isotropic\"\nlumens = 1\nxy = [0.45, 0.41]\n").colour_rgb;
+  EXPECT_NEAR(luminance_of_rgb(inside), 1, 1e-12);
+  EXPECT_NEAR((xy_of_rgb(inside) - Chromaticity(0.45, 0.41)).norm(), 0, 1e-12);
+  const Vec3 white = luminaire_of("model = \"isotropic\"\nlumens = 1\nxy = [0.3127, 0.3290]\n").colour_rgb;
+  EXPECT_NEAR((white - Vec3::Ones()).norm(), 0, 1e-3) << "D65";
+  // Primaries of Rec. 709 as published.
+  for (const auto& [rgb, xy] : {std::pair{Vec3(1, 0, 0), Chromaticity(0.64, 0.33)},
+                                {Vec3(0, 1, 0), Chromaticity(0.30, 0.60)},
+                                {Vec3(0, 0, 1), Chromaticity(0.15, 0.06)}})
+    EXPECT_NEAR((xy_of_rgb(rgb) - xy).norm(), 0, 2e-5);
+}
+
+TEST(Luminaires, AColourOutsideRec709IsMovedToItsEdgeWithANote) {
+  const Checked<Rig> rig = parse_rig(
+      "[rig]\nname = \"r\"\n[[luminaire]]\nname = \"l\"\nmodel = \"isotropic\"\nlumens = 1\nxy = [0.69, 0.31]\n",
+      "rig.toml", kData);
+  ASSERT_TRUE(rig);
+  const Vec3& rgb = rig->luminaires[0].colour_rgb;
+  EXPECT_EQ(rgb.y(), 0);
+  EXPECT_EQ(rgb.minCoeff(), 0);
+  EXPECT_NEAR(luminance_of_rgb(rgb), 1, 1e-12);
+  ASSERT_EQ(rig->notes.size(), 1u);
+  EXPECT_EQ(rig->notes[0].line, 7);
+  EXPECT_NE(rig->notes[0].what.find("xy [0.69, 0.31] lies outside Rec. 709"), std::string::npos) << rig->notes[0].what;
+}
+
+constexpr const char* kPar = R"([rig]
+name = "r"
+[[luminaire]]
+name = "par"
+model = "spot"
+beam_angle_deg = 20
+field_angle_deg = 40
+emitters = [
+  { name = "red", xy = [0.64, 0.33], lumens = 150, watts = 6 },
+  { name = "white", cct_k = 3000, lumens = 300, watts = 8 },
+]
+[[bus]]
+name = "dmx"
+driver = "sacn"
+[[fixture]]
+name = "a"
+luminaire = "par"
+position_m = [0, 0, 3]
+aim_m = [1, 0, 0]
+bus = "dmx"
+address = 11
+max_level = 0.8
+slots = ["constant:255", "emitter:white", "emitter:white-fine", "pan", "tilt", "emitter:red", "unused"]
+[[fixture]]
+name = "b"
+luminaire = "par/red"
+position_m = [1, 0, 3]
+bus = "dmx"
+address = 18
+)";
+
+TEST(Luminaires, WithEmittersAreOneEachAndAllOfThemTogether) {
+  const Checked<Rig> rig = parse_rig(kPar, "rig.toml", kData);
+  ASSERT_TRUE(rig) << rig.error().front().text();
+  ASSERT_EQ(rig->luminaires.size(), 3u);
+  const Luminaire &par = rig->luminaires[0], &red = rig->luminaires[1], &white = rig->luminaires[2];
+  EXPECT_EQ(par.emitters, (std::vector<std::size_t>{1, 2}));
+  EXPECT_EQ(red.name, "par/red");
+  EXPECT_EQ(white.emitter_of, 0u);
+  EXPECT_NEAR(par.intensity->flux_lm(), 450, 0.5);
+  EXPECT_EQ(par.lumens, 450);
+  EXPECT_EQ(par.watts, 14);
+  EXPECT_NEAR(red.intensity->flux_lm(), 150, 0.2);
+  EXPECT_EQ(white.watts, 8);
+  const Vec3 aside = at(12);
+  EXPECT_NEAR(red.intensity->intensity_cd(aside) + white.intensity->intensity_cd(aside),
+              par.intensity->intensity_cd(aside), 1e-9);
+  EXPECT_NEAR((150 * red.colour_rgb + 300 * white.colour_rgb - 450 * par.colour_rgb).norm(), 0, 1e-9);
+}
+
+TEST(Fixtures, OfALuminaireWithEmittersAreOneForEach) {
+  const Checked<Rig> rig = parse_rig(kPar, "rig.toml", kData);
+  ASSERT_TRUE(rig) << rig.error().front().text();
+  ASSERT_EQ(rig->fixtures.size(), 3u);
+  const Fixture &red = rig->fixtures[0], &white = rig->fixtures[1], &plain = rig->fixtures[2];
+  EXPECT_EQ(red.name, "a/red");
+  EXPECT_EQ(white.name, "a/white");
+  EXPECT_EQ(red.housing, 0u);
+  EXPECT_EQ(white.housing, 0u);
+  EXPECT_FALSE(plain.housing) << "an emitter by itself is a luminaire like another";
+  EXPECT_EQ(rig->luminaires[white.luminaire].name, "par/white");
+  EXPECT_EQ(white.joints.pan_rad, red.joints.pan_rad);
+  EXPECT_TRUE(white.moves);
+  EXPECT_EQ(white.max_level, 0.8);
+  const auto &of_red = std::get<DmxPatch>(red.patch), &of_white = std::get<DmxPatch>(white.patch);
+  EXPECT_EQ(of_white.address, 11);
+  const auto uses = [](const DmxPatch& patch) {
+    std::vector<std::pair<SlotUse, bool>> out;
+    for (const DmxSlot& slot : patch.slots) out.emplace_back(slot.use, slot.sent);
+    return out;
+  };
+  using Use = SlotUse;
+  EXPECT_EQ(uses(of_red), (std::vector<std::pair<Use, bool>>{{Use::constant, true},
+                                                             {Use::unused, true},
+                                                             {Use::unused, true},
+                                                             {Use::pan, true},
+                                                             {Use::tilt, true},
+                                                             {Use::dimmer, true},
+                                                             {Use::unused, true}}));
+  EXPECT_EQ(uses(of_white), (std::vector<std::pair<Use, bool>>{{Use::constant, false},
+                                                               {Use::dimmer, true},
+                                                               {Use::dimmer_fine, true},
+                                                               {Use::pan, false},
+                                                               {Use::tilt, false},
+                                                               {Use::unused, true},
+                                                               {Use::unused, false}}));
+}
+
+TEST(Points, HaveGoalsOfAColour) {
+  const std::string head = "[rig]\nname = \"r\"\n[[point]]\nname = \"p\"\nposition_m = [0, 0, 0]\ngoal_lx = 100\n";
+  const Checked<Rig> warm = parse_rig(head + "goal_cct_k = 3000\n", "rig.toml", kData);
+  ASSERT_TRUE(warm);
+  EXPECT_EQ(warm->points[0].goal_rgb, rgb_of_cct(3000));
+  EXPECT_TRUE(warm->colour_goals());
+  const Checked<Rig> deep = parse_rig(head + "goal_xy = [0.7, 0.29]\n", "rig.toml", kData);
+  ASSERT_TRUE(deep);
+  EXPECT_EQ(deep->points[0].goal_rgb->y(), 0);
+  ASSERT_EQ(deep->notes.size(), 1u);
+  EXPECT_NE(deep->notes[0].what.find("goal of point \"p\""), std::string::npos) << deep->notes[0].what;
+  const Checked<Rig> plain = parse_rig(head, "rig.toml", kData);
+  ASSERT_TRUE(plain);
+  EXPECT_FALSE(plain->colour_goals());
 }
 
 }  // namespace

@@ -102,5 +102,16 @@ TEST(PointsCsv, GivesBackWhatWasWrittenForRandomPoints) {
   }
 }
 
+TEST(PointsCsv, ReadsColoursOfGoals) {
+  const PointsTable table = parse_points_csv(
+      "name,x_m,y_m,z_m,goal_lx,goal_y,goal_x,goal_cct_k\na,0,0,0,100,0.4,0.45,\nb,0,0,0,100,,,3000\nc,0,0,0,,,,\n",
+      "points.csv", 10);
+  ASSERT_TRUE(table.problems.empty()) << table.problems[0].text();
+  ASSERT_EQ(table.rows.size(), 3u);
+  EXPECT_EQ(table.rows[0].goal_xy, Chromaticity(0.45, 0.4));
+  EXPECT_EQ(table.rows[1].point.goal_rgb, rgb_of_cct(3000));
+  EXPECT_FALSE(table.rows[2].goal_xy || table.rows[2].point.goal_rgb);
+}
+
 }  // namespace
 }  // namespace luxrig

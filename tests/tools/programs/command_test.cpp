@@ -102,6 +102,31 @@ TEST(Commands, ALimitThatDaylightAloneBreaksIsSaidAndNotSolved) {
   EXPECT_NE(ran.output.find("of daylight alone, its limit is 60 lx"), std::string::npos) << ran.output;
 }
 
+TEST(Commands, SolveMixesColoursWithinALimitOfPowerAndThePlanRunsAndRenders) {
+  const Folder folder;
+  const auto plan = (folder / "plan.json").string();
+  const Ran ran = luxrig::testing::run({program("luxrig"), "solve", source("rigs/stage"), "-o", plan});
+  ASSERT_EQ(ran.code, 0) << ran.output;
+  const json out = json::parse(text_of(plan), nullptr, false);
+  ASSERT_TRUE(out.is_object()) << ran.output;
+  const json& task = out["tasks"][0];
+  ASSERT_EQ(task["lights"].size(), 13u) << "three pars of four emitters, and one front light";
+  EXPECT_EQ(task["lights"][0]["name"], "par left/red");
+  EXPECT_LE(task["watts"].get<double>(), 40);
+  double watts = 0;
+  for (const json& light : task["lights"]) watts += light["watts"].get<double>();
+  EXPECT_NEAR(task["watts"].get<double>(), watts, 1e-9);
+  ASSERT_EQ(out["points"].size(), 4u);
+  for (const json& point : out["points"]) {
+    const auto xy = point["xy"].get<std::vector<double>>(), goal = point["goal_xy"].get<std::vector<double>>();
+    EXPECT_NEAR(xy[0], goal[0], 0.03) << point["name"];
+    EXPECT_NEAR(xy[1], goal[1], 0.03) << point["name"];
+  }
+  const Ran picture = luxrig::testing::run({program("luxrig"), "render", source("rigs/stage"), plan, "-o",
+                                            (folder / "stage.png").string(), "--width", "64"});
+  EXPECT_EQ(picture.code, 0) << picture.output;
+}
+
 /// Solves tests/rigs/hang to a plan; its JSON.
 json places_found(const std::filesystem::path& plan, const std::vector<std::string>& further = {}) {
   std::vector<std::string> words = {program("luxrig"), "solve", source("tests/rigs/hang"), "-o", plan.string()};

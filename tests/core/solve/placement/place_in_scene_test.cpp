@@ -171,5 +171,68 @@ TEST(PlaceInScene, StoppedItGivesTheBestSoFar) {
   EXPECT_EQ(nothing.error().cause, Cause::cancelled);
 }
 
+/// Two lamps with red, green, blue and white in them, by the inverse square; sums by primary, one behind the other.
+TEST(PlaceInScene, FindsLampsWithSeveralEmittersFromGoalsOfAColour) {
+  const LitFloor room;
+  const auto points = static_cast<Eigen::Index>(room.receivers.size());
+  LightingGoal goal;
+  goal.emitters.resize(3, 4);
+  goal.emitters << within_rec709(rgb_of_xy({0.62, 0.34})).rgb, within_rec709(rgb_of_xy({0.31, 0.58})).rgb,
+      within_rec709(rgb_of_xy({0.16, 0.08})).rgb, rgb_of_cct(3000);
+  goal.watts = Eigen::Vector4d(0.02, 0.02, 0.05, 0.01);
+  const std::vector<LightInScene> known = {{{0.8, 0.7, 2.3}, {}, 1}, {{3.1, 2.2, 2.25}, {}, 1}};
+  const Eigen::Vector4d lumens[] = {{300, 100, 0, 400}, {0, 200, 80, 100}};
+  goal.lux = Eigen::VectorXd::Zero(3 * points);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Eigen::VectorXd lux = room.goal_of({known[k]}).lux;
+    for (Eigen::Index c = 0; c < 3; ++c) goal.lux.segment(c * points, points) += (goal.emitters * lumens[k])[c] * lux;
+  }
+  PlaceInSceneOptions options = direct_light();
+  options.lights = 2;
+  options.error_wanted = 1e-5;
+  options.front_limits = 4;
+  const auto found = room.place(goal, options);
+  ASSERT_TRUE(found);
+  EXPECT_LE(found->error, 1e-5);
+  ASSERT_EQ(found->lights.size(), 2u);
+  EXPECT_LE(farthest_m(known, found->lights), 0.01);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const bool first = (found->lights[0].position_world_m - known[k].position_world_m).norm() < 0.1;
+    const LightInScene& light = found->lights[first ? 0 : 1];
+    ASSERT_EQ(light.levels.size(), 4u);
+    EXPECT_EQ(light.level, *std::max_element(light.levels.begin(), light.levels.end()));
+    // Three channels cannot tell four emitters apart: what they give together is what was asked for.
+    const Eigen::Map<const Eigen::Vector4d> levels(light.levels.data());
+    EXPECT_NEAR((goal.emitters * (levels - lumens[k])).norm(), 0, 0.01 * (goal.emitters * lumens[k]).norm());
+  }
+  ASSERT_EQ(found->front.size(), 5u);
+  EXPECT_LE(found->front[0].error, found->error);
+  for (std::size_t k = 0; k < 5; ++k) {
+    const PowerAndError& at = found->front[k];
+    EXPECT_NEAR(at.max_watts, found->front[0].max_watts * (1 - static_cast<double>(k) / 5), 1e-9);
+    EXPECT_LE(at.watts, at.max_watts);
+    EXPECT_GE(at.error, found->front[k > 0 ? k - 1 : 0].error);
+  }
+  // With a fifth of the power most of the light is missing.
+  EXPECT_GT(found->front[4].error, 0.3);
+}
+
+TEST(PlaceInScene, KeepsALimitOfPower) {
+  const LitFloor room;
+  LightingGoal goal = room.goal_of(kThree);
+  goal.watts = Eigen::VectorXd::Constant(1, 0.01);  // 18 W would do
+  goal.max_watts = 9;
+  PlaceInSceneOptions options = direct_light();
+  options.lights = 3;
+  const auto found = room.place(goal, options);
+  ASSERT_TRUE(found);
+  double watts = 0;
+  for (const LightInScene& light : found->lights) watts += 0.01 * light.level;
+  EXPECT_LE(watts, 9);
+  EXPECT_GE(watts, 9 * 0.999) << "light is short: all of it is used";
+  EXPECT_GT(found->error, 0.1);
+  EXPECT_TRUE(found->front.empty());
+}
+
 }  // namespace
 }  // namespace luxrig
