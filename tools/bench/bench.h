@@ -2,6 +2,7 @@
 /// Run time against error, on named suites.
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,9 +18,10 @@ struct BenchOptions {
                                               ///< measuring; nnls: writes its problems here for scipy
   std::vector<std::filesystem::path> rigs;    ///< transport: rig files whose scenes are measured too
   std::string method;                         ///< placement scenes: only this one
+  std::optional<int> seeds;                   ///< placement: rooms of each scene, instead of 100 (curves: 20)
   bool bounds = true;                         ///< placement scenes: with certified bounds, which take longest
   std::filesystem::path data_folder;          ///< placement: scenes that are read from files
-  std::string only;                           ///< transport, nnls: only cases whose name begins so; analytic: only such families
+  std::string only;  ///< transport, nnls: only cases whose name begins so; analytic: only such families
 };
 
 /// Names of the suites.

@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "core/solve/placement/corrected_placement.h"
+#include "tools/bench/stop_after.h"
 
 namespace luxrig {
 namespace {
@@ -83,16 +84,17 @@ Result<std::unique_ptr<ReadyCase>> ReadyCase::make(PlacementCase one, int thread
   return ready;
 }
 
-Solved solve_case(const ReadyCase& ready, const PlacementMethod& method, std::size_t lights, std::uint64_t seed,
-                  int threads, double wanted_error) {
+Solved solve_case(const ReadyCase& ready, const PlacementMethod& method, const SolveCaseOptions& how) {
   using Steady = std::chrono::steady_clock;
   Solved solved;
   PlacementOptions options;
-  options.lights = lights;
-  options.seed = seed;
-  options.threads = threads;
-  options.number.wanted_error = wanted_error;
+  options.lights = how.lights;
+  options.seed = how.seed;
+  options.threads = how.threads;
+  options.number.wanted_error = how.wanted_error;
   options.most_columns = ready.of().global ? kGlobalColumns : kSearchColumns;
+  const StopAfter time_up(how.most_seconds);
+  options.stop = time_up.token();
   const auto start = Steady::now();
   options.better = [&](const BestSoFar& best) {
     solved.curve.push_back(
@@ -103,7 +105,7 @@ Solved solve_case(const ReadyCase& ready, const PlacementMethod& method, std::si
     correction.most_rounds = kGatherRounds;
     if (ready.of().global)
       correction.lux_of = [&](std::span<const LightPose> poses, const Eigen::VectorXd& levels) {
-        return gathered_lux(ready, poses, levels, threads);
+        return gathered_lux(ready, poses, levels, how.threads);
       };
     const auto done = place_and_correct(method, ready.problem(), options, correction);
     if (!done || done->failed) {

@@ -59,9 +59,15 @@ struct Solved {
   std::string refused;
 };
 
-/// lights   0: the number is the method's to choose
-/// Global cases end with correct_lights() against gathered light of 1 %.
-[[nodiscard]] Solved solve_case(const ReadyCase& ready, const PlacementMethod& method, std::size_t lights,
-                                std::uint64_t seed, int threads, double wanted_error);
+struct SolveCaseOptions {
+  std::size_t lights = 0;  ///< 0: the number is the method's to choose
+  std::uint64_t seed = 1;
+  int threads = 0;
+  double wanted_error = 1e-4;
+  std::optional<double> most_seconds{};  ///< of the search, which then ends with the best so far
+};
+
+/// Global cases end with correct_lights() against gathered light of 1.5 %.
+[[nodiscard]] Solved solve_case(const ReadyCase& ready, const PlacementMethod& method, const SolveCaseOptions& options);
 
 }  // namespace luxrig

@@ -133,6 +133,8 @@ int main(int argc, char** argv) {
                       "transport: write the rooms here for Radiance, measure nothing; nnls: the problems");
   command->add_option("--rig", bench.rigs, "transport: measure this rig's scene too");
   command->add_option("--method", bench.method, "placement: only this method on scenes");
+  command->add_option("--seeds", bench.seeds, "placement: rooms of each scene (default 100; for curves 20)")
+      ->check(CLI::Range(1, 10000));
   command->add_flag("!--no-bounds", bench.bounds, "placement: without certified bounds");
   command->add_option("--data", bench.data_folder,
                       "placement: folder of office-scan.obj (tools/bench/data) and apartment.glb");

@@ -77,6 +77,11 @@ Result<PlacementCase> office_known_global(const std::string& name, std::uint64_t
   return known(name, make_open_plan_office(seed), true, options, 10, 0.072);
 }
 
+template <LitRoom (*make_room)(std::uint64_t)>
+Result<PlacementCase> room_known(const std::string& name, std::uint64_t seed, const CaseOptions& options) {
+  return known_lights_case(name, make_room(seed), false, options);
+}
+
 Result<PlacementCase> sewers_uniform(const std::string& name, std::uint64_t seed, const CaseOptions&) {
   return uniform_floor(name, make_sewers(seed), 11, 0.073);
 }
@@ -151,6 +156,11 @@ constexpr NamedCase kPlacementCases[] = {
     {"apartment-known", apartment_known},
     {"office-known", office_known},
     {"office-known-global", office_known_global},
+    {"sewers-known", room_known<make_sewers>},
+    {"cloister-known", room_known<make_cloister>},
+    {"museum-known", room_known<make_museum>},
+    {"studio-known", room_known<make_studio>},
+    {"atrium-known", room_known<make_colonnades>},
     {"sewers-uniform", sewers_uniform},
     {"sewers-uniform-global", sewers_uniform_global},
     {"apartment-uniform", apartment_uniform},
