@@ -7,6 +7,7 @@
 
 #include "core/check.h"
 #include "core/photometry/arc_tangent.h"
+#include "core/photometry/gauss8.h"
 #include "core/photometry/sphere_table.h"
 
 namespace luxrig {
@@ -33,23 +34,14 @@ struct OvercastProfile {
   [[nodiscard]] double operator()(const Vec3& d) const { return (1 + 2 * d.z()) / 3; }
 };
 
-constexpr std::array<double, 4> kNode = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
-                                         0.9602898564975363};
-constexpr std::array<double, 4> kWeight = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
-                                           0.1012285362903763};
-
 /// ∫ f dx over [from, to], 8-point Gauss in each of `panels` that are finer towards `to` (quadratically): the sun's
 /// halo has a tip there, which a smooth substitution takes away.
 template <class F>
 double towards_end(const F& f, double from, double to, int panels) {
   double sum = 0;
-  for (int i = 0; i < panels; ++i) {
-    for (std::size_t n = 0; n < 8; ++n) {
-      const double node = n < 4 ? -kNode[n] : kNode[n - 4];
-      const double t = (i + 0.5 + 0.5 * node) / panels;  // 0 at `to`
-      sum += kWeight[n % 4] * 0.5 / panels * 2 * t * f(to + (from - to) * t * t);
-    }
-  }
+  for (int i = 0; i < panels; ++i)  // t is 0 at `to`
+    sum += gauss8([&](double t) { return 2 * t * f(to + (from - to) * t * t); }, static_cast<double>(i) / panels,
+                  (i + 1.0) / panels);
   return sum * (to - from);
 }
 

@@ -7,27 +7,12 @@
 
 #include "core/check.h"
 #include "core/photometry/arc_tangent.h"
+#include "core/photometry/gauss8.h"
 #include "core/photometry/intensity.h"
 #include "core/photometry/sphere_table.h"
 
 namespace luxrig {
 namespace {
-
-/// Gauss–Legendre, 8 points on [from, to].
-template <class F>
-double gauss8(const F& f, double from, double to) {
-  constexpr std::array<double, 4> kNode = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
-                                           0.9602898564975363};
-  constexpr std::array<double, 4> kWeight = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
-                                             0.1012285362903763};
-  const double middle = 0.5 * (from + to);
-  const double half = 0.5 * (to - from);
-  double sum = 0;
-  for (std::size_t i = 0; i < kNode.size(); ++i) {
-    sum += kWeight[i] * (f(middle - half * kNode[i]) + f(middle + half * kNode[i]));
-  }
-  return sum * half;
-}
 
 /// Halves the interval until both halves agree with the whole to `allowed`.
 template <class F>
