@@ -27,12 +27,6 @@ constexpr double kStuckChange = 0.05;      ///< a value that stays while the lig
 constexpr double kJump = 0.2;              ///< less than this share off what is expected is never called a jump
 constexpr double kSameLevels = 0.005;      ///< evidence at levels nearer than this share replaces the former
 constexpr std::size_t kMostEvidence = 6;   ///< per meter; older goes
-constexpr double kMeteredWeight = 30;      ///< a metered goal goes before goals that nobody measures
-/// Weight of "stay at the present level" against a goal that nobody measures, in units of the fixture's brightest
-/// point. Without it such goals move levels so far in one round that the next reading surprises (of 500 simulated rigs,
-/// five instead of one or none missed a metered goal by more than 2 % after three rounds).
-constexpr double kCaution = 0.5;
-constexpr int kLimitRounds = 6;
 constexpr int kFadeSamples = 8;
 
 double minutes_between(Time from, Time to) { return std::max(0.0, to_seconds(to - from) / 60); }
@@ -57,8 +51,6 @@ MatrixXd joined(const MatrixXd& lit, const VectorXd& fixed, bool any_fixed, cons
   all << lit, matrix_or_zero(fixed, lit.rows(), 1, what);
   return all;
 }
-
-std::vector<double> list_of(const VectorXd& level) { return {level.data(), level.data() + level.size()}; }
 
 }  // namespace
 
@@ -422,106 +414,6 @@ std::vector<double> GainEstimator::within_limits(std::span<const double> given, 
       if (row.lux_per_level[static_cast<Index>(j)] > 0) level[j] *= share;
   }
   return level;
-}
-
-/// Fixtures × lights: what a fixture gives per level of a light. Emitters of one housing are one light, at the shares
-/// they have at present (a meter sees no colour, and must not change it); one that is dark stays so.
-MatrixXd GainEstimator::fixtures_per_light(const VectorXd& present) const {
-  MatrixXd per_light = MatrixXd::Zero(fixtures(), fixtures());
-  Index lights = 0;
-  for (Index first = 0, end = 0; first < fixtures(); first = end) {
-    const std::size_t housing = housing_[static_cast<std::size_t>(first)];
-    while (end < fixtures() && housing_[static_cast<std::size_t>(end)] == housing) ++end;
-    const auto levels = present.segment(first, end - first);
-    const double brightest = levels.maxCoeff();
-    if (end - first == 1) {
-      per_light(first, lights++) = 1;
-    } else if (brightest > 0) {
-      per_light.block(first, lights++, end - first, 1) = levels / brightest;
-    }
-  }
-  return per_light.leftCols(lights);
-}
-
-Correction GainEstimator::correct(std::span<const double> present, Time now) const {
-  EmittanceProblem problem;
-  const auto points = static_cast<Index>(points_.size());
-  const VectorXd present_level = vector_of(present).head(fixtures()).cwiseMax(0).cwiseMin(max_level_);
-  const MatrixXd per_light = fixtures_per_light(present_level);
-  // After the points one row per light, whose goal is its present level.
-  const Index lights = per_light.cols(), all = points + lights;
-  problem.lux_per_level.setZero(all, lights);
-  problem.fixed_lx.setZero(all);
-  problem.goal_lx.setConstant(all, std::numeric_limits<double>::quiet_NaN());
-  problem.weight.setConstant(all, kCaution);
-  problem.max_lx.setConstant(all, std::numeric_limits<double>::infinity());
-  problem.max_level.resize(lights);
-  problem.near_level.resize(lights);
-  for (Index k = 0; k < lights; ++k) {
-    Index brightest = 0;
-    per_light.col(k).maxCoeff(&brightest);  // its share is 1
-    problem.near_level[k] = present_level[brightest];
-    problem.max_level[k] = std::numeric_limits<double>::infinity();
-    for (Index j = 0; j < fixtures(); ++j)
-      if (per_light(j, k) > 0) problem.max_level[k] = std::min(problem.max_level[k], max_level_[j] / per_light(j, k));
-    problem.light_name.push_back(fixture_names_[static_cast<std::size_t>(brightest)]);
-  }
-  problem.watts = (watts_.transpose() * per_light).transpose();
-  problem.max_watts = max_watts_;
-  std::vector<Row> rows;
-  for (Index i = 0; i < points; ++i) {
-    const Point& point = points_[static_cast<std::size_t>(i)];
-    rows.push_back(row_of_point(static_cast<std::size_t>(i)));
-    const RowVectorXd lux = rows.back().lux_per_level.cwiseProduct(rows.back().factor);
-    problem.lux_per_level.row(i) = lux.head(fixtures()) * per_light;
-    if (lux.size() > fixtures()) problem.fixed_lx[i] = lux[fixtures()];
-    problem.weight[i] = point.weight * (rows.back().luxmeter ? kMeteredWeight : 1);
-    if (point.goal_lx) problem.goal_lx[i] = *point.goal_lx;
-    problem.point_name.push_back(point.name);
-  }
-  for (Index j = 0; j < lights && points > 0; ++j) {
-    const double brightest = problem.lux_per_level.col(j).head(points).maxCoeff();
-    problem.lux_per_level(points + j, j) = brightest;
-    if (brightest > 0) problem.goal_lx[points + j] = brightest * problem.near_level[j];
-  }
-
-  Correction correction;
-  correction.why.resize(points_.size());
-  VectorXd level = problem.near_level;
-  // The limits hold for the worst case, which depends on where the levels go: solve, look, tighten, solve again.
-  for (int round = 0; round < kLimitRounds; ++round) {
-    bool over = round == 0;
-    for (Index i = 0; i < points; ++i) {
-      const auto& max_lx = points_[static_cast<std::size_t>(i)].max_lx;
-      if (!max_lx) continue;
-      const Row& row = rows[static_cast<std::size_t>(i)];
-      const double daylight_lx = most_without_fixtures(row, now), room = std::max(0.0, *max_lx - daylight_lx);
-      const double lux = problem.lux_per_level.row(i).dot(level);
-      const double most = most_lux(row, vector_of(list_of(per_light * level)), now) - daylight_lx;
-      over = over || most > room;
-      problem.max_lx[i] =
-          problem.fixed_lx[i] + (lux > 0 && most > 0 ? room * std::min(1.0, lux / most) : room / local_);
-    }
-    if (!over) break;
-    const auto solution = solve_emittance(problem);
-    if (!solution) break;
-    level = solution->level;
-    for (std::size_t i = 0; i < points_.size(); ++i) {
-      const PointOutcome& outcome = solution->points[i];
-      correction.why[i] = outcome.reason;
-      if (outcome.limit_points.empty()) continue;
-      const auto first = static_cast<std::size_t>(outcome.limit_points.front());
-      correction.why[i] +=
-          fmt::format(" (of the limit of {:.4g} lx, {:.3g} lx are kept free for the error of {})",
-                      *points_[first].max_lx, *points_[first].max_lx - problem.max_lx[static_cast<Index>(first)],
-                      rows[first].luxmeter ? "the meter" : "the model: no meter confirms it");
-    }
-  }
-  correction.level = within_limits(list_of((per_light * level).cwiseMin(max_level_)), now);
-  const VectorXd corrected = vector_of(correction.level);
-  for (const Row& row : rows)
-    correction.aimed_lx.push_back(row.lux_per_level.cwiseProduct(row.factor).dot(corrected.transpose()));
-  return correction;
 }
 
 }  // namespace luxrig

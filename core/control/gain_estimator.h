@@ -135,6 +135,10 @@ class GainEstimator {
   [[nodiscard]] const Evidence* latest(std::size_t luxmeter) const;
   [[nodiscard]] double covariance(const Row& one, const Eigen::VectorXd& one_level, const Evidence& other) const;
   [[nodiscard]] Eigen::VectorXd vector_of(std::span<const double> level) const;  ///< with the 1 of daylight
+  static constexpr int kLimitRounds = 6;  ///< limits hold for the worst case, which depends on where the levels go
+  [[nodiscard]] static std::vector<double> list_of(const Eigen::VectorXd& level) {
+    return {level.data(), level.data() + level.size()};
+  }
   [[nodiscard]] Eigen::Index fixtures() const { return max_level_.size(); }
   [[nodiscard]] Eigen::MatrixXd fixtures_per_light(const Eigen::VectorXd& present) const;
   [[nodiscard]] double most_without_fixtures(const Row& row, Time now) const;

@@ -102,7 +102,7 @@ TEST(Commands, ALimitThatDaylightAloneBreaksIsSaidAndNotSolved) {
   EXPECT_NE(ran.output.find("of daylight alone, its limit is 60 lx"), std::string::npos) << ran.output;
 }
 
-TEST(Commands, SolveMixesColoursWithinALimitOfPowerAndThePlanRunsAndRenders) {
+TEST(Commands, SolveMixesColoursWithinALimitOfPowerAndThePlanRenders) {
   const Folder folder;
   const auto plan = (folder / "plan.json").string();
   const Ran ran = luxrig::testing::run({program("luxrig"), "solve", source("rigs/stage"), "-o", plan});
