@@ -11,6 +11,9 @@ namespace {
 using MaskRow = HorizonMask::Row;
 
 constexpr int kCoarsestStep = 8;
+/// A patch as small as the gaps between the first rays is met by one of them, or missed: so one that was met tells of
+/// several that were not, and then every direction is asked.
+constexpr int kLonelyRays = 1;
 
 /// One of the first rays; it stands for `gap` azimuths around it.
 struct SparseRay {
@@ -47,6 +50,10 @@ class HorizonSearch {
 
   HorizonMask run(int step, std::uint64_t& rays) {
     ask_sparsely(step);
+    if (lonely_rays(step) >= kLonelyRays) {
+      rays += rays_ + kScanAzimuths * kScanElevations;
+      return scan_every_direction(target_, point_, lift_m_);
+    }
     guess_rows_between(step);
     HorizonMask wanted;
     while (next_to_a_border(wanted)) {
@@ -94,6 +101,22 @@ class HorizonSearch {
         if (!known_.test(around, s.elevation)) blocked_.set(around, s.elevation, true);
       }
     }
+  }
+
+  /// First rays that found otherwise than all four around them.
+  [[nodiscard]] int lonely_rays(int step) const {
+    int count = 0;
+    for (const SparseRay& s : sparse_rays()[static_cast<std::size_t>(step)]) {
+      const bool mine = blocked_.test(s.azimuth, s.elevation);
+      const auto differs = [&](int azimuth, int elevation) {
+        return elevation < 0 || elevation >= kScanElevations ||
+               blocked_.test((azimuth + kScanAzimuths) % kScanAzimuths, elevation) != mine;
+      };
+      if (differs(s.azimuth - s.gap, s.elevation) && differs(s.azimuth + s.gap, s.elevation) &&
+          differs(s.azimuth, s.elevation - step) && differs(s.azimuth, s.elevation + step))
+        ++count;
+    }
+    return count;
   }
 
   void guess_rows_between(int step) {

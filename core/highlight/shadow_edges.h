@@ -43,12 +43,13 @@ struct ShadowEdgeOptions {
 /// Search: rays `step` degrees apart over the hemisphere; what lies between is taken to be as the nearest of them. Then
 /// each direction that differs from a neighbour, in azimuth or elevation, is asked, until every such pair consists of
 /// two that were. So every edge found is one, and the border of every blocked or open patch that any ray met is
-/// followed all around; missed are patches that lie between the first rays. Points without a normal (zero) have no
-/// edges. The same answer for any number of threads.
+/// followed all around; missed are patches that lie between the first rays. Where one of these found otherwise than all
+/// four around it, there are patches as small as that (pinholes between a mesh's parts): there every direction is
+/// asked. Points without a normal (zero) have no edges. The same answer for any number of threads.
 [[nodiscard]] Result<ShadowEdges> find_shadow_edges(const TargetRays& target, std::span<const OrientedPoint> points,
                                                     const ShadowEdgeOptions& options);
 
-/// Which directions the target blocks from one point; adds the rays it took.
+/// Which directions the target blocks from one point; the search adds the rays it took.
 [[nodiscard]] HorizonMask scan_every_direction(const TargetRays& target, const OrientedPoint& point, double lift_m);
 [[nodiscard]] HorizonMask search_horizon(const TargetRays& target, const OrientedPoint& point, double lift_m, int step,
                                          std::uint64_t& rays);

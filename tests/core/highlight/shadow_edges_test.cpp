@@ -112,6 +112,29 @@ TEST(ShadowEdges, OfTheSearchAreThoseOfEveryRay) {
   }
 }
 
+TEST(ShadowEdges, OnePinholeThatIsMetTellsOfOthers) {
+  // A screen of 200 × 200 over the point with a hole in every tenth place, smaller than the gaps between first rays.
+  Scene screen;
+  const int split = 200;
+  for (int i = 0; i <= split; ++i)
+    for (int j = 0; j <= split; ++j)
+      screen.vertices_m.push_back(Vec3(4.0 * i / split - 2, 4.0 * j / split - 2, 1).cast<float>());
+  const auto at = [&](int i, int j) { return static_cast<std::uint32_t>(i * (split + 1) + j); };
+  for (int i = 0; i < split; ++i) {
+    for (int j = 0; j < split; ++j) {
+      if (i % 10 == 5 && j % 10 == 5) continue;
+      screen.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      screen.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+  }
+  const TargetRays target(with_one_material(screen));
+  const std::vector<OrientedPoint> points = {{Vec3::Zero(), Vec3::UnitZ()}};
+  const ShadowEdges every = edges_with(target, points, 1), found = edges_with(target, points, 4);
+  EXPECT_GT(every.edges.size(), 500u);
+  EXPECT_EQ(found.edges, every.edges);
+  EXPECT_GT(found.rays, every.rays);  // what that costs
+}
+
 TEST(ShadowEdges, AreTheSameForAnyNumberOfThreads) {
   const Scene scene = make_carved_relief(0.02);
   const Bench bench = with_interest_points(scene, 50);
