@@ -7,7 +7,7 @@ const text = (page, selector) => page.locator(selector).first().innerText();
 
 /** Names, counts and numbers on the page are those of the daemon's status. */
 export async function showsTheRig(page, url) {
-  await page.waitForSelector('body.ready', { timeout: 10000 });
+  await page.waitForSelector('body.ready', { timeout: 30000 });
   const now = await status(url);
   assert.equal(await text(page, 'h1'), now.rig);
   assert.equal(await page.title(), `${now.rig} · Luxrig`);

@@ -18,9 +18,8 @@ namespace luxrig {
 [[nodiscard]] Result<FoundLights> place_by_annealing(const PlacementProblem& problem, const PlacementOptions& options);
 
 /// Gkaravelis & Papaioannou 2016 (thesis §5.5): a light tree (light_tree.h), its cuts from few lights to many, those
-/// below ε_opt (where none is, those from fewest_worth_it() on) annealed until one more light improves by less than
-/// ε_improv, then refined as GPK15. With a given
-/// number: the cut of that number.
+/// below ε_opt (where none is, those from the first that is within ε_improv of the least error) annealed until one more
+/// light improves by less than ε_improv, then refined as GPK15. With a given number: the cut of that number.
 [[nodiscard]] Result<FoundLights> place_by_gp16(const PlacementProblem& problem, const PlacementOptions& options);
 
 /// Lin et al. 2013: coarse to fine, its own tree (coarse_to_fine.h), and Nelder–Mead on positions and levels at a cut.

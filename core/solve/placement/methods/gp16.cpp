@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <limits>
+
 #include "core/solve/placement/methods/anneal_candidates.h"
 #include "core/solve/placement/methods/baselines.h"
 #include "core/solve/placement/methods/light_tree.h"
@@ -47,12 +50,14 @@ class CutWalk {
   }
 
  private:
-  /// The first below ε_opt. Where a goal is so hard that none is, the one that the tree's own errors suggest.
+  /// The first below ε_opt. Where a goal is so hard that none is, the first that is nearly as good as any.
   [[nodiscard]] std::size_t first_cut(const std::vector<TreeCut>& cuts, std::size_t within) const {
-    for (std::size_t i = 0; i < within; ++i)
-      if (cuts[i].error <= options_.number.coarse_error) return i;
-    return fewest_worth_it(
-        within, [&](std::size_t i) { return cuts[i].error; }, options_.number);
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < within; ++i) least = std::min(least, cuts[i].error);
+    const double enough = std::max(options_.number.coarse_error, (1 + options_.number.least_improvement) * least);
+    std::size_t first = 0;
+    while (first < within && cuts[first].error > enough) ++first;
+    return first;
   }
   FoundLights refined(const ChosenCandidates& chosen, std::vector<PlacedLights> looked_at) {
     FoundLights found{chosen.placed(columns_)};
