@@ -232,19 +232,23 @@ bool Section::three_numbers_from(const KeySpec& spec, const Node& node, Vec3& ou
   return good;
 }
 
+const NodeList* Section::pair_from(const KeySpec& spec, const Node& node, std::string_view parts) {
+  const auto* list = std::get_if<NodeList>(&node.value);
+  if (list && list->size() == 2) return list;
+  problems_.add(node.place,
+                list ? fmt::format("{} has {} {}", spec.key, list->size(), parts)
+                     : fmt::format("{} must be {}, not {}", spec.key, type_text(spec.type), kind_of(node)),
+                example_of(spec));
+  return nullptr;
+}
+
 bool Section::read(std::string_view key, Eigen::AlignedBox3d& out) {
   const KeySpec& k = spec(key);
   LUXRIG_CHECK(k.type == ValueType::box, "{} is not a box", key);
   const Node* node = value(k);
   if (!node) return false;
-  const auto* list = std::get_if<NodeList>(&node->value);
-  if (!list || list->size() != 2) {
-    problems_.add(node->place,
-                  list ? fmt::format("{} has {} corners", key, list->size())
-                       : fmt::format("{} must be {}, not {}", key, type_text(k.type), kind_of(*node)),
-                  example_of(k));
-    return false;
-  }
+  const NodeList* list = pair_from(k, *node, "corners");
+  if (!list) return false;
   Vec3 one, other;
   const bool one_good = three_numbers_from(k, (*list)[0], one), other_good = three_numbers_from(k, (*list)[1], other);
   if (!one_good || !other_good) return false;
@@ -263,14 +267,8 @@ bool Section::read(std::string_view key, std::pair<double, double>& out) {
   LUXRIG_CHECK(k.type == ValueType::span2, "{} is not a range", key);
   const Node* node = value(k);
   if (!node) return false;
-  const auto* list = std::get_if<NodeList>(&node->value);
-  if (!list || list->size() != 2) {
-    problems_.add(node->place,
-                  list ? fmt::format("{} has {} entries", key, list->size())
-                       : fmt::format("{} must be [from, to], not {}", key, kind_of(*node)),
-                  example_of(k));
-    return false;
-  }
+  const NodeList* list = pair_from(k, *node, "entries");
+  if (!list) return false;
   double from = 0, to = 0;
   const bool from_good = number_from(k, (*list)[0], from), to_good = number_from(k, (*list)[1], to);
   if (!from_good || !to_good) return false;
@@ -289,14 +287,8 @@ bool Section::read(std::string_view key, Eigen::Vector2d& out) {
   LUXRIG_CHECK(k.type == ValueType::chromaticity, "{} is not a chromaticity", key);
   const Node* node = value(k);
   if (!node) return false;
-  const auto* list = std::get_if<NodeList>(&node->value);
-  if (!list || list->size() != 2) {
-    problems_.add(node->place,
-                  list ? fmt::format("{} has {} entries", key, list->size())
-                       : fmt::format("{} must be {}, not {}", key, type_text(k.type), kind_of(*node)),
-                  example_of(k));
-    return false;
-  }
+  const NodeList* list = pair_from(k, *node, "entries");
+  if (!list) return false;
   Eigen::Vector2d xy;
   const bool x_good = number_from(k, (*list)[0], xy[0]), y_good = number_from(k, (*list)[1], xy[1]);
   if (!x_good || !y_good) return false;

@@ -75,6 +75,8 @@ class Section {
   const Node* value(const KeySpec& spec);
   bool number_from(const KeySpec& spec, const Node& node, double& out);
   bool text_from(const KeySpec& spec, const Node& node, std::string& out);
+  /// A list of two; else null, and the problem is added.
+  const NodeList* pair_from(const KeySpec& spec, const Node& node, std::string_view parts);
   bool three_numbers_from(const KeySpec& spec, const Node& node, Vec3& out);
   int choice(std::string_view key);
 
