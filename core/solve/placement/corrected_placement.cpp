@@ -1,15 +1,11 @@
 #include "core/solve/placement/corrected_placement.h"
 
-#include <algorithm>
-
 namespace luxrig {
 
 Result<CorrectedPlacement> place_and_correct(const PlacementMethod& method, const PlacementProblem& problem,
                                              const PlacementOptions& options,
                                              const CorrectedPlacementOptions& correction) {
-  PlacementOptions first = options;
-  if (correction.lux_of) first.number.wanted_error = std::max(first.number.wanted_error, correction.model_error);
-  auto found = method.run(problem, first);
+  auto found = method.run(problem, options);
   if (!found) return tl::unexpected(std::move(found.error()));
   CorrectedPlacement placed{std::move(*found), {}, {}, 0};
   placed.columns = placed.found.columns;

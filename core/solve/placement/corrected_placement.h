@@ -17,8 +17,6 @@ struct CorrectedPlacement {
 
 struct CorrectedPlacementOptions {
   LuxOfLights lux_of;   ///< the better model; none: nothing is corrected
-  /// Of the problem's own model: with less error than this the first search only fits its faults.
-  double model_error = 0.03;
   int most_rounds = 3;  ///< evaluations of it
   double share = 0.5;   ///< of most_columns, for each search that goes on after a correction
 };

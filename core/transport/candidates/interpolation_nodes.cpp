@@ -72,6 +72,7 @@ double InterpolationNodes::step_for(std::span<const Vec3> positions_world_m, std
   if (box.isEmpty() || most_nodes == 0) return 0;
   const double size_m = box.sizes().maxCoeff();
   if (!(size_m > 0)) return 0;
+  const auto all = static_cast<std::size_t>(std::count_if(usable.begin(), usable.end(), [](auto u) { return u != 0; }));
   double fits_m = 0;
   std::unordered_set<std::uint64_t> cubes;
   for (double step_m = 1.01 * size_m; step_m * kMostCubesPerSide > size_m; step_m *= kFiner) {
@@ -80,6 +81,7 @@ double InterpolationNodes::step_for(std::span<const Vec3> positions_world_m, std
       if (usable[p]) cubes.insert(key_of(cube_of(positions_world_m[p], box.min(), step_m)));
     if (cubes.size() > most_nodes) break;
     fits_m = step_m;
+    if (cubes.size() == all) break;  // finer, and no place would have a neighbour within reach
   }
   return fits_m;
 }

@@ -24,7 +24,8 @@ class InterpolationNodes {
   /// usable   per position
   InterpolationNodes(std::span<const Vec3> positions_world_m, std::span<const std::uint8_t> usable, double step_m);
 
-  /// The finest grid's step that does not give more than `most_nodes`, to a fifth; 0 if `most_nodes` is.
+  /// The finest grid's step that does not give more than `most_nodes`, to a fifth, but none finer than lets every
+  /// position be a node; 0 if `most_nodes` is.
   [[nodiscard]] static double step_for(std::span<const Vec3> positions_world_m, std::span<const std::uint8_t> usable,
                                        std::size_t most_nodes);
 

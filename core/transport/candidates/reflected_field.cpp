@@ -7,6 +7,13 @@
 
 namespace luxrig {
 
+namespace {
+
+/// So many may all be nodes.
+constexpr std::size_t kFewPlaces = 60;
+
+}  // namespace
+
 Result<ReflectedField> ReflectedField::make(const Scene& scene, const RayScene& rays,
                                             std::span<const Receiver> receivers, const Emitter& luminaire,
                                             std::span<const Vec3> places_world_m, std::size_t most_nodes,
@@ -17,7 +24,10 @@ Result<ReflectedField> ReflectedField::make(const Scene& scene, const RayScene& 
 
   ReflectedField field;
   field.rays_ = &rays;
-  const double step_m = InterpolationNodes::step_for(places_world_m, usable, most_nodes);
+  // Where every place were a node, none would be known better than one look tells.
+  const auto all = static_cast<std::size_t>(std::count(usable.begin(), usable.end(), 1));
+  const double step_m =
+      InterpolationNodes::step_for(places_world_m, usable, std::min(most_nodes, std::max(all / 2, kFewPlaces)));
   if (step_m > 0) field.nodes_ = InterpolationNodes(places_world_m, usable, step_m);
   field.receivers_ = receivers.size();
   field.stride_ = (receivers.size() + kRowUnit - 1) / kRowUnit * kRowUnit;

@@ -115,5 +115,23 @@ TEST(InterpolationNodes, AreAsFineAsAllowedAndBearOddInput) {
   }
 }
 
+// A grid as fine as asked for left every place alone in the dark: no node had a neighbour within reach.
+TEST(InterpolationNodes, AreNoFinerThanLetsEveryPlaceBeOne) {
+  std::vector<Vec3> places_m;
+  for (int x = 0; x < 12; ++x)
+    for (int y = 0; y < 9; ++y) places_m.emplace_back(0.2 * x, 0.2 * y, 1.5);
+  const std::vector<std::uint8_t> usable(places_m.size(), 1);
+  const double step_m = InterpolationNodes::step_for(places_m, usable, 4000);
+  EXPECT_GT(step_m, 0.8 * 0.2 * 0.99);
+  const InterpolationNodes nodes(places_m, usable, step_m);
+  EXPECT_EQ(nodes.size(), places_m.size());
+  const Scene scene = two_rooms(0.5, true);
+  const RayScene rays(scene);
+  std::vector<WeightedRow> shares;
+  std::uint64_t cast = 0;
+  nodes.shares(rays, {1.1, 0.7, 1.5}, Vec3::Zero(), shares, cast);
+  EXPECT_GE(shares.size(), 4u);
+}
+
 }  // namespace
 }  // namespace luxrig
