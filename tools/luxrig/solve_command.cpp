@@ -63,8 +63,10 @@ void print_placement(const PlannedTask& task, const PlacementSpec& spec, bool ha
   if (spec.energy_front > 0 && task.front.empty())
     fmt::print("no time was left to search with less power (energy_front)\n");
   if (task.lower_bound)
-    fmt::print("proven: no lights at the places on its lattice leave less than {} (those found may lie between)\n",
-               percent(*task.lower_bound));
+    fmt::print(
+        "proven by the search's own light: no lights at the places of its lattice leave less than {} (those found may "
+        "lie between)\n",
+        percent(*task.lower_bound));
   if (task.lower_bound_of_number)
     fmt::print("and no {} of them less than {}\n", task.lights.size(), percent(*task.lower_bound_of_number));
   fmt::print(
