@@ -57,8 +57,11 @@ std::vector<std::string> bench_suites() {
 }
 
 int run_bench(const std::string& suite, const BenchOptions& options) {
-  for (const Suite& known : kSuites)
-    if (suite == known.name) return finish(known, known.run(options), options);
+  for (const Suite& known : kSuites) {
+    if (suite != known.name) continue;
+    keep_rows_in(options.csv_file);
+    return finish(known, known.run(options), options);
+  }
   fmt::print(stderr, "no bench suite is called \"{}\"; there are:\n", suite);
   for (const Suite& known : kSuites) fmt::print(stderr, "  {:<12}{}\n", known.name, known.summary);
   return 2;

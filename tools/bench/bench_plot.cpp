@@ -12,6 +12,7 @@ namespace luxrig {
 namespace {
 
 constexpr double kWidth_px = 900, kHeight_px = 560, kLeft_px = 80, kRight_px = 260, kTop_px = 50, kBottom_px = 60;
+constexpr double kLeast = 1e-16;  ///< of an error that is drawn
 
 /// A logarithmic axis that covers whole decades.
 struct Axis {
@@ -44,7 +45,7 @@ std::string write_plot(const std::vector<BenchRow>& rows, const std::string& tit
   if (std::all_of(rows.begin(), rows.end(), [](const BenchRow& row) { return std::isnan(row.error); }))
     return "nothing to draw";
   // Logarithms need something above zero: exact results are drawn at 1e-16.
-  const auto error_of = [](const BenchRow& row) { return std::clamp(row.error, 1e-16, 1e16); };
+  const auto error_of = [](const BenchRow& row) { return std::clamp(row.error, kLeast, 1e16); };
   const auto seconds_of = [](const BenchRow& row) { return std::max(row.seconds, 1e-6); };
   Axis x{kLeft_px, kWidth_px - kRight_px}, y{kHeight_px - kBottom_px, kTop_px};
   double least_s = 1e9, most_s = 1e-9, least = 1e9, most = 1e-16;
@@ -53,8 +54,8 @@ std::string write_plot(const std::vector<BenchRow>& rows, const std::string& tit
     if (std::isnan(row.error)) continue;
     least_s = std::min(least_s, seconds_of(row));
     most_s = std::max(most_s, seconds_of(row));
-    least = std::min(least, error_of(row));
-    most = std::max(most, error_of(row));
+    least = std::min(least, row.quartiles ? std::max(row.quartiles->first, kLeast) : error_of(row));
+    most = std::max(most, row.quartiles ? row.quartiles->second : error_of(row));
     lines[row.case_name + ", " + row.method].push_back(&row);
   }
   x.cover(least_s, most_s);
@@ -97,6 +98,11 @@ std::string write_plot(const std::vector<BenchRow>& rows, const std::string& tit
     for (const BenchRow* row : points) cairo_line_to(pen, x.at(seconds_of(*row)), y.at(error_of(*row)));
     cairo_stroke(pen);
     for (const BenchRow* row : points) {
+      // Next to each other where many lines have a point at the same time.
+      const double at_px = x.at(seconds_of(*row)) + (row->quartiles ? 2.5 * static_cast<double>(index % 6) - 6 : 0);
+      if (row->quartiles)
+        line(pen, at_px, y.at(std::max(row->quartiles->first, kLeast)), at_px,
+             y.at(std::max(row->quartiles->second, kLeast)));
       cairo_arc(pen, x.at(seconds_of(*row)), y.at(error_of(*row)), 4, 0, 6.2832);
       cairo_fill(pen);
     }

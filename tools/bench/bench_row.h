@@ -15,6 +15,7 @@ struct BenchRow {
   double seconds = 0;
   std::optional<double> target_error, target_seconds;
   std::vector<std::pair<std::string, std::string>> further;  ///< columns the suite adds, the same on each row
+  std::optional<std::pair<double, double>> quartiles{};      ///< of the error, where it is a median: drawn, not listed
 
   /// Both targets kept; nothing when there is none.
   [[nodiscard]] std::optional<bool> met() const;
@@ -26,7 +27,8 @@ struct BenchRow {
 /// The same, aligned for reading.
 [[nodiscard]] std::string table_of(const std::vector<BenchRow>& rows);
 
-/// Error over seconds, both logarithmic; one line per case and method. Returns an empty string, or why not written.
+/// Error over seconds, both logarithmic; one line per case and method, with bars from quartile to quartile. Returns an
+/// empty string, or why not written.
 [[nodiscard]] std::string write_plot(const std::vector<BenchRow>& rows, const std::string& title,
                                      const std::filesystem::path& file);
 

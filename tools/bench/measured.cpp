@@ -49,24 +49,25 @@ Measured measure(const Method& method, const RayScene& rays, std::span<const Rec
 
 BenchRow row_of(const std::string& case_name, const std::string& method, double error, const Measured& run,
                 std::optional<double> wanted_error, std::optional<double> target_error) {
-  say_row_made(case_name, method);
   const bool refused = !run.refused.empty();
   const double rays = static_cast<double>(run.matrix.rays);
   std::string note = run.refused;
   for (char& c : note)
     if (c == ',' || c == '\n') c = ';';
-  return {case_name,
-          method,
-          refused ? std::numeric_limits<double>::quiet_NaN() : error,
-          run.seconds,
-          refused ? std::nullopt : target_error,
-          std::nullopt,
-          {{"wanted_error", wanted_error ? fmt::format("{:g}", *wanted_error) : ""},
-           {"reported_error", refused ? "" : fmt::format("{:.3g}", run.matrix.relative_error)},
-           {"receivers", refused ? "" : fmt::format("{}", run.matrix.receivers())},
-           {"rays", refused ? "" : fmt::format("{}", run.matrix.rays)},
-           {"rays_per_second", refused || run.seconds <= 0 ? "" : fmt::format("{:.3g}", rays / run.seconds)},
-           {"note", refused ? "refused: " + note : ""}}};
+  BenchRow row{case_name,
+               method,
+               refused ? std::numeric_limits<double>::quiet_NaN() : error,
+               run.seconds,
+               refused ? std::nullopt : target_error,
+               std::nullopt,
+               {{"wanted_error", wanted_error ? fmt::format("{:g}", *wanted_error) : ""},
+                {"reported_error", refused ? "" : fmt::format("{:.3g}", run.matrix.relative_error)},
+                {"receivers", refused ? "" : fmt::format("{}", run.matrix.receivers())},
+                {"rays", refused ? "" : fmt::format("{}", run.matrix.rays)},
+                {"rays_per_second", refused || run.seconds <= 0 ? "" : fmt::format("{:.3g}", rays / run.seconds)},
+                {"note", refused ? "refused: " + note : ""}}};
+  say_row_made(row);
+  return row;
 }
 
 }  // namespace luxrig

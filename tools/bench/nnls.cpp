@@ -36,7 +36,6 @@ double median_seconds(int runs, const Work& work) {
 BenchRow nnls_row(const NnlsBenchProblem& one, const std::string& method, double kkt, double seconds,
                   std::optional<double> target_seconds, double residual_norm, std::size_t in_use, int rounds,
                   const std::string& note) {
-  say_row_made(one.name, method);
   BenchRow row;
   row.case_name = one.name;
   row.method = method;
@@ -49,6 +48,7 @@ BenchRow nnls_row(const NnlsBenchProblem& one, const std::string& method, double
                  {"rounds", fmt::format("{}", rounds)},
                  {"entries", fmt::format("{}", one.row.size())},
                  {"note", note}};
+  say_row_made(row);
   return row;
 }
 

@@ -42,7 +42,7 @@ void add_growth_row(const std::string& name, std::size_t points, double candidat
   rows.push_back(placement_row(name, "luxrig", **ready, solved));
   set_further(rows.back(), "note",
               fmt::format("ready after {:.2f} s, peak of all so far {:.0f} MiB", (*ready)->seconds().wall, peak_mib()));
-  say_row_made(name, "luxrig");
+  say_row_made(rows.back());
 }
 
 }  // namespace
@@ -50,12 +50,13 @@ void add_growth_row(const std::string& name, std::size_t points, double candidat
 std::vector<BenchRow> bench_placement_growth(const BenchOptions& options) {
   std::vector<BenchRow> rows;
   if (options.only.rfind("growth", 0) != 0) return rows;
+  const auto add = [&](const std::string& name, std::size_t points, double candidates) {
+    if (name.rfind(options.only, 0) == 0) add_growth_row(name, points, candidates, options, rows);
+  };
   for (const double candidates : {1e4, 3e4, 1e5, 3e5, 1e6})
-    if (!options.quick || candidates <= 3e4)
-      add_growth_row(fmt::format("growth-candidates-{:.0f}", candidates), 0, candidates, options, rows);
+    if (!options.quick || candidates <= 3e4) add(fmt::format("growth-candidates-{:.0f}", candidates), 0, candidates);
   for (const std::size_t points : {100UL, 300UL, 1000UL, 3000UL, 10000UL})
-    if (!options.quick || points <= 300)
-      add_growth_row(fmt::format("growth-points-{}", points), points, 18'000, options, rows);
+    if (!options.quick || points <= 300) add(fmt::format("growth-points-{}", points), points, 18'000);
   return rows;
 }
 

@@ -102,7 +102,7 @@ BenchRow index_row(const std::string& name, const char* method, double build_sec
                  {"slowest_seconds", fmt::format("{:.3g}", *std::max_element(seconds.begin(), seconds.end()))},
                  {"candidates", std::to_string(of.lit.size())},
                  {"points", std::to_string(columns.rows())}};
-  say_row_made(name, method);
+  say_row_made(row);
   return row;
 }
 

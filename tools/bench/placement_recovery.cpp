@@ -51,7 +51,7 @@ std::vector<BenchRow> bench_placement_recovery(const BenchOptions& options) {
           {.lights = suite.number_given ? one.known_lumens.size() : 0, .seed = key, .threads = options.threads});
       const Recovery recovery = recovery_of(one, solved);
       rows.push_back(placement_row(fmt::format("{}-{}", name, seed), luxrig.name, **ready, solved));
-      say_row_made(rows.back().case_name, luxrig.name);
+      say_row_made(rows.back());
       errors.push_back(solved.error);
       walls.push_back(solved.seconds.wall);
       cpus.push_back(solved.seconds.cpu);

@@ -92,7 +92,7 @@ std::vector<BenchRow> bench_placement_scenes(const BenchOptions& options) {
         rows.back().target_error = target.most_error;
         rows.back().target_seconds = target.most_seconds;
       }
-      say_row_made(row_name, method_name);
+      say_row_made(rows.back());
       return solved.poses.size();
     };
     if (target.lights > 0) {

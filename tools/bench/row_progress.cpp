@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <fstream>
 
 namespace luxrig {
 namespace {
@@ -16,6 +17,8 @@ struct Line {
   bool terminal = isatty(STDERR_FILENO) != 0;
   int rows = 0;
   bool shown = false;
+  std::filesystem::path csv_file;
+  bool csv_begun = false;
 };
 
 Line& line() {
@@ -39,6 +42,20 @@ void say_row_made(std::string_view case_name, std::string_view method) {
   std::fflush(stderr);
   at.said = now;
   at.shown = true;
+}
+
+void keep_rows_in(const std::filesystem::path& csv_file) { line().csv_file = csv_file; }
+
+void say_row_made(const BenchRow& row) {
+  Line& at = line();
+  if (!at.csv_file.empty()) {
+    const std::string text = csv_of({row});
+    const std::size_t header = text.find('\n') + 1;
+    std::ofstream(at.csv_file, at.csv_begun ? std::ios::binary | std::ios::app : std::ios::binary)
+        << (at.csv_begun ? text.substr(header) : text);  // one that cannot be written is told of at the end
+    at.csv_begun = true;
+  }
+  say_row_made(row.case_name, row.method);
 }
 
 void end_row_progress() {

@@ -4,8 +4,10 @@
 
 #include <cmath>
 #include <fstream>
+#include <sstream>
 
 #include "tools/bench/bench.h"
+#include "tools/bench/row_progress.h"
 
 namespace luxrig {
 namespace {
@@ -43,6 +45,23 @@ TEST(BenchRow, PlotIsAPngAndAFolderThatIsNotThereIsToldOf) {
   EXPECT_EQ(std::string(magic, 4), "\x89PNG");
   EXPECT_NE(write_plot(rows, "test", testing::TempDir() + "/no/such/folder/plot.png"), "");
   EXPECT_NE(write_plot({}, "test", file), "");
+}
+
+TEST(BenchRow, RowsAreKeptAsTheyAreMade) {
+  const std::string file = testing::TempDir() + "/bench_kept.csv";
+  const std::vector<BenchRow> rows = {{"cube", "path", 0.5, 0.25, {}, {}, {{"rays", "14"}}},
+                                      {"cube", "slow", 0.25, 0.5, {}, {}, {{"rays", "15"}}}};
+  keep_rows_in(file);
+  for (const BenchRow& row : rows) say_row_made(row);
+  std::ostringstream kept;
+  kept << std::ifstream(file, std::ios::binary).rdbuf();
+  EXPECT_EQ(kept.str(), csv_of(rows));
+  end_row_progress();
+  say_row_made(rows[0]);  // belongs to nothing that is kept
+  std::ostringstream still;
+  still << std::ifstream(file, std::ios::binary).rdbuf();
+  EXPECT_EQ(still.str(), csv_of(rows));
+  end_row_progress();
 }
 
 TEST(Bench, AnUnknownSuiteIsBadInput) { EXPECT_EQ(run_bench("no-such-suite", {}), 2); }
