@@ -50,6 +50,7 @@ std::string write_plot(const std::vector<BenchRow>& rows, const std::string& tit
   Axis x{kLeft_px, kWidth_px - kRight_px}, y{kHeight_px - kBottom_px, kTop_px};
   double least_s = 1e9, most_s = 1e-9, least = 1e9, most = 1e-16;
   std::map<std::string, std::vector<const BenchRow*>> lines;
+  bool one_case = true;  // is then in the title
   for (const BenchRow& row : rows) {
     if (std::isnan(row.error)) continue;
     least_s = std::min(least_s, seconds_of(row));
@@ -57,6 +58,7 @@ std::string write_plot(const std::vector<BenchRow>& rows, const std::string& tit
     least = std::min(least, row.quartiles ? std::max(row.quartiles->first, kLeast) : error_of(row));
     most = std::max(most, row.quartiles ? row.quartiles->second : error_of(row));
     lines[row.case_name + ", " + row.method].push_back(&row);
+    one_case = one_case && row.case_name == rows.front().case_name;
   }
   x.cover(least_s, most_s);
   y.cover(least, most);
@@ -84,7 +86,7 @@ std::string write_plot(const std::vector<BenchRow>& rows, const std::string& tit
     cairo_set_source_rgb(pen, 0.2, 0.2, 0.2);
     text_at(pen, 24, at + 4, fmt::format("1e{}", d));
   }
-  text_at(pen, kLeft_px, 28, title + ": error (as a fraction) over run time");
+  text_at(pen, kLeft_px, 28, (one_case ? rows.front().case_name : title) + ": error (as a fraction) over run time");
   // Colours that colour-blind people can tell apart (M. Okabe and K. Ito, 2008).
   constexpr double kColours[][3] = {{0, .45, .70},   {.84, .37, 0}, {0, .62, .45},
                                     {.80, .47, .65}, {.90, .62, 0}, {.34, .71, .91}};
@@ -106,7 +108,8 @@ std::string write_plot(const std::vector<BenchRow>& rows, const std::string& tit
       cairo_arc(pen, x.at(seconds_of(*row)), y.at(error_of(*row)), 4, 0, 6.2832);
       cairo_fill(pen);
     }
-    text_at(pen, kWidth_px - kRight_px + 20, kTop_px + 20 + 20 * static_cast<double>(index), name);
+    text_at(pen, kWidth_px - kRight_px + 20, kTop_px + 20 + 20 * static_cast<double>(index),
+            one_case ? points.front()->method : name);
     ++index;
   }
   const cairo_status_t status = cairo_surface_write_to_png(surface.get(), file.c_str());

@@ -19,7 +19,7 @@ constexpr CurveCase kCurveCases[] = {{"apartment-known", 0},    {"office-known",
                                      {"apartment-uniform", 15}, {"cloister-statue", 14}, {"museum-near-surfaces", 15},
                                      {"studio-two-lights", 2},  {"atrium-uniform", 17}};
 constexpr const char* kCurveMethods[] = {"luxrig", "gpk15", "gpk15-subplex", "gp16-subplex", "lin2013", "annealing"};
-constexpr double kTimes_s[] = {0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10};
+constexpr double kTimes_s[] = {0.1, 0.2, 0.3, 0.5, 0.7, 1, 1.5, 2, 3, 5, 7, 10};
 constexpr double kLeastDrawn = 1e-6;  ///< the plot's axis is logarithmic
 
 double error_at(const Solved& solved, double ready_s, double at_s) {

@@ -13,6 +13,9 @@
 namespace luxrig {
 namespace {
 
+/// A lattice may come out a little larger than asked for, and a million places is the most there may be.
+constexpr double kRoom = 0.98;
+
 double peak_mib() {
   rusage used{};
   getrusage(RUSAGE_SELF, &used);
@@ -31,7 +34,7 @@ void add_growth_row(const std::string& name, std::size_t points, double candidat
   const auto lit = make_direct_evaluator(rays)->evaluate(one.receivers, lamps, {});
   one.goal_lux = lit->direct_lux(Eigen::VectorXd::Ones(static_cast<Eigen::Index>(lamps.size())));
   const Vec3 size_m = one.lights_in_world_m.sizes();
-  const auto ready = ReadyCase::make(std::move(one), options.threads, std::cbrt(size_m.prod() / candidates));
+  const auto ready = ReadyCase::make(std::move(one), options.threads, std::cbrt(size_m.prod() / (kRoom * candidates)));
   if (!ready) {
     rows.push_back(empty_placement_row(name, "luxrig"));
     set_further(rows.back(), "note", ready.error().detail);

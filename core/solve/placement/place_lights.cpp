@@ -1,5 +1,7 @@
 #include "core/solve/placement/place_lights.h"
 
+#include <limits>
+
 #include "core/check.h"
 
 namespace luxrig {
@@ -21,6 +23,7 @@ class Search {
       std::mt19937_64 random(options_.seed * 0x9E3779B97F4A7C15ull + start);
       PlacedLights lights = added_one_by_one(start, random);
       offer(lights);
+      if (start == 0) begin_otherwise(lights, random);
       while (!ended() && exchanged(lights, random)) offer(lights);
       offer(lights);
       idle = best_.lights.error() < (1 - options_.least_progress) * best_error ? 0 : idle + 1;
@@ -33,6 +36,20 @@ class Search {
   [[nodiscard]] bool ended() const {
     return options_.exchange.stop.stop_requested() || best_.lights.error() <= options_.wanted_error ||
            exchange_.columns() >= options_.most_columns;
+  }
+
+  /// Changed for lights begun from many, where the goal is hard and these come closer.
+  void begin_otherwise(PlacedLights& lights, std::mt19937_64& random) {
+    if (!options_.many || !options_.start.empty() || lights.error() <= kHardGoalError) return;
+    const auto has_ended = [this] { return ended(); };
+    exchange_roughly(exchange_, lights, std::numeric_limits<double>::infinity(), has_ended, random);
+    offer(lights);
+    if (ended() || lights.error() <= kHardGoalError) return;
+    if (auto other =
+            begun_from_many(exchange_, none_, options_.many, options_.lights, lights.error(), has_ended, random)) {
+      lights = std::move(*other);
+      offer(lights);
+    }
   }
 
   /// False when nothing makes it much better.

@@ -52,6 +52,62 @@ TEST(PlaceLights, AgreesWithTheTenLampsOfAFlat) {
   EXPECT_LE(farthest_off_m(places_m, got.lights), 0.03);
 }
 
+TEST(PlaceLights, BeginsAHardGoalFromManyLightsTooAndKeepsTheBetter) {
+  const LitHall hall(make_eight_room_flat(2), 0.6);
+  const LightingGoal even{Eigen::VectorXd::Constant(hall.light->points(), 200)};
+  const ComplementSearch candidates(hall.view(), hall.poses, even);
+  PlaceOptions options;
+  options.lights = 6;
+  options.most_columns = 2500;
+  options.exchange.complements = 1;
+  options.exchange.near_places = 0;
+  const Placement alone = place_lights(*hall.light, even, candidates, options);
+  ASSERT_GT(alone.lights.error(), kHardGoalError);
+  int asked = 0;
+  std::vector<LightPose> many;
+  options.many = [&](std::size_t lights) {
+    EXPECT_EQ(lights, 6u);
+    ++asked;
+    return many;
+  };
+  // Of no use: none, one that is there twice, and one where no light may hang.
+  const LightPose nowhere{{1e4, 0, 0}};
+  for (const std::vector<LightPose>& useless :
+       {std::vector<LightPose>{}, {hall.poses.front(), hall.poses.front()}, {nowhere}}) {
+    many = useless;
+    const Placement got = place_lights(*hall.light, even, candidates, options);
+    EXPECT_EQ(got.lights.size(), 6u);
+    EXPECT_LE(got.lights.error(), 1.1 * alone.lights.error());
+  }
+  EXPECT_EQ(asked, 3);
+  // Of great use: better lights than the first start ends with, and two that are not needed.
+  PlaceOptions patient = options;
+  patient.many = {};
+  patient.most_columns = 5000;
+  patient.exchange = {};
+  const Placement better = place_lights(*hall.light, even, candidates, patient);
+  ASSERT_LT(better.lights.error(), 0.99 * alone.lights.error());
+  many = better.lights.poses();
+  many.push_back(hall.poses.front());
+  many.push_back(hall.poses.back());
+  const Placement helped = place_lights(*hall.light, even, candidates, options);
+  EXPECT_LE(helped.lights.error(), 1.001 * better.lights.error());
+  EXPECT_EQ(asked, 4);
+}
+
+TEST(PlaceLights, DoesNotAskForManyLightsWhereTheGoalCanBeMet) {
+  const LitHall hall(make_box_room(3), 0.25);
+  const LightingGoal goal = hall.goal_of({{0.9, 0.8, 2.1}, {3.1, 2.2, 1.9}}, {800, 500});
+  const ComplementSearch candidates(hall.view(), hall.poses, goal);
+  PlaceOptions options;
+  options.lights = 2;
+  options.many = [](std::size_t) {
+    ADD_FAILURE() << "it costs seconds";
+    return std::vector<LightPose>();
+  };
+  EXPECT_LE(place_lights(*hall.light, goal, candidates, options).lights.error(), 1e-4);
+}
+
 TEST(PlaceLights, GivesTheSameBytesForAnyNumberOfThreads) {
   const LitHall hall(make_box_room(1), 0.4);
   const LightingGoal goal{Eigen::VectorXd::Constant(hall.light->points(), 200)};
@@ -60,7 +116,7 @@ TEST(PlaceLights, GivesTheSameBytesForAnyNumberOfThreads) {
   for (const int threads : {1, 2, 8}) {
     PlaceOptions options;
     options.lights = 3;
-    options.most_columns = 1000;
+    options.most_columns = 2500;
     options.exchange.threads = threads;
     got.push_back(place_lights(*hall.light, goal, candidates, options));
   }
