@@ -9,7 +9,8 @@
 namespace luxrig {
 namespace {
 
-constexpr int kMostRelightRounds = 12, kMostReliefLights = 64;
+constexpr std::size_t kMostRelightRounds = 12;
+constexpr int kMostReliefLights = 64;
 constexpr double kSpreadReach = 2.5;  // of its standard deviation
 /// A light moves for a gain of more than this share: less is rounding, and would let it wander on a plateau.
 constexpr double kLeastRelightGain = 1e-6;
@@ -118,48 +119,46 @@ Result<ReliefLights> ReliefLightSearch::lights(int lights, std::span<const Vec3>
     std::uint32_t bin;
     std::vector<double> smooth;
   };
+  const auto too_near = [&](std::uint32_t bin, const std::vector<std::uint32_t>& others) {
+    return std::ranges::any_of(
+        others, [&](std::uint32_t other) { return directions_[bin].dot(directions_[other]) > most_cosine; });
+  };
   // The best bin that keeps its distance from the others; kNone where they leave no place that any light reaches.
   const auto best_beside = [&](const std::vector<std::uint32_t>& others) {
     Choice choice{TargetSurface::kNone, {}};
     choice.smooth = others.empty() ? alone_smooth_ : smoothed(contrast.with_each_bin(contrast.illuminance_lx(others)));
     double best = 0;
     for (std::uint32_t b = 0; b < choice.smooth.size(); ++b) {
-      if (!(choice.smooth[b] > best)) continue;
-      const bool near = std::ranges::any_of(
-          others, [&](std::uint32_t other) { return directions_[b].dot(directions_[other]) > most_cosine; });
-      if (near) continue;
+      if (!(choice.smooth[b] > best) || too_near(b, others)) continue;
       best = choice.smooth[b];
       choice.bin = b;
     }
     return choice;
   };
 
-  std::vector<Vec3> peaks;
+  std::vector<Vec3> peaks(chosen.size());
+  std::size_t settled = 0;  // lights in a row that are where they are best with the others as they are
   while (chosen.size() < static_cast<std::size_t>(lights)) {
     if (options_.watch.stop.stop_requested()) return relief_search_stopped();
     const Choice next = best_beside(chosen);
     if (next.bin == TargetSurface::kNone) break;
     chosen.push_back(next.bin);
-    if (lights == 1) peaks = {peak_near(next.bin, next.smooth)};
+    peaks.push_back(peak_near(next.bin, next.smooth));
+    settled = 1;
   }
-  if (peaks.empty()) {
-    peaks.resize(chosen.size());
-    bool moved = true;
-    for (int round = 0; round < kMostRelightRounds && moved; ++round) {
-      moved = false;
-      for (std::size_t k = 0; k < chosen.size(); ++k) {
-        if (options_.watch.stop.stop_requested()) return relief_search_stopped();
-        std::vector<std::uint32_t> others = chosen;
-        others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
-        const Choice next = best_beside(others);
-        if (next.bin != TargetSurface::kNone &&
-            next.smooth[next.bin] > (1 + kLeastRelightGain) * next.smooth[chosen[k]]) {
-          chosen[k] = next.bin;
-          moved = true;
-        }
-        peaks[k] = peak_near(chosen[k], next.smooth);
-      }
+  for (std::size_t step = 0; settled < chosen.size() && step < kMostRelightRounds * chosen.size(); ++step) {
+    if (options_.watch.stop.stop_requested()) return relief_search_stopped();
+    const std::size_t k = step % chosen.size();
+    std::vector<std::uint32_t> others = chosen;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
+    const Choice next = best_beside(others);
+    ++settled;
+    const double least = too_near(chosen[k], others) ? 0 : (1 + kLeastRelightGain) * next.smooth[chosen[k]];
+    if (next.bin != TargetSurface::kNone && next.bin != chosen[k] && next.smooth[next.bin] > least) {
+      chosen[k] = next.bin;
+      settled = 1;
     }
+    peaks[k] = peak_near(chosen[k], next.smooth);
   }
   ReliefLights result{std::move(peaks), 0};
   result.local_contrast_lx = contrast.of(chosen).local_contrast_lx;
