@@ -21,6 +21,7 @@ constexpr Suite kSuites[] = {
     {"transport", "evaluators in furnished rooms against converged path tracing", bench_transport},
     {"nnls", "non-negative least squares: cold, warm, one column exchanged, under limits", bench_nnls},
     {"placement", "known lights found again; every scene by every method, with bounds", bench_placement},
+    {"highlight", "an object's relief: shadow edges; lights by every method; their number; stability", bench_highlight},
     {"buses", "output cycle: 4 universes at 44 Hz while a solver uses every core", bench_buses},
 };
 

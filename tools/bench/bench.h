@@ -20,8 +20,8 @@ struct BenchOptions {
   std::string method;                         ///< placement scenes: only this one
   std::optional<int> seeds;                   ///< placement: rooms of each scene, instead of 100 (curves: 20)
   bool bounds = true;                         ///< placement scenes: with certified bounds, which take longest
-  std::filesystem::path data_folder;          ///< placement: scenes that are read from files
-  std::string only;  ///< transport, nnls: only cases whose name begins so; analytic: only such families
+  std::filesystem::path data_folder;          ///< placement, highlight: what is read from files
+  std::string only;  ///< transport, nnls, highlight: only cases whose name begins so; analytic: only such families
 };
 
 /// Names of the suites.

@@ -38,6 +38,10 @@ namespace luxrig {
 /// points.
 [[nodiscard]] std::vector<BenchRow> bench_placement_index(const BenchOptions& options);
 
+/// Shadow edges by search, lights that bring out relief by every method, their number, and how far they move when the
+/// object is turned, scaled, decimated or noisy. The generated targets; with a folder of data five more.
+[[nodiscard]] std::vector<BenchRow> bench_highlight(const BenchOptions& options);
+
 /// 60 s (6 s with quick) of four sACN universes at 44 Hz to a sink on loopback, path tracing on all cores meanwhile.
 /// Prints the histogram of the intervals by the kernel's arrival stamps. error: p99 deviation over the period.
 [[nodiscard]] std::vector<BenchRow> bench_buses(const BenchOptions& options);

@@ -137,7 +137,8 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 10000));
   command->add_flag("!--no-bounds", bench.bounds, "placement: without certified bounds");
   command->add_option("--data", bench.data_folder,
-                      "placement: folder of office-scan.obj (tools/bench/data) and apartment.glb");
+                      "folder of files; placement: office-scan.obj (tools/bench/data), apartment.glb; highlight: "
+                      "venus-bust.glb, skull.obj, teapot.glb, egyptian-cat.glb, chess-board.glb");
   command->add_option("--only", bench.only, "only cases (analytic: families) whose name begins so");
   command->callback([&] { code = run_bench(suite, bench); });
 

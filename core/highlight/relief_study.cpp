@@ -1,0 +1,41 @@
+#include "core/highlight/relief_study.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace luxrig {
+
+Result<ReliefStudy> study_relief(const Scene& target, const ReliefStudyOptions& options) {
+  auto surface = make_target_surface(target);
+  if (!surface) return tl::unexpected(surface.error());
+  if (surface->triangles.empty())
+    return refusal(target.triangles.empty() ? "the target has no triangles: light and shadow need a surface, not points"
+                                            : "no triangle of the target has any area");
+  ReliefStudy study{std::move(*surface), TargetRays(target), options.scale_m, {}, {}, {}, {}};
+  if (study.scale_m == 0) study.scale_m = suggested_curvature_radius_m(study.surface);
+  auto curvature = curvature_of(study.surface, {study.scale_m, options.threads, options.stop});
+  if (!curvature) return tl::unexpected(curvature.error());
+  study.curvature = std::move(*curvature);
+  if (std::ranges::none_of(study.curvature, [](const Curvature& c) { return c.known(); }))
+    return refusal("the target's curvature is not known anywhere: too few points within the scale");
+  auto interest = interest_points(study.surface, study.curvature, options.interest);
+  if (!interest) return tl::unexpected(interest.error());
+  study.interest = std::move(*interest);
+  if (study.interest.empty())
+    return refusal("the target has no recessed places at this scale: there is no relief that a light could bring out");
+  double area_m2 = 0;
+  for (const std::uint32_t i : study.interest) {
+    study.points.push_back({study.surface.point_world_m(i), study.surface.normals[i]});
+    area_m2 += study.surface.areas_m2[i];
+  }
+  FeatureOptions features;
+  features.largest_angle_rad = options.largest_angle_rad;
+  // Thinned-out points lie farther apart than their own areas say; the scale is what a feature is wide.
+  features.link_m = std::max(study.scale_m, 3 * std::sqrt(area_m2 / static_cast<double>(study.interest.size())));
+  auto clusters = cluster_features(study.points, features);
+  if (!clusters) return tl::unexpected(clusters.error());
+  study.features = std::move(*clusters);
+  return study;
+}
+
+}  // namespace luxrig

@@ -1,0 +1,34 @@
+#pragma once
+/// An object made ready for highlighting: all that its lights are chosen from.
+
+#include <optional>
+
+#include "core/highlight/curvature.h"
+#include "core/highlight/feature_clusters.h"
+#include "core/highlight/interest_points.h"
+
+namespace luxrig {
+
+struct ReliefStudyOptions {
+  double scale_m = 0;  ///< of curvature; 0: suggested
+  InterestOptions interest = {{}, 0.1, 0.02, 3000};
+  double largest_angle_rad = rad_from_deg(36);  ///< of a feature
+  int threads = 0;
+  std::stop_token stop;
+};
+
+struct ReliefStudy {
+  TargetSurface surface;
+  TargetRays rays;
+  double scale_m = 0;
+  std::vector<Curvature> curvature;     ///< per point of the surface
+  std::vector<std::uint32_t> interest;  ///< points of the surface
+  std::vector<OrientedPoint> points;    ///< the same, with normals
+  FeatureClusters features;             ///< of them; linked within three times their typical spacing, or the scale
+};
+
+/// Mesh to features. Refuses, saying what is missing: a mesh without triangles (a cloud of points), one of which no
+/// curvature is known, one without recessed places (a plain sphere, a plane).
+[[nodiscard]] Result<ReliefStudy> study_relief(const Scene& target, const ReliefStudyOptions& options);
+
+}  // namespace luxrig

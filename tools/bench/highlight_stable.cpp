@@ -1,0 +1,80 @@
+/// How far chosen lights move when the same object is given in other words.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/check.h"
+#include "core/highlight/relief_lights.h"
+#include "tools/bench/highlight_rows.h"
+#include "tools/bench/highlight_variants.h"
+
+namespace luxrig {
+namespace {
+
+constexpr double kStableWithin_rad = rad_from_deg(5);
+
+/// One and two lights.
+struct ChosenLights {
+  std::vector<Vec3> one, two;
+};
+
+ChosenLights chosen_lights(const ReliefStudy& study, int threads) {
+  ReliefLightOptions options;
+  options.threads = threads;
+  const auto search = ReliefLightSearch::make(study.surface, study.rays, study.interest, options);
+  LUXRIG_CHECK(search, "{}", search.error().detail);
+  return {search->lights(1)->directions, search->lights(2)->directions};
+}
+
+/// Largest angle between two sets of lights, matched as well as they can be.
+double moved_rad(const std::vector<Vec3>& before, std::vector<Vec3> after) {
+  if (before.size() != after.size()) return kPi;
+  std::vector<std::size_t> order(after.size());
+  for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
+  double least_rad = kPi;
+  do {
+    double worst_rad = 0;
+    for (std::size_t k = 0; k < order.size(); ++k)
+      worst_rad =
+          std::max(worst_rad, std::atan2(before[k].cross(after[order[k]]).norm(), before[k].dot(after[order[k]])));
+    least_rad = std::min(least_rad, worst_rad);
+  } while (std::next_permutation(order.begin(), order.end()));
+  return least_rad;
+}
+
+}  // namespace
+
+void add_stable_rows(HighlightObject& object, const BenchOptions& options, std::vector<BenchRow>& rows) {
+  std::optional<ChosenLights> before;
+  for (const char* kind : highlight_variant_kinds()) {
+    const std::string name = fmt::format("stable-{}-{}", object.name(), kind);
+    if (!highlight_wanted(options, name)) continue;
+    const ReliefStudy& study = object.study();
+    if (!before) before = chosen_lights(study, options.threads);
+    const HighlightVariant variant = highlight_variant(object.scene(), kind);
+    const auto changed = study_relief(variant.scene, options_of_study(options));
+    LUXRIG_CHECK(changed, "{}: {}", name, changed.error().detail);
+    ChosenLights after;
+    const CallSeconds took = timed([&] { after = chosen_lights(*changed, options.threads); });
+    for (const auto& [was, is] : {std::pair(&before->one, &after.one), std::pair(&before->two, &after.two)}) {
+      std::vector<Vec3> back;
+      for (const Vec3& direction : *is) back.push_back(variant.rotation.transpose() * direction);
+      const double rad = moved_rad(*was, back);
+      HighlightRow row{name, fmt::format("{}-lights", was->size())};
+      row.error = rad / kPi;
+      row.took = took;
+      row.target_error = kStableWithin_rad / kPi;
+      row.shown = shown_relief(study, back, options.threads);
+      const double was_lx = shown_relief(study, *was, options.threads).local_contrast_lx;
+      row.note =
+          fmt::format("moved {:.1f} deg; on the object itself {:.1f} % of the contrast; {} triangles",
+                      deg_from_rad(rad), 100 * row.shown->local_contrast_lx / was_lx, variant.scene.triangles.size());
+      rows.push_back(bench_row_of(row));
+    }
+  }
+}
+
+}  // namespace luxrig
