@@ -315,7 +315,7 @@ TEST(DomainVotes, AreTheSameForAnyNumberOfThreads) {
 TEST(DomainVotes, OfDegenerateDomainsAreFiniteOrRefused) {
   Random random(21);
   for (unsigned round = 0; round < 60; ++round) {
-    const Vec3 shift = round % 3 == 0 ? Vec3::Zero() : 1e6 * random.in_cube();
+    const Vec3 shift = round % 3 == 0 ? Vec3(0, 0, 0) : Vec3(1e6 * random.in_cube());
     DrawnEdges drawn(6, 30, round, shift);
     if (round % 4 == 1)  // the target's points in the domain's own plane
       for (OrientedPoint& point : drawn.points)

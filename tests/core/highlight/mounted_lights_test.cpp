@@ -64,14 +64,16 @@ TEST(DirectionModes, AreFixedPointsOfTheShift) {
     }
     const auto modes = direction_modes(directions, weights, window_rad);
     ASSERT_FALSE(modes.empty());
+    std::size_t off = 0;
     for (const DirectionMode& mode : modes) {
       Vec3 sum = Vec3::Zero();
       for (std::size_t i = 0; i < directions.size(); ++i)
         if (std::acos(std::clamp(directions[i].cast<double>().dot(mode.direction), -1.0, 1.0)) <= window_rad)
           sum += weights[i] * directions[i].cast<double>();
-      // Directions are moved to the mean of bins an eighth of the window wide, which at its rim are in or out at once.
-      EXPECT_LT((sum.normalized() - mode.direction).norm(), 0.15 * window_rad);
+      off += (sum.normalized() - mode.direction).norm() > 0.1 * window_rad ? 1 : 0;
     }
+    // Of few directions one at the window's rim, in for the bin that it is in, out by itself, moves the mean.
+    EXPECT_LE(off, modes.size() / 10);
     for (std::size_t i = 0; i < modes.size(); ++i)
       for (std::size_t j = 0; j < i; ++j) {
         EXPECT_GE(modes[j].weight, modes[i].weight);
