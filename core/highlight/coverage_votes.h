@@ -17,14 +17,15 @@ struct CoverageVoteOptions {
   int threads = 0;
 };
 
-/// Every point votes, with its area / d², for the middle of each cell of the domain from which light reaches it. Each
-/// is a feature of its own: so select_lights removes votes by point. Points are numbered in the order of the surface;
-/// point_of_vote says which they are. The same for any number of threads. Refuses a surface without points, numbers
-/// that make no sense, and a domain from which nothing is lit.
 struct CoverageVotes {
   DomainVotes votes;
   std::vector<std::uint32_t> surface_point;  ///< of each voting point
 };
+
+/// Every point votes, with its share of the area / d², for the middle of each cell of the domain from which light
+/// reaches it. Each is a feature of its own, so that LightSelection strikes votes by point. Points are numbered in the
+/// order of the surface. The same for any number of threads. Refuses a surface without points, numbers that make no
+/// sense, and a domain from which nothing is lit.
 [[nodiscard]] Result<CoverageVotes> vote_for_coverage(const LightDomain& domain, const TargetSurface& surface,
                                                       const TargetRays& target, const CoverageVoteOptions& options);
 
