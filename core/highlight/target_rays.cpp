@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 #include "core/check.h"
@@ -18,6 +19,7 @@ struct TargetRays::State {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   double diagonal_m = 0;
 
+  [[nodiscard]] double least_lift_m() const;
   State() = default;
   State(const State&) = delete;
   State& operator=(const State&) = delete;
@@ -70,14 +72,12 @@ TargetRays::~TargetRays() = default;
 TargetRays::TargetRays(TargetRays&&) noexcept = default;
 TargetRays& TargetRays::operator=(TargetRays&&) noexcept = default;
 
-void TargetRays::blocked(const Vec3& from_world_m, const Vec3& normal_world, double lift_m,
-                         std::span<const Vec3f> directions_world, std::span<std::uint8_t> blocked) const {
-  LUXRIG_CHECK(blocked.size() == directions_world.size(), "{} answers for {} directions", blocked.size(),
-               directions_world.size());
+namespace {
+
+/// aim(i, direction, end): sets the direction of ray i, and its end in lengths of that.
+template <class Aim>
+void cast_at_target(RTCScene scene, const Vec3f& start, const Aim& aim, std::span<std::uint8_t> blocked) {
   constexpr std::size_t kWide = 16;
-  const State& state = *state_;
-  const double lifted_m = lift_m + state.diagonal_m * 0x1p-18 * std::numbers::sqrt2 / 2;
-  const Vec3f start = (from_world_m - state.middle_world_m + lifted_m * normal_world).cast<float>();
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
@@ -92,20 +92,54 @@ void TargetRays::blocked(const Vec3& from_world_m, const Vec3& normal_world, dou
     rays.id[k] = 0;
     rays.flags[k] = 0;
   }
-  for (std::size_t begin = 0; begin < directions_world.size(); begin += kWide) {
-    const std::size_t count = std::min(kWide, directions_world.size() - begin);
+  for (std::size_t begin = 0; begin < blocked.size(); begin += kWide) {
+    const std::size_t count = std::min(kWide, blocked.size() - begin);
     alignas(64) std::array<int, kWide> valid{};
     for (std::size_t k = 0; k < kWide; ++k) {
-      const Vec3f& direction = directions_world[begin + std::min(k, count - 1)];
-      valid[k] = k < count ? -1 : 0;
+      Vec3f direction;
+      float end = std::numeric_limits<float>::infinity();
+      aim(begin + std::min(k, count - 1), direction, end);
+      valid[k] = k < count && end > 0 ? -1 : 0;
       rays.dir_x[k] = direction.x();
       rays.dir_y[k] = direction.y();
       rays.dir_z[k] = direction.z();
-      rays.tfar[k] = std::numeric_limits<float>::infinity();
+      rays.tfar[k] = end;
     }
-    rtcOccluded16(valid.data(), state.scene, &context, &rays);
-    for (std::size_t k = 0; k < count; ++k) blocked[begin + k] = rays.tfar[k] < 0;
+    rtcOccluded16(valid.data(), scene, &context, &rays);
+    for (std::size_t k = 0; k < count; ++k) blocked[begin + k] = valid[k] != 0 && rays.tfar[k] < 0;
   }
+}
+
+}  // namespace
+
+double TargetRays::State::least_lift_m() const { return diagonal_m * 0x1p-18 * std::numbers::sqrt2 / 2; }
+
+void TargetRays::blocked(const Vec3& from_world_m, const Vec3& normal_world, double lift_m,
+                         std::span<const Vec3f> directions_world, std::span<std::uint8_t> blocked) const {
+  LUXRIG_CHECK(blocked.size() == directions_world.size(), "{} answers for {} directions", blocked.size(),
+               directions_world.size());
+  const State& state = *state_;
+  const double lifted_m = lift_m + state.least_lift_m();
+  const Vec3f start = (from_world_m - state.middle_world_m + lifted_m * normal_world).cast<float>();
+  cast_at_target(
+      state.scene, start, [&](std::size_t i, Vec3f& direction, float&) { direction = directions_world[i]; }, blocked);
+}
+
+void TargetRays::blocked_before(const Vec3& from_world_m, const Vec3& normal_world, double lift_m,
+                                std::span<const Vec3> to_world_m, std::span<std::uint8_t> blocked) const {
+  LUXRIG_CHECK(blocked.size() == to_world_m.size(), "{} answers for {} places", blocked.size(), to_world_m.size());
+  const State& state = *state_;
+  const double least_m = state.least_lift_m();
+  const Vec3f start = (from_world_m - state.middle_world_m + (lift_m + least_m) * normal_world).cast<float>();
+  cast_at_target(
+      state.scene, start,
+      [&](std::size_t i, Vec3f& direction, float& end) {
+        const Vec3 way_m = to_world_m[i] - state.middle_world_m - start.cast<double>();
+        const double length_m = way_m.norm();
+        direction = way_m.cast<float>();
+        end = length_m > 0 ? static_cast<float>(1 - least_m / length_m) : 0;
+      },
+      blocked);
 }
 
 }  // namespace luxrig

@@ -9,9 +9,9 @@
 
 namespace luxrig {
 
-/// The target alone, for rays without an end. core/scene's RayScene answers for rays that end somewhere, and carries
-/// the care that needs; here sixteen rays go at once with nothing to ask at a hit, about 1.5 times as fast. Immutable;
-/// may be asked from many threads.
+/// The target alone, sixteen rays at once with nothing to ask at a hit: about 1.5 times as fast as core/scene's
+/// RayScene, which takes care of rays that end on a surface; these end nowhere, or at a light. Immutable; may be asked
+/// from many threads.
 class TargetRays {
  public:
   /// Vertices must be finite and indices within them (asserted); the Scene may go. None of its triangles is fine, too.
@@ -26,6 +26,11 @@ class TargetRays {
   /// directions_world   need not be unit
   void blocked(const Vec3& from_world_m, const Vec3& normal_world, double lift_m,
                std::span<const Vec3f> directions_world, std::span<std::uint8_t> blocked) const;
+
+  /// The same for rays that end at places: what stands behind these does not block, nor what is nearer to them than
+  /// the lift.
+  void blocked_before(const Vec3& from_world_m, const Vec3& normal_world, double lift_m,
+                      std::span<const Vec3> to_world_m, std::span<std::uint8_t> blocked) const;
 
  private:
   struct State;

@@ -79,6 +79,13 @@ void add_rings(TargetSurface& surface) {
 
 double TargetSurface::area_m2() const { return std::accumulate(areas_m2.begin(), areas_m2.end(), 0.0); }
 
+Vec3 TargetSurface::centroid_world_m() const {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i < points_m.size(); ++i) sum += areas_m2[i] * points_m[i];
+  const double all_m2 = area_m2();
+  return all_m2 > 0 ? Vec3(origin_world_m + sum / all_m2) : origin_world_m;
+}
+
 double TargetSurface::diagonal_m() const {
   Eigen::AlignedBox3d box;
   for (const Vec3& p : points_m) box.extend(p);

@@ -29,9 +29,10 @@ struct TargetSurface {
     return std::span(rings_).subspan(ring_begin_[point], ring_begin_[point + 1] - ring_begin_[point]);
   }
   [[nodiscard]] Vec3 point_world_m(std::uint32_t point) const { return origin_world_m + points_m[point]; }
-  [[nodiscard]] double area_m2() const;        ///< of all triangles
-  [[nodiscard]] double diagonal_m() const;     ///< of the bounding box; 0 without points
-  [[nodiscard]] double median_edge_m() const;  ///< 0 without triangles
+  [[nodiscard]] double area_m2() const;         ///< of all triangles
+  [[nodiscard]] Vec3 centroid_world_m() const;  ///< of the area; the origin without any
+  [[nodiscard]] double diagonal_m() const;      ///< of the bounding box; 0 without points
+  [[nodiscard]] double median_edge_m() const;   ///< 0 without triangles
 
   std::vector<std::uint32_t> ring_begin_ = {0};  ///< behind ring()
   std::vector<std::uint32_t> rings_;

@@ -66,6 +66,20 @@ inline Scene saddle(double radius_m, double half_m, int split) {
   });
 }
 
+/// A ceiling: half_m to each side of the middle, at a height, facing down.
+inline Scene ceiling(double half_m, double height_m, const Vec3& middle_m = Vec3::Zero()) {
+  return parametric(2, 2, [=](double u, double v) {
+    return Vec3(middle_m + Vec3(half_m * (2 * v - 1), half_m * (2 * u - 1), height_m));
+  });
+}
+
+inline Scene joined(Scene a, const Scene& b) {
+  const auto first = static_cast<std::uint32_t>(a.vertices_m.size());
+  a.vertices_m.insert(a.vertices_m.end(), b.vertices_m.begin(), b.vertices_m.end());
+  for (const auto& t : b.triangles) a.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  return with_one_material(a);
+}
+
 /// Every vertex moved by normal noise along a random direction; the same for the same place.
 inline Scene noisy(Scene scene, double sigma_m, unsigned seed) {
   Random random(seed);

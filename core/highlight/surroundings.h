@@ -1,0 +1,23 @@
+#pragma once
+/// What stands between a target and its lights, the target itself apart.
+
+#include <cstdint>
+#include <span>
+
+#include "core/scene/ray_scene.h"
+
+namespace luxrig {
+
+/// Without the target, which would stand in its own way. Both block; a picture shows only the environment.
+struct Surroundings {
+  const RayScene* environment = nullptr;  ///< walls, pedestals, a glass case's frame; null: none
+  const RayScene* occluders = nullptr;    ///< where people may stand; null: nobody
+};
+
+enum class Blocked : std::uint8_t { by_nothing, by_environment, by_occluders };
+
+/// What stands on the way from a place to each of others, which may lie on a surface; the environment where both do.
+void find_blocked(const Surroundings& surroundings, const Vec3& from_world_m, std::span<const Vec3> to_world_m,
+                  std::span<Blocked> blocked);
+
+}  // namespace luxrig
