@@ -1,0 +1,124 @@
+#include "core/highlight/aim_objective.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/check.h"
+
+namespace luxrig {
+namespace {
+
+/// Of reference_lx: what the lit side of a shadow's edge must get from the head that draws it, to be seen.
+constexpr double kSeenShare = 0.02;
+/// What seconds of movement are compared with: about how long a head takes from one look to the next.
+constexpr double kUsualMove_s = 4;
+/// Rounding may carry a level that was scaled to a limit over it.
+constexpr double kLimitSlack = 1e-9;
+
+}  // namespace
+
+AimObjective::AimObjective(const ContrastSamples& samples, const FeatureClusters& features, const AimWishes& wishes,
+                           double reference_lx, double all_watts)
+    : samples_(samples), features_(features), wishes_(wishes), reference_lx_(reference_lx), all_watts_(all_watts) {
+  LUXRIG_CHECK(features.cluster_of_point.size() == samples.interest, "{} features' points, {} interest points",
+               features.cluster_of_point.size(), samples.interest);
+  LUXRIG_CHECK(reference_lx > 0, "reference of {} lx", reference_lx);
+}
+
+AimSum AimObjective::nothing() const {
+  AimSum sum;
+  sum.sample_lux = wishes_.fixed_lux.empty() ? std::vector<double>(samples(), 0) : wishes_.fixed_lux;
+  for (const AimLimit& limit : wishes_.limits) sum.limit_lux.push_back(limit.fixed_lx);
+  sum.covered.assign(features_.sizes.size(), 0);
+  for (std::size_t i = 0; i < samples_.interest; ++i) sum.mean_lux += sum.sample_lux[i];
+  sum.mean_lux /= static_cast<double>(samples_.interest);
+  return sum;
+}
+
+AimColumn AimObjective::column(std::vector<double> sample_lux, std::vector<double> limit_lux) const {
+  AimColumn column{std::move(sample_lux), std::move(limit_lux), {}, 0};
+  column.feature_lux.assign(features_.sizes.size(), 0);
+  for (std::size_t i = 0; i < samples_.interest; ++i) {
+    const double mine = column.sample_lux[i];
+    column.mean_lux += mine;
+    double& best = column.feature_lux[features_.cluster_of_point[i]];
+    for (const std::uint32_t j : samples_.of(i))
+      if (const double theirs = column.sample_lux[j]; (mine > 0) != (theirs > 0)) best = std::max({best, mine, theirs});
+  }
+  column.mean_lux /= static_cast<double>(samples_.interest);
+  return column;
+}
+
+void AimObjective::add(AimSum& sum, const AimColumn& column, double level, bool key, double watts,
+                       double travel_s) const {
+  if (!(level > 0)) return;
+  for (std::size_t i = 0; i < sum.sample_lux.size(); ++i) sum.sample_lux[i] += level * column.sample_lux[i];
+  for (std::size_t i = 0; i < sum.limit_lux.size(); ++i) sum.limit_lux[i] += level * column.limit_lux[i];
+  for (std::size_t f = 0; f < sum.covered.size(); ++f)
+    if (level * column.feature_lux[f] >= kSeenShare * reference_lx_) sum.covered[f] = 1;
+  sum.mean_lux += level * column.mean_lux;
+  if (key) sum.key_mean_lux += level * column.mean_lux;
+  sum.watts += level * watts;
+  sum.travel_s = std::max(sum.travel_s, travel_s);
+  sum.travel_total_s += travel_s;
+}
+
+double AimObjective::most_level(const AimSum& others, const AimColumn& column, bool key, double max_level) const {
+  double most = max_level;
+  const auto keep = [&](double room, double per_level) {
+    if (per_level > 0) most = std::min(most, std::max(0.0, room / per_level));
+  };
+  for (std::size_t i = 0; i < wishes_.limits.size(); ++i)
+    keep(wishes_.limits[i].max_lx - others.limit_lux[i], column.limit_lux[i]);
+  if (std::isfinite(wishes_.max_object_lx))
+    for (std::size_t i = 0; i < others.sample_lux.size(); ++i)
+      keep(wishes_.max_object_lx - others.sample_lux[i], column.sample_lux[i]);
+  if (key && std::isfinite(wishes_.max_key_to_fill))
+    keep(wishes_.max_key_to_fill * (others.mean_lux - others.key_mean_lux) - others.key_mean_lux, column.mean_lux);
+  return most;
+}
+
+double AimObjective::contrast_lx(const std::vector<double>& lux) const {
+  double sum = 0;
+  for (std::size_t i = 0; i < samples_.interest; ++i) {
+    double largest = 0;
+    for (const std::uint32_t j : samples_.of(i)) largest = std::max(largest, std::abs(lux[i] - lux[j]));
+    sum += largest;
+  }
+  return sum / static_cast<double>(samples_.interest);
+}
+
+AimScore AimObjective::score(const AimSum& sum) const {
+  AimScore score;
+  const auto interest = static_cast<double>(samples_.interest);
+  score.local_contrast_lx = contrast_lx(sum.sample_lux);
+  score.coverage = static_cast<double>(std::count(sum.covered.begin(), sum.covered.end(), 1)) /
+                   static_cast<double>(std::max<std::size_t>(1, sum.covered.size()));
+  score.mean_lx = sum.mean_lux;
+  if (wishes_.base_lx > 0)
+    for (std::size_t i = 0; i < samples_.interest; ++i)
+      score.below_base += std::max(0.0, 1 - sum.sample_lux[i] / wishes_.base_lx) / interest;
+  score.watts = sum.watts;
+  score.travel_s = sum.travel_s;
+  score.object_lx = sum.sample_lux.empty() ? 0 : *std::max_element(sum.sample_lux.begin(), sum.sample_lux.end());
+  score.limit_lx = sum.limit_lux;
+  score.within_limits = score.object_lx <= wishes_.max_object_lx * (1 + kLimitSlack);
+  for (std::size_t i = 0; i < sum.limit_lux.size(); ++i)
+    score.within_limits &= sum.limit_lux[i] <= wishes_.limits[i].max_lx * (1 + kLimitSlack);
+  score.objective = score.local_contrast_lx / reference_lx_ + wishes_.coverage_weight * score.coverage -
+                    wishes_.base_weight * score.below_base - wishes_.travel_weight * sum.travel_total_s / kUsualMove_s;
+  if (all_watts_ > 0) score.objective -= wishes_.energy_weight * sum.watts / all_watts_;
+  if (wishes_.key) {
+    const double fill = sum.mean_lux - sum.key_mean_lux;
+    // Without any fill a key light is as far from its ratio as can be; without a key light it keeps every ratio.
+    score.key_to_fill =
+        fill > 0 ? sum.key_mean_lux / fill : (sum.key_mean_lux > 0 ? std::numeric_limits<double>::infinity() : 0);
+    if (score.key_to_fill > wishes_.max_key_to_fill * (1 + kLimitSlack)) {
+      score.within_limits = false;
+      score.objective -= 1;  // a head that fills less than the key light needs is no better for it
+    }
+  }
+  return score;
+}
+
+}  // namespace luxrig

@@ -1,0 +1,92 @@
+#pragma once
+/// What heads are aimed for, and what they must not do: local contrast and covered features, against energy, darkness
+/// and long moves, under limits of lux.
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/highlight/contrast_samples.h"
+#include "core/highlight/feature_clusters.h"
+
+namespace luxrig {
+
+/// Where light is limited: a place on a surface, or (normal zero) an eye or a camera, which no beam may blind.
+struct AimLimit {
+  std::string name;
+  OrientedPoint at;
+  double max_lx = 0;
+  double fixed_lx = 0;  ///< of light that stays
+};
+
+struct AimWishes {
+  std::vector<AimLimit> limits;
+  double max_object_lx = std::numeric_limits<double>::infinity();  ///< at every sample of the object
+  /// Mean illuminance of the interest points by the key light, over that by everything else.
+  std::optional<std::size_t> key;  ///< a head
+  double max_key_to_fill = std::numeric_limits<double>::infinity();
+  /// What each is worth beside a local contrast of AimScore::reference_lx.
+  double coverage_weight = 0.25, energy_weight = 0, base_weight = 0, travel_weight = 0.01;
+  double base_lx = 0;  ///< that interest points should have, with base_weight
+  /// Of what is there anyway (daylight, lights that stay) at each sample [lx]; empty: darkness.
+  std::vector<double> fixed_lux;
+};
+
+/// Of heads as they are set.
+struct AimScore {
+  double local_contrast_lx = 0;  ///< largest difference in illuminance to a neighbour, mean over interest points
+  double coverage = 0;           ///< share of features where a head draws a shadow's edge that can be seen
+  double mean_lx = 0;            ///< of interest points
+  double below_base = 0;         ///< how much of base_lx is missing, mean over interest points, 0…1
+  double watts = 0;
+  double travel_s = 0;                                            ///< until the last head is there
+  double key_to_fill = std::numeric_limits<double>::quiet_NaN();  ///< NaN without a key
+  double object_lx = 0;                                           ///< of the brightest sample
+  std::vector<double> limit_lx;                                   ///< at each of AimWishes::limits
+  bool within_limits = true;
+  double objective = 0;  ///< contrast / reference_lx + weights; what the search makes large
+};
+
+/// One head's light on all that is judged, at full level.
+struct AimColumn {
+  std::vector<double> sample_lux, limit_lux;
+  std::vector<double> feature_lux;  ///< on the lit side of its brightest shadow edge in each feature
+  double mean_lux = 0;              ///< over interest points
+};
+
+/// The heads' light together.
+struct AimSum {
+  std::vector<double> sample_lux, limit_lux;
+  std::vector<std::uint8_t> covered;  ///< per feature
+  double mean_lux = 0, key_mean_lux = 0, watts = 0, travel_s = 0, travel_total_s = 0;
+};
+
+class AimObjective {
+ public:
+  /// All must stay.
+  /// reference_lx   the strongest head's lux on the object: the unit of contrast; > 0
+  AimObjective(const ContrastSamples& samples, const FeatureClusters& features, const AimWishes& wishes,
+               double reference_lx, double all_watts);
+
+  [[nodiscard]] std::size_t samples() const { return samples_.points.size(); }
+  /// Light that stays.
+  [[nodiscard]] AimSum nothing() const;
+  /// lux   of a head at every sample, and at every limit
+  [[nodiscard]] AimColumn column(std::vector<double> sample_lux, std::vector<double> limit_lux) const;
+  void add(AimSum& sum, const AimColumn& column, double level, bool key, double watts, double travel_s) const;
+
+  /// Largest level at which this much more light breaks no limit; 0 where one is broken already.
+  [[nodiscard]] double most_level(const AimSum& others, const AimColumn& column, bool key, double max_level) const;
+  [[nodiscard]] AimScore score(const AimSum& sum) const;
+
+ private:
+  [[nodiscard]] double contrast_lx(const std::vector<double>& lux) const;
+
+  const ContrastSamples& samples_;
+  const FeatureClusters& features_;
+  const AimWishes& wishes_;
+  double reference_lx_, all_watts_;
+};
+
+}  // namespace luxrig

@@ -1,0 +1,255 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "core/highlight/aim_heads_state.h"
+#include "core/parallel.h"
+#include "core/photometry/beam.h"
+
+namespace luxrig {
+namespace {
+
+/// Of what the limits leave, or of the highest level.
+constexpr double kLevelShares[] = {0, 0.05, 0.1, 0.2, 0.35, 0.5, 0.75, 1};
+constexpr int kMostSweeps = 12;
+constexpr double kLeastGain = 1e-6;  ///< of the objective
+constexpr double kBeamShare = 0.9;   ///< of the flux, in what counts as the beam (thesis §6.5)
+/// Aims are refined from so much of the beam down to so much.
+constexpr double kFirstStep = 0.25, kLastStep = 0.015;
+constexpr double kWidestStep_rad = rad_from_deg(20);
+
+std::optional<PanTilt> joints_towards(const HangingHead& head, const Vec3& direction) {
+  if (!head.moves) return head.present;
+  return pan_tilt_towards(head.world_from_mount, direction, head.range, head.present);
+}
+
+/// Two unit vectors at right angles to a unit one and to each other.
+std::pair<Vec3, Vec3> across(const Vec3& direction) {
+  const Vec3 x = direction.unitOrthogonal();
+  return {x, direction.cross(x)};
+}
+
+class AimSearch {
+ public:
+  AimSearch(const HeadAims::State& state, const std::vector<std::vector<Vec3>>& first_aims)
+      : state_(state), judge_(state.search_judge()), first_aims_(first_aims) {
+    for (std::size_t k = 0; k < state.heads.size(); ++k) {
+      columns_.emplace_back();
+      if (first_aims[k].empty()) continue;
+      const HangingHead& head = state.heads[k];
+      for (std::size_t zoom = 0; zoom < head.zoom.size(); ++zoom)
+        for (const Vec3& aim : first_aims[k])
+          if (const auto joints = joints_towards(head, aim)) columns_[k].push_back({{*joints, zoom, 0}, aim, {}});
+      parallel_for(columns_[k].size(), state.options.threads, [&, k](std::size_t c) {
+        columns_[k][c].column = judge_.column(state_.heads[k], k, columns_[k][c].setting);
+      });
+    }
+  }
+
+  SearchedAims run() {
+    Look best;
+    for (const bool bright : {false, true}) {
+      Look look = begun(bright);
+      for (int sweep = 0; sweep < kMostSweeps && !stopped() && swept(look); ++sweep) {
+      }
+      if (best.settings.empty() || look.objective > best.objective) best = std::move(look);
+    }
+    for (double step = kFirstStep; step >= kLastStep && !stopped();) {
+      const double was = best.objective;
+      for (std::size_t k = 0; k < state_.heads.size(); ++k) refine(best, k, step);
+      if (best.objective < was + kLeastGain) step /= 2;
+    }
+    return {std::move(best.settings), tried_};
+  }
+
+ private:
+  struct Candidate {
+    HeadSetting setting;
+    Vec3 direction = Vec3::Zero();
+    AimColumn column;
+  };
+  struct Look {
+    std::vector<HeadSetting> settings;
+    std::vector<AimColumn> columns;  ///< of the settings; of a dark head, anything
+    double objective = 0;
+  };
+  struct Tried {
+    double level = 0, objective = -std::numeric_limits<double>::infinity();
+  };
+
+  [[nodiscard]] bool stopped() const { return state_.options.stop.stop_requested(); }
+  [[nodiscard]] bool is_key(std::size_t head) const { return judge_.wishes.key == head; }
+
+  [[nodiscard]] AimSum without(const Look& look, std::size_t head) const {
+    AimSum sum = judge_.objective->nothing();
+    for (std::size_t k = 0; k < look.settings.size(); ++k)
+      if (k != head) add(sum, k, look.settings[k], look.columns[k]);
+    return sum;
+  }
+  void add(AimSum& sum, std::size_t k, const HeadSetting& setting, const AimColumn& column) const {
+    const HangingHead& head = state_.heads[k];
+    judge_.objective->add(sum, column, setting.level, is_key(k), head.watts,
+                          travel_s(head, head.present, setting.joints));
+  }
+
+  /// Dark, or each with its first aim as bright as the others leave it.
+  [[nodiscard]] Look begun(bool bright) const {
+    Look look;
+    for (std::size_t k = 0; k < state_.heads.size(); ++k) {
+      const bool can = bright && !columns_[k].empty();
+      look.settings.push_back(can ? columns_[k].front().setting : HeadSetting{state_.heads[k].present, 0, 0});
+      look.columns.push_back(can ? columns_[k].front().column : AimColumn{});
+    }
+    for (std::size_t k = 0; bright && k < state_.heads.size(); ++k)
+      if (!columns_[k].empty())
+        look.settings[k].level =
+            judge_.objective->most_level(without(look, k), look.columns[k], is_key(k), state_.heads[k].max_level);
+    look.objective = judge_.objective->score(without(look, state_.heads.size())).objective;
+    return look;
+  }
+
+  /// The best level of a head with this light, the others as they are.
+  [[nodiscard]] Tried best_level(const AimSum& others, std::size_t k, const HeadSetting& setting,
+                                 const AimColumn& column) const {
+    Tried best;
+    const double most = judge_.objective->most_level(others, column, is_key(k), state_.heads[k].max_level);
+    for (const double share : kLevelShares) {
+      if (share > 0 && !(most > 0)) break;
+      AimSum sum = others;
+      HeadSetting at = setting;
+      at.level = share * most;
+      add(sum, k, at, column);
+      const double objective = judge_.objective->score(sum).objective;
+      if (objective > best.objective) best = {at.level, objective};
+    }
+    return best;
+  }
+
+  /// Each head in turn to its best candidate. False when none gains.
+  bool swept(Look& look) {
+    bool gained = false;
+    for (std::size_t k = 0; k < columns_.size() && !stopped(); ++k) {
+      if (columns_[k].empty()) continue;
+      const AimSum others = without(look, k);
+      std::vector<Tried> tried(columns_[k].size());
+      parallel_for(tried.size(), state_.options.threads, [&](std::size_t c) {
+        tried[c] = best_level(others, k, columns_[k][c].setting, columns_[k][c].column);
+      });
+      tried_ += tried.size();
+      const auto best = std::max_element(tried.begin(), tried.end(), [](const Tried& a, const Tried& b) {
+        return a.objective < b.objective;  // the first of equals
+      });
+      if (best->objective < look.objective + kLeastGain) continue;
+      const Candidate& taken = columns_[k][static_cast<std::size_t>(best - tried.begin())];
+      set(look, k, taken.setting, best->level, taken.column, best->objective);
+      gained = true;
+    }
+    return gained;
+  }
+
+  void set(Look& look, std::size_t k, HeadSetting setting, double level, AimColumn column, double objective) const {
+    setting.level = level;
+    if (!(level > 0)) setting.joints = state_.heads[k].present;  // nothing to turn for
+    look.settings[k] = setting;
+    look.columns[k] = std::move(column);
+    look.objective = objective;
+  }
+
+  /// One head's aim a step to each side, and its level.
+  void refine(Look& look, std::size_t k, double step_of_beam) {
+    const HangingHead& head = state_.heads[k];
+    if (!(look.settings[k].level > 0) || stopped()) return;
+    const AimSum others = without(look, k);
+    const HeadSetting was = look.settings[k];
+    std::vector<Candidate> ways = {{was, {}, look.columns[k]}};
+    if (head.moves) {
+      const double step_rad =
+          std::min(kWidestStep_rad, step_of_beam * cone_of_flux_rad(*head.zoom[was.zoom], kBeamShare));
+      const Vec3 beam = lamp_pose(head, was.joints).direction({0, 0, -1});
+      const auto [x, y] = across(beam);
+      for (int side = 0; side < 8; ++side) {
+        const double angle_rad = side * kPi / 4;
+        const Vec3 direction =
+            std::cos(step_rad) * beam + std::sin(step_rad) * (std::cos(angle_rad) * x + std::sin(angle_rad) * y);
+        if (const auto joints = joints_towards(head, direction))
+          ways.push_back({{*joints, was.zoom, 0}, direction, {}});
+      }
+    }
+    std::vector<Tried> tried(ways.size());
+    parallel_for(ways.size(), state_.options.threads, [&](std::size_t w) {
+      if (w > 0) ways[w].column = judge_.column(head, k, ways[w].setting);
+      tried[w] = best_level(others, k, ways[w].setting, ways[w].column);
+    });
+    tried_ += tried.size();
+    std::size_t best = 0;
+    for (std::size_t w = 1; w < tried.size(); ++w)
+      if (tried[w].objective > tried[best].objective) best = w;
+    if (tried[best].objective > look.objective + kLeastGain)
+      set(look, k, ways[best].setting, tried[best].level, std::move(ways[best].column), tried[best].objective);
+  }
+
+  const HeadAims::State& state_;
+  const AimJudge& judge_;
+  const std::vector<std::vector<Vec3>>& first_aims_;
+  std::vector<std::vector<Candidate>> columns_;
+  std::size_t tried_ = 0;
+};
+
+}  // namespace
+
+std::vector<Vec3> voted_aims(const HangingHead& head, const HeadSight& sight, const ContrastSamples& samples,
+                             std::size_t most) {
+  std::vector<Vec3> aims;
+  Vec3 middle = Vec3::Zero();
+  for (std::size_t i = 0; i < sight.direction.size(); ++i)
+    if (sight.lux_per_cd[i] > 0) middle += sight.lux_per_cd[i] * sight.direction[i];
+  if (middle.isZero(0)) return aims;
+  middle.normalize();
+  if (!head.moves) {
+    aims.push_back(lamp_pose(head, head.present).direction({0, 0, -1}));
+    return aims;
+  }
+  double narrowest_rad = 2 * kPi;
+  for (const Intensity& zoom : head.zoom) narrowest_rad = std::min(narrowest_rad, cone_of_flux_rad(*zoom, kBeamShare));
+  // Votes gather in squares of half a beam on a plane across the way to the middle.
+  const double cell = std::tan(std::clamp(narrowest_rad / 2, rad_from_deg(0.5), rad_from_deg(40)));
+  const auto [x, y] = across(middle);
+  struct Cell {
+    int column, row;
+    double votes;
+    Vec3 sum;
+  };
+  std::vector<Cell> cells;
+  for (std::size_t i = 0; i < samples.interest; ++i) {
+    const bool lit = sight.lux_per_cd[i] > 0;
+    double vote = 0;
+    for (const std::uint32_t j : samples.of(i))
+      if ((sight.lux_per_cd[j] > 0) != lit) vote = std::max({vote, sight.lux_per_cd[i], sight.lux_per_cd[j]});
+    const Vec3& direction = sight.direction[i];
+    const double ahead = direction.dot(middle);
+    if (!(vote > 0) || ahead < 0.05) continue;
+    const int column = static_cast<int>(std::floor(direction.dot(x) / ahead / cell)),
+              row = static_cast<int>(std::floor(direction.dot(y) / ahead / cell));
+    const auto at =
+        std::find_if(cells.begin(), cells.end(), [&](const Cell& c) { return c.column == column && c.row == row; });
+    Cell& mine = at == cells.end() ? cells.emplace_back(Cell{column, row, 0, Vec3::Zero()}) : *at;
+    mine.votes += vote;
+    mine.sum += vote * direction;
+  }
+  std::stable_sort(cells.begin(), cells.end(), [](const Cell& a, const Cell& b) { return a.votes > b.votes; });
+  const auto can = [&](const Vec3& direction) {
+    return pan_tilt_towards(head.world_from_mount, direction, head.range, head.present).has_value();
+  };
+  for (const Cell& one : cells)
+    if (aims.size() + 1 < most && can(one.sum)) aims.push_back(one.sum.normalized());
+  if (can(middle)) aims.push_back(middle);
+  return aims;
+}
+
+SearchedAims search_aims(const HeadAims::State& state, const std::vector<std::vector<Vec3>>& first_aims) {
+  return AimSearch(state, first_aims).run();
+}
+
+}  // namespace luxrig
