@@ -1,7 +1,5 @@
 #include "core/solve/placement/place_lights.h"
 
-#include <limits>
-
 #include "core/check.h"
 
 namespace luxrig {
@@ -38,18 +36,14 @@ class Search {
            exchange_.columns() >= options_.most_columns;
   }
 
-  /// Changed for lights begun from many, where the goal is hard and these come closer.
+  /// Changed for lights begun in the other way, where the goal is hard and these come closer.
   void begin_otherwise(PlacedLights& lights, std::mt19937_64& random) {
-    if (!options_.many || !options_.start.empty() || lights.error() <= kHardGoalError) return;
-    const auto has_ended = [this] { return ended(); };
-    exchange_roughly(exchange_, lights, std::numeric_limits<double>::infinity(), has_ended, random);
+    if (ended() || !options_.other || !options_.start.empty() || lights.error() <= kHardGoalError) return;
+    auto other = begun_otherwise(
+        exchange_, none_, options_.other, options_.lights, [this] { return ended(); }, random);
+    if (!other || !(other->error() < lights.error())) return;
+    lights = std::move(*other);
     offer(lights);
-    if (ended() || lights.error() <= kHardGoalError) return;
-    if (auto other =
-            begun_from_many(exchange_, none_, options_.many, options_.lights, lights.error(), has_ended, random)) {
-      lights = std::move(*other);
-      offer(lights);
-    }
   }
 
   /// False when nothing makes it much better.

@@ -4,12 +4,12 @@
 /// Lights are added one by one, each the candidate that lowers the error most, and after each all places are refined
 /// together with all levels (a sliding Frank–Wolfe: Boyd, Schiebinger & Recht 2017; Denoyelle et al. 2020). Then they
 /// are exchanged (exchange_lights.h), singly until that helps no more, then by twos, then through more lights than are
-/// wanted; when that does not help either, another start begins, with other choices among the best. A hard goal is
-/// begun in another way, too (many_lights_start.h), and the better of the two is gone on with.
+/// wanted; when that does not help either, another start begins, with other choices among the best.
+/// A hard goal is begun in another way, too (other_start.h), and the better of the two is gone on with.
 
 #include <functional>
 
-#include "core/solve/placement/many_lights_start.h"
+#include "core/solve/placement/other_start.h"
 
 namespace luxrig {
 
@@ -22,7 +22,7 @@ struct PlaceOptions {
   double least_progress = 0.003;  ///< share of the error that a round over all lights must take away, or is the last
   std::uint64_t seed = 1;
   std::vector<LightPose> start{};  ///< lights to begin with, as many as are wanted or fewer; none: from the first
-  ManyLights many{};               ///< asked without `start`, where the first start ends above kHardGoalError
+  OtherStart other{};              ///< asked without `start`, where the first start begins above kHardGoalError
   ExchangeOptions exchange;        ///< its stop ends the search, with the best so far
   /// Called with the best so far when there is a better one, from the calling thread.
   std::function<void(const PlacedLights& best, std::size_t columns)> better;

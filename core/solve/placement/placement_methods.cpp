@@ -1,8 +1,7 @@
 #include "core/solve/placement/placement_methods.h"
 
-#include <algorithm>
-
 #include "core/solve/placement/choose_lights.h"
+#include "core/solve/placement/methods/anneal_candidates.h"
 #include "core/solve/placement/methods/baselines.h"
 #include "core/solve/placement/methods/light_tree.h"
 #include "core/solve/placement/place_lights.h"
@@ -17,23 +16,29 @@ std::function<void(const PlacedLights&, std::size_t)> passed_on(const PlacementO
   };
 }
 
-/// Of a cut through GP16's light tree, which is built when it is first asked for. The problem must outlive it.
-ManyLights cut_of_light_tree(const PlacementProblem& problem, const std::stop_token& stop) {
-  return [&problem, stop, candidates = std::shared_ptr<const CandidateLights>(),
+constexpr int kStartIterations = 2000;
+
+/// Candidates of a cut through GP16's light tree, which is built when it is first asked for, annealed. The problem must
+/// outlive it.
+OtherStart annealed_candidates(const PlacementProblem& problem, const PlacementOptions& options) {
+  return [&problem, &options, candidates = std::shared_ptr<const CandidateLights>(),
           cuts = std::vector<TreeCut>()](std::size_t lights) mutable {
     if (!candidates) {
-      if (const auto made = CandidateLights::make(problem)) {
-        candidates = *made;
-        cuts = light_tree_cuts(candidates, stop);
-      }
+      const auto made = CandidateLights::make(problem);
+      if (!made) return std::vector<LightPose>();
+      candidates = *made;
+      cuts = light_tree_cuts(candidates, options.stop);
     }
-    std::vector<LightPose> poses;
-    const std::size_t most = lights + (lights + 2) / 3;
-    const auto next =
-        std::find_if(cuts.begin(), cuts.end(), [&](const TreeCut& cut) { return cut.candidates.size() > most; });
-    if (next == cuts.begin()) return poses;
-    for (const std::size_t candidate : std::prev(next)->candidates) poses.push_back(candidates->pose(candidate));
-    return poses;
+    ChosenCandidates chosen(candidates);
+    for (const TreeCut& cut : cuts)
+      if (cut.candidates.size() <= lights) chosen.choose(cut.candidates);
+    pursue(chosen, lights, options.number.wanted_error, options.stop);
+    AnnealOptions annealing;
+    annealing.iterations = kStartIterations;
+    annealing.wanted_error = options.number.wanted_error;
+    annealing.stop = options.stop;
+    std::mt19937_64 random(options.seed);
+    return anneal(std::move(chosen), annealing, random).poses();
   };
 }
 
@@ -51,7 +56,7 @@ Result<FoundLights> place_by_luxrig(const PlacementProblem& problem, const Place
     place.most_columns = options.most_columns;
     place.seed = options.seed;
     place.start = options.start;
-    place.many = cut_of_light_tree(problem, options.stop);
+    place.other = annealed_candidates(problem, options);
     place.exchange = exchange;
     place.better = passed_on(options);
     Placement got = place_lights(*problem.light, *problem.goal, candidates, place);

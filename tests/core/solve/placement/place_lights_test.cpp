@@ -52,7 +52,7 @@ TEST(PlaceLights, AgreesWithTheTenLampsOfAFlat) {
   EXPECT_LE(farthest_off_m(places_m, got.lights), 0.03);
 }
 
-TEST(PlaceLights, BeginsAHardGoalFromManyLightsTooAndKeepsTheBetter) {
+TEST(PlaceLights, BeginsAHardGoalInAnotherWayTooAndKeepsTheBetter) {
   const LitHall hall(make_eight_room_flat(2), 0.6);
   const LightingGoal even{Eigen::VectorXd::Constant(hall.light->points(), 200)};
   const ComplementSearch candidates(hall.view(), hall.poses, even);
@@ -65,7 +65,7 @@ TEST(PlaceLights, BeginsAHardGoalFromManyLightsTooAndKeepsTheBetter) {
   ASSERT_GT(alone.lights.error(), kHardGoalError);
   int asked = 0;
   std::vector<LightPose> many;
-  options.many = [&](std::size_t lights) {
+  options.other = [&](std::size_t lights) {
     EXPECT_EQ(lights, 6u);
     ++asked;
     return many;
@@ -82,7 +82,7 @@ TEST(PlaceLights, BeginsAHardGoalFromManyLightsTooAndKeepsTheBetter) {
   EXPECT_EQ(asked, 3);
   // Of great use: better lights than the first start ends with, and two that are not needed.
   PlaceOptions patient = options;
-  patient.many = {};
+  patient.other = {};
   patient.most_columns = 5000;
   patient.exchange = {};
   const Placement better = place_lights(*hall.light, even, candidates, patient);
@@ -95,13 +95,13 @@ TEST(PlaceLights, BeginsAHardGoalFromManyLightsTooAndKeepsTheBetter) {
   EXPECT_EQ(asked, 4);
 }
 
-TEST(PlaceLights, DoesNotAskForManyLightsWhereTheGoalCanBeMet) {
+TEST(PlaceLights, DoesNotBeginInAnotherWayWhereTheGoalCanBeMet) {
   const LitHall hall(make_box_room(3), 0.25);
   const LightingGoal goal = hall.goal_of({{0.9, 0.8, 2.1}, {3.1, 2.2, 1.9}}, {800, 500});
   const ComplementSearch candidates(hall.view(), hall.poses, goal);
   PlaceOptions options;
   options.lights = 2;
-  options.many = [](std::size_t) {
+  options.other = [](std::size_t) {
     ADD_FAILURE() << "it costs seconds";
     return std::vector<LightPose>();
   };
