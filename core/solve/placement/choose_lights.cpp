@@ -24,6 +24,7 @@ class Choice {
   LightCurve run() {
     PlacedLights lights = way_up();
     way_down(std::move(lights));
+    begin_otherwise();
     do {
       while (!ended() && better_at(curve_.chosen)) {
       }
@@ -91,6 +92,14 @@ class Choice {
         lights = curve_.cuts[lights.size()];
       offer(lights);
     }
+  }
+
+  /// The chosen number begun in the other way where the goal is hard.
+  void begin_otherwise() {
+    if (ended() || !options_.other || !options_.start.empty() || chosen_error_ <= kHardGoalError) return;
+    const auto other = begun_otherwise(exchange_, curve_.cuts.front(), options_.other, curve_.chosen, options_.seed,
+                                       [this] { return ended(); });
+    if (other) offer(*other);
   }
 
   /// Whether, from the best there is now, more lights are worth it after all.

@@ -9,8 +9,8 @@
 #include <functional>
 #include <vector>
 
-#include "core/solve/placement/exchange_lights.h"
 #include "core/solve/placement/number_of_lights.h"
+#include "core/solve/placement/other_start.h"
 
 namespace luxrig {
 
@@ -24,6 +24,7 @@ struct ChooseOptions {
   bool whole_curve = false;
   std::uint64_t seed = 1;
   std::vector<LightPose> start;  ///< lights to begin with; none: from the first
+  OtherStart other;              ///< asked without `start`, where the chosen number ends above kHardGoalError
   ExchangeOptions exchange;      ///< its stop ends the search, with the best so far
   /// Called when the lights it would choose now are better, from the calling thread.
   std::function<void(const PlacedLights& best, std::size_t columns)> better;

@@ -3,9 +3,10 @@
 namespace luxrig {
 
 std::optional<PlacedLights> begun_otherwise(LightExchange& exchange, const PlacedLights& none, const OtherStart& other,
-                                            std::size_t lights, const std::function<bool()>& ended,
-                                            std::mt19937_64& random) {
-  const std::vector<LightPose> poses = other(lights);
+                                            std::size_t lights, std::uint64_t seed,
+                                            const std::function<bool()>& ended) {
+  const std::vector<LightPose> poses = other(lights, seed);
+  std::mt19937_64 random(seed);
   PlacedLights begun = none;
   for (const LightPose& pose : poses) begun.add(pose);
   if (begun.size() == 0) return std::nullopt;

@@ -21,7 +21,7 @@ class Search {
       std::mt19937_64 random(options_.seed * 0x9E3779B97F4A7C15ull + start);
       PlacedLights lights = added_one_by_one(start, random);
       offer(lights);
-      if (start == 0) begin_otherwise(lights, random);
+      begin_otherwise(lights, start);
       while (!ended() && exchanged(lights, random)) offer(lights);
       offer(lights);
       idle = best_.lights.error() < (1 - options_.least_progress) * best_error ? 0 : idle + 1;
@@ -37,10 +37,10 @@ class Search {
   }
 
   /// Changed for lights begun in the other way, where the goal is hard and these come closer.
-  void begin_otherwise(PlacedLights& lights, std::mt19937_64& random) {
+  void begin_otherwise(PlacedLights& lights, std::uint64_t start) {
     if (ended() || !options_.other || !options_.start.empty() || lights.error() <= kHardGoalError) return;
-    auto other = begun_otherwise(
-        exchange_, none_, options_.other, options_.lights, [this] { return ended(); }, random);
+    auto other = begun_otherwise(exchange_, none_, options_.other, options_.lights, options_.seed + start,
+                                 [this] { return ended(); });
     if (!other || !(other->error() < lights.error())) return;
     lights = std::move(*other);
     offer(lights);

@@ -22,7 +22,7 @@ struct PlaceOptions {
   double least_progress = 0.003;  ///< share of the error that a round over all lights must take away, or is the last
   std::uint64_t seed = 1;
   std::vector<LightPose> start{};  ///< lights to begin with, as many as are wanted or fewer; none: from the first
-  OtherStart other{};              ///< asked without `start`, where the first start begins above kHardGoalError
+  OtherStart other{};              ///< asked without `start`, where lights added one by one end above kHardGoalError
   ExchangeOptions exchange;        ///< its stop ends the search, with the best so far
   /// Called with the best so far when there is a better one, from the calling thread.
   std::function<void(const PlacedLights& best, std::size_t columns)> better;

@@ -1,9 +1,11 @@
 #include "core/solve/placement/placement_methods.h"
 
+#include <algorithm>
+
+#include "core/parallel.h"
 #include "core/solve/placement/choose_lights.h"
 #include "core/solve/placement/methods/anneal_candidates.h"
 #include "core/solve/placement/methods/baselines.h"
-#include "core/solve/placement/methods/light_tree.h"
 #include "core/solve/placement/place_lights.h"
 
 namespace luxrig {
@@ -16,29 +18,35 @@ std::function<void(const PlacedLights&, std::size_t)> passed_on(const PlacementO
   };
 }
 
-constexpr int kStartIterations = 2000;
+/// Mutations of an annealing to begin with, and how many of these, of which the best counts: no more than two, as that
+/// many cores are usual.
+constexpr int kStartIterations = 200'000;
+constexpr std::size_t kStartAnnealings = 2;
 
-/// Candidates of a cut through GP16's light tree, which is built when it is first asked for, annealed. The problem must
-/// outlive it.
+/// Candidates added one by one, then annealed by random mutations. The problem and options must outlive it.
 OtherStart annealed_candidates(const PlacementProblem& problem, const PlacementOptions& options) {
-  return [&problem, &options, candidates = std::shared_ptr<const CandidateLights>(),
-          cuts = std::vector<TreeCut>()](std::size_t lights) mutable {
+  return [&problem, &options, candidates = std::shared_ptr<const CandidateLights>()](std::size_t lights,
+                                                                                     std::uint64_t seed) mutable {
     if (!candidates) {
       const auto made = CandidateLights::make(problem);
       if (!made) return std::vector<LightPose>();
       candidates = *made;
-      cuts = light_tree_cuts(candidates, options.stop);
     }
-    ChosenCandidates chosen(candidates);
-    for (const TreeCut& cut : cuts)
-      if (cut.candidates.size() <= lights) chosen.choose(cut.candidates);
-    pursue(chosen, lights, options.number.wanted_error, options.stop);
+    ChosenCandidates first(candidates);
+    pursue(first, lights, options.number.wanted_error, options.stop);
     AnnealOptions annealing;
+    annealing.nearest = 0;
     annealing.iterations = kStartIterations;
     annealing.wanted_error = options.number.wanted_error;
     annealing.stop = options.stop;
-    std::mt19937_64 random(options.seed);
-    return anneal(std::move(chosen), annealing, random).poses();
+    std::vector<ChosenCandidates> annealed(kStartAnnealings, first);
+    parallel_for(annealed.size(), options.threads, [&](std::size_t i) {
+      std::mt19937_64 random(seed * kStartAnnealings + i);
+      annealed[i] = anneal(std::move(annealed[i]), annealing, random);
+    });
+    return std::min_element(annealed.begin(), annealed.end(),
+                            [](const auto& a, const auto& b) { return a.error() < b.error(); })
+        ->poses();
   };
 }
 
@@ -68,6 +76,7 @@ Result<FoundLights> place_by_luxrig(const PlacementProblem& problem, const Place
   choose.most_columns = options.most_columns;
   choose.seed = options.seed;
   choose.start = options.start;
+  choose.other = annealed_candidates(problem, options);
   choose.whole_curve = options.whole_curve;
   choose.exchange = exchange;
   choose.better = passed_on(options);
