@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "core/check.h"
 #include "core/highlight/relief_contrast.h"
 #include "core/highlight/targets/relief_targets.h"
@@ -78,22 +80,25 @@ ShownRelief shown_relief(const ReliefStudy& study, std::span<const Vec3> directi
 }
 
 BenchRow bench_row_of(const HighlightRow& row) {
-  say_row_made(row.case_name, row.method);
-  const auto shown = [&](double value) { return row.shown ? fmt::format("{:.4f}", value) : ""; };
+  const auto shown = [&](double value) {
+    return row.shown && std::isfinite(value) ? fmt::format("{:.4f}", value) : "";
+  };
   const ShownRelief relief = row.shown.value_or(ShownRelief{});
-  return {row.case_name,
-          row.method,
-          row.error,
-          row.took.wall,
-          row.target_error,
-          row.target_seconds,
-          {{"cpu_seconds", fmt::format("{:.4g}", row.took.cpu)},
-           {"lights", row.shown ? fmt::format("{}", relief.lights) : ""},
-           {"rays", row.rays ? fmt::format("{}", *row.rays) : ""},
-           {"transitions", shown(relief.transitions)},
-           {"local_contrast", shown(relief.local_contrast_lx)},
-           {"coverage", shown(relief.coverage)},
-           {"note", row.note}}};
+  BenchRow made{row.case_name,
+                row.method,
+                row.error,
+                row.took.wall,
+                row.target_error,
+                row.target_seconds,
+                {{"cpu_seconds", fmt::format("{:.4g}", row.took.cpu)},
+                 {"lights", row.shown ? fmt::format("{}", relief.lights) : ""},
+                 {"rays", row.rays ? fmt::format("{}", *row.rays) : ""},
+                 {"transitions", shown(relief.transitions)},
+                 {"local_contrast", shown(relief.local_contrast_lx)},
+                 {"coverage", shown(relief.coverage)},
+                 {"note", row.note}}};
+  say_row_made(made);
+  return made;
 }
 
 }  // namespace luxrig

@@ -63,6 +63,7 @@ void add_edge_rows(HighlightObject& object, const BenchOptions& options, std::ve
 void add_light_rows(HighlightObject& object, const BenchOptions& options, std::vector<BenchRow>& rows);
 void add_number_rows(HighlightObject& object, const BenchOptions& options, std::vector<BenchRow>& rows);
 void add_stable_rows(HighlightObject& object, const BenchOptions& options, std::vector<BenchRow>& rows);
+void add_aim_rows(HighlightObject& object, const BenchOptions& options, std::vector<BenchRow>& rows);
 void add_curvature_rows(HighlightObject& object, const BenchOptions& options, std::vector<BenchRow>& rows);
 void add_cluster_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
 
