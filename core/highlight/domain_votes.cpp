@@ -59,7 +59,8 @@ void trace_point(const LightDomain& domain, const DomainVoteOptions& options, do
   for (std::size_t k = 0; k < trace.hits.size(); ++k)
     if (k == 0 || trace.hits[k].ray != trace.hits[k - 1].ray) --counts.missed_domain;
   std::erase_if(trace.hits, [&](const DomainHit& hit) {
-    const bool near = hit.distance_m<nearest_m, far = hit.distance_m> options.reach_m;
+    const bool near = hit.distance_m < nearest_m;
+    const bool far = hit.distance_m > options.reach_m;
     counts.too_near += near ? 1 : 0;
     counts.out_of_reach += far ? 1 : 0;
     return near || far;

@@ -97,10 +97,10 @@ ReliefContrast contrast_under(const TargetSurface& surface, std::span<const std:
 }
 
 /// Lux from each mounted beam at a point.
-class MountedLight {
+class BeamsAtPoints {
  public:
-  MountedLight(const TargetRays& target, const Surroundings& surroundings, std::span<const MountedBeam> beams,
-               double lift_m)
+  BeamsAtPoints(const TargetRays& target, const Surroundings& surroundings, std::span<const MountedBeam> beams,
+                double lift_m)
       : target_(target), surroundings_(surroundings), beams_(beams), lift_m_(lift_m) {
     for (const MountedBeam& beam : beams) {
       LUXRIG_CHECK(beam.intensity != nullptr && beam.position_world_m.allFinite() && beam.level >= 0, "a beam of {}",
@@ -162,14 +162,14 @@ ReliefContrast relief_contrast(const TargetSurface& surface, const TargetRays& t
 ReliefContrast relief_contrast(const TargetSurface& surface, const TargetRays& target, const Surroundings& surroundings,
                                std::span<const std::uint32_t> interest, std::span<const MountedBeam> beams,
                                double lift_m, int threads, std::span<const std::uint32_t> feature_of_interest) {
-  const MountedLight light(target, surroundings, beams, lift_m);
+  const BeamsAtPoints light(target, surroundings, beams, lift_m);
   return contrast_under(surface, interest, beams.size(), light, threads, feature_of_interest);
 }
 
 std::vector<double> illuminance_lx(const TargetSurface& surface, const TargetRays& target,
                                    const Surroundings& surroundings, std::span<const std::uint32_t> points,
                                    std::span<const MountedBeam> beams, double lift_m, int threads) {
-  const MountedLight light(target, surroundings, beams, lift_m);
+  const BeamsAtPoints light(target, surroundings, beams, lift_m);
   return lit_points(surface, points, beams.size(), light, threads).illuminance_lx;
 }
 
