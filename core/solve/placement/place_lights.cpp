@@ -6,6 +6,9 @@ namespace luxrig {
 namespace {
 
 constexpr std::uint64_t kMostStarts = 1'000;
+/// Of two beginnings, one whose error is below so much of the other's needs no race.
+constexpr double kClearlyBetter = 0.85;
+constexpr int kRaceRounds = 2;
 
 class Search {
  public:
@@ -41,9 +44,18 @@ class Search {
     if (ended() || !options_.other || !options_.start.empty() || lights.error() <= kHardGoalError) return;
     auto other = begun_otherwise(exchange_, none_, options_.other, options_.lights, options_.seed + start,
                                  [this] { return ended(); });
-    if (!other || !(other->error() < lights.error())) return;
-    lights = std::move(*other);
-    offer(lights);
+    if (!other || other->error() > lights.error() / kClearlyBetter) return;
+    offer(*other);
+    if (other->error() > kClearlyBetter * lights.error()) {
+      // Which of two alike ends lower shows after a few exchanges only.
+      std::mt19937_64 random(options_.seed + start);
+      for (PlacedLights* way : {&lights, &*other}) {
+        for (int round = 0; round < kRaceRounds && !ended() && exchange_.singly(*way, random); ++round) {
+        }
+        offer(*way);
+      }
+    }
+    if (other->error() < lights.error()) lights = std::move(*other);
   }
 
   /// False when nothing makes it much better.
