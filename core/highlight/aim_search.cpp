@@ -34,14 +34,14 @@ std::pair<Vec3, Vec3> across(const Vec3& direction) {
 class AimSearch {
  public:
   AimSearch(const HeadAims::State& state, const std::vector<std::vector<Vec3>>& first_aims)
-      : state_(state), judge_(state.search_judge()), first_aims_(first_aims) {
+      : state_(state), judge_(state.search_judge()) {
     for (std::size_t k = 0; k < state.heads.size(); ++k) {
       columns_.emplace_back();
       if (first_aims[k].empty()) continue;
       const HangingHead& head = state.heads[k];
       for (std::size_t zoom = 0; zoom < head.zoom.size(); ++zoom)
         for (const Vec3& aim : first_aims[k])
-          if (const auto joints = joints_towards(head, aim)) columns_[k].push_back({{*joints, zoom, 0}, aim, {}});
+          if (const auto joints = joints_towards(head, aim)) columns_[k].push_back({{*joints, zoom, 0}, {}});
       parallel_for(columns_[k].size(), state.options.threads, [&, k](std::size_t c) {
         columns_[k][c].column = judge_.column(state_.heads[k], k, columns_[k][c].setting);
       });
@@ -67,7 +67,6 @@ class AimSearch {
  private:
   struct Candidate {
     HeadSetting setting;
-    Vec3 direction = Vec3::Zero();
     AimColumn column;
   };
   struct Look {
@@ -163,7 +162,7 @@ class AimSearch {
     if (!(look.settings[k].level > 0) || stopped()) return;
     const AimSum others = without(look, k);
     const HeadSetting was = look.settings[k];
-    std::vector<Candidate> ways = {{was, {}, look.columns[k]}};
+    std::vector<Candidate> ways = {{was, look.columns[k]}};
     if (head.moves) {
       const double step_rad =
           std::min(kWidestStep_rad, step_of_beam * cone_of_flux_rad(*head.zoom[was.zoom], kBeamShare));
@@ -173,8 +172,7 @@ class AimSearch {
         const double angle_rad = side * kPi / 4;
         const Vec3 direction =
             std::cos(step_rad) * beam + std::sin(step_rad) * (std::cos(angle_rad) * x + std::sin(angle_rad) * y);
-        if (const auto joints = joints_towards(head, direction))
-          ways.push_back({{*joints, was.zoom, 0}, direction, {}});
+        if (const auto joints = joints_towards(head, direction)) ways.push_back({{*joints, was.zoom, 0}, {}});
       }
     }
     std::vector<Tried> tried(ways.size());
@@ -192,7 +190,6 @@ class AimSearch {
 
   const HeadAims::State& state_;
   const AimJudge& judge_;
-  const std::vector<std::vector<Vec3>>& first_aims_;
   std::vector<std::vector<Candidate>> columns_;
   std::size_t tried_ = 0;
 };

@@ -1,6 +1,8 @@
 #pragma once
 /// A luminaire that hangs somewhere and may pan, tilt, zoom and dim.
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "core/photometry/intensity.h"
@@ -27,7 +29,10 @@ struct HeadSetting {
 };
 
 /// Seconds until it looks there: both joints turn at once, each at its own speed.
-[[nodiscard]] double travel_s(const HangingHead& head, const PanTilt& from, const PanTilt& to);
+[[nodiscard]] inline double travel_s(const HangingHead& head, const PanTilt& from, const PanTilt& to) {
+  return std::max(std::abs(to.pan_rad - from.pan_rad) / head.pan_speed_rad_s,
+                  std::abs(to.tilt_rad - from.tilt_rad) / head.tilt_speed_rad_s);
+}
 
 /// Its lamp, looking so.
 [[nodiscard]] inline Pose lamp_pose(const HangingHead& head, const PanTilt& joints) {

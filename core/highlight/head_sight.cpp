@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "core/check.h"
-#include "core/highlight/hanging_head.h"
 #include "core/parallel.h"
 
 namespace luxrig {
@@ -12,11 +11,6 @@ namespace {
 constexpr std::size_t kReceiversPerTask = 512;
 
 }  // namespace
-
-double travel_s(const HangingHead& head, const PanTilt& from, const PanTilt& to) {
-  return std::max(std::abs(to.pan_rad - from.pan_rad) / head.pan_speed_rad_s,
-                  std::abs(to.tilt_rad - from.tilt_rad) / head.tilt_speed_rad_s);
-}
 
 HeadSight sight_of(const RayScene& room, const Vec3& head_world_m, std::span<const OrientedPoint> receivers,
                    int threads) {

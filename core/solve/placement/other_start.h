@@ -19,8 +19,8 @@ using OtherStart = std::function<std::vector<LightPose>(std::size_t lights, std:
 /// Above this error a search begins the other way, too.
 inline constexpr double kHardGoalError = 0.1;
 
-/// As many lights, begun from those and refined; nothing when there are none, or when it ended before it had as many.
-/// none   no lights, of the problem that is solved
+/// As many lights, begun from those and refined, or fewer where no more would gain; nothing when there are none, or
+/// when it ended with too many still. none   no lights, of the problem that is solved
 [[nodiscard]] std::optional<PlacedLights> begun_otherwise(LightExchange& exchange, const PlacedLights& none,
                                                           const OtherStart& other, std::size_t lights,
                                                           std::uint64_t seed, const std::function<bool()>& ended);

@@ -225,10 +225,9 @@ TEST(HeadAims, HeadsMoveAsLittleAsTheyCanAndStayWhereTheyLookWhenDark) {
     EXPECT_NEAR(lamp_pose(heads[0], other).direction({0, 0, -1}).dot(beam), 1, 1e-9);
     EXPECT_LE(travel_s(heads[0], heads[0].present, key.joints), travel_s(heads[0], heads[0].present, other) + 1e-9);
   }
-  if (found->heads[1].setting.level == 0) {
-    EXPECT_EQ(found->heads[1].setting.joints.pan_rad, heads[1].present.pan_rad);
-    EXPECT_EQ(found->heads[1].setting.joints.tilt_rad, heads[1].present.tilt_rad);
-  }
+  ASSERT_EQ(found->heads[1].setting.level, 0);
+  EXPECT_EQ(found->heads[1].setting.joints.pan_rad, heads[1].present.pan_rad);
+  EXPECT_EQ(found->heads[1].setting.joints.tilt_rad, heads[1].present.tilt_rad);
 }
 
 TEST(HeadAims, SaysWhichHeadsCannotReachAndRefusesWhenNoneCan) {
@@ -260,14 +259,12 @@ TEST(HeadAims, ZoomsAndHeadsThatDoNotMove) {
   ASSERT_TRUE(found);
   EXPECT_EQ(found->heads[1].setting.joints.pan_rad, heads[1].present.pan_rad);
   EXPECT_EQ(found->heads[1].setting.joints.tilt_rad, heads[1].present.tilt_rad);
-  // What the search may choose from is never worse with a stop more.
-  for (const std::size_t stop : {0u, 1u}) {
-    std::vector<HangingHead> one = heads;
-    one[0].zoom = {heads[0].zoom[stop]};
-    const auto alone = relief.aims(one)->solve();
-    ASSERT_TRUE(alone);
-    EXPECT_GE(found->score.objective, 0.98 * alone->score.objective * (stop == found->heads[0].setting.zoom ? 1 : 0.5));
-  }
+  // Another stop to choose from is no loss: both are judged by the lux of the same strongest beam.
+  std::vector<HangingHead> narrow = heads;
+  narrow[0].zoom = {heads[0].zoom[1]};
+  const auto without = relief.aims(narrow)->solve();
+  ASSERT_TRUE(without);
+  EXPECT_GE(found->score.objective, 0.98 * without->score.objective);
 }
 
 TEST(HeadAims, GivesTheSameBytesForAnyNumberOfThreads) {
