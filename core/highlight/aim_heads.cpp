@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/check.h"
 #include "core/highlight/aim_heads_state.h"
@@ -35,8 +36,11 @@ std::string complaint_of_wishes(const AimWishes& wishes, const ContrastSamples& 
                          limit.fixed_lx, limit.max_lx);
   }
   if (!(wishes.max_object_lx > 0)) return "max_object_lx must be above 0";
+  if (!(wishes.max_watts >= 0)) return "max_watts must be 0 or more";
   if (wishes.key && *wishes.key >= heads) return fmt::format("key light {} of {} heads", *wishes.key, heads);
-  if (!(wishes.max_key_to_fill > 0)) return "key to fill must be above 0";
+  if (!(wishes.max_key_to_fill > 0) || !(wishes.min_key_to_fill >= 0) ||
+      wishes.min_key_to_fill > wishes.max_key_to_fill)
+    return "key to fill must be above 0, and its least not above its most";
   for (const double weight :
        {wishes.coverage_weight, wishes.energy_weight, wishes.base_weight, wishes.travel_weight, wishes.base_lx})
     if (!(weight >= 0) || !std::isfinite(weight)) return "weights and base_lx must be 0 or more";
@@ -104,12 +108,38 @@ void keep_limits(const HeadAims::State& state, std::vector<HeadSetting>& setting
     keep(wishes.limits[i].max_lx, sum.limit_lux[i], fixed.limit_lux[i]);
   for (std::size_t i = 0; i < sum.sample_lux.size(); ++i)
     keep(wishes.max_object_lx, sum.sample_lux[i], fixed.sample_lux[i]);
+  keep(wishes.max_watts, sum.watts, 0);
   for (HeadSetting& setting : settings) setting.level *= share;
   if (!wishes.key) return;
   const double key_lx = share * sum.key_mean_lux,
                fill_lx = fixed.mean_lux + share * (sum.mean_lux - fixed.mean_lux - sum.key_mean_lux);
   if (key_lx > wishes.max_key_to_fill * fill_lx)
     settings[*wishes.key].level *= wishes.max_key_to_fill * fill_lx / key_lx;
+  const double fixed_lx = fixed.mean_lux, fill_heads_lx = fill_lx - fixed_lx;
+  if (key_lx < wishes.min_key_to_fill * fill_lx && fill_heads_lx > 0) {
+    const double left = std::clamp((key_lx / wishes.min_key_to_fill - fixed_lx) / fill_heads_lx, 0.0, 1.0);
+    for (std::size_t k = 0; k < settings.size(); ++k)
+      if (k != *wishes.key) settings[k].level *= left;
+  }
+}
+
+/// All heads brighter by one factor, as far as their levels and the limits go.
+void brighten(const HeadAims::State& state, std::vector<HeadSetting>& settings) {
+  const AimWishes& wishes = state.full.wishes;
+  const AimSum fixed = state.full.objective->nothing(), sum = state.sum(state.full, settings);
+  double factor = std::numeric_limits<double>::infinity();
+  const auto keep = [&](double most, double is, double stays) {
+    if (is > stays) factor = std::min(factor, (most - stays) / (is - stays));
+  };
+  for (std::size_t k = 0; k < settings.size(); ++k) keep(state.heads[k].max_level, settings[k].level, 0);
+  for (std::size_t i = 0; i < wishes.limits.size(); ++i)
+    keep(wishes.limits[i].max_lx, sum.limit_lux[i], fixed.limit_lux[i]);
+  for (std::size_t i = 0; i < sum.sample_lux.size(); ++i)
+    keep(wishes.max_object_lx, sum.sample_lux[i], fixed.sample_lux[i]);
+  keep(wishes.max_watts, sum.watts, 0);
+  if (!std::isfinite(factor) || factor <= 1) return;
+  for (std::size_t k = 0; k < settings.size(); ++k)
+    settings[k].level = std::min(factor * settings[k].level, state.heads[k].max_level);
 }
 
 }  // namespace
@@ -128,7 +158,7 @@ AimSum HeadAims::State::sum(const AimJudge& judge, std::span<const HeadSetting> 
   AimSum sum = judge.objective->nothing();
   for (std::size_t k = 0; k < heads.size(); ++k) {
     if (!(settings[k].level > 0)) continue;
-    judge.objective->add(sum, judge.column(heads[k], k, settings[k]), settings[k].level, judge.wishes.key == k,
+    judge.objective->add(sum, judge.column(heads[k], k, settings[k]), settings[k].level, role_in(judge.wishes, k),
                          heads[k].watts, travel_s(heads[k], heads[k].present, settings[k].joints));
   }
   return sum;
@@ -207,6 +237,10 @@ Result<AimResult> HeadAims::solve() const {
   AimResult result;
   result.tried = found.tried;
   keep_limits(state, found.settings);
+  if (state.full.wishes.relative && !(state.full.wishes.energy_weight > 0)) {
+    brighten(state, found.settings);
+    keep_limits(state, found.settings);  // light that stays may have shifted the ratio of key to fill
+  }
   for (std::size_t k = 0; k < count; ++k) {
     AimedHead head;
     head.setting = found.settings[k];

@@ -13,6 +13,8 @@ constexpr double kSeenShare = 0.02;
 /// What seconds of movement are compared with: about how long a head takes from one look to the next.
 constexpr double kUsualMove_s = 4;
 /// Rounding may carry a level that was scaled to a limit over it.
+/// Of the mean illuminance: relative contrast is nought beside this.
+constexpr double kDarkShare = 0.1;
 constexpr double kLimitSlack = 1e-9;
 
 }  // namespace
@@ -49,7 +51,7 @@ AimColumn AimObjective::column(std::vector<double> sample_lux, std::vector<doubl
   return column;
 }
 
-void AimObjective::add(AimSum& sum, const AimColumn& column, double level, bool key, double watts,
+void AimObjective::add(AimSum& sum, const AimColumn& column, double level, HeadRole role, double watts,
                        double travel_s) const {
   if (!(level > 0)) return;
   for (std::size_t i = 0; i < sum.sample_lux.size(); ++i) sum.sample_lux[i] += level * column.sample_lux[i];
@@ -57,13 +59,14 @@ void AimObjective::add(AimSum& sum, const AimColumn& column, double level, bool 
   for (std::size_t f = 0; f < sum.covered.size(); ++f)
     if (level * column.feature_lux[f] >= kSeenShare * reference_lx_) sum.covered[f] = 1;
   sum.mean_lux += level * column.mean_lux;
-  if (key) sum.key_mean_lux += level * column.mean_lux;
+  if (role == HeadRole::key) sum.key_mean_lux += level * column.mean_lux;
   sum.watts += level * watts;
   sum.travel_s = std::max(sum.travel_s, travel_s);
   sum.travel_total_s += travel_s;
 }
 
-double AimObjective::most_level(const AimSum& others, const AimColumn& column, bool key, double max_level) const {
+double AimObjective::most_level(const AimSum& others, const AimColumn& column, HeadRole role, double max_level,
+                                double watts, bool ratios) const {
   double most = max_level;
   const auto keep = [&](double room, double per_level) {
     if (per_level > 0) most = std::min(most, std::max(0.0, room / per_level));
@@ -73,25 +76,37 @@ double AimObjective::most_level(const AimSum& others, const AimColumn& column, b
   if (std::isfinite(wishes_.max_object_lx))
     for (std::size_t i = 0; i < others.sample_lux.size(); ++i)
       keep(wishes_.max_object_lx - others.sample_lux[i], column.sample_lux[i]);
-  if (key && std::isfinite(wishes_.max_key_to_fill))
-    keep(wishes_.max_key_to_fill * (others.mean_lux - others.key_mean_lux) - others.key_mean_lux, column.mean_lux);
+  if (std::isfinite(wishes_.max_watts)) keep(wishes_.max_watts - others.watts, watts);
+  const double fill_lux = others.mean_lux - others.key_mean_lux;
+  if (ratios && role == HeadRole::key && std::isfinite(wishes_.max_key_to_fill))
+    keep(wishes_.max_key_to_fill * fill_lux - others.key_mean_lux, column.mean_lux);
+  if (ratios && role == HeadRole::fill)
+    keep(others.key_mean_lux - wishes_.min_key_to_fill * fill_lux, wishes_.min_key_to_fill * column.mean_lux);
   return most;
 }
 
-double AimObjective::contrast_lx(const std::vector<double>& lux) const {
-  double sum = 0;
+void AimObjective::measure_contrast(const AimSum& sum, AimScore& score) const {
+  const std::vector<double>& lux = sum.sample_lux;
+  const double dark_lx = kDarkShare * sum.mean_lux;
   for (std::size_t i = 0; i < samples_.interest; ++i) {
-    double largest = 0;
-    for (const std::uint32_t j : samples_.of(i)) largest = std::max(largest, std::abs(lux[i] - lux[j]));
-    sum += largest;
+    double largest = 0, relative = 0;
+    for (const std::uint32_t j : samples_.of(i)) {
+      const double difference = std::abs(lux[i] - lux[j]);
+      largest = std::max(largest, difference);
+      // In the dark there is nothing to see.
+      if (difference > 0) relative = std::max(relative, difference / (lux[i] + lux[j] + dark_lx));
+    }
+    score.local_contrast_lx += largest;
+    score.relative_contrast += relative;
   }
-  return sum / static_cast<double>(samples_.interest);
+  score.local_contrast_lx /= static_cast<double>(samples_.interest);
+  score.relative_contrast /= static_cast<double>(samples_.interest);
 }
 
 AimScore AimObjective::score(const AimSum& sum) const {
   AimScore score;
   const auto interest = static_cast<double>(samples_.interest);
-  score.local_contrast_lx = contrast_lx(sum.sample_lux);
+  measure_contrast(sum, score);
   score.coverage = static_cast<double>(std::count(sum.covered.begin(), sum.covered.end(), 1)) /
                    static_cast<double>(std::max<std::size_t>(1, sum.covered.size()));
   score.mean_lx = sum.mean_lux;
@@ -102,18 +117,21 @@ AimScore AimObjective::score(const AimSum& sum) const {
   score.travel_s = sum.travel_s;
   score.object_lx = sum.sample_lux.empty() ? 0 : *std::max_element(sum.sample_lux.begin(), sum.sample_lux.end());
   score.limit_lx = sum.limit_lux;
-  score.within_limits = score.object_lx <= wishes_.max_object_lx * (1 + kLimitSlack);
+  score.within_limits = score.object_lx <= wishes_.max_object_lx * (1 + kLimitSlack) &&
+                        score.watts <= wishes_.max_watts * (1 + kLimitSlack);
   for (std::size_t i = 0; i < sum.limit_lux.size(); ++i)
     score.within_limits &= sum.limit_lux[i] <= wishes_.limits[i].max_lx * (1 + kLimitSlack);
-  score.objective = score.local_contrast_lx / reference_lx_ + wishes_.coverage_weight * score.coverage -
-                    wishes_.base_weight * score.below_base - wishes_.travel_weight * sum.travel_total_s / kUsualMove_s;
+  score.objective = (wishes_.relative ? score.relative_contrast : score.local_contrast_lx / reference_lx_) +
+                    wishes_.coverage_weight * score.coverage - wishes_.base_weight * score.below_base -
+                    wishes_.travel_weight * sum.travel_total_s / kUsualMove_s;
   if (all_watts_ > 0) score.objective -= wishes_.energy_weight * sum.watts / all_watts_;
   if (wishes_.key) {
     const double fill = sum.mean_lux - sum.key_mean_lux;
     // Without any fill a key light is as far from its ratio as can be; without a key light it keeps every ratio.
     score.key_to_fill =
         fill > 0 ? sum.key_mean_lux / fill : (sum.key_mean_lux > 0 ? std::numeric_limits<double>::infinity() : 0);
-    if (score.key_to_fill > wishes_.max_key_to_fill * (1 + kLimitSlack)) {
+    if (score.key_to_fill > wishes_.max_key_to_fill * (1 + kLimitSlack) ||
+        (sum.mean_lux > 0 && score.key_to_fill < wishes_.min_key_to_fill * (1 - kLimitSlack))) {
       score.within_limits = false;
       score.objective -= 1;  // a head that fills less than the key light needs is no better for it
     }

@@ -13,6 +13,8 @@ namespace {
 
 /// Of what the limits leave, or of the highest level.
 constexpr double kLevelShares[] = {0, 0.05, 0.1, 0.2, 0.35, 0.5, 0.75, 1};
+/// Where a limit is shared, a head's room may be what others give up.
+constexpr double kOthersShares[] = {1, 0.7, 0.4};
 constexpr int kMostSweeps = 12;
 constexpr double kLeastGain = 1e-6;  ///< of the objective
 constexpr double kBeamShare = 0.9;   ///< of the flux, in what counts as the beam (thesis §6.5)
@@ -34,7 +36,7 @@ std::pair<Vec3, Vec3> across(const Vec3& direction) {
 class AimSearch {
  public:
   AimSearch(const HeadAims::State& state, const std::vector<std::vector<Vec3>>& first_aims)
-      : state_(state), judge_(state.search_judge()) {
+      : state_(state), judge_(state.search_judge()), limited_(judge_.wishes.limited()) {
     for (std::size_t k = 0; k < state.heads.size(); ++k) {
       columns_.emplace_back();
       if (first_aims[k].empty()) continue;
@@ -50,8 +52,9 @@ class AimSearch {
 
   SearchedAims run() {
     Look best;
-    for (const bool bright : {false, true}) {
-      Look look = begun(bright);
+    for (const Start start : {Start::dark, Start::bright, Start::shared, Start::present}) {
+      if (!limited_ && (start == Start::shared || start == Start::present)) continue;
+      Look look = begun(start);
       for (int sweep = 0; sweep < kMostSweeps && !stopped() && swept(look); ++sweep) {
       }
       if (best.settings.empty() || look.objective > best.objective) best = std::move(look);
@@ -74,38 +77,57 @@ class AimSearch {
     std::vector<AimColumn> columns;  ///< of the settings; of a dark head, anything
     double objective = 0;
   };
+  enum class Start { dark, bright, shared, present };
   struct Tried {
     double level = 0, objective = -std::numeric_limits<double>::infinity();
   };
 
   [[nodiscard]] bool stopped() const { return state_.options.stop.stop_requested(); }
-  [[nodiscard]] bool is_key(std::size_t head) const { return judge_.wishes.key == head; }
+  [[nodiscard]] HeadRole role_of(std::size_t head) const { return role_in(judge_.wishes, head); }
 
-  [[nodiscard]] AimSum without(const Look& look, std::size_t head) const {
+  /// The sum of all heads but one, each at a share of its level.
+  [[nodiscard]] AimSum without(const Look& look, std::size_t head, double share = 1) const {
     AimSum sum = judge_.objective->nothing();
-    for (std::size_t k = 0; k < look.settings.size(); ++k)
-      if (k != head) add(sum, k, look.settings[k], look.columns[k]);
+    for (std::size_t k = 0; k < look.settings.size(); ++k) {
+      if (k == head) continue;
+      HeadSetting setting = look.settings[k];
+      setting.level *= share;
+      add(sum, k, setting, look.columns[k]);
+    }
     return sum;
   }
   void add(AimSum& sum, std::size_t k, const HeadSetting& setting, const AimColumn& column) const {
     const HangingHead& head = state_.heads[k];
-    judge_.objective->add(sum, column, setting.level, is_key(k), head.watts,
+    judge_.objective->add(sum, column, setting.level, role_of(k), head.watts,
                           travel_s(head, head.present, setting.joints));
   }
 
-  /// Dark, or each with its first aim as bright as the others leave it.
-  [[nodiscard]] Look begun(bool bright) const {
+  /// Dark; each with its first aim as bright as the others leave it; each with an equal share of what it could have
+  /// alone; or as they look now, with such a share.
+  [[nodiscard]] Look begun(Start start) const {
     Look look;
-    for (std::size_t k = 0; k < state_.heads.size(); ++k) {
-      const bool can = bright && !columns_[k].empty();
-      look.settings.push_back(can ? columns_[k].front().setting : HeadSetting{state_.heads[k].present, 0, 0});
-      look.columns.push_back(can ? columns_[k].front().column : AimColumn{});
+    const std::size_t count = state_.heads.size();
+    for (std::size_t k = 0; k < count; ++k) {
+      look.settings.push_back({state_.heads[k].present, 0, 0});
+      look.columns.emplace_back();
+      if (start == Start::dark || columns_[k].empty()) continue;
+      if (start == Start::present) {
+        look.columns[k] = judge_.column(state_.heads[k], k, look.settings[k]);
+      } else {
+        look.settings[k] = columns_[k].front().setting;
+        look.columns[k] = columns_[k].front().column;
+      }
     }
-    for (std::size_t k = 0; bright && k < state_.heads.size(); ++k)
-      if (!columns_[k].empty())
-        look.settings[k].level =
-            judge_.objective->most_level(without(look, k), look.columns[k], is_key(k), state_.heads[k].max_level);
-    look.objective = judge_.objective->score(without(look, state_.heads.size())).objective;
+    for (std::size_t k = 0; start != Start::dark && k < count; ++k) {
+      if (columns_[k].empty()) continue;
+      const AimSum others = start == Start::bright ? without(look, k) : judge_.objective->nothing();
+      // Of a ratio between heads nothing can be said while the others are dark.
+      const bool alone = start != Start::bright;
+      look.settings[k].level = judge_.objective->most_level(others, look.columns[k], role_of(k),
+                                                            state_.heads[k].max_level, state_.heads[k].watts, !alone) /
+                               (alone ? static_cast<double>(count) : 1.0);
+    }
+    look.objective = judge_.objective->score(without(look, count)).objective;
     return look;
   }
 
@@ -113,7 +135,8 @@ class AimSearch {
   [[nodiscard]] Tried best_level(const AimSum& others, std::size_t k, const HeadSetting& setting,
                                  const AimColumn& column) const {
     Tried best;
-    const double most = judge_.objective->most_level(others, column, is_key(k), state_.heads[k].max_level);
+    const double most =
+        judge_.objective->most_level(others, column, role_of(k), state_.heads[k].max_level, state_.heads[k].watts);
     for (const double share : kLevelShares) {
       if (share > 0 && !(most > 0)) break;
       AimSum sum = others;
@@ -126,22 +149,30 @@ class AimSearch {
     return best;
   }
 
-  /// Each head in turn to its best candidate. False when none gains.
+  /// Each head in turn to its best candidate, the others as they are or, where limits are shared, dimmed. False when
+  /// none gains.
   bool swept(Look& look) {
     bool gained = false;
     for (std::size_t k = 0; k < columns_.size() && !stopped(); ++k) {
       if (columns_[k].empty()) continue;
-      const AimSum others = without(look, k);
-      std::vector<Tried> tried(columns_[k].size());
-      parallel_for(tried.size(), state_.options.threads, [&](std::size_t c) {
-        tried[c] = best_level(others, k, columns_[k][c].setting, columns_[k][c].column);
+      const std::size_t candidates = columns_[k].size();
+      std::vector<AimSum> others;
+      for (const double share : kOthersShares)
+        if (share == 1 || limited_) others.push_back(without(look, k, share));
+      std::vector<Tried> tried(candidates * others.size());
+      parallel_for(tried.size(), state_.options.threads, [&](std::size_t t) {
+        const Candidate& candidate = columns_[k][t % candidates];
+        tried[t] = best_level(others[t / candidates], k, candidate.setting, candidate.column);
       });
       tried_ += tried.size();
       const auto best = std::max_element(tried.begin(), tried.end(), [](const Tried& a, const Tried& b) {
         return a.objective < b.objective;  // the first of equals
       });
       if (best->objective < look.objective + kLeastGain) continue;
-      const Candidate& taken = columns_[k][static_cast<std::size_t>(best - tried.begin())];
+      const auto at = static_cast<std::size_t>(best - tried.begin());
+      const Candidate& taken = columns_[k][at % candidates];
+      for (std::size_t j = 0; j < look.settings.size(); ++j)
+        if (j != k) look.settings[j].level *= kOthersShares[at / candidates];
       set(look, k, taken.setting, best->level, taken.column, best->objective);
       gained = true;
     }
@@ -190,6 +221,7 @@ class AimSearch {
 
   const HeadAims::State& state_;
   const AimJudge& judge_;
+  bool limited_;  ///< something is limited that heads share
   std::vector<std::vector<Candidate>> columns_;
   std::size_t tried_ = 0;
 };

@@ -297,13 +297,39 @@ class Renderer {
 
 }  // namespace
 
+namespace {
+
+struct ViewFrame {
+  explicit ViewFrame(const Camera& camera)
+      : ahead((camera.target_world_m - camera.eye_world_m).normalized()),
+        right(ahead.cross(std::abs(ahead.z()) > 0.999 ? Vec3::UnitY() : Vec3::UnitZ()).normalized()),
+        up(right.cross(ahead)),
+        per_px(2 * std::tan(camera.vertical_fov_rad / 2) / camera.height_px) {}
+  Vec3 ahead, right, up;
+  double per_px;  ///< of the distance ahead
+};
+
+}  // namespace
+
 Vec3 ray_direction(const Camera& camera, double x_px, double y_px) {
-  const Vec3 ahead = (camera.target_world_m - camera.eye_world_m).normalized();
-  const Vec3 up_hint = std::abs(ahead.z()) > 0.999 ? Vec3::UnitY() : Vec3::UnitZ();
-  const Vec3 right = ahead.cross(up_hint).normalized(), up = right.cross(ahead);
-  const double scale = 2 * std::tan(camera.vertical_fov_rad / 2) / camera.height_px;
-  return (ahead + (x_px - camera.width_px / 2.0) * scale * right - (y_px - camera.height_px / 2.0) * scale * up)
+  const ViewFrame view(camera);
+  return (view.ahead + (x_px - camera.width_px / 2.0) * view.per_px * view.right -
+          (y_px - camera.height_px / 2.0) * view.per_px * view.up)
       .normalized();
+}
+
+std::optional<PixelPlace> pixel_of(const Camera& camera, const Vec3& place_world_m) {
+  const ViewFrame view(camera);
+  const Vec3 to_m = place_world_m - camera.eye_world_m;
+  const double ahead_m = to_m.dot(view.ahead);
+  if (!(ahead_m > 0)) return std::nullopt;
+  PixelPlace place;
+  place.px_per_m = 1 / (ahead_m * view.per_px);
+  place.x_px = camera.width_px / 2.0 + to_m.dot(view.right) * place.px_per_m;
+  place.y_px = camera.height_px / 2.0 - to_m.dot(view.up) * place.px_per_m;
+  if (!(place.x_px >= 0 && place.x_px < camera.width_px && place.y_px >= 0 && place.y_px < camera.height_px))
+    return std::nullopt;
+  return place;
 }
 
 Result<Picture> render_picture(const RayScene& scene, std::span<const Emitter> emitters, std::span<const double> levels,

@@ -4,6 +4,7 @@
 /// pixels afterwards, so what a pixel says of lux is a measurement with a known noise.
 
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "core/transport/evaluator.h"
@@ -20,6 +21,14 @@ struct Camera {
 /// Direction of the ray through a place of the picture; x and y in pixels from the top left corner. Up is +Z, or +Y for
 /// a camera that looks straight up or down.
 [[nodiscard]] Vec3 ray_direction(const Camera& camera, double x_px, double y_px);
+
+/// Where a place is in the picture, and how large a metre across is there.
+struct PixelPlace {
+  double x_px = 0, y_px = 0;  ///< from the top left corner
+  double px_per_m = 0;
+};
+/// Nothing for a place behind the camera or outside its picture.
+[[nodiscard]] std::optional<PixelPlace> pixel_of(const Camera& camera, const Vec3& place_world_m);
 
 struct PictureOptions {
   int most_passes = 64;                 ///< samples per pixel

@@ -327,5 +327,52 @@ TEST(HeadAims, RefusesWhatCannotBe) {
   EXPECT_NE(smooth.error().detail.find("no interest points"), std::string::npos);
 }
 
+// A key light that is darker than the rest is none; and what is shared is shared so that nobody is left out for coming
+// last.
+TEST(HeadAims, KeepsTheKeyAboveTheFillWhateverTheOrder) {
+  for (std::size_t key = 0; key < 3; ++key) {
+    AimWishes wishes;
+    wishes.key = key;
+    wishes.min_key_to_fill = 1.5;
+    wishes.max_key_to_fill = 6;
+    wishes.max_object_lx = 900;
+    const auto aims = aimed_relief().aims(rail_of_heads(3), wishes);
+    ASSERT_TRUE(aims) << aims.error().detail;
+    const auto found = aims->solve();
+    ASSERT_TRUE(found) << found.error().detail;
+    EXPECT_TRUE(found->score.within_limits);
+    EXPECT_GE(found->score.key_to_fill, 1.5 * (1 - 1e-9)) << key;
+    EXPECT_LE(found->score.key_to_fill, 6 * (1 + 1e-9)) << key;
+    // Without the ratio the same heads do at least nearly as well; with it they are not lost.
+    AimWishes free = wishes;
+    free.key.reset();
+    const auto without = aimed_relief().aims(rail_of_heads(3), free)->solve();
+    ASSERT_TRUE(without);
+    EXPECT_LE(found->score.objective, without->score.objective * 1.02) << key;
+    EXPECT_GE(found->score.objective, without->score.objective * 0.7) << key;
+  }
+  AimWishes crossed;
+  crossed.key = 0;
+  crossed.min_key_to_fill = 3;
+  crossed.max_key_to_fill = 2;
+  EXPECT_FALSE(aimed_relief().aims(rail_of_heads(3), crossed));
+}
+
+TEST(HeadAims, KeepsALimitOfPower) {
+  double before = 0;
+  for (const double watts : {20.0, 60.0, 150.0}) {
+    AimWishes wishes;
+    wishes.max_watts = watts;
+    const auto found = aimed_relief().aims(rail_of_heads(3), wishes)->solve();
+    ASSERT_TRUE(found);
+    EXPECT_LE(found->score.watts, watts * (1 + 1e-9));
+    EXPECT_GT(found->score.local_contrast_lx, before) << watts;
+    before = found->score.local_contrast_lx;
+  }
+  AimWishes none;
+  none.max_watts = -1;
+  EXPECT_FALSE(aimed_relief().aims(rail_of_heads(3), none));
+}
+
 }  // namespace
 }  // namespace luxrig

@@ -173,5 +173,24 @@ TEST(PlanView, OfNothingIsAWhitePixel) {
   EXPECT_EQ(render_plan_view(rays, 500).shade, std::vector{1.0f});
 }
 
+TEST(Picture, PixelAndRayAgree) {
+  Camera camera = looking({1, -2, 0.5}, {0.2, 0.3, 0.9});
+  camera.vertical_fov_rad = 0.6;
+  for (const double x_px : {0.5, 16.5, 30.0})
+    for (const double y_px : {0.5, 10.5, 20.0})
+      for (const double far_m : {0.3, 5.0}) {
+        const auto place = pixel_of(camera, camera.eye_world_m + far_m * ray_direction(camera, x_px, y_px));
+        ASSERT_TRUE(place);
+        EXPECT_NEAR(place->x_px, x_px, 1e-9);
+        EXPECT_NEAR(place->y_px, y_px, 1e-9);
+      }
+  // The picture is 2 tan(fov / 2) of the distance high.
+  const Vec3 middle_m = camera.eye_world_m + 3 * (camera.target_world_m - camera.eye_world_m).normalized();
+  EXPECT_NEAR(pixel_of(camera, middle_m)->px_per_m, camera.height_px / (6 * std::tan(0.3)), 1e-9);
+  EXPECT_FALSE(pixel_of(camera, camera.eye_world_m - (camera.target_world_m - camera.eye_world_m))) << "behind";
+  EXPECT_FALSE(pixel_of(camera, camera.eye_world_m));
+  EXPECT_FALSE(pixel_of(camera, camera.eye_world_m + ray_direction(camera, 34, 10)));
+}
+
 }  // namespace
 }  // namespace luxrig
