@@ -61,6 +61,16 @@ OrderedJson json_of(const PlannedTask& task) {
   put(json, "normalised_error", task.normalised_error);
   put(json, "lower_bound", task.lower_bound);
   put(json, "lower_bound_of_number", task.lower_bound_of_number);
+  if (task.relief) {
+    put(json, "coverage", task.relief->coverage);
+    put(json, "local_contrast", task.relief->local_contrast_lx);
+    put(json, "relative_contrast", task.relief->relative_contrast);
+    put(json, "before_coverage", task.relief->before_coverage);
+    put(json, "before_relative_contrast", task.relief->before_relative_contrast);
+    put(json, "before_local_contrast", task.relief->before_local_contrast_lx);
+    put(json, "object_lux", task.relief->object_lux);
+    put(json, "key_to_fill", task.relief->key_to_fill);
+  }
   json["iterations"] = task.iterations;
   put(json, "seconds", task.seconds);
   put(json, "watts", task.watts);
@@ -70,6 +80,7 @@ OrderedJson json_of(const PlannedTask& task) {
   for (const PlannedNumber& number : task.numbers) {
     OrderedJson tried = {{"lights", number.lights}};
     put(tried, "normalised_error", number.normalised_error);
+    put(tried, "local_contrast", number.local_contrast_lx);
     json["numbers"].push_back(std::move(tried));
   }
   for (const PlannedPower& power : task.front) json["front"].push_back(json_of(power));
@@ -273,6 +284,18 @@ PlannedTask task_of(const Reader& reader, const Json& json, const std::string& p
   task.normalised_error = reader.number(json, path, "normalised_error", false);
   task.lower_bound = reader.optional_number(json, path, "lower_bound");
   task.lower_bound_of_number = reader.optional_number(json, path, "lower_bound_of_number");
+  if (const auto contrast_lx = reader.optional_number(json, path, "local_contrast")) {
+    PlannedRelief relief;
+    relief.local_contrast_lx = *contrast_lx;
+    relief.coverage = reader.number(json, path, "coverage", false);
+    relief.relative_contrast = reader.number(json, path, "relative_contrast", false);
+    relief.before_relative_contrast = reader.optional_number(json, path, "before_relative_contrast");
+    relief.before_local_contrast_lx = reader.optional_number(json, path, "before_local_contrast");
+    relief.before_coverage = reader.optional_number(json, path, "before_coverage");
+    relief.object_lux = reader.number(json, path, "object_lux", false);
+    relief.key_to_fill = reader.optional_number(json, path, "key_to_fill");
+    task.relief = relief;
+  }
   task.iterations = reader.count<int>(json, path, "iterations");
   task.seconds = reader.number(json, path, "seconds", false);
   reader.each(json, path, "lights", true, [&](const Json& light, const std::string& light_path) {
@@ -283,7 +306,8 @@ PlannedTask task_of(const Reader& reader, const Json& json, const std::string& p
   });
   reader.each(json, path, "numbers", false, [&](const Json& number, const std::string& number_path) {
     task.numbers.push_back({reader.count<int>(number, number_path, "lights"),
-                            reader.number(number, number_path, "normalised_error", false)});
+                            reader.number(number, number_path, "normalised_error", false),
+                            reader.optional_number(number, number_path, "local_contrast")});
   });
   task.watts = reader.optional_number(json, path, "watts");
   reader.each(json, path, "front", false, [&](const Json& power, const std::string& power_path) {

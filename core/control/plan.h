@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -23,10 +24,12 @@ struct PlannedLight {
   std::optional<double> watts{};  ///< level × rated power; none when that is not known
 };
 
-/// So many lights would leave so much of the error (normalised, weighted, none above its highest level).
+/// So many lights would leave so much of the error (normalised, weighted, none above its highest level); or, kind
+/// "highlight", give so much contrast, each at full level (then the error is NaN).
 struct PlannedNumber {
   int lights = 0;
   double normalised_error = 0;
+  std::optional<double> local_contrast_lx{};
 };
 
 /// Within so much power the lights would leave so much of the error.
@@ -35,21 +38,33 @@ struct PlannedPower {
   double normalised_error = 0;
 };
 
+/// What lights do for an object's relief (core/highlight).
+struct PlannedRelief {
+  double local_contrast_lx = 0;  ///< largest difference in illuminance to a neighbour, mean over its recessed places
+  double coverage = 0;           ///< share of its features where a light draws a shadow's edge
+  double relative_contrast = 0;  ///< the difference over the sum, likewise; 0…1
+  double object_lux = 0;         ///< at its brightest place
+  std::optional<double> before_local_contrast_lx{}, before_coverage{},
+      before_relative_contrast{};  ///< kind "aim": of the look that was there
+  std::optional<double> key_to_fill{};
+};
+
 struct PlannedTask {
   std::string name, kind;
   double normalised_error = 0;
   int iterations = 0;
   double seconds = 0;
   std::vector<PlannedLight> lights;  ///< of an emittance task, fixtures; of a placement, lights that need not hang yet
-  /// kind "placement": what the rig's fixtures give meanwhile.
+  /// Kinds that place lights: what the rig's fixtures give meanwhile.
   std::vector<PlannedLight> fixtures{};
-  /// kind "placement": the best with other numbers of lights, so that a person can choose.
+  /// Kinds that place lights: the best with other numbers of lights, so that a person can choose.
   std::vector<PlannedNumber> numbers{};
   /// kind "placement": proven by the search's own light: no number of lights at the places it tried comes closer, and
   /// none up to this task's number does.
   std::optional<double> lower_bound{}, lower_bound_of_number{};
-  std::optional<double> watts{};      ///< of its lights together; none when one's is not known
-  std::vector<PlannedPower> front{};  ///< kind "placement": what each watt less would cost
+  std::optional<double> watts{};          ///< of its lights together; none when one's is not known
+  std::vector<PlannedPower> front{};      ///< kind "placement": what each watt less would cost
+  std::optional<PlannedRelief> relief{};  ///< kind "aim" and "highlight"; their normalised_error is 0
 };
 
 struct PlannedPoint {
@@ -78,13 +93,29 @@ struct Plan {
   std::vector<PlannedLimit> limits;
 };
 
-/// Level of every fixture of the rig, in the rig's order; problems when the plan is for another rig, names an unknown
-/// fixture (or a placed light that does not hang yet: then the mend says where and how), leaves one out, or has a level
-/// outside 0…max_level.
-[[nodiscard]] Checked<std::vector<double>> levels_for(const Plan& plan, const Rig& rig, const std::string& file_name);
+/// Whether the last task to set fixtures was an aim: then what the plan predicts is what shall be held, and goals of
+/// the rig are set aside.
+[[nodiscard]] bool holds_a_look(const Plan& plan);
 
-/// The same with each placed light that is no fixture of the rig hung at its place first: `rig` gets a fixture more for
-/// each, after its own. They have no bus (their `bus` is past the last one): for light in the model, never for output.
+/// What a plan wants of a rig that hangs.
+struct PlannedLook {
+  std::vector<double> levels;   ///< per fixture
+  std::vector<PanTilt> joints;  ///< per fixture: of one that does not move, or that the plan gives none, the rig's
+  /// Per point: the rig's, or what the plan predicts when that shall be held.
+  std::vector<std::optional<double>> goal_lx;
+};
+
+/// In the rig's order; problems when the plan is for another rig, names an unknown fixture (or a placed light that does
+/// not hang yet: then the mend says where and how), leaves one out, or has a level outside 0…max_level or an angle
+/// outside a head's range.
+[[nodiscard]] Checked<PlannedLook> look_for(const Plan& plan, const Rig& rig, const std::string& file_name);
+
+/// The rig with its heads turned so: joints, and no aim where they differ. One of each per fixture.
+void turn_heads(Rig& rig, std::span<const PanTilt> joints);
+
+/// The levels, with each placed light that is no fixture of the rig hung at its place first: `rig` gets a fixture more
+/// for each, after its own. They have no bus (their `bus` is past the last one): for light in the model, never for
+/// output. Heads look where the plan has them look.
 [[nodiscard]] Checked<std::vector<double>> levels_when_hung(const Plan& plan, Rig& rig, const std::string& file_name);
 
 /// A fixture without a bus: a luminaire at a place, straight down or looking at an aim. requires luminaire < the rig's.
@@ -92,10 +123,11 @@ struct Plan {
                                  const Vec3& position_world_m, const std::optional<Vec3>& aim_world_m);
 
 /// JSON, keys as in design.md `solve --json`, plus "luxrig_plan": 1 and "rig" (and a point's "why" when there is one,
-/// and a placement's "fixtures", like "lights", and "numbers": [{"lights", "normalised_error"}],
-/// "lower_bound" and "lower_bound_of_number", "front": [{"max_watts", "watts", "normalised_error"}], "watts" of lights
-/// and tasks, and with goals of a colour a point's "xy" and "goal_xy"). Numbers are finite or
-/// the key is absent.
+/// and a placement's "fixtures", like "lights", and "numbers": [{"lights", "normalised_error", "local_contrast"}],
+/// "local_contrast", "relative_contrast", "coverage", the same with "before_", "object_lux", "key_to_fill" of a task
+/// for an object's relief, "lower_bound" and "lower_bound_of_number", "front": [{"max_watts", "watts",
+/// "normalised_error"}], "watts" of lights and tasks, and with goals of a colour a point's "xy" and "goal_xy"). Numbers
+/// are finite or the key is absent.
 [[nodiscard]] std::string to_json(const Plan& plan);
 /// Never throws. Problems of syntax carry line and column, others a path (/tasks/0/lights/3/level) in `what`. Needed
 /// are luxrig_plan, rig, tasks, and the name and level of each light; another number that is absent becomes NaN (0 for

@@ -1,4 +1,4 @@
-// A plan's levels for a rig, with or without the lights that it wants hung.
+// A plan's levels and aims for a rig, with or without the lights that it wants hung.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,30 +15,35 @@ namespace luxrig {
 namespace {
 
 constexpr double kUnset = std::numeric_limits<double>::quiet_NaN();
+constexpr double kRounding_rad = 1e-9;
 
 class PlanLevels {
  public:
   PlanLevels(const Plan& plan, const std::string& file_name) : plan_(plan), file_name_(file_name) {}
 
   /// With `hang` null, a light that is no fixture is a problem.
-  Checked<std::vector<double>> read(const Rig& rig, Rig* hang) {
+  Checked<PlannedLook> read(const Rig& rig, Rig* hang) {
     if (plan_.rig != rig.name) {
       problem(fmt::format("/rig: this plan is for rig \"{}\", not for \"{}\"", plan_.rig, rig.name),
               "give a plan solved for this rig");
       return tl::unexpected(std::move(problems_));
     }
     for (std::size_t i = 0; i < rig.fixtures.size(); ++i) index_of_.emplace(rig.fixtures[i].name, i);
-    std::vector<double> levels(rig.fixtures.size(), kUnset);
+    PlannedLook look;
+    look.levels.assign(rig.fixtures.size(), kUnset);
+    for (const Fixture& fixture : rig.fixtures) look.joints.push_back(fixture.joints);
     std::vector<bool> named(rig.fixtures.size(), false);
-    const auto set = [&](std::size_t fixture, double level) {
-      levels.resize(rig.fixtures.size(), kUnset);
+    const auto set = [&](std::size_t fixture, const PlannedLight& light, const std::string& path) {
+      look.levels.resize(rig.fixtures.size(), kUnset);
       named.resize(rig.fixtures.size(), false);
-      levels[fixture] = level;
+      look.levels[fixture] = light.level;
       named[fixture] = true;
+      if (fixture >= look.joints.size()) return look.joints.resize(fixture + 1, rig.fixtures[fixture].joints);
+      turn(rig.fixtures[fixture], light, path, look.joints[fixture]);
     };
     for (std::size_t t = 0; t < plan_.tasks.size(); ++t) {
       const PlannedTask& task = plan_.tasks[t];
-      const bool places = task.kind == "placement";
+      const bool places = task.kind == name_of(TaskKind::placement) || task.kind == name_of(TaskKind::highlight);
       each(rig, task.fixtures, fmt::format("/tasks/{}/fixtures", t), nullptr, false, set);
       each(rig, task.lights, fmt::format("/tasks/{}/lights", t), places ? hang : nullptr, places, set);
     }
@@ -48,13 +53,38 @@ class PlanLevels {
               "add it with a level, or solve again");
     }
     if (!problems_.empty()) return tl::unexpected(std::move(problems_));
-    return levels;
+    for (const Point& point : rig.points) look.goal_lx.push_back(point.goal_lx);
+    if (holds_a_look(plan_)) {
+      for (std::size_t i = 0; i < rig.points.size(); ++i)
+        for (const PlannedPoint& planned : plan_.points)
+          if (planned.name == rig.points[i].name && planned.lux > 0 && std::isfinite(planned.lux))
+            look.goal_lx[i] = planned.lux;
+    }
+    return look;
   }
 
  private:
   void problem(std::string what, std::string mend) {
     // A thousand wrong entries help nobody more than the first fifty.
     if (problems_.size() < 50) problems_.push_back({file_name_, 0, 0, std::move(what), std::move(mend)});
+  }
+
+  void turn(const Fixture& fixture, const PlannedLight& light, const std::string& path, PanTilt& joints) {
+    if (!fixture.moves || !light.pan_deg || !light.tilt_deg) return;
+    const auto within = [&](double deg, double min_rad, double max_rad, const char* key) {
+      const double rad = rad_from_deg(deg);
+      if (!(rad >= min_rad - kRounding_rad && rad <= max_rad + kRounding_rad))
+        problem(fmt::format("{}/{}: {} for fixture \"{}\" is outside {:g}…{:g}", path, key, deg, light.name,
+                            deg_from_rad(min_rad), deg_from_rad(max_rad)),
+                "give an angle within the head's range, or solve again");
+      return std::clamp(rad, min_rad, max_rad);
+    };
+    const PanTilt planned{within(*light.pan_deg, fixture.range.pan_min_rad, fixture.range.pan_max_rad, "pan_deg"),
+                          within(*light.tilt_deg, fixture.range.tilt_min_rad, fixture.range.tilt_max_rad, "tilt_deg")};
+    // The way through degrees is not another aim.
+    const bool same = std::abs(planned.pan_rad - fixture.joints.pan_rad) < kRounding_rad &&
+                      std::abs(planned.tilt_rad - fixture.joints.tilt_rad) < kRounding_rad;
+    joints = same ? fixture.joints : planned;
   }
 
   template <class Set>
@@ -80,7 +110,7 @@ class PlanLevels {
         problem(fmt::format("{}/level: {} for fixture \"{}\" is outside 0…{}", path, light.level, light.name, most),
                 "give a level within the fixture's limits, or solve again");
       }
-      set(i, light.level);
+      set(i, light, path);
     }
   }
 
@@ -155,12 +185,31 @@ Fixture hung_light(const Rig& rig, const std::string& name, std::size_t luminair
   return fixture;
 }
 
-Checked<std::vector<double>> levels_for(const Plan& plan, const Rig& rig, const std::string& file_name) {
+bool holds_a_look(const Plan& plan) {
+  const auto last = std::find_if(plan.tasks.rbegin(), plan.tasks.rend(), [](const PlannedTask& task) {
+    return task.kind == name_of(TaskKind::aim) || task.kind == name_of(TaskKind::emittance);
+  });
+  return last != plan.tasks.rend() && last->kind == name_of(TaskKind::aim);
+}
+
+Checked<PlannedLook> look_for(const Plan& plan, const Rig& rig, const std::string& file_name) {
   return PlanLevels(plan, file_name).read(rig, nullptr);
 }
 
 Checked<std::vector<double>> levels_when_hung(const Plan& plan, Rig& rig, const std::string& file_name) {
-  return PlanLevels(plan, file_name).read(rig, &rig);
+  auto look = PlanLevels(plan, file_name).read(rig, &rig);
+  if (!look) return tl::unexpected(std::move(look.error()));
+  turn_heads(rig, look->joints);
+  return std::move(look->levels);
+}
+
+void turn_heads(Rig& rig, std::span<const PanTilt> joints) {
+  for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
+    Fixture& fixture = rig.fixtures[f];
+    if (fixture.joints == joints[f]) continue;
+    fixture.joints = joints[f];
+    fixture.aim_world_m.reset();
+  }
 }
 
 }  // namespace luxrig

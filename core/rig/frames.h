@@ -20,6 +20,7 @@ namespace luxrig {
 struct PanTilt {
   double pan_rad = 0;
   double tilt_rad = 0;
+  bool operator==(const PanTilt&) const = default;
 };
 
 struct PanTiltRange {

@@ -155,7 +155,6 @@ void RigReader::read_aim(Section& s, Fixture& fixture) {
 }
 
 void RigReader::read_fixtures() {
-  NameIndex fixtures("fixture");
   each(root, "fixture", [&](Section& s) {
     Fixture fixture;
     fixture.place = s.place();

@@ -37,7 +37,6 @@ void RigReader::read_box_or_mesh(Section& s, SceneObject& object) {
 }
 
 void RigReader::read_scene() {
-  NameIndex objects("scene object");
   each(root, "scene", [&](Section& scene) {
     rig.scene.place = scene.place();
     read_mesh(scene, rig.scene.mesh);

@@ -1,27 +1,55 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <vector>
 
 #include "core/rig/rig_reader.h"
 
 namespace luxrig {
 namespace {
 
-constexpr std::array kOfPlacement = {"luminaire", "lights",   "max_lights", "error_wanted", "improvement",  "method",
-                                     "indirect",  "fixtures", "seconds",    "aimed",        "energy_front", "bound"};
+/// Keys that only some kinds have.
+struct KindKeys {
+  std::vector<TaskKind> kinds;
+  std::vector<const char*> keys;
+};
+const KindKeys kKeysOfKinds[] = {
+    {{TaskKind::placement, TaskKind::highlight}, {"luminaire", "lights", "max_lights"}},
+    {{TaskKind::placement},
+     {"error_wanted", "improvement", "method", "indirect", "fixtures", "seconds", "aimed", "energy_front", "bound"}},
+    {{TaskKind::aim, TaskKind::highlight},
+     {"object", "scale_mm", "interest", "max_object_lx", "contrast", "coverage_weight"}},
+    {{TaskKind::aim},
+     {"heads", "key", "min_key_to_fill", "max_key_to_fill", "eyes", "max_eye_lx", "base_lx", "base_weight",
+      "energy_weight", "travel_weight"}},
+};
+
+void refuse_keys_of_other_kinds(Section& s, TaskKind kind) {
+  for (const KindKeys& of : kKeysOfKinds) {
+    if (std::find(of.kinds.begin(), of.kinds.end(), kind) != of.kinds.end()) continue;
+    std::string kinds;
+    for (const TaskKind other : of.kinds) kinds += fmt::format("{}\"{}\"", kinds.empty() ? "" : " or ", name_of(other));
+    for (const char* key : of.keys)
+      s.refuse(key, fmt::format("{} has no effect: only with kind = {}", key, kinds), "remove it, or change the kind");
+  }
+}
 
 }  // namespace
 
-void RigReader::read_placement(Section& s, PlacementSpec& placement) {
-  if (const auto luminaire = luminaires.read_reference(s, "luminaire")) placement.luminaire = *luminaire;
-  if (!s.has("luminaire")) s.require("luminaire", "which kind = \"placement\" needs");
-  s.read("lights", placement.lights);
+void RigReader::read_placed(Section& s, TaskKind kind, std::size_t& luminaire, std::optional<int>& lights,
+                            int& max_lights) {
+  if (const auto index = luminaires.read_reference(s, "luminaire")) luminaire = *index;
+  if (!s.has("luminaire")) s.require("luminaire", fmt::format("which kind = \"{}\" needs", name_of(kind)));
+  s.read("lights", lights);
   if (s.has("lights")) {
     for (const char* key : {"max_lights", "improvement"})
       s.refuse(key, fmt::format("{} has no effect when the number of lights is given", key), "remove it, or lights");
   }
-  s.read("max_lights", placement.max_lights);
+  s.read("max_lights", max_lights);
+}
+
+void RigReader::read_placement(Section& s, PlacementSpec& placement) {
+  read_placed(s, TaskKind::placement, placement.luminaire, placement.lights, placement.max_lights);
   s.read("error_wanted", placement.error_wanted);
   s.read("improvement", placement.improvement);
   if (s.read_choice("method", placement.method) && !s.has("lights") &&
@@ -62,29 +90,25 @@ void RigReader::read_tasks() {
     task.place = s.place();
     if (s.read("name", task.name)) tasks.add(task.name, rig.tasks.size(), s.place_of("name"), problems);
     if (s.read_choice("kind", task.kind)) {
-      if (task.kind == TaskKind::placement) {
-        read_placement(s, task.placement);
-      } else {
-        for (const char* key : kOfPlacement)
-          s.refuse(key, fmt::format("{} has no effect: only with kind = \"placement\"", key),
-                   "remove it, or change the kind");
-      }
+      refuse_keys_of_other_kinds(s, task.kind);
+      if (task.kind == TaskKind::placement) read_placement(s, task.placement);
+      if (task.kind == TaskKind::aim) read_aim_task(s, task.aim);
+      if (task.kind == TaskKind::highlight) read_highlight(s, task.highlight);
     }
-    if (s.read("max_watts", task.max_watts)) {
-      if (task.kind == TaskKind::placement) {
-        need_watts_of(task.placement.luminaire, s.place_of("max_watts"), "max_watts of this task");
-      } else {
-        need_watts_of_fixtures(s.place_of("max_watts"), "max_watts of this task");
-      }
-    } else if (task.placement.energy_front > 0) {
-      need_watts_of(task.placement.luminaire, s.place_of("energy_front"), "energy_front");
-    }
-    if (rig.limits.max_watts && task.kind == TaskKind::placement)
-      need_watts_of(task.placement.luminaire, rig.limits.place, "max_watts of [limits]");
+    s.read("max_watts", task.max_watts);
+    const auto need_watts = [&](const Place& place, const std::string& what) {
+      if (task.kind == TaskKind::placement) return need_watts_of(task.placement.luminaire, place, what);
+      if (task.kind == TaskKind::highlight) return need_watts_of(task.highlight.luminaire, place, what);
+      need_watts_of_fixtures(place, what);
+    };
+    if (task.max_watts) need_watts(s.place_of("max_watts"), "max_watts of this task");
+    if (task.placement.energy_front > 0) need_watts(s.place_of("energy_front"), "energy_front");
+    if (task.aim.energy_weight > 0) need_watts(s.place_of("energy_weight"), "energy_weight");
+    if (rig.limits.max_watts && task.places_lights()) need_watts(rig.limits.place, "max_watts of [limits]");
     rig.tasks.push_back(std::move(task));
   });
   if (rig.limits.max_watts) need_watts_of_fixtures(rig.limits.place, "max_watts of [limits]");
-  if (rig.tasks.empty()) rig.tasks.push_back({"levels", TaskKind::emittance, {}, {}});
+  if (rig.tasks.empty()) rig.tasks.push_back({"levels", TaskKind::emittance, {}});
 }
 
 void RigReader::read_mounting() {

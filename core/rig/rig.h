@@ -161,6 +161,16 @@ struct Luxmeter {
   Place place;
 };
 
+/// Looks at the rig and takes pictures.
+struct PictureCamera {
+  std::string name;
+  Vec3 position_world_m = Vec3::Zero();
+  Vec3 aim_world_m = Vec3::UnitY();
+  double vertical_fov_rad = rad_from_deg(40);
+  int width_px = 960, height_px = 640;
+  Place place;
+};
+
 struct Point {
   std::string name;
   Vec3 position_world_m = Vec3::Zero();
@@ -199,13 +209,55 @@ struct PlacementSpec {
   bool bound = false;             ///< prove, too, how close as many lights could come
 };
 
-enum class TaskKind { emittance, placement };
+/// An object whose relief lights shall bring out.
+struct ReliefSpec {
+  std::size_t object = 0;         ///< of SceneSpec::objects; a mesh
+  std::optional<double> scale_m;  ///< at which its curvature is looked at; none: from the mesh
+  double interest = 0.1;          ///< share of its surface that counts, the most recessed first
+  std::optional<double> max_lx;   ///< never more, anywhere on it
+  bool relative = true;           ///< contrast as an eye sees it that adapts, else in lux
+  double coverage_weight = 0.25;  ///< of features with a shadow's edge, beside contrast
+};
+
+/// kind == aim: where heads that hang look, and how bright they are.
+struct AimSpec {
+  ReliefSpec relief;
+  std::vector<std::size_t> heads;  ///< fixtures, rising; each moves or not
+  std::optional<std::size_t> key;  ///< of all fixtures, one of the heads
+  double min_key_to_fill = 1;
+  std::optional<double> max_key_to_fill;
+  std::vector<std::size_t> eyes;     ///< points where light counts from wherever it comes
+  std::optional<double> max_eye_lx;  ///< there, and at every camera
+  double energy_weight = 0, base_weight = 1, travel_weight = 0.01;
+  double base_lx = 0;
+};
+
+/// kind == highlight: lights that are not hung yet, on what `mounting` says.
+struct HighlightSpec {
+  ReliefSpec relief;
+  std::size_t luminaire = 0;
+  std::optional<int> lights;  ///< else until contrast rises no more
+  int max_lights = 8;
+};
+
+enum class TaskKind { emittance, placement, aim, highlight };
+/// As the rig file writes it.
+[[nodiscard]] constexpr const char* name_of(TaskKind kind) {
+  constexpr const char* kNames[] = {"emittance", "placement", "aim", "highlight"};
+  return kNames[static_cast<int>(kind)];
+}
+
 struct Task {
   std::string name;
   TaskKind kind = TaskKind::emittance;
   Place place;
   PlacementSpec placement{};
+  AimSpec aim{};
+  HighlightSpec highlight{};
   std::optional<double> max_watts{};  ///< of the lights that it sets or places, together
+
+  /// Finds places for lights that do not hang yet.
+  [[nodiscard]] bool places_lights() const { return kind == TaskKind::placement || kind == TaskKind::highlight; }
 };
 
 /// Where lights may be placed.
@@ -275,6 +327,7 @@ struct Rig {
   std::vector<Bus> buses;
   std::vector<Fixture> fixtures;
   std::vector<Luxmeter> luxmeters;
+  std::vector<PictureCamera> cameras;
   std::optional<Daylight> daylight;
   std::vector<Point> points;
   std::vector<Task> tasks;

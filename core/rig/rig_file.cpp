@@ -163,9 +163,10 @@ void RigReader::read_all() {
   read_points();  // before fixtures and meters, which name points
   read_fixtures();
   read_luxmeters();
+  read_cameras();
   patches.report(rig.buses, problems);
   read_mounting();
-  read_tasks();  // which name luminaires, and need goals
+  read_tasks();  // which name luminaires, fixtures, objects and points, and need goals
 }
 
 Checked<Rig> parse_rig(std::string_view text, const std::filesystem::path& file, const std::filesystem::path& folder) {

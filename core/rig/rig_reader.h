@@ -52,7 +52,7 @@ struct RigReader {
   std::filesystem::path folder;
   ProblemList problems;
   Rig rig;
-  NameIndex luminaires{"luminaire"}, buses{"bus"}, points{"point"};
+  NameIndex luminaires{"luminaire"}, buses{"bus"}, points{"point"}, objects{"scene object"}, fixtures{"fixture"};
   PatchMap patches;
   /// Where each point stands: the rig file, or the points file.
   std::vector<std::pair<std::string, Place>> point_places;
@@ -72,6 +72,16 @@ struct RigReader {
   void read_daylight();
   void read_tasks();
   void read_placement(Section& section, PlacementSpec& placement);
+  void read_placed(Section& section, TaskKind kind, std::size_t& luminaire, std::optional<int>& lights,
+                   int& max_lights);
+  void read_relief(Section& section, ReliefSpec& relief);
+  void read_aim_task(Section& section, AimSpec& aim);
+  void read_highlight(Section& section, HighlightSpec& highlight);
+  /// Indices of the entries whose names fit a key's patterns, rising; a pattern that fits none is reported.
+  [[nodiscard]] std::vector<std::size_t> read_patterns(Section& section, std::string_view key,
+                                                       const std::vector<std::string_view>& names,
+                                                       std::string_view what);
+  void read_cameras();
   void read_mounting();
   void read_settings();
 

@@ -33,6 +33,8 @@ constexpr Bounds kChromaticity{0, 1, true, true};
 constexpr Bounds kKelvin{1667, 25000};
 constexpr Bounds kFlux{0, 1e8, true};
 constexpr Bounds kWatts{0, 1e6};
+constexpr Bounds kWeight{0, 1000};
+constexpr Bounds kPixels{16, 8192};
 constexpr std::string_view kUnits = "m, cm, mm, in, ft";
 constexpr std::string_view kAxes = "x, y, z";
 
@@ -55,11 +57,15 @@ constexpr SectionSpec kSections[] = {
      "A luminaire as hung and patched: over DMX (`universe`, `address`, `slots`) or over Modbus (`unit`, `register`, "
      "`full_scale`). Say where it looks by `aim`, by `aim_m`, or by `pan_deg` and `tilt_deg`."},
     {"luxmeter", true, 10000, false, "A light meter on a Modbus bus. It stands at a `point`, or at `position_m`."},
+    {"camera", true, 100, false,
+     "Takes pictures of the rig for a person to look at. There is no driver for real ones yet: the simulated rig has "
+     "them, and an `aim` task keeps light out of them."},
     {"point", true, 100000, false, "A place whose illuminance matters, on the side its normal points to."},
     {"points", false, 1, false, "Further points, from a table."},
     {"task", true, 1000, false, "What to work out. Without one: an `emittance` task called `levels`."},
     {"mounting", false, 1, false,
-     "Where a `placement` task may hang lights. Without it: in the air within the scene's bounding box, 0.1 m off "
+     "Where a `placement` or `highlight` task may hang lights. Without it: in the air within the scene's bounding box, "
+     "0.1 m off "
      "everything. Places behind closed surfaces, from which no light gets to a point with a goal, cost nothing."},
     {"limits", false, 1, false, "What holds for the whole rig."},
     {"control", false, 1, false, "How looks change, and how readings correct them."},
@@ -243,6 +249,14 @@ constexpr KeySpec kRigKeys[] = {
     {"luxmeter", "word_order", text, "", R"("high-first")", kAny, "high-first, low-first", "of two registers"},
     {"luxmeter", "lux_per_count", number, "lx", "0.001", {0, 1e6, true}, "", "what one count is worth"},
 
+    {"camera", "name", name, "", kRequired, kAny, "", "name of the camera; its pictures are files of that name"},
+    {"camera", "position_m", vector3, "m", kRequired, kPosition, "", "where its lens is"},
+    {"camera", "aim", text, "", kNone, kAny, "", "name of the point in the middle of its picture; or `aim_m`"},
+    {"camera", "aim_m", vector3, "m", kNone, kPosition, "", "the same as a place"},
+    {"camera", "fov_deg", number, "°", "40", {1, 170}, "", "vertical field of view"},
+    {"camera", "width_px", whole_number, "", "960", kPixels, "", "of its pictures"},
+    {"camera", "height_px", whole_number, "", "640", kPixels, "", "of its pictures"},
+
     {"point", "name", name, "", kRequired, kAny, "", "name of the point"},
     {"point", "position_m", vector3, "m", kRequired, kPosition, "", "where it is"},
     {"point", "normal", vector3, "", "[0, 0, 1]", kPosition, "", "out of the lit side, of any length but 0"},
@@ -263,8 +277,10 @@ constexpr KeySpec kRigKeys[] = {
     {"points", "file", file, "", kRequired, kAny, "", "CSV file; see The points file"},
 
     {"task", "name", name, "", kRequired, kAny, "", "name of the task"},
-    {"task", "kind", text, "", kRequired, kAny, "emittance, placement",
-     "`emittance`: the level of every fixture; `placement`: where further lights should hang, and their levels"},
+    {"task", "kind", text, "", kRequired, kAny, "emittance, placement, aim, highlight",
+     "`emittance`: the level of every fixture; `placement`: where further lights should hang, and their levels; `aim`: "
+     "where heads that hang look and how bright they are, so that an object's relief reads; `highlight`: where further "
+     "lights should hang for that"},
     {"task",
      "max_watts",
      number,
@@ -275,11 +291,14 @@ constexpr KeySpec kRigKeys[] = {
      "most electrical power of the lights that this task sets or places, taken as rated `watts` times level; every "
      "luminaire of theirs must have `watts`"},
     {"task", "luminaire", text, "", kNone, kAny, "",
-     "name of the `[[luminaire]]` to place (only with kind `placement`, as all keys below; required there)"},
-    {"task", "lights", whole_number, "", kNone, kLights, "", "how many; left out, as few as will do"},
-    {"task", "max_lights", whole_number, "", "20", kLights, "", "most of them, when `lights` is left out"},
+     "name of the `[[luminaire]]` to place (kind `placement` and `highlight`; required there)"},
+    {"task", "lights", whole_number, "", kNone, kLights, "",
+     "how many (kind `placement` and `highlight`); left out, as few as will do, or until contrast rises no more"},
+    {"task", "max_lights", whole_number, "", kNone, kLights, "",
+     "most of them, when `lights` is left out; left out too, 20 (`placement`) or 8 (`highlight`)"},
     {"task", "error_wanted", number, "", "0.001", kShare, "",
-     "normalised error at which the search ends: root mean square of what is missing over that of the goals"},
+     "normalised error at which the search ends: root mean square of what is missing over that of the goals (only with "
+     "kind `placement`, as all keys from here to `bound`)"},
     {"task",
      "improvement",
      number,
@@ -320,6 +339,54 @@ constexpr KeySpec kRigKeys[] = {
     {"task", "bound", yes_no, "", "false", kAny, "",
      "whether to prove, too, how close as many lights could come at all (seconds to a minute); how close any number "
      "could is always worked out where the goal was not reached"},
+    {"task", "object", text, "", kNone, kAny, "",
+     "name of the `[[scene.object]]`, a mesh, whose relief shall read (kind `aim` and `highlight`; required there)"},
+    {"task",
+     "scale_mm",
+     number,
+     "mm",
+     kNone,
+     {0, 1e5, true},
+     "",
+     "size of the relief that counts (kind `aim` and `highlight`): radius of the fits that give its curvature; left "
+     "out, from the mesh"},
+    {"task",
+     "interest",
+     number,
+     "",
+     "0.1",
+     {0, 1, true},
+     "",
+     "share of its surface that counts, the most recessed first (kind `aim` and `highlight`)"},
+    {"task", "max_object_lx", number, "lx", kNone, kLux, "",
+     "never more than this anywhere on the object (kind `aim` and `highlight`)"},
+    {"task", "contrast", text, "", R"("relative")", kAny, "lux, relative",
+     "what is made large (kind `aim` and `highlight`): the difference in illuminance to what is beside it, in `lux`, "
+     "or "
+     "`relative` to both, as an eye or a camera sees that adapts; then lights are as bright as limits let them"},
+    {"task", "coverage_weight", number, "", "0.25", kWeight, "",
+     "what it is worth that every feature has a shadow's edge, beside contrast (kind `aim` and `highlight`)"},
+    {"task", "heads", texts, "", kNone, kAny, "",
+     "fixtures to aim and dim, by name (`*` and `?`); left out, all that move. One that does not move is only dimmed "
+     "(only with kind `aim`, as all keys below)"},
+    {"task", "key", text, "", kNone, kAny, "", "the fixture that is the key light"},
+    {"task",
+     "min_key_to_fill",
+     number,
+     "",
+     "1",
+     {0, 1e6},
+     "",
+     "least of its mean illuminance of the relief over that of all other light; needs `key`"},
+    {"task", "max_key_to_fill", number, "", kNone, {0, 1e6, true}, "", "the same, most; needs `key`"},
+    {"task", "eyes", texts, "", kNone, kAny, "",
+     "points that stand for the eyes of an audience, by name (`*` and `?`): light counts from wherever it comes; "
+     "cameras are eyes, too"},
+    {"task", "max_eye_lx", number, "lx", kNone, {0, 1e7, true}, "", "most direct light at an eye or a camera"},
+    {"task", "base_lx", number, "lx", "0", kLux, "", "illuminance that all of the relief should have"},
+    {"task", "base_weight", number, "", "1", kWeight, "", "what that is worth"},
+    {"task", "energy_weight", number, "", "0", kWeight, "", "what saving all power would be worth; needs watts"},
+    {"task", "travel_weight", number, "", "0.01", kWeight, "", "what a second of movement less is worth"},
 
     {"mounting", "box_m", box, "m", kNone, kPosition, "",
      "two opposite corners of a box that lights stay in; left out, the scene's bounding box"},

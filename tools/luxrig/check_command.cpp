@@ -65,6 +65,43 @@ std::string mounting_text(const MountingSpec& mounting) {
   return text + (mounting.box_world_m ? " within box_m" : "");
 }
 
+std::string relief_text(const Rig& rig, const ReliefSpec& relief) {
+  std::string text = fmt::format("the relief of {}", rig.scene.objects[relief.object].name);
+  if (relief.scale_m) text += fmt::format(" at {:g} mm", 1000 * *relief.scale_m);
+  if (relief.max_lx) text += fmt::format(", at most {:g} lx on it", *relief.max_lx);
+  return text;
+}
+
+std::string lights_text(const std::optional<int>& lights, int most, const std::string& luminaire) {
+  return fmt::format(
+      "{} of {}", lights ? fmt::format("{}", *lights) : fmt::format("as few as will do, at most {},", most), luminaire);
+}
+
+/// What a task will do; empty where its kind says all.
+std::string task_text(const Rig& rig, const Task& task) {
+  switch (task.kind) {
+    case TaskKind::emittance:
+      return "";
+    case TaskKind::placement: {
+      const PlacementSpec& p = task.placement;
+      return lights_text(p.lights, p.max_lights, rig.luminaires[p.luminaire].name) + ", " + mounting_text(rig.mounting);
+    }
+    case TaskKind::aim: {
+      std::string heads;
+      for (const std::size_t head : task.aim.heads)
+        heads += fmt::format("{}{}", heads.empty() ? "" : ", ", rig.fixtures[head].name);
+      return fmt::format("{}, with {}", relief_text(rig, task.aim.relief), heads);
+    }
+    case TaskKind::highlight: {
+      const HighlightSpec& h = task.highlight;
+      return fmt::format("{}, by {}, {}", relief_text(rig, h.relief),
+                         lights_text(h.lights, h.max_lights, rig.luminaires[h.luminaire].name),
+                         mounting_text(rig.mounting));
+    }
+  }
+  return "";
+}
+
 std::string place_text(const Vec3& p) { return fmt::format("{:.2f} {:.2f} {:.2f}", p.x(), p.y(), p.z()); }
 
 }  // namespace
@@ -93,6 +130,7 @@ int run_check(const CheckArguments& arguments) {
                                 {"fixtures", rig.fixtures.size()},
                                 {"buses", rig.buses.size()},
                                 {"luxmeters", rig.luxmeters.size()},
+                                {"cameras", rig.cameras.size()},
                                 {"points", rig.points.size()},
                                 {"warnings", scene.warnings}};
     fmt::print("{}\n", out.dump(1));
@@ -114,16 +152,12 @@ int run_check(const CheckArguments& arguments) {
   for (const std::string& warning : scene.warnings) fmt::print("  warning    {}\n", warning);
   for (const Problem& note : rig.notes) fmt::print("  note       {}\n", note.text());
   if (rig.daylight) fmt::print("  daylight   {}\n", daylight_text(*rig.daylight));
-  fmt::print("  counts     {} luminaires, {} fixtures, {} buses, {} luxmeters, {} points, {} tasks\n",
-             rig.luminaires.size(), rig.fixtures.size(), rig.buses.size(), rig.luxmeters.size(), rig.points.size(),
-             rig.tasks.size());
-  for (const Task& task : rig.tasks) {
-    if (task.kind != TaskKind::placement) continue;
-    const PlacementSpec& p = task.placement;
-    fmt::print("  placement  {}: {} of {}, {}\n", task.name,
-               p.lights ? fmt::format("{}", *p.lights) : fmt::format("as few as will do, at most {},", p.max_lights),
-               rig.luminaires[p.luminaire].name, mounting_text(rig.mounting));
-  }
+  fmt::print("  counts     {} luminaires, {} fixtures, {} buses, {} luxmeters, {} cameras, {} points, {} tasks\n",
+             rig.luminaires.size(), rig.fixtures.size(), rig.buses.size(), rig.luxmeters.size(), rig.cameras.size(),
+             rig.points.size(), rig.tasks.size());
+  for (const Task& task : rig.tasks)
+    if (const std::string text = task_text(rig, task); !text.empty())
+      fmt::print("  {:<10} {}: {}\n", name_of(task.kind), task.name, text);
   fmt::print("\n");
   Table materials({"material", ">luminous reflectance"});
   for (const Material& m : scene.materials) materials.row({m.name, fmt::format("{:.2f}", m.luminous_reflectance())});

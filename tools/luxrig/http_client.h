@@ -12,9 +12,10 @@ struct HttpAnswer {
   std::string body;
 };
 
-/// Nothing when nobody answers within 2 s (connecting) or 5 s (reading).
-[[nodiscard]] std::optional<HttpAnswer> http_get(const std::string& host, int port, const std::string& route);
+/// Nothing when nobody answers within 2 s (connecting) or `wait_s` (reading).
+[[nodiscard]] std::optional<HttpAnswer> http_get(const std::string& host, int port, const std::string& route,
+                                                 int wait_s = 5);
 [[nodiscard]] std::optional<HttpAnswer> http_post_json(const std::string& host, int port, const std::string& route,
-                                                       const std::string& body);
+                                                       const std::string& body, int wait_s = 5);
 
 }  // namespace luxrig

@@ -95,7 +95,7 @@ double log_average_luminance_cd_m2(const Picture& picture) {
   // A sky in the window is brighter than any room: exposed is for what the light falls on.
   for (std::size_t i = 0; i < picture.luminance_cd_m2.size(); ++i)
     if (const double luminance = luminance_of(picture.luminance_cd_m2[i]);
-        luminance > 0 && picture.illuminance_lx[i] >= 0)
+        luminance > 0 && (picture.illuminance_lx.empty() || picture.illuminance_lx[i] >= 0))
       logs.push_back(std::log(luminance));
   if (logs.empty()) return 1;
   std::sort(logs.begin(), logs.end());

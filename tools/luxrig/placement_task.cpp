@@ -1,77 +1,17 @@
 #include "tools/luxrig/placement_task.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <condition_variable>
-#include <cstdio>
 #include <limits>
-#include <mutex>
-#include <thread>
 
 #include "core/transport/evaluator_choice.h"
 #include "core/transport/rig_transport.h"
+#include "tools/luxrig/search_watch.h"
 
 namespace luxrig {
 namespace {
-
-/// Tells how a search goes, from two seconds on, and stops it when asked to or when its time is up.
-class SearchWatch {
- public:
-  SearchWatch(std::string name, std::optional<double> seconds, std::stop_token stop)
-      : name_(std::move(name)), seconds_(seconds), asked_(std::move(stop)), thread_([this] { run(); }) {}
-  ~SearchWatch() {
-    {
-      const std::lock_guard lock(mutex_);
-      ended_ = true;
-    }
-    changed_.notify_one();
-    thread_.join();
-    if (said_ && terminal_) fmt::print(stderr, "\n");
-  }
-  SearchWatch(const SearchWatch&) = delete;
-  SearchWatch& operator=(const SearchWatch&) = delete;
-
-  [[nodiscard]] std::stop_token stop() const { return source_.get_token(); }
-  void better(std::size_t lights, double error) {
-    const std::lock_guard lock(mutex_);
-    best_ = fmt::format("{} light{}, error {:.2f} %", lights, lights == 1 ? "" : "s", 100 * error);
-  }
-
- private:
-  using Steady = std::chrono::steady_clock;
-  static constexpr double kSilent_s = 2, kEvery_s = 10;  ///< not on a terminal, where a line each is kept
-
-  void run() {
-    std::unique_lock lock(mutex_);
-    double said_s = 0;
-    while (!changed_.wait_for(lock, std::chrono::milliseconds(100), [&] { return ended_; })) {
-      const double now_s = std::chrono::duration<double>(Steady::now() - start_).count();
-      if (asked_.stop_requested() || (seconds_ && now_s >= *seconds_)) source_.request_stop();
-      if (now_s < kSilent_s || (said_ && now_s - said_s < (terminal_ ? 0.5 : kEvery_s))) continue;
-      said_s = now_s;
-      said_ = true;
-      fmt::print(stderr, "{}{}: {:.0f} s, {}{}", terminal_ ? "\r\x1b[K" : "", name_, now_s, best_,
-                 terminal_ ? " (Ctrl-C: take this)" : "\n");
-      std::fflush(stderr);
-    }
-  }
-
-  std::string name_;
-  std::optional<double> seconds_;
-  std::stop_token asked_;
-  std::stop_source source_;
-  Steady::time_point start_ = Steady::now();
-  bool terminal_ = isatty(STDERR_FILENO) != 0;
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::string best_ = "looking at places";
-  bool ended_ = false, said_ = false;
-  std::thread thread_;  // last: it uses all of these
-};
 
 /// The goal of the points that have one, or a limit; with colour, three channels.
 struct GoalOfPoints {
@@ -138,7 +78,7 @@ Result<PlacedInScene> search_places(const Rig& rig, const Scene& scene, const Ra
   set_emitters(rig, spec.luminaire, goal, channels);
   goal.max_watts = max_watts;
 
-  SearchWatch watch(task.name, spec.seconds, options.watch.stop);
+  SearchWatch watch(task.name, "looking at places", spec.seconds, options.watch.stop);
   PlaceInSceneOptions place;
   if (spec.lights) place.lights = static_cast<std::size_t>(*spec.lights);
   place.max_lights = static_cast<std::size_t>(spec.max_lights);
@@ -152,7 +92,9 @@ Result<PlacedInScene> search_places(const Rig& rig, const Scene& scene, const Ra
   place.seed = options.seed;
   place.threads = options.threads;
   place.stop = watch.stop();
-  place.better = [&](std::size_t lights, double error) { watch.better(lights, error); };
+  place.better = [&](std::size_t lights, double error) {
+    watch.say(fmt::format("{} light{}, error {:.2f} %", lights, lights == 1 ? "" : "s", 100 * error));
+  };
   place.front_limits = static_cast<std::size_t>(spec.energy_front);
   const Luminaire& luminaire = rig.luminaires[spec.luminaire];
   const auto points = static_cast<Eigen::Index>(receivers.size());

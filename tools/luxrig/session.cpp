@@ -21,7 +21,7 @@ Checked<Session> open_session(const std::filesystem::path& rig_path) {
   Session session{std::move(*rig), std::move(*scene), nullptr};
   session.rays = std::make_unique<RayScene>(session.scene);
   const bool places = std::any_of(session.rig.tasks.begin(), session.rig.tasks.end(),
-                                  [](const Task& task) { return task.kind == TaskKind::placement; });
+                                  [](const Task& task) { return task.places_lights(); });
   if (places || !session.rig.mounting.surfaces.empty()) {
     auto mounting = Mounting::make(session.rig.mounting, session.rig.file, session.scene, *session.rays);
     if (!mounting) return tl::unexpected(std::move(mounting.error()));

@@ -28,9 +28,11 @@ void print_levels(const PlannedTask& task) {
   fmt::print("{}\n", lights.text());
 }
 
-void print_placement(const PlannedTask& task, const PlacementSpec& spec, bool has_emitters) {
+void print_placed(const PlannedTask& task, const Task& asked, bool has_emitters) {
+  const PlacementSpec& spec = asked.placement;
   if (task.lights.empty()) {
-    fmt::print("{}: every goal is met without a further light\n\n", task.name);
+    fmt::print("{}: {} without a further light\n\n", task.name,
+               task.relief ? "limits leave nothing to do" : "every goal is met");
     return;
   }
   Table lights({"hang", "luminaire", ">x m", ">y m", ">z m", "aim", ">level", ">lumens", ">watts"});
@@ -47,7 +49,13 @@ void print_placement(const PlannedTask& task, const PlacementSpec& spec, bool ha
   }
   fmt::print("{}\n", lights.text());
   if (dark > 0 && !has_emitters) fmt::print("{} of them would give no light: leave them out\n", dark);
-  if (!spec.lights) {
+  if (asked.kind == TaskKind::highlight) {
+    std::string tried;
+    for (const PlannedNumber& number : task.numbers)
+      tried += fmt::format("{}{}: {:.1f} lx", tried.empty() ? "" : ", ", number.lights,
+                           number.local_contrast_lx.value_or(0));
+    if (!tried.empty()) fmt::print("lights and their local contrast at full level: {}\n", tried);
+  } else if (!spec.lights) {
     std::string tried;
     for (const PlannedNumber& number : task.numbers)
       tried += fmt::format("{}{}: {}", tried.empty() ? "" : ", ", number.lights, percent(number.normalised_error));
@@ -77,6 +85,38 @@ void print_placement(const PlannedTask& task, const PlacementSpec& spec, bool ha
       has_emitters ? " (what stands before the slash: its emitters are one fixture)" : "");
 }
 
+std::string degrees_text(const std::optional<double>& deg) { return deg ? fmt::format("{:.1f}°", *deg) : "-"; }
+
+void print_aim(const PlannedTask& task) {
+  Table heads({"fixture", "looks at m", ">pan", ">tilt", ">level", ">lumens", ">watts"});
+  for (const PlannedLight& light : task.lights)
+    heads.row({light.name,
+               light.aim_world_m ? fmt::format("{:.3f} {:.3f} {:.3f}", light.aim_world_m->x(), light.aim_world_m->y(),
+                                               light.aim_world_m->z())
+                                 : "-",
+               degrees_text(light.pan_deg), degrees_text(light.tilt_deg), percent(light.level),
+               fmt::format("{:.0f}", light.lumens), watts_text(light.watts)});
+  fmt::print("{}\n", heads.text());
+}
+
+void print_relief(const PlannedTask& task) {
+  const PlannedRelief& relief = *task.relief;
+  const auto was = [](const std::optional<double>& before, const std::string& text) {
+    return before ? fmt::format(" (before: {})", text) : std::string();
+  };
+  fmt::print(
+      "{} ({}): local contrast {:.1f} lx{}, relative {:.3f}{}, features with a shadow's edge {}{}, brightest place "
+      "{:.0f} lx direct{}, "
+      "{:.1f} s\n",
+      task.name, task.kind, relief.local_contrast_lx,
+      was(relief.before_local_contrast_lx, fmt::format("{:.1f}", relief.before_local_contrast_lx.value_or(0))),
+      relief.relative_contrast,
+      was(relief.before_relative_contrast, fmt::format("{:.3f}", relief.before_relative_contrast.value_or(0))),
+      percent(relief.coverage), was(relief.before_coverage, percent(relief.before_coverage.value_or(0))),
+      relief.object_lux, relief.key_to_fill ? fmt::format(", key to fill {:.2f}", *relief.key_to_fill) : "",
+      task.seconds);
+}
+
 }  // namespace
 
 int run_solve(const SolveArguments& arguments) {
@@ -90,8 +130,9 @@ int run_solve(const SolveArguments& arguments) {
   const auto transport = compute_transport(*session, compute);
   if (!transport) return report(transport.error());
   compute.watch.progress = nullptr;
-  auto plan = solve_tasks(*session, *transport, compute);
-  if (!plan) return report(plan.error());
+  auto solved = solve_tasks(*session, *transport, compute);
+  if (!solved) return report(solved.error());
+  Plan* const plan = &solved->plan;
   if (stop.stop_requested()) fmt::print(stderr, "stopped: this is the best so far\n");
   plan->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
@@ -125,16 +166,26 @@ int run_solve(const SolveArguments& arguments) {
     if (coloured) cells.insert(cells.end() - 2, {xy_text(p.goal_xy), xy_text(p.xy)});
     points.row(std::move(cells));
   }
-  const auto last_levels = std::find_if(plan->tasks.rbegin(), plan->tasks.rend(),
-                                        [](const PlannedTask& task) { return task.kind == "emittance"; });
-  if (last_levels != plan->tasks.rend()) print_levels(*last_levels);
-  for (std::size_t t = 0; t < plan->tasks.size(); ++t)
-    if (plan->tasks[t].kind == "placement") {
-      const PlacementSpec& spec = session->rig.tasks[t].placement;
-      print_placement(plan->tasks[t], spec, !session->rig.luminaires[spec.luminaire].emitters.empty());
-    }
+  // What the last task to set fixtures has set them to; and each light that is to be hung.
+  const auto last_levels = std::find_if(plan->tasks.rbegin(), plan->tasks.rend(), [](const PlannedTask& task) {
+    return task.kind == name_of(TaskKind::emittance) || task.kind == name_of(TaskKind::aim);
+  });
+  for (const PlannedTask& task : plan->tasks)
+    if (task.kind == name_of(TaskKind::aim)) print_aim(task);
+  if (last_levels != plan->tasks.rend() && !last_levels->relief) print_levels(*last_levels);
+  for (std::size_t t = 0; t < plan->tasks.size(); ++t) {
+    const Task& task = session->rig.tasks[t];
+    if (!task.places_lights()) continue;
+    const PlacementSpec& spec = task.placement;
+    print_placed(plan->tasks[t], task,
+                 task.kind == TaskKind::placement && !session->rig.luminaires[spec.luminaire].emitters.empty());
+  }
   fmt::print("{}\n", points.text());
   for (const PlannedTask& task : plan->tasks) {
+    if (task.relief) {
+      print_relief(task);
+      continue;
+    }
     fmt::print("{} ({}): normalised error {:.2f} %{}, {} iterations, {:.1f} ms\n", task.name, task.kind,
                100 * task.normalised_error, task.watts ? fmt::format(", {:.1f} W", *task.watts) : "", task.iterations,
                1000 * task.seconds);

@@ -9,14 +9,10 @@
 #include "core/solve/emittance.h"
 #include "core/transport/rig_transport.h"
 #include "tools/luxrig/placement_task.h"
+#include "tools/luxrig/task_solver.h"
 
 namespace luxrig {
 namespace {
-
-using Steady = std::chrono::steady_clock;
-using Index = Eigen::Index;
-
-double seconds_since(Steady::time_point start) { return std::chrono::duration<double>(Steady::now() - start).count(); }
 
 PlannedLight planned_light(const Rig& rig, const Fixture& fixture, double level) {
   const Luminaire& luminaire = rig.luminaires[fixture.luminaire];
@@ -33,252 +29,259 @@ PlannedLight planned_light(const Rig& rig, const Fixture& fixture, double level)
   return light;
 }
 
-class TaskSolver {
- public:
-  TaskSolver(const Session& session, const TransportMatrix& transport, const ComputeOptions& options)
-      : session_(session),
-        options_(options),
-        rig_(session.rig),
-        transport_(transport),
-        own_(static_cast<Index>(rig_.fixtures.size())),
-        level_(Eigen::VectorXd::Zero(own_)),
-        why_(rig_.points.size()) {
-    plan_.rig = rig_.name;
-    plan_.seed = options.seed;
+}  // namespace
+
+TaskSolver::TaskSolver(const Session& session, const TransportMatrix& transport, const ComputeOptions& options)
+    : session_(session),
+      options_(options),
+      rig_(session.rig),
+      transport_(transport),
+      own_(static_cast<Index>(rig_.fixtures.size())),
+      level_(Eigen::VectorXd::Zero(own_)),
+      why_(rig_.points.size()) {
+  plan_.rig = rig_.name;
+  plan_.seed = options.seed;
+}
+
+Result<void> TaskSolver::emittance(const Task& task) {
+  const auto start = Steady::now();
+  PlannedTask planned;
+  planned.name = task.name;
+  planned.kind = name_of(task.kind);
+  const auto max_watts = watts_left(0, own_, task);
+  if (!max_watts) return tl::unexpected(max_watts.error());
+  if (auto solved = solve_levels_of(0, own_, *max_watts, planned); !solved) return solved;
+  planned.seconds = seconds_since(start);
+  plan_.tasks.push_back(std::move(planned));
+  return {};
+}
+
+Result<void> TaskSolver::placement(const Task& task) {
+  const auto start = Steady::now();
+  const auto mounting = Mounting::make(rig_.mounting, rig_.file, session_.scene, *session_.rays);
+  if (!mounting) return refusal(mounting.error()[0].text());  // open_session() has made it before
+  const PlacementSpec& spec = task.placement;
+  for (Index j = 0; j < own_ && spec.fixtures != FixturesMeanwhile::as_set; ++j)
+    level_[j] = spec.fixtures == FixturesMeanwhile::full ? most_level(j) : 0;
+  const Index before = level_.size();
+  const EmittanceProblem nothing_yet = problem_of(before, before);
+  if (auto kept = limits_left(nothing_yet.fixed_lx); !kept) return kept;
+  const auto max_watts = watts_left(before, before, task);
+  if (!max_watts) return tl::unexpected(max_watts.error());
+  auto placed = search_places(rig_, session_.scene, *session_.rays, *mounting, task,
+                              {nothing_yet.fixed_lx, nothing_yet.fixed_rgb}, *max_watts, options_);
+  if (!placed) return tl::unexpected(std::move(placed.error()));
+
+  PlannedTask planned;
+  planned.name = task.name;
+  planned.kind = name_of(task.kind);
+  if (auto hung = hang(task, spec.luminaire, placed->lights); !hung) return hung;
+  if (auto solved = solve_levels_of(before, level_.size(), *max_watts, planned); !solved) return solved;
+  for (Index j = 0; j < own_; ++j) planned.fixtures.push_back(light_of(j));
+  for (const LightsAndError& tried : placed->numbers)
+    planned.numbers.push_back({static_cast<int>(tried.lights), tried.error});
+  for (const PowerAndError& power : placed->front) planned.front.push_back({power.max_watts, power.watts, power.error});
+  planned.lower_bound = placed->lower_bound;
+  planned.lower_bound_of_number = placed->lower_bound_of_number;
+  planned.iterations =
+      static_cast<int>(std::min(placed->columns, static_cast<std::size_t>(std::numeric_limits<int>::max())));
+  planned.seconds = seconds_since(start);
+  plan_.tasks.push_back(std::move(planned));
+  return {};
+}
+
+SolvedTasks TaskSolver::done() {
+  plan_.points = predicted_points(rig_, transport_, level_);
+  for (std::size_t i = 0; i < plan_.points.size(); ++i) {
+    plan_.points[i].why = why_[i];
+    if (!rig_.points[i].max_lx) continue;
+    const double lux = plan_.points[i].lux;
+    plan_.limits.push_back({rig_.points[i].name, *rig_.points[i].max_lx, lux, lux <= *rig_.points[i].max_lx});
   }
+  // What an aim has made of the levels is the wish from then on.
+  if (holds_a_look(plan_))
+    for (PlannedPoint& point : plan_.points) point.goal_lux.reset();
+  plan_.seconds = seconds_since(start_);
+  return {std::move(plan_), std::move(rig_), std::move(transport_)};
+}
 
-  Result<void> emittance(const Task& task) {
-    const auto start = Steady::now();
-    PlannedTask planned;
-    planned.name = task.name;
-    planned.kind = "emittance";
-    const auto max_watts = watts_left(0, own_, task);
-    if (!max_watts) return tl::unexpected(max_watts.error());
-    if (auto solved = solve_levels_of(0, own_, *max_watts, planned); !solved) return solved;
-    planned.seconds = seconds_since(start);
-    plan_.tasks.push_back(std::move(planned));
-    return {};
-  }
+PlannedLight TaskSolver::light_of(Index light) const {
+  return planned_light(rig_, rig_.fixtures[static_cast<std::size_t>(light)], level_[light]);
+}
 
-  Result<void> placement(const Task& task) {
-    const auto start = Steady::now();
-    const auto mounting = Mounting::make(rig_.mounting, rig_.file, session_.scene, *session_.rays);
-    if (!mounting) return refusal(mounting.error()[0].text());  // open_session() has made it before
-    const PlacementSpec& spec = task.placement;
-    for (Index j = 0; j < own_ && spec.fixtures != FixturesMeanwhile::as_set; ++j)
-      level_[j] = spec.fixtures == FixturesMeanwhile::full ? most_level(j) : 0;
-    const Index before = level_.size();
-    const EmittanceProblem nothing_yet = problem_of(before, before);
-    if (auto kept = limits_left(nothing_yet.fixed_lx); !kept) return kept;
-    const auto max_watts = watts_left(before, before, task);
-    if (!max_watts) return tl::unexpected(max_watts.error());
-    auto placed = search_places(rig_, session_.scene, *session_.rays, *mounting, task,
-                                {nothing_yet.fixed_lx, nothing_yet.fixed_rgb}, *max_watts, options_);
-    if (!placed) return tl::unexpected(std::move(placed.error()));
-
-    PlannedTask planned;
-    planned.name = task.name;
-    planned.kind = "placement";
-    if (auto hung = hang(task, *placed); !hung) return hung;
-    if (auto solved = solve_levels_of(before, level_.size(), *max_watts, planned); !solved) return solved;
-    for (Index j = 0; j < own_; ++j) planned.fixtures.push_back(light_of(j));
-    for (const LightsAndError& tried : placed->numbers)
-      planned.numbers.push_back({static_cast<int>(tried.lights), tried.error});
-    for (const PowerAndError& power : placed->front)
-      planned.front.push_back({power.max_watts, power.watts, power.error});
-    planned.lower_bound = placed->lower_bound;
-    planned.lower_bound_of_number = placed->lower_bound_of_number;
-    planned.iterations =
-        static_cast<int>(std::min(placed->columns, static_cast<std::size_t>(std::numeric_limits<int>::max())));
-    planned.seconds = seconds_since(start);
-    plan_.tasks.push_back(std::move(planned));
-    return {};
-  }
-
-  Plan done() {
-    plan_.points = predicted_points(rig_, transport_, level_);
-    for (std::size_t i = 0; i < plan_.points.size(); ++i) {
-      plan_.points[i].why = why_[i];
-      if (!rig_.points[i].max_lx) continue;
-      const double lux = plan_.points[i].lux;
-      plan_.limits.push_back({rig_.points[i].name, *rig_.points[i].max_lx, lux, lux <= *rig_.points[i].max_lx});
+EmittanceProblem TaskSolver::problem_of(Index begin, Index end) const {
+  const auto points = static_cast<Index>(rig_.points.size());
+  Eigen::VectorXd others = level_;
+  others.segment(begin, end - begin).setZero();
+  EmittanceProblem problem;
+  problem.lux_per_level = transport_.lux_per_level.block(0, begin, points, end - begin);
+  problem.fixed_lx = transport_.lux(levels_with_daylight(transport_, others)).head(points);
+  problem.goal_lx.setConstant(points, std::numeric_limits<double>::quiet_NaN());
+  problem.weight.setOnes(points);
+  problem.max_lx.setConstant(points, std::numeric_limits<double>::infinity());
+  const bool coloured = rig_.colour_goals();
+  if (coloured) {
+    problem.goal_rgb.setOnes(points, 3);
+    problem.fixed_rgb.resize(points, 3);
+    for (Index c = 0; c < 3; ++c) {
+      const Eigen::MatrixXd& primary = transport_.rgb_per_level[static_cast<std::size_t>(c)];
+      problem.rgb_per_level.push_back(primary.block(0, begin, points, end - begin));
+      problem.fixed_rgb.col(c) = (primary * levels_with_daylight(transport_, others)).head(points);
     }
-    plan_.seconds = seconds_since(start_);
-    return std::move(plan_);
   }
+  for (Index i = 0; i < points; ++i) {
+    const Point& point = rig_.points[static_cast<std::size_t>(i)];
+    // A goal without colour among others that have one does not count, and is only reported.
+    if (point.goal_lx && (point.goal_rgb || !coloured)) problem.goal_lx[i] = *point.goal_lx;
+    if (point.goal_rgb) problem.goal_rgb.row(i) = point.goal_rgb->transpose();
+    if (point.max_lx) problem.max_lx[i] = *point.max_lx;
+    problem.weight[i] = point.weight;
+    problem.point_name.push_back(point.name);
+  }
+  problem.max_level.resize(end - begin);
+  problem.watts.resize(end - begin);
+  for (Index j = begin; j < end; ++j) {
+    problem.max_level[j - begin] = most_level(j);
+    problem.watts[j - begin] = watts_of(j).value_or(0);
+    problem.light_name.push_back(rig_.fixtures[static_cast<std::size_t>(j)].name);
+  }
+  return problem;
+}
 
- private:
-  [[nodiscard]] double most_level(Index light) const {
-    return std::min(rig_.fixtures[static_cast<std::size_t>(light)].max_level, rig_.limits.max_level);
+Result<void> TaskSolver::limits_left(const Eigen::VectorXd& fixed_lx) const {
+  const Eigen::VectorXd daylight_lx = daylight_lux(rig_, transport_);
+  std::string broken;
+  bool by_daylight = true;
+  for (std::size_t i = 0; i < rig_.points.size(); ++i) {
+    const auto row = static_cast<Index>(i);
+    if (!rig_.points[i].max_lx || fixed_lx[row] <= *rig_.points[i].max_lx) continue;
+    const bool of_day = daylight_lx[row] > *rig_.points[i].max_lx;
+    by_daylight = by_daylight && of_day;
+    broken += fmt::format("{}point \"{}\" has {:.4g} lx of {} alone, its limit is {:.4g} lx",
+                          broken.empty() ? "" : "; ", rig_.points[i].name, of_day ? daylight_lx[row] : fixed_lx[row],
+                          of_day ? "daylight" : "light that stays as it is", *rig_.points[i].max_lx);
   }
-  [[nodiscard]] std::optional<double> watts_of(Index light) const {
-    return rig_.luminaires[rig_.fixtures[static_cast<std::size_t>(light)].luminaire].watts;
-  }
-  [[nodiscard]] PlannedLight light_of(Index light) const {
-    return planned_light(rig_, rig_.fixtures[static_cast<std::size_t>(light)], level_[light]);
-  }
+  if (broken.empty()) return {};
+  return refusal(broken + (by_daylight ? ": shade the opening, move the point or raise its max_lx"
+                                       : ": dim what is there (fixtures = \"off\"), or raise its max_lx"));
+}
 
-  /// Levels of the lights from `begin` to `end` are sought; the others stay as they are.
-  [[nodiscard]] EmittanceProblem problem_of(Index begin, Index end) const {
-    const auto points = static_cast<Index>(rig_.points.size());
-    Eigen::VectorXd others = level_;
-    others.segment(begin, end - begin).setZero();
-    EmittanceProblem problem;
-    problem.lux_per_level = transport_.lux_per_level.block(0, begin, points, end - begin);
-    problem.fixed_lx = transport_.lux(levels_with_daylight(transport_, others)).head(points);
-    problem.goal_lx.setConstant(points, std::numeric_limits<double>::quiet_NaN());
-    problem.weight.setOnes(points);
-    problem.max_lx.setConstant(points, std::numeric_limits<double>::infinity());
-    const bool coloured = rig_.colour_goals();
-    if (coloured) {
-      problem.goal_rgb.setOnes(points, 3);
-      problem.fixed_rgb.resize(points, 3);
-      for (Index c = 0; c < 3; ++c) {
-        const Eigen::MatrixXd& primary = transport_.rgb_per_level[static_cast<std::size_t>(c)];
-        problem.rgb_per_level.push_back(primary.block(0, begin, points, end - begin));
-        problem.fixed_rgb.col(c) = (primary * levels_with_daylight(transport_, others)).head(points);
-      }
+Result<double> TaskSolver::watts_left(Index begin, Index end, const Task& task) const {
+  double watts = task.max_watts.value_or(std::numeric_limits<double>::infinity());
+  if (!rig_.limits.max_watts) return watts;
+  double others = 0;
+  for (Index j = 0; j < level_.size(); ++j)
+    if (j < begin || j >= end) others += level_[j] * watts_of(j).value_or(0);
+  if (others > *rig_.limits.max_watts)
+    return refusal(fmt::format(
+        "task \"{}\": lights that stay as they are take {:.4g} W, max_watts of [limits] is {:g} W: dim them "
+        "(fixtures = \"off\"), or raise it",
+        task.name, others, *rig_.limits.max_watts));
+  return std::min(watts, *rig_.limits.max_watts - others);
+}
+
+Result<void> TaskSolver::solve_levels_of(Index begin, Index end, double max_watts, PlannedTask& planned) {
+  EmittanceProblem problem = problem_of(begin, end);
+  problem.max_watts = max_watts;
+  if (auto kept = limits_left(problem.fixed_lx); !kept) return kept;
+  // An interrupt has ended the search, not what becomes of it.
+  auto solution = solve_emittance(problem, planned.kind == name_of(TaskKind::placement) ? Watch{} : options_.watch);
+  if (!solution) return tl::unexpected(std::move(solution.error()));
+  level_.segment(begin, end - begin) = solution->level;
+  planned.normalised_error = solution->normalised_error;
+  planned.iterations = solution->iterations;
+  list(planned, begin, end);
+  for (std::size_t i = 0; i < why_.size(); ++i) why_[i] = solution->points[i].reason;
+  return {};
+}
+
+Result<void> TaskSolver::hang(const Task& task, std::size_t luminaire, std::span<const LightInScene> lights) {
+  if (lights.empty()) return {};
+  int number = 0;
+  const auto taken = [&](const std::string& name) {
+    return std::any_of(rig_.fixtures.begin(), rig_.fixtures.end(),
+                       [&](const Fixture& f) { return f.name == name || f.name.starts_with(name + "/"); });
+  };
+  std::vector<double> evaluated = levels();
+  for (const LightInScene& light : lights) {
+    std::string name;
+    do name = fmt::format("{} {}", task.name, ++number);
+    while (taken(name));
+    const std::string& whole = rig_.luminaires[luminaire].name;
+    const auto parts = rig_.emitters_or_itself(luminaire);
+    for (std::size_t e = 0; e < parts.size(); ++e) {
+      // As the rig file will call them: "<name>/<emitter>".
+      const std::string called = name + rig_.luminaires[parts[e]].name.substr(whole.size());
+      rig_.fixtures.push_back(hung_light(rig_, called, parts[e], light.position_world_m, light.aim_world_m));
+      evaluated.push_back(std::min(light.levels[e], most_level(static_cast<Index>(rig_.fixtures.size()) - 1)));
     }
-    for (Index i = 0; i < points; ++i) {
-      const Point& point = rig_.points[static_cast<std::size_t>(i)];
-      // A goal without colour among others that have one does not count, and is only reported.
-      if (point.goal_lx && (point.goal_rgb || !coloured)) problem.goal_lx[i] = *point.goal_lx;
-      if (point.goal_rgb) problem.goal_rgb.row(i) = point.goal_rgb->transpose();
-      if (point.max_lx) problem.max_lx[i] = *point.max_lx;
-      problem.weight[i] = point.weight;
-      problem.point_name.push_back(point.name);
-    }
-    problem.max_level.resize(end - begin);
-    problem.watts.resize(end - begin);
-    for (Index j = begin; j < end; ++j) {
-      problem.max_level[j - begin] = most_level(j);
-      problem.watts[j - begin] = watts_of(j).value_or(0);
-      problem.light_name.push_back(rig_.fixtures[static_cast<std::size_t>(j)].name);
-    }
-    return problem;
   }
+  level_.conservativeResizeLike(Eigen::VectorXd::Zero(static_cast<Index>(evaluated.size())));
+  return light_anew(evaluated);
+}
 
-  /// A fault when light that stays breaks limits by itself: no level of what is sought could keep them.
-  [[nodiscard]] Result<void> limits_left(const Eigen::VectorXd& fixed_lx) const {
-    const Eigen::VectorXd daylight_lx = daylight_lux(rig_, transport_);
-    std::string broken;
-    bool by_daylight = true;
-    for (std::size_t i = 0; i < rig_.points.size(); ++i) {
-      const auto row = static_cast<Index>(i);
-      if (!rig_.points[i].max_lx || fixed_lx[row] <= *rig_.points[i].max_lx) continue;
-      const bool of_day = daylight_lx[row] > *rig_.points[i].max_lx;
-      by_daylight = by_daylight && of_day;
-      broken += fmt::format("{}point \"{}\" has {:.4g} lx of {} alone, its limit is {:.4g} lx",
-                            broken.empty() ? "" : "; ", rig_.points[i].name, of_day ? daylight_lx[row] : fixed_lx[row],
-                            of_day ? "daylight" : "light that stays as it is", *rig_.points[i].max_lx);
-    }
-    if (broken.empty()) return {};
-    return refusal(broken + (by_daylight ? ": shade the opening, move the point or raise its max_lx"
-                                         : ": dim what is there (fixtures = \"off\"), or raise its max_lx"));
+Result<void> TaskSolver::light_anew(const std::vector<double>& levels) {
+  ComputeOptions compute = options_;
+  compute.watch = {};
+  auto transport = compute_transport(rig_, session_.scene, *session_.rays, compute, levels);
+  if (!transport) return tl::unexpected(std::move(transport.error()));
+  transport_ = std::move(*transport);
+  return {};
+}
+
+Eigen::VectorXd TaskSolver::lux_of_points() const {
+  return transport_.lux(levels_with_daylight(transport_, level_)).head(static_cast<Index>(rig_.points.size()));
+}
+
+void TaskSolver::list(PlannedTask& planned, Index begin, Index end) const {
+  planned.watts = 0;
+  for (Index j = begin; j < end; ++j) {
+    planned.lights.push_back(light_of(j));
+    if (!watts_of(j)) planned.watts.reset();
+    if (planned.watts) *planned.watts += *planned.lights.back().watts;
   }
+}
 
-  /// Power that a task's lights from `begin` to `end` may take: +inf where nothing limits it.
-  [[nodiscard]] Result<double> watts_left(Index begin, Index end, const Task& task) const {
-    double watts = task.max_watts.value_or(std::numeric_limits<double>::infinity());
-    if (!rig_.limits.max_watts) return watts;
-    double others = 0;
-    for (Index j = 0; j < level_.size(); ++j)
-      if (j < begin || j >= end) others += level_[j] * watts_of(j).value_or(0);
-    if (others > *rig_.limits.max_watts)
-      return refusal(fmt::format(
-          "task \"{}\": lights that stay as they are take {:.4g} W, max_watts of [limits] is {:g} W: dim them "
-          "(fixtures = \"off\"), or raise it",
-          task.name, others, *rig_.limits.max_watts));
-    return std::min(watts, *rig_.limits.max_watts - others);
+namespace {
+
+Result<void> done_by(TaskSolver& solver, const Task& task) {
+  switch (task.kind) {
+    case TaskKind::emittance:
+      return solver.emittance(task);
+    case TaskKind::placement:
+      return solver.placement(task);
+    case TaskKind::aim:
+      return solver.aim(task);
+    case TaskKind::highlight:
+      return solver.highlight(task);
   }
-
-  Result<void> solve_levels_of(Index begin, Index end, double max_watts, PlannedTask& planned) {
-    EmittanceProblem problem = problem_of(begin, end);
-    problem.max_watts = max_watts;
-    if (auto kept = limits_left(problem.fixed_lx); !kept) return kept;
-    // An interrupt has ended the search, not what becomes of it.
-    auto solution = solve_emittance(problem, planned.kind == "placement" ? Watch{} : options_.watch);
-    if (!solution) return tl::unexpected(std::move(solution.error()));
-    level_.segment(begin, end - begin) = solution->level;
-    planned.normalised_error = solution->normalised_error;
-    planned.iterations = solution->iterations;
-    planned.watts = 0;
-    for (Index j = begin; j < end; ++j) {
-      planned.lights.push_back(light_of(j));
-      if (!watts_of(j)) planned.watts.reset();
-      if (planned.watts) *planned.watts += *planned.lights.back().watts;
-    }
-    for (std::size_t i = 0; i < why_.size(); ++i) why_[i] = solution->points[i].reason;
-    return {};
-  }
-
-  /// The lights become fixtures of the model, and what they give is worked out anew.
-  Result<void> hang(const Task& task, const PlacedInScene& placed) {
-    if (placed.lights.empty()) return {};
-    int number = 0;
-    const auto taken = [&](const std::string& name) {
-      return std::any_of(rig_.fixtures.begin(), rig_.fixtures.end(),
-                         [&](const Fixture& f) { return f.name == name || f.name.starts_with(name + "/"); });
-    };
-    std::vector<double> levels(level_.data(), level_.data() + level_.size());
-    for (const LightInScene& light : placed.lights) {
-      std::string name;
-      do name = fmt::format("{} {}", task.name, ++number);
-      while (taken(name));
-      const std::string& luminaire = rig_.luminaires[task.placement.luminaire].name;
-      const auto parts = rig_.emitters_or_itself(task.placement.luminaire);
-      for (std::size_t e = 0; e < parts.size(); ++e) {
-        // As the rig file will call them: "<name>/<emitter>".
-        const std::string called = name + rig_.luminaires[parts[e]].name.substr(luminaire.size());
-        rig_.fixtures.push_back(hung_light(rig_, called, parts[e], light.position_world_m, light.aim_world_m));
-        levels.push_back(std::min(light.levels[e], most_level(static_cast<Index>(rig_.fixtures.size()) - 1)));
-      }
-    }
-    ComputeOptions compute = options_;
-    compute.watch = {};
-    auto transport = compute_transport(rig_, session_.scene, *session_.rays, compute, levels);
-    if (!transport) return tl::unexpected(std::move(transport.error()));
-    transport_ = std::move(*transport);
-    level_.conservativeResizeLike(Eigen::VectorXd::Zero(static_cast<Index>(levels.size())));
-    return {};
-  }
-
-  const Session& session_;
-  const ComputeOptions& options_;
-  Steady::time_point start_ = Steady::now();
-  Rig rig_;  ///< with placed lights as further fixtures
-  TransportMatrix transport_;
-  Index own_;
-  Eigen::VectorXd level_;
-  std::vector<std::string> why_;
-  Plan plan_;
-};
-
-bool places_lights(const Task& task) { return task.kind == TaskKind::placement; }
+  return refusal("an unknown kind of task");
+}
 
 }  // namespace
 
-Result<Plan> solve_tasks(const Session& session, const TransportMatrix& transport, const ComputeOptions& options) {
+Result<SolvedTasks> solve_tasks(const Session& session, const TransportMatrix& transport,
+                                const ComputeOptions& options) {
   TaskSolver solver(session, transport, options);
   for (const Task& task : session.rig.tasks) {
-    auto done = places_lights(task) ? solver.placement(task) : solver.emittance(task);
-    if (!done) return tl::unexpected(std::move(done.error()));
+    if (auto done = done_by(solver, task); !done) return tl::unexpected(std::move(done.error()));
     // A search that was interrupted has given its best so far: that is what the person wants to see.
-    if (places_lights(task) && options.watch.stop.stop_requested()) break;
+    if (task.kind != TaskKind::emittance && options.watch.stop.stop_requested()) break;
   }
   return solver.done();
 }
 
-Result<Plan> solve_levels(const Session& session, const TransportMatrix& transport, const ComputeOptions& options) {
+Result<SolvedTasks> solve_what_hangs(const Session& session, const TransportMatrix& transport,
+                                     const ComputeOptions& options, bool aim) {
   TaskSolver solver(session, transport, options);
   bool any = false;
   for (const Task& task : session.rig.tasks) {
-    if (places_lights(task)) continue;
+    if (task.places_lights() || (task.kind == TaskKind::aim && !aim)) continue;
     any = true;
-    if (auto done = solver.emittance(task); !done) return tl::unexpected(std::move(done.error()));
+    if (auto done = done_by(solver, task); !done) return tl::unexpected(std::move(done.error()));
   }
   if (!any) {
-    if (auto done = solver.emittance({"levels", TaskKind::emittance, {}, {}}); !done)
+    if (auto done = solver.emittance({"levels", TaskKind::emittance, {}}); !done)
       return tl::unexpected(std::move(done.error()));
   }
   return solver.done();

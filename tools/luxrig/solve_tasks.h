@@ -7,16 +7,23 @@
 
 namespace luxrig {
 
+struct SolvedTasks {
+  Plan plan;
+  Rig rig;                    ///< heads look where the plan has them look; placed lights are its last fixtures
+  TransportMatrix transport;  ///< of that rig
+};
+
 /// All tasks. Goals and limits count all light, daylight too; light that one task has set or placed counts in the next.
 /// transport   made by compute_transport(session)
-/// A placement ends early, with its best so far, when options.watch.stop is requested, and tasks after it are left out;
+/// A search ends early, with its best so far, when options.watch.stop is requested, and tasks after it are left out;
 /// without any, and elsewhere: Cause::cancelled. Cause::invalid when light that no task may change (daylight, say) is
-/// alone above a limit.
-[[nodiscard]] Result<Plan> solve_tasks(const Session& session, const TransportMatrix& transport,
-                                       const ComputeOptions& options);
+/// alone above a limit, or an object has no relief that its task could bring out.
+[[nodiscard]] Result<SolvedTasks> solve_tasks(const Session& session, const TransportMatrix& transport,
+                                              const ComputeOptions& options);
 
-/// Emittance tasks alone, and one called "levels" without any: what a rig that hangs can do.
-[[nodiscard]] Result<Plan> solve_levels(const Session& session, const TransportMatrix& transport,
-                                        const ComputeOptions& options);
+/// What a rig that hangs can do: tasks that place no lights, and one called "levels" without any.
+/// aim   false: heads stay where they look
+[[nodiscard]] Result<SolvedTasks> solve_what_hangs(const Session& session, const TransportMatrix& transport,
+                                                   const ComputeOptions& options, bool aim = true);
 
 }  // namespace luxrig

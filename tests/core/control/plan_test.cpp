@@ -9,6 +9,12 @@
 namespace luxrig {
 namespace {
 
+Checked<std::vector<double>> levels_for(const Plan& plan, const Rig& rig, const std::string& file_name) {
+  auto look = look_for(plan, rig, file_name);
+  if (!look) return tl::unexpected(look.error());
+  return std::move(look->levels);
+}
+
 Rig two_fixture_rig() {
   Rig rig;
   rig.name = "room";
@@ -437,6 +443,100 @@ TEST(Plan, NamesTheHousingOfEmittersThatDoNotHangYet) {
   ASSERT_FALSE(levels);
   EXPECT_NE(levels.error()[0].mend.find("hang a par at"), std::string::npos) << levels.error()[0].text();
   EXPECT_NE(levels.error()[0].mend.find("called \"more 1\""), std::string::npos) << levels.error()[0].text();
+}
+
+TEST(Plan, CarriesWhatLightsDoForARelief) {
+  Plan plan = plan_for_two(0.5, 0.25);
+  plan.tasks[0].kind = "aim";
+  PlannedRelief relief;
+  relief.local_contrast_lx = 74.5;
+  relief.coverage = 0.33;
+  relief.relative_contrast = 0.21;
+  relief.before_local_contrast_lx = 56;
+  relief.object_lux = 1042;
+  relief.key_to_fill = 1.25;
+  plan.tasks[0].relief = relief;
+  plan.tasks[0].numbers = {{1, std::nan(""), 40.0}, {2, std::nan(""), 61.5}};
+  const auto back = plan_from_json(to_json(plan), "plan.json");
+  ASSERT_TRUE(back) << back.error()[0].text();
+  const PlannedTask& task = back->tasks[0];
+  ASSERT_TRUE(task.relief);
+  EXPECT_EQ(task.relief->local_contrast_lx, 74.5);
+  EXPECT_EQ(task.relief->coverage, 0.33);
+  EXPECT_EQ(task.relief->relative_contrast, 0.21);
+  EXPECT_EQ(task.relief->before_local_contrast_lx, 56);
+  EXPECT_FALSE(task.relief->before_coverage);
+  EXPECT_EQ(task.relief->object_lux, 1042);
+  EXPECT_EQ(task.relief->key_to_fill, 1.25);
+  ASSERT_EQ(task.numbers.size(), 2u);
+  EXPECT_EQ(task.numbers[1].local_contrast_lx, 61.5);
+  EXPECT_TRUE(std::isnan(task.numbers[1].normalised_error));
+  EXPECT_FALSE(plan_from_json(to_json(plan_for_two(0.5, 0.25)), "plan.json")->tasks[0].relief);
+}
+
+Rig rig_with_a_head() {
+  Rig rig = two_fixture_rig();
+  rig.fixtures[1].moves = true;
+  rig.fixtures[1].joints = {0.3, 0.4};
+  rig.fixtures[1].range = {-kPi, kPi, -1, 1};
+  rig.points.resize(2);
+  rig.points[0].name = "desk";
+  rig.points[0].goal_lx = 300;
+  rig.points[1].name = "floor";
+  return rig;
+}
+
+TEST(Plan, TurnsHeadsAndNothingElse) {
+  const Rig rig = rig_with_a_head();
+  Plan plan = plan_for_two(0.5, 0.25);
+  for (PlannedLight& light : plan.tasks[0].lights) {
+    light.pan_deg = 90;
+    light.tilt_deg = -45;
+  }
+  const auto look = look_for(plan, rig, "plan.json");
+  ASSERT_TRUE(look) << look.error()[0].text();
+  EXPECT_EQ(look->joints[0], rig.fixtures[0].joints) << "it hangs as it hangs";
+  EXPECT_DOUBLE_EQ(look->joints[1].pan_rad, rad_from_deg(90));
+  EXPECT_DOUBLE_EQ(look->joints[1].tilt_rad, rad_from_deg(-45));
+  Rig turned = rig;
+  turned.fixtures[1].aim_world_m = Vec3(1, 2, 3);
+  turn_heads(turned, look->joints);
+  EXPECT_EQ(turned.fixtures[1].joints, look->joints[1]);
+  EXPECT_FALSE(turned.fixtures[1].aim_world_m);
+
+  // Without angles, or with those it has but for the way through degrees: where it looks.
+  plan.tasks[0].lights[1].tilt_deg.reset();
+  EXPECT_EQ(look_for(plan, rig, "plan.json")->joints[1], rig.fixtures[1].joints);
+  plan.tasks[0].lights[1].pan_deg = deg_from_rad(0.3) + 1e-12;
+  plan.tasks[0].lights[1].tilt_deg = deg_from_rad(0.4);
+  EXPECT_EQ(look_for(plan, rig, "plan.json")->joints[1], rig.fixtures[1].joints);
+
+  plan.tasks[0].lights[1].tilt_deg = 60;  // 57.3° is its end
+  const auto refused = look_for(plan, rig, "plan.json");
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error()[0].what.find("/tasks/0/lights/1/tilt_deg"), std::string::npos);
+}
+
+// An aim's levels are its own wish; an emittance task after it goes back to goals.
+TEST(Plan, HoldsTheLookOfAnAimUnlessLevelsAreSetAfterIt) {
+  const Rig rig = rig_with_a_head();
+  Plan plan = plan_for_two(0.5, 0.25);
+  for (const auto& [name, lux] : {std::pair("desk", 120.0), std::pair("floor", 35.0)}) {
+    PlannedPoint point;
+    point.name = name;
+    point.lux = lux;
+    plan.points.push_back(point);
+  }
+  EXPECT_EQ(look_for(plan, rig, "plan.json")->goal_lx[0], 300);
+  EXPECT_FALSE(look_for(plan, rig, "plan.json")->goal_lx[1]);
+  plan.tasks.push_back(plan.tasks[0]);
+  plan.tasks[1].kind = "aim";
+  EXPECT_TRUE(holds_a_look(plan));
+  EXPECT_EQ(look_for(plan, rig, "plan.json")->goal_lx[0], 120);
+  EXPECT_EQ(look_for(plan, rig, "plan.json")->goal_lx[1], 35);
+  plan.tasks.push_back(plan.tasks[0]);
+  EXPECT_FALSE(holds_a_look(plan));
+  EXPECT_EQ(look_for(plan, rig, "plan.json")->goal_lx[0], 300);
 }
 
 }  // namespace

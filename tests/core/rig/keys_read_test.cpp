@@ -37,6 +37,12 @@ position_m = [1, 2, 3]  #> [1, 2, 4]
 turn_deg = 30  #> -30
 reflectance = 0.2  #> 0.3
 [[scene.object]]
+name = "cup"
+file = "a.obj"
+[[scene.object]]
+name = "bowl"
+file = "a.obj"
+[[scene.object]]
 name = "plinth"
 box_m = [1, 2, 3]  #> [1, 2, 4]
 [[luminaire]]
@@ -155,6 +161,17 @@ position_m = [1, 1, 1]  #> [1, 1, 2]
 normal = [1, 0, 0]  #> [0, 1, 0]
 bus = "field"
 unit = 9
+[[camera]]
+name = "front"  #> "side"
+position_m = [0, -2, 1]  #> [0, -2, 2]
+aim = "desk"  #> "floor"
+fov_deg = 30  #> 31
+width_px = 640  #> 641
+height_px = 480  #> 481
+[[camera]]
+name = "top"
+position_m = [0, 0, 2]
+aim_m = [0, 0, 0]  #> [0, 1, 0]
 [[point]]
 name = "desk"
 position_m = [1, 1, 0.8]  #> [1, 1, 0.9]
@@ -196,6 +213,31 @@ name = "four"
 kind = "placement"
 luminaire = "spot"
 lights = 4  #> 5
+[[task]]
+name = "relief"
+kind = "aim"
+object = "cup"  #> "bowl"
+scale_mm = 4  #> 5
+interest = 0.2  #> 0.3
+max_object_lx = 900  #> 800
+contrast = "lux"  #> "relative"
+coverage_weight = 0.5  #> 0.6
+heads = ["head", "aime*"]  #> ["head"]
+key = "head"  #> "aimed"
+min_key_to_fill = 2  #> 1.5
+max_key_to_fill = 8  #> 9
+eyes = ["floor"]  #> ["desk"]
+max_eye_lx = 30  #> 31
+base_lx = 20  #> 21
+base_weight = 0.1  #> 0.2
+energy_weight = 0.3  #> 0.4
+travel_weight = 0.02  #> 0.03
+[[task]]
+name = "detail"
+kind = "highlight"
+luminaire = "spot"
+object = "cup"
+max_lights = 3  #> 4
 [mounting]
 box_m = [[0, 0, 2], [4, 5, 3]]  #> [[4, 0, 2], [0, 5, 3.5]]
 surfaces = ["ceiling*", "plinth"]  #> ["ceiling*", "vase"]
@@ -335,7 +377,17 @@ std::string dump(const Rig& rig) {
     add(t.name, static_cast<int>(t.kind), p.luminaire, text_of(p.lights), p.max_lights, p.error_wanted, p.improvement,
         static_cast<int>(p.method), p.aimed, p.indirect, static_cast<int>(p.fixtures), text_of(p.seconds),
         p.energy_front, p.bound, text_of(t.max_watts));
+    const AimSpec& a = t.aim;
+    const HighlightSpec& h = t.highlight;
+    for (const ReliefSpec& r : {a.relief, h.relief})
+      add(r.object, text_of(r.scale_m), r.interest, text_of(r.max_lx), r.relative, r.coverage_weight);
+    for (const std::size_t head : a.heads) add("head", head);
+    for (const std::size_t eye : a.eyes) add("eye", eye);
+    add(text_of(a.key), a.min_key_to_fill, text_of(a.max_key_to_fill), text_of(a.max_eye_lx), a.energy_weight,
+        a.base_weight, a.travel_weight, a.base_lx, h.luminaire, text_of(h.lights), h.max_lights);
   }
+  for (const PictureCamera& c : rig.cameras)
+    add(c.name, text_of(c.position_world_m), text_of(c.aim_world_m), c.vertical_fov_rad, c.width_px, c.height_px);
   const MountingSpec& mounting = rig.mounting;
   if (mounting.box_world_m) add(text_of(Vec3(mounting.box_world_m->min())), text_of(Vec3(mounting.box_world_m->max())));
   for (const auto& surface : mounting.surfaces) add(surface.text);

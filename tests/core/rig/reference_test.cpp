@@ -63,6 +63,7 @@ TEST(Reference, ItsExamplesMakeOneRig) {
   const auto folder = std::filesystem::path(testing::TempDir()) / "luxrig_reference_example";
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "room.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  std::ofstream(folder / "vase.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
   std::ofstream(folder / "points.csv") << blocks("csv");
   std::ofstream(folder / "track-spot.ies") << "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 1 1 2 0 0 0\n1 1 10\n"
                                               "0 45 90\n0\n100 50 0\n";

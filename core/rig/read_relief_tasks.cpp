@@ -1,0 +1,107 @@
+// Tasks that bring out an object's relief: aim, highlight.
+#include <fmt/format.h>
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "core/rig/nearest.h"
+#include "core/rig/rig_reader.h"
+
+namespace luxrig {
+
+std::vector<std::size_t> RigReader::read_patterns(Section& s, std::string_view key,
+                                                  const std::vector<std::string_view>& names, std::string_view what) {
+  std::vector<std::pair<std::string, Place>> patterns;
+  s.read_texts(key, patterns);
+  std::vector<std::size_t> found;
+  for (const auto& [pattern, place] : patterns) {
+    const std::size_t before = found.size();
+    for (std::size_t i = 0; i < names.size(); ++i)
+      if (fnmatch(pattern.c_str(), std::string(names[i]).c_str(), 0) == 0) found.push_back(i);
+    if (found.size() == before)
+      problems.add(place, fmt::format("{} {} fits no {}", key, in_quotes(pattern), what),
+                   mend_for_unknown(pattern, names, fmt::format("add a [[{}]] of that name", what)));
+  }
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
+}
+
+void RigReader::read_relief(Section& s, ReliefSpec& relief) {
+  if (!s.has("object")) s.require("object", "the mesh whose relief shall read");
+  if (const auto object = objects.read_reference(s, "object")) {
+    relief.object = *object;
+    if (*object < rig.scene.objects.size() && !rig.scene.objects[*object].mesh)
+      problems.add(
+          s.place_of("object"),
+          fmt::format("scene object {} is a box: it has no relief", in_quotes(rig.scene.objects[*object].name)),
+          "name an object that is a mesh file");
+  }
+  double scale_mm = 0;
+  if (s.read("scale_mm", scale_mm)) relief.scale_m = scale_mm / 1000;
+  s.read("interest", relief.interest);
+  s.read("max_object_lx", relief.max_lx);
+  if (relief.max_lx && !(*relief.max_lx > 0))
+    problems.add(s.place_of("max_object_lx"), "max_object_lx of 0 leaves nothing to light", "give it some lux");
+  s.read_choice("contrast", relief.relative);
+  s.read("coverage_weight", relief.coverage_weight);
+}
+
+void RigReader::read_highlight(Section& s, HighlightSpec& highlight) {
+  read_placed(s, TaskKind::highlight, highlight.luminaire, highlight.lights, highlight.max_lights);
+  if (highlight.luminaire < rig.luminaires.size() && !rig.luminaires[highlight.luminaire].emitters.empty())
+    problems.add(s.place_of("luminaire"),
+                 fmt::format("{} has emitters that are set one by one: highlight cannot set those yet",
+                             in_quotes(rig.luminaires[highlight.luminaire].name)),
+                 "name a luminaire without emitters");
+  read_relief(s, highlight.relief);
+}
+
+void RigReader::read_aim_task(Section& s, AimSpec& aim) {
+  read_relief(s, aim.relief);
+  std::vector<std::string_view> fixture_names, point_names;
+  for (const Fixture& fixture : rig.fixtures) fixture_names.push_back(fixture.name);
+  for (const Point& point : rig.points) point_names.push_back(point.name);
+  if (s.has("heads")) {
+    aim.heads = read_patterns(s, "heads", fixture_names, "fixture");
+  } else {
+    for (std::size_t f = 0; f < rig.fixtures.size(); ++f)
+      if (rig.fixtures[f].moves) aim.heads.push_back(f);
+    if (aim.heads.empty() && problems.empty())
+      problems.add(s.place(), "there is nothing to aim: no fixture has pan and tilt",
+                   "give a fixture pan and tilt slots, or name the heads that shall at least be dimmed");
+  }
+  for (const std::size_t head : aim.heads) {
+    if (!rig.fixtures[head].housing) continue;
+    problems.add(s.place(),
+                 fmt::format("{} has emitters that are set one by one: aim cannot set those yet",
+                             in_quotes(rig.fixtures[head].name)),
+                 "name heads without emitters");
+    break;
+  }
+  if ((aim.key = fixtures.read_reference(s, "key")) &&
+      std::find(aim.heads.begin(), aim.heads.end(), *aim.key) == aim.heads.end())
+    problems.add(s.place_of("key"), "the key light is none of the heads", "name one of them");
+  s.read("min_key_to_fill", aim.min_key_to_fill);
+  s.read("max_key_to_fill", aim.max_key_to_fill);
+  if (!s.has("key"))
+    for (const char* key : {"min_key_to_fill", "max_key_to_fill"})
+      s.refuse(key, fmt::format("{} has no effect without a key light", key), "add key = …");
+  if (aim.max_key_to_fill && *aim.max_key_to_fill < aim.min_key_to_fill)
+    problems.add(
+        s.place_of("max_key_to_fill"),
+        fmt::format("max_key_to_fill {:g} is below min_key_to_fill {:g}", *aim.max_key_to_fill, aim.min_key_to_fill),
+        "raise it, or lower that");
+  aim.eyes = read_patterns(s, "eyes", point_names, "point");
+  s.read("max_eye_lx", aim.max_eye_lx);
+  if (aim.max_eye_lx && aim.eyes.empty() && rig.cameras.empty())
+    s.refuse("max_eye_lx", "max_eye_lx has no effect: there are no eyes and no camera", "add eyes = [\"…\"]");
+  if (!s.has("max_eye_lx")) s.refuse("eyes", "eyes have no effect without a limit", "add max_eye_lx");
+  s.read("base_lx", aim.base_lx);
+  s.read("base_weight", aim.base_weight);
+  s.read("energy_weight", aim.energy_weight);
+  s.read("travel_weight", aim.travel_weight);
+}
+
+}  // namespace luxrig

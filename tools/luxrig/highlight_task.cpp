@@ -1,0 +1,173 @@
+#include "tools/luxrig/highlight_task.h"
+
+#include <fmt/format.h>
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/highlight/mounted_lights.h"
+#include "core/highlight/relief_contrast.h"
+#include "core/photometry/beam.h"
+#include "core/scene/object_scene.h"
+#include "tools/luxrig/search_watch.h"
+
+namespace luxrig {
+namespace {
+
+constexpr double kBeamShare = 0.9;  // of the flux, in what counts as the beam (thesis §6.5)
+
+/// Where [mounting] has lights hang, or nested boxes around the object.
+Result<LightDomain> domain_of(const ReliefSurroundings& around, const StudiedObject& object, const Mounting& mounting) {
+  const MountingSpec& spec = around.rig.mounting;
+  if (spec.surfaces.empty()) {
+    // Boxes as far as the mounting's box reaches.
+    NestedBoxOptions boxes;
+    boxes.margin_m = boxes.step_m =
+        std::max(mounting.box_world_m().diagonal().norm() / 8, object.study.surface.diagonal_m() / 4);
+    return nested_box_domain(object.study.surface, boxes);
+  }
+  std::vector<std::uint8_t> marks(around.scene.triangles.size(), 0);
+  const auto fits = [&](const std::string& name) {
+    return std::any_of(spec.surfaces.begin(), spec.surfaces.end(), [&](const MountingSpec::Pattern& pattern) {
+      return fnmatch(pattern.text.c_str(), name.c_str(), 0) == 0;
+    });
+  };
+  for (std::size_t t = 0; t < marks.size(); ++t)
+    marks[t] = fits(around.scene.materials[around.scene.material_of_triangle[t]].name) ||
+               fits(around.scene.object_names[around.scene.object_of_triangle[t]]);
+  LightDomainOptions layers;
+  // On both sides: which of them is in the room, visibility and may_hang tell.
+  layers.layer_offsets_m = {spec.offset_min_m, -spec.offset_min_m};
+  if (spec.offset_max_m > spec.offset_min_m) {
+    layers.layer_offsets_m.push_back(spec.offset_max_m);
+    layers.layer_offsets_m.push_back(-spec.offset_max_m);
+  }
+  return mesh_light_domain(around.scene, marks, object.study.surface.centroid_world_m(), layers);
+}
+
+/// Only those that may hang where they are, moved there as far as box and offsets go.
+PotentialLights hangable(const PotentialLights& all, const Mounting& mounting) {
+  PotentialLights kept;
+  kept.features = all.features;
+  kept.points_of_feature = all.points_of_feature;
+  for (std::size_t l = 0; l < all.lights.size(); ++l) {
+    const auto snapped = mounting.snapped(all.lights[l].position_world_m);
+    if (!snapped) continue;
+    kept.lights.push_back(all.lights[l]);
+    kept.lights.back().position_world_m = snapped->place_world_m;
+    kept.votes.insert(kept.votes.end(), all.of(l).begin(), all.of(l).end());
+    kept.begin.push_back(kept.votes.size());
+  }
+  return kept;
+}
+
+}  // namespace
+
+Result<ReliefLights> find_relief_lights(const ReliefSurroundings& around, const StudiedObject& object, const Task& task,
+                                        const Mounting& mounting, const ComputeOptions& options) {
+  const HighlightSpec& spec = task.highlight;
+  const Luminaire& luminaire = around.rig.luminaires[spec.luminaire];
+  const auto refuse = [&](const Fault& fault) {
+    return refusal(fmt::format("task \"{}\": {}", task.name, fault.detail));
+  };
+  SearchWatch watch(task.name, "looking for shadow edges", {}, options.watch.stop);
+  const ReliefStudy& study = object.study;
+  ShadowEdgeOptions of_edges;
+  of_edges.threads = options.threads;
+  of_edges.watch.stop = options.watch.stop;
+  const auto edges = find_shadow_edges(study.rays, study.points, of_edges);
+  if (!edges) return refuse(edges.error());
+
+  watch.say("asking where lights may hang");
+  const auto domain = domain_of(around, object, mounting);
+  if (!domain) return refuse(domain.error());
+  const auto others = scene_without_object(around.scene, around.rig.scene.objects[spec.relief.object].name);
+  if (!others) return refuse(others.error());
+  const RayScene environment(*others);
+  DomainVoteOptions of_votes;
+  of_votes.surroundings.environment = &environment;
+  of_votes.threads = options.threads;
+  of_votes.watch.stop = options.watch.stop;
+  const auto votes = vote_on_domain(*domain, *edges, study.points, study.features.cluster_of_point, of_votes);
+  if (!votes) return refuse(votes.error());
+  PotentialLightOptions of_lights;
+  of_lights.beam_angle_rad = cone_of_flux_rad(*luminaire.intensity, kBeamShare);
+  of_lights.threads = options.threads;
+  const auto potential = potential_lights(*votes, of_lights);
+  if (!potential) return refuse(potential.error());
+  LightSelection selection(hangable(*potential, mounting));
+  if (selection.all().lights.empty())
+    return refusal(
+        fmt::format("task \"{}\": none of {} places that bring out the object's relief may be hung at: "
+                    "widen box_m or offset_m of [mounting], or lower clearance_m",
+                    task.name, potential->lights.size()));
+
+  watch.say("choosing lights");
+  ReliefLights found;
+  LightNumber number;
+  number.most = spec.lights.value_or(spec.max_lights);
+  const auto contrast_of = [&](std::span<const std::uint32_t> lights) {
+    std::vector<MountedBeam> beams;
+    for (const std::uint32_t l : lights) {
+      const PotentialLight& light = selection.all().lights[l];
+      beams.push_back(aimed_beam(light.position_world_m, light.direction, luminaire.intensity));
+    }
+    const double lift_m = 1e-4 * study.surface.diagonal_m();
+    return relief_contrast(study.surface, study.rays, of_votes.surroundings, study.interest, beams, lift_m,
+                           options.threads)
+        .local_contrast_lx;
+  };
+  if (!spec.lights) number.local_contrast = contrast_of;
+  auto contrasts = select_lights(selection, number);
+  if (!contrasts) return refuse(contrasts.error());
+  found.contrast_lx = std::move(*contrasts);
+
+  watch.say("aiming");
+  AimWishes wishes;
+  wishes.limits = limits_at_points(around);
+  wishes.max_object_lx = spec.relief.max_lx.value_or(std::numeric_limits<double>::infinity());
+  wishes.relative = spec.relief.relative;
+  wishes.max_watts = around.max_watts;
+  wishes.coverage_weight = spec.relief.coverage_weight;
+  wishes.travel_weight = 0;
+  auto fixed = staying_lux(around, object, options);
+  if (!fixed) return refuse(fixed.error());
+  wishes.fixed_lux = std::move(*fixed);
+  std::vector<HangingHead> heads;
+  for (const std::uint32_t l : selection.taken()) {
+    const PotentialLight& light = selection.all().lights[l];
+    HangingHead head;
+    head.world_from_mount.translation_m = light.position_world_m;
+    head.range = {-kPi, kPi, -kPi, kPi};  // it is hung so: no joint stops it
+    head.present = pan_tilt_towards(head.world_from_mount, light.direction, head.range, {}).value_or(PanTilt{});
+    head.zoom = {luminaire.intensity};
+    head.max_level = around.rig.limits.max_level;
+    head.watts = luminaire.watts.value_or(0);
+    heads.push_back(std::move(head));
+  }
+  AimOptions aim;
+  aim.threads = options.threads;
+  aim.stop = watch.stop();
+  const auto search =
+      HeadAims::make(object.samples, study.features, around.rays, std::move(heads), std::move(wishes), aim);
+  if (!search) return refuse(search.error());
+  auto aimed = search->solve();
+  if (!aimed) return refuse(aimed.error());
+  found.score = std::move(aimed->score);
+  found.tried = aimed->tried;
+  for (std::size_t l = 0; l < aimed->heads.size(); ++l) {
+    const AimedHead& head = aimed->heads[l];
+    if (!(head.setting.level > 0)) continue;  // the limits leave it nothing to give
+    LightInScene light;
+    light.position_world_m = selection.all().lights[selection.taken()[l]].position_world_m;
+    light.aim_world_m = head.aim_world_m;
+    light.level = head.setting.level;
+    light.levels = {head.setting.level};
+    found.lights.push_back(std::move(light));
+  }
+  return found;
+}
+
+}  // namespace luxrig

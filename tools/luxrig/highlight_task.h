@@ -1,0 +1,23 @@
+#pragma once
+/// One highlight task: lights that do not hang yet, found on what may carry them (GP18,
+/// core/highlight/mounted_lights.h), then aimed and dimmed as heads that hang are (aim_heads.h).
+
+#include "core/solve/placement/mounting.h"
+#include "core/solve/placement/place_in_scene.h"
+#include "tools/luxrig/relief_task.h"
+
+namespace luxrig {
+
+struct ReliefLights {
+  std::vector<LightInScene> lights;
+  AimScore score;
+  std::vector<double> contrast_lx;  ///< at full level and aimed by votes: of one light, two, …; those left out, too
+  std::size_t tried = 0;
+};
+
+/// Refuses when no light that may hang brings out anything of the object, saying why.
+[[nodiscard]] Result<ReliefLights> find_relief_lights(const ReliefSurroundings& around, const StudiedObject& object,
+                                                      const Task& task, const Mounting& mounting,
+                                                      const ComputeOptions& options);
+
+}  // namespace luxrig

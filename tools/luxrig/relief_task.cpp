@@ -1,0 +1,204 @@
+#include "tools/luxrig/relief_task.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "core/scene/object_scene.h"
+#include "core/transport/rig_transport.h"
+#include "tools/luxrig/search_watch.h"
+
+namespace luxrig {
+namespace {
+
+/// Where the object is brightest by direct light is where it is with reflected light, or next to it.
+constexpr std::size_t kCheckedSamples = 48;
+
+/// The rig with other places to look at, and only those of its fixtures.
+Rig rig_at(const Rig& rig, std::span<const OrientedPoint> places, const std::vector<bool>& kept) {
+  Rig at = rig;
+  at.points.clear();
+  at.luxmeters.clear();
+  for (const OrientedPoint& place : places) {
+    Point point;
+    point.position_world_m = place.position_world_m;
+    point.normal_world = place.normal;
+    at.points.push_back(std::move(point));
+  }
+  at.fixtures.clear();
+  for (std::size_t f = 0; f < rig.fixtures.size(); ++f)
+    if (kept[f]) at.fixtures.push_back(rig.fixtures[f]);
+  return at;
+}
+
+/// Lux at places of fixtures at their levels (those at 0 cost nothing), and daylight.
+Result<std::vector<double>> lux_at(const ReliefSurroundings& around, std::span<const OrientedPoint> places,
+                                   std::span<const double> levels, const ComputeOptions& options) {
+  std::vector<bool> lit(levels.size());
+  std::vector<double> of_lit;
+  for (std::size_t f = 0; f < levels.size(); ++f)
+    if ((lit[f] = levels[f] > 0)) of_lit.push_back(levels[f]);
+  std::vector<double> lux(places.size(), 0);
+  if (places.empty() || (of_lit.empty() && !around.rig.daylight)) return lux;
+  const Rig at = rig_at(around.rig, places, lit);
+  ComputeOptions compute = options;
+  compute.watch.progress = nullptr;
+  const auto transport = compute_transport(at, around.scene, around.rays, compute, of_lit);
+  if (!transport) return tl::unexpected(transport.error());
+  const Eigen::VectorXd sum = transport->lux(levels_with_daylight(
+      *transport, Eigen::Map<const Eigen::VectorXd>(of_lit.data(), static_cast<Eigen::Index>(of_lit.size()))));
+  for (std::size_t i = 0; i < lux.size(); ++i) lux[i] = sum[static_cast<Eigen::Index>(i)];
+  return lux;
+}
+
+std::vector<double> staying_levels(const ReliefSurroundings& around, std::span<const double> levels) {
+  std::vector<double> staying(levels.begin(), levels.end());
+  for (std::size_t f = 0; f < staying.size(); ++f)
+    if (around.sought[f]) staying[f] = 0;
+  return staying;
+}
+
+HangingHead hanging_head(const Rig& rig, const Fixture& fixture) {
+  const Luminaire& luminaire = rig.luminaires[fixture.luminaire];
+  HangingHead head;
+  head.world_from_mount = fixture.world_from_mount;
+  head.roll_rad = fixture.roll_rad;
+  head.moves = fixture.moves;
+  head.range = fixture.range;
+  head.present = fixture.joints;
+  if (fixture.moves) {
+    head.pan_speed_rad_s = fixture.pan_speed_rad_s;
+    head.tilt_speed_rad_s = fixture.tilt_speed_rad_s;
+  }
+  head.zoom = {luminaire.intensity};
+  head.max_level = std::min(fixture.max_level, rig.limits.max_level);
+  head.watts = luminaire.watts.value_or(0);
+  return head;
+}
+
+/// Points with a limit, eyes and cameras.
+std::vector<AimLimit> limits_of(const ReliefSurroundings& around, const AimSpec& aim) {
+  std::vector<AimLimit> limits = limits_at_points(around);
+  if (!aim.max_eye_lx) return limits;
+  for (const std::size_t eye : aim.eyes)
+    limits.push_back({around.rig.points[eye].name + " (eye)",
+                      {around.rig.points[eye].position_world_m, Vec3::Zero()},
+                      *aim.max_eye_lx,
+                      0});
+  for (const PictureCamera& camera : around.rig.cameras)
+    limits.push_back({camera.name + " (camera)", {camera.position_world_m, Vec3::Zero()}, *aim.max_eye_lx, 0});
+  return limits;
+}
+
+}  // namespace
+
+Result<StudiedObject> study_object(const Rig& rig, const Scene& scene, const ReliefSpec& relief,
+                                   const ComputeOptions& options) {
+  const std::string& name = rig.scene.objects[relief.object].name;
+  const auto object = object_scene(scene, name);
+  if (!object) return tl::unexpected(object.error());
+  ReliefStudyOptions how;
+  how.scale_m = relief.scale_m.value_or(0);
+  how.interest.wanted_share = relief.interest;
+  how.threads = options.threads;
+  how.stop = options.watch.stop;
+  auto study = study_relief(*object, how);
+  if (!study) return refusal(fmt::format("object \"{}\": {}", name, study.error().detail));
+  ContrastSamples samples = one_ring_samples(study->surface, study->interest);
+  return StudiedObject{std::move(*study), std::move(samples)};
+}
+
+std::vector<AimLimit> limits_at_points(const ReliefSurroundings& around) {
+  std::vector<AimLimit> limits;
+  for (std::size_t i = 0; i < around.rig.points.size(); ++i) {
+    const Point& point = around.rig.points[i];
+    if (!point.max_lx) continue;
+    limits.push_back({point.name,
+                      {point.position_world_m, point.normal_world},
+                      *point.max_lx,
+                      around.point_lux[static_cast<Eigen::Index>(i)]});
+  }
+  return limits;
+}
+
+Result<std::vector<double>> staying_lux(const ReliefSurroundings& around, const StudiedObject& object,
+                                        const ComputeOptions& options) {
+  return lux_at(around, object.samples.points, staying_levels(around, around.levels), options);
+}
+
+Result<AimedFixtures> aim_fixtures(const ReliefSurroundings& around, const StudiedObject& object, const Task& task,
+                                   std::span<const double> present_levels, const ComputeOptions& options) {
+  const AimSpec& spec = task.aim;
+  SearchWatch watch(task.name, "light that stays", {}, options.watch.stop);
+
+  AimWishes wishes;
+  wishes.limits = limits_of(around, spec);
+  wishes.max_object_lx = spec.relief.max_lx.value_or(std::numeric_limits<double>::infinity());
+  wishes.relative = spec.relief.relative;
+  wishes.max_watts = around.max_watts;
+  wishes.min_key_to_fill = spec.key ? spec.min_key_to_fill : 0;
+  wishes.max_key_to_fill = spec.max_key_to_fill.value_or(std::numeric_limits<double>::infinity());
+  wishes.coverage_weight = spec.relief.coverage_weight;
+  wishes.energy_weight = spec.energy_weight;
+  wishes.base_weight = spec.base_weight;
+  wishes.travel_weight = spec.travel_weight;
+  wishes.base_lx = spec.base_lx;
+  auto fixed = staying_lux(around, object, options);
+  if (!fixed) return tl::unexpected(fixed.error());
+  wishes.fixed_lux = std::move(*fixed);
+
+  std::vector<HangingHead> heads;
+  std::vector<HeadSetting> present;
+  for (std::size_t k = 0; k < spec.heads.size(); ++k) {
+    const Fixture& fixture = around.rig.fixtures[spec.heads[k]];
+    if (spec.key == spec.heads[k]) wishes.key = k;
+    heads.push_back(hanging_head(around.rig, fixture));
+    present.push_back({fixture.joints, 0, present_levels[k]});
+  }
+  watch.say("aiming");
+  AimOptions aim;
+  aim.threads = options.threads;
+  aim.stop = watch.stop();
+  const auto search =
+      HeadAims::make(object.samples, object.study.features, around.rays, std::move(heads), std::move(wishes), aim);
+  if (!search) return refusal(fmt::format("task \"{}\": {}", task.name, search.error().detail));
+  auto found = search->solve();
+  if (!found) return refusal(fmt::format("task \"{}\": {}", task.name, found.error().detail));
+  AimedFixtures aimed;
+  aimed.heads = std::move(found->heads);
+  aimed.score = std::move(found->score);
+  aimed.before = search->score(present);
+  aimed.tried = found->tried;
+  return aimed;
+}
+
+Result<double> share_within_object_limit(const ReliefSurroundings& around, const StudiedObject& object, double max_lx,
+                                         std::span<const double> levels, const ComputeOptions& options) {
+  const std::vector<OrientedPoint>& all = object.samples.points;
+  ComputeOptions direct = options;
+  direct.model = Model::direct;
+  const auto by_direct = lux_at(around, all, levels, direct);
+  if (!by_direct) return tl::unexpected(by_direct.error());
+  std::vector<std::size_t> order(all.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const std::size_t checked = std::min(kCheckedSamples, order.size());
+  std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(checked), order.end(),
+                    [&](std::size_t a, std::size_t b) { return (*by_direct)[a] > (*by_direct)[b]; });
+  std::vector<OrientedPoint> brightest;
+  for (std::size_t i = 0; i < checked; ++i) brightest.push_back(all[order[i]]);
+  const auto lux = lux_at(around, brightest, levels, options);
+  if (!lux) return tl::unexpected(lux.error());
+  const auto fixed = lux_at(around, brightest, staying_levels(around, levels), options);
+  if (!fixed) return tl::unexpected(fixed.error());
+  double share = 1;
+  for (std::size_t i = 0; i < checked; ++i) {
+    const double by_sought = (*lux)[i] - (*fixed)[i];
+    if ((*lux)[i] > max_lx && by_sought > 0) share = std::min(share, std::max(0.0, (max_lx - (*fixed)[i]) / by_sought));
+  }
+  return share;
+}
+
+}  // namespace luxrig

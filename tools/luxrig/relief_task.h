@@ -1,0 +1,59 @@
+#pragma once
+/// Tasks for an object's relief, done in the rig's scene: heads aimed, or lights found that do not hang yet.
+
+#include <span>
+
+#include "core/highlight/aim_heads.h"
+#include "core/highlight/relief_study.h"
+#include "core/rig/rig.h"
+#include "core/scene/ray_scene.h"
+#include "tools/luxrig/session.h"
+
+namespace luxrig {
+
+/// What stays as it is while lights are sought.
+struct ReliefSurroundings {
+  const Rig& rig;
+  const Scene& scene;
+  const RayScene& rays;
+  std::vector<double> levels;  ///< per fixture, of those that are not sought
+  std::vector<bool> sought;    ///< per fixture
+  Eigen::VectorXd point_lux;   ///< what others give the rig's points
+  double max_watts = 0;        ///< of those that are sought, together; may be infinite
+};
+
+struct StudiedObject {
+  ReliefStudy study;
+  ContrastSamples samples;
+};
+
+/// Refuses, naming the object, when it has no relief.
+[[nodiscard]] Result<StudiedObject> study_object(const Rig& rig, const Scene& scene, const ReliefSpec& relief,
+                                                 const ComputeOptions& options);
+
+struct AimedFixtures {
+  std::vector<AimedHead> heads;  ///< one per head of the task
+  AimScore score, before;        ///< `before`: as they looked and shone when asked
+  std::size_t tried = 0;
+};
+
+/// present_levels   of the heads, for AimedFixtures::before
+/// Refuses when no head sees the object or light that stays breaks a limit alone.
+[[nodiscard]] Result<AimedFixtures> aim_fixtures(const ReliefSurroundings& around, const StudiedObject& object,
+                                                 const Task& task, std::span<const double> present_levels,
+                                                 const ComputeOptions& options);
+
+/// The rig's points with a limit, and what stays there.
+[[nodiscard]] std::vector<AimLimit> limits_at_points(const ReliefSurroundings& around);
+
+/// What stays at each of the object's samples [lx].
+[[nodiscard]] Result<std::vector<double>> staying_lux(const ReliefSurroundings& around, const StudiedObject& object,
+                                                      const ComputeOptions& options);
+
+/// By how much the lights that were sought must be dimmed so that nowhere on the object is more than max_lx, with what
+/// is reflected: 0…1. levels: of all fixtures of the rig, as set.
+[[nodiscard]] Result<double> share_within_object_limit(const ReliefSurroundings& around, const StudiedObject& object,
+                                                       double max_lx, std::span<const double> levels,
+                                                       const ComputeOptions& options);
+
+}  // namespace luxrig

@@ -1,0 +1,132 @@
+// Tasks for an object's relief: heads aimed, lights found.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "tools/luxrig/highlight_task.h"
+#include "tools/luxrig/task_solver.h"
+
+namespace luxrig {
+
+Result<ReliefSurroundings> TaskSolver::surroundings(std::vector<bool> sought, const Task& task) const {
+  const auto max_watts = watts_left(0, 0, task);
+  if (!max_watts) return tl::unexpected(max_watts.error());
+  ReliefSurroundings around{rig_,      session_.scene, *session_.rays, levels(), std::move(sought), lux_of_points(),
+                            *max_watts};
+  if (auto kept = limits_left(around.point_lux); !kept) return tl::unexpected(kept.error());
+  return around;
+}
+
+Result<void> TaskSolver::settle_relief(const Task& task, const ReliefSpec& spec, const ReliefSurroundings& around,
+                                       const StudiedObject& object, const AimScore& score, const AimScore* before,
+                                       PlannedTask& planned) {
+  double share = 1;
+  if (spec.max_lx) {
+    const auto within = share_within_object_limit(around, object, *spec.max_lx, levels(), options_);
+    if (!within) return tl::unexpected(within.error());
+    share = *within;
+  }
+  const Eigen::VectorXd lux = lux_of_points();
+  for (std::size_t i = 0; i < rig_.points.size(); ++i) {
+    const auto row = static_cast<Index>(i);
+    const std::optional<double>& max_lx = rig_.points[i].max_lx;
+    const double sought_lx = lux[row] - around.point_lux[row];
+    if (max_lx && lux[row] > *max_lx && sought_lx > 0)
+      share = std::min(share, std::max(0.0, (*max_lx - around.point_lux[row]) / sought_lx));
+  }
+  for (std::size_t f = 0; f < around.sought.size(); ++f)
+    if (around.sought[f]) level_[static_cast<Index>(f)] *= share;
+  PlannedRelief relief;
+  relief.local_contrast_lx = share * score.local_contrast_lx;
+  relief.coverage = score.coverage;
+  relief.relative_contrast = score.relative_contrast;
+  relief.object_lux = share * score.object_lx;
+  if (std::isfinite(score.key_to_fill)) relief.key_to_fill = score.key_to_fill;
+  if (before) {
+    relief.before_local_contrast_lx = before->local_contrast_lx;
+    relief.before_coverage = before->coverage;
+    relief.before_relative_contrast = before->relative_contrast;
+  }
+  planned.name = task.name;
+  planned.kind = name_of(task.kind);
+  planned.relief = relief;
+  why_.assign(rig_.points.size(), "");
+  return {};
+}
+
+Result<void> TaskSolver::aim(const Task& task) {
+  const auto start = Steady::now();
+  const std::vector<std::size_t>& heads = task.aim.heads;
+  std::vector<bool> sought(rig_.fixtures.size(), false);
+  std::vector<double> present;
+  for (const std::size_t head : heads) {
+    sought[head] = true;
+    double& level = level_[static_cast<Index>(head)];
+    present.push_back(level);
+    level = 0;
+  }
+  const auto around = surroundings(std::move(sought), task);
+  if (!around) return tl::unexpected(around.error());
+  const auto object = study_object(rig_, session_.scene, task.aim.relief, options_);
+  if (!object) return tl::unexpected(object.error());
+  const auto aimed = aim_fixtures(*around, *object, task, present, options_);
+  if (!aimed) return tl::unexpected(aimed.error());
+  for (std::size_t k = 0; k < heads.size(); ++k) {
+    Fixture& fixture = rig_.fixtures[heads[k]];
+    const AimedHead& head = aimed->heads[k];
+    level_[static_cast<Index>(heads[k])] = head.setting.level;
+    if (!fixture.moves || !(head.setting.level > 0)) continue;  // a dark head stays where it looks
+    fixture.joints = head.setting.joints;
+    fixture.aim_world_m = head.aim_world_m;
+  }
+  if (auto lit = light_anew(levels()); !lit) return lit;
+
+  PlannedTask planned;
+  if (auto settled = settle_relief(task, task.aim.relief, *around, *object, aimed->score, &aimed->before, planned);
+      !settled)
+    return settled;
+  list(planned, 0, own_);
+  planned.iterations = static_cast<int>(aimed->tried);
+  planned.seconds = seconds_since(start);
+  plan_.tasks.push_back(std::move(planned));
+  return {};
+}
+
+Result<void> TaskSolver::highlight(const Task& task) {
+  const auto start = Steady::now();
+  const HighlightSpec& spec = task.highlight;
+  const auto mounting = Mounting::make(rig_.mounting, rig_.file, session_.scene, *session_.rays);
+  if (!mounting) return refusal(mounting.error()[0].text());  // open_session() has made it before
+  const auto dark = surroundings(std::vector<bool>(rig_.fixtures.size(), false), task);
+  if (!dark) return tl::unexpected(dark.error());
+  const auto object = study_object(rig_, session_.scene, spec.relief, options_);
+  if (!object) return tl::unexpected(object.error());
+  const auto found = find_relief_lights(*dark, *object, task, *mounting, options_);
+  if (!found) return tl::unexpected(found.error());
+
+  const Index before = level_.size();
+  if (auto hung = hang(task, spec.luminaire, found->lights); !hung) return hung;
+  std::vector<bool> sought(rig_.fixtures.size(), false);
+  for (std::size_t l = 0; l < found->lights.size(); ++l) {
+    sought[static_cast<std::size_t>(before) + l] = true;
+    level_[before + static_cast<Index>(l)] = found->lights[l].level;
+  }
+  const ReliefSurroundings around{
+      rig_, session_.scene, *session_.rays, levels(), std::move(sought), dark->point_lux, dark->max_watts};
+  PlannedTask planned;
+  if (auto settled = settle_relief(task, spec.relief, around, *object, found->score, nullptr, planned); !settled)
+    return settled;
+  list(planned, before, level_.size());
+  for (Index j = 0; j < own_; ++j) planned.fixtures.push_back(light_of(j));
+  for (std::size_t k = 0; k < found->contrast_lx.size(); ++k)
+    planned.numbers.push_back(
+        {static_cast<int>(k) + 1, std::numeric_limits<double>::quiet_NaN(), found->contrast_lx[k]});
+  planned.iterations = static_cast<int>(found->tried);
+  planned.seconds = seconds_since(start);
+  plan_.tasks.push_back(std::move(planned));
+  return {};
+}
+
+}  // namespace luxrig

@@ -1,0 +1,74 @@
+#pragma once
+/// A rig's tasks, one after the other: what each has set counts in the next. Private to solve_tasks.cpp (levels,
+/// places) and solve_relief.cpp (aims and lights for an object's relief).
+
+#include <chrono>
+
+#include "core/solve/emittance.h"
+#include "core/solve/placement/place_in_scene.h"
+#include "tools/luxrig/relief_task.h"
+#include "tools/luxrig/solve_tasks.h"
+
+namespace luxrig {
+
+class TaskSolver {
+ public:
+  TaskSolver(const Session& session, const TransportMatrix& transport, const ComputeOptions& options);
+
+  Result<void> emittance(const Task& task);
+  Result<void> placement(const Task& task);
+  Result<void> aim(const Task& task);
+  Result<void> highlight(const Task& task);
+  /// Once, at the end.
+  SolvedTasks done();
+
+ private:
+  using Index = Eigen::Index;
+  using Steady = std::chrono::steady_clock;
+  static double seconds_since(Steady::time_point start) {
+    return std::chrono::duration<double>(Steady::now() - start).count();
+  }
+
+  [[nodiscard]] double most_level(Index light) const {
+    return std::min(rig_.fixtures[static_cast<std::size_t>(light)].max_level, rig_.limits.max_level);
+  }
+  [[nodiscard]] std::optional<double> watts_of(Index light) const {
+    return rig_.luminaires[rig_.fixtures[static_cast<std::size_t>(light)].luminaire].watts;
+  }
+  [[nodiscard]] PlannedLight light_of(Index light) const;
+  [[nodiscard]] std::vector<double> levels() const { return {level_.data(), level_.data() + level_.size()}; }
+  /// What all light as it is set gives the rig's points.
+  [[nodiscard]] Eigen::VectorXd lux_of_points() const;
+  /// Levels of the lights from `begin` to `end` are sought; the others stay as they are.
+  [[nodiscard]] EmittanceProblem problem_of(Index begin, Index end) const;
+  /// A fault when light that stays breaks limits by itself: no level of what is sought could keep them.
+  [[nodiscard]] Result<void> limits_left(const Eigen::VectorXd& fixed_lx) const;
+  /// Power that a task's lights from `begin` to `end` may take: +inf where nothing limits it.
+  [[nodiscard]] Result<double> watts_left(Index begin, Index end, const Task& task) const;
+  Result<void> solve_levels_of(Index begin, Index end, double max_watts, PlannedTask& planned);
+  /// The lights become fixtures of the model, and what they give is worked out anew.
+  Result<void> hang(const Task& task, std::size_t luminaire, std::span<const LightInScene> lights);
+  /// Transport of the rig as it hangs and looks now.
+  Result<void> light_anew(const std::vector<double>& levels);
+  /// Adds lights, power and time.
+  void list(PlannedTask& planned, Index begin, Index end) const;
+  /// Light that stays while the sought fixtures (one mark per fixture) are dark, which they must be.
+  Result<ReliefSurroundings> surroundings(std::vector<bool> sought, const Task& task) const;
+  /// The sought fixtures, whose levels and aims are set, dimmed by one share until limits hold for all light, what is
+  /// reflected, too; then listed. before: none of lights that did not hang
+  Result<void> settle_relief(const Task& task, const ReliefSpec& spec, const ReliefSurroundings& around,
+                             const StudiedObject& object, const AimScore& score, const AimScore* before,
+                             PlannedTask& planned);
+
+  const Session& session_;
+  const ComputeOptions& options_;
+  Steady::time_point start_ = Steady::now();
+  Rig rig_;  ///< with placed lights as further fixtures, and heads as aimed
+  TransportMatrix transport_;
+  Index own_;
+  Eigen::VectorXd level_;
+  std::vector<std::string> why_;
+  Plan plan_;
+};
+
+}  // namespace luxrig
