@@ -307,6 +307,11 @@ std::vector<Judgement> GainEstimator::update(Time now, std::span<const LuxReadin
   return judgements;
 }
 
+void GainEstimator::set_goals(std::span<const std::optional<double>> goal_lx) {
+  LUXRIG_CHECK(goal_lx.size() == points_.size(), "{} goals for {} points", goal_lx.size(), points_.size());
+  for (std::size_t i = 0; i < points_.size(); ++i) points_[i].goal_lx = goal_lx[i];
+}
+
 void GainEstimator::forget(std::size_t luxmeter) {
   std::erase_if(evidence_, [&](const Evidence& e) { return e.luxmeter == luxmeter; });
   meters_.at(luxmeter) = Meter{};

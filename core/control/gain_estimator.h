@@ -74,6 +74,9 @@ class GainEstimator {
   /// meter (the same to the last bit while the light changed). One judgement per reading, in order.
   std::vector<Judgement> update(Time now, std::span<const LuxReading> readings, std::span<const double> level);
 
+  /// What corrections aim at from now on, per point.
+  void set_goals(std::span<const std::optional<double>> goal_lx);
+
   /// Drops what this meter taught (it is gone, or was exchanged).
   void forget(std::size_t luxmeter);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/check.h"
 #include "core/control/show_state.h"
@@ -22,6 +23,20 @@ constexpr Duration kDriftCorrectionEvery = std::chrono::seconds(10);
 /// half of that may be used up before a reading counts, or noise alone would start one correction after another.
 constexpr double kBreachSlack = 0.005;
 constexpr double kSmallestChange = 1e-4;
+/// From the command to a head's first movement, and for its ramps.
+constexpr double kHeadDelay_s = 0.5;
+
+/// Until a fixture that moves looks there, wherever it looked before when that is not known.
+double travel_s(const Fixture& fixture, const std::optional<PanTilt>& from, const PanTilt& to) {
+  const auto way_s = [](double to_rad, std::optional<double> from_rad, double min_rad, double max_rad, double rad_s) {
+    return (from_rad ? std::abs(to_rad - *from_rad) : std::max(to_rad - min_rad, max_rad - to_rad)) / rad_s;
+  };
+  const PanTiltRange& range = fixture.range;
+  return std::max(way_s(to.pan_rad, from ? std::optional(from->pan_rad) : std::nullopt, range.pan_min_rad,
+                        range.pan_max_rad, fixture.pan_speed_rad_s),
+                  way_s(to.tilt_rad, from ? std::optional(from->tilt_rad) : std::nullopt, range.tilt_min_rad,
+                        range.tilt_max_rad, fixture.tilt_speed_rad_s));
+}
 
 }  // namespace
 
@@ -29,6 +44,8 @@ const char* name_of(Phase phase) {
   switch (phase) {
     case Phase::idle:
       return "idle";
+    case Phase::moving:
+      return "moving";
     case Phase::fading:
       return "fading";
     case Phase::settling:
@@ -89,7 +106,7 @@ void ShowController::State::fade(Time now, std::vector<double> from, std::vector
   guard(now, from, to);
   program.from_level = std::move(from);
   program.to_level = std::move(to);
-  program.start = now;
+  program.start = std::max(now, arrive);
   program.duration = from_seconds(seconds);
   program.curve = curve;
   ++program.revision;
@@ -134,6 +151,33 @@ void ShowController::State::guard(Time now, const std::vector<double>& from, con
   program.max_lx[row] = *rig.limits.max_watts;
 }
 
+bool ShowController::State::turns(std::size_t fixture) const {
+  return rig.fixtures[fixture].moves && !(awaited->joints[fixture] == program.joints[fixture]);
+}
+
+/// What it turns is dark. `moving` until the light may come back.
+void ShowController::State::take_look(Time now) {
+  double wait_s = 0;
+  bool any = false;
+  for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
+    if (!turns(f)) continue;
+    any = true;
+    wait_s = std::max(wait_s, travel_s(rig.fixtures[f], program.joints[f], awaited->joints[f]) + kHeadDelay_s);
+    rig.fixtures[f].joints = program.joints[f] = awaited->joints[f];
+    rig.fixtures[f].aim_world_m.reset();
+  }
+  for (std::size_t i = 0; i < rig.points.size(); ++i) rig.points[i].goal_lx = awaited->goal_lx[i];
+  if (any) {
+    // Gains would still hold; what is wrong locally would not, and telling them apart takes readings.
+    estimator = GainEstimator(rig, awaited->model);
+    std::fill(measured.begin(), measured.end(), std::nullopt);
+    arrive = std::max(arrive, now + from_seconds(wait_s));
+  } else {
+    estimator.set_goals(awaited->goal_lx);
+  }
+  awaited.reset();
+}
+
 void ShowController::State::start_cue(Time now, std::vector<double> levels) {
   cue = std::move(levels);
   round = 0;
@@ -142,7 +186,27 @@ void ShowController::State::start_cue(Time now, std::vector<double> levels) {
   why.clear();
   breaches.clear();
   if (failing && phase != Phase::idle) return;  // frozen or safe: goes there when everything is back
-  fade(now, present_levels(now), *cue, rig.control.fade_s, rig.control.fade_curve);
+  std::vector<double> present = present_levels(now);
+  if (awaited) {
+    std::vector<double> without = present;
+    bool any = false;
+    for (std::size_t f = 0; f < without.size(); ++f) {
+      if (!turns(f)) continue;
+      without[f] = 0;
+      any = true;
+    }
+    // What stays goes, too, to where limits are kept without what meters have taught, or it would jump there.
+    if (any) without = GainEstimator(rig, awaited->model).within_limits(without, now);
+    if (without != present && !program.blackout) {
+      fade(now, std::move(present), std::move(without), rig.control.fade_s, rig.control.fade_curve);
+      enter(Phase::moving, now);
+      return;
+    }
+    present = std::move(without);
+    take_look(now);
+  }
+  cue = estimator.within_limits(*cue, now);
+  fade(now, std::move(present), *cue, rig.control.fade_s, rig.control.fade_curve);
   enter(Phase::fading, now);
 }
 
@@ -153,7 +217,7 @@ void ShowController::State::freeze(Time now) {
   enter(Phase::frozen, now);
 }
 
-void ShowController::State::resume(Time now) { start_cue(now, estimator.within_limits(*cue, now)); }
+void ShowController::State::resume(Time now) { start_cue(now, *cue); }
 
 void ShowController::State::fade_to_safe(Time now) {
   fade(now, present_levels(now), estimator.within_limits(safe_levels(), now), rig.safe.fade_s, rig.control.fade_curve);
@@ -285,6 +349,12 @@ void ShowController::State::advance(Time now) {
       break;
   }
   if (failing) return freeze(now);
+  if (phase == Phase::moving && (program.done(now) || program.blackout)) {
+    if (program.blackout)
+      for (std::size_t f = 0; f < rig.fixtures.size(); ++f)
+        if (turns(f)) program.from_level[f] = program.to_level[f] = 0;
+    return start_cue(now, *cue);
+  }
   if (program.blackout) return;  // nothing to measure in the dark; lifting it fades anew
   switch (phase) {
     case Phase::fading:
@@ -311,18 +381,39 @@ ShowController::ShowController(const Rig& rig, LightModel model) : state_(std::m
 ShowController::~ShowController() = default;
 ShowController::ShowController(ShowController&&) noexcept = default;
 
+std::vector<double> ShowController::State::wanted_levels(std::span<const double> levels) const {
+  LUXRIG_CHECK(levels.size() == rig.fixtures.size(), "{} levels for {} fixtures", levels.size(), rig.fixtures.size());
+  std::vector<double> wanted(levels.begin(), levels.end());
+  for (std::size_t i = 0; i < wanted.size(); ++i)
+    wanted[i] = wanted[i] > 0 ? std::min(wanted[i], program.max_level[i]) : 0.0;  // NaN is dark
+  return wanted;
+}
+
 void ShowController::apply(Time now, std::span<const double> levels) {
+  Look look;
+  look.joints = state_->program.joints;
+  for (const Point& point : state_->rig.points) look.goal_lx.push_back(point.goal_lx);
+  apply(now, levels, std::move(look));
+}
+
+void ShowController::apply(Time now, std::span<const double> levels, Look look) {
   State& state = *state_;
   now = state.at_least_last(now);
-  LUXRIG_CHECK(levels.size() == state.rig.fixtures.size(), "{} levels for {} fixtures", levels.size(),
-               state.rig.fixtures.size());
-  std::vector<double> wanted(levels.begin(), levels.end());
-  for (std::size_t i = 0; i < wanted.size(); ++i) {
-    wanted[i] = wanted[i] > 0 ? std::min(wanted[i], state.program.max_level[i]) : 0.0;  // NaN is dark
-  }
+  LUXRIG_CHECK(look.joints.size() == state.rig.fixtures.size() && look.goal_lx.size() == state.rig.points.size(),
+               "a look of another rig");
+  std::vector<double> wanted = state.wanted_levels(levels);
   state.asked_safe = false;
   state.afresh = true;
-  state.start_cue(now, state.estimator.within_limits(wanted, now));
+  if (!std::exchange(state.turned, true)) {
+    // Nothing has shone yet, so heads may turn from wherever they are.
+    double wait_s = 0;
+    for (std::size_t f = 0; f < state.rig.fixtures.size(); ++f)
+      if (const Fixture& fixture = state.rig.fixtures[f]; fixture.moves)
+        wait_s = std::max(wait_s, travel_s(fixture, std::nullopt, look.joints[f]) + kHeadDelay_s);
+    state.arrive = now + from_seconds(wait_s);
+  }
+  state.awaited = std::move(look);
+  state.start_cue(now, std::move(wanted));
 }
 
 void ShowController::blackout(Time now, bool on) {
@@ -338,7 +429,7 @@ void ShowController::blackout(Time now, bool on) {
              to_safe ? state.rig.safe.fade_s : state.rig.control.fade_s, state.rig.control.fade_curve);
   if (to_safe) {
     state.enter(Phase::safe_fading, now);
-  } else if (state.phase != Phase::frozen) {
+  } else if (state.phase != Phase::frozen && state.phase != Phase::moving) {
     state.enter(Phase::fading, now);
   }
 }
@@ -347,6 +438,7 @@ void ShowController::go_safe(Time now) {
   State& state = *state_;
   now = state.at_least_last(now);
   state.cue.reset();
+  state.awaited.reset();
   state.asked_safe = true;
   if (state.phase != Phase::safe && state.phase != Phase::safe_fading) state.fade_to_safe(now);
 }

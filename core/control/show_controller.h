@@ -3,6 +3,7 @@
 /// safe look when something fails. Time is an argument; no thread, no device. One thread calls it.
 ///
 ///   idle -> fading -> settling -> measuring -> (correcting -> settling -> measuring)* -> holding
+///   any of these -> moving (heads that shall look elsewhere go dark, then turn) -> fading
 ///   any  -> frozen (a device failed: the present look is held) -> safe_fading -> safe
 ///   safe/frozen -> fading, to the plan in force, when everything is back
 ///   blackout lies over all of these and wins; lifting it fades back up.
@@ -30,7 +31,7 @@ struct LightModel {
   Eigen::VectorXd point_fixed_error_lx, meter_fixed_error_lx;  ///< standard error of that; empty = exact
 };
 
-enum class Phase { idle, fading, settling, measuring, correcting, holding, frozen, safe_fading, safe };
+enum class Phase { idle, moving, fading, settling, measuring, correcting, holding, frozen, safe_fading, safe };
 [[nodiscard]] const char* name_of(Phase phase);
 
 struct Alarm {
@@ -40,7 +41,15 @@ struct Alarm {
   Time since{};
 };
 
+/// Where heads look, what that gives, and what is wanted there.
+struct Look {
+  std::vector<PanTilt> joints;                 ///< per fixture
+  std::vector<std::optional<double>> goal_lx;  ///< per point
+  LightModel model;                            ///< with these joints
+};
+
 struct PointStatus {
+  std::optional<double> goal_lx;      ///< of the look in force
   double predicted_lx = 0;            ///< model with present gain estimates, at the present levels
   double standard_error_lx = 0;       ///< of that: transport and gain uncertainty
   std::optional<double> measured_lx;  ///< of the meter that stands there
@@ -50,6 +59,7 @@ struct PointStatus {
 };
 
 struct FixtureStatus {
+  PanTilt joints;  ///< where it shall look
   double level = 0, drive = 0, target_level = 0;
   double gain = 1, gain_standard_error = 0;  ///< estimated true output over rated
 };
@@ -73,9 +83,16 @@ class ShowController {
   ~ShowController();
   ShowController(ShowController&&) noexcept;
 
-  /// Fades to these levels (one per fixture, 0…max_level), then measures and corrects towards the rig's goals.
-  /// The levels are first reduced so that, with the rig's open-loop margin, no limited point can exceed its limit.
+  /// Fades to these levels (one per fixture, 0…max_level) with heads as they look, then measures and corrects towards
+  /// the rig's goals. The levels are first reduced so that, with the rig's open-loop margin, no limited point can
+  /// exceed its limit.
   void apply(Time now, std::span<const double> levels);
+
+  /// The same with heads that look elsewhere, and other goals. What moves is faded out first, turned in the dark, and
+  /// faded in where it arrives, so that no beam crosses a limited place on its way; the first time heads are turned
+  /// nobody knows from where, and the light waits for their longest way. What meters have taught is kept while no head
+  /// turns.
+  void apply(Time now, std::span<const double> levels, Look look);
 
   /// Everything dark at once, whatever else goes on; movement goes on. Lifting it fades back.
   void blackout(Time now, bool on);

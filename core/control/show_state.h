@@ -40,6 +40,9 @@ struct ShowController::State {
   bool asked_safe = false;  ///< by go_safe: no return by itself
   std::string failure;      ///< what froze the show, for the detail line
   std::optional<std::vector<double>> cue;  ///< levels in force, as corrected so far
+  std::optional<Look> awaited;             ///< taken as soon as what it turns is dark
+  Time arrive{};                           ///< heads look where they shall from here on; no fade starts before
+  bool turned = false;                     ///< heads have been told where to look
   bool afresh = false;                     ///< a person applied a plan, and the meters have not all been believed since
   int round = 0;
   bool converged = false;
@@ -61,6 +64,9 @@ struct ShowController::State {
   void fade(Time now, std::vector<double> from, std::vector<double> to, double seconds, FadeCurve curve);
   void guard(Time now, const std::vector<double>& from, const std::vector<double>& to);
   void start_cue(Time now, std::vector<double> levels);
+  [[nodiscard]] std::vector<double> wanted_levels(std::span<const double> levels) const;
+  [[nodiscard]] bool turns(std::size_t fixture) const;  ///< by the awaited look
+  void take_look(Time now);
   void freeze(Time now);
   void resume(Time now);
   void fade_to_safe(Time now);

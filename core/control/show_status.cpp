@@ -61,8 +61,12 @@ std::string ShowController::State::detail(Time now) const {
     case Phase::idle:
       text = "no plan applied yet";
       break;
+    case Phase::moving:
+      text = "heads go dark before they turn";
+      break;
     case Phase::fading:
-      text = "fading to the plan";
+      text = now < program.start ? fmt::format("heads turn, light in {:.1f} s", to_seconds(program.start - now))
+                                 : std::string("fading to the plan");
       break;
     case Phase::settling:
       text = "waiting for lamps and meters to settle";
@@ -117,12 +121,13 @@ ShowStatus ShowController::State::status(Time now) const {
   std::vector<double> level(rig.fixtures.size());
   program.levels_at(now, level);
   for (std::size_t i = 0; i < rig.fixtures.size(); ++i) {
-    status.fixtures.push_back({level[i], drive_from_level(rig.fixtures[i].dimmer_curve, level[i]), program.to_level[i],
-                               estimator.gain(i), estimator.gain_standard_error(i)});
+    status.fixtures.push_back({program.joints[i], level[i], drive_from_level(rig.fixtures[i].dimmer_curve, level[i]),
+                               program.to_level[i], estimator.gain(i), estimator.gain_standard_error(i)});
   }
   const bool settled = !program.blackout && program.done(now);
   for (std::size_t p = 0; p < rig.points.size(); ++p) {
     PointStatus point;
+    point.goal_lx = rig.points[p].goal_lx;
     const Prediction prediction = estimator.at_point(p, level);
     point.predicted_lx = prediction.lux;
     point.standard_error_lx = prediction.standard_error_lx;

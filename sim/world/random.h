@@ -20,7 +20,8 @@ enum class Draw : std::uint64_t {
   meter_gain,
   meter_noise,
   fault_loss,
-  fault_garble
+  fault_garble,
+  picture_noise
 };
 
 [[nodiscard]] inline std::uint64_t mix64(std::uint64_t x) {

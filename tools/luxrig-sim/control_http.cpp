@@ -2,6 +2,7 @@
 
 #include <httplib.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <nlohmann/json.hpp>
@@ -21,8 +22,8 @@ void answer(httplib::Response& response, int status, const nlohmann::json& json)
 
 class Server final : public ControlHttp {
  public:
-  Server(const Rig& rig, World& world, Faults& faults, std::mutex& world_mutex)
-      : rig_(rig), world_(world), faults_(faults), world_mutex_(world_mutex) {
+  Server(const Rig& rig, World& world, Faults& faults, std::mutex& world_mutex, std::uint64_t seed)
+      : rig_(rig), world_(world), faults_(faults), world_mutex_(world_mutex), cameras_(rig, world, world_mutex, seed) {
     server_.new_task_queue = [] { return new httplib::ThreadPool(4); };  // httplib deletes it
     server_.set_payload_max_length(65536);
     // Not SO_REUSEPORT, the library's own choice: with it a second simulator would silently share the port.
@@ -33,6 +34,9 @@ class Server final : public ControlHttp {
     server_.Get("/truth", [this](const httplib::Request&, httplib::Response& response) {
       const std::lock_guard lock(world_mutex_);
       response.set_content(truth_json(rig_, world_), kJson);
+    });
+    server_.Get("/picture", [this](const httplib::Request& request, httplib::Response& response) {
+      take_picture(request.get_param_value("camera"), response);
     });
     server_.Post("/fault", [this](const httplib::Request& request, httplib::Response& response) {
       switch_fault(request.body, response);
@@ -80,6 +84,15 @@ class Server final : public ControlHttp {
   [[nodiscard]] int port() const override { return port_; }
 
  private:
+  void take_picture(const std::string& name, httplib::Response& response) {
+    const auto camera = std::find_if(rig_.cameras.begin(), rig_.cameras.end(),
+                                     [&](const PictureCamera& known) { return known.name == name; });
+    if (camera == rig_.cameras.end()) return answer(response, 404, {{"error", "the rig has no such camera"}});
+    const auto picture = cameras_.take(*camera);
+    if (!picture) return answer(response, 500, {{"error", picture.error().detail}});
+    response.set_content(*picture, "image/x-portable-floatmap");
+  }
+
   void switch_fault(const std::string& body, httplib::Response& response) {
     const auto json = nlohmann::json::parse(body, nullptr, /*allow_exceptions=*/false);
     if (!json.is_object() || !json.contains("device") || !json["device"].is_string() || !json.contains("fault") ||
@@ -103,6 +116,7 @@ class Server final : public ControlHttp {
   World& world_;
   Faults& faults_;
   std::mutex& world_mutex_;
+  SimulatedCameras cameras_;
   httplib::Server server_;
   std::thread thread_;
   std::atomic<bool> ended_ = false;  // the thread has nothing more to do
@@ -112,8 +126,8 @@ class Server final : public ControlHttp {
 }  // namespace
 
 Result<std::unique_ptr<ControlHttp>> ControlHttp::open(const Rig& rig, World& world, Faults& faults,
-                                                       std::mutex& world_mutex, int port) {
-  auto server = std::make_unique<Server>(rig, world, faults, world_mutex);
+                                                       std::mutex& world_mutex, int port, std::uint64_t seed) {
+  auto server = std::make_unique<Server>(rig, world, faults, world_mutex, seed);
   if (auto opened = server->open(port); !opened) return tl::unexpected(opened.error());
   return server;
 }

@@ -9,14 +9,16 @@
 #include "core/rig/rig.h"
 #include "sim/faults/faults.h"
 #include "sim/world/world.h"
+#include "tools/luxrig-sim/simulated_cameras.h"
 
 namespace luxrig::sim {
 
 class ControlHttp {
  public:
   /// Serves on its own threads from here to the destructor. `world_mutex` guards `world`; all outlive this.
+  /// seed   of what its cameras' sensors add
   static Result<std::unique_ptr<ControlHttp>> open(const Rig& rig, World& world, Faults& faults,
-                                                   std::mutex& world_mutex, int port);
+                                                   std::mutex& world_mutex, int port, std::uint64_t seed);
   virtual ~ControlHttp() = default;
   [[nodiscard]] virtual int port() const = 0;
 };

@@ -101,7 +101,7 @@ int simulate(const Options& options) {
   if (!server) return failed(server.error());
   ports.buses = (*server)->ports();
   std::mutex world_mutex;
-  auto control = sim::ControlHttp::open(*rig, **world, faults, world_mutex, ports.control);
+  auto control = sim::ControlHttp::open(*rig, **world, faults, world_mutex, ports.control, options.seed);
   if (!control) return failed(control.error());
   ports.control = (*control)->port();
   if (!options.ports_file.empty()) {

@@ -25,7 +25,8 @@ std::filesystem::path web_folder() {
 }  // namespace
 
 Daemon::Daemon(const Session& session, LightModel model, DaemonOptions options)
-    : session_(session), options_(std::move(options)), controller_(session.rig, std::move(model)) {
+    : session_(session), options_(std::move(options)), controller_(session.rig, model), model_(std::move(model)) {
+  for (const Fixture& fixture : session.rig.fixtures) model_joints_.push_back(fixture.joints);
   if (options_.state_folder) journal_.emplace(*options_.state_folder);
 }
 
@@ -72,8 +73,13 @@ Checked<void> Daemon::apply(const Plan& plan) { return apply_json(to_json(plan))
 Checked<void> Daemon::apply_json(const std::string& plan_json) {
   const auto plan = plan_from_json(plan_json, "plan");
   if (!plan) return tl::unexpected(plan.error());
-  const auto levels = levels_for(*plan, session_.rig, "plan");
-  if (!levels) return tl::unexpected(levels.error());
+  auto look = look_for(*plan, session_.rig, "plan");
+  if (!look) return tl::unexpected(look.error());
+  auto model = model_for(*look);
+  if (!model) {
+    return tl::unexpected(std::vector<Problem>{
+        {"plan", 0, 0, "what the rig gives with its heads turned so: " + model.error().detail, "solve again"}});
+  }
   {
     const std::lock_guard lock(mutex_);
     remembered_.plan_json = plan_json;
@@ -83,8 +89,23 @@ Checked<void> Daemon::apply_json(const std::string& plan_json) {
     return tl::unexpected(
         std::vector<Problem>{{"plan", 0, 0, saved.error().detail, "free disk space or mend the permissions"}});
   }
-  on_control_thread([this, chosen = *levels](Time at) { controller_.apply(at, chosen); });
+  on_control_thread([this, levels = std::move(look->levels),
+                     wanted = Look{std::move(look->joints), std::move(look->goal_lx), std::move(*model)}](Time at) {
+    controller_.apply(at, levels, wanted);
+  });
   return {};
+}
+
+Result<LightModel> Daemon::model_for(const PlannedLook& look) {
+  const std::lock_guard lock(model_mutex_);
+  if (look.joints == model_joints_) return model_;
+  if (!options_.light_model) return refusal("nobody here can work it out");
+  Rig rig = session_.rig;
+  turn_heads(rig, look.joints);
+  auto model = options_.light_model(rig);
+  if (!model) return model;
+  model_joints_ = look.joints;
+  return model_ = std::move(*model);
 }
 
 Result<void> Daemon::remember() {

@@ -25,11 +25,14 @@ struct DaemonOptions {
   std::map<std::string, Redirect> redirects;          ///< by bus name; empty for the real devices
   std::optional<std::filesystem::path> state_folder;  ///< none: nothing is remembered
   int http_port = 9620;                               ///< 0 = any
+  /// What the rig gives with heads that look elsewhere, for plans that turn them; called on whatever thread brings the
+  /// plan. Empty: such plans are refused.
+  std::function<Result<LightModel>(const Rig&)> light_model{};
 };
 
 class Daemon {
  public:
-  /// The session must outlive the daemon.
+  /// The session must outlive the daemon. model: of its rig, with heads as they look there.
   Daemon(const Session& session, LightModel model, DaemonOptions options);
   ~Daemon();
 
@@ -61,6 +64,8 @@ class Daemon {
   [[nodiscard]] HttpHandlers handlers();
   [[nodiscard]] Checked<void> apply_json(const std::string& plan_json);
   [[nodiscard]] Result<void> remember();
+  /// The look's model: the last one made, when heads looked so then, too.
+  [[nodiscard]] Result<LightModel> model_for(const PlannedLook& look);
 
   const Session& session_;
   DaemonOptions options_;
@@ -82,6 +87,10 @@ class Daemon {
   std::string status_json_ = "{}";
   std::deque<Command> commands_;
   JournalState remembered_;
+
+  std::mutex model_mutex_;  // guards the two below
+  std::vector<PanTilt> model_joints_;
+  LightModel model_;
 };
 
 }  // namespace luxrig

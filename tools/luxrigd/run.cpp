@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <thread>
 
 #include "core/parallel.h"
@@ -11,6 +12,7 @@
 #include "tools/luxrig/commands.h"
 #include "tools/luxrig/solve_tasks.h"
 #include "tools/luxrigd/daemon.h"
+#include "tools/luxrigd/rig_pictures.h"
 #include "tools/luxrigd/run_report.h"
 #include "tools/luxrigd/scheduling.h"
 
@@ -37,6 +39,28 @@ Checked<Plan> plan_of_file(const std::filesystem::path& path) {
   return plan_from_json(*text, path.string());
 }
 
+void say_solved(const RunReport& say, const Plan& plan) {
+  for (const PlannedTask& task : plan.tasks) {
+    if (task.relief) {
+      say.say(
+          fmt::format("task {}: local contrast {:.1f} lx, was {:.1f}; relative {:.3f}, was {:.3f}; features with a "
+                      "shadow's edge {:.0f} %, were "
+                      "{:.0f} %; {:.1f} s",
+                      task.name, task.relief->local_contrast_lx, task.relief->before_local_contrast_lx.value_or(0),
+                      task.relief->relative_contrast, task.relief->before_relative_contrast.value_or(0),
+                      100 * task.relief->coverage, 100 * task.relief->before_coverage.value_or(0), task.seconds));
+      continue;
+    }
+    say.say(fmt::format("task {}: normalised error {:.2f} %, {} iterations, {:.1f} ms", task.name,
+                        100 * task.normalised_error, task.iterations, 1000 * task.seconds));
+  }
+  for (const PlannedPoint& point : plan.points) {
+    const double goal = point.goal_lux.value_or(0);
+    if (!point.why.empty() && std::abs(point.lux - goal) > 0.03 * goal)
+      say.say(fmt::format("  {}: {}", point.name, point.why));
+  }
+}
+
 /// Ticks until `done` says so.
 void tick_until(Daemon& daemon, const std::function<bool(Time)>& done) {
   Time next = now();
@@ -49,20 +73,80 @@ void tick_until(Daemon& daemon, const std::function<bool(Time)>& done) {
   }
 }
 
+/// Until the look is held, or cannot be in reasonable time.
+void tick_until_held(Daemon& daemon, RunReport& say, const std::stop_token& stop) {
+  const Time begun = now();
+  tick_until(daemon, [&](Time at) {
+    say.follow(daemon.status(), at);
+    return daemon.status().phase == Phase::holding || stop.stop_requested() || at - begun > kMostOnce;
+  });
+}
+
+/// Takes pictures beside the control loop, which goes on.
+Result<std::vector<TakenByCamera>> take_pictures(Daemon& daemon, RunReport& say, RigPictures& pictures,
+                                                 const std::string& label) {
+  auto taking = std::async(std::launch::async, [&] {
+    make_background();
+    return pictures.take(label);
+  });
+  tick_until(daemon, [&](Time at) {
+    say.follow(daemon.status(), at);
+    return taking.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+  });
+  auto taken = taking.get();
+  if (taken)
+    for (const TakenByCamera& one : *taken)
+      say.say(fmt::format("camera {}: {}{}", one.camera, one.file.string(),
+                          one.contrast
+                              ? fmt::format(", local contrast of the relief {:.3f} (its {} places in view, mean "
+                                            "{:.0f} cd/m2)",
+                                            one.contrast->local_contrast, one.contrast->seen, one.contrast->mean_cd_m2)
+                              : ""));
+  return taken;
+}
+
+/// The rig as it hangs, with its cameras' pictures, then the plan with theirs.
+Result<void> show_before_and_after(Daemon& daemon, RunReport& say, RigPictures& pictures, const Plan& hung,
+                                   const Plan& plan, const std::stop_token& stop) {
+  std::vector<TakenByCamera> before;
+  for (const bool after : {false, true}) {
+    say.say(after ? "the plan" : "the rig as it hangs");
+    if (const auto applied = daemon.apply(after ? plan : hung); !applied)
+      return refusal(applied.error().front().text());
+    tick_until_held(daemon, say, stop);
+    if (stop.stop_requested()) return {};
+    auto taken = take_pictures(daemon, say, pictures, after ? "after" : "before");
+    if (!taken) return tl::unexpected(taken.error());
+    for (std::size_t i = 0; after && i < taken->size(); ++i)
+      if (const auto& was = before[i].contrast, &is = (*taken)[i].contrast; was && is && was->local_contrast > 0)
+        say.say(fmt::format("camera {}: local contrast of the relief {:+.0f} %", before[i].camera,
+                            100 * (is->local_contrast / was->local_contrast - 1)));
+    before = std::move(*taken);
+  }
+  return {};
+}
+
 }  // namespace
 
 int run_rig(const RunArguments& arguments) {
   const Time process_start = now();
   const std::stop_token stop = stop_on_signals();
-  const auto session = open_session(arguments.rig);
+  auto session = open_session(arguments.rig);
   if (!session) return report(session.error());
   const Rig& rig = session->rig;
-  const bool places = std::any_of(rig.tasks.begin(), rig.tasks.end(),
-                                  [](const Task& task) { return task.kind == TaskKind::placement; });
+  const bool places =
+      std::any_of(rig.tasks.begin(), rig.tasks.end(), [](const Task& task) { return task.places_lights(); });
   if (rig.fixtures.empty() && places) {
     return report(std::vector<Problem>{
         {rig.file.string(), 1, 1, "nothing hangs in this rig yet: it has tasks that place lights, and no [[fixture]]",
          "have luxrig solve place them, hang and patch them, and write a [[fixture]] for each"}});
+  }
+  if (arguments.pictures && (arguments.plan || (!arguments.sim && !arguments.sim_ports) || rig.cameras.empty())) {
+    return report(std::vector<Problem>{
+        {rig.file.string(), 1, 1,
+         rig.cameras.empty() ? "--pictures: this rig has no [[camera]]"
+                             : "--pictures shows the simulated rig as it hangs, then what its tasks make of it",
+         rig.cameras.empty() ? "add one" : "give it with --sim or --sim-ports, and without --plan"}});
   }
   RunReport say(rig, process_start);
   say.say(fmt::format("{}: {} triangles, {} fixtures, {} points, {} luxmeters", rig.name,
@@ -88,38 +172,41 @@ int run_rig(const RunArguments& arguments) {
   // 2. Transport and plan.
   ComputeOptions compute = arguments.compute;
   compute.watch = {stop, progress_line("  transport")};
+  std::optional<Plan> plan;
+  if (arguments.plan) {
+    auto read = plan_of_file(*arguments.plan);
+    if (!read) return report(read.error());
+    const auto look = look_for(*read, rig, arguments.plan->string());
+    if (!look) return report(look.error());
+    turn_heads(session->rig, look->joints);
+    plan = std::move(*read);
+  }
   ModelUsed used;
-  const auto transport =
+  auto transport =
       in_background<Result<TransportMatrix>>([&] { return compute_transport(*session, compute, {}, &used); });
   if (!transport) return report(transport.error());
   say.say(fmt::format("transport: {} x {} by {}, relative error {:.2g}, {} rays, {} threads", transport->receivers(),
                       transport->emitters(), used.name, transport->relative_error, transport->rays,
                       thread_count(compute.threads)));
   compute.watch.progress = nullptr;
-  std::optional<Plan> plan;
-  if (arguments.plan) {
-    auto read = plan_of_file(*arguments.plan);
-    if (!read) return report(read.error());
-    plan = std::move(*read);
-  } else {
-    auto solved = solve_levels(*session, *transport, compute);
+  std::optional<Plan> hung;
+  if (arguments.pictures) {
+    auto solved = solve_what_hangs(*session, *transport, compute, false);
     if (!solved) return report(solved.error());
-    plan = std::move(*solved);
+    hung = std::move(solved->plan);
+  }
+  if (!plan) {
+    auto solved = in_background<Result<SolvedTasks>>([&] { return solve_what_hangs(*session, *transport, compute); });
+    if (!solved) return report(solved.error());
     for (const Task& task : rig.tasks) {
-      if (task.kind == TaskKind::placement)
+      if (task.places_lights())
         say.say(fmt::format("task {}: left out, since it places lights that do not hang yet: luxrig solve does it",
                             task.name));
     }
-    for (const PlannedTask& task : plan->tasks) {
-      say.say(fmt::format("task {}: normalised error {:.2f} %, {} iterations, {:.1f} ms", task.name,
-                          100 * task.normalised_error, task.iterations, 1000 * task.seconds));
-    }
-    for (const PlannedPoint& point : plan->points) {
-      const double goal = point.goal_lux.value_or(0);
-      if (!point.why.empty() && std::abs(point.lux - goal) > 0.03 * goal) {
-        say.say(fmt::format("  {}: {}", point.name, point.why));
-      }
-    }
+    say_solved(say, solved->plan);
+    plan = std::move(solved->plan);
+    session->rig = std::move(solved->rig);
+    transport = std::move(solved->transport);
   }
   if (sim) {
     auto ready = sim->wait_ready({stop, nullptr});
@@ -137,6 +224,12 @@ int run_rig(const RunArguments& arguments) {
   } else if (!options.simulated) {
     options.state_folder = default_state_folder(rig.name);
   }
+  options.light_model = [&session, compute](const Rig& turned) -> Result<LightModel> {
+    const auto anew = in_background<Result<TransportMatrix>>(
+        [&] { return compute_transport(turned, session->scene, *session->rays, compute); });
+    if (!anew) return tl::unexpected(anew.error());
+    return light_model(turned, *anew);
+  };
   Daemon daemon(*session, light_model(rig, *transport), options);
   const auto port = daemon.start();
   if (!port) return report(port.error());
@@ -149,7 +242,11 @@ int run_rig(const RunArguments& arguments) {
     resumed = state.value_or(false);
     if (resumed) say.say("resumed the plan that was in force");
   }
-  if (!resumed) {
+  if (hung) {
+    RigPictures pictures(*session, ports->control, *arguments.pictures);
+    if (const auto shown = show_before_and_after(daemon, say, pictures, *hung, *plan, stop); !shown)
+      return report(shown.error());
+  } else if (!resumed) {
     if (const auto applied = daemon.apply(*plan); !applied) return report(applied.error());
   }
 

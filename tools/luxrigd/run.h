@@ -19,6 +19,7 @@ struct RunArguments {
   std::optional<int> http_port;                       ///< default: the rig's
   bool once = false;                                  ///< end when the goals are met, or cannot be
   std::optional<std::filesystem::path> json;          ///< where the table goes with `once`
+  std::optional<std::filesystem::path> pictures;      ///< folder; of the rig as it hangs, then of the plan
   ComputeOptions compute;
 };
 

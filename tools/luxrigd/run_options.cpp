@@ -14,6 +14,9 @@ void add_run_options(CLI::App& app, RunArguments& arguments) {
   app.add_option("--port", arguments.http_port, "port of the page, on loopback (0: any)")->check(CLI::Range(0, 65535));
   app.add_flag("--once", arguments.once, "light, measure, correct, then end: exit code 0 when the goals were met");
   app.add_option("--json", arguments.json, "with --once: write the table here");
+  app.add_option("--pictures", arguments.pictures,
+                 "simulated only: the rig's cameras take pictures, into this folder, of the rig as it hangs and of the "
+                 "plan; heads look where the rig file says first");
   app.add_option("--max-error", arguments.compute.max_error, "wanted relative error of the transport")
       ->check(CLI::Range(1e-4, 1.0));
   app.add_option("--seed", arguments.compute.seed, "seed of the samples");

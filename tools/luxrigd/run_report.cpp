@@ -14,9 +14,9 @@ namespace {
 
 constexpr double kMissWorthAReason = 0.03;
 
-std::optional<double> error_of(const Point& point, const PointStatus& status) {
-  if (!point.goal_lx || *point.goal_lx <= 0) return {};
-  return status.measured_lx.value_or(status.predicted_lx) / *point.goal_lx - 1;
+std::optional<double> error_of(const PointStatus& status) {
+  if (!status.goal_lx || *status.goal_lx <= 0) return {};
+  return status.measured_lx.value_or(status.predicted_lx) / *status.goal_lx - 1;
 }
 
 }  // namespace
@@ -31,9 +31,9 @@ void RunReport::say_readings(const ShowStatus& status) const {
     const Point& point = rig_.points[i];
     const PointStatus& p = status.points[i];
     if (!p.measured_lx) continue;
-    const auto error = error_of(point, p);
+    const auto error = error_of(p);
     say(fmt::format("  {:<24} {:7.1f} lx measured{}{}", point.name, *p.measured_lx,
-                    point.goal_lx ? fmt::format(", goal {:g}", *point.goal_lx) : "",
+                    p.goal_lx ? fmt::format(", goal {:.4g}", *p.goal_lx) : "",
                     error ? fmt::format(" ({:+.1f} %)", 100 * *error) : ""));
   }
 }
@@ -63,17 +63,17 @@ std::string RunReport::table(const ShowStatus& status, const std::optional<SimTr
   for (std::size_t i = 0; i < status.points.size(); ++i) {
     const Point& point = rig_.points[i];
     const PointStatus& p = status.points[i];
-    const auto error = error_of(point, p);
+    const auto error = error_of(p);
     // A reason belongs to a miss that matters; the JSON has them all.
     std::string note = error && std::abs(*error) > kMissWorthAReason ? p.why : "";
     if (!p.measured_lx && note.empty()) note = "no luxmeter here: by the model";
     const PointTruthSeen* seen = truth && i < truth->points.size() ? &truth->points[i] : nullptr;
-    table.row(
-        {point.name, point.goal_lx ? fmt::format("{:g}", *point.goal_lx) : "-", fmt::format("{:.1f}", p.predicted_lx),
-         fmt::format("{:.1f}", p.standard_error_lx), p.measured_lx ? fmt::format("{:.1f}", *p.measured_lx) : "-",
-         error ? fmt::format("{:+.1f} %", 100 * *error) : "-", point.max_lx ? fmt::format("{:g}", *point.max_lx) : "-",
-         seen != nullptr ? fmt::format("{:.1f}", seen->lux) : "",
-         seen != nullptr ? fmt::format("{:.1f}", seen->max_lux_seen) : "", note});
+    table.row({point.name, p.goal_lx ? fmt::format("{:.4g}", *p.goal_lx) : "-", fmt::format("{:.1f}", p.predicted_lx),
+               fmt::format("{:.1f}", p.standard_error_lx), p.measured_lx ? fmt::format("{:.1f}", *p.measured_lx) : "-",
+               error ? fmt::format("{:+.1f} %", 100 * *error) : "-",
+               point.max_lx ? fmt::format("{:g}", *point.max_lx) : "-",
+               seen != nullptr ? fmt::format("{:.1f}", seen->lux) : "",
+               seen != nullptr ? fmt::format("{:.1f}", seen->max_lux_seen) : "", note});
   }
   return table.text();
 }
@@ -94,11 +94,11 @@ std::string RunReport::json(const ShowStatus& status, const std::optional<SimTru
     const Point& point = rig_.points[i];
     const PointStatus& p = status.points[i];
     nlohmann::json entry = {{"name", point.name}, {"met", p.met}, {"why", p.why}};
-    set(entry, "goal_lux", point.goal_lx);
+    set(entry, "goal_lux", p.goal_lx);
     set(entry, "predicted_lux", p.predicted_lx);
     set(entry, "standard_error_lux", p.standard_error_lx);
     set(entry, "measured_lux", p.measured_lx);
-    set(entry, "error", error_of(point, p));
+    set(entry, "error", error_of(p));
     set(entry, "max_lux", point.max_lx);
     if (truth && i < truth->points.size()) {
       set(entry, "truth_lux", truth->points[i].lux);

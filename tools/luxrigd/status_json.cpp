@@ -21,8 +21,8 @@ json fixture_json(const Rig& rig, std::size_t index, const FixtureStatus& status
               {"bus", rig.buses[fixture.bus].name},
               {"luminaire", rig.luminaires[fixture.luminaire].name},
               {"position", array_of(fixture.world_from_mount.translation_m)},
-              {"pan_deg", deg_from_rad(fixture.joints.pan_rad)},
-              {"tilt_deg", deg_from_rad(fixture.joints.tilt_rad)}};
+              {"pan_deg", deg_from_rad(status.joints.pan_rad)},
+              {"tilt_deg", deg_from_rad(status.joints.tilt_rad)}};
   if (fixture.aim_world_m) out["aim"] = array_of(*fixture.aim_world_m);
   set(out, "level", status.level);
   set(out, "drive", status.drive);
@@ -38,7 +38,7 @@ json point_json(const Point& point, const PointStatus& status, Time now) {
               {"normal", array_of(point.normal_world)},
               {"met", status.met},
               {"why", status.why}};
-  if (point.goal_lx) out["goal_lux"] = *point.goal_lx;
+  if (status.goal_lx) out["goal_lux"] = *status.goal_lx;
   if (point.max_lx) out["max_lux"] = *point.max_lx;
   set(out, "predicted_lux", status.predicted_lx);
   set(out, "standard_error_lux", status.standard_error_lx);
@@ -46,8 +46,8 @@ json point_json(const Point& point, const PointStatus& status, Time now) {
     set(out, "measured_lux", *status.measured_lx);
     set(out, "measured_age_s", to_seconds(now - status.measured_at));
   }
-  if (point.goal_lx && *point.goal_lx > 0) {
-    set(out, "error", status.measured_lx.value_or(status.predicted_lx) / *point.goal_lx - 1);
+  if (status.goal_lx && *status.goal_lx > 0) {
+    set(out, "error", status.measured_lx.value_or(status.predicted_lx) / *status.goal_lx - 1);
   }
   return out;
 }

@@ -285,5 +285,134 @@ TEST(ShowController, NeverJumpsUpNorLeavesItsBoundsWhateverIsFedToIt) {
   }
 }
 
+/// The right fixture is a head: 90°/s, and what it gives depends on where it looks.
+struct TurningShow : SmallShow {
+  LightModel turned;
+  TurningShow() {
+    rig.fixtures[1].moves = true;
+    rig.fixtures[1].range = {-kPi, kPi, -1, 1};
+    rig.fixtures[1].pan_speed_rad_s = rig.fixtures[1].tilt_speed_rad_s = kPi / 2;
+    turned = model;
+    turned.point_lux_per_level = turned.meter_lux_per_level = Eigen::MatrixXd{{100, 80}, {10, 20}};
+  }
+  [[nodiscard]] Look look(double pan_rad, const LightModel& of) const {
+    Look look;
+    look.joints.resize(2);
+    look.joints[1] = {pan_rad, 0};
+    look.goal_lx = {45, 15};
+    look.model = of;
+    return look;
+  }
+  void run_until(Phase phase) {
+    for (int i = 0; i < 2000 && status().phase != phase; ++i) run(0.05);
+    ASSERT_EQ(status().phase, phase);
+  }
+};
+
+TEST(ShowController, LightsNothingUntilItsHeadsCanHaveTurned) {
+  TurningShow small;
+  small.start().apply(small.now(), std::vector<double>{0.3, 0.3});
+  // From either end of 360° to the middle: two seconds, and half a second until it moves.
+  const double applied_s = small.now_s;
+  while (small.now_s < applied_s + 2.4) {
+    small.run(0.05);
+    EXPECT_EQ(small.levels(), (std::vector<double>{0, 0})) << small.now_s;
+  }
+  EXPECT_NE(small.status().detail.find("heads turn"), std::string::npos) << small.status().detail;
+  small.run(0.5);
+  EXPECT_GT(small.levels()[1], 0);
+  small.run_until(Phase::holding);
+}
+
+TEST(ShowController, TurnsAHeadInTheDarkAndKeepsTheOthersLit) {
+  TurningShow small;
+  small.start().apply(small.now(), std::vector<double>{0.36, 0.36});
+  small.run_until(Phase::holding);
+  const std::vector<double> before = small.levels();
+  ASSERT_GT(before[1], 0.3);
+  ASSERT_TRUE(small.status().converged);
+
+  small.show->apply(small.now(), std::vector<double>{0.2, 0.3}, small.look(1.5, small.turned));
+  EXPECT_EQ(small.status().phase, Phase::moving);
+  EXPECT_EQ(small.status().points[0].goal_lx, 40) << "until it is taken";
+  bool turned = false;
+  double turned_s = 0, left = before[0];
+  for (int i = 0; i < 100; ++i) {
+    small.run(0.05);
+    // It goes to where its limit holds without what the meters have taught, but never by a jump.
+    EXPECT_NEAR(small.levels()[0], left, 0.02) << small.now_s;
+    left = small.levels()[0];
+    EXPECT_GT(left, 0.1);
+    const PanTilt& joints = small.show->program().joints[1];
+    if (joints.pan_rad != 0 && !turned) {
+      turned = true;
+      turned_s = small.now_s;
+      EXPECT_EQ(small.levels()[1], 0);
+      EXPECT_EQ(small.status().points[0].goal_lx, 45);
+    }
+    // 1.5 rad at 90°/s, and the half second.
+    if (turned && small.now_s < turned_s + 1.4) {
+      EXPECT_EQ(small.levels()[1], 0) << small.now_s - turned_s;
+    }
+    if (small.status().phase == Phase::settling) break;
+  }
+  ASSERT_TRUE(turned);
+  small.model = small.turned;  // what the room truly gives from now on
+  small.run_until(Phase::holding);
+  const ShowStatus status = small.status();
+  EXPECT_EQ(status.fixtures[1].joints.pan_rad, 1.5);
+  EXPECT_NEAR(*status.points[0].measured_lx, 45, 0.03 * 45) << status.detail;
+}
+
+TEST(ShowController, ABlackoutTurnsHeadsAtOnceAndTheyComeBackLit) {
+  TurningShow small;
+  small.start().apply(small.now(), std::vector<double>{0.36, 0.36});
+  small.run_until(Phase::holding);
+  small.show->apply(small.now(), std::vector<double>{0.2, 0.3}, small.look(1.5, small.turned));
+  small.run(0.1);
+  small.show->blackout(small.now(), true);
+  small.run(0.1);
+  EXPECT_EQ(small.show->program().joints[1].pan_rad, 1.5) << "nothing is lit that could sweep";
+  EXPECT_EQ(small.levels(), (std::vector<double>{0, 0}));
+  small.show->blackout(small.now(), false);
+  EXPECT_EQ(small.levels(), (std::vector<double>{0, 0}));
+  small.model = small.turned;
+  small.run_until(Phase::holding);
+  EXPECT_GT(small.levels()[1], 0.05);
+}
+
+TEST(ShowController, AnotherPlanOrTheSafeLookMayComeWhileAHeadGoesDark) {
+  TurningShow small;
+  small.start().apply(small.now(), std::vector<double>{0.36, 0.36});
+  small.run_until(Phase::holding);
+  small.show->apply(small.now(), std::vector<double>{0.2, 0.3}, small.look(1.5, small.turned));
+  small.run(0.3);
+  small.show->apply(small.now(), std::vector<double>{0.3, 0.3});  // as they look
+  small.run_until(Phase::holding);
+  EXPECT_EQ(small.show->program().joints[1].pan_rad, 0);
+
+  small.show->apply(small.now(), std::vector<double>{0.2, 0.3}, small.look(1.5, small.turned));
+  small.run(0.3);
+  small.show->go_safe(small.now());
+  small.run_until(Phase::safe);
+  EXPECT_EQ(small.show->program().joints[1].pan_rad, 0) << "the safe look is not the time to turn";
+}
+
+// Goals alone: the meters' lessons stay, and no head goes dark.
+TEST(ShowController, OtherGoalsKeepWhatTheMetersTaught) {
+  TurningShow small;
+  small.start().apply(small.now(), std::vector<double>{0.36, 0.36});
+  small.run_until(Phase::holding);
+  const double gain = small.status().fixtures[0].gain;
+  ASSERT_LT(gain, 0.97);
+  Look look = small.look(0, small.model);
+  look.goal_lx = {30, 20};
+  small.show->apply(small.now(), small.levels(), look);
+  EXPECT_EQ(small.status().phase, Phase::fading);
+  EXPECT_EQ(small.status().fixtures[0].gain, gain);
+  small.run_until(Phase::holding);
+  EXPECT_NEAR(*small.status().points[0].measured_lx, 30, 0.03 * 30);
+}
+
 }  // namespace
 }  // namespace luxrig

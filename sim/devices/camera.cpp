@@ -1,0 +1,69 @@
+#include "sim/devices/camera.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/transport/rig_transport.h"
+#include "sim/world/random.h"
+
+namespace luxrig::sim {
+namespace {
+
+constexpr double kBrightestShare = 0.01, kExposedTo = 0.8;
+
+/// The luminance that fills a pixel: the brightest hundredth of all samples comes to four fifths of it.
+double full_cd_m2(const Picture& picture) {
+  std::vector<float> brightest;
+  for (const Vec3f& pixel : picture.luminance_cd_m2) brightest.push_back(pixel.maxCoeff());
+  const auto at = static_cast<std::ptrdiff_t>((1 - kBrightestShare) * static_cast<double>(brightest.size() - 1));
+  std::nth_element(brightest.begin(), brightest.begin() + at, brightest.end());
+  return brightest[static_cast<std::size_t>(at)] / kExposedTo;
+}
+
+}  // namespace
+
+Result<Picture> photograph(const RayScene& scene, const Rig& rig, const std::vector<FixtureTruth>& truths,
+                           const LightNow& light, const PictureCamera& camera, const Sensor& sensor, const Shot& shot) {
+  std::vector<Emitter> emitters;
+  std::vector<double> levels;
+  for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
+    if (!(light.levels[f] > 0)) continue;
+    const Fixture& fixture = rig.fixtures[f];
+    emitters.push_back(emitter_of(rig.luminaires[fixture.luminaire],
+                                  world_from_lamp(truths[f].world_from_mount, light.joints[f], fixture.roll_rad)));
+    levels.push_back(light.levels[f]);
+  }
+  for (Emitter& day : daylight_emitters_of(rig)) {
+    emitters.push_back(std::move(day));
+    levels.push_back(1);
+  }
+  Camera view;
+  view.eye_world_m = camera.position_world_m;
+  view.target_world_m = camera.aim_world_m;
+  view.vertical_fov_rad = camera.vertical_fov_rad;
+  view.width_px = camera.width_px;
+  view.height_px = camera.height_px;
+  PictureOptions how;
+  how.most_passes = shot.passes;
+  how.wanted_relative_error = 0;
+  how.seed = shot.seed;
+  how.threads = shot.threads;
+  auto seen = render_picture(scene, emitters, levels, view, how);
+  if (!seen) return seen;
+  seen->illuminance_lx.clear();
+  const double full = full_cd_m2(*seen);
+  if (!(full > 0)) return seen;  // a dark room
+  const double steps = std::exp2(sensor.bits) - 1;
+  std::uint64_t sample = shot.number << 32;
+  for (Vec3f& pixel : seen->luminance_cd_m2)
+    for (float& value : pixel) {
+      const double electrons = std::min(static_cast<double>(value) / full, 1.0) * sensor.full_well_electrons;
+      const double noise = std::sqrt(electrons + sensor.read_noise_electrons * sensor.read_noise_electrons) *
+                           random_normal(shot.seed, Draw::picture_noise, 0, sample++);
+      const double share = std::clamp((electrons + noise) / sensor.full_well_electrons, 0.0, 1.0);
+      value = static_cast<float>(std::round(share * steps) / steps * full);
+    }
+  return seen;
+}
+
+}  // namespace luxrig::sim
