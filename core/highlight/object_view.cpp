@@ -64,6 +64,9 @@ Camera camera_that_shows(std::span<const Vec3> points_world_m, const Vec3& towar
 
 namespace {
 
+/// A view from a less usual height must show so much more.
+constexpr double kWorthwhileShare = 0.01;
+
 double share_in_sight(const RayScene& scene, const CutAwayCamera& view, std::span<const Sight> wanted) {
   double seen = 0, all = 0;
   const Vec3& eye = view.camera.eye_world_m;
@@ -85,7 +88,7 @@ CutAwayCamera camera_that_sees(const RayScene& scene, std::span<const Vec3> show
                                int height_px) {
   CutAwayCamera best;
   best.seen = -1;
-  for (const double height_deg : {-15.0, 5.0, 22.5, 45.0})
+  for (const double height_deg : {22.5, 5.0, 45.0, -15.0})
     for (int side = 0; side < 16; ++side) {
       const double around_rad = kPi / 8 * side, up_rad = rad_from_deg(height_deg);
       const Vec3 towards_eye(std::cos(up_rad) * std::cos(around_rad), std::cos(up_rad) * std::sin(around_rad),
@@ -97,7 +100,7 @@ CutAwayCamera camera_that_sees(const RayScene& scene, std::span<const Vec3> show
         view.near_m = std::min(view.near_m, (point - view.camera.eye_world_m).norm());
       view.near_m *= 0.98;
       view.seen = share_in_sight(scene, view, wanted);
-      if (view.seen > best.seen + 1e-9) best = view;
+      if (view.seen > best.seen + kWorthwhileShare) best = view;
     }
   return best;
 }

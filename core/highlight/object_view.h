@@ -39,9 +39,9 @@ struct CutAwayCamera {
   double seen = 0;    ///< share of the wanted weight that is in sight then
 };
 
-/// Of cameras that show all these points (camera_that_shows) from sixteen sides and four heights, -15° to 45°, the one
-/// that has most of what is wanted in sight past the scene, things nearer than near_m left away. Ties: the lower one,
-/// then that nearest to +X.
+/// Of cameras that show all these points (camera_that_shows) from sixteen sides and heights of 22.5°, 5°, 45° and -15°,
+/// in this order, the one that has most of what is wanted in sight past the scene, things nearer than near_m left away.
+/// A later one must show 0.01 more to be taken.
 /// shown   at least one (asserted); wanted may be none
 [[nodiscard]] CutAwayCamera camera_that_sees(const RayScene& scene, std::span<const Vec3> shown_world_m,
                                              std::span<const Sight> wanted, double fill, double vertical_fov_rad,

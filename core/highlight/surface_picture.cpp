@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <functional>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -145,7 +145,7 @@ void SurfacePicture::draw(const DrawnLine& line) {
   const Vec3 ahead = (camera_.target_world_m - camera_.eye_world_m).normalized();
   Vec3 from_m = line.from_world_m - camera_.eye_world_m, to_m = line.to_world_m - camera_.eye_world_m;
   if (from_m.dot(ahead) > to_m.dot(ahead)) std::swap(from_m, to_m);
-  const double least_m = std::max(near_m_, 1e-3 * (to_m - from_m).norm());
+  const double least_m = 1e-3 * (to_m - from_m).norm();
   if (!(to_m.dot(ahead) > least_m)) return;
   if (from_m.dot(ahead) < least_m)
     from_m += (least_m - from_m.dot(ahead)) / (to_m - from_m).dot(ahead) * (to_m - from_m);

@@ -70,7 +70,7 @@ class SurfacePicture {
 
   /// Far ones first; what was drawn by draw() hides them, they do not hide one another but by being drawn over.
   void draw(std::span<const Disc> discs);
-  void draw(const DrawnLine& line);
+  void draw(const DrawnLine& line);  ///< also what of it is nearer than near_m
 
   /// Means over the samples of each pixel.
   [[nodiscard]] ColourPicture resolved() const;

@@ -67,19 +67,49 @@ void draw_mark(cairo_t* pen, FigureMark mark, double x, double y, const Vec3& rg
   }
 }
 
-void draw_label(cairo_t* pen, const FigureLabel& label, double left, double top, int width_px, int height_px) {
-  draw_mark(pen, label.mark, left + label.x_px, top + label.y_px, label.rgb);
+/// Where a label's words go, and what earlier ones have taken: on its own line if that is free, else a few below or
+/// above.
+class LabelPlaces {
+ public:
+  [[nodiscard]] double free_y(double x, double y, double wide) {
+    constexpr double kHigh_px = kFont_px + 2;
+    const auto taken = [&](double at) {
+      return std::ranges::any_of(taken_, [&](const Words& w) {
+        return x < w.x + w.wide + 4 && w.x < x + wide + 4 && std::abs(at - w.y) < kHigh_px;
+      });
+    };
+    double best = y;
+    for (const int lines : {0, 1, -1, 2, -2, 3, -3}) {
+      best = y + lines * kHigh_px;
+      if (!taken(best)) break;
+      best = y;
+    }
+    taken_.push_back({x, best, wide});
+    return best;
+  }
+
+ private:
+  struct Words {
+    double x, y, wide;
+  };
+  std::vector<Words> taken_;
+};
+
+void draw_label(cairo_t* pen, const FigureLabel& label, LabelPlaces& places, double top, int width_px, int height_px) {
+  draw_mark(pen, label.mark, label.x_px, top + label.y_px, label.rgb);
   if (label.words.empty()) return;
   set_png_font(pen, kFont_px, PngFont::bold);
-  const double wide = png_text_width_px(pen, label.words), gap = label.mark == FigureMark::none ? -wide / 2 : 10;
+  const bool alone = label.mark == FigureMark::none;
+  const double wide = png_text_width_px(pen, label.words), gap = alone ? -wide / 2 : 10;
   double x = label.x_px + gap;
-  if (x + wide > width_px - 4) x = label.mark == FigureMark::none ? width_px - 4 - wide : label.x_px - gap - wide;
+  if (x + wide > width_px - 4) x = alone ? width_px - 4 - wide : label.x_px - gap - wide;
   x = std::max(4.0, x);
-  const double y = std::clamp(label.y_px + kFont_px / 2 - 2, kFont_px + 2, height_px - 4.0);
+  const double wanted_y = places.free_y(x, label.y_px + kFont_px / 2 - 2, wide);
+  const double y = std::clamp(wanted_y, kFont_px + 2, height_px - 4.0);
   cairo_new_path(pen);
-  cairo_move_to(pen, left + x, top + y);
+  cairo_move_to(pen, x, top + y);
   cairo_text_path(pen, label.words.c_str());
-  fill_on_white(pen, label.mark == FigureMark::none ? label.rgb : Vec3(Vec3::Constant(0.1)));
+  fill_on_white(pen, alone ? label.rgb : Vec3(Vec3::Constant(0.1)));
 }
 
 /// Lays the column out; draws it if there is a pen to draw with. Returns how far down it reached.
@@ -196,7 +226,8 @@ std::string write_figure(const Figure& figure, const std::filesystem::path& file
     cairo_show_text(pen.get(), line.c_str());
     y += kLine_px;
   }
-  for (const FigureLabel& label : figure.labels) draw_label(pen.get(), label, 0, top, width, height);
+  LabelPlaces places;
+  for (const FigureLabel& label : figure.labels) draw_label(pen.get(), label, places, top, width, height);
   lay_out({pen.get(), true, static_cast<double>(width + kMargin_px), static_cast<double>(top)}, figure, bar_px);
   return write_png(surface, file);
 }

@@ -31,7 +31,9 @@ TEST(DirectionMap, AreasAreSolidAngles) {
       const Vec3 direction = towards * (Eigen::AngleAxisd(rad_from_deg(deg), around) * viewer);
       const DirectionMap::Place place = map.place_of(direction);
       EXPECT_NEAR(place.x * place.x + place.y * place.y, 1 - std::cos(rad_from_deg(deg)), 1e-12);
-      if (deg < 90) EXPECT_EQ(place.behind, towards < 0);
+      if (deg < 90) {  // on the rim rounding decides
+        EXPECT_EQ(place.behind, towards < 0);
+      }
     }
   }
 }

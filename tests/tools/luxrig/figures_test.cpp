@@ -146,9 +146,15 @@ TEST(Figures, TheHeaviestPlaceOfTheDomainIsMarkedOnIts) {
   const auto figure = domain_figure(rig, object, small_picture());
   ASSERT_TRUE(figure.has_value());
   ASSERT_EQ(figure->labels.size(), 1u);
-  const auto at =
-      static_cast<std::size_t>(figure->labels[0].y_px) * 240 + static_cast<std::size_t>(figure->labels[0].x_px);
-  EXPECT_LT((figure->picture.rgb[at].cast<double>() - viridis(1)).norm(), 0.25);
+  // Its spot, in the top colour of the scale, is there; others may cover a part of it.
+  double nearest = 1;
+  for (int dy = -2; dy <= 2; ++dy)
+    for (int dx = -2; dx <= 2; ++dx) {
+      const auto at = static_cast<std::size_t>(figure->labels[0].y_px + dy) * 240 +
+                      static_cast<std::size_t>(figure->labels[0].x_px + dx);
+      nearest = std::min(nearest, (figure->picture.rgb[at].cast<double>() - viridis(1)).norm());
+    }
+  EXPECT_LT(nearest, 0.1);
 }
 
 SceneObject named_object(const std::string& name, bool mesh) {
