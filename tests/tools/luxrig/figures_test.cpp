@@ -139,7 +139,7 @@ TEST(Figures, TheHistogramsBestDirectionIsMarkedWhereItIs) {
   EXPECT_GT(below, 10000);
 }
 
-TEST(Figures, TheHeaviestPlaceOfTheDomainIsMarkedOnIts) {
+TEST(Figures, TheHeaviestPlaceOfTheDomainIsMarkedWhereItsSpotIs) {
   const ShownObject object = shown_hill(Vec3(0.2, -1, 0.4).normalized());
   ShownRig rig;
   rig.scene = object.target;
