@@ -66,18 +66,38 @@ int main(int argc, char** argv) {
   std::filesystem::path render_plan;
   std::vector<double> eye, target;
   std::string false_colour;
-  command = app.add_subcommand("render", "a picture of the lit rig, or a false-colour map of lux");
+  static const std::map<std::string, ShowWhat> subjects = {
+      {"curvature", ShowWhat::curvature}, {"interest", ShowWhat::interest}, {"features", ShowWhat::features},
+      {"histogram", ShowWhat::histogram}, {"domain", ShowWhat::domain},     {"beams", ShowWhat::beams}};
+  command = app.add_subcommand("render",
+                               "a picture of the lit rig, a false-colour map of lux, or why its lights are "
+                               "where they are");
   command->add_option("RIG", render.rig, rig_help)->required();
   auto* with_plan =
       command->add_option("PLAN", render_plan, "levels of this plan (else every fixture at its highest level)");
   command->add_option("-o,--output", render.output_png, "PNG file")->required();
-  command->add_option("--false-colour", false_colour, "lux: a map of illuminance with a scale")
-      ->check(CLI::IsMember({"lux"}));
+  auto* with_false_colour =
+      command->add_option("--false-colour", false_colour, "lux: a map of illuminance with a scale")
+          ->check(CLI::IsMember({"lux"}));
+  auto* with_show =
+      command
+          ->add_option("--show", render.show,
+                       "why: an object's curvature, its interest points, its features, the histogram of shadow "
+                       "directions, the domain where lights may hang; or where the beams go")
+          ->transform(CLI::CheckedTransformer(subjects))
+          ->excludes(with_false_colour);
+  command->add_option("--object", render.object, "with --show: whose relief (else the only one from a mesh file)")
+      ->needs(with_show);
+  command->add_option("--lights", render.lights, "with --show histogram: so many directions are chosen")
+      ->check(CLI::Range(1, 64))
+      ->needs(with_show)
+      ->capture_default_str();
   command->add_option("--width", render.width_px, "pixels")->check(CLI::Range(16, 8192));
   command->add_option("--height", render.height_px, "pixels")->check(CLI::Range(16, 8192));
   auto* with_eye = command->add_option("--eye", eye, "x y z [m] of the viewer")->expected(3);
   auto* with_target = command->add_option("--target", target, "x y z [m] looked at")->expected(3);
-  command->add_option("--fov-deg", render.vertical_fov_deg, "vertical field of view")->check(CLI::Range(1.0, 170.0));
+  command->add_option("--fov-deg", render.vertical_fov_deg, "vertical field of view (60; with --show 30)")
+      ->check(CLI::Range(1.0, 170.0));
   command->add_option("--max-lx", render.max_lx, "top of the false-colour scale")->check(CLI::PositiveNumber);
   command->add_option("--max-error", render.max_error, "noise at which the picture is done")
       ->check(CLI::Range(1e-4, 1.0))

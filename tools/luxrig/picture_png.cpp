@@ -1,53 +1,21 @@
 #include "tools/luxrig/picture_png.h"
 
-#include <cairo.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
+
+#include "tools/luxrig/png_canvas.h"
 
 namespace luxrig {
 namespace {
 
-using Surface = std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)>;
-using Pen = std::unique_ptr<cairo_t, decltype(&cairo_destroy)>;
-
 constexpr int kLegendWidth_px = 96;
-
-Surface make_surface(int width_px, int height_px) {
-  return {cairo_image_surface_create(CAIRO_FORMAT_RGB24, width_px, height_px), &cairo_surface_destroy};
-}
-
-std::string write(const Surface& surface, const std::filesystem::path& file) {
-  const cairo_status_t status = cairo_surface_write_to_png(surface.get(), file.c_str());
-  return status == CAIRO_STATUS_SUCCESS ? "" : std::string(cairo_status_to_string(status));
-}
-
-/// colour_of(x, y) gives sRGB 0…1.
-template <class ColourOf>
-void paint(cairo_surface_t* surface, int width_px, int height_px, const ColourOf& colour_of) {
-  cairo_surface_flush(surface);
-  unsigned char* bytes = cairo_image_surface_get_data(surface);
-  const int stride = cairo_image_surface_get_stride(surface);
-  for (int y = 0; y < height_px && bytes; ++y) {
-    auto* row = reinterpret_cast<std::uint32_t*>(bytes + static_cast<std::ptrdiff_t>(y) * stride);
-    for (int x = 0; x < width_px; ++x) {
-      const Vec3 colour = colour_of(x, y);
-      std::uint32_t rgb = 0;
-      for (int c = 0; c < 3; ++c)
-        rgb = (rgb << 8) | static_cast<std::uint32_t>(std::lround(255 * std::clamp(colour[c], 0.0, 1.0)));
-      row[x] = rgb;
-    }
-  }
-  cairo_surface_mark_dirty(surface);
-}
 
 void write_title(cairo_t* pen, const std::string& title, int height_px) {
   if (title.empty()) return;
-  cairo_select_font_face(pen, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
-  cairo_set_font_size(pen, 14);
+  set_png_font(pen, 14);
   cairo_text_extents_t size;
   cairo_text_extents(pen, title.c_str(), &size);
   cairo_set_source_rgba(pen, 0, 0, 0, 0.55);
@@ -62,25 +30,44 @@ double srgb(double linear) { return linear <= 0.0031308 ? 12.92 * linear : 1.055
 
 double luminance_of(const Vec3f& rgb) { return 0.2126 * rgb.x() + 0.7152 * rgb.y() + 0.0722 * rgb.z(); }
 
-}  // namespace
+using ColourTable = std::array<std::array<int, 3>, 9>;
 
-Vec3 viridis(double at) {
-  constexpr std::array<std::array<int, 3>, 9> kTable = {{{68, 1, 84},
-                                                         {71, 45, 123},
-                                                         {59, 82, 139},
-                                                         {44, 114, 142},
-                                                         {33, 145, 140},
-                                                         {39, 173, 129},
-                                                         {94, 201, 98},
-                                                         {170, 220, 50},
-                                                         {253, 231, 37}}};
+Vec3 colour_in(const ColourTable& table, double at) {
   const double scaled = std::clamp(at, 0.0, 1.0) * 8;
   const auto low = std::min<std::size_t>(7, static_cast<std::size_t>(scaled));
   const double share = scaled - static_cast<double>(low);
   Vec3 colour;
   for (std::size_t c = 0; c < 3; ++c)
-    colour[static_cast<Eigen::Index>(c)] = ((1 - share) * kTable[low][c] + share * kTable[low + 1][c]) / 255;
+    colour[static_cast<Eigen::Index>(c)] = ((1 - share) * table[low][c] + share * table[low + 1][c]) / 255;
   return colour;
+}
+
+}  // namespace
+
+Vec3 viridis(double at) {
+  constexpr ColourTable kTable = {{{68, 1, 84},
+                                   {71, 45, 123},
+                                   {59, 82, 139},
+                                   {44, 114, 142},
+                                   {33, 145, 140},
+                                   {39, 173, 129},
+                                   {94, 201, 98},
+                                   {170, 220, 50},
+                                   {253, 231, 37}}};
+  return colour_in(kTable, at);
+}
+
+Vec3 blue_white_red(double at) {
+  constexpr ColourTable kTable = {{{33, 102, 172},
+                                   {67, 147, 195},
+                                   {146, 197, 222},
+                                   {209, 229, 240},
+                                   {247, 247, 247},
+                                   {253, 219, 199},
+                                   {244, 165, 130},
+                                   {214, 96, 77},
+                                   {178, 24, 43}}};
+  return colour_in(kTable, at);
 }
 
 double round_up_1_2_5(double value) {
@@ -109,8 +96,8 @@ std::string write_photograph(const Picture& picture, const std::string& title, s
                              const std::filesystem::path& file) {
   const double exposure = 0.18 / grey_cd_m2.value_or(log_average_luminance_cd_m2(picture));
   constexpr double kWhite = 6;  // exposed luminance that becomes white
-  const Surface surface = make_surface(picture.width_px, picture.height_px);
-  paint(surface.get(), picture.width_px, picture.height_px, [&](int x, int y) {
+  const PngSurface surface = make_png_surface(picture.width_px, picture.height_px);
+  paint_png(surface.get(), 0, 0, picture.width_px, picture.height_px, [&](int x, int y) {
     const Vec3f& rgb = picture.luminance_cd_m2[static_cast<std::size_t>(y * picture.width_px + x)];
     const double exposed = exposure * luminance_of(rgb);
     if (!(exposed > 0)) return Vec3(Vec3::Zero());
@@ -118,9 +105,9 @@ std::string write_photograph(const Picture& picture, const std::string& title, s
     const Vec3 linear = rgb.cast<double>() * (exposure * shown / exposed);
     return Vec3(srgb(linear.x()), srgb(linear.y()), srgb(linear.z()));
   });
-  const Pen pen(cairo_create(surface.get()), &cairo_destroy);
+  const PngPen pen = make_png_pen(surface);
   write_title(pen.get(), title, picture.height_px);
-  return write(surface, file);
+  return write_png(surface, file);
 }
 
 namespace {
@@ -152,8 +139,7 @@ std::vector<float> calmed(const Picture& picture) {
 void draw_isolux_lines(cairo_t* pen, const Picture& picture, double bottom_lx, double top_lx) {
   const std::vector<float> lux = calmed(picture);
   const auto at = [&](int x, int y) { return lux[static_cast<std::size_t>(y * picture.width_px + x)]; };
-  cairo_select_font_face(pen, "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
-  cairo_set_font_size(pen, 11);
+  set_png_font(pen, 11);
   for (double level = round_up_1_2_5(bottom_lx); level <= top_lx * 1.001; level = round_up_1_2_5(level * 1.5)) {
     const auto line_lx = static_cast<float>(level);
     int best_x = -1, best_y = -1, best_distance = 1 << 30;
@@ -199,11 +185,11 @@ std::string write_false_colour(const Picture& picture, const std::string& title,
   }
   const double top_lx = *max_lx, bottom_lx = top_lx / 100;
   const auto place = [&](double lux) { return lux > 0 ? std::log(lux / bottom_lx) / std::log(top_lx / bottom_lx) : 0; };
-  const Surface surface = make_surface(picture.width_px + kLegendWidth_px, picture.height_px);
-  const Pen pen(cairo_create(surface.get()), &cairo_destroy);
+  const PngSurface surface = make_png_surface(picture.width_px + kLegendWidth_px, picture.height_px);
+  const PngPen pen = make_png_pen(surface);
   cairo_set_source_rgb(pen.get(), 0.1, 0.1, 0.1);
   cairo_paint(pen.get());
-  paint(surface.get(), picture.width_px, picture.height_px, [&](int x, int y) {
+  paint_png(surface.get(), 0, 0, picture.width_px, picture.height_px, [&](int x, int y) {
     const float lx = picture.illuminance_lx[static_cast<std::size_t>(y * picture.width_px + x)];
     return lx < 0 ? Vec3(Vec3::Zero()) : viridis(place(lx));
   });
@@ -215,8 +201,7 @@ std::string write_false_colour(const Picture& picture, const std::string& title,
     cairo_rectangle(pen.get(), left, top + i, 20, 1);
     cairo_fill(pen.get());
   }
-  cairo_select_font_face(pen.get(), "DejaVu Sans", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
-  cairo_set_font_size(pen.get(), 13);
+  set_png_font(pen.get(), 13);
   cairo_set_source_rgb(pen.get(), 1, 1, 1);
   cairo_move_to(pen.get(), left, 24);
   cairo_show_text(pen.get(), "lux");
@@ -228,14 +213,14 @@ std::string write_false_colour(const Picture& picture, const std::string& title,
     cairo_show_text(pen.get(), fmt::format("{:g}", tick).c_str());
   }
   write_title(pen.get(), title, picture.height_px);
-  return write(surface, file);
+  return write_png(surface, file);
 }
 
 namespace {
 
-Surface plan_surface(const PlanView& view) {
-  Surface surface = make_surface(view.width_px, view.height_px);
-  paint(surface.get(), view.width_px, view.height_px, [&](int x, int y) {
+PngSurface plan_surface(const PlanView& view) {
+  PngSurface surface = make_png_surface(view.width_px, view.height_px);
+  paint_png(surface.get(), 0, 0, view.width_px, view.height_px, [&](int x, int y) {
     return Vec3(Vec3::Constant(view.shade[static_cast<std::size_t>(y * view.width_px + x)]));
   });
   return surface;
@@ -244,7 +229,7 @@ Surface plan_surface(const PlanView& view) {
 }  // namespace
 
 std::string write_plan_view(const PlanView& view, const std::filesystem::path& file) {
-  return write(plan_surface(view), file);
+  return write_png(plan_surface(view), file);
 }
 
 std::string plan_view_png(const PlanView& view) {
@@ -253,7 +238,7 @@ std::string plan_view_png(const PlanView& view) {
     static_cast<std::string*>(to)->append(reinterpret_cast<const char*>(data), size);
     return CAIRO_STATUS_SUCCESS;
   };
-  const Surface surface = plan_surface(view);
+  const PngSurface surface = plan_surface(view);
   if (cairo_surface_write_to_png_stream(surface.get(), append, &bytes) != CAIRO_STATUS_SUCCESS) bytes.clear();
   return bytes;
 }

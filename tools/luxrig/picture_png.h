@@ -30,6 +30,10 @@ namespace luxrig {
 /// Colour of the viridis scale at 0 … 1, sRGB 0 … 1: linear between nine of its table's entries.
 [[nodiscard]] Vec3 viridis(double at);
 
+/// Blue below the middle (0.5), nearly white in it, red above: told apart by people who cannot tell red from green. The
+/// scale RdBu of nine entries (C. Brewer, colorbrewer2.org), turned round.
+[[nodiscard]] Vec3 blue_white_red(double at);
+
 /// Smallest of 1, 2, 5 × 10^k that is at least `value` (> 0).
 [[nodiscard]] double round_up_1_2_5(double value);
 

@@ -21,11 +21,6 @@ namespace {
 
 constexpr int kMostPasses = 4096;
 
-int refuse(const std::vector<Problem>& problems) {
-  for (const Problem& problem : problems) fmt::print(stderr, "{}\n", problem.text());
-  return 2;
-}
-
 /// Those of a plan, whose placed lights are hung for it; or each fixture's highest.
 Checked<std::vector<double>> levels_of(const RenderOptions& options, Rig& rig) {
   if (!options.plan) {
@@ -113,20 +108,28 @@ Camera automatic_camera(const RayScene& scene, const Rig& rig, int width_px, int
   return best;
 }
 
-int run_render(const RenderOptions& options) {
+Checked<std::pair<Rig, std::vector<double>>> load_rig_for_picture(const RenderOptions& options) {
   auto rig = load_rig(options.rig);
-  if (!rig) return refuse(rig.error());
-  const auto levels = levels_of(options, *rig);
-  if (!levels) return refuse(levels.error());
-  const auto scene = build_scene(*rig);
-  if (!scene) return refuse(scene.error());
+  if (!rig) return tl::unexpected(rig.error());
+  auto levels = levels_of(options, *rig);
+  if (!levels) return tl::unexpected(levels.error());
+  return std::pair{std::move(*rig), std::move(*levels)};
+}
+
+int run_render(const RenderOptions& options) {
+  if (options.show) return run_show(options);
+  const auto loaded = load_rig_for_picture(options);
+  if (!loaded) return report(loaded.error());
+  const auto& [rig, levels] = *loaded;
+  const auto scene = build_scene(rig);
+  if (!scene) return report(scene.error());
   const RayScene rays(*scene);
-  const std::vector<Emitter> emitters = all_emitters_of(*rig);
-  std::vector<double> all_levels = *levels;
+  const std::vector<Emitter> emitters = all_emitters_of(rig);
+  std::vector<double> all_levels = levels;
   all_levels.resize(emitters.size(), 1.0);  // daylight
 
-  Camera camera =
-      automatic_camera(rays, *rig, options.width_px, options.height_px, rad_from_deg(options.vertical_fov_deg));
+  Camera camera = automatic_camera(rays, rig, options.width_px, options.height_px,
+                                   rad_from_deg(options.vertical_fov_deg.value_or(60)));
   if (options.eye_world_m) camera.eye_world_m = *options.eye_world_m;
   if (options.target_world_m) camera.target_world_m = *options.target_world_m;
   PictureOptions how;
@@ -147,7 +150,7 @@ int run_render(const RenderOptions& options) {
     fmt::print(stderr, "luxrig render: {}\n", picture.error().detail);
     return 2;
   }
-  const std::string title = fmt::format("{}{}", rig->name, options.plan ? "" : " (all at full)");
+  const std::string title = fmt::format("{}{}", rig.name, options.plan ? "" : " (all at full)");
   const std::string trouble = options.false_colour
                                   ? write_false_colour(*picture, title, options.max_lx, options.output_png)
                                   : write_photograph(*picture, title, options.grey_cd_m2, options.output_png);

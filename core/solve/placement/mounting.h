@@ -49,6 +49,8 @@ class Mounting {
   /// Between neighbouring candidates.
   [[nodiscard]] double spacing_m() const { return spec_.spacing_m.value_or(default_spacing_m()); }
   [[nodiscard]] const Eigen::AlignedBox3d& box_world_m() const { return box_world_m_; }
+  /// One mark per triangle of the scene: 1 where lights hang off it. Empty: anywhere in the air.
+  [[nodiscard]] const std::vector<std::uint8_t>& is_surface() const { return is_surface_; }
 
  private:
   Mounting() = default;

@@ -1,0 +1,101 @@
+// `luxrig render --show`: what it draws, and what it says when it cannot.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+
+#include "tests/tools/programs/process.h"
+
+namespace luxrig::testing {
+namespace {
+
+Ran show(const std::string& rig, const std::string& what, const std::filesystem::path& png,
+         std::vector<std::string> more = {}) {
+  std::vector<std::string> command = {program("luxrig"), "render", rig, "-o", png.string(), "--show", what};
+  for (const char* word : {"--width", "160", "--height", "120"}) command.emplace_back(word);
+  command.insert(command.end(), more.begin(), more.end());
+  return luxrig::testing::run(command);
+}
+
+/// A rig with one object, from this text of an OBJ file.
+std::string rig_with(const Folder& folder, const std::string& obj) {
+  std::ofstream(folder / "thing.obj") << obj;
+  std::ofstream(folder / "rig.toml") << "[rig]\nname = \"one\"\n\n[[scene.object]]\nname = \"thing\"\n"
+                                        "file = \"thing.obj\"\nunit = \"m\"\nup_axis = \"z\"\nposition_m = [0, 0, 0]\n";
+  return (folder / "rig.toml").string();
+}
+
+std::string ball_obj() {
+  constexpr int kRings = 24, kAround = 48;
+  std::string text;
+  for (int i = 0; i <= kRings; ++i)
+    for (int j = 0; j < kAround; ++j) {
+      const double theta = std::numbers::pi * i / kRings, phi = 2 * std::numbers::pi * j / kAround;
+      text += "v " + std::to_string(std::sin(theta) * std::cos(phi)) + " " +
+              std::to_string(std::sin(theta) * std::sin(phi)) + " " + std::to_string(std::cos(theta)) + "\n";
+    }
+  for (int i = 0; i < kRings; ++i)
+    for (int j = 0; j < kAround; ++j) {
+      const auto at = [&](int ring, int around) { return std::to_string(1 + ring * kAround + around % kAround); };
+      text += "f " + at(i, j) + " " + at(i + 1, j) + " " + at(i + 1, j + 1) + "\n";
+      text += "f " + at(i, j) + " " + at(i + 1, j + 1) + " " + at(i, j + 1) + "\n";
+    }
+  return text;
+}
+
+TEST(Show, DrawsEveryKindForTheStudiosSkull) {
+  const Folder folder;
+  for (const char* what : {"curvature", "interest", "features", "histogram", "domain", "beams"}) {
+    const auto png = folder / (std::string(what) + ".png");
+    const Ran ran = show(source("rigs/studio"), what, png);
+    ASSERT_EQ(ran.code, 0) << ran.output;
+    EXPECT_NE(ran.output.find("studio"), std::string::npos) << ran.output;
+    EXPECT_EQ(text_of(png).substr(1, 3), "PNG");
+    EXPECT_GT(std::filesystem::file_size(png), 2000u) << what;
+  }
+}
+
+TEST(Show, AsksWhichObjectAndKnowsTheirNames) {
+  const Folder folder;
+  const Ran which = show(source("rigs/gallery"), "curvature", folder / "a.png");
+  EXPECT_EQ(which.code, 2);
+  EXPECT_NE(which.output.find("--object takes one of: venus, chess, cat, teapot"), std::string::npos) << which.output;
+  const Ran unknown = show(source("rigs/gallery"), "features", folder / "a.png", {"--object", "venuss"});
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_NE(unknown.output.find("did you mean \"venus\"?"), std::string::npos) << unknown.output;
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.png"));
+}
+
+TEST(Show, RefusesWhatHasNoRelief) {
+  const Folder folder;
+  const Ran ball = show(rig_with(folder, ball_obj()), "interest", folder / "a.png");
+  EXPECT_EQ(ball.code, 2);
+  EXPECT_NE(ball.output.find("thing: the target has no recessed places"), std::string::npos) << ball.output;
+  const Ran cloud = show(rig_with(folder, "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"), "domain", folder / "a.png");
+  EXPECT_EQ(cloud.code, 2);
+  EXPECT_NE(cloud.output.find("thing"), std::string::npos) << cloud.output;
+  const Ran box = show(source("rigs/studio"), "features", folder / "a.png", {"--object", "table"});
+  EXPECT_EQ(box.code, 2);
+  EXPECT_NE(box.output.find("table: the target"), std::string::npos) << box.output;
+}
+
+TEST(Show, RefusesOptionsThatDoNotGoTogether) {
+  const Folder folder;
+  EXPECT_EQ(show(source("rigs/studio"), "curvatur", folder / "a.png").code, 2);
+  EXPECT_EQ(show(source("rigs/studio"), "curvature", folder / "a.png", {"--false-colour", "lux"}).code, 2);
+  const Ran ran = luxrig::testing::run(
+      {program("luxrig"), "render", source("rigs/studio"), "-o", (folder / "a.png").string(), "--object", "skull"});
+  EXPECT_EQ(ran.code, 2) << ran.output;
+  const Ran eye =
+      show(source("rigs/studio"), "curvature", folder / "a.png", {"--eye", "1", "1", "1", "--target", "1", "1", "1"});
+  EXPECT_EQ(eye.code, 2);
+  EXPECT_NE(eye.output.find("camera's target lies in its eye"), std::string::npos) << eye.output;
+  const Ran nowhere = show(source("rigs/studio"), "curvature", folder / "no/such/folder/a.png");
+  EXPECT_EQ(nowhere.code, 1);
+  EXPECT_NE(nowhere.output.find("picture not written"), std::string::npos) << nowhere.output;
+}
+
+}  // namespace
+}  // namespace luxrig::testing
