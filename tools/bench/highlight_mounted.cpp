@@ -50,15 +50,18 @@ struct MountedCase {
   PotentialLightOptions of_lights;
 
   MountedCase(const HighlightObject& original, const BenchOptions& bench)
-      : object(original.name(), of_one_metre(original.scene()), bench), options(bench), domain(boxes_around(object)) {
+      : object(original.name(), of_one_metre(original.scene()), bench),
+        options(bench),
+        domain(boxes_around(object, bench.quick)) {
     centres = domain.cell_centres();
     for (const LightDomain::CellCentre& centre : centres) places_world_m.push_back(centre.position_world_m);
     of_lights.beam_angle_rad = cone_of_flux_rad(*intensity, 0.9);
     of_lights.threads = bench.threads;
   }
-  static LightDomain boxes_around(HighlightObject& object) {
+  static LightDomain boxes_around(HighlightObject& object, bool quick) {
     NestedBoxOptions boxes;
     boxes.margin_m = boxes.step_m = kBoxStep_m;
+    boxes.cell_side = quick ? 8 : 16;
     auto made = nested_box_domain(object.study().surface, boxes);
     LUXRIG_CHECK(made, "{}", made.error().detail);
     return std::move(*made);
