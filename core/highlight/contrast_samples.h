@@ -16,6 +16,19 @@ struct ContrastSamples {
   }
 };
 
+/// Of some light on the samples.
+struct SampleContrast {
+  double local_contrast_lx = 0;  ///< largest difference in illuminance to a neighbour, mean over interest points
+  /// The same as a share of the brighter of the two, or of the mean illuminance of all points where that is more: what
+  /// is left of it in a picture exposed for the whole object. 0…1; unlike lux it does not rise with every light.
+  double exposed_contrast = 0;
+};
+
+/// lux   at each of the samples' points
+[[nodiscard]] SampleContrast contrast_of(const ContrastSamples& samples, std::span<const float> lux);
+/// The first of the two alone, in less time.
+[[nodiscard]] double local_contrast_of(const ContrastSamples& samples, std::span<const float> lux);
+
 /// Compared with their one-ring, as `relief_contrast` does.
 /// interest   indices of points of the surface, each once
 [[nodiscard]] ContrastSamples one_ring_samples(const TargetSurface& surface, std::span<const std::uint32_t> interest);

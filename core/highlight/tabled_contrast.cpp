@@ -51,25 +51,8 @@ std::vector<float> TabledContrast::illuminance_lx(std::span<const std::uint32_t>
   return sum_lx;
 }
 
-ContrastOfBins TabledContrast::of(std::span<const std::uint32_t> bins) const {
-  const std::vector<float> at_lx = illuminance_lx(bins);
-  double mean_lx = 0;
-  for (const float lx : at_lx) mean_lx += lx;
-  mean_lx /= static_cast<double>(std::max<std::size_t>(1, at_lx.size()));
-  ContrastOfBins sum;
-  for (std::size_t i = 0; i < samples_.interest; ++i) {
-    double largest_lx = 0, largest_share = 0;
-    for (const std::uint32_t n : samples_.of(i)) {
-      const double difference_lx = std::abs(at_lx[i] - at_lx[n]);
-      const double adapted_lx = std::max({static_cast<double>(at_lx[i]), static_cast<double>(at_lx[n]), mean_lx});
-      largest_lx = std::max(largest_lx, difference_lx);
-      if (adapted_lx > 0) largest_share = std::max(largest_share, difference_lx / adapted_lx);
-    }
-    sum.local_contrast_lx += largest_lx;
-    sum.exposed_contrast += largest_share;
-  }
-  const auto count = static_cast<double>(std::max<std::size_t>(1, samples_.interest));
-  return {sum.local_contrast_lx / count, sum.exposed_contrast / count};
+SampleContrast TabledContrast::of(std::span<const std::uint32_t> bins) const {
+  return contrast_of(samples_, illuminance_lx(bins));
 }
 
 std::vector<double> TabledContrast::with_each_bin(std::span<const float> base_lx) const {

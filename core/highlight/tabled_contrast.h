@@ -5,14 +5,6 @@
 
 namespace luxrig {
 
-/// Of beams of 1 lx, each out of the middle of a bin.
-struct ContrastOfBins {
-  double local_contrast_lx = 0;  ///< largest difference in illuminance to a neighbour, mean over interest points
-  /// The same as a share of the brighter of the two, or of the mean illuminance of all points where that is more: what
-  /// is left of it in a picture exposed for the whole object. 0…1; unlike lux it does not rise with every light.
-  double exposed_contrast = 0;
-};
-
 /// Largest differences in illuminance to a neighbour, as in `relief_contrast`.
 class TabledContrast {
  public:
@@ -22,7 +14,8 @@ class TabledContrast {
   /// Illuminance at each of the samples' points from beams of 1 lx out of the middles of bins [lx].
   [[nodiscard]] std::vector<float> illuminance_lx(std::span<const std::uint32_t> bins) const;
 
-  [[nodiscard]] ContrastOfBins of(std::span<const std::uint32_t> bins) const;
+  /// Of beams of 1 lx, each out of the middle of a bin.
+  [[nodiscard]] SampleContrast of(std::span<const std::uint32_t> bins) const;
 
   /// Local contrast [lx] with a beam of 1 lx from each bin in turn on top of what there is; one per bin. The same bytes
   /// for any number of threads. base_lx   per point; empty: darkness

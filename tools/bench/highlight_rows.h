@@ -64,6 +64,8 @@ void add_light_rows(HighlightObject& object, const BenchOptions& options, std::v
 void add_number_rows(HighlightObject& object, const BenchOptions& options, std::vector<BenchRow>& rows);
 void add_stable_rows(HighlightObject& object, const BenchOptions& options, std::vector<BenchRow>& rows);
 void add_aim_rows(HighlightObject& object, const BenchOptions& options, std::vector<BenchRow>& rows);
+void add_mounted_rows(HighlightObject& object, const BenchOptions& options, std::vector<BenchRow>& rows);
+void add_mounted_number_rows(HighlightObject& object, const BenchOptions& options, std::vector<BenchRow>& rows);
 void add_curvature_rows(HighlightObject& object, const BenchOptions& options, std::vector<BenchRow>& rows);
 void add_cluster_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
 

@@ -112,7 +112,7 @@ TEST(TabledContrast, IsThatOfRays) {
     bins.pop_back();
     EXPECT_NEAR(contrast.with_each_bin(contrast.illuminance_lx(bins))[last], by_rays, 1e-5);
   }
-  const ContrastOfBins dark = contrast.of({});
+  const SampleContrast dark = contrast.of({});
   EXPECT_EQ(dark.local_contrast_lx, 0);
   EXPECT_EQ(dark.exposed_contrast, 0);
 }
@@ -129,7 +129,7 @@ TEST(TabledContrast, ExposedIsAShareOfTheBrighterOrOfTheMean) {
   const Vec3 light = table.bins.direction_of(0);
   const double level = light.z(), tilted = std::max(0.0, light.dot(samples.points[2].normal));
   const std::array<std::uint32_t, 1> bins = {0};
-  const ContrastOfBins found = TabledContrast(samples, table, 1).of(bins);
+  const SampleContrast found = TabledContrast(samples, table, 1).of(bins);
   EXPECT_NEAR(found.local_contrast_lx, std::max(level, std::abs(level - tilted)), 1e-6);
   const double mean = (level + tilted) / 3;
   EXPECT_NEAR(found.exposed_contrast,
