@@ -44,7 +44,6 @@ void RigReader::read_relief(Section& s, ReliefSpec& relief) {
   s.read("max_object_lx", relief.max_lx);
   if (relief.max_lx && !(*relief.max_lx > 0))
     problems.add(s.place_of("max_object_lx"), "max_object_lx of 0 leaves nothing to light", "give it some lux");
-  s.read_choice("contrast", relief.relative);
   s.read("coverage_weight", relief.coverage_weight);
 }
 
@@ -60,6 +59,7 @@ void RigReader::read_highlight(Section& s, HighlightSpec& highlight) {
 
 void RigReader::read_aim_task(Section& s, AimSpec& aim) {
   read_relief(s, aim.relief);
+  s.read_choice("contrast", aim.relief.relative);
   std::vector<std::string_view> fixture_names, point_names;
   for (const Fixture& fixture : rig.fixtures) fixture_names.push_back(fixture.name);
   for (const Point& point : rig.points) point_names.push_back(point.name);

@@ -17,10 +17,9 @@ const KindKeys kKeysOfKinds[] = {
     {{TaskKind::placement, TaskKind::highlight}, {"luminaire", "lights", "max_lights"}},
     {{TaskKind::placement},
      {"error_wanted", "improvement", "method", "indirect", "fixtures", "seconds", "aimed", "energy_front", "bound"}},
-    {{TaskKind::aim, TaskKind::highlight},
-     {"object", "scale_mm", "interest", "max_object_lx", "contrast", "coverage_weight"}},
+    {{TaskKind::aim, TaskKind::highlight}, {"object", "scale_mm", "interest", "max_object_lx", "coverage_weight"}},
     {{TaskKind::aim},
-     {"heads", "key", "min_key_to_fill", "max_key_to_fill", "eyes", "max_eye_lx", "base_lx", "base_weight",
+     {"contrast", "heads", "key", "min_key_to_fill", "max_key_to_fill", "eyes", "max_eye_lx", "base_lx", "base_weight",
       "energy_weight", "travel_weight"}},
 };
 

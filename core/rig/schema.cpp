@@ -361,7 +361,7 @@ constexpr KeySpec kRigKeys[] = {
     {"task", "max_object_lx", number, "lx", kNone, kLux, "",
      "never more than this anywhere on the object (kind `aim` and `highlight`)"},
     {"task", "contrast", text, "", R"("relative")", kAny, "lux, relative",
-     "what is made large (kind `aim` and `highlight`): the difference in illuminance to what is beside it, in `lux`, "
+     "what is made large (only with kind `aim`): the difference in illuminance to what is beside it, in `lux`, "
      "or "
      "`relative` to both, as an eye or a camera sees that adapts; then lights are as bright as limits let them"},
     {"task", "coverage_weight", number, "", "0.25", kWeight, "",

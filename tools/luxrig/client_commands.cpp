@@ -34,8 +34,9 @@ std::string shown(std::optional<double> value, const char* format) {
 }
 json list(const json& object, const char* key) { return object.value(key, json::array()); }
 
-int post(const ClientArguments& arguments, const char* route, const std::string& body, const std::string& done) {
-  const auto answer = http_post_json("127.0.0.1", arguments.port, route, body);
+int post(const ClientArguments& arguments, const char* route, const std::string& body, const std::string& done,
+         int wait_s = 5) {
+  const auto answer = http_post_json("127.0.0.1", arguments.port, route, body, wait_s);
   if (!answer) return no_daemon(arguments.port);
   if (answer->status != 200) {
     const json body_json = json::parse(answer->body, nullptr, false);
@@ -104,7 +105,8 @@ int run_apply(const ClientArguments& arguments, const std::filesystem::path& pla
   if (!body) return report(body.error());
   // Checked here first: the messages then carry the file's name.
   if (const auto parsed = plan_from_json(*body, plan.string()); !parsed) return report(parsed.error());
-  return post(arguments, "/api/apply", *body, "applied: " + plan.string());
+  // A plan that turns heads waits for the light that it makes to be worked out.
+  return post(arguments, "/api/apply", *body, "applied: " + plan.string(), 300);
 }
 
 }  // namespace luxrig

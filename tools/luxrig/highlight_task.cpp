@@ -7,8 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/highlight/mounted_lights.h"
-#include "core/highlight/relief_contrast.h"
+#include "core/highlight/judged_lights.h"
 #include "core/photometry/beam.h"
 #include "core/scene/object_scene.h"
 #include "tools/luxrig/search_watch.h"
@@ -47,18 +46,21 @@ Result<LightDomain> domain_of(const ReliefSurroundings& around, const StudiedObj
   return mesh_light_domain(around.scene, marks, object.study.surface.centroid_world_m(), layers);
 }
 
-/// Only those that may hang where they are, moved there as far as box and offsets go.
-PotentialLights hangable(const PotentialLights& all, const Mounting& mounting) {
-  PotentialLights kept;
-  kept.features = all.features;
-  kept.points_of_feature = all.points_of_feature;
-  for (std::size_t l = 0; l < all.lights.size(); ++l) {
-    const auto snapped = mounting.snapped(all.lights[l].position_world_m);
+/// Where a light may hang: the middles of the domain's cells, moved as far as box and offsets go.
+std::vector<Vec3> hangable_places(const LightDomain& domain, const Mounting& mounting) {
+  std::vector<Vec3> places;
+  for (const LightDomain::CellCentre& centre : domain.cell_centres())
+    if (const auto snapped = mounting.snapped(centre.position_world_m)) places.push_back(snapped->place_world_m);
+  return places;
+}
+
+std::vector<PotentialLight> hangable_lights(const PotentialLights& all, const Mounting& mounting) {
+  std::vector<PotentialLight> kept;
+  for (const PotentialLight& light : all.lights) {
+    const auto snapped = mounting.snapped(light.position_world_m);
     if (!snapped) continue;
-    kept.lights.push_back(all.lights[l]);
-    kept.lights.back().position_world_m = snapped->place_world_m;
-    kept.votes.insert(kept.votes.end(), all.of(l).begin(), all.of(l).end());
-    kept.begin.push_back(kept.votes.size());
+    kept.push_back(light);
+    kept.back().position_world_m = snapped->place_world_m;
   }
   return kept;
 }
@@ -97,38 +99,40 @@ Result<ReliefLights> find_relief_lights(const ReliefSurroundings& around, const 
   of_lights.threads = options.threads;
   const auto potential = potential_lights(*votes, of_lights);
   if (!potential) return refuse(potential.error());
-  LightSelection selection(hangable(*potential, mounting));
-  if (selection.all().lights.empty())
+  const std::vector<Vec3> places = hangable_places(*domain, mounting);
+  if (places.empty())
     return refusal(
-        fmt::format("task \"{}\": none of {} places that bring out the object's relief may be hung at: "
-                    "widen box_m or offset_m of [mounting], or lower clearance_m",
-                    task.name, potential->lights.size()));
+        fmt::format("task \"{}\": lights may hang at none of {} places: widen box_m or offset_m of "
+                    "[mounting], or lower clearance_m",
+                    task.name, domain->cell_centres().size()));
 
-  watch.say("choosing lights");
+  watch.say("judging lights");
+  JudgedLightOptions of_judge;
+  of_judge.surroundings.environment = &environment;
+  of_judge.lift_m = 1e-4 * study.surface.diagonal_m();
+  of_judge.coverage_weight = spec.relief.coverage_weight;
+  of_judge.threads = options.threads;
+  of_judge.watch.stop = options.watch.stop;
+  const auto judge = JudgedLights::make(study.surface, study.rays, study.interest, study.features, places,
+                                        hangable_lights(*potential, mounting), luminaire.intensity, of_judge);
+  if (!judge) return refuse(judge.error());
   ReliefLights found;
-  LightNumber number;
-  number.most = spec.lights.value_or(spec.max_lights);
-  const auto contrast_of = [&](std::span<const std::uint32_t> lights) {
-    std::vector<MountedBeam> beams;
-    for (const std::uint32_t l : lights) {
-      const PotentialLight& light = selection.all().lights[l];
-      beams.push_back(aimed_beam(light.position_world_m, light.direction, luminaire.intensity));
-    }
-    const double lift_m = 1e-4 * study.surface.diagonal_m();
-    return relief_contrast(study.surface, study.rays, of_votes.surroundings, study.interest, beams, lift_m,
-                           options.threads)
-        .local_contrast_lx;
-  };
-  if (!spec.lights) number.local_contrast = contrast_of;
-  auto contrasts = select_lights(selection, number);
-  if (!contrasts) return refuse(contrasts.error());
-  found.contrast_lx = std::move(*contrasts);
+  JudgedLightSet chosen;
+  if (spec.lights) {
+    auto lights = judge->lights(*spec.lights);
+    if (!lights) return refuse(lights.error());
+    chosen = std::move(*lights);
+  } else {
+    auto count = judge->count_lights(spec.max_lights);
+    if (!count) return refuse(count.error());
+    for (const JudgedLightSet& set : count->by_number) found.contrast_lx.push_back(set.score.local_contrast_lx);
+    chosen = std::move(count->by_number[count->best]);
+  }
 
   watch.say("aiming");
   AimWishes wishes;
   wishes.limits = limits_at_points(around);
   wishes.max_object_lx = spec.relief.max_lx.value_or(std::numeric_limits<double>::infinity());
-  wishes.relative = spec.relief.relative;
   wishes.max_watts = around.max_watts;
   wishes.coverage_weight = spec.relief.coverage_weight;
   wishes.travel_weight = 0;
@@ -136,8 +140,7 @@ Result<ReliefLights> find_relief_lights(const ReliefSurroundings& around, const 
   if (!fixed) return refuse(fixed.error());
   wishes.fixed_lux = std::move(*fixed);
   std::vector<HangingHead> heads;
-  for (const std::uint32_t l : selection.taken()) {
-    const PotentialLight& light = selection.all().lights[l];
+  for (const JudgedLight& light : chosen.lights) {
     HangingHead head;
     head.world_from_mount.translation_m = light.position_world_m;
     head.range = {-kPi, kPi, -kPi, kPi};  // it is hung so: no joint stops it
@@ -161,7 +164,7 @@ Result<ReliefLights> find_relief_lights(const ReliefSurroundings& around, const 
     const AimedHead& head = aimed->heads[l];
     if (!(head.setting.level > 0)) continue;  // the limits leave it nothing to give
     LightInScene light;
-    light.position_world_m = selection.all().lights[selection.taken()[l]].position_world_m;
+    light.position_world_m = chosen.lights[l].position_world_m;
     light.aim_world_m = head.aim_world_m;
     light.level = head.setting.level;
     light.levels = {head.setting.level};

@@ -1,6 +1,6 @@
 #pragma once
-/// One highlight task: lights that do not hang yet, found on what may carry them (GP18,
-/// core/highlight/mounted_lights.h), then aimed and dimmed as heads that hang are (aim_heads.h).
+/// One highlight task: lights that do not hang yet, found on what may carry them
+/// (core/highlight/judged_lights.h), then aimed and dimmed as heads that hang are (aim_heads.h).
 
 #include "core/solve/placement/mounting.h"
 #include "core/solve/placement/place_in_scene.h"
@@ -11,7 +11,7 @@ namespace luxrig {
 struct ReliefLights {
   std::vector<LightInScene> lights;
   AimScore score;
-  std::vector<double> contrast_lx;  ///< at full level and aimed by votes: of one light, two, …; those left out, too
+  std::vector<double> contrast_lx;  ///< of one light, two, … at full level; empty when their number was given
   std::size_t tried = 0;
 };
 

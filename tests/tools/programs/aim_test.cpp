@@ -1,0 +1,210 @@
+// Heads aimed at an object's relief: solved, shown, run; and plans that turn heads while the rig runs.
+#include <cmath>
+#include <fstream>
+
+#include "core/geometry.h"
+#include "tests/tools/programs/live_rig.h"
+
+namespace luxrig::testing {
+namespace {
+
+json plan_of(const std::filesystem::path& file) { return json::parse(text_of(file), nullptr, false); }
+
+json solved(const std::string& rig, const std::filesystem::path& plan, const std::string& threads = "0") {
+  const Ran ran = luxrig::testing::run(
+      {program("luxrig"), "solve", rig, "-o", plan.string(), "--model", "direct", "--threads", threads}, 120s);
+  EXPECT_EQ(ran.code, 0) << ran.output;
+  return plan_of(plan);
+}
+
+TEST(Aim, BringsOutTheFriezeWithinItsLimitsAndEvaluateAgrees) {
+  const Folder folder;
+  const Ran ran = luxrig::testing::run(
+      {program("luxrig"), "solve", source("rigs/frieze"), "-o", (folder / "plan.json").string(), "--max-error", "0.03"},
+      120s);
+  ASSERT_EQ(ran.code, 0) << ran.output;
+  EXPECT_NE(ran.output.find("relief (aim): local contrast"), std::string::npos) << ran.output;
+  const json plan = plan_of(folder / "plan.json");
+  const json& aim = plan["tasks"][1];
+  EXPECT_EQ(aim["kind"], "aim");
+  for (const char* key : {"local_contrast", "relative_contrast", "coverage", "object_lux", "lights", "watts"})
+    EXPECT_TRUE(aim.contains(key)) << key;
+  EXPECT_GT(aim["relative_contrast"].get<double>(), 1.05 * aim["before_relative_contrast"].get<double>());
+  EXPECT_LE(aim["object_lux"].get<double>(), 200);
+  bool turned = false;
+  for (const json& light : aim["lights"])
+    turned = turned || light["pan_deg"] != plan["tasks"][0]["lights"][0]["pan_deg"];
+  EXPECT_TRUE(turned);
+  for (const json& limit : plan["limits"]) EXPECT_TRUE(limit["met"].get<bool>()) << limit;
+  // The heads of the plan, not of the rig file, light what evaluate sees.
+  const Ran lit = luxrig::testing::run({program("luxrig"), "evaluate", source("rigs/frieze"), "--levels",
+                                        (folder / "plan.json").string(), "--max-error", "0.03", "--json"});
+  ASSERT_EQ(lit.code, 0) << lit.output;
+  const json seen = json::parse(lit.output.substr(lit.output.find("{\n")), nullptr, false);
+  for (std::size_t i = 0; i < plan["points"].size(); ++i) {
+    const double lux = plan["points"][i]["lux"].get<double>();
+    EXPECT_NEAR(seen["points"][i]["lux"].get<double>(), lux, 0.1 * lux + 0.5) << plan["points"][i];
+  }
+}
+
+TEST(Aim, DoesNotDependOnTheThreads) {
+  const Folder folder;
+  const json one = solved(source("rigs/studio"), folder / "one.json", "1"),
+             two = solved(source("rigs/studio"), folder / "two.json", "2");
+  EXPECT_EQ(one["tasks"][1]["lights"], two["tasks"][1]["lights"]);
+  EXPECT_EQ(one["points"], two["points"]);
+}
+
+/// A small square well in a slab: relief that needs no scan.
+std::string rig_with_a_well(const Folder& folder, const std::string& task) {
+  std::ofstream obj(folder / "well.obj");
+  constexpr int kSide = 40;
+  for (int i = 0; i <= kSide; ++i)
+    for (int j = 0; j <= kSide; ++j) {
+      const double x = (i - kSide / 2) * 0.02, y = (j - kSide / 2) * 0.02;
+      const double r = std::hypot(x, y), z = -0.08 * std::exp(-std::pow(r / 0.12, 4));
+      obj << "v " << x << ' ' << y << ' ' << z << '\n';
+    }
+  for (int i = 0; i < kSide; ++i)
+    for (int j = 0; j < kSide; ++j) {
+      const int a = 1 + i * (kSide + 1) + j, b = a + kSide + 1;
+      obj << "f " << a << ' ' << b << ' ' << b + 1 << "\nf " << a << ' ' << b + 1 << ' ' << a + 1 << '\n';
+    }
+  std::ofstream(folder / "rig.toml") << R"([rig]
+name = "well"
+[[scene.object]]
+name = "slab"
+file = "well.obj"
+up_axis = "z"
+position_m = [0, 0, 1]
+[[scene.object]]
+name = "ceiling"
+box_m = [4, 4, 0.1]
+position_m = [0, 0, 3]
+[[luminaire]]
+name = "spot"
+model = "spot"
+beam_angle_deg = 20
+field_angle_deg = 40
+lumens = 800
+watts = 10
+[[point]]
+name = "beside"
+position_m = [1, 0, 1.1]
+max_lx = 300
+)" << task;
+  return (folder / "rig.toml").string();
+}
+
+TEST(Highlight, FindsLightsOnTheCeilingAndThePlanCanBeShown) {
+  const Folder folder;
+  const std::string rig = rig_with_a_well(folder, R"([mounting]
+surfaces = ["ceiling"]
+[[task]]
+name = "detail"
+kind = "highlight"
+luminaire = "spot"
+object = "slab"
+lights = 2
+max_object_lx = 500
+)");
+  const json plan = solved(rig, folder / "plan.json");
+  const json& task = plan["tasks"][0];
+  EXPECT_EQ(task["kind"], "highlight");
+  ASSERT_EQ(task["lights"].size(), 2u) << task;
+  for (const json& light : task["lights"]) {
+    const auto at = light["position"].get<std::vector<double>>(), aim = light["aim"].get<std::vector<double>>();
+    EXPECT_GT(at[2], 2.7) << "off the ceiling, below it";
+    EXPECT_LT(at[2], 3);
+    // On the well, give or take a beam.
+    EXPECT_LT(std::hypot(aim[0], aim[1]), 0.6) << light;
+    EXPECT_GT(light["level"].get<double>(), 0);
+  }
+  EXPECT_LE(task["object_lux"].get<double>(), 500 * 1.001);
+  EXPECT_GT(task["relative_contrast"].get<double>(), 0);
+  EXPECT_TRUE(plan["limits"][0]["met"].get<bool>());
+  const Ran lit =
+      luxrig::testing::run({program("luxrig"), "evaluate", rig, "--levels", (folder / "plan.json").string(), "--json"});
+  EXPECT_EQ(lit.code, 0) << lit.output;
+}
+
+TEST(Highlight, ChoosesTheNumberAndListsTheOthers) {
+  const Folder folder;
+  const std::string rig = rig_with_a_well(folder, R"([[task]]
+name = "detail"
+kind = "highlight"
+luminaire = "spot"
+object = "slab"
+max_lights = 3
+)");
+  const json task = solved(rig, folder / "plan.json")["tasks"][0];
+  ASSERT_EQ(task["numbers"].size(), 3u) << task;
+  for (const json& number : task["numbers"]) EXPECT_GT(number["local_contrast"].get<double>(), 0);
+  EXPECT_GE(task["lights"].size(), 1u);
+  EXPECT_LE(task["lights"].size(), 3u);
+}
+
+TEST(Highlight, SaysWhatAnObjectLacks) {
+  const Folder folder;
+  const std::string rig = rig_with_a_well(folder,
+                                          "[[task]]\nname = \"detail\"\nkind = \"highlight\"\n"
+                                          "luminaire = \"spot\"\nobject = \"slab\"\n");
+  std::ofstream(folder / "well.obj") << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n";
+  const Ran ran = luxrig::testing::run({program("luxrig"), "solve", rig});
+  EXPECT_NE(ran.code, 0);
+  EXPECT_NE(ran.output.find("object \"slab\": the target"), std::string::npos) << ran.output;
+}
+
+TEST(Aim, AnAppliedPlanTurnsAHeadInTheDarkAndTheRigHoldsIt) {
+  LiveRig rig(source("tests/rigs/room"));
+  ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
+  const auto file = rig.file("plan.json");
+  ASSERT_EQ(luxrig::testing::run(
+                {program("luxrig"), "solve", source("tests/rigs/room"), "-o", file.string(), "--max-error", "0.05"})
+                .code,
+            0);
+  json plan = plan_of(file);
+  double pan_deg = 0;
+  for (json& light : plan["tasks"][0]["lights"])
+    if (light["name"] == "head-1") pan_deg = (light["pan_deg"] = light["pan_deg"].get<double>() - 25).get<double>();
+  std::ofstream(file) << plan;
+  const std::string port = std::to_string(rig.port());
+  const Ran applied = luxrig::testing::run({program("luxrig"), "apply", file.string(), "--port", port}, 60s);
+  ASSERT_EQ(applied.code, 0) << applied.output;
+  ASSERT_TRUE(rig.wait_status([](const json& s) { return s["phase"] == "moving" || s["phase"] == "fading"; }, 5s));
+  ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.last().dump(1);
+  const json truth = rig.truth();
+  for (const json& fixture : truth["fixtures"]) {
+    if (fixture["name"] == "head-1") {
+      EXPECT_NEAR(fixture["pan_deg"].get<double>(), pan_deg, 0.1);
+    }
+  }
+  EXPECT_TRUE(truth["violations"].empty()) << truth["violations"];
+
+  // Past the end of its travel: refused, and nothing moves.
+  for (json& light : plan["tasks"][0]["lights"])
+    if (light["name"] == "head-1") light["tilt_deg"] = 170;
+  std::ofstream(file) << plan;
+  const Ran refused = luxrig::testing::run({program("luxrig"), "apply", file.string(), "--port", port}, 60s);
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_NE(refused.output.find("tilt_deg"), std::string::npos) << refused.output;
+}
+
+TEST(Aim, RunTakesPicturesBeforeAndAfter) {
+  const Folder folder;
+  const Ran ran = luxrig::testing::run({program("luxrig"), "run", source("tests/rigs/room"), "--sim", "--once",
+                                        "--port", "0", "--pictures", (folder / "pictures").string()},
+                                       150s);
+  EXPECT_EQ(ran.code, 0) << ran.output;
+  for (const char* name : {"door-before.png", "door-after.png"}) {
+    EXPECT_EQ(text_of(folder / "pictures" / name).substr(1, 3), "PNG") << name;
+    EXPECT_NE(ran.output.find(name), std::string::npos) << ran.output;
+  }
+  const Ran none = luxrig::testing::run(
+      {program("luxrig"), "run", source("rigs/gallery"), "--sim", "--pictures", (folder / "none").string()});
+  EXPECT_EQ(none.code, 2);
+  EXPECT_NE(none.output.find("has no [[camera]]"), std::string::npos) << none.output;
+}
+
+}  // namespace
+}  // namespace luxrig::testing
