@@ -101,8 +101,10 @@ TEST(JudgedSelection, OneIsTheBestAndOfAPairNoneCanBeBetteredAlone) {
     EXPECT_NEAR(selection.score().judged / pair, 1, 1e-5);
     double best_pair = 0;
     for (std::uint32_t i = 0; i < 30; ++i) {
-      if (i != b && row.apart(i, b, wishes.least_angle_rad)) EXPECT_LE(row.judged({i, b}, wishes), pair * (1 + 1e-5));
-      if (i != a && row.apart(i, a, wishes.least_angle_rad)) EXPECT_LE(row.judged({a, i}, wishes), pair * (1 + 1e-5));
+      for (const std::uint32_t kept : {a, b}) {
+        const bool allowed = i != kept && row.apart(i, kept, wishes.least_angle_rad);
+        EXPECT_LE(allowed ? row.judged({i, kept}, wishes) : 0, pair * (1 + 1e-5));
+      }
       for (std::uint32_t j = 0; j < i; ++j)
         if (row.apart(i, j, wishes.least_angle_rad)) best_pair = std::max(best_pair, row.judged({i, j}, wishes));
     }
