@@ -49,6 +49,9 @@ void print_placed(const PlannedTask& task, const Task& asked, bool has_emitters)
   }
   fmt::print("{}\n", lights.text());
   if (dark > 0 && !has_emitters) fmt::print("{} of them would give no light: leave them out\n", dark);
+  if (asked.highlight.lights && task.lights.size() < static_cast<std::size_t>(*asked.highlight.lights))
+    fmt::print("{} of {}: limits that lights share leave more of them nothing to give\n", task.lights.size(),
+               *asked.highlight.lights);
   if (asked.kind == TaskKind::highlight) {
     std::string tried;
     for (const PlannedNumber& number : task.numbers)
