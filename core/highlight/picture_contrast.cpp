@@ -35,6 +35,13 @@ class WindowSums {
 
 }  // namespace
 
+std::optional<PixelPlace> seen_place(const Camera& camera, const RayScene& scene, const OrientedPoint& point) {
+  if (point.normal.dot(camera.eye_world_m - point.position_world_m) <= 0) return std::nullopt;
+  const auto place = pixel_of(camera, point.position_world_m);
+  if (!place || scene.occluded(point.position_world_m, point.normal, camera.eye_world_m)) return std::nullopt;
+  return place;
+}
+
 PictureContrast picture_contrast(const Picture& picture, const Camera& camera, const RayScene& scene,
                                  std::span<const OrientedPoint> points, double scale_m) {
   LUXRIG_CHECK(scale_m > 0, "scale {}", scale_m);
@@ -43,10 +50,8 @@ PictureContrast picture_contrast(const Picture& picture, const Camera& camera, c
   const WindowSums sums(picture);
   PictureContrast contrast;
   for (const OrientedPoint& point : points) {
-    const auto place = pixel_of(camera, point.position_world_m);
+    const auto place = seen_place(camera, scene, point);
     if (!place) continue;
-    if (point.normal.dot(camera.eye_world_m - point.position_world_m) <= 0) continue;
-    if (scene.occluded(point.position_world_m, point.normal, camera.eye_world_m)) continue;
     const double half_px = std::max(1.0, scale_m * place->px_per_m);
     const auto clamped = [](double at, int size) {
       return static_cast<std::size_t>(std::clamp(at, 0.0, static_cast<double>(size)));

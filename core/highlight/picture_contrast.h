@@ -15,6 +15,10 @@ struct PictureContrast {
   double mean_cd_m2 = 0;      ///< luminance there, likewise
 };
 
+/// Where a point is in the camera's picture: nothing outside it, turned away, or behind something.
+[[nodiscard]] std::optional<PixelPlace> seen_place(const Camera& camera, const RayScene& scene,
+                                                   const OrientedPoint& point);
+
 /// Per point: the standard deviation of luminance over its mean (RMS contrast; Peli, JOSA A 7, 1990) in a square
 /// window whose half side is the relief's scale at that distance, at least a pixel; 0 in the dark. Scale and noise of a
 /// sample count: a camera's noise adds to the contrast of dark places.

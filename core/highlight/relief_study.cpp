@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "core/check.h"
 
 namespace luxrig {
 
@@ -36,6 +39,30 @@ Result<ReliefStudy> study_relief(const Scene& target, const ReliefStudyOptions& 
   if (!clusters) return tl::unexpected(clusters.error());
   study.features = std::move(*clusters);
   return study;
+}
+
+void keep_interest(ReliefStudy& study, const std::vector<bool>& kept) {
+  LUXRIG_CHECK(kept.size() == study.interest.size(), "{} marks for {} points", kept.size(), study.interest.size());
+  constexpr auto kGone = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> number(study.features.sizes.size(), kGone);
+  FeatureClusters features;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    if (!kept[i]) continue;
+    std::uint32_t& feature = number[study.features.cluster_of_point[i]];
+    if (feature == kGone) {
+      feature = static_cast<std::uint32_t>(features.sizes.size());
+      features.sizes.push_back(0);
+    }
+    ++features.sizes[feature];
+    features.cluster_of_point.push_back(feature);
+    study.interest[count] = study.interest[i];
+    study.points[count] = study.points[i];
+    ++count;
+  }
+  study.interest.resize(count);
+  study.points.resize(count);
+  study.features = std::move(features);
 }
 
 }  // namespace luxrig

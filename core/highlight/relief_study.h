@@ -31,4 +31,7 @@ struct ReliefStudy {
 /// curvature is known, one without recessed places (a plain sphere, a plane).
 [[nodiscard]] Result<ReliefStudy> study_relief(const Scene& target, const ReliefStudyOptions& options);
 
+/// Only these of its interest points (one mark each), and the features that they are of. Asserts one mark per point.
+void keep_interest(ReliefStudy& study, const std::vector<bool>& kept);
+
 }  // namespace luxrig

@@ -5,7 +5,6 @@
 namespace luxrig {
 
 void RigReader::read_cameras() {
-  NameIndex cameras("camera");
   each(root, "camera", [&](Section& s) {
     PictureCamera camera;
     camera.place = s.place();

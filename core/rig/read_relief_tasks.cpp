@@ -38,6 +38,7 @@ void RigReader::read_relief(Section& s, ReliefSpec& relief) {
           fmt::format("scene object {} is a box: it has no relief", in_quotes(rig.scene.objects[*object].name)),
           "name an object that is a mesh file");
   }
+  relief.camera = cameras.read_reference(s, "seen_by");
   double scale_mm = 0;
   if (s.read("scale_mm", scale_mm)) relief.scale_m = scale_mm / 1000;
   s.read("interest", relief.interest);

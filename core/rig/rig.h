@@ -211,12 +211,13 @@ struct PlacementSpec {
 
 /// An object whose relief lights shall bring out.
 struct ReliefSpec {
-  std::size_t object = 0;         ///< of SceneSpec::objects; a mesh
-  std::optional<double> scale_m;  ///< at which its curvature is looked at; none: from the mesh
-  double interest = 0.1;          ///< share of its surface that counts, the most recessed first
-  std::optional<double> max_lx;   ///< never more, anywhere on it
-  bool relative = true;           ///< contrast as an eye sees it that adapts, else in lux
-  double coverage_weight = 0.25;  ///< of features with a shadow's edge, beside contrast
+  std::size_t object = 0;               ///< of SceneSpec::objects; a mesh
+  std::optional<double> scale_m;        ///< at which its curvature is looked at; none: from the mesh
+  double interest = 0.1;                ///< share of its surface that counts, the most recessed first
+  std::optional<double> max_lx;         ///< never more, anywhere on it
+  bool relative = true;                 ///< contrast as an eye sees it that adapts, else in lux
+  double coverage_weight = 0.25;        ///< of features with a shadow's edge, beside contrast
+  std::optional<std::size_t> camera{};  ///< only what it sees of the relief counts; none: all of it
 };
 
 /// kind == aim: where heads that hang look, and how bright they are.

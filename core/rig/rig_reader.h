@@ -52,7 +52,8 @@ struct RigReader {
   std::filesystem::path folder;
   ProblemList problems;
   Rig rig;
-  NameIndex luminaires{"luminaire"}, buses{"bus"}, points{"point"}, objects{"scene object"}, fixtures{"fixture"};
+  NameIndex luminaires{"luminaire"}, buses{"bus"}, points{"point"}, objects{"scene object"}, fixtures{"fixture"},
+      cameras{"camera"};
   PatchMap patches;
   /// Where each point stands: the rig file, or the points file.
   std::vector<std::pair<std::string, Place>> point_places;

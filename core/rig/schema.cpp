@@ -358,6 +358,9 @@ constexpr KeySpec kRigKeys[] = {
      {0, 1, true},
      "",
      "share of its surface that counts, the most recessed first (kind `aim` and `highlight`)"},
+    {"task", "seen_by", text, "", kNone, kAny, "",
+     "name of a `[[camera]]`: only what it sees of the relief counts (kind `aim` and `highlight`); left out, all "
+     "sides"},
     {"task", "max_object_lx", number, "lx", kNone, kLux, "",
      "never more than this anywhere on the object (kind `aim` and `highlight`)"},
     {"task", "contrast", text, "", R"("relative")", kAny, "lux, relative",

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/transport/rig_camera.h"
 #include "core/transport/rig_transport.h"
 #include "sim/world/random.h"
 
@@ -37,18 +38,12 @@ Result<Picture> photograph(const RayScene& scene, const Rig& rig, const std::vec
     emitters.push_back(std::move(day));
     levels.push_back(1);
   }
-  Camera view;
-  view.eye_world_m = camera.position_world_m;
-  view.target_world_m = camera.aim_world_m;
-  view.vertical_fov_rad = camera.vertical_fov_rad;
-  view.width_px = camera.width_px;
-  view.height_px = camera.height_px;
   PictureOptions how;
   how.most_passes = shot.passes;
   how.wanted_relative_error = 0;
   how.seed = shot.seed;
   how.threads = shot.threads;
-  auto seen = render_picture(scene, emitters, levels, view, how);
+  auto seen = render_picture(scene, emitters, levels, view_of(camera), how);
   if (!seen) return seen;
   seen->illuminance_lx.clear();
   const double full = full_cd_m2(*seen);

@@ -7,7 +7,9 @@
 #include <limits>
 #include <numeric>
 
+#include "core/highlight/picture_contrast.h"
 #include "core/scene/object_scene.h"
+#include "core/transport/rig_camera.h"
 #include "core/transport/rig_transport.h"
 #include "tools/luxrig/search_watch.h"
 
@@ -95,10 +97,10 @@ std::vector<AimLimit> limits_of(const ReliefSurroundings& around, const AimSpec&
 
 }  // namespace
 
-Result<StudiedObject> study_object(const Rig& rig, const Scene& scene, const ReliefSpec& relief,
-                                   const ComputeOptions& options) {
+Result<StudiedObject> study_object(const Session& session, const ReliefSpec& relief, const ComputeOptions& options) {
+  const Rig& rig = session.rig;
   const std::string& name = rig.scene.objects[relief.object].name;
-  const auto object = object_scene(scene, name);
+  const auto object = object_scene(session.scene, name);
   if (!object) return tl::unexpected(object.error());
   ReliefStudyOptions how;
   how.scale_m = relief.scale_m.value_or(0);
@@ -107,6 +109,15 @@ Result<StudiedObject> study_object(const Rig& rig, const Scene& scene, const Rel
   how.stop = options.watch.stop;
   auto study = study_relief(*object, how);
   if (!study) return refusal(fmt::format("object \"{}\": {}", name, study.error().detail));
+  if (relief.camera) {
+    const PictureCamera& camera = rig.cameras[*relief.camera];
+    std::vector<bool> seen;
+    for (const OrientedPoint& point : study->points)
+      seen.push_back(seen_place(view_of(camera), *session.rays, point).has_value());
+    keep_interest(*study, seen);
+    if (study->interest.empty())
+      return refusal(fmt::format("object \"{}\": camera \"{}\" sees none of its recessed places", name, camera.name));
+  }
   ContrastSamples samples = one_ring_samples(study->surface, study->interest);
   return StudiedObject{std::move(*study), std::move(samples)};
 }

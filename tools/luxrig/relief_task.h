@@ -27,8 +27,8 @@ struct StudiedObject {
   ContrastSamples samples;
 };
 
-/// Refuses, naming the object, when it has no relief.
-[[nodiscard]] Result<StudiedObject> study_object(const Rig& rig, const Scene& scene, const ReliefSpec& relief,
+/// Refuses, naming the object, when it has no relief, or none that the camera sees.
+[[nodiscard]] Result<StudiedObject> study_object(const Session& session, const ReliefSpec& relief,
                                                  const ComputeOptions& options);
 
 struct AimedFixtures {

@@ -69,7 +69,7 @@ Result<void> TaskSolver::aim(const Task& task) {
   }
   const auto around = surroundings(std::move(sought), task);
   if (!around) return tl::unexpected(around.error());
-  const auto object = study_object(rig_, session_.scene, task.aim.relief, options_);
+  const auto object = study_object(session_, task.aim.relief, options_);
   if (!object) return tl::unexpected(object.error());
   const auto aimed = aim_fixtures(*around, *object, task, present, options_);
   if (!aimed) return tl::unexpected(aimed.error());
@@ -101,7 +101,7 @@ Result<void> TaskSolver::highlight(const Task& task) {
   if (!mounting) return refusal(mounting.error()[0].text());  // open_session() has made it before
   const auto dark = surroundings(std::vector<bool>(rig_.fixtures.size(), false), task);
   if (!dark) return tl::unexpected(dark.error());
-  const auto object = study_object(rig_, session_.scene, spec.relief, options_);
+  const auto object = study_object(session_, spec.relief, options_);
   if (!object) return tl::unexpected(object.error());
   const auto found = find_relief_lights(*dark, *object, task, *mounting, options_);
   if (!found) return tl::unexpected(found.error());

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/transport/pfm.h"
+#include "core/transport/rig_camera.h"
 #include "tools/luxrig/http_client.h"
 #include "tools/luxrig/picture_png.h"
 #include "tools/luxrig/relief_task.h"
@@ -22,16 +23,6 @@ std::string in_url(const std::string& text) {
   return out;
 }
 
-Camera view_of(const PictureCamera& camera) {
-  Camera view;
-  view.eye_world_m = camera.position_world_m;
-  view.target_world_m = camera.aim_world_m;
-  view.vertical_fov_rad = camera.vertical_fov_rad;
-  view.width_px = camera.width_px;
-  view.height_px = camera.height_px;
-  return view;
-}
-
 }  // namespace
 
 Result<std::vector<TakenByCamera>> RigPictures::take(const std::string& label) {
@@ -41,7 +32,7 @@ Result<std::vector<TakenByCamera>> RigPictures::take(const std::string& label) {
   const auto aim =
       std::find_if(rig.tasks.begin(), rig.tasks.end(), [](const Task& task) { return task.kind == TaskKind::aim; });
   if (aim != rig.tasks.end() && !std::exchange(studied_, true)) {
-    const auto object = study_object(rig, session_.scene, aim->aim.relief, {});
+    const auto object = study_object(session_, aim->aim.relief, {});
     if (!object) return tl::unexpected(object.error());
     relief_ = object->study.points;
     scale_m_ = object->study.scale_m;

@@ -169,6 +169,10 @@ fov_deg = 30  #> 31
 width_px = 640  #> 641
 height_px = 480  #> 481
 [[camera]]
+name = "aside"
+position_m = [0, 5, 2]
+aim_m = [0, 0, 0]
+[[camera]]
 name = "top"
 position_m = [0, 0, 2]
 aim_m = [0, 0, 0]  #> [0, 1, 0]
@@ -219,6 +223,7 @@ kind = "aim"
 object = "cup"  #> "bowl"
 scale_mm = 4  #> 5
 interest = 0.2  #> 0.3
+seen_by = "top"  #> "aside"
 max_object_lx = 900  #> 800
 contrast = "lux"  #> "relative"
 coverage_weight = 0.5  #> 0.6
@@ -380,7 +385,8 @@ std::string dump(const Rig& rig) {
     const AimSpec& a = t.aim;
     const HighlightSpec& h = t.highlight;
     for (const ReliefSpec& r : {a.relief, h.relief})
-      add(r.object, text_of(r.scale_m), r.interest, text_of(r.max_lx), r.relative, r.coverage_weight);
+      add(r.object, text_of(r.scale_m), r.interest, text_of(r.max_lx), text_of(r.camera), r.relative,
+          r.coverage_weight);
     for (const std::size_t head : a.heads) add("head", head);
     for (const std::size_t eye : a.eyes) add("eye", eye);
     add(text_of(a.key), a.min_key_to_fill, text_of(a.max_key_to_fill), text_of(a.max_eye_lx), a.energy_weight,
