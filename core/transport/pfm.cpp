@@ -55,8 +55,8 @@ Result<Picture> picture_from_pfm(std::string_view bytes) {
     return refusal(fmt::format("a picture of {} x {} pixels with {} bytes of samples", row, rows, bytes.size()));
   picture.luminance_cd_m2.resize(row * rows);
   for (std::size_t y = 0; y < rows; ++y)
-    std::memcpy(picture.luminance_cd_m2.data() + (rows - 1 - y) * row, bytes.data() + y * row * sizeof(Vec3f),
-                row * sizeof(Vec3f));
+    std::memcpy(static_cast<void*>(picture.luminance_cd_m2.data() + (rows - 1 - y) * row),
+                bytes.data() + y * row * sizeof(Vec3f), row * sizeof(Vec3f));
   for (const Vec3f& pixel : picture.luminance_cd_m2)
     if (!pixel.allFinite() || pixel.minCoeff() < 0) return refusal("a picture with samples that are no luminance");
   return picture;

@@ -111,8 +111,10 @@ Result<void> show_before_and_after(Daemon& daemon, RunReport& say, RigPictures& 
   std::vector<TakenByCamera> before;
   for (const bool after : {false, true}) {
     say.say(after ? "the plan" : "the rig as it hangs");
-    if (const auto applied = daemon.apply(after ? plan : hung); !applied)
-      return refusal(applied.error().front().text());
+    // As a client would: what heads that turn will light is worked out beside the control loop.
+    auto applying = std::async(std::launch::async, [&] { return daemon.apply(after ? plan : hung); });
+    tick_until(daemon, [&](Time) { return applying.wait_for(std::chrono::seconds(0)) == std::future_status::ready; });
+    if (const auto applied = applying.get(); !applied) return refusal(applied.error().front().text());
     tick_until_held(daemon, say, stop);
     if (stop.stop_requested()) return {};
     auto taken = take_pictures(daemon, say, pictures, after ? "after" : "before");
@@ -242,10 +244,11 @@ int run_rig(const RunArguments& arguments) {
     resumed = state.value_or(false);
     if (resumed) say.say("resumed the plan that was in force");
   }
+  int pictures_failed = kExitOk;
   if (hung) {
     RigPictures pictures(*session, ports->control, *arguments.pictures);
     if (const auto shown = show_before_and_after(daemon, say, pictures, *hung, *plan, stop); !shown)
-      return report(shown.error());
+      pictures_failed = report(shown.error());
   } else if (!resumed) {
     if (const auto applied = daemon.apply(*plan); !applied) return report(applied.error());
   }
@@ -272,7 +275,8 @@ int run_rig(const RunArguments& arguments) {
                             daemon.status().converged ? "goals met" : "not all goals met", converged_s, *port));
       }
     }
-    return stop.stop_requested() || (arguments.once && (settled || at - process_start > kMostOnce));
+    return stop.stop_requested() || pictures_failed != kExitOk ||
+           (arguments.once && (settled || at - process_start > kMostOnce));
   });
   const ShowStatus final_status = daemon.status();
 
@@ -286,7 +290,7 @@ int run_rig(const RunArguments& arguments) {
   const auto after = arguments.once ? truth() : std::nullopt;
   daemon.stop();
   say.say(daemon.status().phase == Phase::safe ? "ended in the safe look" : "ended before the safe look was reached");
-  if (!arguments.once) return kExitOk;
+  if (pictures_failed != kExitOk || !arguments.once) return pictures_failed;
 
   // The values are those of the held look; the peaks and the limits are those of the whole run.
   auto whole = seen;
