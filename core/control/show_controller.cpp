@@ -189,15 +189,17 @@ void ShowController::State::start_cue(Time now, std::vector<double> levels) {
   std::vector<double> present = present_levels(now);
   if (awaited) {
     std::vector<double> without = present;
-    bool any = false;
+    bool any = false, lit = false;
     for (std::size_t f = 0; f < without.size(); ++f) {
       if (!turns(f)) continue;
-      without[f] = 0;
       any = true;
+      lit = lit || without[f] > 0;
+      without[f] = 0;
     }
     // What stays goes, too, to where limits are kept without what meters have taught, or it would jump there.
     if (any) without = GainEstimator(rig, awaited->model).within_limits(without, now);
-    if (without != present && !program.blackout) {
+    // Once, that is: what is within limits then may be so by another rounding.
+    if ((lit || (without != present && phase != Phase::moving)) && !program.blackout) {
       fade(now, std::move(present), std::move(without), rig.control.fade_s, rig.control.fade_curve);
       enter(Phase::moving, now);
       return;
