@@ -18,10 +18,10 @@ constexpr Duration kSampleEvery = std::chrono::seconds(1);
 // hours, so more than one correction in ten seconds would only follow noise.
 constexpr int kDriftSamples = 3;
 constexpr Duration kDriftCorrectionEvery = std::chrono::seconds(10);
-// Level changes smaller than half a step of a 12-bit dimmer are not worth a fade.
 /// most_lux_at_point holds 1 % for a meter's noise on top of its tolerance, and corrections aim at the limit itself:
 /// half of that may be used up before a reading counts, or noise alone would start one correction after another.
 constexpr double kBreachSlack = 0.005;
+// Level changes smaller than half a step of a 12-bit dimmer are not worth a fade.
 constexpr double kSmallestChange = 1e-4;
 /// From the command to a head's first movement, and for its ramps.
 constexpr double kHeadDelay_s = 0.5;

@@ -28,7 +28,7 @@ std::string complaint_of_head(const HangingHead& head) {
 
 std::string complaint_of_wishes(const AimWishes& wishes, const ContrastSamples& samples, std::size_t heads) {
   for (const AimLimit& limit : wishes.limits) {
-    if (!limit.at.position_world_m.allFinite() || !limit.at.normal.allFinite() || !(limit.max_lx > 0) ||
+    if (!limit.at.position_world_m.allFinite() || !limit.at.normal.allFinite() || !(limit.max_lx >= 0) ||
         !(limit.fixed_lx >= 0))
       return fmt::format("limit \"{}\": place, lux or light that stays is not a usable number", limit.name);
     if (limit.fixed_lx > limit.max_lx)

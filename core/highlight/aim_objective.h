@@ -17,7 +17,7 @@ namespace luxrig {
 struct AimLimit {
   std::string name;
   OrientedPoint at;
-  double max_lx = 0;
+  double max_lx = 0;    ///< 0: stays dark
   double fixed_lx = 0;  ///< of light that stays
 };
 

@@ -358,6 +358,25 @@ TEST(HeadAims, KeepsTheKeyAboveTheFillWhateverTheOrder) {
   EXPECT_FALSE(aimed_relief().aims(rail_of_heads(3), crossed));
 }
 
+// A rig may say that a place stays dark: that is a limit like another, not a mistake.
+TEST(HeadAims, KeepsAPlaceDark) {
+  const std::vector<HangingHead> heads = rail_of_heads(3);
+  AimWishes wishes;
+  // Where every head is seen: none may shine at all.
+  wishes.limits = {{"drawing", {{0, -0.5, 0.3}, Vec3::Zero()}, 0, 0}};
+  const auto aims = aimed_relief().aims(heads, wishes);
+  ASSERT_TRUE(aims) << aims.error().detail;
+  const auto found = aims->solve();
+  ASSERT_TRUE(found) << found.error().detail;
+  EXPECT_TRUE(found->score.within_limits);
+  EXPECT_LE(found->score.limit_lx[0], 0);
+  // Behind the slab, where no head reaches, it costs nothing.
+  wishes.limits = {{"store", {{0, 0.1, 0}, {0, 1, 0}}, 0, 0}};
+  const auto behind = aimed_relief().aims(heads, wishes)->solve();
+  ASSERT_TRUE(behind);
+  EXPECT_GT(behind->score.local_contrast_lx, 0);
+}
+
 TEST(HeadAims, KeepsALimitOfPower) {
   double before = 0;
   for (const double watts : {20.0, 60.0, 150.0}) {
