@@ -67,8 +67,9 @@ std::vector<PotentialLight> hangable_lights(const PotentialLights& all, const Mo
 
 }  // namespace
 
-Result<ReliefLights> find_relief_lights(const ReliefSurroundings& around, const StudiedObject& object, const Task& task,
-                                        const Mounting& mounting, const ComputeOptions& options) {
+Result<PlacedReliefLights> find_relief_lights(const ReliefSurroundings& around, const StudiedObject& object,
+                                              const Task& task, const Mounting& mounting,
+                                              const ComputeOptions& options) {
   const HighlightSpec& spec = task.highlight;
   const Luminaire& luminaire = around.rig.luminaires[spec.luminaire];
   const auto refuse = [&](const Fault& fault) {
@@ -116,7 +117,7 @@ Result<ReliefLights> find_relief_lights(const ReliefSurroundings& around, const 
   const auto judge = JudgedLights::make(study.surface, study.rays, study.interest, study.features, places,
                                         hangable_lights(*potential, mounting), luminaire.intensity, of_judge);
   if (!judge) return refuse(judge.error());
-  ReliefLights found;
+  PlacedReliefLights found;
   JudgedLightSet chosen;
   if (spec.lights) {
     auto lights = judge->lights(*spec.lights);

@@ -8,7 +8,7 @@
 
 namespace luxrig {
 
-struct ReliefLights {
+struct PlacedReliefLights {
   std::vector<LightInScene> lights;
   AimScore score;
   std::vector<double> contrast_lx;  ///< of one light, two, … at full level; empty when their number was given
@@ -16,8 +16,8 @@ struct ReliefLights {
 };
 
 /// Refuses when no light that may hang brings out anything of the object, saying why.
-[[nodiscard]] Result<ReliefLights> find_relief_lights(const ReliefSurroundings& around, const StudiedObject& object,
-                                                      const Task& task, const Mounting& mounting,
-                                                      const ComputeOptions& options);
+[[nodiscard]] Result<PlacedReliefLights> find_relief_lights(const ReliefSurroundings& around,
+                                                            const StudiedObject& object, const Task& task,
+                                                            const Mounting& mounting, const ComputeOptions& options);
 
 }  // namespace luxrig

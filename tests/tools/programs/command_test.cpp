@@ -195,20 +195,30 @@ TEST(Commands, AnInterruptEndsASearchForPlacesWithTheBestSoFar) {
   const Folder folder;
   std::filesystem::copy(source("tests/rigs/hang"), folder / "hang");
   std::string text = text_of(folder / "hang/rig.toml");
-  // An error of nothing is never reached: the search goes on until its work is done, which takes some seconds.
-  text.replace(text.find("lights = 3"), 10, "lights = 9");
+  // Goals that nothing can meet, and many of them: a search of a minute and more on the fastest machine.
+  text.replace(text.find("lights = 3"), 10, "lights = 30");
   text.replace(text.find("error_wanted = 0.0005"), 21, "error_wanted = 0");
+  text.replace(text.find("spacing_m = 0.25"), 16, "spacing_m = 0.1");
   std::ofstream(folder / "hang/rig.toml") << text;
+  std::ofstream goals(folder / "hang/goals.csv");
+  goals << "name,x_m,y_m,z_m,goal_lx\n";
+  for (int i = 0; i < 20; ++i)
+    for (int j = 0; j < 20; ++j)
+      goals << "p" << 20 * i + j << ',' << -1.8 + 0.18 * i << ',' << -1.3 + 0.13 * j << ",0.1,"
+            << 5 + (7 * i + 13 * j) % 23 << '\n';
+  goals.close();
   const auto plan = folder / "plan.json";
   Process solve({program("luxrig"), "solve", (folder / "hang").string(), "-o", plan.string()}, folder / "log");
-  std::this_thread::sleep_for(1s);
+  // The first line of progress that knows an error comes from a search that has something to keep.
+  ASSERT_TRUE(wait_for([&] { return solve.output().find(" lights, error ") != std::string::npos; }, 60s))
+      << solve.output();
   solve.signal(SIGINT);
   ASSERT_EQ(solve.wait(30s), 0) << solve.output();
   EXPECT_NE(solve.output().find("stopped: this is the best so far"), std::string::npos) << solve.output();
   const json out = json::parse(text_of(plan), nullptr, false);
   ASSERT_TRUE(out.is_object());
   EXPECT_FALSE(out["tasks"][0]["lights"].empty());
-  EXPECT_EQ(out["points"].size(), 20u);
+  EXPECT_EQ(out["points"].size(), 400u);
 }
 
 TEST(Commands, ASurfaceThatIsNotThereIsRefusedWithItsPlace) {
