@@ -17,6 +17,9 @@
 
 namespace luxrig {
 
+/// So many interest points are enough to judge real lights by: more take longer and change little.
+constexpr std::size_t kAimPoints = 1000;
+
 struct AimOptions {
   std::size_t search_points = 800;  ///< interest points that the search judges by, evenly strided; the answer by all
   std::size_t most_aims = 24;       ///< candidates per head

@@ -7,8 +7,9 @@
 #include <numeric>
 #include <optional>
 
+#include "core/check.h"
 #include "core/highlight/quadric_fit.h"
-#include "core/highlight/sample_grid.h"
+#include "core/highlight/surface_samples.h"
 #include "core/parallel.h"
 
 namespace luxrig {
@@ -17,54 +18,11 @@ namespace {
 constexpr double kWiden = 2;             ///< once, where samples are few
 constexpr double kManyNeighbours = 300;  ///< beyond so many on average, samples are merged
 constexpr double kMergeCells = 8;        ///< per radius
-constexpr double kPieceEdge = 1.0 / 3;   ///< of the radius: edges of what long facets are cut into
 constexpr double kMostPieces = 4096;     ///< of one facet; one that would need more counts by its corners alone
+constexpr double kPieceEdge = 1.0 / 3;   ///< of the radius: edges of what long facets are cut into
 constexpr double kOneSided = 0.6;        ///< length of the mean normal of a neighbourhood that is not two sheets
 constexpr double kRefitTilt = 0.1;       ///< slope of the fit from which on it is made again over its own plane
 constexpr std::size_t kPointsPerTask = 256;
-
-/// Cuts a triangle at its longest edge until no edge is longer than `edge_m`.
-void cut_up(const std::array<Vec3, 3>& p, const Vec3& normal, double edge_m, std::vector<SurfaceSample>& samples) {
-  std::size_t longest = 0;
-  double length2 = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double here2 = (p[(i + 1) % 3] - p[i]).squaredNorm();
-    if (here2 > length2) {
-      length2 = here2;
-      longest = i;
-    }
-  }
-  const Vec3 &a = p[longest], &b = p[(longest + 1) % 3], &c = p[(longest + 2) % 3];
-  if (length2 <= edge_m * edge_m) {
-    samples.push_back({(a + b + c) / 3, normal, (b - a).cross(c - a).norm() / 2});
-    return;
-  }
-  const Vec3 middle = (a + b) / 2;
-  cut_up({a, middle, c}, normal, edge_m, samples);
-  cut_up({middle, b, c}, normal, edge_m, samples);
-}
-
-std::vector<SurfaceSample> samples_of(const TargetSurface& surface, double radius_m) {
-  std::vector<double> areas_m2 = surface.areas_m2;
-  std::vector<SurfaceSample> pieces;
-  const double edge_m = kPieceEdge * radius_m;
-  for (const auto& t : surface.triangles) {
-    const std::array<Vec3, 3> p = {surface.points_m[t[0]], surface.points_m[t[1]], surface.points_m[t[2]]};
-    const double longest_m =
-        std::sqrt(std::max({(p[1] - p[0]).squaredNorm(), (p[2] - p[1]).squaredNorm(), (p[0] - p[2]).squaredNorm()}));
-    if (longest_m <= radius_m) continue;
-    const Vec3 cross = (p[1] - p[0]).cross(p[2] - p[0]);
-    if (cross.norm() / (edge_m * edge_m) + 2 * longest_m / edge_m > kMostPieces) continue;
-    cut_up(p, cross.normalized(), edge_m, pieces);
-    for (const std::uint32_t corner : t) areas_m2[corner] -= cross.norm() / 6;
-  }
-  std::vector<SurfaceSample> samples;
-  samples.reserve(surface.points_m.size() + pieces.size());
-  for (std::size_t i = 0; i < surface.points_m.size(); ++i)
-    samples.push_back({surface.points_m[i], surface.normals[i], std::max(areas_m2[i], 0.0)});
-  samples.insert(samples.end(), pieces.begin(), pieces.end());
-  return samples;
-}
 
 /// One point's neighbourhood after another; keeps its memory.
 class Neighbourhood {
@@ -163,18 +121,24 @@ class Neighbourhood {
 
 double suggested_curvature_radius_m(const TargetSurface& surface) {
   if (surface.triangles.empty()) return 0;
-  return std::max(0.015 * surface.diagonal_m(), 2.5 * surface.median_edge_m());
+  return std::max(0.03 * surface.size_m(), 1.5 * surface.median_edge_m());
 }
 
 Result<std::vector<Curvature>> curvature_of(const TargetSurface& surface, const CurvatureOptions& options) {
+  return curvature_at(surface, surface.points_m, surface.normals, options);
+}
+
+Result<std::vector<Curvature>> curvature_at(const TargetSurface& surface, std::span<const Vec3> places_m,
+                                            std::span<const Vec3> facing, const CurvatureOptions& options) {
+  LUXRIG_CHECK(places_m.size() == facing.size(), "{} places, {} normals", places_m.size(), facing.size());
   const double radius_m = options.radius_m;
   if (!(radius_m > 0) || !std::isfinite(radius_m))
     return refusal(fmt::format("curvature needs a radius above 0 m, not {}", radius_m));
-  const std::size_t count = surface.points_m.size();
+  const std::size_t count = places_m.size();
   std::vector<Curvature> curvatures(count);
   if (count == 0) return curvatures;
 
-  std::vector<SurfaceSample> samples = samples_of(surface, radius_m);
+  std::vector<SurfaceSample> samples = surface_samples(surface, radius_m, kPieceEdge * radius_m, kMostPieces);
   // Of the samples, how many are within a radius of one: the mean over some of them.
   {
     const SampleGrid grid(samples, radius_m);
@@ -182,10 +146,10 @@ Result<std::vector<Curvature>> curvature_of(const TargetSurface& surface, const 
     const std::size_t step = std::max<std::size_t>(1, count / 256);
     double near = 0, asked = 0;
     for (std::size_t i = 0; i < count; i += step, ++asked) {
-      grid.near(surface.points_m[i], radius_m, stretches);
+      grid.near(places_m[i], radius_m, stretches);
       for (const auto& stretch : stretches)
         for (const SurfaceSample& sample : stretch)
-          if ((sample.position_m - surface.points_m[i]).squaredNorm() < radius_m * radius_m) ++near;
+          if ((sample.position_m - places_m[i]).squaredNorm() < radius_m * radius_m) ++near;
     }
     if (near > kManyNeighbours * asked) samples = merged_in_cells(samples, radius_m / kMergeCells);
   }
@@ -195,7 +159,7 @@ Result<std::vector<Curvature>> curvature_of(const TargetSurface& surface, const 
   std::vector<std::uint32_t> order(count);
   std::iota(order.begin(), order.end(), 0u);
   std::vector<std::array<std::int32_t, 3>> cells(count);
-  for (std::size_t i = 0; i < count; ++i) cells[i] = grid.cell_of(surface.points_m[i]);
+  for (std::size_t i = 0; i < count; ++i) cells[i] = grid.cell_of(places_m[i]);
   std::sort(order.begin(), order.end(),
             [&](std::uint32_t i, std::uint32_t j) { return cells[i] != cells[j] ? cells[i] < cells[j] : i < j; });
   const std::size_t tasks = (count + kPointsPerTask - 1) / kPointsPerTask;
@@ -204,10 +168,9 @@ Result<std::vector<Curvature>> curvature_of(const TargetSurface& surface, const 
     Neighbourhood neighbourhood(grid);
     for (std::size_t k = task * kPointsPerTask; k < std::min(count, (task + 1) * kPointsPerTask); ++k) {
       const std::uint32_t i = order[k];
-      if (surface.normals[i].isZero(0)) continue;
-      curvatures[i] = neighbourhood.fit(surface.points_m[i], surface.normals[i], radius_m);
-      if (!curvatures[i].known())
-        curvatures[i] = neighbourhood.fit(surface.points_m[i], surface.normals[i], kWiden * radius_m);
+      if (facing[i].isZero(0)) continue;
+      curvatures[i] = neighbourhood.fit(places_m[i], facing[i], radius_m);
+      if (!curvatures[i].known()) curvatures[i] = neighbourhood.fit(places_m[i], facing[i], kWiden * radius_m);
     }
   });
   if (options.stop.stop_requested()) return tl::unexpected(Fault{Cause::cancelled, "", "curvature was stopped", {}});

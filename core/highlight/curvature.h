@@ -30,8 +30,8 @@ struct CurvatureOptions {
   std::stop_token stop;
 };
 
-/// A scale for an object of which nothing is known: 1.5 % of its bounding box's diagonal, but not below 2.5 times its
-/// median edge. 0 for a surface without triangles.
+/// A scale for an object of which nothing is known: 3 % of its size, but not below 1.5 times its median edge. 0 for a
+/// surface without triangles.
 [[nodiscard]] double suggested_curvature_radius_m(const TargetSurface& surface);
 
 /// One per point of the surface, the same bytes for any number of threads.
@@ -49,6 +49,12 @@ struct CurvatureOptions {
 /// differential quantities using polynomial fitting of osculating jets", 2005, degree 2; the thesis (§6.2) fits
 /// algebraic spheres (MeshLab's APSS).
 [[nodiscard]] Result<std::vector<Curvature>> curvature_of(const TargetSurface& surface,
+                                                          const CurvatureOptions& options);
+
+/// The same at any places of the surface (relative to its origin), one per place.
+/// facing   unit normals there, roughly; unknown where zero. As many as places (asserted).
+[[nodiscard]] Result<std::vector<Curvature>> curvature_at(const TargetSurface& surface, std::span<const Vec3> places_m,
+                                                          std::span<const Vec3> facing,
                                                           const CurvatureOptions& options);
 
 }  // namespace luxrig

@@ -12,8 +12,8 @@ namespace {
 constexpr std::size_t kMostRelightRounds = 12;
 constexpr int kMostReliefLights = 64;
 constexpr double kSpreadReach = 2.5;  // of its standard deviation
-/// A light moves for a gain of more than this share: less is rounding, and would let it wander on a plateau.
-constexpr double kLeastRelightGain = 1e-6;
+/// A light moves for a gain of more than this share: less is within what another mesh of the same object would change.
+constexpr double kLeastRelightGain = 0.01;
 
 double angle_rad(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
@@ -34,6 +34,9 @@ Result<ReliefLightSearch> ReliefLightSearch::make(const TargetSurface& surface, 
     return refusal(fmt::format("spread of {} rad is not within 0 to 1", options.spread_rad));
   if (!(options.lift_m >= 0) || !std::isfinite(options.lift_m))
     return refusal(fmt::format("rays cannot start {} m off the surface", options.lift_m));
+  if (!options.preferred.allFinite() || !(options.preference >= 0 && options.preference <= 1))
+    return refusal(fmt::format("a preference of {} is not within 0 to 1, or what is preferred has no direction",
+                               options.preference));
   if (interest.empty()) return refusal("no interest points: there is no relief that a light could bring out");
   ContrastSamples samples = one_ring_samples(surface, interest);
   auto table = find_lit_bins(target, samples, DirectionBins(options.side),
@@ -59,6 +62,12 @@ ReliefLightSearch::ReliefLightSearch(ContrastSamples samples, LitTable table, co
       spread_weights_.push_back(static_cast<float>(std::exp(-away * away / 2)));
     }
   }
+  liking_.assign(bins.count(), 1);
+  if (!options.preferred.isZero(0)) {
+    const Vec3 preferred = options.preferred.normalized();
+    for (std::uint32_t b = 0; b < bins.count(); ++b)
+      liking_[b] -= options.preference * (1 - directions_[b].dot(preferred)) / 2;
+  }
   alone_lx_ = sums().with_each_bin({});
   alone_smooth_ = smoothed(alone_lx_);
 }
@@ -71,7 +80,7 @@ std::vector<double> ReliefLightSearch::smoothed(const std::vector<double>& value
       sum += spread_weights_[k] * values[spread_.bins[k]];
       weight += spread_weights_[k];
     }
-    means[b] = sum / weight;
+    means[b] = liking_[b] * sum / weight;
   }
   return means;
 }

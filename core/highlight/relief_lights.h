@@ -13,8 +13,12 @@ struct ReliefLightOptions {
   double least_angle_rad = rad_from_deg(30);
   /// A light is judged by the mean contrast around its direction, weighted by exp(-angle² / 2 spread²): no head is
   /// aimed better, and peaks narrower than it come of single facets. 0: by its direction alone.
-  double spread_rad = rad_from_deg(3);
+  double spread_rad = rad_from_deg(4);
   double lift_m = 0;  ///< rays start so far off the surface; hides relief smaller than it
+  /// Of directions that bring out nearly as much, the one nearer to this is taken: what one from the opposite side
+  /// brings out counts less by the share `preference`. An object's symmetries make such directions. Zero: none.
+  Vec3 preferred = Vec3::Zero();
+  double preference = 0.05;
   int threads = 0;
   Watch watch;
 };
@@ -41,7 +45,7 @@ class ReliefLightSearch {
                                                       std::span<const std::uint32_t> interest,
                                                       const ReliefLightOptions& options);
 
-  /// Greedy, then each light in turn is put where it is best with the others as they are, until none moves; where a
+  /// Greedy, then each light in turn is put where it is best with the others as they are, until none gains 1 %; where a
   /// parabola through the bins around has its peak. One light is the best of all bins.
   /// start   directions to begin with, e.g. those of most votes; at most `lights`
   [[nodiscard]] Result<ReliefLights> lights(int lights, std::span<const Vec3> start = {}) const;
@@ -66,6 +70,7 @@ class ReliefLightSearch {
   BinNeighbours spread_, around_;
   std::vector<float> spread_weights_;  ///< one per entry of spread_
   std::vector<Vec3> directions_;       ///< of bins
+  std::vector<double> liking_;         ///< of bins: 1 of the preferred one, less of others
   std::vector<double> alone_lx_, alone_smooth_;
 };
 

@@ -9,16 +9,17 @@
 namespace luxrig {
 
 Result<ReliefStudy> study_relief(const Scene& target, const ReliefStudyOptions& options) {
-  auto surface = make_target_surface(target);
-  if (!surface) return tl::unexpected(surface.error());
-  if (surface->triangles.empty())
+  auto mesh = make_target_surface(target);
+  if (!mesh) return tl::unexpected(mesh.error());
+  if (mesh->triangles.empty())
     return refusal(target.triangles.empty() ? "the target has no triangles: light and shadow need a surface, not points"
                                             : "no triangle of the target has any area");
-  ReliefStudy study{std::move(*surface), TargetRays(target), options.scale_m, {}, {}, {}, {}};
-  if (study.scale_m == 0) study.scale_m = suggested_curvature_radius_m(study.surface);
-  auto curvature = curvature_of(study.surface, {study.scale_m, options.threads, options.stop});
-  if (!curvature) return tl::unexpected(curvature.error());
-  study.curvature = std::move(*curvature);
+  ReliefStudy study{std::move(*mesh), TargetRays(target), options.scale_m, {}, {}, {}, {}, {}};
+  if (study.scale_m == 0) study.scale_m = suggested_curvature_radius_m(study.mesh);
+  auto even = even_surface(study.mesh, {study.scale_m, options.threads, options.stop});
+  if (!even) return tl::unexpected(even.error());
+  study.surface = std::move(even->surface);
+  study.curvature = std::move(even->curvature);
   if (std::ranges::none_of(study.curvature, [](const Curvature& c) { return c.known(); }))
     return refusal("the target's curvature is not known anywhere: too few points within the scale");
   auto interest = interest_points(study.surface, study.curvature, options.interest);

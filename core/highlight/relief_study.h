@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "core/highlight/curvature.h"
+#include "core/highlight/even_surface.h"
 #include "core/highlight/feature_clusters.h"
 #include "core/highlight/interest_points.h"
 
@@ -18,9 +18,10 @@ struct ReliefStudyOptions {
 };
 
 struct ReliefStudy {
-  TargetSurface surface;
+  TargetSurface mesh;  ///< what was given
   TargetRays rays;
   double scale_m = 0;
+  TargetSurface surface;                ///< the same told by evenly spread points: even_surface.h
   std::vector<Curvature> curvature;     ///< per point of the surface
   std::vector<std::uint32_t> interest;  ///< points of the surface
   std::vector<OrientedPoint> points;    ///< the same, with normals

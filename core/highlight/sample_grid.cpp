@@ -83,32 +83,33 @@ std::vector<SurfaceSample> merged_in_cells(const std::vector<SurfaceSample>& sam
   const Vec3 low_m = low_corner(samples);
   struct Key {
     CellPlace at;
-    std::uint8_t facing;
     std::uint32_t sample;
     auto operator<=>(const Key&) const = default;
   };
   std::vector<Key> keys(samples.size());
-  for (std::uint32_t i = 0; i < samples.size(); ++i) {
-    const Vec3& n = samples[i].normal;
-    const auto facing = static_cast<std::uint8_t>((n.x() < 0 ? 1 : 0) + (n.y() < 0 ? 2 : 0) + (n.z() < 0 ? 4 : 0));
-    keys[i] = {cell_at(samples[i].position_m, low_m, cell_m), facing, i};
-  }
+  for (std::uint32_t i = 0; i < samples.size(); ++i) keys[i] = {cell_at(samples[i].position_m, low_m, cell_m), i};
   std::sort(keys.begin(), keys.end());
+  struct Sum {
+    Vec3 moment_m = Vec3::Zero(), plain_m = Vec3::Zero(), normal = Vec3::Zero();
+    double area_m2 = 0, count = 0;
+  };
+  std::vector<Sum> sums;  // of one cell
   std::vector<SurfaceSample> merged;
   for (std::size_t begin = 0, end = 0; begin < keys.size(); begin = end) {
-    SurfaceSample sum{Vec3::Zero(), Vec3::Zero(), 0};
-    Vec3 plain_m = Vec3::Zero();
-    for (; end < keys.size() && keys[end].at == keys[begin].at && keys[end].facing == keys[begin].facing; ++end) {
+    sums.clear();
+    for (; end < keys.size() && keys[end].at == keys[begin].at; ++end) {
       const SurfaceSample& sample = samples[keys[end].sample];
-      sum.position_m += sample.area_m2 * sample.position_m;
-      sum.normal += sample.area_m2 * sample.normal;
-      sum.area_m2 += sample.area_m2;
-      plain_m += sample.position_m;
+      auto sum = std::ranges::find_if(sums, [&](const Sum& one) { return !(one.normal.dot(sample.normal) < 0); });
+      if (sum == sums.end()) sum = sums.emplace(sums.end());
+      sum->moment_m += sample.area_m2 * sample.position_m;
+      sum->plain_m += sample.position_m;
+      sum->normal += sample.area_m2 * sample.normal;
+      sum->area_m2 += sample.area_m2;
+      ++sum->count;
     }
-    sum.position_m =
-        sum.area_m2 > 0 ? Vec3(sum.position_m / sum.area_m2) : Vec3(plain_m / static_cast<double>(end - begin));
-    if (!sum.normal.isZero(0)) sum.normal.normalize();
-    merged.push_back(sum);
+    for (const Sum& sum : sums)
+      merged.push_back({sum.area_m2 > 0 ? Vec3(sum.moment_m / sum.area_m2) : Vec3(sum.plain_m / sum.count),
+                        sum.normal.isZero(0) ? sum.normal : Vec3(sum.normal.normalized()), sum.area_m2});
   }
   return merged;
 }

@@ -45,7 +45,8 @@ class SampleGrid {
   std::vector<std::uint32_t> table_;  ///< open addressing: cell + 1, or 0
 };
 
-/// Samples in one cell of the grid and facing the same octant, made one: means weighted by area.
+/// Samples in one cell of the grid that face the same half-space as those before them, made one: means weighted by
+/// area.
 [[nodiscard]] std::vector<SurfaceSample> merged_in_cells(const std::vector<SurfaceSample>& samples, double cell_m);
 
 }  // namespace luxrig

@@ -92,6 +92,19 @@ double TargetSurface::diagonal_m() const {
   return box.isEmpty() ? 0 : box.diagonal().norm();
 }
 
+double TargetSurface::size_m() const {
+  const Vec3 middle_m = centroid_world_m() - origin_world_m;
+  double sum = 0, all_m2 = 0;
+  for (const auto& t : triangles) {
+    const Vec3 a = points_m[t[0]] - middle_m, b = points_m[t[1]] - middle_m, c = points_m[t[2]] - middle_m;
+    const double area_m2 = (b - a).cross(c - a).norm() / 2;
+    // Mean of the squared distance over a triangle, from its corners.
+    sum += area_m2 * (a.squaredNorm() + b.squaredNorm() + c.squaredNorm() + (a + b + c).squaredNorm()) / 12;
+    all_m2 += area_m2;
+  }
+  return all_m2 > 0 ? std::sqrt(12 * sum / all_m2) : 0;
+}
+
 double TargetSurface::median_edge_m() const {
   std::vector<double> lengths;
   lengths.reserve(3 * triangles.size());

@@ -32,7 +32,10 @@ struct TargetSurface {
   [[nodiscard]] double area_m2() const;         ///< of all triangles
   [[nodiscard]] Vec3 centroid_world_m() const;  ///< of the area; the origin without any
   [[nodiscard]] double diagonal_m() const;      ///< of the bounding box; 0 without points
-  [[nodiscard]] double median_edge_m() const;   ///< 0 without triangles
+  /// √(12 · mean squared distance from the centroid): the diagonal of an even rectangle or box. Unlike that of the
+  /// bounding box the same however the object is turned. 0 without triangles.
+  [[nodiscard]] double size_m() const;
+  [[nodiscard]] double median_edge_m() const;  ///< 0 without triangles
 
   std::vector<std::uint32_t> ring_begin_ = {0};  ///< behind ring()
   std::vector<std::uint32_t> rings_;

@@ -15,7 +15,8 @@ struct BenchOptions {
   std::filesystem::path references_folder;    ///< transport: converged references are kept here, by scene
   double reference_error = 0.0005;            ///< transport: standard error of converged references
   std::filesystem::path export_folder;        ///< transport: writes its rooms here for Radiance instead of
-                                              ///< measuring; nnls: writes its problems here for scipy
+                                              ///< measuring; nnls: writes its problems here for scipy;
+                                              ///< highlight: its made-up objects as OBJ
   std::vector<std::filesystem::path> rigs;    ///< transport: rig files whose scenes are measured too
   std::string method;                         ///< placement scenes: only this one
   std::optional<int> seeds;                   ///< placement: rooms of each scene, instead of 100 (curves: 20)

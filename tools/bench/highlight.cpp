@@ -10,6 +10,7 @@
 namespace luxrig {
 
 std::vector<BenchRow> bench_highlight(const BenchOptions& options) {
+  if (!options.export_folder.empty()) return export_highlight_objects(options.export_folder);
   std::vector<BenchRow> rows;
   std::vector<std::string> missing;
   for (HighlightObject& object : highlight_objects(options, missing))

@@ -50,7 +50,11 @@ void add_aim_rows(HighlightObject& object, const BenchOptions& options, std::vec
   for (const int count : {3, 8}) {
     const std::string name = fmt::format("aims-{}-{}", object.name(), count);
     if (!highlight_wanted(options, name)) continue;
-    const ReliefStudy& study = object.study();
+    ReliefStudyOptions of_study = options_of_study(options);
+    of_study.interest.most_points = std::min(of_study.interest.most_points, kAimPoints);
+    const auto studied = study_relief(object.scene(), of_study);
+    LUXRIG_CHECK(studied, "{}", studied.error().detail);
+    const ReliefStudy& study = *studied;
     const RayScene room(object.scene());
     const std::vector<HangingHead> heads = ring_of_heads(study, count);
     AimOptions how;

@@ -16,19 +16,21 @@ constexpr int kEveryRay = 1, kJudgedStep = 4;
 constexpr std::size_t kHundredMillionRays = 100'000'000 / (kScanAzimuths * kScanElevations) + 1;
 constexpr double kEdgeError = 0.01, kEdgeSeconds = 2;
 
-/// Interest points, evenly strided to the number that makes 10⁸ rays where there are as many.
+/// Recessed places of the mesh itself, evenly strided to the number that makes 10⁸ rays where there are as many.
 std::vector<OrientedPoint> voting_points(HighlightObject& object, const BenchOptions& options) {
   if (options.quick) return object.study().points;
   const ReliefStudy& study = object.study();
   InterestOptions more = options_of_study(options).interest;
   more.most_points = kHundredMillionRays * 3 / 2;
-  const auto interest = interest_points(study.surface, study.curvature, more);
+  const auto curvature = curvature_of(study.mesh, {study.scale_m, options.threads, {}});
+  if (!curvature) return study.points;
+  const auto interest = interest_points(study.mesh, *curvature, more);
   if (!interest) return study.points;
   std::vector<OrientedPoint> points;
   const std::size_t count = std::min(interest->size(), kHundredMillionRays);
   for (std::size_t k = 0; k < count; ++k) {
     const std::uint32_t i = (*interest)[k * interest->size() / count];
-    points.push_back({study.surface.point_world_m(i), study.surface.normals[i]});
+    points.push_back({study.mesh.point_world_m(i), study.mesh.normals[i]});
   }
   return points;
 }
@@ -77,10 +79,10 @@ void add_curvature_rows(HighlightObject& object, const BenchOptions& options, st
   if (!highlight_wanted(options, name)) return;
   const ReliefStudy& study = object.study();
   HighlightRow row{name, "quadric"};
-  row.took = timed([&] { (void)curvature_of(study.surface, {study.scale_m, options.threads, {}}); });
-  const auto points = static_cast<double>(study.surface.points_m.size());
+  row.took = timed([&] { (void)curvature_of(study.mesh, {study.scale_m, options.threads, {}}); });
+  const auto points = static_cast<double>(study.mesh.points_m.size());
   row.error = std::nan("");
-  row.note = fmt::format("{} points; {:.1f} us of processor each; scale {:.4g} m", study.surface.points_m.size(),
+  row.note = fmt::format("{} points; {:.1f} us of processor each; scale {:.4g} m", study.mesh.points_m.size(),
                          1e6 * row.took.cpu / points, study.scale_m);
   rows.push_back(bench_row_of(row));
 }

@@ -58,6 +58,9 @@ struct HighlightRow {
 };
 [[nodiscard]] BenchRow bench_row_of(const HighlightRow& row);
 
+/// Writes the generated ones as OBJ, in metres; a file that cannot be written is told on stderr.
+[[nodiscard]] std::vector<BenchRow> export_highlight_objects(const std::filesystem::path& folder);
+
 /// Parts of the suite.
 void add_edge_rows(HighlightObject& object, const BenchOptions& options, std::vector<BenchRow>& rows);
 void add_light_rows(HighlightObject& object, const BenchOptions& options, std::vector<BenchRow>& rows);

@@ -150,7 +150,8 @@ int main(int argc, char** argv) {
   command->add_option("--reference-error", bench.reference_error, "transport: standard error of those (default 0.0005)")
       ->check(CLI::Range(1e-5, 0.1));
   command->add_option("--export", bench.export_folder,
-                      "transport: write the rooms here for Radiance, measure nothing; nnls: the problems");
+                      "transport: write the rooms here for Radiance, measure nothing; nnls: the problems; highlight: "
+                      "its made-up objects");
   command->add_option("--rig", bench.rigs, "transport: measure this rig's scene too");
   command->add_option("--method", bench.method, "placement: only this method on scenes");
   command->add_option("--seeds", bench.seeds, "placement: rooms of each scene (default 100; for curves 20)")

@@ -105,6 +105,7 @@ Result<StudiedObject> study_object(const Session& session, const ReliefSpec& rel
   ReliefStudyOptions how;
   how.scale_m = relief.scale_m.value_or(0);
   how.interest.wanted_share = relief.interest;
+  how.interest.most_points = kAimPoints;
   how.threads = options.threads;
   how.stop = options.watch.stop;
   auto study = study_relief(*object, how);

@@ -26,8 +26,8 @@ const std::vector<Vec3> kFeatureRgb = {{0.00, 0.45, 0.70}, {0.90, 0.62, 0.00}, {
 
 CutAwayCamera camera_on_object(const ShownObject& object, const RenderOptions& options) {
   std::vector<Vec3> points;
-  for (std::uint32_t i = 0; i < object.study.surface.points_m.size(); ++i)
-    points.push_back(object.study.surface.point_world_m(i));
+  for (std::uint32_t i = 0; i < object.study.mesh.points_m.size(); ++i)
+    points.push_back(object.study.mesh.point_world_m(i));
   constexpr double kFill = 0.75;
   return as_asked({camera_that_shows(points, object.towards_viewer, kFill,
                                      rad_from_deg(options.vertical_fov_deg.value_or(kShowFov_deg)), options.width_px,
@@ -48,9 +48,9 @@ Result<SurfacePicture> object_picture(const ShownObject& object, const RenderOpt
   const bool done =
       picture.draw(rays,
                    [&](const Hit& hit, const Vec3& towards_eye) {
-                     const auto corners = corners_at(object.target, object.study.surface, hit);
+                     const auto corners = corners_at(object.target, object.study.mesh, hit);
                      if (!corners) return shaded(kUnknownCurvature, hit.normal_world, towards_eye);
-                     const Vec3 smooth = corners->normal(object.study.surface);
+                     const Vec3 smooth = corners->normal(object.study.mesh);
                      return shaded(colour_of(*corners), smooth.isZero(0) ? hit.normal_world : smooth, towards_eye);
                    },
                    options.threads, {stop_on_signals(), progress_line("drawing")});
@@ -59,13 +59,13 @@ Result<SurfacePicture> object_picture(const ShownObject& object, const RenderOpt
 }
 
 /// What 95 % of the known area does not exceed, either way.
-double usual_curvature_per_m(const ReliefStudy& study) {
+double usual_curvature_per_m(const TargetSurface& surface, std::span<const Curvature> curvature) {
   std::vector<std::pair<double, double>> sizes;  // and areas
   double area_m2 = 0;
-  for (std::size_t i = 0; i < study.curvature.size(); ++i) {
-    if (!study.curvature[i].known()) continue;
-    sizes.emplace_back(std::abs(study.curvature[i].mean_per_m()), study.surface.areas_m2[i]);
-    area_m2 += study.surface.areas_m2[i];
+  for (std::size_t i = 0; i < curvature.size(); ++i) {
+    if (!curvature[i].known()) continue;
+    sizes.emplace_back(std::abs(curvature[i].mean_per_m()), surface.areas_m2[i]);
+    area_m2 += surface.areas_m2[i];
   }
   std::ranges::sort(sizes);
   double below_m2 = 0;
@@ -94,13 +94,16 @@ std::vector<Disc> interest_discs(const ShownObject& object, double size) {
 
 Result<Figure> curvature_figure(const ShownObject& object, const RenderOptions& options) {
   const ReliefStudy& study = object.study;
+  // Drawn between the corners of the mesh; the study has that of its own points only.
+  const auto curvature = curvature_of(study.mesh, {study.scale_m, options.threads, stop_on_signals()});
+  if (!curvature) return tl::unexpected(curvature.error());
   std::vector<double> mean_per_m;
   bool all_known = true;
-  for (const Curvature& c : study.curvature) {
+  for (const Curvature& c : *curvature) {
     mean_per_m.push_back(c.known() ? c.mean_per_m() : std::numeric_limits<double>::quiet_NaN());
     all_known = all_known && c.known();
   }
-  const double top = round_up_1_2_5(std::max(1e-6, usual_curvature_per_m(study)));
+  const double top = round_up_1_2_5(std::max(1e-6, usual_curvature_per_m(study.mesh, *curvature)));
   const auto picture = object_picture(object, options, [&](const SurfaceCorners& corners) {
     const double value = corners.value(mean_per_m);
     return std::isnan(value) ? kUnknownCurvature : blue_white_red(0.5 + value / (2 * top));

@@ -42,13 +42,11 @@ TEST(Figures, ABallsCurvatureHasOneColour) {
   Scene ball = uv_sphere(kRadius_m, 60);
   auto surface = make_target_surface(ball);
   ASSERT_TRUE(surface.has_value());
-  auto curvature = curvature_of(*surface, {0.02, 0, {}});
-  ASSERT_TRUE(curvature.has_value());
   TargetRays rays(ball);
   const ShownObject object{"ball",
                            std::move(ball),
                            {},
-                           {std::move(*surface), std::move(rays), 0.02, std::move(*curvature), {}, {}, {}},
+                           {std::move(*surface), std::move(rays), 0.02, {}, {}, {}, {}, {}},
                            Vec3(1, 0.5, 0.3).normalized()};
   RenderOptions options = small_picture();
   const auto figure = curvature_figure(object, options);
