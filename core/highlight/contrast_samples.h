@@ -29,7 +29,7 @@ struct SampleContrast {
 /// The first of the two alone, in less time.
 [[nodiscard]] double local_contrast_of(const ContrastSamples& samples, std::span<const float> lux);
 
-/// Compared with their one-ring, as `relief_contrast` does.
+/// Compared with their ring(), as `relief_contrast` does.
 /// interest   indices of points of the surface, each once
 [[nodiscard]] ContrastSamples one_ring_samples(const TargetSurface& surface, std::span<const std::uint32_t> interest);
 

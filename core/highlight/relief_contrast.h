@@ -30,7 +30,7 @@ struct MountedBeam {
                                      double level = 1);
 
 struct ReliefContrast {
-  /// Shadow transition: of two neighbours (one-ring), one is lit by a beam and the other is not, as it faces away or
+  /// Shadow transition: of two neighbours (ring()), one is lit by a beam and the other is not, as it faces away or
   /// is shaded, or the beam ends between them.
   double points_with_transition = 0;  ///< share of the interest points with one to any neighbour, for any beam
   double pairs_with_transition = 0;   ///< share of all pairs (interest point, neighbour)

@@ -24,7 +24,7 @@ struct TargetSurface {
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices into points_m; each has area
   std::vector<std::uint32_t> point_of_vertex;           ///< per vertex of the scene; kNone: no triangle uses it
 
-  /// Points that share an edge with this one, each once, in rising order.
+  /// Points that share an edge with this one (even_surface.h: lie around it), each once, in rising order.
   [[nodiscard]] std::span<const std::uint32_t> ring(std::uint32_t point) const {
     return std::span(rings_).subspan(ring_begin_[point], ring_begin_[point + 1] - ring_begin_[point]);
   }
