@@ -14,8 +14,8 @@
 namespace luxrig {
 namespace {
 
-constexpr double kMostPoints = 1e6;
-constexpr double kSpacing = 0.2;                   ///< of the scale: no two points that face alike are nearer
+constexpr double kMostPoints = 1e6, kMostPieces = 3e7;
+constexpr double kSpacing = 0.2;                  ///< of the scale: no two points that face alike are nearer
 constexpr double kWidestSpacing = 0.35;           ///< where that would be too many: rings need it
 constexpr double kRing = 0.7;                     ///< of the scale: what a point is compared with is so far away
 constexpr double kRingFrom = 0.6, kRingTo = 1.5;  ///< of that distance
@@ -115,6 +115,12 @@ Result<EvenSurface> even_surface(const TargetSurface& mesh, const EvenSurfaceOpt
                     options.scale_m, mesh.area_m2(), least_apart_m / kWidestSpacing));
   const double apart_m = std::max(kSpacing * options.scale_m, least_apart_m), distance_m = kRing * options.scale_m;
   const double piece_m = 0.75 * apart_m;
+  // Long thin facets need many pieces for little area.
+  if (const double pieces = pieces_of_surface(mesh, piece_m, piece_m); pieces > kMostPieces)
+    return refusal(
+        fmt::format("its {} facets are so long that they would have to be cut into {:.1g} pieces at a scale of "
+                    "{:.3g} m: take a larger scale, or mesh it anew with even triangles",
+                    mesh.triangles.size(), pieces, options.scale_m));
   std::vector<SurfaceSample> fine =
       merged_in_cells(surface_samples(mesh, piece_m, piece_m, std::numeric_limits<double>::infinity()), apart_m / 2);
   const SampleGrid grid(spread_out(std::move(fine), apart_m), distance_m);

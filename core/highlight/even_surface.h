@@ -21,7 +21,8 @@ struct EvenSurface {
   std::vector<Curvature> curvature;  ///< one per point
 };
 
-/// Refuses a scale that is not positive and finite, and one so fine that it would take over a million points. Neither
+/// Refuses a scale that is not positive and finite, one so fine that it would take over a million points, and slivers
+/// by the hundred thousand, as long as the object. Neither
 /// turning nor shifting nor another mesh of the same surface changes more than which places are taken.
 [[nodiscard]] Result<EvenSurface> even_surface(const TargetSurface& mesh, const EvenSurfaceOptions& options);
 

@@ -28,7 +28,27 @@ void cut_up(const std::array<Vec3, 3>& p, const Vec3& normal, double edge_m, std
   cut_up({middle, b, c}, normal, edge_m, samples);
 }
 
+/// Of a facet: those that its area needs, and those along it where it is thin.
+double pieces_of(double area_m2, double longest_edge_m, double edge_m) {
+  return 2 * area_m2 / (edge_m * edge_m) + 2 * longest_edge_m / edge_m;
+}
+
+double longest_edge_of(const std::array<Vec3, 3>& p) {
+  return std::sqrt(std::max({(p[1] - p[0]).squaredNorm(), (p[2] - p[1]).squaredNorm(), (p[0] - p[2]).squaredNorm()}));
+}
+
 }  // namespace
+
+double pieces_of_surface(const TargetSurface& surface, double longest_m, double edge_m) {
+  double pieces = 0;
+  for (const auto& t : surface.triangles) {
+    const std::array<Vec3, 3> p = {surface.points_m[t[0]], surface.points_m[t[1]], surface.points_m[t[2]]};
+    const double longest_edge_m = longest_edge_of(p);
+    if (longest_edge_m > longest_m)
+      pieces += pieces_of((p[1] - p[0]).cross(p[2] - p[0]).norm() / 2, longest_edge_m, edge_m);
+  }
+  return pieces;
+}
 
 std::vector<SurfaceSample> surface_samples(const TargetSurface& surface, double longest_m, double edge_m,
                                            double most_pieces) {
@@ -36,12 +56,10 @@ std::vector<SurfaceSample> surface_samples(const TargetSurface& surface, double 
   std::vector<SurfaceSample> pieces;
   for (const auto& t : surface.triangles) {
     const std::array<Vec3, 3> p = {surface.points_m[t[0]], surface.points_m[t[1]], surface.points_m[t[2]]};
-    const double edge2_m2 =
-        std::max({(p[1] - p[0]).squaredNorm(), (p[2] - p[1]).squaredNorm(), (p[0] - p[2]).squaredNorm()});
-    const double longest_edge_m = std::sqrt(edge2_m2);
+    const double longest_edge_m = longest_edge_of(p);
     if (longest_edge_m <= longest_m) continue;
     const Vec3 cross = (p[1] - p[0]).cross(p[2] - p[0]);
-    if (cross.norm() / (edge_m * edge_m) + 2 * longest_edge_m / edge_m > most_pieces) continue;
+    if (pieces_of(cross.norm() / 2, longest_edge_m, edge_m) > most_pieces) continue;
     cut_up(p, cross.normalized(), edge_m, pieces);
     for (const std::uint32_t corner : t) areas_m2[corner] -= cross.norm() / 6;
   }

@@ -147,6 +147,17 @@ TEST(EvenSurface, TakesAnyMeshAndRefusesScalesThatAreNone) {
   const auto too_fine = even_surface(mesh_of(uv_sphere(1, 10)), {1e-5, 1, {}});
   ASSERT_FALSE(too_fine);
   EXPECT_NE(too_fine.error().detail.find("too fine"), std::string::npos) << too_fine.error().detail;
+  // Thin facets all along the object, which would take hundreds of pieces each.
+  Scene slivers;
+  for (int i = 0; i < 200'000; ++i) {
+    const auto first = static_cast<std::uint32_t>(slivers.vertices_m.size());
+    const auto y = static_cast<float>(1e-5 * i);
+    for (const Vec3f& v : {Vec3f(0, y, 0), Vec3f(1, y, 0), Vec3f(0, y + 0.9e-5f, 0)}) slivers.vertices_m.push_back(v);
+    slivers.triangles.push_back({first, first + 1, first + 2});
+  }
+  const auto sliced = even_surface(mesh_of(with_one_material(slivers)), {0.03, 1, {}});
+  ASSERT_FALSE(sliced);
+  EXPECT_NE(sliced.error().detail.find("pieces"), std::string::npos) << sliced.error().detail;
   // Triangles with nothing in common, millimetres and kilometres of them.
   Random random(5);
   for (const double size_m : {1e-3, 1.0, 1e3}) {
