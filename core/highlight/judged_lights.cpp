@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/highlight/direction_modes.h"
+#include "core/highlight/mounted_lights.h"
 #include "core/highlight/relief_contrast.h"
 #include "core/parallel.h"
 #include "core/photometry/beam.h"
@@ -19,6 +20,8 @@ constexpr std::size_t kMostAimsOfPlace = 3;
 /// Candidates kept from within half the least angle of one another, and from one place.
 constexpr std::size_t kMostFromDirection = 12, kMostFromPlace = 2;
 constexpr int kMostJudgedLights = 64;
+/// Lights taken by votes that are kept as a beginning, whatever is judged of each alone.
+constexpr std::size_t kMostBegun = 16;
 constexpr int kAimsAround = 8;
 /// Of the beam's angle.
 constexpr double kFirstAimStep = 0.25, kLastAimStep = 1.0 / 64;
@@ -29,9 +32,9 @@ struct PlaceOfAims {
   std::vector<Vec3> voted;
 };
 
-std::vector<PlaceOfAims> places_of(std::span<const Vec3> places_world_m, std::span<const PotentialLight> voted) {
+std::vector<PlaceOfAims> places_of(std::span<const Vec3> places_world_m, const PotentialLights& voted) {
   std::vector<PlaceOfAims> places;
-  for (const PotentialLight& light : voted) {
+  for (const PotentialLight& light : voted.lights) {
     if (places.empty() || places.back().position_world_m != light.position_world_m)
       places.push_back({light.position_world_m, {}});
     places.back().voted.push_back(light.direction);
@@ -52,6 +55,21 @@ struct TriedAim {
   Vec3 direction;
   double contrast_lx;
 };
+
+/// What votes would take, in their order.
+std::vector<TriedAim> begun_aims(const PotentialLights& voted, const std::vector<PlaceOfAims>& places) {
+  std::vector<TriedAim> begun;
+  if (voted.lights.empty()) return begun;
+  LightSelection selection(voted);
+  while (begun.size() < kMostBegun) {
+    const auto light = selection.add();
+    if (!light) break;
+    const PotentialLight& taken = voted.lights[*light];
+    const auto place = std::ranges::find(places, taken.position_world_m, &PlaceOfAims::position_world_m);
+    begun.push_back({static_cast<std::uint32_t>(place - places.begin()), taken.direction, 0});
+  }
+  return begun;
+}
 
 /// Aims at one place, with the contrast that each makes at some samples.
 std::vector<TriedAim> tried_aims(const PlaceOfAims& place, std::uint32_t index, const HeadSight& sight,
@@ -87,17 +105,23 @@ std::vector<TriedAim> tried_aims(const PlaceOfAims& place, std::uint32_t index, 
   return tried;
 }
 
-/// The best, but of each direction and place only some.
-std::vector<TriedAim> kept_aims(std::vector<TriedAim> tried, const std::vector<PlaceOfAims>& places,
-                                const Vec3& middle_world_m, const JudgedLightOptions& options) {
+/// Those begun with, then the best, but of each direction and place only some.
+std::vector<TriedAim> kept_aims(std::vector<TriedAim> begun, std::vector<TriedAim> tried,
+                                const std::vector<PlaceOfAims>& places, const Vec3& middle_world_m,
+                                const JudgedLightOptions& options) {
   std::stable_sort(tried.begin(), tried.end(),
                    [](const TriedAim& a, const TriedAim& b) { return a.contrast_lx > b.contrast_lx; });
   const double cosine = std::cos(options.least_angle_rad / 2);
   std::vector<std::size_t> of_place(places.size(), 0);
+  const auto is_begun = [&](const TriedAim& aim) {
+    return std::ranges::any_of(
+        begun, [&](const TriedAim& one) { return one.place == aim.place && one.direction == aim.direction; });
+  };
   std::vector<TriedAim> kept;
   std::vector<Vec3> from;
   for (const TriedAim& aim : tried) {
     if (kept.size() == options.most_candidates) break;
+    if (is_begun(aim)) continue;
     if (of_place[aim.place] == kMostFromPlace) continue;
     const Vec3 mine = (places[aim.place].position_world_m - middle_world_m).normalized();
     const auto near = std::ranges::count_if(from, [&](const Vec3& other) { return other.dot(mine) > cosine; });
@@ -106,7 +130,8 @@ std::vector<TriedAim> kept_aims(std::vector<TriedAim> tried, const std::vector<P
     kept.push_back(aim);
     from.push_back(mine);
   }
-  return kept;
+  begun.insert(begun.end(), kept.begin(), kept.end());
+  return begun;
 }
 
 tl::unexpected<Fault> judged_search_stopped() {
@@ -136,6 +161,7 @@ struct JudgedLights::State {
   std::vector<Vec3> places_world_m;  // of the candidates
   PlaceSights sights;
   std::vector<JudgedLight> candidates;
+  std::uint32_t begun = 0;  // the first of them: what votes would take
   std::uint64_t rays = 0;
 
   [[nodiscard]] JudgedLight light(std::uint32_t place, const Vec3& direction, const HeadSight& sight) const {
@@ -160,7 +186,7 @@ std::uint64_t JudgedLights::rays() const { return state_->rays; }
 
 Result<JudgedLights> JudgedLights::make(const TargetSurface& surface, const TargetRays& target,
                                         std::span<const std::uint32_t> interest, const FeatureClusters& features,
-                                        std::span<const Vec3> places_world_m, std::span<const PotentialLight> voted,
+                                        std::span<const Vec3> places_world_m, const PotentialLights& voted,
                                         Intensity intensity, const JudgedLightOptions& options) {
   if (interest.empty()) return refusal("no interest points: there is no relief that a light could bring out");
   if (features.cluster_of_point.size() != interest.size())
@@ -204,12 +230,15 @@ Result<JudgedLights> JudgedLights::make(const TargetSurface& surface, const Targ
   if (options.watch.stop.stop_requested()) return judged_search_stopped();
   std::vector<TriedAim> all;
   for (const auto& of_place : tried) all.insert(all.end(), of_place.begin(), of_place.end());
-  const std::vector<TriedAim> kept = kept_aims(std::move(all), places, state->middle_world_m, options);
-  if (kept.empty())
+  if (all.empty())
     return refusal(
         fmt::format("light from none of {} places makes any contrast at the interest points: something stands between "
                     "them, or they turn away from all places",
                     places.size()));
+  std::vector<TriedAim> begun = begun_aims(voted, places);
+  state->begun = static_cast<std::uint32_t>(begun.size());
+  const std::vector<TriedAim> kept =
+      kept_aims(std::move(begun), std::move(all), places, state->middle_world_m, options);
 
   std::vector<std::uint32_t> place_of(kept.size());
   std::vector<std::uint32_t> new_index(places.size(), TargetSurface::kNone);
@@ -267,28 +296,44 @@ void JudgedLights::refine_aims(JudgedSelection& selection) const {
   }
 }
 
+bool JudgedLights::complete(JudgedSelection& selection, int lights) const {
+  while (selection.taken().size() < static_cast<std::size_t>(lights) && selection.add())
+    if (state_->options.watch.stop.stop_requested()) return false;
+  selection.settle();
+  refine_aims(selection);
+  return true;
+}
+
+std::optional<JudgedSelection> JudgedLights::begun_by_votes(int lights) const {
+  if (lights < 2) return std::nullopt;
+  JudgedSelection begun = selection();
+  for (std::uint32_t c = 0; c < state_->begun && begun.taken().size() < static_cast<std::size_t>(lights); ++c)
+    if (begun.stands_apart(c)) begun.add(c);
+  if (begun.taken().size() < 2) return std::nullopt;
+  return begun;
+}
+
 Result<JudgedLightSet> JudgedLights::lights(int lights) const {
   if (lights < 1 || lights > kMostJudgedLights)
     return refusal(fmt::format("1 to {} lights can be placed, not {}", kMostJudgedLights, lights));
-  JudgedSelection chosen = selection();
-  while (chosen.taken().size() < static_cast<std::size_t>(lights) && chosen.add()) {
-    if (state_->options.watch.stop.stop_requested()) return judged_search_stopped();
-  }
-  chosen.settle();
-  refine_aims(chosen);
-  return JudgedLightSet{{chosen.taken().begin(), chosen.taken().end()}, chosen.score()};
+  std::optional<JudgedSelection> chosen = selection(), begun = begun_by_votes(lights);
+  if (!complete(*chosen, lights) || (begun && !complete(*begun, lights))) return judged_search_stopped();
+  if (begun && begun->score().judged > chosen->score().judged) chosen.emplace(*begun);
+  return JudgedLightSet{{chosen->taken().begin(), chosen->taken().end()}, chosen->score()};
 }
 
 Result<JudgedLightCount> JudgedLights::count_lights(int most_lights) const {
   if (most_lights < 1 || most_lights > kMostJudgedLights)
     return refusal(fmt::format("1 to {} lights can be placed, not {}", kMostJudgedLights, most_lights));
   JudgedLightCount count;
-  JudgedSelection chosen = selection();
-  while (chosen.taken().size() < static_cast<std::size_t>(most_lights) && chosen.add()) {
-    if (state_->options.watch.stop.stop_requested()) return judged_search_stopped();
-    chosen.settle();
-    refine_aims(chosen);
-    count.by_number.push_back({{chosen.taken().begin(), chosen.taken().end()}, chosen.score()});
+  std::optional<JudgedSelection> chosen = selection();
+  for (int n = 1; n <= most_lights; ++n) {
+    std::optional<JudgedSelection> begun = begun_by_votes(n);
+    if (!complete(*chosen, n) || (begun && !complete(*begun, n))) return judged_search_stopped();
+    if (begun && begun->taken().size() >= chosen->taken().size() && begun->score().judged > chosen->score().judged)
+      chosen.emplace(*begun);
+    if (chosen->taken().size() < static_cast<std::size_t>(n)) break;  // no room for more
+    count.by_number.push_back({{chosen->taken().begin(), chosen->taken().end()}, chosen->score()});
     const auto& best = count.by_number[count.best];
     if (count.by_number.back().score.exposed_contrast > best.score.exposed_contrast)
       count.best = count.by_number.size() - 1;

@@ -2,6 +2,7 @@
 /// Real luminaires that bring out an object's relief, judged by the contrast that they make.
 
 #include <memory>
+#include <optional>
 
 #include "core/highlight/judged_selection.h"
 #include "core/highlight/place_sights.h"
@@ -41,13 +42,14 @@ class JudgedLights {
   /// interest    indices of points of the surface, each once
   /// features    of them
   /// places_world_m   where a luminaire may be: cell_centres() of a LightDomain
-  /// voted       potential_lights of votes, tried too; may be empty
+  /// voted       potential_lights of votes, tried too; may be empty. Those that votes would take (LightSelection) are a
+  ///             second beginning for the choice of several
   /// intensity   of all of them, at rated flux, turned as by aimed_beam
   /// Refuses: no interest points, no place, a place from which light reaches none of them, numbers that make no sense.
   [[nodiscard]] static Result<JudgedLights> make(const TargetSurface& surface, const TargetRays& target,
                                                  std::span<const std::uint32_t> interest,
                                                  const FeatureClusters& features, std::span<const Vec3> places_world_m,
-                                                 std::span<const PotentialLight> voted, Intensity intensity,
+                                                 const PotentialLights& voted, Intensity intensity,
                                                  const JudgedLightOptions& options);
   ~JudgedLights();
   JudgedLights(JudgedLights&&) noexcept;
@@ -58,9 +60,10 @@ class JudgedLights {
   /// Aims of the lights taken, refined between the candidates, each in turn, down to a sixty-fourth of the beam.
   void refine_aims(JudgedSelection& selection) const;
 
-  /// Greedy, then settled, then refined. Refuses a number outside 1…64.
+  /// Begun one by one by contrast, and once more with those that votes would take; settled and refined, the better of
+  /// both. Refuses a number outside 1…64.
   [[nodiscard]] Result<JudgedLightSet> lights(int lights) const;
-  /// From one to most_lights, each from the one before.
+  /// From one to most_lights, each from the one before, or from those that votes would take.
   [[nodiscard]] Result<JudgedLightCount> count_lights(int most_lights) const;
 
   [[nodiscard]] std::span<const JudgedLight> candidates() const;
@@ -69,6 +72,10 @@ class JudgedLights {
 
  private:
   struct State;
+  /// `lights` of them, the taken ones first, as far as there are enough; settled and refined. False when stopped.
+  bool complete(JudgedSelection& selection, int lights) const;
+  /// None when votes take too few, or one light is wanted, which is judged by trying all.
+  [[nodiscard]] std::optional<JudgedSelection> begun_by_votes(int lights) const;
   explicit JudgedLights(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;
 };

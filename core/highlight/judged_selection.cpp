@@ -87,11 +87,8 @@ std::optional<JudgedSelection::Choice> JudgedSelection::best_beside(const Others
     std::uint32_t candidate;
   };
   std::vector<Bound> bounds;
-  const double most_cosine = std::cos(wishes_.least_angle_rad);
   for (std::uint32_t c = 0; c < candidates_.size(); ++c) {
-    if (!(alone_lx_[c] > 0)) continue;
-    const Vec3 mine = from(candidates_[c]);
-    if (std::ranges::any_of(others.from, [&](const Vec3& theirs) { return mine.dot(theirs) > most_cosine; })) continue;
+    if (!(alone_lx_[c] > 0) || !stands_apart(candidates_[c], others.from)) continue;
     bounds.push_back({judged(others.contrast_lx + alone_lx_[c], others.shown, shown_[c]), c});
   }
   std::stable_sort(bounds.begin(), bounds.end(), [](const Bound& a, const Bound& b) { return a.judged > b.judged; });
@@ -116,6 +113,17 @@ void JudgedSelection::add(std::uint32_t candidate) {
   LUXRIG_CHECK(candidate < candidates_.size(), "candidate {} of {}", candidate, candidates_.size());
   taken_.push_back(candidates_[candidate]);
   taken_shown_.push_back(shown_[candidate]);
+}
+
+bool JudgedSelection::stands_apart(const JudgedLight& light, std::span<const Vec3> from_others) const {
+  const Vec3 mine = from(light);
+  const double most_cosine = std::cos(wishes_.least_angle_rad);
+  return std::ranges::none_of(from_others, [&](const Vec3& theirs) { return mine.dot(theirs) > most_cosine; });
+}
+
+bool JudgedSelection::stands_apart(std::uint32_t candidate) const {
+  LUXRIG_CHECK(candidate < candidates_.size(), "candidate {} of {}", candidate, candidates_.size());
+  return stands_apart(candidates_[candidate], others_than(taken_.size()).from);
 }
 
 void JudgedSelection::remove(std::size_t i) {

@@ -49,6 +49,8 @@ class JudgedSelection {
   /// its distance from them and lights anything. Ties: the one that has more contrast of its own.
   std::optional<std::uint32_t> add();
   void add(std::uint32_t candidate);
+  /// Whether it keeps its distance from those taken.
+  [[nodiscard]] bool stands_apart(std::uint32_t candidate) const;
   void remove(std::size_t i);  ///< the i-th taken; those after it move up
   /// Each light in turn gives way to the candidate that is best beside the others, until none does or so many rounds
   /// are over. Whether any did.
@@ -77,6 +79,7 @@ class JudgedSelection {
   };
   [[nodiscard]] Shown shown_by(const JudgedLight& light) const;
   [[nodiscard]] Vec3 from(const JudgedLight& light) const;
+  [[nodiscard]] bool stands_apart(const JudgedLight& light, std::span<const Vec3> from_others) const;
   [[nodiscard]] Others others_than(std::size_t left_out) const;
   [[nodiscard]] double judged(double contrast_lx, const Shown& a, const Shown& b) const;
   [[nodiscard]] double beside(const Others& others, const JudgedLight& light, const Shown& shown) const;

@@ -164,8 +164,8 @@ JudgedLights judged_lights_of(MountedCase& of, const PotentialLights& voted) {
   const ReliefStudy& study = of.object.study();
   JudgedLightOptions judging;
   judging.threads = of.options.threads;
-  auto judged = JudgedLights::make(study.surface, study.rays, study.interest, study.features, of.places_world_m,
-                                   voted.lights, of.intensity, judging);
+  auto judged = JudgedLights::make(study.surface, study.rays, study.interest, study.features, of.places_world_m, voted,
+                                   of.intensity, judging);
   LUXRIG_CHECK(judged, "{}", judged.error().detail);
   return std::move(*judged);
 }

@@ -54,13 +54,18 @@ std::vector<Vec3> hangable_places(const LightDomain& domain, const Mounting& mou
   return places;
 }
 
-std::vector<PotentialLight> hangable_lights(const PotentialLights& all, const Mounting& mounting) {
-  std::vector<PotentialLight> kept;
-  for (const PotentialLight& light : all.lights) {
-    const auto snapped = mounting.snapped(light.position_world_m);
+PotentialLights hangable_lights(const PotentialLights& all, const Mounting& mounting) {
+  PotentialLights kept;
+  kept.features = all.features;
+  kept.points_of_feature = all.points_of_feature;
+  for (std::size_t l = 0; l < all.lights.size(); ++l) {
+    const auto snapped = mounting.snapped(all.lights[l].position_world_m);
     if (!snapped) continue;
-    kept.push_back(light);
-    kept.back().position_world_m = snapped->place_world_m;
+    kept.lights.push_back(all.lights[l]);
+    kept.lights.back().position_world_m = snapped->place_world_m;
+    const auto votes = all.of(l);
+    kept.votes.insert(kept.votes.end(), votes.begin(), votes.end());
+    kept.begin.push_back(kept.votes.size());
   }
   return kept;
 }
