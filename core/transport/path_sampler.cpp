@@ -206,11 +206,11 @@ std::uint64_t PathSampler::add_path(const Vertex& start, const SobolSequence& sa
   PathDice dice(samples, index);
   Vertex vertex = start;
   if (tails != nullptr) tails->linked.reset();
-  double before_tail = 0;
-  bool checking = false;
+  const PathSums* into = &sums;
+  PathSums beside;  // where a path goes that is only there to check a record
   for (std::uint32_t bounce = 0; bounce < kLongestPath; ++bounce) {
     look_outside(vertex, scratch.outside);
-    if (bounce > 0) rays += join_deeper(vertex, pool, plan, cut, dice.pair(bounce, 3)[0], dice.plain(), sums);
+    if (bounce > 0) rays += join_deeper(vertex, pool, plan, cut, dice.pair(bounce, 3)[0], dice.plain(), *into);
     const auto [u, v] = dice.pair(bounce, 0);
     const double lobe = vertex.bsdf && !vertex.bsdf->matt() ? dice.pair(bounce, 4)[0] : 0;
     const Bsdf::Sample next = next_direction(vertex, u, v, lobe);
@@ -229,9 +229,9 @@ std::uint64_t PathSampler::add_path(const Vertex& start, const SobolSequence& sa
     const auto [s, t] = lamps_.have_size() ? dice.pair(bounce, 2) : std::array<double, 2>{};
     // In a corner, where the distance rounds to nothing, the path is the sharper way.
     rays += ask_lamps(reached, std::min(density_per_m2, 1e200), bounce == 0 ? plan.at_start : plan.deeper, cut, select,
-                      s, t, chance, scratch, sums);
+                      s, t, chance, scratch, *into);
     if (bounce == 0) scratch.first_leg_m = std::sqrt(distance2_m2);
-    if (tails != nullptr && tails->records != nullptr && !checking && bsdf.matt()) {
+    if (tails != nullptr && tails->records != nullptr && into == &sums && bsdf.matt()) {
       if (const auto record = record_for(reached, *tails->records, rays)) {
         const Vec3 per_lux_rgb = reached.through_rgb.cwiseProduct(bsdf.body_rgb()) / kPi;
         if (tails->link) {
@@ -240,13 +240,13 @@ std::uint64_t PathSampler::add_path(const Vertex& start, const SobolSequence& sa
           break;
         }
         const auto values = tails->records->values(tails->replicate, *record);
-        if (!tails->check) {
-          tails->taken_lx += add_record(per_lux_rgb, values, sums);
-          break;
-        }
-        tails->by_record_lx += add_record(per_lux_rgb, values, PathSums{{}, 3});
-        before_tail = worth_of(sums);
-        checking = true;
+        const double taken_lx = add_record(per_lux_rgb, values, sums);
+        tails->taken_lx += taken_lx;
+        if (!tails->check) break;
+        tails->by_record_lx += taken_lx;
+        scratch.beside.assign(sums.values.size(), 0.0);
+        beside = {scratch.beside, sums.channels};
+        into = &beside;
       }
     }
     const double throughput = reached.through_rgb.cwiseProduct(bsdf.body_rgb()).maxCoeff() / kPi +
@@ -258,7 +258,7 @@ std::uint64_t PathSampler::add_path(const Vertex& start, const SobolSequence& sa
     }
     vertex = reached;
   }
-  if (checking) tails->by_path_lx += worth_of(sums) - before_tail;
+  if (into == &beside) tails->by_path_lx += worth_of(beside);
   return rays;
 }
 

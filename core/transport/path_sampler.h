@@ -25,15 +25,17 @@ struct PathScratch {
   Lamps::Weights weights;
   SkyOpenings::Outside outside;
   std::vector<Lit> lit;
-  double first_leg_m = 0;  ///< of the last path; infinite when it met nothing
+  std::vector<double> beside;  ///< sums of a path that checks a record
+  double first_leg_m = 0;      ///< of the last path; infinite when it met nothing
 };
 
 /// Records that a path may end in, at its second vertex or where it next finds one.
 struct TailShare {
   const TailRecords* records = nullptr;  ///< of three channels; null: paths end by themselves
   std::size_t replicate = 0;
-  bool link = false;   ///< do not add what the record says, only tell which it is
-  bool check = false;  ///< go on all the same, and tell both
+  bool link = false;  ///< do not add what the record says, only tell which it is
+  /// Go on all the same, to tell how far the record is off; what is added is the record's, which scatters less.
+  bool check = false;
   /// With link: the record that the last path ended in, and what its reflected lux counts at the path's start.
   std::optional<std::uint32_t> linked;
   Vec3 per_lux_rgb = Vec3::Zero();
