@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/photometry/light_colour.h"
 
@@ -13,6 +14,8 @@ constexpr std::array<double, 3> kLuminance = {0.2126, 0.7152, 0.0722};
 /// Sets of four Sobol dimensions per bounce; far bounces matter little and take plain random numbers.
 constexpr std::uint32_t kSetsPerBounce = 3;
 constexpr std::uint32_t kSobolBounces = 4;
+/// Shadow rays of a start that are cast together.
+constexpr std::size_t kJoinsAtOnce = 64;
 
 /// Random numbers without strata.
 class Dice {
@@ -54,8 +57,8 @@ double kept(double value, double cut, double chance) {
 
 }  // namespace
 
-PathSampler::Joined PathSampler::join(const Vertex& vertex, const LightHit& hit, double hits, double cut, double chance,
-                                      const PathSums& sums) const {
+PathSampler::Join PathSampler::join(const Vertex& vertex, const LightHit& hit, double hits, double cut,
+                                    double chance) const {
   const Vec3 towards_m = hit.position_world_m - vertex.position_world_m;
   const double height_m = vertex.normal_world.dot(towards_m);
   const double hit_height_m = -hit.normal_world.dot(towards_m);
@@ -86,10 +89,7 @@ PathSampler::Joined PathSampler::join(const Vertex& vertex, const LightHit& hit,
   const double worth = luminance_of_rgb(rgb) * level(hit.emitter);
   if (!(worth > 0)) return {};
   const double counts = kept(worth, cut, chance);
-  if (counts == 0) return {};
-  if (scene_.occluded(vertex.position_world_m, vertex.normal_world, hit.position_world_m)) return {1, 0};
-  sums.add(hit.emitter, counts * rgb);
-  return {1, counts * worth};
+  return {hit.emitter, counts * rgb, counts * worth};
 }
 
 void PathSampler::look_outside(Vertex& vertex, SkyOpenings::Outside& outside) const {
@@ -144,16 +144,33 @@ std::uint64_t PathSampler::join_start(const Vertex& start, const HitPool& pool, 
   Vertex vertex = start;
   SkyOpenings::Outside outside;
   look_outside(vertex, outside);
+  std::array<Join, kJoinsAtOnce> joins;
+  std::array<Vec3, kJoinsAtOnce> hits_world_m;
+  std::array<std::size_t, kJoinsAtOnce> group_of{};
+  std::array<std::uint8_t, kJoinsAtOnce> occluded{};
+  std::size_t count = 0;
+  const auto shine = [&] {
+    scene_.occluded_many(vertex.position_world_m, vertex.normal_world, std::span(hits_world_m).first(count),
+                         std::span(occluded).first(count));
+    for (std::size_t i = 0; i < count; ++i) {
+      if (occluded[i] != 0) continue;
+      sums.add(joins[i].emitter, joins[i].rgb);
+      const double of_one_hit = joins[i].worth * plan.at_start[group_of[i]];
+      if (!squares.empty()) squares[group_of[i]] += of_one_hit * of_one_hit;
+    }
+    rays += std::exchange(count, 0);
+  };
   for (std::size_t g = 0; g < stretches.size(); ++g) {
-    double group_squares = 0;
     for (const LightHit& hit : pool.hits(g).subspan(stretches[g].begin, stretches[g].count)) {
       if (!hit.shines()) continue;
-      const Joined joined = join(vertex, hit, plan.at_start[g], cut, dice.plain(), sums);
-      rays += joined.rays;
-      group_squares += joined.worth * joined.worth;
+      joins[count] = join(vertex, hit, plan.at_start[g], cut, dice.plain());
+      if (!(joins[count].worth > 0)) continue;
+      group_of[count] = g;
+      hits_world_m[count++] = hit.position_world_m;
+      if (count == kJoinsAtOnce) shine();
     }
-    if (!squares.empty()) squares[g] += group_squares * plan.at_start[g] * plan.at_start[g];
   }
+  if (count > 0) shine();
   return rays;
 }
 
@@ -169,7 +186,12 @@ std::uint64_t PathSampler::join_deeper(const Vertex& vertex, const HitPool& pool
   // Hits without flux count as drawn: of all samples, so many shine.
   Vertex weighed = vertex;
   weighed.through_rgb *= static_cast<double>(shining.size()) / pool.count(g);
-  return join(weighed, pool.hits(g)[shining[pick]], plan.deeper[g], cut, chance, sums).rays;
+  const LightHit& hit = pool.hits(g)[shining[pick]];
+  const Join joined = join(weighed, hit, plan.deeper[g], cut, chance);
+  if (!(joined.worth > 0)) return 0;
+  if (!scene_.occluded(vertex.position_world_m, vertex.normal_world, hit.position_world_m))
+    sums.add(joined.emitter, joined.rgb);
+  return 1;
 }
 
 std::uint64_t PathSampler::ask_lamps(const Vertex& vertex, double density_per_m2, std::span<const double> hits,

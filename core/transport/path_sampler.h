@@ -110,13 +110,14 @@ class PathSampler {
                          TailShare* tails = nullptr) const;
 
  private:
-  /// hits      expected number of hits of the group, for each path
-  struct Joined {
-    std::uint64_t rays = 0;
-    double worth = 0;  ///< luminance at the levels
+  /// Light of a hit by way of a vertex, if nothing stands in between.
+  struct Join {
+    std::size_t emitter = 0;
+    Vec3 rgb = Vec3::Zero();
+    double worth = 0;  ///< luminance at the levels; 0: none, or left out this time
   };
-  Joined join(const Vertex& vertex, const LightHit& hit, double hits, double cut, double chance,
-              const PathSums& sums) const;
+  /// hits      expected number of hits of the group, for each path
+  [[nodiscard]] Join join(const Vertex& vertex, const LightHit& hit, double hits, double cut, double chance) const;
   std::uint64_t join_deeper(const Vertex& vertex, const HitPool& pool, const HitPlan& plan, double cut, double select,
                             double chance, const PathSums& sums) const;
   std::uint64_t ask_lamps(const Vertex& vertex, double density_per_m2, std::span<const double> hits, double cut,
