@@ -24,7 +24,7 @@ bool is_open_place(const ChannelFunction& function, std::uint32_t value) {
 }
 
 /// The parts of a function that differ: its sets, or all of it.
-std::vector<DmxInterval> parts_of(const ChannelFunction& function) {
+std::vector<DmxInterval> distinct_parts_of(const ChannelFunction& function) {
   std::vector<DmxInterval> parts;
   for (const ChannelSet& set : function.sets) parts.push_back(set.dmx);
   if (parts.empty()) parts.push_back(function.dmx);
@@ -66,7 +66,7 @@ class OpenHolder {
     if (now != nullptr && good(*now, held_.dmx[c])) return true;
     for (const ChannelFunction& function : channel.functions) {
       if (!of(function) || !is_active(function, held_.dmx)) continue;
-      for (const DmxInterval& part : parts_of(function)) {
+      for (const DmxInterval& part : distinct_parts_of(function)) {
         // The end of a shutter that opens bit by bit is open, too.
         for (const std::uint32_t value : {middle ? part.middle() : part.from, part.to}) {
           if (!good(function, value)) continue;
@@ -96,7 +96,7 @@ class OpenHolder {
     const PersonalityChannel& channel = mode_.channels[c];
     for (const ChannelFunction& function : channel.functions) {
       if (function.attribute != "LampControl") continue;
-      for (const DmxInterval& part : parts_of(function)) {
+      for (const DmxInterval& part : distinct_parts_of(function)) {
         const bool known = part.contains(function.default_dmx) && strikes_lamp(function, function.default_dmx);
         const std::uint32_t value = known && function.default_dmx != part.from ? function.default_dmx : part.middle();
         if (!strikes_lamp(function, value)) continue;

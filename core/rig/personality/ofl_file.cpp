@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 #include <unordered_map>
+#include <utility>
 
 #include "core/rig/personality/ofl_capabilities.h"
 #include "core/rig/personality/ofl_pixels.h"

@@ -8,15 +8,15 @@
 namespace luxrig {
 namespace {
 
-const OflJson kAbsent;
+const OflJson kNoJson;
 constexpr std::string_view kPixelKey = "$pixelKey";
 
 }  // namespace
 
 const OflJson& ofl_member(const OflJson& object, const char* key) {
-  if (!object.is_object()) return kAbsent;
+  if (!object.is_object()) return kNoJson;
   const auto at = object.find(key);
-  return at == object.end() ? kAbsent : *at;
+  return at == object.end() ? kNoJson : *at;
 }
 
 std::string ofl_text(const OflJson& value) {
