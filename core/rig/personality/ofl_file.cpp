@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kMostOflBytes = std::size_t{4} << 20;
 constexpr int kMostOflDepth = 40;
-constexpr std::size_t kMostOflModes = 256, kMostOflSlots = 512;
+constexpr std::size_t kMostOflModes = 256, kMostOflSlots = 512, kMostOflTemplates = 500;
 
 int depth_of_brackets(std::string_view text) {
   int depth = 0, deepest = 0;
@@ -65,6 +65,10 @@ class OflReader {
     if (matrix_.too_large) {
       problem(fmt::format("a matrix of more than {} pixels", kMostPixels),
               "no such fixture is known; do not trust the file");
+      return out;
+    }
+    if (ofl_member(json_, "templateChannels").size() > kMostOflTemplates) {
+      problem(fmt::format("more than {} template channels", kMostOflTemplates), "do not trust the file");
       return out;
     }
     const OflJson& modes = ofl_member(json_, "modes");
