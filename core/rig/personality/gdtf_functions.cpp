@@ -90,14 +90,17 @@ class FunctionReader {
       if (set_nodes.size() == kMostSets) return;
       ChannelSet set;
       set.name = plain_attribute(set_node, "Name");
-      set.dmx.from = value(set_node, "DMXFrom", function.dmx.from);
-      if (!function.dmx.contains(set.dmx.from)) {
+      const std::string from = plain_attribute(set_node, "DMXFrom");
+      const auto dmx = from.empty() ? std::optional(function.dmx.from) : dmx_value(from, bytes_);
+      // A set only names a part of its function: without one that is wrong the fixture works all the same.
+      if (!dmx || !function.dmx.contains(*dmx)) {
         if (personality_.notes.size() < 50) {
-          personality_.notes.push_back(fmt::format("line {}: set {} lies outside of its function and is left out",
-                                                   xml_.place_of(set_node).line, in_quotes(set.name)));
+          personality_.notes.push_back(fmt::format("line {}: set {} at {} does not lie within its function; left out",
+                                                   xml_.place_of(set_node).line, in_quotes(set.name), in_quotes(from)));
         }
         continue;
       }
+      set.dmx.from = *dmx;
       function.sets.push_back(std::move(set));
       set_nodes.push_back(set_node);
     }

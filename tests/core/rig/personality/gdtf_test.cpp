@@ -143,6 +143,30 @@ TEST(Gdtf, VirtualDimmersAndTheirRelationsAreRead) {
   EXPECT_EQ(relation.kind, RelationKind::multiply);
 }
 
+std::string description(const std::string& channels, const std::string& geometries = R"(<Geometry Name="Base"/>)") {
+  return R"(<?xml version="1.0"?><GDTF DataVersion="1.2"><FixtureType Name="x" Manufacturer="y"><Geometries>)" +
+         geometries + R"(</Geometries><DMXModes><DMXMode Name="m" Geometry="Base"><DMXChannels>)" + channels +
+         "</DMXChannels></DMXMode></DMXModes></FixtureType></GDTF>";
+}
+
+TEST(Gdtf, ASetWithoutAValueIsLeftOutAndToldOf) {
+  // Line 186 of the LEDBeam: DMXFrom="asdasd0asd/2asdasdasd".
+  const Checked<Personality> personality = load_personality(kFiles / "Robe@Robin 100 LEDBeam.gdtf");
+  ASSERT_TRUE(personality) << personality.error().front().text();
+  EXPECT_TRUE(std::any_of(personality->notes.begin(), personality->notes.end(), [](const std::string& note) {
+    return note.find("line 186: set \"min Red\"") != std::string::npos;
+  }));
+  const PersonalityChannel& red = channel_named(personality->modes[0], "Beam_ColorAdd_R");
+  EXPECT_EQ(red.functions[0].sets.size(), 2u);
+  // A function without a value is another matter.
+  const auto wrong = parse_gdtf_description(
+      description("<DMXChannel Offset=\"1\" Geometry=\"Base\"><LogicalChannel Attribute=\"Dimmer\"><ChannelFunction "
+                  "DMXFrom=\"x/1\"/></LogicalChannel></DMXChannel>"),
+      "x");
+  ASSERT_FALSE(wrong);
+  EXPECT_NE(wrong.error()[0].what.find("is no DMX value"), std::string::npos);
+}
+
 TEST(Gdtf, BrokenXmlIsRefusedWithItsPlace) {
   const Checked<Personality> personality = load_personality(kFiles / "XMLBroken.gdtf");
   ASSERT_FALSE(personality);
@@ -150,11 +174,6 @@ TEST(Gdtf, BrokenXmlIsRefusedWithItsPlace) {
   EXPECT_GT(personality.error()[0].line, 1);
 }
 
-std::string description(const std::string& channels, const std::string& geometries = R"(<Geometry Name="Base"/>)") {
-  return R"(<?xml version="1.0"?><GDTF DataVersion="1.2"><FixtureType Name="x" Manufacturer="y"><Geometries>)" +
-         geometries + R"(</Geometries><DMXModes><DMXMode Name="m" Geometry="Base"><DMXChannels>)" + channels +
-         "</DMXChannels></DMXMode></DMXModes></FixtureType></GDTF>";
-}
 std::string dimmer_at(const std::string& offset, const std::string& geometry = "Base",
                       const std::string& dmx_break = "1") {
   return "<DMXChannel DMXBreak=\"" + dmx_break + "\" Offset=\"" + offset + "\" Geometry=\"" + geometry +
