@@ -31,7 +31,8 @@ inline void check_mode(const Personality& personality, const PersonalityMode& mo
       LUXRIG_CHECK(!function.when || function.when->channel < mode.channels.size(), "{}", function.name);
     }
   }
-  for (const std::vector<std::string>& emitters : {std::vector<std::string>{}, {"red", "white"}}) {
+  for (const std::vector<std::string>& emitters :
+       {std::vector<std::string>{}, std::vector<std::string>{"red", "white"}}) {
     ProblemList problems("fuzz");
     ModeWanted wanted;
     wanted.owner = SlotOwner{"lamp", emitters};
