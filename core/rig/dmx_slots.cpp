@@ -12,14 +12,18 @@ namespace luxrig {
 namespace {
 
 // In the order of SlotUse; a constant carries its number.
-constexpr std::string_view kSlotNames[] = {"dimmer", "dimmer-fine", "pan",       "pan-fine",
-                                           "tilt",   "tilt-fine",   "constant:", "unused"};
-constexpr std::string_view kEmitter = "emitter:", kFine = "-fine";
+constexpr std::string_view kSlotNames[] = {"dimmer",     "dimmer-fine", "dimmer-ultra", "pan",
+                                           "pan-fine",   "pan-ultra",   "tilt",         "tilt-fine",
+                                           "tilt-ultra", "constant:",   "unused"};
+constexpr std::string_view kEmitter = "emitter:", kFine = "-fine", kUltra = "-ultra";
 
 std::string_view slot_name(SlotUse use) { return kSlotNames[static_cast<std::size_t>(use)]; }
 
 std::string emitter_slot(const std::string& emitter, SlotUse use = SlotUse::dimmer) {
-  return fmt::format("{}{}{}", kEmitter, emitter, use == SlotUse::dimmer_fine ? kFine : "");
+  return fmt::format("{}{}{}", kEmitter, emitter,
+                     use == SlotUse::dimmer_fine    ? kFine
+                     : use == SlotUse::dimmer_ultra ? kUltra
+                                                    : "");
 }
 
 /// ["emitter:red", "emitter:green"], to be copied.
@@ -30,7 +34,7 @@ std::string slots_for(const SlotOwner& owner) {
   return text;
 }
 
-bool dims(SlotUse use) { return use == SlotUse::dimmer || use == SlotUse::dimmer_fine; }
+bool dims(SlotUse use) { return use == SlotUse::dimmer || use == SlotUse::dimmer_fine || use == SlotUse::dimmer_ultra; }
 
 class SlotReader {
  public:
@@ -74,15 +78,18 @@ class SlotReader {
       if (!has(fine, emitter.value_or(0)) || has(coarse, emitter.value_or(0))) return;
       problems_.add(
           list, fmt::format("a {} slot without a {} slot", title(fine, emitter), title(coarse, emitter)),
-          fmt::format("add \"{}\" where the coarse byte is, or make the fine one \"unused\"", title(coarse, emitter)));
+          fmt::format("add \"{}\" where that byte is, or make the fine one \"unused\"", title(coarse, emitter)));
       good = false;
     };
     fine_has_coarse(SlotUse::pan_fine, SlotUse::pan, std::nullopt);
+    fine_has_coarse(SlotUse::pan_ultra, SlotUse::pan_fine, std::nullopt);
     fine_has_coarse(SlotUse::tilt_fine, SlotUse::tilt, std::nullopt);
+    fine_has_coarse(SlotUse::tilt_ultra, SlotUse::tilt_fine, std::nullopt);
     const std::size_t levels = has_emitters() ? owner_->emitters.size() : 1;
     for (std::size_t e = 0; e < levels; ++e) {
       const auto emitter = has_emitters() ? std::optional(e) : std::nullopt;
       fine_has_coarse(SlotUse::dimmer_fine, SlotUse::dimmer, emitter);
+      fine_has_coarse(SlotUse::dimmer_ultra, SlotUse::dimmer_fine, emitter);
       if (!owner_ || has(SlotUse::dimmer, e) || has(SlotUse::dimmer_fine, e)) continue;
       if (emitter) {
         problems_.add(list, fmt::format("no slot for emitter {}", in_quotes(owner_->emitters[e])),
@@ -127,8 +134,9 @@ class SlotReader {
           "write \"dimmer\", or give the luminaire its emitters");
       return std::nullopt;
     }
-    const bool fine = text.ends_with(kFine);
-    const std::string name = text.substr(kEmitter.size(), text.size() - kEmitter.size() - (fine ? kFine.size() : 0));
+    const bool fine = text.ends_with(kFine), ultra = text.ends_with(kUltra);
+    const std::size_t ending = fine ? kFine.size() : ultra ? kUltra.size() : 0;
+    const std::string name = text.substr(kEmitter.size(), text.size() - kEmitter.size() - ending);
     const auto at = std::find(owner_->emitters.begin(), owner_->emitters.end(), name);
     if (at == owner_->emitters.end()) {
       const std::vector<std::string_view> known(owner_->emitters.begin(), owner_->emitters.end());
@@ -136,9 +144,8 @@ class SlotReader {
                     mend_for_unknown(name, known, "add it to the luminaire's emitters"));
       return std::nullopt;
     }
-    return NamedSlot{{fine ? SlotUse::dimmer_fine : SlotUse::dimmer, 0},
-                     static_cast<std::size_t>(at - owner_->emitters.begin()),
-                     place};
+    const SlotUse use = fine ? SlotUse::dimmer_fine : ultra ? SlotUse::dimmer_ultra : SlotUse::dimmer;
+    return NamedSlot{{use, 0}, static_cast<std::size_t>(at - owner_->emitters.begin()), place};
   }
 
   const std::optional<SlotOwner>& owner_;

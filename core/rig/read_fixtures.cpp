@@ -1,36 +1,16 @@
 #include <fmt/format.h>
 
 #include "core/rig/dmx_slots.h"
+#include "core/rig/mode_slots.h"
 #include "core/rig/rig_reader.h"
 
 namespace luxrig {
 namespace {
 
-constexpr std::string_view kDmxKeys[] = {"universe", "address", "slots"};
+constexpr std::string_view kDmxKeys[] = {"universe", "address", "slots", "personality", "mode"};
 constexpr std::string_view kModbusKeys[] = {"unit", "register", "full_scale"};
 constexpr std::string_view kTravelKeys[] = {"pan_range_deg", "tilt_range_deg", "pan_speed_deg_s", "tilt_speed_deg_s"};
 constexpr double kNearest_m = 0.001;  // an aim nearer than this has no direction worth the name
-
-/// Reads the DMX patch, and its slots as they are named; true when they can be claimed.
-bool read_dmx(Section& s, const std::optional<SlotOwner>& owner, Fixture& fixture, std::vector<NamedSlot>& named) {
-  DmxPatch patch;
-  s.read("universe", patch.universe);
-  if (!s.has("address")) s.require("address", "which DMX needs");
-  bool good = s.read("address", patch.address);
-  good &= read_slots(s, owner, named);
-  patch.slots = slots_of(named, named.empty() || !owner || owner->emitters.empty() ? std::nullopt : std::optional(0ul));
-  const auto count = static_cast<int>(std::min<std::size_t>(patch.slots.size(), 10000));
-  if (good && patch.address + count - 1 > 512) {
-    s.problems().add(s.place_of("address"),
-                     fmt::format("{} slots from address {} end at {}, past slot 512", count, patch.address,
-                                 patch.address + count - 1),
-                     count <= 512 ? fmt::format("use address {} or lower", 513 - count) : "a universe has 512 slots");
-    good = false;
-  }
-  for (const DmxSlot& slot : patch.slots) fixture.moves |= slot.use == SlotUse::pan || slot.use == SlotUse::tilt;
-  fixture.patch = std::move(patch);
-  return good;
-}
 
 bool read_modbus(Section& s, const std::optional<SlotOwner>& owner, Fixture& fixture) {
   ModbusPatch patch;
@@ -66,25 +46,29 @@ PatchKind patch_kind(Section& s, ProblemList& problems) {
   return PatchKind::none;
 }
 
-void read_travel(Section& s, Fixture& fixture) {
+/// `stated`: what its maker's file says of it; else it has none.
+void read_travel(Section& s, const ModeSlots* stated, Fixture& fixture) {
   if (!fixture.moves) {
     for (const std::string_view key : kTravelKeys) {
       s.refuse(key, fmt::format("{} has no effect: the fixture does not move", key),
-               "add \"pan\" and \"tilt\" to its slots, or remove this key");
+               stated ? "remove it: this mode of its personality has no pan and tilt"
+                      : "add \"pan\" and \"tilt\" to its slots, or remove this key");
     }
     return;
   }
   std::pair<double, double> range_deg;
-  if (s.read("pan_range_deg", range_deg)) {
+  if (stated) {
+    fixture.range = stated->range;  // which the two keys have narrowed already
+  } else if (s.read("pan_range_deg", range_deg)) {
     fixture.range.pan_min_rad = rad_from_deg(range_deg.first);
     fixture.range.pan_max_rad = rad_from_deg(range_deg.second);
   }
-  if (s.read("tilt_range_deg", range_deg)) {
+  if (!stated && s.read("tilt_range_deg", range_deg)) {
     fixture.range.tilt_min_rad = rad_from_deg(range_deg.first);
     fixture.range.tilt_max_rad = rad_from_deg(range_deg.second);
   }
-  fixture.pan_speed_rad_s = rad_from_deg(180);
-  fixture.tilt_speed_rad_s = rad_from_deg(120);
+  fixture.pan_speed_rad_s = stated && stated->pan_speed_rad_s > 0 ? stated->pan_speed_rad_s : rad_from_deg(180);
+  fixture.tilt_speed_rad_s = stated && stated->tilt_speed_rad_s > 0 ? stated->tilt_speed_rad_s : rad_from_deg(120);
   s.read_deg("pan_speed_deg_s", fixture.pan_speed_rad_s);
   s.read_deg("tilt_speed_deg_s", fixture.tilt_speed_rad_s);
 }
@@ -181,15 +165,20 @@ void RigReader::read_fixtures() {
                                 s.place_of(s.has("address") ? "address" : "register")};
     const PatchKind kind = patch_kind(s, problems);
     std::vector<NamedSlot> slots;
-    if (kind == PatchKind::dmx && read_dmx(s, slot_owner, fixture, slots) && bus) {
+    std::optional<ModeSlots> of_mode;
+    if (kind == PatchKind::dmx && read_dmx(s, slot_owner, fixture, slots, of_mode) && bus) {
       const auto& dmx = std::get<DmxPatch>(fixture.patch);
       patches.claim_slots(*bus, dmx.universe, dmx.address, static_cast<int>(dmx.slots.size()), owner);
     } else if (kind == PatchKind::modbus && read_modbus(s, slot_owner, fixture) && bus) {
       const auto& modbus = std::get<ModbusPatch>(fixture.patch);
       patches.claim_registers(*bus, modbus.unit, false, modbus.holding_register, 1, owner);
     }
-    read_travel(s, fixture);
-    read_aim(s, fixture);
+    // A personality that cannot be used leaves open whether the fixture moves, so nothing is said of that.
+    if (of_mode || !s.has("personality")) {
+      read_travel(s, of_mode ? &*of_mode : nullptr, fixture);
+      read_aim(s, fixture);
+    }
+    if (of_mode && of_mode->dimmer_curve) fixture.dimmer_curve = *of_mode->dimmer_curve;
 
     s.read_choice("dimmer_curve", fixture.dimmer_curve);
     s.read("max_level", fixture.max_level);
@@ -209,6 +198,7 @@ void RigReader::read_fixtures() {
       part.luminaire = rig.luminaires[fixture.luminaire].emitters[e];
       part.housing = housing;
       if (auto* dmx = std::get_if<DmxPatch>(&part.patch)) dmx->slots = slots_of(slots, e);
+      if (part.mode) part.mode->emitter = slot_owner->emitters[e];
       fixtures.add(part.name, rig.fixtures.size(), s.place_of("name"), problems);
       rig.fixtures.push_back(std::move(part));
     }

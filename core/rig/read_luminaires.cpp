@@ -203,9 +203,11 @@ std::vector<Luminaire> RigReader::read_emitters(Section& s, const std::string& l
     std::string name;
     if (e.read("name", name)) {
       names.add(name, emitters.size(), e.place_of("name"), problems);
-      if (name.ends_with("-fine"))
-        problems.add(e.place_of("name"), fmt::format("emitter {} ends in -fine", in_quotes(name)),
-                     "name it otherwise: slots call the low byte of an emitter \"emitter:NAME-fine\"");
+      for (const std::string_view ending : {"-fine", "-ultra"}) {
+        if (!name.ends_with(ending)) continue;
+        problems.add(e.place_of("name"), fmt::format("emitter {} ends in {}", in_quotes(name), ending),
+                     fmt::format("name it otherwise: slots call a low byte of an emitter \"emitter:NAME{}\"", ending));
+      }
     }
     emitter.name = luminaire_name + "/" + name;
     e.read("lumens", emitter.lumens);

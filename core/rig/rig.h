@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -77,11 +78,32 @@ struct Luminaire {
 };
 
 /// What one DMX slot of a fixture carries.
-enum class SlotUse { dimmer, dimmer_fine, pan, pan_fine, tilt, tilt_fine, constant, unused };
+enum class SlotUse {
+  dimmer,
+  dimmer_fine,
+  dimmer_ultra,
+  pan,
+  pan_fine,
+  pan_ultra,
+  tilt,
+  tilt_fine,
+  tilt_ultra,
+  constant,
+  unused
+};
+
+/// Which values a channel runs through, as shares of all it has: at level 0 or the least angle, and at the other end.
+struct DmxTravel {
+  double at_start = 0, at_end = 1;
+  [[nodiscard]] double at(double share) const { return at_start + share * (at_end - at_start); }
+};
+
 struct DmxSlot {
   SlotUse use = SlotUse::dimmer;
   int constant_dmx = 0;  ///< 0…255, for SlotUse::constant (an open shutter, say)
   bool sent = true;      ///< false: obeyed, but sent for the first fixture of the housing
+  int cell = 0;          ///< which of several channels of one use that go together; its slots make up one value
+  DmxTravel travel{};    ///< of that channel
 };
 
 struct DmxPatch {
@@ -102,6 +124,17 @@ using Patch = std::variant<DmxPatch, ModbusPatch>;
 /// drive (0…1, what is sent) -> level (0…1, share of rated flux), as the fixture's maker states it.
 enum class DimmerCurve { linear, square, s_curve };
 
+struct Personality;
+
+/// A fixture whose slots come from its maker's file.
+struct FixtureMode {
+  std::filesystem::path file;
+  std::shared_ptr<const Personality> personality;  ///< never null
+  std::size_t mode = 0;                            ///< of its modes
+  std::string emitter{};                           ///< as the rig file calls it; empty: the fixture is one light
+  std::vector<std::string> told{};                 ///< how it was understood, for a person
+};
+
 /// What hangs and is set by one level. A [[fixture]] whose luminaire has emitters becomes one Fixture for each, called
 /// "<name>/<emitter>": they stand one after the other and share place, aim and address.
 struct Fixture {
@@ -117,6 +150,7 @@ struct Fixture {
   double pan_speed_rad_s = 0, tilt_speed_rad_s = 0;  ///< only when it moves, > 0
   std::size_t bus = 0;
   Patch patch;
+  std::optional<FixtureMode> mode{};  ///< with a personality
   DimmerCurve dimmer_curve = DimmerCurve::linear;
   double max_level = 1.0;            ///< 0…1; no output ever above
   std::optional<double> safe_level;  ///< overrides [safe] level

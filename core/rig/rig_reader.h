@@ -5,6 +5,8 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -14,6 +16,7 @@
 
 #include "core/photometry/light_colour.h"
 #include "core/rig/document.h"
+#include "core/rig/mode_slots.h"
 #include "core/rig/patch_map.h"
 #include "core/rig/problem_list.h"
 #include "core/rig/rig.h"
@@ -57,7 +60,8 @@ struct RigReader {
   PatchMap patches;
   /// Where each point stands: the rig file, or the points file.
   std::vector<std::pair<std::string, Place>> point_places;
-  std::set<std::size_t> lacks_watts;  ///< luminaires that this was reported of
+  std::map<std::string, std::shared_ptr<const Personality>> personalities;  ///< by path; null: cannot be used
+  std::set<std::size_t> lacks_watts;                                        ///< luminaires that this was reported of
 
   void read_all();
 
@@ -110,6 +114,14 @@ struct RigReader {
   /// Reports a luminaire without, once.
   void need_watts_of(std::size_t luminaire, const Place& place, const std::string& what);
   void need_watts_of_fixtures(const Place& place, const std::string& what);
+  /// Reads the DMX patch, and its slots as they are named; true when they can be claimed. `of_mode`: with a personality
+  /// that can be used.
+  bool read_dmx(Section& section, const std::optional<SlotOwner>& owner, Fixture& fixture,
+                std::vector<NamedSlot>& named, std::optional<ModeSlots>& of_mode);
+  std::shared_ptr<const Personality> read_personality(Section& section);
+  std::optional<std::size_t> read_mode(Section& section, const Personality& personality);
+  std::optional<ModeSlots> read_slots_of_mode(Section& section, const std::optional<SlotOwner>& owner,
+                                              Fixture& fixture);
   void read_aim(Section& section, Fixture& fixture);
   void check_joints(Section& section, const Fixture& fixture);
 };

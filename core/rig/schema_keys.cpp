@@ -48,8 +48,8 @@ constexpr SectionSpec kSections[] = {
      "own. `emitters = [{ … }, { … }]` on one line is the same."},
     {"bus", true, 1000, true, "A way to reach devices. Every further key is the driver's own: see Bus options."},
     {"fixture", true, 10000, false,
-     "A luminaire as hung and patched: over DMX (`universe`, `address`, `slots`) or over Modbus (`unit`, `register`, "
-     "`full_scale`). Say where it looks by `aim`, by `aim_m`, or by `pan_deg` and `tilt_deg`."},
+     "A luminaire as hung and patched: over DMX (`universe`, `address`, and `slots` or `personality`) or over Modbus "
+     "(`unit`, `register`, `full_scale`). Say where it looks by `aim`, by `aim_m`, or by `pan_deg` and `tilt_deg`."},
     {"luxmeter", true, 10000, false, "A light meter on a Modbus bus. It stands at a `point`, or at `position_m`."},
     {"camera", true, 100, false,
      "Takes pictures of the rig for a person to look at. There is no driver for real ones yet: the simulated rig has "
@@ -202,11 +202,17 @@ constexpr KeySpec kRigKeys[] = {
      "",
      "DMX universe: sACN 1 to 63999, Art-Net port address 0 to 32767"},
     {"fixture", "address", whole_number, "", kNone, {1, 512}, "", "first DMX slot; required over DMX"},
+    {"fixture", "personality", file, "", kNone, kAny, "",
+     "its maker's file, GDTF (.gdtf) or Open Fixture Library (.json), which says what each DMX slot carries; instead "
+     "of `slots`"},
+    {"fixture", "mode", text, "", kNone, kAny, "",
+     "DMX mode that the fixture is set to, as its personality calls it; may be left out when there is but one"},
     {"fixture", "slots", texts, "", R"(["dimmer"])", kAny, "",
-     "what each DMX slot carries from `address` on: `dimmer`, `dimmer-fine`, `pan`, `pan-fine`, `tilt`, `tilt-fine`, "
-     "`unused`, or `constant:N` with N from 0 to 255; one dimmer is needed, pan and tilt come together, and a fine "
-     "slot needs its coarse one. With a luminaire that has emitters, instead of the dimmer: `emitter:NAME` and "
-     "`emitter:NAME-fine`, one for each; hold a master dimmer open with `constant:255`"},
+     "what each DMX slot carries from `address` on: `dimmer`, `dimmer-fine`, `dimmer-ultra`, the same with `pan` and "
+     "with `tilt`, `unused`, or `constant:N` with N from 0 to 255; one dimmer is needed, pan and tilt come together, "
+     "and a fine slot needs its coarse one, an ultra slot (24 bit) its fine one. With a luminaire that has emitters, "
+     "instead of the dimmer: `emitter:NAME`, `emitter:NAME-fine` and `emitter:NAME-ultra`, one for each; hold a master "
+     "dimmer open with `constant:255`"},
     {"fixture", "unit", whole_number, "", "1", kUnitAddress, "", "Modbus unit"},
     {"fixture", "register", whole_number, "", kNone, kRegister, "",
      "Modbus holding register of the dimmer, 0-based; required over Modbus"},
@@ -216,8 +222,10 @@ constexpr KeySpec kRigKeys[] = {
     {"fixture", "max_level", number, "", "1", kShare, "", "most of its rated flux that it may ever give"},
     {"fixture", "safe_level", number, "", kNone, kShare, "",
      "its level in the safe look, at most `max_level`; left out, `level` of `[safe]`"},
-    {"fixture", "pan_range_deg", span2, "°", "[-270, 270]", kAngle, "", "travel of the pan; only with a pan slot"},
-    {"fixture", "tilt_range_deg", span2, "°", "[-135, 135]", kAngle, "", "travel of the tilt; only with a tilt slot"},
+    {"fixture", "pan_range_deg", span2, "°", "[-270, 270]", kAngle, "",
+     "travel of the pan; only with a pan slot. With a personality it may narrow the travel stated there, which else "
+     "holds"},
+    {"fixture", "tilt_range_deg", span2, "°", "[-135, 135]", kAngle, "", "travel of the tilt; the same"},
     {"fixture", "pan_speed_deg_s", number, "°/s", "180", {0, 3600, true}, "", "only with a pan slot"},
     {"fixture", "tilt_speed_deg_s", number, "°/s", "120", {0, 3600, true}, "", "only with a tilt slot"},
 

@@ -13,18 +13,38 @@ namespace {
 
 constexpr double kAngleSlack_rad = 1e-6;
 
-bool uses(const DmxPatch& patch, SlotUse use) {
-  return std::any_of(patch.slots.begin(), patch.slots.end(), [&](const DmxSlot& slot) { return slot.use == use; });
+/// Most significant first, in the order of SlotUse.
+struct ByteOfValue {
+  SlotUse coarse;
+  int byte;  // 0…2
+};
+ByteOfValue byte_of_value(SlotUse use) {
+  const int index = static_cast<int>(use);
+  return {static_cast<SlotUse>(index - index % 3), index % 3};
 }
+static_assert(static_cast<int>(SlotUse::pan) == 3 && static_cast<int>(SlotUse::tilt) == 6 &&
+              static_cast<int>(SlotUse::constant) == 9);
 
-/// The coarse byte of a value that has a fine one is its high byte; alone it is the whole value in 8 bits.
-int coarse(double value, bool has_fine) { return has_fine ? encode_16bit(value) >> 8 : encode_8bit(value); }
-int fine(double value) { return encode_16bit(value) & 0xFF; }
+/// How many slots of the patch make up the value that a slot is a byte of.
+int bytes_of_value(const DmxPatch& patch, const DmxSlot& slot) {
+  if (slot.use >= SlotUse::constant) return 1;
+  const SlotUse coarse = byte_of_value(slot.use).coarse;
+  int bytes = 1;
+  for (const DmxSlot& other : patch.slots) {
+    if (other.use >= SlotUse::constant || other.cell != slot.cell || byte_of_value(other.use).coarse != coarse)
+      continue;
+    bytes = std::max(bytes, byte_of_value(other.use).byte + 1);
+  }
+  return bytes;
+}
 
 }  // namespace
 
 int encode_8bit(double value) { return static_cast<int>(std::lround(value * 255.0)); }
 int encode_16bit(double value) { return static_cast<int>(std::lround(value * 65535.0)); }
+std::uint32_t encode_dmx(double value, int bytes) {
+  return static_cast<std::uint32_t>(std::lround(value * ((1 << (8 * bytes)) - 1)));
+}
 
 double share_of_travel(double angle_rad, double from_rad, double to_rad) {
   if (to_rad == from_rad) return 0;
@@ -46,9 +66,7 @@ DmxPatchbay::DmxPatchbay(const Rig& rig, std::size_t bus) : bus_(rig.buses[bus].
     entry.patch = std::get<DmxPatch>(fixture.patch);
     entry.range = fixture.range;
     entry.moves = fixture.moves;
-    entry.fine_dimmer = uses(entry.patch, SlotUse::dimmer_fine);
-    entry.fine_pan = uses(entry.patch, SlotUse::pan_fine);
-    entry.fine_tilt = uses(entry.patch, SlotUse::tilt_fine);
+    for (const DmxSlot& slot : entry.patch.slots) entry.bytes.push_back(bytes_of_value(entry.patch, slot));
     entry.universe = static_cast<std::size_t>(std::distance(numbers.begin(), numbers.find(entry.patch.universe)));
     entry.joints = fixture.joints;
     has_heads_ = has_heads_ || fixture.moves;
@@ -106,32 +124,19 @@ Result<void> DmxPatchbay::set_aims(std::span<const AimCommand> commands) {
 void DmxPatchbay::encode(const Entry& entry) {
   const double pan = share_of_travel(entry.joints.pan_rad, entry.range.pan_min_rad, entry.range.pan_max_rad);
   const double tilt = share_of_travel(entry.joints.tilt_rad, entry.range.tilt_min_rad, entry.range.tilt_max_rad);
-  const auto byte_of = [&](const DmxSlot& slot) {
-    switch (slot.use) {
-      case SlotUse::dimmer:
-        return coarse(entry.drive, entry.fine_dimmer);
-      case SlotUse::dimmer_fine:
-        return fine(entry.drive);
-      case SlotUse::pan:
-        return coarse(pan, entry.fine_pan);
-      case SlotUse::pan_fine:
-        return fine(pan);
-      case SlotUse::tilt:
-        return coarse(tilt, entry.fine_tilt);
-      case SlotUse::tilt_fine:
-        return fine(tilt);
-      case SlotUse::constant:
-        return slot.constant_dmx;
-      case SlotUse::unused:
-        break;
-    }
-    return 0;
+  const auto byte_of = [&](std::size_t i) -> std::uint32_t {
+    const DmxSlot& slot = entry.patch.slots[i];
+    if (slot.use == SlotUse::constant) return static_cast<std::uint32_t>(slot.constant_dmx);
+    const auto [coarse, byte] = byte_of_value(slot.use);
+    const double share = coarse == SlotUse::pan ? pan : coarse == SlotUse::tilt ? tilt : entry.drive;
+    // The coarse byte of a value that has a fine one is its high byte; alone it is the whole value in 8 bits.
+    return encode_dmx(slot.travel.at(share), entry.bytes[i]) >> (8 * (entry.bytes[i] - 1 - byte)) & 0xFF;
   };
   DmxSlots& out = universes_[entry.universe].slots;
   for (std::size_t i = 0; i < entry.patch.slots.size(); ++i) {
     const DmxSlot& slot = entry.patch.slots[i];
     if (slot.use == SlotUse::unused || !slot.sent) continue;
-    out[static_cast<std::size_t>(entry.patch.address - 1) + i] = static_cast<std::uint8_t>(byte_of(slot));
+    out[static_cast<std::size_t>(entry.patch.address - 1) + i] = static_cast<std::uint8_t>(byte_of(i));
   }
 }
 

@@ -29,6 +29,8 @@ struct DmxUniverse {
 /// value 0…1 to the nearest of 0…255, or 0…65535.
 [[nodiscard]] int encode_8bit(double value);
 [[nodiscard]] int encode_16bit(double value);
+/// The same in 1…3 bytes; 24 bit: 0…16777215.
+[[nodiscard]] std::uint32_t encode_dmx(double value, int bytes);
 
 /// Share 0…1 of a joint's travel: the inverse of angle = from + v/65535·(to − from), clamped to the travel.
 [[nodiscard]] double share_of_travel(double angle_rad, double from_rad, double to_rad);
@@ -53,7 +55,7 @@ class DmxPatchbay {
     DmxPatch patch;
     PanTiltRange range;
     bool moves = false;
-    bool fine_dimmer = false, fine_pan = false, fine_tilt = false;
+    std::vector<int> bytes;    ///< by slot: how many make up the value that it is a byte of
     std::size_t universe = 0;  ///< index in universes_
     double drive = 0;
     PanTilt joints;

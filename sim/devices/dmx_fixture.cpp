@@ -1,12 +1,15 @@
 #include "sim/devices/dmx_fixture.h"
 
+#include "sim/devices/personality_fixture.h"
+
 namespace luxrig::sim {
 namespace {
 
-// One parameter, collected from its coarse and fine slots wherever they are.
+// One parameter, collected from its coarse, fine and ultra slots wherever they are.
 struct Parameter {
-  std::optional<int> coarse, fine;
+  std::optional<int> coarse, fine, ultra;
   [[nodiscard]] double share() const {
+    if (ultra) return (coarse.value_or(0) * 65536 + fine.value_or(0) * 256 + *ultra) / 16777215.0;
     if (!coarse) return fine ? *fine / 65535.0 : 0.0;
     return fine ? (*coarse * 256 + *fine) / 65535.0 : *coarse / 255.0;
   }
@@ -15,6 +18,7 @@ struct Parameter {
 }  // namespace
 
 DmxOrder decode_slots(const Fixture& fixture, const DmxPatch& patch, std::span<const std::uint8_t, kDmxSlots> slots) {
+  if (fixture.mode) return decode_personality(fixture, patch, slots);
   Parameter dimmer, pan, tilt;
   bool constants_hold = true;
   for (std::size_t i = 0; i < patch.slots.size(); ++i) {
@@ -27,17 +31,26 @@ DmxOrder decode_slots(const Fixture& fixture, const DmxPatch& patch, std::span<c
       case SlotUse::dimmer_fine:
         dimmer.fine = value_dmx;
         break;
+      case SlotUse::dimmer_ultra:
+        dimmer.ultra = value_dmx;
+        break;
       case SlotUse::pan:
         pan.coarse = value_dmx;
         break;
       case SlotUse::pan_fine:
         pan.fine = value_dmx;
         break;
+      case SlotUse::pan_ultra:
+        pan.ultra = value_dmx;
+        break;
       case SlotUse::tilt:
         tilt.coarse = value_dmx;
         break;
       case SlotUse::tilt_fine:
         tilt.fine = value_dmx;
+        break;
+      case SlotUse::tilt_ultra:
+        tilt.ultra = value_dmx;
         break;
       case SlotUse::constant:
         constants_hold = constants_hold && value_dmx == patch.slots[i].constant_dmx;

@@ -1,5 +1,6 @@
 #pragma once
-/// How a DMX fixture understands its slots: dimmer and joints, 8 or 16 bit, and slots that must hold a constant.
+/// How a DMX fixture understands its slots: dimmer and joints, 8, 16 or 24 bit, and slots that must hold a constant;
+/// with a maker's file, as personality_fixture.h says.
 /// Source: ANSI E1.11 (addresses count from 1); physical = from + v/(2ⁿ − 1) · (to − from).
 
 #include <array>

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/photometry/beam.h"
+#include "core/rig/personality/personality.h"
 #include "drivers/registry.h"
 #include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
@@ -102,6 +103,30 @@ std::string task_text(const Rig& rig, const Task& task) {
   return "";
 }
 
+/// How each fixture with a maker's file was understood; one of a housing speaks for all of it, and fixtures that are
+/// set alike are told once.
+void print_personalities(const Rig& rig) {
+  std::vector<std::pair<std::string, std::string>> told;  // what, and the fixtures it is true of
+  for (std::size_t i = 0; i < rig.fixtures.size(); ++i) {
+    const Fixture& fixture = rig.fixtures[i];
+    if (!fixture.mode || fixture.housing.value_or(i) != i) continue;
+    const FixtureMode& use = *fixture.mode;
+    const PersonalityMode& mode = use.personality->modes[use.mode];
+    std::string text = fmt::format("{} {}, mode {}, {} slots ({})\n", use.personality->manufacturer,
+                                   use.personality->name, mode.name, mode.footprint(), use.file.string());
+    for (const std::string& line : use.told) text += "    " + line + "\n";
+    const std::string name =
+        use.emitter.empty() ? fixture.name : fixture.name.substr(0, fixture.name.size() - use.emitter.size() - 1);
+    const auto known = std::find_if(told.begin(), told.end(), [&](const auto& entry) { return entry.first == text; });
+    if (known == told.end()) {
+      told.emplace_back(text, name);
+    } else {
+      known->second += ", " + name;
+    }
+  }
+  for (const auto& [text, names] : told) fmt::print("  personality of {}: {}\n", names, text);
+}
+
 std::string place_text(const Vec3& p) { return fmt::format("{:.2f} {:.2f} {:.2f}", p.x(), p.y(), p.z()); }
 
 }  // namespace
@@ -177,6 +202,7 @@ int run_check(const CheckArguments& arguments) {
                   rig.buses[f.bus].name + " (" + rig.buses[f.bus].driver + ")", address_text(f.patch)});
   }
   fmt::print("{}\n", fixtures.text());
+  print_personalities(rig);
   Table points({"point", "position m", ">goal lx", ">max lx", "luxmeter"});
   for (std::size_t i = 0; i < rig.points.size(); ++i) {
     const Point& p = rig.points[i];

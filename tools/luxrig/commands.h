@@ -15,6 +15,13 @@ struct CheckArguments {
 };
 int run_check(const CheckArguments& arguments);
 
+/// Makes a rig folder of an MVR file; never writes over a rig.
+struct ImportArguments {
+  std::filesystem::path file;
+  std::filesystem::path rig_folder;
+};
+int run_import(const ImportArguments& arguments);
+
 struct EvaluateArguments {
   std::filesystem::path rig;
   std::optional<std::filesystem::path> levels_plan;  ///< else every fixture at 1

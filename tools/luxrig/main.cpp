@@ -46,6 +46,14 @@ int main(int argc, char** argv) {
   command->add_flag("--json", check.json, "print JSON");
   command->callback([&] { code = run_check(check); });
 
+  ImportArguments import_mvr;
+  command =
+      app.add_subcommand("import", "make a rig folder of an MVR file: positions, orientation, patch, personalities");
+  command->add_option("FILE", import_mvr.file, "MVR file")->required();
+  command->add_option("-o,--output", import_mvr.rig_folder, "folder to write rig.toml and the GDTF files to")
+      ->required();
+  command->callback([&] { code = run_import(import_mvr); });
+
   EvaluateArguments evaluate;
   command = app.add_subcommand("evaluate", "lux at every measurement point and luxmeter");
   command->add_option("RIG", evaluate.rig, rig_help)->required();

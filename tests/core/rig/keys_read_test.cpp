@@ -143,6 +143,14 @@ aim_m = [0, 0, 0]  #> [0, 1, 0]
 bus = "dmx"
 address = 1
 slots = ["dimmer", "unused"]  #> ["dimmer"]
+[[fixture]]
+name = "made"
+luminaire = "spot"
+position_m = [1, 0, 3]
+bus = "dmx"
+address = 40
+personality = "a.json"  #> "b.json"
+mode = "short"  #> "long"
 [[luxmeter]]
 name = "meter"  #> "sensor"
 point = "desk"  #> "floor"
@@ -416,6 +424,12 @@ class KeysRead : public testing::Test {
     std::filesystem::create_directories(folder_);
     for (const char* name : {"a", "b"}) {
       std::ofstream(folder_ / (std::string(name) + ".obj")) << "v 0 0 0\n";
+      std::ofstream(folder_ / (std::string(name) + ".json"))
+          << R"({"$schema": "https://github.com/open-fixture-library/master/schemas/fixture.json", "name": "x",
+                 "availableChannels": {"Dimmer": {"capability": {"type": "Intensity"}},
+                                       "Mode": {"capability": {"type": "NoFunction"}, "defaultValue": )"
+          << (*name == 'a' ? 7 : 8) << R"(}}, "modes": [{"name": "short", "channels": ["Dimmer", "Mode"]},
+                            {"name": "long", "channels": ["Mode", "Dimmer"]}]})";
       std::ofstream(folder_ / (std::string(name) + ".csv")) << "name,x_m,y_m,z_m\n" << name << ",1,2,3\n";
       std::ofstream(folder_ / (std::string(name) + ".ies")) << "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 1 1 2 .1 .1 0\n"
                                                                "1 1 10\n0 45 90\n0\n100 "

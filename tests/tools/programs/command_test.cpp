@@ -55,6 +55,24 @@ TEST(Commands, SolveJsonHasTheContractsKeysAndEvaluateAgreesWithIt) {
   }
 }
 
+TEST(Commands, ImportMakesARigThatCheckTakesAndNeverWritesOverOne) {
+  const Folder folder;
+  const std::string rig = (folder / "imported").string();
+  const std::string mvr = source("tests/data/fixtures/7-fixtures-sample.mvr");
+  const Ran import = luxrig::testing::run({program("luxrig"), "import", mvr, "-o", rig});
+  ASSERT_EQ(import.code, 0) << import.output;
+  EXPECT_NE(import.output.find("7 fixtures of 1 kinds"), std::string::npos) << import.output;
+  EXPECT_NE(import.output.find("is not patched in the MVR file"), std::string::npos) << import.output;
+  const Ran check = luxrig::testing::run({program("luxrig"), "check", rig});
+  ASSERT_EQ(check.code, 0) << check.output;
+  EXPECT_NE(check.output.find("Custom Robe ColorWash 2500 AT, mode DMX Mode, 16 slots"), std::string::npos)
+      << check.output;
+  EXPECT_NE(check.output.find("dimmer by \"Base_Dimmer\", 8 bit at slot 1"), std::string::npos) << check.output;
+  const Ran again = luxrig::testing::run({program("luxrig"), "import", mvr, "-o", rig});
+  EXPECT_EQ(again.code, 2) << again.output;
+  EXPECT_NE(again.output.find("there is a rig already"), std::string::npos) << again.output;
+}
+
 TEST(Commands, DaylightIsReportedByItselfAndCountedInEverything) {
   const Folder folder;
   const auto plan = (folder / "plan.json").string();

@@ -1,0 +1,48 @@
+#pragma once
+/// What hangs where and how it is patched, from a My Virtual Rig file. Source: DIN SPEC 15801 (MVR 1.5, 1.6).
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/geometry.h"
+#include "core/result.h"
+
+namespace luxrig {
+
+struct MvrAddress {
+  int dmx_break = 0;  ///< which of the fixture's addresses, from 0
+  int universe = 1;
+  int address = 1;  ///< 1…512
+};
+
+struct MvrFixture {
+  std::string name;
+  std::string gdtf_file, gdtf_mode;
+  Pose world_from_base;  ///< metres; layers and groups around it counted in
+  std::optional<Vec3> focus_world_m;
+  std::vector<MvrAddress> addresses;  ///< those that are patched
+  bool inverts_pan = false, inverts_tilt = false;
+  int line = 0;
+};
+
+struct MvrScene {
+  std::vector<MvrFixture> fixtures;
+  std::vector<std::string> notes;  ///< what was left out, or odd
+};
+
+/// GeneralSceneDescription.xml alone; at most 10 000 fixtures. `file` is for the messages.
+[[nodiscard]] Checked<MvrScene> parse_mvr_scene(std::string_view xml, const std::string& file);
+
+struct MvrFile {
+  MvrScene scene;
+  /// Content of the GDTF files that fixtures name, by that name; those that are not in the archive are absent.
+  std::map<std::string, std::string> gdtf_files;
+};
+
+/// A whole .mvr file (a zip archive).
+[[nodiscard]] Checked<MvrFile> read_mvr(std::string bytes, const std::string& file);
+
+}  // namespace luxrig

@@ -1,0 +1,34 @@
+#pragma once
+/// The geometry tree of a GDTF mode, with references written out. Private to core/rig/personality.
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/rig/personality/personality.h"
+#include "core/rig/personality/xml_file.h"
+
+namespace luxrig {
+
+/// A geometry as it stands in the fixture: one inside a referenced geometry stands there once for each reference.
+struct GdtfInstance {
+  GeometryInstance geometry;
+  std::string defined_as;                        ///< name of the geometry that channels of the file act on
+  Pose parent_from_self;                         ///< at physical 0
+  std::map<int, int> added_by_break;             ///< slots that its references add to an offset, by break
+  std::optional<std::pair<int, int>> overwrite;  ///< break and added slots for channels whose break is "Overwrite"
+};
+
+/// Depth first, a parent before its children; the first is the mode's own. Problems: no such geometry, a reference that
+/// leads nowhere or to itself, more than 4096 geometries.
+[[nodiscard]] std::vector<GdtfInstance> gdtf_instances(const XmlFile& xml, const pugi::xml_node& geometries,
+                                                       const std::string& root_name, const Place& place,
+                                                       ProblemList& problems);
+
+/// Sets the mode's offsets of pan and tilt, or what is wrong with its axes, from the geometries that pan and tilt turn,
+/// and where its light leaves. In GDTF a pan turns about its geometry's z, a tilt about x, and light leaves along -z.
+void set_gdtf_axes(const std::vector<GdtfInstance>& instances, std::optional<std::size_t> pan,
+                   std::optional<std::size_t> tilt, PersonalityMode& mode);
+
+}  // namespace luxrig

@@ -1,0 +1,15 @@
+#pragma once
+/// Which channel of a mode takes which slot. Private to core/rig/personality.
+
+#include <string>
+
+#include "core/rig/personality/personality.h"
+#include "core/rig/problem_list.h"
+
+namespace luxrig {
+
+/// Sets the footprints of the mode from its channels. Problems, at `places[i]` of channel i: a slot outside 1…512, a
+/// slot that two channels share.
+void lay_out_slots(PersonalityMode& mode, const std::vector<Place>& places, ProblemList& problems);
+
+}  // namespace luxrig

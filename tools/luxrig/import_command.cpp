@@ -1,0 +1,47 @@
+#include <fmt/format.h>
+
+#include "core/rig/mvr/mvr_rig.h"
+#include "core/rig/plain_text.h"
+#include "core/rig/rig_file.h"
+#include "tools/luxrig/command.h"
+#include "tools/luxrig/commands.h"
+
+namespace luxrig {
+namespace {
+
+std::vector<Problem> one_problem(const std::filesystem::path& file, std::string what, std::string mend) {
+  return {{file.string(), 0, 0, std::move(what), std::move(mend)}};
+}
+
+}  // namespace
+
+int run_import(const ImportArguments& arguments) {
+  if (arguments.file.extension() != ".mvr") {
+    return report(one_problem(arguments.file, "not an MVR file by its name",
+                              "name an .mvr file; a single fixture's file goes into the rig file as personality"));
+  }
+  const std::filesystem::path rig_file = arguments.rig_folder / "rig.toml";
+  std::error_code error;
+  if (std::filesystem::exists(rig_file, error))
+    return report(one_problem(rig_file, "there is a rig already", "name another folder, or move that file away"));
+  Checked<std::string> bytes = read_file(arguments.file);
+  if (!bytes) return report(bytes.error());
+  const Checked<MvrFile> mvr = read_mvr(std::move(*bytes), arguments.file.string());
+  if (!mvr) return report(mvr.error());
+  const ImportedRig rig = rig_of_mvr(*mvr, made_plain(arguments.file.stem().string()));
+  std::filesystem::create_directories(arguments.rig_folder, error);
+  if (error) return report(Fault{Cause::system, "", arguments.rig_folder.string() + ": " + error.message(), {}});
+  for (const ImportedRig::File& file : rig.files) {
+    if (const auto written = write_file(arguments.rig_folder / file.name, file.bytes); !written)
+      return report(written.error());
+  }
+  if (const auto written = write_file(rig_file, rig.rig_toml); !written) return report(written.error());
+  for (const std::string& remark : rig.remarks) fmt::print("{}\n", remark);
+  fmt::print("{}: {} fixtures of {} kinds, {} personalities beside it\n", rig_file.string(), rig.fixtures,
+             rig.luminaires, rig.files.size());
+  if (const Checked<Rig> read = load_rig(rig_file); !read) return report(read.error());
+  fmt::print("next: fill in what says FILL IN, then luxrig check {}\n", arguments.rig_folder.string());
+  return kExitOk;
+}
+
+}  // namespace luxrig
