@@ -135,6 +135,18 @@ void DmxPatchbay::encode(const Entry& entry) {
   }
 }
 
+DmxSlots DmxPatchbay::used_slots(std::size_t universe) const {
+  DmxSlots used{};
+  for (const auto& [index, entry] : entries_) {
+    if (entry.universe != universe) continue;
+    for (std::size_t i = 0; i < entry.patch.slots.size(); ++i) {
+      if (entry.patch.slots[i].use == SlotUse::unused) continue;
+      used[static_cast<std::size_t>(entry.patch.address - 1) + i] = 1;
+    }
+  }
+  return used;
+}
+
 std::vector<Problem> check_dmx_patch(const Rig& rig, std::size_t bus, int lowest_universe, int highest_universe) {
   std::vector<Problem> problems;
   const std::string& name = rig.buses[bus].name;

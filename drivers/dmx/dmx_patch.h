@@ -45,6 +45,8 @@ class DmxPatchbay {
 
   /// Every universe that a fixture of the bus uses, in ascending order.
   [[nodiscard]] std::span<const DmxUniverse> universes() const { return universes_; }
+  /// Which slots of a universe a fixture of this bus uses and sends, as 1; index as in universes().
+  [[nodiscard]] DmxSlots used_slots(std::size_t universe) const;
   [[nodiscard]] bool has_heads() const { return has_heads_; }
 
  private:
