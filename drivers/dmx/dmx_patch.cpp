@@ -147,6 +147,47 @@ DmxSlots DmxPatchbay::used_slots(std::size_t universe) const {
   return used;
 }
 
+std::vector<std::size_t> DmxPatchbay::fixtures_of(std::size_t universe) const {
+  std::vector<std::size_t> fixtures;
+  for (const auto& [index, entry] : entries_) {
+    if (entry.universe == universe) fixtures.push_back(index);
+  }
+  return fixtures;
+}
+
+std::vector<DeskCommand> DmxPatchbay::decode(std::size_t universe, const DmxSlots& slots,
+                                             const std::bitset<kDmxSlots>& given) const {
+  std::vector<DeskCommand> commands;
+  for (const auto& indexed : entries_) {
+    const Entry& entry = indexed.second;
+    if (entry.universe != universe) continue;
+    // Share 0…1 of the value that a coarse and perhaps a fine slot carry; nothing when a slot of it is not given.
+    const auto value_of = [&](SlotUse coarse_use, SlotUse fine_use) -> std::optional<double> {
+      std::optional<int> high, low;
+      for (std::size_t i = 0; i < entry.patch.slots.size(); ++i) {
+        const SlotUse use = entry.patch.slots[i].use;
+        if (use != coarse_use && use != fine_use) continue;
+        const std::size_t slot = static_cast<std::size_t>(entry.patch.address - 1) + i;
+        if (!given[slot]) return std::nullopt;
+        (use == coarse_use ? high : low) = slots[slot];
+      }
+      if (!high) return std::nullopt;
+      return low ? (*high << 8 | *low) / 65535.0 : *high / 255.0;
+    };
+    const auto drive = value_of(SlotUse::dimmer, SlotUse::dimmer_fine);
+    if (!drive) continue;
+    DeskCommand command{indexed.first, *drive, std::nullopt};
+    const auto pan = value_of(SlotUse::pan, SlotUse::pan_fine), tilt = value_of(SlotUse::tilt, SlotUse::tilt_fine);
+    if (entry.moves && pan && tilt) {
+      const PanTiltRange& range = entry.range;
+      command.joints = PanTilt{range.pan_min_rad + *pan * (range.pan_max_rad - range.pan_min_rad),
+                               range.tilt_min_rad + *tilt * (range.tilt_max_rad - range.tilt_min_rad)};
+    }
+    commands.push_back(command);
+  }
+  return commands;
+}
+
 std::vector<Problem> check_dmx_patch(const Rig& rig, std::size_t bus, int lowest_universe, int highest_universe) {
   std::vector<Problem> problems;
   const std::string& name = rig.buses[bus].name;

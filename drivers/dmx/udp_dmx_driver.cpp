@@ -16,8 +16,14 @@ constexpr int kDatagramsPerCycle = 256;  // a flood must not hold up the output
 
 }  // namespace
 
-UdpDmxDriver::UdpDmxDriver(std::vector<std::unique_ptr<DatagramChannel>> channels, const Rig& rig, std::size_t bus)
-    : bay_(rig, bus), life_(rig.buses[bus].name), channels_(std::move(channels)) {}
+UdpDmxDriver::UdpDmxDriver(std::vector<std::unique_ptr<DatagramChannel>> channels, const Rig& rig, std::size_t bus,
+                           DeskOptions desk)
+    : bay_(rig, bus),
+      life_(rig.buses[bus].name),
+      channels_(std::move(channels)),
+      desk_(desk),
+      frames_(bay_.universes().size()),
+      silent_(bay_.universes().size(), 0) {}
 
 Fault UdpDmxDriver::inactive() const {
   return {Cause::inactive, life_.health().device, "the driver is not active", {}};
@@ -47,6 +53,38 @@ void UdpDmxDriver::deactivate(Time now) {
   latest_ = now;
   close();
   life_.configured(now);
+}
+
+std::vector<DeskPart> UdpDmxDriver::parts() const {
+  std::vector<DeskPart> parts;
+  for (std::size_t i = 0; i < bay_.universes().size(); ++i) {
+    parts.push_back(
+        {fmt::format("{}, universe {}", life_.health().device, bay_.universes()[i].number), bay_.fixtures_of(i)});
+  }
+  return parts;
+}
+
+std::vector<int> UdpDmxDriver::desk_universes() const {
+  std::vector<int> numbers;
+  for (const DmxUniverse& universe : bay_.universes()) numbers.push_back(universe.number + desk_.offset);
+  return numbers;
+}
+
+std::span<const DeskFrame> UdpDmxDriver::listen(Time now) {
+  listen_to_network(now);
+  for (std::size_t i = 0; i < frames_.size(); ++i) {
+    const HeardUniverse universe = heard(now, bay_.universes()[i].number + desk_.offset);
+    frames_[i].presence = universe.presence;
+    frames_[i].source = universe.source;
+    frames_[i].commands = bay_.decode(i, universe.levels.slots, universe.levels.given);
+  }
+  return frames_;
+}
+
+void UdpDmxDriver::set_silent(Time now, std::size_t part, bool silent) {
+  if (is_silent(part) == silent) return;
+  silent_[part] = silent;
+  if (silent && life_.life() != Life::configured) fall_silent(now, bay_.universes()[part]);
 }
 
 Result<void> UdpDmxDriver::move(Time, std::span<const AimCommand> commands) {

@@ -5,7 +5,9 @@
 #include <algorithm>
 
 #include "drivers/dmx/artnet/artnet_controller.h"
+#include "drivers/dmx/artnet/artnet_receiver.h"
 #include "drivers/dmx/udp_dmx_driver.h"
+#include "drivers/io/host_id.h"
 #include "drivers/io/udp.h"
 #include "drivers/options.h"
 
@@ -24,6 +26,11 @@ constexpr OptionDoc kOptions[] = {
      "ArtSync after each frame: nodes that have several of its universes change them together"},
     {"sequence", "true or false", "", "true", "",
      "number the packets, so that nodes drop what comes out of order; false for nodes that cannot count"},
+    kInputOption,
+    kInputHandBackOption,
+    kInputOffsetOption,
+    kInputMergeOption,
+    {"input_port", "whole number", "", "6454", "1 to 65535", "UDP port on which a desk is heard"},
 };
 
 std::vector<std::unique_ptr<DatagramChannel>> alone(std::unique_ptr<DatagramChannel> channel) {
@@ -36,7 +43,7 @@ class ArtnetDriver final : public UdpDmxDriver {
  public:
   ArtnetDriver(std::unique_ptr<DatagramChannel> channel, const Rig& rig, std::size_t bus,
                const std::optional<Redirect>& redirect)
-      : UdpDmxDriver(alone(std::move(channel)), rig, bus),
+      : UdpDmxDriver(alone(std::move(channel)), rig, bus, desk_options(rig.buses[bus], kOptions)),
         controller_({boolean_option(rig.buses[bus], kOptions, "continuous"),
                      boolean_option(rig.buses[bus], kOptions, "sequence"),
                      boolean_option(rig.buses[bus], kOptions, "sync")}) {
@@ -50,6 +57,9 @@ class ArtnetDriver final : public UdpDmxDriver {
       destination_ = SocketAddress{*address, artnet::kPort};
     }
     if (destination_) poll_to_ = *destination_;
+    rig_name_ = rig.name;
+    everywhere_ = destination_ && (destination_->ipv4 == 0xFFFFFFFF ||
+                                   destination_->ipv4 == parse_ipv4(string_option(entry, kOptions, "broadcast")));
   }
   ~ArtnetDriver() override { close(); }
 
@@ -79,17 +89,74 @@ class ArtnetDriver final : public UdpDmxDriver {
   }
 
  private:
-  void begin(Time now) override { activated_ = now; }
+  void begin(Time now) override {
+    activated_ = now;
+    if (!desk().rules || receiver_) return;
+    const std::string host = host_id();
+    const std::string_view parts[] = {"luxrig artnet", host, rig_name_, life_.health().device};
+    const auto id = hashed_id(parts);
+    artnet::ReceiverSettings settings;
+    settings.port_addresses = desk_universes();
+    settings.rule = desk().merge;
+    settings.short_name = "Luxrig";
+    settings.long_name = fmt::format("Luxrig {}, {}", rig_name_, life_.health().device);
+    std::copy_n(id.begin(), mac_.size(), mac_.begin());
+    mac_[0] = static_cast<std::uint8_t>((mac_[0] & 0xFC) | 0x02);  // locally administered, of one host
+    settings.mac = mac_;
+    settings.reply_delay = std::chrono::milliseconds(1000 * id[6] / 256);
+    receiver_.emplace(std::move(settings));
+  }
   bool has_answers() const override { return true; }
-  void rest() override { controller_.rest(); }
+  void rest() override {
+    controller_.rest();
+    if (receiver_) receiver_->restart();
+  }
 
   void hear(Time now, const Datagram& datagram) override {
+    if (receiver_) {
+      // Its own answer to its own poll: else it would send to itself, and follow that.
+      const auto reply = artnet::decode_poll_reply(datagram.bytes);
+      if (reply && reply->mac == mac_) return;
+      if (everywhere_ && is_own(datagram.from)) return;
+      using Verdict = artnet::Receiver::Verdict;
+      if (receiver_->receive(now, datagram.from, datagram.bytes) == Verdict::taken) return life_.count_received(now);
+    }
     if (controller_.hear(now, datagram)) life_.count_received(now);
+  }
+
+  HeardUniverse heard(Time now, int port_address) override {
+    return receiver_ ? receiver_->heard(now, port_address) : HeardUniverse{};
+  }
+
+  bool is_own(const SocketAddress& from) {
+    const auto [known, is_new] = own_addresses_.try_emplace(from.ipv4, false);
+    if (is_new) known->second = local_address_towards(from.ipv4) == from.ipv4;
+    return known->second && from.port == desk().port;
+  }
+
+  /// Nodes would go on merging what was sent last, for 10 s.
+  void fall_silent(Time now, const DmxUniverse& universe) override {
+    for (const auto& [address, node] : controller_.nodes()) {
+      for (const auto& [bind_index, outputs] : node.outputs) {
+        const bool puts_out = std::any_of(outputs.begin(), outputs.end(), [&](const artnet::PortOutput& port) {
+          return port.port_address == universe.number;
+        });
+        if (node.gone || !puts_out) continue;
+        send(now, address, artnet::encode(artnet::Address{bind_index, artnet::AddressCommand::cancel_merge, 0}));
+      }
+    }
   }
 
   void send_frame(Time now) override {
     if (controller_.poll_due(now)) send(now, poll_to_, artnet::encode_poll());
-    for (const DmxUniverse& universe : bay_.universes()) send_universe(now, universe);
+    if (receiver_) {
+      for (const auto& [to, reply] : receiver_->answers_due(now)) {
+        send(now, to, artnet::encode(reply, local_address_towards(to.ipv4)));
+      }
+    }
+    for (std::size_t i = 0; i < bay_.universes().size(); ++i) {
+      if (!is_silent(i)) send_universe(now, bay_.universes()[i]);
+    }
     if (const auto packet = controller_.sync_due()) send(now, poll_to_, *packet);
   }
 
@@ -143,6 +210,11 @@ class ArtnetDriver final : public UdpDmxDriver {
   SocketAddress poll_to_;
   std::optional<SocketAddress> destination_;  ///< nothing: to subscribers
   Time activated_{};
+  std::string rig_name_;
+  bool everywhere_ = false;  ///< destination_ is a broadcast address, which brings it back to us
+  std::optional<artnet::Receiver> receiver_;
+  std::array<std::uint8_t, 6> mac_{};
+  std::map<std::uint32_t, bool> own_addresses_;
 };
 
 }  // namespace
@@ -161,6 +233,8 @@ std::vector<Problem> check_artnet(const Rig& rig, std::size_t bus) {
                                     fmt::format("{} = \"{}\" is no IPv4 address to send to", key, text),
                                     "write numbers, such as \"2.0.0.10\""));
     };
+    const auto of_desk = check_desk_options(rig, bus, kOptions, 0, artnet::kHighestPortAddress);
+    problems.insert(problems.end(), of_desk.begin(), of_desk.end());
     const std::string destination = string_option(entry, kOptions, "destination");
     if (destination != "auto") check_address("destination", destination);
     check_address("broadcast", string_option(entry, kOptions, "broadcast"));
@@ -184,6 +258,10 @@ std::unique_ptr<Driver> make_artnet(const Rig& rig, std::size_t bus, const std::
   settings.broadcast = true;
   if (!redirect) {
     settings.local_port = artnet::kPort;  // nodes answer to this port, some by broadcast
+    settings.share_local_port = true;
+  }
+  if (const DeskOptions desk = desk_options(rig.buses[bus], kOptions); desk.rules) {
+    settings.local_port = desk.port;
     settings.share_local_port = true;
   }
   return make_artnet_over(make_udp(std::move(settings)), rig, bus, redirect);

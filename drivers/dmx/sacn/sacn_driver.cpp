@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "drivers/dmx/sacn/sacn_receiver.h"
 #include "drivers/dmx/sacn/sacn_source.h"
 #include "drivers/dmx/udp_dmx_driver.h"
 #include "drivers/io/host_id.h"
@@ -33,15 +34,21 @@ constexpr OptionDoc kSacnOptions[] = {
     {"sync_universe", "whole number", "", "0", "0 to 63999",
      "receivers hold all universes of a frame until a synchronisation packet to this one; 0: each acts at once"},
     {"preview", "true or false", "", "false", "", "mark all data as preview: visualisers show it, lamps do not"},
+    kInputOption,
+    kInputHandBackOption,
+    kInputOffsetOption,
+    kInputMergeOption,
+    {"input_port", "whole number", "", "5568", "1 to 65535", "UDP port on which a desk is heard"},
 };
 
 constexpr int kGoodbyes = 3;  // clause 6.2.6
+constexpr Duration kJoinAgainEvery = std::chrono::seconds(1);
 
 class SacnDriver final : public UdpDmxDriver {
  public:
   SacnDriver(std::vector<std::unique_ptr<DatagramChannel>> channels, const Rig& rig, std::size_t bus,
              const std::optional<Redirect>& redirect)
-      : UdpDmxDriver(std::move(channels), rig, bus) {
+      : UdpDmxDriver(std::move(channels), rig, bus, desk_options(rig.buses[bus], kSacnOptions)) {
     const Bus& entry = rig.buses[bus];
     rig_name_ = rig.name;
     port_ = static_cast<std::uint16_t>(integer_option(entry, kSacnOptions, "port"));
@@ -60,6 +67,7 @@ class SacnDriver final : public UdpDmxDriver {
     if (settings_.source_name.empty()) settings_.source_name = "Luxrig " + rig.name;
     slot_priority_ = boolean_option(entry, kSacnOptions, "slot_priority");
     cid_ = sacn::parse_cid(string_option(entry, kSacnOptions, "cid"));
+    joins_must_succeed_ = !redirect;
   }
   ~SacnDriver() override { close(); }
 
@@ -77,6 +85,15 @@ class SacnDriver final : public UdpDmxDriver {
     if (source_) return;
     settings_.cid = cid_.value_or(sacn::derive_cid(host_id(), rig_name_, life_.health().device));
     source_.emplace(settings_);
+    if (desk().rules) {
+      sacn::ReceiverSettings heard;
+      heard.universes = desk_universes();
+      heard.own = settings_.cid;
+      heard.rule = desk().merge;
+      // What Luxrig stands by for is what receivers would rather obey; anything below it stands by for Luxrig.
+      if (desk().rules->mode == DeskMode::standby) heard.lowest_priority = settings_.priority;
+      receiver_.emplace(std::move(heard));
+    }
     if (!slot_priority_) return;
     for (std::size_t i = 0; i < bay_.universes().size(); ++i) {
       DmxSlots priorities = bay_.used_slots(i);
@@ -88,7 +105,9 @@ class SacnDriver final : public UdpDmxDriver {
   }
 
   void send_frame(Time now) override {
-    for (const DmxUniverse& universe : bay_.universes()) {
+    for (std::size_t i = 0; i < bay_.universes().size(); ++i) {
+      const DmxUniverse& universe = bay_.universes()[i];
+      if (is_silent(i)) continue;
       if (const auto packet = source_->due(now, universe.number, universe.slots)) {
         send_to(now, universe.number, *packet);
       }
@@ -105,8 +124,44 @@ class SacnDriver final : public UdpDmxDriver {
     }
   }
 
+  void fall_silent(Time now, const DmxUniverse& universe) override {
+    for (int i = 0; i < kGoodbyes; ++i) {
+      if (const auto packet = source_->goodbye(universe.number)) send_to(now, universe.number, *packet);
+    }
+    source_->rest(universe.number);
+  }
+
   void rest() override {
     if (source_) source_->rest();
+    if (receiver_) receiver_->restart();
+  }
+
+  void hear(Time now, const Datagram& datagram) override {
+    if (receiver_ && receiver_->receive(now, datagram.bytes) == sacn::Receiver::Verdict::taken) {
+      life_.count_received(now);
+    }
+  }
+
+  HeardUniverse heard(Time now, int universe) override {
+    if (!receiver_) return {};
+    join_groups(now);
+    return receiver_->heard(now, universe);
+  }
+
+  /// The desk's universes, and those it synchronises by; a channel that has been opened anew has joined none.
+  void join_groups(Time now) {
+    if (now < join_again_at_) return;
+    for (const auto& channel : channels()) {
+      if (!channel->is_open()) continue;
+      for (const int universe : receiver_->groups()) {
+        const auto joined = channel->join(sacn::multicast_group(static_cast<std::uint16_t>(universe)));
+        if (joined) continue;
+        join_again_at_ = now + kJoinAgainEvery;
+        // Towards a stand-in, on a host that may have no network at all, a desk can still send to this host alone.
+        if (joins_must_succeed_) note_error(now, joined.error());
+        return;
+      }
+    }
   }
 
   void send_to(Time now, int universe, std::span<const std::uint8_t> packet) {
@@ -121,8 +176,10 @@ class SacnDriver final : public UdpDmxDriver {
   std::uint16_t port_ = 0;
   std::optional<sacn::Cid> cid_;
   sacn::SourceSettings settings_;
-  bool slot_priority_ = false;
+  bool slot_priority_ = false, joins_must_succeed_ = true;
+  Time join_again_at_{};
   std::optional<sacn::Source> source_;
+  std::optional<sacn::Receiver> receiver_;
 };
 
 bool is_receiver_address(const std::string& text) {
@@ -160,6 +217,8 @@ std::vector<Problem> check_sacn(const Rig& rig, std::size_t bus) {
       report("interface", fmt::format("interface = \"{}\" cannot be names of network interfaces", interface),
              "write names as `ip link` lists them, such as \"eth0\", or their IPv4 addresses");
     }
+    const auto of_desk = check_desk_options(rig, bus, kSacnOptions, sacn::kLowestUniverse, sacn::kHighestUniverse);
+    problems.insert(problems.end(), of_desk.begin(), of_desk.end());
     const std::string cid = string_option(entry, kSacnOptions, "cid");
     if (!cid.empty() && !sacn::parse_cid(cid)) {
       report("cid", fmt::format("cid = \"{}\" is not a UUID", cid),
@@ -187,6 +246,10 @@ std::unique_ptr<Driver> make_sacn(const Rig& rig, std::size_t bus, const std::op
   // unicast finds its own way, so that a second channel would only send it twice.
   const bool multicast = string_option(rig.buses[bus], kSacnOptions, "destination") == "multicast";
   if (redirect) interfaces.clear();
+  if (const DeskOptions desk = desk_options(rig.buses[bus], kSacnOptions); desk.rules) {
+    settings.local_port = desk.port;
+    settings.share_local_port = true;
+  }
   if (interfaces.empty() || !multicast) interfaces.resize(1);
   std::vector<std::unique_ptr<DatagramChannel>> channels;
   for (const std::string& interface : interfaces) {

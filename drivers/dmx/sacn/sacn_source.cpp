@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "drivers/dmx/sequence.h"
+#include "drivers/io/host_id.h"
 
 namespace luxrig::sacn {
 namespace {
@@ -15,31 +16,11 @@ constexpr Duration kKeepAlive = std::chrono::milliseconds(880);
 // Clause 4.3, E131_UNIVERSE_DISCOVERY_INTERVAL.
 constexpr Duration kDiscoveryInterval = std::chrono::seconds(10);
 
-std::uint64_t hash(std::string_view text, std::uint64_t state) {
-  for (const char letter : text) {  // FNV-1a
-    state ^= static_cast<std::uint8_t>(letter);
-    state *= 0x100000001b3ULL;
-  }
-  state ^= 0xFF;  // the end of a part: ("ab", "c") is not ("a", "bc")
-  return state * 0x100000001b3ULL;
-}
-
-std::uint64_t mix(std::uint64_t x) {  // splitmix64's finaliser: FNV alone leaves the high bits thin
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebULL;
-  return x ^ (x >> 31);
-}
-
 }  // namespace
 
 Cid derive_cid(std::string_view host, std::string_view rig, std::string_view bus) {
-  Cid cid{};
-  for (std::size_t half = 0; half < 2; ++half) {
-    std::uint64_t state = half == 0 ? 0xcbf29ce484222325ULL : 0x9ae16a3b2f90404fULL;
-    for (const std::string_view part : {std::string_view("luxrig sacn"), host, rig, bus}) state = hash(part, state);
-    state = mix(state);
-    for (std::size_t i = 0; i < 8; ++i) cid[half * 8 + i] = static_cast<std::uint8_t>(state >> (56 - 8 * i));
-  }
+  const std::string_view parts[] = {"luxrig sacn", host, rig, bus};
+  Cid cid = hashed_id(parts);
   cid[6] = static_cast<std::uint8_t>((cid[6] & 0x0F) | 0x80);  // version 8
   cid[8] = static_cast<std::uint8_t>((cid[8] & 0x3F) | 0x80);  // variant of RFC 9562
   return cid;
