@@ -42,6 +42,7 @@ class Driver {
   virtual LevelOutput* level_output() { return nullptr; }
   virtual Mover* mover() { return nullptr; }
   virtual LuxReader* lux_reader() { return nullptr; }
+  virtual LevelInput* level_input() { return nullptr; }
   virtual PictureTaker* picture_taker() { return nullptr; }
 };
 

@@ -107,6 +107,20 @@ std::vector<Problem> check_options(const Rig& rig, const Bus& bus, std::span<con
   return problems;
 }
 
+std::vector<std::string> list_in(std::string_view text) {
+  std::vector<std::string> entries;
+  if (text.find_first_not_of(' ') == std::string_view::npos) return entries;
+  for (std::size_t from = 0; from <= text.size();) {
+    const std::size_t comma = std::min(text.find(',', from), text.size());
+    std::string_view entry = text.substr(from, comma - from);
+    entry.remove_prefix(std::min(entry.find_first_not_of(' '), entry.size()));
+    entry = entry.substr(0, entry.find_last_not_of(' ') + 1);
+    entries.emplace_back(entry);
+    from = comma + 1;
+  }
+  return entries;
+}
+
 std::string string_option(const Bus& bus, std::span<const OptionDoc> docs, std::string_view key) {
   const OptionDoc& doc = find(docs, key, "text");
   if (const Option* option = find(bus, key)) return std::get<std::string>(option->value);

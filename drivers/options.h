@@ -25,6 +25,9 @@ namespace luxrig {
 [[nodiscard]] std::int64_t integer_option(const Bus& bus, std::span<const OptionDoc> docs, std::string_view key);
 [[nodiscard]] bool boolean_option(const Bus& bus, std::span<const OptionDoc> docs, std::string_view key);
 
+/// "a, b" -> {"a", "b"}; blanks around an entry do not count. Empty text has no entries.
+[[nodiscard]] std::vector<std::string> list_in(std::string_view text);
+
 /// A problem at an option if it is written, else at its bus.
 [[nodiscard]] Problem problem_at(const Rig& rig, const Bus& bus, std::string_view key, std::string what,
                                  std::string mend);

@@ -2,6 +2,18 @@
 
 namespace luxrig {
 
+const char* name_of(DeskMode mode) {
+  switch (mode) {
+    case DeskMode::merge:
+      return "merge";
+    case DeskMode::takeover:
+      return "takeover";
+    case DeskMode::standby:
+      return "standby";
+  }
+  return "unknown";
+}
+
 const char* name_of(Life life) {
   switch (life) {
     case Life::configured:

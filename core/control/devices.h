@@ -1,10 +1,11 @@
 #pragma once
-/// What the controller needs from the world: four capabilities, and how a device says how it is.
+/// What the controller needs from the world: five capabilities, and how a device says how it is.
 /// Drivers implement them over real buses, sim/ in process.
 ///
 /// No call blocks longer than the bound its driver states (drivers/driver.h). All times are the
 /// controller's. Failure is a value; nothing throws.
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -65,6 +66,51 @@ class PictureTaker {
  public:
   virtual ~PictureTaker() = default;
   virtual Result<TakenPicture> take(Time now) = 0;
+};
+
+/// What Luxrig does with what a lighting desk sends for its fixtures.
+enum class DeskMode {
+  merge,     ///< the brighter of both; heads look where they were sent last
+  takeover,  ///< while the desk is there its values go out instead of Luxrig's
+  standby,   ///< the desk drives the lamps itself: Luxrig is silent while it does
+};
+/// How a desk that comes back gets the light again.
+enum class HandBack { at_once, fade, when_asked };
+struct DeskRules {
+  DeskMode mode = DeskMode::merge;
+  HandBack hand_back = HandBack::fade;
+};
+[[nodiscard]] const char* name_of(DeskMode mode);
+
+/// What a desk wants of one fixture.
+struct DeskCommand {
+  std::size_t fixture = 0;
+  double drive = 0;               ///< 0…1, as in LevelCommand
+  std::optional<PanTilt> joints;  ///< of a head
+};
+/// unknown: not listened long enough to tell.
+enum class DeskPresence { unknown, absent, present };
+struct DeskFrame {
+  DeskPresence presence = DeskPresence::unknown;
+  std::vector<DeskCommand> commands;  ///< the newest, or the last before it was lost; only fixtures it has a say in
+  std::string source;                 ///< who that is; empty: nobody yet
+};
+
+/// Fixtures that are lost and found together, as one universe is.
+struct DeskPart {
+  std::string name;                   ///< "dmx, universe 3"
+  std::vector<std::size_t> fixtures;  ///< ascending
+};
+
+class LevelInput {
+ public:
+  virtual ~LevelInput() = default;
+  [[nodiscard]] virtual DeskRules rules() const = 0;
+  [[nodiscard]] virtual std::vector<DeskPart> parts() const = 0;
+  /// Takes what has arrived; one frame for each part. Never blocks.
+  [[nodiscard]] virtual std::span<const DeskFrame> listen(Time now) = 0;
+  /// Whether LevelOutput::write leaves this part out. Says goodbye when it falls silent.
+  virtual void set_silent(Time now, std::size_t part, bool silent) = 0;
 };
 
 enum class Life { configured, active, faulted };

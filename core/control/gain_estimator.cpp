@@ -399,6 +399,22 @@ WorstCase GainEstimator::worst_case(std::span<const double> from, std::span<cons
   return worst;
 }
 
+WorstCase GainEstimator::worst_of_any(Time now) const {
+  WorstCase worst;
+  for (std::size_t p = 0; p < points_.size(); ++p)
+    if (points_[p].max_lx) worst.points.push_back(p);
+  const auto count = static_cast<Index>(worst.points.size());
+  worst.worst_lux_per_level.resize(count, fixtures());
+  worst.max_lx.resize(count);
+  for (Index k = 0; k < count; ++k) {
+    const std::size_t p = worst.points[static_cast<std::size_t>(k)];
+    const Row row = row_of_point(p);
+    worst.max_lx[k] = std::max(0.0, *points_[p].max_lx - most_without_fixtures(row, now));
+    worst.worst_lux_per_level.row(k) = unmeasured_worst(row).head(fixtures());
+  }
+  return worst;
+}
+
 std::vector<double> GainEstimator::within_limits(std::span<const double> given, Time now) const {
   std::vector<double> level = list_of(vector_of(given).head(fixtures()).cwiseMax(0).cwiseMin(max_level_));
   for (int round = 0; round < kLimitRounds; ++round) {

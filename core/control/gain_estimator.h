@@ -103,6 +103,10 @@ class GainEstimator {
   /// say.
   [[nodiscard]] WorstCase worst_case(std::span<const double> from, std::span<const double> to, Time now) const;
 
+  /// Rows that hold for any levels, as a desk may want them: by bounds alone, so that they ask for more than evidence
+  /// would.
+  [[nodiscard]] WorstCase worst_of_any(Time now) const;
+
   /// `level` with the fixtures that light a limited point scaled down together, so that most_lux_at_point <= max_lx
   /// everywhere.
   [[nodiscard]] std::vector<double> within_limits(std::span<const double> level, Time now) const;

@@ -12,6 +12,8 @@ double clamped_share(double x) { return x > 0 ? std::min(x, 1.0) : 0.0; }
 
 double smooth_step(double x) { return std::min(x * x * (3 - 2 * x), 1.0); }
 
+const std::vector<std::uint8_t> kNobody;
+
 double at_or_zero(const std::vector<double>& values, std::size_t i) { return i < values.size() ? values[i] : 0.0; }
 
 }  // namespace
@@ -53,8 +55,8 @@ double drive_from_level(DimmerCurve curve, double level) {
   return level;
 }
 
-void scale_to_limits(const Eigen::MatrixXd& worst_lux_per_level, const Eigen::VectorXd& max_lx,
-                     std::span<double> level) {
+void scale_to_limits(const Eigen::MatrixXd& worst_lux_per_level, const Eigen::VectorXd& max_lx, std::span<double> level,
+                     double relief) {
   const auto lights = std::min<Eigen::Index>(worst_lux_per_level.cols(), static_cast<Eigen::Index>(level.size()));
   const Eigen::Index rows = std::min(worst_lux_per_level.rows(), max_lx.size());
   // Room for rounding, so that the limit holds in whatever order somebody adds the contributions up.
@@ -73,7 +75,8 @@ void scale_to_limits(const Eigen::MatrixXd& worst_lux_per_level, const Eigen::Ve
     if (!unknown && lux <= max_lx[row] * (1 - rounding)) continue;
     if (!unknown && lux <= 0 && max_lx[row] >= 0) continue;
     // Below the smallest normal number, products lose their relative accuracy: dark is as good.
-    const double most = max_lx[row] > 1e-290 && !unknown ? max_lx[row] * (1 - 2 * rounding) : 0.0;
+    double most = max_lx[row] > 1e-290 && !unknown ? max_lx[row] * (1 - 2 * rounding) : 0.0;
+    if (relief > 0 && std::isfinite(lux)) most += relief * (lux - most);
     const double share = std::isfinite(lux) && lux > 0 ? std::clamp(most / lux, 0.0, 1.0) : 0.0;
     for (Eigen::Index j = 0; j < lights; ++j) {
       const double worst = worst_lux_per_level(row, j);
@@ -82,11 +85,7 @@ void scale_to_limits(const Eigen::MatrixXd& worst_lux_per_level, const Eigen::Ve
   }
 }
 
-void OutputProgram::levels_at(Time now, std::span<double> level) const {
-  if (blackout) {
-    std::fill(level.begin(), level.end(), 0.0);
-    return;
-  }
+void OutputProgram::own_levels_at(Time now, std::span<double> level) const {
   const double share =
       done(now) ? 1.0
       : now <= start
@@ -100,6 +99,43 @@ void OutputProgram::levels_at(Time now, std::span<double> level) const {
     level[i] = wanted > 0 && most > 0 ? std::min(wanted, std::min(most, 1.0)) : 0.0;
   }
   scale_to_limits(worst_lux_per_level, max_lx, level);
+}
+
+bool OutputProgram::desk_has_a_say(Time now) const {
+  return std::any_of(desks.begin(), desks.end(), [now](const DeskBlend& desk) { return !desk.is_own(now); });
+}
+
+void OutputProgram::levels_at(Time now, std::span<double> level) const {
+  if (blackout) {
+    std::fill(level.begin(), level.end(), 0.0);
+    return;
+  }
+  own_levels_at(now, level);
+  if (desks.empty()) return;
+  if (!desk_has_a_say(now)) {
+    // What goes out now is Luxrig's own and within limits by what meters taught, which may be brighter than the limits
+    // for any levels let through until now.
+    Time last{};
+    for (const DeskBlend& desk : desks) last = std::max(last, desk.start + desk.duration);
+    if (now >= last + limits_released) return;
+    const double relief = fade_share(curve, to_seconds(now - last) / to_seconds(limits_released));
+    return scale_to_limits(any_lux_per_level, any_max_lx, level, relief);
+  }
+  for (const DeskBlend& desk : desks) {
+    if (!desk.is_own(now)) desk.apply(now, now < heads_arrive ? heads_guarded : kNobody, level);
+  }
+  for (std::size_t i = 0; i < level.size(); ++i) {
+    const double most = at_or_zero(max_level, i);
+    level[i] = level[i] > 0 && most > 0 ? std::min(level[i], std::min(most, 1.0)) : 0.0;
+  }
+  scale_to_limits(any_lux_per_level, any_max_lx, level);
+}
+
+void OutputProgram::joints_at(Time now, std::span<PanTilt> out) const {
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = i < joints.size() ? joints[i] : PanTilt{};
+  for (const DeskBlend& desk : desks) {
+    if (!desk.is_own(now)) desk.turn(now, out);
+  }
 }
 
 }  // namespace luxrig

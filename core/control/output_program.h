@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/control/desk_blend.h"
 #include "core/rig/rig.h"
 #include "core/time.h"
 
@@ -24,9 +25,11 @@ namespace luxrig {
 /// worst_lux_per_level  limited points × fixtures, ≥ 0; an entry that is not finite darkens its fixture
 /// max_lx               per row; not a number or ≤ 0 darkens every fixture that lights that point
 /// level                per fixture, ≥ 0, finite
+/// relief               0…1: share of what is above a limit that stays; for a way back to levels that are known to be
+///                      within limits although these rows, which hold for any levels, say otherwise
 /// Allocates nothing. With a limit below 1e-290 lx the point is darkened.
-void scale_to_limits(const Eigen::MatrixXd& worst_lux_per_level, const Eigen::VectorXd& max_lx,
-                     std::span<double> level);
+void scale_to_limits(const Eigen::MatrixXd& worst_lux_per_level, const Eigen::VectorXd& max_lx, std::span<double> level,
+                     double relief = 0);
 
 struct OutputProgram {
   std::uint64_t revision = 0;                ///< grows with each change
@@ -44,11 +47,30 @@ struct OutputProgram {
   Eigen::MatrixXd worst_lux_per_level;
   Eigen::VectorXd max_lx;
 
+  /// Lighting desks with a say, one for each part of the rig that follows one.
+  std::vector<DeskBlend> desks;
+  /// The same limits for levels that nobody has worked out: what a desk wants can be anything. They hold while a desk
+  /// has a say; after that they are let go over `limits_released`.
+  Eigen::MatrixXd any_lux_per_level;
+  Eigen::VectorXd any_max_lx;
+  Duration limits_released{};
+  /// Until then heads with limits round them are on their way, and a desk cannot light them.
+  Time heads_arrive{};
+  std::vector<std::uint8_t> heads_guarded;  ///< per fixture: 1 for such a head; may be empty
+
   /// Levels at `now`, per fixture. Never above max_level; never with worst_lux_per_level · level above max_lx (the
-  /// fixtures that light that point are then scaled down together). Allocates nothing.
+  /// fixtures that light that point are then scaled down together); what a desk wants is within both, too. Allocates
+  /// nothing.
   /// Values that are missing or not numbers count as 0. The time before `start` counts as `start`.
   void levels_at(Time now, std::span<double> level) const;
+  /// Where heads shall look at `now`; joints: per fixture. Allocates nothing.
+  void joints_at(Time now, std::span<PanTilt> joints) const;
+  /// Some desk has a say, or has just had it.
+  [[nodiscard]] bool desk_has_a_say(Time now) const;
   [[nodiscard]] bool done(Time now) const { return now >= start + duration; }
+
+ private:
+  void own_levels_at(Time now, std::span<double> level) const;
 };
 
 }  // namespace luxrig

@@ -97,6 +97,7 @@ std::vector<double> ShowController::State::present_levels(Time now) const {
   std::vector<double> level(rig.fixtures.size());
   OutputProgram lit = program;
   lit.blackout = false;
+  lit.desks.clear();  // Luxrig's own, whatever a desk makes of it
   lit.levels_at(now, level);
   return level;
 }
@@ -110,6 +111,7 @@ void ShowController::State::fade(Time now, std::vector<double> from, std::vector
   program.duration = from_seconds(seconds);
   program.curve = curve;
   ++program.revision;
+  guard_against_desks(now);
   samples.restart(program.start + program.duration + from_seconds(rig.control.settle_s));
   drifted = 0;
 }
@@ -231,7 +233,8 @@ void ShowController::State::fade_to_safe(Time now) {
 /// When every living meter has its sample: learn from it. Lost ones take part as soon as they have one, since a
 /// believable sample is how a meter that was not believed comes back.
 void ShowController::State::take_sample(Time now) {
-  if (program.blackout || !program.done(now) || health.light_lost()) return;  // not the light that was asked for
+  if (program.blackout || shared || !program.done(now) || health.light_lost())
+    return;  // not the light that was asked for
   if (phase != Phase::measuring && now - sampled_at < kSampleEvery) return;
   std::vector<LuxReading> readings;
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
@@ -357,6 +360,7 @@ void ShowController::State::advance(Time now) {
         if (turns(f)) program.from_level[f] = program.to_level[f] = 0;
     return start_cue(now, *cue);
   }
+  if (shared) return;            // a desk's light says nothing about the plan's
   if (program.blackout) return;  // nothing to measure in the dark; lifting it fades anew
   switch (phase) {
     case Phase::fading:
@@ -463,6 +467,7 @@ void ShowController::step(Time now) {
   State& state = *state_;
   if (now < state.last) return;
   state.last = now;
+  state.step_desks(now);
   state.take_sample(now);
   state.look_at_failures(now);
   state.advance(now);

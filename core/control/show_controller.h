@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "core/control/desk_follower.h"
 #include "core/control/devices.h"
 #include "core/control/output_program.h"
 #include "core/rig/rig.h"
@@ -64,6 +65,16 @@ struct FixtureStatus {
   double gain = 1, gain_standard_error = 0;  ///< estimated true output over rated
 };
 
+struct DeskStatus {
+  std::string name;  ///< of the part
+  DeskMode mode = DeskMode::merge;
+  DeskPhase phase = DeskPhase::listening;
+  Time since{};        ///< when that began
+  std::string source;  ///< empty: nobody has been heard
+  bool heard = false;  ///< it is there now
+  bool silent = false;
+};
+
 struct ShowStatus {
   Phase phase = Phase::idle;
   std::string detail;  ///< one line for a person
@@ -75,6 +86,7 @@ struct ShowStatus {
   std::vector<PointStatus> points;
   std::vector<std::optional<LuxReading>> luxmeters;  ///< last believed reading
   std::vector<Alarm> alarms;
+  std::vector<DeskStatus> desks;
 };
 
 class ShowController {
@@ -99,6 +111,13 @@ class ShowController {
 
   /// Fades to the safe look and stays there until the next apply (a clean stop).
   void go_safe(Time now);
+
+  /// From now on a lighting desk has a say in these fixtures, by these rules. Returns the index for desk(). Limits hold
+  /// for what it wants, too. While it has a say no meter is believed, since the light is not what was worked out.
+  std::size_t add_desk(const DeskRules& rules, const DeskPart& part);
+  void desk(Time now, std::size_t index, const DeskFrame& frame);
+  /// Desks that are back and wait to be asked get the light, by fade.
+  void hand_back(Time now);
 
   void reading(Time now, const LuxReading& reading);
   void health(Time now, std::span<const Health> devices);

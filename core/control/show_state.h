@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/control/desk_follower.h"
 #include "core/control/gain_estimator.h"
 #include "core/control/health_watch.h"
 #include "core/control/meter_samples.h"
@@ -31,6 +32,10 @@ struct ShowController::State {
   HealthWatch health;
   MeterSamples samples;
   OutputProgram program;
+
+  std::vector<DeskFollower> desks;  ///< one for each of program.desks
+  std::vector<std::string> desk_names;
+  bool shared = false;  ///< a desk had a say in the light when last looked
 
   Phase phase = Phase::idle;
   Time phase_since{};
@@ -76,6 +81,15 @@ struct ShowController::State {
   void doubt_the_past(Time now);
   void look_at_failures(Time now);
   void advance(Time now);
+
+  // Lighting desks (show_desks.cpp).
+  void guard_against_desks(Time now);
+  void put_desk(std::size_t index);
+  /// Calls back with what goes out now but for a blackout, which is none of a desk's business.
+  template <class Call>
+  bool with_present_light(Time now, Call call);
+  [[nodiscard]] bool desk_shares(Time now) const;
+  void step_desks(Time now);
 
   // What is known (show_status.cpp).
   [[nodiscard]] std::vector<double> safe_levels() const;

@@ -106,6 +106,7 @@ std::string ShowController::State::detail(Time now) const {
       text += asked_safe ? ", as asked" : failing ? ": " + failure : "; everything is back, going on in a moment";
       break;
   }
+  if (shared) text = "a desk has a say in the light; the plan: " + text;
   return program.blackout ? "blackout (" + text + ")" : text;
 }
 
@@ -120,8 +121,10 @@ ShowStatus ShowController::State::status(Time now) const {
 
   std::vector<double> level(rig.fixtures.size());
   program.levels_at(now, level);
+  std::vector<PanTilt> joints(rig.fixtures.size());
+  program.joints_at(now, joints);
   for (std::size_t i = 0; i < rig.fixtures.size(); ++i) {
-    status.fixtures.push_back({program.joints[i], level[i], drive_from_level(rig.fixtures[i].dimmer_curve, level[i]),
+    status.fixtures.push_back({joints[i], level[i], drive_from_level(rig.fixtures[i].dimmer_curve, level[i]),
                                program.to_level[i], estimator.gain(i), estimator.gain_standard_error(i)});
   }
   const bool settled = !program.blackout && program.done(now);
@@ -153,6 +156,24 @@ ShowStatus ShowController::State::status(Time now) const {
                      "are being dimmed; look for light that is not the rig's",
                      point.name, breach.most_lx, *point.max_lx),
          breach.since});
+  }
+  for (std::size_t d = 0; d < desks.size(); ++d) {
+    const DeskFollower& desk = desks[d];
+    const bool heard = desk.presence() == DeskPresence::present;
+    status.desks.push_back(
+        {desk_names[d], desk.mode(), desk.phase(), desk.since(), desk.source(), heard, desk.blend().silent});
+    if (desk.phase() == DeskPhase::own && !heard && !desk.source().empty()) {
+      status.alarms.push_back(
+          {false, desk_names[d],
+           fmt::format("desk \"{}\" is lost: {} is Luxrig's again; look after the desk or its cable", desk.source(),
+                       desk_names[d]),
+           desk.since()});
+    } else if (desk.phase() == DeskPhase::waiting) {
+      status.alarms.push_back(
+          {false, desk_names[d],
+           fmt::format("desk \"{}\" is back and waits to get {}: luxrig hand-back", desk.source(), desk_names[d]),
+           desk.since()});
+    }
   }
   return status;
 }

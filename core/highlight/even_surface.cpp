@@ -14,7 +14,7 @@
 namespace luxrig {
 namespace {
 
-constexpr double kMostPoints = 1e6, kMostPieces = 3e7;
+constexpr double kMostPoints = 1e6, kMostSlivers = 3e7;
 constexpr double kSpacing = 0.2;                  ///< of the scale: no two points that face alike are nearer
 constexpr double kWidestSpacing = 0.35;           ///< where that would be too many: rings need it
 constexpr double kRing = 0.7;                     ///< of the scale: what a point is compared with is so far away
@@ -116,7 +116,7 @@ Result<EvenSurface> even_surface(const TargetSurface& mesh, const EvenSurfaceOpt
   const double apart_m = std::max(kSpacing * options.scale_m, least_apart_m), distance_m = kRing * options.scale_m;
   const double piece_m = 0.75 * apart_m;
   // Long thin facets need many pieces for little area.
-  if (const double pieces = pieces_of_surface(mesh, piece_m, piece_m); pieces > kMostPieces)
+  if (const double pieces = pieces_of_surface(mesh, piece_m, piece_m); pieces > kMostSlivers)
     return refusal(
         fmt::format("its {} facets are so long that they would have to be cut into {:.1g} pieces at a scale of "
                     "{:.3g} m: take a larger scale, or mesh it anew with even triangles",

@@ -140,6 +140,74 @@ void DmxPatchbay::encode(const Entry& entry) {
   }
 }
 
+DmxSlots DmxPatchbay::used_slots(std::size_t universe) const {
+  DmxSlots used{};
+  for (const auto& [index, entry] : entries_) {
+    if (entry.universe != universe) continue;
+    for (std::size_t i = 0; i < entry.patch.slots.size(); ++i) {
+      if (entry.patch.slots[i].use == SlotUse::unused) continue;
+      used[static_cast<std::size_t>(entry.patch.address - 1) + i] = 1;
+    }
+  }
+  return used;
+}
+
+std::vector<std::size_t> DmxPatchbay::fixtures_of(std::size_t universe) const {
+  std::vector<std::size_t> fixtures;
+  for (const auto& [index, entry] : entries_) {
+    if (entry.universe == universe) fixtures.push_back(index);
+  }
+  return fixtures;
+}
+
+/// Share 0…1 of level or travel that the slots of a cell carry; nothing when one of them is not given.
+std::optional<double> DmxPatchbay::share_in_cell(const Entry& entry, std::size_t coarse_slot, const DmxSlots& slots,
+                                                 const std::bitset<kDmxSlots>& given) {
+  const DmxSlot& coarse = entry.patch.slots[coarse_slot];
+  std::uint32_t value = 0;
+  for (std::size_t i = 0; i < entry.patch.slots.size(); ++i) {
+    const DmxSlot& slot = entry.patch.slots[i];
+    if (slot.use >= SlotUse::constant || slot.cell != coarse.cell) continue;
+    const auto [use, byte] = byte_of_value(slot.use);
+    if (use != coarse.use) continue;
+    const std::size_t at = static_cast<std::size_t>(entry.patch.address - 1) + i;
+    if (!given[at]) return std::nullopt;
+    value |= static_cast<std::uint32_t>(slots[at]) << (8 * (entry.bytes[coarse_slot] - 1 - byte));
+  }
+  const double share = value / static_cast<double>((1u << (8 * entry.bytes[coarse_slot])) - 1);
+  return share_of_travel(share, coarse.travel.at_start, coarse.travel.at_end);
+}
+
+std::vector<DeskCommand> DmxPatchbay::decode(std::size_t universe, const DmxSlots& slots,
+                                             const std::bitset<kDmxSlots>& given) const {
+  std::vector<DeskCommand> commands;
+  for (const auto& [index, entry] : entries_) {
+    if (entry.universe != universe) continue;
+    // Of several cells the highest counts: the fixture has one level here.
+    const auto value_of = [&, &of = entry](SlotUse use) {
+      std::optional<double> highest;
+      for (std::size_t i = 0; i < of.patch.slots.size(); ++i) {
+        if (of.patch.slots[i].use != use) continue;
+        const auto share = share_in_cell(of, i, slots, given);
+        if (!share) return std::optional<double>();
+        highest = std::max(highest.value_or(0), *share);
+      }
+      return highest;
+    };
+    const auto drive = value_of(SlotUse::dimmer);
+    if (!drive) continue;
+    DeskCommand command{index, *drive, std::nullopt};
+    const auto pan = value_of(SlotUse::pan), tilt = value_of(SlotUse::tilt);
+    if (entry.moves && pan && tilt) {
+      const PanTiltRange& range = entry.range;
+      command.joints = PanTilt{range.pan_min_rad + *pan * (range.pan_max_rad - range.pan_min_rad),
+                               range.tilt_min_rad + *tilt * (range.tilt_max_rad - range.tilt_min_rad)};
+    }
+    commands.push_back(command);
+  }
+  return commands;
+}
+
 std::vector<Problem> check_dmx_patch(const Rig& rig, std::size_t bus, int lowest_universe, int highest_universe) {
   std::vector<Problem> problems;
   const std::string& name = rig.buses[bus].name;

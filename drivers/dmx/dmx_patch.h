@@ -5,8 +5,10 @@
 /// leaves out, so none is sent. A 16-bit value is encoded once, so its two bytes always travel in the same frame.
 
 #include <array>
+#include <bitset>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -47,6 +49,14 @@ class DmxPatchbay {
 
   /// Every universe that a fixture of the bus uses, in ascending order.
   [[nodiscard]] std::span<const DmxUniverse> universes() const { return universes_; }
+  /// Which slots of a universe a fixture of this bus uses and sends, as 1; index as in universes().
+  [[nodiscard]] DmxSlots used_slots(std::size_t universe) const;
+  /// Fixtures of a universe, ascending; index as in universes().
+  [[nodiscard]] std::vector<std::size_t> fixtures_of(std::size_t universe) const;
+  /// What slots that somebody else sends would make these fixtures do; a fixture whose dimmer is not `given` is left
+  /// out, and so are joints of which a part is not. The inverse of what universes() holds, to half a step.
+  [[nodiscard]] std::vector<DeskCommand> decode(std::size_t universe, const DmxSlots& slots,
+                                                const std::bitset<kDmxSlots>& given) const;
   [[nodiscard]] bool has_heads() const { return has_heads_; }
 
  private:
@@ -61,6 +71,8 @@ class DmxPatchbay {
     PanTilt joints;
   };
   void encode(const Entry& entry);
+  [[nodiscard]] static std::optional<double> share_in_cell(const Entry& entry, std::size_t coarse_slot,
+                                                           const DmxSlots& slots, const std::bitset<kDmxSlots>& given);
   [[nodiscard]] Fault invalid(std::size_t fixture, std::string detail) const;
 
   std::string bus_;

@@ -43,6 +43,9 @@ class DatagramChannel {
   /// Hands one datagram to the network. Success says nothing about arrival.
   virtual Result<void> send(const SocketAddress& to, std::span<const std::uint8_t> bytes) = 0;
 
+  /// Hears what is sent to a multicast group from now on, until closed. Idempotent.
+  virtual Result<void> join(std::uint32_t group) = 0;
+
   /// What the network said about earlier datagrams (port closed, host unreachable), oldest first; each once.
   virtual std::optional<Fault> take_error() = 0;
 

@@ -9,6 +9,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <set>
 
 #include "drivers/io/os_fault.h"
 
@@ -46,6 +47,9 @@ class Udp final : public DatagramChannel {
   void close() override {
     if (fd_ >= 0) ::close(fd_);
     fd_ = -1;
+    for (const int fd : further_) ::close(fd);
+    further_.clear();
+    joined_.clear();
   }
 
   bool is_open() const override { return fd_ >= 0; }
@@ -61,6 +65,26 @@ class Udp final : public DatagramChannel {
       if (attempt == 0 && (error == ECONNREFUSED || error == EHOSTUNREACH)) continue;
       return tl::unexpected(os_fault("sending to " + text_of(to), error));
     }
+  }
+
+  Result<void> join(std::uint32_t group) override {
+    if (joined_.contains(group)) return {};
+    auto request = interface_request();
+    if (!request) return tl::unexpected(request.error());
+    request->imr_multiaddr.s_addr = htonl(group);
+    const auto add = [&](int fd) {
+      return ::setsockopt(fd, IPPROTO_IP, IP_ADD_MEMBERSHIP, &*request, sizeof(*request)) == 0;
+    };
+    const int last = further_.empty() ? fd_ : further_.back();
+    bool added = add(last);
+    // A socket may be in so many groups only (net.ipv4.igmp_max_memberships, 20): then another one hears the rest.
+    if (!added && errno == ENOBUFS) {
+      if (auto opened = open_another(); !opened) return opened;
+      added = add(further_.back());
+    }
+    if (!added) return tl::unexpected(os_fault("joining the group " + text_of(group), errno));
+    joined_.insert(group);
+    return {};
   }
 
   std::optional<Fault> take_error() override {
@@ -87,18 +111,53 @@ class Udp final : public DatagramChannel {
   }
 
   std::optional<Datagram> receive() override {
-    // Twice, since a pending error is reported once in place of the datagram behind it.
-    for (int attempt = 0; attempt < 2; ++attempt) {
-      std::array<std::uint8_t, 2048> buffer{};
-      sockaddr_in from{};
-      socklen_t size = sizeof(from);
-      const auto got = ::recvfrom(fd_, buffer.data(), buffer.size(), 0, reinterpret_cast<sockaddr*>(&from), &size);
-      if (got >= 0) return Datagram{from_sockaddr(from), {buffer.begin(), buffer.begin() + got}};
+    if (auto datagram = receive_by(fd_)) return datagram;
+    for (const int fd : further_) {
+      if (auto datagram = receive_by(fd)) return datagram;
     }
     return std::nullopt;
   }
 
  private:
+  static std::optional<Datagram> receive_by(int fd) {
+    // Twice, since a pending error is reported once in place of the datagram behind it.
+    for (int attempt = 0; attempt < 2; ++attempt) {
+      std::array<std::uint8_t, 2048> buffer{};
+      sockaddr_in from{};
+      socklen_t size = sizeof(from);
+      const auto got = ::recvfrom(fd, buffer.data(), buffer.size(), 0, reinterpret_cast<sockaddr*>(&from), &size);
+      if (got >= 0) return Datagram{from_sockaddr(from), {buffer.begin(), buffer.begin() + got}};
+    }
+    return std::nullopt;
+  }
+
+  Result<void> open_another() {
+    const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+    if (fd < 0) return tl::unexpected(os_fault("opening a UDP socket", errno));
+    further_.push_back(fd);
+    const int yes = 1, no = 0;
+    const sockaddr_in local = to_sockaddr({INADDR_ANY, settings_.local_port});
+    if (::setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes)) != 0 ||
+        ::setsockopt(fd, IPPROTO_IP, IP_MULTICAST_ALL, &no, sizeof(no)) != 0 ||
+        ::bind(fd, reinterpret_cast<const sockaddr*>(&local), sizeof(local)) != 0) {
+      return tl::unexpected(os_fault("listening on UDP port " + std::to_string(settings_.local_port), errno));
+    }
+    return {};
+  }
+
+  /// The interface of the settings; of no interface in particular when they name none.
+  Result<ip_mreqn> interface_request() const {
+    ip_mreqn request{};
+    if (settings_.multicast_interface.empty()) return request;
+    if (const auto address = parse_ipv4(settings_.multicast_interface)) {
+      request.imr_address.s_addr = htonl(*address);
+      return request;
+    }
+    request.imr_ifindex = static_cast<int>(::if_nametoindex(settings_.multicast_interface.c_str()));
+    if (request.imr_ifindex != 0) return request;
+    return tl::unexpected(os_fault("looking up the interface \"" + settings_.multicast_interface + "\"", errno));
+  }
+
   Result<void> set(int level, int option, int value, const char* doing) const {
     if (::setsockopt(fd_, level, option, &value, sizeof(value)) == 0) return {};
     return tl::unexpected(os_fault(doing, errno));
@@ -116,20 +175,15 @@ class Udp final : public DatagramChannel {
       if (auto done = set(SOL_SOCKET, SO_REUSEADDR, 1, "sharing the local port"); !done) return done;
     }
     if (!settings_.multicast_interface.empty()) {
-      ip_mreqn request{};
-      if (const auto address = parse_ipv4(settings_.multicast_interface)) {
-        request.imr_address.s_addr = htonl(*address);
-      } else {
-        request.imr_ifindex = static_cast<int>(::if_nametoindex(settings_.multicast_interface.c_str()));
-        if (request.imr_ifindex == 0) {
-          return tl::unexpected(os_fault("looking up the interface \"" + settings_.multicast_interface + "\"", errno));
-        }
-      }
-      if (::setsockopt(fd_, IPPROTO_IP, IP_MULTICAST_IF, &request, sizeof(request)) != 0) {
+      const auto request = interface_request();
+      if (!request) return tl::unexpected(request.error());
+      if (::setsockopt(fd_, IPPROTO_IP, IP_MULTICAST_IF, &*request, sizeof(*request)) != 0) {
         return tl::unexpected(os_fault("using the interface \"" + settings_.multicast_interface + "\"", errno));
       }
     }
     if (settings_.local_port != 0) {
+      // Only the groups joined here: else a group that another program of this host has joined comes along.
+      if (auto done = set(IPPROTO_IP, IP_MULTICAST_ALL, 0, "limiting multicast to its groups"); !done) return done;
       const sockaddr_in local = to_sockaddr({INADDR_ANY, settings_.local_port});
       if (::bind(fd_, reinterpret_cast<const sockaddr*>(&local), sizeof(local)) != 0) {
         return tl::unexpected(os_fault("listening on UDP port " + std::to_string(settings_.local_port), errno));
@@ -140,6 +194,8 @@ class Udp final : public DatagramChannel {
 
   UdpSettings settings_;
   int fd_ = -1;
+  std::vector<int> further_;  ///< sockets for groups beyond what one may join
+  std::set<std::uint32_t> joined_;
 };
 
 }  // namespace
@@ -160,6 +216,19 @@ std::string text_of(std::uint32_t ipv4) {
 }
 
 std::string text_of(const SocketAddress& address) { return text_of(address.ipv4) + ":" + std::to_string(address.port); }
+
+std::uint32_t local_address_towards(std::uint32_t ipv4) {
+  const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  if (fd < 0) return 0;
+  // To connect a UDP socket only looks up the route.
+  const sockaddr_in to = to_sockaddr({ipv4, 9});
+  sockaddr_in local{};
+  socklen_t size = sizeof(local);
+  const bool known = ::connect(fd, reinterpret_cast<const sockaddr*>(&to), sizeof(to)) == 0 &&
+                     ::getsockname(fd, reinterpret_cast<sockaddr*>(&local), &size) == 0;
+  ::close(fd);
+  return known ? from_sockaddr(local).ipv4 : 0;
+}
 
 std::unique_ptr<DatagramChannel> make_udp(UdpSettings settings) { return std::make_unique<Udp>(std::move(settings)); }
 

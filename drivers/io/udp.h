@@ -12,8 +12,11 @@ struct UdpSettings {
   bool share_local_port = false;    ///< SO_REUSEADDR: other programs of this host may listen there as well
   bool broadcast = false;           ///< may send to broadcast addresses
   int multicast_ttl = 8;            ///< 1…255 hops; E1.31 asks for at most 8 unless told otherwise
-  std::string multicast_interface;  ///< name ("eth0") or IPv4 address; empty: the system's choice
+  std::string multicast_interface;  ///< name ("eth0") or IPv4 address, to send and join by; empty: the system's choice
 };
+
+/// The address of this host from which packets to that address go; 0 when there is no way. Sends nothing.
+[[nodiscard]] std::uint32_t local_address_towards(std::uint32_t ipv4);
 
 [[nodiscard]] std::unique_ptr<DatagramChannel> make_udp(UdpSettings settings);
 

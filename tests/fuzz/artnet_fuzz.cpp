@@ -7,9 +7,9 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace luxrig::artnet;
   if (const auto reply = decode_poll_reply({data, size})) {
-    if (reply->output_port_addresses.size() > 4) std::abort();
-    for (const int port_address : reply->output_port_addresses) {
-      if (port_address < 0 || port_address > kHighestPortAddress) std::abort();
+    if (reply->outputs.size() > 4) std::abort();
+    for (const PortOutput& port : reply->outputs) {
+      if (port.port_address < 0 || port.port_address > kHighestPortAddress) std::abort();
     }
   }
   if (const auto dmx = decode_dmx({data, size})) {

@@ -100,6 +100,10 @@ int run_blackout(const ClientArguments& arguments, bool on) {
   return post(arguments, "/api/blackout", json{{"on", on}}.dump(), on ? "blackout" : "blackout lifted");
 }
 
+int run_hand_back(const ClientArguments& arguments) {
+  return post(arguments, "/api/hand-back", "{}", "desks that wait for the light get it");
+}
+
 int run_apply(const ClientArguments& arguments, const std::filesystem::path& plan) {
   const auto body = read_file(plan);
   if (!body) return report(body.error());

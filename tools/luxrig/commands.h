@@ -45,6 +45,7 @@ struct ClientArguments {
 };
 int run_status(const ClientArguments& arguments);
 int run_blackout(const ClientArguments& arguments, bool on);
+int run_hand_back(const ClientArguments& arguments);
 int run_apply(const ClientArguments& arguments, const std::filesystem::path& plan);
 
 /// Writes text to a file so that a reader sees the old content or the new, never half; a fault when it cannot.

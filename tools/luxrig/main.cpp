@@ -146,6 +146,10 @@ int main(int argc, char** argv) {
   add_client(*command, client);
   command->callback([&] { code = run_blackout(client, !lift); });
 
+  command = app.add_subcommand("hand-back", "lighting desks that are back and wait for it get the light");
+  add_client(*command, client);
+  command->callback([&] { code = run_hand_back(client); });
+
   BenchOptions bench;
   std::string suite;
   command = app.add_subcommand("bench", "run time against error, on a named suite");

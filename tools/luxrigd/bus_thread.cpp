@@ -14,13 +14,16 @@ constexpr std::size_t kMostUnsentReadings = 1000;
 
 }  // namespace
 
-BusThread::BusThread(const Rig& rig, std::size_t bus, std::unique_ptr<Driver> driver, ProgramMailbox& programs)
+BusThread::BusThread(const Rig& rig, std::size_t bus, std::unique_ptr<Driver> driver, ProgramMailbox& programs,
+                     std::size_t first_desk)
     : rig_(rig),
       driver_(std::move(driver)),
       programs_(programs),
       bounds_(driver_->bounds()),
+      first_desk_(first_desk),
       statistics_(bounds_.write_period),
-      levels_(rig.fixtures.size()) {
+      levels_(rig.fixtures.size()),
+      joints_(rig.fixtures.size()) {
   for (std::size_t i = 0; i < rig.fixtures.size(); ++i) {
     if (rig.fixtures[i].bus != bus) continue;
     fixtures_.push_back(i);
@@ -28,6 +31,7 @@ BusThread::BusThread(const Rig& rig, std::size_t bus, std::unique_ptr<Driver> dr
     if (rig.fixtures[i].moves) aim_commands_.push_back({i, rig.fixtures[i].joints});
   }
   writes_ = driver_->level_output() != nullptr && !fixtures_.empty();
+  if (LevelInput* input = driver_->level_input()) desks_ = input->parts().size();
 }
 
 BusThread::~BusThread() { stop(); }
@@ -59,6 +63,7 @@ void BusThread::run(const std::stop_token& stop) {
     if (writes_) {
       if (last_start != Time{}) statistics_.record(at - last_start);
       last_start = at;
+      listen(at);
       write(at);
     }
     if (driver_->lux_reader() != nullptr && at >= next_read) {
@@ -77,6 +82,14 @@ void BusThread::run(const std::stop_token& stop) {
   driver_->deactivate(now());
 }
 
+void BusThread::listen(Time at) {
+  LevelInput* input = driver_->level_input();
+  if (input == nullptr) return;
+  const std::span<const DeskFrame> frames = input->listen(at);
+  const std::unique_lock lock(mutex_, std::try_to_lock);
+  if (lock) desk_frames_.assign(frames.begin(), frames.end());
+}
+
 void BusThread::write(Time at) {
   programs_.take(program_);
   if (program_.revision == 0) return;  // nobody has said yet what the light shall be: leave it as it is
@@ -84,7 +97,13 @@ void BusThread::write(Time at) {
   for (LevelCommand& command : level_commands_) {
     command.drive = drive_from_level(rig_.fixtures[command.fixture].dimmer_curve, levels_[command.fixture]);
   }
-  for (AimCommand& command : aim_commands_) command.joints = program_.joints[command.fixture];
+  program_.joints_at(at, joints_);
+  for (AimCommand& command : aim_commands_) command.joints = joints_[command.fixture];
+  if (LevelInput* input = driver_->level_input()) {
+    for (std::size_t part = 0; part < desks_ && first_desk_ + part < program_.desks.size(); ++part) {
+      input->set_silent(at, part, program_.desks[first_desk_ + part].silent);
+    }
+  }
   // Faults show in the health report.
   if (Mover* mover = driver_->mover(); mover != nullptr && !aim_commands_.empty()) (void)mover->move(at, aim_commands_);
   (void)driver_->level_output()->write(at, level_commands_);
@@ -104,6 +123,11 @@ void BusThread::publish_health(Time at) {
   auto report = driver_->health(at);
   const std::unique_lock lock(mutex_, std::try_to_lock);
   if (lock) health_ = std::move(report);
+}
+
+std::vector<DeskFrame> BusThread::desk_frames() const {
+  const std::lock_guard lock(mutex_);
+  return desk_frames_;
 }
 
 std::vector<LuxReading> BusThread::take_readings() {

@@ -17,7 +17,9 @@ namespace luxrig {
 class BusThread {
  public:
   /// The rig and the mailbox must outlive the thread.
-  BusThread(const Rig& rig, std::size_t bus, std::unique_ptr<Driver> driver, ProgramMailbox& programs);
+  /// first_desk: where the parts of its driver's input begin in OutputProgram::desks.
+  BusThread(const Rig& rig, std::size_t bus, std::unique_ptr<Driver> driver, ProgramMailbox& programs,
+            std::size_t first_desk = 0);
   ~BusThread();  ///< stops, and lets the driver say goodbye
 
   void start();
@@ -26,6 +28,9 @@ class BusThread {
   /// Readings since the last call, and the newest health report.
   std::vector<LuxReading> take_readings();
   [[nodiscard]] std::vector<Health> health() const;
+  /// What desks want now, a frame for each part of its driver's input; empty without one, or before it was listened to.
+  [[nodiscard]] std::vector<DeskFrame> desk_frames() const;
+  [[nodiscard]] std::size_t first_desk() const { return first_desk_; }
   [[nodiscard]] const CycleStatistics& statistics() const { return statistics_; }
   [[nodiscard]] bool realtime() const { return realtime_; }
   [[nodiscard]] bool writes() const { return writes_; }
@@ -33,6 +38,7 @@ class BusThread {
  private:
   void run(const std::stop_token& stop);
   void write(Time at);
+  void listen(Time at);
   void read(Time at);
   void publish_health(Time at);
 
@@ -40,19 +46,22 @@ class BusThread {
   std::unique_ptr<Driver> driver_;
   ProgramMailbox& programs_;
   DriverBounds bounds_;
+  std::size_t first_desk_, desks_ = 0;
   CycleStatistics statistics_;
   bool writes_ = false;
   std::atomic<bool> realtime_{false};
 
   std::vector<std::size_t> fixtures_;  ///< of the rig, on this bus
   std::vector<double> levels_;         ///< of all fixtures
+  std::vector<PanTilt> joints_;        ///< of all fixtures
   std::vector<LevelCommand> level_commands_;
   std::vector<AimCommand> aim_commands_;
   OutputProgram program_;
 
-  mutable std::mutex mutex_;  ///< guards the two below; the thread only tries it
+  mutable std::mutex mutex_;  ///< guards the three below; the thread only tries it
   std::vector<LuxReading> readings_;
   std::vector<Health> health_;
+  std::vector<DeskFrame> desk_frames_;
   std::vector<LuxReading> unsent_readings_;  ///< the thread's own, until the mutex is free
 
   std::jthread thread_;

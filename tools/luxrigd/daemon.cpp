@@ -45,7 +45,15 @@ Result<int> Daemon::start() {
     std::optional<Redirect> redirect;
     if (const auto it = options_.redirects.find(rig.buses[b].name); it != options_.redirects.end())
       redirect = it->second;
-    buses_.push_back(std::make_unique<BusThread>(rig, b, entry->make(rig, b, redirect), programs_));
+    auto driver = entry->make(rig, b, redirect);
+    const std::size_t first_desk = desks_;
+    if (const LevelInput* input = driver->level_input()) {
+      for (const DeskPart& part : input->parts()) {
+        controller_.add_desk(input->rules(), part);
+        ++desks_;
+      }
+    }
+    buses_.push_back(std::make_unique<BusThread>(rig, b, std::move(driver), programs_, first_desk));
   }
   for (const auto& bus : buses_) bus->start();
   return port;
@@ -148,6 +156,7 @@ HttpHandlers Daemon::handlers() {
     }
     return remember();
   };
+  handlers.hand_back = [this] { on_control_thread([this](Time at) { controller_.hand_back(at); }); };
   handlers.apply = [this](const std::string& plan_json) { return apply_json(plan_json); };
   return handlers;
 }
@@ -166,6 +175,10 @@ void Daemon::tick() {
   devices_.clear();
   for (const auto& bus : buses_) {
     for (const LuxReading& reading : bus->take_readings()) controller_.reading(at, reading);
+    const auto frames = bus->desk_frames();
+    for (std::size_t part = 0; part < frames.size(); ++part) {
+      controller_.desk(at, bus->first_desk() + part, frames[part]);
+    }
     const auto health = bus->health();
     devices_.insert(devices_.end(), health.begin(), health.end());
   }

@@ -78,6 +78,7 @@ class Daemon {
   Time started_{};
   Time last_publish_{};
   std::uint64_t sent_revision_ = 0;
+  std::size_t desks_ = 0;
   bool stopped_ = false;
 
   ShowStatus status_;            // control thread only

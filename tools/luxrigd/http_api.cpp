@@ -107,6 +107,10 @@ struct HttpApi::State {
       if (const auto done = handlers.blackout(on); !done) return refuse(response, 500, done.error().detail);
       response.set_content(nlohmann::json{{"blackout", on}}.dump(), "application/json");
     });
+    server.Post("/api/hand-back", [this](const httplib::Request&, httplib::Response& response) {
+      handlers.hand_back();
+      response.set_content("{\"handed_back\":true}", "application/json");
+    });
     server.Post("/api/apply", [this](const httplib::Request& request, httplib::Response& response) {
       const auto done = handlers.apply(request.body);
       if (done) {

@@ -16,6 +16,7 @@ struct HttpHandlers {
   std::string room_json;
   std::string room_png;
   std::function<Result<void>(bool on)> blackout;
+  std::function<void()> hand_back;  ///< desks that wait for it get the light
   std::function<Checked<void>(const std::string& plan_json)> apply;
 };
 

@@ -117,6 +117,16 @@ std::string status_json(const StatusInput& input) {
                       {"text", alarm.text},
                       {"since_s", to_seconds(input.now - alarm.since)}});
   }
+  json& desks = out["desks"] = json::array();
+  for (const DeskStatus& desk : show.desks) {
+    desks.push_back({{"name", desk.name},
+                     {"mode", name_of(desk.mode)},
+                     {"phase", name_of(desk.phase)},
+                     {"since_s", to_seconds(input.now - desk.since)},
+                     {"source", desk.source},
+                     {"heard", desk.heard},
+                     {"silent", desk.silent}});
+  }
   out["output"] = {{"rate_hz", input.output.rate_hz}, {"frames", input.output.frames},
                    {"p50_us", input.output.p50_us},   {"p99_us", input.output.p99_us},
                    {"max_us", input.output.max_us},   {"realtime", input.output.realtime}};

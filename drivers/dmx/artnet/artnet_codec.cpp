@@ -14,7 +14,7 @@ constexpr std::size_t kOpCode = 8;
 constexpr std::size_t kProtocol = 10;
 constexpr std::array<std::uint8_t, 8> kId = {'A', 'r', 't', '-', 'N', 'e', 't', 0};
 constexpr std::uint16_t kProtocolVersion = 14;
-constexpr std::uint16_t kOpPoll = 0x2000, kOpPollReply = 0x2100, kOpDmx = 0x5000;
+constexpr std::uint16_t kOpPoll = 0x2000, kOpPollReply = 0x2100, kOpDmx = 0x5000, kOpSync = 0x5200, kOpAddress = 0x6000;
 
 // ArtDmx
 constexpr std::size_t kSequence = 12;
@@ -28,10 +28,21 @@ constexpr std::size_t kMostSlots = 512;
 // ArtPoll
 constexpr std::size_t kPollFlags = 12;
 constexpr std::size_t kPollSize = 14;
-constexpr std::uint8_t kReplyOnChange = 0x02;
+constexpr std::uint8_t kReplyOnChange = 0x02, kTargeted = 0x20;
+constexpr std::size_t kTargetTop = 14, kTargetBottom = 16, kTargetedPollSize = 18;
+
+// ArtSync
+constexpr std::size_t kSyncPacketSize = 14;
+
+// ArtAddress
+constexpr std::size_t kAddressSize = 107;
+constexpr std::size_t kAddressNet = 12, kAddressBind = 13, kAddressSwitches = 96, kAddressSwitchCount = 8;
+constexpr std::size_t kAddressSub = 104, kAddressAcnPriority = 105, kAddressCommand = 106;
+constexpr std::uint8_t kNoChange = 0x7F, kPriorityUnchanged = 255;
 
 // ArtPollReply
 constexpr std::size_t kReplySize = 239, kShortestReply = 207;
+constexpr std::size_t kIp = 10, kReplyPort = 14, kFirmware = 16;
 constexpr std::size_t kNetSwitch = 18;
 constexpr std::size_t kSubSwitch = 19;
 constexpr std::size_t kShortName = 26, kShortNameSize = 18;
@@ -39,10 +50,19 @@ constexpr std::size_t kLongName = 44, kLongNameSize = 64;
 constexpr std::size_t kNodeReport = 108, kNodeReportSize = 64;
 constexpr std::size_t kNumPorts = 172;
 constexpr std::size_t kPortTypes = 174;
+constexpr std::size_t kOem = 20, kStatus1 = 23;
+constexpr std::size_t kGoodOutput = 182;
 constexpr std::size_t kSwOut = 190;
+constexpr std::size_t kMac = 201;
+constexpr std::size_t kBindIp = 207;
 constexpr std::size_t kBindIndex = 211;
 constexpr std::size_t kMostPorts = 4;
+constexpr std::size_t kStatus2 = 212, kStatus3 = 217;
 constexpr std::uint8_t kPortPutsOut = 0x80;
+constexpr std::uint8_t kSending = 0x80, kMerging = 0x08, kMergesLtp = 0x02;
+constexpr std::uint8_t kLongPortAddresses = 0x08;  // Status2: 15 bits, Art-Net 3 and later
+constexpr std::uint8_t kIndicatorsNormal = 0xC0;   // Status1, bits 7 and 6
+constexpr std::uint8_t kOemUnknown = 0xFF;
 
 std::vector<std::uint8_t> header(std::size_t size, std::uint16_t op_code) {
   std::vector<std::uint8_t> out(size, 0);
@@ -108,6 +128,54 @@ std::vector<std::uint8_t> encode_poll() {
   return out;
 }
 
+std::optional<Poll> decode_poll(std::span<const std::uint8_t> bytes) {
+  if (bytes.size() < kPollSize || !has_header(bytes, kOpPoll)) return std::nullopt;
+  if (bytes[kProtocol] != 0 || bytes[kProtocol + 1] < kProtocolVersion) return std::nullopt;
+  Poll poll;
+  poll.reply_on_change = (bytes[kPollFlags] & kReplyOnChange) != 0;
+  if ((bytes[kPollFlags] & kTargeted) != 0 && bytes.size() >= kTargetedPollSize) {
+    poll.highest_port_address = bytes[kTargetTop] << 8 | bytes[kTargetTop + 1];
+    poll.lowest_port_address = bytes[kTargetBottom] << 8 | bytes[kTargetBottom + 1];
+  }
+  return poll;
+}
+
+std::vector<std::uint8_t> encode_sync() { return header(kSyncPacketSize, kOpSync); }
+
+bool is_sync(std::span<const std::uint8_t> bytes) {
+  return bytes.size() >= kSyncPacketSize && has_header(bytes, kOpSync) && bytes[kProtocol] == 0 &&
+         bytes[kProtocol + 1] >= kProtocolVersion;
+}
+
+std::vector<std::uint8_t> encode(const Address& packet) {
+  LUXRIG_CHECK(packet.port >= 0 && packet.port < static_cast<int>(kMostPorts), "port {}", packet.port);
+  std::vector<std::uint8_t> out = header(kAddressSize, kOpAddress);
+  out[kAddressNet] = kNoChange;
+  out[kAddressBind] = static_cast<std::uint8_t>(packet.bind_index);
+  std::fill_n(out.begin() + kAddressSwitches, kAddressSwitchCount, kNoChange);
+  out[kAddressSub] = kNoChange;
+  out[kAddressAcnPriority] = kPriorityUnchanged;
+  const bool of_a_port = packet.command == AddressCommand::merge_ltp || packet.command == AddressCommand::merge_htp;
+  out[kAddressCommand] = static_cast<std::uint8_t>(static_cast<int>(packet.command) + (of_a_port ? packet.port : 0));
+  return out;
+}
+
+std::optional<Address> decode_address(std::span<const std::uint8_t> bytes) {
+  if (bytes.size() < kAddressSize || !has_header(bytes, kOpAddress)) return std::nullopt;
+  if (bytes[kProtocol] != 0 || bytes[kProtocol + 1] < kProtocolVersion) return std::nullopt;
+  Address packet;
+  packet.bind_index = bytes[kAddressBind];
+  const int command = bytes[kAddressCommand];
+  if (command == static_cast<int>(AddressCommand::cancel_merge)) packet.command = AddressCommand::cancel_merge;
+  for (const AddressCommand merge : {AddressCommand::merge_ltp, AddressCommand::merge_htp}) {
+    const int port = command - static_cast<int>(merge);
+    if (port < 0 || port >= static_cast<int>(kMostPorts)) continue;
+    packet.command = merge;
+    packet.port = port;
+  }
+  return packet;
+}
+
 std::optional<PollReply> decode_poll_reply(std::span<const std::uint8_t> bytes) {
   if (bytes.size() < kShortestReply || !has_header(bytes, kOpPollReply)) return std::nullopt;
   std::array<std::uint8_t, kReplySize> in{};
@@ -119,14 +187,55 @@ std::optional<PollReply> decode_poll_reply(std::span<const std::uint8_t> bytes) 
   reply.long_name = text_in(fields.subspan(kLongName, kLongNameSize));
   reply.report = text_in(fields.subspan(kNodeReport, kNodeReportSize));
   reply.bind_index = in[kBindIndex];
+  std::copy_n(in.begin() + kMac, reply.mac.size(), reply.mac.begin());
   const std::size_t ports = static_cast<std::size_t>(in[kNumPorts]) << 8 | in[kNumPorts + 1];
   if (ports > kMostPorts) return std::nullopt;
   for (std::size_t port = 0; port < ports; ++port) {
     if ((in[kPortTypes + port] & kPortPutsOut) == 0) continue;
-    reply.output_port_addresses.push_back((in[kNetSwitch] & 0x7F) << 8 | (in[kSubSwitch] & 0x0F) << 4 |
-                                          (in[kSwOut + port] & 0x0F));
+    const std::uint8_t state = in[kGoodOutput + port];
+    reply.outputs.push_back({(in[kNetSwitch] & 0x7F) << 8 | (in[kSubSwitch] & 0x0F) << 4 | (in[kSwOut + port] & 0x0F),
+                             (state & kSending) != 0, (state & kMerging) != 0, (state & kMergesLtp) != 0});
   }
   return reply;
+}
+
+std::vector<std::uint8_t> encode(const PollReply& reply, std::uint32_t ipv4) {
+  LUXRIG_CHECK(!reply.outputs.empty() && reply.outputs.size() <= kMostPorts, "{} ports", reply.outputs.size());
+  std::vector<std::uint8_t> out(kReplySize, 0);  // ArtPollReply has no protocol version
+  std::copy(kId.begin(), kId.end(), out.begin());
+  out[kOpCode] = kOpPollReply & 0xFF;
+  out[kOpCode + 1] = kOpPollReply >> 8;
+  const auto put_text = [&](std::size_t at, std::size_t size, const std::string& text) {
+    std::copy_n(text.begin(), std::min(text.size(), size - 1), out.begin() + static_cast<std::ptrdiff_t>(at));
+  };
+  for (const std::size_t at : {kIp, kBindIp}) {
+    for (std::size_t i = 0; i < 4; ++i) out[at + i] = static_cast<std::uint8_t>(ipv4 >> (24 - 8 * i));
+  }
+  out[kReplyPort] = kPort & 0xFF;
+  out[kReplyPort + 1] = kPort >> 8;
+  out[kFirmware + 1] = 1;
+  const int page = reply.outputs.front().port_address >> 4;
+  out[kNetSwitch] = static_cast<std::uint8_t>(page >> 4);
+  out[kSubSwitch] = static_cast<std::uint8_t>(page & 0x0F);
+  out[kOem + 1] = kOemUnknown;
+  out[kStatus1] = kIndicatorsNormal;
+  put_text(kShortName, kShortNameSize, reply.short_name);
+  put_text(kLongName, kLongNameSize, reply.long_name);
+  put_text(kNodeReport, kNodeReportSize, reply.report);
+  out[kNumPorts + 1] = static_cast<std::uint8_t>(reply.outputs.size());
+  for (std::size_t i = 0; i < reply.outputs.size(); ++i) {
+    const PortOutput& port = reply.outputs[i];
+    LUXRIG_CHECK(port.port_address >> 4 == page, "port address {} on page {}", port.port_address, page);
+    out[kPortTypes + i] = kPortPutsOut;
+    out[kGoodOutput + i] = static_cast<std::uint8_t>((port.sending ? kSending : 0) | (port.merging ? kMerging : 0) |
+                                                     (port.ltp ? kMergesLtp : 0));
+    out[kSwOut + i] = static_cast<std::uint8_t>(port.port_address & 0x0F);
+  }
+  std::copy(reply.mac.begin(), reply.mac.end(), out.begin() + kMac);
+  out[kBindIndex] = static_cast<std::uint8_t>(reply.bind_index);
+  out[kStatus2] = kLongPortAddresses;
+  out[kStatus3] = 0;  // failsafe: the last look is held
+  return out;
 }
 
 }  // namespace luxrig::artnet

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 
+#include "drivers/dmx/sequence.h"
+
 namespace luxrig::artnet {
 namespace {
 
-// A node drops data whose sequence number is 0…19 behind the last one it heard. A restarted controller does not know
-// that number; one jump of 20 after its first packet gets past it, whatever it was.
-constexpr int kPastTheDropWindow = 20;
 // A network of more nodes than this is not a rig but a flood.
 constexpr std::size_t kMostNodes = 1024;
 
@@ -15,7 +14,15 @@ constexpr std::size_t kMostNodes = 1024;
 
 bool Node::puts_out(int port_address) const {
   return std::any_of(outputs.begin(), outputs.end(), [&](const auto& page) {
-    return std::find(page.second.begin(), page.second.end(), port_address) != page.second.end();
+    return std::any_of(page.second.begin(), page.second.end(),
+                       [&](const PortOutput& port) { return port.port_address == port_address; });
+  });
+}
+
+bool Node::merges(int port_address) const {
+  return std::any_of(outputs.begin(), outputs.end(), [&](const auto& page) {
+    return std::any_of(page.second.begin(), page.second.end(),
+                       [&](const PortOutput& port) { return port.port_address == port_address && port.merging; });
   });
 }
 
@@ -37,12 +44,14 @@ bool Controller::hear(Time now, const Datagram& datagram) {
   if (!nodes_.contains(datagram.from) && nodes_.size() >= kMostNodes) return true;
   const auto [found, is_new] = nodes_.try_emplace(datagram.from);
   Node& node = found->second;
-  std::vector<int>& outputs = node.outputs[reply->bind_index];
-  if (is_new || node.gone || outputs != reply->output_port_addresses) {
+  std::vector<PortOutput>& outputs = node.outputs[reply->bind_index];
+  const auto same_port = [](const PortOutput& a, const PortOutput& b) { return a.port_address == b.port_address; };
+  if (is_new || node.gone ||
+      !std::equal(outputs.begin(), outputs.end(), reply->outputs.begin(), reply->outputs.end(), same_port)) {
     if (is_new || node.gone) node.since = now;
     for (auto& [port_address, stream] : streams_) stream.wanted = true;
   }
-  outputs = reply->output_port_addresses;
+  outputs = reply->outputs;
   node.name = reply->short_name.empty() ? text_of(datagram.from.ipv4) : reply->short_name;
   node.last_seen = now;
   node.gone = false;
@@ -56,22 +65,29 @@ std::optional<std::vector<std::uint8_t>> Controller::due(Time now, int port_addr
     stream.slots = slots;
     stream.wanted = true;
   }
-  if (!stream.wanted && !continuous_ && now - stream.last < kKeepAlive) return std::nullopt;
+  if (!stream.wanted && !settings_.continuous && now - stream.last < kKeepAlive) return std::nullopt;
   if (!stream.rate.take(now)) return std::nullopt;
   stream.wanted = false;
   stream.last = now;
 
   Dmx packet;
-  packet.sequence = stream.sequence;
+  packet.sequence = settings_.sequence ? stream.sequence : 0;
   packet.port_address = port_address;
   packet.slots.assign(slots.begin(), slots.end());
   // 1…255 and round again, leaving out 0, which would mean "no order".
-  const int step = stream.packets == 0 ? kPastTheDropWindow : 1;
+  const int step = stream.packets == 0 ? kJumpAfterFirstPacket : 1;
   stream.sequence = static_cast<std::uint8_t>((stream.sequence - 1 + step) % 255 + 1);
   // The packet behind the jump must not wait for the keep-alive: the one before it may have been dropped.
   if (stream.packets == 0) stream.wanted = true;
   ++stream.packets;
+  owes_sync_ = settings_.sync;
   return encode(packet);
+}
+
+std::optional<std::vector<std::uint8_t>> Controller::sync_due() {
+  if (!owes_sync_) return std::nullopt;
+  owes_sync_ = false;
+  return encode_sync();
 }
 
 std::vector<SocketAddress> Controller::subscribers(int port_address) const {
@@ -83,6 +99,7 @@ std::vector<SocketAddress> Controller::subscribers(int port_address) const {
 }
 
 void Controller::rest() {
+  owes_sync_ = false;
   nodes_.clear();
   last_poll_.reset();
   for (auto& [port_address, stream] : streams_) stream.wanted = true;

@@ -21,19 +21,25 @@ inline constexpr Duration kKeepAlive = std::chrono::milliseconds(1000);
 
 struct Node {
   std::string name;
-  std::map<int, std::vector<int>> outputs;  ///< port addresses by bind index
+  std::map<int, std::vector<PortOutput>> outputs;  ///< by bind index
   Time last_seen{};
   Time since{};  ///< last change between there and gone
   bool gone = false;
   std::uint64_t replies = 0;
 
   [[nodiscard]] bool puts_out(int port_address) const;
+  [[nodiscard]] bool merges(int port_address) const;
+};
+
+struct ControllerSettings {
+  bool continuous = false;  ///< send every cycle in place of on change and every kKeepAlive
+  bool sequence = true;     ///< false: sequence number 0, "no order"
+  bool sync = false;        ///< ArtSync after each frame
 };
 
 class Controller {
  public:
-  /// continuous: send every cycle in place of on change and every kKeepAlive.
-  explicit Controller(bool continuous) : continuous_(continuous) {}
+  explicit Controller(ControllerSettings settings) : settings_(settings) {}
 
   /// True when an ArtPoll is to be sent now; it then counts as sent. Also notices which nodes are gone.
   [[nodiscard]] bool poll_due(Time now);
@@ -43,6 +49,10 @@ class Controller {
 
   /// The ArtDmx of this universe that is due at `now`, if one is.
   [[nodiscard]] std::optional<std::vector<std::uint8_t>> due(Time now, int port_address, const DmxSlots& slots);
+
+  /// After all universes of a frame: the ArtSync that lets nodes act. Nothing when no ArtDmx was due since the last, or
+  /// when it is not asked for.
+  [[nodiscard]] std::optional<std::vector<std::uint8_t>> sync_due();
 
   [[nodiscard]] const std::map<SocketAddress, Node>& nodes() const { return nodes_; }
   /// Where the nodes are that put this universe out.
@@ -61,7 +71,8 @@ class Controller {
     SendRate rate;
   };
 
-  bool continuous_;
+  ControllerSettings settings_;
+  bool owes_sync_ = false;
   std::map<int, Stream> streams_;
   std::map<SocketAddress, Node> nodes_;
   std::optional<Time> last_poll_;

@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "drivers/dmx/artnet/artnet_controller.h"
-#include "drivers/dmx/dmx_patch.h"
+#include "drivers/dmx/artnet/artnet_receiver.h"
+#include "drivers/dmx/udp_dmx_driver.h"
+#include "drivers/io/host_id.h"
 #include "drivers/io/udp.h"
-#include "drivers/life.h"
 #include "drivers/options.h"
 
 namespace luxrig {
@@ -19,21 +22,31 @@ constexpr OptionDoc kOptions[] = {
     {"expect_reply", "true or false", "", "true", "",
      "false: the receiver at destination does not answer ArtPoll, and its silence is no fault"},
     {"continuous", "true or false", "", "false", "", "send every cycle; false: changes at once, the rest every second"},
+    {"sync", "true or false", "", "false", "",
+     "ArtSync after each frame: nodes that have several of its universes change them together"},
+    {"sequence", "true or false", "", "true", "",
+     "number the packets, so that nodes drop what comes out of order; false for nodes that cannot count"},
+    kInputOption,
+    kInputHandBackOption,
+    kInputOffsetOption,
+    kInputMergeOption,
+    {"input_port", "whole number", "", "6454", "1 to 65535", "UDP port on which a desk is heard"},
 };
 
-constexpr Duration kWritePeriod = std::chrono::nanoseconds(22727273);  // 1/44 s
-constexpr Duration kReopenEvery = std::chrono::seconds(1);
-constexpr Duration kQuietBeforeRecovery = std::chrono::milliseconds(1200);  // as for sACN
-constexpr int kDatagramsPerCycle = 64;
+std::vector<std::unique_ptr<DatagramChannel>> alone(std::unique_ptr<DatagramChannel> channel) {
+  std::vector<std::unique_ptr<DatagramChannel>> channels;
+  channels.push_back(std::move(channel));
+  return channels;
+}
 
-class ArtnetDriver final : public Driver, public LevelOutput, public Mover {
+class ArtnetDriver final : public UdpDmxDriver {
  public:
   ArtnetDriver(std::unique_ptr<DatagramChannel> channel, const Rig& rig, std::size_t bus,
                const std::optional<Redirect>& redirect)
-      : channel_(std::move(channel)),
-        bay_(rig, bus),
-        life_(rig.buses[bus].name),
-        controller_(boolean_option(rig.buses[bus], kOptions, "continuous")) {
+      : UdpDmxDriver(alone(std::move(channel)), rig, bus, desk_options(rig.buses[bus], kOptions)),
+        controller_({boolean_option(rig.buses[bus], kOptions, "continuous"),
+                     boolean_option(rig.buses[bus], kOptions, "sequence"),
+                     boolean_option(rig.buses[bus], kOptions, "sync")}) {
     const Bus& entry = rig.buses[bus];
     expect_reply_ = boolean_option(entry, kOptions, "expect_reply");
     poll_to_ = {parse_ipv4(string_option(entry, kOptions, "broadcast")).value_or(0xFFFFFFFF), artnet::kPort};
@@ -44,35 +57,19 @@ class ArtnetDriver final : public Driver, public LevelOutput, public Mover {
       destination_ = SocketAddress{*address, artnet::kPort};
     }
     if (destination_) poll_to_ = *destination_;
+    rig_name_ = rig.name;
+    everywhere_ = destination_ && (destination_->ipv4 == 0xFFFFFFFF ||
+                                   destination_->ipv4 == parse_ipv4(string_option(entry, kOptions, "broadcast")));
   }
-  ~ArtnetDriver() override { channel_->close(); }
-  ArtnetDriver(const ArtnetDriver&) = delete;
-  ArtnetDriver& operator=(const ArtnetDriver&) = delete;
+  ~ArtnetDriver() override { close(); }
 
   DriverBounds bounds() const override {
     DriverBounds bounds;
-    bounds.write = std::chrono::milliseconds(5) +
-                   std::chrono::microseconds(100) * static_cast<std::int64_t>(bay_.universes().size());
-    bounds.write_period = kWritePeriod;
-    bounds.fault_after = artnet::kNodeGone + 2 * kWritePeriod;
+    bounds.write = write_bound();
+    bounds.write_period = kDmxWritePeriod;
+    bounds.fault_after = artnet::kNodeGone + 2 * kDmxWritePeriod;
     bounds.notices_loss = expect_reply_ || !destination_;
     return bounds;
-  }
-
-  Result<void> activate(Time now) override {
-    if (life_.life() != Life::configured) return {};
-    life_.active(now);
-    activated_ = now;
-    last_error_.reset();
-    open(now);
-    return {};
-  }
-
-  void deactivate(Time now) override {
-    if (life_.life() == Life::configured) return;
-    channel_->close();
-    controller_.rest();
-    life_.configured(now);
   }
 
   std::vector<Health> health(Time) const override {
@@ -82,6 +79,7 @@ class ArtnetDriver final : public Driver, public LevelOutput, public Mover {
       health.device = fmt::format("{}: {} ({})", life_.health().device, node.name, text_of(address.ipv4));
       health.life = node.gone ? Life::faulted : Life::active;
       if (node.gone) health.detail = "timeout: three polls without an answer";
+      if (!node.gone && merges_ours(node)) health.detail = "merges this bus's data with another sender's";
       health.since = node.since;
       health.last_ok = node.last_seen;
       health.received = node.replies;
@@ -90,57 +88,76 @@ class ArtnetDriver final : public Driver, public LevelOutput, public Mover {
     return all;
   }
 
-  LevelOutput* level_output() override { return this; }
-  Mover* mover() override { return bay_.has_heads() ? this : nullptr; }
-
-  Result<void> move(Time, std::span<const AimCommand> commands) override {
-    if (life_.life() == Life::configured) return tl::unexpected(inactive());
-    return bay_.set_aims(commands);
-  }
-
-  Result<void> write(Time now, std::span<const LevelCommand> commands) override {
-    if (life_.life() == Life::configured) return tl::unexpected(inactive());
-    if (auto set = bay_.set_levels(commands); !set) return set;
-    if (!channel_->is_open()) {
-      if (now < reopen_at_) return tl::unexpected(life_.fault());
-      open(now);
-      if (!channel_->is_open()) return tl::unexpected(life_.fault());
-    }
-    listen(now);
-    if (controller_.poll_due(now)) send(now, poll_to_, artnet::encode_poll());
-    for (const DmxUniverse& universe : bay_.universes()) send_universe(now, universe);
-    update_life(now);
-    if (life_.life() == Life::faulted) return tl::unexpected(life_.fault());
-    return {};
-  }
-
  private:
-  Fault inactive() const { return {Cause::inactive, life_.health().device, "the driver is not active", {}}; }
-
-  void open(Time now) {
-    reopen_at_ = now + kReopenEvery;
-    if (auto opened = channel_->open(); !opened) note_error(now, opened.error());
+  void begin(Time now) override {
+    activated_ = now;
+    if (!desk().rules || receiver_) return;
+    const std::string host = host_id();
+    const std::string_view parts[] = {"luxrig artnet", host, rig_name_, life_.health().device};
+    const auto id = hashed_id(parts);
+    artnet::ReceiverSettings settings;
+    settings.port_addresses = desk_universes();
+    settings.rule = desk().merge;
+    settings.short_name = "Luxrig";
+    settings.long_name = fmt::format("Luxrig {}, {}", rig_name_, life_.health().device);
+    std::copy_n(id.begin(), mac_.size(), mac_.begin());
+    mac_[0] = static_cast<std::uint8_t>((mac_[0] & 0xFC) | 0x02);  // locally administered, of one host
+    settings.mac = mac_;
+    settings.reply_delay = std::chrono::milliseconds(1000 * id[6] / 256);
+    receiver_.emplace(std::move(settings));
+  }
+  bool has_answers() const override { return true; }
+  void rest() override {
+    controller_.rest();
+    if (receiver_) receiver_->restart();
   }
 
-  void listen(Time now) {
-    for (int i = 0; i < kDatagramsPerCycle; ++i) {
-      const auto error = channel_->take_error();
-      if (!error) break;
-      note_error(now, *error);
+  void hear(Time now, const Datagram& datagram) override {
+    if (receiver_) {
+      // Its own answer to its own poll: else it would send to itself, and follow that.
+      const auto reply = artnet::decode_poll_reply(datagram.bytes);
+      if (reply && reply->mac == mac_) return;
+      if (everywhere_ && is_own(datagram.from)) return;
+      using Verdict = artnet::Receiver::Verdict;
+      if (receiver_->receive(now, datagram.from, datagram.bytes) == Verdict::taken) return life_.count_received(now);
     }
-    for (int i = 0; i < kDatagramsPerCycle; ++i) {
-      const auto datagram = channel_->receive();
-      if (!datagram) break;
-      if (controller_.hear(now, *datagram)) life_.count_received(now);
+    if (controller_.hear(now, datagram)) life_.count_received(now);
+  }
+
+  HeardUniverse heard(Time now, int port_address) override {
+    return receiver_ ? receiver_->heard(now, port_address) : HeardUniverse{};
+  }
+
+  bool is_own(const SocketAddress& from) {
+    const auto [known, is_new] = own_addresses_.try_emplace(from.ipv4, false);
+    if (is_new) known->second = local_address_towards(from.ipv4) == from.ipv4;
+    return known->second && from.port == desk().port;
+  }
+
+  /// Nodes would go on merging what was sent last, for 10 s.
+  void fall_silent(Time now, const DmxUniverse& universe) override {
+    for (const auto& [address, node] : controller_.nodes()) {
+      for (const auto& [bind_index, outputs] : node.outputs) {
+        const bool puts_out = std::any_of(outputs.begin(), outputs.end(), [&](const artnet::PortOutput& port) {
+          return port.port_address == universe.number;
+        });
+        if (node.gone || !puts_out) continue;
+        send(now, address, artnet::encode(artnet::Address{bind_index, artnet::AddressCommand::cancel_merge, 0}));
+      }
     }
   }
 
-  void send(Time now, const SocketAddress& to, std::span<const std::uint8_t> bytes) {
-    if (auto sent = channel_->send(to, bytes); !sent) {
-      note_error(now, sent.error());
-    } else {
-      life_.count_sent();
+  void send_frame(Time now) override {
+    if (controller_.poll_due(now)) send(now, poll_to_, artnet::encode_poll());
+    if (receiver_) {
+      for (const auto& [to, reply] : receiver_->answers_due(now)) {
+        send(now, to, artnet::encode(reply, local_address_towards(to.ipv4)));
+      }
     }
+    for (std::size_t i = 0; i < bay_.universes().size(); ++i) {
+      if (!is_silent(i)) send_universe(now, bay_.universes()[i]);
+    }
+    if (const auto packet = controller_.sync_due()) send(now, poll_to_, *packet);
   }
 
   void send_universe(Time now, const DmxUniverse& universe) {
@@ -155,15 +172,12 @@ class ArtnetDriver final : public Driver, public LevelOutput, public Mover {
     for (const SocketAddress& node : nodes) send(now, node, *packet);
   }
 
-  void note_error(Time now, const Fault& fault) {
-    last_error_ = now;
-    Fault with_figures = fault;
-    with_figures.detail += fmt::format(" ({} errors, {} packets)", life_.health().errors + 1, life_.health().sent);
-    life_.faulted(now, with_figures);
+  bool merges_ours(const artnet::Node& node) const {
+    return std::any_of(bay_.universes().begin(), bay_.universes().end(),
+                       [&](const DmxUniverse& universe) { return node.merges(universe.number); });
   }
 
-  /// What keeps data from reaching a lamp, if anything does.
-  std::optional<std::string> missing(Time now) const {
+  std::optional<std::string> missing(Time now) const override {
     if (!expect_reply_ && destination_) return std::nullopt;
     if (destination_) {
       Time last = activated_;
@@ -191,27 +205,16 @@ class ArtnetDriver final : public Driver, public LevelOutput, public Mover {
     return std::nullopt;
   }
 
-  void update_life(Time now) {
-    if (const auto what = missing(now)) {
-      life_.faulted(now, {Cause::timeout, {}, *what, {}}, life_.life() != Life::faulted);
-      return;
-    }
-    if (life_.life() == Life::faulted && (!last_error_ || now - *last_error_ >= kQuietBeforeRecovery)) {
-      life_.active(now);
-      last_error_.reset();
-    }
-  }
-
-  std::unique_ptr<DatagramChannel> channel_;
-  DmxPatchbay bay_;
-  LifeRecord life_;
   artnet::Controller controller_;
   bool expect_reply_ = true;
   SocketAddress poll_to_;
   std::optional<SocketAddress> destination_;  ///< nothing: to subscribers
   Time activated_{};
-  std::optional<Time> last_error_;
-  Time reopen_at_{};
+  std::string rig_name_;
+  bool everywhere_ = false;  ///< destination_ is a broadcast address, which brings it back to us
+  std::optional<artnet::Receiver> receiver_;
+  std::array<std::uint8_t, 6> mac_{};
+  std::map<std::uint32_t, bool> own_addresses_;
 };
 
 }  // namespace
@@ -230,6 +233,8 @@ std::vector<Problem> check_artnet(const Rig& rig, std::size_t bus) {
                                     fmt::format("{} = \"{}\" is no IPv4 address to send to", key, text),
                                     "write numbers, such as \"2.0.0.10\""));
     };
+    const auto of_desk = check_desk_options(rig, bus, kOptions, 0, artnet::kHighestPortAddress);
+    problems.insert(problems.end(), of_desk.begin(), of_desk.end());
     const std::string destination = string_option(entry, kOptions, "destination");
     if (destination != "auto") check_address("destination", destination);
     check_address("broadcast", string_option(entry, kOptions, "broadcast"));
@@ -253,6 +258,10 @@ std::unique_ptr<Driver> make_artnet(const Rig& rig, std::size_t bus, const std::
   settings.broadcast = true;
   if (!redirect) {
     settings.local_port = artnet::kPort;  // nodes answer to this port, some by broadcast
+    settings.share_local_port = true;
+  }
+  if (const DeskOptions desk = desk_options(rig.buses[bus], kOptions); desk.rules) {
+    settings.local_port = desk.port;
     settings.share_local_port = true;
   }
   return make_artnet_over(make_udp(std::move(settings)), rig, bus, redirect);

@@ -1,5 +1,5 @@
 #pragma once
-/// ANSI E1.31-2018 (sACN) data packets: values -> bytes and back. Pure.
+/// ANSI E1.31-2018 (sACN) packets (data, synchronisation, universe discovery): values -> bytes and back. Pure.
 
 #include <array>
 #include <cstdint>
@@ -14,6 +14,12 @@ inline constexpr std::uint16_t kPort = 5568;                         ///< append
 inline constexpr int kLowestUniverse = 1, kHighestUniverse = 63999;  ///< clause 6.2.7
 inline constexpr int kHighestPriority = 200;                         ///< clause 6.2.3
 inline constexpr std::size_t kSourceNameBytes = 64;                  ///< clause 6.2.2, its NUL included
+
+inline constexpr std::uint16_t kDiscoveryUniverse = 64214;  ///< appendix A, E131_DISCOVERY_UNIVERSE
+inline constexpr std::size_t kUniversesPerPage = 512;       ///< clause 8.5
+inline constexpr std::uint8_t kLevels = 0x00;               ///< start code of levels
+/// Start code of per-address priority, from which a receiver takes the priority of each slot; 0: no value here.
+inline constexpr std::uint8_t kSlotPriority = 0xDD;
 
 using Cid = std::array<std::uint8_t, 16>;  ///< component identifier: a UUID, clause 5.6
 
@@ -37,6 +43,26 @@ struct DataPacket {
 /// Nothing unless the packet is a well-formed data packet: every fixed field as the standard wants it, all lengths
 /// consistent with the datagram, universe and priority in range.
 [[nodiscard]] std::optional<DataPacket> decode(std::span<const std::uint8_t> bytes);
+
+/// Clause 6.3: data that waits for `sync_universe` shall act now.
+struct SyncPacket {
+  Cid cid{};
+  std::uint8_t sequence = 0;
+  std::uint16_t sync_universe = 1;  ///< 1…63999
+};
+[[nodiscard]] std::vector<std::uint8_t> encode(const SyncPacket& packet);
+[[nodiscard]] std::optional<SyncPacket> decode_sync(std::span<const std::uint8_t> bytes);
+
+/// Clause 8: what a source is sending, 512 universes to a page.
+struct DiscoveryPacket {
+  Cid cid{};
+  std::string source_name;  ///< UTF-8; cut to 63 bytes at a character
+  std::uint8_t page = 0, last_page = 0;
+  std::vector<std::uint16_t> universes;  ///< ascending, each once, at most 512
+};
+/// requires universes.size() <= 512.
+[[nodiscard]] std::vector<std::uint8_t> encode(const DiscoveryPacket& packet);
+[[nodiscard]] std::optional<DiscoveryPacket> decode_discovery(std::span<const std::uint8_t> bytes);
 
 /// The group of a universe, clause 9.3.1: 239.255.<high>.<low>, host byte order.
 [[nodiscard]] constexpr std::uint32_t multicast_group(std::uint16_t universe) { return 0xEFFF0000U | universe; }

@@ -2,183 +2,194 @@
 
 #include <fmt/format.h>
 
-#include "drivers/dmx/dmx_patch.h"
+#include <algorithm>
+
+#include "drivers/dmx/sacn/sacn_receiver.h"
 #include "drivers/dmx/sacn/sacn_source.h"
+#include "drivers/dmx/udp_dmx_driver.h"
 #include "drivers/io/host_id.h"
 #include "drivers/io/udp.h"
-#include "drivers/life.h"
 #include "drivers/options.h"
 
 namespace luxrig {
 namespace {
 
 constexpr OptionDoc kSacnOptions[] = {
-    {"destination", "text", "", "\"multicast\"", "\"multicast\", or an IPv4 address",
-     "where packets go: each universe to its multicast group 239.255.x.y, or all to one receiver"},
+    {"destination", "text", "", "\"multicast\"", "\"multicast\", or IPv4 addresses with commas between them",
+     "where packets go: each universe to its multicast group 239.255.x.y, or all to each of these receivers"},
     {"port", "whole number", "", "5568", "1 to 65535", "UDP port of the receivers"},
-    {"interface", "text", "", "\"\"", "a name (eth0), or the interface's IPv4 address",
-     "network interface that multicast leaves by; empty: the system chooses"},
+    {"interface", "text", "", "\"\"", "names (eth0) or IPv4 addresses of interfaces, with commas between them",
+     "network interfaces that multicast leaves by, all of them; empty: the system chooses one"},
     {"ttl", "whole number", "hops", "8", "1 to 255", "how many routers a multicast packet may pass"},
     {"priority", "whole number", "", "100", "0 to 200", "the source with the highest priority wins at the receiver"},
+    {"slot_priority", "true or false", "", "false", "",
+     "say the priority slot by slot (start code 0xDD): `priority` where a fixture uses the slot, nothing elsewhere, so "
+     "that other slots of the universe stay another source's"},
     {"source_name", "text", "", "\"\"", "at most 63 bytes of UTF-8",
      "what receivers show as the sender; empty: Luxrig and the rig's name"},
     {"cid", "text", "", "\"\"", "a UUID, 8-4-4-4-12 hexadecimal digits",
      "component identifier; empty: derived from host, rig and bus, the same after every restart"},
     {"continuous", "true or false", "", "true", "",
      "send every cycle; false: only changes, three repeats, then a keep-alive every 0.88 s"},
+    {"sync_universe", "whole number", "", "0", "0 to 63999",
+     "receivers hold all universes of a frame until a synchronisation packet to this one; 0: each acts at once"},
+    {"preview", "true or false", "", "false", "", "mark all data as preview: visualisers show it, lamps do not"},
+    kInputOption,
+    kInputHandBackOption,
+    kInputOffsetOption,
+    kInputMergeOption,
+    {"input_port", "whole number", "", "5568", "1 to 65535", "UDP port on which a desk is heard"},
 };
 
-constexpr Duration kSacnWritePeriod = std::chrono::nanoseconds(22727273);  // 1/44 s
-constexpr Duration kReopenSacnEvery = std::chrono::seconds(1);
-// The network may answer as seldom as once a second (Linux limits its ICMP to that), so silence counts as recovery
-// only after more than a second.
-constexpr Duration kQuietBeforeSacnRecovery = std::chrono::milliseconds(1200);
-constexpr int kErrorsPerCycle = 64;
 constexpr int kGoodbyes = 3;  // clause 6.2.6
+constexpr Duration kJoinAgainEvery = std::chrono::seconds(1);
 
-class SacnDriver final : public Driver, public LevelOutput, public Mover {
+class SacnDriver final : public UdpDmxDriver {
  public:
-  SacnDriver(std::unique_ptr<DatagramChannel> channel, const Rig& rig, std::size_t bus,
+  SacnDriver(std::vector<std::unique_ptr<DatagramChannel>> channels, const Rig& rig, std::size_t bus,
              const std::optional<Redirect>& redirect)
-      : channel_(std::move(channel)), bay_(rig, bus), life_(rig.buses[bus].name) {
+      : UdpDmxDriver(std::move(channels), rig, bus, desk_options(rig.buses[bus], kSacnOptions)) {
     const Bus& entry = rig.buses[bus];
     rig_name_ = rig.name;
     port_ = static_cast<std::uint16_t>(integer_option(entry, kSacnOptions, "port"));
-    unicast_ = parse_ipv4(string_option(entry, kSacnOptions, "destination"));
+    for (const std::string& address : list_in(string_option(entry, kSacnOptions, "destination"))) {
+      if (const auto ipv4 = parse_ipv4(address)) unicast_.push_back(*ipv4);
+    }
     if (redirect) {
-      unicast_ = parse_ipv4(redirect->host).value_or(0x7F000001);
+      unicast_ = {parse_ipv4(redirect->host).value_or(0x7F000001)};
       port_ = static_cast<std::uint16_t>(redirect->port);
     }
     settings_.priority = static_cast<int>(integer_option(entry, kSacnOptions, "priority"));
     settings_.continuous = boolean_option(entry, kSacnOptions, "continuous");
+    settings_.preview = boolean_option(entry, kSacnOptions, "preview");
+    settings_.sync_universe = static_cast<int>(integer_option(entry, kSacnOptions, "sync_universe"));
     settings_.source_name = string_option(entry, kSacnOptions, "source_name");
     if (settings_.source_name.empty()) settings_.source_name = "Luxrig " + rig.name;
+    slot_priority_ = boolean_option(entry, kSacnOptions, "slot_priority");
     cid_ = sacn::parse_cid(string_option(entry, kSacnOptions, "cid"));
+    joins_must_succeed_ = !redirect;
   }
   ~SacnDriver() override { close(); }
-  SacnDriver(const SacnDriver&) = delete;
-  SacnDriver& operator=(const SacnDriver&) = delete;
 
   DriverBounds bounds() const override {
     DriverBounds bounds;
-    // Sends never block; 0.1 ms a universe is ten times what a send costs.
-    bounds.write = std::chrono::milliseconds(5) +
-                   std::chrono::microseconds(100) * static_cast<std::int64_t>(bay_.universes().size());
-    bounds.write_period = kSacnWritePeriod;
+    bounds.write = write_bound();
+    bounds.write_period = kDmxWritePeriod;
     bounds.fault_after = std::chrono::milliseconds(500);
-    bounds.notices_loss = unicast_.has_value();
+    bounds.notices_loss = !unicast_.empty();
     return bounds;
   }
 
-  Result<void> activate(Time now) override {
-    if (life_.life() != Life::configured) return {};
-    if (!source_) {
-      settings_.cid = cid_.value_or(sacn::derive_cid(host_id(), rig_name_, life_.health().device));
-      source_.emplace(settings_);
-    }
-    life_.active(now);
-    last_error_.reset();
-    open(now);
-    return {};
-  }
-
-  void deactivate(Time now) override {
-    if (life_.life() == Life::configured) return;
-    close();
-    life_.configured(now);
-  }
-
-  std::vector<Health> health(Time) const override { return {life_.health()}; }
-  LevelOutput* level_output() override { return this; }
-  Mover* mover() override { return bay_.has_heads() ? this : nullptr; }
-
-  Result<void> move(Time, std::span<const AimCommand> commands) override {
-    if (life_.life() == Life::configured) return tl::unexpected(inactive());
-    return bay_.set_aims(commands);
-  }
-
-  Result<void> write(Time now, std::span<const LevelCommand> commands) override {
-    if (life_.life() == Life::configured) return tl::unexpected(inactive());
-    if (auto set = bay_.set_levels(commands); !set) return set;
-    if (!channel_->is_open()) {
-      if (now < reopen_at_) return tl::unexpected(life_.fault());
-      open(now);
-      if (!channel_->is_open()) return tl::unexpected(life_.fault());
-    }
-    collect_errors(now);
-    for (const DmxUniverse& universe : bay_.universes()) {
-      const auto packet = source_->due(now, universe.number, universe.slots);
-      if (!packet) continue;
-      ++packets_;
-      if (auto sent = channel_->send(address_of(universe.number), *packet); !sent) {
-        note_error(now, sent.error());
-      } else {
-        life_.count_sent();
-        if (!last_error_ || *last_error_ != now) life_.mark_ok(now);
-      }
-    }
-    if (life_.life() == Life::faulted && now - *last_error_ >= kQuietBeforeSacnRecovery) {
-      life_.active(now);
-      last_error_.reset();
-    }
-    if (life_.life() == Life::faulted) return tl::unexpected(life_.fault());
-    return {};
-  }
-
  private:
-  Fault inactive() const { return {Cause::inactive, life_.health().device, "the driver is not active", {}}; }
-
-  SocketAddress address_of(int universe) const {
-    return {unicast_.value_or(sacn::multicast_group(static_cast<std::uint16_t>(universe))), port_};
+  void begin(Time) override {
+    if (source_) return;
+    settings_.cid = cid_.value_or(sacn::derive_cid(host_id(), rig_name_, life_.health().device));
+    source_.emplace(settings_);
+    if (desk().rules) {
+      sacn::ReceiverSettings heard;
+      heard.universes = desk_universes();
+      heard.own = settings_.cid;
+      heard.rule = desk().merge;
+      // What Luxrig stands by for is what receivers would rather obey; anything below it stands by for Luxrig.
+      if (desk().rules->mode == DeskMode::standby) heard.lowest_priority = settings_.priority;
+      receiver_.emplace(std::move(heard));
+    }
+    if (!slot_priority_) return;
+    for (std::size_t i = 0; i < bay_.universes().size(); ++i) {
+      DmxSlots priorities = bay_.used_slots(i);
+      // 0 would say that this source has no value there, so that is not what priority = 0 can mean.
+      const int priority = std::max(1, settings_.priority);
+      for (std::uint8_t& slot : priorities) slot = static_cast<std::uint8_t>(slot * priority);
+      source_->set_slot_priorities(bay_.universes()[i].number, priorities);
+    }
   }
 
-  void open(Time now) {
-    reopen_at_ = now + kReopenSacnEvery;
-    if (auto opened = channel_->open(); !opened) note_error(now, opened.error());
-  }
-
-  void close() {
-    if (channel_->is_open()) {
-      for (int i = 0; i < kGoodbyes; ++i) {
-        for (const DmxUniverse& universe : bay_.universes()) {
-          const auto packet = source_->goodbye(universe.number);
-          // Nobody is left to be told when a goodbye cannot be sent.
-          if (packet && channel_->send(address_of(universe.number), *packet)) life_.count_sent();
-        }
+  void send_frame(Time now) override {
+    for (std::size_t i = 0; i < bay_.universes().size(); ++i) {
+      const DmxUniverse& universe = bay_.universes()[i];
+      if (is_silent(i)) continue;
+      if (const auto packet = source_->due(now, universe.number, universe.slots)) {
+        send_to(now, universe.number, *packet);
       }
-      channel_->close();
     }
+    if (const auto packet = source_->sync_due()) send_to(now, settings_.sync_universe, *packet);
+    for (const auto& page : source_->discovery_due(now)) send_to(now, sacn::kDiscoveryUniverse, page);
+  }
+
+  void say_goodbye(Time now) override {
+    for (int i = 0; i < kGoodbyes; ++i) {
+      for (const DmxUniverse& universe : bay_.universes()) {
+        if (const auto packet = source_->goodbye(universe.number)) send_to(now, universe.number, *packet);
+      }
+    }
+  }
+
+  void fall_silent(Time now, const DmxUniverse& universe) override {
+    for (int i = 0; i < kGoodbyes; ++i) {
+      if (const auto packet = source_->goodbye(universe.number)) send_to(now, universe.number, *packet);
+    }
+    source_->rest(universe.number);
+  }
+
+  void rest() override {
     if (source_) source_->rest();
+    if (receiver_) receiver_->restart();
   }
 
-  void collect_errors(Time now) {
-    for (int i = 0; i < kErrorsPerCycle; ++i) {
-      const auto error = channel_->take_error();
-      if (!error) return;
-      note_error(now, *error);
+  void hear(Time now, const Datagram& datagram) override {
+    if (receiver_ && receiver_->receive(now, datagram.bytes) == sacn::Receiver::Verdict::taken) {
+      life_.count_received(now);
     }
   }
 
-  void note_error(Time now, const Fault& fault) {
-    last_error_ = now;
-    Fault with_figures = fault;
-    with_figures.detail += fmt::format(" ({} errors, {} packets)", life_.health().errors + 1, packets_);
-    life_.faulted(now, with_figures);
+  HeardUniverse heard(Time now, int universe) override {
+    if (!receiver_) return {};
+    join_groups(now);
+    return receiver_->heard(now, universe);
   }
 
-  std::unique_ptr<DatagramChannel> channel_;
-  DmxPatchbay bay_;
-  LifeRecord life_;
+  /// The desk's universes, and those it synchronises by; a channel that has been opened anew has joined none.
+  void join_groups(Time now) {
+    if (now < join_again_at_) return;
+    for (const auto& channel : channels()) {
+      if (!channel->is_open()) continue;
+      for (const int universe : receiver_->groups()) {
+        const auto joined = channel->join(sacn::multicast_group(static_cast<std::uint16_t>(universe)));
+        if (joined) continue;
+        join_again_at_ = now + kJoinAgainEvery;
+        // Towards a stand-in, on a host that may have no network at all, a desk can still send to this host alone.
+        if (joins_must_succeed_) note_error(now, joined.error());
+        return;
+      }
+    }
+  }
+
+  void send_to(Time now, int universe, std::span<const std::uint8_t> packet) {
+    if (unicast_.empty()) {
+      return send(now, {sacn::multicast_group(static_cast<std::uint16_t>(universe)), port_}, packet);
+    }
+    for (const std::uint32_t receiver : unicast_) send(now, {receiver, port_}, packet);
+  }
+
   std::string rig_name_;
-  std::optional<std::uint32_t> unicast_;
+  std::vector<std::uint32_t> unicast_;  ///< empty: multicast
   std::uint16_t port_ = 0;
   std::optional<sacn::Cid> cid_;
   sacn::SourceSettings settings_;
+  bool slot_priority_ = false, joins_must_succeed_ = true;
+  Time join_again_at_{};
   std::optional<sacn::Source> source_;
-  std::optional<Time> last_error_;
-  Time reopen_at_{};
-  std::uint64_t packets_ = 0;
+  std::optional<sacn::Receiver> receiver_;
 };
+
+bool is_receiver_address(const std::string& text) {
+  const auto address = parse_ipv4(text);
+  return address && *address != 0 && !is_multicast(*address) && *address != 0xFFFFFFFF;
+}
+
+bool may_name_an_interface(const std::string& text) {
+  return !text.empty() && text.size() <= 15 && text.find_first_of(" /") == std::string::npos;
+}
 
 }  // namespace
 
@@ -193,17 +204,21 @@ std::vector<Problem> check_sacn(const Rig& rig, std::size_t bus) {
       problems.push_back(problem_at(rig, entry, key, std::move(what), std::move(mend)));
     };
     const std::string destination = string_option(entry, kSacnOptions, "destination");
-    const auto address = parse_ipv4(destination);
-    if (destination != "multicast" && (!address || *address == 0 || is_multicast(*address) || *address == 0xFFFFFFFF)) {
+    const std::vector<std::string> receivers = list_in(destination);
+    if (destination != "multicast" &&
+        (receivers.empty() || !std::all_of(receivers.begin(), receivers.end(), is_receiver_address))) {
       report("destination",
-             fmt::format("destination = \"{}\" is neither \"multicast\" nor a receiver's IPv4 address", destination),
-             "write \"multicast\", or an address such as \"192.168.1.20\"");
+             fmt::format("destination = \"{}\" is neither \"multicast\" nor receivers' IPv4 addresses", destination),
+             "write \"multicast\", or addresses such as \"192.168.1.20, 192.168.1.21\"");
     }
     const std::string interface = string_option(entry, kSacnOptions, "interface");
-    if (interface.size() > 15 || interface.find_first_of(" /") != std::string::npos) {
-      report("interface", fmt::format("interface = \"{}\" cannot be the name of a network interface", interface),
-             "write a name as `ip link` lists it, such as \"eth0\", or its IPv4 address");
+    const std::vector<std::string> interfaces = list_in(interface);
+    if (!std::all_of(interfaces.begin(), interfaces.end(), may_name_an_interface)) {
+      report("interface", fmt::format("interface = \"{}\" cannot be names of network interfaces", interface),
+             "write names as `ip link` lists them, such as \"eth0\", or their IPv4 addresses");
     }
+    const auto of_desk = check_desk_options(rig, bus, kSacnOptions, sacn::kLowestUniverse, sacn::kHighestUniverse);
+    problems.insert(problems.end(), of_desk.begin(), of_desk.end());
     const std::string cid = string_option(entry, kSacnOptions, "cid");
     if (!cid.empty() && !sacn::parse_cid(cid)) {
       report("cid", fmt::format("cid = \"{}\" is not a UUID", cid),
@@ -218,17 +233,30 @@ std::vector<Problem> check_sacn(const Rig& rig, std::size_t bus) {
   return problems;
 }
 
-std::unique_ptr<Driver> make_sacn_over(std::unique_ptr<DatagramChannel> channel, const Rig& rig, std::size_t bus,
-                                       const std::optional<Redirect>& redirect) {
-  return std::make_unique<SacnDriver>(std::move(channel), rig, bus, redirect);
+std::unique_ptr<Driver> make_sacn_over(std::vector<std::unique_ptr<DatagramChannel>> channels, const Rig& rig,
+                                       std::size_t bus, const std::optional<Redirect>& redirect) {
+  return std::make_unique<SacnDriver>(std::move(channels), rig, bus, redirect);
 }
 
 std::unique_ptr<Driver> make_sacn(const Rig& rig, std::size_t bus, const std::optional<Redirect>& redirect) {
   UdpSettings settings;
   settings.multicast_ttl = static_cast<int>(integer_option(rig.buses[bus], kSacnOptions, "ttl"));
-  // Towards a stand-in on loopback the interface named for the real network does not matter, and may not exist.
-  if (!redirect) settings.multicast_interface = string_option(rig.buses[bus], kSacnOptions, "interface");
-  return make_sacn_over(make_udp(std::move(settings)), rig, bus, redirect);
+  std::vector<std::string> interfaces = list_in(string_option(rig.buses[bus], kSacnOptions, "interface"));
+  // Towards a stand-in on loopback the interfaces named for the real network do not matter, and may not exist. And a
+  // unicast finds its own way, so that a second channel would only send it twice.
+  const bool multicast = string_option(rig.buses[bus], kSacnOptions, "destination") == "multicast";
+  if (redirect) interfaces.clear();
+  if (const DeskOptions desk = desk_options(rig.buses[bus], kSacnOptions); desk.rules) {
+    settings.local_port = desk.port;
+    settings.share_local_port = true;
+  }
+  if (interfaces.empty() || !multicast) interfaces.resize(1);
+  std::vector<std::unique_ptr<DatagramChannel>> channels;
+  for (const std::string& interface : interfaces) {
+    settings.multicast_interface = interface;
+    channels.push_back(make_udp(settings));
+  }
+  return make_sacn_over(std::move(channels), rig, bus, redirect);
 }
 
 }  // namespace luxrig

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "drivers/io/datagram.h"
 #include "drivers/registry.h"
@@ -15,8 +16,9 @@ namespace luxrig {
 [[nodiscard]] std::unique_ptr<Driver> make_sacn(const Rig& rig, std::size_t bus,
                                                 const std::optional<Redirect>& redirect);
 
-/// The same over a channel of the caller's.
-[[nodiscard]] std::unique_ptr<Driver> make_sacn_over(std::unique_ptr<DatagramChannel> channel, const Rig& rig,
-                                                     std::size_t bus, const std::optional<Redirect>& redirect);
+/// The same over channels of the caller's, one for each network interface.
+[[nodiscard]] std::unique_ptr<Driver> make_sacn_over(std::vector<std::unique_ptr<DatagramChannel>> channels,
+                                                     const Rig& rig, std::size_t bus,
+                                                     const std::optional<Redirect>& redirect);
 
 }  // namespace luxrig

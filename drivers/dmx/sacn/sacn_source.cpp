@@ -1,5 +1,10 @@
 #include "drivers/dmx/sacn/sacn_source.h"
 
+#include <algorithm>
+
+#include "drivers/dmx/sequence.h"
+#include "drivers/io/host_id.h"
+
 namespace luxrig::sacn {
 namespace {
 
@@ -8,36 +13,14 @@ namespace {
 constexpr int kRepeatsAfterChange = 3;
 constexpr Duration kKeepAlive = std::chrono::milliseconds(880);
 
-// A receiver that still knows our component identifier drops a packet whose sequence number is 0…19 behind the last
-// one it heard (clause 6.7.2), and some hold that memory for ever. A restarted source does not know that number. One
-// jump of 20 after its first packet gets past it, whatever it was: if the first is 0…19 behind, the second is ahead.
-constexpr std::uint8_t kPastTheDropWindow = 20;
-
-std::uint64_t hash(std::string_view text, std::uint64_t state) {
-  for (const char letter : text) {  // FNV-1a
-    state ^= static_cast<std::uint8_t>(letter);
-    state *= 0x100000001b3ULL;
-  }
-  state ^= 0xFF;  // the end of a part: ("ab", "c") is not ("a", "bc")
-  return state * 0x100000001b3ULL;
-}
-
-std::uint64_t mix(std::uint64_t x) {  // splitmix64's finaliser: FNV alone leaves the high bits thin
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebULL;
-  return x ^ (x >> 31);
-}
+// Clause 4.3, E131_UNIVERSE_DISCOVERY_INTERVAL.
+constexpr Duration kDiscoveryInterval = std::chrono::seconds(10);
 
 }  // namespace
 
 Cid derive_cid(std::string_view host, std::string_view rig, std::string_view bus) {
-  Cid cid{};
-  for (std::size_t half = 0; half < 2; ++half) {
-    std::uint64_t state = half == 0 ? 0xcbf29ce484222325ULL : 0x9ae16a3b2f90404fULL;
-    for (const std::string_view part : {std::string_view("luxrig sacn"), host, rig, bus}) state = hash(part, state);
-    state = mix(state);
-    for (std::size_t i = 0; i < 8; ++i) cid[half * 8 + i] = static_cast<std::uint8_t>(state >> (56 - 8 * i));
-  }
+  const std::string_view parts[] = {"luxrig sacn", host, rig, bus};
+  Cid cid = hashed_id(parts);
   cid[6] = static_cast<std::uint8_t>((cid[6] & 0x0F) | 0x80);  // version 8
   cid[8] = static_cast<std::uint8_t>((cid[8] & 0x3F) | 0x80);  // variant of RFC 9562
   return cid;
@@ -70,17 +53,23 @@ std::optional<Cid> parse_cid(std::string_view text) {
   return cid;
 }
 
-std::vector<std::uint8_t> Source::next_packet(int universe, Stream& stream, bool terminated) {
+std::vector<std::uint8_t> Source::next_packet(int universe, Stream& stream, std::uint8_t start_code, bool terminated) {
+  const DmxSlots& slots = start_code == kSlotPriority ? *stream.priorities : stream.slots;
   DataPacket packet;
   packet.cid = settings_.cid;
   packet.source_name = settings_.source_name;
   packet.priority = static_cast<std::uint8_t>(settings_.priority);
+  packet.sync_universe = static_cast<std::uint16_t>(settings_.sync_universe);
+  packet.force_sync = settings_.sync_universe != 0;
   packet.sequence = stream.sequence;
+  packet.preview = settings_.preview;
   packet.terminated = terminated;
   packet.universe = static_cast<std::uint16_t>(universe);
-  packet.slots.assign(stream.slots.begin(), stream.slots.end());
-  stream.sequence = static_cast<std::uint8_t>(stream.sequence + (stream.packets == 0 ? kPastTheDropWindow : 1));
+  packet.start_code = start_code;
+  packet.slots.assign(slots.begin(), slots.end());
+  stream.sequence = static_cast<std::uint8_t>(stream.sequence + (stream.packets == 0 ? kJumpAfterFirstPacket : 1));
   ++stream.packets;
+  owes_sync_ = owes_sync_ || settings_.sync_universe != 0;
   return encode(packet);
 }
 
@@ -91,21 +80,70 @@ std::optional<std::vector<std::uint8_t>> Source::due(Time now, int universe, con
     stream.slots = slots;
     stream.sending = true;
   }
+  // Priorities go first, so that a receiver knows them with the first levels; and they take a packet's place, since
+  // the rate counts all packets of a universe (clause 6.6.1).
+  if (stream.priorities && (!stream.priorities_sent || now - *stream.priorities_sent >= kKeepAlive)) {
+    if (!stream.rate.take(now)) return std::nullopt;
+    stream.priorities_sent = now;
+    return next_packet(universe, stream, kSlotPriority, false);
+  }
   const bool wanted = settings_.continuous || stream.repeats_left > 0 || now - stream.last >= kKeepAlive;
   if (!wanted || !stream.rate.take(now)) return std::nullopt;
   if (stream.repeats_left > 0) --stream.repeats_left;
   stream.last = now;
-  return next_packet(universe, stream, false);
+  return next_packet(universe, stream, kLevels, false);
 }
 
 std::optional<std::vector<std::uint8_t>> Source::goodbye(int universe) {
   const auto found = streams_.find(universe);
   if (found == streams_.end() || !found->second.sending) return std::nullopt;
-  return next_packet(universe, found->second, true);
+  return next_packet(universe, found->second, kLevels, true);
+}
+
+std::optional<std::vector<std::uint8_t>> Source::sync_due() {
+  if (!owes_sync_) return std::nullopt;
+  owes_sync_ = false;
+  const SyncPacket packet{settings_.cid, sync_sequence_, static_cast<std::uint16_t>(settings_.sync_universe)};
+  sync_sequence_ = static_cast<std::uint8_t>(sync_sequence_ + (syncs_ == 0 ? kJumpAfterFirstPacket : 1));
+  ++syncs_;
+  return encode(packet);
+}
+
+std::vector<std::vector<std::uint8_t>> Source::discovery_due(Time now) {
+  if (!listed_) listed_ = now;  // the first list after one interval, when it is known what is sent
+  if (now - *listed_ < kDiscoveryInterval) return {};
+  listed_ = now;
+  std::vector<std::uint16_t> universes;
+  for (const auto& [universe, stream] : streams_) {
+    if (stream.sending) universes.push_back(static_cast<std::uint16_t>(universe));
+  }
+  if (universes.empty()) return {};
+  std::vector<std::vector<std::uint8_t>> pages;
+  const std::size_t last_page = (universes.size() - 1) / kUniversesPerPage;
+  for (std::size_t page = 0; page <= last_page; ++page) {
+    const auto begin = universes.begin() + static_cast<std::ptrdiff_t>(page * kUniversesPerPage);
+    const auto left = static_cast<std::size_t>(universes.end() - begin);
+    const auto end = begin + static_cast<std::ptrdiff_t>(std::min(left, kUniversesPerPage));
+    pages.push_back(encode(DiscoveryPacket{settings_.cid,
+                                           settings_.source_name,
+                                           static_cast<std::uint8_t>(page),
+                                           static_cast<std::uint8_t>(last_page),
+                                           {begin, end}}));
+  }
+  return pages;
+}
+
+void Source::rest(int universe) {
+  const auto found = streams_.find(universe);
+  if (found == streams_.end()) return;
+  found->second.sending = false;
+  found->second.priorities_sent.reset();
 }
 
 void Source::rest() {
-  for (auto& [universe, stream] : streams_) stream.sending = false;
+  for (const auto& entry : streams_) rest(entry.first);
+  owes_sync_ = false;
+  listed_.reset();
 }
 
 }  // namespace luxrig::sacn

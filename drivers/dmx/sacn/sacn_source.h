@@ -1,5 +1,6 @@
 #pragma once
-/// What an sACN source sends when: sequence numbers, rate, suppression, goodbye. `now` and slots in, packets out.
+/// What an sACN source sends when: sequence numbers, rate, suppression, priority per slot, synchronisation, universe
+/// discovery, goodbye. `now` and slots in, packets out.
 
 #include <cstdint>
 #include <map>
@@ -18,6 +19,9 @@ struct SourceSettings {
   std::string source_name;
   int priority = 100;      ///< 0…200
   bool continuous = true;  ///< false: transmission is suppressed while nothing changes (clause 6.6.2)
+  bool preview = false;    ///< for visualisers only (clause 6.2.6)
+  /// Data waits for a packet to this universe (clause 11); 0: acts at once. Receivers go on without when it is lost.
+  int sync_universe = 0;
 };
 
 /// A component identifier that stays over restarts and differs between hosts, rigs and buses: a UUID of version 8
@@ -31,12 +35,24 @@ class Source {
  public:
   explicit Source(SourceSettings settings) : settings_(std::move(settings)) {}
 
-  /// The packet of this universe that is due at `now`, if one is.
+  /// From now on packets of start code 0xDD say these priorities, slot by slot (0: this source has no say there).
+  void set_slot_priorities(int universe, const DmxSlots& priorities) { streams_[universe].priorities = priorities; }
+
+  /// The packet of this universe that is due at `now`, if one is: levels or, in their place, priorities of slots.
   [[nodiscard]] std::optional<std::vector<std::uint8_t>> due(Time now, int universe, const DmxSlots& slots);
 
   /// The goodbye of a universe that has sent before: one packet with the stream-terminated bit; clause 6.2.6 wants
   /// three of them. Nothing for a universe that never sent or has said goodbye.
   [[nodiscard]] std::optional<std::vector<std::uint8_t>> goodbye(int universe);
+  /// After all universes of a frame: the packet that lets them act together. Nothing when none was sent since the
+  /// last, or without a sync_universe.
+  [[nodiscard]] std::optional<std::vector<std::uint8_t>> sync_due();
+
+  /// Every 10 s the pages that list what is being sent; nothing else, and nothing while nothing is sent.
+  [[nodiscard]] std::vector<std::vector<std::uint8_t>> discovery_due(Time now);
+
+  /// The same for one universe, when it alone falls silent.
+  void rest(int universe);
   /// After the goodbyes: each universe starts afresh with its next packet, and goes on counting.
   void rest();
 
@@ -45,15 +61,22 @@ class Source {
     DmxSlots slots{};
     std::uint8_t sequence = 0;  ///< of the next packet
     std::uint64_t packets = 0;
+    std::optional<DmxSlots> priorities;
+    std::optional<Time> priorities_sent;
     bool sending = false;
     int repeats_left = 0;  ///< identical packets still owed after the last change
     Time last{};
     SendRate rate;
   };
-  [[nodiscard]] std::vector<std::uint8_t> next_packet(int universe, Stream& stream, bool terminated);
+  [[nodiscard]] std::vector<std::uint8_t> next_packet(int universe, Stream& stream, std::uint8_t start_code,
+                                                      bool terminated);
 
   SourceSettings settings_;
   std::map<int, Stream> streams_;
+  bool owes_sync_ = false;
+  std::uint8_t sync_sequence_ = 0;
+  std::uint64_t syncs_ = 0;
+  std::optional<Time> listed_;  ///< when discovery was last due
 };
 
 }  // namespace luxrig::sacn

@@ -3,6 +3,7 @@
 
 #include <deque>
 #include <memory>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct DatagramScript {
     std::vector<std::uint8_t> bytes;
   };
   std::vector<Sent> sent;
+  std::set<std::uint32_t> joined;
   std::deque<Datagram> incoming;
   std::deque<Fault> errors;         ///< for take_error()
   std::optional<Fault> send_fails;  ///< every send() fails with this while set
@@ -40,6 +42,10 @@ class ScriptedDatagram final : public DatagramChannel {
   Result<void> send(const SocketAddress& to, std::span<const std::uint8_t> bytes) override {
     if (script_->send_fails) return tl::unexpected(*script_->send_fails);
     script_->sent.push_back({to, {bytes.begin(), bytes.end()}});
+    return {};
+  }
+  Result<void> join(std::uint32_t group) override {
+    script_->joined.insert(group);
     return {};
   }
   std::optional<Fault> take_error() override {

@@ -50,7 +50,9 @@ TEST(ArtnetCodec, ReadsWhichUniversesANodePutsOut) {
   EXPECT_EQ(reply->short_name, "Node");
   EXPECT_EQ(reply->long_name, "Long");
   EXPECT_EQ(reply->bind_index, 1);
-  EXPECT_EQ(reply->output_port_addresses, (std::vector<int>{0x0123, 0x0125}));
+  ASSERT_EQ(reply->outputs.size(), 2u);
+  EXPECT_EQ(reply->outputs[0].port_address, 0x0123);
+  EXPECT_EQ(reply->outputs[1].port_address, 0x0125);
 }
 
 TEST(ArtnetCodec, TakesTheShortRepliesOfOlderNodes) {
@@ -59,7 +61,7 @@ TEST(ArtnetCodec, TakesTheShortRepliesOfOlderNodes) {
   const auto reply = decode_poll_reply(bytes);
   ASSERT_TRUE(reply);
   EXPECT_EQ(reply->bind_index, 0);
-  EXPECT_EQ(reply->output_port_addresses.size(), 2u);
+  EXPECT_EQ(reply->outputs.size(), 2u);
   bytes.resize(206);
   EXPECT_FALSE(decode_poll_reply(bytes));
 }
@@ -76,9 +78,9 @@ TEST(ArtnetCodec, SurvivesEveryTruncationAndEveryChangedByte) {
         EXPECT_EQ(reply.has_value(), bad == good);
       }
       if (!reply) continue;
-      for (const int port_address : reply->output_port_addresses) {
-        EXPECT_GE(port_address, 0);
-        EXPECT_LE(port_address, kHighestPortAddress);
+      for (const PortOutput& port : reply->outputs) {
+        EXPECT_GE(port.port_address, 0);
+        EXPECT_LE(port.port_address, kHighestPortAddress);
       }
     }
   }
@@ -88,6 +90,58 @@ TEST(ArtnetCodec, LetsNoControlCharacterOfANodeIntoAReport) {
   Bytes bytes = reply_bytes();
   bytes[27] = 0x1B;
   EXPECT_EQ(decode_poll_reply(bytes)->short_name, "N?de");
+}
+
+TEST(ArtnetCodec, WritesArtSyncAsPublished) {
+  EXPECT_EQ(encode_sync(), from_hex("4172742d4e657400 0052 000e 00 00"));
+  EXPECT_TRUE(is_sync(encode_sync()));
+  EXPECT_FALSE(is_sync(encode_poll()));
+}
+
+TEST(ArtnetCodec, ReadsPollsWithAndWithoutTheirRangeOfPorts) {
+  const auto whole = decode_poll(encode_poll());
+  ASSERT_TRUE(whole);
+  EXPECT_TRUE(whole->reply_on_change);
+  EXPECT_EQ(whole->highest_port_address, kHighestPortAddress);
+  const auto targeted = decode_poll(from_hex("4172742d4e657400 0020 000e 20 00 0123 0120 0000 00ff"));
+  ASSERT_TRUE(targeted);
+  EXPECT_EQ(targeted->highest_port_address, 0x0123);
+  EXPECT_EQ(targeted->lowest_port_address, 0x0120);
+}
+
+TEST(ArtnetCodec, WritesAPollReplyThatItReadsItself) {
+  PollReply reply;
+  reply.short_name = "a name that is too long";
+  reply.long_name = "Luxrig test";
+  reply.bind_index = 2;
+  reply.mac = {2, 1, 2, 3, 4, 5};
+  reply.outputs = {{0x0123, true, false, false}, {0x012F, true, true, true}};
+  const Bytes bytes = encode(reply, 0x0A000007);
+  ASSERT_EQ(bytes.size(), 239u);
+  EXPECT_EQ(Bytes(bytes.begin(), bytes.begin() + 20), from_hex("4172742d4e657400 0021 0a000007 3619 0001 01 02"));
+  EXPECT_EQ(Bytes(bytes.begin() + 172, bytes.begin() + 176), from_hex("0002 80 80"));
+  EXPECT_EQ(Bytes(bytes.begin() + 182, bytes.begin() + 184), from_hex("80 8a"));
+  EXPECT_EQ(Bytes(bytes.begin() + 190, bytes.begin() + 192), from_hex("03 0f"));
+  EXPECT_EQ(Bytes(bytes.begin() + 201, bytes.begin() + 213), from_hex("020102030405 0a000007 02 08"));
+  const auto back = decode_poll_reply(bytes);
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->short_name, "a name that is to");  // 17 and its NUL
+  EXPECT_EQ(back->mac, reply.mac);
+  ASSERT_EQ(back->outputs.size(), 2u);
+  EXPECT_TRUE(back->outputs[1].merging && back->outputs[1].ltp && !back->outputs[0].merging);
+}
+
+TEST(ArtnetCodec, WritesArtAddressThatChangesNothingButWhatItCommands) {
+  const Bytes bytes = encode(Address{1, AddressCommand::merge_ltp, 2});
+  ASSERT_EQ(bytes.size(), 107u);
+  EXPECT_EQ(Bytes(bytes.begin(), bytes.begin() + 14), from_hex("4172742d4e657400 0060 000e 7f 01"));
+  EXPECT_EQ(Bytes(bytes.begin() + 96, bytes.end()), from_hex("7f7f7f7f 7f7f7f7f 7f ff 12"));
+  const auto back = decode_address(bytes);
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->command, AddressCommand::merge_ltp);
+  EXPECT_EQ(back->port, 2);
+  EXPECT_EQ(decode_address(encode(Address{1, AddressCommand::cancel_merge, 0}))->command, AddressCommand::cancel_merge);
+  EXPECT_EQ(encode(Address{1, AddressCommand::cancel_merge, 3}).back(), 1);
 }
 
 TEST(ArtnetCodec, ShowsPortAddressesAsNodesDo) {

@@ -42,7 +42,8 @@ struct Bench {
     std::vector<std::string> all;
     for (const auto& [to, bytes] : net->sent) {
       const auto dmx = artnet::decode_dmx(bytes);
-      all.push_back((dmx ? std::to_string(dmx->slots.at(4)) : "poll") + " to " + text_of(to));
+      const std::string other = artnet::is_sync(bytes) ? "sync" : artnet::decode_poll(bytes) ? "poll" : "other";
+      all.push_back((dmx ? std::to_string(dmx->slots.at(4)) : other) + " to " + text_of(to));
     }
     net->sent.clear();
     return all;
@@ -83,6 +84,46 @@ TEST(ArtnetDriver, SendsChangesAtOnceAndTheRestEverySecond) {
   EXPECT_EQ(bench.sent(), Strings{});
   ASSERT_TRUE(bench.write(1070, 0.2));
   EXPECT_EQ(bench.sent(), (Strings{"51 to 10.0.0.7:6454"}));
+}
+
+TEST(ArtnetDriver, SynchronisesNodesByBroadcastAfterEachFrameThatWasSent) {
+  Bench bench({{"sync", true}});
+  ASSERT_TRUE(bench.driver->activate(at_ms(0)));
+  bench.hear("10.0.0.7", reply_of("Right", 1));
+  ASSERT_TRUE(bench.write(0, 1.0));
+  EXPECT_EQ(bench.sent(),
+            (Strings{"poll to 255.255.255.255:6454", "255 to 10.0.0.7:6454", "sync to 255.255.255.255:6454"}));
+  ASSERT_TRUE(bench.write(23, 1.0));  // the packet behind the jump
+  bench.sent();
+  ASSERT_TRUE(bench.write(46, 1.0));
+  EXPECT_EQ(bench.sent(), Strings{});
+}
+
+TEST(ArtnetDriver, LeavesOutSequenceNumbersWhereNodesCannotCount) {
+  Bench bench({{"destination", std::string("10.0.0.7")}, {"continuous", true}, {"sequence", false}});
+  ASSERT_TRUE(bench.driver->activate(at_ms(0)));
+  int packets = 0;
+  for (int cycle = 0; cycle < 40; ++cycle) (void)bench.write(cycle * 23.0, 0.5);
+  for (const auto& [to, bytes] : bench.net->sent) {
+    const auto dmx = artnet::decode_dmx(bytes);
+    if (!dmx) continue;
+    EXPECT_EQ(dmx->sequence, 0);
+    ++packets;
+  }
+  EXPECT_EQ(packets, 40);
+}
+
+TEST(ArtnetDriver, SaysWhenANodeMergesItsDataWithAnothers) {
+  Bench bench;
+  ASSERT_TRUE(bench.driver->activate(at_ms(0)));
+  Bytes merging = reply_of("Right", 1);
+  merging[182] = 0x88;
+  bench.hear("10.0.0.7", merging);
+  ASSERT_TRUE(bench.write(0, 1.0));
+  EXPECT_EQ(bench.health(1).detail, "merges this bus's data with another sender's");
+  bench.hear("10.0.0.7", reply_of("Right", 1));
+  ASSERT_TRUE(bench.write(23, 1.0));
+  EXPECT_EQ(bench.health(1).detail, "");
 }
 
 TEST(ArtnetDriver, PollsEveryTwoAndAHalfToThreeSeconds) {

@@ -17,7 +17,9 @@ struct SacnBench {
     rig = rig_with(bus_of("sacn", std::move(options)));
     add_dmx(rig, "spot", 1, 5);
     add_dmx(rig, "far", 300, 1);
-    driver = make_sacn_over(std::make_unique<ScriptedDatagram>(net), rig, 0, redirect);
+    std::vector<std::unique_ptr<DatagramChannel>> channels;
+    channels.push_back(std::make_unique<ScriptedDatagram>(net));
+    driver = make_sacn_over(std::move(channels), rig, 0, redirect);
   }
   Result<void> write(double ms, double drive) {
     const LevelCommand commands[] = {{0, drive}, {1, drive}};
@@ -62,6 +64,53 @@ TEST(SacnDriver, TakesItsOptions) {
   EXPECT_EQ(bench.packet(0).source_name, "north wall");
   EXPECT_EQ(bench.packet(0).cid[0], 0x6b);
   EXPECT_TRUE(bench.driver->bounds().notices_loss);
+}
+
+TEST(SacnDriver, SendsToEachReceiverOfAListAndToTheSynchronisationUniverse) {
+  SacnBench bench({{"destination", std::string("10.0.0.1, 10.0.0.2")}, {"sync_universe", std::int64_t{50}}});
+  ASSERT_TRUE(bench.driver->activate(at_ms(0)));
+  ASSERT_TRUE(bench.write(0, 0.5));
+  ASSERT_EQ(bench.net->sent.size(), 6u);  // two universes and the synchronisation packet, to two receivers
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(text_of(bench.net->sent[i].to), i % 2 == 0 ? "10.0.0.1:5568" : "10.0.0.2:5568");
+    EXPECT_EQ(sacn::decode_sync(bench.net->sent[i].bytes).has_value(), i >= 4);
+  }
+  SacnBench multicast({{"sync_universe", std::int64_t{50}}});
+  ASSERT_TRUE(multicast.driver->activate(at_ms(0)));
+  ASSERT_TRUE(multicast.write(0, 0.5));
+  EXPECT_EQ(text_of(multicast.net->sent.at(2).to), "239.255.0.50:5568");
+}
+
+TEST(SacnDriver, MarksPreviewDataAndSaysPrioritiesOfTheSlotsItsFixturesUse) {
+  SacnBench bench({{"preview", true}, {"slot_priority", true}, {"priority", std::int64_t{0}}});
+  ASSERT_TRUE(bench.driver->activate(at_ms(0)));
+  ASSERT_TRUE(bench.write(0, 0.5));
+  const sacn::DataPacket first = bench.packet(0);
+  EXPECT_TRUE(first.preview);
+  EXPECT_EQ(first.start_code, sacn::kSlotPriority);
+  EXPECT_EQ(first.slots[4], 1);  // 0 would say: no value
+  EXPECT_EQ(first.slots[5], 0);
+  ASSERT_TRUE(bench.write(23, 0.5));
+  EXPECT_EQ(bench.packet(2).start_code, sacn::kLevels);
+}
+
+TEST(SacnDriver, SendsTheSamePacketsByEveryInterface) {
+  Rig rig = rig_with(bus_of("sacn"));
+  add_dmx(rig, "spot", 1, 5);
+  const auto left = std::make_shared<DatagramScript>(), right = std::make_shared<DatagramScript>();
+  std::vector<std::unique_ptr<DatagramChannel>> channels;
+  channels.push_back(std::make_unique<ScriptedDatagram>(left));
+  channels.push_back(std::make_unique<ScriptedDatagram>(right));
+  const auto driver = make_sacn_over(std::move(channels), rig, 0, std::nullopt);
+  ASSERT_TRUE(driver->activate(at_ms(0)));
+  const LevelCommand command{0, 0.5};
+  ASSERT_TRUE(driver->level_output()->write(at_ms(0), {&command, 1}));
+  right->send_fails = Fault{Cause::network, {}, "sending: Network is unreachable", {}};
+  EXPECT_FALSE(driver->level_output()->write(at_ms(23), {&command, 1}));
+  driver->deactivate(at_ms(46));
+  ASSERT_EQ(left->sent.size(), 5u);  // two cycles, three goodbyes
+  ASSERT_EQ(right->sent.size(), 1u);
+  EXPECT_EQ(left->sent[0].bytes, right->sent[0].bytes);
 }
 
 TEST(SacnDriver, SendsEverythingToTheStandInWhenRedirected) {
@@ -189,6 +238,8 @@ TEST(SacnDriver, RefusesOptionsThatCannotWork) {
   problem("destination", std::string("node.local"));
   problem("destination", std::string("239.255.0.1"));
   problem("interface", std::string("an interface name"));
+  problem("destination", std::string("10.0.0.1, node.local"));
+  problem("interface", std::string("eth0,,eth1"));
   problem("cid", std::string("1234"));
   problem("source_name", std::string(64, 'x'));
   problem("continuous", std::string("yes"));

@@ -1,0 +1,111 @@
+/// What lighting desks that have a say in the light mean for the show.
+
+#include <algorithm>
+#include <utility>
+
+#include "core/check.h"
+#include "core/control/show_state.h"
+
+namespace luxrig {
+
+/// Limits for levels that nobody has worked out, and which heads a desk cannot light while they turn.
+void ShowController::State::guard_against_desks(Time now) {
+  if (desks.empty()) return;
+  const bool limited =
+      std::any_of(rig.points.begin(), rig.points.end(), [](const Point& point) { return point.max_lx.has_value(); });
+  WorstCase worst = estimator.worst_of_any(now);
+  program.any_lux_per_level = std::move(worst.worst_lux_per_level);
+  program.any_max_lx = std::move(worst.max_lx);
+  if (rig.limits.max_watts) {
+    // The last row of the program's own is that of power, whatever the levels.
+    const Eigen::Index row = program.any_max_lx.size();
+    program.any_lux_per_level.conservativeResize(row + 1, static_cast<Eigen::Index>(rig.fixtures.size()));
+    program.any_max_lx.conservativeResize(row + 1);
+    program.any_lux_per_level.row(row) = program.worst_lux_per_level.row(program.worst_lux_per_level.rows() - 1);
+    program.any_max_lx[row] = *rig.limits.max_watts;
+  }
+  program.limits_released = from_seconds(rig.control.fade_s);
+  program.heads_arrive = turned ? arrive : Time::max();
+  program.heads_guarded.assign(rig.fixtures.size(), 0);
+  for (std::size_t f = 0; f < rig.fixtures.size(); ++f) program.heads_guarded[f] = limited && rig.fixtures[f].moves;
+}
+
+void ShowController::State::put_desk(std::size_t index) {
+  program.desks[index] = desks[index].blend();
+  ++program.revision;
+}
+
+template <class Call>
+bool ShowController::State::with_present_light(Time now, Call call) {
+  const bool dark = program.blackout;
+  program.blackout = false;
+  std::vector<double> level(rig.fixtures.size());
+  std::vector<PanTilt> joints(rig.fixtures.size());
+  program.levels_at(now, level);
+  program.joints_at(now, joints);
+  program.blackout = dark;
+  return call(PresentLight{level, joints, program.joints});
+}
+
+/// Somebody else has a say, or the light is not ours at all.
+bool ShowController::State::desk_shares(Time now) const {
+  return program.desk_has_a_say(now) ||
+         std::any_of(program.desks.begin(), program.desks.end(), [](const DeskBlend& desk) { return desk.silent; });
+}
+
+void ShowController::State::step_desks(Time now) {
+  for (std::size_t d = 0; d < desks.size(); ++d) {
+    if (desks[d].step(now)) put_desk(d);
+  }
+  const bool was_shared = std::exchange(shared, desk_shares(now));
+  if (shared) converged = false;
+  // What meters read while a desk had a say is not believed, and limits are still being let go.
+  if (was_shared && !shared) {
+    samples.restart(std::max(now + program.limits_released, program.start + program.duration) +
+                    from_seconds(rig.control.settle_s));
+  }
+}
+
+std::size_t ShowController::add_desk(const DeskRules& rules, const DeskPart& part) {
+  State& state = *state_;
+  const Rig& rig = state.rig;
+  DeskFollowerSettings settings;
+  settings.rules = rules;
+  settings.fixtures = part.fixtures;
+  for (const std::size_t f : part.fixtures) {
+    LUXRIG_CHECK(f < rig.fixtures.size(), "fixture {} of {}", f, rig.fixtures.size());
+    settings.dimmer_curve.push_back(rig.fixtures[f].dimmer_curve);
+    settings.joints.push_back(state.program.joints[f]);
+  }
+  settings.desk_may_turn =
+      std::none_of(rig.points.begin(), rig.points.end(), [](const Point& point) { return point.max_lx.has_value(); });
+  settings.fade = from_seconds(rig.control.fade_s);
+  settings.curve = rig.control.fade_curve;
+  state.desks.emplace_back(std::move(settings));
+  state.desk_names.push_back(part.name);
+  state.program.desks.emplace_back();
+  state.guard_against_desks(state.last);
+  state.put_desk(state.desks.size() - 1);
+  return state.desks.size() - 1;
+}
+
+void ShowController::desk(Time now, std::size_t index, const DeskFrame& frame) {
+  State& state = *state_;
+  LUXRIG_CHECK(index < state.desks.size(), "desk {} of {}", index, state.desks.size());
+  now = state.at_least_last(now);
+  const bool changed = state.with_present_light(
+      now, [&](const PresentLight& present) { return state.desks[index].hear(now, frame, present); });
+  if (changed) state.put_desk(index);
+}
+
+void ShowController::hand_back(Time now) {
+  State& state = *state_;
+  now = state.at_least_last(now);
+  for (std::size_t d = 0; d < state.desks.size(); ++d) {
+    const bool changed = state.with_present_light(
+        now, [&](const PresentLight& present) { return state.desks[d].hand_back(now, present); });
+    if (changed) state.put_desk(d);
+  }
+}
+
+}  // namespace luxrig

@@ -1,0 +1,222 @@
+/// A lighting desk -> Luxrig's input -> what both want, within limits -> the simulated rig, over loopback under a
+/// stepped clock. The desk's packets are written here from the standards, byte by byte.
+#include <arpa/inet.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cmath>
+
+#include "core/control/show_controller.h"
+#include "drivers/registry.h"
+#include "tests/conformance/far_end.h"
+#include "tests/drivers/test_rig.h"
+
+namespace luxrig {
+namespace {
+
+using Packet = std::vector<std::uint8_t>;
+
+void put_be16(Packet& packet, std::size_t at, std::size_t value) {
+  packet[at] = static_cast<std::uint8_t>(value >> 8);
+  packet[at + 1] = static_cast<std::uint8_t>(value);
+}
+
+/// ANSI E1.31-2018, table 4-1, 512 slots.
+Packet sacn_packet(int universe, std::uint8_t sequence, int level_dmx, bool terminated) {
+  Packet packet(638, 0);
+  put_be16(packet, 0, 0x0010);
+  const std::string id = "ASC-E1.17";
+  std::copy(id.begin(), id.end(), packet.begin() + 4);
+  put_be16(packet, 16, 0x726e);
+  packet[21] = 4;
+  packet[22] = 0xAB;  // CID
+  put_be16(packet, 38, 0x7258);
+  packet[43] = 2;
+  packet[44] = 'X';  // source name
+  packet[108] = 100;
+  packet[111] = sequence;
+  packet[112] = terminated ? 0x40 : 0;
+  put_be16(packet, 113, static_cast<std::size_t>(universe));
+  put_be16(packet, 115, 0x720b);
+  packet[117] = 2;
+  packet[118] = 0xa1;
+  packet[122] = 1;
+  put_be16(packet, 123, 513);
+  packet[126] = static_cast<std::uint8_t>(level_dmx);
+  return packet;
+}
+
+/// Art-Net 4, ArtDmx.
+Packet artdmx_packet(int universe, std::uint8_t sequence, int level_dmx) {
+  Packet packet(530, 0);
+  const std::string id = "Art-Net";
+  std::copy(id.begin(), id.end(), packet.begin());
+  packet[9] = 0x50;
+  packet[11] = 14;
+  packet[12] = sequence;
+  packet[14] = static_cast<std::uint8_t>(universe);
+  put_be16(packet, 16, 512);
+  packet[18] = static_cast<std::uint8_t>(level_dmx);
+  return packet;
+}
+
+class LoopbackDesk {
+ public:
+  LoopbackDesk() : fd_(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
+    // A port that is free: that of a socket that was bound just now.
+    const int probe = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof(address);
+    EXPECT_EQ(::bind(probe, reinterpret_cast<sockaddr*>(&address), size), 0);
+    EXPECT_EQ(::getsockname(probe, reinterpret_cast<sockaddr*>(&address), &size), 0);
+    port_ = ntohs(address.sin_port);
+    ::close(probe);
+  }
+  ~LoopbackDesk() { ::close(fd_); }
+  LoopbackDesk(const LoopbackDesk&) = delete;
+  LoopbackDesk& operator=(const LoopbackDesk&) = delete;
+
+  [[nodiscard]] int port() const { return port_; }
+  void send(const Packet& packet) const {
+    sockaddr_in to{};
+    to.sin_family = AF_INET;
+    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    to.sin_port = htons(static_cast<std::uint16_t>(port_));
+    ::sendto(fd_, packet.data(), packet.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof(to));
+  }
+
+ private:
+  int fd_;
+  int port_ = 0;
+};
+
+/// Two lamps on slots 1 and 2 of universe 1; the first lights a point with a limit of 50 lx, 100 lx per level.
+struct FollowedRig {
+  FollowedRig(const std::string& protocol, const std::string& input, const std::string& hand_back)
+      : protocol_(protocol), rig(make_rig(protocol, input, hand_back, desk.port())), far(rig) {
+    const DriverEntry* entry = find_driver(protocol);
+    EXPECT_TRUE(entry->check(rig, 0).empty());
+    driver = entry->make(rig, 0, Redirect{"127.0.0.1", far.port()});
+    LightModel model;
+    model.point_lux_per_level = Eigen::MatrixXd{{100, 0}};
+    model.meter_lux_per_level = Eigen::MatrixXd(0, 2);
+    show.emplace(rig, model);
+    EXPECT_EQ(driver->level_input()->parts().size(), 1u);
+    show->add_desk(driver->level_input()->rules(), driver->level_input()->parts()[0]);
+    EXPECT_TRUE(driver->activate(now));
+    show->apply(now, std::vector<double>{0.2, 0.2});
+  }
+  static Rig make_rig(const std::string& protocol, const std::string& input, const std::string& hand_back, int port) {
+    Rig made = rig_with(
+        bus_of(protocol, {{"input", input}, {"input_hand_back", hand_back}, {"input_port", std::int64_t{port}}}));
+    add_dmx(made, "limited", 1, 1);
+    add_dmx(made, "free", 1, 2);
+    made.points.emplace_back();
+    made.points.back().name = "drawing";
+    made.points.back().max_lx = 50;
+    made.control.fade_s = 2;
+    return made;
+  }
+  /// A cycle of the output; the desk sends first when it is on.
+  void cycle() {
+    if (desk_dmx) {
+      ++sequence_;
+      Packet packet = protocol_ == "sacn" ? sacn_packet(1, sequence_, *desk_dmx, false)
+                                          : artdmx_packet(1, sequence_ == 0 ? sequence_ = 1 : sequence_, *desk_dmx);
+      packet[protocol_ == "sacn" ? 127 : 19] = static_cast<std::uint8_t>(*desk_dmx);
+      desk.send(packet);
+    }
+    const auto frames = driver->level_input()->listen(now);
+    show->desk(now, 0, frames[0]);
+    show->step(now);
+    const OutputProgram& program = show->program();
+    driver->level_input()->set_silent(now, 0, program.desks[0].silent);
+    std::vector<double> level(2);
+    program.levels_at(now, level);
+    const LevelCommand commands[] = {{0, level[0]}, {1, level[1]}};
+    (void)driver->level_output()->write(now, commands);
+    far.step_to(now);
+    now += driver->bounds().write_period;
+    const std::vector<double> drives = far.drives();
+    most_jump = std::max(most_jump, std::abs(drives[1] - last_free_));
+    last_free_ = drives[1];
+    most_limited = std::max(most_limited, drives[0]);
+  }
+  void run(double seconds) {
+    const Time end = now + from_seconds(seconds);
+    while (now < end) cycle();
+  }
+
+  LoopbackDesk desk;
+  std::string protocol_;
+  Rig rig;
+  FarEnd far;
+  std::unique_ptr<Driver> driver;
+  std::optional<ShowController> show;
+  Time now = at_ms(0);
+  std::optional<int> desk_dmx;
+  double most_jump = 0, most_limited = 0;
+
+ private:
+  std::uint8_t sequence_ = 0;
+  double last_free_ = 0;
+};
+
+class FollowedDesk : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(FollowedDesk, TheBrighterOfBothReachesTheLampsWithinTheLimit) {
+  FollowedRig rig(GetParam(), "merge", "at-once");
+  rig.run(5);
+  EXPECT_NEAR(rig.far.drives()[1], 0.2, 0.003);
+  rig.desk_dmx = 255;
+  rig.run(3);  // sACN samples for 1.5 s
+  EXPECT_NEAR(rig.far.drives()[1], 1, 0.003);
+  // 50 lx, less the margin of a model that no meter confirms, over 100 lx per level.
+  EXPECT_GT(rig.most_limited, 0.3);
+  EXPECT_LE(rig.most_limited, 0.5 * 0.75 / 1.0 + 0.002);
+  rig.desk_dmx = 26;
+  rig.run(1);
+  EXPECT_NEAR(rig.far.drives()[1], 0.2, 0.003);
+}
+
+TEST_P(FollowedDesk, IsTakenOverFromWithoutAFlashWhenItIsLostAndGetsTheLightBackByFade) {
+  FollowedRig rig(GetParam(), "takeover", "fade");
+  rig.desk_dmx = 204;
+  rig.run(6);
+  EXPECT_NEAR(rig.far.drives()[1], 0.8, 0.003);
+  rig.most_jump = 0;
+  rig.desk_dmx.reset();
+  rig.run(2);
+  EXPECT_NEAR(rig.far.drives()[1], 0.8, 0.003);  // it may be back at any moment
+  rig.run(12);
+  EXPECT_NEAR(rig.far.drives()[1], 0.2, 0.003);
+  EXPECT_LE(rig.most_jump, 1.5 * 0.6 * 0.0228 / 2 + 2.0 / 255);  // an s-curve's steepest, and a step of 8 bits
+  rig.desk_dmx = 204;
+  rig.run(5);
+  EXPECT_NEAR(rig.far.drives()[1], 0.8, 0.003);
+  EXPECT_LE(rig.most_jump, 1.5 * 0.6 * 0.0228 / 2 + 2.0 / 255);
+}
+
+TEST_P(FollowedDesk, IsStoodByForInSilence) {
+  FollowedRig rig(GetParam(), "standby", "at-once");
+  rig.desk_dmx = 204;
+  rig.run(3);
+  const std::uint64_t polls_only = rig.driver->health(rig.now)[0].sent;
+  EXPECT_LE(polls_only, 6u);  // sACN nothing, Art-Net polls and an answer
+  EXPECT_EQ(rig.far.drives()[1], 0);
+  rig.desk_dmx.reset();
+  rig.run(std::string(GetParam()) == "sacn" ? 2.7 : 10.2);
+  EXPECT_NEAR(rig.far.drives()[1], 0.8, 0.1);  // from the last values seen
+  rig.run(4);
+  EXPECT_NEAR(rig.far.drives()[1], 0.2, 0.003);
+}
+
+INSTANTIATE_TEST_SUITE_P(Protocols, FollowedDesk, ::testing::Values("sacn", "artnet"),
+                         [](const auto& which) { return std::string(which.param); });
+
+}  // namespace
+}  // namespace luxrig
