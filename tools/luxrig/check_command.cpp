@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "core/photometry/beam.h"
 #include "core/rig/personality/personality.h"
@@ -106,7 +107,8 @@ std::string task_text(const Rig& rig, const Task& task) {
 /// How each fixture with a maker's file was understood; one of a housing speaks for all of it, and fixtures that are
 /// set alike are told once.
 void print_personalities(const Rig& rig) {
-  std::vector<std::pair<std::string, std::string>> told;  // what, and the fixtures it is true of
+  constexpr std::size_t kMostNamed = 4;
+  std::vector<std::pair<std::string, std::vector<std::string>>> told;  // what, and the fixtures it is true of
   for (std::size_t i = 0; i < rig.fixtures.size(); ++i) {
     const Fixture& fixture = rig.fixtures[i];
     if (!fixture.mode || fixture.housing.value_or(i) != i) continue;
@@ -119,15 +121,24 @@ void print_personalities(const Rig& rig) {
         use.emitter.empty() ? fixture.name : fixture.name.substr(0, fixture.name.size() - use.emitter.size() - 1);
     const auto known = std::find_if(told.begin(), told.end(), [&](const auto& entry) { return entry.first == text; });
     if (known == told.end()) {
-      told.emplace_back(text, name);
+      told.push_back({text, {name}});
     } else {
-      known->second += ", " + name;
+      known->second.push_back(name);
     }
   }
-  for (const auto& [text, names] : told) fmt::print("  personality of {}: {}\n", names, text);
+  for (const auto& [text, names] : told) {
+    const bool all = names.size() <= kMostNamed;
+    const auto named = std::span(names).first(all ? names.size() : kMostNamed - 1);
+    fmt::print("  personality of {}{}: {}\n", fmt::join(named, ", "),
+               all ? "" : fmt::format(" and {} more", names.size() - named.size()), text);
+  }
 }
 
-std::string place_text(const Vec3& p) { return fmt::format("{:.2f} {:.2f} {:.2f}", p.x(), p.y(), p.z()); }
+std::string place_text(const Vec3& p) {
+  // Centimetres, and no zero with a sign.
+  const Vec3 cm = (100 * p).array().round() + 0.0;
+  return fmt::format("{:.2f} {:.2f} {:.2f}", cm.x() / 100, cm.y() / 100, cm.z() / 100);
+}
 
 }  // namespace
 

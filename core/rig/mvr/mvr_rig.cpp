@@ -95,6 +95,11 @@ class RigWriter {
         "[[bus]]\nname = \"dmx\"\ndriver = \"sacn\"\n\n";
     reserve_addresses();
     for (std::size_t i = 0; i < mvr_.scene.fixtures.size(); ++i) write_fixture(i);
+    if (unpatched_ > 0) {
+      out_.remarks.push_back(fmt::format(
+          "FILL IN: {} of {} fixtures are not patched in the MVR file; universe and address of each are made up.",
+          unpatched_, mvr_.scene.fixtures.size()));
+    }
     out_.rig_toml = std::move(text_);
     out_.fixtures = mvr_.scene.fixtures.size();
     out_.luminaires = kinds_.size();
@@ -235,13 +240,17 @@ class RigWriter {
       at = *given_[i];
     } else {
       at = addresses_.take_next(highest_universe_ < kLastUniverse ? highest_universe_ + 1 : 1, kind.footprint);
-      remark(fixture.addresses.empty()
-                 ? fmt::format("FILL IN: {} is not patched in the MVR file; universe {}, address {} is made up.",
-                               in_quotes(name), at.universe, at.address)
-                 : fmt::format("FILL IN: {}: slots from universe {}, address {} on are taken, or too few; moved to "
-                               "universe {}, address {}.",
-                               in_quotes(name), fixture.addresses.front().universe, fixture.addresses.front().address,
-                               at.universe, at.address));
+      if (fixture.addresses.empty()) {
+        text_ += fmt::format("# FILL IN: {} is not patched in the MVR file; universe {}, address {} is made up.\n",
+                             in_quotes(name), at.universe, at.address);
+        ++unpatched_;
+      } else {
+        remark(
+            fmt::format("FILL IN: {}: slots from universe {}, address {} on are taken, or too few; moved to "
+                        "universe {}, address {}.",
+                        in_quotes(name), fixture.addresses.front().universe, fixture.addresses.front().address,
+                        at.universe, at.address));
+      }
     }
     if (kind.personality_file.empty()) {
       remark(fmt::format("FILL IN: {}: the DMX slots are not known ({}); one dimmer slot is made up.", in_quotes(name),
@@ -287,6 +296,7 @@ class RigWriter {
   std::map<std::pair<std::string, std::string>, FixtureKind> kinds_;
   std::map<std::string, Checked<Personality>> personalities_;
   std::map<std::string, std::string> file_names_;
+  std::size_t unpatched_ = 0;
   UniqueNames luminaires_, names_;
   FreeAddresses addresses_;
   std::vector<std::optional<UniverseAddress>> given_;
