@@ -51,6 +51,14 @@ SampleContrast contrast_of(const ContrastSamples& samples, std::span<const float
   return {sum.local_contrast_lx / count, sum.exposed_contrast / count};
 }
 
+std::size_t number_at_peak(std::span<const double> exposed_contrast) {
+  constexpr double kAsGood = 0.98;
+  if (exposed_contrast.empty()) return 0;
+  const double peak = *std::max_element(exposed_contrast.begin(), exposed_contrast.end());
+  const auto first = std::ranges::find_if(exposed_contrast, [&](double one) { return one >= kAsGood * peak; });
+  return static_cast<std::size_t>(first - exposed_contrast.begin());
+}
+
 double local_contrast_of(const ContrastSamples& samples, std::span<const float> lux) {
   LUXRIG_CHECK(lux.size() == samples.points.size(), "{} for {} points", lux.size(), samples.points.size());
   double sum_lx = 0;

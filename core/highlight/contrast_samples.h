@@ -26,6 +26,9 @@ struct SampleContrast {
 
 /// lux   at each of the samples' points
 [[nodiscard]] SampleContrast contrast_of(const ContrastSamples& samples, std::span<const float> lux);
+/// Which number of lights to take, by the exposed contrast of one, two, …: the fewest that are within 2 % of the peak,
+/// since that much is less than a light is worth. An index; 0 of none.
+[[nodiscard]] std::size_t number_at_peak(std::span<const double> exposed_contrast);
 /// The first of the two alone, in less time.
 [[nodiscard]] double local_contrast_of(const ContrastSamples& samples, std::span<const float> lux);
 

@@ -334,10 +334,10 @@ Result<JudgedLightCount> JudgedLights::count_lights(int most_lights) const {
       chosen.emplace(*begun);
     if (chosen->taken().size() < static_cast<std::size_t>(n)) break;  // no room for more
     count.by_number.push_back({{chosen->taken().begin(), chosen->taken().end()}, chosen->score()});
-    const auto& best = count.by_number[count.best];
-    if (count.by_number.back().score.exposed_contrast > best.score.exposed_contrast)
-      count.best = count.by_number.size() - 1;
   }
+  std::vector<double> exposed;
+  for (const JudgedLightSet& set : count.by_number) exposed.push_back(set.score.exposed_contrast);
+  count.best = number_at_peak(exposed);
   return count;
 }
 

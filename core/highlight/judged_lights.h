@@ -30,7 +30,7 @@ struct JudgedLightSet {
 /// Per number of lights, from one.
 struct JudgedLightCount {
   std::vector<JudgedLightSet> by_number;
-  std::size_t best = 0;  ///< index of the number to take: at the peak of exposed contrast
+  std::size_t best = 0;  ///< index of the number to take: number_at_peak
 };
 
 /// What each place sees is found once; then any number of lights is chosen without a ray.

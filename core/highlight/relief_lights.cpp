@@ -187,8 +187,8 @@ Result<ReliefLightCount> ReliefLightSearch::count_lights(int most_lights) const 
     for (const Vec3& direction : next->directions) bins.push_back(table_.bins.bin_of(direction));
     count.exposed_contrast.push_back(sums().of(bins).exposed_contrast);
     count.by_number.push_back(std::move(*next));
-    if (count.exposed_contrast.back() > count.exposed_contrast[count.best]) count.best = count.by_number.size() - 1;
   }
+  count.best = number_at_peak(count.exposed_contrast);
   return count;
 }
 

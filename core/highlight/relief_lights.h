@@ -31,7 +31,7 @@ struct ReliefLights {
 /// Per number of lights, from one.
 struct ReliefLightCount {
   std::vector<ReliefLights> by_number;
-  std::size_t best = 0;  ///< index of the number to take: at the peak of exposed contrast
+  std::size_t best = 0;  ///< index of the number to take: number_at_peak
   std::vector<double> exposed_contrast;
 };
 

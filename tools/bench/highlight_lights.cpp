@@ -164,7 +164,7 @@ void add_number_rows(HighlightObject& object, const BenchOptions& options, std::
     rays = search->table().rays;
   });
   LUXRIG_CHECK(count, "{}", count.error().detail);
-  const double peak = count->exposed_contrast[count->best];
+  const double peak = *std::ranges::max_element(count->exposed_contrast);
   for (std::size_t k = 0; k < count->by_number.size(); ++k) {
     HighlightRow row{name, fmt::format("{}-lights", k + 1)};
     row.error = 1 - count->exposed_contrast[k] / peak;
@@ -176,7 +176,8 @@ void add_number_rows(HighlightObject& object, const BenchOptions& options, std::
   row.took = took;
   row.rays = rays;
   row.shown = shown_relief(study, count->by_number[count->best].directions, options.threads);
-  row.note = fmt::format("exposed contrast {:.4f}; time of the whole curve", peak);
+  row.error = 1 - count->exposed_contrast[count->best] / peak;
+  row.note = fmt::format("exposed contrast {:.4f}; time of the whole curve", count->exposed_contrast[count->best]);
   rows.push_back(bench_row_of(row));
 }
 

@@ -304,12 +304,14 @@ void add_mounted_number_rows(HighlightObject& object, const BenchOptions& option
     LUXRIG_CHECK(made, "{}", made.error().detail);
     count = std::move(*made);
   });
-  const double peak = count->by_number[count->best].score.exposed_contrast;
+  double peak = 0;
+  for (const JudgedLightSet& set : count->by_number) peak = std::max(peak, set.score.exposed_contrast);
   for (const JudgedLightSet& set : count->by_number)
     add(fmt::format("{}-lights", set.lights.size()), placed(set.lights),
         {set.score.local_contrast_lx, set.score.exposed_contrast}, peak, {});
   const JudgedLightSet& best = count->by_number[count->best];
-  add("automatic", placed(best.lights), {best.score.local_contrast_lx, peak}, peak, sum_of(edges.took, took));
+  add("automatic", placed(best.lights), {best.score.local_contrast_lx, best.score.exposed_contrast}, peak,
+      sum_of(edges.took, took));
 
   LightSelection selection(*edges.lights);
   const auto done = select_lights(selection, {most, {}, {}, 1});

@@ -81,6 +81,14 @@ std::uint32_t index_of(const DrawnRow& row, const JudgedLight& light) {
   return ~0u;
 }
 
+TEST(NumberAtPeak, IsTheFewestLightsThatAreAsGood) {
+  EXPECT_EQ(number_at_peak({}), 0u);
+  EXPECT_EQ(number_at_peak(std::vector<double>{0, 0, 0}), 0u);
+  EXPECT_EQ(number_at_peak(std::vector<double>{0.28, 0.45, 0.44, 0.41, 0.457}), 1u);
+  EXPECT_EQ(number_at_peak(std::vector<double>{0.28, 0.44, 0.44, 0.41, 0.457}), 4u);
+  EXPECT_EQ(number_at_peak(std::vector<double>{0.6, 0.5, 0.4}), 0u);
+}
+
 TEST(JudgedSelection, OneIsTheBestAndOfAPairNoneCanBeBetteredAlone) {
   double found = 0, best_of_all = 0;
   for (unsigned seed = 0; seed < 60; ++seed) {
@@ -279,7 +287,7 @@ TEST(JudgedLights, AreTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(counts[0].best, counts[1].best);
   for (std::size_t n = 0; n < 4; ++n) {
     EXPECT_EQ(counts[0].by_number[n].score.judged, counts[1].by_number[n].score.judged);
-    EXPECT_LE(counts[0].by_number[n].score.exposed_contrast,
+    EXPECT_LE(0.98 * counts[0].by_number[n].score.exposed_contrast,
               counts[0].by_number[counts[0].best].score.exposed_contrast);
     for (std::size_t i = 0; i <= n; ++i) {
       EXPECT_EQ(counts[0].by_number[n].lights[i].direction, counts[1].by_number[n].lights[i].direction);
