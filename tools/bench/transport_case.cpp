@@ -31,6 +31,7 @@ std::filesystem::path file_of(const TransportCase& one, const BenchOptions& opti
   Hash of_levels;
   for (const double level : levels.wanted) of_levels.add(level);
   for (const double level : levels.steering) of_levels.add(level);
+  of_levels.add(levels.floor);
   const bool all_one = levels.wanted.empty() && levels.steering.empty();
   return options.references_folder /
          fmt::format("{}-{:016x}.txt", one.room.name, hash_of(one.room) ^ (all_one ? 0 : of_levels.bits()));
@@ -83,8 +84,8 @@ std::uint64_t hash_of(const LitRoom& room) {
   return hash.bits();
 }
 
-RoomError error_of(const Eigen::VectorXd& lux, const Eigen::VectorXd& reference_lux) {
-  const double least_lx = 0.01 * reference_lux.mean();
+RoomError error_of(const Eigen::VectorXd& lux, const Eigen::VectorXd& reference_lux, double floor) {
+  const double least_lx = floor * reference_lux.mean();
   const Eigen::ArrayXd relative = (lux - reference_lux).array() / reference_lux.array().max(least_lx);
   return {std::sqrt(relative.square().mean()), relative.mean()};
 }
@@ -110,7 +111,8 @@ Reference reference_of(const TransportCase& one, const BenchOptions& options, co
   for (std::size_t e = 0; e < of_lamps.wanted.size(); ++e) levels[static_cast<Eigen::Index>(e)] = of_lamps.wanted[e];
   reference.lux = run.matrix.lux(levels);
   const Eigen::ArrayXd bars = run.matrix.standard_error_lux(levels).array();
-  reference.rms_error = std::sqrt((bars / reference.lux.array().max(0.01 * reference.lux.mean())).square().mean());
+  reference.rms_error =
+      std::sqrt((bars / reference.lux.array().max(of_lamps.floor * reference.lux.mean())).square().mean());
   reference.seconds = run.seconds;
   if (!options.references_folder.empty() && !options.quick) {
     std::filesystem::create_directories(options.references_folder);

@@ -17,10 +17,15 @@ struct Reference {
   std::string refused;   ///< why there is none
 };
 
+/// Errors are relative to max(lux, this share of the mean), rms over the receivers. One lamp of a flat leaves most
+/// rooms nearly dark, and of its column 10 % of the mean are what 1 % are of all lamps' light.
+constexpr double kFloorOfAll = 0.01, kFloorOfColumn = 0.1;
+
 /// Which lamps a reference is of; empty = all at level 1.
 struct ReferenceLevels {
   std::vector<double> wanted;    ///< levels at which lux is given
   std::vector<double> steering;  ///< levels under which path tracing reaches the wanted error
+  double floor = kFloorOfAll;    ///< its own error is stated by
 };
 
 struct TransportCase {
@@ -29,11 +34,12 @@ struct TransportCase {
   RayScene rays;
 };
 
-/// Relative to max(lux, 1 % of the mean): rms over the receivers, and the mean with its sign.
+/// Relative errors' rms over the receivers, and their mean with its sign.
 struct RoomError {
   double rms = 0, bias = 0;
 };
-[[nodiscard]] RoomError error_of(const Eigen::VectorXd& lux, const Eigen::VectorXd& reference_lux);
+[[nodiscard]] RoomError error_of(const Eigen::VectorXd& lux, const Eigen::VectorXd& reference_lux,
+                                 double floor = kFloorOfAll);
 
 /// 64 bits that change with the geometry, the materials, the lamps or the receivers.
 [[nodiscard]] std::uint64_t hash_of(const LitRoom& room);

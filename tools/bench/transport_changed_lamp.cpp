@@ -139,7 +139,7 @@ ColumnCost cost_of(const ColumnWay& way, const Emitter& lamp, const Reference& r
       cost.run.refused = column.error().detail;
       return cost;
     }
-    const RoomError error = error_of(column->lux(Eigen::VectorXd::Ones(1)), reference.lux);
+    const RoomError error = error_of(column->lux(Eigen::VectorXd::Ones(1)), reference.lux, kFloorOfColumn);
     rms.push_back(error.rms), bias.push_back(error.bias);
     cost.run.matrix = std::move(*column);
   }

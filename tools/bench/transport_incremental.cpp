@@ -54,13 +54,13 @@ void add_lamp(const TransportCase& one, const MovedTruth& truth, const BenchOpti
             [&] { column = direct ? transport.made->direct_column(truth.lamp) : transport.made->column(truth.lamp); }));
       if (!column) return;
       const Eigen::VectorXd &lux = column->total_lux, &exact_lx = direct ? truth.direct_lux : truth.lux;
-      const RoomError own = error_of(lux, exact_lx);
+      const RoomError own = error_of(lux, exact_lx, kFloorOfColumn);
       Measured run;
       run.seconds = median_of(took).wall;
       run.cpu_seconds = median_of(took).cpu;
       run.matrix.lux_per_level = lux;
       run.matrix.rays = column->rays;
-      const Eigen::ArrayXd floor_lx = exact_lx.array().max(0.01 * exact_lx.mean());
+      const Eigen::ArrayXd floor_lx = exact_lx.array().max(kFloorOfColumn * exact_lx.mean());
       const double stated = std::sqrt((column->standard_error_lux.array() / floor_lx).square().mean());
       BenchRow row = transport_row(direct ? "moved-lamp-of-12-direct" : "moved-lamp-of-12", "incremental",
                                    error_of_moved(lux, exact_lx, truth.total_lux), run, std::nullopt, std::nullopt, own,

@@ -25,6 +25,7 @@ Reference column_reference(TransportCase& one, std::size_t number, const Emitter
   of.wanted.assign(one.room.emitters.size(), 0.0);
   of.steering.assign(one.room.emitters.size(), 0.02);
   of.wanted[number] = of.steering[number] = 1;
+  of.floor = kFloorOfColumn;
   const Emitter before = std::exchange(one.room.emitters[number], lamp);
   Reference reference = reference_of(one, fine, of);
   one.room.emitters[number] = before;
