@@ -7,6 +7,7 @@
 /// goes and returns (reconnecting inside write() and read(), within their bounds, with backoff). After a return it
 /// sends the current setpoint, never an older one. One driver serves one [[bus]]; its calls come from one thread.
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -25,6 +26,13 @@ struct DriverBounds {
   bool notices_loss = true;  ///< false: the protocol has no way to tell (multicast sACN)
 };
 
+/// What a DMX line carries now, for a person who looks on.
+struct CarriedUniverse {
+  int number = 0;                   ///< as patched
+  std::vector<std::uint8_t> slots;  ///< as sent last; [0] is address 1
+  bool silent = false;              ///< a desk sends it instead
+};
+
 class Driver {
  public:
   virtual ~Driver() = default;
@@ -37,6 +45,9 @@ class Driver {
   virtual void deactivate(Time now) = 0;
   /// The bus first, then each device on it that can be told apart.
   [[nodiscard]] virtual std::vector<Health> health(Time now) const = 0;
+
+  /// Of a DMX driver.
+  [[nodiscard]] virtual std::vector<CarriedUniverse> carried() const { return {}; }
 
   /// Capabilities; null when the bus has none. Owned by the driver.
   virtual LevelOutput* level_output() { return nullptr; }

@@ -473,6 +473,10 @@ void ShowController::step(Time now) {
   state.advance(now);
 }
 
+std::vector<double> ShowController::safe_look(Time now) const {
+  return state_->estimator.within_limits(state_->safe_levels(), now);
+}
+
 const OutputProgram& ShowController::program() const { return state_->program; }
 
 ShowStatus ShowController::status(Time now) const { return state_->status(now); }

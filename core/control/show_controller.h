@@ -63,6 +63,7 @@ struct FixtureStatus {
   PanTilt joints;  ///< where it shall look
   double level = 0, drive = 0, target_level = 0;
   double gain = 1, gain_standard_error = 0;  ///< estimated true output over rated
+  bool identified = false;                   ///< blinks or nods, so that a person sees which one it is
 };
 
 struct DeskStatus {
@@ -119,11 +120,20 @@ class ShowController {
   /// Desks that are back and wait to be asked get the light, by fade.
   void hand_back(Time now);
 
+  /// A person wants to see which one it is: the fixture's housing blinks for `how_long`, or nods where that may be, and
+  /// is then as it was. Within limits, and dark under a blackout. Asked again, it begins anew. Refused while nothing
+  /// has been applied (what is not patched here is nobody's business then), for a duration that is not above 0, and
+  /// under a blackout.
+  Result<void> identify(Time now, std::size_t fixture, Duration how_long);
+
   void reading(Time now, const LuxReading& reading);
   void health(Time now, std::span<const Health> devices);
 
   /// Advances the state machine; call at 20 Hz or more. Corrections are solved here (milliseconds).
   void step(Time now);
+
+  /// The levels of the safe look, within limits. Takes milliseconds.
+  [[nodiscard]] std::vector<double> safe_look(Time now) const;
 
   /// Hand it to the output thread whenever its revision has changed.
   [[nodiscard]] const OutputProgram& program() const;

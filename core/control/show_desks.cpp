@@ -7,6 +7,12 @@
 #include "core/control/show_state.h"
 
 namespace luxrig {
+namespace {
+
+/// From the last blink back to what was.
+constexpr Duration kIdentifyFade = std::chrono::milliseconds(500);
+
+}  // namespace
 
 /// Limits for levels that nobody has worked out, and which heads a desk cannot light while they turn.
 void ShowController::State::guard_against_desks(Time now) {
@@ -54,6 +60,10 @@ bool ShowController::State::desk_shares(Time now) const {
 }
 
 void ShowController::State::step_desks(Time now) {
+  for (const Identification& one : identified) {
+    if (!one.pattern.over(now) || desks[one.desk].phase() != DeskPhase::own)
+      hear_desk(now, one.desk, one.pattern.frame_at(now));
+  }
   for (std::size_t d = 0; d < desks.size(); ++d) {
     if (desks[d].step(now)) put_desk(d);
   }
@@ -66,36 +76,80 @@ void ShowController::State::step_desks(Time now) {
   }
 }
 
-std::size_t ShowController::add_desk(const DeskRules& rules, const DeskPart& part) {
-  State& state = *state_;
-  const Rig& rig = state.rig;
+DeskFollowerSettings ShowController::State::desk_settings(const DeskRules& rules,
+                                                          const std::vector<std::size_t>& fixtures) const {
   DeskFollowerSettings settings;
   settings.rules = rules;
-  settings.fixtures = part.fixtures;
-  for (const std::size_t f : part.fixtures) {
+  settings.fixtures = fixtures;
+  for (const std::size_t f : fixtures) {
     LUXRIG_CHECK(f < rig.fixtures.size(), "fixture {} of {}", f, rig.fixtures.size());
     settings.dimmer_curve.push_back(rig.fixtures[f].dimmer_curve);
-    settings.joints.push_back(state.program.joints[f]);
+    settings.joints.push_back(program.joints[f]);
   }
   settings.desk_may_turn =
       std::none_of(rig.points.begin(), rig.points.end(), [](const Point& point) { return point.max_lx.has_value(); });
   settings.fade = from_seconds(rig.control.fade_s);
   settings.curve = rig.control.fade_curve;
-  state.desks.emplace_back(std::move(settings));
-  state.desk_names.push_back(part.name);
-  state.program.desks.emplace_back();
-  state.guard_against_desks(state.last);
-  state.put_desk(state.desks.size() - 1);
-  return state.desks.size() - 1;
+  return settings;
+}
+
+std::size_t ShowController::State::add_desk(DeskFollowerSettings settings, const std::string& name) {
+  desks.emplace_back(std::move(settings));
+  desk_names.push_back(name);
+  program.desks.emplace_back();
+  guard_against_desks(last);
+  put_desk(desks.size() - 1);
+  return desks.size() - 1;
+}
+
+void ShowController::State::hear_desk(Time now, std::size_t index, const DeskFrame& frame) {
+  LUXRIG_CHECK(index < desks.size(), "desk {} of {}", index, desks.size());
+  const bool changed =
+      with_present_light(now, [&](const PresentLight& present) { return desks[index].hear(now, frame, present); });
+  if (changed) put_desk(index);
+}
+
+Result<void> ShowController::State::identify(Time now, std::size_t fixture, Duration how_long) {
+  LUXRIG_CHECK(fixture < rig.fixtures.size(), "fixture {} of {}", fixture, rig.fixtures.size());
+  if (how_long <= Duration::zero()) return refusal("for no time at all nobody would see it: give a time above 0");
+  if (program.blackout) return refusal("a blackout lies over everything: lift it first");
+  if (phase == Phase::idle) return refusal("nothing is lit yet: apply a plan first");
+  const std::vector<std::size_t> fixtures = housing_of(rig, fixture);
+  auto one = std::find_if(identified.begin(), identified.end(),
+                          [&](const Identification& other) { return other.pattern.fixtures() == fixtures; });
+  if (one != identified.end() && !one->pattern.over(now)) {
+    one->pattern.prolong(now + how_long);
+    return {};
+  }
+  DeskFollowerSettings settings = desk_settings({DeskMode::takeover, HandBack::at_once}, fixtures);
+  settings.fade = std::min(settings.fade, kIdentifyFade);
+  std::vector<double> level(rig.fixtures.size());
+  std::vector<PanTilt> joints(rig.fixtures.size());
+  program.levels_at(now, level);
+  program.joints_at(now, joints);
+  IdentifyPattern pattern(rig, fixtures, level, joints, settings.desk_may_turn, now, how_long);
+  if (one == identified.end()) {
+    const std::size_t desk = add_desk(std::move(settings), "");
+    one = identified.insert(one, {desk, std::move(pattern)});
+  } else {
+    one->pattern = std::move(pattern);
+  }
+  hear_desk(now, one->desk, one->pattern.frame_at(now));
+  return {};
+}
+
+std::size_t ShowController::add_desk(const DeskRules& rules, const DeskPart& part) {
+  return state_->add_desk(state_->desk_settings(rules, part.fixtures), part.name);
 }
 
 void ShowController::desk(Time now, std::size_t index, const DeskFrame& frame) {
-  State& state = *state_;
-  LUXRIG_CHECK(index < state.desks.size(), "desk {} of {}", index, state.desks.size());
-  now = state.at_least_last(now);
-  const bool changed = state.with_present_light(
-      now, [&](const PresentLight& present) { return state.desks[index].hear(now, frame, present); });
-  if (changed) state.put_desk(index);
+  now = state_->at_least_last(now);
+  state_->hear_desk(now, index, frame);
+}
+
+Result<void> ShowController::identify(Time now, std::size_t fixture, Duration how_long) {
+  now = state_->at_least_last(now);
+  return state_->identify(now, fixture, how_long);
 }
 
 void ShowController::hand_back(Time now) {

@@ -8,6 +8,7 @@
 #include "core/control/desk_follower.h"
 #include "core/control/gain_estimator.h"
 #include "core/control/health_watch.h"
+#include "core/control/identify.h"
 #include "core/control/meter_samples.h"
 #include "core/control/show_controller.h"
 
@@ -24,6 +25,12 @@ struct LimitBreach {
   Time since{};
 };
 
+/// Housings that blink, or have: each keeps its place among the desks.
+struct Identification {
+  std::size_t desk = 0;
+  IdentifyPattern pattern;
+};
+
 struct ShowController::State {
   State(const Rig& rig, const LightModel& model);
 
@@ -33,8 +40,9 @@ struct ShowController::State {
   MeterSamples samples;
   OutputProgram program;
 
-  std::vector<DeskFollower> desks;  ///< one for each of program.desks
-  std::vector<std::string> desk_names;
+  std::vector<DeskFollower> desks;      ///< one for each of program.desks
+  std::vector<std::string> desk_names;  ///< of the rig's; those that identify fixtures have none
+  std::vector<Identification> identified;
   bool shared = false;  ///< a desk had a say in the light when last looked
 
   Phase phase = Phase::idle;
@@ -90,6 +98,11 @@ struct ShowController::State {
   bool with_present_light(Time now, Call call);
   [[nodiscard]] bool desk_shares(Time now) const;
   void step_desks(Time now);
+  std::size_t add_desk(DeskFollowerSettings settings, const std::string& name);
+  [[nodiscard]] DeskFollowerSettings desk_settings(const DeskRules& rules,
+                                                   const std::vector<std::size_t>& fixtures) const;
+  void hear_desk(Time now, std::size_t index, const DeskFrame& frame);
+  Result<void> identify(Time now, std::size_t fixture, Duration how_long);
 
   // What is known (show_status.cpp).
   [[nodiscard]] std::vector<double> safe_levels() const;
@@ -100,6 +113,7 @@ struct ShowController::State {
   [[nodiscard]] bool goal_met(std::size_t point, double lux) const;
   [[nodiscard]] bool all_metered_goals_met() const;
   [[nodiscard]] std::string detail(Time now) const;
+  [[nodiscard]] std::string who_shares(Time now) const;
   [[nodiscard]] ShowStatus status(Time now) const;
 };
 

@@ -106,8 +106,17 @@ std::string ShowController::State::detail(Time now) const {
       text += asked_safe ? ", as asked" : failing ? ": " + failure : "; everything is back, going on in a moment";
       break;
   }
-  if (shared) text = "a desk has a say in the light; the plan: " + text;
+  if (shared) text = who_shares(now) + "; the plan: " + text;
   return program.blackout ? "blackout (" + text + ")" : text;
+}
+
+std::string ShowController::State::who_shares(Time now) const {
+  std::string blinking;
+  for (const Identification& one : identified) {
+    if (one.pattern.over(now)) continue;
+    blinking += (blinking.empty() ? "" : ", ") + rig.fixtures[one.pattern.fixtures().front()].name;
+  }
+  return blinking.empty() ? "a desk has a say in the light" : blinking + " shows which one it is";
 }
 
 ShowStatus ShowController::State::status(Time now) const {
@@ -126,6 +135,9 @@ ShowStatus ShowController::State::status(Time now) const {
   for (std::size_t i = 0; i < rig.fixtures.size(); ++i) {
     status.fixtures.push_back({joints[i], level[i], drive_from_level(rig.fixtures[i].dimmer_curve, level[i]),
                                program.to_level[i], estimator.gain(i), estimator.gain_standard_error(i)});
+  }
+  for (const Identification& one : identified) {
+    for (const std::size_t f : one.pattern.fixtures()) status.fixtures[f].identified = !one.pattern.over(now);
   }
   const bool settled = !program.blackout && program.done(now);
   for (std::size_t p = 0; p < rig.points.size(); ++p) {
@@ -158,6 +170,7 @@ ShowStatus ShowController::State::status(Time now) const {
          breach.since});
   }
   for (std::size_t d = 0; d < desks.size(); ++d) {
+    if (desk_names[d].empty()) continue;
     const DeskFollower& desk = desks[d];
     const bool heard = desk.presence() == DeskPresence::present;
     status.desks.push_back(

@@ -64,6 +64,15 @@ std::vector<DeskPart> UdpDmxDriver::parts() const {
   return parts;
 }
 
+std::vector<CarriedUniverse> UdpDmxDriver::carried() const {
+  std::vector<CarriedUniverse> carried;
+  for (std::size_t i = 0; i < bay_.universes().size(); ++i) {
+    const DmxUniverse& universe = bay_.universes()[i];
+    carried.push_back({universe.number, {universe.slots.begin(), universe.slots.end()}, is_silent(i)});
+  }
+  return carried;
+}
+
 std::vector<int> UdpDmxDriver::desk_universes() const {
   std::vector<int> numbers;
   for (const DmxUniverse& universe : bay_.universes()) numbers.push_back(universe.number + desk_.offset);

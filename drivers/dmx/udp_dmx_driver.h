@@ -25,6 +25,7 @@ class UdpDmxDriver : public Driver, public LevelOutput, public Mover, public Lev
   Result<void> activate(Time now) final;
   void deactivate(Time now) final;
   [[nodiscard]] std::vector<Health> health(Time) const override { return {life_.health()}; }
+  [[nodiscard]] std::vector<CarriedUniverse> carried() const final;
   LevelOutput* level_output() final { return this; }
   Mover* mover() final { return bay_.has_heads() ? this : nullptr; }
   Result<void> move(Time now, std::span<const AimCommand> commands) final;

@@ -1,11 +1,8 @@
-// status, blackout, apply: the commands that talk to a running daemon.
-#include <fmt/format.h>
-
-#include <nlohmann/json.hpp>
-
+// status, blackout, apply, identify: commands that talk to a running daemon.
 #include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
 #include "tools/luxrig/http_client.h"
+#include "tools/luxrig/status_fields.h"
 #include "tools/luxrig/table.h"
 
 namespace luxrig {
@@ -13,34 +10,13 @@ namespace {
 
 using nlohmann::json;
 
-int no_daemon(int port) {
-  fmt::print(stderr, "luxrig: no daemon answers on 127.0.0.1:{}: start one with `luxrig run RIG`, or give its --port\n",
-             port);
-  return kExitFailed;
-}
-
-/// A number of an object of the status, or nothing.
-std::optional<double> number(const json& object, const char* key) {
-  const auto it = object.find(key);
-  if (it == object.end() || !it->is_number()) return {};
-  return it->get<double>();
-}
-std::string text(const json& object, const char* key) {
-  const auto it = object.find(key);
-  return it != object.end() && it->is_string() ? it->get<std::string>() : "";
-}
-std::string shown(std::optional<double> value, const char* format) {
-  return value ? fmt::format(fmt::runtime(format), *value) : "-";
-}
-json list(const json& object, const char* key) { return object.value(key, json::array()); }
-
 int post(const ClientArguments& arguments, const char* route, const std::string& body, const std::string& done,
          int wait_s = 5) {
   const auto answer = http_post_json("127.0.0.1", arguments.port, route, body, wait_s);
   if (!answer) return no_daemon(arguments.port);
   if (answer->status != 200) {
     const json body_json = json::parse(answer->body, nullptr, false);
-    const std::string reason = body_json.is_object() ? text(body_json, "error") : answer->body;
+    const std::string reason = body_json.is_object() ? text_of(body_json, "error") : answer->body;
     fmt::print(stderr, "luxrig: refused by the daemon: {}\n", reason);
     return answer->status == 400 ? kExitBadInput : kExitFailed;
   }
@@ -49,36 +25,43 @@ int post(const ClientArguments& arguments, const char* route, const std::string&
 }
 
 void print_status(const json& status) {
-  fmt::print("{}: {}{}: {}\n", text(status, "rig"), text(status, "phase"),
-             status.value("blackout", false) ? ", BLACKOUT" : "", text(status, "detail"));
-  for (const json& alarm : list(status, "alarms")) {
-    fmt::print("{}  {} ({} s ago)\n", alarm.value("severe", false) ? "ALARM  " : "warning", text(alarm, "text"),
-               shown(number(alarm, "since_s"), "{:.1f}"));
+  fmt::print("{}: {}{}: {}\n", text_of(status, "rig"), text_of(status, "phase"),
+             flag_of(status, "blackout") ? ", BLACKOUT" : "", text_of(status, "detail"));
+  for (const json& alarm : list_of(status, "alarms")) {
+    fmt::print("{}  {} ({} s ago)\n", flag_of(alarm, "severe") ? "ALARM  " : "warning", text_of(alarm, "text"),
+               shown(number_of(alarm, "since_s"), "{:.1f}"));
   }
   Table devices({"device", "state", ">last ok s ago", ">sent", ">received", ">errors", "detail"});
-  for (const json& d : list(status, "devices")) {
-    devices.row({text(d, "name"), text(d, "life"), shown(number(d, "last_ok_s"), "{:.2f}"),
-                 shown(number(d, "sent"), "{:.0f}"), shown(number(d, "received"), "{:.0f}"),
-                 shown(number(d, "errors"), "{:.0f}"), text(d, "detail")});
+  for (const json& d : list_of(status, "devices")) {
+    devices.row({text_of(d, "name"), text_of(d, "life"), shown(number_of(d, "last_ok_s"), "{:.2f}"),
+                 shown(number_of(d, "sent"), "{:.0f}"), shown(number_of(d, "received"), "{:.0f}"),
+                 shown(number_of(d, "errors"), "{:.0f}"), text_of(d, "detail")});
   }
   Table fixtures({"fixture", "bus", ">level", ">drive", ">gain", ">± se"});
-  for (const json& f : list(status, "fixtures")) {
-    fixtures.row({text(f, "name"), text(f, "bus"), shown(number(f, "level"), "{:.3f}"),
-                  shown(number(f, "drive"), "{:.3f}"), shown(number(f, "gain"), "{:.3f}"),
-                  shown(number(f, "gain_standard_error"), "{:.3f}")});
+  for (const json& f : list_of(status, "fixtures")) {
+    fixtures.row({text_of(f, "name"), text_of(f, "bus"), shown(number_of(f, "level"), "{:.3f}"),
+                  shown(number_of(f, "drive"), "{:.3f}"), shown(number_of(f, "gain"), "{:.3f}"),
+                  shown(number_of(f, "gain_standard_error"), "{:.3f}")});
   }
   Table points({"point", ">goal lx", ">predicted", ">± se", ">measured", ">age s", ">error", ">max lx", "why"});
-  for (const json& p : list(status, "points")) {
-    const auto error = number(p, "error");
-    points.row({text(p, "name"), shown(number(p, "goal_lux"), "{:g}"), shown(number(p, "predicted_lux"), "{:.1f}"),
-                shown(number(p, "standard_error_lux"), "{:.1f}"), shown(number(p, "measured_lux"), "{:.1f}"),
-                shown(number(p, "measured_age_s"), "{:.1f}"), error ? fmt::format("{:+.1f} %", 100 * *error) : "-",
-                shown(number(p, "max_lux"), "{:g}"), text(p, "why")});
+  for (const json& p : list_of(status, "points")) {
+    const auto error = number_of(p, "error");
+    points.row({text_of(p, "name"), shown(number_of(p, "goal_lux"), "{:g}"),
+                shown(number_of(p, "predicted_lux"), "{:.1f}"), shown(number_of(p, "standard_error_lux"), "{:.1f}"),
+                shown(number_of(p, "measured_lux"), "{:.1f}"), shown(number_of(p, "measured_age_s"), "{:.1f}"),
+                error ? fmt::format("{:+.1f} %", 100 * *error) : "-", shown(number_of(p, "max_lux"), "{:g}"),
+                text_of(p, "why")});
   }
   fmt::print("\n{}\n{}\n{}", devices.text(), fixtures.text(), points.text());
 }
 
 }  // namespace
+
+int no_daemon(int port) {
+  fmt::print(stderr, "luxrig: no daemon answers on 127.0.0.1:{}: start one with `luxrig run RIG`, or give its --port\n",
+             port);
+  return kExitFailed;
+}
 
 int run_status(const ClientArguments& arguments) {
   const auto answer = http_get("127.0.0.1", arguments.port, "/api/status");
@@ -102,6 +85,11 @@ int run_blackout(const ClientArguments& arguments, bool on) {
 
 int run_hand_back(const ClientArguments& arguments) {
   return post(arguments, "/api/hand-back", "{}", "desks that wait for the light get it");
+}
+
+int run_identify(const ClientArguments& arguments, const std::string& fixture, double seconds) {
+  return post(arguments, "/api/identify", json{{"fixture", fixture}, {"seconds", seconds}}.dump(),
+              fmt::format("{} blinks, or nods, for {:g} s", fixture, seconds));
 }
 
 int run_apply(const ClientArguments& arguments, const std::filesystem::path& plan) {

@@ -38,6 +38,14 @@ struct SolveArguments {
 };
 int run_solve(const SolveArguments& arguments);
 
+/// Looks for what is there to be driven (drivers/scan).
+struct DevicesArguments {
+  double seconds = 3;
+  std::string broadcast = "255.255.255.255", interface;
+  bool json = false;
+};
+int run_devices(const DevicesArguments& arguments);
+
 /// Talks to a running daemon on loopback.
 struct ClientArguments {
   int port = 9620;
@@ -46,6 +54,11 @@ struct ClientArguments {
 int run_status(const ClientArguments& arguments);
 int run_blackout(const ClientArguments& arguments, bool on);
 int run_hand_back(const ClientArguments& arguments);
+int run_identify(const ClientArguments& arguments, const std::string& fixture, double seconds);
+/// Until Ctrl-C; `once`, or when the output is no terminal: one picture.
+int run_monitor(const ClientArguments& arguments, bool once);
+/// Says that nobody answers on the port, and what would mend it; the exit code.
+int no_daemon(int port);
 int run_apply(const ClientArguments& arguments, const std::filesystem::path& plan);
 
 /// Writes text to a file so that a reader sees the old content or the new, never half; a fault when it cannot.

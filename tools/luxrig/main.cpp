@@ -26,9 +26,9 @@ void add_compute(CLI::App& command, ComputeOptions& compute) {
   command.add_option("--threads", compute.threads, "threads (0: one per core)")->check(CLI::Range(0, 1024));
 }
 
-void add_client(CLI::App& command, ClientArguments& client) {
+void add_client(CLI::App& command, ClientArguments& client, bool with_json = true) {
   command.add_option("--port", client.port, "port of the daemon's page")->check(CLI::Range(1, 65535));
-  command.add_flag("--json", client.json, "print what the daemon answers");
+  if (with_json) command.add_flag("--json", client.json, "print what the daemon answers");
 }
 
 }  // namespace
@@ -129,6 +129,17 @@ int main(int argc, char** argv) {
   add_run_options(*command, run);
   command->callback([&] { code = run_rig(run); });
 
+  DevicesArguments devices;
+  command = app.add_subcommand("devices", "what is there to be driven: nodes, sources, serial ports, CAN interfaces");
+  command->add_option("--seconds", devices.seconds, "how long to listen")
+      ->capture_default_str()
+      ->check(CLI::Range(0.1, 600.0));
+  command->add_option("--broadcast", devices.broadcast, "where Art-Net nodes are asked: the lighting network's")
+      ->capture_default_str();
+  command->add_option("--interface", devices.interface, "network interface by which sACN sources are heard");
+  command->add_flag("--json", devices.json, "print the list as JSON");
+  command->callback([&] { code = run_devices(devices); });
+
   ClientArguments client;
   std::filesystem::path plan;
   command = app.add_subcommand("apply", "have the running daemon fade to a plan");
@@ -149,6 +160,20 @@ int main(int argc, char** argv) {
   command = app.add_subcommand("hand-back", "lighting desks that are back and wait for it get the light");
   add_client(*command, client);
   command->callback([&] { code = run_hand_back(client); });
+
+  std::string identified;
+  double identify_s = 5;
+  command = app.add_subcommand("identify", "which one is it? a fixture blinks, or a head nods, and is then as it was");
+  command->add_option("FIXTURE", identified, "its name in the rig file")->required();
+  command->add_option("--seconds", identify_s, "for how long")->capture_default_str()->check(CLI::Range(0.5, 60.0));
+  add_client(*command, client);
+  command->callback([&] { code = run_identify(client, identified, identify_s); });
+
+  bool monitor_once = false;
+  command = app.add_subcommand("monitor", "universes, heads, dimmers and meters, live in the terminal");
+  command->add_flag("--once", monitor_once, "one picture, then end");
+  add_client(*command, client, false);
+  command->callback([&] { code = run_monitor(client, monitor_once); });
 
   BenchOptions bench;
   std::string suite;

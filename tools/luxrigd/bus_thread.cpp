@@ -17,6 +17,7 @@ constexpr std::size_t kMostUnsentReadings = 1000;
 BusThread::BusThread(const Rig& rig, std::size_t bus, std::unique_ptr<Driver> driver, ProgramMailbox& programs,
                      std::size_t first_desk)
     : rig_(rig),
+      bus_(bus),
       driver_(std::move(driver)),
       programs_(programs),
       bounds_(driver_->bounds()),
@@ -121,8 +122,16 @@ void BusThread::read(Time at) {
 
 void BusThread::publish_health(Time at) {
   auto report = driver_->health(at);
+  auto carried = driver_->carried();
   const std::unique_lock lock(mutex_, std::try_to_lock);
-  if (lock) health_ = std::move(report);
+  if (!lock) return;
+  health_ = std::move(report);
+  carried_ = std::move(carried);
+}
+
+std::vector<CarriedUniverse> BusThread::carried() const {
+  const std::lock_guard lock(mutex_);
+  return carried_;
 }
 
 std::vector<DeskFrame> BusThread::desk_frames() const {

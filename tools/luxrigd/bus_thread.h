@@ -28,6 +28,9 @@ class BusThread {
   /// Readings since the last call, and the newest health report.
   std::vector<LuxReading> take_readings();
   [[nodiscard]] std::vector<Health> health() const;
+  /// What a DMX bus carries, a fifth of a second old at most.
+  [[nodiscard]] std::vector<CarriedUniverse> carried() const;
+  [[nodiscard]] std::size_t bus() const { return bus_; }
   /// What desks want now, a frame for each part of its driver's input; empty without one, or before it was listened to.
   [[nodiscard]] std::vector<DeskFrame> desk_frames() const;
   [[nodiscard]] std::size_t first_desk() const { return first_desk_; }
@@ -43,6 +46,7 @@ class BusThread {
   void publish_health(Time at);
 
   const Rig& rig_;
+  std::size_t bus_;
   std::unique_ptr<Driver> driver_;
   ProgramMailbox& programs_;
   DriverBounds bounds_;
@@ -58,9 +62,10 @@ class BusThread {
   std::vector<AimCommand> aim_commands_;
   OutputProgram program_;
 
-  mutable std::mutex mutex_;  ///< guards the three below; the thread only tries it
+  mutable std::mutex mutex_;  ///< guards what follows; the thread only tries it
   std::vector<LuxReading> readings_;
   std::vector<Health> health_;
+  std::vector<CarriedUniverse> carried_;
   std::vector<DeskFrame> desk_frames_;
   std::vector<LuxReading> unsent_readings_;  ///< the thread's own, until the mutex is free
 

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/rig/nearest.h"
 #include "drivers/registry.h"
 #include "tools/luxrigd/clock.h"
 #include "tools/luxrigd/room_view.h"
@@ -14,6 +15,7 @@ namespace luxrig {
 namespace {
 
 constexpr Duration kPublishPeriod = std::chrono::milliseconds(100);
+constexpr Duration kSafeLookEvery = std::chrono::seconds(1), kGuardianLook = std::chrono::seconds(1);
 constexpr auto kCommandBound = std::chrono::seconds(2);
 
 std::filesystem::path web_folder() {
@@ -55,8 +57,55 @@ Result<int> Daemon::start() {
     }
     buses_.push_back(std::make_unique<BusThread>(rig, b, std::move(driver), programs_, first_desk));
   }
+  if (options_.guarded && options_.state_folder) start_guardian();
   for (const auto& bus : buses_) bus->start();
   return port;
+}
+
+void Daemon::start_guardian() {
+  GuardianSettings settings;
+  settings.rig_file = session_.rig.file;
+  settings.fixtures = session_.rig.fixtures.size();
+  settings.redirects = options_.redirects;
+  settings.state_folder = *options_.state_folder;
+  // One that an earlier daemon left behind has the light until ours takes it.
+  send_guardian_away(settings.state_folder);
+  guardian_.reset();
+  auto started = Guardian::start(std::move(settings));
+  unguarded_ = started ? "" : started.error().detail;
+  if (started) guardian_.emplace(std::move(*started));
+  guardian_seen_ = now();
+}
+
+/// What would go out if this process died now.
+void Daemon::tell_guardian(Time at) {
+  if (!guardian_) return;
+  const Rig& rig = session_.rig;
+  const OutputProgram& program = controller_.program();
+  const std::size_t count = rig.fixtures.size();
+  last_look_.present.resize(count);
+  last_look_.joints.resize(count);
+  program.levels_at(at, last_look_.present);
+  program.joints_at(at, last_look_.joints);
+  // What limits allow changes with what meters teach: slowly.
+  if (safe_levels_.empty() || at - safe_look_at_ > kSafeLookEvery) {
+    safe_levels_ = controller_.safe_look(at);
+    safe_look_at_ = at;
+  }
+  last_look_.safe = safe_levels_;
+  if (program.blackout) std::fill(last_look_.safe.begin(), last_look_.safe.end(), 0.0);
+  last_look_.sends = program.revision != 0;
+  last_look_.hold_s = program.blackout ? 0 : rig.safe.hold_s;
+  last_look_.fade_s = rig.safe.fade_s;
+  last_look_.silent.assign(count, 0);
+  for (const DeskBlend& desk : program.desks) {
+    if (!desk.silent) continue;
+    for (const std::size_t f : desk.fixtures) last_look_.silent[f] = 1;
+  }
+  guardian_->put(last_look_);
+  if (at - guardian_seen_ < kGuardianLook) return;
+  guardian_seen_ = at;
+  if (!guardian_->alive()) start_guardian();
 }
 
 Checked<bool> Daemon::resume() {
@@ -138,12 +187,55 @@ void Daemon::on_control_thread(std::function<void(Time)> run) {
   if (std::this_thread::get_id() != control_thread_) done.wait_for(kCommandBound);
 }
 
+/// What `run` gives on the control thread; nothing when that does not come to it. Shared, as nobody waits longer than a
+/// command's bound for it.
+template <class T>
+std::optional<T> Daemon::ask_control_thread(std::function<T(Time)> run) {
+  const auto answer = std::make_shared<std::promise<T>>();
+  std::future<T> given = answer->get_future();
+  on_control_thread([answer, run = std::move(run)](Time at) { answer->set_value(run(at)); });
+  if (given.wait_for(Duration{}) != std::future_status::ready) return std::nullopt;
+  return given.get();
+}
+
+Result<void> Daemon::identify(const std::string& name, double seconds) {
+  const std::vector<Fixture>& fixtures = session_.rig.fixtures;
+  std::vector<std::string_view> names;
+  for (std::size_t f = 0; f < fixtures.size(); ++f) {
+    const std::string& own = fixtures[f].name;
+    names.push_back(own);
+    // An emitter is called "housing/emitter": the housing's name will do.
+    if (own != name && !(fixtures[f].housing && own.rfind(name + "/", 0) == 0)) continue;
+    const auto done = ask_control_thread<Result<void>>(
+        [this, f, seconds](Time at) { return controller_.identify(at, f, from_seconds(seconds)); });
+    return done.value_or(refusal("the control loop did not answer"));
+  }
+  return refusal(fmt::format("the rig has no fixture \"{}\": {}", name, mend_for_unknown(name, names, "it has none")));
+}
+
+std::string Daemon::universes_json() {
+  const auto universes = ask_control_thread<nlohmann::json>([this](Time) {
+    nlohmann::json all = nlohmann::json::array();
+    for (const auto& bus : buses_) {
+      for (const CarriedUniverse& one : bus->carried()) {
+        all.push_back({{"bus", session_.rig.buses[bus->bus()].name},
+                       {"universe", one.number},
+                       {"silent", one.silent},
+                       {"slots", one.slots}});
+      }
+    }
+    return all;
+  });
+  return universes.value_or(nlohmann::json::array()).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
 HttpHandlers Daemon::handlers() {
   HttpHandlers handlers;
   handlers.status = [this] {
     const std::lock_guard lock(mutex_);
     return status_json_;
   };
+  handlers.universes = [this] { return universes_json(); };
   const RoomView room = draw_room(session_);
   handlers.room_json = room.json;
   handlers.room_png = room.png;
@@ -156,6 +248,7 @@ HttpHandlers Daemon::handlers() {
     }
     return remember();
   };
+  handlers.identify = [this](const std::string& name, double seconds) { return identify(name, seconds); };
   handlers.hand_back = [this] { on_control_thread([this](Time at) { controller_.hand_back(at); }); };
   handlers.apply = [this](const std::string& plan_json) { return apply_json(plan_json); };
   return handlers;
@@ -188,6 +281,7 @@ void Daemon::tick() {
     programs_.put(controller_.program());
     sent_revision_ = controller_.program().revision;
   }
+  tell_guardian(at);
   if (at - last_publish_ >= kPublishPeriod || !commands.empty()) publish(at);
 }
 
@@ -215,6 +309,7 @@ void Daemon::stop() {
   stopped_ = true;
   if (http_) http_->stop();
   buses_.clear();
+  if (guardian_) guardian_->end();
 }
 
 }  // namespace luxrig

@@ -15,6 +15,7 @@
 #include "drivers/registry.h"
 #include "tools/luxrig/session.h"
 #include "tools/luxrigd/bus_thread.h"
+#include "tools/luxrigd/guardian.h"
 #include "tools/luxrigd/http_api.h"
 #include "tools/luxrigd/journal.h"
 
@@ -24,7 +25,8 @@ struct DaemonOptions {
   bool simulated = false;
   std::map<std::string, Redirect> redirects;          ///< by bus name; empty for the real devices
   std::optional<std::filesystem::path> state_folder;  ///< none: nothing is remembered
-  int http_port = 9620;                               ///< 0 = any
+  bool guarded = false;  ///< a guardian takes the rig to its safe look when this process dies; needs a state folder
+  int http_port = 9620;  ///< 0 = any
   /// What the rig gives with heads that look elsewhere, for plans that turn them; called on whatever thread brings the
   /// plan. Empty: such plans are refused.
   std::function<Result<LightModel>(const Rig&)> light_model{};
@@ -45,6 +47,9 @@ class Daemon {
   /// Applies a plan as if a client had sent it.
   [[nodiscard]] Checked<void> apply(const Plan& plan);
 
+  /// Why nobody looks after the light if this process dies although somebody should; empty when all is well.
+  [[nodiscard]] const std::string& unguarded() const { return unguarded_; }
+
   /// One turn of the control loop; call every 20 ms or so.
   void tick();
   [[nodiscard]] const ShowStatus& status() const { return status_; }
@@ -60,7 +65,13 @@ class Daemon {
     std::promise<void> done;
   };
   void on_control_thread(std::function<void(Time)> run);
+  template <class T>
+  std::optional<T> ask_control_thread(std::function<T(Time)> run);
+  Result<void> identify(const std::string& name, double seconds);
+  [[nodiscard]] std::string universes_json();
   void publish(Time at);
+  void start_guardian();
+  void tell_guardian(Time at);
   [[nodiscard]] HttpHandlers handlers();
   [[nodiscard]] Checked<void> apply_json(const std::string& plan_json);
   [[nodiscard]] Result<void> remember();
@@ -74,6 +85,11 @@ class Daemon {
   std::vector<std::unique_ptr<BusThread>> buses_;
   std::unique_ptr<HttpApi> http_;
   std::optional<Journal> journal_;
+  std::optional<Guardian> guardian_;
+  std::string unguarded_;
+  LastLook last_look_;
+  std::vector<double> safe_levels_;
+  Time safe_look_at_{}, guardian_seen_{};
   std::thread::id control_thread_ = std::this_thread::get_id();
   Time started_{};
   Time last_publish_{};

@@ -14,6 +14,7 @@ namespace {
 constexpr std::size_t kServerThreads = 32;
 constexpr int kMostStreams = 16;  // each holds a thread
 constexpr auto kStreamPeriod = std::chrono::milliseconds(200);
+constexpr double kIdentifyFor_s = 5, kIdentifyAtMost_s = 60;
 constexpr std::size_t kMostBody = 16u << 20;
 
 /// Host part of "host[:port]" or "http://host[:port]" is this machine's loopback.
@@ -90,6 +91,10 @@ struct HttpApi::State {
       response.set_header("Cache-Control", "no-store");
       response.set_content(handlers.status(), "application/json");
     });
+    server.Get("/api/universes", [this](const httplib::Request&, httplib::Response& response) {
+      response.set_header("Cache-Control", "no-store");
+      response.set_content(handlers.universes(), "application/json");
+    });
     server.Get("/api/events", [this](const httplib::Request&, httplib::Response& response) { stream(response); });
     server.Get("/api/room", [this](const httplib::Request&, httplib::Response& response) {
       response.set_content(handlers.room_json, "application/json");
@@ -106,6 +111,19 @@ struct HttpApi::State {
       const bool on = body["on"].get<bool>();
       if (const auto done = handlers.blackout(on); !done) return refuse(response, 500, done.error().detail);
       response.set_content(nlohmann::json{{"blackout", on}}.dump(), "application/json");
+    });
+    server.Post("/api/identify", [this](const httplib::Request& request, httplib::Response& response) {
+      const auto body = nlohmann::json::parse(request.body, nullptr, false);
+      if (!body.is_object() || !body.contains("fixture") || !body["fixture"].is_string() ||
+          (body.contains("seconds") && !body["seconds"].is_number())) {
+        return refuse(response, 400, "send {\"fixture\": \"its name\", \"seconds\": 5}");
+      }
+      const double seconds = body.value("seconds", kIdentifyFor_s);
+      if (!(seconds > 0 && seconds <= kIdentifyAtMost_s))
+        return refuse(response, 400, fmt::format("seconds must be above 0 and at most {:g}", kIdentifyAtMost_s));
+      if (const auto done = handlers.identify(body["fixture"].get<std::string>(), seconds); !done)
+        return refuse(response, 400, done.error().detail);
+      response.set_content(nlohmann::json{{"seconds", seconds}}.dump(), "application/json");
     });
     server.Post("/api/hand-back", [this](const httplib::Request&, httplib::Response& response) {
       handlers.hand_back();

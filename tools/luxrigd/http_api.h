@@ -12,10 +12,13 @@ namespace luxrig {
 
 /// What the daemon answers with. Called from the server's threads; each must be safe to call from any thread.
 struct HttpHandlers {
-  std::function<std::string()> status;  ///< JSON
+  std::function<std::string()> status;     ///< JSON
+  std::function<std::string()> universes;  ///< JSON
   std::string room_json;
   std::string room_png;
   std::function<Result<void>(bool on)> blackout;
+  /// Shows for so many seconds which fixture it is.
+  std::function<Result<void>(const std::string& fixture, double seconds)> identify;
   std::function<void()> hand_back;  ///< desks that wait for it get the light
   std::function<Checked<void>(const std::string& plan_json)> apply;
 };

@@ -226,6 +226,8 @@ int run_rig(const RunArguments& arguments) {
   } else if (!options.simulated) {
     options.state_folder = default_state_folder(rig.name);
   }
+  // A simulator of our own would die with us.
+  options.guarded = !arguments.no_guardian && !sim && options.state_folder.has_value();
   options.light_model = [&session, compute](const Rig& turned) -> Result<LightModel> {
     const auto anew = in_background<Result<TransportMatrix>>(
         [&] { return compute_transport(turned, session->scene, *session->rays, compute); });
@@ -236,6 +238,9 @@ int run_rig(const RunArguments& arguments) {
   const auto port = daemon.start();
   if (!port) return report(port.error());
   say.say(fmt::format("page and status: http://127.0.0.1:{}/", *port));
+  if (!daemon.unguarded().empty()) {
+    say.say("warning  if this process dies, lamps do what they do without data: no guardian: " + daemon.unguarded());
+  }
   bool resumed = false;
   if (!arguments.plan && !arguments.once) {
     const auto state = daemon.resume();

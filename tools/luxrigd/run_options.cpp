@@ -11,6 +11,8 @@ void add_run_options(CLI::App& app, RunArguments& arguments) {
   app.add_option("--sim-ports", arguments.sim_ports, "use the running luxrig-sim that wrote this file");
   app.add_option("--plan", arguments.plan, "apply this plan instead of solving");
   app.add_option("--state", arguments.state_folder, "folder that remembers the plan in force (none with --sim)");
+  app.add_flag("--no-guardian", arguments.no_guardian,
+               "no second process that takes the rig to its safe look if this one dies");
   app.add_option("--port", arguments.http_port, "port of the page, on loopback (0: any)")->check(CLI::Range(0, 65535));
   app.add_flag("--once", arguments.once, "light, measure, correct, then end: exit code 0 when the goals were met");
   app.add_option("--json", arguments.json, "with --once: write the table here");

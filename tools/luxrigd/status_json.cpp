@@ -27,6 +27,8 @@ json fixture_json(const Rig& rig, std::size_t index, const FixtureStatus& status
   set(out, "level", status.level);
   set(out, "drive", status.drive);
   set(out, "target_level", status.target_level);
+  if (fixture.moves) out["moves"] = true;
+  if (status.identified) out["identified"] = true;
   set(out, "gain", status.gain);
   set(out, "gain_standard_error", status.gain_standard_error);
   return out;

@@ -14,10 +14,33 @@ class LiveRig {
  public:
   explicit LiveRig(std::string rig) : rig_(std::move(rig)) {
     start_sim();
+    start_daemon();
+  }
+  /// A guardian outlives the daemon that a test kills.
+  ~LiveRig() {
+    daemon_.reset();
+    for (int i = 0; i < 10; ++i) {
+      const pid_t guardian = guardian_pid();
+      if (guardian <= 1 || !runs(guardian)) break;
+      ::kill(guardian, SIGTERM);
+      std::this_thread::sleep_for(100ms);
+    }
+  }
+  LiveRig(const LiveRig&) = delete;
+  LiveRig& operator=(const LiveRig&) = delete;
+
+  void start_daemon() {
+    port_ = 0;
     daemon_ = std::make_unique<Process>(
         std::vector<std::string>{program("luxrig"), "run", rig_, "--sim-ports", ports().string(), "--port", "0",
                                  "--max-error", "0.02", "--state", (folder_ / "state").string()},
         folder_ / "daemon.log");
+  }
+
+  /// Of the process that looks after the light, or 0.
+  [[nodiscard]] pid_t guardian_pid() const {
+    const std::string text = text_of(folder_ / "state" / "guardian.pid");
+    return text.empty() ? 0 : std::atoi(text.c_str());
   }
 
   void start_sim() {

@@ -57,6 +57,13 @@ inline bool wait_for(const std::function<bool()>& done, std::chrono::millisecond
   return true;
 }
 
+/// False also for a process that has ended and waits for its parent to notice.
+inline bool runs(pid_t pid) {
+  const std::string stat = text_of("/proc/" + std::to_string(pid) + "/stat");
+  const auto name_end = stat.rfind(')');
+  return name_end != std::string::npos && name_end + 2 < stat.size() && stat[name_end + 2] != 'Z';
+}
+
 class Process {
  public:
   /// words[0] is the program's path; its output goes to `log`.

@@ -104,7 +104,8 @@ TEST(Run, BlackoutWinsAndIsLiftedByTheCommand) {
   EXPECT_TRUE(wait_for(
       [&] {
         double lux = 0;
-        for (const json& p : rig.truth()["points"]) lux += p["lux"].get<double>();
+        const json truth = rig.truth();
+        for (const json& p : truth.at("points")) lux += p["lux"].get<double>();
         return lux < 0.5;
       },
       3s))
@@ -114,6 +115,77 @@ TEST(Run, BlackoutWinsAndIsLiftedByTheCommand) {
   const Ran status = luxrig::testing::run({program("luxrig"), "status", "--port", port});
   EXPECT_EQ(status.code, 0);
   EXPECT_NE(status.output.find("room: holding"), std::string::npos) << status.output;
+}
+
+TEST(Run, ADaemonThatDiesLeavesTheSafeLookToItsGuardianUntilTheNextOne) {
+  LiveRig rig(source("tests/rigs/room"));
+  ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
+  ASSERT_TRUE(wait_for([&] { return rig.guardian_pid() > 1; }, 5s)) << rig.daemon().output();
+  const auto room_lux = [&] {
+    double lux = 0;
+    const json truth = rig.truth();
+    for (const json& p : truth.at("points")) lux += p["lux"].get<double>();
+    return lux;
+  };
+  const double held_lux = room_lux();
+  double safe_share = 0, level_sum = 0;  // the safe look is level 0.1
+  for (const json& f : rig.last()["fixtures"]) level_sum += f["level"].get<double>(), safe_share += 0.1;
+  safe_share /= level_sum;
+  rig.daemon().signal(SIGKILL);
+  const auto killed = std::chrono::steady_clock::now();
+  // hold_s = 2, fade_s = 1
+  while (std::chrono::steady_clock::now() - killed < 1700ms) {
+    EXPECT_NEAR(room_lux(), held_lux, 0.01 * held_lux);
+    std::this_thread::sleep_for(50ms);
+  }
+  ASSERT_TRUE(wait_for([&] { return std::abs(room_lux() / held_lux - safe_share) < 0.3 * safe_share; }, 4s))
+      << room_lux() / held_lux << " " << safe_share;
+  // sACN receivers let a source go after 2.5 s: it must go on sending.
+  std::this_thread::sleep_for(3500ms);
+  EXPECT_NEAR(room_lux() / held_lux, safe_share, 0.3 * safe_share);
+  const pid_t guardian = rig.guardian_pid();
+  rig.start_daemon();
+  ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
+  EXPECT_FALSE(runs(guardian)) << "the dead daemon's guardian must have left";
+  EXPECT_NEAR(room_lux(), held_lux, 0.05 * held_lux);
+  // An end in order leaves no guardian.
+  const pid_t last = rig.guardian_pid();
+  EXPECT_GT(last, 1);
+  rig.daemon().signal(SIGTERM);
+  EXPECT_TRUE(wait_for([&] { return !runs(last) && rig.guardian_pid() == 0; }, 10s));
+}
+
+TEST(Run, IdentifyShowsInTheRoomWhichLampItIsAndMonitorWhatGoesOut) {
+  LiveRig rig(source("tests/rigs/room"));
+  ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
+  const std::string port = std::to_string(rig.port());
+  const json fixture = rig.last()["fixtures"][0];
+  const std::string name = fixture["name"];
+  const auto room_lux = [&] {
+    double lux = 0;
+    const json truth = rig.truth();
+    for (const json& p : truth.at("points")) lux += p["lux"].get<double>();
+    return lux;
+  };
+  const double before_lux = room_lux();
+  ASSERT_EQ(luxrig::testing::run({program("luxrig"), "identify", name, "--seconds", "4", "--port", port}).code, 0);
+  double least_lux = before_lux, most_lux = before_lux;
+  ASSERT_TRUE(wait_for(
+      [&] {
+        const double lux = room_lux();
+        least_lux = std::min(least_lux, lux), most_lux = std::max(most_lux, lux);
+        return most_lux - least_lux > 0.1 * before_lux;
+      },
+      4s))
+      << before_lux;
+  const Ran monitor = luxrig::testing::run({program("luxrig"), "monitor", "--once", "--port", port});
+  EXPECT_EQ(monitor.code, 0);
+  EXPECT_NE(monitor.output.find(name + " shows which one it is"), std::string::npos) << monitor.output;
+  EXPECT_NE(monitor.output.find("universe 1"), std::string::npos) << monitor.output;
+  EXPECT_TRUE(wait_for([&] { return std::abs(room_lux() - before_lux) < 0.03 * before_lux; }, 6s)) << room_lux();
+  const Ran unknown = luxrig::testing::run({program("luxrig"), "identify", name + "x", "--port", port});
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_NE(unknown.output.find("did you mean \"" + name + "\"?"), std::string::npos) << unknown.output;
 }
 
 TEST(Run, AppliedPlanIsAcknowledgedOnDiskAndResumed) {

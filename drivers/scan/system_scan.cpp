@@ -1,0 +1,106 @@
+/// What the operating system lists: serial ports and CAN interfaces.
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+#include "drivers/scan/scan.h"
+
+namespace luxrig {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kCanLink = 280;  ///< ARPHRD_CAN of linux/if_arp.h
+
+/// The first line of a small file of sysfs; empty when there is none.
+std::string first_line(const fs::path& file) {
+  std::ifstream in(file);
+  std::string line;
+  std::getline(in, line);
+  return line;
+}
+
+std::vector<fs::path> entries_of(const fs::path& folder) {
+  std::vector<fs::path> entries;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
+    entries.push_back(it->path());
+  std::sort(entries.begin(), entries.end());
+  return entries;
+}
+
+/// A value that a folder of sysfs, or the nearest one above it, has: of a USB device's interface, that of the device.
+std::string value_above(fs::path folder, const fs::path& root, const char* name) {
+  for (int level = 0; level < 8 && folder != root && folder.has_relative_path(); ++level, folder = folder.parent_path())
+    if (std::string value = first_line(folder / name); !value.empty()) return value;
+  return {};
+}
+
+class SerialScan final : public Scan {
+ public:
+  explicit SerialScan(std::string root) : root_(std::move(root)) {}
+
+  Result<void> step(Time) override {
+    std::error_code error;
+    std::map<fs::path, fs::path> lasting;  // by what it points at
+    for (const fs::path& link : entries_of(root_ / "dev/serial/by-id")) {
+      const fs::path target = fs::weakly_canonical(link, error);
+      if (!error) lasting[target.filename()] = fs::path("/dev/serial/by-id") / link.filename();
+    }
+    found_.clear();
+    for (const fs::path& tty : entries_of(root_ / "sys/class/tty")) {
+      // Consoles have no device; ports of the board that nothing is wired to have one, but no chip (type 0).
+      const fs::path device = fs::weakly_canonical(tty / "device", error);
+      if (error || !fs::exists(tty / "device", error) || first_line(tty / "type") == "0") continue;
+      const std::string product = value_above(device, root_ / "sys", "product");
+      const std::string maker = value_above(device, root_ / "sys", "manufacturer");
+      const std::string serial = value_above(device, root_ / "sys", "serial");
+      FoundDevice found;
+      found.driver = "modbus_rtu";
+      const auto by_id = lasting.find(tty.filename());
+      found.address = by_id != lasting.end() ? by_id->second.string() : "/dev/" + tty.filename().string();
+      found.name = maker.empty() || product.empty() ? maker + product : maker + " " + product;
+      found.detail = tty.filename().string();
+      if (!serial.empty()) found.detail += ", serial number " + serial;
+      found_.push_back(std::move(found));
+    }
+    return {};
+  }
+  std::vector<FoundDevice> found() const override { return found_; }
+
+ private:
+  fs::path root_;
+  std::vector<FoundDevice> found_;
+};
+
+class CanScan final : public Scan {
+ public:
+  explicit CanScan(std::string root) : root_(std::move(root)) {}
+
+  Result<void> step(Time) override {
+    found_.clear();
+    for (const fs::path& link : entries_of(root_ / "sys/class/net")) {
+      if (first_line(link / "type") != std::to_string(kCanLink)) continue;
+      const std::string state = first_line(link / "operstate");
+      found_.push_back({"canopen", link.filename().string(), first_line(link / "ifalias"),
+                        state == "down" ? "down: ip link set " + link.filename().string() + " up" : state});
+    }
+    return {};
+  }
+  std::vector<FoundDevice> found() const override { return found_; }
+
+ private:
+  fs::path root_;
+  std::vector<FoundDevice> found_;
+};
+
+}  // namespace
+
+std::unique_ptr<Scan> make_serial_scan(const ScanOptions& options) {
+  return std::make_unique<SerialScan>(options.root);
+}
+std::unique_ptr<Scan> make_can_scan(const ScanOptions& options) { return std::make_unique<CanScan>(options.root); }
+
+}  // namespace luxrig

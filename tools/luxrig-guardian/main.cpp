@@ -1,0 +1,158 @@
+// luxrig-guardian: waits for its daemon to die; then it holds the last look, and fades to the safe one. The daemon
+// starts it (tools/luxrigd/guardian.h); a person has no need to.
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cerrno>
+#include <csignal>
+#include <map>
+
+#include "core/rig/rig_file.h"
+#include "drivers/io/os_fault.h"
+#include "drivers/registry.h"
+#include "tools/luxrig/command.h"
+#include "tools/luxrigd/bus_thread.h"
+#include "tools/luxrigd/clock.h"
+#include "tools/luxrigd/guardian_words.h"
+#include "tools/luxrigd/last_look.h"
+#include "tools/luxrigd/scheduling.h"
+
+namespace luxrig {
+namespace {
+
+struct GuardianArguments {
+  std::filesystem::path rig, pid_file;
+  int look_fd = -1, alive_fd = -1;
+  std::vector<std::string> redirects;  ///< "bus=host:port"
+};
+
+std::optional<std::map<std::string, Redirect>> redirects_of(const std::vector<std::string>& texts) {
+  std::map<std::string, Redirect> redirects;
+  for (const std::string& text : texts) {
+    const auto colon = text.rfind(':'), equals = text.rfind('=', colon);
+    if (colon == std::string::npos || equals == std::string::npos) return std::nullopt;
+    const int port = std::atoi(text.c_str() + colon + 1);
+    if (port < 1 || port > 65535) return std::nullopt;
+    redirects[text.substr(0, equals)] = {text.substr(equals + 1, colon - equals - 1), port};
+  }
+  return redirects;
+}
+
+/// True when the daemon is dead; false when somebody sent us away while it lived.
+bool wait_for_death(int alive_fd, int signals_fd) {
+  pollfd waits[] = {{alive_fd, POLLIN, 0}, {signals_fd, POLLIN, 0}};
+  while (true) {
+    if (::poll(waits, 2, -1) < 0 && errno != EINTR) return true;
+    if (waits[1].revents != 0) return false;
+    if (waits[0].revents != 0) return true;  // nobody ever writes: it has closed
+  }
+}
+
+OutputProgram program_of(const Rig& rig, const LastLook& look, Time now) {
+  OutputProgram program;
+  program.revision = 1;
+  program.from_level = look.present;
+  program.to_level = look.safe;
+  program.start = now + from_seconds(look.hold_s);
+  program.duration = from_seconds(look.fade_s);
+  program.curve = rig.control.fade_curve;
+  program.joints = look.joints;
+  for (const Fixture& fixture : rig.fixtures)
+    program.max_level.push_back(std::min(fixture.max_level, rig.limits.max_level));
+  return program;
+}
+
+int g_signal_pipe[2] = {-1, -1};
+volatile std::sig_atomic_t g_signal = 0;
+
+void on_signal(int signal) {
+  g_signal = signal;
+  const char byte = 0;
+  (void)!::write(g_signal_pipe[1], &byte, 1);
+}
+
+/// Sends until it is told to leave.
+void look_after(const Rig& rig, const LastLook& look, const std::map<std::string, Redirect>& redirects) {
+  lock_memory();
+  ProgramMailbox programs;
+  OutputProgram program = program_of(rig, look, now());
+  std::vector<std::unique_ptr<BusThread>> buses;
+  for (std::size_t b = 0; b < rig.buses.size(); ++b) {
+    std::optional<Redirect> redirect;
+    if (const auto it = redirects.find(rig.buses[b].name); it != redirects.end()) redirect = it->second;
+    auto driver = find_driver(rig.buses[b].driver)->make(rig, b, redirect);
+    const std::size_t first_desk = program.desks.size();
+    if (const LevelInput* input = driver->level_input()) {
+      for (const DeskPart& part : input->parts()) {
+        // A desk that drives the lamps itself goes on; of no other does the guardian know anything.
+        program.desks.emplace_back();
+        for (const std::size_t f : part.fixtures) program.desks.back().silent |= look.silent[f] != 0;
+      }
+    }
+    buses.push_back(std::make_unique<BusThread>(rig, b, std::move(driver), programs, first_desk));
+  }
+  programs.put(program);
+  for (const auto& bus : buses) bus->start();
+  pollfd wait{g_signal_pipe[0], POLLIN, 0};
+  while (g_signal == 0) ::poll(&wait, 1, -1);
+  // A daemon goes on from here: a goodbye would let fixtures go dark before its first frame.
+  if (g_signal == SIGUSR1) ::_exit(kExitOk);
+}
+
+int guard(const GuardianArguments& arguments) {
+  if (::pipe(g_signal_pipe) != 0) return kExitFailed;
+  for (const int signal : {SIGUSR1, SIGTERM, SIGINT}) ::signal(signal, on_signal);
+  ::signal(SIGPIPE, SIG_IGN);
+  const auto rig = load_rig(arguments.rig);
+  if (!rig) return report(rig.error());
+  if (const auto problems = check_buses(*rig); !problems.empty()) return report(problems);
+  const auto redirects = redirects_of(arguments.redirects);
+  if (!redirects) {
+    fmt::print(stderr, "luxrig-guardian: --redirect takes bus=host:port\n");
+    return kExitBadInput;
+  }
+  const auto memory = LastLookMemory::open(arguments.look_fd, rig->fixtures.size());
+  if (!memory) return report(memory.error());
+  // Held as long as this process lives: who reads the number knows by the lock that it is still its.
+  const int pid_fd = ::open(arguments.pid_file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  const std::string number = std::to_string(::getpid()) + "\n";
+  if (pid_fd < 0 || ::flock(pid_fd, LOCK_EX | LOCK_NB) != 0 || ::ftruncate(pid_fd, 0) != 0 ||
+      ::pwrite(pid_fd, number.data(), number.size(), 0) != static_cast<ssize_t>(number.size())) {
+    return report(os_fault("keeping " + arguments.pid_file.string(), errno));
+  }
+  const bool died = wait_for_death(arguments.alive_fd, g_signal_pipe[0]);
+  if (const LastLook look = memory->take(); died && !memory->ended() && look.sends) {
+    fmt::print(stderr,
+               "luxrig-guardian: the daemon died: its last look is held for {:g} s, then the safe look, until a daemon "
+               "is started anew (or kill {})\n",
+               look.hold_s, ::getpid());
+    look_after(*rig, look, *redirects);
+  }
+  std::error_code ignored;
+  std::filesystem::remove(arguments.pid_file, ignored);
+  return kExitOk;
+}
+
+}  // namespace
+}  // namespace luxrig
+
+int main(int argc, char** argv) {
+  CLI::App app("Luxrig's guardian: started by the daemon, it takes the rig to its safe look when that dies");
+  luxrig::GuardianArguments arguments;
+  app.add_option("RIG", arguments.rig)->required();
+  app.add_option(luxrig::kLookOption, arguments.look_fd, "memory in which the daemon keeps its last look")->required();
+  app.add_option(luxrig::kAliveOption, arguments.alive_fd, "pipe that closes when the daemon dies")->required();
+  app.add_option(luxrig::kPidOption, arguments.pid_file, "where to say which process this is")->required();
+  app.add_option(luxrig::kRedirectOption, arguments.redirects, "bus=host:port, instead of what the rig file says");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? luxrig::kExitOk : luxrig::kExitBadInput;
+  }
+  return luxrig::guard(arguments);
+}

@@ -1,0 +1,88 @@
+// monitor: what the running daemon sends and reads, live in the terminal.
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <thread>
+
+#include "tools/luxrig/command.h"
+#include "tools/luxrig/commands.h"
+#include "tools/luxrig/http_client.h"
+#include "tools/luxrig/monitor_picture.h"
+
+namespace luxrig {
+namespace {
+
+constexpr auto kPicturePeriod = std::chrono::milliseconds(200);
+constexpr int kUsualColumns = 100;
+
+volatile std::sig_atomic_t g_interrupted = 0;
+
+/// The terminal's other screen, without a cursor; whatever ends the program's life in order gives the old one back.
+class OtherScreen {
+ public:
+  OtherScreen() { fmt::print("\033[?1049h\033[?25l"); }
+  ~OtherScreen() {
+    fmt::print("\033[?25h\033[?1049l");
+    std::fflush(stdout);
+  }
+  OtherScreen(const OtherScreen&) = delete;
+  OtherScreen& operator=(const OtherScreen&) = delete;
+};
+
+struct TerminalSize {
+  int columns = kUsualColumns, lines = 0;  ///< lines 0: not known, as many as there are
+};
+TerminalSize terminal_size() {
+  winsize size{};
+  if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return {};
+  return {size.ws_col, size.ws_row};
+}
+
+/// The first lines that fit, each from the screen's left and with what stood right of it cleared; long ones are cut.
+std::string on_screen(const std::string& picture, int lines) {
+  std::string text = "\033[H\033[?7l";
+  int shown_lines = 0;
+  for (std::size_t at = 0; at < picture.size() && (lines == 0 || shown_lines < lines - 1); ++shown_lines) {
+    const std::size_t end = picture.find('\n', at);
+    text += picture.substr(at, end - at) + "\033[K\r\n";
+    at = end == std::string::npos ? picture.size() : end + 1;
+  }
+  return text + "\033[J\033[?7h";
+}
+
+/// Nothing when nobody answers.
+std::optional<std::string> picture_of(int port) {
+  const auto status = http_get("127.0.0.1", port, "/api/status");
+  const auto universes = http_get("127.0.0.1", port, "/api/universes");
+  if (!status || !universes || status->status != 200) return std::nullopt;
+  return monitor_picture(nlohmann::json::parse(status->body, nullptr, false),
+                         nlohmann::json::parse(universes->body, nullptr, false), terminal_size().columns);
+}
+
+}  // namespace
+
+int run_monitor(const ClientArguments& arguments, bool once) {
+  auto picture = picture_of(arguments.port);
+  if (!picture) return no_daemon(arguments.port);
+  if (once || isatty(STDOUT_FILENO) == 0) {
+    fmt::print("{}", *picture);
+    return kExitOk;
+  }
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, [](int) { g_interrupted = 1; });
+  {
+    const OtherScreen screen;
+    while (g_interrupted == 0 && picture) {
+      fmt::print("{}", on_screen(*picture, terminal_size().lines));
+      std::fflush(stdout);
+      std::this_thread::sleep_for(kPicturePeriod);
+      picture = picture_of(arguments.port);
+    }
+  }
+  return g_interrupted != 0 ? kExitOk : no_daemon(arguments.port);
+}
+
+}  // namespace luxrig

@@ -1,0 +1,139 @@
+#include "tools/luxrigd/guardian.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/file.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "drivers/io/os_fault.h"
+#include "tools/luxrigd/guardian_words.h"
+
+extern char** environ;
+
+namespace luxrig {
+namespace {
+
+constexpr auto kLeavesWithin = std::chrono::seconds(3);
+constexpr auto kLook = std::chrono::milliseconds(10);
+
+std::filesystem::path guardian_program() {
+  std::error_code error;
+  return std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / kGuardianName;
+}
+
+}  // namespace
+
+Result<Guardian> Guardian::start(GuardianSettings settings) {
+  auto memory = LastLookMemory::create(settings.fixtures);
+  if (!memory) return tl::unexpected(memory.error());
+  Guardian made(std::move(settings), std::move(*memory));
+  if (auto launched = made.launch(); !launched) return tl::unexpected(launched.error());
+  return made;
+}
+
+Result<void> Guardian::launch() {
+  const auto program = guardian_program();
+  if (::access(program.c_str(), X_OK) != 0)
+    return refusal(program.string() + " is missing: build it with this program");
+  std::error_code error;
+  std::filesystem::create_directories(settings_.state_folder, error);
+  int ends[2] = {-1, -1};
+  if (::pipe2(ends, O_CLOEXEC) != 0) return tl::unexpected(os_fault("making a pipe to the guardian", errno));
+  std::vector<std::string> words = {
+      program.string(), settings_.rig_file.string(), kLookOption, std::to_string(memory_.fd()),
+      kAliveOption,     std::to_string(ends[0]),     kPidOption,  guardian_pid_file(settings_.state_folder).string()};
+  for (const auto& [bus, to] : settings_.redirects) {
+    words.insert(words.end(), {kRedirectOption, bus + "=" + to.host + ":" + std::to_string(to.port)});
+  }
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  const pid_t pid = ::fork();
+  if (pid < 0) {
+    const int failed = errno;
+    ::close(ends[0]);
+    ::close(ends[1]);
+    return tl::unexpected(os_fault("starting the guardian", failed));
+  }
+  if (pid == 0) {
+    // A Ctrl-C at the terminal is for the daemon. Only calls that are safe between fork and exec from here on.
+    ::setpgid(0, 0);
+    sigset_t none;
+    sigemptyset(&none);
+    ::sigprocmask(SIG_SETMASK, &none, nullptr);
+    ::fcntl(memory_.fd(), F_SETFD, 0);
+    ::fcntl(ends[0], F_SETFD, 0);
+    ::execve(argv[0], argv.data(), environ);
+    ::_exit(127);
+  }
+  ::close(ends[0]);
+  if (alive_fd_ >= 0) ::close(alive_fd_);
+  alive_fd_ = ends[1];
+  pid_ = pid;
+  return {};
+}
+
+Guardian::Guardian(Guardian&& other) noexcept
+    : settings_(std::move(other.settings_)),
+      memory_(std::move(other.memory_)),
+      pid_(std::exchange(other.pid_, -1)),
+      alive_fd_(std::exchange(other.alive_fd_, -1)) {}
+
+Guardian::~Guardian() { end(); }
+
+bool Guardian::alive() {
+  if (pid_ <= 0) return false;
+  if (::waitpid(pid_, nullptr, WNOHANG) == 0) return true;
+  pid_ = -1;
+  return false;
+}
+
+void Guardian::end() {
+  if (alive_fd_ < 0) return;
+  memory_.end();
+  ::close(std::exchange(alive_fd_, -1));
+  if (pid_ <= 0) return;
+  const auto until = std::chrono::steady_clock::now() + kLeavesWithin;
+  while (::waitpid(pid_, nullptr, WNOHANG) == 0) {
+    if (std::chrono::steady_clock::now() > until) {
+      ::kill(pid_, SIGKILL);
+      ::waitpid(pid_, nullptr, 0);
+      break;
+    }
+    std::this_thread::sleep_for(kLook);
+  }
+  pid_ = -1;
+}
+
+bool send_guardian_away(const std::filesystem::path& state_folder) {
+  // A guardian that lives holds a lock on its file: a number alone may be another process's by now.
+  const int fd = ::open(guardian_pid_file(state_folder).c_str(), O_RDWR | O_CLOEXEC);
+  if (fd < 0) return false;
+  const auto gone = [fd] { return ::flock(fd, LOCK_EX | LOCK_NB) == 0; };
+  bool there = false;
+  if (!gone()) {
+    char text[16] = {};
+    const ssize_t got = ::pread(fd, text, sizeof(text) - 1, 0);
+    const pid_t pid = got > 0 ? static_cast<pid_t>(std::atol(text)) : 0;
+    there = pid > 1 && ::kill(pid, SIGUSR1) == 0;
+    const auto until = std::chrono::steady_clock::now() + kLeavesWithin;
+    while (there && !gone()) {
+      if (std::chrono::steady_clock::now() > until) {
+        ::kill(pid, SIGKILL);
+        break;
+      }
+      std::this_thread::sleep_for(kLook);
+    }
+  }
+  ::close(fd);
+  return there;
+}
+
+}  // namespace luxrig

@@ -1,0 +1,18 @@
+#pragma once
+/// What daemon and guardian call the same by the same words.
+
+#include <filesystem>
+
+namespace luxrig {
+
+inline constexpr const char* kGuardianName = "luxrig-guardian";
+inline constexpr const char* kLookOption = "--look-fd";
+inline constexpr const char* kAliveOption = "--alive-fd";
+inline constexpr const char* kPidOption = "--pid-file";
+inline constexpr const char* kRedirectOption = "--redirect";
+
+[[nodiscard]] inline std::filesystem::path guardian_pid_file(const std::filesystem::path& state_folder) {
+  return state_folder / "guardian.pid";
+}
+
+}  // namespace luxrig

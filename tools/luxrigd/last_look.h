@@ -1,0 +1,56 @@
+#pragma once
+/// What the light shall do when the daemon dies, in memory that it shares with its guardian. Two copies, of which one
+/// is whole at every instant: however the writer ends, the reader finds the last look that was put.
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/result.h"
+#include "core/rig/frames.h"
+
+namespace luxrig {
+
+struct LastLook {
+  bool sends = false;                 ///< something goes out at all
+  double hold_s = 0, fade_s = 0;      ///< how long `present` is held, and the way from there to `safe`
+  std::vector<double> present, safe;  ///< per fixture, 0…1, within limits
+  std::vector<PanTilt> joints;        ///< per fixture
+  std::vector<std::uint8_t> silent;   ///< per fixture, 1: a desk drives it itself, and goes on
+};
+
+class LastLookMemory {
+ public:
+  /// Of this process and those that inherit fd().
+  [[nodiscard]] static Result<LastLookMemory> create(std::size_t fixtures);
+  /// The same, by a descriptor that somebody inherited; Cause::invalid when it is another rig's, or no such memory.
+  [[nodiscard]] static Result<LastLookMemory> open(int fd, std::size_t fixtures);
+  ~LastLookMemory();
+  LastLookMemory(LastLookMemory&& other) noexcept;
+  LastLookMemory& operator=(LastLookMemory&&) = delete;
+
+  /// One writer. Vectors have an entry per fixture. Never blocks, allocates nothing.
+  void put(const LastLook& look);
+  /// Nothing before the first. What is not a number in it is dark, and levels are within 0…1: the writer may have died
+  /// of what wrote here.
+  [[nodiscard]] LastLook take() const;
+
+  /// The daemon ends in order: its guardian has nothing to do.
+  void end();
+  [[nodiscard]] bool ended() const;
+  [[nodiscard]] int fd() const { return fd_; }
+
+ private:
+  struct Header;
+  LastLookMemory(int fd, void* memory, std::size_t bytes, std::size_t fixtures)
+      : fd_(fd), memory_(memory), bytes_(bytes), fixtures_(fixtures) {}
+  [[nodiscard]] Header& header() const;
+  [[nodiscard]] double* copy(std::uint32_t index) const;
+
+  int fd_ = -1;
+  void* memory_ = nullptr;
+  std::size_t bytes_ = 0, fixtures_ = 0;
+};
+
+}  // namespace luxrig
