@@ -5,6 +5,7 @@
 #include "core/rig/nearest.h"
 #include "drivers/dmx/artnet/artnet_driver.h"
 #include "drivers/dmx/sacn/sacn_driver.h"
+#include "drivers/modbus/modbus_rtu_driver.h"
 #include "drivers/modbus/modbus_tcp_driver.h"
 
 namespace luxrig {
@@ -15,6 +16,8 @@ const DriverEntry kDrivers[] = {
     {"sacn", "ANSI E1.31 over UDP, send", sacn_options(), check_sacn, make_sacn},
     {"artnet", "Art-Net 4 over UDP, send", artnet_options(), check_artnet, make_artnet},
     {"modbus_tcp", "Modbus TCP dimmers and luxmeters", modbus_tcp_options(), check_modbus_tcp, make_modbus_tcp},
+    {"modbus_rtu", "Modbus RTU dimmers and luxmeters on RS-485", modbus_rtu_options(), check_modbus_rtu,
+     make_modbus_rtu},
 };
 
 }  // namespace

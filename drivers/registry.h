@@ -11,10 +11,12 @@
 
 namespace luxrig {
 
-/// Where a bus is really to be reached: instead of what the rig file says, everything goes to a stand-in on loopback.
+/// Where a bus is really to be reached: instead of what the rig file says, everything goes to a stand-in, on loopback
+/// or at a path.
 struct Redirect {
   std::string host;  ///< "127.0.0.1"
   int port = 0;
+  std::string path{};  ///< of a serial port; empty: the stand-in has none
 };
 
 /// One option a driver reads from its [[bus]] entry; the rig-file reference is compared with these.

@@ -69,23 +69,15 @@ void RigReader::read_luxmeters() {
     s.read("tolerance", meter.tolerance);
     s.read("range_lx", meter.range_lx);
 
-    ModbusMeterPatch& patch = meter.patch;
-    bool good = s.read("unit", patch.unit) || !s.has("unit");
-    good &= s.read("register", patch.first_register) || !s.has("register");
-    good &= s.read("registers", patch.registers) || !s.has("registers");
-    good &= s.read_choice("register_kind", patch.input_registers) || !s.has("register_kind");
-    s.read_choice("word_order", patch.low_word_first);
-    s.read("lux_per_count", patch.lux_per_count);
-    if (good && patch.first_register + patch.registers > 65536) {
-      problems.add(s.place_of("register"),
-                   fmt::format("{} registers from {} end past register 65535", patch.registers, patch.first_register),
-                   "use a lower register");
-      good = false;
-    }
+    const bool good = read_modbus_meter(s, meter);
     if (const auto bus = buses.read_reference(s, "bus")) {
       meter.bus = *bus;
       if (good) {
-        const Place place = s.place_of(s.has("register") ? "register" : s.has("unit") ? "unit" : "name");
+        const ModbusMeterPatch& patch = meter.patch;
+        const Place place = s.place_of(s.has("register")       ? "register"
+                                       : s.has("register_map") ? "register_map"
+                                       : s.has("unit")         ? "unit"
+                                                               : "name");
         patches.claim_registers(*bus, patch.unit, patch.input_registers, patch.first_register, patch.registers,
                                 {"luxmeter " + in_quotes(meter.name), place});
       }

@@ -8,27 +8,9 @@ namespace luxrig {
 namespace {
 
 constexpr std::string_view kDmxKeys[] = {"universe", "address", "slots", "personality", "mode"};
-constexpr std::string_view kModbusKeys[] = {"unit", "register", "full_scale"};
+constexpr std::string_view kModbusKeys[] = {"unit", "register", "full_scale", "register_map", "channel", "output"};
 constexpr std::string_view kTravelKeys[] = {"pan_range_deg", "tilt_range_deg", "pan_speed_deg_s", "tilt_speed_deg_s"};
 constexpr double kNearest_m = 0.001;  // an aim nearer than this has no direction worth the name
-
-bool read_modbus(Section& s, const std::optional<SlotOwner>& owner, Fixture& fixture) {
-  ModbusPatch patch;
-  if (owner && !owner->emitters.empty()) {
-    s.problems().add(s.place_of("register"),
-                     fmt::format("luminaire {} has {} emitters, and a Modbus register holds one level",
-                                 in_quotes(owner->luminaire), owner->emitters.size()),
-                     fmt::format("make each emitter a [[fixture]] of its own, as luminaire = {}",
-                                 in_quotes(owner->luminaire + "/" + owner->emitters.front())));
-    return false;
-  }
-  bool good = s.read("unit", patch.unit) || !s.has("unit");
-  if (!s.has("register")) s.require("register", "which a Modbus dimmer needs");
-  good &= s.read("register", patch.holding_register);
-  s.read("full_scale", patch.full_scale_raw);
-  fixture.patch = patch;
-  return good;
-}
 
 enum class PatchKind { none, dmx, modbus };
 
@@ -41,8 +23,9 @@ PatchKind patch_kind(Section& s, ProblemList& problems) {
   };
   const bool dmx = any(kDmxKeys), modbus = any(kModbusKeys);
   if (dmx != modbus) return dmx ? PatchKind::dmx : PatchKind::modbus;
-  problems.add(s.place(), dmx ? "[[fixture]] has both a DMX and a Modbus address" : "[[fixture]] has no address",
-               "give it universe, address and slots (DMX), or unit, register and full_scale (Modbus)");
+  problems.add(
+      s.place(), dmx ? "[[fixture]] has both a DMX and a Modbus address" : "[[fixture]] has no address",
+      "give it universe, address and slots (DMX), or unit and register_map, or unit, register and full_scale (Modbus)");
   return PatchKind::none;
 }
 
@@ -161,8 +144,9 @@ void RigReader::read_fixtures() {
                                             .toRotationMatrix();
     s.read_deg("roll_deg", fixture.roll_rad);
 
-    const PatchMap::Owner owner{"fixture " + in_quotes(fixture.name),
-                                s.place_of(s.has("address") ? "address" : "register")};
+    const PatchMap::Owner owner{"fixture " + in_quotes(fixture.name), s.place_of(s.has("address")    ? "address"
+                                                                                 : s.has("register") ? "register"
+                                                                                                     : "register_map")};
     const PatchKind kind = patch_kind(s, problems);
     std::vector<NamedSlot> slots;
     std::optional<ModeSlots> of_mode;
@@ -171,7 +155,7 @@ void RigReader::read_fixtures() {
       patches.claim_slots(*bus, dmx.universe, dmx.address, static_cast<int>(dmx.slots.size()), owner);
     } else if (kind == PatchKind::modbus && read_modbus(s, slot_owner, fixture) && bus) {
       const auto& modbus = std::get<ModbusPatch>(fixture.patch);
-      patches.claim_registers(*bus, modbus.unit, false, modbus.holding_register, 1, owner);
+      patches.claim_registers(*bus, modbus.unit, false, modbus.holding_register, modbus.format.registers, owner);
     }
     // A personality that cannot be used leaves open whether the fixture moves, so nothing is said of that.
     if (of_mode || !s.has("personality")) {

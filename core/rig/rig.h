@@ -112,11 +112,25 @@ struct DmxPatch {
   std::vector<DmxSlot> slots = {DmxSlot{}};
 };
 
-/// A dimmer channel behind a holding register.
+/// How a number stands in Modbus registers.
+enum class RegisterNumber { whole, signed_whole, floating };
+struct RegisterFormat {
+  int registers = 1;  ///< 1 or 2; floating: 2 (IEEE 754 binary32)
+  RegisterNumber number = RegisterNumber::whole;
+  bool low_word_first = false;  ///< word order CDAB; only with 2 registers
+  bool low_byte_first = false;  ///< bytes of each register swapped: BADC, or DCBA
+};
+
+struct RegisterMap;
+
+/// A dimmer channel behind a holding register, or two.
 struct ModbusPatch {
   int unit = 1;               ///< 0…255
   int holding_register = 0;   ///< 0-based, as on the wire
   int full_scale_raw = 1000;  ///< register value at full drive, 1…65535
+  int dark_raw = 0;           ///< at none
+  RegisterFormat format{};
+  std::shared_ptr<const RegisterMap> map{};  ///< of its product; null: only the register is known
 };
 
 using Patch = std::variant<DmxPatch, ModbusPatch>;
@@ -181,6 +195,11 @@ struct ModbusMeterPatch {
   int registers = 2;             ///< 1: u16, 2: u32
   bool low_word_first = false;   ///< word order CDAB
   double lux_per_count = 0.001;
+  RegisterNumber number = RegisterNumber::whole;
+  bool low_byte_first = false;
+  std::shared_ptr<const RegisterMap> map{};  ///< of its product; null: only the registers are known
+
+  [[nodiscard]] RegisterFormat format() const { return {registers, number, low_word_first, low_byte_first}; }
 };
 
 struct Luxmeter {

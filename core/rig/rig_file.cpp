@@ -102,7 +102,9 @@ std::optional<std::filesystem::path> RigReader::read_file(Section& section, std:
 void RigReader::read_unknown_sections() {
   std::vector<std::string_view> known;
   for (const SectionSpec& section : sections()) {
-    if (section.name.find('.') == std::string_view::npos) known.push_back(section.name);
+    if (section.file == SectionSpec::File::rig && section.name.find('.') == std::string_view::npos) {
+      known.push_back(section.name);
+    }
   }
   for (const Member& member : root) {
     if (std::find(known.begin(), known.end(), member.key) != known.end()) continue;

@@ -61,6 +61,7 @@ struct RigReader {
   /// Where each point stands: the rig file, or the points file.
   std::vector<std::pair<std::string, Place>> point_places;
   std::map<std::string, std::shared_ptr<const Personality>> personalities;  ///< by path; null: cannot be used
+  std::map<std::string, std::shared_ptr<const RegisterMap>> register_maps;  ///< the same
   std::set<std::size_t> lacks_watts;                                        ///< luminaires that this was reported of
 
   void read_all();
@@ -119,6 +120,10 @@ struct RigReader {
   bool read_dmx(Section& section, const std::optional<SlotOwner>& owner, Fixture& fixture,
                 std::vector<NamedSlot>& named, std::optional<ModeSlots>& of_mode);
   std::shared_ptr<const Personality> read_personality(Section& section);
+  std::shared_ptr<const RegisterMap> read_register_map(Section& section);
+  /// The fixture's patch over Modbus; true when its registers can be claimed.
+  bool read_modbus(Section& section, const std::optional<SlotOwner>& owner, Fixture& fixture);
+  bool read_modbus_meter(Section& section, Luxmeter& meter);
   std::optional<std::size_t> read_mode(Section& section, const Personality& personality);
   std::optional<ModeSlots> read_slots_of_mode(Section& section, const std::optional<SlotOwner>& owner,
                                               Fixture& fixture);

@@ -44,7 +44,7 @@ std::string range_text(const KeySpec& spec) {
                      low && high ? (b.below_max ? " to below " : " to ") : "", high ? plain(b.max) : "",
                      spec.type == ValueType::colour || spec.type == ValueType::vector3 ||
                              spec.type == ValueType::span2 || spec.type == ValueType::box ||
-                             spec.type == ValueType::chromaticity
+                             spec.type == ValueType::chromaticity || spec.type == ValueType::whole_numbers
                          ? ", each"
                          : "");
 }
@@ -74,6 +74,8 @@ std::string_view type_text(ValueType type) {
       return "[x, y]";
     case ValueType::texts:
       return "list of text";
+    case ValueType::whole_numbers:
+      return "list of whole numbers";
   }
   return "";
 }

@@ -1,6 +1,6 @@
 #pragma once
-/// Every key of the rig file, once: type, unit, default, range and meaning. The reader checks values against this
-/// table (section.h), and a test holds rigs/REFERENCE.md against it.
+/// Every key of the rig file and of register maps, once: type, unit, default, range and meaning. The reader checks
+/// values against this table (section.h), and a test holds rigs/REFERENCE.md against it.
 
 #include <limits>
 #include <span>
@@ -21,7 +21,8 @@ enum class ValueType {
   box,           ///< [[x, y, z], [x, y, z]], two opposite corners
   colour,        ///< one number, or [r, g, b]
   chromaticity,  ///< [x, y] of CIE 1931
-  texts          ///< list of text
+  texts,         ///< list of text
+  whole_numbers  ///< list of them
 };
 
 /// Inclusive bounds of a number, or of each number of a list.
@@ -54,8 +55,11 @@ struct SectionSpec {
   std::size_t most;          ///< entries allowed in a list
   bool takes_other_keys;     ///< [[bus]]: the driver's own
   std::string_view summary;  ///< one line for the reference
+  /// Which file it stands in.
+  enum class File { rig, register_map } file = File::rig;
 };
 
+/// Of all files.
 [[nodiscard]] std::span<const SectionSpec> sections();
 [[nodiscard]] const SectionSpec& section_spec(std::string_view section);
 

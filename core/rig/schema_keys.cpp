@@ -1,4 +1,4 @@
-// Every section and key of a rig file, in the order of REFERENCE.md.
+// Every section and key of a rig file and of a register map, in the order of REFERENCE.md.
 #include "core/rig/schema.h"
 
 namespace luxrig {
@@ -22,6 +22,9 @@ constexpr Bounds kFullCone{0, 180, true, true};
 constexpr Bounds kSeconds{0, 3600};
 constexpr Bounds kUnitAddress{0, 255};
 constexpr Bounds kRegister{0, 65535};
+constexpr Bounds kBaudRate{300, 4'000'000};
+constexpr Bounds kRawRange{-2147483648.0, 4294967295.0};
+constexpr Bounds kRawWhole{-2147483648.0, 2147483647.0};
 constexpr Bounds kLights{1, 1000};
 constexpr Bounds kChromaticity{0, 1, true, true};
 constexpr Bounds kKelvin{1667, 25000};
@@ -32,6 +35,7 @@ constexpr Bounds kPixels{16, 8192};
 constexpr std::string_view kUnits = "m, cm, mm, in, ft";
 constexpr std::string_view kAxes = "x, y, z";
 
+constexpr auto kInMap = SectionSpec::File::register_map;
 constexpr SectionSpec kSections[] = {
     {"rig", false, 1, false, "What the rig is called."},
     {"scene", false, 1, false, "The room: a mesh, and how much light its surfaces send back. Leave it out for a void."},
@@ -49,7 +53,8 @@ constexpr SectionSpec kSections[] = {
     {"bus", true, 1000, true, "A way to reach devices. Every further key is the driver's own: see Bus options."},
     {"fixture", true, 10000, false,
      "A luminaire as hung and patched: over DMX (`universe`, `address`, and `slots` or `personality`) or over Modbus "
-     "(`unit`, `register`, `full_scale`). Say where it looks by `aim`, by `aim_m`, or by `pan_deg` and `tilt_deg`."},
+     "(`unit`, and `register_map` with `channel` or `output`, or `register` with `full_scale`). Say where it looks by "
+     "`aim`, by `aim_m`, or by `pan_deg` and `tilt_deg`."},
     {"luxmeter", true, 10000, false, "A light meter on a Modbus bus. It stands at a `point`, or at `position_m`."},
     {"camera", true, 100, false,
      "Takes pictures of the rig for a person to look at. There is no driver for real ones yet: the simulated rig has "
@@ -65,6 +70,18 @@ constexpr SectionSpec kSections[] = {
     {"control", false, 1, false, "How looks change, and how readings correct them."},
     {"safe", false, 1, false, "What the light does when something fails."},
     {"daemon", false, 1, false, "The program that keeps the rig running."},
+    {"device", false, 1, false,
+     "In a register map, not in a rig file: a product with Modbus registers, its limits, and what it does when data "
+     "stops. Files of some products are in `rigs/register-maps`.",
+     kInMap},
+    {"register", true, 2000, false,
+     "In a register map: a number that the product keeps, in one register or two. Only what a `level` or an "
+     "`illuminance` is matters for control; the others say what else is there.",
+     kInMap},
+    {"setup", true, 100, false,
+     "In a register map: what is written to the product before anything else, in this order, whenever it may have "
+     "restarted; a watchdog is armed this way.",
+     kInMap},
 };
 
 constexpr KeySpec kRigKeys[] = {
@@ -217,6 +234,17 @@ constexpr KeySpec kRigKeys[] = {
     {"fixture", "register", whole_number, "", kNone, kRegister, "",
      "Modbus holding register of the dimmer, 0-based; required over Modbus"},
     {"fixture", "full_scale", whole_number, "", "1000", {1, 65535}, "", "value of that register at full drive"},
+    {"fixture", "register_map", file, "", kNone, kAny, "",
+     "its product's registers, a file as in `rigs/register-maps`; instead of `register` and `full_scale`"},
+    {"fixture",
+     "channel",
+     whole_number,
+     "",
+     kNone,
+     {1, 1000},
+     "",
+     "which of the product's levels it is, counted from 1; may be left out when there is but one"},
+    {"fixture", "output", text, "", kNone, kAny, "", "the same by name, as the register map has it"},
     {"fixture", "dimmer_curve", text, "", R"("linear")", kAny, "linear, square, s-curve",
      "how its light follows the drive sent to it, as its maker states"},
     {"fixture", "max_level", number, "", "1", kShare, "", "most of its rated flux that it may ever give"},
@@ -250,6 +278,10 @@ constexpr KeySpec kRigKeys[] = {
     {"luxmeter", "register_kind", text, "", R"("holding")", kAny, "holding, input", "read by function 3 or 4"},
     {"luxmeter", "word_order", text, "", R"("high-first")", kAny, "high-first, low-first", "of two registers"},
     {"luxmeter", "lux_per_count", number, "lx", "0.001", {0, 1e6, true}, "", "what one count is worth"},
+    {"luxmeter", "register_map", file, "", kNone, kAny, "",
+     "its product's registers, a file as in `rigs/register-maps`; instead of the five keys before this one"},
+    {"luxmeter", "reading", text, "", kNone, kAny, "",
+     "which of the product's illuminances it is, by name; may be left out when there is but one"},
 
     {"camera", "name", name, "", kRequired, kAny, "", "name of the camera; its pictures are files of that name"},
     {"camera", "position_m", vector3, "m", kRequired, kPosition, "", "where its lens is"},
@@ -474,6 +506,77 @@ constexpr KeySpec kRigKeys[] = {
      "whether a lost meter also leads here; else it only stops the correction"},
 
     {"daemon", "http_port", whole_number, "", "9620", {1, 65535}, "", "port of the page and the API, on loopback"},
+
+    {"device", "name", name, "", kRequired, kAny, "", "maker and product"},
+    {"device", "source", text, "", kRequired, kAny, "", "the public document that the map was made from"},
+    {"device", "assumed", texts, "", kNone, kAny, "", "what that document does not say, and what was taken instead"},
+    {"device",
+     "answer_ms",
+     number,
+     "ms",
+     kNone,
+     {1, 5000},
+     "",
+     "longest time to its answer; left out, `response_timeout_ms` of the bus"},
+    {"device",
+     "shortest_gap_ms",
+     number,
+     "ms",
+     "0",
+     {0, 1000},
+     "",
+     "how long it must be left alone between two requests, beyond the silence that Modbus itself wants"},
+    {"device", "largest_read", whole_number, "", "125", {1, 125}, "", "most registers that one request may read"},
+    {"device",
+     "largest_write",
+     whole_number,
+     "",
+     "123",
+     {1, 123},
+     "",
+     "most registers that one request may write; 1: it knows function 6 only"},
+    {"device", "baud_rates", whole_numbers, "", kNone, kBaudRate, "", "what its line can be set to; left out, any"},
+    {"device", "when_data_stops", text, "", R"("hold")", kAny, "hold, dark, watchdog",
+     "what its levels do when nobody writes: stay for ever, go out after `stops_after_s` by themselves, or the same "
+     "once `[[setup]]` has armed its watchdog"},
+    {"device",
+     "stops_after_s",
+     number,
+     "s",
+     kNone,
+     {0.1, 6553.5},
+     "",
+     "required with `dark` and `watchdog`; a bus must refresh more than twice as often"},
+
+    {"register", "name", name, "", kRequired, kAny, "", "what it is called; with `count`, a number is put behind it"},
+    {"register", "what", text, "", R"("other")", kAny, "other, level, illuminance, temperature, status, setting",
+     "what it stands for; a `level` is a share of full output, an `illuminance` is in lux"},
+    {"register", "address", whole_number, "", kRequired, kRegister, "",
+     "first Modbus register, 0-based (40011 in a manual is holding register 10)"},
+    {"register", "kind", text, "", R"("holding")", kAny, "holding, input", "read by function 3 or 4"},
+    {"register", "type", text, "", R"("u16")", kAny, "u16, s16, u32, s32, float32", "32 bits take two registers"},
+    {"register", "word_order", text, "", R"("high-first")", kAny, "high-first, low-first", "of two registers"},
+    {"register", "byte_order", text, "", R"("high-first")", kAny, "high-first, low-first",
+     "within each register; Modbus is high-first"},
+    {"register",
+     "count",
+     whole_number,
+     "",
+     "1",
+     {1, 1000},
+     "",
+     "so many of them, one behind the other: name1, name2 …"},
+    {"register", "step", whole_number, "", kNone, {1, 1000}, "", "registers from one to the next; left out, no gap"},
+    {"register", "scale", number, "", "1", {0, 1e6, true}, "", "what one count is worth, in `unit`; not of a level"},
+    {"register", "unit", text, "", kNone, kAny, "", "of the scaled value; an illuminance is in lx"},
+    {"register", "access", text, "", R"("read-write")", kAny, "read-write, read, write",
+     "what may be done to it; a level is written, an illuminance read"},
+    {"register", "range", span2, "", kNone, kRawRange, "",
+     "least and largest value in the register; of a level, required: dark and full"},
+    {"register", "power_on", whole_number, "", "0", kRawWhole, "", "its value in the register when power comes"},
+
+    {"setup", "register", text, "", kRequired, kAny, "", "name of a register that can be written"},
+    {"setup", "value", whole_number, "", kRequired, kRawWhole, "", "what is written to it, as it stands there"},
 };
 
 }  // namespace

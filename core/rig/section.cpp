@@ -38,6 +38,8 @@ std::string example_of(const KeySpec& spec) {
     case ValueType::texts:
       return fmt::format("write a list: {} = {}", spec.key,
                          spec.fallback == kNone || spec.fallback == kRequired ? R"(["one", "other"])" : spec.fallback);
+    case ValueType::whole_numbers:
+      return fmt::format("write a list: {} = [9600, 19200]", spec.key);
     case ValueType::yes_no:
       return fmt::format("write {} = true or {} = false, without quotes", spec.key, spec.key);
     case ValueType::number:
@@ -299,6 +301,34 @@ bool Section::read(std::string_view key, Eigen::Vector2d& out) {
   }
   out = xy;
   return true;
+}
+
+bool Section::read(std::string_view key, std::vector<int>& out) {
+  const KeySpec& k = spec(key);
+  LUXRIG_CHECK(k.type == ValueType::whole_numbers, "{} is not a list of whole numbers", key);
+  const Node* node = value(k);
+  if (!node) return false;
+  const auto* list = std::get_if<NodeList>(&node->value);
+  if (!list) {
+    problems_.add(node->place, fmt::format("{} must be a list of whole numbers, not {}", key, kind_of(*node)),
+                  example_of(k));
+    return false;
+  }
+  std::vector<int> numbers;
+  bool good = true;
+  for (const Node& item : *list) {
+    double x = 0;
+    if (!std::holds_alternative<std::int64_t>(item.value)) {
+      problems_.add(item.place, fmt::format("{} must hold whole numbers, not {}", key, kind_of(item)), example_of(k));
+      good = false;
+    } else if (number_from(k, item, x)) {
+      numbers.push_back(static_cast<int>(x));
+    } else {
+      good = false;
+    }
+  }
+  if (good) out = std::move(numbers);
+  return good;
 }
 
 int Section::choice(std::string_view key) {

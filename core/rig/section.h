@@ -44,6 +44,7 @@ class Section {
   bool read(std::string_view key, Eigen::Vector2d& out);  ///< chromaticity: x + y ≤ 1
   bool read(std::string_view key,
             Eigen::AlignedBox3d& out);  ///< corners in any order; a box without volume is reported
+  bool read(std::string_view key, std::vector<int>& out);
   template <class T>
   bool read(std::string_view key, std::optional<T>& out) {
     T value{};

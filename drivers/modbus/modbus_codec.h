@@ -1,7 +1,8 @@
 #pragma once
-/// Modbus TCP requests and answers (Modbus Application Protocol 1.1b3, Messaging on TCP/IP 1.0b). Pure.
+/// Modbus requests and answers, as PDUs and as Modbus TCP frames (Modbus Application Protocol 1.1b3, Messaging on
+/// TCP/IP 1.0b). Pure.
 ///
-/// libmodbus frames and receives (modbus_link.h), but takes an answer whose length field, unit or echoed address is
+/// libmodbus frames and receives (modbus_tcp_link.h), but takes an answer whose length field, unit or echoed address is
 /// wrong; every field is checked here.
 
 #include <cstdint>
@@ -27,7 +28,14 @@ struct Request {
   std::vector<std::uint16_t> values;  ///< registers to write: 1 for write_single
 };
 
-/// requires counts within the limits above and registers that end at or before 65535.
+[[nodiscard]] constexpr bool reads(Function function) {
+  return function == Function::read_holding || function == Function::read_input;
+}
+
+/// Function and data. requires counts within the limits above and registers that end at or before 65535.
+[[nodiscard]] std::vector<std::uint8_t> encode_pdu(const Request& request);
+
+/// A whole Modbus TCP frame. requires the same.
 [[nodiscard]] std::vector<std::uint8_t> encode(const Request& request, std::uint16_t transaction);
 
 enum class Verdict {
@@ -45,7 +53,10 @@ struct Answer {
   std::string what;
 };
 
-/// One whole answer as received, against the request it should belong to.
+/// Function and data of an answer, against the request it should belong to: good, exception or garbled.
+[[nodiscard]] Answer decode_pdu(const Request& request, std::span<const std::uint8_t> pdu);
+
+/// One whole Modbus TCP answer as received, against the request it should belong to.
 [[nodiscard]] Answer decode(const Request& request, std::uint16_t transaction, std::span<const std::uint8_t> bytes);
 
 /// "illegal data address (2)"

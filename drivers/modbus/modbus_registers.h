@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/rig/register_map/register_value.h"
 #include "core/rig/rig.h"
 
 namespace luxrig::modbus {
@@ -13,7 +14,10 @@ namespace luxrig::modbus {
 /// drive 0…1 to the nearest of 0…full_scale_raw.
 [[nodiscard]] std::uint16_t raw_from_drive(double drive, int full_scale_raw);
 
-/// The lux that a meter's registers stand for, exact for every u16 and u32.
+/// drive 0…1 to what goes into the registers of a dimmer: the nearest of dark_raw…full_scale_raw.
+[[nodiscard]] RegisterWords words_from_drive(double drive, const ModbusPatch& patch);
+
+/// The lux that a meter's registers stand for, exact for all whole numbers. May be negative, or not finite.
 /// requires raw.size() == patch.registers (1 or 2).
 [[nodiscard]] double lux_from_registers(const ModbusMeterPatch& patch, std::span<const std::uint16_t> raw);
 

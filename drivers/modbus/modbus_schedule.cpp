@@ -7,17 +7,9 @@
 
 namespace luxrig::modbus {
 
-constexpr Duration kAskSilentUnitEvery = std::chrono::seconds(1);
-
-bool UnitBackoff::may_ask(int unit, Time now) const {
-  const auto found = retry_at_.find(unit);
-  return found == retry_at_.end() || now >= found->second;
-}
-void UnitBackoff::answered(int unit) { retry_at_.erase(unit); }
-void UnitBackoff::silent(int unit, Time now) { retry_at_[unit] = now + kAskSilentUnitEvery; }
-bool UnitBackoff::is_silent(int unit) const { return retry_at_.contains(unit); }
-
-WriteSchedule::WriteSchedule(const Rig& rig, std::size_t bus, Duration refresh) : refresh_(refresh) {
+WriteSchedule::WriteSchedule(const Rig& rig, std::size_t bus, Duration refresh, const std::map<int, UnitRules>& rules)
+    : refresh_(refresh) {
+  for (const auto& [unit, rule] : rules) largest_[unit] = rule.largest_write;
   for (std::size_t i = 0; i < rig.fixtures.size(); ++i) {
     if (rig.fixtures[i].bus != bus) continue;
     Channel channel;
@@ -31,10 +23,10 @@ WriteSchedule::WriteSchedule(const Rig& rig, std::size_t bus, Duration refresh) 
 }
 
 bool WriteSchedule::is_due(const Channel& channel, Time now, const UnitBackoff& units) const {
-  if (!channel.wanted_raw || !units.may_ask(channel.patch.unit, now)) return false;
+  if (!channel.wanted || !units.may_ask(channel.patch.unit, now)) return false;
   if (!channel.tried) return true;
   const Duration since = now - *channel.tried;
-  return since >= refresh_ || (channel.wanted_raw != channel.confirmed_raw && since >= kShortestRewrite);
+  return since >= refresh_ || (channel.wanted != channel.confirmed && since >= kShortestRewrite);
 }
 
 std::vector<WriteSchedule::Run> WriteSchedule::due(Time now, const UnitBackoff& units) const {
@@ -42,15 +34,17 @@ std::vector<WriteSchedule::Run> WriteSchedule::due(Time now, const UnitBackoff& 
   for (std::size_t i = 0; i < channels_.size(); ++i) {
     if (!is_due(channels_[i], now, units)) continue;
     const ModbusPatch& patch = channels_[i].patch;
-    if (!runs.empty() && runs.back().end == i && runs.back().size() < kMostWriteRegisters &&
-        !single_.contains(patch.unit)) {
+    const auto registers = static_cast<std::size_t>(patch.format.registers);
+    if (!runs.empty() && runs.back().end == i && !single_.contains(patch.unit) &&
+        runs.back().registers + registers <= largest_.at(patch.unit)) {
       const ModbusPatch& before = channels_[i - 1].patch;
-      if (before.unit == patch.unit && before.holding_register + 1 == patch.holding_register) {
+      if (before.unit == patch.unit && before.holding_register + before.format.registers == patch.holding_register) {
         runs.back().end = i + 1;
+        runs.back().registers += registers;
         continue;
       }
     }
-    runs.push_back({i, i + 1});
+    runs.push_back(alone(i));
   }
   const auto first = std::find_if(runs.begin(), runs.end(), [&](const Run& run) { return run.begin >= next_; });
   std::rotate(runs.begin(), first, runs.end());
@@ -59,18 +53,36 @@ std::vector<WriteSchedule::Run> WriteSchedule::due(Time now, const UnitBackoff& 
   return runs;
 }
 
+WriteSchedule::Run WriteSchedule::alone(std::size_t channel) const {
+  return {channel, channel + 1, static_cast<std::size_t>(channels_[channel].patch.format.registers)};
+}
+
+Request WriteSchedule::request_for(const Run& run) const {
+  const ModbusPatch& first = channels_[run.begin].patch;
+  Request request;
+  request.unit = first.unit;
+  request.function = run.registers == 1 ? Function::write_single : Function::write_multiple;
+  request.first_register = first.holding_register;
+  for (std::size_t i = run.begin; i < run.end; ++i) {
+    const RegisterWords& words = *channels_[i].wanted;
+    request.values.insert(request.values.end(), words.word.begin(),
+                          words.word.begin() + static_cast<std::ptrdiff_t>(words.count));
+  }
+  return request;
+}
+
 void WriteSchedule::tried(const Run& run, Time now) {
   for (std::size_t i = run.begin; i < run.end; ++i) channels_[i].tried = now;
   next_ = run.end;
 }
 
 void WriteSchedule::confirmed(const Run& run) {
-  for (std::size_t i = run.begin; i < run.end; ++i) channels_[i].confirmed_raw = channels_[i].wanted_raw;
+  for (std::size_t i = run.begin; i < run.end; ++i) channels_[i].confirmed = channels_[i].wanted;
 }
 
 void WriteSchedule::forget() {
   for (Channel& channel : channels_) {
-    channel.confirmed_raw.reset();
+    channel.confirmed.reset();
     channel.tried.reset();
   }
 }

@@ -1,6 +1,6 @@
 #pragma once
-/// Which request is due when: what must be written, in which runs of neighbouring registers, which meter is next, and
-/// which unit is left alone for a while. `now` in, requests out; no socket.
+/// Which request is due when: what must be written in which runs of neighbouring registers, and which meters are read
+/// together. `now` in, requests out; no socket.
 
 #include <cstddef>
 #include <cstdint>
@@ -11,6 +11,7 @@
 
 #include "core/rig/rig.h"
 #include "core/time.h"
+#include "drivers/modbus/modbus_units.h"
 
 namespace luxrig::modbus {
 
@@ -18,36 +19,27 @@ namespace luxrig::modbus {
 struct Channel {
   std::size_t fixture = 0;  ///< index in the rig
   ModbusPatch patch;
-  std::optional<std::uint16_t> wanted_raw;     ///< nothing until the first setpoint
-  std::optional<std::uint16_t> confirmed_raw;  ///< last value the device acknowledged
-  std::optional<Time> tried;                   ///< last time it was written, with or without success
-};
-
-/// Units that do not answer are asked once a second, so that each costs its neighbours one timeout a second at most.
-class UnitBackoff {
- public:
-  [[nodiscard]] bool may_ask(int unit, Time now) const;
-  void answered(int unit);
-  void silent(int unit, Time now);
-  [[nodiscard]] bool is_silent(int unit) const;
-  void forget() { retry_at_.clear(); }
-
- private:
-  std::map<int, Time> retry_at_;
+  std::optional<RegisterWords> wanted;     ///< nothing until the first setpoint
+  std::optional<RegisterWords> confirmed;  ///< last value the device acknowledged
+  std::optional<Time> tried;               ///< last time it was written, with or without success
 };
 
 /// Channels in the order of unit and register; a run of neighbours that are due together is one request.
 class WriteSchedule {
  public:
-  WriteSchedule(const Rig& rig, std::size_t bus, Duration refresh);
+  WriteSchedule(const Rig& rig, std::size_t bus, Duration refresh, const std::map<int, UnitRules>& rules);
 
   [[nodiscard]] std::vector<Channel>& channels() { return channels_; }
   [[nodiscard]] const std::vector<Channel>& channels() const { return channels_; }
 
   struct Run {
     std::size_t begin = 0, end = 0;  ///< in channels()
+    std::size_t registers = 0;
     [[nodiscard]] std::size_t size() const { return end - begin; }
   };
+  [[nodiscard]] Run alone(std::size_t channel) const;
+  /// What writes the run's wanted values.
+  [[nodiscard]] Request request_for(const Run& run) const;
   /// The runs due at `now`, starting behind the last one that was tried, so that a call cut short by its bound goes on
   /// where it stopped; silent units last, since their timeout ends the call. Due: changed (and not tried within
   /// kShortestRewrite), or not refreshed for `refresh`.
@@ -57,7 +49,7 @@ class WriteSchedule {
   /// After a lost connection nothing is known about any register.
   void forget();
   /// A unit that rejected function 16, or a register among its neighbours, gets single writes from now on.
-  void write_singly(int unit) { single_[unit] = true; }
+  void write_singly(int unit) { single_.insert(unit); }
 
   static constexpr Duration kShortestRewrite = std::chrono::milliseconds(50);
 
@@ -66,8 +58,38 @@ class WriteSchedule {
 
   std::vector<Channel> channels_;
   Duration refresh_{};
+  std::map<int, std::size_t> largest_;  ///< registers in one request, by unit
   std::size_t next_ = 0;
-  std::map<int, bool> single_;
+  std::set<int> single_;
+};
+
+/// Meters in the order of unit, kind and register; neighbours of a unit that are due together are read at once.
+class ReadSchedule {
+ public:
+  ReadSchedule(const Rig& rig, std::size_t bus, Duration poll, const std::map<int, UnitRules>& rules);
+
+  /// Indices in the rig, in the order of Batch.
+  [[nodiscard]] const std::vector<std::size_t>& meters() const { return meters_; }
+
+  struct Batch {
+    std::size_t begin = 0, end = 0;  ///< in meters()
+    Request request;
+  };
+  /// The batches due at `now`, starting behind the last one that was asked; those of silent units last.
+  [[nodiscard]] std::vector<Batch> due(Time now, const UnitBackoff& units) const;
+  void asked(const Batch& batch, Time now);
+  void forget();
+  /// A unit that rejected a read of several is asked for each by itself from now on.
+  void read_singly(int unit) { single_.insert(unit); }
+
+ private:
+  std::vector<std::size_t> meters_;
+  std::vector<ModbusMeterPatch> patches_;
+  std::vector<std::optional<Time>> asked_;
+  Duration poll_{};
+  std::map<int, std::size_t> largest_;
+  std::size_t next_ = 0;
+  std::set<int> single_;
 };
 
 }  // namespace luxrig::modbus

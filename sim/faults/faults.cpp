@@ -17,7 +17,7 @@ struct FaultEntry {
   double fallback, least, most;  // of its value
 };
 
-constexpr std::array<FaultEntry, 8> kFaults = {{
+constexpr std::array<FaultEntry, 15> kFaults = {{
     {FaultKind::lost, "lost", 0.5, 0, 1},
     {FaultKind::silent, "silent", 1, 0, 1},
     {FaultKind::dead, "dead", 1, 0, 1},
@@ -26,7 +26,17 @@ constexpr std::array<FaultEntry, 8> kFaults = {{
     {FaultKind::stuck, "stuck", 1, 0, 1},
     {FaultKind::lying, "lying", 0.5, 0, 1000},
     {FaultKind::exception, "exception", 4, 1, 127},
+    {FaultKind::unpowered, "unpowered", 1, 0, 1},
+    {FaultKind::checksum, "checksum", 1, 0, 1},
+    {FaultKind::truncated, "truncated", 2, 1, 255},
+    {FaultKind::gap, "gap", 600, 0, 60000},
+    {FaultKind::noise, "noise", 2, 1, 200},
+    {FaultKind::wrong_unit, "wrong_unit", 1, 0, 1},
+    {FaultKind::wrong_function, "wrong_function", 1, 0, 1},
 }};
+
+constexpr FaultKind kOnLine[] = {FaultKind::checksum, FaultKind::truncated,  FaultKind::gap,
+                                 FaultKind::noise,    FaultKind::wrong_unit, FaultKind::wrong_function};
 
 const FaultEntry& entry_of(FaultKind kind) {
   return *std::find_if(kFaults.begin(), kFaults.end(), [kind](const FaultEntry& entry) { return entry.kind == kind; });
@@ -114,7 +124,7 @@ Disturbance Faults::disturbance(std::span<const std::string> devices, std::uint6
       const auto found = on_.find({devices[d], kind});
       return found == on_.end() ? std::nullopt : std::optional(found->second);
     };
-    if (value(FaultKind::silent) || value(FaultKind::dead)) disturbance.silent = true;
+    if (value(FaultKind::silent) || value(FaultKind::dead) || value(FaultKind::unpowered)) disturbance.silent = true;
     if (const auto share = value(FaultKind::lost); share && random_unit(seed_, Draw::fault_loss, d, counter) < *share) {
       disturbance.silent = true;
     }
@@ -122,6 +132,12 @@ Disturbance Faults::disturbance(std::span<const std::string> devices, std::uint6
       disturbance.delay = std::max(disturbance.delay, from_seconds(*late_ms * 1e-3));
     }
     if (value(FaultKind::garbled)) disturbance.garbled = true;
+    for (const FaultKind kind : kOnLine) {
+      const auto how_much = value(kind);
+      if (!how_much) continue;
+      disturbance.on_line = kind;
+      disturbance.on_line_value = *how_much;
+    }
     if (const auto code = value(FaultKind::exception)) disturbance.exception = static_cast<int>(*code);
   }
   return disturbance;

@@ -10,6 +10,15 @@
 ///   stuck      meter: shows for ever what it showed when this began
 ///   lying      meter: shows value times what it should (default 0.5)
 ///   exception  answers with Modbus exception code value (default 4, device failure)
+///   unpowered  has no power: no light, no answer; afterwards its registers are as they are when power comes
+///
+/// On a serial line only, of its answers:
+///   checksum        a wrong checksum
+///   truncated       the last value bytes are missing (default 2)
+///   gap             a pause of value milliseconds in the middle (default 600)
+///   noise           value bytes of line noise before it (default 2)
+///   wrong_unit      the number of another unit
+///   wrong_function  the number of another function
 
 #include <map>
 #include <mutex>
@@ -25,7 +34,23 @@
 
 namespace luxrig::sim {
 
-enum class FaultKind { lost, silent, dead, slow, garbled, stuck, lying, exception };
+enum class FaultKind {
+  lost,
+  silent,
+  dead,
+  slow,
+  garbled,
+  stuck,
+  lying,
+  exception,
+  unpowered,
+  checksum,
+  truncated,
+  gap,
+  noise,
+  wrong_unit,
+  wrong_function
+};
 [[nodiscard]] std::string_view name_of(FaultKind kind);
 [[nodiscard]] std::optional<FaultKind> fault_named(std::string_view name);
 [[nodiscard]] std::span<const FaultKind> all_faults();
@@ -35,6 +60,8 @@ struct Disturbance {
   bool silent = false;
   bool garbled = false;
   std::optional<int> exception;
+  std::optional<FaultKind> on_line;  ///< one of those of a serial line
+  double on_line_value = 0;
   Duration delay{};
   std::uint64_t random = 0;  ///< for whatever is to be done at random about it
 };

@@ -7,7 +7,9 @@ namespace {
 
 struct EndpointEntry {
   std::string_view driver;
-  Result<std::unique_ptr<BusEndpoint>> (*open)(const EndpointParts& parts, int port);
+  /// One of the two: at a port, or at a path.
+  Result<std::unique_ptr<BusEndpoint>> (*at_port)(const EndpointParts& parts, int port);
+  Result<std::unique_ptr<BusEndpoint>> (*at_path)(const EndpointParts& parts, const std::string& path) = nullptr;
 };
 
 // One line per driver that the simulator can stand in for.
@@ -15,15 +17,18 @@ constexpr EndpointEntry kEndpoints[] = {
     {"sacn", open_sacn_endpoint},
     {"artnet", open_artnet_endpoint},
     {"modbus_tcp", open_modbus_endpoint},
+    {"modbus_rtu", nullptr, open_modbus_rtu_endpoint},
 };
 
 }  // namespace
 
-Result<std::unique_ptr<BusEndpoint>> open_endpoint(const EndpointParts& parts, int port) {
+Result<std::unique_ptr<BusEndpoint>> open_endpoint(const EndpointParts& parts, const EndpointPlace& place) {
   const Bus& bus = parts.rig.buses[parts.bus];
   std::string known;
   for (const EndpointEntry& entry : kEndpoints) {
-    if (entry.driver == bus.driver) return entry.open(parts, port);
+    if (entry.driver == bus.driver) {
+      return entry.at_port != nullptr ? entry.at_port(parts, place.port) : entry.at_path(parts, place.path);
+    }
     known += fmt::format("{}{}", known.empty() ? "" : ", ", entry.driver);
   }
   return tl::unexpected(

@@ -3,11 +3,14 @@
 namespace luxrig::sim {
 
 Result<std::unique_ptr<RigServer>> RigServer::open(const Rig& rig, World& world, Faults& faults,
-                                                   const std::map<std::string, int>& ports) {
+                                                   const std::map<std::string, int>& ports,
+                                                   const std::map<std::string, std::string>& paths) {
   auto server = std::make_unique<RigServer>();
   for (std::size_t b = 0; b < rig.buses.size(); ++b) {
-    const auto wanted = ports.find(rig.buses[b].name);
-    auto endpoint = open_endpoint({rig, b, world, faults}, wanted == ports.end() ? 0 : wanted->second);
+    EndpointPlace place;
+    if (const auto port = ports.find(rig.buses[b].name); port != ports.end()) place.port = port->second;
+    if (const auto path = paths.find(rig.buses[b].name); path != paths.end()) place.path = path->second;
+    auto endpoint = open_endpoint({rig, b, world, faults}, place);
     if (!endpoint) {
       Fault fault = endpoint.error();
       fault.device = rig.buses[b].name;
@@ -20,8 +23,18 @@ Result<std::unique_ptr<RigServer>> RigServer::open(const Rig& rig, World& world,
 
 std::map<std::string, int> RigServer::ports() const {
   std::map<std::string, int> ports;
-  for (const auto& [bus, endpoint] : endpoints_) ports[bus] = endpoint->port();
+  for (const auto& [bus, endpoint] : endpoints_) {
+    if (endpoint->path().empty()) ports[bus] = endpoint->port();
+  }
   return ports;
+}
+
+std::map<std::string, std::string> RigServer::paths() const {
+  std::map<std::string, std::string> paths;
+  for (const auto& [bus, endpoint] : endpoints_) {
+    if (!endpoint->path().empty()) paths[bus] = endpoint->path();
+  }
+  return paths;
 }
 
 void RigServer::serve(Time now) {

@@ -14,13 +14,16 @@ namespace luxrig::sim {
 
 class RigServer {
  public:
-  /// `ports`: by bus name, where an endpoint shall be; any other gets a free port. All arguments outlive the server.
+  /// `ports`, `paths`: by bus name, where an endpoint shall be; any other gets a free one. All arguments outlive the
+  /// server.
   static Result<std::unique_ptr<RigServer>> open(const Rig& rig, World& world, Faults& faults,
-                                                 const std::map<std::string, int>& ports = {});
+                                                 const std::map<std::string, int>& ports = {},
+                                                 const std::map<std::string, std::string>& paths = {});
 
-  [[nodiscard]] std::map<std::string, int> ports() const;  ///< by bus name
-  void serve(Time now);                                    ///< never blocks
-  [[nodiscard]] std::vector<int> descriptors() const;      ///< to poll for reading
+  [[nodiscard]] std::map<std::string, int> ports() const;          ///< by bus name, of those that have one
+  [[nodiscard]] std::map<std::string, std::string> paths() const;  ///< of serial lines, the same
+  void serve(Time now);                                            ///< never blocks
+  [[nodiscard]] std::vector<int> descriptors() const;              ///< to poll for reading
 
  private:
   std::vector<std::pair<std::string, std::unique_ptr<BusEndpoint>>> endpoints_;

@@ -14,6 +14,7 @@
 #include <optional>
 
 #include "drivers/registry.h"
+#include "sim/wire/modbus/pty_line.h"
 #include "tests/conformance/far_end.h"
 #include "tests/drivers/modbus/scripted_peer.h"
 #include "tests/drivers/test_rig.h"
@@ -32,7 +33,7 @@ Time ms(double t) { return Time{} + from_seconds(1 + t / 1000); }
 Bus plain_bus(const DriverEntry& entry) {
   Bus bus = bus_of(std::string(entry.name));
   for (const OptionDoc& doc : entry.options) {
-    if (doc.fallback == "required") bus.options[std::string(doc.key)] = {std::string("127.0.0.1"), {}};
+    if (doc.fallback == "required") bus.options[std::string(doc.key)] = {required_value(doc), {}};
   }
   return bus;
 }
@@ -73,15 +74,15 @@ std::size_t entries_in(const char* folder) {
 class EveryDriver : public ::testing::TestWithParam<std::size_t> {
  protected:
   const DriverEntry& entry() const { return drivers()[GetParam()]; }
-  std::unique_ptr<Driver> make(const Rig& rig, int port) const {
-    return entry().make(rig, 0, Redirect{"127.0.0.1", port});
+  std::unique_ptr<Driver> make(const Rig& rig, int port, const std::string& path = {}) const {
+    return entry().make(rig, 0, Redirect{"127.0.0.1", port, path});
   }
 };
 
 /// A driver with its far end, and a clock that both follow.
 struct Pair {
   Pair(const DriverEntry& entry, Rig the_rig) : rig(std::move(the_rig)), far(rig) {
-    driver = entry.make(rig, 0, Redirect{"127.0.0.1", far.port()});
+    driver = entry.make(rig, 0, far.redirect());
     bounds = driver->bounds();
   }
   Result<void> write(double drive) {
@@ -300,7 +301,8 @@ TEST_P(EveryDriver, KeepsToItsRateAndSendsKeepAlives) {
   EXPECT_LE(std::max(longest, end - last), std::chrono::milliseconds(1050));
 }
 
-/// Everything a driver sends to one loopback port, by UDP or TCP, whichever it speaks; nobody answers.
+/// Everything a driver sends to one loopback port, by UDP or TCP, or to a serial port, whichever it speaks; nobody
+/// answers.
 class Recorder {
  public:
   Recorder() : tcp_([](const auto&) { return ScriptedAnswer{}; }) {
@@ -310,17 +312,24 @@ class Recorder {
     address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     address.sin_port = htons(static_cast<std::uint16_t>(tcp_.port()));
     EXPECT_EQ(::bind(udp_, reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
+    auto line = sim::PtyLine::open("");
+    EXPECT_TRUE(line);
+    if (line) line_ = std::move(*line);
   }
   ~Recorder() { ::close(udp_); }
   Recorder(const Recorder&) = delete;
   Recorder& operator=(const Recorder&) = delete;
 
   [[nodiscard]] int port() const { return tcp_.port(); }
+  [[nodiscard]] std::string path() const { return line_ ? line_->path() : std::string(); }
   std::vector<std::vector<std::uint8_t>> all() {
     auto packets = tcp_.requests();
     std::uint8_t buffer[2048];
     for (ssize_t got = 0; (got = ::recv(udp_, buffer, sizeof(buffer), 0)) >= 0;) {
       packets.emplace_back(buffer, buffer + got);
+    }
+    if (line_) {
+      if (auto sent = line_->take(); !sent.empty()) packets.push_back(std::move(sent));
     }
     return packets;
   }
@@ -328,6 +337,7 @@ class Recorder {
  private:
   ScriptedPeer tcp_;
   int udp_ = -1;
+  std::unique_ptr<sim::PtyLine> line_;
 };
 
 TEST_P(EveryDriver, SendsTheSameBytesForTheSameInputsUnderASteppedClock) {
@@ -335,7 +345,7 @@ TEST_P(EveryDriver, SendsTheSameBytesForTheSameInputsUnderASteppedClock) {
   for (int run = 0; run < 2; ++run) {
     const Rig rig = rig_for(entry());
     Recorder recorder;
-    const auto driver = make(rig, recorder.port());
+    const auto driver = make(rig, recorder.port(), recorder.path());
     ASSERT_TRUE(driver->activate(ms(0)));
     for (int i = 0; i < 5; ++i) {
       std::vector<LevelCommand> commands;

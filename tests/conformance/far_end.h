@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "drivers/registry.h"
 #include "sim/faults/faults.h"
 #include "sim/wire/bus_endpoint.h"
 #include "sim/world/world.h"
@@ -30,7 +31,7 @@ class FarEnd {
     auto endpoint = sim::open_endpoint({rig_, 0, *world_, faults_}, 0);
     if (!endpoint) throw std::runtime_error(endpoint.error().detail);
     endpoint_ = std::move(*endpoint);
-    port_ = endpoint_->port();
+    redirect_ = Redirect{"127.0.0.1", endpoint_->port(), endpoint_->path()};
     thread_ = std::thread([this] { run(); });
   }
   ~FarEnd() {
@@ -40,7 +41,9 @@ class FarEnd {
   FarEnd(const FarEnd&) = delete;
   FarEnd& operator=(const FarEnd&) = delete;
 
-  [[nodiscard]] int port() const { return port_; }
+  [[nodiscard]] int port() const { return redirect_.port; }
+  /// Where a driver finds it.
+  [[nodiscard]] const Redirect& redirect() const { return redirect_; }
   sim::Faults& faults() { return faults_; }
 
   /// The far end's clock: at `now`, and on from there in real time, never back. Returns once everything that had
@@ -91,7 +94,7 @@ class FarEnd {
   sim::Faults faults_;
   std::unique_ptr<sim::World> world_;
   std::unique_ptr<sim::BusEndpoint> endpoint_;
-  int port_ = 0;
+  Redirect redirect_;
   mutable std::mutex mutex_;
   Time base_{}, now_{};
   std::chrono::steady_clock::time_point base_real_ = std::chrono::steady_clock::now();

@@ -44,7 +44,7 @@ TEST(Registry, EveryDefaultOfAnOptionIsGoodItself) {
     for (const OptionDoc& doc : entry.options) {
       EXPECT_FALSE(doc.summary.empty()) << doc.key;
       if (doc.fallback == "required") {
-        bus.options[std::string(doc.key)] = {std::string("127.0.0.1"), {}};
+        bus.options[std::string(doc.key)] = {required_value(doc), {}};
       } else if (doc.type == "whole number") {
         bus.options[std::string(doc.key)] = {integer_option(bus, entry.options, doc.key), {}};
       } else if (doc.type == "true or false") {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/rig/rig.h"
+#include "drivers/registry.h"
 
 namespace luxrig {
 
@@ -19,6 +20,11 @@ inline Bus bus_of(std::string driver, std::vector<std::pair<std::string, OptionV
   int line = 8;
   for (auto& [key, value] : options) bus.options[key] = {value, {line++, 5}};
   return bus;
+}
+
+/// Something good for an option that has no default.
+inline std::string required_value(const OptionDoc& doc) {
+  return doc.range.find("path") == std::string_view::npos ? "127.0.0.1" : "/dev/luxrig-no-such-port";
 }
 
 inline Rig rig_with(Bus bus) {

@@ -12,8 +12,8 @@
 #include <thread>
 
 #include "drivers/modbus/modbus_codec.h"
-#include "drivers/modbus/modbus_link.h"
 #include "drivers/modbus/modbus_registers.h"
+#include "drivers/modbus/modbus_tcp_link.h"
 
 namespace {
 
@@ -76,7 +76,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (answer.size() < 8 || answer.size() > 600) return 0;
   int port = 0;
   const int fd = listener(port);
-  Link link("127.0.0.1", port);
+  TcpLink link("127.0.0.1", port);
   if (!link.connect(std::chrono::milliseconds(1000))) return 0;
   const int peer = ::accept4(fd, nullptr, nullptr, SOCK_CLOEXEC);
   std::thread thread([&] {

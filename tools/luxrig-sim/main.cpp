@@ -97,9 +97,10 @@ int simulate(const Options& options) {
              std::chrono::duration<double>(Clock::now() - begun).count());
 
   sim::Faults faults(options.seed);
-  auto server = sim::RigServer::open(*rig, **world, faults, ports.buses);
+  auto server = sim::RigServer::open(*rig, **world, faults, ports.buses, ports.paths);
   if (!server) return failed(server.error());
   ports.buses = (*server)->ports();
+  ports.paths = (*server)->paths();
   std::mutex world_mutex;
   auto control = sim::ControlHttp::open(*rig, **world, faults, world_mutex, ports.control, options.seed);
   if (!control) return failed(control.error());
@@ -117,7 +118,7 @@ int simulate(const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app("A simulated rig on loopback ports: sACN, Art-Net and Modbus TCP devices in a seeded true world.");
+  CLI::App app("A simulated rig on loopback ports: sACN, Art-Net and Modbus devices in a seeded true world.");
   app.add_option("RIG", options.rig, "rig.toml, or the folder it is in")->required();
   app.add_option("--seed", options.seed, "of everything that differs from the rig file (1)");
   app.add_option("--ports-file", options.ports_file, "JSON: taken from there when it exists, written when ready");

@@ -19,6 +19,7 @@ std::string to_json(const Ports& ports) {
   nlohmann::ordered_json json;
   json["buses"] = nlohmann::ordered_json::object();
   for (const auto& [bus, port] : ports.buses) json["buses"][bus] = {{"host", kPortsHost}, {"port", port}};
+  for (const auto& [bus, path] : ports.paths) json["buses"][bus] = {{"path", path}};
   json["control"] = {{"host", kPortsHost}, {"port", ports.control}};
   json["seed"] = ports.seed;
   return json.dump();
@@ -45,6 +46,10 @@ Checked<std::optional<Ports>> read_ports(const std::filesystem::path& file) {
   }
   Ports ports;
   for (const auto& [bus, entry] : json["buses"].items()) {
+    if (entry.is_object() && entry.contains("path") && entry["path"].is_string()) {
+      ports.paths[bus] = entry["path"].get<std::string>();
+      continue;
+    }
     const auto port = port_of(entry);
     if (!port) return refused("has a bus whose port is not a number 1…65535");
     ports.buses[bus] = *port;

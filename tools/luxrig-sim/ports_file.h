@@ -2,7 +2,8 @@
 /// Where a simulator listens, as a small JSON file: programs that talk to it read it, and a simulator that is started
 /// again with it comes back on the same ports.
 ///
-///   {"buses":{"dmx":{"host":"127.0.0.1","port":40001}},"control":{"host":"127.0.0.1","port":40010},"seed":1}
+///   {"buses":{"dmx":{"host":"127.0.0.1","port":40001},"line":{"path":"/tmp/luxrig-line-AbCdEf/port"}},
+///    "control":{"host":"127.0.0.1","port":40010},"seed":1}
 
 #include <cstdint>
 #include <filesystem>
@@ -15,7 +16,8 @@
 namespace luxrig::sim {
 
 struct Ports {
-  std::map<std::string, int> buses;  ///< by bus name
+  std::map<std::string, int> buses;          ///< by bus name
+  std::map<std::string, std::string> paths;  ///< of serial lines, the same
   int control = 0;
   std::uint64_t seed = 1;
 };

@@ -7,6 +7,7 @@
 
 #include "core/photometry/beam.h"
 #include "core/rig/personality/personality.h"
+#include "core/rig/register_map/register_map.h"
 #include "drivers/registry.h"
 #include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
@@ -134,6 +135,32 @@ void print_personalities(const Rig& rig) {
   }
 }
 
+/// The products behind Modbus units: what their levels do without Luxrig, and what nobody has stated.
+void print_register_maps(const Rig& rig) {
+  std::vector<std::pair<std::shared_ptr<const RegisterMap>, std::vector<std::string>>> products;
+  const auto add = [&](const std::shared_ptr<const RegisterMap>& map, const std::string& device) {
+    if (!map) return;
+    const auto known =
+        std::find_if(products.begin(), products.end(), [&](const auto& entry) { return entry.first == map; });
+    if (known == products.end()) {
+      products.push_back({map, {device}});
+    } else {
+      known->second.push_back(device);
+    }
+  };
+  for (const Fixture& fixture : rig.fixtures) {
+    if (const auto* patch = std::get_if<ModbusPatch>(&fixture.patch)) add(patch->map, fixture.name);
+  }
+  for (const Luxmeter& meter : rig.luxmeters) add(meter.patch.map, meter.name);
+  for (const auto& [map, devices] : products) {
+    fmt::print("  product of {}: {} ({})\n", fmt::join(devices, ", "), map->name, map->source);
+    if (!map->with_role(RegisterRole::level).empty()) {
+      fmt::print("    when data stops it {}\n", told_when_data_stops(*map));
+    }
+    for (const std::string& text : map->assumed) fmt::print("    assumed: {}\n", text);
+  }
+}
+
 std::string place_text(const Vec3& p) {
   // Centimetres, and no zero with a sign.
   const Vec3 cm = (100 * p).array().round() + 0.0;
@@ -214,6 +241,7 @@ int run_check(const CheckArguments& arguments) {
   }
   fmt::print("{}\n", fixtures.text());
   print_personalities(rig);
+  print_register_maps(rig);
   Table points({"point", "position m", ">goal lx", ">max lx", "luxmeter"});
   for (std::size_t i = 0; i < rig.points.size(); ++i) {
     const Point& p = rig.points[i];

@@ -50,8 +50,12 @@ Checked<SimPorts> read_sim_ports(const std::filesystem::path& file) {
   if (!json.is_object() || !json.contains("buses") || !json["buses"].is_object()) return refuse("is not a ports file");
   SimPorts ports;
   for (const auto& [name, value] : json["buses"].items()) {
+    if (value.is_object() && value.contains("path") && value["path"].is_string()) {
+      ports.buses[name] = Redirect{"", 0, value["path"].get<std::string>()};
+      continue;
+    }
     const auto to = endpoint(value);
-    if (!to) return refuse("has a bus without host and port");
+    if (!to) return refuse("has a bus without host and port, or path");
     ports.buses[name] = *to;
   }
   const auto control = json.contains("control") ? endpoint(json["control"]) : std::nullopt;

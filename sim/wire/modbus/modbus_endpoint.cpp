@@ -17,6 +17,7 @@ class ModbusEndpoint final : public BusEndpoint {
 
   [[nodiscard]] int port() const override { return server_->port(); }
   void serve(Time now) override {
+    units_.advance(now);
     server_->set_open(!parts_.faults.find(parts_.rig.buses[parts_.bus].name, FaultKind::dead));
     server_->serve(now);
   }

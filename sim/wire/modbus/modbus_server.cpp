@@ -1,5 +1,7 @@
 #include "sim/wire/modbus/modbus_server.h"
 
+#include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <sys/socket.h>
 
 #include <algorithm>
@@ -40,6 +42,8 @@ void ModbusServer::serve(Time now) {
     Descriptor socket(::accept4(listener_.descriptor.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
     if (!socket.open()) break;
     if (connections_.size() >= kMostConnections) continue;
+    const int at_once = 1;  // a second answer shall not wait for the first's acknowledgement
+    ::setsockopt(socket.get(), IPPROTO_TCP, TCP_NODELAY, &at_once, sizeof at_once);
     connections_.emplace_back().socket = std::move(socket);
   }
   connections_.remove_if([&](Connection& connection) { return !serve(connection, now); });

@@ -29,6 +29,7 @@ std::vector<std::uint8_t> read_registers(int unit, Bytes request, ModbusUnits& u
   const int first = big_endian_16(request, 1), count = big_endian_16(request, 3);
   if (count < 1 || count > kMostRead) return refusal(function, ModbusException::illegal_value);
   if (first + count > 65536) return refusal(function, ModbusException::illegal_address);
+  if (const auto refused = units.refuses(unit, function, count)) return refusal(function, *refused);
   std::vector<std::uint16_t> values(static_cast<std::size_t>(count), 0);
   const RegisterKind kind = function == 3 ? RegisterKind::holding : RegisterKind::input;
   if (const auto refused = units.read(unit, kind, first, values)) return refusal(function, *refused);
@@ -56,6 +57,7 @@ std::vector<std::uint8_t> write_registers(int unit, Bytes request, ModbusUnits& 
     return refusal(request[0], ModbusException::illegal_value);
   }
   if (first + count > 65536) return refusal(request[0], ModbusException::illegal_address);
+  if (const auto refused = units.refuses(unit, request[0], count)) return refusal(request[0], *refused);
   std::vector<std::uint16_t> values;
   for (int i = 0; i < count; ++i) {
     values.push_back(static_cast<std::uint16_t>(big_endian_16(request, 6 + 2 * static_cast<std::size_t>(i))));

@@ -30,6 +30,11 @@ class ModbusUnits {
                                               std::span<std::uint16_t> values) = 0;
   /// Writes all of `values` to holding registers, or none.
   virtual std::optional<ModbusException> write(int unit, int first, std::span<const std::uint16_t> values) = 0;
+  /// Whether the product refuses requests of this kind: a function it does not know, more registers than it takes.
+  [[nodiscard]] virtual std::optional<ModbusException> refuses(int unit, int function, int count) const {
+    (void)unit, (void)function, (void)count;
+    return std::nullopt;
+  }
   /// How the next exchange with this unit goes wrong.
   virtual Disturbance disturbance(int unit) {
     (void)unit;

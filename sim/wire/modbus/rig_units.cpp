@@ -3,73 +3,193 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/wire/modbus/line_numbers.h"
+
 namespace luxrig::sim {
+namespace {
+
+constexpr Duration kSlowClock = std::chrono::milliseconds(2);  // a gap that is nearly over counts as over
+
+}  // namespace
 
 RigUnits::RigUnits(const EndpointParts& parts) : parts_(parts) {
   const Rig& rig = parts.rig;
-  const auto name_device = [&](int unit, const std::string& device) {
-    auto& names = devices_of_unit_[unit];
-    if (names.empty()) names.push_back(rig.buses[parts.bus].name);
-    names.push_back(device);
-  };
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
     const auto* patch = std::get_if<ModbusPatch>(&rig.fixtures[f].patch);
     if (rig.fixtures[f].bus != parts.bus || patch == nullptr) continue;
-    registers_[{patch->unit, RegisterKind::holding, patch->holding_register}] = {false, f, false, 0};
-    name_device(patch->unit, rig.fixtures[f].name);
+    unit_of(patch->unit, rig.fixtures[f].name, patch->map);
+    Number number{Number::Is::dimmer, f, patch->format, static_cast<double>(patch->dark_raw),
+                  static_cast<double>(patch->full_scale_raw)};
+    add(patch->unit, RegisterKind::holding, patch->holding_register, number);
   }
   for (std::size_t m = 0; m < rig.luxmeters.size(); ++m) {
     if (rig.luxmeters[m].bus != parts.bus) continue;
     const ModbusMeterPatch& patch = rig.luxmeters[m].patch;
-    const RegisterKind kind = patch.input_registers ? RegisterKind::input : RegisterKind::holding;
-    for (int word = 0; word < patch.registers; ++word) {
-      const bool high = patch.registers == 2 && (word == 0) != patch.low_word_first;
-      registers_[{patch.unit, kind, patch.first_register + word}] = {true, m, high, 0};
+    unit_of(patch.unit, rig.luxmeters[m].name, patch.map);
+    Number number{Number::Is::meter, m, patch.format()};
+    number.writable = false;
+    add(patch.unit, patch.input_registers ? RegisterKind::input : RegisterKind::holding, patch.first_register, number);
+  }
+  for (auto& [id, unit] : units_) {
+    if (!unit.map) continue;
+    std::vector<std::size_t> number_of;  // of each register of the map
+    for (const MappedRegister& reg : unit.map->registers) {
+      const RegisterKind kind = reg.input ? RegisterKind::input : RegisterKind::holding;
+      const auto there = places_.find({id, kind, reg.address});
+      if (there == places_.end()) {
+        Number number;
+        number.format = reg.format;
+        const bool is_float = reg.format.number == RegisterNumber::floating;
+        number.least = reg.range_raw ? reg.range_raw->first : is_float ? -1e38 : -4294967296.0;
+        number.most = reg.range_raw ? reg.range_raw->second : is_float ? 1e38 : 4294967296.0;
+        number_of.push_back(add(id, kind, reg.address, number));
+      } else {
+        number_of.push_back(there->second.number);
+      }
+      Number& number = numbers_[number_of.back()];
+      number.readable = reg.access != RegisterAccess::write_only;
+      number.writable = reg.access != RegisterAccess::read_only && !reg.input && number.is != Number::Is::meter;
+      number.power_on = reg.power_on_raw;
     }
-    name_device(patch.unit, rig.luxmeters[m].name);
+    for (const SetupWrite& write : unit.map->setup) unit.setup.emplace_back(number_of[write.index], write.value_raw);
+  }
+  for (auto& [id, unit] : units_) power_on(unit);
+}
+
+RigUnits::Unit& RigUnits::unit_of(int unit, const std::string& device, const std::shared_ptr<const RegisterMap>& map) {
+  Unit& made = units_[unit];
+  if (made.devices.empty()) made.devices.push_back(parts_.rig.buses[parts_.bus].name);
+  made.devices.push_back(device);
+  if (map) made.map = map;
+  return made;
+}
+
+std::size_t RigUnits::add(int unit, RegisterKind kind, int first, Number number) {
+  number.words.assign(static_cast<std::size_t>(number.format.registers), 0);
+  for (std::size_t word = 0; word < number.words.size(); ++word) {
+    places_[{unit, kind, first + static_cast<int>(word)}] = {numbers_.size(), word};
+  }
+  numbers_.push_back(std::move(number));
+  units_[unit].numbers.push_back(numbers_.size() - 1);
+  return numbers_.size() - 1;
+}
+
+void RigUnits::show(const Number& number) {
+  if (number.is != Number::Is::dimmer) return;
+  const double level = (number_from(number.words, number.format) - number.least) / (number.most - number.least);
+  parts_.world.set_drive(number.index, std::isfinite(level) ? std::clamp(level, 0.0, 1.0) : 0.0);
+}
+
+void RigUnits::power_on(Unit& unit) {
+  unit.powered = true;
+  unit.dark = false;
+  unit.heard = false;
+  for (const std::size_t n : unit.numbers) {
+    numbers_[n].words = registers_from(numbers_[n].power_on, numbers_[n].format);
+    show(numbers_[n]);
   }
 }
 
-std::uint16_t RigUnits::value_of(const Register& reg) {
-  if (!reg.meter) return reg.written;
-  const Luxmeter& meter = parts_.rig.luxmeters[reg.index];
-  const double lux = parts_.faults.shown_lx(meter.name, parts_.world.meter_reading_lx(reg.index));
-  const double most = meter.patch.registers == 2 ? 4294967295.0 : 65535.0;  // a counter that is full stays full
-  const auto counts = static_cast<std::uint32_t>(std::clamp(std::round(lux / meter.patch.lux_per_count), 0.0, most));
-  return static_cast<std::uint16_t>(reg.high_word ? counts >> 16 : counts & 0xffff);
+void RigUnits::go_dark(Unit& unit) {
+  unit.dark = true;
+  for (const std::size_t n : unit.numbers) {
+    if (numbers_[n].is != Number::Is::dimmer) continue;
+    numbers_[n].words = registers_from(numbers_[n].least, numbers_[n].format);
+    show(numbers_[n]);
+  }
+}
+
+bool RigUnits::data_loss_armed(const Unit& unit) const {
+  if (!unit.map || !unit.map->stops_after || unit.map->when_data_stops == DataLoss::hold) return false;
+  if (unit.map->when_data_stops == DataLoss::dark) return true;
+  return std::all_of(unit.setup.begin(), unit.setup.end(), [&](const auto& wanted) {
+    const Number& number = numbers_[wanted.first];
+    return number_from(number.words, number.format) == wanted.second;
+  });
+}
+
+void RigUnits::advance(Time now) {
+  now_ = now;
+  for (auto& [id, unit] : units_) {
+    const bool cut = std::any_of(unit.devices.begin(), unit.devices.end(), [&](const std::string& device) {
+      return parts_.faults.find(device, FaultKind::unpowered).has_value();
+    });
+    if (cut && unit.powered) {
+      go_dark(unit);
+      unit.powered = false;
+    } else if (!cut && !unit.powered) {
+      power_on(unit);
+    }
+    if (unit.powered && unit.heard && !unit.dark && data_loss_armed(unit) &&
+        now - unit.last_heard >= *unit.map->stops_after) {
+      go_dark(unit);
+    }
+  }
+}
+
+double RigUnits::meter_count(const Number& number) {
+  const Luxmeter& meter = parts_.rig.luxmeters[number.index];
+  return parts_.faults.shown_lx(meter.name, parts_.world.meter_reading_lx(number.index)) / meter.patch.lux_per_count;
 }
 
 std::optional<ModbusException> RigUnits::read(int unit, RegisterKind kind, int first, std::span<std::uint16_t> values) {
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const auto found = registers_.find({unit, kind, first + static_cast<int>(i)});
-    if (found == registers_.end()) return ModbusException::illegal_address;
-    values[i] = value_of(found->second);
+    const auto place = places_.find({unit, kind, first + static_cast<int>(i)});
+    if (place == places_.end()) return ModbusException::illegal_address;
+    Number& number = numbers_[place->second.number];
+    if (!number.readable) return ModbusException::illegal_address;
+    // Both words of a meter are of one moment: the second is what the first was taken with.
+    if (number.is == Number::Is::meter && (place->second.word == 0 || i == 0)) {
+      number.words = registers_from(meter_count(number), number.format);
+    }
+    values[i] = number.words[place->second.word];
   }
   return std::nullopt;
 }
 
 std::optional<ModbusException> RigUnits::write(int unit, int first, std::span<const std::uint16_t> values) {
-  std::vector<Register*> targets;
+  std::map<std::size_t, std::vector<std::uint16_t>> changed;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const auto found = registers_.find({unit, RegisterKind::holding, first + static_cast<int>(i)});
-    if (found == registers_.end() || found->second.meter) return ModbusException::illegal_address;
-    targets.push_back(&found->second);
-    if (values[i] > std::get<ModbusPatch>(parts_.rig.fixtures[found->second.index].patch).full_scale_raw) {
-      return ModbusException::illegal_value;
-    }
+    const auto place = places_.find({unit, RegisterKind::holding, first + static_cast<int>(i)});
+    if (place == places_.end() || !numbers_[place->second.number].writable) return ModbusException::illegal_address;
+    const auto [words, is_new] = changed.try_emplace(place->second.number, numbers_[place->second.number].words);
+    words->second[place->second.word] = values[i];
   }
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    targets[i]->written = values[i];
-    const auto& patch = std::get<ModbusPatch>(parts_.rig.fixtures[targets[i]->index].patch);
-    parts_.world.set_drive(targets[i]->index, static_cast<double>(values[i]) / patch.full_scale_raw);
+  for (const auto& [n, words] : changed) {
+    const double value = number_from(words, numbers_[n].format);
+    if (!(value >= numbers_[n].least && value <= numbers_[n].most)) return ModbusException::illegal_value;
   }
+  for (const auto& [n, words] : changed) {
+    numbers_[n].words = words;
+    show(numbers_[n]);
+  }
+  units_.at(unit).dark = false;
   return std::nullopt;
 }
 
+std::optional<ModbusException> RigUnits::refuses(int unit, int function, int count) const {
+  const auto found = units_.find(unit);
+  if (found == units_.end() || !found->second.map) return std::nullopt;
+  const RegisterMap& map = *found->second.map;
+  if (function == 16 && map.largest_write == 1) return ModbusException::illegal_function;
+  const int most = function == 16 ? map.largest_write : map.largest_read;
+  return count > most ? std::optional(ModbusException::illegal_value) : std::nullopt;
+}
+
 Disturbance RigUnits::disturbance(int unit) {
-  const auto found = devices_of_unit_.find(unit);
-  if (found == devices_of_unit_.end()) return {};
-  return parts_.faults.disturbance(found->second, exchanges_++);
+  const auto found = units_.find(unit);
+  if (found == units_.end()) return {};
+  Unit& asked = found->second;
+  Disturbance disturbance = parts_.faults.disturbance(asked.devices, exchanges_++);
+  if (asked.map && asked.heard && now_ - asked.last_heard + kSlowClock < asked.map->shortest_gap) {
+    disturbance.silent = true;  // busy with the one before
+    return disturbance;
+  }
+  if (!disturbance.silent) {
+    asked.last_heard = now_;
+    asked.heard = true;
+  }
+  return disturbance;
 }
 
 }  // namespace luxrig::sim

@@ -1,11 +1,17 @@
 #pragma once
-/// The Modbus units of one bus of a rig: dimmer channels behind holding registers, luxmeters behind register pairs.
-/// Only registers that the rig file names exist; anything else is exception 2.
+/// The Modbus units of one bus of a rig: dimmer channels, luxmeters, and what else the register maps of their products
+/// say is there. Any other register is exception 2.
+///
+/// A unit with a register map obeys its limits: requests it does not take are refused, one that comes before its gap
+/// is over is not heard, and its levels go dark when nobody speaks to it for as long as it says (with a watchdog, once
+/// every register of its set-up holds what the set-up writes).
 
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "core/rig/register_map/register_map.h"
 #include "sim/wire/bus_endpoint.h"
 #include "sim/wire/modbus/modbus_session.h"
 
@@ -15,10 +21,14 @@ class RigUnits final : public ModbusUnits {
  public:
   explicit RigUnits(const EndpointParts& parts);
 
-  [[nodiscard]] bool has(int unit) const override { return devices_of_unit_.contains(unit); }
+  /// Call it before requests are served: watchdogs run out, power goes and comes.
+  void advance(Time now);
+
+  [[nodiscard]] bool has(int unit) const override { return units_.contains(unit); }
   std::optional<ModbusException> read(int unit, RegisterKind kind, int first, std::span<std::uint16_t> values) override;
-  /// Exception 3 for a value above a dimmer's full scale.
+  /// Exception 3 for a value outside what its product takes; then nothing is written.
   std::optional<ModbusException> write(int unit, int first, std::span<const std::uint16_t> values) override;
+  [[nodiscard]] std::optional<ModbusException> refuses(int unit, int function, int count) const override;
   /// Of the bus and of every device of that unit.
   Disturbance disturbance(int unit) override;
 
@@ -29,18 +39,42 @@ class RigUnits final : public ModbusUnits {
     int number;
     auto operator<=>(const Address&) const = default;
   };
-  struct Register {
-    bool meter = false;
-    std::size_t index = 0;      ///< fixture or luxmeter of the rig
-    bool high_word = false;     ///< of a meter's 32 bits
-    std::uint16_t written = 0;  ///< by the master, to a dimmer
+  /// One or two registers that are one number.
+  struct Number {
+    enum class Is { dimmer, meter, other } is = Is::other;
+    std::size_t index = 0;  ///< fixture or luxmeter of the rig
+    RegisterFormat format;
+    double least = 0, most = 65535;
+    bool readable = true, writable = true;
+    std::vector<std::uint16_t> words{};  ///< as they stand in its registers
+    double power_on = 0;
+  };
+  struct Place {
+    std::size_t number = 0;  ///< in numbers_
+    std::size_t word = 0;
+  };
+  struct Unit {
+    std::vector<std::string> devices;  ///< names; the bus first
+    std::shared_ptr<const RegisterMap> map;
+    std::vector<std::pair<std::size_t, double>> setup;  ///< number, value it must hold
+    std::vector<std::size_t> numbers;
+    Time last_heard{};
+    bool heard = false, powered = true, dark = false;
   };
 
-  [[nodiscard]] std::uint16_t value_of(const Register& reg);
+  Unit& unit_of(int unit, const std::string& device, const std::shared_ptr<const RegisterMap>& map);
+  std::size_t add(int unit, RegisterKind kind, int first, Number number);
+  void show(const Number& number);
+  void power_on(Unit& unit);
+  void go_dark(Unit& unit);
+  [[nodiscard]] bool data_loss_armed(const Unit& unit) const;
+  [[nodiscard]] double meter_count(const Number& number);
 
   EndpointParts parts_;
-  std::map<Address, Register> registers_;
-  std::map<int, std::vector<std::string>> devices_of_unit_;  ///< names; the bus first
+  std::vector<Number> numbers_;
+  std::map<Address, Place> places_;
+  std::map<int, Unit> units_;
+  Time now_{};
   std::uint64_t exchanges_ = 0;
 };
 

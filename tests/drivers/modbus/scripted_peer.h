@@ -3,6 +3,7 @@
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/eventfd.h>
 #include <sys/socket.h>
@@ -93,6 +94,8 @@ class ScriptedPeer {
       if (wait[1].revents != 0) {
         drop();  // one at a time: the newest counts
         client = ::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
+        const int at_once = 1;  // a second answer shall not wait for the first's acknowledgement
+        ::setsockopt(client, IPPROTO_TCP, TCP_NODELAY, &at_once, sizeof(at_once));
         ++connections_;
         continue;
       }

@@ -1,4 +1,4 @@
-#include "drivers/modbus/modbus_link.h"
+#include "drivers/modbus/modbus_tcp_link.h"
 
 #include <fmt/format.h>
 #include <modbus/modbus.h>
@@ -32,25 +32,25 @@ void set_timeout(modbus_t* context, std::chrono::milliseconds timeout) {
 
 }  // namespace
 
-Result<void> Link::connect(std::chrono::milliseconds timeout) {
-  close();
+Result<void> TcpLink::connect(std::chrono::milliseconds timeout) {
+  shut();
   context_ = modbus_new_tcp(host_.c_str(), port_);
   if (context_ == nullptr) return tl::unexpected(os_fault("preparing a connection", errno));
   set_timeout(context_, timeout);
   if (modbus_connect(context_) != 0) {
     const int error = errno;
-    close();
+    shut();
     return tl::unexpected(os_fault(fmt::format("connecting to {}:{}", host_, port_), error));
   }
   fd_ = modbus_get_socket(context_);
   if (fd_ >= FD_SETSIZE) {  // libmodbus waits with select(), which cannot name higher descriptors
-    close();
+    shut();
     return tl::unexpected(os_fault(fmt::format("connecting to {}:{}", host_, port_), EMFILE));
   }
   return {};
 }
 
-void Link::close() {
+void TcpLink::shut() {
   if (context_ == nullptr) return;
   modbus_close(context_);
   modbus_free(context_);
@@ -59,20 +59,20 @@ void Link::close() {
   unanswered_.clear();
 }
 
-Fault Link::lost(Cause cause, std::string detail) {
-  close();
+Fault TcpLink::lost(Cause cause, std::string detail) {
+  shut();
   return {cause, {}, std::move(detail), {}};
 }
 
-bool Link::found_closed() {
+bool TcpLink::found_closed() {
   std::uint8_t byte = 0;
   const auto got = ::recv(fd_, &byte, 1, MSG_PEEK | MSG_DONTWAIT);
   if (got > 0 || (got < 0 && (errno == EAGAIN || errno == EINTR))) return false;
-  close();
+  shut();
   return true;
 }
 
-Result<void> Link::drop_unasked() {
+Result<void> TcpLink::drop_unasked() {
   std::array<std::uint8_t, kLongestAdu> bin{};
   for (int i = 0; i < kMostDrains; ++i) {
     const auto got = ::recv(fd_, bin.data(), bin.size(), MSG_DONTWAIT);
@@ -86,7 +86,7 @@ Result<void> Link::drop_unasked() {
   return tl::unexpected(lost(Cause::protocol, "a flood of bytes that nobody asked for"));
 }
 
-Result<std::vector<std::uint8_t>> Link::receive(std::chrono::milliseconds timeout) {
+Result<std::vector<std::uint8_t>> TcpLink::receive(std::chrono::milliseconds timeout) {
   const Deadline deadline(timeout);
   pollfd wait{fd_, POLLIN, 0};
   int ready = 0;
@@ -112,7 +112,7 @@ Result<std::vector<std::uint8_t>> Link::receive(std::chrono::milliseconds timeou
   return tl::unexpected(lost(Cause::network, os_fault("receiving", error).detail));
 }
 
-Result<std::vector<std::uint16_t>> Link::exchange(const Request& request, std::chrono::milliseconds timeout) {
+Result<std::vector<std::uint16_t>> TcpLink::exchange(const Request& request, std::chrono::milliseconds timeout) {
   LUXRIG_CHECK(connected(), "unit {}", request.unit);
   const Deadline deadline(timeout);
   last_exception_ = 0;

@@ -1,0 +1,211 @@
+#include "drivers/modbus/modbus_driver.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "drivers/modbus/modbus_registers.h"
+
+namespace luxrig {
+namespace {
+
+using modbus::ReadSchedule;
+using modbus::WriteSchedule;
+using std::chrono::milliseconds;
+
+constexpr Duration kModbusWritePeriod = milliseconds(100);
+constexpr Duration kShortestBackoff = milliseconds(100), kLongestBackoff = milliseconds(1000);
+constexpr milliseconds kSchedulingSlack(50);
+/// A bus is gone when nobody has answered for this long (or for two rounds, if rounds are longer) and a request timed
+/// out; one silent unit among others that answer is that unit's fault only.
+constexpr Duration kBusSilent = milliseconds(500);
+
+}  // namespace
+
+ModbusDriver::ModbusDriver(std::unique_ptr<modbus::Link> link, const ModbusTiming& timing, const Rig& rig,
+                           std::size_t bus)
+    : link_(std::move(link)),
+      timing_(timing),
+      rules_(modbus::unit_rules(rig, bus, timing.response_timeout, timing.behind_gateway)),
+      writes_(rig, bus, timing.refresh, rules_),
+      reads_(rig, bus, timing.poll, rules_),
+      setup_(rules_),
+      life_(rig.buses[bus].name),
+      backoff_(kShortestBackoff) {
+  for (const modbus::Channel& channel : writes_.channels()) {
+    channel_lives_.emplace_back(rig.fixtures[channel.fixture].name);
+  }
+  for (const std::size_t i : reads_.meters()) {
+    const Luxmeter& meter = rig.luxmeters[i];
+    meters_.push_back({i, meter.patch, meter.range_lx, LifeRecord(meter.name)});
+  }
+}
+
+DriverBounds ModbusDriver::bounds() const {
+  milliseconds longest = timing_.response_timeout;
+  for (const auto& [unit, rule] : rules_) longest = std::max(longest, rule.timeout);
+  DriverBounds bounds;
+  // A request starts only within the response timeout, and takes the longest of them at most.
+  bounds.write = bounds.read = timing_.response_timeout + longest + link_->longest_on_wire() + kSchedulingSlack;
+  bounds.write_period = kModbusWritePeriod;
+  bounds.read_period = meters_.empty() ? Duration{} : timing_.poll;
+  bounds.fault_after = asked_every() + silence_allowed() + bounds.write + kModbusWritePeriod;
+  return bounds;
+}
+
+Result<void> ModbusDriver::activate(Time now) {
+  if (life_.life() != Life::configured) return {};
+  for (LifeRecord& life : channel_lives_) life.active(now);
+  for (Meter& meter : meters_) meter.life.active(now);
+  life_.active(now);
+  backoff_ = kShortestBackoff;
+  last_answer_ = now;
+  connect(now);
+  return {};
+}
+
+void ModbusDriver::deactivate(Time now) {
+  if (life_.life() == Life::configured) return;
+  disconnect();
+  for (LifeRecord& life : channel_lives_) life.configured(now);
+  for (Meter& meter : meters_) meter.life.configured(now);
+  reads_.forget();
+  for (modbus::Channel& channel : writes_.channels()) channel.wanted.reset();
+  life_.configured(now);
+}
+
+std::vector<Health> ModbusDriver::health(Time) const {
+  std::vector<Health> all{life_.health()};
+  for (const LifeRecord& life : channel_lives_) all.push_back(life.health());
+  for (const Meter& meter : meters_) all.push_back(meter.life.health());
+  return all;
+}
+
+Result<void> ModbusDriver::write(Time now, std::span<const LevelCommand> commands) {
+  if (life_.life() == Life::configured) return tl::unexpected(inactive());
+  if (auto set = set_wanted(commands); !set) return set;
+  const Deadline start_until(timing_.response_timeout);
+  if (!ensure_connected(now)) return tl::unexpected(life_.fault());
+  for (const WriteSchedule::Run& run : writes_.due(now, units_silent_)) {
+    if (start_until.passed() || write_run(now, run, start_until) == Outcome::over) break;
+  }
+  if (life_.life() == Life::faulted) return tl::unexpected(life_.fault());
+  for (const LifeRecord& life : channel_lives_) {
+    if (life.life() == Life::faulted) return tl::unexpected(life.fault());
+  }
+  return {};
+}
+
+Result<std::vector<LuxReading>> ModbusDriver::read(Time now) {
+  if (life_.life() == Life::configured) return tl::unexpected(inactive());
+  const Deadline start_until(timing_.response_timeout);
+  if (!ensure_connected(now)) return tl::unexpected(life_.fault());
+  std::vector<LuxReading> readings;
+  for (const ReadSchedule::Batch& batch : reads_.due(now, units_silent_)) {
+    if (start_until.passed() || read_batch(now, batch, start_until, readings) == Outcome::over) break;
+  }
+  if (readings.empty() && life_.life() == Life::faulted) return tl::unexpected(life_.fault());
+  return readings;
+}
+
+Fault ModbusDriver::inactive() const {
+  return {Cause::inactive, life_.health().device, "the driver is not active", {}};
+}
+
+Duration ModbusDriver::asked_every() const {
+  if (meters_.empty()) return timing_.refresh;
+  return channel_lives_.empty() ? timing_.poll : std::min(timing_.poll, timing_.refresh);
+}
+
+Duration ModbusDriver::silence_allowed() const { return std::max(kBusSilent, 2 * asked_every()); }
+
+Result<void> ModbusDriver::set_wanted(std::span<const LevelCommand> commands) {
+  std::vector<modbus::Channel>& channels = writes_.channels();
+  const auto find = [&](std::size_t fixture) {
+    return std::find_if(channels.begin(), channels.end(), [&](const auto& c) { return c.fixture == fixture; });
+  };
+  for (const LevelCommand& command : commands) {
+    const auto channel = find(command.fixture);
+    if (channel == channels.end()) {
+      return tl::unexpected(Fault{
+          Cause::invalid, life_.health().device, fmt::format("fixture {} is not on this bus", command.fixture), {}});
+    }
+    if (!(command.drive >= 0 && command.drive <= 1)) {  // also when NaN
+      const auto index = static_cast<std::size_t>(channel - channels.begin());
+      return tl::unexpected(Fault{Cause::invalid,
+                                  channel_lives_[index].health().device,
+                                  fmt::format("drive {} is outside 0…1", command.drive),
+                                  {}});
+    }
+  }
+  for (const LevelCommand& command : commands) {
+    const auto channel = find(command.fixture);
+    channel->wanted = modbus::words_from_drive(command.drive, channel->patch);
+  }
+  return {};
+}
+
+bool ModbusDriver::ensure_connected(Time now) {
+  // Gateways close connections that were idle for a while: that is no fault, if the next one is accepted.
+  if (link_->connected() && link_->found_closed()) {
+    writes_.forget();
+    setup_.restart_all();
+    connect_at_ = last_answer_ == answer_at_last_close_ ? now + backoff_ : now;
+    answer_at_last_close_ = last_answer_;
+    if (connect_at_ > now) bus_fault(now, {Cause::network, {}, "the peer closed the connection", {}});
+  }
+  if (link_->connected()) return true;
+  if (now < connect_at_) return false;
+  return connect(now);
+}
+
+bool ModbusDriver::connect(Time now) {
+  auto connected = link_->connect(timing_.response_timeout);
+  if (connected) return true;
+  bus_fault(now, connected.error());
+  return false;
+}
+
+void ModbusDriver::disconnect() {
+  link_->close();
+  writes_.forget();
+  setup_.restart_all();  // a new connection may lead to a device that has restarted
+  units_silent_.forget();
+}
+
+void ModbusDriver::reconnect_later(Time now) {
+  disconnect();
+  connect_at_ = now + backoff_;
+  backoff_ = std::min(2 * backoff_, kLongestBackoff);
+}
+
+/// The connection is gone, and with it every device behind it.
+void ModbusDriver::bus_fault(Time now, const Fault& fault) {
+  reconnect_later(now);
+  all_faulted(now, fault);
+}
+
+void ModbusDriver::all_faulted(Time now, const Fault& fault) {
+  life_.faulted(now, fault);
+  for (LifeRecord& life : channel_lives_) life.faulted(now, fault);
+  for (Meter& meter : meters_) meter.life.faulted(now, fault);
+}
+
+void ModbusDriver::answered(Time now, int unit) {
+  last_answer_ = now;
+  backoff_ = kShortestBackoff;
+  units_silent_.answered(unit);
+  life_.count_received(now);
+  if (life_.life() != Life::active) life_.active(now);
+}
+
+void ModbusDriver::unit_faulted(Time now, int unit, const Fault& fault) {
+  for (std::size_t i = 0; i < channel_lives_.size(); ++i) {
+    if (writes_.channels()[i].patch.unit == unit) channel_lives_[i].faulted(now, fault);
+  }
+  for (Meter& meter : meters_) {
+    if (meter.patch.unit == unit) meter.life.faulted(now, fault);
+  }
+}
+
+}  // namespace luxrig

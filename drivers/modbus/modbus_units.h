@@ -1,0 +1,71 @@
+#pragma once
+/// What is known of each unit of a bus: its limits from its register map, and whether it answers.
+
+#include <chrono>
+#include <map>
+#include <set>
+#include <vector>
+
+#include "core/rig/register_map/register_value.h"
+#include "core/rig/rig.h"
+#include "core/time.h"
+#include "drivers/modbus/modbus_codec.h"
+
+namespace luxrig::modbus {
+
+struct UnitRules {
+  std::chrono::milliseconds timeout{};
+  std::chrono::milliseconds gap{};  ///< between two requests
+  std::size_t largest_read = kMostReadRegisters, largest_write = kMostWriteRegisters;
+  std::shared_ptr<const RegisterMap> map;  ///< null: none of its devices has one
+};
+
+/// Every unit that a fixture or a luxmeter of the bus names. A unit's timeout is its product's longest time to an
+/// answer with some slack for adapters; behind a gateway, which has its own reasons to be slow, not below
+/// `response_timeout`. Without a register map: `response_timeout`.
+[[nodiscard]] std::map<int, UnitRules> unit_rules(const Rig& rig, std::size_t bus,
+                                                  std::chrono::milliseconds response_timeout, bool behind_gateway);
+
+/// A unit that does not answer is asked again after `first_pause`, then ever more seldom, every 2 s at least, so that
+/// it costs its neighbours little.
+class UnitBackoff {
+ public:
+  [[nodiscard]] bool may_ask(int unit, Time now) const;
+  void answered(int unit) { silent_.erase(unit); }
+  void silent(int unit, Time now, Duration first_pause);
+  [[nodiscard]] bool is_silent(int unit) const { return silent_.contains(unit); }
+  void forget() { silent_.clear(); }
+
+ private:
+  struct Silence {
+    Time retry_at{};
+    int times = 0;
+  };
+  std::map<int, Silence> silent_;
+};
+
+/// What must be written to units before anything else, since they may have restarted: the [[setup]] of their maps.
+class UnitSetup {
+ public:
+  explicit UnitSetup(const std::map<int, UnitRules>& rules);
+
+  struct Write {
+    int first_register = 0;
+    RegisterWords words;
+    std::string name;  ///< of the register
+  };
+  /// The next one; null when all has been written.
+  [[nodiscard]] const Write* next(int unit) const;
+  void written(int unit) { ++units_.at(unit).done; }
+  void restart(int unit);
+  void restart_all();
+
+ private:
+  struct Unit {
+    std::vector<Write> writes;
+    std::size_t done = 0;
+  };
+  std::map<int, Unit> units_;  ///< only those with something to write
+};
+
+}  // namespace luxrig::modbus

@@ -1,0 +1,17 @@
+#pragma once
+/// Numbers as a device keeps them in its registers.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/rig/rig.h"
+
+namespace luxrig::sim {
+
+/// A full counter stays full. requires value not NaN.
+[[nodiscard]] std::vector<std::uint16_t> registers_from(double value, const RegisterFormat& format);
+/// requires as many words as the format has.
+[[nodiscard]] double number_from(std::span<const std::uint16_t> words, const RegisterFormat& format);
+
+}  // namespace luxrig::sim

@@ -1,0 +1,209 @@
+#include "core/rig/register_map/register_map_file.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <set>
+
+#include "core/rig/schema.h"
+#include "tests/folders.h"
+
+namespace luxrig {
+namespace {
+
+const std::filesystem::path kMaps = test::source_folder() / "rigs/register-maps";
+
+RegisterMap loaded(const char* name) {
+  const auto map = load_register_map(kMaps / name);
+  if (!map) {
+    for (const Problem& problem : map.error()) ADD_FAILURE() << problem.text();
+    return {};
+  }
+  return *map;
+}
+
+TEST(RegisterMapFile, EveryShippedMapIsGoodAndSaysWhereItIsFrom) {
+  std::size_t maps = 0;
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(kMaps)) {
+    if (entry.path().extension() != ".toml") continue;
+    ++maps;
+    const RegisterMap map = loaded(entry.path().filename().c_str());
+    EXPECT_TRUE(names.insert(map.name).second) << map.name;
+    EXPECT_FALSE(map.source.empty());
+    EXPECT_FALSE(map.with_role(RegisterRole::level).empty() && map.with_role(RegisterRole::illuminance).empty())
+        << map.name;
+  }
+  EXPECT_GE(maps, 4u);
+}
+
+TEST(RegisterMapFile, KnowsTheEightOutputsOfAnAnalogueModule) {
+  const RegisterMap map = loaded("waveshare-analog-output-8ch-b.toml");
+  const auto levels = map.with_role(RegisterRole::level);
+  ASSERT_EQ(levels.size(), 8u);
+  EXPECT_EQ(map.registers[levels[0]].name, "output1");
+  EXPECT_EQ(map.registers[levels[7]].name, "output8");
+  EXPECT_EQ(map.registers[levels[7]].address, 7);
+  EXPECT_EQ(map.registers[levels[7]].range_raw->second, 10000);
+  EXPECT_EQ(map.when_data_stops, DataLoss::hold);
+  EXPECT_EQ(told_when_data_stops(map), "holds its last level for ever");
+}
+
+TEST(RegisterMapFile, KnowsHowTheCouplersWatchdogIsArmed) {
+  const RegisterMap map = loaded("wago-750-559.toml");
+  ASSERT_EQ(map.setup.size(), 4u);
+  EXPECT_EQ(map.registers[map.setup[0].index].address, 0x1008);
+  EXPECT_EQ(map.setup[0].value_raw, 0xAA55);
+  EXPECT_EQ(map.setup[1].value_raw, 20);
+  EXPECT_EQ(map.stops_after, from_seconds(2));
+  EXPECT_EQ(told_when_data_stops(map), "goes dark after 2 s by its watchdog, which is armed");
+}
+
+TEST(RegisterMapFile, KnowsTheLuxmetersTwoRegisters) {
+  const RegisterMap map = loaded("dfrobot-sen0644.toml");
+  const auto readings = map.with_role(RegisterRole::illuminance);
+  ASSERT_EQ(readings.size(), 1u);
+  const MappedRegister& reg = map.registers[readings[0]];
+  EXPECT_EQ(reg.address, 2);
+  EXPECT_EQ(reg.format.registers, 2);
+  EXPECT_EQ(reg.scale, 0.001);
+  EXPECT_EQ(map.largest_write, 1);
+  EXPECT_EQ(map.baud_rates.size(), 7u);
+}
+
+const std::string kHead = "[device]\nname = \"a\"\nsource = \"b\"\n";  // three lines
+
+TEST(RegisterMapFile, RefusesWhatCannotBeMeant) {
+  const std::vector<std::pair<std::string, std::string>> bad = {
+      {"", "map.toml:1:1: there is no [device]"},
+      {"[device]\nname = \"a\"\n", "map.toml:1:1: [device] has no \"source\""},
+      {kHead + "[[registre]]\n", "map.toml:4:3: unknown section \"registre\""},
+      {kHead + "largest_read = 126\n", "map.toml:4:16: largest_read is 126, which is out of range"},
+      {kHead + "baud_rates = [9600, \"fast\"]\n", "map.toml:4:21: baud_rates must hold whole numbers"},
+      {kHead + "when_data_stops = \"dark\"\n", "map.toml:1:1: [device] has no \"stops_after_s\""},
+      {kHead + "stops_after_s = 2\n", "map.toml:4:1: stops_after_s has no effect"},
+      {kHead + "when_data_stops = \"watchdog\"\nstops_after_s = 2\n", "map.toml:4:19: nothing arms the watchdog"},
+      {kHead + "[[register]]\nname = \"x\"\n", "map.toml:4:1: [[register]] has no \"address\""},
+      {kHead + "[[register]]\nname = \"x\"\naddress = 0\nwhat = \"level\"\n",
+       "map.toml:4:1: [[register]] has no \"range\""},
+      {kHead + "[[register]]\nname = \"x\"\naddress = 0\nwhat = \"level\"\nkind = \"input\"\nrange = [0, 1]\n",
+       "map.toml:7:8: a level that cannot be written"},
+      {kHead + "[[register]]\nname = \"x\"\naddress = 0\nkind = \"input\"\naccess = \"write\"\n",
+       "map.toml:8:10: an input register can only be read"},
+      {kHead + "[[register]]\nname = \"x\"\naddress = 0\nrange = [0, 70000]\n",
+       "map.toml:7:9: range 0 to 70000 does not fit its type"},
+      {kHead + "[[register]]\nname = \"x\"\naddress = 0\nword_order = \"low-first\"\n",
+       "map.toml:7:14: word_order has no effect"},
+      {kHead + "[[register]]\nname = \"x\"\naddress = 65535\ntype = \"u32\"\n",
+       "map.toml:6:11: its registers end past register 65535"},
+      {kHead + "[[register]]\nname = \"x\"\naddress = 0\ntype = \"u32\"\ncount = 2\nstep = 1\n",
+       "map.toml:9:8: step 1 is less than the registers of one"},
+      {kHead + "[[register]]\nname = \"x\"\naddress = 0\n[[register]]\nname = \"x\"\naddress = 1\n",
+       "map.toml:8:8: a second register is called \"x\""},
+      {kHead + "[[register]]\nname = \"x\"\naddress = 0\ntype = \"u32\"\n[[register]]\nname = \"y\"\naddress = 1\n",
+       "map.toml:8:1: \"y\" and \"x\" (line 4) share holding register 1"},
+      {kHead + "[[register]]\nname = \"lux\"\naddress = 0\nwhat = \"illuminance\"\nunit = \"fc\"\n",
+       "map.toml:8:8: an illuminance in \"fc\""},
+      {kHead + "[[register]]\nname = \"time\"\naddress = 0\n[[setup]]\nregister = \"tine\"\nvalue = 1\n",
+       "map.toml:8:12: there is no register \"tine\": did you mean \"time\"?"},
+      {kHead + "[[register]]\nname = \"x\"\naddress = 0\naccess = \"read\"\n[[setup]]\nregister = \"x\"\nvalue = 1\n",
+       "map.toml:9:12: \"x\" cannot be written"},
+      {kHead + "[[register]]\nname = \"x\"\naddress = 0\n[[setup]]\nregister = \"x\"\nvalue = 65536\n",
+       "map.toml:9:9: \"x\" cannot hold 65536"},
+  };
+  for (const auto& [text, expected] : bad) {
+    const auto map = parse_register_map(text, "map.toml");
+    ASSERT_FALSE(map) << text;
+    EXPECT_TRUE(map.error().front().text().starts_with(expected))
+        << text << "gave: " << map.error().front().text() << "\nnot:  " << expected;
+  }
+}
+
+/// Everything in a map but places, as text.
+std::string dump_of(const RegisterMap& map) {
+  std::string out;
+  const auto add = [&](const auto&... values) { ((out += fmt::format("{} ", values)), ...), out += '\n'; };
+  add(map.name, map.source, map.assumed.size(), map.answer_time.value_or(Duration{}).count(), map.shortest_gap.count(),
+      map.largest_read, map.largest_write, fmt::join(map.baud_rates, ","), static_cast<int>(map.when_data_stops),
+      map.stops_after.value_or(Duration{}).count());
+  for (const MappedRegister& reg : map.registers) {
+    add(reg.name, static_cast<int>(reg.role), reg.address, reg.input, reg.format.registers,
+        static_cast<int>(reg.format.number), reg.format.low_word_first, reg.format.low_byte_first, reg.scale, reg.unit,
+        static_cast<int>(reg.access), reg.range_raw ? reg.range_raw->first : -1,
+        reg.range_raw ? reg.range_raw->second : -1, reg.power_on_raw);
+  }
+  for (const SetupWrite& write : map.setup) add(write.index, write.value_raw);
+  return out;
+}
+
+TEST(RegisterMapFile, ChangingAnyKeyChangesTheMap) {
+  // Section, key, a value, another that is as good.
+  const std::vector<std::array<std::string, 4>> sink = {
+      {"[device]", "name", "\"a\"", "\"b\""},
+      {"", "source", "\"a\"", "\"b\""},
+      {"", "assumed", "[\"x\"]", "[]"},
+      {"", "answer_ms", "50", "60"},
+      {"", "shortest_gap_ms", "5", "6"},
+      {"", "largest_read", "8", "9"},
+      {"", "largest_write", "8", "9"},
+      {"", "baud_rates", "[9600]", "[9600, 19200]"},
+      {"", "when_data_stops", "\"watchdog\"", "\"dark\""},
+      {"", "stops_after_s", "3", "4"},
+      {"[[register]]", "name", "\"time\"", "\"times\""},
+      {"", "what", "\"status\"", "\"setting\""},
+      {"", "address", "5", "6"},
+      {"", "kind", "\"input\"", "\"holding\""},
+      {"", "type", "\"u32\"", "\"float32\""},
+      {"", "word_order", "\"low-first\"", "\"high-first\""},
+      {"", "byte_order", "\"low-first\"", "\"high-first\""},
+      {"", "count", "2", "3"},
+      {"", "step", "3", "4"},
+      {"", "scale", "0.5", "0.25"},
+      {"", "unit", "\"s\"", "\"ms\""},
+      {"", "range", "[1, 90]", "[1, 91]"},
+      {"", "power_on", "7", "8"},
+      {"[[register]]", "name", "\"arm\"", "\"arm\""},
+      {"", "address", "100", "101"},
+      {"", "access", "\"read-write\"", "\"write\""},
+      {"[[register]]", "name", "\"other\"", "\"another\""},
+      {"", "address", "200", "201"},
+      {"[[setup]]", "register", "\"arm\"", "\"other\""},
+      {"", "value", "1", "2"},
+  };
+  const auto text_with = [&](std::size_t changed) {
+    std::string text;
+    for (std::size_t i = 0; i < sink.size(); ++i) {
+      const auto& [section, key, value, other] = sink[i];
+      if (!section.empty()) text += section + "\n";
+      text += key + " = " + (i == changed ? other : value) + "\n";
+    }
+    return text;
+  };
+  const auto before = parse_register_map(text_with(sink.size()), "map.toml");
+  ASSERT_TRUE(before) << before.error().front().text();
+  std::set<std::pair<std::string, std::string>> tried;
+  std::string section;
+  for (std::size_t i = 0; i < sink.size(); ++i) {
+    if (!sink[i][0].empty())
+      section = sink[i][0].substr(sink[i][0].rfind('[') + 1, sink[i][0].find(']') - sink[i][0].rfind('[') - 1);
+    tried.emplace(section, sink[i][1]);
+    if (sink[i][2] == sink[i][3]) continue;
+    const auto after = parse_register_map(text_with(i), "map.toml");
+    ASSERT_TRUE(after) << sink[i][1] << ": " << after.error().front().text();
+    EXPECT_NE(dump_of(*after), dump_of(*before)) << sink[i][1] << " changes nothing";
+  }
+  for (const KeySpec& key : keys()) {
+    if (section_spec(key.section).file != SectionSpec::File::register_map) continue;
+    EXPECT_TRUE(tried.contains({std::string(key.section), std::string(key.key)})) << key.section << " " << key.key;
+  }
+}
+
+TEST(RegisterMapFile, IsNoRigFileNorTheOtherWayRound) {
+  const auto map = parse_register_map(kHead + "[[fixture]]\n", "map.toml");
+  ASSERT_FALSE(map);
+  EXPECT_NE(map.error()[0].what.find("unknown section \"fixture\" in a register map"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace luxrig
