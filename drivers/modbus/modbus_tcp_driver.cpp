@@ -409,9 +409,9 @@ std::vector<Problem> check_modbus_tcp(const Rig& rig, std::size_t bus) {
       report(fixture.place, fmt::format("{}: full_scale {} does not fit a register", what, patch->full_scale_raw),
              "choose a full_scale in 1…65535");
     }
-    if (fixture.moves) {
+    if (fixture.moves && !fixture.axes) {
       report(fixture.place, fmt::format("{} has pan and tilt, which a Modbus dimmer cannot drive", what),
-             "put it on a DMX bus, or leave out its pan and tilt ranges");
+             "put it on a DMX bus, give it an axes_bus, or leave out its pan and tilt ranges");
     }
   }
   for (const Luxmeter& meter : rig.luxmeters) {
