@@ -26,6 +26,10 @@ InProcessRig::InProcessRig(Rig rig, std::unique_ptr<World> world, const InProces
   for (const Fixture& fixture : rig_.fixtures) {
     fixtures_.push_back(device(fixture.name, fixture.bus, std::holds_alternative<ModbusPatch>(fixture.patch)));
   }
+  for (const Fixture& fixture : rig_.fixtures) {
+    heads_.push_back(device(fixture.axes ? pan_axis_name(fixture) : fixture.name, fixture.motion_bus(),
+                            fixture.axes || std::holds_alternative<ModbusPatch>(fixture.patch)));
+  }
   for (const Luxmeter& meter : rig_.luxmeters) luxmeters_.push_back(device(meter.name, meter.bus, true));
 }
 
@@ -69,13 +73,15 @@ void InProcessRig::advance(Time now) {
   world_->advance(Time{} + (now - options_.start));
 }
 
+/// Axes count as a device that answers: of each head one, for both.
 template <class Command, class Queue>
-Result<void> InProcessRig::send(Time now, std::span<const Command> commands, const Queue& queue) {
+Result<void> InProcessRig::send(Time now, std::span<const Command> commands, std::vector<Device>& devices,
+                                const Queue& queue) {
   advance(now);
   std::optional<Fault> gone;
   std::vector<bool> used(buses_.size(), false);
   for (const Command& command : commands) {
-    Device& device = fixtures_[command.fixture];
+    Device& device = devices[command.fixture];
     Device& bus = buses_[device.bus];
     used[device.bus] = true;
     if (bus_is_dead(device.bus)) {
@@ -127,7 +133,7 @@ Result<void> InProcessRig::write(Time now, std::span<const LevelCommand> command
           now});
     }
   }
-  return send(now, commands, [](const LevelCommand& command) {
+  return send(now, commands, fixtures_, [](const LevelCommand& command) {
     return Pending{{}, command.fixture, command.drive, std::nullopt};
   });
 }
@@ -142,7 +148,7 @@ Result<void> InProcessRig::move(Time now, std::span<const AimCommand> commands) 
                                   now});
     }
   }
-  return send(now, commands, [](const AimCommand& command) {
+  return send(now, commands, heads_, [](const AimCommand& command) {
     return Pending{{}, command.fixture, std::nullopt, command.joints};
   });
 }
@@ -209,6 +215,9 @@ std::vector<Health> InProcessRig::health(Time now) {
   for (Device& bus : buses_) add(bus, Duration{});  // a refused connection needs no waiting
   for (Device& fixture : fixtures_) {
     if (fixture.answers) add(fixture, options_.fault_after);
+  }
+  for (std::size_t f = 0; f < heads_.size(); ++f) {
+    if (rig_.fixtures[f].axes) add(heads_[f], options_.fault_after);
   }
   for (Device& meter : luxmeters_) add(meter, options_.fault_after);
   return all;

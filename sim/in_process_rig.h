@@ -36,7 +36,7 @@ class InProcessRig final : public LevelOutput, public Mover, public LuxReader {
   Result<void> move(Time now, std::span<const AimCommand> commands) override;
   Result<std::vector<LuxReading>> read(Time now) override;
 
-  /// Every bus, then the Modbus fixtures and luxmeters, in the rig's order.
+  /// Every bus, then the Modbus fixtures, the pan axes of heads that have axes, and the luxmeters, in the rig's order.
   [[nodiscard]] std::vector<Health> health(Time now);
 
   void advance(Time now);
@@ -69,7 +69,7 @@ class InProcessRig final : public LevelOutput, public Mover, public LuxReader {
   void went_wrong(Device& device, Time now, const std::string& why);
   void apply_until(Time now);
   template <class Command, class Queue>
-  Result<void> send(Time now, std::span<const Command> commands, const Queue& queue);
+  Result<void> send(Time now, std::span<const Command> commands, std::vector<Device>& devices, const Queue& queue);
 
   Rig rig_;
   std::unique_ptr<World> world_;
@@ -79,6 +79,7 @@ class InProcessRig final : public LevelOutput, public Mover, public LuxReader {
   std::deque<Answer> answers_;
   std::vector<Time> taken_;  ///< per luxmeter, sample last looked at
   std::vector<Device> buses_, fixtures_, luxmeters_;
+  std::vector<Device> heads_;  ///< per fixture, what turns it
   std::uint64_t exchanges_ = 0;
 };
 

@@ -37,7 +37,9 @@ struct AimCommand {
 class Mover {
  public:
   virtual ~Mover() = default;
-  /// Sets where heads shall be; sent with the next LevelOutput::write when both travel in one frame.
+  /// Sets where heads shall be; sent with the next LevelOutput::write when both travel in one frame. A bus without a
+  /// LevelOutput sends here, and wants the call every write_period, with no commands when nothing has been asked yet. A
+  /// NaN, an angle outside the travel or a fixture that does not move on this bus: Cause::invalid, and nothing is set.
   virtual Result<void> move(Time now, std::span<const AimCommand> commands) = 0;
 };
 

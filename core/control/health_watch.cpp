@@ -6,10 +6,13 @@
 
 namespace luxrig {
 
-HealthWatch::HealthWatch(const Rig& rig) : known_(names_of(rig)), fixtures_on_bus_(rig.buses.size(), 0) {
+HealthWatch::HealthWatch(const Rig& rig)
+    : known_(names_of(rig)), fixtures_on_bus_(rig.buses.size(), 0), heads_on_bus_(rig.buses.size(), 0) {
   for (const Fixture& fixture : rig.fixtures) {
     bus_of_fixture_.push_back(fixture.bus);
+    motion_bus_of_fixture_.push_back(fixture.motion_bus());
     if (fixture.bus < fixtures_on_bus_.size()) ++fixtures_on_bus_[fixture.bus];
+    if (fixture.axes && fixture.axes->bus < heads_on_bus_.size()) ++heads_on_bus_[fixture.axes->bus];
   }
   for (const Luxmeter& luxmeter : rig.luxmeters) {
     meters_.emplace_back();
@@ -23,9 +26,16 @@ std::map<std::string, HealthWatch::Known> HealthWatch::names_of(const Rig& rig) 
   for (std::size_t b = 0; b < rig.buses.size(); ++b) {
     const bool lights =
         std::any_of(rig.fixtures.begin(), rig.fixtures.end(), [&](const auto& f) { return f.bus == b; });
-    known.emplace(rig.buses[b].name, Known{lights ? Role::light_bus : Role::meter_bus, b});
+    const bool turns = std::any_of(rig.fixtures.begin(), rig.fixtures.end(),
+                                   [&](const auto& f) { return f.axes && f.axes->bus == b; });
+    known.emplace(rig.buses[b].name, Known{lights ? Role::light_bus : turns ? Role::axes_bus : Role::meter_bus, b});
   }
   for (std::size_t i = 0; i < rig.fixtures.size(); ++i) known.emplace(rig.fixtures[i].name, Known{Role::fixture, i});
+  for (std::size_t i = 0; i < rig.fixtures.size(); ++i) {
+    if (!rig.fixtures[i].axes) continue;
+    known.emplace(pan_axis_name(rig.fixtures[i]), Known{Role::axis, i});
+    known.emplace(tilt_axis_name(rig.fixtures[i]), Known{Role::axis, i});
+  }
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
     known.emplace(rig.luxmeters[i].name, Known{Role::luxmeter, i});
   }
@@ -63,6 +73,18 @@ Alarm HealthWatch::alarm_of(const Health& health, const Known& known) const {
           "bus \"{}\" is gone ({}): its {} fixtures cannot be controlled and do what they do without data; check its "
           "cable, its power and its address",
           health.device, detail, fixtures_on_bus_[known.index]);
+      break;
+    case Role::axes_bus:
+      alarm.text = fmt::format(
+          "bus \"{}\" is gone ({}): its {} heads cannot be turned and look where they stopped; check its cable, its "
+          "termination, its power and its bit rate",
+          health.device, detail, heads_on_bus_[known.index]);
+      break;
+    case Role::axis:
+      alarm.text = fmt::format(
+          "{} cannot be turned ({}): its beam is not where it shall be; check its power, its node number and that "
+          "nothing blocks it",
+          health.device, detail);
       break;
     case Role::meter_bus:
       alarm.text = fmt::format(
@@ -126,7 +148,8 @@ void HealthWatch::step(Time now) {
     const auto found = known_.find(health.device);
     const Known known = found == known_.end() ? Known{} : found->second;
     if (known.role == Role::luxmeter) meter_faulted[known.index] = &health;
-    if (known.role == Role::light_bus || known.role == Role::meter_bus) bus_faulted[known.index] = &health;
+    if (known.role == Role::light_bus || known.role == Role::axes_bus || known.role == Role::meter_bus)
+      bus_faulted[known.index] = &health;
     if (known.role != Role::luxmeter && known.role != Role::meter_bus) light_lost_ = true;
     alarms_.push_back(alarm_of(health, known));
   }
@@ -135,8 +158,10 @@ void HealthWatch::step(Time now) {
     const auto found = known_.find(alarm.device);
     if (found == known_.end()) return false;
     const auto [role, index] = found->second;
-    if (role != Role::luxmeter && role != Role::fixture) return false;
-    const std::size_t bus = role == Role::luxmeter ? meters_[index].bus : bus_of_fixture_[index];
+    if (role != Role::luxmeter && role != Role::fixture && role != Role::axis) return false;
+    const std::size_t bus = role == Role::luxmeter ? meters_[index].bus
+                            : role == Role::axis   ? motion_bus_of_fixture_[index]
+                                                   : bus_of_fixture_[index];
     return bus < bus_faulted.size() && bus_faulted[bus] != nullptr;
   });
   for (std::size_t i = 0; i < meters_.size(); ++i) {

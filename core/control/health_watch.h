@@ -53,7 +53,7 @@ class HealthWatch {
     bool lost = false;
     Time lost_since{};
   };
-  enum class Role { light_bus, meter_bus, fixture, luxmeter, unknown };
+  enum class Role { light_bus, axes_bus, meter_bus, fixture, axis, luxmeter, unknown };
   struct Known {
     Role role = Role::unknown;
     std::size_t index = 0;
@@ -63,7 +63,7 @@ class HealthWatch {
   void step_meter(Time now, std::size_t luxmeter, const Health* faulted, const Health* bus_faulted);
 
   const std::map<std::string, Known> known_;
-  std::vector<std::size_t> bus_of_fixture_, fixtures_on_bus_;
+  std::vector<std::size_t> bus_of_fixture_, motion_bus_of_fixture_, fixtures_on_bus_, heads_on_bus_;
   std::vector<Meter> meters_;
   std::vector<Health> report_;
   std::vector<Alarm> alarms_;

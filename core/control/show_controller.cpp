@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/check.h"
+#include "core/control/head_move.h"
 #include "core/control/show_state.h"
 
 namespace luxrig {
@@ -28,14 +29,21 @@ constexpr double kHeadDelay_s = 0.5;
 
 /// Until a fixture that moves looks there, wherever it looked before when that is not known.
 double travel_s(const Fixture& fixture, const std::optional<PanTilt>& from, const PanTilt& to) {
-  const auto way_s = [](double to_rad, std::optional<double> from_rad, double min_rad, double max_rad, double rad_s) {
-    return (from_rad ? std::abs(to_rad - *from_rad) : std::max(to_rad - min_rad, max_rad - to_rad)) / rad_s;
+  const auto way_rad = [](double to_rad, std::optional<double> from_rad, double min_rad, double max_rad) {
+    return from_rad ? std::abs(to_rad - *from_rad) : std::max(to_rad - min_rad, max_rad - to_rad);
   };
   const PanTiltRange& range = fixture.range;
-  return std::max(way_s(to.pan_rad, from ? std::optional(from->pan_rad) : std::nullopt, range.pan_min_rad,
-                        range.pan_max_rad, fixture.pan_speed_rad_s),
-                  way_s(to.tilt_rad, from ? std::optional(from->tilt_rad) : std::nullopt, range.tilt_min_rad,
-                        range.tilt_max_rad, fixture.tilt_speed_rad_s));
+  const double pan_rad =
+      way_rad(to.pan_rad, from ? std::optional(from->pan_rad) : std::nullopt, range.pan_min_rad, range.pan_max_rad);
+  const double tilt_rad =
+      way_rad(to.tilt_rad, from ? std::optional(from->tilt_rad) : std::nullopt, range.tilt_min_rad, range.tilt_max_rad);
+  if (const auto& axes = fixture.axes) {
+    return head_move(pan_rad, tilt_rad, {fixture.pan_speed_rad_s, axes->pan.acceleration_rad_s2},
+                     {fixture.tilt_speed_rad_s, axes->tilt.acceleration_rad_s2})
+        .seconds;
+  }
+  // Heads on DMX do not say how they speed up: kHeadDelay_s covers it.
+  return std::max(pan_rad / fixture.pan_speed_rad_s, tilt_rad / fixture.tilt_speed_rad_s);
 }
 
 }  // namespace

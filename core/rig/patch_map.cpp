@@ -34,6 +34,8 @@ void PatchMap::claim_registers(std::size_t bus, int unit, bool input_registers, 
   registers_[{bus, unit, input_registers}].push_back({first, count, std::move(owner)});
 }
 
+void PatchMap::claim_node(std::size_t bus, int node, Owner owner) { nodes_[{bus, node}].push_back(std::move(owner)); }
+
 void PatchMap::report(const std::vector<Bus>& buses, ProblemList& problems) const {
   for (const auto& [where, claims] : slots_) {
     std::vector<const void*> taken(kSlots + 1, nullptr);
@@ -75,6 +77,14 @@ void PatchMap::report(const std::vector<Bus>& buses, ProblemList& problems) cons
                                where.unit, buses[where.bus].name, other->owner.name, other->owner.place.line,
                                run_of(other->first, other->count)),
                    "give each its own unit or register");
+    }
+  }
+  for (const auto& [where, owners] : nodes_) {
+    for (std::size_t i = 1; i < owners.size(); ++i) {
+      problems.add(owners[i].place,
+                   fmt::format("{} is node {} on bus {}, and so is {} (line {})", owners[i].name, where.second,
+                               buses[where.first].name, owners.front().name, owners.front().place.line),
+                   "give each drive a node of its own");
     }
   }
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// Who sits where on a bus, so that no two devices share a DMX slot or a Modbus register.
+/// Who sits where on a bus, so that no two devices share a DMX slot, a Modbus register or a CANopen node.
 
 #include <map>
 #include <string>
@@ -19,6 +19,7 @@ class PatchMap {
   /// requires 1 ≤ first, first + count - 1 ≤ 512
   void claim_slots(std::size_t bus, int universe, int first, int count, Owner owner);
   void claim_registers(std::size_t bus, int unit, bool input_registers, int first, int count, Owner owner);
+  void claim_node(std::size_t bus, int node, Owner owner);
 
   /// Reports each claim that meets an earlier one, naming both and, for DMX, an address that is free.
   /// Cost: proportional to the slots and registers claimed.
@@ -37,6 +38,7 @@ class PatchMap {
   };
   std::map<std::pair<std::size_t, int>, std::vector<Claim>> slots_;  ///< by bus and universe
   std::map<Registers, std::vector<Claim>> registers_;
+  std::map<std::pair<std::size_t, int>, std::vector<Owner>> nodes_;  ///< by bus and node
 };
 
 }  // namespace luxrig

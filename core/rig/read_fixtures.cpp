@@ -10,6 +10,9 @@ namespace {
 constexpr std::string_view kDmxKeys[] = {"universe", "address", "slots", "personality", "mode"};
 constexpr std::string_view kModbusKeys[] = {"unit", "register", "full_scale", "register_map", "channel", "output"};
 constexpr std::string_view kTravelKeys[] = {"pan_range_deg", "tilt_range_deg", "pan_speed_deg_s", "tilt_speed_deg_s"};
+constexpr std::string_view kAxisKeys[] = {
+    "pan_node",     "tilt_node",     "pan_counts_per_degree",   "tilt_counts_per_degree",
+    "pan_home_deg", "tilt_home_deg", "pan_acceleration_deg_s2", "tilt_acceleration_deg_s2"};
 constexpr double kNearest_m = 0.001;  // an aim nearer than this has no direction worth the name
 
 enum class PatchKind { none, dmx, modbus };
@@ -29,13 +32,29 @@ PatchKind patch_kind(Section& s, ProblemList& problems) {
   return PatchKind::none;
 }
 
+/// One of "pan" and "tilt"; false when it cannot be claimed.
+bool read_axis(Section& s, const std::string& joint, double acceleration_deg_s2, AxisPatch& axis) {
+  for (const char* key : {"_node", "_counts_per_degree", "_home_deg"}) {
+    if (!s.has(joint + key)) s.require(joint + key, "which a head with an axes_bus needs");
+  }
+  const std::string counts = joint + "_counts_per_degree";
+  if (s.read(counts, axis.counts_per_degree) && axis.counts_per_degree == 0) {
+    s.problems().add(s.place_of(counts), fmt::format("{} is 0, so that every angle is the same to the drive", counts),
+                     "give the position units of the drive per degree of the joint");
+  }
+  s.read_deg(joint + "_home_deg", axis.home_rad);
+  axis.acceleration_rad_s2 = rad_from_deg(acceleration_deg_s2);
+  s.read_deg(joint + "_acceleration_deg_s2", axis.acceleration_rad_s2);
+  return s.read(joint + "_node", axis.node);
+}
+
 /// `stated`: what its maker's file says of it; else it has none.
 void read_travel(Section& s, const ModeSlots* stated, Fixture& fixture) {
   if (!fixture.moves) {
     for (const std::string_view key : kTravelKeys) {
       s.refuse(key, fmt::format("{} has no effect: the fixture does not move", key),
                stated ? "remove it: this mode of its personality has no pan and tilt"
-                      : "add \"pan\" and \"tilt\" to its slots, or remove this key");
+                      : "add \"pan\" and \"tilt\" to its slots, give it an axes_bus, or remove this key");
     }
     return;
   }
@@ -64,6 +83,28 @@ SlotOwner slot_owner_of(const Rig& rig, std::size_t luminaire) {
 }
 
 }  // namespace
+
+void RigReader::read_axes(Section& s, Fixture& fixture) {
+  if (!s.has("axes_bus")) {
+    for (const std::string_view key : kAxisKeys)
+      s.refuse(key, fmt::format("{} has no effect without axes_bus", key), "add axes_bus, or remove this key");
+    return;
+  }
+  if (fixture.moves) {
+    problems.add(s.place_of("axes_bus"), "its pan and tilt are both slots of its address and drives on axes_bus",
+                 "keep one of the two");
+    return;
+  }
+  AxesPatch axes;
+  const auto bus = buses.read_reference(s, "axes_bus");
+  if (bus) axes.bus = *bus;
+  const bool pan = read_axis(s, "pan", 360, axes.pan), tilt = read_axis(s, "tilt", 240, axes.tilt);
+  const std::string what = "fixture " + in_quotes(fixture.name);
+  if (bus && pan) patches.claim_node(*bus, axes.pan.node, {"the pan of " + what, s.place_of("pan_node")});
+  if (bus && tilt) patches.claim_node(*bus, axes.tilt.node, {"the tilt of " + what, s.place_of("tilt_node")});
+  fixture.axes = axes;
+  fixture.moves = true;
+}
 
 void RigReader::check_joints(Section& s, const Fixture& fixture) {
   if (!fixture.moves) return;
@@ -159,7 +200,8 @@ void RigReader::read_fixtures() {
     }
     // A personality that cannot be used leaves open whether the fixture moves, so nothing is said of that.
     if (of_mode || !s.has("personality")) {
-      read_travel(s, of_mode ? &*of_mode : nullptr, fixture);
+      read_axes(s, fixture);
+      read_travel(s, of_mode && !fixture.axes ? &*of_mode : nullptr, fixture);
       read_aim(s, fixture);
     }
     if (of_mode && of_mode->dimmer_curve) fixture.dimmer_curve = *of_mode->dimmer_curve;

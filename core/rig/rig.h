@@ -135,6 +135,26 @@ struct ModbusPatch {
 
 using Patch = std::variant<DmxPatch, ModbusPatch>;
 
+/// One joint that a drive of its own turns (CiA 402), as a node on a CAN bus.
+struct AxisPatch {
+  int node = 1;  ///< CANopen node id, 1…127
+  double counts_per_degree =
+      1;                ///< position units of the drive per degree of the joint; not 0; < 0: counts the other way
+  double home_rad = 0;  ///< joint angle at the drive's home position, where it counts 0
+  double acceleration_rad_s2 = 0;  ///< > 0, of speeding up and of slowing down
+
+  [[nodiscard]] double counts_at(double joint_rad) const {
+    return deg_from_rad(joint_rad - home_rad) * counts_per_degree;
+  }
+  [[nodiscard]] double joint_rad_at(double counts) const { return home_rad + rad_from_deg(counts / counts_per_degree); }
+};
+
+/// A head whose pan and tilt are not on the bus of its lamp.
+struct AxesPatch {
+  std::size_t bus = 0;
+  AxisPatch pan, tilt;
+};
+
 /// drive (0…1, what is sent) -> level (0…1, share of rated flux), as the fixture's maker states it.
 enum class DimmerCurve { linear, square, s_curve };
 
@@ -159,11 +179,12 @@ struct Fixture {
   std::optional<Vec3> aim_world_m;       ///< point looked at; else `joints` are given
   PanTilt joints;                        ///< pan and tilt, derived from the aim when there is one
   double roll_rad = 0;
-  bool moves = false;                                ///< has pan and tilt slots (or axes)
+  bool moves = false;                                ///< has pan and tilt slots, or axes
   PanTiltRange range;                                ///< only when it moves
   double pan_speed_rad_s = 0, tilt_speed_rad_s = 0;  ///< only when it moves, > 0
   std::size_t bus = 0;
   Patch patch;
+  std::optional<AxesPatch> axes{};    ///< else pan and tilt are slots of `patch`
   std::optional<FixtureMode> mode{};  ///< with a personality
   DimmerCurve dimmer_curve = DimmerCurve::linear;
   double max_level = 1.0;            ///< 0…1; no output ever above
@@ -171,7 +192,13 @@ struct Fixture {
   Place place;
 
   [[nodiscard]] Pose world_from_lamp() const { return luxrig::world_from_lamp(world_from_mount, joints, roll_rad); }
+  /// Where its AimCommands go; its LevelCommands go to `bus`.
+  [[nodiscard]] std::size_t motion_bus() const { return axes ? axes->bus : bus; }
 };
+
+/// What health reports call the two axes of a head that has them.
+[[nodiscard]] inline std::string pan_axis_name(const Fixture& fixture) { return fixture.name + " (pan axis)"; }
+[[nodiscard]] inline std::string tilt_axis_name(const Fixture& fixture) { return fixture.name + " (tilt axis)"; }
 
 /// A driver's own options, as written. Drivers check them (drivers/registry.h).
 using OptionValue = std::variant<bool, std::int64_t, double, std::string>;

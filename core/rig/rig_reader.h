@@ -127,6 +127,8 @@ struct RigReader {
   std::optional<std::size_t> read_mode(Section& section, const Personality& personality);
   std::optional<ModeSlots> read_slots_of_mode(Section& section, const std::optional<SlotOwner>& owner,
                                               Fixture& fixture);
+  /// Pan and tilt that are drives on a bus of their own.
+  void read_axes(Section& section, Fixture& fixture);
   void read_aim(Section& section, Fixture& fixture);
   void check_joints(Section& section, const Fixture& fixture);
 };

@@ -29,9 +29,9 @@ class PatchCheck {
       report(fixture.place, fmt::format("{}: full_scale {} does not fit a register", what, patch->full_scale_raw),
              "choose a full_scale in 1…65535");
     }
-    if (fixture.moves) {
+    if (fixture.moves && !fixture.axes) {
       report(fixture.place, fmt::format("{} has pan and tilt, which a Modbus dimmer cannot drive", what),
-             "put it on a DMX bus, or leave out its pan and tilt ranges");
+             "put it on a DMX bus, give it an axes_bus, or leave out its pan and tilt ranges");
     }
     if (patch->map) product(fixture.place, what, patch->unit, *patch->map, patch->format.registers, 0);
   }

@@ -61,7 +61,7 @@ DmxOrder decode_slots(const Fixture& fixture, const DmxPatch& patch, std::span<c
   }
   DmxOrder order;
   order.drive = constants_hold ? dimmer.share() : 0;
-  if (fixture.moves && pan.coarse && tilt.coarse) {
+  if (fixture.moves && !fixture.axes && pan.coarse && tilt.coarse) {
     const PanTiltRange& range = fixture.range;
     order.joints = PanTilt{range.pan_min_rad + pan.share() * (range.pan_max_rad - range.pan_min_rad),
                            range.tilt_min_rad + tilt.share() * (range.tilt_max_rad - range.tilt_min_rad)};

@@ -25,12 +25,21 @@ Head::Head(const Fixture& fixture)
 }
 
 void Head::set_target(const PanTilt& joints) {
-  if (!moves_ || std::isnan(joints.pan_rad) || std::isnan(joints.tilt_rad)) return;
+  if (!moves_ || carried_ || std::isnan(joints.pan_rad) || std::isnan(joints.tilt_rad)) return;
   target_.pan_rad = std::clamp(joints.pan_rad, range_.pan_min_rad, range_.pan_max_rad);
   target_.tilt_rad = std::clamp(joints.tilt_rad, range_.tilt_min_rad, range_.tilt_max_rad);
 }
 
+void Head::carry_to(const PanTilt& joints) {
+  carried_ = moves_;
+  if (moves_) target_ = joints;
+}
+
 void Head::step(double dt_s) {
+  if (carried_) {
+    joints_ = target_;
+    return;
+  }
   joints_.pan_rad = turned_towards(joints_.pan_rad, target_.pan_rad, pan_speed_rad_s_ * dt_s);
   joints_.tilt_rad = turned_towards(joints_.tilt_rad, target_.tilt_rad, tilt_speed_rad_s_ * dt_s);
 }

@@ -14,6 +14,8 @@ class Head {
 
   /// Clamped to the range, as the end stops would; NaN ignored.
   void set_target(const PanTilt& joints);
+  /// The joints are turned by an axis of their own from now on: they stand there after the next step.
+  void carry_to(const PanTilt& joints);
   void step(double dt_s);
 
   [[nodiscard]] const PanTilt& joints() const { return joints_; }
@@ -23,6 +25,7 @@ class Head {
 
  private:
   bool moves_;
+  bool carried_ = false;
   PanTiltRange range_;
   double pan_speed_rad_s_, tilt_speed_rad_s_;
   PanTilt joints_, target_;

@@ -151,7 +151,7 @@ DmxOrder decode_personality(const Fixture& fixture, const DmxPatch& patch,
   const FixtureFirmware firmware(mode, patch, slots);
   DmxOrder order;
   order.drive = firmware.light(fixture.mode->emitter);
-  if (!fixture.moves) return order;
+  if (!fixture.moves || fixture.axes) return order;
   const auto pan = firmware.angle_rad("Pan", mode.pan_offset_deg, fixture.range.pan_min_rad, fixture.range.pan_max_rad);
   const auto tilt =
       firmware.angle_rad("Tilt", mode.tilt_offset_deg, fixture.range.tilt_min_rad, fixture.range.tilt_max_rad);

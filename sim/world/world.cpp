@@ -67,6 +67,11 @@ class MatrixWorld final : public World {
     heads_[fixture].set_target(joints);
   }
 
+  void set_joints(std::size_t fixture, const PanTilt& joints) override {
+    LUXRIG_CHECK(fixture < heads_.size(), "fixture {} of {}", fixture, heads_.size());
+    heads_[fixture].carry_to(joints);
+  }
+
   void advance(Time now) override {
     while (this->now() + kTick <= now) tick();
   }

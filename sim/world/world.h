@@ -86,6 +86,9 @@ class World {
   /// What the wires carry to the fixtures. Values out of range are clamped, as a device would.
   virtual void set_drive(std::size_t fixture, double drive) = 0;
   virtual void set_aim_target(std::size_t fixture, const PanTilt& joints) = 0;
+  /// Where a head is whose joints are simulated elsewhere (sim/devices/axis_mechanics.h), at the next tick; it does not
+  /// turn by itself any more. Not clamped: end stops are the axis's own.
+  virtual void set_joints(std::size_t fixture, const PanTilt& joints) = 0;
   /// Advances lamps, heads and meters to `now` in steps of 10 ms, recording peaks at every step. Never goes back.
   virtual void advance(Time now) = 0;
   /// The instant of the last tick.

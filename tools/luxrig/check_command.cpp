@@ -16,7 +16,14 @@
 namespace luxrig {
 namespace {
 
-std::string address_text(const Patch& patch) {
+std::string address_text(const Rig& rig, const Fixture& fixture) {
+  if (fixture.axes) {
+    Fixture lamp = fixture;
+    lamp.axes.reset();
+    return fmt::format("{}; axes {}: nodes {}, {}", address_text(rig, lamp), rig.buses[fixture.axes->bus].name,
+                       fixture.axes->pan.node, fixture.axes->tilt.node);
+  }
+  const Patch& patch = fixture.patch;
   if (const auto* dmx = std::get_if<DmxPatch>(&patch)) {
     const auto last = dmx->address + static_cast<int>(dmx->slots.size()) - 1;
     return last > dmx->address ? fmt::format("{}.{}-{}", dmx->universe, dmx->address, last)
@@ -237,7 +244,7 @@ int run_check(const CheckArguments& arguments) {
     fixtures.row({f.name, rig.luminaires[f.luminaire].name, place_text(f.world_from_mount.translation_m),
                   fmt::format("{:.1f}°", deg_from_rad(f.joints.pan_rad)),
                   fmt::format("{:.1f}°", deg_from_rad(f.joints.tilt_rad)),
-                  rig.buses[f.bus].name + " (" + rig.buses[f.bus].driver + ")", address_text(f.patch)});
+                  rig.buses[f.bus].name + " (" + rig.buses[f.bus].driver + ")", address_text(rig, f)});
   }
   fmt::print("{}\n", fixtures.text());
   print_personalities(rig);

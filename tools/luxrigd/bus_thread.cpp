@@ -26,12 +26,12 @@ BusThread::BusThread(const Rig& rig, std::size_t bus, std::unique_ptr<Driver> dr
       levels_(rig.fixtures.size()),
       joints_(rig.fixtures.size()) {
   for (std::size_t i = 0; i < rig.fixtures.size(); ++i) {
-    if (rig.fixtures[i].bus != bus) continue;
-    fixtures_.push_back(i);
-    level_commands_.push_back({i, 0});
-    if (rig.fixtures[i].moves) aim_commands_.push_back({i, rig.fixtures[i].joints});
+    if (rig.fixtures[i].bus == bus) level_commands_.push_back({i, 0});
+    if (rig.fixtures[i].moves && rig.fixtures[i].motion_bus() == bus)
+      aim_commands_.push_back({i, rig.fixtures[i].joints});
   }
-  writes_ = driver_->level_output() != nullptr && !fixtures_.empty();
+  writes_ = (driver_->level_output() != nullptr && !level_commands_.empty()) ||
+            (driver_->mover() != nullptr && !aim_commands_.empty());
   if (LevelInput* input = driver_->level_input()) desks_ = input->parts().size();
 }
 
@@ -93,7 +93,11 @@ void BusThread::listen(Time at) {
 
 void BusThread::write(Time at) {
   programs_.take(program_);
-  if (program_.revision == 0) return;  // nobody has said yet what the light shall be: leave it as it is
+  if (program_.revision == 0) {  // nobody has said yet what the light shall be: leave it as it is
+    // Axes are set up, and perhaps sent home, meanwhile.
+    if (driver_->level_output() == nullptr) (void)driver_->mover()->move(at, {});
+    return;
+  }
   program_.levels_at(at, levels_);
   for (LevelCommand& command : level_commands_) {
     command.drive = drive_from_level(rig_.fixtures[command.fixture].dimmer_curve, levels_[command.fixture]);
@@ -107,7 +111,7 @@ void BusThread::write(Time at) {
   }
   // Faults show in the health report.
   if (Mover* mover = driver_->mover(); mover != nullptr && !aim_commands_.empty()) (void)mover->move(at, aim_commands_);
-  (void)driver_->level_output()->write(at, level_commands_);
+  if (LevelOutput* output = driver_->level_output()) (void)output->write(at, level_commands_);
 }
 
 void BusThread::read(Time at) {

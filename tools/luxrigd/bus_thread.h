@@ -55,11 +55,10 @@ class BusThread {
   bool writes_ = false;
   std::atomic<bool> realtime_{false};
 
-  std::vector<std::size_t> fixtures_;  ///< of the rig, on this bus
-  std::vector<double> levels_;         ///< of all fixtures
-  std::vector<PanTilt> joints_;        ///< of all fixtures
-  std::vector<LevelCommand> level_commands_;
-  std::vector<AimCommand> aim_commands_;
+  std::vector<double> levels_;                ///< of all fixtures
+  std::vector<PanTilt> joints_;               ///< of all fixtures
+  std::vector<LevelCommand> level_commands_;  ///< of the fixtures whose lamp is on this bus
+  std::vector<AimCommand> aim_commands_;      ///< of those that this bus turns
   OutputProgram program_;
 
   mutable std::mutex mutex_;  ///< guards what follows; the thread only tries it

@@ -107,6 +107,9 @@ priority = 100
 [[bus]]
 name = "field"
 driver = "modbus_tcp"
+[[bus]]
+name = "can"
+driver = "canopen"
 [[fixture]]
 name = "fixed"  #> "still"
 luminaire = "spot"  #> "measured"
@@ -135,6 +138,21 @@ pan_range_deg = [-180, 180]  #> [-180, 170]
 tilt_range_deg = [-100, 100]  #> [-100, 90]
 pan_speed_deg_s = 90  #> 91
 tilt_speed_deg_s = 80  #> 81
+[[fixture]]
+name = "mover"
+luminaire = "spot"
+position_m = [1, 0, 3]
+bus = "dmx"
+address = 60
+axes_bus = "can"  #> "field"
+pan_node = 5  #> 7
+tilt_node = 6  #> 8
+pan_counts_per_degree = 100  #> -100
+tilt_counts_per_degree = 200  #> 201
+pan_home_deg = -275  #> -276
+tilt_home_deg = -140  #> -141
+pan_acceleration_deg_s2 = 300  #> 301
+tilt_acceleration_deg_s2 = 200  #> 201
 [[fixture]]
 name = "aimed"
 luminaire = "spot"
@@ -391,6 +409,11 @@ std::string dump(const Rig& rig) {
         text_of(f.aim_world_m), f.joints.pan_rad, f.joints.tilt_rad, f.roll_rad, f.moves, f.range.pan_min_rad,
         f.range.pan_max_rad, f.range.tilt_min_rad, f.range.tilt_max_rad, f.pan_speed_rad_s, f.tilt_speed_rad_s, f.bus,
         static_cast<int>(f.dimmer_curve), f.max_level, text_of(f.safe_level));
+    if (f.axes) {
+      add("axes", f.axes->bus);
+      for (const AxisPatch& a : {f.axes->pan, f.axes->tilt})
+        add(a.node, a.counts_per_degree, a.home_rad, a.acceleration_rad_s2);
+    }
     if (const auto* dmx = std::get_if<DmxPatch>(&f.patch)) {
       add("dmx", dmx->universe, dmx->address);
       for (const DmxSlot& slot : dmx->slots) add(static_cast<int>(slot.use), slot.constant_dmx);

@@ -73,7 +73,7 @@ TEST(Reference, ItsExamplesMakeOneRig) {
     for (const Problem& problem : rig.error()) problems += problem.text() + "\n";
   }
   ASSERT_TRUE(rig) << problems << blocks("toml");
-  EXPECT_EQ(rig->fixtures.size(), 7u) << "three, and one with four emitters";
+  EXPECT_EQ(rig->fixtures.size(), 8u) << "four, and one with four emitters";
   EXPECT_EQ(rig->points.size(), 4u);
   EXPECT_EQ(rig->points[3].name, "shelf 2, top");
   EXPECT_NEAR(rig->luminaires[0].intensity->flux_lm(), 1000, 1e-6);
