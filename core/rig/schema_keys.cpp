@@ -53,8 +53,10 @@ constexpr SectionSpec kSections[] = {
     {"bus", true, 1000, true, "A way to reach devices. Every further key is the driver's own: see Bus options."},
     {"fixture", true, 10000, false,
      "A luminaire as hung and patched: over DMX (`universe`, `address`, and `slots` or `personality`) or over Modbus "
-     "(`unit`, and `register_map` with `channel` or `output`, or `register` with `full_scale`). Say where it looks by "
-     "`aim`, by `aim_m`, or by `pan_deg` and `tilt_deg`."},
+     "(`unit`, and `register_map` with `channel` or `output`, or `register` with `full_scale`). Its pan and tilt may "
+     "be "
+     "slots, or drives of their own on another bus (`axes_bus`). Say where it looks by `aim`, by `aim_m`, or by "
+     "`pan_deg` and `tilt_deg`."},
     {"luxmeter", true, 10000, false, "A light meter on a Modbus bus. It stands at a `point`, or at `position_m`."},
     {"camera", true, 100, false,
      "Takes pictures of the rig for a person to look at. There is no driver for real ones yet: the simulated rig has "

@@ -28,17 +28,15 @@ namespace {
 struct GuardianArguments {
   std::filesystem::path rig, pid_file;
   int look_fd = -1, alive_fd = -1;
-  std::vector<std::string> redirects;  ///< "bus=host:port"
+  std::vector<std::string> redirects;  ///< redirect_text()
 };
 
 std::optional<std::map<std::string, Redirect>> redirects_of(const std::vector<std::string>& texts) {
   std::map<std::string, Redirect> redirects;
   for (const std::string& text : texts) {
-    const auto colon = text.rfind(':'), equals = text.rfind('=', colon);
-    if (colon == std::string::npos || equals == std::string::npos) return std::nullopt;
-    const int port = std::atoi(text.c_str() + colon + 1);
-    if (port < 1 || port > 65535) return std::nullopt;
-    redirects[text.substr(0, equals)] = {text.substr(equals + 1, colon - equals - 1), port};
+    auto redirect = redirect_of(text);
+    if (!redirect) return std::nullopt;
+    redirects.insert(std::move(*redirect));
   }
   return redirects;
 }
@@ -86,6 +84,8 @@ void look_after(const Rig& rig, const LastLook& look, const std::map<std::string
     std::optional<Redirect> redirect;
     if (const auto it = redirects.find(rig.buses[b].name); it != redirects.end()) redirect = it->second;
     auto driver = find_driver(rig.buses[b].driver)->make(rig, b, redirect);
+    // What only turns or measures stays as it is: an axis whose master has died stops by itself.
+    if (driver->level_output() == nullptr) continue;
     const std::size_t first_desk = program.desks.size();
     if (const LevelInput* input = driver->level_input()) {
       for (const DeskPart& part : input->parts()) {
@@ -113,7 +113,7 @@ int guard(const GuardianArguments& arguments) {
   if (const auto problems = check_buses(*rig); !problems.empty()) return report(problems);
   const auto redirects = redirects_of(arguments.redirects);
   if (!redirects) {
-    fmt::print(stderr, "luxrig-guardian: --redirect takes bus=host:port\n");
+    fmt::print(stderr, "luxrig-guardian: --redirect takes bus=host:port or bus=/path\n");
     return kExitBadInput;
   }
   const auto memory = LastLookMemory::open(arguments.look_fd, rig->fixtures.size());

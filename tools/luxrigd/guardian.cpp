@@ -50,7 +50,7 @@ Result<void> Guardian::launch() {
       program.string(), settings_.rig_file.string(), kLookOption, std::to_string(memory_.fd()),
       kAliveOption,     std::to_string(ends[0]),     kPidOption,  guardian_pid_file(settings_.state_folder).string()};
   for (const auto& [bus, to] : settings_.redirects) {
-    words.insert(words.end(), {kRedirectOption, bus + "=" + to.host + ":" + std::to_string(to.port)});
+    words.insert(words.end(), {kRedirectOption, redirect_text(bus, to)});
   }
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());

@@ -2,6 +2,10 @@
 /// What daemon and guardian call the same by the same words.
 
 #include <filesystem>
+#include <optional>
+#include <string>
+
+#include "drivers/registry.h"
 
 namespace luxrig {
 
@@ -10,6 +14,10 @@ inline constexpr const char* kLookOption = "--look-fd";
 inline constexpr const char* kAliveOption = "--alive-fd";
 inline constexpr const char* kPidOption = "--pid-file";
 inline constexpr const char* kRedirectOption = "--redirect";
+
+/// "bus=host:port", or "bus=/path" of a serial line.
+[[nodiscard]] std::string redirect_text(const std::string& bus, const Redirect& to);
+[[nodiscard]] std::optional<std::pair<std::string, Redirect>> redirect_of(const std::string& text);
 
 [[nodiscard]] inline std::filesystem::path guardian_pid_file(const std::filesystem::path& state_folder) {
   return state_folder / "guardian.pid";

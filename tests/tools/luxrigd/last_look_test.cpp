@@ -9,6 +9,8 @@
 #include <cmath>
 #include <limits>
 
+#include "tools/luxrigd/guardian_words.h"
+
 namespace luxrig {
 namespace {
 
@@ -93,6 +95,20 @@ TEST(LastLook, IsWholeHoweverItsWriterDies) {
     }
   }
   EXPECT_TRUE(memory->take().sends);
+}
+
+TEST(GuardianWords, SayWhereABusIs) {
+  for (const Redirect& to : {Redirect{"127.0.0.1", 5568, {}}, Redirect{"", 0, "/dev/pts/4"}}) {
+    const auto read = redirect_of(redirect_text("a=b:c", to));
+    ASSERT_TRUE(read);
+    EXPECT_EQ(read->first, "a=b:c");
+    EXPECT_EQ(read->second.host, to.host);
+    EXPECT_EQ(read->second.port, to.port);
+    EXPECT_EQ(read->second.path, to.path);
+  }
+  for (const char* text :
+       {"", "=", "dmx", "dmx=", "dmx=127.0.0.1", "dmx=127.0.0.1:", "dmx=h:0", "dmx=h:65536", "dmx=h:5x"})
+    EXPECT_FALSE(redirect_of(text)) << text;
 }
 
 }  // namespace
