@@ -5,6 +5,7 @@
 #include <modbus/modbus.h>
 #include <poll.h>
 #include <sys/ioctl.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -85,9 +86,21 @@ Result<void> RtuLink::connect(milliseconds) {
     return tl::unexpected(absent(error));
   }
   fd_ = modbus_get_socket(context_);
+  if (!settings_taken()) {
+    shut();
+    return tl::unexpected(absent(EINVAL));
+  }
   ::ioctl(fd_, TIOCEXCL);  // a second master on the line would be a fault that nobody finds
   if (settings_.rs485) (void)modbus_rtu_set_serial_mode(context_, MODBUS_RTU_RS485);
   return {};
+}
+
+bool RtuLink::settings_taken() const {
+  termios now{};
+  if (::tcgetattr(fd_, &now) != 0) return false;
+  const bool parity = (now.c_cflag & PARENB) != 0, odd = (now.c_cflag & PARODD) != 0;
+  return parity == (settings_.parity != Parity::none) && (!parity || odd == (settings_.parity == Parity::odd)) &&
+         ((now.c_cflag & CSTOPB) != 0) == (settings_.stop_bits == 2);
 }
 
 void RtuLink::shut() {

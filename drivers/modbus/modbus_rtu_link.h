@@ -40,6 +40,8 @@ class RtuLink final : public Link {
   [[nodiscard]] std::chrono::milliseconds on_wire(std::size_t bytes) const;
   [[nodiscard]] Fault lost(const std::string& doing, int error);
   [[nodiscard]] Fault absent(int error) const;
+  /// libmodbus does not notice a port that ignores them.
+  [[nodiscard]] bool settings_taken() const;
   /// Throws away what nobody waits for, until the line is silent.
   Result<void> wait_for_silence();
   /// What has come, appended; true when there was something.

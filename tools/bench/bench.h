@@ -22,7 +22,8 @@ struct BenchOptions {
   std::optional<int> seeds;                   ///< placement: rooms of each scene, instead of 100 (curves: 20)
   bool bounds = true;                         ///< placement scenes: with certified bounds, which take longest
   std::filesystem::path data_folder;          ///< placement, highlight: what is read from files
-  std::string only;  ///< transport, nnls, highlight: only cases whose name begins so; analytic: only such families
+  std::string
+      only;  ///< transport, nnls, highlight, buses: only cases whose name begins so; analytic: only such families
 };
 
 /// Names of the suites.

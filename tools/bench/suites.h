@@ -13,6 +13,9 @@ namespace luxrig {
 /// Time against error of every evaluator in furnished rooms, against converged path tracing; what must hold besides.
 [[nodiscard]] std::vector<BenchRow> bench_transport(const BenchOptions& options);
 
+/// Modbus TCP and RTU with many units, some dead: error is by how much the median meter is read later than wanted.
+[[nodiscard]] std::vector<BenchRow> bench_modbus_load(const BenchOptions& options);
+
 /// Non-negative least squares, cold, warm and limited: error is the worst KKT residual, seconds are of the processor.
 [[nodiscard]] std::vector<BenchRow> bench_nnls(const BenchOptions& options);
 

@@ -29,6 +29,9 @@ Result<std::unique_ptr<PtyLine>> PtyLine::open(const std::string& path) {
     if (error || ::mkdtemp(folder.data()) == nullptr) return pty_failed("making a folder for a serial port", errno);
     line->folder_ = folder;
     line->path_ = folder + "/port";
+  } else if (const std::string folder = std::filesystem::path(path).parent_path().string();
+             !folder.empty() && ::mkdir(folder.c_str(), 0700) == 0) {
+    line->folder_ = folder;  // where a simulator before this one had its own
   }
   if (auto plugged = line->plug_in(); !plugged) return tl::unexpected(plugged.error());
   return line;

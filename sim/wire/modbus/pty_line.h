@@ -15,7 +15,8 @@ namespace luxrig::sim {
 
 class PtyLine {
  public:
-  /// `path` empty: in a new folder of its own. A link that stands there already is replaced; another file is not.
+  /// `path` empty: in a new folder of its own. A link that stands there already is replaced; another file is not. A
+  /// missing folder is made.
   static Result<std::unique_ptr<PtyLine>> open(const std::string& path);
   ~PtyLine();
   PtyLine(const PtyLine&) = delete;

@@ -1,0 +1,105 @@
+#include "drivers/modbus/modbus_schedule.h"
+
+#include <gtest/gtest.h>
+
+#include "core/rig/register_map/register_map.h"
+#include "tests/drivers/test_rig.h"
+
+namespace luxrig::modbus {
+namespace {
+
+using std::chrono::milliseconds;
+
+std::map<int, UnitRules> rules_of(const Rig& rig) { return unit_rules(rig, 0, milliseconds(200), false); }
+
+TEST(ModbusReadSchedule, ReadsNeighboursOfAUnitTogether) {
+  Rig rig = rig_with(bus_of("modbus_tcp"));
+  add_meter(rig, "b", 1, 4);
+  add_meter(rig, "a", 1, 2);
+  add_meter(rig, "far", 1, 10);
+  add_meter(rig, "input", 1, 6).patch.input_registers = true;
+  add_meter(rig, "other", 2, 6);
+  const ReadSchedule schedule(rig, 0, milliseconds(200), rules_of(rig));
+  const auto due = schedule.due(at_ms(0), {});
+  ASSERT_EQ(due.size(), 4u);
+  EXPECT_EQ(due[0].request.first_register, 2);
+  EXPECT_EQ(due[0].request.count, 4u);
+  EXPECT_EQ(schedule.meters()[due[0].begin], 1u);  // "a"
+  EXPECT_EQ(due[1].request.first_register, 10);
+  EXPECT_EQ(due[2].request.function, Function::read_input);
+  EXPECT_EQ(due[3].request.unit, 2);
+}
+
+TEST(ModbusReadSchedule, KeepsToTheLargestReadOfTheProductAndToSingleReadsOnceRefused) {
+  Rig rig = rig_with(bus_of("modbus_tcp"));
+  auto map = std::make_shared<RegisterMap>();
+  map->largest_read = 4;
+  for (int i = 0; i < 5; ++i) add_meter(rig, "meter-" + std::to_string(i), 1, 2 * i).patch.map = map;
+  ReadSchedule schedule(rig, 0, milliseconds(200), rules_of(rig));
+  auto due = schedule.due(at_ms(0), {});
+  ASSERT_EQ(due.size(), 3u);
+  EXPECT_EQ(due[0].request.count, 4u);
+  EXPECT_EQ(due[2].request.count, 2u);
+  schedule.asked(due[0], at_ms(0));
+  due = schedule.due(at_ms(100), {});
+  ASSERT_EQ(due.size(), 2u) << "two have just been asked";
+  EXPECT_EQ(due[0].request.first_register, 4);
+  schedule.read_singly(1);
+  EXPECT_EQ(schedule.due(at_ms(200), {}).size(), 5u);
+}
+
+TEST(ModbusWriteSchedule, KeepsToTheLargestWriteOfTheProductAndCountsBothRegistersOfANumber) {
+  Rig rig = rig_with(bus_of("modbus_tcp"));
+  auto map = std::make_shared<RegisterMap>();
+  map->largest_write = 5;
+  for (int i = 0; i < 4; ++i) {
+    auto& patch = std::get<ModbusPatch>(add_modbus(rig, "lamp-" + std::to_string(i), 1, 2 * i, 1).patch);
+    patch.format = {2, RegisterNumber::floating, false, false};
+    patch.map = map;
+  }
+  WriteSchedule schedule(rig, 0, milliseconds(400), rules_of(rig));
+  for (Channel& channel : schedule.channels()) channel.wanted = words_of(0.5, channel.patch.format);
+  const auto runs = schedule.due(at_ms(0), {});
+  ASSERT_EQ(runs.size(), 2u);
+  const Request request = schedule.request_for(runs[0]);
+  EXPECT_EQ(request.function, Function::write_multiple);
+  EXPECT_EQ(request.values, (std::vector<std::uint16_t>{0x3F00, 0, 0x3F00, 0}));
+}
+
+TEST(ModbusUnitRules, AProductsAnswerTimeIsTheTimeoutOnALineAndTheLeastBehindAGateway) {
+  Rig rig = rig_with(bus_of("modbus_rtu"));
+  auto quick = std::make_shared<RegisterMap>();
+  quick->answer_time = milliseconds(50);
+  auto slow = std::make_shared<RegisterMap>();
+  slow->answer_time = milliseconds(900);
+  add_meter(rig, "quick", 1, 2).patch.map = quick;
+  add_meter(rig, "slow", 2, 2).patch.map = slow;
+  add_meter(rig, "unknown", 3, 2);
+  const auto line = unit_rules(rig, 0, milliseconds(200), false), gateway = unit_rules(rig, 0, milliseconds(200), true);
+  EXPECT_EQ(line.at(1).timeout, milliseconds(80));
+  EXPECT_EQ(line.at(2).timeout, milliseconds(930));
+  EXPECT_EQ(line.at(3).timeout, milliseconds(200));
+  EXPECT_EQ(gateway.at(1).timeout, milliseconds(200));
+  EXPECT_EQ(gateway.at(2).timeout, milliseconds(930));
+}
+
+TEST(ModbusUnitBackoff, AsksASilentUnitEverMoreSeldom) {
+  UnitBackoff units;
+  EXPECT_TRUE(units.may_ask(1, at_ms(0)));
+  units.silent(1, at_ms(0), milliseconds(400));
+  EXPECT_FALSE(units.may_ask(1, at_ms(399)));
+  EXPECT_TRUE(units.may_ask(1, at_ms(400)));
+  EXPECT_TRUE(units.may_ask(2, at_ms(0)));
+  units.silent(1, at_ms(400), milliseconds(400));
+  EXPECT_FALSE(units.may_ask(1, at_ms(1399)));
+  units.silent(1, at_ms(1400), milliseconds(400));
+  units.silent(1, at_ms(3400), milliseconds(400));
+  EXPECT_FALSE(units.may_ask(1, at_ms(5399)));
+  EXPECT_TRUE(units.may_ask(1, at_ms(5400)));
+  units.answered(1);
+  EXPECT_TRUE(units.may_ask(1, at_ms(0)));
+  EXPECT_FALSE(units.is_silent(1));
+}
+
+}  // namespace
+}  // namespace luxrig::modbus
