@@ -10,6 +10,9 @@
 ///   stuck      meter: shows for ever what it showed when this began
 ///   lying      meter: shows value times what it should (default 0.5)
 ///   exception  answers with Modbus exception code value (default 4, device failure)
+///
+/// On a bus that is a USB widget: dead unplugs it, silent makes transfers hang, exception stalls them, garbled stalls
+/// control transfers and spoils a byte of what comes in.
 
 #include <map>
 #include <mutex>

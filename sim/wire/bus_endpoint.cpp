@@ -12,9 +12,8 @@ struct EndpointEntry {
 
 // One line per driver that the simulator can stand in for.
 constexpr EndpointEntry kEndpoints[] = {
-    {"sacn", open_sacn_endpoint},
-    {"artnet", open_artnet_endpoint},
-    {"modbus_tcp", open_modbus_endpoint},
+    {"sacn", open_sacn_endpoint},    {"artnet", open_artnet_endpoint}, {"enttec_pro", open_usb_endpoint},
+    {"open_dmx", open_usb_endpoint}, {"udmx", open_usb_endpoint},      {"modbus_tcp", open_modbus_endpoint},
 };
 
 }  // namespace

@@ -34,6 +34,8 @@ struct EndpointParts {
 
 [[nodiscard]] Result<std::unique_ptr<BusEndpoint>> open_sacn_endpoint(const EndpointParts& parts, int port);
 [[nodiscard]] Result<std::unique_ptr<BusEndpoint>> open_artnet_endpoint(const EndpointParts& parts, int port);
+/// A widget behind a USB/IP server.
+[[nodiscard]] Result<std::unique_ptr<BusEndpoint>> open_usb_endpoint(const EndpointParts& parts, int port);
 [[nodiscard]] Result<std::unique_ptr<BusEndpoint>> open_modbus_endpoint(const EndpointParts& parts, int port);
 
 }  // namespace luxrig::sim
