@@ -19,6 +19,9 @@
 ///   noise           value bytes of line noise before it (default 2)
 ///   wrong_unit      the number of another unit
 ///   wrong_function  the number of another function
+///
+/// On a bus that is a USB widget: dead unplugs it, silent makes transfers hang, exception stalls them, garbled stalls
+/// control transfers and spoils a byte of what comes in.
 
 #include <map>
 #include <mutex>

@@ -16,6 +16,9 @@ struct EndpointEntry {
 constexpr EndpointEntry kEndpoints[] = {
     {"sacn", open_sacn_endpoint},
     {"artnet", open_artnet_endpoint},
+    {"enttec_pro", open_usb_endpoint},
+    {"open_dmx", open_usb_endpoint},
+    {"udmx", open_usb_endpoint},
     {"modbus_tcp", open_modbus_endpoint},
     {"modbus_rtu", nullptr, open_modbus_rtu_endpoint},
 };

@@ -48,6 +48,8 @@ struct EndpointPlace {
 
 [[nodiscard]] Result<std::unique_ptr<BusEndpoint>> open_sacn_endpoint(const EndpointParts& parts, int port);
 [[nodiscard]] Result<std::unique_ptr<BusEndpoint>> open_artnet_endpoint(const EndpointParts& parts, int port);
+/// A widget behind a USB/IP server.
+[[nodiscard]] Result<std::unique_ptr<BusEndpoint>> open_usb_endpoint(const EndpointParts& parts, int port);
 [[nodiscard]] Result<std::unique_ptr<BusEndpoint>> open_modbus_endpoint(const EndpointParts& parts, int port);
 [[nodiscard]] Result<std::unique_ptr<BusEndpoint>> open_modbus_rtu_endpoint(const EndpointParts& parts,
                                                                             const std::string& path);

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cerrno>
 
-#include "sim/devices/dmx_fixture.h"
+#include "sim/wire/dmx_fixtures.h"
 
 namespace luxrig::sim {
 namespace {
@@ -44,7 +44,7 @@ void DmxEndpoint::serve(Time now) {
                reinterpret_cast<const sockaddr*>(&to), sizeof to);
     }
   }
-  if (any) apply_to_fixtures(now);
+  if (any) obey_dmx(parts_, ++frames_, [&](int universe) { return levels(universe, now); });
 }
 
 void DmxEndpoint::take(Time now) {
@@ -67,23 +67,6 @@ void DmxEndpoint::take(Time now) {
     Time due = now + disturbance.delay;
     if (!arrived_.empty()) due = std::max(due, arrived_.back().due);
     arrived_.push_back({due, ntohl(from.sin_addr.s_addr), ntohs(from.sin_port), std::move(bytes)});
-  }
-}
-
-void DmxEndpoint::apply_to_fixtures(Time now) {
-  ++frames_;
-  for (std::size_t f = 0; f < parts_.rig.fixtures.size(); ++f) {
-    const Fixture& fixture = parts_.rig.fixtures[f];
-    const auto* patch = std::get_if<DmxPatch>(&fixture.patch);
-    if (fixture.bus != parts_.bus || patch == nullptr) continue;
-    // A fixture has no way to be late on DMX, and a broken line to it is silence.
-    const Disturbance disturbance = parts_.faults.disturbance({&fixture.name, 1}, frames_);
-    if (disturbance.silent || disturbance.garbled) continue;
-    const auto slots = levels(patch->universe, now);
-    if (!slots) continue;
-    const DmxOrder order = decode_slots(fixture, *patch, *slots);
-    parts_.world.set_drive(f, order.drive);
-    if (order.joints) parts_.world.set_aim_target(f, *order.joints);
   }
 }
 

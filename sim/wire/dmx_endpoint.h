@@ -37,7 +37,6 @@ class DmxEndpoint : public BusEndpoint {
   };
 
   void take(Time now);
-  void apply_to_fixtures(Time now);
 
   BoundSocket socket_;
   int port_;

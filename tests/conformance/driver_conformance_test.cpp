@@ -38,12 +38,17 @@ Bus plain_bus(const DriverEntry& entry) {
   return bus;
 }
 
-/// A rig that fills the bus with what it can carry: DMX fixtures and a head, or Modbus dimmers and meters.
+/// A rig that fills the bus with what it can carry: DMX fixtures and a head, in two universes or in one, or Modbus
+/// dimmers and meters.
 Rig rig_for(const DriverEntry& entry) {
   Rig dmx = rig_with(plain_bus(entry));
   add_dmx(dmx, "spot", 1, 5);
   add_head(dmx, "head", 2, 10);
   if (entry.check(dmx, 0).empty()) return dmx;
+  Rig one_universe = rig_with(plain_bus(entry));
+  add_dmx(one_universe, "spot", 1, 5);
+  add_head(one_universe, "head", 1, 10);
+  if (entry.check(one_universe, 0).empty()) return one_universe;
   Rig modbus = rig_with(plain_bus(entry));
   add_modbus(modbus, "dimmer-a", 10, 0);
   add_modbus(modbus, "dimmer-b", 10, 1, 255);

@@ -1,0 +1,151 @@
+#include "drivers/dmx/udmx/udmx_driver.h"
+
+#include <fmt/format.h>
+
+#include "drivers/dmx/send_rate.h"
+#include "drivers/dmx/udmx/changed_range.h"
+#include "drivers/dmx/usb/usb_dmx_driver.h"
+#include "drivers/io/deadline.h"
+
+namespace luxrig {
+namespace {
+
+using std::chrono::milliseconds;
+using udmx::SlotRange;
+
+constexpr OptionDoc kUdmxOptions[] = {kUsbSerialOption, kUsbPortOption, kUsbUniverseOption};
+
+constexpr std::uint8_t kSetChannelRange = 2;  // anyma's uDMX_cmds.h; value: how many, index: first, from 0
+constexpr int kMostFailures = 3;              // in a row
+constexpr int kMostStalls = 100;              // in a row, about 2 s: healthy units stall once in a while
+constexpr milliseconds kLastWait(20);         // in real time, before a transfer counts as hung
+
+class UdmxDriver final : public UsbDmxDriver {
+ public:
+  UdmxDriver(std::unique_ptr<UsbChannel> channel, const Rig& rig, std::size_t bus)
+      : UsbDmxDriver(std::move(channel), rig, bus) {}
+  ~UdmxDriver() override { close(latest_); }
+
+ private:
+  // Nothing to ask for: that it answers shows with the first range.
+  bool proves_itself_later() const override { return true; }
+  Result<void> opened(Time now) override {
+    latest_ = now;
+    known_.reset();
+    failures_ = stalls_ = 0;
+    return {};
+  }
+
+  void ended(Time now, const UsbCompletion& completion) override {
+    if (sending_ != completion.ticket) return;
+    sending_.reset();
+    switch (completion.status) {
+      case UsbStatus::done:
+        // The last packet of a cancelled transfer may have been in time or not: only a whole one counts.
+        if (completion.transferred != range_.count) return failed(now, "ended early");
+        known_ = on_its_way_;
+        failures_ = stalls_ = 0;
+        life_.count_received(now);
+        return well(now);
+      case UsbStatus::stalled:
+        life_.count_error();
+        known_.reset();  // part of it may have arrived
+        if (++stalls_ < kMostStalls) return;
+        return lost(now, {Cause::refused, {}, fmt::format("{} requests in a row were refused: no uDMX?", stalls_), {}});
+      case UsbStatus::gone:
+        return lost(now, {Cause::network, {}, "the widget has been unplugged: plug it in again", {}});
+      case UsbStatus::cancelled:
+        return failed(now, "took longer than 500 ms");
+      case UsbStatus::failed:
+        return failed(now, "failed");
+    }
+  }
+
+  void failed(Time now, std::string_view how) {
+    life_.count_error();
+    known_.reset();
+    if (++failures_ < kMostFailures) return;
+    lost(now, {Cause::timeout,
+               {},
+               fmt::format("{} transfers in a row went wrong, the last {}: unplug the widget and plug it in again",
+                           failures_, how),
+               {}});
+  }
+
+  void send_frame(Time now) override {
+    latest_ = now;
+    if (is_hung(now)) take_ended(now, kLastWait);
+    if (!usb().is_open()) return;
+    if (is_hung(now)) {
+      usb().cancel(*sending_);
+      take_ended(now, kLastWait);
+      if (!usb().is_open()) return;
+    }
+    if (sending_) return;
+    if (const auto range = wanted_range(now); range && rate_.take(now)) send(now, *range);
+  }
+
+  /// The widget repeats what it has for ever, so that must be the newest.
+  void leave(Time now) override {
+    const Deadline deadline(kUsbLeaveBound);
+    for (int transfers = 0; transfers < 2; ++transfers) {
+      while (sending_ && usb().is_open() && !deadline.passed()) {
+        if (const auto completion = usb().take(deadline.left())) ended(now, *completion);
+      }
+      if (!usb().is_open() || sending_) return;
+      const auto range = known_ ? udmx::changed_range(*known_, slots()) : std::nullopt;
+      if (!range) return;
+      send(now, *range);
+    }
+  }
+
+  void closed() override {
+    sending_.reset();
+    known_.reset();
+  }
+
+  bool is_hung(Time now) const { return sending_ && now - sent_at_ > kUsbTransferTimeout; }
+
+  std::optional<SlotRange> wanted_range(Time now) const {
+    if (!known_ || now - whole_at_ >= kUsbRefreshEvery) return udmx::kAllSlots;
+    return udmx::changed_range(*known_, slots());
+  }
+
+  void send(Time now, const SlotRange& range) {
+    range_ = range;
+    on_its_way_ = slots();
+    const UsbSetup setup{kUsbVendorOut, kSetChannelRange, static_cast<std::uint16_t>(range.count),
+                         static_cast<std::uint16_t>(range.first)};
+    sending_ = usb().control_out(setup, std::span(on_its_way_).subspan(range.first, range.count));
+    sent_at_ = now;
+    if (range == udmx::kAllSlots) whole_at_ = now;
+    life_.count_sent();
+  }
+
+  SendRate rate_;
+  std::optional<UsbTicket> sending_;
+  SlotRange range_;
+  std::optional<DmxSlots> known_;  ///< what the widget has
+  DmxSlots on_its_way_{};
+  Time sent_at_{}, whole_at_{}, latest_{};
+  int failures_ = 0, stalls_ = 0;
+};
+
+}  // namespace
+
+std::span<const OptionDoc> udmx_options() { return kUdmxOptions; }
+
+std::vector<Problem> check_udmx(const Rig& rig, std::size_t bus) { return check_usb_dmx(rig, bus, kUdmxOptions); }
+
+std::unique_ptr<Driver> make_udmx_over(std::unique_ptr<UsbChannel> channel, const Rig& rig, std::size_t bus) {
+  return std::make_unique<UdmxDriver>(std::move(channel), rig, bus);
+}
+
+std::unique_ptr<Driver> make_udmx(const Rig& rig, std::size_t bus, const std::optional<Redirect>& redirect) {
+  // The first id belongs to everybody who uses that USB stack, so the names count as well.
+  UsbSearch search =
+      usb_search(rig.buses[bus], kUdmxOptions, "uDMX", {{0x16c0, 0x05dc, "www.anyma.ch", "uDMX"}, {0x03eb, 0x8888}});
+  return make_udmx_over(make_usb_channel(std::move(search), redirect), rig, bus);
+}
+
+}  // namespace luxrig

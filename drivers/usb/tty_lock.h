@@ -1,0 +1,21 @@
+#pragma once
+/// Whether another program works with a widget through the kernel's serial port.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace luxrig {
+
+struct TtyUser {
+  std::string tty;  ///< "ttyUSB0"
+  int pid = 0;
+};
+
+/// The living process that holds the UUCP lock (/var/lock/LCK..ttyUSB0) of the serial port that the kernel made of an
+/// interface; olad and others take it. Locks of processes that have ended do not count.
+[[nodiscard]] std::optional<TtyUser> tty_user(const std::string& port, int interface,
+                                              const std::filesystem::path& devices = "/sys/bus/usb/devices",
+                                              const std::filesystem::path& locks = "/var/lock");
+
+}  // namespace luxrig

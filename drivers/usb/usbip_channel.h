@@ -1,0 +1,14 @@
+#pragma once
+/// The USB channel to a stand-in: a device behind a USB/IP server on a TCP port, as luxrig-sim has one for each USB
+/// bus. The connection is the cable: closed is unplugged.
+
+#include <memory>
+
+#include "drivers/registry.h"
+#include "drivers/usb/usb_channel.h"
+
+namespace luxrig {
+
+[[nodiscard]] std::unique_ptr<UsbChannel> make_usbip_channel(Redirect server);
+
+}  // namespace luxrig
