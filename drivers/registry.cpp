@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/rig/nearest.h"
+#include "drivers/can/canopen_driver.h"
 #include "drivers/dmx/artnet/artnet_driver.h"
 #include "drivers/dmx/sacn/sacn_driver.h"
 #include "drivers/modbus/modbus_tcp_driver.h"
@@ -15,6 +16,7 @@ const DriverEntry kDrivers[] = {
     {"sacn", "ANSI E1.31 over UDP, send", sacn_options(), check_sacn, make_sacn},
     {"artnet", "Art-Net 4 over UDP, send", artnet_options(), check_artnet, make_artnet},
     {"modbus_tcp", "Modbus TCP dimmers and luxmeters", modbus_tcp_options(), check_modbus_tcp, make_modbus_tcp},
+    {"canopen", "CiA 402 pan-tilt axes over CAN", canopen_options(), check_canopen, make_canopen},
 };
 
 }  // namespace

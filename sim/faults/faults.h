@@ -7,9 +7,15 @@
 ///   dead       bus: its socket is closed (TCP refused, UDP unreachable). Device: as silent
 ///   slow       answers value milliseconds late (default 300)
 ///   garbled    answers with bytes changed, cut short or too long; a different way each time
-///   stuck      meter: shows for ever what it showed when this began
+///   stuck      meter: shows for ever what it showed when this began. Axis: something blocks it
 ///   lying      meter: shows value times what it should (default 0.5)
 ///   exception  answers with Modbus exception code value (default 4, device failure)
+///   duplicated CAN frames of an axis or bus go out twice, with probability value (default 0.5)
+///   reset      axis: its electronics begin anew when this is switched on, as by a watchdog
+///   bus_off    CAN bus: Luxrig's controller is off the bus
+///
+/// An axis of a head is called "NAME (pan axis)" or "NAME (tilt axis)"; dead, it has no power: it turns on by its
+/// momentum, and knows no position when power is back.
 
 #include <map>
 #include <mutex>
@@ -25,7 +31,7 @@
 
 namespace luxrig::sim {
 
-enum class FaultKind { lost, silent, dead, slow, garbled, stuck, lying, exception };
+enum class FaultKind { lost, silent, dead, slow, garbled, stuck, lying, exception, duplicated, reset, bus_off };
 [[nodiscard]] std::string_view name_of(FaultKind kind);
 [[nodiscard]] std::optional<FaultKind> fault_named(std::string_view name);
 [[nodiscard]] std::span<const FaultKind> all_faults();
@@ -34,6 +40,7 @@ enum class FaultKind { lost, silent, dead, slow, garbled, stuck, lying, exceptio
 struct Disturbance {
   bool silent = false;
   bool garbled = false;
+  bool duplicated = false;
   std::optional<int> exception;
   Duration delay{};
   std::uint64_t random = 0;  ///< for whatever is to be done at random about it

@@ -15,6 +15,7 @@ constexpr EndpointEntry kEndpoints[] = {
     {"sacn", open_sacn_endpoint},
     {"artnet", open_artnet_endpoint},
     {"modbus_tcp", open_modbus_endpoint},
+    {"canopen", open_can_endpoint},
 };
 
 }  // namespace
