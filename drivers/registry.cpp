@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/rig/nearest.h"
+#include "drivers/can/canopen_driver.h"
 #include "drivers/dmx/artnet/artnet_driver.h"
 #include "drivers/dmx/enttec_pro/enttec_pro_driver.h"
 #include "drivers/dmx/open_dmx/open_dmx_driver.h"
@@ -26,6 +27,7 @@ const DriverEntry kDrivers[] = {
     {"modbus_tcp", "Modbus TCP dimmers and luxmeters", modbus_tcp_options(), check_modbus_tcp, make_modbus_tcp},
     {"modbus_rtu", "Modbus RTU dimmers and luxmeters on RS-485", modbus_rtu_options(), check_modbus_rtu,
      make_modbus_rtu},
+    {"canopen", "CiA 402 pan-tilt axes over CAN", canopen_options(), check_canopen, make_canopen},
 };
 
 }  // namespace

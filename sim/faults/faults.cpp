@@ -17,7 +17,7 @@ struct FaultEntry {
   double fallback, least, most;  // of its value
 };
 
-constexpr std::array<FaultEntry, 15> kFaults = {{
+constexpr std::array<FaultEntry, 18> kFaults = {{
     {FaultKind::lost, "lost", 0.5, 0, 1},
     {FaultKind::silent, "silent", 1, 0, 1},
     {FaultKind::dead, "dead", 1, 0, 1},
@@ -33,6 +33,9 @@ constexpr std::array<FaultEntry, 15> kFaults = {{
     {FaultKind::noise, "noise", 2, 1, 200},
     {FaultKind::wrong_unit, "wrong_unit", 1, 0, 1},
     {FaultKind::wrong_function, "wrong_function", 1, 0, 1},
+    {FaultKind::duplicated, "duplicated", 0.5, 0, 1},
+    {FaultKind::reset, "reset", 1, 0, 1},
+    {FaultKind::bus_off, "bus_off", 1, 0, 1},
 }};
 
 constexpr FaultKind kOnLine[] = {FaultKind::checksum, FaultKind::truncated,  FaultKind::gap,
@@ -50,6 +53,10 @@ constexpr auto kKinds = [] {
 
 bool rig_has(const Rig& rig, const std::string& device) {
   const auto named = [&device](const auto& item) { return item.name == device; };
+  const auto has_axis = [&device](const Fixture& fixture) {
+    return fixture.axes && (pan_axis_name(fixture) == device || tilt_axis_name(fixture) == device);
+  };
+  if (std::any_of(rig.fixtures.begin(), rig.fixtures.end(), has_axis)) return true;
   return std::any_of(rig.fixtures.begin(), rig.fixtures.end(), named) ||
          std::any_of(rig.luxmeters.begin(), rig.luxmeters.end(), named) ||
          std::any_of(rig.buses.begin(), rig.buses.end(), named);
@@ -91,7 +98,8 @@ Result<void> Faults::set_named(const Rig& rig, const std::string& device, std::s
     return invalid(device, fmt::format("unknown fault '{}': use one of {}", fault, known));
   }
   if (!rig_has(rig, device)) {
-    return invalid(device, fmt::format("the rig has no device '{}': name a fixture, a luxmeter or a bus", device));
+    return invalid(
+        device, fmt::format("the rig has no device '{}': name a fixture, an axis of one, a luxmeter or a bus", device));
   }
   const FaultEntry& entry = entry_of(*kind);
   if (value && !(*value >= entry.least && *value <= entry.most)) {
@@ -137,6 +145,10 @@ Disturbance Faults::disturbance(std::span<const std::string> devices, std::uint6
       if (!how_much) continue;
       disturbance.on_line = kind;
       disturbance.on_line_value = *how_much;
+    }
+    if (const auto share = value(FaultKind::duplicated);
+        share && random_unit(seed_, Draw::fault_duplicate, d, counter) < *share) {
+      disturbance.duplicated = true;
     }
     if (const auto code = value(FaultKind::exception)) disturbance.exception = static_cast<int>(*code);
   }

@@ -7,7 +7,7 @@
 ///   dead       bus: its socket is closed (TCP refused, UDP unreachable). Device: as silent
 ///   slow       answers value milliseconds late (default 300)
 ///   garbled    answers with bytes changed, cut short or too long; a different way each time
-///   stuck      meter: shows for ever what it showed when this began
+///   stuck      meter: shows for ever what it showed when this began. Axis: something blocks it
 ///   lying      meter: shows value times what it should (default 0.5)
 ///   exception  answers with Modbus exception code value (default 4, device failure)
 ///   unpowered  has no power: no light, no answer; afterwards its registers are as they are when power comes
@@ -22,6 +22,14 @@
 ///
 /// On a bus that is a USB widget: dead unplugs it, silent makes transfers hang, exception stalls them, garbled stalls
 /// control transfers and spoils a byte of what comes in.
+///
+/// On a CAN bus:
+///   duplicated CAN frames of an axis or bus go out twice, with probability value (default 0.5)
+///   reset      axis: its electronics begin anew when this is switched on, as by a watchdog
+///   bus_off    CAN bus: Luxrig's controller is off the bus
+///
+/// An axis of a head is called "NAME (pan axis)" or "NAME (tilt axis)"; dead, it has no power: it turns on by its
+/// momentum, and knows no position when power is back.
 
 #include <map>
 #include <mutex>
@@ -52,7 +60,10 @@ enum class FaultKind {
   gap,
   noise,
   wrong_unit,
-  wrong_function
+  wrong_function,
+  duplicated,
+  reset,
+  bus_off
 };
 [[nodiscard]] std::string_view name_of(FaultKind kind);
 [[nodiscard]] std::optional<FaultKind> fault_named(std::string_view name);
@@ -62,6 +73,7 @@ enum class FaultKind {
 struct Disturbance {
   bool silent = false;
   bool garbled = false;
+  bool duplicated = false;
   std::optional<int> exception;
   std::optional<FaultKind> on_line;  ///< one of those of a serial line
   double on_line_value = 0;

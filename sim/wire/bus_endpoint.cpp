@@ -21,6 +21,7 @@ constexpr EndpointEntry kEndpoints[] = {
     {"udmx", open_usb_endpoint},
     {"modbus_tcp", open_modbus_endpoint},
     {"modbus_rtu", nullptr, open_modbus_rtu_endpoint},
+    {"canopen", open_can_endpoint},
 };
 
 }  // namespace

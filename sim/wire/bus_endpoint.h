@@ -53,5 +53,6 @@ struct EndpointPlace {
 [[nodiscard]] Result<std::unique_ptr<BusEndpoint>> open_modbus_endpoint(const EndpointParts& parts, int port);
 [[nodiscard]] Result<std::unique_ptr<BusEndpoint>> open_modbus_rtu_endpoint(const EndpointParts& parts,
                                                                             const std::string& path);
+[[nodiscard]] Result<std::unique_ptr<BusEndpoint>> open_can_endpoint(const EndpointParts& parts, int port);
 
 }  // namespace luxrig::sim

@@ -21,7 +21,8 @@ enum class Draw : std::uint64_t {
   meter_noise,
   fault_loss,
   fault_garble,
-  picture_noise
+  picture_noise,
+  fault_duplicate
 };
 
 [[nodiscard]] inline std::uint64_t mix64(std::uint64_t x) {

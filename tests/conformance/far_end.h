@@ -22,7 +22,8 @@ namespace luxrig {
 class FarEnd {
  public:
   /// Meters see 100 lx from each fixture at full level. The world has no deviations: what is set is what is.
-  explicit FarEnd(const Rig& rig) : rig_(rig) {
+  /// runs_on: how far its clock may go on by itself after step_to(), for drivers that wait for answers.
+  explicit FarEnd(const Rig& rig, Duration runs_on = std::chrono::hours(1)) : rig_(rig), runs_on_(runs_on) {
     const auto rows = static_cast<Eigen::Index>(rig.points.size() + rig.luxmeters.size());
     const Eigen::MatrixXd light = Eigen::MatrixXd::Constant(rows, static_cast<Eigen::Index>(rig.fixtures.size()), 100);
     auto world = sim::World::make(rig, sim::Deviations::none(), light);
@@ -77,8 +78,8 @@ class FarEnd {
       std::vector<pollfd> waits;
       {
         const std::lock_guard lock(mutex_);
-        now_ =
-            std::max(now_, base_ + std::chrono::duration_cast<Duration>(std::chrono::steady_clock::now() - base_real_));
+        const auto since = std::chrono::duration_cast<Duration>(std::chrono::steady_clock::now() - base_real_);
+        now_ = std::max(now_, base_ + std::min(since, runs_on_));
         endpoint_->serve(now_);
         world_->advance(now_);
         std::vector<int> descriptors;
@@ -91,6 +92,7 @@ class FarEnd {
   }
 
   Rig rig_;
+  Duration runs_on_;
   sim::Faults faults_;
   std::unique_ptr<sim::World> world_;
   std::unique_ptr<sim::BusEndpoint> endpoint_;

@@ -59,6 +59,18 @@ inline Fixture& add_head(Rig& rig, std::string name, int universe, int address) 
   return fixture;
 }
 
+/// Its pan and tilt become drives on the first bus: quick ones, 1000 and -800 counts per degree, home past their
+/// travel.
+inline Fixture& add_axes(Fixture& fixture, int pan_node, int tilt_node) {
+  fixture.moves = true;
+  fixture.pan_speed_rad_s = rad_from_deg(1000);
+  fixture.tilt_speed_rad_s = rad_from_deg(800);
+  fixture.axes = AxesPatch{0,
+                           {pan_node, 1000, fixture.range.pan_min_rad - rad_from_deg(5), rad_from_deg(10000)},
+                           {tilt_node, -800, fixture.range.tilt_max_rad + rad_from_deg(5), rad_from_deg(8000)}};
+  return fixture;
+}
+
 inline Fixture& add_modbus(Rig& rig, std::string name, int unit, int reg, int full_scale = 1000) {
   Fixture fixture;
   fixture.name = std::move(name);

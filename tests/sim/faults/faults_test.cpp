@@ -11,7 +11,7 @@ using namespace std::chrono_literals;
 
 TEST(Faults, EveryKindHasANameThatLeadsBackToIt) {
   for (const FaultKind kind : all_faults()) EXPECT_EQ(fault_named(name_of(kind)), kind);
-  EXPECT_EQ(all_faults().size(), 15u);
+  EXPECT_EQ(all_faults().size(), 18u);
   EXPECT_FALSE(fault_named("tired"));
 }
 
@@ -20,7 +20,7 @@ TEST(Faults, UnknownDeviceFaultOrValueIsRefusedWithTheRemedy) {
   Faults faults;
   const auto device = faults.set_named(rig, "meter-9", "silent", true);
   ASSERT_FALSE(device);
-  EXPECT_NE(device.error().detail.find("name a fixture, a luxmeter or a bus"), std::string::npos);
+  EXPECT_NE(device.error().detail.find("name a fixture, an axis of one, a luxmeter or a bus"), std::string::npos);
   const auto fault = faults.set_named(rig, "meter-1", "tired", true);
   ASSERT_FALSE(fault);
   EXPECT_NE(fault.error().detail.find("stuck"), std::string::npos);

@@ -1,0 +1,101 @@
+#pragma once
+/// One drive on the bus: found, set up, enabled, sent home, moved, and taken back into service after a loss. Pure:
+/// `now` and frames in, frames out; one step() each cycle, the SYNC goes out behind it.
+///
+///   absent -> setting_up -> starting -> running;   running -> absent (no heartbeat) -> checking -> running or
+///   setting_up any -> failed (refused, or faulted too often): stands still until the node boots anew
+///
+/// Nothing here moves the axis but homing (as the rule says) and the set-points ordered.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/can/canopen/emergency.h"
+#include "drivers/can/canopen/nmt.h"
+#include "drivers/can/canopen/sdo_client.h"
+#include "drivers/can/cia402/axis_settings.h"
+#include "drivers/can/cia402/drive_state.h"
+#include "drivers/can/cia402/set_point.h"
+
+namespace luxrig::cia402 {
+
+using Frames = std::vector<can::CanFrame>;
+
+class Axis {
+ public:
+  explicit Axis(const AxisSettings& settings);
+
+  /// Knows nothing of the drive from here on.
+  void activate(Time now);
+  /// A data frame; those of other nodes are ignored.
+  void receive(Time now, const can::CanFrame& frame);
+  /// stand_still: the head's other axis is not sound, so this one stops; asked: the head has a target.
+  void step(Time now, bool stand_still, bool asked, Frames& out);
+  /// What stops it when nobody steps it any more.
+  void stop(Frames& out) const;
+
+  [[nodiscard]] const AxisSettings& settings() const { return settings_; }
+  /// It answers, and its drive has no fault.
+  [[nodiscard]] bool sound() const;
+  /// It can be ordered about: enabled, and its position is known.
+  [[nodiscard]] bool ready() const;
+  /// requires ready().
+  void order(const SetPoint& set_point) { handshake_.order(set_point); }
+  [[nodiscard]] bool order_taken() const { return handshake_.idle(); }
+  [[nodiscard]] std::int32_t position() const { return position_; }
+  [[nodiscard]] std::int32_t velocity() const { return velocity_; }  ///< counts/s
+  /// Why it does not do what it is asked; empty when it does.
+  [[nodiscard]] std::string trouble(Time now) const;
+  [[nodiscard]] bool referenced() const { return referenced_; }
+
+ private:
+  enum class Phase { absent, checking, setting_up, starting, running, failed };
+
+  void enter(Time now, Phase phase);
+  void lost(Time now, std::string why);
+  void failed(Time now, std::string why);
+  void begin_setup(Time now);
+  void heartbeat_heard(Time now, canopen::NmtState state);
+  void take_sdo_result(Time now);
+  void take_setup_result(Time now, const canopen::SdoResult& result);
+  void next_setup_step(Time now, Frames& out);
+  void watch(Time now);
+  [[nodiscard]] std::uint16_t control(Time now, bool stand_still, bool asked);
+  [[nodiscard]] std::uint16_t reset_fault(Time now);
+  [[nodiscard]] std::uint16_t go_home(Time now);
+  [[nodiscard]] bool in_mode(int mode);
+  void count_failure(Time now, const std::string& why);
+  void send_pdos(std::uint16_t controlword, Frames& out) const;
+
+  AxisSettings settings_;
+  std::vector<SetupStep> steps_;
+  canopen::SdoClient sdo_;
+  canopen::HeartbeatConsumer heartbeat_;
+  SetPointHandshake handshake_;
+
+  Phase phase_ = Phase::absent;
+  Time since_{};
+  std::string why_;         ///< it is absent or has failed
+  std::string drive_name_;  ///< object 1008, when it has one
+  std::size_t step_ = 0;
+  bool set_up_once_ = false;  ///< since activate()
+  bool nmt_due_ = false;
+  Time nmt_sent_{};
+  bool referenced_ = false;
+  bool asked_ = false, stands_still_ = false;
+
+  std::optional<Time> status_at_;
+  bool fresh_ = false;
+  std::uint16_t statusword_ = 0, error_code_ = 0;
+  std::int32_t position_ = 0, velocity_ = 0;
+  int mode_ = 0;
+
+  std::optional<Time> homing_since_;
+  int homing_answers_ = 0;
+  std::optional<Time> reset_at_;
+  int failures_ = 0;  ///< in a row
+  std::optional<Time> ready_since_;
+};
+
+}  // namespace luxrig::cia402

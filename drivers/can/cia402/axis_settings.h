@@ -1,0 +1,45 @@
+#pragma once
+/// What an axis's drive is told before it moves: every object by SDO, in order. README.md has the table. Pure.
+
+#include <string>
+#include <vector>
+
+#include "drivers/can/canopen/sdo_client.h"
+
+namespace luxrig::cia402 {
+
+enum class HomeRule {
+  at_start,     ///< as soon as the drive can, after every loss of its position
+  when_needed,  ///< the same, but not before a first aim is asked
+  never         ///< the drive knows its position by itself
+};
+
+/// In the drive's own units: counts, counts/s, counts/s².
+struct AxisSettings {
+  int node = 1;
+  int master_node = 127;
+  Duration heartbeat = std::chrono::milliseconds(100);  ///< of node and master; each misses the other after three
+  std::int32_t lowest = 0, highest = 0;                 ///< soft limits of the position
+  std::uint32_t speed = 1, acceleration = 1;
+  HomeRule home = HomeRule::at_start;
+  int homing_method = 17;
+  std::uint32_t homing_speed = 1;  ///< towards the switch; a quarter of it to find its edge
+  Duration homing_timeout = std::chrono::seconds(60);
+  bool hold_on_stop = true;  ///< after a quick stop stay energised, else switch off
+  int fault_resets = 3;      ///< in a row, before a person is needed
+};
+
+/// What is missed when the master falls silent for so long.
+[[nodiscard]] inline Duration heartbeat_timeout(const AxisSettings& settings) { return 3 * settings.heartbeat; }
+
+struct SetupStep {
+  canopen::SdoRequest request;
+  bool optional = false;  ///< a drive without that object will do
+};
+
+[[nodiscard]] std::vector<SetupStep> setup_steps(const AxisSettings& settings);
+/// Of object 1016:1, by which the node listens to the master. Lost when the node resets: that it is still there shows
+/// that the node has not.
+[[nodiscard]] std::uint32_t consumer_entry(const AxisSettings& settings);
+
+}  // namespace luxrig::cia402

@@ -1,0 +1,134 @@
+#include "drivers/can/cia402/head_axes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace luxrig::cia402 {
+namespace {
+
+constexpr double kThere_rad = rad_from_deg(0.5);
+constexpr Duration kReturnSlack = std::chrono::seconds(1);
+
+double counts_per_rad(const AxisPatch& patch) { return std::abs(patch.counts_per_degree) * deg_from_rad(1.0); }
+
+/// A speed or acceleration as the drive takes it: whole, and at least 1.
+std::uint32_t whole_counts(double counts) {
+  return static_cast<std::uint32_t>(std::clamp(std::round(counts), 1.0, 4e9));
+}
+
+std::int32_t whole_position(double counts) {
+  constexpr double kMost = std::numeric_limits<std::int32_t>::max();
+  return static_cast<std::int32_t>(std::clamp(std::round(counts), -kMost, kMost));
+}
+
+AxisSettings settings_of(const AxisPatch& patch, double min_rad, double max_rad, double speed_rad_s,
+                         const AxesOptions& options) {
+  AxisSettings s;
+  s.node = patch.node;
+  s.master_node = options.master_node;
+  s.heartbeat = options.heartbeat;
+  const double from = patch.counts_at(min_rad), to = patch.counts_at(max_rad);
+  s.lowest = whole_position(std::min(from, to));
+  s.highest = whole_position(std::max(from, to));
+  s.speed = whole_counts(speed_rad_s * counts_per_rad(patch));
+  s.acceleration = whole_counts(patch.acceleration_rad_s2 * counts_per_rad(patch));
+  s.home = options.home;
+  s.homing_method = options.homing_method;
+  s.homing_speed = whole_counts(options.homing_speed_share * speed_rad_s * counts_per_rad(patch));
+  s.homing_timeout = options.homing_timeout;
+  s.hold_on_stop = options.hold_on_stop;
+  s.fault_resets = options.fault_resets;
+  return s;
+}
+
+/// Faster than the noise of a standing encoder.
+bool under_way(const Axis& axis) {
+  return std::abs(static_cast<double>(axis.velocity())) > std::max(0.01 * axis.settings().speed, 2.0);
+}
+
+SetPoint set_point(const Axis& axis, const AxisPatch& patch, double target_rad, const AxisLimits& limits) {
+  SetPoint order;
+  order.position =
+      std::clamp(whole_position(patch.counts_at(target_rad)), axis.settings().lowest, axis.settings().highest);
+  order.speed = whole_counts(limits.speed * counts_per_rad(patch));
+  order.acceleration = whole_counts(limits.acceleration * counts_per_rad(patch));
+  return order;
+}
+
+}  // namespace
+
+HeadAxes::HeadAxes(const Fixture& fixture, const AxesOptions& options)
+    : pan_patch_(fixture.axes->pan),
+      tilt_patch_(fixture.axes->tilt),
+      pan_limits_{fixture.pan_speed_rad_s, pan_patch_.acceleration_rad_s2},
+      tilt_limits_{fixture.tilt_speed_rad_s, tilt_patch_.acceleration_rad_s2},
+      pan_(settings_of(pan_patch_, fixture.range.pan_min_rad, fixture.range.pan_max_rad, fixture.pan_speed_rad_s,
+                       options)),
+      tilt_(settings_of(tilt_patch_, fixture.range.tilt_min_rad, fixture.range.tilt_max_rad, fixture.tilt_speed_rad_s,
+                        options)) {}
+
+void HeadAxes::activate(Time now) {
+  pan_.activate(now);
+  tilt_.activate(now);
+  target_.reset();
+  ordered_.reset();
+  due_back_.reset();
+  returning_ = true;
+}
+
+void HeadAxes::receive(Time now, const can::CanFrame& frame) {
+  pan_.receive(now, frame);
+  tilt_.receive(now, frame);
+}
+
+std::optional<PanTilt> HeadAxes::joints() const {
+  if (!pan_.ready() || !tilt_.ready()) return std::nullopt;
+  return PanTilt{pan_patch_.joint_rad_at(pan_.position()), tilt_patch_.joint_rad_at(tilt_.position())};
+}
+
+void HeadAxes::step(Time now, Frames& out) {
+  const auto here = joints();
+  if (!here) {
+    ordered_.reset();  // it is asked again as soon as both can go there
+    returning_ = true;
+    due_back_.reset();
+  }
+  if (here && target_ && ordered_ != target_ && pan_.order_taken() && tilt_.order_taken()) {
+    HeadMove move =
+        head_move(target_->pan_rad - here->pan_rad, target_->tilt_rad - here->tilt_rad, pan_limits_, tilt_limits_);
+    // From a standstill both keep step. Under way, a share of the limits that fits the way left would neither stop an
+    // axis in time nor bring it back in any.
+    if (under_way(pan_) || under_way(tilt_)) {
+      move.pan = pan_limits_;
+      move.tilt = tilt_limits_;
+    }
+    pan_.order(set_point(pan_, pan_patch_, target_->pan_rad, move.pan));
+    tilt_.order(set_point(tilt_, tilt_patch_, target_->tilt_rad, move.tilt));
+    ordered_ = target_;
+    if (returning_ && !due_back_) due_back_ = now + from_seconds(move.seconds) + kReturnSlack;
+  }
+  if (returning_ && here) {
+    const bool there = target_ && std::max(std::abs(target_->pan_rad - here->pan_rad),
+                                           std::abs(target_->tilt_rad - here->tilt_rad)) < kThere_rad;
+    returning_ = target_ && !there && (!due_back_ || now < *due_back_);
+  }
+  const bool asked = target_.has_value(), pan_sound = pan_.sound(), tilt_sound = tilt_.sound();
+  pan_.step(now, !tilt_sound, asked, out);
+  tilt_.step(now, !pan_sound, asked, out);
+}
+
+std::string HeadAxes::trouble(Time now, const Axis& axis) const {
+  std::string own = axis.trouble(now);
+  if (!own.empty() || !returning_ || !target_) return own;
+  return fmt::format("node {} is in order, but its head is not yet where it is asked to look", axis.settings().node);
+}
+
+void HeadAxes::stop(Frames& out) const {
+  pan_.stop(out);
+  tilt_.stop(out);
+}
+
+}  // namespace luxrig::cia402

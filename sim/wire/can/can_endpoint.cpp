@@ -1,0 +1,95 @@
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+
+#include "sim/wire/can/axis_bus.h"
+#include "sim/wire/sockets.h"
+
+namespace luxrig::sim {
+namespace {
+
+constexpr int kMostCanFramesAtOnce = 1000;  // per serve(), so that a flood cannot hold up the world
+constexpr std::size_t kMostMasters = 4;
+constexpr Duration kForgetMaster = std::chrono::seconds(5);
+
+/// A CAN bus as datagrams on loopback: who has sent a frame lately hears what the nodes say.
+class CanEndpoint final : public BusEndpoint {
+ public:
+  CanEndpoint(const EndpointParts& parts, BoundSocket socket)
+      : parts_(parts), bus_(parts), socket_(std::move(socket)), port_(socket_.port) {}
+
+  [[nodiscard]] int port() const override { return port_; }
+
+  void serve(Time now) override {
+    if (parts_.faults.find(parts_.rig.buses[parts_.bus].name, FaultKind::dead)) {
+      socket_.descriptor.reset();
+    } else if (!socket_.descriptor.open()) {
+      if (auto again = bind_udp(port_)) socket_ = std::move(*again);
+    }
+    bus_.advance(now);  // the axes go on, whoever listens
+    take(now);
+    for (const BusFrame& frame : bus_.take_sent()) {
+      const auto bytes = packed(frame);
+      for (const Master& master : masters_) {
+        if (!socket_.descriptor.open()) break;
+        ::sendto(socket_.descriptor.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT,
+                 reinterpret_cast<const sockaddr*>(&master.address), sizeof master.address);
+      }
+    }
+  }
+
+  void descriptors(std::vector<int>& into) const override {
+    if (socket_.descriptor.open()) into.push_back(socket_.descriptor.get());
+  }
+
+ private:
+  struct Master {
+    sockaddr_in address;
+    Time heard;
+  };
+
+  void take(Time now) {
+    std::erase_if(masters_, [now](const Master& master) { return now - master.heard > kForgetMaster; });
+    std::array<std::uint8_t, 64> buffer;
+    for (int i = 0; i < kMostCanFramesAtOnce && socket_.descriptor.open(); ++i) {
+      sockaddr_in from{};
+      socklen_t length = sizeof from;
+      const auto received = ::recvfrom(socket_.descriptor.get(), buffer.data(), buffer.size(), 0,
+                                       reinterpret_cast<sockaddr*>(&from), &length);
+      if (received < 0) {
+        if (errno == EINTR || errno == ECONNREFUSED) continue;
+        break;
+      }
+      const auto frame = unpacked({buffer.data(), static_cast<std::size_t>(received)});
+      if (!frame) continue;
+      const auto known = std::find_if(masters_.begin(), masters_.end(), [&](const Master& master) {
+        return master.address.sin_port == from.sin_port && master.address.sin_addr.s_addr == from.sin_addr.s_addr;
+      });
+      if (known != masters_.end()) {
+        known->heard = now;
+      } else if (masters_.size() < kMostMasters) {
+        masters_.push_back({from, now});
+      }
+      bus_.receive(now, *frame);
+    }
+  }
+
+  EndpointParts parts_;
+  AxisBus bus_;
+  BoundSocket socket_;
+  int port_;
+  std::vector<Master> masters_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<BusEndpoint>> open_can_endpoint(const EndpointParts& parts, int port) {
+  auto socket = bind_udp(port);
+  if (!socket) return tl::unexpected(socket.error());
+  return std::make_unique<CanEndpoint>(parts, std::move(*socket));
+}
+
+}  // namespace luxrig::sim
