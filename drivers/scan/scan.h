@@ -48,6 +48,8 @@ struct NamedScan {
 [[nodiscard]] std::unique_ptr<Scan> make_sacn_scan(const ScanOptions& options);
 /// Serial ports that a USB or on-board adapter stands behind, by their lasting names where they have one.
 [[nodiscard]] std::unique_ptr<Scan> make_serial_scan(const ScanOptions& options);
+/// DMX widgets by their ids; those of FTDI are any maker's, so the driver is a guess until the widget answers.
+[[nodiscard]] std::unique_ptr<Scan> make_usb_scan(const ScanOptions& options);
 [[nodiscard]] std::unique_ptr<Scan> make_can_scan(const ScanOptions& options);
 
 }  // namespace luxrig

@@ -1,4 +1,4 @@
-/// What the operating system lists: serial ports and CAN interfaces.
+/// What the operating system lists: USB widgets, serial ports and CAN interfaces.
 
 #include <algorithm>
 #include <filesystem>
@@ -75,6 +75,44 @@ class SerialScan final : public Scan {
   std::vector<FoundDevice> found_;
 };
 
+struct KnownWidget {
+  const char *vendor, *product, *driver;
+};
+// Sources: drivers/dmx/enttec_pro, open_dmx and udmx.
+constexpr KnownWidget kWidgets[] = {
+    {"0403", "6001", "enttec_pro or open_dmx"},
+    {"0403", "6010", "open_dmx"},
+    {"0403", "6011", "open_dmx"},
+    {"16c0", "05dc", "udmx"},
+    {"03eb", "8888", "udmx"},
+};
+
+class UsbScan final : public Scan {
+ public:
+  explicit UsbScan(std::string root) : root_(std::move(root)) {}
+
+  Result<void> step(Time) override {
+    found_.clear();
+    for (const fs::path& device : entries_of(root_ / "sys/bus/usb/devices")) {
+      const std::string vendor = first_line(device / "idVendor"), product = first_line(device / "idProduct");
+      for (const KnownWidget& known : kWidgets) {
+        if (vendor != known.vendor || product != known.product) continue;
+        const std::string maker = first_line(device / "manufacturer"), name = first_line(device / "product");
+        const std::string serial = first_line(device / "serial");
+        found_.push_back({known.driver, device.filename().string(),
+                          maker.empty() || name.empty() ? maker + name : maker + " " + name,
+                          vendor + ":" + product + (serial.empty() ? "" : ", serial number " + serial)});
+      }
+    }
+    return {};
+  }
+  std::vector<FoundDevice> found() const override { return found_; }
+
+ private:
+  fs::path root_;
+  std::vector<FoundDevice> found_;
+};
+
 class CanScan final : public Scan {
  public:
   explicit CanScan(std::string root) : root_(std::move(root)) {}
@@ -101,6 +139,7 @@ class CanScan final : public Scan {
 std::unique_ptr<Scan> make_serial_scan(const ScanOptions& options) {
   return std::make_unique<SerialScan>(options.root);
 }
+std::unique_ptr<Scan> make_usb_scan(const ScanOptions& options) { return std::make_unique<UsbScan>(options.root); }
 std::unique_ptr<Scan> make_can_scan(const ScanOptions& options) { return std::make_unique<CanScan>(options.root); }
 
 }  // namespace luxrig

@@ -130,7 +130,8 @@ int main(int argc, char** argv) {
   command->callback([&] { code = run_rig(run); });
 
   DevicesArguments devices;
-  command = app.add_subcommand("devices", "what is there to be driven: nodes, sources, serial ports, CAN interfaces");
+  command = app.add_subcommand("devices",
+                               "what is there to be driven: nodes, sources, USB widgets, serial ports, CAN interfaces");
   command->add_option("--seconds", devices.seconds, "how long to listen")
       ->capture_default_str()
       ->check(CLI::Range(0.1, 600.0));

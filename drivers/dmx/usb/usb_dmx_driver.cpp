@@ -25,6 +25,11 @@ const DmxSlots& UsbDmxDriver::slots() const {
   return bay_.universes().empty() ? dark_ : bay_.universes().front().slots;
 }
 
+std::vector<CarriedUniverse> UsbDmxDriver::carried() const {
+  if (bay_.universes().empty()) return {};
+  return {{bay_.universes().front().number, {slots().begin(), slots().end()}, false}};
+}
+
 Fault UsbDmxDriver::inactive() const {
   return {Cause::inactive, life_.health().device, "the driver is not active", {}};
 }

@@ -47,6 +47,7 @@ class UsbDmxDriver : public Driver, public LevelOutput, public Mover {
   void deactivate(Time now) final;
   [[nodiscard]] DriverBounds bounds() const final;
   [[nodiscard]] std::vector<Health> health(Time) const final { return {life_.health()}; }
+  [[nodiscard]] std::vector<CarriedUniverse> carried() const final;
   LevelOutput* level_output() final { return this; }
   Mover* mover() final { return bay_.has_heads() ? this : nullptr; }
   Result<void> move(Time now, std::span<const AimCommand> commands) final;

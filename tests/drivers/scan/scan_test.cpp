@@ -91,6 +91,28 @@ TEST(SystemScan, FindsCanInterfacesAndSaysWhichAreDown) {
   EXPECT_EQ(found[1].detail, "up");
 }
 
+TEST(SystemScan, FindsUsbWidgetsByTheirIds) {
+  const MadeUpSystem system;
+  system.file("sys/bus/usb/devices/1-1.4/idVendor", "0403");
+  system.file("sys/bus/usb/devices/1-1.4/idProduct", "6001");
+  system.file("sys/bus/usb/devices/1-1.4/manufacturer", "ENTTEC");
+  system.file("sys/bus/usb/devices/1-1.4/product", "DMX USB PRO");
+  system.file("sys/bus/usb/devices/1-1.4/serial", "EN012345");
+  system.file("sys/bus/usb/devices/1-2/idVendor", "16c0");
+  system.file("sys/bus/usb/devices/1-2/idProduct", "05dc");
+  system.file("sys/bus/usb/devices/1-3/idVendor", "046d");  // a mouse
+  system.file("sys/bus/usb/devices/1-3/idProduct", "c077");
+  const auto scan = make_usb_scan(system.options());
+  ASSERT_TRUE(scan->step({}));
+  const auto found = scan->found();
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0].driver, "enttec_pro or open_dmx");
+  EXPECT_EQ(found[0].address, "1-1.4");
+  EXPECT_EQ(found[0].name, "ENTTEC DMX USB PRO");
+  EXPECT_EQ(found[0].detail, "0403:6001, serial number EN012345");
+  EXPECT_EQ(found[1].driver, "udmx");
+}
+
 TEST(SystemScan, OfAnEmptySystemFindsNothing) {
   const MadeUpSystem system;
   const auto serial = make_serial_scan(system.options()), can = make_can_scan(system.options());
