@@ -75,8 +75,9 @@ bool only_turns(const Rig& rig) {
 /// Where such a bus puts a head in place of a drive: 0 is where heads wake.
 PanTilt joints_of(double drive) { return {rad_from_deg(10 * drive), rad_from_deg(8 * drive)}; }
 
-/// How exactly the simulated axes can be: a step of homing, and half the play of the gear.
-constexpr double kAxisTolerance_deg = 0.05;
+/// How exactly the simulated axes can be: what homing turns them in a step of 1 ms (0.025°), where friction holds the
+/// servo (0.015°), half the play of the gear (0.01°).
+constexpr double kAxisTolerance_deg = 0.06;
 
 /// All fixtures of the bus at one drive.
 Result<void> write_all(Driver& driver, const Rig& rig, Time now, double drive) {
@@ -333,7 +334,7 @@ TEST_P(EveryDriver, IsFaultedInTimeWhenItsPeerGoesAndComesBackByItselfWithTheCur
     EXPECT_TRUE(pair.between(0.25, 0.75));
   }
   for (int i = 0; i < 3; ++i) pair.cycle(0.75);
-  EXPECT_TRUE(pair.at(0.75));
+  EXPECT_TRUE(pair.at(0.75)) << (pair.last_write ? "" : pair.last_write.error().detail);
   EXPECT_EQ(pair.bus().detail, "");
 }
 

@@ -145,5 +145,32 @@ TEST(HealthWatch, SaysOnceThatABusIsGoneNotForEachMeterOnIt) {
   EXPECT_EQ(watch.alarms()[0].device, "field");
 }
 
+TEST(HealthWatch, AxesThatAreLostAreLightLostAndTheirBusSaysItOnce) {
+  Rig rig = small_rig();
+  rig.buses.push_back({});
+  rig.buses[2].name = "can";
+  rig.fixtures[1].moves = true;
+  rig.fixtures[1].axes = AxesPatch{2, {}, {}};
+  HealthWatch watch(rig);
+  hear_both(watch, 5);
+  const Health axis[] = {faulted("right (tilt axis)", 5)};
+  watch.report(axis);
+  watch.step(at(5));
+  EXPECT_TRUE(watch.light_lost()) << "the beam may be anywhere";
+  ASSERT_EQ(watch.alarms().size(), 1u);
+  EXPECT_NE(watch.alarms()[0].text.find("right (tilt axis) cannot be turned (no answer for 512 ms"), std::string::npos)
+      << watch.alarms()[0].text;
+  const Health all[] = {faulted("can", 6), faulted("right (pan axis)", 6), faulted("right (tilt axis)", 6)};
+  watch.report(all);
+  watch.step(at(6));
+  ASSERT_EQ(watch.alarms().size(), 1u);
+  EXPECT_NE(watch.alarms()[0].text.find("bus \"can\" is gone"), std::string::npos);
+  EXPECT_NE(watch.alarms()[0].text.find("its 1 heads cannot be turned"), std::string::npos) << watch.alarms()[0].text;
+  watch.report({});
+  hear_both(watch, 7);
+  watch.step(at(7));
+  EXPECT_FALSE(watch.light_lost());
+}
+
 }  // namespace
 }  // namespace luxrig

@@ -1,9 +1,10 @@
 # In the guest: the canopen driver and the simulated axes as two processes on a real SocketCAN interface, candump and
 # cansend as witnesses; then a controller with states.
 set -e
-fail() { echo "FAILED: $*"; tail -n 30 /tmp/dump; exit 1; }
-# LINE: an extended regular expression that one frame must match, as "705#05".
-seen() { grep -qE " $1\$" /tmp/dump || fail "candump has not seen $1"; }
+witness=/tmp/dump
+fail() { echo "FAILED: $*"; tail -n 30 $witness; exit 1; }
+# One frame must match this extended regular expression, as "705#05".
+seen() { grep -qE " $1\$" $witness || fail "candump has not seen $1"; }
 
 /bin/ip link add vcan0 type vcan
 /bin/ip link set vcan0 up
@@ -27,14 +28,22 @@ seen '605#2F60600001000000'                                        # profile pos
 seen '080#'; seen '205#3F00[0-9A-F]{8}'                            # SYNC; a set-point, changed at once
 seen '185#37[0-9A-F]{12}'                                          # operation enabled
 
-echo "--- cansend asks a drive, and the driver dies on the way"
-: >/tmp/dump.second
+echo "--- cansend asks a drive, and the driver dies while the head turns"
+kill $dump
+witness=/tmp/dump.2
+candump -L vcan0 >$witness &
+dump=$!
 can_axes nodes vcan0 >/tmp/nodes &
 nodes=$!
 can_axes drive vcan0 80 50 60 >/tmp/drive &
 drive=$!
 i=0
-until grep -q 'DRIVE head (tilt axis) active' /tmp/drive; do i=$((i + 1)); [ $i -lt 600 ] || fail "not in service: $(cat /tmp/drive)"; busybox usleep 100000; done
+until grep -qE ' 185#37[0-9A-F]{10}06$' $witness; do  # enabled, in homing mode
+  i=$((i + 1))
+  [ $i -lt 600 ] || fail "no homing: $(cat /tmp/drive)"
+  busybox usleep 100000
+done
+busybox usleep 500000
 cansend vcan0 605#4041600000000000
 busybox usleep 200000
 seen '585#4B416000[0-9A-F]{8}'

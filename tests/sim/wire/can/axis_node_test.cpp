@@ -60,7 +60,8 @@ TEST(AxisNode, ReadsAndWritesObjectsAndNamesWhatItRefuses) {
   (void)node.said();
   EXPECT_EQ(node.answer("605#4000100000000000"), "585#4300100092010200");
   EXPECT_EQ(node.answer("605#4061600000000000"), "585#4F61600000000000");
-  EXPECT_EQ(node.answer("605#4041600000000000"), "585#4B41600050020000") << "switch on disabled, remote, voltage";
+  EXPECT_EQ(node.answer("605#4041600000000000"), "585#4B41600050060000")
+      << "switch on disabled, remote, voltage, at its target";
   EXPECT_EQ(node.answer("605#237A600010270000"), "585#607A600000000000");
   EXPECT_EQ(node.answer("605#407A600000000000"), "585#437A600010270000");
   EXPECT_EQ(node.answer("605#40FE600000000000"), "585#80FE600000000206") << "no object";
@@ -118,11 +119,11 @@ TEST(AxisNode, ActsAndAnswersOnTheSync) {
   EXPECT_EQ(node.answer("080#"), "") << "not before it is operational";
   (void)node.answer("000#0105");
   EXPECT_EQ(node.answer("205#060010270000"), "");
-  EXPECT_EQ(node.answer("605#4041600000000000"), "585#4B41600050020000") << "not before the SYNC";
-  EXPECT_EQ(node.answer("080#"), "185#31020000000000");
+  EXPECT_EQ(node.answer("605#4041600000000000"), "585#4B41600050060000") << "not before the SYNC";
+  EXPECT_EQ(node.answer("080#"), "185#31060000000000");
   EXPECT_EQ(node.answer("605#407A600000000000"), "585#437A600010270000");
   (void)node.answer("205#0700");
-  EXPECT_EQ(node.answer("080#"), "085#1082000000000000 185#31020000000000") << "too short: emergency 8210";
+  EXPECT_EQ(node.answer("080#"), "085#1082000000000000 185#31060000000000") << "too short: emergency 8210";
 }
 
 TEST(AxisNode, ALostMasterStopsItAndIsSaid) {
