@@ -24,6 +24,7 @@ void DmxEndpoint::serve(Time now) {
   if (parts_.faults.find(bus, FaultKind::dead)) {
     socket_.descriptor.reset();
     arrived_.clear();
+    owed_.clear();
     return;
   }
   if (!socket_.descriptor.open()) {
@@ -35,16 +36,26 @@ void DmxEndpoint::serve(Time now) {
     const Arrived packet = std::move(arrived_.front());
     arrived_.pop_front();
     any = true;
-    sockaddr_in to{};
-    to.sin_family = AF_INET;
-    to.sin_addr.s_addr = htonl(packet.address);
-    to.sin_port = htons(packet.port);
-    for (const Packet& answer : receive(now, packet.address, packet.bytes)) {
-      ::sendto(socket_.descriptor.get(), answer.data(), answer.size(), MSG_NOSIGNAL | MSG_DONTWAIT,
-               reinterpret_cast<const sockaddr*>(&to), sizeof to);
+    for (Answer& answer : receive(now, packet.address, packet.bytes)) {
+      if (owed_.size() >= kMostArrived) break;
+      owed_.push_back({now + answer.late, packet.address, packet.port, std::move(answer.packet)});
     }
   }
+  send_owed(now);
   if (any) apply_to_fixtures(now);
+}
+
+void DmxEndpoint::send_owed(Time now) {
+  for (const Owed& answer : owed_) {
+    if (answer.due > now) continue;
+    sockaddr_in to{};
+    to.sin_family = AF_INET;
+    to.sin_addr.s_addr = htonl(answer.address);
+    to.sin_port = htons(answer.port);
+    ::sendto(socket_.descriptor.get(), answer.bytes.data(), answer.bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT,
+             reinterpret_cast<const sockaddr*>(&to), sizeof to);
+  }
+  std::erase_if(owed_, [now](const Owed& answer) { return answer.due <= now; });
 }
 
 void DmxEndpoint::take(Time now) {
@@ -81,6 +92,13 @@ void DmxEndpoint::apply_to_fixtures(Time now) {
     if (disturbance.silent || disturbance.garbled) continue;
     const auto slots = levels(patch->universe, now);
     if (!slots) continue;
+    const int moved = moved_by(f);
+    DmxPatch elsewhere;
+    if (moved != 0) {
+      elsewhere = *patch;
+      elsewhere.address += moved;
+      patch = &elsewhere;
+    }
     const DmxOrder order = decode_slots(fixture, *patch, *slots);
     parts_.world.set_drive(f, order.drive);
     if (order.joints) parts_.world.set_aim_target(f, *order.joints);
