@@ -15,9 +15,9 @@ constexpr int kPersonality = 0x00e0, kPersonalityDescription = 0x00e1, kAddress 
 constexpr int kSensorDefinition = 0x0200, kSensorValue = 0x0201, kDeviceHours = 0x0400, kLampHours = 0x0401;
 constexpr int kLampState = 0x0403, kIdentify = 0x1000;
 // Those that every responder has are not listed in SUPPORTED_PARAMETERS.
-constexpr int kListed[] = {kQueuedMessage,   kStatusMessages, kModel,       kManufacturer, kLabel,
-                           kPersonality,     kPersonalityDescription, kSlotInfo, kSensorDefinition, kSensorValue,
-                           kDeviceHours,     kLampHours,      kLampState};
+constexpr int kListed[] = {
+    kQueuedMessage, kStatusMessages,   kModel,       kManufacturer, kLabel,     kPersonality, kPersonalityDescription,
+    kSlotInfo,      kSensorDefinition, kSensorValue, kDeviceHours,  kLampHours, kLampState};
 constexpr int kUnknownPid = 0, kFormatError = 1, kWriteProtect = 4, kUnsupportedClass = 5, kOutOfRange = 6;
 constexpr int kSubDeviceOutOfRange = 9;
 
@@ -117,7 +117,8 @@ std::vector<std::uint8_t> RdmResponder::receive(Time now, std::span<const std::u
   }
   answer.transaction = request->transaction;
   answer.messages = static_cast<std::uint8_t>(std::min<std::ptrdiff_t>(
-      std::count_if(queue_.begin(), queue_.end(), [now](const Waiting& waiting) { return waiting.ready <= now; }), 255));
+      std::count_if(queue_.begin(), queue_.end(), [now](const Waiting& waiting) { return waiting.ready <= now; }),
+      255));
   return broadcast ? std::vector<std::uint8_t>{} : write_rdm(answer);
 }
 
@@ -166,8 +167,8 @@ std::optional<RdmFrame> RdmResponder::queued(Time now, const RdmFrame& request) 
 }
 
 RdmResponder::Reply RdmResponder::get(const RdmFrame& request) {
-  const bool with_data = request.pid == kPersonalityDescription || request.pid == kSensorDefinition ||
-                         request.pid == kSensorValue;
+  const bool with_data =
+      request.pid == kPersonalityDescription || request.pid == kSensorDefinition || request.pid == kSensorValue;
   if (request.data.size() != (with_data ? 1 : 0)) return {kNack, {0, kFormatError}};
   Bytes data;
   switch (request.pid) {

@@ -20,8 +20,8 @@
 namespace luxrig::sim {
 
 struct RdmSlot {
-  std::uint8_t type = 0;     ///< 0 primary, 1 fine
-  std::uint16_t label = 1;   ///< primary: 0x0001 intensity …; fine: offset of the slot that it is fine of
+  std::uint8_t type = 0;    ///< 0 primary, 1 fine
+  std::uint16_t label = 1;  ///< primary: 0x0001 intensity …; fine: offset of the slot that it is fine of
 };
 
 struct RdmIdentity {

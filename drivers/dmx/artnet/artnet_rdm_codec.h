@@ -30,11 +30,11 @@ struct TodControl {
 /// One block of the table of a port.
 struct TodData {
   int port_address = 0;
-  int port = 1;        ///< physical, 1…4
+  int port = 1;  ///< physical, 1…4
   int bind_index = 1;
-  bool full = true;    ///< false: the node has no table now
-  int total = 0;       ///< UIDs of all blocks
-  int block = 0;       ///< from 0
+  bool full = true;  ///< false: the node has no table now
+  int total = 0;     ///< UIDs of all blocks
+  int block = 0;     ///< from 0
   std::vector<rdm::Uid> uids;
 };
 /// requires at most kMostTodUids.

@@ -43,9 +43,9 @@ class DiscoveryLine {
 };
 
 struct DiscoveryLimits {
-  int retries = 3;          ///< of a mute that is not confirmed
-  int rounds = 3;           ///< the search is repeated until nobody new is found, at most so often
-  int requests = 50000;     ///< some minutes on a real line
+  int retries = 3;       ///< of a mute that is not confirmed
+  int rounds = 3;        ///< the search is repeated until nobody new is found, at most so often
+  int requests = 50000;  ///< some minutes on a real line
 };
 
 struct DiscoveryResult {

@@ -12,7 +12,7 @@
 namespace luxrig::rdm {
 
 inline constexpr std::uint8_t kStartCode = 0xCC;
-inline constexpr std::size_t kMostData = 231;  ///< bytes of parameter data in one packet
+inline constexpr std::size_t kMostData = 231;   ///< bytes of parameter data in one packet
 inline constexpr std::size_t kMostBytes = 257;  ///< of a packet, from start code to checksum
 
 /// Who a device is, for life: manufacturer as ESTA numbers them, and a number of the manufacturer's own.
@@ -107,9 +107,9 @@ enum class Pid : std::uint16_t {
 struct Packet {
   Uid to, from;
   std::uint8_t transaction = 0;
-  std::uint8_t port_or_type = 1;  ///< of a request: port, 1…255; of a response: ResponseType
+  std::uint8_t port_or_type = 1;   ///< of a request: port, 1…255; of a response: ResponseType
   std::uint8_t message_count = 0;  ///< of a response: so many messages wait in the responder's queue
-  std::uint16_t sub_device = 0;   ///< 0: the device itself; 0xFFFF: all its parts
+  std::uint16_t sub_device = 0;    ///< 0: the device itself; 0xFFFF: all its parts
   CommandClass command_class = CommandClass::get;
   Pid pid = Pid::device_info;
   std::vector<std::uint8_t> data;  ///< at most kMostData

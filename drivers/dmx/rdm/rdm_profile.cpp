@@ -40,8 +40,8 @@ Result<DeviceProfile> read_profile(const Ask& ask, const Uid& uid) {
   if (!info_data) return tl::unexpected(info_data.error());
   const auto info = decode_device_info(*info_data);
   if (!info) {
-    return tl::unexpected(
-        Fault{Cause::protocol, text_of(uid), "its device_info breaks the standard: " + describe(first.pid, *info_data), {}});
+    return tl::unexpected(Fault{
+        Cause::protocol, text_of(uid), "its device_info breaks the standard: " + describe(first.pid, *info_data), {}});
   }
   DeviceProfile profile;
   profile.uid = uid;
@@ -58,6 +58,11 @@ Result<DeviceProfile> read_profile(const Ask& ask, const Uid& uid) {
   if (has(Pid::dmx_personality_description) && info->personality > 0) {
     const auto data = reader.get(Pid::dmx_personality_description, {static_cast<std::uint8_t>(info->personality)});
     if (data) profile.personality = decode_personality_description(*data);
+  }
+  if (has(Pid::slot_info)) {
+    if (const auto data = reader.get(Pid::slot_info)) {
+      profile.slots = decode_slot_info(*data).value_or(std::vector<SlotInfo>{});
+    }
   }
   if (has(Pid::lamp_hours)) {
     if (const auto data = reader.get(Pid::lamp_hours)) profile.lamp_hours = decode_hours(*data);

@@ -21,6 +21,7 @@ struct DeviceProfile {
   DeviceInfo info;
   std::string manufacturer, model, label, software;  ///< empty: not told
   std::optional<PersonalityDescription> personality;
+  std::vector<SlotInfo> slots;       ///< empty: not told
   std::vector<SensorState> sensors;  ///< the first 16
   std::optional<std::uint32_t> lamp_hours, device_hours;
   std::optional<LampState> lamp;

@@ -8,7 +8,7 @@ namespace luxrig::rdm {
 namespace {
 
 constexpr int kQuestions = 3;
-constexpr int kMostQueued = 32;           // messages about something else, before the one that is waited for
+constexpr int kMostQueued = 32;  // messages about something else, before the one that is waited for
 constexpr std::size_t kMostCollected = 65536;
 constexpr int kMostRestarts = 2;
 constexpr Duration kTimerUnit = std::chrono::milliseconds(100);

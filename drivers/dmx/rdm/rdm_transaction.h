@@ -64,7 +64,7 @@ class Transaction {
   Stage stage_ = Stage::question;
   std::optional<Time> begun_, sent_;
   Time not_before_{};
-  int lost_ = 0;          ///< questions in a row that were not answered
+  int lost_ = 0;  ///< questions in a row that were not answered
   int queue_asked_ = 0;
   int restarts_ = 0;
   std::uint8_t sent_number_ = 0;

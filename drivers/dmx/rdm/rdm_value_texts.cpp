@@ -10,17 +10,44 @@ namespace luxrig::rdm {
 namespace {
 
 // Table A-13 of the standard, from 0x00 on.
-constexpr std::string_view kUnits[] = {"",    "°C", "V",  "V",   "V",  "A",  "A",    "A",   "Hz",    "Ω",
-                                       "W",   "kg", "m",  "m²",  "m³", "kg/m³", "m/s", "m/s²", "N",  "J",
-                                       "Pa",  "s",  "°",  "sr",  "cd", "lm", "lx",   "ir",  "B"};
+constexpr std::string_view kUnits[] = {"",   "°C", "V", "V",  "V",  "A",     "A",   "A",    "Hz", "Ω",
+                                       "W",  "kg", "m", "m²", "m³", "kg/m³", "m/s", "m/s²", "N",  "J",
+                                       "Pa", "s",  "°", "sr", "cd", "lm",    "lx",  "ir",   "B"};
 
 // Table A-12, from 0x00 on.
-constexpr std::string_view kSensorTypes[] = {
-    "temperature", "voltage",      "current",   "frequency", "resistance",   "power",    "mass",
-    "length",      "area",         "volume",    "density",   "velocity",     "acceleration", "force",
-    "energy",      "pressure",     "time",      "angle",     "position x",   "position y", "position z",
-    "angular velocity", "luminous intensity", "luminous flux", "illuminance", "chrominance red",
-    "chrominance green", "chrominance blue", "contacts", "memory", "items", "humidity", "counter"};
+constexpr std::string_view kSensorTypes[] = {"temperature",
+                                             "voltage",
+                                             "current",
+                                             "frequency",
+                                             "resistance",
+                                             "power",
+                                             "mass",
+                                             "length",
+                                             "area",
+                                             "volume",
+                                             "density",
+                                             "velocity",
+                                             "acceleration",
+                                             "force",
+                                             "energy",
+                                             "pressure",
+                                             "time",
+                                             "angle",
+                                             "position x",
+                                             "position y",
+                                             "position z",
+                                             "angular velocity",
+                                             "luminous intensity",
+                                             "luminous flux",
+                                             "illuminance",
+                                             "chrominance red",
+                                             "chrominance green",
+                                             "chrominance blue",
+                                             "contacts",
+                                             "memory",
+                                             "items",
+                                             "humidity",
+                                             "counter"};
 
 struct NamedCategory {
   std::uint16_t category;
@@ -28,10 +55,21 @@ struct NamedCategory {
 };
 // Table A-5: the coarse category is the high byte; of the fine ones those that Luxrig cares about.
 constexpr NamedCategory kCategories[] = {
-    {0x0101, "fixed fixture"}, {0x0102, "moving head"}, {0x0103, "moving mirror"}, {0x0100, "fixture"},
-    {0x0200, "fixture accessory"}, {0x0300, "projector"}, {0x0400, "atmospheric"}, {0x0500, "dimmer"},
-    {0x0600, "power"}, {0x0700, "scenic"}, {0x0800, "data"}, {0x0900, "audio-visual"}, {0x0A00, "monitor"},
-    {0x7000, "control"}, {0x7100, "test equipment"},
+    {0x0101, "fixed fixture"},
+    {0x0102, "moving head"},
+    {0x0103, "moving mirror"},
+    {0x0100, "fixture"},
+    {0x0200, "fixture accessory"},
+    {0x0300, "projector"},
+    {0x0400, "atmospheric"},
+    {0x0500, "dimmer"},
+    {0x0600, "power"},
+    {0x0700, "scenic"},
+    {0x0800, "data"},
+    {0x0900, "audio-visual"},
+    {0x0A00, "monitor"},
+    {0x7000, "control"},
+    {0x7100, "test equipment"},
 };
 
 std::string hex_of(std::span<const std::uint8_t> data) {
@@ -154,8 +192,8 @@ std::string text_of(const SensorDefinition& sensor, int value) {
   const int exponent = exponent_of_prefix(sensor.prefix);
   const std::string_view unit = name_of_unit(sensor.unit);
   const double scaled = value * std::pow(10.0, exponent);
-  const std::string number = exponent < 0 && exponent >= -6 ? fmt::format("{:.{}f}", scaled, -exponent)
-                                                            : fmt::format("{:g}", scaled);
+  const std::string number =
+      exponent < 0 && exponent >= -6 ? fmt::format("{:.{}f}", scaled, -exponent) : fmt::format("{:g}", scaled);
   return unit.empty() ? number : fmt::format("{} {}", number, unit);
 }
 

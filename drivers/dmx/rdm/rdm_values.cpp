@@ -10,6 +10,7 @@ namespace {
 using Data = std::span<const std::uint8_t>;
 
 constexpr std::size_t kDeviceInfoSize = 19;
+constexpr std::size_t kSlotInfoSize = 5;
 constexpr int kLastAddress = 512;
 constexpr std::uint16_t kNoAddress = 0xFFFF;
 constexpr std::uint16_t kForEver = 0xFFFF;
@@ -54,7 +55,7 @@ std::optional<std::string> decode_label(Data data) {
   std::string text;
   for (const std::uint8_t byte : data) {
     if (byte == 0) break;
-    text += byte < 0x20 || byte == 0x7F ? '?' : static_cast<char>(byte);
+    text += byte < 0x20 || byte >= 0x7F ? '?' : static_cast<char>(byte);
   }
   return text;
 }
@@ -121,6 +122,16 @@ std::optional<SensorDefinition> decode_sensor_definition(Data data) {
 std::optional<SensorValue> decode_sensor_value(Data data) {
   if (data.size() != 9) return std::nullopt;
   return SensorValue{data[0], signed_16(data, 1), signed_16(data, 3), signed_16(data, 5), signed_16(data, 7)};
+}
+
+std::optional<std::vector<SlotInfo>> decode_slot_info(Data data) {
+  if (data.size() % kSlotInfoSize != 0 || data.size() / kSlotInfoSize > kLastAddress) return std::nullopt;
+  std::vector<SlotInfo> slots;
+  for (std::size_t at = 0; at < data.size(); at += kSlotInfoSize) {
+    slots.push_back({value_16(data, at), data[at + 2], static_cast<std::uint16_t>(value_16(data, at + 3))});
+    if (slots.back().offset >= kLastAddress) return std::nullopt;
+  }
+  return slots;
 }
 
 std::optional<FailMode> decode_fail_mode(Data data) {

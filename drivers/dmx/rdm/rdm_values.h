@@ -30,7 +30,7 @@ struct DeviceInfo {
 
 [[nodiscard]] std::optional<std::vector<Pid>> decode_supported_parameters(std::span<const std::uint8_t> data);
 
-/// A label: up to the first NUL, control characters as '?'; nothing above 32 bytes.
+/// A label: up to the first NUL, what is not printable ASCII as '?'; nothing above 32 bytes.
 [[nodiscard]] std::optional<std::string> decode_label(std::span<const std::uint8_t> data);
 
 /// 1…512, or nothing inside: the device has no slots.
@@ -63,9 +63,9 @@ enum class LampState : std::uint8_t { off, on, strike, standby, not_present, err
 /// What a sensor measures, in which unit, scaled by a power of ten.
 struct SensorDefinition {
   int number = 0;
-  std::uint8_t type = 0;    ///< 0x00 temperature, 0x01 voltage …
-  std::uint8_t unit = 0;    ///< 0x01 °C …
-  std::uint8_t prefix = 0;  ///< 0x00 none, 0x03 milli, 0x13 kilo …
+  std::uint8_t type = 0;                                             ///< 0x00 temperature, 0x01 voltage …
+  std::uint8_t unit = 0;                                             ///< 0x01 °C …
+  std::uint8_t prefix = 0;                                           ///< 0x00 none, 0x03 milli, 0x13 kilo …
   int range_min = 0, range_max = 0, normal_min = 0, normal_max = 0;  ///< before the prefix
   bool records_value = false, records_extremes = false;
   std::string description;
@@ -78,15 +78,24 @@ struct SensorValue {
 [[nodiscard]] std::optional<SensorValue> decode_sensor_value(std::span<const std::uint8_t> data);
 /// "41.5 °C": a value of this sensor in its unit, prefix applied.
 [[nodiscard]] std::string text_of(const SensorDefinition& sensor, int value);
-[[nodiscard]] std::string_view name_of_unit(std::uint8_t unit);      ///< "°C"; empty: none, or none known
+[[nodiscard]] std::string_view name_of_unit(std::uint8_t unit);         ///< "°C"; empty: none, or none known
 [[nodiscard]] std::string_view name_of_sensor_type(std::uint8_t type);  ///< "temperature"
 /// 10ⁿ of a prefix; 0 for one that is not in the standard.
 [[nodiscard]] int exponent_of_prefix(std::uint8_t prefix);
 
+/// What a slot of the footprint is for.
+struct SlotInfo {
+  int offset = 0;           ///< from 0
+  std::uint8_t type = 0;    ///< 0 primary, 1 fine, 2 timing, 3 speed …
+  std::uint16_t label = 0;  ///< primary: 0x0001 intensity, 0x0101 pan …; else the offset of the slot it belongs to
+};
+[[nodiscard]] std::optional<std::vector<SlotInfo>> decode_slot_info(std::span<const std::uint8_t> data);
+inline constexpr std::uint16_t kIntensitySlot = 0x0001, kPanSlot = 0x0101, kTiltSlot = 0x0102;
+
 struct FailMode {
-  int scene = 0;             ///< 0: hold the last look
-  double loss_delay_s = 0;   ///< infinity: never
-  double hold_s = 0;         ///< infinity: for ever
+  int scene = 0;            ///< 0: hold the last look
+  double loss_delay_s = 0;  ///< infinity: never
+  double hold_s = 0;        ///< infinity: for ever
   int level_dmx = 0;
 };
 /// DMX_FAIL_MODE and DMX_STARTUP_MODE.

@@ -9,8 +9,8 @@ namespace {
 
 constexpr int kOpTodRequest = 0x8000, kOpTodData = 0x8100, kOpTodControl = 0x8200, kOpRdm = 0x8300;
 constexpr std::uint8_t kFlush = 1;
-constexpr std::size_t kMostUids = 200;   // in one ArtTodData
-constexpr std::size_t kMostPorts = 32;   // in one ArtTodRequest
+constexpr std::size_t kMostUids = 200;    // in one ArtTodData
+constexpr std::size_t kMostPorts = 32;    // in one ArtTodRequest
 constexpr std::size_t kShortestRdm = 25;  // without its start code: 24 bytes after it, checksum included
 constexpr std::uint8_t kArtNet[] = {'A', 'r', 't', '-', 'N', 'e', 't', 0};
 
