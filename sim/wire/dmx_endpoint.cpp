@@ -24,6 +24,7 @@ void DmxEndpoint::serve(Time now) {
   if (parts_.faults.find(bus, FaultKind::dead)) {
     socket_.descriptor.reset();
     arrived_.clear();
+    owed_.clear();
     return;
   }
   if (!socket_.descriptor.open()) {
@@ -35,16 +36,29 @@ void DmxEndpoint::serve(Time now) {
     const Arrived packet = std::move(arrived_.front());
     arrived_.pop_front();
     any = true;
-    sockaddr_in to{};
-    to.sin_family = AF_INET;
-    to.sin_addr.s_addr = htonl(packet.address);
-    to.sin_port = htons(packet.port);
-    for (const Packet& answer : receive(now, packet.address, packet.bytes)) {
-      ::sendto(socket_.descriptor.get(), answer.data(), answer.size(), MSG_NOSIGNAL | MSG_DONTWAIT,
-               reinterpret_cast<const sockaddr*>(&to), sizeof to);
+    for (Answer& answer : receive(now, packet.address, packet.bytes)) {
+      if (owed_.size() >= kMostArrived) break;
+      owed_.push_back({now + answer.late, packet.address, packet.port, std::move(answer.packet)});
     }
   }
-  if (any) obey_dmx(parts_, ++frames_, [&](int universe) { return levels(universe, now); });
+  send_owed(now);
+  if (any)
+    obey_dmx(
+        parts_, ++frames_, [&](int universe) { return levels(universe, now); },
+        [this](std::size_t f) { return moved_by(f); });
+}
+
+void DmxEndpoint::send_owed(Time now) {
+  for (const Owed& answer : owed_) {
+    if (answer.due > now) continue;
+    sockaddr_in to{};
+    to.sin_family = AF_INET;
+    to.sin_addr.s_addr = htonl(answer.address);
+    to.sin_port = htons(answer.port);
+    ::sendto(socket_.descriptor.get(), answer.bytes.data(), answer.bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT,
+             reinterpret_cast<const sockaddr*>(&to), sizeof to);
+  }
+  std::erase_if(owed_, [now](const Owed& answer) { return answer.due <= now; });
 }
 
 void DmxEndpoint::take(Time now) {

@@ -22,9 +22,15 @@ class DmxEndpoint : public BusEndpoint {
 
  protected:
   using Packet = std::vector<std::uint8_t>;
+  struct Answer {
+    Packet packet;
+    Duration late{};  ///< so much later than at once
+  };
   /// One packet from the network; returns what to send back to its sender. `from`: IPv4 address.
-  virtual std::vector<Packet> receive(Time now, std::uint32_t from, std::span<const std::uint8_t> packet) = 0;
+  virtual std::vector<Answer> receive(Time now, std::uint32_t from, std::span<const std::uint8_t> packet) = 0;
   virtual std::optional<std::array<std::uint8_t, kDmxSlots>> levels(int universe, Time now) = 0;
+  /// By how many slots a fixture listens elsewhere than the rig file has it.
+  [[nodiscard]] virtual int moved_by(std::size_t) const { return 0; }
 
   EndpointParts parts_;
 
@@ -36,11 +42,20 @@ class DmxEndpoint : public BusEndpoint {
     Packet bytes;
   };
 
+  struct Owed {
+    Time due;
+    std::uint32_t address;  ///< IPv4, host order
+    std::uint16_t port;
+    Packet bytes;
+  };
+
   void take(Time now);
+  void send_owed(Time now);
 
   BoundSocket socket_;
   int port_;
   std::deque<Arrived> arrived_;
+  std::vector<Owed> owed_;  ///< in the order in which they were made
   std::uint64_t packets_ = 0, frames_ = 0;
 };
 

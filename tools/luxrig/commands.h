@@ -46,6 +46,20 @@ struct DevicesArguments {
 };
 int run_devices(const DevicesArguments& arguments);
 
+/// Devices on the DMX lines behind Art-Net nodes, by RDM.
+struct RdmArguments {
+  std::string node;  ///< address, with or without port; empty: all that answer to the broadcast
+  std::string broadcast = "255.255.255.255";
+  std::optional<int> universe;  ///< Art-Net port address; else all
+  double seconds = 3;
+  bool rediscover = false;
+  bool json = false, toml = false;
+  std::string uid, parameter, value;
+};
+int run_rdm_list(const RdmArguments& arguments);
+int run_rdm_get(const RdmArguments& arguments);
+int run_rdm_set(const RdmArguments& arguments);
+
 /// Talks to a running daemon on loopback.
 struct ClientArguments {
   int port = 9620;

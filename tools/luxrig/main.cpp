@@ -31,6 +31,39 @@ void add_client(CLI::App& command, ClientArguments& client, bool with_json = tru
   if (with_json) command.add_flag("--json", client.json, "print what the daemon answers");
 }
 
+void add_rdm(CLI::App& command, RdmArguments& rdm, int& code) {
+  command.require_subcommand(1);
+  const auto add_search = [&rdm](CLI::App& one) {
+    one.add_option("--node", rdm.node, "ask this node only (IPv4 address, with or without :port)");
+    one.add_option("--broadcast", rdm.broadcast, "where nodes are asked: the lighting network's")
+        ->capture_default_str();
+    one.add_option("--universe", rdm.universe, "only this Art-Net port address")->check(CLI::Range(0, 32767));
+    one.add_option("--seconds", rdm.seconds, "how long to wait for the nodes' tables of devices")
+        ->capture_default_str()
+        ->check(CLI::Range(0.1, 600.0));
+    one.add_flag("--rediscover", rdm.rediscover, "have the nodes search their lines anew");
+    one.add_flag("--json", rdm.json, "print JSON");
+  };
+  auto* list = command.add_subcommand("list", "a table of all devices");
+  add_search(*list);
+  list->add_flag("--toml", rdm.toml, "print [[fixture]] entries for a rig file");
+  list->callback([&] { code = run_rdm_list(rdm); });
+  auto* get = command.add_subcommand("get", "read one parameter of a device");
+  get->add_option("UID", rdm.uid, "which device")->required();
+  get->add_option("PARAMETER", rdm.parameter, "its name (device_info, lamp_hours …) or number (0x8001)")->required();
+  get->add_option("INDEX", rdm.value, "of which sensor (from 0) or personality (from 1)");
+  add_search(*get);
+  get->callback([&] { code = run_rdm_get(rdm); });
+  auto* set = command.add_subcommand("set", "set one parameter of a device");
+  set->add_option("UID", rdm.uid, "which device")->required();
+  set->add_option("PARAMETER", rdm.parameter, "which")
+      ->required()
+      ->check(CLI::IsMember({"address", "label", "personality", "identify"}));
+  set->add_option("VALUE", rdm.value, "1 to 512, a text, a number, on or off")->required();
+  add_search(*set);
+  set->callback([&] { code = run_rdm_set(rdm); });
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -140,6 +173,10 @@ int main(int argc, char** argv) {
   command->add_option("--interface", devices.interface, "network interface by which sACN sources are heard");
   command->add_flag("--json", devices.json, "print the list as JSON");
   command->callback([&] { code = run_devices(devices); });
+
+  RdmArguments rdm;
+  add_rdm(*app.add_subcommand("rdm", "devices behind Art-Net nodes: list them, read and set their parameters"), rdm,
+          code);
 
   ClientArguments client;
   std::filesystem::path plan;

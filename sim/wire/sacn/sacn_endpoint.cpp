@@ -9,7 +9,7 @@ class SacnEndpoint final : public DmxEndpoint {
   using DmxEndpoint::DmxEndpoint;
 
  private:
-  std::vector<Packet> receive(Time now, std::uint32_t, std::span<const std::uint8_t> packet) override {
+  std::vector<Answer> receive(Time now, std::uint32_t, std::span<const std::uint8_t> packet) override {
     receiver_.receive(now, packet);
     return {};
   }

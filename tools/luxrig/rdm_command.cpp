@@ -1,0 +1,266 @@
+// rdm: which devices are behind Art-Net nodes, how they are set, and setting them.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <nlohmann/json.hpp>
+
+#include "drivers/dmx/artnet/artnet_codec.h"
+#include "tools/luxrig/command.h"
+#include "tools/luxrig/commands.h"
+#include "tools/luxrig/rdm_bus.h"
+#include "tools/luxrig/rdm_stubs.h"
+#include "tools/luxrig/table.h"
+
+namespace luxrig {
+namespace {
+
+using Json = nlohmann::json;
+
+int refuse_input(const std::string& text) {
+  fmt::print(stderr, "luxrig: {}\n", text);
+  return kExitBadInput;
+}
+
+/// The whole text as a number from `least` to `most`.
+std::optional<int> number_in(const std::string& text, int least, int most) {
+  int value = 0;
+  const char* end = text.data() + text.size();
+  const auto parsed = std::from_chars(text.data(), end, value);
+  if (parsed.ec != std::errc() || parsed.ptr != end || value < least || value > most) return std::nullopt;
+  return value;
+}
+
+/// "10.0.0.7" or "10.0.0.7:6454".
+std::optional<SocketAddress> address_of(const std::string& text) {
+  const auto colon = text.find(':');
+  const auto ipv4 = parse_ipv4(text.substr(0, colon));
+  if (!ipv4 || *ipv4 == 0 || is_multicast(*ipv4)) return std::nullopt;
+  SocketAddress address{*ipv4, artnet::kPort};
+  if (colon == std::string::npos) return address;
+  const auto port = number_in(text.substr(colon + 1), 1, 65535);
+  if (!port) return std::nullopt;
+  address.port = static_cast<std::uint16_t>(*port);
+  return address;
+}
+
+std::string text_of_json(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+/// Looks for nodes and tables; says what is wrong and returns nothing when an argument is.
+std::optional<Result<RdmBus>> find_bus(const RdmArguments& arguments) {
+  const std::string& where = arguments.node.empty() ? arguments.broadcast : arguments.node;
+  const auto address = address_of(where);
+  if (!address) {
+    refuse_input(fmt::format("{} {} is no IPv4 address to ask: write numbers, such as 2.0.0.10",
+                             arguments.node.empty() ? "--broadcast" : "--node", where));
+    return std::nullopt;
+  }
+  return RdmBus::find({*address, !arguments.node.empty(), arguments.universe, arguments.seconds, arguments.rediscover});
+}
+
+Json json_of(const PatchedDevice& device, const std::string& node) {
+  const rdm::DeviceProfile& profile = device.profile;
+  Json json = {{"uid", text_of(profile.uid)},
+               {"node", node},
+               {"universe", device.universe},
+               {"manufacturer", profile.manufacturer},
+               {"model", profile.model},
+               {"model_id", profile.info.model},
+               {"category", rdm::name_of_category(profile.info.category)},
+               {"label", profile.label},
+               {"software", profile.software},
+               {"footprint", profile.info.footprint_slots},
+               {"personality", profile.info.personality},
+               {"personalities", profile.info.personalities},
+               {"sub_devices", profile.info.sub_devices}};
+  if (profile.info.start_address) json["address"] = *profile.info.start_address;
+  if (profile.personality) json["personality_text"] = profile.personality->text;
+  if (profile.lamp_hours) json["lamp_hours"] = *profile.lamp_hours;
+  if (profile.device_hours) json["device_hours"] = *profile.device_hours;
+  if (profile.lamp) json["lamp_state"] = rdm::text_of(*profile.lamp);
+  if (const auto names = slot_names(profile); !names.empty()) json["slots"] = names;
+  Json sensors = Json::array();
+  for (const rdm::SensorState& sensor : profile.sensors) {
+    Json one = {{"name", sensor.definition.description},
+                {"type", rdm::name_of_sensor_type(sensor.definition.type)},
+                {"unit", rdm::name_of_unit(sensor.definition.unit)}};
+    if (sensor.value) one["value"] = text_of(sensor.definition, sensor.value->present);
+    sensors.push_back(std::move(one));
+  }
+  json["sensors"] = std::move(sensors);
+  return json;
+}
+
+std::vector<std::string> row_of(const PatchedDevice& device) {
+  const rdm::DeviceProfile& profile = device.profile;
+  std::string sensors;
+  for (const rdm::SensorState& sensor : profile.sensors) {
+    sensors += fmt::format("{}{} {}", sensors.empty() ? "" : ", ", sensor.definition.description,
+                           sensor.value ? text_of(sensor.definition, sensor.value->present) : "?");
+  }
+  std::string personality = fmt::format("{}/{}", profile.info.personality, profile.info.personalities);
+  if (profile.personality) personality += " " + profile.personality->text;
+  return {text_of(profile.uid),
+          profile.manufacturer,
+          profile.model.empty() ? fmt::format("model {}", profile.info.model) : profile.model,
+          profile.label,
+          fmt::format("{}", device.universe),
+          profile.info.start_address ? fmt::format("{}", *profile.info.start_address) : "-",
+          fmt::format("{}", profile.info.footprint_slots),
+          std::move(personality),
+          std::move(sensors)};
+}
+
+/// The line of a device; says so when it is on none.
+const RdmUniverse* line_with(const RdmBus& bus, const rdm::Uid& uid) {
+  const RdmUniverse* line = bus.line_of(uid);
+  if (line != nullptr) return line;
+  std::size_t others = 0;
+  for (const RdmUniverse& universe : bus.universes()) others += universe.link->table().uids.size();
+  fmt::print(stderr, "luxrig: {} is on no line: {} nodes answer, with {} other devices; --rediscover searches anew\n",
+             text_of(uid), bus.nodes(), others);
+  return nullptr;
+}
+
+/// What a GET needs besides the parameter: the number of a sensor or a personality.
+std::optional<std::vector<std::uint8_t>> index_of(rdm::Pid pid, const std::string& index) {
+  if (pid == rdm::Pid::sensor_definition || pid == rdm::Pid::sensor_value) {
+    const auto number = number_in(index.empty() ? "0" : index, 0, 254);
+    return number ? std::optional(std::vector{static_cast<std::uint8_t>(*number)}) : std::nullopt;
+  }
+  if (pid == rdm::Pid::dmx_personality_description) {
+    const auto number = number_in(index.empty() ? "1" : index, 1, 255);
+    return number ? std::optional(std::vector{static_cast<std::uint8_t>(*number)}) : std::nullopt;
+  }
+  return index.empty() ? std::optional(std::vector<std::uint8_t>{}) : std::nullopt;
+}
+
+struct Setting {
+  rdm::Pid pid{};
+  std::vector<std::uint8_t> data;
+};
+
+/// What a person wants set; else what would mend it.
+tl::expected<Setting, std::string> setting_of(const std::string& what, const std::string& value) {
+  if (what == "address") {
+    const auto address = number_in(value, 1, 512);
+    if (!address) return tl::unexpected(fmt::format("{} is no start address: use 1 to 512", value));
+    return Setting{rdm::Pid::dmx_start_address, rdm::encode_start_address(*address)};
+  }
+  if (what == "personality") {
+    const auto number = number_in(value, 1, 255);
+    if (!number) return tl::unexpected(fmt::format("{} is no personality: use 1 to 255", value));
+    return Setting{rdm::Pid::dmx_personality, {static_cast<std::uint8_t>(*number)}};
+  }
+  if (what == "identify") {
+    if (value != "on" && value != "off") return tl::unexpected(fmt::format("{} is neither on nor off", value));
+    return Setting{rdm::Pid::identify_device, {static_cast<std::uint8_t>(value == "on" ? 1 : 0)}};
+  }
+  const bool printable =
+      std::all_of(value.begin(), value.end(), [](char letter) { return letter >= 0x20 && letter < 0x7F; });
+  if (value.size() > rdm::kMostLabel || !printable) {
+    return tl::unexpected(fmt::format("a label has at most {} plain (ASCII) characters: use fewer", rdm::kMostLabel));
+  }
+  return Setting{rdm::Pid::device_label, {value.begin(), value.end()}};
+}
+
+}  // namespace
+
+int run_rdm_list(const RdmArguments& arguments) {
+  const auto found = find_bus(arguments);
+  if (!found) return kExitBadInput;
+  if (!*found) return report(found->error());
+  const RdmBus& bus = **found;
+  std::vector<PatchedDevice> devices;
+  Json all = Json::array();
+  Table table(
+      {"UID", "manufacturer", "model", "label", ">universe", ">address", ">footprint", "personality", "sensors"});
+  bool failed = false;
+  for (const RdmUniverse& universe : bus.universes()) {
+    const artnet::TableOfDevices& known = universe.link->table();
+    if (known.heard && !known.complete) {
+      fmt::print(stderr, "universe {} of {}: its table of devices is not complete: --seconds {:.0f} waits longer\n",
+                 universe.link->port_address(), universe.node, 2 * arguments.seconds);
+    }
+    for (const rdm::Uid& uid : known.uids) {
+      const rdm::Ask ask = [&universe](const rdm::Request& request) { return RdmBus::ask(universe, request); };
+      auto profile = rdm::read_profile(ask, uid);
+      if (!profile) {
+        failed = true;
+        report(profile.error());
+        continue;
+      }
+      devices.push_back({universe.link->port_address(), std::move(*profile)});
+      table.row(row_of(devices.back()));
+      all.push_back(json_of(devices.back(), universe.node));
+    }
+  }
+  if (arguments.json) {
+    fmt::print("{}\n", text_of_json(all));
+  } else if (arguments.toml) {
+    fmt::print("{}", fixture_stubs(devices));
+  } else if (!devices.empty()) {
+    fmt::print("{}", table.text());
+  } else {
+    fmt::print("nothing found: {} nodes answer, with {} universes\n", bus.nodes(), bus.universes().size());
+  }
+  return failed ? kExitFailed : kExitOk;
+}
+
+int run_rdm_get(const RdmArguments& arguments) {
+  const auto uid = rdm::parse_uid(arguments.uid);
+  if (!uid || is_broadcast(*uid)) return refuse_input(arguments.uid + " is no UID: such as 7ff0:00000001");
+  const auto pid = rdm::parse_pid(arguments.parameter);
+  if (!pid) {
+    return refuse_input(arguments.parameter + " is no parameter that is known here: such as device_info, or 0x8001");
+  }
+  const auto index = index_of(*pid, arguments.value);
+  if (!index) return refuse_input(fmt::format("{} of {} is not to be had", arguments.value, text_of(*pid)));
+  const auto found = find_bus(arguments);
+  if (!found) return kExitBadInput;
+  if (!*found) return report(found->error());
+  const RdmUniverse* line = line_with(**found, *uid);
+  if (line == nullptr) return kExitFailed;
+  const auto data = RdmBus::ask(*line, {*uid, rdm::CommandClass::get, *pid, *index});
+  if (!data) return report(data.error());
+  std::string text = rdm::describe(*pid, *data);
+  if (const auto value = rdm::decode_sensor_value(*data); value && *pid == rdm::Pid::sensor_value) {
+    const auto about = RdmBus::ask(*line, {*uid, rdm::CommandClass::get, rdm::Pid::sensor_definition, *index});
+    const auto definition = about ? rdm::decode_sensor_definition(*about) : std::nullopt;
+    if (definition) text = fmt::format("{} {}", definition->description, text_of(*definition, value->present));
+  }
+  if (arguments.json) {
+    fmt::print("{}\n",
+               text_of_json({{"uid", text_of(*uid)}, {"parameter", text_of(*pid)}, {"value", text}, {"data", *data}}));
+  } else {
+    fmt::print("{}\n", text);
+  }
+  return kExitOk;
+}
+
+int run_rdm_set(const RdmArguments& arguments) {
+  const auto uid = rdm::parse_uid(arguments.uid);
+  if (!uid || is_broadcast(*uid)) return refuse_input(arguments.uid + " is no UID: such as 7ff0:00000001");
+  const auto setting = setting_of(arguments.parameter, arguments.value);
+  if (!setting) return refuse_input(setting.error());
+  const auto found = find_bus(arguments);
+  if (!found) return kExitBadInput;
+  if (!*found) return report(found->error());
+  const RdmUniverse* line = line_with(**found, *uid);
+  if (line == nullptr) return kExitFailed;
+  if (auto done = RdmBus::ask(*line, {*uid, rdm::CommandClass::set, setting->pid, setting->data}); !done) {
+    return report(done.error());
+  }
+  // What it says afterwards counts: a device may take what it likes of a value.
+  const auto after = RdmBus::ask(*line, {*uid, rdm::CommandClass::get, setting->pid});
+  if (!after) return report(after.error());
+  const std::string text = rdm::describe(setting->pid, *after);
+  if (arguments.json) {
+    fmt::print("{}\n", text_of_json({{"uid", text_of(*uid)}, {"parameter", text_of(setting->pid)}, {"value", text}}));
+  } else {
+    fmt::print("{}: {}\n", text_of(*uid), text);
+  }
+  return kExitOk;
+}
+
+}  // namespace luxrig
