@@ -95,14 +95,14 @@ Result<void> InProcessRig::send(Time now, std::span<const Command> commands, std
     ++bus.health.sent;
     went_well(bus, now);
     // A frame that is garbled or refused changes nothing at the far end; only devices that answer let us know.
-    if (disturbance.silent || disturbance.garbled || disturbance.exception ||
+    if (disturbance.silent || disturbance.garbled || disturbance.on_line || disturbance.exception ||
         disturbance.delay > options_.fault_after) {
       if (!device.answers) {
         went_well(device, now);
       } else if (disturbance.exception) {
         went_wrong(device, now, fmt::format("refused: exception {}", *disturbance.exception));
       } else {
-        went_wrong(device, now, disturbance.garbled ? "answer is garbled" : "no answer");
+        went_wrong(device, now, disturbance.garbled || disturbance.on_line ? "answer is garbled" : "no answer");
       }
       if (!(disturbance.delay > options_.fault_after)) continue;  // a late device still obeys
     } else {
@@ -180,7 +180,7 @@ Result<std::vector<LuxReading>> InProcessRig::read(Time now) {
       went_wrong(device, now, fmt::format("refused: exception {}", *disturbance.exception));
     } else if (disturbance.silent || disturbance.delay > options_.fault_after) {
       went_wrong(device, now, "no answer");
-    } else if (disturbance.garbled) {
+    } else if (disturbance.garbled || disturbance.on_line) {
       went_wrong(device, now, "answer is garbled");
     } else {
       const Time taken = options_.start + (sampled - Time{});

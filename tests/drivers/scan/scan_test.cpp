@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <thread>
@@ -20,9 +21,9 @@ using std::chrono::milliseconds;
 /// A folder that stands for the root of a system.
 class MadeUpSystem {
  public:
-  MadeUpSystem() : root_(fs::path(::testing::TempDir()) / "luxrig-scan") {
-    fs::remove_all(root_);
-    fs::create_directories(root_);
+  MadeUpSystem() {
+    std::string name = (fs::temp_directory_path() / "luxrig-scan-XXXXXX").string();
+    root_ = ::mkdtemp(name.data());
   }
   ~MadeUpSystem() { fs::remove_all(root_); }
   MadeUpSystem(const MadeUpSystem&) = delete;
