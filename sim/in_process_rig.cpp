@@ -104,7 +104,8 @@ Result<void> InProcessRig::send(Time now, std::span<const Command> commands, std
       } else {
         went_wrong(device, now, disturbance.garbled || disturbance.on_line ? "answer is garbled" : "no answer");
       }
-      if (!(disturbance.delay > options_.fault_after)) continue;  // a late device still obeys
+      // A device that is late, or whose answer the line spoils, still obeys.
+      if (!(disturbance.delay > options_.fault_after) && !disturbance.on_line) continue;
     } else {
       if (device.answers) ++device.health.received;
       went_well(device, now);
