@@ -125,8 +125,8 @@ std::string dump_of(const RegisterMap& map) {
   std::string out;
   const auto add = [&](const auto&... values) { ((out += fmt::format("{} ", values)), ...), out += '\n'; };
   add(map.name, map.source, map.assumed.size(), map.answer_time.value_or(Duration{}).count(), map.shortest_gap.count(),
-      map.largest_read, map.largest_write, fmt::format("{}", fmt::join(map.baud_rates, ",")), static_cast<int>(map.when_data_stops),
-      map.stops_after.value_or(Duration{}).count());
+      map.largest_read, map.largest_write, fmt::format("{}", fmt::join(map.baud_rates, ",")),
+      static_cast<int>(map.when_data_stops), map.stops_after.value_or(Duration{}).count());
   for (const MappedRegister& reg : map.registers) {
     add(reg.name, static_cast<int>(reg.role), reg.address, reg.input, reg.format.registers,
         static_cast<int>(reg.format.number), reg.format.low_word_first, reg.format.low_byte_first, reg.scale, reg.unit,
