@@ -1,6 +1,7 @@
 # In the guest: USB drivers at a real kernel. Ends with 0 when all of it held.
 set -e
-holder() { readlink /sys/bus/usb/devices/*:1.0/driver | sed 's,.*/,,' | tr '\n' ' '; }
+trap 'code=$?; [ $code = 0 ] || head -n 40 /tmp/*.log; exit $code' EXIT
+holder() { for d in /sys/bus/usb/devices/*:1.0/driver; do basename "$(readlink "$d")"; done; }
 ftdi() { for d in /sys/bus/usb/devices/*; do [ "$(cat $d/idVendor 2>/dev/null)" = 0403 ] && echo "$d"; done; true; }
 
 # --- udev: the rule makes what is plugged in belong to plugdev ---
@@ -14,7 +15,7 @@ echo "udev: $node is 660 plugdev"
 
 # --- ENTTEC Pro behind qemu's FTDI chip: taken from ftdi_sio, lit, given back ---
 ls /dev/ttyUSB0
-case "$(holder)" in *ftdi_sio*) echo "ftdi_sio holds it" ;; *) echo "no ftdi_sio: $(holder)"; exit 1 ;; esac
+case "$(holder)" in *ftdi_sio*) echo "ftdi_sio holds it" ;; *) echo "no ftdi_sio:" $(holder); exit 1 ;; esac
 usb_driver enttec_pro set=128 life=active set=200 off print=off >/tmp/pro.log & pro=$!
 for i in 1 2 3 4 5 6 7 8 9 10; do [ -e /dev/ttyUSB0 ] || break; sleep 0.2; done
 [ ! -e /dev/ttyUSB0 ] || { echo "the serial port is still there"; exit 1; }
