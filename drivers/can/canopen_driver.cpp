@@ -254,17 +254,15 @@ class CanopenDriver final : public Driver, public Mover {
       return;
     }
     if (!heard) {
-      const std::string silence = last_heard_
-                                      ? fmt::format("no node heard for {:.1f} s", to_seconds(now - *last_heard_))
-                                      : "no node has been heard yet";
+      const std::string silence = last_heard_ ? "no node is heard any more" : "no node has been heard yet";
       set_lives(now, trouble_ ? trouble_->detail : silence, trouble_ ? trouble_->cause : Cause::timeout,
                 life_.life() == Life::active);
       return;
     }
     if (life_.life() != Life::active) life_.active(now);
     for (Head& head : heads_) {
-      judge_axis(now, head.axes.pan_trouble(now), head.pan);
-      judge_axis(now, head.axes.tilt_trouble(now), head.tilt);
+      judge_axis(now, head.axes.pan_trouble(), head.pan);
+      judge_axis(now, head.axes.tilt_trouble(), head.tilt);
     }
   }
 

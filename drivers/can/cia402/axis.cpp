@@ -359,7 +359,7 @@ void Axis::count_failure(Time now, const std::string& why) {
   failed(now, fmt::format("{}, {} times in a row: look at the drive, then switch it off and on", why, failures_));
 }
 
-std::string Axis::trouble(Time now) const {
+std::string Axis::trouble() const {
   const std::string who = fmt::format("node {}{}", settings_.node, drive_name_.empty() ? "" : " (" + drive_name_ + ")");
   switch (phase_) {
     case Phase::absent:
@@ -380,8 +380,8 @@ std::string Axis::trouble(Time now) const {
   if (state != DriveState::operation_enabled) return fmt::format("{} is {}", who, name_of(state));
   if (referenced_) return mode_ == kProfilePosition ? "" : who + " changes its mode";
   if (settings_.home == HomeRule::when_needed && !asked_) return "";
-  if (!homing_since_) return who + " does not know its position";
-  return fmt::format("{} is on its way to its home position for {:.1f} s", who, to_seconds(now - *homing_since_));
+  // Without a figure that grows: each text is an alarm of its own.
+  return who + (homing_since_ ? " is on its way to its home position" : " does not know its position");
 }
 
 }  // namespace luxrig::cia402

@@ -46,7 +46,7 @@ class Axis {
   [[nodiscard]] std::int32_t position() const { return position_; }
   [[nodiscard]] std::int32_t velocity() const { return velocity_; }  ///< counts/s
   /// Why it does not do what it is asked; empty when it does.
-  [[nodiscard]] std::string trouble(Time now) const;
+  [[nodiscard]] std::string trouble() const;
   [[nodiscard]] bool referenced() const { return referenced_; }
 
  private:

@@ -120,8 +120,8 @@ void HeadAxes::step(Time now, Frames& out) {
   tilt_.step(now, !pan_sound, asked, out);
 }
 
-std::string HeadAxes::trouble(Time now, const Axis& axis) const {
-  std::string own = axis.trouble(now);
+std::string HeadAxes::trouble(const Axis& axis) const {
+  std::string own = axis.trouble();
   if (!own.empty() || !returning_ || !target_) return own;
   return fmt::format("node {} is in order, but its head is not yet where it is asked to look", axis.settings().node);
 }

@@ -39,13 +39,13 @@ class HeadAxes {
   [[nodiscard]] const Axis& tilt() const { return tilt_; }
   /// Why the head does not look where it is asked: the axis's own trouble, or, after a loss, that it is on its way
   /// back. Empty in service, also while it turns to a new aim.
-  [[nodiscard]] std::string pan_trouble(Time now) const { return trouble(now, pan_); }
-  [[nodiscard]] std::string tilt_trouble(Time now) const { return trouble(now, tilt_); }
+  [[nodiscard]] std::string pan_trouble() const { return trouble(pan_); }
+  [[nodiscard]] std::string tilt_trouble() const { return trouble(tilt_); }
   /// Where the drives say it is; only once both are ready.
   [[nodiscard]] std::optional<PanTilt> joints() const;
 
  private:
-  [[nodiscard]] std::string trouble(Time now, const Axis& axis) const;
+  [[nodiscard]] std::string trouble(const Axis& axis) const;
 
   AxisPatch pan_patch_, tilt_patch_;
   AxisLimits pan_limits_, tilt_limits_;  ///< rad/s, rad/s²
