@@ -13,9 +13,9 @@ namespace {
 using namespace std::chrono_literals;
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr std::uint64_t kUid = 0x7a7000000001, kDesk = 0x7a70000000ff;
+constexpr std::uint64_t kLampUid = 0x7a7000000001, kRdmDesk = 0x7a70000000ff;
 
-RdmIdentity identity_of(std::uint64_t uid = kUid, std::size_t slots = 2) {
+RdmIdentity identity_of(std::uint64_t uid = kLampUid, std::size_t slots = 2) {
   RdmIdentity identity;
   identity.uid = uid;
   identity.label = "spot";
@@ -25,10 +25,10 @@ RdmIdentity identity_of(std::uint64_t uid = kUid, std::size_t slots = 2) {
   return identity;
 }
 
-RdmFrame request_of(int command_class, int pid, Bytes data = {}, std::uint64_t to = kUid) {
+RdmFrame request_of(int command_class, int pid, Bytes data = {}, std::uint64_t to = kLampUid) {
   RdmFrame frame;
   frame.to = to;
-  frame.from = kDesk;
+  frame.from = kRdmDesk;
   frame.transaction = 7;
   frame.port_or_type = 1;
   frame.command_class = command_class;
@@ -77,7 +77,7 @@ TEST(RdmResponder, AnswersAnUnmutedBranchAsPublished) {
 
 TEST(RdmResponder, IsSilentToOthersRequestsAndToSpoiledOnes) {
   RdmResponder responder(identity_of());
-  EXPECT_TRUE(responder.receive(at_s(0), write_rdm(request_of(0x20, 0x0060, {}, kUid + 1))).empty());
+  EXPECT_TRUE(responder.receive(at_s(0), write_rdm(request_of(0x20, 0x0060, {}, kLampUid + 1))).empty());
   EXPECT_TRUE(responder.receive(at_s(0), write_rdm(request_of(0x20, 0x0060, {}, kRdmEverybody))).empty());
   const Bytes good = write_rdm(request_of(0x20, 0x0060));
   for (std::size_t at = 0; at < good.size(); ++at) {
@@ -91,8 +91,8 @@ TEST(RdmResponder, IsSilentToOthersRequestsAndToSpoiledOnes) {
 TEST(RdmResponder, TellsWhatItIs) {
   Asked asked;
   const RdmFrame info = asked.get(0x0060);
-  EXPECT_EQ(info.from, kUid);
-  EXPECT_EQ(info.to, kDesk);
+  EXPECT_EQ(info.from, kLampUid);
+  EXPECT_EQ(info.to, kRdmDesk);
   EXPECT_EQ(info.transaction, 7);
   EXPECT_EQ(info.data, (Bytes{1, 0, 0, 1, 0x01, 0x01, 0, 0, 0, 1, 0, 2, 1, 1, 0, 42, 0, 0, 1}));
   EXPECT_EQ(asked.get(0x0082).data, (Bytes{'s', 'p', 'o', 't'}));
@@ -147,7 +147,7 @@ TEST(RdmResponder, NeedsTimeForLampHoursAndKeepsThemInItsQueue) {
 
 TEST(RdmResponder, TellsLongAnswersInParts) {
   Asked asked;
-  asked.responder = RdmResponder(identity_of(kUid, 100));
+  asked.responder = RdmResponder(identity_of(kLampUid, 100));
   const RdmFrame first = asked.get(0x0120);
   EXPECT_EQ(first.port_or_type, 3);
   EXPECT_EQ(first.data.size(), 231u);
@@ -179,11 +179,11 @@ TEST(RdmResponder, GetsWarmInItsLight) {
 TEST(RdmLine, ObeysTheFaultsOfItsMembers) {
   Faults faults(1);
   RdmLine line(faults);
-  line.add("a", identity_of(kUid));
-  line.add("b", identity_of(kUid + 1));
+  line.add("a", identity_of(kLampUid));
+  line.add("b", identity_of(kLampUid + 1));
   const Bytes ask = write_rdm(request_of(0x20, 0x0060));
   EXPECT_TRUE(read_rdm(line.exchange(at_s(0), ask).bytes));
-  EXPECT_EQ(line.reachable(), (std::vector<std::uint64_t>{kUid, kUid + 1}));
+  EXPECT_EQ(line.reachable(), (std::vector<std::uint64_t>{kLampUid, kLampUid + 1}));
   faults.set("a", FaultKind::garbled, true);
   for (int i = 0; i < 100; ++i) EXPECT_FALSE(read_rdm(line.exchange(at_s(0), ask).bytes));
   faults.set("a", FaultKind::garbled, false);
@@ -191,7 +191,7 @@ TEST(RdmLine, ObeysTheFaultsOfItsMembers) {
   EXPECT_EQ(line.exchange(at_s(0), ask).late, Duration(250ms));
   faults.set("a", FaultKind::unpowered, true);
   EXPECT_TRUE(line.exchange(at_s(0), ask).bytes.empty());
-  EXPECT_EQ(line.reachable(), (std::vector<std::uint64_t>{kUid + 1}));
+  EXPECT_EQ(line.reachable(), (std::vector<std::uint64_t>{kLampUid + 1}));
   faults.clear();
   faults.set("a", FaultKind::lost, true, 0.5);
   int answered = 0;
@@ -204,7 +204,7 @@ TEST(ArtnetRdmGate, TellsTablesInBlocksAndSearchesAnewWhenFlushed) {
   Faults faults(1);
   std::map<int, RdmLine> lines;
   RdmLine& line = lines.try_emplace(0x0123, faults).first->second;
-  for (std::uint64_t i = 0; i < 230; ++i) line.add("device-" + std::to_string(i), identity_of(kUid + i));
+  for (std::uint64_t i = 0; i < 230; ++i) line.add("device-" + std::to_string(i), identity_of(kLampUid + i));
   ArtnetRdmGate gate(lines);
   Bytes request = {'A', 'r', 't', '-', 'N', 'e', 't', 0, 0x00, 0x80, 0, 14,   0,
                    0,   0,   0,   0,   0,   0,   0,   0, 1,    0,    2, 0x23, 0x24};

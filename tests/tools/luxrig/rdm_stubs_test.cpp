@@ -5,7 +5,7 @@
 namespace luxrig {
 namespace {
 
-rdm::DeviceProfile head() {
+rdm::DeviceProfile head_profile() {
   rdm::DeviceProfile profile;
   profile.uid = {0x7a70, 2};
   profile.info.footprint_slots = 8;
@@ -20,19 +20,19 @@ rdm::DeviceProfile head() {
 }
 
 TEST(RdmStubs, NameTheSlotsThatTheDeviceDescribes) {
-  EXPECT_EQ(slot_names(head()), (std::vector<std::string>{"pan", "pan-fine", "tilt", "tilt-fine", "dimmer",
-                                                          "dimmer-fine", "dimmer-ultra", "unused"}));
-  rdm::DeviceProfile odd = head();
+  EXPECT_EQ(slot_names(head_profile()), (std::vector<std::string>{"pan", "pan-fine", "tilt", "tilt-fine", "dimmer",
+                                                                  "dimmer-fine", "dimmer-ultra", "unused"}));
+  rdm::DeviceProfile odd = head_profile();
   odd.slots = {{200, 0, 0x0001}, {3, 1, 200}, {0, 1, 1}};  // beyond its footprint
   EXPECT_EQ(slot_names(odd), std::vector<std::string>(8, "unused"));
 }
 
 TEST(RdmStubs, AreFixturesOfARigFile) {
-  rdm::DeviceProfile plain = head();
+  rdm::DeviceProfile plain = head_profile();
   plain.slots.clear();
-  rdm::DeviceProfile rack = head();
+  rdm::DeviceProfile rack = head_profile();
   rack.info.start_address.reset();  // no slots, no fixture
-  const std::string text = fixture_stubs({{3, head()}, {4, plain}, {4, rack}});
+  const std::string text = fixture_stubs({{3, head_profile()}, {4, plain}, {4, rack}});
   EXPECT_NE(text.find("[[fixture]]  # 7a70:00000002: Maker Spot, personality 1 of 1, 8 slots\n"
                       "name = \"a \\\"head\\\"\"\n"),
             std::string::npos)
