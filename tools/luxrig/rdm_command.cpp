@@ -44,7 +44,7 @@ std::optional<SocketAddress> address_of(const std::string& text) {
   return address;
 }
 
-std::string text_of_json(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+std::string text_of_json(const Json& value) { return value.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 /// Looks for nodes and tables; says what is wrong and returns nothing when an argument is.
 std::optional<Result<RdmBus>> find_bus(const RdmArguments& arguments) {
@@ -60,25 +60,25 @@ std::optional<Result<RdmBus>> find_bus(const RdmArguments& arguments) {
 
 Json json_of(const PatchedDevice& device, const std::string& node) {
   const rdm::DeviceProfile& profile = device.profile;
-  Json json = {{"uid", text_of(profile.uid)},
-               {"node", node},
-               {"universe", device.universe},
-               {"manufacturer", profile.manufacturer},
-               {"model", profile.model},
-               {"model_id", profile.info.model},
-               {"category", rdm::name_of_category(profile.info.category)},
-               {"label", profile.label},
-               {"software", profile.software},
-               {"footprint", profile.info.footprint_slots},
-               {"personality", profile.info.personality},
-               {"personalities", profile.info.personalities},
-               {"sub_devices", profile.info.sub_devices}};
-  if (profile.info.start_address) json["address"] = *profile.info.start_address;
-  if (profile.personality) json["personality_text"] = profile.personality->text;
-  if (profile.lamp_hours) json["lamp_hours"] = *profile.lamp_hours;
-  if (profile.device_hours) json["device_hours"] = *profile.device_hours;
-  if (profile.lamp) json["lamp_state"] = rdm::text_of(*profile.lamp);
-  if (const auto names = slot_names(profile); !names.empty()) json["slots"] = names;
+  Json out = {{"uid", text_of(profile.uid)},
+              {"node", node},
+              {"universe", device.universe},
+              {"manufacturer", profile.manufacturer},
+              {"model", profile.model},
+              {"model_id", profile.info.model},
+              {"category", rdm::name_of_category(profile.info.category)},
+              {"label", profile.label},
+              {"software", profile.software},
+              {"footprint", profile.info.footprint_slots},
+              {"personality", profile.info.personality},
+              {"personalities", profile.info.personalities},
+              {"sub_devices", profile.info.sub_devices}};
+  if (profile.info.start_address) out["address"] = *profile.info.start_address;
+  if (profile.personality) out["personality_text"] = profile.personality->text;
+  if (profile.lamp_hours) out["lamp_hours"] = *profile.lamp_hours;
+  if (profile.device_hours) out["device_hours"] = *profile.device_hours;
+  if (profile.lamp) out["lamp_state"] = rdm::text_of(*profile.lamp);
+  if (const auto names = slot_names(profile); !names.empty()) out["slots"] = names;
   Json sensors = Json::array();
   for (const rdm::SensorState& sensor : profile.sensors) {
     Json one = {{"name", sensor.definition.description},
@@ -87,8 +87,8 @@ Json json_of(const PatchedDevice& device, const std::string& node) {
     if (sensor.value) one["value"] = text_of(sensor.definition, sensor.value->present);
     sensors.push_back(std::move(one));
   }
-  json["sensors"] = std::move(sensors);
-  return json;
+  out["sensors"] = std::move(sensors);
+  return out;
 }
 
 std::vector<std::string> row_of(const PatchedDevice& device) {

@@ -87,9 +87,8 @@ class Search {
         return false;
       }
       if (!single && answer->heard == Heard::many) return true;
-      // It answers though it is muted, or does not confirm. In its own range it may hide others; for another range it
-      // says only that nobody else spoke: halving that would never end.
-      if (!single && (found_.contains(who) || unconfirmed_.contains(who))) return range.holds(who);
+      // It answers though it is muted, or does not confirm.
+      if (!single && (found_.contains(who) || unconfirmed_.contains(who))) return hides_others(range, who);
       const auto confirmed = mute(who);
       if (!confirmed) return tl::unexpected(confirmed.error());
       if (*confirmed) {
@@ -101,8 +100,21 @@ class Search {
       if (single && surely) unmutable_.insert(who);
       if (single) return false;
       unconfirmed_.insert(who);
-      return range.holds(who);
+      return hides_others(range, who);
     }
+    return false;
+  }
+
+  /// Of one that answers and cannot be muted: in its own range it may hide others. For another range it says only that
+  /// nobody else spoke, and halving that would never end; unless it is not there at all, but two answers added up to
+  /// one that makes sense. Asked about itself alone, who is there answers so.
+  Result<bool> hides_others(const UidRange& range, const Uid& who) {
+    if (range.holds(who)) return true;
+    if (everywhere_.contains(who)) return false;
+    const auto alone = ask({number_of(who), number_of(who)});
+    if (!alone) return tl::unexpected(alone.error());
+    if (alone->heard != Heard::one || alone->who != who) return true;
+    everywhere_.insert(who);
     return false;
   }
 
@@ -130,7 +142,7 @@ class Search {
   DiscoveryLine& line_;
   const DiscoveryLimits& limits_;
   DiscoveryResult result_;
-  std::set<Uid> found_, unmutable_, unconfirmed_;
+  std::set<Uid> found_, unmutable_, unconfirmed_, everywhere_;
 };
 
 Packet discovery_request(const Uid& from, std::uint8_t transaction, const Uid& to, Pid pid) {
