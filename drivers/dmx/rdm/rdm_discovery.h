@@ -4,7 +4,8 @@
 ///
 /// Everybody is un-muted. A range of UIDs is asked; one answer is muted and the range asked again; a collision halves
 /// the range; silence ends it. Devices in the field answer though muted, do not confirm, answer for ranges that are
-/// not theirs, or send noise: none of these may hide others or keep the search from ending.
+/// not theirs, or send noise: none of these may hide others or keep the search from ending. But where bits of several
+/// answers add up, one that talks for ever hides those that add no bit to what it says.
 
 #include <array>
 #include <cstdint>

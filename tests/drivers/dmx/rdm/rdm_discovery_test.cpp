@@ -151,7 +151,17 @@ TEST(RdmDiscovery, FindsTheWellBehavedAmongOthers) {
   RecordProperty("most_requests", most_requests);
 }
 
+/// Whether an answer adds no bit to another's: whoever has it says nothing that could be heard beside the other.
+bool drowned_by(const Uid& who, const Uid& by) {
+  const auto answer = encode_branch_answer(who), other = encode_branch_answer(by);
+  for (std::size_t i = 0; i < answer.size(); ++i) {
+    if ((answer[i] | other[i]) != other[i]) return false;
+  }
+  return true;
+}
+
 TEST(RdmDiscovery, IsNotKeptFromEndingByWhoAnswersForRangesThatAreNotItsOwn) {
+  std::size_t drowned = 0;
   for (unsigned seed = 1; seed <= 30; ++seed) {
     Random random(seed);
     auto devices = random_devices(2 + random.below(40), random);
@@ -161,9 +171,19 @@ TEST(RdmDiscovery, IsNotKeptFromEndingByWhoAnswersForRangesThatAreNotItsOwn) {
     const auto result = discover(line);
     ASSERT_TRUE(result);
     EXPECT_TRUE(result->complete) << "seed " << seed;
-    EXPECT_EQ(result->found, with(line.devices(), {Habit::good, Habit::everywhere})) << "seed " << seed;
+    auto wanted = with(line.devices(), {Habit::good, Habit::everywhere});
+    for (const Uid& loud : with(line.devices(), {Habit::for_ever})) {
+      std::erase_if(wanted, [&](const Uid& uid) { return drowned_by(uid, loud); });
+    }
+    for (const Uid& uid : wanted) {
+      EXPECT_TRUE(std::binary_search(result->found.begin(), result->found.end(), uid)) << seed << " " << text_of(uid);
+    }
+    const auto all = with(line.devices(), {Habit::good, Habit::everywhere});
+    EXPECT_TRUE(std::includes(all.begin(), all.end(), result->found.begin(), result->found.end()));
+    drowned += all.size() - wanted.size();
     EXPECT_LE(result->requests, 20000) << "seed " << seed;
   }
+  EXPECT_LE(drowned, 2u);  // of some six hundred
 }
 
 TEST(RdmDiscovery, FindsAllThoughATenthOfThePacketsIsLost) {
