@@ -31,6 +31,7 @@ class LiveRig {
 
   void start_daemon() {
     port_ = 0;
+    std::filesystem::remove(folder_ / "daemon.log");  // it has the port of the one before
     daemon_ = std::make_unique<Process>(
         std::vector<std::string>{program("luxrig"), "run", rig_, "--sim-ports", ports().string(), "--port", "0",
                                  "--max-error", "0.02", "--state", (folder_ / "state").string()},
