@@ -16,6 +16,7 @@ namespace {
 
 constexpr Duration kPublishPeriod = std::chrono::milliseconds(100);
 constexpr Duration kSafeLookEvery = std::chrono::seconds(1), kGuardianLook = std::chrono::seconds(1);
+constexpr int kMostDoublings = 6;
 constexpr auto kCommandBound = std::chrono::seconds(2);
 
 std::filesystem::path web_folder() {
@@ -103,9 +104,12 @@ void Daemon::tell_guardian(Time at) {
     for (const std::size_t f : desk.fixtures) last_look_.silent[f] = 1;
   }
   guardian_->put(last_look_);
-  if (at - guardian_seen_ < kGuardianLook) return;
+  // One that ends as soon as it is started, as its rig file has changed, say, is tried less and less often.
+  if (at - guardian_seen_ < kGuardianLook * (1 << guardian_deaths_)) return;
   guardian_seen_ = at;
-  if (!guardian_->alive()) start_guardian();
+  if (guardian_->alive()) return;
+  guardian_deaths_ = std::min(guardian_deaths_ + 1, kMostDoublings);
+  start_guardian();
 }
 
 Checked<bool> Daemon::resume() {

@@ -90,6 +90,7 @@ class Daemon {
   LastLook last_look_;
   std::vector<double> safe_levels_;
   Time safe_look_at_{}, guardian_seen_{};
+  int guardian_deaths_ = 0;
   std::thread::id control_thread_ = std::this_thread::get_id();
   Time started_{};
   Time last_publish_{};

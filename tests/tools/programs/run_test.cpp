@@ -121,6 +121,10 @@ TEST(Run, ADaemonThatDiesLeavesTheSafeLookToItsGuardianUntilTheNextOne) {
   LiveRig rig(source("tests/rigs/room"));
   ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
   ASSERT_TRUE(wait_for([&] { return rig.guardian_pid() > 1; }, 5s)) << rig.daemon().output();
+  // One that dies itself is replaced.
+  const pid_t first = rig.guardian_pid();
+  ::kill(first, SIGKILL);
+  ASSERT_TRUE(wait_for([&] { return rig.guardian_pid() > 1 && rig.guardian_pid() != first; }, 5s));
   const auto room_lux = [&] {
     double lux = 0;
     const json truth = rig.truth();
