@@ -22,6 +22,8 @@ using DmxSlots = std::array<std::uint8_t, kDmxSlots>;  ///< [0] is address 1
 
 /// The fastest that E1.11 allows a full universe to repeat: break 92 µs + mark 12 µs + 513 slots · 44 µs.
 inline constexpr Duration kDmxShortestPeriod = std::chrono::microseconds(22676);
+/// How often Luxrig makes a frame: 44 a second.
+inline constexpr Duration kDmxWritePeriod = std::chrono::nanoseconds(22727273);
 
 struct DmxUniverse {
   int number = 0;  ///< as patched

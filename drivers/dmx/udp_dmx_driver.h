@@ -15,8 +15,6 @@
 
 namespace luxrig {
 
-inline constexpr Duration kDmxWritePeriod = std::chrono::nanoseconds(22727273);  // 1/44 s
-
 class UdpDmxDriver : public Driver, public LevelOutput, public Mover, public LevelInput {
  public:
   UdpDmxDriver(const UdpDmxDriver&) = delete;

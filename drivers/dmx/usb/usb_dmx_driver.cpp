@@ -38,8 +38,8 @@ DriverBounds UsbDmxDriver::bounds() const {
   DriverBounds bounds;
   // As long as the widget works a call takes kUsbFrameBound at most; the rest is for closing it and opening it again.
   bounds.write = kUsbOpenBound + kUsbPrepareBound + kUsbCloseBound + kUsbFrameBound;
-  bounds.write_period = kUsbWritePeriod;
-  bounds.fault_after = kUsbRefreshEvery + 2 * kUsbTransferTimeout + kUsbWritePeriod;
+  bounds.write_period = kDmxWritePeriod;
+  bounds.fault_after = kUsbRefreshEvery + 2 * kUsbTransferTimeout + kDmxWritePeriod;
   return bounds;
 }
 

@@ -31,7 +31,6 @@ inline constexpr OptionDoc kUsbUniverseOption = {
     "",           "0",
     "0 to 63999", "the universe of the patch that this widget puts out; 0: the one that its fixtures are in"};
 
-inline constexpr Duration kUsbWritePeriod = std::chrono::nanoseconds(22727273);  ///< 1/44 s
 inline constexpr std::chrono::milliseconds kUsbPrepareBound(150), kUsbLeaveBound(100);
 /// A transfer that takes longer than this has hung.
 inline constexpr Duration kUsbTransferTimeout = std::chrono::milliseconds(500);
