@@ -142,7 +142,8 @@ Result<void> InProcessRig::write(Time now, std::span<const LevelCommand> command
 Result<void> InProcessRig::move(Time now, std::span<const AimCommand> commands) {
   for (const AimCommand& command : commands) {
     if (command.fixture >= fixtures_.size() || !rig_.fixtures[command.fixture].moves ||
-        !std::isfinite(command.joints.pan_rad) || !std::isfinite(command.joints.tilt_rad)) {
+        !std::isfinite(command.joints.pan_rad) || !std::isfinite(command.joints.tilt_rad) ||
+        !std::isfinite(command.joints.beam_rad)) {
       return tl::unexpected(Fault{Cause::invalid, "",
                                   fmt::format("cannot move fixture {} to pan {} rad, tilt {} rad: nothing sent",
                                               command.fixture, command.joints.pan_rad, command.joints.tilt_rad),

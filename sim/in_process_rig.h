@@ -48,7 +48,7 @@ class InProcessRig final : public LevelOutput, public Mover, public LuxReader {
     Time due;
     std::size_t fixture;
     std::optional<double> drive;
-    std::optional<PanTilt> joints;
+    std::optional<Joints> joints;
   };
   struct Answer {
     Time due;

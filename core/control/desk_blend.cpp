@@ -23,16 +23,17 @@ void DeskBlend::apply(Time now, std::span<const std::uint8_t> kept, std::span<do
   }
 }
 
-void DeskBlend::turn(Time now, std::span<PanTilt> joints) const {
+void DeskBlend::turn(Time now, std::span<Joints> joints) const {
   const double done = share(now);
   for (std::size_t i = 0; i < fixtures.size(); ++i) {
-    PanTilt& out = joints[fixtures[i]];
-    const PanTilt wanted = to_desk && desk_turns[i] != 0 ? desk_joints[i] : out;
+    Joints& out = joints[fixtures[i]];
+    const Joints wanted = to_desk && desk_turns[i] != 0 ? desk_joints[i] : out;
     if (done >= 1) {
       out = wanted;
     } else {
       out = {from_joints[i].pan_rad + (wanted.pan_rad - from_joints[i].pan_rad) * done,
-             from_joints[i].tilt_rad + (wanted.tilt_rad - from_joints[i].tilt_rad) * done};
+             from_joints[i].tilt_rad + (wanted.tilt_rad - from_joints[i].tilt_rad) * done,
+             from_joints[i].beam_rad + (wanted.beam_rad - from_joints[i].beam_rad) * done};
     }
   }
 }

@@ -23,7 +23,7 @@ struct DeskBlend {
   std::vector<double> from_level;      ///< what went out at `start`
   std::vector<double> desk_level;      ///< what the desk wants, or wanted last
   std::vector<std::uint8_t> desk_has;  ///< 1: the desk has a say there
-  std::vector<PanTilt> from_joints, desk_joints;
+  std::vector<Joints> from_joints, desk_joints;
   std::vector<std::uint8_t> desk_turns;  ///< 1: desk_joints count
 
   /// Luxrig alone has the light, and no fade to that is going on.
@@ -32,7 +32,7 @@ struct DeskBlend {
   /// within 0…1; limits are the caller's.
   /// `kept`: fixtures of the rig that a desk has no say in just now, as 1; may be empty.
   void apply(Time now, std::span<const std::uint8_t> kept, std::span<double> level) const;
-  void turn(Time now, std::span<PanTilt> joints) const;
+  void turn(Time now, std::span<Joints> joints) const;
 
  private:
   [[nodiscard]] double share(Time now) const;

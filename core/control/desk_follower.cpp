@@ -101,7 +101,7 @@ bool DeskFollower::follow_presence(Time now, const PresentLight& present) {
 
 bool DeskFollower::take_values(const DeskFrame& frame, const PresentLight& present) {
   const std::vector<double> level_before = blend_.desk_level;
-  const std::vector<PanTilt> joints_before = blend_.desk_joints;
+  const std::vector<Joints> joints_before = blend_.desk_joints;
   const std::vector<std::uint8_t> has_before = blend_.desk_has, turns_before = blend_.desk_turns;
   std::fill(blend_.desk_has.begin(), blend_.desk_has.end(), std::uint8_t{0});
   for (const DeskCommand& command : frame.commands) {
@@ -111,7 +111,7 @@ bool DeskFollower::take_values(const DeskFrame& frame, const PresentLight& prese
     blend_.desk_has[i] = 1;
     blend_.desk_level[i] = level_from_drive(settings_.dimmer_curve[i], command.drive);
     if (!settings_.desk_may_turn || !command.joints) continue;
-    const PanTilt own = present.own_joints[command.fixture];
+    const Joints own = present.own_joints[command.fixture];
     if (settings_.rules.mode != DeskMode::merge) {
       blend_.desk_turns[i] = 1;
     } else if (joints_known_[i] != 0 && !(*command.joints == blend_.desk_joints[i])) {

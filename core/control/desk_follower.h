@@ -22,7 +22,7 @@ struct DeskFollowerSettings {
   DeskRules rules;
   std::vector<std::size_t> fixtures;      ///< of the part, ascending
   std::vector<DimmerCurve> dimmer_curve;  ///< of each: a desk's drive is no level yet
-  std::vector<PanTilt> joints;            ///< of each
+  std::vector<Joints> joints;             ///< of each
   /// Limits of the model hold for heads as Luxrig turns them, so where there are limits a desk cannot turn them.
   bool desk_may_turn = true;
   Duration fade{};
@@ -32,8 +32,8 @@ struct DeskFollowerSettings {
 /// What goes out at this moment, for all fixtures of the rig.
 struct PresentLight {
   std::span<const double> level;
-  std::span<const PanTilt> joints;
-  std::span<const PanTilt> own_joints;  ///< where Luxrig alone would have heads look
+  std::span<const Joints> joints;
+  std::span<const Joints> own_joints;  ///< where Luxrig alone would have heads look
 };
 
 class DeskFollower {
@@ -68,7 +68,7 @@ class DeskFollower {
   DeskPresence presence_ = DeskPresence::unknown;
   std::string source_;
   std::vector<std::uint8_t> joints_known_;  ///< per fixture: desk_joints are the desk's
-  std::vector<PanTilt> own_joints_;         ///< as last seen, to tell whose change was the latest
+  std::vector<Joints> own_joints_;          ///< as last seen, to tell whose change was the latest
 };
 
 }  // namespace luxrig

@@ -31,7 +31,7 @@ class LevelOutput {
 
 struct AimCommand {
   std::size_t fixture = 0;
-  PanTilt joints;
+  Joints joints;
 };
 
 class Mover {
@@ -87,8 +87,8 @@ struct DeskRules {
 /// What a desk wants of one fixture.
 struct DeskCommand {
   std::size_t fixture = 0;
-  double drive = 0;               ///< 0…1, as in LevelCommand
-  std::optional<PanTilt> joints;  ///< of a head
+  double drive = 0;              ///< 0…1, as in LevelCommand
+  std::optional<Joints> joints;  ///< of a head
 };
 /// unknown: not listened long enough to tell.
 enum class DeskPresence { unknown, absent, present };

@@ -20,16 +20,8 @@ double nodded_rad(double at_rad, double min_rad, double max_rad) {
 
 }  // namespace
 
-std::vector<std::size_t> housing_of(const Rig& rig, std::size_t fixture) {
-  const auto first_of = [&](std::size_t f) { return rig.fixtures[f].housing.value_or(f); };
-  std::vector<std::size_t> fixtures;
-  for (std::size_t f = 0; f < rig.fixtures.size(); ++f)
-    if (first_of(f) == first_of(fixture)) fixtures.push_back(f);
-  return fixtures;
-}
-
 IdentifyPattern::IdentifyPattern(const Rig& rig, std::vector<std::size_t> fixtures,
-                                 std::span<const double> present_level, std::span<const PanTilt> present_joints,
+                                 std::span<const double> present_level, std::span<const Joints> present_joints,
                                  bool may_turn, Time start, Duration how_long)
     : fixtures_(std::move(fixtures)), start_(start), end_(start + how_long) {
   double brightest = 0;
@@ -37,13 +29,14 @@ IdentifyPattern::IdentifyPattern(const Rig& rig, std::vector<std::size_t> fixtur
     const Fixture& fixture = rig.fixtures[f];
     brightest = std::max(brightest, present_level[f]);
     bright_drive_.push_back(drive_from_level(fixture.dimmer_curve, std::max(kLeastBright, present_level[f])));
-    const PanTilt at = present_joints[f];
+    const Joints at = present_joints[f];
     joints_.push_back(at);
     turns_ = turns_ || (may_turn && fixture.moves);
     nod_.push_back(!fixture.moves
                        ? at
-                       : PanTilt{nodded_rad(at.pan_rad, fixture.range.pan_min_rad, fixture.range.pan_max_rad),
-                                 nodded_rad(at.tilt_rad, fixture.range.tilt_min_rad, fixture.range.tilt_max_rad)});
+                       : Joints{nodded_rad(at.pan_rad, fixture.range.pan_min_rad, fixture.range.pan_max_rad),
+                                nodded_rad(at.tilt_rad, fixture.range.tilt_min_rad, fixture.range.tilt_max_rad),
+                                at.beam_rad});
   }
   bright_first_ = brightest < kLeastBright;
 }

@@ -16,7 +16,7 @@ class IdentifyPattern {
  public:
   /// present_level, present_joints: per fixture of the rig, at `start`. may_turn: whether a head may turn while lit.
   IdentifyPattern(const Rig& rig, std::vector<std::size_t> fixtures, std::span<const double> present_level,
-                  std::span<const PanTilt> present_joints, bool may_turn, Time start, Duration how_long);
+                  std::span<const Joints> present_joints, bool may_turn, Time start, Duration how_long);
 
   /// What it wants at `now`: its fixtures dark or bright by turns of half a second, dark first where they were bright.
   /// A head that may turn stays bright and nods by 5°, away from the nearer end of its travel. Absent once it is over.
@@ -27,13 +27,10 @@ class IdentifyPattern {
 
  private:
   std::vector<std::size_t> fixtures_;
-  std::vector<double> bright_drive_;   ///< of each
-  std::vector<PanTilt> joints_, nod_;  ///< of each, as it looked and as it nods
+  std::vector<double> bright_drive_;  ///< of each
+  std::vector<Joints> joints_, nod_;  ///< of each, as it looked and as it nods
   bool bright_first_ = true, turns_ = false;
   Time start_{}, end_{};
 };
-
-/// All emitters of the housing that `fixture` belongs to, ascending.
-[[nodiscard]] std::vector<std::size_t> housing_of(const Rig& rig, std::size_t fixture);
 
 }  // namespace luxrig

@@ -131,8 +131,8 @@ void OutputProgram::levels_at(Time now, std::span<double> level) const {
   scale_to_limits(any_lux_per_level, any_max_lx, level);
 }
 
-void OutputProgram::joints_at(Time now, std::span<PanTilt> out) const {
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] = i < joints.size() ? joints[i] : PanTilt{};
+void OutputProgram::joints_at(Time now, std::span<Joints> out) const {
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = i < joints.size() ? joints[i] : Joints{};
   for (const DeskBlend& desk : desks) {
     if (!desk.is_own(now)) desk.turn(now, out);
   }

@@ -38,7 +38,7 @@ struct OutputProgram {
   Duration duration{};  ///< 0: at once
   FadeCurve curve = FadeCurve::s_curve;
   std::vector<double> max_level;  ///< per fixture, limits applied
-  std::vector<PanTilt> joints;    ///< per fixture; where moving heads shall look
+  std::vector<Joints> joints;     ///< per fixture; where moving heads shall look
   bool blackout = false;          ///< all levels 0, at once; joints unchanged
 
   /// Conservation limits: rows = limited points; the most lux per level that the model allows there now
@@ -64,7 +64,7 @@ struct OutputProgram {
   /// Values that are missing or not numbers count as 0. The time before `start` counts as `start`.
   void levels_at(Time now, std::span<double> level) const;
   /// Where heads shall look at `now`; joints: per fixture. Allocates nothing.
-  void joints_at(Time now, std::span<PanTilt> joints) const;
+  void joints_at(Time now, std::span<Joints> joints) const;
   /// Some desk has a say, or has just had it.
   [[nodiscard]] bool desk_has_a_say(Time now) const;
   [[nodiscard]] bool done(Time now) const { return now >= start + duration; }

@@ -42,6 +42,7 @@ OrderedJson json_of(const PlannedLight& light) {
   if (light.aim_world_m) put(json, "aim", *light.aim_world_m);
   put(json, "pan_deg", light.pan_deg);
   put(json, "tilt_deg", light.tilt_deg);
+  put(json, "beam_angle_deg", light.beam_angle_deg);
   put(json, "level", light.level);
   put(json, "lumens", light.lumens);
   put(json, "watts", light.watts);
@@ -271,6 +272,7 @@ PlannedLight light_of(const Reader& reader, const Json& json, const std::string&
   light.aim_world_m = reader.vector(json, path, "aim");
   light.pan_deg = reader.optional_number(json, path, "pan_deg");
   light.tilt_deg = reader.optional_number(json, path, "tilt_deg");
+  light.beam_angle_deg = reader.optional_number(json, path, "beam_angle_deg");
   light.level = reader.number(json, path, "level", true);
   light.lumens = reader.number(json, path, "lumens", false);
   light.watts = reader.optional_number(json, path, "watts");

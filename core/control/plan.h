@@ -19,9 +19,10 @@ struct PlannedLight {
   Vec3 position_world_m = Vec3::Zero();
   std::optional<Vec3> aim_world_m;
   std::optional<double> pan_deg, tilt_deg;
-  double level = 0;               ///< emittance factor 0…1
-  double lumens = 0;              ///< level × rated flux
-  std::optional<double> watts{};  ///< level × rated power; none when that is not known
+  std::optional<double> beam_angle_deg;  ///< that its zoom makes
+  double level = 0;                      ///< emittance factor 0…1
+  double lumens = 0;                     ///< level × rated flux
+  std::optional<double> watts{};         ///< level × rated power; none when that is not known
 };
 
 /// So many lights would leave so much of the error (normalised, weighted, none above its highest level); or, kind
@@ -99,8 +100,8 @@ struct Plan {
 
 /// What a plan wants of a rig that hangs.
 struct PlannedLook {
-  std::vector<double> levels;   ///< per fixture
-  std::vector<PanTilt> joints;  ///< per fixture: of one that does not move, or that the plan gives none, the rig's
+  std::vector<double> levels;  ///< per fixture
+  std::vector<Joints> joints;  ///< per fixture: of one that does not move, or that the plan gives none, the rig's
   /// Per point: the rig's, or what the plan predicts when that shall be held.
   std::vector<std::optional<double>> goal_lx;
 };
@@ -111,7 +112,7 @@ struct PlannedLook {
 [[nodiscard]] Checked<PlannedLook> look_for(const Plan& plan, const Rig& rig, const std::string& file_name);
 
 /// The rig with its heads turned so: joints, and no aim where they differ. One of each per fixture.
-void turn_heads(Rig& rig, std::span<const PanTilt> joints);
+void turn_heads(Rig& rig, std::span<const Joints> joints);
 
 /// The levels, with each placed light that is no fixture of the rig hung at its place first: `rig` gets a fixture more
 /// for each, after its own. They have no bus (their `bus` is past the last one): for light in the model, never for

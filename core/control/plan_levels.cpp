@@ -69,7 +69,7 @@ class PlanLevels {
     if (problems_.size() < 50) problems_.push_back({file_name_, 0, 0, std::move(what), std::move(mend)});
   }
 
-  void turn(const Fixture& fixture, const PlannedLight& light, const std::string& path, PanTilt& joints) {
+  void turn(const Fixture& fixture, const PlannedLight& light, const std::string& path, Joints& joints) {
     if (!fixture.moves || !light.pan_deg || !light.tilt_deg) return;
     const auto within = [&](double deg, double min_rad, double max_rad, const char* key) {
       const double rad = rad_from_deg(deg);
@@ -79,11 +79,16 @@ class PlanLevels {
                 "give an angle within the head's range, or solve again");
       return std::clamp(rad, min_rad, max_rad);
     };
-    const PanTilt planned{within(*light.pan_deg, fixture.range.pan_min_rad, fixture.range.pan_max_rad, "pan_deg"),
-                          within(*light.tilt_deg, fixture.range.tilt_min_rad, fixture.range.tilt_max_rad, "tilt_deg")};
+    const JointRange& range = fixture.range;
+    const Joints planned{within(*light.pan_deg, range.pan_min_rad, range.pan_max_rad, "pan_deg"),
+                         within(*light.tilt_deg, range.tilt_min_rad, range.tilt_max_rad, "tilt_deg"),
+                         range.zooms() && light.beam_angle_deg
+                             ? within(*light.beam_angle_deg, range.beam_min_rad, range.beam_max_rad, "beam_angle_deg")
+                             : fixture.joints.beam_rad};
     // The way through degrees is not another aim.
     const bool same = std::abs(planned.pan_rad - fixture.joints.pan_rad) < kRounding_rad &&
-                      std::abs(planned.tilt_rad - fixture.joints.tilt_rad) < kRounding_rad;
+                      std::abs(planned.tilt_rad - fixture.joints.tilt_rad) < kRounding_rad &&
+                      std::abs(planned.beam_rad - fixture.joints.beam_rad) < kRounding_rad;
     joints = same ? fixture.joints : planned;
   }
 
@@ -178,7 +183,7 @@ Fixture hung_light(const Rig& rig, const std::string& name, std::size_t luminair
   fixture.aim_world_m = aim_world_m;
   if (aim_world_m) {
     // It is hung so: no joint stops it.
-    const PanTiltRange any{-kPi, kPi, -kPi, kPi};
+    const JointRange any{-kPi, kPi, -kPi, kPi};
     if (const auto joints = pan_tilt_towards(fixture.world_from_mount, *aim_world_m - position_world_m, any, {}))
       fixture.joints = *joints;
   }
@@ -203,7 +208,7 @@ Checked<std::vector<double>> levels_when_hung(const Plan& plan, Rig& rig, const 
   return std::move(look->levels);
 }
 
-void turn_heads(Rig& rig, std::span<const PanTilt> joints) {
+void turn_heads(Rig& rig, std::span<const Joints> joints) {
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
     Fixture& fixture = rig.fixtures[f];
     if (fixture.joints == joints[f]) continue;

@@ -28,11 +28,11 @@ constexpr double kSmallestChange = 1e-4;
 constexpr double kHeadDelay_s = 0.5;
 
 /// Until a fixture that moves looks there, wherever it looked before when that is not known.
-double travel_s(const Fixture& fixture, const std::optional<PanTilt>& from, const PanTilt& to) {
+double travel_s(const Fixture& fixture, const std::optional<Joints>& from, const Joints& to) {
   const auto way_rad = [](double to_rad, std::optional<double> from_rad, double min_rad, double max_rad) {
     return from_rad ? std::abs(to_rad - *from_rad) : std::max(to_rad - min_rad, max_rad - to_rad);
   };
-  const PanTiltRange& range = fixture.range;
+  const JointRange& range = fixture.range;
   const double pan_rad =
       way_rad(to.pan_rad, from ? std::optional(from->pan_rad) : std::nullopt, range.pan_min_rad, range.pan_max_rad);
   const double tilt_rad =
@@ -43,7 +43,11 @@ double travel_s(const Fixture& fixture, const std::optional<PanTilt>& from, cons
         .seconds;
   }
   // Heads on DMX do not say how they speed up: kHeadDelay_s covers it.
-  return std::max(pan_rad / fixture.pan_speed_rad_s, tilt_rad / fixture.tilt_speed_rad_s);
+  const double longest_s = std::max(pan_rad / fixture.pan_speed_rad_s, tilt_rad / fixture.tilt_speed_rad_s);
+  if (!range.zooms()) return longest_s;
+  const double beam_rad =
+      way_rad(to.beam_rad, from ? std::optional(from->beam_rad) : std::nullopt, range.beam_min_rad, range.beam_max_rad);
+  return std::max(longest_s, beam_rad / fixture.zoom_speed_rad_s);
 }
 
 }  // namespace

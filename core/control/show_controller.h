@@ -44,7 +44,7 @@ struct Alarm {
 
 /// Where heads look, what that gives, and what is wanted there.
 struct Look {
-  std::vector<PanTilt> joints;                 ///< per fixture
+  std::vector<Joints> joints;                  ///< per fixture
   std::vector<std::optional<double>> goal_lx;  ///< per point
   LightModel model;                            ///< with these joints
 };
@@ -60,7 +60,7 @@ struct PointStatus {
 };
 
 struct FixtureStatus {
-  PanTilt joints;  ///< where it shall look
+  Joints joints;  ///< where it shall look
   double level = 0, drive = 0, target_level = 0;
   double gain = 1, gain_standard_error = 0;  ///< estimated true output over rated
   bool identified = false;                   ///< blinks or nods, so that a person sees which one it is

@@ -5,6 +5,7 @@
 
 #include "core/check.h"
 #include "core/control/show_state.h"
+#include "core/rig/housing.h"
 
 namespace luxrig {
 namespace {
@@ -46,7 +47,7 @@ bool ShowController::State::with_present_light(Time now, Call call) {
   const bool dark = program.blackout;
   program.blackout = false;
   std::vector<double> level(rig.fixtures.size());
-  std::vector<PanTilt> joints(rig.fixtures.size());
+  std::vector<Joints> joints(rig.fixtures.size());
   program.levels_at(now, level);
   program.joints_at(now, joints);
   program.blackout = dark;
@@ -124,7 +125,7 @@ Result<void> ShowController::State::identify(Time now, std::size_t fixture, Dura
   DeskFollowerSettings settings = desk_settings({DeskMode::takeover, HandBack::at_once}, fixtures);
   settings.fade = std::min(settings.fade, kIdentifyFade);
   std::vector<double> level(rig.fixtures.size());
-  std::vector<PanTilt> joints(rig.fixtures.size());
+  std::vector<Joints> joints(rig.fixtures.size());
   program.levels_at(now, level);
   program.joints_at(now, joints);
   IdentifyPattern pattern(rig, fixtures, level, joints, settings.desk_may_turn, now, how_long);

@@ -130,7 +130,7 @@ ShowStatus ShowController::State::status(Time now) const {
 
   std::vector<double> level(rig.fixtures.size());
   program.levels_at(now, level);
-  std::vector<PanTilt> joints(rig.fixtures.size());
+  std::vector<Joints> joints(rig.fixtures.size());
   program.joints_at(now, joints);
   for (std::size_t i = 0; i < rig.fixtures.size(); ++i) {
     status.fixtures.push_back({joints[i], level[i], drive_from_level(rig.fixtures[i].dimmer_curve, level[i]),

@@ -18,10 +18,13 @@ std::string complaint_of_head(const HangingHead& head) {
   if (!is_finite_pose(head.world_from_mount) || !std::isfinite(head.roll_rad) || !std::isfinite(head.present.pan_rad) ||
       !std::isfinite(head.present.tilt_rad))
     return "its place or joints are not finite";
-  if (head.zoom.empty() || std::any_of(head.zoom.begin(), head.zoom.end(), [](const Intensity& i) { return !i; }))
+  if (head.zoom.empty() || std::any_of(head.zoom.begin(), head.zoom.end(), [](const ZoomStop& stop) {
+        return !stop.intensity || !std::isfinite(stop.beam_rad);
+      }))
     return "it has no distribution of light";
   if (!(head.max_level >= 0 && head.max_level <= 1)) return "its highest level is not 0 to 1";
-  if (!(head.pan_speed_rad_s > 0) || !(head.tilt_speed_rad_s > 0)) return "its speeds are not positive";
+  if (!(head.pan_speed_rad_s > 0) || !(head.tilt_speed_rad_s > 0) || !(head.zoom_speed_rad_s > 0))
+    return "its speeds are not positive";
   if (!(head.watts >= 0) || !std::isfinite(head.watts)) return "its power is not 0 or more";
   return "";
 }
@@ -145,7 +148,7 @@ void brighten(const HeadAims::State& state, std::vector<HeadSetting>& settings) 
 }  // namespace
 
 AimColumn AimJudge::column(const HangingHead& head, std::size_t index, const HeadSetting& setting) const {
-  const IntensityDistribution& intensity = *head.zoom[setting.zoom];
+  const IntensityDistribution& intensity = *head.zoom[setting.zoom].intensity;
   const Pose lamp = lamp_pose(head, setting.joints);
   std::vector<double> sample_lux(samples.points.size()), limit_lux(wishes.limits.size());
   lux_of_aim(sights[index], intensity, lamp, sample_lux);
@@ -200,8 +203,9 @@ Result<HeadAims> HeadAims::make(const ContrastSamples& samples, const FeatureClu
     state->all_watts += head.watts;
     if (std::none_of(sees.begin(), sees.end(), [](double one) { return one > 0; })) continue;
     const double distance2_m2 = (state->middle_world_m - place_m).squaredNorm();
-    for (const Intensity& zoom : head.zoom)
-      state->reference_lx = std::max(state->reference_lx, zoom->max_intensity_cd() * head.max_level / distance2_m2);
+    for (const ZoomStop& stop : head.zoom)
+      state->reference_lx =
+          std::max(state->reference_lx, stop.intensity->max_intensity_cd() * head.max_level / distance2_m2);
   }
   if (!(state->reference_lx > 0) || !std::isfinite(state->reference_lx))
     return refusal("no head sees any of the object: something stands between them, or it turns away from them all");

@@ -22,9 +22,11 @@ constexpr double kBeamShare = 0.9;   ///< of the flux, in what counts as the bea
 constexpr double kFirstStep = 0.25, kLastStep = 0.015;
 constexpr double kWidestStep_rad = rad_from_deg(20);
 
-std::optional<PanTilt> joints_towards(const HangingHead& head, const Vec3& direction) {
-  if (!head.moves) return head.present;
-  return pan_tilt_towards(head.world_from_mount, direction, head.range, head.present);
+std::optional<Joints> joints_towards(const HangingHead& head, const Vec3& direction, std::size_t zoom) {
+  auto joints = head.moves ? pan_tilt_towards(head.world_from_mount, direction, head.range, head.present)
+                           : std::optional(head.present);
+  if (joints) joints->beam_rad = head.zoom[zoom].beam_rad;
+  return joints;
 }
 
 /// Two unit vectors at right angles to a unit one and to each other.
@@ -43,7 +45,7 @@ class AimSearch {
       const HangingHead& head = state.heads[k];
       for (std::size_t zoom = 0; zoom < head.zoom.size(); ++zoom)
         for (const Vec3& aim : first_aims[k])
-          if (const auto joints = joints_towards(head, aim)) columns_[k].push_back({{*joints, zoom, 0}, {}});
+          if (const auto joints = joints_towards(head, aim, zoom)) columns_[k].push_back({{*joints, zoom, 0}, {}});
       parallel_for(columns_[k].size(), state.options.threads, [&, k](std::size_t c) {
         columns_[k][c].column = judge_.column(state_.heads[k], k, columns_[k][c].setting);
       });
@@ -181,29 +183,39 @@ class AimSearch {
 
   void set(Look& look, std::size_t k, HeadSetting setting, double level, AimColumn column, double objective) const {
     setting.level = level;
-    if (!(level > 0)) setting.joints = state_.heads[k].present;  // nothing to turn for
+    if (!(level > 0)) {  // nothing to turn for
+      setting.joints = state_.heads[k].present;
+      setting.zoom = 0;
+    }
     look.settings[k] = setting;
     look.columns[k] = std::move(column);
     look.objective = objective;
   }
 
-  /// One head's aim a step to each side, and its level.
+  /// One head's aim a step to each side, its zoom to another stop, and its level.
   void refine(Look& look, std::size_t k, double step_of_beam) {
     const HangingHead& head = state_.heads[k];
     if (!(look.settings[k].level > 0) || stopped()) return;
     const AimSum others = without(look, k);
     const HeadSetting was = look.settings[k];
     std::vector<Candidate> ways = {{was, look.columns[k]}};
+    for (std::size_t zoom = 0; zoom < head.zoom.size(); ++zoom) {
+      if (zoom == was.zoom) continue;
+      Candidate zoomed{was, {}};
+      zoomed.setting.zoom = zoom;
+      zoomed.setting.joints.beam_rad = head.zoom[zoom].beam_rad;
+      ways.push_back(std::move(zoomed));
+    }
     if (head.moves) {
       const double step_rad =
-          std::min(kWidestStep_rad, step_of_beam * cone_of_flux_rad(*head.zoom[was.zoom], kBeamShare));
+          std::min(kWidestStep_rad, step_of_beam * cone_of_flux_rad(*head.zoom[was.zoom].intensity, kBeamShare));
       const Vec3 beam = lamp_pose(head, was.joints).direction({0, 0, -1});
       const auto [x, y] = across(beam);
       for (int side = 0; side < 8; ++side) {
         const double angle_rad = side * kPi / 4;
         const Vec3 direction =
             std::cos(step_rad) * beam + std::sin(step_rad) * (std::cos(angle_rad) * x + std::sin(angle_rad) * y);
-        if (const auto joints = joints_towards(head, direction)) ways.push_back({{*joints, was.zoom, 0}, {}});
+        if (const auto joints = joints_towards(head, direction, was.zoom)) ways.push_back({{*joints, was.zoom, 0}, {}});
       }
     }
     std::vector<Tried> tried(ways.size());
@@ -241,7 +253,8 @@ std::vector<Vec3> voted_aims(const HangingHead& head, const HeadSight& sight, co
     return aims;
   }
   double narrowest_rad = 2 * kPi;
-  for (const Intensity& zoom : head.zoom) narrowest_rad = std::min(narrowest_rad, cone_of_flux_rad(*zoom, kBeamShare));
+  for (const ZoomStop& stop : head.zoom)
+    narrowest_rad = std::min(narrowest_rad, cone_of_flux_rad(*stop.intensity, kBeamShare));
   // Votes gather in squares of half a beam on a plane across the way to the middle.
   const double cell = std::tan(std::clamp(narrowest_rad / 2, rad_from_deg(0.5), rad_from_deg(40)));
   const auto [x, y] = across(middle);

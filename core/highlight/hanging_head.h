@@ -10,32 +10,40 @@
 
 namespace luxrig {
 
+/// One of the settings of a zoom.
+struct ZoomStop {
+  Intensity intensity;  ///< at rated flux
+  double beam_rad = 0;  ///< what Joints calls it
+};
+
 struct HangingHead {
   Pose world_from_mount;  ///< base as hung; light leaves from the pivot
   double roll_rad = 0;
-  bool moves = true;   ///< else it looks where `present` says, for ever
-  PanTiltRange range;  ///< only when it moves
-  PanTilt present;     ///< where it looks now
+  bool moves = true;  ///< else it looks where `present` says, for ever
+  JointRange range;   ///< only when it moves
+  Joints present;     ///< where it looks now
   double pan_speed_rad_s = rad_from_deg(180), tilt_speed_rad_s = rad_from_deg(120);  ///< > 0
-  std::vector<Intensity> zoom;  ///< at rated flux, one per stop of its zoom; at least one
-  double max_level = 1;         ///< 0…1
-  double watts = 0;             ///< at full level
+  double zoom_speed_rad_s = rad_from_deg(30);                                        ///< > 0
+  std::vector<ZoomStop> zoom;  ///< at least one; the first as it is now
+  double max_level = 1;        ///< 0…1
+  double watts = 0;            ///< at full level
 };
 
 struct HeadSetting {
-  PanTilt joints;
+  Joints joints;         ///< its beam as `zoom` says
   std::size_t zoom = 0;  ///< index of HangingHead::zoom
   double level = 0;      ///< 0…1
 };
 
-/// Seconds until it looks there: both joints turn at once, each at its own speed.
-[[nodiscard]] inline double travel_s(const HangingHead& head, const PanTilt& from, const PanTilt& to) {
-  return std::max(std::abs(to.pan_rad - from.pan_rad) / head.pan_speed_rad_s,
-                  std::abs(to.tilt_rad - from.tilt_rad) / head.tilt_speed_rad_s);
+/// Seconds until it looks there: all joints turn at once, each at its own speed.
+[[nodiscard]] inline double travel_s(const HangingHead& head, const Joints& from, const Joints& to) {
+  return std::max({std::abs(to.pan_rad - from.pan_rad) / head.pan_speed_rad_s,
+                   std::abs(to.tilt_rad - from.tilt_rad) / head.tilt_speed_rad_s,
+                   std::abs(to.beam_rad - from.beam_rad) / head.zoom_speed_rad_s});
 }
 
 /// Its lamp, looking so.
-[[nodiscard]] inline Pose lamp_pose(const HangingHead& head, const PanTilt& joints) {
+[[nodiscard]] inline Pose lamp_pose(const HangingHead& head, const Joints& joints) {
   return world_from_lamp(head.world_from_mount, joints, head.roll_rad);
 }
 

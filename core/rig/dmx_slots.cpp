@@ -12,9 +12,9 @@ namespace luxrig {
 namespace {
 
 // In the order of SlotUse; a constant carries its number.
-constexpr std::string_view kSlotNames[] = {"dimmer",     "dimmer-fine", "dimmer-ultra", "pan",
-                                           "pan-fine",   "pan-ultra",   "tilt",         "tilt-fine",
-                                           "tilt-ultra", "constant:",   "unused"};
+constexpr std::string_view kSlotNames[] = {"dimmer",    "dimmer-fine", "dimmer-ultra", "pan",        "pan-fine",
+                                           "pan-ultra", "tilt",        "tilt-fine",    "tilt-ultra", "zoom",
+                                           "zoom-fine", "zoom-ultra",  "constant:",    "unused"};
 constexpr std::string_view kEmitter = "emitter:", kFine = "-fine", kUltra = "-ultra";
 
 std::string_view slot_name(SlotUse use) { return kSlotNames[static_cast<std::size_t>(use)]; }
@@ -85,6 +85,8 @@ class SlotReader {
     fine_has_coarse(SlotUse::pan_ultra, SlotUse::pan_fine, std::nullopt);
     fine_has_coarse(SlotUse::tilt_fine, SlotUse::tilt, std::nullopt);
     fine_has_coarse(SlotUse::tilt_ultra, SlotUse::tilt_fine, std::nullopt);
+    fine_has_coarse(SlotUse::zoom_fine, SlotUse::zoom, std::nullopt);
+    fine_has_coarse(SlotUse::zoom_ultra, SlotUse::zoom_fine, std::nullopt);
     const std::size_t levels = has_emitters() ? owner_->emitters.size() : 1;
     for (std::size_t e = 0; e < levels; ++e) {
       const auto emitter = has_emitters() ? std::optional(e) : std::nullopt;
@@ -103,6 +105,11 @@ class SlotReader {
     if (has(SlotUse::pan, 0) != has(SlotUse::tilt, 0)) {
       problems_.add(list, has(SlotUse::pan, 0) ? "a pan slot without a tilt slot" : "a tilt slot without a pan slot",
                     "give both, or hold the one with \"constant:N\"");
+      good = false;
+    }
+    if (has(SlotUse::zoom, 0) && !(has(SlotUse::pan, 0) && has(SlotUse::tilt, 0))) {
+      problems_.add(list, "a zoom slot without pan and tilt slots",
+                    "hold it with \"constant:N\", and give its luminaire the beam angle that it makes then");
       good = false;
     }
     return good;

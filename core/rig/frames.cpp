@@ -26,7 +26,7 @@ std::optional<double> nearest_image(double angle_rad, double from_rad, double mi
 
 }  // namespace
 
-Pose world_from_lamp(const Pose& world_from_mount, const PanTilt& joints, double roll_rad) {
+Pose world_from_lamp(const Pose& world_from_mount, const Joints& joints, double roll_rad) {
   const Mat3 mount_from_lamp =
       (Eigen::AngleAxisd(joints.pan_rad, Vec3::UnitZ()) * Eigen::AngleAxisd(joints.tilt_rad, Vec3::UnitX()) *
        Eigen::AngleAxisd(roll_rad, Vec3::UnitZ()))
@@ -34,8 +34,8 @@ Pose world_from_lamp(const Pose& world_from_mount, const PanTilt& joints, double
   return {world_from_mount.rotation * mount_from_lamp, world_from_mount.translation_m};
 }
 
-std::optional<PanTilt> pan_tilt_towards(const Pose& world_from_mount, const Vec3& direction_world,
-                                        const PanTiltRange& range, const PanTilt& from) {
+std::optional<Joints> pan_tilt_towards(const Pose& world_from_mount, const Vec3& direction_world,
+                                       const JointRange& range, const Joints& from) {
   const double length = direction_world.stableNorm();
   LUXRIG_CHECK(length > 0 && std::isfinite(length), "no direction: ({}, {}, {})", direction_world.x(),
                direction_world.y(), direction_world.z());
@@ -48,7 +48,7 @@ std::optional<PanTilt> pan_tilt_towards(const Pose& world_from_mount, const Vec3
   const double pan_rad = std::atan2(-d.x(), d.y());
 
   // The same beam has two postures: (pan, tilt), and flipped (pan + 180°, -tilt).
-  std::optional<PanTilt> best;
+  std::optional<Joints> best;
   double best_move_rad = 0;
   bool best_flips = false;
   for (const double flip : {0.0, 1.0}) {
@@ -62,7 +62,7 @@ std::optional<PanTilt> pan_tilt_towards(const Pose& world_from_mount, const Vec3
     const bool flips = (*tilt < 0) != (from.tilt_rad < 0);  // on a tie, the beam does not swing through straight down
     const bool tie = best && std::abs(move_rad - best_move_rad) <= kSlack_rad;
     if (!best || (tie ? best_flips && !flips : move_rad < best_move_rad)) {
-      best = PanTilt{*pan, *tilt};
+      best = Joints{*pan, *tilt, from.beam_rad};
       best_move_rad = move_rad;
       best_flips = flips;
     }

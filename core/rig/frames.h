@@ -17,24 +17,28 @@
 
 namespace luxrig {
 
-struct PanTilt {
+struct Joints {
   double pan_rad = 0;
   double tilt_rad = 0;
-  bool operator==(const PanTilt&) const = default;
+  double beam_rad = 0;  ///< beam angle that its zoom is set to; 0: its luminaire's own
+  bool operator==(const Joints&) const = default;
 };
 
-struct PanTiltRange {
+/// What the joints of a head run through; a zoom only where beam_max_rad is above 0.
+struct JointRange {
   double pan_min_rad = -1.5 * kPi, pan_max_rad = 1.5 * kPi;      // ±270°, the usual moving head
   double tilt_min_rad = -0.75 * kPi, tilt_max_rad = 0.75 * kPi;  // ±135°
+  double beam_min_rad = 0, beam_max_rad = 0;
+  [[nodiscard]] bool zooms() const { return beam_max_rad > 0; }
 };
 
 /// Pose of the lamp of a head at the given joint angles.
-[[nodiscard]] Pose world_from_lamp(const Pose& world_from_mount, const PanTilt& joints, double roll_rad = 0);
+[[nodiscard]] Pose world_from_lamp(const Pose& world_from_mount, const Joints& joints, double roll_rad = 0);
 
 /// The joint angles, within range, that point the beam along direction_world (need not be unit, must not
 /// be zero), nearest to `from` in the larger of the two joint movements; nothing when out of reach.
-/// Straight down keeps the present pan.
-[[nodiscard]] std::optional<PanTilt> pan_tilt_towards(const Pose& world_from_mount, const Vec3& direction_world,
-                                                      const PanTiltRange& range, const PanTilt& from);
+/// Straight down keeps the present pan; the zoom stays.
+[[nodiscard]] std::optional<Joints> pan_tilt_towards(const Pose& world_from_mount, const Vec3& direction_world,
+                                                     const JointRange& range, const Joints& from);
 
 }  // namespace luxrig

@@ -34,6 +34,17 @@ std::optional<DimmerCurve> curve_like(const DmxProfile& profile) {
   return std::nullopt;
 }
 
+/// Whether its zoom is one more joint of a head.
+bool zooms(const PersonalityMode& mode, const ModeWanted& wanted) {
+  const auto has = [&](std::string_view attribute) {
+    return std::any_of(mode.channels.begin(), mode.channels.end(), [&](const PersonalityChannel& channel) {
+      return !channel.is_virtual() && std::any_of(channel.functions.begin(), channel.functions.end(),
+                                                  [&](const ChannelFunction& f) { return f.attribute == attribute; });
+    });
+  };
+  return wanted.zoom_deg && has("Pan") && has("Tilt") && has("Zoom");
+}
+
 class ModeFitter {
  public:
   ModeFitter(const Personality& personality, const PersonalityMode& mode, const ModeWanted& wanted,
@@ -42,7 +53,7 @@ class ModeFitter {
         mode_(mode),
         wanted_(wanted),
         problems_(problems),
-        held_(held_values(mode, wanted.beam_deg)) {}
+        held_(held_values(mode, zooms(mode, wanted) ? std::nullopt : wanted.beam_deg)) {}
 
   std::optional<ModeSlots> fit() {
     if (mode_.break_footprints.size() != 1) {
@@ -223,7 +234,32 @@ class ModeFitter {
     const bool tilt_good =
         carry_axis(tilts, tilt, SlotUse::tilt, "tilt", mode_.tilt_offset_deg, wanted_.tilt_range_deg,
                    wanted_.tilt_place, out_.range.tilt_min_rad, out_.range.tilt_max_rad, out_.tilt_speed_rad_s);
-    return pan_good && tilt_good;
+    return pan_good && tilt_good && carry_zoom();
+  }
+
+  /// Through what both the file and the luminaire say that it goes through.
+  bool carry_zoom() {
+    const auto zoom = [](const ChannelFunction& f) { return f.attribute == "Zoom"; };
+    const std::vector<std::size_t> zooms = channels_of(zoom);
+    if (zooms.empty() || !wanted_.zoom_deg) return true;
+    std::pair<double, double> range_deg = *wanted_.zoom_deg;
+    for (const std::size_t c : zooms) {
+      const ChannelFunction& f = *active_function(mode_.channels[c], held_.dmx, zoom);
+      if (!states_travel(f)) continue;
+      range_deg.first = std::max(range_deg.first, std::min(f.physical_from, f.physical_to));
+      range_deg.second = std::min(range_deg.second, std::max(f.physical_from, f.physical_to));
+    }
+    const double beam_deg = wanted_.beam_deg.value_or(range_deg.first);
+    if (!(range_deg.first < range_deg.second) || beam_deg < range_deg.first - kSlack_deg ||
+        beam_deg > range_deg.second + kSlack_deg) {
+      problems_.add(wanted_.place,
+                    fmt::format("mode {} has a zoom that does not make the beam angle of {:g}° of its luminaire",
+                                in_quotes(mode_.name), beam_deg),
+                    "correct beam_angle_deg and zoom_deg of the luminaire, or choose another mode");
+      return false;
+    }
+    return carry_axis(zooms, zoom, SlotUse::zoom, "zoom", 0, range_deg, wanted_.place, out_.range.beam_min_rad,
+                      out_.range.beam_max_rad, out_.zoom_speed_rad_s);
   }
 
   template <class Of>

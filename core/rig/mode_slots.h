@@ -13,6 +13,7 @@ namespace luxrig {
 struct ModeWanted {
   std::optional<SlotOwner> owner;  ///< none: its luminaire is not known, and what depends on it goes unchecked
   std::optional<double> beam_deg;  ///< of its luminaire; zooms are set to it
+  std::optional<std::pair<double, double>> zoom_deg;  ///< what its luminaire's zoom goes through; none: it is held
   std::optional<std::pair<double, double>> pan_range_deg, tilt_range_deg;
   Place place, pan_place, tilt_place;  ///< of `mode`, `pan_range_deg`, `tilt_range_deg`
 };
@@ -20,8 +21,9 @@ struct ModeWanted {
 struct ModeSlots {
   std::vector<NamedSlot> slots;
   bool moves = false;
-  PanTiltRange range;                                ///< only when it moves
+  JointRange range;                                  ///< only when it moves
   double pan_speed_rad_s = 0, tilt_speed_rad_s = 0;  ///< 0: the file states none
+  double zoom_speed_rad_s = 0;                       ///< the same
   std::optional<DimmerCurve> dimmer_curve;           ///< none: the file states none
   std::vector<std::string> told;                     ///< how it was understood, for a person
 };

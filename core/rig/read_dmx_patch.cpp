@@ -80,7 +80,11 @@ std::optional<ModeSlots> RigReader::read_slots_of_mode(Section& s, const std::op
   if (!mode) return std::nullopt;
   ModeWanted wanted;
   wanted.owner = owner;
-  if (owner) wanted.beam_deg = zoom_deg_of(rig.luminaires[fixture.luminaire]);
+  if (owner) {
+    wanted.beam_deg = zoom_deg_of(rig.luminaires[fixture.luminaire]);
+    if (const auto& zoom_rad = rig.luminaires[fixture.luminaire].zoom_beam_rad)
+      wanted.zoom_deg = {deg_from_rad(zoom_rad->first), deg_from_rad(zoom_rad->second)};
+  }
   s.read("pan_range_deg", wanted.pan_range_deg);
   s.read("tilt_range_deg", wanted.tilt_range_deg);
   wanted.place = s.place_of(s.has("mode") ? "mode" : "personality");

@@ -1,5 +1,8 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <tuple>
+
 #include "core/rig/dmx_slots.h"
 #include "core/rig/mode_slots.h"
 #include "core/rig/rig_reader.h"
@@ -75,6 +78,44 @@ void read_travel(Section& s, const ModeSlots* stated, Fixture& fixture) {
   s.read_deg("tilt_speed_deg_s", fixture.tilt_speed_rad_s);
 }
 
+bool has_zoom_slot(const Fixture& fixture) {
+  const auto* dmx = std::get_if<DmxPatch>(&fixture.patch);
+  return dmx && std::any_of(dmx->slots.begin(), dmx->slots.end(),
+                            [](const DmxSlot& slot) { return slot.use == SlotUse::zoom; });
+}
+
+/// `luminaire`: null when it is not known, which is reported.
+void read_zoom(Section& s, const Luminaire* luminaire, const ModeSlots* stated, Fixture& fixture) {
+  const bool zooms = has_zoom_slot(fixture);
+  if (!zooms) {
+    for (const char* key : {"zoom_inverted", "zoom_speed_deg_s"})
+      s.refuse(key, fmt::format("{} has no effect: the fixture does not zoom", key),
+               stated ? "remove it: no zoom of its personality is used (zoom_deg of its luminaire asks for that)"
+                      : "add \"zoom\" to its slots, or remove this key");
+    return;
+  }
+  if (!luminaire) return;
+  if (!luminaire->zoom_beam_rad) {
+    s.problems().add(
+        s.place_of("slots"),
+        fmt::format("a zoom slot, but luminaire {} does not say what it zooms through", in_quotes(luminaire->name)),
+        "give the luminaire zoom_deg, or hold the slot with \"constant:N\"");
+    return;
+  }
+  if (stated) {
+    s.refuse("zoom_inverted", "zoom_inverted has no effect: the personality says which end is wide", "remove it");
+  } else {
+    std::tie(fixture.range.beam_min_rad, fixture.range.beam_max_rad) = *luminaire->zoom_beam_rad;
+    bool inverted = false;
+    s.read("zoom_inverted", inverted);
+    for (DmxSlot& slot : std::get<DmxPatch>(fixture.patch).slots)
+      if (inverted && slot.use >= SlotUse::zoom && slot.use <= SlotUse::zoom_ultra) slot.travel = {1, 0};
+  }
+  fixture.joints.beam_rad = luminaire->beam_angle_rad;
+  fixture.zoom_speed_rad_s = stated && stated->zoom_speed_rad_s > 0 ? stated->zoom_speed_rad_s : rad_from_deg(30);
+  s.read_deg("zoom_speed_deg_s", fixture.zoom_speed_rad_s);
+}
+
 SlotOwner slot_owner_of(const Rig& rig, std::size_t luminaire) {
   SlotOwner owner{rig.luminaires[luminaire].name, {}};
   for (const std::size_t emitter : rig.luminaires[luminaire].emitters)
@@ -145,12 +186,12 @@ void RigReader::read_aim(Section& s, Fixture& fixture) {
     problems.add(s.place_of(key), "the fixture stands where it shall look", "aim it at another place, or move it");
     return;
   }
-  const PanTiltRange anywhere{-2 * kPi, 2 * kPi, -2 * kPi, 2 * kPi};
+  const JointRange anywhere{-2 * kPi, 2 * kPi, -2 * kPi, 2 * kPi};
   const auto wanted = pan_tilt_towards(fixture.world_from_mount, direction_world, anywhere, {});
   const auto reached =
       fixture.moves ? pan_tilt_towards(fixture.world_from_mount, direction_world, fixture.range, {}) : wanted;
   if (reached) {
-    fixture.joints = *reached;
+    fixture.joints = {reached->pan_rad, reached->tilt_rad, fixture.joints.beam_rad};
     return;
   }
   problems.add(s.place_of(key),
@@ -201,7 +242,9 @@ void RigReader::read_fixtures() {
     // A personality that cannot be used leaves open whether the fixture moves, so nothing is said of that.
     if (of_mode || !s.has("personality")) {
       read_axes(s, fixture);
-      read_travel(s, of_mode && !fixture.axes ? &*of_mode : nullptr, fixture);
+      const ModeSlots* stated = of_mode && !fixture.axes ? &*of_mode : nullptr;
+      read_travel(s, stated, fixture);
+      read_zoom(s, slot_owner ? &rig.luminaires[fixture.luminaire] : nullptr, stated, fixture);
       read_aim(s, fixture);
     }
     if (of_mode && of_mode->dimmer_curve) fixture.dimmer_curve = *of_mode->dimmer_curve;

@@ -20,11 +20,13 @@ constexpr ModelKey kModelKeys[] = {
     {"file", " ies ", true},
     {"beam_angle_deg", " spot ", true},
     {"field_angle_deg", " spot ", true},
+    {"zoom_deg", " spot ", false},
     {"length_m", " rectangle cylinder ", true},
     {"width_m", " rectangle ", true},
     {"diameter_m", " disk sphere cylinder ", true},
     {"near_field", " ies ", false},
 };
+constexpr double kSlack_deg = 1e-9;
 constexpr const char* kModelNames[] = {"ies", "isotropic", "spot", "rectangle", "disk", "sphere", "cylinder"};
 
 std::string models_text(std::string_view models) {
@@ -66,6 +68,27 @@ void RigReader::read_spot(Section& s, Luminaire& luminaire) {
                              deg_from_rad(luminaire.beam_angle_rad), deg_from_rad(luminaire.field_angle_rad)),
                  "the beam angle is to half the peak, the field angle to a tenth: swap or correct them");
     return;
+  }
+  std::pair<double, double> zoom_deg;
+  if (s.read("zoom_deg", zoom_deg)) {
+    const double beam_deg = deg_from_rad(luminaire.beam_angle_rad);
+    const double ratio = luminaire.field_angle_rad / luminaire.beam_angle_rad;
+    if (beam_deg < zoom_deg.first - kSlack_deg || beam_deg > zoom_deg.second + kSlack_deg) {
+      problems.add(s.place_of("beam_angle_deg"),
+                   fmt::format("beam_angle_deg {:g} is outside its zoom_deg of {:g} to {:g}", beam_deg, zoom_deg.first,
+                               zoom_deg.second),
+                   "give a beam angle that its zoom can make, or correct zoom_deg");
+      return;
+    }
+    if (ratio * zoom_deg.second >= 180) {
+      problems.add(s.place_of("zoom_deg"),
+                   fmt::format("at {:g}° its field angle would be {:g}°, {:g} times as wide as the beam, as "
+                               "field_angle_deg and beam_angle_deg say",
+                               zoom_deg.second, ratio * zoom_deg.second, ratio),
+                   "a field angle is below 180°: lower zoom_deg, or state a narrower field");
+      return;
+    }
+    luminaire.zoom_beam_rad = {rad_from_deg(zoom_deg.first), rad_from_deg(zoom_deg.second)};
   }
   if (luminaire.lumens > 0) {
     luminaire.intensity = make_spot(luminaire.lumens, luminaire.beam_angle_rad, luminaire.field_angle_rad);

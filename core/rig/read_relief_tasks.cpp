@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "core/rig/housing.h"
 #include "core/rig/nearest.h"
 #include "core/rig/rig_reader.h"
 
@@ -62,7 +63,13 @@ void RigReader::read_aim_task(Section& s, AimSpec& aim) {
   read_relief(s, aim.relief);
   s.read_choice("contrast", aim.relief.relative);
   std::vector<std::string_view> fixture_names, point_names;
-  for (const Fixture& fixture : rig.fixtures) fixture_names.push_back(fixture.name);
+  std::vector<std::string> head_names;
+  NameIndex heads("fixture");
+  for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
+    head_names.push_back(housing_name(rig, f));
+    if (!heads.find(head_names[f])) heads.add(head_names[f], f, rig.fixtures[f].place, problems);
+  }
+  fixture_names.assign(head_names.begin(), head_names.end());
   for (const Point& point : rig.points) point_names.push_back(point.name);
   if (s.has("heads")) {
     aim.heads = read_patterns(s, "heads", fixture_names, "fixture");
@@ -73,15 +80,9 @@ void RigReader::read_aim_task(Section& s, AimSpec& aim) {
       problems.add(s.place(), "there is nothing to aim: no fixture has pan and tilt",
                    "give a fixture pan and tilt slots, or name the heads that shall at least be dimmed");
   }
-  for (const std::size_t head : aim.heads) {
-    if (!rig.fixtures[head].housing) continue;
-    problems.add(s.place(),
-                 fmt::format("{} has emitters that are set one by one: aim cannot set those yet",
-                             in_quotes(rig.fixtures[head].name)),
-                 "name heads without emitters");
-    break;
-  }
-  if ((aim.key = fixtures.read_reference(s, "key")) &&
+  for (std::size_t& head : aim.heads) head = rig.fixtures[head].housing.value_or(head);
+  aim.heads.erase(std::unique(aim.heads.begin(), aim.heads.end()), aim.heads.end());
+  if ((aim.key = heads.read_reference(s, "key")) &&
       std::find(aim.heads.begin(), aim.heads.end(), *aim.key) == aim.heads.end())
     problems.add(s.place_of("key"), "the key light is none of the heads", "name one of them");
   s.read("min_key_to_fill", aim.min_key_to_fill);

@@ -64,7 +64,9 @@ struct Luminaire {
   LuminaireModel model = LuminaireModel::isotropic;
   std::filesystem::path ies_path;                  ///< model == ies: .ies, or .ldt for EULUMDAT
   double beam_angle_rad = 0, field_angle_rad = 0;  ///< model == spot, full angles to 50 % and 10 %
-  double lumens = 0;                               ///< rated flux = flux of `intensity`
+  /// model == spot: beam angles that its zoom goes through, rising; none: it has none. core/rig/zoom.h
+  std::optional<std::pair<double, double>> zoom_beam_rad{};
+  double lumens = 0;  ///< rated flux = flux of `intensity`
   std::optional<double> watts;
   Intensity intensity;  ///< at rated flux; never null in a checked Rig
   LuminousShape shape;  ///< a point, unless the model has a size or a file's opening is asked for (near_field)
@@ -88,11 +90,15 @@ enum class SlotUse {
   tilt,
   tilt_fine,
   tilt_ultra,
+  zoom,
+  zoom_fine,
+  zoom_ultra,
   constant,
   unused
 };
 
-/// Which values a channel runs through, as shares of all it has: at level 0 or the least angle, and at the other end.
+/// Which values a channel runs through, as shares of all it has: at level 0 or the least angle (of a zoom: of the
+/// beam), and at the other end.
 struct DmxTravel {
   double at_start = 0, at_end = 1;
   [[nodiscard]] double at(double share) const { return at_start + share * (at_end - at_start); }
@@ -177,11 +183,12 @@ struct Fixture {
   std::optional<std::size_t> housing{};  ///< of an emitter: the fixture that is the first of its housing
   Pose world_from_mount;                 ///< base as hung
   std::optional<Vec3> aim_world_m;       ///< point looked at; else `joints` are given
-  PanTilt joints;                        ///< pan and tilt, derived from the aim when there is one
+  Joints joints;  ///< pan and tilt, derived from the aim when there is one; zoom as its luminaire
   double roll_rad = 0;
-  bool moves = false;                                ///< has pan and tilt slots, or axes
-  PanTiltRange range;                                ///< only when it moves
+  bool moves = false;                                ///< has pan and tilt slots, or axes; perhaps a zoom slot
+  JointRange range;                                  ///< only when it moves
   double pan_speed_rad_s = 0, tilt_speed_rad_s = 0;  ///< only when it moves, > 0
+  double zoom_speed_rad_s = 0;                       ///< of the beam angle; only when it zooms, > 0
   std::size_t bus = 0;
   Patch patch;
   std::optional<AxesPatch> axes{};    ///< else pan and tilt are slots of `patch`
@@ -303,7 +310,7 @@ struct ReliefSpec {
 /// kind == aim: where heads that hang look, and how bright they are.
 struct AimSpec {
   ReliefSpec relief;
-  std::vector<std::size_t> heads;  ///< fixtures, rising; each moves or not
+  std::vector<std::size_t> heads;  ///< fixtures, rising, of each housing the first; each moves or not
   std::optional<std::size_t> key;  ///< of all fixtures, one of the heads
   double min_key_to_fill = 1;
   std::optional<double> max_key_to_fill;

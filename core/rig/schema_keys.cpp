@@ -153,6 +153,11 @@ constexpr KeySpec kRigKeys[] = {
      "full angle to half the peak intensity (only with model `spot`, and required there)"},
     {"luminaire", "field_angle_deg", number, "°", kNone, kFullCone, "",
      "full angle to a tenth of the peak (only with model `spot`, and required there); more than the beam angle"},
+    {"luminaire", "zoom_deg", span2, "°", kNone, kFullCone, "",
+     "beam angles that its zoom goes through, narrowest first (only with model `spot`): its flux stays, its field "
+     "angle "
+     "keeps its ratio to the beam angle. `beam_angle_deg` is what it is set to unless a solve finds better; a fixture "
+     "without a zoom slot keeps that"},
     {"luminaire", "length_m", number, "m", kNone, kLuminousSize, "",
      "size of a `rectangle` along the lamp's x, or of a `cylinder` along its axis (only there, and required)"},
     {"luminaire", "width_m", number, "m", kNone, kLuminousSize, "",
@@ -227,8 +232,9 @@ constexpr KeySpec kRigKeys[] = {
     {"fixture", "mode", text, "", kNone, kAny, "",
      "DMX mode that the fixture is set to, as its personality calls it; may be left out when there is but one"},
     {"fixture", "slots", texts, "", R"(["dimmer"])", kAny, "",
-     "what each DMX slot carries from `address` on: `dimmer`, `dimmer-fine`, `dimmer-ultra`, the same with `pan` and "
-     "with `tilt`, `unused`, or `constant:N` with N from 0 to 255; one dimmer is needed, pan and tilt come together, "
+     "what each DMX slot carries from `address` on: `dimmer`, `dimmer-fine`, `dimmer-ultra`, the same with `pan`, "
+     "`tilt` and `zoom`, `unused`, or `constant:N` with N from 0 to 255; one dimmer is needed, pan and tilt come "
+     "together, zoom with them, "
      "and a fine slot needs its coarse one, an ultra slot (24 bit) its fine one. With a luminaire that has emitters, "
      "instead of the dimmer: `emitter:NAME`, `emitter:NAME-fine` and `emitter:NAME-ultra`, one for each; hold a master "
      "dimmer open with `constant:255`"},
@@ -259,6 +265,16 @@ constexpr KeySpec kRigKeys[] = {
     {"fixture", "tilt_range_deg", span2, "°", "[-135, 135]", kAngle, "", "travel of the tilt; the same"},
     {"fixture", "pan_speed_deg_s", number, "°/s", "180", {0, 3600, true}, "", "only with a pan slot or `axes_bus`"},
     {"fixture", "tilt_speed_deg_s", number, "°/s", "120", {0, 3600, true}, "", "only with a tilt slot or `axes_bus`"},
+    {"fixture", "zoom_inverted", yes_no, "", "false", kAny, "",
+     "its zoom channel at 0 makes the widest beam; only with a zoom slot"},
+    {"fixture",
+     "zoom_speed_deg_s",
+     number,
+     "°/s",
+     "30",
+     {0, 3600, true},
+     "",
+     "how fast its beam angle changes; only with a zoom slot, or a personality whose zoom is used"},
     {"fixture", "axes_bus", text, "", kNone, kAny, "",
      "name of the `[[bus]]` on which drives of their own (CiA 402) turn pan and tilt; left out, they are slots of its "
      "address, or it does not move"},

@@ -6,6 +6,7 @@
 
 #include "core/check.h"
 #include "core/photometry/sky.h"
+#include "core/rig/zoom.h"
 
 namespace luxrig {
 namespace {
@@ -18,11 +19,11 @@ double tilt_off_upright_rad(const Pose& world_from_lamp) {
 
 }  // namespace
 
-Emitter emitter_of(const Luminaire& luminaire, const Pose& world_from_lamp) {
-  Emitter emitter{luminaire.intensity, world_from_lamp, luminaire.shape, luminaire.colour_rgb};
+Emitter emitter_of(const Luminaire& luminaire, const Pose& world_from_lamp, double beam_rad) {
+  Emitter emitter{intensity_at_beam(luminaire, beam_rad), world_from_lamp, luminaire.shape, luminaire.colour_rgb};
   if (luminaire.tilt) {
     const double factor = luminaire.tilt->over_upright(tilt_off_upright_rad(world_from_lamp));
-    if (factor != 1) emitter.intensity = scaled_to_flux(luminaire.intensity, factor * luminaire.intensity->flux_lm());
+    if (factor != 1) emitter.intensity = scaled_to_flux(emitter.intensity, factor * emitter.intensity->flux_lm());
   }
   return emitter;
 }
@@ -31,7 +32,8 @@ std::vector<Emitter> emitters_of(const Rig& rig) {
   std::vector<Emitter> emitters;
   emitters.reserve(rig.fixtures.size());
   for (const Fixture& fixture : rig.fixtures)
-    emitters.push_back(emitter_of(rig.luminaires.at(fixture.luminaire), fixture.world_from_lamp()));
+    emitters.push_back(
+        emitter_of(rig.luminaires.at(fixture.luminaire), fixture.world_from_lamp(), fixture.joints.beam_rad));
   return emitters;
 }
 

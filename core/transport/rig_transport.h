@@ -10,7 +10,8 @@ namespace luxrig {
 
 /// A luminaire hung and aimed so: at its rated flux, with its shape, colour, and its TILT factor at that pose. Planner
 /// and simulated truth both make their emitters here.
-[[nodiscard]] Emitter emitter_of(const Luminaire& luminaire, const Pose& world_from_lamp);
+/// beam_rad   of its zoom; 0: as its luminaire states
+[[nodiscard]] Emitter emitter_of(const Luminaire& luminaire, const Pose& world_from_lamp, double beam_rad = 0);
 
 /// One emitter per fixture, in the rig's order, at the luminaire's rated flux and aimed as the rig file says; with the
 /// luminaire's shape and colour, and its TILT factor at that aim.

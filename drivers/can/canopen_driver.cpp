@@ -150,7 +150,7 @@ class CanopenDriver final : public Driver, public Mover {
     for (const AimCommand& command : commands) {
       const auto found = ranges_.find(command.fixture);
       if (found == ranges_.end()) return invalid(fmt::format("fixture {} is not turned by this bus", command.fixture));
-      const PanTiltRange& range = found->second;
+      const JointRange& range = found->second;
       if (!within(command.joints.pan_rad, range.pan_min_rad, range.pan_max_rad) ||
           !within(command.joints.tilt_rad, range.tilt_min_rad, range.tilt_max_rad)) {
         return invalid(fmt::format("pan {}°, tilt {}° of fixture {} is outside its travel",
@@ -288,7 +288,7 @@ class CanopenDriver final : public Driver, public Mover {
   std::unique_ptr<can::CanChannel> channel_;
   can::BusState state_;
   std::vector<Head> heads_;
-  std::map<std::size_t, PanTiltRange> ranges_;  ///< by fixture, of every light that is turned here
+  std::map<std::size_t, JointRange> ranges_;  ///< by fixture, of every light that is turned here
   LifeRecord life_;
   Time next_cycle_{}, heartbeat_at_{}, open_at_{}, quiet_until_{};
   Duration reopen_after_ = kShortestReopen, queue_pause_ = kShortestQueuePause;

@@ -23,7 +23,7 @@ ByteOfValue byte_of_value(SlotUse use) {
   return {static_cast<SlotUse>(index - index % 3), index % 3};
 }
 static_assert(static_cast<int>(SlotUse::pan) == 3 && static_cast<int>(SlotUse::tilt) == 6 &&
-              static_cast<int>(SlotUse::constant) == 9);
+              static_cast<int>(SlotUse::zoom) == 9 && static_cast<int>(SlotUse::constant) == 12);
 
 /// How many slots of the patch make up the value that a slot is a byte of.
 int bytes_of_value(const DmxPatch& patch, const DmxSlot& slot) {
@@ -105,7 +105,7 @@ Result<void> DmxPatchbay::set_aims(std::span<const AimCommand> commands) {
     }
     const Entry& entry = found->second;
     if (!entry.moves) return tl::unexpected(invalid(command.fixture, "this fixture has no pan and tilt"));
-    const auto [pan, tilt] = command.joints;
+    const auto [pan, tilt, beam] = command.joints;
     if (!within(pan, entry.range.pan_min_rad, entry.range.pan_max_rad)) {
       return tl::unexpected(invalid(
           command.fixture, fmt::format("pan {}° is outside {}…{}°", deg_from_rad(pan),
@@ -116,6 +116,12 @@ Result<void> DmxPatchbay::set_aims(std::span<const AimCommand> commands) {
                                                                  deg_from_rad(entry.range.tilt_min_rad),
                                                                  deg_from_rad(entry.range.tilt_max_rad))));
     }
+    if (entry.range.zooms() && !within(beam, entry.range.beam_min_rad, entry.range.beam_max_rad)) {
+      return tl::unexpected(
+          invalid(command.fixture,
+                  fmt::format("a beam angle of {}° is outside {}…{}°", deg_from_rad(beam),
+                              deg_from_rad(entry.range.beam_min_rad), deg_from_rad(entry.range.beam_max_rad))));
+    }
   }
   for (const AimCommand& command : commands) entries_.at(command.fixture).joints = command.joints;
   return {};
@@ -124,11 +130,15 @@ Result<void> DmxPatchbay::set_aims(std::span<const AimCommand> commands) {
 void DmxPatchbay::encode(const Entry& entry) {
   const double pan = share_of_travel(entry.joints.pan_rad, entry.range.pan_min_rad, entry.range.pan_max_rad);
   const double tilt = share_of_travel(entry.joints.tilt_rad, entry.range.tilt_min_rad, entry.range.tilt_max_rad);
+  const double zoom = share_of_travel(entry.joints.beam_rad, entry.range.beam_min_rad, entry.range.beam_max_rad);
   const auto byte_of = [&](std::size_t i) -> std::uint32_t {
     const DmxSlot& slot = entry.patch.slots[i];
     if (slot.use == SlotUse::constant) return static_cast<std::uint32_t>(slot.constant_dmx);
     const auto [coarse, byte] = byte_of_value(slot.use);
-    const double share = coarse == SlotUse::pan ? pan : coarse == SlotUse::tilt ? tilt : entry.drive;
+    const double share = coarse == SlotUse::pan    ? pan
+                         : coarse == SlotUse::tilt ? tilt
+                         : coarse == SlotUse::zoom ? zoom
+                                                   : entry.drive;
     // The coarse byte of a value that has a fine one is its high byte; alone it is the whole value in 8 bits.
     return encode_dmx(slot.travel.at(share), entry.bytes[i]) >> (8 * (entry.bytes[i] - 1 - byte)) & 0xFF;
   };
@@ -199,9 +209,12 @@ std::vector<DeskCommand> DmxPatchbay::decode(std::size_t universe, const DmxSlot
     DeskCommand command{index, *drive, std::nullopt};
     const auto pan = value_of(SlotUse::pan), tilt = value_of(SlotUse::tilt);
     if (entry.moves && pan && tilt) {
-      const PanTiltRange& range = entry.range;
-      command.joints = PanTilt{range.pan_min_rad + *pan * (range.pan_max_rad - range.pan_min_rad),
-                               range.tilt_min_rad + *tilt * (range.tilt_max_rad - range.tilt_min_rad)};
+      const JointRange& range = entry.range;
+      command.joints =
+          Joints{range.pan_min_rad + *pan * (range.pan_max_rad - range.pan_min_rad),
+                 range.tilt_min_rad + *tilt * (range.tilt_max_rad - range.tilt_min_rad), entry.joints.beam_rad};
+      const auto zoom = range.zooms() ? value_of(SlotUse::zoom) : std::nullopt;
+      if (zoom) command.joints->beam_rad = range.beam_min_rad + *zoom * (range.beam_max_rad - range.beam_min_rad);
     }
     commands.push_back(command);
   }

@@ -65,12 +65,12 @@ class DmxPatchbay {
   struct Entry {
     std::string name;
     DmxPatch patch;
-    PanTiltRange range;
+    JointRange range;
     bool moves = false;
     std::vector<int> bytes;    ///< by slot: how many make up the value that it is a byte of
     std::size_t universe = 0;  ///< index in universes_
     double drive = 0;
-    PanTilt joints;
+    Joints joints;
   };
   void encode(const Entry& entry);
   [[nodiscard]] static std::optional<double> share_in_cell(const Entry& entry, std::size_t coarse_slot,

@@ -20,8 +20,8 @@ struct Sensor {
 
 /// What the fixtures truly do at one instant.
 struct LightNow {
-  std::vector<double> levels;   ///< true output over rated (World::levels)
-  std::vector<PanTilt> joints;  ///< World::joints
+  std::vector<double> levels;  ///< true output over rated (World::levels)
+  std::vector<Joints> joints;  ///< World::joints
 };
 
 struct Shot {

@@ -19,7 +19,8 @@ struct Parameter {
 
 DmxOrder decode_slots(const Fixture& fixture, const DmxPatch& patch, std::span<const std::uint8_t, kDmxSlots> slots) {
   if (fixture.mode) return decode_personality(fixture, patch, slots);
-  Parameter dimmer, pan, tilt;
+  Parameter dimmer, pan, tilt, zoom;
+  bool zoom_inverted = false;
   bool constants_hold = true;
   for (std::size_t i = 0; i < patch.slots.size(); ++i) {
     const std::size_t index = static_cast<std::size_t>(patch.address - 1) + i;
@@ -52,6 +53,16 @@ DmxOrder decode_slots(const Fixture& fixture, const DmxPatch& patch, std::span<c
       case SlotUse::tilt_ultra:
         tilt.ultra = value_dmx;
         break;
+      case SlotUse::zoom:
+        zoom.coarse = value_dmx;
+        zoom_inverted = patch.slots[i].travel.at_end < patch.slots[i].travel.at_start;
+        break;
+      case SlotUse::zoom_fine:
+        zoom.fine = value_dmx;
+        break;
+      case SlotUse::zoom_ultra:
+        zoom.ultra = value_dmx;
+        break;
       case SlotUse::constant:
         constants_hold = constants_hold && value_dmx == patch.slots[i].constant_dmx;
         break;
@@ -62,9 +73,14 @@ DmxOrder decode_slots(const Fixture& fixture, const DmxPatch& patch, std::span<c
   DmxOrder order;
   order.drive = constants_hold ? dimmer.share() : 0;
   if (fixture.moves && !fixture.axes && pan.coarse && tilt.coarse) {
-    const PanTiltRange& range = fixture.range;
-    order.joints = PanTilt{range.pan_min_rad + pan.share() * (range.pan_max_rad - range.pan_min_rad),
-                           range.tilt_min_rad + tilt.share() * (range.tilt_max_rad - range.tilt_min_rad)};
+    const JointRange& range = fixture.range;
+    order.joints =
+        Joints{range.pan_min_rad + pan.share() * (range.pan_max_rad - range.pan_min_rad),
+               range.tilt_min_rad + tilt.share() * (range.tilt_max_rad - range.tilt_min_rad), fixture.joints.beam_rad};
+    if (zoom.coarse && range.zooms()) {
+      const double share = zoom_inverted ? 1 - zoom.share() : zoom.share();
+      order.joints->beam_rad = range.beam_min_rad + share * (range.beam_max_rad - range.beam_min_rad);
+    }
   }
   return order;
 }

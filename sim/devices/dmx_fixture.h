@@ -15,8 +15,8 @@ namespace luxrig::sim {
 inline constexpr std::size_t kDmxSlots = 512;
 
 struct DmxOrder {
-  double drive = 0;               ///< 0 while a constant slot holds anything else: its shutter is shut, its lamp is off
-  std::optional<PanTilt> joints;  ///< when it has a pan and a tilt slot
+  double drive = 0;              ///< 0 while a constant slot holds anything else: its shutter is shut, its lamp is off
+  std::optional<Joints> joints;  ///< when it has a pan and a tilt slot
 };
 
 /// `slots`: the universe, address 1 first. A patch that runs past it reads 0 there.

@@ -17,20 +17,23 @@ Head::Head(const Fixture& fixture)
       range_(fixture.range),
       pan_speed_rad_s_(fixture.pan_speed_rad_s),
       tilt_speed_rad_s_(fixture.tilt_speed_rad_s),
+      zoom_speed_rad_s_(fixture.zoom_speed_rad_s),
       joints_(fixture.joints),
       target_(fixture.joints) {
   if (!moves_) return;
-  set_target(PanTilt{});
+  set_target(Joints{});
   joints_ = target_;
 }
 
-void Head::set_target(const PanTilt& joints) {
-  if (!moves_ || carried_ || std::isnan(joints.pan_rad) || std::isnan(joints.tilt_rad)) return;
+void Head::set_target(const Joints& joints) {
+  if (!moves_ || carried_ || std::isnan(joints.pan_rad) || std::isnan(joints.tilt_rad) || std::isnan(joints.beam_rad))
+    return;
   target_.pan_rad = std::clamp(joints.pan_rad, range_.pan_min_rad, range_.pan_max_rad);
   target_.tilt_rad = std::clamp(joints.tilt_rad, range_.tilt_min_rad, range_.tilt_max_rad);
+  if (range_.zooms()) target_.beam_rad = std::clamp(joints.beam_rad, range_.beam_min_rad, range_.beam_max_rad);
 }
 
-void Head::carry_to(const PanTilt& joints) {
+void Head::carry_to(const Joints& joints) {
   carried_ = moves_;
   if (moves_) target_ = joints;
 }
@@ -42,6 +45,7 @@ void Head::step(double dt_s) {
   }
   joints_.pan_rad = turned_towards(joints_.pan_rad, target_.pan_rad, pan_speed_rad_s_ * dt_s);
   joints_.tilt_rad = turned_towards(joints_.tilt_rad, target_.tilt_rad, tilt_speed_rad_s_ * dt_s);
+  joints_.beam_rad = turned_towards(joints_.beam_rad, target_.beam_rad, zoom_speed_rad_s_ * dt_s);
 }
 
 }  // namespace luxrig::sim

@@ -8,27 +8,25 @@ namespace luxrig::sim {
 
 class Head {
  public:
-  /// `fixture` must move (speeds > 0). It wakes at pan = tilt = 0, or as near as its range allows, as heads do when
-  /// they are switched on. A fixture that does not move stays at its joints for ever.
+  /// `fixture` must move (speeds > 0). It wakes at pan = tilt = 0, or as near as its range allows, its zoom at
+  /// the narrow end, as heads do when they are switched on. A fixture that does not move stays at its joints for ever.
   explicit Head(const Fixture& fixture);
 
   /// Clamped to the range, as the end stops would; NaN ignored.
-  void set_target(const PanTilt& joints);
+  void set_target(const Joints& joints);
   /// The joints are turned by an axis of their own from now on: they stand there after the next step.
-  void carry_to(const PanTilt& joints);
+  void carry_to(const Joints& joints);
   void step(double dt_s);
 
-  [[nodiscard]] const PanTilt& joints() const { return joints_; }
-  [[nodiscard]] bool moving() const {
-    return joints_.pan_rad != target_.pan_rad || joints_.tilt_rad != target_.tilt_rad;
-  }
+  [[nodiscard]] const Joints& joints() const { return joints_; }
+  [[nodiscard]] bool moving() const { return !(joints_ == target_); }
 
  private:
   bool moves_;
   bool carried_ = false;
-  PanTiltRange range_;
-  double pan_speed_rad_s_, tilt_speed_rad_s_;
-  PanTilt joints_, target_;
+  JointRange range_;
+  double pan_speed_rad_s_, tilt_speed_rad_s_, zoom_speed_rad_s_;
+  Joints joints_, target_;
 };
 
 }  // namespace luxrig::sim

@@ -18,13 +18,13 @@ class SampledHeadLight final : public HeadLight {
   SampledHeadLight(std::vector<Receiver> receivers, std::vector<HeadSamples> heads)
       : receivers_(std::move(receivers)), heads_(std::move(heads)) {}
 
-  void column(std::size_t fixture, const PanTilt& joints, Eigen::Ref<Eigen::VectorXd> lux) const override {
+  void column(std::size_t fixture, const Joints& joints, Eigen::Ref<Eigen::VectorXd> lux) const override {
     const auto head = std::find_if(heads_.begin(), heads_.end(),
                                    [fixture](const HeadSamples& each) { return each.fixture == fixture; });
     if (head == heads_.end()) return;
     add_indirect(*head, beam_mount(joints), lux);
     const Pose world_from_lamp = luxrig::world_from_lamp(head->world_from_mount, joints, head->roll_rad);
-    const Emitter emitter = emitter_of(head->luminaire, world_from_lamp);
+    const Emitter emitter = emitter_of(head->luminaire, world_from_lamp, joints.beam_rad);
     for (std::size_t r = 0; r < receivers_.size(); ++r) {
       if (!(head->sees[r] > 0)) continue;
       lux[static_cast<Eigen::Index>(r)] +=
@@ -85,20 +85,20 @@ std::vector<double> seen_shares(const RayScene& scene, const std::vector<Receive
   return shares;
 }
 
-Vec3 beam_mount(const PanTilt& joints) {
+Vec3 beam_mount(const Joints& joints) {
   return {-std::sin(joints.pan_rad) * std::sin(joints.tilt_rad), std::cos(joints.pan_rad) * std::sin(joints.tilt_rad),
           -std::cos(joints.tilt_rad)};
 }
 
-std::vector<PanTilt> spread_aims(const PanTiltRange& range, int count) {
+std::vector<Joints> spread_aims(const JointRange& range, int count) {
   // A Fibonacci lattice over the cap that the tilt can reach, straight down first. Aims whose pan is out of range are
   // left out: such a head cannot look there.
   const double reach_rad = std::min(kPi, std::max(std::abs(range.tilt_min_rad), std::abs(range.tilt_max_rad)));
   const double golden_turn_rad = kPi * (3 - std::sqrt(5.0));
-  std::vector<PanTilt> aims;
+  std::vector<Joints> aims;
   for (int i = 0; i < count; ++i) {
     const double share = (i + 0.5) / count;
-    PanTilt joints;
+    Joints joints;
     joints.tilt_rad = std::acos(1 - share * (1 - std::cos(reach_rad)));
     joints.pan_rad = std::remainder(i * golden_turn_rad, 2 * kPi);
     if (joints.tilt_rad > range.tilt_max_rad) {  // the other way over the top

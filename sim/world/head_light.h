@@ -37,9 +37,9 @@ struct HeadSamples {
                                               const Emitter& head);
 
 /// Beam direction in frame mount (core/rig/frames.h).
-[[nodiscard]] Vec3 beam_mount(const PanTilt& joints);
+[[nodiscard]] Vec3 beam_mount(const Joints& joints);
 
 /// About `count` joint settings whose beams are spread evenly over what the head can reach.
-[[nodiscard]] std::vector<PanTilt> spread_aims(const PanTiltRange& range, int count);
+[[nodiscard]] std::vector<Joints> spread_aims(const JointRange& range, int count);
 
 }  // namespace luxrig::sim

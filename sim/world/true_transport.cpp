@@ -26,9 +26,9 @@ Watch part_of(const Watch& watch, double from, double to) {
 }
 
 // The head at the rig's aim first, then at the spread aims.
-std::vector<PanTilt> aims_of(const Fixture& fixture) {
-  std::vector<PanTilt> aims = {fixture.joints};
-  for (const PanTilt& joints : spread_aims(fixture.range, kSpreadAims)) aims.push_back(joints);
+std::vector<Joints> aims_of(const Fixture& fixture) {
+  std::vector<Joints> aims = {fixture.joints};
+  for (const Joints& joints : spread_aims(fixture.range, kSpreadAims)) aims.push_back(joints);
   return aims;
 }
 
@@ -46,11 +46,12 @@ Result<std::unique_ptr<const HeadLight>> light_of_heads(const Rig& rig, const st
     head.world_from_mount = truths[f].world_from_mount;
     head.roll_rad = fixture.roll_rad;
     head.luminaire = rig.luminaires[fixture.luminaire];
-    const auto emitter_at = [&](const PanTilt& joints) {
-      return emitter_of(head.luminaire, world_from_lamp(head.world_from_mount, joints, head.roll_rad));
+    const auto emitter_at = [&](const Joints& joints) {
+      return emitter_of(head.luminaire, world_from_lamp(head.world_from_mount, joints, head.roll_rad),
+                        fixture.joints.beam_rad);
     };
     head.sees = seen_shares(scene, receivers, emitter_at(fixture.joints));
-    const std::vector<PanTilt> aims = aims_of(fixture);
+    const std::vector<Joints> aims = aims_of(fixture);
     for (std::size_t a = 0; a < aims.size(); ++a) {
       head.aims_mount.push_back(beam_mount(aims[a]));
       if (a > 0) emitters.push_back(emitter_at(aims[a]));

@@ -62,12 +62,12 @@ class MatrixWorld final : public World {
     dimmers_[fixture].set_drive(drive);
   }
 
-  void set_aim_target(std::size_t fixture, const PanTilt& joints) override {
+  void set_aim_target(std::size_t fixture, const Joints& joints) override {
     LUXRIG_CHECK(fixture < heads_.size(), "fixture {} of {}", fixture, heads_.size());
     heads_[fixture].set_target(joints);
   }
 
-  void set_joints(std::size_t fixture, const PanTilt& joints) override {
+  void set_joints(std::size_t fixture, const Joints& joints) override {
     LUXRIG_CHECK(fixture < heads_.size(), "fixture {} of {}", fixture, heads_.size());
     heads_[fixture].carry_to(joints);
   }
@@ -94,8 +94,8 @@ class MatrixWorld final : public World {
     for (const Dimmer& dimmer : dimmers_) drives.push_back(dimmer.drive());
     return drives;
   }
-  [[nodiscard]] std::vector<PanTilt> joints() const override {
-    std::vector<PanTilt> joints;
+  [[nodiscard]] std::vector<Joints> joints() const override {
+    std::vector<Joints> joints;
     for (const Head& head : heads_) joints.push_back(head.joints());
     return joints;
   }

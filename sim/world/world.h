@@ -63,7 +63,7 @@ class HeadLight {
  public:
   virtual ~HeadLight() = default;
   /// Writes the column of T for `fixture` (which moves) looking at `joints`. Rows as in World::make.
-  virtual void column(std::size_t fixture, const PanTilt& joints, Eigen::Ref<Eigen::VectorXd> lux) const = 0;
+  virtual void column(std::size_t fixture, const Joints& joints, Eigen::Ref<Eigen::VectorXd> lux) const = 0;
 };
 
 class World {
@@ -85,10 +85,10 @@ class World {
   virtual ~World() = default;
   /// What the wires carry to the fixtures. Values out of range are clamped, as a device would.
   virtual void set_drive(std::size_t fixture, double drive) = 0;
-  virtual void set_aim_target(std::size_t fixture, const PanTilt& joints) = 0;
+  virtual void set_aim_target(std::size_t fixture, const Joints& joints) = 0;
   /// Where a head is whose joints are simulated elsewhere (sim/devices/axis_mechanics.h), at the next tick; it does not
   /// turn by itself any more. Not clamped: end stops are the axis's own.
-  virtual void set_joints(std::size_t fixture, const PanTilt& joints) = 0;
+  virtual void set_joints(std::size_t fixture, const Joints& joints) = 0;
   /// Advances lamps, heads and meters to `now` in steps of 10 ms, recording peaks at every step. Never goes back.
   virtual void advance(Time now) = 0;
   /// The instant of the last tick.
@@ -102,7 +102,7 @@ class World {
   [[nodiscard]] virtual std::vector<PointTruth> luxmeters() const = 0;  ///< true lux at the meters
   [[nodiscard]] virtual std::vector<double> levels() const = 0;         ///< true output over rated, per fixture
   [[nodiscard]] virtual std::vector<double> drives() const = 0;         ///< as set, clamped
-  [[nodiscard]] virtual std::vector<PanTilt> joints() const = 0;        ///< where the heads are
+  [[nodiscard]] virtual std::vector<Joints> joints() const = 0;         ///< where the heads are
   [[nodiscard]] virtual const std::vector<FixtureTruth>& fixtures() const = 0;
   [[nodiscard]] virtual const std::vector<double>& meter_gains() const = 0;
   /// In the order in which they began; the first thousand.

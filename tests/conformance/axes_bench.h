@@ -56,7 +56,7 @@ class AxesBench {
     while (world->now() + sim::kTick <= until) {
       axes->advance(world->now() + sim::kTick);
       world->advance(world->now() + sim::kTick);
-      const PanTilt at = joints();
+      const Joints at = joints();
       if (turned_deg(at, last_) > 1e-6) moved_at = world->now();
       last_ = at;
       path.push_back(at);
@@ -78,14 +78,14 @@ class AxesBench {
     return run_until(seconds, [this] { return result && aim && turned_deg(joints(), *aim) < 0.05; });
   }
 
-  [[nodiscard]] PanTilt joints() const { return world->joints()[0]; }
+  [[nodiscard]] Joints joints() const { return world->joints()[0]; }
   [[nodiscard]] const sim::AxisDrive& pan() const { return axes->pan(0).drive(); }
   [[nodiscard]] const sim::AxisDrive& tilt() const { return axes->tilt(0).drive(); }
   [[nodiscard]] Health health(std::size_t i) const { return driver->health(now).at(i); }  ///< bus, pan, tilt
-  static double turned_deg(const PanTilt& a, const PanTilt& b) {
+  static double turned_deg(const Joints& a, const Joints& b) {
     return deg_from_rad(std::max(std::abs(a.pan_rad - b.pan_rad), std::abs(a.tilt_rad - b.tilt_rad)));
   }
-  static PanTilt deg(double pan, double tilt) { return {rad_from_deg(pan), rad_from_deg(tilt)}; }
+  static Joints deg(double pan, double tilt) { return {rad_from_deg(pan), rad_from_deg(tilt)}; }
 
   Rig rig;
   sim::Faults faults;
@@ -93,10 +93,10 @@ class AxesBench {
   std::unique_ptr<sim::AxisBus> axes;
   std::unique_ptr<Driver> driver;
   Time now{};
-  std::optional<PanTilt> aim;
+  std::optional<Joints> aim;
   Result<void> result;
   Time moved_at{};                  ///< when the beam moved last
-  std::vector<PanTilt> path;        ///< every 10 ms
+  std::vector<Joints> path;         ///< every 10 ms
   std::vector<can::CanFrame> sent;  ///< by the driver
   std::function<void()> each_cycle;
   can::Sent taken = can::Sent::yes;  ///< what the wire says to a frame
@@ -140,7 +140,7 @@ class AxesBench {
     std::deque<sim::BusFrame> arrived_;
   };
 
-  PanTilt last_{};
+  Joints last_{};
 };
 
 }  // namespace luxrig

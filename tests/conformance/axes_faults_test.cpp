@@ -80,7 +80,7 @@ TEST(Axes, MoveInStepAlongAStraightLine) {
   bench.aim = AxesBench::deg(-20, 15);
   ASSERT_TRUE(bench.arrive());
   bench.run(1);
-  const PanTilt from = bench.joints(), to = AxesBench::deg(100, -45);
+  const Joints from = bench.joints(), to = AxesBench::deg(100, -45);
   bench.path.clear();
   bench.aim = to;
   const Time asked = bench.now;
@@ -88,7 +88,7 @@ TEST(Axes, MoveInStepAlongAStraightLine) {
   bench.run(1);
   double worst_deg = 0, fastest_pan_deg_s = 0, fastest_tilt_deg_s = 0;
   for (std::size_t i = 1; i < bench.path.size(); ++i) {
-    const PanTilt& at = bench.path[i];
+    const Joints& at = bench.path[i];
     const double share = (at.pan_rad - from.pan_rad) / (to.pan_rad - from.pan_rad);
     worst_deg = std::max(worst_deg,
                          std::abs(deg_from_rad(at.tilt_rad - (from.tilt_rad + share * (to.tilt_rad - from.tilt_rad)))));
@@ -116,7 +116,7 @@ TEST(Axes, ANewAimReplacesTheOneUnderWay) {
   bench.aim = AxesBench::deg(-30, -20);
   ASSERT_TRUE(bench.arrive(5));
   double furthest = 0;
-  for (const PanTilt& at : bench.path) furthest = std::max(furthest, deg_from_rad(at.pan_rad));
+  for (const Joints& at : bench.path) furthest = std::max(furthest, deg_from_rad(at.pan_rad));
   EXPECT_LT(furthest, 100);
 }
 
@@ -132,7 +132,7 @@ TEST(Axes, AnAxisUnderWayStopsAtANearAimAsFastAsItMay) {
   bench.aim = AxesBench::deg(150, tilt_deg);
   ASSERT_TRUE(bench.arrive(8));
   double furthest = 0;
-  for (const PanTilt& at : bench.path) furthest = std::max(furthest, deg_from_rad(at.tilt_rad));
+  for (const Joints& at : bench.path) furthest = std::max(furthest, deg_from_rad(at.tilt_rad));
   EXPECT_LT(furthest - tilt_deg, speed * speed / (2 * 120) + speed * 0.1) << "and the handshake";
 }
 
@@ -166,7 +166,7 @@ TEST(AxesFaults, ALostAxisStopsTheOtherAndBothGoOnWhenItIsBack) {
   EXPECT_FALSE(bench.result);
 
   bench.faults.clear();
-  const PanTilt at = bench.joints();
+  const Joints at = bench.joints();
   ASSERT_TRUE(bench.arrive(8)) << "without homing: it was never off";
   EXPECT_TRUE(bench.pan().homed());
   for (std::size_t i = bench.path.size() - 100; i < bench.path.size(); ++i)
@@ -295,7 +295,7 @@ TEST(AxesFaults, LostLateAndDoubledFramesDelayButDoNotLeadAstray) {
     bench.path.clear();
     bench.aim = AxesBench::deg(60, -30);
     EXPECT_TRUE(bench.arrive(30)) << name_of(kind) << bench.health(1).detail;
-    for (const PanTilt& at : bench.path) {
+    for (const Joints& at : bench.path) {
       ASSERT_GT(deg_from_rad(at.pan_rad), 19.9) << name_of(kind);
       ASSERT_LT(deg_from_rad(at.pan_rad), 60.1) << name_of(kind);
       ASSERT_GT(deg_from_rad(at.tilt_rad), -30.1) << name_of(kind);
@@ -311,7 +311,7 @@ TEST(AxesFaults, ANodeThatSaysWrongThingsMovesNoAxisPastItsTravel) {
   bench.faults.set(kPan, FaultKind::garbled, true);
   bench.path.clear();
   bench.run(10);
-  for (const PanTilt& at : bench.path) ASSERT_LT(AxesBench::turned_deg(at, *bench.aim), 200);
+  for (const Joints& at : bench.path) ASSERT_LT(AxesBench::turned_deg(at, *bench.aim), 200);
   bench.faults.clear();
   EXPECT_TRUE(bench.arrive(60)) << bench.health(1).detail;
 }
@@ -340,7 +340,7 @@ TEST(AxesFaults, AFullQueueIsGivenTimeAndAnInterfaceThatGoesDownIsOpenedAgain) {
 }
 
 TEST(Axes, OneSimulationIsAsTheOther) {
-  std::vector<std::vector<PanTilt>> paths;
+  std::vector<std::vector<Joints>> paths;
   for (int run = 0; run < 2; ++run) {
     AxesBench bench;
     bench.faults.set("the-bus", FaultKind::lost, true, 0.05);

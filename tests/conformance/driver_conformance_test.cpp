@@ -73,7 +73,7 @@ bool only_turns(const Rig& rig) {
 }
 
 /// Where such a bus puts a head in place of a drive: 0 is where heads wake.
-PanTilt joints_of(double drive) { return {rad_from_deg(10 * drive), rad_from_deg(8 * drive)}; }
+Joints joints_of(double drive) { return {rad_from_deg(10 * drive), rad_from_deg(8 * drive)}; }
 
 /// How exactly the simulated axes can be: what homing turns them in a step of 1 ms (0.025°), where friction holds the
 /// servo (0.015°), half the play of the gear (0.01°).
@@ -158,10 +158,10 @@ struct Pair {
   /// Heads on axes: nowhere but between where the two drives put them.
   bool between(double from, double to) const {
     const double slack = rad_from_deg(kAxisTolerance_deg);
-    const PanTilt least = joints_of(from), most = joints_of(to);
+    const Joints least = joints_of(from), most = joints_of(to);
     for (std::size_t i = 0; i < rig.fixtures.size(); ++i) {
       if (!rig.fixtures[i].axes) continue;
-      const PanTilt joints = far.joints()[i];
+      const Joints joints = far.joints()[i];
       if (joints.pan_rad < least.pan_rad - slack || joints.pan_rad > most.pan_rad + slack ||
           joints.tilt_rad < least.tilt_rad - slack || joints.tilt_rad > most.tilt_rad + slack) {
         return false;
@@ -233,7 +233,7 @@ TEST_P(EveryDriver, MovesItsPeerToTheSetpointAndReadsBackTheSame) {
     }
   }
   if (Mover* mover = pair.driver->mover()) {
-    const PanTilt wanted{rad_from_deg(-123.4), rad_from_deg(56.7)};
+    const Joints wanted{rad_from_deg(-123.4), rad_from_deg(56.7)};
     const AimCommand aim{1, wanted};
     ASSERT_TRUE(mover->move(pair.now, {&aim, 1}));
     for (int i = 0; i < 200; ++i) {

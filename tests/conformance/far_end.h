@@ -63,7 +63,7 @@ class FarEnd {
     const std::lock_guard lock(mutex_);
     return world_->drives();
   }
-  [[nodiscard]] std::vector<PanTilt> joints() const {
+  [[nodiscard]] std::vector<Joints> joints() const {
     const std::lock_guard lock(mutex_);
     return world_->joints();
   }

@@ -54,8 +54,8 @@ void light_and_turn(const Rig& rig, double slack) {
   const Fixture& head = rig.fixtures[0];
   if (!head.moves) return;
   for (const double share : {0.0, 0.1, 0.5, 0.9, 1.0}) {
-    const PanTilt wanted{head.range.pan_min_rad + share * (head.range.pan_max_rad - head.range.pan_min_rad),
-                         head.range.tilt_max_rad + share * (head.range.tilt_min_rad - head.range.tilt_max_rad)};
+    const Joints wanted{head.range.pan_min_rad + share * (head.range.pan_max_rad - head.range.pan_min_rad),
+                        head.range.tilt_max_rad + share * (head.range.tilt_min_rad - head.range.tilt_max_rad)};
     const AimCommand aims[] = {{0, wanted}};
     ASSERT_TRUE(bay.set_aims(aims));
     ASSERT_TRUE(bay.set_levels({}));
@@ -77,6 +77,29 @@ TEST(PersonalityOnTheWire, EachSampleGivesTheLightAndTheAimThatWereMeant) {
   light_and_turn(rig_of("Robe ColorWash 2500 AT.gdtf", "DMX Mode"), k8Bit);
   light_and_turn(rig_of("ofl/martin/mac-700-wash.json", "Extended 23-channel"), k16Bit);
   light_and_turn(rig_of("ofl/generic/4-channel-dimmer-pack.json", "4-channel"), k8Bit);
+}
+
+// Alpha Spot QWO 800: 55° at 0, 11° at 255.
+TEST(PersonalityOnTheWire, AZoomMakesTheBeamThatWasMeant) {
+  const Rig rig = rig_of("Clay Paky@Alpha Spot QWO 800.gdtf", "Standard Mode (32 ch)", "zoom_speed_deg_s = 12\n",
+                         "lumens = 1000\nzoom_deg = [5, 40]");
+  ASSERT_EQ(rig.fixtures.size(), 1u);
+  const Fixture& head = rig.fixtures[0];
+  EXPECT_NEAR(deg_from_rad(head.range.beam_min_rad), 11, 1e-9) << "what both can do";
+  EXPECT_NEAR(deg_from_rad(head.range.beam_max_rad), 40, 1e-9);
+  EXPECT_NEAR(deg_from_rad(head.zoom_speed_rad_s), 12, 1e-9);
+  DmxPatchbay bay(rig, 0);
+  constexpr std::size_t kZoom = 20 + 21;
+  EXPECT_EQ(bay.universes()[0].slots[kZoom], 203) << "20° at 255 · 35/44";
+  for (const double beam_deg : {11.0, 17.5, 40.0}) {
+    const AimCommand aim{0, {0, 0, rad_from_deg(beam_deg)}};
+    ASSERT_TRUE(bay.set_aims({&aim, 1}));
+    ASSERT_TRUE(bay.set_levels({}));
+    EXPECT_EQ(bay.universes()[0].slots[kZoom], std::lround(255 * (55 - beam_deg) / 44)) << beam_deg;
+    const sim::DmxOrder order = seen_by(rig, 0, bay.universes()[0].slots);
+    ASSERT_TRUE(order.joints);
+    EXPECT_NEAR(deg_from_rad(order.joints->beam_rad), beam_deg, 44.0 / 255 / 2 + 1e-9);
+  }
 }
 
 TEST(PersonalityOnTheWire, EmittersAreMixedOneByOne) {

@@ -30,8 +30,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   if (const auto look = luxrig::look_for(*plan, rig, "fuzz.json")) {
     for (const double level : look->levels) LUXRIG_CHECK(level >= 0 && level <= 1, "level {}", level);
-    const luxrig::PanTiltRange range;
-    for (const luxrig::PanTilt& joints : look->joints) {
+    const luxrig::JointRange range;
+    for (const luxrig::Joints& joints : look->joints) {
       LUXRIG_CHECK(joints.pan_rad >= range.pan_min_rad && joints.pan_rad <= range.pan_max_rad, "{}", joints.pan_rad);
       LUXRIG_CHECK(joints.tilt_rad >= range.tilt_min_rad && joints.tilt_rad <= range.tilt_max_rad, "{}",
                    joints.tilt_rad);

@@ -32,7 +32,7 @@ std::vector<HangingHead> ring_of_heads(const ReliefStudy& study, int count) {
     HangingHead head;
     head.world_from_mount.translation_m =
         middle_m + diagonal_m * Vec3(kRingRadius * std::cos(angle_rad), kRingRadius * std::sin(angle_rad), kRingHeight);
-    head.zoom = {make_cosine_power(kSpotLumens, kSpotExponent)};
+    head.zoom = {{make_cosine_power(kSpotLumens, kSpotExponent)}};
     heads.push_back(std::move(head));
   }
   return heads;

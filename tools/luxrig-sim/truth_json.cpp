@@ -27,7 +27,7 @@ std::string truth_json(const Rig& rig, const World& world) {
   }
   json["fixtures"] = Json::array();
   const std::vector<double> drives = world.drives(), levels = world.levels();
-  const std::vector<PanTilt> joints = world.joints();
+  const std::vector<Joints> joints = world.joints();
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
     Json fixture = {{"name", rig.fixtures[f].name},
                     {"drive", drives[f]},
@@ -37,6 +37,7 @@ std::string truth_json(const Rig& rig, const World& world) {
     if (rig.fixtures[f].moves) {
       fixture["pan_deg"] = deg_from_rad(joints[f].pan_rad);
       fixture["tilt_deg"] = deg_from_rad(joints[f].tilt_rad);
+      if (rig.fixtures[f].range.zooms()) fixture["beam_angle_deg"] = deg_from_rad(joints[f].beam_rad);
     }
     json["fixtures"].push_back(std::move(fixture));
   }

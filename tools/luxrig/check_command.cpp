@@ -239,11 +239,12 @@ int run_check(const CheckArguments& arguments) {
                     l.watts ? fmt::format("{:.0f}", *l.watts) : "-"});
   }
   fmt::print("{}\n", luminaires.text());
-  Table fixtures({"fixture", "luminaire", "position m", ">pan", ">tilt", "bus", "address"});
+  Table fixtures({"fixture", "luminaire", "position m", ">pan", ">tilt", ">zoom", "bus", "address"});
   for (const Fixture& f : rig.fixtures) {
     fixtures.row({f.name, rig.luminaires[f.luminaire].name, place_text(f.world_from_mount.translation_m),
                   fmt::format("{:.1f}°", deg_from_rad(f.joints.pan_rad)),
                   fmt::format("{:.1f}°", deg_from_rad(f.joints.tilt_rad)),
+                  f.range.zooms() ? fmt::format("{:.1f}°", deg_from_rad(f.joints.beam_rad)) : "-",
                   rig.buses[f.bus].name + " (" + rig.buses[f.bus].driver + ")", address_text(rig, f)});
   }
   fmt::print("{}\n", fixtures.text());

@@ -150,8 +150,8 @@ Result<PlacedReliefLights> find_relief_lights(const ReliefSurroundings& around, 
     HangingHead head;
     head.world_from_mount.translation_m = light.position_world_m;
     head.range = {-kPi, kPi, -kPi, kPi};  // it is hung so: no joint stops it
-    head.present = pan_tilt_towards(head.world_from_mount, light.direction, head.range, {}).value_or(PanTilt{});
-    head.zoom = {luminaire.intensity};
+    head.present = pan_tilt_towards(head.world_from_mount, light.direction, head.range, {}).value_or(Joints{});
+    head.zoom = {{luminaire.intensity}};
     head.max_level = around.rig.limits.max_level;
     head.watts = luminaire.watts.value_or(0);
     heads.push_back(std::move(head));

@@ -64,12 +64,13 @@ std::string monitor_picture(const json& status, const json& universes, int width
   if (universes.is_array())
     for (const json& universe : universes) text += universe_picture(universe, width) + "\n";
   const json fixtures = list_of(status, "fixtures");
-  Table lamps({"fixture", ">drive", "", ">level", ">pan °", ">tilt °", ""});
+  Table lamps({"fixture", ">drive", "", ">level", ">pan °", ">tilt °", ">beam °", ""});
   for (const json& f : fixtures) {
     const bool moves = flag_of(f, "moves");
     lamps.row({text_of(f, "name"), shown(number_of(f, "drive"), "{:.3f}"), bar(number_of(f, "drive").value_or(0)),
                shown(number_of(f, "level"), "{:.3f}"), moves ? shown(number_of(f, "pan_deg"), "{:.1f}") : "",
-               moves ? shown(number_of(f, "tilt_deg"), "{:.1f}") : "", flag_of(f, "identified") ? "← this one" : ""});
+               moves ? shown(number_of(f, "tilt_deg"), "{:.1f}") : "", shown(number_of(f, "beam_angle_deg"), "{:.1f}"),
+               flag_of(f, "identified") ? "← this one" : ""});
   }
   text += lamps.text();
   const json meters = list_of(status, "luxmeters");

@@ -8,6 +8,8 @@
 #include <numeric>
 
 #include "core/highlight/picture_contrast.h"
+#include "core/rig/housing.h"
+#include "core/rig/zoom.h"
 #include "core/scene/object_scene.h"
 #include "core/transport/rig_camera.h"
 #include "core/transport/rig_transport.h"
@@ -18,6 +20,9 @@ namespace {
 
 /// Where the object is brightest by direct light is where it is with reflected light, or next to it.
 constexpr std::size_t kCheckedSamples = 48;
+/// Of a zoom, in even ratios: a third wider from one to the next where it goes from 6° to 40°.
+constexpr int kZoomStops = 8;
+constexpr double kSameBeam = 0.02;
 
 /// The rig with other places to look at, and only those of its fixtures.
 Rig rig_at(const Rig& rig, std::span<const OrientedPoint> places, const std::vector<bool>& kept) {
@@ -63,8 +68,25 @@ std::vector<double> staying_levels(const ReliefSurroundings& around, std::span<c
   return staying;
 }
 
-HangingHead hanging_head(const Rig& rig, const Fixture& fixture) {
-  const Luminaire& luminaire = rig.luminaires[fixture.luminaire];
+/// Its zoom now, then a spread over what it goes through.
+std::vector<ZoomStop> zoom_stops(const Luminaire& luminaire, const Fixture& fixture) {
+  const double now_rad = fixture.joints.beam_rad;
+  std::vector<ZoomStop> stops = {{intensity_at_beam(luminaire, now_rad), now_rad}};
+  const JointRange& range = fixture.range;
+  for (int k = 0; range.zooms() && k < kZoomStops; ++k) {
+    const double beam_rad =
+        std::min(range.beam_min_rad * std::pow(range.beam_max_rad / range.beam_min_rad, k / (kZoomStops - 1.0)),
+                 range.beam_max_rad);
+    if (std::abs(beam_rad / now_rad - 1) > kSameBeam)
+      stops.push_back({intensity_at_beam(luminaire, beam_rad), beam_rad});
+  }
+  return stops;
+}
+
+/// All emitters of a housing as one light.
+HangingHead hanging_head(const Rig& rig, std::size_t index) {
+  const Fixture& fixture = rig.fixtures[index];
+  const Luminaire& luminaire = housing_luminaire(rig, index);
   HangingHead head;
   head.world_from_mount = fixture.world_from_mount;
   head.roll_rad = fixture.roll_rad;
@@ -75,7 +97,8 @@ HangingHead hanging_head(const Rig& rig, const Fixture& fixture) {
     head.pan_speed_rad_s = fixture.pan_speed_rad_s;
     head.tilt_speed_rad_s = fixture.tilt_speed_rad_s;
   }
-  head.zoom = {luminaire.intensity};
+  if (fixture.range.zooms()) head.zoom_speed_rad_s = fixture.zoom_speed_rad_s;
+  head.zoom = zoom_stops(luminaire, fixture);
   head.max_level = std::min(fixture.max_level, rig.limits.max_level);
   head.watts = luminaire.watts.value_or(0);
   return head;
@@ -167,7 +190,7 @@ Result<AimedFixtures> aim_fixtures(const ReliefSurroundings& around, const Studi
   for (std::size_t k = 0; k < spec.heads.size(); ++k) {
     const Fixture& fixture = around.rig.fixtures[spec.heads[k]];
     if (spec.key == spec.heads[k]) wishes.key = k;
-    heads.push_back(hanging_head(around.rig, fixture));
+    heads.push_back(hanging_head(around.rig, spec.heads[k]));
     present.push_back({fixture.joints, 0, present_levels[k]});
   }
   watch.say("aiming");

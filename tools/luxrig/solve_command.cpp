@@ -91,14 +91,14 @@ void print_placed(const PlannedTask& task, const Task& asked, bool has_emitters)
 std::string degrees_text(const std::optional<double>& deg) { return deg ? fmt::format("{:.1f}°", *deg) : "-"; }
 
 void print_aim(const PlannedTask& task) {
-  Table heads({"fixture", "looks at m", ">pan", ">tilt", ">level", ">lumens", ">watts"});
+  Table heads({"fixture", "looks at m", ">pan", ">tilt", ">beam", ">level", ">lumens", ">watts"});
   for (const PlannedLight& light : task.lights)
     heads.row({light.name,
                light.aim_world_m ? fmt::format("{:.3f} {:.3f} {:.3f}", light.aim_world_m->x(), light.aim_world_m->y(),
                                                light.aim_world_m->z())
                                  : "-",
-               degrees_text(light.pan_deg), degrees_text(light.tilt_deg), percent(light.level),
-               fmt::format("{:.0f}", light.lumens), watts_text(light.watts)});
+               degrees_text(light.pan_deg), degrees_text(light.tilt_deg), degrees_text(light.beam_angle_deg),
+               percent(light.level), fmt::format("{:.0f}", light.lumens), watts_text(light.watts)});
   fmt::print("{}\n", heads.text());
 }
 

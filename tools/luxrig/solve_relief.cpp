@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/rig/housing.h"
 #include "tools/luxrig/highlight_task.h"
 #include "tools/luxrig/task_solver.h"
 
@@ -62,10 +63,15 @@ Result<void> TaskSolver::aim(const Task& task) {
   std::vector<bool> sought(rig_.fixtures.size(), false);
   std::vector<double> present;
   for (const std::size_t head : heads) {
-    sought[head] = true;
-    double& level = level_[static_cast<Index>(head)];
-    present.push_back(level);
-    level = 0;
+    // As bright as all its emitters at one level would be.
+    double now_lm = 0;
+    for (const std::size_t emitter : housing_of(rig_, head)) {
+      sought[emitter] = true;
+      double& level = level_[static_cast<Index>(emitter)];
+      now_lm += level * rig_.luminaires[rig_.fixtures[emitter].luminaire].lumens;
+      level = 0;
+    }
+    present.push_back(now_lm / housing_luminaire(rig_, head).lumens);
   }
   const auto around = surroundings(std::move(sought), task);
   if (!around) return tl::unexpected(around.error());
@@ -74,12 +80,14 @@ Result<void> TaskSolver::aim(const Task& task) {
   const auto aimed = aim_fixtures(*around, *object, task, present, options_);
   if (!aimed) return tl::unexpected(aimed.error());
   for (std::size_t k = 0; k < heads.size(); ++k) {
-    Fixture& fixture = rig_.fixtures[heads[k]];
     const AimedHead& head = aimed->heads[k];
-    level_[static_cast<Index>(heads[k])] = head.setting.level;
-    if (!fixture.moves || !(head.setting.level > 0)) continue;  // a dark head stays where it looks
-    fixture.joints = head.setting.joints;
-    fixture.aim_world_m = head.aim_world_m;
+    for (const std::size_t emitter : housing_of(rig_, heads[k])) {
+      Fixture& fixture = rig_.fixtures[emitter];
+      level_[static_cast<Index>(emitter)] = head.setting.level;
+      if (!fixture.moves || !(head.setting.level > 0)) continue;  // a dark head stays where it looks
+      fixture.joints = head.setting.joints;
+      fixture.aim_world_m = head.aim_world_m;
+    }
   }
   if (auto lit = light_anew(levels()); !lit) return lit;
 

@@ -23,6 +23,7 @@ PlannedLight planned_light(const Rig& rig, const Fixture& fixture, double level)
   light.aim_world_m = fixture.aim_world_m;
   light.pan_deg = deg_from_rad(fixture.joints.pan_rad);
   light.tilt_deg = deg_from_rad(fixture.joints.tilt_rad);
+  if (fixture.range.zooms()) light.beam_angle_deg = deg_from_rad(fixture.joints.beam_rad);
   light.level = level;
   light.lumens = level * luminaire.lumens;
   if (luminaire.watts) light.watts = level * *luminaire.watts;

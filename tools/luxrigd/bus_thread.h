@@ -56,7 +56,7 @@ class BusThread {
   std::atomic<bool> realtime_{false};
 
   std::vector<double> levels_;                ///< of all fixtures
-  std::vector<PanTilt> joints_;               ///< of all fixtures
+  std::vector<Joints> joints_;                ///< of all fixtures
   std::vector<LevelCommand> level_commands_;  ///< of the fixtures whose lamp is on this bus
   std::vector<AimCommand> aim_commands_;      ///< of those that this bus turns
   OutputProgram program_;

@@ -107,7 +107,7 @@ class Daemon {
   JournalState remembered_;
 
   std::mutex model_mutex_;  // guards the two below
-  std::vector<PanTilt> model_joints_;
+  std::vector<Joints> model_joints_;
   LightModel model_;
 };
 

@@ -14,9 +14,9 @@
 namespace luxrig {
 namespace {
 
-constexpr std::uint64_t kMagic = 0x314b4f4f4c58554cULL;  // "LUXLOOK1"
+constexpr std::uint64_t kMagic = 0x324b4f4f4c58554cULL;  // "LUXLOOK2"
 constexpr std::size_t kHeadNumbers = 3;                  // sends, hold, fade
-constexpr std::size_t kFixtureNumbers = 5;               // present, safe, pan, tilt, silent
+constexpr std::size_t kFixtureNumbers = 6;               // present, safe, pan, tilt, beam, silent
 constexpr double kLongest_s = 1e6;
 
 std::size_t numbers_of(std::size_t fixtures) { return kHeadNumbers + kFixtureNumbers * fixtures; }
@@ -94,6 +94,7 @@ void LastLookMemory::put(const LastLook& look) {
     *at++ = look.safe[f];
     *at++ = look.joints[f].pan_rad;
     *at++ = look.joints[f].tilt_rad;
+    *at++ = look.joints[f].beam_rad;
     *at++ = look.silent[f] != 0 ? 1 : 0;
   }
   header().newest.store(other + 1, std::memory_order_release);
@@ -110,8 +111,12 @@ LastLook LastLookMemory::take() const {
   for (std::size_t f = 0; f < fixtures_; ++f) {
     look.present.push_back(within(*at++, 0, 1));
     look.safe.push_back(within(*at++, 0, 1));
-    const double pan_rad = *at++, tilt_rad = *at++;
-    look.joints.push_back({std::isfinite(pan_rad) ? pan_rad : 0, std::isfinite(tilt_rad) ? tilt_rad : 0});
+    Joints joints;
+    for (double* angle_rad : {&joints.pan_rad, &joints.tilt_rad, &joints.beam_rad}) {
+      if (std::isfinite(*at)) *angle_rad = *at;
+      ++at;
+    }
+    look.joints.push_back(joints);
     look.silent.push_back(*at++ == 1 ? 1 : 0);
   }
   return look;

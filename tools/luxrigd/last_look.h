@@ -16,7 +16,7 @@ struct LastLook {
   bool sends = false;                 ///< something goes out at all
   double hold_s = 0, fade_s = 0;      ///< how long `present` is held, and the way from there to `safe`
   std::vector<double> present, safe;  ///< per fixture, 0…1, within limits
-  std::vector<PanTilt> joints;        ///< per fixture
+  std::vector<Joints> joints;         ///< per fixture
   std::vector<std::uint8_t> silent;   ///< per fixture, 1: a desk drives it itself, and goes on
 };
 

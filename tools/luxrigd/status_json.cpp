@@ -28,6 +28,7 @@ json fixture_json(const Rig& rig, std::size_t index, const FixtureStatus& status
   set(out, "drive", status.drive);
   set(out, "target_level", status.target_level);
   if (fixture.moves) out["moves"] = true;
+  if (fixture.range.zooms()) out["beam_angle_deg"] = deg_from_rad(status.joints.beam_rad);
   if (status.identified) out["identified"] = true;
   set(out, "gain", status.gain);
   set(out, "gain_standard_error", status.gain_standard_error);

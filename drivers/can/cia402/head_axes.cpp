@@ -84,9 +84,9 @@ void HeadAxes::receive(Time now, const can::CanFrame& frame) {
   tilt_.receive(now, frame);
 }
 
-std::optional<PanTilt> HeadAxes::joints() const {
+std::optional<Joints> HeadAxes::joints() const {
   if (!pan_.ready() || !tilt_.ready()) return std::nullopt;
-  return PanTilt{pan_patch_.joint_rad_at(pan_.position()), tilt_patch_.joint_rad_at(tilt_.position())};
+  return Joints{pan_patch_.joint_rad_at(pan_.position()), tilt_patch_.joint_rad_at(tilt_.position())};
 }
 
 void HeadAxes::step(Time now, Frames& out) {

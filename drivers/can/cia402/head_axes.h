@@ -31,7 +31,7 @@ class HeadAxes {
 
   void activate(Time now);
   void receive(Time now, const can::CanFrame& frame);
-  void set_target(const PanTilt& joints) { target_ = joints; }
+  void set_target(const Joints& joints) { target_ = joints; }
   void step(Time now, Frames& out);
   void stop(Frames& out) const;
 
@@ -42,7 +42,7 @@ class HeadAxes {
   [[nodiscard]] std::string pan_trouble() const { return trouble(pan_); }
   [[nodiscard]] std::string tilt_trouble() const { return trouble(tilt_); }
   /// Where the drives say it is; only once both are ready.
-  [[nodiscard]] std::optional<PanTilt> joints() const;
+  [[nodiscard]] std::optional<Joints> joints() const;
 
  private:
   [[nodiscard]] std::string trouble(const Axis& axis) const;
@@ -50,7 +50,7 @@ class HeadAxes {
   AxisPatch pan_patch_, tilt_patch_;
   AxisLimits pan_limits_, tilt_limits_;  ///< rad/s, rad/s²
   Axis pan_, tilt_;
-  std::optional<PanTilt> target_, ordered_;
+  std::optional<Joints> target_, ordered_;
   bool returning_ = true;         ///< from a loss, or from the start, to the aim
   std::optional<Time> due_back_;  ///< at the latest: it may follow an aim that moves
 };

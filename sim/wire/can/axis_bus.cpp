@@ -31,7 +31,7 @@ AxisTruth axis_truth(const AxisPatch& patch, double min_rad, double max_rad) {
 }
 
 AxisBus::AxisBus(const EndpointParts& parts) : parts_(parts), now_(parts.world.now()) {
-  const std::vector<PanTilt> joints = parts.world.joints();
+  const std::vector<Joints> joints = parts.world.joints();
   for (std::size_t f = 0; f < parts.rig.fixtures.size(); ++f) {
     const Fixture& fixture = parts.rig.fixtures[f];
     if (!fixture.axes || fixture.axes->bus != parts.bus || fixture.housing.value_or(f) != f) continue;
@@ -43,7 +43,7 @@ AxisBus::AxisBus(const EndpointParts& parts) : parts_(parts), now_(parts.world.n
                                                   static_cast<std::uint32_t>(std::max(window, 1l))),
                        false});
     };
-    const PanTiltRange& range = fixture.range;
+    const JointRange& range = fixture.range;
     add(false, pan_axis_name(fixture), fixture.axes->pan, range.pan_min_rad, range.pan_max_rad, joints[f].pan_rad);
     add(true, tilt_axis_name(fixture), fixture.axes->tilt, range.tilt_min_rad, range.tilt_max_rad, joints[f].tilt_rad);
   }
@@ -126,8 +126,8 @@ void AxisBus::advance(Time now) {
     deliver(now_);
   }
   for (std::size_t i = 0; i + 1 < axes_.size(); i += 2) {  // pan, then tilt of each head
-    const PanTilt joints{rad_from_deg(axes_[i].node->drive().joint_deg()),
-                         rad_from_deg(axes_[i + 1].node->drive().joint_deg())};
+    const Joints joints{rad_from_deg(axes_[i].node->drive().joint_deg()),
+                        rad_from_deg(axes_[i + 1].node->drive().joint_deg())};
     for (std::size_t f = 0; f < parts_.rig.fixtures.size(); ++f) {
       const auto head = parts_.rig.fixtures[f].housing.value_or(f);
       if (head == axes_[i].fixture) parts_.world.set_joints(f, joints);

@@ -18,23 +18,23 @@ struct Shared {
     settings.rules = rules;
     settings.fixtures = {0};
     settings.dimmer_curve = {DimmerCurve::linear};
-    settings.joints = {PanTilt{}};
+    settings.joints = {Joints{}};
     settings.fade = from_seconds(fade_s);
     settings.curve = FadeCurve::linear;
     follower.emplace(std::move(settings));
     program.from_level = program.to_level = {own_level};
     program.max_level = {1};
-    program.joints = {PanTilt{}};
+    program.joints = {Joints{}};
     program.worst_lux_per_level = program.any_lux_per_level = Eigen::MatrixXd(0, 1);
     program.desks = {follower->blend()};
   }
-  void hear(double s, DeskPresence presence, double drive, std::optional<PanTilt> joints = {}) {
+  void hear(double s, DeskPresence presence, double drive, std::optional<Joints> joints = {}) {
     DeskFrame frame;
     frame.presence = presence;
     frame.source = "desk";
     frame.commands = {{0, drive, joints}};
     const std::vector<double> level = {this->level(s)};
-    const std::vector<PanTilt> present = {pose(s)};
+    const std::vector<Joints> present = {pose(s)};
     if (follower->hear(at(s), frame, {level, present, program.joints})) program.desks = {follower->blend()};
     step(s);
   }
@@ -43,7 +43,7 @@ struct Shared {
   }
   void ask(double s) {
     const std::vector<double> level = {this->level(s)};
-    const std::vector<PanTilt> present = {pose(s)};
+    const std::vector<Joints> present = {pose(s)};
     if (follower->hand_back(at(s), {level, present, program.joints})) program.desks = {follower->blend()};
   }
   double level(double s) const {
@@ -51,8 +51,8 @@ struct Shared {
     program.levels_at(at(s), out);
     return out[0];
   }
-  PanTilt pose(double s) const {
-    std::vector<PanTilt> out(1);
+  Joints pose(double s) const {
+    std::vector<Joints> out(1);
     program.joints_at(at(s), out);
     return out[0];
   }
@@ -69,15 +69,15 @@ TEST(DeskFollower, MergesTheBrighterAndGivesAMovementToWhoeverMadeTheLast) {
   Shared shared({DeskMode::merge, HandBack::at_once}, 0.4);
   EXPECT_FALSE(shared.silent());  // Luxrig has the light while it listens
   EXPECT_DOUBLE_EQ(shared.level(0), 0.4);
-  shared.hear(1, kPresent, 0.7, PanTilt{0.1, 0.1});
+  shared.hear(1, kPresent, 0.7, Joints{0.1, 0.1});
   EXPECT_DOUBLE_EQ(shared.level(1), 0.7);
-  EXPECT_EQ(shared.pose(1), PanTilt{});  // where the desk has looked all along is no movement
-  shared.hear(2, kPresent, 0.1, PanTilt{0.2, 0.1});
+  EXPECT_EQ(shared.pose(1), Joints{});  // where the desk has looked all along is no movement
+  shared.hear(2, kPresent, 0.1, Joints{0.2, 0.1});
   EXPECT_DOUBLE_EQ(shared.level(2), 0.4);
-  EXPECT_EQ(shared.pose(2), (PanTilt{0.2, 0.1}));
-  shared.program.joints = {PanTilt{1, 1}};
-  shared.hear(3, kPresent, 0.1, PanTilt{0.2, 0.1});
-  EXPECT_EQ(shared.pose(3), (PanTilt{1, 1}));
+  EXPECT_EQ(shared.pose(2), (Joints{0.2, 0.1}));
+  shared.program.joints = {Joints{1, 1}};
+  shared.hear(3, kPresent, 0.1, Joints{0.2, 0.1});
+  EXPECT_EQ(shared.pose(3), (Joints{1, 1}));
 }
 
 TEST(DeskFollower, TakesOverFromLuxrigWhileTheDeskIsThereSecondBySecond) {

@@ -50,8 +50,8 @@ struct IdentifyShow {
     show->program().levels_at(at(now_s), level);
     return level;
   }
-  [[nodiscard]] PanTilt head() const {
-    std::vector<PanTilt> joints(4);
+  [[nodiscard]] Joints head() const {
+    std::vector<Joints> joints(4);
     show->program().joints_at(at(now_s), joints);
     return joints[3];
   }
@@ -136,7 +136,7 @@ TEST(Identify, AHeadNodsAwayFromTheEndOfItsTravelAndLooksAsBefore) {
   const double end_s = small.now_s + 2;
   for (; small.now_s < end_s; small.now_s += 0.05) {
     small.show->step(at(small.now_s));
-    const PanTilt at_rad = small.head();
+    const Joints at_rad = small.head();
     EXPECT_GT(small.levels()[3], 0.49);
     nodded = nodded || std::abs(at_rad.pan_rad - (1.99 - 0.0872664626)) < 1e-6;
     back = back || (nodded && at_rad.pan_rad == 1.99);

@@ -517,6 +517,30 @@ TEST(Plan, TurnsHeadsAndNothingElse) {
   EXPECT_NE(refused.error()[0].what.find("/tasks/0/lights/1/tilt_deg"), std::string::npos);
 }
 
+TEST(Plan, ZoomsHeadsThatCan) {
+  Rig rig = rig_with_a_head();
+  rig.fixtures[1].range.beam_min_rad = rad_from_deg(10);
+  rig.fixtures[1].range.beam_max_rad = rad_from_deg(50);
+  rig.fixtures[1].joints.beam_rad = rad_from_deg(20);
+  Plan plan = plan_for_two(0.5, 0.25);
+  for (PlannedLight& light : plan.tasks[0].lights) {
+    light.pan_deg = light.tilt_deg = 0;
+    light.beam_angle_deg = 45;
+  }
+  const auto again = plan_from_json(to_json(plan), "plan.json");
+  ASSERT_TRUE(again) << again.error()[0].text();
+  const auto look = look_for(*again, rig, "plan.json");
+  ASSERT_TRUE(look) << look.error()[0].text();
+  EXPECT_EQ(look->joints[0].beam_rad, 0) << "it has no zoom";
+  EXPECT_DOUBLE_EQ(look->joints[1].beam_rad, rad_from_deg(45));
+  plan.tasks[0].lights[1].beam_angle_deg.reset();
+  EXPECT_EQ(look_for(plan, rig, "plan.json")->joints[1].beam_rad, rig.fixtures[1].joints.beam_rad);
+  plan.tasks[0].lights[1].beam_angle_deg = 51;
+  const auto refused = look_for(plan, rig, "plan.json");
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error()[0].what.find("/tasks/0/lights/1/beam_angle_deg"), std::string::npos);
+}
+
 // An aim's levels are its own wish; an emittance task after it goes back to goals.
 TEST(Plan, HoldsTheLookOfAnAimUnlessLevelsAreSetAfterIt) {
   const Rig rig = rig_with_a_head();

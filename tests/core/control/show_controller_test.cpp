@@ -324,6 +324,24 @@ TEST(ShowController, LightsNothingUntilItsHeadsCanHaveTurned) {
   small.run_until(Phase::holding);
 }
 
+TEST(ShowController, WaitsForAZoomAsForPanAndTilt) {
+  TurningShow small;
+  Fixture& head = small.rig.fixtures[1];
+  head.range.beam_min_rad = 0.1;
+  head.range.beam_max_rad = 0.7;
+  head.joints.beam_rad = 0.3;
+  head.zoom_speed_rad_s = 0.1;
+  small.start().apply(small.now(), std::vector<double>{0.3, 0.3});
+  // From the wide end, 0.4 rad away: four seconds, and half a second until it moves; its pan takes two.
+  const double applied_s = small.now_s;
+  while (small.now_s < applied_s + 4.4) {
+    small.run(0.05);
+    EXPECT_EQ(small.levels()[1], 0) << small.now_s;
+  }
+  small.run(0.5);
+  EXPECT_GT(small.levels()[1], 0);
+}
+
 TEST(ShowController, TurnsAHeadInTheDarkAndKeepsTheOthersLit) {
   TurningShow small;
   small.start().apply(small.now(), std::vector<double>{0.36, 0.36});
@@ -343,7 +361,7 @@ TEST(ShowController, TurnsAHeadInTheDarkAndKeepsTheOthersLit) {
     EXPECT_NEAR(small.levels()[0], left, 0.02) << small.now_s;
     left = small.levels()[0];
     EXPECT_GT(left, 0.1);
-    const PanTilt& joints = small.show->program().joints[1];
+    const Joints& joints = small.show->program().joints[1];
     if (joints.pan_rad != 0 && !turned) {
       turned = true;
       turned_s = small.now_s;

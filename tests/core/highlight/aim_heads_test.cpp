@@ -44,7 +44,7 @@ const AimedRelief& aimed_relief() {
 HangingHead head_at(const Vec3& place_m, double exponent = 60) {
   HangingHead head;
   head.world_from_mount.translation_m = place_m;
-  head.zoom = {make_cosine_power(2000, exponent)};
+  head.zoom = {{make_cosine_power(2000, exponent)}};
   head.watts = 50;
   return head;
 }
@@ -69,10 +69,10 @@ TEST(HeadSight, AgreesWithTheDirectEvaluator) {
   const HeadSight sight = sight_of(relief.room, head.world_from_mount.translation_m, relief.samples.points, 2);
   const HeadSetting setting = looking(head, {0.1, 0, -0.2}, 1);
   std::vector<double> lux(relief.samples.points.size());
-  lux_of_aim(sight, *head.zoom[0], lamp_pose(head, setting.joints), lux);
+  lux_of_aim(sight, *head.zoom[0].intensity, lamp_pose(head, setting.joints), lux);
   std::vector<Receiver> receivers;
   for (const OrientedPoint& point : relief.samples.points) receivers.push_back({point.position_world_m, point.normal});
-  const Emitter emitter{head.zoom[0], lamp_pose(head, setting.joints)};
+  const Emitter emitter{head.zoom[0].intensity, lamp_pose(head, setting.joints)};
   const auto matrix = make_direct_evaluator(relief.room)->evaluate(receivers, std::span(&emitter, 1), {});
   ASSERT_TRUE(matrix);
   std::size_t lit = 0;
@@ -99,8 +99,9 @@ TEST(HeadAims, ScoreIsTheLocalContrastByBruteForce) {
       const Vec3 from_m = at.position_world_m - lamp.translation_m;
       const double cosine = -from_m.normalized().dot(at.normal);
       if (cosine <= 0 || relief.room.occluded(at.position_world_m, at.normal, lamp.translation_m)) continue;
-      lux[i] += settings[k].level * heads[k].zoom[0]->intensity_cd(lamp.inverse_direction(from_m.normalized())) *
-                cosine / from_m.squaredNorm();
+      lux[i] += settings[k].level *
+                heads[k].zoom[0].intensity->intensity_cd(lamp.inverse_direction(from_m.normalized())) * cosine /
+                from_m.squaredNorm();
     }
   }
   double contrast_lx = 0, mean_lx = 0;
@@ -220,7 +221,7 @@ TEST(HeadAims, HeadsMoveAsLittleAsTheyCanAndStayWhereTheyLookWhenDark) {
   const Vec3 beam = lamp_pose(heads[0], key.joints).direction({0, 0, -1});
   // The same beam in any other posture is farther away.
   for (const double turn : {-2 * kPi, 2 * kPi}) {
-    const PanTilt other{key.joints.pan_rad + turn, key.joints.tilt_rad};
+    const Joints other{key.joints.pan_rad + turn, key.joints.tilt_rad};
     if (other.pan_rad < heads[0].range.pan_min_rad || other.pan_rad > heads[0].range.pan_max_rad) continue;
     EXPECT_NEAR(lamp_pose(heads[0], other).direction({0, 0, -1}).dot(beam), 1, 1e-9);
     EXPECT_LE(travel_s(heads[0], heads[0].present, key.joints), travel_s(heads[0], heads[0].present, other) + 1e-9);
@@ -250,7 +251,7 @@ TEST(HeadAims, SaysWhichHeadsCannotReachAndRefusesWhenNoneCan) {
 TEST(HeadAims, ZoomsAndHeadsThatDoNotMove) {
   const AimedRelief& relief = aimed_relief();
   std::vector<HangingHead> heads = rail_of_heads(2);
-  heads[0].zoom = {make_cosine_power(2000, 4), make_cosine_power(2000, 400)};
+  heads[0].zoom = {{make_cosine_power(2000, 4)}, {make_cosine_power(2000, 400)}};
   heads[1].moves = false;
   heads[1].present = looking(heads[1], {0, 0, 0}, 1).joints;
   const auto aims = relief.aims(heads);

@@ -13,9 +13,9 @@ namespace {
 
 constexpr double kTight_rad = 1e-9;
 
-PanTilt joints_deg(double pan_deg, double tilt_deg) { return {rad_from_deg(pan_deg), rad_from_deg(tilt_deg)}; }
+Joints joints_deg(double pan_deg, double tilt_deg) { return {rad_from_deg(pan_deg), rad_from_deg(tilt_deg)}; }
 
-Vec3 beam_world(const Pose& world_from_mount, const PanTilt& joints) {
+Vec3 beam_world(const Pose& world_from_mount, const Joints& joints) {
   return world_from_lamp(world_from_mount, joints).direction(-Vec3::UnitZ());
 }
 
@@ -47,8 +47,8 @@ TEST(Frames, RollTurnsTheLampAboutItsBeamOnly) {
 
 // The aim vectors of the protocol notes: mount = identity, pan ±270°, tilt ±135°.
 TEST(PanTiltTowards, MeetsTheTestVectors) {
-  const PanTiltRange range;
-  const auto raw = [&](const PanTilt& j) {
+  const JointRange range;
+  const auto raw = [&](const Joints& j) {
     return std::pair(dmx16(j.pan_rad, range.pan_min_rad, range.pan_max_rad),
                      dmx16(j.tilt_rad, range.tilt_min_rad, range.tilt_max_rad));
   };
@@ -81,11 +81,11 @@ TEST(PanTiltTowards, PointsWhereItWasAskedFromAnyMount) {
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> exponent(-200, 200);
-  const PanTiltRange all_round{-kPi, kPi, -kPi, kPi};
+  const JointRange all_round{-kPi, kPi, -kPi, kPi};
   for (int i = 0; i < 2000; ++i) {
     const Pose mount = random_mount(random);
     const Vec3 direction = Vec3(normal(random), normal(random), normal(random)).normalized();
-    const PanTilt from{normal(random), normal(random)};
+    const Joints from{normal(random), normal(random)};
     const auto joints = pan_tilt_towards(mount, direction * std::pow(10, exponent(random)), all_round, from);
     ASSERT_TRUE(joints);
     EXPECT_LT((beam_world(mount, *joints) - direction).norm(), 1e-9);
@@ -93,13 +93,13 @@ TEST(PanTiltTowards, PointsWhereItWasAskedFromAnyMount) {
 }
 
 /// Every posture within range, by trying all images: the independent reference.
-std::vector<PanTilt> all_postures(const Vec3& d, const PanTiltRange& range) {
-  std::vector<PanTilt> out;
+std::vector<Joints> all_postures(const Vec3& d, const JointRange& range) {
+  std::vector<Joints> out;
   const double tilt = std::acos(std::clamp(-d.z(), -1.0, 1.0)), pan = std::atan2(-d.x(), d.y());
   for (int flip = 0; flip < 2; ++flip) {
     for (int p = -3; p <= 3; ++p) {
       for (int t = -3; t <= 3; ++t) {
-        const PanTilt j{pan + flip * kPi + p * 2 * kPi, (flip ? -tilt : tilt) + t * 2 * kPi};
+        const Joints j{pan + flip * kPi + p * 2 * kPi, (flip ? -tilt : tilt) + t * 2 * kPi};
         if (j.pan_rad >= range.pan_min_rad && j.pan_rad <= range.pan_max_rad && j.tilt_rad >= range.tilt_min_rad &&
             j.tilt_rad <= range.tilt_max_rad) {
           out.push_back(j);
@@ -116,11 +116,11 @@ TEST(PanTiltTowards, TakesTheNearestOfAllPosturesAndImages) {
   std::uniform_real_distribution<double> angle(-5, 5);
   int reached = 0, unreachable = 0;
   for (int i = 0; i < 5000; ++i) {
-    PanTiltRange range{angle(random), angle(random), angle(random), angle(random)};
+    JointRange range{angle(random), angle(random), angle(random), angle(random)};
     if (range.pan_min_rad > range.pan_max_rad) std::swap(range.pan_min_rad, range.pan_max_rad);
     if (range.tilt_min_rad > range.tilt_max_rad) std::swap(range.tilt_min_rad, range.tilt_max_rad);
     const Vec3 d = Vec3(normal(random), normal(random), normal(random)).normalized();
-    const PanTilt from{angle(random), angle(random)};
+    const Joints from{angle(random), angle(random)};
     const auto got = pan_tilt_towards({}, d, range, from);
     const auto postures = all_postures(d, range);
     ASSERT_EQ(got.has_value(), !postures.empty());
@@ -129,11 +129,11 @@ TEST(PanTiltTowards, TakesTheNearestOfAllPosturesAndImages) {
       continue;
     }
     ++reached;
-    const auto move = [&](const PanTilt& j) {
+    const auto move = [&](const Joints& j) {
       return std::max(std::abs(j.pan_rad - from.pan_rad), std::abs(j.tilt_rad - from.tilt_rad));
     };
     double least = std::numeric_limits<double>::infinity();
-    for (const PanTilt& j : postures) least = std::min(least, move(j));
+    for (const Joints& j : postures) least = std::min(least, move(j));
     EXPECT_NEAR(move(*got), least, 1e-7);
     EXPECT_LT((beam_world({}, *got) - d).norm(), 1e-7);
     EXPECT_GE(got->pan_rad, range.pan_min_rad);
@@ -147,7 +147,7 @@ TEST(PanTiltTowards, TakesTheNearestOfAllPosturesAndImages) {
 
 TEST(PanTiltTowards, GoesOnTurningInsteadOfUnwindingWhenTheTravelAllows) {
   // At pan 260° asked to look at pan -80° (= 280°, past the stop) a head with more travel goes on to 280°.
-  const PanTiltRange wide{rad_from_deg(-360), rad_from_deg(360), rad_from_deg(-135), rad_from_deg(135)};
+  const JointRange wide{rad_from_deg(-360), rad_from_deg(360), rad_from_deg(-135), rad_from_deg(135)};
   const Vec3 d = beam_world({}, joints_deg(-80, 60));
   const auto joints = pan_tilt_towards({}, d, wide, joints_deg(260, 60));
   ASSERT_TRUE(joints);
@@ -155,7 +155,7 @@ TEST(PanTiltTowards, GoesOnTurningInsteadOfUnwindingWhenTheTravelAllows) {
 }
 
 TEST(PanTiltTowards, ReachesAJointsVeryStop) {
-  const PanTiltRange range{rad_from_deg(-90), rad_from_deg(90), 0, rad_from_deg(90)};
+  const JointRange range{rad_from_deg(-90), rad_from_deg(90), 0, rad_from_deg(90)};
   for (const double pan_deg : {-90.0, 90.0}) {
     const auto joints = pan_tilt_towards({}, beam_world({}, joints_deg(pan_deg, 90)), range, {});
     ASSERT_TRUE(joints);

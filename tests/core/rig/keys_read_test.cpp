@@ -61,6 +61,13 @@ field_angle_deg = 40  #> 41
 lumens = 900  #> 901
 watts = 12
 [[luminaire]]
+name = "zoom"
+model = "spot"
+beam_angle_deg = 20  #> 21
+field_angle_deg = 40  #> 41
+zoom_deg = [6, 60]  #> [7, 60]
+lumens = 900
+[[luminaire]]
 name = "bulb"  #> "lamp"
 model = "isotropic"  #> "spot" ; beam_angle_deg = 20 ; field_angle_deg = 40
 lumens = 700
@@ -138,6 +145,15 @@ pan_range_deg = [-180, 180]  #> [-180, 170]
 tilt_range_deg = [-100, 100]  #> [-100, 90]
 pan_speed_deg_s = 90  #> 91
 tilt_speed_deg_s = 80  #> 81
+[[fixture]]
+name = "zoomer"
+luminaire = "zoom"
+position_m = [1, 0, 3]
+bus = "dmx"
+address = 90
+slots = ["pan", "tilt", "zoom", "zoom-fine", "dimmer"]  #> ["pan", "tilt", "zoom", "unused", "dimmer"]
+zoom_inverted = false  #> true
+zoom_speed_deg_s = 20  #> 21
 [[fixture]]
 name = "mover"
 luminaire = "spot"
@@ -396,9 +412,9 @@ std::string dump(const Rig& rig) {
   }
   for (const auto& l : rig.luminaires) {
     add(l.name, static_cast<int>(l.model), l.ies_path.string(), l.beam_angle_rad, l.field_angle_rad, l.lumens,
-        text_of(l.watts), l.intensity->flux_lm(), l.intensity->intensity_cd(Vec3(0.1, 0, -1).normalized()),
-        static_cast<int>(l.shape.kind), text_of(l.shape.size_m), text_of(l.colour_rgb), l.emitters.size(),
-        text_of(l.emitter_of));
+        text_of(l.watts), l.zoom_beam_rad ? l.zoom_beam_rad->first : 0, l.intensity->flux_lm(),
+        l.intensity->intensity_cd(Vec3(0.1, 0, -1).normalized()), static_cast<int>(l.shape.kind),
+        text_of(l.shape.size_m), text_of(l.colour_rgb), l.emitters.size(), text_of(l.emitter_of));
   }
   for (const auto& b : rig.buses) {
     add(b.name, b.driver, b.options.size());
@@ -407,8 +423,8 @@ std::string dump(const Rig& rig) {
     add(f.name, f.luminaire, text_of(f.world_from_mount.translation_m),
         text_of(Vec3(f.world_from_mount.rotation.col(0))), text_of(Vec3(f.world_from_mount.rotation.col(1))),
         text_of(f.aim_world_m), f.joints.pan_rad, f.joints.tilt_rad, f.roll_rad, f.moves, f.range.pan_min_rad,
-        f.range.pan_max_rad, f.range.tilt_min_rad, f.range.tilt_max_rad, f.pan_speed_rad_s, f.tilt_speed_rad_s, f.bus,
-        static_cast<int>(f.dimmer_curve), f.max_level, text_of(f.safe_level));
+        f.range.pan_max_rad, f.range.tilt_min_rad, f.range.tilt_max_rad, f.pan_speed_rad_s, f.tilt_speed_rad_s,
+        f.zoom_speed_rad_s, f.bus, static_cast<int>(f.dimmer_curve), f.max_level, text_of(f.safe_level));
     if (f.axes) {
       add("axes", f.axes->bus);
       for (const AxisPatch& a : {f.axes->pan, f.axes->tilt})
@@ -416,7 +432,7 @@ std::string dump(const Rig& rig) {
     }
     if (const auto* dmx = std::get_if<DmxPatch>(&f.patch)) {
       add("dmx", dmx->universe, dmx->address);
-      for (const DmxSlot& slot : dmx->slots) add(static_cast<int>(slot.use), slot.constant_dmx);
+      for (const DmxSlot& slot : dmx->slots) add(static_cast<int>(slot.use), slot.constant_dmx, slot.travel.at_start);
     } else {
       const auto& modbus = std::get<ModbusPatch>(f.patch);
       add("modbus", modbus.unit, modbus.holding_register, modbus.full_scale_raw, modbus.map != nullptr);

@@ -125,13 +125,60 @@ TEST(DmxPatch, RefusesAnAimOutsideTheRange) {
   add_head(rig, "head", 1, 1);
   DmxPatchbay bay(rig, 0);
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const PanTilt& joints :
-       {PanTilt{rad_from_deg(270.1), 0}, PanTilt{0, rad_from_deg(-135.1)}, PanTilt{nan, 0}, PanTilt{0, nan}}) {
+  for (const Joints& joints :
+       {Joints{rad_from_deg(270.1), 0}, Joints{0, rad_from_deg(-135.1)}, Joints{nan, 0}, Joints{0, nan}}) {
     const AimCommand aim{0, joints};
     EXPECT_EQ(bay.set_aims({&aim, 1}).error().cause, Cause::invalid);
   }
   const AimCommand edge{0, {rad_from_deg(270) + 1e-9, 0}};
   EXPECT_TRUE(bay.set_aims({&edge, 1}));
+}
+
+/// A head that zooms from 10° to 50° by 16 bits, which sixteenths of make round numbers.
+Fixture& add_zooming_head(Rig& rig, bool inverted) {
+  const DmxTravel travel = inverted ? DmxTravel{1, 0} : DmxTravel{};
+  Fixture& head = add_dmx(rig, "head", 1, 1,
+                          {{SlotUse::pan},
+                           {SlotUse::tilt},
+                           {SlotUse::dimmer},
+                           {SlotUse::zoom, 0, true, 0, travel},
+                           {SlotUse::zoom_fine, 0, true, 0, travel}});
+  head.moves = true;
+  head.range.beam_min_rad = rad_from_deg(10);
+  head.range.beam_max_rad = rad_from_deg(50);
+  head.joints.beam_rad = rad_from_deg(20);
+  return head;
+}
+
+TEST(DmxPatch, ZoomsLinearlyInTheBeamAngleEitherWayRound) {
+  for (const bool inverted : {false, true}) {
+    Rig rig = rig_with(bus_of("sacn"));
+    add_zooming_head(rig, inverted);
+    DmxPatchbay bay(rig, 0);
+    const DmxSlots& slots = bay.universes()[0].slots;
+    const auto zoom = [&] { return slots[3] * 256 + slots[4]; };
+    EXPECT_EQ(zoom(), inverted ? 49151 : 16384) << "as the rig file says: a quarter of the way";
+    const AimCommand wide{0, {0, 0, rad_from_deg(50)}};
+    ASSERT_TRUE(bay.set_aims({&wide, 1}));
+    ASSERT_TRUE(bay.set_levels({}));
+    EXPECT_EQ(zoom(), inverted ? 0 : 65535);
+    std::bitset<kDmxSlots> given;
+    given.set();
+    DmxSlots sent{};
+    sent[3] = 0x80;  // 0x8000: half way, to half a step
+    const auto wanted = bay.decode(0, sent, given);
+    ASSERT_EQ(wanted.size(), 1u);
+    ASSERT_TRUE(wanted[0].joints);
+    EXPECT_NEAR(deg_from_rad(wanted[0].joints->beam_rad), 30, 40.0 / 65535);
+    given.reset(4);
+    const auto half = bay.decode(0, sent, given);
+    EXPECT_NEAR(deg_from_rad(half[0].joints->beam_rad), 20, 1e-9) << "half a zoom is none: it stays";
+    for (const double beam_deg : {9.9, 50.1, std::numeric_limits<double>::quiet_NaN()}) {
+      const AimCommand outside{0, {0, 0, rad_from_deg(beam_deg)}};
+      EXPECT_EQ(bay.set_aims({&outside, 1}).error().cause, Cause::invalid);
+    }
+    EXPECT_EQ(zoom(), inverted ? 0 : 65535);
+  }
 }
 
 TEST(DmxPatch, KeepsUniversesApartAndInOrder) {

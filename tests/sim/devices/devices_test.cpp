@@ -50,6 +50,24 @@ TEST(SimulatedHead, EndStopsHold) {
   EXPECT_DOUBLE_EQ(head.joints().tilt_rad, -0.75 * kPi);
 }
 
+TEST(SimulatedHead, ZoomsAtItsSpeedFromTheNarrowEnd) {
+  Fixture fixture = tiny_rig().fixtures[1];
+  fixture.range.beam_min_rad = 0.1;
+  fixture.range.beam_max_rad = 1;
+  fixture.zoom_speed_rad_s = 0.5;
+  Head head(fixture);
+  EXPECT_EQ(head.joints().beam_rad, 0.1);
+  head.set_target({0, 0, 0.6});
+  for (int i = 0; i < 50; ++i) head.step(0.01);
+  EXPECT_NEAR(head.joints().beam_rad, 0.35, 1e-12);
+  EXPECT_TRUE(head.moving());
+  for (int i = 0; i < 51; ++i) head.step(0.01);
+  EXPECT_EQ(head.joints().beam_rad, 0.6);
+  head.set_target({0, 0, 5});
+  for (int i = 0; i < 500; ++i) head.step(0.01);
+  EXPECT_EQ(head.joints().beam_rad, 1);
+}
+
 TEST(SimulatedLuxmeter, FollowsAStepWithItsLag) {
   MeterTruth truth;
   truth.lag_s = 0.15;

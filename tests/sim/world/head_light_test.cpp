@@ -13,7 +13,7 @@
 namespace luxrig::sim {
 namespace {
 
-const PanTiltRange kRange;  // ±270°, ±135°
+const JointRange kRange;  // ±270°, ±135°
 constexpr double kRoll_rad = 0.3;
 constexpr std::size_t kFixture = 5;  // any
 
@@ -29,9 +29,9 @@ struct Room {
     }
   }
 
-  [[nodiscard]] TransportMatrix evaluate(const std::vector<PanTilt>& aims, std::uint64_t max_rays) const {
+  [[nodiscard]] TransportMatrix evaluate(const std::vector<Joints>& aims, std::uint64_t max_rays) const {
     std::vector<Emitter> emitters;
-    for (const PanTilt& joints : aims) emitters.push_back({spot, world_from_lamp(pose, joints, kRoll_rad)});
+    for (const Joints& joints : aims) emitters.push_back({spot, world_from_lamp(pose, joints, kRoll_rad)});
     EvaluateOptions options;
     options.wanted_relative_error = 1e-4;  // max_rays says when to stop
     options.max_rays = max_rays;
@@ -40,7 +40,7 @@ struct Room {
     return result ? *result : TransportMatrix{};
   }
 
-  [[nodiscard]] std::unique_ptr<const HeadLight> head_light(const std::vector<PanTilt>& aims,
+  [[nodiscard]] std::unique_ptr<const HeadLight> head_light(const std::vector<Joints>& aims,
                                                             Eigen::MatrixXd indirect) const {
     HeadSamples head;
     head.fixture = kFixture;
@@ -50,7 +50,7 @@ struct Room {
     for (const Receiver& receiver : receivers) {
       head.sees.push_back(!rays.occluded(receiver.position_world_m, receiver.normal_world, pose.translation_m));
     }
-    for (const PanTilt& joints : aims) head.aims_mount.push_back(beam_mount(joints));
+    for (const Joints& joints : aims) head.aims_mount.push_back(beam_mount(joints));
     head.indirect_lux_per_level = std::move(indirect);
     return make_head_light(receivers, {head});
   }
@@ -65,20 +65,20 @@ struct Room {
   std::vector<Receiver> receivers;
 };
 
-std::vector<PanTilt> random_aims(int count, unsigned seed) {
+std::vector<Joints> random_aims(int count, unsigned seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> pan_rad(kRange.pan_min_rad, kRange.pan_max_rad),
       tilt_rad(kRange.tilt_min_rad, kRange.tilt_max_rad);
-  std::vector<PanTilt> aims;
+  std::vector<Joints> aims;
   for (int i = 0; i < count; ++i) aims.push_back({pan_rad(random), tilt_rad(random)});
   return aims;
 }
 
 TEST(HeadLight, DirectPartIsThatOfTheDirectEvaluatorAtAnyAim) {
   const Room room(0.5);
-  const std::vector<PanTilt> aims = random_aims(500, 3);
+  const std::vector<Joints> aims = random_aims(500, 3);
   std::vector<Emitter> emitters;
-  for (const PanTilt& joints : aims) emitters.push_back({room.spot, world_from_lamp(room.pose, joints, kRoll_rad)});
+  for (const Joints& joints : aims) emitters.push_back({room.spot, world_from_lamp(room.pose, joints, kRoll_rad)});
   const auto direct = make_direct_evaluator(room.rays)->evaluate(room.receivers, emitters, {});
   ASSERT_TRUE(direct);
   const auto light = room.head_light({{}}, room.zeros());  // no indirect light at all
@@ -106,9 +106,9 @@ TEST(HeadLight, DirectPartOfALampWithSizeAndTiltIsThePlannersToo) {
   head.luminaire.tilt = LampTilt{3, {0, 90, 180}, {1.0, 0.7, 0.5}};
   head.aims_mount = {beam_mount({})};
   head.indirect_lux_per_level = room.zeros();
-  std::vector<PanTilt> aims = random_aims(30, 5);
+  std::vector<Joints> aims = random_aims(30, 5);
   std::vector<Emitter> emitters;
-  for (const PanTilt& joints : aims)
+  for (const Joints& joints : aims)
     emitters.push_back(emitter_of(head.luminaire, world_from_lamp(room.pose, joints, kRoll_rad)));
   EXPECT_NE(emitters[0].intensity->flux_lm(), 900) << "the factor counts";
   EvaluateOptions options;
@@ -129,6 +129,35 @@ TEST(HeadLight, DirectPartOfALampWithSizeAndTiltIsThePlannersToo) {
     EXPECT_LT((lux - direct->lux_per_level.col(static_cast<Eigen::Index>(a))).cwiseAbs().maxCoeff(),
               3e-3 * brightest_lx)
         << "aim " << a;
+  }
+}
+
+TEST(HeadLight, DirectPartFollowsTheZoom) {
+  const Room room(0.5);
+  HeadSamples head;
+  head.fixture = kFixture;
+  head.world_from_mount = room.pose;
+  head.luminaire.model = LuminaireModel::spot;
+  head.luminaire.beam_angle_rad = rad_from_deg(20);
+  head.luminaire.field_angle_rad = rad_from_deg(36);
+  head.luminaire.zoom_beam_rad = {rad_from_deg(6), rad_from_deg(60)};
+  head.luminaire.intensity = make_spot(1000, rad_from_deg(20), rad_from_deg(36));
+  head.sees.assign(room.receivers.size(), 1.0);
+  head.aims_mount = {beam_mount({})};
+  head.indirect_lux_per_level = room.zeros();
+  const auto light = make_head_light(room.receivers, {head});
+  Eigen::VectorXd lux = room.zeros();
+  for (const double beam_deg : {6.0, 20.0, 45.0}) {
+    light->column(kFixture, {0.1, 0.2, rad_from_deg(beam_deg)}, lux);
+    const Intensity spot = make_spot(1000, rad_from_deg(beam_deg), rad_from_deg(1.8 * beam_deg));
+    const Pose lamp = world_from_lamp(room.pose, {0.1, 0.2}, 0);
+    for (std::size_t r = 0; r < room.receivers.size(); ++r) {
+      const Vec3 from_m = room.receivers[r].position_world_m - lamp.translation_m;
+      const double cosine = std::max(0.0, -room.receivers[r].normal_world.dot(from_m.normalized()));
+      const double exact_lx =
+          spot->intensity_cd(lamp.inverse_direction(from_m.normalized())) * cosine / from_m.squaredNorm();
+      EXPECT_NEAR(lux[static_cast<Eigen::Index>(r)], exact_lx, 1e-6 * std::max(exact_lx, 1.0)) << beam_deg << ", " << r;
+    }
   }
 }
 
@@ -167,7 +196,7 @@ TEST(HeadLight, AReceiverThatTheHeadCannotSeeHasNoDirectLight) {
 
 TEST(HeadLight, AtAnAimOfItsSetTheIndirectPartIsThatAimsOwn) {
   const Room room(0.5);
-  const std::vector<PanTilt> set = spread_aims(kRange, 32);
+  const std::vector<Joints> set = spread_aims(kRange, 32);
   const auto count = static_cast<Eigen::Index>(set.size());
   Eigen::MatrixXd indirect(room.zeros().size(), count);
   for (Eigen::Index a = 0; a < count; ++a) indirect.col(a).setConstant(10.0 + static_cast<double>(a));
@@ -178,7 +207,7 @@ TEST(HeadLight, AtAnAimOfItsSetTheIndirectPartIsThatAimsOwn) {
     dark->column(kFixture, set[static_cast<std::size_t>(a)], direct);
     EXPECT_LT((lux - direct - indirect.col(a)).cwiseAbs().maxCoeff(), 1e-9) << a;
   }
-  for (const PanTilt& joints : random_aims(200, 4)) {  // in between: an average, never outside what is known
+  for (const Joints& joints : random_aims(200, 4)) {  // in between: an average, never outside what is known
     light->column(kFixture, joints, lux);
     dark->column(kFixture, joints, direct);
     EXPECT_GE((lux - direct).minCoeff(), 10 - 1e-9);
@@ -189,7 +218,7 @@ TEST(HeadLight, AtAnAimOfItsSetTheIndirectPartIsThatAimsOwn) {
 // The figure that head_light.h states. Interpolation blurs the patch that the beam lights: the darker the walls, the
 // more of the indirect light is that patch's own.
 TEST(HeadLight, InBetweenTheIndirectPartIsAsFarOffAsTheHeaderStates) {
-  const std::vector<PanTilt> set = spread_aims(kRange, 32), aims = random_aims(48, 1);
+  const std::vector<Joints> set = spread_aims(kRange, 32), aims = random_aims(48, 1);
   for (const auto& [reflectance, stated] : {std::pair{0.3, 0.23}, {0.5, 0.17}}) {
     const Room room(reflectance);
     const TransportMatrix known = room.evaluate(set, 1'500'000), fresh = room.evaluate(aims, 1'500'000);
@@ -211,15 +240,15 @@ TEST(HeadLight, InBetweenTheIndirectPartIsAsFarOffAsTheHeaderStates) {
 }
 
 TEST(SpreadAims, StayInRangeAndReachAllOfIt) {
-  const PanTiltRange ranges[] = {
+  const JointRange ranges[] = {
       kRange,       {-kPi, kPi, -kPi / 2, kPi / 2}, {-kPi, kPi, 0, kPi}, {-kPi, kPi, -0.1, 0.1}, {-0.5, 0.8, -0.2, 1.5},
       {0, 0, 0, 0},
   };
-  for (const PanTiltRange& range : ranges) {
+  for (const JointRange& range : ranges) {
     for (const int count : {0, 1, 8, 32, 500}) {
-      const std::vector<PanTilt> aims = spread_aims(range, count);
+      const std::vector<Joints> aims = spread_aims(range, count);
       EXPECT_LE(aims.size(), static_cast<std::size_t>(count));
-      for (const PanTilt& joints : aims) {
+      for (const Joints& joints : aims) {
         EXPECT_GE(joints.pan_rad, range.pan_min_rad);
         EXPECT_LE(joints.pan_rad, range.pan_max_rad);
         EXPECT_GE(joints.tilt_rad, range.tilt_min_rad);
@@ -230,12 +259,12 @@ TEST(SpreadAims, StayInRangeAndReachAllOfIt) {
 }
 
 TEST(SpreadAims, LeaveNoGapWiderThanTheirNumberMakes) {
-  const std::vector<PanTilt> aims = spread_aims(kRange, 32);
+  const std::vector<Joints> aims = spread_aims(kRange, 32);
   ASSERT_EQ(aims.size(), 32u);
   double widest_rad = 0;
-  for (const PanTilt& joints : random_aims(2000, 5)) {
+  for (const Joints& joints : random_aims(2000, 5)) {
     double nearest_rad = kPi;
-    for (const PanTilt& aim : aims) {
+    for (const Joints& aim : aims) {
       const double cosine = beam_mount(joints).dot(beam_mount(aim));
       nearest_rad = std::min(nearest_rad, std::acos(std::clamp(cosine, -1.0, 1.0)));
     }
@@ -246,7 +275,7 @@ TEST(SpreadAims, LeaveNoGapWiderThanTheirNumberMakes) {
 }
 
 TEST(BeamMount, IsMinusZOfTheLampInFrameMount) {
-  for (const PanTilt& joints : random_aims(100, 6)) {
+  for (const Joints& joints : random_aims(100, 6)) {
     const Vec3 beam = -world_from_lamp(Pose{}, joints, kRoll_rad).rotation.col(2);
     EXPECT_LT((beam - beam_mount(joints)).norm(), 1e-12);
   }
