@@ -29,6 +29,7 @@ HeadSight sight_of(const RayScene& room, const Vec3& head_world_m, std::span<con
       const double cosine = at.normal.isZero(0) ? 1 : -at.normal.dot(sight.direction[i]);
       if (cosine <= 0 || room.occluded(at.position_world_m, at.normal, head_world_m)) continue;
       sight.lux_per_cd[i] = cosine / (distance_m * distance_m);
+      if (room.has_panes()) sight.lux_per_cd[i] *= room.transmittance(at.position_world_m, head_world_m);
     }
   });
   return sight;

@@ -33,7 +33,12 @@ void RigReader::read_relief(Section& s, ReliefSpec& relief) {
   if (!s.has("object")) s.require("object", "the mesh whose relief shall read");
   if (const auto object = objects.read_reference(s, "object")) {
     relief.object = *object;
-    if (*object < rig.scene.objects.size() && !rig.scene.objects[*object].mesh)
+    if (*object < rig.scene.objects.size() && rig.scene.objects[*object].transmittance)
+      problems.add(s.place_of("object"),
+                   fmt::format("scene object {} is of glass: light finds no relief on it",
+                               in_quotes(rig.scene.objects[*object].name)),
+                   "name an object without transmittance");
+    else if (*object < rig.scene.objects.size() && !rig.scene.objects[*object].mesh)
       problems.add(
           s.place_of("object"),
           fmt::format("scene object {} is a box: it has no relief", in_quotes(rig.scene.objects[*object].name)),

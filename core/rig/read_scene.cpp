@@ -61,6 +61,9 @@ void RigReader::read_scene() {
       read_box_or_mesh(s, object);
       s.read("position_m", object.position_world_m);
       s.read_deg("turn_deg", object.turn_rad);
+      s.read("transmittance", object.transmittance);
+      if (object.transmittance)
+        s.refuse("reflectance", "reflectance has no effect on glass", "remove it, or transmittance");
       s.read("reflectance", object.reflectance_rgb);
       rig.scene.objects.push_back(std::move(object));
     });

@@ -44,6 +44,7 @@ struct SceneObject {
   double turn_rad = 0;                   ///< about +Z, counter-clockwise from above
   std::optional<double> height_m;        ///< mesh scaled evenly to this height
   std::optional<Vec3> reflectance_rgb;   ///< of all its materials; else rules and file colours apply
+  std::optional<double> transmittance;   ///< of each face, at normal incidence: it is of glass (core/scene/panes.h)
   Place place;
 };
 

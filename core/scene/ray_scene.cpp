@@ -52,6 +52,7 @@ RayScene::RayScene(const Scene& scene) : state_(std::make_unique<State>()) {
   state_->vertices_m.push_back(Vec3f::Zero());
   state_->indices = scene.triangles;
   state_->materials = scene.materials;
+  state_->panes = Panes(scene.panes);
   state_->measure(scene.material_of_triangle);
   state_->build();
 }
@@ -102,6 +103,14 @@ std::optional<Hit> RayScene::nearest(const Vec3& from_world_m, const Vec3& direc
   return Hit{distance_m, query.hit.primID, position_m + state.origin_world_m, normal};
 }
 
+bool RayScene::has_panes() const { return !state_->panes.empty(); }
+
+double RayScene::transmittance(const Vec3& from_world_m, const Vec3& to_world_m) const {
+  if (state_->panes.empty()) return 1;
+  const double near_m = 2 * std::max(surface_error_m(from_world_m), surface_error_m(to_world_m));
+  return state_->panes.transmittance(from_world_m, to_world_m, near_m);
+}
+
 const Material& RayScene::material_of(std::uint32_t triangle) const {
   LUXRIG_CHECK(triangle < state_->triangles.size(), "triangle {} of {}", triangle, state_->triangles.size());
   return state_->materials[state_->triangles[triangle].material];
@@ -109,9 +118,7 @@ const Material& RayScene::material_of(std::uint32_t triangle) const {
 
 std::span<const Material> RayScene::materials() const { return state_->materials; }
 
-std::uint32_t RayScene::material_index_of(std::uint32_t triangle) const {
-  return state_->triangles[triangle].material;
-}
+std::uint32_t RayScene::material_index_of(std::uint32_t triangle) const { return state_->triangles[triangle].material; }
 
 Eigen::AlignedBox3d RayScene::bounds_world_m() const {
   Eigen::AlignedBox3d bounds = state_->bounds_m;

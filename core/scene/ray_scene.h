@@ -55,6 +55,12 @@ class RayScene {
   void occluded_many(const Vec3& from_world_m, const Vec3& from_normal_world, std::span<const Vec3> to_world_m,
                      std::span<std::uint8_t> occluded) const;
 
+  /// Whether light may have to pass glass. Panes stop no ray of the queries here.
+  [[nodiscard]] bool has_panes() const;
+  /// Share of the light between two places that the panes of glass in between let through; 1 without any. Those within
+  /// twice the surface error of an end do not count.
+  [[nodiscard]] double transmittance(const Vec3& from_world_m, const Vec3& to_world_m) const;
+
   /// True only if no ray within the shaft can be stopped: then none need be cast. Casts none itself; the first call
   /// builds a tree of boxes. Agrees with occluded() about what stands nearer to a surface than it can be told.
   [[nodiscard]] bool surely_clear(const Shaft& shaft) const;

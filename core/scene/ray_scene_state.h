@@ -46,6 +46,7 @@ struct RayScene::State {
   std::vector<std::array<std::uint32_t, 3>> indices;
   std::vector<Triangle> triangles;
   std::vector<Material> materials;
+  Panes panes;
   Eigen::AlignedBox3d bounds_m;  // relative to the origin
   double edge_error_m = 0;       // e(0)
   mutable std::once_flag tree_built;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/geometry.h"
+#include "core/scene/panes.h"
 
 namespace luxrig {
 
@@ -48,6 +49,7 @@ struct Scene {
   std::vector<std::uint32_t> object_of_triangle;  ///< index into object_names
   std::vector<Material> materials;
   std::vector<std::string> object_names;  ///< "scene", then the rig's objects in order
+  std::vector<Pane> panes;                ///< of glass: apart from the triangles, which stop light
   Cleaning cleaning;
   std::vector<std::string> warnings;
 

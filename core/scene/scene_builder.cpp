@@ -107,8 +107,15 @@ class Builder {
       problem(object.place, "object '" + object.name + "' is a box without volume", "give three lengths above 0");
     }
     if (!part || !place(object, *part)) return;
+    if (object.transmittance) return glaze(*part, *object.transmittance, index);
     set_reflectances(*part, "object '" + object.name + "'", object.reflectance_rgb);
     parts_.emplace_back(index, std::move(*part));
+  }
+
+  void glaze(const Part& part, double transmittance, std::uint32_t object) {
+    for (const auto& [a, b, c] : part.triangles)
+      scene_.panes.push_back(
+          {{part.vertices_world_m[a], part.vertices_world_m[b], part.vertices_world_m[c]}, transmittance, object});
   }
 
   /// Scales evenly to the wanted height, then puts the middle of its underside at the object's position.

@@ -13,7 +13,9 @@
 
 namespace luxrig {
 
-const RayScene* obstacles_in(const RayScene& scene) { return scene.bounds_world_m().isEmpty() ? nullptr : &scene; }
+const RayScene* obstacles_in(const RayScene& scene) {
+  return scene.bounds_world_m().isEmpty() && !scene.has_panes() ? nullptr : &scene;
+}
 
 namespace {
 

@@ -113,6 +113,7 @@ bool DirectSources::may_light(std::size_t e, const Receiver& receiver) const {
 }
 
 Way way_between(const RayScene& scene, const Receiver& receiver, const Emitter& emitter, std::uint64_t& rays) {
+  if (scene.has_panes()) return Way::unknown;  // what they take must be sampled
   const Eigen::AlignedBox3d bounds = scene.bounds_world_m();
   if (bounds.isEmpty()) return Way::clear;
   const Vec3& from = receiver.position_world_m;
@@ -185,6 +186,7 @@ DirectSum sample_direct(const RayScene& scene, const Receiver& receiver, const E
   sum.parts[0].samples = end - begin;
   const auto add = [&](const Vec3& target_world_m, double lux, std::uint8_t part = 0) {
     if (!(lux > 0) || !std::isfinite(lux)) return;
+    if (scene.has_panes()) lux *= scene.transmittance(from, target_world_m);
     scratch.parts.push_back(part);
     scratch.targets_world_m.push_back(target_world_m);
     scratch.values.push_back(lux);

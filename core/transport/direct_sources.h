@@ -41,8 +41,12 @@ class DirectSources {
     if (rays > 0)
       obstacles->occluded_many(receiver.position_world_m, receiver.normal_world, scratch.targets_world_m,
                                scratch.occluded);
+    scratch.values.assign(scratch.targets_world_m.size(), 1);
+    if (obstacles && obstacles->has_panes())
+      for (std::size_t i = 0; i < scratch.values.size(); ++i)
+        scratch.values[i] = obstacles->transmittance(receiver.position_world_m, scratch.targets_world_m[i]);
     for (const Scratch::Lit& one : scratch.lit)
-      if (!scratch.occluded[one.target]) lit(one.emitter, one.lux);
+      if (!scratch.occluded[one.target]) lit(one.emitter, scratch.values[one.target] * one.lux);
     return rays;
   }
 

@@ -68,6 +68,7 @@ class Lamps {
       const double lux_per_candela = height_m * per_distance / distance_squared_m2;
       if (!std::isfinite(lux_per_candela)) continue;
       bool sees = scene == nullptr;
+      double through = 1;
       for (std::size_t i = place.begin; i < place.end; ++i) {
         const Lamp& lamp = lamps_[i];
         if (-lamp.axis_world.dot(direction_world) < lamp.cos_half_cone) continue;
@@ -77,8 +78,9 @@ class Lamps {
           ++rays;
           if (scene->occluded(position_world_m, normal_world, place.position_world_m)) break;
           sees = true;
+          if (scene->has_panes()) through = scene->transmittance(position_world_m, place.position_world_m);
         }
-        lit(lamp.emitter, lux);
+        lit(lamp.emitter, through * lux);
       }
     }
     return rays;

@@ -58,7 +58,8 @@ LightHit LightHits::trace(std::size_t group, const SobolSequence& samples, std::
   const double sum = lamps_.weigh(light.position_world_m, light.normal_world, weights);
   light.choice_density = lamps_.choice_density(ray.emitter, light.position_world_m, light.to_light_world, weights, sum);
   if (!std::isfinite(light.density)) return light;
-  light.flux_rgb = ray.flux_lm * lamps_.colour_rgb(ray.emitter);
+  const double through = scene_.has_panes() ? scene_.transmittance(ray.from_world_m, hit->position_world_m) : 1;
+  light.flux_rgb = through * ray.flux_lm * lamps_.colour_rgb(ray.emitter);
   light.matt_rgb = light.flux_rgb.cwiseProduct(bsdf.body_rgb()) / kPi;
   return light;
 }

@@ -154,8 +154,9 @@ std::uint64_t PathSampler::join_start(const Vertex& start, const HitPool& pool, 
                          std::span(occluded).first(count));
     for (std::size_t i = 0; i < count; ++i) {
       if (occluded[i] != 0) continue;
-      sums.add(joins[i].emitter, joins[i].rgb);
-      const double of_one_hit = joins[i].worth * plan.at_start[group_of[i]];
+      const double through = through_glass(vertex.position_world_m, hits_world_m[i]);
+      sums.add(joins[i].emitter, through * joins[i].rgb);
+      const double of_one_hit = through * joins[i].worth * plan.at_start[group_of[i]];
       if (!squares.empty()) squares[group_of[i]] += of_one_hit * of_one_hit;
     }
     rays += std::exchange(count, 0);
@@ -190,7 +191,7 @@ std::uint64_t PathSampler::join_deeper(const Vertex& vertex, const HitPool& pool
   const Join joined = join(weighed, hit, plan.deeper[g], cut, chance);
   if (!(joined.worth > 0)) return 0;
   if (!scene_.occluded(vertex.position_world_m, vertex.normal_world, hit.position_world_m))
-    sums.add(joined.emitter, joined.rgb);
+    sums.add(joined.emitter, through_glass(vertex.position_world_m, hit.position_world_m) * joined.rgb);
   return 1;
 }
 
@@ -215,8 +216,10 @@ std::uint64_t PathSampler::ask_lamps(const Vertex& vertex, double density_per_m2
   if (!(worth > 0) || !std::isfinite(worth)) return 0;
   const double counts = kept(worth, cut, chance);
   if (counts == 0) return 0;
-  if (!scene_.occluded(vertex.position_world_m, vertex.normal_world, choice.target_world_m))
-    for (const PathScratch::Lit& lit : scratch.lit) sums.add(lit.emitter, counts * lit.rgb);
+  if (!scene_.occluded(vertex.position_world_m, vertex.normal_world, choice.target_world_m)) {
+    const double share = counts * through_glass(vertex.position_world_m, choice.target_world_m);
+    for (const PathScratch::Lit& lit : scratch.lit) sums.add(lit.emitter, share * lit.rgb);
+  }
   return 1;
 }
 
@@ -243,7 +246,8 @@ std::uint64_t PathSampler::add_path(const Vertex& start, const SobolSequence& sa
     const Bsdf& bsdf = bsdfs_[scene_.material_index_of(hit->triangle)];
     if (bsdf.black()) break;
     Vertex reached{hit->position_world_m, hit->normal_world, -next.in, &bsdf,
-                   vertex.through_rgb.cwiseProduct(next.weight_rgb)};
+                   through_glass(vertex.position_world_m, hit->position_world_m) *
+                       vertex.through_rgb.cwiseProduct(next.weight_rgb)};
     const double cosine = reached.normal_world.dot(reached.out_world);
     const double distance2_m2 = (reached.position_world_m - vertex.position_world_m).squaredNorm();
     const double density_per_m2 = next.density_per_sr * cosine / distance2_m2;

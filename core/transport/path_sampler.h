@@ -137,6 +137,10 @@ class PathSampler {
   /// Luminous lux of sums at the levels.
   [[nodiscard]] double worth_of(const PathSums& sums) const;
   [[nodiscard]] double level(std::size_t emitter) const { return levels_[emitter]; }
+  /// What panes of glass let through. No density knows of it, so it weighs all ways of finding a path alike.
+  [[nodiscard]] double through_glass(const Vec3& from_world_m, const Vec3& to_world_m) const {
+    return scene_.has_panes() ? scene_.transmittance(from_world_m, to_world_m) : 1;
+  }
 
   const RayScene& scene_;
   const Lamps& lamps_;

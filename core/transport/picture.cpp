@@ -184,8 +184,10 @@ class Renderer {
         sized_lamps_.choose(hit.position_world_m, hit.normal_world, scratch.weights, weight, select, u, v);
     if (!(choice.density > 0) || scene_.occluded(hit.position_world_m, hit.normal_world, choice.target_world_m))
       return sum;
-    sized_lamps_.light(
-        choice, [&](std::size_t e, double lux, double) { add(lux * sized_[e].colour_rgb, choice.direction_world); });
+    const double through = scene_.has_panes() ? scene_.transmittance(hit.position_world_m, choice.target_world_m) : 1;
+    sized_lamps_.light(choice, [&](std::size_t e, double lux, double) {
+      add(through * lux * sized_[e].colour_rgb, choice.direction_world);
+    });
     return sum;
   }
 
@@ -242,6 +244,7 @@ class Renderer {
       luminance_cd_m2 +=
           reflected({hit->position_world_m, hit->normal_world, out, &bsdf, Vec3::Ones()}, glossy, index, key, scratch);
     }
+    if (scene_.has_panes()) luminance_cd_m2 *= scene_.transmittance(camera_.eye_world_m, hit->position_world_m);
     const auto all_lx = static_cast<float>(luminance_of_rgb(at.lux + lux));
     sum.luminance_cd_m2 += luminance_cd_m2.cast<float>();
     sum.lux += all_lx;

@@ -64,11 +64,13 @@ std::unique_ptr<const HeadLight> make_head_light(std::vector<Receiver> receivers
 std::vector<double> seen_shares(const RayScene& scene, const std::vector<Receiver>& receivers, const Emitter& head) {
   const Pose& pose = head.world_from_lamp;
   const auto sees = [&](const Receiver& receiver, const Vec3& at_m) {
-    return !scene.occluded(receiver.position_world_m, receiver.normal_world, at_m);
+    const bool hidden = scene.occluded(receiver.position_world_m, receiver.normal_world, at_m);
+    return hidden ? 0.0 : scene.transmittance(receiver.position_world_m, at_m);
   };
   std::vector<double> shares;
   for (const Receiver& receiver : receivers) {
-    int seen = 0, asked = 0;
+    double seen = 0;
+    int asked = 0;
     for (int k = 0; k < kSeenRays && head.shape.kind != LuminousShape::Kind::point; ++k) {
       // Points of the R2 sequence (Roberts 2018): even over the square without a generator.
       const double u = std::fmod(0.5 + 0.7548776662466927 * k, 1.0), v = std::fmod(0.5 + 0.5698402909980532 * k, 1.0);
@@ -80,7 +82,7 @@ std::vector<double> seen_shares(const RayScene& scene, const std::vector<Receive
       ++asked;
       seen += sees(receiver, receiver.position_world_m + sample.distance_m * to_world);
     }
-    shares.push_back(asked > 0 ? static_cast<double>(seen) / asked : sees(receiver, pose.translation_m) ? 1.0 : 0.0);
+    shares.push_back(asked > 0 ? seen / asked : sees(receiver, pose.translation_m));
   }
   return shares;
 }

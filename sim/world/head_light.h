@@ -23,8 +23,8 @@ struct HeadSamples {
   std::size_t fixture = 0;
   Pose world_from_mount;  ///< true
   double roll_rad = 0;
-  Luminaire luminaire;                     ///< its size, colour and TILT count
-  std::vector<double> sees;                ///< per receiver: share of the lamp with nothing in between, 0…1
+  Luminaire luminaire;       ///< its size, colour and TILT count
+  std::vector<double> sees;  ///< per receiver: share of the lamp with nothing in between, less what glass takes, 0…1
   std::vector<Vec3> aims_mount;            ///< unit beam directions
   Eigen::MatrixXd indirect_lux_per_level;  ///< receivers × aims
 };

@@ -231,6 +231,9 @@ int run_check(const CheckArguments& arguments) {
   fmt::print("\n");
   Table materials({"material", ">luminous reflectance"});
   for (const Material& m : scene.materials) materials.row({m.name, fmt::format("{:.2f}", m.luminous_reflectance())});
+  for (const SceneObject& object : rig.scene.objects)
+    if (object.transmittance)
+      materials.row({object.name, fmt::format("glass, lets {:.2f} through", *object.transmittance)});
   if (!scene.materials.empty()) fmt::print("{}\n", materials.text());
   Table luminaires({"luminaire", ">lumens", ">peak cd", ">beam", ">field", ">watts"});
   for (const Luminaire& l : rig.luminaires) {

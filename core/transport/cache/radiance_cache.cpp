@@ -55,6 +55,8 @@ Result<RadianceCache> RadianceCache::build(const Scene& scene, const RayScene& r
                                            std::span<const Receiver> receivers, const CacheSettings& settings,
                                            const BuildOptions& options) {
   if (auto checked = check(settings); !checked) return tl::unexpected(std::move(checked.error()));
+  if (rays.has_panes())
+    return refusal("the radiance cache knows no glass, and the scene has panes: choose the model path or gather");
   EvaluateOptions of_receivers;
   if (auto checked = check_evaluation(receivers, {}, of_receivers); !checked)
     return tl::unexpected(std::move(checked.error()));

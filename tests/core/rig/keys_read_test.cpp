@@ -43,6 +43,10 @@ file = "a.obj"
 name = "bowl"
 file = "a.obj"
 [[scene.object]]
+name = "case"
+box_m = [1, 1, 1]
+transmittance = 0.9  #> 0.8
+[[scene.object]]
 name = "plinth"
 box_m = [1, 2, 3]  #> [1, 2, 4]
 [[luminaire]]
@@ -409,7 +413,7 @@ std::string dump(const Rig& rig) {
   }
   for (const auto& o : rig.scene.objects) {
     add(o.name, text_of(o.mesh), text_of(o.box_m), text_of(o.position_world_m), o.turn_rad, text_of(o.height_m),
-        text_of(o.reflectance_rgb));
+        text_of(o.reflectance_rgb), text_of(o.transmittance));
   }
   for (const auto& l : rig.luminaires) {
     add(l.name, static_cast<int>(l.model), l.ies_path.string(), l.beam_angle_rad, l.field_angle_rad, l.lumens,
