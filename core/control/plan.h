@@ -125,10 +125,10 @@ void turn_heads(Rig& rig, std::span<const Joints> joints);
 
 /// JSON, keys as in design.md `solve --json`, plus "luxrig_plan": 1 and "rig" (and a point's "why" when there is one,
 /// and a placement's "fixtures", like "lights", and "numbers": [{"lights", "normalised_error", "local_contrast"}],
-/// "local_contrast", "relative_contrast", "coverage", the same with "before_", "object_lux", "key_to_fill" of a task
-/// for an object's relief, "lower_bound" and "lower_bound_of_number", "front": [{"max_watts", "watts",
-/// "normalised_error"}], "watts" of lights and tasks, and with goals of a colour a point's "xy" and "goal_xy"). Numbers
-/// are finite or the key is absent.
+/// "beam_angle_deg" of a light that zooms, "local_contrast", "relative_contrast", "coverage", the same with "before_",
+/// "object_lux", "key_to_fill" of a task for an object's relief, "lower_bound" and "lower_bound_of_number", "front":
+/// [{"max_watts", "watts", "normalised_error"}], "watts" of lights and tasks, and with goals of a colour a point's "xy"
+/// and "goal_xy"). Numbers are finite or the key is absent.
 [[nodiscard]] std::string to_json(const Plan& plan);
 /// Never throws. Problems of syntax carry line and column, others a path (/tasks/0/lights/3/level) in `what`. Needed
 /// are luxrig_plan, rig, tasks, and the name and level of each light; another number that is absent becomes NaN (0 for

@@ -11,16 +11,16 @@ std::vector<std::size_t> housing_of(const Rig& rig, std::size_t fixture) {
 }
 
 std::string housing_name(const Rig& rig, std::size_t fixture) {
-  const std::string& name = rig.fixtures[fixture].name;
-  const Luminaire& luminaire = rig.luminaires[rig.fixtures[fixture].luminaire];
-  if (!luminaire.emitter_of) return name;
+  const Fixture& of = rig.fixtures[fixture];
+  if (!of.housing) return of.name;
+  const Luminaire& emitter = rig.luminaires[of.luminaire];
   // Both end in "/<emitter>".
-  return name.substr(0, name.size() - (luminaire.name.size() - rig.luminaires[*luminaire.emitter_of].name.size()));
+  return of.name.substr(0, of.name.size() - (emitter.name.size() - rig.luminaires[*emitter.emitter_of].name.size()));
 }
 
 const Luminaire& housing_luminaire(const Rig& rig, std::size_t fixture) {
   const Luminaire& luminaire = rig.luminaires[rig.fixtures[fixture].luminaire];
-  return luminaire.emitter_of ? rig.luminaires[*luminaire.emitter_of] : luminaire;
+  return rig.fixtures[fixture].housing ? rig.luminaires[*luminaire.emitter_of] : luminaire;
 }
 
 }  // namespace luxrig

@@ -56,11 +56,6 @@ void RigReader::read_relief(Section& s, ReliefSpec& relief) {
 
 void RigReader::read_highlight(Section& s, HighlightSpec& highlight) {
   read_placed(s, TaskKind::highlight, highlight.luminaire, highlight.lights, highlight.max_lights);
-  if (highlight.luminaire < rig.luminaires.size() && !rig.luminaires[highlight.luminaire].emitters.empty())
-    problems.add(s.place_of("luminaire"),
-                 fmt::format("{} has emitters that are set one by one: highlight cannot set those yet",
-                             in_quotes(rig.luminaires[highlight.luminaire].name)),
-                 "name a luminaire without emitters");
   read_relief(s, highlight.relief);
 }
 

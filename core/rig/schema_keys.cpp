@@ -467,8 +467,8 @@ constexpr KeySpec kRigKeys[] = {
     {"task", "coverage_weight", number, "", "0.25", kWeight, "",
      "what it is worth that every feature has a shadow's edge, beside contrast (kind `aim` and `highlight`)"},
     {"task", "heads", texts, "", kNone, kAny, "",
-     "fixtures to aim and dim, by name (`*` and `?`); left out, all that move. One that does not move is only dimmed "
-     "(only with kind `aim`, as all keys below)"},
+     "fixtures to aim and dim, by name (`*` and `?`); left out, all that move. One that does not move is only "
+     "dimmed; one with emitters is one light, its emitters at one level (only with kind `aim`, as all keys below)"},
     {"task", "key", text, "", kNone, kAny, "", "the fixture that is the key light"},
     {"task",
      "min_key_to_fill",

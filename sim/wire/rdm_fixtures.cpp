@@ -20,13 +20,17 @@ RdmSlot slot_of(SlotUse use, std::size_t offset) {
       return {0, 0x0101};
     case SlotUse::tilt:
       return {0, 0x0102};
+    case SlotUse::zoom:
+      return {0, 0x0405};
     case SlotUse::dimmer_fine:
     case SlotUse::pan_fine:
     case SlotUse::tilt_fine:
+    case SlotUse::zoom_fine:
       return {1, before(1)};
     case SlotUse::dimmer_ultra:
     case SlotUse::pan_ultra:
     case SlotUse::tilt_ultra:
+    case SlotUse::zoom_ultra:
       return {1, before(2)};
     default:
       return {0, 0xffff};

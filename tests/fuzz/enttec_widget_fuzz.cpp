@@ -9,6 +9,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace luxrig::sim;
   EnttecWidget widget;
   widget.power_on(Time{});
+  widget.connect([](Time, std::span<const std::uint8_t> packet) {
+    return packet.size() % 2 ? std::vector<std::uint8_t>(packet.begin(), packet.end()) : std::vector<std::uint8_t>{};
+  });
   std::vector<std::uint8_t> said;
   for (std::size_t at = 0; at < size; at += 61) {
     const std::vector<std::uint8_t> piece(data + at, data + std::min(size, at + 61));

@@ -20,6 +20,7 @@ struct BenchOptions {
   std::vector<std::filesystem::path> rigs;    ///< transport: rig files whose scenes are measured too
   std::string method;                         ///< placement scenes: only this one
   std::optional<int> seeds;                   ///< placement: rooms of each scene, instead of 100 (curves: 20)
+  int first_seed = 1;                         ///< placement: of them, so that a long run can be split
   bool bounds = true;                         ///< placement scenes: with certified bounds, which take longest
   std::filesystem::path data_folder;          ///< placement, highlight: what is read from files
   std::string

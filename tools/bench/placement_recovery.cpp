@@ -42,7 +42,7 @@ std::vector<BenchRow> bench_placement_recovery(const BenchOptions& options) {
     const int seeds = options.quick ? 3 : options.seeds.value_or(100);
     std::vector<double> errors, walls, cpus, places_m, fluxes;
     double found = 0;
-    for (int seed = 1; seed <= seeds; ++seed) {
+    for (int seed = options.first_seed; seed < options.first_seed + seeds; ++seed) {
       const auto key = static_cast<std::uint64_t>(seed);
       const auto ready = ReadyCase::make(*make_placement_case(suite.case_name, key), options.threads);
       const PlacementCase& one = (*ready)->of();

@@ -46,13 +46,15 @@ struct DevicesArguments {
 };
 int run_devices(const DevicesArguments& arguments);
 
-/// Devices on the DMX lines behind Art-Net nodes, by RDM.
+/// Devices on the DMX lines behind Art-Net nodes or a USB widget, by RDM.
 struct RdmArguments {
   std::string node;  ///< address, with or without port; empty: all that answer to the broadcast
   std::string broadcast = "255.255.255.255";
   std::optional<int> universe;  ///< Art-Net port address; else all
   double seconds = 3;
   bool rediscover = false;
+  bool usb = false;                         ///< a widget's line instead of nodes
+  std::string usb_serial, usb_port, usbip;  ///< which; any of them is enough to say `usb`
   bool json = false, toml = false;
   std::string uid, parameter, value;
 };

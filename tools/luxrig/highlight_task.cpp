@@ -173,7 +173,7 @@ Result<PlacedReliefLights> find_relief_lights(const ReliefSurroundings& around, 
     light.position_world_m = chosen.lights[l].position_world_m;
     light.aim_world_m = head.aim_world_m;
     light.level = head.setting.level;
-    light.levels = {head.setting.level};
+    light.levels.assign(around.rig.emitters_or_itself(spec.luminaire).size(), head.setting.level);
     found.lights.push_back(std::move(light));
   }
   return found;

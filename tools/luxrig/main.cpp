@@ -37,11 +37,16 @@ void add_rdm(CLI::App& command, RdmArguments& rdm, int& code) {
     one.add_option("--node", rdm.node, "ask this node only (IPv4 address, with or without :port)");
     one.add_option("--broadcast", rdm.broadcast, "where nodes are asked: the lighting network's")
         ->capture_default_str();
-    one.add_option("--universe", rdm.universe, "only this Art-Net port address")->check(CLI::Range(0, 32767));
+    one.add_option("--universe", rdm.universe, "only this Art-Net port address; of a widget, what its line is called")
+        ->check(CLI::Range(0, 32767));
     one.add_option("--seconds", rdm.seconds, "how long to wait for the nodes' tables of devices")
         ->capture_default_str()
         ->check(CLI::Range(0.1, 600.0));
     one.add_flag("--rediscover", rdm.rediscover, "have the nodes search their lines anew");
+    one.add_flag("--usb", rdm.usb, "on the line of an ENTTEC DMX USB Pro, which puts out no levels meanwhile");
+    one.add_option("--usb-serial", rdm.usb_serial, "of the widget with this serial number");
+    one.add_option("--usb-port", rdm.usb_port, "of the widget that is plugged in there, such as 1-1.4");
+    one.add_option("--usbip", rdm.usbip, "of a widget behind this USB/IP server, such as a simulated one (IPv4:port)");
     one.add_flag("--json", rdm.json, "print JSON");
   };
   auto* list = command.add_subcommand("list", "a table of all devices");
@@ -175,8 +180,9 @@ int main(int argc, char** argv) {
   command->callback([&] { code = run_devices(devices); });
 
   RdmArguments rdm;
-  add_rdm(*app.add_subcommand("rdm", "devices behind Art-Net nodes: list them, read and set their parameters"), rdm,
-          code);
+  add_rdm(*app.add_subcommand("rdm",
+                              "devices behind Art-Net nodes or a USB widget: list them, read and set their parameters"),
+          rdm, code);
 
   ClientArguments client;
   std::filesystem::path plan;
@@ -230,6 +236,10 @@ int main(int argc, char** argv) {
   command->add_option("--rig", bench.rigs, "transport: measure this rig's scene too");
   command->add_option("--method", bench.method, "placement: only this method on scenes");
   command->add_option("--seeds", bench.seeds, "placement: rooms of each scene (default 100; for curves 20)")
+      ->check(CLI::Range(1, 10000));
+  command
+      ->add_option("--first-seed", bench.first_seed,
+                   "placement: the first of those rooms, so that a long run can be split")
       ->check(CLI::Range(1, 10000));
   command->add_flag("!--no-bounds", bench.bounds, "placement: without certified bounds");
   command->add_option("--data", bench.data_folder,

@@ -1,10 +1,15 @@
 #include "tools/luxrig/rdm_bus.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <thread>
 
 #include "drivers/dmx/artnet/artnet_controller.h"
+#include "drivers/dmx/enttec_pro/widget_rdm.h"
+#include "drivers/dmx/usb/ftdi.h"
+#include "drivers/dmx/usb/usb_dmx_driver.h"
 #include "drivers/io/host_id.h"
 #include "drivers/io/udp.h"
 #include "tools/luxrigd/clock.h"
@@ -41,14 +46,55 @@ Result<RdmBus> RdmBus::find(const RdmSearch& search) {
   settings.broadcast = true;
   bus.channel_ = make_udp(std::move(settings));
   if (auto opened = bus.channel_->open(); !opened) return tl::unexpected(opened.error());
-  if (auto found = bus.find_nodes(search); !found) return tl::unexpected(found.error());
-  if (auto read = bus.read_tables(search); !read) return tl::unexpected(read.error());
+  auto lines = bus.find_nodes(search);
+  if (!lines) return tl::unexpected(lines.error());
+  if (auto read = bus.read_tables(search, *lines); !read) return tl::unexpected(read.error());
+  for (NodeLine& line : *lines) {
+    RdmUniverse universe;
+    universe.node = std::move(line.node);
+    universe.universe = line.link->port_address();
+    const artnet::TableOfDevices& table = line.link->table();
+    universe.uids = table.uids;
+    universe.complete = table.complete || !table.heard;
+    universe.link = std::move(line.link);
+    universe.client = std::make_unique<rdm::Client>(*universe.link, controller_uid());
+    bus.universes_.push_back(std::move(universe));
+  }
   return bus;
 }
 
-Result<void> RdmBus::find_nodes(const RdmSearch& search) {
+Result<RdmBus> RdmBus::find(const RdmWidgetSearch& search) {
+  UsbSearch wanted;
+  wanted.what = "ENTTEC DMX USB Pro";
+  wanted.kinds = {{ftdi::kVendor, ftdi::kFt232}};
+  wanted.serial = search.serial;
+  wanted.port = search.port;
+  auto line = std::make_unique<enttec::WidgetRdm>(make_usb_channel(std::move(wanted), search.server), controller_uid());
+  if (auto opened = line->open(); !opened) return tl::unexpected(opened.error());
+  const auto found = rdm::discover(*line);
+  if (!found) return tl::unexpected(found.error());
+  if (found->found.empty() && line->may_lack_rdm()) {
+    return refusal(
+        fmt::format("nobody answers on the line of {}, whose firmware {}.{} may be the one without RDM: load "
+                    "firmware 2 with ENTTEC's utility",
+                    line->where(), line->firmware() >> 8, line->firmware() & 0xff));
+  }
+  RdmBus bus;
+  bus.nodes_ = 1;
+  RdmUniverse universe;
+  universe.node = line->where();
+  universe.universe = search.universe;
+  universe.uids.insert(found->found.begin(), found->found.end());
+  universe.complete = found->complete;
+  universe.link = std::move(line);
+  universe.client = std::make_unique<rdm::Client>(*universe.link, controller_uid());
+  bus.universes_.push_back(std::move(universe));
+  return bus;
+}
+
+Result<std::vector<RdmBus::NodeLine>> RdmBus::find_nodes(const RdmSearch& search) {
   artnet::Controller controller{{}};
-  if (auto sent = channel_->send(search.poll_to, artnet::encode_poll()); !sent) return sent;
+  if (auto sent = channel_->send(search.poll_to, artnet::encode_poll()); !sent) return tl::unexpected(sent.error());
   Time end = now() + kNodesAnswer;
   while (now() < end) {
     while (channel_->take_error()) {
@@ -60,46 +106,43 @@ Result<void> RdmBus::find_nodes(const RdmSearch& search) {
     std::this_thread::sleep_for(kRdmStep);
   }
   nodes_ = controller.nodes().size();
+  std::vector<NodeLine> lines;
   for (const auto& [address, node] : controller.nodes()) {
     for (const auto& [bind_index, outputs] : node.outputs) {
       for (const artnet::PortOutput& output : outputs) {
         if (search.universe && *search.universe != output.port_address) continue;
-        RdmUniverse universe;
-        universe.node = node.name;
-        universe.link = std::make_unique<artnet::ArtnetRdmLink>(*channel_, address, output.port_address);
-        universe.client = std::make_unique<rdm::Client>(*universe.link, controller_uid());
-        universes_.push_back(std::move(universe));
+        lines.push_back({node.name, std::make_unique<artnet::ArtnetRdmLink>(*channel_, address, output.port_address)});
       }
     }
   }
-  return {};
+  return lines;
 }
 
-Result<void> RdmBus::read_tables(const RdmSearch& search) {
+Result<void> RdmBus::read_tables(const RdmSearch& search, std::span<const NodeLine> lines) {
   const Time start = now();
   if (search.rediscover) {
-    for (const RdmUniverse& universe : universes_) {
-      if (auto sent = universe.link->flush_table(); !sent) return sent;
+    for (const NodeLine& line : lines) {
+      if (auto sent = line.link->flush_table(); !sent) return sent;
     }
   }
   Time ask_at = search.rediscover ? start + kSearchTakes : start;
   // What was told before the search was over does not count.
   const Time not_before = search.rediscover ? ask_at + kPagesFollow : start;
   const Time end = ask_at + from_seconds(search.seconds);
-  const auto known = [](const RdmUniverse& universe) { return universe.link->table().complete; };
-  while (now() < end && (now() < not_before || !std::all_of(universes_.begin(), universes_.end(), known))) {
+  const auto known = [](const NodeLine& line) { return line.link->table().complete; };
+  while (now() < end && (now() < not_before || !std::all_of(lines.begin(), lines.end(), known))) {
     if (now() >= ask_at) {
       ask_at = now() + kAskTableEvery;
-      for (const RdmUniverse& universe : universes_) {
-        if (known(universe) && !search.rediscover) continue;
-        if (auto sent = universe.link->ask_table(); !sent) return sent;
+      for (const NodeLine& line : lines) {
+        if (known(line) && !search.rediscover) continue;
+        if (auto sent = line.link->ask_table(); !sent) return sent;
       }
     }
     while (channel_->take_error()) {
     }
     while (const auto datagram = channel_->receive()) {
-      for (const RdmUniverse& universe : universes_) {
-        if (universe.link->hear(*datagram)) break;
+      for (const NodeLine& line : lines) {
+        if (line.link->hear(*datagram)) break;
       }
     }
     std::this_thread::sleep_for(kRdmStep);
@@ -108,9 +151,8 @@ Result<void> RdmBus::read_tables(const RdmSearch& search) {
 }
 
 const RdmUniverse* RdmBus::line_of(const rdm::Uid& uid) const {
-  const auto found = std::find_if(universes_.begin(), universes_.end(), [&uid](const RdmUniverse& universe) {
-    return universe.link->table().uids.contains(uid);
-  });
+  const auto found = std::find_if(universes_.begin(), universes_.end(),
+                                  [&uid](const RdmUniverse& universe) { return universe.uids.contains(uid); });
   return found == universes_.end() ? nullptr : &*found;
 }
 

@@ -1,13 +1,16 @@
 #pragma once
-/// The DMX lines that can be reached by RDM, behind Art-Net nodes. Waits in real time.
+/// The DMX lines that can be reached by RDM, behind Art-Net nodes or a USB widget. Waits in real time.
 
 #include <memory>
 #include <optional>
+#include <set>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "drivers/dmx/artnet/artnet_rdm.h"
 #include "drivers/dmx/rdm/rdm_client.h"
+#include "drivers/registry.h"
 
 namespace luxrig {
 
@@ -19,19 +22,31 @@ struct RdmSearch {
   bool rediscover = false;      ///< have the nodes search their lines anew
 };
 
+/// A widget that is plugged in, or (with a server) stands behind USB/IP.
+struct RdmWidgetSearch {
+  std::string serial, port;  ///< as UsbSearch has them; empty: any
+  std::optional<Redirect> server;
+  int universe = 1;  ///< what its line is called
+};
+
 /// One line, and what its node says is on it.
 struct RdmUniverse {
   std::string node;  ///< its name
-  std::unique_ptr<artnet::ArtnetRdmLink> link;
+  int universe = 0;
+  std::unique_ptr<rdm::RdmLink> link;
   std::unique_ptr<rdm::Client> client;
+  std::set<rdm::Uid> uids;  ///< who is on it
+  bool complete = true;     ///< else there may be more
 };
 
 class RdmBus {
  public:
   /// Fault system or network when there is no port to be had; no node, no device is no fault.
   static Result<RdmBus> find(const RdmSearch& search);
+  /// Searches the line of a widget. Faults as WidgetRdm::open.
+  static Result<RdmBus> find(const RdmWidgetSearch& search);
 
-  [[nodiscard]] std::size_t nodes() const { return nodes_; }
+  [[nodiscard]] std::size_t nodes() const { return nodes_; }  ///< or widgets
   [[nodiscard]] const std::vector<RdmUniverse>& universes() const { return universes_; }
   /// The line on which this device is; null: on none.
   [[nodiscard]] const RdmUniverse* line_of(const rdm::Uid& uid) const;
@@ -39,8 +54,12 @@ class RdmBus {
   [[nodiscard]] static Result<std::vector<std::uint8_t>> ask(const RdmUniverse& universe, const rdm::Request& request);
 
  private:
-  Result<void> find_nodes(const RdmSearch& search);
-  Result<void> read_tables(const RdmSearch& search);
+  struct NodeLine {
+    std::string node;
+    std::unique_ptr<artnet::ArtnetRdmLink> link;
+  };
+  Result<std::vector<NodeLine>> find_nodes(const RdmSearch& search);
+  Result<void> read_tables(const RdmSearch& search, std::span<const NodeLine> lines);
 
   std::unique_ptr<DatagramChannel> channel_;
   std::vector<RdmUniverse> universes_;

@@ -1,4 +1,4 @@
-// rdm: which devices are behind Art-Net nodes, how they are set, and setting them.
+// rdm: which devices are behind Art-Net nodes or a USB widget, how they are set, and setting them.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "drivers/dmx/artnet/artnet_codec.h"
+#include "drivers/usb/usb_search.h"
 #include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
 #include "tools/luxrig/rdm_bus.h"
@@ -46,8 +47,33 @@ std::optional<SocketAddress> address_of(const std::string& text) {
 
 std::string text_of_json(const Json& value) { return value.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
+/// Searches the line of a widget; says what is wrong and returns nothing when an argument is.
+std::optional<Result<RdmBus>> find_widget(const RdmArguments& arguments) {
+  RdmWidgetSearch search{arguments.usb_serial, arguments.usb_port, std::nullopt, arguments.universe.value_or(1)};
+  if (!arguments.node.empty()) {
+    refuse_input("--node and a USB widget are two places to ask: give one of them");
+    return std::nullopt;
+  }
+  if (!search.port.empty() && !is_port_path(search.port)) {
+    refuse_input(
+        fmt::format("--usb-port {} is no USB port: write it as `ls /sys/bus/usb/devices` shows it", search.port));
+    return std::nullopt;
+  }
+  if (!arguments.usbip.empty()) {
+    const auto server = address_of(arguments.usbip);
+    if (!server || arguments.usbip.find(':') == std::string::npos) {
+      refuse_input(fmt::format("--usbip {} is no IPv4 address with a port: such as 127.0.0.1:3240", arguments.usbip));
+      return std::nullopt;
+    }
+    search.server = Redirect{text_of(server->ipv4), server->port};
+  }
+  return RdmBus::find(search);
+}
+
 /// Looks for nodes and tables; says what is wrong and returns nothing when an argument is.
 std::optional<Result<RdmBus>> find_bus(const RdmArguments& arguments) {
+  if (arguments.usb || !arguments.usb_serial.empty() || !arguments.usb_port.empty() || !arguments.usbip.empty())
+    return find_widget(arguments);
   const std::string& where = arguments.node.empty() ? arguments.broadcast : arguments.node;
   const auto address = address_of(where);
   if (!address) {
@@ -116,7 +142,7 @@ const RdmUniverse* line_with(const RdmBus& bus, const rdm::Uid& uid) {
   const RdmUniverse* line = bus.line_of(uid);
   if (line != nullptr) return line;
   std::size_t others = 0;
-  for (const RdmUniverse& universe : bus.universes()) others += universe.link->table().uids.size();
+  for (const RdmUniverse& universe : bus.universes()) others += universe.uids.size();
   fmt::print(stderr, "luxrig: {} is on no line: {} nodes answer, with {} other devices; --rediscover searches anew\n",
              text_of(uid), bus.nodes(), others);
   return nullptr;
@@ -177,12 +203,11 @@ int run_rdm_list(const RdmArguments& arguments) {
       {"UID", "manufacturer", "model", "label", ">universe", ">address", ">footprint", "personality", "sensors"});
   bool failed = false;
   for (const RdmUniverse& universe : bus.universes()) {
-    const artnet::TableOfDevices& known = universe.link->table();
-    if (known.heard && !known.complete) {
+    if (!universe.complete) {
       fmt::print(stderr, "universe {} of {}: its table of devices is not complete: --seconds {:.0f} waits longer\n",
-                 universe.link->port_address(), universe.node, 2 * arguments.seconds);
+                 universe.universe, universe.node, 2 * arguments.seconds);
     }
-    for (const rdm::Uid& uid : known.uids) {
+    for (const rdm::Uid& uid : universe.uids) {
       const rdm::Ask ask = [&universe](const rdm::Request& request) { return RdmBus::ask(universe, request); };
       auto profile = rdm::read_profile(ask, uid);
       if (!profile) {
@@ -190,7 +215,7 @@ int run_rdm_list(const RdmArguments& arguments) {
         report(profile.error());
         continue;
       }
-      devices.push_back({universe.link->port_address(), std::move(*profile)});
+      devices.push_back({universe.universe, std::move(*profile)});
       table.row(row_of(devices.back()));
       all.push_back(json_of(devices.back(), universe.node));
     }

@@ -38,6 +38,7 @@ std::vector<std::string> slot_names(const rdm::DeviceProfile& profile) {
     const std::string use = slot.label == rdm::kIntensitySlot ? "dimmer"
                             : slot.label == rdm::kPanSlot     ? "pan"
                             : slot.label == rdm::kTiltSlot    ? "tilt"
+                            : slot.label == rdm::kZoomSlot    ? "zoom"
                                                               : "";
     if (use.empty() || !taken.insert(use).second) continue;  // of several the first
     uses[slot.offset] = names[static_cast<std::size_t>(slot.offset)] = use;

@@ -117,9 +117,10 @@ Result<void> TaskSolver::highlight(const Task& task) {
   const Index before = level_.size();
   if (auto hung = hang(task, spec.luminaire, found->lights); !hung) return hung;
   std::vector<bool> sought(rig_.fixtures.size(), false);
-  for (std::size_t l = 0; l < found->lights.size(); ++l) {
+  const std::size_t emitters = rig_.emitters_or_itself(spec.luminaire).size();
+  for (std::size_t l = 0; l < emitters * found->lights.size(); ++l) {
     sought[static_cast<std::size_t>(before) + l] = true;
-    level_[before + static_cast<Index>(l)] = found->lights[l].level;
+    level_[before + static_cast<Index>(l)] = found->lights[l / emitters].level;
   }
   const ReliefSurroundings around{
       rig_, session_.scene, *session_.rays, levels(), std::move(sought), dark->point_lux, dark->max_watts};

@@ -9,7 +9,6 @@ using std::chrono::milliseconds;
 constexpr Duration kIdentifyWithin = milliseconds(200);
 constexpr Duration kAskEvery = milliseconds(250), kRepeatEvery = milliseconds(900);
 constexpr Duration kPauseWithin = milliseconds(100);  // a message; a widget sends it in one go
-constexpr std::size_t kMostMessages = 64;
 
 void append(std::vector<std::uint8_t>& to, const std::vector<std::uint8_t>& bytes) {
   to.insert(to.end(), bytes.begin(), bytes.end());
@@ -73,9 +72,7 @@ void WidgetSession::understand(Time now, const Message& message) {
       device_known_ = true;
       break;
     default:
-      messages_.push_back(message);
-      if (messages_.size() > kMostMessages) messages_.pop_front();
-      return;
+      return;  // nobody asked for it
   }
   go_live_if_ready(now);
 }
@@ -112,14 +109,5 @@ std::vector<std::uint8_t> WidgetSession::unsent(const DmxSlots& slots) {
 }
 
 bool WidgetSession::is_overdue(Time now) const { return asking_ && now - asked_ > kAnswerWithin; }
-
-void WidgetSession::ask(Label label, std::vector<std::uint8_t> data) { append(queued_, encode(label, data)); }
-
-std::optional<Message> WidgetSession::take_message() {
-  if (messages_.empty()) return std::nullopt;
-  Message message = std::move(messages_.front());
-  messages_.pop_front();
-  return message;
-}
 
 }  // namespace luxrig::enttec

@@ -5,7 +5,6 @@
 /// that is never asked again. Then it is live: levels when they change, at most `rate_hz` times a second, and every
 /// 0.9 s; parameters four times a second, to see that the widget is there, as label 6 has no answer.
 
-#include <deque>
 #include <optional>
 #include <string>
 #include <vector>
@@ -42,11 +41,6 @@ class WidgetSession {
   [[nodiscard]] std::uint64_t answers() const { return answers_; }
   [[nodiscard]] std::uint64_t dropped_bytes() const { return decoder_.dropped(); }
 
-  /// For RDM (labels 7 and 11, answers 5 and 12): sent with the next due(); the widget's own output stops until then.
-  void ask(Label label, std::vector<std::uint8_t> data);
-  /// What the widget said that the session itself did not ask for, oldest first; the last 64.
-  [[nodiscard]] std::optional<Message> take_message();
-
   static constexpr Duration kAnswerWithin = std::chrono::milliseconds(500);
 
  private:
@@ -64,7 +58,6 @@ class WidgetSession {
   std::optional<DmxSlots> sent_;
   Time sent_at_{};
   std::vector<std::uint8_t> queued_;
-  std::deque<Message> messages_;
 };
 
 }  // namespace luxrig::enttec

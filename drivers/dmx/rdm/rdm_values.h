@@ -90,7 +90,7 @@ struct SlotInfo {
   std::uint16_t label = 0;  ///< primary: 0x0001 intensity, 0x0101 pan …; else the offset of the slot it belongs to
 };
 [[nodiscard]] std::optional<std::vector<SlotInfo>> decode_slot_info(std::span<const std::uint8_t> data);
-inline constexpr std::uint16_t kIntensitySlot = 0x0001, kPanSlot = 0x0101, kTiltSlot = 0x0102;
+inline constexpr std::uint16_t kIntensitySlot = 0x0001, kPanSlot = 0x0101, kTiltSlot = 0x0102, kZoomSlot = 0x0405;
 
 struct FailMode {
   int scene = 0;            ///< 0: hold the last look

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::uint8_t kSom = 0x7e, kEom = 0xe7;
 constexpr std::size_t kLongest = 600, kMostSaid = 4096;
-constexpr std::uint8_t kFirmware[] = {0x44, 0x01};  // 1.68
+constexpr std::uint8_t kFirmware[] = {0x44, 0x01}, kRdmFirmware[] = {0x04, 0x02};  // 1.68, 2.4
 constexpr std::uint8_t kSerialBcd[] = {0x12, 0x34, 0x56, 0x02};
 
 std::vector<std::uint8_t> named(std::uint16_t id, std::string_view name) {
@@ -26,7 +26,7 @@ void EnttecWidget::power_on(Time) {
   putting_out_ = false;
 }
 
-void EnttecWidget::receive(Time, Duration, const LineSettings&, std::span<const std::uint8_t> bytes) {
+void EnttecWidget::receive(Time start, Duration, const LineSettings&, std::span<const std::uint8_t> bytes) {
   heard_.insert(heard_.end(), bytes.begin(), bytes.end());
   std::size_t at = 0;
   const auto skip = [&] {
@@ -50,20 +50,21 @@ void EnttecWidget::receive(Time, Duration, const LineSettings&, std::span<const 
       skip();
       continue;
     }
-    obey(rest[1], rest.subspan(4, length));
+    obey(start, rest[1], rest.subspan(4, length));
     at += 4 + length + 1;
   }
   heard_.erase(heard_.begin(), heard_.begin() + static_cast<std::ptrdiff_t>(at));
 }
 
-void EnttecWidget::obey(std::uint8_t label, std::span<const std::uint8_t> data) {
+void EnttecWidget::obey(Time now, std::uint8_t label, std::span<const std::uint8_t> data) {
   if (label != 6 && label != 3 && putting_out_) {
     putting_out_ = false;
     ++stops_;
   }
   switch (label) {
     case 3: {
-      const std::uint8_t parameters[] = {kFirmware[0], kFirmware[1], static_cast<std::uint8_t>(break_units_),
+      const auto& firmware = line_answer_ ? kRdmFirmware : kFirmware;
+      const std::uint8_t parameters[] = {firmware[0], firmware[1], static_cast<std::uint8_t>(break_units_),
                                          static_cast<std::uint8_t>(mark_units_), static_cast<std::uint8_t>(rate_hz_)};
       return answer(3, parameters);
     }
@@ -83,6 +84,9 @@ void EnttecWidget::obey(std::uint8_t label, std::span<const std::uint8_t> data) 
       ++frames_;
       return;
     }
+    case 7:
+    case 11:
+      return ask_line(now, data);
     case 10:
       return answer(10, kSerialBcd);
     case 77:
@@ -94,6 +98,15 @@ void EnttecWidget::obey(std::uint8_t label, std::span<const std::uint8_t> data) 
     default:
       return;
   }
+}
+
+void EnttecWidget::ask_line(Time now, std::span<const std::uint8_t> packet) {
+  if (!line_answer_) return;
+  const std::vector<std::uint8_t> heard = line_answer_(now, packet);
+  if (heard.empty()) return answer(12, {});
+  std::vector<std::uint8_t> received{0};  // nothing of it was lost
+  received.insert(received.end(), heard.begin(), heard.end());
+  answer(5, received);
 }
 
 void EnttecWidget::answer(std::uint8_t label, std::span<const std::uint8_t> data) {

@@ -23,6 +23,8 @@ class EnttecWidget final : public SerialPeer {
   EnttecWidget() = default;
   explicit EnttecWidget(Character character) : character_(std::move(character)) {}
   void set_character(Character character) { character_ = std::move(character); }
+  /// Its firmware is the one with RDM from now on: labels 7 and 11, answered by 5 or, after silence, 12.
+  void connect(UsbDevice::LineAnswer answer) { line_answer_ = std::move(answer); }
 
   void power_on(Time now) override;
   void receive(Time start, Duration slot, const LineSettings& settings, std::span<const std::uint8_t> bytes) override;
@@ -38,10 +40,12 @@ class EnttecWidget final : public SerialPeer {
   [[nodiscard]] int rate_hz() const { return rate_hz_; }
 
  private:
-  void obey(std::uint8_t label, std::span<const std::uint8_t> data);
+  void obey(Time now, std::uint8_t label, std::span<const std::uint8_t> data);
+  void ask_line(Time now, std::span<const std::uint8_t> packet);
   void answer(std::uint8_t label, std::span<const std::uint8_t> data);
 
   Character character_;
+  UsbDevice::LineAnswer line_answer_;
   std::vector<std::uint8_t> heard_;
   std::deque<std::uint8_t> said_;
   std::optional<UsbDmxLook> look_;

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -52,6 +53,11 @@ class UsbDevice {
   /// `endpoint` with its direction bit.
   virtual UsbReply bulk_out(Time, int, std::span<const std::uint8_t>) { return {UsbReply::Kind::stall, {}, 0, {}}; }
   virtual UsbReply bulk_in(Time, int, std::size_t) { return {UsbReply::Kind::stall, {}, 0, {}}; }
+
+  /// Devices that answer on its DMX line: a packet goes out at `now`, from its start code on, and what comes back is
+  /// returned, empty for silence. Nothing happens in a device that cannot listen to its line.
+  using LineAnswer = std::function<std::vector<std::uint8_t>(Time now, std::span<const std::uint8_t> packet)>;
+  virtual void connect(LineAnswer) {}
 
   /// Plugged in: everything that was only in its memory is forgotten.
   virtual void power_on(Time now) = 0;

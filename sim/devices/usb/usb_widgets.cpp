@@ -18,6 +18,9 @@ class ChipWithPeer final : public UsbDevice {
   }
   UsbReply bulk_in(Time now, int endpoint, std::size_t length) override { return chip_.bulk_in(now, endpoint, length); }
   void power_on(Time now) override { chip_.power_on(now); }
+  void connect(LineAnswer answer) override {
+    if constexpr (requires { peer_.connect(answer); }) peer_.connect(std::move(answer));
+  }
   [[nodiscard]] std::optional<UsbDmxLook> line(Time now) override { return chip_.line(now); }
 
  private:

@@ -8,6 +8,7 @@
 #include "sim/devices/usb/usb_widgets.h"
 #include "sim/wire/bus_endpoint.h"
 #include "sim/wire/dmx_fixtures.h"
+#include "sim/wire/rdm_fixtures.h"
 #include "sim/wire/sockets.h"
 #include "sim/wire/usb/usbip_session.h"
 
@@ -18,7 +19,17 @@ namespace {
 class UsbEndpoint final : public BusEndpoint {
  public:
   UsbEndpoint(const EndpointParts& parts, std::unique_ptr<UsbDevice> device, BoundSocket listener)
-      : parts_(parts), device_(std::move(device)), listener_(std::move(listener)), port_(listener_.port) {}
+      : parts_(parts),
+        device_(std::move(device)),
+        fixtures_(parts.rig, parts.bus, parts.world, parts.faults),
+        listener_(std::move(listener)),
+        port_(listener_.port) {
+    // One widget is one line, whatever the number of its universe.
+    device_->connect([this](Time now, std::span<const std::uint8_t> packet) {
+      auto& lines = fixtures_.lines();
+      return lines.empty() ? std::vector<std::uint8_t>{} : lines.begin()->second.exchange(now, packet).bytes;
+    });
+  }
 
   [[nodiscard]] int port() const override { return port_; }
 
@@ -45,8 +56,10 @@ class UsbEndpoint final : public BusEndpoint {
     send();
     if (session_ && session_->begun() == before) return;
     ++frames_;
-    // One widget is one universe, whatever its number.
-    obey_dmx(parts_, frames_, [&](int) { return device_->line(now); });
+    fixtures_.shine(now);
+    obey_dmx(
+        parts_, frames_, [&](int) { return device_->line(now); },
+        [this](std::size_t fixture) { return fixtures_.moved_by(fixture); });
   }
 
   void descriptors(std::vector<int>& into) const override {
@@ -99,6 +112,7 @@ class UsbEndpoint final : public BusEndpoint {
 
   EndpointParts parts_;
   std::unique_ptr<UsbDevice> device_;
+  RdmFixtures fixtures_;
   BoundSocket listener_;
   int port_;
   Descriptor client_;

@@ -155,6 +155,66 @@ TEST(Highlight, SaysWhatAnObjectLacks) {
   EXPECT_NE(ran.output.find("object \"slab\": the target"), std::string::npos) << ran.output;
 }
 
+TEST(Aim, HeadsWithEmittersAreOneLightThatZooms) {
+  const Folder folder;
+  const std::string rig = rig_with_a_well(folder, R"([[luminaire]]
+name = "wash"
+model = "spot"
+beam_angle_deg = 40
+field_angle_deg = 70
+zoom_deg = [5, 50]
+emitters = [{ name = "warm", lumens = 600, watts = 8, cct_k = 2700 }, { name = "cold", lumens = 300, watts = 4 }]
+[[bus]]
+name = "dmx"
+driver = "sacn"
+[[fixture]]
+name = "left"
+luminaire = "wash"
+position_m = [-1.5, 0, 2.5]
+aim_m = [-0.5, 0, 1]
+bus = "dmx"
+address = 1
+slots = ["pan", "tilt", "zoom", "emitter:warm", "emitter:cold"]
+[[fixture]]
+name = "right"
+luminaire = "wash"
+position_m = [1.5, 0.3, 2.5]
+aim_m = [0.5, 0, 1]
+bus = "dmx"
+address = 11
+slots = ["pan", "tilt", "zoom", "emitter:warm", "emitter:cold"]
+zoom_inverted = true
+[[task]]
+name = "look"
+kind = "aim"
+object = "slab"
+key = "left"
+heads = ["left", "rig*"]
+contrast = "lux"
+)");
+  const json plan = solved(rig, folder / "plan.json");
+  const json& task = plan["tasks"][0];
+  ASSERT_EQ(task["lights"].size(), 4u) << task;
+  EXPECT_GT(task["relative_contrast"].get<double>(), 0);
+  bool narrowed = false;
+  for (std::size_t head = 0; head < 4; head += 2) {
+    const json &warm = task["lights"][head], &cold = task["lights"][head + 1];
+    for (const char* key : {"level", "pan_deg", "tilt_deg", "beam_angle_deg"}) EXPECT_EQ(warm[key], cold[key]) << key;
+    const double beam_deg = warm["beam_angle_deg"].get<double>();
+    EXPECT_GE(beam_deg, 5 - 1e-9);
+    EXPECT_LE(beam_deg, 50 + 1e-9);
+    narrowed = narrowed || (warm["level"].get<double>() > 0 && beam_deg < 20);
+    EXPECT_NEAR(warm["lumens"].get<double>(), 2 * cold["lumens"].get<double>(), 1e-6);
+  }
+  // Contrast in lux over a well of 0.3 m: the flux of a narrow beam counts.
+  EXPECT_TRUE(narrowed) << task["lights"];
+  const Ran lit = luxrig::testing::run(
+      {program("luxrig"), "evaluate", rig, "--levels", (folder / "plan.json").string(), "--model", "direct", "--json"});
+  ASSERT_EQ(lit.code, 0) << lit.output;
+  const json seen = json::parse(lit.output.substr(lit.output.find("{\n")), nullptr, false);
+  EXPECT_NEAR(seen["points"][0]["lux"].get<double>(), plan["points"][0]["lux"].get<double>(), 1e-3);
+}
+
 TEST(Aim, AnAppliedPlanTurnsAHeadInTheDarkAndTheRigHoldsIt) {
   LiveRig rig(source("tests/rigs/room"));
   ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();

@@ -123,20 +123,5 @@ TEST(WidgetSession, BeforeLeavingOnlyWhatHasNotBeenSent) {
   EXPECT_EQ(labels_in(c.session.unsent(c.slots)), std::vector<int>{6});
 }
 
-TEST(WidgetSession, OtherQuestionsAreFollowedByTheLevelsAndTheirAnswersKept) {
-  Conversation c;
-  (void)c.due(0);
-  c.session.receive(at_ms(1), kParameters);
-  c.session.receive(at_ms(1), kOthers);
-  EXPECT_EQ(c.due(2), std::vector<int>{6});
-  c.session.ask(Label::send_rdm, from_hex("cc 01"));
-  EXPECT_EQ(c.due(40), (std::vector<int>{7, 6}));
-  c.session.receive(at_ms(45), from_hex("7e 05 03 00 00 cc 01 e7"));
-  const auto message = c.session.take_message();
-  ASSERT_TRUE(message);
-  EXPECT_EQ(message->data, from_hex("00 cc 01"));
-  EXPECT_FALSE(c.session.take_message());
-}
-
 }  // namespace
 }  // namespace luxrig::enttec

@@ -51,6 +51,21 @@ TEST(EnttecWidget, RepeatsItsLastPacketUntilAnotherRequestThanThreeOrSix) {
   EXPECT_EQ(widget.stops(), 1u);
 }
 
+TEST(EnttecWidget, AsksItsLineWhenItsFirmwareHasRdm) {
+  EnttecWidget widget;
+  EXPECT_TRUE(widget_said(widget, "7e 07 02 00 cc 01 e7").empty()) << "firmware 1 has no RDM";
+  WidgetBytes asked;
+  widget.connect([&](Time, std::span<const std::uint8_t> packet) {
+    asked.assign(packet.begin(), packet.end());
+    return asked.size() == 2 ? from_hex("cc 02 03") : WidgetBytes{};
+  });
+  EXPECT_EQ(widget_said(widget, "7e 03 02 00 00 00 e7"), from_hex("7e 03 05 00 04 02 09 01 28 e7"));
+  // A status byte, then what came from the line; silence is label 12.
+  EXPECT_EQ(widget_said(widget, "7e 07 02 00 cc 01 e7"), from_hex("7e 05 04 00 00 cc 02 03 e7"));
+  EXPECT_EQ(asked, from_hex("cc 01"));
+  EXPECT_EQ(widget_said(widget, "7e 0b 03 00 cc 01 18 e7"), from_hex("7e 0c 00 00 e7"));
+}
+
 TEST(EnttecWidget, IgnoresPacketsThatAreTooShortOrOfAnotherStartCode) {
   EnttecWidget widget;
   (void)widget_said(widget, "7e 06 04 00 00 0a 14 1e e7");
