@@ -54,7 +54,8 @@ double pane_transmittance(double at_normal, double cosine) {
                along = (glass.index * cosine - inside) / (glass.index * cosine + inside);
   const double left = glass.passage < 1 ? std::pow(glass.passage, 1 / inside) : 1.0;
   double sum = 0;
-  for (const double r : {across * across, along * along}) sum += (1 - r) * (1 - r) * left / (1 - r * r * left * left);
+  for (const double r : {across * across, along * along})
+    if (r < 1) sum += (1 - r) * (1 - r) * left / (1 - r * r * left * left);
   return std::min(sum / 2, 1.0);
 }
 
