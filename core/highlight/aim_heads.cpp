@@ -8,9 +8,13 @@
 
 #include "core/check.h"
 #include "core/highlight/aim_heads_state.h"
+#include "core/parallel.h"
+#include "core/photometry/beam.h"
 
 namespace luxrig {
 namespace {
+
+constexpr double kBeamShare = 0.9;  ///< of the flux, in what counts as the beam (thesis §6.5)
 
 bool is_finite_pose(const Pose& pose) { return pose.rotation.allFinite() && pose.translation_m.allFinite(); }
 
@@ -145,6 +149,26 @@ void brighten(const HeadAims::State& state, std::vector<HeadSetting>& settings) 
     settings[k].level = std::min(factor * settings[k].level, state.heads[k].max_level);
 }
 
+/// Heads of one kind share their distributions, and each takes a quarter of a million values to know.
+std::vector<std::vector<double>> cones_of(const std::vector<HangingHead>& heads, int threads) {
+  std::vector<const IntensityDistribution*> kinds;
+  for (const HangingHead& head : heads)
+    for (const ZoomStop& stop : head.zoom) kinds.push_back(stop.intensity.get());
+  std::sort(kinds.begin(), kinds.end());
+  kinds.erase(std::unique(kinds.begin(), kinds.end()), kinds.end());
+  std::vector<double> of_kind(kinds.size());
+  parallel_for(kinds.size(), threads, [&](std::size_t k) { of_kind[k] = cone_of_flux_rad(*kinds[k], kBeamShare); });
+  std::vector<std::vector<double>> cones;
+  for (const HangingHead& head : heads) {
+    cones.emplace_back();
+    for (const ZoomStop& stop : head.zoom) {
+      const auto at = std::lower_bound(kinds.begin(), kinds.end(), stop.intensity.get());
+      cones.back().push_back(of_kind[static_cast<std::size_t>(at - kinds.begin())]);
+    }
+  }
+  return cones;
+}
+
 }  // namespace
 
 AimColumn AimJudge::column(const HangingHead& head, std::size_t index, const HeadSetting& setting) const {
@@ -187,6 +211,7 @@ Result<HeadAims> HeadAims::make(const ContrastSamples& samples, const FeatureClu
   auto state = std::make_unique<State>();
   state->heads = std::move(heads);
   state->options = options;
+  state->cone_rad = cones_of(state->heads, options.threads);
   AimJudge& full = state->full;
   full.samples = samples;
   full.features = features;
@@ -233,7 +258,9 @@ Result<AimResult> HeadAims::solve() const {
   const std::size_t count = state.heads.size();
   std::vector<std::vector<Vec3>> first_aims;
   for (std::size_t k = 0; k < count; ++k)
-    first_aims.push_back(voted_aims(state.heads[k], state.full.sights[k], state.full.samples, state.options.most_aims));
+    first_aims.push_back(voted_aims(state.heads[k],
+                                    *std::min_element(state.cone_rad[k].begin(), state.cone_rad[k].end()),
+                                    state.full.sights[k], state.full.samples, state.options.most_aims));
   if (std::all_of(first_aims.begin(), first_aims.end(), [](const std::vector<Vec3>& aims) { return aims.empty(); }))
     return refusal("no head can be turned to anything that it sees of the object: move one, or widen its range");
   SearchedAims found = search_aims(state, first_aims);

@@ -21,6 +21,7 @@ struct AimJudge {
 
 struct HeadAims::State {
   std::vector<HangingHead> heads;
+  std::vector<std::vector<double>> cone_rad;  ///< per head and stop of its zoom: full angle of what counts as its beam
   AimOptions options;
   Vec3 middle_world_m = Vec3::Zero();  ///< of the interest points
   double reference_lx = 0, all_watts = 0;
@@ -31,8 +32,9 @@ struct HeadAims::State {
   [[nodiscard]] AimSum sum(const AimJudge& judge, std::span<const HeadSetting> settings) const;
 };
 
-/// First aims of a head: unit, those with most votes first, the middle of what it sees last; only where it can look.
-[[nodiscard]] std::vector<Vec3> voted_aims(const HangingHead& head, const HeadSight& sight,
+/// First aims of a head whose narrowest beam is that wide: unit, those with most votes first, the middle of what it
+/// sees last; only where it can look.
+[[nodiscard]] std::vector<Vec3> voted_aims(const HangingHead& head, double narrowest_rad, const HeadSight& sight,
                                            const ContrastSamples& samples, std::size_t most);
 
 /// Settings by the search's judge, and how many were tried.

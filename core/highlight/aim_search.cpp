@@ -6,7 +6,6 @@
 
 #include "core/highlight/aim_heads_state.h"
 #include "core/parallel.h"
-#include "core/photometry/beam.h"
 
 namespace luxrig {
 namespace {
@@ -17,7 +16,6 @@ constexpr double kLevelShares[] = {0, 0.05, 0.1, 0.2, 0.35, 0.5, 0.75, 1};
 constexpr double kOthersShares[] = {1, 0.7, 0.4};
 constexpr int kMostSweeps = 12;
 constexpr double kLeastGain = 1e-6;  ///< of the objective
-constexpr double kBeamShare = 0.9;   ///< of the flux, in what counts as the beam (thesis §6.5)
 /// Aims are refined from so much of the beam down to so much.
 constexpr double kFirstStep = 0.25, kLastStep = 0.015;
 constexpr double kWidestStep_rad = rad_from_deg(20);
@@ -207,8 +205,7 @@ class AimSearch {
       ways.push_back(std::move(zoomed));
     }
     if (head.moves) {
-      const double step_rad =
-          std::min(kWidestStep_rad, step_of_beam * cone_of_flux_rad(*head.zoom[was.zoom].intensity, kBeamShare));
+      const double step_rad = std::min(kWidestStep_rad, step_of_beam * state_.cone_rad[k][was.zoom]);
       const Vec3 beam = lamp_pose(head, was.joints).direction({0, 0, -1});
       const auto [x, y] = across(beam);
       for (int side = 0; side < 8; ++side) {
@@ -240,8 +237,8 @@ class AimSearch {
 
 }  // namespace
 
-std::vector<Vec3> voted_aims(const HangingHead& head, const HeadSight& sight, const ContrastSamples& samples,
-                             std::size_t most) {
+std::vector<Vec3> voted_aims(const HangingHead& head, double narrowest_rad, const HeadSight& sight,
+                             const ContrastSamples& samples, std::size_t most) {
   std::vector<Vec3> aims;
   Vec3 middle = Vec3::Zero();
   for (std::size_t i = 0; i < sight.direction.size(); ++i)
@@ -252,9 +249,6 @@ std::vector<Vec3> voted_aims(const HangingHead& head, const HeadSight& sight, co
     aims.push_back(lamp_pose(head, head.present).direction({0, 0, -1}));
     return aims;
   }
-  double narrowest_rad = 2 * kPi;
-  for (const ZoomStop& stop : head.zoom)
-    narrowest_rad = std::min(narrowest_rad, cone_of_flux_rad(*stop.intensity, kBeamShare));
   // Votes gather in squares of half a beam on a plane across the way to the middle.
   const double cell = std::tan(std::clamp(narrowest_rad / 2, rad_from_deg(0.5), rad_from_deg(40)));
   const auto [x, y] = across(middle);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 
 #include "core/highlight/picture_contrast.h"
@@ -68,23 +69,30 @@ std::vector<double> staying_levels(const ReliefSurroundings& around, std::span<c
   return staying;
 }
 
+/// Distributions by luminaire and beam angle: heads of one kind share theirs.
+using BeamsOfLuminaires = std::map<std::pair<const Luminaire*, double>, Intensity>;
+
 /// Its zoom now, then a spread over what it goes through.
-std::vector<ZoomStop> zoom_stops(const Luminaire& luminaire, const Fixture& fixture) {
+std::vector<ZoomStop> zoom_stops(const Luminaire& luminaire, const Fixture& fixture, BeamsOfLuminaires& known) {
+  const auto stop_at = [&](double beam_rad) {
+    Intensity& intensity = known[{&luminaire, beam_rad}];
+    if (!intensity) intensity = intensity_at_beam(luminaire, beam_rad);
+    return ZoomStop{intensity, beam_rad};
+  };
   const double now_rad = fixture.joints.beam_rad;
-  std::vector<ZoomStop> stops = {{intensity_at_beam(luminaire, now_rad), now_rad}};
+  std::vector<ZoomStop> stops = {stop_at(now_rad)};
   const JointRange& range = fixture.range;
   for (int k = 0; range.zooms() && k < kZoomStops; ++k) {
     const double beam_rad =
         std::min(range.beam_min_rad * std::pow(range.beam_max_rad / range.beam_min_rad, k / (kZoomStops - 1.0)),
                  range.beam_max_rad);
-    if (std::abs(beam_rad / now_rad - 1) > kSameBeam)
-      stops.push_back({intensity_at_beam(luminaire, beam_rad), beam_rad});
+    if (std::abs(beam_rad / now_rad - 1) > kSameBeam) stops.push_back(stop_at(beam_rad));
   }
   return stops;
 }
 
 /// All emitters of a housing as one light.
-HangingHead hanging_head(const Rig& rig, std::size_t index) {
+HangingHead hanging_head(const Rig& rig, std::size_t index, BeamsOfLuminaires& known) {
   const Fixture& fixture = rig.fixtures[index];
   const Luminaire& luminaire = housing_luminaire(rig, index);
   HangingHead head;
@@ -98,7 +106,7 @@ HangingHead hanging_head(const Rig& rig, std::size_t index) {
     head.tilt_speed_rad_s = fixture.tilt_speed_rad_s;
   }
   if (fixture.range.zooms()) head.zoom_speed_rad_s = fixture.zoom_speed_rad_s;
-  head.zoom = zoom_stops(luminaire, fixture);
+  head.zoom = zoom_stops(luminaire, fixture, known);
   head.max_level = std::min(fixture.max_level, rig.limits.max_level);
   head.watts = luminaire.watts.value_or(0);
   return head;
@@ -187,10 +195,11 @@ Result<AimedFixtures> aim_fixtures(const ReliefSurroundings& around, const Studi
 
   std::vector<HangingHead> heads;
   std::vector<HeadSetting> present;
+  BeamsOfLuminaires known;
   for (std::size_t k = 0; k < spec.heads.size(); ++k) {
     const Fixture& fixture = around.rig.fixtures[spec.heads[k]];
     if (spec.key == spec.heads[k]) wishes.key = k;
-    heads.push_back(hanging_head(around.rig, spec.heads[k]));
+    heads.push_back(hanging_head(around.rig, spec.heads[k], known));
     present.push_back({fixture.joints, 0, present_levels[k]});
   }
   watch.say("aiming");
