@@ -55,6 +55,18 @@ TEST(Commands, SolveJsonHasTheContractsKeysAndEvaluateAgreesWithIt) {
   }
 }
 
+TEST(Commands, CheckTakesEveryRigThatIsShipped) {
+  std::vector<std::string> rigs = {source("rigs/studio/can.toml")};
+  for (const auto& entry : std::filesystem::directory_iterator(source("rigs")))
+    if (std::filesystem::exists(entry.path() / "rig.toml")) rigs.push_back(entry.path().string());
+  EXPECT_GE(rigs.size(), 6u);
+  for (const std::string& rig : rigs) {
+    const Ran ran = luxrig::testing::run({program("luxrig"), "check", rig});
+    EXPECT_EQ(ran.code, 0) << rig << '\n' << ran.output;
+    EXPECT_NE(ran.output.find("no problems found"), std::string::npos) << rig << '\n' << ran.output;
+  }
+}
+
 TEST(Commands, ImportMakesARigThatCheckTakesAndNeverWritesOverOne) {
   const Folder folder;
   const std::string rig = (folder / "imported").string();
