@@ -95,9 +95,11 @@ bool direct_of_block(const VisibilityScene& scene, std::span<const Receiver> rec
             return true;
           },
           [&](std::uint32_t point) {
+            const double through =
+                scene.rays ? scene.rays->transmittance(receivers[r].position_world_m, lamps_world_m[point]) : 1;
             for (std::size_t g = 0; g < group.size(); ++g) {
               count.pairs_lit += possible_lux[g] > 0;
-              row[position_of_lamp[point] * kinds + group[g]] = static_cast<float>(possible_lux[g]);
+              row[position_of_lamp[point] * kinds + group[g]] = static_cast<float>(through * possible_lux[g]);
             }
           });
       count.pairs_behind = visible.behind * group.size();

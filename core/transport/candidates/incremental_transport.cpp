@@ -127,7 +127,9 @@ class Incremental final : public IncrementalTransport {
         double now = unobstructed_lux(luminaires[e], at_m, receivers_[r]);
         if (now > 0) {
           ++of_row;
-          if (rays.occluded(receivers_[r].position_world_m, receivers_[r].normal_world, at_m)) now = 0;
+          now *= rays.occluded(receivers_[r].position_world_m, receivers_[r].normal_world, at_m)
+                     ? 0
+                     : rays.transmittance(receivers_[r].position_world_m, at_m);
         }
         lux(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(e)) = now;
       }
@@ -153,7 +155,7 @@ class Incremental final : public IncrementalTransport {
         ++column.rays;
         if (rays_.occluded(receiver.position_world_m, receiver.normal_world, luminaire.offset_world_m)) continue;
       }
-      column.direct_lux[row] = lux;
+      column.direct_lux[row] = lux * rays_.transmittance(receiver.position_world_m, luminaire.offset_world_m);
     }
     column.total_lux = column.direct_lux;
     return column;

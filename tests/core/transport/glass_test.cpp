@@ -5,8 +5,10 @@
 #include <random>
 
 #include "core/transport/cache/radiance_cache.h"
+#include "core/transport/candidates/incremental_transport.h"
 #include "core/transport/enclosures.h"
 #include "core/transport/evaluator.h"
+#include "tests/core/transport/candidates/computed.h"
 #include "tests/core/transport/within.h"
 
 namespace luxrig {
@@ -131,6 +133,37 @@ TEST(Glass, DimsWhatHasSizeAndWhatStandsInTheOpen) {
   EXPECT_NEAR(lit->lux_per_level(0, 0), 0.8 * bare->lux_per_level(0, 0), 1e-9 * bare->lux_per_level(0, 0));
   // Seen within 2° of head-on, where glass is as it is head-on.
   EXPECT_NEAR(lit->lux_per_level(0, 1), 0.8 * bare->lux_per_level(0, 1), 3e-3 * bare->lux_per_level(0, 1));
+}
+
+TEST(Glass, DimsTheDirectLightOfCandidates) {
+  Scene cube = make_cube(2 * kHalf_m, 0.5);
+  cube.panes = pane_at(0.25, 0.8);
+  const RayScene rays(cube);
+  const std::vector<Receiver> receivers = some_receivers();
+  const Emitter lamp = bulb_at({0.3, 0.1, 0.9});
+  const auto exact = make_direct_evaluator(rays)->evaluate(receivers, {&lamp, 1}, within(1e-3));
+  ASSERT_TRUE(exact);
+  IncrementalOptions options;
+  options.indirect = false;
+  const auto columns = IncrementalTransport::make(cube, rays, receivers, options);
+  ASSERT_TRUE(columns);
+  const auto column = (*columns)->direct_column(lamp);
+  ASSERT_TRUE(column);
+  EXPECT_LT((column->direct_lux - exact->lux_per_level.col(0)).cwiseAbs().maxCoeff(),
+            1e-9 * exact->lux_per_level.maxCoeff());
+  Eigen::MatrixXd anew = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(receivers.size()), 1);
+  ASSERT_TRUE((*columns)->update_direct({&lamp, 1}, rays, rays.bounds_world_m(), anew));
+  EXPECT_LT((anew - exact->lux_per_level).cwiseAbs().maxCoeff(), 1e-9 * exact->lux_per_level.maxCoeff());
+
+  CandidateOptions of;
+  of.indirect = false;
+  const CandidateTransport streamed =
+      computed(cube, rays, receivers, {{lamp.world_from_lamp.translation_m}, {bulb_at({0, 0, 0})}}, of);
+  const Eigen::VectorXd streamed_lux = streamed.matrix.lux(receivers.size(), std::vector<double>{1});
+  for (std::size_t r = 0; r < receivers.size(); ++r) {
+    const auto row = static_cast<Eigen::Index>(r);
+    EXPECT_NEAR(streamed_lux[row], exact->lux_per_level(row, 0), 1e-6 * exact->lux_per_level.maxCoeff()) << r;
+  }
 }
 
 TEST(Glass, IsRefusedByTheRadianceCache) {
