@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kLinearRms = 0.01, kLinearWorst = 0.03;   ///< of light
 constexpr double kCurveRms = 0.02, kCurveWorst = 0.06;     ///< what a measured curve must leave
+constexpr double kDarkOff = 0.005;                         ///< of full light
 constexpr double kFlickers = 0.005, kStepOff = 0.01;       ///< of light
 constexpr double kFollowsTooLittle = 0.5;                  ///< of what the exposures' ratio should give, as a power
 constexpr double kTooMuchClipped = 0.02, kTooDark = 0.25;  ///< of samples; of full scale
@@ -21,7 +22,7 @@ bool adapts(const SampleGroups& groups) {
 
 }  // namespace
 
-Result<CameraCheck> check_camera(const ExposureSeries& series) {
+Result<CameraCheck> check_camera(const ExposureSeries& series, const SampleCurve& configured) {
   const auto groups = group_samples(series);
   if (!groups) return tl::unexpected(groups.error());
   CameraCheck out;
@@ -43,6 +44,10 @@ Result<CameraCheck> check_camera(const ExposureSeries& series) {
   if (!line) return tl::unexpected(line.error());
   out.as_it_is = *line;
   out.linear = line->rms_residual <= kLinearRms && line->worst_residual <= kLinearWorst;
+  if (const auto fit = fit_line(*groups, &configured)) {
+    out.as_configured = *fit;
+    out.good = fit->rms_residual <= kLinearRms && fit->worst_residual <= kLinearWorst;
+  }
   SampleCurve through = SampleCurve::linear(std::clamp(line->dark_share, 0.0, 0.9));
   if (auto curve = fit_curve(*groups)) {
     out.shape = shape_of(*curve, groups->saturation);
@@ -52,6 +57,8 @@ Result<CameraCheck> check_camera(const ExposureSeries& series) {
       out.usable = out.linear || good;
       if (!out.linear && good) {
         through = *curve;
+      }
+      if (!out.linear && good && !out.good) {
         note(
             fmt::format("the camera is not linear: {:.1f} % rms off a straight line, light grows as the sample to the "
                         "power {:.2f}{}",
@@ -74,6 +81,14 @@ Result<CameraCheck> check_camera(const ExposureSeries& series) {
                        curve.error().detail),
            "use more exposures, of a scene with bright and dark places");
   }
+  if (out.good && std::abs(out.as_configured.dark_share) > kDarkOff)
+    note(fmt::format("without light the camera still gives {:.1f} % of full light", 100 * out.as_configured.dark_share),
+         out.linear ? fmt::format("write dark_level = {:.4f}", std::max(0.0, line->dark_share))
+                    : "give [[camera]] response_file the curve that this check measured");
+  if (out.linear && !out.good)
+    note(fmt::format("samples are linear, but the response that the rig file states makes them {:.1f} % rms off",
+                     100 * out.as_configured.rms_residual),
+         "write response = \"linear\"");
   const double step_off = out.linear || !out.curve ? line->step_residual : out.through_curve.step_residual;
   if (out.flicker > kFlickers) {
     note(fmt::format("the light flickers: pictures of one exposure differ by {:.1f} %", 100 * out.flicker),

@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 
 #include "tools/bench/bench.h"
+#include "tools/luxrig/camera_command.h"
 #include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
 #include "tools/luxrig/render_command.h"
@@ -163,8 +164,8 @@ int main(int argc, char** argv) {
   command->callback([&] { code = run_rig(run); });
 
   DevicesArguments devices;
-  command = app.add_subcommand("devices",
-                               "what is there to be driven: nodes, sources, USB widgets, serial ports, CAN interfaces");
+  command = app.add_subcommand(
+      "devices", "what is there to be driven: nodes, sources, USB widgets, serial ports, CAN interfaces, cameras");
   command->add_option("--seconds", devices.seconds, "how long to listen")
       ->capture_default_str()
       ->check(CLI::Range(0.1, 600.0));
@@ -177,6 +178,10 @@ int main(int argc, char** argv) {
   RdmArguments rdm;
   add_rdm(*app.add_subcommand("rdm", "devices behind Art-Net nodes: list them, read and set their parameters"), rdm,
           code);
+
+  CameraArguments camera;
+  add_camera_command(*app.add_subcommand("camera", "take a picture with a rig's camera, or check that camera"), camera,
+                     code);
 
   ClientArguments client;
   std::filesystem::path plan;
