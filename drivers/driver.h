@@ -5,7 +5,8 @@
 ///
 /// A driver constructs without touching a device. Once activated it goes to faulted and back by itself as the device
 /// goes and returns (reconnecting inside write() and read(), within their bounds, with backoff). After a return it
-/// sends the current setpoint, never an older one. One driver serves one [[bus]]; its calls come from one thread.
+/// sends the current setpoint, never an older one. One driver serves one [[bus]], or one
+/// [[camera]]; its calls come from one thread.
 
 #include <cstdint>
 #include <memory>

@@ -57,16 +57,22 @@ class LuxReader {
   virtual Result<std::vector<LuxReading>> read(Time now) = 0;
 };
 
-/// A linear-light picture; no driver makes one yet.
+/// A linear-light picture: samples grow in proportion to the light that fell on them.
 struct TakenPicture {
-  int width = 0, height = 0;
-  std::vector<float> luminance_cd_m2;  ///< row by row from the top
+  int width_px = 0, height_px = 0;
+  /// Row by row from the top, linear Rec. 709; of a camera without colour three alike. In cd/m² when `calibrated`, else
+  /// in shares of what fills a sample at this exposure.
+  std::vector<Vec3f> light;
+  bool calibrated = false;
+  double exposure_s = 0;       ///< as the camera keeps it; 0: not known
+  double saturated_share = 0;  ///< of pixels with a full sample: light there is at least what is said
   Time taken{};
 };
 
 class PictureTaker {
  public:
   virtual ~PictureTaker() = default;
+  /// A picture of which all light fell after the call. Blocks until it is there, at most DriverBounds::read.
   virtual Result<TakenPicture> take(Time now) = 0;
 };
 

@@ -4,6 +4,36 @@
 
 namespace luxrig {
 
+void RigReader::read_picture_taking(Section& s, PictureTaking& taking) {
+  s.read_choice("source", taking.source);
+  const bool v4l2 = taking.source == PictureSource::v4l2, files = taking.source == PictureSource::files;
+  const auto keep_out = [&](const char* key, bool belongs, const char* source) {
+    if (s.has(key) && !belongs)
+      s.refuse(key, fmt::format("{} has no effect: only with source = \"{}\"", key, source),
+               fmt::format("remove it, or write source = \"{}\"", source));
+  };
+  for (const char* key : {"device", "format", "exposure_ms", "gain"}) keep_out(key, v4l2, "v4l2");
+  keep_out("files", files, "files");
+  for (const char* key : {"dark_level", "response", "response_file", "full_scale_cd_m2"}) {
+    if (s.has(key) && !v4l2 && !files)
+      s.refuse(key, fmt::format("{} has no effect without a source of pictures", key), "remove it, or write a source");
+  }
+  s.read("device", taking.device);
+  if (std::string text; s.read("files", text)) taking.files = folder / text;
+  if (files && !s.has("files")) s.require("files", "which source = \"files\" needs");
+  s.read_choice("format", taking.format);
+  if (double ms = 0; s.read("exposure_ms", ms)) taking.exposure_s = ms / 1000;
+  s.read("gain", taking.gain);
+  s.read("dark_level", taking.dark_share);
+  s.read_choice("response", taking.curve);
+  s.read("full_scale_cd_m2", taking.full_scale_cd_m2);
+  if (!s.has("response_file")) return;
+  for (const char* key : {"dark_level", "response"}) {
+    if (s.has(key)) s.refuse(key, fmt::format("{} has no effect beside response_file", key), "leave out one of them");
+  }
+  if (const auto file = read_file(s, "response_file")) taking.curve_file = *file;
+}
+
 void RigReader::read_cameras() {
   each(root, "camera", [&](Section& s) {
     PictureCamera camera;
@@ -30,6 +60,7 @@ void RigReader::read_cameras() {
     s.read_deg("fov_deg", camera.vertical_fov_rad);
     s.read("width_px", camera.width_px);
     s.read("height_px", camera.height_px);
+    read_picture_taking(s, camera.taking);
     rig.cameras.push_back(std::move(camera));
   });
 }

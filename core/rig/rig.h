@@ -249,6 +249,27 @@ struct Luxmeter {
   Place place;
 };
 
+/// Where a real camera's pictures come from; none: only the simulated rig has them.
+enum class PictureSource { none, v4l2, files };
+/// How samples lie in memory; any: the best of what the device has.
+enum class PixelFormat { any, grey8, grey10, grey12, grey16, yuyv, rgb24, bgr24 };
+/// How samples grow with light: in proportion, or by the curve of a standard that the camera applied.
+enum class PixelCurve { linear, srgb, bt709 };
+
+/// What makes light of samples.
+struct PictureTaking {
+  PictureSource source = PictureSource::none;
+  std::string device;           ///< of v4l2: path, bus, serial number or name; empty: the only one
+  std::filesystem::path files;  ///< a folder, or one whose last part is a pattern (* and ?)
+  PixelFormat format = PixelFormat::any;
+  std::optional<double> exposure_s;  ///< of v4l2
+  std::optional<int> gain;           ///< of v4l2, in the device's own steps; none: its default
+  double dark_share = 0;             ///< of full scale: what a sample is without light
+  PixelCurve curve = PixelCurve::linear;
+  std::filesystem::path curve_file;          ///< measured; instead of `curve` when not empty
+  std::optional<double> full_scale_cd_m2{};  ///< luminance that fills a sample at this exposure and gain
+};
+
 /// Looks at the rig and takes pictures.
 struct PictureCamera {
   std::string name;
@@ -256,6 +277,7 @@ struct PictureCamera {
   Vec3 aim_world_m = Vec3::UnitY();
   double vertical_fov_rad = rad_from_deg(40);
   int width_px = 960, height_px = 640;
+  PictureTaking taking;
   Place place;
 };
 

@@ -88,6 +88,7 @@ struct RigReader {
                                                        const std::vector<std::string_view>& names,
                                                        std::string_view what);
   void read_cameras();
+  void read_picture_taking(Section& section, PictureTaking& taking);
   void read_mounting();
   void read_settings();
 

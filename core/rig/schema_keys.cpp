@@ -32,6 +32,10 @@ constexpr Bounds kFlux{0, 1e8, true};
 constexpr Bounds kWatts{0, 1e6};
 constexpr Bounds kWeight{0, 1000};
 constexpr Bounds kPixels{16, 8192};
+constexpr Bounds kExposure_ms{0, 10000, true};
+constexpr Bounds kGainSteps{0, 1'000'000};
+constexpr Bounds kDarkShare{0, 0.5};
+constexpr Bounds kFullScale{0, 1e9, true};
 constexpr std::string_view kUnits = "m, cm, mm, in, ft";
 constexpr std::string_view kAxes = "x, y, z";
 
@@ -59,8 +63,8 @@ constexpr SectionSpec kSections[] = {
      "`pan_deg` and `tilt_deg`."},
     {"luxmeter", true, 10000, false, "A light meter on a Modbus bus. It stands at a `point`, or at `position_m`."},
     {"camera", true, 100, false,
-     "Takes pictures of the rig for a person to look at. There is no driver for real ones yet: the simulated rig has "
-     "them, and an `aim` task keeps light out of them."},
+     "Takes pictures of the rig. A real one has a `source`; without, only the simulated rig takes its pictures. An "
+     "`aim` task keeps light out of all."},
     {"point", true, 100000, false, "A place whose illuminance matters, on the side its normal points to."},
     {"points", false, 1, false, "Further points, from a table."},
     {"task", true, 1000, false, "What to work out. Without one: an `emittance` task called `levels`."},
@@ -353,6 +357,28 @@ constexpr KeySpec kRigKeys[] = {
     {"camera", "fov_deg", number, "°", "40", {1, 170}, "", "vertical field of view"},
     {"camera", "width_px", whole_number, "", "960", kPixels, "", "of its pictures"},
     {"camera", "height_px", whole_number, "", "640", kPixels, "", "of its pictures"},
+    {"camera", "source", text, "", R"("none")", kAny, "none, v4l2, files",
+     "where real pictures come from: a Video4Linux device, or `files`"},
+    {"camera", "device", text, "", kNone, kAny, "",
+     "of `v4l2`: its path, bus, serial number or name, as `luxrig devices` has them; left out, the only one there is"},
+    {"camera", "files", text, "", kNone, kAny, "",
+     "of `files`: a folder, or a path whose last part is a pattern (`*` and `?`), from the rig file's folder; the "
+     "newest "
+     "by name is taken: PNG, PGM, PPM, or PFM, which is linear light already"},
+    {"camera", "format", text, "", R"("any")", kAny, "any, GREY, Y10, Y12, Y16, YUYV, RGB24, BGR24",
+     "of `v4l2`: how samples come; `any` takes that with most bits"},
+    {"camera", "exposure_ms", number, "ms", kNone, kExposure_ms, "",
+     "of `v4l2`: set, and refused when the camera does not keep it; left out only for a device that cannot be told"},
+    {"camera", "gain", whole_number, "", kNone, kGainSteps, "",
+     "of `v4l2`, in the device's own steps; left out, the device's default"},
+    {"camera", "dark_level", number, "", "0", kDarkShare, "",
+     "what a sample is without light, as a share of full scale; `luxrig camera check` measures it"},
+    {"camera", "response", text, "", R"("linear")", kAny, "linear, srgb, bt709",
+     "how samples grow with light: in proportion, or by a standard's curve"},
+    {"camera", "response_file", file, "", kNone, kAny, "",
+     "that curve as `luxrig camera check` measured and wrote it; instead of `response` and `dark_level`"},
+    {"camera", "full_scale_cd_m2", number, "cd/m²", kNone, kFullScale, "",
+     "luminance that fills a sample at this exposure and gain; left out, pictures are in shares of it"},
 
     {"point", "name", name, "", kRequired, kAny, "", "name of the point"},
     {"point", "position_m", vector3, "m", kRequired, kPosition, "", "where it is"},

@@ -51,5 +51,7 @@ struct NamedScan {
 /// DMX widgets by their ids; those of FTDI are any maker's, so the driver is a guess until the widget answers.
 [[nodiscard]] std::unique_ptr<Scan> make_usb_scan(const ScanOptions& options);
 [[nodiscard]] std::unique_ptr<Scan> make_can_scan(const ScanOptions& options);
+/// Video4Linux devices that give pictures; those of one name by their buses.
+[[nodiscard]] std::unique_ptr<Scan> make_camera_scan(const ScanOptions& options);
 
 }  // namespace luxrig

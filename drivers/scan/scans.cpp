@@ -10,6 +10,7 @@ std::vector<NamedScan> all_scans(const ScanOptions& options) {
   scans.push_back({"USB widgets", make_usb_scan(options), {}});
   scans.push_back({"serial ports", make_serial_scan(options), {}});
   scans.push_back({"CAN interfaces", make_can_scan(options), {}});
+  scans.push_back({"cameras", make_camera_scan(options), {}});
   return scans;
 }
 

@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 
 #include "tools/bench/bench.h"
+#include "tools/luxrig/camera_command.h"
 #include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
 #include "tools/luxrig/render_command.h"
@@ -168,8 +169,8 @@ int main(int argc, char** argv) {
   command->callback([&] { code = run_rig(run); });
 
   DevicesArguments devices;
-  command = app.add_subcommand("devices",
-                               "what is there to be driven: nodes, sources, USB widgets, serial ports, CAN interfaces");
+  command = app.add_subcommand(
+      "devices", "what is there to be driven: nodes, sources, USB widgets, serial ports, CAN interfaces, cameras");
   command->add_option("--seconds", devices.seconds, "how long to listen")
       ->capture_default_str()
       ->check(CLI::Range(0.1, 600.0));
@@ -183,6 +184,10 @@ int main(int argc, char** argv) {
   add_rdm(*app.add_subcommand("rdm",
                               "devices behind Art-Net nodes or a USB widget: list them, read and set their parameters"),
           rdm, code);
+
+  CameraArguments camera;
+  add_camera_command(*app.add_subcommand("camera", "take a picture with a rig's camera, or check that camera"), camera,
+                     code);
 
   ClientArguments client;
   std::filesystem::path plan;

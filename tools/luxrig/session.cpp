@@ -8,6 +8,7 @@
 #include "core/transport/cache/radiance_cache.h"
 #include "core/transport/evaluator_choice.h"
 #include "core/transport/rig_transport.h"
+#include "drivers/camera/camera_source.h"
 #include "drivers/registry.h"
 
 namespace luxrig {
@@ -16,6 +17,7 @@ Checked<Session> open_session(const std::filesystem::path& rig_path) {
   auto rig = load_rig(rig_path);
   if (!rig) return tl::unexpected(std::move(rig.error()));
   if (auto problems = check_buses(*rig); !problems.empty()) return tl::unexpected(std::move(problems));
+  if (auto problems = check_cameras(*rig); !problems.empty()) return tl::unexpected(std::move(problems));
   auto scene = build_scene(*rig);
   if (!scene) return tl::unexpected(std::move(scene.error()));
   Session session{std::move(*rig), std::move(*scene), nullptr};

@@ -242,6 +242,26 @@ height_px = 480  #> 481
 name = "aside"
 position_m = [0, 5, 2]
 aim_m = [0, 0, 0]
+source = "v4l2"
+device = "/dev/video0"  #> "Sony Cam"
+format = "Y16"  #> "YUYV"
+exposure_ms = 20  #> 21
+gain = 3  #> 4
+dark_level = 0.02  #> 0.03
+response = "srgb"  #> "bt709"
+full_scale_cd_m2 = 500  #> 501
+[[camera]]
+name = "folder"
+position_m = [0, 5, 2]
+aim_m = [0, 0, 0]
+source = "files"
+files = "shots"  #> "shots/*.png"
+response_file = "a.toml"  #> "b.toml"
+[[camera]]
+name = "webcam"
+position_m = [0, 5, 2]
+aim_m = [0, 0, 0]
+source = "none"  #> "v4l2"
 [[camera]]
 name = "top"
 position_m = [0, 0, 2]
@@ -468,7 +488,10 @@ std::string dump(const Rig& rig) {
         a.base_weight, a.travel_weight, a.base_lx, h.luminaire, text_of(h.lights), h.max_lights);
   }
   for (const PictureCamera& c : rig.cameras)
-    add(c.name, text_of(c.position_world_m), text_of(c.aim_world_m), c.vertical_fov_rad, c.width_px, c.height_px);
+    add(c.name, text_of(c.position_world_m), text_of(c.aim_world_m), c.vertical_fov_rad, c.width_px, c.height_px,
+        static_cast<int>(c.taking.source), c.taking.device, c.taking.files.string(), static_cast<int>(c.taking.format),
+        text_of(c.taking.exposure_s), text_of(c.taking.gain), c.taking.dark_share, static_cast<int>(c.taking.curve),
+        c.taking.curve_file.string(), text_of(c.taking.full_scale_cd_m2));
   const MountingSpec& mounting = rig.mounting;
   if (mounting.box_world_m) add(text_of(Vec3(mounting.box_world_m->min())), text_of(Vec3(mounting.box_world_m->max())));
   for (const auto& surface : mounting.surfaces) add(surface.text);

@@ -1,0 +1,196 @@
+/// A camera whose frames come one after the other by themselves.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/check.h"
+#include "drivers/camera/camera_source.h"
+#include "drivers/camera/video_settings.h"
+#include "drivers/io/deadline.h"
+#include "drivers/life.h"
+
+namespace luxrig {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kOpening(1500);    ///< to open a device and to set its controls
+constexpr milliseconds kSlowFrame(250);   ///< apart, at the lowest frame rates there are
+constexpr int kSettleFrames = 4;          ///< that a sensor's pipeline may hold when a control changes
+constexpr int kQueuedFrames = 4;          ///< that the kernel may hold
+constexpr milliseconds kVideoRetry(500);  ///< after a failure
+
+class VideoCamera final : public CameraSource {
+ public:
+  VideoCamera(std::unique_ptr<VideoChannel> channel, const PictureCamera& camera, SampleCurve curve)
+      : channel_(std::move(channel)), camera_(camera), curve_(std::move(curve)), life_(camera.name) {}
+  ~VideoCamera() override { channel_->close(); }
+
+  DriverBounds bounds() const override {
+    DriverBounds bounds;
+    bounds.read = kOpening + frames_bound();
+    bounds.fault_after = bounds.read;
+    return bounds;
+  }
+  Result<void> activate(Time now) override {
+    if (active_) return {};
+    active_ = true;
+    if (auto ready = get_ready(now); !ready) {
+      channel_->close();
+      retry_at_ = now + kVideoRetry;
+      life_.faulted(now, ready.error());
+    }
+    return {};
+  }
+  void deactivate(Time now) override {
+    channel_->close();
+    active_ = false;
+    life_.configured(now);
+  }
+  std::vector<Health> health(Time) const override { return {life_.health()}; }
+
+  Result<TakenPicture> take(Time now) override {
+    const auto raw = take_raw(now);
+    if (!raw) return tl::unexpected(raw.error());
+    return light_of(*raw, curve_, camera_.taking, now);
+  }
+
+  Result<RawPicture> take_raw(Time now) override {
+    if (!active_) return tl::unexpected(Fault{Cause::inactive, camera_.name, "the camera is not active", {}});
+    if (life_.life() == Life::faulted && !channel_->is_open() && now < retry_at_) return tl::unexpected(life_.fault());
+    auto picture = fresh_picture(now);
+    if (!picture) {
+      channel_->close();  // whatever is wrong, the next attempt begins anew
+      retry_at_ = now + kVideoRetry;
+      life_.faulted(now, picture.error());
+      return tl::unexpected(life_.fault());
+    }
+    life_.active(now);
+    life_.count_received(now);
+    return picture;
+  }
+
+  Result<std::optional<std::pair<double, double>>> exposures_s(Time now) override {
+    if (!active_) return tl::unexpected(Fault{Cause::inactive, camera_.name, "the camera is not active", {}});
+    if (auto opened = channel_->open(); !opened) {
+      life_.faulted(now, opened.error());
+      return tl::unexpected(life_.fault());
+    }
+    return exposure_range_s(*channel_);
+  }
+  void set_exposure(double exposure_s) override { camera_.taking.exposure_s = exposure_s; }
+
+ private:
+  /// Until a fresh frame must have come: those thrown away, and one more that began before the call.
+  milliseconds frames_bound() const {
+    const auto exposure = std::chrono::ceil<milliseconds>(from_seconds(camera_.taking.exposure_s.value_or(0)));
+    return (kSettleFrames + 3) * std::max(kSlowFrame, exposure + milliseconds(50));
+  }
+
+  /// Opened, in its format, with its settings, streaming.
+  Result<VideoSettings> get_ready(Time now) {
+    const bool was_open = channel_->is_open();
+    if (auto opened = channel_->open(); !opened) return tl::unexpected(opened.error());
+    if (!was_open) {
+      if (auto set = set_format(); !set) return tl::unexpected(set.error());
+    }
+    auto settings = fix_settings(*channel_, camera_.taking);
+    if (!settings) return settings;
+    settings->changed |= !was_open;
+    if (auto started = channel_->start(); !started) return tl::unexpected(started.error());
+    life_.active(now);
+    return settings;
+  }
+
+  Result<void> set_format() {
+    std::vector<PixelFormat> formats = channel_->formats();
+    const PixelFormat wanted = camera_.taking.format;
+    if (formats.empty())
+      return tl::unexpected(Fault{
+          Cause::refused, {}, "the camera has none of GREY, Y10, Y12, Y16, YUYV, RGB24, BGR24: take another", {}});
+    // The most steps, and of those the least to carry.
+    std::sort(formats.begin(), formats.end(),
+              [](PixelFormat a, PixelFormat b) { return std::pair(-counts_of(a), a) < std::pair(-counts_of(b), b); });
+    if (wanted != PixelFormat::any && std::find(formats.begin(), formats.end(), wanted) == formats.end()) {
+      std::string names;
+      for (const PixelFormat format : formats) names += fmt::format("{}{}", names.empty() ? "" : ", ", name_of(format));
+      return tl::unexpected(Fault{Cause::refused,
+                                  {},
+                                  fmt::format("the camera has no {}: write format = any of {}", name_of(wanted), names),
+                                  {}});
+    }
+    const auto layout = channel_->set_format(wanted == PixelFormat::any ? formats.front() : wanted, camera_.width_px,
+                                             camera_.height_px);
+    if (!layout) return tl::unexpected(layout.error());
+    layout_ = *layout;
+    if (layout_.width_px != camera_.width_px || layout_.height_px != camera_.height_px)
+      return tl::unexpected(Fault{Cause::refused,
+                                  {},
+                                  fmt::format("the camera has pictures of {} x {} pixels, not {} x {}: write width_px "
+                                              "and height_px that it has",
+                                              layout_.width_px, layout_.height_px, camera_.width_px, camera_.height_px),
+                                  {}});
+    return {};
+  }
+
+  /// A frame of which all light fell after now, with the settings that were asked for before and after.
+  Result<RawPicture> fresh_picture(Time now) {
+    const auto settings = get_ready(now);
+    if (!settings) return tl::unexpected(settings.error());
+    const Deadline deadline(frames_bound());
+    const Duration since = channel_->clock(), until = since + frames_bound();
+    const Duration exposure = from_seconds(settings->exposure_s);
+    int skip = settings->changed ? kSettleFrames : 0, untimed = kQueuedFrames + 1, damaged = 0, stale = 0;
+    while (!deadline.passed() && channel_->clock() < until) {
+      auto frame = channel_->take(deadline.left());
+      if (!frame) return tl::unexpected(frame.error());
+      if (!*frame) break;
+      const VideoFrame& got = **frame;
+      if (got.damaged) {
+        ++damaged;
+        life_.count_error();
+        continue;
+      }
+      if (got.captured ? *got.captured - exposure < since : untimed-- > 0) {
+        ++stale;
+        continue;
+      }
+      if (skip-- > 0) continue;
+      const auto still = fix_settings(*channel_, camera_.taking);
+      if (!still) return tl::unexpected(still.error());
+      if (still->changed)
+        return tl::unexpected(
+            Fault{Cause::refused, {}, "something else changed the camera's settings: end the program that does", {}});
+      auto picture = decode_frame(layout_, got.bytes);
+      if (picture) picture->exposure_s = settings->exposure_s;
+      return picture;
+    }
+    return tl::unexpected(Fault{Cause::timeout,
+                                {},
+                                fmt::format("no good frame within {} ms ({} damaged, {} too old): the stream stalls, "
+                                            "unplug the camera and plug it in again",
+                                            frames_bound().count(), damaged, stale),
+                                {}});
+  }
+
+  std::unique_ptr<VideoChannel> channel_;
+  PictureCamera camera_;
+  SampleCurve curve_;
+  LifeRecord life_;
+  FrameLayout layout_;
+  bool active_ = false;
+  Time retry_at_{};
+};
+
+}  // namespace
+
+std::unique_ptr<CameraSource> make_video_camera_over(std::unique_ptr<VideoChannel> channel, const Rig& rig,
+                                                     std::size_t camera) {
+  const PictureCamera& spec = rig.cameras[camera];
+  auto curve = curve_of(spec.taking);
+  LUXRIG_CHECK(curve.has_value(), "camera {} was not checked", spec.name);
+  return std::make_unique<VideoCamera>(std::move(channel), spec, std::move(*curve));
+}
+
+}  // namespace luxrig

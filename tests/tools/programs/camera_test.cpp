@@ -1,0 +1,96 @@
+// luxrig camera: a picture, and the check of a camera, by files of a camera that encodes with a gamma of 2.2.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <random>
+
+#include "tests/tools/programs/live_rig.h"
+
+namespace luxrig::testing {
+namespace {
+
+constexpr int kWidth_px = 96, kHeight_px = 64;
+
+/// A bracket of exposures as a camera would save it: light over two decades, noise of half a count.
+void write_bracket(const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  std::mt19937 random(1);
+  std::normal_distribution<double> noise(0, 0.5);
+  for (const double ms : {1.0, 1.7, 3.9, 6.7, 15.0, 26.0, 60.0})
+    for (int frame = 1; frame <= 4; ++frame) {
+      std::ofstream out(folder / fmt::format("wall_{}ms_{}.pgm", ms, frame), std::ios::binary);
+      out << "P5 " << kWidth_px << " " << kHeight_px << " 255\n";
+      for (int i = 0; i < kWidth_px * kHeight_px; ++i) {
+        const double light = ms / 15 * std::pow(10.0, -2.0 * (i % kWidth_px) / kWidth_px);
+        const double sample = 255 * std::pow(std::min(1.0, light), 1 / 2.2) + noise(random);
+        out.put(static_cast<char>(static_cast<unsigned char>(std::lround(std::clamp(sample, 0.0, 255.0)))));
+      }
+    }
+}
+
+void write_rig(const std::filesystem::path& file, const std::string& more = "") {
+  std::ofstream(file) << "[rig]\nname = \"cameras\"\n\n[[camera]]\nname = \"wall\"\nposition_m = [0, -3, 1.5]\n"
+                      << "aim_m = [0, 0, 1]\nwidth_px = " << kWidth_px << "\nheight_px = " << kHeight_px
+                      << "\nsource = \"files\"\nfiles = \"shots\"\n"
+                      << more;
+}
+
+Ran camera(const std::vector<std::string>& words) {
+  std::vector<std::string> all = {program("luxrig"), "camera"};
+  all.insert(all.end(), words.begin(), words.end());
+  return luxrig::testing::run(all);
+}
+
+TEST(CameraCommands, CheckTellsTheGammaAndItsCurveMakesPicturesLinear) {
+  const Folder folder;
+  write_bracket(folder / "shots");
+  write_rig(folder / "rig.toml");
+  const std::string rig = (folder / "rig.toml").string(), curve = (folder / "curve.csv").string();
+  const Ran first = camera({"check", rig, "-o", curve});
+  EXPECT_EQ(first.code, 1) << first.output;
+  EXPECT_NE(first.output.find("not linear light yet, but can be"), std::string::npos) << first.output;
+  EXPECT_NE(first.output.find("gamma"), std::string::npos) << first.output;
+  const Ran as_json = camera({"check", rig, "--camera", "wall", "--json"});
+  const json out = json::parse(as_json.output, nullptr, false);
+  ASSERT_TRUE(out.is_object()) << as_json.output;
+  EXPECT_NEAR(out["response"]["exponent"].get<double>(), 2.2, 0.03);
+  EXPECT_FALSE(out["good"].get<bool>());
+  // With the curve, twice the exposure is twice the light.
+  write_rig(folder / "rig.toml", "response_file = \"curve.csv\"\nfull_scale_cd_m2 = 400\n");
+  const Ran second = camera({"check", rig});
+  EXPECT_EQ(second.code, 0) << second.output;
+  const std::string picture = (folder / "shot.pfm").string();
+  const Ran shot = camera({"shot", rig, "-o", picture});
+  EXPECT_EQ(shot.code, 0) << shot.output;
+  EXPECT_NE(shot.output.find("exposed 60 ms"), std::string::npos) << shot.output;
+  EXPECT_NE(shot.output.find("cd/m²"), std::string::npos) << shot.output;
+  const std::string bytes = text_of(picture);
+  ASSERT_EQ(bytes.size(), fmt::format("PF\n{} {}\n-1.0\n", kWidth_px, kHeight_px).size() + 12 * kWidth_px * kHeight_px);
+  // The last row comes first; at 3/4 of the width light is 60 / 15 * 10^-1.5 of full.
+  float light = 0;
+  const std::size_t at = bytes.size() - 12 * kWidth_px + 12 * (3 * kWidth_px / 4);
+  std::memcpy(&light, bytes.data() + at, sizeof light);
+  EXPECT_NEAR(static_cast<double>(light), 400 * 4 * std::pow(10.0, -1.5), 0.03 * 400 * 4 * std::pow(10.0, -1.5));
+}
+
+TEST(CameraCommands, SayWhatIsWrong) {
+  const Folder folder;
+  const std::string rig = (folder / "rig.toml").string(), picture = (folder / "shot.pfm").string();
+  write_rig(rig);
+  const Ran empty = camera({"shot", rig, "-o", picture});
+  EXPECT_EQ(empty.code, 1) << empty.output;
+  EXPECT_NE(empty.output.find("shots"), std::string::npos) << empty.output;
+  const Ran unknown = camera({"shot", rig, "--camera", "hall", "-o", picture});
+  EXPECT_EQ(unknown.code, 2) << unknown.output;
+  EXPECT_NE(unknown.output.find("there is no camera \"hall\""), std::string::npos) << unknown.output;
+  EXPECT_FALSE(std::filesystem::exists(picture));
+  std::ofstream(rig) << "[rig]\nname = \"none\"\n";
+  const Ran none = camera({"check", rig});
+  EXPECT_EQ(none.code, 2) << none.output;
+  EXPECT_NE(none.output.find("no [[camera]] has a source"), std::string::npos) << none.output;
+}
+
+}  // namespace
+}  // namespace luxrig::testing
