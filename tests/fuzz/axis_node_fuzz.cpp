@@ -26,7 +26,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   Time now{};
   node.set_power(now, true);
   int steps = 0;
-  for (std::size_t at = 0; at + 4 <= size && steps < 20000;) {
+  for (std::size_t at = 0; at + 4 <= size && steps < 3000;) {
     const std::uint32_t id = (data[at] & 0x80) != 0 ? kOfTheNode[data[at + 1] % 8]
                                                     : static_cast<std::uint32_t>(data[at] << 8 | data[at + 1]) & 0x7FF;
     const std::size_t count = std::min<std::size_t>({data[at + 2] % 9u, 8u, size - at - 4});

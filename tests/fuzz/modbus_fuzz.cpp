@@ -72,8 +72,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (!std::isfinite(lux) || lux < 0) std::abort();
   }
 
-  // The exchange costs a connection, so only inputs that libmodbus could take for an answer get one.
+  // The exchange costs a connection: it is for what the decoder believes, and for one in sixteen of what it does not, of
+  // those inputs that libmodbus could take for an answer.
   if (answer.size() < 8 || answer.size() > 600) return 0;
+  std::uint32_t sum = 0;
+  for (const std::uint8_t byte : answer) sum = sum * 31 + byte;
+  if (decoded.verdict != Verdict::good && sum % 16 != 0) return 0;
   int port = 0;
   const int fd = listener(port);
   TcpLink link("127.0.0.1", port);
