@@ -16,7 +16,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kOpening(1500);    ///< to open a device and to set its controls
-constexpr milliseconds kSlowFrame(250);   ///< apart, at the lowest frame rates there are
+constexpr milliseconds kSlowFrame(400);   ///< apart: large pictures over USB 2 come at 5 Hz or less
 constexpr int kSettleFrames = 4;          ///< that a sensor's pipeline may hold when a control changes
 constexpr int kQueuedFrames = 4;          ///< that the kernel may hold
 constexpr milliseconds kVideoRetry(500);  ///< after a failure
