@@ -71,6 +71,7 @@ void RigReader::read_spot(Section& s, Luminaire& luminaire) {
   }
   std::pair<double, double> zoom_deg;
   if (s.read("zoom_deg", zoom_deg)) {
+    luminaire.zoom_beam_rad = {rad_from_deg(zoom_deg.first), rad_from_deg(zoom_deg.second)};
     const double beam_deg = deg_from_rad(luminaire.beam_angle_rad);
     const double ratio = luminaire.field_angle_rad / luminaire.beam_angle_rad;
     if (beam_deg < zoom_deg.first - kSlack_deg || beam_deg > zoom_deg.second + kSlack_deg) {
@@ -88,7 +89,6 @@ void RigReader::read_spot(Section& s, Luminaire& luminaire) {
                    "a field angle is below 180°: lower zoom_deg, or state a narrower field");
       return;
     }
-    luminaire.zoom_beam_rad = {rad_from_deg(zoom_deg.first), rad_from_deg(zoom_deg.second)};
   }
   if (luminaire.lumens > 0) {
     luminaire.intensity = make_spot(luminaire.lumens, luminaire.beam_angle_rad, luminaire.field_angle_rad);

@@ -67,6 +67,7 @@ beam_angle_deg = 20  #> 21
 field_angle_deg = 40  #> 41
 zoom_deg = [6, 60]  #> [7, 60]
 lumens = 900
+watts = 9
 [[luminaire]]
 name = "bulb"  #> "lamp"
 model = "isotropic"  #> "spot" ; beam_angle_deg = 20 ; field_angle_deg = 40
