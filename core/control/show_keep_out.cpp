@@ -36,48 +36,44 @@ void ShowController::State::guard_heads(Time now) {
   for (std::size_t h = 0; h < guarded.size(); ++h) {
     const std::size_t f = guarded[h].fixture;
     if (turned_elsewhere(program, f)) guarded[h].where.lose(now);
-    guard_head(now, guarded[h], program.dims[h], JointBox::at(wanted[f]).joined(JointBox::at(at_last[f])),
-               level[f] > 0 && !program.blackout);
+    guard_head(now, guarded[h], program.dims[h], wanted[f], at_last[f], level[f] > 0 && !program.blackout);
   }
 }
 
-void ShowController::State::guard_head(Time now, GuardedHead& head, HeadDim& dim, const JointBox& wanted, bool lit) {
+/// wanted: now; at_last: when the fade that goes on is done.
+void ShowController::State::guard_head(Time now, GuardedHead& head, HeadDim& dim, const Joints& wanted,
+                                       const Joints& at_last, bool lit) {
   const std::size_t f = head.fixture;
   if (dim.held && now >= dim.start + dim.duration + kDarkBeforeTurning) {
     dim.held = false;
     ++program.revision;
   }
-  const JointBox told = dim.held ? JointBox::at(dim.held_at) : wanted;
+  const JointBox ahead = JointBox::at(wanted).joined(JointBox::at(at_last));
+  const JointBox told = dim.held ? JointBox::at(dim.held_at) : ahead;
   head.where.step(now, told, !health.motion_lost(f));
   JointBox sweep = head.where.box();
   std::optional<Joints> straight_to = head.where.on_line_to();
-  if (straight_to && !(wanted == JointBox::at(*straight_to))) {
+  if (straight_to && !(ahead == JointBox::at(*straight_to))) {
     sweep = sweep.joined(JointBox::at(*straight_to));
     straight_to.reset();
   }
-  if (!straight_to) sweep = sweep.joined(wanted);
+  if (!straight_to) sweep = sweep.joined(ahead);
   if (!(head.swept && *head.swept == sweep && head.swept_to == straight_to)) {
     head.zone = straight_to ? zones.may_meet_on_line(f, sweep, *straight_to) : zones.may_meet(f, sweep);
     head.swept = sweep;
     head.swept_to = straight_to;
   }
-  const bool one_posture = wanted.least == wanted.most;
   if (head.zone && dim.to > 0) {
     // From where it was told to look last it meets nothing; there it stays until it is dark.
-    const double share = dim.share(now);
-    dim = {f,
-           lit ? share : 0.0,
-           0,
-           now,
-           lit ? kDimsOver : Duration{},
-           lit && head.told.has_value(),
-           head.told.value_or(Joints{})};
+    const bool gently = lit && head.told.has_value();
+    dim = {f,      gently ? dim.share(now) : 0.0, 0, now, gently ? kDimsOver : Duration{},
+           gently, head.told.value_or(Joints{})};
     ++program.revision;
   } else if (!head.zone && dim.to < 1) {
     dim = {f, dim.share(now), 1, now, kLightsOver, false, {}};
     ++program.revision;
   }
-  if (!dim.held && one_posture) head.told = wanted.least;
+  if (!dim.held) head.told = wanted;
 }
 
 bool ShowController::State::dimmed_for_a_zone(Time now) const {

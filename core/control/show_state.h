@@ -37,7 +37,7 @@ struct Identification {
 struct GuardedHead {
   std::size_t fixture = 0;
   HeadWhereabouts where;
-  std::optional<Joints> told{};     ///< last, when that was one posture
+  std::optional<Joints> told{};     ///< when last looked
   std::optional<JointBox> swept{};  ///< what `zone` was worked out for
   std::optional<Joints> swept_to{};
   std::optional<std::size_t> zone{};  ///< that its beam could meet now
@@ -125,7 +125,7 @@ struct ShowController::State {
 
   // Keep-out zones (show_keep_out.cpp).
   void guard_heads(Time now);
-  void guard_head(Time now, GuardedHead& head, HeadDim& dim, const JointBox& wanted, bool lit);
+  void guard_head(Time now, GuardedHead& head, HeadDim& dim, const Joints& wanted, const Joints& at_last, bool lit);
   [[nodiscard]] bool dimmed_for_a_zone(Time now) const;
   void tell_zones(ShowStatus& status) const;
 
