@@ -9,6 +9,7 @@
 #include "drivers/dmx/open_dmx/open_dmx_driver.h"
 #include "drivers/dmx/sacn/sacn_driver.h"
 #include "drivers/dmx/udmx/udmx_driver.h"
+#include "drivers/modbus/modbus_data_loss.h"
 #include "drivers/modbus/modbus_rtu_driver.h"
 #include "drivers/modbus/modbus_tcp_driver.h"
 
@@ -17,17 +18,18 @@ namespace {
 
 // One line per driver.
 const DriverEntry kDrivers[] = {
-    {"sacn", "ANSI E1.31 over UDP, send", sacn_options(), check_sacn, make_sacn},
-    {"artnet", "Art-Net 4 over UDP, send", artnet_options(), check_artnet, make_artnet},
+    {"sacn", "ANSI E1.31 over UDP, send", sacn_options(), check_sacn, make_sacn, sacn_when_data_stops},
+    {"artnet", "Art-Net 4 over UDP, send", artnet_options(), check_artnet, make_artnet, artnet_when_data_stops},
     {"enttec_pro", "ENTTEC DMX USB Pro widget, holds its last look", enttec_pro_options(), check_enttec_pro,
-     make_enttec_pro},
+     make_enttec_pro, enttec_pro_when_data_stops},
     {"open_dmx", "ENTTEC Open DMX or FTDI cable, silent without Luxrig", open_dmx_options(), check_open_dmx,
-     make_open_dmx},
-    {"udmx", "uDMX widget, holds its last look", udmx_options(), check_udmx, make_udmx},
-    {"modbus_tcp", "Modbus TCP dimmers and luxmeters", modbus_tcp_options(), check_modbus_tcp, make_modbus_tcp},
+     make_open_dmx, open_dmx_when_data_stops},
+    {"udmx", "uDMX widget, holds its last look", udmx_options(), check_udmx, make_udmx, udmx_when_data_stops},
+    {"modbus_tcp", "Modbus TCP dimmers and luxmeters", modbus_tcp_options(), check_modbus_tcp, make_modbus_tcp,
+     modbus_when_data_stops},
     {"modbus_rtu", "Modbus RTU dimmers and luxmeters on RS-485", modbus_rtu_options(), check_modbus_rtu,
-     make_modbus_rtu},
-    {"canopen", "CiA 402 pan-tilt axes over CAN", canopen_options(), check_canopen, make_canopen},
+     make_modbus_rtu, modbus_when_data_stops},
+    {"canopen", "CiA 402 pan-tilt axes over CAN", canopen_options(), check_canopen, make_canopen, nullptr},
 };
 
 }  // namespace

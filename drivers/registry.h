@@ -8,6 +8,7 @@
 
 #include "core/rig/rig.h"
 #include "drivers/driver.h"
+#include "drivers/when_data_stops.h"
 
 namespace luxrig {
 
@@ -32,6 +33,8 @@ struct DriverEntry {
   std::vector<Problem> (*check)(const Rig& rig, std::size_t bus);
   /// requires check() to be empty.
   std::unique_ptr<Driver> (*make)(const Rig& rig, std::size_t bus, const std::optional<Redirect>& redirect);
+  /// What the lamp of a fixture on it does then; null: this bus carries no lamps.
+  WhenDataStops (*when_data_stops)(const Rig& rig, std::size_t fixture);
 };
 
 [[nodiscard]] std::span<const DriverEntry> drivers();

@@ -77,6 +77,11 @@ class GainEstimator {
   /// What corrections aim at from now on, per point.
   void set_goals(std::span<const std::optional<double>> goal_lx);
 
+  /// The most that this fixture may be asked for from now on (parked: nothing).
+  void set_max_level(std::size_t fixture, double max_level) {
+    max_level_[static_cast<Eigen::Index>(fixture)] = max_level;
+  }
+
   /// Drops what this meter taught (it is gone, or was exchanged).
   void forget(std::size_t luxmeter);
 

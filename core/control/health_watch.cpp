@@ -14,6 +14,8 @@ HealthWatch::HealthWatch(const Rig& rig)
     if (fixture.bus < fixtures_on_bus_.size()) ++fixtures_on_bus_[fixture.bus];
     if (fixture.axes && fixture.axes->bus < heads_on_bus_.size()) ++heads_on_bus_[fixture.axes->bus];
   }
+  lamp_lost_.assign(rig.fixtures.size(), false);
+  motion_lost_.assign(rig.fixtures.size(), false);
   for (const Luxmeter& luxmeter : rig.luxmeters) {
     meters_.emplace_back();
     meters_.back().name = luxmeter.name;
@@ -142,6 +144,8 @@ void HealthWatch::step(Time now) {
   }
   alarms_.clear();
   light_lost_ = false;
+  lamp_lost_.assign(bus_of_fixture_.size(), false);
+  motion_lost_.assign(bus_of_fixture_.size(), false);
   std::vector<const Health*> meter_faulted(meters_.size(), nullptr), bus_faulted(fixtures_on_bus_.size(), nullptr);
   for (const Health& health : report_) {
     if (health.life != Life::faulted) continue;
@@ -151,7 +155,14 @@ void HealthWatch::step(Time now) {
     if (known.role == Role::light_bus || known.role == Role::axes_bus || known.role == Role::meter_bus)
       bus_faulted[known.index] = &health;
     if (known.role != Role::luxmeter && known.role != Role::meter_bus) light_lost_ = true;
+    if (known.role == Role::fixture) lamp_lost_[known.index] = true;
+    if (known.role == Role::axis) motion_lost_[known.index] = true;
     alarms_.push_back(alarm_of(health, known));
+  }
+  for (std::size_t f = 0; f < bus_of_fixture_.size(); ++f) {
+    const auto dead = [&](std::size_t bus) { return bus < bus_faulted.size() && bus_faulted[bus] != nullptr; };
+    if (dead(bus_of_fixture_[f])) lamp_lost_[f] = true;
+    if (dead(motion_bus_of_fixture_[f])) motion_lost_[f] = true;
   }
   // What hangs on a dead bus is lost with it; once is enough to say so.
   std::erase_if(alarms_, [&](const Alarm& alarm) {

@@ -35,6 +35,10 @@ class HealthWatch {
 
   /// A bus or device that carries light is faulted (or one that the rig does not know).
   [[nodiscard]] bool light_lost() const { return light_lost_; }
+  /// The bus of its lamp is faulted, or its dimmer.
+  [[nodiscard]] bool lamp_lost(std::size_t fixture) const { return lamp_lost_[fixture]; }
+  /// What turns it does not hear or obey: its bus, or an axis.
+  [[nodiscard]] bool motion_lost(std::size_t fixture) const { return motion_lost_[fixture]; }
   [[nodiscard]] bool any_meter_lost() const;
   [[nodiscard]] bool meter_lost(std::size_t luxmeter) const { return meters_[luxmeter].lost; }
   [[nodiscard]] bool meter_implausible(std::size_t luxmeter) const { return !meters_[luxmeter].implausible.empty(); }
@@ -67,6 +71,7 @@ class HealthWatch {
   std::vector<Meter> meters_;
   std::vector<Health> report_;
   std::vector<Alarm> alarms_;
+  std::vector<bool> lamp_lost_, motion_lost_;  ///< per fixture
   bool light_lost_ = false;
   bool started_ = false;
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/control/devices.h"
+#include "core/control/keep_out.h"
 #include "core/rig/rig.h"
 
 namespace luxrig {
@@ -21,6 +22,8 @@ class IdentifyPattern {
   /// What it wants at `now`: its fixtures dark or bright by turns of half a second, dark first where they were bright.
   /// A head that may turn stays bright and nods by 5°, away from the nearer end of its travel. Absent once it is over.
   [[nodiscard]] DeskFrame frame_at(Time now) const;
+  /// Every posture that the first of its fixtures goes through where it nods.
+  [[nodiscard]] JointBox nodding() const { return JointBox::at(joints_.front()).joined(JointBox::at(nod_.front())); }
   void prolong(Time end) { end_ = std::max(end_, end); }
   [[nodiscard]] bool over(Time now) const { return now >= end_; }
   [[nodiscard]] const std::vector<std::size_t>& fixtures() const { return fixtures_; }

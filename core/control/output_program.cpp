@@ -105,11 +105,31 @@ bool OutputProgram::desk_has_a_say(Time now) const {
   return std::any_of(desks.begin(), desks.end(), [now](const DeskBlend& desk) { return !desk.is_own(now); });
 }
 
+double HeadDim::share(Time now) const {
+  if (now >= start + duration) return to;
+  if (now <= start) return from;
+  return from + (to - from) * (to_seconds(now - start) / to_seconds(duration));
+}
+
 void OutputProgram::levels_at(Time now, std::span<double> level) const {
   if (blackout) {
     std::fill(level.begin(), level.end(), 0.0);
     return;
   }
+  wanted_levels_at(now, level);
+  for (const HeadDim& dim : dims) {
+    if (dim.fixture < level.size()) level[dim.fixture] *= dim.share(now);
+  }
+}
+
+void OutputProgram::wanted_levels_at(Time now, std::span<double> level) const {
+  shared_levels_at(now, level);
+  const std::size_t staged = std::min(level.size(), lamp_starts.size());
+  for (std::size_t i = 0; i < staged; ++i)
+    level[i] = std::min(level[i], lamp_starts[i].ceiling(now) * std::min(at_or_zero(max_level, i), 1.0));
+}
+
+void OutputProgram::shared_levels_at(Time now, std::span<double> level) const {
   own_levels_at(now, level);
   if (desks.empty()) return;
   if (!desk_has_a_say(now)) {
@@ -132,9 +152,20 @@ void OutputProgram::levels_at(Time now, std::span<double> level) const {
 }
 
 void OutputProgram::joints_at(Time now, std::span<Joints> out) const {
+  wanted_joints_at(now, out);
+  for (const HeadDim& dim : dims) {
+    if (dim.held && dim.fixture < out.size()) out[dim.fixture] = dim.held_at;
+  }
+}
+
+void OutputProgram::wanted_joints_at(Time now, std::span<Joints> out) const {
   for (std::size_t i = 0; i < out.size(); ++i) out[i] = i < joints.size() ? joints[i] : Joints{};
   for (const DeskBlend& desk : desks) {
     if (!desk.is_own(now)) desk.turn(now, out);
+  }
+  const std::size_t known = std::min({out.size(), parked.size(), joints.size()});
+  for (std::size_t i = 0; i < known; ++i) {
+    if (parked[i] != 0) out[i] = joints[i];
   }
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/control/desk_blend.h"
+#include "core/control/startup_stages.h"
 #include "core/rig/rig.h"
 #include "core/time.h"
 
@@ -30,6 +31,18 @@ namespace luxrig {
 /// Allocates nothing. With a limit below 1e-290 lx the point is darkened.
 void scale_to_limits(const Eigen::MatrixXd& worst_lux_per_level, const Eigen::VectorXd& max_lx, std::span<double> level,
                      double relief = 0);
+
+/// A head whose beam could meet a keep-out zone: on its way to dark, dark, or on its way back. It takes light away from
+/// whoever wants it, and while `held` keeps the head where it looks, so that it is dark before it turns.
+struct HeadDim {
+  std::size_t fixture = 0;
+  double from = 1, to = 1;  ///< share of its light that goes out; linear in between
+  Time start{};
+  Duration duration{};
+  bool held = false;
+  Joints held_at;
+  [[nodiscard]] double share(Time now) const;
+};
 
 struct OutputProgram {
   std::uint64_t revision = 0;                ///< grows with each change
@@ -58,6 +71,10 @@ struct OutputProgram {
   Time heads_arrive{};
   std::vector<std::uint8_t> heads_guarded;  ///< per fixture: 1 for such a head; may be empty
 
+  std::vector<HeadDim> dims;           ///< for keep-out zones, by fixture
+  LampStarts lamp_starts;              ///< after power came; empty: nothing is staged
+  std::vector<std::uint8_t> parked{};  ///< per fixture, 1: desks do not turn it; may be empty
+
   /// Levels at `now`, per fixture. Never above max_level; never with worst_lux_per_level · level above max_lx (the
   /// fixtures that light that point are then scaled down together); what a desk wants is within both, too. Allocates
   /// nothing.
@@ -65,12 +82,16 @@ struct OutputProgram {
   void levels_at(Time now, std::span<double> level) const;
   /// Where heads shall look at `now`; joints: per fixture. Allocates nothing.
   void joints_at(Time now, std::span<Joints> joints) const;
+  /// The same but for `dims`: what they keep from happening.
+  void wanted_levels_at(Time now, std::span<double> level) const;
+  void wanted_joints_at(Time now, std::span<Joints> joints) const;
   /// Some desk has a say, or has just had it.
   [[nodiscard]] bool desk_has_a_say(Time now) const;
   [[nodiscard]] bool done(Time now) const { return now >= start + duration; }
 
  private:
   void own_levels_at(Time now, std::span<double> level) const;
+  void shared_levels_at(Time now, std::span<double> level) const;
 };
 
 }  // namespace luxrig

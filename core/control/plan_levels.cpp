@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "core/control/keep_out.h"
 #include "core/control/plan.h"
 #include "core/rig/nearest.h"
 #include "core/rig/plain_text.h"
@@ -51,6 +52,14 @@ class PlanLevels {
       if (named.size() > i && named[i]) continue;
       problem(fmt::format("/tasks: no task says what fixture \"{}\" shall do", rig.fixtures[i].name),
               "add it with a level, or solve again");
+    }
+    const KeepOutZones zones(rig);
+    for (const std::size_t f : zones.heads()) {
+      const auto zone = look.levels[f] > 0 ? zones.met(f, look.joints[f]) : std::nullopt;
+      if (zone)
+        problem(fmt::format("/tasks: fixture \"{}\" would light keep-out zone \"{}\"", rig.fixtures[f].name,
+                            zones.name(*zone)),
+                "turn it elsewhere, zoom it in, or give it level 0 (luxrig solve lights no zone)");
     }
     if (!problems_.empty()) return tl::unexpected(std::move(problems_));
     for (const Point& point : rig.points) look.goal_lx.push_back(point.goal_lx);

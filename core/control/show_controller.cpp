@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/check.h"
-#include "core/control/head_move.h"
+#include "core/control/head_travel.h"
 #include "core/control/show_state.h"
 
 namespace luxrig {
@@ -24,31 +24,6 @@ constexpr Duration kDriftCorrectionEvery = std::chrono::seconds(10);
 constexpr double kBreachSlack = 0.005;
 // Level changes smaller than half a step of a 12-bit dimmer are not worth a fade.
 constexpr double kSmallestChange = 1e-4;
-/// From the command to a head's first movement, and for its ramps.
-constexpr double kHeadDelay_s = 0.5;
-
-/// Until a fixture that moves looks there, wherever it looked before when that is not known.
-double travel_s(const Fixture& fixture, const std::optional<Joints>& from, const Joints& to) {
-  const auto way_rad = [](double to_rad, std::optional<double> from_rad, double min_rad, double max_rad) {
-    return from_rad ? std::abs(to_rad - *from_rad) : std::max(to_rad - min_rad, max_rad - to_rad);
-  };
-  const JointRange& range = fixture.range;
-  const double pan_rad =
-      way_rad(to.pan_rad, from ? std::optional(from->pan_rad) : std::nullopt, range.pan_min_rad, range.pan_max_rad);
-  const double tilt_rad =
-      way_rad(to.tilt_rad, from ? std::optional(from->tilt_rad) : std::nullopt, range.tilt_min_rad, range.tilt_max_rad);
-  if (const auto& axes = fixture.axes) {
-    return head_move(pan_rad, tilt_rad, {fixture.pan_speed_rad_s, axes->pan.acceleration_rad_s2},
-                     {fixture.tilt_speed_rad_s, axes->tilt.acceleration_rad_s2})
-        .seconds;
-  }
-  // Heads on DMX do not say how they speed up: kHeadDelay_s covers it.
-  const double longest_s = std::max(pan_rad / fixture.pan_speed_rad_s, tilt_rad / fixture.tilt_speed_rad_s);
-  if (!range.zooms()) return longest_s;
-  const double beam_rad =
-      way_rad(to.beam_rad, from ? std::optional(from->beam_rad) : std::nullopt, range.beam_min_rad, range.beam_max_rad);
-  return std::max(longest_s, beam_rad / fixture.zoom_speed_rad_s);
-}
 
 }  // namespace
 
@@ -83,6 +58,8 @@ ShowController::State::State(const Rig& rig_in, const LightModel& model)
       estimator(rig, model),
       health(rig),
       samples(rig.luxmeters.size()),
+      zones(rig),
+      powerless(rig.fixtures.size(), 0),
       measured(rig.luxmeters.size()),
       sampled_lx(rig.luxmeters.size()),
       sample_changed(rig.luxmeters.size(), false),
@@ -91,6 +68,11 @@ ShowController::State::State(const Rig& rig_in, const LightModel& model)
   for (const Fixture& fixture : rig.fixtures) {
     program.max_level.push_back(std::min(fixture.max_level, rig.limits.max_level));
     program.joints.push_back(fixture.joints);
+  }
+  model_joints = program.joints;
+  for (const std::size_t f : zones.heads()) {
+    guarded.push_back({f, HeadWhereabouts(rig.fixtures[f])});
+    program.dims.push_back({f, 0, 0, {}, {}, false, {}});  // nobody knows yet where it looks
   }
   fade(Time{}, dark, dark, 0, FadeCurve::linear);
 }
@@ -104,12 +86,14 @@ void ShowController::State::enter(Phase next, Time now) {
   phase_since = now;
 }
 
-/// As they would be without a blackout, so that what happens under it goes on from there.
-std::vector<double> ShowController::State::present_levels(Time now) const {
+/// As they would be without a blackout, so that what happens under it goes on from there. Under ceilings: also what
+/// power-up still keeps down.
+std::vector<double> ShowController::State::present_levels(Time now, bool under_ceilings) const {
   std::vector<double> level(rig.fixtures.size());
   OutputProgram lit = program;
   lit.blackout = false;
   lit.desks.clear();  // Luxrig's own, whatever a desk makes of it
+  if (!under_ceilings) lit.lamp_starts.clear();
   lit.levels_at(now, level);
   return level;
 }
@@ -172,8 +156,11 @@ bool ShowController::State::turns(std::size_t fixture) const {
 /// What it turns is dark. `moving` until the light may come back.
 void ShowController::State::take_look(Time now) {
   double wait_s = 0;
-  bool any = false;
+  bool any = false, other_light = false;
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
+    // What parks is dark: the light is as before without it.
+    const bool parks = !parking.empty() && parking[f] != 0;
+    if (rig.fixtures[f].moves && !parks && !parked(f) && !(awaited->joints[f] == model_joints[f])) other_light = true;
     if (!turns(f)) continue;
     any = true;
     wait_s = std::max(wait_s, travel_s(rig.fixtures[f], program.joints[f], awaited->joints[f]) + kHeadDelay_s);
@@ -181,14 +168,17 @@ void ShowController::State::take_look(Time now) {
     rig.fixtures[f].aim_world_m.reset();
   }
   for (std::size_t i = 0; i < rig.points.size(); ++i) rig.points[i].goal_lx = awaited->goal_lx[i];
-  if (any) {
+  // From the way to where it was told to look before: what is left of that comes first.
+  if (any) arrive = std::max(arrive, now) + from_seconds(wait_s);
+  if (other_light) {
     // Gains would still hold; what is wrong locally would not, and telling them apart takes readings.
     estimator = GainEstimator(rig, awaited->model);
     std::fill(measured.begin(), measured.end(), std::nullopt);
-    arrive = std::max(arrive, now + from_seconds(wait_s));
+    model_joints = awaited->joints;
   } else {
     estimator.set_goals(awaited->goal_lx);
   }
+  finish_parking();
   awaited.reset();
 }
 
@@ -200,13 +190,15 @@ void ShowController::State::start_cue(Time now, std::vector<double> levels) {
   why.clear();
   breaches.clear();
   if (failing && phase != Phase::idle) return;  // frozen or safe: goes there when everything is back
-  std::vector<double> present = present_levels(now);
+  // Ceilings stay, and a fade that began below one would add to what it adds.
+  std::vector<double> present = present_levels(now, false);
   if (awaited) {
     std::vector<double> without = present;
     bool any = false, lit = false;
     for (std::size_t f = 0; f < without.size(); ++f) {
-      if (!turns(f)) continue;
-      any = true;
+      const bool parks = !parking.empty() && parking[f] != 0;
+      if (!turns(f) && !parks) continue;
+      any = any || !parks;
       lit = lit || without[f] > 0;
       without[f] = 0;
     }
@@ -222,12 +214,13 @@ void ShowController::State::start_cue(Time now, std::vector<double> levels) {
     take_look(now);
   }
   cue = estimator.within_limits(*cue, now);
-  fade(now, std::move(present), *cue, rig.control.fade_s, rig.control.fade_curve);
+  if (!start_lamps(now, *cue)) fade(now, std::move(present), *cue, rig.control.fade_s, rig.control.fade_curve);
   enter(Phase::fading, now);
 }
 
 void ShowController::State::freeze(Time now) {
   const std::vector<double> present = present_levels(now);
+  program.lamp_starts.clear();
   fade(now, present, present, 0, FadeCurve::linear);
   converged = false;
   enter(Phase::frozen, now);
@@ -236,7 +229,9 @@ void ShowController::State::freeze(Time now) {
 void ShowController::State::resume(Time now) { start_cue(now, *cue); }
 
 void ShowController::State::fade_to_safe(Time now) {
-  fade(now, present_levels(now), estimator.within_limits(safe_levels(), now), rig.safe.fade_s, rig.control.fade_curve);
+  std::vector<double> present = present_levels(now);
+  program.lamp_starts.clear();  // the safe look waits for nothing
+  fade(now, std::move(present), estimator.within_limits(safe_levels(), now), rig.safe.fade_s, rig.control.fade_curve);
   converged = false;
   breaches.clear();
   enter(Phase::safe_fading, now);
@@ -245,7 +240,7 @@ void ShowController::State::fade_to_safe(Time now) {
 /// When every living meter has its sample: learn from it. Lost ones take part as soon as they have one, since a
 /// believable sample is how a meter that was not believed comes back.
 void ShowController::State::take_sample(Time now) {
-  if (program.blackout || shared || !program.done(now) || health.light_lost())
+  if (program.blackout || shared || !program.done(now) || health.light_lost() || dimmed_for_a_zone(now))
     return;  // not the light that was asked for
   if (phase != Phase::measuring && now - sampled_at < kSampleEvery) return;
   std::vector<LuxReading> readings;
@@ -409,7 +404,7 @@ std::vector<double> ShowController::State::wanted_levels(std::span<const double>
 
 void ShowController::apply(Time now, std::span<const double> levels) {
   Look look;
-  look.joints = state_->program.joints;
+  look.joints = state_->model_joints;
   for (const Point& point : state_->rig.points) look.goal_lx.push_back(point.goal_lx);
   apply(now, levels, std::move(look));
 }
@@ -419,17 +414,11 @@ void ShowController::apply(Time now, std::span<const double> levels, Look look) 
   now = state.at_least_last(now);
   LUXRIG_CHECK(look.joints.size() == state.rig.fixtures.size() && look.goal_lx.size() == state.rig.points.size(),
                "a look of another rig");
+  state.unpark();
   std::vector<double> wanted = state.wanted_levels(levels);
   state.asked_safe = false;
   state.afresh = true;
-  if (!std::exchange(state.turned, true)) {
-    // Nothing has shone yet, so heads may turn from wherever they are.
-    double wait_s = 0;
-    for (std::size_t f = 0; f < state.rig.fixtures.size(); ++f)
-      if (const Fixture& fixture = state.rig.fixtures[f]; fixture.moves)
-        wait_s = std::max(wait_s, travel_s(fixture, std::nullopt, look.joints[f]) + kHeadDelay_s);
-    state.arrive = now + from_seconds(wait_s);
-  }
+  state.first_turn(now, look.joints);
   state.awaited = std::move(look);
   state.start_cue(now, std::move(wanted));
 }
@@ -483,10 +472,16 @@ void ShowController::step(Time now) {
   state.take_sample(now);
   state.look_at_failures(now);
   state.advance(now);
+  state.watch_power(now);
+  state.guard_heads(now);
 }
 
 std::vector<double> ShowController::safe_look(Time now) const {
-  return state_->estimator.within_limits(state_->safe_levels(), now);
+  std::vector<double> level = state_->estimator.within_limits(state_->safe_levels(), now);
+  for (const HeadDim& dim : state_->program.dims) {
+    if (dim.to == 0) level[dim.fixture] = 0;
+  }
+  return level;
 }
 
 const OutputProgram& ShowController::program() const { return state_->program; }

@@ -63,6 +63,8 @@ struct FixtureStatus {
   Joints joints;  ///< where it shall look
   double level = 0, drive = 0, target_level = 0;
   double gain = 1, gain_standard_error = 0;  ///< estimated true output over rated
+  bool parked = false;                       ///< dark where it rests, or on the way there, until the next apply
+  bool kept_dark = false;                    ///< its beam could meet a keep-out zone
   bool identified = false;                   ///< blinks or nods, so that a person sees which one it is
 };
 
@@ -83,6 +85,7 @@ struct ShowStatus {
   int round = 0;           ///< correction rounds made since the last cue
   bool converged = false;  ///< every metered goal met, or as near as limits allow
   bool blackout = false;
+  bool resting = false;  ///< heads that were parked have got there
   std::vector<FixtureStatus> fixtures;
   std::vector<PointStatus> points;
   std::vector<std::optional<LuxReading>> luxmeters;  ///< last believed reading
@@ -113,6 +116,11 @@ class ShowController {
   /// Fades to the safe look and stays there until the next apply (a clean stop).
   void go_safe(Time now);
 
+  /// These heads (none named: all that have a place to rest) go dark, then to where they rest, and stay so until the
+  /// next apply; other light stays. A desk neither lights nor turns them, but for one in standby, which drives them
+  /// itself. Refused for a fixture without such a place, where no head has one, and after go_safe.
+  Result<void> park(Time now, std::span<const std::size_t> fixtures);
+
   /// From now on a lighting desk has a say in these fixtures, by these rules. Returns the index for desk(). Limits hold
   /// for what it wants, too. While it has a say no meter is believed, since the light is not what was worked out.
   std::size_t add_desk(const DeskRules& rules, const DeskPart& part);
@@ -132,7 +140,8 @@ class ShowController {
   /// Advances the state machine; call at 20 Hz or more. Corrections are solved here (milliseconds).
   void step(Time now);
 
-  /// The levels of the safe look, within limits. Takes milliseconds.
+  /// The levels of the safe look, within limits; a head whose beam could meet a keep-out zone is dark in it. Takes
+  /// milliseconds.
   [[nodiscard]] std::vector<double> safe_look(Time now) const;
 
   /// Hand it to the output thread whenever its revision has changed.

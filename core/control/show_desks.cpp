@@ -1,5 +1,7 @@
 /// What lighting desks that have a say in the light mean for the show.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -116,6 +118,11 @@ Result<void> ShowController::State::identify(Time now, std::size_t fixture, Dura
   if (program.blackout) return refusal("a blackout lies over everything: lift it first");
   if (phase == Phase::idle) return refusal("nothing is lit yet: apply a plan first");
   const std::vector<std::size_t> fixtures = housing_of(rig, fixture);
+  if (parked(fixture)) return refusal("it is parked: apply a plan first");
+  std::vector<Joints> looks(rig.fixtures.size());
+  program.joints_at(now, looks);
+  if (const auto zone = zones.met(fixture, looks[fixture]))
+    return refusal(fmt::format("it looks into keep-out zone \"{}\": turn it elsewhere first", zones.name(*zone)));
   auto one = std::find_if(identified.begin(), identified.end(),
                           [&](const Identification& other) { return other.pattern.fixtures() == fixtures; });
   if (one != identified.end() && !one->pattern.over(now)) {
@@ -128,6 +135,9 @@ Result<void> ShowController::State::identify(Time now, std::size_t fixture, Dura
   std::vector<Joints> joints(rig.fixtures.size());
   program.levels_at(now, level);
   program.joints_at(now, joints);
+  // One that would nod into a zone blinks instead.
+  IdentifyPattern nods(rig, fixtures, level, joints, settings.desk_may_turn, now, how_long);
+  settings.desk_may_turn = settings.desk_may_turn && !zones.may_meet(fixture, nods.nodding());
   IdentifyPattern pattern(rig, fixtures, level, joints, settings.desk_may_turn, now, how_long);
   if (one == identified.end()) {
     const std::size_t desk = add_desk(std::move(settings), "");

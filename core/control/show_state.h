@@ -1,5 +1,6 @@
 #pragma once
-/// What a ShowController keeps; private to show_controller.cpp (what happens) and show_status.cpp (what is told).
+/// What a ShowController keeps; private to show_controller.cpp and its neighbours show_….cpp (what happens), and
+/// show_status.cpp (what is told).
 
 #include <optional>
 #include <string>
@@ -7,6 +8,7 @@
 
 #include "core/control/desk_follower.h"
 #include "core/control/gain_estimator.h"
+#include "core/control/head_whereabouts.h"
 #include "core/control/health_watch.h"
 #include "core/control/identify.h"
 #include "core/control/meter_samples.h"
@@ -31,6 +33,16 @@ struct Identification {
   IdentifyPattern pattern;
 };
 
+/// A head that keep-out zones hold for.
+struct GuardedHead {
+  std::size_t fixture = 0;
+  HeadWhereabouts where;
+  std::optional<Joints> told{};     ///< when last looked
+  std::optional<JointBox> swept{};  ///< what `zone` was worked out for
+  std::optional<Joints> swept_to{};
+  std::optional<std::size_t> zone{};  ///< that its beam could meet now
+};
+
 struct ShowController::State {
   State(const Rig& rig, const LightModel& model);
 
@@ -39,6 +51,13 @@ struct ShowController::State {
   HealthWatch health;
   MeterSamples samples;
   OutputProgram program;
+
+  KeepOutZones zones;
+  std::vector<GuardedHead> guarded;     ///< one for each of program.dims
+  std::vector<Joints> model_joints;     ///< per fixture: where heads look in the estimator's model
+  std::vector<std::uint8_t> parking;    ///< per fixture, 1: parks when it is dark; empty: none
+  std::vector<std::uint8_t> powerless;  ///< per fixture, 1: its lamp is lost, and starts as after a power cut
+  bool power_came = false;              ///< light has been asked for once
 
   std::vector<DeskFollower> desks;      ///< one for each of program.desks
   std::vector<std::string> desk_names;  ///< of the rig's; those that identify fixtures have none
@@ -73,7 +92,7 @@ struct ShowController::State {
   // What happens (show_controller.cpp).
   [[nodiscard]] Time at_least_last(Time now);
   void enter(Phase next, Time now);
-  [[nodiscard]] std::vector<double> present_levels(Time now) const;
+  [[nodiscard]] std::vector<double> present_levels(Time now, bool under_ceilings = true) const;
   void fade(Time now, std::vector<double> from, std::vector<double> to, double seconds, FadeCurve curve);
   void guard(Time now, const std::vector<double>& from, const std::vector<double>& to);
   void start_cue(Time now, std::vector<double> levels);
@@ -103,6 +122,27 @@ struct ShowController::State {
                                                    const std::vector<std::size_t>& fixtures) const;
   void hear_desk(Time now, std::size_t index, const DeskFrame& frame);
   Result<void> identify(Time now, std::size_t fixture, Duration how_long);
+
+  // Keep-out zones (show_keep_out.cpp).
+  void guard_heads(Time now);
+  void guard_head(Time now, GuardedHead& head, HeadDim& dim, const Joints& wanted, const Joints& at_last, bool lit);
+  [[nodiscard]] bool dimmed_for_a_zone(Time now) const;
+  void tell_zones(ShowStatus& status) const;
+
+  // Parking (show_park.cpp).
+  Result<void> park(Time now, std::span<const std::size_t> fixtures);
+  void unpark();
+  [[nodiscard]] bool parked(std::size_t fixture) const {
+    return !program.parked.empty() && program.parked[fixture] != 0;
+  }
+  void finish_parking();
+  /// Nobody knows yet where heads look: light waits for their longest way there, and for their finding their zero.
+  void first_turn(Time now, std::span<const Joints> joints);
+
+  // Power (show_startup.cpp).
+  /// Levels as they come on the first time, by stages; false when nothing is staged.
+  bool start_lamps(Time now, const std::vector<double>& levels);
+  void watch_power(Time now);
 
   // What is known (show_status.cpp).
   [[nodiscard]] std::vector<double> safe_levels() const;

@@ -65,8 +65,11 @@ std::string ShowController::State::detail(Time now) const {
       text = "heads go dark before they turn";
       break;
     case Phase::fading:
-      text = now < program.start ? fmt::format("heads turn, light in {:.1f} s", to_seconds(program.start - now))
-                                 : std::string("fading to the plan");
+      text =
+          now >= program.start && now < all_up(program.lamp_starts)
+              ? fmt::format("lamps come on by stages, all in {:.1f} s", to_seconds(all_up(program.lamp_starts) - now))
+          : now < program.start ? fmt::format("heads turn, light in {:.1f} s", to_seconds(program.start - now))
+                                : std::string("fading to the plan");
       break;
     case Phase::settling:
       text = "waiting for lamps and meters to settle";
@@ -139,6 +142,9 @@ ShowStatus ShowController::State::status(Time now) const {
   for (const Identification& one : identified) {
     for (const std::size_t f : one.pattern.fixtures()) status.fixtures[f].identified = !one.pattern.over(now);
   }
+  for (std::size_t f = 0; f < rig.fixtures.size(); ++f)
+    status.fixtures[f].parked = parked(f) || (!parking.empty() && parking[f] != 0);
+  status.resting = !program.parked.empty() && parking.empty() && now >= arrive;
   const bool settled = !program.blackout && program.done(now);
   for (std::size_t p = 0; p < rig.points.size(); ++p) {
     PointStatus point;
@@ -169,6 +175,7 @@ ShowStatus ShowController::State::status(Time now) const {
                      point.name, breach.most_lx, *point.max_lx),
          breach.since});
   }
+  tell_zones(status);
   for (std::size_t d = 0; d < desks.size(); ++d) {
     if (desk_names[d].empty()) continue;
     const DeskFollower& desk = desks[d];

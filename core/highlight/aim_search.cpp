@@ -23,8 +23,9 @@ constexpr double kWidestStep_rad = rad_from_deg(20);
 std::optional<Joints> joints_towards(const HangingHead& head, const Vec3& direction, std::size_t zoom) {
   auto joints = head.moves ? pan_tilt_towards(head.world_from_mount, direction, head.range, head.present)
                            : std::optional(head.present);
-  if (joints) joints->beam_rad = head.zoom[zoom].beam_rad;
-  return joints;
+  if (!joints) return joints;
+  joints->beam_rad = head.zoom[zoom].beam_rad;
+  return may_light(head, *joints) ? joints : std::nullopt;
 }
 
 /// Two unit vectors at right angles to a unit one and to each other.
@@ -112,6 +113,7 @@ class AimSearch {
       look.columns.emplace_back();
       if (start == Start::dark || columns_[k].empty()) continue;
       if (start == Start::present) {
+        if (!may_light(state_.heads[k], look.settings[k].joints)) continue;
         look.columns[k] = judge_.column(state_.heads[k], k, look.settings[k]);
       } else {
         look.settings[k] = columns_[k].front().setting;
@@ -119,7 +121,7 @@ class AimSearch {
       }
     }
     for (std::size_t k = 0; start != Start::dark && k < count; ++k) {
-      if (columns_[k].empty()) continue;
+      if (columns_[k].empty() || !may_light(state_.heads[k], look.settings[k].joints)) continue;
       const AimSum others = start == Start::bright ? without(look, k) : judge_.objective->nothing();
       // Of a ratio between heads nothing can be said while the others are dark.
       const bool alone = start != Start::bright;
@@ -202,6 +204,7 @@ class AimSearch {
       Candidate zoomed{was, {}};
       zoomed.setting.zoom = zoom;
       zoomed.setting.joints.beam_rad = head.zoom[zoom].beam_rad;
+      if (!may_light(head, zoomed.setting.joints)) continue;
       ways.push_back(std::move(zoomed));
     }
     if (head.moves) {
@@ -276,7 +279,9 @@ std::vector<Vec3> voted_aims(const HangingHead& head, double narrowest_rad, cons
   }
   std::stable_sort(cells.begin(), cells.end(), [](const Cell& a, const Cell& b) { return a.votes > b.votes; });
   const auto can = [&](const Vec3& direction) {
-    return pan_tilt_towards(head.world_from_mount, direction, head.range, head.present).has_value();
+    for (std::size_t zoom = 0; zoom < head.zoom.size(); ++zoom)
+      if (joints_towards(head, direction, zoom)) return true;
+    return false;
   };
   for (const Cell& one : cells)
     if (aims.size() + 1 < most && can(one.sum)) aims.push_back(one.sum.normalized());

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <vector>
 
 #include "core/photometry/intensity.h"
@@ -27,6 +28,8 @@ struct HangingHead {
   std::vector<ZoomStop> zoom;  ///< at least one; the first as it is now
   double max_level = 1;        ///< 0…1
   double watts = 0;            ///< at full level
+  /// Whether it may be lit looking so; only when it moves. Empty: anywhere.
+  std::function<bool(const Joints&)> may_light{};
 };
 
 struct HeadSetting {
@@ -40,6 +43,10 @@ struct HeadSetting {
   return std::max({std::abs(to.pan_rad - from.pan_rad) / head.pan_speed_rad_s,
                    std::abs(to.tilt_rad - from.tilt_rad) / head.tilt_speed_rad_s,
                    std::abs(to.beam_rad - from.beam_rad) / head.zoom_speed_rad_s});
+}
+
+[[nodiscard]] inline bool may_light(const HangingHead& head, const Joints& joints) {
+  return !head.moves || !head.may_light || head.may_light(joints);
 }
 
 /// Its lamp, looking so.

@@ -147,17 +147,34 @@ void RigReader::read_axes(Section& s, Fixture& fixture) {
   fixture.moves = true;
 }
 
-void RigReader::check_joints(Section& s, const Fixture& fixture) {
+void RigReader::check_joints(Section& s, const Fixture& fixture, const Joints& at, const std::string& prefix) {
   if (!fixture.moves) return;
-  const auto check = [&](std::string_view key, double at_rad, double min_rad, double max_rad) {
+  const auto check = [&](const std::string& key, double at_rad, double min_rad, double max_rad) {
     if (at_rad >= min_rad - 1e-9 && at_rad <= max_rad + 1e-9) return;
     problems.add(s.place_of(key),
                  fmt::format("{} {:g} is outside the travel of {:g} to {:g}", key, deg_from_rad(at_rad),
                              deg_from_rad(min_rad), deg_from_rad(max_rad)),
                  "turn it within its travel, or correct the travel");
   };
-  check("pan_deg", fixture.joints.pan_rad, fixture.range.pan_min_rad, fixture.range.pan_max_rad);
-  check("tilt_deg", fixture.joints.tilt_rad, fixture.range.tilt_min_rad, fixture.range.tilt_max_rad);
+  check(prefix + "pan_deg", at.pan_rad, fixture.range.pan_min_rad, fixture.range.pan_max_rad);
+  check(prefix + "tilt_deg", at.tilt_rad, fixture.range.tilt_min_rad, fixture.range.tilt_max_rad);
+}
+
+void RigReader::read_park(Section& s, Fixture& fixture) {
+  if (!fixture.moves) {
+    for (const char* key : {"park_pan_deg", "park_tilt_deg", "reset_s"})
+      s.refuse(key, fmt::format("{} has no effect: the fixture does not move", key), "remove it");
+    return;
+  }
+  s.read("reset_s", fixture.reset_s);
+  if (!s.has("park_pan_deg") && !s.has("park_tilt_deg")) return;
+  Joints park;
+  park.beam_rad = fixture.joints.beam_rad;
+  const bool pan = s.read_deg("park_pan_deg", park.pan_rad) || !s.has("park_pan_deg");
+  const bool tilt = s.read_deg("park_tilt_deg", park.tilt_rad) || !s.has("park_tilt_deg");
+  if (!pan || !tilt) return;
+  check_joints(s, fixture, park, "park_");
+  fixture.park = park;
 }
 
 void RigReader::read_aim(Section& s, Fixture& fixture) {
@@ -177,7 +194,7 @@ void RigReader::read_aim(Section& s, Fixture& fixture) {
   } else {
     const bool pan = s.read_deg("pan_deg", fixture.joints.pan_rad) || !s.has("pan_deg");
     const bool tilt = s.read_deg("tilt_deg", fixture.joints.tilt_rad) || !s.has("tilt_deg");
-    if (pan && tilt) check_joints(s, fixture);
+    if (pan && tilt) check_joints(s, fixture, fixture.joints, "");
     return;
   }
   const Vec3 direction_world = *fixture.aim_world_m - fixture.world_from_mount.translation_m;
@@ -246,7 +263,9 @@ void RigReader::read_fixtures() {
       read_travel(s, stated, fixture);
       read_zoom(s, slot_owner ? &rig.luminaires[fixture.luminaire] : nullptr, stated, fixture);
       read_aim(s, fixture);
+      read_park(s, fixture);
     }
+    s.read("stage", fixture.stage);
     if (of_mode && of_mode->dimmer_curve) fixture.dimmer_curve = *of_mode->dimmer_curve;
 
     s.read_choice("dimmer_curve", fixture.dimmer_curve);

@@ -197,6 +197,9 @@ struct Fixture {
   DimmerCurve dimmer_curve = DimmerCurve::linear;
   double max_level = 1.0;            ///< 0…1; no output ever above
   std::optional<double> safe_level;  ///< overrides [safe] level
+  std::optional<Joints> park{};      ///< where it rests; only when it moves
+  int stage = 1;                     ///< of power-up; the lowest first
+  double reset_s = 0;                ///< after power comes it finds its zero for so long; only when it moves
   Place place;
 
   [[nodiscard]] Pose world_from_lamp() const { return luxrig::world_from_lamp(world_from_mount, joints, roll_rad); }
@@ -385,6 +388,17 @@ struct MountingSpec {
   Place place;
 };
 
+/// A region that no lit beam of a head may meet: an audience, a camera, a mirror. Box or sphere.
+struct KeepOut {
+  std::string name;
+  std::optional<Eigen::AlignedBox3d> box_world_m;  ///< else the sphere
+  Vec3 centre_world_m = Vec3::Zero();
+  double radius_m = 0;                  ///< > 0
+  double margin_rad = rad_from_deg(2);  ///< beside the beam's field angle
+  std::vector<std::size_t> heads;       ///< fixtures that it holds for, rising; all of them move
+  Place place;
+};
+
 struct Limits {
   double max_level = 1.0;          ///< over all fixtures
   double open_loop_margin = 0.25;  ///< share of a max_lx kept free until a meter has confirmed the model there
@@ -414,6 +428,14 @@ struct SafeSpec {
   Place place;
 };
 
+/// How light comes on after power does. Nothing is staged unless something is said.
+struct StartupSpec {
+  double stage_s = 0;                       ///< from the beginning of one stage to that of the next
+  std::optional<double> max_watts_per_s{};  ///< added, of all fixtures together
+  bool after_loss = false;                  ///< a device that was lost and is back had no power, and starts so, too
+  Place place;
+};
+
 /// Light from outside. Directions are resolved: north and the time of day have had their say.
 struct Daylight {
   enum class SkyKind { none, uniform, overcast, clear, general };
@@ -427,6 +449,7 @@ struct Daylight {
 
 struct DaemonSpec {
   int http_port = 9620;  ///< on loopback
+  bool park_at_end = false;
   Place place;
 };
 
@@ -443,9 +466,11 @@ struct Rig {
   std::vector<Point> points;
   std::vector<Task> tasks;
   MountingSpec mounting;
+  std::vector<KeepOut> keep_outs;
   Limits limits;
   ControlSpec control;
   SafeSpec safe;
+  StartupSpec startup;
   DaemonSpec daemon;
   std::vector<Problem> notes;  ///< legal, but worth a look (a goal above its limit, an odd IES file)
 

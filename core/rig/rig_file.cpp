@@ -152,6 +152,7 @@ void RigReader::read_settings() {
   each(root, "daemon", [&](Section& s) {
     rig.daemon.place = s.place();
     s.read("http_port", rig.daemon.http_port);
+    s.read("park_at_end", rig.daemon.park_at_end);
   });
 }
 
@@ -168,6 +169,8 @@ void RigReader::read_all() {
   read_cameras();
   patches.report(rig.buses, problems);
   read_mounting();
+  read_keep_outs();
+  read_startup();
   read_tasks();  // which name luminaires, fixtures, objects and points, and need goals
 }
 

@@ -90,6 +90,8 @@ struct RigReader {
   void read_cameras();
   void read_picture_taking(Section& section, PictureTaking& taking);
   void read_mounting();
+  void read_keep_outs();
+  void read_startup();
   void read_settings();
 
   /// Every entry of a list section, or the one of a plain section, in order of the file. A section of the wrong shape
@@ -131,7 +133,9 @@ struct RigReader {
   /// Pan and tilt that are drives on a bus of their own.
   void read_axes(Section& section, Fixture& fixture);
   void read_aim(Section& section, Fixture& fixture);
-  void check_joints(Section& section, const Fixture& fixture);
+  /// Of keys "pan_deg" and "tilt_deg", with `prefix` before them.
+  void check_joints(Section& section, const Fixture& fixture, const Joints& at, const std::string& prefix);
+  void read_park(Section& section, Fixture& fixture);
 };
 
 }  // namespace luxrig

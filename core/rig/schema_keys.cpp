@@ -72,9 +72,17 @@ constexpr SectionSpec kSections[] = {
      "Where a `placement` or `highlight` task may hang lights. Without it: in the air within the scene's bounding box, "
      "0.1 m off "
      "everything. Places behind closed surfaces, from which no light gets to a point with a goal, cost nothing."},
+    {"keep_out", true, 1000, false,
+     "A region that no lit beam of a head may meet: an audience, a camera, a mirror. A box (`box_m`), or a sphere "
+     "round "
+     "`centre_m`. The beam counts to its field angle, zoomed as it is, through walls, and however far. What happens "
+     "then: core/control/README.md."},
     {"limits", false, 1, false, "What holds for the whole rig."},
     {"control", false, 1, false, "How looks change, and how readings correct them."},
     {"safe", false, 1, false, "What the light does when something fails."},
+    {"startup", false, 1, false,
+     "How light comes on the first time after the daemon has started, so that lamps do not all strike in one instant. "
+     "Without it nothing is staged. Blackout and the safe look never wait for it."},
     {"daemon", false, 1, false, "The program that keeps the rig running."},
     {"device", false, 1, false,
      "In a register map, not in a rig file: a product with Modbus registers, its limits, and what it does when data "
@@ -288,6 +296,12 @@ constexpr KeySpec kRigKeys[] = {
      {0, 3600, true},
      "",
      "how fast its beam angle changes; only with a zoom slot, or a personality whose zoom is used"},
+    {"fixture", "park_pan_deg", number, "°", kNone, kAngle, "",
+     "pan at which it rests (luxrig park); left out, 0 where `park_tilt_deg` is given, else it has no place to rest"},
+    {"fixture", "park_tilt_deg", number, "°", kNone, kAngle, "", "tilt at which it rests; the same"},
+    {"fixture", "reset_s", number, "s", "0", kSeconds, "",
+     "how long after power comes a moving head finds its zero: its first light waits for that and for its way"},
+    {"fixture", "stage", whole_number, "", "1", {1, 1000}, "", "of power-up (`[startup]`): lower stages first"},
     {"fixture", "axes_bus", text, "", kNone, kAny, "",
      "name of the `[[bus]]` on which drives of their own (CiA 402) turn pan and tilt; left out, they are slots of its "
      "address, or it does not move"},
@@ -546,6 +560,21 @@ constexpr KeySpec kRigKeys[] = {
      "of the lattice of places that are tried first; lights then move freely. Left out, about 20 000 places in the "
      "air, 5 000 off surfaces; at most 1 000 000"},
 
+    {"keep_out", "name", name, "", kRequired, kAny, "", "what it is called in messages"},
+    {"keep_out", "box_m", box, "m", kNone, kPosition, "", "two opposite corners; either this or `centre_m`"},
+    {"keep_out", "centre_m", vector3, "m", kNone, kPosition, "", "middle of a sphere, with `radius_m`"},
+    {"keep_out", "radius_m", number, "m", kNone, kSize, "", "of that sphere"},
+    {"keep_out", "heads", texts, "", kNone, kAny, "",
+     "heads that it holds for, by name; `*` stands for any letters, `?` for one; left out, all that move"},
+    {"keep_out",
+     "margin_deg",
+     number,
+     "°",
+     "2",
+     {0, 90},
+     "",
+     "how far the edge of a beam stays away from it: for what a head is off its aim, and light past the field angle"},
+
     {"limits", "max_level", number, "", "1", kShare, "", "most that any fixture may ever give, of its rated flux"},
     {"limits",
      "open_loop_margin",
@@ -594,7 +623,24 @@ constexpr KeySpec kRigKeys[] = {
     {"safe", "on_meter_loss", yes_no, "", "true", kAny, "",
      "whether a lost meter also leads here; else it only stops the correction"},
 
+    {"startup", "stage_s", number, "s", "0", kSeconds, "",
+     "from the beginning of one `stage` of fixtures to that of the next; each comes on over `fade_s` of `[control]`"},
+    {"startup",
+     "max_watts_per_s",
+     number,
+     "W/s",
+     kNone,
+     {10, 1e9},
+     "",
+     "most electrical power added in a second: fixtures come on one after the other, by stage, then as they stand in "
+     "this file; every luminaire of theirs must have `watts`"},
+    {"startup", "after_loss", yes_no, "", "false", kAny, "",
+     "whether a device that was lost and is back starts so, too, as it does where losses are power cuts. It is dark "
+     "first, then, even if it had held its light"},
+
     {"daemon", "http_port", whole_number, "", "9620", {1, 65535}, "", "port of the page and the API, on loopback"},
+    {"daemon", "park_at_end", yes_no, "", "false", kAny, "",
+     "whether heads go dark and to where they rest before the daemon ends in order"},
 
     {"device", "name", name, "", kRequired, kAny, "", "maker and product"},
     {"device", "source", text, "", kRequired, kAny, "", "the public document that the map was made from"},

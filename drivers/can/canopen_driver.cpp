@@ -330,4 +330,10 @@ std::unique_ptr<Driver> make_canopen(const Rig& rig, std::size_t bus, const std:
       can::make_can_socket({string_option(rig.buses[bus], canopen_options(), "interface"), ids_to_hear(rig, bus)}));
 }
 
+AxesWithoutData canopen_axes_without_data(const Rig& rig, std::size_t fixture) {
+  const cia402::AxesOptions options = axes_options(rig.buses[rig.fixtures[fixture].axes->bus]);
+  return {!options.hold_on_stop, to_seconds(3 * options.heartbeat),  // as 1016 is set
+          "CiA 301: 1016, 1029; CiA 402: 6007, 605A"};
+}
+
 }  // namespace luxrig

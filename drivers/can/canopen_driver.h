@@ -12,6 +12,8 @@ namespace luxrig {
 
 [[nodiscard]] std::span<const OptionDoc> canopen_options();
 [[nodiscard]] std::vector<Problem> check_canopen(const Rig& rig, std::size_t bus);
+/// Of a head whose axes are on such a bus.
+[[nodiscard]] AxesWithoutData canopen_axes_without_data(const Rig& rig, std::size_t fixture);
 /// `redirect`: a bus in datagrams (can_datagrams.h) in place of the interface.
 [[nodiscard]] std::unique_ptr<Driver> make_canopen(const Rig& rig, std::size_t bus,
                                                    const std::optional<Redirect>& redirect);

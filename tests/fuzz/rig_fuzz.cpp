@@ -1,10 +1,12 @@
 // Any bytes as a rig file, in a folder without other files: never a crash; a Rig that keeps its promises, or problems
 // that can be shown to a person.
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
 
 #include "core/check.h"
+#include "core/control/keep_out.h"
 #include "core/rig/plain_text.h"
 #include "core/rig/rig_file.h"
 #include "core/transport/rig_transport.h"
@@ -42,6 +44,23 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     LUXRIG_CHECK(fixture.world_from_lamp().rotation.allFinite(), "{}", fixture.name);
     LUXRIG_CHECK(fixture.world_from_mount.translation_m.allFinite(), "{}", fixture.name);
     LUXRIG_CHECK(!fixture.moves || (fixture.pan_speed_rad_s > 0 && fixture.tilt_speed_rad_s > 0), "{}", fixture.name);
+  }
+  for (const luxrig::Fixture& fixture : rig->fixtures) {
+    LUXRIG_CHECK(fixture.stage >= 1 && fixture.reset_s >= 0 && (fixture.moves || !fixture.park), "{}", fixture.name);
+    LUXRIG_CHECK(!fixture.park || (fixture.park->pan_rad >= fixture.range.pan_min_rad - 1e-9 &&
+                                   fixture.park->pan_rad <= fixture.range.pan_max_rad + 1e-9),
+                 "{}", fixture.name);
+  }
+  for (const luxrig::KeepOut& zone : rig->keep_outs) {
+    LUXRIG_CHECK(zone.box_world_m ? !zone.box_world_m->isEmpty() : zone.radius_m > 0, "{}", zone.name);
+    LUXRIG_CHECK(!zone.heads.empty() && std::is_sorted(zone.heads.begin(), zone.heads.end()), "{}", zone.name);
+    for (const std::size_t head : zone.heads) LUXRIG_CHECK(rig->fixtures.at(head).moves, "{}", zone.name);
+  }
+  const luxrig::KeepOutZones zones(*rig);
+  for (const std::size_t head : zones.heads()) {
+    const luxrig::Joints& looks = rig->fixtures[head].joints;
+    LUXRIG_CHECK(!zones.met(head, looks) || zones.may_meet(head, luxrig::JointBox::at(looks)), "{}",
+                 rig->fixtures[head].name);
   }
   for (const luxrig::Luxmeter& meter : rig->luxmeters) {
     LUXRIG_CHECK(meter.bus < rig->buses.size(), "{}", meter.name);

@@ -5,10 +5,12 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
+#include "core/control/keep_out.h"
 #include "core/photometry/beam.h"
 #include "core/rig/personality/personality.h"
 #include "core/rig/register_map/register_map.h"
 #include "drivers/registry.h"
+#include "drivers/when_data_stops.h"
 #include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
 #include "tools/luxrig/table.h"
@@ -168,6 +170,35 @@ void print_register_maps(const Rig& rig) {
   }
 }
 
+/// What each output does without Luxrig.
+void print_outputs(const Rig& rig) {
+  fmt::print("\nwhen data stops (Luxrig dies and no guardian stands in for it, or a cable is cut):\n\n");
+  Table table({"fixture", "bus", "its lamp", "says who"});
+  for (const OutputWithoutData& output : outputs_without_data(rig)) {
+    const Fixture& fixture = rig.fixtures[output.fixture];
+    table.row({fixture.name, rig.buses[fixture.bus].name, told(output.lamp), output.lamp.by});
+    if (output.axes) table.row({"", rig.buses[fixture.axes->bus].name, told(*output.axes), output.axes->by});
+  }
+  fmt::print(
+      "{}\nWith a guardian (luxrigd, not with --no-guardian): held for {:g} s, then the safe look over {:g} s, for as "
+      "long as the guardian lives.\n",
+      table.text(), rig.safe.hold_s, rig.safe.fade_s);
+}
+
+nlohmann::json outputs_json(const Rig& rig) {
+  nlohmann::json all = nlohmann::json::array();
+  for (const OutputWithoutData& output : outputs_without_data(rig)) {
+    nlohmann::json one = {{"fixture", rig.fixtures[output.fixture].name},
+                          {"without_data", name_of(output.lamp.does)},
+                          {"by", output.lamp.by}};
+    if (output.lamp.after_s) one["after_s"] = *output.lamp.after_s;
+    if (output.axes)
+      one["axes"] = {{"released", output.axes->released}, {"after_s", output.axes->after_s}, {"by", output.axes->by}};
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
 std::string place_text(const Vec3& p) {
   // Centimetres, and no zero with a sign.
   const Vec3 cm = (100 * p).array().round() + 0.0;
@@ -193,16 +224,17 @@ int run_check(const CheckArguments& arguments) {
   const Rig& rig = session->rig;
   const Scene& scene = session->scene;
   if (arguments.json) {
-    const nlohmann::json out = {{"ok", true},
-                                {"rig", rig.name},
-                                {"triangles", scene.triangles.size()},
-                                {"luminaires", rig.luminaires.size()},
-                                {"fixtures", rig.fixtures.size()},
-                                {"buses", rig.buses.size()},
-                                {"luxmeters", rig.luxmeters.size()},
-                                {"cameras", rig.cameras.size()},
-                                {"points", rig.points.size()},
-                                {"warnings", scene.warnings}};
+    nlohmann::json out = {{"ok", true},
+                          {"rig", rig.name},
+                          {"triangles", scene.triangles.size()},
+                          {"luminaires", rig.luminaires.size()},
+                          {"fixtures", rig.fixtures.size()},
+                          {"buses", rig.buses.size()},
+                          {"luxmeters", rig.luxmeters.size()},
+                          {"cameras", rig.cameras.size()},
+                          {"points", rig.points.size()},
+                          {"warnings", scene.warnings}};
+    if (arguments.outputs) out["outputs"] = outputs_json(rig);
     fmt::print("{}\n", out.dump(1));
     return kExitOk;
   }
@@ -221,6 +253,12 @@ int run_check(const CheckArguments& arguments) {
   }
   for (const std::string& warning : scene.warnings) fmt::print("  warning    {}\n", warning);
   for (const Problem& note : rig.notes) fmt::print("  note       {}\n", note.text());
+  const KeepOutZones zones(rig);
+  for (const std::size_t head : zones.heads()) {
+    if (const auto zone = zones.met(head, rig.fixtures[head].joints))
+      fmt::print("  note       {} looks into keep-out zone \"{}\" as it hangs: it stays dark until it is turned\n",
+                 rig.fixtures[head].name, zones.name(*zone));
+  }
   if (rig.daylight) fmt::print("  daylight   {}\n", daylight_text(*rig.daylight));
   fmt::print("  counts     {} luminaires, {} fixtures, {} buses, {} luxmeters, {} cameras, {} points, {} tasks\n",
              rig.luminaires.size(), rig.fixtures.size(), rig.buses.size(), rig.luxmeters.size(), rig.cameras.size(),
@@ -264,6 +302,7 @@ int run_check(const CheckArguments& arguments) {
                 p.max_lx ? fmt::format("{:g}", *p.max_lx) : "-", meter});
   }
   fmt::print("{}\n{}: no problems found\n", points.text(), rig.name);
+  if (arguments.outputs) print_outputs(rig);
   return kExitOk;
 }
 

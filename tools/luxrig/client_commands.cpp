@@ -1,4 +1,4 @@
-// status, blackout, apply, identify: commands that talk to a running daemon.
+// status, blackout, apply, park, identify: commands that talk to a running daemon.
 #include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
 #include "tools/luxrig/http_client.h"
@@ -85,6 +85,13 @@ int run_blackout(const ClientArguments& arguments, bool on) {
 
 int run_hand_back(const ClientArguments& arguments) {
   return post(arguments, "/api/hand-back", "{}", "desks that wait for the light get it");
+}
+
+int run_park(const ClientArguments& arguments, const std::vector<std::string>& fixtures) {
+  return post(arguments, "/api/park", json{{"fixtures", fixtures}}.dump(),
+              fixtures.empty()
+                  ? "heads go dark and to where they rest, until the next apply"
+                  : fmt::format("{} go dark and to where they rest, until the next apply", fmt::join(fixtures, ", ")));
 }
 
 int run_identify(const ClientArguments& arguments, const std::string& fixture, double seconds) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "tools/luxrig/session.h"
 
@@ -12,6 +13,7 @@ namespace luxrig {
 struct CheckArguments {
   std::filesystem::path rig;
   bool json = false;
+  bool outputs = false;  ///< also what each output does when data stops
 };
 int run_check(const CheckArguments& arguments);
 
@@ -70,6 +72,8 @@ struct ClientArguments {
 int run_status(const ClientArguments& arguments);
 int run_blackout(const ClientArguments& arguments, bool on);
 int run_hand_back(const ClientArguments& arguments);
+/// None named: all heads that have a place to rest.
+int run_park(const ClientArguments& arguments, const std::vector<std::string>& fixtures);
 int run_identify(const ClientArguments& arguments, const std::string& fixture, double seconds);
 /// Until Ctrl-C; `once`, or when the output is no terminal: one picture.
 int run_monitor(const ClientArguments& arguments, bool once);

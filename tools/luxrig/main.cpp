@@ -83,6 +83,7 @@ int main(int argc, char** argv) {
   auto* command = app.add_subcommand("check", "validate a rig and print what was understood");
   command->add_option("RIG", check.rig, rig_help)->required();
   command->add_flag("--json", check.json, "print JSON");
+  command->add_flag("--outputs", check.outputs, "also say what each output does when data stops");
   command->callback([&] { code = run_check(check); });
 
   ImportArguments import_mvr;
@@ -209,6 +210,12 @@ int main(int argc, char** argv) {
   command = app.add_subcommand("hand-back", "lighting desks that are back and wait for it get the light");
   add_client(*command, client);
   command->callback([&] { code = run_hand_back(client); });
+
+  std::vector<std::string> rested;
+  command = app.add_subcommand("park", "heads go dark and to where they rest, until the next apply");
+  command->add_option("FIXTURE", rested, "these heads (else all that have a place to rest)");
+  add_client(*command, client);
+  command->callback([&] { code = run_park(client, rested); });
 
   std::string identified;
   double identify_s = 5;

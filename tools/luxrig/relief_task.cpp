@@ -8,6 +8,7 @@
 #include <map>
 #include <numeric>
 
+#include "core/control/keep_out.h"
 #include "core/highlight/picture_contrast.h"
 #include "core/rig/housing.h"
 #include "core/rig/zoom.h"
@@ -193,6 +194,7 @@ Result<AimedFixtures> aim_fixtures(const ReliefSurroundings& around, const Studi
   if (!fixed) return tl::unexpected(fixed.error());
   wishes.fixed_lux = std::move(*fixed);
 
+  const KeepOutZones zones(around.rig);
   std::vector<HangingHead> heads;
   std::vector<HeadSetting> present;
   BeamsOfLuminaires known;
@@ -200,6 +202,7 @@ Result<AimedFixtures> aim_fixtures(const ReliefSurroundings& around, const Studi
     const Fixture& fixture = around.rig.fixtures[spec.heads[k]];
     if (spec.key == spec.heads[k]) wishes.key = k;
     heads.push_back(hanging_head(around.rig, spec.heads[k], known));
+    heads.back().may_light = [&zones, head = spec.heads[k]](const Joints& at) { return !zones.met(head, at); };
     present.push_back({fixture.joints, 0, present_levels[k]});
   }
   watch.say("aiming");

@@ -35,6 +35,7 @@ PlannedLight planned_light(const Rig& rig, const Fixture& fixture, double level)
 TaskSolver::TaskSolver(const Session& session, const TransportMatrix& transport, const ComputeOptions& options)
     : session_(session),
       options_(options),
+      zones_(session.rig),
       rig_(session.rig),
       transport_(transport),
       own_(static_cast<Index>(rig_.fixtures.size())),

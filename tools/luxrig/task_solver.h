@@ -4,6 +4,7 @@
 
 #include <chrono>
 
+#include "core/control/keep_out.h"
 #include "core/solve/emittance.h"
 #include "core/solve/placement/place_in_scene.h"
 #include "tools/luxrig/relief_task.h"
@@ -29,8 +30,11 @@ class TaskSolver {
     return std::chrono::duration<double>(Steady::now() - start).count();
   }
 
+  /// Nothing of a head that looks into a keep-out zone.
   [[nodiscard]] double most_level(Index light) const {
-    return std::min(rig_.fixtures[static_cast<std::size_t>(light)].max_level, rig_.limits.max_level);
+    const auto f = static_cast<std::size_t>(light);
+    if (zones_.met(f, rig_.fixtures[f].joints)) return 0;
+    return std::min(rig_.fixtures[f].max_level, rig_.limits.max_level);
   }
   [[nodiscard]] std::optional<double> watts_of(Index light) const {
     return rig_.luminaires[rig_.fixtures[static_cast<std::size_t>(light)].luminaire].watts;
@@ -63,6 +67,7 @@ class TaskSolver {
   const Session& session_;
   const ComputeOptions& options_;
   Steady::time_point start_ = Steady::now();
+  KeepOutZones zones_;
   Rig rig_;  ///< with placed lights as further fixtures, and heads as aimed
   TransportMatrix transport_;
   Index own_;

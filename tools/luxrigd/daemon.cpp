@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "core/rig/nearest.h"
@@ -94,6 +95,10 @@ void Daemon::tell_guardian(Time at) {
     safe_look_at_ = at;
   }
   last_look_.safe = safe_levels_;
+  // What could light a keep-out zone stays dark, also while nobody watches it.
+  for (const HeadDim& dim : program.dims) {
+    if (dim.to == 0) last_look_.present[dim.fixture] = last_look_.safe[dim.fixture] = 0;
+  }
   if (program.blackout) std::fill(last_look_.safe.begin(), last_look_.safe.end(), 0.0);
   last_look_.sends = program.revision != 0;
   last_look_.hold_s = program.blackout ? 0 : rig.safe.hold_s;
@@ -121,6 +126,21 @@ Checked<bool> Daemon::resume() {
   if (!saved.plan_json.empty()) {
     if (auto applied = apply_json(saved.plan_json); !applied) return tl::unexpected(std::move(applied.error()));
   }
+  if (!saved.parked.empty()) {
+    std::vector<std::size_t> heads;
+    // The rig may have changed since.
+    for (const std::string& name : saved.parked) {
+      if (const auto head = fixture_called(name); head && session_.rig.fixtures[*head].park) heads.push_back(*head);
+    }
+    if (!heads.empty()) {
+      on_control_thread([this, heads](Time at) { (void)controller_.park(at, heads); });
+      {
+        const std::lock_guard lock(mutex_);
+        remembered_.parked = saved.parked;
+      }
+      (void)remember();  // as it was before the plan
+    }
+  }
   if (saved.blackout) {
     controller_.blackout(now(), true);
     const std::lock_guard lock(mutex_);
@@ -144,6 +164,7 @@ Checked<void> Daemon::apply_json(const std::string& plan_json) {
   {
     const std::lock_guard lock(mutex_);
     remembered_.plan_json = plan_json;
+    remembered_.parked.clear();
   }
   // Acknowledged means: it survives a power cut.
   if (const auto saved = remember(); !saved) {
@@ -202,20 +223,50 @@ std::optional<T> Daemon::ask_control_thread(std::function<T(Time)> run) {
   return given.get();
 }
 
-Result<void> Daemon::identify(const std::string& name, double seconds) {
+Result<std::size_t> Daemon::fixture_called(const std::string& name) const {
   const std::vector<Fixture>& fixtures = session_.rig.fixtures;
   std::vector<std::string_view> names;
   for (std::size_t f = 0; f < fixtures.size(); ++f) {
     const std::string& own = fixtures[f].name;
     names.push_back(own);
     // An emitter is called "housing/emitter": the housing's name will do.
-    if (own != name && !(fixtures[f].housing && own.rfind(name + "/", 0) == 0)) continue;
-    const auto done = ask_control_thread<Result<void>>(
-        [this, f, seconds](Time at) { return controller_.identify(at, f, from_seconds(seconds)); });
-    return done.value_or(refusal("the control loop did not answer"));
+    if (own == name || (fixtures[f].housing && own.rfind(name + "/", 0) == 0)) return f;
   }
   return refusal(fmt::format("the rig has no fixture \"{}\": {}", name, mend_for_unknown(name, names, "it has none")));
 }
+
+Result<void> Daemon::identify(const std::string& name, double seconds) {
+  const auto fixture = fixture_called(name);
+  if (!fixture) return tl::unexpected(fixture.error());
+  const auto done = ask_control_thread<Result<void>>(
+      [this, f = *fixture, seconds](Time at) { return controller_.identify(at, f, from_seconds(seconds)); });
+  return done.value_or(refusal("the control loop did not answer"));
+}
+
+Result<void> Daemon::park(const std::vector<std::string>& names) {
+  std::vector<std::size_t> heads;
+  for (const std::string& name : names) {
+    const auto fixture = fixture_called(name);
+    if (!fixture) return tl::unexpected(fixture.error());
+    heads.push_back(*fixture);
+  }
+  const auto done = ask_control_thread<Result<void>>([this, heads](Time at) { return controller_.park(at, heads); });
+  if (!done) return refusal("the control loop did not answer");
+  if (!*done) return *done;
+  {
+    const std::lock_guard lock(mutex_);
+    std::vector<std::string>& parked = remembered_.parked;
+    for (std::size_t f = 0; names.empty() && f < session_.rig.fixtures.size(); ++f)
+      if (session_.rig.fixtures[f].park) heads.push_back(f);
+    for (const std::size_t head : heads) {
+      const std::string& name = session_.rig.fixtures[head].name;
+      if (std::find(parked.begin(), parked.end(), name) == parked.end()) parked.push_back(name);
+    }
+  }
+  return remember();
+}
+
+bool Daemon::park() { return controller_.park(now(), {}).has_value(); }
 
 std::string Daemon::universes_json() {
   const auto universes = ask_control_thread<nlohmann::json>([this](Time) {
@@ -253,6 +304,7 @@ HttpHandlers Daemon::handlers() {
     return remember();
   };
   handlers.identify = [this](const std::string& name, double seconds) { return identify(name, seconds); };
+  handlers.park = [this](const std::vector<std::string>& names) { return park(names); };
   handlers.hand_back = [this] { on_control_thread([this](Time at) { controller_.hand_back(at); }); };
   handlers.apply = [this](const std::string& plan_json) { return apply_json(plan_json); };
   return handlers;

@@ -56,6 +56,8 @@ class Daemon {
   [[nodiscard]] const std::vector<Health>& devices() const { return devices_; }
 
   void go_safe();
+  /// All heads that have a place to rest go there, dark; false: there are none.
+  bool park();
   /// Ends output (each driver says goodbye) and the page.
   void stop();
 
@@ -68,6 +70,9 @@ class Daemon {
   template <class T>
   std::optional<T> ask_control_thread(std::function<T(Time)> run);
   Result<void> identify(const std::string& name, double seconds);
+  Result<void> park(const std::vector<std::string>& names);
+  /// A fixture by its name; an emitter's housing stands for its first.
+  [[nodiscard]] Result<std::size_t> fixture_called(const std::string& name) const;
   [[nodiscard]] std::string universes_json();
   void publish(Time at);
   void start_guardian();

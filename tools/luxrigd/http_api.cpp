@@ -125,6 +125,23 @@ struct HttpApi::State {
         return refuse(response, 400, done.error().detail);
       response.set_content(nlohmann::json{{"seconds", seconds}}.dump(), "application/json");
     });
+    server.Post("/api/park", [this](const httplib::Request& request, httplib::Response& response) {
+      const auto body = nlohmann::json::parse(request.body, nullptr, false);
+      std::vector<std::string> fixtures;
+      bool good = body.is_object() && (!body.contains("fixtures") || body["fixtures"].is_array());
+      if (good && body.contains("fixtures")) {
+        for (const auto& one : body["fixtures"]) {
+          good = good && one.is_string();
+          if (one.is_string()) fixtures.push_back(one.get<std::string>());
+        }
+      }
+      if (!good) return refuse(response, 400, "send {\"fixtures\": [\"a head's name\"]}, or {} for all");
+      if (const auto done = handlers.park(fixtures); !done) {
+        const bool theirs = done.error().cause == Cause::invalid || done.error().cause == Cause::refused;
+        return refuse(response, theirs ? 400 : 500, done.error().detail);
+      }
+      response.set_content("{\"parked\":true}", "application/json");
+    });
     server.Post("/api/hand-back", [this](const httplib::Request&, httplib::Response& response) {
       handlers.hand_back();
       response.set_content("{\"handed_back\":true}", "application/json");

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "core/result.h"
 
@@ -19,6 +20,8 @@ struct HttpHandlers {
   std::function<Result<void>(bool on)> blackout;
   /// Shows for so many seconds which fixture it is.
   std::function<Result<void>(const std::string& fixture, double seconds)> identify;
+  /// Heads of these names, or all when there are none.
+  std::function<Result<void>(const std::vector<std::string>& fixtures)> park;
   std::function<void()> hand_back;  ///< desks that wait for it get the light
   std::function<Checked<void>(const std::string& plan_json)> apply;
 };

@@ -14,7 +14,8 @@ Result<void> Journal::save(const JournalState& state) const {
   if (error) {
     return tl::unexpected(Fault{Cause::system, {}, "cannot make " + folder_.string() + ": " + error.message(), {}});
   }
-  const nlohmann::json out = {{"luxrig_state", 1}, {"plan", state.plan_json}, {"blackout", state.blackout}};
+  const nlohmann::json out = {
+      {"luxrig_state", 1}, {"plan", state.plan_json}, {"blackout", state.blackout}, {"parked", state.parked}};
   return write_file(file(), out.dump(1));
 }
 
@@ -29,7 +30,14 @@ Checked<std::optional<JournalState>> Journal::load() const {
     return tl::unexpected(std::vector<Problem>{
         {file().string(), 0, 0, "is not a saved state of this program", "move it away to start without it"}});
   }
-  return JournalState{json["plan"].get<std::string>(), json["blackout"].get<bool>()};
+  JournalState state{json["plan"].get<std::string>(), json["blackout"].get<bool>(), {}};
+  // Older versions did not write it.
+  if (json.contains("parked") && json["parked"].is_array()) {
+    for (const auto& one : json["parked"]) {
+      if (one.is_string()) state.parked.push_back(one.get<std::string>());
+    }
+  }
+  return state;
 }
 
 std::filesystem::path default_state_folder(const std::string& rig_name) {

@@ -1,9 +1,10 @@
 #pragma once
-/// What must survive a power cut: the plan in force and the blackout switch.
+/// What must survive a power cut: the plan in force, the blackout switch, and heads that rest.
 
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/result.h"
 
@@ -12,6 +13,7 @@ namespace luxrig {
 struct JournalState {
   std::string plan_json;  ///< empty: none applied yet
   bool blackout = false;
+  std::vector<std::string> parked{};  ///< fixtures
 };
 
 class Journal {

@@ -20,6 +20,7 @@ namespace luxrig {
 namespace {
 
 constexpr Duration kTick = std::chrono::milliseconds(20);
+constexpr Duration kMostParking = std::chrono::seconds(60);
 constexpr Duration kMostOnce = std::chrono::seconds(120);
 
 /// Runs work on a thread of low priority, so that output and control come first even while it uses all cores.
@@ -287,6 +288,14 @@ int run_rig(const RunArguments& arguments) {
 
   // 5. Out: the safe look, then each driver's goodbye.
   const auto seen = arguments.once ? truth() : std::nullopt;
+  if (rig.daemon.park_at_end && daemon.park()) {
+    say.say("heads go dark and to where they rest");
+    const Time begun = now();
+    tick_until(daemon, [&](Time at) {
+      const Phase phase = daemon.status().phase;
+      return daemon.status().resting || phase == Phase::frozen || phase == Phase::safe || at - begun > kMostParking;
+    });
+  }
   say.say("fading to the safe look");
   daemon.go_safe();
   const Duration most = from_seconds(rig.safe.fade_s + 2);

@@ -30,6 +30,8 @@ json fixture_json(const Rig& rig, std::size_t index, const FixtureStatus& status
   if (fixture.moves) out["moves"] = true;
   if (fixture.range.zooms()) out["beam_angle_deg"] = deg_from_rad(status.joints.beam_rad);
   if (status.identified) out["identified"] = true;
+  if (status.parked) out["parked"] = true;
+  if (status.kept_dark) out["kept_dark"] = true;
   set(out, "gain", status.gain);
   set(out, "gain_standard_error", status.gain_standard_error);
   return out;

@@ -267,4 +267,8 @@ std::unique_ptr<Driver> make_artnet(const Rig& rig, std::size_t bus, const std::
   return make_artnet_over(make_udp(std::move(settings)), rig, bus, redirect);
 }
 
+WhenDataStops artnet_when_data_stops(const Rig&, std::size_t) {
+  return {WithoutData::holds, std::nullopt, "the node, which goes on sending (Art-Net 4: failsafe, by default hold)"};
+}
+
 }  // namespace luxrig

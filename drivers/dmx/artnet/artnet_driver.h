@@ -15,6 +15,8 @@ namespace luxrig {
 [[nodiscard]] std::unique_ptr<Driver> make_artnet(const Rig& rig, std::size_t bus,
                                                   const std::optional<Redirect>& redirect);
 
+[[nodiscard]] WhenDataStops artnet_when_data_stops(const Rig& rig, std::size_t fixture);
+
 /// The same over a channel of the caller's.
 [[nodiscard]] std::unique_ptr<Driver> make_artnet_over(std::unique_ptr<DatagramChannel> channel, const Rig& rig,
                                                        std::size_t bus, const std::optional<Redirect>& redirect);

@@ -161,4 +161,8 @@ std::unique_ptr<Driver> make_enttec_pro(const Rig& rig, std::size_t bus, const s
   return make_enttec_pro_over(make_usb_channel(std::move(search), redirect), rig, bus);
 }
 
+WhenDataStops enttec_pro_when_data_stops(const Rig&, std::size_t) {
+  return {WithoutData::holds, std::nullopt, "the widget, which repeats its last packet while it has power"};
+}
+
 }  // namespace luxrig

@@ -15,6 +15,7 @@ namespace luxrig {
 [[nodiscard]] std::vector<Problem> check_enttec_pro(const Rig& rig, std::size_t bus);
 [[nodiscard]] std::unique_ptr<Driver> make_enttec_pro(const Rig& rig, std::size_t bus,
                                                       const std::optional<Redirect>& redirect);
+[[nodiscard]] WhenDataStops enttec_pro_when_data_stops(const Rig& rig, std::size_t fixture);
 /// The same over the caller's channel.
 [[nodiscard]] std::unique_ptr<Driver> make_enttec_pro_over(std::unique_ptr<UsbChannel> channel, const Rig& rig,
                                                            std::size_t bus);

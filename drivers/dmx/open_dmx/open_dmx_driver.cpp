@@ -167,4 +167,8 @@ std::unique_ptr<Driver> make_open_dmx(const Rig& rig, std::size_t bus, const std
   return make_open_dmx_over(make_usb_channel(std::move(search), redirect), rig, bus);
 }
 
+WhenDataStops open_dmx_when_data_stops(const Rig&, std::size_t) {
+  return {WithoutData::makers_choice, 1, "E1.11: the line is silent, and data is lost after 1 s"};
+}
+
 }  // namespace luxrig

@@ -16,6 +16,7 @@ namespace luxrig {
 [[nodiscard]] std::vector<Problem> check_open_dmx(const Rig& rig, std::size_t bus);
 [[nodiscard]] std::unique_ptr<Driver> make_open_dmx(const Rig& rig, std::size_t bus,
                                                     const std::optional<Redirect>& redirect);
+[[nodiscard]] WhenDataStops open_dmx_when_data_stops(const Rig& rig, std::size_t fixture);
 /// The same over the caller's channel.
 [[nodiscard]] std::unique_ptr<Driver> make_open_dmx_over(std::unique_ptr<UsbChannel> channel, const Rig& rig,
                                                          std::size_t bus);

@@ -259,4 +259,9 @@ std::unique_ptr<Driver> make_sacn(const Rig& rig, std::size_t bus, const std::op
   return make_sacn_over(std::move(channels), rig, bus, redirect);
 }
 
+WhenDataStops sacn_when_data_stops(const Rig&, std::size_t) {
+  return {WithoutData::makers_choice, to_seconds(sacn::kSourceLoss),
+          "E1.31-2018 6.7.1: the source is lost after 2.5 s"};
+}
+
 }  // namespace luxrig

@@ -148,4 +148,8 @@ std::unique_ptr<Driver> make_udmx(const Rig& rig, std::size_t bus, const std::op
   return make_udmx_over(make_usb_channel(std::move(search), redirect), rig, bus);
 }
 
+WhenDataStops udmx_when_data_stops(const Rig&, std::size_t) {
+  return {WithoutData::holds, std::nullopt, "the widget, which repeats its last packet while it has power"};
+}
+
 }  // namespace luxrig

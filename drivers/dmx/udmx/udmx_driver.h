@@ -15,6 +15,7 @@ namespace luxrig {
 [[nodiscard]] std::vector<Problem> check_udmx(const Rig& rig, std::size_t bus);
 [[nodiscard]] std::unique_ptr<Driver> make_udmx(const Rig& rig, std::size_t bus,
                                                 const std::optional<Redirect>& redirect);
+[[nodiscard]] WhenDataStops udmx_when_data_stops(const Rig& rig, std::size_t fixture);
 /// The same over the caller's channel.
 [[nodiscard]] std::unique_ptr<Driver> make_udmx_over(std::unique_ptr<UsbChannel> channel, const Rig& rig,
                                                      std::size_t bus);

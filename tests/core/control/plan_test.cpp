@@ -517,6 +517,35 @@ TEST(Plan, TurnsHeadsAndNothingElse) {
   EXPECT_NE(refused.error()[0].what.find("/tasks/0/lights/1/tilt_deg"), std::string::npos);
 }
 
+TEST(Plan, ThatLightsAKeepOutZoneIsRefused) {
+  Rig rig = rig_with_a_head();
+  rig.luminaires.resize(rig.fixtures[1].luminaire + 1);
+  Luminaire& luminaire = rig.luminaires[rig.fixtures[1].luminaire];
+  luminaire.model = LuminaireModel::spot;
+  luminaire.beam_angle_rad = rad_from_deg(10);
+  luminaire.field_angle_rad = rad_from_deg(20);
+  rig.keep_outs.emplace_back();
+  rig.keep_outs[0].name = "stalls";
+  // Ahead of it when it looks level along +y.
+  rig.keep_outs[0].centre_world_m = rig.fixtures[1].world_from_mount.translation_m +
+                                    rig.fixtures[1].world_from_mount.direction({0, 5, -5 * std::tan(rad_from_deg(40))});
+  rig.keep_outs[0].radius_m = 0.3;
+  rig.keep_outs[0].heads = {1};
+  Plan plan = plan_for_two(0.5, 0.25);
+  plan.tasks[0].lights[1].pan_deg = 0;
+  plan.tasks[0].lights[1].tilt_deg = 50;
+  const auto refused = look_for(plan, rig, "plan.json");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error()[0].what,
+            "/tasks: fixture \"" + rig.fixtures[1].name + "\" would light keep-out zone \"stalls\"");
+  EXPECT_NE(refused.error()[0].mend.find("give it level 0"), std::string::npos);
+  plan.tasks[0].lights[1].level = 0;  // it may look there in the dark
+  EXPECT_TRUE(look_for(plan, rig, "plan.json"));
+  plan.tasks[0].lights[1].level = 0.25;
+  plan.tasks[0].lights[1].tilt_deg = 0;
+  EXPECT_TRUE(look_for(plan, rig, "plan.json"));
+}
+
 TEST(Plan, ZoomsHeadsThatCan) {
   Rig rig = rig_with_a_head();
   rig.fixtures[1].range.beam_min_rad = rad_from_deg(10);

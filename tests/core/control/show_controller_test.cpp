@@ -416,6 +416,24 @@ TEST(ShowController, AnotherPlanOrTheSafeLookMayComeWhileAHeadGoesDark) {
   EXPECT_EQ(small.show->program().joints[1].pan_rad, 0) << "the safe look is not the time to turn";
 }
 
+TEST(ShowController, AHeadThatIsToldAnewOnItsWayIsDarkUntilItCanHaveGotThere) {
+  TurningShow small;
+  small.start().apply(small.now(), std::vector<double>{0.36, 0.36});
+  small.run_until(Phase::holding);
+  small.show->apply(small.now(), std::vector<double>{0.2, 0.3}, small.look(1.5, small.turned));
+  while (small.show->program().joints[1].pan_rad == 0) small.run(0.05);
+  // It has not begun yet to turn there, and has 3 rad to go, at 90° a second.
+  const double told_s = small.now_s;
+  small.show->apply(small.now(), std::vector<double>{0.2, 0.3}, small.look(3, small.turned));
+  ASSERT_EQ(small.show->program().joints[1].pan_rad, 3);
+  while (small.now_s < told_s + 3 / (kPi / 2) + 0.5 - 0.05) {
+    small.run(0.05);
+    ASSERT_EQ(small.levels()[1], 0) << small.now_s - told_s;
+  }
+  small.run(3);
+  EXPECT_GT(small.levels()[1], 0);
+}
+
 // Goals alone: the meters' lessons stay, and no head goes dark.
 TEST(ShowController, OtherGoalsKeepWhatTheMetersTaught) {
   TurningShow small;

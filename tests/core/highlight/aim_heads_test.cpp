@@ -141,6 +141,30 @@ TEST(HeadAims, OneHeadIsAsGoodAsAFineGridOfAimsAndLevels) {
   EXPECT_GT(found->heads[0].setting.level, 0.99);  // nothing limits it
 }
 
+TEST(HeadAims, LightsNothingThatItMayNot) {
+  const AimedRelief& relief = aimed_relief();
+  std::vector<HangingHead> heads = rail_of_heads(3);
+  const auto free = relief.aims(heads)->solve();
+  ASSERT_TRUE(free);
+  // The first head may not look to where it would, nor anywhere near.
+  ASSERT_GT(free->heads[0].setting.level, 0);
+  const Vec3 forbidden = lamp_pose(heads[0], free->heads[0].setting.joints).direction({0, 0, -1});
+  const double least_rad = rad_from_deg(6);
+  heads[0].may_light = [&](const Joints& at) {
+    return std::acos(std::clamp(lamp_pose(heads[0], at).direction({0, 0, -1}).dot(forbidden), -1.0, 1.0)) > least_rad;
+  };
+  heads[1].may_light = [](const Joints&) { return false; };
+  const auto kept = relief.aims(heads)->solve();
+  ASSERT_TRUE(kept) << kept.error().detail;
+  EXPECT_TRUE(kept->heads[0].setting.level == 0 || heads[0].may_light(kept->heads[0].setting.joints));
+  EXPECT_EQ(kept->heads[1].setting.level, 0);
+  EXPECT_FALSE(kept->heads[1].reaches);
+  EXPECT_GT(kept->heads[2].setting.level, 0);
+  EXPECT_LE(kept->score.objective, free->score.objective + 1e-9);
+  for (HangingHead& head : heads) head.may_light = [](const Joints&) { return false; };
+  EXPECT_FALSE(relief.aims(heads)->solve());
+}
+
 TEST(HeadAims, EightHeadsBeatTwoHundredRandomLooks) {
   const AimedRelief& relief = aimed_relief();
   const std::vector<HangingHead> heads = rail_of_heads(8);

@@ -150,6 +150,10 @@ pan_range_deg = [-180, 180]  #> [-180, 170]
 tilt_range_deg = [-100, 100]  #> [-100, 90]
 pan_speed_deg_s = 90  #> 91
 tilt_speed_deg_s = 80  #> 81
+park_pan_deg = 170  #> 160
+park_tilt_deg = 80  #> 70
+reset_s = 12  #> 13
+stage = 2  #> 3
 [[fixture]]
 name = "zoomer"
 luminaire = "zoom"
@@ -339,6 +343,15 @@ surfaces = ["ceiling*", "plinth"]  #> ["ceiling*", "vase"]
 offset_m = [0.1, 0.2]  #> [0.1, 0.3]
 clearance_m = 0.3  #> 0.4
 spacing_m = 0.25  #> 0.5
+[[keep_out]]
+name = "stalls"  #> "circle"
+box_m = [[0, 0, 0], [4, 5, 1]]  #> [[0, 0, 0], [4, 5, 2]]
+heads = ["head", "zoom*"]  #> ["head"]
+margin_deg = 3  #> 4
+[[keep_out]]
+name = "mirror"
+centre_m = [1, 2, 3]  #> [1, 2, 4]
+radius_m = 0.5  #> 0.6
 [limits]
 max_level = 0.95  #> 0.9
 open_loop_margin = 0.1  #> 0.2
@@ -357,8 +370,13 @@ level = 0.2  #> 0.3
 hold_s = 6  #> 7
 fade_s = 8  #> 9
 on_meter_loss = false  #> true
+[startup]
+stage_s = 2  #> 3
+max_watts_per_s = 500  #> 600
+after_loss = true  #> false
 [daemon]
 http_port = 1234  #> 1235
+park_at_end = true  #> false
 )";
 
 // The sun's angles and its place and time exclude one another: the second way, in place of the first.
@@ -449,7 +467,8 @@ std::string dump(const Rig& rig) {
         text_of(Vec3(f.world_from_mount.rotation.col(0))), text_of(Vec3(f.world_from_mount.rotation.col(1))),
         text_of(f.aim_world_m), f.joints.pan_rad, f.joints.tilt_rad, f.roll_rad, f.moves, f.range.pan_min_rad,
         f.range.pan_max_rad, f.range.tilt_min_rad, f.range.tilt_max_rad, f.pan_speed_rad_s, f.tilt_speed_rad_s,
-        f.zoom_speed_rad_s, f.bus, static_cast<int>(f.dimmer_curve), f.max_level, text_of(f.safe_level));
+        f.zoom_speed_rad_s, f.bus, static_cast<int>(f.dimmer_curve), f.max_level, text_of(f.safe_level),
+        f.park ? f.park->pan_rad : -99, f.park ? f.park->tilt_rad : -99, f.stage, f.reset_s);
     if (f.axes) {
       add("axes", f.axes->bus);
       for (const AxisPatch& a : {f.axes->pan, f.axes->tilt})
@@ -496,6 +515,11 @@ std::string dump(const Rig& rig) {
   if (mounting.box_world_m) add(text_of(Vec3(mounting.box_world_m->min())), text_of(Vec3(mounting.box_world_m->max())));
   for (const auto& surface : mounting.surfaces) add(surface.text);
   add(mounting.offset_min_m, mounting.offset_max_m, mounting.clearance_m, text_of(mounting.spacing_m));
+  for (const KeepOut& zone : rig.keep_outs) {
+    add(zone.name, text_of(zone.centre_world_m), zone.radius_m, zone.margin_rad);
+    if (zone.box_world_m) add(text_of(Vec3(zone.box_world_m->min())), text_of(Vec3(zone.box_world_m->max())));
+    for (const std::size_t head : zone.heads) add("kept out", head);
+  }
   add(rig.limits.max_level, rig.limits.open_loop_margin, text_of(rig.limits.max_watts));
   const ControlSpec& c = rig.control;
   add(c.fade_s, static_cast<int>(c.fade_curve), c.correction_fade_s, c.settle_s, c.rounds, c.tolerance, c.gain_min,
@@ -504,7 +528,8 @@ std::string dump(const Rig& rig) {
     const Daylight& d = *rig.daylight;
     add(static_cast<int>(d.sky), d.general_type, d.horizontal_lx, d.sun_normal_lx, text_of(d.towards_sun_world));
   }
-  add(rig.safe.level, rig.safe.hold_s, rig.safe.fade_s, rig.safe.on_meter_loss, rig.daemon.http_port);
+  add(rig.safe.level, rig.safe.hold_s, rig.safe.fade_s, rig.safe.on_meter_loss, rig.daemon.http_port,
+      rig.daemon.park_at_end, rig.startup.stage_s, text_of(rig.startup.max_watts_per_s), rig.startup.after_loss);
   return out;
 }
 

@@ -51,6 +51,11 @@ class HttpApiTest : public ::testing::Test {
       blackouts += on ? 1 : 100;
       return {};
     };
+    handlers.park = [this](const std::vector<std::string>& fixtures) -> Result<void> {
+      if (!fixtures.empty() && fixtures[0] == "nobody") return refusal("there is no nobody");
+      parked += static_cast<int>(fixtures.size()) + 1;
+      return {};
+    };
     handlers.apply = [this](const std::string& plan) -> Checked<void> {
       ++applied;
       if (plan == "{}") return {};
@@ -63,7 +68,7 @@ class HttpApiTest : public ::testing::Test {
   }
   std::unique_ptr<HttpApi> api;
   int port = 0;
-  std::atomic<int> blackouts{0}, applied{0};
+  std::atomic<int> blackouts{0}, applied{0}, parked{0};
 };
 
 TEST_F(HttpApiTest, AnswersStatusAndBlackout) {
@@ -95,6 +100,19 @@ TEST_F(HttpApiTest, RefusesBadBodiesWithAReason) {
   const std::string answer = ask(port, post("/api/apply", "nonsense", kJson));
   EXPECT_NE(answer.find(" 400 "), std::string::npos);
   EXPECT_NE(answer.find("plan:1:2: is not a plan: send one"), std::string::npos) << answer;
+}
+
+TEST_F(HttpApiTest, ParksNamedHeadsOrAll) {
+  EXPECT_NE(ask(port, post("/api/park", "{}", kJson)).find(" 200 "), std::string::npos);
+  EXPECT_EQ(parked, 1);
+  EXPECT_NE(ask(port, post("/api/park", R"({"fixtures":["a","b"]})", kJson)).find(" 200 "), std::string::npos);
+  EXPECT_EQ(parked, 4);
+  for (const char* body : {"", "[]", R"({"fixtures":"a"})", R"({"fixtures":[1]})", R"({"fixtures":{}})"})
+    EXPECT_NE(ask(port, post("/api/park", body, kJson)).find(" 400 "), std::string::npos) << body;
+  const std::string refused = ask(port, post("/api/park", R"({"fixtures":["nobody"]})", kJson));
+  EXPECT_NE(refused.find(" 400 "), std::string::npos);
+  EXPECT_NE(refused.find("there is no nobody"), std::string::npos) << refused;
+  EXPECT_EQ(parked, 4);
 }
 
 TEST_F(HttpApiTest, StreamsEventsAndStopsWhileAClientListens) {

@@ -12,7 +12,8 @@ using nlohmann::json;
 
 class LiveRig {
  public:
-  explicit LiveRig(std::string rig) : rig_(std::move(rig)) {
+  explicit LiveRig(std::string rig, std::vector<std::string> options = {})
+      : rig_(std::move(rig)), options_(std::move(options)) {
     start_sim();
     start_daemon();
   }
@@ -32,10 +33,19 @@ class LiveRig {
   void start_daemon() {
     port_ = 0;
     std::filesystem::remove(folder_ / "daemon.log");  // it has the port of the one before
-    daemon_ = std::make_unique<Process>(
-        std::vector<std::string>{program("luxrig"), "run", rig_, "--sim-ports", ports().string(), "--port", "0",
-                                 "--max-error", "0.02", "--state", (folder_ / "state").string()},
-        folder_ / "daemon.log");
+    std::vector<std::string> words = {program("luxrig"),
+                                      "run",
+                                      rig_,
+                                      "--sim-ports",
+                                      ports().string(),
+                                      "--port",
+                                      "0",
+                                      "--max-error",
+                                      "0.02",
+                                      "--state",
+                                      (folder_ / "state").string()};
+    words.insert(words.end(), options_.begin(), options_.end());
+    daemon_ = std::make_unique<Process>(std::move(words), folder_ / "daemon.log");
   }
 
   /// Of the process that looks after the light, or 0.
@@ -110,6 +120,7 @@ class LiveRig {
 
   Folder folder_;
   std::string rig_;
+  std::vector<std::string> options_;  ///< of the daemon
   std::unique_ptr<Process> sim_, daemon_;
   int port_ = 0;
   json last_;
