@@ -189,7 +189,9 @@ void ShowController::State::start_cue(Time now, std::vector<double> levels) {
   aimed_lx.clear();
   why.clear();
   breaches.clear();
-  if (failing && phase != Phase::idle) return;  // frozen or safe: goes there when everything is back
+  // Goes there when everything is back. Before the first step nothing is known to fail.
+  const bool waits = phase == Phase::frozen || phase == Phase::safe_fading || phase == Phase::safe;
+  if (failing && waits) return;
   // Ceilings stay, and a fade that began below one would add to what it adds.
   std::vector<double> present = present_levels(now, false);
   if (awaited) {

@@ -136,6 +136,18 @@ TEST(ShowPark, BeforeAnythingWasAppliedHeadsTurnInTheDark) {
   EXPECT_EQ(small.levels(), std::vector<double>(3, 0.0));
 }
 
+TEST(ShowPark, RightAfterAPlanAsAfterARestart) {
+  ParkShow small;
+  small.show->apply(at(0), std::vector<double>{0.4, 0.3, 0.4});
+  ASSERT_TRUE(small.show->park(at(0), {}));  // no step between the two
+  for (int i = 0; i < 200; ++i) {
+    small.run(0.05);
+    ASSERT_EQ(small.levels()[0], 0);
+  }
+  EXPECT_EQ(small.head(0), (Joints{-1.5, 0.9}));
+  EXPECT_GT(small.levels()[2], 0.1);
+}
+
 TEST(ShowPark, TheSafeLookLeavesThemDark) {
   ParkShow small;
   small.show->apply(at(0), std::vector<double>{0.4, 0.3, 0.4});
