@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstring>
+#include <filesystem>
 #include <functional>
 #include <thread>
 
@@ -32,47 +32,57 @@ Time now() {
   return Time{} + std::chrono::duration_cast<Duration>(std::chrono::steady_clock::now().time_since_epoch());
 }
 
-/// vivid's own controls, by name: they have no numbers in the kernel's headers.
+/// vivid's own controls, by name: they have no numbers in the kernel's headers. While the driver has the device open no
+/// other descriptor may set them, so its own serves.
 class VividControls {
  public:
-  explicit VividControls(const std::string& path) : fd_(::open(path.c_str(), O_RDWR | O_CLOEXEC)) {
-    v4l2_priority priority = V4L2_PRIORITY_RECORD;
-    ::ioctl(fd_, VIDIOC_S_PRIORITY, &priority);
-  }
-  ~VividControls() { ::close(fd_); }
-  VividControls(const VividControls&) = delete;
-  VividControls& operator=(const VividControls&) = delete;
+  explicit VividControls(std::string path) : path_(std::move(path)) {}
   [[nodiscard]] int set(const std::string& name, int value) const {
-    v4l2_queryctrl about{};
-    about.id = V4L2_CTRL_FLAG_NEXT_CTRL;
-    while (::ioctl(fd_, VIDIOC_QUERYCTRL, &about) == 0) {
-      if (name == reinterpret_cast<const char*>(about.name)) {
-        v4l2_control control{about.id, value};
-        return ::ioctl(fd_, VIDIOC_S_CTRL, &control) == 0 ? 0 : errno;
-      }
-      about.id |= V4L2_CTRL_FLAG_NEXT_CTRL;
-    }
-    return ENOENT;
+    return with_control(name, [value](int fd, const v4l2_queryctrl& about) { return set_at(fd, about.id, value); });
   }
   /// Of a menu, by what it says.
   [[nodiscard]] int choose(const std::string& name, const std::string& choice) const {
-    v4l2_queryctrl about{};
-    about.id = V4L2_CTRL_FLAG_NEXT_CTRL;
-    while (::ioctl(fd_, VIDIOC_QUERYCTRL, &about) == 0) {
-      for (int i = about.minimum; name == reinterpret_cast<const char*>(about.name) && i <= about.maximum; ++i) {
+    return with_control(name, [&choice](int fd, const v4l2_queryctrl& about) {
+      for (int i = about.minimum; i <= about.maximum; ++i) {
         v4l2_querymenu entry{};
         entry.id = about.id;
         entry.index = static_cast<std::uint32_t>(i);
-        if (::ioctl(fd_, VIDIOC_QUERYMENU, &entry) == 0 && choice == reinterpret_cast<const char*>(entry.name))
-          return set(name, i);
+        if (::ioctl(fd, VIDIOC_QUERYMENU, &entry) == 0 && choice == reinterpret_cast<const char*>(entry.name))
+          return set_at(fd, about.id, i);
       }
-      about.id |= V4L2_CTRL_FLAG_NEXT_CTRL;
-    }
-    return ENOENT;
+      return ENOENT;
+    });
   }
 
  private:
-  int fd_;
+  static int set_at(int fd, std::uint32_t id, int value) {
+    v4l2_control control{id, value};
+    return ::ioctl(fd, VIDIOC_S_CTRL, &control) == 0 ? 0 : errno;
+  }
+  [[nodiscard]] int with_control(const std::string& name,
+                                 const std::function<int(int fd, const v4l2_queryctrl& about)>& use) const {
+    const int drivers = fd_of_driver(), fd = drivers >= 0 ? drivers : ::open(path_.c_str(), O_RDWR | O_CLOEXEC);
+    int code = ENOENT;
+    v4l2_queryctrl about{};
+    about.id = V4L2_CTRL_FLAG_NEXT_CTRL;
+    while (::ioctl(fd, VIDIOC_QUERYCTRL, &about) == 0) {
+      if (name == reinterpret_cast<const char*>(about.name)) {
+        code = use(fd, about);
+        break;
+      }
+      about.id |= V4L2_CTRL_FLAG_NEXT_CTRL;
+    }
+    if (drivers < 0) ::close(fd);
+    return code;
+  }
+  [[nodiscard]] int fd_of_driver() const {
+    for (int fd = 3; fd < 64; ++fd) {
+      std::error_code error;
+      if (std::filesystem::read_symlink(fmt::format("/proc/self/fd/{}", fd), error) == path_ && !error) return fd;
+    }
+    return -1;
+  }
+  std::string path_;
 };
 
 Rig rig_of(const std::string& device, PixelFormat format = PixelFormat::any, int width_px = 320, int height_px = 180) {
