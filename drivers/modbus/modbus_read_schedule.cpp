@@ -43,8 +43,10 @@ std::vector<ReadSchedule::Batch> ReadSchedule::due(Time now, const UnitBackoff& 
   const auto first =
       std::find_if(batches.begin(), batches.end(), [&](const Batch& batch) { return batch.begin >= next_; });
   std::rotate(batches.begin(), first, batches.end());
-  std::stable_partition(batches.begin(), batches.end(),
-                        [&](const Batch& batch) { return !units.is_silent(batch.request.unit); });
+  const auto silent = std::stable_partition(batches.begin(), batches.end(),
+                                            [&](const Batch& batch) { return !units.is_silent(batch.request.unit); });
+  std::stable_sort(silent, batches.end(),
+                   [&](const Batch& a, const Batch& b) { return units.before(a.request.unit, b.request.unit); });
   return batches;
 }
 

@@ -41,8 +41,8 @@ class WriteSchedule {
   /// What writes the run's wanted values.
   [[nodiscard]] Request request_for(const Run& run) const;
   /// The runs due at `now`, starting behind the last one that was tried, so that a call cut short by its bound goes on
-  /// where it stopped; silent units last, since their timeout ends the call. Due: changed (and not tried within
-  /// kShortestRewrite), or not refreshed for `refresh`.
+  /// where it stopped; silent units last, since their timeout ends the call, the longest unasked first. Due: changed
+  /// (and not tried within kShortestRewrite), or not refreshed for `refresh`.
   [[nodiscard]] std::vector<Run> due(Time now, const UnitBackoff& units) const;
   void tried(const Run& run, Time now);
   void confirmed(const Run& run);
@@ -75,7 +75,7 @@ class ReadSchedule {
     std::size_t begin = 0, end = 0;  ///< in meters()
     Request request;
   };
-  /// The batches due at `now`, starting behind the last one that was asked; those of silent units last.
+  /// The batches due at `now`, starting behind the last one that was asked; those of silent units last, as above.
   [[nodiscard]] std::vector<Batch> due(Time now, const UnitBackoff& units) const;
   void asked(const Batch& batch, Time now);
   void forget();
