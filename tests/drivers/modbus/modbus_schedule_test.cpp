@@ -85,6 +85,27 @@ TEST(ModbusUnitRules, AProductsAnswerTimeIsTheTimeoutOnALineAndTheLeastBehindAGa
   EXPECT_EQ(gateway.at(2).timeout, milliseconds(930));
 }
 
+TEST(ModbusReadSchedule, CallsThatAreALittleEarlyOrLateKeepTheRate) {
+  Rig rig = rig_with(bus_of("modbus_tcp"));
+  add_meter(rig, "a", 1, 4);
+  for (const double every_ms : {100.0, 115.0, 130.0}) {
+    ReadSchedule schedule(rig, 0, milliseconds(200), rules_of(rig));
+    int reads = 0;
+    double last_ms = 0, longest_ms = 0;
+    for (int call = 0; call * every_ms < 20000; ++call) {
+      const double ms = call * every_ms + (call % 3 - 1) * 8;
+      for (const ReadSchedule::Batch& batch : schedule.due(at_ms(ms), {})) {
+        schedule.asked(batch, at_ms(ms));
+        ++reads;
+        longest_ms = std::max(longest_ms, ms - last_ms);
+        last_ms = ms;
+      }
+    }
+    EXPECT_NEAR(reads, 100, 3) << every_ms;
+    EXPECT_LE(longest_ms, 200 + every_ms) << every_ms;
+  }
+}
+
 TEST(ModbusUnitBackoff, AsksASilentUnitEverMoreSeldom) {
   UnitBackoff units;
   EXPECT_TRUE(units.may_ask(1, at_ms(0)));
