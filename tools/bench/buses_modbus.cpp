@@ -116,7 +116,11 @@ BenchRow measure(const ModbusLoad& load, double seconds) {
     std::this_thread::sleep_for(wake - bench_now());
   }
   const Health bus = driver->health(bench_now()).at(0);
-  if (rounds.empty()) return row;
+  if (rounds.empty()) {
+    figures.note = "no unit read twice";
+    add_columns(row, figures);
+    return row;
+  }
   const auto middle = rounds.begin() + static_cast<std::ptrdiff_t>(rounds.size() / 2);
   std::nth_element(rounds.begin(), middle, rounds.end());
   const int living = load.units - load.dead;

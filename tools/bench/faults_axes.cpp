@@ -281,7 +281,7 @@ std::vector<FaultPlan> axis_plans() {
     return made;
   };
   std::vector<FaultPlan> plans = {
-      plan(FaultKind::lost, bus, 0.05, 0.5, ""),
+      plan(FaultKind::lost, bus, 0.05, 0.5, "", "of many lost frames some look like a restart: homed anew"),
       plan(FaultKind::slow, bus, 10, 200, "", "a frame with a wrong CRC is sent again by the controllers: late"),
       plan(FaultKind::duplicated, bus, 0.2, 1, ""),
       plan(FaultKind::silent, bus, 1, 1, "", "cable broken"),
@@ -296,7 +296,7 @@ std::vector<FaultPlan> axis_plans() {
   };
   for (FaultPlan& each : plans) {
     each.loses_position = each.kind == FaultKind::reset || (each.kind == FaultKind::dead && each.device == pan);
-    each.homes = each.loses_position || each.kind == FaultKind::garbled;
+    each.homes = each.loses_position || each.kind == FaultKind::garbled || each.kind == FaultKind::lost;
     if (each.kind == FaultKind::stuck || each.kind == FaultKind::garbled) each.rest_s = 31;
   }
   return plans;
