@@ -27,8 +27,8 @@ bool may_be_good_singly(int exception) { return exception >= 1 && exception <= 3
 void ModbusDriver::unit_silent(Time now, int unit, const Fault& fault) {
   // Where answers are not numbered, a late one would be taken for the next: the unit is left alone until its longest
   // time to an answer has passed once more.
-  units_silent_.silent(unit, now,
-                       link_->answers_are_numbered() ? kFirstPauseWhenNumbered : Duration(2 * rules_.at(unit).timeout));
+  const Duration timeout = rules_.at(unit).timeout;
+  units_silent_.silent(unit, now, link_->answers_are_numbered() ? kFirstPauseWhenNumbered : 2 * timeout, timeout);
   setup_.restart(unit);
   unit_faulted(now, unit, fault);
   life_.count_error();
@@ -92,7 +92,7 @@ ModbusDriver::Outcome ModbusDriver::set_up(Time now, int unit, const Deadline& s
                     fmt::format("{} while \"{}\" was set up: check that its register map is of this product",
                                 fault_.detail, write->name),
                     {}});
-      units_silent_.silent(unit, now, kReconnectSilentAfter);
+      units_silent_.silent(unit, now, kReconnectSilentAfter, {});
       setup_.restart(unit);
       return Outcome::skipped;
     }

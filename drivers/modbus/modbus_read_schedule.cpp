@@ -4,6 +4,13 @@
 #include "drivers/modbus/modbus_schedule.h"
 
 namespace luxrig::modbus {
+namespace {
+
+// Calls are seldom at the very instant: what is due a little later is asked now, or it would wait for a whole call
+// more.
+constexpr int kEarlyShare = 8;
+
+}  // namespace
 
 ReadSchedule::ReadSchedule(const Rig& rig, std::size_t bus, Duration poll, const std::map<int, UnitRules>& rules)
     : poll_(poll) {
@@ -17,14 +24,14 @@ ReadSchedule::ReadSchedule(const Rig& rig, std::size_t bus, Duration poll, const
   };
   std::stable_sort(meters_.begin(), meters_.end(), [&](std::size_t a, std::size_t b) { return place(a) < place(b); });
   for (const std::size_t meter : meters_) patches_.push_back(rig.luxmeters[meter].patch);
-  asked_.resize(meters_.size());
+  due_at_.resize(meters_.size());
 }
 
 std::vector<ReadSchedule::Batch> ReadSchedule::due(Time now, const UnitBackoff& units) const {
   std::vector<Batch> batches;
   for (std::size_t i = 0; i < meters_.size(); ++i) {
     const ModbusMeterPatch& patch = patches_[i];
-    if (asked_[i] && now - *asked_[i] < poll_) continue;
+    if (due_at_[i] && now + poll_ / kEarlyShare < *due_at_[i]) continue;
     if (!units.may_ask(patch.unit, now)) continue;
     const auto registers = static_cast<std::size_t>(patch.registers);
     const Function function = patch.input_registers ? Function::read_input : Function::read_holding;
@@ -43,16 +50,20 @@ std::vector<ReadSchedule::Batch> ReadSchedule::due(Time now, const UnitBackoff& 
   const auto first =
       std::find_if(batches.begin(), batches.end(), [&](const Batch& batch) { return batch.begin >= next_; });
   std::rotate(batches.begin(), first, batches.end());
-  std::stable_partition(batches.begin(), batches.end(),
-                        [&](const Batch& batch) { return !units.is_silent(batch.request.unit); });
+  const auto silent = std::stable_partition(batches.begin(), batches.end(),
+                                            [&](const Batch& batch) { return !units.is_silent(batch.request.unit); });
+  std::stable_sort(silent, batches.end(),
+                   [&](const Batch& a, const Batch& b) { return units.before(a.request.unit, b.request.unit); });
   return batches;
 }
 
 void ReadSchedule::asked(const Batch& batch, Time now) {
-  for (std::size_t i = batch.begin; i < batch.end; ++i) asked_[i] = now;
+  for (std::size_t i = batch.begin; i < batch.end; ++i) {
+    due_at_[i] = std::max(due_at_[i].value_or(now), now - poll_ / 2) + poll_;
+  }
   next_ = batch.end;
 }
 
-void ReadSchedule::forget() { std::fill(asked_.begin(), asked_.end(), std::nullopt); }
+void ReadSchedule::forget() { std::fill(due_at_.begin(), due_at_.end(), std::nullopt); }
 
 }  // namespace luxrig::modbus

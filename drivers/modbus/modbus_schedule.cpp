@@ -48,8 +48,11 @@ std::vector<WriteSchedule::Run> WriteSchedule::due(Time now, const UnitBackoff& 
   }
   const auto first = std::find_if(runs.begin(), runs.end(), [&](const Run& run) { return run.begin >= next_; });
   std::rotate(runs.begin(), first, runs.end());
-  std::stable_partition(runs.begin(), runs.end(),
-                        [&](const Run& run) { return !units.is_silent(channels_[run.begin].patch.unit); });
+  const auto unit_of = [&](const Run& run) { return channels_[run.begin].patch.unit; };
+  const auto silent =
+      std::stable_partition(runs.begin(), runs.end(), [&](const Run& run) { return !units.is_silent(unit_of(run)); });
+  std::stable_sort(silent, runs.end(),
+                   [&](const Run& a, const Run& b) { return units.before(unit_of(a), unit_of(b)); });
   return runs;
 }
 

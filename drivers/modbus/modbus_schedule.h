@@ -41,8 +41,8 @@ class WriteSchedule {
   /// What writes the run's wanted values.
   [[nodiscard]] Request request_for(const Run& run) const;
   /// The runs due at `now`, starting behind the last one that was tried, so that a call cut short by its bound goes on
-  /// where it stopped; silent units last, since their timeout ends the call. Due: changed (and not tried within
-  /// kShortestRewrite), or not refreshed for `refresh`.
+  /// where it stopped; silent units last, since their timeout ends the call, the longest unasked first. Due: changed
+  /// (and not tried within kShortestRewrite), or not refreshed for `refresh`.
   [[nodiscard]] std::vector<Run> due(Time now, const UnitBackoff& units) const;
   void tried(const Run& run, Time now);
   void confirmed(const Run& run);
@@ -75,8 +75,10 @@ class ReadSchedule {
     std::size_t begin = 0, end = 0;  ///< in meters()
     Request request;
   };
-  /// The batches due at `now`, starting behind the last one that was asked; those of silent units last.
+  /// The batches due at `now` or up to an eighth of `poll` later, starting behind the last one that was asked; those of
+  /// silent units last, as above.
   [[nodiscard]] std::vector<Batch> due(Time now, const UnitBackoff& units) const;
+  /// The next is due `poll` after this one was, so that calls that are late make no meter slower in the long run.
   void asked(const Batch& batch, Time now);
   void forget();
   /// A unit that rejected a read of several is asked for each by itself from now on.
@@ -85,7 +87,7 @@ class ReadSchedule {
  private:
   std::vector<std::size_t> meters_;
   std::vector<ModbusMeterPatch> patches_;
-  std::vector<std::optional<Time>> asked_;
+  std::vector<std::optional<Time>> due_at_;  ///< nothing: never asked
   Duration poll_{};
   std::map<int, std::size_t> largest_;
   std::size_t next_ = 0;

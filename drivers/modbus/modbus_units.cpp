@@ -42,14 +42,31 @@ std::map<int, UnitRules> unit_rules(const Rig& rig, std::size_t bus, millisecond
 
 bool UnitBackoff::may_ask(int unit, Time now) const {
   const auto found = silent_.find(unit);
-  return found == silent_.end() || now >= found->second.retry_at;
+  if (found == silent_.end()) return true;
+  return now >= found->second.retry_at && now + kProbeShare * kProbeCredit >= paid_until_;
 }
 
-void UnitBackoff::silent(int unit, Time now, Duration first_pause) {
+bool UnitBackoff::before(int a, int b) const {
+  const auto first = silent_.find(a), second = silent_.find(b);
+  return first != silent_.end() && second != silent_.end() && first->second.retry_at < second->second.retry_at;
+}
+
+void UnitBackoff::answered(int unit) {
+  // What brought it back, power perhaps, may have brought back others: they are asked at once.
+  if (silent_.erase(unit) > 0) paid_until_ = Time{};
+}
+
+void UnitBackoff::silent(int unit, Time now, Duration first_pause, Duration waited) {
   Silence& silence = silent_[unit];
+  if (silence.times > 0) paid_until_ = std::max(paid_until_, now) + kProbeShare * waited;  // a probe
   const Duration pause = silence.times == 0 ? first_pause : silence.times == 1 ? kSecondPause : kLongestPause;
   silence.retry_at = now + std::max(pause, first_pause);
   ++silence.times;
+}
+
+void UnitBackoff::forget() {
+  silent_.clear();
+  paid_until_ = Time{};
 }
 
 UnitSetup::UnitSetup(const std::map<int, UnitRules>& rules) {

@@ -26,15 +26,25 @@ struct UnitRules {
 [[nodiscard]] std::map<int, UnitRules> unit_rules(const Rig& rig, std::size_t bus,
                                                   std::chrono::milliseconds response_timeout, bool behind_gateway);
 
-/// A unit that does not answer is asked again after `first_pause`, then ever more seldom, every 2 s at least, so that
-/// it costs its neighbours little.
+/// A unit that does not answer is asked again after `first_pause`, then ever more seldom, every 2 s at most. What is
+/// waited for in vain is time that the units that answer do not get, so all silent units of a link share a twentieth of
+/// it, and the one that has waited longest comes first (`before`). With some credit at the beginning, a silent unit
+/// that is back is found within 2 s and kProbeShare times the sum of the silent units' timeouts: 6 s for one of 200 ms,
+/// 42 s for ten; all of them with the first one when they come back together.
 class UnitBackoff {
  public:
+  static constexpr int kProbeShare = 20;  ///< one part in so many of the link's time
+  /// As much may be waited in vain at once, before the share binds.
+  static constexpr Duration kProbeCredit = std::chrono::milliseconds(500);
+
   [[nodiscard]] bool may_ask(int unit, Time now) const;
-  void answered(int unit) { silent_.erase(unit); }
-  void silent(int unit, Time now, Duration first_pause);
+  /// Whether a comes before b when both are silent.
+  [[nodiscard]] bool before(int a, int b) const;
+  void answered(int unit);
+  /// `waited`: for its answer, in vain.
+  void silent(int unit, Time now, Duration first_pause, Duration waited);
   [[nodiscard]] bool is_silent(int unit) const { return silent_.contains(unit); }
-  void forget() { silent_.clear(); }
+  void forget();
 
  private:
   struct Silence {
@@ -42,6 +52,7 @@ class UnitBackoff {
     int times = 0;
   };
   std::map<int, Silence> silent_;
+  Time paid_until_{};  ///< what was waited in vain is paid for by then
 };
 
 /// What must be written to units before anything else, since they may have restarted: the [[setup]] of their maps.

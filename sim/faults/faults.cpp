@@ -17,7 +17,7 @@ struct FaultEntry {
   double fallback, least, most;  // of its value
 };
 
-constexpr std::array<FaultEntry, 18> kFaults = {{
+constexpr std::array<FaultEntry, 19> kFaults = {{
     {FaultKind::lost, "lost", 0.5, 0, 1},
     {FaultKind::silent, "silent", 1, 0, 1},
     {FaultKind::dead, "dead", 1, 0, 1},
@@ -34,6 +34,7 @@ constexpr std::array<FaultEntry, 18> kFaults = {{
     {FaultKind::wrong_unit, "wrong_unit", 1, 0, 1},
     {FaultKind::wrong_function, "wrong_function", 1, 0, 1},
     {FaultKind::duplicated, "duplicated", 0.5, 0, 1},
+    {FaultKind::reordered, "reordered", 0.5, 0, 1},
     {FaultKind::reset, "reset", 1, 0, 1},
     {FaultKind::bus_off, "bus_off", 1, 0, 1},
 }};
@@ -81,6 +82,7 @@ std::span<const FaultKind> all_faults() { return kKinds; }
 
 void Faults::set(const std::string& device, FaultKind kind, bool on, std::optional<double> value) {
   const std::lock_guard lock(mutex_);
+  ++revision_;
   if (kind == FaultKind::stuck) stuck_at_lx_.erase(device);
   if (on) {
     on_[{device, kind}] = value.value_or(entry_of(kind).fallback);
@@ -112,6 +114,7 @@ Result<void> Faults::set_named(const Rig& rig, const std::string& device, std::s
 
 void Faults::clear() {
   const std::lock_guard lock(mutex_);
+  ++revision_;
   on_.clear();
   stuck_at_lx_.clear();
 }
@@ -149,6 +152,10 @@ Disturbance Faults::disturbance(std::span<const std::string> devices, std::uint6
     if (const auto share = value(FaultKind::duplicated);
         share && random_unit(seed_, Draw::fault_duplicate, d, counter) < *share) {
       disturbance.duplicated = true;
+    }
+    if (const auto share = value(FaultKind::reordered);
+        share && random_unit(seed_, Draw::fault_reorder, d, counter) < *share) {
+      disturbance.reordered = true;
     }
     if (const auto code = value(FaultKind::exception)) disturbance.exception = static_cast<int>(*code);
   }

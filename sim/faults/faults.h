@@ -23,14 +23,18 @@
 /// On a bus that is a USB widget: dead unplugs it, silent makes transfers hang, exception stalls them, garbled stalls
 /// control transfers and spoils a byte of what comes in.
 ///
+///   duplicated CAN frames of an axis or bus, answers of a Modbus unit, DMX packets of a network go out twice, with
+///              probability value (default 0.5)
+///   reordered  DMX packets of a network are overtaken by the next, with probability value (default 0.5)
+///
 /// On a CAN bus:
-///   duplicated CAN frames of an axis or bus go out twice, with probability value (default 0.5)
 ///   reset      axis: its electronics begin anew when this is switched on, as by a watchdog
 ///   bus_off    CAN bus: Luxrig's controller is off the bus
 ///
 /// An axis of a head is called "NAME (pan axis)" or "NAME (tilt axis)"; dead, it has no power: it turns on by its
 /// momentum, and knows no position when power is back.
 
+#include <atomic>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -62,6 +66,7 @@ enum class FaultKind {
   wrong_unit,
   wrong_function,
   duplicated,
+  reordered,
   reset,
   bus_off
 };
@@ -73,7 +78,7 @@ enum class FaultKind {
 struct Disturbance {
   bool silent = false;
   bool garbled = false;
-  bool duplicated = false;
+  bool duplicated = false, reordered = false;
   std::optional<int> exception;
   std::optional<FaultKind> on_line;  ///< one of those of a serial line
   double on_line_value = 0;
@@ -93,6 +98,9 @@ class Faults {
                          std::optional<double> value = {});
   void clear();
 
+  /// Another number after each change: who looks often need not ask about every device.
+  [[nodiscard]] std::uint64_t revision() const { return revision_; }
+
   /// Its value when it is on.
   [[nodiscard]] std::optional<double> find(const std::string& device, FaultKind kind) const;
 
@@ -106,6 +114,7 @@ class Faults {
  private:
   mutable std::mutex mutex_;
   std::uint64_t seed_;
+  std::atomic<std::uint64_t> revision_{1};
   std::map<std::pair<std::string, FaultKind>, double> on_;
   std::map<std::string, double> stuck_at_lx_;
 };

@@ -11,8 +11,9 @@
 namespace luxrig::sim {
 namespace {
 
-constexpr int kMostPacketsAtOnce = 256;     // per serve(), so that a flood cannot hold up the world
-constexpr std::size_t kMostArrived = 4096;  // waiting under the fault `slow`
+constexpr int kMostPacketsAtOnce = 256;  // per serve(), so that a flood cannot hold up the world
+constexpr Duration kOvertakenAfter = std::chrono::milliseconds(40);  // the next frame is there by then
+constexpr std::size_t kMostArrived = 4096;                           // waiting under the fault `slow`
 
 }  // namespace
 
@@ -24,6 +25,7 @@ void DmxEndpoint::serve(Time now) {
   if (parts_.faults.find(bus, FaultKind::dead)) {
     socket_.descriptor.reset();
     arrived_.clear();
+    overtaken_.clear();
     owed_.clear();
     return;
   }
@@ -36,16 +38,27 @@ void DmxEndpoint::serve(Time now) {
     const Arrived packet = std::move(arrived_.front());
     arrived_.pop_front();
     any = true;
-    for (Answer& answer : receive(now, packet.address, packet.bytes)) {
-      if (owed_.size() >= kMostArrived) break;
-      owed_.push_back({now + answer.late, packet.address, packet.port, std::move(answer.packet)});
-    }
+    obey(now, packet);
   }
+  const auto later =
+      std::stable_partition(overtaken_.begin(), overtaken_.end(), [now](const Arrived& p) { return p.due <= now; });
+  for (auto packet = overtaken_.begin(); packet != later; ++packet) {
+    any = true;
+    obey(now, *packet);
+  }
+  overtaken_.erase(overtaken_.begin(), later);
   send_owed(now);
   if (any)
     obey_dmx(
         parts_, ++frames_, [&](int universe) { return levels(universe, now); },
         [this](std::size_t f) { return moved_by(f); });
+}
+
+void DmxEndpoint::obey(Time now, const Arrived& packet) {
+  for (Answer& answer : receive(now, packet.address, packet.bytes)) {
+    if (owed_.size() >= kMostArrived) break;
+    owed_.push_back({now + answer.late, packet.address, packet.port, std::move(answer.packet)});
+  }
 }
 
 void DmxEndpoint::send_owed(Time now) {
@@ -79,8 +92,15 @@ void DmxEndpoint::take(Time now) {
     if (disturbance.garbled && !bytes.empty())
       bytes[disturbance.random % std::min<std::size_t>(bytes.size(), 8)] ^= 0xff;
     Time due = now + disturbance.delay;
-    if (!arrived_.empty()) due = std::max(due, arrived_.back().due);
-    arrived_.push_back({due, ntohl(from.sin_addr.s_addr), ntohs(from.sin_port), std::move(bytes)});
+    Arrived packet{due, ntohl(from.sin_addr.s_addr), ntohs(from.sin_port), std::move(bytes)};
+    if (disturbance.reordered && overtaken_.size() < kMostArrived) {
+      packet.due += kOvertakenAfter;
+      overtaken_.push_back(std::move(packet));
+      continue;
+    }
+    if (!arrived_.empty()) packet.due = std::max(due, arrived_.back().due);
+    if (disturbance.duplicated) arrived_.push_back(packet);
+    arrived_.push_back(std::move(packet));
   }
 }
 

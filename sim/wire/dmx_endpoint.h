@@ -50,11 +50,13 @@ class DmxEndpoint : public BusEndpoint {
   };
 
   void take(Time now);
+  void obey(Time now, const Arrived& packet);
   void send_owed(Time now);
 
   BoundSocket socket_;
   int port_;
   std::deque<Arrived> arrived_;
+  std::vector<Arrived> overtaken_;
   std::vector<Owed> owed_;  ///< in the order in which they were made
   std::uint64_t packets_ = 0, frames_ = 0;
 };

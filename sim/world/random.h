@@ -22,7 +22,8 @@ enum class Draw : std::uint64_t {
   fault_loss,
   fault_garble,
   picture_noise,
-  fault_duplicate
+  fault_duplicate,
+  fault_reorder
 };
 
 [[nodiscard]] inline std::uint64_t mix64(std::uint64_t x) {

@@ -316,6 +316,20 @@ TEST(AxesFaults, ANodeThatSaysWrongThingsMovesNoAxisPastItsTravel) {
   EXPECT_TRUE(bench.arrive(60)) << bench.health(1).detail;
 }
 
+TEST(AxesFaults, AHeadOrderedFromAPositionThatWasWrongGetsThereAllTheSame) {
+  AxesBench bench;
+  bench.aim = AxesBench::deg(20, 10);
+  ASSERT_TRUE(bench.arrive());
+  for (int i = 0; i < 20; ++i) {
+    bench.faults.set(kPan, FaultKind::garbled, true);
+    bench.aim = AxesBench::deg(i % 2 != 0 ? 60 : -60, i % 3 * 20.0 - 20);
+    bench.run(0.3 + 0.07 * i);
+    bench.faults.clear();
+    EXPECT_TRUE(bench.arrive(60)) << i << ": " << bench.health(1).detail;
+    bench.run(31);  // faults in a row are forgiven
+  }
+}
+
 TEST(AxesFaults, AFullQueueIsGivenTimeAndAnInterfaceThatGoesDownIsOpenedAgain) {
   AxesBench bench;
   bench.aim = AxesBench::deg(20, 10);

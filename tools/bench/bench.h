@@ -19,12 +19,14 @@ struct BenchOptions {
                                               ///< highlight: its made-up objects as OBJ
   std::vector<std::filesystem::path> rigs;    ///< transport: rig files whose scenes are measured too
   std::string method;                         ///< placement scenes: only this one
-  std::optional<int> seeds;                   ///< placement: rooms of each scene, instead of 100 (curves: 20)
+  std::optional<int> seeds;                   ///< placement: rooms of each scene, instead of 100 (curves: 20); faults:
+                                              ///< cases of each kind, instead of 100
   int first_seed = 1;                         ///< placement: of them, so that a long run can be split
   bool bounds = true;                         ///< placement scenes: with certified bounds, which take longest
+  std::optional<double> seconds;              ///< buses: how long each load runs, instead of its own time
   std::filesystem::path data_folder;          ///< placement, highlight: what is read from files
-  std::string
-      only;  ///< transport, nnls, highlight, buses: only cases whose name begins so; analytic: only such families
+  std::string only;  ///< transport, nnls, highlight, buses, faults: only cases whose name begins so; analytic: only
+                     ///< such families
 };
 
 /// Names of the suites.

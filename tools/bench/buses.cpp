@@ -13,6 +13,7 @@
 #include "core/parallel.h"
 #include "core/transport/evaluator.h"
 #include "drivers/registry.h"
+#include "tools/bench/bus_load.h"
 #include "tools/bench/suites.h"
 #include "tools/luxrigd/bus_thread.h"
 #include "tools/luxrigd/clock.h"
@@ -154,45 +155,13 @@ class SolverLoad {
   std::jthread thread_;
 };
 
-std::string histogram(const std::vector<double>& deviations_s) {
-  const std::array<double, 11> edges_us = {50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000, 50000, 1e12};
-  std::array<std::size_t, 11> counts{};
-  for (const double d : deviations_s) {
-    for (std::size_t e = 0; e < edges_us.size(); ++e) {
-      if (1e6 * d <= edges_us[e]) {
-        ++counts[e];
-        break;
-      }
-    }
-  }
-  std::string text;
-  for (std::size_t e = 0; e < edges_us.size(); ++e) {
-    const double share =
-        deviations_s.empty() ? 0 : static_cast<double>(counts[e]) / static_cast<double>(deviations_s.size());
-    text += fmt::format("  {} {:>6} us {:>8} {:6.2f} %  {}\n", e + 1 < edges_us.size() ? "<=" : "> ",
-                        edges_us[std::min(e, edges_us.size() - 2)], counts[e], 100 * share,
-                        std::string(static_cast<std::size_t>(50 * share + 0.5), '#'));
-  }
-  return text;
-}
-
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0;
-  const auto at = std::min(values.size() - 1, static_cast<std::size_t>(share * static_cast<double>(values.size())));
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
-  return values[at];
-}
-
-}  // namespace
-
-namespace {
-
 constexpr const char* kOutputCycle = "4-universes-44hz-under-solve";
 
 BenchRow bench_output_cycle(const BenchOptions& options) {
-  const double seconds = options.quick ? 6 : 60;
+  const double seconds = options.seconds.value_or(options.quick ? 6 : 40);
   BenchRow row;
   row.case_name = kOutputCycle;
+  add_columns(row, {});
   const Rig rig = four_universes();
   Sink sink;
   if (!sink.ok()) return row;
@@ -222,20 +191,24 @@ BenchRow bench_output_cycle(const BenchOptions& options) {
     bus.stop();
   }
   auto [intervals, packets] = sink.finish();
-  std::vector<double> deviations;
-  for (const double interval : intervals) deviations.push_back(std::abs(interval - 1.0 / kRate_hz));
+  TimeCounts deviations;
+  for (const double interval : intervals) deviations.add(std::abs(interval - 1.0 / kRate_hz));
   fmt::print("output cycle: {} universes at {:g} Hz for {:g} s, path tracing on {} cores, {} scheduling\n", kUniverses,
              kRate_hz, seconds, thread_count(0), realtime ? "SCHED_FIFO" : "normal (SCHED_FIFO was refused)");
   fmt::print("|arrival interval - {:.3f} ms| at the receiver (kernel time stamps), universe 1, {} packets in all:\n{}",
-             1000 / kRate_hz, packets, histogram(deviations));
-  const double p50 = quantile(deviations, 0.5), p99 = quantile(deviations, 0.99);
-  const double worst = deviations.empty() ? 0 : *std::max_element(deviations.begin(), deviations.end());
+             1000 / kRate_hz, packets, deviations.histogram());
+  const double p50 = deviations.quantile(0.5), p99 = deviations.quantile(0.99);
+  const double worst = deviations.largest();
   fmt::print("  p50 {:.0f} us, p99 {:.0f} us, max {:.0f} us; at the sender: p50 {} us, p99 {} us, max {} us\n",
              1e6 * p50, 1e6 * p99, 1e6 * worst, sent.p50_us, sent.p99_us, sent.max_us);
   row.method = realtime ? "sacn-fifo" : "sacn-normal";
-  row.error = deviations.empty() ? 1 : p99 * kRate_hz;
+  row.error = deviations.count() == 0 ? 1 : p99 * kRate_hz;
   row.seconds = seconds;
   row.target_error = kTarget_s * kRate_hz;
+  BusLoad load;
+  load.jitter = jitter_of(deviations);
+  load.note = "path tracing meanwhile";
+  add_columns(row, load);
   return row;
 }
 
@@ -244,7 +217,9 @@ BenchRow bench_output_cycle(const BenchOptions& options) {
 std::vector<BenchRow> bench_buses(const BenchOptions& options) {
   std::vector<BenchRow> rows;
   if (std::string_view(kOutputCycle).starts_with(options.only)) rows.push_back(bench_output_cycle(options));
-  for (BenchRow& each : bench_modbus_load(options)) rows.push_back(std::move(each));
+  for (const auto load : {bench_modbus_load, bench_dmx_load, bench_axes_load}) {
+    for (BenchRow& each : load(options)) rows.push_back(std::move(each));
+  }
   return rows;
 }
 

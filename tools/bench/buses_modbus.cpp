@@ -1,7 +1,6 @@
 // 247 Modbus units behind one server, each a dimmer and a luxmeter: how often each is reached, and what it costs.
 #include <fmt/format.h>
 #include <poll.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <chrono>
@@ -10,6 +9,7 @@
 
 #include "drivers/registry.h"
 #include "sim/wire/bus_endpoint.h"
+#include "tools/bench/bus_load.h"
 #include "tools/bench/suites.h"
 
 namespace luxrig {
@@ -49,15 +49,6 @@ Rig unit_rig(const ModbusLoad& load) {
   return rig;
 }
 
-double thread_seconds() {
-  rusage usage{};
-  ::getrusage(RUSAGE_THREAD, &usage);
-  const auto seconds = [](const timeval& t) {
-    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-  };
-  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
-}
-
 Time bench_now() { return Time{} + std::chrono::duration_cast<Duration>(BenchClock::now().time_since_epoch()); }
 
 std::string name_of_load(const ModbusLoad& load) {
@@ -70,6 +61,8 @@ BenchRow measure(const ModbusLoad& load, double seconds) {
   row.method = load.driver;
   row.error = 1;
   row.target_error = 0.5;
+  BusLoad figures;
+  add_columns(row, figures);
   const Rig rig = unit_rig(load);
   const auto rows = static_cast<Eigen::Index>(rig.luxmeters.size());
   auto world = sim::World::make(rig, sim::Deviations::none(), Eigen::MatrixXd::Ones(rows, rows));
@@ -100,7 +93,7 @@ BenchRow measure(const ModbusLoad& load, double seconds) {
   const Time start = bench_now(), counted = start + std::chrono::seconds(2);
   Time wake = start;
   while (bench_now() < counted + from_seconds(seconds)) {
-    const double before = thread_seconds();
+    const double before = thread_cpu_s();
     const Time begun = bench_now();
     const double level = 0.5 + 0.4 * std::sin(to_seconds(begun - start));  // every level changes all the time
     for (std::size_t f = 0; f < commands.size(); ++f) commands[f] = {f, level};
@@ -108,7 +101,7 @@ BenchRow measure(const ModbusLoad& load, double seconds) {
     const auto readings = driver->lux_reader()->read(bench_now());
     const Time done = bench_now();
     if (begun >= counted) {
-      busy += thread_seconds() - before;
+      busy += thread_cpu_s() - before;
       worst_call = std::max(worst_call, to_seconds(done - begun));
     }
     for (std::size_t i = 0; readings && i < readings->size(); ++i) {
@@ -123,7 +116,11 @@ BenchRow measure(const ModbusLoad& load, double seconds) {
     std::this_thread::sleep_for(wake - bench_now());
   }
   const Health bus = driver->health(bench_now()).at(0);
-  if (rounds.empty()) return row;
+  if (rounds.empty()) {
+    figures.note = "no unit read twice";
+    add_columns(row, figures);
+    return row;
+  }
   const auto middle = rounds.begin() + static_cast<std::ptrdiff_t>(rounds.size() / 2);
   std::nth_element(rounds.begin(), middle, rounds.end());
   const int living = load.units - load.dead;
@@ -134,6 +131,10 @@ BenchRow measure(const ModbusLoad& load, double seconds) {
       1e3 * worst_call, 100 * busy / seconds, bus.sent, bus.errors);
   row.error = std::max(0.0, *middle / kWantedRound_s - 1);  // later than wanted, as a share
   row.seconds = seconds;
+  figures.core_share = busy / seconds;
+  figures.note = fmt::format("each unit every {:.0f} ms; {:.0f} at worst; {} errors", 1e3 * *middle, 1e3 * worst_round,
+                             bus.errors);
+  add_columns(row, figures);
   return row;
 }
 
@@ -144,7 +145,8 @@ std::vector<BenchRow> bench_modbus_load(const BenchOptions& options) {
   for (const ModbusLoad& load :
        {ModbusLoad{"modbus_tcp", 247, 0}, ModbusLoad{"modbus_tcp", 247, 10}, ModbusLoad{"modbus_rtu", 8, 0},
         ModbusLoad{"modbus_rtu", 8, 1}, ModbusLoad{"modbus_rtu", 32, 0}}) {
-    if (name_of_load(load).starts_with(options.only)) rows.push_back(measure(load, options.quick ? 4 : 20));
+    if (name_of_load(load).starts_with(options.only))
+      rows.push_back(measure(load, options.seconds.value_or(options.quick ? 4 : 6)));
   }
   return rows;
 }

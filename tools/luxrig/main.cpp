@@ -247,13 +247,16 @@ int main(int argc, char** argv) {
                       "its made-up objects");
   command->add_option("--rig", bench.rigs, "transport: measure this rig's scene too");
   command->add_option("--method", bench.method, "placement: only this method on scenes");
-  command->add_option("--seeds", bench.seeds, "placement: rooms of each scene (default 100; for curves 20)")
+  command
+      ->add_option("--seeds", bench.seeds,
+                   "placement: rooms of each scene (default 100; for curves 20); faults: cases of each kind")
       ->check(CLI::Range(1, 10000));
   command
       ->add_option("--first-seed", bench.first_seed,
                    "placement: the first of those rooms, so that a long run can be split")
       ->check(CLI::Range(1, 10000));
   command->add_flag("!--no-bounds", bench.bounds, "placement: without certified bounds");
+  command->add_option("--seconds", bench.seconds, "buses: how long each load runs")->check(CLI::Range(1.0, 86400.0));
   command->add_option("--data", bench.data_folder,
                       "folder of files; placement: office-scan.obj (tools/bench/data), apartment.glb; highlight: "
                       "venus-bust.glb, skull.obj, teapot.glb, egyptian-cat.glb, chess-board.glb");

@@ -55,8 +55,8 @@ struct ReferenceOffsets {
 ReferenceOffsets offsets_of(const pugi::xml_node& reference, const ReferenceOffsets& outer) {
   ReferenceOffsets own = outer;
   for (const pugi::xml_node& node : reference.children("Break")) {
-    const int number = std::clamp(static_cast<int>(number_attribute(node, "DMXBreak", 1)), 1, 512);
-    const int added = std::clamp(static_cast<int>(number_attribute(node, "DMXOffset", 1)), 1, 512) - 1;
+    const int number = static_cast<int>(std::clamp(number_attribute(node, "DMXBreak", 1), 1.0, 512.0));
+    const int added = static_cast<int>(std::clamp(number_attribute(node, "DMXOffset", 1), 1.0, 512.0)) - 1;
     const auto outer_added = outer.added_by_break.find(number);
     own.added_by_break[number] = added + (outer_added == outer.added_by_break.end() ? 0 : outer_added->second);
     own.overwrite = {number, own.added_by_break[number]};  // the last one is meant

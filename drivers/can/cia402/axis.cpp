@@ -68,6 +68,7 @@ void Axis::lost(Time now, std::string why) {
 }
 
 void Axis::failed(Time now, std::string why) {
+  refused_ = phase_ == Phase::setting_up;
   enter(now, Phase::failed);
   why_ = std::move(why);
 }
@@ -230,7 +231,7 @@ void Axis::watch(Time now) {
     if (!heartbeat_.state(now)) return lost(now, fmt::format("no heartbeat for {} ms", patience_ms));
     if (now - std::max(since_, status_at_.value_or(since_)) > heartbeat_timeout(settings_))
       return lost(now, fmt::format("no statusword for {} ms", patience_ms));
-  } else if (phase_ == Phase::failed && !set_up_once_ && now - since_ > kTryRefusedAgain) {
+  } else if (phase_ == Phase::failed && refused_ && now - since_ > kTryRefusedAgain) {
     lost(now, why_);
   }
 }

@@ -80,6 +80,7 @@ class Axis {
   std::string drive_name_;  ///< object 1008, when it has one
   std::size_t step_ = 0;
   bool set_up_once_ = false;  ///< since activate()
+  bool refused_ = false;      ///< it failed in its set-up, which is tried again
   bool nmt_due_ = false;
   Time nmt_sent_{};
   bool referenced_ = false;

@@ -11,6 +11,8 @@ namespace {
 
 constexpr double kThere_rad = rad_from_deg(0.5);
 constexpr Duration kReturnSlack = std::chrono::seconds(1);
+constexpr Duration kArrivalSlack = std::chrono::seconds(3);  // it may have to turn back first
+constexpr Duration kStopsWithin = std::chrono::seconds(1);   // a quick stop, whatever the node says of it
 
 double counts_per_rad(const AxisPatch& patch) { return std::abs(patch.counts_per_degree) * deg_from_rad(1.0); }
 
@@ -76,6 +78,8 @@ void HeadAxes::activate(Time now) {
   target_.reset();
   ordered_.reset();
   due_back_.reset();
+  arrive_by_.reset();
+  under_way_until_ = now;
   returning_ = true;
 }
 
@@ -95,29 +99,43 @@ void HeadAxes::step(Time now, Frames& out) {
     ordered_.reset();  // it is asked again as soon as both can go there
     returning_ = true;
     due_back_.reset();
+    arrive_by_.reset();
+    under_way_until_ = std::min(under_way_until_, now + kStopsWithin);
+  }
+  if (here && target_ && arrive_by_ && now >= *arrive_by_) {
+    arrive_by_.reset();
+    if (!is_there(*here)) {  // reckoned from a position that was wrong, or part of the order was lost: from here, anew
+      ordered_.reset();
+      returning_ = true;
+      due_back_.reset();
+    }
   }
   if (here && target_ && ordered_ != target_ && pan_.order_taken() && tilt_.order_taken()) {
     HeadMove move =
         head_move(target_->pan_rad - here->pan_rad, target_->tilt_rad - here->tilt_rad, pan_limits_, tilt_limits_);
     // From a standstill both keep step. Under way, a share of the limits that fits the way left would neither stop an
-    // axis in time nor bring it back in any.
-    if (under_way(pan_) || under_way(tilt_)) {
+    // axis in time nor bring it back in any. Nor does an axis stand still because its node says so.
+    if (under_way(pan_) || under_way(tilt_) || now < under_way_until_) {
       move.pan = pan_limits_;
       move.tilt = tilt_limits_;
     }
     pan_.order(set_point(pan_, pan_patch_, target_->pan_rad, move.pan));
     tilt_.order(set_point(tilt_, tilt_patch_, target_->tilt_rad, move.tilt));
     ordered_ = target_;
+    under_way_until_ = now + from_seconds(move.seconds);
+    arrive_by_ = under_way_until_ + kArrivalSlack;
     if (returning_ && !due_back_) due_back_ = now + from_seconds(move.seconds) + kReturnSlack;
   }
   if (returning_ && here) {
-    const bool there = target_ && std::max(std::abs(target_->pan_rad - here->pan_rad),
-                                           std::abs(target_->tilt_rad - here->tilt_rad)) < kThere_rad;
-    returning_ = target_ && !there && (!due_back_ || now < *due_back_);
+    returning_ = target_ && !is_there(*here) && (!due_back_ || now < *due_back_);
   }
   const bool asked = target_.has_value(), pan_sound = pan_.sound(), tilt_sound = tilt_.sound();
   pan_.step(now, !tilt_sound, asked, out);
   tilt_.step(now, !pan_sound, asked, out);
+}
+
+bool HeadAxes::is_there(const Joints& here) const {
+  return std::max(std::abs(target_->pan_rad - here.pan_rad), std::abs(target_->tilt_rad - here.tilt_rad)) < kThere_rad;
 }
 
 std::string HeadAxes::trouble(const Axis& axis) const {

@@ -46,13 +46,16 @@ class HeadAxes {
 
  private:
   [[nodiscard]] std::string trouble(const Axis& axis) const;
+  [[nodiscard]] bool is_there(const Joints& here) const;  ///< requires target_
 
   AxisPatch pan_patch_, tilt_patch_;
   AxisLimits pan_limits_, tilt_limits_;  ///< rad/s, rad/s²
   Axis pan_, tilt_;
   std::optional<Joints> target_, ordered_;
-  bool returning_ = true;         ///< from a loss, or from the start, to the aim
-  std::optional<Time> due_back_;  ///< at the latest: it may follow an aim that moves
+  bool returning_ = true;          ///< from a loss, or from the start, to the aim
+  std::optional<Time> due_back_;   ///< at the latest: it may follow an aim that moves
+  Time under_way_until_{};         ///< by our own reckoning
+  std::optional<Time> arrive_by_;  ///< else the order did not mean what it should
 };
 
 }  // namespace luxrig::cia402

@@ -123,9 +123,9 @@ std::vector<LinePiece> ModbusRtuSession::receive(Time now, LineBytes bytes, Modb
                                                               static_cast<std::uint8_t>(*disturbance.exception)}
                                   : answer_pdu(unit, request, units);
         answer.insert(answer.end(), pdu.begin(), pdu.end());
-        for (LinePiece& piece : on_line(std::move(answer), now + disturbance.delay, disturbance)) {
-          pieces.push_back(std::move(piece));
-        }
+        const auto said = on_line(std::move(answer), now + disturbance.delay, disturbance);
+        for (int i = 0; i < (disturbance.duplicated ? 2 : 1); ++i)
+          pieces.insert(pieces.end(), said.begin(), said.end());
       }
     }
     pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(size));

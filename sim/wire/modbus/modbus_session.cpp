@@ -115,6 +115,7 @@ std::vector<ModbusReply> ModbusSession::receive(Bytes bytes, ModbusUnits& units)
     reply.push_back(rest[6]);
     reply.insert(reply.end(), pdu.begin(), pdu.end());
     if (disturbance.garbled) reply = garbled_reply(std::move(reply), disturbance.random);
+    if (disturbance.duplicated) replies.push_back({reply, disturbance.delay});
     replies.push_back({std::move(reply), disturbance.delay});
   }
   pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(at));

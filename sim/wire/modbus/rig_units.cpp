@@ -108,18 +108,25 @@ bool RigUnits::data_loss_armed(const Unit& unit) const {
   });
 }
 
+void RigUnits::switch_power(Unit& unit) {
+  const bool cut = std::any_of(unit.devices.begin(), unit.devices.end(), [&](const std::string& device) {
+    return parts_.faults.find(device, FaultKind::unpowered).has_value();
+  });
+  if (cut && unit.powered) {
+    go_dark(unit);
+    unit.powered = false;
+  } else if (!cut && !unit.powered) {
+    power_on(unit);
+  }
+}
+
 void RigUnits::advance(Time now) {
   now_ = now;
+  if (const std::uint64_t revision = parts_.faults.revision(); revision != faults_seen_) {
+    faults_seen_ = revision;
+    for (auto& [id, unit] : units_) switch_power(unit);
+  }
   for (auto& [id, unit] : units_) {
-    const bool cut = std::any_of(unit.devices.begin(), unit.devices.end(), [&](const std::string& device) {
-      return parts_.faults.find(device, FaultKind::unpowered).has_value();
-    });
-    if (cut && unit.powered) {
-      go_dark(unit);
-      unit.powered = false;
-    } else if (!cut && !unit.powered) {
-      power_on(unit);
-    }
     if (unit.powered && unit.heard && !unit.dark && data_loss_armed(unit) &&
         now - unit.last_heard >= *unit.map->stops_after) {
       go_dark(unit);

@@ -67,6 +67,7 @@ class RigUnits final : public ModbusUnits {
   void show(const Number& number);
   void power_on(Unit& unit);
   void go_dark(Unit& unit);
+  void switch_power(Unit& unit);
   [[nodiscard]] bool data_loss_armed(const Unit& unit) const;
   [[nodiscard]] double meter_count(const Number& number);
 
@@ -75,7 +76,7 @@ class RigUnits final : public ModbusUnits {
   std::map<Address, Place> places_;
   std::map<int, Unit> units_;
   Time now_{};
-  std::uint64_t exchanges_ = 0;
+  std::uint64_t exchanges_ = 0, faults_seen_ = 0;
 };
 
 }  // namespace luxrig::sim

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "core/rig/register_map/register_map.h"
 #include "tests/drivers/test_rig.h"
 
@@ -83,22 +85,81 @@ TEST(ModbusUnitRules, AProductsAnswerTimeIsTheTimeoutOnALineAndTheLeastBehindAGa
   EXPECT_EQ(gateway.at(2).timeout, milliseconds(930));
 }
 
+TEST(ModbusReadSchedule, CallsThatAreALittleEarlyOrLateKeepTheRate) {
+  Rig rig = rig_with(bus_of("modbus_tcp"));
+  add_meter(rig, "a", 1, 4);
+  for (const double every_ms : {100.0, 115.0, 130.0}) {
+    ReadSchedule schedule(rig, 0, milliseconds(200), rules_of(rig));
+    int reads = 0;
+    double last_ms = 0, longest_ms = 0;
+    for (int call = 0; call * every_ms < 20000; ++call) {
+      const double ms = call * every_ms + (call % 3 - 1) * 8;
+      for (const ReadSchedule::Batch& batch : schedule.due(at_ms(ms), {})) {
+        schedule.asked(batch, at_ms(ms));
+        ++reads;
+        longest_ms = std::max(longest_ms, ms - last_ms);
+        last_ms = ms;
+      }
+    }
+    EXPECT_NEAR(reads, 100, 3) << every_ms;
+    EXPECT_LE(longest_ms, 200 + every_ms) << every_ms;
+  }
+}
+
 TEST(ModbusUnitBackoff, AsksASilentUnitEverMoreSeldom) {
   UnitBackoff units;
   EXPECT_TRUE(units.may_ask(1, at_ms(0)));
-  units.silent(1, at_ms(0), milliseconds(400));
+  units.silent(1, at_ms(0), milliseconds(400), {});
   EXPECT_FALSE(units.may_ask(1, at_ms(399)));
   EXPECT_TRUE(units.may_ask(1, at_ms(400)));
   EXPECT_TRUE(units.may_ask(2, at_ms(0)));
-  units.silent(1, at_ms(400), milliseconds(400));
+  units.silent(1, at_ms(400), milliseconds(400), {});
   EXPECT_FALSE(units.may_ask(1, at_ms(1399)));
-  units.silent(1, at_ms(1400), milliseconds(400));
-  units.silent(1, at_ms(3400), milliseconds(400));
+  units.silent(1, at_ms(1400), milliseconds(400), {});
+  units.silent(1, at_ms(3400), milliseconds(400), {});
   EXPECT_FALSE(units.may_ask(1, at_ms(5399)));
   EXPECT_TRUE(units.may_ask(1, at_ms(5400)));
   units.answered(1);
   EXPECT_TRUE(units.may_ask(1, at_ms(0)));
   EXPECT_FALSE(units.is_silent(1));
+}
+
+TEST(ModbusUnitBackoff, AllSilentUnitsShareATwentiethOfTheTimeAndEachHasItsTurn) {
+  constexpr int kDead = 10;
+  constexpr Duration kTimeout = milliseconds(200);
+  Rig rig = rig_with(bus_of("modbus_tcp"));
+  for (int unit = 1; unit <= kDead + 2; ++unit) add_meter(rig, std::to_string(unit), unit, 2);
+  ReadSchedule schedule(rig, 0, milliseconds(200), rules_of(rig));
+  UnitBackoff units;
+  Time now = at_ms(0);
+  for (int unit = 1; unit <= kDead; ++unit) units.silent(unit, now, milliseconds(1000), kTimeout);
+
+  std::map<int, Time> asked;
+  Duration longest{}, in_vain{};
+  const Time end = now + std::chrono::minutes(10);
+  for (; now < end; now += milliseconds(100)) {
+    for (const ReadSchedule::Batch& batch : schedule.due(now, units)) {
+      schedule.asked(batch, now);
+      if (batch.request.unit > kDead) continue;  // answers
+      if (asked.contains(batch.request.unit)) longest = std::max(longest, now - asked[batch.request.unit]);
+      asked[batch.request.unit] = now;
+      units.silent(batch.request.unit, now, milliseconds(1000), kTimeout);
+      in_vain += kTimeout;
+      now += kTimeout;
+      break;
+    }
+  }
+  EXPECT_EQ(asked.size(), static_cast<std::size_t>(kDead));
+  EXPECT_LE(to_seconds(in_vain), 600 / UnitBackoff::kProbeShare + to_seconds(UnitBackoff::kProbeCredit) + 0.2);
+  EXPECT_GE(to_seconds(in_vain), 0.9 * 600 / UnitBackoff::kProbeShare);
+  EXPECT_LE(longest, std::chrono::seconds(2) + UnitBackoff::kProbeShare * kDead * kTimeout);
+
+  // Power is back: the others are not kept waiting for their share.
+  now += std::chrono::seconds(5);
+  units.answered(3);
+  std::set<int> next;
+  for (const ReadSchedule::Batch& batch : schedule.due(now, units)) next.insert(batch.request.unit);
+  EXPECT_GE(next.size(), static_cast<std::size_t>(kDead)) << "all but those asked within 2 s";
 }
 
 }  // namespace

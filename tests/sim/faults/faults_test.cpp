@@ -11,7 +11,7 @@ using namespace std::chrono_literals;
 
 TEST(Faults, EveryKindHasANameThatLeadsBackToIt) {
   for (const FaultKind kind : all_faults()) EXPECT_EQ(fault_named(name_of(kind)), kind);
-  EXPECT_EQ(all_faults().size(), 18u);
+  EXPECT_EQ(all_faults().size(), 19u);
   EXPECT_FALSE(fault_named("tired"));
 }
 
@@ -52,6 +52,35 @@ TEST(Faults, LostExchangesHaveTheStatedShare) {
   int lost = 0;
   for (std::uint64_t i = 0; i < 10000; ++i) lost += faults.disturbance({&name, 1}, i).silent ? 1 : 0;
   EXPECT_NEAR(lost, 3000, 5 * std::sqrt(10000 * 0.3 * 0.7));
+}
+
+TEST(Faults, DuplicatedAndReorderedHaveTheirSharesAndAreDrawnApart) {
+  Faults faults;
+  faults.set("dmx", FaultKind::duplicated, true, 0.2);
+  faults.set("dmx", FaultKind::reordered, true, 0.4);
+  const std::string name = "dmx";
+  int twice = 0, late = 0, both = 0;
+  for (std::uint64_t i = 0; i < 10000; ++i) {
+    const Disturbance disturbance = faults.disturbance({&name, 1}, i);
+    twice += disturbance.duplicated;
+    late += disturbance.reordered;
+    both += disturbance.duplicated && disturbance.reordered;
+  }
+  EXPECT_NEAR(twice, 2000, 200);
+  EXPECT_NEAR(late, 4000, 245);
+  EXPECT_NEAR(both, 800, 140);
+}
+
+TEST(Faults, ARevisionIsOfOneStateOnly) {
+  Faults faults;
+  const std::uint64_t begun = faults.revision();
+  faults.set("dmx", FaultKind::silent, true);
+  const std::uint64_t on = faults.revision();
+  EXPECT_NE(on, begun);
+  EXPECT_TRUE(faults.find("dmx", FaultKind::silent));
+  EXPECT_EQ(faults.revision(), on) << "looking changes nothing";
+  faults.clear();
+  EXPECT_NE(faults.revision(), on);
 }
 
 TEST(Faults, AStuckMeterKeepsWhatItShowedAndALyingOneScales) {

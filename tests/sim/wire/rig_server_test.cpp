@@ -145,6 +145,36 @@ TEST(RigServer, ASlowBusActsLateAndInOrder) {
   EXPECT_EQ(served.world->drives()[0], 1);
 }
 
+TEST(RigServer, AnOvertakenSacnPacketIsDroppedAndAnOvertakenArtDmxWithoutANumberIsObeyedLate) {
+  for (const char* driver : {"sacn", "artnet"}) {
+    const bool sacn = std::string_view(driver) == "sacn";
+    Served served(driver);
+    const Client desk(SOCK_DGRAM, served.server->ports().at("dmx"));
+    served.faults.set("dmx", FaultKind::reordered, true, 1);
+    desk.send(sacn ? sacn_one_slot(1, 51) : artdmx_two_slots(51));
+    served.serve(at_s(0.1));
+    EXPECT_EQ(served.world->drives()[0], 0) << driver << ": not there yet";
+    served.faults.clear();
+    desk.send(sacn ? sacn_one_slot(2, 255) : artdmx_two_slots(255));
+    served.serve(at_s(0.12));
+    EXPECT_EQ(served.world->drives()[0], 1) << driver;
+    served.serve_only(at_s(0.2));
+    EXPECT_DOUBLE_EQ(served.world->drives()[0], sacn ? 1 : 0.2) << driver;
+  }
+}
+
+TEST(RigServer, ADoubledPacketIsAsGoodAsOne) {
+  Served served("sacn");
+  const Client desk(SOCK_DGRAM, served.server->ports().at("dmx"));
+  served.faults.set("dmx", FaultKind::duplicated, true, 1);
+  desk.send(sacn_one_slot(0, 51));
+  served.serve(at_s(0.1));
+  EXPECT_DOUBLE_EQ(served.world->drives()[0], 0.2);
+  desk.send(sacn_one_slot(1, 255));
+  served.serve(at_s(0.2));
+  EXPECT_EQ(served.world->drives()[0], 1);
+}
+
 TEST(RigServer, ADeadBusComesBackOnTheSamePort) {
   Served served("sacn");
   const int port = served.server->ports().at("dmx");

@@ -52,6 +52,15 @@ TEST(ModbusRtuSession, AnswersThePublishedRequests) {
   EXPECT_EQ(all_of(session.receive(at_s(3), from_hex("11 03 006b 0003 7687"), units)), from_hex("11 83 02 c134"));
 }
 
+TEST(ModbusRtuSession, ADoubledAnswerIsTheSameTwice) {
+  LineUnits units;
+  units.wrong.duplicated = true;
+  ModbusRtuSession session;
+  const auto pieces = session.receive(at_s(0), from_hex("01 03 0002 0002 65cb"), units);
+  ASSERT_EQ(pieces.size(), 2u);
+  for (const LinePiece& piece : pieces) EXPECT_EQ(piece.bytes, from_hex("01 03 04 0007a120 33ba"));
+}
+
 TEST(ModbusRtuSession, AnswersNobodyElsesNorBrokenNorEverybodysRequests) {
   LineUnits units;
   ModbusRtuSession session;

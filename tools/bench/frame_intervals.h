@@ -1,0 +1,27 @@
+#pragma once
+/// How evenly something comes. Counted in microseconds, so that a day of it takes no more memory than a second.
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+namespace luxrig {
+
+class TimeCounts {
+ public:
+  void add(double seconds);
+  [[nodiscard]] std::uint64_t count() const { return count_; }
+  /// The time [s] that `share` (0…1) of them stay within, to a microsecond up to 100 ms; 0 when there are none.
+  [[nodiscard]] double quantile(double share) const;
+  [[nodiscard]] double largest() const { return largest_; }  ///< [s]
+  /// A line for each step from 50 µs to 50 ms: count, percentage, bar.
+  [[nodiscard]] std::string histogram() const;
+
+ private:
+  static constexpr std::size_t kMost_us = 100'000;
+  std::array<std::uint32_t, kMost_us + 1> counts_{};  ///< [i]: more than i-1, at most i; the last: all that is longer
+  std::uint64_t count_ = 0;
+  double largest_ = 0;
+};
+
+}  // namespace luxrig
