@@ -85,7 +85,7 @@ class VideoCamera final : public CameraSource {
   /// Until a fresh frame must have come: those thrown away, and one more that began before the call.
   milliseconds frames_bound() const {
     const auto exposure = std::chrono::ceil<milliseconds>(from_seconds(camera_.taking.exposure_s.value_or(0)));
-    return (kSettleFrames + 3) * std::max(kSlowFrame, exposure + milliseconds(50));
+    return (kSettleFrames + 4) * std::max(kSlowFrame, exposure + milliseconds(50));
   }
 
   /// Opened, in its format, with its settings, streaming.
@@ -97,7 +97,7 @@ class VideoCamera final : public CameraSource {
     }
     auto settings = fix_settings(*channel_, camera_.taking);
     if (!settings) return settings;
-    settings->changed |= !was_open;
+    if (settings->changed || !was_open) unsettled_ = true;
     if (auto started = channel_->start(); !started) return tl::unexpected(started.error());
     life_.active(now);
     return settings;
@@ -141,7 +141,8 @@ class VideoCamera final : public CameraSource {
     const Deadline deadline(frames_bound());
     const Duration since = channel_->clock(), until = since + frames_bound();
     const Duration exposure = from_seconds(settings->exposure_s);
-    int skip = settings->changed ? kSettleFrames : 0, untimed = kQueuedFrames + 1, damaged = 0, stale = 0;
+    // The first frame that ends after the call may have begun before, more so when the exposure is not known.
+    int skip = 1 + (unsettled_ ? kSettleFrames : 0), untimed = kQueuedFrames, damaged = 0, stale = 0;
     while (!deadline.passed() && channel_->clock() < until) {
       auto frame = channel_->take(deadline.left());
       if (!frame) return tl::unexpected(frame.error());
@@ -164,6 +165,7 @@ class VideoCamera final : public CameraSource {
             Fault{Cause::refused, {}, "something else changed the camera's settings: end the program that does", {}});
       auto picture = decode_frame(layout_, got.bytes);
       if (picture) picture->exposure_s = settings->exposure_s;
+      unsettled_ = false;
       return picture;
     }
     return tl::unexpected(Fault{Cause::timeout,
@@ -180,6 +182,7 @@ class VideoCamera final : public CameraSource {
   LifeRecord life_;
   FrameLayout layout_;
   bool active_ = false;
+  bool unsettled_ = true;  ///< a control has changed since the last picture
   Time retry_at_{};
 };
 

@@ -42,6 +42,8 @@ class ModelVideoChannel final : public VideoChannel {
     if (!device_.plugged_in) return fault(Cause::network, "not plugged in");
     open_ = true;
     ++device_.opened;
+    exposures_.assign(static_cast<std::size_t>(device_.pipeline), exposure_now());  // it works on frames already
+    light_ = device_.full_scale_per_s;
     return {};
   }
   void close() override {
@@ -119,15 +121,18 @@ class ModelVideoChannel final : public VideoChannel {
       next_ += device_.frame_interval;
     }
   }
+  double exposure_now() const {
+    const auto found = device_.controls.find(VideoControl::exposure);
+    return found == device_.controls.end() ? 0.01 : 1e-4 * static_cast<double>(found->second.second);
+  }
   VideoFrame frame() {
-    // What the controls were some frames ago.
-    exposures_.push_back(device_.controls.contains(VideoControl::exposure)
-                             ? 1e-4 * static_cast<double>(device_.controls.at(VideoControl::exposure).second)
-                             : 0.01);
+    // What the controls were some frames ago, and the light when the frame began.
+    exposures_.push_back(exposure_now());
     while (exposures_.size() > static_cast<std::size_t>(device_.pipeline) + 1) exposures_.pop_front();
     if (device_.resets_itself) device_.controls.at(VideoControl::exposure_auto).second = 3;
     const int counts = counts_of(layout_.format);
-    const int sample = static_cast<int>(std::min(1.0, exposures_.front() * device_.full_scale_per_s) * counts + 0.5);
+    const int sample = static_cast<int>(std::min(1.0, exposures_.front() * light_) * counts + 0.5);
+    light_ = device_.full_scale_per_s;
     VideoFrame frame;
     if (device_.has_times) frame.captured = next_;
     for (int p = 0; p < layout_.width_px * layout_.height_px; ++p) {
@@ -146,6 +151,7 @@ class ModelVideoChannel final : public VideoChannel {
   Duration next_{};
   std::deque<VideoFrame> queued_;
   std::deque<double> exposures_;
+  double light_ = 0;
   bool open_ = false, streaming_ = false;
 };
 
