@@ -6,6 +6,33 @@
 #include "drivers/camera/v4l2_devices.h"
 
 namespace luxrig {
+namespace {
+
+SampleCurve checked_curve_of(const PictureCamera& camera) {
+  auto curve = curve_of(camera.taking);
+  LUXRIG_CHECK(curve.has_value(), "camera {} was not checked", camera.name);
+  return std::move(*curve);
+}
+
+}  // namespace
+
+CameraSource::CameraSource(const PictureCamera& camera)
+    : camera_(camera), life_(camera.name), curve_(checked_curve_of(camera)) {}
+
+Result<TakenPicture> CameraSource::take(Time now) {
+  const auto raw = take_raw(now);
+  if (!raw) return tl::unexpected(raw.error());
+  return light_of(*raw, curve_, camera_.taking, now);
+}
+
+tl::unexpected<Fault> CameraSource::inactive() const {
+  return tl::unexpected(Fault{Cause::inactive, camera_.name, "the camera is not active", {}});
+}
+
+tl::unexpected<Fault> CameraSource::faulted(Time now, const Fault& fault) {
+  life_.faulted(now, fault);
+  return tl::unexpected(life_.fault());
+}
 
 std::vector<Problem> check_cameras(const Rig& rig) {
   std::vector<Problem> problems;

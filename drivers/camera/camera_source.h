@@ -5,12 +5,16 @@
 #include "drivers/camera/raw_picture.h"
 #include "drivers/camera/video_channel.h"
 #include "drivers/driver.h"
+#include "drivers/life.h"
 
 namespace luxrig {
 
 class CameraSource : public Driver, public PictureTaker {
  public:
   PictureTaker* picture_taker() override { return this; }
+  [[nodiscard]] std::vector<Health> health(Time) const override { return {life_.health()}; }
+  /// The light of take_raw(), by the camera's response.
+  Result<TakenPicture> take(Time now) final;
 
   /// As take(), without making light of the samples.
   virtual Result<RawPicture> take_raw(Time now) = 0;
@@ -18,6 +22,21 @@ class CameraSource : public Driver, public PictureTaker {
   [[nodiscard]] virtual Result<std::optional<std::pair<double, double>>> exposures_s(Time now) = 0;
   /// Of the next pictures. Within the range above.
   virtual void set_exposure(double exposure_s) = 0;
+
+ protected:
+  /// requires that check_cameras() found nothing wrong with it.
+  explicit CameraSource(const PictureCamera& camera);
+
+  [[nodiscard]] tl::unexpected<Fault> inactive() const;
+  /// Counts the failure, and gives it as health does.
+  tl::unexpected<Fault> faulted(Time now, const Fault& fault);
+
+  PictureCamera camera_;
+  LifeRecord life_;
+  bool active_ = false;
+
+ private:
+  SampleCurve curve_;
 };
 
 /// What is wrong with the sources of a rig's cameras. Touches no device.

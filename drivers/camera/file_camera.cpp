@@ -5,11 +5,9 @@
 #include <fstream>
 #include <iterator>
 
-#include "core/check.h"
 #include "drivers/camera/camera_source.h"
 #include "drivers/camera/file_listing.h"
 #include "drivers/camera/picture_file.h"
-#include "drivers/life.h"
 
 namespace luxrig {
 namespace {
@@ -18,8 +16,7 @@ constexpr std::uintmax_t kMostPictureBytes = 256u << 20;
 
 class FileCamera final : public CameraSource {
  public:
-  FileCamera(const PictureCamera& camera, SampleCurve curve)
-      : camera_(camera), curve_(std::move(curve)), life_(camera.name) {}
+  explicit FileCamera(const PictureCamera& camera) : CameraSource(camera) {}
 
   DriverBounds bounds() const override {
     DriverBounds bounds;
@@ -41,20 +38,10 @@ class FileCamera final : public CameraSource {
     active_ = false;
     life_.configured(now);
   }
-  std::vector<Health> health(Time) const override { return {life_.health()}; }
-
-  Result<TakenPicture> take(Time now) override {
-    const auto raw = take_raw(now);
-    if (!raw) return tl::unexpected(raw.error());
-    return light_of(*raw, curve_, camera_.taking, now);
-  }
   Result<RawPicture> take_raw(Time now) override {
-    if (!active_) return tl::unexpected(Fault{Cause::inactive, camera_.name, "the camera is not active", {}});
+    if (!active_) return inactive();
     auto picture = newest();
-    if (!picture) {
-      life_.faulted(now, picture.error());
-      return tl::unexpected(life_.fault());
-    }
+    if (!picture) return faulted(now, picture.error());
     life_.active(now);
     life_.count_received(now);
     return picture;
@@ -68,11 +55,6 @@ class FileCamera final : public CameraSource {
     if (!files) return tl::unexpected(files.error());
     return read_picture_file(files->back(), camera_);
   }
-
-  PictureCamera camera_;
-  SampleCurve curve_;
-  LifeRecord life_;
-  bool active_ = false;
 };
 
 }  // namespace
@@ -97,10 +79,7 @@ Result<RawPicture> read_picture_file(const std::filesystem::path& file, const Pi
 }
 
 std::unique_ptr<CameraSource> make_file_camera(const Rig& rig, std::size_t camera) {
-  const PictureCamera& spec = rig.cameras[camera];
-  auto curve = curve_of(spec.taking);
-  LUXRIG_CHECK(curve.has_value(), "camera {} was not checked", spec.name);
-  return std::make_unique<FileCamera>(spec, std::move(*curve));
+  return std::make_unique<FileCamera>(rig.cameras[camera]);
 }
 
 }  // namespace luxrig

@@ -4,11 +4,9 @@
 
 #include <algorithm>
 
-#include "core/check.h"
 #include "drivers/camera/camera_source.h"
 #include "drivers/camera/video_settings.h"
 #include "drivers/io/deadline.h"
-#include "drivers/life.h"
 
 namespace luxrig {
 namespace {
@@ -23,8 +21,8 @@ constexpr milliseconds kVideoRetry(500);  ///< after a failure
 
 class VideoCamera final : public CameraSource {
  public:
-  VideoCamera(std::unique_ptr<VideoChannel> channel, const PictureCamera& camera, SampleCurve curve)
-      : channel_(std::move(channel)), camera_(camera), curve_(std::move(curve)), life_(camera.name) {}
+  VideoCamera(std::unique_ptr<VideoChannel> channel, const PictureCamera& camera)
+      : CameraSource(camera), channel_(std::move(channel)) {}
   ~VideoCamera() override { channel_->close(); }
 
   DriverBounds bounds() const override {
@@ -48,23 +46,15 @@ class VideoCamera final : public CameraSource {
     active_ = false;
     life_.configured(now);
   }
-  std::vector<Health> health(Time) const override { return {life_.health()}; }
-
-  Result<TakenPicture> take(Time now) override {
-    const auto raw = take_raw(now);
-    if (!raw) return tl::unexpected(raw.error());
-    return light_of(*raw, curve_, camera_.taking, now);
-  }
 
   Result<RawPicture> take_raw(Time now) override {
-    if (!active_) return tl::unexpected(Fault{Cause::inactive, camera_.name, "the camera is not active", {}});
+    if (!active_) return inactive();
     if (life_.life() == Life::faulted && !channel_->is_open() && now < retry_at_) return tl::unexpected(life_.fault());
     auto picture = fresh_picture(now);
     if (!picture) {
       channel_->close();  // whatever is wrong, the next attempt begins anew
       retry_at_ = now + kVideoRetry;
-      life_.faulted(now, picture.error());
-      return tl::unexpected(life_.fault());
+      return faulted(now, picture.error());
     }
     life_.active(now);
     life_.count_received(now);
@@ -72,11 +62,8 @@ class VideoCamera final : public CameraSource {
   }
 
   Result<std::optional<std::pair<double, double>>> exposures_s(Time now) override {
-    if (!active_) return tl::unexpected(Fault{Cause::inactive, camera_.name, "the camera is not active", {}});
-    if (auto opened = channel_->open(); !opened) {
-      life_.faulted(now, opened.error());
-      return tl::unexpected(life_.fault());
-    }
+    if (!active_) return inactive();
+    if (auto opened = channel_->open(); !opened) return faulted(now, opened.error());
     return exposure_range_s(*channel_);
   }
   void set_exposure(double exposure_s) override { camera_.taking.exposure_s = exposure_s; }
@@ -177,11 +164,7 @@ class VideoCamera final : public CameraSource {
   }
 
   std::unique_ptr<VideoChannel> channel_;
-  PictureCamera camera_;
-  SampleCurve curve_;
-  LifeRecord life_;
   FrameLayout layout_;
-  bool active_ = false;
   bool unsettled_ = true;  ///< a control has changed since the last picture
   Time retry_at_{};
 };
@@ -190,10 +173,7 @@ class VideoCamera final : public CameraSource {
 
 std::unique_ptr<CameraSource> make_video_camera_over(std::unique_ptr<VideoChannel> channel, const Rig& rig,
                                                      std::size_t camera) {
-  const PictureCamera& spec = rig.cameras[camera];
-  auto curve = curve_of(spec.taking);
-  LUXRIG_CHECK(curve.has_value(), "camera {} was not checked", spec.name);
-  return std::make_unique<VideoCamera>(std::move(channel), spec, std::move(*curve));
+  return std::make_unique<VideoCamera>(std::move(channel), rig.cameras[camera]);
 }
 
 }  // namespace luxrig

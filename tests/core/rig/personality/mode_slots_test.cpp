@@ -162,7 +162,9 @@ TEST(HeldValues, AZoomAndAWheelDependOnNothingAndAConditionIsMet) {
   const PersonalityMode& mode = beam->modes[0];
   const HeldValues held = held_values(mode, std::nullopt);
   for (std::size_t c = 0; c < mode.channels.size(); ++c) {
-    if (mode.channels[c].name == "Head_Color1") EXPECT_EQ(held.dmx[c], 0u);
+    if (mode.channels[c].name == "Head_Color1") {
+      EXPECT_EQ(held.dmx[c], 0u);
+    }
     if (mode.channels[c].name != "Beam_ColorAdd_R") continue;
     const auto* red = active_function(mode.channels[c], held.dmx, [](const ChannelFunction&) { return true; });
     ASSERT_NE(red, nullptr);

@@ -90,7 +90,9 @@ TEST(Ofl, SwitchingChannelsAreWhatTheyAreByDefault) {
                           [](const PersonalityChannel& c) { return c.name == "Cyan Intensity"; }));
   // A lamp behind cyan, magenta and yellow filters adds no cyan light.
   for (const PersonalityChannel& channel : mode.channels) {
-    if (channel.name == "Cyan Intensity") EXPECT_EQ(channel.functions[0].attribute, "ColorSub_C");
+    if (channel.name == "Cyan Intensity") {
+      EXPECT_EQ(channel.functions[0].attribute, "ColorSub_C");
+    }
     if (channel.name != "Shutter / Strobe") continue;
     EXPECT_EQ(shutter_state(channel.functions[0], 10), ShutterState::closed);
     EXPECT_EQ(shutter_state(channel.functions[1], 30), ShutterState::open);

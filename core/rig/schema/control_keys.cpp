@@ -1,0 +1,97 @@
+// Keys of how the rig is driven: regions kept out of, limits, control, what fails, start, daemon.
+#include "core/rig/schema/key_tables.h"
+
+namespace luxrig::schema {
+namespace {
+
+using enum ValueType;
+
+constexpr KeySpec kControlKeys[] = {
+    {"keep_out", "name", name, "", kRequired, kAny, "", "what it is called in messages"},
+    {"keep_out", "box_m", box, "m", kNone, kPosition, "", "two opposite corners; either this or `centre_m`"},
+    {"keep_out", "centre_m", vector3, "m", kNone, kPosition, "", "middle of a sphere, with `radius_m`"},
+    {"keep_out", "radius_m", number, "m", kNone, kSize, "", "of that sphere"},
+    {"keep_out", "heads", texts, "", kNone, kAny, "",
+     "heads that it holds for, by name; `*` stands for any letters, `?` for one; left out, all that move"},
+    {"keep_out",
+     "margin_deg",
+     number,
+     "°",
+     "2",
+     {0, 90},
+     "",
+     "how far the edge of a beam stays away from it: for what a head is off its aim, and light past the field angle"},
+
+    {"limits", "max_level", number, "", "1", kShare, "", "most that any fixture may ever give, of its rated flux"},
+    {"limits",
+     "open_loop_margin",
+     number,
+     "",
+     "0.25",
+     {0, 0.9},
+     "",
+     "share of each `max_lx` kept free until a meter has confirmed the model there"},
+    {"limits",
+     "max_watts",
+     number,
+     "W",
+     kNone,
+     {0, 1e9},
+     "",
+     "most electrical power of all fixtures and placed lights together, taken as rated `watts` times level; every "
+     "luminaire of theirs must have `watts`"},
+
+    {"control", "fade_s", number, "s", "3", kSeconds, "", "from one look to the next"},
+    {"control", "fade_curve", text, "", R"("s-curve")", kAny, "linear, s-curve", "course of a fade"},
+    {"control", "correction_fade_s", number, "s", "1", kSeconds, "", "from one correction round to the next"},
+    {"control", "settle_s", number, "s", "0.5", kSeconds, "", "wait after a fade before a meter is believed"},
+    {"control", "rounds", whole_number, "", "3", {0, 100}, "", "most correction rounds after a change of look"},
+    {"control",
+     "tolerance",
+     number,
+     "",
+     "0.02",
+     {0, 0.5, true},
+     "",
+     "difference between reading and goal, as a share of the goal, that is left as it is"},
+    {"control",
+     "gain_min",
+     number,
+     "",
+     "0.6",
+     {0, 1, true},
+     "",
+     "least true output of a fixture, over its rated one, that readings can make the program believe"},
+    {"control", "gain_max", number, "", "1.15", {1, 10}, "", "the same, most"},
+
+    {"safe", "level", number, "", "0.1", kShare, "", "of every fixture that has no `safe_level` of its own"},
+    {"safe", "hold_s", number, "s", "5", kSeconds, "", "how long the last look is held first"},
+    {"safe", "fade_s", number, "s", "3", kSeconds, "", "from there to the safe look"},
+    {"safe", "on_meter_loss", yes_no, "", "true", kAny, "",
+     "whether a lost meter also leads here; else it only stops the correction"},
+
+    {"startup", "stage_s", number, "s", "0", kSeconds, "",
+     "from the beginning of one `stage` of fixtures to that of the next; each comes on over `fade_s` of `[control]`"},
+    {"startup",
+     "max_watts_per_s",
+     number,
+     "W/s",
+     kNone,
+     {10, 1e9},
+     "",
+     "most electrical power added in a second: fixtures come on one after the other, by stage, then as they stand in "
+     "this file; every luminaire of theirs must have `watts`"},
+    {"startup", "after_loss", yes_no, "", "false", kAny, "",
+     "whether a device that was lost and is back starts so, too, as it does where losses are power cuts. It is dark "
+     "first, then, even if it had held its light"},
+
+    {"daemon", "http_port", whole_number, "", "9620", {1, 65535}, "", "port of the page and the API, on loopback"},
+    {"daemon", "park_at_end", yes_no, "", "false", kAny, "",
+     "whether heads go dark and to where they rest before the daemon ends in order"},
+};
+
+}  // namespace
+
+std::span<const KeySpec> control_keys() { return kControlKeys; }
+
+}  // namespace luxrig::schema

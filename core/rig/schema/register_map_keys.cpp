@@ -1,0 +1,90 @@
+// Keys of register maps.
+#include "core/rig/schema/key_tables.h"
+
+namespace luxrig::schema {
+namespace {
+
+using enum ValueType;
+
+constexpr Bounds kBaudRate{300, 4'000'000};
+constexpr Bounds kRawRange{-2147483648.0, 4294967295.0};
+constexpr Bounds kRawWhole{-2147483648.0, 2147483647.0};
+
+constexpr KeySpec kRegisterMapKeys[] = {
+    {"device", "name", name, "", kRequired, kAny, "", "maker and product"},
+    {"device", "source", text, "", kRequired, kAny, "", "the public document that the map was made from"},
+    {"device", "assumed", texts, "", kNone, kAny, "", "what that document does not say, and what was taken instead"},
+    {"device",
+     "answer_ms",
+     number,
+     "ms",
+     kNone,
+     {1, 5000},
+     "",
+     "longest time to its answer; left out, `response_timeout_ms` of the bus"},
+    {"device",
+     "shortest_gap_ms",
+     number,
+     "ms",
+     "0",
+     {0, 1000},
+     "",
+     "how long it must be left alone between two requests, beyond the silence that Modbus itself wants"},
+    {"device", "largest_read", whole_number, "", "125", {1, 125}, "", "most registers that one request may read"},
+    {"device",
+     "largest_write",
+     whole_number,
+     "",
+     "123",
+     {1, 123},
+     "",
+     "most registers that one request may write; 1: it knows function 6 only"},
+    {"device", "baud_rates", whole_numbers, "", kNone, kBaudRate, "", "what its line can be set to; left out, any"},
+    {"device", "when_data_stops", text, "", R"("hold")", kAny, "hold, dark, watchdog",
+     "what its levels do when nobody writes: stay for ever, go out after `stops_after_s` by themselves, or the same "
+     "once `[[setup]]` has armed its watchdog"},
+    {"device",
+     "stops_after_s",
+     number,
+     "s",
+     kNone,
+     {0.1, 6553.5},
+     "",
+     "required with `dark` and `watchdog`; a bus must refresh more than twice as often"},
+
+    {"register", "name", name, "", kRequired, kAny, "", "what it is called; with `count`, a number is put behind it"},
+    {"register", "what", text, "", R"("other")", kAny, "other, level, illuminance, temperature, status, setting",
+     "what it stands for; a `level` is a share of full output, an `illuminance` is in lux"},
+    {"register", "address", whole_number, "", kRequired, kRegister, "",
+     "first Modbus register, 0-based (40011 in a manual is holding register 10)"},
+    {"register", "kind", text, "", R"("holding")", kAny, "holding, input", "read by function 3 or 4"},
+    {"register", "type", text, "", R"("u16")", kAny, "u16, s16, u32, s32, float32", "32 bits take two registers"},
+    {"register", "word_order", text, "", R"("high-first")", kAny, "high-first, low-first", "of two registers"},
+    {"register", "byte_order", text, "", R"("high-first")", kAny, "high-first, low-first",
+     "within each register; Modbus is high-first"},
+    {"register",
+     "count",
+     whole_number,
+     "",
+     "1",
+     {1, 1000},
+     "",
+     "so many of them, one behind the other: name1, name2 …"},
+    {"register", "step", whole_number, "", kNone, {1, 1000}, "", "registers from one to the next; left out, no gap"},
+    {"register", "scale", number, "", "1", {0, 1e6, true}, "", "what one count is worth, in `unit`; not of a level"},
+    {"register", "unit", text, "", kNone, kAny, "", "of the scaled value; an illuminance is in lx"},
+    {"register", "access", text, "", R"("read-write")", kAny, "read-write, read, write",
+     "what may be done to it; a level is written, an illuminance read"},
+    {"register", "range", span2, "", kNone, kRawRange, "",
+     "least and largest value in the register; of a level, required: dark and full"},
+    {"register", "power_on", whole_number, "", "0", kRawWhole, "", "its value in the register when power comes"},
+
+    {"setup", "register", text, "", kRequired, kAny, "", "name of a register that can be written"},
+    {"setup", "value", whole_number, "", kRequired, kRawWhole, "", "what is written to it, as it stands there"},
+};
+
+}  // namespace
+
+std::span<const KeySpec> register_map_keys() { return kRegisterMapKeys; }
+
+}  // namespace luxrig::schema

@@ -1,0 +1,185 @@
+// Keys of what is wanted: points, tasks, where lights may hang.
+#include "core/rig/schema/key_tables.h"
+
+namespace luxrig::schema {
+namespace {
+
+using enum ValueType;
+
+constexpr Bounds kLux{0, 1e7};
+constexpr Bounds kLights{1, 1000};
+constexpr Bounds kWeight{0, 1000};
+
+constexpr KeySpec kTaskKeys[] = {
+    {"point", "name", name, "", kRequired, kAny, "", "name of the point"},
+    {"point", "position_m", vector3, "m", kRequired, kPosition, "", "where it is"},
+    {"point", "normal", vector3, "", "[0, 0, 1]", kPosition, "", "out of the lit side, of any length but 0"},
+    {"point",
+     "goal_lx",
+     number,
+     "lx",
+     kNone,
+     {0, 1e7, true},
+     "",
+     "wanted illuminance; left out, it is only reported. To keep a place dark, use `max_lx`"},
+    {"point", "goal_xy", chromaticity, "", kNone, kChromaticity, "",
+     "wanted chromaticity (CIE 1931), beside `goal_lx`; once one goal has a colour, all that count must"},
+    {"point", "goal_cct_k", number, "K", kNone, kKelvin, "", "the same as that of a black body; instead of `goal_xy`"},
+    {"point", "weight", number, "", "1", {0, 1e6}, "", "how much its goal counts against others"},
+    {"point", "max_lx", number, "lx", kNone, kLux, "", "never more than this; it wins over any goal"},
+
+    {"points", "file", file, "", kRequired, kAny, "", "CSV file; see The points file"},
+
+    {"task", "name", name, "", kRequired, kAny, "", "name of the task"},
+    {"task", "kind", text, "", kRequired, kAny, "emittance, placement, aim, highlight",
+     "`emittance`: the level of every fixture; `placement`: where further lights should hang, and their levels; `aim`: "
+     "where heads that hang look and how bright they are, so that an object's relief reads; `highlight`: where further "
+     "lights should hang for that"},
+    {"task",
+     "max_watts",
+     number,
+     "W",
+     kNone,
+     {0, 1e9},
+     "",
+     "most electrical power of the lights that this task sets or places, taken as rated `watts` times level; every "
+     "luminaire of theirs must have `watts`"},
+    {"task", "luminaire", text, "", kNone, kAny, "",
+     "name of the `[[luminaire]]` to place (kind `placement` and `highlight`; required there)"},
+    {"task", "lights", whole_number, "", kNone, kLights, "",
+     "how many (kind `placement` and `highlight`); left out, as few as will do, or until contrast rises no more"},
+    {"task", "max_lights", whole_number, "", kNone, kLights, "",
+     "most of them, when `lights` is left out; left out too, 20 (`placement`) or 8 (`highlight`)"},
+    {"task", "error_wanted", number, "", "0.001", kShare, "",
+     "normalised error at which the search ends: root mean square of what is missing over that of the goals (only with "
+     "kind `placement`, as all keys from here to `bound`)"},
+    {"task",
+     "improvement",
+     number,
+     "",
+     "0.05",
+     {0, 1, false, true},
+     "",
+     "share of the error that one more light must take away to be worth hanging, when `lights` is left out"},
+    {"task", "method", text, "", R"("luxrig")", kAny, "luxrig, gpk15, gp16, lin2013, annealing, pursuit",
+     "how places are searched. `luxrig`: one light after the other, all refined together, taken out and put back; the "
+     "others are published methods to compare with (`gpk15` and `annealing` need `lights`)"},
+    {"task", "aimed", yes_no, "", "false", kAny, "",
+     "whether lights may look anywhere, which is searched with their places; else they hang straight down"},
+    {"task", "indirect", yes_no, "", "true", kAny, "",
+     "whether the search counts reflected light, too, which takes longer; predicted lux always do"},
+    {"task", "fixtures", text, "", R"("as-set")", kAny, "as-set, off, full",
+     "what the rig's own fixtures do meanwhile: what the tasks before this one have set (dark, where none has), dark, "
+     "or the most they may give"},
+    {"task",
+     "seconds",
+     number,
+     "s",
+     kNone,
+     {0, 86400, true},
+     "",
+     "ends the search after this time with the best so far; left out, after a fixed amount of work, so that the result "
+     "does not depend on the machine"},
+    {"task",
+     "energy_front",
+     whole_number,
+     "",
+     "0",
+     {0, 100},
+     "",
+     "so many power limits, falling evenly from what the lights found take, are searched with, too: what each watt "
+     "less "
+     "costs in error"},
+    {"task", "bound", yes_no, "", "false", kAny, "",
+     "whether to prove, too, how close as many lights could come at all (seconds to a minute); how close any number "
+     "could is always worked out where the goal was not reached"},
+    {"task", "object", text, "", kNone, kAny, "",
+     "name of the `[[scene.object]]`, a mesh, whose relief shall read (kind `aim` and `highlight`; required there)"},
+    {"task",
+     "scale_mm",
+     number,
+     "mm",
+     kNone,
+     {0, 1e5, true},
+     "",
+     "size of the relief that counts (kind `aim` and `highlight`): radius of the fits that give its curvature; left "
+     "out, from the mesh"},
+    {"task",
+     "interest",
+     number,
+     "",
+     "0.1",
+     {0, 1, true},
+     "",
+     "share of its surface that counts, the most recessed first (kind `aim` and `highlight`)"},
+    {"task", "seen_by", text, "", kNone, kAny, "",
+     "name of a `[[camera]]`: only what it sees of the relief counts (kind `aim` and `highlight`); left out, all "
+     "sides"},
+    {"task", "max_object_lx", number, "lx", kNone, kLux, "",
+     "never more than this anywhere on the object (kind `aim` and `highlight`)"},
+    {"task", "contrast", text, "", R"("relative")", kAny, "lux, relative",
+     "what is made large (only with kind `aim`): the difference in illuminance to what is beside it, in `lux`, "
+     "or "
+     "`relative` to both, as an eye or a camera sees that adapts; then lights are as bright as limits let them"},
+    {"task", "coverage_weight", number, "", "0.25", kWeight, "",
+     "what it is worth that every feature has a shadow's edge, beside contrast (kind `aim` and `highlight`)"},
+    {"task", "heads", texts, "", kNone, kAny, "",
+     "fixtures to aim and dim, by name (`*` and `?`); left out, all that move. One that does not move is only "
+     "dimmed; one with emitters is one light, its emitters at one level (only with kind `aim`, as all keys below)"},
+    {"task", "key", text, "", kNone, kAny, "", "the fixture that is the key light"},
+    {"task",
+     "min_key_to_fill",
+     number,
+     "",
+     "1",
+     {0, 1e6},
+     "",
+     "least of its mean illuminance of the relief over that of all other light; needs `key`"},
+    {"task", "max_key_to_fill", number, "", kNone, {0, 1e6, true}, "", "the same, most; needs `key`"},
+    {"task", "eyes", texts, "", kNone, kAny, "",
+     "points that stand for the eyes of an audience, by name (`*` and `?`): light counts from wherever it comes; "
+     "cameras are eyes, too"},
+    {"task", "max_eye_lx", number, "lx", kNone, {0, 1e7, true}, "", "most direct light at an eye or a camera"},
+    {"task", "base_lx", number, "lx", "0", kLux, "", "illuminance that all of the relief should have"},
+    {"task", "base_weight", number, "", "1", kWeight, "", "what that is worth"},
+    {"task", "energy_weight", number, "", "0", kWeight, "", "what saving all power would be worth; needs watts"},
+    {"task", "travel_weight", number, "", "0.01", kWeight, "", "what a second of movement less is worth"},
+
+    {"mounting", "box_m", box, "m", kNone, kPosition, "",
+     "two opposite corners of a box that lights stay in; left out, the scene's bounding box"},
+    {"mounting", "surfaces", texts, "", kNone, kAny, "",
+     "materials or scene objects that lights hang off, by name; `*` stands for any letters, `?` for one; left "
+     "out, anywhere in the air"},
+    {"mounting",
+     "offset_m",
+     span2,
+     "m",
+     "[0.05, 0.15]",
+     {0.001, 1000},
+     "",
+     "least and largest distance of a light's middle from those surfaces, on both of their sides (only with "
+     "`surfaces`)"},
+    {"mounting",
+     "clearance_m",
+     number,
+     "m",
+     "0.1",
+     {0, 1000},
+     "",
+     "least distance of a light's middle from all (other) surfaces"},
+    {"mounting",
+     "spacing_m",
+     number,
+     "m",
+     kNone,
+     {0.001, 1000},
+     "",
+     "of the lattice of places that are tried first; lights then move freely. Left out, about 20 000 places in the "
+     "air, 5 000 off surfaces; at most 1 000 000"},
+};
+
+}  // namespace
+
+std::span<const KeySpec> task_keys() { return kTaskKeys; }
+
+}  // namespace luxrig::schema
