@@ -10,22 +10,52 @@
 namespace luxrig {
 namespace {
 
+using ByCandidate = ComplementSearch::ByCandidate;
+
 /// A column with less than this left of its square is a mix of the chosen ones: nothing but rounding to gain.
 constexpr double kLeastLeft = 1e-4;
 
+/// Columns at a time: of 300 points, a megabyte.
+constexpr std::size_t kBlock = 512;
+
 const double kSameWay = std::cos(rad_from_deg(30));
 
-/// Orthonormal, of the columns whose level is above 0.
-Eigen::MatrixXd basis_of(const PlacedLights& chosen) {
-  Eigen::MatrixXd used(chosen.columns().rows(), chosen.columns().cols());
-  Eigen::Index count = 0;
-  for (Eigen::Index k = 0; k < used.cols(); ++k)
-    if (chosen.levels()[k] > 0) used.col(count++) = chosen.columns().col(k);
-  used.conservativeResize(Eigen::NoChange, count);
-  if (count == 0) return used;
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factor(used);
-  return factor.householderQ() * Eigen::MatrixXd::Identity(used.rows(), factor.rank());
-}
+/// Columns nearer than this to a mix of the others span nothing of their own: products with them would be rounding.
+constexpr double kOwnShare = 1e-6;
+
+/// ‖Qᵀa‖², where Q is an orthonormal basis of columns A, of any a by its products g = Aᵀa. With A P = Q R it is
+/// ‖R⁻ᵀ Pᵀ g‖².
+class SquareWithin {
+ public:
+  explicit SquareWithin(const Eigen::MatrixXd& columns) {
+    if (columns.cols() == 0) return;
+    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factor;
+    factor.setThreshold(kOwnShare);
+    factor.compute(columns);
+    const Eigen::Index rank = factor.rank();
+    order_ = factor.colsPermutation().indices().head(rank).cast<Eigen::Index>();
+    inverse_ = factor.matrixR()
+                   .topLeftCorner(rank, rank)
+                   .triangularView<Eigen::Upper>()
+                   .solve(Eigen::MatrixXd::Identity(rank, rank));
+    within_.resize(rank);
+  }
+  /// Most lights have nothing in common with most candidates where walls part them.
+  [[nodiscard]] double of(const double* products, std::span<const Eigen::Index> column) {
+    const Eigen::Index rank = within_.size();
+    within_.setZero();
+    for (Eigen::Index k = 0; k < rank; ++k) {
+      const double product = products[column[static_cast<std::size_t>(order_[k])]];
+      if (product != 0) within_.tail(rank - k) += product * inverse_.row(k).tail(rank - k).transpose();
+    }
+    return within_.squaredNorm();
+  }
+
+ private:
+  Eigen::Matrix<Eigen::Index, Eigen::Dynamic, 1> order_;
+  ByCandidate inverse_;
+  Eigen::VectorXd within_;
+};
 
 }  // namespace
 
@@ -51,72 +81,92 @@ ComplementSearch::ComplementSearch(const ColumnsView& columns, std::span<const L
   squared_norm_.conservativeResize(static_cast<Eigen::Index>(lit_.size()), Eigen::NoChange);
 }
 
-/// With vectors over points: columns × vectors.
-Eigen::MatrixXd ComplementSearch::products(const std::vector<ColumnsView::Index>& columns,
-                                           const Eigen::MatrixXd& vectors) const {
+/// Of each lit candidate's column with vectors over points: candidates × vectors. A block of columns stays in the cache
+/// while all vectors go over it.
+ComplementSearch::ByCandidate ComplementSearch::products(const Eigen::MatrixXd& vectors) const {
   constexpr Eigen::Index kTile = ColumnsView::kTile;
-  const auto count = static_cast<Eigen::Index>(columns.size());
-  Eigen::MatrixXd of_all(count, vectors.cols());
-  std::vector<double> tile(static_cast<std::size_t>(kTile * vectors.rows()));
-  std::vector<double> of_tile(static_cast<std::size_t>(kTile * count));
-  for (Eigen::Index first = 0; first < vectors.cols(); first += kTile) {
-    const Eigen::Index used = std::min(kTile, vectors.cols() - first);
+  const Eigen::Index tiles = (vectors.cols() + kTile - 1) / kTile, tile_size = kTile * vectors.rows();
+  std::vector<double> in_tiles(static_cast<std::size_t>(tiles * tile_size), 0.0);
+  for (Eigen::Index k = 0; k < vectors.cols(); ++k)
     for (Eigen::Index row = 0; row < vectors.rows(); ++row)
-      for (Eigen::Index k = 0; k < kTile; ++k)
-        tile[static_cast<std::size_t>(kTile * row + k)] = k < used ? vectors(row, first + k) : 0;
-    columns_.dot_tile(columns, tile.data(), of_tile.data());
-    for (Eigen::Index k = 0; k < used; ++k)
-      for (Eigen::Index i = 0; i < count; ++i) of_all(i, first + k) = of_tile[static_cast<std::size_t>(kTile * i + k)];
+      in_tiles[static_cast<std::size_t>(k / kTile * tile_size + kTile * row + k % kTile)] = vectors(row, k);
+  ByCandidate of_all(static_cast<Eigen::Index>(lit_.size()), vectors.cols());
+  std::vector<double> of_block(kTile * kBlock);
+  for (std::size_t first = 0; first < lit_.size(); first += kBlock) {
+    const auto block = std::span(lit_).subspan(first, std::min(kBlock, lit_.size() - first));
+    for (Eigen::Index tile = 0; tile < tiles; ++tile) {
+      columns_.dot_tile(block, in_tiles.data() + tile * tile_size, of_block.data());
+      const Eigen::Index used = std::min(kTile, vectors.cols() - kTile * tile);
+      for (std::size_t i = 0; i < block.size(); ++i)
+        for (Eigen::Index k = 0; k < used; ++k)
+          of_all(static_cast<Eigen::Index>(first + i), kTile * tile + k) =
+              of_block[static_cast<std::size_t>(kTile) * i + static_cast<std::size_t>(k)];
+    }
   }
   return of_all;
 }
 
-Eigen::VectorXd ComplementSearch::gains(const PlacedLights& chosen) const {
-  const auto lit = static_cast<Eigen::Index>(lit_.size());
+ComplementSearch::About ComplementSearch::about(const PlacedLights& lights) const {
   const Eigen::Index points = columns_.rows(), channels = goal_->channels(), emitters = goal_->emitters.cols();
-  // Levels cannot fall below 0: an emitter that does not pull gains nothing, whatever the chosen lights do.
-  const Eigen::VectorXd weighted_residual = row_weight_.cwiseProduct(chosen.residual());
-  const Eigen::MatrixXd pull = products(lit_, weighted_residual.reshaped(points, channels)) * goal_->emitters;
-  std::vector<Eigen::Index> place;
-  std::vector<ColumnsView::Index> pulling;
-  for (Eigen::Index i = 0; i < lit; ++i) {
-    if (!(pull.row(i).maxCoeff() > 0)) continue;
-    place.push_back(i);
-    pulling.push_back(lit_[static_cast<std::size_t>(i)]);
-  }
-
-  const Eigen::MatrixXd basis = row_weight_.asDiagonal() * basis_of(chosen);
-  const auto count = static_cast<Eigen::Index>(pulling.size());
-  Eigen::MatrixXd left(count, emitters);
-  for (Eigen::Index i = 0; i < count; ++i) left.row(i) = squared_norm_.row(place[static_cast<std::size_t>(i)]);
-  if (basis.cols() == 0) {
-    // Nothing is chosen yet.
-  } else if (channels == 1) {
-    const Eigen::VectorXd of_basis = products(pulling, basis).rowwise().squaredNorm();
-    left -= of_basis * goal_->emitters.cwiseAbs2();
-  } else {
-    std::vector<Eigen::MatrixXd> of_channel;
-    for (Eigen::Index c = 0; c < channels; ++c)
-      of_channel.push_back(products(pulling, basis.middleRows(c * points, points)));
+  Eigen::MatrixXd vectors(points * channels, lights.columns().cols() + 1);
+  vectors << lights.columns(), lights.residual();
+  vectors = row_weight_.asDiagonal() * vectors;
+  About about{&lights, {}};
+  for (Eigen::Index c = 0; c < channels; ++c) {
+    const ByCandidate of_channel = products(vectors.middleRows(c * points, points));
     for (Eigen::Index e = 0; e < emitters; ++e) {
-      Eigen::MatrixXd of_emitter = Eigen::MatrixXd::Zero(count, basis.cols());
-      for (Eigen::Index c = 0; c < channels; ++c)
-        if (goal_->emitters(c, e) != 0) of_emitter += goal_->emitters(c, e) * of_channel[static_cast<std::size_t>(c)];
-      left.col(e) -= of_emitter.rowwise().squaredNorm();
+      if (c == 0)
+        about.products.push_back(goal_->emitters(c, e) * of_channel);
+      else if (goal_->emitters(c, e) != 0)
+        about.products[static_cast<std::size_t>(e)] += goal_->emitters(c, e) * of_channel;
     }
   }
+  return about;
+}
+
+Eigen::VectorXd ComplementSearch::gains(const About& about, std::initializer_list<std::size_t> without,
+                                        const PlacedLights& chosen) const {
+  const auto lit = static_cast<Eigen::Index>(lit_.size());
+  const Eigen::Index of_each = chosen.emitters(), all = about.lights->columns().cols();
+  LUXRIG_CHECK(about.lights->size() == chosen.size() + without.size(), "{} lights, {} of them chosen, {} not",
+               about.lights->size(), chosen.size(), without.size());
+  // Of all lights' columns: how their levels differ, and those in use.
+  Eigen::RowVectorXd less = Eigen::RowVectorXd::Zero(all + 1);
+  less.head(all) = about.lights->levels().transpose();
+  less[all] = 1;
+  std::vector<Eigen::Index> used_of_all, used;
+  for (Eigen::Index k = 0, of_chosen = 0; k < all; ++k) {
+    if (std::find(without.begin(), without.end(), static_cast<std::size_t>(k / of_each)) != without.end()) continue;
+    less[k] -= chosen.levels()[of_chosen];
+    if (chosen.levels()[of_chosen] > 0) {
+      used_of_all.push_back(k);
+      used.push_back(of_chosen);
+    }
+    ++of_chosen;
+  }
+  SquareWithin used_lights(chosen.columns()(Eigen::all, used));
   Eigen::VectorXd gain = Eigen::VectorXd::Zero(lit);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const Eigen::Index at = place[static_cast<std::size_t>(i)];
-    for (Eigen::Index e = 0; e < emitters; ++e)
-      if (pull(at, e) > 0 && left(i, e) > kLeastLeft * squared_norm_(at, e))
-        gain[at] += pull(at, e) * pull(at, e) / left(i, e);
+  for (std::size_t e = 0; e < about.products.size(); ++e) {
+    const ByCandidate& products = about.products[e];
+    for (Eigen::Index i = 0; i < lit; ++i) {
+      // Levels cannot fall below 0: an emitter that does not pull gains nothing, whatever the chosen lights do.
+      const double pull = products.row(i).dot(less);
+      if (!(pull > 0)) continue;
+      const double whole = squared_norm_(i, static_cast<Eigen::Index>(e));
+      const double left = whole - used_lights.of(products.row(i).data(), used_of_all);
+      if (left > kLeastLeft * whole) gain[i] += pull * pull / left;
+    }
   }
   return gain;
 }
 
 std::vector<Complement> ComplementSearch::best(const PlacedLights& chosen, std::size_t count, double apart_m) const {
-  const Eigen::VectorXd gain = gains(chosen);
+  return best(about(chosen), {}, chosen, count, apart_m);
+}
+
+std::vector<Complement> ComplementSearch::best(const About& about, std::initializer_list<std::size_t> without,
+                                               const PlacedLights& chosen, std::size_t count, double apart_m) const {
+  const Eigen::VectorXd gain = gains(about, without, chosen);
   std::vector<std::size_t> order(lit_.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   // Enough for `count` that stand apart in nearly every case; the rest is sorted only when it is needed.

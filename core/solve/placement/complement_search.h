@@ -10,6 +10,7 @@
 /// The thesis asks for the candidate whose normalised column is nearest to the residual, that is the largest aᵀr/‖a‖:
 /// the same without the chosen lights in the denominator.
 
+#include <initializer_list>
 #include <span>
 #include <vector>
 
@@ -31,14 +32,26 @@ class ComplementSearch {
   [[nodiscard]] std::size_t candidates() const { return poses_.size(); }
   [[nodiscard]] const LightPose& pose(std::size_t candidate) const { return poses_[candidate]; }
 
+  using ByCandidate = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  /// What all candidates have in common with lights: one pass through the columns, which serves every search about some
+  /// of them. The lights must outlive it.
+  struct About {
+    const PlacedLights* lights = nullptr;
+    std::vector<ByCandidate> products;  ///< per emitter of a candidate: W a with W A, and last with the residual
+  };
+  [[nodiscard]] About about(const PlacedLights& lights) const;
+
   /// The best by gain, falling; fewer when no more gain anything. None within `apart_m` of a better one that points
   /// the same way (to 30°).
   [[nodiscard]] std::vector<Complement> best(const PlacedLights& chosen, std::size_t count, double apart_m) const;
+  /// The same of lights of which chosen's are those not among `without`, in their order and poses.
+  [[nodiscard]] std::vector<Complement> best(const About& about, std::initializer_list<std::size_t> without,
+                                             const PlacedLights& chosen, std::size_t count, double apart_m) const;
 
  private:
-  [[nodiscard]] Eigen::VectorXd gains(const PlacedLights& chosen) const;
-  [[nodiscard]] Eigen::MatrixXd products(const std::vector<ColumnsView::Index>& columns,
-                                         const Eigen::MatrixXd& vectors) const;
+  [[nodiscard]] Eigen::VectorXd gains(const About& about, std::initializer_list<std::size_t> without,
+                                      const PlacedLights& chosen) const;
+  [[nodiscard]] ByCandidate products(const Eigen::MatrixXd& vectors) const;
 
   ColumnsView columns_;
   std::span<const LightPose> poses_;

@@ -62,13 +62,15 @@ bool LightExchange::with_one_more(PlacedLights& lights, std::size_t choice, std:
 }
 
 /// The lights without one of them, and the best found in its place.
-LightExchange::Trial LightExchange::exchanged(const PlacedLights& lights, std::size_t light, std::uint64_t seed) const {
+LightExchange::Trial LightExchange::exchanged(const ComplementSearch::About& about, std::size_t light,
+                                              std::uint64_t seed) const {
+  const PlacedLights& lights = *about.lights;
   Trial trial;
   const LightPose was = lights.poses()[light];
   PlacedLights others = lights;
   others.drop(light);
   std::vector<LightPose> poses;
-  for (const Complement& c : candidates_.best(others, options_.complements, options_.apart_m))
+  for (const Complement& c : candidates_.best(about, {light}, others, options_.complements, options_.apart_m))
     poses.push_back(candidates_.pose(c.candidate));
   std::mt19937_64 random(seed);
   std::normal_distribution<double> off(0, 1);
@@ -96,9 +98,10 @@ LightExchange::Trial LightExchange::exchanged(const PlacedLights& lights, std::s
 
 bool LightExchange::singly(PlacedLights& lights, std::mt19937_64& random) {
   const std::uint64_t seed = random();
+  const ComplementSearch::About about = candidates_.about(lights);
   std::vector<Trial> trials(lights.size());
   parallel_for(trials.size(), options_.threads,
-               [&](std::size_t light) { trials[light] = exchanged(lights, light, seed + light); });
+               [&](std::size_t light) { trials[light] = exchanged(about, light, seed + light); });
   std::vector<std::size_t> better;
   for (std::size_t light = 0; light < trials.size(); ++light) {
     columns_ += trials[light].columns;
@@ -124,13 +127,14 @@ bool LightExchange::singly(PlacedLights& lights, std::mt19937_64& random) {
 
 /// The lights without two of them, and the best found in their places: one of the best complements for the first, the
 /// best for the second.
-LightExchange::Trial LightExchange::pair_exchanged(const PlacedLights& lights,
+LightExchange::Trial LightExchange::pair_exchanged(const ComplementSearch::About& about,
                                                    std::pair<std::size_t, std::size_t> pair) const {
   Trial trial;
-  PlacedLights others = lights;
+  PlacedLights others = *about.lights;
   others.drop(pair.second);
   others.drop(pair.first);
-  for (const Complement& first : candidates_.best(others, options_.complements, options_.apart_m)) {
+  for (const Complement& first :
+       candidates_.best(about, {pair.first, pair.second}, others, options_.complements, options_.apart_m)) {
     if (options_.stop.stop_requested()) break;
     PlacedLights way = others;
     ++trial.columns;
@@ -147,8 +151,9 @@ LightExchange::Trial LightExchange::pair_exchanged(const PlacedLights& lights,
 
 bool LightExchange::by_twos(PlacedLights& lights) {
   const auto pairs = neighbours(lights);
+  const ComplementSearch::About about = candidates_.about(lights);
   std::vector<Trial> trials(pairs.size());
-  parallel_for(trials.size(), options_.threads, [&](std::size_t i) { trials[i] = pair_exchanged(lights, pairs[i]); });
+  parallel_for(trials.size(), options_.threads, [&](std::size_t i) { trials[i] = pair_exchanged(about, pairs[i]); });
   const Trial* best = nullptr;
   for (const Trial& trial : trials) {
     columns_ += trial.columns;

@@ -66,8 +66,9 @@ class LightExchange {
     std::size_t columns = 0;
   };
   [[nodiscard]] RefineOptions steps(int most) const;
-  [[nodiscard]] Trial exchanged(const PlacedLights& lights, std::size_t light, std::uint64_t seed) const;
-  [[nodiscard]] Trial pair_exchanged(const PlacedLights& lights, std::pair<std::size_t, std::size_t> pair) const;
+  [[nodiscard]] Trial exchanged(const ComplementSearch::About& about, std::size_t light, std::uint64_t seed) const;
+  [[nodiscard]] Trial pair_exchanged(const ComplementSearch::About& about,
+                                     std::pair<std::size_t, std::size_t> pair) const;
 
   const ComplementSearch& candidates_;
   const ExchangeOptions& options_;

@@ -106,5 +106,41 @@ TEST(ComplementSearch, GivesTheFallOfTheErrorOfEveryCandidateAndTheBestFirst) {
   }
 }
 
+// One pass about all lights answers for those that are left when some are taken out, as a pass about these does.
+TEST(ComplementSearch, AboutAllLightsKnowsTheBestForThoseThatAreLeft) {
+  const LitHall hall(make_box_room(1), 0.5);
+  Random random(12);
+  LightingGoal goal{Eigen::VectorXd(hall.light->points()), {}};
+  for (Eigen::Index i = 0; i < goal.lux.size(); ++i) goal.lux[i] = random.between(100, 500);
+  const ComplementSearch search(hall.view(), hall.poses, goal);
+  PlacedLights lights(*hall.light, goal);
+  // The second hangs where the first does.
+  for (const Vec3& place : {Vec3(1, 1, 2), Vec3(1, 1, 2), Vec3(3, 1, 2), Vec3(2, 2, 1)})
+    ASSERT_TRUE(lights.add({place}));
+  const auto about = search.about(lights);
+  const auto expect_same = [](const std::vector<Complement>& shared, const std::vector<Complement>& alone) {
+    ASSERT_EQ(shared.size(), alone.size());
+    ASSERT_FALSE(alone.empty());
+    for (std::size_t i = 0; i < alone.size(); ++i)
+      EXPECT_NEAR(shared[i].gain, alone[i].gain, 1e-9 * alone[0].gain) << i;
+    EXPECT_EQ(shared[0].candidate, alone[0].candidate);
+  };
+  for (std::size_t one = 0; one < lights.size(); ++one) {
+    PlacedLights others = lights;
+    others.drop(one);
+    expect_same(search.best(about, {one}, others, 50, 0), search.best(others, 50, 0));
+    for (std::size_t two = 0; two < one; ++two) {
+      PlacedLights fewer = others;
+      fewer.drop(two);
+      expect_same(search.best(about, {two, one}, fewer, 50, 0), search.best(fewer, 50, 0));
+    }
+  }
+  const PlacedLights none(*hall.light, goal);
+  EXPECT_FALSE(search.best(none, 5, 0.3).empty());
+  PlacedLights two(*hall.light, goal);
+  ASSERT_TRUE(two.add({Vec3(1, 1, 2)}) && two.add({Vec3(3, 1, 2)}));
+  expect_same(search.best(search.about(two), {0, 1}, none, 20, 0), search.best(none, 20, 0));
+}
+
 }  // namespace
 }  // namespace luxrig
