@@ -65,6 +65,7 @@ struct FixtureStatus {
   double gain = 1, gain_standard_error = 0;  ///< estimated true output over rated
   bool parked = false;                       ///< dark where it rests, or on the way there, until the next apply
   bool kept_dark = false;                    ///< its beam could meet a keep-out zone
+  std::string waits_for{};                   ///< parked or kept dark: what lights it again, for a person
   bool identified = false;                   ///< blinks or nods, so that a person sees which one it is
 };
 

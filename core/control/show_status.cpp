@@ -142,8 +142,10 @@ ShowStatus ShowController::State::status(Time now) const {
   for (const Identification& one : identified) {
     for (const std::size_t f : one.pattern.fixtures()) status.fixtures[f].identified = !one.pattern.over(now);
   }
-  for (std::size_t f = 0; f < rig.fixtures.size(); ++f)
+  for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
     status.fixtures[f].parked = parked(f) || (!parking.empty() && parking[f] != 0);
+    if (status.fixtures[f].parked) status.fixtures[f].waits_for = "the next plan";
+  }
   status.resting = !program.parked.empty() && parking.empty() && now >= arrive;
   const bool settled = !program.blackout && program.done(now);
   for (std::size_t p = 0; p < rig.points.size(); ++p) {
