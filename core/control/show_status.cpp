@@ -59,7 +59,7 @@ std::string ShowController::State::detail(Time now) const {
   std::string text;
   switch (phase) {
     case Phase::idle:
-      text = "no plan applied yet";
+      text = in_force.empty() ? "no plan applied yet" : "the light is as it was; no plan applied yet";
       break;
     case Phase::moving:
       text = "heads go dark before they turn";
