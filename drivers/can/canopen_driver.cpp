@@ -117,7 +117,8 @@ class CanopenDriver final : public Driver, public Mover {
     for (const AimCommand& command : commands) {
       const auto head =
           std::find_if(heads_.begin(), heads_.end(), [&](const Head& h) { return h.fixture == command.fixture; });
-      if (head != heads_.end()) head->axes.set_target(command.joints);
+      // The zoom is the lamp's, on another bus: it turns no axis.
+      if (head != heads_.end()) head->axes.set_target({command.joints.pan_rad, command.joints.tilt_rad, 0});
     }
     listen(now);
     if (now >= next_cycle_) {
