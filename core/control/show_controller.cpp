@@ -129,7 +129,12 @@ void ShowController::State::guard(Time now, const std::vector<double>& from, con
     const double ends_lx = std::max(row.dot(begin), row.dot(end));
     if (ends_lx <= max_lx) continue;
     bool safe = true;
-    for (int s = nothing_new ? 1 : 0; s <= kSamples && safe; ++s) {
+    // Who sent the light that was there before knew more than the open-loop margin.
+    const auto was = static_cast<Eigen::Index>(in_force.size());
+    const bool was_so =
+        was == lights && ends_lx <= row.dot(Eigen::Map<const Eigen::VectorXd>(in_force.data(), was)) * kRounding;
+
+    for (int s = nothing_new ? 1 : 0; s <= kSamples && safe && !was_so; ++s) {
       const Eigen::VectorXd level = begin + (end - begin) * (static_cast<double>(s) / kSamples);
       const double most_lx = estimator.most_lux_at_point(worst.points[k], {level.data(), from.size()}, now);
       safe = most_lx <= *rig.points[worst.points[k]].max_lx * kRounding;  // all light; the row's limit lacks daylight
@@ -353,7 +358,9 @@ void ShowController::State::advance(Time now) {
       return;
     case Phase::safe_fading:
       if (back && cue && !asked_safe) return resume(now);
-      if (program.done(now)) enter(Phase::safe, now);
+      if (!program.done(now)) return;
+      in_force.clear();
+      enter(Phase::safe, now);
       return;
     case Phase::safe:
       doubt_the_past(now);
@@ -375,6 +382,7 @@ void ShowController::State::advance(Time now) {
     case Phase::fading:
     case Phase::correcting:
       if (!program.done(now)) return;
+      in_force.clear();
       enter(Phase::settling, now);
       return;
     case Phase::settling:

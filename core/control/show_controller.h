@@ -65,6 +65,7 @@ struct FixtureStatus {
   double gain = 1, gain_standard_error = 0;  ///< estimated true output over rated
   bool parked = false;                       ///< dark where it rests, or on the way there, until the next apply
   bool kept_dark = false;                    ///< its beam could meet a keep-out zone
+  std::string waits_for{};                   ///< parked or kept dark: what lights it again, for a person
   bool identified = false;                   ///< blinks or nods, so that a person sees which one it is
 };
 
@@ -93,11 +94,23 @@ struct ShowStatus {
   std::vector<DeskStatus> desks;
 };
 
+/// What somebody else has sent until now, and goes on to if nobody does anything.
+struct LightInForce {
+  std::vector<double> level, safe;  ///< per fixture, 0…1
+  std::vector<Joints> joints;       ///< per fixture
+  double hold_s = 0, fade_s = 0;    ///< how long `level` is still held, and the way from there to `safe`
+};
+
 class ShowController {
  public:
   ShowController(const Rig& rig, LightModel model);
   ~ShowController();
   ShowController(ShowController&&) noexcept;
+
+  /// Before anything else: that light is on, and goes out from here on; the first apply fades from there. Limits let it
+  /// pass until then, as whoever sent it kept them by what meters had taught. Dark from the start are only heads whose
+  /// axes may have to look for their home, and heads that could light a keep-out zone: nobody knows where they look.
+  void go_on_from(Time now, const LightInForce& light);
 
   /// Fades to these levels (one per fixture, 0…max_level) with heads as they look, then measures and corrects towards
   /// the rig's goals. The levels are first reduced so that, with the rig's open-loop margin, no limited point can

@@ -85,11 +85,16 @@ void ShowController::State::tell_zones(ShowStatus& status) const {
   for (std::size_t h = 0; h < guarded.size(); ++h) {
     const GuardedHead& head = guarded[h];
     const HeadDim& dim = program.dims[h];
-    status.fixtures[head.fixture].kept_dark = dim.to == 0 && !parked(head.fixture);
+    FixtureStatus& shown = status.fixtures[head.fixture];
+    shown.kept_dark = dim.to == 0 && !shown.parked;
+    if (shown.kept_dark && head.zone)
+      shown.waits_for = fmt::format("its beam to be clear of keep-out zone \"{}\"", zones.name(*head.zone));
     if (!head.told || dim.to > 0) continue;
     // On the way through nobody needs to do anything; one that rests there stays dark until somebody does.
     const std::optional<std::size_t> zone = zones.met(head.fixture, *head.told);
     if (!zone || !(program.to_level[head.fixture] > 0 || shared)) continue;
+    if (shown.kept_dark)
+      shown.waits_for = fmt::format("another aim: it looks into keep-out zone \"{}\"", zones.name(*zone));
     status.alarms.push_back({false, rig.fixtures[head.fixture].name,
                              fmt::format("{} looks into keep-out zone \"{}\" and stays dark; turn it elsewhere",
                                          rig.fixtures[head.fixture].name, zones.name(*zone)),

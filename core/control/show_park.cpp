@@ -52,7 +52,7 @@ Result<void> ShowController::State::park(Time now, std::span<const std::size_t> 
   }
   parking = std::move(chosen);
   first_turn(now, look.joints);
-  if (phase == Phase::idle && !cue) {  // nothing is lit, and nothing shall be
+  if (phase == Phase::idle && !cue && in_force.empty()) {  // nothing is lit, and nothing shall be
     program.joints = std::move(look.joints);
     finish_parking();
     const std::vector<double> dark(rig.fixtures.size(), 0.0);

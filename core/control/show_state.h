@@ -75,6 +75,7 @@ struct ShowController::State {
   std::optional<Look> awaited;             ///< taken as soon as what it turns is dark
   Time arrive{};                           ///< heads look where they shall from here on; no fade starts before
   bool turned = false;                     ///< heads have been told where to look
+  std::vector<double> in_force;            ///< levels of somebody else's light, until a look of ours is on; or empty
   bool afresh = false;                     ///< a person applied a plan, and the meters have not all been believed since
   int round = 0;
   bool converged = false;

@@ -59,7 +59,7 @@ std::string ShowController::State::detail(Time now) const {
   std::string text;
   switch (phase) {
     case Phase::idle:
-      text = "no plan applied yet";
+      text = in_force.empty() ? "no plan applied yet" : "the light is as it was; no plan applied yet";
       break;
     case Phase::moving:
       text = "heads go dark before they turn";
@@ -142,8 +142,10 @@ ShowStatus ShowController::State::status(Time now) const {
   for (const Identification& one : identified) {
     for (const std::size_t f : one.pattern.fixtures()) status.fixtures[f].identified = !one.pattern.over(now);
   }
-  for (std::size_t f = 0; f < rig.fixtures.size(); ++f)
+  for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
     status.fixtures[f].parked = parked(f) || (!parking.empty() && parking[f] != 0);
+    if (status.fixtures[f].parked) status.fixtures[f].waits_for = "the next plan";
+  }
   status.resting = !program.parked.empty() && parking.empty() && now >= arrive;
   const bool settled = !program.blackout && program.done(now);
   for (std::size_t p = 0; p < rig.points.size(); ++p) {

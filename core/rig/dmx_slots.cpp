@@ -38,7 +38,9 @@ bool dims(SlotUse use) { return use == SlotUse::dimmer || use == SlotUse::dimmer
 
 class SlotReader {
  public:
-  SlotReader(const std::optional<SlotOwner>& owner, ProblemList& problems) : owner_(owner), problems_(problems) {}
+  /// turned_elsewhere: its pan and tilt are drives on another bus.
+  SlotReader(const std::optional<SlotOwner>& owner, bool turned_elsewhere, ProblemList& problems)
+      : owner_(owner), turned_elsewhere_(turned_elsewhere), problems_(problems) {}
 
   std::optional<NamedSlot> slot(const std::string& text, const Place& place) {
     if (text.starts_with(slot_name(SlotUse::constant))) return constant(text, place);
@@ -107,7 +109,7 @@ class SlotReader {
                     "give both, or hold the one with \"constant:N\"");
       good = false;
     }
-    if (has(SlotUse::zoom, 0) && !(has(SlotUse::pan, 0) && has(SlotUse::tilt, 0))) {
+    if (has(SlotUse::zoom, 0) && !turned_elsewhere_ && !(has(SlotUse::pan, 0) && has(SlotUse::tilt, 0))) {
       problems_.add(list, "a zoom slot without pan and tilt slots",
                     "hold it with \"constant:N\", and give its luminaire the beam angle that it makes then");
       good = false;
@@ -156,6 +158,7 @@ class SlotReader {
   }
 
   const std::optional<SlotOwner>& owner_;
+  bool turned_elsewhere_;
   ProblemList& problems_;
 };
 
@@ -176,7 +179,7 @@ bool read_slots(Section& s, const std::optional<SlotOwner>& owner, std::vector<N
   }
   std::vector<std::pair<std::string, Place>> texts;
   if (!s.read_texts("slots", texts)) return false;
-  SlotReader reader(owner, problems);
+  SlotReader reader(owner, s.has("axes_bus"), problems);
   for (const auto& [text, place] : texts) {
     if (auto slot = reader.slot(text, place)) slots.push_back(*slot);
     if (problems.full()) break;

@@ -32,6 +32,7 @@ cia402::AxesOptions axes_options(const Bus& bus) {
   const auto number = [&](std::string_view key) { return integer_option(bus, docs, key); };
   cia402::AxesOptions options;
   options.master_node = static_cast<int>(number("master_node"));
+  options.cycle = milliseconds(number("cycle_ms"));
   options.heartbeat = milliseconds(number("heartbeat_ms"));
   const std::string home = string_option(bus, docs, "home");
   options.home = home == "never"         ? cia402::HomeRule::never
@@ -49,7 +50,7 @@ class CanopenDriver final : public Driver, public Mover {
  public:
   CanopenDriver(const Rig& rig, std::size_t bus, std::unique_ptr<can::CanChannel> channel)
       : options_(axes_options(rig.buses[bus])),
-        period_(milliseconds(integer_option(rig.buses[bus], canopen_options(), "cycle_ms"))),
+        period_(options_.cycle),
         channel_(std::move(channel)),
         life_(rig.buses[bus].name) {
     for (std::size_t i = 0; i < rig.fixtures.size(); ++i) {
@@ -116,7 +117,8 @@ class CanopenDriver final : public Driver, public Mover {
     for (const AimCommand& command : commands) {
       const auto head =
           std::find_if(heads_.begin(), heads_.end(), [&](const Head& h) { return h.fixture == command.fixture; });
-      if (head != heads_.end()) head->axes.set_target(command.joints);
+      // The zoom is the lamp's, on another bus: it turns no axis.
+      if (head != heads_.end()) head->axes.set_target({command.joints.pan_rad, command.joints.tilt_rad, 0});
     }
     listen(now);
     if (now >= next_cycle_) {

@@ -65,7 +65,7 @@ DmxPatchbay::DmxPatchbay(const Rig& rig, std::size_t bus) : bus_(rig.buses[bus].
     entry.name = fixture.name;
     entry.patch = std::get<DmxPatch>(fixture.patch);
     entry.range = fixture.range;
-    entry.moves = fixture.moves && !fixture.axes;
+    entry.moves = fixture.moves && (!fixture.axes || fixture.range.zooms());  // of a head on axes the zoom is here
     for (const DmxSlot& slot : entry.patch.slots) entry.bytes.push_back(bytes_of_value(entry.patch, slot));
     entry.universe = static_cast<std::size_t>(std::distance(numbers.begin(), numbers.find(entry.patch.universe)));
     entry.joints = fixture.joints;

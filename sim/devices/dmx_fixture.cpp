@@ -72,16 +72,17 @@ DmxOrder decode_slots(const Fixture& fixture, const DmxPatch& patch, std::span<c
   }
   DmxOrder order;
   order.drive = constants_hold ? dimmer.share() : 0;
+  const JointRange& range = fixture.range;
+  const auto beam_rad = [&](double share) {
+    return range.beam_min_rad + (zoom_inverted ? 1 - share : share) * (range.beam_max_rad - range.beam_min_rad);
+  };
   if (fixture.moves && !fixture.axes && pan.coarse && tilt.coarse) {
-    const JointRange& range = fixture.range;
     order.joints =
         Joints{range.pan_min_rad + pan.share() * (range.pan_max_rad - range.pan_min_rad),
                range.tilt_min_rad + tilt.share() * (range.tilt_max_rad - range.tilt_min_rad), fixture.joints.beam_rad};
-    if (zoom.coarse && range.zooms()) {
-      const double share = zoom_inverted ? 1 - zoom.share() : zoom.share();
-      order.joints->beam_rad = range.beam_min_rad + share * (range.beam_max_rad - range.beam_min_rad);
-    }
+    if (zoom.coarse && range.zooms()) order.joints->beam_rad = beam_rad(zoom.share());
   }
+  if (fixture.axes && zoom.coarse && range.zooms()) order.beam_rad = beam_rad(zoom.share());
   return order;
 }
 

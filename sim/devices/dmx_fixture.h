@@ -17,6 +17,7 @@ inline constexpr std::size_t kDmxSlots = 512;
 struct DmxOrder {
   double drive = 0;              ///< 0 while a constant slot holds anything else: its shutter is shut, its lamp is off
   std::optional<Joints> joints;  ///< when it has a pan and a tilt slot
+  std::optional<double> beam_rad{};  ///< of a zoom slot, when its pan and tilt are axes elsewhere
 };
 
 /// `slots`: the universe, address 1 first. A patch that runs past it reads 0 there.

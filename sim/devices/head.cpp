@@ -26,25 +26,29 @@ Head::Head(const Fixture& fixture)
 }
 
 void Head::set_target(const Joints& joints) {
-  if (!moves_ || carried_ || std::isnan(joints.pan_rad) || std::isnan(joints.tilt_rad) || std::isnan(joints.beam_rad))
-    return;
-  target_.pan_rad = std::clamp(joints.pan_rad, range_.pan_min_rad, range_.pan_max_rad);
-  target_.tilt_rad = std::clamp(joints.tilt_rad, range_.tilt_min_rad, range_.tilt_max_rad);
+  if (!moves_ || std::isnan(joints.pan_rad) || std::isnan(joints.tilt_rad) || std::isnan(joints.beam_rad)) return;
+  if (!carried_) {
+    target_.pan_rad = std::clamp(joints.pan_rad, range_.pan_min_rad, range_.pan_max_rad);
+    target_.tilt_rad = std::clamp(joints.tilt_rad, range_.tilt_min_rad, range_.tilt_max_rad);
+  }
   if (range_.zooms()) target_.beam_rad = std::clamp(joints.beam_rad, range_.beam_min_rad, range_.beam_max_rad);
 }
 
 void Head::carry_to(const Joints& joints) {
   carried_ = moves_;
-  if (moves_) target_ = joints;
+  if (!moves_) return;
+  target_.pan_rad = joints.pan_rad;
+  target_.tilt_rad = joints.tilt_rad;
 }
 
 void Head::step(double dt_s) {
   if (carried_) {
-    joints_ = target_;
-    return;
+    joints_.pan_rad = target_.pan_rad;
+    joints_.tilt_rad = target_.tilt_rad;
+  } else {
+    joints_.pan_rad = turned_towards(joints_.pan_rad, target_.pan_rad, pan_speed_rad_s_ * dt_s);
+    joints_.tilt_rad = turned_towards(joints_.tilt_rad, target_.tilt_rad, tilt_speed_rad_s_ * dt_s);
   }
-  joints_.pan_rad = turned_towards(joints_.pan_rad, target_.pan_rad, pan_speed_rad_s_ * dt_s);
-  joints_.tilt_rad = turned_towards(joints_.tilt_rad, target_.tilt_rad, tilt_speed_rad_s_ * dt_s);
   joints_.beam_rad = turned_towards(joints_.beam_rad, target_.beam_rad, zoom_speed_rad_s_ * dt_s);
 }
 

@@ -14,7 +14,8 @@ class Head {
 
   /// Clamped to the range, as the end stops would; NaN ignored.
   void set_target(const Joints& joints);
-  /// The joints are turned by an axis of their own from now on: they stand there after the next step.
+  /// Pan and tilt are turned by axes of their own from now on: they stand there after the next step. The zoom is as
+  /// ever.
   void carry_to(const Joints& joints);
   void step(double dt_s);
 

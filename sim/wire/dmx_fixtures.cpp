@@ -22,6 +22,10 @@ void obey_dmx(const EndpointParts& parts, std::uint64_t frame, const DmxLevelsOf
     const DmxOrder order = decode_slots(fixture, *patch, *slots);
     parts.world.set_drive(f, order.drive);
     if (order.joints) parts.world.set_aim_target(f, *order.joints);
+    if (!order.beam_rad) continue;
+    Joints zoomed = parts.world.joints()[f];  // its axes turn it
+    zoomed.beam_rad = *order.beam_rad;
+    parts.world.set_aim_target(f, zoomed);
   }
 }
 

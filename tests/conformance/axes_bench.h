@@ -99,8 +99,9 @@ class AxesBench {
   std::vector<Joints> path;         ///< every 10 ms
   std::vector<can::CanFrame> sent;  ///< by the driver
   std::function<void()> each_cycle;
-  can::Sent taken = can::Sent::yes;  ///< what the wire says to a frame
-  std::optional<Fault> broken;       ///< the interface is down
+  std::function<void(can::CanFrame&)> lie;  ///< changes what a node says
+  can::Sent taken = can::Sent::yes;         ///< what the wire says to a frame
+  std::optional<Fault> broken;              ///< the interface is down
   int opened = 0;
 
  private:
@@ -128,8 +129,9 @@ class AxesBench {
       for (const sim::BusFrame& frame : bench_.axes->take_sent()) arrived_.push_back(frame);
       if (!open_) arrived_.clear();
       if (arrived_.empty()) return std::nullopt;
-      const auto frame = can::from_bytes(sim::packed(arrived_.front()));
+      auto frame = can::from_bytes(sim::packed(arrived_.front()));
       arrived_.pop_front();
+      if (frame && bench_.lie) bench_.lie(*frame);
       return frame;
     }
     std::optional<Fault> take_error() override { return std::nullopt; }

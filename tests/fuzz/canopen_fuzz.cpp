@@ -1,6 +1,7 @@
 /// What nodes say, through every decoder of the canopen driver: SDO answers, heartbeats, emergency messages, PDOs and
 /// error frames, to an axis that has one order. Whatever they say, it must offer no other set-point, go past no limit,
-/// and speak only with its own node. Input: for each frame what it is, how many bytes, the bytes; a cycle after each.
+/// take the torque off no axis that may still be turning, and speak only with its own node. Input: for each frame what
+/// it is, how many bytes, the bytes; a cycle after each.
 #include <algorithm>
 #include <cstdlib>
 
@@ -14,7 +15,9 @@ using namespace luxrig;
 constexpr std::uint32_t kIds[] = {0x585, 0x705, 0x185, 0x285, 0x085, 0x586, 0x000, 0x080};
 constexpr cia402::SetPoint kOrder{1234, 567, 890};
 
-void check(const can::CanFrame& frame, const cia402::Axis& axis) {
+std::optional<Time> stopping_since;  ///< no word since has let it turn
+
+void check(Time now, const can::CanFrame& frame, const cia402::Axis& axis) {
   const auto word = [&](std::size_t at) {
     return static_cast<std::uint32_t>(frame.data[at] | frame.data[at + 1] << 8 | frame.data[at + 2] << 16) |
            static_cast<std::uint32_t>(frame.data[at + 3]) << 24;
@@ -27,6 +30,11 @@ void check(const can::CanFrame& frame, const cia402::Axis& axis) {
       if (frame.size != 6) std::abort();
       const int control = frame.data[0] | frame.data[1] << 8;
       // In homing the bit starts a search for home; in profile position it offers the target.
+      if ((control & 0x0F) == 0x0F) stopping_since.reset();
+      if ((control & 0x0F) != 0x0F && !stopping_since) stopping_since = now;
+      if ((control & 0x0F) != 0x0F && control != 0x0002 &&
+          now - *stopping_since < cia402::stops_within(axis.settings()))
+        std::abort();
       const bool offers = (control & 0x30) == 0x30;
       if (offers && (!axis.ready() || word(2) != static_cast<std::uint32_t>(kOrder.position))) std::abort();
       break;
@@ -56,6 +64,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   can::BusState state;
   Time now{};
   axis.activate(now);
+  stopping_since.reset();
   for (std::size_t at = 0; at + 2 <= size;) {
     const std::uint8_t kind = data[at], count = std::min<std::uint8_t>(data[at + 1] % 9, 8);
     at += 2;
@@ -71,7 +80,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     now += std::chrono::milliseconds((kind & 0x80) != 0 ? 400 : 20);
     cia402::Frames sent;
     axis.step(now, (kind & 0x20) != 0, true, sent);
-    for (const can::CanFrame& out : sent) check(out, axis);
+    for (const can::CanFrame& out : sent) check(now, out, axis);
     if (axis.trouble().size() > 500) std::abort();
   }
   return 0;

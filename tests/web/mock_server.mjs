@@ -30,6 +30,7 @@ export class MockDaemon {
   blackout = false;
   alarms = [];
   faulted = new Set(); // names of devices
+  dark = {}; // by name of a fixture: what its entry says besides, as parked and waits_for
   posts = []; // bodies of accepted posts
   silent = false; // the line stays open and says nothing
   refuse = false; // posts are answered with 503
@@ -119,7 +120,8 @@ export class MockDaemon {
       converged: scene.phase === 'holding' && good === METERED.length,
       fixtures: FIXTURES.map((f) => ({ name: f.name, bus: f.bus, position: f.position, aim: f.aim, pan_deg: 12.5, tilt_deg: 41,
         level: round(f.level * shown, 4), drive: round(Math.sqrt(f.level * shown), 4),
-        target_level: this.blackout ? 0 : f.level, gain: f.gain, gain_standard_error: 0.012 })),
+        target_level: this.blackout ? 0 : f.level, gain: f.gain, gain_standard_error: 0.012,
+        ...(this.dark[f.name] ? { moves: true, level: 0, drive: 0, target_level: 0, ...this.dark[f.name] } : {}) })),
       points, luxmeters: meters,
       devices: [device('dmx', 44, false), device('dimmer', 44, true), device('meters', 4, true)],
       alarms,

@@ -90,6 +90,22 @@ async function againstMock(browser, dist, out) {
     await eventually('the alarm is gone', async () => (await page.locator('#alarms .alarm').count()) === 0, 2000);
   });
 
+  await check('a head that is parked or kept dark says so, and what it waits for', async () => {
+    daemon.dark = {
+      'spot-2': { parked: true, waits_for: 'the next plan' },
+      'spot-5': { kept_dark: true, waits_for: 'its beam to be clear of keep-out zone "stage"' },
+    };
+    const row = (name) => page.locator('.fixtures li', { has: page.getByText(name, { exact: true }) });
+    await eventually('parked', async () => /parked, waits for the next plan/.test(await row('spot-2').innerText()), 2000);
+    assert.match(await row('spot-5').innerText(), /kept dark, waits for its beam to be clear of keep-out zone "stage"/);
+    assert.equal(await page.locator('.fixtures .why-dark:visible').count(), 2, 'the others say nothing');
+    await fitsItsWidth(page);
+    await row('spot-5').scrollIntoViewIfNeeded();
+    await shot(page, 'desktop-dark-parked');
+    daemon.dark = {};
+    await eventually('over', async () => (await page.locator('.fixtures .why-dark:visible').count()) === 0, 2000);
+  });
+
   await check('a silent line is a lost line: it says so, with the age, and greys the numbers', async () => {
     daemon.silent = true;
     await eventually('lost', async () => (await page.locator('#line').getAttribute('data-state')) === 'lost');

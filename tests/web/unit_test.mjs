@@ -78,6 +78,16 @@ test('an answer that is no status is refused; numbers that are none become absen
   assert.ok(!('time_s' in status));
 });
 
+test('a head says why it is dark only when it is, and what it waits for only when that is known', () => {
+  const fixture = (entry) => api.readStatus({ phase: 'idle', fixtures: [{ name: 'f', ...entry }] }).fixtures[0];
+  assert.equal(judge.whyDark(fixture({})), '');
+  assert.equal(judge.whyDark(fixture({ waits_for: 'x' })), '');
+  assert.equal(judge.whyDark(fixture({ parked: 1, kept_dark: 'yes' })), '');
+  assert.equal(judge.whyDark(fixture({ parked: true, waits_for: 7 })), 'parked');
+  assert.equal(judge.whyDark(fixture({ parked: true, kept_dark: true, waits_for: 'the next plan' })), 'parked, waits for the next plan');
+  assert.equal(judge.whyDark(fixture({ kept_dark: true, waits_for: 'another aim' })), 'kept dark, waits for another aim');
+});
+
 test('a room without extent is refused, and its picture is this server\'s own', () => {
   const room = (url, max = [4, 3]) => api.readRoom({ name: 'r', plan: { url, min: [0, 0], max } });
   assert.equal(room('/api/room.png').picture, '/api/room.png');

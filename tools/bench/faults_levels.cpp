@@ -78,6 +78,8 @@ std::vector<LevelBus> level_buses() {
       {"sacn", false, {{"destination", std::string("127.0.0.1")}}, network},
       {"artnet", false, {{"destination", std::string("127.0.0.1")}}, network},
       {"enttec_pro", true, {}, cable},
+      {"open_dmx", true, {}, cable},
+      {"udmx", true, {}, cable},
       {"modbus_tcp", true, {{"host", std::string("127.0.0.1")}, quick_units}, units},
       {"modbus_rtu",
        true,

@@ -19,6 +19,7 @@
 #include "tools/luxrigd/bus_thread.h"
 #include "tools/luxrigd/clock.h"
 #include "tools/luxrigd/guardian_words.h"
+#include "tools/luxrigd/handed_light.h"
 #include "tools/luxrigd/last_look.h"
 #include "tools/luxrigd/scheduling.h"
 
@@ -51,6 +52,11 @@ bool wait_for_death(int alive_fd, int signals_fd) {
   }
 }
 
+bool has_closed(int alive_fd) {
+  pollfd wait{alive_fd, POLLIN, 0};
+  return ::poll(&wait, 1, 0) == 1;
+}
+
 OutputProgram program_of(const Rig& rig, const LastLook& look, Time now) {
   OutputProgram program;
   program.revision = 1;
@@ -65,6 +71,12 @@ OutputProgram program_of(const Rig& rig, const LastLook& look, Time now) {
   return program;
 }
 
+/// Behind the number in our file, for the daemon that has sent us away.
+void hand_over(int pid_fd, const LightInForce& light) {
+  const std::string text = handed_light_text(light) + "\n";
+  (void)!::pwrite(pid_fd, text.data(), text.size(), ::lseek(pid_fd, 0, SEEK_END));
+}
+
 int g_signal_pipe[2] = {-1, -1};
 volatile std::sig_atomic_t g_signal = 0;
 
@@ -75,7 +87,7 @@ void on_signal(int signal) {
 }
 
 /// Sends until it is told to leave.
-void look_after(const Rig& rig, const LastLook& look, const std::map<std::string, Redirect>& redirects) {
+void look_after(const Rig& rig, const LastLook& look, const std::map<std::string, Redirect>& redirects, int pid_fd) {
   lock_memory();
   ProgramMailbox programs;
   OutputProgram program = program_of(rig, look, now());
@@ -101,7 +113,14 @@ void look_after(const Rig& rig, const LastLook& look, const std::map<std::string
   pollfd wait{g_signal_pipe[0], POLLIN, 0};
   while (g_signal == 0) ::poll(&wait, 1, -1);
   // A daemon goes on from here: a goodbye would let fixtures go dark before its first frame.
-  if (g_signal == SIGUSR1) ::_exit(kExitOk);
+  if (g_signal == SIGUSR1) {
+    const Time at = now();
+    LightInForce light{look.present, look.safe, look.joints, std::max(0.0, to_seconds(program.start - at)),
+                       look.fade_s};
+    program.levels_at(at, light.level);
+    hand_over(pid_fd, light);
+    ::_exit(kExitOk);
+  }
 }
 
 int guard(const GuardianArguments& arguments) {
@@ -131,7 +150,11 @@ int guard(const GuardianArguments& arguments) {
                "luxrig-guardian: the daemon died: its last look is held for {:g} s, then the safe look, until a daemon "
                "is started anew (or kill {})\n",
                look.hold_s, ::getpid());
-    look_after(*rig, look, *redirects);
+    look_after(*rig, look, *redirects, pid_fd);
+  } else if (!died && !memory->ended() && look.sends && g_signal == SIGUSR1 && has_closed(arguments.alive_fd)) {
+    // Sent away before we had looked: what the daemon sent last still stands.
+    hand_over(pid_fd, {look.present, look.safe, look.joints, look.hold_s, look.fade_s});
+    return kExitOk;
   }
   std::error_code ignored;
   std::filesystem::remove(arguments.pid_file, ignored);

@@ -25,6 +25,14 @@ std::string bar(double share) {
   return text;
 }
 
+/// Why a head is dark, and until when; or that it is the one looked for.
+std::string state_of_fixture(const json& f) {
+  if (flag_of(f, "identified")) return "← this one";
+  const std::string why = flag_of(f, "parked") ? "parked" : flag_of(f, "kept_dark") ? "kept dark" : "";
+  const std::string waits_for = text_of(f, "waits_for");
+  return why.empty() || waits_for.empty() ? why : fmt::format("{}, waits for {}", why, waits_for);
+}
+
 /// Slots in rows of 8, 16, 24 or 32, each as 0…255; rows with nothing in them are left out.
 std::string universe_picture(const json& universe, int width) {
   const json slots = list_of(universe, "slots");
@@ -70,7 +78,7 @@ std::string monitor_picture(const json& status, const json& universes, int width
     lamps.row({text_of(f, "name"), shown(number_of(f, "drive"), "{:.3f}"), bar(number_of(f, "drive").value_or(0)),
                shown(number_of(f, "level"), "{:.3f}"), moves ? shown(number_of(f, "pan_deg"), "{:.1f}") : "",
                moves ? shown(number_of(f, "tilt_deg"), "{:.1f}") : "", shown(number_of(f, "beam_angle_deg"), "{:.1f}"),
-               flag_of(f, "identified") ? "← this one" : ""});
+               state_of_fixture(f)});
   }
   text += lamps.text();
   const json meters = list_of(status, "luxmeters");

@@ -27,8 +27,9 @@ BusThread::BusThread(const Rig& rig, std::size_t bus, std::unique_ptr<Driver> dr
       joints_(rig.fixtures.size()) {
   for (std::size_t i = 0; i < rig.fixtures.size(); ++i) {
     if (rig.fixtures[i].bus == bus) level_commands_.push_back({i, 0});
-    if (rig.fixtures[i].moves && rig.fixtures[i].motion_bus() == bus)
-      aim_commands_.push_back({i, rig.fixtures[i].joints});
+    const Fixture& fixture = rig.fixtures[i];
+    const bool zooms_here = fixture.axes && fixture.range.zooms() && fixture.bus == bus;
+    if (fixture.moves && (fixture.motion_bus() == bus || zooms_here)) aim_commands_.push_back({i, fixture.joints});
   }
   writes_ = (driver_->level_output() != nullptr && !level_commands_.empty()) ||
             (driver_->mover() != nullptr && !aim_commands_.empty());

@@ -70,8 +70,13 @@ void Daemon::start_guardian() {
   settings.fixtures = session_.rig.fixtures.size();
   settings.redirects = options_.redirects;
   settings.state_folder = *options_.state_folder;
-  // One that an earlier daemon left behind has the light until ours takes it.
-  send_guardian_away(settings.state_folder);
+  // One that an earlier daemon left behind has the light until ours takes it, and tells what it was.
+  const auto light = send_guardian_away(settings.state_folder, settings.fixtures);
+  if (light && sent_revision_ == 0) {
+    controller_.go_on_from(now(), *light);
+    programs_.put(controller_.program());
+    sent_revision_ = controller_.program().revision;
+  }
   guardian_.reset();
   auto started = Guardian::start(std::move(settings));
   unguarded_ = started ? "" : started.error().detail;

@@ -13,7 +13,9 @@
 #include <vector>
 
 #include "drivers/io/os_fault.h"
+#include "tools/luxrig/commands.h"
 #include "tools/luxrigd/guardian_words.h"
+#include "tools/luxrigd/handed_light.h"
 
 extern char** environ;
 
@@ -112,10 +114,10 @@ void Guardian::end() {
   pid_ = -1;
 }
 
-bool send_guardian_away(const std::filesystem::path& state_folder) {
+std::optional<LightInForce> send_guardian_away(const std::filesystem::path& state_folder, std::size_t fixtures) {
   // A guardian that lives holds a lock on its file: a number alone may be another process's by now.
   const int fd = ::open(guardian_pid_file(state_folder).c_str(), O_RDWR | O_CLOEXEC);
-  if (fd < 0) return false;
+  if (fd < 0) return std::nullopt;
   const auto gone = [fd] { return ::flock(fd, LOCK_EX | LOCK_NB) == 0; };
   bool there = false;
   if (!gone()) {
@@ -133,7 +135,10 @@ bool send_guardian_away(const std::filesystem::path& state_folder) {
     }
   }
   ::close(fd);
-  return there;
+  if (!there) return std::nullopt;
+  const auto said = read_file(guardian_pid_file(state_folder));
+  const auto number_ends = said ? said->find('\n') : std::string::npos;
+  return number_ends == std::string::npos ? std::nullopt : handed_light_of(said->substr(number_ends + 1), fixtures);
 }
 
 }  // namespace luxrig

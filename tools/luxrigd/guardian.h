@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 
+#include "core/control/show_controller.h"
 #include "drivers/registry.h"
 #include "tools/luxrigd/last_look.h"
 
@@ -48,7 +49,8 @@ class Guardian {
 };
 
 /// A guardian that a dead daemon of the same state folder left behind stops sending, without a goodbye: a daemon is
-/// about to go on from there. Returns whether there was one.
-bool send_guardian_away(const std::filesystem::path& state_folder);
+/// about to go on from there. Returns what it sent last; nothing when there was none, or it could not say.
+[[nodiscard]] std::optional<LightInForce> send_guardian_away(const std::filesystem::path& state_folder,
+                                                             std::size_t fixtures);
 
 }  // namespace luxrig

@@ -32,6 +32,7 @@ json fixture_json(const Rig& rig, std::size_t index, const FixtureStatus& status
   if (status.identified) out["identified"] = true;
   if (status.parked) out["parked"] = true;
   if (status.kept_dark) out["kept_dark"] = true;
+  if (!status.waits_for.empty()) out["waits_for"] = status.waits_for;
   set(out, "gain", status.gain);
   set(out, "gain_standard_error", status.gain_standard_error);
   return out;

@@ -110,7 +110,7 @@ constexpr KeySpec kFixtureKeys[] = {
     {"fixture", "slots", texts, "", R"(["dimmer"])", kAny, "",
      "what each DMX slot carries from `address` on: `dimmer`, `dimmer-fine`, `dimmer-ultra`, the same with `pan`, "
      "`tilt` and `zoom`, `unused`, or `constant:N` with N from 0 to 255; one dimmer is needed, pan and tilt come "
-     "together, zoom with them, "
+     "together, zoom with them or an axes_bus, "
      "and a fine slot needs its coarse one, an ultra slot (24 bit) its fine one. With a luminaire that has emitters, "
      "instead of the dimmer: `emitter:NAME`, `emitter:NAME-fine` and `emitter:NAME-ultra`, one for each; hold a master "
      "dimmer open with `constant:255`"},

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "drivers/can/canopen/cob_id.h"
 #include "drivers/can/canopen/pdo_setup.h"
+#include "drivers/can/cia402/drive_objects.h"
 
 namespace luxrig::cia402 {
 namespace {
@@ -13,23 +16,13 @@ using canopen::NmtCommand;
 using canopen::NmtState;
 using std::chrono::milliseconds;
 
-constexpr int kProfilePosition = 1, kHoming = 6;
-constexpr std::uint32_t kDriveProfile = 402;
 constexpr Duration kStartAgain = milliseconds(500), kStartTimeout = milliseconds(3000);
 constexpr Duration kResetPause = milliseconds(1000), kResetPulse = milliseconds(200);
 constexpr Duration kTryRefusedAgain = milliseconds(5000);
 constexpr Duration kForgiveAfter = milliseconds(30000);
 constexpr int kHomingAnswers = 3;  ///< statuswords after the start before one is believed: the first may be older
-
-/// What is read before the first write.
-constexpr canopen::ObjectAddress kDeviceType{0x1000, 0}, kDeviceName{0x1008, 0}, kSupportedModes{0x6502, 0},
-    kConsumer{0x1016, 1};
-
-std::uint32_t number_in(const std::vector<std::uint8_t>& bytes) {
-  std::uint32_t value = 0;
-  for (std::size_t i = 0; i < bytes.size() && i < 4; ++i) value |= static_cast<std::uint32_t>(bytes[i]) << (8 * i);
-  return value;
-}
+constexpr int kEndedAnswers = 3;   ///< in a row that say so: what is taken for home decides about every way from there
+constexpr double kHomeSlack_s = 0.05;  ///< of way at full speed
 
 void append(std::vector<std::uint8_t>& to, std::uint32_t value, int bytes) {
   const auto more = little_endian(value, bytes);
@@ -39,7 +32,7 @@ void append(std::vector<std::uint8_t>& to, std::uint32_t value, int bytes) {
 }  // namespace
 
 Axis::Axis(const AxisSettings& settings)
-    : settings_(settings), sdo_(settings.node), heartbeat_(heartbeat_timeout(settings)) {
+    : settings_(settings), sdo_(settings.node), heartbeat_(heartbeat_timeout(settings)), reports_(settings) {
   steps_ = {{{kDeviceType, {}}, false}, {{kDeviceName, {}}, true}, {{kSupportedModes, {}}, false}};
   for (SetupStep& step : setup_steps(settings)) steps_.push_back(std::move(step));
 }
@@ -58,12 +51,16 @@ void Axis::enter(Time now, Phase phase) {
   homing_since_.reset();
   reset_at_.reset();
   ready_since_.reset();
+  rereading_.reset();
+  other_entry_.reset();
+  target_told_.reset();
 }
 
 void Axis::lost(Time now, std::string why) {
   enter(now, Phase::absent);
   why_ = std::move(why);
   status_at_.reset();
+  pdo_at_.reset();
   heartbeat_.forget();
 }
 
@@ -77,12 +74,15 @@ void Axis::begin_setup(Time now) {
   enter(now, Phase::setting_up);
   referenced_ = settings_.home == HomeRule::never;
   status_at_.reset();
+  pdo_at_.reset();
+  reports_.forget();
+  doubt_counted_ = false;
   step_ = 0;
   nmt_due_ = true;
 }
 
 bool Axis::sound() const {
-  if (phase_ != Phase::running || !status_at_) return false;
+  if (phase_ != Phase::running || !status_at_ || reports_.doubted()) return false;
   const DriveState state = state_of(statusword_);
   return state != DriveState::fault && state != DriveState::fault_reaction_active && state != DriveState::unknown;
 }
@@ -90,122 +90,6 @@ bool Axis::sound() const {
 bool Axis::ready() const {
   return sound() && !stands_still_ && referenced_ && mode_ == kProfilePosition &&
          state_of(statusword_) == DriveState::operation_enabled;
-}
-
-// --- what comes from the bus ---
-
-void Axis::heartbeat_heard(Time now, NmtState state) {
-  const bool reset = state == NmtState::boot_up;
-  heartbeat_.heard(now, state);
-  if (reset) {  // it has forgotten everything, its position included
-    failures_ = 0;
-    begin_setup(now);
-    return;
-  }
-  switch (phase_) {
-    case Phase::absent:
-      if (set_up_once_ && state == NmtState::operational) {
-        enter(now, Phase::checking);
-        sdo_.start({kConsumer, {}});
-      } else {
-        begin_setup(now);
-      }
-      break;
-    case Phase::running:
-      if (state != NmtState::operational) begin_setup(now);  // reset unseen, or taken out of service by another
-      break;
-    default:
-      break;
-  }
-}
-
-void Axis::receive(Time now, const can::CanFrame& frame) {
-  if (frame.error || frame.extended || frame.remote) return;
-  const auto node = static_cast<std::uint32_t>(settings_.node);
-  const auto& data = frame.data;
-  if (frame.id == canopen::kHeartbeat + node) {
-    if (const auto state = canopen::decode_heartbeat(frame)) heartbeat_heard(now, *state);
-  } else if (frame.id == canopen::kSdoToClient + node) {
-    sdo_.receive(frame);
-    take_sdo_result(now);
-  } else if (frame.id == canopen::kTransmitPdo1 + node) {
-    if (frame.size < 7 || phase_ == Phase::setting_up) return;
-    statusword_ = static_cast<std::uint16_t>(data[0] | data[1] << 8);
-    position_ = static_cast<std::int32_t>(number_in({data.begin() + 2, data.begin() + 6}));
-    mode_ = static_cast<std::int8_t>(data[6]);
-    status_at_ = now;
-    fresh_ = true;
-  } else if (frame.id == canopen::kTransmitPdo1 + canopen::kNextPdo + node) {
-    if (frame.size < 2) return;
-    error_code_ = static_cast<std::uint16_t>(data[0] | data[1] << 8);
-    velocity_ = frame.size < 6 ? 0 : static_cast<std::int32_t>(number_in({data.begin() + 2, data.begin() + 6}));
-  } else if (frame.id == canopen::kEmergency + node) {
-    if (const auto message = canopen::decode_emergency(frame); message && message->code != 0)
-      error_code_ = message->code;
-  }
-}
-
-void Axis::take_sdo_result(Time now) {
-  const auto result = sdo_.take_result();
-  if (!result) return;
-  switch (phase_) {
-    case Phase::absent:  // the probe was answered
-      if (!result->has_value() && !result->error().abort_code) break;
-      if (set_up_once_) {
-        enter(now, Phase::checking);
-        sdo_.start({kConsumer, {}});
-      } else {
-        begin_setup(now);
-      }
-      break;
-    case Phase::checking: {
-      // Still operational and still listening to us: it has not been reset while it was away, so its position holds.
-      if (!result->has_value() && !result->error().abort_code) return lost(now, "does not answer");
-      const bool same = result->has_value() && number_in(**result) == consumer_entry(settings_);
-      const auto state = heartbeat_.state(now);
-      if (same && state == NmtState::operational) {
-        enter(now, Phase::running);
-      } else if (same && !state && now - since_ < heartbeat_timeout(settings_)) {
-        sdo_.start({kConsumer, {}});  // its heartbeat is still to come
-      } else {
-        begin_setup(now);
-      }
-      break;
-    }
-    case Phase::setting_up:
-      take_setup_result(now, *result);
-      break;
-    case Phase::running:  // the mode of operation: its display tells
-    case Phase::starting:
-    case Phase::failed:
-      break;
-  }
-}
-
-void Axis::take_setup_result(Time now, const canopen::SdoResult& result) {
-  const SetupStep& step = steps_[step_];
-  if (!result) {
-    if (!result.error().abort_code) return lost(now, "does not answer");
-    if (!step.optional) {
-      return failed(now, fmt::format("refuses object {}: {}", canopen::text_of(step.request.object),
-                                     canopen::abort_text(*result.error().abort_code)));
-    }
-  } else if (step.request.object == kDeviceType) {
-    if ((number_in(*result) & 0xFFFF) != kDriveProfile) {
-      return failed(now, fmt::format("is no CiA 402 drive: its device type is {:08X}", number_in(*result)));
-    }
-  } else if (step.request.object == kDeviceName) {
-    drive_name_.clear();
-    for (const std::uint8_t byte : *result) {
-      if (byte >= 0x20 && byte < 0x7F && drive_name_.size() < 40) drive_name_ += static_cast<char>(byte);
-    }
-  } else if (step.request.object == kSupportedModes) {
-    const std::uint32_t modes = number_in(*result);
-    const auto has = [modes](int mode) { return (modes >> (mode - 1) & 1) != 0; };
-    if (!has(kProfilePosition)) return failed(now, "has no profile position mode (object 6502)");
-    if (settings_.home != HomeRule::never && !has(kHoming)) return failed(now, "has no homing mode (object 6502)");
-  }
-  ++step_;
 }
 
 // --- what goes to the bus ---
@@ -229,7 +113,7 @@ void Axis::watch(Time now) {
   } else if (phase_ == Phase::running) {
     const auto patience_ms = std::chrono::duration_cast<milliseconds>(heartbeat_timeout(settings_)).count();
     if (!heartbeat_.state(now)) return lost(now, fmt::format("no heartbeat for {} ms", patience_ms));
-    if (now - std::max(since_, status_at_.value_or(since_)) > heartbeat_timeout(settings_))
+    if (now - std::max(since_, pdo_at_.value_or(since_)) > heartbeat_timeout(settings_))
       return lost(now, fmt::format("no statusword for {} ms", patience_ms));
   } else if (phase_ == Phase::failed && refused_ && now - since_ > kTryRefusedAgain) {
     lost(now, why_);
@@ -243,8 +127,9 @@ void Axis::step(Time now, bool stand_still, bool asked, Frames& out) {
   switch (phase_) {
     case Phase::absent:
       if (sdo_.idle()) sdo_.start({kDeviceType, {}});
-      break;
+      [[fallthrough]];
     case Phase::checking:
+      if (set_up_once_) send_pdos(safe_word(now, kQuickStop), out);  // it may hear, though it is not heard
       break;
     case Phase::setting_up:
       next_setup_step(now, out);
@@ -254,13 +139,13 @@ void Axis::step(Time now, bool stand_still, bool asked, Frames& out) {
         nmt_sent_ = now;
         out.push_back(canopen::nmt_frame(NmtCommand::start, settings_.node));
       }
-      send_pdos(kDisableVoltage, out);
+      send_pdos(safe_word(now, kQuickStop), out);
       break;
     case Phase::running:
-      if (status_at_) send_pdos(control(now, stand_still, asked), out);
+      if (status_at_ || reports_.doubted()) send_pdos(safe_word(now, control(now, stand_still, asked)), out);
       break;
     case Phase::failed:
-      if (set_up_once_) send_pdos(kQuickStop, out);
+      if (set_up_once_) send_pdos(safe_word(now, kQuickStop), out);
       break;
   }
   fresh_ = false;
@@ -294,14 +179,19 @@ void Axis::send_pdos(std::uint16_t controlword, Frames& out) const {
 std::uint16_t Axis::control(Time now, bool stand_still, bool asked) {
   const DriveState state = state_of(statusword_);
   const bool enabled = state == DriveState::operation_enabled;
-  if (!enabled || stand_still) {
+  const bool doubted = reports_.doubted();
+  if (!enabled || stand_still || doubted) {
     handshake_.forget();
     homing_since_.reset();
     ready_since_.reset();
   }
+  if (doubted) {
+    settle_doubt(now);
+    return kQuickStop;
+  }
   if (state == DriveState::fault) return reset_fault(now);
   reset_at_.reset();
-  if (stand_still) return enabled || state == DriveState::quick_stop_active ? kQuickStop : kDisableVoltage;
+  if (stand_still) return kQuickStop;
   if (!enabled) return towards_operation(state, settings_.hold_on_stop);
   if (!referenced_) {
     if (settings_.home == HomeRule::when_needed && !asked) return kEnableOperation;
@@ -310,7 +200,39 @@ std::uint16_t Axis::control(Time now, bool stand_still, bool asked) {
   if (!in_mode(kProfilePosition)) return kEnableOperation;
   if (!ready_since_) ready_since_ = now;
   if (now - *ready_since_ > kForgiveAfter) failures_ = 0;
-  return handshake_.step(now, statusword_, fresh_);
+  const std::uint16_t word = handshake_.step(now, statusword_, fresh_);
+  read_target_back();
+  return word;
+}
+
+bool Axis::has_stopped(Time now) const { return told_to_stop_ && now - *told_to_stop_ >= stops_within(settings_); }
+
+std::uint16_t Axis::safe_word(Time now, std::uint16_t word) {
+  if ((word & kEnableOperation) == kEnableOperation) {
+    told_to_stop_.reset();
+    return word;
+  }
+  if (!told_to_stop_) told_to_stop_ = now;
+  return has_stopped(now) ? word : kQuickStop;
+}
+
+void Axis::settle_doubt(Time now) {
+  if (!doubt_counted_) {
+    doubt_counted_ = true;
+    count_failure(now, "says what cannot be: " + reports_.why());
+    return;
+  }
+  if (!reports_.settled() || !has_stopped(now) || rereading_ || !sdo_.idle()) return;
+  rereading_ = kActualPosition;
+  sdo_.start({kActualPosition, {}});
+}
+
+void Axis::read_target_back() {
+  const auto& order = handshake_.current();
+  if (!order || !handshake_.idle() || target_told_ == order->position || rereading_ || !sdo_.idle()) return;
+  target_told_ = order->position;
+  rereading_ = kTargetPosition;
+  sdo_.start({kTargetPosition, {}});
 }
 
 bool Axis::in_mode(int mode) {
@@ -323,7 +245,7 @@ std::uint16_t Axis::go_home(Time now) {
   if (!in_mode(kHoming)) return kEnableOperation;
   if (!homing_since_) {  // a cycle with bit 4 low, so that the drive sees it rise
     homing_since_ = now;
-    homing_answers_ = 0;
+    homing_answers_ = ended_answers_ = 0;
     return kEnableOperation;
   }
   if (now - *homing_since_ > settings_.homing_timeout) {
@@ -332,14 +254,19 @@ std::uint16_t Axis::go_home(Time now) {
     return kQuickStop;
   }
   if (fresh_ && ++homing_answers_ > kHomingAnswers) {
-    if ((statusword_ & kHomingError) != 0) {
-      count_failure(now, "homing failed");
+    const bool error = (statusword_ & kHomingError) != 0;
+    const bool attained = (statusword_ & kHomingAttained) != 0 && (statusword_ & kTargetReached) != 0;
+    const int ended = error ? -1 : attained ? 1 : 0;
+    ended_answers_ = ended * ended_answers_ > 0 ? ended_answers_ + ended : ended;
+    if (std::abs(ended_answers_) >= kEndedAnswers) {
       homing_since_.reset();
-      return kEnableOperation;
-    }
-    if ((statusword_ & kHomingAttained) != 0 && (statusword_ & kTargetReached) != 0) {
-      referenced_ = true;
-      homing_since_.reset();
+      if (error) {
+        count_failure(now, "homing failed");
+      } else if (std::abs(static_cast<double>(position_)) > kHomeSlack_s * settings_.speed + 2) {
+        count_failure(now, fmt::format("has ended homing at {} counts, where home is 0", position_));
+      } else {
+        referenced_ = true;
+      }
       return kEnableOperation;
     }
   }
@@ -352,7 +279,7 @@ std::uint16_t Axis::reset_fault(Time now) {
     reset_at_ = now + kResetPause;
     count_failure(now, canopen::error_text(error_code_));
   }
-  return now >= *reset_at_ ? kFaultReset : kDisableVoltage;
+  return now >= *reset_at_ ? kFaultReset : kQuickStop;
 }
 
 void Axis::count_failure(Time now, const std::string& why) {
@@ -374,6 +301,7 @@ std::string Axis::trouble() const {
     case Phase::running:
       break;
   }
+  if (reports_.doubted()) return fmt::format("{} is stopped, as it says what cannot be: {}", who, reports_.why());
   const DriveState state = state_of(statusword_);
   if (state == DriveState::fault || state == DriveState::fault_reaction_active)
     return fmt::format("{} has a fault: {}", who, canopen::error_text(error_code_));

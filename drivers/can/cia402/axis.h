@@ -5,7 +5,8 @@
 ///   absent -> setting_up -> starting -> running;   running -> absent (no heartbeat) -> checking -> running or
 ///   setting_up any -> failed (refused, or faulted too often): stands still until the node boots anew
 ///
-/// Nothing here moves the axis but homing (as the rule says) and the set-points ordered.
+/// Nothing here moves the axis but homing (as the rule says) and the set-points ordered. No word takes the torque off
+/// an axis that may be turning, whatever its statusword says: it would run on by its momentum.
 
 #include <optional>
 #include <string>
@@ -16,6 +17,7 @@
 #include "drivers/can/canopen/sdo_client.h"
 #include "drivers/can/cia402/axis_settings.h"
 #include "drivers/can/cia402/drive_state.h"
+#include "drivers/can/cia402/report_check.h"
 #include "drivers/can/cia402/set_point.h"
 
 namespace luxrig::cia402 {
@@ -60,9 +62,14 @@ class Axis {
   void take_sdo_result(Time now);
   void take_setup_result(Time now, const canopen::SdoResult& result);
   void next_setup_step(Time now, Frames& out);
+  void take_reread(Time now, const canopen::SdoResult& result);
   void watch(Time now);
   [[nodiscard]] std::uint16_t control(Time now, bool stand_still, bool asked);
   [[nodiscard]] std::uint16_t reset_fault(Time now);
+  void settle_doubt(Time now);
+  void read_target_back();
+  [[nodiscard]] bool has_stopped(Time now) const;
+  [[nodiscard]] std::uint16_t safe_word(Time now, std::uint16_t word);
   [[nodiscard]] std::uint16_t go_home(Time now);
   [[nodiscard]] bool in_mode(int mode);
   void count_failure(Time now, const std::string& why);
@@ -73,6 +80,7 @@ class Axis {
   canopen::SdoClient sdo_;
   canopen::HeartbeatConsumer heartbeat_;
   SetPointHandshake handshake_;
+  ReportCheck reports_;
 
   Phase phase_ = Phase::absent;
   Time since_{};
@@ -86,14 +94,20 @@ class Axis {
   bool referenced_ = false;
   bool asked_ = false, stands_still_ = false;
 
-  std::optional<Time> status_at_;
+  std::optional<Time> status_at_;  ///< of the newest that is believed
+  std::optional<Time> pdo_at_;     ///< of any
   bool fresh_ = false;
   std::uint16_t statusword_ = 0, error_code_ = 0;
   std::int32_t position_ = 0, velocity_ = 0;
   int mode_ = 0;
 
   std::optional<Time> homing_since_;
-  int homing_answers_ = 0;
+  int homing_answers_ = 0, ended_answers_ = 0;  ///< ended: < 0 by an error
+  std::optional<std::uint32_t> other_entry_;    ///< that was read in place of consumer_entry()
+  bool doubt_counted_ = false;
+  std::optional<Time> told_to_stop_;  ///< nothing that would turn it was sent since
+  std::optional<canopen::ObjectAddress> rereading_;
+  std::optional<std::int32_t> target_told_;  ///< that is read back
   std::optional<Time> reset_at_;
   int failures_ = 0;  ///< in a row
   std::optional<Time> ready_since_;

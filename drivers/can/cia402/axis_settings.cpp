@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "drivers/can/canopen/pdo_setup.h"
+#include "drivers/can/cia402/drive_state.h"
 
 namespace luxrig::cia402 {
 namespace {
@@ -21,6 +22,10 @@ std::uint32_t consumer_entry(const AxisSettings& settings) {
   return static_cast<std::uint32_t>(settings.master_node) << 16 | static_cast<std::uint32_t>(timeout_ms);
 }
 
+Duration stops_within(const AxisSettings& settings) {
+  return from_seconds(static_cast<double>(settings.speed) / settings.acceleration) + 5 * settings.cycle;
+}
+
 std::vector<SetupStep> setup_steps(const AxisSettings& s) {
   std::vector<SetupStep> steps;
   const auto write = [&](std::uint16_t index, std::uint8_t sub, std::uint32_t value, int bytes, bool optional = false) {
@@ -32,6 +37,7 @@ std::vector<SetupStep> setup_steps(const AxisSettings& s) {
   };
   const auto heartbeat_ms = std::chrono::duration_cast<std::chrono::milliseconds>(s.heartbeat).count();
 
+  write(0x6040, 0, kQuickStop, 2, true);  // it may be turning; from here on it hears no PDOs
   pdo(PdoDirection::to_node, 1, {{{0x6040, 0}, 16}, {{0x607A, 0}, 32}});
   pdo(PdoDirection::to_node, 2, {{{0x6081, 0}, 32}, {{0x6083, 0}, 32}});
   pdo(PdoDirection::to_node, 3, {{{0x6084, 0}, 32}});

@@ -18,6 +18,7 @@ enum class HomeRule {
 struct AxisSettings {
   int node = 1;
   int master_node = 127;
+  Duration cycle = std::chrono::milliseconds(20);       ///< between two SYNCs
   Duration heartbeat = std::chrono::milliseconds(100);  ///< of node and master; each misses the other after three
   std::int32_t lowest = 0, highest = 0;                 ///< soft limits of the position
   std::uint32_t speed = 1, acceleration = 1;
@@ -31,6 +32,9 @@ struct AxisSettings {
 
 /// What is missed when the master falls silent for so long.
 [[nodiscard]] inline Duration heartbeat_timeout(const AxisSettings& settings) { return 3 * settings.heartbeat; }
+
+/// A quick stop from full speed, and the time until it is heard.
+[[nodiscard]] Duration stops_within(const AxisSettings& settings);
 
 struct SetupStep {
   canopen::SdoRequest request;

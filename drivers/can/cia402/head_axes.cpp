@@ -10,9 +10,9 @@ namespace luxrig::cia402 {
 namespace {
 
 constexpr double kThere_rad = rad_from_deg(0.5);
+constexpr double kExact_rad = rad_from_deg(0.03);  // backlash, and what a standing servo is off
 constexpr Duration kReturnSlack = std::chrono::seconds(1);
 constexpr Duration kArrivalSlack = std::chrono::seconds(3);  // it may have to turn back first
-constexpr Duration kStopsWithin = std::chrono::seconds(1);   // a quick stop, whatever the node says of it
 
 double counts_per_rad(const AxisPatch& patch) { return std::abs(patch.counts_per_degree) * deg_from_rad(1.0); }
 
@@ -31,6 +31,7 @@ AxisSettings settings_of(const AxisPatch& patch, double min_rad, double max_rad,
   AxisSettings s;
   s.node = patch.node;
   s.master_node = options.master_node;
+  s.cycle = options.cycle;
   s.heartbeat = options.heartbeat;
   const double from = patch.counts_at(min_rad), to = patch.counts_at(max_rad);
   s.lowest = whole_position(std::min(from, to));
@@ -100,11 +101,18 @@ void HeadAxes::step(Time now, Frames& out) {
     returning_ = true;
     due_back_.reset();
     arrive_by_.reset();
-    under_way_until_ = std::min(under_way_until_, now + kStopsWithin);
+    // By a quick stop, whatever the nodes say of it.
+    under_way_until_ =
+        std::min(under_way_until_, now + std::max(stops_within(pan_.settings()), stops_within(tilt_.settings())));
   }
   if (here && target_ && arrive_by_ && now >= *arrive_by_) {
     arrive_by_.reset();
-    if (!is_there(*here)) {  // reckoned from a position that was wrong, or part of the order was lost: from here, anew
+    if (is_there(*here, kExact_rad)) {
+      ordered_again_ = false;
+    } else if (is_there(*here, kThere_rad)) {  // it stopped for a moment and went on without its order, unseen
+      if (!ordered_again_) ordered_.reset();
+      ordered_again_ = true;
+    } else {  // reckoned from a position that was wrong, or part of the order was lost: from here, anew
       ordered_.reset();
       returning_ = true;
       due_back_.reset();
@@ -127,15 +135,15 @@ void HeadAxes::step(Time now, Frames& out) {
     if (returning_ && !due_back_) due_back_ = now + from_seconds(move.seconds) + kReturnSlack;
   }
   if (returning_ && here) {
-    returning_ = target_ && !is_there(*here) && (!due_back_ || now < *due_back_);
+    returning_ = target_ && !is_there(*here, kThere_rad) && (!due_back_ || now < *due_back_);
   }
   const bool asked = target_.has_value(), pan_sound = pan_.sound(), tilt_sound = tilt_.sound();
   pan_.step(now, !tilt_sound, asked, out);
   tilt_.step(now, !pan_sound, asked, out);
 }
 
-bool HeadAxes::is_there(const Joints& here) const {
-  return std::max(std::abs(target_->pan_rad - here.pan_rad), std::abs(target_->tilt_rad - here.tilt_rad)) < kThere_rad;
+bool HeadAxes::is_there(const Joints& here, double within_rad) const {
+  return std::max(std::abs(target_->pan_rad - here.pan_rad), std::abs(target_->tilt_rad - here.tilt_rad)) < within_rad;
 }
 
 std::string HeadAxes::trouble(const Axis& axis) const {

@@ -15,6 +15,7 @@ namespace luxrig::cia402 {
 /// What of the bus's options its axes share; units of the joint where it has any.
 struct AxesOptions {
   int master_node = 127;
+  Duration cycle = std::chrono::milliseconds(20);
   Duration heartbeat = std::chrono::milliseconds(100);
   HomeRule home = HomeRule::at_start;
   int homing_method = 17;
@@ -46,12 +47,13 @@ class HeadAxes {
 
  private:
   [[nodiscard]] std::string trouble(const Axis& axis) const;
-  [[nodiscard]] bool is_there(const Joints& here) const;  ///< requires target_
+  [[nodiscard]] bool is_there(const Joints& here, double within_rad) const;  ///< requires target_
 
   AxisPatch pan_patch_, tilt_patch_;
   AxisLimits pan_limits_, tilt_limits_;  ///< rad/s, rad/s²
   Axis pan_, tilt_;
   std::optional<Joints> target_, ordered_;
+  bool ordered_again_ = false;     ///< as it stood a little beside its aim
   bool returning_ = true;          ///< from a loss, or from the start, to the aim
   std::optional<Time> due_back_;   ///< at the latest: it may follow an aim that moves
   Time under_way_until_{};         ///< by our own reckoning

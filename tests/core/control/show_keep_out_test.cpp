@@ -148,6 +148,8 @@ TEST(ShowKeepOut, AHeadIsDarkBeforeItIsLetGoAndLitAgainWhenItIsThrough) {
   small.run(0.15);
   EXPECT_EQ(small.level(), 0);
   EXPECT_TRUE(small.show.status(at(small.now_s)).fixtures[0].kept_dark);
+  EXPECT_EQ(small.show.status(at(small.now_s)).fixtures[0].waits_for.find("its beam to be clear of keep-out zone \""),
+            0u);
   small.run(0.15);
   EXPECT_EQ(small.asked(), other);
   // 2.6 rad at 3 rad/s, half a second, and the way back to light.
@@ -156,6 +158,7 @@ TEST(ShowKeepOut, AHeadIsDarkBeforeItIsLetGoAndLitAgainWhenItIsThrough) {
   small.run(1.0);
   EXPECT_EQ(small.level(), 1);
   EXPECT_FALSE(small.show.status(at(small.now_s)).fixtures[0].kept_dark);
+  EXPECT_EQ(small.show.status(at(small.now_s)).fixtures[0].waits_for, "");
 }
 
 TEST(ShowKeepOut, AMoveThatPassesTheZoneStaysLit) {
@@ -179,6 +182,7 @@ TEST(ShowKeepOut, AHeadThatADeskTurnsIntoAZoneStaysDarkAndSaysSo) {
   const ShowStatus status = small.show.status(at(small.now_s));
   ASSERT_EQ(status.alarms.size(), 1u);
   EXPECT_EQ(status.alarms[0].text, "head looks into keep-out zone \"audience\" and stays dark; turn it elsewhere");
+  EXPECT_EQ(status.fixtures[0].waits_for, "another aim: it looks into keep-out zone \"audience\"");
   EXPECT_FALSE(small.show.identify(at(small.now_s), 0, from_seconds(1)));
 }
 

@@ -73,7 +73,9 @@ TEST(ShowPark, GoesDarkThenTurnsAndTheRestGoesOn) {
   const std::vector<double> before = small.levels();
   ASSERT_TRUE(small.show->park(at(small.now_s), {}));
   EXPECT_TRUE(small.status().fixtures[0].parked);
+  EXPECT_EQ(small.status().fixtures[0].waits_for, "the next plan");
   EXPECT_FALSE(small.status().fixtures[1].parked);
+  EXPECT_EQ(small.status().fixtures[1].waits_for, "");
   double turned_at_s = -1;
   for (int i = 0; i < 60; ++i) {
     small.run(0.05);

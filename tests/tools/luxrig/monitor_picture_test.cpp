@@ -30,6 +30,22 @@ TEST(MonitorPicture, ShowsSlotsByAddressAndLeavesOutDarkRows) {
   EXPECT_NE(text.find("faulted"), std::string::npos);
 }
 
+TEST(MonitorPicture, SaysWhyAHeadIsDarkAndWhatItWaitsFor) {
+  const json status = json::parse(R"({"rig":"hall","fixtures":[
+    {"name":"spot","moves":true,"parked":true,"waits_for":"the next plan"},
+    {"name":"wash","moves":true,"kept_dark":true,"waits_for":"its beam to be clear of keep-out zone \"stage\""},
+    {"name":"old","moves":true,"kept_dark":true},
+    {"name":"lit","moves":true}]})");
+  const std::string text = monitor_picture(status, json::array(), 80);
+  EXPECT_NE(text.find("parked, waits for the next plan\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("kept dark, waits for its beam to be clear of keep-out zone \"stage\"\n"), std::string::npos)
+      << text;
+  EXPECT_NE(text.find("kept dark\n"), std::string::npos) << text;
+  const std::size_t lit = text.find("\nlit");
+  ASSERT_NE(lit, std::string::npos) << text;
+  EXPECT_EQ(text.find("dark", lit), std::string::npos) << text;
+}
+
 TEST(MonitorPicture, TakesWhateverAnswers) {
   for (const char* status :
        {"null", "[]", "7", "{}", R"({"alarms":7,"devices":{},"fixtures":[[],null],"luxmeters":[1]})",

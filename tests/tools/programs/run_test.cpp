@@ -162,6 +162,55 @@ TEST(Run, ADaemonThatDiesLeavesTheSafeLookToItsGuardianUntilTheNextOne) {
   EXPECT_TRUE(wait_for([&] { return !runs(last) && rig.guardian_pid() == 0; }, 10s));
 }
 
+TEST(Run, ADaemonStartedAnewFadesFromWhatItsGuardianSends) {
+  LiveRig rig(source("tests/rigs/room"));
+  ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
+  ASSERT_TRUE(wait_for([&] { return rig.guardian_pid() > 1; }, 5s)) << rig.daemon().output();
+  const auto levels = [&] {
+    std::vector<double> level;
+    const json truth = rig.truth();
+    for (const json& f : truth.at("fixtures")) level.push_back(f["level"].get<double>());
+    return level;
+  };
+  const std::vector<double> planned = levels();
+  for (const bool in_safe_look : {false, true}) {
+    rig.daemon().signal(SIGKILL);
+    // hold_s = 2, fade_s = 1: within the hold, or when the safe look of 0.1 is there.
+    std::this_thread::sleep_for(in_safe_look ? 4500ms : 300ms);
+    const std::vector<double> before = levels();
+    rig.start_daemon();
+    std::vector<double> least = before, last = before;
+    double largest_step = 0;
+    auto looked = std::chrono::steady_clock::now();
+    const auto watch = [&] {
+      const std::vector<double> level = levels();
+      const auto at = std::chrono::steady_clock::now();
+      const double seconds = std::chrono::duration<double>(at - looked).count();
+      looked = at;
+      for (std::size_t f = 0; f < level.size(); ++f) {
+        least[f] = std::min(least[f], level[f]);
+        // A machine that stands still for a while sees much of a fade at once.
+        if (seconds < 0.1) largest_step = std::max(largest_step, std::abs(level[f] - last[f]));
+      }
+      last = level;
+    };
+    ASSERT_TRUE(wait_for(
+        [&] {
+          watch();
+          const json s = rig.status();
+          return s.is_object() && s.value("phase", "") == "holding";
+        },
+        60s))
+        << rig.daemon().output();
+    // A daemon that takes longer than the hold finds the safe look; none finds the dark.
+    for (std::size_t f = 0; f < before.size(); ++f)
+      EXPECT_GT(least[f], 0.8 * std::min({before[f], planned[f], 0.1})) << "lamp " << f << ", " << in_safe_look;
+    EXPECT_LT(largest_step, 0.15) << in_safe_look;
+    const std::vector<double> after = levels();
+    for (std::size_t f = 0; f < after.size(); ++f) EXPECT_NEAR(after[f], planned[f], 0.05) << f;
+  }
+}
+
 TEST(Run, IdentifyShowsInTheRoomWhichLampItIsAndMonitorWhatGoesOut) {
   LiveRig rig(source("tests/rigs/room"));
   ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();

@@ -13,6 +13,9 @@ export interface Fixture {
   drive?: number; // 0…1 on the wire
   gain?: number; // estimated true output over rated
   gain_standard_error?: number;
+  parked?: true; // it rests, dark
+  kept_dark?: true; // its beam could meet a keep-out zone
+  waits_for?: string; // parked or kept dark: what lights it again
 }
 
 export interface Point {
@@ -155,6 +158,9 @@ export function readStatus(value: unknown): Status | undefined {
       bus: text(f['bus']),
       ...vectors(f, 'position', 'aim'),
       ...numbers(f, 'level', 'target_level', 'drive', 'gain', 'gain_standard_error'),
+      ...(f['parked'] === true ? { parked: true as const } : {}),
+      ...(f['kept_dark'] === true ? { kept_dark: true as const } : {}),
+      ...(text(f['waits_for']) ? { waits_for: text(f['waits_for']) } : {}),
     })),
     points: listOf(s['points']).map((p) => ({
       name: text(p['name']),

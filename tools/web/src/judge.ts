@@ -1,6 +1,6 @@
 /** What a measurement point's numbers mean for a person. */
 
-import type { Point, Status } from './api';
+import type { Fixture, Point, Status } from './api';
 
 /** Colour never stands alone: every verdict has its own shape and its own word. */
 export type Verdict = 'met' | 'low' | 'high' | 'over' | 'none';
@@ -63,4 +63,10 @@ export function summarise(status: Status): Summary {
     }
   }
   return summary;
+}
+
+/** Why a head is dark that is asked for light, and until when; empty when it is not. */
+export function whyDark(fixture: Fixture): string {
+  const why = fixture.parked ? 'parked' : fixture.kept_dark ? 'kept dark' : '';
+  return why && fixture.waits_for ? `${why}, waits for ${fixture.waits_for}` : why;
 }

@@ -3,7 +3,7 @@
 import type { Fixture, Point } from '../api';
 import { element } from '../dom';
 import * as format from '../format';
-import { judge } from '../judge';
+import { judge, whyDark } from '../judge';
 import type { Spot } from '../plan_layout';
 
 function fill(tip: HTMLElement, title: string, verdict: string, lines: [string, string][]): void {
@@ -30,7 +30,7 @@ export function pointTip(tip: HTMLElement, point: Point): void {
 }
 
 export function fixtureTip(tip: HTMLElement, fixture: Fixture): void {
-  fill(tip, fixture.name, '', [
+  fill(tip, fixture.name, whyDark(fixture), [
     ['level', format.percent(fixture.level, 1)],
     ['going to', format.percent(fixture.target_level, 1)],
     ['on the wire', format.percent(fixture.drive, 1)],

@@ -1,0 +1,34 @@
+/// Light that somebody else has sent until now: the guardian of a daemon that died.
+
+#include <utility>
+
+#include "core/check.h"
+#include "core/control/show_state.h"
+
+namespace luxrig {
+
+void ShowController::go_on_from(Time now, const LightInForce& light) {
+  State& state = *state_;
+  now = state.at_least_last(now);
+  const std::size_t count = state.rig.fixtures.size();
+  LUXRIG_CHECK(light.level.size() == count && light.safe.size() == count && light.joints.size() == count,
+               "light of another rig");
+  std::vector<double> level = light.level, safe = light.safe;
+  bool all_known = true;
+  for (std::size_t f = 0; f < count; ++f) {
+    Fixture& fixture = state.rig.fixtures[f];
+    if (!fixture.moves) continue;
+    fixture.joints = state.program.joints[f] = light.joints[f];
+    fixture.aim_world_m.reset();
+    if (!fixture.axes) continue;
+    all_known = false;
+    level[f] = safe[f] = 0;
+  }
+  state.turned = all_known;
+  state.power_came = true;  // the lamps are on: nothing is to come up by stages
+  state.in_force = level;
+  state.fade(now + from_seconds(light.hold_s), std::move(level), std::move(safe), light.fade_s,
+             state.rig.control.fade_curve);
+}
+
+}  // namespace luxrig
