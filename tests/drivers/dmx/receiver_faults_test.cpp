@@ -23,7 +23,7 @@ class FaultyNetwork {
 
   std::vector<Packet> through(Packet packet) {
     std::vector<Packet> out;
-    const unsigned fate = random_() % 100;
+    const auto fate = random_() % 100;
     if (fate < 10) {
       // lost
     } else if (fate < 20) {
