@@ -1,8 +1,7 @@
 /// Bidirectional path tracing with randomised quasi-Monte-Carlo samples, spent where the error is.
 ///
 /// Each receiver has 16 replicates: estimates from independent scrambles of one Sobol sequence. Their spread gives the
-/// standard error. All replicates of a receiver have the same number of samples, which doubles until the error is as
-/// small as wanted.
+/// standard error. All replicates of a receiver have the same number of samples, which grows until that is as wanted.
 
 #include <fmt/format.h>
 
@@ -43,8 +42,7 @@ constexpr std::size_t kPathsPerRecord = 4;
 constexpr std::uint32_t kRecordPaths = 4, kHitsPerRecordPath = 4;
 /// Fewer receivers than this have more to gain from paths of their own than from shared noise.
 constexpr std::size_t kFewestSharing = 24;
-constexpr std::size_t kMostRecords = 1u << 15;
-constexpr std::size_t kMostRecordBytes = 256u << 20;
+constexpr std::size_t kMostRecords = 1u << 15, kMostRecordBytes = 256u << 20;
 /// Every so many paths one goes on beside its record, to tell how far records are off; fewer once that is known to this
 /// part of the error that is left to the receivers.
 constexpr std::uint32_t kCheckedPaths = 8, kSeldomCheckedPaths = 64;
@@ -162,7 +160,7 @@ class PathEvaluation {
       PathScratch scratch;
       std::vector<double> values(columns_, 0.0);
       TailShare tails;
-      if (shares_now) tails.records = &tails_->records(k);
+      if (shares_now && !spent_[r].alone) tails.records = &tails_->records(k);
       if (keeps_ends) tails.ends = &ends_->of(r, k);
       const auto start = PathSampler::at(receivers_[r]);
       for (std::uint32_t i = begin; i < end; ++i) {
@@ -240,6 +238,7 @@ class PathEvaluation {
     std::vector<double> cuts_lx;
     std::size_t paths = 0;
     for (const PathTask& task : chunk) {
+      if (spent_[task.receiver].alone) continue;
       from.push_back(receivers_[task.receiver]);
       plans.push_back(hits_.plan(task.receiver, kHitsPerRecordPath, kRecordPaths));
       cuts_lx.push_back(cut_lx(task.receiver));
@@ -271,6 +270,7 @@ class PathEvaluation {
     spent_[r].reflected_lx = mean_lx;
     spent_[r].lux = mean_lx + spent_[r].direct_lx;
     spent_[r].error_lx = standard_error_of_mean(reflected);
+    spent_.judge_sharing(r);
   }
 
   void finish() {

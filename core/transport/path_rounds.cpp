@@ -17,6 +17,10 @@ constexpr std::uint32_t kMostRoundSamples = 1u << 30;
 /// Rounds end at so many steps between as many samples as before and twice as many, a little beyond what is needed.
 constexpr int kStepsToDouble = 8;
 constexpr double kStepMargin = 1.05;
+/// A receiver does not err less by more paths that end in records when there is no room for more of those: when
+/// error² × samples has grown so much, it goes on without.
+constexpr double kMostScatter = 3;
+constexpr std::uint32_t kSamplesToTellScatter = 32;
 /// For an rms error, fewer than this part of the samples that a receiver has are left out of a round.
 constexpr double kFewestShare = 32;
 
@@ -107,6 +111,14 @@ std::vector<PathTask> PathRounds::next(std::uint64_t rays_cast) const {
   std::sort(wanting.begin(), wanting.end(),
             [](const PathTask& a, const PathTask& b) { return a.receiver < b.receiver; });
   return wanting;
+}
+
+void PathRounds::judge_sharing(std::size_t receiver) {
+  ReceiverProgress& one = progress_[receiver];
+  if (one.samples < kSamplesToTellScatter) return;
+  const double scatter = one.error_lx * one.error_lx * one.samples;
+  one.least_scatter = std::min(one.least_scatter, scatter);
+  one.alone = one.alone || scatter > kMostScatter * one.least_scatter;
 }
 
 void PathRounds::find_brightest() {

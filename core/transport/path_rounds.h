@@ -16,12 +16,14 @@ struct ReceiverProgress {
   std::uint64_t rays = 0;
   double lux = 0;  ///< under the options' levels
   double direct_lx = 0;
-  double reflected_lx = 0;       ///< lux without direct_lx; of a first round's hits alone before there is more
-  double error_lx = 0;           ///< standard error of lux
-  double taken_lx = 0;           ///< from tail records, summed over samples and replicates
-  double scatter = 0;            ///< about relative error² × samples, by the last rounds
-  std::uint32_t scatter_of = 0;  ///< samples when it was last told
-  bool found = false;            ///< any reflected light
+  double reflected_lx = 0;          ///< lux without direct_lx; of a first round's hits alone before there is more
+  double error_lx = 0;              ///< standard error of lux
+  double taken_lx = 0;              ///< from tail records, summed over samples and replicates
+  double scatter = 0;               ///< about relative error² × samples, by the last rounds
+  std::uint32_t scatter_of = 0;     ///< samples when it was last told
+  double least_scatter = HUGE_VAL;  ///< least so far of error_lx² × samples
+  bool found = false;               ///< any reflected light
+  bool alone = false;               ///< records' noise has become its own: paths go on by themselves from here on
 };
 
 /// Samples that a receiver gets in a round: [begin, end) of each of its replicates.
@@ -49,6 +51,8 @@ class PathRounds {
   /// The receivers that want more samples: as many as would do by the error so far, up to as many as they have. Under
   /// a wanted rms error, a receiver's samples are as the root of their scatter by their rays (J. Neyman 1934).
   [[nodiscard]] std::vector<PathTask> next(std::uint64_t rays_cast) const;
+  /// To be called when the error of a receiver that shares records is known anew: tells whether it still should.
+  void judge_sharing(std::size_t receiver);
   /// To be called when the lux of receivers is known anew.
   void find_brightest();
 
