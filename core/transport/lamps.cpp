@@ -342,6 +342,8 @@ Result<void> check_evaluation(std::span<const Receiver> receivers, std::span<con
                               const EvaluateOptions& options) {
   if (!(options.wanted_relative_error > 0) || !std::isfinite(options.wanted_relative_error))
     return refusal(fmt::format("wanted relative error is {:g}; it must be above 0", options.wanted_relative_error));
+  if (!(options.wanted_rms_error >= 0) || !std::isfinite(options.wanted_rms_error))
+    return refusal(fmt::format("wanted rms error is {:g}; it must be 0 or above", options.wanted_rms_error));
   if (!options.levels.empty() && options.levels.size() != emitters.size())
     return refusal(fmt::format("{} levels for {} emitters", options.levels.size(), emitters.size()));
   for (std::size_t e = 0; e < options.levels.size(); ++e)

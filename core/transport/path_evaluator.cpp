@@ -1,8 +1,7 @@
 /// Bidirectional path tracing with randomised quasi-Monte-Carlo samples, spent where the error is.
 ///
 /// Each receiver has 16 replicates: estimates from independent scrambles of one Sobol sequence. Their spread gives the
-/// standard error. All replicates of a receiver have the same number of samples, which doubles until the error is as
-/// small as wanted.
+/// standard error. All replicates of a receiver have the same number of samples, which grows until that is as wanted.
 
 #include <fmt/format.h>
 
@@ -14,6 +13,7 @@
 #include "core/transport/path_rounds.h"
 #include "core/transport/path_sampler.h"
 #include "core/transport/progress.h"
+#include "core/transport/receiver_ends.h"
 #include "core/transport/receiver_hits.h"
 #include "core/transport/record_bias.h"
 #include "core/transport/replicate_error.h"
@@ -33,21 +33,16 @@ constexpr std::uint32_t kHitsPerPath = 4;
 constexpr double kDirectMargin = 5;
 /// Connections worth less than this share of a path's mean are made only now and then.
 constexpr double kCut = 0.1;
-/// With shared tails: records per receiver at first, then one for so many paths of the receivers (and a replicate),
-/// each with so many paths of its own. Fewer records let their distance count more. With few paths of their own,
-/// records that end in one another would follow the same few ways and err together.
-constexpr std::size_t kFirstRecords = 8;
+/// With shared tails: records per receiver and replicate at first, for a standard error of 1 %, then one for so many
+/// paths of the receivers, each with so many paths of its own. With few of them, records that end in one another follow
+/// the same few ways again and again, and are too bright for it; half as much with twice as many records.
+constexpr double kFirstRecords = 8, kFewestFirst = 6, kMostFirst = 48;
 constexpr std::size_t kFewestRecords = 256;
 constexpr std::size_t kPathsPerRecord = 4;
 constexpr std::uint32_t kRecordPaths = 4, kHitsPerRecordPath = 4;
 /// Fewer receivers than this have more to gain from paths of their own than from shared noise.
 constexpr std::size_t kFewestSharing = 24;
-/// A receiver that sees few records does not err less by more paths that end in them: when error² × samples has grown
-/// so much, it goes on without.
-constexpr double kMostScatter = 3;
-constexpr std::uint32_t kSamplesToTellScatter = 32;
-constexpr std::size_t kMostRecords = 1u << 15;
-constexpr std::size_t kMostRecordBytes = 256u << 20;
+constexpr std::size_t kMostRecords = 1u << 15, kMostRecordBytes = 256u << 20;
 /// Every so many paths one goes on beside its record, to tell how far records are off; fewer once that is known to this
 /// part of the error that is left to the receivers.
 constexpr std::uint32_t kCheckedPaths = 8, kSeldomCheckedPaths = 64;
@@ -87,6 +82,8 @@ class PathEvaluation {
     const bool reflects = obstacles_in(scene_) && !emitters_.empty() && !receivers_.empty() &&
                           std::any_of(bsdfs_.begin(), bsdfs_.end(), [](const Bsdf& b) { return !b.black(); });
     EvaluateOptions direct_options = options_;
+    if (options_.wanted_rms_error > 0)
+      direct_options.wanted_relative_error = PathRounds::kStopMargin * options_.wanted_rms_error;
     direct_options.wanted_relative_error /= reflects ? kDirectMargin : 1;
     auto direct = direct_light(scene_, receivers_, emitters_, direct_options, reflects ? 0.05 : 1.0, &openings_);
     if (!direct) return tl::unexpected(std::move(direct.error()));
@@ -101,6 +98,7 @@ class PathEvaluation {
       return std::move(matrix_);
     }
     sums_ = ReplicateSums(receivers_.size(), channels_, levels_);
+    if (tails_) ends_.emplace(sampler_, *tails_, receivers_.size(), levels_);
     done_ = 0.05;
     for (auto round = spent_.first(matrix_.rays); !round.empty(); round = spent_.next(matrix_.rays))
       if (!sample(round)) return tl::unexpected(Fault{Cause::cancelled, "", "stopped while tracing paths", {}});
@@ -122,10 +120,17 @@ class PathEvaluation {
       std::erase_if(left, [](const PathTask& task) { return task.begin == task.end; });
     }
     if (options_.watch.stop.stop_requested()) return false;
+    std::vector<std::size_t> sampled;
     for (const PathTask& task : round) {
       spent_[task.receiver].samples = task.end;
-      estimate(task.receiver);
+      sampled.push_back(task.receiver);
     }
+    if (ends_) {
+      const auto rays = ends_->look_up(sampled, options_.threads);
+      for (std::size_t i = 0; i < sampled.size(); ++i) spent_[sampled[i]].rays += rays[i], matrix_.rays += rays[i];
+    }
+    for (const std::size_t r : sampled) estimate(r);
+    if (ends_) record_bias_ = ends_->bias(spent_);
     done_ = spent_.done_after({}, done_);
     spent_.find_brightest();
     return true;
@@ -136,7 +141,7 @@ class PathEvaluation {
     for (const PathTask& task : chunk) plans_.push_back(hits_.plan(task.receiver, kHitsPerPath, task.end - task.begin));
     fill_pools(chunk);
     join_hits(chunk);
-    const bool shares_now = tails_ && (chunk.size() >= kFewestSharing || tails_->records().size() > 0);
+    const bool shares_now = tails_ && (chunk.size() >= kFewestSharing || tails_->records(0).size() > 0);
     if (shares_now) grow_tails(chunk);
     trace_paths(chunk, shares_now, progress);
   }
@@ -144,6 +149,9 @@ class PathEvaluation {
   void trace_paths(const std::vector<PathTask>& chunk, bool shares_now, CallingThreadProgress& progress) {
     std::vector<std::uint64_t> rays(chunk.size() * kPathReplicates, 0);
     std::vector<TailShare> told(rays.size());
+    std::size_t paths = 0;
+    for (const PathTask& task : chunk) paths += kPathReplicates * (task.end - task.begin);
+    const bool keeps_ends = shares_now && ends_->have_room(paths);
     const std::uint32_t checked = bias_is_known() ? kSeldomCheckedPaths : kCheckedPaths;
     parallel_for(rays.size(), options_.threads, [&](std::size_t task) {
       const auto& [r, begin, end] = chunk[task / kPathReplicates];
@@ -152,8 +160,8 @@ class PathEvaluation {
       PathScratch scratch;
       std::vector<double> values(columns_, 0.0);
       TailShare tails;
-      if (shares_now && !spent_[r].alone) tails.records = &tails_->records();
-      tails.replicate = k;
+      if (shares_now && !spent_[r].alone) tails.records = &tails_->records(k);
+      if (keeps_ends) tails.ends = &ends_->of(r, k);
       const auto start = PathSampler::at(receivers_[r]);
       for (std::uint32_t i = begin; i < end; ++i) {
         if (options_.watch.stop.stop_requested()) return;
@@ -165,17 +173,11 @@ class PathEvaluation {
       sums_.add(k, r, values);
       progress.one_done();
     });
-    std::vector<double> reflected_lx;
-    for (const PathTask& task : chunk) reflected_lx.push_back(sums_.mean_reflected_lx(task.receiver, task.end));
     for (std::size_t task = 0; task < rays.size(); ++task) {
       ReceiverProgress& spent = spent_[chunk[task / kPathReplicates].receiver];
       spent.rays += rays[task];
       spent.taken_lx += told[task].taken_lx;
       matrix_.rays += rays[task];
-      // Relative to each receiver's light: errors are to be right for the dim ones, too.
-      if (!(reflected_lx[task / kPathReplicates] > 0)) continue;
-      record_bias_.add(task % kPathReplicates, told[task].by_record_lx / reflected_lx[task / kPathReplicates],
-                       told[task].by_path_lx / reflected_lx[task / kPathReplicates]);
     }
   }
 
@@ -242,34 +244,48 @@ class PathEvaluation {
       cuts_lx.push_back(cut_lx(task.receiver));
       paths += task.end - task.begin;
     }
-    const std::size_t wanted = tails_->records().size() == 0
-                                   ? std::max(kFewestRecords, kFirstRecords * chunk.size())
+    const std::size_t wanted = tails_->records(0).size() == 0
+                                   ? std::max(kFewestRecords, first_records_each() * chunk.size())
                                    : paths / (chunk.size() < kFewestSharing ? kPathsPerRecord / 2 : kPathsPerRecord);
     const std::size_t memory_allows = kMostRecordBytes / (kPathReplicates * 3 * sizeof(float) * emitters_.size());
-    const std::size_t room = std::min(kMostRecords, memory_allows) - std::min(kMostRecords, tails_->records().size());
+    const std::size_t room = std::min(kMostRecords, memory_allows) - std::min(kMostRecords, tails_->records(0).size());
     matrix_.rays += tails_->grow(from, std::min(wanted, room), kRecordPaths, pools_, plans, cuts_lx, options_.threads,
                                  options_.watch);
   }
 
+  /// Records per receiver at first: what they are off by is to fall with the wanted error.
+  std::size_t first_records_each() const {
+    const double records = kFirstRecords * std::pow(0.01 / spent_.last_standard_error(), 1.5);
+    return static_cast<std::size_t>(std::clamp(records, kFewestFirst, kMostFirst));
+  }
+
   void estimate(std::size_t r) {
-    const auto reflected = sums_.reflected_lx(r, spent_[r].samples);
+    auto reflected = sums_.reflected_lx(r, spent_[r].samples);
+    for (std::size_t k = 0; k < kPathReplicates && ends_; ++k)
+      reflected[k] += ends_->taken_lx(r, k) / spent_[r].samples;
     double mean_lx = 0;
     for (const double lux : reflected) mean_lx += lux / kPathReplicates;
-    spent_[r].found = sums_.found(r);
+    spent_[r].found = sums_.found(r) || mean_lx > 0;
     spent_[r].direct_lx = matrix_.direct_lux_per_level.row(static_cast<Eigen::Index>(r)).dot(levels_);
     spent_[r].reflected_lx = mean_lx;
     spent_[r].lux = mean_lx + spent_[r].direct_lx;
     spent_[r].error_lx = standard_error_of_mean(reflected);
-    const double scatter = spent_[r].error_lx * spent_[r].error_lx * spent_[r].samples;
-    if (!tails_ || spent_[r].samples < kSamplesToTellScatter) return;
-    spent_[r].least_scatter = std::min(spent_[r].least_scatter, scatter);
-    spent_[r].alone = spent_[r].alone || scatter > kMostScatter * spent_[r].least_scatter;
+    spent_.judge_sharing(r);
   }
 
   void finish() {
     const auto n = static_cast<Eigen::Index>(receivers_.size());
     Eigen::MatrixXd reflected = Eigen::MatrixXd::Zero(n, levels_.size());
     if (channels_ == 3) start_colours();
+    if (ends_) {
+      matrix_.rays += ends_->take(sums_, channels_, options_.threads);
+      for (std::size_t r = 0; r < receivers_.size(); ++r) {
+        spent_[r].taken_lx += ends_->important_lx(r);
+        estimate(r);
+      }
+      record_bias_ = ends_->bias(spent_);
+      spent_.find_brightest();
+    }
     std::vector<std::uint32_t> samples;
     for (std::size_t r = 0; r < receivers_.size(); ++r) samples.push_back(spent_[r].samples);
     for (std::size_t k = 0; k < kPathReplicates; ++k) {
@@ -291,7 +307,7 @@ class PathEvaluation {
 
   bool bias_is_known() const {
     const auto bias = record_bias_.measured();
-    return bias && bias->error < kBiasPart * options_.wanted_relative_error / PathRounds::kStopMargin;
+    return bias && bias->error < kBiasPart * spent_.last_standard_error();
   }
 
   /// Takes the records' common bias, as the checked paths show it, out of what was taken from them; and adds what
@@ -345,6 +361,7 @@ class PathEvaluation {
   std::vector<HitPool> pools_;  ///< by replicate
   std::vector<HitPlan> plans_;  ///< by task of the chunk
   std::optional<SharedTails> tails_;
+  std::optional<ReceiverEnds> ends_;  ///< with tails
   RecordBias record_bias_;
   PathRounds spent_;
   std::vector<Eigen::MatrixXd> direct_replicates_;  ///< empty when the direct part is exact

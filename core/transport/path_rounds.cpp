@@ -17,6 +17,12 @@ constexpr std::uint32_t kMostRoundSamples = 1u << 30;
 /// Rounds end at so many steps between as many samples as before and twice as many, a little beyond what is needed.
 constexpr int kStepsToDouble = 8;
 constexpr double kStepMargin = 1.05;
+/// A receiver does not err less by more paths that end in records when there is no room for more of those: when
+/// error² × samples has grown so much, it goes on without.
+constexpr double kMostScatter = 3;
+constexpr std::uint32_t kSamplesToTellScatter = 32;
+/// For an rms error, fewer than this part of the samples that a receiver has are left out of a round.
+constexpr double kFewestShare = 32;
 
 }  // namespace
 
@@ -33,8 +39,18 @@ std::vector<PathTask> PathRounds::first(std::uint64_t rays_cast) const {
   return all;
 }
 
-std::vector<PathTask> PathRounds::next(std::uint64_t rays_cast) const {
+std::vector<PathTask> PathRounds::wanting() const {
   std::vector<PathTask> wanting;
+  if (by_rms()) {
+    const std::vector<double> wanted = samples_by_rms();
+    for (std::size_t r = 0; r < progress_.size(); ++r) {
+      const std::uint32_t have = progress_[r].samples;
+      const double more = overshoot(r) == HUGE_VAL ? have : std::min<double>(have, wanted[r] - have);
+      if (!(more * kFewestShare > have) || have >= kMostRoundSamples) continue;
+      wanting.push_back({r, have, have + static_cast<std::uint32_t>(std::ceil(more))});
+    }
+    return wanting;
+  }
   for (std::size_t r = 0; r < progress_.size(); ++r) {
     const std::uint32_t have = progress_[r].samples;
     const double over = overshoot(r);
@@ -43,6 +59,45 @@ std::vector<PathTask> PathRounds::next(std::uint64_t rays_cast) const {
     const double share = std::clamp(parts, 1.0, static_cast<double>(kStepsToDouble)) / kStepsToDouble;
     wanting.push_back({r, have, have + std::max(1u, static_cast<std::uint32_t>(have * share))});
   }
+  return wanting;
+}
+
+std::vector<double> PathRounds::samples_by_rms() const {
+  std::vector<double> wanted(progress_.size()), weights(progress_.size(), 0.0);
+  for (std::size_t r = 0; r < progress_.size(); ++r) {
+    wanted[r] = progress_[r].samples;
+    const double rays = static_cast<double>(progress_[r].rays) / std::max(1u, progress_[r].samples);
+    if (rays > 0) weights[r] = std::sqrt(progress_[r].scatter / rays);
+  }
+  if (rms_error() <= options_.wanted_rms_error) return wanted;
+  // As last rounds told it, all of it off by the same factor from what is known now.
+  double scattered = 0;
+  for (const ReceiverProgress& one : progress_) scattered += one.scatter / std::max(1u, one.samples);
+  const double aim = scattered / kStepMargin * std::pow(options_.wanted_rms_error / rms_error(), 2);
+  double low = 1e-12, high = 1e15;
+  while (high > 1.001 * low) {
+    const double factor = std::sqrt(low * high);
+    double squares = 0;
+    for (std::size_t r = 0; r < progress_.size(); ++r)
+      squares += progress_[r].scatter / std::max<double>(progress_[r].samples, factor * weights[r]);
+    (squares <= aim ? high : low) = factor;
+  }
+  for (std::size_t r = 0; r < progress_.size(); ++r) wanted[r] = std::max(wanted[r], high * weights[r]);
+  return wanted;
+}
+
+double PathRounds::rms_error() const {
+  double squares = 0;
+  for (std::size_t r = 0; r < progress_.size(); ++r) squares += relative_error(r) * relative_error(r);
+  return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, progress_.size())));
+}
+
+double PathRounds::last_standard_error() const {
+  return by_rms() ? options_.wanted_rms_error : options_.wanted_relative_error / kStopMargin;
+}
+
+std::vector<PathTask> PathRounds::next(std::uint64_t rays_cast) const {
+  std::vector<PathTask> wanting = this->wanting();
   // As many as the remaining rays allow, the worst first.
   std::stable_sort(wanting.begin(), wanting.end(),
                    [&](const PathTask& a, const PathTask& b) { return overshoot(a.receiver) > overshoot(b.receiver); });
@@ -58,9 +113,26 @@ std::vector<PathTask> PathRounds::next(std::uint64_t rays_cast) const {
   return wanting;
 }
 
+void PathRounds::judge_sharing(std::size_t receiver) {
+  ReceiverProgress& one = progress_[receiver];
+  if (one.samples < kSamplesToTellScatter) return;
+  const double scatter = one.error_lx * one.error_lx * one.samples;
+  one.least_scatter = std::min(one.least_scatter, scatter);
+  one.alone = one.alone || scatter > kMostScatter * one.least_scatter;
+}
+
 void PathRounds::find_brightest() {
   brightest_lx_ = 0;
   for (const ReceiverProgress& one : progress_) brightest_lx_ = std::max(brightest_lx_, one.lux);
+  if (!by_rms()) return;
+  for (std::size_t r = 0; r < progress_.size(); ++r) {
+    ReceiverProgress& one = progress_[r];
+    if (one.samples == one.scatter_of) continue;
+    // Estimates of 16 replicates are off by a third or so: the last ones together are less so.
+    const double scatter = relative_error(r) * relative_error(r) * one.samples;
+    one.scatter = one.scatter_of == 0 ? scatter : (one.scatter + 2 * scatter) / 3;
+    one.scatter_of = one.samples;
+  }
 }
 
 double PathRounds::relative_error(std::size_t receiver) const {
@@ -71,14 +143,15 @@ double PathRounds::relative_error(std::size_t receiver) const {
 double PathRounds::overshoot(std::size_t receiver) const {
   const ReceiverProgress& one = progress_[receiver];
   if (one.error_lx == 0) return one.found || one.samples >= kSamplesToBelieveNothing ? 0 : HUGE_VAL;
-  return relative_error(receiver) * kStopMargin / options_.wanted_relative_error;
+  return relative_error(receiver) / last_standard_error();
 }
 
 double PathRounds::done_after(const std::vector<PathTask>& round, double before) const {
   double spent = 0, left = 0;
+  const double rms = by_rms() ? rms_error() / last_standard_error() : 0;
   for (std::size_t r = 0; r < progress_.size(); ++r) {
     spent += progress_[r].samples;
-    const double factor = std::min(overshoot(r), 1e3);
+    const double factor = std::min(by_rms() ? rms : overshoot(r), 1e3);
     if (factor > 1) left += progress_[r].samples * std::max(1.0, factor * factor - 1);
   }
   double part = 0;

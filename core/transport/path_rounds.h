@@ -19,7 +19,9 @@ struct ReceiverProgress {
   double reflected_lx = 0;          ///< lux without direct_lx; of a first round's hits alone before there is more
   double error_lx = 0;              ///< standard error of lux
   double taken_lx = 0;              ///< from tail records, summed over samples and replicates
-  double least_scatter = HUGE_VAL;  ///< least so far of error² × samples
+  double scatter = 0;               ///< about relative error² × samples, by the last rounds
+  std::uint32_t scatter_of = 0;     ///< samples when it was last told
+  double least_scatter = HUGE_VAL;  ///< least so far of error_lx² × samples
   bool found = false;               ///< any reflected light
   bool alone = false;               ///< records' noise has become its own: paths go on by themselves from here on
 };
@@ -46,11 +48,16 @@ class PathRounds {
 
   /// All receivers. rays_cast: so far, by whatever else.
   [[nodiscard]] std::vector<PathTask> first(std::uint64_t rays_cast) const;
-  /// The receivers that want more samples: as many as would do by the error so far, up to as many as they have.
+  /// The receivers that want more samples: as many as would do by the error so far, up to as many as they have. Under
+  /// a wanted rms error, a receiver's samples are as the root of their scatter by their rays (J. Neyman 1934).
   [[nodiscard]] std::vector<PathTask> next(std::uint64_t rays_cast) const;
+  /// To be called when the error of a receiver that shares records is known anew: tells whether it still should.
+  void judge_sharing(std::size_t receiver);
   /// To be called when the lux of receivers is known anew.
   void find_brightest();
 
+  /// Standard error of a receiver at which sampling stops; under a wanted rms error, their rms.
+  [[nodiscard]] double last_standard_error() const;
   /// Relative to the receiver's lux or a thousandth of the brightest receiver's.
   [[nodiscard]] double relative_error(std::size_t receiver) const;
   /// Share of the whole work done so far, or after a round: error falls at least with the root of the samples. At least
@@ -59,6 +66,12 @@ class PathRounds {
 
  private:
   [[nodiscard]] std::uint64_t rays_left(std::uint64_t rays_cast) const;
+  [[nodiscard]] bool by_rms() const { return options_.wanted_rms_error > 0; }
+  [[nodiscard]] double rms_error() const;
+  /// Samples that receivers should have in all, for the wanted rms error.
+  [[nodiscard]] std::vector<double> samples_by_rms() const;
+  /// Those that want more, by themselves: without a limit of rays.
+  [[nodiscard]] std::vector<PathTask> wanting() const;
   /// Estimated error relative to that at which the receiver is done; infinite when nothing is known yet.
   [[nodiscard]] double overshoot(std::size_t receiver) const;
 

@@ -258,18 +258,20 @@ std::uint64_t PathSampler::add_path(const Vertex& start, const SobolSequence& sa
                       s, t, chance, scratch, *into);
     if (bounce == 0) scratch.first_leg_m = std::sqrt(distance2_m2);
     if (tails != nullptr && tails->records != nullptr && into == &sums && bsdf.matt()) {
-      if (const auto record = record_for(reached, *tails->records, rays)) {
+      if (const auto record = record_for(reached.position_world_m, reached.normal_world, *tails->records, rays)) {
         const Vec3 per_lux_rgb = reached.through_rgb.cwiseProduct(bsdf.body_rgb()) / kPi;
         if (tails->link) {
           tails->linked = record;
           tails->per_lux_rgb = per_lux_rgb;
           break;
         }
-        const auto values = tails->records->values(tails->replicate, *record);
-        const double taken_lx = add_record(per_lux_rgb, values, sums);
-        tails->taken_lx += taken_lx;
+        if (tails->ends == nullptr) {
+          tails->taken_lx += add_record(per_lux_rgb, tails->records->values(*record), sums);
+          break;
+        }
+        tails->ends->ends.push_back(
+            {reached.position_world_m, reached.normal_world.cast<float>(), per_lux_rgb.cast<float>(), *record});
         if (!tails->check) break;
-        tails->by_record_lx += taken_lx;
         scratch.beside.assign(sums.values.size(), 0.0);
         beside = {scratch.beside, sums.channels};
         into = &beside;
@@ -284,7 +286,9 @@ std::uint64_t PathSampler::add_path(const Vertex& start, const SobolSequence& sa
     }
     vertex = reached;
   }
-  if (into == &beside) tails->by_path_lx += worth_of(beside);
+  if (into == &beside)
+    tails->ends->checks.push_back(
+        {static_cast<std::uint32_t>(tails->ends->ends.size() - 1), static_cast<float>(worth_of(beside))});
   return rays;
 }
 
@@ -298,19 +302,37 @@ double PathSampler::worth_of(const PathSums& sums) const {
   return worth;
 }
 
-std::optional<std::uint32_t> PathSampler::record_for(const Vertex& vertex, const TailRecords& records,
-                                                     std::uint64_t& rays) const {
-  const auto found = records.nearest(vertex.position_world_m, vertex.normal_world);
+std::optional<std::uint32_t> PathSampler::record_for(const Vec3& position_world_m, const Vec3& normal_world,
+                                                     const TailRecords& records, std::uint64_t& rays) const {
+  const auto found = records.nearest(position_world_m, normal_world);
   if (!found) return std::nullopt;
   const TailRecords::Place& place = records.place(found->record);
   if (found->distance_m <= place.clear_m) return found->record;
   // Above both surfaces by a part of their distance, so that what is nearly plane does not stand in its own way.
   const double lift_m = 0.05 * found->distance_m;
   ++rays;
-  if (scene_.occluded(vertex.position_world_m + lift_m * vertex.normal_world, vertex.normal_world,
+  if (scene_.occluded(position_world_m + lift_m * normal_world, normal_world,
                       place.position_world_m + lift_m * place.normal_world))
     return std::nullopt;
   return found->record;
+}
+
+PathSampler::EndsSum PathSampler::add_ends(TailEnds& ends, const TailRecords& records, const PathSums& sums) const {
+  EndsSum sum;
+  std::size_t check = 0;
+  for (std::size_t i = 0; i < ends.ends.size(); ++i) {
+    TailEnd& end = ends.ends[i];
+    // A nearer one behind an edge does not speak for it; then the one so far still does.
+    if (const auto record = record_for(end.position_world_m, end.normal_world.cast<double>(), records, sum.rays))
+      end.record = *record;
+    const double taken_lx = add_record(end.per_lux_rgb.cast<double>(), records.values(end.record), sums);
+    sum.taken_lx += taken_lx;
+    for (; check < ends.checks.size() && ends.checks[check].end == i; ++check) {
+      sum.checked_lx += taken_lx;
+      sum.by_path_lx += static_cast<double>(ends.checks[check].by_path_lx);
+    }
+  }
+  return sum;
 }
 
 double PathSampler::add_record(const Vec3& per_lux_rgb, std::span<const float> values, const PathSums& sums) const {

@@ -12,6 +12,7 @@
 /// Unbiased, whatever the roulettes.
 
 #include "core/transport/hit_pool.h"
+#include "core/transport/tail_ends.h"
 #include "core/transport/tail_records.h"
 
 namespace luxrig {
@@ -32,16 +33,15 @@ struct PathScratch {
 /// Records that a path may end in, at its second vertex or where it next finds one.
 struct TailShare {
   const TailRecords* records = nullptr;  ///< of three channels; null: paths end by themselves
-  std::size_t replicate = 0;
-  bool link = false;  ///< do not add what the record says, only tell which it is
-  /// Go on all the same, to tell how far the record is off; what is added is the record's, which scatters less.
-  bool check = false;
+  bool link = false;                     ///< do not add what the record says, only tell which it is
   /// With link: the record that the last path ended in, and what its reflected lux counts at the path's start.
   std::optional<std::uint32_t> linked;
   Vec3 per_lux_rgb = Vec3::Zero();
-  /// With check: luminous lux at the levels by the record and by the path itself, added up.
-  double by_record_lx = 0, by_path_lx = 0;
-  double taken_lx = 0;  ///< what was added from records, added up
+  /// Where paths that end in records are kept instead of adding what these say (PathSampler::add_ends); null: added.
+  TailEnds* ends = nullptr;
+  /// With ends: go on all the same, to tell how far the record is off; what counts is the record, which scatters less.
+  bool check = false;
+  double taken_lx = 0;  ///< what was added from records, luminous at the levels, added up
 };
 
 /// What is added up: luminance only, or three primaries.
@@ -109,6 +109,16 @@ class PathSampler {
                          const HitPlan& plan, double cut, PathScratch& scratch, const PathSums& sums,
                          TailShare* tails = nullptr) const;
 
+  /// What kept ends of paths add, and what checks found, luminous at the levels, added up.
+  struct EndsSum {
+    double taken_lx = 0;
+    double checked_lx = 0;  ///< of the paths that were checked, by record
+    double by_path_lx = 0;  ///< and by the path itself
+    std::uint64_t rays = 0;
+  };
+  /// Looks up ends anew, then adds what their records say.
+  EndsSum add_ends(TailEnds& ends, const TailRecords& records, const PathSums& sums) const;
+
  private:
   /// Light of a hit by way of a vertex, if nothing stands in between.
   struct Join {
@@ -130,8 +140,8 @@ class PathSampler {
   /// Looks outside from a vertex, if there are openings.
   void look_outside(Vertex& vertex, SkyOpenings::Outside& outside) const;
   /// The record that speaks for a vertex, if one is near and nothing stands in between.
-  [[nodiscard]] std::optional<std::uint32_t> record_for(const Vertex& vertex, const TailRecords& records,
-                                                        std::uint64_t& rays) const;
+  [[nodiscard]] std::optional<std::uint32_t> record_for(const Vec3& position_world_m, const Vec3& normal_world,
+                                                        const TailRecords& records, std::uint64_t& rays) const;
   /// Adds what the record says; returns its luminous lux at the levels.
   double add_record(const Vec3& per_lux_rgb, std::span<const float> values, const PathSums& sums) const;
   /// Luminous lux of sums at the levels.

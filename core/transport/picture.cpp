@@ -196,7 +196,7 @@ class Renderer {
                  Scratch& scratch) const {
     std::fill(scratch.sums.begin(), scratch.sums.end(), 0.0);
     TailShare share;
-    if (tails_.records().size() > 0) share.records = &tails_.records();
+    if (tails_.records(0).size() > 0) share.records = &tails_.records(0);
     const double cut = kPictureCut * mean_reflected_lx_;
     draw_stretches(plan_, pool_, 1, key, scratch.stretches);
     sampler_.join_start(start, pool_, plan_, scratch.stretches, cut, mixed(key, pool_.groups()), {scratch.sums, 3});

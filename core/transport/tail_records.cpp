@@ -6,11 +6,10 @@
 
 namespace luxrig {
 
-void TailRecords::append(std::span<const Place> places, std::size_t replicates, std::size_t columns) {
+void TailRecords::append(std::span<const Place> places, std::size_t columns) {
   places_.insert(places_.end(), places.begin(), places.end());
   columns_ = columns;
-  values_.resize(replicates);
-  for (auto& values : values_) values.resize(places_.size() * columns, 0.0f);
+  values_.resize(places_.size() * columns, 0.0f);
   if (!places_.empty()) build_grid();
 }
 

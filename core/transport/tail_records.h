@@ -2,10 +2,10 @@
 /// Reflected illuminance at places of the surfaces that receivers see: what points learn from each other.
 ///
 /// Paths from neighbouring places see the same rest of the room. A record holds the reflected illuminance of one place
-/// (a path's second vertex), estimated once by a few full paths for each replicate; a path that arrives nearby takes
-/// the record's value instead of going on. Records differ between replicates in noise, so that replicates still
-/// show it; what they all share is the bias of looking a little beside the place (irradiance as G. Ward et al. 1988
-/// cache it, with the first reflection from lamps left to the exact connections).
+/// (a path's second vertex), estimated once by a few paths; a path that arrives nearby takes
+/// the record's value instead of going on (irradiance as G. Ward et al. 1988 cache it, with the first reflection from
+/// lamps left to the exact connections). Each replicate has records of its own, at places of its own, so that the error
+/// of looking a little beside the place averages out over them, and shows, as their noise does.
 
 #include <array>
 #include <cstdint>
@@ -26,8 +26,8 @@ class TailRecords {
   };
 
   /// Adds records of value 0; what is there keeps its index and value.
-  /// columns: emitters × channels, the same each time; so with replicates
-  void append(std::span<const Place> places, std::size_t replicates, std::size_t columns);
+  /// columns: emitters × channels, the same each time
+  void append(std::span<const Place> places, std::size_t columns);
 
   struct Found {
     std::uint32_t record;
@@ -42,11 +42,9 @@ class TailRecords {
   void set_clear_m(std::size_t record, double clear_m) { places_[record].clear_m = clear_m; }
 
   /// Reflected lux at level 1, channels × emitters: all emitters of a channel together.
-  [[nodiscard]] std::span<float> values(std::size_t replicate, std::size_t record) {
-    return {values_[replicate].data() + record * columns_, columns_};
-  }
-  [[nodiscard]] std::span<const float> values(std::size_t replicate, std::size_t record) const {
-    return {values_[replicate].data() + record * columns_, columns_};
+  [[nodiscard]] std::span<float> values(std::size_t record) { return {values_.data() + record * columns_, columns_}; }
+  [[nodiscard]] std::span<const float> values(std::size_t record) const {
+    return {values_.data() + record * columns_, columns_};
   }
 
  private:
@@ -57,7 +55,7 @@ class TailRecords {
 
   std::vector<Place> places_;
   std::size_t columns_ = 0;
-  std::vector<std::vector<float>> values_;  ///< by replicate
+  std::vector<float> values_;
   Vec3 origin_world_m_ = Vec3::Zero();
   float cell_m_ = 1;
   /// What a search looks at, packed by bucket of a hashed grid.

@@ -39,7 +39,7 @@ Point measured_at(const TransportCase& one, const Method& method, const Referenc
   for (int i = 0; i < repeats; ++i) {
     Point point;
     EvaluateOptions evaluate;
-    evaluate.wanted_relative_error = wanted;
+    evaluate.wanted_rms_error = wanted;
     evaluate.seed = static_cast<std::uint64_t>(i + 1);
     evaluate.threads = options.threads;
     if (options.quick) evaluate.max_rays = 8'000'000;
@@ -90,8 +90,8 @@ void add_curves(const TransportCase& one, const BenchOptions& options, std::vect
     return;
   }
   const std::vector<double> settings = options.quick
-                                           ? std::vector<double>{0.3, 0.1, 0.05, 0.03, 0.015}
-                                           : std::vector<double>{0.3, 0.1, 0.05, 0.03, 0.025, 0.02, 0.01, 0.006, 0.003};
+                                           ? std::vector<double>{0.1, 0.04, 0.02, 0.012, 0.006}
+                                           : std::vector<double>{0.1, 0.04, 0.02, 0.012, 0.009, 0.008, 0.004, 0.0028};
   for (const Method& method : methods()) {
     if (!method.reflects) continue;
     std::vector<Point> points;

@@ -75,6 +75,35 @@ TEST(GatherEvaluator, NumberOfThreadsChangesNoBit) {
   }
 }
 
+TEST(GatherEvaluator, AnRmsErrorIsReachedAndTakesFewerRaysThanTheSameErrorOfEachReceiver) {
+  const LitRoom flat = make_eight_room_flat();
+  const RayScene rays(flat.scene);
+  // Sampling stops where 2.5 standard errors are within the wanted error of each receiver.
+  const auto of_each = evaluated(make_gather_evaluator(rays), flat.receivers, flat.emitters, within(0.03));
+  EvaluateOptions options = within(0.03, 2);
+  options.wanted_rms_error = 0.03 / 2.5;
+  const auto by_rms = evaluated(make_gather_evaluator(rays), flat.receivers, flat.emitters, options);
+  EXPECT_LT(by_rms.rays, of_each.rays);
+  const Eigen::VectorXd levels = Eigen::VectorXd::Ones(by_rms.emitters());
+  const Eigen::ArrayXd stated = by_rms.standard_error_lux(levels).array() / by_rms.lux(levels).array();
+  EXPECT_LT(std::sqrt(stated.square().mean()), 1.15 * options.wanted_rms_error) << "and what records are off by";
+  EXPECT_LT(apart(by_rms.lux(levels), of_each.lux(levels)), 1.5 * std::hypot(0.012, 0.012));
+}
+
+TEST(PathEvaluator, AnRmsErrorIsReachedAndMustNotBeNegative) {
+  const LitRoom room = make_box_room();
+  const RayScene rays(room.scene);
+  EvaluateOptions options = within(1);
+  options.wanted_rms_error = 0.01;
+  const auto path = evaluated(make_path_evaluator(rays), room.receivers, room.emitters, options);
+  const Eigen::VectorXd levels = Eigen::VectorXd::Ones(path.emitters());
+  const Eigen::ArrayXd stated = path.standard_error_lux(levels).array() / path.lux(levels).array();
+  EXPECT_LE(std::sqrt(stated.square().mean()), 0.0101);
+  EXPECT_GT(stated.maxCoeff(), 0.01) << "some keep larger ones";
+  options.wanted_rms_error = -0.01;
+  EXPECT_FALSE(make_path_evaluator(rays)->evaluate(room.receivers, room.emitters, options).has_value());
+}
+
 /// Integrating sphere with walls that reflect each primary differently: each follows its own ρ/(1-ρ).
 TEST(PathEvaluator, EachPrimaryFollowsItsOwnReflectance) {
   Scene sphere = make_icosphere(2, 4, 0.5);
