@@ -8,7 +8,8 @@
 namespace luxrig {
 namespace {
 
-constexpr double kGatherError = 0.015;
+/// Root mean square over the points, as the error of a goal is.
+constexpr double kGatherError = 0.01;
 constexpr int kGatherRounds = 3;
 constexpr std::size_t kSearchColumns = 150'000;
 /// With reflected light, which a model corrects later anyway.
@@ -35,7 +36,7 @@ Result<Eigen::VectorXd> gathered_lux(const ReadyCase& ready, std::span<const Lig
       lamps.push_back({make_isotropic(lumens), {Mat3::Identity(), poses[i].position_world_m}});
   if (lamps.empty()) return Eigen::VectorXd::Zero(ready.goal().lux.size());
   EvaluateOptions options;
-  options.wanted_relative_error = kGatherError;
+  options.wanted_rms_error = kGatherError;
   options.threads = threads;
   const auto matrix = make_gather_evaluator(ready.rays())->evaluate(ready.of().receivers, lamps, options);
   if (!matrix) return tl::unexpected(matrix.error());
