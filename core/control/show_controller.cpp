@@ -1,7 +1,6 @@
 #include "core/control/show_controller.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "core/check.h"
@@ -13,17 +12,6 @@ namespace {
 
 // A device that comes and goes is not back; the driver's own reports come several times in this while.
 constexpr Duration kHealthyFor = std::chrono::milliseconds(500);
-// While the light stands still, the meters are looked at once a second (they are slow, and so is a lamp's ageing).
-constexpr Duration kSampleEvery = std::chrono::seconds(1);
-// A drift must be seen in three samples, so that somebody walking past a meter moves no light; and lamps drift over
-// hours, so more than one correction in ten seconds would only follow noise.
-constexpr int kDriftSamples = 3;
-constexpr Duration kDriftCorrectionEvery = std::chrono::seconds(10);
-/// most_lux_at_point holds 1 % for a meter's noise on top of its tolerance, and corrections aim at the limit itself:
-/// half of that may be used up before a reading counts, or noise alone would start one correction after another.
-constexpr double kBreachSlack = 0.005;
-// Level changes smaller than half a step of a 12-bit dimmer are not worth a fade.
-constexpr double kSmallestChange = 1e-4;
 
 }  // namespace
 
@@ -242,97 +230,6 @@ void ShowController::State::fade_to_safe(Time now) {
   converged = false;
   breaches.clear();
   enter(Phase::safe_fading, now);
-}
-
-/// When every living meter has its sample: learn from it. Lost ones take part as soon as they have one, since a
-/// believable sample is how a meter that was not believed comes back.
-void ShowController::State::take_sample(Time now) {
-  if (program.blackout || shared || !program.done(now) || health.light_lost() || dimmed_for_a_zone(now))
-    return;  // not the light that was asked for
-  if (phase != Phase::measuring && now - sampled_at < kSampleEvery) return;
-  std::vector<LuxReading> readings;
-  for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
-    if (samples.ready(now, i)) {
-      readings.push_back(*samples.sample(i));
-    } else if (!health.meter_lost(i)) {
-      return;
-    }
-  }
-  if (readings.empty()) return;
-  for (const LuxReading& reading : readings) {
-    sample_changed[reading.luxmeter] = sampled_lx[reading.luxmeter] != reading.lux;
-    sampled_lx[reading.luxmeter] = reading.lux;
-  }
-  for (const Judgement& judgement : estimator.update(now, readings, program.to_level)) {
-    health.judged(judgement.luxmeter, now, judgement.why);
-    if (!judgement.believed) {
-      measured[judgement.luxmeter].reset();  // what it taught before stays: the limits rest on it
-      continue;
-    }
-    measured[judgement.luxmeter] = *samples.sample(judgement.luxmeter);
-  }
-  samples.next();
-  sampled_at = now;
-  bool all_believed = true;
-  for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) all_believed = all_believed && measured[i].has_value();
-  afresh = afresh && !all_believed;
-
-  std::vector<LimitBreach> present;
-  for (std::size_t p = 0; p < rig.points.size(); ++p) {
-    if (!rig.points[p].max_lx || !estimator.confirmed(p)) continue;
-    const double most_lx = estimator.most_lux_at_point(p, program.to_level, now);
-    if (most_lx <= *rig.points[p].max_lx * (1 + kBreachSlack)) continue;
-    const auto known =
-        std::find_if(breaches.begin(), breaches.end(), [&](const LimitBreach& breach) { return breach.point == p; });
-    present.push_back({p, most_lx, known == breaches.end() ? now : known->since});
-  }
-  breaches = std::move(present);
-}
-
-/// After a sample: another round when it would bring a metered goal nearer, or when a limit is in question.
-void ShowController::State::correct_or_hold(Time now) {
-  const bool may_correct = !health.any_meter_lost();
-  Correction correction = estimator.correct(program.to_level, now);
-  if (!may_correct) correction.level = estimator.within_limits(program.to_level, now);
-  double change = 0;
-  for (std::size_t i = 0; i < correction.level.size(); ++i) {
-    change = std::max(change, std::abs(correction.level[i] - program.to_level[i]));
-  }
-  const bool wanted = may_correct && possible_gain(correction) > rig.control.tolerance;
-  const bool worth_it = change > kSmallestChange && (wanted || !breaches.empty());
-  const bool in_rounds = phase == Phase::measuring ? round < rig.control.rounds : true;
-  aimed_lx = std::move(correction.aimed_lx);
-  why = std::move(correction.why);
-  converged = all_metered_goals_met();
-  if (!worth_it || (!in_rounds && breaches.empty())) {
-    enter(Phase::holding, now);
-    return;
-  }
-  cue = correction.level;
-  ++round;
-  corrected_at = now;
-  fade(now, present_levels(now), std::move(correction.level), rig.control.correction_fade_s, rig.control.fade_curve);
-  enter(Phase::correcting, now);
-}
-
-void ShowController::State::watch_drift(Time now) {
-  if (sampled_at != now) return;
-  converged = all_metered_goals_met();
-  if (!breaches.empty()) return correct_or_hold(now);
-  if (health.any_meter_lost()) return;
-  const Correction correction = estimator.correct(program.to_level, now);
-  drifted = possible_gain(correction) > rig.control.tolerance ? drifted + 1 : 0;
-  if (drifted >= kDriftSamples && now - corrected_at >= kDriftCorrectionEvery) correct_or_hold(now);
-}
-
-/// A meter that contradicts only what it said before may have been right before or now; taking its word now could drive
-/// the light up (somebody's coat over it), so a person must ask for that by applying the plan again. Only in the safe
-/// look, where no limit rests on what it taught; and never one whose value stood still while the light changed.
-void ShowController::State::doubt_the_past(Time now) {
-  if (!afresh || sampled_at != now) return;
-  for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
-    if (health.meter_implausible(i) && sample_changed[i]) estimator.forget(i);
-  }
 }
 
 void ShowController::State::look_at_failures(Time now) {
