@@ -40,8 +40,8 @@ struct EvaluateOptions {
   /// Wanted standard error of each receiver's illuminance, relative to
   /// max(its illuminance, 0.001 of the brightest receiver's). Exact evaluators ignore it.
   double wanted_relative_error = 0.01;
-  /// Above 0: wanted root mean square over the receivers of these errors, in place of the wanted error of each. Samples
-  /// then go where they lower it most, so that receivers that are hard to tell keep larger errors.
+  /// Above 0, for path and gather: wanted root mean square of these errors in place of the error of each. Samples then
+  /// go where they lower it most; receivers that are hard to tell keep larger errors. Other evaluators ignore it.
   double wanted_rms_error = 0;
   std::uint64_t seed = 1;
   int threads = 0;                         ///< 0 = one per core; the result does not depend on it

@@ -28,6 +28,7 @@ constexpr double kSharingError = 0.004;
 Result<double> reflected_share(const RayScene& scene, std::span<const Receiver> receivers,
                                std::span<const Emitter> emitters, EvaluateOptions options) {
   options.wanted_relative_error = 100;  // the first round is enough
+  options.wanted_rms_error = 0;
   options.colour = false;
   options.watch.progress = nullptr;
   auto trial = make_path_evaluator(scene)->evaluate(receivers, emitters, options);

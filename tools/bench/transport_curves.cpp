@@ -39,7 +39,7 @@ Point measured_at(const TransportCase& one, const Method& method, const Referenc
   for (int i = 0; i < repeats; ++i) {
     Point point;
     EvaluateOptions evaluate;
-    evaluate.wanted_rms_error = wanted;
+    evaluate.wanted_relative_error = evaluate.wanted_rms_error = wanted;
     evaluate.seed = static_cast<std::uint64_t>(i + 1);
     evaluate.threads = options.threads;
     if (options.quick) evaluate.max_rays = 8'000'000;

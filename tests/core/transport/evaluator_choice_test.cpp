@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <thread>
+
 #include "core/transport/enclosures.h"
 
 namespace luxrig {
@@ -62,6 +65,20 @@ TEST(EvaluatorChoice, WhatIsChosenKeepsTheWantedError) {
     for (Eigen::Index r = 0; r < matrix->receivers(); ++r)
       EXPECT_NEAR(matrix->lux_per_level(r, 0), truth->lux_per_level(r, 0), wanted * truth->lux_per_level(r, 0));
   }
+}
+
+// Whether reflected light matters is told by few rays, however small the error over all receivers shall be at last.
+TEST(EvaluatorChoice, IsMadeByAFewRaysUnderAWantedRmsErrorToo) {
+  const RayScene scene(make_cube(2, 0.05));
+  EvaluateOptions options;
+  options.wanted_rms_error = 1e-7;
+  std::stop_source soon;
+  options.watch.stop = soon.get_token();
+  std::jthread impatient([&](const std::stop_token& done) {
+    for (int i = 0; i < 200 && !done.stop_requested(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    if (!done.stop_requested()) soon.request_stop();
+  });
+  EXPECT_TRUE(choose_evaluator(scene, receivers_in_cube(40), kBulb, options).has_value()) << "still at it after 10 s";
 }
 
 TEST(EvaluatorChoice, PassesFaultsOn) {
