@@ -11,9 +11,9 @@
 #include <random>
 #include <thread>
 
-#include "core/control/head_move.h"
 #include "drivers/registry.h"
 #include "sim/wire/bus_endpoint.h"
+#include "tools/bench/axes_load.h"
 #include "tools/bench/bus_load.h"
 #include "tools/bench/suites.h"
 #include "tools/luxrigd/bus_thread.h"
@@ -23,47 +23,9 @@
 namespace luxrig {
 namespace {
 
-constexpr int kCanBuses = 4, kHeadsOfBus = 8;
 constexpr double kCycleJitter_s = 0.002;
-constexpr double kLatestArrival_s =
-    0.15;  // behind the closed form: the handshake of a new aim, and the drives' rounding
-constexpr double kThere_deg = 0.05;
-constexpr double kFrame_s = 135e-6;                              // of eight bytes with stuffing, at 1 Mbit/s
-constexpr AxisLimits kPanLimits{90, 180}, kTiltLimits{60, 120};  // [deg/s, deg/s^2]
+constexpr double kFrame_s = 135e-6;  // of eight bytes with stuffing, at 1 Mbit/s
 constexpr const char* kAxesCase = "axes-64";
-
-Rig rig_of_heads() {
-  Rig rig;
-  rig.file = rig.name = "bench";
-  for (int b = 0; b < kCanBuses; ++b) {
-    Bus bus;
-    bus.name = fmt::format("axes-{}", b + 1);
-    bus.driver = "canopen";
-    bus.options["interface"] = {fmt::format("can{}", b), {}};
-    bus.options["homing_method"] = {std::int64_t{35}, {}};
-    rig.buses.push_back(bus);
-  }
-  Bus lamps;
-  lamps.name = "lamps";
-  lamps.driver = "sacn";
-  rig.buses.push_back(lamps);
-  for (int i = 0; i < kCanBuses * kHeadsOfBus; ++i) {
-    Fixture head;
-    head.name = fmt::format("head-{}", i + 1);
-    head.bus = kCanBuses;
-    head.patch = DmxPatch{1, 1 + i, {DmxSlot{}}};
-    head.moves = true;
-    head.range = {rad_from_deg(-170), rad_from_deg(170), rad_from_deg(-120), rad_from_deg(120)};
-    head.pan_speed_rad_s = rad_from_deg(kPanLimits.speed);
-    head.tilt_speed_rad_s = rad_from_deg(kTiltLimits.speed);
-    const int node = 1 + 2 * (i % kHeadsOfBus);
-    head.axes = AxesPatch{static_cast<std::size_t>(i / kHeadsOfBus),
-                          {node, 500, 0, rad_from_deg(kPanLimits.acceleration)},
-                          {node + 1, -400, 0, rad_from_deg(kTiltLimits.acceleration)}};
-    rig.fixtures.push_back(head);
-  }
-  return rig;
-}
 
 /// All buses' far ends, in a thread of their own.
 class Heads {
@@ -199,7 +161,42 @@ void turn_heads(const Rig& rig, const Heads& heads, HeadBuses& buses, double sec
 
 }  // namespace
 
+Rig rig_of_heads() {
+  Rig rig;
+  rig.file = rig.name = "bench";
+  for (int b = 0; b < kCanBuses; ++b) {
+    Bus bus;
+    bus.name = fmt::format("axes-{}", b + 1);
+    bus.driver = "canopen";
+    bus.options["interface"] = {fmt::format("can{}", b), {}};
+    bus.options["homing_method"] = {std::int64_t{35}, {}};
+    rig.buses.push_back(bus);
+  }
+  Bus lamps;
+  lamps.name = "lamps";
+  lamps.driver = "sacn";
+  rig.buses.push_back(lamps);
+  for (int i = 0; i < kCanBuses * kHeadsOfBus; ++i) {
+    Fixture head;
+    head.name = fmt::format("head-{}", i + 1);
+    head.bus = kCanBuses;
+    head.patch = DmxPatch{1, 1 + i, {DmxSlot{}}};
+    head.moves = true;
+    head.range = {rad_from_deg(-170), rad_from_deg(170), rad_from_deg(-120), rad_from_deg(120)};
+    head.pan_speed_rad_s = rad_from_deg(kPanLimits.speed);
+    head.tilt_speed_rad_s = rad_from_deg(kTiltLimits.speed);
+    const int node = 1 + 2 * (i % kHeadsOfBus);
+    head.axes = AxesPatch{static_cast<std::size_t>(i / kHeadsOfBus),
+                          {node, 500, 0, rad_from_deg(kPanLimits.acceleration)},
+                          {node + 1, -400, 0, rad_from_deg(kTiltLimits.acceleration)}};
+    rig.fixtures.push_back(head);
+  }
+  return rig;
+}
+
 std::vector<BenchRow> bench_axes_load(const BenchOptions& options) {
+  // By its full name only: many minutes.
+  if (options.only == kAxesDay) return {measure_axes_day(options.seconds.value_or(options.quick ? 600 : 86400))};
   if (!std::string_view(kAxesCase).starts_with(options.only)) return {};
   const double seconds = options.seconds.value_or(options.quick ? 6 : 10);
   BenchRow cycle, arrival;

@@ -10,6 +10,7 @@
 #include "drivers/registry.h"
 #include "sim/wire/bus_endpoint.h"
 #include "tools/bench/bus_load.h"
+#include "tools/bench/modbus_load.h"
 #include "tools/bench/suites.h"
 
 namespace luxrig {
@@ -19,35 +20,6 @@ using std::chrono::milliseconds;
 using BenchClock = std::chrono::steady_clock;
 
 constexpr double kWantedRound_s = 0.2;  // a luxmeter is read this often
-
-struct ModbusLoad {
-  const char* driver;
-  int units, dead;
-};
-
-Rig unit_rig(const ModbusLoad& load) {
-  Rig rig;
-  rig.file = "bench";
-  rig.name = "bench";
-  Bus bus;
-  bus.name = "field";
-  bus.driver = load.driver;
-  bus.options[bus.driver == "modbus_rtu" ? "device" : "host"] = {
-      std::string(bus.driver == "modbus_rtu" ? "/dev/luxrig-bench" : "127.0.0.1"), {}};
-  rig.buses.push_back(bus);
-  for (int unit = 1; unit <= load.units; ++unit) {
-    Fixture fixture;
-    fixture.name = fmt::format("dimmer-{}", unit);
-    fixture.patch = ModbusPatch{unit, 0, 1000, 0, {}, nullptr};
-    rig.fixtures.push_back(fixture);
-    Luxmeter meter;
-    meter.name = fmt::format("meter-{}", unit);
-    meter.patch.unit = unit;
-    meter.patch.first_register = 2;
-    rig.luxmeters.push_back(meter);
-  }
-  return rig;
-}
 
 Time bench_now() { return Time{} + std::chrono::duration_cast<Duration>(BenchClock::now().time_since_epoch()); }
 
@@ -140,7 +112,33 @@ BenchRow measure(const ModbusLoad& load, double seconds) {
 
 }  // namespace
 
+Rig unit_rig(const ModbusLoad& load) {
+  Rig rig;
+  rig.file = "bench";
+  rig.name = "bench";
+  Bus bus;
+  bus.name = "field";
+  bus.driver = load.driver;
+  bus.options[bus.driver == "modbus_rtu" ? "device" : "host"] = {
+      std::string(bus.driver == "modbus_rtu" ? "/dev/luxrig-bench" : "127.0.0.1"), {}};
+  rig.buses.push_back(bus);
+  for (int unit = 1; unit <= load.units; ++unit) {
+    Fixture fixture;
+    fixture.name = fmt::format("dimmer-{}", unit);
+    fixture.patch = ModbusPatch{unit, 0, 1000, 0, {}, nullptr};
+    rig.fixtures.push_back(fixture);
+    Luxmeter meter;
+    meter.name = fmt::format("meter-{}", unit);
+    meter.patch.unit = unit;
+    meter.patch.first_register = 2;
+    rig.luxmeters.push_back(meter);
+  }
+  return rig;
+}
+
 std::vector<BenchRow> bench_modbus_load(const BenchOptions& options) {
+  // By its full name only: many minutes.
+  if (options.only == kModbusDay) return {measure_modbus_day(options.seconds.value_or(options.quick ? 600 : 86400))};
   std::vector<BenchRow> rows;
   for (const ModbusLoad& load :
        {ModbusLoad{"modbus_tcp", 247, 0}, ModbusLoad{"modbus_tcp", 247, 10}, ModbusLoad{"modbus_rtu", 8, 0},

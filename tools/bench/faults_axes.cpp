@@ -4,12 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <random>
 
-#include "drivers/can/can_datagrams.h"
 #include "drivers/can/canopen_driver.h"
-#include "sim/wire/can/axis_bus.h"
+#include "tools/bench/axes_wire.h"
 #include "tools/bench/fault_cases.h"
 #include "tools/bench/row_progress.h"
 
@@ -49,44 +47,6 @@ Rig head_on_axes() {
   rig.fixtures.push_back(head);
   return rig;
 }
-
-/// The bus as the driver sees it: frames straight into the simulated axes.
-class AxesWire final : public can::CanChannel {
- public:
-  AxesWire(sim::AxisBus& axes, const Time& now, const bool& down) : axes_(axes), now_(now), down_(down) {}
-  Result<void> open() override {
-    if (down_) return tl::unexpected(gone());
-    open_ = true;
-    return {};
-  }
-  void close() override { open_ = false; }
-  [[nodiscard]] bool is_open() const override { return open_; }
-  Result<can::Sent> send(const can::CanFrame& frame) override {
-    if (down_) {
-      open_ = false;
-      return tl::unexpected(gone());
-    }
-    axes_.receive(now_, sim::bus_frame(frame.id, frame.payload()));
-    return can::Sent::yes;
-  }
-  std::optional<can::CanFrame> receive() override {
-    for (const sim::BusFrame& frame : axes_.take_sent()) arrived_.push_back(frame);
-    if (!open_ || down_) arrived_.clear();
-    if (arrived_.empty()) return std::nullopt;
-    const auto frame = can::from_bytes(sim::packed(arrived_.front()));
-    arrived_.pop_front();
-    return frame;
-  }
-  std::optional<Fault> take_error() override { return std::nullopt; }
-
- private:
-  static Fault gone() { return {Cause::network, {}, "no such interface", {}}; }
-  sim::AxisBus& axes_;
-  const Time& now_;
-  const bool& down_;
-  bool open_ = false;
-  std::deque<sim::BusFrame> arrived_;
-};
 
 class AxisCases {
  public:
