@@ -154,8 +154,9 @@ class PathEvaluation {
     const bool keeps_ends = shares_now && ends_->have_room(paths);
     const std::uint32_t checked = bias_is_known() ? kSeldomCheckedPaths : kCheckedPaths;
     parallel_for(rays.size(), options_.threads, [&](std::size_t task) {
-      const auto& [r, begin, end] = chunk[task / kPathReplicates];
-      const std::size_t k = task % kPathReplicates;
+      // A replicate's records and hits stay near while all receivers use them.
+      const std::size_t k = task / chunk.size(), i_chunk = task % chunk.size();
+      const auto& [r, begin, end] = chunk[i_chunk];
       const SobolSequence samples(mixed(mixed(options_.seed, r), k));
       PathScratch scratch;
       std::vector<double> values(columns_, 0.0);
@@ -166,15 +167,15 @@ class PathEvaluation {
       for (std::uint32_t i = begin; i < end; ++i) {
         if (options_.watch.stop.stop_requested()) return;
         tails.check = i % checked == r % checked;
-        rays[task] += sampler_.add_path(start, samples, i, pools_[k], plans_[task / kPathReplicates], cut_lx(r),
-                                        scratch, {values, channels_}, &tails);
+        rays[task] += sampler_.add_path(start, samples, i, pools_[k], plans_[i_chunk], cut_lx(r), scratch,
+                                        {values, channels_}, &tails);
       }
       told[task] = tails;
       sums_.add(k, r, values);
       progress.one_done();
     });
     for (std::size_t task = 0; task < rays.size(); ++task) {
-      ReceiverProgress& spent = spent_[chunk[task / kPathReplicates].receiver];
+      ReceiverProgress& spent = spent_[chunk[task % chunk.size()].receiver];
       spent.rays += rays[task];
       spent.taken_lx += told[task].taken_lx;
       matrix_.rays += rays[task];

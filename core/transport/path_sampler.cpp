@@ -269,8 +269,9 @@ std::uint64_t PathSampler::add_path(const Vertex& start, const SobolSequence& sa
           tails->taken_lx += add_record(per_lux_rgb, tails->records->values(*record), sums);
           break;
         }
-        tails->ends->ends.push_back(
-            {reached.position_world_m, reached.normal_world.cast<float>(), per_lux_rgb.cast<float>(), *record});
+        tails->ends->ends.push_back({reached.position_world_m, reached.normal_world.cast<float>(),
+                                     per_lux_rgb.cast<float>(), *record,
+                                     static_cast<std::uint32_t>(tails->records->size())});
         if (!tails->check) break;
         scratch.beside.assign(sums.values.size(), 0.0);
         beside = {scratch.beside, sums.channels};
@@ -303,9 +304,11 @@ double PathSampler::worth_of(const PathSums& sums) const {
 }
 
 std::optional<std::uint32_t> PathSampler::record_for(const Vec3& position_world_m, const Vec3& normal_world,
-                                                     const TailRecords& records, std::uint64_t& rays) const {
+                                                     const TailRecords& records, std::uint64_t& rays,
+                                                     std::optional<std::uint32_t> so_far) const {
   const auto found = records.nearest(position_world_m, normal_world);
   if (!found) return std::nullopt;
+  if (found->record == so_far) return so_far;  // the way to it was clear
   const TailRecords::Place& place = records.place(found->record);
   if (found->distance_m <= place.clear_m) return found->record;
   // Above both surfaces by a part of their distance, so that what is nearly plane does not stand in its own way.
@@ -322,9 +325,13 @@ PathSampler::EndsSum PathSampler::add_ends(TailEnds& ends, const TailRecords& re
   std::size_t check = 0;
   for (std::size_t i = 0; i < ends.ends.size(); ++i) {
     TailEnd& end = ends.ends[i];
-    // A nearer one behind an edge does not speak for it; then the one so far still does.
-    if (const auto record = record_for(end.position_world_m, end.normal_world.cast<double>(), records, sum.rays))
-      end.record = *record;
+    if (end.looked_at < records.size()) {
+      // A nearer one behind an edge does not speak for it; then the one so far still does.
+      if (const auto record =
+              record_for(end.position_world_m, end.normal_world.cast<double>(), records, sum.rays, end.record))
+        end.record = *record;
+      end.looked_at = static_cast<std::uint32_t>(records.size());
+    }
     const double taken_lx = add_record(end.per_lux_rgb.cast<double>(), records.values(end.record), sums);
     sum.taken_lx += taken_lx;
     for (; check < ends.checks.size() && ends.checks[check].end == i; ++check) {

@@ -116,7 +116,7 @@ class PathSampler {
     double by_path_lx = 0;  ///< and by the path itself
     std::uint64_t rays = 0;
   };
-  /// Looks up ends anew, then adds what their records say.
+  /// Looks up anew the ends for which there are more records by now, then adds what their records say.
   EndsSum add_ends(TailEnds& ends, const TailRecords& records, const PathSums& sums) const;
 
  private:
@@ -139,9 +139,11 @@ class PathSampler {
   [[nodiscard]] double next_density_per_sr(const Vertex& vertex, const Vec3& direction, double of_surface) const;
   /// Looks outside from a vertex, if there are openings.
   void look_outside(Vertex& vertex, SkyOpenings::Outside& outside) const;
-  /// The record that speaks for a vertex, if one is near and nothing stands in between.
+  /// The record that speaks for a vertex, if one is near and nothing stands in between. `so_far`: did so when there
+  /// were fewer.
   [[nodiscard]] std::optional<std::uint32_t> record_for(const Vec3& position_world_m, const Vec3& normal_world,
-                                                        const TailRecords& records, std::uint64_t& rays) const;
+                                                        const TailRecords& records, std::uint64_t& rays,
+                                                        std::optional<std::uint32_t> so_far = {}) const;
   /// Adds what the record says; returns its luminous lux at the levels.
   double add_record(const Vec3& per_lux_rgb, std::span<const float> values, const PathSums& sums) const;
   /// Luminous lux of sums at the levels.

@@ -17,7 +17,8 @@ bool ReceiverEnds::have_room(std::size_t paths) const {
 
 std::vector<std::uint64_t> ReceiverEnds::look_up(std::span<const std::size_t> receivers, int threads) {
   parallel_for(receivers.size() * kReplicates, threads, [&](std::size_t task) {
-    const std::size_t k = task % kReplicates, at = receivers[task / kReplicates] * kReplicates + k;
+    // A replicate's records stay near while all receivers look into them.
+    const std::size_t k = task / receivers.size(), at = receivers[task % receivers.size()] * kReplicates + k;
     Eigen::VectorXd lux = Eigen::VectorXd::Zero(levels_.size());
     sums_[at] =
         sampler_.add_ends(ends_[at], tails_.records(k), {{lux.data(), static_cast<std::size_t>(lux.size())}, 1});

@@ -14,8 +14,9 @@ namespace luxrig {
 struct TailEnd {
   Vec3 position_world_m;
   Vec3f normal_world;
-  Vec3f per_lux_rgb;     ///< what reflected lux there counts at the path's start
-  std::uint32_t record;  ///< that speaks for it so far
+  Vec3f per_lux_rgb;        ///< what reflected lux there counts at the path's start
+  std::uint32_t record;     ///< that speaks for it so far
+  std::uint32_t looked_at;  ///< so many records there were when it was looked up last
 };
 
 /// The ends of one receiver's paths in one replicate.

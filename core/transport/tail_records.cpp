@@ -22,6 +22,8 @@ void TailRecords::build_grid() {
   const double area_m2 = 2 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
   cell_m_ = static_cast<float>(
       std::max(1.5 * std::sqrt(area_m2 / static_cast<double>(places_.size())), 1e-6 * size.norm() + 1e-30));
+  row_cells_ = static_cast<std::uint32_t>(cell_of(size.cast<float>())[0]) + 1;
+  layer_cells_ = row_cells_ * (static_cast<std::uint32_t>(cell_of(size.cast<float>())[1]) + 1);
   std::size_t buckets = 16;
   while (buckets < 2 * places_.size()) buckets *= 2;
   bucket_begin_.assign(buckets + 1, 0);
@@ -50,11 +52,10 @@ TailRecords::Cell TailRecords::cell_of(const Vec3f& position_m) const {
 }
 
 std::size_t TailRecords::bucket_of(const Cell& cell) const {
-  const auto x = static_cast<std::uint32_t>(cell[0]), y = static_cast<std::uint32_t>(cell[1]),
-             z = static_cast<std::uint32_t>(cell[2]);
-  std::uint32_t h = x * 73856093u ^ y * 19349663u ^ z * 83492791u;
-  h ^= h >> 15;
-  return h & (static_cast<std::uint32_t>(bucket_begin_.size()) - 2);
+  // Row by row, so that neighbours lie together; what is beyond the table shares its buckets.
+  const std::uint32_t at = static_cast<std::uint32_t>(cell[0]) + static_cast<std::uint32_t>(cell[1]) * row_cells_ +
+                           static_cast<std::uint32_t>(cell[2]) * layer_cells_;
+  return at & (static_cast<std::uint32_t>(bucket_begin_.size()) - 2);
 }
 
 std::optional<TailRecords::Found> TailRecords::nearest(const Vec3& position_world_m, const Vec3& normal_world) const {

@@ -58,7 +58,8 @@ class TailRecords {
   std::vector<float> values_;
   Vec3 origin_world_m_ = Vec3::Zero();
   float cell_m_ = 1;
-  /// What a search looks at, packed by bucket of a hashed grid.
+  std::uint32_t row_cells_ = 1, layer_cells_ = 1;
+  /// What a search looks at, packed by bucket of a grid.
   struct Packed {
     Vec3f position_m;  ///< from the grid's origin
     Vec3f normal;

@@ -18,7 +18,7 @@ struct BenchOptions {
                                               ///< measuring; nnls: writes its problems here for scipy;
                                               ///< highlight: its made-up objects as OBJ
   std::vector<std::filesystem::path> rigs;    ///< transport: rig files whose scenes are measured too
-  std::string method;                         ///< placement scenes: only this one
+  std::string method;                         ///< placement scenes and transport curves: only this one
   std::optional<int> seeds;                   ///< placement: rooms of each scene, instead of 100 (curves: 20); faults:
                                               ///< cases of each kind, instead of 100
   int first_seed = 1;                         ///< placement: of them, so that a long run can be split

@@ -93,7 +93,7 @@ void add_curves(const TransportCase& one, const BenchOptions& options, std::vect
                                            ? std::vector<double>{0.1, 0.04, 0.02, 0.012, 0.006}
                                            : std::vector<double>{0.1, 0.04, 0.02, 0.012, 0.009, 0.008, 0.004, 0.0028};
   for (const Method& method : methods()) {
-    if (!method.reflects) continue;
+    if (!method.reflects || (!options.method.empty() && options.method != method.name)) continue;
     std::vector<Point> points;
     for (const double wanted : settings) {
       points.push_back(measured_at(one, method, reference, wanted, options.quick ? 1 : 3, options));

@@ -246,7 +246,7 @@ int main(int argc, char** argv) {
                       "transport: write the rooms here for Radiance, measure nothing; nnls: the problems; highlight: "
                       "its made-up objects");
   command->add_option("--rig", bench.rigs, "transport: measure this rig's scene too");
-  command->add_option("--method", bench.method, "placement: only this method on scenes");
+  command->add_option("--method", bench.method, "placement and transport: only this method on scenes");
   command
       ->add_option("--seeds", bench.seeds,
                    "placement: rooms of each scene (default 100; for curves 20); faults: cases of each kind")
