@@ -188,13 +188,15 @@ void ShowController::State::start_cue(Time now, std::vector<double> levels) {
   // Ceilings stay, and a fade that began below one would add to what it adds.
   std::vector<double> present = present_levels(now, false);
   if (awaited) {
+    const std::vector<double> lit_now = present_levels(now);
     std::vector<double> without = present;
     bool any = false, lit = false;
     for (std::size_t f = 0; f < without.size(); ++f) {
       const bool parks = !parking.empty() && parking[f] != 0;
       if (!turns(f) && !parks) continue;
       any = any || !parks;
-      lit = lit || without[f] > 0;
+      if (lit_now[f] <= 0) present[f] = 0;  // a ceiling that opens meanwhile must not let it through
+      lit = lit || present[f] > 0;
       without[f] = 0;
     }
     // What stays goes, too, to where limits are kept without what meters have taught, or it would jump there.
@@ -209,7 +211,7 @@ void ShowController::State::start_cue(Time now, std::vector<double> levels) {
     take_look(now);
   }
   cue = estimator.within_limits(*cue, now);
-  if (!start_lamps(now, *cue)) fade(now, std::move(present), *cue, rig.control.fade_s, rig.control.fade_curve);
+  if (!start_lamps(now, present, *cue)) fade(now, std::move(present), *cue, rig.control.fade_s, rig.control.fade_curve);
   enter(Phase::fading, now);
 }
 

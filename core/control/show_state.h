@@ -141,8 +141,8 @@ struct ShowController::State {
   void first_turn(Time now, std::span<const Joints> joints);
 
   // Power (show_startup.cpp).
-  /// Levels as they come on the first time, by stages; false when nothing is staged.
-  bool start_lamps(Time now, const std::vector<double>& levels);
+  /// Levels as they come on the first time, by stages, from what is lit already; false when nothing is staged.
+  bool start_lamps(Time now, const std::vector<double>& present, const std::vector<double>& levels);
   void watch_power(Time now);
 
   // What is known (show_status.cpp).

@@ -25,7 +25,6 @@ void ShowController::go_on_from(Time now, const LightInForce& light) {
     level[f] = safe[f] = 0;
   }
   state.turned = all_known;
-  state.power_came = true;  // the lamps are on: nothing is to come up by stages
   state.in_force = level;
   state.fade(now + from_seconds(light.hold_s), std::move(level), std::move(safe), light.fade_s,
              state.rig.control.fade_curve);
