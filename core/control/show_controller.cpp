@@ -184,7 +184,7 @@ void ShowController::State::start_cue(Time now, std::vector<double> levels) {
   breaches.clear();
   // Goes there when everything is back. Before the first step nothing is known to fail.
   const bool waits = phase == Phase::frozen || phase == Phase::safe_fading || phase == Phase::safe;
-  if (failing && waits) return;
+  if ((failing && waits) || waits_for_desks(now)) return;
   // Ceilings stay, and a fade that began below one would add to what it adds.
   std::vector<double> present = present_levels(now, false);
   if (awaited) {
@@ -250,7 +250,7 @@ void ShowController::State::advance(Time now) {
   const bool back = !failing && now - healthy_since >= kHealthyFor;
   switch (phase) {
     case Phase::idle:
-      return;
+      return begin_after_listening(now);
     case Phase::frozen:
       if (back && cue) return resume(now);
       if (now - phase_since >= from_seconds(rig.safe.hold_s)) fade_to_safe(now);

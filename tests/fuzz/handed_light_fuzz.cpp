@@ -21,6 +21,9 @@ void check_light(const luxrig::LightInForce& light, std::size_t fixtures) {
     for (const double angle_rad : {joints.pan_rad, joints.tilt_rad, joints.beam_rad})
       LUXRIG_CHECK(angle_rad >= -1e3 && angle_rad <= 1e3, "angle {}", angle_rad);
   }
+  LUXRIG_CHECK(light.silent.empty() || light.silent.size() == fixtures, "{} silent of {}", light.silent.size(),
+               fixtures);
+  for (const std::uint8_t silent : light.silent) LUXRIG_CHECK(silent <= 1, "silent {}", silent);
   // The daemon counts both in nanoseconds from now on.
   for (const double time_s : {light.hold_s, light.fade_s})
     LUXRIG_CHECK(time_s >= 0 && time_s <= 1e6, "a time of {} s", time_s);
