@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "core/control/devices.h"
 
@@ -13,7 +14,8 @@ class LifeRecord {
   explicit LifeRecord(std::string device) { health_.device = std::move(device); }
 
   void configured(Time now) { enter(Life::configured, now, {}); }
-  void active(Time now) { enter(Life::active, now, {}); }
+  /// remark: what a person may want to know although all is well; else empty.
+  void active(Time now, std::string remark = {}) { enter(Life::active, now, std::move(remark)); }
   /// `since` stays when it is faulted already; the text is the newest. Counts an error, unless it is an old one whose
   /// figures have grown.
   void faulted(Time now, const Fault& fault, bool is_new = true) {

@@ -54,6 +54,21 @@ void DeskFollower::begin(Time now, bool to_desk, Duration duration, const Presen
   blend_.silent = false;
 }
 
+void DeskFollower::begin_own(Time now, const PresentLight& present) {
+  const bool lit = std::any_of(settings_.fixtures.begin(), settings_.fixtures.end(),
+                               [&](std::size_t f) { return present.level[f] > 0; });
+  if (blend_.silent && lit) {
+    begin(now, false, settings_.fade, present);
+    std::fill(blend_.from_level.begin(), blend_.from_level.end(), 0.0);
+  }
+  have_light(now);
+}
+
+void DeskFollower::have_light(Time now) {
+  blend_.silent = false;
+  enter(now, DeskPhase::own);
+}
+
 bool DeskFollower::hear(Time now, const DeskFrame& frame, const PresentLight& present) {
   // Before the values: a way begins at what goes out now, not at what the desk has just asked for.
   presence_ = frame.presence;
@@ -73,8 +88,7 @@ bool DeskFollower::follow_presence(Time now, const PresentLight& present) {
         begin(now, true, Duration{}, present);
         enter(now, DeskPhase::following);
       } else {
-        blend_.silent = false;
-        enter(now, DeskPhase::own);
+        begin_own(now, present);
       }
       return true;
     case DeskPhase::own:

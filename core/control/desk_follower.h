@@ -2,7 +2,7 @@
 /// Who has the light of one part of the rig: a lighting desk, Luxrig, or both. Time is an argument.
 ///
 ///   listening ──desk heard──▶ following            takeover and standby begin silent: a desk may have the light
-///       └──nobody──▶ own
+///       └──nobody──▶ own                           from dark, by fade, where Luxrig's light has come on meanwhile
 ///   own ──desk heard──▶ following (at once or by fade), or waiting until somebody asks
 ///   following ──desk lost──▶ own: from its last values, by fade
 ///
@@ -43,6 +43,8 @@ class DeskFollower {
   /// Commands for fixtures of other parts are left out; a drive outside 0…1 or not a number counts as its nearest
   /// bound, or 0. True when the blend is another one than before.
   bool hear(Time now, const DeskFrame& frame, const PresentLight& present);
+  /// Light is sent already, by somebody whom Luxrig follows: nobody needs to be listened for in silence.
+  void have_light(Time now);
   /// Somebody asks that a desk that is back gets the light. Nothing happens unless one waits for it.
   bool hand_back(Time now, const PresentLight& present);
   /// Falls silent when the time has come; call often. True when the blend is another one than before.
@@ -57,6 +59,7 @@ class DeskFollower {
 
  private:
   void enter(Time now, DeskPhase phase);
+  void begin_own(Time now, const PresentLight& present);
   void begin(Time now, bool to_desk, Duration duration, const PresentLight& present);
   bool take_values(const DeskFrame& frame, const PresentLight& present);
   bool follow_presence(Time now, const PresentLight& present);

@@ -184,17 +184,19 @@ void ShowController::State::start_cue(Time now, std::vector<double> levels) {
   breaches.clear();
   // Goes there when everything is back. Before the first step nothing is known to fail.
   const bool waits = phase == Phase::frozen || phase == Phase::safe_fading || phase == Phase::safe;
-  if (failing && waits) return;
+  if ((failing && waits) || waits_for_desks(now)) return;
   // Ceilings stay, and a fade that began below one would add to what it adds.
   std::vector<double> present = present_levels(now, false);
   if (awaited) {
+    const std::vector<double> lit_now = present_levels(now);
     std::vector<double> without = present;
     bool any = false, lit = false;
     for (std::size_t f = 0; f < without.size(); ++f) {
       const bool parks = !parking.empty() && parking[f] != 0;
       if (!turns(f) && !parks) continue;
       any = any || !parks;
-      lit = lit || without[f] > 0;
+      if (lit_now[f] <= 0) present[f] = 0;  // a ceiling that opens meanwhile must not let it through
+      lit = lit || present[f] > 0;
       without[f] = 0;
     }
     // What stays goes, too, to where limits are kept without what meters have taught, or it would jump there.
@@ -209,7 +211,7 @@ void ShowController::State::start_cue(Time now, std::vector<double> levels) {
     take_look(now);
   }
   cue = estimator.within_limits(*cue, now);
-  if (!start_lamps(now, *cue)) fade(now, std::move(present), *cue, rig.control.fade_s, rig.control.fade_curve);
+  if (!start_lamps(now, present, *cue)) fade(now, std::move(present), *cue, rig.control.fade_s, rig.control.fade_curve);
   enter(Phase::fading, now);
 }
 
@@ -248,7 +250,7 @@ void ShowController::State::advance(Time now) {
   const bool back = !failing && now - healthy_since >= kHealthyFor;
   switch (phase) {
     case Phase::idle:
-      return;
+      return begin_after_listening(now);
     case Phase::frozen:
       if (back && cue) return resume(now);
       if (now - phase_since >= from_seconds(rig.safe.hold_s)) fade_to_safe(now);

@@ -99,6 +99,8 @@ struct LightInForce {
   std::vector<double> level, safe;  ///< per fixture, 0…1
   std::vector<Joints> joints;       ///< per fixture
   double hold_s = 0, fade_s = 0;    ///< how long `level` is still held, and the way from there to `safe`
+  /// Per fixture, 1: nothing is sent for it, as a desk drives it or may; empty: all are sent.
+  std::vector<std::uint8_t> silent{};
 };
 
 class ShowController {
@@ -107,7 +109,8 @@ class ShowController {
   ~ShowController();
   ShowController(ShowController&&) noexcept;
 
-  /// Before anything else: that light is on, and goes out from here on; the first apply fades from there. Limits let it
+  /// Before anything but add_desk(): that light is on, and goes out from here on; the first apply fades from there.
+  /// Lamps of it that burn do not come up by stages; those that are dark do. Limits let it
   /// pass until then, as whoever sent it kept them by what meters had taught. Dark from the start are only heads whose
   /// axes may have to look for their home, and heads that could light a keep-out zone: nobody knows where they look.
   void go_on_from(Time now, const LightInForce& light);
@@ -135,7 +138,9 @@ class ShowController {
   Result<void> park(Time now, std::span<const std::size_t> fixtures);
 
   /// From now on a lighting desk has a say in these fixtures, by these rules. Returns the index for desk(). Limits hold
-  /// for what it wants, too. While it has a say no meter is believed, since the light is not what was worked out.
+  /// for what it wants, too. While it has a say no meter is believed, since the light is not what was worked out. Where
+  /// the desk may have the light already (takeover, standby) the first apply waits, in phase idle, until it is known
+  /// whether there is one, 5 s at most; what is still not known then stays silent, and comes by fade.
   std::size_t add_desk(const DeskRules& rules, const DeskPart& part);
   void desk(Time now, std::size_t index, const DeskFrame& frame);
   /// Desks that are back and wait to be asked get the light, by fade.

@@ -14,6 +14,10 @@ namespace {
 
 /// From the last blink back to what was.
 constexpr Duration kIdentifyFade = std::chrono::milliseconds(500);
+/// Drivers say within 4 s of their start whether a desk is there: sACN after 2.5 s, the longest that a source which is
+/// not lost is silent, and 1.5 s in which one that was heard then has no say yet; Art-Net after 4 s, the slowest
+/// refresh. A bus that cannot say (it is not open yet) must not keep the rest of the rig dark for longer.
+constexpr Duration kListensAtMost = std::chrono::seconds(5);
 
 }  // namespace
 
@@ -60,6 +64,28 @@ bool ShowController::State::with_present_light(Time now, Call call) {
 bool ShowController::State::desk_shares(Time now) const {
   return program.desk_has_a_say(now) ||
          std::any_of(program.desks.begin(), program.desks.end(), [](const DeskBlend& desk) { return desk.silent; });
+}
+
+bool ShowController::State::listens_in_silence() const {
+  return std::any_of(desks.begin(), desks.end(), [](const DeskFollower& desk) {
+    return desk.phase() == DeskPhase::listening && desk.blend().silent;
+  });
+}
+
+/// A first look that came on meanwhile would be there at once, past its fade and its stages, when nobody is heard.
+bool ShowController::State::waits_for_desks(Time now) {
+  if (phase != Phase::idle || !in_force.empty() || !listens_in_silence()) return false;
+  if (!listens_until) listens_until = now + kListensAtMost;
+  return now < *listens_until;
+}
+
+void ShowController::State::begin_after_listening(Time now) {
+  if (!cue || waits_for_desks(now)) return;
+  if (turned) {  // heads have not heard of it either
+    turned = false;
+    first_turn(now, awaited ? awaited->joints : program.joints);
+  }
+  start_cue(now, *cue);
 }
 
 void ShowController::State::step_desks(Time now) {

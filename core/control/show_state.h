@@ -61,6 +61,7 @@ struct ShowController::State {
 
   std::vector<DeskFollower> desks;      ///< one for each of program.desks
   std::vector<std::string> desk_names;  ///< of the rig's; those that identify fixtures have none
+  std::optional<Time> listens_until{};  ///< a first look waits so long for what is heard of desks
   std::vector<Identification> identified;
   bool shared = false;  ///< a desk had a say in the light when last looked
 
@@ -117,6 +118,9 @@ struct ShowController::State {
   template <class Call>
   bool with_present_light(Time now, Call call);
   [[nodiscard]] bool desk_shares(Time now) const;
+  [[nodiscard]] bool listens_in_silence() const;  ///< nobody knows yet whether a desk has light of ours
+  [[nodiscard]] bool waits_for_desks(Time now);
+  void begin_after_listening(Time now);
   void step_desks(Time now);
   std::size_t add_desk(DeskFollowerSettings settings, const std::string& name);
   [[nodiscard]] DeskFollowerSettings desk_settings(const DeskRules& rules,
@@ -141,8 +145,8 @@ struct ShowController::State {
   void first_turn(Time now, std::span<const Joints> joints);
 
   // Power (show_startup.cpp).
-  /// Levels as they come on the first time, by stages; false when nothing is staged.
-  bool start_lamps(Time now, const std::vector<double>& levels);
+  /// Levels as they come on the first time, by stages, from what is lit already; false when nothing is staged.
+  bool start_lamps(Time now, const std::vector<double>& present, const std::vector<double>& levels);
   void watch_power(Time now);
 
   // What is known (show_status.cpp).

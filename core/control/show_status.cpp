@@ -59,7 +59,9 @@ std::string ShowController::State::detail(Time now) const {
   std::string text;
   switch (phase) {
     case Phase::idle:
-      text = in_force.empty() ? "no plan applied yet" : "the light is as it was; no plan applied yet";
+      text = cue                ? "the plan waits until it is known whether a desk has the light"
+             : in_force.empty() ? "no plan applied yet"
+                                : "the light is as it was; no plan applied yet";
       break;
     case Phase::moving:
       text = "heads go dark before they turn";
@@ -119,7 +121,9 @@ std::string ShowController::State::who_shares(Time now) const {
     if (one.pattern.over(now)) continue;
     blinking += (blinking.empty() ? "" : ", ") + rig.fixtures[one.pattern.fixtures().front()].name;
   }
-  return blinking.empty() ? "a desk has a say in the light" : blinking + " shows which one it is";
+  if (!blinking.empty()) return blinking + " shows which one it is";
+  return program.desk_has_a_say(now) || !listens_in_silence() ? "a desk has a say in the light"
+                                                              : "listening for a desk";
 }
 
 ShowStatus ShowController::State::status(Time now) const {

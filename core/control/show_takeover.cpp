@@ -1,5 +1,6 @@
 /// Light that somebody else has sent until now: the guardian of a daemon that died.
 
+#include <algorithm>
 #include <utility>
 
 #include "core/check.h"
@@ -25,7 +26,14 @@ void ShowController::go_on_from(Time now, const LightInForce& light) {
     level[f] = safe[f] = 0;
   }
   state.turned = all_known;
-  state.power_came = true;  // the lamps are on: nothing is to come up by stages
+  for (std::size_t d = 0; d < state.desks.size(); ++d) {
+    const std::vector<std::size_t>& fixtures = state.desks[d].blend().fixtures;
+    const bool silent = std::any_of(fixtures.begin(), fixtures.end(),
+                                    [&](std::size_t f) { return f < light.silent.size() && light.silent[f] != 0; });
+    if (silent) continue;  // somebody may drive them: it is listened for as ever
+    state.desks[d].have_light(now);
+    state.put_desk(d);
+  }
   state.in_force = level;
   state.fade(now + from_seconds(light.hold_s), std::move(level), std::move(safe), light.fade_s,
              state.rig.control.fade_curve);

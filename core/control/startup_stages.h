@@ -14,6 +14,7 @@ namespace luxrig {
 struct LampStart {
   Time begin{};     ///< dark until then
   Duration rise{};  ///< and all that it may have from then and this on; linear in level between
+  double held = 0;  ///< 0…1: what it has already, and keeps
   /// 0…1, of its max_level.
   [[nodiscard]] double ceiling(Time now) const;
 };
@@ -28,8 +29,12 @@ using LampStarts = std::vector<LampStart>;
 /// max_watts_per_s. Without, all of a stage rise together over fade_s of [control]. A head is also dark for its
 /// reset_s. not_before: nobody of them begins earlier (others are still rising, or heads turn). No two rises overlap
 /// where watts are limited, so that at no time more is added than that.
+///
+/// burning: per fixture, 0…1 of its max_level; may be empty. Those above 0 had begun before: they are of a stage before
+/// all others, are never below that, and rise from there as they would have gone on.
 [[nodiscard]] LampStarts lamp_starts(const Rig& rig, std::span<const double> max_level,
-                                     std::span<const std::uint8_t> starts, Time power, Time not_before);
+                                     std::span<const std::uint8_t> starts, Time power, Time not_before,
+                                     std::span<const double> burning = {});
 
 /// When the last of them is done; Time{} when there are none. Lamps without power do not count.
 [[nodiscard]] Time all_up(const LampStarts& lamps);

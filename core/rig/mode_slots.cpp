@@ -42,7 +42,7 @@ bool zooms(const PersonalityMode& mode, const ModeWanted& wanted) {
                                                   [&](const ChannelFunction& f) { return f.attribute == attribute; });
     });
   };
-  return wanted.zoom_deg && has("Pan") && has("Tilt") && has("Zoom");
+  return wanted.zoom_deg && has("Zoom") && (wanted.turned_elsewhere || (has("Pan") && has("Tilt")));
 }
 
 class ModeFitter {
@@ -220,7 +220,7 @@ class ModeFitter {
     const std::vector<std::size_t> pans = channels_of(pan), tilts = channels_of(tilt);
     if (pans.empty() || tilts.empty()) {
       if (!pans.empty() || !tilts.empty()) tell("its {} alone is held at its default", pans.empty() ? "tilt" : "pan");
-      return true;
+      return !wanted_.turned_elsewhere || carry_zoom();
     }
     if (!mode_.axes_problem.empty()) {
       static_cast<void>(refuse("cannot be aimed: " + mode_.axes_problem,

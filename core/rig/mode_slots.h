@@ -14,6 +14,7 @@ struct ModeWanted {
   std::optional<SlotOwner> owner;  ///< none: its luminaire is not known, and what depends on it goes unchecked
   std::optional<double> beam_deg;  ///< of its luminaire; zooms are set to it
   std::optional<std::pair<double, double>> zoom_deg;  ///< what its luminaire's zoom goes through; none: it is held
+  bool turned_elsewhere = false;                      ///< pan and tilt are drives on another bus
   std::optional<std::pair<double, double>> pan_range_deg, tilt_range_deg;
   Place place, pan_place, tilt_place;  ///< of `mode`, `pan_range_deg`, `tilt_range_deg`
 };

@@ -85,6 +85,7 @@ std::optional<ModeSlots> RigReader::read_slots_of_mode(Section& s, const std::op
     if (const auto& zoom_rad = rig.luminaires[fixture.luminaire].zoom_beam_rad)
       wanted.zoom_deg = {deg_from_rad(zoom_rad->first), deg_from_rad(zoom_rad->second)};
   }
+  wanted.turned_elsewhere = s.has("axes_bus");
   s.read("pan_range_deg", wanted.pan_range_deg);
   s.read("tilt_range_deg", wanted.tilt_range_deg);
   wanted.place = s.place_of(s.has("mode") ? "mode" : "personality");

@@ -104,6 +104,8 @@ void read_zoom(Section& s, const Luminaire* luminaire, const ModeSlots* stated, 
   }
   if (stated) {
     s.refuse("zoom_inverted", "zoom_inverted has no effect: the personality says which end is wide", "remove it");
+    fixture.range.beam_min_rad = stated->range.beam_min_rad;
+    fixture.range.beam_max_rad = stated->range.beam_max_rad;
   } else {
     std::tie(fixture.range.beam_min_rad, fixture.range.beam_max_rad) = *luminaire->zoom_beam_rad;
     bool inverted = false;
@@ -261,7 +263,7 @@ void RigReader::read_fixtures() {
       read_axes(s, fixture);
       const ModeSlots* stated = of_mode && !fixture.axes ? &*of_mode : nullptr;
       read_travel(s, stated, fixture);
-      read_zoom(s, slot_owner ? &rig.luminaires[fixture.luminaire] : nullptr, stated, fixture);
+      read_zoom(s, slot_owner ? &rig.luminaires[fixture.luminaire] : nullptr, of_mode ? &*of_mode : nullptr, fixture);
       read_aim(s, fixture);
       read_park(s, fixture);
     }

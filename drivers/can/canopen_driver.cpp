@@ -263,16 +263,16 @@ class CanopenDriver final : public Driver, public Mover {
     }
     if (life_.life() != Life::active) life_.active(now);
     for (Head& head : heads_) {
-      judge_axis(now, head.axes.pan_trouble(), head.pan);
-      judge_axis(now, head.axes.tilt_trouble(), head.tilt);
+      judge_axis(now, head.axes.pan_trouble(), head.axes.pan(), head.pan);
+      judge_axis(now, head.axes.tilt_trouble(), head.axes.tilt(), head.tilt);
     }
   }
 
-  static void judge_axis(Time now, const std::string& trouble, LifeRecord& life) {
+  static void judge_axis(Time now, const std::string& trouble, const cia402::Axis& axis, LifeRecord& life) {
     if (!trouble.empty()) {
       life.faulted(now, {Cause::refused, {}, trouble, {}}, life.life() == Life::active);
     } else if (life.life() != Life::active) {
-      life.active(now);
+      life.active(now, axis.remark());
     }
   }
 

@@ -151,16 +151,16 @@ DmxOrder decode_personality(const Fixture& fixture, const DmxPatch& patch,
   const FixtureFirmware firmware(mode, patch, slots);
   DmxOrder order;
   order.drive = firmware.light(fixture.mode->emitter);
+  const auto beam = fixture.range.zooms()
+                        ? firmware.angle_rad("Zoom", 0, fixture.range.beam_min_rad, fixture.range.beam_max_rad)
+                        : std::nullopt;
+  if (fixture.axes) order.beam_rad = beam;
   if (!fixture.moves || fixture.axes) return order;
   const auto pan = firmware.angle_rad("Pan", mode.pan_offset_deg, fixture.range.pan_min_rad, fixture.range.pan_max_rad);
   const auto tilt =
       firmware.angle_rad("Tilt", mode.tilt_offset_deg, fixture.range.tilt_min_rad, fixture.range.tilt_max_rad);
   if (!pan || !tilt) return order;
-  order.joints = Joints{*pan, *tilt, fixture.joints.beam_rad};
-  if (fixture.range.zooms()) {
-    const auto beam = firmware.angle_rad("Zoom", 0, fixture.range.beam_min_rad, fixture.range.beam_max_rad);
-    if (beam) order.joints->beam_rad = *beam;
-  }
+  order.joints = Joints{*pan, *tilt, beam.value_or(fixture.joints.beam_rad)};
   return order;
 }
 

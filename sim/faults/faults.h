@@ -29,6 +29,8 @@
 ///
 /// On a CAN bus:
 ///   reset      axis: its electronics begin anew when this is switched on, as by a watchdog
+///   unmappable axis: no PDO can carry its profile speed and accelerations (6081, 6083, 6084); refused with value
+///              1: cannot be mapped, 2: would be too long, 3: value out of range (default 1). For set-ups from now on
 ///   bus_off    CAN bus: Luxrig's controller is off the bus
 ///
 /// An axis of a head is called "NAME (pan axis)" or "NAME (tilt axis)"; dead, it has no power: it turns on by its
@@ -68,6 +70,7 @@ enum class FaultKind {
   duplicated,
   reordered,
   reset,
+  unmappable,
   bus_off
 };
 [[nodiscard]] std::string_view name_of(FaultKind kind);

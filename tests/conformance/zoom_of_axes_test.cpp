@@ -1,9 +1,14 @@
 // A head whose pan and tilt are drives on a CAN bus, while its zoom is a slot of its lamp's DMX address: from the rig
 // file through both wires to the simulated head.
 #include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <filesystem>
+#include <fstream>
 
 #include "core/rig/rig_file.h"
 #include "drivers/dmx/dmx_patch.h"
+#include "sim/devices/dmx_fixture.h"
 #include "sim/wire/can/axis_bus.h"
 #include "sim/wire/dmx_fixtures.h"
 #include "tests/conformance/axes_bench.h"
@@ -11,7 +16,7 @@
 namespace luxrig {
 namespace {
 
-constexpr const char* kZoomingAxes = R"([rig]
+const std::string kZoomingAxes = R"([rig]
 name = "stage"
 [[luminaire]]
 name = "profile"
@@ -98,6 +103,82 @@ TEST(ZoomOfAxes, TheSimulatedHeadZoomsWhileItsAxesTurnIt) {
   EXPECT_EQ(bench.moved_at, still);
   EXPECT_NEAR(bench.joints().pan_rad, before.pan_rad, 1e-9);
   EXPECT_TRUE(bench.result);
+}
+
+/// The same lamp by its maker's file: 8 to 60 degrees, of which the luminaire goes through 10 to 50; wide at 0.
+struct MadeLamp {
+  MadeLamp() {
+    std::string name = (std::filesystem::temp_directory_path() / "luxrig-lamp-XXXXXX").string();
+    folder = ::mkdtemp(name.data());
+    std::ofstream(folder / "lamp.json") << R"({
+      "$schema": "https://raw.githubusercontent.com/OpenLightingProject/open-fixture-library/master/schemas/fixture.json",
+      "name": "Lamp", "categories": ["Other"],
+      "meta": {"authors": ["Somebody"], "createDate": "2026-01-01", "lastModifyDate": "2026-01-01"},
+      "availableChannels": {
+        "Dimmer": {"capability": {"type": "Intensity"}},
+        "Zoom": {"fineChannelAliases": ["Zoom fine"],
+                 "capability": {"type": "Zoom", "angleStart": "60deg", "angleEnd": "8deg"}}},
+      "modes": [{"name": "Basic", "channels": ["Dimmer", "Zoom", "Zoom fine"]}]})";
+  }
+  ~MadeLamp() {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder, ignored);
+  }
+  MadeLamp(const MadeLamp&) = delete;
+  MadeLamp& operator=(const MadeLamp&) = delete;
+
+  [[nodiscard]] Checked<Rig> rig(const std::string& more = "", const std::string& zoom = "zoom_deg = [10, 50]") const {
+    std::string text = kZoomingAxes;
+    const auto replace = [&text](const std::string& from, const std::string& to) {
+      text.replace(text.find(from), from.size(), to);
+    };
+    replace("slots = [\"dimmer\", \"zoom\", \"zoom-fine\"]", "personality = \"lamp.json\"\n" + more);
+    replace("zoom_deg = [10, 50]", zoom);
+    if (zoom.empty()) replace("zoom_speed_deg_s = 20\n", "");
+    return parse_rig(text, "stage.toml", folder);
+  }
+
+  std::filesystem::path folder;
+};
+
+TEST(ZoomOfAxes, IsThatOfItsMakersFile) {
+  const MadeLamp lamp;
+  const Checked<Rig> rig = lamp.rig();
+  ASSERT_TRUE(rig) << rig.error().front().text();
+  const Fixture& head = rig->fixtures[0];
+  EXPECT_NEAR(deg_from_rad(head.range.beam_min_rad), 10, 1e-9);
+  EXPECT_NEAR(deg_from_rad(head.range.beam_max_rad), 50, 1e-9);
+  EXPECT_NEAR(deg_from_rad(head.range.pan_max_rad), 170, 1e-9);
+  DmxPatchbay bay(*rig, 1);
+  const LevelCommand lit{0, 1};
+  for (const double beam_deg : {10.0, 24.0, 50.0}) {
+    const AimCommand aim{0, aimed(100, -50, beam_deg)};
+    ASSERT_TRUE(bay.set_aims({&aim, 1}));
+    ASSERT_TRUE(bay.set_levels({&lit, 1}));
+    const DmxSlots& slots = bay.universes()[0].slots;
+    EXPECT_EQ(slots[0], 255);
+    EXPECT_NEAR(slots[1] << 8 | slots[2], (60 - beam_deg) / 52 * 65535, 1) << beam_deg;
+    const sim::DmxOrder order = sim::decode_slots(head, std::get<DmxPatch>(head.patch), slots);
+    ASSERT_TRUE(order.beam_rad);
+    EXPECT_FALSE(order.joints) << "pan and tilt are its axes'";
+    EXPECT_NEAR(deg_from_rad(*order.beam_rad), beam_deg, 0.01);
+  }
+  EXPECT_NE(rig->fixtures[0].mode->told.back().find("zoom by \"Zoom\", 16 bit at slot 2, 10 to 50"), std::string::npos)
+      << rig->fixtures[0].mode->told.back();
+}
+
+TEST(ZoomOfAxes, OfItsMakersFileIsHeldWhereTheLuminaireDoesNotZoomAndRefusedWhereItCannot) {
+  const MadeLamp lamp;
+  const Checked<Rig> held = lamp.rig("", "");
+  ASSERT_TRUE(held) << held.error().front().text();
+  EXPECT_FALSE(held->fixtures[0].range.zooms());
+  EXPECT_EQ(std::get<DmxPatch>(held->fixtures[0].patch).slots[1].use, SlotUse::constant);
+  EXPECT_NEAR(std::get<DmxPatch>(held->fixtures[0].patch).slots[1].constant_dmx, (60 - 20) / 52.0 * 255, 1);
+  const Checked<Rig> inverted = lamp.rig("zoom_inverted = true\n");
+  ASSERT_FALSE(inverted);
+  EXPECT_NE(inverted.error().front().text().find("the personality says which end is wide"), std::string::npos);
+  const Checked<Rig> beyond = lamp.rig("", "zoom_deg = [1, 7]\n");
+  ASSERT_FALSE(beyond);
 }
 
 }  // namespace

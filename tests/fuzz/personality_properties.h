@@ -31,12 +31,16 @@ inline void check_mode(const Personality& personality, const PersonalityMode& mo
       LUXRIG_CHECK(!function.when || function.when->channel < mode.channels.size(), "{}", function.name);
     }
   }
-  for (const std::vector<std::string>& emitters :
-       {std::vector<std::string>{}, std::vector<std::string>{"red", "white"}}) {
+  // Also with a zoom that is used: as it is, and with pan and tilt by drives on another bus.
+  for (const int i : {0, 1, 2, 3}) {
+    const std::vector<std::string> emitters =
+        i % 2 == 0 ? std::vector<std::string>{} : std::vector<std::string>{"red", "white"};
     ProblemList problems("fuzz");
     ModeWanted wanted;
     wanted.owner = SlotOwner{"lamp", emitters};
     wanted.beam_deg = 20;
+    if (i > 0) wanted.zoom_deg = {10, 50};
+    wanted.turned_elsewhere = i > 1;
     const auto slots = slots_of_mode(personality, mode, wanted, problems);
     if (!slots) {
       check_problems(problems.take());

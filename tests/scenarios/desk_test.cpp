@@ -1,10 +1,6 @@
 /// A lighting desk -> Luxrig's input -> what both want, within limits -> the simulated rig, over loopback under a
-/// stepped clock. The desk's packets are written here from the standards, byte by byte.
-#include <arpa/inet.h>
+/// stepped clock.
 #include <gtest/gtest.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include <cmath>
 
@@ -12,87 +8,10 @@
 #include "drivers/registry.h"
 #include "tests/conformance/far_end.h"
 #include "tests/drivers/test_rig.h"
+#include "tests/loopback_desk.h"
 
 namespace luxrig {
 namespace {
-
-using Packet = std::vector<std::uint8_t>;
-
-void put_be16(Packet& packet, std::size_t at, std::size_t value) {
-  packet[at] = static_cast<std::uint8_t>(value >> 8);
-  packet[at + 1] = static_cast<std::uint8_t>(value);
-}
-
-/// ANSI E1.31-2018, table 4-1, 512 slots.
-Packet sacn_packet(int universe, std::uint8_t sequence, int level_dmx, bool terminated) {
-  Packet packet(638, 0);
-  put_be16(packet, 0, 0x0010);
-  const std::string id = "ASC-E1.17";
-  std::copy(id.begin(), id.end(), packet.begin() + 4);
-  put_be16(packet, 16, 0x726e);
-  packet[21] = 4;
-  packet[22] = 0xAB;  // CID
-  put_be16(packet, 38, 0x7258);
-  packet[43] = 2;
-  packet[44] = 'X';  // source name
-  packet[108] = 100;
-  packet[111] = sequence;
-  packet[112] = terminated ? 0x40 : 0;
-  put_be16(packet, 113, static_cast<std::size_t>(universe));
-  put_be16(packet, 115, 0x720b);
-  packet[117] = 2;
-  packet[118] = 0xa1;
-  packet[122] = 1;
-  put_be16(packet, 123, 513);
-  packet[126] = static_cast<std::uint8_t>(level_dmx);
-  return packet;
-}
-
-/// Art-Net 4, ArtDmx.
-Packet artdmx_packet(int universe, std::uint8_t sequence, int level_dmx) {
-  Packet packet(530, 0);
-  const std::string id = "Art-Net";
-  std::copy(id.begin(), id.end(), packet.begin());
-  packet[9] = 0x50;
-  packet[11] = 14;
-  packet[12] = sequence;
-  packet[14] = static_cast<std::uint8_t>(universe);
-  put_be16(packet, 16, 512);
-  packet[18] = static_cast<std::uint8_t>(level_dmx);
-  return packet;
-}
-
-class LoopbackDesk {
- public:
-  LoopbackDesk() : fd_(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
-    // A port that is free: that of a socket that was bound just now.
-    const int probe = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    socklen_t size = sizeof(address);
-    EXPECT_EQ(::bind(probe, reinterpret_cast<sockaddr*>(&address), size), 0);
-    EXPECT_EQ(::getsockname(probe, reinterpret_cast<sockaddr*>(&address), &size), 0);
-    port_ = ntohs(address.sin_port);
-    ::close(probe);
-  }
-  ~LoopbackDesk() { ::close(fd_); }
-  LoopbackDesk(const LoopbackDesk&) = delete;
-  LoopbackDesk& operator=(const LoopbackDesk&) = delete;
-
-  [[nodiscard]] int port() const { return port_; }
-  void send(const Packet& packet) const {
-    sockaddr_in to{};
-    to.sin_family = AF_INET;
-    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    to.sin_port = htons(static_cast<std::uint16_t>(port_));
-    ::sendto(fd_, packet.data(), packet.size(), 0, reinterpret_cast<const sockaddr*>(&to), sizeof(to));
-  }
-
- private:
-  int fd_;
-  int port_ = 0;
-};
 
 /// Two lamps on slots 1 and 2 of universe 1; the first lights a point with a limit of 50 lx, 100 lx per level.
 struct FollowedRig {
@@ -125,10 +44,10 @@ struct FollowedRig {
   void cycle() {
     if (desk_dmx) {
       ++sequence_;
-      Packet packet = protocol_ == "sacn" ? sacn_packet(1, sequence_, *desk_dmx, false)
-                                          : artdmx_packet(1, sequence_ == 0 ? sequence_ = 1 : sequence_, *desk_dmx);
-      packet[protocol_ == "sacn" ? 127 : 19] = static_cast<std::uint8_t>(*desk_dmx);
-      desk.send(packet);
+      const auto level_dmx = static_cast<std::uint8_t>(*desk_dmx);
+      desk.send(protocol_ == "sacn"
+                    ? test::sacn_packet(1, sequence_, {level_dmx, level_dmx})
+                    : test::artdmx_packet(1, sequence_ == 0 ? sequence_ = 1 : sequence_, {level_dmx, level_dmx}));
     }
     const auto frames = driver->level_input()->listen(now);
     show->desk(now, 0, frames[0]);
@@ -151,7 +70,7 @@ struct FollowedRig {
     while (now < end) cycle();
   }
 
-  LoopbackDesk desk;
+  test::LoopbackDesk desk;
   std::string protocol_;
   Rig rig;
   FarEnd far;

@@ -115,8 +115,8 @@ void look_after(const Rig& rig, const LastLook& look, const std::map<std::string
   // A daemon goes on from here: a goodbye would let fixtures go dark before its first frame.
   if (g_signal == SIGUSR1) {
     const Time at = now();
-    LightInForce light{look.present, look.safe, look.joints, std::max(0.0, to_seconds(program.start - at)),
-                       look.fade_s};
+    LightInForce light{look.present, look.safe,  look.joints, std::max(0.0, to_seconds(program.start - at)),
+                       look.fade_s,  look.silent};
     program.levels_at(at, light.level);
     hand_over(pid_fd, light);
     ::_exit(kExitOk);
@@ -153,7 +153,7 @@ int guard(const GuardianArguments& arguments) {
     look_after(*rig, look, *redirects, pid_fd);
   } else if (!died && !memory->ended() && look.sends && g_signal == SIGUSR1 && has_closed(arguments.alive_fd)) {
     // Sent away before we had looked: what the daemon sent last still stands.
-    hand_over(pid_fd, {look.present, look.safe, look.joints, look.hold_s, look.fade_s});
+    hand_over(pid_fd, {look.present, look.safe, look.joints, look.hold_s, look.fade_s, look.silent});
     return kExitOk;
   }
   std::error_code ignored;

@@ -25,6 +25,18 @@ bool read_levels(const json& from, std::size_t fixtures, std::vector<double>& in
   return true;
 }
 
+/// What is not there is sent.
+bool read_silent(const json& from, std::size_t fixtures, std::vector<std::uint8_t>& into) {
+  if (from.is_null() || (from.is_array() && from.empty())) return true;
+  if (!from.is_array() || from.size() != fixtures) return false;
+  for (const json& one : from) {
+    const double number = number_within(one, 0, 1);
+    if (std::isnan(number)) return false;
+    into.push_back(number > 0 ? 1 : 0);
+  }
+  return true;
+}
+
 }  // namespace
 
 std::string handed_light_text(const LightInForce& light) {
@@ -33,6 +45,7 @@ std::string handed_light_text(const LightInForce& light) {
   return json({{"levels", light.level},
                {"safe", light.safe},
                {"joints_rad", joints},
+               {"silent", light.silent},
                {"hold_s", light.hold_s},
                {"fade_s", light.fade_s}})
       .dump();
@@ -43,7 +56,8 @@ std::optional<LightInForce> handed_light_of(const std::string& text, std::size_t
   if (!all.is_object()) return std::nullopt;
   const auto part = [&all](const char* key) { return all.contains(key) ? all[key] : json(); };
   LightInForce light;
-  if (!read_levels(part("levels"), fixtures, light.level) || !read_levels(part("safe"), fixtures, light.safe))
+  if (!read_levels(part("levels"), fixtures, light.level) || !read_levels(part("safe"), fixtures, light.safe) ||
+      !read_silent(part("silent"), fixtures, light.silent))
     return std::nullopt;
   light.hold_s = number_within(part("hold_s"), 0, kLongestHold_s);
   light.fade_s = number_within(part("fade_s"), 0, kLongestHold_s);

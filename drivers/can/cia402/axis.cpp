@@ -32,10 +32,7 @@ void append(std::vector<std::uint8_t>& to, std::uint32_t value, int bytes) {
 }  // namespace
 
 Axis::Axis(const AxisSettings& settings)
-    : settings_(settings), sdo_(settings.node), heartbeat_(heartbeat_timeout(settings)), reports_(settings) {
-  steps_ = {{{kDeviceType, {}}, false}, {{kDeviceName, {}}, true}, {{kSupportedModes, {}}, false}};
-  for (SetupStep& step : setup_steps(settings)) steps_.push_back(std::move(step));
-}
+    : settings_(settings), sdo_(settings.node), heartbeat_(heartbeat_timeout(settings)), reports_(settings) {}
 
 void Axis::activate(Time now) {
   *this = Axis(settings_);
@@ -54,6 +51,8 @@ void Axis::enter(Time now, Phase phase) {
   rereading_.reset();
   other_entry_.reset();
   target_told_.reset();
+  told_.clear();
+  telling_.reset();
 }
 
 void Axis::lost(Time now, std::string why) {
@@ -77,6 +76,9 @@ void Axis::begin_setup(Time now) {
   pdo_at_.reset();
   reports_.forget();
   doubt_counted_ = false;
+  steps_ = {{{kDeviceType, {}}, false}, {{kDeviceName, {}}, true}, {{kSupportedModes, {}}, false}};
+  for (SetupStep& step : setup_steps(settings_)) steps_.push_back(std::move(step));
+  limits_by_sdo_ = false;  // it may be another drive by now
   step_ = 0;
   nmt_due_ = true;
 }
@@ -120,7 +122,7 @@ void Axis::watch(Time now) {
   }
 }
 
-void Axis::step(Time now, bool stand_still, bool asked, Frames& out) {
+void Axis::step(Time now, bool stand_still, bool asked, bool together, Frames& out) {
   asked_ = asked;
   stands_still_ = stand_still;
   watch(now);
@@ -142,7 +144,7 @@ void Axis::step(Time now, bool stand_still, bool asked, Frames& out) {
       send_pdos(safe_word(now, kQuickStop), out);
       break;
     case Phase::running:
-      if (status_at_ || reports_.doubted()) send_pdos(safe_word(now, control(now, stand_still, asked)), out);
+      if (status_at_ || reports_.doubted()) send_pdos(safe_word(now, control(now, stand_still, asked, together)), out);
       break;
     case Phase::failed:
       if (set_up_once_) send_pdos(safe_word(now, kQuickStop), out);
@@ -161,7 +163,7 @@ void Axis::send_pdos(std::uint16_t controlword, Frames& out) const {
   const auto node = static_cast<std::uint32_t>(settings_.node);
   const auto& order = handshake_.current();
   std::vector<std::uint8_t> bytes;
-  if (order && handshake_.limits_due()) {
+  if (order && handshake_.limits_due() && !limits_by_sdo_) {
     append(bytes, order->speed, 4);
     append(bytes, order->acceleration, 4);
     out.push_back(can::data_frame(canopen::kReceivePdo1 + canopen::kNextPdo + node, bytes));
@@ -176,7 +178,7 @@ void Axis::send_pdos(std::uint16_t controlword, Frames& out) const {
 
 // --- the drive ---
 
-std::uint16_t Axis::control(Time now, bool stand_still, bool asked) {
+std::uint16_t Axis::control(Time now, bool stand_still, bool asked, bool together) {
   const DriveState state = state_of(statusword_);
   const bool enabled = state == DriveState::operation_enabled;
   const bool doubted = reports_.doubted();
@@ -200,7 +202,8 @@ std::uint16_t Axis::control(Time now, bool stand_still, bool asked) {
   if (!in_mode(kProfilePosition)) return kEnableOperation;
   if (!ready_since_) ready_since_ = now;
   if (now - *ready_since_ > kForgiveAfter) failures_ = 0;
-  const std::uint16_t word = handshake_.step(now, statusword_, fresh_);
+  const std::uint16_t word = handshake_.step(now, statusword_, fresh_, together);
+  tell_limits(now);
   read_target_back();
   return word;
 }

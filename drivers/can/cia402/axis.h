@@ -8,6 +8,7 @@
 /// Nothing here moves the axis but homing (as the rule says) and the set-points ordered. No word takes the torque off
 /// an axis that may be turning, whatever its statusword says: it would run on by its momentum.
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -32,8 +33,9 @@ class Axis {
   void activate(Time now);
   /// A data frame; those of other nodes are ignored.
   void receive(Time now, const can::CanFrame& frame);
-  /// stand_still: the head's other axis is not sound, so this one stops; asked: the head has a target.
-  void step(Time now, bool stand_still, bool asked, Frames& out);
+  /// stand_still: the head's other axis is not sound, so this one stops; asked: the head has a target; together: a
+  /// set-point may be offered, as the other axis can begin with it, too.
+  void step(Time now, bool stand_still, bool asked, bool together, Frames& out);
   /// What stops it when nobody steps it any more.
   void stop(Frames& out) const;
 
@@ -45,11 +47,16 @@ class Axis {
   /// requires ready().
   void order(const SetPoint& set_point) { handshake_.order(set_point); }
   [[nodiscard]] bool order_taken() const { return handshake_.idle(); }
+  /// The drive knows speed and acceleration of the order, or hears them with it. Not yet, where they are written by
+  /// SDO.
+  [[nodiscard]] bool limits_told() const;
   [[nodiscard]] std::int32_t position() const { return position_; }
   [[nodiscard]] std::int32_t velocity() const { return velocity_; }  ///< counts/s
   /// Why it does not do what it is asked; empty when it does.
   [[nodiscard]] std::string trouble() const;
   [[nodiscard]] bool referenced() const { return referenced_; }
+  /// What of it a person may want to know although it is in order; empty: nothing.
+  [[nodiscard]] std::string remark() const;
 
  private:
   enum class Phase { absent, checking, setting_up, starting, running, failed };
@@ -64,7 +71,11 @@ class Axis {
   void next_setup_step(Time now, Frames& out);
   void take_reread(Time now, const canopen::SdoResult& result);
   void watch(Time now);
-  [[nodiscard]] std::uint16_t control(Time now, bool stand_still, bool asked);
+  [[nodiscard]] std::uint16_t control(Time now, bool stand_still, bool asked, bool together);
+  bool limits_go_by_sdo(const canopen::SdoRequest& refused, std::uint32_t abort_code);
+  [[nodiscard]] std::optional<canopen::SdoRequest> limit_to_tell() const;
+  void tell_limits(Time now);
+  void take_told(Time now, const canopen::SdoResult& result);
   [[nodiscard]] std::uint16_t reset_fault(Time now);
   void settle_doubt(Time now);
   void read_target_back();
@@ -107,7 +118,11 @@ class Axis {
   bool doubt_counted_ = false;
   std::optional<Time> told_to_stop_;  ///< nothing that would turn it was sent since
   std::optional<canopen::ObjectAddress> rereading_;
-  std::optional<std::int32_t> target_told_;  ///< that is read back
+  std::optional<std::int32_t> target_told_;      ///< that is read back
+  bool limits_by_sdo_ = false;                   ///< no PDO of it carries speed and acceleration
+  std::map<std::uint16_t, std::uint32_t> told_;  ///< of their objects, what it has taken
+  std::optional<canopen::SdoRequest> telling_;
+  Time tell_again_at_{};
   std::optional<Time> reset_at_;
   int failures_ = 0;  ///< in a row
   std::optional<Time> ready_since_;

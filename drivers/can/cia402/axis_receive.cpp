@@ -106,6 +106,7 @@ void Axis::take_sdo_result(Time now) {
       take_setup_result(now, *result);
       break;
     case Phase::running:
+      if (telling_) return take_told(now, *result);
       if (rereading_) take_reread(now, *result);  // else the mode of operation was written: its display tells
       break;
     case Phase::starting:
@@ -118,6 +119,7 @@ void Axis::take_setup_result(Time now, const canopen::SdoResult& result) {
   const SetupStep& step = steps_[step_];
   if (!result) {
     if (!result.error().abort_code) return lost(now, "does not answer");
+    if (limits_go_by_sdo(step.request, *result.error().abort_code)) return;
     if (!step.optional) {
       return failed(now, fmt::format("refuses object {}: {}", canopen::text_of(step.request.object),
                                      canopen::abort_text(*result.error().abort_code)));

@@ -8,7 +8,8 @@
 namespace luxrig::cia402 {
 
 inline constexpr canopen::ObjectAddress kDeviceType{0x1000, 0}, kDeviceName{0x1008, 0}, kConsumer{0x1016, 1},
-    kControlword{0x6040, 0}, kActualPosition{0x6064, 0}, kTargetPosition{0x607A, 0}, kSupportedModes{0x6502, 0};
+    kControlword{0x6040, 0}, kActualPosition{0x6064, 0}, kTargetPosition{0x607A, 0}, kProfileSpeed{0x6081, 0},
+    kAcceleration{0x6083, 0}, kDeceleration{0x6084, 0}, kSupportedModes{0x6502, 0};
 inline constexpr int kProfilePosition = 1, kHoming = 6;  ///< modes of operation
 
 /// Little-endian, of the first four bytes.

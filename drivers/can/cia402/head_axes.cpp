@@ -13,6 +13,8 @@ constexpr double kThere_rad = rad_from_deg(0.5);
 constexpr double kExact_rad = rad_from_deg(0.03);  // backlash, and what a standing servo is off
 constexpr Duration kReturnSlack = std::chrono::seconds(1);
 constexpr Duration kArrivalSlack = std::chrono::seconds(3);  // it may have to turn back first
+constexpr Duration kBeginsWithin = std::chrono::milliseconds(300);
+constexpr int kCyclesToBegin = 6;  // three objects by SDO, a read that was under way, and the offer
 
 double counts_per_rad(const AxisPatch& patch) { return std::abs(patch.counts_per_degree) * deg_from_rad(1.0); }
 
@@ -80,6 +82,7 @@ void HeadAxes::activate(Time now) {
   ordered_.reset();
   due_back_.reset();
   arrive_by_.reset();
+  waits_since_.reset();
   under_way_until_ = now;
   returning_ = true;
 }
@@ -101,6 +104,7 @@ void HeadAxes::step(Time now, Frames& out) {
     returning_ = true;
     due_back_.reset();
     arrive_by_.reset();
+    waits_since_.reset();
     // By a quick stop, whatever the nodes say of it.
     under_way_until_ =
         std::min(under_way_until_, now + std::max(stops_within(pan_.settings()), stops_within(tilt_.settings())));
@@ -132,14 +136,32 @@ void HeadAxes::step(Time now, Frames& out) {
     ordered_ = target_;
     under_way_until_ = now + from_seconds(move.seconds);
     arrive_by_ = under_way_until_ + kArrivalSlack;
+    waits_since_ = now;
     if (returning_ && !due_back_) due_back_ = now + from_seconds(move.seconds) + kReturnSlack;
   }
   if (returning_ && here) {
     returning_ = target_ && !is_there(*here, kThere_rad) && (!due_back_ || now < *due_back_);
   }
   const bool asked = target_.has_value(), pan_sound = pan_.sound(), tilt_sound = tilt_.sound();
-  pan_.step(now, !tilt_sound, asked, out);
-  tilt_.step(now, !pan_sound, asked, out);
+  const bool together = begin_together(now);
+  pan_.step(now, !tilt_sound, asked, together, out);
+  tilt_.step(now, !pan_sound, asked, together, out);
+}
+
+/// Both drives know how fast: with an axis that is told by SDO the other one waits. A wait that is too long counts as a
+/// loss, as by others' reckoning the head is under way.
+bool HeadAxes::begin_together(Time now) {
+  if (!waits_since_) return true;
+  const Duration waited = now - *waits_since_;
+  if (!pan_.limits_told() || !tilt_.limits_told()) {
+    if (waited > std::max(kBeginsWithin, kCyclesToBegin * pan_.settings().cycle)) returning_ = true;
+    return false;
+  }
+  waits_since_.reset();
+  under_way_until_ += waited;
+  if (arrive_by_) *arrive_by_ += waited;
+  if (due_back_) *due_back_ += waited;
+  return true;
 }
 
 bool HeadAxes::is_there(const Joints& here, double within_rad) const {

@@ -1,7 +1,8 @@
 #pragma once
 /// The two axes of one head, turned in step (core/control/head_move.h). When one of them is lost or has a fault the
 /// other stops, so that the beam stays on the path it was on. That path is a straight line from a standstill; towards
-/// an aim that replaces one under way each axis bends off as fast as its own limits let it. Pure.
+/// an aim that replaces one under way each axis bends off as fast as its own limits let it. Neither begins before both
+/// drives know how fast: one that is told by SDO needs some cycles for it. Pure.
 
 #include <optional>
 #include <string>
@@ -47,17 +48,19 @@ class HeadAxes {
 
  private:
   [[nodiscard]] std::string trouble(const Axis& axis) const;
+  [[nodiscard]] bool begin_together(Time now);
   [[nodiscard]] bool is_there(const Joints& here, double within_rad) const;  ///< requires target_
 
   AxisPatch pan_patch_, tilt_patch_;
   AxisLimits pan_limits_, tilt_limits_;  ///< rad/s, rad/s²
   Axis pan_, tilt_;
   std::optional<Joints> target_, ordered_;
-  bool ordered_again_ = false;     ///< as it stood a little beside its aim
-  bool returning_ = true;          ///< from a loss, or from the start, to the aim
-  std::optional<Time> due_back_;   ///< at the latest: it may follow an aim that moves
-  Time under_way_until_{};         ///< by our own reckoning
-  std::optional<Time> arrive_by_;  ///< else the order did not mean what it should
+  bool ordered_again_ = false;       ///< as it stood a little beside its aim
+  bool returning_ = true;            ///< from a loss, or from the start, to the aim
+  std::optional<Time> due_back_;     ///< at the latest: it may follow an aim that moves
+  Time under_way_until_{};           ///< by our own reckoning
+  std::optional<Time> waits_since_;  ///< an order that has not begun
+  std::optional<Time> arrive_by_;    ///< else the order did not mean what it should
 };
 
 }  // namespace luxrig::cia402

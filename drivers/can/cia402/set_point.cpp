@@ -6,7 +6,7 @@
 
 namespace luxrig::cia402 {
 
-std::uint16_t SetPointHandshake::step(Time now, std::uint16_t statusword, bool fresh) {
+std::uint16_t SetPointHandshake::step(Time now, std::uint16_t statusword, bool fresh, bool may_offer) {
   const bool acknowledged = (statusword & kSetPointAcknowledged) != 0;
   constexpr std::uint16_t kRest = kEnableOperation | kChangeImmediately;
   switch (phase_) {
@@ -16,7 +16,7 @@ std::uint16_t SetPointHandshake::step(Time now, std::uint16_t statusword, bool f
       phase_ = Phase::prepared;
       return kRest;
     case Phase::prepared:
-      if (acknowledged) return kRest;  // still of the last one: no edge would be seen
+      if (acknowledged || !may_offer) return kRest;  // still of the last one: no edge would be seen
       phase_ = Phase::offered;
       since_ = now;
       return kRest | kNewSetPoint;

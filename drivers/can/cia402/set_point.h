@@ -26,10 +26,14 @@ class SetPointHandshake {
   /// The last order is with the drive, or there is none.
   [[nodiscard]] bool idle() const { return phase_ == Phase::idle && !pending_; }
 
-  /// statusword: the newest; `fresh`: since the last call. Returns the controlword.
-  [[nodiscard]] std::uint16_t step(Time now, std::uint16_t statusword, bool fresh);
+  /// statusword: the newest; `fresh`: since the last call; may_offer: bit 4 may rise. Returns the controlword.
+  [[nodiscard]] std::uint16_t step(Time now, std::uint16_t statusword, bool fresh, bool may_offer = true);
   /// What goes into the PDOs beside it; nothing before the first order.
   [[nodiscard]] const std::optional<SetPoint>& current() const { return current_; }
+  /// An order that is not current() yet.
+  [[nodiscard]] bool pending() const { return pending_.has_value(); }
+  /// current() is to be offered next.
+  [[nodiscard]] bool prepared() const { return phase_ == Phase::prepared; }
   /// Speed and acceleration must reach the drive before bit 4 rises.
   [[nodiscard]] bool limits_due() const { return phase_ == Phase::prepared || phase_ == Phase::offered; }
 

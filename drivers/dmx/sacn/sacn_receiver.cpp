@@ -160,17 +160,23 @@ HeardUniverse Receiver::heard(Time now, int number) {
   forget_lost(now, universe);
   std::vector<MergeInput> senders;
   const Source* first = nullptr;
-  bool undecided = now - *universe.started < kSamplingPeriod;
+  const Duration listened = now - *universe.started;
+  bool sampling = false;
   for (const auto& [cid, source] : universe.sources) {
     const bool tells = source.slot_priority_at && now - *source.slot_priority_at <= kSourceLoss;
-    if (!source.slot_priority_at && now - source.first < kSamplingPeriod) continue;
+    if (!source.slot_priority_at && now - source.first < kSamplingPeriod) {
+      sampling = true;
+      continue;
+    }
     if (!source.shown) continue;
     senders.push_back({&source.slots, source.priority, tells ? &source.slot_priority : nullptr});
     if (first == nullptr || source.priority > first->priority) first = &source;
   }
-  if (undecided) return universe.last;
+  if (listened < kSamplingPeriod) return universe.last;
   if (senders.empty()) {
-    universe.last.presence = DeskPresence::absent;
+    // One that is about to have a say: "nobody" would light what it has the light of.
+    const bool may_be_there = listened < kSourceLoss || (sampling && listened < kSourceLoss + kSamplingPeriod);
+    if (universe.last.presence != DeskPresence::unknown || !may_be_there) universe.last.presence = DeskPresence::absent;
     return universe.last;
   }
   universe.last.presence = DeskPresence::present;

@@ -2,7 +2,9 @@
 /// What an sACN receiver makes of what arrives: sequence rule, priorities, merge, synchronisation, loss of sources.
 /// `now` and datagrams in, levels out. Source: ANSI E1.31-2018; clauses in the .cpp.
 ///
-/// - For 1.5 s after the first call a universe is `unknown`: who has the highest priority is not known yet.
+/// - For 1.5 s after the first call a universe is `unknown`: who has the highest priority is not known yet. That there
+///   is nobody is known after 2.5 s, the longest that a source which is not lost is silent, and not before a source
+///   that was heard by then has had its 1.5 s: 4 s at most.
 /// - A source that is new has no say until it has told the priorities of its slots (start code 0xDD), or for 1.5 s.
 /// - A source is lost after 2.5 s without levels. While others may have been lost with it (a cable pulled), nobody of
 ///   lower priority gets control: the loss counts once each of them was heard after it or is lost, too.

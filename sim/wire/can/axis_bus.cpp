@@ -15,6 +15,8 @@ constexpr double kSwitchPastTravel_deg = 5, kStopPastSwitch_deg = 3;
 constexpr double kFollowingWindow_deg = 2;
 constexpr std::size_t kMostDelayed = 4096;
 
+std::uint32_t refusal_of(double value) { return value < 2 ? kNotMappable : value < 3 ? kPdoTooLong : kOutOfRange; }
+
 }  // namespace
 
 AxisTruth axis_truth(const AxisPatch& patch, double min_rad, double max_rad) {
@@ -111,6 +113,8 @@ void AxisBus::switch_faults(Time now) {
     leaving_.push_back({now, {kErrorFrame | (off ? kBusOffError : kRestartedError), 8, {}}});
   }
   for (Axis& axis : axes_) {
+    const auto unmappable = parts_.faults.find(axis.name, FaultKind::unmappable);
+    axis.node->refuse_limits_in_pdos(unmappable ? std::optional(refusal_of(*unmappable)) : std::nullopt);
     axis.node->set_power(now, !parts_.faults.find(axis.name, FaultKind::dead));
     const bool reset = parts_.faults.find(axis.name, FaultKind::reset).has_value();
     if (reset && !axis.was_reset) axis.node->reset(now);

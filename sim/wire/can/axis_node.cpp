@@ -38,6 +38,7 @@ void AxisNode::boot(Time now) {
   drive_.set_power(false);
   drive_.set_power(true);
   objects_ = std::make_unique<ObjectDictionary>([this](const ObjectKey& key) { return measured(key); });
+  objects_->refuse_limits_in_pdos(limits_refused_);
   objects_->put({0x6065, 0}, following_window_);
   applied({0x6065, 0});
   for (int number = 0; number < 4; ++number) {  // the predefined connection set
@@ -52,6 +53,11 @@ void AxisNode::boot(Time now) {
   text_at_.reset();
   heartbeat_due_ = now;
   send(0x700, {0});
+}
+
+void AxisNode::refuse_limits_in_pdos(std::optional<std::uint32_t> abort_code) {
+  limits_refused_ = abort_code;
+  if (objects_) objects_->refuse_limits_in_pdos(abort_code);
 }
 
 void AxisNode::set_power(Time now, bool on) {

@@ -24,6 +24,8 @@ class AxisNode {
   void set_power(Time now, bool on);
   /// As NMT "reset node" or its watchdog: the electronics begin anew, the motor turns on by its momentum.
   void reset(Time now);
+  /// From now on, and after each boot: ObjectDictionary::refuse_limits_in_pdos().
+  void refuse_limits_in_pdos(std::optional<std::uint32_t> abort_code);
   void receive(Time now, const BusFrame& frame);
   /// One millisecond, which ends at `now`. stuck: something blocks the axis.
   void step(Time now, bool stuck);
@@ -53,6 +55,7 @@ class AxisNode {
 
   int node_;
   std::uint32_t following_window_;
+  std::optional<std::uint32_t> limits_refused_;
   AxisDrive drive_;
   std::unique_ptr<ObjectDictionary> objects_;
   bool powered_ = false;

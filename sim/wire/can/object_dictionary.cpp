@@ -6,6 +6,10 @@ namespace {
 constexpr std::uint32_t kOff = 0x80000000;
 
 bool is_pdo_mapping(int index) { return (index >= 0x1600 && index <= 0x1603) || (index >= 0x1A00 && index <= 0x1A03); }
+bool is_limit(std::uint32_t entry) {
+  const std::uint32_t index = entry >> 16;
+  return index == 0x6081 || index == 0x6083 || index == 0x6084;
+}
 bool is_pdo_parameter(int index) {
   return (index >= 0x1400 && index <= 0x1403) || (index >= 0x1800 && index <= 0x1803);
 }
@@ -102,11 +106,13 @@ std::optional<std::uint32_t> ObjectDictionary::check_pdo(const ObjectKey& key, s
       for (int i = 1; i <= static_cast<int>(value); ++i) {
         const std::uint32_t entry = objects_.at({index, i}).value;
         if (entry == 0) return kNotMappable;  // never set
+        if (is_limit(entry) && limits_refused_) return limits_refused_;
         bits += entry & 0xFF;
       }
       return bits > 64 ? std::optional(kPdoTooLong) : std::nullopt;
     }
     if (objects_.at({index, 0}).value != 0) return kNotInThisState;
+    if (is_limit(value) && limits_refused_ && *limits_refused_ != kPdoTooLong) return limits_refused_;
     const DictionaryObject* mapped = find({static_cast<int>(value >> 16), static_cast<int>(value >> 8 & 0xFF)});
     const bool to_node = index < 0x1A00;
     if (mapped == nullptr || !mapped->mappable || (value & 0xFF) != static_cast<std::uint32_t>(8 * mapped->bytes) ||

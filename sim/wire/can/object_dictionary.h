@@ -39,6 +39,9 @@ class ObjectDictionary {
   /// An abort code when it cannot be written so. PDO parameters are checked as CiA 301 asks.
   [[nodiscard]] std::optional<std::uint32_t> write(const ObjectKey& key, std::uint32_t value, int bytes,
                                                    bool pre_operational);
+  /// No PDO carries profile speed and accelerations: with that abort code, of the entry where it says that one cannot
+  /// be mapped or is out of range, else of the number of entries. Nothing: they can be mapped.
+  void refuse_limits_in_pdos(std::optional<std::uint32_t> abort_code) { limits_refused_ = abort_code; }
   /// As a PDO or the node itself does it: no rights asked. Unknown keys are ignored.
   void put(const ObjectKey& key, std::uint32_t value);
 
@@ -47,6 +50,7 @@ class ObjectDictionary {
                                                        bool pre_operational) const;
 
   std::map<ObjectKey, DictionaryObject> objects_;
+  std::optional<std::uint32_t> limits_refused_;
   std::function<std::uint32_t(const ObjectKey&)> measured_;
 };
 

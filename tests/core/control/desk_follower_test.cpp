@@ -131,7 +131,9 @@ TEST(DeskFollower, HandsBackAtOnceWhenTheRuleSaysSo) {
   Shared shared({DeskMode::standby, HandBack::at_once});
   shared.hear(0, kAbsent, 0);
   EXPECT_FALSE(shared.silent());
-  EXPECT_DOUBLE_EQ(shared.level(0), 0.2);
+  EXPECT_DOUBLE_EQ(shared.level(0), 0);  // nothing was sent until now: from dark, by fade
+  EXPECT_DOUBLE_EQ(shared.level(2), 0.1);
+  EXPECT_DOUBLE_EQ(shared.level(4), 0.2);
   shared.hear(5, kPresent, 0.9);
   EXPECT_TRUE(shared.silent());
   EXPECT_DOUBLE_EQ(shared.level(5), 0.9);

@@ -178,6 +178,60 @@ TEST(StartupStages, WhatWasLostStartsAnewOnlyWhereThatMeansAPowerCut) {
   }
 }
 
+/// A daemon died in the middle of it, and its guardian held what was lit until a controller of ours took over.
+TEST(StartupStages, WhatBurnsAlreadyGoesOnAndTheRestComesByStages) {
+  for (const bool by_watts : {false, true}) {
+    StartingShow small;
+    small.rig.startup.stage_s = 3;
+    if (by_watts) small.rig.startup.max_watts_per_s = 100;
+    small.start();
+    const std::vector<double> wanted = {0.5, 1, 1, 0.9}, before = {0, 1, 0, 0.4};  // stage 2: a, c
+    LightInForce light{before, std::vector<double>(4, 0.2), std::vector<Joints>(4), 60, 1};
+    small.show->go_on_from(at(0), light);
+    small.run(0.1);
+    ASSERT_EQ(small.levels(), before);
+    small.show->apply(at(small.now_s), wanted);
+    const double applied_s = small.now_s;
+    std::vector<double> last = small.levels(), begun(4, -1);
+    EXPECT_EQ(last, before);
+    for (int i = 0; i < 800; ++i) {
+      small.run(0.02);
+      const std::vector<double> level = small.levels();
+      for (std::size_t f = 0; f < 4; ++f) {
+        ASSERT_GE(level[f], last[f]) << f << " at " << small.now_s;
+        if (before[f] == 0 && begun[f] < 0 && level[f] > 0) begun[f] = small.now_s - applied_s;
+      }
+      ASSERT_LE(small.watts(small.now_s + 0.5) - small.watts(small.now_s), by_watts ? 50 + 1e-6 : 1e9) << small.now_s;
+      last = level;
+    }
+    EXPECT_EQ(last, wanted);
+    // A stage's time after what burns went on; 0.6 · 400 W at 100 W/s are done by then. c is behind a's 100 W.
+    EXPECT_NEAR(begun[0], 3, 0.05);
+    EXPECT_NEAR(begun[2], by_watts ? 4 : 3, 0.05);
+  }
+}
+
+TEST(StartupStages, AHeadThatParksBeforeItsTurnIsNeverLit) {
+  for (const bool power_first : {false, true}) {
+    StartingShow small;
+    small.rig.fixtures[1].moves = true;
+    small.rig.fixtures[1].range = {-1, 1, -1, 1};
+    small.rig.fixtures[1].pan_speed_rad_s = small.rig.fixtures[1].tilt_speed_rad_s = 1;
+    small.rig.fixtures[1].park = Joints{0.8, 0.8};
+    small.rig.startup.stage_s = 2;
+    small.start();
+    // As a daemon does that is started anew: the plan, and what was parked.
+    small.show->apply(at(0), std::vector<double>(4, 1.0));
+    if (power_first) small.run(1);
+    ASSERT_TRUE(small.show->park(at(small.now_s), {}));
+    for (int i = 0; i < 600; ++i) {
+      small.run(0.02);
+      ASSERT_EQ(small.levels()[1], 0) << small.now_s;
+    }
+    EXPECT_EQ(small.levels(), (std::vector<double>{1, 0, 1, 1}));
+  }
+}
+
 TEST(StartupStages, AHeadIsDarkUntilItHasFoundItsZero) {
   Rig rig = lamps();
   rig.fixtures[1].moves = true;

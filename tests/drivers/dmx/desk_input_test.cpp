@@ -181,7 +181,7 @@ TEST(DeskInput, StandsByOnlyForSourcesThatReceiversWouldRatherObey) {
     bench.sacn(1, slots_with({{5, 255}}), static_cast<std::uint8_t>(i));  // priority 120
     (void)bench.input->listen(at_ms(i * 25.0));
   }
-  EXPECT_EQ(bench.input->listen(at_ms(2000))[0].presence, DeskPresence::absent);
+  EXPECT_EQ(bench.input->listen(at_ms(2500))[0].presence, DeskPresence::absent);
 }
 
 TEST(DeskInput, IsFoundByAnArtnetDeskAndFollowsIt) {

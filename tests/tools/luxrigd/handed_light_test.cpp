@@ -9,7 +9,7 @@ namespace {
 
 using nlohmann::json;
 
-const LightInForce kHanded{{0.1, 1.0 / 3}, {0, 1}, {{-0.5, 0.25, 0.1}, {1.0 / 7, 0, 0}}, 1.5, 3};
+const LightInForce kHanded{{0.1, 1.0 / 3}, {0, 1}, {{-0.5, 0.25, 0.1}, {1.0 / 7, 0, 0}}, 1.5, 3, {0, 1}};
 
 TEST(HandedLight, ArrivesAsItWas) {
   const auto read = handed_light_of(handed_light_text(kHanded) + "\n", 2);
@@ -17,8 +17,21 @@ TEST(HandedLight, ArrivesAsItWas) {
   EXPECT_EQ(read->level, kHanded.level);
   EXPECT_EQ(read->safe, kHanded.safe);
   EXPECT_EQ(read->joints, kHanded.joints);
+  EXPECT_EQ(read->silent, kHanded.silent);
   EXPECT_EQ(read->hold_s, kHanded.hold_s);
   EXPECT_EQ(read->fade_s, kHanded.fade_s);
+}
+
+TEST(HandedLight, WhereNobodySaysOtherwiseAllOfItIsSent) {
+  json all = json::parse(handed_light_text(kHanded));
+  all.erase("silent");
+  const auto read = handed_light_of(all.dump(), 2);
+  ASSERT_TRUE(read);
+  EXPECT_TRUE(read->silent.empty());
+  for (const json& bad : {json{0}, json{0, 2}, json{0, "x"}, json(1), json::object()}) {
+    all["silent"] = bad;
+    EXPECT_FALSE(handed_light_of(all.dump(), 2)) << bad;
+  }
 }
 
 TEST(HandedLight, WhatIsNotWholeOrNotOfThisRigIsNoLight) {

@@ -92,6 +92,16 @@ class LiveRig {
     const auto answer = http_post_json("127.0.0.1", control["port"], "/fault", body.dump());
     ASSERT_TRUE(answer && answer->status == 200) << (answer ? answer->body : "no answer");
   }
+  /// Peaks of the truth are those from now on.
+  void reset_peaks() {
+    const auto control = json::parse(text_of(ports()))["control"];
+    const auto answer = http_post_json("127.0.0.1", control["port"], "/reset_peaks", "{}");
+    ASSERT_TRUE(answer && answer->status == 200);
+  }
+  /// Of a bus of the simulated rig.
+  [[nodiscard]] int bus_port(const std::string& bus) const {
+    return json::parse(text_of(ports()))["buses"][bus]["port"];
+  }
   json truth() {
     const auto control = json::parse(text_of(ports()))["control"];
     const auto answer = http_get("127.0.0.1", control["port"], "/truth");

@@ -52,9 +52,9 @@ TEST(SacnInput, KnowsNothingDuringTheSamplingPeriodAndThenShowsTheHighestPriorit
 TEST(SacnInput, IsAbsentWhenNobodySends) {
   Receiver receiver(hearing());
   EXPECT_EQ(presence(receiver, 0), DeskPresence::unknown);
-  EXPECT_EQ(presence(receiver, 1499), DeskPresence::unknown);
-  EXPECT_EQ(presence(receiver, 1500), DeskPresence::absent);
-  EXPECT_EQ(receiver.heard(at_ms(1500), 77).presence, DeskPresence::unknown);  // not a universe of its own
+  EXPECT_EQ(presence(receiver, 2499), DeskPresence::unknown);  // a source that is not lost may be as silent
+  EXPECT_EQ(presence(receiver, 2500), DeskPresence::absent);
+  EXPECT_EQ(receiver.heard(at_ms(2500), 77).presence, DeskPresence::unknown);  // not a universe of its own
 }
 
 /// Sends every 25 ms from 0 to the end, beyond sampling.
@@ -116,7 +116,40 @@ TEST(SacnInput, TakesNoPreviewNoTestCodeAndNotItsOwnPackets) {
   EXPECT_EQ(desk.send(receiver, 10, 1), Verdict::ignored);
   EXPECT_EQ(own.send(receiver, 20, 1), Verdict::ignored);
   EXPECT_EQ(receiver.receive(at_ms(30), std::vector<std::uint8_t>(638, 0)), Verdict::not_sacn);
-  EXPECT_EQ(presence(receiver, 2000), DeskPresence::absent);
+  EXPECT_EQ(presence(receiver, 2500), DeskPresence::absent);
+}
+
+/// A new source has no say for 1.5 s (6.6). Between "sampled" and then there is no moment at which nobody is there.
+TEST(SacnInput, IsNeverAbsentBesideASourceThatIsThereHoweverSeldomAndLateItIsHeard) {
+  for (const int period_ms : {25, 900, 2400}) {
+    for (int first_ms = 0; first_ms < period_ms; first_ms += 45) {
+      Receiver receiver(hearing());
+      HandDesk desk(1);
+      int present_at_ms = -1;
+      for (int ms = 0; ms <= 4500; ++ms) {
+        if (ms >= first_ms && (ms - first_ms) % period_ms == 0) desk.send(receiver, ms, 9);
+        const DeskPresence now = presence(receiver, ms);
+        ASSERT_NE(now, DeskPresence::absent) << "every " << period_ms << " from " << first_ms << ": at " << ms;
+        if (present_at_ms < 0 && now == DeskPresence::present) present_at_ms = ms;
+      }
+      EXPECT_LE(present_at_ms, std::max(1500, first_ms + 1500)) << period_ms << ", " << first_ms;
+      EXPECT_GE(present_at_ms, 1500);
+    }
+  }
+}
+
+TEST(SacnInput, IsAbsentWithinFourSecondsWhateverComesAndGoes) {
+  Receiver receiver(hearing());
+  for (int ms = 0; ms < 4000; ms += 100) {  // sources that are gone again before they have a say
+    HandDesk passing(1 + ms / 1000);
+    passing.send(receiver, ms, 9);
+    if (ms % 1000 == 900) {
+      passing.packet.terminated = true;
+      passing.send(receiver, ms + 1, 9);
+    }
+    EXPECT_NE(presence(receiver, ms + 2), DeskPresence::present) << ms;
+  }
+  EXPECT_EQ(presence(receiver, 4001), DeskPresence::absent);
 }
 
 TEST(SacnInput, IgnoresSourcesBelowTheLowestPriority) {

@@ -113,6 +113,32 @@ TEST(AxisNode, ItsPdosAreMappedInTheRightOrderOnly) {
   EXPECT_EQ(node.answer("605#2300140105020000"), "585#8000140122000008") << "not while operational";
 }
 
+/// RPDO 2 off, no entries, then 6081:32 as its first and the number of entries.
+TEST(AxisNode, WhereNoPdoCarriesItsLimitsTheMappingIsRefusedByTheNameGiven) {
+  struct Refusal {
+    std::uint32_t code;
+    const char* entry;
+    const char* count;  ///< of one, when the entry was taken
+  };
+  for (const Refusal& refusal : {Refusal{kNotMappable, "585#8001160141000406", "585#8001160041000406"},
+                                 Refusal{kPdoTooLong, "585#6001160100000000", "585#8001160042000406"},
+                                 Refusal{kOutOfRange, "585#8001160130000906", "585#8001160041000406"}}) {
+    Node node;
+    node.refuse_limits_in_pdos(refusal.code);
+    node.reset(node.now);
+    (void)node.said();
+    EXPECT_EQ(node.answer("605#2301140105030080"), "585#6001140100000000");
+    EXPECT_EQ(node.answer("605#2F01160000000000"), "585#6001160000000000");
+    EXPECT_EQ(node.answer("605#2301160120008160"), refusal.entry);
+    EXPECT_EQ(node.answer("605#2F01160001000000"), refusal.count);
+    EXPECT_EQ(node.answer("605#2381600088130000"), "585#6081600000000000") << "by SDO it is taken";
+    EXPECT_EQ(node.answer("605#2301160120007A60"), "585#6001160100000000") << "a target can be mapped";
+    node.refuse_limits_in_pdos(std::nullopt);
+    EXPECT_EQ(node.answer("605#2301160120008160"), "585#6001160100000000");
+    EXPECT_EQ(node.answer("605#2F01160001000000"), "585#6001160000000000");
+  }
+}
+
 TEST(AxisNode, ActsAndAnswersOnTheSync) {
   Node node;
   map_pdos(node);
