@@ -60,7 +60,7 @@ Result<ExposureSeries> take_series(CameraSource& source, const PictureCamera& ca
   ExposureSeries series;
   int done = 0;
   for (const double wanted_s : *exposures) {
-    source.set_exposure(wanted_s);
+    if (auto set = source.set_exposure(wanted_s); !set) return tl::unexpected(set.error());
     ExposureStep step;
     for (int f = 0; f < wanted.frames; ++f) {
       const auto picture = source.take_raw(now());
