@@ -17,7 +17,7 @@ struct FaultEntry {
   double fallback, least, most;  // of its value
 };
 
-constexpr std::array<FaultEntry, 19> kFaults = {{
+constexpr std::array<FaultEntry, 20> kFaults = {{
     {FaultKind::lost, "lost", 0.5, 0, 1},
     {FaultKind::silent, "silent", 1, 0, 1},
     {FaultKind::dead, "dead", 1, 0, 1},
@@ -37,6 +37,7 @@ constexpr std::array<FaultEntry, 19> kFaults = {{
     {FaultKind::reordered, "reordered", 0.5, 0, 1},
     {FaultKind::reset, "reset", 1, 0, 1},
     {FaultKind::bus_off, "bus_off", 1, 0, 1},
+    {FaultKind::lamp_failure, "lamp_failure", 1, 0, 1},
 }};
 
 constexpr FaultKind kOnLine[] = {FaultKind::checksum, FaultKind::truncated,  FaultKind::gap,
