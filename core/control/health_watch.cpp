@@ -111,6 +111,17 @@ Alarm HealthWatch::alarm_of(const Health& health, const Known& known) const {
   return alarm;
 }
 
+/// A dimmer that obeys, and says that something is wrong all the same: a lamp has burnt out, it is too hot.
+void HealthWatch::warn_of(const Health& health) {
+  const auto found = known_.find(health.device);
+  if (found == known_.end() || found->second.role != Role::fixture) return;
+  alarms_.push_back(
+      {false, health.device,
+       fmt::format("fixture \"{}\" {}: its light may not be what is asked; look at its lamp and its dimmer",
+                   health.device, health.detail),
+       health.since});
+}
+
 void HealthWatch::step_meter(Time now, std::size_t luxmeter, const Health* faulted, const Health* bus_faulted) {
   Meter& meter = meters_[luxmeter];
   const Duration silence = now - meter.heard;
@@ -148,6 +159,7 @@ void HealthWatch::step(Time now) {
   motion_lost_.assign(bus_of_fixture_.size(), false);
   std::vector<const Health*> meter_faulted(meters_.size(), nullptr), bus_faulted(fixtures_on_bus_.size(), nullptr);
   for (const Health& health : report_) {
+    if (health.life == Life::active && !health.detail.empty()) warn_of(health);
     if (health.life != Life::faulted) continue;
     const auto found = known_.find(health.device);
     const Known known = found == known_.end() ? Known{} : found->second;

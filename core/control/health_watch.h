@@ -64,6 +64,7 @@ class HealthWatch {
   };
 
   [[nodiscard]] Alarm alarm_of(const Health& health, const Known& known) const;
+  void warn_of(const Health& health);
   void step_meter(Time now, std::size_t luxmeter, const Health* faulted, const Health* bus_faulted);
 
   const std::map<std::string, Known> known_;

@@ -30,8 +30,8 @@ void PatchMap::claim_slots(std::size_t bus, int universe, int first, int count, 
   slots_[{bus, universe}].push_back({first, count, std::move(owner)});
 }
 
-void PatchMap::claim_registers(std::size_t bus, int unit, bool input_registers, int first, int count, Owner owner) {
-  registers_[{bus, unit, input_registers}].push_back({first, count, std::move(owner)});
+void PatchMap::claim_registers(std::size_t bus, int unit, RegisterTable table, int first, int count, Owner owner) {
+  registers_[{bus, unit, table}].push_back({first, count, std::move(owner)});
 }
 
 void PatchMap::claim_node(std::size_t bus, int node, Owner owner) { nodes_[{bus, node}].push_back(std::move(owner)); }
@@ -71,12 +71,12 @@ void PatchMap::report(const std::vector<Bus>& buses, ProblemList& problems) cons
         if (!is_new && at->second != &claim) other = at->second;
       }
       if (!other) continue;
-      problems.add(claim.owner.place,
-                   fmt::format("{} uses {} register {} of unit {} on bus {}, but {} (line {}) uses {}",
-                               claim.owner.name, where.input ? "input" : "holding", run_of(claim.first, claim.count),
-                               where.unit, buses[where.bus].name, other->owner.name, other->owner.place.line,
-                               run_of(other->first, other->count)),
-                   "give each its own unit or register");
+      problems.add(
+          claim.owner.place,
+          fmt::format("{} uses {} register {} of unit {} on bus {}, but {} (line {}) uses {}", claim.owner.name,
+                      name_of(where.table), run_of(claim.first, claim.count), where.unit, buses[where.bus].name,
+                      other->owner.name, other->owner.place.line, run_of(other->first, other->count)),
+          "give each its own unit or register");
     }
   }
   for (const auto& [where, owners] : nodes_) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/rig/problem_list.h"
+#include "core/rig/register_map/register_map.h"
 #include "core/rig/rig.h"
 
 namespace luxrig {
@@ -18,7 +19,7 @@ class PatchMap {
   };
   /// requires 1 ≤ first, first + count - 1 ≤ 512
   void claim_slots(std::size_t bus, int universe, int first, int count, Owner owner);
-  void claim_registers(std::size_t bus, int unit, bool input_registers, int first, int count, Owner owner);
+  void claim_registers(std::size_t bus, int unit, RegisterTable table, int first, int count, Owner owner);
   void claim_node(std::size_t bus, int node, Owner owner);
 
   /// Reports each claim that meets an earlier one, naming both and, for DMX, an address that is free.
@@ -33,7 +34,7 @@ class PatchMap {
   struct Registers {
     std::size_t bus;
     int unit;
-    bool input;
+    RegisterTable table;
     auto operator<=>(const Registers&) const = default;
   };
   std::map<std::pair<std::size_t, int>, std::vector<Claim>> slots_;  ///< by bus and universe

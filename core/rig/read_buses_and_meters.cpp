@@ -78,8 +78,8 @@ void RigReader::read_luxmeters() {
                                        : s.has("register_map") ? "register_map"
                                        : s.has("unit")         ? "unit"
                                                                : "name");
-        patches.claim_registers(*bus, patch.unit, patch.input_registers, patch.first_register, patch.registers,
-                                {"luxmeter " + in_quotes(meter.name), place});
+        patches.claim_registers(*bus, patch.unit, patch.input_registers ? RegisterTable::input : RegisterTable::holding,
+                                patch.first_register, patch.registers, {"luxmeter " + in_quotes(meter.name), place});
       }
     }
     rig.luxmeters.push_back(std::move(meter));

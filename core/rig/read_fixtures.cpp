@@ -256,7 +256,8 @@ void RigReader::read_fixtures() {
       patches.claim_slots(*bus, dmx.universe, dmx.address, static_cast<int>(dmx.slots.size()), owner);
     } else if (kind == PatchKind::modbus && read_modbus(s, slot_owner, fixture) && bus) {
       const auto& modbus = std::get<ModbusPatch>(fixture.patch);
-      patches.claim_registers(*bus, modbus.unit, false, modbus.holding_register, modbus.format.registers, owner);
+      patches.claim_registers(*bus, modbus.unit, modbus.coil ? RegisterTable::coil : RegisterTable::holding,
+                              modbus.holding_register, modbus.format.registers, owner);
     }
     // A personality that cannot be used leaves open whether the fixture moves, so nothing is said of that.
     if (of_mode || !s.has("personality")) {

@@ -100,6 +100,7 @@ bool RigReader::read_modbus(Section& s, const std::optional<SlotOwner>& owner, F
     if (level) {
       const MappedRegister& reg = patch.map->registers[*level];
       patch.holding_register = reg.address;
+      patch.coil = reg.table == RegisterTable::coil;
       patch.format = reg.format;
       patch.dark_raw = static_cast<int>(reg.range_raw->first);
       patch.full_scale_raw = static_cast<int>(reg.range_raw->second);
@@ -126,7 +127,7 @@ bool RigReader::read_modbus_meter(Section& s, Luxmeter& meter) {
         named_register(s, "reading", "illuminance", *patch.map, patch.map->with_role(RegisterRole::illuminance));
     if (!reading) return false;
     const MappedRegister& reg = patch.map->registers[*reading];
-    patch.input_registers = reg.input;
+    patch.input_registers = reg.table == RegisterTable::input;
     patch.first_register = reg.address;
     patch.registers = reg.format.registers;
     patch.number = reg.format.number;

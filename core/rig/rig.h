@@ -130,7 +130,7 @@ struct RegisterFormat {
 
 struct RegisterMap;
 
-/// A dimmer channel behind a holding register, or two.
+/// A dimmer channel behind a holding register, or two; or a relay behind a coil.
 struct ModbusPatch {
   int unit = 1;               ///< 0…255
   int holding_register = 0;   ///< 0-based, as on the wire
@@ -138,6 +138,7 @@ struct ModbusPatch {
   int dark_raw = 0;           ///< at none
   RegisterFormat format{};
   std::shared_ptr<const RegisterMap> map{};  ///< of its product; null: only the register is known
+  bool coil = false;  ///< holding_register is the number of a coil (functions 5 and 15): on or off
 };
 
 using Patch = std::variant<DmxPatch, ModbusPatch>;

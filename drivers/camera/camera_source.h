@@ -20,8 +20,9 @@ class CameraSource : public Driver, public PictureTaker {
   virtual Result<RawPicture> take_raw(Time now) = 0;
   /// Least and most; nothing when exposures cannot be chosen. Opens the camera.
   [[nodiscard]] virtual Result<std::optional<std::pair<double, double>>> exposures_s(Time now) = 0;
-  /// Of the next pictures. Within the range above.
-  virtual void set_exposure(double exposure_s) = 0;
+  /// Of the next pictures; outside the range above they are refused. Cause::invalid, and nothing is set: what is no
+  /// positive number, or a camera whose exposure cannot be chosen.
+  virtual Result<void> set_exposure(double exposure_s) = 0;
 
  protected:
   /// requires that check_cameras() found nothing wrong with it.

@@ -21,7 +21,7 @@ class FileCamera final : public CameraSource {
   DriverBounds bounds() const override {
     DriverBounds bounds;
     bounds.read = std::chrono::seconds(10);  // a large picture on a slow disk
-    bounds.notices_loss = false;             // nobody says whether more pictures will come
+    bounds.fault_after = bounds.read;        // that its folder has gone; that no more pictures come nobody says
     return bounds;
   }
   Result<void> activate(Time now) override {
@@ -40,6 +40,7 @@ class FileCamera final : public CameraSource {
   }
   Result<RawPicture> take_raw(Time now) override {
     if (!active_) return inactive();
+    life_.count_sent();
     auto picture = newest();
     if (!picture) return faulted(now, picture.error());
     life_.active(now);
@@ -47,7 +48,9 @@ class FileCamera final : public CameraSource {
     return picture;
   }
   Result<std::optional<std::pair<double, double>>> exposures_s(Time) override { return std::nullopt; }
-  void set_exposure(double) override {}
+  Result<void> set_exposure(double) override {
+    return tl::unexpected(Fault{Cause::invalid, camera_.name, "exposures of files are what their names say", {}});
+  }
 
  private:
   Result<RawPicture> newest() const {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "drivers/camera/camera_source.h"
 #include "drivers/camera/video_settings.h"
@@ -23,7 +24,7 @@ class VideoCamera final : public CameraSource {
  public:
   VideoCamera(std::unique_ptr<VideoChannel> channel, const PictureCamera& camera)
       : CameraSource(camera), channel_(std::move(channel)) {}
-  ~VideoCamera() override { channel_->close(); }
+  ~VideoCamera() override { leave(); }
 
   DriverBounds bounds() const override {
     DriverBounds bounds;
@@ -42,7 +43,7 @@ class VideoCamera final : public CameraSource {
     return {};
   }
   void deactivate(Time now) override {
-    channel_->close();
+    leave();
     active_ = false;
     life_.configured(now);
   }
@@ -50,9 +51,11 @@ class VideoCamera final : public CameraSource {
   Result<RawPicture> take_raw(Time now) override {
     if (!active_) return inactive();
     if (life_.life() == Life::faulted && !channel_->is_open() && now < retry_at_) return tl::unexpected(life_.fault());
+    life_.count_sent();
     auto picture = fresh_picture(now);
     if (!picture) {
-      channel_->close();  // whatever is wrong, the next attempt begins anew
+      if (picture.error().cause == Cause::network) found_.reset();  // it lost power, and what it was set to
+      channel_->close();                                            // whatever is wrong, the next attempt begins anew
       retry_at_ = now + kVideoRetry;
       return faulted(now, picture.error());
     }
@@ -66,7 +69,12 @@ class VideoCamera final : public CameraSource {
     if (auto opened = channel_->open(); !opened) return faulted(now, opened.error());
     return exposure_range_s(*channel_);
   }
-  void set_exposure(double exposure_s) override { camera_.taking.exposure_s = exposure_s; }
+  Result<void> set_exposure(double exposure_s) override {
+    if (!(exposure_s > 0) || !std::isfinite(exposure_s))
+      return tl::unexpected(Fault{Cause::invalid, camera_.name, fmt::format("no exposure of {} s", exposure_s), {}});
+    camera_.taking.exposure_s = exposure_s;
+    return {};
+  }
 
  private:
   /// Until a fresh frame must have come: those thrown away, and one more that began before the call.
@@ -80,6 +88,7 @@ class VideoCamera final : public CameraSource {
     const bool was_open = channel_->is_open();
     if (auto opened = channel_->open(); !opened) return tl::unexpected(opened.error());
     if (!was_open) {
+      if (!found_) found_ = settings_found(*channel_);
       if (auto set = set_format(); !set) return tl::unexpected(set.error());
     }
     auto settings = fix_settings(*channel_, camera_.taking);
@@ -163,7 +172,15 @@ class VideoCamera final : public CameraSource {
                                 {}});
   }
 
+  /// Gives the camera back as it was found. It may be closed after a failure and be there all the same.
+  void leave() {
+    if (found_ && channel_->open()) (void)give_back(*channel_, *found_);
+    found_.reset();
+    channel_->close();
+  }
+
   std::unique_ptr<VideoChannel> channel_;
+  std::optional<FoundSettings> found_;  ///< nothing: never opened, or not since it had power
   FrameLayout layout_;
   bool unsettled_ = true;  ///< a control has changed since the last picture
   Time retry_at_{};

@@ -13,6 +13,20 @@ constexpr double kExposureKept = 0.02;      ///< relative
 constexpr std::int64_t kManual = 1;         ///< V4L2_EXPOSURE_MANUAL
 constexpr std::int64_t kLinearGamma = 100;  ///< USB Video Class 1.5, 4.2.2.3.8: hundredths
 
+/// Values first, then what would choose them.
+constexpr VideoControl kGivenBackInOrder[] = {
+    VideoControl::exposure,
+    VideoControl::gain,
+    VideoControl::contrast,
+    VideoControl::brightness,
+    VideoControl::gamma,
+    VideoControl::backlight_compensation,
+    VideoControl::autogain,
+    VideoControl::auto_white_balance,
+    VideoControl::exposure_auto_priority,
+    VideoControl::exposure_auto,
+};
+
 tl::unexpected<Fault> not_kept(std::string detail) {
   return tl::unexpected(Fault{Cause::refused, {}, std::move(detail), {}});
 }
@@ -102,6 +116,27 @@ std::optional<std::pair<double, double>> exposure_range_s(VideoChannel& channel)
   if (!range) return std::nullopt;
   return std::pair{kExposureUnit_s * static_cast<double>(std::max<std::int64_t>(1, range->least)),
                    kExposureUnit_s * static_cast<double>(range->most)};
+}
+
+FoundSettings settings_found(VideoChannel& channel) {
+  FoundSettings found;
+  for (const VideoControl control : kGivenBackInOrder) {
+    if (!channel.range(control)) continue;
+    if (const auto value = channel.get(control)) found.emplace_back(control, *value);
+  }
+  return found;
+}
+
+Result<void> give_back(VideoChannel& channel, const FoundSettings& found) {
+  Result<void> outcome;
+  for (const auto& [control, value] : found) {
+    const auto now = channel.get(control);
+    if (now && *now == value) continue;
+    auto done = now ? channel.set(control, value) : tl::unexpected(now.error());
+    if (!done && outcome) outcome = std::move(done);
+    if (!channel.is_open()) break;  // it has gone
+  }
+  return outcome;
 }
 
 Result<VideoSettings> fix_settings(VideoChannel& channel, const PictureTaking& wanted) {

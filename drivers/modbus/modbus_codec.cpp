@@ -35,26 +35,59 @@ std::uint16_t get16(std::span<const std::uint8_t> in, std::size_t at) {
   return static_cast<std::uint16_t>(in[at] << 8 | in[at + 1]);
 }
 
+constexpr std::uint16_t kCoilOn = 0xff00;  // 6.5
+
+std::size_t most_of(Function function) {
+  switch (function) {
+    case Function::read_coils:
+    case Function::read_discrete:
+      return kMostReadBits;
+    case Function::read_holding:
+    case Function::read_input:
+      return kMostReadRegisters;
+    case Function::write_coil:
+    case Function::write_single:
+      return 1;
+    case Function::write_coils:
+      return kMostWriteCoils;
+    case Function::write_multiple:
+      return kMostWriteRegisters;
+  }
+  return 0;
+}
+
+/// What stands where a request has its count, and a write's answer the same.
+std::size_t value_field(const Request& request) {
+  if (reads(request.function)) return request.count;
+  if (request.function == Function::write_coil) return request.values[0] != 0 ? kCoilOn : 0;
+  return request.function == Function::write_single ? std::size_t{request.values[0]} : request.values.size();
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> encode_pdu(const Request& request) {
   const std::size_t count = reads(request.function) ? request.count : request.values.size();
-  const std::size_t most = reads(request.function)                      ? kMostReadRegisters
-                           : request.function == Function::write_single ? 1
-                                                                        : kMostWriteRegisters;
-  LUXRIG_CHECK(count >= 1 && count <= most, "{} registers with function {}", count, static_cast<int>(request.function));
+  LUXRIG_CHECK(count >= 1 && count <= most_of(request.function), "{} registers with function {}", count,
+               static_cast<int>(request.function));
   LUXRIG_CHECK(request.first_register >= 0 && static_cast<std::size_t>(request.first_register) + count <= 65536,
                "registers {} + {}", request.first_register, count);
   LUXRIG_CHECK(request.unit >= 0 && request.unit <= 255, "unit {}", request.unit);
 
-  const bool multiple = request.function == Function::write_multiple;
-  std::vector<std::uint8_t> out(multiple ? kWriteData + 2 * count : kWriteAnswerSize, 0);
+  const bool coils = request.function == Function::write_coils;
+  const bool multiple = request.function == Function::write_multiple || coils;
+  const std::size_t bytes = coils ? (count + 7) / 8 : 2 * count;
+  std::vector<std::uint8_t> out(multiple ? kWriteData + bytes : kWriteAnswerSize, 0);
   out[kFunction] = static_cast<std::uint8_t>(request.function);
   put16(out, kAddress, static_cast<std::size_t>(request.first_register));
-  put16(out, kValue, request.function == Function::write_single ? request.values[0] : count);
+  put16(out, kValue, value_field(request));
   if (multiple) {
-    out[kWriteByteCount] = static_cast<std::uint8_t>(2 * count);
-    for (std::size_t i = 0; i < count; ++i) put16(out, kWriteData + 2 * i, request.values[i]);
+    out[kWriteByteCount] = static_cast<std::uint8_t>(bytes);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!coils)
+        put16(out, kWriteData + 2 * i, request.values[i]);
+      else if (request.values[i] != 0)
+        out[kWriteData + i / 8] = static_cast<std::uint8_t>(out[kWriteData + i / 8] | 1u << i % 8);
+    }
   }
   return out;
 }
@@ -88,16 +121,20 @@ Answer decode_pdu(const Request& request, std::span<const std::uint8_t> pdu) {
   if (pdu[kFunction] != function) return garbled(fmt::format("answer with function {}", pdu[kFunction]));
 
   if (reads(request.function)) {
-    if (pdu[kByteCount] != 2 * request.count || pdu.size() != kReadData + 2 * request.count) {
-      return garbled(fmt::format("{} data bytes announced, {} there, {} wanted", pdu[kByteCount],
-                                 pdu.size() - kReadData, 2 * request.count));
+    const std::size_t bytes = data_bytes(request);
+    if (pdu[kByteCount] != bytes || pdu.size() != kReadData + bytes) {
+      return garbled(
+          fmt::format("{} data bytes announced, {} there, {} wanted", pdu[kByteCount], pdu.size() - kReadData, bytes));
     }
-    for (std::size_t i = 0; i < request.count; ++i) answer.values.push_back(get16(pdu, kReadData + 2 * i));
+    for (std::size_t i = 0; i < request.count; ++i) {
+      // Bits beyond the last that was asked for are padding, and some products leave what they have there.
+      answer.values.push_back(is_of_bits(request.function)
+                                  ? static_cast<std::uint16_t>(pdu[kReadData + i / 8] >> i % 8 & 1)
+                                  : get16(pdu, kReadData + 2 * i));
+    }
   } else {
-    const std::size_t echo =
-        request.function == Function::write_single ? std::size_t{request.values[0]} : request.values.size();
     if (pdu.size() != kWriteAnswerSize || get16(pdu, kAddress) != request.first_register ||
-        get16(pdu, kValue) != echo) {
+        get16(pdu, kValue) != value_field(request)) {
       return garbled("the echo of a write differs from what was written");
     }
   }

@@ -17,19 +17,36 @@ namespace luxrig::modbus {
 inline constexpr std::size_t kLongestAdu = 260;
 inline constexpr std::size_t kMostReadRegisters = 125;   ///< functions 3 and 4
 inline constexpr std::size_t kMostWriteRegisters = 123;  ///< function 16
+inline constexpr std::size_t kMostReadBits = 2000;       ///< functions 1 and 2
+inline constexpr std::size_t kMostWriteCoils = 1968;     ///< function 15
 
-enum class Function : std::uint8_t { read_holding = 3, read_input = 4, write_single = 6, write_multiple = 16 };
+enum class Function : std::uint8_t {
+  read_coils = 1,
+  read_discrete = 2,
+  read_holding = 3,
+  read_input = 4,
+  write_coil = 5,
+  write_single = 6,
+  write_coils = 15,
+  write_multiple = 16
+};
 
 struct Request {
   int unit = 1;  ///< 0…255
   Function function = Function::read_holding;
   int first_register = 0;             ///< 0…65535, as on the wire
-  std::size_t count = 1;              ///< registers to read; ignored when writing
-  std::vector<std::uint16_t> values;  ///< registers to write: 1 for write_single
+  std::size_t count = 1;              ///< registers or bits to read; ignored when writing
+  std::vector<std::uint16_t> values;  ///< registers to write, or bits (0 or 1): 1 for write_single and write_coil
 };
 
-[[nodiscard]] constexpr bool reads(Function function) {
-  return function == Function::read_holding || function == Function::read_input;
+[[nodiscard]] constexpr bool reads(Function function) { return function <= Function::read_input; }
+[[nodiscard]] constexpr bool is_of_bits(Function function) {
+  return function == Function::read_coils || function == Function::read_discrete || function == Function::write_coil ||
+         function == Function::write_coils;
+}
+/// Of the data of an answer to a read.
+[[nodiscard]] constexpr std::size_t data_bytes(const Request& request) {
+  return is_of_bits(request.function) ? (request.count + 7) / 8 : 2 * request.count;
 }
 
 /// Function and data. requires counts within the limits above and registers that end at or before 65535.
@@ -39,7 +56,7 @@ struct Request {
 [[nodiscard]] std::vector<std::uint8_t> encode(const Request& request, std::uint16_t transaction);
 
 enum class Verdict {
-  good,       ///< `values` holds what was read (empty after a write)
+  good,       ///< `values` holds what was read, bits as 0 and 1 (empty after a write)
   exception,  ///< the device understood and said no: `exception_code`
   foreign,    ///< well-formed header of another transaction: `transaction` says which
   garbled     ///< breaks the protocol: `what` says where

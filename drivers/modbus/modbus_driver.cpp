@@ -29,6 +29,7 @@ ModbusDriver::ModbusDriver(std::unique_ptr<modbus::Link> link, const ModbusTimin
       rules_(modbus::unit_rules(rig, bus, timing.response_timeout, timing.behind_gateway)),
       writes_(rig, bus, timing.refresh, rules_),
       reads_(rig, bus, timing.poll, rules_),
+      failures_(rules_, writes_.channels()),
       setup_(rules_),
       life_(rig.buses[bus].name),
       backoff_(kShortestBackoff) {
@@ -76,7 +77,11 @@ void ModbusDriver::deactivate(Time now) {
 
 std::vector<Health> ModbusDriver::health(Time) const {
   std::vector<Health> all{life_.health()};
-  for (const LifeRecord& life : channel_lives_) all.push_back(life.health());
+  for (std::size_t i = 0; i < channel_lives_.size(); ++i) {
+    all.push_back(channel_lives_[i].health());
+    const std::string failing = all.back().life == Life::active ? failures_.of_channel(i) : std::string();
+    if (!failing.empty()) all.back().detail = "reports " + failing;
+  }
   for (const Meter& meter : meters_) all.push_back(meter.life.health());
   return all;
 }
@@ -88,6 +93,11 @@ Result<void> ModbusDriver::write(Time now, std::span<const LevelCommand> command
   if (!ensure_connected(now)) return tl::unexpected(life_.fault());
   for (const WriteSchedule::Run& run : writes_.due(now, units_silent_)) {
     if (start_until.passed() || write_run(now, run, start_until) == Outcome::over) break;
+  }
+  if (life_.life() != Life::faulted) {
+    for (const modbus::FailureBits::Batch& batch : failures_.due(now, units_silent_)) {
+      if (start_until.passed() || read_failures(now, batch, start_until) == Outcome::over) break;
+    }
   }
   if (life_.life() == Life::faulted) return tl::unexpected(life_.fault());
   for (const LifeRecord& life : channel_lives_) {
@@ -140,7 +150,7 @@ Result<void> ModbusDriver::set_wanted(std::span<const LevelCommand> commands) {
   }
   for (const LevelCommand& command : commands) {
     const auto channel = find(command.fixture);
-    channel->wanted = modbus::words_from_drive(command.drive, channel->patch);
+    channel->wanted = modbus::words_from_drive(command.drive, channel->patch, channel->wanted);
   }
   return {};
 }
@@ -171,6 +181,7 @@ void ModbusDriver::disconnect() {
   writes_.forget();
   setup_.restart_all();  // a new connection may lead to a device that has restarted
   units_silent_.forget();
+  failures_.forget();
 }
 
 void ModbusDriver::reconnect_later(Time now) {

@@ -10,6 +10,7 @@
 #include "drivers/driver.h"
 #include "drivers/io/deadline.h"
 #include "drivers/life.h"
+#include "drivers/modbus/modbus_failure_bits.h"
 #include "drivers/modbus/modbus_link.h"
 #include "drivers/modbus/modbus_schedule.h"
 #include "drivers/modbus/modbus_units.h"
@@ -72,6 +73,7 @@ class ModbusDriver final : public Driver, public LevelOutput, public LuxReader {
   Outcome write_run(Time now, const modbus::WriteSchedule::Run& run, const Deadline& start_until);
   Outcome read_batch(Time now, const modbus::ReadSchedule::Batch& batch, const Deadline& start_until,
                      std::vector<LuxReading>& readings);
+  Outcome read_failures(Time now, const modbus::FailureBits::Batch& batch, const Deadline& start_until);
   void take_reading(Time now, Meter& meter, std::span<const std::uint16_t> words, std::vector<LuxReading>& readings);
 
   std::unique_ptr<modbus::Link> link_;
@@ -79,6 +81,7 @@ class ModbusDriver final : public Driver, public LevelOutput, public LuxReader {
   std::map<int, modbus::UnitRules> rules_;
   modbus::WriteSchedule writes_;
   modbus::ReadSchedule reads_;
+  modbus::FailureBits failures_;
   modbus::UnitBackoff units_silent_;
   modbus::UnitSetup setup_;
   std::map<int, Deadline> resting_;        ///< units that want a gap between requests

@@ -30,6 +30,7 @@ void ModbusDriver::unit_silent(Time now, int unit, const Fault& fault) {
   const Duration timeout = rules_.at(unit).timeout;
   units_silent_.silent(unit, now, link_->answers_are_numbered() ? kFirstPauseWhenNumbered : 2 * timeout, timeout);
   setup_.restart(unit);
+  failures_.forget(unit);
   unit_faulted(now, unit, fault);
   life_.count_error();
   const bool nobody =
@@ -79,7 +80,9 @@ ModbusDriver::Outcome ModbusDriver::set_up(Time now, int unit, const Deadline& s
     if (start_until.passed()) return Outcome::skipped;
     Request request;
     request.unit = unit;
-    request.function = write->words.count == 1 ? Function::write_single : Function::write_multiple;
+    request.function = write->coil               ? Function::write_coil
+                       : write->words.count == 1 ? Function::write_single
+                                                 : Function::write_multiple;
     request.first_register = write->first_register;
     request.values.assign(write->words.word.begin(),
                           write->words.word.begin() + static_cast<std::ptrdiff_t>(write->words.count));
@@ -127,11 +130,12 @@ ModbusDriver::Outcome ModbusDriver::write_run(Time now, const WriteSchedule::Run
   }
   for (std::size_t i = run.begin; i < run.end; ++i) {
     channel_lives_[i].faulted(
-        now, {fault_.cause,
-              {},
-              fmt::format("unit {} register {}: {}", request.unit, writes_.channels()[i].patch.holding_register,
-                          modbus::exception_name(link_->last_exception())),
-              {}});
+        now,
+        {fault_.cause,
+         {},
+         fmt::format("unit {} {} {}: {}", request.unit, writes_.channels()[i].patch.coil ? "coil" : "register",
+                     writes_.channels()[i].patch.holding_register, modbus::exception_name(link_->last_exception())),
+         {}});
   }
   return outcome;
 }
@@ -171,6 +175,17 @@ ModbusDriver::Outcome ModbusDriver::read_batch(Time now, const ReadSchedule::Bat
                                               modbus::exception_name(link_->last_exception())),
                                   {}});
   }
+  return outcome;
+}
+
+ModbusDriver::Outcome ModbusDriver::read_failures(Time now, const modbus::FailureBits::Batch& batch,
+                                                  const Deadline& start_until) {
+  const Outcome outcome = ask(now, batch.request, start_until);
+  if (outcome == Outcome::skipped) return outcome;
+  failures_.asked(batch, now);
+  // A unit that refuses them says nothing of itself; its levels are as good as before.
+  if (outcome == Outcome::refused) life_.count_error();
+  if (outcome == Outcome::done) failures_.answered(batch, values_);
   return outcome;
 }
 

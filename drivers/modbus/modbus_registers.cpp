@@ -13,7 +13,13 @@ std::uint16_t raw_from_drive(double drive, int full_scale_raw) {
 
 RegisterWords words_from_drive(double drive, const ModbusPatch& patch) {
   const double share = std::clamp(drive, 0.0, 1.0);
+  if (patch.coil) return {{static_cast<std::uint16_t>(share >= kRelayOnFrom ? 1 : 0), 0}, 1};
   return words_of(patch.dark_raw + share * (patch.full_scale_raw - patch.dark_raw), patch.format);
+}
+
+RegisterWords words_from_drive(double drive, const ModbusPatch& patch, const std::optional<RegisterWords>& now) {
+  if (patch.coil && now && drive < kRelayOnFrom && drive >= kRelayOffBelow) return *now;
+  return words_from_drive(drive, patch);
 }
 
 double lux_from_registers(const ModbusMeterPatch& patch, std::span<const std::uint16_t> raw) {

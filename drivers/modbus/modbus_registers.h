@@ -14,8 +14,15 @@ namespace luxrig::modbus {
 /// drive 0…1 to the nearest of 0…full_scale_raw.
 [[nodiscard]] std::uint16_t raw_from_drive(double drive, int full_scale_raw);
 
-/// drive 0…1 to what goes into the registers of a dimmer: the nearest of dark_raw…full_scale_raw.
+/// drive 0…1 to what goes into the registers of a dimmer: the nearest of dark_raw…full_scale_raw; of a coil 0 or 1.
 [[nodiscard]] RegisterWords words_from_drive(double drive, const ModbusPatch& patch);
+
+/// A relay is on or off: a drive that wanders about a half must not wear it out.
+inline constexpr double kRelayOnFrom = 0.5, kRelayOffBelow = 0.4;
+
+/// The same where `now` is there already: of a coil, between the two it stays as it is.
+[[nodiscard]] RegisterWords words_from_drive(double drive, const ModbusPatch& patch,
+                                             const std::optional<RegisterWords>& now);
 
 /// The lux that a meter's registers stand for, exact for all whole numbers. May be negative, or not finite.
 /// requires raw.size() == patch.registers (1 or 2).

@@ -40,7 +40,7 @@ std::vector<std::uint8_t> encode_rtu(const Request& request) {
   return frame;
 }
 
-std::size_t rtu_answer_size(const Request& request) { return reads(request.function) ? 5 + 2 * request.count : 8; }
+std::size_t rtu_answer_size(const Request& request) { return reads(request.function) ? 5 + data_bytes(request) : 8; }
 
 RtuSearch find_rtu_answer(const Request& request, std::span<const std::uint8_t> bytes) {
   RtuSearch search;

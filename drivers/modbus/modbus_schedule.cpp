@@ -18,7 +18,8 @@ WriteSchedule::WriteSchedule(const Rig& rig, std::size_t bus, Duration refresh, 
     channels_.push_back(channel);
   }
   std::stable_sort(channels_.begin(), channels_.end(), [](const Channel& a, const Channel& b) {
-    return std::tie(a.patch.unit, a.patch.holding_register) < std::tie(b.patch.unit, b.patch.holding_register);
+    return std::tie(a.patch.unit, a.patch.coil, a.patch.holding_register) <
+           std::tie(b.patch.unit, b.patch.coil, b.patch.holding_register);
   });
 }
 
@@ -38,7 +39,8 @@ std::vector<WriteSchedule::Run> WriteSchedule::due(Time now, const UnitBackoff& 
     if (!runs.empty() && runs.back().end == i && !single_.contains(patch.unit) &&
         runs.back().registers + registers <= largest_.at(patch.unit)) {
       const ModbusPatch& before = channels_[i - 1].patch;
-      if (before.unit == patch.unit && before.holding_register + before.format.registers == patch.holding_register) {
+      if (before.unit == patch.unit && before.coil == patch.coil &&
+          before.holding_register + before.format.registers == patch.holding_register) {
         runs.back().end = i + 1;
         runs.back().registers += registers;
         continue;
@@ -64,7 +66,10 @@ Request WriteSchedule::request_for(const Run& run) const {
   const ModbusPatch& first = channels_[run.begin].patch;
   Request request;
   request.unit = first.unit;
-  request.function = run.registers == 1 ? Function::write_single : Function::write_multiple;
+  if (first.coil)
+    request.function = run.registers == 1 ? Function::write_coil : Function::write_coils;
+  else
+    request.function = run.registers == 1 ? Function::write_single : Function::write_multiple;
   request.first_register = first.holding_register;
   for (std::size_t i = run.begin; i < run.end; ++i) {
     const RegisterWords& words = *channels_[i].wanted;

@@ -74,7 +74,8 @@ UnitSetup::UnitSetup(const std::map<int, UnitRules>& rules) {
     if (!rule.map || rule.map->setup.empty()) continue;
     for (const SetupWrite& write : rule.map->setup) {
       const MappedRegister& reg = rule.map->registers[write.index];
-      units_[unit].writes.push_back({reg.address, words_of(write.value_raw, reg.format), reg.name});
+      units_[unit].writes.push_back(
+          {reg.address, words_of(write.value_raw, reg.format), reg.table == RegisterTable::coil, reg.name});
     }
   }
 }

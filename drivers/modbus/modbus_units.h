@@ -63,6 +63,7 @@ class UnitSetup {
   struct Write {
     int first_register = 0;
     RegisterWords words;
+    bool coil = false;
     std::string name;  ///< of the register
   };
   /// The next one; null when all has been written.

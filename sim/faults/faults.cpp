@@ -17,7 +17,7 @@ struct FaultEntry {
   double fallback, least, most;  // of its value
 };
 
-constexpr std::array<FaultEntry, 20> kFaults = {{
+constexpr std::array<FaultEntry, 21> kFaults = {{
     {FaultKind::lost, "lost", 0.5, 0, 1},
     {FaultKind::silent, "silent", 1, 0, 1},
     {FaultKind::dead, "dead", 1, 0, 1},
@@ -38,6 +38,7 @@ constexpr std::array<FaultEntry, 20> kFaults = {{
     {FaultKind::reset, "reset", 1, 0, 1},
     {FaultKind::unmappable, "unmappable", 1, 1, 3},
     {FaultKind::bus_off, "bus_off", 1, 0, 1},
+    {FaultKind::lamp_failure, "lamp_failure", 1, 0, 1},
 }};
 
 constexpr FaultKind kOnLine[] = {FaultKind::checksum, FaultKind::truncated,  FaultKind::gap,

@@ -12,6 +12,8 @@
 ///   exception  answers with Modbus exception code value (default 4, device failure)
 ///   unpowered  has no power: no light, no answer; afterwards its registers are as they are when power comes
 ///
+///   lamp_failure  fixture on Modbus: its lamp gives no light; a product with failure bits says so in them
+///
 /// On a serial line only, of its answers:
 ///   checksum        a wrong checksum
 ///   truncated       the last value bytes are missing (default 2)
@@ -71,7 +73,8 @@ enum class FaultKind {
   reordered,
   reset,
   unmappable,
-  bus_off
+  bus_off,
+  lamp_failure
 };
 [[nodiscard]] std::string_view name_of(FaultKind kind);
 [[nodiscard]] std::optional<FaultKind> fault_named(std::string_view name);

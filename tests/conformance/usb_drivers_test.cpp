@@ -275,6 +275,48 @@ TEST(UdmxDriver, CancelsATransferThatHangs) {
   EXPECT_EQ(u.bench.slot(1), 191);
 }
 
+TEST(UdmxDriver, SaysThatRefusedTransfersHoldTheLightAndIsWellAgainByItself) {
+  UdmxBench u;
+  u.bench.cycles(5, 0.5);
+  u.bench.cable.stalls = 60;  // some 1.4 s, too few for a lost device
+  EXPECT_LE(u.bench.until(Life::faulted, 0.75), milliseconds(900));
+  EXPECT_NE(u.bench.health().detail.find("light follows late"), std::string::npos) << u.bench.health().detail;
+  EXPECT_FALSE(u.bench.cycle(0.75));
+  EXPECT_EQ(u.bench.slot(1), 128);
+  while (u.bench.cable.stalls > 0) (void)u.bench.cycle(0.75);
+  u.bench.cycles(5, 0.75);
+  EXPECT_EQ(u.bench.slot(1), 191);
+  EXPECT_EQ(u.bench.health().life, Life::faulted) << "one good transfer is not enough";
+  EXPECT_LE(u.bench.until(Life::active, 0.75), milliseconds(1200));
+  EXPECT_EQ(u.bench.health().detail, "");
+  EXPECT_EQ(u.bench.health().errors, 60u) << "each failed transfer, and no more";
+  EXPECT_EQ(u.bench.cable.closed, 0);
+}
+
+TEST(UdmxDriver, SaysThatTransfersHangNowAndThenThoughNeverThreeInARow) {
+  UdmxBench u;
+  u.bench.cycles(5, 0.5);
+  bool known = false;
+  for (int i = 0; i < 440; ++i) {
+    if (i % 60 == 0) u.bench.cable.hangs = 1;
+    (void)u.bench.cycle(0.2 + i / 1000.0);
+    known = known || u.bench.health().life == Life::faulted;
+  }
+  EXPECT_TRUE(known);
+  EXPECT_LE(u.bench.until(Life::active, 0.75), milliseconds(1200));
+  EXPECT_EQ(u.bench.slot(1), 191);
+}
+
+TEST(UdmxDriver, CountsRefusalsThatNobodySeesAndIsWell) {
+  UdmxBench u;
+  for (int i = 0; i < 44 * 20; ++i) {
+    if (i % 3 == 0) u.bench.cable.stalls = 1;
+    (void)u.bench.cycle((i % 200) / 199.0);
+    ASSERT_EQ(u.bench.health().life, Life::active) << i << u.bench.health().detail;
+  }
+  EXPECT_GT(u.bench.health().errors, 200u);
+}
+
 TEST(UdmxDriver, TellsAWidgetThatForgotEverythingWithinASecond) {
   UdmxBench u;
   u.bench.cycles(10, 0.5);

@@ -21,15 +21,23 @@ using namespace luxrig::modbus;
 using Bytes = std::vector<std::uint8_t>;
 
 Request request_for(std::uint8_t choice) {
-  switch (choice % 4) {
+  switch (choice % 8) {
     case 0:
       return {1, Function::read_holding, 2, 2, {}};
     case 1:
       return {17, Function::read_input, 0, 125, {}};
     case 2:
       return {1, Function::write_single, 0, 1, {255}};
-    default:
+    case 3:
       return {1, Function::write_multiple, 10, 0, {128, 512}};
+    case 4:
+      return {1, Function::read_coils, 19, 19, {}};
+    case 5:
+      return {17, Function::read_discrete, 0, 2000, {}};
+    case 6:
+      return {1, Function::write_coil, 172, 0, {1}};
+    default:
+      return {1, Function::write_coils, 19, 0, {1, 0, 1, 1, 0, 0, 1, 1, 1, 0}};
   }
 }
 
@@ -72,8 +80,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (!std::isfinite(lux) || lux < 0) std::abort();
   }
 
-  // The exchange costs a connection: it is for what the decoder believes, and for one in sixteen of what it does not, of
-  // those inputs that libmodbus could take for an answer.
+  if (decoded.verdict == Verdict::good && reads(request.function)) {
+    if (decoded.values.size() != request.count) std::abort();
+    for (const std::uint16_t value : decoded.values)
+      if (is_of_bits(request.function) && value > 1) std::abort();
+  }
+
+  // The exchange costs a connection: it is for what the decoder believes, and for one in sixteen of what it does not,
+  // of those inputs that libmodbus could take for an answer.
   if (answer.size() < 8 || answer.size() > 600) return 0;
   std::uint32_t sum = 0;
   for (const std::uint8_t byte : answer) sum = sum * 31 + byte;

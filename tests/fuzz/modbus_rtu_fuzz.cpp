@@ -14,21 +14,36 @@ using namespace luxrig::modbus;
 using Bytes = std::vector<std::uint8_t>;
 
 Request rtu_request_for(std::uint8_t choice) {
-  switch (choice % 4) {
+  switch (choice % 8) {
     case 0:
       return {1, Function::read_holding, 2, 2, {}};
     case 1:
       return {17, Function::read_input, 0, 125, {}};
     case 2:
       return {1, Function::write_single, 0, 1, {255}};
-    default:
+    case 3:
       return {1, Function::write_multiple, 10, 0, {128, 512}};
+    case 4:
+      return {1, Function::read_coils, 19, 19, {}};
+    case 5:
+      return {17, Function::read_discrete, 0, 2000, {}};
+    case 6:
+      return {1, Function::write_coil, 172, 0, {1}};
+    default:
+      return {1, Function::write_coils, 19, 0, {1, 0, 1, 1, 0, 0, 1, 1, 1, 0}};
   }
 }
 
 class AnyUnits final : public luxrig::sim::ModbusUnits {
  public:
   [[nodiscard]] bool has(int) const override { return true; }
+  [[nodiscard]] bool has_bits(int) const override { return true; }
+  std::optional<luxrig::sim::ModbusException> write_coils(int, int first,
+                                                          std::span<const std::uint16_t> bits) override {
+    LUXRIG_CHECK(first >= 0 && static_cast<std::size_t>(first) + bits.size() <= 65536, "{}", first);
+    for (const std::uint16_t bit : bits) LUXRIG_CHECK(bit <= 1, "{}", bit);
+    return std::nullopt;
+  }
   std::optional<luxrig::sim::ModbusException> read(int, luxrig::sim::RegisterKind, int first,
                                                    std::span<std::uint16_t> values) override {
     LUXRIG_CHECK(first >= 0 && static_cast<std::size_t>(first) + values.size() <= 65536, "{}", first);
@@ -57,8 +72,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const Bytes asked = encode_rtu(request);
     Bytes right = asked;  // of a single write the echo is the answer
     if (reads(request.function)) {
-      right = {asked[0], asked[1], static_cast<std::uint8_t>(2 * request.count)};
-      right.resize(3 + 2 * request.count, 0x5A);
+      right = {asked[0], asked[1], static_cast<std::uint8_t>(data_bytes(request))};
+      right.resize(3 + data_bytes(request), 0x5A);
     } else if (request.function == Function::write_multiple) {
       right.resize(6);
     } else {

@@ -18,6 +18,10 @@ class Units final : public ModbusUnits {
   bool has(int unit) const override { return unit < 32; }
   std::optional<ModbusException> read(int unit, RegisterKind kind, int first,
                                       std::span<std::uint16_t> values) override {
+    if (kind == RegisterKind::coil || kind == RegisterKind::discrete) {
+      for (std::size_t i = 0; i < values.size(); ++i) values[i] = coils_[{unit, first + static_cast<int>(i)}];
+      return std::nullopt;
+    }
     if (kind == RegisterKind::input || first + static_cast<int>(values.size()) > 200) {
       return ModbusException::illegal_address;
     }
@@ -33,9 +37,18 @@ class Units final : public ModbusUnits {
     for (std::size_t i = 0; i < values.size(); ++i) registers_[{unit, first + static_cast<int>(i)}] = values[i];
     return std::nullopt;
   }
+  bool has_bits(int unit) const override { return unit % 2 == 0; }
+  std::optional<ModbusException> write_coils(int unit, int first, std::span<const std::uint16_t> bits) override {
+    if (bits.empty() || first < 0 || first + bits.size() > 65536) std::abort();
+    for (std::size_t i = 0; i < bits.size(); ++i) {
+      if (bits[i] > 1) std::abort();
+      coils_[{unit, first + static_cast<int>(i)}] = bits[i];
+    }
+    return std::nullopt;
+  }
 
  private:
-  std::map<std::pair<int, int>, std::uint16_t> registers_;
+  std::map<std::pair<int, int>, std::uint16_t> registers_, coils_;
 };
 
 void check(const Bytes& reply) {
@@ -43,9 +56,9 @@ void check(const Bytes& reply) {
   if (static_cast<std::size_t>(reply[4] << 8 | reply[5]) != reply.size() - 6) std::abort();
   if ((reply[7] & 0x80) != 0) {
     if (reply.size() != 9 || reply[8] < 1 || reply[8] > 11) std::abort();
-  } else if (reply[7] == 3 || reply[7] == 4) {
+  } else if (reply[7] >= 1 && reply[7] <= 4) {
     if (reply.size() != 9u + reply[8]) std::abort();
-  } else if ((reply[7] != 6 && reply[7] != 16) || reply.size() != 12) {
+  } else if ((reply[7] != 5 && reply[7] != 6 && reply[7] != 15 && reply[7] != 16) || reply.size() != 12) {
     std::abort();
   }
 }

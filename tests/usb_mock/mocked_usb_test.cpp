@@ -181,6 +181,22 @@ TEST(MockedUsb, AStallIsCountedAndAHangCancelled) {
   desk.mock.with([](const UsbfsMock::State& state) { EXPECT_EQ(state.discarded, 1); });
 }
 
+TEST(MockedUsb, RefusalsThatHoldTheLightAreSaidAndPass) {
+  sim::UdmxWidget widget;
+  Desk desk(widget, "udmx");
+  desk.mock.plug();
+  desk.activate();
+  ASSERT_TRUE(desk.lit(0.5, 128));
+  desk.mock.with([](UsbfsMock::State& state) { state.stalls = 50; });  // 1.2 s at 44 Hz, fewer than a lost device's 100
+  EXPECT_TRUE(desk.run_until(0.75, [&] { return desk.health().life == Life::faulted; }));
+  EXPECT_NE(desk.health().detail.find("light follows late"), std::string::npos) << desk.health().detail;
+  EXPECT_EQ(desk.slot(1), 128);
+  EXPECT_TRUE(desk.lit(0.75, 191));
+  EXPECT_TRUE(desk.run_until(0.75, [&] { return desk.health().life == Life::active; }));
+  EXPECT_EQ(desk.health().errors, 50u);
+  desk.mock.with([](const UsbfsMock::State& state) { EXPECT_EQ(state.claims, 1); });
+}
+
 TEST(MockedUsb, TakesTheInterfaceFromTheKernelsDriverAndGivesItBack) {
   sim::EnttecWidget widget;
   sim::FtdiChip chip(widget, "DMX USB PRO", "EN012345", false);

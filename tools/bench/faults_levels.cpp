@@ -73,13 +73,16 @@ std::vector<LevelBus> level_buses() {
       plan(FaultKind::exception, 1, 1, "transfers are stalled"),
       plan(FaultKind::garbled),
   };
+  std::vector<FaultPlan> slow_cable = cable;
+  slow_cable.push_back(plan(FaultKind::lost, 0.05, 0.5, "some transfers hang"));
+  slow_cable.push_back(plan(FaultKind::slow, 50, 400));
   const std::pair<const char*, OptionValue> quick_units{"response_timeout_ms", std::int64_t{20}};
   return {
       {"sacn", false, {{"destination", std::string("127.0.0.1")}}, network},
       {"artnet", false, {{"destination", std::string("127.0.0.1")}}, network},
       {"enttec_pro", true, {}, cable},
       {"open_dmx", true, {}, cable},
-      {"udmx", true, {}, cable},
+      {"udmx", true, {}, slow_cable},
       {"modbus_tcp", true, {{"host", std::string("127.0.0.1")}, quick_units}, units},
       {"modbus_rtu",
        true,

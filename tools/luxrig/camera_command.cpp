@@ -36,10 +36,10 @@ Checked<OpenCamera> open_camera(const CameraArguments& arguments) {
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < rig->cameras.size(); ++i) {
     const PictureCamera& camera = rig->cameras[i];
-    if (arguments.camera == camera.name && camera.taking.source == PictureSource::none)
+    if (!arguments.sim && arguments.camera == camera.name && camera.taking.source == PictureSource::none)
       return refuse(fmt::format("camera \"{}\" has no source of pictures", camera.name),
                     "write source = \"v4l2\" or \"files\"");
-    if (camera.taking.source == PictureSource::none) continue;
+    if (!arguments.sim && camera.taking.source == PictureSource::none) continue;
     names.push_back(camera.name);
     if (arguments.camera.empty() || arguments.camera == camera.name) found.push_back(i);
   }
@@ -50,7 +50,7 @@ Checked<OpenCamera> open_camera(const CameraArguments& arguments) {
   if (found.size() > 1)
     return refuse(fmt::format("{} cameras have a source of pictures", found.size()), "name one with --camera");
   OpenCamera open{std::move(*rig), found.front(), nullptr};
-  open.source = make_camera(open.rig, open.index);
+  if (!arguments.sim) open.source = make_camera(open.rig, open.index);
   return open;
 }
 
@@ -178,6 +178,8 @@ int run_camera_shot(const CameraArguments& arguments) {
 int run_camera_check(const CameraArguments& arguments) {
   auto camera = open_camera(arguments);
   if (!camera) return report(camera.error());
+  if (arguments.levels || arguments.sim)
+    return run_camera_levels(arguments, camera->rig, camera->index, camera->source.get());
   SeriesWanted wanted;
   if (arguments.shortest_ms) wanted.shortest_s = *arguments.shortest_ms / 1000;
   if (arguments.longest_ms) wanted.longest_s = *arguments.longest_ms / 1000;
@@ -231,6 +233,13 @@ void add_camera_command(CLI::App& command, CameraArguments& arguments, int& code
   check->add_option("--longest-ms", arguments.longest_ms, "longest exposure")->check(CLI::PositiveNumber);
   check->add_option("--steps", arguments.steps, "exposures")->capture_default_str()->check(CLI::Range(3, 40));
   check->add_option("--frames", arguments.frames, "pictures of each")->capture_default_str()->check(CLI::Range(3, 100));
+  check->add_flag("--levels", arguments.levels,
+                  "by known dimmer levels of a fixture of the rig, which its daemon drives, instead of by exposures; "
+                  "of source = \"files\": levels stand in their names (wall_40pct_1.png)");
+  check->add_option("--fixture", arguments.fixture, "with --levels: what lights the scene (else the only one)");
+  check->add_option("--port", arguments.port, "with --levels: of the daemon")->capture_default_str();
+  check->add_flag("--sim", arguments.sim, "by levels, with a simulated rig and its camera");
+  check->add_option("--sim-seed", arguments.sim_seed, "of the simulated rig")->capture_default_str();
   check->callback([&] { code = run_camera_check(arguments); });
 }
 

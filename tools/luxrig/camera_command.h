@@ -5,6 +5,8 @@
 #include <optional>
 #include <string>
 
+#include "drivers/camera/camera_source.h"
+
 namespace CLI {
 class App;
 }
@@ -18,9 +20,17 @@ struct CameraArguments {
   std::optional<double> shortest_ms, longest_ms;
   int steps = 9, frames = 5;
   bool json = false;
+  bool levels = false;  ///< check: by the rig's light at known levels, instead of by exposures
+  bool sim = false;     ///< the same with a simulated rig, and its camera
+  std::uint64_t sim_seed = 1;
+  std::string fixture;  ///< what lights it; empty: the only one
+  int port = 9620;      ///< of the daemon that drives the rig
 };
 int run_camera_shot(const CameraArguments& arguments);
 int run_camera_check(const CameraArguments& arguments);
+
+/// requires `camera` to be one of the rig's, and its source unless arguments.sim.
+int run_camera_levels(const CameraArguments& arguments, const Rig& rig, std::size_t camera, CameraSource* source);
 
 /// The subcommands and their options; the chosen one's exit code goes to `code`.
 void add_camera_command(CLI::App& command, CameraArguments& arguments, int& code);

@@ -14,27 +14,18 @@ namespace {
 constexpr std::size_t kJudgedPixels = 300'000;
 constexpr double kDefaultSpan = 16;
 
-/// The samples that are judged: green or grey, of pixels evenly chosen where there are many.
-std::vector<float> judged_samples(const RawPicture& picture) {
-  const auto channels = static_cast<std::size_t>(picture.channels);
-  const std::size_t pixels = picture.samples.size() / channels;
-  const std::size_t stride = (pixels + kJudgedPixels - 1) / kJudgedPixels;
-  std::vector<float> samples;
-  for (std::size_t p = 0; p < pixels; p += std::max<std::size_t>(1, stride))
-    samples.push_back(picture.samples[p * channels + channels / 2]);
-  return samples;
-}
-
 Result<std::vector<double>> exposures_for(CameraSource& source, const PictureCamera& camera,
                                           const SeriesWanted& wanted) {
   const auto range = source.exposures_s(now());
   if (!range) return tl::unexpected(range.error());
   if (!*range)
-    return tl::unexpected(Fault{Cause::refused,
-                                camera.name,
-                                "the camera has no control of its exposure: expose by hand, save a picture of each "
-                                "exposure, and check those with source = \"files\"",
-                                {}});
+    return tl::unexpected(
+        Fault{Cause::refused,
+              camera.name,
+              "the camera has no control of its exposure: check it by the rig's light with --levels, or "
+              "expose by hand, save a picture of each exposure, and check those with source = "
+              "\"files\"",
+              {}});
   const double middle = camera.taking.exposure_s.value_or(0.01);
   const double shortest =
       std::clamp(wanted.shortest_s.value_or(middle / kDefaultSpan), (*range)->first, (*range)->second);
@@ -52,6 +43,16 @@ Result<std::vector<double>> exposures_for(CameraSource& source, const PictureCam
 
 }  // namespace
 
+std::vector<float> judged_samples(const RawPicture& picture) {
+  const auto channels = static_cast<std::size_t>(picture.channels);
+  const std::size_t pixels = picture.samples.size() / channels;
+  const std::size_t stride = (pixels + kJudgedPixels - 1) / kJudgedPixels;
+  std::vector<float> samples;
+  for (std::size_t p = 0; p < pixels; p += std::max<std::size_t>(1, stride))
+    samples.push_back(picture.samples[p * channels + channels / 2]);
+  return samples;
+}
+
 Result<ExposureSeries> take_series(CameraSource& source, const PictureCamera& camera, const SeriesWanted& wanted,
                                    const Progress& progress) {
   if (auto active = source.activate(now()); !active) return tl::unexpected(active.error());
@@ -60,7 +61,7 @@ Result<ExposureSeries> take_series(CameraSource& source, const PictureCamera& ca
   ExposureSeries series;
   int done = 0;
   for (const double wanted_s : *exposures) {
-    source.set_exposure(wanted_s);
+    if (auto set = source.set_exposure(wanted_s); !set) return tl::unexpected(set.error());
     ExposureStep step;
     for (int f = 0; f < wanted.frames; ++f) {
       const auto picture = source.take_raw(now());

@@ -19,6 +19,9 @@ struct SeriesWanted {
 [[nodiscard]] Result<ExposureSeries> take_series(CameraSource& source, const PictureCamera& camera,
                                                  const SeriesWanted& wanted, const Progress& progress);
 
+/// The samples that are judged: green or grey, of pixels evenly chosen where there are many.
+[[nodiscard]] std::vector<float> judged_samples(const RawPicture& picture);
+
 /// Of files whose names state exposures ("wall_12.5ms_3.png").
 [[nodiscard]] Result<ExposureSeries> series_of_files(const PictureCamera& camera);
 

@@ -4,6 +4,29 @@
 
 namespace luxrig {
 
+const char* name_of(RegisterTable table) {
+  switch (table) {
+    case RegisterTable::holding:
+      return "holding";
+    case RegisterTable::input:
+      return "input";
+    case RegisterTable::coil:
+      return "coil";
+    case RegisterTable::discrete:
+      return "discrete";
+  }
+  return "unknown";
+}
+
+bool RegisterMap::concerns(std::size_t failure, std::size_t level) const {
+  const int bit = registers[failure].of_several;
+  if (bit == 0 || bit == registers[level].of_several) return true;
+  for (const std::size_t other : with_role(RegisterRole::level)) {
+    if (registers[other].of_several > 0) return false;
+  }
+  return true;
+}
+
 std::vector<std::size_t> RegisterMap::with_role(RegisterRole role) const {
   std::vector<std::size_t> found;
   for (std::size_t i = 0; i < registers.size(); ++i) {

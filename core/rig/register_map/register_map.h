@@ -12,22 +12,34 @@
 
 namespace luxrig {
 
-enum class RegisterRole { other, level, illuminance, temperature, status, setting };
+enum class RegisterRole { other, level, illuminance, temperature, status, setting, failure };
+/// The four tables of a unit, each with addresses of its own.
+enum class RegisterTable {
+  holding,  ///< functions 3, 6, 16
+  input,    ///< function 4
+  coil,     ///< one bit: functions 1, 5, 15
+  discrete  ///< one bit: function 2
+};
+[[nodiscard]] constexpr bool is_bit(RegisterTable table) {
+  return table == RegisterTable::coil || table == RegisterTable::discrete;
+}
+[[nodiscard]] const char* name_of(RegisterTable table);
 enum class RegisterAccess { read_write, read_only, write_only };
 
 /// One number of the product; with `count` in the file, one for each.
 struct MappedRegister {
   std::string name;
   RegisterRole role = RegisterRole::other;
-  int address = 0;     ///< 0-based, of the first of format.registers
-  bool input = false;  ///< input register (function 4), else holding (function 3)
+  int address = 0;  ///< 0-based, of the first of format.registers
+  RegisterTable table = RegisterTable::holding;
   RegisterFormat format;
   double scale = 1;  ///< of one count, in `unit`
   std::string unit;
   RegisterAccess access = RegisterAccess::read_write;
   std::optional<std::pair<double, double>> range_raw;  ///< always there for a level: dark, full
   int power_on_raw = 0;
-  Place place;  ///< in the map file
+  int of_several = 0;  ///< with `count` in the file: 1, 2 …; 0: it is alone
+  Place place;         ///< in the map file
 };
 
 enum class DataLoss { hold, dark, watchdog };
@@ -50,6 +62,9 @@ struct RegisterMap {
   std::vector<MappedRegister> registers;
   std::vector<SetupWrite> setup;
 
+  /// Of a bit by which the product says that something is wrong (role failure): whether that concerns this level. One
+  /// of a series is about the level of its number, where levels are a series, too; any other is about all of them.
+  [[nodiscard]] bool concerns(std::size_t failure, std::size_t level) const;
   /// Those of one role, in the order of the file.
   [[nodiscard]] std::vector<std::size_t> with_role(RegisterRole role) const;
   [[nodiscard]] std::optional<std::size_t> find(std::string_view register_name) const;

@@ -124,22 +124,46 @@ class MapReader {
     }
   }
 
+  /// A bit is 0 or 1 and nothing else.
+  void check_bit(Section& s, MappedRegister& reg) {
+    for (const std::string_view key : {"type", "word_order", "byte_order", "scale", "unit", "range"}) {
+      s.refuse(key,
+               fmt::format("{} has no effect: a {} is one bit", key,
+                           reg.table == RegisterTable::coil ? "coil" : "discrete input"),
+               "remove it");
+    }
+    reg.format = {};
+    reg.range_raw = {0, 1};
+    if (reg.power_on_raw < 0 || reg.power_on_raw > 1) {
+      problems_.add(s.place_of("power_on"), fmt::format("power_on {} of one bit", reg.power_on_raw), "choose 0 or 1");
+      reg.power_on_raw = 0;
+    }
+    if (reg.role == RegisterRole::illuminance)
+      problems_.add(s.place_of("what"), "an illuminance of one bit", "say kind input or holding");
+  }
+
   /// What a role asks of the rest.
   void check_role(Section& s, MappedRegister& reg) {
     const auto wrong = [&](std::string_view key, std::string what, std::string mend) {
       problems_.add(s.place_of(key), std::move(what), std::move(mend));
     };
-    if (reg.input && reg.access != RegisterAccess::read_only) {
+    const bool input = reg.table == RegisterTable::input, discrete = reg.table == RegisterTable::discrete;
+    if ((input || discrete) && reg.access != RegisterAccess::read_only) {
       if (s.has("access"))
-        wrong("access", "an input register can only be read", "say access = \"read\", or kind holding");
+        wrong("access", fmt::format("{} can only be read", input ? "an input register" : "a discrete input"),
+              fmt::format("say access = \"read\", or kind {}", input ? "holding" : "coil"));
       reg.access = RegisterAccess::read_only;
+    }
+    if (is_bit(reg.table)) check_bit(s, reg);
+    if (reg.role == RegisterRole::failure && (!is_bit(reg.table) || reg.access == RegisterAccess::write_only)) {
+      wrong("what", "a failure that is no bit which can be read", "say kind discrete, or kind coil, or call it status");
     }
     if (reg.role == RegisterRole::level) {
       if (reg.access == RegisterAccess::read_only) {
         wrong("what", "a level that cannot be written", "correct kind or access, or say what it is");
       }
       s.refuse("scale", "scale has no effect: a level runs from 0 to 1 over its range", "remove it");
-      if (!s.has("range")) s.require("range", "whose two ends are dark and full");
+      if (!s.has("range") && !is_bit(reg.table)) s.require("range", "whose two ends are dark and full");
     }
     if (reg.role == RegisterRole::illuminance) {
       if (reg.access == RegisterAccess::write_only) {
@@ -172,7 +196,7 @@ class MapReader {
     bool good = s.read("name", reg.name);
     s.read_choice("what", reg.role);
     good &= s.read("address", reg.address);
-    s.read_choice("kind", reg.input);
+    s.read_choice("kind", reg.table);
     read_format(s, reg);
     s.read("scale", reg.scale);
     s.read("unit", reg.unit);
@@ -201,6 +225,7 @@ class MapReader {
       MappedRegister one = reg;
       if (count > 1) one.name = fmt::format("{}{}", reg.name, i + 1);
       one.address += i * step;
+      one.of_several = count > 1 ? i + 1 : 0;
       if (!names_.try_emplace(one.name, map_.registers.size()).second) {
         problems_.add(s.place_of("name"), fmt::format("a second register is called {}", in_quotes(one.name)),
                       "give each its own name");
@@ -240,19 +265,18 @@ class MapReader {
   }
 
   void check_overlaps() {
-    std::map<std::pair<bool, int>, std::size_t> taken;  // by kind and address
+    std::map<std::pair<RegisterTable, int>, std::size_t> taken;  // by kind and address
     for (std::size_t i = 0; i < map_.registers.size(); ++i) {
       const MappedRegister& reg = map_.registers[i];
       for (int word = 0; word < reg.format.registers; ++word) {
-        const auto [at, is_new] = taken.try_emplace({reg.input, reg.address + word}, i);
+        const auto [at, is_new] = taken.try_emplace({reg.table, reg.address + word}, i);
         if (is_new) continue;
         if (problems_.full()) return;
         const MappedRegister& other = map_.registers[at->second];
-        problems_.add(
-            reg.place,
-            fmt::format("{} and {} (line {}) share {} register {}", in_quotes(reg.name), in_quotes(other.name),
-                        other.place.line, reg.input ? "input" : "holding", reg.address + word),
-            "give each its own address");
+        problems_.add(reg.place,
+                      fmt::format("{} and {} (line {}) share {} register {}", in_quotes(reg.name),
+                                  in_quotes(other.name), other.place.line, name_of(reg.table), reg.address + word),
+                      "give each its own address");
         break;
       }
     }

@@ -4,6 +4,7 @@
 
 #include "drivers/dmx/send_rate.h"
 #include "drivers/dmx/udmx/changed_range.h"
+#include "drivers/dmx/udmx/lateness.h"
 #include "drivers/dmx/usb/usb_dmx_driver.h"
 #include "drivers/io/deadline.h"
 
@@ -18,7 +19,7 @@ constexpr OptionDoc kUdmxOptions[] = {kUsbSerialOption, kUsbPortOption, kUsbUniv
 constexpr std::uint8_t kSetChannelRange = 2;  // anyma's uDMX_cmds.h; value: how many, index: first, from 0
 constexpr int kMostFailures = 3;              // in a row
 constexpr int kMostStalls = 100;              // in a row, about 2 s: healthy units stall once in a while
-constexpr milliseconds kLastWait(20);         // in real time, before a transfer counts as hung
+constexpr milliseconds kLastWait(20);         // in real time, before a transfer counts as slow or hung
 
 class UdmxDriver final : public UsbDmxDriver {
  public:
@@ -45,10 +46,13 @@ class UdmxDriver final : public UsbDmxDriver {
         if (completion.transferred != range_.count) return failed(now, "ended early");
         known_ = on_its_way_;
         failures_ = stalls_ = 0;
+        lateness_.arrived();
         life_.count_received(now);
-        return well(now);
+        if (!lateness_.should_be_known()) well(now);
+        return;
       case UsbStatus::stalled:
         life_.count_error();
+        lateness_.went_wrong();
         known_.reset();  // part of it may have arrived
         if (++stalls_ < kMostStalls) return;
         return lost(now, {Cause::refused, {}, fmt::format("{} requests in a row were refused: no uDMX?", stalls_), {}});
@@ -63,6 +67,7 @@ class UdmxDriver final : public UsbDmxDriver {
 
   void failed(Time now, std::string_view how) {
     life_.count_error();
+    lateness_.went_wrong();
     known_.reset();
     if (++failures_ < kMostFailures) return;
     lost(now, {Cause::timeout,
@@ -74,15 +79,36 @@ class UdmxDriver final : public UsbDmxDriver {
 
   void send_frame(Time now) override {
     latest_ = now;
-    if (is_hung(now)) take_ended(now, kLastWait);
+    if (is_slow(now)) take_ended(now, kLastWait);
     if (!usb().is_open()) return;
     if (is_hung(now)) {
       usb().cancel(*sending_);
       take_ended(now, kLastWait);
       if (!usb().is_open()) return;
     }
+    watch_lateness(now);
     if (sending_) return;
     if (const auto range = wanted_range(now); range && rate_.take(now)) send(now, *range);
+  }
+
+  /// The widget is there and the light follows too late, or not at all: that is a fault like any other, until it ends.
+  void watch_lateness(Time now) {
+    const bool was_known = lateness_.should_be_known();
+    lateness_.step(now, known_ && *known_ == slots());
+    if (lateness_.should_be_known()) {
+      const double window_s = to_seconds(udmx::kUdmxLateWindow);
+      life_.faulted(now,
+                    {Cause::timeout,
+                     {},
+                     fmt::format("{}: light follows late or not at all, for {:.1f} of the last {:g} s ({} of {} "
+                                 "transfers went wrong): use another port, a shorter cable, no hub, or another widget",
+                                 usb().where(), to_seconds(lateness_.late_for()), window_s, lateness_.failures(),
+                                 lateness_.transfers()),
+                     {}},
+                    false);  // each failed transfer was counted
+    } else if (was_known) {
+      life_.active(now);
+    }
   }
 
   /// The widget repeats what it has for ever, so that must be the newest.
@@ -102,8 +128,10 @@ class UdmxDriver final : public UsbDmxDriver {
   void closed() override {
     sending_.reset();
     known_.reset();
+    lateness_ = {};
   }
 
+  bool is_slow(Time now) const { return sending_ && now - sent_at_ > udmx::kUdmxLateAfter / 2; }
   bool is_hung(Time now) const { return sending_ && now - sent_at_ > kUsbTransferTimeout; }
 
   std::optional<SlotRange> wanted_range(Time now) const {
@@ -120,9 +148,11 @@ class UdmxDriver final : public UsbDmxDriver {
     sent_at_ = now;
     if (range == udmx::kAllSlots) whole_at_ = now;
     life_.count_sent();
+    lateness_.sent();
   }
 
   SendRate rate_;
+  udmx::Lateness lateness_;
   std::optional<UsbTicket> sending_;
   SlotRange range_;
   std::optional<DmxSlots> known_;  ///< what the widget has

@@ -13,6 +13,8 @@ using Bytes = std::span<const std::uint8_t>;
 constexpr std::size_t kHeader = 7;
 constexpr int kLeastLength = 2, kMostLength = 254;  // unit + PDU of 1…253 bytes
 constexpr int kMostRead = 125, kMostWrite = 123;
+constexpr int kMostReadBits = 2000, kMostWriteBits = 1968;
+constexpr int kCoilOn = 0xff00;
 
 std::vector<std::uint8_t> refusal(std::uint8_t function, int code) {
   return {static_cast<std::uint8_t>(function | 0x80), static_cast<std::uint8_t>(code)};
@@ -66,10 +68,67 @@ std::vector<std::uint8_t> write_registers(int unit, Bytes request, ModbusUnits& 
   return {request.begin(), request.begin() + 5};
 }
 
+// 6.1, 6.2: function, first, count -> function, byte count, bits from the lowest of the first byte on.
+std::vector<std::uint8_t> read_bits(int unit, Bytes request, ModbusUnits& units) {
+  const std::uint8_t function = request[0];
+  if (!units.has_bits(unit)) return refusal(function, ModbusException::illegal_function);
+  if (request.size() != 5) return refusal(function, ModbusException::illegal_value);
+  const int first = big_endian_16(request, 1), count = big_endian_16(request, 3);
+  if (count < 1 || count > kMostReadBits) return refusal(function, ModbusException::illegal_value);
+  if (first + count > 65536) return refusal(function, ModbusException::illegal_address);
+  if (const auto refused = units.refuses(unit, function, count)) return refusal(function, *refused);
+  std::vector<std::uint16_t> bits(static_cast<std::size_t>(count), 0);
+  const RegisterKind kind = function == 1 ? RegisterKind::coil : RegisterKind::discrete;
+  if (const auto refused = units.read(unit, kind, first, bits)) return refusal(function, *refused);
+  const std::size_t bytes = (bits.size() + 7) / 8;
+  std::vector<std::uint8_t> answer(2 + bytes, 0);
+  answer[0] = function;
+  answer[1] = static_cast<std::uint8_t>(bytes);
+  for (std::size_t i = 0; i < bits.size(); ++i)
+    if (bits[i] != 0) answer[2 + i / 8] = static_cast<std::uint8_t>(answer[2 + i / 8] | 1u << i % 8);
+  return answer;
+}
+
+// 6.5: function, address, ff00 or 0000 -> the same.
+std::vector<std::uint8_t> write_coil(int unit, Bytes request, ModbusUnits& units) {
+  if (!units.has_bits(unit)) return refusal(request[0], ModbusException::illegal_function);
+  if (request.size() != 5) return refusal(request[0], ModbusException::illegal_value);
+  const int value = big_endian_16(request, 3);
+  if (value != 0 && value != kCoilOn) return refusal(request[0], ModbusException::illegal_value);
+  const std::uint16_t bit = value == kCoilOn ? 1 : 0;
+  if (const auto refused = units.write_coils(unit, big_endian_16(request, 1), {&bit, 1}))
+    return refusal(request[0], *refused);
+  return {request.begin(), request.end()};
+}
+
+// 6.11: function, first, count, byte count, bits -> function, first, count.
+std::vector<std::uint8_t> write_coils(int unit, Bytes request, ModbusUnits& units) {
+  if (!units.has_bits(unit)) return refusal(request[0], ModbusException::illegal_function);
+  if (request.size() < 6) return refusal(request[0], ModbusException::illegal_value);
+  const int first = big_endian_16(request, 1), count = big_endian_16(request, 3), bytes = (count + 7) / 8;
+  if (count < 1 || count > kMostWriteBits || request[5] != bytes ||
+      request.size() != 6 + static_cast<std::size_t>(bytes)) {
+    return refusal(request[0], ModbusException::illegal_value);
+  }
+  if (first + count > 65536) return refusal(request[0], ModbusException::illegal_address);
+  if (const auto refused = units.refuses(unit, request[0], count)) return refusal(request[0], *refused);
+  std::vector<std::uint16_t> bits;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) bits.push_back(request[6 + i / 8] >> i % 8 & 1);
+  if (const auto refused = units.write_coils(unit, first, bits)) return refusal(request[0], *refused);
+  return {request.begin(), request.begin() + 5};
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> answer_pdu(int unit, Bytes request, ModbusUnits& units) {
   switch (request[0]) {
+    case 1:
+    case 2:
+      return read_bits(unit, request, units);
+    case 5:
+      return write_coil(unit, request, units);
+    case 15:
+      return write_coils(unit, request, units);
     case 3:
     case 4:
       return read_registers(unit, request, units);

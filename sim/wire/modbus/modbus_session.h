@@ -1,6 +1,6 @@
 #pragma once
 /// One connection of a Modbus TCP server. Pure: bytes come in, answers come out.
-/// Source: MODBUS Application Protocol V1.1b3 and Messaging on TCP/IP V1.0b; functions 3, 4, 6 and 16.
+/// Source: MODBUS Application Protocol V1.1b3 and Messaging on TCP/IP V1.0b; functions 1 to 6, 15 and 16.
 
 #include <cstdint>
 #include <optional>
@@ -18,7 +18,7 @@ enum class ModbusException : std::uint8_t {
   gateway_no_response = 11
 };
 
-enum class RegisterKind { holding, input };
+enum class RegisterKind { holding, input, coil, discrete };
 
 /// The units behind one port, as a gateway has them. Addresses are 0-based; first + count never passes 65536.
 class ModbusUnits {
@@ -30,6 +30,16 @@ class ModbusUnits {
                                               std::span<std::uint16_t> values) = 0;
   /// Writes all of `values` to holding registers, or none.
   virtual std::optional<ModbusException> write(int unit, int first, std::span<const std::uint16_t> values) = 0;
+  /// Whether it knows functions 1, 2, 5 and 15 at all; else exception 1. read() is then asked for bits, as 0 and 1.
+  [[nodiscard]] virtual bool has_bits(int unit) const {
+    (void)unit;
+    return false;
+  }
+  /// Writes all of `bits` (0 or 1) to coils, or none.
+  virtual std::optional<ModbusException> write_coils(int unit, int first, std::span<const std::uint16_t> bits) {
+    (void)unit, (void)first, (void)bits;
+    return ModbusException::illegal_address;
+  }
   /// Whether the product refuses requests of this kind: a function it does not know, more registers than it takes.
   [[nodiscard]] virtual std::optional<ModbusException> refuses(int unit, int function, int count) const {
     (void)unit, (void)function, (void)count;

@@ -8,6 +8,20 @@
 namespace luxrig::sim {
 namespace {
 
+RegisterKind kind_of(RegisterTable table) {
+  switch (table) {
+    case RegisterTable::holding:
+      return RegisterKind::holding;
+    case RegisterTable::input:
+      return RegisterKind::input;
+    case RegisterTable::coil:
+      return RegisterKind::coil;
+    case RegisterTable::discrete:
+      return RegisterKind::discrete;
+  }
+  return RegisterKind::holding;
+}
+
 constexpr Duration kSlowClock = std::chrono::milliseconds(2);  // a gap that is nearly over counts as over
 
 }  // namespace
@@ -20,7 +34,7 @@ RigUnits::RigUnits(const EndpointParts& parts) : parts_(parts) {
     unit_of(patch->unit, rig.fixtures[f].name, patch->map);
     Number number{Number::Is::dimmer, f, patch->format, static_cast<double>(patch->dark_raw),
                   static_cast<double>(patch->full_scale_raw)};
-    add(patch->unit, RegisterKind::holding, patch->holding_register, number);
+    add(patch->unit, patch->coil ? RegisterKind::coil : RegisterKind::holding, patch->holding_register, number);
   }
   for (std::size_t m = 0; m < rig.luxmeters.size(); ++m) {
     if (rig.luxmeters[m].bus != parts.bus) continue;
@@ -34,7 +48,7 @@ RigUnits::RigUnits(const EndpointParts& parts) : parts_(parts) {
     if (!unit.map) continue;
     std::vector<std::size_t> number_of;  // of each register of the map
     for (const MappedRegister& reg : unit.map->registers) {
-      const RegisterKind kind = reg.input ? RegisterKind::input : RegisterKind::holding;
+      const RegisterKind kind = kind_of(reg.table);
       const auto there = places_.find({id, kind, reg.address});
       if (there == places_.end()) {
         Number number;
@@ -48,8 +62,18 @@ RigUnits::RigUnits(const EndpointParts& parts) : parts_(parts) {
       }
       Number& number = numbers_[number_of.back()];
       number.readable = reg.access != RegisterAccess::write_only;
-      number.writable = reg.access != RegisterAccess::read_only && !reg.input && number.is != Number::Is::meter;
+      number.writable = reg.access != RegisterAccess::read_only && number.is != Number::Is::meter;
       number.power_on = reg.power_on_raw;
+      if (reg.role != RegisterRole::failure) continue;
+      number.is = Number::Is::failure;
+      const auto bit = static_cast<std::size_t>(&reg - unit.map->registers.data());
+      for (const std::size_t level : unit.map->with_role(RegisterRole::level)) {
+        const MappedRegister& output = unit.map->registers[level];
+        const auto at = places_.find({id, kind_of(output.table), output.address});
+        if (at == places_.end() || numbers_[at->second.number].is != Number::Is::dimmer) continue;
+        if (unit.map->concerns(bit, level))
+          number.about.push_back(rig.fixtures[numbers_[at->second.number].index].name);
+      }
     }
     for (const SetupWrite& write : unit.map->setup) unit.setup.emplace_back(number_of[write.index], write.value_raw);
   }
@@ -77,7 +101,9 @@ std::size_t RigUnits::add(int unit, RegisterKind kind, int first, Number number)
 void RigUnits::show(const Number& number) {
   if (number.is != Number::Is::dimmer) return;
   const double level = (number_from(number.words, number.format) - number.least) / (number.most - number.least);
-  parts_.world.set_drive(number.index, std::isfinite(level) ? std::clamp(level, 0.0, 1.0) : 0.0);
+  const bool burnt_out =
+      parts_.faults.find(parts_.rig.fixtures[number.index].name, FaultKind::lamp_failure).has_value();
+  parts_.world.set_drive(number.index, std::isfinite(level) && !burnt_out ? std::clamp(level, 0.0, 1.0) : 0.0);
 }
 
 void RigUnits::power_on(Unit& unit) {
@@ -125,6 +151,7 @@ void RigUnits::advance(Time now) {
   if (const std::uint64_t revision = parts_.faults.revision(); revision != faults_seen_) {
     faults_seen_ = revision;
     for (auto& [id, unit] : units_) switch_power(unit);
+    for (const Number& number : numbers_) show(number);  // a lamp may have burnt out, or be new
   }
   for (auto& [id, unit] : units_) {
     if (unit.powered && unit.heard && !unit.dark && data_loss_armed(unit) &&
@@ -149,15 +176,37 @@ std::optional<ModbusException> RigUnits::read(int unit, RegisterKind kind, int f
     if (number.is == Number::Is::meter && (place->second.word == 0 || i == 0)) {
       number.words = registers_from(meter_count(number), number.format);
     }
+    if (number.is == Number::Is::failure) {
+      number.words[0] = std::any_of(number.about.begin(), number.about.end(), [&](const std::string& fixture) {
+        return parts_.faults.find(fixture, FaultKind::lamp_failure).has_value();
+      });
+    }
     values[i] = number.words[place->second.word];
   }
   return std::nullopt;
 }
 
+bool RigUnits::has_bits(int unit) const {
+  const auto bit = [unit](const auto& entry) {
+    return entry.first.unit == unit &&
+           (entry.first.kind == RegisterKind::coil || entry.first.kind == RegisterKind::discrete);
+  };
+  return std::any_of(places_.begin(), places_.end(), bit);
+}
+
 std::optional<ModbusException> RigUnits::write(int unit, int first, std::span<const std::uint16_t> values) {
+  return write_table(unit, RegisterKind::holding, first, values);
+}
+
+std::optional<ModbusException> RigUnits::write_coils(int unit, int first, std::span<const std::uint16_t> bits) {
+  return write_table(unit, RegisterKind::coil, first, bits);
+}
+
+std::optional<ModbusException> RigUnits::write_table(int unit, RegisterKind kind, int first,
+                                                     std::span<const std::uint16_t> values) {
   std::map<std::size_t, std::vector<std::uint16_t>> changed;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const auto place = places_.find({unit, RegisterKind::holding, first + static_cast<int>(i)});
+    const auto place = places_.find({unit, kind, first + static_cast<int>(i)});
     if (place == places_.end() || !numbers_[place->second.number].writable) return ModbusException::illegal_address;
     const auto [words, is_new] = changed.try_emplace(place->second.number, numbers_[place->second.number].words);
     words->second[place->second.word] = values[i];
@@ -178,8 +227,8 @@ std::optional<ModbusException> RigUnits::refuses(int unit, int function, int cou
   const auto found = units_.find(unit);
   if (found == units_.end() || !found->second.map) return std::nullopt;
   const RegisterMap& map = *found->second.map;
-  if (function == 16 && map.largest_write == 1) return ModbusException::illegal_function;
-  const int most = function == 16 ? map.largest_write : map.largest_read;
+  if ((function == 16 || function == 15) && map.largest_write == 1) return ModbusException::illegal_function;
+  const int most = function == 16 || function == 15 ? map.largest_write : map.largest_read;
   return count > most ? std::optional(ModbusException::illegal_value) : std::nullopt;
 }
 

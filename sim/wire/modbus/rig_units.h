@@ -26,6 +26,8 @@ class RigUnits final : public ModbusUnits {
 
   [[nodiscard]] bool has(int unit) const override { return units_.contains(unit); }
   std::optional<ModbusException> read(int unit, RegisterKind kind, int first, std::span<std::uint16_t> values) override;
+  [[nodiscard]] bool has_bits(int unit) const override;
+  std::optional<ModbusException> write_coils(int unit, int first, std::span<const std::uint16_t> bits) override;
   /// Exception 3 for a value outside what its product takes; then nothing is written.
   std::optional<ModbusException> write(int unit, int first, std::span<const std::uint16_t> values) override;
   [[nodiscard]] std::optional<ModbusException> refuses(int unit, int function, int count) const override;
@@ -41,13 +43,14 @@ class RigUnits final : public ModbusUnits {
   };
   /// One or two registers that are one number.
   struct Number {
-    enum class Is { dimmer, meter, other } is = Is::other;
+    enum class Is { dimmer, meter, failure, other } is = Is::other;
     std::size_t index = 0;  ///< fixture or luxmeter of the rig
     RegisterFormat format;
     double least = 0, most = 65535;
     bool readable = true, writable = true;
     std::vector<std::uint16_t> words{};  ///< as they stand in its registers
     double power_on = 0;
+    std::vector<std::string> about{};  ///< of a failure bit: fixtures
   };
   struct Place {
     std::size_t number = 0;  ///< in numbers_
@@ -64,6 +67,8 @@ class RigUnits final : public ModbusUnits {
 
   Unit& unit_of(int unit, const std::string& device, const std::shared_ptr<const RegisterMap>& map);
   std::size_t add(int unit, RegisterKind kind, int first, Number number);
+  std::optional<ModbusException> write_table(int unit, RegisterKind kind, int first,
+                                             std::span<const std::uint16_t> values);
   void show(const Number& number);
   void power_on(Unit& unit);
   void go_dark(Unit& unit);

@@ -48,6 +48,28 @@ TEST(HealthWatch, IsContentWhileEveryMeterSpeaksAndNothingIsFaulted) {
   }
 }
 
+TEST(HealthWatch, WarnsOfADimmerThatObeysAndSaysThatSomethingIsWrongAndLeavesTheLightAlone) {
+  HealthWatch watch(small_rig());
+  Health failing;
+  failing.device = "right";
+  failing.life = Life::active;
+  failing.detail = "reports lamp-failure2";
+  failing.since = at(3);
+  watch.report({&failing, 1});
+  hear_both(watch, 5);
+  watch.step(at(5));
+  ASSERT_EQ(watch.alarms().size(), 1u);
+  EXPECT_FALSE(watch.alarms()[0].severe);
+  EXPECT_EQ(watch.alarms()[0].device, "right");
+  EXPECT_NE(watch.alarms()[0].text.find("reports lamp-failure2"), std::string::npos);
+  EXPECT_FALSE(watch.light_lost());
+  EXPECT_FALSE(watch.lamp_lost(1));
+  failing.detail.clear();
+  watch.report({&failing, 1});
+  watch.step(at(5.1));
+  EXPECT_TRUE(watch.alarms().empty());
+}
+
 TEST(HealthWatch, GivesMetersTheirTimeOfSilenceFromTheFirstStep) {
   HealthWatch watch(small_rig());
   watch.step(at(1000));

@@ -31,6 +31,7 @@ struct ModelVideo {
       {VideoControl::gamma, {{72, 500, 1, 220}, 220}},    {VideoControl::brightness, {{-64, 64, 1, 0}, 12}},
   };
   int opened = 0, closed = 0;
+  std::vector<std::pair<VideoControl, std::int64_t>> sets;  ///< controls that were set, in their order
 };
 
 class ModelVideoChannel final : public VideoChannel {
@@ -72,6 +73,11 @@ class ModelVideoChannel final : public VideoChannel {
   }
   Result<void> set(VideoControl control, std::int64_t value) override {
     if (gone()) return lost();
+    device_.sets.emplace_back(control, value);
+    // As webcams do: what is chosen automatically cannot be set.
+    if (control == VideoControl::exposure && device_.controls.contains(VideoControl::exposure_auto) &&
+        device_.controls.at(VideoControl::exposure_auto).second != 1)
+      return fault(Cause::refused, "its exposure is automatic");
     auto& [range, kept] = device_.controls.at(control);
     kept = value;
     if (control == VideoControl::exposure)

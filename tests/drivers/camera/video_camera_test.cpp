@@ -1,6 +1,8 @@
 /// The driver of video cameras at a model device: settings that are kept or refused, fresh frames, faults.
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "drivers/camera/camera_source.h"
 #include "tests/drivers/camera/model_video.h"
 #include "tests/drivers/test_rig.h"
@@ -73,7 +75,7 @@ TEST_F(AtAModel, ThrowsAwayFramesFromBeforeAChangeOfExposure) {
   for (const bool times : {true, false}) {
     device.has_times = times;
     for (const double exposure_s : {0.002, 0.016, 0.004}) {
-      source().set_exposure(exposure_s);
+      ASSERT_TRUE(source().set_exposure(exposure_s));
       const auto taken = take();
       ASSERT_TRUE(taken) << taken.error().detail;
       EXPECT_DOUBLE_EQ(taken->exposure_s, exposure_s);
@@ -192,6 +194,45 @@ TEST_F(AtAModel, SkipsDamagedFramesAndRefusesCutOnes) {
   EXPECT_EQ(cut.error().cause, Cause::protocol);
   device.cut = 0;
   EXPECT_TRUE(take());
+}
+
+TEST_F(AtAModel, GivesTheCameraBackAsItWasFound) {
+  device.controls.at(VideoControl::exposure).second = 321;
+  const auto found = device.controls;
+  ASSERT_TRUE(take());
+  EXPECT_EQ(control(VideoControl::exposure), 100);
+  device.cut = 100;  // and through a failure that closes it
+  EXPECT_FALSE(take());
+  camera->deactivate(at_ms(time_ms));
+  for (const auto& [which, value] : found) EXPECT_EQ(control(which), value.second) << name_of(which);
+  EXPECT_EQ(device.opened, device.closed);
+  device.cut = 0;
+  ASSERT_TRUE(take());
+  camera.reset();  // ended without goodbye
+  for (const auto& [which, value] : found) EXPECT_EQ(control(which), value.second) << name_of(which);
+}
+
+TEST_F(AtAModel, GivesBackWhatItWasAfterPowerCameBack) {
+  ASSERT_TRUE(take());
+  auto fresh = device.controls;
+  fresh.at(VideoControl::exposure_auto).second = 3;
+  fresh.at(VideoControl::gain).second = 33;
+  device.plugged_in = false;
+  EXPECT_FALSE(take());
+  device.controls = fresh;
+  device.plugged_in = true;
+  ASSERT_TRUE(take());
+  camera->deactivate(at_ms(time_ms));
+  EXPECT_EQ(control(VideoControl::exposure_auto), 3);
+  EXPECT_EQ(control(VideoControl::gain), 33);
+}
+
+TEST_F(AtAModel, RefusesExposuresThatAreNone) {
+  for (const double bad : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()})
+    EXPECT_EQ(source().set_exposure(bad).error().cause, Cause::invalid);
+  const auto taken = take();
+  ASSERT_TRUE(taken);
+  EXPECT_DOUBLE_EQ(taken->exposure_s, 0.010);
 }
 
 TEST_F(AtAModel, SaysThatItIsInUse) {

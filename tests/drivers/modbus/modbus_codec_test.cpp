@@ -20,6 +20,40 @@ TEST(ModbusCodec, WritesEachRequestAsTheStandardPrintsIt) {
             from_hex("0003 0000 000b 01 10 000a 0002 04 0080 0200"));
 }
 
+// Vectors: Modbus Application Protocol 1.1b3, the examples of 6.1, 6.2, 6.5 and 6.11.
+TEST(ModbusCodec, HasCoilsAndDiscreteInputsAsTheStandardPrintsThem) {
+  const Request coils{1, Function::read_coils, 0x13, 0x13, {}};
+  EXPECT_EQ(encode_pdu(coils), from_hex("01 0013 0013"));
+  const Answer read = decode_pdu(coils, from_hex("01 03 cd 6b 05"));
+  ASSERT_EQ(read.verdict, Verdict::good);
+  // Outputs 27 to 20 are 1100 1101, 35 to 28 are 0110 1011, 38 to 36 are 101.
+  EXPECT_EQ(read.values, (std::vector<std::uint16_t>{1, 0, 1, 1, 0, 0, 1, 1, 1, 1, 0, 1, 0, 1, 1, 0, 1, 0, 1}));
+  const Request inputs{1, Function::read_discrete, 0xC4, 0x16, {}};
+  EXPECT_EQ(encode_pdu(inputs), from_hex("02 00c4 0016"));
+  const Answer status = decode_pdu(inputs, from_hex("02 03 ac db 35"));
+  ASSERT_EQ(status.verdict, Verdict::good);
+  EXPECT_EQ(status.values,
+            (std::vector<std::uint16_t>{0, 0, 1, 1, 0, 1, 0, 1, 1, 1, 0, 1, 1, 0, 1, 1, 1, 0, 1, 0, 1, 1}));
+  const Request on{1, Function::write_coil, 0xAC, 0, {1}}, off{1, Function::write_coil, 0xAC, 0, {0}};
+  EXPECT_EQ(encode_pdu(on), from_hex("05 00ac ff00"));
+  EXPECT_EQ(encode_pdu(off), from_hex("05 00ac 0000"));
+  EXPECT_EQ(decode_pdu(on, from_hex("05 00ac ff00")).verdict, Verdict::good);
+  EXPECT_EQ(decode_pdu(on, from_hex("05 00ac 0000")).verdict, Verdict::garbled);
+  const Request ten{1, Function::write_coils, 0x13, 0, {1, 0, 1, 1, 0, 0, 1, 1, 1, 0}};
+  EXPECT_EQ(encode_pdu(ten), from_hex("0f 0013 000a 02 cd01"));
+  EXPECT_EQ(decode_pdu(ten, from_hex("0f 0013 000a")).verdict, Verdict::good);
+  EXPECT_EQ(decode_pdu(ten, from_hex("0f 0013 0009")).verdict, Verdict::garbled);
+}
+
+TEST(ModbusCodec, RefusesSpoiledBitsAndDoesNotMindPadding) {
+  const Request inputs{1, Function::read_discrete, 0, 3, {}};
+  EXPECT_EQ(decode_pdu(inputs, from_hex("02 01 fd")).values, (std::vector<std::uint16_t>{1, 0, 1}))
+      << "padding is ones";
+  for (const char* bad : {"02 02 05", "02 01", "02 01 05 00", "01 01 05", "02 00", "82", "82 02 00"})
+    EXPECT_EQ(decode_pdu(inputs, from_hex(bad)).verdict, Verdict::garbled) << bad;
+  EXPECT_EQ(decode_pdu(inputs, from_hex("82 02")).exception_code, 2);
+}
+
 TEST(ModbusCodec, ReadsEachAnswer) {
   const Request lux{1, Function::read_holding, 2, 2, {}};
   const Answer answer = decode(lux, 9, from_hex("0009 0000 0007 01 03 04 0007 a120"));

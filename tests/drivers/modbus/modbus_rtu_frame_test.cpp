@@ -19,6 +19,13 @@ RtuBytes joined(std::initializer_list<RtuBytes> parts) {
 }
 
 TEST(ModbusRtuFrame, MakesThePublishedFrames) {
+  // Relays: as Waveshare prints them for its Modbus RTU Relay.
+  EXPECT_EQ(encode_rtu({1, Function::write_coil, 0, 0, {1}}), from_hex("01 05 0000 ff00 8c3a"));
+  EXPECT_EQ(encode_rtu({1, Function::write_coil, 0, 0, {0}}), from_hex("01 05 0000 0000 cdca"));
+  EXPECT_EQ(encode_rtu({1, Function::read_coils, 0, 8, {}}), from_hex("01 01 0000 0008 3dcc"));
+  EXPECT_EQ(encode_rtu({1, Function::read_discrete, 0, 8, {}}), from_hex("01 02 0000 0008 79cc"));
+  EXPECT_EQ(encode_rtu({1, Function::write_coils, 0, 0, {1, 1, 1, 1, 1, 1, 1, 1}}),
+            from_hex("01 0f 0000 0008 01 ff be d5"));
   EXPECT_EQ(encode_rtu({0x11, Function::read_holding, 0x6B, 3, {}}), from_hex("11 03 006b 0003 7687"));
   EXPECT_EQ(encode_rtu(kReadLux), from_hex("01 03 0002 0002 65cb"));
   EXPECT_EQ(encode_rtu({1, Function::write_multiple, 10, 0, {0x80, 0x200}}),

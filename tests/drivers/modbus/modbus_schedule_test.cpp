@@ -5,6 +5,7 @@
 #include <set>
 
 #include "core/rig/register_map/register_map.h"
+#include "drivers/modbus/modbus_registers.h"
 #include "tests/drivers/test_rig.h"
 
 namespace luxrig::modbus {
@@ -48,6 +49,34 @@ TEST(ModbusReadSchedule, KeepsToTheLargestReadOfTheProductAndToSingleReadsOnceRe
   EXPECT_EQ(due[0].request.first_register, 4);
   schedule.read_singly(1);
   EXPECT_EQ(schedule.due(at_ms(200), {}).size(), 5u);
+}
+
+TEST(ModbusWriteSchedule, SwitchesNeighbouringCoilsTogetherAndNeverWithRegisters) {
+  Rig rig = rig_with(bus_of("modbus_tcp"));
+  add_modbus(rig, "dimmer", 1, 2);
+  for (int i = 0; i < 3; ++i) std::get<ModbusPatch>(add_modbus(rig, "relay", 1, i, 1).patch).coil = true;
+  std::get<ModbusPatch>(add_modbus(rig, "apart", 1, 7, 1).patch).coil = true;
+  WriteSchedule schedule(rig, 0, milliseconds(400), rules_of(rig));
+  for (Channel& channel : schedule.channels()) channel.wanted = words_from_drive(1, channel.patch);
+  const auto runs = schedule.due(at_ms(0), {});
+  ASSERT_EQ(runs.size(), 3u);
+  EXPECT_EQ(schedule.request_for(runs[0]).function, Function::write_single);
+  EXPECT_EQ(schedule.request_for(runs[1]).function, Function::write_coils);
+  EXPECT_EQ(schedule.request_for(runs[1]).values, (std::vector<std::uint16_t>{1, 1, 1}));
+  EXPECT_EQ(schedule.request_for(runs[2]).function, Function::write_coil);
+  EXPECT_EQ(schedule.request_for(runs[2]).first_register, 7);
+}
+
+TEST(ModbusRegisters, ARelayIsOnFromAHalfAndDoesNotChatter) {
+  ModbusPatch relay;
+  relay.coil = true;
+  const auto on = words_from_drive(0.5, relay), off = words_from_drive(0.49, relay);
+  EXPECT_EQ(on.word[0], 1);
+  EXPECT_EQ(off.word[0], 0);
+  EXPECT_EQ(words_from_drive(0.45, relay, on), on);
+  EXPECT_EQ(words_from_drive(0.45, relay, off), off);
+  EXPECT_EQ(words_from_drive(0.39, relay, on), off);
+  EXPECT_EQ(words_from_drive(0, relay, on), off);
 }
 
 TEST(ModbusWriteSchedule, KeepsToTheLargestWriteOfTheProductAndCountsBothRegistersOfANumber) {

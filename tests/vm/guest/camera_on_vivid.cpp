@@ -193,6 +193,15 @@ void settings() {
   wanted.exposure_s.reset();
   wanted.gain = 1000;
   check(!fix_settings(*channel, wanted), "a gain that it has not is refused");
+  // What its automatic gain chooses changes by itself.
+  check(channel->set(VideoControl::brightness, 3) && channel->set(VideoControl::autogain, 1), "as somebody set it up");
+  const FoundSettings found = settings_found(*channel);
+  wanted.gain = 77;
+  check(fix_settings(*channel, wanted).has_value() && channel->get(VideoControl::autogain).value_or(-1) == 0,
+        "settings are fixed again");
+  check(give_back(*channel, found).has_value() && channel->get(VideoControl::autogain).value_or(-1) == 1 &&
+            channel->get(VideoControl::brightness).value_or(-1) == 3,
+        "and given back as found");
   const int other = ::open("/dev/video0", O_RDWR | O_CLOEXEC);
   v4l2_control brightness{V4L2_CID_BRIGHTNESS, 1};
   check(::ioctl(other, VIDIOC_S_CTRL, &brightness) != 0 && errno == EBUSY, "other programs cannot change its controls");

@@ -50,6 +50,44 @@ TEST(RegisterMapFile, KnowsTheEightOutputsOfAnAnalogueModule) {
   EXPECT_EQ(told_when_data_stops(map), "holds its last level for ever");
 }
 
+TEST(RegisterMapFile, KnowsRelaysAndInputsOfOneBit) {
+  const RegisterMap map = loaded("waveshare-modbus-rtu-relay-d.toml");
+  const auto levels = map.with_role(RegisterRole::level);
+  ASSERT_EQ(levels.size(), 8u);
+  EXPECT_EQ(map.registers[levels[7]].table, RegisterTable::coil);
+  EXPECT_EQ(map.registers[levels[7]].address, 7);
+  EXPECT_EQ(map.registers[levels[7]].range_raw, std::pair(0.0, 1.0));
+  const auto input = map.find("input8");
+  ASSERT_TRUE(input);
+  EXPECT_EQ(map.registers[*input].table, RegisterTable::discrete);
+  EXPECT_EQ(map.registers[*input].access, RegisterAccess::read_only);
+}
+
+TEST(RegisterMapFile, SaysWhatABitCannotBe) {
+  const std::string device = "[device]\nname = \"a\"\nsource = \"b\"\n[[register]]\nname = \"r\"\naddress = 1\n";
+  const auto what_of = [&](const std::string& lines) {
+    const auto map = parse_register_map(device + lines, "map.toml");
+    return map ? std::string() : map.error().front().text();
+  };
+  EXPECT_EQ(what_of("kind = \"coil\"\nwhat = \"level\"\n"), "");
+  EXPECT_EQ(what_of("kind = \"discrete\"\nwhat = \"failure\"\n"), "");
+  EXPECT_NE(what_of("kind = \"coil\"\nrange = [0, 1]\n").find("range has no effect: a coil is one bit"),
+            std::string::npos);
+  EXPECT_NE(what_of("kind = \"discrete\"\ntype = \"u32\"\n").find("type has no effect"), std::string::npos);
+  EXPECT_NE(what_of("kind = \"discrete\"\naccess = \"write\"\n").find("a discrete input can only be read"),
+            std::string::npos);
+  EXPECT_NE(what_of("kind = \"discrete\"\nwhat = \"level\"\n").find("a level that cannot be written"),
+            std::string::npos);
+  EXPECT_NE(what_of("kind = \"input\"\nwhat = \"failure\"\n").find("a failure that is no bit"), std::string::npos);
+  EXPECT_NE(what_of("kind = \"coil\"\nwhat = \"illuminance\"\n").find("an illuminance of one bit"), std::string::npos);
+  EXPECT_NE(what_of("kind = \"coil\"\npower_on = 2\n").find("power_on 2 of one bit"), std::string::npos);
+  // A coil and a register of one address are two things.
+  EXPECT_EQ(what_of("kind = \"coil\"\n[[register]]\nname = \"s\"\naddress = 1\n"), "");
+  EXPECT_NE(what_of("kind = \"coil\"\n[[register]]\nname = \"s\"\naddress = 1\nkind = \"coil\"\n")
+                .find("share coil register 1"),
+            std::string::npos);
+}
+
 TEST(RegisterMapFile, KnowsHowTheCouplersWatchdogIsArmed) {
   const RegisterMap map = loaded("wago-750-559.toml");
   ASSERT_EQ(map.setup.size(), 4u);
@@ -128,7 +166,7 @@ std::string dump_of(const RegisterMap& map) {
       map.largest_read, map.largest_write, fmt::format("{}", fmt::join(map.baud_rates, ",")),
       static_cast<int>(map.when_data_stops), map.stops_after.value_or(Duration{}).count());
   for (const MappedRegister& reg : map.registers) {
-    add(reg.name, static_cast<int>(reg.role), reg.address, reg.input, reg.format.registers,
+    add(reg.name, static_cast<int>(reg.role), reg.address, static_cast<int>(reg.table), reg.format.registers,
         static_cast<int>(reg.format.number), reg.format.low_word_first, reg.format.low_byte_first, reg.scale, reg.unit,
         static_cast<int>(reg.access), reg.range_raw ? reg.range_raw->first : -1,
         reg.range_raw ? reg.range_raw->second : -1, reg.power_on_raw);

@@ -290,5 +290,60 @@ TEST(ModbusFarEnd, EveryGarbledRefusalStillDiffersFromTheRefusal) {
   }
 }
 
+/// Unit 3: coils 19 to 37 and discrete inputs 196 to 217, as in the standard's examples.
+class BitUnits final : public ModbusUnits {
+ public:
+  bool has(int unit) const override { return unit == 3 || unit == 4; }
+  bool has_bits(int unit) const override { return unit == 3; }
+  std::optional<ModbusException> read(int, RegisterKind kind, int first, std::span<std::uint16_t> values) override {
+    const std::string& bits = kind == RegisterKind::coil ? coils : inputs;
+    const int begin = kind == RegisterKind::coil ? 19 : 196;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const int at = first + static_cast<int>(i) - begin;
+      if (at < 0 || at >= static_cast<int>(bits.size())) return ModbusException::illegal_address;
+      values[i] = bits[static_cast<std::size_t>(at)] == '1' ? 1 : 0;
+    }
+    return std::nullopt;
+  }
+  std::optional<ModbusException> write(int, int, std::span<const std::uint16_t>) override {
+    return ModbusException::illegal_address;
+  }
+  std::optional<ModbusException> write_coils(int, int first, std::span<const std::uint16_t> bits) override {
+    if (first < 19 || first + static_cast<int>(bits.size()) > 38) return ModbusException::illegal_address;
+    for (std::size_t i = 0; i < bits.size(); ++i)
+      coils[static_cast<std::size_t>(first - 19) + i] = bits[i] != 0 ? '1' : '0';
+    return std::nullopt;
+  }
+  std::string coils = "1011001111010110101", inputs = "0011010111011011101011";
+};
+
+// Application Protocol 1.1b3, examples of 6.1, 6.2, 6.5 and 6.11.
+TEST(ModbusSession, HasCoilsAndDiscreteInputsAsTheStandardPrintsThem) {
+  BitUnits units;
+  const auto answer = [&](Bytes request) { return answer_pdu(3, request, units); };
+  EXPECT_EQ(answer({1, 0, 0x13, 0, 0x13}), (Bytes{1, 3, 0xcd, 0x6b, 0x05}));
+  EXPECT_EQ(answer({2, 0, 0xc4, 0, 0x16}), (Bytes{2, 3, 0xac, 0xdb, 0x35}));
+  EXPECT_EQ(answer({5, 0, 0x14, 0xff, 0}), (Bytes{5, 0, 0x14, 0xff, 0}));
+  EXPECT_EQ(units.coils.substr(0, 3), "111");
+  EXPECT_EQ(answer({15, 0, 0x13, 0, 10, 2, 0xcd, 1}), (Bytes{15, 0, 0x13, 0, 10}));
+  EXPECT_EQ(units.coils, "1011001110010110101");
+}
+
+TEST(ModbusSession, RefusesBitsThatAreNoneByName) {
+  BitUnits units;
+  const auto answer = [&](int unit, Bytes request) { return answer_pdu(unit, request, units); };
+  for (const auto function : Bytes{1, 2, 5, 15})
+    EXPECT_EQ(answer(4, {function, 0, 0, 0, 0}), (Bytes{static_cast<std::uint8_t>(function | 0x80), 1}));
+  EXPECT_EQ(answer(3, {1, 0, 0x13, 0, 0}), (Bytes{0x81, 3})) << "none";
+  EXPECT_EQ(answer(3, {1, 0, 0x13, 0x07, 0xd1}), (Bytes{0x81, 3})) << "2001";
+  EXPECT_EQ(answer(3, {1, 0, 0x13, 0, 0x14}), (Bytes{0x81, 2})) << "one too many";
+  EXPECT_EQ(answer(3, {2, 0xff, 0xff, 0, 2}), (Bytes{0x82, 2})) << "past the last address";
+  EXPECT_EQ(answer(3, {5, 0, 0x13, 0, 1}), (Bytes{0x85, 3})) << "neither on nor off";
+  EXPECT_EQ(answer(3, {5, 0, 0x12, 0, 0}), (Bytes{0x85, 2}));
+  EXPECT_EQ(answer(3, {15, 0, 0x13, 0, 10, 1, 0xcd}), (Bytes{0x8f, 3})) << "too few bytes";
+  EXPECT_EQ(answer(3, {15, 0, 0x13, 0, 10}), (Bytes{0x8f, 3}));
+  EXPECT_EQ(units.coils, "1011001111010110101") << "nothing was written";
+}
+
 }  // namespace
 }  // namespace luxrig::sim
