@@ -79,7 +79,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (axis.ready()) axis.order(kOrder);
     now += std::chrono::milliseconds((kind & 0x80) != 0 ? 400 : 20);
     cia402::Frames sent;
-    axis.step(now, (kind & 0x20) != 0, true, sent);
+    axis.step(now, (kind & 0x20) != 0, true, (kind & 0x10) == 0, sent);
     for (const can::CanFrame& out : sent) check(now, out, axis);
     if (axis.trouble().size() > 500) std::abort();
   }
