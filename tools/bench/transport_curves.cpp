@@ -89,9 +89,9 @@ void add_curves(const TransportCase& one, const BenchOptions& options, std::vect
     rows.push_back(transport_row(one.room.name, "path", 0, none, std::nullopt, std::nullopt));
     return;
   }
-  const std::vector<double> settings = options.quick
-                                           ? std::vector<double>{0.1, 0.04, 0.02, 0.012, 0.006}
-                                           : std::vector<double>{0.1, 0.04, 0.02, 0.012, 0.009, 0.008, 0.004, 0.0028};
+  const std::vector<double> settings =
+      options.quick ? std::vector<double>{0.1, 0.04, 0.02, 0.012, 0.006}
+                    : std::vector<double>{0.1, 0.04, 0.02, 0.012, 0.0105, 0.0095, 0.008, 0.004, 0.0028};
   for (const Method& method : methods()) {
     if (!method.reflects || (!options.method.empty() && options.method != method.name)) continue;
     std::vector<Point> points;
