@@ -14,32 +14,12 @@
 #include "drivers/modbus/modbus_codec.h"
 #include "drivers/modbus/modbus_registers.h"
 #include "drivers/modbus/modbus_tcp_link.h"
+#include "tests/fuzz/modbus_requests.h"
 
 namespace {
 
 using namespace luxrig::modbus;
 using Bytes = std::vector<std::uint8_t>;
-
-Request request_for(std::uint8_t choice) {
-  switch (choice % 8) {
-    case 0:
-      return {1, Function::read_holding, 2, 2, {}};
-    case 1:
-      return {17, Function::read_input, 0, 125, {}};
-    case 2:
-      return {1, Function::write_single, 0, 1, {255}};
-    case 3:
-      return {1, Function::write_multiple, 10, 0, {128, 512}};
-    case 4:
-      return {1, Function::read_coils, 19, 19, {}};
-    case 5:
-      return {17, Function::read_discrete, 0, 2000, {}};
-    case 6:
-      return {1, Function::write_coil, 172, 0, {1}};
-    default:
-      return {1, Function::write_coils, 19, 0, {1, 0, 1, 1, 0, 0, 1, 1, 1, 0}};
-  }
-}
 
 /// Listens once; each exchange gets a connection of its own.
 int listener(int& port) {
@@ -65,7 +45,7 @@ int listener(int& port) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size < 2) return 0;
-  const Request request = request_for(data[0]);
+  const Request request = luxrig::fuzz::request_for(data[0]);
   const bool mend = (data[1] & 1) != 0;
   Bytes answer(data + 2, data + size);
 

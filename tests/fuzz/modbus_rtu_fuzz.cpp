@@ -7,32 +7,12 @@
 #include "core/check.h"
 #include "drivers/modbus/modbus_rtu_frame.h"
 #include "sim/wire/modbus/modbus_rtu_session.h"
+#include "tests/fuzz/modbus_requests.h"
 
 namespace {
 
 using namespace luxrig::modbus;
 using Bytes = std::vector<std::uint8_t>;
-
-Request rtu_request_for(std::uint8_t choice) {
-  switch (choice % 8) {
-    case 0:
-      return {1, Function::read_holding, 2, 2, {}};
-    case 1:
-      return {17, Function::read_input, 0, 125, {}};
-    case 2:
-      return {1, Function::write_single, 0, 1, {255}};
-    case 3:
-      return {1, Function::write_multiple, 10, 0, {128, 512}};
-    case 4:
-      return {1, Function::read_coils, 19, 19, {}};
-    case 5:
-      return {17, Function::read_discrete, 0, 2000, {}};
-    case 6:
-      return {1, Function::write_coil, 172, 0, {1}};
-    default:
-      return {1, Function::write_coils, 19, 0, {1, 0, 1, 1, 0, 0, 1, 1, 1, 0}};
-  }
-}
 
 class AnyUnits final : public luxrig::sim::ModbusUnits {
  public:
@@ -59,7 +39,7 @@ class AnyUnits final : public luxrig::sim::ModbusUnits {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size < 1 || size > 4096) return 0;
-  const Request request = rtu_request_for(data[0]);
+  const Request request = luxrig::fuzz::request_for(data[0]);
   const Bytes heard(data + 1, data + size);
   const RtuSearch search = find_rtu_answer(request, heard);
   if (search.answer) {
