@@ -43,6 +43,8 @@ Checked<OpenCamera> open_camera(const CameraArguments& arguments) {
     names.push_back(camera.name);
     if (arguments.camera.empty() || arguments.camera == camera.name) found.push_back(i);
   }
+  if (found.empty() && arguments.sim && names.empty())
+    return refuse("there is no [[camera]] to see the scene with", "add one: rigs/REFERENCE.md");
   if (found.empty())
     return refuse(arguments.camera.empty() ? "no [[camera]] has a source of pictures"
                                            : fmt::format("there is no camera \"{}\" with a source", arguments.camera),

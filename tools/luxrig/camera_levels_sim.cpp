@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <future>
 #include <thread>
 
 #include "core/control/output_program.h"
@@ -15,6 +16,7 @@ namespace luxrig {
 namespace {
 
 constexpr int kPictureWait_s = 180;
+constexpr std::chrono::milliseconds kStep(23);
 constexpr std::chrono::seconds kLampsSettle(1);  ///< simulated lamps follow with a lag of 0.05 s
 
 /// The fixture's bus, driven as the daemon does.
@@ -90,9 +92,13 @@ Result<LevelSeries> simulated_level_series(const Rig& rig, const std::filesystem
   auto driver = find_driver(bus.driver)->make(rig, rig.fixtures[wanted.fixture].bus, at->second);
   if (auto active = driver->activate(now()); !active) return tl::unexpected(active.error());
   SimulatedLight light(rig, wanted.fixture, std::move(driver));
-  return take_level_series(
-      light, [&] { return picture_of_sim(ports->control, rig.cameras[camera]); }, SampleCurve::linear(), wanted,
-      progress);
+  const auto picture = [&] {
+    // A picture takes seconds, and a driver that nobody steps takes its devices for gone.
+    auto taken = std::async(std::launch::async, [&] { return picture_of_sim(ports->control, rig.cameras[camera]); });
+    while (taken.wait_for(kStep) != std::future_status::ready) (void)light.still();
+    return taken.get();
+  };
+  return take_level_series(light, picture, SampleCurve::linear(), wanted, progress);
 }
 
 }  // namespace luxrig
