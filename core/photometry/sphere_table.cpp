@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "core/check.h"
 #include "core/photometry/arc_tangent.h"
@@ -17,6 +18,9 @@ constexpr double kRounding_rad = 1e-9;
 constexpr double kWidestPiece_rad = 0.05;
 // Shares are kept off the ends, where a value of 0 would give a direction of density 0.
 constexpr double kLeastShare = 1e-12;
+// Values fainter than this part of the largest count as dark: the squares of fainter ones would underflow to 0 / 0.
+constexpr double kFaintest = 1e-60;
+constexpr double kLeastPeak = 1e-60, kMostPeak = 1e60;
 
 /// sin x - x and 1 - cos x for small x, without cancellation.
 struct Small {
@@ -129,6 +133,8 @@ SphereTable::SphereTable(Symmetry symmetry, std::vector<double> polar_rad, std::
   const std::size_t columns = symmetry_ == Symmetry::round ? 1 : azimuth_.knots().size();
   LUXRIG_CHECK(values_.size() == polars * columns, "{} values for {} x {} angles", values_.size(), columns, polars);
   largest_ = *std::max_element(values_.begin(), values_.end());
+  LUXRIG_CHECK(largest_ >= kLeastPeak && largest_ <= kMostPeak, "largest value {}", largest_);
+  for (double& value : values_) value = value < kFaintest * largest_ ? 0 : value;
 
   const auto& azimuth = azimuth_.knots();
   std::vector<double> ring(polars);
@@ -147,11 +153,13 @@ SphereTable::SphereTable(Symmetry symmetry, std::vector<double> polar_rad, std::
   for (std::size_t p = 0; p + 1 < polars; ++p) add_pieces(p, ring[p], ring[p + 1]);
 
   double sum = 0;
-  std::vector<double> cumulative{0};
-  for (const Piece& piece : pieces_) cumulative.push_back(sum += piece.integral);
+  for (const Piece& piece : pieces_) sum += piece.integral;
   integral_ = sum * copies(symmetry_);
   LUXRIG_CHECK(integral_ > 0 && std::isfinite(integral_), "integral {}", integral_);
-  for (double& share : cumulative) share /= sum;
+  // Pieces that would be lost in the rounding of the sum are never drawn.
+  std::erase_if(pieces_, [sum](const Piece& piece) { return piece.integral < 1e-14 * sum; });
+  std::vector<double> cumulative{0};
+  for (const Piece& piece : pieces_) cumulative.push_back(cumulative.back() + piece.integral / sum);
   cumulative_ = Ascending(std::move(cumulative));
 }
 
@@ -265,8 +273,9 @@ SphereTable::Sample SphereTable::sample(double u, double v) const {
   const Piece& piece = pieces_[at];
   const Polar polar = draw_polar(piece, std::clamp(share, kLeastShare, 1 - kLeastShare));
   const auto& knots = polar_.knots();
-  const double t =
-      std::clamp((polar.angle_rad - knots[piece.band]) / (knots[piece.band + 1] - knots[piece.band]), 0.0, 1.0);
+  // Off the ends, where a row may be dark.
+  const double t = std::clamp((polar.angle_rad - knots[piece.band]) / (knots[piece.band + 1] - knots[piece.band]),
+                              kLeastShare, 1 - kLeastShare);
 
   if (symmetry_ == Symmetry::round) {
     const Turn turn(u);
@@ -284,7 +293,8 @@ SphereTable::Sample SphereTable::sample(double u, double v) const {
   const auto& azimuth = azimuth_.knots();
   const double* const lower = rings_.data() + piece.band * azimuth.size();
   const double* const upper = lower + azimuth.size();
-  const auto reached = [&](std::size_t a) { return lower[a] + t * (upper[a] - lower[a]); };
+  // Never falls along a row, however unlike the two rows are: a difference of the two would by its rounding.
+  const auto reached = [&](std::size_t a) { return (1 - t) * lower[a] + t * upper[a]; };
   const double target = along * reached(azimuth.size() - 1);
   // Cell with reached(low) ≤ target < reached(low + 1), by quarters and without branches, which would mispredict.
   std::size_t low = 0;

@@ -49,7 +49,7 @@ class SphereTable {
   };
 
   /// polar_rad, azimuth_rad   ascending; polar within 0…π, 0 is returned outside of it
-  /// values                   [azimuth][polar], ≥ 0, finite
+  /// values                   [azimuth][polar], ≥ 0, the largest within 1e-60…1e60; below 1e-60 of it: taken for 0
   /// requires                 sizes that fit, at least two polar angles (and azimuths, unless round), an integral > 0
   SphereTable(Symmetry symmetry, std::vector<double> polar_rad, std::vector<double> azimuth_rad,
               std::vector<double> values);
