@@ -72,8 +72,9 @@ TEST(PowerUp, StagesComeOneAfterTheOtherAtTheirTimes) {
       [](const json& s) { return s["detail"].get<std::string>().starts_with("lamps come on by stages"); }, 2s))
       << bench.rig.last();
   bench.watch([](const LampsAt&) { return false; }, 2s);
-  // The head may have to look for its zero (2 s) and to turn by 540 degrees (0.75 s), and obeys after half a second.
-  EXPECT_GT(bench.first_lit_s.at("one") - begun_s, 3.2);
+  // The head may have to look for its zero (2 s) and to turn by 540 degrees (0.75 s), and obeys after half a second;
+  // the first look may come as much after the daemon's start.
+  EXPECT_GT(bench.first_lit_s.at("one") - begun_s, 2.6);
   EXPECT_NEAR(bench.after_one_s("two"), kStage_s, 0.25);
   EXPECT_NEAR(bench.after_one_s("three"), 2 * kStage_s, 0.25);
   EXPECT_NEAR(bench.after_one_s("head"), 2 * kStage_s, 0.25);
