@@ -248,7 +248,7 @@ class PathEvaluation {
     const std::size_t wanted = tails_->records(0).size() == 0
                                    ? std::max(kFewestRecords, first_records_each() * chunk.size())
                                    : paths / (chunk.size() < kFewestSharing ? kPathsPerRecord / 2 : kPathsPerRecord);
-    const std::size_t memory_allows = kMostRecordBytes / (kPathReplicates * 3 * sizeof(float) * emitters_.size());
+    const std::size_t memory_allows = kMostRecordBytes / (kPathReplicates * 2 * 3 * sizeof(float) * emitters_.size());
     const std::size_t room = std::min(kMostRecords, memory_allows) - std::min(kMostRecords, tails_->records(0).size());
     matrix_.rays += tails_->grow(from, std::min(wanted, room), kRecordPaths, pools_, plans, cuts_lx, options_.threads,
                                  options_.watch);

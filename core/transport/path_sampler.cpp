@@ -266,7 +266,7 @@ std::uint64_t PathSampler::add_path(const Vertex& start, const SobolSequence& sa
           break;
         }
         if (tails->ends == nullptr) {
-          tails->taken_lx += add_record(per_lux_rgb, tails->records->values(*record), sums);
+          tails->taken_lx += add_record(per_lux_rgb, tails->records->told(*record), sums);
           break;
         }
         tails->ends->ends.push_back({reached.position_world_m, reached.normal_world.cast<float>(),
@@ -311,13 +311,17 @@ std::optional<std::uint32_t> PathSampler::record_for(const Vec3& position_world_
   if (found->record == so_far) return so_far;  // the way to it was clear
   const TailRecords::Place& place = records.place(found->record);
   if (found->distance_m <= place.clear_m) return found->record;
-  // Above both surfaces by a part of their distance, so that what is nearly plane does not stand in its own way.
-  const double lift_m = 0.05 * found->distance_m;
   ++rays;
-  if (scene_.occluded(position_world_m + lift_m * normal_world, normal_world,
-                      place.position_world_m + lift_m * place.normal_world))
-    return std::nullopt;
+  if (!sees_record(position_world_m, normal_world, place, found->distance_m)) return std::nullopt;
   return found->record;
+}
+
+bool PathSampler::sees_record(const Vec3& position_world_m, const Vec3& normal_world, const TailRecords::Place& record,
+                              double distance_m) const {
+  // Above both surfaces by a part of their distance, so that what is nearly plane does not stand in its own way.
+  const double lift_m = 0.05 * distance_m;
+  return !scene_.occluded(position_world_m + lift_m * normal_world, normal_world,
+                          record.position_world_m + lift_m * record.normal_world);
 }
 
 PathSampler::EndsSum PathSampler::add_ends(TailEnds& ends, const TailRecords& records, const PathSums& sums) const {
@@ -332,7 +336,7 @@ PathSampler::EndsSum PathSampler::add_ends(TailEnds& ends, const TailRecords& re
         end.record = *record;
       end.looked_at = static_cast<std::uint32_t>(records.size());
     }
-    const double taken_lx = add_record(end.per_lux_rgb.cast<double>(), records.values(end.record), sums);
+    const double taken_lx = add_record(end.per_lux_rgb.cast<double>(), records.told(end.record), sums);
     sum.taken_lx += taken_lx;
     for (; check < ends.checks.size() && ends.checks[check].end == i; ++check) {
       sum.checked_lx += taken_lx;

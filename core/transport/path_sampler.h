@@ -47,7 +47,7 @@ struct TailShare {
 /// What is added up: luminance only, or three primaries.
 struct PathSums {
   std::span<double> values;  ///< channels × emitters: all emitters of a channel together
-  std::size_t channels = 1;  ///< 1 or 3; with 3, sums may also be left out (empty values)
+  std::size_t channels = 1;  ///< 1 or 3; add_ends() also takes none (empty values)
 
   [[nodiscard]] std::size_t emitters() const { return values.size() / channels; }
   void add(std::size_t emitter, const Vec3& rgb) const {
@@ -118,6 +118,13 @@ class PathSampler {
   };
   /// Looks up anew the ends for which there are more records by now, then adds what their records say.
   EndsSum add_ends(TailEnds& ends, const TailRecords& records, const PathSums& sums) const;
+
+  /// Of the emitters: what paths are chosen by.
+  [[nodiscard]] std::span<const double> importances() const { return levels_; }
+
+  /// Whether nothing stands between a place of a surface and a record on it; one ray.
+  [[nodiscard]] bool sees_record(const Vec3& position_world_m, const Vec3& normal_world,
+                                 const TailRecords::Place& record, double distance_m) const;
 
  private:
   /// Light of a hit by way of a vertex, if nothing stands in between.

@@ -19,6 +19,11 @@ std::vector<std::uint64_t> ReceiverEnds::look_up(std::span<const std::size_t> re
   parallel_for(receivers.size() * kReplicates, threads, [&](std::size_t task) {
     // A replicate's records stay near while all receivers look into them.
     const std::size_t k = task / receivers.size(), at = receivers[task % receivers.size()] * kReplicates + k;
+    if (as_important_) {  // then their sum is all that is asked for, and needs no emitter by itself
+      sums_[at] = sampler_.add_ends(ends_[at], tails_.records(k), {});
+      taken_lx_[at] = sums_[at].taken_lx;
+      return;
+    }
     Eigen::VectorXd lux = Eigen::VectorXd::Zero(levels_.size());
     sums_[at] =
         sampler_.add_ends(ends_[at], tails_.records(k), {{lux.data(), static_cast<std::size_t>(lux.size())}, 1});

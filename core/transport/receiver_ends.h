@@ -1,6 +1,8 @@
 #pragma once
 /// Where the receivers' paths ended in tail records, and what those records say.
 
+#include <algorithm>
+
 #include "core/transport/path_rounds.h"
 #include "core/transport/path_sampler.h"
 #include "core/transport/replicate_sums.h"
@@ -18,6 +20,7 @@ class ReceiverEnds {
       : sampler_(sampler),
         tails_(tails),
         levels_(std::move(levels)),
+        as_important_(std::ranges::equal(levels_, sampler.importances())),
         ends_(receivers * kReplicates),
         sums_(receivers * kReplicates),
         taken_lx_(receivers * kReplicates, 0.0) {}
@@ -48,6 +51,7 @@ class ReceiverEnds {
   const PathSampler& sampler_;
   const SharedTails& tails_;
   Eigen::VectorXd levels_;
+  bool as_important_;                       ///< paths are chosen by the levels themselves: none is 0
   std::vector<TailEnds> ends_;              ///< receivers × replicates
   std::vector<PathSampler::EndsSum> sums_;  ///< likewise
   std::vector<double> taken_lx_;            ///< likewise

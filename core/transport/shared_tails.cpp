@@ -19,6 +19,9 @@ constexpr std::size_t kFartherPlaces = 3;
 /// A record speaks for its neighbours without a ray up to this share of the shortest leg that its paths found.
 constexpr double kClearShare = 0.25;
 
+/// Records tell each other's light without a ray up to this part of that: more of them do, and the farther ones, too.
+constexpr double kBlendClear = 0.4;
+
 }  // namespace
 
 std::uint64_t SharedTails::grow(std::span<const Receiver> receivers, std::size_t count, std::uint32_t paths,
@@ -29,6 +32,7 @@ std::uint64_t SharedTails::grow(std::span<const Receiver> receivers, std::size_t
     add_places(k, receivers, count);
     sample(k, first, paths, pools[k], plans, cuts_lx, watch);
     settle(k, first);
+    blend(k);
   });
   std::uint64_t rays = 0;
   for (Replicate& replicate : replicates_) rays += std::exchange(replicate.rays, 0);
@@ -130,6 +134,39 @@ void SharedTails::settle(std::size_t k, std::uint32_t first) {
     }
     if (moved <= kSettled * all) return;
   }
+}
+
+/// Each tells the mean of itself and of those beside it that it sees.
+void SharedTails::blend(std::size_t k) {
+  Replicate& replicate = replicates_[k];
+  TailRecords& records = replicate.records;
+  const auto size = static_cast<std::uint32_t>(records.size());
+  std::vector<float> count(size, 1.0f);
+  for (std::uint32_t i = 0; i < size; ++i) std::ranges::copy(records.values(i), records.told(i).begin());
+  std::vector<std::uint32_t> beside;
+  for (std::uint32_t i = 0; i < size; ++i) {
+    records.find_beside(i, beside);
+    const TailRecords::Place& here = records.place(i);
+    for (const std::uint32_t j : beside) {
+      if (j < i) continue;  // had its turn
+      const TailRecords::Place& there = records.place(j);
+      const double distance_m = (there.position_world_m - here.position_world_m).norm();
+      if (distance_m > kBlendClear * std::max(here.clear_m, there.clear_m)) {
+        ++replicate.rays;
+        if (!sampler_.sees_record(here.position_world_m, here.normal_world, there, distance_m)) continue;
+      }
+      const std::span<const float> mine = records.values(i), theirs = records.values(j);
+      const std::span<float> told_here = records.told(i), told_there = records.told(j);
+      for (std::size_t c = 0; c < columns_; ++c) {
+        told_here[c] += theirs[c];
+        told_there[c] += mine[c];
+      }
+      ++count[i];
+      ++count[j];
+    }
+  }
+  for (std::uint32_t i = 0; i < size; ++i)
+    for (float& lux : records.told(i)) lux /= count[i];
 }
 
 }  // namespace luxrig

@@ -41,6 +41,7 @@ class SharedTails {
   void sample(std::size_t k, std::uint32_t first, std::uint32_t paths, const HitPool& pool,
               std::span<const HitPlan> plans, std::span<const double> cuts_lx, const Watch& watch);
   void settle(std::size_t k, std::uint32_t first);
+  void blend(std::size_t k);
 
   const RayScene& scene_;
   const PathSampler& sampler_;

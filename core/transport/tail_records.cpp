@@ -10,6 +10,7 @@ void TailRecords::append(std::span<const Place> places, std::size_t columns) {
   places_.insert(places_.end(), places.begin(), places.end());
   columns_ = columns;
   values_.resize(places_.size() * columns, 0.0f);
+  told_.assign(places_.size() * columns, 0.0f);
   if (!places_.empty()) build_grid();
 }
 
@@ -56,6 +57,23 @@ std::size_t TailRecords::bucket_of(const Cell& cell) const {
   const std::uint32_t at = static_cast<std::uint32_t>(cell[0]) + static_cast<std::uint32_t>(cell[1]) * row_cells_ +
                            static_cast<std::uint32_t>(cell[2]) * layer_cells_;
   return at & (static_cast<std::uint32_t>(bucket_begin_.size()) - 2);
+}
+
+void TailRecords::find_beside(std::uint32_t record, std::vector<std::uint32_t>& beside) const {
+  constexpr float kAlike = 0.95f;  // cos 18°
+  beside.clear();
+  const Vec3f position_m = (places_[record].position_world_m - origin_world_m_).cast<float>();
+  const Vec3f normal = places_[record].normal_world.cast<float>();
+  const float off_plane_m = 0.2f * cell_m_;
+  const Cell cell = cell_of(position_m);
+  const std::size_t bucket = bucket_of(cell);
+  for (std::uint32_t i = bucket_begin_[bucket]; i < bucket_begin_[bucket + 1]; ++i) {
+    const Packed& one = packed_[i];
+    if (one.record == record || cell_of(one.position_m) != cell || one.normal.dot(normal) < kAlike) continue;
+    const Vec3f apart_m = one.position_m - position_m;
+    if (std::max(std::abs(apart_m.dot(normal)), std::abs(apart_m.dot(one.normal))) > off_plane_m) continue;
+    beside.push_back(one.record);
+  }
 }
 
 std::optional<TailRecords::Found> TailRecords::nearest(const Vec3& position_world_m, const Vec3& normal_world) const {

@@ -4,7 +4,8 @@
 /// Paths from neighbouring places see the same rest of the room. A record holds the reflected illuminance of one place
 /// (a path's second vertex), estimated once by a few paths; a path that arrives nearby takes
 /// the record's value instead of going on (irradiance as G. Ward et al. 1988 cache it, with the first reflection from
-/// lamps left to the exact connections). Each replicate has records of its own, at places of its own, so that the error
+/// lamps left to the exact connections). What a path takes is the mean of the record and of those beside it, so that it
+/// has less of one record's noise. Each replicate has records of its own, at places of its own, so that the error
 /// of looking a little beside the place averages out over them, and shows, as their noise does.
 
 #include <array>
@@ -25,7 +26,7 @@ class TailRecords {
     double clear_m;  ///< up to this distance nothing stands between the record and its neighbours on the surface
   };
 
-  /// Adds records of value 0; what is there keeps its index and value.
+  /// Adds records of value 0; what is there keeps its index and value. Nobody has been told anything then.
   /// columns: emitters × channels, the same each time
   void append(std::span<const Place> places, std::size_t columns);
 
@@ -36,15 +37,24 @@ class TailRecords {
   /// The nearest record on a surface that lies alike: normals within 25°, within about half a spacing of its plane.
   [[nodiscard]] std::optional<Found> nearest(const Vec3& position_world_m, const Vec3& normal_world) const;
 
+  /// The records that share the cell of a grid with this one, as wide as one and a half times their spacing, and its
+  /// plane. Is mutual.
+  void find_beside(std::uint32_t record, std::vector<std::uint32_t>& beside) const;
+
   [[nodiscard]] std::size_t size() const { return places_.size(); }
   [[nodiscard]] const Place& place(std::size_t record) const { return places_[record]; }
 
   void set_clear_m(std::size_t record, double clear_m) { places_[record].clear_m = clear_m; }
 
-  /// Reflected lux at level 1, channels × emitters: all emitters of a channel together.
+  /// Reflected lux at level 1, channels × emitters: all emitters of a channel together. Of the record's own paths.
   [[nodiscard]] std::span<float> values(std::size_t record) { return {values_.data() + record * columns_, columns_}; }
   [[nodiscard]] std::span<const float> values(std::size_t record) const {
     return {values_.data() + record * columns_, columns_};
+  }
+  /// What it tells to those who ask: likewise, with the records beside it (SharedTails::blend).
+  [[nodiscard]] std::span<float> told(std::size_t record) { return {told_.data() + record * columns_, columns_}; }
+  [[nodiscard]] std::span<const float> told(std::size_t record) const {
+    return {told_.data() + record * columns_, columns_};
   }
 
  private:
@@ -55,7 +65,7 @@ class TailRecords {
 
   std::vector<Place> places_;
   std::size_t columns_ = 0;
-  std::vector<float> values_;
+  std::vector<float> values_, told_;
   Vec3 origin_world_m_ = Vec3::Zero();
   float cell_m_ = 1;
   std::uint32_t row_cells_ = 1, layer_cells_ = 1;
