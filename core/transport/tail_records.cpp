@@ -21,8 +21,8 @@ void TailRecords::build_grid() {
   // Records lie on surfaces: about the spacing they would have spread over the box's six sides.
   const Vec3 size = box.sizes();
   const double area_m2 = 2 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
-  cell_m_ = static_cast<float>(
-      std::max(1.5 * std::sqrt(area_m2 / static_cast<double>(places_.size())), 1e-6 * size.norm() + 1e-30));
+  cell_m_ = static_cast<float>(std::max(1.5 * std::sqrt(area_m2 / static_cast<double>(places_.size())),
+                                        1e-6 * size.norm() + 1e-15));  // its square is no float 0
   row_cells_ = static_cast<std::uint32_t>(cell_of(size.cast<float>())[0]) + 1;
   layer_cells_ = row_cells_ * (static_cast<std::uint32_t>(cell_of(size.cast<float>())[1]) + 1);
   std::size_t buckets = 16;
