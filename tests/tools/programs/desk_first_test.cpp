@@ -103,8 +103,9 @@ TEST_P(DeskThere, BesideADeskInStandbyNoFrameOfANewDaemonReachesTheLamps) {
       EXPECT_NEAR(seen.least, desks, 0.01) << guarded;
       EXPECT_NEAR(seen.most, desks, 0.01) << guarded << ", its own light is " << own;
       bench.desk.vanish();
-      if (period == 25ms)
+      if (period == 25ms) {
         ASSERT_TRUE(wait_for([&] { return std::abs(bench.bulb() - own) < 0.03; }, 25s)) << bench.rig.truth();
+      }
     }
   }
 }
