@@ -32,7 +32,7 @@ std::string address_text(const Rig& rig, const Fixture& fixture) {
                                : fmt::format("{}.{}", dmx->universe, dmx->address);
   }
   const auto& modbus = std::get<ModbusPatch>(patch);
-  return fmt::format("unit {} register {}", modbus.unit, modbus.holding_register);
+  return fmt::format("unit {} {} {}", modbus.unit, modbus.coil ? "coil" : "register", modbus.holding_register);
 }
 
 /// In the planes C0 and C90; once when they are alike.

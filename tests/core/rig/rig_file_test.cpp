@@ -213,6 +213,28 @@ TEST(RigFile, ReadsDefaultSpeedsOnlyIntoFixturesThatMove) {
   EXPECT_NEAR(rig->fixtures[1].pan_speed_rad_s, kPi, 1e-12);
 }
 
+/// A lamp on output `channel` of a product of rigs/register-maps.
+std::string text_of_lamp_on(const std::string& map, int channel) {
+  return "[rig]\nname = \"r\"\n[[luminaire]]\nname = \"bulb\"\nmodel = \"isotropic\"\nlumens = 900\n"
+         "[[bus]]\nname = \"field\"\ndriver = \"modbus_tcp\"\nhost = \"192.0.2.7\"\n"
+         "[[fixture]]\nname = \"lamp\"\nluminaire = \"bulb\"\nposition_m = [0, 0, 3]\nbus = \"field\"\n"
+         "register_map = \"" +
+         (test::source_folder() / "rigs/register-maps" / map).string() + "\"\nchannel = " + std::to_string(channel) +
+         "\n";
+}
+
+TEST(RigFile, SaysOfALampOnARelayThatItCannotDim) {
+  const Checked<Rig> relay = parse(text_of_lamp_on("waveshare-modbus-rtu-relay-d.toml", 3));
+  ASSERT_TRUE(relay) << listed(relay.error());
+  ASSERT_EQ(relay->notes.size(), 1u);
+  EXPECT_EQ(relay->notes[0].line, 17);
+  EXPECT_NE(relay->notes[0].what.find("\"lamp\" hangs on a relay"), std::string::npos) << relay->notes[0].text();
+
+  const Checked<Rig> dimmer = parse(text_of_lamp_on("waveshare-analog-output-8ch-b.toml", 3));
+  ASSERT_TRUE(dimmer) << listed(dimmer.error());
+  EXPECT_TRUE(dimmer->notes.empty());
+}
+
 TEST(RigFile, SurvivesEveryTruncationAndManyChangedBytes) {
   std::ifstream in(kRooms / "rig.toml", std::ios::binary);
   const std::string room((std::istreambuf_iterator<char>(in)), {});
