@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -14,14 +15,15 @@
 namespace luxrig {
 namespace {
 
-/// Halves the interval until both halves agree with the whole to `allowed`.
+/// Of f ≥ 0. Halves the interval until both halves agree with the whole to `allowed`, or as far as they round.
 template <class F>
 double integral(const F& f, double from, double to, double allowed, int depth) {
   const double middle = 0.5 * (from + to);
   const double whole = gauss8(f, from, to);
   const double left = gauss8(f, from, middle);
   const double right = gauss8(f, middle, to);
-  if (depth == 0 || std::abs(left + right - whole) <= allowed) return left + right;
+  constexpr double kRounds = 8 * std::numeric_limits<double>::epsilon();
+  if (depth == 0 || std::abs(left + right - whole) <= std::max(allowed, kRounds * whole)) return left + right;
   return integral(f, from, middle, 0.5 * allowed, depth - 1) + integral(f, middle, to, 0.5 * allowed, depth - 1);
 }
 
@@ -34,23 +36,22 @@ class Spot final : public IntensityDistribution {
         cos_cut_off_(std::cos(2 * field_rad_)),
         power_(std::log(std::log2(10.0)) / (std::log(field_angle_rad) - std::log(beam_angle_rad))) {
     const auto ring = [this](double gamma_rad) { return 2 * kPi * profile(gamma_rad) * std::sin(gamma_rad); };
-    // The profile is at least 1/2 within the beam, which bounds the integral from below.
-    const double allowed = 1e-14 * kPi * (1 - std::cos(beam_rad_));
     // Pieces over each of which (γ/b)^p doubles: without them the rule would step over the edge of a spot whose
     // field is hardly wider than its beam, and find itself agreed.
-    double per_cd = 0;
-    double from_rad = 0;
+    std::vector<double> edges{0};
     const auto add = [&](double to_rad) {
-      if (to_rad <= from_rad) return;
-      per_cd += integral(ring, from_rad, to_rad, allowed, 40);
-      from_rad = to_rad;
+      if (to_rad > edges.back()) edges.push_back(to_rad);
     };
     for (int doubling = -30; doubling <= 7; ++doubling) {
       const double edge_rad = beam_rad_ * std::exp2(doubling / power_);
-      if (edge_rad > field_rad_ && from_rad < field_rad_) add(field_rad_);
+      if (edge_rad > field_rad_ && edges.back() < field_rad_) add(field_rad_);
       add(std::min(edge_rad, 2 * field_rad_));
     }
     add(2 * field_rad_);
+    // Of all of it, not of the beam: in a wide field that holds most of the light, and no sum is better than it rounds.
+    double about = 0, per_cd = 0;
+    for (std::size_t i = 1; i < edges.size(); ++i) about += gauss8(ring, edges[i - 1], edges[i]);
+    for (std::size_t i = 1; i < edges.size(); ++i) per_cd += integral(ring, edges[i - 1], edges[i], 1e-14 * about, 40);
     peak_cd_ = flux_lm / per_cd;
     drawn_.emplace(tabulated());
   }

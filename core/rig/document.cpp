@@ -1,7 +1,6 @@
 #include "core/rig/document.h"
 
 #include <algorithm>
-#include <cctype>
 
 #include "core/rig/plain_text.h"
 
@@ -33,6 +32,7 @@ struct ParseRefusal {
 ///     declares unreachable (found by fuzzing); in a text the same after a backslash and blanks, as it looks for the
 ///     end of the line there (found by fuzzing);
 ///   - quotes within a word, where it does not see the beginning of a text (found by fuzzing).
+/// Up to its first error toml++ must read as this does; after that it reads nothing.
 std::optional<ParseRefusal> look_ahead(std::string_view text) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   Place here{1, 1};
@@ -71,47 +71,78 @@ std::optional<ParseRefusal> look_ahead(std::string_view text) {
     }
     return true;
   };
+  // Where a word began, toml++ takes all up to a blank, comma or closing bracket for it, also quotes, = and [. So what
+  // a sign means depends on whether a key or a value is due.
+  std::string open;  // brackets of lists and tables within values
+  bool value = false, word = false;
   while (i < text.size()) {
-    switch (text[i]) {
+    const char c = text[i];
+    switch (c) {
       case '"':
       case '\'':
-        // Within a word or right after a text, toml++ does not see the quote that we would see.
-        if (i > 0 && (std::isalnum(static_cast<unsigned char>(text[i - 1])) ||
-                      std::string_view("_-+:\"'").find(text[i - 1]) != std::string_view::npos)) {
+        if (word) {
           return ParseRefusal{here, "not TOML: a quote right after a word or a text", "put a space, = or , in between"};
         }
-        if (!skip_string(text[i])) {
+        if (!skip_string(c)) {
           return ParseRefusal{here, "a letter outside ASCII right after a backslash",
                               "let a text not begin again with such a letter after a backslash at the end of a line"};
         }
-        break;
+        word = true;
+        continue;
       case '#':
         while (i < text.size() && text[i] != '\n') step();
-        break;
+        continue;
       case '.':
         if (++dots >= kMaxDottedParts) {
           return ParseRefusal{here, "a key of more than " + std::to_string(kMaxDottedParts) + " dotted parts",
                               "no key of a rig file needs more than three"};
         }
-        step();
+        word = true;
         break;
       case '\n':
+        dots = 0;
+        word = false;
+        if (open.empty()) value = false;
+        break;
+      case ' ':
+      case '\t':
+      case '\r':
+        word = false;
+        break;
       case '=':
+        dots = 0;
+        word = value;
+        value = true;
+        break;
       case ',':
+        dots = 0;
+        word = false;
+        if (!open.empty()) value = open.back() == '[';
+        break;
       case '[':
-      case ']':
       case '{':
+        dots = 0;
+        if (value && !word) {
+          open += c;
+          value = c == '[';
+        }
+        break;
+      case ']':
       case '}':
         dots = 0;
-        step();
+        if (!open.empty()) {
+          open.pop_back();
+          value = word = true;
+        }
         break;
       default:
-        if (static_cast<unsigned char>(text[i]) >= 0x80) {
+        if (static_cast<unsigned char>(c) >= 0x80) {
           return ParseRefusal{here, "not TOML: a letter outside ASCII that stands in no text",
                               "put the text in quotes"};
         }
-        step();
+        word = true;
     }
+    step();
   }
   return std::nullopt;
 }

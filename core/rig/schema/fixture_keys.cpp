@@ -7,7 +7,7 @@ namespace {
 using enum ValueType;
 
 constexpr Bounds kLuminousSize{0.001, 100};
-constexpr Bounds kFullCone{0, 180, true, true};
+constexpr Bounds kFullCone{0.001, 180, false, true};
 constexpr Bounds kUnitAddress{0, 255};
 constexpr Bounds kFlux{0, 1e8, true};
 constexpr Bounds kWatts{0, 1e6};

@@ -73,7 +73,37 @@ TEST_P(SpotProfile, FallsSteadilyAndIsDarkBeyondTheFullFieldAngle) {
 
 INSTANTIATE_TEST_SUITE_P(FromPinSpotToFlood, SpotProfile,
                          testing::Values(Angles{24, 40}, Angles{1, 2}, Angles{6, 60}, Angles{35.9, 36}, Angles{60, 178},
-                                         Angles{90, 120}, Angles{10, 20}, Angles{120, 179.9}));
+                                         Angles{90, 120}, Angles{10, 20}, Angles{120, 179.9}, Angles{1, 40},
+                                         Angles{0.1, 170}));
+
+/// ∫ I/I0 dΩ of the profile that the header states, by Simpson's rule in ln (γ/b)^p; within the first step 1.
+double profile_sr(double beam_rad, double field_rad) {
+  constexpr int kSteps = 20'000;
+  const double b = beam_rad / 2, f = field_rad / 2, p = std::log(std::log2(10.0)) / std::log(f / b);
+  const double from = -60, to = std::min(p * std::log(2 * f / b), 7.1);  // 2^-e^7.1 is no number
+  const double step = (to - from) / kSteps;
+  double sum = 0;
+  for (int i = 0; i <= kSteps; ++i) {
+    const double s = from + i * step, gamma_rad = b * std::exp(s / p), t = gamma_rad / f - 1;
+    const double w = t <= 0 ? 1 : std::max(0.0, 1 - 6 * std::pow(t, 5) + 15 * std::pow(t, 4) - 10 * std::pow(t, 3));
+    sum += (i == 0 || i == kSteps ? 1 : i % 2 ? 4 : 2) * std::exp2(-std::exp(s)) * w * std::sin(gamma_rad) * gamma_rad;
+  }
+  return 2 * kPi * (sum * step / 3 / p + 2 * std::pow(std::sin(b * std::exp(from / p) / 2), 2));
+}
+
+/// A narrow beam in a wide field, whose light is nearly all outside of the beam, once never came to an end.
+TEST(Spot, OfAnyTwoAnglesHasThePeakThatItsFluxGives) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> share(0, 1);
+  for (int i = 0; i < 300; ++i) {
+    const double beam_deg = 0.001 * std::pow(179 / 0.001, share(random));
+    const double ratio = 1 + std::pow(10, -6 + 11 * share(random));
+    const double field_deg = std::min(beam_deg * ratio, 179.9);
+    const Intensity spot = make_spot(1000, rad_from_deg(beam_deg), rad_from_deg(field_deg));
+    EXPECT_NEAR(spot->max_intensity_cd() * profile_sr(rad_from_deg(beam_deg), rad_from_deg(field_deg)) / 1000, 1, 1e-5)
+        << beam_deg << "° in " << field_deg << "°";
+  }
+}
 
 TEST(Spot, IsAGaussianWhereTheRatioOfItsAnglesIsThatOfAGaussian) {
   const double ratio = std::sqrt(std::log2(10.0));
