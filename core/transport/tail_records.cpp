@@ -5,6 +5,13 @@
 #include <cmath>
 
 namespace luxrig {
+namespace {
+
+/// Records in the cell of a record, on average over the records, above which cells are narrowed. Where records are
+/// spread all over the surfaces of a venue they are 3 to 4.
+constexpr double kMostCrowded = 8;
+
+}  // namespace
 
 void TailRecords::append(std::span<const Place> places, std::size_t columns) {
   places_.insert(places_.end(), places.begin(), places.end());
@@ -21,19 +28,26 @@ void TailRecords::build_grid() {
   // Records lie on surfaces: about the spacing they would have spread over the box's six sides.
   const Vec3 size = box.sizes();
   const double area_m2 = 2 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
-  cell_m_ = static_cast<float>(std::max(1.5 * std::sqrt(area_m2 / static_cast<double>(places_.size())),
-                                        1e-6 * size.norm() + 1e-15));  // its square is no float 0
-  row_cells_ = static_cast<std::uint32_t>(cell_of(size.cast<float>())[0]) + 1;
-  layer_cells_ = row_cells_ * (static_cast<std::uint32_t>(cell_of(size.cast<float>())[1]) + 1);
+  const auto least_cell_m = static_cast<float>(1e-6 * size.norm() + 1e-15);  // its square is no float 0
+  cell_m_ = std::max(static_cast<float>(1.5 * std::sqrt(area_m2 / static_cast<double>(places_.size()))), least_cell_m);
   std::size_t buckets = 16;
   while (buckets < 2 * places_.size()) buckets *= 2;
-  bucket_begin_.assign(buckets + 1, 0);
   std::vector<std::uint32_t> bucket_of_record(places_.size());
-  for (std::size_t i = 0; i < places_.size(); ++i) {
-    const Vec3f position_m = (places_[i].position_world_m - origin_world_m_).cast<float>();
-    bucket_of_record[i] = static_cast<std::uint32_t>(bucket_of(cell_of(position_m)));
-    ++bucket_begin_[bucket_of_record[i] + 1];
-  }
+  const auto spread = [&] {
+    row_cells_ = static_cast<std::uint32_t>(cell_of(size.cast<float>())[0]) + 1;
+    layer_cells_ = row_cells_ * (static_cast<std::uint32_t>(cell_of(size.cast<float>())[1]) + 1);
+    bucket_begin_.assign(buckets + 1, 0);
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+      const Vec3f position_m = (places_[i].position_world_m - origin_world_m_).cast<float>();
+      bucket_of_record[i] = static_cast<std::uint32_t>(bucket_of(cell_of(position_m)));
+      ++bucket_begin_[bucket_of_record[i] + 1];
+    }
+    double squares = 0;
+    for (const std::uint32_t count : bucket_begin_) squares += static_cast<double>(count) * count;
+    return squares / static_cast<double>(places_.size());
+  };
+  // A few far off, seen through a door, must not make one cell of the room in which the others are.
+  while (spread() > kMostCrowded && cell_m_ > 2 * least_cell_m) cell_m_ *= 0.5f;
   for (std::size_t b = 0; b < buckets; ++b) bucket_begin_[b + 1] += bucket_begin_[b];
   packed_.resize(places_.size());
   std::vector<std::uint32_t> next(bucket_begin_.begin(), bucket_begin_.end() - 1);

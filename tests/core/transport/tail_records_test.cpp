@@ -104,5 +104,34 @@ TEST(TailRecords, TakesCoincidentCollinearAndFarPlaces) {
   EXPECT_FALSE(none.nearest(Vec3::Zero(), Vec3::UnitZ()));
 }
 
+TEST(TailRecords, AFewFarOffDoNotMakeOneCellOfARoom) {
+  std::mt19937_64 random(4);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  for (const double far_m : {10.0, 1e3, 1e4}) {
+    std::vector<Place> places = scattered(random, 3000, Vec3::Zero(), 1);
+    for (int i = 0; i < 30; ++i) places.push_back({far_m * Vec3(unit(random), unit(random), 0), Vec3::UnitZ(), 0});
+    TailRecords records;
+    records.append(places, 3);
+    std::vector<std::uint32_t> beside;
+    std::size_t all = 0;
+    for (std::uint32_t i = 0; i < 3000; ++i) {
+      records.find_beside(i, beside);
+      all += beside.size();
+      for (const std::uint32_t j : beside)
+        EXPECT_LT((places[i].position_world_m - places[j].position_world_m).norm(), 1) << far_m;
+    }
+    EXPECT_LT(all, 8 * 3000u) << far_m;
+    EXPECT_GT(all, 1000u) << far_m << ": and they still learn from each other";
+    for (const Place& from : scattered(random, 200, Vec3::Zero(), 0.9)) {
+      const auto nearest = records.nearest(from.position_world_m, Vec3::UnitZ());
+      ASSERT_TRUE(nearest) << far_m;
+      double least_m = HUGE_VAL;
+      for (const Place& place : places)
+        least_m = std::min(least_m, (place.position_world_m - from.position_world_m).norm());
+      EXPECT_NEAR(nearest->distance_m, least_m, 2e-7 * far_m + 1e-6) << far_m << ": but for rounding to floats";
+    }
+  }
+}
+
 }  // namespace
 }  // namespace luxrig
