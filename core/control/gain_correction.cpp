@@ -23,6 +23,17 @@ constexpr double kMeteredWeight = 30;  ///< a metered goal goes before goals tha
 /// five instead of one or none missed a metered goal by more than 2 % after three rounds).
 constexpr double kCaution = 0.5;
 
+/// What is on or off and alone above a limit goes off, the brightest at that point first.
+void keep_within(const VectorXd& max_lx, const VectorXd& daylight_lx, const MatrixXd& lux_per_level, VectorXd& set) {
+  for (Index i = 0; i < lux_per_level.rows(); ++i) {
+    while (set.size() > 0 && daylight_lx[i] + lux_per_level.row(i).dot(set) > max_lx[i]) {
+      Index brightest = 0;
+      if (!(lux_per_level.row(i).cwiseProduct(set.transpose()).maxCoeff(&brightest) > 0)) break;
+      set[brightest] = 0;
+    }
+  }
+}
+
 }  // namespace
 
 /// Fixtures × lights: what a fixture gives per level of a light. Emitters of one housing are one light, at the shares
@@ -58,6 +69,7 @@ Correction GainEstimator::correct(std::span<const double> present, Time now) con
   problem.max_lx.setConstant(all, std::numeric_limits<double>::infinity());
   problem.max_level.resize(lights);
   problem.near_level.resize(lights);
+  std::vector<Index> on_or_off;
   for (Index k = 0; k < lights; ++k) {
     Index brightest = 0;
     per_light.col(k).maxCoeff(&brightest);  // its share is 1
@@ -66,6 +78,7 @@ Correction GainEstimator::correct(std::span<const double> present, Time now) con
     for (Index j = 0; j < fixtures(); ++j)
       if (per_light(j, k) > 0) problem.max_level[k] = std::min(problem.max_level[k], max_level_[j] / per_light(j, k));
     problem.light_name.push_back(fixture_names_[static_cast<std::size_t>(brightest)]);
+    if (switched_[static_cast<std::size_t>(brightest)] != 0) on_or_off.push_back(k);
   }
   problem.watts = (watts_.transpose() * per_light).transpose();
   problem.max_watts = max_watts_;
@@ -86,9 +99,20 @@ Correction GainEstimator::correct(std::span<const double> present, Time now) con
     if (brightest > 0) problem.goal_lx[points + j] = brightest * problem.near_level[j];
   }
 
+  // What is on or off is light that is there anyway.
+  const VectorXd daylight_lx = problem.fixed_lx.head(points);
+  const MatrixXd lux_per_level = problem.lux_per_level.topRows(points);
+  VectorXd set = VectorXd::Zero(lights);
+  for (const Index k : on_or_off) {
+    set[k] = problem.near_level[k] < 1 ? 0 : 1;
+    problem.lux_per_level.col(k).setZero();
+    problem.goal_lx[points + k] = std::numeric_limits<double>::quiet_NaN();
+    problem.near_level[k] = problem.max_level[k] = 0;
+  }
+
   Correction correction;
   correction.why.resize(points_.size());
-  VectorXd level = problem.near_level;
+  VectorXd level = problem.near_level + set;
   // The limits hold for the worst case, which depends on where the levels go: solve, look, tighten, solve again.
   for (int round = 0; round < kLimitRounds; ++round) {
     bool over = round == 0;
@@ -96,20 +120,27 @@ Correction GainEstimator::correct(std::span<const double> present, Time now) con
       const auto& max_lx = points_[static_cast<std::size_t>(i)].max_lx;
       if (!max_lx) continue;
       const Row& row = rows[static_cast<std::size_t>(i)];
-      const double daylight_lx = most_without_fixtures(row, now), room = std::max(0.0, *max_lx - daylight_lx);
-      const double lux = problem.lux_per_level.row(i).dot(level);
-      const double most = most_lux(row, vector_of(list_of(per_light * level)), now) - daylight_lx;
+      const double day_lx = most_without_fixtures(row, now), room = std::max(0.0, *max_lx - day_lx);
+      const double lux = lux_per_level.row(i).dot(level);
+      const double most = most_lux(row, vector_of(list_of(per_light * level)), now) - day_lx;
       over = over || most > room;
-      problem.max_lx[i] =
-          problem.fixed_lx[i] + (lux > 0 && most > 0 ? room * std::min(1.0, lux / most) : room / local_);
+      problem.max_lx[i] = daylight_lx[i] + (lux > 0 && most > 0 ? room * std::min(1.0, lux / most) : room / local_);
     }
     if (!over) break;
+    keep_within(problem.max_lx, daylight_lx, lux_per_level, set);
+    problem.fixed_lx.head(points) = daylight_lx + lux_per_level * set;
+    problem.max_lx = problem.max_lx.cwiseMax(problem.fixed_lx);  // but for rounding it is
+    problem.max_watts = std::max(0.0, max_watts_ - problem.watts.dot(set));
     const auto solution = solve_emittance(problem);
     if (!solution) break;
-    level = solution->level;
+    level = solution->level + set;
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const PointOutcome& outcome = solution->points[i];
       correction.why[i] = outcome.reason;
+      for (const Index k : on_or_off)
+        if (!outcome.reason.empty() && set[k] == 0 && lux_per_level(static_cast<Index>(i), k) > 0)
+          correction.why[i] +=
+              fmt::format(" ('{}', which is on or off, stays off)", problem.light_name[static_cast<std::size_t>(k)]);
       if (outcome.limit_points.empty()) continue;
       const auto first = static_cast<std::size_t>(outcome.limit_points.front());
       correction.why[i] +=

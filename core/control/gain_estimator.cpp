@@ -82,6 +82,7 @@ GainEstimator::GainEstimator(const Rig& rig, const LightModel& model)
   }
   for (std::size_t i = 0; i < luxmeters_.size(); ++i)
     if (luxmeters_[i].point && !meter_of_point_[*luxmeters_[i].point]) meter_of_point_[*luxmeters_[i].point] = i;
+  switched_ = switched_fixtures(rig);
   gain_min_ = rig.control.gain_min;
   gain_max_ = rig.control.gain_max;
   const double margin = std::clamp(rig.limits.open_loop_margin, 0.0, 0.9);
@@ -390,7 +391,10 @@ WorstCase GainEstimator::worst_case(std::span<const double> from, std::span<cons
     const RowVectorXd estimate = (row.lux_per_level.cwiseProduct(row.factor) + 3 * row.standard_error).head(fixtures());
     double factor = 0;
     for (int s = 0; s <= kFadeSamples; ++s) {
-      const VectorXd level = begin + (end - begin) * (static_cast<double>(s) / kFadeSamples);
+      VectorXd level = end;
+      for (Index j = 0; j < fixtures(); ++j)
+        level[j] = level_on_the_way(begin[j], end[j], static_cast<double>(s) / kFadeSamples,
+                                    switched_[static_cast<std::size_t>(j)] != 0);
       const double lux = estimate.dot(level.head(fixtures())), most = most_lux(row, level, now);
       if (lux > 0 && (s == kFadeSamples || most >= 0.9 * max_lx)) factor = std::max(factor, (most - daylight_lx) / lux);
     }
@@ -415,24 +419,51 @@ WorstCase GainEstimator::worst_of_any(Time now) const {
   return worst;
 }
 
+/// Of those that are on or off, by the model.
+void GainEstimator::switch_off_brightest(const Row& row, std::span<double> level) const {
+  std::size_t brightest = level.size();
+  double most_lx = 0;
+  for (std::size_t j = 0; j < level.size(); ++j) {
+    const double lux = level[j] > 0 && switched_[j] != 0 ? row.lux_per_level[static_cast<Index>(j)] : 0;
+    if (lux <= most_lx) continue;
+    brightest = j;
+    most_lx = lux;
+  }
+  if (brightest < level.size()) level[brightest] = 0;
+}
+
 std::vector<double> GainEstimator::within_limits(std::span<const double> given, Time now) const {
   std::vector<double> level = list_of(vector_of(given).head(fixtures()).cwiseMax(0).cwiseMin(max_level_));
+  for (std::size_t j = 0; j < level.size(); ++j)
+    if (switched_[j] != 0 && level[j] < 1) level[j] = 0;
   for (int round = 0; round < kLimitRounds; ++round) {
     const WorstCase worst = worst_case(level, level, now);
     const std::vector<double> before = level;
-    scale_to_limits(worst.worst_lux_per_level, worst.max_lx, level);
+    scale_to_limits(worst.worst_lux_per_level, worst.max_lx, level, 0, switched_);
     if (level == before) return level;
   }
   // Not settled: scaling down may need a little more each time (the curve's uncertainty). A last step that is certain.
   for (std::size_t p = 0; p < points_.size(); ++p) {
     if (!points_[p].max_lx) continue;
     const Row row = row_of_point(p);
-    const double most = most_lux(row, vector_of(level), now);
+    const auto most_at = [&](std::span<const double> at) { return most_lux(row, vector_of(at), now); };
+    const auto set_alone = [&] {
+      std::vector<double> set = level;
+      for (std::size_t j = 0; j < set.size(); ++j)
+        if (switched_[j] == 0) set[j] = 0;
+      return set;
+    };
+    if (most_at(level) <= *points_[p].max_lx) continue;
+    double set_lx = most_at(set_alone());  // with daylight
+    for (std::size_t j = 0; j < level.size() && set_lx > *points_[p].max_lx; ++j) {
+      switch_off_brightest(row, level);
+      set_lx = most_at(set_alone());
+    }
+    const double most = most_at(level), room = *points_[p].max_lx - set_lx;
     if (most <= *points_[p].max_lx) continue;
-    const double daylight_lx = most_without_fixtures(row, now), room = *points_[p].max_lx - daylight_lx;
-    const double share = room > 0 ? std::pow(room / (most - daylight_lx), 1 / (1 - kCurveError)) : 0;
+    const double share = room > 0 ? std::pow(room / (most - set_lx), 1 / (1 - kCurveError)) : 0;
     for (std::size_t j = 0; j < level.size(); ++j)
-      if (row.lux_per_level[static_cast<Index>(j)] > 0) level[j] *= share;
+      if (row.lux_per_level[static_cast<Index>(j)] > 0 && switched_[j] == 0) level[j] *= share;
   }
   return level;
 }

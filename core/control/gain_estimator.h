@@ -104,8 +104,8 @@ class GainEstimator {
   [[nodiscard]] double most_lux_at_point(std::size_t point, std::span<const double> level, Time now) const;
 
   /// Rows for OutputProgram: as long as row · level ≤ max_lx, no level on the straight way `from` -> `to` (a fade moves
-  /// all fixtures by the same share), nor a share of one, can bring more than max_lx, so far as bounds and evidence
-  /// say.
+  /// all fixtures by the same share, and switches as level_on_the_way() does), nor a share of one, can bring more than
+  /// max_lx, so far as bounds and evidence say.
   [[nodiscard]] WorstCase worst_case(std::span<const double> from, std::span<const double> to, Time now) const;
 
   /// Rows that hold for any levels, as a desk may want them: by bounds alone, so that they ask for more than evidence
@@ -113,11 +113,12 @@ class GainEstimator {
   [[nodiscard]] WorstCase worst_of_any(Time now) const;
 
   /// `level` with the fixtures that light a limited point scaled down together, so that most_lux_at_point <= max_lx
-  /// everywhere.
+  /// everywhere; those that are on or off go off when that is not enough.
   [[nodiscard]] std::vector<double> within_limits(std::span<const double> level, Time now) const;
 
   /// Levels that bring the rig's goals (in lux: emitters of one housing keep their shares, and with them its colour),
   /// as far as limits allow, starting from the present `level`; a metered goal goes before goals that nobody measures.
+  /// What is on or off stays so (no contactor is worn out for a few lux), unless a limit wants it off.
   /// Never fails: where the solver is stopped or refuses, the present levels within limits.
   [[nodiscard]] Correction correct(std::span<const double> level, Time now) const;
 
@@ -153,6 +154,7 @@ class GainEstimator {
   }
   [[nodiscard]] Eigen::Index fixtures() const { return max_level_.size(); }
   [[nodiscard]] Eigen::MatrixXd fixtures_per_light(const Eigen::VectorXd& present) const;
+  void switch_off_brightest(const Row& row, std::span<double> level) const;
   [[nodiscard]] double most_without_fixtures(const Row& row, Time now) const;
   void learn(const LuxReading& reading, const Eigen::VectorXd& level);
   void estimate(Time now);
@@ -163,8 +165,9 @@ class GainEstimator {
   std::vector<std::string> fixture_names_;
   std::vector<std::optional<std::size_t>> meter_of_point_;
   Eigen::VectorXd max_level_, watts_;
-  double max_watts_;                  ///< of the rig; +inf without a limit
-  std::vector<std::size_t> housing_;  ///< per fixture: the first of those that change together
+  double max_watts_;                    ///< of the rig; +inf without a limit
+  std::vector<std::uint8_t> switched_;  ///< per fixture, 1: on or off
+  std::vector<std::size_t> housing_;    ///< per fixture: the first of those that change together
   double gain_min_ = 0, gain_max_ = 1;
   double local_ = 1;  ///< 1/(1 − open_loop_margin)
   double prior_gain_ = 1, prior_gain_sd_ = 0, prior_local_sd_ = 0;

@@ -14,7 +14,39 @@ double smooth_step(double x) { return std::min(x * x * (3 - 2 * x), 1.0); }
 
 const std::vector<std::uint8_t> kNobody;
 
+bool is_on_or_off(std::span<const std::uint8_t> switched, Eigen::Index i) {
+  return static_cast<std::size_t>(i) < switched.size() && switched[static_cast<std::size_t>(i)] != 0;
+}
+
 double at_or_zero(const std::vector<double>& values, std::size_t i) { return i < values.size() ? values[i] : 0.0; }
+
+/// Of all light at a point, that of fixtures which dim, and of those that are on or off.
+struct OfRow {
+  double dimmed = 0, switched = 0;
+};
+
+/// What is on or off cannot be scaled: while it alone is above `most`, the brightest of it goes off.
+OfRow switch_off_above(double most, Eigen::Index row, const Eigen::MatrixXd& worst_lux_per_level,
+                       std::span<const std::uint8_t> switched, std::span<double> level) {
+  const auto lights = std::min<Eigen::Index>(worst_lux_per_level.cols(), static_cast<Eigen::Index>(level.size()));
+  for (;;) {
+    OfRow sum;
+    std::size_t brightest = level.size();
+    double brightest_lx = 0;
+    for (Eigen::Index j = 0; j < lights; ++j) {
+      const auto f = static_cast<std::size_t>(j);
+      const double worst = worst_lux_per_level(row, j);
+      if (!(level[f] > 0) || worst <= 0) continue;
+      const double lux = std::isfinite(worst) ? worst * level[f] : HUGE_VAL;
+      (is_on_or_off(switched, j) ? sum.switched : sum.dimmed) += lux;
+      if (!is_on_or_off(switched, j) || lux <= brightest_lx) continue;
+      brightest = f;
+      brightest_lx = lux;
+    }
+    if (brightest == level.size() || sum.switched <= most) return sum;
+    level[brightest] = 0;
+  }
+}
 
 }  // namespace
 
@@ -55,8 +87,21 @@ double drive_from_level(DimmerCurve curve, double level) {
   return level;
 }
 
+std::vector<std::uint8_t> switched_fixtures(const Rig& rig) {
+  std::vector<std::uint8_t> switched;
+  for (const Fixture& fixture : rig.fixtures) switched.push_back(fixture.switched ? 1 : 0);
+  return switched;
+}
+
+double level_on_the_way(double from, double to, double share, bool switched) {
+  // from + (to − from) · 1 need not be `to` in floating point.
+  if (share >= 1) return to;
+  if (share <= 0) return from;
+  return switched ? std::min(from, to) : from + (to - from) * share;
+}
+
 void scale_to_limits(const Eigen::MatrixXd& worst_lux_per_level, const Eigen::VectorXd& max_lx, std::span<double> level,
-                     double relief) {
+                     double relief, std::span<const std::uint8_t> switched) {
   const auto lights = std::min<Eigen::Index>(worst_lux_per_level.cols(), static_cast<Eigen::Index>(level.size()));
   const Eigen::Index rows = std::min(worst_lux_per_level.rows(), max_lx.size());
   // Room for rounding, so that the limit holds in whatever order somebody adds the contributions up.
@@ -77,12 +122,22 @@ void scale_to_limits(const Eigen::MatrixXd& worst_lux_per_level, const Eigen::Ve
     // Below the smallest normal number, products lose their relative accuracy: dark is as good.
     double most = max_lx[row] > 1e-290 && !unknown ? max_lx[row] * (1 - 2 * rounding) : 0.0;
     if (relief > 0 && std::isfinite(lux)) most += relief * (lux - most);
-    const double share = std::isfinite(lux) && lux > 0 ? std::clamp(most / lux, 0.0, 1.0) : 0.0;
+    const OfRow set = switch_off_above(most, row, worst_lux_per_level, switched, level);
+    const double left = most - set.switched;
+    const double share = std::isfinite(lux) && set.dimmed > 0 ? std::clamp(left / set.dimmed, 0.0, 1.0) : 0.0;
     for (Eigen::Index j = 0; j < lights; ++j) {
       const double worst = worst_lux_per_level(row, j);
-      if (worst > 0 || !std::isfinite(worst)) level[static_cast<std::size_t>(j)] *= share;
+      if ((worst > 0 || !std::isfinite(worst)) && !is_on_or_off(switched, j))
+        level[static_cast<std::size_t>(j)] *= share;
     }
   }
+}
+
+/// Somebody gives a lamp that is on or off less than all it has: it is off.
+void OutputProgram::switch_off_partial(std::span<double> level) const {
+  const std::size_t known = std::min(level.size(), switched.size());
+  for (std::size_t i = 0; i < known; ++i)
+    if (switched[i] != 0 && level[i] < 1) level[i] = 0;
 }
 
 void OutputProgram::own_levels_at(Time now, std::span<double> level) const {
@@ -92,13 +147,13 @@ void OutputProgram::own_levels_at(Time now, std::span<double> level) const {
           ? 0.0
           : fade_share(curve, static_cast<double>((now - start).count()) / static_cast<double>(duration.count()));
   for (std::size_t i = 0; i < level.size(); ++i) {
-    const double from = at_or_zero(from_level, i), to = at_or_zero(to_level, i);
-    // Each end is met exactly: from + (to − from) · 1 need not be `to` in floating point.
-    const double wanted = share >= 1 ? to : share <= 0 ? from : from + (to - from) * share;
+    const bool on_or_off = is_on_or_off(switched, static_cast<Eigen::Index>(i));
+    const double wanted = level_on_the_way(at_or_zero(from_level, i), at_or_zero(to_level, i), share, on_or_off);
     const double most = at_or_zero(max_level, i);
     level[i] = wanted > 0 && most > 0 ? std::min(wanted, std::min(most, 1.0)) : 0.0;
   }
-  scale_to_limits(worst_lux_per_level, max_lx, level);
+  switch_off_partial(level);
+  scale_to_limits(worst_lux_per_level, max_lx, level, 0, switched);
 }
 
 bool OutputProgram::desk_has_a_say(Time now) const {
@@ -120,6 +175,7 @@ void OutputProgram::levels_at(Time now, std::span<double> level) const {
   for (const HeadDim& dim : dims) {
     if (dim.fixture < level.size()) level[dim.fixture] *= dim.share(now);
   }
+  switch_off_partial(level);
 }
 
 void OutputProgram::wanted_levels_at(Time now, std::span<double> level) const {
@@ -127,6 +183,7 @@ void OutputProgram::wanted_levels_at(Time now, std::span<double> level) const {
   const std::size_t staged = std::min(level.size(), lamp_starts.size());
   for (std::size_t i = 0; i < staged; ++i)
     level[i] = std::min(level[i], lamp_starts[i].ceiling(now) * std::min(at_or_zero(max_level, i), 1.0));
+  switch_off_partial(level);
 }
 
 void OutputProgram::shared_levels_at(Time now, std::span<double> level) const {
@@ -139,16 +196,18 @@ void OutputProgram::shared_levels_at(Time now, std::span<double> level) const {
     for (const DeskBlend& desk : desks) last = std::max(last, desk.start + desk.duration);
     if (now >= last + limits_released) return;
     const double relief = fade_share(curve, to_seconds(now - last) / to_seconds(limits_released));
-    return scale_to_limits(any_lux_per_level, any_max_lx, level, relief);
+    return scale_to_limits(any_lux_per_level, any_max_lx, level, relief, switched);
   }
   for (const DeskBlend& desk : desks) {
     if (!desk.is_own(now)) desk.apply(now, now < heads_arrive ? heads_guarded : kNobody, level);
   }
   for (std::size_t i = 0; i < level.size(); ++i) {
     const double most = at_or_zero(max_level, i);
+    if (is_on_or_off(switched, static_cast<Eigen::Index>(i))) level[i] = switched_level(level[i]);
     level[i] = level[i] > 0 && most > 0 ? std::min(level[i], std::min(most, 1.0)) : 0.0;
   }
-  scale_to_limits(any_lux_per_level, any_max_lx, level);
+  switch_off_partial(level);
+  scale_to_limits(any_lux_per_level, any_max_lx, level, 0, switched);
 }
 
 void OutputProgram::joints_at(Time now, std::span<Joints> out) const {

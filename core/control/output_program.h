@@ -28,9 +28,19 @@ namespace luxrig {
 /// level                per fixture, ≥ 0, finite
 /// relief               0…1: share of what is above a limit that stays; for a way back to levels that are known to be
 ///                      within limits although these rows, which hold for any levels, say otherwise
+/// switched             per fixture, 1: it is on or off. Such ones are kept as long as the others can be dimmed enough;
+///                      then the brightest at that point goes off. May be empty
 /// Allocates nothing. With a limit below 1e-290 lx the point is darkened.
 void scale_to_limits(const Eigen::MatrixXd& worst_lux_per_level, const Eigen::VectorXd& max_lx, std::span<double> level,
-                     double relief = 0);
+                     double relief = 0, std::span<const std::uint8_t> switched = {});
+
+/// Per fixture, 1: it is on or off.
+[[nodiscard]] std::vector<std::uint8_t> switched_fixtures(const Rig& rig);
+/// What a lamp that is on or off makes of a level that somebody wants.
+[[nodiscard]] inline double switched_level(double level) { return level >= 0.5 ? 1 : 0; }
+/// On the way from one level to another, at share 0…1 of it; each end is met exactly. What is switched goes off as the
+/// way begins and on as it ends: between the two there is then never more light than on the straight way.
+[[nodiscard]] double level_on_the_way(double from, double to, double share, bool switched);
 
 /// A head whose beam could meet a keep-out zone: on its way to dark, dark, or on its way back. It takes light away from
 /// whoever wants it, and while `held` keeps the head where it looks, so that it is dark before it turns.
@@ -50,9 +60,10 @@ struct OutputProgram {
   Time start{};
   Duration duration{};  ///< 0: at once
   FadeCurve curve = FadeCurve::s_curve;
-  std::vector<double> max_level;  ///< per fixture, limits applied
-  std::vector<Joints> joints;     ///< per fixture; where moving heads shall look
-  bool blackout = false;          ///< all levels 0, at once; joints unchanged
+  std::vector<double> max_level;         ///< per fixture, limits applied
+  std::vector<std::uint8_t> switched{};  ///< per fixture, 1: it is on or off, and never anything between; may be empty
+  std::vector<Joints> joints;            ///< per fixture; where moving heads shall look
+  bool blackout = false;                 ///< all levels 0, at once; joints unchanged
 
   /// Conservation limits: rows = limited points; the most lux per level that the model allows there now
   /// (gain bounds, meter tolerance, standard errors included), and the limit itself.
@@ -90,6 +101,7 @@ struct OutputProgram {
   [[nodiscard]] bool done(Time now) const { return now >= start + duration; }
 
  private:
+  void switch_off_partial(std::span<double> level) const;
   void own_levels_at(Time now, std::span<double> level) const;
   void shared_levels_at(Time now, std::span<double> level) const;
 };

@@ -62,6 +62,7 @@ OrderedJson json_of(const PlannedTask& task) {
   put(json, "normalised_error", task.normalised_error);
   put(json, "lower_bound", task.lower_bound);
   put(json, "lower_bound_of_number", task.lower_bound_of_number);
+  if (!task.switches_proven) json["switches_proven"] = false;
   if (task.relief) {
     put(json, "coverage", task.relief->coverage);
     put(json, "local_contrast", task.relief->local_contrast_lx);
@@ -200,6 +201,14 @@ class Reader {
     return std::isfinite(value) ? std::optional(value) : std::nullopt;
   }
 
+  /// As it was when it is left out.
+  void read_yes_no(const Json& object, const std::string& path, const char* key, bool& value) const {
+    const Json* found = member(object, path, key, false);
+    if (!found) return;
+    if (!found->is_boolean()) return wrong_type(path, key, "true or false", *found);
+    value = found->get<bool>();
+  }
+
   [[nodiscard]] std::optional<Vec3> vector(const Json& object, const std::string& path, const char* key) const {
     return numbers<3>(object, path, key, "three numbers [x, y, z]");
   }
@@ -285,6 +294,7 @@ PlannedTask task_of(const Reader& reader, const Json& json, const std::string& p
   task.kind = reader.text(json, path, "kind", false);
   task.normalised_error = reader.number(json, path, "normalised_error", false);
   task.lower_bound = reader.optional_number(json, path, "lower_bound");
+  reader.read_yes_no(json, path, "switches_proven", task.switches_proven);
   task.lower_bound_of_number = reader.optional_number(json, path, "lower_bound_of_number");
   if (const auto contrast_lx = reader.optional_number(json, path, "local_contrast")) {
     PlannedRelief relief;
@@ -341,13 +351,7 @@ PlannedLimit limit_of(const Reader& reader, const Json& json, const std::string&
   limit.point = reader.text(json, path, "point", true);
   limit.max_lux = reader.number(json, path, "max_lux", false);
   limit.lux = reader.number(json, path, "lux", false);
-  if (const Json* met = reader.member(json, path, "met", false)) {
-    if (met->is_boolean()) {
-      limit.met = met->get<bool>();
-    } else {
-      reader.wrong_type(path, "met", "true or false", *met);
-    }
-  }
+  reader.read_yes_no(json, path, "met", limit.met);
   return limit;
 }
 

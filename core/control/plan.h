@@ -63,6 +63,7 @@ struct PlannedTask {
   /// kind "placement": proven by the search's own light: no number of lights at the places it tried comes closer, and
   /// none up to this task's number does.
   std::optional<double> lower_bound{}, lower_bound_of_number{};
+  bool switches_proven = true;            ///< false: other settings of what is on or off could be better
   std::optional<double> watts{};          ///< of its lights together; none when one's is not known
   std::vector<PlannedPower> front{};      ///< kind "placement": what each watt less would cost
   std::optional<PlannedRelief> relief{};  ///< kind "aim" and "highlight"; their normalised_error is 0
@@ -126,7 +127,8 @@ void turn_heads(Rig& rig, std::span<const Joints> joints);
 /// JSON, keys as in design.md `solve --json`, plus "luxrig_plan": 1 and "rig" (and a point's "why" when there is one,
 /// and a placement's "fixtures", like "lights", and "numbers": [{"lights", "normalised_error", "local_contrast"}],
 /// "beam_angle_deg" of a light that zooms, "local_contrast", "relative_contrast", "coverage", the same with "before_",
-/// "object_lux", "key_to_fill" of a task for an object's relief, "lower_bound" and "lower_bound_of_number", "front":
+/// "object_lux", "key_to_fill" of a task for an object's relief, "lower_bound" and "lower_bound_of_number",
+/// "switches_proven" where false, "front":
 /// [{"max_watts", "watts", "normalised_error"}], "watts" of lights and tasks, and with goals of a colour a point's "xy"
 /// and "goal_xy"). Numbers are finite or the key is absent.
 [[nodiscard]] std::string to_json(const Plan& plan);

@@ -123,6 +123,9 @@ class PlanLevels {
       if (!(light.level >= 0 && light.level <= most)) {
         problem(fmt::format("{}/level: {} for fixture \"{}\" is outside 0…{}", path, light.level, light.name, most),
                 "give a level within the fixture's limits, or solve again");
+      } else if (rig.fixtures[i].switched && light.level > 0 && light.level < 1) {
+        problem(fmt::format("{}/level: {} for fixture \"{}\", which is on or off", path, light.level, light.name),
+                "give 0 or 1, or solve again");
       }
       set(i, light, path);
     }

@@ -57,6 +57,7 @@ ShowController::State::State(const Rig& rig_in, const LightModel& model)
     program.max_level.push_back(std::min(fixture.max_level, rig.limits.max_level));
     program.joints.push_back(fixture.joints);
   }
+  program.switched = switched_fixtures(rig);
   model_joints = program.joints;
   for (const std::size_t f : zones.heads()) {
     guarded.push_back({f, HeadWhereabouts(rig.fixtures[f])});
@@ -123,7 +124,10 @@ void ShowController::State::guard(Time now, const std::vector<double>& from, con
         was == lights && ends_lx <= row.dot(Eigen::Map<const Eigen::VectorXd>(in_force.data(), was)) * kRounding;
 
     for (int s = nothing_new ? 1 : 0; s <= kSamples && safe && !was_so; ++s) {
-      const Eigen::VectorXd level = begin + (end - begin) * (static_cast<double>(s) / kSamples);
+      Eigen::VectorXd level(lights);
+      for (std::size_t j = 0; j < from.size(); ++j)
+        level[static_cast<Eigen::Index>(j)] =
+            level_on_the_way(from[j], to[j], static_cast<double>(s) / kSamples, program.switched[j] != 0);
       const double most_lx = estimator.most_lux_at_point(worst.points[k], {level.data(), from.size()}, now);
       safe = most_lx <= *rig.points[worst.points[k]].max_lx * kRounding;  // all light; the row's limit lacks daylight
     }
@@ -308,6 +312,8 @@ std::vector<double> ShowController::State::wanted_levels(std::span<const double>
   std::vector<double> wanted(levels.begin(), levels.end());
   for (std::size_t i = 0; i < wanted.size(); ++i)
     wanted[i] = wanted[i] > 0 ? std::min(wanted[i], program.max_level[i]) : 0.0;  // NaN is dark
+  for (std::size_t i = 0; i < wanted.size(); ++i)
+    if (program.switched[i] != 0) wanted[i] = std::min(switched_level(wanted[i]), program.max_level[i]);
   return wanted;
 }
 

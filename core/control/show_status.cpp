@@ -11,7 +11,8 @@ namespace luxrig {
 std::vector<double> ShowController::State::safe_levels() const {
   std::vector<double> level;
   for (std::size_t i = 0; i < rig.fixtures.size(); ++i) {
-    level.push_back(std::clamp(rig.fixtures[i].safe_level.value_or(rig.safe.level), 0.0, program.max_level[i]));
+    const double wanted = rig.fixtures[i].safe_level.value_or(rig.safe.level);
+    level.push_back(std::clamp(rig.fixtures[i].switched ? switched_level(wanted) : wanted, 0.0, program.max_level[i]));
   }
   return level;
 }

@@ -222,6 +222,28 @@ void RigReader::read_aim(Section& s, Fixture& fixture) {
                "aim it elsewhere, or turn its base with mount_deg");
 }
 
+void RigReader::read_switched(Section& s, bool has_emitters, Fixture& fixture) {
+  const auto* modbus = std::get_if<ModbusPatch>(&fixture.patch);
+  const bool coil = modbus != nullptr && modbus->coil;
+  if (s.read("switched", fixture.switched) && coil && !fixture.switched)
+    problems.add(s.place_of("switched"), "it hangs on a coil, which is on or off", "remove switched");
+  fixture.switched = fixture.switched || coil;
+  if (!fixture.switched) return;
+  const std::string_view cannot = coil ? "it hangs on a coil, and is on or off" : "it is switched: on or off";
+  const auto wrong = [&](std::string_view key, const std::string& what, const std::string& mend) {
+    problems.add(s.place_of(s.has(key) ? key : "name"), fmt::format("{}: {}", cannot, what), mend);
+  };
+  if (has_emitters)
+    wrong("switched", "the emitters of its luminaire would mix no colour", "use a luminaire of one light");
+  s.refuse("dimmer_curve", fmt::format("{}: dimmer_curve has no effect", cannot), "remove dimmer_curve");
+  fixture.dimmer_curve = DimmerCurve::linear;
+  if (fixture.max_level > 0 && fixture.max_level < 1)
+    wrong("max_level", fmt::format("max_level {} keeps it off", fixture.max_level), "make it 1, or 0 to keep it off");
+  if (fixture.max_level > 0 && rig.limits.max_level > 0 && rig.limits.max_level < 1)
+    wrong("switched", fmt::format("max_level {} of [limits] keeps it off", rig.limits.max_level),
+          "raise that to 1 and give max_level to the fixtures that dim, or put this one on a dimmer");
+}
+
 void RigReader::read_fixtures() {
   each(root, "fixture", [&](Section& s) {
     Fixture fixture;
@@ -273,10 +295,15 @@ void RigReader::read_fixtures() {
 
     s.read_choice("dimmer_curve", fixture.dimmer_curve);
     s.read("max_level", fixture.max_level);
+    read_switched(s, slot_owner && !slot_owner->emitters.empty(), fixture);
     if (s.read("safe_level", fixture.safe_level) && *fixture.safe_level > fixture.max_level) {
       problems.add(s.place_of("safe_level"),
                    fmt::format("safe_level {} is above max_level {}", *fixture.safe_level, fixture.max_level),
                    "lower safe_level, or raise max_level");
+    }
+    if (fixture.switched && fixture.safe_level && *fixture.safe_level > 0 && *fixture.safe_level < 1) {
+      problems.add(s.place_of("safe_level"), fmt::format("safe_level {} of what is on or off", *fixture.safe_level),
+                   "make it 0 or 1");
     }
     if (!slot_owner || slot_owner->emitters.empty()) {
       rig.fixtures.push_back(std::move(fixture));

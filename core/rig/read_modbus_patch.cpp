@@ -104,14 +104,6 @@ bool RigReader::read_modbus(Section& s, const std::optional<SlotOwner>& owner, F
       patch.format = reg.format;
       patch.dark_raw = static_cast<int>(reg.range_raw->first);
       patch.full_scale_raw = static_cast<int>(reg.range_raw->second);
-      if (patch.coil) {
-        const Place at = s.place_of(s.has("output") ? "output" : "channel");
-        rig.notes.push_back({problems.file(), at.line, at.column,
-                             fmt::format("fixture {} hangs on a relay: it is on or off, while levels, limits and fades "
-                                         "are worked out as if it could dim",
-                                         in_quotes(fixture.name)),
-                             "keep it out of what a limit guards, or put it on a dimmer"});
-      }
     }
     good &= level.has_value();
   } else {

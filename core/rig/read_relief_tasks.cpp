@@ -82,6 +82,11 @@ void RigReader::read_aim_task(Section& s, AimSpec& aim) {
   }
   for (std::size_t& head : aim.heads) head = rig.fixtures[head].housing.value_or(head);
   aim.heads.erase(std::unique(aim.heads.begin(), aim.heads.end()), aim.heads.end());
+  for (const std::size_t head : aim.heads)
+    if (rig.fixtures[head].switched)
+      problems.add(s.has("heads") ? s.place_of("heads") : s.place(),
+                   fmt::format("fixture {} is on or off, and an aim sets levels", in_quotes(rig.fixtures[head].name)),
+                   "name the other heads as heads = […], or put its lamp on a dimmer");
   if ((aim.key = heads.read_reference(s, "key")) &&
       std::find(aim.heads.begin(), aim.heads.end(), *aim.key) == aim.heads.end())
     problems.add(s.place_of("key"), "the key light is none of the heads", "name one of them");

@@ -196,6 +196,7 @@ struct Fixture {
   std::optional<AxesPatch> axes{};    ///< else pan and tilt are slots of `patch`
   std::optional<FixtureMode> mode{};  ///< with a personality
   DimmerCurve dimmer_curve = DimmerCurve::linear;
+  bool switched = false;             ///< on or off: its level is 0 or 1, and nothing between (a relay, a contactor)
   double max_level = 1.0;            ///< 0…1; no output ever above
   std::optional<double> safe_level;  ///< overrides [safe] level
   std::optional<Joints> park{};      ///< where it rests; only when it moves

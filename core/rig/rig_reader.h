@@ -133,6 +133,8 @@ struct RigReader {
   /// Pan and tilt that are drives on a bus of their own.
   void read_axes(Section& section, Fixture& fixture);
   void read_aim(Section& section, Fixture& fixture);
+  /// When it cannot dim: what has no meaning then is a problem.
+  void read_switched(Section& section, bool has_emitters, Fixture& fixture);
   /// Of keys "pan_deg" and "tilt_deg", with `prefix` before them.
   void check_joints(Section& section, const Fixture& fixture, const Joints& at, const std::string& prefix);
   void read_park(Section& section, Fixture& fixture);

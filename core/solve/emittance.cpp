@@ -8,6 +8,7 @@
 
 #include "core/solve/emittance_reasons.h"
 #include "core/solve/limited_least_squares.h"
+#include "core/solve/switched_least_squares.h"
 
 namespace luxrig {
 namespace {
@@ -20,6 +21,13 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Weight of the tie term relative to a light's column: small against any tolerance, large against rounding.
 constexpr double kTie = 1e-5;
 constexpr double kLargestEntry = 1e100;
+
+Fault fault(Cause cause, std::string detail) {
+  Fault f;
+  f.cause = cause;
+  f.detail = std::move(detail);
+  return f;
+}
 
 std::string point_text(const EmittanceProblem& p, Index i) {
   const auto at = static_cast<std::size_t>(i);
@@ -71,6 +79,8 @@ std::optional<std::string> complaint(const EmittanceProblem& p) {
   if (p.watts.size() != lights) return size("watts", p.watts.size(), lights);
   if (auto text = entries(p.watts, "watts")) return text;
   if (!(p.max_watts >= 0)) return fmt::format("a limit of {:g} W", p.max_watts);
+  if (static_cast<Index>(p.switched.size()) != lights)
+    return size("switched", static_cast<Index>(p.switched.size()), lights);
   if (auto text = complaint_of_colour(p)) return text;
   for (Index i = 0; i < points; ++i) {
     if (!std::isnan(p.goal_lx[i]) && !(p.goal_lx[i] >= 0 && p.goal_lx[i] <= kLargestEntry))
@@ -91,6 +101,7 @@ EmittanceProblem completed(EmittanceProblem p) {
   if (p.max_level.size() == 0) p.max_level = VectorXd::Ones(lights);
   if (p.near_level.size() == 0) p.near_level = VectorXd::Zero(lights);
   if (p.watts.size() == 0) p.watts = VectorXd::Zero(lights);
+  if (p.switched.empty()) p.switched.assign(static_cast<std::size_t>(lights), false);
   if (!p.rgb_per_level.empty() && p.fixed_rgb.size() == 0) p.fixed_rgb = MatrixXd::Zero(points, 3);
   return p;
 }
@@ -103,6 +114,7 @@ struct ScaledProblem {
   MatrixXd objective;  ///< W T without tie rows
   VectorXd target;     ///< W (g − b)
   VectorXd unit;
+  VectorXd rounding;           ///< per row of G: what sums may be off, with room to spare
   std::vector<Index> limited;  ///< points of the rows of G, but for a last one that limits power
 };
 
@@ -162,38 +174,69 @@ ScaledProblem scaled(const EmittanceProblem& p) {
   q.upper = p.max_level.cwiseProduct(s.unit);
   q.G.resize(limits + (power_limited(p) ? 1 : 0), lights);
   q.slack.resize(q.G.rows());
+  s.rounding.resize(q.G.rows());
+  const double rounding = 4 * static_cast<double>(lights + 4) * std::numeric_limits<double>::epsilon();
   for (Index k = 0; k < limits; ++k) {
     const Index i = s.limited[static_cast<std::size_t>(k)];
     q.G.row(k) = p.lux_per_level.row(i).cwiseQuotient(s.unit.transpose());
     const double norm = power_of_two_near(q.G.row(k).stableNorm());
     q.G.row(k) /= norm;
     q.slack[k] = (p.max_lx[i] - p.fixed_lx[i]) / norm;
+    s.rounding[k] = rounding * p.max_lx[i] / norm;
   }
   if (power_limited(p)) {
     q.G.row(limits) = p.watts.cwiseQuotient(s.unit).transpose();
     const double norm = power_of_two_near(q.G.row(limits).stableNorm());
     q.G.row(limits) /= norm;
     q.slack[limits] = p.max_watts / norm;
+    s.rounding[limits] = rounding * q.slack[limits];
   }
   return s;
+}
+
+/// Sets what is switched, and leaves a problem of what dims. Also what light there were, could all of it dim.
+Result<LightAtPoints> set_switched(const EmittanceProblem& p, ScaledProblem& s, VectorXd& level,
+                                   EmittanceSolution& solution, const Watch& watch) {
+  std::vector<Index> switched;
+  for (Index j = 0; j < level.size(); ++j)
+    if (p.switched[static_cast<std::size_t>(j)]) switched.push_back(j);
+  LimitedLeastSquares with_room = s.least_squares;
+  with_room.slack = (with_room.slack - s.rounding).cwiseMax(0);
+  SwitchedSettings settings = solve_switched_least_squares(with_room, switched, watch.stop);
+  if (settings.stopped) return tl::unexpected(fault(Cause::cancelled, "stopped on request"));
+  solution.switches_proven = settings.proven;
+  solution.iterations += settings.nodes;
+  for (const Index j : switched) {
+    if (!settings.on[static_cast<std::size_t>(j)]) continue;
+    level[j] = p.max_level[j];
+    s.target -= s.objective.col(j) * s.least_squares.upper[j];
+  }
+  s.least_squares = with_set(s.least_squares, switched, settings.on);
+  s.least_squares.slack = s.least_squares.slack.cwiseMax(0);
+  return light_at_points(p, settings.relaxed.cwiseQuotient(s.unit).cwiseMin(p.max_level));
 }
 
 VectorXd levels_of(const EmittanceProblem& p, const ScaledProblem& s, const LimitedLeastSquaresResult& at) {
   VectorXd level = at.z.cwiseQuotient(s.unit).cwiseMin(p.max_level);
   for (Index j = 0; j < level.size(); ++j)
-    if (at.state[static_cast<std::size_t>(j)] == BoundState::upper) level[j] = p.max_level[j];
+    if (at.state[static_cast<std::size_t>(j)] == BoundState::upper && s.least_squares.upper[j] > 0)
+      level[j] = p.max_level[j];
   return level;
 }
 
-/// Takes the last rounding off: row · c ≤ room holds whatever the order of summation, since the room left is more than
-/// the error of a sum of so many terms.
-void keep_limit(const Eigen::RowVectorXd& row, double room, VectorXd& level) {
+/// Takes the last rounding off what dims: row · c ≤ room holds whatever the order of summation, since the room left is
+/// more than the error of a sum of so many terms. Switched lights alone are below it (they were set with that room).
+void keep_limit(const Eigen::RowVectorXd& row, double room, const std::vector<bool>& switched, VectorXd& level) {
+  double set = 0;
+  for (Index j = 0; j < level.size(); ++j)
+    if (switched[static_cast<std::size_t>(j)]) set += row[j] * level[j];
   for (int attempt = 0;; ++attempt) {
-    const double used = row.dot(level);
-    if (used <= room || used == 0) return;
-    const double share = room <= 0 || attempt > 20 ? 0 : room / used * (1 - 4 * std::numeric_limits<double>::epsilon());
+    const double used = row.dot(level), dims = used - set, left = room - set;
+    if (used <= room || dims <= 0) return;
+    const double share = left <= 0 || attempt > 20 ? 0 : left / dims * (1 - 4 * std::numeric_limits<double>::epsilon());
     for (Index j = 0; j < level.size(); ++j)
-      if (row[j] > 0) level[j] *= share;
+      if (row[j] > 0 && !switched[static_cast<std::size_t>(j)]) level[j] *= share;
+    if (share == 0) return;
   }
 }
 
@@ -201,8 +244,8 @@ void keep_limits(const EmittanceProblem& p, VectorXd& level) {
   const double rounding = static_cast<double>(level.size() + 4) * std::numeric_limits<double>::epsilon();
   for (Index i = 0; i < p.max_lx.size(); ++i)
     if (std::isfinite(p.max_lx[i]))
-      keep_limit(p.lux_per_level.row(i), (p.max_lx[i] - p.fixed_lx[i]) - rounding * p.max_lx[i], level);
-  if (power_limited(p)) keep_limit(p.watts.transpose(), p.max_watts * (1 - rounding), level);
+      keep_limit(p.lux_per_level.row(i), (p.max_lx[i] - p.fixed_lx[i]) - rounding * p.max_lx[i], p.switched, level);
+  if (power_limited(p)) keep_limit(p.watts.transpose(), p.max_watts * (1 - rounding), p.switched, level);
 }
 
 /// Largest violation of stationarity, signs and complementarity of the problem without tie term, in scaled variables:
@@ -227,13 +270,6 @@ double kkt_residual(const ScaledProblem& s, const LimitedLeastSquaresResult& at,
     worst = std::max(worst, state == BoundState::free ? std::abs(g) : state == BoundState::lower ? -g : g);
   }
   return worst;
-}
-
-Fault fault(Cause cause, std::string detail) {
-  Fault f;
-  f.cause = cause;
-  f.detail = std::move(detail);
-  return f;
 }
 
 /// Light of the same problem with some constraints lifted.
@@ -279,15 +315,22 @@ Result<EmittanceSolution> solve_emittance(const EmittanceProblem& given, const W
   const EmittanceProblem p = completed(given);
   if (auto text = complaint(p)) return tl::unexpected(fault(Cause::invalid, *text));
 
-  const ScaledProblem s = scaled(p);
+  ScaledProblem s = scaled(p);
+  EmittanceSolution solution;
+  VectorXd set = VectorXd::Zero(p.lux_per_level.cols());
+  std::optional<LightAtPoints> could_all_dim;
+  if (std::find(p.switched.begin(), p.switched.end(), true) != p.switched.end()) {
+    auto light = set_switched(p, s, set, solution, watch);
+    if (!light) return tl::unexpected(std::move(light.error()));
+    could_all_dim = std::move(*light);
+  }
   const LimitedLeastSquaresResult at = solve_limited_least_squares(s.least_squares, watch.stop);
   if (at.stopped) return tl::unexpected(fault(Cause::cancelled, "stopped on request"));
 
-  EmittanceSolution solution;
-  solution.level = levels_of(p, s, at);
+  solution.level = levels_of(p, s, at) + set;
   keep_limits(p, solution.level);
-  solution.iterations = at.iterations;
-  solution.kkt_residual = kkt_residual(s, at, solution.level);
+  solution.iterations += at.iterations;
+  solution.kkt_residual = kkt_residual(s, at, solution.level - set);
 
   const LightAtPoints light = light_at_points(p, solution.level);
   const Held held = held_at(p, solution.level, light.lux);
@@ -306,6 +349,7 @@ Result<EmittanceSolution> solve_emittance(const EmittanceProblem& given, const W
         auto lifted = what_if_lifted(p, held, watch);
         if (!lifted) return tl::unexpected(lifted.error());
         what_if = std::move(*lifted);
+        what_if->could_all_dim = std::move(could_all_dim);
       }
       explain(p, solution.level, held, *what_if, light, i, outcome);
     }

@@ -35,7 +35,9 @@ struct EmittanceProblem {
   Eigen::MatrixXd goal_rgb{};                                  ///< points × 3: of each goal, with a luminance of 1
   Eigen::VectorXd watts{};                                     ///< p ≥ 0: power of each light at level 1; empty = 0
   double max_watts = std::numeric_limits<double>::infinity();  ///< P ≥ 0
-  std::vector<std::string> point_name, light_name;             ///< for the reasons; empty = "point 3", counted from 0
+  /// Per light: it is off or at max_level (finite), and nothing between, as on a relay; empty: all dim.
+  std::vector<bool> switched{};
+  std::vector<std::string> point_name, light_name;  ///< for the reasons; empty = "point 3", counted from 0
 };
 
 /// Why a point misses its goal.
@@ -48,7 +50,8 @@ enum class Binding {
   out_of_reach,
   traded,
   power,
-  colour  ///< no mix of the lights that reach it comes near the colour
+  switched,  ///< lights that are on or off: were they to dim, it would be met
+  colour     ///< no mix of the lights that reach it comes near the colour
 };
 
 struct PointOutcome {
@@ -64,12 +67,15 @@ struct EmittanceSolution {
   Eigen::VectorXd level;  ///< within [0, u] and T c + b ≤ m, exactly (in floating point, as written)
   std::vector<PointOutcome> points;
   double normalised_error = 0;  ///< ‖T c + b − g‖ / ‖g‖ over points (and primaries) with a goal, unweighted (thesis)
-  double kkt_residual = 0;  ///< largest violation of the KKT conditions, relative; see emittance.cpp
+  /// Largest violation of the KKT conditions, relative; see emittance.cpp. Of what dims, beside switched lights as set.
+  double kkt_residual = 0;
   int iterations = 0;
+  bool switches_proven = true;  ///< no other setting of switched lights is better; false: the search for it was cut off
 };
 
 /// Among levels that give the same light the ones nearest to near_level are taken, and equal lights share alike (a tie
 /// term of 1e-5 of each light's column, which moves lux by about 1e-10 of it). A point without lights keeps b.
+/// Switched lights are set by branch and bound (switched_least_squares.h).
 /// A goal counts as met within 1 % of it (a goal of 0: within 1 % of the largest goal); one with a colour, when the
 /// distance of the primaries is within 1 % of their norm.
 ///

@@ -1,6 +1,8 @@
 #pragma once
 /// Why a point misses its goal: found out by solving again with the limits, or the level bounds, lifted.
 
+#include <optional>
+
 #include "core/solve/emittance.h"
 
 namespace luxrig {
@@ -16,6 +18,7 @@ struct LightAtPoints {
 /// all of them.
 struct WhatIf {
   LightAtPoints no_max_lx, no_max_level, no_max_watts, none;
+  std::optional<LightAtPoints> could_all_dim{};  ///< the lights that are on or off; none: there are none
 };
 
 /// What holds points and lights at the solution (to within rounding).

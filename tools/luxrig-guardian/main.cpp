@@ -68,6 +68,7 @@ OutputProgram program_of(const Rig& rig, const LastLook& look, Time now) {
   program.joints = look.joints;
   for (const Fixture& fixture : rig.fixtures)
     program.max_level.push_back(std::min(fixture.max_level, rig.limits.max_level));
+  program.switched = switched_fixtures(rig);
   return program;
 }
 

@@ -20,10 +20,13 @@ Checked<std::size_t> fixture_of(const Rig& rig, const std::string& name) {
   const auto refuse = [&](std::string what, std::string mend) {
     return tl::unexpected(std::vector<Problem>{{rig.file.string(), 0, 0, std::move(what), std::move(mend)}});
   };
-  if (name.empty() && rig.fixtures.size() == 1) return 0;
   std::vector<std::string_view> names;
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
-    if (rig.fixtures[f].name == name) return f;
+    const bool wanted = rig.fixtures[f].name == name || (name.empty() && rig.fixtures.size() == 1);
+    if (wanted && rig.fixtures[f].switched)
+      return refuse(fmt::format("fixture \"{}\" is on or off, and has no levels to compare", rig.fixtures[f].name),
+                    "name one that dims with --fixture, or take exposures instead of --levels");
+    if (wanted) return f;
     names.push_back(rig.fixtures[f].name);
   }
   if (name.empty())

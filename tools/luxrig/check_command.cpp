@@ -286,7 +286,8 @@ int run_check(const CheckArguments& arguments) {
                   fmt::format("{:.1f}°", deg_from_rad(f.joints.pan_rad)),
                   fmt::format("{:.1f}°", deg_from_rad(f.joints.tilt_rad)),
                   f.range.zooms() ? fmt::format("{:.1f}°", deg_from_rad(f.joints.beam_rad)) : "-",
-                  rig.buses[f.bus].name + " (" + rig.buses[f.bus].driver + ")", address_text(rig, f)});
+                  rig.buses[f.bus].name + " (" + rig.buses[f.bus].driver + ")",
+                  address_text(rig, f) + (f.switched ? ", on or off" : "")});
   }
   fmt::print("{}\n", fixtures.text());
   print_personalities(rig);

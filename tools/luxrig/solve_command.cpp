@@ -192,6 +192,9 @@ int run_solve(const SolveArguments& arguments) {
     fmt::print("{} ({}): normalised error {:.2f} %{}, {} iterations, {:.1f} ms\n", task.name, task.kind,
                100 * task.normalised_error, task.watts ? fmt::format(", {:.1f} W", *task.watts) : "", task.iterations,
                1000 * task.seconds);
+    if (!task.switches_proven)
+      fmt::print(
+          "which of the lamps that are on or off shall be on was not searched to the end: others could do better\n");
   }
   fmt::print("{} in {:.2f} s{}\n", met ? "every goal met" : "not every goal can be met: see why", plan->seconds,
              arguments.output ? ", plan in " + arguments.output->string() : "");

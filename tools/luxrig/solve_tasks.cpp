@@ -145,6 +145,7 @@ EmittanceProblem TaskSolver::problem_of(Index begin, Index end) const {
   for (Index j = begin; j < end; ++j) {
     problem.max_level[j - begin] = most_level(j);
     problem.watts[j - begin] = watts_of(j).value_or(0);
+    problem.switched.push_back(rig_.fixtures[static_cast<std::size_t>(j)].switched && most_level(j) > 0);
     problem.light_name.push_back(rig_.fixtures[static_cast<std::size_t>(j)].name);
   }
   return problem;
@@ -192,6 +193,7 @@ Result<void> TaskSolver::solve_levels_of(Index begin, Index end, double max_watt
   level_.segment(begin, end - begin) = solution->level;
   planned.normalised_error = solution->normalised_error;
   planned.iterations = solution->iterations;
+  planned.switches_proven = solution->switches_proven;
   list(planned, begin, end);
   for (std::size_t i = 0; i < why_.size(); ++i) why_[i] = solution->points[i].reason;
   return {};

@@ -131,6 +131,9 @@ constexpr KeySpec kFixtureKeys[] = {
     {"fixture", "output", text, "", kNone, kAny, "", "the same by name, as the register map has it"},
     {"fixture", "dimmer_curve", text, "", R"("linear")", kAny, "linear, square, s-curve",
      "how its light follows the drive sent to it, as its maker states"},
+    {"fixture", "switched", yes_no, "", "false", kAny, "",
+     "it is on or off and cannot dim (a relay, a contactor, a lamp with a driver of its own); on a coil it always is. "
+     "Fades switch it off as they begin and on as they end"},
     {"fixture", "max_level", number, "", "1", kShare, "", "most of its rated flux that it may ever give"},
     {"fixture", "safe_level", number, "", kNone, kShare, "",
      "its level in the safe look, at most `max_level`; left out, `level` of `[safe]`"},

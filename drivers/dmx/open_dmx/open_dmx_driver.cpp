@@ -26,7 +26,8 @@ constexpr OptionDoc kOpenDmxOptions[] = {
 
 constexpr int kDmxBaud = 250000;
 constexpr int kQuietLatency_ms = 16;  // nothing is read
-/// For one of the control transfers of a packet; it takes 1 ms.
+/// For one of the control transfers of a packet; it takes 1 ms. One that takes longer (a busy hub, or host) costs that
+/// packet; the cable counts as hung when none has come through for kUsbTransferTimeout.
 constexpr milliseconds kControlWithin(10);
 /// How long write() waits for the chip to put out what is left of the packet before; if longer, this packet is left
 /// out.
@@ -45,6 +46,7 @@ class OpenDmxDriver final : public UsbDmxDriver {
  private:
   Result<void> opened(Time now) override {
     latest_ = now;
+    late_since_.reset();
     // RTS low turns ENTTEC's line driver on.
     return set_up({ftdi::reset(port_, ftdi::Purge::reset), ftdi::set_baud(port_, kDmxBaud),
                    ftdi::set_format(port_, ftdi::Format::eight_n_two), ftdi::no_flow_control(port_),
@@ -119,13 +121,13 @@ class OpenDmxDriver final : public UsbDmxDriver {
     if (!usb().is_open()) return std::nullopt;
     if (!completion) {
       usb().cancel(ticket);
-      lost(now, {Cause::timeout,
-                 {},
-                 fmt::format("no answer to a control request within {} ms: unplug the cable and plug it in again",
-                             kControlWithin.count()),
-                 {}});
+      late_since_ = std::min(now, late_since_.value_or(now));
+      if (now - *late_since_ > kUsbTransferTimeout)
+        lost(now,
+             {Cause::timeout, {}, "it no longer answers control requests: unplug the cable and plug it in again", {}});
       return std::nullopt;
     }
+    late_since_.reset();
     if (completion->status == UsbStatus::done) return completion;
     failed(now, completion->status);
     return std::nullopt;
@@ -142,6 +144,7 @@ class OpenDmxDriver final : public UsbDmxDriver {
   SendRate rate_;
   std::optional<UsbTicket> sending_;
   Time sent_at_{}, latest_{};
+  std::optional<Time> late_since_{};  ///< since when no control request has been answered in time
   DmxSlots last_{};
 };
 

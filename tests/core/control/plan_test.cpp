@@ -277,6 +277,7 @@ Plan plan_that_places() {
   plan.tasks.back().numbers = {{1, 0.5}, {2, 0.25}};
   plan.tasks.back().lower_bound = 0.0625;
   plan.tasks.back().lower_bound_of_number = 0.125;
+  plan.tasks.back().switches_proven = false;
   return plan;
 }
 
@@ -301,6 +302,8 @@ TEST(Plan, KeepsWhatAPlacementFound) {
   EXPECT_EQ(read->tasks[1].numbers[1].normalised_error, 0.25);
   EXPECT_EQ(read->tasks[1].lower_bound, 0.0625);
   EXPECT_EQ(read->tasks[1].lower_bound_of_number, 0.125);
+  EXPECT_FALSE(read->tasks[1].switches_proven);
+  EXPECT_TRUE(read->tasks[0].switches_proven);
   EXPECT_FALSE(read->tasks[0].lower_bound);
 }
 

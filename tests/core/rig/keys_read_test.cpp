@@ -56,7 +56,7 @@ std::string dump(const Rig& rig) {
         text_of(Vec3(f.world_from_mount.rotation.col(0))), text_of(Vec3(f.world_from_mount.rotation.col(1))),
         text_of(f.aim_world_m), f.joints.pan_rad, f.joints.tilt_rad, f.roll_rad, f.moves, f.range.pan_min_rad,
         f.range.pan_max_rad, f.range.tilt_min_rad, f.range.tilt_max_rad, f.pan_speed_rad_s, f.tilt_speed_rad_s,
-        f.zoom_speed_rad_s, f.bus, static_cast<int>(f.dimmer_curve), f.max_level, text_of(f.safe_level),
+        f.zoom_speed_rad_s, f.bus, static_cast<int>(f.dimmer_curve), f.switched, f.max_level, text_of(f.safe_level),
         f.park ? f.park->pan_rad : -99, f.park ? f.park->tilt_rad : -99, f.stage, f.reset_s);
     if (f.axes) {
       add("axes", f.axes->bus);

@@ -204,6 +204,14 @@ bus = "field"
 unit = 8
 register_map = "a.toml"
 output = "out2"  #> "out1"
+[[fixture]]
+name = "contactor"
+luminaire = "spot"
+position_m = [1, 0, 3]
+bus = "dmx"
+address = 100
+switched = true  #> false
+max_level = 0
 [[luxmeter]]
 name = "meter"  #> "sensor"
 point = "desk"  #> "floor"

@@ -223,16 +223,23 @@ std::string text_of_lamp_on(const std::string& map, int channel) {
          "\n";
 }
 
-TEST(RigFile, SaysOfALampOnARelayThatItCannotDim) {
+TEST(RigFile, ALampOnARelayIsOnOrOff) {
   const Checked<Rig> relay = parse(text_of_lamp_on("waveshare-modbus-rtu-relay-d.toml", 3));
   ASSERT_TRUE(relay) << listed(relay.error());
-  ASSERT_EQ(relay->notes.size(), 1u);
-  EXPECT_EQ(relay->notes[0].line, 17);
-  EXPECT_NE(relay->notes[0].what.find("\"lamp\" hangs on a relay"), std::string::npos) << relay->notes[0].text();
+  EXPECT_TRUE(relay->fixtures.at(0).switched);
+  EXPECT_TRUE(relay->notes.empty());
 
-  const Checked<Rig> dimmer = parse(text_of_lamp_on("waveshare-analog-output-8ch-b.toml", 3));
+  const Checked<Rig> denied = parse(text_of_lamp_on("waveshare-modbus-rtu-relay-d.toml", 3) + "switched = false\n");
+  ASSERT_FALSE(denied);
+  EXPECT_NE(listed(denied.error()).find("hangs on a coil"), std::string::npos) << listed(denied.error());
+
+  const std::string dimmer_text = text_of_lamp_on("waveshare-analog-output-8ch-b.toml", 3);
+  const Checked<Rig> dimmer = parse(dimmer_text);
   ASSERT_TRUE(dimmer) << listed(dimmer.error());
-  EXPECT_TRUE(dimmer->notes.empty());
+  EXPECT_FALSE(dimmer->fixtures.at(0).switched);
+  const Checked<Rig> said = parse(dimmer_text + "switched = true\n");
+  ASSERT_TRUE(said) << listed(said.error());
+  EXPECT_TRUE(said->fixtures.at(0).switched);
 }
 
 TEST(RigFile, SurvivesEveryTruncationAndManyChangedBytes) {
