@@ -147,9 +147,9 @@ void explain(const EmittanceProblem& problem, const VectorXd& level, const Held&
   for (Index j = 0; j < row.size(); ++j)
     if (row[j] > 0 && problem.switched[static_cast<std::size_t>(j)]) switched.push_back(static_cast<int>(j));
   if (!switched.empty() && what_if.could_all_dim && left(*what_if.could_all_dim) < 0.5 * miss)
-    return set(
-        Binding::switched, false, false,
-        fmt::format("{} is what {} can do, on or off, {}", is, list(problem.light_name, switched, "light"), wanted));
+    return set(Binding::switched, false, false,
+               fmt::format("{} is the nearest while {} can only be on or off, {}", is,
+                           list(problem.light_name, switched, "light"), wanted));
   if (own && (limits || (together && !power)))
     return set(Binding::max_lux_here, true, false,
                fmt::format("{} its own limit of {:.4g} lx, {}", verb, problem.max_lx[point], wanted));

@@ -190,7 +190,7 @@ TEST(SwitchedLights, OneOfAHundredLuxIsOnFromHalfOfItUp) {
   EXPECT_EQ(solve_emittance(one_point({100}, {true}, 90, 100.001))->level[0], 1);
   const auto tight = solve_emittance(one_point({100}, {true}, 60, kInf));
   EXPECT_EQ(tight->points[0].binding, Binding::switched);
-  EXPECT_NE(tight->points[0].reason.find("'a' can do, on or off"), std::string::npos) << tight->points[0].reason;
+  EXPECT_NE(tight->points[0].reason.find("'a' can only be on or off"), std::string::npos) << tight->points[0].reason;
 }
 
 TEST(SwitchedLights, WhatDimsMakesUpForThem) {

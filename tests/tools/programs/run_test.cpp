@@ -50,6 +50,26 @@ TEST(Run, EveryShippedRigReachesItsGoalsWithinItsLimits) {
   }
 }
 
+TEST(Run, LampsOnRelaysAreOnOrOffAndOneThatDimsMakesUpForThem) {
+  const Folder folder;
+  const auto table = folder / "table.json", plan = folder / "plan.json";
+  const Ran solved =
+      luxrig::testing::run({program("luxrig"), "solve", source("tests/rigs/relays"), "-o", plan.string()}, 60s);
+  ASSERT_EQ(solved.code, 0) << solved.output;
+  const json lights = json::parse(text_of(plan), nullptr, false)["tasks"][0]["lights"];
+  EXPECT_EQ(lights[0]["level"], 1) << solved.output;
+  EXPECT_EQ(lights[1]["level"], 0) << "the drawing would get too much";
+  EXPECT_NEAR(lights[2]["level"].get<double>(), 0.53, 0.05);
+  const Ran ran = luxrig::testing::run({program("luxrig"), "run", source("tests/rigs/relays"), "--sim", "--once",
+                                        "--port", "0", "--json", table.string()},
+                                       90s);
+  ASSERT_EQ(ran.code, 0) << ran.output;
+  const json out = json::parse(text_of(table), nullptr, false);
+  EXPECT_EQ(out["limit_violations_in_truth"], 0);
+  EXPECT_NEAR(out["points"][0]["error"].get<double>(), 0, 0.03) << out["points"][0];
+  EXPECT_GT(out["points"][0]["measured_lux"].get<double>(), 55) << "one lamp that dims gives 20 lx of that";
+}
+
 TEST(Run, PageShowsTheRunningRig) {
   LiveRig rig(source("tests/rigs/room"));
   ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
