@@ -195,11 +195,22 @@ TEST(OpenDmxDriver, FallsSilentWhenNobodySendsAnyMore) {
   EXPECT_EQ(open.bench.slot(1), -1);
 }
 
-TEST(OpenDmxDriver, IsFaultedWhenATransferHangsAndComesBack) {
+TEST(OpenDmxDriver, LosesAPacketToAControlRequestThatIsLate) {
   OpenBench open;
   open.bench.cycles(10, 0.5);
   open.bench.cable.hangs = 1;
+  open.bench.cycles(5, 0.75);
+  EXPECT_EQ(open.bench.slot(1), 191);
+  EXPECT_EQ(open.bench.health().life, Life::active);
+  EXPECT_EQ(open.bench.health().errors, 0u);
+}
+
+TEST(OpenDmxDriver, IsFaultedWhenTransfersHangAndComesBack) {
+  OpenBench open;
+  open.bench.cycles(10, 0.5);
+  open.bench.cable.hangs = 1000;
   EXPECT_LE(open.bench.until(Life::faulted, 0.5), milliseconds(650));
+  open.bench.cable.hangs = 0;
   EXPECT_LE(open.bench.until(Life::active, 0.75), milliseconds(1200));
   open.bench.cycles(5, 0.75);
   EXPECT_EQ(open.bench.slot(1), 191);

@@ -27,7 +27,7 @@ constexpr OptionDoc kOpenDmxOptions[] = {
 constexpr int kDmxBaud = 250000;
 constexpr int kQuietLatency_ms = 16;  // nothing is read
 /// For one of the control transfers of a packet; it takes 1 ms. One that takes longer (a busy hub, or host) costs that
-/// packet; the cable counts as hung when none has come through for kUsbTransferTimeout.
+/// packet; the cable counts as hung when no packet has come through for kUsbTransferTimeout.
 constexpr milliseconds kControlWithin(10);
 /// How long write() waits for the chip to put out what is left of the packet before; if longer, this packet is left
 /// out.
@@ -60,7 +60,10 @@ class OpenDmxDriver final : public UsbDmxDriver {
     }
     if (sending_ != completion.ticket) return;  // a control transfer that write() no longer waits for
     sending_.reset();
-    if (completion.status == UsbStatus::done) return well(now);
+    if (completion.status == UsbStatus::done) {
+      late_since_.reset();
+      return well(now);
+    }
     failed(now, completion.status);
   }
 
@@ -127,7 +130,6 @@ class OpenDmxDriver final : public UsbDmxDriver {
              {Cause::timeout, {}, "it no longer answers control requests: unplug the cable and plug it in again", {}});
       return std::nullopt;
     }
-    late_since_.reset();
     if (completion->status == UsbStatus::done) return completion;
     failed(now, completion->status);
     return std::nullopt;
@@ -144,7 +146,7 @@ class OpenDmxDriver final : public UsbDmxDriver {
   SendRate rate_;
   std::optional<UsbTicket> sending_;
   Time sent_at_{}, latest_{};
-  std::optional<Time> late_since_{};  ///< since when no control request has been answered in time
+  std::optional<Time> late_since_{};  ///< when the first request was late since the last packet
   DmxSlots last_{};
 };
 
