@@ -8,10 +8,10 @@
 #include <numeric>
 
 #include "core/parallel.h"
-#include "core/scene/volume/voxelise.h"
 #include "core/transport/bsdf.h"
 #include "core/transport/cache/cache_method.h"
 #include "core/transport/cache/light_view.h"
+#include "core/transport/cache/seen_part.h"
 #include "core/transport/cache/side_exchange.h"
 #include "core/transport/progress.h"
 
@@ -47,7 +47,8 @@ class SideCache final : public RadianceCache::Method {
         seed_(options.seed),
         channels_(all_grey(scene) ? 1 : 3),
         sides_(scene, ray_scene,
-               VoxelGrid::around(triangle_bounds_m(scene), settings.voxels).coarser(settings.reduction),
+               VoxelGrid::around(seen_part_m(scene, ray_scene, points, options.seed), settings.voxels)
+                   .coarser(settings.reduction),
                settings.group_cells, options.threads) {
     rays = &ray_scene;
     receivers.assign(points.begin(), points.end());

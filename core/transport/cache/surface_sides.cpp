@@ -14,6 +14,8 @@ namespace {
 constexpr double kLift = 0.02;
 /// Pieces to a cell's face; one more for each triangle that crosses the cell.
 constexpr double kPiecesPerFace = 16;
+/// At most: what lies outside the grid is of its outermost cells, however large it is.
+constexpr double kMostPieces = 64;
 /// Polygons that are thinner than this [cells] across an axis lie in one cell along it.
 constexpr double kThin = 1e-9;
 /// Parts of triangles smaller than this [cell faces] are left out: where a cell's rim runs along a triangle's edge,
@@ -147,7 +149,7 @@ void SurfaceSides::cut_up(const Scene& scene, int threads) {
                                          .cross(part.corners[static_cast<std::size_t>(i + 1)] - part.corners[0])
                                          .norm();
                      if (!(area > kDust)) return;
-                     const int count = 1 + static_cast<int>(area * kPiecesPerFace);
+                     const int count = 1 + static_cast<int>(std::min(area * kPiecesPerFace, kMostPieces));
                      const double area_m2 = area / count * cells_.voxel_m * cells_.voxel_m;
                      for (int i = 0; i < count; ++i) {
                        // The R2 sequence (M. Roberts, 2018), evenly spread for any count.
@@ -182,6 +184,8 @@ void SurfaceSides::cut_up(const Scene& scene, int threads) {
 
 bool SurfaceSides::sees(const Vec3& a_world_m, const Vec3& normal_a, const Vec3& b_world_m, const Vec3& normal_b,
                         double lift_m) const {
+  // Rays stop short of their ends by twice the error of a surface: what the places stand on must be further off.
+  lift_m = std::max(lift_m, 4 * rays_.surface_error_m(a_world_m));
   return !rays_.occluded(a_world_m + lift_m * normal_a, Vec3::Zero(), b_world_m + lift_m * normal_b);
 }
 

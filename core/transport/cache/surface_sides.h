@@ -27,7 +27,7 @@ class SurfaceSides {
  public:
   static constexpr std::uint32_t kNone = 0xffffffff;
 
-  /// cells          grid in the scene's frame that holds all triangles
+  /// cells          grid in the scene's frame; what lies outside is of its nearest cells
   /// group_cells    cells to a group's cell, per axis
   SurfaceSides(const Scene& scene, const RayScene& rays, const VoxelGrid& cells, int group_cells, int threads);
 

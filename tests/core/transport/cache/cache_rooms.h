@@ -16,6 +16,22 @@ inline Scene two_rooms(double reflectance) {
   return scene;
 }
 
+/// A room of 6 m by 5 m by 2.7 m whose door, 1.5 m wide, opens to a ground that reaches `half_m` each way.
+inline Scene room_open_to_a_ground(double half_m, double reflectance) {
+  Scene scene;
+  scene.materials = {{"paint", Vec3::Constant(reflectance)}};
+  const double t = 0.15;
+  add_box(scene, {-half_m, -half_m, -0.3}, {half_m, half_m, 0});
+  add_box(scene, {-t, -t, 2.7}, {6 + t, 5 + t, 2.7 + t});
+  add_box(scene, {-t, -t, 0}, {0, 5 + t, 2.7});
+  add_box(scene, {6, -t, 0}, {6 + t, 5 + t, 2.7});
+  add_box(scene, {0, 5, 0}, {6, 5 + t, 2.7});
+  add_box(scene, {0, -t, 0}, {2, 0, 2.7});
+  add_box(scene, {3.5, -t, 0}, {6, 0, 2.7});
+  add_box(scene, {2, -t, 2.2}, {3.5, 0, 2.7});
+  return scene;
+}
+
 inline Emitter bulb_at(const Vec3& position_m, double flux_lm = 1000) {
   return {make_isotropic(flux_lm), {Mat3::Identity(), position_m}};
 }

@@ -86,6 +86,28 @@ TEST(RadianceCache, NoLightGoesThroughAWallBetweenClosedRooms) {
   }
 }
 
+TEST(RadianceCache, ARoomIsLitAlikeHoweverFarTheGroundReachesBeforeItsDoor) {
+  std::vector<Receiver> receivers;
+  for (double x = 0.5; x < 6; x += 0.8)
+    for (double y = 0.5; y < 5; y += 0.8) receivers.push_back({{x, y, 0.8}, Vec3::UnitZ()});
+  const std::vector<Emitter> bulbs = {bulb_at({1.5, 3, 2.3}), bulb_at({4.5, 1.5, 2.3})};
+  EvaluateOptions options;
+  options.wanted_relative_error = 0.005;
+  for (const double half_m : {12.0, 100.0, 1000.0}) {
+    const Scene scene = room_open_to_a_ground(half_m, 0.6);
+    const RayScene rays(scene);
+    const auto paths = make_path_evaluator(rays)->evaluate(receivers, bulbs, options);
+    ASSERT_TRUE(paths);
+    const auto matrix = cached(scene, receivers, bulbs, {});
+    ASSERT_EQ(matrix.receivers(), static_cast<Eigen::Index>(receivers.size()));
+    const Eigen::VectorXd levels = Eigen::VectorXd::Ones(2), truth_lx = paths->lux(levels);
+    const Eigen::VectorXd off = (matrix.lux(levels) - truth_lx).cwiseQuotient(truth_lx);
+    EXPECT_LT(std::sqrt(off.squaredNorm() / static_cast<double>(off.size())), 0.02) << half_m << " m";
+    EXPECT_LT(off.cwiseAbs().maxCoeff(), 0.06) << half_m << " m";
+    EXPECT_LT(matrix.relative_error, 0.05) << half_m << " m";
+  }
+}
+
 TEST(RadianceCache, WithoutReflectanceThereIsDirectLightOnly) {
   const auto receivers = receivers_of(cube_wall_grid(2, 3));
   for (const CacheSettings& settings : all_kinds()) {
