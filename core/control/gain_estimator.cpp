@@ -4,11 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <limits>
 
 #include "core/check.h"
 #include "core/control/output_program.h"
-#include "core/solve/emittance.h"
 
 namespace luxrig {
 namespace {
@@ -18,18 +17,12 @@ using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
-constexpr double kRepeatability = 0.005;   ///< of a reading, standard deviation; the systematic part is its tolerance
-constexpr double kDriftPerMinute = 0.001;  ///< of a lamp: old evidence loses weight, old limits grow
-constexpr double kCurveError = 0.1;        ///< how far the exponent of level -> true output may be from 1
-constexpr double kLeastLocalSd = 0.02;     ///< even a rig that trusts its model fully does not trust it further
-constexpr double kDark_lx = 0.5;           ///< what a meter may show in the dark (offset, stray light)
-constexpr double kStuckChange = 0.05;      ///< a value that stays while the light changes by this share is stuck
-constexpr double kJump = 0.2;              ///< less than this share off what is expected is never called a jump
-constexpr double kSameLevels = 0.005;      ///< evidence at levels nearer than this share replaces the former
-constexpr std::size_t kMostEvidence = 6;   ///< per meter; older goes
-constexpr int kFadeSamples = 8;
-
-double minutes_between(Time from, Time to) { return std::max(0.0, to_seconds(to - from) / 60); }
+constexpr double kLeastLocalSd = 0.02;    ///< even a rig that trusts its model fully does not trust it further
+constexpr double kDark_lx = 0.5;          ///< what a meter may show in the dark (offset, stray light)
+constexpr double kStuckChange = 0.05;     ///< a value that stays while the light changes by this share is stuck
+constexpr double kJump = 0.2;             ///< less than this share off what is expected is never called a jump
+constexpr double kSameLevels = 0.005;     ///< evidence at levels nearer than this share replaces the former
+constexpr std::size_t kMostEvidence = 6;  ///< per meter; older goes
 
 /// |ln(b/a)|, at most 1; 1 where one of them is 0.
 double log_ratio(double a, double b) {
@@ -319,153 +312,6 @@ void GainEstimator::forget(std::size_t luxmeter) {
   Time newest{};
   for (const Evidence& e : evidence_) newest = std::max(newest, e.taken);
   estimate(newest);
-}
-
-RowVectorXd GainEstimator::unmeasured_worst(const Row& row) const {
-  RowVectorXd worst = row.lux_per_level + 3 * row.standard_error;
-  for (Index j = 0; j < worst.size(); ++j) worst[j] *= upper_gain(static_cast<std::size_t>(j)) * local_;
-  return worst;
-}
-
-double GainEstimator::most_lux(const Row& row, const VectorXd& level, Time now) const {
-  const double unmeasured = unmeasured_worst(row).dot(level);
-  if (!row.luxmeter || latest(*row.luxmeter) == nullptr) return unmeasured;
-  const Evidence& e = *latest(*row.luxmeter);
-  // max Σ A_j w_j over lower ≤ A ≤ upper, A · (levels of the reading) ≤ what it can truly have been: a fractional
-  // knapsack, filled by best w_j per level. w_j: level, times what the dimmer's true curve may add on the way there.
-  const Index n = level.size();
-  VectorXd lower(n), upper(n), w(n);
-  double least = 0;
-  for (Index j = 0; j < n; ++j) {
-    const double m = row.lux_per_level[j], x = row.factor[j], sd = row.factor_error[j];
-    upper[j] = m * std::min(gain_max_ * local_, x + 3 * sd) + (m > 0 ? 0 : 3 * row.standard_error[j] * gain_max_);
-    lower[j] = std::min(upper[j], m * std::max(gain_min_ / local_, x - 3 * sd));
-    w[j] = level[j] *
-           std::exp(e.level[j] > 0 && level[j] > 0 ? kCurveError * std::abs(std::log(level[j] / e.level[j])) : 0);
-    least += lower[j] * e.level[j];
-  }
-  const double truth = e.lux / (1 - std::min(0.9, luxmeters_[e.luxmeter].tolerance)) *
-                       (1 + 2 * kRepeatability + kDriftPerMinute * minutes_between(e.taken, now));
-  if (least > truth) lower *= truth / least;
-  double left = std::max(0.0, truth - least);
-  std::vector<Index> order(static_cast<std::size_t>(n));
-  std::iota(order.begin(), order.end(), Index{0});
-  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return w[a] * e.level[b] > w[b] * e.level[a]; });
-  double most = lower.dot(w);
-  for (const Index j : order) {
-    const double room = upper[j] - lower[j];
-    const double taken = e.level[j] > 0 ? std::min(room, left / e.level[j]) : room;
-    most += taken * w[j];
-    left = std::max(0.0, left - taken * e.level[j]);
-  }
-  return most;
-}
-
-double GainEstimator::most_without_fixtures(const Row& row, Time now) const {
-  if (meter_.cols() == fixtures()) return 0;
-  return most_lux(row, vector_of(std::vector<double>(static_cast<std::size_t>(fixtures()), 0.0)), now);
-}
-
-double GainEstimator::most_lux_at_point(std::size_t point, std::span<const double> level, Time now) const {
-  return most_lux(row_of_point(point), vector_of(level), now);
-}
-
-WorstCase GainEstimator::worst_case(std::span<const double> from, std::span<const double> to, Time now) const {
-  const VectorXd begin = vector_of(from), end = vector_of(to);
-  WorstCase worst;
-  for (std::size_t p = 0; p < points_.size(); ++p)
-    if (points_[p].max_lx) worst.points.push_back(p);
-  const auto count = static_cast<Index>(worst.points.size());
-  worst.worst_lux_per_level.resize(count, fixtures());
-  worst.max_lx.resize(count);
-  for (Index k = 0; k < count; ++k) {
-    const std::size_t p = worst.points[static_cast<std::size_t>(k)];
-    const double max_lx = *points_[p].max_lx;
-    const Row row = row_of_point(p);
-    // most_lux() is convex in the levels: above what it is without fixtures it grows at most in proportion.
-    const double daylight_lx = most_without_fixtures(row, now);
-    worst.max_lx[k] = std::max(0.0, max_lx - daylight_lx);
-    worst.worst_lux_per_level.row(k) = unmeasured_worst(row).head(fixtures());
-    if (!row.luxmeter) continue;
-    // One factor on the best estimate, large enough wherever on the way the limit could be near.
-    const RowVectorXd estimate = (row.lux_per_level.cwiseProduct(row.factor) + 3 * row.standard_error).head(fixtures());
-    double factor = 0;
-    for (int s = 0; s <= kFadeSamples; ++s) {
-      VectorXd level = end;
-      for (Index j = 0; j < fixtures(); ++j)
-        level[j] = level_on_the_way(begin[j], end[j], static_cast<double>(s) / kFadeSamples,
-                                    switched_[static_cast<std::size_t>(j)] != 0);
-      const double lux = estimate.dot(level.head(fixtures())), most = most_lux(row, level, now);
-      if (lux > 0 && (s == kFadeSamples || most >= 0.9 * max_lx)) factor = std::max(factor, (most - daylight_lx) / lux);
-    }
-    if (factor > 0) worst.worst_lux_per_level.row(k) = factor * estimate;
-  }
-  return worst;
-}
-
-WorstCase GainEstimator::worst_of_any(Time now) const {
-  WorstCase worst;
-  for (std::size_t p = 0; p < points_.size(); ++p)
-    if (points_[p].max_lx) worst.points.push_back(p);
-  const auto count = static_cast<Index>(worst.points.size());
-  worst.worst_lux_per_level.resize(count, fixtures());
-  worst.max_lx.resize(count);
-  for (Index k = 0; k < count; ++k) {
-    const std::size_t p = worst.points[static_cast<std::size_t>(k)];
-    const Row row = row_of_point(p);
-    worst.max_lx[k] = std::max(0.0, *points_[p].max_lx - most_without_fixtures(row, now));
-    worst.worst_lux_per_level.row(k) = unmeasured_worst(row).head(fixtures());
-  }
-  return worst;
-}
-
-/// Of those that are on or off, by the model.
-void GainEstimator::switch_off_brightest(const Row& row, std::span<double> level) const {
-  std::size_t brightest = level.size();
-  double most_lx = 0;
-  for (std::size_t j = 0; j < level.size(); ++j) {
-    const double lux = level[j] > 0 && switched_[j] != 0 ? row.lux_per_level[static_cast<Index>(j)] : 0;
-    if (lux <= most_lx) continue;
-    brightest = j;
-    most_lx = lux;
-  }
-  if (brightest < level.size()) level[brightest] = 0;
-}
-
-std::vector<double> GainEstimator::within_limits(std::span<const double> given, Time now) const {
-  std::vector<double> level = list_of(vector_of(given).head(fixtures()).cwiseMax(0).cwiseMin(max_level_));
-  for (std::size_t j = 0; j < level.size(); ++j)
-    if (switched_[j] != 0 && level[j] < 1) level[j] = 0;
-  for (int round = 0; round < kLimitRounds; ++round) {
-    const WorstCase worst = worst_case(level, level, now);
-    const std::vector<double> before = level;
-    scale_to_limits(worst.worst_lux_per_level, worst.max_lx, level, 0, switched_);
-    if (level == before) return level;
-  }
-  // Not settled: scaling down may need a little more each time (the curve's uncertainty). A last step that is certain.
-  for (std::size_t p = 0; p < points_.size(); ++p) {
-    if (!points_[p].max_lx) continue;
-    const Row row = row_of_point(p);
-    const auto most_at = [&](std::span<const double> at) { return most_lux(row, vector_of(at), now); };
-    const auto set_alone = [&] {
-      std::vector<double> set = level;
-      for (std::size_t j = 0; j < set.size(); ++j)
-        if (switched_[j] == 0) set[j] = 0;
-      return set;
-    };
-    if (most_at(level) <= *points_[p].max_lx) continue;
-    double set_lx = most_at(set_alone());  // with daylight
-    for (std::size_t j = 0; j < level.size() && set_lx > *points_[p].max_lx; ++j) {
-      switch_off_brightest(row, level);
-      set_lx = most_at(set_alone());
-    }
-    const double most = most_at(level), room = *points_[p].max_lx - set_lx;
-    if (most <= *points_[p].max_lx) continue;
-    const double share = room > 0 ? std::pow(room / (most - set_lx), 1 / (1 - kCurveError)) : 0;
-    for (std::size_t j = 0; j < level.size(); ++j)
-      if (row.lux_per_level[static_cast<Index>(j)] > 0 && switched_[j] == 0) level[j] *= share;
-  }
-  return level;
 }
 
 }  // namespace luxrig

@@ -22,6 +22,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <string>
@@ -148,6 +149,10 @@ class GainEstimator {
   [[nodiscard]] const Evidence* latest(std::size_t luxmeter) const;
   [[nodiscard]] double covariance(const Row& one, const Eigen::VectorXd& one_level, const Evidence& other) const;
   [[nodiscard]] Eigen::VectorXd vector_of(std::span<const double> level) const;  ///< with the 1 of daylight
+  static constexpr double kRepeatability = 0.005;   ///< of a reading, standard deviation; the rest is its tolerance
+  static constexpr double kDriftPerMinute = 0.001;  ///< of a lamp: old evidence loses weight, old limits grow
+  static constexpr double kCurveError = 0.1;        ///< how far the exponent of level -> true output may be from 1
+  [[nodiscard]] static double minutes_between(Time from, Time to) { return std::max(0.0, to_seconds(to - from) / 60); }
   static constexpr int kLimitRounds = 6;  ///< limits hold for the worst case, which depends on where the levels go
   [[nodiscard]] static std::vector<double> list_of(const Eigen::VectorXd& level) {
     return {level.data(), level.data() + level.size()};

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/solve/nnls.h"
+#include "tests/core/solve/emittance_goals.h"
 
 namespace luxrig {
 namespace {
@@ -60,19 +61,6 @@ EmittanceProblem random_problem(int seed, Index most_points, Index most_lights) 
     for (Index j = 0; j < lights; ++j) p.lux_per_level.col(j) *= std::pow(10.0, 6 * uniform(random) - 3);
   }
   return p;
-}
-
-/// What lights are asked to add at a point: nothing where there is more than the goal without them.
-double missing_lx(const EmittanceProblem& p, Index point) {
-  return std::max(0.0, p.goal_lx[point] - p.fixed_lx[point]);
-}
-
-double objective(const EmittanceProblem& p, const VectorXd& level) {
-  double sum = 0;
-  for (Index i = 0; i < p.goal_lx.size(); ++i)
-    if (!std::isnan(p.goal_lx[i]))
-      sum += std::pow(p.weight[i] * (p.lux_per_level.row(i).dot(level) - missing_lx(p, i)), 2);
-  return sum;
 }
 
 double goals_squared(const EmittanceProblem& p) {

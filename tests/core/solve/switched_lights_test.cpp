@@ -8,6 +8,7 @@
 #include "core/solve/emittance.h"
 #include "core/solve/limited_nnls.h"
 #include "core/solve/switched_least_squares.h"
+#include "tests/core/solve/emittance_goals.h"
 
 namespace luxrig {
 namespace {
@@ -53,18 +54,7 @@ EmittanceProblem random_problem(unsigned seed, Index most_points, Index most_lig
   return p;
 }
 
-double missing_lx(const EmittanceProblem& p, Index point) {
-  return std::max(0.0, p.goal_lx[point] - p.fixed_lx[point]);
-}
-
-/// Root of the weighted sum of squares.
-double error_of(const EmittanceProblem& p, const VectorXd& level) {
-  double sum = 0;
-  for (Index i = 0; i < p.goal_lx.size(); ++i)
-    if (!std::isnan(p.goal_lx[i]))
-      sum += std::pow(p.weight[i] * (p.lux_per_level.row(i).dot(level) - missing_lx(p, i)), 2);
-  return std::sqrt(sum);
-}
+double error_of(const EmittanceProblem& p, const VectorXd& level) { return std::sqrt(objective(p, level)); }
 
 /// What dims is solved beside this setting; +inf when the setting alone is above a limit.
 double least_error_with(const EmittanceProblem& p, const VectorXd& set) {
