@@ -45,7 +45,8 @@ class RadianceCache {
   };
 
   /// Works out all that emitters have no part in. `scene` is what `rays` was made from; `rays` must outlive the cache,
-  /// the scene need not. Cause::cancelled when stopped; Cause::invalid when a setting is out of its range.
+  /// the scene need not. Cause::cancelled when stopped; Cause::invalid when a setting is out of its range, or the scene
+  /// so much larger than what receivers see of it that rounding hides the thickness of walls.
   [[nodiscard]] static Result<RadianceCache> build(const Scene& scene, const RayScene& rays,
                                                    std::span<const Receiver> receivers, const CacheSettings& settings,
                                                    const BuildOptions& options);

@@ -2,12 +2,15 @@
 /// hemisphere (cosine-weighted) that shows it, the first reflection is Σ G_rp B_p; later ones are exchanged between
 /// groups of sides (side_exchange.h) and read with the same G, summed by group.
 
+#include <fmt/format.h>
+
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include "core/parallel.h"
+#include "core/scene/volume/voxelise.h"
 #include "core/transport/bsdf.h"
 #include "core/transport/cache/cache_method.h"
 #include "core/transport/cache/light_view.h"
@@ -21,6 +24,8 @@ namespace {
 constexpr std::uint64_t kGatherSamples = 0x676174686572, kSideLightSamples = 0x6c69676874,
                         kBrightSamples = 0x627269676874;
 constexpr std::size_t kSideReplicates = kCacheReplicates;
+/// The thinnest walls that are to be expected, as a share of the part of a scene that is looked at.
+constexpr double kLeastWall = 0.01;
 
 /// A side is bright for an emitter when it throws back at least this share of what the emitter's light does.
 constexpr double kBrightShare = 1.0 / 256;
@@ -42,13 +47,12 @@ struct SideLight {
 class SideCache final : public RadianceCache::Method {
  public:
   SideCache(const Scene& scene, const RayScene& ray_scene, std::span<const Receiver> points,
-            const CacheSettings& settings, const RadianceCache::BuildOptions& options)
+            const Eigen::AlignedBox3d& part_m, const CacheSettings& settings,
+            const RadianceCache::BuildOptions& options)
       : settings_(settings),
         seed_(options.seed),
         channels_(all_grey(scene) ? 1 : 3),
-        sides_(scene, ray_scene,
-               VoxelGrid::around(seen_part_m(scene, ray_scene, points, options.seed), settings.voxels)
-                   .coarser(settings.reduction),
+        sides_(scene, ray_scene, VoxelGrid::around(part_m, settings.voxels).coarser(settings.reduction),
                settings.group_cells, options.threads) {
     rays = &ray_scene;
     receivers.assign(points.begin(), points.end());
@@ -385,7 +389,18 @@ class SideCache final : public RadianceCache::Method {
 
 BuiltMethod build_side_cache(const Scene& scene, const RayScene& rays, std::span<const Receiver> receivers,
                              const CacheSettings& settings, const RadianceCache::BuildOptions& options) {
-  auto cache = std::make_unique<SideCache>(scene, rays, receivers, settings, options);
+  const Eigen::AlignedBox3d part_m = seen_part_m(scene, rays, receivers, options.seed);
+  if (!part_m.isEmpty()) {
+    // Both sides of a wall are told apart where it is thicker than this.
+    const double least_wall_m = 6 * rays.surface_error_m(scene.origin_world_m + part_m.center());
+    const double part_side_m = part_m.sizes().maxCoeff(), whole_side_m = triangle_bounds_m(scene).sizes().maxCoeff();
+    if (least_wall_m > kLeastWall * part_side_m)
+      return refusal(fmt::format(
+          "the radiance cache cannot tell both sides of a wall of {:.2g} m apart beside surfaces of {:.3g} m: choose "
+          "the model path or gather, or leave out what lies far off",
+          least_wall_m, whole_side_m));
+  }
+  auto cache = std::make_unique<SideCache>(scene, rays, receivers, part_m, settings, options);
   if (!cache->build(scene, options))
     return tl::unexpected(Fault{Cause::cancelled, "", "stopped while building the radiance cache", {}});
   return cache;

@@ -108,6 +108,16 @@ TEST(RadianceCache, ARoomIsLitAlikeHoweverFarTheGroundReachesBeforeItsDoor) {
   }
 }
 
+TEST(RadianceCache, IsRefusedWhereWallsAreThinnerThanRoundingCanTell) {
+  const Scene scene = room_open_to_a_ground(10'000, 0.6);
+  const RayScene rays(scene);
+  const std::vector<Receiver> receivers = {{{3, 2, 0.8}, Vec3::UnitZ()}, {{1, 4, 0.8}, Vec3::UnitZ()}};
+  const auto cache = RadianceCache::build(scene, rays, receivers, quick_sides(), {});
+  ASSERT_FALSE(cache);
+  EXPECT_NE(cache.error().detail.find("both sides of a wall"), std::string::npos) << cache.error().detail;
+  EXPECT_EQ(cache.error().cause, Cause::invalid);
+}
+
 TEST(RadianceCache, WithoutReflectanceThereIsDirectLightOnly) {
   const auto receivers = receivers_of(cube_wall_grid(2, 3));
   for (const CacheSettings& settings : all_kinds()) {
