@@ -10,6 +10,7 @@
 #include "core/solve/lux_limits.h"
 #include "core/solve/nnls_of_few.h"
 #include "tools/bench/nnls_problems.h"
+#include "tools/bench/nnls_switched.h"
 #include "tools/bench/row_progress.h"
 #include "tools/bench/suites.h"
 
@@ -165,6 +166,7 @@ std::vector<BenchRow> bench_nnls(const BenchOptions& options) {
     add_exchanges(problem, 10, options.quick ? 2'000 : 20'000, one.exchange_seconds, rows);
     if (!large) add_limited(problem, options.quick ? 1 : 3, rows);
   }
+  for (BenchRow& row : bench_switched(options)) rows.push_back(std::move(row));
   return rows;
 }
 

@@ -1,0 +1,16 @@
+#pragma once
+/// Lights that are on or off among such that dim, for `luxrig bench nnls`.
+
+#include <vector>
+
+#include "tools/bench/bench.h"
+#include "tools/bench/bench_row.h"
+
+namespace luxrig {
+
+/// relays-N: N lamps on relays and 8 that dim, 4 m above a hall of 30 m by 20 m with 300 points of which every tenth
+/// has a limit; goals at random. 20 halls each (3 with quick): medians. `branch-and-bound` against `all-dim`, which
+/// bounds it from below; error: the normalised error of solve_emittance.
+[[nodiscard]] std::vector<BenchRow> bench_switched(const BenchOptions& options);
+
+}  // namespace luxrig
