@@ -111,6 +111,12 @@ const GainEstimator::Evidence* GainEstimator::latest(std::size_t luxmeter) const
   return nullptr;
 }
 
+double GainEstimator::common_tolerance() const {
+  double best = evidence_.empty() ? 0 : 1;
+  for (const Evidence& e : evidence_) best = std::min(best, luxmeters_[e.luxmeter].tolerance);
+  return best;
+}
+
 bool GainEstimator::confirmed(std::size_t point) const {
   return meter_of_point_[point] && latest(*meter_of_point_[point]) != nullptr;
 }

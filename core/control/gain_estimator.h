@@ -64,6 +64,8 @@ struct Correction {
 
 class GainEstimator {
  public:
+  static constexpr double kRepeatability = 0.005;  ///< of a reading, standard deviation; the rest is its tolerance
+
   /// Uses the rig's fixtures (max_level), luxmeters, points, limits and control. The model's matrices must have the
   /// rig's sizes (asserted), or be empty.
   GainEstimator(const Rig& rig, const LightModel& model);
@@ -95,6 +97,10 @@ class GainEstimator {
 
   [[nodiscard]] Prediction at_point(std::size_t point, std::span<const double> level) const;
   [[nodiscard]] Prediction at_meter(std::size_t luxmeter, std::span<const double> level) const;
+
+  /// Share by which all that the model says may be off together, since its meters may be: the tolerance of the best
+  /// meter whose readings count; 0 before the first.
+  [[nodiscard]] double common_tolerance() const;
 
   /// A meter stands at this point and at least one of its readings is believed.
   [[nodiscard]] bool confirmed(std::size_t point) const;
@@ -149,7 +155,6 @@ class GainEstimator {
   [[nodiscard]] const Evidence* latest(std::size_t luxmeter) const;
   [[nodiscard]] double covariance(const Row& one, const Eigen::VectorXd& one_level, const Evidence& other) const;
   [[nodiscard]] Eigen::VectorXd vector_of(std::span<const double> level) const;  ///< with the 1 of daylight
-  static constexpr double kRepeatability = 0.005;   ///< of a reading, standard deviation; the rest is its tolerance
   static constexpr double kDriftPerMinute = 0.001;  ///< of a lamp: old evidence loses weight, old limits grow
   static constexpr double kCurveError = 0.1;        ///< how far the exponent of level -> true output may be from 1
   [[nodiscard]] static double minutes_between(Time from, Time to) { return std::max(0.0, to_seconds(to - from) / 60); }

@@ -101,6 +101,11 @@ OrderedJson json_of(const PlannedPoint& point) {
   put(json, "xy", point.xy);
   put(json, "goal_xy", point.goal_xy);
   if (!point.why.empty()) json["why"] = point.why;
+  if (point.verdict) {
+    json["verdict"] = name_of(*point.verdict);
+    json["met"] = *point.verdict == Verdict::met;
+    if (!point.reason.empty()) json["reason"] = point.reason;
+  }
   return json;
 }
 
@@ -343,6 +348,8 @@ PlannedPoint point_of(const Reader& reader, const Json& json, const std::string&
   point.xy = reader.chromaticity(json, path, "xy");
   point.goal_xy = reader.chromaticity(json, path, "goal_xy");
   point.why = reader.text(json, path, "why", false);
+  point.verdict = verdict_named(reader.text(json, path, "verdict", false));
+  point.reason = reader.text(json, path, "reason", false);
   return point;
 }
 

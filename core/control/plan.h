@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/control/verdict.h"
 #include "core/photometry/light_colour.h"
 #include "core/result.h"
 #include "core/rig/rig.h"
@@ -75,7 +76,9 @@ struct PlannedPoint {
   Vec3 normal_world = Vec3::UnitZ();
   double lux = 0, direct_lux = 0, standard_error_lux = 0;
   std::optional<double> goal_lux;
-  std::string why;                              ///< empty when met; else what binds
+  std::string why;                              ///< what keeps it from its goal; empty when nothing does
+  std::optional<Verdict> verdict{};             ///< by the model, were the rig as its file says; none without a goal
+  std::string reason{};                         ///< of that verdict; empty when met
   std::optional<double> daylight_lux{};         ///< what of lux is daylight; none in a rig without
   std::optional<Chromaticity> xy{}, goal_xy{};  ///< in a rig whose goals have colours
 };
@@ -94,6 +97,14 @@ struct Plan {
   std::vector<PlannedPoint> points;
   std::vector<PlannedLimit> limits;
 };
+
+/// Gives each point with a goal its verdict (core/control/verdict.h): the light of the plan, were the rig exactly as its
+/// file says, known to the standard error of the transport. A goal with a colour is missed, too, when its light is
+/// further than 0.01 in CIE 1976 u'v' from it.
+void judge(Plan& plan, double goal_tolerance);
+[[nodiscard]] VerdictCounts goals_of(const Plan& plan);
+/// No goal is missed (some may be unknown), and every limit is kept, both by the model.
+[[nodiscard]] bool nothing_missed(const Plan& plan);
 
 /// Whether the last task to set fixtures was an aim: then what the plan predicts is what shall be held, and goals of
 /// the rig are set aside.

@@ -51,7 +51,9 @@ ShowController::State::State(const Rig& rig_in, const LightModel& model)
       measured(rig.luxmeters.size()),
       sampled_lx(rig.luxmeters.size()),
       sample_changed(rig.luxmeters.size(), false),
-      believed(rig.luxmeters.size()) {
+      believed(rig.luxmeters.size()),
+      heard(rig.luxmeters.size()),
+      taken_level(rig.fixtures.size(), 0.0) {
   const std::vector<double> dark(rig.fixtures.size(), 0.0);
   for (const Fixture& fixture : rig.fixtures) {
     program.max_level.push_back(std::min(fixture.max_level, rig.limits.max_level));
@@ -247,7 +249,7 @@ void ShowController::State::look_at_failures(Time now) {
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
     if (health.meter_lost(i)) measured[i].reset();
   }
-  converged = converged && all_metered_goals_met();
+  converged = converged && all_metered_goals_arrived();
 }
 
 void ShowController::State::advance(Time now) {
@@ -371,6 +373,7 @@ void ShowController::reading(Time now, const LuxReading& reading) {
   if (!std::isfinite(reading.lux) || reading.lux < 0) return state.health.garbled(reading.luxmeter, now);
   if (!state.samples.add(now, reading)) return;
   state.health.heard(reading.luxmeter, reading.taken);
+  state.heard[reading.luxmeter] = reading;
   if (!state.health.meter_lost(reading.luxmeter)) state.believed[reading.luxmeter] = reading;
 }
 
@@ -389,6 +392,7 @@ void ShowController::step(Time now) {
   state.advance(now);
   state.watch_power(now);
   state.guard_heads(now);
+  state.remember_levels(now);
 }
 
 std::vector<double> ShowController::safe_look(Time now) const {

@@ -18,6 +18,7 @@
 #include "core/control/desk_follower.h"
 #include "core/control/devices.h"
 #include "core/control/output_program.h"
+#include "core/control/verdict.h"
 #include "core/rig/rig.h"
 
 namespace luxrig {
@@ -55,13 +56,21 @@ struct PointStatus {
   double standard_error_lx = 0;       ///< of that: transport and gain uncertainty
   std::optional<double> measured_lx;  ///< of the meter that stands there
   Time measured_at{};
-  bool met = false;  ///< within the control tolerance of goal, or of the best the limits allow
-  std::string why;   ///< what binds when the goal itself is not met
+  LuxEstimate light;                  ///< what is known of it, all in all: by the meter, else by the model
+  std::optional<Verdict> verdict;     ///< none without a goal
+  std::string reason;                 ///< of that verdict, for a person; empty when met
+  std::optional<LimitVerdict> limit;  ///< none without a limit
+  std::string limit_reason;           ///< empty when kept
+  std::string why;                    ///< what binds when the goal itself is not met
+
+  [[nodiscard]] bool met() const { return verdict == Verdict::met; }
 };
 
 struct FixtureStatus {
   Joints joints;  ///< where it shall look
+  /// `level`: what is believed to be out. Of a lamp that does not answer, the last that it took; see level_known.
   double level = 0, drive = 0, target_level = 0;
+  bool level_known = true;                   ///< false: its device is lost, and what it does with its lamp is not known
   double gain = 1, gain_standard_error = 0;  ///< estimated true output over rated
   bool parked = false;                       ///< dark where it rests, or on the way there, until the next apply
   bool kept_dark = false;                    ///< its beam could meet a keep-out zone
@@ -84,7 +93,9 @@ struct ShowStatus {
   std::string detail;  ///< one line for a person
   Time phase_since{};
   int round = 0;           ///< correction rounds made since the last cue
-  bool converged = false;  ///< every metered goal met, or as near as limits allow
+  bool converged = false;  ///< corrections bring no metered goal nearer; says nothing of goals met
+  VerdictCounts goals;
+  int limits_kept = 0, limits_exceeded = 0, limits_unknown = 0;
   bool blackout = false;
   bool resting = false;  ///< heads that were parked have got there
   std::vector<FixtureStatus> fixtures;

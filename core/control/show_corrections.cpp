@@ -81,7 +81,7 @@ void ShowController::State::correct_or_hold(Time now) {
   const bool in_rounds = phase == Phase::measuring ? round < rig.control.rounds : true;
   aimed_lx = std::move(correction.aimed_lx);
   why = std::move(correction.why);
-  converged = all_metered_goals_met();
+  converged = all_metered_goals_arrived();
   if (!worth_it || (!in_rounds && breaches.empty())) {
     enter(Phase::holding, now);
     return;
@@ -95,7 +95,7 @@ void ShowController::State::correct_or_hold(Time now) {
 
 void ShowController::State::watch_drift(Time now) {
   if (sampled_at != now) return;
-  converged = all_metered_goals_met();
+  converged = all_metered_goals_arrived();
   if (!breaches.empty()) return correct_or_hold(now);
   if (health.any_meter_lost()) return;
   const Correction correction = estimator.correct(program.to_level, now);

@@ -16,9 +16,8 @@
 
 namespace luxrig {
 
-/// "As near as makes no difference" for a person who asks whether a goal is met; corrections aim closer
-/// (control.tolerance).
-inline constexpr double kMetTolerance = 0.03;
+/// Noise of a reading that no correction could take away: nearer than this to what was aimed at is there.
+inline constexpr double kArrivedTolerance = 0.03;
 
 /// A point above its limit, by its meter; kept while it lasts.
 struct LimitBreach {
@@ -87,6 +86,8 @@ struct ShowController::State {
   std::vector<std::optional<double>> sampled_lx;    ///< per luxmeter: last sample, believed or not
   std::vector<bool> sample_changed;                 ///< whether it differed from the one before
   std::vector<std::optional<LuxReading>> believed;  ///< per luxmeter: last reading while it was not lost
+  std::vector<std::optional<LuxReading>> heard;     ///< per luxmeter: last reading, believed or not
+  std::vector<double> taken_level;                  ///< per fixture: the last that its device took, so far as is known
   std::vector<double> aimed_lx;  ///< per point: what the last correction could reach; empty before the first
   std::vector<std::string> why;  ///< per point: what keeps it from its goal; empty before the first
   std::vector<LimitBreach> breaches;
@@ -154,10 +155,16 @@ struct ShowController::State {
   /// Largest |aimed − measured| / goal over the metered goals; 0 without any.
   [[nodiscard]] double possible_gain(const Correction& correction) const;
   [[nodiscard]] std::optional<std::size_t> meter_at(std::size_t point) const;
-  /// Whether a point at `lux` has its goal, or the best that the limits allow.
-  [[nodiscard]] bool goal_met(std::size_t point, double lux) const;
-  [[nodiscard]] bool all_metered_goals_met() const;
-  [[nodiscard]] std::string detail(Time now) const;
+  /// Whether a point at `lux` is where corrections want it: at its goal, or at the best that the limits allow.
+  [[nodiscard]] bool arrived(std::size_t point, double lux) const;
+  [[nodiscard]] bool all_metered_goals_arrived() const;
+  [[nodiscard]] PointStatus point_status(std::size_t point, std::span<const double> level, Time now) const;
+  [[nodiscard]] LuxEstimate light_by_model(std::size_t point, std::span<const double> level) const;
+  void judge_goal(std::size_t point, std::span<const double> level, PointStatus& status) const;
+  void judge_limit(std::size_t point, PointStatus& status) const;
+  /// Remembers what lamps took whose devices answer.
+  void remember_levels(Time now);
+  [[nodiscard]] std::string detail(Time now, const VerdictCounts& goals) const;
   [[nodiscard]] std::string who_shares(Time now) const;
   [[nodiscard]] ShowStatus status(Time now) const;
 };

@@ -35,27 +35,27 @@ double ShowController::State::possible_gain(const Correction& correction) const 
   return most;
 }
 
-bool ShowController::State::goal_met(std::size_t point, double lux) const {
+bool ShowController::State::arrived(std::size_t point, double lux) const {
   if (!rig.points[point].goal_lx) return true;
   const double goal_lx = *rig.points[point].goal_lx;
-  const double near_lx = std::max(kMetTolerance, rig.control.tolerance) * goal_lx;
+  const double near_lx = std::max(kArrivedTolerance, rig.control.tolerance) * goal_lx;
   if (std::abs(lux - goal_lx) <= near_lx) return true;
   return point < why.size() && !why[point].empty() && std::abs(lux - aimed_lx[point]) <= near_lx;
 }
 
-bool ShowController::State::all_metered_goals_met() const {
+bool ShowController::State::all_metered_goals_arrived() const {
   if (!breaches.empty()) return false;
   bool any = false;
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
     const std::optional<std::size_t> point = rig.luxmeters[i].point;
     if (!point || !rig.points[*point].goal_lx) continue;
-    if (!measured[i] || !goal_met(*point, measured[i]->lux)) return false;
+    if (!measured[i] || !arrived(*point, measured[i]->lux)) return false;
     any = true;
   }
   return any;
 }
 
-std::string ShowController::State::detail(Time now) const {
+std::string ShowController::State::detail(Time now, const VerdictCounts& goals) const {
   const auto remaining = [&](Duration whole) { return std::max(0.0, to_seconds(phase_since + whole - now)); };
   std::string text;
   switch (phase) {
@@ -84,20 +84,7 @@ std::string ShowController::State::detail(Time now) const {
       text = fmt::format("correcting, round {}", round);
       break;
     case Phase::holding: {
-      std::size_t goals = 0, met = 0, limited = 0;
-      for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
-        const std::optional<std::size_t> point = rig.luxmeters[i].point;
-        if (!point || !rig.points[*point].goal_lx) continue;
-        ++goals;
-        if (!measured[i] || !goal_met(*point, measured[i]->lux)) continue;
-        ++met;
-        limited += std::abs(measured[i]->lux - *rig.points[*point].goal_lx) >
-                   std::max(kMetTolerance, rig.control.tolerance) * *rig.points[*point].goal_lx;
-      }
-      text = goals == 0 ? "holding, no goal has a luxmeter"
-                        : fmt::format("{} of {} measured goals within {:.0f} %", met - limited, goals,
-                                      100 * std::max(kMetTolerance, rig.control.tolerance));
-      if (limited > 0) text += fmt::format(", {} as near as the limits allow", limited);
+      text = text_of(goals);
       if (health.any_meter_lost()) text += "; no correction while a luxmeter is lost";
       break;
     }
@@ -130,7 +117,6 @@ std::string ShowController::State::who_shares(Time now) const {
 ShowStatus ShowController::State::status(Time now) const {
   ShowStatus status;
   status.phase = phase;
-  status.detail = detail(now);
   status.phase_since = phase_since;
   status.round = round;
   status.converged = converged && !program.blackout;
@@ -141,8 +127,10 @@ ShowStatus ShowController::State::status(Time now) const {
   std::vector<Joints> joints(rig.fixtures.size());
   program.joints_at(now, joints);
   for (std::size_t i = 0; i < rig.fixtures.size(); ++i) {
+    const bool lost = health.lamp_lost(i);
+    if (lost) level[i] = taken_level[i];
     status.fixtures.push_back({joints[i], level[i], drive_from_level(rig.fixtures[i].dimmer_curve, level[i]),
-                               program.to_level[i], estimator.gain(i), estimator.gain_standard_error(i)});
+                               program.to_level[i], !lost, estimator.gain(i), estimator.gain_standard_error(i)});
   }
   for (const Identification& one : identified) {
     for (const std::size_t f : one.pattern.fixtures()) status.fixtures[f].identified = !one.pattern.over(now);
@@ -152,25 +140,16 @@ ShowStatus ShowController::State::status(Time now) const {
     if (status.fixtures[f].parked) status.fixtures[f].waits_for = "the next plan";
   }
   status.resting = !program.parked.empty() && parking.empty() && now >= arrive;
-  const bool settled = !program.blackout && program.done(now);
   for (std::size_t p = 0; p < rig.points.size(); ++p) {
-    PointStatus point;
-    point.goal_lx = rig.points[p].goal_lx;
-    const Prediction prediction = estimator.at_point(p, level);
-    point.predicted_lx = prediction.lux;
-    point.standard_error_lx = prediction.standard_error_lx;
-    if (const auto meter = meter_at(p)) {
-      const bool has_sample = settled && measured[*meter] && measured[*meter]->taken >= program.start;
-      if (const auto& reading = has_sample ? measured[*meter] : believed[*meter]) {
-        point.measured_lx = reading->lux;
-        point.measured_at = reading->taken;
-      }
-      if (health.meter_lost(*meter)) point.measured_lx.reset();
-    }
-    point.met = !program.blackout && goal_met(p, point.measured_lx.value_or(point.predicted_lx));
-    if (p < why.size()) point.why = why[p];
-    status.points.push_back(std::move(point));
+    status.points.push_back(point_status(p, level, now));
+    const PointStatus& point = status.points.back();
+    if (point.verdict) status.goals.add(*point.verdict);
+    if (!point.limit) continue;
+    ++(*point.limit == LimitVerdict::kept       ? status.limits_kept
+       : *point.limit == LimitVerdict::exceeded ? status.limits_exceeded
+                                                : status.limits_unknown);
   }
+  status.detail = detail(now, status.goals);
   status.luxmeters = believed;
   status.alarms = health.alarms();
   for (const LimitBreach& breach : breaches) {

@@ -418,6 +418,7 @@ struct ControlSpec {
   double settle_s = 0.5;                   ///< wait after a fade before a meter is believed
   int rounds = 3;                          ///< most correction rounds after a cue
   double tolerance = 0.02;                 ///< |measured - goal| / goal at which a round is left out
+  double goal_tolerance = 0.1;             ///< |true - goal| / goal at which a goal still counts as met
   double gain_min = 0.6, gain_max = 1.15;  ///< what the model allows a fixture's true output to be, as a factor
   Place place;
 };

@@ -134,6 +134,7 @@ void RigReader::read_settings() {
     s.read("settle_s", c.settle_s);
     s.read("rounds", c.rounds);
     s.read("tolerance", c.tolerance);
+    s.read("goal_tolerance", c.goal_tolerance);
     s.read("gain_min", c.gain_min);
     s.read("gain_max", c.gain_max);
   });

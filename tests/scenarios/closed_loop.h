@@ -111,11 +111,11 @@ class ClosedLoop {
     const std::vector<sim::PointTruth> points = devices_world().points();
     for (std::size_t m = 0; m < hall.rig.luxmeters.size(); ++m) {
       const std::size_t p = *hall.rig.luxmeters[m].point;
-      text +=
-          fmt::format("  {}: goal {:.2f} measured {:.2f} true {:.2f} most {:.2f} predicted {:.2f} ± {:.2f} met {} {}\n",
-                      hall.rig.points[p].name, *hall.rig.points[p].goal_lx, present.points[p].measured_lx.value_or(-1),
-                      points[p].lux, points[p].max_lux_seen, present.points[p].predicted_lx,
-                      present.points[p].standard_error_lx, present.points[p].met, present.points[p].why);
+      text += fmt::format(
+          "  {}: goal {:.2f} measured {:.2f} true {:.2f} most {:.2f} predicted {:.2f} ± {:.2f} met {} {}; {}\n",
+          hall.rig.points[p].name, *hall.rig.points[p].goal_lx, present.points[p].measured_lx.value_or(-1),
+          points[p].lux, points[p].max_lux_seen, present.points[p].predicted_lx, present.points[p].standard_error_lx,
+          present.points[p].met(), present.points[p].reason, present.points[p].why);
     }
     return text;
   }

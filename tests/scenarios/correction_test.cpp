@@ -45,7 +45,8 @@ TEST(Show, GoesAsNearToAGoalAtItsLimitAsTheMetersToleranceLetsItAndSaysSo) {
     EXPECT_TRUE(status.converged) << "seed " << seed << " " << loop.describe();
     EXPECT_LE(loop.worst_limit_share(), 1) << "seed " << seed << " " << loop.describe();
     for (std::size_t work = 0; work < kWorks; ++work) {
-      EXPECT_TRUE(status.points[work].met);
+      // 50 lx are aimed at, 48 are reached, and the meter may be 4 % wrong: 10 % allow that, 5 % would not.
+      EXPECT_NE(status.points[work].verdict, Verdict::missed) << status.points[work].reason;
       EXPECT_NE(status.points[work].why.find("limit"), std::string::npos) << status.points[work].why;
       // 50 lx with a meter that may be 4 % wrong: 48 lx shown is the most. Of that, 2 % (control.tolerance) are not
       // worth another round, and up to 3 % stay free for noise and for what the next levels may do to a dimmer's gain.

@@ -39,18 +39,21 @@ void print_status(const json& status) {
   }
   Table fixtures({"fixture", "bus", ">level", ">drive", ">gain", ">± se"});
   for (const json& f : list_of(status, "fixtures")) {
-    fixtures.row({text_of(f, "name"), text_of(f, "bus"), shown(number_of(f, "level"), "{:.3f}"),
+    const bool known = !f.contains("level_known") || flag_of(f, "level_known");
+    fixtures.row({text_of(f, "name"), text_of(f, "bus"), shown(number_of(f, "level"), known ? "{:.3f}" : "{:.3f}?"),
                   shown(number_of(f, "drive"), "{:.3f}"), shown(number_of(f, "gain"), "{:.3f}"),
                   shown(number_of(f, "gain_standard_error"), "{:.3f}")});
   }
-  Table points({"point", ">goal lx", ">predicted", ">± se", ">measured", ">age s", ">error", ">max lx", "why"});
+  Table points(
+      {"point", ">goal lx", ">predicted", ">± se", ">measured", ">age s", ">error", "goal", ">max lx", "limit", "why"});
   for (const json& p : list_of(status, "points")) {
     const auto error = number_of(p, "error");
     points.row({text_of(p, "name"), shown(number_of(p, "goal_lux"), "{:g}"),
                 shown(number_of(p, "predicted_lux"), "{:.1f}"), shown(number_of(p, "standard_error_lux"), "{:.1f}"),
                 shown(number_of(p, "measured_lux"), "{:.1f}"), shown(number_of(p, "measured_age_s"), "{:.1f}"),
-                error ? fmt::format("{:+.1f} %", 100 * *error) : "-", shown(number_of(p, "max_lux"), "{:g}"),
-                text_of(p, "why")});
+                error ? fmt::format("{:+.1f} %", 100 * *error) : "-", text_of(p, "verdict"),
+                shown(number_of(p, "max_lux"), "{:g}"), text_of(p, "limit"),
+                text_of(p, "limit_reason").empty() ? text_of(p, "reason") : text_of(p, "limit_reason")});
   }
   fmt::print("\n{}\n{}\n{}", devices.text(), fixtures.text(), points.text());
 }

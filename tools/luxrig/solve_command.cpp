@@ -142,17 +142,15 @@ int run_solve(const SolveArguments& arguments) {
   if (arguments.output) {
     if (const auto written = write_file(*arguments.output, to_json(*plan)); !written) return report(written.error());
   }
-  bool met = true;
-  for (const PlannedLimit& limit : plan->limits) met = met && limit.met;
-  for (const PlannedPoint& point : plan->points) met = met && point.why.empty();
+  const int exit_code = nothing_missed(*plan) ? kExitOk : kExitFailed;
   if (arguments.json) {
     fmt::print("{}\n", to_json(*plan));
-    return kExitOk;
+    return exit_code;
   }
-  std::vector<std::string> heads = {"point", ">goal lx", ">lux", ">± se", ">error", ">max lx", "why"};
+  std::vector<std::string> heads = {"point", ">goal lx", ">lux", ">± se", ">error", "goal", ">max lx", "why"};
   if (session->rig.daylight) heads.insert(heads.begin() + 4, ">daylight");
   const bool coloured = session->rig.colour_goals();
-  if (coloured) heads.insert(heads.end() - 2, {">goal xy", ">xy"});
+  if (coloured) heads.insert(heads.end() - 3, {">goal xy", ">xy"});
   Table points(std::move(heads));
   for (std::size_t i = 0; i < plan->points.size(); ++i) {
     const PlannedPoint& p = plan->points[i];
@@ -163,10 +161,11 @@ int run_solve(const SolveArguments& arguments) {
         fmt::format("{:.1f}", p.lux),
         fmt::format("{:.1f}", p.standard_error_lux),
         p.goal_lux && *p.goal_lux > 0 ? fmt::format("{:+.1f} %", 100 * (p.lux / *p.goal_lux - 1)) : "",
+        p.verdict ? name_of(*p.verdict) : "",
         max ? fmt::format("{:g}", *max) : "",
-        p.why};
+        p.verdict ? p.reason : p.why};
     if (p.daylight_lux) cells.insert(cells.begin() + 4, fmt::format("{:.1f}", *p.daylight_lux));
-    if (coloured) cells.insert(cells.end() - 2, {xy_text(p.goal_xy), xy_text(p.xy)});
+    if (coloured) cells.insert(cells.end() - 3, {xy_text(p.goal_xy), xy_text(p.xy)});
     points.row(std::move(cells));
   }
   // What the last task to set fixtures has set them to; and each light that is to be hung.
@@ -196,9 +195,13 @@ int run_solve(const SolveArguments& arguments) {
       fmt::print(
           "which of the lamps that are on or off shall be on was not searched to the end: others could do better\n");
   }
-  fmt::print("{} in {:.2f} s{}\n", met ? "every goal met" : "not every goal can be met: see why", plan->seconds,
-             arguments.output ? ", plan in " + arguments.output->string() : "");
-  return kExitOk;
+  const auto kept =
+      std::count_if(plan->limits.begin(), plan->limits.end(), [](const auto& limit) { return limit.met; });
+  fmt::print("by the model, were the rig as its file says: {} (within {:.3g} %){}; in {:.2f} s{}\n",
+             text_of(goals_of(*plan)), 100 * session->rig.control.goal_tolerance,
+             plan->limits.empty() ? "" : fmt::format(", {} of {} limits kept", kept, plan->limits.size()),
+             plan->seconds, arguments.output ? ", plan in " + arguments.output->string() : "");
+  return exit_code;
 }
 
 }  // namespace luxrig

@@ -103,6 +103,7 @@ SolvedTasks TaskSolver::done() {
   // What an aim has made of the levels is the wish from then on.
   if (holds_a_look(plan_))
     for (PlannedPoint& point : plan_.points) point.goal_lux.reset();
+  judge(plan_, rig_.control.goal_tolerance);
   plan_.seconds = seconds_since(start_);
   return {std::move(plan_), std::move(rig_), std::move(transport_)};
 }

@@ -55,11 +55,20 @@ void say_solved(const RunReport& say, const Plan& plan) {
     say.say(fmt::format("task {}: normalised error {:.2f} %, {} iterations, {:.1f} ms", task.name,
                         100 * task.normalised_error, task.iterations, 1000 * task.seconds));
   }
-  for (const PlannedPoint& point : plan.points) {
-    const double goal = point.goal_lux.value_or(0);
-    if (!point.why.empty() && std::abs(point.lux - goal) > 0.03 * goal)
-      say.say(fmt::format("  {}: {}", point.name, point.why));
-  }
+  for (const PlannedPoint& point : plan.points)
+    if (point.verdict && *point.verdict != Verdict::met) say.say(fmt::format("  {}: {}", point.name, point.reason));
+}
+
+/// Goals and limits as they stand, in a line.
+std::string goals_text(const ShowStatus& status, const Rig& rig) {
+  std::string text = text_of(status.goals);
+  if (status.goals.goals() > 0) text += fmt::format(" (within {:.3g} %)", 100 * rig.control.goal_tolerance);
+  const int limits = status.limits_kept + status.limits_exceeded + status.limits_unknown;
+  if (limits == 0) return text;
+  text += fmt::format(", {} of {} limits kept", status.limits_kept, limits);
+  if (status.limits_exceeded > 0) text += fmt::format(", {} exceeded", status.limits_exceeded);
+  if (status.limits_unknown > 0) text += fmt::format(", {} unknown", status.limits_unknown);
+  return text;
 }
 
 /// Ticks until `done` says so.
@@ -277,8 +286,8 @@ int run_rig(const RunArguments& arguments) {
       converged_s = to_seconds(at - process_start);
       if (!arguments.once) {
         fmt::print("\n{}\n", say.table(daemon.status(), truth()));
-        say.say(fmt::format("{} in {:.1f} s; page: http://127.0.0.1:{}/ (Ctrl-C fades to the safe look and ends)",
-                            daemon.status().converged ? "goals met" : "not all goals met", converged_s, *port));
+        say.say(fmt::format("{}, in {:.1f} s; page: http://127.0.0.1:{}/ (Ctrl-C fades to the safe look and ends)",
+                            goals_text(daemon.status(), rig), converged_s, *port));
       }
     }
     return stop.stop_requested() || pictures_failed != kExitOk ||
@@ -313,18 +322,21 @@ int run_rig(const RunArguments& arguments) {
       whole->points[i].max_lux_seen = after->points[i].max_lux_seen;
     whole->violations = after->violations;
   }
-  const bool met = final_status.converged && (!whole || whole->violations == 0);
+  const bool held = final_status.phase == Phase::holding && !final_status.blackout;
+  const bool done =
+      held && final_status.goals.missed == 0 && final_status.limits_exceeded == 0 && (!whole || whole->violations == 0);
   fmt::print("\n{}\n", say.table(final_status, whole));
   say.say(
-      fmt::format("{} after {} correction rounds, {:.1f} s from process start{}", met ? "goals met" : "goals NOT met",
+      fmt::format("{} after {} correction rounds, {:.1f} s from process start{}",
+                  held ? goals_text(final_status, rig) : "the look was not reached: " + final_status.detail,
                   final_status.round, converged_s,
                   whole ? fmt::format("; limits exceeded in the simulator's truth: {} times", whole->violations) : ""));
   if (arguments.json) {
-    const auto written = write_file(*arguments.json, say.json(final_status, whole, met, converged_s));
+    const auto written = write_file(*arguments.json, say.json(final_status, whole, converged_s));
     if (!written) return report(written.error());
     say.say("table as JSON: " + arguments.json->string());
   }
-  return met ? kExitOk : kExitFailed;
+  return done ? kExitOk : kExitFailed;
 }
 
 }  // namespace luxrig

@@ -18,13 +18,13 @@ struct RunArguments {
   std::optional<std::filesystem::path> state_folder;  ///< default: a folder of the user's; none with --sim
   bool no_guardian = false;                           ///< nobody takes the rig to its safe look when this dies
   std::optional<int> http_port;                       ///< default: the rig's
-  bool once = false;                                  ///< end when the goals are met, or cannot be
+  bool once = false;                                  ///< end when the look is held
   std::optional<std::filesystem::path> json;          ///< where the table goes with `once`
   std::optional<std::filesystem::path> pictures;      ///< folder; of the rig as it hangs, then of the plan
   ComputeOptions compute;
 };
 
-/// Exit code 0: ended on request, or with `once`: goals met and no limit exceeded.
+/// Exit code 0: ended on request, or with `once`: no goal missed and no limit exceeded.
 int run_rig(const RunArguments& arguments);
 
 }  // namespace luxrig

@@ -8,11 +8,10 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/luxrig/table.h"
+#include "tools/luxrigd/status_json.h"
 
 namespace luxrig {
 namespace {
-
-constexpr double kMissWorthAReason = 0.03;
 
 std::optional<double> error_of(const PointStatus& status) {
   if (!status.goal_lx || *status.goal_lx <= 0) return {};
@@ -58,19 +57,18 @@ void RunReport::follow(const ShowStatus& status, Time at) {
 }
 
 std::string RunReport::table(const ShowStatus& status, const std::optional<SimTruth>& truth) const {
-  Table table({"point", ">goal lx", ">predicted lx", ">± se", ">measured lx", ">error", ">limit lx",
+  Table table({"point", ">goal lx", ">predicted lx", ">± se", ">measured lx", ">error", "goal", ">limit lx",
                truth ? ">truth lx" : "", truth ? ">truth max" : "", ""});
   for (std::size_t i = 0; i < status.points.size(); ++i) {
     const Point& point = rig_.points[i];
     const PointStatus& p = status.points[i];
     const auto error = error_of(p);
-    // A reason belongs to a miss that matters; the JSON has them all.
-    std::string note = error && std::abs(*error) > kMissWorthAReason ? p.why : "";
-    if (!p.measured_lx && note.empty()) note = "no luxmeter here: by the model";
+    std::string note = p.reason;
+    if (!p.limit_reason.empty()) note += (note.empty() ? "" : "; ") + p.limit_reason;
     const PointTruthSeen* seen = truth && i < truth->points.size() ? &truth->points[i] : nullptr;
     table.row({point.name, p.goal_lx ? fmt::format("{:.4g}", *p.goal_lx) : "-", fmt::format("{:.1f}", p.predicted_lx),
                fmt::format("{:.1f}", p.standard_error_lx), p.measured_lx ? fmt::format("{:.1f}", *p.measured_lx) : "-",
-               error ? fmt::format("{:+.1f} %", 100 * *error) : "-",
+               error ? fmt::format("{:+.1f} %", 100 * *error) : "-", p.verdict ? name_of(*p.verdict) : "-",
                point.max_lx ? fmt::format("{:g}", *point.max_lx) : "-",
                seen != nullptr ? fmt::format("{:.1f}", seen->lux) : "",
                seen != nullptr ? fmt::format("{:.1f}", seen->max_lux_seen) : "", note});
@@ -78,13 +76,13 @@ std::string RunReport::table(const ShowStatus& status, const std::optional<SimTr
   return table.text();
 }
 
-std::string RunReport::json(const ShowStatus& status, const std::optional<SimTruth>& truth, bool met,
-                            double converged_s) const {
+std::string RunReport::json(const ShowStatus& status, const std::optional<SimTruth>& truth, double converged_s) const {
   nlohmann::json out = {{"rig", rig_.name},
-                        {"goals_met", met},
+                        {"goals_met", status.goals.met == status.goals.goals()},
                         {"converged", status.converged},
                         {"rounds", status.round},
                         {"seconds_to_converged", converged_s}};
+  put_counts(out, status, rig_.control.goal_tolerance);
   if (truth) out["limit_violations_in_truth"] = truth->violations;
   auto& points = out["points"] = nlohmann::json::array();
   const auto set = [](nlohmann::json& object, const char* key, std::optional<double> value) {
@@ -93,7 +91,8 @@ std::string RunReport::json(const ShowStatus& status, const std::optional<SimTru
   for (std::size_t i = 0; i < status.points.size(); ++i) {
     const Point& point = rig_.points[i];
     const PointStatus& p = status.points[i];
-    nlohmann::json entry = {{"name", point.name}, {"met", p.met}, {"why", p.why}};
+    nlohmann::json entry = {{"name", point.name}, {"met", p.met()}, {"why", p.why}};
+    put_verdicts(entry, p);
     set(entry, "goal_lux", p.goal_lx);
     set(entry, "predicted_lux", p.predicted_lx);
     set(entry, "standard_error_lux", p.standard_error_lx);

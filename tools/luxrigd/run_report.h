@@ -23,7 +23,7 @@ class RunReport {
   /// The table: point, goal, predicted, measured, error, limit, truth when known.
   [[nodiscard]] std::string table(const ShowStatus& status, const std::optional<SimTruth>& truth) const;
   /// The same as JSON; `converged_s`: seconds from process start to the end of the correction.
-  [[nodiscard]] std::string json(const ShowStatus& status, const std::optional<SimTruth>& truth, bool met,
+  [[nodiscard]] std::string json(const ShowStatus& status, const std::optional<SimTruth>& truth,
                                  double converged_s) const;
 
  private:

@@ -4,6 +4,30 @@
 #include <nlohmann/json.hpp>
 
 namespace luxrig {
+
+void put_verdicts(nlohmann::json& out, const PointStatus& status) {
+  if (std::isfinite(status.light.lux) && std::isfinite(status.light.half_width_lx)) {
+    out["lux"] = status.light.lux;
+    out["uncertainty_lux"] = status.light.half_width_lx;
+  }
+  if (status.verdict) {
+    out["verdict"] = name_of(*status.verdict);
+    out["reason"] = status.reason;
+  }
+  if (status.limit) {
+    out["limit"] = name_of(*status.limit);
+    out["limit_reason"] = status.limit_reason;
+  }
+}
+
+void put_counts(nlohmann::json& out, const ShowStatus& show, double goal_tolerance) {
+  out["goals"] = {{"met", show.goals.met},
+                  {"missed", show.goals.missed},
+                  {"unknown", show.goals.unknown},
+                  {"tolerance", goal_tolerance}};
+  out["limits"] = {{"kept", show.limits_kept}, {"exceeded", show.limits_exceeded}, {"unknown", show.limits_unknown}};
+}
+
 namespace {
 
 using nlohmann::json;
@@ -27,6 +51,7 @@ json fixture_json(const Rig& rig, std::size_t index, const FixtureStatus& status
   set(out, "level", status.level);
   set(out, "drive", status.drive);
   set(out, "target_level", status.target_level);
+  if (!status.level_known) out["level_known"] = false;
   if (fixture.moves) out["moves"] = true;
   if (fixture.range.zooms()) out["beam_angle_deg"] = deg_from_rad(status.joints.beam_rad);
   if (status.identified) out["identified"] = true;
@@ -42,8 +67,9 @@ json point_json(const Point& point, const PointStatus& status, Time now) {
   json out = {{"name", point.name},
               {"position", array_of(point.position_world_m)},
               {"normal", array_of(point.normal_world)},
-              {"met", status.met},
+              {"met", status.met()},
               {"why", status.why}};
+  put_verdicts(out, status);
   if (status.goal_lx) out["goal_lux"] = *status.goal_lx;
   if (point.max_lx) out["max_lux"] = *point.max_lx;
   set(out, "predicted_lux", status.predicted_lx);
@@ -94,6 +120,7 @@ std::string status_json(const StatusInput& input) {
               {"round", show.round},
               {"rounds", rig.control.rounds},
               {"converged", show.converged}};
+  put_counts(out, show, rig.control.goal_tolerance);
   json& fixtures = out["fixtures"] = json::array();
   for (std::size_t i = 0; i < show.fixtures.size(); ++i) fixtures.push_back(fixture_json(rig, i, show.fixtures[i]));
   json& points = out["points"] = json::array();

@@ -1,6 +1,7 @@
 #pragma once
 /// The status as JSON; keys are listed in README.md beside this file and are a contract.
 
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -27,5 +28,11 @@ struct StatusInput {
 };
 
 [[nodiscard]] std::string status_json(const StatusInput& input);
+
+/// Of one point: "lux" and "uncertainty_lux" (half of the 95 % interval), "verdict" and "reason", "limit" and
+/// "limit_reason"; each where there is something to say.
+void put_verdicts(nlohmann::json& out, const PointStatus& status);
+/// "goals": {"met", "missed", "unknown", "tolerance"} and "limits": {"kept", "exceeded", "unknown"}.
+void put_counts(nlohmann::json& out, const ShowStatus& show, double goal_tolerance);
 
 }  // namespace luxrig

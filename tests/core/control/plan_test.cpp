@@ -48,6 +48,8 @@ void expect_same(const Plan& a, const Plan& b) {
     EXPECT_TRUE(same(a.points[p].standard_error_lux, b.points[p].standard_error_lux));
     EXPECT_EQ(a.points[p].goal_lux, b.points[p].goal_lux);
     EXPECT_EQ(a.points[p].why, b.points[p].why);
+    EXPECT_EQ(a.points[p].verdict, b.points[p].verdict);
+    EXPECT_EQ(a.points[p].reason, b.points[p].reason);
     EXPECT_EQ(a.points[p].daylight_lux, b.points[p].daylight_lux);
   }
   ASSERT_EQ(a.limits.size(), b.limits.size());

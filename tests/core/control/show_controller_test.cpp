@@ -95,9 +95,10 @@ TEST(ShowController, WalksFromFadeToHoldingAndMeetsTheGoals) {
   EXPECT_TRUE(status.converged) << status.detail;
   for (const PointStatus& point : status.points) {
     EXPECT_NEAR(*point.measured_lx, 40, 0.02 * 40 + 1e-9);
-    EXPECT_TRUE(point.met);
+    EXPECT_TRUE(point.met()) << point.reason;
+    EXPECT_EQ(point.reason, "");
   }
-  EXPECT_EQ(status.detail, "2 of 2 measured goals within 3 %");
+  EXPECT_EQ(status.detail, "all 2 goals met");
 }
 
 TEST(ShowController, ReducesAPlanBeforeAMeterHasConfirmedThatTheLimitHolds) {

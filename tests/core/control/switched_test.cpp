@@ -237,7 +237,7 @@ TEST(Switched, ShowsKeepTheirLimitsAndDoNotRattleTheirRelays) {
     }
     for (const PointStatus& point : show.status(at(now_s)).points) {
       goals += point.measured_lx.has_value();
-      met += point.measured_lx.has_value() && point.met;
+      met += point.measured_lx.has_value() && point.met();
     }
     for (std::size_t j = 0; j < 6; ++j) {
       if (!hall.rig.fixtures[j].switched) continue;

@@ -365,6 +365,7 @@ correction_fade_s = 2  #> 3
 settle_s = 0.7  #> 0.8
 rounds = 4  #> 5
 tolerance = 0.03  #> 0.04
+goal_tolerance = 0.06  #> 0.07
 gain_min = 0.5  #> 0.4
 gain_max = 1.3  #> 1.4
 [safe]
