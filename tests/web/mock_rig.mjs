@@ -48,6 +48,7 @@ export const FIXTURES = targets.map((target, i) => {
   return {
     name: `spot-${i + 1}`,
     bus: i < 8 ? 'dmx' : 'dimmer',
+    address: i < 8 ? `1.${2 * i + 1}-${2 * i + 2}` : `unit 10 register ${i - 8}`,
     position: [round(target.x + nx * 2.0), round(target.y + ny * 2.0), 3.6],
     aim: [target.x, target.y, upright ? 1.5 : target.rows ? 1.5 : 1.2],
     level: round(0.28 + 0.055 * ((i * 5) % 12)),

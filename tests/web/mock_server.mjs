@@ -104,12 +104,13 @@ export class MockDaemon {
     const good = points.filter((p) => p.measured_lux !== undefined && Math.abs(p.error) < 0.02).length;
     const meters = METERED.map((name, i) => {
       const point = points.find((p) => p.name === name);
-      return { name: `meter-${i + 1}`, point: name, position: point.position, tolerance: 0.04,
+      return { name: `meter-${i + 1}`, point: name, bus: 'meters', address: `unit ${21 + i} register 2`, position: point.position, tolerance: 0.04,
         life: faulted.has('meters') ? 'faulted' : 'active',
         ...(point.measured_lux === undefined ? {} : { lux: point.measured_lux, age_s: point.measured_age_s }) };
     });
     const device = (name, rate, both) => ({
-      name, life: faulted.has(name) ? 'faulted' : 'active', since_s: round(t, 1),
+      name, driver: name === 'dmx' ? 'sacn' : 'modbus_tcp', address: name === 'dmx' ? 'multicast' : '192.0.2.10:502',
+      life: faulted.has(name) ? 'faulted' : 'active', since_s: round(t, 1),
       detail: faulted.has(name) ? 'no answer for 1.2 s, bound 0.5 s, 12 of the last 50 failed' : '',
       last_ok_s: faulted.has(name) ? 1.2 : round((t * 7) % 0.05, 3),
       sent: Math.floor(t * rate), received: both ? Math.floor(t * rate) : 0, errors: faulted.has(name) ? 12 : 0,
@@ -118,7 +119,7 @@ export class MockDaemon {
       rig: this.name, version: '0.1.0', phase: scene.phase, detail: `${good} of ${METERED.length} meters within 2 %`,
       time_s: round(t, 2), simulated: true, blackout: this.blackout, round: scene.round ?? 0, rounds: 3,
       converged: scene.phase === 'holding' && good === METERED.length,
-      fixtures: FIXTURES.map((f) => ({ name: f.name, bus: f.bus, position: f.position, aim: f.aim, pan_deg: 12.5, tilt_deg: 41,
+      fixtures: FIXTURES.map((f) => ({ name: f.name, bus: f.bus, address: f.address, position: f.position, aim: f.aim, pan_deg: 12.5, tilt_deg: 41,
         level: round(f.level * shown, 4), drive: round(Math.sqrt(f.level * shown), 4),
         target_level: this.blackout ? 0 : f.level, gain: f.gain, gain_standard_error: 0.012,
         ...(this.dark[f.name] ? { moves: true, level: 0, drive: 0, target_level: 0, ...this.dark[f.name] } : {}) })),

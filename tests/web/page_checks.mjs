@@ -2,6 +2,11 @@
 import assert from 'node:assert/strict';
 import { eventually } from './browser.mjs';
 
+/** What the page calls what the daemon calls its phases. */
+const PHASES = { idle: 'waiting', moving: 'heads turn', fading: 'fading', settling: 'letting the lamps settle',
+  measuring: 'measuring', correcting: 'correcting', holding: 'holding', frozen: 'light held',
+  safe_fading: 'fading to the safe look', safe: 'safe look' };
+
 const status = async (url) => (await fetch(new URL('/api/status', url))).json();
 const text = (page, selector) => page.locator(selector).first().innerText();
 
@@ -12,10 +17,16 @@ export async function showsTheRig(page, url) {
   assert.equal(await text(page, 'h1'), now.rig);
   assert.equal(await page.title(), `${now.rig} · Luxrig`);
   assert.equal(await page.locator('.fixtures li').count(), now.fixtures.length, 'one row per fixture');
-  assert.equal(await page.locator('.points tbody tr').count(), now.points.length, 'one row per point');
+  assert.equal(await page.locator('.points tbody tr[data-point]').count(), now.points.length, 'one row per point');
   assert.equal(await page.locator('.meters li').count(), now.luxmeters.length, 'one row per luxmeter');
   assert.equal(await page.locator('.devices li').count(), now.devices.length, 'one row per device');
-  assert.deepEqual(await page.locator('.points tbody th').allInnerTexts(), now.points.map((p) => p.name));
+  assert.deepEqual(await page.locator('.points [data-point] th').allTextContents(), now.points.map((p) => p.name));
+  await eventually('the plan names every work', async () => {
+    const names = await page.locator('svg.plan .work-name').allTextContents();
+    return (names.length > 0 && names.every((name) => now.points.some((p) => p.name.startsWith(name)))) || names;
+  });
+  for (const fixture of now.fixtures.filter((f) => f.address))
+    assert.ok((await page.locator('.fixtures .address').allTextContents()).includes(`${fixture.bus} ${fixture.address}`), `the address of ${fixture.name}`);
   await eventually('the plan has every fixture and point', async () => {
     const seen = [await page.locator('svg.plan .lamp').count(), await page.locator('svg.plan .point').count()];
     return (seen[0] === now.fixtures.length && seen[1] === now.points.length) || seen;
@@ -31,7 +42,7 @@ export async function showsTheRig(page, url) {
     }));
   await eventually('the phase is shown', async () => {
     const [shown, { phase }] = [await text(page, '#phase'), await status(url)];
-    return shown.startsWith(phase.replace(/[_-]/g, ' ')) || shown;
+    return shown.startsWith(PHASES[phase]) || [shown, phase];
   });
 }
 
@@ -41,7 +52,7 @@ export async function numbersAreLive(page, url) {
   await eventually('the clock goes on', async () => (await text(page, '#clock')) !== clock);
   assert.equal(await page.locator('#line').getAttribute('data-state'), 'live');
   const now = await status(url);
-  const row = (name) => page.locator('.points tbody tr').nth(now.points.findIndex((p) => p.name === name));
+  const row = (name) => page.locator('.points tr[data-point]').nth(now.points.findIndex((p) => p.name === name));
   const predicted = now.points.find((p) => p.predicted_lux !== undefined && p.standard_error_lux !== undefined);
   if (predicted) assert.match(await row(predicted.name).locator('td').nth(1).innerText(), /^[\d.]+ ± [\d.]+$/);
   const measured = now.points.find((p) => p.measured_lux !== undefined);

@@ -64,6 +64,9 @@ async function againstMock(browser, dist, out) {
   await check('in a blackout the button says so', async () => {
     daemon.blackout = true;
     await eventually('shown', async () => /BLACKOUT IS ON/.test(await page.locator('#blackout').innerText()));
+    assert.match(await page.locator('#phase').innerText(), /^blackout: /);
+    const color = (selector) => page.locator(selector).evaluate((e) => getComputedStyle(e).color);
+    assert.notEqual(await color('.phase-name'), await color('.tile[data-tone=good] strong'), 'the header is not green');
     await shot(page, 'desktop-dark-blackout');
     daemon.blackout = false;
     await eventually('shown to be over', async () => (await page.locator('#blackout').getAttribute('aria-pressed')) === 'false');
@@ -82,7 +85,7 @@ async function againstMock(browser, dist, out) {
     daemon.faulted.add('meters');
     await eventually('the alarm', async () => /meters.*no answer/s.test(await page.locator('#alarms[role=alert]').innerText()), 2000);
     const first = page.locator('.devices li').first();
-    assert.match(await first.innerText(), /faulted/, 'the faulted device leads the list');
+    assert.match(await first.innerText(), /failed/, 'the failed device leads the list');
     const above = (await page.locator('.alarm:visible').first().boundingBox()).y < (await page.locator('main').boundingBox()).y;
     assert.ok(above, 'alarms stand above the rest');
     await shot(page, 'desktop-dark-alarm');
@@ -138,9 +141,24 @@ async function againstMock(browser, dist, out) {
 
   await check('filters leave only what they say', async () => {
     await page.getByRole('button', { name: /with a meter/ }).click();
-    assert.equal(await page.locator('.points tbody tr:visible').count(), 6);
+    assert.equal(await page.locator('.points [data-point]:visible').count(), 6);
     await page.getByRole('button', { name: /^all/ }).click();
-    assert.equal(await page.locator('.points tbody tr:visible').count(), 36);
+    assert.equal(await page.locator('.points [data-point]:visible').count(), 36);
+  });
+
+  await check('a work folds its points up and shows the worst of them', async () => {
+    const work = page.locator('.points .work', { hasText: 'drawing-2' });
+    assert.match(await work.innerText(), /4 points.*1 of 4: too dark/s);
+    await work.getByRole('button').click();
+    assert.equal(await page.locator('.points [data-point]:visible').count(), 32);
+    await work.getByRole('button').click();
+    assert.equal(await page.locator('.points [data-point]:visible').count(), 36);
+  });
+
+  await check('names of fixtures are whole and on one line', async () => {
+    const broken = await page.locator('.fixtures .name').evaluateAll((names) =>
+      names.filter((n) => n.scrollWidth > n.clientWidth || n.getClientRects().length > 1 || n.offsetHeight > 24).map((n) => n.textContent));
+    assert.deepEqual(broken, []);
   });
 
   await check('the theme button goes dark, light, system, and is remembered', async () => {
@@ -172,6 +190,16 @@ async function againstMock(browser, dist, out) {
       await eventually('the alarms', async () => (await view.page.locator('#alarms .alarm').count()) === 2);
       await fitsItsWidth(view.page);
       assert.deepEqual(await unreadableTexts(view.page), []);
+      if (options.isMobile) {
+        const tall = await view.page.evaluate(() => document.documentElement.scrollHeight);
+        assert.ok(tall < 2500, `a phone's page of ${tall} px`);
+        await view.page.locator('.points .work button').first().tap();
+        assert.equal(await view.page.locator('.points [data-point]:visible').count(), 4 + 3, 'of one work, and those that stand alone');
+        await view.page.locator('#fixtures summary').tap();
+        assert.equal(await view.page.locator('.fixtures li:visible').count(), 12);
+        await fitsItsWidth(view.page);
+        assert.deepEqual(await unreadableTexts(view.page), []);
+      }
       const button = await view.page.locator('#blackout').boundingBox();
       assert.ok(button.height >= 44 && button.y >= 0 && button.y + button.height <= options.viewport.height, JSON.stringify(button));
       daemon.faulted.clear();

@@ -13,7 +13,7 @@ async function load(name) {
     format: 'esm', write: false, logLevel: 'error' });
   return import(`data:text/javascript;base64,${Buffer.from(outputFiles[0].contents).toString('base64')}`);
 }
-const [format, judge, api, plan] = await Promise.all(['format', 'judge', 'api', 'plan_layout'].map(load));
+const [format, judge, api, plan, works] = await Promise.all(['format', 'judge', 'api', 'plan_layout', 'works'].map(load));
 
 test('lux has three digits and no false ones', () => {
   const cases = [[0, '0.00'], [0.424, '0.42'], [9.994, '9.99'], [9.996, '10.0'], [48.23, '48.2'], [99.96, '100'],
@@ -74,7 +74,7 @@ test('an answer that is no status is refused; numbers that are none become absen
   assert.equal(status.points.length, 2);
   assert.equal(api.readStatus({ phase: 'idle', points: [{ name: 'p' }], luxmeters: [{ point: 'p', tolerance: 0.04 }] }).points[0].meter_tolerance, 0.04);
   assert.deepEqual(status.devices, []);
-  assert.deepEqual(status.fixtures[0], { name: '', bus: '', level: 0.5, aim: [0, 1, 2] });
+  assert.deepEqual(status.fixtures[0], { name: '', bus: '', address: '', level: 0.5, aim: [0, 1, 2] });
   assert.ok(!('time_s' in status));
 });
 
@@ -112,6 +112,35 @@ test('points over one another are unfolded along their normal, lowest nearest, a
     for (const b of places.slice(i + 1)) assert.ok(Math.hypot(a.x - b.x, a.y - b.y) >= 12);
   }
   assert.equal(plan.unfold([{ name: 'nowhere', met: false, why: '' }], scale, 15)[0], undefined);
+});
+
+test('points of one work go together by name and place, and one alone keeps its name', () => {
+  const point = (name, x) => ({ name, position: [x, 0, 1], met: false, why: '' });
+  const names = (points) => works.worksOf(points).map((w) => [w.name, ...w.points]);
+  assert.deepEqual(names([point('heath', 0), point('heath-left', 0.4), point('harbour', 5), point('harbour-foot', 5), point('door', 9)]),
+    [['heath', 0, 1], ['harbour', 2, 3], ['door', 4]]);
+  assert.deepEqual(names([point('venus-top', 0), point('venus-front', 0.2), point('heath-left', 9)]), [['venus', 0, 1], ['heath-left', 2]]);
+  assert.deepEqual(names([point('desk-1', 0), point('desk-2', 8)]), [['desk-1', 0], ['desk-2', 1]], 'too far apart to be one work');
+  assert.deepEqual(names([{ name: 'a-1', met: true, why: '' }, { name: 'a-2', met: true, why: '' }]), [['a', 0, 1]]);
+  assert.deepEqual(names([]), []);
+});
+
+test('the name of a work stands behind its points, along a side wall where there is no room', () => {
+  const scale = plan.scaleFor({ name: 'r', min: [0, 0], max: [10, 10] }, 1000, 1000);
+  const at = (x, y, normal) => plan.namePlace([{ spot: { x, y }, normal }], scale);
+  assert.deepEqual(at(500, 4, [0, -1, 0]), { x: 500, y: -8, turn_deg: 0 });
+  assert.deepEqual(at(6, 300, [1, 0, 0]), { x: -6, y: 300, turn_deg: -90 });
+  assert.deepEqual(at(994, 300, [-1, 0, 0]), { x: 1006, y: 300, turn_deg: 90 });
+  assert.deepEqual(at(500, 500, [0, 0, 1]), { x: 500, y: 523, turn_deg: 0 });
+  assert.equal(plan.namePlace([{ spot: undefined, normal: [0, 0, 1] }], scale), undefined);
+});
+
+test('phases and lives are told in words of a person', () => {
+  assert.equal(format.phase('safe_fading'), 'fading to the safe look');
+  assert.equal(format.phase('new_thing'), 'new thing');
+  assert.equal(format.life('active'), 'works');
+  assert.equal(format.life(''), 'not known');
+  assert.equal(format.gives(0.922, 0.039), '92 ± 4 %');
 });
 
 test('a beam onto its own lamp is no beam', () => {

@@ -6,6 +6,7 @@ export type Vec3 = readonly [number, number, number];
 export interface Fixture {
   name: string;
   bus: string;
+  address: string; // on its bus, as a technician writes it: "1.3-4", "unit 10 register 2"
   position?: Vec3; // [m] world
   aim?: Vec3; // [m] world
   level?: number; // 0…1 of rated output, now
@@ -37,6 +38,8 @@ export interface Point {
 export interface Luxmeter {
   name: string;
   point: string;
+  bus: string;
+  address: string;
   lux?: number;
   age_s?: number;
   tolerance?: number;
@@ -45,6 +48,8 @@ export interface Luxmeter {
 
 export interface Device {
   name: string;
+  driver: string; // of a bus
+  address: string; // of a bus: host, port, path
   life: string;
   detail: string;
   since_s?: number;
@@ -156,6 +161,7 @@ export function readStatus(value: unknown): Status | undefined {
     fixtures: listOf(s['fixtures']).map((f) => ({
       name: text(f['name']),
       bus: text(f['bus']),
+      address: text(f['address']),
       ...vectors(f, 'position', 'aim'),
       ...numbers(f, 'level', 'target_level', 'drive', 'gain', 'gain_standard_error'),
       ...(f['parked'] === true ? { parked: true as const } : {}),
@@ -173,11 +179,15 @@ export function readStatus(value: unknown): Status | undefined {
     luxmeters: listOf(s['luxmeters']).map((m) => ({
       name: text(m['name']),
       point: text(m['point']),
+      bus: text(m['bus']),
+      address: text(m['address']),
       life: text(m['life']),
       ...numbers(m, 'lux', 'age_s', 'tolerance'),
     })),
     devices: listOf(s['devices']).map((d) => ({
       name: text(d['name']),
+      driver: text(d['driver']),
+      address: text(d['address']),
       life: text(d['life']),
       detail: text(d['detail']),
       ...numbers(d, 'since_s', 'last_ok_s', 'sent', 'received', 'errors'),

@@ -44,6 +44,24 @@ export function card(id: string, title: string, ...children: Child[]): HTMLEleme
   );
 }
 
+/** A window in which long lists begin folded up. */
+export const narrow = window.matchMedia('(max-width: 1080px)');
+
+/** A titled card that folds up: open in a wide window, closed in a narrow one until it is asked for. `count` tells how
+ *  much is in it while it is closed. */
+export function foldingCard(id: string, title: string, count: Node, ...children: Child[]): HTMLElement {
+  const made = element(
+    'details',
+    { class: 'card', id },
+    element('summary', {}, element('h2', {}, title), element('span', { class: 'in-it' }, count)),
+    ...children,
+  );
+  const fit = (): void => void (made.open = !narrow.matches);
+  narrow.addEventListener('change', fit);
+  fit();
+  return made;
+}
+
 /** Keeps `parent`'s children in step with `items`, one each, made once and updated after. */
 export class Rows<T, E extends Element> {
   private readonly made: E[] = [];

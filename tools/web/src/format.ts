@@ -3,6 +3,24 @@
 export const UNKNOWN = '–';
 const MINUS = '\u2212';
 
+/** What the rig does, for a person; a phase that is not known here as the daemon calls it. */
+const PHASES: Record<string, string> = {
+  idle: 'waiting',
+  moving: 'heads turn',
+  fading: 'fading',
+  settling: 'letting the lamps settle',
+  measuring: 'measuring',
+  correcting: 'correcting',
+  holding: 'holding',
+  frozen: 'light held',
+  safe_fading: 'fading to the safe look',
+  safe: 'safe look',
+};
+export const phase = (name: string): string => PHASES[name] ?? name.replace(/[_-]/g, ' ');
+
+const LIVES: Record<string, string> = { active: 'works', configured: 'starting', faulted: 'failed' };
+export const life = (name: string): string => LIVES[name] ?? (name || 'not known');
+
 const signed = (text: string): string => text.replace('-', MINUS);
 
 /** Three significant digits, but no false ones: 0.42, 9.31, 48.2, 312, 10 400. */
@@ -20,6 +38,13 @@ export function withError(value: number | undefined, standardError: number | und
   if (standardError <= 0) return `${lux(value)} ± 0`;
   const decimals = Math.min(3, Math.max(0, 1 - Math.floor(Math.log10(standardError))));
   return `${signed(value.toFixed(decimals))} ± ${standardError.toFixed(decimals)}`;
+}
+
+/** "92 ± 4 %": what a lamp gives of its rated light. */
+export function gives(gain: number | undefined, standardError: number | undefined): string {
+  if (gain === undefined) return UNKNOWN;
+  const error = standardError === undefined ? '' : ` ± ${Math.max(standardError * 100, 0.5).toFixed(0)}`;
+  return `${signed((gain * 100).toFixed(0))}${error} %`;
 }
 
 export function percent(fraction: number | undefined, digits = 0): string {

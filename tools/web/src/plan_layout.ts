@@ -52,6 +52,29 @@ export function unfold(points: readonly Point[], scale: Scale, gap: number): (Sp
   return places;
 }
 
+/** Where the name of a work stands: behind its points, as its wall sees them; below them where they only look up. In the
+ *  middle of the text's foot, and turned to run along a side wall. */
+export function namePlace(
+  marks: readonly { spot: Spot | undefined; normal: readonly number[] | undefined }[],
+  scale: Scale,
+): (Spot & { turn_deg: number }) | undefined {
+  const spots = marks.flatMap(({ spot }) => (spot ? [spot] : []));
+  if (!spots.length) return undefined;
+  const [nx, ny] = [0, 1].map((axis) => marks.reduce((sum, { normal }) => sum + (normal?.[axis] ?? 0), 0)) as [number, number];
+  const span = (of: (s: Spot) => number): [number, number] => [Math.min(...spots.map(of)), Math.max(...spots.map(of))];
+  const [left, right] = span((s) => s.x);
+  const [top, bottom] = span((s) => s.y);
+  const middle = { x: (left + right) / 2, y: (top + bottom) / 2 };
+  const [gap, size] = [12, 11];
+  if (Math.hypot(nx, ny) < 0.3) return { x: middle.x, y: bottom + gap + size, turn_deg: 0 };
+  if (Math.abs(nx) > Math.abs(ny)) {
+    // Behind is the left (normal to the right), or the right. By a wall there is no room but along it.
+    if (nx > 0) return left < scale.width * 0.12 ? { x: Math.min(left - gap, 0), y: middle.y, turn_deg: -90 } : { x: middle.x, y: top - gap, turn_deg: 0 };
+    return right > scale.width * 0.88 ? { x: Math.max(right + gap, scale.width), y: middle.y, turn_deg: 90 } : { x: middle.x, y: top - gap, turn_deg: 0 };
+  }
+  return ny < 0 ? { x: middle.x, y: top - gap, turn_deg: 0 } : { x: middle.x, y: bottom + gap + size, turn_deg: 0 };
+}
+
 const clamp = (value: number, low: number, high: number): number => Math.min(Math.max(value, low), Math.max(low, high));
 
 /** The beam's sign on the plan, a narrow triangle from the lamp to where it aims, with a blunt end. */

@@ -2,7 +2,7 @@
 
 import { postBlackout, type Status } from '../api';
 import { element, setAttribute, setText } from '../dom';
-import { age } from '../format';
+import { age, phase } from '../format';
 import type { Line } from '../live';
 
 const FAILURE_SHOWN_MS = 10_000;
@@ -43,9 +43,11 @@ export class HeaderView {
     setText(this.rig, status.rig || 'Luxrig');
     document.title = `${status.rig} · Luxrig`;
     this.simulated.hidden = !status.simulated;
-    setText(this.phaseName, status.phase.replace(/[_-]/g, ' '));
-    setText(this.phaseDetail, status.detail ? `: ${status.detail}` : '');
-    setAttribute(this.phase, 'data-phase', status.phase);
+    // In a blackout nothing is as it should be, whatever holds underneath: never the colour of "holding".
+    setText(this.phaseName, status.blackout ? 'blackout' : phase(status.phase));
+    const detail = status.blackout ? status.detail.replace(/^blackout \((.*)\)$/s, 'when it is lifted: $1') : status.detail;
+    setText(this.phaseDetail, detail ? `: ${detail}` : '');
+    setAttribute(this.phase, 'data-phase', status.blackout ? 'blackout' : status.phase);
     setText(this.clock, `up ${age(status.time_s)}`);
     this.dark = status.blackout;
     if (this.asked === status.blackout) this.asked = undefined;

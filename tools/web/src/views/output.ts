@@ -1,22 +1,23 @@
-/** The output cycle's punctuality. */
+/** How punctually levels go out. */
 
 import type { Output } from '../api';
-import { card, element, setText } from '../dom';
+import { element, foldingCard, setText } from '../dom';
 import * as format from '../format';
 
 export class OutputView {
   readonly root: HTMLElement;
   private readonly values: HTMLElement[] = [];
+  private readonly rate = element('span');
 
   constructor() {
-    const names = ['rate', 'frames', 'late, median', 'late, 99 %', 'late, most', 'scheduling'];
+    const names = ['refresh rate', 'sent so far', 'usual delay', '99 of 100 are within', 'longest delay', 'priority'];
     const list = element('dl', { class: 'figures' });
     for (const name of names) {
       const value = element('dd');
       this.values.push(value);
       list.append(element('div', {}, element('dt', {}, name), value));
     }
-    this.root = card('output', 'Output cycle', list);
+    this.root = foldingCard('output', 'Sending to the lamps', this.rate, list);
   }
 
   show(output: Output): void {
@@ -28,6 +29,7 @@ export class OutputView {
       format.micros(output.max_us),
       output.realtime === undefined ? format.UNKNOWN : output.realtime ? 'real-time' : 'ordinary',
     ];
+    setText(this.rate, texts[0]!);
     texts.forEach((text, i) => setText(this.values[i]!, text));
   }
 }

@@ -4,10 +4,13 @@ import type { Room, Status } from '../api';
 import { card, element, setAttribute, setText, svg } from '../dom';
 import { lux, percent } from '../format';
 import { judge } from '../judge';
-import { type Scale, type Spot, MARKER_PATHS, beamPath, scaleFor, unfold } from '../plan_layout';
+import { type Scale, type Spot, MARKER_PATHS, beamPath, namePlace, scaleFor, unfold } from '../plan_layout';
 import type { Selection } from '../selection';
+import { worksOf } from '../works';
 import { fixtureTip, pointTip, placeTip } from './tip';
 
+/** Round the room, for the names of works on its walls. */
+const MARGIN = 20;
 const LAMP_RADIUS = 9;
 const RING_RADIUS = 11.5;
 const RING = 2 * Math.PI * RING_RADIUS;
@@ -75,13 +78,14 @@ export class PlanView {
   }
 
   private draw(room: Room, status: Status, width: number): void {
-    const scale = scaleFor(room, width, Math.max(320, window.innerHeight * 0.7));
+    const scale = scaleFor(room, width - 2 * MARGIN, Math.max(320, window.innerHeight * 0.7));
     this.scale = scale;
     const { drawing } = this;
     drawing.replaceChildren();
-    setAttribute(drawing, 'viewBox', `0 0 ${scale.width.toFixed(1)} ${scale.height.toFixed(1)}`);
-    drawing.style.width = `${scale.width}px`;
-    drawing.style.height = `${scale.height}px`;
+    const [whole_width, whole_height] = [scale.width + 2 * MARGIN, scale.height + 2 * MARGIN];
+    setAttribute(drawing, 'viewBox', `${-MARGIN} ${-MARGIN} ${whole_width.toFixed(1)} ${whole_height.toFixed(1)}`);
+    drawing.style.width = `${whole_width}px`;
+    drawing.style.height = `${whole_height}px`;
     if (room.picture)
       drawing.append(
         svg('image', { href: room.picture, width: scale.width, height: scale.height, preserveAspectRatio: 'none', class: 'plan-picture' }),
@@ -139,6 +143,13 @@ export class PlanView {
       markers.append(group);
       return { group, shape, label };
     });
+    for (const work of worksOf(status.points)) {
+      const at = namePlace(work.points.map((index) => ({ spot: places[index], normal: status.points[index]!.normal })), scale);
+      if (!at) continue;
+      const turned = at.turn_deg === 0 ? '' : ` rotate(${at.turn_deg})`;
+      labels.append(svg('text', { class: 'work-name', transform: `translate(${at.x.toFixed(1)} ${at.y.toFixed(1)})${turned}`, 'text-anchor': 'middle' },
+        document.createTextNode(work.name)));
+    }
     this.showSelection();
   }
 
@@ -201,7 +212,7 @@ export class PlanView {
     }
     if (point) pointTip(this.tip, point);
     else if (fixture) fixtureTip(this.tip, fixture);
-    placeTip(this.tip, hovered.at, this.drawing, this.stage);
+    placeTip(this.tip, { x: hovered.at.x + MARGIN, y: hovered.at.y + MARGIN }, this.drawing, this.stage);
   }
 
   private showSelection(): void {

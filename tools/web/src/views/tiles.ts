@@ -30,9 +30,9 @@ export class TilesView {
     setText(this.limits.note, sum.limits === sum.limitsKept ? 'conservation limits' : 'over the limit!');
     setAttribute(this.limits.box, 'data-tone', sum.limits === sum.limitsKept ? 'good' : 'bad');
     setText(this.worst.value, signedPercent(sum.worst?.error));
-    setText(this.worst.note, sum.worst ? `${sum.worst.name}, ${sum.worst.measured ? 'measured' : 'model'}` : '');
+    setText(this.worst.note, sum.worst ? `${sum.worst.name}, ${sum.worst.measured ? 'measured' : 'computed'}` : '');
     setText(this.rounds.value, status.round === undefined ? UNKNOWN : `${status.round} of ${status.rounds ?? UNKNOWN}`);
-    setText(this.rounds.note, status.converged ? 'converged' : 'not converged');
+    setText(this.rounds.note, status.converged ? 'confirmed by the luxmeters' : 'not confirmed yet');
     setAttribute(this.rounds.box, 'data-tone', status.converged ? 'good' : '');
     const levels = status.fixtures.flatMap((f) => (f.level === undefined ? [] : [f.level]));
     setText(this.output.value, levels.length ? percent(levels.reduce((a, b) => a + b, 0) / levels.length) : UNKNOWN);

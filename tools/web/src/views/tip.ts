@@ -23,7 +23,7 @@ export function pointTip(tip: HTMLElement, point: Point): void {
     ['goal', `${format.lux(point.goal_lux)} lx`],
     ['predicted', `${format.withError(point.predicted_lux, point.standard_error_lux)} lx`],
     ['measured', point.measured_lux === undefined ? 'no reading' : `${format.lux(point.measured_lux)} lx, ${format.age(point.measured_age_s)} ago`],
-    [judged.measured ? 'error' : 'error (model)', format.signedPercent(judged.error)],
+    [judged.measured ? 'error' : 'error (computed)', format.signedPercent(judged.error)],
   ];
   if (point.max_lux !== undefined) lines.push(['limit', `${format.lux(point.max_lux)} lx`]);
   fill(tip, point.name, judged.words, lines);
@@ -34,8 +34,8 @@ export function fixtureTip(tip: HTMLElement, fixture: Fixture): void {
     ['level', format.percent(fixture.level, 1)],
     ['going to', format.percent(fixture.target_level, 1)],
     ['on the wire', format.percent(fixture.drive, 1)],
-    ['gain', format.withError(fixture.gain, fixture.gain_standard_error)],
-    ['bus', fixture.bus || format.UNKNOWN],
+    ['gives of rated', format.gives(fixture.gain, fixture.gain_standard_error)],
+    ['address', `${fixture.bus} ${fixture.address}`.trim() || format.UNKNOWN],
   ]);
 }
 
