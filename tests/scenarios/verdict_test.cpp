@@ -50,6 +50,7 @@ TEST(ShowVerdicts, AreTrueForPointsWithAndWithoutAMeter) {
 TEST(ShowVerdicts, ARigWithoutLuxmetersKnowsNoGoalAndMissesNone) {
   Hall hall = make_hall(2);
   hall.rig.luxmeters.clear();
+  for (Point& point : hall.rig.points) point.max_lx.reset();
   hall.model.meter_lux_per_level.resize(0, 12);
   hall.truth.conservativeResize(36, 12);
   ClosedLoop loop(hall, seeded(2));

@@ -44,23 +44,32 @@ test('ages grow coarse with age and never jump back', () => {
   for (const [seconds, text] of cases) assert.equal(format.age(seconds), text);
 });
 
-test('a point is judged by its limit first, then by its goal', () => {
-  const base = { name: 'p', met: false, why: '' };
-  assert.equal(judge.judge({ ...base, goal_lux: 45, max_lux: 50, measured_lux: 50.1, met: true }).verdict, 'over');
-  assert.equal(judge.judge({ ...base, goal_lux: 45, max_lux: 50, measured_lux: 49.9, met: true }).verdict, 'met');
-  const tolerant = { ...base, goal_lux: 50, max_lux: 50, met: true, meter_tolerance: 0.04 };
-  assert.equal(judge.judge({ ...tolerant, measured_lux: 51.9 }).verdict, 'met');
-  assert.equal(judge.judge({ ...tolerant, measured_lux: 52.1 }).verdict, 'over');
-  assert.equal(judge.judge({ ...tolerant, predicted_lux: 50.2 }).verdict, 'over', 'the tolerance is the meter\'s, not the model\'s');
-  assert.equal(judge.judge({ ...base, goal_lux: 100, predicted_lux: 90 }).verdict, 'low');
-  assert.equal(judge.judge({ ...base, goal_lux: 100, predicted_lux: 110 }).verdict, 'high');
-  assert.equal(judge.judge({ ...base, goal_lux: 100 }).verdict, 'none');
-  assert.equal(judge.judge({ ...base, max_lux: 50, predicted_lux: 20 }).verdict, 'none');
-  assert.match(judge.judge({ ...base, goal_lux: 100, error: -0.1, why: 'spot-3 is at 100 %' }).words, /too dark: spot-3/);
+test('a point shows its limit first, then the verdict of its goal, as the daemon gives them', () => {
+  const base = { name: 'p', reason: '', limit_reason: '' };
+  const goal = { ...base, goal_lux: 45, measured_lux: 44 };
+  const sign = (point) => judge.judge(point).verdict;
+  assert.equal(sign({ ...goal, verdict: 'met', limit: 'exceeded' }), 'over');
+  assert.equal(sign({ ...goal, verdict: 'met', limit: 'unknown' }), 'limit-unknown');
+  assert.equal(sign({ ...goal, verdict: 'met', limit: 'kept' }), 'met');
+  assert.equal(sign({ ...goal, verdict: 'unknown' }), 'unknown');
+  assert.equal(sign({ ...goal, verdict: 'missed', error: -0.2 }), 'low');
+  assert.equal(sign({ ...goal, verdict: 'missed', error: 0.2 }), 'high');
+  assert.equal(sign({ ...base, limit: 'kept' }), 'none');
+  assert.equal(sign({ ...base, measured_lux: 44 }), 'none');
+  assert.equal(judge.judge({ ...goal, verdict: 'missed', reason: '9.0 % too dark: spot-3 is at 100 %' }).words, '9.0 % too dark: spot-3 is at 100 %');
+  assert.match(judge.judge({ ...goal, verdict: 'unknown', reason: 'a luxmeter here would settle it' }).words, /not known: a luxmeter/);
+});
+
+test('what is not known is counted as neither met nor kept', () => {
+  const point = (entry) => ({ name: 'p', ...entry });
+  const status = api.readStatus({ phase: 'holding', points: [point({ goal_lux: 5, verdict: 'met', met: true }), point({ goal_lux: 5, verdict: 'unknown' }),
+    point({ goal_lux: 5, verdict: 'missed' }), point({ goal_lux: 5, verdict: 'perhaps' }), point({ limit: 'kept' }), point({ limit: 'unknown' }), point({ limit: 'exceeded' })] });
+  const { worst, ...sum } = judge.summarise(status);
+  assert.deepEqual(sum, { goals: 3, goalsMet: 1, goalsMissed: 1, goalsUnknown: 1, limits: 3, limitsKept: 1, limitsExceeded: 1 });
 });
 
 test('a meter goes before the model, the daemon\'s own error before both', () => {
-  const point = { name: 'p', met: true, why: '', goal_lux: 100, predicted_lux: 90, measured_lux: 102 };
+  const point = { name: 'p', reason: '', limit_reason: '', goal_lux: 100, predicted_lux: 90, measured_lux: 102 };
   assert.ok(Math.abs(judge.errorOf(point) - 0.02) < 1e-12);
   assert.equal(judge.errorOf({ ...point, error: 0.03 }), 0.03);
   assert.equal(judge.errorOf({ ...point, goal_lux: 0 }), undefined);
@@ -70,11 +79,10 @@ test('an answer that is no status is refused; numbers that are none become absen
   for (const bad of [null, 3, 'x', [], {}, { phase: 7 }]) assert.equal(api.readStatus(bad), undefined);
   const status = api.readStatus({ phase: 'idle', points: [{ name: 'p', goal_lux: '5', max_lux: null, position: [1, 2] }, 7], devices: 'none',
     fixtures: [{ name: {}, level: 0.5, aim: [0, 1, 2] }], time_s: NaN });
-  assert.deepEqual(status.points[0], { name: 'p', met: false, why: '' });
+  assert.deepEqual(status.points[0], { name: 'p', reason: '', limit_reason: '' });
   assert.equal(status.points.length, 2);
-  assert.equal(api.readStatus({ phase: 'idle', points: [{ name: 'p' }], luxmeters: [{ point: 'p', tolerance: 0.04 }] }).points[0].meter_tolerance, 0.04);
   assert.deepEqual(status.devices, []);
-  assert.deepEqual(status.fixtures[0], { name: '', bus: '', address: '', level: 0.5, aim: [0, 1, 2] });
+  assert.deepEqual(status.fixtures[0], { name: '', bus: '', address: '', level_known: true, level: 0.5, aim: [0, 1, 2] });
   assert.ok(!('time_s' in status));
 });
 
@@ -104,24 +112,24 @@ test('world x goes right and world y up, to scale', () => {
 
 test('points over one another are unfolded along their normal, lowest nearest, and stay inside', () => {
   const scale = plan.scaleFor({ name: 'r', min: [0, 0], max: [10, 10] }, 1000, 1000);
-  const points = [2, 1, 3].map((z) => ({ name: `z${z}`, position: [5, 9.9, z], normal: [0, -1, 0], met: true, why: '' }));
+  const points = [2, 1, 3].map((z) => ({ name: `z${z}`, position: [5, 9.9, z], normal: [0, -1, 0], reason: '', limit_reason: '' }));
   const places = plan.unfold(points, scale, 15);
   assert.ok(places[1].y < places[0].y && places[0].y < places[2].y, JSON.stringify(places));
   for (const [i, a] of places.entries()) {
     assert.ok(a.x >= 0 && a.x <= 1000 && a.y >= 0 && a.y <= 1000);
     for (const b of places.slice(i + 1)) assert.ok(Math.hypot(a.x - b.x, a.y - b.y) >= 12);
   }
-  assert.equal(plan.unfold([{ name: 'nowhere', met: false, why: '' }], scale, 15)[0], undefined);
+  assert.equal(plan.unfold([{ name: 'nowhere', reason: '', limit_reason: '' }], scale, 15)[0], undefined);
 });
 
 test('points of one work go together by name and place, and one alone keeps its name', () => {
-  const point = (name, x) => ({ name, position: [x, 0, 1], met: false, why: '' });
+  const point = (name, x) => ({ name, position: [x, 0, 1], reason: '', limit_reason: '' });
   const names = (points) => works.worksOf(points).map((w) => [w.name, ...w.points]);
   assert.deepEqual(names([point('heath', 0), point('heath-left', 0.4), point('harbour', 5), point('harbour-foot', 5), point('door', 9)]),
     [['heath', 0, 1], ['harbour', 2, 3], ['door', 4]]);
   assert.deepEqual(names([point('venus-top', 0), point('venus-front', 0.2), point('heath-left', 9)]), [['venus', 0, 1], ['heath-left', 2]]);
   assert.deepEqual(names([point('desk-1', 0), point('desk-2', 8)]), [['desk-1', 0], ['desk-2', 1]], 'too far apart to be one work');
-  assert.deepEqual(names([{ name: 'a-1', met: true, why: '' }, { name: 'a-2', met: true, why: '' }]), [['a', 0, 1]]);
+  assert.deepEqual(names([{ name: 'a-1', reason: '', limit_reason: '' }, { name: 'a-2', reason: '', limit_reason: '' }]), [['a', 0, 1]]);
   assert.deepEqual(names([]), []);
 });
 

@@ -237,7 +237,8 @@ TEST(Switched, ShowsKeepTheirLimitsAndDoNotRattleTheirRelays) {
     }
     for (const PointStatus& point : show.status(at(now_s)).points) {
       goals += point.measured_lx.has_value();
-      met += point.measured_lx.has_value() && point.met();
+      met += point.measured_lx.has_value() &&
+             std::abs(*point.measured_lx - *point.goal_lx) <= hall.rig.control.goal_tolerance * *point.goal_lx;
     }
     for (std::size_t j = 0; j < 6; ++j) {
       if (!hall.rig.fixtures[j].switched) continue;
@@ -246,7 +247,8 @@ TEST(Switched, ShowsKeepTheirLimitsAndDoNotRattleTheirRelays) {
     }
   }
   std::printf(
-      "of 300 shows: %d of %d metered goals met; relays on at the end %d, kept off by a limit %d, switched %d "
+      "of 300 shows: %d of %d metered goals read within 10 %%; relays on at the end %d, kept off by a limit %d, "
+      "switched %d "
       "times; most light %.3f of a limit\n",
       met, goals, on_at_the_end, forced_off, flips, most_share);
   EXPECT_GT(on_at_the_end, 150);

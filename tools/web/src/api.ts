@@ -11,6 +11,7 @@ export interface Fixture {
   aim?: Vec3; // [m] world
   level?: number; // 0…1 of rated output, now
   target_level?: number; // where the fade goes
+  level_known: boolean; // false: its device does not answer; `level` is the last that it took
   drive?: number; // 0…1 on the wire
   gain?: number; // estimated true output over rated
   gain_standard_error?: number;
@@ -30,9 +31,10 @@ export interface Point {
   measured_lux?: number;
   measured_age_s?: number;
   error?: number; // fraction of the goal, signed
-  met: boolean;
-  why: string;
-  meter_tolerance?: number; // of the luxmeter that stands there, from its own entry
+  verdict?: 'met' | 'missed' | 'unknown'; // of its goal
+  reason: string; // of that verdict; empty when met
+  limit?: 'kept' | 'exceeded' | 'unknown';
+  limit_reason: string;
 }
 
 export interface Luxmeter {
@@ -135,20 +137,17 @@ function vectors<K extends string>(from: Fields, ...keys: K[]): Partial<Record<K
   return found;
 }
 
+/** One of these words; any other is none. */
+function oneOf<K extends string, W extends string>(from: Fields, key: K, words: readonly W[]): Partial<Record<K, W>> {
+  const found = words.find((word) => word === from[key]);
+  return found === undefined ? {} : ({ [key]: found } as Record<K, W>);
+}
+
 /** undefined if this is no status at all. */
 export function readStatus(value: unknown): Status | undefined {
   const s = fieldsOf(value);
   if (typeof s['phase'] !== 'string') return undefined;
   const output = fieldsOf(s['output']);
-  const tolerances = new Map<string, number>();
-  for (const meter of listOf(s['luxmeters'])) {
-    const tolerance = number(meter['tolerance']);
-    if (tolerance !== undefined) tolerances.set(text(meter['point']), tolerance);
-  }
-  const toleranceAt = (point: string): { meter_tolerance?: number } => {
-    const tolerance = tolerances.get(point);
-    return tolerance === undefined ? {} : { meter_tolerance: tolerance };
-  };
   return {
     rig: text(s['rig']),
     version: text(s['version']),
@@ -164,15 +163,17 @@ export function readStatus(value: unknown): Status | undefined {
       address: text(f['address']),
       ...vectors(f, 'position', 'aim'),
       ...numbers(f, 'level', 'target_level', 'drive', 'gain', 'gain_standard_error'),
+      level_known: f['level_known'] !== false,
       ...(f['parked'] === true ? { parked: true as const } : {}),
       ...(f['kept_dark'] === true ? { kept_dark: true as const } : {}),
       ...(text(f['waits_for']) ? { waits_for: text(f['waits_for']) } : {}),
     })),
     points: listOf(s['points']).map((p) => ({
       name: text(p['name']),
-      met: p['met'] === true,
-      why: text(p['why']),
-      ...toleranceAt(text(p['name'])),
+      reason: text(p['reason']),
+      limit_reason: text(p['limit_reason']),
+      ...oneOf(p, 'verdict', ['met', 'missed', 'unknown'] as const),
+      ...oneOf(p, 'limit', ['kept', 'exceeded', 'unknown'] as const),
       ...vectors(p, 'position', 'normal'),
       ...numbers(p, 'goal_lux', 'max_lux', 'predicted_lux', 'standard_error_lux', 'measured_lux', 'measured_age_s', 'error'),
     })),

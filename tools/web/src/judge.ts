@@ -2,8 +2,9 @@
 
 import type { Fixture, Point, Status } from './api';
 
-/** Colour never stands alone: every verdict has its own shape and its own word. */
-export type Verdict = 'met' | 'low' | 'high' | 'over' | 'none';
+/** The sign of a point. Colour never stands alone: each has its own shape and its own word. What counts as met, missed or
+ *  unknown, kept or exceeded, the daemon decides (core/control/verdict.h); a miss is low or high here. */
+export type Verdict = 'met' | 'low' | 'high' | 'over' | 'unknown' | 'limit-unknown' | 'none';
 
 export interface Judged {
   verdict: Verdict;
@@ -20,46 +21,48 @@ export function errorOf(point: Point): number | undefined {
   return best / point.goal_lux - 1;
 }
 
-/** How far a number may lie above a limit and still tell of none broken: a reading by its meter's tolerance, the
- *  model, whose limits the daemon keeps exactly, by rounding. */
-const slackOf = (point: Point): number => (point.measured_lux === undefined ? 1e-3 : (point.meter_tolerance ?? 0));
-
 export function judge(point: Point): Judged {
   const error = errorOf(point);
   const measured = point.measured_lux !== undefined;
-  const best = point.measured_lux ?? point.predicted_lux;
   const common = { measured, ...(error === undefined ? {} : { error }) };
-  if (point.max_lux !== undefined && best !== undefined && best > point.max_lux * (1 + slackOf(point)))
-    return { ...common, verdict: 'over', words: 'over its limit' };
-  if (point.goal_lux === undefined)
+  const because = (words: string, reason: string): string => (reason ? `${words}: ${reason}` : words);
+  if (point.limit === 'exceeded') return { ...common, verdict: 'over', words: because('over its limit', point.limit_reason) };
+  if (point.limit === 'unknown')
+    return { ...common, verdict: 'limit-unknown', words: because('its limit may be exceeded', point.limit_reason) };
+  if (point.verdict === undefined)
     return { ...common, verdict: 'none', words: point.max_lux === undefined ? 'no goal' : 'within its limit' };
-  if (point.met) return { ...common, verdict: 'met', words: point.why ? `as near as it can be: ${point.why}` : 'goal met' };
-  const verdict: Verdict = error === undefined ? 'none' : error < 0 ? 'low' : 'high';
-  const how = verdict === 'none' ? 'not known yet' : verdict === 'low' ? 'too dark' : 'too bright';
-  return { ...common, verdict, words: point.why ? `${how}: ${point.why}` : how };
+  if (point.verdict === 'met') return { ...common, verdict: 'met', words: 'goal met' };
+  if (point.verdict === 'unknown') return { ...common, verdict: 'unknown', words: because('not known', point.reason) };
+  return { ...common, verdict: (error ?? 0) < 0 ? 'low' : 'high', words: point.reason };
 }
 
 export interface Summary {
   goals: number;
   goalsMet: number;
+  goalsMissed: number;
+  goalsUnknown: number;
   limits: number;
   limitsKept: number;
+  limitsExceeded: number;
   worst?: { name: string; error: number; measured: boolean };
 }
 
 export function summarise(status: Status): Summary {
-  const summary: Summary = { goals: 0, goalsMet: 0, limits: 0, limitsKept: 0 };
+  const summary: Summary = { goals: 0, goalsMet: 0, goalsMissed: 0, goalsUnknown: 0, limits: 0, limitsKept: 0, limitsExceeded: 0 };
   for (const point of status.points) {
-    const { verdict, error, measured } = judge(point);
-    if (point.goal_lux !== undefined) {
+    const { error, measured } = judge(point);
+    if (point.verdict !== undefined) {
       ++summary.goals;
-      if (point.met && verdict !== 'over') ++summary.goalsMet;
+      if (point.verdict === 'met') ++summary.goalsMet;
+      if (point.verdict === 'missed') ++summary.goalsMissed;
+      if (point.verdict === 'unknown') ++summary.goalsUnknown;
       if (error !== undefined && (!summary.worst || Math.abs(error) > Math.abs(summary.worst.error)))
         summary.worst = { name: point.name, error, measured };
     }
-    if (point.max_lux !== undefined && (point.measured_lux ?? point.predicted_lux) !== undefined) {
+    if (point.limit !== undefined) {
       ++summary.limits;
-      if (verdict !== 'over') ++summary.limitsKept;
+      if (point.limit === 'kept') ++summary.limitsKept;
+      if (point.limit === 'exceeded') ++summary.limitsExceeded;
     }
   }
   return summary;

@@ -98,5 +98,7 @@ export const MARKER_PATHS = {
   low: 'M-7 -5L7 -5L0 7Z',
   high: 'M-7 5L7 5L0 -7Z',
   over: 'M-7.5 0L0 -7.5L7.5 0L0 7.5Z',
+  unknown: 'M-6 0A6 6 0 1 1 6 0A6 6 0 1 1 -6 0ZM-2.6 0A2.6 2.6 0 1 0 2.6 0A2.6 2.6 0 1 0 -2.6 0Z',
+  'limit-unknown': 'M-7.5 0L0 -7.5L7.5 0L0 7.5ZM-2.6 0L0 2.6L2.6 0L0 -2.6Z',
   none: 'M-4.5 -4.5H4.5V4.5H-4.5Z',
 } as const;

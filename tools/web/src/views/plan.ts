@@ -182,7 +182,7 @@ export class PlanView {
       'aria-label',
       `The room from above: ${status.fixtures.length} fixtures, mean level ` +
         `${percent(status.fixtures.reduce((sum, f) => sum + (f.level ?? 0), 0) / Math.max(1, status.fixtures.length))}; ` +
-        `${goals.filter((p) => p.met).length} of ${goals.length} goals met. The tables hold the same numbers.`,
+        `${goals.filter((p) => p.verdict === 'met').length} of ${goals.length} goals met. The tables hold the same numbers.`,
     );
     this.showTip();
   }
@@ -249,6 +249,7 @@ function legend(): HTMLElement {
     entry('met', 'goal met'),
     entry('low', 'too dark'),
     entry('high', 'too bright'),
+    entry('unknown', 'not known'),
     entry('over', 'over its limit'),
     drawn('has a limit', svg('circle', { class: 'limit-mark', r: 10 })),
     drawn('has a meter', svg('g', { class: 'point', 'data-verdict': 'met', 'data-measured': 'true' }, svg('path', { class: 'shape', d: MARKER_PATHS.met }), svg('circle', { class: 'meter-mark', r: 3 }))),

@@ -12,15 +12,16 @@ import { type Work, worksOf } from '../works';
 const COLUMNS = ['point', 'goal lx', 'predicted lx', 'measured lx', 'error', 'limit lx', 'state'] as const;
 const FILTERS = {
   all: () => true,
-  'not met': (p: Point) => p.goal_lux !== undefined && !p.met,
+  missed: (p: Point) => p.verdict === 'missed',
+  'not known': (p: Point) => p.verdict === 'unknown',
   'with a meter': (p: Point) => p.measured_lux !== undefined,
   'with a limit': (p: Point) => p.max_lux !== undefined,
 };
 type Filter = keyof typeof FILTERS;
 
 /** The worst first: a work shows that of its points. */
-const WORST: string[] = ['over', 'missed', 'low', 'high', 'unknown', 'none', 'met'];
-const rank = (verdict: string): number => WORST.indexOf(verdict);
+const WORST: Verdict[] = ['over', 'limit-unknown', 'low', 'high', 'unknown', 'none', 'met'];
+const rank = (verdict: Verdict): number => WORST.indexOf(verdict);
 
 interface WorkRow {
   work: Work;

@@ -24,15 +24,18 @@ export class TilesView {
   show(status: Status): void {
     const sum = summarise(status);
     setText(this.goals.value, sum.goals ? `${sum.goalsMet} of ${sum.goals}` : UNKNOWN);
-    setText(this.goals.note, sum.goals === sum.goalsMet ? 'all' : `${sum.goals - sum.goalsMet} not met`);
-    setAttribute(this.goals.box, 'data-tone', sum.goals === sum.goalsMet ? 'good' : 'watch');
+    const not_met = [sum.goalsMissed ? `${sum.goalsMissed} missed` : '', sum.goalsUnknown ? `${sum.goalsUnknown} not known` : ''];
+    setText(this.goals.note, sum.goals === 0 ? 'no goals' : sum.goals === sum.goalsMet ? 'all' : not_met.filter(Boolean).join(', '));
+    setAttribute(this.goals.box, 'data-tone', sum.goals === 0 ? '' : sum.goalsMissed ? 'watch' : sum.goals === sum.goalsMet ? 'good' : '');
     setText(this.limits.value, sum.limits ? `${sum.limitsKept} of ${sum.limits}` : UNKNOWN);
-    setText(this.limits.note, sum.limits === sum.limitsKept ? 'conservation limits' : 'over the limit!');
-    setAttribute(this.limits.box, 'data-tone', sum.limits === sum.limitsKept ? 'good' : 'bad');
+    const not_kept = [sum.limitsExceeded ? `${sum.limitsExceeded} over the limit!` : '',
+      sum.limits - sum.limitsKept - sum.limitsExceeded ? `${sum.limits - sum.limitsKept - sum.limitsExceeded} not known` : ''];
+    setText(this.limits.note, sum.limits === sum.limitsKept ? 'conservation limits' : not_kept.filter(Boolean).join(', '));
+    setAttribute(this.limits.box, 'data-tone', sum.limits === 0 ? '' : sum.limitsExceeded ? 'bad' : sum.limits === sum.limitsKept ? 'good' : 'watch');
     setText(this.worst.value, signedPercent(sum.worst?.error));
     setText(this.worst.note, sum.worst ? `${sum.worst.name}, ${sum.worst.measured ? 'measured' : 'computed'}` : '');
     setText(this.rounds.value, status.round === undefined ? UNKNOWN : `${status.round} of ${status.rounds ?? UNKNOWN}`);
-    setText(this.rounds.note, status.converged ? 'confirmed by the luxmeters' : 'not confirmed yet');
+    setText(this.rounds.note, status.converged ? 'another would bring nothing' : 'not done yet');
     setAttribute(this.rounds.box, 'data-tone', status.converged ? 'good' : '');
     const levels = status.fixtures.flatMap((f) => (f.level === undefined ? [] : [f.level]));
     setText(this.output.value, levels.length ? percent(levels.reduce((a, b) => a + b, 0) / levels.length) : UNKNOWN);

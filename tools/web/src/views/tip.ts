@@ -31,7 +31,7 @@ export function pointTip(tip: HTMLElement, point: Point): void {
 
 export function fixtureTip(tip: HTMLElement, fixture: Fixture): void {
   fill(tip, fixture.name, whyDark(fixture), [
-    ['level', format.percent(fixture.level, 1)],
+    ['level', format.percent(fixture.level, 1) + (fixture.level_known ? '' : ', not known: it does not answer')],
     ['going to', format.percent(fixture.target_level, 1)],
     ['on the wire', format.percent(fixture.drive, 1)],
     ['gives of rated', format.gives(fixture.gain, fixture.gain_standard_error)],
