@@ -100,7 +100,7 @@ struct Plan {
 
 /// Gives each point with a goal its verdict (core/control/verdict.h): the light of the plan, were the rig exactly as its
 /// file says, known to the standard error of the transport. A goal with a colour is missed, too, when its light is
-/// further than 0.01 in CIE 1976 u'v' from it.
+/// further than 0.02 in CIE 1976 u'v' from it.
 void judge(Plan& plan, double goal_tolerance);
 [[nodiscard]] VerdictCounts goals_of(const Plan& plan);
 /// No goal is missed (some may be unknown), and every limit is kept, both by the model.

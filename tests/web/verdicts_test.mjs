@@ -52,11 +52,12 @@ position_m = [0.0, -0.7, 0.0]
 const BROKEN = {
   'a goal that nothing reaches': (t) => t.replace('goal_lx = 120', 'goal_lx = 5000'),
   'a point behind a wall that its goal ignores': (t) => t.replace('[[luminaire]]', `${WALL}\n[[luminaire]]`)
-    .replace('position_m = [1.5, -1.0, 0.0]\nnormal = [0, 0, 1]', 'position_m = [1.5, -0.72, 0.5]\nnormal = [0, -1, 0]'),
+    .replace('position_m = [1.5, -1.0, 0.0]\nnormal = [0, 0, 1]', 'position_m = [1.5, -0.68, 0.5]\nnormal = [0, -1, 0]'),
   'no luxmeter': (t) => without(without(t, 'luxmeter', 'meter-1'), 'luxmeter', 'meter-2'),
   'no goal': (t) => t.replace(/goal_lx = \d+\n/g, ''),
   'a goal beyond its own limit': (t) => t.replace('goal_lx = 150\nmax_lx = 200', 'goal_lx = 300\nmax_lx = 60'),
-  'lamps that may give next to nothing': (t) => t.replace('max_level = 1.0', 'max_level = 0.02'),
+  'lamps that may give next to nothing': (t) => t.replace('max_level = 1.0', 'max_level = 0.02').replace('safe_level = 0.2', 'safe_level = 0.01')
+    .replace('\nlevel = 0.1', '\nlevel = 0.01'),
   'two goals that contradict one another': (t) => t.replace('[[camera]]', `[[point]]
 name = "beside"
 position_m = [1.05, 0.5, 1.0]
@@ -68,7 +69,7 @@ goal_lx = 900
 name = "dark"
 position_m = [1.5, -1.05, 0.0]
 normal = [0, 0, 1]
-goal_lx = 0
+goal_lx = 0.5
 
 [[camera]]`),
   'a luxmeter that is hardly one': (t) => t.replace('tolerance = 0.04', 'tolerance = 0.4'),
@@ -143,9 +144,8 @@ async function check(what, rig, expected = {}) {
 
 for (const name of ['gallery', 'reading-room', 'stage', 'studio', 'studio/can.toml', 'frieze'])
   test(`rigs/${name}: exit codes, JSON and page agree`, async () => {
-    const { status, run } = await check(`rigs-${name}`, source(`rigs/${name}`));
+    const { run } = await check(`rigs-${name}`, source(`rigs/${name}`));
     if (name === 'stage') assert.equal(run.code, 0, `a rig without luxmeters can end well:\n${run.out}`);
-    if (name === 'reading-room') assert.ok(status.goals.missed > 0, 'one of its goals is beyond its lamps');
   });
 for (const [what, change] of Object.entries(BROKEN))
   test(`${what}: exit codes, JSON and page agree`, () => check(what, room(what.replace(/\W/g, '-'), change), EXPECTED[what]));

@@ -10,7 +10,7 @@
 namespace luxrig {
 
 inline constexpr int kExitOk = 0;
-inline constexpr int kExitFailed = 1;    ///< the world failed, or goals were not met
+inline constexpr int kExitFailed = 1;    ///< the world failed, or a goal is missed
 inline constexpr int kExitBadInput = 2;  ///< a file or an argument is wrong; nothing has moved
 
 /// One line each on standard error; returns kExitBadInput.

@@ -15,7 +15,10 @@ TEST(Run, OnceReachesTheGoalsWritesTheTableAndEndsCleanly) {
   ASSERT_EQ(ran.code, 0) << ran.output;
   const json out = json::parse(text_of(table), nullptr, false);
   ASSERT_TRUE(out.is_object()) << ran.output;
-  EXPECT_TRUE(out["goals_met"].get<bool>());
+  EXPECT_EQ(out["goals"]["met"], 1) << "plinth-top has a luxmeter";
+  EXPECT_EQ(out["goals"]["missed"], 0);
+  EXPECT_EQ(out["goals"]["unknown"], 1) << "nobody measures the floor";
+  EXPECT_FALSE(out["goals_met"].get<bool>());
   EXPECT_EQ(out["limit_violations_in_truth"], 0);
   bool metered = false;
   for (const json& point : out["points"]) {
