@@ -148,7 +148,7 @@ async function againstMock(browser, dist, out) {
 
   await check('a work folds its points up and shows the worst of them', async () => {
     const work = page.locator('.points .work', { hasText: 'drawing-2' });
-    assert.match(await work.innerText(), /4 points.*1 of 4: too dark/s);
+    assert.match(await work.innerText(), /4 points.*1 of 4: [\d.]+ % too dark/s);
     await work.getByRole('button').click();
     assert.equal(await page.locator('.points [data-point]:visible').count(), 32);
     await work.getByRole('button').click();
