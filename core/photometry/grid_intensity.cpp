@@ -12,9 +12,7 @@ Vec3 table_from_lamp(GridAxes axes, const Vec3& d) {
     case GridAxes::b:
       return {-d.z(), d.x(), d.y()};
     case GridAxes::a:
-      return {d.x(), -d.y(), -d.z()};
-    case GridAxes::about_x:
-      return {d.y(), d.z(), d.x()};
+      return {-d.z(), d.x(), -d.y()};
     default:
       return {d.x(), d.y(), -d.z()};
   }
@@ -22,11 +20,11 @@ Vec3 table_from_lamp(GridAxes axes, const Vec3& d) {
 
 Vec3 lamp_from_table(GridAxes axes, const Vec3& d) {
   if (axes == GridAxes::b) return {d.y(), d.z(), -d.x()};
-  if (axes == GridAxes::about_x) return {d.z(), d.x(), d.y()};
-  return table_from_lamp(axes, d);  // these two are mirrors, their own inverse
+  if (axes == GridAxes::a) return {d.y(), -d.z(), -d.x()};
+  return table_from_lamp(axes, d);  // a mirror, its own inverse
 }
 
-/// Largest angle from -Z at which a table in axes A or C shines.
+/// Largest angle from -Z at which a table in axes C shines.
 double half_cone_about_pole_rad(const SphereTable& table) {
   const auto& polar = table.polar_rad();
   const std::size_t columns = table.symmetry() == SphereTable::Symmetry::round ? 1 : table.azimuth_rad().size();
@@ -39,7 +37,7 @@ double half_cone_about_pole_rad(const SphereTable& table) {
   return polar[std::min(dark_from, polar.size() - 1)];
 }
 
-/// The same in axes B, where the cosine of that angle is sin(polar) cos(azimuth).
+/// The same in axes A or B, where the cosine of that angle is sin(polar) cos(azimuth).
 double half_cone_across_pole_rad(const SphereTable& table) {
   const auto& polar = table.polar_rad();
   const auto& azimuth = table.azimuth_rad();
@@ -63,9 +61,7 @@ double half_cone_across_pole_rad(const SphereTable& table) {
 class GridIntensity final : public IntensityDistribution {
  public:
   GridIntensity(SphereTable table, GridAxes axes) : table_(std::move(table)), axes_(axes) {
-    const double half_rad = axes_ == GridAxes::b         ? half_cone_across_pole_rad(table_)
-                            : axes_ == GridAxes::about_x ? kPi
-                                                         : half_cone_about_pole_rad(table_);
+    const double half_rad = axes_ == GridAxes::c ? half_cone_about_pole_rad(table_) : half_cone_across_pole_rad(table_);
     emission_cone_rad_ = half_rad > 0.5 * kPi + 1e-9 ? 2 * kPi : std::min(kPi, 2 * half_rad);
   }
 

@@ -8,14 +8,12 @@
 
 namespace luxrig {
 
-/// How a table's angles lie in frame lamp (+X: C plane 0; -Z: nadir). From IES LM-75 and the definitions of LM-63-2002:
-/// vertical and horizontal angles of (0, 0) point to the nadir in types B and C and horizontally along +X in type A;
-/// horizontal angles turn counter-clockwise seen from above in type C and clockwise in types A and B.
+/// How a table's angles lie in frame lamp (-Z: along the beam; +X: C plane 0). Vertical and horizontal angles of (0, 0)
+/// are -Z in every type, so that a luminaire of any type shines where it is aimed (ies.h says how that fits LM-63).
 enum class GridAxes {
-  c,       ///< polar axis -Z: polar = γ, azimuth = C from +X towards +Y
-  b,       ///< polar axis +Y: polar = H + 90° (H towards -Y), azimuth = V from -Z towards +X
-  a,       ///< polar axis -Z: polar = Y + 90° (Y upwards), azimuth = X from +X towards -Y
-  about_x  ///< polar axis +X, for round tables: a round beam of type A
+  c,  ///< polar axis -Z: polar = γ, azimuth = C from +X towards +Y
+  b,  ///< polar axis +Y: polar = H + 90° (H towards -Y), azimuth = V from -Z towards +X
+  a   ///< polar axis -Y: polar = Y + 90° (Y towards +Y), azimuth = X from -Z towards +X
 };
 
 /// Intensity [cd] from a table in those axes. Flux is the table's integral; directions are drawn with exactly

@@ -5,8 +5,11 @@
 /// +Y (counter-clockwise seen from above). In types A and B horizontal angles turn clockwise. Type B has (0, 0) at -Z,
 /// V rises from there towards +X, H goes towards -Y, and the half-planes of V meet in the horizontal axis Y:
 ///   direction = (cos H sin V, -sin H, -cos H cos V).
-/// Type A has (0, 0) at +X (a luminaire whose beam lies level), its planes of X meet in the vertical axis:
-///   direction = (cos Y cos X, -cos Y sin X, sin Y).
+/// Type A describes luminaires whose beam lies level (headlamps, floodlights): its planes of X meet in the vertical,
+/// and (0, 0) is the beam. The beam is -Z of frame lamp here, too, as of every head and spot: aimed level, that frame's
+/// +Y is up and its +X to the right of who looks along the beam, so that Y still counts upwards and X to the right:
+///   direction = (cos Y sin X, sin Y, -cos Y cos X).
+/// Hung without an aim such a luminaire shines down; aim it level (aim_m, or tilt_deg = 90) to have it as measured.
 
 #include <filesystem>
 #include <functional>

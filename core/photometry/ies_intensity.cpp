@@ -55,8 +55,7 @@ Intensity type_a_or_b(const IesFile& file) {
   const bool b = file.type == IesFile::Type::b;
   const std::size_t verticals = file.vertical_deg.size();
   if (file.horizontal_deg.size() == 1) {
-    return make_grid_intensity(SphereTable(Symmetry::round, radians(file.vertical_deg), {}, file.candela),
-                               b ? GridAxes::c : GridAxes::about_x);
+    return make_grid_intensity(SphereTable(Symmetry::round, radians(file.vertical_deg), {}, file.candela), GridAxes::c);
   }
   const BothSides vertical(file.vertical_deg);
   const BothSides horizontal(file.horizontal_deg);

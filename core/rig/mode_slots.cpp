@@ -6,15 +6,13 @@
 #include <cmath>
 
 #include "core/rig/nearest.h"
+#include "core/rig/personality/dimmer_choice.h"
 #include "core/rig/personality/held_values.h"
 
 namespace luxrig {
 namespace {
 
 constexpr double kSlack_deg = 1e-6;
-
-bool is_dimmer(const ChannelFunction& function) { return attribute_stem(function.attribute) == "Dimmer"; }
-bool is_colour(const ChannelFunction& function) { return !emitter_of_attribute(function.attribute).empty(); }
 
 /// Placeholders: files without a travel say 0 to 1.
 bool states_travel(const ChannelFunction& function) {
@@ -62,12 +60,15 @@ class ModeFitter {
                         : fmt::format("has {} start addresses", mode_.break_footprints.size()),
                     "choose another mode: a fixture here has one address");
     }
+    if (const std::string stand_in = stand_in_problem(mode_); !stand_in.empty())
+      return refuse(stand_in, "get the maker's GDTF file, or write its slots by hand");
     out_.slots.assign(static_cast<std::size_t>(mode_.footprint()),
                       NamedSlot{{SlotUse::unused, 0}, std::nullopt, wanted_.place});
     if (!carry_light() || !carry_joints()) return std::nullopt;
     for (std::size_t c = 0; c < mode_.channels.size(); ++c)
       if (!carried_[c]) hold(c);
-    out_.told.insert(out_.told.end(), held_.told.begin(), held_.told.end());
+    for (HeldValues::Told& told : held_.told)
+      if (!told.where || !carried_[told.channel]) out_.told.push_back(std::move(told.text));
     return std::move(out_);
   }
 
@@ -86,33 +87,122 @@ class ModeFitter {
   }
 
   bool carry_light() {
-    const std::vector<std::size_t> dimmers = channels_of(is_dimmer), colours = channels_of(is_colour);
+    const std::optional<DimmerChoice> dimmers = choose();
+    if (!dimmers) return false;
+    const std::vector<std::size_t> colours = channels_of(is_colour);
     const bool by_emitter = wanted_.owner && !wanted_.owner->emitters.empty();
     if (by_emitter && !carry_emitters(colours)) return false;
-    if (by_emitter) {
-      for (const std::size_t c : dimmers) hold_full(c, is_dimmer, "full");
-      for (const std::size_t c : colours) {
-        if (carried_[c]) continue;
-        held_.dmx[c] = end_of(c, is_colour, false);
-        tell("{} dark, which its luminaire does not have", in_quotes(mode_.channels[c].name));
+    for (const std::size_t c : dimmers->level) {
+      if (by_emitter) {
+        hold_full(c, is_dimmer, "full");
+      } else {
+        carry(c, is_dimmer, std::nullopt, "dimmer");
       }
-      return true;
     }
-    const std::vector<std::size_t> top = topmost(dimmers);
-    for (const std::size_t c : top) carry(c, is_dimmer, SlotUse::dimmer, std::nullopt, "dimmer");
-    for (const std::size_t c : dimmers)
+    for (const std::size_t c : dimmers->open)
       if (!carried_[c]) hold_full(c, is_dimmer, "full");
+    for (const std::size_t c : dimmers->left)
+      if (!carried_[c])
+        tell("{} is another dimmer, which nothing asks for: it stays at its default {}",
+             in_quotes(mode_.channels[c].name), held_.dmx[c]);
     for (const std::size_t c : colours) {
-      if (carried_[c]) continue;
-      if (dimmers.empty()) {
-        carry(c, is_colour, SlotUse::dimmer, std::nullopt, "its level");
+      if (carried_[c] || !range_of(c, is_colour)) continue;
+      if (by_emitter) {
+        held_.dmx[c] = range_of(c, is_colour)->dark.value_or(range_of(c, is_colour)->least);
+        tell("{} dark, which its luminaire does not have", in_quotes(mode_.channels[c].name));
+      } else if (dimmers->level.empty()) {
+        carry(c, is_colour, std::nullopt, "its level");
       } else {
         hold_full(c, is_colour, "full");
       }
     }
-    if (!dimmers.empty() || !colours.empty() || !wanted_.owner) return true;
-    static_cast<void>(refuse("has no dimmer", "choose another mode: every fixture is set by its level"));
+    const bool any = cells_ > 0;
+    shut_where_level_0_is_not_dark(!by_emitter);
+    if (any || !wanted_.owner) return true;
+    static_cast<void>(
+        refuse("has no dimmer" + slight_dimmers(), "choose another mode: every fixture is set by its level"));
     return false;
+  }
+
+  std::optional<LevelRange> range_of(std::size_t c, const FunctionKind& kind) const {
+    return level_range(mode_.channels[c], held_.dmx, kind);
+  }
+
+  /// Nothing, and a problem, when it cannot be told.
+  std::optional<DimmerChoice> choose() {
+    std::optional<std::size_t> chosen;
+    std::vector<std::string_view> known;
+    for (std::size_t c = 0; c < mode_.channels.size(); ++c) {
+      if (mode_.channels[c].is_virtual() || !range_of(c, is_dimmer)) continue;
+      known.push_back(mode_.channels[c].name);
+      if (!chosen && mode_.channels[c].name == wanted_.dimmer) chosen = c;
+    }
+    if (!wanted_.dimmer.empty() && !chosen) {
+      problems_.add(wanted_.dimmer_place,
+                    fmt::format("mode {} has no dimmer {}", in_quotes(mode_.name), in_quotes(wanted_.dimmer)),
+                    mend_for_unknown(wanted_.dimmer, known, "it has none at all: choose another mode"));
+      return std::nullopt;
+    }
+    DimmerChoice choice = choose_dimmers(mode_, held_.dmx, chosen);
+    if (choice.alike.empty()) return choice;
+    std::string names;
+    for (std::size_t i = 0; i < choice.alike.size() && i < 6; ++i)
+      names += fmt::format("{}{} (slot {})",
+                           i == 0                        ? ""
+                           : i + 1 < choice.alike.size() ? ", "
+                                                         : " and ",
+                           in_quotes(mode_.channels[choice.alike[i]].name),
+                           mode_.channels[choice.alike[i]].offsets.front() + 1);
+    static_cast<void>(
+        refuse(fmt::format("has dimmers {}{}, and its file does not say which of them dims its light", names,
+                           choice.alike.size() > 6 ? " and more" : ""),
+               "add dimmer = \"NAME\" with the one that its manual says does; the others stay at their default"));
+    return std::nullopt;
+  }
+
+  /// Channels that have a dimmer's function among others.
+  std::string slight_dimmers() const {
+    for (const PersonalityChannel& channel : mode_.channels) {
+      if (channel.is_virtual()) continue;
+      for (const ChannelFunction& f : channel.functions)
+        if (attribute_stem(f.attribute) == "Dimmer")
+          return fmt::format(
+              ": {} has a function of one at {} to {}, which goes through no range of brightness that "
+              "a level could follow",
+              in_quotes(channel.name), f.dmx.from, f.dmx.to);
+    }
+    return "";
+  }
+
+  /// A dimmer whose lowest place still gives light has a shutter beside it that shuts at level 0, or that is told.
+  /// `one_level`: not one for each emitter, behind the same shutter.
+  void shut_where_level_0_is_not_dark(bool one_level) {
+    for (const auto& [dimmer, least_share] : bright_at_0_) {
+      bool shut = false;
+      for (std::size_t c = 0; c < mode_.channels.size() && one_level; ++c) {
+        const PersonalityChannel& channel = mode_.channels[c];
+        if (channel.is_virtual() || !mode_.share_a_branch(channel.geometry, mode_.channels[dimmer].geometry)) continue;
+        shut |= shuts_[c];
+        const auto closed = carried_[c] ? std::optional<std::uint32_t>() : shut_value(channel);
+        if (!closed) continue;
+        shut = shuts_[c] = true;
+        const double open = share_of(c, held_.dmx[c]);
+        place(c, SlotUse::dimmer, std::nullopt, {open, open, 0, share_of(c, *closed)});
+        tell("{} shut at level 0 ({}), open at any other ({})", in_quotes(channel.name), *closed, held_.dmx[c]);
+      }
+      if (!shut)
+        tell("{} gives {:.3g} % of its light at level 0: its file states nothing darker",
+             in_quotes(mode_.channels[dimmer].name), 100 * least_share);
+    }
+  }
+
+  std::optional<std::uint32_t> shut_value(const PersonalityChannel& channel) const {
+    for (const ChannelFunction& f : channel.functions) {
+      if (!is_active(f, held_.dmx)) continue;
+      for (const std::uint32_t value : {f.dmx.middle(), f.dmx.from})
+        if (shutter_state(f, value) == ShutterState::closed) return value;
+    }
+    return std::nullopt;
   }
 
   bool carry_emitters(const std::vector<std::size_t>& colours) {
@@ -122,8 +212,8 @@ class ModeFitter {
       bool found = false;
       for (const std::size_t c : colours) {
         const auto of = [&](const ChannelFunction& f) { return sets_emitter(f, emitter); };
-        if (carried_[c] || !active_function(mode_.channels[c], held_.dmx, of)) continue;
-        carry(c, of, SlotUse::dimmer, e, emitter);
+        if (carried_[c] || !range_of(c, of)) continue;
+        carry(c, of, e, emitter);
         found = true;
       }
       if (found) continue;
@@ -142,51 +232,35 @@ class ModeFitter {
     return good;
   }
 
-  /// Dimmers that no other dims: of two in one branch the higher, of two in one place the first.
-  std::vector<std::size_t> topmost(const std::vector<std::size_t>& dimmers) const {
-    std::vector<std::size_t> top;
-    for (std::size_t i = 0; i < dimmers.size(); ++i) {
-      const std::size_t own = mode_.channels[dimmers[i]].geometry;
-      bool dimmed = false;
-      for (std::size_t j = 0; j < dimmers.size(); ++j) {
-        const std::size_t other = mode_.channels[dimmers[j]].geometry;
-        if (i == j || !mode_.share_a_branch(own, other)) continue;
-        dimmed |= own == other ? j < i : is_above(other, own);
-      }
-      if (!dimmed) top.push_back(dimmers[i]);
-    }
-    return top;
-  }
-
-  bool is_above(std::size_t outer, std::size_t inner) const {
-    for (std::optional<std::size_t> at = inner; at; at = mode_.geometries[*at].parent)
-      if (*at == outer) return true;
-    return false;
-  }
-
   double share_of(std::size_t c, std::uint32_t dmx) const {
     return static_cast<double>(dmx) / static_cast<double>(mode_.channels[c].max_dmx());
   }
 
-  /// Where a level is highest, or lowest.
-  template <class Of>
-  std::uint32_t end_of(std::size_t c, const Of& of, bool full) const {
-    const ChannelFunction* f = active_function(mode_.channels[c], held_.dmx, of);
-    return (f->physical_to >= f->physical_from) == full ? f->dmx.to : f->dmx.from;
-  }
-
-  template <class Of>
-  void hold_full(std::size_t c, const Of& of, const char* what) {
-    held_.dmx[c] = end_of(c, of, true);
+  void hold_full(std::size_t c, const FunctionKind& of, const char* what) {
+    const auto range = range_of(c, of);
+    if (!range) return;
+    held_.dmx[c] = range->full;
     tell("{} {} at {}", in_quotes(mode_.channels[c].name), what, held_.dmx[c]);
   }
 
-  template <class Of>
-  void carry(std::size_t c, const Of& of, SlotUse use, std::optional<std::size_t> emitter, const std::string& what) {
-    const ChannelFunction& f = *active_function(mode_.channels[c], held_.dmx, of);
-    place(c, use, emitter, {share_of(c, end_of(c, of, false)), share_of(c, end_of(c, of, true))});
-    tell("{} by {}, {} bit at slot {}", what, in_quotes(mode_.channels[c].name), 8 * mode_.channels[c].offsets.size(),
-         mode_.channels[c].offsets.front() + 1);
+  /// requires range_of(c, of)
+  void carry(std::size_t c, const FunctionKind& of, std::optional<std::size_t> emitter, const std::string& what) {
+    const LevelRange range = *range_of(c, of);
+    DmxTravel travel{share_of(c, range.least), share_of(c, range.full), range.least_share, std::nullopt};
+    if (range.dark) travel.at_dark = share_of(c, *range.dark);
+    place(c, SlotUse::dimmer, emitter, travel);
+    out_.steps |= range.steps;
+    const PersonalityChannel& channel = mode_.channels[c];
+    const bool whole = std::min(range.least, range.full) == 0 && std::max(range.least, range.full) == channel.max_dmx();
+    tell("{} by {}, {} bit at slot {}{}", what, in_quotes(channel.name), 8 * channel.offsets.size(),
+         channel.offsets.front() + 1,
+         range.steps ? fmt::format(", off at {} and on at {}: it is switched", range.least, range.full)
+         : whole && !range.dark
+             ? ""
+             : fmt::format(", {}{} to {}", range.dark ? fmt::format("dark at {}, then ", *range.dark) : "", range.least,
+                           range.full));
+    if (range.least_share > 0 && !range.dark) bright_at_0_.emplace_back(c, range.least_share);
+    const ChannelFunction& f = *active_function(channel, held_.dmx, of);
     if (f.profile && is_dimmer(f)) {
       out_.dimmer_curve = curve_like(personality_.profiles[*f.profile]);
       if (!out_.dimmer_curve) tell("its dimmer follows no curve known here: state the nearest as dimmer_curve");
@@ -290,8 +364,11 @@ class ModeFitter {
     }
     for (const std::size_t c : channels) {
       const ChannelFunction& f = *active_function(mode_.channels[c], held_.dmx, of);
-      const double from_deg = states_travel(f) ? f.physical_from + offset_deg : range_deg.first;
-      const double to_deg = states_travel(f) ? f.physical_to + offset_deg : range_deg.second;
+      const bool falls = f.physical_to < f.physical_from;
+      const double from_deg = states_travel(f) ? f.physical_from + offset_deg
+                              : falls          ? range_deg.second
+                                               : range_deg.first;
+      const double to_deg = states_travel(f) ? f.physical_to + offset_deg : falls ? range_deg.first : range_deg.second;
       const auto dmx_share = [&](double angle_deg) {
         const double share = std::clamp((angle_deg - from_deg) / (to_deg - from_deg), 0.0, 1.0);
         return share_of(c, f.dmx.from) + share * (share_of(c, f.dmx.to) - share_of(c, f.dmx.from));
@@ -316,7 +393,8 @@ class ModeFitter {
   const ModeWanted& wanted_;
   ProblemList& problems_;
   HeldValues held_;
-  std::vector<bool> carried_ = std::vector<bool>(mode_.channels.size(), false);
+  std::vector<bool> carried_ = std::vector<bool>(mode_.channels.size(), false), shuts_ = carried_;
+  std::vector<std::pair<std::size_t, double>> bright_at_0_;  // channels that carry a level, with their least light
   int cells_ = 0;
   ModeSlots out_;
 };

@@ -15,13 +15,15 @@ struct ModeWanted {
   std::optional<double> beam_deg;  ///< of its luminaire; zooms are set to it
   std::optional<std::pair<double, double>> zoom_deg;  ///< what its luminaire's zoom goes through; none: it is held
   bool turned_elsewhere = false;                      ///< pan and tilt are drives on another bus
+  std::string dimmer;                                 ///< channel that is its dimmer; empty: the file has to say
   std::optional<std::pair<double, double>> pan_range_deg, tilt_range_deg;
-  Place place, pan_place, tilt_place;  ///< of `mode`, `pan_range_deg`, `tilt_range_deg`
+  Place place, pan_place, tilt_place, dimmer_place;  ///< of `mode`, `pan_range_deg`, `tilt_range_deg`, `dimmer`
 };
 
 struct ModeSlots {
   std::vector<NamedSlot> slots;
   bool moves = false;
+  bool steps = false;                                ///< its dimmer is on or off
   JointRange range;                                  ///< only when it moves
   double pan_speed_rad_s = 0, tilt_speed_rad_s = 0;  ///< 0: the file states none
   double zoom_speed_rad_s = 0;                       ///< the same
@@ -29,11 +31,12 @@ struct ModeSlots {
   std::vector<std::string> told;                     ///< how it was understood, for a person
 };
 
-/// Nothing, and problems, when the mode cannot serve: no dimmer, no channel for an emitter, a travel that is too short,
-/// axes that cannot be computed with, several start addresses.
+/// Nothing, and problems, when the mode cannot serve: no dimmer, two that could be it, no channel for an emitter, a
+/// travel that is too short, axes that cannot be computed with, several start addresses.
 ///
-/// Light follows the level by the topmost dimmers, or, in a luminaire with emitters or a mode without dimmers, by the
-/// colours; other dimmers and colours are held full, colours that the luminaire does not have dark.
+/// Light follows the level by the topmost dimmers (personality/dimmer_choice.h), or, in a luminaire with emitters or a
+/// mode without dimmers, by the colours. Held full: dimmers above and below those, and colours. Held dark: colours that
+/// the luminaire does not have. All else, other dimmers too, stays at its stated default.
 [[nodiscard]] std::optional<ModeSlots> slots_of_mode(const Personality& personality, const PersonalityMode& mode,
                                                      const ModeWanted& wanted, ProblemList& problems);
 

@@ -28,23 +28,30 @@ std::string listed(const std::vector<PersonalityMode>& modes) {
 
 }  // namespace
 
+std::shared_ptr<const Personality> RigReader::personality_at(const std::filesystem::path& path) {
+  const auto known = personalities.find(path.string());
+  if (known != personalities.end()) return known->second;
+  Checked<Personality> personality = load_personality(path);
+  if (!personality) return nullptr;
+  for (const std::string& note : personality->notes)
+    rig.notes.push_back({path.string(), 0, 0, note, "check it where this channel matters"});
+  return personalities.emplace(path.string(), std::make_shared<const Personality>(std::move(*personality)))
+      .first->second;
+}
+
 std::shared_ptr<const Personality> RigReader::read_personality(Section& s) {
   const auto path = read_file(s, "personality");
-  if (!path) return nullptr;
-  const auto [at, is_new] = personalities.try_emplace(path->string(), nullptr);
-  if (is_new) {
-    Checked<Personality> personality = load_personality(*path);
-    if (personality) {
-      for (const std::string& note : personality->notes)
-        rig.notes.push_back({path->string(), 0, 0, note, "check it where this channel matters"});
-      at->second = std::make_shared<const Personality>(std::move(*personality));
-    } else {
-      problems.add(s.place_of("personality"), fmt::format("{} cannot be used", in_quotes(path->filename().string())),
-                   "mend what is listed for it, or use another file");
-      for (const Problem& problem : personality.error()) problems.add(problem);
-    }
+  if (!path || personalities.contains(path->string())) return path ? personalities.at(path->string()) : nullptr;
+  std::shared_ptr<const Personality> good = personality_at(*path);
+  if (!good) {
+    problems.add(s.place_of("personality"), fmt::format("{} cannot be used", in_quotes(path->filename().string())),
+                 "mend what is listed for it, or use another file");
+    const Checked<Personality> refused = load_personality(*path);
+    if (!refused)
+      for (const Problem& problem : refused.error()) problems.add(problem);
+    personalities.emplace(path->string(), nullptr);
   }
-  return at->second;
+  return good;
 }
 
 std::optional<std::size_t> RigReader::read_mode(Section& s, const Personality& personality) {
@@ -88,6 +95,8 @@ std::optional<ModeSlots> RigReader::read_slots_of_mode(Section& s, const std::op
   wanted.turned_elsewhere = s.has("axes_bus");
   s.read("pan_range_deg", wanted.pan_range_deg);
   s.read("tilt_range_deg", wanted.tilt_range_deg);
+  s.read("dimmer", wanted.dimmer);
+  wanted.dimmer_place = s.place_of("dimmer");
   wanted.place = s.place_of(s.has("mode") ? "mode" : "personality");
   wanted.pan_place = s.place_of(s.has("pan_range_deg") ? "pan_range_deg" : "personality");
   wanted.tilt_place = s.place_of(s.has("tilt_range_deg") ? "tilt_range_deg" : "personality");
@@ -95,7 +104,10 @@ std::optional<ModeSlots> RigReader::read_slots_of_mode(Section& s, const std::op
   if (slots) {
     std::string text;
     s.read("personality", text);
-    fixture.mode = FixtureMode{text, personality, *mode, {}, slots->told};
+    if (const auto stated = stated_lights.find(fixture.luminaire); owner && stated != stated_lights.end())
+      slots->told.insert(slots->told.begin(), stated->second.told.begin(), stated->second.told.end());
+    if (owner) check_stated_light(s, fixture, personality->modes[*mode]);
+    fixture.mode = FixtureMode{text, personality, *mode, {}, wanted.dimmer, slots->told};
   }
   return slots;
 }
@@ -111,8 +123,9 @@ bool RigReader::read_dmx(Section& s, const std::optional<SlotOwner>& owner, Fixt
     if (of_mode) named = of_mode->slots;
     good = good && of_mode.has_value();
   } else {
-    s.refuse("mode", "mode has no effect without a personality",
-             "add personality, a GDTF or Open Fixture Library file");
+    for (const std::string key : {"mode", "dimmer"})
+      s.refuse(key, key + " has no effect without a personality",
+               "add personality, a GDTF or Open Fixture Library file");
     good &= read_slots(s, owner, named);
   }
   patch.slots = slots_of(named, named.empty() || !owner || owner->emitters.empty() ? std::nullopt : std::optional(0ul));

@@ -10,7 +10,7 @@
 namespace luxrig {
 namespace {
 
-constexpr std::string_view kDmxKeys[] = {"universe", "address", "slots", "personality", "mode"};
+constexpr std::string_view kDmxKeys[] = {"universe", "address", "slots", "personality", "mode", "dimmer"};
 constexpr std::string_view kModbusKeys[] = {"unit", "register", "full_scale", "register_map", "channel", "output"};
 constexpr std::string_view kTravelKeys[] = {"pan_range_deg", "tilt_range_deg", "pan_speed_deg_s", "tilt_speed_deg_s"};
 constexpr std::string_view kAxisKeys[] = {
@@ -222,14 +222,19 @@ void RigReader::read_aim(Section& s, Fixture& fixture) {
                "aim it elsewhere, or turn its base with mount_deg");
 }
 
-void RigReader::read_switched(Section& s, bool has_emitters, Fixture& fixture) {
+void RigReader::read_switched(Section& s, bool has_emitters, bool steps, Fixture& fixture) {
   const auto* modbus = std::get_if<ModbusPatch>(&fixture.patch);
   const bool coil = modbus != nullptr && modbus->coil;
   if (s.read("switched", fixture.switched) && coil && !fixture.switched)
     problems.add(s.place_of("switched"), "it hangs on a coil, which is on or off", "remove switched");
-  fixture.switched = fixture.switched || coil;
+  if (steps && s.has("switched") && !fixture.switched)
+    problems.add(s.place_of("switched"), "the dimmer of this mode is on or off",
+                 "remove switched, or choose another mode");
+  fixture.switched = fixture.switched || coil || steps;
   if (!fixture.switched) return;
-  const std::string_view cannot = coil ? "it hangs on a coil, and is on or off" : "it is switched: on or off";
+  const std::string_view cannot = coil    ? "it hangs on a coil, and is on or off"
+                                  : steps ? "the dimmer of its mode is on or off"
+                                          : "it is switched: on or off";
   const auto wrong = [&](std::string_view key, const std::string& what, const std::string& mend) {
     problems.add(s.place_of(s.has(key) ? key : "name"), fmt::format("{}: {}", cannot, what), mend);
   };
@@ -295,7 +300,7 @@ void RigReader::read_fixtures() {
 
     s.read_choice("dimmer_curve", fixture.dimmer_curve);
     s.read("max_level", fixture.max_level);
-    read_switched(s, slot_owner && !slot_owner->emitters.empty(), fixture);
+    read_switched(s, slot_owner && !slot_owner->emitters.empty(), of_mode && of_mode->steps, fixture);
     if (s.read("safe_level", fixture.safe_level) && *fixture.safe_level > fixture.max_level) {
       problems.add(s.place_of("safe_level"),
                    fmt::format("safe_level {} is above max_level {}", *fixture.safe_level, fixture.max_level),

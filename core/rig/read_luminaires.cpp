@@ -6,6 +6,7 @@
 #include "core/photometry/light_colour.h"
 #include "core/photometry/photometric_file.h"
 #include "core/rig/rig_reader.h"
+#include "core/rig/stated_light.h"
 
 namespace luxrig {
 namespace {
@@ -40,9 +41,18 @@ std::string models_text(std::string_view models) {
   return text;
 }
 
+/// "" when the luminaire has no maker's file.
+std::string why_not_stated(const StatedLight& stated) {
+  if (stated.file.empty()) return "";
+  const BeamGeometry& l = stated.light;
+  if (l.lumens == 0 && l.beam_angle_deg == 0) return fmt::format(" ({} states none)", in_quotes(stated.file));
+  return fmt::format(" ({} states {:g} lm, a beam of {:g}° and a field of {:g}°)", in_quotes(stated.file), l.lumens,
+                     l.beam_angle_deg, l.field_angle_deg);
+}
+
 }  // namespace
 
-void RigReader::check_model_keys(Section& s, LuminaireModel model) {
+void RigReader::check_model_keys(Section& s, LuminaireModel model, const StatedLight& stated) {
   const std::string name = kModelNames[static_cast<int>(model)];
   for (const ModelKey& key : kModelKeys) {
     const bool belongs = std::string_view(key.models).find(" " + name + " ") != std::string_view::npos;
@@ -51,17 +61,20 @@ void RigReader::check_model_keys(Section& s, LuminaireModel model) {
                fmt::format("write model = {}, or remove {}", models_text(key.models),
                            std::string_view(key.key) == "file" ? "the file" : "this key"));
     } else if (key.required && !s.has(key.key)) {
-      s.require(key.key, fmt::format("which model \"{}\" needs", name));
+      if (model == LuminaireModel::spot && states_spot(stated.light) && !s.has("beam_angle_deg") &&
+          !s.has("field_angle_deg"))
+        continue;
+      s.require(key.key, fmt::format("which model \"{}\" needs", name) + why_not_stated(stated));
     }
   }
-  if (model != LuminaireModel::ies && !s.has("lumens") && !s.has("emitters"))
-    s.require("lumens", "which this model needs");
+  if (model != LuminaireModel::ies && !s.has("lumens") && !s.has("emitters") && !states_lumens(stated.light))
+    s.require("lumens", "which this model needs" + why_not_stated(stated));
 }
 
 void RigReader::read_spot(Section& s, Luminaire& luminaire) {
-  const bool beam = s.read_deg("beam_angle_deg", luminaire.beam_angle_rad);
-  const bool field = s.read_deg("field_angle_deg", luminaire.field_angle_rad);
-  if (!beam || !field) return;
+  s.read_deg("beam_angle_deg", luminaire.beam_angle_rad);  // else 0, or as its maker's file states
+  s.read_deg("field_angle_deg", luminaire.field_angle_rad);
+  if (!(luminaire.beam_angle_rad > 0) || !(luminaire.field_angle_rad > 0)) return;
   if (luminaire.beam_angle_rad >= luminaire.field_angle_rad) {
     problems.add(s.place_of("beam_angle_deg"),
                  fmt::format("beam_angle_deg {:g} is not below field_angle_deg {:g}",
@@ -195,9 +208,10 @@ void RigReader::read_colour(Section& s, Vec3& colour_rgb) {
   }
 }
 
-void RigReader::read_distribution(Section& s, Luminaire& luminaire) {
+void RigReader::read_distribution(Section& s, StatedLight& stated, Luminaire& luminaire) {
   if (!s.read_choice("model", luminaire.model)) return;
-  check_model_keys(s, luminaire.model);
+  check_model_keys(s, luminaire.model, stated);
+  take_stated_light(s, stated, luminaire);
   if (!s.has("emitters")) s.read("lumens", luminaire.lumens);  // stays 0 when it is absent or wrong
   switch (luminaire.model) {
     case LuminaireModel::ies:
@@ -271,8 +285,10 @@ void RigReader::read_luminaires() {
     } else {
       add_up(emitters, luminaire);
     }
-    read_distribution(s, luminaire);
+    StatedLight stated = light_stated_for(luminaire.name);
+    read_distribution(s, stated, luminaire);
     const std::size_t whole = rig.luminaires.size();
+    if (!stated.file.empty()) stated_lights.emplace(whole, std::move(stated));
     for (std::size_t e = 0; e < emitters.size(); ++e) luminaire.emitters.push_back(whole + 1 + e);
     rig.luminaires.push_back(luminaire);
     for (auto at = emitters.begin(); at != emitters.end(); ++at) {

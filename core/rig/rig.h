@@ -98,11 +98,17 @@ enum class SlotUse {
   unused
 };
 
-/// Which values a channel runs through, as shares of all it has: at level 0 or the least angle (of a zoom: of the
-/// beam), and at the other end.
+/// Which values a channel runs through, as shares of all it has: at its least light or the least angle (of a zoom: of
+/// the beam), and at the other end.
 struct DmxTravel {
   double at_start = 0, at_end = 1;
-  [[nodiscard]] double at(double share) const { return at_start + share * (at_end - at_start); }
+  double least = 0;                 ///< level at `at_start`: a dimmer may begin at 10 % of its light
+  std::optional<double> at_dark{};  ///< value for level 0, and for any below `least`; none: `at_start` is the lowest
+
+  [[nodiscard]] double at(double share) const {
+    if (at_dark && (share <= 0 || share < least)) return *at_dark;
+    return at_start + (share > least ? (share - least) / (1 - least) : 0) * (at_end - at_start);
+  }
 };
 
 struct DmxSlot {
@@ -174,6 +180,7 @@ struct FixtureMode {
   std::shared_ptr<const Personality> personality;  ///< never null
   std::size_t mode = 0;                            ///< of its modes
   std::string emitter{};                           ///< as the rig file calls it; empty: the fixture is one light
+  std::string dimmer{};                            ///< channel that the rig file says is its dimmer; empty: none said
   std::vector<std::string> told{};                 ///< how it was understood, for a person
 };
 

@@ -45,6 +45,15 @@ class NameIndex {
   std::unordered_map<std::string, Entry> entries_;
 };
 
+/// What a maker's file says of the light of a luminaire, where the rig file leaves that out.
+struct StatedLight {
+  BeamGeometry light;   ///< 0: not stated
+  std::string fixture;  ///< whose file it is
+  std::string file;
+  bool used = false;              ///< the luminaire takes something from it
+  std::vector<std::string> told;  ///< what was taken and what was not
+};
+
 struct RigReader {
   RigReader(const NodeTable& document, const std::filesystem::path& file, std::filesystem::path folder_of_files)
       : root(document), folder(std::move(folder_of_files)), problems(file.string()) {
@@ -62,6 +71,7 @@ struct RigReader {
   std::vector<std::pair<std::string, Place>> point_places;
   std::map<std::string, std::shared_ptr<const Personality>> personalities;  ///< by path; null: cannot be used
   std::map<std::string, std::shared_ptr<const RegisterMap>> register_maps;  ///< the same
+  std::map<std::size_t, StatedLight> stated_lights;                         ///< by luminaire
   std::set<std::size_t> lacks_watts;                                        ///< luminaires that this was reported of
 
   void read_all();
@@ -101,8 +111,15 @@ struct RigReader {
   std::optional<std::filesystem::path> read_file(Section& section, std::string_view key);
   void read_mesh(Section& section, std::optional<MeshFile>& out);
   void read_box_or_mesh(Section& section, SceneObject& object);
-  void read_distribution(Section& section, Luminaire& luminaire);
-  void check_model_keys(Section& section, LuminaireModel model);
+  void read_distribution(Section& section, StatedLight& stated, Luminaire& luminaire);
+  void check_model_keys(Section& section, LuminaireModel model, const StatedLight& stated);
+  /// Of the first [[fixture]] with that luminaire and a maker's file that states light; all 0 when there is none. What
+  /// is wrong with that fixture or its file is reported when fixtures are read.
+  [[nodiscard]] StatedLight light_stated_for(const std::string& luminaire);
+  /// Fills in what the section leaves out.
+  static void take_stated_light(Section& section, StatedLight& stated, Luminaire& luminaire);
+  /// Another fixture of the luminaire, in a mode with its own light. Reports light that differs from what was taken.
+  void check_stated_light(const Section& section, const Fixture& fixture, const PersonalityMode& mode);
   void read_spot(Section& section, Luminaire& luminaire);
   void read_photometric_file(Section& section, Luminaire& luminaire);
   void read_luminous_surface(Section& section, Luminaire& luminaire);
@@ -123,6 +140,8 @@ struct RigReader {
   bool read_dmx(Section& section, const std::optional<SlotOwner>& owner, Fixture& fixture,
                 std::vector<NamedSlot>& named, std::optional<ModeSlots>& of_mode);
   std::shared_ptr<const Personality> read_personality(Section& section);
+  /// Read once; null when it cannot be used, which read_personality() reports.
+  std::shared_ptr<const Personality> personality_at(const std::filesystem::path& path);
   std::shared_ptr<const RegisterMap> read_register_map(Section& section);
   /// The fixture's patch over Modbus; true when its registers can be claimed.
   bool read_modbus(Section& section, const std::optional<SlotOwner>& owner, Fixture& fixture);
@@ -133,8 +152,8 @@ struct RigReader {
   /// Pan and tilt that are drives on a bus of their own.
   void read_axes(Section& section, Fixture& fixture);
   void read_aim(Section& section, Fixture& fixture);
-  /// When it cannot dim: what has no meaning then is a problem.
-  void read_switched(Section& section, bool has_emitters, Fixture& fixture);
+  /// When it cannot dim: what has no meaning then is a problem. `steps`: its maker's file says so.
+  void read_switched(Section& section, bool has_emitters, bool steps, Fixture& fixture);
   /// Of keys "pan_deg" and "tilt_deg", with `prefix` before them.
   void check_joints(Section& section, const Fixture& fixture, const Joints& at, const std::string& prefix);
   void read_park(Section& section, Fixture& fixture);

@@ -38,6 +38,11 @@ int bytes_of_value(const DmxPatch& patch, const DmxSlot& slot) {
   return bytes;
 }
 
+/// It is shut at level 0 and open at any other: it tells no level.
+bool is_shutter_at_dark(const DmxSlot& slot) {
+  return slot.travel.at_dark && slot.travel.at_start == slot.travel.at_end;
+}
+
 }  // namespace
 
 int encode_8bit(double value) { return static_cast<int>(std::lround(value * 255.0)); }
@@ -185,7 +190,10 @@ std::optional<double> DmxPatchbay::share_in_cell(const Entry& entry, std::size_t
     value |= static_cast<std::uint32_t>(slots[at]) << (8 * (entry.bytes[coarse_slot] - 1 - byte));
   }
   const double share = value / static_cast<double>((1u << (8 * entry.bytes[coarse_slot])) - 1);
-  return share_of_travel(share, coarse.travel.at_start, coarse.travel.at_end);
+  const DmxTravel& travel = coarse.travel;
+  const bool below = travel.at_end > travel.at_start ? share < travel.at_start : share > travel.at_start;
+  if (below && travel.at_dark) return 0;
+  return travel.least + (1 - travel.least) * share_of_travel(share, travel.at_start, travel.at_end);
 }
 
 std::vector<DeskCommand> DmxPatchbay::decode(std::size_t universe, const DmxSlots& slots,
@@ -197,7 +205,7 @@ std::vector<DeskCommand> DmxPatchbay::decode(std::size_t universe, const DmxSlot
     const auto value_of = [&, &of = entry](SlotUse use) {
       std::optional<double> highest;
       for (std::size_t i = 0; i < of.patch.slots.size(); ++i) {
-        if (of.patch.slots[i].use != use) continue;
+        if (of.patch.slots[i].use != use || is_shutter_at_dark(of.patch.slots[i])) continue;
         const auto share = share_in_cell(of, i, slots, given);
         if (!share) return std::optional<double>();
         highest = std::max(highest.value_or(0), *share);

@@ -3,18 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/rig/personality/personality.h"
+#include "core/rig/personality/dimmer_choice.h"
 
 namespace luxrig::sim {
 namespace {
 
-bool dims(const ChannelFunction& f) { return attribute_stem(f.attribute) == "Dimmer"; }
-bool colours(const ChannelFunction& f) { return !emitter_of_attribute(f.attribute).empty(); }
 bool of_shutter(const ChannelFunction& f) { return f.attribute.starts_with("Shutter"); }
 
 class FixtureFirmware {
  public:
-  FixtureFirmware(const PersonalityMode& mode, const DmxPatch& patch, std::span<const std::uint8_t, kDmxSlots> slots)
+  /// `dimmer`: which of several on one part of the fixture dims plain light, where its file does not say.
+  FixtureFirmware(const PersonalityMode& mode, const std::string& dimmer, const DmxPatch& patch,
+                  std::span<const std::uint8_t, kDmxSlots> slots)
       : mode_(mode) {
     for (const PersonalityChannel& channel : mode.channels) {
       std::uint32_t value = channel.is_virtual() ? channel.default_dmx : 0;
@@ -23,6 +23,14 @@ class FixtureFirmware {
         value = value << 8 | (index < slots.size() ? slots[index] : 0u);
       }
       values_.push_back(value);
+    }
+    const auto named = std::find_if(mode.channels.begin(), mode.channels.end(), [&](const PersonalityChannel& channel) {
+      return !channel.is_virtual() && channel.name == dimmer;
+    });
+    for (const PersonalityChannel& channel : mode.channels) {
+      const bool other = !dimmer.empty() && named != mode.channels.end() && channel.name != dimmer &&
+                         channel.geometry == named->geometry;
+      dims_.push_back(!channel.is_virtual() && (channel.name == dimmer || (!other && dims_light(channel, values_))));
     }
   }
 
@@ -75,7 +83,7 @@ class FixtureFirmware {
   /// dimmer, somebody has struck it before.
   bool lamp_burns() const {
     for (std::size_t c = 0; c < mode_.channels.size(); ++c) {
-      if (mode_.channels[c].is_virtual() || can(c, of_shutter) || can(c, dims)) continue;
+      if (mode_.channels[c].is_virtual() || can(c, of_shutter) || dims_[c]) continue;
       const bool strikes = can(c, [](const ChannelFunction& f) {
         if (f.sets.empty()) return strikes_lamp(f, f.dmx.from);
         return std::any_of(f.sets.begin(), f.sets.end(),
@@ -92,10 +100,10 @@ class FixtureFirmware {
     for (std::size_t c = 0; c < mode_.channels.size(); ++c) {
       if (mode_.channels[c].is_virtual()) continue;
       const auto wanted = [&](const ChannelFunction& f) {
-        return emitter.empty() ? colours(f) : sets_emitter(f, emitter);
+        return emitter.empty() ? is_colour(f) : sets_emitter(f, emitter);
       };
       if (can(c, wanted)) of_colour.push_back(c);
-      if (can(c, dims)) dimmers.push_back(c);
+      if (dims_[c]) dimmers.push_back(c);
     }
     if (!of_colour.empty() || !emitter.empty()) return of_colour;
     std::vector<std::size_t> lowest;  // no other dimmer in a part of what it dims
@@ -118,8 +126,11 @@ class FixtureFirmware {
     const ChannelFunction* f = at_work(c);
     if (f == nullptr) return 0;
     if (const auto state = shutter_state(*f, values_[c])) return *state == ShutterState::open ? 1 : 0;
-    if (!dims(*f) && !colours(*f)) return 0;
-    const double most = std::max({std::abs(f->physical_from), std::abs(f->physical_to), 1e-9});
+    if (!is_dimmer(*f) && !is_colour(*f)) return 0;
+    double most = 1e-9;  // of the brightest place that the channel has
+    for (const ChannelFunction& other : mode_.channels[c].functions)
+      if (exists(other) && other.attribute == f->attribute)
+        most = std::max({most, std::abs(other.physical_from), std::abs(other.physical_to)});
     return std::clamp(f->physical_at(values_[c]) / most, 0.0, 1.0);
   }
 
@@ -128,12 +139,13 @@ class FixtureFirmware {
     for (std::size_t c = 0; c < mode_.channels.size(); ++c) {
       if (c == source || mode_.channels[c].is_virtual()) continue;
       if (!mode_.share_a_branch(mode_.channels[c].geometry, mode_.channels[source].geometry)) continue;
-      if (can(c, dims)) {
+      if (dims_[c]) {
         light *= level(c);
       } else if (can(c, of_shutter)) {
         const ChannelFunction* f = at_work(c);
         const auto state = f == nullptr ? std::nullopt : shutter_state(*f, values_[c]);
-        if (state != ShutterState::open) light = 0;
+        const bool idle = f != nullptr && f->attribute == "NoFeature";  // no strobe
+        if (!idle && state != ShutterState::open) light = 0;
       }
     }
     return light;
@@ -141,6 +153,7 @@ class FixtureFirmware {
 
   const PersonalityMode& mode_;
   std::vector<std::uint32_t> values_;
+  std::vector<bool> dims_;  // by channel: dims plain light
 };
 
 }  // namespace
@@ -148,7 +161,7 @@ class FixtureFirmware {
 DmxOrder decode_personality(const Fixture& fixture, const DmxPatch& patch,
                             std::span<const std::uint8_t, kDmxSlots> slots) {
   const PersonalityMode& mode = fixture.mode->personality->modes[fixture.mode->mode];
-  const FixtureFirmware firmware(mode, patch, slots);
+  const FixtureFirmware firmware(mode, fixture.mode->dimmer, patch, slots);
   DmxOrder order;
   order.drive = firmware.light(fixture.mode->emitter);
   const auto beam = fixture.range.zooms()

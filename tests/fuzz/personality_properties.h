@@ -52,6 +52,9 @@ inline void check_mode(const Personality& personality, const PersonalityMode& mo
       LUXRIG_CHECK(slot.slot.travel.at_start >= 0 && slot.slot.travel.at_start <= 1 && slot.slot.travel.at_end >= 0 &&
                        slot.slot.travel.at_end <= 1,
                    "{} to {}", slot.slot.travel.at_start, slot.slot.travel.at_end);
+      for (const double level : {0.0, 1e-9, 0.3, 1.0})
+        LUXRIG_CHECK(slot.slot.travel.at(level) >= 0 && slot.slot.travel.at(level) <= 1, "{} at level {}",
+                     slot.slot.travel.at(level), level);
     }
     for (const std::string& line : slots->told) LUXRIG_CHECK(is_plain_text(line), "{}", line);
   }

@@ -1,5 +1,9 @@
 #pragma once
 /// What hangs where and how it is patched, from a My Virtual Rig file. Source: DIN SPEC 15801 (MVR 1.5, 1.6).
+///
+/// Its matrices (node `Matrix`) are {u}{v}{w}{o}: where x, y and z of the object point in the frame around it, then its
+/// origin, in millimetres; right-handed, z up. A fixture's own frame is that of its GDTF file: origin in the middle of
+/// its base, hanging (personality/gdtf_geometry.h has the pivot).
 
 #include <map>
 #include <optional>

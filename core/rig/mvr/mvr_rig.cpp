@@ -127,7 +127,7 @@ class RigWriter {
       if (mode == nullptr) kind.trouble = fmt::format("it has no mode {}", in_quotes(fixture.gdtf_mode));
     }
     kind.luminaire = luminaires_.of(personality != nullptr ? personality->name : fixture.gdtf_file, "luminaire");
-    BeamGeometry beam = mode != nullptr ? beam_of_mode(*mode) : BeamGeometry{};
+    BeamGeometry beam = mode != nullptr ? light_of_mode(*mode) : BeamGeometry{};
     write_luminaire(kind, mode, beam);
     if (mode == nullptr) return;
     ProblemList problems("");
@@ -172,18 +172,6 @@ class RigWriter {
     out_.files.push_back({name, mvr_.gdtf_files.at(gdtf_file)});
     file_names_[gdtf_file] = name;
     return name;
-  }
-
-  static BeamGeometry beam_of_mode(const PersonalityMode& mode) {
-    BeamGeometry sum;
-    for (const GeometryInstance& geometry : mode.geometries) {
-      if (!geometry.beam) continue;
-      if (sum.beam_angle_deg == 0)
-        sum = BeamGeometry{0, geometry.beam->beam_angle_deg, geometry.beam->field_angle_deg, geometry.beam->cct_k, 0};
-      sum.lumens += geometry.beam->lumens;
-      sum.power_w += geometry.beam->power_w;
-    }
-    return sum;
   }
 
   void write_luminaire(const FixtureKind& kind, const PersonalityMode* mode, BeamGeometry& beam) {

@@ -1,5 +1,11 @@
 #pragma once
 /// The geometry tree of a GDTF mode, with references written out. Private to core/rig/personality.
+///
+/// Frames, by DIN SPEC 15800 ("Matrix", "Axis", "Beam"): a Position is a 4 × 4 matrix, written row by row, that takes
+/// the geometry's frame to its parent's; its fourth column is the translation in metres. X points right, Y away from
+/// who looks at the front, Z up, and the fixture hangs with the origin in the middle of its base plate. An Axis turns
+/// about its own origin: pan about z, tilt about x. A Beam shines along -z, with y up. So the pivot of a head, which is
+/// position_m of a rig file, is the origin of its tilt's geometry in the base.
 
 #include <map>
 #include <optional>

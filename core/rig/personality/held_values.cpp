@@ -41,12 +41,16 @@ class OpenHolder {
     tell_ = tell && !channel.is_virtual();
     const auto any = [&](auto&& wanted) { return active_function(channel, held_.dmx, wanted) != nullptr; };
     if (any(is_of_shutter)) {
-      const bool found = take(c, "open", true, is_of_shutter, [](const ChannelFunction& f, std::uint32_t value) {
+      const auto is_open = [](const ChannelFunction& f, std::uint32_t value) {
         return shutter_state(f, value) == ShutterState::open;
-      });
+      };
+      // A strobe's range without a function leaves the light as it is.
+      const auto is_idle = [](const ChannelFunction& f) { return f.attribute == "NoFeature"; };
+      const auto idle = [&](const ChannelFunction& f, std::uint32_t) { return is_idle(f); };
+      const bool found =
+          take(c, "open", true, is_of_shutter, is_open) || take(c, "without strobe", true, is_idle, idle);
       if (!found && tell_) {
-        held_.told.push_back(fmt::format("{}: no range is stated as open, it stays at its default {}",
-                                         in_quotes(channel.name), held_.dmx[c]));
+        told(c, "{}: no range is stated as open, it stays at its default {}", in_quotes(channel.name), held_.dmx[c]);
       }
     } else if (any(is_wheel)) {
       take(c, "open", false, is_wheel, is_open_place);
@@ -71,7 +75,7 @@ class OpenHolder {
         for (const std::uint32_t value : {middle ? part.middle() : part.from, part.to}) {
           if (!good(function, value)) continue;
           held_.dmx[c] = value;
-          if (tell_) held_.told.push_back(fmt::format("{} {} at {}", in_quotes(channel.name), what, value));
+          if (tell_) told(c, "{} {} at {}", in_quotes(channel.name), what, value);
           return true;
         }
       }
@@ -83,12 +87,21 @@ class OpenHolder {
     const ChannelFunction* zoom =
         active_function(mode_.channels[c], held_.dmx, [](const ChannelFunction& f) { return f.attribute == "Zoom"; });
     const double from = zoom->physical_from, to = zoom->physical_to;
-    if (std::abs(to - from) < 1.5) return;  // 0 to 1 says nothing, and so little is no zoom
+    if (std::abs(to - from) < 1.5) {  // 0 to 1 says nothing, and so little is no zoom
+      if (tell_)
+        told(c, "{} stays at its default {}: its file states no angles{}, so set it to the luminaire's {:.3g}° by hand",
+             in_quotes(mode_.channels[c].name), held_.dmx[c],
+             says(zoom->name, "narrow") ? fmt::format(" but {}", in_quotes(zoom->name)) : "", *zoom_deg_);
+      return;
+    }
     const double share = std::clamp((*zoom_deg_ - from) / (to - from), 0.0, 1.0);
     held_.dmx[c] = zoom->dmx.from + static_cast<std::uint32_t>(std::llround(share * (zoom->dmx.to - zoom->dmx.from)));
     if (tell_) {
-      held_.told.push_back(fmt::format("{} {:.1f}° at {}", in_quotes(mode_.channels[c].name),
-                                       zoom->physical_at(held_.dmx[c]), held_.dmx[c]));
+      const double made_deg = zoom->physical_at(held_.dmx[c]);
+      told(c, "{} {:.1f}° at {}{}", in_quotes(mode_.channels[c].name), made_deg, held_.dmx[c],
+           std::abs(made_deg - *zoom_deg_) > 0.05 * *zoom_deg_ + 0.1
+               ? fmt::format(", the nearest to the luminaire's {:.3g}°", *zoom_deg_)
+               : "");
     }
   }
 
@@ -103,17 +116,22 @@ class OpenHolder {
         const std::string hold = function.hold_s > 0 ? fmt::format(", for at least {:g} s", function.hold_s) : "";
         if (!has_lamp_channel_to_itself(channel)) {
           if (tell_) {
-            held_.told.push_back(
-                fmt::format("strike its lamp by hand: {} does it at {}{}, and is its shutter or dimmer",
-                            in_quotes(channel.name), value, hold));
+            told(c, "strike its lamp by hand: {} does it at {}{}, and is its shutter or dimmer",
+                 in_quotes(channel.name), value, hold);
+            held_.told.back().where = false;
           }
           return;
         }
         held_.dmx[c] = value;
-        if (tell_) held_.told.push_back(fmt::format("{} lamp on at {}{}", in_quotes(channel.name), value, hold));
+        if (tell_) told(c, "{} lamp on at {}{}", in_quotes(channel.name), value, hold);
         return;
       }
     }
+  }
+
+  template <class... Values>
+  void told(std::size_t c, fmt::format_string<Values...> format, Values&&... values) {
+    held_.told.push_back({c, fmt::format(format, std::forward<Values>(values)...)});
   }
 
   const PersonalityMode& mode_;

@@ -13,7 +13,12 @@ namespace luxrig {
 
 struct HeldValues {
   std::vector<std::uint32_t> dmx;  ///< by channel of the mode
-  std::vector<std::string> told;   ///< what is held otherwise than by default, and what could not be met
+  struct Told {
+    std::size_t channel;
+    std::string text;
+    bool where = true;  ///< it tells where the channel is held, so nothing of one that carries a level
+  };
+  std::vector<Told> told;  ///< what is held otherwise than by default, and what could not be met
 };
 
 /// zoom_deg: full angle that a zoom is set to where the file states its angles; none: its default.

@@ -67,10 +67,19 @@ void read_level(const OflJson& capability, ChannelFunction& function) {
   read_span(capability, "brightness", ofl_brightness, function);
 }
 
-/// Angles in degrees; 0 to 1, which says nothing, where the file has words or shares.
+/// Angles in degrees; 0 to 1, which says nothing, where the file has shares or words. Of a zoom the words say which end
+/// is wide: then the wide one is 1.
 void read_angle(const OflJson& capability, ChannelFunction& function) {
-  read_span(
-      capability, "angle", [](const OflJson& v) { return ofl_entity(v, "deg"); }, function);
+  const auto degrees = [](const OflJson& v) { return ofl_entity(v, "deg"); };
+  if (read_span(capability, "angle", degrees, function)) return;
+  const auto width = [](const OflJson& v) -> std::optional<double> {
+    const std::string word = ofl_text(v);
+    return word == "narrow" ? std::optional(0.0) : word == "wide" ? std::optional(1.0) : std::nullopt;
+  };
+  if (!read_span(capability, "angle", width, function)) return;
+  const auto word = [](double share) { return share > 0 ? "wide" : "narrow"; };
+  if (function.name.empty())
+    function.name = fmt::format("{} to {}", word(function.physical_from), word(function.physical_to));
 }
 
 std::string colour_attribute(const OflFixture& fixture, const std::string& colour) {

@@ -58,6 +58,19 @@ std::uint32_t PersonalityChannel::max_dmx() const {
   return bytes >= 4 ? 0xFFFFFFFFu : (1u << (8 * bytes)) - 1;
 }
 
+BeamGeometry light_of_mode(const PersonalityMode& mode) {
+  BeamGeometry sum;
+  for (const GeometryInstance& geometry : mode.geometries) {
+    if (!geometry.beam) continue;
+    if (sum.beam_angle_deg == 0)
+      sum = {sum.lumens, geometry.beam->beam_angle_deg, geometry.beam->field_angle_deg, geometry.beam->cct_k,
+             sum.power_w};
+    sum.lumens += geometry.beam->lumens;
+    sum.power_w += geometry.beam->power_w;
+  }
+  return sum;
+}
+
 bool PersonalityMode::share_a_branch(std::size_t geometry_a, std::size_t geometry_b) const {
   const auto within = [&](std::size_t inner, std::size_t outer) {
     for (std::optional<std::size_t> at = inner; at; at = geometries[*at].parent)

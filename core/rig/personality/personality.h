@@ -118,6 +118,10 @@ struct DmxProfile {
   [[nodiscard]] double at(double share) const;
 };
 
+/// The light of all of a mode's beams together: fluxes and powers added, angles and colour of the first. All 0 where
+/// the file states none, as those of the Open Fixture Library.
+[[nodiscard]] BeamGeometry light_of_mode(const PersonalityMode& mode);
+
 struct Personality {
   std::string manufacturer, name;
   std::vector<PersonalityMode> modes;

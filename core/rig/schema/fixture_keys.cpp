@@ -26,9 +26,11 @@ constexpr KeySpec kFixtureKeys[] = {
     {"luminaire", "file", file, "", kNone, kAny, "",
      "IES LM-63 file, or EULUMDAT when it ends in .ldt (only with model `ies`, and required there)"},
     {"luminaire", "beam_angle_deg", number, "°", kNone, kFullCone, "",
-     "full angle to half the peak intensity (only with model `spot`, and required there)"},
+     "full angle to half the peak intensity (only with model `spot`, and required there unless a fixture's GDTF file "
+     "states both angles)"},
     {"luminaire", "field_angle_deg", number, "°", kNone, kFullCone, "",
-     "full angle to a tenth of the peak (only with model `spot`, and required there); more than the beam angle"},
+     "full angle to a tenth of the peak (only with model `spot`, and required there, the same); more than the beam "
+     "angle"},
     {"luminaire", "zoom_deg", span2, "°", kNone, kFullCone, "",
      "beam angles that its zoom goes through, narrowest first (only with model `spot`): its flux stays, its field "
      "angle "
@@ -44,10 +46,12 @@ constexpr KeySpec kFixtureKeys[] = {
      "light comes from the whole luminous opening that the file states; else from its middle, which is right from "
      "five times its size on (only with model `ies`)"},
     {"luminaire", "lumens", number, "lm", kNone, kFlux, "",
-     "rated flux; required, but with model `ies` it may be left out and the file's own flux holds"},
-    {"luminaire", "watts", number, "W", kNone, kWatts, "", "rated electrical power"},
+     "rated flux; required, but with model `ies` it may be left out and the file's own flux holds, and with a fixture "
+     "whose GDTF file states one that holds"},
+    {"luminaire", "watts", number, "W", kNone, kWatts, "",
+     "rated electrical power; left out, what the GDTF file of a fixture states, if any"},
     {"luminaire", "cct_k", number, "K", kNone, kKelvin, "",
-     "colour of its light as that of a black body; left out, white (D65)"},
+     "colour of its light as that of a black body; left out, what the GDTF file of a fixture states, else white (D65)"},
     {"luminaire",
      "colour",
      colour,
@@ -107,6 +111,8 @@ constexpr KeySpec kFixtureKeys[] = {
      "of `slots`"},
     {"fixture", "mode", text, "", kNone, kAny, "",
      "DMX mode that the fixture is set to, as its personality calls it; may be left out when there is but one"},
+    {"fixture", "dimmer", text, "", kNone, kAny, "",
+     "the channel of its personality that dims its light, as the file calls it; only needed where two could be it"},
     {"fixture", "slots", texts, "", R"(["dimmer"])", kAny, "",
      "what each DMX slot carries from `address` on: `dimmer`, `dimmer-fine`, `dimmer-ultra`, the same with `pan`, "
      "`tilt` and `zoom`, `unused`, or `constant:N` with N from 0 to 255; one dimmer is needed, pan and tilt come "

@@ -42,7 +42,7 @@ Vec3 direction_b(double v_deg, double h_deg) {
 }
 Vec3 direction_a(double y_deg, double x_deg) {
   const double y = rad_from_deg(y_deg), x = rad_from_deg(x_deg);
-  return {std::cos(y) * std::cos(x), -std::cos(y) * std::sin(x), std::sin(y)};
+  return {std::cos(y) * std::sin(x), std::sin(y), -std::cos(y) * std::cos(x)};
 }
 
 TEST(IesTypeB, HasItsBeamAtTheNadirVerticalAnglesTowardsXAndHorizontalOnesClockwise) {
@@ -63,16 +63,16 @@ TEST(IesTypeB, HasItsBeamAtTheNadirVerticalAnglesTowardsXAndHorizontalOnesClockw
   }
 }
 
-TEST(IesTypeA, HasItsBeamLevelAlongXAndHorizontalAnglesClockwise) {
+TEST(IesTypeA, HasItsBeamAlongTheLampsAxisVerticalAnglesTowardsYAndHorizontalOnesTowardsX) {
   const std::vector<double> vertical{-90, -30, 0, 30, 90};
   const std::vector<double> horizontal{-90, 0, 60, 90};
   std::vector<double> candela(20);
   for (std::size_t i = 0; i < 20; ++i) candela[i] = 50.0 + static_cast<double>(i);
   const Intensity light = make_intensity(grid_file(3, vertical, horizontal, candela));
-  EXPECT_NEAR(light->intensity_cd(Vec3::UnitX()), 57, 1e-9);
-  EXPECT_NEAR(light->intensity_cd(-Vec3::UnitY()), 67, 1e-9);  // X = 90
-  EXPECT_NEAR(light->intensity_cd(Vec3::UnitY()), 52, 1e-9);   // X = -90
-  EXPECT_EQ(light->intensity_cd(-Vec3::UnitX()), 0);
+  EXPECT_NEAR(light->intensity_cd(-Vec3::UnitZ()), 57, 1e-9);
+  EXPECT_NEAR(light->intensity_cd(Vec3::UnitX()), 67, 1e-9);   // X = 90
+  EXPECT_NEAR(light->intensity_cd(-Vec3::UnitX()), 52, 1e-9);  // X = -90
+  EXPECT_EQ(light->intensity_cd(Vec3::UnitZ()), 0);
   for (std::size_t h = 0; h < 4; ++h) {
     for (std::size_t v = 1; v < 4; ++v) {
       EXPECT_NEAR(light->intensity_cd(direction_a(vertical[v], horizontal[h])), candela[h * 5 + v], 1e-9);
@@ -100,7 +100,7 @@ TEST(IesTypesAAndB, HaveTheFluxOfTheirInterpolant) {
       }
     }
     EXPECT_NEAR(sum * (kPi / kSteps) * (kPi / kSteps) / light->flux_lm(), 1, 1e-5) << type;
-    EXPECT_NEAR(light->emission_cone_rad(), type == 2 ? kPi : 2 * kPi, 1e-9);
+    EXPECT_NEAR(light->emission_cone_rad(), kPi, 1e-9) << type;
   }
 }
 
@@ -121,7 +121,7 @@ TEST(IesTypesAAndB, AreRoundAboutTheirBeamWithOneHorizontalAngle) {
   EXPECT_NEAR(b->intensity_cd(direction_b(30, 0)), 40, 1e-9);
   EXPECT_NEAR(b->intensity_cd(direction_b(0, -30)), 40, 1e-9);
   const Intensity a = make_intensity(grid_file(3, {0, 30, 90}, {0}, {100, 40, 0}));
-  EXPECT_NEAR(a->intensity_cd(Vec3::UnitX()), 100, 1e-9);
+  EXPECT_NEAR(a->intensity_cd(-Vec3::UnitZ()), 100, 1e-9);
   EXPECT_NEAR(a->intensity_cd(direction_a(30, 0)), 40, 1e-9);
   EXPECT_NEAR(a->intensity_cd(direction_a(0, 30)), 40, 1e-9);
   EXPECT_NEAR(a->flux_lm(), b->flux_lm(), 1e-9);

@@ -131,7 +131,9 @@ class KeysRead : public testing::Test {
       std::ofstream(folder_ / (std::string(name) + ".json"))
           << R"({"$schema": "https://github.com/open-fixture-library/master/schemas/fixture.json", "name": "x",
                  "availableChannels": {"Dimmer": {"capability": {"type": "Intensity"}},
-                                       "Mode": {"capability": {"type": "NoFunction"}, "defaultValue": )"
+                                       "Mode": {"capabilities": [{"dmxRange": [0, 239], "type": "NoFunction"},
+                                                                 {"dmxRange": [240, 255], "type": "Intensity"}],
+                                                "defaultValue": )"
           << (*name == 'a' ? 7 : 8) << R"(}}, "modes": [{"name": "short", "channels": ["Dimmer", "Mode"]},
                             {"name": "long", "channels": ["Mode", "Dimmer"]}]})";
       std::ofstream(folder_ / (std::string(name) + ".toml"))

@@ -188,6 +188,7 @@ bus = "dmx"
 address = 40
 personality = "a.json"  #> "b.json"
 mode = "short"  #> "long"
+dimmer = "Dimmer"  #> "Mode"
 [[fixture]]
 name = "product"
 luminaire = "spot"

@@ -215,5 +215,52 @@ TEST(Points, HaveGoalsOfAColour) {
   EXPECT_FALSE(plain->colour_goals());
 }
 
+// LM-63 draws type A with its beam level; aim_m is where a person wants the beam, whatever the type.
+TEST(Luminaires, OfEveryIesTypeShineWhereTheyAreAimed) {
+  const auto folder = std::filesystem::path(testing::TempDir()) / "luxrig_ies_aims";
+  std::filesystem::create_directories(folder);
+  for (const int type : {1, 2, 3}) {
+    // Bright at (0, 0), half as bright 10° from it, dark from 30° on; A and B with a wider half-axis to see its side.
+    std::ofstream(folder / "lamp.ies")
+        << "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 "
+        << (type == 1 ? "4 1 1 2 0 0 0\n1 1 1\n0 10 30 90\n0\n1000 500 0 0\n"
+                      : "5 5 " + std::to_string(type) +
+                            " 2 0 0 0\n1 1 1\n-90 -10 0 10 90\n-90 -20 0 20 90\n0 0 0 0 0\n0 0 600 0 0\n"
+                            "0 500 1000 500 0\n0 0 700 0 0\n0 0 0 0 0\n");
+    const Checked<Rig> rig = parse_rig(R"([rig]
+name = "r"
+[[luminaire]]
+name = "l"
+model = "ies"
+file = "lamp.ies"
+[[bus]]
+name = "dmx"
+driver = "sacn"
+[[fixture]]
+name = "f"
+luminaire = "l"
+position_m = [1, 2, 3]
+aim_m = [1, 9, 3]
+bus = "dmx"
+address = 1
+)",
+                                       "rig.toml", folder);
+    ASSERT_TRUE(rig) << rig.error().front().text();
+    const Pose pose = rig->fixtures.at(0).world_from_lamp();
+    const auto towards = [&](const Vec3& direction_world) {
+      return rig->luminaires[0].intensity->intensity_cd(pose.inverse_direction(direction_world.normalized()));
+    };
+    EXPECT_NEAR(towards(Vec3(0, 7, 0)), 1000, 1e-6) << "type " << type << ", at what it is aimed at";
+    EXPECT_EQ(towards(Vec3(1, 0, 0)), 0) << "type " << type;
+    EXPECT_EQ(towards(Vec3(0, 0, -1)), 0) << "type " << type;
+    if (type != 3) continue;
+    const double angle = rad_from_deg(20);
+    EXPECT_NEAR(towards(Vec3(std::sin(angle), std::cos(angle), 0)), 700, 1e-6) << "X counts to the right";
+    EXPECT_NEAR(towards(Vec3(-std::sin(angle), std::cos(angle), 0)), 600, 1e-6);
+    EXPECT_NEAR(towards(Vec3(0, std::cos(rad_from_deg(10)), std::sin(rad_from_deg(10)))), 500, 1e-6) << "Y upwards";
+  }
+  std::filesystem::remove_all(folder);
+}
+
 }  // namespace
 }  // namespace luxrig

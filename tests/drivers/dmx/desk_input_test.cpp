@@ -155,6 +155,26 @@ TEST(DeskInput, ReadsBackThreeBytesAndPartsOfAChannelsValues) {
   EXPECT_TRUE(bay.decode(0, bay.universes()[0].slots, all).empty());
 }
 
+TEST(DeskInput, ReadsBackADimmerThatBeginsAboveDarkAndAShutterThatShutsAtLevel0) {
+  Rig rig = rig_with(bus_of("sacn"));
+  add_dmx(rig, "lamp", 1, 500);
+  const double open = 40 / 255.0, shut = 15 / 255.0;
+  std::get<DmxPatch>(rig.fixtures[0].patch).slots = {
+      {SlotUse::dimmer, 0, true, 0, DmxTravel{16 / 255.0, 215 / 255.0, 0.1, 0.0}},
+      {SlotUse::dimmer, 0, true, 1, DmxTravel{open, open, 0, shut}}};
+  DmxPatchbay bay(rig, 0);
+  std::bitset<kDmxSlots> all;
+  all.set();
+  for (const auto& [drive, dimmer, shutter] : {std::tuple(0.0, 0, 15), {0.05, 0, 40}, {0.1, 16, 40}, {1.0, 215, 40}}) {
+    const LevelCommand command{0, drive};
+    ASSERT_TRUE(bay.set_levels({&command, 1}));
+    const DmxSlots& slots = bay.universes()[0].slots;
+    EXPECT_EQ(slots[499], dimmer) << drive;
+    EXPECT_EQ(slots[500], shutter) << drive;
+    EXPECT_NEAR(bay.decode(0, slots, all)[0].drive, dimmer == 0 ? 0 : drive, 1e-9) << "an open shutter tells no level";
+  }
+}
+
 TEST(DeskInput, FallsSilentUniverseByUniverseWithThreeGoodbyes) {
   InputBench bench("sacn", {{"input", std::string("standby")}});
   bench.input->set_silent(at_ms(0), 0, true);

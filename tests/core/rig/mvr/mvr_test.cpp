@@ -78,6 +78,22 @@ TEST(Mvr, TheParHasItsGdtfsBeam) {
   EXPECT_LT((rig->fixtures[0].world_from_mount.translation_m - Vec3(5, 5, 5 - 0.134)).norm(), 1e-9) << "at its lens";
 }
 
+// The matrix that the MVR specification prints in its examples: rows are where x, y and z go, then the origin in mm.
+TEST(Mvr, TheMatrixOfTheSpecificationsExampleStandsAndTurnsAsItsRowsSay) {
+  const Checked<MvrScene> scene = parse_mvr_scene(
+      R"(<GeneralSceneDescription verMajor="1" verMinor="6"><Scene><Layers><Layer name="l"><ChildList><Fixture name="a">)"
+      "<Matrix>{0.158127,-0.987419,0.000000}{0.987419,0.158127,0.000000}{0.000000,0.000000,1.000000}"
+      "{6020.939200,2838.588955,4978.134459}</Matrix></Fixture></ChildList></Layer></Layers></Scene>"
+      "</GeneralSceneDescription>",
+      "spec.xml");
+  ASSERT_TRUE(scene) << scene.error().front().text();
+  const Pose& pose = scene->fixtures.at(0).world_from_base;
+  EXPECT_LT((pose.translation_m - Vec3(6.0209392, 2.838588955, 4.978134459)).norm(), 1e-9);
+  EXPECT_LT((pose.rotation.col(0) - Vec3(0.158127, -0.987419, 0)).norm(), 1e-5) << "where its x points";
+  EXPECT_LT((pose.rotation.col(1) - Vec3(0.987419, 0.158127, 0)).norm(), 1e-5) << "where its y points";
+  EXPECT_NEAR(mount_deg_of(pose.rotation).x(), -80.902, 1e-3) << "turned clockwise, seen from above";
+}
+
 std::string scene_of(const std::string& children) {
   return R"(<GeneralSceneDescription verMajor="1" verMinor="6"><Scene><Layers><Layer name="l"><ChildList>)" + children +
          "</ChildList></Layer></Layers></Scene></GeneralSceneDescription>";
