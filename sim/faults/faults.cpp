@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/rig/nearest.h"
 #include "sim/world/random.h"
 
 namespace luxrig::sim {
@@ -15,30 +16,40 @@ struct FaultEntry {
   FaultKind kind;
   std::string_view name;
   double fallback, least, most;  // of its value
+  std::string_view does;         // what happens, for a person
 };
 
 constexpr std::array<FaultEntry, 21> kFaults = {{
-    {FaultKind::lost, "lost", 0.5, 0, 1},
-    {FaultKind::silent, "silent", 1, 0, 1},
-    {FaultKind::dead, "dead", 1, 0, 1},
-    {FaultKind::slow, "slow", 300, 0, 60000},
-    {FaultKind::garbled, "garbled", 1, 0, 1},
-    {FaultKind::stuck, "stuck", 1, 0, 1},
-    {FaultKind::lying, "lying", 0.5, 0, 1000},
-    {FaultKind::exception, "exception", 4, 1, 127},
-    {FaultKind::unpowered, "unpowered", 1, 0, 1},
-    {FaultKind::checksum, "checksum", 1, 0, 1},
-    {FaultKind::truncated, "truncated", 2, 1, 255},
-    {FaultKind::gap, "gap", 600, 0, 60000},
-    {FaultKind::noise, "noise", 2, 1, 200},
-    {FaultKind::wrong_unit, "wrong_unit", 1, 0, 1},
-    {FaultKind::wrong_function, "wrong_function", 1, 0, 1},
-    {FaultKind::duplicated, "duplicated", 0.5, 0, 1},
-    {FaultKind::reordered, "reordered", 0.5, 0, 1},
-    {FaultKind::reset, "reset", 1, 0, 1},
-    {FaultKind::unmappable, "unmappable", 1, 1, 3},
-    {FaultKind::bus_off, "bus_off", 1, 0, 1},
-    {FaultKind::lamp_failure, "lamp_failure", 1, 0, 1},
+    {FaultKind::lost, "lost", 0.5, 0, 1, "value of the answers, or of the frames to it, go missing (a share)"},
+    {FaultKind::silent, "silent", 1, 0, 1,
+     "gets everything, answers nothing; a bus or DMX fixture: what is sent has no effect either"},
+    {FaultKind::dead, "dead", 1, 0, 1,
+     "bus: its socket is closed, a USB widget unplugged; device: as silent; axis: no power"},
+    {FaultKind::slow, "slow", 300, 0, 60000, "answers value ms late, in order"},
+    {FaultKind::garbled, "garbled", 1, 0, 1, "answers changed, cut short or too long, a different way each time"},
+    {FaultKind::stuck, "stuck", 1, 0, 1, "meter: shows for ever what it showed; axis: something blocks it"},
+    {FaultKind::lying, "lying", 0.5, 0, 1000, "meter: shows value times what it should"},
+    {FaultKind::exception, "exception", 4, 1, 127, "answers with Modbus exception code value"},
+    {FaultKind::unpowered, "unpowered", 1, 0, 1,
+     "no power: no light, no answer; afterwards its registers are as when power comes"},
+    {FaultKind::checksum, "checksum", 1, 0, 1, "serial line: a wrong checksum"},
+    {FaultKind::truncated, "truncated", 2, 1, 255, "serial line: the last value bytes are missing"},
+    {FaultKind::gap, "gap", 600, 0, 60000, "serial line: a pause of value ms in the middle"},
+    {FaultKind::noise, "noise", 2, 1, 200, "serial line: value bytes of line noise before the answer"},
+    {FaultKind::wrong_unit, "wrong_unit", 1, 0, 1, "serial line: the number of another unit"},
+    {FaultKind::wrong_function, "wrong_function", 1, 0, 1, "serial line: the number of another function"},
+    {FaultKind::duplicated, "duplicated", 0.5, 0, 1,
+     "frames of an axis or CAN bus, answers of a Modbus unit, DMX packets of a network go out twice, with probability "
+     "value"},
+    {FaultKind::reordered, "reordered", 0.5, 0, 1,
+     "DMX packets of a network are overtaken by the next, with probability value"},
+    {FaultKind::reset, "reset", 1, 0, 1, "axis: its electronics begin anew when this is switched on, as by a watchdog"},
+    {FaultKind::unmappable, "unmappable", 1, 1, 3,
+     "axis: no PDO can carry its profile speed and accelerations; value: 1 cannot be mapped, 2 too long, 3 out of "
+     "range"},
+    {FaultKind::bus_off, "bus_off", 1, 0, 1, "CAN bus: Luxrig's controller is off the bus"},
+    {FaultKind::lamp_failure, "lamp_failure", 1, 0, 1,
+     "fixture on Modbus: its lamp gives no light; a product with failure bits says so in them"},
 }};
 
 constexpr FaultKind kOnLine[] = {FaultKind::checksum, FaultKind::truncated,  FaultKind::gap,
@@ -82,6 +93,17 @@ std::optional<FaultKind> fault_named(std::string_view name) {
 
 std::span<const FaultKind> all_faults() { return kKinds; }
 
+std::string faults_in_words() {
+  std::string text;
+  for (const FaultEntry& entry : kFaults) {
+    const bool valued = entry.does.find("value") != std::string_view::npos;
+    text += fmt::format(
+        "  {:<15} {}{}\n", entry.name, entry.does,
+        valued ? fmt::format("; value {:g} to {:g}, default {:g}", entry.least, entry.most, entry.fallback) : "");
+  }
+  return text;
+}
+
 void Faults::set(const std::string& device, FaultKind kind, bool on, std::optional<double> value) {
   const std::lock_guard lock(mutex_);
   ++revision_;
@@ -97,9 +119,11 @@ Result<void> Faults::set_named(const Rig& rig, const std::string& device, std::s
                                std::optional<double> value) {
   const auto kind = fault_named(fault);
   if (!kind) {
-    std::string known;
-    for (const FaultEntry& entry : kFaults) known += fmt::format("{}{}", known.empty() ? "" : ", ", entry.name);
-    return invalid(device, fmt::format("unknown fault '{}': use one of {}", fault, known));
+    std::vector<std::string_view> known;
+    for (const FaultEntry& entry : kFaults) known.push_back(entry.name);
+    std::string mend(nearest_name(fault, known));
+    mend = mend.empty() ? fmt::format("use one of {}", fmt::join(known, ", ")) : "did you mean '" + mend + "'?";
+    return invalid(device, fmt::format("unknown fault '{}': {}", fault, mend));
   }
   if (!rig_has(rig, device)) {
     return invalid(

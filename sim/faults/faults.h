@@ -79,6 +79,8 @@ enum class FaultKind {
 [[nodiscard]] std::string_view name_of(FaultKind kind);
 [[nodiscard]] std::optional<FaultKind> fault_named(std::string_view name);
 [[nodiscard]] std::span<const FaultKind> all_faults();
+/// A line for each: its name, what happens, and of its value the range and the default.
+[[nodiscard]] std::string faults_in_words();
 
 /// How one exchange with a device goes wrong; all default = it goes well.
 struct Disturbance {

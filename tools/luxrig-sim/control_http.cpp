@@ -7,6 +7,9 @@
 #include <chrono>
 #include <nlohmann/json.hpp>
 #include <thread>
+#include <vector>
+
+#include "core/rig/nearest.h"
 
 namespace luxrig::sim {
 namespace {
@@ -14,6 +17,7 @@ namespace {
 constexpr const char* kLoopback = "127.0.0.1";
 constexpr std::chrono::seconds kMostWait{5};  // until the control port listens
 constexpr const char* kJson = "application/json";
+constexpr std::string_view kRoutes[] = {"/truth", "/picture", "/fault", "/clear_faults", "/reset_peaks"};
 
 void answer(httplib::Response& response, int status, const nlohmann::json& json) {
   response.status = status;
@@ -38,17 +42,22 @@ class Server final : public ControlHttp {
     server_.Get("/picture", [this](const httplib::Request& request, httplib::Response& response) {
       take_picture(request.get_param_value("camera"), response);
     });
-    server_.Post("/fault", [this](const httplib::Request& request, httplib::Response& response) {
-      switch_fault(request.body, response);
+    for (const char* route : {"/fault", "/clear_faults", "/reset_peaks"}) {
+      server_.Post(route, [this](const httplib::Request& request, httplib::Response& response) {
+        obey(request.path, request.body, response);
+      });
+    }
+    // `curl -X POST` states no length, and the library would wait for a body until it gives up.
+    server_.set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
+      if (request.method != "POST" || request.has_header("Content-Length") || request.has_header("Transfer-Encoding"))
+        return httplib::Server::HandlerResponse::Unhandled;
+      obey(request.path, "", response);
+      return httplib::Server::HandlerResponse::Handled;
     });
-    server_.Post("/clear_faults", [this](const httplib::Request&, httplib::Response& response) {
-      faults_.clear();
-      answer(response, 200, {{"ok", true}});
-    });
-    server_.Post("/reset_peaks", [this](const httplib::Request&, httplib::Response& response) {
-      const std::lock_guard lock(world_mutex_);
-      world_.reset_peaks();
-      answer(response, 200, {{"ok", true}});
+    server_.set_error_handler([](const httplib::Request& request, httplib::Response& response) {
+      if (!response.body.empty()) return;
+      if (response.status == 404) return no_route(request.path, response);
+      answer(response, response.status, {{"error", "not understood: see luxrig-sim's README for the routes"}});
     });
   }
 
@@ -84,6 +93,24 @@ class Server final : public ControlHttp {
   [[nodiscard]] int port() const override { return port_; }
 
  private:
+  static void no_route(const std::string& path, httplib::Response& response) {
+    answer(response, 404, {{"error", "there is no route " + path + ": " + mend_for_unknown(path, kRoutes, "")}});
+  }
+
+  /// A POST; `body` is empty when it had none.
+  void obey(const std::string& path, const std::string& body, httplib::Response& response) {
+    if (path == "/fault") return switch_fault(body, response);
+    if (path == "/clear_faults") {
+      faults_.clear();
+    } else if (path == "/reset_peaks") {
+      const std::lock_guard lock(world_mutex_);
+      world_.reset_peaks();
+    } else {
+      return no_route(path, response);
+    }
+    answer(response, 200, {{"ok", true}});
+  }
+
   void take_picture(const std::string& name, httplib::Response& response) {
     const auto camera = std::find_if(rig_.cameras.begin(), rig_.cameras.end(),
                                      [&](const PictureCamera& known) { return known.name == name; });
@@ -95,6 +122,14 @@ class Server final : public ControlHttp {
 
   void switch_fault(const std::string& body, httplib::Response& response) {
     const auto json = nlohmann::json::parse(body, nullptr, /*allow_exceptions=*/false);
+    constexpr std::string_view kKeys[] = {"device", "fault", "on", "value"};
+    if (json.is_object()) {
+      for (const auto& [key, value] : json.items()) {
+        if (std::find(std::begin(kKeys), std::end(kKeys), key) != std::end(kKeys)) continue;
+        answer(response, 400, {{"error", "unknown key \"" + key + "\": " + mend_for_unknown(key, kKeys, "")}});
+        return;
+      }
+    }
     if (!json.is_object() || !json.contains("device") || !json["device"].is_string() || !json.contains("fault") ||
         !json["fault"].is_string() || !json.contains("on") || !json["on"].is_boolean() ||
         (json.contains("value") && !json["value"].is_number())) {

@@ -9,7 +9,10 @@
 #include <cstdio>
 
 #include "core/rig/rig_file.h"
+#include "sim/faults/faults.h"
 #include "sim/wire/rig_server.h"
+#include "tools/command_line/installed.h"
+#include "tools/command_line/parse_command_line.h"
 #include "tools/luxrig-sim/control_http.h"
 #include "tools/luxrig-sim/deviations_option.h"
 #include "tools/luxrig-sim/ports_file.h"
@@ -25,7 +28,7 @@ volatile std::sig_atomic_t stop_asked = 0;
 void ask_to_stop(int) { stop_asked = 1; }
 
 struct Options {
-  std::string rig;
+  std::filesystem::path rig;
   std::uint64_t seed = 1;
   std::string ports_file;
   int control_port = 0;
@@ -118,21 +121,21 @@ int simulate(const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app("A simulated rig on loopback ports: sACN, Art-Net and Modbus devices in a seeded true world.");
-  app.add_option("RIG", options.rig, "rig.toml, or the folder it is in")->required();
-  app.add_option("--seed", options.seed, "of everything that differs from the rig file (1)");
+  CLI::App app("simulates a rig's devices on loopback ports, in a seeded true world, with faults to switch on",
+               "luxrig-sim");
+  begin_command_line(app);
+  app.set_version_flag("--version", LUXRIG_VERSION, "print the version");
+  app.footer("Faults, by POST /fault to the control port:\n" + sim::faults_in_words());
+  add_rig_option(app, options.rig);
+  app.add_option("--seed", options.seed, "of everything that differs from the rig file");
   app.add_option("--ports-file", options.ports_file, "JSON: taken from there when it exists, written when ready");
-  app.add_option("--control-port", options.control_port, "HTTP control port (any free one)")
+  app.add_option("--control-port", options.control_port, "HTTP control port (0: any free one)")
       ->check(CLI::Range(0, 65535));
-  app.add_option("--max-error", options.max_error, "relative error of the true light transport (0.01)")
+  app.add_option("--max-error", options.max_error, "relative error of the true light transport")
       ->check(CLI::Range(1e-4, 1.0));
   app.add_option("--deviations", options.deviations, "usual, none, or changes: none,meter_noise=0.003");
   app.add_flag("--with-parent", options.with_parent, "end when the program that started this ends");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kExitBadInput;
-  }
+  if (const auto end = parse_command_line(app, argc, argv)) return *end;
 
   struct sigaction action {};
   action.sa_handler = ask_to_stop;

@@ -10,6 +10,7 @@
 #include "core/rig/rig_file.h"
 #include "core/transport/pfm.h"
 #include "drivers/camera/camera_source.h"
+#include "tools/command_line/installed.h"
 #include "tools/luxrig/camera_series.h"
 #include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
@@ -219,7 +220,7 @@ int run_camera_check(const CameraArguments& arguments) {
 void add_camera_command(CLI::App& command, CameraArguments& arguments, int& code) {
   command.require_subcommand(1);
   const auto add_shared = [&arguments](CLI::App& one) {
-    one.add_option("RIG", arguments.rig, "rig file, or a folder with a rig.toml")->required();
+    add_rig_option(one, arguments.rig);
     one.add_option("--camera", arguments.camera, "its name (else the only one with a source)");
     one.add_flag("--json", arguments.json, "print JSON");
   };
@@ -233,15 +234,15 @@ void add_camera_command(CLI::App& command, CameraArguments& arguments, int& code
   check->add_option("-o,--output", arguments.output, "write the measured response here (CSV), for response_file");
   check->add_option("--shortest-ms", arguments.shortest_ms, "shortest exposure")->check(CLI::PositiveNumber);
   check->add_option("--longest-ms", arguments.longest_ms, "longest exposure")->check(CLI::PositiveNumber);
-  check->add_option("--steps", arguments.steps, "exposures")->capture_default_str()->check(CLI::Range(3, 40));
-  check->add_option("--frames", arguments.frames, "pictures of each")->capture_default_str()->check(CLI::Range(3, 100));
+  check->add_option("--steps", arguments.steps, "exposures")->check(CLI::Range(3, 40));
+  check->add_option("--frames", arguments.frames, "pictures of each")->check(CLI::Range(3, 100));
   check->add_flag("--levels", arguments.levels,
                   "by known dimmer levels of a fixture of the rig, which its daemon drives, instead of by exposures; "
                   "of source = \"files\": levels stand in their names (wall_40pct_1.png)");
   check->add_option("--fixture", arguments.fixture, "with --levels: what lights the scene (else the only one)");
-  check->add_option("--port", arguments.port, "with --levels: of the daemon")->capture_default_str();
+  check->add_option("--port", arguments.port, "with --levels: of the daemon");
   check->add_flag("--sim", arguments.sim, "by levels, with a simulated rig and its camera");
-  check->add_option("--sim-seed", arguments.sim_seed, "of the simulated rig")->capture_default_str();
+  check->add_option("--sim-seed", arguments.sim_seed, "of the simulated rig");
   check->callback([&] { code = run_camera_check(arguments); });
 }
 

@@ -11,29 +11,13 @@
 #include "core/rig/register_map/register_map.h"
 #include "drivers/registry.h"
 #include "drivers/when_data_stops.h"
+#include "tools/luxrig/addresses.h"
 #include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
 #include "tools/luxrig/table.h"
 
 namespace luxrig {
 namespace {
-
-std::string address_text(const Rig& rig, const Fixture& fixture) {
-  if (fixture.axes) {
-    Fixture lamp = fixture;
-    lamp.axes.reset();
-    return fmt::format("{}; axes {}: nodes {}, {}", address_text(rig, lamp), rig.buses[fixture.axes->bus].name,
-                       fixture.axes->pan.node, fixture.axes->tilt.node);
-  }
-  const Patch& patch = fixture.patch;
-  if (const auto* dmx = std::get_if<DmxPatch>(&patch)) {
-    const auto last = dmx->address + static_cast<int>(dmx->slots.size()) - 1;
-    return last > dmx->address ? fmt::format("{}.{}-{}", dmx->universe, dmx->address, last)
-                               : fmt::format("{}.{}", dmx->universe, dmx->address);
-  }
-  const auto& modbus = std::get<ModbusPatch>(patch);
-  return fmt::format("unit {} {} {}", modbus.unit, modbus.coil ? "coil" : "register", modbus.holding_register);
-}
 
 /// In the planes C0 and C90; once when they are alike.
 std::string angles_text(const PlaneAngles& angles) {
@@ -287,7 +271,7 @@ int run_check(const CheckArguments& arguments) {
                   fmt::format("{:.1f}°", deg_from_rad(f.joints.tilt_rad)),
                   f.range.zooms() ? fmt::format("{:.1f}°", deg_from_rad(f.joints.beam_rad)) : "-",
                   rig.buses[f.bus].name + " (" + rig.buses[f.bus].driver + ")",
-                  address_text(rig, f) + (f.switched ? ", on or off" : "")});
+                  fixture_address(rig, f) + (f.switched ? ", on or off" : "")});
   }
   fmt::print("{}\n", fixtures.text());
   print_personalities(rig);

@@ -17,6 +17,9 @@ struct CheckArguments {
 };
 int run_check(const CheckArguments& arguments);
 
+/// A commented rig to start from, in that folder; never writes over a rig.
+int run_init(const std::filesystem::path& folder);
+
 /// Makes a rig folder of an MVR file; never writes over a rig.
 struct ImportArguments {
   std::filesystem::path file;

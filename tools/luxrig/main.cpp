@@ -2,6 +2,9 @@
 #include <CLI/CLI.hpp>
 
 #include "tools/bench/bench.h"
+#include "tools/command_line/choice.h"
+#include "tools/command_line/installed.h"
+#include "tools/command_line/parse_command_line.h"
 #include "tools/luxrig/camera_command.h"
 #include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
@@ -13,15 +16,13 @@ namespace {
 using namespace luxrig;
 
 void add_compute(CLI::App& command, ComputeOptions& compute) {
-  static const std::map<std::string, Model> models = {{"auto", Model::automatic},
-                                                      {"direct", Model::direct},
-                                                      {"gather", Model::gather},
-                                                      {"path", Model::path},
-                                                      {"cache", Model::cache}};
-  command
-      .add_option("--model", compute.model,
-                  "auto: the cheapest that meets the error; direct: no interreflection; gather, path, cache")
-      ->transform(CLI::CheckedTransformer(models));
+  add_choice<Model, Model>(command, "--model", compute.model,
+                           "how light is computed; auto: the cheapest that meets the error; direct: no interreflection",
+                           {{"auto", Model::automatic},
+                            {"direct", Model::direct},
+                            {"gather", Model::gather},
+                            {"path", Model::path},
+                            {"cache", Model::cache}});
   command.add_option("--max-error", compute.max_error, "wanted relative standard error")->check(CLI::Range(1e-4, 1.0));
   command.add_option("--seed", compute.seed, "seed of the samples");
   command.add_option("--threads", compute.threads, "threads (0: one per core)")->check(CLI::Range(0, 1024));
@@ -36,12 +37,11 @@ void add_rdm(CLI::App& command, RdmArguments& rdm, int& code) {
   command.require_subcommand(1);
   const auto add_search = [&rdm](CLI::App& one) {
     one.add_option("--node", rdm.node, "ask this node only (IPv4 address, with or without :port)");
-    one.add_option("--broadcast", rdm.broadcast, "where nodes are asked: the lighting network's")
-        ->capture_default_str();
+    one.add_option("--broadcast", rdm.broadcast, "where nodes are asked: the lighting network's");
     one.add_option("--universe", rdm.universe, "only this Art-Net port address; of a widget, what its line is called")
         ->check(CLI::Range(0, 32767));
     one.add_option("--seconds", rdm.seconds, "how long to wait for the nodes' tables of devices")
-        ->capture_default_str()
+
         ->check(CLI::Range(0.1, 600.0));
     one.add_flag("--rediscover", rdm.rediscover, "have the nodes search their lines anew");
     one.add_flag("--usb", rdm.usb, "on the line of an ENTTEC DMX USB Pro, which puts out no levels meanwhile");
@@ -64,27 +64,37 @@ void add_rdm(CLI::App& command, RdmArguments& rdm, int& code) {
   set->add_option("UID", rdm.uid, "which device")->required();
   set->add_option("PARAMETER", rdm.parameter, "which")
       ->required()
-      ->check(CLI::IsMember({"address", "label", "personality", "identify"}));
+      ->check(one_of({"address", "label", "personality", "identify"}));
   set->add_option("VALUE", rdm.value, "1 to 512, a text, a number, on or off")->required();
   add_search(*set);
   set->callback([&] { code = run_rdm_set(rdm); });
 }
 
+/// How help and the man page sort the commands.
+void group(CLI::App& app, const char* title, std::initializer_list<const char*> commands) {
+  for (const char* command : commands) app.get_subcommand(command)->group(title);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Luxrig: sets a lighting rig to goals in lux, measures and corrects it");
-  app.set_version_flag("--version", LUXRIG_VERSION);
+  CLI::App app("sets a lighting rig to goals in lux, measures and corrects it", "luxrig");
+  begin_command_line(app);
+  app.set_version_flag("--version", LUXRIG_VERSION, "print the version");
   app.require_subcommand(1);
   int code = kExitOk;
-  const char* rig_help = "rig file, or a folder with a rig.toml";
 
   CheckArguments check;
   auto* command = app.add_subcommand("check", "validate a rig and print what was understood");
-  command->add_option("RIG", check.rig, rig_help)->required();
+  add_rig_option(*command, check.rig);
   command->add_flag("--json", check.json, "print JSON");
   command->add_flag("--outputs", check.outputs, "also say what each output does when data stops");
   command->callback([&] { code = run_check(check); });
+
+  std::filesystem::path init_folder;
+  command = app.add_subcommand("init", "a commented rig to start from, in a folder of that name");
+  command->add_option("NAME", init_folder, "folder to make")->required();
+  command->callback([&] { code = run_init(init_folder); });
 
   ImportArguments import_mvr;
   command =
@@ -96,7 +106,7 @@ int main(int argc, char** argv) {
 
   EvaluateArguments evaluate;
   command = app.add_subcommand("evaluate", "lux at every measurement point and luxmeter");
-  command->add_option("RIG", evaluate.rig, rig_help)->required();
+  add_rig_option(*command, evaluate.rig);
   command->add_option("--levels", evaluate.levels_plan, "levels of this plan (else every fixture at 100 %)");
   add_compute(*command, evaluate.compute);
   command->add_flag("--json", evaluate.json, "print JSON");
@@ -104,7 +114,7 @@ int main(int argc, char** argv) {
 
   SolveArguments solve;
   command = app.add_subcommand("solve", "do what the rig's tasks ask, and write a plan");
-  command->add_option("RIG", solve.rig, rig_help)->required();
+  add_rig_option(*command, solve.rig);
   command->add_option("-o,--output", solve.output, "write the plan here");
   add_compute(*command, solve.compute);
   command->add_flag("--json", solve.json, "print the plan");
@@ -114,32 +124,33 @@ int main(int argc, char** argv) {
   std::filesystem::path render_plan;
   std::vector<double> eye, target;
   std::string false_colour;
-  static const std::map<std::string, ShowWhat> subjects = {
-      {"curvature", ShowWhat::curvature}, {"interest", ShowWhat::interest}, {"features", ShowWhat::features},
-      {"histogram", ShowWhat::histogram}, {"domain", ShowWhat::domain},     {"beams", ShowWhat::beams}};
   command = app.add_subcommand("render",
                                "a picture of the lit rig, a false-colour map of lux, or why its lights are "
                                "where they are");
-  command->add_option("RIG", render.rig, rig_help)->required();
+  add_rig_option(*command, render.rig);
   auto* with_plan =
       command->add_option("PLAN", render_plan, "levels of this plan (else every fixture at its highest level)");
   command->add_option("-o,--output", render.output_png, "PNG file")->required();
   auto* with_false_colour =
       command->add_option("--false-colour", false_colour, "lux: a map of illuminance with a scale")
-          ->check(CLI::IsMember({"lux"}));
+          ->check(one_of({"lux"}));
   auto* with_show =
-      command
-          ->add_option("--show", render.show,
-                       "why: an object's curvature, its interest points, its features, the histogram of shadow "
-                       "directions, the domain where lights may hang; or where the beams go")
-          ->transform(CLI::CheckedTransformer(subjects))
+      add_choice<std::optional<ShowWhat>, ShowWhat>(
+          *command, "--show", render.show,
+          "why: an object's curvature, its interest points, its features, the histogram of shadow directions, the "
+          "domain where lights may hang; or where the beams go",
+          {{"curvature", ShowWhat::curvature},
+           {"interest", ShowWhat::interest},
+           {"features", ShowWhat::features},
+           {"histogram", ShowWhat::histogram},
+           {"domain", ShowWhat::domain},
+           {"beams", ShowWhat::beams}})
           ->excludes(with_false_colour);
   command->add_option("--object", render.object, "with --show: whose relief (else the only one from a mesh file)")
       ->needs(with_show);
   command->add_option("--lights", render.lights, "with --show histogram: so many directions are chosen")
       ->check(CLI::Range(1, 64))
-      ->needs(with_show)
-      ->capture_default_str();
+      ->needs(with_show);
   command->add_option("--width", render.width_px, "pixels")->check(CLI::Range(16, 8192));
   command->add_option("--height", render.height_px, "pixels")->check(CLI::Range(16, 8192));
   auto* with_eye = command->add_option("--eye", eye, "x y z [m] of the viewer")->expected(3);
@@ -148,11 +159,8 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1.0, 170.0));
   command->add_option("--max-lx", render.max_lx, "top of the false-colour scale")->check(CLI::PositiveNumber);
   command->add_option("--max-error", render.max_error, "noise at which the picture is done")
-      ->check(CLI::Range(1e-4, 1.0))
-      ->capture_default_str();
-  command->add_option("--seconds", render.seconds, "or after this time")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+      ->check(CLI::Range(1e-4, 1.0));
+  command->add_option("--seconds", render.seconds, "or after this time")->check(CLI::PositiveNumber);
   command->add_option("--passes", render.passes, "or after so many samples per pixel, whatever the time")
       ->check(CLI::Range(1, 65536));
   command->add_option("--threads", render.threads, "threads (0: one per core)")->check(CLI::Range(0, 1024));
@@ -172,11 +180,8 @@ int main(int argc, char** argv) {
   DevicesArguments devices;
   command = app.add_subcommand(
       "devices", "what is there to be driven: nodes, sources, USB widgets, serial ports, CAN interfaces, cameras");
-  command->add_option("--seconds", devices.seconds, "how long to listen")
-      ->capture_default_str()
-      ->check(CLI::Range(0.1, 600.0));
-  command->add_option("--broadcast", devices.broadcast, "where Art-Net nodes are asked: the lighting network's")
-      ->capture_default_str();
+  command->add_option("--seconds", devices.seconds, "how long to listen")->check(CLI::Range(0.1, 600.0));
+  command->add_option("--broadcast", devices.broadcast, "where Art-Net nodes are asked: the lighting network's");
   command->add_option("--interface", devices.interface, "network interface by which sACN sources are heard");
   command->add_flag("--json", devices.json, "print the list as JSON");
   command->callback([&] { code = run_devices(devices); });
@@ -202,10 +207,12 @@ int main(int argc, char** argv) {
   command->callback([&] { code = run_status(client); });
 
   bool lift = false;
-  command = app.add_subcommand("blackout", "all light off at once; --off lifts it");
+  std::string blackout_state;
+  command = app.add_subcommand("blackout", "all light off at once; `blackout off` lifts it");
+  command->add_option("STATE", blackout_state, "on if left out")->check(one_of({"on", "off"}));
   command->add_flag("--off", lift, "lift the blackout");
   add_client(*command, client);
-  command->callback([&] { code = run_blackout(client, !lift); });
+  command->callback([&] { code = run_blackout(client, !lift && blackout_state != "off"); });
 
   command = app.add_subcommand("hand-back", "lighting desks that are back and wait for it get the light");
   add_client(*command, client);
@@ -221,7 +228,7 @@ int main(int argc, char** argv) {
   double identify_s = 5;
   command = app.add_subcommand("identify", "which one is it? a fixture blinks, or a head nods, and is then as it was");
   command->add_option("FIXTURE", identified, "its name in the rig file")->required();
-  command->add_option("--seconds", identify_s, "for how long")->capture_default_str()->check(CLI::Range(0.5, 60.0));
+  command->add_option("--seconds", identify_s, "for how long")->check(CLI::Range(0.5, 60.0));
   add_client(*command, client);
   command->callback([&] { code = run_identify(client, identified, identify_s); });
 
@@ -234,13 +241,13 @@ int main(int argc, char** argv) {
   BenchOptions bench;
   std::string suite;
   command = app.add_subcommand("bench", "run time against error, on a named suite");
-  command->add_option("SUITE", suite, "which")->required()->check(CLI::IsMember(bench_suites()));
+  command->add_option("SUITE", suite, "which")->required()->check(one_of(bench_suites()));
   command->add_flag("--quick", bench.quick, "under a minute, same columns");
   command->add_option("--csv", bench.csv_file, "write the rows here");
   command->add_option("--plot", bench.plot_file, "draw error over time here (PNG)");
   command->add_option("--threads", bench.threads, "threads (0: one per core)")->check(CLI::Range(0, 1024));
   command->add_option("--references", bench.references_folder, "transport: keep converged references in this folder");
-  command->add_option("--reference-error", bench.reference_error, "transport: standard error of those (default 0.0005)")
+  command->add_option("--reference-error", bench.reference_error, "transport: standard error of those")
       ->check(CLI::Range(1e-5, 0.1));
   command->add_option("--export", bench.export_folder,
                       "transport: write the rooms here for Radiance, measure nothing; nnls: the problems; highlight: "
@@ -263,10 +270,11 @@ int main(int argc, char** argv) {
   command->add_option("--only", bench.only, "only cases (analytic: families) whose name begins so");
   command->callback([&] { code = run_bench(suite, bench); });
 
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kExitOk : kExitBadInput;
-  }
-  return code;
+  group(app, "Make a rig", {"init", "check", "import"});
+  group(app, "Work out its light", {"evaluate", "solve", "render"});
+  group(app, "Run it", {"run", "status", "apply", "blackout", "hand-back", "park", "identify", "monitor"});
+  group(app, "Devices", {"devices", "rdm", "camera"});
+  group(app, "Luxrig itself", {"bench"});
+  const auto end = parse_command_line(app, argc, argv);
+  return end ? *end : code;
 }

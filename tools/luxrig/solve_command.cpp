@@ -102,10 +102,12 @@ void print_aim(const PlannedTask& task) {
   fmt::print("{}\n", heads.text());
 }
 
-void print_relief(const PlannedTask& task) {
+void print_relief(const Rig& rig, const PlannedTask& task) {
   const PlannedRelief& relief = *task.relief;
-  const auto was = [](const std::optional<double>& before, const std::string& text) {
-    return before ? fmt::format(" (before: {})", text) : std::string();
+  const char* const when = levels_set_before(rig, task.name) ? "before" : "as they hang, at full level";
+  const bool dark = relief.before_local_contrast_lx.value_or(1) == 0;  // no light, so no figure of it
+  const auto was = [&](const std::optional<double>& before, const std::string& text) {
+    return before && !dark ? fmt::format(" ({}: {})", when, text) : std::string();
   };
   fmt::print(
       "{} ({}): local contrast {:.1f} lx{}, relative {:.3f}{}, features with a shadow's edge {}{}, brightest place "
@@ -118,6 +120,9 @@ void print_relief(const PlannedTask& task) {
       percent(relief.coverage), was(relief.before_coverage, percent(relief.before_coverage.value_or(0))),
       relief.object_lux, relief.key_to_fill ? fmt::format(", key to fill {:.2f}", *relief.key_to_fill) : "",
       task.seconds);
+  if (dark)
+    fmt::print("{}: no comparison with before, since the task before it leaves these heads dark or off the object\n",
+               task.name);
 }
 
 }  // namespace
@@ -185,7 +190,7 @@ int run_solve(const SolveArguments& arguments) {
   fmt::print("{}\n", points.text());
   for (const PlannedTask& task : plan->tasks) {
     if (task.relief) {
-      print_relief(task);
+      print_relief(session->rig, task);
       continue;
     }
     fmt::print("{} ({}): normalised error {:.2f} %{}, {} iterations, {:.1f} ms\n", task.name, task.kind,

@@ -7,6 +7,7 @@
 
 #include "core/rig/housing.h"
 #include "tools/luxrig/highlight_task.h"
+#include "tools/luxrig/solve_tasks.h"
 #include "tools/luxrig/task_solver.h"
 
 namespace luxrig {
@@ -71,7 +72,8 @@ Result<void> TaskSolver::aim(const Task& task) {
       now_lm += level * rig_.luminaires[rig_.fixtures[emitter].luminaire].lumens;
       level = 0;
     }
-    present.push_back(now_lm / housing_luminaire(rig_, head).lumens);
+    present.push_back(levels_set_before(rig_, task.name) ? now_lm / housing_luminaire(rig_, head).lumens
+                                                         : rig_.fixtures[head].max_level);
   }
   const auto around = surroundings(std::move(sought), task);
   if (!around) return tl::unexpected(around.error());

@@ -58,6 +58,21 @@ Result<void> TaskSolver::emittance(const Task& task) {
   return {};
 }
 
+void TaskSolver::light_as_hung() {
+  for (Index j = 0; j < own_; ++j) level_[j] = most_level(j);
+  const Eigen::VectorXd lux = lux_of_points();
+  double share = 1;
+  for (std::size_t i = 0; i < rig_.points.size(); ++i)
+    if (const auto& max_lx = rig_.points[i].max_lx; max_lx && lux[static_cast<Index>(i)] > *max_lx)
+      share = std::min(share, *max_lx / lux[static_cast<Index>(i)]);
+  level_ *= share;
+  PlannedTask planned;
+  planned.name = kAsItHangs;
+  planned.kind = name_of(TaskKind::emittance);
+  list(planned, 0, own_);
+  plan_.tasks.push_back(std::move(planned));
+}
+
 Result<void> TaskSolver::placement(const Task& task) {
   const auto start = Steady::now();
   const auto mounting = Mounting::make(rig_.mounting, rig_.file, session_.scene, *session_.rays);
@@ -276,6 +291,14 @@ Result<SolvedTasks> solve_tasks(const Session& session, const TransportMatrix& t
   return solver.done();
 }
 
+bool levels_set_before(const Rig& rig, const std::string& task_name) {
+  for (const Task& task : rig.tasks) {
+    if (task.name == task_name) return false;
+    if (task.kind == TaskKind::emittance || task.kind == TaskKind::aim) return true;
+  }
+  return false;
+}
+
 Result<SolvedTasks> solve_what_hangs(const Session& session, const TransportMatrix& transport,
                                      const ComputeOptions& options, bool aim) {
   TaskSolver solver(session, transport, options);
@@ -285,7 +308,11 @@ Result<SolvedTasks> solve_what_hangs(const Session& session, const TransportMatr
     any = true;
     if (auto done = done_by(solver, task); !done) return tl::unexpected(std::move(done.error()));
   }
-  if (!any) {
+  const bool wanted = std::any_of(session.rig.points.begin(), session.rig.points.end(),
+                                  [](const Point& point) { return point.goal_lx.has_value(); });
+  if (!any && !wanted && !aim) {
+    solver.light_as_hung();
+  } else if (!any) {
     if (auto done = solver.emittance({"levels", TaskKind::emittance, {}}); !done)
       return tl::unexpected(std::move(done.error()));
   }

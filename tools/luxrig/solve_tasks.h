@@ -21,8 +21,16 @@ struct SolvedTasks {
 [[nodiscard]] Result<SolvedTasks> solve_tasks(const Session& session, const TransportMatrix& transport,
                                               const ComputeOptions& options);
 
+/// Whether a task before this one sets levels. If none does, heads that an aim task turns are compared with themselves
+/// as they hang, as bright as they may be: dark heads have nothing to compare with.
+[[nodiscard]] bool levels_set_before(const Rig& rig, const std::string& task_name);
+
+/// Name of the task in such a plan.
+inline constexpr const char* kAsItHangs = "as it hangs";
+
 /// What a rig that hangs can do: tasks that place no lights, and one called "levels" without any.
-/// aim   false: heads stay where they look
+/// aim   false: heads stay where they look. Where there is then neither a task nor a goal, every lamp is as bright as it
+///       may be, so that there is something to see.
 [[nodiscard]] Result<SolvedTasks> solve_what_hangs(const Session& session, const TransportMatrix& transport,
                                                    const ComputeOptions& options, bool aim = true);
 

@@ -20,6 +20,8 @@ class TaskSolver {
   Result<void> placement(const Task& task);
   Result<void> aim(const Task& task);
   Result<void> highlight(const Task& task);
+  /// Every lamp as bright as it may be within limits of lux.
+  void light_as_hung();
   /// Once, at the end.
   SolvedTasks done();
 

@@ -7,6 +7,7 @@
 
 #include "core/rig/nearest.h"
 #include "drivers/registry.h"
+#include "tools/command_line/installed.h"
 #include "tools/luxrigd/clock.h"
 #include "tools/luxrigd/room_view.h"
 #include "tools/luxrigd/scheduling.h"
@@ -20,11 +21,7 @@ constexpr Duration kSafeLookEvery = std::chrono::seconds(1), kGuardianLook = std
 constexpr int kMostDoublings = 6;
 constexpr auto kCommandBound = std::chrono::seconds(2);
 
-std::filesystem::path web_folder() {
-  std::error_code error;
-  const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
-  return self.parent_path().parent_path() / "share/luxrig/web";
-}
+std::filesystem::path web_folder() { return shared_folder() / "web"; }
 
 }  // namespace
 

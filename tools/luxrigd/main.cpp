@@ -1,17 +1,15 @@
 // luxrigd: `luxrig run` for service managers.
 #include <CLI/CLI.hpp>
 
-#include "tools/luxrig/command.h"
+#include "tools/command_line/parse_command_line.h"
 #include "tools/luxrigd/run_options.h"
 
 int main(int argc, char** argv) {
-  CLI::App app("Luxrig daemon: lights a rig to its goals, measures, corrects and holds");
+  CLI::App app("lights a rig to its goals, measures, corrects and holds: `luxrig run` for service managers", "luxrigd");
+  luxrig::begin_command_line(app);
+  app.set_version_flag("--version", LUXRIG_VERSION, "print the version");
   luxrig::RunArguments arguments;
   luxrig::add_run_options(app, arguments);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? luxrig::kExitOk : luxrig::kExitBadInput;
-  }
+  if (const auto end = luxrig::parse_command_line(app, argc, argv)) return *end;
   return luxrig::run_rig(arguments);
 }

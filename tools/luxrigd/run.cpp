@@ -40,16 +40,20 @@ Checked<Plan> plan_of_file(const std::filesystem::path& path) {
   return plan_from_json(*text, path.string());
 }
 
-void say_solved(const RunReport& say, const Plan& plan) {
+void say_solved(const RunReport& say, const Rig& rig, const Plan& plan) {
   for (const PlannedTask& task : plan.tasks) {
     if (task.relief) {
-      say.say(
-          fmt::format("task {}: local contrast {:.1f} lx, was {:.1f}; relative {:.3f}, was {:.3f}; features with a "
-                      "shadow's edge {:.0f} %, were "
-                      "{:.0f} %; {:.1f} s",
-                      task.name, task.relief->local_contrast_lx, task.relief->before_local_contrast_lx.value_or(0),
-                      task.relief->relative_contrast, task.relief->before_relative_contrast.value_or(0),
-                      100 * task.relief->coverage, 100 * task.relief->before_coverage.value_or(0), task.seconds));
+      const bool compared = task.relief->before_local_contrast_lx.value_or(0) > 0;
+      const char* const when = levels_set_before(rig, task.name) ? "before" : "as they hang, at full level";
+      say.say(fmt::format(
+          "task {}: local contrast {:.1f} lx, relative {:.3f}, features with a shadow's edge {:.0f} %; "
+          "{}; {:.1f} s",
+          task.name, task.relief->local_contrast_lx, task.relief->relative_contrast, 100 * task.relief->coverage,
+          compared ? fmt::format("{}: {:.1f} lx, {:.3f}, {:.0f} %", when, *task.relief->before_local_contrast_lx,
+                                 task.relief->before_relative_contrast.value_or(0),
+                                 100 * task.relief->before_coverage.value_or(0))
+                   : std::string("no light on it before to compare with"),
+          task.seconds));
       continue;
     }
     say.say(fmt::format("task {}: normalised error {:.2f} %, {} iterations, {:.1f} ms", task.name,
@@ -120,7 +124,10 @@ Result<void> show_before_and_after(Daemon& daemon, RunReport& say, RigPictures& 
                                    const Plan& plan, const std::stop_token& stop) {
   std::vector<TakenByCamera> before;
   for (const bool after : {false, true}) {
-    say.say(after ? "the plan" : "the rig as it hangs");
+    say.say(after ? "the plan"
+            : hung.tasks.front().name == kAsItHangs
+                ? "the rig as it hangs, at full level: no task or goal before the aim sets any"
+                : "the rig as it hangs");
     // As a client would: what heads that turn will light is worked out beside the control loop.
     auto applying = std::async(std::launch::async, [&] { return daemon.apply(after ? plan : hung); });
     tick_until(daemon, [&](Time) { return applying.wait_for(std::chrono::seconds(0)) == std::future_status::ready; });
@@ -215,7 +222,7 @@ int run_rig(const RunArguments& arguments) {
         say.say(fmt::format("task {}: left out, since it places lights that do not hang yet: luxrig solve does it",
                             task.name));
     }
-    say_solved(say, solved->plan);
+    say_solved(say, rig, solved->plan);
     plan = std::move(solved->plan);
     session->rig = std::move(solved->rig);
     transport = std::move(solved->transport);
@@ -224,7 +231,8 @@ int run_rig(const RunArguments& arguments) {
     auto ready = sim->wait_ready({stop, nullptr});
     if (!ready) return report(ready.error());
     ports = std::move(*ready);
-    say.say("simulated rig ready");
+    say.say(fmt::format("simulated rig ready; faults and truth: http://{}:{} (tools/luxrig-sim/README.md)",
+                        ports->control.host, ports->control.port));
   }
 
   // 3. The daemon.

@@ -2,10 +2,12 @@
 
 #include <CLI/CLI.hpp>
 
+#include "tools/command_line/installed.h"
+
 namespace luxrig {
 
 void add_run_options(CLI::App& app, RunArguments& arguments) {
-  app.add_option("RIG", arguments.rig, "rig file, or a folder with a rig.toml")->required();
+  add_rig_option(app, arguments.rig);
   app.add_flag("--sim", arguments.sim, "start a simulated rig and send everything there instead of to the devices");
   app.add_option("--sim-seed", arguments.sim_seed, "seed of the simulated rig's deviations");
   app.add_option("--sim-ports", arguments.sim_ports, "use the running luxrig-sim that wrote this file");

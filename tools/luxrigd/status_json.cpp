@@ -3,6 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "tools/luxrig/addresses.h"
+
 namespace luxrig {
 
 void put_verdicts(nlohmann::json& out, const PointStatus& status) {
@@ -43,6 +45,7 @@ json fixture_json(const Rig& rig, std::size_t index, const FixtureStatus& status
   const Fixture& fixture = rig.fixtures[index];
   json out = {{"name", fixture.name},
               {"bus", rig.buses[fixture.bus].name},
+              {"address", fixture_address(rig, fixture)},
               {"luminaire", rig.luminaires[fixture.luminaire].name},
               {"position", array_of(fixture.world_from_mount.translation_m)},
               {"pan_deg", deg_from_rad(status.joints.pan_rad)},
@@ -131,6 +134,8 @@ std::string status_json(const StatusInput& input) {
   for (std::size_t m = 0; m < rig.luxmeters.size(); ++m) {
     const Luxmeter& meter = rig.luxmeters[m];
     json entry = {{"name", meter.name},
+                  {"bus", rig.buses[meter.bus].name},
+                  {"address", meter_address(meter)},
                   {"position", array_of(meter.position_world_m)},
                   {"tolerance", meter.tolerance},
                   {"life", meter_life(rig, meter, input.devices)}};
@@ -142,7 +147,15 @@ std::string status_json(const StatusInput& input) {
     meters.push_back(std::move(entry));
   }
   json& devices = out["devices"] = json::array();
-  for (const Health& device : input.devices) devices.push_back(health_json(device, input.now));
+  for (const Health& device : input.devices) {
+    json entry = health_json(device, input.now);
+    for (const Bus& bus : rig.buses) {
+      if (bus.name != device.device) continue;
+      entry["driver"] = bus.driver;
+      if (const std::string where = bus_address(bus); !where.empty()) entry["address"] = where;
+    }
+    devices.push_back(std::move(entry));
+  }
   json& alarms = out["alarms"] = json::array();
   for (const Alarm& alarm : show.alarms) {
     alarms.push_back({{"severe", alarm.severe},

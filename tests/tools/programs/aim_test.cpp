@@ -96,6 +96,37 @@ max_lx = 900
   return (folder / "rig.toml").string();
 }
 
+TEST(Aim, HeadsThatNothingHasLitAreComparedWithThemselvesAtFullLevelAndThatIsSaid) {
+  const Folder folder;
+  const std::string rig = rig_with_a_well(folder, R"([[bus]]
+name = "dmx"
+driver = "sacn"
+[[fixture]]
+name = "head"
+luminaire = "spot"
+position_m = [0.9, 0.3, 2.9]
+aim_m = [0, 0, 1]
+bus = "dmx"
+universe = 1
+address = 1
+slots = ["pan", "tilt", "dimmer"]
+pan_range_deg = [-270, 270]
+tilt_range_deg = [-135, 135]
+pan_speed_deg_s = 180
+tilt_speed_deg_s = 120
+[[task]]
+name = "relief"
+kind = "aim"
+object = "slab"
+)");
+  const Ran ran = luxrig::testing::run(
+      {program("luxrig"), "solve", rig, "-o", (folder / "plan.json").string(), "--model", "direct"}, 120s);
+  ASSERT_EQ(ran.code, 0) << ran.output;
+  EXPECT_NE(ran.output.find("lx (as they hang, at full level: "), std::string::npos) << ran.output;
+  EXPECT_EQ(ran.output.find(": 0.0)"), std::string::npos) << ran.output;
+  EXPECT_GT(plan_of(folder / "plan.json")["tasks"][0]["before_local_contrast"].get<double>(), 0);
+}
+
 TEST(Highlight, FindsLightsOnTheCeilingAndThePlanCanBeShown) {
   const Folder folder;
   const std::string rig = rig_with_a_well(folder, R"([mounting]

@@ -56,7 +56,7 @@ TEST(Commands, SolveJsonHasTheContractsKeysAndEvaluateAgreesWithIt) {
 }
 
 TEST(Commands, CheckTakesEveryRigThatIsShipped) {
-  std::vector<std::string> rigs = {source("rigs/studio/can.toml")};
+  std::vector<std::string> rigs = {source("rigs/studio/can.toml"), source("rigs/planning/hung.toml")};
   for (const auto& entry : std::filesystem::directory_iterator(source("rigs")))
     if (std::filesystem::exists(entry.path() / "rig.toml")) rigs.push_back(entry.path().string());
   EXPECT_GE(rigs.size(), 6u);

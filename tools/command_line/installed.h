@@ -1,0 +1,15 @@
+#pragma once
+/// Where what came with the programs lies: beside them, in `share/luxrig`, in a build as well as installed.
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+
+namespace luxrig {
+
+/// "<prefix>/share/luxrig" of a program in "<prefix>/bin".
+[[nodiscard]] std::filesystem::path shared_folder();
+
+/// The option RIG: a rig file, a folder with one, or the name of a rig that came with the program ("gallery").
+CLI::Option* add_rig_option(CLI::App& app, std::filesystem::path& rig);
+
+}  // namespace luxrig

@@ -1,0 +1,56 @@
+# `cmake --install build/release` and `cpack --config build/release/CPackConfig.cmake`: programs, page, rigs with their
+# register maps, man pages, completion, the systemd unit. Programs find the rest beside them, in ../share/luxrig.
+include(GNUInstallDirs)
+
+# A build is laid out like an installation.
+file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/share/luxrig)
+file(CREATE_LINK ${PROJECT_SOURCE_DIR}/rigs ${CMAKE_BINARY_DIR}/share/luxrig/rigs SYMBOLIC)
+
+# Man pages and completion are written by the programs themselves, from what they declare of their options.
+set(manual ${CMAKE_BINARY_DIR}/manual)
+set(pages "")
+foreach(program luxrig luxrigd luxrig-sim)
+  add_custom_command(
+    OUTPUT ${manual}/${program}.1 ${manual}/completion/${program}
+    COMMAND ${CMAKE_COMMAND} -E make_directory ${manual}/completion
+    COMMAND ${program} --man-page > ${manual}/${program}.1
+    COMMAND ${program} --bash-completion > ${manual}/completion/${program}
+    DEPENDS ${program}
+    COMMENT "Man page and completion of ${program}"
+    VERBATIM)
+  list(APPEND pages ${manual}/${program}.1)
+endforeach()
+add_custom_target(manual DEPENDS ${pages})
+# All that `cmake --install` wants.
+add_custom_target(installable DEPENDS luxrig luxrigd luxrig-sim luxrig-guardian manual)
+if(TARGET web)
+  add_dependencies(installable web)
+endif()
+
+install(TARGETS luxrig luxrigd luxrig-sim luxrig-guardian RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/rigs/ DESTINATION ${CMAKE_INSTALL_DATADIR}/luxrig/rigs)
+if(TARGET web)
+  install(DIRECTORY ${LUXRIG_WEB_DIR}/ DESTINATION ${CMAKE_INSTALL_DATADIR}/luxrig/web)
+endif()
+install(FILES ${pages} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+install(DIRECTORY ${manual}/completion/ DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+install(FILES ${CMAKE_CURRENT_LIST_DIR}/luxrigd@.service DESTINATION lib/systemd/system)
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME luxrig)
+set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "sets a lighting rig to goals in lux, measures and corrects it")
+set(CPACK_PACKAGE_DESCRIPTION "Reads a 3-D scene, the photometry of luminaires, what hangs where and goals in lux; computes
+levels and aims; drives dimmers and moving heads over sACN, Art-Net, USB-DMX, Modbus and CAN; reads luxmeters and corrects
+what the model got wrong. With a simulated rig that speaks the same protocols.")
+set(CPACK_PACKAGE_CONTACT "the Luxrig authors <luxrig@localhost>")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_SECTION electronics)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "fonts-dejavu-core")
+set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_LIST_DIR}/prerm)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+include(CPack)

@@ -1,0 +1,52 @@
+// init: a commented rig to start from, as `rigs/start` has it.
+#include <fmt/format.h>
+
+#include "core/rig/plain_text.h"
+#include "tools/command_line/installed.h"
+#include "tools/luxrig/command.h"
+#include "tools/luxrig/commands.h"
+
+namespace luxrig {
+namespace {
+
+constexpr std::string_view kNameOfStart = "name = \"start\"\n";
+
+}  // namespace
+
+int run_init(const std::filesystem::path& folder) {
+  const std::filesystem::path rig_file = folder / "rig.toml";
+  std::error_code error;
+  const auto refused = [&rig_file](std::string what, std::string mend) {
+    return report(std::vector<Problem>{{rig_file.string(), 0, 0, std::move(what), std::move(mend)}});
+  };
+  if (std::filesystem::exists(rig_file, error))
+    return refused("there is a rig already", "name another folder, or move that file away");
+  if (std::filesystem::exists(folder, error) && !std::filesystem::is_directory(folder, error))
+    return refused(folder.string() + " is a file", "name another folder");
+  const std::filesystem::path start = shared_folder() / "rigs/start/rig.toml";
+  auto text = read_file(start);
+  if (!text) {
+    return report(Fault{Cause::system, "", start.string() + " is missing: install Luxrig again, or build it anew", {}});
+  }
+  const auto name_at = text->find(kNameOfStart);
+  if (name_at == std::string::npos)
+    return report(Fault{Cause::system, "", start.string() + " is not the rig that came with this Luxrig", {}});
+  // "gallery", "gallery/" and "." alike.
+  auto place = std::filesystem::weakly_canonical(folder, error);
+  if (!place.has_filename()) place = place.parent_path();
+  std::string name = made_plain(place.filename().string());
+  if (name.empty()) name = "rig";
+  std::string quoted;
+  for (const char c : name) quoted += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c);
+  text->replace(name_at, kNameOfStart.size(), "name = \"" + quoted + "\"\n");
+  std::filesystem::create_directories(folder, error);
+  if (error) return report(Fault{Cause::system, "", folder.string() + ": " + error.message(), {}});
+  if (const auto written = write_file(rig_file, *text); !written) return report(written.error());
+  fmt::print(
+      "{0}\nnext: luxrig run {1} --sim shows it on simulated devices; then make it yours: every line says what it is "
+      "for\n",
+      rig_file.string(), folder.string());
+  return kExitOk;
+}
+
+}  // namespace luxrig
