@@ -15,28 +15,13 @@
 #include "core/scene/mesh_files_allowed.h"
 #include "core/scene/ply_file.h"
 #include "core/scene/ply_importer.h"
+#include "core/scene/up_axis.h"
 
 namespace luxrig {
 namespace {
 
 constexpr std::size_t kMaxTriangles = 50'000'000;
 constexpr double kMaxCoordinate_m = 1e9;  // beyond it a mesh is broken, or its unit wrong
-
-/// world_from_mesh for the up axis: a proper rotation that turns it to +Z.
-Mat3 rotation_to_z_up(UpAxis up) {
-  Mat3 rotation = Mat3::Identity();
-  switch (up) {
-    case UpAxis::x:  // about -Y: x -> z, z -> -x
-      rotation << 0, 0, -1, 0, 1, 0, 1, 0, 0;
-      break;
-    case UpAxis::y:  // about +X: y -> z, z -> -y
-      rotation << 1, 0, 0, 0, 0, -1, 0, 1, 0;
-      break;
-    case UpAxis::z:
-      break;
-  }
-  return rotation;
-}
 
 Eigen::Matrix4d to_eigen(const aiMatrix4x4& m) {
   Eigen::Matrix4d result;

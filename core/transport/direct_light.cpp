@@ -6,6 +6,7 @@
 
 #include "core/parallel.h"
 #include "core/transport/direct_sources.h"
+#include "core/transport/error_floor.h"
 #include "core/transport/progress.h"
 #include "core/transport/replicate_error.h"
 #include "core/transport/shape_light.h"
@@ -171,6 +172,7 @@ class Evaluation {
     CallingThreadProgress progress(options_.watch, done_, std::max(done_, end), round.size());
     parallel_for(round.size(), options_.threads, [&](std::size_t i) {
       Pair& pair = pairs_[round[i]];
+      if (pair.samples > 0 && options_.enough.stop_requested()) return;
       const std::uint32_t begin = pair.samples, last = begin == 0 ? kFirstSamples : 2 * begin;
       DirectSources::Scratch scratch;
       for (std::size_t k = 0; k < kDirectReplicates; ++k) {
@@ -196,11 +198,10 @@ class Evaluation {
     if (options_.watch.stop.stop_requested()) return false;
     done_ = std::max(done_, end);
     rays_sampled_ = 0;
-    brightest_lx_ = 0;
     for (const Pair& pair : pairs_) rays_sampled_ += pair.rays;
     lux_ = exact_lux_;
     for (const Pair& pair : pairs_) lux_[pair.receiver] += levels_[pair.emitter] * pair.mean_lux();
-    for (const double lux : lux_) brightest_lx_ = std::max(brightest_lx_, lux);
+    floor_lx_ = error_floor_lx(options_, lux_);
     return true;
   }
 
@@ -215,7 +216,7 @@ class Evaluation {
   }
 
   double relative_error(std::size_t r) const {
-    const double scale_lx = std::max(lux_[r], 0.001 * brightest_lx_);
+    const double scale_lx = std::max(lux_[r], floor_lx_);
     return scale_lx > 0 ? error_lx(r) / scale_lx : 0;
   }
 
@@ -223,11 +224,12 @@ class Evaluation {
   /// larger part in its error.
   std::vector<std::size_t> next_round() const {
     std::vector<std::size_t> round;
+    if (options_.enough.stop_requested()) return round;
     std::uint64_t left =
         options_.max_rays > direct_.rays + rays_sampled_ ? options_.max_rays - direct_.rays - rays_sampled_ : 0;
     for (std::size_t r = 0; r < receivers_.size(); ++r) {
       // Where all is dark so far, any doubt is too much.
-      const bool dark = lux_[r] == 0 && brightest_lx_ == 0;
+      const bool dark = lux_[r] == 0 && floor_lx_ == 0;
       const bool wants = dark ? error_lx(r) > 0 : relative_error(r) * kStopMargin > options_.wanted_relative_error;
       if (!wants) continue;
       double most = 0;
@@ -256,6 +258,7 @@ class Evaluation {
       }
       for (std::size_t r = 0; r < receivers_.size(); ++r)
         direct_.relative_error = std::max(direct_.relative_error, relative_error(r));
+      direct_.floor_lx = floor_lx_;
     }
     if (options_.watch.progress) options_.watch.progress(progress_end_);
   }
@@ -273,7 +276,7 @@ class Evaluation {
   std::vector<Pair> pairs_;              ///< by receiver
   std::vector<std::size_t> pairs_of_;    ///< per receiver, and the end
   std::vector<double> exact_lux_, lux_;  ///< per receiver, under the levels
-  double brightest_lx_ = 0, done_ = 0;
+  double floor_lx_ = 0, done_ = 0;
   std::uint64_t rays_sampled_ = 0;
 };
 

@@ -37,9 +37,12 @@ struct Emitter {
 };
 
 struct EvaluateOptions {
-  /// Wanted standard error of each receiver's illuminance, relative to
-  /// max(its illuminance, 0.001 of the brightest receiver's). Exact evaluators ignore it.
+  /// Wanted standard error of each receiver's illuminance, relative to max(its illuminance, the floor below). Exact
+  /// evaluators ignore it.
   double wanted_relative_error = 0.01;
+  /// The floor: the larger of a figure in lux and a share of the receivers' mean, and never less than 0.001 of the
+  /// brightest receiver's illuminance. The standard error need not be smaller than wanted_relative_error of it.
+  double floor_lx = 0, floor_of_mean = 0;
   /// Above 0, for path and gather: wanted root mean square of these errors in place of the error of each. Samples then
   /// go where they lower it most; receivers that are hard to tell keep larger errors. Other evaluators ignore it.
   double wanted_rms_error = 0;
@@ -49,6 +52,7 @@ struct EvaluateOptions {
   std::vector<double> levels;              ///< per emitter, ≥ 0; empty = all 1
   bool colour = false;                     ///< also fill TransportMatrix::rgb_per_level
   Watch watch;
+  std::stop_token enough;  ///< when requested, the answer is what has been reached soon after, with the error it has
 };
 
 /// T with its statistics. Rows are receivers, columns emitters.
@@ -62,6 +66,7 @@ struct TransportMatrix {
   /// and 0.0722, add up to it. Else empty.
   std::vector<Eigen::MatrixXd> rgb_per_level;
   double relative_error = 0;  ///< reached, at the options' levels; largest over receivers
+  double floor_lx = 0;        ///< relative_error of a dimmer receiver is relative to this; 0 when exact
   std::uint64_t rays = 0;
 
   [[nodiscard]] Eigen::Index receivers() const { return lux_per_level.rows(); }

@@ -94,14 +94,17 @@ class PathEvaluation {
       matrix_.lux_per_level = matrix_.direct_lux_per_level;
       matrix_.replicates = std::move(direct_replicates_);
       matrix_.relative_error = direct->relative_error;
+      matrix_.floor_lx = direct->floor_lx;
       if (channels_ == 3) start_colours();
       return std::move(matrix_);
     }
     sums_ = ReplicateSums(receivers_.size(), channels_, levels_);
     if (tails_) ends_.emplace(sampler_, *tails_, receivers_.size(), levels_);
     done_ = 0.05;
-    for (auto round = spent_.first(matrix_.rays); !round.empty(); round = spent_.next(matrix_.rays))
+    for (auto round = spent_.first(matrix_.rays); !round.empty(); round = spent_.next(matrix_.rays)) {
       if (!sample(round)) return tl::unexpected(Fault{Cause::cancelled, "", "stopped while tracing paths", {}});
+      if (options_.enough.stop_requested()) break;
+    }
     finish();
     return std::move(matrix_);
   }
@@ -116,15 +119,13 @@ class PathEvaluation {
       std::vector<PathTask> chunk = left;
       for (PathTask& task : chunk) task.end = std::min(task.end, task.begin + kChunk);
       sample_chunk(chunk, progress);
-      for (std::size_t i = 0; i < left.size(); ++i) left[i].begin = chunk[i].end;
+      if (options_.watch.stop.stop_requested()) return false;
+      for (std::size_t i = 0; i < left.size(); ++i) left[i].begin = spent_[chunk[i].receiver].samples = chunk[i].end;
       std::erase_if(left, [](const PathTask& task) { return task.begin == task.end; });
+      if (options_.enough.stop_requested()) break;
     }
-    if (options_.watch.stop.stop_requested()) return false;
     std::vector<std::size_t> sampled;
-    for (const PathTask& task : round) {
-      spent_[task.receiver].samples = task.end;
-      sampled.push_back(task.receiver);
-    }
+    for (const PathTask& task : round) sampled.push_back(task.receiver);
     if (ends_) {
       const auto rays = ends_->look_up(sampled, options_.threads);
       for (std::size_t i = 0; i < sampled.size(); ++i) spent_[sampled[i]].rays += rays[i], matrix_.rays += rays[i];
@@ -132,7 +133,7 @@ class PathEvaluation {
     for (const std::size_t r : sampled) estimate(r);
     if (ends_) record_bias_ = ends_->bias(spent_);
     done_ = spent_.done_after({}, done_);
-    spent_.find_brightest();
+    spent_.find_floor();
     return true;
   }
 
@@ -285,7 +286,7 @@ class PathEvaluation {
         estimate(r);
       }
       record_bias_ = ends_->bias(spent_);
-      spent_.find_brightest();
+      spent_.find_floor();
     }
     std::vector<std::uint32_t> samples;
     for (std::size_t r = 0; r < receivers_.size(); ++r) samples.push_back(spent_[r].samples);
@@ -301,6 +302,7 @@ class PathEvaluation {
       for (std::size_t r = 0; r < receivers_.size(); ++r) spent_[r].error_lx = error_lx[static_cast<Eigen::Index>(r)];
     }
     if (tails_) own_up_to_bias();
+    matrix_.floor_lx = spent_.floor_lx();
     for (std::size_t r = 0; r < receivers_.size(); ++r)
       matrix_.relative_error = std::max(matrix_.relative_error, spent_.relative_error(r));
     if (options_.watch.progress) options_.watch.progress(1.0);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/transport/error_floor.h"
 #include "core/transport/record_bias.h"
 
 namespace luxrig {
@@ -121,9 +122,10 @@ void PathRounds::judge_sharing(std::size_t receiver) {
   one.alone = one.alone || scatter > kMostScatter * one.least_scatter;
 }
 
-void PathRounds::find_brightest() {
-  brightest_lx_ = 0;
-  for (const ReceiverProgress& one : progress_) brightest_lx_ = std::max(brightest_lx_, one.lux);
+void PathRounds::find_floor() {
+  std::vector<double> lux;
+  for (const ReceiverProgress& one : progress_) lux.push_back(one.lux);
+  floor_lx_ = error_floor_lx(options_, lux);
   if (!by_rms()) return;
   for (std::size_t r = 0; r < progress_.size(); ++r) {
     ReceiverProgress& one = progress_[r];
@@ -136,7 +138,7 @@ void PathRounds::find_brightest() {
 }
 
 double PathRounds::relative_error(std::size_t receiver) const {
-  const double scale_lx = std::max(progress_[receiver].lux, 0.001 * brightest_lx_);
+  const double scale_lx = std::max(progress_[receiver].lux, floor_lx_);
   return scale_lx > 0 ? progress_[receiver].error_lx / scale_lx : 0;
 }
 

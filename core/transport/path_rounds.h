@@ -54,11 +54,13 @@ class PathRounds {
   /// To be called when the error of a receiver that shares records is known anew: tells whether it still should.
   void judge_sharing(std::size_t receiver);
   /// To be called when the lux of receivers is known anew.
-  void find_brightest();
+  void find_floor();
+  /// Below which errors are relative to this (error_floor.h).
+  [[nodiscard]] double floor_lx() const { return floor_lx_; }
 
   /// Standard error of a receiver at which sampling stops; under a wanted rms error, their rms.
   [[nodiscard]] double last_standard_error() const;
-  /// Relative to the receiver's lux or a thousandth of the brightest receiver's.
+  /// Relative to the receiver's lux or the floor.
   [[nodiscard]] double relative_error(std::size_t receiver) const;
   /// Share of the whole work done so far, or after a round: error falls at least with the root of the samples. At least
   /// `before`.
@@ -77,7 +79,7 @@ class PathRounds {
 
   const EvaluateOptions& options_;
   std::vector<ReceiverProgress> progress_;
-  double brightest_lx_ = 0;
+  double floor_lx_ = 0;
 };
 
 }  // namespace luxrig

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/check.h"
@@ -93,6 +94,17 @@ std::vector<Receiver> receivers_of(const Rig& rig) {
   for (const Point& point : rig.points) receivers.push_back({point.position_world_m, point.normal_world});
   for (const Luxmeter& meter : rig.luxmeters) receivers.push_back({meter.position_world_m, meter.normal_world});
   return receivers;
+}
+
+void set_error_floor(const Rig& rig, EvaluateOptions& options) {
+  constexpr double kShare = 0.1;
+  double smallest_lx = std::numeric_limits<double>::infinity();
+  for (const Point& point : rig.points)
+    for (const auto& lux : {point.goal_lx, point.max_lx})
+      if (lux && *lux > 0) smallest_lx = std::min(smallest_lx, *lux);
+  const bool any = std::isfinite(smallest_lx);
+  options.floor_lx = any ? kShare * smallest_lx : 0;
+  options.floor_of_mean = any ? 0 : kShare;
 }
 
 }  // namespace luxrig

@@ -35,4 +35,8 @@ namespace luxrig {
 /// points.size() + m is luxmeters[m] (also for a luxmeter that stands at a point).
 [[nodiscard]] std::vector<Receiver> receivers_of(const Rig& rig);
 
+/// The floor of errors (EvaluateOptions) that a rig's goals ask for: a tenth of its smallest goal or limit above 0;
+/// without any, a tenth of the receivers' mean illuminance. What a point gets below that is told less closely.
+void set_error_floor(const Rig& rig, EvaluateOptions& options);
+
 }  // namespace luxrig

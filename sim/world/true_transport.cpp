@@ -98,6 +98,7 @@ Result<std::unique_ptr<World>> World::make(const Rig& rig, const Deviations& dev
   for (const Fixture& fixture : rig.fixtures) any_moves = any_moves || fixture.moves;
   EvaluateOptions options;
   options.wanted_relative_error = max_error;
+  set_error_floor(rig, options);
   options.seed = deviations.seed;
   options.watch = part_of(watch, 0, any_moves ? 0.5 : 1);
   const auto transport = make_path_evaluator(scene)->evaluate(receivers, all_emitters_of(true_rig), options);

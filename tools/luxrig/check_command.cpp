@@ -9,6 +9,7 @@
 #include "core/photometry/beam.h"
 #include "core/rig/personality/personality.h"
 #include "core/rig/register_map/register_map.h"
+#include "core/transport/rig_notes/rig_notes.h"
 #include "drivers/registry.h"
 #include "drivers/when_data_stops.h"
 #include "tools/luxrig/addresses.h"
@@ -183,6 +184,26 @@ nlohmann::json outputs_json(const Rig& rig) {
   return all;
 }
 
+nlohmann::json problem_json(const Problem& p) {
+  return {{"file", p.file}, {"line", p.line}, {"column", p.column}, {"what", p.what}, {"mend", p.mend}};
+}
+
+/// All that is legal but worth a look: what the file says, where heads look, how the rig fits its scene.
+std::vector<Problem> all_notes(const Session& session) {
+  const Rig& rig = session.rig;
+  std::vector<Problem> notes = rig.notes;
+  const KeepOutZones zones(rig);
+  for (const std::size_t head : zones.heads()) {
+    const Fixture& fixture = rig.fixtures[head];
+    if (const auto zone = zones.met(head, fixture.joints))
+      notes.push_back({rig.file.string(), fixture.place.line, fixture.place.column,
+                       fmt::format("{} looks into keep-out zone \"{}\" as it hangs", fixture.name, zones.name(*zone)),
+                       "it stays dark until it is turned"});
+  }
+  for (Problem& note : notes_on(rig, session.scene, *session.rays)) notes.push_back(std::move(note));
+  return notes;
+}
+
 std::string place_text(const Vec3& p) {
   // Centimetres, and no zero with a sign.
   const Vec3 cm = (100 * p).array().round() + 0.0;
@@ -196,10 +217,7 @@ int run_check(const CheckArguments& arguments) {
   if (!session) {
     if (arguments.json) {
       nlohmann::json out = {{"ok", false}, {"problems", nlohmann::json::array()}};
-      for (const Problem& p : session.error()) {
-        out["problems"].push_back(
-            {{"file", p.file}, {"line", p.line}, {"column", p.column}, {"what", p.what}, {"mend", p.mend}});
-      }
+      for (const Problem& p : session.error()) out["problems"].push_back(problem_json(p));
       fmt::print("{}\n", out.dump(1));
       return kExitBadInput;
     }
@@ -207,6 +225,7 @@ int run_check(const CheckArguments& arguments) {
   }
   const Rig& rig = session->rig;
   const Scene& scene = session->scene;
+  const std::vector<Problem> notes = all_notes(*session);
   if (arguments.json) {
     nlohmann::json out = {{"ok", true},
                           {"rig", rig.name},
@@ -217,7 +236,9 @@ int run_check(const CheckArguments& arguments) {
                           {"luxmeters", rig.luxmeters.size()},
                           {"cameras", rig.cameras.size()},
                           {"points", rig.points.size()},
-                          {"warnings", scene.warnings}};
+                          {"warnings", scene.warnings},
+                          {"notes", nlohmann::json::array()}};
+    for (const Problem& note : notes) out["notes"].push_back(problem_json(note));
     if (arguments.outputs) out["outputs"] = outputs_json(rig);
     fmt::print("{}\n", out.dump(1));
     return kExitOk;
@@ -236,13 +257,7 @@ int run_check(const CheckArguments& arguments) {
                c.non_finite_vertices, c.bad_indices, c.degenerate_triangles);
   }
   for (const std::string& warning : scene.warnings) fmt::print("  warning    {}\n", warning);
-  for (const Problem& note : rig.notes) fmt::print("  note       {}\n", note.text());
-  const KeepOutZones zones(rig);
-  for (const std::size_t head : zones.heads()) {
-    if (const auto zone = zones.met(head, rig.fixtures[head].joints))
-      fmt::print("  note       {} looks into keep-out zone \"{}\" as it hangs: it stays dark until it is turned\n",
-                 rig.fixtures[head].name, zones.name(*zone));
-  }
+  for (const Problem& note : notes) fmt::print("  note       {}\n", note.text());
   if (rig.daylight) fmt::print("  daylight   {}\n", daylight_text(*rig.daylight));
   fmt::print("  counts     {} luminaires, {} fixtures, {} buses, {} luxmeters, {} cameras, {} points, {} tasks\n",
              rig.luminaires.size(), rig.fixtures.size(), rig.buses.size(), rig.luxmeters.size(), rig.cameras.size(),
@@ -286,7 +301,14 @@ int run_check(const CheckArguments& arguments) {
     points.row({p.name, place_text(p.position_world_m), p.goal_lx ? fmt::format("{:g}", *p.goal_lx) : "-",
                 p.max_lx ? fmt::format("{:g}", *p.max_lx) : "-", meter});
   }
-  fmt::print("{}\n{}: no problems found\n", points.text(), rig.name);
+  fmt::print("{}\n", points.text());
+  if (notes.empty()) {
+    fmt::print("{}: no problems found\n", rig.name);
+  } else {
+    fmt::print("{}: nothing keeps it from running, but {} above {} a look\n", rig.name,
+               notes.size() == 1 ? "the note" : fmt::format("the {} notes", notes.size()),
+               notes.size() == 1 ? "is worth" : "are worth");
+  }
   if (arguments.outputs) print_outputs(rig);
   return kExitOk;
 }

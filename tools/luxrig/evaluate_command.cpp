@@ -8,6 +8,7 @@
 #include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
 #include "tools/luxrig/table.h"
+#include "tools/luxrig/transport_json.h"
 
 namespace luxrig {
 namespace {
@@ -35,7 +36,8 @@ int run_evaluate(const EvaluateArguments& arguments) {
   const Rig& rig = session->rig;
 
   ComputeOptions compute = arguments.compute;
-  compute.watch = {stop_on_signals(), progress_line("evaluating")};
+  compute.watch = {stop_on_signals(), {}};
+  compute.said_as = "evaluating";
   ModelUsed used;
   const auto transport = compute_transport(*session, compute, *levels, &used);
   if (!transport) return report(transport.error());
@@ -78,16 +80,20 @@ int run_evaluate(const EvaluateArguments& arguments) {
   }
   const int threads = thread_count(compute.threads);
   if (arguments.json) {
-    const nlohmann::json out = {{"model", used.name},          {"model_reason", used.reason},
-                                {"points", std::move(points)}, {"rays", transport->rays},
-                                {"seconds", seconds},          {"relative_error", transport->relative_error},
-                                {"threads", threads}};
+    nlohmann::ordered_json out = transport_json(used);
+    out["points"] = std::move(points);
+    out["rays"] = transport->rays;
+    out["seconds"] = seconds;
+    out["threads"] = threads;
     fmt::print("{}\n", out.dump(1));
   } else {
-    fmt::print("{}\n{} model ({}): relative error {:.2g} (wanted {:.2g}), {} rays, {:.2f} s, {} threads\n",
-               table.text(), used.name, used.reason, transport->relative_error, compute.max_error, transport->rays,
+    fmt::print("{}\n{} model ({}): relative error {:.2g} (wanted {:.2g}{}), {} rays, {:.2f} s, {} threads\n",
+               table.text(), used.name, used.reason, transport->relative_error, compute.max_error,
+               used.error_floor_lx > 0 ? fmt::format(", or ± {:.2g} lx", used.error_floor_lx) : "", transport->rays,
                seconds, threads);
   }
+  if (const std::string warning = used.warning(); !warning.empty())
+    fmt::print(stderr, "luxrig: warning: {}\n", warning);
   return kExitOk;
 }
 

@@ -24,6 +24,16 @@ void add_compute(CLI::App& command, ComputeOptions& compute) {
                             {"path", Model::path},
                             {"cache", Model::cache}});
   command.add_option("--max-error", compute.max_error, "wanted relative standard error")->check(CLI::Range(1e-4, 1.0));
+  command
+      .add_option("--error-floor", compute.error_floor_lx,
+                  "standard error in lux that is small enough at any point (else --max-error of a tenth of the rig's "
+                  "smallest goal or limit; without any, of a tenth of the points' mean)")
+      ->check(CLI::Range(1e-9, 1e9));
+  command
+      .add_option("--max-seconds", compute.max_seconds,
+                  "after so long light is taken as it is known by then, with a warning (0: no end)")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1e9));
   command.add_option("--seed", compute.seed, "seed of the samples");
   command.add_option("--threads", compute.threads, "threads (0: one per core)")->check(CLI::Range(0, 1024));
 }

@@ -116,6 +116,7 @@ Result<PlacedInScene> search_places(const Rig& rig, const Scene& scene, const Ra
     }
     if (lamps.empty()) return Eigen::VectorXd::Zero(points * channels);
     evaluate.wanted_relative_error = evaluate.wanted_rms_error = options.max_error;  // as the error of a goal is
+    set_error_floor(rig, evaluate);
     evaluate.seed = options.seed;
     evaluate.threads = options.threads;
     evaluate.watch.stop = watch.stop();

@@ -11,7 +11,7 @@ namespace {
 
 using Steady = std::chrono::steady_clock;
 
-constexpr double kSilent_s = 2, kEvery_s = 10;  // not on a terminal, where a line each is kept
+constexpr double kSilent_s = 1.5, kEvery_s = 10;  // not on a terminal, where a line each is kept
 
 }  // namespace
 
@@ -44,12 +44,15 @@ void SearchWatch::run() {
   double said_s = 0;
   while (!changed_.wait_for(lock, std::chrono::milliseconds(100), [&] { return ended_; })) {
     const double now_s = std::chrono::duration<double>(Steady::now() - start).count();
-    if (asked_.stop_requested() || (seconds_ && now_s >= *seconds_)) source_.request_stop();
-    if (now_s < kSilent_s || (said_ && now_s - said_s < (terminal_ ? 0.5 : kEvery_s))) continue;
+    if (seconds_ && now_s >= *seconds_) time_is_up_ = true;
+    if (asked_.stop_requested() || time_is_up_) source_.request_stop();
+    if (name_.empty() || now_s < kSilent_s || (said_ && now_s - said_s < (terminal_ ? 0.5 : kEvery_s))) continue;
     said_s = now_s;
     said_ = true;
     fmt::print(stderr, "{}{}: {:.0f} s, {}{}", terminal_ ? "\r\x1b[K" : "", name_, now_s, text_,
-               terminal_ ? " (Ctrl-C: take this)" : "\n");
+               !terminal_               ? "\n"
+               : asked_.stop_possible() ? " (Ctrl-C: take this)"
+                                        : "");
     std::fflush(stderr);
   }
 }

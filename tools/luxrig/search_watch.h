@@ -1,6 +1,8 @@
 #pragma once
-/// Watches a search: a person sees how far it is from two seconds on, and what asks for its end reaches it.
+/// Watches a long computation: a person sees how far it is before two seconds have passed, and what asks for its end
+/// reaches it.
 
+#include <atomic>
 #include <condition_variable>
 #include <memory>
 #include <mutex>
@@ -13,8 +15,8 @@ namespace luxrig {
 
 class SearchWatch {
  public:
-  /// name      of the task, before each line
-  /// seconds   after which the search is asked to end
+  /// name      of the task, before each line; empty: says nothing
+  /// seconds   after which the computation is asked to end
   /// stop      asks it to end, too
   SearchWatch(std::string name, std::string first, std::optional<double> seconds, std::stop_token stop);
   ~SearchWatch();
@@ -22,6 +24,8 @@ class SearchWatch {
   SearchWatch& operator=(const SearchWatch&) = delete;
 
   [[nodiscard]] std::stop_token stop() const { return source_.get_token(); }
+  /// Whether the seconds have passed.
+  [[nodiscard]] bool time_is_up() const { return time_is_up_; }
   /// What it does now, or the best it has.
   void say(std::string text);
 
@@ -33,6 +37,7 @@ class SearchWatch {
   std::stop_token asked_;
   std::stop_source source_;
   bool terminal_;
+  std::atomic<bool> time_is_up_ = false;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::string text_;

@@ -1,5 +1,7 @@
 #include "tools/luxrig/session.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "core/rig/rig_file.h"
@@ -7,17 +9,29 @@
 #include "core/solve/placement/mounting.h"
 #include "core/transport/cache/radiance_cache.h"
 #include "core/transport/evaluator_choice.h"
+#include "core/transport/rig_notes/rig_notes.h"
 #include "core/transport/rig_transport.h"
 #include "drivers/camera/camera_source.h"
 #include "drivers/registry.h"
+#include "tools/luxrig/search_watch.h"
 
 namespace luxrig {
+
+std::string ModelUsed::warning() const {
+  if (reached()) return "";
+  return fmt::format(
+      "not as exact as wanted: relative error {:.2g}, wanted {:g}{}: {} or ask for less (--max-error, --error-floor)",
+      relative_error, wanted,
+      time_was_up ? fmt::format(", when {:g} s were over", max_seconds) : ", after the most rays that are cast",
+      time_was_up ? "give it more time (--max-seconds)" : "take another --model");
+}
 
 Checked<Session> open_session(const std::filesystem::path& rig_path) {
   auto rig = load_rig(rig_path);
   if (!rig) return tl::unexpected(std::move(rig.error()));
   if (auto problems = check_buses(*rig); !problems.empty()) return tl::unexpected(std::move(problems));
   if (auto problems = check_cameras(*rig); !problems.empty()) return tl::unexpected(std::move(problems));
+  if (auto problems = lamps_in_points(*rig); !problems.empty()) return tl::unexpected(std::move(problems));
   auto scene = build_scene(*rig);
   if (!scene) return tl::unexpected(std::move(scene.error()));
   Session session{std::move(*rig), std::move(*scene), nullptr};
@@ -39,17 +53,30 @@ Result<TransportMatrix> compute_transport(const Session& session, const ComputeO
 Result<TransportMatrix> compute_transport(const Rig& rig, const Scene& scene, const RayScene& rays,
                                           const ComputeOptions& options, const std::vector<double>& levels,
                                           ModelUsed* used) {
+  const std::optional<double> seconds = options.max_seconds > 0 ? std::optional(options.max_seconds) : std::nullopt;
+  SearchWatch watch(options.said_as, "starting", seconds, {});
   EvaluateOptions evaluate;
   evaluate.wanted_relative_error = options.max_error;
   evaluate.seed = options.seed;
   evaluate.threads = options.threads;
   evaluate.levels = levels;
   evaluate.watch = options.watch;
+  evaluate.enough = watch.stop();
+  if (!options.said_as.empty())
+    evaluate.watch.progress = [&](double done) {
+      watch.say(fmt::format("{:.0f} %", 100 * done));
+      if (options.watch.progress) options.watch.progress(done);
+    };
+  set_error_floor(rig, evaluate);
+  if (options.error_floor_lx) {
+    evaluate.floor_lx = *options.error_floor_lx / options.max_error;
+    evaluate.floor_of_mean = 0;
+  }
   evaluate.colour = rig.colour_goals();
   const auto receivers = receivers_of(rig);
   const auto emitters = all_emitters_of(rig);
   if (emitters.empty()) {  // a rig in which all light is yet to be placed
-    if (used) *used = {"direct", "nothing shines"};
+    if (used) *used = {"direct", "nothing shines", options.max_error};
     TransportMatrix dark;
     dark.lux_per_level = dark.direct_lux_per_level =
         Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(receivers.size()), 0);
@@ -78,8 +105,11 @@ Result<TransportMatrix> compute_transport(const Rig& rig, const Scene& scene, co
       choice.evaluator = make_cache_evaluator(scene, rays);
       break;
   }
-  if (used) *used = {std::string(choice.evaluator->name()), choice.reason};
-  return choice.evaluator->evaluate(receivers, emitters, evaluate);
+  auto transport = choice.evaluator->evaluate(receivers, emitters, evaluate);
+  if (used && transport)
+    *used = {std::string(choice.evaluator->name()),   choice.reason,      options.max_error,  transport->relative_error,
+             options.max_error * transport->floor_lx, watch.time_is_up(), options.max_seconds};
+  return transport;
 }
 
 std::vector<PlannedPoint> predicted_points(const Rig& rig, const TransportMatrix& transport,

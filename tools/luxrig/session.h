@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "core/control/plan.h"
@@ -28,14 +29,25 @@ enum class Model { automatic, direct, gather, path, cache };
 struct ComputeOptions {
   Model model = Model::automatic;
   double max_error = 0.01;
+  std::optional<double> error_floor_lx;  ///< standard error that is small enough at any point; none: by the goals
+  double max_seconds = 120;              ///< of each computation of transport; 0: without an end
   std::uint64_t seed = 1;
   int threads = 0;
   Watch watch;
+  std::string said_as;  ///< before lines of progress on standard error; empty: none
 };
 
-/// Which evaluator did it, and why that one.
+/// Which evaluator did it, why that one, and how close it came.
 struct ModelUsed {
   std::string name, reason;
+  double wanted = 0, relative_error = 0;
+  double error_floor_lx = 0;  ///< standard error that was small enough at any point; 0: exact
+  bool time_was_up = false;   ///< it ended by ComputeOptions::max_seconds
+  double max_seconds = 0;
+
+  [[nodiscard]] bool reached() const { return relative_error <= wanted; }
+  /// What a person should know when the wanted error was not reached, and what would mend it; else empty.
+  [[nodiscard]] std::string warning() const;
 };
 
 /// T of the rig's points (first) and luxmeters at its aims: a column per fixture, then daylight's

@@ -7,6 +7,7 @@
 #include "tools/luxrig/commands.h"
 #include "tools/luxrig/solve_tasks.h"
 #include "tools/luxrig/table.h"
+#include "tools/luxrig/transport_json.h"
 
 namespace luxrig {
 namespace {
@@ -134,22 +135,27 @@ int run_solve(const SolveArguments& arguments) {
   const auto session = open_session(arguments.rig);
   if (!session) return report(session.error());
   ComputeOptions compute = arguments.compute;
-  compute.watch = {stop, progress_line("transport")};
-  const auto transport = compute_transport(*session, compute);
+  compute.watch = {stop, {}};
+  compute.said_as = "transport";
+  ModelUsed used;
+  const auto transport = compute_transport(*session, compute, {}, &used);
   if (!transport) return report(transport.error());
-  compute.watch.progress = nullptr;
   auto solved = solve_tasks(*session, *transport, compute);
   if (!solved) return report(solved.error());
+  if (solved->anew) used = *solved->anew;
   Plan* const plan = &solved->plan;
   if (stop.stop_requested()) fmt::print(stderr, "stopped: this is the best so far\n");
   plan->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
+  if (const std::string warning = used.warning(); !warning.empty())
+    fmt::print(stderr, "luxrig: warning: {}\n", warning);
+  const std::string plan_json = with_transport(to_json(*plan), used);
   if (arguments.output) {
-    if (const auto written = write_file(*arguments.output, to_json(*plan)); !written) return report(written.error());
+    if (const auto written = write_file(*arguments.output, plan_json); !written) return report(written.error());
   }
   const int exit_code = nothing_missed(*plan) ? kExitOk : kExitFailed;
   if (arguments.json) {
-    fmt::print("{}\n", to_json(*plan));
+    fmt::print("{}\n", plan_json);
     return exit_code;
   }
   std::vector<std::string> heads = {"point", ">goal lx", ">lux", ">± se", ">error", "goal", ">max lx", "why"};

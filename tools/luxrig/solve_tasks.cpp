@@ -120,7 +120,7 @@ SolvedTasks TaskSolver::done() {
     for (PlannedPoint& point : plan_.points) point.goal_lux.reset();
   judge(plan_, rig_.control.goal_tolerance);
   plan_.seconds = seconds_since(start_);
-  return {std::move(plan_), std::move(rig_), std::move(transport_)};
+  return {std::move(plan_), std::move(rig_), std::move(transport_), std::move(used_)};
 }
 
 PlannedLight TaskSolver::light_of(Index light) const {
@@ -243,9 +243,11 @@ Result<void> TaskSolver::hang(const Task& task, std::size_t luminaire, std::span
 Result<void> TaskSolver::light_anew(const std::vector<double>& levels) {
   ComputeOptions compute = options_;
   compute.watch = {};
-  auto transport = compute_transport(rig_, session_.scene, *session_.rays, compute, levels);
+  ModelUsed used;
+  auto transport = compute_transport(rig_, session_.scene, *session_.rays, compute, levels, &used);
   if (!transport) return tl::unexpected(std::move(transport.error()));
   transport_ = std::move(*transport);
+  used_ = std::move(used);
   return {};
 }
 

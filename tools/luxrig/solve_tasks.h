@@ -9,8 +9,9 @@ namespace luxrig {
 
 struct SolvedTasks {
   Plan plan;
-  Rig rig;                    ///< heads look where the plan has them look; placed lights are its last fixtures
-  TransportMatrix transport;  ///< of that rig
+  Rig rig;                          ///< heads look where the plan has them look; placed lights are its last fixtures
+  TransportMatrix transport;        ///< of that rig
+  std::optional<ModelUsed> anew{};  ///< how that was computed, when it is no longer the one given
 };
 
 /// All tasks. Goals and limits count all light, daylight too; light that one task has set or placed counts in the next.

@@ -72,6 +72,7 @@ class TaskSolver {
   KeepOutZones zones_;
   Rig rig_;  ///< with placed lights as further fixtures, and heads as aimed
   TransportMatrix transport_;
+  std::optional<ModelUsed> used_;  ///< of the last transport that was computed here
   Index own_;
   Eigen::VectorXd level_;
   std::vector<std::string> why_;

@@ -207,6 +207,7 @@ int run_rig(const RunArguments& arguments) {
   say.say(fmt::format("transport: {} x {} by {}, relative error {:.2g}, {} rays, {} threads", transport->receivers(),
                       transport->emitters(), used.name, transport->relative_error, transport->rays,
                       thread_count(compute.threads)));
+  if (const std::string warning = used.warning(); !warning.empty()) say.say("warning: " + warning);
   compute.watch.progress = nullptr;
   std::optional<Plan> hung;
   if (arguments.pictures) {

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <optional>
 
 #include "core/transport/cache/radiance_cache.h"
 #include "core/transport/lamps.h"
@@ -41,22 +42,35 @@ class CacheEvaluator final : public Evaluator {
     CacheSettings settings = settings_;
     double begin = 0;
     std::uint64_t spent = 0;
+    // Ends a refinement half done: the attempt before is then the answer.
+    std::stop_source halt;
+    const std::stop_callback when_stopped(options.watch.stop, [&] { halt.request_stop(); });
+    const std::stop_callback when_enough(options.enough, [&] { halt.request_stop(); });
+    std::optional<TransportMatrix> reached;
     for (int attempt = 0;; ++attempt) {
       const double end = begin + (1 - begin) * 0.2;
       RadianceCache::BuildOptions build;
       build.seed = options.seed;
       build.threads = options.threads;
       build.watch = part_of(options.watch, begin, begin + (end - begin) / 2);
+      if (reached) build.watch.stop = halt.get_token();
       // Nothing to light or nothing that shines, and open air, need no cache; an empty one says so.
       const bool dark = emitters.empty() || receivers.empty() || scene_.triangles.empty();
       auto cache = RadianceCache::build(dark ? Scene{} : scene_, rays_, receivers, settings, build);
+      const auto ended_early = [&] {
+        return reached && options.enough.stop_requested() && !options.watch.stop.stop_requested();
+      };
+      if (!cache && ended_early()) return std::move(*reached);
       if (!cache) return tl::unexpected(std::move(cache.error()));
       EvaluateOptions evaluate = options;
       evaluate.watch = part_of(options.watch, begin + (end - begin) / 2, end);
+      if (reached) evaluate.watch.stop = halt.get_token();
       auto matrix = cache->evaluate(emitters, evaluate);
+      if (!matrix && ended_early()) return std::move(*reached);
       if (!matrix) return matrix;
       spent += cache->report().rays + matrix->rays;
       const bool enough = matrix->relative_error <= options.wanted_relative_error || attempt == kRefinements ||
+                          options.enough.stop_requested() ||
                           spent + 4 * (cache->report().rays + matrix->rays) > options.max_rays;
       if (options.watch.progress) options.watch.progress(enough ? 1.0 : end);
       if (options.watch.stop.stop_requested())
@@ -65,6 +79,8 @@ class CacheEvaluator final : public Evaluator {
         matrix->rays = dark ? matrix->rays : spent;
         return matrix;
       }
+      reached = std::move(*matrix);
+      reached->rays = spent;
       begin = end;
       settings = refined(settings);
     }

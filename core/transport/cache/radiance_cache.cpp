@@ -6,6 +6,7 @@
 
 #include "core/transport/cache/cache_method.h"
 #include "core/transport/direct_light.h"
+#include "core/transport/error_floor.h"
 #include "core/transport/progress.h"
 #include "core/transport/replicate_error.h"
 
@@ -90,6 +91,7 @@ Result<TransportMatrix> RadianceCache::evaluate(std::span<const Emitter> emitter
   if (!reflects) {
     matrix.replicates = std::move(direct->replicates);
     matrix.relative_error = direct->relative_error;
+    matrix.floor_lx = direct->floor_lx;
     if (options.colour)
       for (int c = 0; c < 3; ++c) matrix.rgb_per_level.push_back(coloured(matrix.direct_lux_per_level, c));
     return matrix;
@@ -132,8 +134,9 @@ Result<TransportMatrix> RadianceCache::evaluate(std::span<const Emitter> emitter
   Eigen::VectorXd levels = Eigen::VectorXd::Ones(matrix.emitters());
   for (std::size_t e = 0; e < options.levels.size(); ++e) levels[static_cast<Eigen::Index>(e)] = options.levels[e];
   const Eigen::VectorXd lux = matrix.lux(levels), error_lx = matrix.standard_error_lux(levels);
+  matrix.floor_lx = error_floor_lx(options, {lux.data(), static_cast<std::size_t>(lux.size())});
   for (Eigen::Index r = 0; r < matrix.receivers(); ++r) {
-    const double scale_lx = std::max(lux[r], 0.001 * lux.maxCoeff());
+    const double scale_lx = std::max(lux[r], matrix.floor_lx);
     if (scale_lx > 0) matrix.relative_error = std::max(matrix.relative_error, error_lx[r] / scale_lx);
   }
   if (options.watch.progress) options.watch.progress(1.0);

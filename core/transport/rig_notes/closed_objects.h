@@ -1,0 +1,28 @@
+#pragma once
+/// Inside of which closed object is a place? Private to rig_notes.
+
+#include <optional>
+
+#include "core/scene/ray_scene.h"
+#include "core/scene/scene.h"
+
+namespace luxrig {
+
+/// The object of the rig file (never the scene's own mesh, nor one as large as a room) inside of which a place is: rays
+/// from there leave it an odd number of times, nearly whatever their direction. Index into Scene::object_names.
+class ClosedObjects {
+ public:
+  ClosedObjects(const Scene& scene, const RayScene& rays);
+  [[nodiscard]] std::optional<std::uint32_t> around(const Vec3& position_world_m) const;
+
+ private:
+  /// Bit by bit, the objects whose surface a ray meets an odd number of times.
+  [[nodiscard]] std::vector<bool> crossed_oddly(const Vec3& from_world_m, const Vec3& direction_world) const;
+
+  const Scene& scene_;
+  const RayScene& rays_;
+  std::vector<Eigen::AlignedBox3d> bounds_;  ///< per object
+  double room_m3_ = 0;
+};
+
+}  // namespace luxrig

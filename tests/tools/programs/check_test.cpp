@@ -1,0 +1,161 @@
+// What `check` notes, and that `evaluate` and `solve` come to an end with a rig that deserves such notes.
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "tests/tools/programs/live_rig.h"
+
+namespace luxrig::testing {
+namespace {
+
+/// The reading room, to be spoilt.
+class SpoiltRoom {
+ public:
+  SpoiltRoom() {
+    std::filesystem::copy(source("rigs/reading-room"), folder_ / "room");
+    text_ = text_of(folder_ / "room/rig.toml");
+  }
+  void replace(const std::string& from, const std::string& to) {
+    const auto at = text_.find(from);
+    ASSERT_NE(at, std::string::npos) << from;
+    text_.replace(at, from.size(), to);
+    write();
+  }
+  void add(const std::string& text) {
+    text_ += "\n" + text;
+    write();
+  }
+  [[nodiscard]] std::string path() const { return (folder_ / "room").string(); }
+  /// The line that a text stands in, from 1.
+  [[nodiscard]] int line_of(const std::string& text) const {
+    const auto end = text_.begin() + static_cast<std::ptrdiff_t>(text_.find(text));
+    return 1 + static_cast<int>(std::count(text_.begin(), end, '\n'));
+  }
+  Ran run(const std::string& command, const std::vector<std::string>& options = {}) const {
+    std::vector<std::string> words = {program("luxrig"), command, path()};
+    words.insert(words.end(), options.begin(), options.end());
+    return luxrig::testing::run(words, 120s);
+  }
+
+ private:
+  void write() const { std::ofstream(folder_ / "room/rig.toml") << text_; }
+  Folder folder_;
+  std::string text_;
+};
+
+json json_in(const Ran& ran) {
+  const auto begin = ran.output.find("{\n");
+  return begin == std::string::npos ? json() : json::parse(ran.output.substr(begin), nullptr, false);
+}
+
+constexpr const char* kInsideADesk = R"([[point]]
+name = "inside"
+position_m = [1.8, 2.6, 0.4]
+normal = [0, 0, 1]
+)";
+
+TEST(Check, NotesOnARigThatDoesNotFitItsSceneAreSaidWithPlaceFigureAndMendAndDoNotRefuse) {
+  SpoiltRoom room;
+  room.add(kInsideADesk);
+  room.add("[[point]]\nname = \"behind\"\nposition_m = [3.0, 5.01, 1.5]\nnormal = [0, -1, 0]\n");
+  const Ran ran = room.run("check");
+  EXPECT_EQ(ran.code, 0) << ran.output;
+  EXPECT_NE(ran.output.find("point \"inside\" is inside of object \"desk middle-west\", 0.34 m below its surface"),
+            std::string::npos)
+      << ran.output;
+  EXPECT_NE(ran.output.find("point \"behind\" faces a surface of the scene"), std::string::npos) << ran.output;
+  EXPECT_NE(ran.output.find("10.0 mm before it"), std::string::npos) << ran.output;
+  EXPECT_NE(ran.output.find("the 2 notes above are worth a look"), std::string::npos) << ran.output;
+  EXPECT_EQ(ran.output.find("no problems found"), std::string::npos) << ran.output;
+  const json out = json_in(room.run("check", {"--json"}));
+  ASSERT_EQ(out["notes"].size(), 2u) << out;
+  EXPECT_TRUE(out["ok"].get<bool>());
+  EXPECT_GT(out["notes"][0]["line"].get<int>(), 0);
+  EXPECT_FALSE(out["notes"][0]["mend"].get<std::string>().empty());
+}
+
+TEST(Check, AMeshWithZUpThatIsReadWithYUpIsNoted) {
+  SpoiltRoom room;
+  room.replace("up_axis = \"z\"", "# up_axis");
+  const Ran ran = room.run("check");
+  EXPECT_EQ(ran.code, 0) << ran.output;
+  EXPECT_NE(ran.output.find("set up_axis = \"z\" in [scene]"), std::string::npos) << ran.output;
+}
+
+TEST(Check, AMeshInMetresThatIsReadInMillimetresIsNoted) {
+  SpoiltRoom room;
+  room.replace("up_axis = \"z\"", "up_axis = \"z\"\nunit = \"mm\"");
+  const Ran ran = room.run("check");
+  EXPECT_EQ(ran.code, 0) << ran.output;
+  EXPECT_NE(ran.output.find("set unit = \"m\" in [scene]"), std::string::npos) << ran.output;
+}
+
+TEST(Check, NothingIsNotedOfTheRigsThatAreShipped) {
+  for (const auto& entry : std::filesystem::directory_iterator(source("rigs"))) {
+    if (!std::filesystem::exists(entry.path() / "rig.toml")) continue;
+    const json out = json_in(luxrig::testing::run({program("luxrig"), "check", entry.path().string(), "--json"}));
+    EXPECT_EQ(out["notes"], json::array()) << entry.path();
+  }
+}
+
+TEST(Check, ALampInAPointIsRefusedByNameByEveryCommandThatComputes) {
+  SpoiltRoom room;
+  room.add(R"([[luminaire]]
+name = "bulb"
+model = "isotropic"
+lumens = 800
+
+[[fixture]]
+name = "fallen"
+luminaire = "bulb"
+position_m = [3.0, 3.5, 0.9]
+bus = "dmx"
+universe = 9
+address = 1
+
+[[point]]
+name = "under it"
+position_m = [3.0, 3.5, 0.9]
+normal = [0, 0, 1]
+)");
+  for (const char* command : {"check", "evaluate", "solve"}) {
+    const Ran ran = room.run(command);
+    EXPECT_EQ(ran.code, 2) << command << '\n' << ran.output;
+    EXPECT_NE(ran.output.find("fixture \"fallen\" lies in point \"under it\""), std::string::npos) << ran.output;
+  }
+}
+
+TEST(Enough, APointInsideOfAnObjectDoesNotKeepEvaluateAndSolveFromEnding) {
+  SpoiltRoom room;
+  room.add(kInsideADesk);
+  const json out = json_in(room.run("evaluate", {"--max-error", "0.02", "--json"}));
+  ASSERT_TRUE(out.is_object());
+  EXPECT_TRUE(out["reached"].get<bool>()) << out;
+  EXPECT_DOUBLE_EQ(out["wanted"].get<double>(), 0.02);
+  EXPECT_LE(out["relative_error"].get<double>(), 0.02);
+  EXPECT_GT(out["error_floor_lux"].get<double>(), 0);
+  const Ran solved = room.run("solve", {"--max-error", "0.02", "--json"});
+  EXPECT_TRUE(json_in(solved)["transport"]["reached"].get<bool>()) << solved.output;
+}
+
+TEST(Enough, WhenTheTimeIsUpWhatIsReachedIsSaidAndProgressBeforeThat) {
+  SpoiltRoom room;
+  const Ran ran = room.run("evaluate", {"--model", "path", "--max-error", "0.0001", "--max-seconds", "3", "--json"});
+  EXPECT_EQ(ran.code, 0) << ran.output;
+  EXPECT_NE(ran.output.find("evaluating: "), std::string::npos) << ran.output;
+  EXPECT_LT(ran.output.find("evaluating: "), ran.output.find("{\n"));
+  EXPECT_NE(ran.output.find("warning: not as exact as wanted"), std::string::npos) << ran.output;
+  EXPECT_NE(ran.output.find("when 3 s were over: give it more time (--max-seconds)"), std::string::npos) << ran.output;
+  // The warning may come before or after what is printed: read up to where the JSON ends.
+  const std::string text = ran.output.substr(ran.output.find("{\n"));
+  const json out = json::parse(text.substr(0, text.rfind('}') + 1), nullptr, false);
+  ASSERT_TRUE(out.is_object()) << ran.output;
+  EXPECT_FALSE(out["reached"].get<bool>());
+  EXPECT_TRUE(out["ended_by_time"].get<bool>());
+  EXPECT_GT(out["relative_error"].get<double>(), 0.0001);
+  EXPECT_FALSE(out["warning"].get<std::string>().empty());
+  for (const json& point : out["points"]) EXPECT_GT(point["standard_error_lux"].get<double>(), 0) << point;
+}
+
+}  // namespace
+}  // namespace luxrig::testing

@@ -1,0 +1,35 @@
+#pragma once
+/// How a computation of transport went, as `evaluate --json` and plans tell it.
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tools/luxrig/session.h"
+
+namespace luxrig {
+
+/// "model", "model_reason", "wanted" and "relative_error" (standard errors, of max(a point's lux, floor)), "reached":
+/// whether the second is within the first, "error_floor_lux": small enough at any point (absent when all is exact),
+/// "ended_by_time" and "warning" when it was not reached.
+[[nodiscard]] inline nlohmann::ordered_json transport_json(const ModelUsed& used) {
+  nlohmann::ordered_json out = {{"model", used.name},
+                                {"model_reason", used.reason},
+                                {"wanted", used.wanted},
+                                {"relative_error", used.relative_error},
+                                {"reached", used.reached()}};
+  if (used.error_floor_lx > 0) out["error_floor_lux"] = used.error_floor_lx;
+  if (!used.reached()) {
+    out["ended_by_time"] = used.time_was_up;
+    out["warning"] = used.warning();
+  }
+  return out;
+}
+
+/// A plan with that under "transport".
+[[nodiscard]] inline std::string with_transport(const std::string& plan_json, const ModelUsed& used) {
+  auto plan = nlohmann::ordered_json::parse(plan_json);
+  plan["transport"] = transport_json(used);
+  return plan.dump(1);
+}
+
+}  // namespace luxrig
