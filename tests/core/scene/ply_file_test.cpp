@@ -166,7 +166,7 @@ TEST_F(PlyFiles, AgreesWithItselfAcrossTheEdgesOfItsBlocks) {
   const auto mesh = read(bytes + "3 0 1 2");
   ASSERT_TRUE(mesh.has_value()) << mesh.error().front().text();
   for (std::size_t i = 0; i < wanted.size(); ++i) {
-    ASSERT_EQ(mesh->vertices[i / 3][static_cast<Eigen::Index>(i % 3)], static_cast<float>(wanted[i])) << i;
+    ASSERT_EQ(mesh->vertices[i / 3][static_cast<Eigen::Index>(i % 3)], wanted[i]) << i;
   }
 }
 
