@@ -1,240 +1,120 @@
 #include "core/scene/mesh_file.h"
 
-#include <assimp/material.h>
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
-
 #include <algorithm>
-#include <assimp/Importer.hpp>
 #include <cmath>
-#include <exception>
 #include <limits>
+#include <new>
 #include <utility>
 
 #include "core/rig/plain_text.h"
-#include "core/scene/mesh_files_allowed.h"
+#include "core/scene/files_beside.h"
+#include "core/scene/gltf_file.h"
+#include "core/scene/mesh_reading.h"
+#include "core/scene/obj_file.h"
 #include "core/scene/ply_file.h"
-#include "core/scene/ply_importer.h"
+#include "core/scene/polygon_split.h"
+#include "core/scene/stl_file.h"
+#include "core/scene/surface_colours.h"
+#include "core/scene/tds_file.h"
 #include "core/scene/up_axis.h"
 
 namespace luxrig {
 namespace {
 
-constexpr std::size_t kMaxTriangles = 50'000'000;
+constexpr std::size_t kMaxFileBytes = std::size_t{8} << 30;
 constexpr double kMaxCoordinate_m = 1e9;  // beyond it a mesh is broken, or its unit wrong
+constexpr double kFarOut_m = 1000;        // from there on float is coarser than 0.06 mm
 
-Eigen::Matrix4d to_eigen(const aiMatrix4x4& m) {
-  Eigen::Matrix4d result;
-  result << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, m.d1, m.d2, m.d3, m.d4;
-  return result;
+tl::unexpected<std::vector<Problem>> refuse_mesh(const std::string& file, std::string what, std::string mend) {
+  return tl::unexpected(std::vector<Problem>{{file, 0, 0, std::move(what), std::move(mend)}});
 }
 
-class MeshReader {
+/// Places, splits and cleans what a file says.
+class SceneOfMesh {
  public:
-  explicit MeshReader(const MeshFile& file) : file_(file) {}
+  SceneOfMesh(PolygonMesh mesh, const Eigen::Affine3d& world_from_mesh)
+      : mesh_(std::move(mesh)), world_from_mesh_(world_from_mesh), colours_(mesh_) {}
 
-  Checked<Scene> read() {
-    try {
-      if (const auto refusal = why_not_opened(file_.path)) return refuse(refusal->what, refusal->mend);
-      Assimp::Importer importer;
-      AllowedFiles* const files = restrict_to(importer, file_.path);
-      if (extension_of(file_.path) == "ply") {
-        auto ply = read_ply(file_.path);
-        if (!ply) return tl::unexpected(std::move(ply.error()));
-        give_ply(importer, std::move(*ply));
+  Scene make(std::string name) {
+    scene_.object_names.push_back(std::move(name));
+    scene_.warnings = std::move(mesh_.warnings);
+    place_vertices();
+    std::vector<Vec3> points;
+    std::vector<std::array<std::uint32_t, 3>> split;
+    std::size_t first = 0;
+    for (std::size_t face = 0; face < mesh_.corner_counts.size(); ++face) {
+      const std::size_t count = mesh_.corner_counts[face];
+      const auto begin = mesh_.corners.begin() + static_cast<std::ptrdiff_t>(first);
+      const auto end = begin + static_cast<std::ptrdiff_t>(count);
+      const bool bad = std::any_of(begin, end, [&](std::uint32_t index) { return index >= mesh_.vertices.size(); });
+      scene_.cleaning.bad_indices += bad ? 1 : 0;
+      if (!bad && count >= 3) {  // points and lines carry no light
+        points.clear();
+        for (auto corner = begin; corner != end; ++corner) points.push_back(mesh_.vertices[*corner]);
+        split.clear();
+        split_polygon(points, split);
+        for (const auto& triangle : split)
+          add_triangle({first + triangle[0], first + triangle[1], first + triangle[2]}, face);
       }
-      // No post-processing yet: assimp's steps follow bad indices out of their arrays.
-      const aiScene* source = importer.ReadFile(file_.path.string(), 0);
-      if (source != nullptr) {
-        if (!drop_unusable_faces(*source)) {
-          return refuse("has a face with more than " + std::to_string(kMaxCorners) + " corners",
-                        "export it as triangles");
-        }
-        source = importer.ApplyPostProcessing(aiProcess_Triangulate);
-      }
-      if (source == nullptr || source->mRootNode == nullptr) {
-        return refuse("is no mesh that can be read: " + first_line(importer.GetErrorString()),
-                      "export it again as OBJ, PLY, STL or glTF");
-      }
-      if (count_triangles(*source) > kMaxTriangles) {
-        return refuse("has more than 50 million triangles", "give a simplified mesh");
-      }
-      scene_.object_names.push_back(file_.path.filename().string());
-      read_materials(*source, *files);
-      read_nodes(*source);
-    } catch (const std::exception& error) {  // assimp throws on some garbage, and when memory ends
-      return refuse(std::string("is no mesh that can be read: ") + first_line(error.what()),
-                    "export it again as OBJ, PLY, STL or glTF");
+      first += count;
     }
-    if (scene_.triangles.empty()) {
-      return refuse("holds no usable triangle (" + std::to_string(scene_.cleaning.total()) + " faults)",
-                    "give a mesh with faces");
-    }
-    drop_idle_materials();
+    scene_.materials = colours_.take();
     note_cleaning();
     return std::move(scene_);
   }
 
  private:
-  [[nodiscard]] tl::unexpected<std::vector<Problem>> refuse(std::string what, std::string mend) const {
-    return tl::unexpected(std::vector<Problem>{{file_.path.string(), 0, 0, std::move(what), std::move(mend)}});
-  }
-
-  static std::string first_line(std::string text) {
-    return made_plain(text.substr(0, std::min(text.find('\n'), std::size_t{200})));
-  }
-
-  /// Each node with its transform from the root's frame; a list, since a hostile tree is deep.
-  struct Placed {
-    const aiNode* node;
-    Eigen::Matrix4d root_from_node;
-  };
-  template <class F>
-  static void for_each_node(const aiScene& source, const F& visit) {
-    std::vector<Placed> open{{source.mRootNode, to_eigen(source.mRootNode->mTransformation)}};
-    while (!open.empty()) {
-      const Placed here = open.back();
-      open.pop_back();
-      visit(here);
-      for (unsigned i = here.node->mNumChildren; i-- > 0;) {  // last first: popped in file order
-        const aiNode* const child = here.node->mChildren[i];
-        open.push_back({child, here.root_from_node * to_eigen(child->mTransformation)});
-      }
-    }
-  }
-
-  /// After triangulation, so faces are triangles; a mesh counts once for each node that shows it.
-  static std::size_t count_triangles(const aiScene& source) {
-    std::size_t count = 0;
-    for_each_node(source, [&](const Placed& placed) {
-      for (unsigned i = 0; i < placed.node->mNumMeshes; ++i) {
-        const unsigned mesh = placed.node->mMeshes[i];
-        if (mesh < source.mNumMeshes) count += source.mMeshes[mesh]->mNumFaces;
-      }
-    });
-    return count;
-  }
-
-  /// Faces with an index past the vertices (counted), and points and lines, which carry no light. In place:
-  /// the importer owns the meshes, and hands out as const what it made as not.
-  /// returns  whether each face left has few enough corners to be split
-  bool drop_unusable_faces(const aiScene& source) {
-    for (unsigned i = 0; i < source.mNumMeshes; ++i) {
-      aiMesh& mesh = *source.mMeshes[i];
-      unsigned kept = 0;
-      bool polygons = false;
-      for (unsigned j = 0; j < mesh.mNumFaces; ++j) {
-        aiFace& face = mesh.mFaces[j];
-        const bool bad = std::any_of(face.mIndices, face.mIndices + face.mNumIndices,
-                                     [&](unsigned index) { return index >= mesh.mNumVertices; });
-        scene_.cleaning.bad_indices += bad ? 1 : 0;
-        if (bad || face.mNumIndices < 3) continue;
-        if (face.mNumIndices > kMaxCorners) return false;
-        polygons = polygons || face.mNumIndices > 3;
-        aiFace& to = mesh.mFaces[kept++];
-        std::swap(to.mIndices, face.mIndices);
-        std::swap(to.mNumIndices, face.mNumIndices);
-      }
-      mesh.mNumFaces = kept;
-      mesh.mPrimitiveTypes = polygons ? aiPrimitiveType_POLYGON : aiPrimitiveType_TRIANGLE;
-    }
-    return true;
-  }
-
-  void read_materials(const aiScene& source, const AllowedFiles& files) {
-    const auto stated = files.materials_with_colour();
-    for (unsigned i = 0; i < source.mNumMaterials; ++i) {
-      const aiMaterial& from = *source.mMaterials[i];
-      Material material;
-      aiString name;
-      if (from.Get(AI_MATKEY_NAME, name) == AI_SUCCESS) material.name = name.C_Str();
-      aiColor4D colour;
-      // glTF states a base colour (linear, white if left out); OBJ a diffuse one in its .mtl, for which assimp puts
-      // a grey of its own when there is none. PLY and STL have no materials.
-      const bool has_base = from.Get(AI_MATKEY_BASE_COLOR, colour) == AI_SUCCESS;
-      const bool has_diffuse =
-          !has_base && from.Get(AI_MATKEY_COLOR_DIFFUSE, colour) == AI_SUCCESS && stated.count(material.name) > 0;
-      const Vec3 rgb(colour.r, colour.g, colour.b);
-      if ((has_base || has_diffuse) && rgb.allFinite()) {
-        material.too_bright = rgb.maxCoeff() > kMaxReflectance;
-        material.reflectance_rgb = rgb.cwiseMax(0.0).cwiseMin(kMaxReflectance);
-        material.coloured = true;
-      }
-      scene_.materials.push_back(std::move(material));
-    }
-    if (scene_.materials.empty()) scene_.materials.emplace_back();
-  }
-
-  /// assimp adds a material of its own to some files, and a file may hold more than its mesh shows.
-  void drop_idle_materials() {
-    constexpr std::uint32_t kIdle = std::numeric_limits<std::uint32_t>::max();
-    std::vector<std::uint32_t> place(scene_.materials.size(), kIdle);
-    for (const std::uint32_t material : scene_.material_of_triangle) place[material] = 0;
-    std::uint32_t kept = 0;
-    for (std::size_t i = 0; i < place.size(); ++i) {
-      if (place[i] == kIdle) continue;
-      if (kept != i) scene_.materials[kept] = std::move(scene_.materials[i]);
-      place[i] = kept++;
-    }
-    scene_.materials.resize(kept);
-    for (std::uint32_t& material : scene_.material_of_triangle) material = place[material];
-  }
-
-  void read_nodes(const aiScene& source) {
-    Eigen::Matrix4d world_from_root = Eigen::Matrix4d::Identity();
-    world_from_root.topLeftCorner<3, 3>() = file_.metres_per_unit * rotation_to_z_up(file_.up_axis);
-    for_each_node(source, [&](const Placed& placed) {
-      const Eigen::Matrix4d world_from_node = world_from_root * placed.root_from_node;
-      for (unsigned i = 0; i < placed.node->mNumMeshes; ++i) {
-        const unsigned mesh = placed.node->mMeshes[i];
-        if (mesh < source.mNumMeshes) add_mesh(*source.mMeshes[mesh], world_from_node);
-      }
-    });
-  }
-
-  void add_mesh(const aiMesh& mesh, const Eigen::Matrix4d& world_from_node) {
-    const auto base = static_cast<std::uint32_t>(scene_.vertices_m.size());
-    std::vector<bool> usable(mesh.mNumVertices);
-    for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
-      const aiVector3D& v = mesh.mVertices[i];
-      Vec3 position_m = (world_from_node * Eigen::Vector4d(v.x, v.y, v.z, 1)).head<3>();
-      usable[i] = position_m.allFinite() && position_m.cwiseAbs().maxCoeff() <= kMaxCoordinate_m;
-      if (!usable[i]) {
+  void place_vertices() {
+    usable_.resize(mesh_.vertices.size());
+    Eigen::AlignedBox3d bounds;
+    for (std::size_t i = 0; i < mesh_.vertices.size(); ++i) {
+      Vec3& vertex = mesh_.vertices[i];
+      vertex = world_from_mesh_ * vertex;
+      usable_[i] = vertex.allFinite() && vertex.cwiseAbs().maxCoeff() <= kMaxCoordinate_m;
+      if (usable_[i]) {
+        bounds.extend(vertex);
+      } else {
         ++scene_.cleaning.non_finite_vertices;
-        position_m.setZero();
+        vertex.setZero();
       }
-      scene_.vertices_m.push_back(position_m.cast<float>());
     }
-    const std::uint32_t material = mesh.mMaterialIndex < scene_.materials.size() ? mesh.mMaterialIndex : 0u;
-    for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
-      const aiFace& face = mesh.mFaces[i];
-      if (face.mNumIndices != 3) continue;  // points and lines carry no light
-      const unsigned* const index = face.mIndices;
-      if (index[0] >= mesh.mNumVertices || index[1] >= mesh.mNumVertices || index[2] >= mesh.mNumVertices) {
-        ++scene_.cleaning.bad_indices;
-        continue;
-      }
-      if (!usable[index[0]] || !usable[index[1]] || !usable[index[2]]) continue;  // counted with the vertex
-      const std::array<std::uint32_t, 3> triangle{base + index[0], base + index[1], base + index[2]};
-      if (is_degenerate(triangle)) {
-        ++scene_.cleaning.degenerate_triangles;
-        continue;
-      }
-      scene_.triangles.push_back(triangle);
-      scene_.material_of_triangle.push_back(material);
-      scene_.object_of_triangle.push_back(0);
+    const bool far_out = !bounds.isEmpty() &&
+                         std::max(bounds.min().cwiseAbs().maxCoeff(), bounds.max().cwiseAbs().maxCoeff()) > kFarOut_m;
+    if (far_out) scene_.origin_world_m = bounds.center();
+    scene_.vertices_m.reserve(mesh_.vertices.size());
+    for (std::size_t i = 0; i < mesh_.vertices.size(); ++i) {
+      if (usable_[i]) mesh_.vertices[i] -= scene_.origin_world_m;
+      scene_.vertices_m.push_back(mesh_.vertices[i].cast<float>());
     }
   }
 
-  /// Its height over its longest side is within the rounding of its coordinates.
-  [[nodiscard]] bool is_degenerate(const std::array<std::uint32_t, 3>& triangle) const {
+  void add_triangle(const std::array<std::size_t, 3>& corners, std::size_t face) {
+    std::array<std::uint32_t, 3> triangle;
+    for (std::size_t i = 0; i < 3; ++i) {
+      triangle[i] = mesh_.corners[corners[i]];
+      if (!usable_[triangle[i]]) return;  // counted with the vertex
+    }
+    const double area_m2 = area_unless_degenerate(triangle);
+    if (!(area_m2 > 0)) {
+      ++scene_.cleaning.degenerate_triangles;
+      return;
+    }
+    scene_.triangles.push_back(triangle);
+    scene_.material_of_triangle.push_back(
+        colours_.material_of(mesh_.face_materials.empty() ? 0 : mesh_.face_materials[face], corners, area_m2));
+    scene_.object_of_triangle.push_back(0);
+  }
+
+  /// 0 where its height over its longest side is within the rounding of its coordinates.
+  [[nodiscard]] double area_unless_degenerate(const std::array<std::uint32_t, 3>& triangle) const {
     const Vec3 a = scene_.vertices_m[triangle[0]].cast<double>();
     const Vec3 ab = scene_.vertices_m[triangle[1]].cast<double>() - a;
     const Vec3 ac = scene_.vertices_m[triangle[2]].cast<double>() - a;
     const double longest_m = std::sqrt(std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()}));
     const double reach_m =
         std::max({a.cwiseAbs().maxCoeff(), (a + ab).cwiseAbs().maxCoeff(), (a + ac).cwiseAbs().maxCoeff()});
-    return !(ab.cross(ac).norm() > 0x1p-24 * reach_m * longest_m);
+    const double twice_area_m2 = ab.cross(ac).norm();
+    return twice_area_m2 > 0x1p-24 * reach_m * longest_m ? twice_area_m2 / 2 : 0;
   }
 
   void note_cleaning() {
@@ -245,12 +125,66 @@ class MeshReader {
                               std::to_string(c.degenerate_triangles) + " triangles without area");
   }
 
-  const MeshFile& file_;
+  PolygonMesh mesh_;
+  Eigen::Affine3d world_from_mesh_;
+  SurfaceColours colours_;
+  std::vector<bool> usable_;
   Scene scene_;
 };
 
 }  // namespace
 
-Checked<Scene> load_mesh(const MeshFile& file) { return MeshReader(file).read(); }
+std::string extension_of(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return extension.empty() ? extension : extension.substr(1);
+}
+
+Checked<PolygonMesh> read_mesh(std::string bytes, const std::string& extension, const std::string& file,
+                               const FilesBeside& beside) {
+  if (bytes.empty()) return refuse_mesh(file, "is empty", "give the whole file");
+  try {
+    if (extension == "obj") return read_obj(std::move(bytes), file, beside);
+    if (extension == "stl") return read_stl(std::move(bytes), file);
+    if (extension == "3ds") return read_3ds(bytes, file, beside);
+    if (extension == "gltf" || extension == "glb") return read_gltf(std::move(bytes), file, beside);
+  } catch (const std::bad_alloc&) {
+    return refuse_mesh(file, "takes more memory than there is", "give a simplified mesh");
+  }
+  return refuse_mesh(file, "is of no known mesh format", "give an .obj, .ply, .stl, .gltf, .glb or .3ds file");
+}
+
+Scene scene_of_mesh(PolygonMesh mesh, const Eigen::Affine3d& world_from_mesh, std::string name) {
+  return SceneOfMesh(std::move(mesh), world_from_mesh).make(std::move(name));
+}
+
+Checked<Scene> load_mesh(const MeshFile& file) {
+  const std::string name = file.path.string();
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file.path, error))  // a pipe would block
+    return refuse_mesh(name, "no such mesh file", "correct its name, relative to the rig file");
+  const auto bytes = std::filesystem::file_size(file.path, error);
+  if (error || bytes == 0) return refuse_mesh(name, "is empty", "give the whole file");
+  if (bytes > kMaxFileBytes) return refuse_mesh(name, "is larger than 8 GiB", "give a simplified mesh");
+  const std::string extension = extension_of(file.path);
+  Checked<PolygonMesh> mesh;
+  if (extension == "ply") {
+    mesh = read_ply(file.path);
+  } else {
+    auto content = whole_file(file.path, kMaxFileBytes);
+    if (!content) return refuse_mesh(name, "cannot be read", "correct its rights");
+    mesh = read_mesh(std::move(*content), extension, name, FolderBeside(file.path));
+  }
+  if (!mesh) return tl::unexpected(std::move(mesh.error()));
+  Eigen::Affine3d world_from_mesh = Eigen::Affine3d::Identity();
+  world_from_mesh.linear() = file.metres_per_unit * rotation_to_z_up(file.up_axis);
+  Scene scene = scene_of_mesh(std::move(*mesh), world_from_mesh, file.path.filename().string());
+  if (scene.triangles.empty()) {
+    return refuse_mesh(name, "holds no usable triangle (" + std::to_string(scene.cleaning.total()) + " faults)",
+                       "give a mesh with faces");
+  }
+  return scene;
+}
 
 }  // namespace luxrig

@@ -1,5 +1,5 @@
 #pragma once
-/// Meshes from files (OBJ, STL, glTF/GLB through assimp; PLY).
+/// Meshes from files (OBJ, PLY, STL, glTF/GLB, 3DS).
 
 #include <filesystem>
 
@@ -17,9 +17,9 @@ struct MeshFile {
 };
 
 /// Reads a mesh: units applied, +Z up (a +Y-up file is turned by +90° about X, so that its -Z becomes
-/// world +Y), node transforms applied, names and colours kept of the materials that a triangle uses, cleaned with a
-/// count. The Scene has one object, named after the file, and origin zero. Refuses a file that cannot be read, that
-/// holds no usable triangle, or more than 50 million.
+/// world +Y), node transforms applied, cleaned with a count; materials that a triangle uses, in shades of one name
+/// where a picture or vertex colours vary. The Scene has one object, named after the file; its origin is zero, or the
+/// middle of what reaches over 1 km out. Refuses what cannot be read, has no usable triangle, or more than 50 million.
 [[nodiscard]] Checked<Scene> load_mesh(const MeshFile& file);
 
 }  // namespace luxrig

@@ -158,9 +158,20 @@ class Values {
   bool ended_ = false;
 };
 
-float to_float(double value) {
+double to_coordinate(double value) {
   constexpr double kMost = std::numeric_limits<float>::max();
-  return std::abs(value) <= kMost ? static_cast<float>(value) : std::numeric_limits<float>::quiet_NaN();
+  return std::abs(value) <= kMost ? value : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// The value of a colour that is white in full, by its type.
+double full_colour(PlyType type) {
+  return type == PlyType::uint8 ? 255 : type == PlyType::uint16 ? 65535 : is_integer(type) ? 0 : 1;
+}
+
+/// 0, 1, 2 for red, green, blue; else -1.
+int colour_of(std::string_view property) {
+  if (property.starts_with("diffuse_")) property.remove_prefix(8);
+  return property == "red" ? 0 : property == "green" ? 1 : property == "blue" ? 2 : -1;
 }
 
 std::uint32_t to_index(double value) {
@@ -173,14 +184,17 @@ class BodyReader {
   BodyReader(std::ifstream& in, const PlyHeader& header, std::string file)
       : header_(header), values_(in, header), file_(std::move(file)) {}
 
-  Checked<PlyMesh> read() {
+  Checked<PolygonMesh> read() {
     for (const PlyElement& element : header_.elements) {
       const bool is_vertex = element.name == "vertex";
       const bool is_face = element.name == "face";
       if (is_vertex) mesh_.vertices.reserve(element.count);  // the header's check: no more than the file can hold
       if (is_face) mesh_.corner_counts.reserve(element.count);
+      coloured_ = is_vertex && std::any_of(element.properties.begin(), element.properties.end(), [](const auto& p) {
+                    return !p.length_type && full_colour(p.type) > 0 && colour_of(p.name) >= 0;
+                  });
       for (std::uint64_t i = 0; i < element.count; ++i) {
-        if (is_vertex) mesh_.vertices.emplace_back(Vec3f::Zero());
+        if (is_vertex) add_vertex();
         for (const PlyProperty& property : element.properties) {
           if (!read_property(property, is_vertex, is_face)) return refuse(element.name, i);
         }
@@ -190,13 +204,25 @@ class BodyReader {
   }
 
  private:
+  void add_vertex() {
+    mesh_.vertices.emplace_back(Vec3::Zero());
+    if (coloured_) mesh_.colours.emplace_back(Vec3f::Ones());
+  }
+
   bool read_property(const PlyProperty& property, bool is_vertex, bool is_face) {
     if (!property.length_type) {
       const int axis = !is_vertex || property.name.size() != 1 ? -1 : property.name[0] - 'x';
-      if (axis < 0 || axis > 2) return values_.skip(property.type, 1);
+      const int colour = is_vertex && full_colour(property.type) > 0 ? colour_of(property.name) : -1;
+      if ((axis < 0 || axis > 2) && colour < 0) return values_.skip(property.type, 1);
       const auto value = values_.next(property.type);
-      if (value) mesh_.vertices.back()[axis] = to_float(*value);
-      return value.has_value();
+      if (!value) return false;
+      if (colour < 0) {
+        mesh_.vertices.back()[axis] = to_coordinate(*value);
+      } else if (std::isfinite(*value)) {
+        const double part = std::clamp(*value / full_colour(property.type), 0.0, 1.0);
+        mesh_.colours.back()[colour] = static_cast<float>(linear_of_srgb(part));
+      }
+      return true;
     }
     const auto length = values_.next(*property.length_type);
     if (!length || *length < 0 || *length > std::numeric_limits<std::uint32_t>::max()) return false;
@@ -233,13 +259,13 @@ class BodyReader {
   const PlyHeader& header_;
   Values values_;
   std::string file_;
-  PlyMesh mesh_;
-  bool too_many_corners_ = false;
+  PolygonMesh mesh_;
+  bool too_many_corners_ = false, coloured_ = false;
 };
 
 }  // namespace
 
-Checked<PlyMesh> read_ply(const std::filesystem::path& path) {
+Checked<PolygonMesh> read_ply(const std::filesystem::path& path) {
   const std::string file = path.string();
   std::error_code error;
   const auto file_bytes = std::filesystem::file_size(path, error);

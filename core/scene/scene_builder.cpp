@@ -82,8 +82,9 @@ class Builder {
     auto mesh = load_mesh(file);
     if (!mesh) {
       for (Problem& one : mesh.error()) {
-        const std::string line = one.line > 0 ? ", line " + std::to_string(one.line) : "";
-        problem(place, name + ": " + file.path.string() + line + " " + one.what, std::move(one.mend));
+        std::string where = one.line > 0 ? ", line " + std::to_string(one.line) : "";
+        if (one.line > 0 && one.column > 0) where += ", column " + std::to_string(one.column);
+        problem(place, name + ": " + one.file + where + " " + one.what, std::move(one.mend));
       }
       return std::nullopt;
     }

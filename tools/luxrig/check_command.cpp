@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <span>
 
@@ -204,6 +205,46 @@ std::vector<Problem> all_notes(const Session& session) {
   return notes;
 }
 
+/// A material of the scene by its name; where a picture lies on it, it comes in several shades.
+struct MaterialSummary {
+  std::string name;
+  double mean = 0, least = 1, most = 0, area_m2 = 0;
+  bool assumed = false;
+};
+
+/// In the order of the scene, means by area.
+std::vector<MaterialSummary> materials_by_name(const Scene& scene) {
+  std::vector<double> area_m2(scene.materials.size());
+  for (std::size_t i = 0; i < scene.triangles.size(); ++i) {
+    const auto& [a, b, c] = scene.triangles[i];
+    const Vec3f& corner = scene.vertices_m[a];
+    area_m2[scene.material_of_triangle[i]] +=
+        (scene.vertices_m[b] - corner).cross(scene.vertices_m[c] - corner).norm() / 2;
+  }
+  std::vector<MaterialSummary> out;
+  std::map<std::string, std::size_t> places;
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    const Material& m = scene.materials[i];
+    const auto [at, is_new] = places.try_emplace(m.name, out.size());
+    if (is_new) out.emplace_back().name = m.name;
+    MaterialSummary& sum = out[at->second];
+    const double reflectance = m.luminous_reflectance();
+    sum.mean += reflectance * area_m2[i];
+    sum.area_m2 += area_m2[i];
+    sum.least = std::min(sum.least, reflectance);
+    sum.most = std::max(sum.most, reflectance);
+    sum.assumed = sum.assumed || !m.coloured;
+  }
+  for (MaterialSummary& sum : out) sum.mean = sum.area_m2 > 0 ? sum.mean / sum.area_m2 : sum.most;
+  return out;
+}
+
+std::string reflectance_source(const MaterialSummary& material) {
+  if (material.assumed) return "assumed: default_reflectance";
+  if (material.most - material.least > 0.005) return fmt::format("{:.2f} to {:.2f}", material.least, material.most);
+  return "";
+}
+
 std::string place_text(const Vec3& p) {
   // Centimetres, and no zero with a sign.
   const Vec3 cm = (100 * p).array().round() + 0.0;
@@ -250,7 +291,7 @@ int run_check(const CheckArguments& arguments) {
   } else {
     const Vec3 size = bounds.sizes();
     fmt::print("  scene      {} triangles, {} materials, {:.2f} x {:.2f} x {:.2f} m\n", scene.triangles.size(),
-               scene.materials.size(), size.x(), size.y(), size.z());
+               materials_by_name(scene).size(), size.x(), size.y(), size.z());
   }
   if (const Cleaning& c = scene.cleaning; c.total() > 0) {
     fmt::print("  cleaned    {} vertices not finite, {} triangles with a bad index, {} without area\n",
@@ -266,11 +307,12 @@ int run_check(const CheckArguments& arguments) {
     if (const std::string text = task_text(rig, task); !text.empty())
       fmt::print("  {:<10} {}: {}\n", name_of(task.kind), task.name, text);
   fmt::print("\n");
-  Table materials({"material", ">luminous reflectance"});
-  for (const Material& m : scene.materials) materials.row({m.name, fmt::format("{:.2f}", m.luminous_reflectance())});
+  Table materials({"material", ">luminous reflectance", "of"});
+  for (const MaterialSummary& m : materials_by_name(scene))
+    materials.row({m.name, fmt::format("{:.2f}", m.mean), reflectance_source(m)});
   for (const SceneObject& object : rig.scene.objects)
     if (object.transmittance)
-      materials.row({object.name, fmt::format("glass, lets {:.2f} through", *object.transmittance)});
+      materials.row({object.name, fmt::format("glass, lets {:.2f} through", *object.transmittance), ""});
   if (!scene.materials.empty()) fmt::print("{}\n", materials.text());
   Table luminaires({"luminaire", ">lumens", ">peak cd", ">beam", ">field", ">watts"});
   for (const Luminaire& l : rig.luminaires) {

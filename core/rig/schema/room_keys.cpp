@@ -17,7 +17,7 @@ constexpr std::string_view kAxes = "x, y, z";
 constexpr KeySpec kRoomKeys[] = {
     {"rig", "name", name, "", kRequired, kAny, "", "name of the rig; plans are only applied to the rig they name"},
 
-    {"scene", "file", file, "", kNone, kAny, "", "mesh of the room: OBJ, PLY, glTF or GLB"},
+    {"scene", "file", file, "", kNone, kAny, "", "mesh of the room: OBJ, PLY, STL, glTF, GLB or 3DS"},
     {"scene", "unit", text, "", R"("m")", kAny, kUnits, "length unit of the mesh file"},
     {"scene", "up_axis", text, "", R"("y")", kAny, kAxes, "axis of the mesh file that points up (glTF: y)"},
     {"scene", "default_reflectance", colour, "", "0.5", kReflectance, "",

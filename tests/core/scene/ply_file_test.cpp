@@ -24,7 +24,7 @@ class PlyFiles : public testing::Test {
   }
   ~PlyFiles() override { std::filesystem::remove_all(folder_); }
 
-  Checked<PlyMesh> read(const std::string& bytes) const {
+  Checked<PolygonMesh> read(const std::string& bytes) const {
     std::ofstream(folder_ / "a.ply", std::ios::binary) << bytes;
     return read_ply(folder_ / "a.ply");
   }
@@ -89,8 +89,8 @@ TEST_F(PlyFiles, ReadsTheSameMeshInAllThreeFormsAmongOtherElements) {
     const auto mesh = read(bytes);
     ASSERT_TRUE(mesh.has_value()) << form << ": " << mesh.error().front().text();
     ASSERT_EQ(mesh->vertices.size(), 4u) << form;
-    EXPECT_EQ(mesh->vertices[0], Vec3f(1, -4, 0.25f)) << form;
-    EXPECT_EQ(mesh->vertices[3], Vec3f(4, 7, 1)) << form;
+    EXPECT_EQ(mesh->vertices[0], Vec3(1, -4, 0.25f)) << form;
+    EXPECT_EQ(mesh->vertices[3], Vec3(4, 7, 1)) << form;
     EXPECT_EQ(mesh->corner_counts, (std::vector<std::uint32_t>{3, 4})) << form;
     EXPECT_EQ(mesh->corners, (std::vector<std::uint32_t>{0, 1, 2, 3, 2, 1, 0})) << form;
   }
@@ -166,7 +166,7 @@ TEST_F(PlyFiles, AgreesWithItselfAcrossTheEdgesOfItsBlocks) {
   const auto mesh = read(bytes + "3 0 1 2");
   ASSERT_TRUE(mesh.has_value()) << mesh.error().front().text();
   for (std::size_t i = 0; i < wanted.size(); ++i) {
-    ASSERT_EQ(mesh->vertices[i / 3][static_cast<Eigen::Index>(i % 3)], static_cast<float>(wanted[i])) << i;
+    ASSERT_EQ(mesh->vertices[i / 3][static_cast<Eigen::Index>(i % 3)], wanted[i]) << i;
   }
 }
 

@@ -1,0 +1,24 @@
+#pragma once
+/// The halves of load_mesh(), for meshes that lie in an archive. Internal to core/scene, and to the import of MVR.
+
+#include <filesystem>
+#include <string>
+
+#include "core/result.h"
+#include "core/scene/files_beside.h"
+#include "core/scene/polygon_mesh.h"
+#include "core/scene/scene.h"
+
+namespace luxrig {
+
+/// In lower case, without its dot.
+[[nodiscard]] std::string extension_of(const std::filesystem::path& path);
+
+/// Any format but PLY, by the extension (in lower case). `file` is for the messages.
+[[nodiscard]] Checked<PolygonMesh> read_mesh(std::string bytes, const std::string& extension, const std::string& file,
+                                             const FilesBeside& beside);
+
+/// Placed, split into triangles and cleaned; may be left without any.
+[[nodiscard]] Scene scene_of_mesh(PolygonMesh mesh, const Eigen::Affine3d& world_from_mesh, std::string name);
+
+}  // namespace luxrig
