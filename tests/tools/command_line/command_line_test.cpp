@@ -29,6 +29,7 @@ class CommandLine : public ::testing::Test {
     draw->add_flag("--fill", fill, "inside, too");
     auto* list = app.add_subcommand("list", "what there is");
     list->group("Work");
+    list->require_subcommand(1);
     list->add_subcommand("shapes", "all shapes");
     list->add_subcommand("files", "all files");
   }

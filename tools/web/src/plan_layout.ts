@@ -72,7 +72,8 @@ export function namePlace(
     if (nx > 0) return left < scale.width * 0.12 ? { x: Math.min(left - gap, 0), y: middle.y, turn_deg: -90 } : { x: middle.x, y: top - gap, turn_deg: 0 };
     return right > scale.width * 0.88 ? { x: Math.max(right + gap, scale.width), y: middle.y, turn_deg: 90 } : { x: middle.x, y: top - gap, turn_deg: 0 };
   }
-  return ny < 0 ? { x: middle.x, y: top - gap, turn_deg: 0 } : { x: middle.x, y: bottom + gap + size, turn_deg: 0 };
+  // Away from a wall, the lux of a metered point stand there already.
+  return ny < 0 ? { x: middle.x, y: top < 2 * gap ? top - gap : top - gap - size, turn_deg: 0 } : { x: middle.x, y: bottom + gap + size, turn_deg: 0 };
 }
 
 const clamp = (value: number, low: number, high: number): number => Math.min(Math.max(value, low), Math.max(low, high));
