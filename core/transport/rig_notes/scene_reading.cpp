@@ -114,15 +114,17 @@ class Reading {
     std::vector<UpAxis> axes = {mesh().up_axis};
     for (const UpAxis up : kUpAxes)
       if (up != mesh().up_axis) axes.push_back(up);
-    for (const UpAxis up : axes)
-      for (const MeshUnit& unit : kUnitsByLength) {
-        if (too_small != (unit.metres > mesh().metres_per_unit)) continue;
-        const Eigen::AlignedBox3d then = read_as(up, unit.metres);
-        if (!nearly_all(within(then, 0.25, begin), judged)) continue;
-        return Note{what, fmt::format("set unit = \"{}\"{} in [scene], which makes it {}", unit.name,
-                                      up == mesh().up_axis ? "" : " and up_axis = \"" + name_of_axis(up) + "\"",
-                                      size_text(then.sizes()))};
-      }
+    // Well within, if any reading does that; else near by, as lamps above a mere floor are.
+    for (const double margin : {0.02, 0.25})
+      for (const UpAxis up : axes)
+        for (const MeshUnit& unit : kUnitsByLength) {
+          if (too_small != (unit.metres > mesh().metres_per_unit)) continue;
+          const Eigen::AlignedBox3d then = read_as(up, unit.metres);
+          if (!nearly_all(within(then, margin), all_.size())) continue;
+          return Note{what, fmt::format("set unit = \"{}\"{} in [scene], which makes it {}", unit.name,
+                                        up == mesh().up_axis ? "" : " and up_axis = \"" + name_of_axis(up) + "\"",
+                                        size_text(then.sizes()))};
+        }
     return Note{what, "correct unit in [scene], or export the mesh in metres"};
   }
 
