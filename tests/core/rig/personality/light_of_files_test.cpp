@@ -68,9 +68,13 @@ class OflChannel {
     const Json templates = fixture.value("templateChannels", Json::object());
     for (const auto& [key, channel] : templates.items()) {
       const auto at = key.find("$pixelKey");
-      if (json_.is_null() && at != std::string::npos && name.starts_with(key.substr(0, at)) &&
-          name.ends_with(key.substr(at + 9)))
-        json_ = channel;
+      if (!json_.is_null() || at == std::string::npos) continue;
+      const std::string before = key.substr(0, at), after = key.substr(at + 9);
+      if (name.size() <= before.size() + after.size() || !name.starts_with(before) || !name.ends_with(after)) continue;
+      const std::string pixel = name.substr(before.size(), name.size() - before.size() - after.size());
+      const bool counted =
+          fixture.at("matrix").contains("pixelCount") && pixel.find_first_not_of("0123456789(), ") == std::string::npos;
+      if (counted || fixture.at("matrix").dump().find("\"" + pixel + "\"") != std::string::npos) json_ = channel;
     }
     if (json_.is_null()) return;
     bytes_ = 1 + static_cast<int>(json_.value("fineChannelAliases", Json::array()).size());
