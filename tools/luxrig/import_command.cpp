@@ -3,6 +3,7 @@
 #include "core/rig/mvr/mvr_rig.h"
 #include "core/rig/plain_text.h"
 #include "core/rig/rig_file.h"
+#include "core/scene/mesh_reading.h"
 #include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
 
@@ -16,7 +17,7 @@ std::vector<Problem> one_problem(const std::filesystem::path& file, std::string 
 }  // namespace
 
 int run_import(const ImportArguments& arguments) {
-  if (arguments.file.extension() != ".mvr") {
+  if (extension_of(arguments.file) != "mvr") {
     return report(one_problem(arguments.file, "not an MVR file by its name",
                               "name an .mvr file; a single fixture's file goes into the rig file as personality"));
   }
@@ -37,8 +38,10 @@ int run_import(const ImportArguments& arguments) {
   }
   if (const auto written = write_file(rig_file, rig.rig_toml); !written) return report(written.error());
   for (const std::string& remark : rig.remarks) fmt::print("{}\n", remark);
-  fmt::print("{}: {} fixtures of {} kinds, {} personalities beside it\n", rig_file.string(), rig.fixtures,
-             rig.luminaires, rig.files.size());
+  const std::size_t personalities = rig.files.size() - (rig.models > 0 ? 2 : 0);  // and the scene's two files
+  fmt::print("{}: {} fixtures of {} kinds, {} personalities beside it{}\n", rig_file.string(), rig.fixtures,
+             rig.luminaires, personalities,
+             rig.models > 0 ? fmt::format("; scene.obj: {} models of scenery", rig.models) : "");
   if (const Checked<Rig> read = load_rig(rig_file); !read) return report(read.error());
   fmt::print("next: fill in what says FILL IN, then luxrig check {}\n", arguments.rig_folder.string());
   return kExitOk;

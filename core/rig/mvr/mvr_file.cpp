@@ -5,6 +5,7 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/rig/personality/xml_file.h"
 #include "core/rig/personality/zip_archive.h"
@@ -13,7 +14,8 @@
 namespace luxrig {
 namespace {
 
-constexpr std::size_t kMostMvrFixtures = 10'000, kMostMvrNotes = 100;
+constexpr std::size_t kMostMvrFixtures = 10'000, kMostMvrGeometries = 100'000, kMostMvrNotes = 100;
+constexpr int kDeepestSymbol = 8;
 constexpr std::size_t kMostGdtfBytes = std::size_t{64} << 20, kMostGdtfBytesInAll = std::size_t{512} << 20;
 constexpr double kMetresPerMillimetre = 0.001, kFarthest_m = 0.99e6;  // a rig's is 1e6, and lamps stand off their bases
 
@@ -69,9 +71,14 @@ class MvrReader {
 
   MvrScene read(const pugi::xml_node& scene) {
     for (const pugi::xml_node& layer : scene.child("Layers").children("Layer")) find_focus_points(layer, {});
+    for (const pugi::xml_node& definition : scene.child("AUXData").children("Symdef"))
+      symbols_.try_emplace(definition.attribute("uuid").value(), definition);
     for (const pugi::xml_node& layer : scene.child("Layers").children("Layer")) read_below(layer, {});
-    if (other_objects_ > 0) {
-      note(fmt::format("{} objects that are no fixtures (scenery, trusses, screens) were left out", other_objects_));
+    if (shapeless_ > 0) {
+      note(
+          fmt::format("{} objects that are no fixtures (trusses, hoists, screens …) have no model in the file, or "
+                      "only one within a GDTF file: they are left out",
+                      shapeless_));
     }
     return std::move(out_);
   }
@@ -127,9 +134,46 @@ class MvrReader {
         }
         read_fixture(node, *pose);
       } else if (kind != "GroupObject" && kind != "FocusPoint") {
-        ++other_objects_;
+        read_object(node, *pose);
       }
       read_below(node, {*pose});
+    }
+  }
+
+  void read_object(const pugi::xml_node& node, const Eigen::Affine3d& parent) {
+    const auto pose = placed(node, parent);
+    if (!pose) return;
+    const std::size_t before = out_.geometries.size();
+    read_models(node.child("Geometries"), *pose, plain_attribute(node, "name"), 0);
+    if (out_.geometries.size() == before) ++shapeless_;
+  }
+
+  /// Models, and symbols: models that are defined once for many places. Their matrices multiply.
+  void read_models(const pugi::xml_node& list, const Eigen::Affine3d& parent, const std::string& object, int depth) {
+    for (const pugi::xml_node& node : list.children()) {
+      if (problems_.full()) return;
+      const bool model = std::string_view(node.name()) == "Geometry3D";
+      if (!model && std::string_view(node.name()) != "Symbol") continue;
+      if (++models_looked_at_ > kMostMvrGeometries || depth > kDeepestSymbol) {
+        if (!std::exchange(too_many_models_, true))
+          note(fmt::format("more than {} models, or symbols within symbols more than {} deep: the rest is left out",
+                           kMostMvrGeometries, kDeepestSymbol));
+        return;
+      }
+      const auto pose = placed(node, parent);
+      if (!pose) continue;
+      if (model) {
+        const std::string file(without_blanks(node.attribute("fileName").value()));
+        if (!file.empty()) out_.geometries.push_back({object, file, *pose});
+        continue;
+      }
+      const auto symbol = symbols_.find(node.attribute("symdef").value());
+      if (symbol == symbols_.end()) {
+        note(fmt::format("{} shows a symbol that is not in the file", in_quotes(object)));
+        continue;
+      }
+      for (const char* const where : {"ChildList", "Geometries"})  // the standard says the former; both are met
+        read_models(symbol->second.child(where), *pose, object, depth + 1);
     }
   }
 
@@ -158,7 +202,9 @@ class MvrReader {
   const XmlFile& xml_;
   ProblemList& problems_;
   std::map<std::string, Vec3> focus_;
-  std::size_t other_objects_ = 0;
+  std::map<std::string, pugi::xml_node> symbols_;
+  std::size_t shapeless_ = 0, models_looked_at_ = 0;  // the latter with symbols, which may hold each other
+  bool too_many_models_ = false;
   MvrScene out_;
 };
 
@@ -194,7 +240,7 @@ Checked<MvrFile> read_mvr(std::string bytes, const std::string& file) {
   if (!xml) return tl::unexpected(xml.error());
   Checked<MvrScene> scene = parse_mvr_scene(*xml, file + "/" + *description);
   if (!scene) return tl::unexpected(scene.error());
-  MvrFile out{std::move(*scene), {}};
+  MvrFile out{std::move(*scene), {}, *archive};
   std::size_t total = 0;
   for (const MvrFixture& fixture : out.scene.fixtures) {
     if (fixture.gdtf_file.empty() || out.gdtf_files.contains(fixture.gdtf_file)) continue;

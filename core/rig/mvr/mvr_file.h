@@ -13,6 +13,7 @@
 
 #include "core/geometry.h"
 #include "core/result.h"
+#include "core/rig/personality/zip_archive.h"
 
 namespace luxrig {
 
@@ -32,18 +33,28 @@ struct MvrFixture {
   int line = 0;
 };
 
+/// A model of a thing that is no fixture (scenery, truss, screen …), in one of its places.
+struct MvrGeometry {
+  std::string object;                  ///< its name, plain text
+  std::string file;                    ///< of the model, by its name in the archive; without an extension: .3ds
+  Eigen::Affine3d world_from_model_m;  ///< metres; of a model in metres with +Z up
+};
+
 struct MvrScene {
   std::vector<MvrFixture> fixtures;
+  std::vector<MvrGeometry> geometries;
   std::vector<std::string> notes;  ///< what was left out, or odd
 };
 
-/// GeneralSceneDescription.xml alone; at most 10 000 fixtures. `file` is for the messages.
+/// GeneralSceneDescription.xml alone; at most 10 000 fixtures, and 100 000 models of other things. `file` is for the
+/// messages.
 [[nodiscard]] Checked<MvrScene> parse_mvr_scene(std::string_view xml, const std::string& file);
 
 struct MvrFile {
   MvrScene scene;
   /// Content of the GDTF files that fixtures name, by that name; those that are not in the archive are absent.
   std::map<std::string, std::string> gdtf_files;
+  std::optional<ZipArchive> archive = std::nullopt;  ///< for the models
 };
 
 /// A whole .mvr file (a zip archive).

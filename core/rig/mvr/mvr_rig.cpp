@@ -8,6 +8,7 @@
 
 #include "core/rig/mode_slots.h"
 #include "core/rig/mvr/free_addresses.h"
+#include "core/rig/mvr/mvr_scenery.h"
 #include "core/rig/personality/gdtf_file.h"
 #include "core/rig/plain_text.h"
 
@@ -86,9 +87,8 @@ class RigWriter {
     text_ += "# Made by `luxrig import` from an MVR file. Lines with FILL IN need a person.\n";
     for (const std::string& note : mvr_.scene.notes) remark(note);
     text_ += fmt::format("[rig]\nname = {}\n\n", quoted(cut(rig_name.empty() ? "imported" : rig_name, kLongestName)));
-    text_ +=
-        "# FILL IN: the room, as [scene] with a mesh, or as [[scene.object]] entries; without it light meets nothing.\n"
-        "# FILL IN: [[point]] entries with goals in lux, and a [[luxmeter]] where one stands.\n\n";
+    write_scene();
+    text_ += "# FILL IN: [[point]] entries with goals in lux, and a [[luxmeter]] where one stands.\n\n";
     for (const MvrFixture& fixture : mvr_.scene.fixtures) kind_of(fixture);
     text_ +=
         "# FILL IN: MVR does not say how DMX gets to the fixtures. sACN; Art-Net is driver = \"artnet\".\n"
@@ -107,6 +107,26 @@ class RigWriter {
   }
 
  private:
+  void write_scene() {
+    MvrScenery scenery = scenery_of_mvr(mvr_);
+    for (const std::string& note : scenery.notes) remark(note);
+    out_.models = scenery.models;
+    if (scenery.obj.empty()) {
+      text_ +=
+          "# FILL IN: the room, as [scene] with a mesh, or as [[scene.object]] entries; without it light meets "
+          "nothing.\n";
+      return;
+    }
+    text_ += fmt::format(
+        "# What is no fixture in the MVR file: {} models, as one mesh. `luxrig check` tells what each material "
+        "reflects;\n"
+        "# FILL IN: [[scene.reflectance]] entries where that is not so, and the room, where the file lacks it.\n"
+        "[scene]\nfile = \"scene.obj\"\nunit = \"m\"\nup_axis = \"z\"\n\n",
+        scenery.models);
+    out_.files.push_back({"scene.obj", std::move(scenery.obj)});
+    out_.files.push_back({"scene.mtl", std::move(scenery.mtl)});
+  }
+
   void remark(const std::string& what) {
     text_ += "# " + what + "\n";
     if (out_.remarks.size() < 200) out_.remarks.push_back(what);
