@@ -42,8 +42,10 @@ class EulumdatParser {
       : cursor_(without_bom(text)), problems_(file_name) {}
 
   Checked<EulumdatFile> parse() {
-    if (parse_all() && problems_.empty()) return std::move(file_);
-    return tl::unexpected(problems_.take());
+    if (!parse_all() || !problems_.empty()) return tl::unexpected(problems_.take());
+    if (const std::string rest = words_of_rest(cursor_, "the last intensity"); !rest.empty())
+      file_.warnings.push_back(rest);
+    return std::move(file_);
   }
 
  private:
@@ -110,10 +112,6 @@ class EulumdatParser {
   }
 
   bool parse_head() {
-    if (cursor_.remaining() >= 2 && (cursor_.peek() == '\xFF' || cursor_.peek() == '\xFE')) {
-      problems_.add({1, 1}, "text in UTF-16", "save the file as plain text, ISO 8859-1 or UTF-8");
-      return false;
-    }
     std::string ignored;
     double type = 0, symmetry = 0, planes = 0, step = 0, gammas = 0;
     if (!text("company", file_.company) || !whole("type of luminaire (field 2)", 0, 3, type) ||
@@ -231,6 +229,7 @@ class EulumdatParser {
       file_.warnings.push_back("gamma angles " + number_text(first) + " to " + number_text(last) +
                                " degrees; no light is assumed outside");
     }
+    intensity_at_ = cursor_.at();
     return numbers("intensity", stored_planes_of(file_.symmetry, planes_) * gammas_, kMaxIntensity, file_.cd_per_klm);
   }
 
@@ -266,7 +265,7 @@ class EulumdatParser {
     const double scale = file_.conversion_factor * set.flux_lm / 1000;
     const double flux_lm = 4 * kPi * largest * scale < kMinFlux_lm ? 0 : make_intensity(file_)->flux_lm();
     if (!(flux_lm >= kMinFlux_lm) || !(flux_lm <= kMaxFlux_lm)) {
-      problems_.add({},
+      problems_.add(intensity_at_,
                     "the luminaire gives " + std::string(flux_lm > 1 ? "too much" : "no") +
                         " light: " + number_text(flux_lm) + " lm",
                     "correct intensities, conversion factor and lamp flux");
@@ -290,7 +289,7 @@ class EulumdatParser {
   EulumdatFile file_;
   std::size_t planes_ = 0;
   std::size_t gammas_ = 0;
-  At c_at_;
+  At c_at_, intensity_at_;
 };
 
 }  // namespace
@@ -302,7 +301,8 @@ std::size_t EulumdatFile::stored_first() const {
 std::size_t EulumdatFile::stored_planes() const { return stored_planes_of(symmetry, c_deg.size()); }
 
 Checked<EulumdatFile> parse_eulumdat(std::string_view text, const std::string& file_name) {
-  return EulumdatParser(text, file_name).parse();
+  const std::optional<std::string> decoded = from_utf16(text);
+  return EulumdatParser(decoded ? std::string_view(*decoded) : text, file_name).parse();
 }
 
 Checked<EulumdatFile> load_eulumdat(const std::filesystem::path& path) {

@@ -47,11 +47,12 @@ struct EulumdatFile {
   [[nodiscard]] std::size_t stored_planes() const;
 };
 
-/// Parses the text of a file: ISO 8859-1, UTF-8 or anything else that leaves digits as they are, with or without byte
-/// order mark; decimal point or comma; trailing blanks. Empty numbers among the sizes, ratios and watts are 0.
+/// Parses the text of a file: ISO 8859-1, UTF-8 or anything else that leaves digits as they are, or UTF-16, with or
+/// without byte order mark; decimal point or comma; trailing blanks. What stands after the last intensity is a warning.
+/// Empty numbers among the sizes, ratios and watts are 0.
 /// Refuses, with line and column: files that end early (naming the field), counts outside 1…10 000 or that do not fit
 /// the symmetry, angles that do not ascend or do not reach its planes, values that are negative or no numbers, no lamp
-/// set, no light, UTF-16, and radiometric files. `file_name` is only for problems.
+/// set, no light, and radiometric files. `file_name` is only for problems.
 [[nodiscard]] Checked<EulumdatFile> parse_eulumdat(std::string_view text, const std::string& file_name);
 
 /// The distribution of a parsed file with one of its lamp sets [cd] = cd/klm · conversion factor · flux / 1000:

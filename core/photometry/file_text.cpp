@@ -56,6 +56,32 @@ std::string_view without_bom(std::string_view text) {
   return text;
 }
 
+std::optional<std::string> from_utf16(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  if (text.size() < 4) return std::nullopt;
+  const bool little_mark = byte(0) == 0xFF && byte(1) == 0xFE;
+  const bool big_mark = byte(0) == 0xFE && byte(1) == 0xFF;
+  const bool little = little_mark || (byte(0) != 0 && byte(1) == 0 && byte(2) != 0 && byte(3) == 0);
+  const bool big = big_mark || (byte(0) == 0 && byte(1) != 0 && byte(2) == 0 && byte(3) != 0);
+  if (!little && !big) return std::nullopt;
+  std::string out;
+  out.reserve(text.size() / 2);
+  for (std::size_t i = little_mark || big_mark ? 2 : 0; i + 1 < text.size(); i += 2) {
+    const unsigned unit = little ? byte(i) | byte(i + 1) << 8 : byte(i + 1) | byte(i) << 8;
+    if (unit < 0x80) {
+      out += static_cast<char>(unit);
+    } else if (unit < 0x800) {
+      out += {static_cast<char>(0xC0 | unit >> 6), static_cast<char>(0x80 | (unit & 0x3F))};
+    } else if (unit >= 0xD800 && unit < 0xE000) {
+      out += '?';  // half of a character that no number or key needs
+    } else {
+      out += {static_cast<char>(0xE0 | unit >> 12), static_cast<char>(0x80 | (unit >> 6 & 0x3F)),
+              static_cast<char>(0x80 | (unit & 0x3F))};
+    }
+  }
+  return out;
+}
+
 std::string_view trimmed(std::string_view text) {
   while (!text.empty() && static_cast<unsigned char>(text.front()) <= ' ') text.remove_prefix(1);
   while (!text.empty() && static_cast<unsigned char>(text.back()) <= ' ') text.remove_suffix(1);
@@ -91,6 +117,22 @@ std::optional<double> number_of(std::string_view token) {
 bool is_radiometric(std::string_view lowered_line) {
   return lowered_line.find("w/sr") != std::string_view::npos ||
          lowered_line.find("radiometric units") != std::string_view::npos;
+}
+
+std::string words_of_rest(Cursor cursor, const std::string& after) {
+  cursor.skip_separators();
+  if (cursor.at_end()) return "";
+  const int line = cursor.at().line;
+  std::size_t values = 0;
+  std::string_view first;
+  while (!cursor.at_end()) {
+    const std::string_view token = cursor.take_token();
+    if (values == 0) first = token;
+    values += !token.empty();
+  }
+  return "from line " + std::to_string(line) + " on, " +
+         (values == 1 ? "1 value" : std::to_string(values) + " values") + " after " + after +
+         " are not read: " + excerpt(first) + (values > 1 ? " …" : "");
 }
 
 void ProblemLog::add(At at, std::string what, std::string mend) {

@@ -43,12 +43,18 @@ class Cursor {
 };
 
 [[nodiscard]] std::string_view without_bom(std::string_view text);
+/// UTF-16 with or without byte order mark, as Notepad may save it, as UTF-8; nothing for any other text.
+[[nodiscard]] std::optional<std::string> from_utf16(std::string_view text);
 [[nodiscard]] std::string_view trimmed(std::string_view text);
 [[nodiscard]] std::string lower(std::string_view text);            ///< ASCII letters only
 [[nodiscard]] std::string excerpt(std::string_view text);          ///< for messages: quoted, short, printable
 [[nodiscard]] std::string number_text(double value);               ///< six digits
 [[nodiscard]] std::optional<double> number_of(std::string_view);   ///< a plain finite number, whole text; "+1" too
 [[nodiscard]] bool is_radiometric(std::string_view lowered_line);  ///< speaks of W/sr or radiometric units
+
+/// What stands from here to the end, when it is more than blanks and control characters: "from line 40 on, 12 values
+/// after the last candela value are not read: …". Empty: nothing.
+[[nodiscard]] std::string words_of_rest(Cursor cursor, const std::string& after);
 
 /// Problems of one file, up to a limit: a garbled one would give thousands.
 class ProblemLog {
@@ -59,6 +65,7 @@ class ProblemLog {
   [[nodiscard]] bool full() const;
   [[nodiscard]] std::size_t size() const { return problems_.size(); }
   [[nodiscard]] Problem& last() { return problems_.back(); }
+  void clear() { problems_.clear(); }
   [[nodiscard]] std::vector<Problem> take() { return std::move(problems_); }
 
  private:

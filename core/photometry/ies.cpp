@@ -24,15 +24,52 @@ class IesParser {
       : cursor_(without_bom(text)), problems_(file_name), read_(cursor_, problems_), tilt_files_(tilt_files) {}
 
   Checked<IesFile> parse() {
-    if (parse_all() && problems_.empty()) return std::move(file_);
-    return tl::unexpected(problems_.take());
+    const bool read = parse_all() && problems_.empty();
+    const std::string rest = read ? words_of_rest(cursor_, "the last candela value") : "";
+    // Each decimal comma makes two numbers of one: then numbers are left over, or their counts make no sense.
+    if (numbers_from_ && (!read || !rest.empty()) && add_decimal_comma()) return tl::unexpected(problems_.take());
+    if (!read) return tl::unexpected(problems_.take());
+    if (!rest.empty()) file_.warnings.push_back(rest);
+    return std::move(file_);
   }
 
  private:
+  /// Commas between digits in a file whose numbers are separated by blanks: reports the first, instead of what came of
+  /// reading it as two numbers.
+  bool add_decimal_comma() {
+    Cursor cursor = *numbers_from_;
+    std::optional<At> at;
+    std::string found;
+    while (!cursor.at_end()) {
+      while (!cursor.at_end() && static_cast<unsigned char>(cursor.peek()) <= ' ') cursor.advance();
+      const At start = cursor.at();
+      std::string word;
+      while (!cursor.at_end() && static_cast<unsigned char>(cursor.peek()) > ' ') {
+        word += cursor.peek();
+        cursor.advance();
+      }
+      const std::size_t comma = word.find(',');
+      if (comma == std::string::npos) continue;
+      const std::string whole = word.substr(0, comma), decimals = word.substr(comma + 1);
+      const bool decimal = number_of(whole) && !decimals.empty() &&
+                           decimals.find_first_not_of("0123456789eE+-") == std::string::npos &&
+                           whole.find('.') == std::string::npos;
+      if (!decimal) return false;  // commas separate here
+      if (!at) at = start, found = word;
+    }
+    if (!at) return false;
+    problems_.clear();
+    problems_.add(*at, "number " + excerpt(found) + " has a decimal comma, and a comma separates numbers here",
+                  "write decimal points in the whole file");
+    return true;
+  }
+
   bool parse_all() {
     const auto tilt = parse_header();
     if (!tilt || !problems_.empty()) return false;
-    return parse_tilt(*tilt) && parse_fields() && parse_angles() && parse_candela() && check_flux();
+    if (!parse_tilt(*tilt)) return false;
+    numbers_from_ = cursor_;
+    return parse_fields() && parse_angles() && parse_candela() && check_flux();
   }
 
   /// Up to "TILT="; the cursor then stands behind the '='. Returns where the line began.
@@ -65,7 +102,7 @@ class IesParser {
       }
       first = false;
     }
-    problems_.add({}, "no TILT= line: not an IES LM-63 file",
+    problems_.add({1, 1}, "no TILT= line: not an IES LM-63 file",
                   "give a photometric file whose header ends with TILT=NONE");
     return std::nullopt;
   }
@@ -116,8 +153,11 @@ class IesParser {
 
   bool parse_fields() {
     const auto lamps = read_.whole("number of lamps", 1, 1'000'000);
+    const At lumens_at = read_.place();
     const auto lumens = read_.number("lumens per lamp", -1, 1e12);
+    const At factor_at = read_.place();
     const auto multiplier = read_.number("candela multiplier", 0, 1e9);
+    const At counts_at = read_.place();
     const auto vertical = read_.whole("number of vertical angles", 1, kMaxIesAngles);
     const auto horizontal = read_.whole("number of horizontal angles", 1, kMaxIesAngles);
     const auto type = read_.whole("photometric type", 1, 3);
@@ -129,15 +169,15 @@ class IesParser {
     const auto second = read_.number("ballast-lamp photometric factor", 0, 1e6);
     const auto watts = read_.number("input watts", 0, 1e9);
     if (!watts || !problems_.empty()) return false;  // `watts` is the last: without it the stream ended or broke
-    const At whole_file;
-    if (*vertical < 2) problems_.add(whole_file, "one vertical angle makes no distribution", "give two or more");
+    factor_at_ = factor_at;
+    if (*vertical < 2) problems_.add(counts_at, "one vertical angle makes no distribution", "give two or more");
     if (*vertical * *horizontal > kMaxIesValues) {
-      problems_.add(whole_file,
+      problems_.add(counts_at,
                     std::to_string(*vertical) + " x " + std::to_string(*horizontal) + " values, more than 4 million",
                     "give a coarser grid");
     }
     if (*lumens < 0 && *lumens != -1) {
-      problems_.add(whole_file, "lumens per lamp is negative", "give lumens, or -1 for absolute photometry");
+      problems_.add(lumens_at, "lumens per lamp is negative", "give lumens, or -1 for absolute photometry");
     }
     factor_ = *multiplier * *ballast * upright_factor_;
     const std::string edition = lower(file_.edition);
@@ -145,7 +185,7 @@ class IesParser {
                                                                    edition.substr(edition.size() - 2) == "86"));
     if (early) factor_ *= *second;
     if (!(factor_ > 0)) {
-      problems_.add(whole_file, "a multiplier or ballast factor is 0", "give the true factor, usually 1");
+      problems_.add(factor_at, "a multiplier or ballast factor is 0", "give the true factor, usually 1");
     }
     const double metres = *units == 1 ? kMetresPerFoot : 1.0;
     file_.type = static_cast<IesFile::Type>(*type);
@@ -172,11 +212,13 @@ class IesParser {
   }
 
   bool parse_candela() {
+    candela_at_ = read_.place();
     if (!read_.numbers("candela value", verticals_ * horizontals_, 0, kMaxCandela, file_.candela)) return false;
     for (double& value : file_.candela) {
       value *= factor_;
       if (value > kMaxCandela) {
-        problems_.add({}, "candela values with their factors exceed 1e12", "correct the multiplier and ballast factor");
+        problems_.add(factor_at_, "candela values with their factors exceed 1e12",
+                      "correct the multiplier and ballast factor");
         return false;
       }
     }
@@ -187,7 +229,7 @@ class IesParser {
     const double largest_cd = *std::max_element(file_.candela.begin(), file_.candela.end());
     const double flux_lm = 4 * kPi * largest_cd < kMinIesFlux_lm ? 0 : make_intensity(file_)->flux_lm();
     if (!(flux_lm >= kMinIesFlux_lm)) {
-      problems_.add({}, "the luminaire gives no light: " + number_text(flux_lm) + " lm",
+      problems_.add(candela_at_, "the luminaire gives no light: " + number_text(flux_lm) + " lm",
                     "give a file with candela values");
       return false;
     }
@@ -208,24 +250,30 @@ class IesParser {
   double factor_ = 1;
   std::size_t verticals_ = 0;
   std::size_t horizontals_ = 0;
+  std::optional<Cursor> numbers_from_;
+  At factor_at_, candela_at_;
 };
 
 }  // namespace
 
 Checked<IesFile> parse_ies(std::string_view text, const std::string& file_name, const TiltFiles& tilt_files) {
-  return IesParser(text, file_name, tilt_files).parse();
+  const std::optional<std::string> decoded = from_utf16(text);
+  return IesParser(decoded ? std::string_view(*decoded) : text, file_name, tilt_files).parse();
 }
 
-Checked<IesFile> load_ies(const std::filesystem::path& path) {
-  const Checked<std::string> text = read_text(path, "IES LM-63");
-  if (!text) return tl::unexpected(text.error());
-  const TiltFiles beside = [&](std::string_view name) -> std::optional<std::string> {
+TiltFiles tilt_files_beside(const std::filesystem::path& path) {
+  return [path](std::string_view name) -> std::optional<std::string> {
     // Names come from strangers: nothing but the folder itself.
     if (name.empty() || name.find_first_of("/\\:") != std::string_view::npos || name.front() == '.') return {};
     const Checked<std::string> tilt = read_text(path.parent_path() / std::string(name), "tilt");
     return tilt ? std::optional(*tilt) : std::nullopt;
   };
-  return parse_ies(*text, path.string(), beside);
+}
+
+Checked<IesFile> load_ies(const std::filesystem::path& path) {
+  const Checked<std::string> text = read_text(path, "IES LM-63");
+  if (!text) return tl::unexpected(text.error());
+  return parse_ies(*text, path.string(), tilt_files_beside(path));
 }
 
 }  // namespace luxrig

@@ -49,7 +49,8 @@ using TiltFiles = std::function<std::optional<std::string>(std::string_view name
 /// Parses the text of a file. `file_name` is only for problems. Refuses radiometric files (W/sr: far-UVC sources), TILT
 /// from a file that `tilt_files` does not have, and what no luminaire is: counts outside 1…10 000 (at least two
 /// vertical angles, at most 4 million values), angles that do not ascend or fit no symmetry, values that are negative
-/// or not finite, no light at all. Numbers after the last candela value are ignored.
+/// or not finite, no light at all, decimal commas (each makes two numbers of one). What stands after the last candela
+/// value is a warning. UTF-8 and UTF-16, with or without byte order mark.
 /// The last factor but one multiplies in LM-63-1986 and 1991 (ballast-lamp photometric factor); later it is 1, and
 /// since 2019 a code for how the file was made.
 [[nodiscard]] Checked<IesFile> parse_ies(std::string_view text, const std::string& file_name,
@@ -67,6 +68,9 @@ using TiltFiles = std::function<std::optional<std::string>(std::string_view name
 /// width along y: as the nearest shape there is. A box with shining sides becomes the rectangle below, an ellipse the
 /// disk of its area, a lying cylinder the rectangle of its outline, what stands upright a point.
 [[nodiscard]] LuminousOpening luminous_opening(const IesFile& file);
+
+/// Those beside a file of this path, and nowhere else.
+[[nodiscard]] TiltFiles tilt_files_beside(const std::filesystem::path& path);
 
 /// Reads and parses; TILT=<name> is looked for beside the file. Refuses files over 64 MiB.
 [[nodiscard]] Checked<IesFile> load_ies(const std::filesystem::path& path);

@@ -7,18 +7,67 @@
 #include "core/photometry/ies.h"
 
 namespace luxrig {
+namespace {
+
+using namespace file_text;
+
+bool has_tilt_line(std::string_view text) {
+  for (Cursor cursor(text); !cursor.at_end();) {
+    const std::string line = lower(trimmed(cursor.take_line()));
+    if (line.rfind("tilt", 0) != 0) continue;
+    const std::size_t equals = line.find_first_not_of(" \t", 4);
+    if (equals != std::string::npos && line[equals] == '=') return true;
+  }
+  return false;
+}
+
+/// Lines 2 to 7 hold one number each; the two distances may be empty.
+bool has_numbers_of_eulumdat(std::string_view text) {
+  Cursor cursor(text);
+  cursor.take_line();
+  for (int field = 2; field <= 7; ++field) {
+    if (cursor.at_end()) return false;
+    std::string line(trimmed(cursor.take_line()));
+    for (char& c : line) c = c == ',' ? '.' : c;
+    const bool may_be_empty = field == 5 || field == 7;
+    if (line.empty() ? !may_be_empty : !number_of(line)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Checked<PhotometricFile> parse_photometric_text(std::string_view text, const std::string& file_name,
+                                                const TiltFiles& tilt_files) {
+  const std::optional<std::string> decoded = from_utf16(text);
+  const std::string_view plain = without_bom(decoded ? std::string_view(*decoded) : text);
+  const std::string name = lower(file_name);
+  const bool named_eulumdat = name.ends_with(".ldt");
+  const bool ies = has_tilt_line(plain);
+  const bool eulumdat = !ies && (has_numbers_of_eulumdat(plain) || named_eulumdat);
+  PhotometricFile out;
+  if (eulumdat) {
+    Checked<EulumdatFile> file = parse_eulumdat(plain, file_name);
+    if (!file) return tl::unexpected(std::move(file.error()));
+    out = {make_intensity(*file), luminous_opening(*file), std::nullopt, file->lamp_sets.front().watts,
+           std::move(file->warnings)};
+  } else {
+    Checked<IesFile> file = parse_ies(plain, file_name, tilt_files);
+    if (!file) return tl::unexpected(std::move(file.error()));
+    out = {make_intensity(*file), luminous_opening(*file), std::move(file->tilt), file->input_w,
+           std::move(file->warnings)};
+  }
+  if (ies && named_eulumdat) out.warnings.push_back("named .ldt, but its content is IES LM-63: read as that");
+  if (eulumdat && name.ends_with(".ies")) {
+    out.warnings.push_back("named .ies, but its content is EULUMDAT: read as that");
+  }
+  return out;
+}
 
 Checked<PhotometricFile> load_photometric_file(const std::filesystem::path& path) {
-  if (file_text::lower(path.extension().string()) == ".ldt") {
-    Checked<EulumdatFile> file = load_eulumdat(path);
-    if (!file) return tl::unexpected(std::move(file.error()));
-    return PhotometricFile{make_intensity(*file), luminous_opening(*file), std::nullopt, file->lamp_sets.front().watts,
-                           std::move(file->warnings)};
-  }
-  Checked<IesFile> file = load_ies(path);
-  if (!file) return tl::unexpected(std::move(file.error()));
-  return PhotometricFile{make_intensity(*file), luminous_opening(*file), std::move(file->tilt), file->input_w,
-                         std::move(file->warnings)};
+  const Checked<std::string> text = read_text(path, "IES LM-63 or EULUMDAT");
+  if (!text) return tl::unexpected(text.error());
+  return parse_photometric_text(*text, path.string(), tilt_files_beside(path));
 }
 
 }  // namespace luxrig

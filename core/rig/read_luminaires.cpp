@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "core/photometry/light_colour.h"
-#include "core/photometry/photometric_file.h"
+#include "core/rig/luminaire_file/luminaire_file.h"
 #include "core/rig/rig_reader.h"
 #include "core/rig/stated_light.h"
 
@@ -19,6 +19,8 @@ struct ModelKey {
 };
 constexpr ModelKey kModelKeys[] = {
     {"file", " ies ", true},
+    {"file_variant", " ies ", false},
+    {"file_emitter", " ies ", false},
     {"beam_angle_deg", " spot ", true},
     {"field_angle_deg", " spot ", true},
     {"zoom_deg", " spot ", false},
@@ -111,10 +113,15 @@ void RigReader::read_spot(Section& s, Luminaire& luminaire) {
 void RigReader::read_photometric_file(Section& s, Luminaire& luminaire) {
   bool near_field = false;
   s.read("near_field", near_field);
+  LuminairePart part;
+  for (const auto& [key, to] : {std::pair{"file_variant", &part.variant}, {"file_emitter", &part.emitter}}) {
+    std::string name;
+    if (s.read(key, name)) *to = name;
+  }
   const auto path = read_file(s, "file");
   if (!path) return;
   luminaire.ies_path = *path;
-  Checked<PhotometricFile> file = load_photometric_file(*path);
+  Checked<PhotometricFile> file = load_luminaire_file(*path, part);
   if (!file) {
     problems.add(s.place_of("file"), fmt::format("{} cannot be used", in_quotes(path->filename().string())),
                  "mend what is listed for it, or use another file");

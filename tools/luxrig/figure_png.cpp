@@ -229,7 +229,7 @@ std::string write_figure(const Figure& figure, const std::filesystem::path& file
   LabelPlaces places;
   for (const FigureLabel& label : figure.labels) draw_label(pen.get(), label, places, top, width, height);
   lay_out({pen.get(), true, static_cast<double>(width + kMargin_px), static_cast<double>(top)}, figure, bar_px);
-  return write_png(surface, file);
+  return write_picture(surface, file);
 }
 
 }  // namespace luxrig

@@ -133,14 +133,14 @@ int main(int argc, char** argv) {
   RenderOptions render;
   std::filesystem::path render_plan;
   std::vector<double> eye, target;
-  std::string false_colour;
+  std::string false_colour, exposure, white_balance;
   command = app.add_subcommand("render",
                                "a picture of the lit rig, a false-colour map of lux, or why its lights are "
                                "where they are");
   add_rig_option(*command, render.rig);
   auto* with_plan =
       command->add_option("PLAN", render_plan, "levels of this plan (else every fixture at its highest level)");
-  command->add_option("-o,--output", render.output_png, "PNG file")->required();
+  command->add_option("-o,--output", render.output, "picture to write: .png or .jpg")->required();
   auto* with_false_colour =
       command->add_option("--false-colour", false_colour, "lux: a map of illuminance with a scale")
           ->check(one_of({"lux"}));
@@ -167,6 +167,25 @@ int main(int argc, char** argv) {
   auto* with_target = command->add_option("--target", target, "x y z [m] looked at")->expected(3);
   command->add_option("--fov-deg", render.vertical_fov_deg, "vertical field of view (60; with --show 30)")
       ->check(CLI::Range(1.0, 170.0));
+  command
+      ->add_option("--exposure", exposure,
+                   "stops brighter (+1) or darker (-1) than metered, or the luminance shown white: 300cd/m2")
+      ->check(CLI::Validator(
+          [](std::string& text) {
+            return exposure_of(text) ? "" : "write stops from -20 to 20 (+1), or a luminance (300cd/m2)";
+          },
+          ""))
+      ->excludes(with_false_colour);
+  command
+      ->add_option("--white-balance", white_balance,
+                   "what is shown neutral: light as of the lamps in use (lamps, the default), daylight, or a colour "
+                   "temperature (2700K)")
+      ->check(CLI::Validator(
+          [](std::string& text) {
+            return white_balance_of(text) ? "" : "write lamps, daylight, or 1667 to 25000 with or without K";
+          },
+          ""))
+      ->excludes(with_false_colour);
   command->add_option("--max-lx", render.max_lx, "top of the false-colour scale")->check(CLI::PositiveNumber);
   command->add_option("--max-error", render.max_error, "noise at which the picture is done")
       ->check(CLI::Range(1e-4, 1.0));
@@ -179,6 +198,8 @@ int main(int argc, char** argv) {
     if (*with_eye) render.eye_world_m = Vec3(eye[0], eye[1], eye[2]);
     if (*with_target) render.target_world_m = Vec3(target[0], target[1], target[2]);
     render.false_colour = !false_colour.empty();
+    if (!exposure.empty()) render.exposure = *exposure_of(exposure);
+    if (!white_balance.empty()) render.white_balance = *white_balance_of(white_balance);
     code = run_render(render);
   });
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/photometry/light_colour.h"
 #include "tools/luxrig/png_canvas.h"
 
 namespace luxrig {
@@ -27,8 +28,6 @@ void write_title(cairo_t* pen, const std::string& title, int height_px) {
 }
 
 double srgb(double linear) { return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055; }
-
-double luminance_of(const Vec3f& rgb) { return 0.2126 * rgb.x() + 0.7152 * rgb.y() + 0.0722 * rgb.z(); }
 
 using ColourTable = std::array<std::array<int, 3>, 9>;
 
@@ -77,37 +76,26 @@ double round_up_1_2_5(double value) {
   return 10 * decade;
 }
 
-double log_average_luminance_cd_m2(const Picture& picture) {
-  std::vector<double> logs;
-  // A sky in the window is brighter than any room: exposed is for what the light falls on.
-  for (std::size_t i = 0; i < picture.luminance_cd_m2.size(); ++i)
-    if (const double luminance = luminance_of(picture.luminance_cd_m2[i]);
-        luminance > 0 && (picture.illuminance_lx.empty() || picture.illuminance_lx[i] >= 0))
-      logs.push_back(std::log(luminance));
-  if (logs.empty()) return 1;
-  std::sort(logs.begin(), logs.end());
-  const std::size_t cut = logs.size() / 100;
-  double sum = 0;
-  for (std::size_t i = cut; i < logs.size() - cut; ++i) sum += logs[i];
-  return std::exp(sum / static_cast<double>(logs.size() - 2 * cut));
-}
-
-std::string write_photograph(const Picture& picture, const std::string& title, std::optional<double> grey_cd_m2,
+std::string write_photograph(const Picture& picture, const std::string& title, const PhotographLook& look,
                              const std::filesystem::path& file) {
-  const double exposure = 0.18 / grey_cd_m2.value_or(log_average_luminance_cd_m2(picture));
   constexpr double kWhite = 6;  // exposed luminance that becomes white
+  const double exposure = kWhite / look.white_cd_m2;
+  // A black body's blue may be nearly nothing: what little there is in the picture is not made into much.
+  const Vec3 balance = look.white_rgb.cwiseMax(0.05).cwiseInverse();
   const PngSurface surface = make_png_surface(picture.width_px, picture.height_px);
   paint_png(surface.get(), 0, 0, picture.width_px, picture.height_px, [&](int x, int y) {
-    const Vec3f& rgb = picture.luminance_cd_m2[static_cast<std::size_t>(y * picture.width_px + x)];
-    const double exposed = exposure * luminance_of(rgb);
+    const Vec3 rgb =
+        picture.luminance_cd_m2[static_cast<std::size_t>(y * picture.width_px + x)].cast<double>().cwiseProduct(
+            balance);
+    const double exposed = exposure * luminance_of_rgb(rgb);
     if (!(exposed > 0)) return Vec3(Vec3::Zero());
     const double shown = exposed * (1 + exposed / (kWhite * kWhite)) / (1 + exposed);
-    const Vec3 linear = rgb.cast<double>() * (exposure * shown / exposed);
+    const Vec3 linear = rgb * (exposure * shown / exposed);
     return Vec3(srgb(linear.x()), srgb(linear.y()), srgb(linear.z()));
   });
   const PngPen pen = make_png_pen(surface);
   write_title(pen.get(), title, picture.height_px);
-  return write_png(surface, file);
+  return write_picture(surface, file);
 }
 
 namespace {
@@ -213,7 +201,7 @@ std::string write_false_colour(const Picture& picture, const std::string& title,
     cairo_show_text(pen.get(), fmt::format("{:g}", tick).c_str());
   }
   write_title(pen.get(), title, picture.height_px);
-  return write_png(surface, file);
+  return write_picture(surface, file);
 }
 
 namespace {
@@ -229,7 +217,7 @@ PngSurface plan_surface(const PlanView& view) {
 }  // namespace
 
 std::string write_plan_view(const PlanView& view, const std::filesystem::path& file) {
-  return write_png(plan_surface(view), file);
+  return write_picture(plan_surface(view), file);
 }
 
 std::string plan_view_png(const PlanView& view) {

@@ -1,22 +1,20 @@
 #pragma once
-/// Pictures as PNG files: tone mapping, false colour with its scale, plan views.
+/// Pictures as PNG or JPEG files: tone mapping, false colour with its scale, plan views.
 
 #include <filesystem>
 #include <optional>
 #include <string>
 
 #include "core/transport/picture.h"
+#include "tools/luxrig/exposure.h"
 
 namespace luxrig {
 
-/// Luminance that maps to middle grey: the log-average of what is seen, without the darkest and brightest 1 %.
-[[nodiscard]] double log_average_luminance_cd_m2(const Picture& picture);
-
-/// As a photograph: exposure so that `grey_cd_m2` becomes middle grey (log-average when empty), highlights rolled off
-/// (E. Reinhard et al. 2002, eq. 4), sRGB. `title` is written in the corner; may be empty.
+/// As a photograph: exposed and balanced as `look` says, highlights rolled off (E. Reinhard et al. 2002, eq. 4), sRGB.
+/// `title` is written in the corner; may be empty. PNG, or JPEG by the name's ending.
 /// Returns an empty string, or why the file could not be written.
-[[nodiscard]] std::string write_photograph(const Picture& picture, const std::string& title,
-                                           std::optional<double> grey_cd_m2, const std::filesystem::path& file);
+[[nodiscard]] std::string write_photograph(const Picture& picture, const std::string& title, const PhotographLook& look,
+                                           const std::filesystem::path& file);
 
 /// Illuminance in colours of the viridis scale, logarithmic, with lines of equal lux and a legend. max_lx (top of the
 /// scale) defaults to the 99.5th percentile, rounded up to 1, 2 or 5 times a power of ten; the scale spans two decades.

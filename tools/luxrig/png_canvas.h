@@ -21,8 +21,12 @@ using PngPen = std::unique_ptr<cairo_t, decltype(&cairo_destroy)>;
 [[nodiscard]] PngSurface make_png_surface(int width_px, int height_px);
 [[nodiscard]] PngPen make_png_pen(const PngSurface& surface);
 
+/// Whether the name ends in .png, .jpg or .jpeg, in any case.
+[[nodiscard]] bool is_picture_name(const std::filesystem::path& file);
+
+/// As PNG, or as JPEG (quality 92) where the name ends in .jpg or .jpeg.
 /// Returns an empty string, or why the file could not be written.
-[[nodiscard]] std::string write_png(const PngSurface& surface, const std::filesystem::path& file);
+[[nodiscard]] std::string write_picture(const PngSurface& surface, const std::filesystem::path& file);
 
 enum class PngFont { regular, bold };
 void set_png_font(cairo_t* pen, double size_px, PngFont font = PngFont::regular);

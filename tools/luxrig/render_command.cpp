@@ -10,11 +10,16 @@
 #include <sstream>
 
 #include "core/control/plan.h"
+#include "core/photometry/light_colour.h"
 #include "core/rig/rig_file.h"
 #include "core/scene/scene_builder.h"
 #include "core/transport/rig_transport.h"
 #include "tools/luxrig/command.h"
+#include "tools/luxrig/dark_picture.h"
+#include "tools/luxrig/exposure.h"
 #include "tools/luxrig/picture_png.h"
+#include "tools/luxrig/png_canvas.h"
+#include "tools/luxrig/room_view.h"
 
 namespace luxrig {
 namespace {
@@ -38,75 +43,27 @@ Checked<std::vector<double>> levels_of(const RenderOptions& options, Rig& rig) {
   return levels_when_hung(*plan, rig, options.plan->string());
 }
 
-/// Share of `wanted_m` in the picture with nothing in front; a wish seen from nearby or behind does not count.
-double seen_share(const RayScene& scene, const Camera& camera, const std::vector<Receiver>& wanted) {
-  const Vec3 ahead = (camera.target_world_m - camera.eye_world_m).normalized();
-  const double half_fov_rad = camera.vertical_fov_rad / 2;
-  double seen = 0;
-  for (const Receiver& wish : wanted) {
-    const Vec3 to_m = wish.position_world_m - camera.eye_world_m;
-    if (to_m.norm() < 0.3 || to_m.normalized().dot(ahead) < std::cos(1.2 * half_fov_rad)) continue;
-    if (scene.occluded(wish.position_world_m, wish.normal_world, camera.eye_world_m)) continue;
-    seen += wish.normal_world.dot(to_m) < 0 ? 1.0 : 0.3;  // lit side towards us
+/// As asked for or metered, and in words what that is.
+PhotographLook look_of(const RenderOptions& options, const Picture& picture, std::span<const Emitter> emitters,
+                       std::span<const double> levels, std::string& words) {
+  PhotographLook look;
+  const Exposure& exposure = options.exposure;
+  look.white_cd_m2 = exposure.white_cd_m2.value_or(metered_white_cd_m2(picture) / std::exp2(exposure.stops));
+  std::string of = "daylight (D65)";
+  if (options.white_balance.cct_k) {
+    look.white_rgb = rgb_of_cct(*options.white_balance.cct_k);
+    of = fmt::format("{:.0f} K", *options.white_balance.cct_k);
+  } else if (options.white_balance.of_lamps) {
+    const LampWhite lamps = white_of_lamps(emitters, levels);
+    look.white_rgb = lamps.rgb;
+    if (lamps.cct_k) of = fmt::format("{:.0f} K, as the lamps", *lamps.cct_k);
   }
-  return wanted.empty() ? 0 : seen / static_cast<double>(wanted.size());
-}
-
-/// Mean, over a coarse grid of the picture, of how far one sees, bounded: a view into a near wall is none.
-double openness(const RayScene& scene, const Camera& camera, double far_m) {
-  double sum = 0;
-  for (int j = 0; j < 6; ++j)
-    for (int i = 0; i < 8; ++i) {
-      const auto hit = scene.nearest(
-          camera.eye_world_m, ray_direction(camera, (i + 0.5) * camera.width_px / 8, (j + 0.5) * camera.height_px / 6),
-          Vec3::Zero());
-      if (hit) sum += std::min(hit->distance_m / far_m, 1.0) / 48;
-    }
-  return sum;
+  words = fmt::format("white is {:.3g} cd/m2 (the same again: --exposure {:.3g}cd/m2) of {}\n", look.white_cd_m2,
+                      look.white_cd_m2, of);
+  return look;
 }
 
 }  // namespace
-
-Camera automatic_camera(const RayScene& scene, const Rig& rig, int width_px, int height_px, double vertical_fov_rad) {
-  std::vector<Receiver> wanted;
-  for (const Point& point : rig.points) wanted.push_back({point.position_world_m, point.normal_world});
-  if (wanted.empty())
-    for (const Emitter& emitter : emitters_of(rig))
-      wanted.push_back({emitter.world_from_lamp.translation_m, Vec3::Zero()});
-  Eigen::AlignedBox3d room = scene.bounds_world_m();
-  for (const Receiver& wish : wanted) room.extend(wish.position_world_m);
-  if (room.isEmpty()) room = Eigen::AlignedBox3d(Vec3::Constant(-1), Vec3::Constant(1));
-  Vec3 centre_m = room.center();
-  if (!wanted.empty()) {
-    centre_m.setZero();
-    for (const Receiver& wish : wanted) centre_m += wish.position_world_m / static_cast<double>(wanted.size());
-  }
-  const double far_m = std::max(room.diagonal().norm() / 2, 1e-6);
-  Camera best;
-  double best_score = -1;
-  for (const double high : {0.55, 0.75})
-    for (const double out : {0.35, 0.45})
-      for (int side = 0; side < 8; ++side) {
-        const double angle_rad = kPi / 4 * side;
-        // On the rim of the room's rectangle, seen from its middle.
-        const Vec3 rim(std::clamp(1.5 * std::cos(angle_rad), -1.0, 1.0),
-                       std::clamp(1.5 * std::sin(angle_rad), -1.0, 1.0), 0);
-        Camera camera;
-        camera.eye_world_m = room.center() + out * rim.cwiseProduct(room.sizes());
-        camera.eye_world_m.z() = room.min().z() + high * room.sizes().z();
-        camera.target_world_m = centre_m;
-        camera.vertical_fov_rad = vertical_fov_rad;
-        camera.width_px = width_px;
-        camera.height_px = height_px;
-        if ((camera.target_world_m - camera.eye_world_m).norm() < 1e-6 * far_m) continue;
-        const double score = seen_share(scene, camera, wanted) + 0.5 * openness(scene, camera, far_m);
-        if (score > best_score) {
-          best_score = score;
-          best = camera;
-        }
-      }
-  return best;
-}
 
 Checked<std::pair<Rig, std::vector<double>>> load_rig_for_picture(const RenderOptions& options) {
   auto rig = load_rig(options.rig);
@@ -117,6 +74,11 @@ Checked<std::pair<Rig, std::vector<double>>> load_rig_for_picture(const RenderOp
 }
 
 int run_render(const RenderOptions& options) {
+  if (!is_picture_name(options.output)) {
+    fmt::print(stderr, "{}:0:0: this ending is no kind of picture that is written: end its name in .png or .jpg\n",
+               options.output.string());
+    return kExitBadInput;
+  }
   if (options.show) return run_show(options);
   const auto loaded = load_rig_for_picture(options);
   if (!loaded) return report(loaded.error());
@@ -151,16 +113,25 @@ int run_render(const RenderOptions& options) {
     return 2;
   }
   const std::string title = fmt::format("{}{}", rig.name, options.plan ? "" : " (all at full)");
-  const std::string trouble = options.false_colour
-                                  ? write_false_colour(*picture, title, options.max_lx, options.output_png)
-                                  : write_photograph(*picture, title, options.grey_cd_m2, options.output_png);
+  std::string shown;
+  std::string trouble;
+  if (options.false_colour) {
+    trouble = write_false_colour(*picture, title, options.max_lx, options.output);
+  } else {
+    const PhotographLook look = look_of(options, *picture, emitters, all_levels, shown);
+    trouble = write_photograph(*picture, title, look, options.output);
+  }
   if (!trouble.empty()) {
     fmt::print(stderr, "{}:0:0: picture not written ({}): name a file in a folder that exists and can be written\n",
-               options.output_png.string(), trouble);
+               options.output.string(), trouble);
     return 1;
   }
-  fmt::print("{}: {} samples per pixel, noise {:.2g} of a pixel's lux (root mean square)\n",
-             options.output_png.string(), picture->passes, picture->relative_error);
+  fmt::print("{}: {} samples per pixel, noise {:.2g} of a pixel's lux (root mean square)\n{}", options.output.string(),
+             picture->passes, picture->relative_error, shown);
+  const std::string dark = why_dark(
+      *picture, rays, rig, emitters, all_levels,
+      options.plan ? "in " + options.plan->filename().string() : std::string("at the highest levels the rig allows"));
+  if (!dark.empty()) fmt::print("{}\n", dark);
   return 0;
 }
 

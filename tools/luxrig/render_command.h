@@ -9,6 +9,7 @@
 
 #include "core/rig/rig.h"
 #include "core/transport/picture.h"
+#include "tools/luxrig/exposure.h"
 
 namespace luxrig {
 
@@ -18,19 +19,20 @@ enum class ShowWhat { curvature, interest, features, histogram, domain, beams };
 struct RenderOptions {
   std::filesystem::path rig;
   std::optional<std::filesystem::path> plan;  ///< none: every fixture at its highest allowed level
-  std::filesystem::path output_png;
-  bool false_colour = false;  ///< lux map with a scale
+  std::filesystem::path output;               ///< .png or .jpg
+  bool false_colour = false;                  ///< lux map with a scale
   int width_px = 960, height_px = 600;
   std::optional<Vec3> eye_world_m, target_world_m;  ///< none: a view of the room that shows most of its points
   std::optional<double> vertical_fov_deg;           ///< none: 60, for `show` 30
   std::optional<ShowWhat> show;                     ///< instead of the lit room
   std::optional<std::string> object;                ///< whose relief is shown; none: the only one from a mesh file
   int lights = 3;                                   ///< directions to choose on the histogram
-  std::optional<double> grey_cd_m2;                 ///< luminance shown as middle grey; none: from the picture
-  std::optional<double> max_lx;                     ///< top of the false colour scale; none: from the picture
-  double max_error = 0.02;                          ///< noise of the picture at which it is done
-  double seconds = 20;                              ///< or after this time
-  std::optional<int> passes;                        ///< or after so many samples per pixel: the same picture each time
+  Exposure exposure;
+  WhiteBalance white_balance;
+  std::optional<double> max_lx;  ///< top of the false colour scale; none: from the picture
+  double max_error = 0.02;       ///< noise of the picture at which it is done
+  double seconds = 20;           ///< or after this time
+  std::optional<int> passes;     ///< or after so many samples per pixel: the same picture each time
   int threads = 0;
 };
 
@@ -41,10 +43,5 @@ int run_show(const RenderOptions& options);
 
 /// The rig and a level per fixture: those of the plan, whose placed lights are hung for it; or each fixture's highest.
 [[nodiscard]] Checked<std::pair<Rig, std::vector<double>>> load_rig_for_picture(const RenderOptions& options);
-
-/// A view from the corner of the room, inside it, from which most of the rig's points (or lamps, if it has none) are
-/// seen.
-[[nodiscard]] Camera automatic_camera(const RayScene& scene, const Rig& rig, int width_px, int height_px,
-                                      double vertical_fov_rad);
 
 }  // namespace luxrig

@@ -153,13 +153,13 @@ int run_show(const RenderOptions& options) {
     fmt::print(stderr, "luxrig render: {}\n", figure.error().detail);
     return figure.error().cause == Cause::cancelled ? kExitFailed : kExitBadInput;
   }
-  const std::string trouble = write_figure(*figure, options.output_png);
+  const std::string trouble = write_figure(*figure, options.output);
   if (!trouble.empty()) {
     fmt::print(stderr, "{}:0:0: picture not written ({}): name a file in a folder that exists and can be written\n",
-               options.output_png.string(), trouble);
+               options.output.string(), trouble);
     return kExitFailed;
   }
-  fmt::print("{}: {}\n", options.output_png.string(), figure->title);
+  fmt::print("{}: {}\n", options.output.string(), figure->title);
   return kExitOk;
 }
 

@@ -48,7 +48,9 @@ Result<std::vector<TakenByCamera>> RigPictures::take(const std::string& label) {
       return refusal(fmt::format("camera \"{}\": its picture has {} x {} pixels", camera.name, picture->width_px,
                                  picture->height_px));
     TakenByCamera taken{camera.name, folder_ / fmt::format("{}-{}.png", camera.name, label), {}};
-    if (const std::string trouble = write_photograph(*picture, "", std::nullopt, taken.file); !trouble.empty())
+    PhotographLook look;
+    look.white_cd_m2 = metered_white_cd_m2(*picture);
+    if (const std::string trouble = write_photograph(*picture, "", look, taken.file); !trouble.empty())
       return refusal(fmt::format("{} is not written: {}", taken.file.string(), trouble));
     if (!relief_.empty())
       taken.contrast = picture_contrast(*picture, view_of(camera), *session_.rays, relief_, scale_m_);

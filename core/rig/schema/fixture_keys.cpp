@@ -24,7 +24,13 @@ constexpr KeySpec kFixtureKeys[] = {
      "that "
      "faces down, a sphere, an upright cylinder"},
     {"luminaire", "file", file, "", kNone, kAny, "",
-     "IES LM-63 file, or EULUMDAT when it ends in .ldt (only with model `ies`, and required there)"},
+     "photometric file: IES LM-63 (.ies), EULUMDAT (.ldt), IES TM-33 (.xml) or GLDF (.gldf), told apart by content "
+     "(only "
+     "with model `ies`, and required there)"},
+    {"luminaire", "file_variant", text, "", kNone, kAny, "",
+     "id or name of the variant in a GLDF file (only with model `ies`); needed where variants differ in their light"},
+    {"luminaire", "file_emitter", text, "", kNone, kAny, "",
+     "id or name of the emitter in a GLDF or TM-33 file (only with model `ies`); needed where there are several"},
     {"luminaire", "beam_angle_deg", number, "°", kNone, kFullCone, "",
      "full angle to half the peak intensity (only with model `spot`, and required there unless a fixture's GDTF file "
      "states both angles)"},

@@ -250,10 +250,27 @@ TEST(Eulumdat, SaysWhereAndWhatIsWrong) {
     EXPECT_EQ(problem.line, line) << problem.text();
     EXPECT_FALSE(problem.mend.empty());
   }
-  EXPECT_FALSE(parse_eulumdat(Text(1, {0}, {0, 90}, {0, 0}).joined(), "f").has_value());
-  const auto utf16 = parse_eulumdat(std::string("\xFF\xFEm\0a\0", 6), "f");
-  ASSERT_FALSE(utf16.has_value());
-  EXPECT_EQ(utf16.error().front().what, "text in UTF-16");
+  const auto dark = parse_eulumdat(Text(1, {0}, {0, 90}, {0, 0}).joined(), "f");
+  ASSERT_FALSE(dark.has_value());
+  EXPECT_EQ(dark.error().front().line, 46);  // where the intensities begin
+}
+
+TEST(Eulumdat, ReadsUtf16) {
+  std::string wide = "\xFF\xFE";
+  for (const char c : Text(1, {0}, {0, 90}, {200, 0}).joined()) wide += {c, '\0'};
+  const auto file = parse_eulumdat(wide, "f");
+  ASSERT_TRUE(file.has_value()) << file.error().front().text();
+  EXPECT_EQ(file->cd_per_klm, (std::vector<double>{200, 0}));
+}
+
+TEST(Eulumdat, SaysWhatStandsAfterItsEnd) {
+  const std::string whole = Text(1, {0}, {0, 90}, {1000 / kPi, 0}).joined();
+  const auto said = [&](const std::string& after) {
+    const auto file = parse_eulumdat(whole + after, "f");
+    return file && !file->warnings.empty() ? file->warnings.back() : std::string();
+  };
+  EXPECT_EQ(said("\r\n\x1a").find("not read"), std::string::npos);
+  EXPECT_NE(said("\r\n12\r\n13\r\n").find("2 values after the last intensity are not read: '12'"), std::string::npos);
 }
 
 TEST(Eulumdat, NamesTheFirstFieldThatACutFileLacks) {

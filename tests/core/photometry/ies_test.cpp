@@ -292,8 +292,8 @@ struct BadText {
 TEST(Ies, SaysWhereAndWhatIsWrong) {
   const std::string head = "IESNA:LM-63-2002\nTILT=NONE\n";
   const BadText bad[] = {
-      {"no TILT= line", 0, 0, ""},
-      {"no TILT= line", 0, 0, "IESNA91\n[TEST] nothing follows\n"},
+      {"no TILT= line", 1, 1, ""},
+      {"no TILT= line", 1, 1, "IESNA91\n[TEST] nothing follows\n"},
       {"TILT factors in another file", 2, 1, "IESNA91\nTILT=lamp.tlt\n1"},
       {"the file ends before the number of lamps", 3, 1, head},
       {"candela value 3 of 4", 8, 1, head + "1 -1 1 2 2 1 2 0 0 0\n1 1 1\n0 90\n0 90\n1 2\n"},
@@ -304,9 +304,9 @@ TEST(Ies, SaysWhereAndWhatIsWrong) {
       {"vertical angles do not ascend: 45 follows 90", 5, 1, head + "1 -1 1 3 1 1 2 0 0 0\n1 1 1\n0 90 45\n0\n1 1 1\n"},
       {"vertical angle '190'", 5, 3, head + "1 -1 1 2 1 1 2 0 0 0\n1 1 1\n0 190\n0\n1 1\n"},
       {"number of vertical angles '20000'", 3, 8, head + "1 -1 1 20000 1 1 2 0 0 0\n1 1 1\n"},
-      {"more than 4 million", 0, 0, head + "1 -1 1 9999 9999 1 2 0 0 0\n1 1 1\n"},
+      {"more than 4 million", 3, 8, head + "1 -1 1 9999 9999 1 2 0 0 0\n1 1 1\n"},
       {"number of vertical angles is not a whole number", 3, 8, head + "1 -1 1 2.5 1 1 2 0 0 0\n1 1 1\n0 90 0 1 1"},
-      {"one vertical angle", 0, 0, head + "1 -1 1 1 1 1 2 0 0 0\n1 1 1\n0 0 1"},
+      {"one vertical angle", 3, 8, head + "1 -1 1 1 1 1 2 0 0 0\n1 1 1\n0 0 1"},
       {"fit no symmetry of type A", 5, 1, head + "1 -1 1 2 2 3 2 0 0 0\n1 1 1\n10 90\n0 90\n1 1 1 1\n"},
       {"fit no symmetry of type B", 6, 1, head + "1 -1 1 2 2 2 2 0 0 0\n1 1 1\n0 90\n10 90\n1 1 1 1\n"},
       {"vertical angle '100'", 5, 3, head + "1 -1 1 2 2 2 2 0 0 0\n1 1 1\n0 100\n0 90\n1 1 1 1\n"},
@@ -315,10 +315,13 @@ TEST(Ies, SaysWhereAndWhatIsWrong) {
       {"lamp-to-luminaire geometry '4'", 3, 1, "IESNA91\nTILT=INCLUDE\n4\n2\n0 90\n1 1\n"},
       {"tilt factor '0' is out of range", 6, 1, "IESNA91\nTILT=INCLUDE\n1\n2\n0 90\n0 1\n"},
       {"photometric type '7'", 3, 12, head + "1 -1 1 2 1 7 2 0 0 0\n1 1 1\n0 90\n0\n1 1\n"},
-      {"lumens per lamp", 0, 0, head + "1 -0.5 1 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n1 1\n"},
-      {"a multiplier or ballast factor is 0", 0, 0, head + "1 -1 0 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n1 1\n"},
-      {"gives no light", 0, 0, head + "1 -1 1 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n0 0\n"},
+      {"lumens per lamp", 3, 3, head + "1 -0.5 1 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n1 1\n"},
+      {"a multiplier or ballast factor is 0", 3, 6, head + "1 -1 0 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n1 1\n"},
+      {"gives no light", 7, 1, head + "1 -1 1 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n0 0\n"},
       {"fit no symmetry", 6, 1, head + "1 -1 1 2 2 1 2 0 0 0\n1 1 1\n0 90\n0 100\n1 1 1 1\n"},
+      {"number '0,5' has a decimal comma", 3, 16, head + "1 -1 1 2 1 1 2 0,5 0 0\n1 1 1\n0 90\n0\n1 1\n"},
+      {"number '1,5' has a decimal comma", 7, 3, head + "1 -1 1 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n1 1,5\n"},
+      {"number '1,0' has a decimal comma", 3, 6, head + "1 -1 1,0 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n1 1\n"},
   };
   for (const BadText& one : bad) {
     const auto file = parse_ies(one.text, "lamp.ies");
@@ -329,6 +332,37 @@ TEST(Ies, SaysWhereAndWhatIsWrong) {
     EXPECT_EQ(problem.line, one.line) << problem.text();
     EXPECT_EQ(problem.column, one.column) << problem.text();
     EXPECT_FALSE(problem.mend.empty());
+  }
+}
+
+TEST(Ies, ReadsNumbersThatCommasSeparate) {
+  const auto file = parse_ies("IESNA91\nTILT=NONE\n1,-1,1,2,2,1,2,0,0,0\n1,1,1\n0,90\n0, 90\n100,0,100,0\n", "f");
+  ASSERT_TRUE(file.has_value()) << file.error().front().text();
+  EXPECT_EQ(file->candela, (std::vector<double>{100, 0, 100, 0}));
+  EXPECT_TRUE(file->warnings.empty());
+}
+
+TEST(Ies, SaysWhatStandsAfterItsEnd) {
+  const std::string whole = "IESNA91\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n100 0\n";
+  for (const char* nothing : {"", "\n \n", "\x1a", ","}) EXPECT_TRUE(parse_ies(whole + nothing, "f")->warnings.empty());
+  const auto more = parse_ies(whole + "\n7 8 9\n", "f");
+  ASSERT_TRUE(more.has_value());
+  ASSERT_EQ(more->warnings.size(), 1u);
+  EXPECT_EQ(more->warnings[0], "from line 9 on, 3 values after the last candela value are not read: '7' …");
+}
+
+TEST(Ies, ReadsUtf16AndByteOrderMarks) {
+  const std::string text = "IESNA91\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 1\n0 90\n0\n100 0\n";
+  std::string little, big;
+  for (const char c : text) {
+    little += {c, '\0'};
+    big += {'\0', c};
+  }
+  for (const std::string& one : {text, "\xEF\xBB\xBF" + text, little, big, "\xFF\xFE" + little, "\xFE\xFF" + big}) {
+    const auto file = parse_ies(one, "f");
+    ASSERT_TRUE(file.has_value()) << file.error().front().text();
+    EXPECT_EQ(file->edition, "IESNA91");
+    EXPECT_EQ(file->candela, (std::vector<double>{100, 0}));
   }
 }
 

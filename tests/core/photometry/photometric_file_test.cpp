@@ -94,6 +94,37 @@ TEST(PhotometricFiles, LoadWithTheFluxOfTheirCatalogueOrAreRefusedForAReason) {
   EXPECT_EQ(seen.size(), kCatalogue.size());
 }
 
+class NamedWrongly : public testing::Test {
+ protected:
+  void SetUp() override { std::filesystem::create_directories(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+  Checked<PhotometricFile> loaded_as(const char* of, const char* name) const {
+    std::filesystem::copy_file(folder() / of, folder_ / name, std::filesystem::copy_options::overwrite_existing);
+    return load_photometric_file(folder_ / name);
+  }
+  const std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / "luxrig_named_wrongly";
+};
+
+TEST_F(NamedWrongly, FilesAreReadByTheirContentWhichIsSaid) {
+  const auto ldt = loaded_as("sample9.ldt", "x.ies");
+  ASSERT_TRUE(ldt.has_value()) << ldt.error().front().text();
+  EXPECT_NEAR(ldt->intensity->flux_lm(), 10002.8, 0.06);
+  EXPECT_EQ(ldt->warnings.back(), "named .ies, but its content is EULUMDAT: read as that");
+  const auto ies = loaded_as("comet.ies", "x.LDT");
+  ASSERT_TRUE(ies.has_value()) << ies.error().front().text();
+  EXPECT_NEAR(ies->intensity->flux_lm(), 16073.7, 0.06);
+  EXPECT_EQ(ies->warnings.back(), "named .ldt, but its content is IES LM-63: read as that");
+}
+
+TEST_F(NamedWrongly, CapitalsInAnEndingAreNoMistake) {
+  for (const auto& [of, name] : {std::pair{"sample9.ldt", "x.LDT"}, {"comet.ies", "x.IES"}}) {
+    const auto there = load_photometric_file(folder() / of), capitals = loaded_as(of, name);
+    ASSERT_TRUE(there.has_value() && capitals.has_value());
+    EXPECT_EQ(there->warnings, capitals->warnings);
+    EXPECT_EQ(there->intensity->flux_lm(), capitals->intensity->flux_lm());
+  }
+}
+
 TEST(PhotometricFiles, AreReadByTheirExtension) {
   const auto ldt = load_photometric_file(folder() / "sample9.ldt");
   ASSERT_TRUE(ldt.has_value());

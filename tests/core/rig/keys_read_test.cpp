@@ -9,6 +9,7 @@
 #include "core/rig/rig_file.h"
 #include "core/rig/schema.h"
 #include "tests/core/rig/kitchen_sink.h"
+#include "tests/folders.h"
 
 namespace luxrig {
 namespace {
@@ -126,6 +127,8 @@ class KeysRead : public testing::Test {
  protected:
   void SetUp() override {
     std::filesystem::create_directories(folder_);
+    std::filesystem::copy_file(test::source_folder() / "tests/data/luminaires/two_heads.gldf",
+                               folder_ / "two_heads.gldf", std::filesystem::copy_options::overwrite_existing);
     for (const char* name : {"a", "b"}) {
       std::ofstream(folder_ / (std::string(name) + ".obj")) << "v 0 0 0\n";
       std::ofstream(folder_ / (std::string(name) + ".json"))

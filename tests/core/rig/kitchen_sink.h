@@ -52,6 +52,12 @@ lumens = 500  #> 600
 watts = 10  #> 11
 cct_k = 3000  #> 4000
 [[luminaire]]
+name = "pendant"
+model = "ies"
+file = "two_heads.gldf"
+file_variant = "v10"  #> "v15"
+file_emitter = "down"  #> "up"
+[[luminaire]]
 name = "spot"
 model = "spot"
 beam_angle_deg = 20  #> 21

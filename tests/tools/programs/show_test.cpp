@@ -81,6 +81,34 @@ TEST(Show, RefusesWhatHasNoRelief) {
   EXPECT_NE(box.output.find("table: the target"), std::string::npos) << box.output;
 }
 
+TEST(Render, RefusesAnEndingItDoesNotWriteBeforeItComputes) {
+  const Folder folder;
+  for (const char* name : {"a.gif", "a", "a.jpgg"}) {
+    const Ran ran =
+        luxrig::testing::run({program("luxrig"), "render", folder / "no-such-rig.toml", "-o", folder / name});
+    EXPECT_EQ(ran.code, 2);
+    EXPECT_NE(ran.output.find("end its name in .png or .jpg"), std::string::npos) << ran.output;
+  }
+}
+
+TEST(Render, WritesJpegAndSaysHowItIsExposed) {
+  const Folder folder;
+  const Ran ran =
+      luxrig::testing::run({program("luxrig"), "render", source("rigs/studio"), "-o", folder / "a.jpg", "--exposure",
+                            "-1", "--white-balance", "3000K", "--passes", "1", "--width", "32", "--height", "32"});
+  EXPECT_EQ(ran.code, 0) << ran.output;
+  EXPECT_NE(ran.output.find("cd/m2 of 3000 K"), std::string::npos) << ran.output;
+  std::ifstream in(folder / "a.jpg", std::ios::binary);
+  EXPECT_EQ(in.get(), 0xFF);
+  EXPECT_EQ(in.get(), 0xD8);
+  for (const std::vector<std::string>& bad :
+       {std::vector<std::string>{"--exposure", "bright"}, {"--white-balance", "warm"}}) {
+    std::vector<std::string> words = {program("luxrig"), "render", source("rigs/studio"), "-o", folder / "b.png"};
+    words.insert(words.end(), bad.begin(), bad.end());
+    EXPECT_EQ(luxrig::testing::run(words).code, 2) << bad[1];
+  }
+}
+
 TEST(Show, RefusesOptionsThatDoNotGoTogether) {
   const Folder folder;
   EXPECT_EQ(show(source("rigs/studio"), "curvatur", folder / "a.png").code, 2);
