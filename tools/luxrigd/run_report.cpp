@@ -28,7 +28,7 @@ void RunReport::say(const std::string& line) const {
 
 void RunReport::say_readings(const ShowStatus& status) const {
   for (std::size_t i = 0; i < status.points.size(); ++i) {
-    const Point& point = rig_.points[i];
+    const Point& point = rig_->points[i];
     const PointStatus& p = status.points[i];
     if (!p.measured_lx) continue;
     const auto error = error_of(p);
@@ -61,7 +61,7 @@ std::string RunReport::table(const ShowStatus& status, const std::optional<SimTr
   Table table({"point", ">goal lx", ">predicted lx", ">± se", ">measured lx", ">error", ">limit lx",
                truth ? ">truth lx" : "", truth ? ">truth max" : "", ""});
   for (std::size_t i = 0; i < status.points.size(); ++i) {
-    const Point& point = rig_.points[i];
+    const Point& point = rig_->points[i];
     const PointStatus& p = status.points[i];
     const auto error = error_of(p);
     // A reason belongs to a miss that matters; the JSON has them all.
@@ -80,7 +80,7 @@ std::string RunReport::table(const ShowStatus& status, const std::optional<SimTr
 
 std::string RunReport::json(const ShowStatus& status, const std::optional<SimTruth>& truth, bool met,
                             double converged_s) const {
-  nlohmann::json out = {{"rig", rig_.name},
+  nlohmann::json out = {{"rig", rig_->name},
                         {"goals_met", met},
                         {"converged", status.converged},
                         {"rounds", status.round},
@@ -91,7 +91,7 @@ std::string RunReport::json(const ShowStatus& status, const std::optional<SimTru
     if (value && std::isfinite(*value)) object[key] = *value;
   };
   for (std::size_t i = 0; i < status.points.size(); ++i) {
-    const Point& point = rig_.points[i];
+    const Point& point = rig_->points[i];
     const PointStatus& p = status.points[i];
     nlohmann::json entry = {{"name", point.name}, {"met", p.met}, {"why", p.why}};
     set(entry, "goal_lux", p.goal_lx);
