@@ -22,10 +22,19 @@ constexpr double kMeteredWeight = 30;  ///< a metered goal goes before goals tha
 /// point. Without it such goals move levels so far in one round that the next reading surprises (of 500 simulated rigs,
 /// five instead of one or none missed a metered goal by more than 2 % after three rounds).
 constexpr double kCaution = 0.5;
+/// Above rounding: a share is given once.
+constexpr double kAbove = 1 + 1e-12;
 
-/// What is on or off and alone above a limit goes off, the brightest at that point first.
-void keep_within(const VectorXd& max_lx, const VectorXd& daylight_lx, const MatrixXd& lux_per_level, VectorXd& set) {
+/// Where what is set is alone above a limit, what dims of it gives the same share; then what is on or off goes off, the
+/// brightest at that point first.
+void keep_within(const VectorXd& max_lx, const VectorXd& daylight_lx, const MatrixXd& lux_per_level,
+                 const std::vector<Index>& dims, VectorXd& set) {
   for (Index i = 0; i < lux_per_level.rows(); ++i) {
+    const double over_lx = daylight_lx[i] + lux_per_level.row(i).dot(set) - max_lx[i];
+    double dims_lx = 0;
+    for (const Index k : dims) dims_lx += lux_per_level(i, k) * set[k];
+    for (const Index k : dims)
+      if (over_lx > 0 && lux_per_level(i, k) * set[k] > 0) set[k] *= std::max(0.0, 1 - over_lx / dims_lx * kAbove);
     while (set.size() > 0 && daylight_lx[i] + lux_per_level.row(i).dot(set) > max_lx[i]) {
       Index brightest = 0;
       if (!(lux_per_level.row(i).cwiseProduct(set.transpose()).maxCoeff(&brightest) > 0)) break;
@@ -55,7 +64,7 @@ MatrixXd GainEstimator::fixtures_per_light(const VectorXd& present) const {
   return per_light.leftCols(lights);
 }
 
-Correction GainEstimator::correct(std::span<const double> present, Time now) const {
+Correction GainEstimator::correct(std::span<const double> present, Time now, bool at_once) const {
   EmittanceProblem problem;
   const auto points = static_cast<Index>(points_.size());
   const VectorXd present_level = vector_of(present).head(fixtures()).cwiseMax(0).cwiseMin(max_level_);
@@ -69,7 +78,7 @@ Correction GainEstimator::correct(std::span<const double> present, Time now) con
   problem.max_lx.setConstant(all, std::numeric_limits<double>::infinity());
   problem.max_level.resize(lights);
   problem.near_level.resize(lights);
-  std::vector<Index> on_or_off;
+  std::vector<Index> on_or_off, held;
   for (Index k = 0; k < lights; ++k) {
     Index brightest = 0;
     per_light.col(k).maxCoeff(&brightest);  // its share is 1
@@ -78,7 +87,14 @@ Correction GainEstimator::correct(std::span<const double> present, Time now) con
     for (Index j = 0; j < fixtures(); ++j)
       if (per_light(j, k) > 0) problem.max_level[k] = std::min(problem.max_level[k], max_level_[j] / per_light(j, k));
     problem.light_name.push_back(fixture_names_[static_cast<std::size_t>(brightest)]);
-    if (switched_[static_cast<std::size_t>(brightest)] != 0) on_or_off.push_back(k);
+    bool by_hand = false;
+    for (Index j = 0; j < fixtures(); ++j)
+      by_hand = by_hand || (per_light(j, k) > 0 && held_[static_cast<std::size_t>(j)] != 0);
+    if (switched_[static_cast<std::size_t>(brightest)] != 0) {
+      on_or_off.push_back(k);
+    } else if (by_hand) {
+      held.push_back(k);
+    }
   }
   problem.watts = (watts_.transpose() * per_light).transpose();
   problem.max_watts = max_watts_;
@@ -96,15 +112,18 @@ Correction GainEstimator::correct(std::span<const double> present, Time now) con
   for (Index j = 0; j < lights && points > 0; ++j) {
     const double brightest = problem.lux_per_level.col(j).head(points).maxCoeff();
     problem.lux_per_level(points + j, j) = brightest;
-    if (brightest > 0) problem.goal_lx[points + j] = brightest * problem.near_level[j];
+    if (brightest > 0 && !at_once) problem.goal_lx[points + j] = brightest * problem.near_level[j];
   }
 
-  // What is on or off is light that is there anyway.
+  // What is on or off, and what a person holds, is light that is there anyway.
   const VectorXd daylight_lx = problem.fixed_lx.head(points);
   const MatrixXd lux_per_level = problem.lux_per_level.topRows(points);
   VectorXd set = VectorXd::Zero(lights);
-  for (const Index k : on_or_off) {
-    set[k] = problem.near_level[k] < 1 ? 0 : 1;
+  for (const Index k : on_or_off) set[k] = problem.near_level[k] < 1 ? 0 : 1;
+  for (const Index k : held) set[k] = problem.near_level[k];
+  std::vector<Index> fixed = on_or_off;
+  fixed.insert(fixed.end(), held.begin(), held.end());
+  for (const Index k : fixed) {
     problem.lux_per_level.col(k).setZero();
     problem.goal_lx[points + k] = std::numeric_limits<double>::quiet_NaN();
     problem.near_level[k] = problem.max_level[k] = 0;
@@ -127,7 +146,7 @@ Correction GainEstimator::correct(std::span<const double> present, Time now) con
       problem.max_lx[i] = daylight_lx[i] + (lux > 0 && most > 0 ? room * std::min(1.0, lux / most) : room / local_);
     }
     if (!over) break;
-    keep_within(problem.max_lx, daylight_lx, lux_per_level, set);
+    keep_within(problem.max_lx, daylight_lx, lux_per_level, held, set);
     problem.fixed_lx.head(points) = daylight_lx + lux_per_level * set;
     problem.max_lx = problem.max_lx.cwiseMax(problem.fixed_lx);  // but for rounding it is
     problem.max_watts = std::max(0.0, max_watts_ - problem.watts.dot(set));
@@ -141,6 +160,12 @@ Correction GainEstimator::correct(std::span<const double> present, Time now) con
         if (!outcome.reason.empty() && set[k] == 0 && lux_per_level(static_cast<Index>(i), k) > 0)
           correction.why[i] +=
               fmt::format(" ('{}', which is on or off, stays off)", problem.light_name[static_cast<std::size_t>(k)]);
+      std::string by_hand;
+      for (const Index k : held)
+        if (!outcome.reason.empty() && lux_per_level(static_cast<Index>(i), k) > 0)
+          by_hand +=
+              fmt::format("{}'{}'", by_hand.empty() ? "" : ", ", problem.light_name[static_cast<std::size_t>(k)]);
+      if (!by_hand.empty()) correction.why[i] += fmt::format(" ({} held by hand)", by_hand);
       if (outcome.limit_points.empty()) continue;
       const auto first = static_cast<std::size_t>(outcome.limit_points.front());
       correction.why[i] +=

@@ -76,6 +76,7 @@ GainEstimator::GainEstimator(const Rig& rig, const LightModel& model)
   for (std::size_t i = 0; i < luxmeters_.size(); ++i)
     if (luxmeters_[i].point && !meter_of_point_[*luxmeters_[i].point]) meter_of_point_[*luxmeters_[i].point] = i;
   switched_ = switched_fixtures(rig);
+  held_.assign(rig.fixtures.size(), 0);
   gain_min_ = rig.control.gain_min;
   gain_max_ = rig.control.gain_max;
   const double margin = std::clamp(rig.limits.open_loop_margin, 0.0, 0.9);
@@ -307,9 +308,13 @@ std::vector<Judgement> GainEstimator::update(Time now, std::span<const LuxReadin
   return judgements;
 }
 
-void GainEstimator::set_goals(std::span<const std::optional<double>> goal_lx) {
-  LUXRIG_CHECK(goal_lx.size() == points_.size(), "{} goals for {} points", goal_lx.size(), points_.size());
-  for (std::size_t i = 0; i < points_.size(); ++i) points_[i].goal_lx = goal_lx[i];
+void GainEstimator::set_points(std::span<const Point> points) {
+  LUXRIG_CHECK(points.size() == points_.size(), "{} points for {}", points.size(), points_.size());
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    points_[i].goal_lx = points[i].goal_lx;
+    points_[i].weight = points[i].weight;
+    points_[i].max_lx = points[i].max_lx;
+  }
 }
 
 void GainEstimator::forget(std::size_t luxmeter) {

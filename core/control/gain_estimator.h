@@ -77,8 +77,11 @@ class GainEstimator {
   /// meter (the same to the last bit while the light changed). One judgement per reading, in order.
   std::vector<Judgement> update(Time now, std::span<const LuxReading> readings, std::span<const double> level);
 
-  /// What corrections aim at from now on, per point.
-  void set_goals(std::span<const std::optional<double>> goal_lx);
+  /// Goals, weights and limits from now on: of these, one per point of the rig.
+  void set_points(std::span<const Point> points);
+
+  /// Held by hand: corrections leave its level alone, and work the others out around it.
+  void set_held(std::size_t fixture, bool held) { held_[fixture] = held ? 1 : 0; }
 
   /// The most that this fixture may be asked for from now on (parked: nothing).
   void set_max_level(std::size_t fixture, double max_level) {
@@ -126,8 +129,11 @@ class GainEstimator {
   /// Levels that bring the rig's goals (in lux: emitters of one housing keep their shares, and with them its colour),
   /// as far as limits allow, starting from the present `level`; a metered goal goes before goals that nobody measures.
   /// What is on or off stays so (no contactor is worn out for a few lux), unless a limit wants it off.
+  /// What is held by hand stays, too; where limits leave too little for all, the others dim before it does.
+  /// at_once: somebody has just changed what is wanted, so goals that nobody measures may move levels all the way; else
+  /// these stay near where they are, as readings are what is new.
   /// Never fails: where the solver is stopped or refuses, the present levels within limits.
-  [[nodiscard]] Correction correct(std::span<const double> level, Time now) const;
+  [[nodiscard]] Correction correct(std::span<const double> level, Time now, bool at_once = false) const;
 
  private:
   struct Evidence {
@@ -177,6 +183,7 @@ class GainEstimator {
   Eigen::VectorXd max_level_, watts_;
   double max_watts_;                    ///< of the rig; +inf without a limit
   std::vector<std::uint8_t> switched_;  ///< per fixture, 1: on or off
+  std::vector<std::uint8_t> held_;      ///< per fixture, 1: by hand
   std::vector<std::size_t> housing_;    ///< per fixture: the first of those that change together
   double gain_min_ = 0, gain_max_ = 1;
   double local_ = 1;  ///< 1/(1 − open_loop_margin)

@@ -1,8 +1,10 @@
 #include "core/control/plan.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -44,6 +46,7 @@ OrderedJson json_of(const PlannedLight& light) {
   put(json, "tilt_deg", light.tilt_deg);
   put(json, "beam_angle_deg", light.beam_angle_deg);
   put(json, "level", light.level);
+  put(json, "solved_level", light.solved_level);
   put(json, "lumens", light.lumens);
   put(json, "watts", light.watts);
   return json;
@@ -100,6 +103,8 @@ OrderedJson json_of(const PlannedPoint& point) {
   put(json, "goal_lux", point.goal_lux);
   put(json, "xy", point.xy);
   put(json, "goal_xy", point.goal_xy);
+  put(json, "weight", point.weight);
+  put(json, "max_lux", point.max_lux);
   if (!point.why.empty()) json["why"] = point.why;
   if (point.verdict) {
     json["verdict"] = name_of(*point.verdict);
@@ -206,6 +211,16 @@ class Reader {
     return std::isfinite(value) ? std::optional(value) : std::nullopt;
   }
 
+  /// A fingerprint in hex digits; 0 when there is none.
+  [[nodiscard]] std::uint64_t fingerprint(const Json& object, const std::string& path, const char* key) const {
+    const std::string digits = text(object, path, key, false);
+    std::uint64_t value = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value, 16);
+    if (digits.empty() || (error == std::errc{} && end == digits.data() + digits.size())) return value;
+    wrong_type(path, key, "up to 16 hex digits", object[key]);
+    return 0;
+  }
+
   /// As it was when it is left out.
   void read_yes_no(const Json& object, const std::string& path, const char* key, bool& value) const {
     const Json* found = member(object, path, key, false);
@@ -288,6 +303,7 @@ PlannedLight light_of(const Reader& reader, const Json& json, const std::string&
   light.tilt_deg = reader.optional_number(json, path, "tilt_deg");
   light.beam_angle_deg = reader.optional_number(json, path, "beam_angle_deg");
   light.level = reader.number(json, path, "level", true);
+  light.solved_level = reader.optional_number(json, path, "solved_level");
   light.lumens = reader.number(json, path, "lumens", false);
   light.watts = reader.optional_number(json, path, "watts");
   return light;
@@ -347,6 +363,8 @@ PlannedPoint point_of(const Reader& reader, const Json& json, const std::string&
   point.goal_lux = reader.optional_number(json, path, "goal_lux");
   point.xy = reader.chromaticity(json, path, "xy");
   point.goal_xy = reader.chromaticity(json, path, "goal_xy");
+  point.weight = reader.optional_number(json, path, "weight");
+  point.max_lux = reader.optional_number(json, path, "max_lux");
   point.why = reader.text(json, path, "why", false);
   point.verdict = verdict_named(reader.text(json, path, "verdict", false));
   point.reason = reader.text(json, path, "reason", false);
@@ -376,8 +394,20 @@ Problem syntax_problem(const SyntaxCheck& check, const std::string& text, const 
 
 }  // namespace
 
+std::string what_differs(const RigVersion& one, const RigVersion& other) {
+  std::vector<const char*> parts;
+  if (one.goals != other.goals) parts.push_back("goals");
+  if (one.limits != other.limits) parts.push_back("limits");
+  if (one.light != other.light) parts.push_back("scene, photometry or places");
+  return fmt::format("{}", fmt::join(parts, ", "));
+}
+
 std::string to_json(const Plan& plan) {
   OrderedJson json = {{"luxrig_plan", 1}, {"rig", plan.rig}};
+  if (plan.made_for)
+    json["made_for"] = {{"goals", fmt::format("{:016x}", plan.made_for->goals)},
+                        {"limits", fmt::format("{:016x}", plan.made_for->limits)},
+                        {"light", fmt::format("{:016x}", plan.made_for->light)}};
   for (const char* key : {"tasks", "points", "limits"}) json[key] = OrderedJson::array();
   for (const PlannedTask& task : plan.tasks) json["tasks"].push_back(json_of(task));
   for (const PlannedPoint& point : plan.points) json["points"].push_back(json_of(point));
@@ -414,6 +444,15 @@ Checked<Plan> plan_from_json(const std::string& text, const std::string& file_na
   }
   Plan plan;
   plan.rig = reader.text(json, "", "rig", true);
+  if (const Json* made_for = reader.member(json, "", "made_for", false)) {
+    if (made_for->is_object()) {
+      plan.made_for = {reader.fingerprint(*made_for, "/made_for", "goals"),
+                       reader.fingerprint(*made_for, "/made_for", "limits"),
+                       reader.fingerprint(*made_for, "/made_for", "light")};
+    } else {
+      reader.wrong_type("", "made_for", "an object in braces", *made_for);
+    }
+  }
   plan.seed = reader.count<std::uint64_t>(json, "", "seed");
   plan.seconds = reader.number(json, "", "seconds", false);
   reader.each(json, "", "tasks", true,

@@ -22,8 +22,10 @@ struct PlannedLight {
   std::optional<double> pan_deg, tilt_deg;
   std::optional<double> beam_angle_deg;  ///< that its zoom makes
   double level = 0;                      ///< emittance factor 0…1
-  double lumens = 0;                     ///< level × rated flux
-  std::optional<double> watts{};         ///< level × rated power; none when that is not known
+  /// What the solver wrote as level: one that differs is a person's, and is held as such. None: nobody knows.
+  std::optional<double> solved_level{};
+  double lumens = 0;              ///< level × rated flux
+  std::optional<double> watts{};  ///< level × rated power; none when that is not known
 };
 
 /// So many lights would leave so much of the error (normalised, weighted, none above its highest level); or, kind
@@ -75,12 +77,13 @@ struct PlannedPoint {
   Vec3 position_world_m = Vec3::Zero();
   Vec3 normal_world = Vec3::UnitZ();
   double lux = 0, direct_lux = 0, standard_error_lux = 0;
-  std::optional<double> goal_lux;
+  std::optional<double> goal_lux;               ///< what corrections aim at while the plan is in force
   std::string why;                              ///< what keeps it from its goal; empty when nothing does
   std::optional<Verdict> verdict{};             ///< by the model, were the rig as its file says; none without a goal
   std::string reason{};                         ///< of that verdict; empty when met
   std::optional<double> daylight_lux{};         ///< what of lux is daylight; none in a rig without
   std::optional<Chromaticity> xy{}, goal_xy{};  ///< in a rig whose goals have colours
+  std::optional<double> weight{}, max_lux{};    ///< as solved for; weight: of a goal
 };
 
 struct PlannedLimit {
@@ -89,8 +92,20 @@ struct PlannedLimit {
   bool met = false;
 };
 
+/// Fingerprints of what a plan rests on, to notice that the rig file is another one by now.
+struct RigVersion {
+  std::uint64_t goals = 0;   ///< goals in lux and colour, and their weights
+  std::uint64_t limits = 0;  ///< of lux, levels and power
+  std::uint64_t light = 0;   ///< scene, photometry, where fixtures, points and luxmeters are
+  bool operator==(const RigVersion&) const = default;
+};
+
+/// What differs between two versions, in words ("goals and limits"); empty: nothing.
+[[nodiscard]] std::string what_differs(const RigVersion& one, const RigVersion& other);
+
 struct Plan {
-  std::string rig;  ///< name of the rig it is for
+  std::string rig;                       ///< name of the rig it is for
+  std::optional<RigVersion> made_for{};  ///< none: nobody knows
   std::uint64_t seed = 0;
   double seconds = 0;
   std::vector<PlannedTask> tasks;  ///< the light list of the last task that names a fixture counts
@@ -114,8 +129,13 @@ void judge(Plan& plan, double goal_tolerance);
 struct PlannedLook {
   std::vector<double> levels;  ///< per fixture
   std::vector<Joints> joints;  ///< per fixture: of one that does not move, or that the plan gives none, the rig's
-  /// Per point: the rig's, or what the plan predicts when that shall be held.
+  /// Per point: the plan's, or what it predicts when that shall be held; none: it is not corrected towards anything.
   std::vector<std::optional<double>> goal_lx;
+  /// Per point: the lower of the rig's and the plan's.
+  std::vector<std::optional<double>> max_lx;
+  std::vector<double> weight;  ///< per point: the plan's, else the rig's
+  /// Per fixture: what was solved, where a person has written another level; none: the level is as it was solved.
+  std::vector<std::optional<double>> solved_levels;
 };
 
 /// In the rig's order; problems when the plan is for another rig, names an unknown fixture (or a placed light that does
@@ -135,11 +155,12 @@ void turn_heads(Rig& rig, std::span<const Joints> joints);
 [[nodiscard]] Fixture hung_light(const Rig& rig, const std::string& name, std::size_t luminaire,
                                  const Vec3& position_world_m, const std::optional<Vec3>& aim_world_m);
 
-/// JSON, keys as in design.md `solve --json`, plus "luxrig_plan": 1 and "rig" (and a point's "why" when there is one,
-/// and a placement's "fixtures", like "lights", and "numbers": [{"lights", "normalised_error", "local_contrast"}],
-/// "beam_angle_deg" of a light that zooms, "local_contrast", "relative_contrast", "coverage", the same with "before_",
-/// "object_lux", "key_to_fill" of a task for an object's relief, "lower_bound" and "lower_bound_of_number",
-/// "switches_proven" where false, "front":
+/// JSON, keys as in design.md `solve --json`, plus "luxrig_plan": 1, "rig", "made_for": {"goals", "limits", "light"}
+/// (fingerprints of the rig, in hex), "solved_level" of a light, "weight" and "max_lux" of a point (and a point's "why"
+/// when there is one, and a placement's "fixtures", like "lights", and "numbers": [{"lights", "normalised_error",
+/// "local_contrast"}], "beam_angle_deg" of a light that zooms, "local_contrast", "relative_contrast", "coverage", the
+/// same with "before_", "object_lux", "key_to_fill" of a task for an object's relief, "lower_bound" and
+/// "lower_bound_of_number", "switches_proven" where false, "front":
 /// [{"max_watts", "watts", "normalised_error"}], "watts" of lights and tasks, and with goals of a colour a point's "xy"
 /// and "goal_xy"). Numbers are finite or the key is absent.
 [[nodiscard]] std::string to_json(const Plan& plan);

@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kUnset = std::numeric_limits<double>::quiet_NaN();
 constexpr double kRounding_rad = 1e-9;
+constexpr double kRounding = 1e-9;  ///< of a level
 
 class PlanLevels {
  public:
@@ -38,6 +39,10 @@ class PlanLevels {
       look.levels.resize(rig.fixtures.size(), kUnset);
       named.resize(rig.fixtures.size(), false);
       look.levels[fixture] = light.level;
+      look.solved_levels.resize(rig.fixtures.size());
+      look.solved_levels[fixture].reset();
+      if (light.solved_level && std::abs(light.level - *light.solved_level) > kRounding)
+        look.solved_levels[fixture] = light.solved_level;
       named[fixture] = true;
       if (fixture >= look.joints.size()) return look.joints.resize(fixture + 1, rig.fixtures[fixture].joints);
       turn(rig.fixtures[fixture], light, path, look.joints[fixture]);
@@ -61,14 +66,17 @@ class PlanLevels {
                             zones.name(*zone)),
                 "turn it elsewhere, zoom it in, or give it level 0 (luxrig solve lights no zone)");
     }
-    if (!problems_.empty()) return tl::unexpected(std::move(problems_));
-    for (const Point& point : rig.points) look.goal_lx.push_back(point.goal_lx);
-    if (holds_a_look(plan_)) {
-      for (std::size_t i = 0; i < rig.points.size(); ++i)
-        for (const PlannedPoint& planned : plan_.points)
-          if (planned.name == rig.points[i].name && planned.lux > 0 && std::isfinite(planned.lux))
-            look.goal_lx[i] = planned.lux;
+    for (std::size_t p = 0; p < plan_.points.size(); ++p) {
+      const PlannedPoint& point = plan_.points[p];
+      for (const auto& [key, value] : {std::pair("goal_lux", point.goal_lux), std::pair("weight", point.weight),
+                                       std::pair("max_lux", point.max_lux)})
+        if (value && !(*value >= 0))
+          problem(fmt::format("/points/{}/{}: {} for point \"{}\"", p, key, *value, point.name),
+                  "give a number from 0");
     }
+    if (!problems_.empty()) return tl::unexpected(std::move(problems_));
+    look.solved_levels.resize(rig.fixtures.size());
+    take_goals(rig, look);
     return look;
   }
 
@@ -76,6 +84,24 @@ class PlanLevels {
   void problem(std::string what, std::string mend) {
     // A thousand wrong entries help nobody more than the first fifty.
     if (problems_.size() < 50) problems_.push_back({file_name_, 0, 0, std::move(what), std::move(mend)});
+  }
+
+  /// Goals are the plan's alone: a point that it gives none, or does not know, is corrected towards nothing. Its limits
+  /// come on top of the rig's.
+  void take_goals(const Rig& rig, PlannedLook& look) const {
+    std::map<std::string_view, const PlannedPoint*> planned_at;
+    for (const PlannedPoint& planned : plan_.points) planned_at.emplace(planned.name, &planned);
+    const bool holds = holds_a_look(plan_);
+    for (const Point& point : rig.points) {
+      const auto found = planned_at.find(point.name);
+      const PlannedPoint* planned = found == planned_at.end() ? nullptr : found->second;
+      std::optional<double> goal_lx = planned ? planned->goal_lux : std::nullopt, max_lx = point.max_lx;
+      if (planned && holds && planned->lux > 0 && std::isfinite(planned->lux)) goal_lx = planned->lux;
+      if (planned && planned->max_lux) max_lx = std::min(max_lx.value_or(*planned->max_lux), *planned->max_lux);
+      look.goal_lx.push_back(goal_lx);
+      look.max_lx.push_back(max_lx);
+      look.weight.push_back(planned && planned->weight ? *planned->weight : point.weight);
+    }
   }
 
   void turn(const Fixture& fixture, const PlannedLight& light, const std::string& path, Joints& joints) {

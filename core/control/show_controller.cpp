@@ -53,7 +53,12 @@ ShowController::State::State(const Rig& rig_in, const LightModel& model)
       sample_changed(rig.luxmeters.size(), false),
       believed(rig.luxmeters.size()),
       heard(rig.luxmeters.size()),
-      taken_level(rig.fixtures.size(), 0.0) {
+      taken_level(rig.fixtures.size(), 0.0),
+      hand_level(rig.fixtures.size()),
+      without_hands(rig.fixtures.size(), 0.0),
+      hand_goal(rig.points.size()),
+      rig_points(rig.points),
+      points_as_planned(rig.points) {
   const std::vector<double> dark(rig.fixtures.size(), 0.0);
   for (const Fixture& fixture : rig.fixtures) {
     program.max_level.push_back(std::min(fixture.max_level, rig.limits.max_level));
@@ -166,7 +171,7 @@ void ShowController::State::take_look(Time now) {
     rig.fixtures[f].joints = program.joints[f] = awaited->joints[f];
     rig.fixtures[f].aim_world_m.reset();
   }
-  for (std::size_t i = 0; i < rig.points.size(); ++i) rig.points[i].goal_lx = awaited->goal_lx[i];
+  take_points(*awaited);
   // From the way to where it was told to look before: what is left of that comes first.
   if (any) arrive = std::max(arrive, now) + from_seconds(wait_s);
   if (other_light) {
@@ -174,9 +179,8 @@ void ShowController::State::take_look(Time now) {
     estimator = GainEstimator(rig, awaited->model);
     std::fill(measured.begin(), measured.end(), std::nullopt);
     model_joints = awaited->joints;
-  } else {
-    estimator.set_goals(awaited->goal_lx);
   }
+  tell_estimator();
   finish_parking();
   awaited.reset();
 }
@@ -216,7 +220,7 @@ void ShowController::State::start_cue(Time now, std::vector<double> levels) {
     present = std::move(without);
     take_look(now);
   }
-  cue = estimator.within_limits(*cue, now);
+  cue = estimator.within_limits(solved_around_hands(now, *cue), now);
   if (!start_lamps(now, present, *cue)) fade(now, std::move(present), *cue, rig.control.fade_s, rig.control.fade_curve);
   enter(Phase::fading, now);
 }
@@ -322,7 +326,11 @@ std::vector<double> ShowController::State::wanted_levels(std::span<const double>
 void ShowController::apply(Time now, std::span<const double> levels) {
   Look look;
   look.joints = state_->model_joints;
-  for (const Point& point : state_->rig.points) look.goal_lx.push_back(point.goal_lx);
+  for (const Point& point : state_->points_as_planned) {
+    look.goal_lx.push_back(point.goal_lx);
+    look.max_lx.push_back(point.max_lx);
+    look.weight.push_back(point.weight);
+  }
   apply(now, levels, std::move(look));
 }
 
@@ -336,6 +344,7 @@ void ShowController::apply(Time now, std::span<const double> levels, Look look) 
   state.asked_safe = false;
   state.afresh = true;
   state.first_turn(now, look.joints);
+  state.take_levels_of_plan(now, wanted, look);
   state.awaited = std::move(look);
   state.start_cue(now, std::move(wanted));
 }
@@ -386,6 +395,7 @@ void ShowController::step(Time now) {
   State& state = *state_;
   if (now < state.last) return;
   state.last = now;
+  state.release_what_is_over(now);
   state.step_desks(now);
   state.take_sample(now);
   state.look_at_failures(now);

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "core/control/by_hand.h"
 #include "core/control/desk_follower.h"
 #include "core/control/devices.h"
 #include "core/control/output_program.h"
@@ -45,9 +46,14 @@ struct Alarm {
 
 /// Where heads look, what that gives, and what is wanted there.
 struct Look {
-  std::vector<Joints> joints;                  ///< per fixture
-  std::vector<std::optional<double>> goal_lx;  ///< per point
-  LightModel model;                            ///< with these joints
+  std::vector<Joints> joints;                   ///< per fixture
+  std::vector<std::optional<double>> goal_lx;   ///< per point
+  LightModel model;                             ///< with these joints
+  std::vector<std::optional<double>> max_lx{};  ///< per point; empty: the rig's
+  std::vector<double> weight{};                 ///< per point; empty: the rig's
+  /// Per fixture: what was solved where a person has written another level into the plan, which is then held by hand.
+  /// Empty: nobody has.
+  std::vector<std::optional<double>> solved_levels{};
 };
 
 struct PointStatus {
@@ -103,6 +109,7 @@ struct ShowStatus {
   std::vector<std::optional<LuxReading>> luxmeters;  ///< last believed reading
   std::vector<Alarm> alarms;
   std::vector<DeskStatus> desks;
+  std::vector<ByHand> by_hand;  ///< levels by fixture, then goals by point
 };
 
 /// What somebody else has sent until now, and goes on to if nobody does anything.
@@ -127,8 +134,8 @@ class ShowController {
   void go_on_from(Time now, const LightInForce& light);
 
   /// Fades to these levels (one per fixture, 0…max_level) with heads as they look, then measures and corrects towards
-  /// the rig's goals. The levels are first reduced so that, with the rig's open-loop margin, no limited point can
-  /// exceed its limit.
+  /// the goals of the look before, at first the rig's. The levels are first reduced so that, with the rig's open-loop
+  /// margin, no limited point can exceed its limit.
   void apply(Time now, std::span<const double> levels);
 
   /// The same with heads that look elsewhere, and other goals. What moves is faded out first, turned in the dark, and
@@ -136,6 +143,21 @@ class ShowController {
   /// nobody knows from where, and the light waits for their longest way. What meters have taught is kept while no head
   /// turns.
   void apply(Time now, std::span<const double> levels, Look look);
+
+  /// Sets levels and goals by hand. They stay until they are released, through corrections and later plans, within
+  /// limits; the rest is solved around them at once, as far as the model knows. Blackout, failures and the safe look
+  /// win over them while they last. Before the first look they are only kept for it. All or none: refused with a reason
+  /// where one cannot be asked for.
+  Result<void> hold(Time now, std::span<const ByHand> wanted);
+  /// Levels go back to what they were before, goals to the plan's, and everything is solved again. Returns how many.
+  std::size_t release(Time now, std::span<const std::size_t> fixtures, std::span<const std::size_t> points);
+  /// As they are held now; `why` is empty (status() has it).
+  [[nodiscard]] std::vector<ByHand> by_hand() const;
+
+  /// From here on the rig is this one, which has the same fixtures, outputs, luxmeters and keep-out zones, with heads
+  /// as they look now. The light stays until the next apply, which is to follow at once, and goes from there to what
+  /// the new limits allow. model: of the rig so. same_light: it gives what it gave, so that what meters taught is kept.
+  void exchange_rig(Time now, const Rig& rig, const LightModel& model, bool same_light);
 
   /// Everything dark at once, whatever else goes on; movement goes on. Lifting it fades back.
   void blackout(Time now, bool on);

@@ -70,7 +70,7 @@ void ShowController::State::take_sample(Time now) {
 /// After a sample: another round when it would bring a metered goal nearer, or when a limit is in question.
 void ShowController::State::correct_or_hold(Time now) {
   const bool may_correct = !health.any_meter_lost();
-  Correction correction = estimator.correct(program.to_level, now);
+  Correction correction = estimator.correct(with_hands(program.to_level), now);
   if (!may_correct) correction.level = estimator.within_limits(program.to_level, now);
   double change = 0;
   for (std::size_t i = 0; i < correction.level.size(); ++i) {
@@ -87,6 +87,7 @@ void ShowController::State::correct_or_hold(Time now) {
     return;
   }
   cue = correction.level;
+  if (by_hand().empty()) without_hands = *cue;
   ++round;
   corrected_at = now;
   fade(now, present_levels(now), std::move(correction.level), rig.control.correction_fade_s, rig.control.fade_curve);
@@ -98,7 +99,7 @@ void ShowController::State::watch_drift(Time now) {
   converged = all_metered_goals_arrived();
   if (!breaches.empty()) return correct_or_hold(now);
   if (health.any_meter_lost()) return;
-  const Correction correction = estimator.correct(program.to_level, now);
+  const Correction correction = estimator.correct(with_hands(program.to_level), now);
   drifted = possible_gain(correction) > rig.control.tolerance ? drifted + 1 : 0;
   if (drifted >= kDriftSamples && now - corrected_at >= kDriftCorrectionEvery) correct_or_hold(now);
 }

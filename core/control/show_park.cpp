@@ -38,9 +38,15 @@ Result<void> ShowController::State::park(Time now, std::span<const std::size_t> 
   Look look;
   look.joints = awaited ? awaited->joints : program.joints;
   // A look that waits for heads to go dark is taken with this one.
-  for (const Point& point : rig.points) look.goal_lx.push_back(point.goal_lx);
+  for (const Point& point : points_as_planned) {
+    look.goal_lx.push_back(point.goal_lx);
+    look.max_lx.push_back(point.max_lx);
+    look.weight.push_back(point.weight);
+  }
   if (awaited) {
     look.goal_lx = awaited->goal_lx;
+    look.max_lx = awaited->max_lx;
+    look.weight = awaited->weight;
     look.model = std::move(awaited->model);
   }
   std::vector<double> levels = cue ? *cue : std::vector<double>(rig.fixtures.size(), 0.0);

@@ -92,6 +92,31 @@ struct ShowController::State {
   std::vector<std::string> why;  ///< per point: what keeps it from its goal; empty before the first
   std::vector<LimitBreach> breaches;
 
+  // Set by hand (show_by_hand.cpp).
+  std::vector<std::optional<ByHand>> hand_level;  ///< per fixture
+  std::vector<double> without_hands;  ///< levels of the plan, as corrected before hands came: where a release goes
+  std::vector<std::optional<ByHand>> hand_goal;  ///< per point
+  std::vector<Point> rig_points;                 ///< as the rig file has them
+  std::vector<Point> points_as_planned;          ///< of the look in force, without goals by hand
+  bool unsolved = false;                         ///< something by hand is newer than the levels in force
+  [[nodiscard]] Result<void> hold(Time now, std::span<const ByHand> wanted);
+  std::size_t release(Time now, std::span<const std::size_t> fixtures, std::span<const std::size_t> points);
+  void release_what_is_over(Time now);
+  void take_points(const Look& look);
+  void take_levels_of_plan(Time now, const std::vector<double>& levels, const Look& look);
+  /// Tells goals, limits and who is held to the estimator.
+  void tell_estimator();
+  void start_with_hands(Time now);
+  /// The levels with those that are held in their place.
+  [[nodiscard]] std::vector<double> with_hands(std::vector<double> levels) const;
+  /// The same with the rest solved around them, when something by hand is new.
+  [[nodiscard]] std::vector<double> solved_around_hands(Time now, std::vector<double> levels);
+  [[nodiscard]] std::vector<ByHand> by_hand() const;
+  [[nodiscard]] std::string why_not(Time now, const ByHand& held) const;
+
+  // A rig file read again (show_reload.cpp).
+  void exchange_rig(Time now, const Rig& other, const LightModel& model, bool same_light);
+
   // What happens (show_controller.cpp).
   [[nodiscard]] Time at_least_last(Time now);
   void enter(Phase next, Time now);

@@ -161,6 +161,8 @@ ShowStatus ShowController::State::status(Time now) const {
                      point.name, breach.most_lx, *point.max_lx),
          breach.since});
   }
+  status.by_hand = by_hand();
+  for (ByHand& held : status.by_hand) held.why = why_not(now, held);
   tell_zones(status);
   for (std::size_t d = 0; d < desks.size(); ++d) {
     if (desk_names[d].empty()) continue;

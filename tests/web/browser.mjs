@@ -28,8 +28,8 @@ export async function openPage(browser, url, options = {}) {
     void dialog.dismiss();
   });
   page.on('console', (message) => {
-    // A lost server is part of the test; a broken content policy or script is not.
-    if (message.type() === 'error' && !message.text().includes('net::ERR') && !message.text().includes('503'))
+    // A lost server and a refusal are part of the test; a broken content policy or script is not.
+    if (message.type() === 'error' && !/net::ERR|status of (503|400)/.test(message.text()))
       misdeeds.push(`console: ${message.text()}`);
   });
   page.on('request', (request) => {

@@ -28,6 +28,7 @@ const SCRIPT_S = 44;
 export class MockDaemon {
   name = 'gallery';
   blackout = false;
+  overrides = [];
   alarms = [];
   faulted = new Set(); // names of devices
   dark = {}; // by name of a fixture: what its entry says besides, as parked and waits_for
@@ -135,8 +136,23 @@ export class MockDaemon {
       points, luxmeters: meters,
       devices: [device('dmx', 44, false), device('dimmer', 44, true), device('meters', 4, true)],
       alarms,
+      overrides: this.overrides,
       output: { rate_hz: 44, frames: Math.floor(t * 44), p50_us: 38, p99_us: 91, max_us: 212, realtime: true },
     };
+  }
+
+  #byHand(route, asked, json) {
+    if (route === '/api/release') {
+      this.overrides = asked.all ? [] : this.overrides.filter((o) => !asked.names.includes(o.name));
+      return json(200, { released: true, text: '1 released' });
+    }
+    const kind = route === '/api/level' ? 'level' : 'goal';
+    const name = (asked.fixtures ?? asked.points)[0];
+    const known = kind === 'level' ? FIXTURES : POINTS;
+    if (!known.some((k) => k.name === name)) return json(400, { error: `the rig has no ${name}` });
+    this.overrides.push({ kind, name, age_s: 3, ...(kind === 'level' ? { level: asked.level } : { goal_lux: asked.goal_lux }),
+      ...(asked.for_s ? { remaining_s: asked.for_s - 3 } : {}) });
+    return json(200, { held: true, text: `${name} by hand` });
   }
 
   async #answer(request, response) {
@@ -145,11 +161,13 @@ export class MockDaemon {
     if (request.method === 'POST') {
       let body = '';
       for await (const part of request) body += part;
-      if (url.pathname !== '/api/blackout') return json(404, {});
+      if (!['/api/blackout', '/api/level', '/api/goal', '/api/release'].includes(url.pathname)) return json(404, {});
       if (request.headers['content-type'] !== 'application/json') return json(415, {});
       if (this.refuse) return json(503, {});
       this.posts.push({ path: url.pathname, body: JSON.parse(body) });
-      this.blackout = this.posts.at(-1).body.on === true;
+      const { body: asked } = this.posts.at(-1);
+      if (url.pathname !== '/api/blackout') return this.#byHand(url.pathname, asked, json);
+      this.blackout = asked.on === true;
       return json(200, { on: this.blackout });
     }
     switch (url.pathname) {

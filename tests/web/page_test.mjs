@@ -109,6 +109,40 @@ async function againstMock(browser, dist, out) {
     await eventually('over', async () => (await page.locator('.fixtures .why-dark:visible').count()) === 0, 2000);
   });
 
+  await check('a level and a goal set by hand are sent, shown with their age, and released', async () => {
+    daemon.posts.length = 0;
+    const card = page.locator('#by-hand');
+    const hold = async (name, value, seconds) => {
+      await page.locator('#by-hand-name').fill(name);
+      await page.locator('#by-hand-value').fill(value);
+      await page.locator('#by-hand-duration').selectOption(seconds);
+      await card.getByRole('button', { name: 'Hold' }).click();
+    };
+    const point = (await (await fetch(new URL('/api/status', url))).json()).points[0].name;
+    await hold('spot-2', '5', '0');
+    await eventually('the level', async () => /spot-2.*5\.0 %.*for 3\.0 s, until released/s.test(await card.innerText()), 2000);
+    await hold(point, '150', '600');
+    await eventually('the goal', async () => /150 lx.*for 3\.0 s, 9 min 57 s left/s.test(await card.innerText()), 2000);
+    daemon.overrides[0].why = 'the limit of point "fern" (50 lx) wins: 0.031 is the most';
+    await eventually('why not', async () => /not so at present: the limit of point "fern"/.test(await card.innerText()), 2000);
+    await fitsItsWidth(page);
+    await card.scrollIntoViewIfNeeded();
+    await shot(page, 'desktop-dark-by-hand');
+    await hold('nobody', '5', '0');
+    await eventually('the refusal', async () => /Not done: the rig has no nobody/.test(await card.innerText()), 2000);
+    await card.getByRole('button', { name: 'release spot-2' }).click();
+    await eventually('one is left', async () => (await page.locator('.by-hand li').count()) === 1, 2000);
+    await page.locator('#by-hand-all').click();
+    await eventually('none is left', async () => /Nothing is set by hand/.test(await card.innerText()), 2000);
+    assert.deepEqual(daemon.posts, [
+      { path: '/api/level', body: { fixtures: ['spot-2'], level: 0.05 } },
+      { path: '/api/goal', body: { points: [point], goal_lux: 150, for_s: 600 } },
+      { path: '/api/level', body: { fixtures: ['nobody'], level: 0.05 } },
+      { path: '/api/release', body: { names: ['spot-2'] } },
+      { path: '/api/release', body: { all: true } },
+    ]);
+  });
+
   await check('a silent line is a lost line: it says so, with the age, and greys the numbers', async () => {
     daemon.silent = true;
     await eventually('lost', async () => (await page.locator('#line').getAttribute('data-state')) === 'lost');

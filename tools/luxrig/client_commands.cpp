@@ -1,4 +1,7 @@
-// status, blackout, apply, park, identify: commands that talk to a running daemon.
+// status, blackout, apply, level, goal, release, reload, park, identify: commands that talk to a running daemon.
+#include <charconv>
+#include <cmath>
+
 #include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
 #include "tools/luxrig/http_client.h"
@@ -20,8 +23,41 @@ int post(const ClientArguments& arguments, const char* route, const std::string&
     fmt::print(stderr, "luxrig: refused by the daemon: {}\n", reason);
     return answer->status == 400 ? kExitBadInput : kExitFailed;
   }
-  fmt::print("{}\n", arguments.json ? answer->body : done);
+  const std::string told = text_of(json::parse(answer->body, nullptr, false), "text");
+  fmt::print("{}\n", arguments.json ? answer->body : done.empty() ? told : told.empty() ? done : done + "\n" + told);
   return kExitOk;
+}
+
+/// The value behind the names; nothing when there is none.
+std::optional<double> value_of(const std::string& text, bool percent) {
+  double value = 0;
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc{} || !std::isfinite(value)) return std::nullopt;
+  if (rest == end) return value;
+  return percent && std::string_view(rest, end) == "%" ? std::optional(value / 100) : std::nullopt;
+}
+
+int hold(const ClientArguments& arguments, std::vector<std::string> words, const std::string& for_text, bool level) {
+  const std::optional<double> value = words.size() < 2 ? std::nullopt : value_of(words.back(), level);
+  if (!value) {
+    fmt::print(stderr, "luxrig: {}\n",
+               level ? "give names and then a level: luxrig level spot-1 0.05"
+                     : "give names and then a goal in lux: luxrig goal desk 150");
+    return kExitBadInput;
+  }
+  words.pop_back();
+  json body = {{level ? "fixtures" : "points", words}, {level ? "level" : "goal_lux", *value}};
+  if (!for_text.empty()) {
+    const auto for_s = seconds_of(for_text);
+    if (!for_s) {
+      fmt::print(stderr, "luxrig: --for {} is no duration: give 90s, 10min or 2h\n", for_text);
+      return kExitBadInput;
+    }
+    body["for_s"] = *for_s;
+  }
+  return post(arguments, level ? "/api/level" : "/api/goal", body.dump(-1, ' ', false, json::error_handler_t::replace),
+              "");
 }
 
 void print_status(const json& status) {
@@ -56,6 +92,18 @@ void print_status(const json& status) {
                 text_of(p, "limit_reason").empty() ? text_of(p, "reason") : text_of(p, "limit_reason")});
   }
   fmt::print("\n{}\n{}\n{}", devices.text(), fixtures.text(), points.text());
+  if (list_of(status, "overrides").empty()) return;
+  Table by_hand({"by hand", ">set to", ">for s", "until", "at present"});
+  for (const json& o : list_of(status, "overrides")) {
+    const auto level = number_of(o, "level"), remaining_s = number_of(o, "remaining_s");
+    by_hand.row({text_of(o, "name"), level ? shown(level, "{:.3f}") : shown(number_of(o, "goal_lux"), "{:.4g} lx"),
+                 shown(number_of(o, "age_s"), "{:.0f}"),
+                 flag_of(o, "of_plan") ? "the next plan"
+                 : remaining_s         ? fmt::format("in {:.0f} s", *remaining_s)
+                                       : "luxrig release",
+                 text_of(o, "why").empty() ? "so" : text_of(o, "why")});
+  }
+  fmt::print("\n{}", by_hand.text());
 }
 
 }  // namespace
@@ -95,6 +143,39 @@ int run_park(const ClientArguments& arguments, const std::vector<std::string>& f
               fixtures.empty()
                   ? "heads go dark and to where they rest, until the next apply"
                   : fmt::format("{} go dark and to where they rest, until the next apply", fmt::join(fixtures, ", ")));
+}
+
+std::optional<double> seconds_of(const std::string& text) {
+  double value = 0;
+  const char* end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc{} || !std::isfinite(value) || value <= 0) return std::nullopt;
+  const std::string_view unit(rest, end);
+  constexpr std::pair<std::string_view, double> kUnits[] = {{"", 1}, {"s", 1}, {"min", 60}, {"h", 3600}};
+  for (const auto& [name, seconds] : kUnits)
+    if (unit == name) return value * seconds;
+  return std::nullopt;
+}
+
+int run_level(const ClientArguments& arguments, const std::vector<std::string>& names_and_level,
+              const std::string& for_text) {
+  return hold(arguments, names_and_level, for_text, true);
+}
+
+int run_goal(const ClientArguments& arguments, const std::vector<std::string>& names_and_lux,
+             const std::string& for_text) {
+  return hold(arguments, names_and_lux, for_text, false);
+}
+
+int run_release(const ClientArguments& arguments, const std::vector<std::string>& names) {
+  const bool all = names == std::vector<std::string>{"all"};
+  const json body = all ? json{{"all", true}} : json{{"names", names}};
+  return post(arguments, "/api/release", body.dump(-1, ' ', false, json::error_handler_t::replace), "");
+}
+
+int run_reload(const ClientArguments& arguments) {
+  // The rig is solved before anything changes.
+  return post(arguments, "/api/reload", "{}", "", 300);
 }
 
 int run_identify(const ClientArguments& arguments, const std::string& fixture, double seconds) {

@@ -78,6 +78,17 @@ int run_hand_back(const ClientArguments& arguments);
 /// None named: all heads that have a place to rest.
 int run_park(const ClientArguments& arguments, const std::vector<std::string>& fixtures);
 int run_identify(const ClientArguments& arguments, const std::string& fixture, double seconds);
+/// Holds a level or a goal by hand: names (with * and ? for several), then the value; for_text: "10min", empty: until
+/// it is released.
+int run_level(const ClientArguments& arguments, const std::vector<std::string>& names_and_level,
+              const std::string& for_text);
+int run_goal(const ClientArguments& arguments, const std::vector<std::string>& names_and_lux,
+             const std::string& for_text);
+/// Fixtures and points, or "all".
+int run_release(const ClientArguments& arguments, const std::vector<std::string>& names);
+int run_reload(const ClientArguments& arguments);
+/// "90s", "10min", "2h", "90" (seconds) in seconds; nothing when it is none, or not above 0.
+[[nodiscard]] std::optional<double> seconds_of(const std::string& text);
 /// Until Ctrl-C; `once`, or when the output is no terminal: one picture.
 int run_monitor(const ClientArguments& arguments, bool once);
 /// Says that nobody answers on the port, and what would mend it; the exit code.

@@ -249,6 +249,29 @@ int main(int argc, char** argv) {
   add_client(*command, client);
   command->callback([&] { code = run_hand_back(client); });
 
+  std::vector<std::string> held;
+  std::string held_for;
+  command = app.add_subcommand("level", "hold fixtures at a level by hand, until they are released");
+  command->add_option("FIXTURE..LEVEL", held, "names (* and ? for several), then 0…1 or 0%…100%")->required();
+  command->add_option("--for", held_for, "for how long: 90s, 10min, 2h (else until luxrig release)");
+  add_client(*command, client);
+  command->callback([&] { code = run_level(client, held, held_for); });
+
+  command = app.add_subcommand("goal", "hold points at another goal by hand, until they are released");
+  command->add_option("POINT..LUX", held, "names (* and ? for several), then the goal in lux")->required();
+  command->add_option("--for", held_for, "for how long: 90s, 10min, 2h (else until luxrig release)");
+  add_client(*command, client);
+  command->callback([&] { code = run_goal(client, held, held_for); });
+
+  command = app.add_subcommand("release", "what was set by hand goes back to the plan");
+  command->add_option("NAME", held, "fixtures and points (* and ? for several), or all")->required();
+  add_client(*command, client);
+  command->callback([&] { code = run_release(client, held); });
+
+  command = app.add_subcommand("reload", "have the running daemon read its rig file again, whole or not at all");
+  add_client(*command, client);
+  command->callback([&] { code = run_reload(client); });
+
   std::vector<std::string> rested;
   command = app.add_subcommand("park", "heads go dark and to where they rest, until the next apply");
   command->add_option("FIXTURE", rested, "these heads (else all that have a place to rest)");
@@ -303,7 +326,7 @@ int main(int argc, char** argv) {
 
   group(app, "Make a rig", {"init", "check", "import"});
   group(app, "Work out its light", {"evaluate", "solve", "render"});
-  group(app, "Run it", {"run", "status", "apply", "blackout", "hand-back", "park", "identify", "monitor"});
+  group(app, "Run it", {"run", "status", "apply", "level", "goal", "release", "reload", "blackout", "hand-back", "park", "identify", "monitor"});
   group(app, "Devices", {"devices", "rdm", "camera"});
   group(app, "Luxrig itself", {"bench"});
   const auto end = parse_command_line(app, argc, argv);

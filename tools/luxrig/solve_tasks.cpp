@@ -9,6 +9,7 @@
 #include "core/solve/emittance.h"
 #include "core/transport/rig_transport.h"
 #include "tools/luxrig/placement_task.h"
+#include "tools/luxrig/rig_version.h"
 #include "tools/luxrig/task_solver.h"
 
 namespace luxrig {
@@ -25,6 +26,7 @@ PlannedLight planned_light(const Rig& rig, const Fixture& fixture, double level)
   light.tilt_deg = deg_from_rad(fixture.joints.tilt_rad);
   if (fixture.range.zooms()) light.beam_angle_deg = deg_from_rad(fixture.joints.beam_rad);
   light.level = level;
+  light.solved_level = level;
   light.lumens = level * luminaire.lumens;
   if (luminaire.watts) light.watts = level * *luminaire.watts;
   return light;
@@ -115,6 +117,7 @@ SolvedTasks TaskSolver::done() {
     const double lux = plan_.points[i].lux;
     plan_.limits.push_back({rig_.points[i].name, *rig_.points[i].max_lx, lux, lux <= *rig_.points[i].max_lx});
   }
+  plan_.made_for = version_of(session_.rig, session_.scene);
   // What an aim has made of the levels is the wish from then on.
   if (holds_a_look(plan_))
     for (PlannedPoint& point : plan_.points) point.goal_lux.reset();

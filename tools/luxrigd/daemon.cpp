@@ -5,11 +5,10 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "core/rig/nearest.h"
 #include "drivers/registry.h"
 #include "tools/command_line/installed.h"
+#include "tools/luxrig/rig_version.h"
 #include "tools/luxrigd/clock.h"
-#include "tools/luxrigd/room_view.h"
 #include "tools/luxrigd/scheduling.h"
 #include "tools/luxrigd/status_json.h"
 
@@ -25,9 +24,13 @@ std::filesystem::path web_folder() { return shared_folder() / "web"; }
 
 }  // namespace
 
-Daemon::Daemon(const Session& session, LightModel model, DaemonOptions options)
-    : session_(session), options_(std::move(options)), controller_(session.rig, model), model_(std::move(model)) {
-  for (const Fixture& fixture : session.rig.fixtures) model_joints_.push_back(fixture.joints);
+Daemon::Daemon(std::shared_ptr<const Session> session, LightModel model, DaemonOptions options)
+    : options_(std::move(options)),
+      controller_(session->rig, model),
+      session_(std::move(session)),
+      version_(version_of(session_->rig, session_->scene)),
+      model_(std::move(model)) {
+  for (const Fixture& fixture : session_->rig.fixtures) model_joints_.push_back(fixture.joints);
   if (options_.state_folder) journal_.emplace(*options_.state_folder);
 }
 
@@ -40,7 +43,9 @@ Result<int> Daemon::start() {
   const auto port = http_->start(options_.http_port);
   if (!port) return port;
   lock_memory();
-  const Rig& rig = session_.rig;
+  // Drivers and buses keep this rig, also when a reload has exchanged it for one with the same outputs.
+  first_session_ = session_;
+  const Rig& rig = session_->rig;
   for (std::size_t b = 0; b < rig.buses.size(); ++b) {
     const DriverEntry* entry = find_driver(rig.buses[b].driver);
     std::optional<Redirect> redirect;
@@ -58,13 +63,14 @@ Result<int> Daemon::start() {
   }
   if (options_.guarded && options_.state_folder) start_guardian();
   for (const auto& bus : buses_) bus->start();
+  rig_file_watch_ = std::make_shared<RigFileWatch>(files_of(rig));
   return port;
 }
 
 void Daemon::start_guardian() {
   GuardianSettings settings;
-  settings.rig_file = session_.rig.file;
-  settings.fixtures = session_.rig.fixtures.size();
+  settings.rig_file = session_->rig.file;
+  settings.fixtures = session_->rig.fixtures.size();
   settings.redirects = options_.redirects;
   settings.state_folder = *options_.state_folder;
   // One that an earlier daemon left behind has the light until ours takes it, and tells what it was.
@@ -84,7 +90,7 @@ void Daemon::start_guardian() {
 /// What would go out if this process died now.
 void Daemon::tell_guardian(Time at) {
   if (!guardian_) return;
-  const Rig& rig = session_.rig;
+  const Rig& rig = session_->rig;
   const OutputProgram& program = controller_.program();
   const std::size_t count = rig.fixtures.size();
   last_look_.present.resize(count);
@@ -119,79 +125,6 @@ void Daemon::tell_guardian(Time at) {
   start_guardian();
 }
 
-Checked<bool> Daemon::resume() {
-  if (!journal_) return false;
-  const auto state = journal_->load();
-  if (!state) return tl::unexpected(state.error());
-  if (!*state) return false;
-  const JournalState& saved = **state;
-  if (!saved.plan_json.empty()) {
-    if (auto applied = apply_json(saved.plan_json); !applied) return tl::unexpected(std::move(applied.error()));
-  }
-  if (!saved.parked.empty()) {
-    std::vector<std::size_t> heads;
-    // The rig may have changed since.
-    for (const std::string& name : saved.parked) {
-      if (const auto head = fixture_called(name); head && session_.rig.fixtures[*head].park) heads.push_back(*head);
-    }
-    if (!heads.empty()) {
-      on_control_thread([this, heads](Time at) { (void)controller_.park(at, heads); });
-      {
-        const std::lock_guard lock(mutex_);
-        remembered_.parked = saved.parked;
-      }
-      (void)remember();  // as it was before the plan
-    }
-  }
-  if (saved.blackout) {
-    controller_.blackout(now(), true);
-    const std::lock_guard lock(mutex_);
-    remembered_.blackout = true;
-  }
-  return !saved.plan_json.empty();
-}
-
-Checked<void> Daemon::apply(const Plan& plan) { return apply_json(to_json(plan)); }
-
-Checked<void> Daemon::apply_json(const std::string& plan_json) {
-  const auto plan = plan_from_json(plan_json, "plan");
-  if (!plan) return tl::unexpected(plan.error());
-  auto look = look_for(*plan, session_.rig, "plan");
-  if (!look) return tl::unexpected(look.error());
-  auto model = model_for(*look);
-  if (!model) {
-    return tl::unexpected(std::vector<Problem>{
-        {"plan", 0, 0, "what the rig gives with its heads turned so: " + model.error().detail, "solve again"}});
-  }
-  {
-    const std::lock_guard lock(mutex_);
-    remembered_.plan_json = plan_json;
-    remembered_.parked.clear();
-  }
-  // Acknowledged means: it survives a power cut.
-  if (const auto saved = remember(); !saved) {
-    return tl::unexpected(
-        std::vector<Problem>{{"plan", 0, 0, saved.error().detail, "free disk space or mend the permissions"}});
-  }
-  on_control_thread([this, levels = std::move(look->levels),
-                     wanted = Look{std::move(look->joints), std::move(look->goal_lx), std::move(*model)}](Time at) {
-    controller_.apply(at, levels, wanted);
-  });
-  return {};
-}
-
-Result<LightModel> Daemon::model_for(const PlannedLook& look) {
-  const std::lock_guard lock(model_mutex_);
-  if (look.joints == model_joints_) return model_;
-  if (!options_.light_model) return refusal("nobody here can work it out");
-  Rig rig = session_.rig;
-  turn_heads(rig, look.joints);
-  auto model = options_.light_model(rig);
-  if (!model) return model;
-  model_joints_ = look.joints;
-  return model_ = std::move(*model);
-}
-
 Result<void> Daemon::remember() {
   if (!journal_) return {};
   JournalState state;
@@ -214,60 +147,6 @@ void Daemon::on_control_thread(std::function<void(Time)> run) {
   if (std::this_thread::get_id() != control_thread_) done.wait_for(kCommandBound);
 }
 
-/// What `run` gives on the control thread; nothing when that does not come to it. Shared, as nobody waits longer than a
-/// command's bound for it.
-template <class T>
-std::optional<T> Daemon::ask_control_thread(std::function<T(Time)> run) {
-  const auto answer = std::make_shared<std::promise<T>>();
-  std::future<T> given = answer->get_future();
-  on_control_thread([answer, run = std::move(run)](Time at) { answer->set_value(run(at)); });
-  if (given.wait_for(Duration{}) != std::future_status::ready) return std::nullopt;
-  return given.get();
-}
-
-Result<std::size_t> Daemon::fixture_called(const std::string& name) const {
-  const std::vector<Fixture>& fixtures = session_.rig.fixtures;
-  std::vector<std::string_view> names;
-  for (std::size_t f = 0; f < fixtures.size(); ++f) {
-    const std::string& own = fixtures[f].name;
-    names.push_back(own);
-    // An emitter is called "housing/emitter": the housing's name will do.
-    if (own == name || (fixtures[f].housing && own.rfind(name + "/", 0) == 0)) return f;
-  }
-  return refusal(fmt::format("the rig has no fixture \"{}\": {}", name, mend_for_unknown(name, names, "it has none")));
-}
-
-Result<void> Daemon::identify(const std::string& name, double seconds) {
-  const auto fixture = fixture_called(name);
-  if (!fixture) return tl::unexpected(fixture.error());
-  const auto done = ask_control_thread<Result<void>>(
-      [this, f = *fixture, seconds](Time at) { return controller_.identify(at, f, from_seconds(seconds)); });
-  return done.value_or(refusal("the control loop did not answer"));
-}
-
-Result<void> Daemon::park(const std::vector<std::string>& names) {
-  std::vector<std::size_t> heads;
-  for (const std::string& name : names) {
-    const auto fixture = fixture_called(name);
-    if (!fixture) return tl::unexpected(fixture.error());
-    heads.push_back(*fixture);
-  }
-  const auto done = ask_control_thread<Result<void>>([this, heads](Time at) { return controller_.park(at, heads); });
-  if (!done) return refusal("the control loop did not answer");
-  if (!*done) return *done;
-  {
-    const std::lock_guard lock(mutex_);
-    std::vector<std::string>& parked = remembered_.parked;
-    for (std::size_t f = 0; names.empty() && f < session_.rig.fixtures.size(); ++f)
-      if (session_.rig.fixtures[f].park) heads.push_back(f);
-    for (const std::size_t head : heads) {
-      const std::string& name = session_.rig.fixtures[head].name;
-      if (std::find(parked.begin(), parked.end(), name) == parked.end()) parked.push_back(name);
-    }
-  }
-  return remember();
-}
-
 bool Daemon::park() { return controller_.park(now(), {}).has_value(); }
 
 std::string Daemon::universes_json() {
@@ -275,7 +154,7 @@ std::string Daemon::universes_json() {
     nlohmann::json all = nlohmann::json::array();
     for (const auto& bus : buses_) {
       for (const CarriedUniverse& one : bus->carried()) {
-        all.push_back({{"bus", session_.rig.buses[bus->bus()].name},
+        all.push_back({{"bus", session_->rig.buses[bus->bus()].name},
                        {"universe", one.number},
                        {"silent", one.silent},
                        {"slots", one.slots}});
@@ -293,9 +172,15 @@ HttpHandlers Daemon::handlers() {
     return status_json_;
   };
   handlers.universes = [this] { return universes_json(); };
-  const RoomView room = draw_room(session_);
-  handlers.room_json = room.json;
-  handlers.room_png = room.png;
+  room_ = draw_room(*session_);
+  handlers.room_json = [this] {
+    const std::lock_guard lock(mutex_);
+    return room_.json;
+  };
+  handlers.room_png = [this] {
+    const std::lock_guard lock(mutex_);
+    return room_.png;
+  };
   handlers.blackout = [this](bool on) -> Result<void> {
     // The light first, the disk after.
     on_control_thread([this, on](Time at) { controller_.blackout(at, on); });
@@ -308,7 +193,15 @@ HttpHandlers Daemon::handlers() {
   handlers.identify = [this](const std::string& name, double seconds) { return identify(name, seconds); };
   handlers.park = [this](const std::vector<std::string>& names) { return park(names); };
   handlers.hand_back = [this] { on_control_thread([this](Time at) { controller_.hand_back(at); }); };
-  handlers.apply = [this](const std::string& plan_json) { return apply_json(plan_json); };
+  handlers.apply = [this](const std::string& plan_json) { return apply_json(plan_json, false); };
+  handlers.level = [this](const std::vector<std::string>& names, double level, std::optional<double> for_s) {
+    return hold(ByHand::What::level, names, level, for_s);
+  };
+  handlers.goal = [this](const std::vector<std::string>& names, double lux, std::optional<double> for_s) {
+    return hold(ByHand::What::goal, names, lux, for_s);
+  };
+  handlers.release = [this](const std::vector<std::string>& names) { return release(names); };
+  handlers.reload = [this] { return reload(); };
   return handlers;
 }
 
@@ -346,6 +239,7 @@ void Daemon::tick() {
 void Daemon::publish(Time at) {
   last_publish_ = at;
   status_ = controller_.status(at);
+  add_alarms(at);
   OutputFigures output;
   for (const auto& bus : buses_) {
     // The figures of the fastest writing bus.
@@ -355,7 +249,7 @@ void Daemon::publish(Time at) {
     if (rate_hz <= output.rate_hz) continue;
     output = {rate_hz, cycle.count(), cycle.quantile_us(0.5), cycle.quantile_us(0.99), cycle.max_us(), bus->realtime()};
   }
-  std::string text = status_json({session_.rig, status_, devices_, output, options_.simulated, started_, at});
+  std::string text = status_json({session_->rig, status_, devices_, output, options_.simulated, started_, at});
   const std::lock_guard lock(mutex_);
   status_json_ = std::move(text);
 }

@@ -18,8 +18,22 @@
 #include "tools/luxrigd/guardian.h"
 #include "tools/luxrigd/http_api.h"
 #include "tools/luxrigd/journal.h"
+#include "tools/luxrigd/rig_file_watch.h"
+#include "tools/luxrigd/room_view.h"
 
 namespace luxrig {
+
+/// A rig's plan, and what the rig gives with heads as the plan has them.
+struct SolvedRig {
+  Plan plan;
+  LightModel model;
+};
+
+/// What has become of the state that the last daemon left.
+struct Resumed {
+  bool plan = false;               ///< its plan is in force again
+  std::vector<std::string> notes;  ///< for a person
+};
 
 struct DaemonOptions {
   bool simulated = false;
@@ -27,25 +41,33 @@ struct DaemonOptions {
   std::optional<std::filesystem::path> state_folder;  ///< none: nothing is remembered
   bool guarded = false;  ///< a guardian takes the rig to its safe look when this process dies; needs a state folder
   int http_port = 9620;  ///< 0 = any
-  /// What the rig gives with heads that look elsewhere, for plans that turn them; called on whatever thread brings the
-  /// plan. Empty: such plans are refused.
-  std::function<Result<LightModel>(const Rig&)> light_model{};
+  /// What a rig gives in the session's scene with heads that look elsewhere, for plans that turn them; called on
+  /// whatever thread brings the plan. Empty: such plans are refused.
+  std::function<Result<LightModel>(const Session&, const Rig&)> light_model{};
+  /// Solves the tasks of a rig file that was read again; turns the session's heads as its plan has them. Empty: there
+  /// is no reload.
+  std::function<Result<SolvedRig>(Session&)> solve{};
 };
 
 class Daemon {
  public:
-  /// The session must outlive the daemon. model: of its rig, with heads as they look there.
-  Daemon(const Session& session, LightModel model, DaemonOptions options);
+  /// model: of the session's rig, with heads as they look there.
+  Daemon(std::shared_ptr<const Session> session, LightModel model, DaemonOptions options);
   ~Daemon();
 
   /// Starts drivers and the page; returns the page's port. Sends nothing until the first plan.
   [[nodiscard]] Result<int> start();
 
-  /// The plan and the blackout that were in force when the last daemon stopped, taken up again. False: there was none.
-  [[nodiscard]] Checked<bool> resume();
+  /// The plan, the blackout, what rests and what is set by hand as it was when the last daemon stopped, taken up again.
+  /// A plan that was solved from a rig file which has changed since is left: the caller has a newer one. One that a
+  /// person applied is taken up all the same, within the limits of the rig as it is now, and an alarm says so.
+  [[nodiscard]] Checked<Resumed> resume();
 
-  /// Applies a plan as if a client had sent it.
-  [[nodiscard]] Checked<void> apply(const Plan& plan);
+  /// Applies a plan as if a client had sent it. of_rig: it was solved from this rig file, nobody has chosen it.
+  [[nodiscard]] Checked<void> apply(const Plan& plan, bool of_rig = false);
+
+  /// The rig in force, which a reload exchanges.
+  [[nodiscard]] std::shared_ptr<const Session> session() const;
 
   /// Why nobody looks after the light if this process dies although somebody should; empty when all is well.
   [[nodiscard]] const std::string& unguarded() const { return unguarded_; }
@@ -67,10 +89,26 @@ class Daemon {
     std::promise<void> done;
   };
   void on_control_thread(std::function<void(Time)> run);
+  /// What `run` gives on the control thread; nothing when that does not come to it. Shared, as nobody waits longer than
+  /// a command's bound for it.
   template <class T>
-  std::optional<T> ask_control_thread(std::function<T(Time)> run);
+  std::optional<T> ask_control_thread(std::function<T(Time)> run) {
+    const auto answer = std::make_shared<std::promise<T>>();
+    std::future<T> given = answer->get_future();
+    on_control_thread([answer, run = std::move(run)](Time at) { answer->set_value(run(at)); });
+    if (given.wait_for(Duration{}) != std::future_status::ready) return std::nullopt;
+    return given.get();
+  }
   Result<void> identify(const std::string& name, double seconds);
   Result<void> park(const std::vector<std::string>& names);
+  Result<std::string> hold(ByHand::What what, const std::vector<std::string>& names, double value,
+                           std::optional<double> for_s);
+  Result<std::string> release(const std::vector<std::string>& names);
+  [[nodiscard]] Checked<std::string> reload();
+  void restore_by_hand(const std::vector<SavedByHand>& saved, Resumed& resumed);
+  /// What the controller holds by hand, to be remembered.
+  [[nodiscard]] std::vector<SavedByHand> held_by_hand(const Rig& rig, Time at) const;
+  void add_alarms(Time at);
   /// A fixture by its name; an emitter's housing stands for its first.
   [[nodiscard]] Result<std::size_t> fixture_called(const std::string& name) const;
   [[nodiscard]] std::string universes_json();
@@ -78,12 +116,11 @@ class Daemon {
   void start_guardian();
   void tell_guardian(Time at);
   [[nodiscard]] HttpHandlers handlers();
-  [[nodiscard]] Checked<void> apply_json(const std::string& plan_json);
+  [[nodiscard]] Checked<std::string> apply_json(const std::string& plan_json, bool of_rig);
   [[nodiscard]] Result<void> remember();
   /// The look's model: the last one made, when heads looked so then, too.
-  [[nodiscard]] Result<LightModel> model_for(const PlannedLook& look);
+  [[nodiscard]] Result<LightModel> model_for(const Session& session, const std::vector<Joints>& joints);
 
-  const Session& session_;
   DaemonOptions options_;
   ShowController controller_;
   ProgramMailbox programs_;
@@ -106,7 +143,17 @@ class Daemon {
   ShowStatus status_;            // control thread only
   std::vector<Health> devices_;  // control thread only
 
-  std::mutex mutex_;  // guards the three below
+  std::mutex change_mutex_;  // one plan or rig after the other
+
+  mutable std::mutex mutex_;  // guards what follows
+  std::shared_ptr<const Session> session_;
+  std::shared_ptr<const Session> first_session_;  ///< drivers and buses look at that rig for ever
+  RigVersion version_;                            ///< of session_
+  std::optional<RigVersion> plan_made_for_;       ///< of the plan in force
+  Time plan_at_{};
+  std::shared_ptr<RigFileWatch> rig_file_watch_;
+  std::optional<Time> rig_file_changed_at_;
+  RoomView room_;
   std::string status_json_ = "{}";
   std::deque<Command> commands_;
   JournalState remembered_;

@@ -15,6 +15,7 @@ constexpr std::size_t kServerThreads = 32;
 constexpr int kMostStreams = 16;  // each holds a thread
 constexpr auto kStreamPeriod = std::chrono::milliseconds(200);
 constexpr double kIdentifyFor_s = 5, kIdentifyAtMost_s = 60;
+constexpr double kLongestByHand_s = 366.0 * 86400;
 constexpr std::size_t kMostBody = 16u << 20;
 
 /// Host part of "host[:port]" or "http://host[:port]" is this machine's loopback.
@@ -31,6 +32,17 @@ void refuse(httplib::Response& response, int status, const std::string& what) {
   response.status = status;
   response.set_content(nlohmann::json{{"error", what}}.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace),
                        "application/json");
+}
+
+/// A list of texts, not empty.
+std::optional<std::vector<std::string>> names_in(const nlohmann::json& body, const char* key) {
+  if (!body.is_object() || !body.contains(key) || !body[key].is_array() || body[key].empty()) return std::nullopt;
+  std::vector<std::string> names;
+  for (const auto& one : body[key]) {
+    if (!one.is_string()) return std::nullopt;
+    names.push_back(one.get<std::string>());
+  }
+  return names;
 }
 
 }  // namespace
@@ -61,6 +73,42 @@ struct HttpApi::State {
       }
     }
     return Verdict::Unhandled;
+  }
+
+  /// {"<done>": true, "text": …}, or why not.
+  static void answer(httplib::Response& response, const Result<std::string>& done, const char* key) {
+    if (!done) {
+      const bool theirs = done.error().cause == Cause::invalid || done.error().cause == Cause::refused;
+      return refuse(response, theirs ? 400 : 500, done.error().detail);
+    }
+    const nlohmann::json body = {{key, true}, {"text", *done}};
+    response.set_content(body.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), "application/json");
+  }
+  static void answer_checked(httplib::Response& response, const Checked<std::string>& done, const char* key) {
+    if (done) return answer(response, *done, key);
+    std::string text;
+    for (const Problem& problem : done.error()) text += (text.empty() ? "" : "\n") + problem.text();
+    refuse(response, 400, text);
+  }
+
+  void by_hand(const httplib::Request& request, httplib::Response& response, const char* names_key,
+               const char* value_key,
+               const std::function<Result<std::string>(const std::vector<std::string>&, double, std::optional<double>)>&
+                   handler) {
+    const auto body = nlohmann::json::parse(request.body, nullptr, false);
+    const auto names = names_in(body, names_key);
+    const bool timed = body.is_object() && body.contains("for_s");
+    if (!names || !body.contains(value_key) || !body[value_key].is_number() ||
+        (timed && !(body["for_s"].is_number() && body["for_s"] > 0 && body["for_s"] <= kLongestByHand_s))) {
+      return refuse(
+          response, 400,
+          fmt::format("send {{\"{}\": [\"a name\"], \"{}\": a number}}, and with \"for_s\" above 0 for how long",
+                      names_key, value_key));
+    }
+    answer(response,
+           handler(*names, body[value_key].get<double>(),
+                   timed ? std::optional(body["for_s"].get<double>()) : std::nullopt),
+           "held");
   }
 
   void stream(httplib::Response& response) {
@@ -97,11 +145,12 @@ struct HttpApi::State {
     });
     server.Get("/api/events", [this](const httplib::Request&, httplib::Response& response) { stream(response); });
     server.Get("/api/room", [this](const httplib::Request&, httplib::Response& response) {
-      response.set_content(handlers.room_json, "application/json");
+      response.set_content(handlers.room_json(), "application/json");
     });
     server.Get("/api/room.png", [this](const httplib::Request&, httplib::Response& response) {
-      if (handlers.room_png.empty()) return refuse(response, 404, "this rig has no scene to draw");
-      response.set_content(handlers.room_png, "image/png");
+      const std::string png = handlers.room_png();
+      if (png.empty()) return refuse(response, 404, "this rig has no scene to draw");
+      response.set_content(png, "image/png");
     });
     server.Post("/api/blackout", [this](const httplib::Request& request, httplib::Response& response) {
       const auto body = nlohmann::json::parse(request.body, nullptr, false);
@@ -147,14 +196,25 @@ struct HttpApi::State {
       response.set_content("{\"handed_back\":true}", "application/json");
     });
     server.Post("/api/apply", [this](const httplib::Request& request, httplib::Response& response) {
-      const auto done = handlers.apply(request.body);
-      if (done) {
-        response.set_content("{\"applied\":true}", "application/json");
-        return;
+      answer_checked(response, handlers.apply(request.body), "applied");
+    });
+    server.Post("/api/level", [this](const httplib::Request& request, httplib::Response& response) {
+      by_hand(request, response, "fixtures", "level", handlers.level);
+    });
+    server.Post("/api/goal", [this](const httplib::Request& request, httplib::Response& response) {
+      by_hand(request, response, "points", "goal_lux", handlers.goal);
+    });
+    server.Post("/api/release", [this](const httplib::Request& request, httplib::Response& response) {
+      const auto body = nlohmann::json::parse(request.body, nullptr, false);
+      const bool all = body.is_object() && body.contains("all") && body["all"] == true;
+      const auto names = names_in(body, "names");
+      if (all == names.has_value()) {  // "all" must be meant: no list is no reason to release everything
+        return refuse(response, 400, "send {\"names\": [\"a fixture or point\"]} or {\"all\": true}");
       }
-      std::string text;
-      for (const Problem& problem : done.error()) text += (text.empty() ? "" : "\n") + problem.text();
-      refuse(response, 400, text);
+      answer(response, handlers.release(names.value_or(std::vector<std::string>{})), "released");
+    });
+    server.Post("/api/reload", [this](const httplib::Request&, httplib::Response& response) {
+      answer_checked(response, handlers.reload(), "reloaded");
     });
   }
 };

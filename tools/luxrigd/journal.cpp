@@ -7,6 +7,21 @@
 #include "tools/luxrig/commands.h"
 
 namespace luxrig {
+namespace {
+
+/// Nothing when it is damaged: the rest of the state is worth more than a complaint.
+std::optional<SavedByHand> by_hand_of(const nlohmann::json& entry) {
+  const auto has = [&](const char* key, auto is) { return entry.contains(key) && (entry[key].*is)(); };
+  using Json = nlohmann::json;
+  if (!entry.is_object() || !has("goal", &Json::is_boolean) || !has("name", &Json::is_string) ||
+      !has("value", &Json::is_number) || !has("since_unix_s", &Json::is_number))
+    return std::nullopt;
+  SavedByHand saved{entry["goal"], entry["name"], entry["value"], entry["since_unix_s"], std::nullopt};
+  if (has("until_unix_s", &Json::is_number)) saved.until_unix_s = entry["until_unix_s"].get<double>();
+  return saved;
+}
+
+}  // namespace
 
 Result<void> Journal::save(const JournalState& state) const {
   std::error_code error;
@@ -14,9 +29,17 @@ Result<void> Journal::save(const JournalState& state) const {
   if (error) {
     return tl::unexpected(Fault{Cause::system, {}, "cannot make " + folder_.string() + ": " + error.message(), {}});
   }
+  nlohmann::json by_hand = nlohmann::json::array();
+  for (const SavedByHand& one : state.by_hand) {
+    nlohmann::json entry = {
+        {"goal", one.goal}, {"name", one.name}, {"value", one.value}, {"since_unix_s", one.since_unix_s}};
+    if (one.until_unix_s) entry["until_unix_s"] = *one.until_unix_s;
+    by_hand.push_back(std::move(entry));
+  }
   const nlohmann::json out = {
-      {"luxrig_state", 1}, {"plan", state.plan_json}, {"blackout", state.blackout}, {"parked", state.parked}};
-  return write_file(file(), out.dump(1));
+      {"luxrig_state", 1},      {"plan", state.plan_json},          {"blackout", state.blackout},
+      {"parked", state.parked}, {"plan_of_rig", state.plan_of_rig}, {"by_hand", std::move(by_hand)}};
+  return write_file(file(), out.dump(1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
 Checked<std::optional<JournalState>> Journal::load() const {
@@ -35,6 +58,12 @@ Checked<std::optional<JournalState>> Journal::load() const {
   if (json.contains("parked") && json["parked"].is_array()) {
     for (const auto& one : json["parked"]) {
       if (one.is_string()) state.parked.push_back(one.get<std::string>());
+    }
+  }
+  if (json.contains("plan_of_rig") && json["plan_of_rig"].is_boolean()) state.plan_of_rig = json["plan_of_rig"];
+  if (json.contains("by_hand") && json["by_hand"].is_array()) {
+    for (const auto& one : json["by_hand"]) {
+      if (auto saved = by_hand_of(one)) state.by_hand.push_back(std::move(*saved));
     }
   }
   return state;

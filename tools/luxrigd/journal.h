@@ -1,5 +1,5 @@
 #pragma once
-/// What must survive a power cut: the plan in force, the blackout switch, and heads that rest.
+/// What must survive a power cut: the plan in force, the blackout switch, heads that rest, and what is set by hand.
 
 #include <filesystem>
 #include <optional>
@@ -10,10 +10,21 @@
 
 namespace luxrig {
 
+/// A level or goal set by hand, by the wall clock: it goes on ageing while no daemon runs.
+struct SavedByHand {
+  bool goal = false;  ///< of a point, in lux; else the level of a fixture
+  std::string name;
+  double value = 0;
+  double since_unix_s = 0;
+  std::optional<double> until_unix_s{};
+};
+
 struct JournalState {
   std::string plan_json;  ///< empty: none applied yet
   bool blackout = false;
   std::vector<std::string> parked{};  ///< fixtures
+  bool plan_of_rig = false;           ///< the plan was solved from the rig file at start; else a person applied it
+  std::vector<SavedByHand> by_hand{};
 };
 
 class Journal {

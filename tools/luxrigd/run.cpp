@@ -75,6 +75,18 @@ std::string goals_text(const ShowStatus& status, const Rig& rig) {
   return text;
 }
 
+/// A rig file that was read again: its plan, and what the rig gives with heads turned as that has them.
+Result<SolvedRig> solve_again(Session& session, const ComputeOptions& compute) {
+  return in_background<Result<SolvedRig>>([&]() -> Result<SolvedRig> {
+    const auto transport = compute_transport(session, compute);
+    if (!transport) return tl::unexpected(transport.error());
+    auto solved = solve_what_hangs(session, *transport, compute);
+    if (!solved) return tl::unexpected(solved.error());
+    session.rig = std::move(solved->rig);
+    return SolvedRig{std::move(solved->plan), light_model(session.rig, solved->transport)};
+  });
+}
+
 /// Ticks until `done` says so.
 void tick_until(Daemon& daemon, const std::function<bool(Time)>& done) {
   Time next = now();
@@ -150,8 +162,9 @@ Result<void> show_before_and_after(Daemon& daemon, RunReport& say, RigPictures& 
 int run_rig(const RunArguments& arguments) {
   const Time process_start = now();
   const std::stop_token stop = stop_on_signals();
-  auto session = open_session(arguments.rig);
-  if (!session) return report(session.error());
+  auto opened = open_session(arguments.rig);
+  if (!opened) return report(opened.error());
+  const auto session = std::make_shared<Session>(std::move(*opened));
   const Rig& rig = session->rig;
   const bool places =
       std::any_of(rig.tasks.begin(), rig.tasks.end(), [](const Task& task) { return task.places_lights(); });
@@ -247,13 +260,14 @@ int run_rig(const RunArguments& arguments) {
   }
   // A simulator of our own would die with us.
   options.guarded = !arguments.no_guardian && !sim && options.state_folder.has_value();
-  options.light_model = [&session, compute](const Rig& turned) -> Result<LightModel> {
-    const auto anew = in_background<Result<TransportMatrix>>(
-        [&] { return compute_transport(turned, session->scene, *session->rays, compute); });
+  options.light_model = [compute](const Session& in, const Rig& turned) -> Result<LightModel> {
+    const auto anew =
+        in_background<Result<TransportMatrix>>([&] { return compute_transport(turned, in.scene, *in.rays, compute); });
     if (!anew) return tl::unexpected(anew.error());
     return light_model(turned, *anew);
   };
-  Daemon daemon(*session, light_model(rig, *transport), options);
+  options.solve = [compute](Session& reread) { return solve_again(reread, compute); };
+  Daemon daemon(session, light_model(rig, *transport), options);
   const auto port = daemon.start();
   if (!port) return report(port.error());
   say.say(fmt::format("page and status: http://127.0.0.1:{}/", *port));
@@ -261,12 +275,13 @@ int run_rig(const RunArguments& arguments) {
     say.say("warning  if this process dies, lamps do what they do without data: no guardian: " + daemon.unguarded());
   }
   bool resumed = false;
-  if (!arguments.plan && !arguments.once) {
+  if (!arguments.plan && !arguments.once && !arguments.fresh) {
     const auto state = daemon.resume();
     // A damaged or outdated state must not keep the rig dark: say so and go on with the fresh plan.
     if (!state) report(state.error());
-    resumed = state.value_or(false);
-    if (resumed) say.say("resumed the plan that was in force");
+    resumed = state && state->plan;
+    if (resumed) say.say("resumed the plan that was in force (--fresh starts from the rig file)");
+    for (const std::string& note : state ? state->notes : std::vector<std::string>{}) say.say("warning  " + note);
   }
   int pictures_failed = kExitOk;
   if (hung) {
@@ -274,7 +289,7 @@ int run_rig(const RunArguments& arguments) {
     if (const auto shown = show_before_and_after(daemon, say, pictures, *hung, *plan, stop); !shown)
       pictures_failed = report(shown.error());
   } else if (!resumed) {
-    if (const auto applied = daemon.apply(*plan); !applied) return report(applied.error());
+    if (const auto applied = daemon.apply(*plan, !arguments.plan); !applied) return report(applied.error());
   }
 
   if (!realtime_allowed()) {
@@ -288,6 +303,7 @@ int run_rig(const RunArguments& arguments) {
   bool shown = false;
   const auto truth = [&]() -> std::optional<SimTruth> { return ports ? ask_truth(ports->control) : std::nullopt; };
   tick_until(daemon, [&](Time at) {
+    say.use(daemon.session()->rig);
     say.follow(daemon.status(), at);
     const bool settled = daemon.status().phase == Phase::holding;
     if (settled && !shown) {

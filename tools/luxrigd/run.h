@@ -16,6 +16,7 @@ struct RunArguments {
   std::optional<std::filesystem::path> sim_ports;     ///< use the simulator that wrote this file instead
   std::optional<std::filesystem::path> plan;          ///< apply this instead of solving
   std::optional<std::filesystem::path> state_folder;  ///< default: a folder of the user's; none with --sim
+  bool fresh = false;                                 ///< what the state folder remembers is left aside, and replaced
   bool no_guardian = false;                           ///< nobody takes the rig to its safe look when this dies
   std::optional<int> http_port;                       ///< default: the rig's
   bool once = false;                                  ///< end when the look is held

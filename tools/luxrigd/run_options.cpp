@@ -12,7 +12,13 @@ void add_run_options(CLI::App& app, RunArguments& arguments) {
   app.add_option("--sim-seed", arguments.sim_seed, "seed of the simulated rig's deviations");
   app.add_option("--sim-ports", arguments.sim_ports, "use the running luxrig-sim that wrote this file");
   app.add_option("--plan", arguments.plan, "apply this plan instead of solving");
-  app.add_option("--state", arguments.state_folder, "folder that remembers the plan in force (none with --sim)");
+  app.add_option(
+      "--state", arguments.state_folder,
+      "folder that remembers what is in force, and where the next start goes on from it: the plan, blackout, "
+      "what rests, what is set by hand (default: ~/.local/state/luxrig/NAME, or under $XDG_STATE_HOME; none "
+      "with --sim; --once and --plan write it, but do not go on from it)");
+  app.add_flag("--fresh", arguments.fresh,
+               "start from the rig file, as if nothing had been in force before; what was remembered is replaced");
   app.add_flag("--no-guardian", arguments.no_guardian,
                "no second process that takes the rig to its safe look if this one dies");
   app.add_option("--port", arguments.http_port, "port of the page, on loopback (0: any)")->check(CLI::Range(0, 65535));

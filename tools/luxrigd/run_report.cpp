@@ -27,7 +27,7 @@ void RunReport::say(const std::string& line) const {
 
 void RunReport::say_readings(const ShowStatus& status) const {
   for (std::size_t i = 0; i < status.points.size(); ++i) {
-    const Point& point = rig_.points[i];
+    const Point& point = rig_->points[i];
     const PointStatus& p = status.points[i];
     if (!p.measured_lx) continue;
     const auto error = error_of(p);
@@ -60,7 +60,7 @@ std::string RunReport::table(const ShowStatus& status, const std::optional<SimTr
   Table table({"point", ">goal lx", ">predicted lx", ">± se", ">measured lx", ">error", "goal", ">limit lx",
                truth ? ">truth lx" : "", truth ? ">truth max" : "", ""});
   for (std::size_t i = 0; i < status.points.size(); ++i) {
-    const Point& point = rig_.points[i];
+    const Point& point = rig_->points[i];
     const PointStatus& p = status.points[i];
     const auto error = error_of(p);
     std::string note = p.reason;
@@ -77,19 +77,19 @@ std::string RunReport::table(const ShowStatus& status, const std::optional<SimTr
 }
 
 std::string RunReport::json(const ShowStatus& status, const std::optional<SimTruth>& truth, double converged_s) const {
-  nlohmann::json out = {{"rig", rig_.name},
+  nlohmann::json out = {{"rig", rig_->name},
                         {"goals_met", status.goals.met == status.goals.goals()},
                         {"converged", status.converged},
                         {"rounds", status.round},
                         {"seconds_to_converged", converged_s}};
-  put_counts(out, status, rig_.control.goal_tolerance);
+  put_counts(out, status, rig_->control.goal_tolerance);
   if (truth) out["limit_violations_in_truth"] = truth->violations;
   auto& points = out["points"] = nlohmann::json::array();
   const auto set = [](nlohmann::json& object, const char* key, std::optional<double> value) {
     if (value && std::isfinite(*value)) object[key] = *value;
   };
   for (std::size_t i = 0; i < status.points.size(); ++i) {
-    const Point& point = rig_.points[i];
+    const Point& point = rig_->points[i];
     const PointStatus& p = status.points[i];
     nlohmann::json entry = {{"name", point.name}, {"met", p.met()}, {"why", p.why}};
     put_verdicts(entry, p);

@@ -14,7 +14,10 @@ namespace luxrig {
 
 class RunReport {
  public:
-  RunReport(const Rig& rig, Time process_start) : rig_(rig), start_(process_start) {}
+  RunReport(const Rig& rig, Time process_start) : rig_(&rig), start_(process_start) {}
+
+  /// The rig that a status is of from here on; it must outlive this, or the next call.
+  void use(const Rig& rig) { rig_ = &rig; }
 
   /// One line, with the seconds since the process began.
   void say(const std::string& line) const;
@@ -29,7 +32,7 @@ class RunReport {
  private:
   void say_readings(const ShowStatus& status) const;
 
-  const Rig& rig_;
+  const Rig* rig_;
   Time start_;
   Phase phase_ = Phase::idle;
   int round_ = -1;

@@ -1,5 +1,6 @@
 #include "tools/luxrigd/status_json.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -162,6 +163,18 @@ std::string status_json(const StatusInput& input) {
                       {"device", alarm.device},
                       {"text", alarm.text},
                       {"since_s", to_seconds(input.now - alarm.since)}});
+  }
+  json& by_hand = out["overrides"] = json::array();
+  for (const ByHand& held : show.by_hand) {
+    const bool level = held.what == ByHand::What::level;
+    json entry = {{"kind", level ? "level" : "goal"},
+                  {"name", level ? rig.fixtures[held.index].name : rig.points[held.index].name},
+                  {level ? "level" : "goal_lux", held.value},
+                  {"age_s", to_seconds(input.now - held.since)}};
+    if (held.until) set(entry, "remaining_s", std::max(0.0, to_seconds(*held.until - input.now)));
+    if (held.of_plan) entry["of_plan"] = true;
+    if (!held.why.empty()) entry["why"] = held.why;
+    by_hand.push_back(std::move(entry));
   }
   json& desks = out["desks"] = json::array();
   for (const DeskStatus& desk : show.desks) {

@@ -102,7 +102,7 @@ TEST(Plan, ZoomsHeadsThatCan) {
   EXPECT_NE(refused.error()[0].what.find("/tasks/0/lights/1/beam_angle_deg"), std::string::npos);
 }
 
-// An aim's levels are its own wish; an emittance task after it goes back to goals.
+// An aim's levels are its own wish; an emittance task after it goes back to goals, which are the plan's.
 TEST(Plan, HoldsTheLookOfAnAimUnlessLevelsAreSetAfterIt) {
   const Rig rig = rig_with_a_head();
   Plan plan = plan_for_two(0.5, 0.25);
@@ -112,7 +112,8 @@ TEST(Plan, HoldsTheLookOfAnAimUnlessLevelsAreSetAfterIt) {
     point.lux = lux;
     plan.points.push_back(point);
   }
-  EXPECT_EQ(look_for(plan, rig, "plan.json")->goal_lx[0], 300);
+  plan.points[0].goal_lux = 250;
+  EXPECT_EQ(look_for(plan, rig, "plan.json")->goal_lx[0], 250) << "the rig file says 300";
   EXPECT_FALSE(look_for(plan, rig, "plan.json")->goal_lx[1]);
   plan.tasks.push_back(plan.tasks[0]);
   plan.tasks[1].kind = "aim";
@@ -121,7 +122,68 @@ TEST(Plan, HoldsTheLookOfAnAimUnlessLevelsAreSetAfterIt) {
   EXPECT_EQ(look_for(plan, rig, "plan.json")->goal_lx[1], 35);
   plan.tasks.push_back(plan.tasks[0]);
   EXPECT_FALSE(holds_a_look(plan));
-  EXPECT_EQ(look_for(plan, rig, "plan.json")->goal_lx[0], 300);
+  EXPECT_EQ(look_for(plan, rig, "plan.json")->goal_lx[0], 250);
+}
+
+TEST(Plan, CarriesItsGoalsWeightsAndLimitsAndTheLowerLimitHolds) {
+  Rig rig = rig_with_a_head();
+  rig.points[0].max_lx = 400;
+  rig.points[0].weight = 2;
+  Plan plan = plan_for_two(0.5, 0.25);
+  EXPECT_FALSE(look_for(plan, rig, "plan.json")->goal_lx[0]) << "a plan without goals is corrected towards none";
+  EXPECT_EQ(look_for(plan, rig, "plan.json")->max_lx[0], 400);
+  PlannedPoint point;
+  point.name = "desk";
+  point.goal_lux = 150;
+  point.weight = 3;
+  point.max_lux = 200;
+  plan.points.push_back(point);
+  const auto again = plan_from_json(to_json(plan), "plan.json");
+  ASSERT_TRUE(again);
+  const auto look = look_for(*again, rig, "plan.json");
+  ASSERT_TRUE(look);
+  EXPECT_EQ(look->goal_lx[0], 150);
+  EXPECT_EQ(look->weight[0], 3);
+  EXPECT_EQ(look->max_lx[0], 200);
+  plan.points[0].max_lux = 900;
+  EXPECT_EQ(look_for(plan, rig, "plan.json")->max_lx[0], 400) << "a plan cannot raise the rig's limit";
+  plan.points[0].goal_lux = -1;
+  const auto refused = look_for(plan, rig, "plan.json");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error()[0].what, "/points/0/goal_lux: -1 for point \"desk\"");
+  plan.points[0].goal_lux = 150;
+  plan.points[0].weight.reset();
+  EXPECT_EQ(look_for(plan, rig, "plan.json")->weight[0], 2);
+}
+
+TEST(Plan, TellsALevelThatAPersonWroteFromOneThatWasSolved) {
+  const Rig rig = rig_with_a_head();
+  Plan plan = plan_for_two(0.05, 0.25);
+  plan.tasks[0].lights[1].solved_level = 0.25;
+  EXPECT_FALSE(look_for(plan, rig, "plan.json")->solved_levels[0]) << "nobody knows what was solved";
+  plan.tasks[0].lights[0].solved_level = 0.5;
+  const auto again = plan_from_json(to_json(plan), "plan.json");
+  ASSERT_TRUE(again);
+  const auto look = look_for(*again, rig, "plan.json");
+  ASSERT_TRUE(look);
+  EXPECT_EQ(look->levels[0], 0.05);
+  EXPECT_EQ(look->solved_levels[0], 0.5);
+  EXPECT_FALSE(look->solved_levels[1]);
+}
+
+TEST(Plan, NamesThePartsOfTheRigThatItWasNotMadeFor) {
+  Plan plan = plan_for_two(0.5, 0.25);
+  plan.made_for = RigVersion{0xfedcba9876543210U, 2, 3};
+  const auto again = plan_from_json(to_json(plan), "plan.json");
+  ASSERT_TRUE(again);
+  ASSERT_TRUE(again->made_for);
+  EXPECT_EQ(*again->made_for, *plan.made_for);
+  EXPECT_EQ(what_differs(*plan.made_for, *again->made_for), "");
+  EXPECT_EQ(what_differs(*plan.made_for, {1, 2, 3}), "goals");
+  EXPECT_EQ(what_differs(*plan.made_for, {1, 1, 1}), "goals, limits, scene, photometry or places");
+  for (const char* wrong : {R"("made_for": 3)", R"("made_for": {"goals": "xyz"})", R"("made_for": {"goals": 4})"})
+    EXPECT_FALSE(plan_from_json(std::string(R"({"luxrig_plan": 1, "rig": "room", "tasks": [], )") + wrong + "}", "p"))
+        << wrong;
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 #include "tools/luxrigd/http_api.h"
 
 #include <arpa/inet.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -46,7 +48,8 @@ class HttpApiTest : public ::testing::Test {
   void SetUp() override {
     HttpHandlers handlers;
     handlers.status = [] { return std::string("{\"phase\":\"holding\"}"); };
-    handlers.room_json = "{}";
+    handlers.room_json = [] { return std::string("{}"); };
+    handlers.room_png = [] { return std::string(); };
     handlers.blackout = [this](bool on) -> Result<void> {
       blackouts += on ? 1 : 100;
       return {};
@@ -56,9 +59,23 @@ class HttpApiTest : public ::testing::Test {
       parked += static_cast<int>(fixtures.size()) + 1;
       return {};
     };
-    handlers.apply = [this](const std::string& plan) -> Checked<void> {
+    handlers.level = [this](const std::vector<std::string>& names, double value,
+                            std::optional<double> for_s) -> Result<std::string> {
+      if (names[0] == "nobody") return refusal("there is no nobody");
+      held += fmt::format("{}={}/{} ", fmt::join(names, "+"), value, for_s.value_or(-1));
+      return std::string("held");
+    };
+    handlers.goal = handlers.level;
+    handlers.release = [this](const std::vector<std::string>& names) -> Result<std::string> {
+      held += fmt::format("-{} ", fmt::join(names, "+"));
+      return std::string("1 released");
+    };
+    handlers.reload = []() -> Checked<std::string> {
+      return tl::unexpected(std::vector<Problem>{{"rig.toml", 7, 1, "[[bus]] \"dmx\" has changed", "restart"}});
+    };
+    handlers.apply = [this](const std::string& plan) -> Checked<std::string> {
       ++applied;
-      if (plan == "{}") return {};
+      if (plan == "{}") return std::string("spot held by hand");
       return tl::unexpected(std::vector<Problem>{{"plan", 1, 2, "is not a plan", "send one"}});
     };
     api = std::make_unique<HttpApi>(std::move(handlers), "/nonexistent");
@@ -69,6 +86,7 @@ class HttpApiTest : public ::testing::Test {
   std::unique_ptr<HttpApi> api;
   int port = 0;
   std::atomic<int> blackouts{0}, applied{0}, parked{0};
+  std::string held;
 };
 
 TEST_F(HttpApiTest, AnswersStatusAndBlackout) {
@@ -113,6 +131,44 @@ TEST_F(HttpApiTest, ParksNamedHeadsOrAll) {
   EXPECT_NE(refused.find(" 400 "), std::string::npos);
   EXPECT_NE(refused.find("there is no nobody"), std::string::npos) << refused;
   EXPECT_EQ(parked, 4);
+}
+
+TEST_F(HttpApiTest, HoldsByHandAndReleases) {
+  for (const auto& [route, body] : {
+           std::pair{"/api/level", R"({"fixtures":["a","b*"],"level":0.05})"},
+           std::pair{"/api/level", R"({"fixtures":["a"],"level":1,"for_s":600})"},
+           std::pair{"/api/goal", R"({"points":["p"],"goal_lux":150})"},
+           std::pair{"/api/release", R"({"names":["p"]})"},
+           std::pair{"/api/release", R"({"all":true})"},
+       })
+    EXPECT_NE(ask(port, post(route, body, kJson)).find(" 200 "), std::string::npos) << route << body;
+  EXPECT_EQ(held, "a+b*=0.05/-1 a=1/600 p=150/-1 -p - ");
+  held.clear();
+  for (const auto& [route, body] : {
+           std::pair{"/api/level", R"({"fixtures":[],"level":0.05})"},
+           std::pair{"/api/level", R"({"fixtures":"a","level":0.05})"},
+           std::pair{"/api/level", R"({"fixtures":["a"],"level":"full"})"},
+           std::pair{"/api/level", R"({"fixtures":["a"]})"},
+           std::pair{"/api/level", R"({"fixtures":["a"],"level":0.1,"for_s":0})"},
+           std::pair{"/api/level", R"({"fixtures":["a"],"level":0.1,"for_s":1e300})"},
+           std::pair{"/api/level", R"({"fixtures":["nobody"],"level":0.1})"},
+           std::pair{"/api/goal", R"({"fixtures":["a"],"goal_lux":3})"},
+           std::pair{"/api/release", "{}"},
+           std::pair{"/api/release", R"({"all":false})"},
+           std::pair{"/api/release", R"({"all":true,"names":["a"]})"},
+           std::pair{"/api/release", "["},
+       })
+    EXPECT_NE(ask(port, post(route, body, kJson)).find(" 400 "), std::string::npos) << route << body;
+  EXPECT_EQ(held, "");
+}
+
+TEST_F(HttpApiTest, AReloadThatIsRefusedSaysWhichKeyAndAnApplyWhatItHolds) {
+  const std::string refused = ask(port, post("/api/reload", "{}", kJson));
+  EXPECT_NE(refused.find(" 400 "), std::string::npos);
+  EXPECT_NE(refused.find("rig.toml:7:1: [[bus]] \\\"dmx\\\" has changed: restart"), std::string::npos) << refused;
+  const std::string applied_answer = ask(port, post("/api/apply", "{}", kJson));
+  EXPECT_NE(applied_answer.find("\"applied\":true"), std::string::npos) << applied_answer;
+  EXPECT_NE(applied_answer.find("spot held by hand"), std::string::npos) << applied_answer;
 }
 
 TEST_F(HttpApiTest, StreamsEventsAndStopsWhileAClientListens) {

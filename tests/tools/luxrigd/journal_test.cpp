@@ -25,6 +25,30 @@ TEST(Journal, KeepsWhatWasSavedLast) {
   EXPECT_EQ((*state)->parked, (std::vector<std::string>{"head", "yoke"}));
 }
 
+TEST(Journal, KeepsWhatIsSetByHandAndLeavesOutWhatIsDamaged) {
+  const Folder folder;
+  const Journal journal(folder / "");
+  JournalState state{"p", false, {}};
+  state.plan_of_rig = true;
+  state.by_hand = {{false, "spot-1", 0.05, 1.75e9, std::nullopt}, {true, "desk", 150, 1.75e9, 1.75e9 + 600}};
+  ASSERT_TRUE(journal.save(state));
+  const auto loaded = journal.load();
+  ASSERT_TRUE(loaded && *loaded);
+  EXPECT_TRUE((*loaded)->plan_of_rig);
+  ASSERT_EQ((*loaded)->by_hand.size(), 2u);
+  EXPECT_EQ((*loaded)->by_hand[0].name, "spot-1");
+  EXPECT_EQ((*loaded)->by_hand[0].value, 0.05);
+  EXPECT_FALSE((*loaded)->by_hand[0].until_unix_s);
+  EXPECT_TRUE((*loaded)->by_hand[1].goal);
+  EXPECT_EQ((*loaded)->by_hand[1].until_unix_s, 1.75e9 + 600);
+  std::ofstream(folder / "state.json") << R"({"luxrig_state":1,"plan":"p","blackout":true,"by_hand":[7,{"name":"x"},
+            {"goal":false,"name":"y","value":"z","since_unix_s":0},{"goal":false,"name":"y","value":1,"since_unix_s":0}]})";
+  const auto damaged = journal.load();
+  ASSERT_TRUE(damaged && *damaged);
+  ASSERT_EQ((*damaged)->by_hand.size(), 1u);
+  EXPECT_EQ((*damaged)->by_hand[0].value, 1);
+}
+
 TEST(Journal, ReadsWhatAnOlderVersionWrote) {
   const Folder folder;
   std::ofstream(folder / "state.json") << R"({"luxrig_state":1,"plan":"p","blackout":true})";

@@ -68,6 +68,18 @@ export interface Alarm {
   since_s?: number;
 }
 
+/** A level or goal that a person holds. */
+export interface Override {
+  kind: 'level' | 'goal';
+  name: string;
+  level?: number; // 0…1
+  goal_lux?: number;
+  age_s?: number;
+  remaining_s?: number; // else until it is released
+  of_plan?: true; // written into the plan in force
+  why?: string; // what keeps it from being so
+}
+
 export interface Output {
   rate_hz?: number;
   frames?: number;
@@ -93,6 +105,7 @@ export interface Status {
   luxmeters: Luxmeter[];
   devices: Device[];
   alarms: Alarm[];
+  overrides: Override[];
   output: Output;
 }
 
@@ -199,6 +212,13 @@ export function readStatus(value: unknown): Status | undefined {
       text: text(a['text']),
       ...numbers(a, 'since_s'),
     })),
+    overrides: listOf(s['overrides']).map((o) => ({
+      kind: o['kind'] === 'goal' ? ('goal' as const) : ('level' as const),
+      name: text(o['name']),
+      ...numbers(o, 'level', 'goal_lux', 'age_s', 'remaining_s'),
+      ...(o['of_plan'] === true ? { of_plan: true as const } : {}),
+      ...(text(o['why']) ? { why: text(o['why']) } : {}),
+    })),
     output: {
       ...numbers(output, 'rate_hz', 'frames', 'p50_us', 'p99_us', 'max_us'),
       ...(typeof output['realtime'] === 'boolean' ? { realtime: output['realtime'] } : {}),
@@ -234,18 +254,20 @@ export async function fetchRoom(): Promise<Room | undefined> {
   return answer.ok ? readRoom(await answer.json()) : undefined;
 }
 
-/** Resolves once the daemon has acknowledged; rejects with a sentence for a person. */
-export async function postBlackout(on: boolean): Promise<void> {
+/** Resolves with the daemon's answer once it has acknowledged; rejects with a sentence for a person. */
+async function post(route: string, body: Fields): Promise<Fields> {
   const stop = new AbortController();
   const timer = setTimeout(() => stop.abort(), 3000);
   try {
-    const answer = await fetch('/api/blackout', {
+    const answer = await fetch(route, {
       method: 'POST',
       headers: { 'Content-Type': 'application/json' },
-      body: JSON.stringify({ on }),
+      body: JSON.stringify(body),
       signal: stop.signal,
     });
-    if (!answer.ok) throw new Error(`the daemon answered ${answer.status}`);
+    const said = fieldsOf(await answer.json().catch(() => undefined));
+    if (!answer.ok) throw new Error(text(said['error']) || `the daemon answered ${answer.status}`);
+    return said;
   } catch (error) {
     if (stop.signal.aborted) throw new Error('the daemon did not answer within 3 s');
     if (error instanceof TypeError) throw new Error('the daemon cannot be reached');
@@ -253,4 +275,20 @@ export async function postBlackout(on: boolean): Promise<void> {
   } finally {
     clearTimeout(timer);
   }
+}
+
+export async function postBlackout(on: boolean): Promise<void> {
+  await post('/api/blackout', { on });
+}
+
+/** Names may have * and ?; for_s: else until released. Each resolves with a line for a person. */
+export async function postLevel(fixtures: string[], level: number, for_s?: number): Promise<string> {
+  return text((await post('/api/level', { fixtures, level, ...(for_s === undefined ? {} : { for_s }) }))['text']);
+}
+export async function postGoal(points: string[], goal_lux: number, for_s?: number): Promise<string> {
+  return text((await post('/api/goal', { points, goal_lux, ...(for_s === undefined ? {} : { for_s }) }))['text']);
+}
+/** No names: everything. */
+export async function postRelease(names: string[] | undefined): Promise<string> {
+  return text((await post('/api/release', names ? { names } : { all: true }))['text']);
 }

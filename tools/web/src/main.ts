@@ -5,6 +5,7 @@ import { element } from './dom';
 import { follow } from './live';
 import { Selection } from './selection';
 import { AlarmsView } from './views/alarms';
+import { ByHandView } from './views/by_hand';
 import { DevicesView, MetersView } from './views/devices';
 import { FixturesView } from './views/fixtures';
 import { HeaderView } from './views/header';
@@ -21,6 +22,7 @@ const tiles = new TilesView();
 const plan = new PlanView(selection);
 const points = new PointsTable(selection);
 const fixtures = new FixturesView(selection);
+const byHand = new ByHandView();
 const meters = new MetersView();
 const devices = new DevicesView();
 const output = new OutputView();
@@ -29,7 +31,7 @@ const main = element(
   'main',
   {},
   element('div', { class: 'column wide' }, plan.root, points.root),
-  element('div', { class: 'column' }, tiles.root, fixtures.root, meters.root, devices.root, output.root),
+  element('div', { class: 'column' }, tiles.root, fixtures.root, byHand.root, meters.root, devices.root, output.root),
 );
 document.getElementById('app')!.replaceChildren(header.root, alarms.root, main);
 
@@ -64,6 +66,7 @@ follow(
     plan.show(status);
     points.show(status.points);
     fixtures.show(status.fixtures);
+    byHand.show(status);
     meters.show(status.luxmeters);
     devices.show(status.devices);
     output.show(status.output);

@@ -1,0 +1,20 @@
+#pragma once
+/// Names that a person gives to set things by hand: of fixtures, housings and points, with * and ? for several.
+
+#include <string>
+#include <vector>
+
+#include "core/control/by_hand.h"
+#include "core/rig/rig.h"
+
+namespace luxrig {
+
+/// One for each fixture so called, in the rig's order: `what` and `index` are set, and whole_housing where the name is
+/// that of a housing. Refused where a name is nobody's.
+[[nodiscard]] Result<std::vector<ByHand>> fixtures_called(const Rig& rig, const std::vector<std::string>& names);
+/// The same of points.
+[[nodiscard]] Result<std::vector<ByHand>> points_called(const Rig& rig, const std::vector<std::string>& names);
+/// Fixtures and points, each name at least one of the two; of a housing each of its fixtures.
+[[nodiscard]] Result<std::vector<ByHand>> anything_called(const Rig& rig, const std::vector<std::string>& names);
+
+}  // namespace luxrig

@@ -1,0 +1,451 @@
+/// What clients may ask of the daemon: plans, parking, what is set by hand, and a rig file that was read again.
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "core/rig/nearest.h"
+#include "tools/luxrig/rig_version.h"
+#include "tools/luxrigd/by_hand_names.h"
+#include "tools/luxrigd/clock.h"
+#include "tools/luxrigd/daemon.h"
+#include "tools/luxrigd/reload_check.h"
+
+namespace luxrig {
+namespace {
+
+/// By the wall clock, in seconds: for what is remembered.
+double unix_now_s() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+std::vector<Problem> problem_with(const char* what, const Fault& fault, const char* mend) {
+  return {{what, 0, 0, fault.detail, mend}};
+}
+
+const std::string& name_of(const Rig& rig, const ByHand& held) {
+  return held.what == ByHand::What::level ? rig.fixtures[held.index].name : rig.points[held.index].name;
+}
+
+std::string value_of(const ByHand& held) {
+  return held.what == ByHand::What::level ? fmt::format("level {:.4g}", held.value)
+                                          : fmt::format("{:.4g} lx", held.value);
+}
+
+/// A line for each.
+std::string lines_of(const Rig& rig, const std::vector<ByHand>& held, Time at) {
+  std::string text;
+  for (const ByHand& one : held) {
+    const std::string until =
+        one.until ? fmt::format("for {:.0f} s", to_seconds(*one.until - at)) : std::string("until it is released");
+    text += fmt::format("{}{}: {} by hand, {}{}", text.empty() ? "" : "\n", name_of(rig, one), value_of(one), until,
+                        one.why.empty() ? "" : "; at present not so: " + one.why);
+  }
+  return text;
+}
+
+Look look_of(const PlannedLook& planned, LightModel model) {
+  return {planned.joints, planned.goal_lx, std::move(model), planned.max_lx, planned.weight, planned.solved_levels};
+}
+
+}  // namespace
+
+std::shared_ptr<const Session> Daemon::session() const {
+  const std::lock_guard lock(mutex_);
+  return session_;
+}
+
+Result<std::size_t> Daemon::fixture_called(const std::string& name) const {
+  const std::shared_ptr<const Session> session = this->session();
+  const std::vector<Fixture>& fixtures = session->rig.fixtures;
+  std::vector<std::string_view> names;
+  for (std::size_t f = 0; f < fixtures.size(); ++f) {
+    const std::string& own = fixtures[f].name;
+    names.push_back(own);
+    // An emitter is called "housing/emitter": the housing's name will do.
+    if (own == name || (fixtures[f].housing && own.rfind(name + "/", 0) == 0)) return f;
+  }
+  return refusal(fmt::format("the rig has no fixture \"{}\": {}", name, mend_for_unknown(name, names, "it has none")));
+}
+
+Result<void> Daemon::identify(const std::string& name, double seconds) {
+  const auto fixture = fixture_called(name);
+  if (!fixture) return tl::unexpected(fixture.error());
+  const auto done = ask_control_thread<Result<void>>(
+      [this, f = *fixture, seconds](Time at) { return controller_.identify(at, f, from_seconds(seconds)); });
+  return done.value_or(refusal("the control loop did not answer"));
+}
+
+Result<void> Daemon::park(const std::vector<std::string>& names) {
+  std::vector<std::size_t> heads;
+  for (const std::string& name : names) {
+    const auto fixture = fixture_called(name);
+    if (!fixture) return tl::unexpected(fixture.error());
+    heads.push_back(*fixture);
+  }
+  const auto done = ask_control_thread<Result<void>>([this, heads](Time at) { return controller_.park(at, heads); });
+  if (!done) return refusal("the control loop did not answer");
+  if (!*done) return *done;
+  {
+    const std::lock_guard lock(mutex_);
+    std::vector<std::string>& parked = remembered_.parked;
+    const Rig& rig = session_->rig;
+    for (std::size_t f = 0; names.empty() && f < rig.fixtures.size(); ++f)
+      if (rig.fixtures[f].park) heads.push_back(f);
+    for (const std::size_t head : heads) {
+      const std::string& name = rig.fixtures[head].name;
+      if (std::find(parked.begin(), parked.end(), name) == parked.end()) parked.push_back(name);
+    }
+  }
+  return remember();
+}
+
+// ---- plans ----
+
+Checked<void> Daemon::apply(const Plan& plan, bool of_rig) {
+  auto applied = apply_json(to_json(plan), of_rig);
+  if (!applied) return tl::unexpected(std::move(applied.error()));
+  return {};
+}
+
+Checked<std::string> Daemon::apply_json(const std::string& plan_json, bool of_rig) {
+  const std::lock_guard one_at_a_time(change_mutex_);
+  const auto plan = plan_from_json(plan_json, "plan");
+  if (!plan) return tl::unexpected(plan.error());
+  const std::shared_ptr<const Session> session = this->session();
+  auto look = look_for(*plan, session->rig, "plan");
+  if (!look) return tl::unexpected(look.error());
+  auto model = model_for(*session, look->joints);
+  if (!model) {
+    return tl::unexpected(std::vector<Problem>{
+        {"plan", 0, 0, "what the rig gives with its heads turned so: " + model.error().detail, "solve again"}});
+  }
+  std::string note;
+  {
+    const std::lock_guard lock(mutex_);
+    remembered_.plan_json = plan_json;
+    remembered_.plan_of_rig = of_rig;
+    remembered_.parked.clear();
+    if (plan->made_for && *plan->made_for != version_) {
+      note = fmt::format("made for another version of this rig ({} differ)", what_differs(*plan->made_for, version_));
+    }
+  }
+  // Acknowledged means: it survives a power cut.
+  if (const auto saved = remember(); !saved) {
+    return tl::unexpected(problem_with("plan", saved.error(), "free disk space or mend the permissions"));
+  }
+  struct Applied {
+    std::vector<ByHand> held;
+    Time at;
+  };
+  const auto applied = ask_control_thread<Applied>([this, made_for = plan->made_for, levels = std::move(look->levels),
+                                                    wanted = look_of(*look, std::move(*model))](Time at) -> Applied {
+    controller_.apply(at, levels, wanted);
+    {
+      const std::lock_guard lock(mutex_);
+      plan_made_for_ = made_for;
+      plan_at_ = at;
+    }
+    return {controller_.status(at).by_hand, at};
+  });
+  if (applied && !applied->held.empty())
+    note += (note.empty() ? "" : "\n") + lines_of(session->rig, applied->held, applied->at);
+  return note;
+}
+
+Result<LightModel> Daemon::model_for(const Session& session, const std::vector<Joints>& joints) {
+  const std::lock_guard lock(model_mutex_);
+  if (joints == model_joints_) return model_;
+  if (!options_.light_model) return refusal("nobody here can work it out");
+  Rig rig = session.rig;
+  turn_heads(rig, joints);
+  auto model = options_.light_model(session, rig);
+  if (!model) return model;
+  model_joints_ = joints;
+  return model_ = std::move(*model);
+}
+
+// ---- what the last daemon left ----
+
+Checked<Resumed> Daemon::resume() {
+  Resumed resumed;
+  if (!journal_) return resumed;
+  const auto state = journal_->load();
+  if (!state) return tl::unexpected(state.error());
+  if (!*state) return resumed;
+  const JournalState& saved = **state;
+  // First what makes it darker: it holds whatever becomes of the plan.
+  if (saved.blackout) {
+    controller_.blackout(now(), true);
+    const std::lock_guard lock(mutex_);
+    remembered_.blackout = true;
+  }
+  restore_by_hand(saved.by_hand, resumed);
+  if (!saved.plan_json.empty()) {
+    const auto plan = plan_from_json(saved.plan_json, "the saved plan");
+    const std::string differs =
+        plan && plan->made_for && *plan->made_for != version_ ? what_differs(*plan->made_for, version_) : "";
+    if (saved.plan_of_rig && !differs.empty()) {
+      resumed.notes.push_back(fmt::format(
+          "the rig file has changed since ({} differ): its goals are solved again, the saved plan is left", differs));
+    } else {
+      if (auto applied = apply_json(saved.plan_json, saved.plan_of_rig); !applied)
+        return tl::unexpected(std::move(applied.error()));
+      resumed.plan = true;
+      if (!differs.empty())
+        resumed.notes.push_back(fmt::format(
+            "the rig file has changed since the plan that was in force was made ({} differ): the plan is held within "
+            "the limits of the rig as it is now; luxrig solve and luxrig apply make one for it, --fresh starts without",
+            differs));
+    }
+  }
+  std::vector<std::size_t> heads;
+  // The rig may have changed since.
+  for (const std::string& name : saved.parked) {
+    if (const auto head = fixture_called(name); head && session()->rig.fixtures[*head].park) heads.push_back(*head);
+  }
+  if (resumed.plan && !heads.empty()) {
+    on_control_thread([this, heads](Time at) { (void)controller_.park(at, heads); });
+    {
+      const std::lock_guard lock(mutex_);
+      remembered_.parked = saved.parked;
+    }
+    (void)remember();  // as it was before the plan
+  }
+  return resumed;
+}
+
+void Daemon::restore_by_hand(const std::vector<SavedByHand>& saved, Resumed& resumed) {
+  const Rig& rig = session()->rig;
+  const double unix_s = unix_now_s();
+  const Time at = now();
+  std::vector<ByHand> held;
+  for (const SavedByHand& one : saved) {
+    if (one.until_unix_s && *one.until_unix_s <= unix_s) continue;
+    const auto find = [&](const auto& list) {
+      const auto found =
+          std::find_if(list.begin(), list.end(), [&](const auto& entry) { return entry.name == one.name; });
+      return static_cast<std::size_t>(found - list.begin());
+    };
+    ByHand by_hand{one.goal ? ByHand::What::goal : ByHand::What::level,
+                   one.goal ? find(rig.points) : find(rig.fixtures), one.value};
+    const std::size_t count = one.goal ? rig.points.size() : rig.fixtures.size();
+    if (by_hand.index >= count || !by_hand.complaint(!one.goal && rig.fixtures[by_hand.index].switched).empty()) {
+      resumed.notes.push_back(
+          fmt::format("{} was set by hand to {:g}, which this rig cannot have: released", one.name, one.value));
+      continue;
+    }
+    by_hand.since = at - from_seconds(std::clamp(unix_s - one.since_unix_s, 0.0, to_seconds(at - Time{})));
+    if (one.until_unix_s) by_hand.until = at + from_seconds(*one.until_unix_s - unix_s);
+    held.push_back(by_hand);
+  }
+  if (held.empty()) return;
+  resumed.notes.push_back(fmt::format("{} set by hand {} again", held.size(), held.size() == 1 ? "is" : "are"));
+  {
+    const std::lock_guard lock(mutex_);
+    remembered_.by_hand = saved;
+  }
+  on_control_thread([this, held](Time now_then) { (void)controller_.hold(now_then, held); });
+}
+
+// ---- by hand ----
+
+std::vector<SavedByHand> Daemon::held_by_hand(const Rig& rig, Time at) const {
+  std::vector<SavedByHand> saved;
+  const double unix_s = unix_now_s();
+  for (const ByHand& held : controller_.by_hand()) {
+    if (held.of_plan) continue;  // the plan has it
+    SavedByHand one{held.what == ByHand::What::goal, name_of(rig, held), held.value,
+                    unix_s - to_seconds(at - held.since), std::nullopt};
+    if (held.until) one.until_unix_s = unix_s + to_seconds(*held.until - at);
+    saved.push_back(std::move(one));
+  }
+  return saved;
+}
+
+Result<std::string> Daemon::hold(ByHand::What what, const std::vector<std::string>& names, double value,
+                                 std::optional<double> for_s) {
+  const std::lock_guard one_at_a_time(change_mutex_);
+  const std::shared_ptr<const Session> session = this->session();
+  auto wanted = what == ByHand::What::level ? luxrig::fixtures_called(session->rig, names)
+                                            : luxrig::points_called(session->rig, names);
+  if (!wanted) return tl::unexpected(wanted.error());
+  struct Held {
+    Result<void> done;
+    std::string text;
+    std::vector<SavedByHand> all;
+  };
+  const auto held =
+      ask_control_thread<Held>([this, &rig = session->rig, session, wanted = *wanted, value, for_s](Time at) -> Held {
+        std::vector<ByHand> timed = wanted;
+        for (ByHand& one : timed) {
+          one.value = value;
+          one.since = at;
+          if (for_s) one.until = at + from_seconds(*for_s);
+        }
+        Held out{controller_.hold(at, timed), {}, {}};
+        if (!out.done) return out;
+        std::vector<ByHand> fresh = controller_.status(at).by_hand;
+        std::erase_if(fresh, [&](const ByHand& one) { return one.since != at; });
+        out.text = lines_of(rig, fresh, at);
+        out.all = held_by_hand(rig, at);
+        return out;
+      });
+  if (!held) return tl::unexpected(Fault{Cause::timeout, {}, "the control loop did not answer", {}});
+  if (!held->done) return tl::unexpected(held->done.error());
+  {
+    const std::lock_guard lock(mutex_);
+    remembered_.by_hand = held->all;
+  }
+  if (const auto saved = remember(); !saved) return tl::unexpected(saved.error());
+  return held->text;
+}
+
+Result<std::string> Daemon::release(const std::vector<std::string>& names) {
+  const std::lock_guard one_at_a_time(change_mutex_);
+  const std::shared_ptr<const Session> session = this->session();
+  auto wanted = anything_called(session->rig, names.empty() ? std::vector<std::string>{"*"} : names);
+  if (!wanted) return tl::unexpected(wanted.error());
+  struct Released {
+    std::size_t count = 0;
+    std::vector<SavedByHand> all;
+  };
+  const auto released = ask_control_thread<Released>([this, session, wanted = *wanted](Time at) -> Released {
+    std::vector<std::size_t> fixtures, points;
+    for (const ByHand& one : wanted) (one.what == ByHand::What::level ? fixtures : points).push_back(one.index);
+    const std::size_t count = controller_.release(at, fixtures, points);
+    return {count, held_by_hand(session->rig, at)};
+  });
+  if (!released) return tl::unexpected(Fault{Cause::timeout, {}, "the control loop did not answer", {}});
+  {
+    const std::lock_guard lock(mutex_);
+    remembered_.by_hand = released->all;
+  }
+  if (const auto saved = remember(); !saved) return tl::unexpected(saved.error());
+  if (released->count == 0) return std::string("nothing of that was set by hand");
+  return fmt::format("{} released", released->count);
+}
+
+// ---- a rig file that has changed ----
+
+void Daemon::add_alarms(Time at) {
+  const std::lock_guard lock(mutex_);
+  if (rig_file_watch_) {
+    const auto changed = rig_file_watch_->changed();
+    if (changed.empty() != !rig_file_changed_at_)
+      rig_file_changed_at_ = changed.empty() ? std::nullopt : std::optional(at);
+    if (rig_file_changed_at_) {
+      std::vector<std::string> names;
+      for (const auto& file : changed) names.push_back(file.filename().string());
+      status_.alarms.push_back({false, "",
+                                fmt::format("{} changed since the rig was read, and what runs is the rig as it was: "
+                                            "luxrig reload takes the new one, whole or not at all",
+                                            fmt::join(names, ", ")),
+                                *rig_file_changed_at_});
+    }
+  }
+  if (plan_made_for_ && *plan_made_for_ != version_) {
+    status_.alarms.push_back(
+        {plan_made_for_->light != version_.light, "",
+         fmt::format("the plan in force was made for another version of this rig ({} differ): it is held within the "
+                     "limits of the rig as it was read; {}luxrig solve and luxrig apply make one for it",
+                     what_differs(*plan_made_for_, version_),
+                     rig_file_changed_at_ ? "luxrig reload takes the rig file as it is now, or " : ""),
+         plan_at_});
+  }
+}
+
+Checked<std::string> Daemon::reload() {
+  const std::lock_guard one_at_a_time(change_mutex_);
+  const std::shared_ptr<const Session> present = session();
+  const std::string file = present->rig.file.string();
+  if (!options_.solve)
+    return tl::unexpected(std::vector<Problem>{{file, 0, 0, "this daemon cannot read it again", "restart it"}});
+  auto opened = open_session(present->rig.file);
+  if (!opened) return tl::unexpected(std::move(opened.error()));
+  const auto session = std::make_shared<Session>(std::move(*opened));
+  const RigVersion version = version_of(session->rig, session->scene);
+  RigVersion version_before;
+  JournalState remembered;
+  {
+    const std::lock_guard lock(mutex_);
+    version_before = version_;
+    remembered = remembered_;
+  }
+  if (auto problems = needs_a_restart(present->rig, session->rig, version.light == version_before.light);
+      !problems.empty())
+    return tl::unexpected(std::move(problems));
+  auto solved = options_.solve(*session);
+  if (!solved) return tl::unexpected(problem_with(file.c_str(), solved.error(), "mend the rig file"));
+
+  // The goals of the rig file where they are in force; a person's plan stays, within the limits of the new rig.
+  const bool of_rig = remembered.plan_of_rig || remembered.plan_json.empty();
+  std::string plan_json = of_rig ? to_json(solved->plan) : remembered.plan_json;
+  const auto plan = plan_from_json(plan_json, "the plan in force");
+  if (!plan) return tl::unexpected(plan.error());
+  auto look = look_for(*plan, session->rig, of_rig ? file : "the plan in force");
+  if (!look) return tl::unexpected(std::move(look.error()));
+  const auto joints_now =
+      ask_control_thread<std::vector<Joints>>([this](Time) { return controller_.program().joints; });
+  if (!joints_now)
+    return tl::unexpected(std::vector<Problem>{{file, 0, 0, "the control loop did not answer", "try again"}});
+  Rig as_it_looks = session->rig;
+  turn_heads(as_it_looks, *joints_now);
+  std::vector<Joints> solved_joints;
+  for (const Fixture& fixture : session->rig.fixtures) solved_joints.push_back(fixture.joints);
+  const auto model_of = [&](const std::vector<Joints>& joints) -> Result<LightModel> {
+    if (joints == solved_joints) return solved->model;
+    Rig turned = session->rig;
+    turn_heads(turned, joints);
+    return options_.light_model(*session, turned);
+  };
+  auto model_now = model_of(*joints_now);
+  if (!model_now) return tl::unexpected(problem_with(file.c_str(), model_now.error(), "try again"));
+  auto model = model_of(look->joints);
+  if (!model) return tl::unexpected(problem_with(file.c_str(), model.error(), "try again"));
+  RoomView room = draw_room(*session);
+
+  {
+    const std::lock_guard lock(mutex_);
+    if (of_rig) remembered_.plan_json = plan_json;
+    remembered_.plan_of_rig = of_rig;
+  }
+  if (const auto saved = remember(); !saved) {
+    const std::lock_guard lock(mutex_);
+    remembered_ = remembered;
+    return tl::unexpected(problem_with(file.c_str(), saved.error(), "free disk space or mend the permissions"));
+  }
+  {
+    const std::lock_guard lock(model_mutex_);
+    model_joints_ = look->joints;
+    model_ = *model;
+  }
+  // All by value: the loop may come to it after we have given up waiting.
+  on_control_thread([this, session, version, made_for = plan->made_for, rig = std::move(as_it_looks),
+                     now_gives = std::move(*model_now), levels = look->levels,
+                     wanted = look_of(*look, std::move(*model)), same_light = version.light == version_before.light,
+                     room = std::move(room)](Time at) {
+    controller_.exchange_rig(at, rig, now_gives, same_light);
+    controller_.apply(at, levels, wanted);
+    safe_levels_.clear();
+    const std::lock_guard lock(mutex_);
+    session_ = session;
+    version_ = version;
+    plan_made_for_ = made_for;
+    plan_at_ = at;
+    room_ = room;
+    rig_file_changed_at_.reset();
+  });
+  {
+    auto watch = std::make_shared<RigFileWatch>(files_of(session->rig));
+    const std::lock_guard lock(mutex_);
+    watch.swap(rig_file_watch_);
+  }
+  const std::string differs = what_differs(version_before, version);
+  return fmt::format("{} is in force{}; {}", file, differs.empty() ? "" : " (" + differs + " differ)",
+                     of_rig ? "its goals were solved" : "the plan that was applied stays, within its limits");
+}
+
+}  // namespace luxrig
