@@ -167,10 +167,10 @@ ShowStatus ShowController::State::status(Time now) const {
   for (std::size_t d = 0; d < desks.size(); ++d) {
     if (desk_names[d].empty()) continue;
     const DeskFollower& desk = desks[d];
-    const bool heard = desk.presence() == DeskPresence::present;
+    const bool there = desk.presence() == DeskPresence::present;
     status.desks.push_back(
-        {desk_names[d], desk.mode(), desk.phase(), desk.since(), desk.source(), heard, desk.blend().silent});
-    if (desk.phase() == DeskPhase::own && !heard && !desk.source().empty()) {
+        {desk_names[d], desk.mode(), desk.phase(), desk.since(), desk.source(), there, desk.blend().silent});
+    if (desk.phase() == DeskPhase::own && !there && !desk.source().empty()) {
       status.alarms.push_back(
           {false, desk_names[d],
            fmt::format("desk \"{}\" is lost: {} is Luxrig's again; look after the desk or its cable", desk.source(),

@@ -6,6 +6,8 @@
 #include <fstream>
 #include <mutex>
 #include <optional>
+#include <stop_token>
+#include <thread>
 #include <utility>
 
 #include "tools/luxrigd/scheduling.h"
@@ -101,7 +103,7 @@ RigFileWatch::~RigFileWatch() = default;
 std::vector<std::filesystem::path> RigFileWatch::changed() const {
   const std::lock_guard lock(state_->mutex);
   std::vector<std::filesystem::path> files;
-  for (const WatchedFile& watched : state_->files)
+  for (const State::WatchedFile& watched : state_->files)
     if (watched.changed) files.push_back(watched.file);
   return files;
 }

@@ -22,7 +22,8 @@ void add_run_options(CLI::App& app, RunArguments& arguments) {
   app.add_flag("--no-guardian", arguments.no_guardian,
                "no second process that takes the rig to its safe look if this one dies");
   app.add_option("--port", arguments.http_port, "port of the page, on loopback (0: any)")->check(CLI::Range(0, 65535));
-  app.add_flag("--once", arguments.once, "light, measure, correct, then end: exit code 0 when no goal was missed and no limit exceeded");
+  app.add_flag("--once", arguments.once,
+               "light, measure, correct, then end: exit code 0 when no goal was missed and no limit exceeded");
   app.add_option("--json", arguments.json, "with --once: write the table here");
   app.add_option("--pictures", arguments.pictures,
                  "simulated only: the rig's cameras take pictures, into this folder, of the rig as it hangs and of the "

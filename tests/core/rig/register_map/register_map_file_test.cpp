@@ -14,7 +14,7 @@ namespace {
 
 const std::filesystem::path kMaps = test::source_folder() / "rigs/register-maps";
 
-RegisterMap loaded(const char* name) {
+RegisterMap map_named(const char* name) {
   const auto map = load_register_map(kMaps / name);
   if (!map) {
     for (const Problem& problem : map.error()) ADD_FAILURE() << problem.text();
@@ -29,7 +29,7 @@ TEST(RegisterMapFile, EveryShippedMapIsGoodAndSaysWhereItIsFrom) {
   for (const auto& entry : std::filesystem::directory_iterator(kMaps)) {
     if (entry.path().extension() != ".toml") continue;
     ++maps;
-    const RegisterMap map = loaded(entry.path().filename().c_str());
+    const RegisterMap map = map_named(entry.path().filename().c_str());
     EXPECT_TRUE(names.insert(map.name).second) << map.name;
     EXPECT_FALSE(map.source.empty());
     EXPECT_FALSE(map.with_role(RegisterRole::level).empty() && map.with_role(RegisterRole::illuminance).empty())
@@ -39,7 +39,7 @@ TEST(RegisterMapFile, EveryShippedMapIsGoodAndSaysWhereItIsFrom) {
 }
 
 TEST(RegisterMapFile, KnowsTheEightOutputsOfAnAnalogueModule) {
-  const RegisterMap map = loaded("waveshare-analog-output-8ch-b.toml");
+  const RegisterMap map = map_named("waveshare-analog-output-8ch-b.toml");
   const auto levels = map.with_role(RegisterRole::level);
   ASSERT_EQ(levels.size(), 8u);
   EXPECT_EQ(map.registers[levels[0]].name, "output1");
@@ -51,7 +51,7 @@ TEST(RegisterMapFile, KnowsTheEightOutputsOfAnAnalogueModule) {
 }
 
 TEST(RegisterMapFile, KnowsRelaysAndInputsOfOneBit) {
-  const RegisterMap map = loaded("waveshare-modbus-rtu-relay-d.toml");
+  const RegisterMap map = map_named("waveshare-modbus-rtu-relay-d.toml");
   const auto levels = map.with_role(RegisterRole::level);
   ASSERT_EQ(levels.size(), 8u);
   EXPECT_EQ(map.registers[levels[7]].table, RegisterTable::coil);
@@ -89,7 +89,7 @@ TEST(RegisterMapFile, SaysWhatABitCannotBe) {
 }
 
 TEST(RegisterMapFile, KnowsHowTheCouplersWatchdogIsArmed) {
-  const RegisterMap map = loaded("wago-750-559.toml");
+  const RegisterMap map = map_named("wago-750-559.toml");
   ASSERT_EQ(map.setup.size(), 4u);
   EXPECT_EQ(map.registers[map.setup[0].index].address, 0x1008);
   EXPECT_EQ(map.setup[0].value_raw, 0xAA55);
@@ -99,7 +99,7 @@ TEST(RegisterMapFile, KnowsHowTheCouplersWatchdogIsArmed) {
 }
 
 TEST(RegisterMapFile, KnowsTheLuxmetersTwoRegisters) {
-  const RegisterMap map = loaded("dfrobot-sen0644.toml");
+  const RegisterMap map = map_named("dfrobot-sen0644.toml");
   const auto readings = map.with_role(RegisterRole::illuminance);
   ASSERT_EQ(readings.size(), 1u);
   const MappedRegister& reg = map.registers[readings[0]];
