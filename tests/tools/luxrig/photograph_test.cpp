@@ -208,11 +208,13 @@ TEST(AutomaticCamera, OfARoomWithoutLampsStandsInIt) {
       << camera.eye_world_m.transpose();
 }
 
-std::string dark_words(const LitRoom& room, double level) {
+/// As seen by the automatic camera of `seen`, or of the room itself.
+std::string dark_words(const LitRoom& room, double level, const LitRoom* seen = nullptr) {
   const RayScene rays(room.scene);
   const auto emitters = emitters_of(room.rig);
   const std::vector<double> levels(emitters.size(), level);
-  Camera camera = automatic_camera(rays, room.rig, 32, 20, rad_from_deg(60));
+  const LitRoom& view = seen ? *seen : room;
+  const Camera camera = automatic_camera(RayScene(view.scene), view.rig, 32, 20, rad_from_deg(60));
   PictureOptions how;
   how.most_passes = 1;
   const auto picture = render_picture(rays, emitters, levels, camera, how);
@@ -226,7 +228,8 @@ TEST(DarkPictures, SayWhy) {
             "the picture is dark: no lamp gives light, all 1 are at level 0 in p.json");
   EXPECT_EQ(dark_words(room_with(""), 1), "the picture is dark: the rig has no fixture and no daylight");
   const std::string hood = "[[scene.object]]\nname = \"hood\"\nbox_m = [0.06, 0.06, 0.06]\nposition_m = [0, 0, 2.77]\n";
-  const std::string blocked = dark_words(room_with(kSpotOnTheWall + hood), 1);
+  const LitRoom open = room_with(kSpotOnTheWall);
+  const std::string blocked = dark_words(room_with(kSpotOnTheWall + hood), 1, &open);
   EXPECT_NE(blocked.find("One lamp is on in p.json, 1e+03 lm together: lamp is blocked: its light ends within"),
             std::string::npos)
       << blocked;
