@@ -130,6 +130,7 @@ std::string words_of_rest(Cursor cursor, const std::string& after) {
     if (values == 0) first = token;
     values += !token.empty();
   }
+  if (values == 1 && (first == "END" || first == "end")) return "";  // some programs close the file so
   return "from line " + std::to_string(line) + " on, " +
          (values == 1 ? "1 value" : std::to_string(values) + " values") + " after " + after +
          " are not read: " + excerpt(first) + (values > 1 ? " …" : "");

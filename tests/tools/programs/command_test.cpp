@@ -243,7 +243,7 @@ TEST(Commands, AnInterruptEndsASearchForPlacesWithTheBestSoFar) {
   ASSERT_TRUE(wait_for([&] { return solve.output().find(" lights, error ") != std::string::npos; }, 60s))
       << solve.output();
   solve.signal(SIGINT);
-  ASSERT_EQ(solve.wait(30s), 0) << solve.output();
+  EXPECT_LE(solve.wait(30s), 1) << "1: the best so far misses a goal\n" << solve.output();
   EXPECT_NE(solve.output().find("stopped: this is the best so far"), std::string::npos) << solve.output();
   const json out = json::parse(text_of(plan), nullptr, false);
   ASSERT_TRUE(out.is_object());

@@ -88,7 +88,7 @@ TEST(Words, InitMakesARigThatChecksSolvesAndRuns) {
   EXPECT_NE(check.output.find("my \"gallery\": no problems found"), std::string::npos) << check.output;
   const Ran solve = luxrig::testing::run({program("luxrig"), "solve", rig});
   EXPECT_EQ(solve.code, 0) << solve.output;
-  EXPECT_NE(solve.output.find("every goal met"), std::string::npos) << solve.output;
+  EXPECT_NE(solve.output.find("all 2 goals met"), std::string::npos) << solve.output;
   const Ran run = luxrig::testing::run({program("luxrig"), "run", rig, "--sim", "--once", "--port", "0"}, 120s);
   EXPECT_EQ(run.code, 0) << run.output;
   EXPECT_NE(run.output.find("faults and truth: http://127.0.0.1:"), std::string::npos) << run.output;
