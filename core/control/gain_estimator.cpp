@@ -90,19 +90,27 @@ VectorXd GainEstimator::vector_of(std::span<const double> level) const {
   LUXRIG_CHECK(static_cast<Index>(level.size()) == fixtures(), "{} levels, {} fixtures", level.size(), fixtures());
   VectorXd all = VectorXd::Ones(meter_.cols());
   all.head(fixtures()) = Eigen::Map<const VectorXd>(level.data(), fixtures());
+  for (std::size_t j = 0; j < lost_.size(); ++j)
+    if (lost_[j]) all[static_cast<Index>(j)] = lost_[j]->level;
   return all;
 }
 
 GainEstimator::Row GainEstimator::row_of_meter(std::size_t luxmeter) const {
   const auto i = static_cast<Index>(luxmeter);
-  return {meter_.row(i), meter_error_.row(i), factor_.row(i), factor_error_.row(i), luxmeter};
+  return {meter_.row(i), meter_error_.row(i), factor_.row(i), factor_error_.row(i), luxmeter, 0};
 }
 
 GainEstimator::Row GainEstimator::row_of_point(std::size_t point) const {
-  if (confirmed(point)) return row_of_meter(*meter_of_point_[point]);
   const auto i = static_cast<Index>(point);
-  const RowVectorXd error = (gain_error_.array().square() + prior_local_sd_ * prior_local_sd_).sqrt().transpose();
-  return {point_.row(i), point_error_.row(i), gain_.transpose(), error, std::nullopt};
+  Row row;
+  if (confirmed(point)) {
+    row = row_of_meter(*meter_of_point_[point]);
+  } else {
+    const RowVectorXd error = (gain_error_.array().square() + prior_local_sd_ * prior_local_sd_).sqrt().transpose();
+    row = {point_.row(i), point_error_.row(i), gain_.transpose(), error, std::nullopt, 0};
+  }
+  row.unseen_lx = unseen_lux(point, row);
+  return row;
 }
 
 const GainEstimator::Evidence* GainEstimator::latest(std::size_t luxmeter) const {

@@ -96,6 +96,7 @@ OrderedJson json_of(const PlannedPoint& point) {
   put(json, "lux", point.lux);
   put(json, "direct_lux", point.direct_lux);
   put(json, "standard_error_lux", point.standard_error_lux);
+  put(json, "opening_lux", point.opening_lux);
   put(json, "daylight_lux", point.daylight_lux);
   put(json, "goal_lux", point.goal_lux);
   put(json, "xy", point.xy);
@@ -338,6 +339,7 @@ PlannedPoint point_of(const Reader& reader, const Json& json, const std::string&
   point.lux = reader.number(json, path, "lux", false);
   point.direct_lux = reader.number(json, path, "direct_lux", false);
   point.standard_error_lux = reader.number(json, path, "standard_error_lux", false);
+  point.opening_lux = reader.optional_number(json, path, "opening_lux");
   point.daylight_lux = reader.optional_number(json, path, "daylight_lux");
   point.goal_lux = reader.optional_number(json, path, "goal_lux");
   point.xy = reader.chromaticity(json, path, "xy");

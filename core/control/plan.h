@@ -78,6 +78,8 @@ struct PlannedPoint {
   std::string why;                              ///< empty when met; else what binds
   std::optional<double> daylight_lux{};         ///< what of lux is daylight; none in a rig without
   std::optional<Chromaticity> xy{}, goal_xy{};  ///< in a rig whose goals have colours
+  /// What the show lets out there while no luxmeter confirms the limits, where that is less than lux.
+  std::optional<double> opening_lux{};
 };
 
 struct PlannedLimit {

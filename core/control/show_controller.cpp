@@ -8,12 +8,6 @@
 #include "core/control/show_state.h"
 
 namespace luxrig {
-namespace {
-
-// A device that comes and goes is not back; the driver's own reports come several times in this while.
-constexpr Duration kHealthyFor = std::chrono::milliseconds(500);
-
-}  // namespace
 
 const char* name_of(Phase phase) {
   switch (phase) {
@@ -48,6 +42,7 @@ ShowController::State::State(const Rig& rig_in, const LightModel& model)
       samples(rig.luxmeters.size()),
       zones(rig),
       powerless(rig.fixtures.size(), 0),
+      lost(rig.fixtures.size()),
       measured(rig.luxmeters.size()),
       sampled_lx(rig.luxmeters.size()),
       sample_changed(rig.luxmeters.size(), false),
@@ -135,6 +130,7 @@ void ShowController::State::guard(Time now, const std::vector<double>& from, con
   }
   program.worst_lux_per_level = std::move(worst.worst_lux_per_level);
   program.max_lx = std::move(worst.max_lx);
+  program.worth = estimator.worth();
   if (!rig.limits.max_watts) return;
   // A limit of power is one more row: watts per level.
   const Eigen::Index row = program.max_lx.size();
@@ -170,6 +166,7 @@ void ShowController::State::take_look(Time now) {
   if (other_light) {
     // Gains would still hold; what is wrong locally would not, and telling them apart takes readings.
     estimator = GainEstimator(rig, awaited->model);
+    tell_estimator();
     std::fill(measured.begin(), measured.end(), std::nullopt);
     model_joints = awaited->joints;
   } else {
@@ -180,6 +177,7 @@ void ShowController::State::take_look(Time now) {
 }
 
 void ShowController::State::start_cue(Time now, std::vector<double> levels) {
+  asked = levels;
   cue = std::move(levels);
   round = 0;
   converged = false;
@@ -215,7 +213,9 @@ void ShowController::State::start_cue(Time now, std::vector<double> levels) {
     take_look(now);
   }
   cue = estimator.within_limits(*cue, now);
-  if (!start_lamps(now, present, *cue)) fade(now, std::move(present), *cue, rig.control.fade_s, rig.control.fade_curve);
+  std::vector<double> sent = *cue;
+  leave_out_lost(sent);
+  if (!start_lamps(now, present, sent)) fade(now, std::move(present), sent, rig.control.fade_s, rig.control.fade_curve);
   enter(Phase::fading, now);
 }
 
@@ -227,7 +227,7 @@ void ShowController::State::freeze(Time now) {
   enter(Phase::frozen, now);
 }
 
-void ShowController::State::resume(Time now) { start_cue(now, *cue); }
+void ShowController::State::resume(Time now) { start_cue(now, asked); }
 
 void ShowController::State::fade_to_safe(Time now) {
   std::vector<double> present = present_levels(now);
@@ -241,13 +241,16 @@ void ShowController::State::fade_to_safe(Time now) {
 void ShowController::State::look_at_failures(Time now) {
   health.step(now);
   const bool was_failing = failing;
-  failing = health.light_lost() || (rig.safe.on_meter_loss && health.any_meter_lost());
+  const bool rest_stays = rig.safe.scope == SafeScope::rest_stays;
+  failing =
+      (rest_stays ? health.all_lost() : health.light_lost()) || (rig.safe.on_meter_loss && health.any_meter_lost());
   if (was_failing && !failing) healthy_since = now;
   if (failing && !health.alarms().empty()) failure = health.alarms().front().text;
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
     if (health.meter_lost(i)) measured[i].reset();
   }
   converged = converged && all_metered_goals_met();
+  watch_losses(now);
 }
 
 void ShowController::State::advance(Time now) {
@@ -293,7 +296,8 @@ void ShowController::State::advance(Time now) {
       return;
     case Phase::measuring: {
       bool any_living = false;
-      for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) any_living = any_living || !health.meter_lost(i);
+      for (std::size_t i = 0; i < rig.luxmeters.size(); ++i)
+        any_living = any_living || (!health.meter_lost(i) && !in_doubt(i));
       if (!any_living) return enter(Phase::holding, now);  // nobody can tell; open loop
       if (sampled_at == now) correct_or_hold(now);
       return;

@@ -25,11 +25,12 @@ constexpr double kSmallestChange = 1e-4;
 /// When every living meter has its sample: learn from it. Lost ones take part as soon as they have one, since a
 /// believable sample is how a meter that was not believed comes back.
 void ShowController::State::take_sample(Time now) {
-  if (program.blackout || shared || !program.done(now) || health.light_lost() || dimmed_for_a_zone(now))
+  if (program.blackout || shared || !program.done(now) || failing || dimmed_for_a_zone(now))
     return;  // not the light that was asked for
   if (phase != Phase::measuring && now - sampled_at < kSampleEvery) return;
   std::vector<LuxReading> readings;
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
+    if (in_doubt(i)) continue;
     if (samples.ready(now, i)) {
       readings.push_back(*samples.sample(i));
     } else if (!health.meter_lost(i)) {
@@ -69,14 +70,12 @@ void ShowController::State::take_sample(Time now) {
 
 /// After a sample: another round when it would bring a metered goal nearer, or when a limit is in question.
 void ShowController::State::correct_or_hold(Time now) {
-  const bool may_correct = !health.any_meter_lost();
   Correction correction = estimator.correct(program.to_level, now);
-  if (!may_correct) correction.level = estimator.within_limits(program.to_level, now);
   double change = 0;
   for (std::size_t i = 0; i < correction.level.size(); ++i) {
     change = std::max(change, std::abs(correction.level[i] - program.to_level[i]));
   }
-  const bool wanted = may_correct && possible_gain(correction) > rig.control.tolerance;
+  const bool wanted = possible_gain(correction) > rig.control.tolerance;
   const bool worth_it = change > kSmallestChange && (wanted || !breaches.empty());
   const bool in_rounds = phase == Phase::measuring ? round < rig.control.rounds : true;
   aimed_lx = std::move(correction.aimed_lx);
@@ -86,7 +85,16 @@ void ShowController::State::correct_or_hold(Time now) {
     enter(Phase::holding, now);
     return;
   }
-  cue = correction.level;
+  for (std::size_t i = 0; i < cue->size(); ++i) {
+    if (lost[i]) {
+      correction.level[i] = program.to_level[i];
+      continue;
+    }
+    // What limits dimmed for a lost lamp comes back with it.
+    const bool same = std::abs(correction.level[i] - program.to_level[i]) <= kSmallestChange;
+    (*cue)[i] = correction.level[i];
+    if (!same || !any_lost()) asked[i] = correction.level[i];
+  }
   ++round;
   corrected_at = now;
   fade(now, present_levels(now), std::move(correction.level), rig.control.correction_fade_s, rig.control.fade_curve);
@@ -97,7 +105,6 @@ void ShowController::State::watch_drift(Time now) {
   if (sampled_at != now) return;
   converged = all_metered_goals_met();
   if (!breaches.empty()) return correct_or_hold(now);
-  if (health.any_meter_lost()) return;
   const Correction correction = estimator.correct(program.to_level, now);
   drifted = possible_gain(correction) > rig.control.tolerance ? drifted + 1 : 0;
   if (drifted >= kDriftSamples && now - corrected_at >= kDriftCorrectionEvery) correct_or_hold(now);

@@ -27,6 +27,19 @@ struct LimitBreach {
   Time since{};
 };
 
+/// A fixture whose lamp or axes do not answer, while the rest goes on.
+struct LostFixture {
+  Time since{};
+  double level = 0;      ///< that it is held at
+  double most = 0;       ///< that it may have taken last
+  bool lamp = true;      ///< false: only what turns it
+  bool to_safe = false;  ///< it has been held for long enough
+  std::optional<Time> well_since{};
+};
+
+/// A device that comes and goes is not back; the drivers' own reports come several times in this while.
+inline constexpr Duration kHealthyFor = std::chrono::milliseconds(500);
+
 /// Housings that blink, or have: each keeps its place among the desks.
 struct Identification {
   std::size_t desk = 0;
@@ -72,12 +85,15 @@ struct ShowController::State {
   bool failing = true;      ///< something that the light depends on is lost; true until a step has looked
   bool asked_safe = false;  ///< by go_safe: no return by itself
   std::string failure;      ///< what froze the show, for the detail line
-  std::optional<std::vector<double>> cue;  ///< levels in force, as corrected so far
-  std::optional<Look> awaited;             ///< taken as soon as what it turns is dark
-  Time arrive{};                           ///< heads look where they shall from here on; no fade starts before
-  bool turned = false;                     ///< heads have been told where to look
-  std::vector<double> in_force;            ///< levels of somebody else's light, until a look of ours is on; or empty
-  bool afresh = false;                     ///< a person applied a plan, and the meters have not all been believed since
+  std::optional<std::vector<double>> cue;        ///< levels in force, as corrected so far
+  std::vector<double> asked;                     ///< levels in force before limits dimmed them, as corrected so far
+  std::vector<std::optional<LostFixture>> lost;  ///< per fixture
+  std::vector<std::uint8_t> watched;             ///< per luxmeter: what the estimator was told
+  std::optional<Look> awaited;                   ///< taken as soon as what it turns is dark
+  Time arrive{};                                 ///< heads look where they shall from here on; no fade starts before
+  bool turned = false;                           ///< heads have been told where to look
+  std::vector<double> in_force;  ///< levels of somebody else's light, until a look of ours is on; or empty
+  bool afresh = false;           ///< a person applied a plan, and the meters have not all been believed since
   int round = 0;
   bool converged = false;
   Time corrected_at{};                              ///< when the last correction was decided
@@ -143,6 +159,16 @@ struct ShowController::State {
   void finish_parking();
   /// Nobody knows yet where heads look: light waits for their longest way there, and for their finding their zero.
   void first_turn(Time now, std::span<const Joints> joints);
+
+  // What fails alone (show_losses.cpp).
+  void watch_losses(Time now);
+  void tell_estimator();
+  void leave_out_lost(std::vector<double>& levels) const;
+  [[nodiscard]] bool any_lost() const;
+  [[nodiscard]] std::vector<std::uint8_t> watched_meters() const;
+  /// A lost fixture gives it light, or might: nobody knows how much.
+  [[nodiscard]] bool in_doubt(std::size_t luxmeter) const;
+  void tell_losses(ShowStatus& status) const;
 
   // Power (show_startup.cpp).
   /// Levels as they come on the first time, by stages, from what is lit already; false when nothing is staged.

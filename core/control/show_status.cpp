@@ -11,7 +11,9 @@ namespace luxrig {
 std::vector<double> ShowController::State::safe_levels() const {
   std::vector<double> level;
   for (std::size_t i = 0; i < rig.fixtures.size(); ++i) {
-    const double wanted = rig.fixtures[i].safe_level.value_or(rig.safe.level);
+    const std::size_t bus = rig.fixtures[i].bus;
+    const double of_bus = (bus < rig.buses.size() ? rig.buses[bus].safe_level : std::nullopt).value_or(rig.safe.level);
+    const double wanted = rig.fixtures[i].safe_level.value_or(of_bus);
     level.push_back(std::clamp(rig.fixtures[i].switched ? switched_level(wanted) : wanted, 0.0, program.max_level[i]));
   }
   return level;
@@ -98,7 +100,9 @@ std::string ShowController::State::detail(Time now) const {
                         : fmt::format("{} of {} measured goals within {:.0f} %", met - limited, goals,
                                       100 * std::max(kMetTolerance, rig.control.tolerance));
       if (limited > 0) text += fmt::format(", {} as near as the limits allow", limited);
-      if (health.any_meter_lost()) text += "; no correction while a luxmeter is lost";
+      if (health.any_meter_lost()) text += "; lost luxmeters correct nothing";
+      if (const auto count = std::count_if(lost.begin(), lost.end(), [](const auto& one) { return one.has_value(); }))
+        text += fmt::format("; {} of {} fixtures are lost, the rest goes on", count, lost.size());
       break;
     }
     case Phase::frozen:
@@ -182,6 +186,7 @@ ShowStatus ShowController::State::status(Time now) const {
                      point.name, breach.most_lx, *point.max_lx),
          breach.since});
   }
+  tell_losses(status);
   tell_zones(status);
   for (std::size_t d = 0; d < desks.size(); ++d) {
     if (desk_names[d].empty()) continue;

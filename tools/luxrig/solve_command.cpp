@@ -5,6 +5,7 @@
 
 #include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
+#include "tools/luxrig/opening_light.h"
 #include "tools/luxrig/solve_tasks.h"
 #include "tools/luxrig/table.h"
 
@@ -139,6 +140,7 @@ int run_solve(const SolveArguments& arguments) {
   if (stop.stop_requested()) fmt::print(stderr, "stopped: this is the best so far\n");
   plan->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
+  add_opening_light(*solved, session->rig);
   if (arguments.output) {
     if (const auto written = write_file(*arguments.output, to_json(*plan)); !written) return report(written.error());
   }
@@ -196,6 +198,7 @@ int run_solve(const SolveArguments& arguments) {
       fmt::print(
           "which of the lamps that are on or off shall be on was not searched to the end: others could do better\n");
   }
+  fmt::print("{}", opening_light_text(*plan, session->rig));
   fmt::print("{} in {:.2f} s{}\n", met ? "every goal met" : "not every goal can be met: see why", plan->seconds,
              arguments.output ? ", plan in " + arguments.output->string() : "");
   return kExitOk;
