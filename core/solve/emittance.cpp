@@ -153,7 +153,7 @@ ScaledProblem scaled(const EmittanceProblem& p) {
       s.limited.push_back(i);
   }
   set_goals(p, goals, s);
-  const auto rows = s.objective.rows(), limits = static_cast<Index>(s.limited.size());
+  const Index rows = s.objective.rows(), limits = static_cast<Index>(s.limited.size());
   const double right =
       s.target.size() > 0 && s.target.cwiseAbs().maxCoeff() > 0 ? power_of_two_near(s.target.stableNorm()) : 1.0;
   s.target /= right;
@@ -165,12 +165,10 @@ ScaledProblem scaled(const EmittanceProblem& p) {
     s.objective.col(j) /= s.unit[j] * right;
   }
   LimitedLeastSquares& q = s.least_squares;
-  q.E.resize(rows + lights, lights);
-  if (rows > 0) q.E.topRows(rows) = s.objective;
-  if (lights > 0) q.E.bottomRows(lights) = kTie * MatrixXd::Identity(lights, lights);
-  q.f.resize(rows + lights);
-  q.f.head(rows) = s.target;
-  q.f.tail(lights) = kTie * p.near_level.cwiseProduct(s.unit);
+  q.E = s.objective;
+  q.f = s.target;
+  q.tie = kTie;
+  q.near = p.near_level.cwiseProduct(s.unit);
   q.upper = p.max_level.cwiseProduct(s.unit);
   q.G.resize(limits + (power_limited(p) ? 1 : 0), lights);
   q.slack.resize(q.G.rows());
@@ -255,11 +253,10 @@ double kkt_residual(const ScaledProblem& s, const LimitedLeastSquaresResult& at,
   const LimitedLeastSquares& q = s.least_squares;
   const VectorXd z = level.cwiseProduct(s.unit);
   VectorXd gradient = s.objective.transpose() * (s.objective * z - s.target);
-  const VectorXd multiplier = row_multipliers(q.G, at, gradient);
   double worst = 0;
   for (std::size_t k = 0; k < at.working_rows.size(); ++k) {
     const Index row = at.working_rows[k];
-    const double lambda = multiplier[static_cast<Index>(k)];
+    const double lambda = at.multiplier[static_cast<Index>(k)];
     gradient += lambda * q.G.row(row).transpose();
     worst = std::max({worst, -lambda, std::abs(lambda * (q.slack[row] - q.G.row(row).dot(z)))});
   }

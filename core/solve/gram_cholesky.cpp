@@ -143,6 +143,9 @@ bool GramCholesky::remove_by_factoring(std::span<const Index> places) {
 void GramCholesky::forward(VectorXd& vector) const {
   l_.topLeftCorner(size_, size_).triangularView<Eigen::Lower>().solveInPlace(vector);
 }
+void GramCholesky::forward(MatrixXd& columns) const {
+  l_.topLeftCorner(size_, size_).triangularView<Eigen::Lower>().solveInPlace(columns);
+}
 void GramCholesky::backward(VectorXd& vector) const {
   l_.topLeftCorner(size_, size_).triangularView<Eigen::Lower>().transpose().solveInPlace(vector);
 }

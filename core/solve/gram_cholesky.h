@@ -29,6 +29,7 @@ class GramCholesky {
 
   /// vector = L⁻¹ vector, and L⁻ᵀ vector: together G⁻¹ vector.
   void forward(Eigen::VectorXd& vector) const;
+  void forward(Eigen::MatrixXd& columns) const;
   void backward(Eigen::VectorXd& vector) const;
 
  private:

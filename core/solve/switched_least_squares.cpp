@@ -28,12 +28,12 @@ class SettingSearch {
  public:
   SettingSearch(const LimitedLeastSquares& problem, const std::vector<Index>& switched, const std::stop_token& stop,
                 int most_nodes)
-      : switched_(switched), stop_(stop), most_nodes_(most_nodes), reduced_(problem) {
+      : switched_(switched), stop_(stop), most_nodes_(most_nodes), reduced_(tie_in_rows(problem)) {
     // ‖E z − f‖² = ‖R z − Qᵀf‖² + what no z can mend: every node then has as many rows as unknowns.
     const Index n = problem.E.cols();
-    const Eigen::HouseholderQR<MatrixXd> qr(problem.E);
+    const Eigen::HouseholderQR<MatrixXd> qr(reduced_.E);
+    reduced_.f = (qr.householderQ().adjoint() * reduced_.f).head(n).eval();
     reduced_.E = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>();
-    reduced_.f = (qr.householderQ().adjoint() * problem.f).head(n);
     found_.on.assign(static_cast<std::size_t>(n), false);
     setting_.assign(switched.size(), Setting::open);
   }

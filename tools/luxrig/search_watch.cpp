@@ -15,8 +15,10 @@ constexpr double kSilent_s = 2, kEvery_s = 10;  // not on a terminal, where a li
 
 }  // namespace
 
-SearchWatch::SearchWatch(std::string name, std::string first, std::optional<double> seconds, std::stop_token stop)
+SearchWatch::SearchWatch(std::string name, std::string first, std::optional<double> seconds, std::stop_token stop,
+                         std::string interrupt)
     : name_(std::move(name)),
+      interrupt_(std::move(interrupt)),
       seconds_(seconds),
       asked_(std::move(stop)),
       terminal_(isatty(STDERR_FILENO) != 0),
@@ -49,7 +51,7 @@ void SearchWatch::run() {
     said_s = now_s;
     said_ = true;
     fmt::print(stderr, "{}{}: {:.0f} s, {}{}", terminal_ ? "\r\x1b[K" : "", name_, now_s, text_,
-               terminal_ ? " (Ctrl-C: take this)" : "\n");
+               terminal_ ? " (Ctrl-C: " + interrupt_ + ")" : "\n");
     std::fflush(stderr);
   }
 }

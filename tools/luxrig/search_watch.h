@@ -16,7 +16,9 @@ class SearchWatch {
   /// name      of the task, before each line
   /// seconds   after which the search is asked to end
   /// stop      asks it to end, too
-  SearchWatch(std::string name, std::string first, std::optional<double> seconds, std::stop_token stop);
+  /// interrupt what Ctrl-C does, as a person at a terminal is told
+  SearchWatch(std::string name, std::string first, std::optional<double> seconds, std::stop_token stop,
+              std::string interrupt = "take this");
   ~SearchWatch();
   SearchWatch(const SearchWatch&) = delete;
   SearchWatch& operator=(const SearchWatch&) = delete;
@@ -28,7 +30,7 @@ class SearchWatch {
  private:
   void run();
 
-  std::string name_;
+  std::string name_, interrupt_;
   std::optional<double> seconds_;
   std::stop_token asked_;
   std::stop_source source_;

@@ -9,6 +9,7 @@
 #include "core/solve/emittance.h"
 #include "core/transport/rig_transport.h"
 #include "tools/luxrig/placement_task.h"
+#include "tools/luxrig/search_watch.h"
 #include "tools/luxrig/task_solver.h"
 
 namespace luxrig {
@@ -188,7 +189,11 @@ Result<void> TaskSolver::solve_levels_of(Index begin, Index end, double max_watt
   problem.max_watts = max_watts;
   if (auto kept = limits_left(problem.fixed_lx); !kept) return kept;
   // An interrupt has ended the search, not what becomes of it.
-  auto solution = solve_emittance(problem, planned.kind == name_of(TaskKind::placement) ? Watch{} : options_.watch);
+  const bool ends = planned.kind != name_of(TaskKind::placement);
+  const SearchWatch watch(planned.name,
+                          fmt::format("levels of {} lights at {} points", end - begin, rig_.points.size()), {},
+                          ends ? options_.watch.stop : std::stop_token(), "end");
+  auto solution = solve_emittance(problem, {watch.stop(), options_.watch.progress});
   if (!solution) return tl::unexpected(std::move(solution.error()));
   level_.segment(begin, end - begin) = solution->level;
   planned.normalised_error = solution->normalised_error;
