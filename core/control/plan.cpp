@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "core/control/json_place.h"
+
 namespace luxrig {
 namespace {
 
@@ -417,8 +419,14 @@ Checked<Plan> plan_from_json(const std::string& text, const std::string& file_na
   reader.each(json, "", "limits", false, [&](const Json& limit, const std::string& path) {
     plan.limits.push_back(limit_of(reader, limit, path));
   });
-  if (!problems.empty()) return tl::unexpected(problems);
-  return plan;
+  if (problems.empty()) return plan;
+  for (Problem& problem : problems) {
+    const std::string_view what = problem.what;
+    const JsonPlace place = place_in_json(text, what.substr(0, what.find_first_of(" :")));
+    problem.line = place.line;
+    problem.column = place.column;
+  }
+  return tl::unexpected(problems);
 }
 
 }  // namespace luxrig
