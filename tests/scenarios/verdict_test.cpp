@@ -101,7 +101,7 @@ TEST(ShowVerdicts, ADimmerThatDiesHoldingShowsTheLevelItHolds) {
   ASSERT_GT(held, 0.15);
   loop.fault("spot-10", sim::FaultKind::silent, true);
   loop.run(15);  // by then the safe look is out
-  const FixtureStatus& dead = loop.status().fixtures[9];
+  const FixtureStatus dead = loop.status().fixtures[9];
   EXPECT_NEAR(dead.level, held, 0.005);
   EXPECT_FALSE(dead.level_known);
   EXPECT_NEAR(loop.devices.world().points()[3].lux, loop.status().points[3].light.lux,
