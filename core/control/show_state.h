@@ -184,9 +184,15 @@ struct ShowController::State {
   [[nodiscard]] bool arrived(std::size_t point, double lux) const;
   [[nodiscard]] bool all_metered_goals_arrived() const;
   [[nodiscard]] PointStatus point_status(std::size_t point, std::span<const double> level, Time now) const;
-  [[nodiscard]] LuxEstimate light_by_model(std::size_t point, std::span<const double> level) const;
+  [[nodiscard]] LuxEstimate light_by_model(std::size_t point, std::span<const double> level,
+                                           const Prediction& prediction) const;
+  [[nodiscard]] std::vector<double> with_lost_lamps_at(std::span<const double> level, bool full) const;
+  [[nodiscard]] bool any_lamp_lost() const;
+  /// What is believed to be out: of a desk that drives lamps itself, what it sends; of a lamp that does not answer, the
+  /// last that it took.
+  [[nodiscard]] std::vector<double> levels_out(Time now) const;
   void judge_goal(std::size_t point, std::span<const double> level, PointStatus& status) const;
-  void judge_limit(std::size_t point, PointStatus& status) const;
+  void judge_limit(std::size_t point, std::span<const double> level, Time now, PointStatus& status) const;
   /// Remembers what lamps took whose devices answer.
   void remember_levels(Time now);
   [[nodiscard]] std::string detail(Time now, const VerdictCounts& goals) const;

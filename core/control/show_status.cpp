@@ -122,13 +122,11 @@ ShowStatus ShowController::State::status(Time now) const {
   status.converged = converged && !program.blackout;
   status.blackout = program.blackout;
 
-  std::vector<double> level(rig.fixtures.size());
-  program.levels_at(now, level);
+  const std::vector<double> level = levels_out(now);
   std::vector<Joints> joints(rig.fixtures.size());
   program.joints_at(now, joints);
   for (std::size_t i = 0; i < rig.fixtures.size(); ++i) {
     const bool lost = health.lamp_lost(i);
-    if (lost) level[i] = taken_level[i];
     status.fixtures.push_back({joints[i], level[i], drive_from_level(rig.fixtures[i].dimmer_curve, level[i]),
                                program.to_level[i], !lost, estimator.gain(i), estimator.gain_standard_error(i)});
   }

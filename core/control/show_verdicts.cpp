@@ -10,7 +10,8 @@
 namespace luxrig {
 namespace {
 
-const char* name_of_state(Phase phase, bool blackout) {
+/// Why the light is not that of the plan; empty when it is.
+const char* why_not_the_plan(Phase phase, bool blackout) {
   if (blackout) return "blackout";
   switch (phase) {
     case Phase::idle:
@@ -38,22 +39,38 @@ void ShowController::State::remember_levels(Time now) {
     if (!health.lamp_lost(f)) taken_level[f] = level[f];
 }
 
+std::vector<double> ShowController::State::levels_out(Time now) const {
+  std::vector<double> level(rig.fixtures.size());
+  program.levels_at(now, level);
+  for (const DeskBlend& desk : program.desks)
+    for (std::size_t i = 0; desk.silent && i < desk.fixtures.size(); ++i)
+      if (desk.desk_has[i] != 0) level[desk.fixtures[i]] = desk.desk_level[i];
+  for (std::size_t f = 0; f < level.size(); ++f)
+    if (health.lamp_lost(f)) level[f] = taken_level[f];
+  return level;
+}
+
 /// Lamps that do not answer may give anything between nothing and all.
-LuxEstimate ShowController::State::light_by_model(std::size_t point, std::span<const double> level) const {
-  const Prediction prediction = estimator.at_point(point, level);
+std::vector<double> ShowController::State::with_lost_lamps_at(std::span<const double> level, bool full) const {
+  std::vector<double> out(level.begin(), level.end());
+  for (std::size_t f = 0; f < out.size(); ++f)
+    if (health.lamp_lost(f)) out[f] = full ? program.max_level[f] : 0;
+  return out;
+}
+
+bool ShowController::State::any_lamp_lost() const {
+  for (std::size_t f = 0; f < rig.fixtures.size(); ++f)
+    if (health.lamp_lost(f)) return true;
+  return false;
+}
+
+LuxEstimate ShowController::State::light_by_model(std::size_t point, std::span<const double> level,
+                                                  const Prediction& prediction) const {
   LuxEstimate light = estimate_of(prediction.lux, prediction.standard_error_lx);
   light.half_width_lx = std::hypot(light.half_width_lx, estimator.common_tolerance() * prediction.lux);
-  std::vector<double> least(level.begin(), level.end()), most = least;
-  bool any_lost = false;
-  for (std::size_t f = 0; f < least.size(); ++f) {
-    if (!health.lamp_lost(f)) continue;
-    any_lost = true;
-    least[f] = 0;
-    most[f] = program.max_level[f];
-  }
-  if (any_lost)
-    light.half_width_lx += std::max(prediction.lux - estimator.at_point(point, least).lux,
-                                    estimator.at_point(point, most).lux - prediction.lux);
+  if (any_lamp_lost())
+    light.half_width_lx += std::max(prediction.lux - estimator.at_point(point, with_lost_lamps_at(level, false)).lux,
+                                    estimator.at_point(point, with_lost_lamps_at(level, true)).lux - prediction.lux);
   return light;
 }
 
@@ -77,20 +94,21 @@ PointStatus ShowController::State::point_status(std::size_t p, std::span<const d
     status.light = estimate_of_reading(*status.measured_lx, GainEstimator::kRepeatability, meter.tolerance,
                                        meter.patch.lux_per_count);
   } else {
-    status.light = light_by_model(p, level);
+    status.light = light_by_model(p, level, prediction);
   }
   judge_goal(p, level, status);
-  judge_limit(p, status);
+  judge_limit(p, level, now, status);
   return status;
 }
 
 void ShowController::State::judge_goal(std::size_t p, std::span<const double> level, PointStatus& status) const {
   if (!status.goal_lx) return;
-  double largest_goal_lx = 0;
-  for (const Point& point : rig.points) largest_goal_lx = std::max(largest_goal_lx, point.goal_lx.value_or(0));
+  double largest_goal_lx = *status.goal_lx;
+  if (largest_goal_lx == 0)
+    for (const Point& point : rig.points) largest_goal_lx = std::max(largest_goal_lx, point.goal_lx.value_or(0));
   const double allowed_lx = tolerance_lx(*status.goal_lx, rig.control.goal_tolerance, largest_goal_lx);
   status.verdict = verdict_of(status.light, *status.goal_lx, allowed_lx);
-  const std::string state = name_of_state(phase, program.blackout);
+  const std::string state = why_not_the_plan(phase, program.blackout);
   std::string settles;
   if (const auto meter = meter_at(p); status.measured_lx) {
     settles = fmt::format(
@@ -108,34 +126,49 @@ void ShowController::State::judge_goal(std::size_t p, std::span<const double> le
                             state.empty() ? status.why : state, settles);
 }
 
-/// Outputs are scaled so that limits hold in the worst case of what is believed (OutputProgram). What speaks against
-/// that is a reading: one that is not believed, too, since nobody knows why it is so.
-void ShowController::State::judge_limit(std::size_t p, PointStatus& status) const {
+/// Outputs are scaled so that limits hold in the worst case of what is believed (OutputProgram). Two things speak
+/// against that: light that is not ours (a desk drives the lamps itself, or a lamp does not answer), and a reading. One
+/// that is not believed counts, too, since nobody knows why it is so.
+void ShowController::State::judge_limit(std::size_t p, std::span<const double> level, Time now,
+                                        PointStatus& status) const {
   if (!rig.points[p].max_lx) return;
   const double max_lx = *rig.points[p].max_lx;
-  status.limit = LimitVerdict::kept;
+  const auto say = [&](LimitVerdict verdict, std::string reason) {
+    status.limit = verdict;
+    status.limit_reason = std::move(reason);
+  };
   const auto meter = meter_at(p);
-  if (!meter) return;
-  const Luxmeter& luxmeter = rig.luxmeters[*meter];
-  const auto& reading = heard[*meter];
-  const bool believed_now = status.measured_lx.has_value();
-  if (const double lux = status.measured_lx.value_or(reading ? reading->lux : 0);
-      lux > max_lx * (1 + luxmeter.tolerance)) {
-    status.limit = believed_now ? LimitVerdict::exceeded : LimitVerdict::unknown;
-    status.limit_reason =
-        believed_now ? fmt::format("luxmeter \"{}\" reads {:.1f} lx, the limit is {:g} lx", luxmeter.name, lux, max_lx)
-                     : fmt::format(
-                           "luxmeter \"{}\" read {:.1f} lx last, over the limit of {:g} lx, and is lost or not "
-                           "believed; measure by hand",
-                           luxmeter.name, lux, max_lx);
-    return;
-  }
+  const double tolerance = meter ? rig.luxmeters[*meter].tolerance : 0;
+  if (status.measured_lx && *status.measured_lx > max_lx * (1 + tolerance))
+    return say(LimitVerdict::exceeded, fmt::format("luxmeter \"{}\" reads {:.1f} lx, the limit is {:g} lx",
+                                                   rig.luxmeters[*meter].name, *status.measured_lx, max_lx));
+  if (meter && !status.measured_lx && heard[*meter] && heard[*meter]->lux > max_lx * (1 + tolerance))
+    return say(
+        LimitVerdict::unknown,
+        fmt::format("luxmeter \"{}\" read {:.1f} lx last, over the limit of {:g} lx, and is lost or not believed; "
+                    "measure by hand",
+                    rig.luxmeters[*meter].name, heard[*meter]->lux, max_lx));
   const auto breach =
       std::find_if(breaches.begin(), breaches.end(), [&](const LimitBreach& one) { return one.point == p; });
-  if (breach == breaches.end()) return;
-  status.limit = LimitVerdict::unknown;
-  status.limit_reason = fmt::format(
-      "by its luxmeter and that one's tolerance it may have {:.1f} lx, the limit is {:g} lx", breach->most_lx, max_lx);
+  if (breach != breaches.end())
+    return say(LimitVerdict::unknown,
+               fmt::format("with its luxmeter's tolerance it may have {:.1f} lx, the limit is {:g} lx; look for light "
+                           "that is not the rig's",
+                           breach->most_lx, max_lx));
+  if (status.measured_lx) return say(LimitVerdict::kept, "");
+  const bool driven_by_desk =
+      std::any_of(program.desks.begin(), program.desks.end(), [](const DeskBlend& desk) { return desk.silent; });
+  if (driven_by_desk || any_lamp_lost()) {
+    const double most_lx = estimator.most_lux_at_point(p, with_lost_lamps_at(level, true), now);
+    const char* whose = driven_by_desk ? "a desk drives lamps that light it" : "a lamp that lights it does not answer";
+    if (status.light.lux - status.light.half_width_lx > max_lx)
+      return say(LimitVerdict::exceeded,
+                 fmt::format("{}: {:.1f} lx by the model, the limit is {:g} lx", whose, status.light.lux, max_lx));
+    if (most_lx > max_lx)
+      return say(LimitVerdict::unknown, fmt::format("{}: it may have {:.1f} lx, the limit is {:g} lx; measure by hand",
+                                                    whose, most_lx, max_lx));
+  }
+  say(LimitVerdict::kept, "");
 }
 
 }  // namespace luxrig

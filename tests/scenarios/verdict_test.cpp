@@ -92,6 +92,27 @@ TEST(ShowVerdicts, AReadingOverTheLimitThatIsNotBelievedLeavesTheLimitUnknown) {
   EXPECT_EQ(status.limits_kept, 3);
 }
 
+TEST(ShowVerdicts, ALampThatDoesNotAnswerLeavesTheLimitsThatItCouldBreakUnknown) {
+  Hall hall = make_hall(4);
+  const std::size_t dead = 9;
+  std::size_t near = 6;  // of the points without a meter, the one that this lamp lights most
+  for (std::size_t p = 6; p < hall.rig.points.size(); ++p)
+    if (hall.model.point_lux_per_level(static_cast<Eigen::Index>(p), dead) >
+        hall.model.point_lux_per_level(static_cast<Eigen::Index>(near), dead))
+      near = p;
+  hall.rig.points[near].max_lx = 1.2 * *hall.rig.points[near].goal_lx;
+  ClosedLoop loop(hall, seeded(4));
+  loop.apply();
+  ASSERT_TRUE(loop.run_until(Phase::holding, 40)) << loop.describe();
+  EXPECT_EQ(loop.status().points[near].limit, LimitVerdict::kept);
+  loop.fault("spot-10", sim::FaultKind::silent, true);
+  loop.run(3);
+  const ShowStatus status = loop.status();
+  EXPECT_EQ(status.points[near].limit, LimitVerdict::unknown) << status.points[near].limit_reason;
+  EXPECT_NE(status.points[near].limit_reason.find("does not answer"), std::string::npos)
+      << status.points[near].limit_reason;
+}
+
 TEST(ShowVerdicts, ADimmerThatDiesHoldingShowsTheLevelItHolds) {
   ClosedLoop loop(make_hall(4), seeded(4));
   loop.apply();

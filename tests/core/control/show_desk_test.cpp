@@ -18,7 +18,7 @@ struct DeskShow {
   double now_s = 0;
   Eigen::Vector2d gain{0.9, 0.95};  ///< the truth
 
-  explicit DeskShow(DeskRules rules, bool limited = true) {
+  explicit DeskShow(DeskRules rules, bool limited = true, bool metered = true) {
     rig.name = "small";
     rig.buses.resize(2);
     rig.buses[1].name = "meters";
@@ -28,6 +28,7 @@ struct DeskShow {
       rig.points.emplace_back();
       rig.points.back().name = std::string("below ") + name;
       rig.points.back().goal_lx = 40;
+      if (!metered) continue;
       rig.luxmeters.emplace_back();
       rig.luxmeters.back().name = std::string("meter ") + name;
       rig.luxmeters.back().point = rig.points.size() - 1;
@@ -38,7 +39,7 @@ struct DeskShow {
     rig.control.fade_s = 1;
     rig.control.settle_s = 0.2;
     model.point_lux_per_level = Eigen::MatrixXd{{100, 10}, {10, 100}};
-    model.meter_lux_per_level = model.point_lux_per_level;
+    if (metered) model.meter_lux_per_level = model.point_lux_per_level;
     show = std::make_unique<ShowController>(rig, model);
     EXPECT_EQ(show->add_desk(rules, {"dmx, universe 1", {0, 1}}), 0u);
   }
@@ -56,7 +57,7 @@ struct DeskShow {
       show->desk(at(now_s), 0, frame);
       const std::vector<double> level = levels();
       const Eigen::Vector2d lux = model.point_lux_per_level * Eigen::Vector2d(gain[0] * level[0], gain[1] * level[1]);
-      for (std::size_t m = 0; m < 2; ++m) {
+      for (std::size_t m = 0; m < rig.luxmeters.size(); ++m) {
         show->reading(at(now_s), {m, lux[static_cast<Eigen::Index>(m)], at(now_s)});
       }
       show->step(at(now_s));
@@ -115,6 +116,24 @@ TEST(ShowDesk, BelievesNoMeterWhileADeskHasASayAndGoesOnAfterwards) {
   EXPECT_FALSE(small.status().alarms[0].severe);
   EXPECT_EQ(small.status().alarms[0].text,
             "desk \"desk\" is lost: dmx, universe 1 is Luxrig's again; look after the desk or its cable");
+}
+
+TEST(ShowDesk, ADeskThatDrivesTheLampsItselfIsHeldToNoLimitAndTheStatusSaysSo) {
+  DeskShow small({DeskMode::standby, HandBack::fade}, true, false);
+  small.desk(DeskPresence::present, 0.9, 0.1);
+  small.show->apply(at(0), std::vector<double>{0.2, 0.2});
+  small.run(10);
+  ShowStatus status = small.status();
+  ASSERT_TRUE(status.desks[0].silent);
+  EXPECT_DOUBLE_EQ(status.fixtures[0].level, 0.9) << "what the desk sends";
+  EXPECT_NE(status.points[0].limit, LimitVerdict::kept) << "91 lx by the model, 50 are allowed";
+  EXPECT_NE(status.points[0].limit_reason.find("a desk drives lamps"), std::string::npos)
+      << status.points[0].limit_reason;
+  EXPECT_EQ(status.limits_kept, 0);
+  small.desk(DeskPresence::present, 0.1, 0.1);
+  small.run(10);
+  status = small.status();
+  EXPECT_EQ(status.points[0].limit, LimitVerdict::kept) << status.points[0].limit_reason;
 }
 
 TEST(ShowDesk, FadesFromTheDesksLastLookWithoutAFlash) {
