@@ -50,13 +50,16 @@ class FarEnd {
   /// The far end's clock: at `now`, and on from there in real time, never back. Returns once everything that had
   /// arrived has been served.
   void step_to(Time now) {
-    std::uint64_t wanted = 0;
     {
       const std::lock_guard lock(mutex_);
       base_ = now;
       base_real_ = std::chrono::steady_clock::now();
-      wanted = rounds_ + 2;
     }
+    serve_what_arrived();
+  }
+  /// Returns once everything that had arrived has been served.
+  void serve_what_arrived() const {
+    const std::uint64_t wanted = rounds_ + 2;
     while (rounds_ < wanted) std::this_thread::yield();
   }
   [[nodiscard]] std::vector<double> drives() const {

@@ -75,10 +75,7 @@ class RdmOverArtnet : public ::testing::Test {
     dmx.slots.assign(512, 0);
     dmx.slots[static_cast<std::size_t>(address - 1)] = level;
     EXPECT_TRUE(channel_->send(link_.node(), encode(dmx)));
-    for (int i = 0; i < 50; ++i) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));
-      if (far_end_.drives()[0] > 0) break;
-    }
+    far_end_.serve_what_arrived();
     return far_end_.drives()[0];
   }
 
