@@ -115,7 +115,19 @@ Correction GainEstimator::correct(std::span<const double> present, Time now, boo
     if (brightest > 0 && !at_once) problem.goal_lx[points + j] = brightest * problem.near_level[j];
   }
 
-  // What is on or off, and what a person holds, is light that is there anyway.
+  // What does not obey is light that is there anyway.
+  for (Index k = 0; k < lights; ++k) {
+    Index brightest = 0;
+    per_light.col(k).maxCoeff(&brightest);
+    if (!is_lost(brightest)) continue;
+    problem.fixed_lx.head(points) += problem.lux_per_level.col(k).head(points) * problem.near_level[k];
+    problem.lux_per_level.col(k).setZero();
+    problem.goal_lx[points + k] = std::numeric_limits<double>::quiet_NaN();
+    problem.near_level[k] = problem.max_level[k] = 0;
+    std::erase(on_or_off, k);
+    std::erase(held, k);
+  }
+  // So is what is on or off, and what a person holds.
   const VectorXd daylight_lx = problem.fixed_lx.head(points);
   const MatrixXd lux_per_level = problem.lux_per_level.topRows(points);
   VectorXd set = VectorXd::Zero(lights);
@@ -175,6 +187,8 @@ Correction GainEstimator::correct(std::span<const double> present, Time now, boo
     }
   }
   correction.level = within_limits(list_of((per_light * level).cwiseMin(max_level_)), now);
+  for (std::size_t j = 0; j < correction.level.size(); ++j)
+    if (is_lost(static_cast<Index>(j))) correction.level[j] = present[j];
   const VectorXd corrected = vector_of(correction.level);
   for (const Row& row : rows)
     correction.aimed_lx.push_back(row.lux_per_level.cwiseProduct(row.factor).dot(corrected.transpose()));

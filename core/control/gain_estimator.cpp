@@ -87,23 +87,36 @@ GainEstimator::GainEstimator(const Rig& rig, const LightModel& model)
   estimate(Time{});
 }
 
-VectorXd GainEstimator::vector_of(std::span<const double> level) const {
+VectorXd GainEstimator::as_given(std::span<const double> level) const {
   LUXRIG_CHECK(static_cast<Index>(level.size()) == fixtures(), "{} levels, {} fixtures", level.size(), fixtures());
   VectorXd all = VectorXd::Ones(meter_.cols());
   all.head(fixtures()) = Eigen::Map<const VectorXd>(level.data(), fixtures());
   return all;
 }
 
+VectorXd GainEstimator::vector_of(std::span<const double> level) const {
+  VectorXd all = as_given(level);
+  for (std::size_t j = 0; j < lost_.size(); ++j)
+    if (lost_[j]) all[static_cast<Index>(j)] = lost_[j]->level;
+  return all;
+}
+
 GainEstimator::Row GainEstimator::row_of_meter(std::size_t luxmeter) const {
   const auto i = static_cast<Index>(luxmeter);
-  return {meter_.row(i), meter_error_.row(i), factor_.row(i), factor_error_.row(i), luxmeter};
+  return {meter_.row(i), meter_error_.row(i), factor_.row(i), factor_error_.row(i), luxmeter, 0};
 }
 
 GainEstimator::Row GainEstimator::row_of_point(std::size_t point) const {
-  if (confirmed(point)) return row_of_meter(*meter_of_point_[point]);
   const auto i = static_cast<Index>(point);
-  const RowVectorXd error = (gain_error_.array().square() + prior_local_sd_ * prior_local_sd_).sqrt().transpose();
-  return {point_.row(i), point_error_.row(i), gain_.transpose(), error, std::nullopt};
+  Row row;
+  if (confirmed(point)) {
+    row = row_of_meter(*meter_of_point_[point]);
+  } else {
+    const RowVectorXd error = (gain_error_.array().square() + prior_local_sd_ * prior_local_sd_).sqrt().transpose();
+    row = {point_.row(i), point_error_.row(i), gain_.transpose(), error, std::nullopt, 0};
+  }
+  row.unseen_lx = unseen_lux(point, row);
+  return row;
 }
 
 const GainEstimator::Evidence* GainEstimator::latest(std::size_t luxmeter) const {
@@ -212,7 +225,7 @@ Prediction GainEstimator::predict(const Row& row, const VectorXd& level) const {
 }
 
 Prediction GainEstimator::at_point(std::size_t point, std::span<const double> level) const {
-  return predict(row_of_point(point), vector_of(level));
+  return predict(row_of_point(point), as_given(level));
 }
 
 Prediction GainEstimator::at_meter(std::size_t luxmeter, std::span<const double> level) const {

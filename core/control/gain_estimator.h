@@ -62,6 +62,11 @@ struct Correction {
   std::vector<std::string> why;  ///< per point: what keeps it from its goal; empty when it will be met or has none
 };
 
+/// What a show makes of levels before any luxmeter has been read: within the limits, with the margins that hold then.
+/// One of each per fixture; goals, limits, gain_min, gain_max and open_loop_margin are the rig's.
+[[nodiscard]] std::vector<double> opening_levels(const Rig& rig, const LightModel& model,
+                                                 std::span<const double> level);
+
 class GainEstimator {
  public:
   static constexpr double kRepeatability = 0.005;  ///< of a reading, standard deviation; the rest is its tolerance
@@ -88,6 +93,21 @@ class GainEstimator {
     max_level_[static_cast<Eigen::Index>(fixture)] = max_level;
   }
 
+  /// A lamp that does not obey: what it gives is light that is there anyway, whatever level is asked.
+  struct Lost {
+    double level = 0;  ///< the last that it took
+    double most = 0;   ///< that it may have by now; above `level` where nobody knows what it does without data
+  };
+  /// Per fixture; nothing: it obeys. watched: per luxmeter, 1: it is read, and shows no more than its point's limit;
+  /// what a lost lamp may do beyond its last level counts only where nobody would see it, and where dimming the others
+  /// could make good for it.
+  void set_lost(std::vector<std::optional<Lost>> lost, std::vector<std::uint8_t> watched);
+  /// Limited points that lost lamps alone may have above their limit, for all that others can do.
+  [[nodiscard]] std::vector<std::size_t> beyond_dimming() const;
+  /// What these fixtures (1: counts) would give to a meter at full level, over what it is predicted to read.
+  [[nodiscard]] double share_at_meter(std::size_t luxmeter, std::span<const std::uint8_t> fixtures,
+                                      std::span<const double> level) const;
+
   /// Drops what this meter taught (it is gone, or was exchanged).
   void forget(std::size_t luxmeter);
 
@@ -112,6 +132,8 @@ class GainEstimator {
   /// model with upper gains, over (1 − open_loop_margin); with one, the last believed reading / (1 − tolerance), plus 1
   /// % for its noise, carried over to these levels in the worst way the bounds allow.
   [[nodiscard]] double most_lux_at_point(std::size_t point, std::span<const double> level, Time now) const;
+  /// The same were lost lamps at these levels, too.
+  [[nodiscard]] double most_lux_as_given(std::size_t point, std::span<const double> level, Time now) const;
 
   /// Rows for OutputProgram: as long as row · level ≤ max_lx, no level on the straight way `from` -> `to` (a fade moves
   /// all fixtures by the same share, and switches as level_on_the_way() does), nor a share of one, can bring more than
@@ -122,7 +144,10 @@ class GainEstimator {
   /// would.
   [[nodiscard]] WorstCase worst_of_any(Time now) const;
 
-  /// `level` with the fixtures that light a limited point scaled down together, so that most_lux_at_point <= max_lx
+  /// What each lamp is worth to the goals, by the model.
+  [[nodiscard]] LampWorth worth() const;
+
+  /// `level` with the fixtures that light a limited point dimmed (scale_to_limits), so that most_lux_at_point <= max_lx
   /// everywhere; those that are on or off go off when that is not enough.
   [[nodiscard]] std::vector<double> within_limits(std::span<const double> level, Time now) const;
 
@@ -152,7 +177,16 @@ class GainEstimator {
     Eigen::RowVectorXd lux_per_level, standard_error;
     Eigen::RowVectorXd factor, factor_error;  ///< x and its standard error, within bounds
     std::optional<std::size_t> luxmeter;      ///< whose evidence holds here
+    double unseen_lx = 0;                     ///< of lost lamps, beyond their last level
   };
+  [[nodiscard]] double unseen_lux(std::size_t point, const Row& row) const;
+  [[nodiscard]] double beyond_last_level(const Row& row) const;
+  [[nodiscard]] Eigen::RowVectorXd without_lost(Eigen::RowVectorXd row) const;
+  [[nodiscard]] std::vector<double> dimmed_to_limits(std::span<const double> level, Time now) const;
+  [[nodiscard]] bool any_lost() const;
+  [[nodiscard]] bool is_lost(Eigen::Index fixture) const {
+    return static_cast<std::size_t>(fixture) < lost_.size() && lost_[static_cast<std::size_t>(fixture)].has_value();
+  }
   [[nodiscard]] Row row_of_meter(std::size_t luxmeter) const;
   [[nodiscard]] Row row_of_point(std::size_t point) const;
   [[nodiscard]] Prediction predict(const Row& row, const Eigen::VectorXd& level) const;
@@ -160,7 +194,9 @@ class GainEstimator {
   [[nodiscard]] double most_lux(const Row& row, const Eigen::VectorXd& level, Time now) const;
   [[nodiscard]] const Evidence* latest(std::size_t luxmeter) const;
   [[nodiscard]] double covariance(const Row& one, const Eigen::VectorXd& one_level, const Evidence& other) const;
-  [[nodiscard]] Eigen::VectorXd vector_of(std::span<const double> level) const;  ///< with the 1 of daylight
+  [[nodiscard]] Eigen::VectorXd as_given(std::span<const double> level) const;  ///< with the 1 of daylight
+  /// The same, with lost lamps as they are believed to be.
+  [[nodiscard]] Eigen::VectorXd vector_of(std::span<const double> level) const;
   static constexpr double kDriftPerMinute = 0.001;  ///< of a lamp: old evidence loses weight, old limits grow
   static constexpr double kCurveError = 0.1;        ///< how far the exponent of level -> true output may be from 1
   [[nodiscard]] static double minutes_between(Time from, Time to) { return std::max(0.0, to_seconds(to - from) / 60); }
@@ -189,7 +225,9 @@ class GainEstimator {
   double local_ = 1;  ///< 1/(1 − open_loop_margin)
   double prior_gain_ = 1, prior_gain_sd_ = 0, prior_local_sd_ = 0;
 
-  std::vector<Evidence> evidence_;  ///< in the order in which it came
+  std::vector<std::optional<Lost>> lost_;  ///< per fixture; may be empty
+  std::vector<std::uint8_t> watched_;      ///< per luxmeter; may be empty
+  std::vector<Evidence> evidence_;         ///< in the order in which it came
   std::vector<Meter> meters_;
   Eigen::LDLT<Eigen::MatrixXd> innovation_;  ///< covariance of the evidence
   Eigen::VectorXd gain_, gain_error_;

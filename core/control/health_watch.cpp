@@ -3,6 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <tuple>
+#include <utility>
+
+#include "core/control/alarm_log.h"
 
 namespace luxrig {
 
@@ -12,6 +16,8 @@ HealthWatch::HealthWatch(const Rig& rig)
     bus_of_fixture_.push_back(fixture.bus);
     motion_bus_of_fixture_.push_back(fixture.motion_bus());
     if (fixture.bus < fixtures_on_bus_.size()) ++fixtures_on_bus_[fixture.bus];
+    const auto* modbus = std::get_if<ModbusPatch>(&fixture.patch);
+    unit_of_fixture_.push_back(modbus != nullptr ? std::optional<int>(modbus->unit) : std::nullopt);
     if (fixture.axes && fixture.axes->bus < heads_on_bus_.size()) ++heads_on_bus_[fixture.axes->bus];
   }
   lamp_lost_.assign(rig.fixtures.size(), false);
@@ -20,7 +26,9 @@ HealthWatch::HealthWatch(const Rig& rig)
     meters_.emplace_back();
     meters_.back().name = luxmeter.name;
     meters_.back().bus = luxmeter.bus;
+    meters_.back().unit = luxmeter.patch.unit;
   }
+  for (const Bus& bus : rig.buses) bus_names_.push_back(bus.name);
 }
 
 std::map<std::string, HealthWatch::Known> HealthWatch::names_of(const Rig& rig) {
@@ -122,10 +130,64 @@ void HealthWatch::warn_of(const Health& health) {
        health.since});
 }
 
+/// Devices behind one Modbus unit that all fail for the same reason: the unit does.
+void HealthWatch::join_units() {
+  struct Unit {
+    std::vector<const Health*> fixtures, meters;
+    Time since{};
+  };
+  std::map<std::tuple<std::size_t, int, std::string>, Unit> units;
+  for (const Health& health : report_) {
+    const auto found = known_.find(health.device);
+    const bool told = std::any_of(alarms_.begin(), alarms_.end(),
+                                  [&](const Alarm& alarm) { return alarm.severe && alarm.device == health.device; });
+    if (health.life != Life::faulted || found == known_.end() || !told) continue;
+    const auto [role, index] = found->second;
+    const bool is_meter = role == Role::luxmeter;
+    if (!is_meter && !(role == Role::fixture && unit_of_fixture_[index])) continue;
+    Unit& unit = units[{is_meter ? meters_[index].bus : bus_of_fixture_[index],
+                        is_meter ? meters_[index].unit : *unit_of_fixture_[index], health.detail}];
+    if (unit.fixtures.empty() && unit.meters.empty()) unit.since = health.since;
+    unit.since = std::min(unit.since, health.since);
+    (is_meter ? unit.meters : unit.fixtures).push_back(&health);
+  }
+  const auto list = [](const std::vector<const Health*>& devices) {
+    std::string text;
+    for (const Health* device : devices) text += fmt::format("{}\"{}\"", text.empty() ? "" : ", ", device->device);
+    return text;
+  };
+  for (const auto& [key, unit] : units) {
+    const auto& [bus, number, detail] = key;
+    if (unit.fixtures.size() + unit.meters.size() < 2) continue;
+    const auto of_unit = [&](const Alarm& alarm) {
+      const auto same = [&](const Health* device) { return device->device == alarm.device; };
+      return alarm.severe && (std::any_of(unit.fixtures.begin(), unit.fixtures.end(), same) ||
+                              std::any_of(unit.meters.begin(), unit.meters.end(), same));
+    };
+    const auto first = std::find_if(alarms_.begin(), alarms_.end(), of_unit);
+    std::string text = fmt::format("unit {} of bus \"{}\" does not answer ({}): ", number,
+                                   bus < bus_names_.size() ? bus_names_[bus] : std::string(), detail);
+    if (!unit.fixtures.empty())
+      text +=
+          fmt::format("fixture{} {} cannot be controlled", unit.fixtures.size() > 1 ? "s" : "", list(unit.fixtures));
+    if (!unit.meters.empty())
+      text +=
+          fmt::format("{}luxmeter{} {} not heard", unit.fixtures.empty() ? "" : ", ", unit.meters.size() > 1 ? "s" : "",
+                      list(unit.meters) + (unit.meters.size() > 1 ? " are" : " is"));
+    *first = {true, first->device, text + "; check its power and its address", unit.since};
+    alarms_.erase(std::remove_if(std::next(first), alarms_.end(), of_unit), alarms_.end());
+  }
+}
+
 void HealthWatch::step_meter(Time now, std::size_t luxmeter, const Health* faulted, const Health* bus_faulted) {
   Meter& meter = meters_[luxmeter];
-  const Duration silence = now - meter.heard;
-  const bool silent = silence > kSilentAfter;
+  const auto own =
+      std::find_if(report_.begin(), report_.end(), [&](const Health& h) { return h.device == meter.name; });
+  const std::uint64_t asked = own == report_.end() ? 0 : own->sent;
+  if (meter.heard != meter.heard_before) meter.asked_before = asked;
+  meter.heard_before = meter.heard;
+  const Duration silence = now - meter.heard - meter.unseen;
+  const bool silent = silence > (asked > 0 && asked == meter.asked_before ? kUnaskedFor : kSilentAfter);
   const bool lost = faulted || bus_faulted || silent || !meter.implausible.empty();
   if (lost && !meter.lost) meter.lost_since = now;
   meter.lost = lost;
@@ -133,12 +195,10 @@ void HealthWatch::step_meter(Time now, std::size_t luxmeter, const Health* fault
   std::string text;
   if (silent && meter.was_garbled && now - meter.garbled < kSilentAfter) {
     text = fmt::format(
-        "luxmeter \"{}\" sends no usable number for {:.1f} s; check its registers and word order in the "
-        "rig file, or exchange it",
-        meter.name, to_seconds(silence));
+        "luxmeter \"{}\" sends no usable number; check its registers and word order in the rig file, or exchange it",
+        meter.name);
   } else if (silent) {
-    text = fmt::format("luxmeter \"{}\" has not been heard for {:.1f} s; check its power, its cable and its address",
-                       meter.name, to_seconds(silence));
+    text = fmt::format("luxmeter \"{}\" is not heard; check its power, its cable and its address", meter.name);
   } else {
     text = fmt::format(
         "luxmeter \"{}\" cannot be believed ({}); check that nothing covers it and that it stands where the rig file "
@@ -152,9 +212,14 @@ void HealthWatch::step(Time now) {
   if (!started_) {
     started_ = true;
     for (Meter& meter : meters_) meter.heard = std::max(meter.heard, now);
+    stepped_ = now;
   }
-  alarms_.clear();
+  const Duration late = std::max(Duration{}, now - stepped_ - kLongestStep);
+  stepped_ = now;
+  for (Meter& meter : meters_) meter.unseen = meter.heard == meter.heard_before ? meter.unseen + late : Duration{};
+  const std::vector<Alarm> before = std::exchange(alarms_, {});
   light_lost_ = false;
+  all_lost_ = false;
   lamp_lost_.assign(bus_of_fixture_.size(), false);
   motion_lost_.assign(bus_of_fixture_.size(), false);
   std::vector<const Health*> meter_faulted(meters_.size(), nullptr), bus_faulted(fixtures_on_bus_.size(), nullptr);
@@ -167,6 +232,7 @@ void HealthWatch::step(Time now) {
     if (known.role == Role::light_bus || known.role == Role::axes_bus || known.role == Role::meter_bus)
       bus_faulted[known.index] = &health;
     if (known.role != Role::luxmeter && known.role != Role::meter_bus) light_lost_ = true;
+    if (known.role == Role::unknown) all_lost_ = true;
     if (known.role == Role::fixture) lamp_lost_[known.index] = true;
     if (known.role == Role::axis) motion_lost_[known.index] = true;
     alarms_.push_back(alarm_of(health, known));
@@ -176,6 +242,8 @@ void HealthWatch::step(Time now) {
     if (dead(bus_of_fixture_[f])) lamp_lost_[f] = true;
     if (dead(motion_bus_of_fixture_[f])) motion_lost_[f] = true;
   }
+  if (!lamp_lost_.empty() && std::find(lamp_lost_.begin(), lamp_lost_.end(), false) == lamp_lost_.end())
+    all_lost_ = true;
   // What hangs on a dead bus is lost with it; once is enough to say so.
   std::erase_if(alarms_, [&](const Alarm& alarm) {
     const auto found = known_.find(alarm.device);
@@ -187,8 +255,14 @@ void HealthWatch::step(Time now) {
                                                    : bus_of_fixture_[index];
     return bus < bus_faulted.size() && bus_faulted[bus] != nullptr;
   });
+  join_units();
   for (std::size_t i = 0; i < meters_.size(); ++i) {
     step_meter(now, i, meter_faulted[i], meters_[i].bus < bus_faulted.size() ? bus_faulted[meters_[i].bus] : nullptr);
+  }
+  for (Alarm& alarm : alarms_) {
+    const auto said =
+        std::find_if(before.begin(), before.end(), [&](const Alarm& b) { return is_same_alarm(alarm, b); });
+    if (said != before.end()) alarm.text = said->text;
   }
 }
 

@@ -3,6 +3,7 @@
 /// Decides nothing about the light; the show does that (show_controller.h).
 
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,8 +16,11 @@ namespace luxrig {
 
 class HealthWatch {
  public:
-  /// A luxmeter that gave nothing usable for so long is lost. Alarms shall be up within 2 s.
+  /// A luxmeter that gave nothing usable for so long is lost. Alarms are up within 2 s.
   static constexpr Duration kSilentAfter = std::chrono::milliseconds(1500);
+  /// Time in which nobody here looked, or asked the meter, is not its silence. One that is never asked is lost after:
+  static constexpr Duration kUnaskedFor = std::chrono::seconds(10);
+  static constexpr Duration kLongestStep = std::chrono::milliseconds(200);
 
   explicit HealthWatch(const Rig& rig);
 
@@ -35,6 +39,9 @@ class HealthWatch {
 
   /// A bus or device that carries light is faulted (or one that the rig does not know).
   [[nodiscard]] bool light_lost() const { return light_lost_; }
+  /// Nothing is left that goes on: every fixture is lost, or something that the rig does not know, and perhaps all
+  /// hangs on it.
+  [[nodiscard]] bool all_lost() const { return all_lost_; }
   /// The bus of its lamp is faulted, or its dimmer.
   [[nodiscard]] bool lamp_lost(std::size_t fixture) const { return lamp_lost_[fixture]; }
   /// What turns it does not hear or obey: its bus, or an axis.
@@ -42,14 +49,18 @@ class HealthWatch {
   [[nodiscard]] bool any_meter_lost() const;
   [[nodiscard]] bool meter_lost(std::size_t luxmeter) const { return meters_[luxmeter].lost; }
   [[nodiscard]] bool meter_implausible(std::size_t luxmeter) const { return !meters_[luxmeter].implausible.empty(); }
-  /// One for each failure, those that carry light first.
+  /// One for each cause, whatever hangs on it; a text says nothing that changes while it lasts. Those that carry light
+  /// first.
   [[nodiscard]] const std::vector<Alarm>& alarms() const { return alarms_; }
 
  private:
   struct Meter {
     std::string name;
     std::size_t bus = 0;
-    Time heard{};
+    int unit = 0;
+    Time heard{}, heard_before{};
+    Duration unseen{};               ///< of the time since `heard`: nobody here looked
+    std::uint64_t asked_before = 0;  ///< by its driver, when it was heard last
     Time garbled{};
     bool was_garbled = false;
     std::string implausible;  ///< why; empty = believed
@@ -65,16 +76,20 @@ class HealthWatch {
 
   [[nodiscard]] Alarm alarm_of(const Health& health, const Known& known) const;
   void warn_of(const Health& health);
+  void join_units();
   void step_meter(Time now, std::size_t luxmeter, const Health* faulted, const Health* bus_faulted);
 
   const std::map<std::string, Known> known_;
   std::vector<std::size_t> bus_of_fixture_, motion_bus_of_fixture_, fixtures_on_bus_, heads_on_bus_;
+  std::vector<std::optional<int>> unit_of_fixture_;  ///< Modbus
+  std::vector<std::string> bus_names_;
   std::vector<Meter> meters_;
   std::vector<Health> report_;
   std::vector<Alarm> alarms_;
   std::vector<bool> lamp_lost_, motion_lost_;  ///< per fixture
-  bool light_lost_ = false;
+  bool light_lost_ = false, all_lost_ = false;
   bool started_ = false;
+  Time stepped_{};
 
   [[nodiscard]] static std::map<std::string, Known> names_of(const Rig& rig);
 };

@@ -48,6 +48,62 @@ OfRow switch_off_above(double most, Eigen::Index row, const Eigen::MatrixXd& wor
   }
 }
 
+/// Lamps that dim at a row, those of one housing as one: what they give there, and what they are worth.
+template <class Call>
+void each_dimmed(const Eigen::MatrixXd& worst_lux_per_level, Eigen::Index row, std::span<const double> level,
+                 std::span<const std::uint8_t> switched, const LampWorth& worth, Call call) {
+  const auto lights = static_cast<std::size_t>(
+      std::min<Eigen::Index>(worst_lux_per_level.cols(), static_cast<Eigen::Index>(level.size())));
+  const auto housing = [&](std::size_t j) { return j < worth.housing.size() ? worth.housing[j] : j; };
+  for (std::size_t first = 0, end = 0; first < lights; first = end) {
+    double lux = 0, value = 1;
+    for (end = first; end < lights && (end == first || housing(end) == housing(first)); ++end) {
+      const auto j = static_cast<Eigen::Index>(end);
+      if (is_on_or_off(switched, j)) continue;
+      if (const double worst = worst_lux_per_level(row, j); worst > 0) lux += worst * level[end];
+      if (end < worth.per_level_squared.size()) value += worth.per_level_squared[end] * level[end] * level[end];
+    }
+    if (lux > 0) call(first, end, lux, value);
+  }
+}
+
+/// Takes light away until what dims gives `room_lx` at the row, of `dimmed_lx` > 0 now. A lamp that gives the share p
+/// of those, and is worth v, dims by min(1, λ p / v): λ by Newton's method, which comes from below, as what is left is
+/// convex in it.
+void dim_by_worth(double room_lx, double dimmed_lx, const Eigen::MatrixXd& worst_lux_per_level, Eigen::Index row,
+                  std::span<const std::uint8_t> switched, const LampWorth& worth, std::span<double> level) {
+  constexpr int kPasses = 100;
+  double strength = 0;
+  for (int pass = 0; pass < kPasses; ++pass) {
+    double left_lx = 0, slope_lx = 0;
+    each_dimmed(worst_lux_per_level, row, level, switched, worth,
+                [&](std::size_t, std::size_t, double lux, double value) {
+                  const double cut = lux / dimmed_lx / value;
+                  if (strength * cut >= 1) return;
+                  left_lx += lux;
+                  slope_lx += lux * cut;
+                });
+    const double next = slope_lx > 0 ? (left_lx - room_lx) / slope_lx : strength;
+    if (!(next > strength * (1 + 1e-12))) break;
+    strength = next;
+  }
+  double kept_lx = 0;
+  each_dimmed(worst_lux_per_level, row, level, switched, worth,
+              [&](std::size_t first, std::size_t end, double lux, double value) {
+                const double kept = std::clamp(1 - strength * (lux / dimmed_lx / value), 0.0, 1.0);
+                kept_lx += kept * lux;
+                for (std::size_t j = first; j < end; ++j)
+                  if (!is_on_or_off(switched, static_cast<Eigen::Index>(j))) level[j] *= kept;
+              });
+  if (kept_lx <= room_lx) return;
+  const double rest = room_lx / kept_lx;
+  for (std::size_t j = 0; j < level.size(); ++j) {
+    const auto column = static_cast<Eigen::Index>(j);
+    if (column < worst_lux_per_level.cols() && worst_lux_per_level(row, column) > 0 && !is_on_or_off(switched, column))
+      level[j] *= rest;
+  }
+}
+
 }  // namespace
 
 double fade_share(FadeCurve curve, double x) {
@@ -101,7 +157,7 @@ double level_on_the_way(double from, double to, double share, bool switched) {
 }
 
 void scale_to_limits(const Eigen::MatrixXd& worst_lux_per_level, const Eigen::VectorXd& max_lx, std::span<double> level,
-                     double relief, std::span<const std::uint8_t> switched) {
+                     double relief, std::span<const std::uint8_t> switched, const LampWorth& worth) {
   const auto lights = std::min<Eigen::Index>(worst_lux_per_level.cols(), static_cast<Eigen::Index>(level.size()));
   const Eigen::Index rows = std::min(worst_lux_per_level.rows(), max_lx.size());
   // Room for rounding, so that the limit holds in whatever order somebody adds the contributions up.
@@ -123,12 +179,14 @@ void scale_to_limits(const Eigen::MatrixXd& worst_lux_per_level, const Eigen::Ve
     double most = max_lx[row] > 1e-290 && !unknown ? max_lx[row] * (1 - 2 * rounding) : 0.0;
     if (relief > 0 && std::isfinite(lux)) most += relief * (lux - most);
     const OfRow set = switch_off_above(most, row, worst_lux_per_level, switched, level);
-    const double left = most - set.switched;
-    const double share = std::isfinite(lux) && set.dimmed > 0 ? std::clamp(left / set.dimmed, 0.0, 1.0) : 0.0;
+    const double room_lx = most - set.switched;
+    if (std::isfinite(lux) && set.dimmed > 0 && room_lx > 0) {
+      if (set.dimmed > room_lx) dim_by_worth(room_lx, set.dimmed, worst_lux_per_level, row, switched, worth, level);
+      continue;
+    }
     for (Eigen::Index j = 0; j < lights; ++j) {
       const double worst = worst_lux_per_level(row, j);
-      if ((worst > 0 || !std::isfinite(worst)) && !is_on_or_off(switched, j))
-        level[static_cast<std::size_t>(j)] *= share;
+      if ((worst > 0 || !std::isfinite(worst)) && !is_on_or_off(switched, j)) level[static_cast<std::size_t>(j)] = 0;
     }
   }
 }
@@ -153,7 +211,7 @@ void OutputProgram::own_levels_at(Time now, std::span<double> level) const {
     level[i] = wanted > 0 && most > 0 ? std::min(wanted, std::min(most, 1.0)) : 0.0;
   }
   switch_off_partial(level);
-  scale_to_limits(worst_lux_per_level, max_lx, level, 0, switched);
+  scale_to_limits(worst_lux_per_level, max_lx, level, 0, switched, worth);
 }
 
 bool OutputProgram::desk_has_a_say(Time now) const {
@@ -196,7 +254,7 @@ void OutputProgram::shared_levels_at(Time now, std::span<double> level) const {
     for (const DeskBlend& desk : desks) last = std::max(last, desk.start + desk.duration);
     if (now >= last + limits_released) return;
     const double relief = fade_share(curve, to_seconds(now - last) / to_seconds(limits_released));
-    return scale_to_limits(any_lux_per_level, any_max_lx, level, relief, switched);
+    return scale_to_limits(any_lux_per_level, any_max_lx, level, relief, switched, worth);
   }
   for (const DeskBlend& desk : desks) {
     if (!desk.is_own(now)) desk.apply(now, now < heads_arrive ? heads_guarded : kNobody, level);
@@ -207,7 +265,7 @@ void OutputProgram::shared_levels_at(Time now, std::span<double> level) const {
     level[i] = level[i] > 0 && most > 0 ? std::min(level[i], std::min(most, 1.0)) : 0.0;
   }
   switch_off_partial(level);
-  scale_to_limits(any_lux_per_level, any_max_lx, level, 0, switched);
+  scale_to_limits(any_lux_per_level, any_max_lx, level, 0, switched, worth);
 }
 
 void OutputProgram::joints_at(Time now, std::span<Joints> out) const {

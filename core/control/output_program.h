@@ -20,8 +20,17 @@ namespace luxrig {
 [[nodiscard]] double level_from_drive(DimmerCurve curve, double drive);
 [[nodiscard]] double drive_from_level(DimmerCurve curve, double level);
 
-/// Scales levels down, in place, until worst_lux_per_level · level ≤ max_lx in every row, whatever the order of
-/// summation: the fixtures that light a point above its limit all give the same share.
+/// What is lost with a lamp's light: 1 for the lamp, and per_level_squared · level² for the goals that it lights (the
+/// sum of the squares of the shares that it gives of each). Emitters of one housing dim together, so that its colour
+/// stays. Either may be empty: no goals, no housings.
+struct LampWorth {
+  std::vector<double> per_level_squared;  ///< per fixture, ≥ 0, finite
+  std::vector<std::size_t> housing;  ///< per fixture: the first of those that change together, which are neighbours
+};
+
+/// Dims, in place, until worst_lux_per_level · level ≤ max_lx in every row, whatever the order of summation. Of a point
+/// above its limit the lamps that light it dim each by a share in proportion to what it gives there over what it is
+/// worth elsewhere: least squares of those shares, each times the lamp's worth.
 ///
 /// worst_lux_per_level  limited points × fixtures, ≥ 0; an entry that is not finite darkens its fixture
 /// max_lx               per row; not a number or ≤ 0 darkens every fixture that lights that point
@@ -32,7 +41,7 @@ namespace luxrig {
 ///                      then the brightest at that point goes off. May be empty
 /// Allocates nothing. With a limit below 1e-290 lx the point is darkened.
 void scale_to_limits(const Eigen::MatrixXd& worst_lux_per_level, const Eigen::VectorXd& max_lx, std::span<double> level,
-                     double relief = 0, std::span<const std::uint8_t> switched = {});
+                     double relief = 0, std::span<const std::uint8_t> switched = {}, const LampWorth& worth = {});
 
 /// Per fixture, 1: it is on or off.
 [[nodiscard]] std::vector<std::uint8_t> switched_fixtures(const Rig& rig);
@@ -70,6 +79,7 @@ struct OutputProgram {
   /// A limit of power is a row of its own, of watts per level, and watts.
   Eigen::MatrixXd worst_lux_per_level;
   Eigen::VectorXd max_lx;
+  LampWorth worth{};  ///< which lamps dim for a limit
 
   /// Lighting desks with a say, one for each part of the rig that follows one.
   std::vector<DeskBlend> desks;
@@ -86,8 +96,8 @@ struct OutputProgram {
   LampStarts lamp_starts;              ///< after power came; empty: nothing is staged
   std::vector<std::uint8_t> parked{};  ///< per fixture, 1: desks do not turn it; may be empty
 
-  /// Levels at `now`, per fixture. Never above max_level; never with worst_lux_per_level · level above max_lx (the
-  /// fixtures that light that point are then scaled down together); what a desk wants is within both, too. Allocates
+  /// Levels at `now`, per fixture. Never above max_level; never with worst_lux_per_level · level above max_lx
+  /// (scale_to_limits); what a desk wants is within both, too. Allocates
   /// nothing.
   /// Values that are missing or not numbers count as 0. The time before `start` counts as `start`.
   void levels_at(Time now, std::span<double> level) const;

@@ -10,6 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "core/control/json_place.h"
+
 namespace luxrig {
 namespace {
 
@@ -99,6 +101,7 @@ OrderedJson json_of(const PlannedPoint& point) {
   put(json, "lux", point.lux);
   put(json, "direct_lux", point.direct_lux);
   put(json, "standard_error_lux", point.standard_error_lux);
+  put(json, "opening_lux", point.opening_lux);
   put(json, "daylight_lux", point.daylight_lux);
   put(json, "goal_lux", point.goal_lux);
   put(json, "xy", point.xy);
@@ -359,6 +362,7 @@ PlannedPoint point_of(const Reader& reader, const Json& json, const std::string&
   point.lux = reader.number(json, path, "lux", false);
   point.direct_lux = reader.number(json, path, "direct_lux", false);
   point.standard_error_lux = reader.number(json, path, "standard_error_lux", false);
+  point.opening_lux = reader.optional_number(json, path, "opening_lux");
   point.daylight_lux = reader.optional_number(json, path, "daylight_lux");
   point.goal_lux = reader.optional_number(json, path, "goal_lux");
   point.xy = reader.chromaticity(json, path, "xy");
@@ -463,8 +467,14 @@ Checked<Plan> plan_from_json(const std::string& text, const std::string& file_na
   reader.each(json, "", "limits", false, [&](const Json& limit, const std::string& path) {
     plan.limits.push_back(limit_of(reader, limit, path));
   });
-  if (!problems.empty()) return tl::unexpected(problems);
-  return plan;
+  if (problems.empty()) return plan;
+  for (Problem& problem : problems) {
+    const std::string_view what = problem.what;
+    const JsonPlace place = place_in_json(text, what.substr(0, what.find_first_of(" :")));
+    problem.line = place.line;
+    problem.column = place.column;
+  }
+  return tl::unexpected(problems);
 }
 
 }  // namespace luxrig

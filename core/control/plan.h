@@ -84,6 +84,8 @@ struct PlannedPoint {
   std::optional<double> daylight_lux{};         ///< what of lux is daylight; none in a rig without
   std::optional<Chromaticity> xy{}, goal_xy{};  ///< in a rig whose goals have colours
   std::optional<double> weight{}, max_lux{};    ///< as solved for; weight: of a goal
+  /// What the show lets out there while no luxmeter confirms the limits, where that is less than lux.
+  std::optional<double> opening_lux{};
 };
 
 struct PlannedLimit {
@@ -113,8 +115,8 @@ struct Plan {
   std::vector<PlannedLimit> limits;
 };
 
-/// Gives each point with a goal its verdict (core/control/verdict.h): the light of the plan, were the rig exactly as its
-/// file says, known to the standard error of the transport. A goal with a colour is missed, too, when its light is
+/// Gives each point with a goal its verdict (core/control/verdict.h): the light of the plan, were the rig exactly as
+/// its file says, known to the standard error of the transport. A goal with a colour is missed, too, when its light is
 /// further than 0.02 in CIE 1976 u'v' from it.
 void judge(Plan& plan, double goal_tolerance);
 [[nodiscard]] VerdictCounts goals_of(const Plan& plan);

@@ -117,6 +117,7 @@ void ShowController::State::tell_estimator() {
   }
   estimator.set_points(rig.points);
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) estimator.set_held(f, hand_level[f].has_value());
+  tell_lost_lamps();
 }
 
 void ShowController::State::start_with_hands(Time now) {
@@ -160,6 +161,7 @@ std::string ShowController::State::why_not(Time now, const ByHand& held) const {
     if (max_lx && held.value > *max_lx) return fmt::format("its limit of {:g} lx wins", *max_lx);
     return held.index < why.size() ? why[held.index] : std::string();
   }
+  if (lost[held.index]) return "it does not answer: it is held as it was, then goes to its safe level";
   if (parked(held.index)) return "it is parked until the next plan";
   const double most = program.max_level[held.index];
   if (held.value > most + kSameLevel) return fmt::format("the most it may have is {:g} (max_level)", most);

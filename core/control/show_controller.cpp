@@ -8,12 +8,6 @@
 #include "core/control/show_state.h"
 
 namespace luxrig {
-namespace {
-
-// A device that comes and goes is not back; the driver's own reports come several times in this while.
-constexpr Duration kHealthyFor = std::chrono::milliseconds(500);
-
-}  // namespace
 
 const char* name_of(Phase phase) {
   switch (phase) {
@@ -48,6 +42,7 @@ ShowController::State::State(const Rig& rig_in, const LightModel& model)
       samples(rig.luxmeters.size()),
       zones(rig),
       powerless(rig.fixtures.size(), 0),
+      lost(rig.fixtures.size()),
       measured(rig.luxmeters.size()),
       sampled_lx(rig.luxmeters.size()),
       sample_changed(rig.luxmeters.size(), false),
@@ -114,7 +109,7 @@ void ShowController::State::fade(Time now, std::vector<double> from, std::vector
 /// says more.
 void ShowController::State::guard(Time now, const std::vector<double>& from, const std::vector<double>& to) {
   constexpr int kSamples = 8;
-  constexpr double kRounding = 1 + 1e-9;
+  constexpr double kRounding = 1 + 1e-9, kAllowed = 1 + kBreachSlack;
   const bool nothing_new = sampled_at <= program.start;  // a correction starts at the instant of its sample
   WorstCase worst = estimator.worst_case(from, to, now);
   const auto lights = static_cast<Eigen::Index>(from.size());
@@ -136,12 +131,13 @@ void ShowController::State::guard(Time now, const std::vector<double>& from, con
         level[static_cast<Eigen::Index>(j)] =
             level_on_the_way(from[j], to[j], static_cast<double>(s) / kSamples, program.switched[j] != 0);
       const double most_lx = estimator.most_lux_at_point(worst.points[k], {level.data(), from.size()}, now);
-      safe = most_lx <= *rig.points[worst.points[k]].max_lx * kRounding;  // all light; the row's limit lacks daylight
+      safe = most_lx <= *rig.points[worst.points[k]].max_lx * kAllowed;  // all light; the row's limit lacks daylight
     }
     if (safe) row *= max_lx / ends_lx * (1 - 1e-9);
   }
   program.worst_lux_per_level = std::move(worst.worst_lux_per_level);
   program.max_lx = std::move(worst.max_lx);
+  program.worth = estimator.worth();
   if (!rig.limits.max_watts) return;
   // A limit of power is one more row: watts per level.
   const Eigen::Index row = program.max_lx.size();
@@ -186,6 +182,7 @@ void ShowController::State::take_look(Time now) {
 }
 
 void ShowController::State::start_cue(Time now, std::vector<double> levels) {
+  asked = levels;
   cue = std::move(levels);
   round = 0;
   converged = false;
@@ -220,8 +217,11 @@ void ShowController::State::start_cue(Time now, std::vector<double> levels) {
     present = std::move(without);
     take_look(now);
   }
-  cue = estimator.within_limits(solved_around_hands(now, *cue), now);
-  if (!start_lamps(now, present, *cue)) fade(now, std::move(present), *cue, rig.control.fade_s, rig.control.fade_curve);
+  asked = solved_around_hands(now, *cue);
+  cue = estimator.within_limits(asked, now);
+  std::vector<double> sent = *cue;
+  leave_out_lost(sent);
+  if (!start_lamps(now, present, sent)) fade(now, std::move(present), sent, rig.control.fade_s, rig.control.fade_curve);
   enter(Phase::fading, now);
 }
 
@@ -233,7 +233,7 @@ void ShowController::State::freeze(Time now) {
   enter(Phase::frozen, now);
 }
 
-void ShowController::State::resume(Time now) { start_cue(now, *cue); }
+void ShowController::State::resume(Time now) { start_cue(now, asked); }
 
 void ShowController::State::fade_to_safe(Time now) {
   std::vector<double> present = present_levels(now);
@@ -247,13 +247,14 @@ void ShowController::State::fade_to_safe(Time now) {
 void ShowController::State::look_at_failures(Time now) {
   health.step(now);
   const bool was_failing = failing;
-  failing = health.light_lost() || (rig.safe.on_meter_loss && health.any_meter_lost());
+  failing = too_much_lost() || (rig.safe.on_meter_loss && health.any_meter_lost());
   if (was_failing && !failing) healthy_since = now;
   if (failing && !health.alarms().empty()) failure = health.alarms().front().text;
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
     if (health.meter_lost(i)) measured[i].reset();
   }
   converged = converged && all_metered_goals_arrived();
+  watch_losses(now);
 }
 
 void ShowController::State::advance(Time now) {
@@ -299,7 +300,8 @@ void ShowController::State::advance(Time now) {
       return;
     case Phase::measuring: {
       bool any_living = false;
-      for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) any_living = any_living || !health.meter_lost(i);
+      for (std::size_t i = 0; i < rig.luxmeters.size(); ++i)
+        any_living = any_living || (!health.meter_lost(i) && !in_doubt(i));
       if (!any_living) return enter(Phase::holding, now);  // nobody can tell; open loop
       if (sampled_at == now) correct_or_hold(now);
       return;

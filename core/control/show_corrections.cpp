@@ -14,9 +14,6 @@ constexpr Duration kSampleEvery = std::chrono::seconds(1);
 // hours, so more than one correction in ten seconds would only follow noise.
 constexpr int kDriftSamples = 3;
 constexpr Duration kDriftCorrectionEvery = std::chrono::seconds(10);
-/// most_lux_at_point holds 1 % for a meter's noise on top of its tolerance, and corrections aim at the limit itself:
-/// half of that may be used up before a reading counts, or noise alone would start one correction after another.
-constexpr double kBreachSlack = 0.005;
 // Level changes smaller than half a step of a 12-bit dimmer are not worth a fade.
 constexpr double kSmallestChange = 1e-4;
 
@@ -25,11 +22,12 @@ constexpr double kSmallestChange = 1e-4;
 /// When every living meter has its sample: learn from it. Lost ones take part as soon as they have one, since a
 /// believable sample is how a meter that was not believed comes back.
 void ShowController::State::take_sample(Time now) {
-  if (program.blackout || shared || !program.done(now) || health.light_lost() || dimmed_for_a_zone(now))
+  if (program.blackout || shared || !program.done(now) || too_much_lost() || dimmed_for_a_zone(now))
     return;  // not the light that was asked for
   if (phase != Phase::measuring && now - sampled_at < kSampleEvery) return;
   std::vector<LuxReading> readings;
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
+    if (in_doubt(i)) continue;
     if (samples.ready(now, i)) {
       readings.push_back(*samples.sample(i));
     } else if (!health.meter_lost(i)) {
@@ -69,14 +67,12 @@ void ShowController::State::take_sample(Time now) {
 
 /// After a sample: another round when it would bring a metered goal nearer, or when a limit is in question.
 void ShowController::State::correct_or_hold(Time now) {
-  const bool may_correct = !health.any_meter_lost();
   Correction correction = estimator.correct(with_hands(program.to_level), now);
-  if (!may_correct) correction.level = estimator.within_limits(program.to_level, now);
   double change = 0;
   for (std::size_t i = 0; i < correction.level.size(); ++i) {
     change = std::max(change, std::abs(correction.level[i] - program.to_level[i]));
   }
-  const bool wanted = may_correct && possible_gain(correction) > rig.control.tolerance;
+  const bool wanted = possible_gain(correction) > rig.control.tolerance;
   const bool worth_it = change > kSmallestChange && (wanted || !breaches.empty());
   const bool in_rounds = phase == Phase::measuring ? round < rig.control.rounds : true;
   aimed_lx = std::move(correction.aimed_lx);
@@ -86,8 +82,17 @@ void ShowController::State::correct_or_hold(Time now) {
     enter(Phase::holding, now);
     return;
   }
-  cue = correction.level;
-  if (by_hand().empty()) without_hands = *cue;
+  for (std::size_t i = 0; i < cue->size(); ++i) {
+    if (lost[i]) {
+      correction.level[i] = program.to_level[i];
+      continue;
+    }
+    // What limits dimmed for a lost lamp comes back with it.
+    const bool same = std::abs(correction.level[i] - program.to_level[i]) <= kSmallestChange;
+    (*cue)[i] = correction.level[i];
+    if (!same || !any_lost()) asked[i] = correction.level[i];
+  }
+  if (by_hand().empty()) without_hands = asked;
   ++round;
   corrected_at = now;
   fade(now, present_levels(now), std::move(correction.level), rig.control.correction_fade_s, rig.control.fade_curve);
@@ -98,7 +103,6 @@ void ShowController::State::watch_drift(Time now) {
   if (sampled_at != now) return;
   converged = all_metered_goals_arrived();
   if (!breaches.empty()) return correct_or_hold(now);
-  if (health.any_meter_lost()) return;
   const Correction correction = estimator.correct(with_hands(program.to_level), now);
   drifted = possible_gain(correction) > rig.control.tolerance ? drifted + 1 : 0;
   if (drifted >= kDriftSamples && now - corrected_at >= kDriftCorrectionEvery) correct_or_hold(now);

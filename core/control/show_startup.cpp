@@ -34,11 +34,11 @@ void ShowController::State::watch_power(Time now) {
   std::vector<std::uint8_t> back(rig.fixtures.size(), 0);
   bool any = false;
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
-    const bool lost = health.lamp_lost(f);
-    const bool was = std::exchange(powerless[f], lost ? std::uint8_t{1} : std::uint8_t{0}) != 0;
-    back[f] = was && !lost;
-    any = any || was != lost;
-    if (!lost) continue;
+    const bool is = health.lamp_lost(f);
+    const bool was = std::exchange(powerless[f], is ? std::uint8_t{1} : std::uint8_t{0}) != 0;
+    back[f] = was && !is;
+    any = any || was != is;
+    if (!is) continue;
     if (program.lamp_starts.empty()) program.lamp_starts.resize(rig.fixtures.size());
     program.lamp_starts[f] = {kWithoutPower, Duration{}};
   }

@@ -19,12 +19,29 @@ namespace luxrig {
 /// Noise of a reading that no correction could take away: nearer than this to what was aimed at is there.
 inline constexpr double kArrivedTolerance = 0.03;
 
+/// most_lux_at_point holds 1 % for a meter's noise on top of its tolerance, and corrections aim at the limit itself:
+/// half of that may be used up before a reading counts, or noise alone would start one correction after another.
+inline constexpr double kBreachSlack = 0.005;
+
 /// A point above its limit, by its meter; kept while it lasts.
 struct LimitBreach {
   std::size_t point = 0;
   double most_lx = 0;
   Time since{};
 };
+
+/// A fixture whose lamp or axes do not answer, while the rest goes on.
+struct LostFixture {
+  Time since{};
+  double level = 0;      ///< that it is held at
+  double most = 0;       ///< that it may have taken last
+  bool lamp = true;      ///< false: only what turns it
+  bool to_safe = false;  ///< it has been held for long enough
+  std::optional<Time> well_since{};
+};
+
+/// A device that comes and goes is not back; the drivers' own reports come several times in this while.
+inline constexpr Duration kHealthyFor = std::chrono::milliseconds(500);
 
 /// Housings that blink, or have: each keeps its place among the desks.
 struct Identification {
@@ -71,12 +88,15 @@ struct ShowController::State {
   bool failing = true;      ///< something that the light depends on is lost; true until a step has looked
   bool asked_safe = false;  ///< by go_safe: no return by itself
   std::string failure;      ///< what froze the show, for the detail line
-  std::optional<std::vector<double>> cue;  ///< levels in force, as corrected so far
-  std::optional<Look> awaited;             ///< taken as soon as what it turns is dark
-  Time arrive{};                           ///< heads look where they shall from here on; no fade starts before
-  bool turned = false;                     ///< heads have been told where to look
-  std::vector<double> in_force;            ///< levels of somebody else's light, until a look of ours is on; or empty
-  bool afresh = false;                     ///< a person applied a plan, and the meters have not all been believed since
+  std::optional<std::vector<double>> cue;        ///< levels in force, as corrected so far
+  std::vector<double> asked;                     ///< levels in force before limits dimmed them, as corrected so far
+  std::vector<std::optional<LostFixture>> lost;  ///< per fixture
+  std::vector<std::uint8_t> watched;             ///< per luxmeter: what the estimator was told
+  std::optional<Look> awaited;                   ///< taken as soon as what it turns is dark
+  Time arrive{};                                 ///< heads look where they shall from here on; no fade starts before
+  bool turned = false;                           ///< heads have been told where to look
+  std::vector<double> in_force;  ///< levels of somebody else's light, until a look of ours is on; or empty
+  bool afresh = false;           ///< a person applied a plan, and the meters have not all been believed since
   int round = 0;
   bool converged = false;
   Time corrected_at{};                              ///< when the last correction was decided
@@ -104,7 +124,7 @@ struct ShowController::State {
   void release_what_is_over(Time now);
   void take_points(const Look& look);
   void take_levels_of_plan(Time now, const std::vector<double>& levels, const Look& look);
-  /// Tells goals, limits and who is held to the estimator.
+  /// Tells goals, limits, who is held and who is lost to the estimator.
   void tell_estimator();
   void start_with_hands(Time now);
   /// The levels with those that are held in their place.
@@ -169,6 +189,17 @@ struct ShowController::State {
   void finish_parking();
   /// Nobody knows yet where heads look: light waits for their longest way there, and for their finding their zero.
   void first_turn(Time now, std::span<const Joints> joints);
+
+  // What fails alone (show_losses.cpp).
+  void watch_losses(Time now);
+  void tell_lost_lamps();
+  void leave_out_lost(std::vector<double>& levels) const;
+  [[nodiscard]] bool any_lost() const;
+  [[nodiscard]] bool too_much_lost() const;  ///< of what gives light, for the show to go on
+  [[nodiscard]] std::vector<std::uint8_t> watched_meters() const;
+  /// A lost fixture gives it light, or might: nobody knows how much.
+  [[nodiscard]] bool in_doubt(std::size_t luxmeter) const;
+  void tell_losses(ShowStatus& status) const;
 
   // Power (show_startup.cpp).
   /// Levels as they come on the first time, by stages, from what is lit already; false when nothing is staged.

@@ -11,7 +11,9 @@ namespace luxrig {
 std::vector<double> ShowController::State::safe_levels() const {
   std::vector<double> level;
   for (std::size_t i = 0; i < rig.fixtures.size(); ++i) {
-    const double wanted = rig.fixtures[i].safe_level.value_or(rig.safe.level);
+    const std::size_t bus = rig.fixtures[i].bus;
+    const double of_bus = (bus < rig.buses.size() ? rig.buses[bus].safe_level : std::nullopt).value_or(rig.safe.level);
+    const double wanted = rig.fixtures[i].safe_level.value_or(of_bus);
     level.push_back(std::clamp(rig.fixtures[i].switched ? switched_level(wanted) : wanted, 0.0, program.max_level[i]));
   }
   return level;
@@ -85,7 +87,9 @@ std::string ShowController::State::detail(Time now, const VerdictCounts& goals) 
       break;
     case Phase::holding: {
       text = text_of(goals);
-      if (health.any_meter_lost()) text += "; no correction while a luxmeter is lost";
+      if (health.any_meter_lost()) text += "; lost luxmeters correct nothing";
+      if (const auto count = std::count_if(lost.begin(), lost.end(), [](const auto& one) { return one.has_value(); }))
+        text += fmt::format("; {} of {} fixtures are lost, the rest goes on", count, lost.size());
       break;
     }
     case Phase::frozen:
@@ -126,9 +130,9 @@ ShowStatus ShowController::State::status(Time now) const {
   std::vector<Joints> joints(rig.fixtures.size());
   program.joints_at(now, joints);
   for (std::size_t i = 0; i < rig.fixtures.size(); ++i) {
-    const bool lost = health.lamp_lost(i);
     status.fixtures.push_back({joints[i], level[i], drive_from_level(rig.fixtures[i].dimmer_curve, level[i]),
-                               program.to_level[i], !lost, estimator.gain(i), estimator.gain_standard_error(i)});
+                               program.to_level[i], !health.lamp_lost(i), estimator.gain(i),
+                               estimator.gain_standard_error(i)});
   }
   for (const Identification& one : identified) {
     for (const std::size_t f : one.pattern.fixtures()) status.fixtures[f].identified = !one.pattern.over(now);
@@ -161,6 +165,7 @@ ShowStatus ShowController::State::status(Time now) const {
   }
   status.by_hand = by_hand();
   for (ByHand& held : status.by_hand) held.why = why_not(now, held);
+  tell_losses(status);
   tell_zones(status);
   for (std::size_t d = 0; d < desks.size(); ++d) {
     if (desk_names[d].empty()) continue;

@@ -108,6 +108,9 @@ void ShowController::State::judge_goal(std::size_t p, std::span<const double> le
     for (const Point& point : rig.points) largest_goal_lx = std::max(largest_goal_lx, point.goal_lx.value_or(0));
   const double allowed_lx = tolerance_lx(*status.goal_lx, rig.control.goal_tolerance, largest_goal_lx);
   status.verdict = verdict_of(status.light, *status.goal_lx, allowed_lx);
+  // A meter that stands there and contradicts the model: nobody knows which of them is right.
+  if (const auto meter = meter_at(p); meter && health.meter_implausible(*meter) && status.verdict == Verdict::met)
+    status.verdict = Verdict::unknown;
   const std::string state = why_not_the_plan(phase, program.blackout);
   std::string settles;
   if (const auto meter = meter_at(p); status.measured_lx) {
@@ -159,7 +162,7 @@ void ShowController::State::judge_limit(std::size_t p, std::span<const double> l
   const bool driven_by_desk =
       std::any_of(program.desks.begin(), program.desks.end(), [](const DeskBlend& desk) { return desk.silent; });
   if (driven_by_desk || any_lamp_lost()) {
-    const double most_lx = estimator.most_lux_at_point(p, with_lost_lamps_at(level, true), now);
+    const double most_lx = estimator.most_lux_as_given(p, with_lost_lamps_at(level, true), now);
     const char* whose = driven_by_desk ? "a desk drives lamps that light it" : "a lamp that lights it does not answer";
     if (status.light.lux - status.light.half_width_lx > max_lx)
       return say(LimitVerdict::exceeded,

@@ -36,8 +36,14 @@ void RigReader::read_buses() {
     bus.place = s.place();
     if (s.read("name", bus.name)) buses.add(bus.name, rig.buses.size(), s.place_of("name"), problems);
     s.read("driver", bus.driver);
+    if (s.read("safe_level", bus.safe_level) && *bus.safe_level > rig.limits.max_level) {
+      problems.add(
+          s.place_of("safe_level"),
+          fmt::format("safe_level {} is above max_level {} of [limits]", *bus.safe_level, rig.limits.max_level),
+          "lower it, or raise that limit");
+    }
     for (const Member& member : s.table()) {
-      if (member.key == "name" || member.key == "driver") continue;
+      if (member.key == "name" || member.key == "driver" || member.key == "safe_level") continue;
       if (auto option = option_from(member, problems)) bus.options.emplace(member.key, std::move(*option));
     }
     rig.buses.push_back(std::move(bus));

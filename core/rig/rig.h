@@ -230,7 +230,8 @@ struct Option {
 struct Bus {
   std::string name;
   std::string driver;                     ///< a name in the driver registry
-  std::map<std::string, Option> options;  ///< every key but name and driver
+  std::optional<double> safe_level;       ///< of its fixtures that have none of their own; none: that of [safe]
+  std::map<std::string, Option> options;  ///< every further key
   Place place;
 };
 
@@ -430,11 +431,15 @@ struct ControlSpec {
   Place place;
 };
 
+/// What goes to the safe look when a device fails: the fixtures that hang on it, or all.
+enum class SafeScope { rest_stays, all };
+
 struct SafeSpec {
-  double level = 0.1;  ///< of every fixture without its own safe_level
+  double level = 0.1;  ///< of every fixture without its own safe_level, or its bus's
   double hold_s = 5;   ///< how long the last look is held after a failure
   double fade_s = 3;
-  bool on_meter_loss = true;  ///< false: a lost meter only freezes the correction
+  SafeScope scope = SafeScope::rest_stays;
+  bool on_meter_loss = false;  ///< true: a lost meter sends all light to the safe look
   Place place;
 };
 

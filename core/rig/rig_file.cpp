@@ -142,6 +142,7 @@ void RigReader::read_settings() {
     rig.safe.place = s.place();
     s.read("hold_s", rig.safe.hold_s);
     s.read("fade_s", rig.safe.fade_s);
+    s.read_choice("scope", rig.safe.scope);
     s.read("on_meter_loss", rig.safe.on_meter_loss);
     if (s.read("level", rig.safe.level) && rig.safe.level > rig.limits.max_level) {
       problems.add(s.place_of("level"),

@@ -16,8 +16,11 @@ using std::chrono::milliseconds;
 constexpr Duration kModbusWritePeriod = milliseconds(100);
 constexpr Duration kShortestBackoff = milliseconds(100), kLongestBackoff = milliseconds(1000);
 constexpr milliseconds kSchedulingSlack(50);
-/// A bus is gone when nobody has answered for this long (or for two rounds, if rounds are longer) and a request timed
-/// out; one silent unit among others that answer is that unit's fault only.
+/// Between two calls, beyond their period, before the time counts as our own lateness.
+constexpr Duration kCallSlack = milliseconds(150);
+/// A bus is gone when nobody has answered for this long (or for two rounds, if rounds are longer) and two requests
+/// timed out; one silent unit among others that answer is that unit's fault only, once it has let two in a row time
+/// out.
 constexpr Duration kBusSilent = milliseconds(500);
 
 }  // namespace
@@ -61,6 +64,9 @@ Result<void> ModbusDriver::activate(Time now) {
   life_.active(now);
   backoff_ = kShortestBackoff;
   last_answer_ = now;
+  called_at_ = now;
+  silence_ = {};
+  misses_ = 0;
   connect(now);
   return {};
 }
@@ -89,6 +95,7 @@ std::vector<Health> ModbusDriver::health(Time) const {
 Result<void> ModbusDriver::write(Time now, std::span<const LevelCommand> commands) {
   if (life_.life() == Life::configured) return tl::unexpected(inactive());
   if (auto set = set_wanted(commands); !set) return set;
+  count_silence(now);
   const Deadline start_until(timing_.response_timeout);
   if (!ensure_connected(now)) return tl::unexpected(life_.fault());
   for (const WriteSchedule::Run& run : writes_.due(now, units_silent_)) {
@@ -100,6 +107,7 @@ Result<void> ModbusDriver::write(Time now, std::span<const LevelCommand> command
     }
   }
   if (life_.life() == Life::faulted) return tl::unexpected(life_.fault());
+  if (missed_) return tl::unexpected(fault_);
   for (const LifeRecord& life : channel_lives_) {
     if (life.life() == Life::faulted) return tl::unexpected(life.fault());
   }
@@ -108,6 +116,7 @@ Result<void> ModbusDriver::write(Time now, std::span<const LevelCommand> command
 
 Result<std::vector<LuxReading>> ModbusDriver::read(Time now) {
   if (life_.life() == Life::configured) return tl::unexpected(inactive());
+  count_silence(now);
   const Deadline start_until(timing_.response_timeout);
   if (!ensure_connected(now)) return tl::unexpected(life_.fault());
   std::vector<LuxReading> readings;
@@ -115,6 +124,7 @@ Result<std::vector<LuxReading>> ModbusDriver::read(Time now) {
     if (start_until.passed() || read_batch(now, batch, start_until, readings) == Outcome::over) break;
   }
   if (readings.empty() && life_.life() == Life::faulted) return tl::unexpected(life_.fault());
+  if (readings.empty() && missed_) return tl::unexpected(fault_);
   return readings;
 }
 
@@ -128,6 +138,13 @@ Duration ModbusDriver::asked_every() const {
 }
 
 Duration ModbusDriver::silence_allowed() const { return std::max(kBusSilent, 2 * asked_every()); }
+
+void ModbusDriver::count_silence(Time now) {
+  const Duration apart = std::max(asked_every(), kModbusWritePeriod) + kCallSlack;
+  if (called_at_) silence_ += std::clamp(now - *called_at_, Duration{}, apart);
+  called_at_ = now;
+  missed_ = false;
+}
 
 Result<void> ModbusDriver::set_wanted(std::span<const LevelCommand> commands) {
   std::vector<modbus::Channel>& channels = writes_.channels();
@@ -204,6 +221,8 @@ void ModbusDriver::all_faulted(Time now, const Fault& fault) {
 
 void ModbusDriver::answered(Time now, int unit) {
   last_answer_ = now;
+  silence_ = {};
+  misses_ = 0;
   backoff_ = kShortestBackoff;
   units_silent_.answered(unit);
   life_.count_received(now);

@@ -4,6 +4,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -54,6 +55,9 @@ class ModbusDriver final : public Driver, public LevelOutput, public LuxReader {
   [[nodiscard]] Fault inactive() const;
   [[nodiscard]] Duration asked_every() const;
   [[nodiscard]] Duration silence_allowed() const;
+  /// Counts the time since the call before as silence of the line, but no more of it than calls are apart: when this
+  /// computer was late, nobody listened.
+  void count_silence(Time now);
   Result<void> set_wanted(std::span<const LevelCommand> commands);
 
   bool ensure_connected(Time now);
@@ -91,6 +95,10 @@ class ModbusDriver final : public Driver, public LevelOutput, public LuxReader {
   std::vector<std::uint16_t> values_;
   Fault fault_;
   Time last_answer_{}, answer_at_last_close_{};
+  std::optional<Time> called_at_;
+  Duration silence_{};   ///< since the last answer, of the time in which somebody asked
+  int misses_ = 0;       ///< requests without an answer since then
+  bool missed_ = false;  ///< one of this call
   Time connect_at_{};
   Duration backoff_{};
 };

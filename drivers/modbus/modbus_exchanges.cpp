@@ -17,7 +17,6 @@ using modbus::WriteSchedule;
 using std::chrono::milliseconds;
 
 constexpr Duration kReconnectSilentAfter = milliseconds(1000);
-constexpr Duration kFirstPauseWhenNumbered = milliseconds(1000);
 
 /// Function 16 or 3 of several not known, or one of the registers: they may be good one by one.
 bool may_be_good_singly(int exception) { return exception >= 1 && exception <= 3; }
@@ -28,16 +27,25 @@ void ModbusDriver::unit_silent(Time now, int unit, const Fault& fault) {
   // Where answers are not numbered, a late one would be taken for the next: the unit is left alone until its longest
   // time to an answer has passed once more.
   const Duration timeout = rules_.at(unit).timeout;
-  units_silent_.silent(unit, now, link_->answers_are_numbered() ? kFirstPauseWhenNumbered : 2 * timeout, timeout);
+  const bool again = units_silent_.is_silent(unit);
+  units_silent_.silent(unit, now, link_->answers_are_numbered() ? Duration{} : 2 * timeout, timeout);
+  ++misses_;
+  missed_ = true;
+  // One answer that did not come, from a machine that is busy perhaps, is no failure: the unit is asked once more.
+  const bool nobody =
+      std::all_of(rules_.begin(), rules_.end(), [&](const auto& rule) { return units_silent_.is_silent(rule.first); });
+  const bool bus_is_gone = misses_ > 1 && (nobody || silence_ >= silence_allowed());
+  if (!again && !bus_is_gone && fault.cause == Cause::timeout) {
+    life_.count_error();
+    return;
+  }
   setup_.restart(unit);
   failures_.forget(unit);
   unit_faulted(now, unit, fault);
   life_.count_error();
-  const bool nobody =
-      std::all_of(rules_.begin(), rules_.end(), [&](const auto& rule) { return units_silent_.is_silent(rule.first); });
-  if (nobody || now - last_answer_ >= silence_allowed()) all_faulted(now, fault);
+  if (nobody || bus_is_gone) all_faulted(now, fault);
   // A peer that lost power leaves a connection that TCP retries ever more slowly; a new one finds it at once.
-  if (now - last_answer_ >= kReconnectSilentAfter && nobody) reconnect_later(now);
+  if (silence_ >= kReconnectSilentAfter && nobody) reconnect_later(now);
 }
 
 ModbusDriver::Outcome ModbusDriver::ask(Time now, const Request& request, const Deadline& start_until) {

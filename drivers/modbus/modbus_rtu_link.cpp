@@ -148,12 +148,16 @@ Result<bool> RtuLink::take(std::vector<std::uint8_t>& into) {
 }
 
 Result<void> RtuLink::wait_for_silence() {
-  const Deadline patience(kLongestChatter);
+  // Of each wait no more counts than it can take: when we are late, one byte is no chatter.
+  std::chrono::steady_clock::duration chatter{};
   std::vector<std::uint8_t> unasked;
-  while (wait_readable(silence_)) {
+  for (auto before = std::chrono::steady_clock::now(); wait_readable(silence_);) {
     const auto taken = take(unasked);
     if (!taken) return tl::unexpected(taken.error());
-    if (patience.passed()) {
+    const auto now = std::chrono::steady_clock::now();
+    chatter += std::min<std::chrono::steady_clock::duration>(now - before, silence_);
+    before = now;
+    if (chatter >= kLongestChatter) {
       return tl::unexpected(Fault{Cause::protocol, {}, "the line is never silent: look for a second master", {}});
     }
   }
@@ -179,7 +183,8 @@ Result<std::vector<std::uint16_t>> RtuLink::exchange(const Request& request, mil
     const auto taken = take(heard);
     if (!taken) return tl::unexpected(taken.error());
     search = find_rtu_answer(request, heard);
-    if (search.answer || heard.size() > kMostBytesHeard || deadline.passed()) break;
+    // Behind the deadline what has come by then is still read: perhaps only we are late.
+    if (search.answer || heard.size() > kMostBytesHeard) break;
   }
   if (!search.answer) {
     if (heard.empty()) {

@@ -19,6 +19,8 @@ namespace {
 
 constexpr std::size_t kRememberedUnanswered = 16;
 constexpr int kMostDrains = 16;
+/// An answer that has begun is read to its end, also when we come late to it.
+constexpr std::chrono::milliseconds kRestOfAnswer(20);
 
 void set_timeout(modbus_t* context, std::chrono::milliseconds timeout) {
   // Zero means "invalid" to libmodbus.
@@ -97,7 +99,7 @@ Result<std::vector<std::uint8_t>> TcpLink::receive(std::chrono::milliseconds tim
     return tl::unexpected(Fault{Cause::timeout, {}, fmt::format("no answer within {} ms", timeout.count()), {}});
 
   std::array<std::uint8_t, kLongestAdu> buffer{};
-  set_timeout(context_, deadline.left());
+  set_timeout(context_, std::max(deadline.left(), kRestOfAnswer));
   const int size = modbus_receive_confirmation(context_, buffer.data());
   if (size >= 0) return std::vector<std::uint8_t>(buffer.begin(), buffer.begin() + size);
   const int error = errno;

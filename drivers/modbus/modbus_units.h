@@ -26,11 +26,11 @@ struct UnitRules {
 [[nodiscard]] std::map<int, UnitRules> unit_rules(const Rig& rig, std::size_t bus,
                                                   std::chrono::milliseconds response_timeout, bool behind_gateway);
 
-/// A unit that does not answer is asked again after `first_pause`, then ever more seldom, every 2 s at most. What is
-/// waited for in vain is time that the units that answer do not get, so all silent units of a link share a twentieth of
-/// it, and the one that has waited longest comes first (`before`). With some credit at the beginning, a silent unit
-/// that is back is found within 2 s and kProbeShare times the sum of the silent units' timeouts: 6 s for one of 200 ms,
-/// 42 s for ten; all of them with the first one when they come back together.
+/// A unit that does not answer is asked again after `first_pause`, then after a second, then ever more seldom, every 2
+/// s at most. What is waited for in vain is time that the units that answer do not get, so all silent units of a link
+/// share a twentieth of it, and the one that has waited longest comes first (`before`). With some credit at the
+/// beginning, a silent unit that is back is found within 2 s and kProbeShare times the sum of the silent units'
+/// timeouts: 6 s for one of 200 ms, 42 s for ten; all of them with the first one when they come back together.
 class UnitBackoff {
  public:
   static constexpr int kProbeShare = 20;  ///< one part in so many of the link's time

@@ -5,6 +5,7 @@
 
 #include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
+#include "tools/luxrig/opening_light.h"
 #include "tools/luxrig/solve_tasks.h"
 #include "tools/luxrig/table.h"
 #include "tools/luxrig/transport_json.h"
@@ -147,6 +148,7 @@ int run_solve(const SolveArguments& arguments) {
   if (stop.stop_requested()) fmt::print(stderr, "stopped: this is the best so far\n");
   plan->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
+  add_opening_light(*solved, session->rig);
   if (const std::string warning = used.warning(); !warning.empty())
     fmt::print(stderr, "luxrig: warning: {}\n", warning);
   const std::string plan_json = with_transport(to_json(*plan), used);
@@ -206,6 +208,7 @@ int run_solve(const SolveArguments& arguments) {
       fmt::print(
           "which of the lamps that are on or off shall be on was not searched to the end: others could do better\n");
   }
+  fmt::print("{}", opening_light_text(*plan, session->rig));
   const auto kept =
       std::count_if(plan->limits.begin(), plan->limits.end(), [](const auto& limit) { return limit.met; });
   fmt::print("by the model, were the rig as its file says: {} (within {:.3g} %){}; in {:.2f} s{}\n",

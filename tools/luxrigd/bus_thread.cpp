@@ -79,7 +79,9 @@ void BusThread::run(const std::stop_token& stop) {
     next += cycle;
     // After a stall go on from here: a burst of old frames helps nobody.
     if (const Time late = now(); late > next + cycle) next = late;
+    const Time due = std::max(next, now());
     sleep_until(next);
+    lateness_.record(due, now());
   }
   driver_->deactivate(now());
 }

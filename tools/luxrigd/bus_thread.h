@@ -10,6 +10,7 @@
 
 #include "drivers/driver.h"
 #include "tools/luxrigd/cycle_statistics.h"
+#include "tools/luxrigd/lateness.h"
 #include "tools/luxrigd/program_mailbox.h"
 
 namespace luxrig {
@@ -35,6 +36,7 @@ class BusThread {
   [[nodiscard]] std::vector<DeskFrame> desk_frames() const;
   [[nodiscard]] std::size_t first_desk() const { return first_desk_; }
   [[nodiscard]] const CycleStatistics& statistics() const { return statistics_; }
+  [[nodiscard]] const Lateness& lateness() const { return lateness_; }
   [[nodiscard]] bool realtime() const { return realtime_; }
   [[nodiscard]] bool writes() const { return writes_; }
 
@@ -52,6 +54,7 @@ class BusThread {
   DriverBounds bounds_;
   std::size_t first_desk_, desks_ = 0;
   CycleStatistics statistics_;
+  Lateness lateness_;
   bool writes_ = false;
   std::atomic<bool> realtime_{false};
 

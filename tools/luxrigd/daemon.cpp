@@ -249,6 +249,16 @@ void Daemon::publish(Time at) {
     if (rate_hz <= output.rate_hz) continue;
     output = {rate_hz, cycle.count(), cycle.quantile_us(0.5), cycle.quantile_us(0.99), cycle.max_us(), bus->realtime()};
   }
+  for (const auto& bus : buses_) {
+    const auto spell = bus->lateness().spell(at);
+    if (!spell) continue;
+    const std::string& name = session_->rig.buses[bus->bus()].name;
+    status_.alarms.push_back({false, name,
+                              fmt::format("this computer is busy: bus \"{}\" was served up to {:.1f} s late; end what "
+                                          "else runs here, or let Luxrig have real-time priority",
+                                          name, to_seconds(spell->most)),
+                              spell->since});
+  }
   std::string text = status_json({session_->rig, status_, devices_, output, options_.simulated, started_, at});
   const std::lock_guard lock(mutex_);
   status_json_ = std::move(text);

@@ -38,15 +38,8 @@ void RunReport::say_readings(const ShowStatus& status) const {
 }
 
 void RunReport::follow(const ShowStatus& status, Time at) {
-  (void)at;
-  std::vector<std::string> alarms;
-  for (const Alarm& alarm : status.alarms) {
-    alarms.push_back(alarm.text);
-    if (std::find(alarms_.begin(), alarms_.end(), alarm.text) == alarms_.end()) {
-      say((alarm.severe ? "ALARM  " : "warning  ") + alarm.text);
-    }
-  }
-  alarms_ = std::move(alarms);
+  for (const Alarm& alarm : alarms_.to_say(status.alarms, at))
+    say((alarm.severe ? "ALARM  " : "warning  ") + alarm.text);
   if (status.phase == phase_ && status.round == round_) return;
   const Phase before = phase_;
   phase_ = status.phase;

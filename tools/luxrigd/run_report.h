@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "core/control/alarm_log.h"
 #include "core/control/show_controller.h"
 #include "core/rig/rig.h"
 #include "tools/luxrigd/clock.h"
@@ -36,7 +37,7 @@ class RunReport {
   Time start_;
   Phase phase_ = Phase::idle;
   int round_ = -1;
-  std::vector<std::string> alarms_;
+  AlarmLog alarms_;
 };
 
 }  // namespace luxrig

@@ -72,11 +72,14 @@ constexpr KeySpec kControlKeys[] = {
      "least true output of a fixture, over its rated one, that readings can make the program believe"},
     {"control", "gain_max", number, "", "1.15", {1, 10}, "", "the same, most"},
 
-    {"safe", "level", number, "", "0.1", kShare, "", "of every fixture that has no `safe_level` of its own"},
+    {"safe", "level", number, "", "0.1", kShare, "",
+     "of every fixture that has no `safe_level` of its own, nor its bus one"},
     {"safe", "hold_s", number, "s", "5", kSeconds, "", "how long the last look is held first"},
     {"safe", "fade_s", number, "s", "3", kSeconds, "", "from there to the safe look"},
-    {"safe", "on_meter_loss", yes_no, "", "true", kAny, "",
-     "whether a lost meter also leads here; else it only stops the correction"},
+    {"safe", "scope", text, "", R"("rest-stays")", kAny, "rest-stays, all",
+     "what a lost bus or dimmer sends to the safe look: the fixtures that hang on it, or all"},
+    {"safe", "on_meter_loss", yes_no, "", "false", kAny, "",
+     "whether a lost luxmeter sends all light to the safe look; else only its own readings are done without"},
 
     {"startup", "stage_s", number, "s", "0", kSeconds, "",
      "from the beginning of one `stage` of fixtures to that of the next; each comes on over `fade_s` of `[control]`"},

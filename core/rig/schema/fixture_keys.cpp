@@ -90,6 +90,8 @@ constexpr KeySpec kFixtureKeys[] = {
 
     {"bus", "name", name, "", kRequired, kAny, "", "what fixtures and meters call it"},
     {"bus", "driver", text, "", kRequired, kAny, "", "what drives it; see Bus options"},
+    {"bus", "safe_level", number, "", kNone, kShare, "",
+     "level in the safe look of its fixtures that have none of their own; left out, `level` of `[safe]`"},
 
     {"fixture", "name", name, "", kRequired, kAny, "", "name of the fixture"},
     {"fixture", "luminaire", text, "", kRequired, kAny, "", "name of a `[[luminaire]]`"},
@@ -148,7 +150,7 @@ constexpr KeySpec kFixtureKeys[] = {
      "Fades switch it off as they begin and on as they end"},
     {"fixture", "max_level", number, "", "1", kShare, "", "most of its rated flux that it may ever give"},
     {"fixture", "safe_level", number, "", kNone, kShare, "",
-     "its level in the safe look, at most `max_level`; left out, `level` of `[safe]`"},
+     "its level in the safe look, at most `max_level`; left out, that of its bus, else `level` of `[safe]`"},
     {"fixture", "pan_range_deg", span2, "°", "[-270, 270]", kAngle, "",
      "travel of the pan; only with a pan slot or `axes_bus`. With a personality that has a pan it may narrow the "
      "travel "

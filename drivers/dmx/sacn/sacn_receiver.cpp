@@ -70,7 +70,8 @@ Receiver::Verdict Receiver::take_data(Time now, const DataPacket& packet) {
   if (packet.priority < settings_.lowest_priority) return Verdict::ignored;
   Universe& universe = found->second;
   if (!universe.started) universe.started = now;
-  forget_lost(now, universe);
+  // Who is lost is judged when all that has arrived is read (heard): a reader that is late must not take one for lost
+  // whose packets wait behind another's.
   const auto known = universe.sources.find(packet.cid);
   if (known == universe.sources.end() && (packet.terminated || universe.sources.size() >= kMostSources)) {
     return packet.terminated ? Verdict::terminated : Verdict::ignored;

@@ -166,12 +166,59 @@ TEST(OutputProgram, MovesEachLevelOneWayOnly) {
   }
 }
 
-TEST(OutputProgram, ScalesTheFixturesThatLightAPointTogetherAndLeavesTheOthersAlone) {
+TEST(OutputProgram, DimsForALimitWhatLightsThatPointAndHardlyWhatOnlyStraysThere) {
+  OutputProgram program;
+  program.from_level = program.to_level = {0.8, 0.8, 0.6};
+  program.max_level = {1, 1, 1};
+  program.worst_lux_per_level = Eigen::MatrixXd{{100, 2, 0}};  // 80 + 1.6 lx
+  program.max_lx = Eigen::VectorXd::Constant(1, 50);
+  const std::vector<double> level = levels(program, at(1));
+  EXPECT_NEAR(100 * level[0] + 2 * level[1], 50, 1e-9);
+  EXPECT_GT(level[1], 0.98 * 0.8);  // it dims by 2 % of the other's share
+  EXPECT_LT(level[1], 0.8);
+  EXPECT_EQ(level[2], 0.6);
+}
+
+TEST(OutputProgram, DimsForALimitTheLampThatGoalsElsewhereNeedLess) {
+  OutputProgram program;
+  program.from_level = program.to_level = {0.5, 0.5};
+  program.max_level = {1, 1};
+  program.worst_lux_per_level = Eigen::MatrixXd{{60, 60}};
+  program.max_lx = Eigen::VectorXd::Constant(1, 45);
+  program.worth.per_level_squared = {0, 76};  // the second lights twenty goals elsewhere: 1 + 76 · 0.25 = 20 times
+  const std::vector<double> level = levels(program, at(1));
+  EXPECT_NEAR(60 * (level[0] + level[1]), 45, 1e-9);
+  EXPECT_NEAR((0.5 - level[1]) / (0.5 - level[0]), 1.0 / 20, 1e-9);
+}
+
+TEST(OutputProgram, DimsTheEmittersOfAHousingAlikeSoThatItsColourStays) {
+  OutputProgram program;
+  program.from_level = program.to_level = {0.8, 0.2, 0.5};
+  program.max_level = {1, 1, 1};
+  program.worst_lux_per_level = Eigen::MatrixXd{{100, 10, 40}};
+  program.max_lx = Eigen::VectorXd::Constant(1, 50);
+  program.worth.housing = {0, 0, 2};
+  const std::vector<double> level = levels(program, at(1));
+  EXPECT_NEAR(level[0] / level[1], 4, 1e-9);
+  EXPECT_NEAR(100 * level[0] + 10 * level[1] + 40 * level[2], 50, 1e-9);
+  EXPECT_LT(level[0] / 0.8, level[2] / 0.5);
+}
+
+TEST(OutputProgram, PutsOutEveryLampAtAPointThatMayHaveNoLight) {
   OutputProgram program;
   program.from_level = program.to_level = {0.8, 0.4, 0.6};
   program.max_level = {1, 1, 1};
-  program.worst_lux_per_level = Eigen::MatrixXd{{100, 50, 0}};  // 80 + 20 lx
-  program.max_lx = Eigen::VectorXd::Constant(1, 50);
+  program.worst_lux_per_level = Eigen::MatrixXd{{100, 0.01, 0}};
+  program.max_lx = Eigen::VectorXd::Zero(1);
+  EXPECT_EQ(levels(program, at(1)), (std::vector<double>{0, 0, 0.6}));
+}
+
+TEST(OutputProgram, DimsAlikeWhatGivesAlikeAndLeavesTheOthersAlone) {
+  OutputProgram program;
+  program.from_level = program.to_level = {0.8, 0.4, 0.6};
+  program.max_level = {1, 1, 1};
+  program.worst_lux_per_level = Eigen::MatrixXd{{50, 100, 0}};  // 40 + 40 lx
+  program.max_lx = Eigen::VectorXd::Constant(1, 40);
   const std::vector<double> level = levels(program, at(1));
   EXPECT_NEAR(level[0], 0.4, 1e-12);
   EXPECT_NEAR(level[1], 0.2, 1e-12);

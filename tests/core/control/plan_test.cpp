@@ -163,6 +163,22 @@ TEST(Plan, PointsAtTheLineAndColumnOfASyntaxError) {
   EXPECT_NE(large.error()[0].what.find("1e999"), std::string::npos);
 }
 
+TEST(Plan, PointsAtTheLineAndColumnOfAWrongEntry) {
+  const auto read = plan_from_json(
+      "{\n \"luxrig_plan\": 1,\n \"rig\": \"a \\\" {[,\",\n \"tasks\": [{\"name\": \"t\", \"lights\": [{\"name\": "
+      "\"l\", "
+      "\"level\": 1},\n  {\"name\": \"m\",\n   \"level\": \"full\"},\n  {\"level\": 1}]}]}",
+      "my.json");
+  ASSERT_FALSE(read);
+  ASSERT_EQ(read.error().size(), 2u);
+  EXPECT_EQ(read.error()[0].text().rfind("my.json:6:13: /tasks/0/lights/1/level is \"full\"", 0), 0u)
+      << read.error()[0].text();
+  EXPECT_EQ(read.error()[1].text().rfind("my.json:7:3: /tasks/0/lights/2/name is missing", 0), 0u)
+      << read.error()[1].text();
+  const auto list = plan_from_json("\n[1]", "my.json");
+  ASSERT_FALSE(list);
+}
+
 TEST(Plan, NamesThePathOfEveryWrongEntry) {
   const auto read = plan_from_json(
       R"({"luxrig_plan":1,"rig":"room","seed":-1,"tasks":[{"name":"t","lights":[{"name":"left","level":"full"},3,)"

@@ -39,6 +39,8 @@ struct SmallShow {
     rig.control.fade_s = 1;
     rig.control.settle_s = 0.2;
     rig.safe.hold_s = 2;
+    rig.safe.scope = SafeScope::all;
+    rig.safe.on_meter_loss = true;
     model.point_lux_per_level = Eigen::MatrixXd{{100, 10}, {10, 100}};
     model.meter_lux_per_level = model.point_lux_per_level;
   }

@@ -27,6 +27,7 @@ Rig lamps() {
   }
   rig.fixtures[0].stage = rig.fixtures[2].stage = 2;
   rig.control.fade_s = 1;
+  rig.safe.scope = SafeScope::all;
   return rig;
 }
 

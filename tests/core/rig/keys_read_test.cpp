@@ -50,7 +50,7 @@ std::string dump(const Rig& rig) {
         text_of(l.shape.size_m), text_of(l.colour_rgb), l.emitters.size(), text_of(l.emitter_of));
   }
   for (const auto& b : rig.buses) {
-    add(b.name, b.driver, b.options.size());
+    add(b.name, b.driver, text_of(b.safe_level), b.options.size());
   }
   for (const auto& f : rig.fixtures) {
     add(f.name, f.luminaire, text_of(f.world_from_mount.translation_m),
@@ -118,8 +118,9 @@ std::string dump(const Rig& rig) {
     const Daylight& d = *rig.daylight;
     add(static_cast<int>(d.sky), d.general_type, d.horizontal_lx, d.sun_normal_lx, text_of(d.towards_sun_world));
   }
-  add(rig.safe.level, rig.safe.hold_s, rig.safe.fade_s, rig.safe.on_meter_loss, rig.daemon.http_port,
-      rig.daemon.park_at_end, rig.startup.stage_s, text_of(rig.startup.max_watts_per_s), rig.startup.after_loss);
+  add(rig.safe.level, rig.safe.hold_s, rig.safe.fade_s, static_cast<int>(rig.safe.scope), rig.safe.on_meter_loss,
+      rig.daemon.http_port, rig.daemon.park_at_end, rig.startup.stage_s, text_of(rig.startup.max_watts_per_s),
+      rig.startup.after_loss);
   return out;
 }
 

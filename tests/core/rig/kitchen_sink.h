@@ -115,6 +115,7 @@ xy = [0.16, 0.07]  #> [0.16, 0.08]
 [[bus]]
 name = "dmx"  #> "net"
 driver = "sacn"  #> "artnet"
+safe_level = 0.4  #> 0.5
 priority = 100
 [[bus]]
 name = "field"
@@ -379,7 +380,8 @@ gain_max = 1.3  #> 1.4
 level = 0.2  #> 0.3
 hold_s = 6  #> 7
 fade_s = 8  #> 9
-on_meter_loss = false  #> true
+scope = "all"  #> "rest-stays"
+on_meter_loss = true  #> false
 [startup]
 stage_s = 2  #> 3
 max_watts_per_s = 500  #> 600

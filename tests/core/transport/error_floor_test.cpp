@@ -100,20 +100,23 @@ TEST(Enough, InTheMiddleOfTheWorkGivesAnAnswerThatAgreesWithTheFullOne) {
   const auto full = path->evaluate(rooms.receivers, rooms.emitters, rooms.options);
   std::stop_source enough;
   EvaluateOptions halfway = rooms.options;
-  halfway.wanted_relative_error = 1e-4;
+  halfway.wanted_relative_error = 1e-3;
   halfway.max_rays = 1'000'000'000'000;
   halfway.enough = enough.get_token();
   int reports = 0;
   halfway.watch.progress = [&](double) {
-    if (++reports == 8) enough.request_stop();
+    if (++reports == 3) enough.request_stop();
   };
   const auto part = path->evaluate(rooms.receivers, rooms.emitters, halfway);
   ASSERT_TRUE(full && part);
-  EXPECT_GT(part->relative_error, 1e-4);
+  EXPECT_GT(part->relative_error, 1e-3);
   const Eigen::VectorXd one = Eigen::VectorXd::Ones(1);
   const Eigen::VectorXd difference = (full->lux(one) - part->lux(one)).cwiseAbs();
   const Eigen::VectorXd error = full->standard_error_lux(one) + part->standard_error_lux(one);
-  for (Eigen::Index r = 0; r < difference.size(); ++r) EXPECT_LT(difference[r], 4 * error[r]) << r;
+  // Far below the floor few paths find light at all, and their spread says little of the error.
+  const double below_floor_lx = 1e-3 * rooms.options.floor_lx;
+  for (Eigen::Index r = 0; r < difference.size(); ++r)
+    EXPECT_LT(difference[r], std::max(4 * error[r], below_floor_lx)) << r;
 }
 
 }  // namespace

@@ -255,7 +255,7 @@ TEST(ModbusTcpDriver, LeavesASilentUnitAloneForASecondSoThatTheOthersKeepTheirPa
   EXPECT_EQ(bench.health("meter-1").life, Life::active);
 
   bench.peer.set_script(well);
-  EXPECT_EQ(bench.read(5200)->size(), 3u);
+  EXPECT_EQ(bench.read(5400)->size(), 3u);
   EXPECT_EQ(bench.health("meter-2").life, Life::active);
   EXPECT_EQ(bench.peer.connections(), 1);
 }

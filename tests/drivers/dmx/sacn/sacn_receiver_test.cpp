@@ -79,6 +79,20 @@ TEST(SacnInput, DropsWhatIsUpToNineteenBehindAndNothingElse) {  // 6.7.2
   }
 }
 
+TEST(SacnInput, ALateReaderLosesNobodyWhosePacketsHaveArrived) {
+  Receiver receiver(hearing());
+  HandDesk one(1, 100), two(2, 100);
+  warm_up(receiver, {{&one, 77}, {&two, 10}});
+  EXPECT_EQ(presence(receiver, 2000), DeskPresence::present);
+  // Nobody read for four seconds; then what the kernel has kept is read, one after the other.
+  two.send(receiver, 6000, 12);
+  one.send(receiver, 6000, 78);
+  EXPECT_EQ(presence(receiver, 6000), DeskPresence::present);
+  EXPECT_EQ(level(receiver, 6000), 78);
+  EXPECT_EQ(receiver.sources(at_ms(6000), 1), 2u);
+  EXPECT_EQ(presence(receiver, 8501), DeskPresence::absent) << "one that is silent is lost all the same";
+}
+
 TEST(SacnInput, LosesASourceAfterTwoAndAHalfSecondsAndKeepsItsLastLevels) {  // 6.7.1
   Receiver receiver(hearing());
   HandDesk desk(1);

@@ -1,0 +1,138 @@
+/// Failure domains: what hangs on a lost bus or dimmer is held and then goes to its safe level, and the rest goes on.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/control/show_state.h"
+
+namespace luxrig {
+namespace {
+
+/// Of what a meter reads: less than this from lamps that may do anything, and it tells of the others.
+constexpr double kShareThatTells = 0.02;
+
+/// Since a lamp took its last level, drivers have known within this that it takes none.
+constexpr Duration kNoticedWithin = std::chrono::seconds(2);
+/// A meter that showed more than its point may have is trusted to watch over it again below this share of the limit.
+constexpr double kWellBelow = 0.95;
+
+/// What an output may do without data beside keeping its level or going dark: anything, unless its maker says.
+bool may_brighten(const Fixture& fixture) {
+  const auto* modbus = std::get_if<ModbusPatch>(&fixture.patch);
+  return modbus == nullptr || modbus->map == nullptr;
+}
+
+}  // namespace
+
+bool ShowController::State::any_lost() const {
+  return std::any_of(lost.begin(), lost.end(), [](const auto& one) { return one.has_value(); });
+}
+
+bool ShowController::State::too_much_lost() const {
+  return rig.safe.scope == SafeScope::rest_stays ? health.all_lost() : health.light_lost();
+}
+
+/// Nothing is told apart when the rig goes to its safe look as a whole.
+void ShowController::State::watch_losses(Time now) {
+  if (rig.safe.scope == SafeScope::all) return;
+  bool changed = false;
+  std::vector<double> present, before;
+  for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
+    const bool lamp = health.lamp_lost(f), gone = lamp || health.motion_lost(f);
+    std::optional<LostFixture>& one = lost[f];
+    if (gone && !one) {
+      if (present.empty()) {
+        present = present_levels(now);
+        before = present_levels(now - kNoticedWithin);
+      }
+      one = LostFixture{now, present[f], std::max(present[f], before[f]), lamp, false, {}};
+      changed = true;
+    } else if (gone) {
+      one->well_since.reset();
+      changed = changed || (lamp && !one->lamp);
+      one->lamp = one->lamp || lamp;
+      if (!one->to_safe && now - one->since >= from_seconds(rig.safe.hold_s)) one->to_safe = changed = true;
+    } else if (one && !one->well_since) {
+      one->well_since = now;
+    } else if (one && now - *one->well_since >= kHealthyFor) {
+      one.reset();
+      changed = true;
+    }
+  }
+  const std::vector<std::uint8_t> seen = watched_meters();
+  if (any_lost()) changed = changed || seen != watched;
+  if (!changed) return;
+  watched = seen;
+  tell_lost_lamps();
+  for (std::size_t i = 0; i < rig.luxmeters.size(); ++i)
+    if (in_doubt(i)) {
+      measured[i].reset();
+      health.judged(i, now, "");  // what it shows is no fault of its own
+    }
+  const bool goes_on = phase == Phase::moving || phase == Phase::fading || phase == Phase::settling ||
+                       phase == Phase::measuring || phase == Phase::correcting || phase == Phase::holding;
+  if (goes_on && cue && !failing) start_cue(now, asked);
+}
+
+/// 1 where a meter is read and shows no more than its point may have.
+std::vector<std::uint8_t> ShowController::State::watched_meters() const {
+  std::vector<std::uint8_t> seen(rig.luxmeters.size(), 0);
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const Luxmeter& meter = rig.luxmeters[i];
+    if (health.meter_lost(i) || !believed[i] || !meter.point) continue;
+    const bool was = i >= watched.size() || watched[i] != 0;
+    seen[i] = believed[i]->lux <= rig.points[*meter.point].max_lx.value_or(meter.range_lx) * (was ? 1 : kWellBelow);
+  }
+  return seen;
+}
+
+void ShowController::State::tell_lost_lamps() {
+  std::vector<std::optional<GainEstimator::Lost>> lamps(rig.fixtures.size());
+  for (std::size_t f = 0; f < lamps.size(); ++f) {
+    if (!lost[f] || !lost[f]->lamp) continue;
+    // For as long as the present look is held anyway, it is taken to hold, too.
+    const bool unknown = lost[f]->to_safe && may_brighten(rig.fixtures[f]);
+    lamps[f] = GainEstimator::Lost{lost[f]->most, unknown ? 1.0 : lost[f]->most};
+  }
+  estimator.set_lost(std::move(lamps), watched);
+}
+
+/// What lost fixtures are sent in place of the look: where they were, then their safe level, unless they were darker.
+/// They may take it at any instant, and limits count on what they had.
+void ShowController::State::leave_out_lost(std::vector<double>& levels) const {
+  if (!any_lost()) return;
+  const std::vector<double> safe = safe_levels();
+  for (std::size_t f = 0; f < levels.size(); ++f)
+    if (lost[f]) levels[f] = lost[f]->to_safe ? std::min(safe[f], lost[f]->level) : lost[f]->level;
+}
+
+bool ShowController::State::in_doubt(std::size_t luxmeter) const {
+  if (!any_lost()) return false;
+  std::vector<std::uint8_t> chosen(rig.fixtures.size(), 0);
+  for (std::size_t f = 0; f < chosen.size(); ++f) chosen[f] = lost[f].has_value();
+  return estimator.share_at_meter(luxmeter, chosen, program.to_level) > kShareThatTells;
+}
+
+void ShowController::State::tell_losses(ShowStatus& status) const {
+  for (std::size_t f = 0; f < lost.size(); ++f) status.fixtures[f].lost = lost[f].has_value();
+  std::string points;
+  for (const std::size_t p : estimator.beyond_dimming())
+    points += fmt::format("{}\"{}\"", points.empty() ? "" : ", ", rig.points[p].name);
+  if (points.empty()) return;
+  Time since = Time::max();
+  std::string lamps;
+  for (std::size_t f = 0; f < lost.size(); ++f) {
+    if (!lost[f] || !lost[f]->lamp || !may_brighten(rig.fixtures[f])) continue;
+    lamps += fmt::format("{}\"{}\"", lamps.empty() ? "" : ", ", rig.fixtures[f].name);
+    since = std::min(since, lost[f]->since);
+  }
+  status.alarms.push_back(
+      {true, "",
+       fmt::format("the limit of {} cannot be promised: what {} gives is not known, and it alone could exceed it; look "
+                   "at it, or cut its power",
+                   points, lamps),
+       since});
+}
+
+}  // namespace luxrig

@@ -1,0 +1,42 @@
+#pragma once
+/// How late a thread of ours wakes up. That is no failure of a device, and is told as what it is.
+
+#include <algorithm>
+#include <mutex>
+#include <optional>
+
+#include "core/time.h"
+
+namespace luxrig {
+
+class Lateness {
+ public:
+  static constexpr Duration kWorthSaying = std::chrono::milliseconds(250);
+  static constexpr Duration kRemembered = std::chrono::minutes(1);  ///< after the last time
+
+  struct Spell {
+    Time since{}, last{};
+    Duration most{};
+  };
+
+  /// It should have woken at `due`, and did at `woke`.
+  void record(Time due, Time woke) {
+    if (woke - due < kWorthSaying) return;
+    const std::lock_guard lock(mutex_);
+    if (!spell_ || woke - spell_->last > kRemembered) spell_ = Spell{woke, woke, {}};
+    spell_->last = woke;
+    spell_->most = std::max(spell_->most, woke - due);
+  }
+
+  /// Nothing when it has been in time for a minute.
+  [[nodiscard]] std::optional<Spell> spell(Time now) const {
+    const std::lock_guard lock(mutex_);
+    return spell_ && now - spell_->last <= kRemembered ? spell_ : std::nullopt;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::optional<Spell> spell_;
+};
+
+}  // namespace luxrig
