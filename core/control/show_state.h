@@ -215,6 +215,7 @@ struct ShowController::State {
   [[nodiscard]] bool arrived(std::size_t point, double lux) const;
   [[nodiscard]] bool all_metered_goals_arrived() const;
   [[nodiscard]] PointStatus point_status(std::size_t point, std::span<const double> level, Time now) const;
+  [[nodiscard]] double in_doubt_for_lost_lamps_lx(std::size_t point, std::span<const double> level) const;
   [[nodiscard]] LuxEstimate light_by_model(std::size_t point, std::span<const double> level,
                                            const Prediction& prediction) const;
   [[nodiscard]] std::vector<double> with_lost_lamps_at(std::span<const double> level, bool full) const;

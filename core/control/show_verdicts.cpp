@@ -64,13 +64,18 @@ bool ShowController::State::any_lamp_lost() const {
   return false;
 }
 
+double ShowController::State::in_doubt_for_lost_lamps_lx(std::size_t point, std::span<const double> level) const {
+  if (!any_lamp_lost()) return 0;
+  const double lux = estimator.at_point(point, level).lux;
+  return std::max(lux - estimator.at_point(point, with_lost_lamps_at(level, false)).lux,
+                  estimator.at_point(point, with_lost_lamps_at(level, true)).lux - lux);
+}
+
 LuxEstimate ShowController::State::light_by_model(std::size_t point, std::span<const double> level,
                                                   const Prediction& prediction) const {
   LuxEstimate light = estimate_of(prediction.lux, prediction.standard_error_lx);
   light.half_width_lx = std::hypot(light.half_width_lx, estimator.common_tolerance() * prediction.lux);
-  if (any_lamp_lost())
-    light.half_width_lx += std::max(prediction.lux - estimator.at_point(point, with_lost_lamps_at(level, false)).lux,
-                                    estimator.at_point(point, with_lost_lamps_at(level, true)).lux - prediction.lux);
+  light.half_width_lx += in_doubt_for_lost_lamps_lx(point, level);
   return light;
 }
 
@@ -120,7 +125,8 @@ void ShowController::State::judge_goal(std::size_t p, std::span<const double> le
   } else if (meter) {
     settles = fmt::format("luxmeter \"{}\" is lost or not believed; put it right", rig.luxmeters[*meter].name);
   } else {
-    for (std::size_t f = 0; f < level.size() && settles.empty(); ++f)
+    const bool for_lost_lamps = 2 * in_doubt_for_lost_lamps_lx(p, level) > status.light.half_width_lx;
+    for (std::size_t f = 0; for_lost_lamps && f < level.size() && settles.empty(); ++f)
       if (health.lamp_lost(f))
         settles = fmt::format("fixture \"{}\" does not answer; put it right", rig.fixtures[f].name);
     if (settles.empty()) settles = "by the model; a luxmeter here would settle it";

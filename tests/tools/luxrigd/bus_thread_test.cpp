@@ -46,7 +46,7 @@ class RecordingDriver final : public Driver, public LevelOutput {
 Rig one_fixture_each(std::size_t buses) {
   Rig rig;
   for (std::size_t b = 0; b < buses; ++b) {
-    rig.buses.push_back({"bus", "recording", {}, {}});
+    rig.buses.push_back({"bus", "recording", {}, {}, {}});
     Fixture fixture;
     fixture.name = "lamp";
     fixture.bus = b;

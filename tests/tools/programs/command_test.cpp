@@ -281,13 +281,13 @@ TEST(Commands, BadRigsAreRefusedWithTheirPlaceBeforeAnythingMoves) {
   for (const auto& entry : std::filesystem::directory_iterator(source("tests/rigs/bad"))) {
     if (entry.path().extension() != ".toml") continue;
     const Ran ran =
-        luxrig::testing::run({program("luxrig"), "run", entry.path().string(), "--sim", "--once", "--port", "0"}, 10s);
+        luxrig::testing::run({program("luxrig"), "run", entry.path().string(), "--sim", "--once", "--port", "0"});
     EXPECT_EQ(ran.code, 2) << entry.path() << ran.output;
     // Its own place, or that of a file it names (a points file).
     EXPECT_TRUE(std::regex_search(ran.output, std::regex("/tests/rigs/bad/[^:]+:[0-9]+:[0-9]+: ")))
         << entry.path() << ran.output;
     EXPECT_EQ(ran.output.find("simulated rig started"), std::string::npos) << entry.path();
-    EXPECT_LT(ran.seconds, 1.0) << entry.path();
+    EXPECT_LT(ran.processor_seconds, 1.0) << entry.path();
     ++seen;
   }
   EXPECT_GE(seen, 30);
