@@ -156,8 +156,9 @@ void HealthWatch::join_units() {
     for (const Health* device : devices) text += fmt::format("{}\"{}\"", text.empty() ? "" : ", ", device->device);
     return text;
   };
-  for (const auto& [key, unit] : units) {
-    const auto& [bus, number, detail] = key;
+  for (const auto& entry : units) {  // lambdas take no structured bindings in C++20 as clang has it
+    const auto& [bus, number, detail] = entry.first;
+    const Unit& unit = entry.second;
     if (unit.fixtures.size() + unit.meters.size() < 2) continue;
     const auto of_unit = [&](const Alarm& alarm) {
       const auto same = [&](const Health* device) { return device->device == alarm.device; };

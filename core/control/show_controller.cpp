@@ -109,7 +109,7 @@ void ShowController::State::fade(Time now, std::vector<double> from, std::vector
 /// says more.
 void ShowController::State::guard(Time now, const std::vector<double>& from, const std::vector<double>& to) {
   constexpr int kSamples = 8;
-  constexpr double kRounding = 1 + 1e-9, kAllowed = 1 + kBreachSlack;
+  constexpr double kOfRounding = 1 + 1e-9, kAllowed = 1 + kBreachSlack;
   const bool nothing_new = sampled_at <= program.start;  // a correction starts at the instant of its sample
   WorstCase worst = estimator.worst_case(from, to, now);
   const auto lights = static_cast<Eigen::Index>(from.size());
@@ -123,7 +123,7 @@ void ShowController::State::guard(Time now, const std::vector<double>& from, con
     // Who sent the light that was there before knew more than the open-loop margin.
     const auto was = static_cast<Eigen::Index>(in_force.size());
     const bool was_so =
-        was == lights && ends_lx <= row.dot(Eigen::Map<const Eigen::VectorXd>(in_force.data(), was)) * kRounding;
+        was == lights && ends_lx <= row.dot(Eigen::Map<const Eigen::VectorXd>(in_force.data(), was)) * kOfRounding;
 
     for (int s = nothing_new ? 1 : 0; s <= kSamples && safe && !was_so; ++s) {
       Eigen::VectorXd level(lights);
