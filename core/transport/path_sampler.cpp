@@ -357,17 +357,20 @@ double PathSampler::add_record(const Vec3& per_lux_rgb, std::span<const float> v
     const float* const from = values.data() + c * emitters;
     double* const to = sums.values.empty() ? nullptr : sums.values.data() + (sums.channels == 1 ? 0 : c * emitters);
     const double factor = sums.channels == 1 ? luminous : per_lux;
-    double of_channel = 0;
+    std::array<double, kPart> lanes{};  // as many sums as the compiler likes to make at a time
     for (std::size_t begin = 0; begin < emitters; begin += kPart) {
       const std::size_t end = std::min(begin + kPart, emitters);
       int lit = 0;
       for (std::size_t e = begin; e < end; ++e) lit |= from[e] != 0 ? 1 : 0;
       if (lit == 0) continue;
-      for (std::size_t e = begin; e < end; ++e) of_channel += levels[e] * static_cast<double>(from[e]);
+      if (end - begin == kPart)
+        for (std::size_t k = 0; k < kPart; ++k) lanes[k] += levels[begin + k] * static_cast<double>(from[begin + k]);
+      else
+        for (std::size_t e = begin; e < end; ++e) lanes[0] += levels[e] * static_cast<double>(from[e]);
       if (to == nullptr) continue;
       for (std::size_t e = begin; e < end; ++e) to[e] += factor * static_cast<double>(from[e]);
     }
-    worth += luminous * of_channel;
+    for (const double of_lane : lanes) worth += luminous * of_lane;
   }
   return worth;
 }
