@@ -3,7 +3,9 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
-#include <set>
+
+#include "core/solve/limited_methods.h"
+#include "core/solve/limited_nnls.h"
 
 namespace luxrig {
 namespace {
@@ -12,10 +14,26 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Multipliers nearer to zero than this (‖f‖ and the columns are about 1) are rounding.
-constexpr double kMultiplierTolerance = 1e-14;
-/// A constraint whose rate along a unit step is below this does not block it.
-constexpr double kRateTolerance = 1e-14;
+/// Unknowns from which on many constraints at a time are faster (`luxrig bench nnls --only levels`).
+constexpr Index kMany = 200;
+
+/// A row without slack keeps all that it touches at 0. As a limit it would leave no inside, and multipliers no end.
+struct LitProblem {
+  explicit LitProblem(const LimitedLeastSquares& p) : upper(p.upper) {
+    for (Index i = 0; i < p.G.rows(); ++i) {
+      if (p.slack[i] > 0 || p.G.row(i).minCoeff() < 0) {
+        rows.push_back(i);
+        continue;
+      }
+      for (Index j = 0; j < p.G.cols(); ++j)
+        if (p.G(i, j) > 0) upper[j] = 0;
+    }
+  }
+  VectorXd upper;
+  std::vector<Index> rows;  ///< the other limits
+};
+
+}  // namespace
 
 std::vector<Index> free_variables(const std::vector<BoundState>& state) {
   std::vector<Index> free;
@@ -23,193 +41,6 @@ std::vector<Index> free_variables(const std::vector<BoundState>& state) {
     if (state[j] == BoundState::free) free.push_back(static_cast<Index>(j));
   return free;
 }
-
-class ActiveSet {
- public:
-  explicit ActiveSet(const LimitedLeastSquares& problem) : p_(problem) {
-    // E = Q R once; afterwards only R and Qᵀ f are needed.
-    const Eigen::HouseholderQR<MatrixXd> qr(p_.E);
-    const Index n = p_.E.cols();
-    const VectorXd turned = qr.householderQ().adjoint() * p_.f;
-    r_ = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>();
-    q_ = turned.head(n);
-    at_.z = VectorXd::Zero(n);
-    at_.state.assign(static_cast<std::size_t>(n), BoundState::lower);
-    refused_bound_.assign(static_cast<std::size_t>(n), false);
-    refused_row_.assign(static_cast<std::size_t>(p_.G.rows()), false);
-  }
-
-  LimitedLeastSquaresResult solve(const std::stop_token& stop) {
-    const auto size = static_cast<int>(std::min<Index>(p_.E.cols() + p_.G.rows(), 1'000'000));
-    const int most = 200 + 50 * size;
-    int without_progress = 0;
-    bool stationary = true;  // at z = 0 nothing is free
-    for (; at_.iterations < most; ++at_.iterations) {
-      if (stop.stop_requested()) {
-        at_.stopped = true;
-        return at_;
-      }
-      // Bland's rule (least index) once the vertex looks degenerate: it cannot cycle.
-      const bool least_index = without_progress > 2 * size;
-      if (stationary && !release(least_index)) {
-        at_.converged = true;
-        return at_;
-      }
-      const double moved = step(least_index, stationary);
-      if (moved > 1e-15) {
-        without_progress = 0;
-        released_ = Released{};
-        std::fill(refused_bound_.begin(), refused_bound_.end(), false);
-        std::fill(refused_row_.begin(), refused_row_.end(), false);
-      } else {
-        ++without_progress;
-      }
-    }
-    return at_;
-  }
-
- private:
-  struct Released {
-    Index bound = -1, row = -1;
-  };
-
-  /// Lets go the constraint with the worst multiplier; false when all have the right sign: then z is the optimum.
-  bool release(bool least_index) {
-    const VectorXd gradient = r_.transpose() * (r_ * at_.z - q_);
-    const VectorXd multiplier = row_multipliers(p_.G, at_, gradient);
-    VectorXd total = gradient;
-    for (std::size_t k = 0; k < at_.working_rows.size(); ++k)
-      total += multiplier[static_cast<Index>(k)] * p_.G.row(at_.working_rows[k]).transpose();
-    double worst = kMultiplierTolerance;
-    released_ = Released{};
-    std::size_t place = 0;
-    for (std::size_t j = 0; j < at_.state.size(); ++j) {
-      if (at_.state[j] == BoundState::free || refused_bound_[j] || !(p_.upper[static_cast<Index>(j)] > 0)) continue;
-      const double wrong =
-          at_.state[j] == BoundState::lower ? -total[static_cast<Index>(j)] : total[static_cast<Index>(j)];
-      if (wrong <= worst) continue;
-      released_ = Released{static_cast<Index>(j), -1};
-      if (least_index) break;
-      worst = wrong;
-    }
-    if (!(least_index && released_.bound >= 0)) {
-      Index least = p_.G.rows();
-      for (std::size_t k = 0; k < at_.working_rows.size(); ++k) {
-        const Index row = at_.working_rows[k];
-        const double wrong = -multiplier[static_cast<Index>(k)];
-        if (refused_row_[static_cast<std::size_t>(row)] || wrong <= worst || (least_index && row > least)) continue;
-        released_ = Released{-1, row};
-        place = k;
-        least = row;
-        if (!least_index) worst = wrong;
-      }
-    }
-    if (released_.bound >= 0) {
-      at_.state[static_cast<std::size_t>(released_.bound)] = BoundState::free;
-      return true;
-    }
-    if (released_.row >= 0) {
-      at_.working_rows.erase(at_.working_rows.begin() + static_cast<std::ptrdiff_t>(place));
-      return true;
-    }
-    return false;
-  }
-
-  /// The step to the minimum over the free variables with the working rows kept.
-  [[nodiscard]] VectorXd direction(const std::vector<Index>& free) {
-    const VectorXd rest = q_ - r_ * at_.z;
-    VectorXd whole = VectorXd::Zero(at_.z.size());
-    if (free.empty()) return whole;
-    const MatrixXd objective = r_(Eigen::all, free);
-    VectorXd part;
-    if (at_.working_rows.empty()) {
-      part = objective.householderQr().solve(rest);
-    } else {
-      const MatrixXd rows = p_.G(at_.working_rows, free).transpose();
-      Eigen::ColPivHouseholderQR<MatrixXd> qr;
-      qr.setThreshold(1e-12);
-      qr.compute(rows);
-      const Index rank = qr.rank();
-      if (rank < rows.cols()) {  // rounding made rows dependent: those left over follow from the others
-        std::vector<Index> kept;
-        for (Index k = 0; k < rank; ++k)
-          kept.push_back(at_.working_rows[static_cast<std::size_t>(qr.colsPermutation().indices()[k])]);
-        at_.working_rows = std::move(kept);
-      }
-      const Index left = rows.rows() - rank;
-      if (left == 0) return whole;
-      const MatrixXd q = qr.householderQ();
-      const MatrixXd null_space = q.rightCols(left);
-      part = null_space * (objective * null_space).householderQr().solve(rest);
-    }
-    if (part.allFinite()) whole(free) = part;
-    return whole;
-  }
-
-  /// Goes as far as the constraints allow and takes up the one that blocks. Returns the length gone.
-  double step(bool least_index, bool& stationary) {
-    const std::vector<Index> free = free_variables(at_.state);
-    const VectorXd p = direction(free);
-    const double length = p.cwiseAbs().size() == 0 ? 0 : p.cwiseAbs().maxCoeff();
-    double share = 1, rate_best = 0;
-    Index bound = -1, row = -1;
-    const auto better = [&](double here, double rate) {
-      if (here >= 1) return false;
-      if (bound < 0 && row < 0) return true;
-      if (least_index) return here < share;
-      return here < share || (here == share && rate > rate_best);
-    };
-    for (const Index j : free) {
-      const double rate = std::abs(p[j]);
-      if (rate <= kRateTolerance * length || (p[j] > 0 && std::isinf(p_.upper[j]))) continue;
-      const double room = p[j] < 0 ? at_.z[j] : p_.upper[j] - at_.z[j];
-      const double here = std::max(0.0, room) / rate;
-      if (!better(here, rate)) continue;
-      share = here;
-      rate_best = rate;
-      bound = j;
-    }
-    if (length > 0 && p_.G.rows() > 0) {
-      const VectorXd rates = p_.G * p;
-      const VectorXd used = p_.G * at_.z;
-      for (Index i = 0; i < p_.G.rows(); ++i) {
-        if (rates[i] <= kRateTolerance * length) continue;
-        if (std::find(at_.working_rows.begin(), at_.working_rows.end(), i) != at_.working_rows.end()) continue;
-        const double here = std::max(0.0, p_.slack[i] - used[i]) / rates[i];
-        if (!better(here, rates[i])) continue;
-        share = here;
-        rate_best = rates[i];
-        row = i;
-        bound = -1;
-      }
-    }
-    at_.z = (at_.z + share * p).cwiseMax(0.0).cwiseMin(p_.upper);
-    stationary = bound < 0 && row < 0;
-    if (bound >= 0) {
-      const bool low = p[bound] < 0;
-      at_.z[bound] = low ? 0 : p_.upper[bound];
-      at_.state[static_cast<std::size_t>(bound)] = low ? BoundState::lower : BoundState::upper;
-    }
-    if (row >= 0) at_.working_rows.push_back(row);
-    // What was let go and at once came back had a multiplier of rounding: it stays until something moves.
-    if (share * length <= 1e-15) {
-      if (released_.bound >= 0 && (bound == released_.bound || stationary))
-        refused_bound_[static_cast<std::size_t>(released_.bound)] = true;
-      if (released_.row >= 0 && (row == released_.row || stationary))
-        refused_row_[static_cast<std::size_t>(released_.row)] = true;
-    }
-    return share * length;
-  }
-
-  const LimitedLeastSquares& p_;
-  MatrixXd r_;
-  VectorXd q_;
-  LimitedLeastSquaresResult at_;
-  Released released_;
-  std::vector<bool> refused_bound_, refused_row_;
-};
-
-}  // namespace
 
 VectorXd row_multipliers(const MatrixXd& G, const LimitedLeastSquaresResult& at, const VectorXd& gradient) {
   const std::vector<Index> free = free_variables(at.state);
@@ -219,6 +50,59 @@ VectorXd row_multipliers(const MatrixXd& G, const LimitedLeastSquaresResult& at,
   return rows.colPivHouseholderQr().solve(part);
 }
 
+double kkt_violation(const LimitedLeastSquares& p, const LimitedLeastSquaresResult& at, const VectorXd& multiplier) {
+  if (!at.z.allFinite() || !multiplier.allFinite()) return HUGE_VAL;
+  VectorXd gradient = p.E.transpose() * (p.E * at.z - p.f);
+  const VectorXd over = p.G * at.z - p.slack;
+  double worst = over.size() > 0 ? std::max(0.0, over.maxCoeff()) : 0;
+  for (std::size_t k = 0; k < at.working_rows.size(); ++k) {
+    const Index row = at.working_rows[k];
+    const double lambda = multiplier[static_cast<Index>(k)];
+    gradient += lambda * p.G.row(row).transpose();
+    worst = std::max({worst, -lambda, std::abs(lambda * over[row])});
+  }
+  for (Index j = 0; j < at.z.size(); ++j) {
+    worst = std::max({worst, -at.z[j], at.z[j] - p.upper[j]});
+    if (p.upper[j] == 0) continue;
+    if (at.z[j] > 0) worst = std::max(worst, gradient[j]);
+    if (at.z[j] < p.upper[j]) worst = std::max(worst, -gradient[j]);
+  }
+  return worst;
+}
+
+std::optional<LimitedLeastSquaresResult> solve_by_multipliers(const LimitedLeastSquares& p,
+                                                              const std::stop_token& stop) {
+  const LitProblem lit(p);
+  NnlsProblem problem;
+  problem.columns = ColumnsView(p.E);
+  problem.goal = p.f;
+  problem.upper = lit.upper;
+  LinearLimits limits;
+  limits.rows = p.G(lit.rows, Eigen::all).sparseView();
+  limits.most = p.slack(lit.rows);
+  NnlsOptions options;
+  options.stop = stop;
+  const auto guess = solve_limited_nnls(problem, limits, options);
+  LimitedLeastSquaresResult at;
+  at.stopped = stop.stop_requested();
+  if (at.stopped) return at;
+  if (!guess || !guess->conflict.empty()) return std::nullopt;
+  at.z = guess->least_squares.x;
+  at.iterations = guess->least_squares.iterations;
+  at.state.assign(static_cast<std::size_t>(at.z.size()), BoundState::free);
+  for (Index j = 0; j < at.z.size(); ++j)
+    if (at.z[j] == 0 || at.z[j] == p.upper[j])
+      at.state[static_cast<std::size_t>(j)] = at.z[j] == 0 ? BoundState::lower : BoundState::upper;
+  for (std::size_t k = 0; k < lit.rows.size(); ++k)
+    if (guess->multiplier[static_cast<Index>(k)] > 0) at.working_rows.push_back(lit.rows[k]);
+  if (LimitedLeastSquaresResult settled = at; settle_active_set(p, settled, stop)) return settled;
+  at = solve_by_active_set(p, stop, std::move(at));
+  if (at.stopped) return at;
+  const VectorXd gradient = p.E.transpose() * (p.E * at.z - p.f);
+  if (!at.converged || kkt_violation(p, at, row_multipliers(p.G, at, gradient)) > kVerified) return std::nullopt;
+  return at;
+}
+
 LimitedLeastSquaresResult solve_limited_least_squares(const LimitedLeastSquares& problem, const std::stop_token& stop) {
   if (problem.E.cols() == 0) {
     LimitedLeastSquaresResult none;
@@ -226,7 +110,9 @@ LimitedLeastSquaresResult solve_limited_least_squares(const LimitedLeastSquares&
     none.converged = true;
     return none;
   }
-  return ActiveSet(problem).solve(stop);
+  if (problem.E.cols() >= kMany)
+    if (auto result = solve_by_multipliers(problem, stop)) return std::move(*result);
+  return solve_by_active_set(problem, stop);
 }
 
 }  // namespace luxrig

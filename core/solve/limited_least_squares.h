@@ -1,6 +1,8 @@
 #pragma once
-/// min ‖E z − f‖₂ subject to 0 ≤ z ≤ upper and G z ≤ slack, by a primal active-set method that starts from the feasible
-/// z = 0 and stays feasible (Nocedal & Wright, Numerical Optimization (2006), algorithm 16.3; null space by QR).
+/// min ‖E z − f‖₂ subject to 0 ≤ z ≤ upper and G z ≤ slack, by a primal active-set method that stays feasible (Nocedal
+/// & Wright, Numerical Optimization (2006), algorithm 16.3; null space by QR). Few unknowns: it starts from z = 0.
+/// Many: beside the optimum, where the method of multipliers leads; what does not meet the optimum's conditions then is
+/// solved from z = 0 after all.
 
 #include <Eigen/Core>
 #include <stop_token>

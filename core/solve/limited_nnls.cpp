@@ -22,6 +22,9 @@ constexpr double kTolerance = 1e-14;
 /// The least violation of limits that can be kept is rounding; that of a conflict is above this, relative to d.
 constexpr double kConflict = 1e-9;
 constexpr int kMostRounds = 200;
+/// Of limits against the goal. A heavy weight leads to the multipliers in few rounds, but what limits weigh the goal
+/// loses in digits: the last rounds have a light one.
+constexpr double kFirstWeight = 100, kLightWeight = 1;
 
 /// Sparse columns of our own, built one after the other.
 struct BuiltColumns {
@@ -180,7 +183,7 @@ class Multipliers {
 
   void run(const NnlsOptions& options) {
     options_.stop = options.stop;
-    renew(100, VectorXd());
+    renew(kFirstWeight, VectorXd());
     double before = kNoBound;
     for (; rounds < kMostRounds; ++rounds) {
       solver_->set_goal(stacked_goal());
@@ -193,17 +196,23 @@ class Multipliers {
       const VectorXd next = (lambda_ + rho_ * over).cwiseMax(0.0);
       const double change = (next - lambda_).size() == 0 ? 0 : (next - lambda_).cwiseAbs().maxCoeff() / rho_;
       lambda_ = next;
-      if (change <= kTolerance * (1 + largest_most())) {
+      const bool near_enough = change <= kTolerance * (1 + largest_most());
+      if (converged) {  // with the light weight: as long as it pays
+        if (near_enough || change > 0.9 * before) return;
+        before = change;
+        continue;
+      }
+      if (near_enough || (change > 0.9 * before && change < 1e-12)) {  // as near as doubles come
         converged = true;
-        return;
+        if (rounds + 1 == kMostRounds || s_.most.size() == 0) return;
+        renew(kLightWeight, inner.x);
+        before = kNoBound;
+        continue;
       }
       // Far from linear convergence at a good rate: limits weigh more. Not near the end, where rounding is all.
       if (change > 0.25 * before && rho_ < 1e5 && change > 1e-12) {
         renew(rho_ * 10, inner.x);
         before = kNoBound;
-      } else if (change > 0.9 * before && change < 1e-12) {
-        converged = true;  // as near as doubles come
-        return;
       } else {
         before = change;
       }

@@ -85,41 +85,21 @@ Lamps::Lamps(std::span<const Emitter> emitters, std::span<const double> levels,
     importances_[e] = lamps_.back().importance;
   }
   form_groups();
-  form_profiles();
+  form_cells(bounds_world_m);
   share_out();
 }
 
-Lamps::Profile Lamps::Profile::of(const IntensityDistribution& intensity, bool sized) {
-  constexpr int kAzimuths = 16, kAngles = 2;
-  Profile profile;
-  // Other places of a shape see a point under other angles.
-  const auto least = static_cast<float>((sized ? 0.05 : 0.01) * intensity.max_intensity_cd());
-  for (std::size_t bin = 0; bin < kBins; ++bin) {
-    double most = 0;
-    for (int a = 0; a <= kAngles; ++a) {
-      const double half_sine = (static_cast<double>(bin) + static_cast<double>(a) / kAngles) / kBins;
-      const double angle = 2 * std::asin(std::min(half_sine, 1.0));
-      for (int b = 0; b < kAzimuths; ++b) {
-        const double azimuth = 2 * kPi * b / kAzimuths;
-        most = std::max(most, intensity.intensity_cd({std::sin(angle) * std::cos(azimuth),
-                                                      std::sin(angle) * std::sin(azimuth), -std::cos(angle)}));
-      }
-    }
-    profile.candela[bin] = std::max(static_cast<float>(most), least);
-  }
-  return profile;
-}
-
-void Lamps::form_profiles() {
+void Lamps::form_cells(const Eigen::AlignedBox3d& bounds_world_m) {
+  std::vector<LampProfile> profiles;
+  WeighedLamps w;
   std::map<const IntensityDistribution*, std::uint32_t> profile_of;
   for (std::size_t p = 0; p < places_.size(); ++p) {
     const Place& place = places_[p];
     if (place.kind == Kind::sky) continue;
     for (std::size_t i = place.begin; i < place.end; ++i) {
       const Lamp& lamp = lamps_[i];
-      const auto [known, fresh] = profile_of.try_emplace(lamp.intensity, static_cast<std::uint32_t>(profiles_.size()));
-      if (fresh) profiles_.push_back(Profile::of(*lamp.intensity, place.kind == Kind::shape));
-      Weighed& w = weighed_;
+      const auto [known, fresh] = profile_of.try_emplace(lamp.intensity, static_cast<std::uint32_t>(profiles.size()));
+      if (fresh) profiles.push_back(LampProfile::of(*lamp.intensity, place.kind == Kind::shape));
       w.x_m.push_back(place.position_world_m.x());
       w.y_m.push_back(place.position_world_m.y());
       w.z_m.push_back(place.position_world_m.z());
@@ -134,6 +114,7 @@ void Lamps::form_profiles() {
       w.profile.push_back(known->second);
     }
   }
+  cells_ = LampCells(std::move(w), std::move(profiles), places_.size(), bounds_world_m);
 }
 
 void Lamps::form_groups() {
@@ -196,13 +177,14 @@ double Lamps::inward_share(const Lamp& lamp, const Place& place) const {
 }
 
 double Lamps::weigh(const Vec3& position_world_m, const Vec3& normal_world, Weights& weights) const {
-  weights.places.assign(places_.size(), 0.0);
+  weights.cell = &cells_.at(position_world_m);
+  weights.places.assign(weights.cell->places.size(), 0.0);
   constexpr std::size_t kAtOnce = 32;
   std::array<float, kAtOnce> weight, half_sine;
   const double at_x = position_world_m.x(), at_y = position_world_m.y(), at_z = position_world_m.z();
   const Vec3f normal = normal_world.cast<float>();
   const float normal_x = normal.x(), normal_y = normal.y(), normal_z = normal.z();
-  const Weighed& w = weighed_;
+  const WeighedLamps& w = weights.cell->lamps;
   for (std::size_t begin = 0; begin < w.place.size(); begin += kAtOnce) {
     const std::size_t count = std::min(kAtOnce, w.place.size() - begin);
     // No branches and no calls: the compiler makes vector instructions of it.
@@ -221,13 +203,13 @@ double Lamps::weigh(const Vec3& position_world_m, const Vec3& normal_world, Weig
     }
     for (std::size_t k = 0; k < count; ++k) {
       if (!(weight[k] > 0)) continue;
-      const float candela = profiles_[w.profile[begin + k]].candela[Profile::bin_of(half_sine[k])];
+      const float candela = cells_.profile(w.profile[begin + k]).candela[LampProfile::bin_of(half_sine[k])];
       const double product = static_cast<double>(weight[k]) * static_cast<double>(candela);
       if (std::isfinite(product)) weights.places[w.place[begin + k]] += product;
     }
   }
   if (!places_.empty() && places_.back().kind == Kind::sky) weigh_skies(position_world_m, normal_world, weights);
-  double sum = 0;
+  double sum = weights.cell->rest_sum_lx;
   for (const double one : weights.places) sum += one;
   return sum;
 }
@@ -236,16 +218,23 @@ LampChoice Lamps::choose(const Vec3& position_world_m, const Vec3& normal_world,
                          double select, double u, double v) const {
   LampChoice choice;
   if (!(sum > 0)) return choice;
-  double left = select * sum;
-  choice.place = places_.size();
-  for (std::size_t p = 0; p < places_.size(); ++p) {
-    if (!(weights.places[p] > 0)) continue;
+  double left = select * sum, weight = 0;
+  const auto taken = [&](std::size_t p, double lx) {
+    if (!(lx > 0)) return false;
     choice.place = p;
-    if (left < weights.places[p]) break;
-    left -= weights.places[p];
-  }
+    weight = lx;
+    if (left < lx) return true;
+    left -= lx;
+    return false;
+  };
+  const LampCells::Cell& cell = *weights.cell;
+  std::size_t k = 0;
+  while (k < cell.places.size() && !taken(cell.places[k], weights.places[k])) ++k;
+  if (k == cell.places.size())
+    for (std::size_t r = 0; r < cell.rest.size() && !taken(cell.rest[r], static_cast<double>(cell.rest_lx[r])); ++r) {
+    }
   const Place& place = places_[choice.place];
-  const double probability = weights.places[choice.place] / sum;
+  const double probability = weight / sum;
   if (place.kind == Kind::point) {
     const Vec3 towards_m = place.position_world_m - position_world_m;
     const double distance_m = towards_m.norm();
@@ -269,7 +258,7 @@ LampChoice Lamps::choose(const Vec3& position_world_m, const Vec3& normal_world,
   } else {
     const double whole = whole_sky_share(place, weights);
     // What is left of the number after each choice is as good as it was.
-    const double rest = std::clamp(left / weights.places[choice.place], 0.0, 1 - 0x1p-53);
+    const double rest = std::clamp(left / weight, 0.0, 1 - 0x1p-53);
     DirectionSample sample =
         rest < whole ? lamps_[place.begin].sky->sample(u, v)
                      : openings_->sample(weights.view, position_world_m, (rest - whole) / (1 - whole), u, v);
@@ -292,9 +281,11 @@ Vec3 Lamps::beyond_world_m(const Vec3& position_world_m, const Vec3& direction_w
 double Lamps::choice_density(std::size_t emitter, const Vec3& position_world_m, const Vec3& direction_world,
                              const Weights& weights, double sum) const {
   const std::size_t p = place_of_emitter_[emitter];
-  if (!(weights.places[p] > 0)) return 0;
+  const std::size_t slot = weights.cell->slot_of(p);
+  const double weight = slot < weights.places.size() ? weights.places[slot] : weights.cell->rest_of(p);
+  if (!(weight > 0)) return 0;
   const Place& place = places_[p];
-  const double probability = weights.places[p] / sum;
+  const double probability = weight / sum;
   if (place.kind == Kind::point) return probability;
   if (place.kind == Kind::sky)
     return probability * sky_density_per_sr(place, position_world_m, direction_world, weights);

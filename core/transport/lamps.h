@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/transport/evaluator.h"
+#include "core/transport/lamp_cells.h"
 #include "core/transport/sky_openings.h"
 
 namespace luxrig {
@@ -86,14 +87,17 @@ class Lamps {
     return rays;
   }
 
-  /// Weights of the places for one surface point, in place order, and the openings it sees; reused from call to call.
+  /// Weights of the places of a cell for one surface point, in place order, and the openings it sees; reused from call
+  /// to call.
   struct Weights {
+    const LampCells::Cell* cell = nullptr;
     std::vector<double> places;
     SkyOpenings::View view;
   };
 
   /// About the lux (times level) that each place would give unshadowed; above 0 for every place that could give any.
-  /// Returns their sum.
+  /// Where there are many, only those that matter in the cell are weighed here, the others as lamp_cells.h says.
+  /// Returns the sum.
   double weigh(const Vec3& position_world_m, const Vec3& normal_world, Weights& weights) const;
 
   /// A place by `select` in [0, 1), of those weighed, and for what has size a direction by u and v. density 0: none.
@@ -149,21 +153,6 @@ class Lamps {
 
  private:
   enum class Kind { point, shape, sky };
-  /// Intensity about, by the angle from the axis: enough to choose by, and quick.
-  struct Profile {
-    static constexpr std::size_t kBins = 128;
-    std::array<float, kBins> candela{};  ///< over sin(angle / 2), at least a hundredth of the largest
-    static Profile of(const IntensityDistribution& intensity, bool sized);
-    [[nodiscard]] static std::size_t bin_of(float half_sine) {
-      return std::min(static_cast<std::size_t>(half_sine * kBins), kBins - 1);
-    }
-  };
-  /// All lamps of luminaires in arrays, to weigh several at a time.
-  struct Weighed {
-    std::vector<double> x_m, y_m, z_m;
-    std::vector<float> axis_x, axis_y, axis_z, cos_half_cone, importance, radius_m;
-    std::vector<std::uint32_t> place, profile;
-  };
   struct Lamp {
     std::size_t emitter;
     Vec3 axis_world;  ///< -Z of the lamp
@@ -189,7 +178,7 @@ class Lamps {
     std::optional<Vec3> towards_sun_world;  ///< of a sky whose light comes from one direction
   };
   void form_groups();
-  void form_profiles();
+  void form_cells(const Eigen::AlignedBox3d& bounds_world_m);
   void share_out();
   /// Share of a lamp's light, about, that can meet the sphere around all geometry.
   [[nodiscard]] double inward_share(const Lamp& lamp, const Place& place) const;
@@ -209,8 +198,7 @@ class Lamps {
 
   std::vector<Lamp> lamps_;
   std::vector<Place> places_;
-  std::vector<Profile> profiles_;
-  Weighed weighed_;
+  LampCells cells_;
   std::vector<Group> groups_;
   std::vector<std::size_t> place_of_emitter_, group_of_emitter_;
   std::vector<Vec3> colours_rgb_;

@@ -15,8 +15,9 @@ void Lamps::weigh_skies(const Vec3& position_world_m, const Vec3& normal_world, 
     const Place& place = places_[p - 1];
     const Vec3* towards = place.towards_sun_world ? &*place.towards_sun_world : nullptr;
     const double lit = openings_ ? openings_->lit_share(weights.view, position_world_m, towards) : 1;
+    double& weight = weights.places[weights.places.size() + p - 1 - places_.size()];
     for (std::size_t i = place.begin; i < place.end; ++i)
-      weights.places[p - 1] += lit * lamps_[i].importance * lamps_[i].sky->horizontal_illuminance_lx();
+      weight += lit * lamps_[i].importance * lamps_[i].sky->horizontal_illuminance_lx();
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include "core/solve/lux_limits.h"
 #include "core/solve/nnls_of_few.h"
+#include "tools/bench/nnls_levels.h"
 #include "tools/bench/nnls_problems.h"
 #include "tools/bench/nnls_switched.h"
 #include "tools/bench/row_progress.h"
@@ -166,6 +167,7 @@ std::vector<BenchRow> bench_nnls(const BenchOptions& options) {
     add_exchanges(problem, 10, options.quick ? 2'000 : 20'000, one.exchange_seconds, rows);
     if (!large) add_limited(problem, options.quick ? 1 : 3, rows);
   }
+  for (BenchRow& row : bench_levels(options)) rows.push_back(std::move(row));
   for (BenchRow& row : bench_switched(options)) rows.push_back(std::move(row));
   return rows;
 }

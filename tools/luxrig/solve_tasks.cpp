@@ -10,6 +10,7 @@
 #include "core/transport/rig_transport.h"
 #include "tools/luxrig/placement_task.h"
 #include "tools/luxrig/rig_version.h"
+#include "tools/luxrig/search_watch.h"
 #include "tools/luxrig/task_solver.h"
 
 namespace luxrig {
@@ -206,6 +207,8 @@ Result<void> TaskSolver::solve_levels_of(Index begin, Index end, double max_watt
   EmittanceProblem problem = problem_of(begin, end);
   problem.max_watts = max_watts;
   if (auto kept = limits_left(problem.fixed_lx); !kept) return kept;
+  const SearchWatch watch(planned.name,
+                          fmt::format("levels of {} lights at {} points", end - begin, rig_.points.size()), {}, {});
   // An interrupt has ended the search, not what becomes of it.
   auto solution = solve_emittance(problem, planned.kind == name_of(TaskKind::placement) ? Watch{} : options_.watch);
   if (!solution) return tl::unexpected(std::move(solution.error()));
