@@ -266,7 +266,7 @@ std::uint64_t PathSampler::add_path(const Vertex& start, const SobolSequence& sa
           break;
         }
         if (tails->ends == nullptr) {
-          tails->taken_lx += add_record(per_lux_rgb, tails->records->told(*record), sums);
+          tails->taken_lx += add_record(per_lux_rgb, *tails->records, *record, sums);
           break;
         }
         tails->ends->ends.push_back({reached.position_world_m, reached.normal_world.cast<float>(),
@@ -336,7 +336,7 @@ PathSampler::EndsSum PathSampler::add_ends(TailEnds& ends, const TailRecords& re
         end.record = *record;
       end.looked_at = static_cast<std::uint32_t>(records.size());
     }
-    const double taken_lx = add_record(end.per_lux_rgb.cast<double>(), records.told(end.record), sums);
+    const double taken_lx = add_record(end.per_lux_rgb.cast<double>(), records, end.record, sums);
     sum.taken_lx += taken_lx;
     for (; check < ends.checks.size() && ends.checks[check].end == i; ++check) {
       sum.checked_lx += taken_lx;
@@ -346,33 +346,23 @@ PathSampler::EndsSum PathSampler::add_ends(TailEnds& ends, const TailRecords& re
   return sum;
 }
 
-double PathSampler::add_record(const Vec3& per_lux_rgb, std::span<const float> values, const PathSums& sums) const {
-  // Of many lamps few reach a record: parts of the array without light are passed over.
-  constexpr std::size_t kPart = 16;
-  const std::size_t emitters = levels_.size();
-  const double* const levels = levels_.data();
-  double worth = 0;
-  for (std::size_t c = 0; c < 3; ++c) {
-    const double per_lux = per_lux_rgb[static_cast<Eigen::Index>(c)], luminous = kLuminance[c] * per_lux;
-    const float* const from = values.data() + c * emitters;
-    double* const to = sums.values.empty() ? nullptr : sums.values.data() + (sums.channels == 1 ? 0 : c * emitters);
-    const double factor = sums.channels == 1 ? luminous : per_lux;
-    std::array<double, kPart> lanes{};  // as many sums as the compiler likes to make at a time
-    for (std::size_t begin = 0; begin < emitters; begin += kPart) {
-      const std::size_t end = std::min(begin + kPart, emitters);
-      int lit = 0;
-      for (std::size_t e = begin; e < end; ++e) lit |= from[e] != 0 ? 1 : 0;
-      if (lit == 0) continue;
-      if (end - begin == kPart)
-        for (std::size_t k = 0; k < kPart; ++k) lanes[k] += levels[begin + k] * static_cast<double>(from[begin + k]);
-      else
-        for (std::size_t e = begin; e < end; ++e) lanes[0] += levels[e] * static_cast<double>(from[e]);
-      if (to == nullptr) continue;
-      for (std::size_t e = begin; e < end; ++e) to[e] += factor * static_cast<double>(from[e]);
-    }
-    for (const double of_lane : lanes) worth += luminous * of_lane;
+double PathSampler::add_record(const Vec3& per_lux_rgb, const TailRecords& records, std::size_t record,
+                               const PathSums& sums) const {
+  const Vec3 luminous = Vec3(kLuminance[0], kLuminance[1], kLuminance[2]).cwiseProduct(per_lux_rgb);
+  if (!sums.values.empty()) {
+    // Plain loops over arrays that lie together, which the compiler makes into vector instructions.
+    const std::size_t emitters = levels_.size();
+    const float* const from = records.told(record).data();
+    records.each_lit(record, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        const auto channel = static_cast<Eigen::Index>(c);
+        double* const to = sums.values.data() + (sums.channels == 1 ? 0 : c * emitters);
+        const double factor = sums.channels == 1 ? luminous[channel] : per_lux_rgb[channel];
+        for (std::size_t e = begin; e < end; ++e) to[e] += factor * static_cast<double>(from[c * emitters + e]);
+      }
+    });
   }
-  return worth;
+  return luminous.dot(records.told_lux_rgb(record));
 }
 
 }  // namespace luxrig

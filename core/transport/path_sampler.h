@@ -152,7 +152,8 @@ class PathSampler {
                                                         const TailRecords& records, std::uint64_t& rays,
                                                         std::optional<std::uint32_t> so_far = {}) const;
   /// Adds what the record says; returns its luminous lux at the levels.
-  double add_record(const Vec3& per_lux_rgb, std::span<const float> values, const PathSums& sums) const;
+  double add_record(const Vec3& per_lux_rgb, const TailRecords& records, std::size_t record,
+                    const PathSums& sums) const;
   /// Luminous lux of sums at the levels.
   [[nodiscard]] double worth_of(const PathSums& sums) const;
   [[nodiscard]] double level(std::size_t emitter) const { return levels_[emitter]; }

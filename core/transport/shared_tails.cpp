@@ -165,8 +165,10 @@ void SharedTails::blend(std::size_t k) {
       ++count[j];
     }
   }
-  for (std::uint32_t i = 0; i < size; ++i)
+  for (std::uint32_t i = 0; i < size; ++i) {
     for (float& lux : records.told(i)) lux /= count[i];
+    records.sum_up(i, sampler_.importances());
+  }
 }
 
 }  // namespace luxrig

@@ -18,7 +18,29 @@ void TailRecords::append(std::span<const Place> places, std::size_t columns) {
   columns_ = columns;
   values_.resize(places_.size() * columns, 0.0f);
   told_.assign(places_.size() * columns, 0.0f);
+  sums_.assign(places_.size(), {});
+  lit_.clear();
   if (!places_.empty()) build_grid();
+}
+
+void TailRecords::sum_up(std::size_t record, std::span<const double> levels) {
+  // Shorter gaps cost more to pass over than to add.
+  constexpr std::uint32_t kShortestGap = 16;
+  const auto emitters = static_cast<std::uint32_t>(levels.size());
+  const float* const from = told(record).data();
+  Sums& sums = sums_[record];
+  sums = {Vec3::Zero(), static_cast<std::uint32_t>(lit_.size()), 0};
+  for (std::uint32_t e = 0; e < emitters; ++e) {
+    const Vec3 lux_rgb(from[e], from[emitters + e], from[2 * emitters + e]);
+    if ((lux_rgb.array() == 0).all()) continue;
+    sums.lux_rgb += levels[e] * lux_rgb;
+    if (lit_.size() > sums.begin && e < lit_.back().end + kShortestGap) {
+      lit_.back().end = e + 1;
+    } else {
+      lit_.push_back({e, e + 1});
+    }
+  }
+  sums.end = static_cast<std::uint32_t>(lit_.size());
 }
 
 void TailRecords::build_grid() {

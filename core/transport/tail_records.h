@@ -56,6 +56,14 @@ class TailRecords {
   [[nodiscard]] std::span<const float> told(std::size_t record) const {
     return {told_.data() + record * columns_, columns_};
   }
+  /// Of what it tells: the lux of each channel at the emitters' levels, and which emitters give any.
+  void sum_up(std::size_t record, std::span<const double> levels);
+  [[nodiscard]] const Vec3& told_lux_rgb(std::size_t record) const { return sums_[record].lux_rgb; }
+  /// Calls back with [begin, end) of emitters outside of which none gives it light.
+  template <class Call>
+  void each_lit(std::size_t record, Call call) const {
+    for (std::uint32_t i = sums_[record].begin; i < sums_[record].end; ++i) call(lit_[i].begin, lit_[i].end);
+  }
 
  private:
   using Cell = std::array<std::int32_t, 3>;
@@ -66,6 +74,15 @@ class TailRecords {
   std::vector<Place> places_;
   std::size_t columns_ = 0;
   std::vector<float> values_, told_;
+  struct Sums {
+    Vec3 lux_rgb = Vec3::Zero();
+    std::uint32_t begin = 0, end = 0;  ///< of lit_
+  };
+  struct Lit {
+    std::uint32_t begin, end;  ///< of emitters
+  };
+  std::vector<Sums> sums_;
+  std::vector<Lit> lit_;
   Vec3 origin_world_m_ = Vec3::Zero();
   float cell_m_ = 1;
   std::uint32_t row_cells_ = 1, layer_cells_ = 1;
