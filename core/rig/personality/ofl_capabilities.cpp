@@ -118,7 +118,11 @@ void translate(const OflFixture& fixture, const std::string& channel_key, const 
   const std::string type = ofl_text(ofl_member(capability, "type"));
   function.name = ofl_text(ofl_member(capability, "comment"));
   if (function.name.empty()) function.name = ofl_text(ofl_member(capability, "effectName"));
-  if (type == "Intensity") {
+  // Files call the parts of a hue, saturation and intensity mix intensities, too.
+  const bool tints = says(channel_key, "hue") || says(channel_key, "saturation");
+  if (type == "Intensity" && tints) {
+    function.attribute = says(channel_key, "hue") ? "HSB_Hue" : "HSB_Saturation";
+  } else if (type == "Intensity") {
     function.attribute = "Dimmer";
     read_level(capability, function);
   } else if (type == "ColorIntensity") {

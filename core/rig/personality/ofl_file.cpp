@@ -129,7 +129,11 @@ class OflReader {
 
   /// Which channel a switching alias is by default: what its trigger's default value says.
   void index_switches() {
-    const OflJson& channels = ofl_member(json_, "availableChannels");
+    index_switches_of(ofl_member(json_, "availableChannels"));
+    index_switches_of(ofl_member(json_, "templateChannels"));
+  }
+
+  void index_switches_of(const OflJson& channels) {
     if (!channels.is_object()) return;
     for (const auto& [key, channel] : channels.items()) {
       const int bytes = ofl_resolution(channel);
@@ -148,8 +152,7 @@ class OflReader {
   }
 
   const Known* find(const std::string& name) {
-    const auto alias = switches_.find(name);
-    const std::string& wanted = alias == switches_.end() ? name : alias->second;
+    const std::string wanted = switched(name);
     if (const auto at = known_.find(wanted); at != known_.end()) return &at->second;
     // A template channel, made for the pixel that its name has in it: only those that modes use.
     const OflJson& templates = ofl_member(json_, "templateChannels");
@@ -165,6 +168,14 @@ class OflReader {
     return nullptr;
   }
 
+  /// The channel that a switching alias is by default; any other name as it is.
+  std::string switched(const std::string& name) const {
+    if (const auto alias = switches_.find(name); alias != switches_.end()) return alias->second;
+    for (const auto& [alias, target] : switches_)
+      if (const std::string pixel = pixel_in(name, alias); matrix_.has(pixel)) return with_pixel(target, pixel);
+    return name;
+  }
+
   static std::vector<std::string> patterns_of(const std::string& key, const OflJson& channel) {
     std::vector<std::string> patterns = ofl_texts(ofl_member(channel, "fineChannelAliases"));
     patterns.resize(std::min<std::size_t>(patterns.size(), 3));
@@ -172,13 +183,16 @@ class OflReader {
     return patterns;
   }
 
+  /// The pixel that makes the name of the pattern, which may have it in several places; empty: it is none of its names.
   static std::string pixel_in(const std::string& name, const std::string& pattern) {
-    const auto at = pattern.find("$pixelKey");
-    if (at == std::string::npos) return {};
-    const std::string_view before = std::string_view(pattern).substr(0, at),
-                           after = std::string_view(pattern).substr(at + 9);
-    if (name.size() <= before.size() + after.size() || !name.starts_with(before) || !name.ends_with(after)) return {};
-    return name.substr(before.size(), name.size() - before.size() - after.size());
+    constexpr std::string_view kKey = "$pixelKey";
+    const auto first = pattern.find(kKey);
+    std::size_t places = 0;
+    for (auto at = first; at != std::string::npos; at = pattern.find(kKey, at + kKey.size())) ++places;
+    const std::size_t around = pattern.size() - places * kKey.size();
+    if (places == 0 || name.size() <= around || (name.size() - around) % places != 0) return {};
+    std::string pixel = name.substr(first, (name.size() - around) / places);
+    return with_pixel(pattern, pixel) == name ? pixel : std::string();
   }
 
   /// The names of a mode's slots; empty for one that is not used.

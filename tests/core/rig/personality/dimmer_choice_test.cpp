@@ -154,6 +154,18 @@ TEST(DimmerChoice, OfTwoThatCouldBeItNeitherIsTakenAndBothAreNamed) {
   EXPECT_FALSE(mixed.slots) << "held full beside emitters, it would be a guess as well";
 }
 
+// As 84 modes of the Open Fixture Library have them.
+TEST(DimmerChoice, HueAndSaturationAreNoneThoughTheirFileCallsThemIntensities) {
+  const Fitted lamp = fit_ofl(R"("Hue 1": {"defaultValue": 3, "capability": {"type": "Intensity"}},
+      "Saturation 1": {"capability": {"type": "Intensity"}}, "Intensity 1": {"capability": {"type": "Intensity"}})",
+                              R"("Hue 1", "Saturation 1", "Intensity 1")");
+  ASSERT_TRUE(lamp.slots) << lamp.problem;
+  EXPECT_EQ(lamp.sent(0, 1), 3);
+  EXPECT_EQ(lamp.sent(1, 1), 0);
+  EXPECT_EQ(lamp.sent(2, 1), 255);
+  EXPECT_EQ(lamp.sent(2, 0), 0);
+}
+
 TEST(DimmerChoice, TheRigFileChoosesAndTheOtherStaysAtItsDefault) {
   const Fitted dimmer = fit_ofl(kTwoDimmers, R"("Color Presets Dimmer", "Dimmer")", "Dimmer");
   ASSERT_TRUE(dimmer.slots) << dimmer.problem;

@@ -152,6 +152,25 @@ TEST(Ofl, PixelsAreRepeatedInTheOrderAskedFor) {
   EXPECT_EQ(names("[\"(2, 2)\", \"(1, 1)\"]"), (Names{"R (2, 2)", "R (1, 1)"}));
 }
 
+// As cameo/hydrabeam-300-rgbw: each head's mode says what its next slot is.
+TEST(Ofl, APixelsSwitchingChannelsAreWhatTheyAreByDefaultToo) {
+  const std::string more = R"("matrix": {"pixelCount": [2, 1, 1]}, "templateChannels": {
+    "Mode $pixelKey": {"defaultValue": 20, "capabilities": [
+      {"dmxRange": [0, 9], "type": "NoFunction", "switchChannels": {"Speed $pixelKey / Sound $pixelKey": "Speed $pixelKey"}},
+      {"dmxRange": [10, 255], "type": "Effect", "switchChannels": {"Speed $pixelKey / Sound $pixelKey": "Sound $pixelKey"}}]},
+    "Speed $pixelKey": {"capability": {"type": "EffectSpeed"}},
+    "Sound $pixelKey": {"capability": {"type": "SoundSensitivity"}}}, )";
+  const auto read =
+      parse_ofl(ofl("", R"({"name": "a", "channels": [{"insert": "matrixChannels", "repeatFor": "eachPixelABC",
+          "channelOrder": "perPixel", "templateChannels": ["Mode $pixelKey", "Speed $pixelKey / Sound $pixelKey"]}]})",
+                    more),
+                "m", "x");
+  ASSERT_TRUE(read) << read.error().front().text();
+  std::vector<std::string> names;
+  for (const PersonalityChannel& channel : read->modes[0].channels) names.push_back(channel.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"Mode 1", "Sound 1", "Mode 2", "Sound 2"}));
+}
+
 TEST(Ofl, HostileFilesAreRefusedWithAReason) {
   const std::string dimmer = R"("D": {"fineChannelAliases": ["F"], "capability": {"type": "Intensity"}})";
   const auto mode = [](const std::string& channels) { return R"({"name": "a", "channels": )" + channels + "}"; };
