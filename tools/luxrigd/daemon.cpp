@@ -29,8 +29,8 @@ Daemon::Daemon(std::shared_ptr<const Session> session, LightModel model, DaemonO
       controller_(session->rig, model),
       session_(std::move(session)),
       version_(version_of(session_->rig, session_->scene)),
-      model_(std::move(model)),
-      journal_(options_.state_folder) {
+      journal_(options_.state_folder),
+      model_(std::move(model)) {
   for (const Fixture& fixture : session_->rig.fixtures) model_joints_.push_back(fixture.joints);
 }
 
