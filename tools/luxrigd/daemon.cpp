@@ -27,9 +27,9 @@ std::filesystem::path web_folder() { return shared_folder() / "web"; }
 Daemon::Daemon(std::shared_ptr<const Session> session, LightModel model, DaemonOptions options)
     : options_(std::move(options)),
       controller_(session->rig, model),
+      journal_(options_.state_folder),
       session_(std::move(session)),
       version_(version_of(session_->rig, session_->scene)),
-      journal_(options_.state_folder),
       model_(std::move(model)) {
   for (const Fixture& fixture : session_->rig.fixtures) model_joints_.push_back(fixture.joints);
 }
