@@ -7,9 +7,12 @@ namespace luxrig {
 
 bool is_same_alarm(const Alarm& a, const Alarm& b) {
   if (a.severe != b.severe || a.device != b.device || a.since != b.since) return false;
-  const auto is_figure = [](char c) { return (c >= '0' && c <= '9') || c == '.'; };
-  const auto words = [&](std::string text) {
-    std::erase_if(text, is_figure);
+  const auto words = [](std::string text) {
+    bool in_name = false;  // "spot-1" and "spot-2" are two
+    std::erase_if(text, [&](char c) {
+      if (c == '"') in_name = !in_name;
+      return !in_name && ((c >= '0' && c <= '9') || c == '.');
+    });
     return text;
   };
   return a.text == b.text || words(a.text) == words(b.text);

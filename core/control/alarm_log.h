@@ -8,7 +8,7 @@
 
 namespace luxrig {
 
-/// Of one cause, and in the same words but for figures, which may grow.
+/// Of one cause, with the same names in quotes, and in the same words but for figures, which may grow.
 [[nodiscard]] bool is_same_alarm(const Alarm& a, const Alarm& b);
 
 class AlarmLog {

@@ -218,10 +218,11 @@ std::vector<double> GainEstimator::dimmed_to_limits(std::span<const double> give
   std::vector<double> level = list_of(vector_of(given).head(fixtures()).cwiseMax(0).cwiseMin(max_level_));
   for (std::size_t j = 0; j < level.size(); ++j)
     if (switched_[j] != 0 && level[j] < 1) level[j] = 0;
+  const LampWorth of_goals = worth();
   for (int round = 0; round < kLimitRounds; ++round) {
     const WorstCase worst = worst_case(level, level, now);
     const std::vector<double> before = level;
-    scale_to_limits(worst.worst_lux_per_level, worst.max_lx, level, 0, switched_, worth());
+    scale_to_limits(worst.worst_lux_per_level, worst.max_lx, level, 0, switched_, of_goals);
     if (level == before) return level;
   }
   // Not settled: scaling down may need a little more each time (the curve's uncertainty). A last step that is certain.

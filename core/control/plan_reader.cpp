@@ -263,6 +263,7 @@ PlannedPoint point_of(const Reader& reader, const Json& json, const std::string&
   point.goal_xy = reader.chromaticity(json, path, "goal_xy");
   point.weight = reader.optional_number(json, path, "weight");
   point.max_lux = reader.optional_number(json, path, "max_lux");
+  point.opening_lux = reader.optional_number(json, path, "opening_lux");
   point.why = reader.text(json, path, "why", false);
   point.verdict = verdict_named(reader.text(json, path, "verdict", false));
   point.reason = reader.text(json, path, "reason", false);
@@ -339,7 +340,7 @@ Checked<Plan> plan_from_json(const std::string& text, const std::string& file_na
   });
   if (problems.empty()) return plan;
   for (Problem& problem : problems) {
-    const std::string_view what = problem.what;
+    const std::string_view what = problem.what;  // begins with the path of what is wrong
     const JsonPlace place = place_in_json(text, what.substr(0, what.find_first_of(" :")));
     problem.line = place.line;
     problem.column = place.column;

@@ -81,7 +81,6 @@ struct FixtureStatus {
   bool parked = false;                       ///< dark where it rests, or on the way there, until the next apply
   bool kept_dark = false;                    ///< its beam could meet a keep-out zone
   std::string waits_for{};                   ///< parked or kept dark: what lights it again, for a person
-  bool lost = false;                         ///< its device does not answer: held, then at its safe level
   bool identified = false;                   ///< blinks or nods, so that a person sees which one it is
 };
 

@@ -23,6 +23,16 @@ bool may_brighten(const Fixture& fixture) {
   return modbus == nullptr || modbus->map == nullptr;
 }
 
+/// In quotes; of many the first and how many more, so that a phone shows them.
+std::string some_of(const std::vector<std::string>& names) {
+  constexpr std::size_t kMostNames = 4;
+  std::string text;
+  for (std::size_t i = 0; i < names.size() && i < kMostNames; ++i)
+    text += fmt::format("{}\"{}\"", i == 0 ? "" : ", ", names[i]);
+  if (names.size() > kMostNames) text += fmt::format(" and {} more", names.size() - kMostNames);
+  return text;
+}
+
 }  // namespace
 
 bool ShowController::State::any_lost() const {
@@ -115,23 +125,20 @@ bool ShowController::State::in_doubt(std::size_t luxmeter) const {
 }
 
 void ShowController::State::tell_losses(ShowStatus& status) const {
-  for (std::size_t f = 0; f < lost.size(); ++f) status.fixtures[f].lost = lost[f].has_value();
-  std::string points;
-  for (const std::size_t p : estimator.beyond_dimming())
-    points += fmt::format("{}\"{}\"", points.empty() ? "" : ", ", rig.points[p].name);
+  std::vector<std::string> points, lamps;
+  for (const std::size_t p : estimator.beyond_dimming()) points.push_back(rig.points[p].name);
   if (points.empty()) return;
   Time since = Time::max();
-  std::string lamps;
   for (std::size_t f = 0; f < lost.size(); ++f) {
     if (!lost[f] || !lost[f]->lamp || !may_brighten(rig.fixtures[f])) continue;
-    lamps += fmt::format("{}\"{}\"", lamps.empty() ? "" : ", ", rig.fixtures[f].name);
+    lamps.push_back(rig.fixtures[f].name);
     since = std::min(since, lost[f]->since);
   }
   status.alarms.push_back(
       {true, "",
-       fmt::format("the limit of {} cannot be promised: what {} gives is not known, and it alone could exceed it; look "
-                   "at it, or cut its power",
-                   points, lamps),
+       fmt::format("nobody knows what light {} give{} now, and it could be above the limit of {}; look there, or cut "
+                   "the power of {}",
+                   some_of(lamps), lamps.size() == 1 ? "s" : "", some_of(points), lamps.size() == 1 ? "it" : "them"),
        since});
 }
 

@@ -6,7 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <random>
 #include <string>
+#include <vector>
 
 #include "sim/in_process_rig.h"
 #include "tests/scenarios/hall.h"
@@ -21,6 +23,16 @@ inline sim::Deviations seeded(std::uint64_t seed) {
   sim::Deviations deviations;
   deviations.seed = seed;
   return deviations;
+}
+
+inline double random_share(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
+
+/// Any levels of twelve lamps, all bright or all dim.
+inline std::vector<double> random_levels(std::mt19937_64& random) {
+  std::vector<double> levels(12);
+  const double most = random_share(random);
+  for (double& level : levels) level = most * random_share(random);
+  return levels;
 }
 
 class ClosedLoop {

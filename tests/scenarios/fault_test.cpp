@@ -279,12 +279,9 @@ TEST(WhatMustAlwaysHold1, NoInstantOfAnyFadeExceedsALimitWhateverIsAskedAndWhate
     hall.rig.fixtures[6].max_level = 0.3;
     ClosedLoop loop(hall, seeded(seed));
     std::mt19937_64 random(seed);
-    const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
     const char* devices[] = {"meter-1", "meter-3", "meter-6", "meters", "dimmers", "track", "spot-11"};
     while (loop.seconds() < 60) {
-      std::vector<double> wanted(12);
-      const double most = unit();
-      for (double& level : wanted) level = most * unit();
+      const std::vector<double> wanted = random_levels(random);
       const char* device = devices[random() % std::size(devices)];
       const sim::FaultKind kind = random() % 2 ? sim::FaultKind::dead : sim::FaultKind::silent;
       switch (random() % 8) {
@@ -308,7 +305,7 @@ TEST(WhatMustAlwaysHold1, NoInstantOfAnyFadeExceedsALimitWhateverIsAskedAndWhate
         default:
           if (random() % 4 == 0) loop.show.go_safe(loop.now);
       }
-      loop.run(4 * unit());
+      loop.run(4 * random_share(random));
       EXPECT_LE(loop.levels()[6], 0.3);
     }
     EXPECT_LE(loop.worst_limit_share(), 1) << "seed " << seed << " " << loop.describe();

@@ -35,6 +35,14 @@ TEST(AlarmLog, SaysEachOfTwoCausesAndANewOneOfTheSameDeviceAMinuteLater) {
   EXPECT_EQ(log.to_say(std::vector<Alarm>{later}, at(70)).size(), 1u);
 }
 
+TEST(AlarmLog, SaysTwoPointsThatDifferInANumberOfTheirNamesOnly) {
+  AlarmLog log;
+  const std::vector<Alarm> alarms = {{true, "", "point \"work-1\" may have 51.2 lx", at(0)},
+                                     {true, "", "point \"work-2\" may have 51.2 lx", at(0)}};
+  EXPECT_EQ(log.to_say(alarms, at(0)).size(), 2u);
+  EXPECT_FALSE(is_same_alarm(alarms[0], alarms[1]));
+}
+
 TEST(AlarmLog, SaysADeviceThatComesAndGoesTwiceASecondOnceAMinute) {
   AlarmLog log;
   std::size_t lines = 0;
