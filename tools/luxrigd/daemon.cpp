@@ -27,11 +27,11 @@ std::filesystem::path web_folder() { return shared_folder() / "web"; }
 Daemon::Daemon(std::shared_ptr<const Session> session, LightModel model, DaemonOptions options)
     : options_(std::move(options)),
       controller_(session->rig, model),
+      journal_(options_.state_folder),
       session_(std::move(session)),
       version_(version_of(session_->rig, session_->scene)),
       model_(std::move(model)) {
   for (const Fixture& fixture : session_->rig.fixtures) model_joints_.push_back(fixture.joints);
-  if (options_.state_folder) journal_.emplace(*options_.state_folder);
 }
 
 Daemon::~Daemon() { stop(); }
@@ -125,16 +125,6 @@ void Daemon::tell_guardian(Time at) {
   start_guardian();
 }
 
-Result<void> Daemon::remember() {
-  if (!journal_) return {};
-  JournalState state;
-  {
-    const std::lock_guard lock(mutex_);
-    state = remembered_;
-  }
-  return journal_->save(state);
-}
-
 /// Runs something between two ticks, and waits until it was done. Called from the control thread itself (no other
 /// thread ticks then), it would wait for ever: there the queue is just filled.
 void Daemon::on_control_thread(std::function<void(Time)> run) {
@@ -184,16 +174,12 @@ HttpHandlers Daemon::handlers() {
   handlers.blackout = [this](bool on) -> Result<void> {
     // The light first, the disk after.
     on_control_thread([this, on](Time at) { controller_.blackout(at, on); });
-    {
-      const std::lock_guard lock(mutex_);
-      remembered_.blackout = on;
-    }
-    return remember();
+    return journal_.keep([on](JournalState& state) { state.blackout = on; });
   };
   handlers.identify = [this](const std::string& name, double seconds) { return identify(name, seconds); };
   handlers.park = [this](const std::vector<std::string>& names) { return park(names); };
   handlers.hand_back = [this] { on_control_thread([this](Time at) { controller_.hand_back(at); }); };
-  handlers.apply = [this](const std::string& plan_json) { return apply_json(plan_json, false); };
+  handlers.apply = [this](const std::string& plan_json) { return apply_json(plan_json, false, Unsaved::is_refused); };
   handlers.level = [this](const std::vector<std::string>& names, double level, std::optional<double> for_s) {
     return hold(ByHand::What::level, names, level, for_s);
   };

@@ -61,7 +61,7 @@ class Daemon {
   /// The plan, the blackout, what rests and what is set by hand as it was when the last daemon stopped, taken up again.
   /// A plan that was solved from a rig file which has changed since is left: the caller has a newer one. One that a
   /// person applied is taken up all the same, within the limits of the rig as it is now, and an alarm says so.
-  [[nodiscard]] Checked<Resumed> resume();
+  [[nodiscard]] Resumed resume();
 
   /// Applies a plan as if a client had sent it. of_rig: it was solved from this rig file, nobody has chosen it.
   [[nodiscard]] Checked<void> apply(const Plan& plan, bool of_rig = false);
@@ -116,8 +116,9 @@ class Daemon {
   void start_guardian();
   void tell_guardian(Time at);
   [[nodiscard]] HttpHandlers handlers();
-  [[nodiscard]] Checked<std::string> apply_json(const std::string& plan_json, bool of_rig);
-  [[nodiscard]] Result<void> remember();
+  /// What becomes of a plan that cannot be saved.
+  enum class Unsaved { is_refused, goes_on };
+  [[nodiscard]] Checked<std::string> apply_json(const std::string& plan_json, bool of_rig, Unsaved unsaved);
   /// The look's model: the last one made, when heads looked so then, too.
   [[nodiscard]] Result<LightModel> model_for(const Session& session, const std::vector<Joints>& joints);
 
@@ -126,7 +127,7 @@ class Daemon {
   ProgramMailbox programs_;
   std::vector<std::unique_ptr<BusThread>> buses_;
   std::unique_ptr<HttpApi> http_;
-  std::optional<Journal> journal_;
+  Journal journal_;
   std::optional<Guardian> guardian_;
   std::string unguarded_;
   LastLook last_look_;
@@ -152,11 +153,10 @@ class Daemon {
   std::optional<RigVersion> plan_made_for_;       ///< of the plan in force
   Time plan_at_{};
   std::shared_ptr<RigFileWatch> rig_file_watch_;
-  std::optional<Time> rig_file_changed_at_;
+  std::optional<Time> rig_file_changed_at_, unsaved_since_;
   RoomView room_;
   std::string status_json_ = "{}";
   std::deque<Command> commands_;
-  JournalState remembered_;
 
   std::mutex model_mutex_;  // guards the two below
   std::vector<Joints> model_joints_;

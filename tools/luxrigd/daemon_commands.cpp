@@ -88,29 +88,27 @@ Result<void> Daemon::park(const std::vector<std::string>& names) {
   const auto done = ask_control_thread<Result<void>>([this, heads](Time at) { return controller_.park(at, heads); });
   if (!done) return refusal("the control loop did not answer");
   if (!*done) return *done;
-  {
-    const std::lock_guard lock(mutex_);
-    std::vector<std::string>& parked = remembered_.parked;
-    const Rig& rig = session_->rig;
-    for (std::size_t f = 0; names.empty() && f < rig.fixtures.size(); ++f)
-      if (rig.fixtures[f].park) heads.push_back(f);
+  const std::shared_ptr<const Session> session = this->session();
+  const Rig& rig = session->rig;
+  for (std::size_t f = 0; names.empty() && f < rig.fixtures.size(); ++f)
+    if (rig.fixtures[f].park) heads.push_back(f);
+  return journal_.keep([&](JournalState& state) {
     for (const std::size_t head : heads) {
       const std::string& name = rig.fixtures[head].name;
-      if (std::find(parked.begin(), parked.end(), name) == parked.end()) parked.push_back(name);
+      if (std::find(state.parked.begin(), state.parked.end(), name) == state.parked.end()) state.parked.push_back(name);
     }
-  }
-  return remember();
+  });
 }
 
 // ---- plans ----
 
 Checked<void> Daemon::apply(const Plan& plan, bool of_rig) {
-  auto applied = apply_json(to_json(plan), of_rig);
+  auto applied = apply_json(to_json(plan), of_rig, Unsaved::goes_on);
   if (!applied) return tl::unexpected(std::move(applied.error()));
   return {};
 }
 
-Checked<std::string> Daemon::apply_json(const std::string& plan_json, bool of_rig) {
+Checked<std::string> Daemon::apply_json(const std::string& plan_json, bool of_rig, Unsaved unsaved) {
   const std::lock_guard one_at_a_time(change_mutex_);
   const auto plan = plan_from_json(plan_json, "plan");
   if (!plan) return tl::unexpected(plan.error());
@@ -125,17 +123,19 @@ Checked<std::string> Daemon::apply_json(const std::string& plan_json, bool of_ri
   std::string note;
   {
     const std::lock_guard lock(mutex_);
-    remembered_.plan_json = plan_json;
-    remembered_.plan_of_rig = of_rig;
-    remembered_.parked.clear();
     if (plan->made_for && *plan->made_for != version_) {
       note = fmt::format("made for another version of this rig ({} differ)", what_differs(*plan->made_for, version_));
     }
   }
-  // Acknowledged means: it survives a power cut.
-  if (const auto saved = remember(); !saved) {
+  // Acknowledged means: it survives a power cut. A rig that is to be lit at its start is lit all the same.
+  const auto with_plan = [&](JournalState& state) {
+    state.plan_json = plan_json;
+    state.plan_of_rig = of_rig;
+    state.parked.clear();
+  };
+  const auto saved = unsaved == Unsaved::is_refused ? journal_.save_first(with_plan) : journal_.keep(with_plan);
+  if (!saved && unsaved == Unsaved::is_refused)
     return tl::unexpected(problem_with("plan", saved.error(), "free disk space or mend the permissions"));
-  }
   struct Applied {
     std::vector<ByHand> held;
     Time at;
@@ -169,18 +169,16 @@ Result<LightModel> Daemon::model_for(const Session& session, const std::vector<J
 
 // ---- what the last daemon left ----
 
-Checked<Resumed> Daemon::resume() {
+Resumed Daemon::resume() {
   Resumed resumed;
-  if (!journal_) return resumed;
-  const auto state = journal_->load();
-  if (!state) return tl::unexpected(state.error());
-  if (!*state) return resumed;
-  const JournalState& saved = **state;
-  // First what makes it darker: it holds whatever becomes of the plan.
+  const Journal::Left left = journal_.load();
+  resumed.notes = left.complaints;
+  if (!left.state) return resumed;
+  const JournalState& saved = *left.state;
+  // First what makes it darker: it holds whatever becomes of the plan, and of the next save.
   if (saved.blackout) {
     controller_.blackout(now(), true);
-    const std::lock_guard lock(mutex_);
-    remembered_.blackout = true;
+    (void)journal_.keep([](JournalState& state) { state.blackout = true; });
   }
   restore_by_hand(saved.by_hand, resumed);
   if (!saved.plan_json.empty()) {
@@ -191,10 +189,13 @@ Checked<Resumed> Daemon::resume() {
       resumed.notes.push_back(fmt::format(
           "the rig file has changed since ({} differ): its goals are solved again, the saved plan is left", differs));
     } else {
-      if (auto applied = apply_json(saved.plan_json, saved.plan_of_rig); !applied)
-        return tl::unexpected(std::move(applied.error()));
-      resumed.plan = true;
-      if (!differs.empty())
+      if (auto applied = apply_json(saved.plan_json, saved.plan_of_rig, Unsaved::goes_on); applied) {
+        resumed.plan = true;
+      } else {
+        for (const Problem& problem : applied.error())
+          resumed.notes.push_back("the saved plan is not taken up again: " + problem.text());
+      }
+      if (resumed.plan && !differs.empty())
         resumed.notes.push_back(fmt::format(
             "the rig file has changed since the plan that was in force was made ({} differ): the plan is held within "
             "the limits of the rig as it is now; luxrig solve and luxrig apply make one for it, --fresh starts without",
@@ -208,11 +209,7 @@ Checked<Resumed> Daemon::resume() {
   }
   if (resumed.plan && !heads.empty()) {
     on_control_thread([this, heads](Time at) { (void)controller_.park(at, heads); });
-    {
-      const std::lock_guard lock(mutex_);
-      remembered_.parked = saved.parked;
-    }
-    (void)remember();  // as it was before the plan
+    (void)journal_.keep([&](JournalState& state) { state.parked = saved.parked; });  // as it was before the plan
   }
   return resumed;
 }
@@ -243,10 +240,7 @@ void Daemon::restore_by_hand(const std::vector<SavedByHand>& saved, Resumed& res
   }
   if (held.empty()) return;
   resumed.notes.push_back(fmt::format("{} set by hand {} again", held.size(), held.size() == 1 ? "is" : "are"));
-  {
-    const std::lock_guard lock(mutex_);
-    remembered_.by_hand = saved;
-  }
+  (void)journal_.keep([&](JournalState& state) { state.by_hand = saved; });
   on_control_thread([this, held](Time now_then) { (void)controller_.hold(now_then, held); });
 }
 
@@ -295,11 +289,8 @@ Result<std::string> Daemon::hold(ByHand::What what, const std::vector<std::strin
       });
   if (!held) return tl::unexpected(Fault{Cause::timeout, {}, "the control loop did not answer", {}});
   if (!held->done) return tl::unexpected(held->done.error());
-  {
-    const std::lock_guard lock(mutex_);
-    remembered_.by_hand = held->all;
-  }
-  if (const auto saved = remember(); !saved) return tl::unexpected(saved.error());
+  if (const auto saved = journal_.keep([&](JournalState& state) { state.by_hand = held->all; }); !saved)
+    return tl::unexpected(saved.error());
   return held->text;
 }
 
@@ -319,11 +310,8 @@ Result<std::string> Daemon::release(const std::vector<std::string>& names) {
     return {count, held_by_hand(session->rig, at)};
   });
   if (!released) return tl::unexpected(Fault{Cause::timeout, {}, "the control loop did not answer", {}});
-  {
-    const std::lock_guard lock(mutex_);
-    remembered_.by_hand = released->all;
-  }
-  if (const auto saved = remember(); !saved) return tl::unexpected(saved.error());
+  if (const auto saved = journal_.keep([&](JournalState& state) { state.by_hand = released->all; }); !saved)
+    return tl::unexpected(saved.error());
   if (released->count == 0) return std::string("nothing of that was set by hand");
   return fmt::format("{} released", released->count);
 }
@@ -331,6 +319,16 @@ Result<std::string> Daemon::release(const std::vector<std::string>& names) {
 // ---- a rig file that has changed ----
 
 void Daemon::add_alarms(Time at) {
+  if (const auto why = journal_.unsaved()) {
+    if (!unsaved_since_) unsaved_since_ = at;
+    status_.alarms.push_back({true, "",
+                              fmt::format("what is set now would be forgotten if this program ended: {}; free disk "
+                                          "space or mend the permissions, then set something again",
+                                          *why),
+                              *unsaved_since_});
+  } else {
+    unsaved_since_.reset();
+  }
   const std::lock_guard lock(mutex_);
   if (rig_file_watch_) {
     const auto changed = rig_file_watch_->changed();
@@ -367,12 +365,11 @@ Checked<std::string> Daemon::reload() {
   if (!opened) return tl::unexpected(std::move(opened.error()));
   const auto session = std::make_shared<Session>(std::move(*opened));
   const RigVersion version = version_of(session->rig, session->scene);
+  const JournalState remembered = journal_.state();
   RigVersion version_before;
-  JournalState remembered;
   {
     const std::lock_guard lock(mutex_);
     version_before = version_;
-    remembered = remembered_;
   }
   if (auto problems = needs_a_restart(present->rig, session->rig, version.light == version_before.light);
       !problems.empty())
@@ -407,16 +404,12 @@ Checked<std::string> Daemon::reload() {
   if (!model) return tl::unexpected(problem_with(file.c_str(), model.error(), "try again"));
   RoomView room = draw_room(*session);
 
-  {
-    const std::lock_guard lock(mutex_);
-    if (of_rig) remembered_.plan_json = plan_json;
-    remembered_.plan_of_rig = of_rig;
-  }
-  if (const auto saved = remember(); !saved) {
-    const std::lock_guard lock(mutex_);
-    remembered_ = remembered;
+  const auto saved = journal_.save_first([&](JournalState& state) {
+    if (of_rig) state.plan_json = plan_json;
+    state.plan_of_rig = of_rig;
+  });
+  if (!saved)
     return tl::unexpected(problem_with(file.c_str(), saved.error(), "free disk space or mend the permissions"));
-  }
   {
     const std::lock_guard lock(model_mutex_);
     model_joints_ = look->joints;

@@ -1,8 +1,11 @@
 #include "tools/luxrigd/journal.h"
 
+#include <fmt/format.h>
+
 #include <cctype>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "tools/luxrig/commands.h"
 
@@ -24,11 +27,11 @@ std::optional<SavedByHand> by_hand_of(const nlohmann::json& entry) {
 }  // namespace
 
 Result<void> Journal::save(const JournalState& state) const {
+  if (!folder_) return {};
   std::error_code error;
-  std::filesystem::create_directories(folder_, error);
-  if (error) {
-    return tl::unexpected(Fault{Cause::system, {}, "cannot make " + folder_.string() + ": " + error.message(), {}});
-  }
+  std::filesystem::create_directories(*folder_, error);
+  if (error)
+    return tl::unexpected(Fault{Cause::system, {}, "cannot make " + folder_->string() + ": " + error.message(), {}});
   nlohmann::json by_hand = nlohmann::json::array();
   for (const SavedByHand& one : state.by_hand) {
     nlohmann::json entry = {
@@ -42,31 +45,87 @@ Result<void> Journal::save(const JournalState& state) const {
   return write_file(file(), out.dump(1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
-Checked<std::optional<JournalState>> Journal::load() const {
+void Journal::tell(const Result<void>& saved) {
+  const std::lock_guard lock(told_mutex_);
+  unsaved_ = saved ? std::nullopt : std::optional(saved.error().detail);
+}
+
+JournalState Journal::state() const {
+  const std::lock_guard lock(mutex_);
+  return state_;
+}
+
+std::optional<std::string> Journal::unsaved() const {
+  const std::lock_guard lock(told_mutex_);
+  return unsaved_;
+}
+
+Result<void> Journal::save_first(const Change& change) {
+  const std::lock_guard lock(mutex_);
+  JournalState next = state_;
+  change(next);
+  if (auto saved = save(next); !saved) return saved;
+  state_ = std::move(next);
+  tell({});
+  return {};
+}
+
+Result<void> Journal::keep(const Change& change) {
+  const std::lock_guard lock(mutex_);
+  change(state_);
+  const auto saved = save(state_);
+  tell(saved);
+  return saved;
+}
+
+Journal::Left Journal::load() const {
+  Left left;
   std::error_code error;
-  if (!std::filesystem::exists(file(), error)) return std::nullopt;
+  if (!folder_ || !std::filesystem::exists(file(), error)) return left;
   const auto text = read_file(file());
-  if (!text) return tl::unexpected(text.error());
+  if (!text) {
+    left.complaints.push_back(text.error().front().text());
+    return left;
+  }
   const auto json = nlohmann::json::parse(*text, nullptr, false);
-  if (!json.is_object() || json.value("luxrig_state", 0) != 1 || !json.contains("plan") || !json["plan"].is_string() ||
-      !json.contains("blackout") || !json["blackout"].is_boolean()) {
-    return tl::unexpected(std::vector<Problem>{
-        {file().string(), 0, 0, "is not a saved state of this program", "move it away to start without it"}});
+  JournalState state;
+  std::string missing;
+  const auto want = [&](const char* key, auto is) {
+    const bool there = json.is_object() && json.contains(key) && (json[key].*is)();
+    if (!there) missing += fmt::format("{}{}", missing.empty() ? "" : ", ", key);
+    return there;
+  };
+  using Json = nlohmann::json;
+  if (want("blackout", &Json::is_boolean)) {
+    state.blackout = json["blackout"];
+  } else {
+    // Torn by a failing disk: the word may still stand there, and dark is what was asked for last.
+    state.blackout = std::regex_search(*text, std::regex("\"blackout\"\\s*:\\s*true"));
   }
-  JournalState state{json["plan"].get<std::string>(), json["blackout"].get<bool>(), {}};
-  // Older versions did not write it.
-  if (json.contains("parked") && json["parked"].is_array()) {
-    for (const auto& one : json["parked"]) {
-      if (one.is_string()) state.parked.push_back(one.get<std::string>());
-    }
+  if (want("plan", &Json::is_string)) state.plan_json = json["plan"].get<std::string>();
+  if (!want("luxrig_state", &Json::is_number_integer) || json["luxrig_state"] != 1) {
+    if (missing.empty()) missing = "luxrig_state";
   }
-  if (json.contains("plan_of_rig") && json["plan_of_rig"].is_boolean()) state.plan_of_rig = json["plan_of_rig"];
-  if (json.contains("by_hand") && json["by_hand"].is_array()) {
-    for (const auto& one : json["by_hand"]) {
-      if (auto saved = by_hand_of(one)) state.by_hand.push_back(std::move(*saved));
-    }
+  if (json.is_object()) {
+    // Older versions did not write these.
+    if (json.contains("parked") && json["parked"].is_array())
+      for (const auto& one : json["parked"])
+        if (one.is_string()) state.parked.push_back(one.get<std::string>());
+    if (json.contains("plan_of_rig") && json["plan_of_rig"].is_boolean()) state.plan_of_rig = json["plan_of_rig"];
+    if (json.contains("by_hand") && json["by_hand"].is_array())
+      for (const auto& one : json["by_hand"])
+        if (auto saved = by_hand_of(one)) state.by_hand.push_back(std::move(*saved));
   }
-  return state;
+  left.state = std::move(state);
+  if (missing.empty()) return left;
+  const std::filesystem::path aside = file().string() + ".damaged";
+  std::filesystem::rename(file(), aside, error);
+  left.complaints.push_back(
+      fmt::format("{}: the saved state is damaged ({}); {}{}", file().string(),
+                  json.is_discarded() ? std::string("no JSON") : "without " + missing,
+                  left.state->blackout ? "the blackout that was in force holds" : "what is legible of it holds",
+                  error ? std::string() : ", the file is kept as " + aside.filename().string()));
+  return left;
 }
 
 std::filesystem::path default_state_folder(const std::string& rig_name) {

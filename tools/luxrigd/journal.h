@@ -2,6 +2,8 @@
 /// What must survive a power cut: the plan in force, the blackout switch, heads that rest, and what is set by hand.
 
 #include <filesystem>
+#include <functional>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,17 +31,38 @@ struct JournalState {
 
 class Journal {
  public:
-  /// Keeps its one file in `folder` (made when missing).
-  explicit Journal(std::filesystem::path folder) : folder_(std::move(folder)) {}
+  /// Keeps its one file in `folder` (made when missing). None: in memory only.
+  explicit Journal(std::optional<std::filesystem::path> folder = {}) : folder_(std::move(folder)) {}
 
-  /// On disk when it returns; the old state stays when it fails.
-  [[nodiscard]] Result<void> save(const JournalState& state) const;
-  /// Nothing when there is none; problems when the file is damaged (it is left as it is).
-  [[nodiscard]] Checked<std::optional<JournalState>> load() const;
+  /// What an earlier program left, as far as it can be read: a damaged file is moved aside, never lost, and what is
+  /// legible of it holds, above all the blackout. complaints: for a person. Does not change state().
+  struct Left {
+    std::optional<JournalState> state;  ///< none: nothing was left
+    std::vector<std::string> complaints;
+  };
+  [[nodiscard]] Left load() const;
+
+  /// What holds now. Any thread may call any of these: changes come one after the other, so that the disk never has an
+  /// older state than memory.
+  [[nodiscard]] JournalState state() const;
+  using Change = std::function<void(JournalState&)>;
+  /// For what must be on disk before it is done: changes nothing when it cannot be saved.
+  [[nodiscard]] Result<void> save_first(const Change& change);
+  /// For what is done already: holds in memory also when it cannot be saved, and goes with the next save.
+  [[nodiscard]] Result<void> keep(const Change& change);
+  /// Why the disk has not what holds; nothing: it has.
+  [[nodiscard]] std::optional<std::string> unsaved() const;
 
  private:
-  [[nodiscard]] std::filesystem::path file() const { return folder_ / "state.json"; }
-  std::filesystem::path folder_;
+  [[nodiscard]] std::filesystem::path file() const { return *folder_ / "state.json"; }
+  [[nodiscard]] Result<void> save(const JournalState& state) const;
+  void tell(const Result<void>& saved);
+
+  const std::optional<std::filesystem::path> folder_;
+  mutable std::mutex mutex_;  ///< held while the disk works
+  JournalState state_;
+  mutable std::mutex told_mutex_;  ///< never held so long: who asks drives the light
+  std::optional<std::string> unsaved_;
 };
 
 /// $XDG_STATE_HOME/luxrig/NAME, or ~/.local/state/luxrig/NAME.

@@ -276,12 +276,11 @@ int run_rig(const RunArguments& arguments) {
   }
   bool resumed = false;
   if (!arguments.plan && !arguments.once && !arguments.fresh) {
-    const auto state = daemon.resume();
-    // A damaged or outdated state must not keep the rig dark: say so and go on with the fresh plan.
-    if (!state) report(state.error());
-    resumed = state && state->plan;
+    // A damaged or outdated state must not keep the rig dark: what cannot be taken up is said, and the fresh plan goes.
+    const Resumed state = daemon.resume();
+    resumed = state.plan;
     if (resumed) say.say("resumed the plan that was in force (--fresh starts from the rig file)");
-    for (const std::string& note : state ? state->notes : std::vector<std::string>{}) say.say("warning  " + note);
+    for (const std::string& note : state.notes) say.say("warning  " + note);
   }
   int pictures_failed = kExitOk;
   if (hung) {

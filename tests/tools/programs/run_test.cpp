@@ -1,5 +1,6 @@
 // `luxrig run` as a user starts it: on a simulated rig, over the real protocols, in real time.
 #include <cmath>
+#include <fstream>
 
 #include "tests/tools/programs/live_rig.h"
 
@@ -126,6 +127,53 @@ TEST(Run, CutAndGarbledMetersAreNamedWithinTwoSecondsAndForgottenWhenWell) {
     ASSERT_TRUE(rig.wait_status([&](const json& s) { return s["phase"] == "holding" && s["alarms"].empty(); }, 30s))
         << fault << rig.last().dump(1);
   }
+}
+
+// The second restart lit the rig by itself: resuming the plan saved that there was no blackout.
+TEST(Run, ABlackoutOutlivesRestartsAndADamagedState) {
+  LiveRig rig(source("tests/rigs/room"));
+  ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
+  ASSERT_EQ(luxrig::testing::run({program("luxrig"), "blackout", "--port", std::to_string(rig.port())}).code, 0);
+  for (int restart = 0; restart < 3; ++restart) {
+    rig.daemon().signal(SIGKILL);
+    if (restart == 2) {  // a disk that fails
+      const std::string state = text_of(rig.file("state/state.json"));
+      std::ofstream(rig.file("state/state.json")) << state.substr(0, state.size() / 2);
+    }
+    rig.start_daemon();
+    ASSERT_TRUE(rig.wait_status([&](const json& s) { return s["blackout"] == true; }, 30s)) << rig.daemon().output();
+    std::this_thread::sleep_for(1s);
+    ASSERT_TRUE(rig.wait_status([&](const json& s) { return s["blackout"] == true; }, 5s)) << rig.last().dump(1);
+    EXPECT_EQ(rig.level_sum(), 0) << restart;
+  }
+  EXPECT_NE(rig.daemon().output().find("state is damaged"), std::string::npos) << rig.daemon().output();
+}
+
+// It could not start, and had sent the guardian away before.
+TEST(Run, AStateThatCannotBeSavedIsSaidAndTheRigIsLit) {
+  LiveRig rig(source("tests/rigs/room"));
+  ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
+  const std::string saved = text_of(rig.file("state/state.json"));
+  rig.daemon().signal(SIGKILL);
+  const auto in_the_way = rig.file("state/state.json.new");
+  std::filesystem::create_directory(in_the_way);
+  rig.start_daemon();
+  const auto forgets = [](const json& s) {
+    for (const json& alarm : s["alarms"])
+      if (alarm["text"].get<std::string>().find("would be forgotten") != std::string::npos) return true;
+    return false;
+  };
+  ASSERT_TRUE(rig.wait_status([&](const json& s) { return s["phase"] == "holding" && forgets(s); }, 60s))
+      << rig.daemon().output() << rig.last().dump(1);
+  EXPECT_GT(rig.level_sum(), 0.1);
+  // What a person asks is not acknowledged then; a blackout is in force all the same.
+  const std::string port = std::to_string(rig.port());
+  EXPECT_NE(luxrig::testing::run({program("luxrig"), "blackout", "--port", port}).code, 0);
+  ASSERT_TRUE(rig.wait_status([&](const json& s) { return s["blackout"] == true; }, 5s));
+  EXPECT_EQ(text_of(rig.file("state/state.json")), saved);
+  std::filesystem::remove(in_the_way);
+  EXPECT_EQ(luxrig::testing::run({program("luxrig"), "blackout", "--port", port}).code, 0);
+  ASSERT_TRUE(rig.wait_status([&](const json& s) { return !forgets(s); }, 5s));
 }
 
 TEST(Run, BlackoutWinsAndIsLiftedByTheCommand) {
