@@ -27,6 +27,8 @@ class LevelOutput {
   /// Sets and sends. All fixtures of this device in one call, in any order. A NaN, a drive outside 0…1 or a fixture
   /// of another bus: Cause::invalid, and nothing is sent.
   virtual Result<void> write(Time now, std::span<const LevelCommand> commands) = 0;
+  /// Every lamp has been told what was written last; false: some is still to come, as a bus takes one after the other.
+  [[nodiscard]] virtual bool settled() const { return true; }
 };
 
 struct AimCommand {

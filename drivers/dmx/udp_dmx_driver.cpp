@@ -112,6 +112,12 @@ Result<void> UdpDmxDriver::write(Time now, std::span<const LevelCommand> command
   return {};
 }
 
+bool UdpDmxDriver::settled() const {
+  for (std::size_t i = 0; i < bay_.universes().size(); ++i)
+    if (!is_silent(i) && !is_sent(bay_.universes()[i])) return false;
+  return true;
+}
+
 void UdpDmxDriver::open(Time now) {
   reopen_at_ = now + kReopenEvery;
   for (const auto& channel : channels_) {

@@ -28,6 +28,7 @@ class UdpDmxDriver : public Driver, public LevelOutput, public Mover, public Lev
   Mover* mover() final { return bay_.has_heads() ? this : nullptr; }
   Result<void> move(Time now, std::span<const AimCommand> commands) final;
   Result<void> write(Time now, std::span<const LevelCommand> commands) final;
+  [[nodiscard]] bool settled() const final;
 
   /// A part for each universe.
   LevelInput* level_input() final { return desk_.rules ? this : nullptr; }
@@ -46,6 +47,7 @@ class UdpDmxDriver : public Driver, public LevelOutput, public Mover, public Lev
   virtual void opened(DatagramChannel&) {}                          ///< a channel has just been opened
   virtual void hear(Time, const Datagram&) {}                       ///< something has arrived
   virtual void send_frame(Time now) = 0;                            ///< sends what is due
+  [[nodiscard]] virtual bool is_sent(const DmxUniverse& universe) const = 0;  ///< its slots as they are now
   virtual void say_goodbye(Time) {}                                 ///< about to close
   virtual void fall_silent(Time, const DmxUniverse&) {}             ///< this universe is sent no more, for now
   virtual HeardUniverse heard(Time, int) { return {}; }             ///< of a universe of the desk's

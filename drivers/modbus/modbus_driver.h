@@ -35,6 +35,7 @@ class ModbusDriver final : public Driver, public LevelOutput, public LuxReader {
   LevelOutput* level_output() override { return channel_lives_.empty() ? nullptr : this; }
   LuxReader* lux_reader() override { return meters_.empty() ? nullptr : this; }
   Result<void> write(Time now, std::span<const LevelCommand> commands) override;
+  [[nodiscard]] bool settled() const override { return writes_.all_confirmed(); }
   Result<std::vector<LuxReading>> read(Time now) override;
 
  private:

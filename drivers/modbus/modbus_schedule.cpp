@@ -88,6 +88,10 @@ void WriteSchedule::confirmed(const Run& run) {
   for (std::size_t i = run.begin; i < run.end; ++i) channels_[i].confirmed = channels_[i].wanted;
 }
 
+bool WriteSchedule::all_confirmed() const {
+  return std::all_of(channels_.begin(), channels_.end(), [](const Channel& c) { return c.wanted == c.confirmed; });
+}
+
 void WriteSchedule::forget() {
   for (Channel& channel : channels_) {
     channel.confirmed.reset();

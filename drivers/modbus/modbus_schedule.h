@@ -46,6 +46,8 @@ class WriteSchedule {
   [[nodiscard]] std::vector<Run> due(Time now, const UnitBackoff& units) const;
   void tried(const Run& run, Time now);
   void confirmed(const Run& run);
+  /// Every device has acknowledged what is wanted of it now.
+  [[nodiscard]] bool all_confirmed() const;
   /// After a lost connection nothing is known about any register.
   void forget();
   /// A unit that rejected function 16, or a register among its neighbours, gets single writes from now on.

@@ -84,6 +84,12 @@ std::optional<std::vector<std::uint8_t>> Controller::due(Time now, int port_addr
   return encode(packet);
 }
 
+bool Controller::is_sent(int port_address, const DmxSlots& slots) const {
+  const auto found = streams_.find(port_address);
+  if (found == streams_.end() || found->second.packets == 0 || found->second.slots != slots) return false;
+  return !found->second.wanted || found->second.packets == 1;  // the first is sent twice
+}
+
 std::optional<std::vector<std::uint8_t>> Controller::sync_due() {
   if (!owes_sync_) return std::nullopt;
   owes_sync_ = false;

@@ -50,6 +50,9 @@ class Controller {
   /// The ArtDmx of this universe that is due at `now`, if one is.
   [[nodiscard]] std::optional<std::vector<std::uint8_t>> due(Time now, int port_address, const DmxSlots& slots);
 
+  /// Whether these levels have gone out.
+  [[nodiscard]] bool is_sent(int port_address, const DmxSlots& slots) const;
+
   /// After all universes of a frame: the ArtSync that lets nodes act. Nothing when no ArtDmx was due since the last, or
   /// when it is not asked for.
   [[nodiscard]] std::optional<std::vector<std::uint8_t>> sync_due();

@@ -160,6 +160,11 @@ class ArtnetDriver final : public UdpDmxDriver {
     if (const auto packet = controller_.sync_due()) send(now, poll_to_, *packet);
   }
 
+  [[nodiscard]] bool is_sent(const DmxUniverse& universe) const override {
+    return (destination_ || !controller_.subscribers(universe.number).empty()) &&
+           controller_.is_sent(universe.number, universe.slots);
+  }
+
   void send_universe(Time now, const DmxUniverse& universe) {
     if (destination_) {
       if (const auto packet = controller_.due(now, universe.number, universe.slots)) send(now, *destination_, *packet);

@@ -89,6 +89,8 @@ class EnttecProDriver final : public UsbDmxDriver {
     send(now, session_.due(now, slots()));
   }
 
+  [[nodiscard]] bool settled() const override { return !sending_ && session_.is_sent(slots()); }
+
   bool is_hung(Time now) const { return sending_ && now - sent_at_ > kUsbTransferTimeout; }
 
   /// The widget repeats the last packet for ever, so that must be the newest.

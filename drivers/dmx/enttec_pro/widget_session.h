@@ -32,6 +32,8 @@ class WidgetSession {
   /// Levels that have not been sent yet, whatever the rate says: before leaving. Empty while it is not live.
   [[nodiscard]] std::vector<std::uint8_t> unsent(const DmxSlots& slots);
 
+  [[nodiscard]] bool is_sent(const DmxSlots& slots) const { return live_ && sent_ == slots; }
+
   /// Whether levels go out.
   [[nodiscard]] bool is_live() const { return live_; }
   /// A question has waited for its answer for longer than 500 ms.

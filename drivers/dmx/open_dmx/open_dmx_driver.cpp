@@ -96,6 +96,8 @@ class OpenDmxDriver final : public UsbDmxDriver {
 
   void closed() override { sending_.reset(); }
 
+  [[nodiscard]] bool settled() const override { return !sending_ && last_ == slots(); }
+
   /// A break while the chip still puts out slots would cut the packet short, and USB says only that the chip has them.
   bool line_is_free(Time now) {
     for (const Deadline deadline(kEmptyWithin);;) {

@@ -116,6 +116,10 @@ class SacnDriver final : public UdpDmxDriver {
     for (const auto& page : source_->discovery_due(now)) send_to(now, sacn::kDiscoveryUniverse, page);
   }
 
+  [[nodiscard]] bool is_sent(const DmxUniverse& universe) const override {
+    return source_->is_sent(universe.number, universe.slots);
+  }
+
   void say_goodbye(Time now) override {
     for (int i = 0; i < kGoodbyes; ++i) {
       for (const DmxUniverse& universe : bay_.universes()) {

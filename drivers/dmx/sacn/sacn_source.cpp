@@ -94,6 +94,12 @@ std::optional<std::vector<std::uint8_t>> Source::due(Time now, int universe, con
   return next_packet(universe, stream, kLevels, false);
 }
 
+bool Source::is_sent(int universe, const DmxSlots& slots) const {
+  const auto found = streams_.find(universe);
+  return found != streams_.end() && found->second.sending && found->second.slots == slots &&
+         found->second.repeats_left <= kRepeatsAfterChange;
+}
+
 std::optional<std::vector<std::uint8_t>> Source::goodbye(int universe) {
   const auto found = streams_.find(universe);
   if (found == streams_.end() || !found->second.sending) return std::nullopt;

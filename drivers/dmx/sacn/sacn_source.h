@@ -41,6 +41,9 @@ class Source {
   /// The packet of this universe that is due at `now`, if one is: levels or, in their place, priorities of slots.
   [[nodiscard]] std::optional<std::vector<std::uint8_t>> due(Time now, int universe, const DmxSlots& slots);
 
+  /// Whether these levels have gone out.
+  [[nodiscard]] bool is_sent(int universe, const DmxSlots& slots) const;
+
   /// The goodbye of a universe that has sent before: one packet with the stream-terminated bit; clause 6.2.6 wants
   /// three of them. Nothing for a universe that never sent or has said goodbye.
   [[nodiscard]] std::optional<std::vector<std::uint8_t>> goodbye(int universe);

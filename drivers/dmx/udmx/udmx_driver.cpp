@@ -91,6 +91,8 @@ class UdmxDriver final : public UsbDmxDriver {
     if (const auto range = wanted_range(now); range && rate_.take(now)) send(now, *range);
   }
 
+  [[nodiscard]] bool settled() const override { return known_ && *known_ == slots(); }
+
   /// The widget is there and the light follows too late, or not at all: that is a fault like any other, until it ends.
   void watch_lateness(Time now) {
     const bool was_known = lateness_.should_be_known();
