@@ -133,6 +133,10 @@ class ShowController {
   /// axes may have to look for their home, and heads that could light a keep-out zone: nobody knows where they look.
   void go_on_from(Time now, const LightInForce& light);
 
+  /// Somebody else has sent in our place until now, and these levels (one per fixture) last: the light goes on from
+  /// there to what it was to be. What meters read meanwhile is forgotten.
+  void take_back(Time now, std::span<const double> level);
+
   /// Fades to these levels (one per fixture, 0…max_level) with heads as they look, then measures and corrects towards
   /// the goals of the look before, at first the rig's. The levels are first reduced so that, with the rig's open-loop
   /// margin, no limited point can exceed its limit.

@@ -39,4 +39,17 @@ void ShowController::go_on_from(Time now, const LightInForce& light) {
              state.rig.control.fade_curve);
 }
 
+void ShowController::take_back(Time now, std::span<const double> level) {
+  State& state = *state_;
+  now = state.at_least_last(now);
+  LUXRIG_CHECK(level.size() == state.rig.fixtures.size(), "light of another rig");
+  if (state.phase == Phase::idle) return;
+  const Phase before = state.phase;
+  state.in_force.assign(level.begin(), level.end());
+  state.fade(now, state.in_force, state.in_force, 0, FadeCurve::linear);
+  if (before == Phase::frozen) return;
+  if (before == Phase::safe || before == Phase::safe_fading || !state.cue) return state.fade_to_safe(now);
+  state.resume(now);
+}
+
 }  // namespace luxrig

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <map>
@@ -22,9 +23,12 @@
 #include "tools/luxrigd/handed_light.h"
 #include "tools/luxrigd/last_look.h"
 #include "tools/luxrigd/scheduling.h"
+#include "tools/luxrigd/teller.h"
 
 namespace luxrig {
 namespace {
+
+constexpr int kLooksUntilDevicesAreFreed = 100;  // 5 s
 
 struct GuardianArguments {
   std::filesystem::path rig, pid_file;
@@ -42,15 +46,55 @@ std::optional<std::map<std::string, Redirect>> redirects_of(const std::vector<st
   return redirects;
 }
 
-/// True when the daemon is dead; false when somebody sent us away while it lived.
-bool wait_for_death(int alive_fd, int signals_fd) {
-  pollfd waits[] = {{alive_fd, POLLIN, 0}, {signals_fd, POLLIN, 0}};
-  while (true) {
-    if (::poll(waits, 2, -1) < 0 && errno != EINTR) return true;
-    if (waits[1].revents != 0) return false;
-    if (waits[0].revents != 0) return true;  // nobody ever writes: it has closed
+enum class Call { died, hangs, sent_away };
+
+/// Looks after the daemon: by the pipe that closes when it dies, and by the counts of its threads. Looks are counted,
+/// not seconds: what holds us up as well holds nobody to be hung.
+class Watch {
+ public:
+  Watch(LastLookMemory& memory, int alive_fd, int signals_fd)
+      : memory_(memory), alive_fd_(alive_fd), signals_fd_(signals_fd) {}
+
+  Call wait() {
+    while (true) {
+      pollfd waits[] = {{alive_fd_, POLLIN, 0}, {signals_fd_, POLLIN, 0}};
+      if (::poll(waits, 2, kLookEvery_ms) < 0 && errno != EINTR) return Call::died;
+      memory_.beat(LastLookMemory::Beat::guardian);
+      if (waits[1].revents != 0) return Call::sent_away;
+      if (waits[0].revents != 0) return Call::died;  // nobody ever writes: it has closed
+      const std::uint32_t control = memory_.beats(LastLookMemory::Beat::control);
+      // A bus whose device does not answer may wait for long, and so may the control loop; not all at once.
+      if (any_.stands_still(control + memory_.beats(LastLookMemory::Beat::output)) >= kLooksUntilItHangs &&
+          memory_.take().sends)
+        return Call::hangs;
+      // The light is held while its control loop hangs, but nobody watches limits, and nobody can change it.
+      if (control_.stands_still(control) == kLooksUntilItIsEnded) end_daemon();
+    }
   }
-}
+  void end_daemon() const {
+    if (::getppid() == daemon_) ::kill(daemon_, SIGKILL);
+  }
+
+  static constexpr int kLookEvery_ms = 50;
+  static constexpr int kLooksUntilItHangs = 12;     ///< 0.6 s
+  static constexpr int kLooksUntilItIsEnded = 600;  ///< 30 s
+
+ private:
+  struct Count {
+    std::uint32_t last = 0;
+    int looks = 0;
+    /// For how many looks; 0 before it has ever counted.
+    int stands_still(std::uint32_t now) {
+      looks = now == last && now != 0 ? looks + 1 : 0;
+      last = now;
+      return looks;
+    }
+  };
+  LastLookMemory& memory_;
+  int alive_fd_, signals_fd_;
+  pid_t daemon_ = ::getppid();
+  Count any_, control_;
+};
 
 bool has_closed(int alive_fd) {
   pollfd wait{alive_fd, POLLIN, 0};
@@ -87,9 +131,19 @@ void on_signal(int signal) {
   (void)!::write(g_signal_pipe[1], &byte, 1);
 }
 
-/// Sends until it is told to leave.
-void look_after(const Rig& rig, const LastLook& look, const std::map<std::string, Redirect>& redirects, int pid_fd) {
-  lock_memory();
+/// Devices that only one process can have are the daemon's as long as it is there.
+bool all_taken(const std::vector<std::unique_ptr<BusThread>>& buses) {
+  return std::all_of(buses.begin(), buses.end(), [](const auto& bus) {
+    const std::vector<Health> health = bus->health();
+    return !health.empty() && health.front().life == Life::active;
+  });
+}
+
+/// Sends until it is told to leave. watch: of a daemon that hangs.
+void look_after(const Rig& rig, const LastLook& look, const std::map<std::string, Redirect>& redirects, int pid_fd,
+                LastLookMemory& memory, int alive_fd, const Watch* watch) {
+  if (watch != nullptr) memory.take_the_light();
+  Teller teller(STDERR_FILENO);
   ProgramMailbox programs;
   OutputProgram program = program_of(rig, look, now());
   std::vector<std::unique_ptr<BusThread>> buses;
@@ -111,8 +165,25 @@ void look_after(const Rig& rig, const LastLook& look, const std::map<std::string
   }
   programs.put(program);
   for (const auto& bus : buses) bus->start();
-  pollfd wait{g_signal_pipe[0], POLLIN, 0};
-  while (g_signal == 0) ::poll(&wait, 1, -1);
+  lock_memory();
+  teller.tell(
+      fmt::format("luxrig-guardian: the daemon {}: its last look is held for {:g} s, then the safe look, until it {} "
+                  "(or kill {})\n",
+                  watch != nullptr ? "hangs" : "died", look.hold_s,
+                  watch != nullptr ? "goes on or is started anew" : "is started anew", ::getpid()));
+  bool hangs = watch != nullptr;
+  for (int looks = 0; g_signal == 0; ++looks) {
+    pollfd waits[] = {{g_signal_pipe[0], POLLIN, 0}, {hangs ? alive_fd : -1, POLLIN, 0}};
+    ::poll(waits, 2, Watch::kLookEvery_ms);
+    memory.beat(LastLookMemory::Beat::guardian);
+    if (!hangs) continue;
+    if (waits[1].revents != 0) {
+      if (memory.ended()) return;  // in order, as far as it could
+      hangs = false;
+    } else if (looks == kLooksUntilDevicesAreFreed && !all_taken(buses)) {
+      watch->end_daemon();
+    }
+  }
   // A daemon goes on from here: a goodbye would let fixtures go dark before its first frame.
   if (g_signal == SIGUSR1) {
     const Time at = now();
@@ -127,16 +198,15 @@ void look_after(const Rig& rig, const LastLook& look, const std::map<std::string
 int guard(const GuardianArguments& arguments) {
   if (::pipe(g_signal_pipe) != 0) return kExitFailed;
   for (const int signal : {SIGUSR1, SIGTERM, SIGINT}) ::signal(signal, on_signal);
-  ::signal(SIGPIPE, SIG_IGN);
+  for (const int signal : {SIGPIPE, SIGHUP}) ::signal(signal, SIG_IGN);
   const auto rig = load_rig(arguments.rig);
   if (!rig) return report(rig.error());
   if (const auto problems = check_buses(*rig); !problems.empty()) return report(problems);
   const auto redirects = redirects_of(arguments.redirects);
   if (!redirects) {
-    fmt::print(stderr, "luxrig-guardian: --redirect takes bus=host:port or bus=/path\n");
-    return kExitBadInput;
+    return report(std::vector<Problem>{{kRedirectOption, 0, 0, "is not understood", "give bus=host:port or bus=/path"}});
   }
-  const auto memory = LastLookMemory::open(arguments.look_fd, rig->fixtures.size());
+  auto memory = LastLookMemory::open(arguments.look_fd, rig->fixtures.size());
   if (!memory) return report(memory.error());
   // Held as long as this process lives: who reads the number knows by the lock that it is still its.
   const int pid_fd = ::open(arguments.pid_file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
@@ -145,14 +215,12 @@ int guard(const GuardianArguments& arguments) {
       ::pwrite(pid_fd, number.data(), number.size(), 0) != static_cast<ssize_t>(number.size())) {
     return report(os_fault("keeping " + arguments.pid_file.string(), errno));
   }
-  const bool died = wait_for_death(arguments.alive_fd, g_signal_pipe[0]);
-  if (const LastLook look = memory->take(); died && !memory->ended() && look.sends) {
-    fmt::print(stderr,
-               "luxrig-guardian: the daemon died: its last look is held for {:g} s, then the safe look, until a daemon "
-               "is started anew (or kill {})\n",
-               look.hold_s, ::getpid());
-    look_after(*rig, look, *redirects, pid_fd);
-  } else if (!died && !memory->ended() && look.sends && g_signal == SIGUSR1 && has_closed(arguments.alive_fd)) {
+  Watch watch(*memory, arguments.alive_fd, g_signal_pipe[0]);
+  const Call call = watch.wait();
+  if (const LastLook look = memory->take(); call != Call::sent_away && !memory->ended() && look.sends) {
+    look_after(*rig, look, *redirects, pid_fd, *memory, arguments.alive_fd, call == Call::hangs ? &watch : nullptr);
+  } else if (call == Call::sent_away && !memory->ended() && look.sends && g_signal == SIGUSR1 &&
+             has_closed(arguments.alive_fd)) {
     // Sent away before we had looked: what the daemon sent last still stands.
     hand_over(pid_fd, {look.present, look.safe, look.joints, look.hold_s, look.fade_s, look.silent});
     return kExitOk;

@@ -11,18 +11,28 @@
 
 namespace luxrig {
 
+namespace {
+
+/// Not fmt::print, which throws when the disk of a log is full or nobody reads.
+void tell(const std::string& text) {
+  (void)std::fwrite(text.data(), 1, text.size(), stderr);
+  (void)std::fflush(stderr);
+}
+
+}  // namespace
+
 int report(const std::vector<Problem>& problems) {
-  for (const Problem& problem : problems) fmt::print(stderr, "{}\n", problem.text());
+  for (const Problem& problem : problems) tell(problem.text() + "\n");
   return kExitBadInput;
 }
 
 int report(const Fault& fault) {
-  fmt::print(stderr, "luxrig: {}{}{}: {}\n", name_of(fault.cause), fault.device.empty() ? "" : " at ", fault.device,
-             fault.detail);
+  tell(fmt::format("luxrig: {}{}{}: {}\n", name_of(fault.cause), fault.device.empty() ? "" : " at ", fault.device,
+                   fault.detail));
   return kExitFailed;
 }
 
-Progress progress_line(std::string what) {
+Progress progress_line(std::string what, std::function<void(std::string)> sink) {
   using Steady = std::chrono::steady_clock;
   struct Line {
     std::string what;
@@ -33,7 +43,8 @@ Progress progress_line(std::string what) {
   };
   auto line = std::make_shared<Line>();
   line->what = std::move(what);
-  return [line](double done) {
+  if (!sink) sink = tell;
+  return [line, sink](double done) {
     const int percent = static_cast<int>(100 * done);
     const double seconds = std::chrono::duration<double>(Steady::now() - line->start).count();
     const bool last = done >= 1;
@@ -41,9 +52,8 @@ Progress progress_line(std::string what) {
     if (!line->terminal && !last && percent / 25 == line->last_percent / 25) return;
     line->last_percent = percent;
     line->shown = true;
-    fmt::print(stderr, "{}{} {:3d} %  {:.1f} s{}", line->terminal ? "\r" : "", line->what, percent, seconds,
-               line->terminal && !last ? "" : "\n");
-    std::fflush(stderr);
+    sink(fmt::format("{}{} {:3d} %  {:.1f} s{}", line->terminal ? "\r" : "", line->what, percent, seconds,
+                     line->terminal && !last ? "" : "\n"));
   };
 }
 
@@ -68,6 +78,24 @@ std::stop_token stop_on_signals() {
     return made;
   }();
   return source.get_token();
+}
+
+void keep_signal(int signal) {
+  sigset_t set;
+  sigemptyset(&set);
+  sigaddset(&set, signal);
+  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+}
+
+std::jthread on_signal(int signal, std::function<void()> run) {
+  return std::jthread([signal, run = std::move(run)](const std::stop_token& stop) {
+    sigset_t set;
+    sigemptyset(&set);
+    sigaddset(&set, signal);
+    const timespec look{0, 100'000'000};
+    while (!stop.stop_requested())
+      if (sigtimedwait(&set, nullptr, &look) == signal) run();
+  });
 }
 
 }  // namespace luxrig

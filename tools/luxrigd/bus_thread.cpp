@@ -1,5 +1,9 @@
 #include "tools/luxrigd/bus_thread.h"
 
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
 #include <algorithm>
 
 #include "tools/luxrigd/clock.h"
@@ -15,16 +19,19 @@ constexpr std::size_t kMostUnsentReadings = 1000;
 }  // namespace
 
 BusThread::BusThread(const Rig& rig, std::size_t bus, std::unique_ptr<Driver> driver, ProgramMailbox& programs,
-                     std::size_t first_desk)
+                     std::size_t first_desk, OutputOrders orders)
     : rig_(rig),
       bus_(bus),
       driver_(std::move(driver)),
       programs_(programs),
+      orders_(orders),
       bounds_(driver_->bounds()),
+      wake_fd_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
       first_desk_(first_desk),
       statistics_(bounds_.write_period),
       levels_(rig.fixtures.size()),
-      joints_(rig.fixtures.size()) {
+      joints_(rig.fixtures.size()),
+      return_(rig.fixtures.size(), bounds_.write_period) {
   for (std::size_t i = 0; i < rig.fixtures.size(); ++i) {
     if (rig.fixtures[i].bus == bus) level_commands_.push_back({i, 0});
     const Fixture& fixture = rig.fixtures[i];
@@ -36,7 +43,10 @@ BusThread::BusThread(const Rig& rig, std::size_t bus, std::unique_ptr<Driver> dr
   if (LevelInput* input = driver_->level_input()) desks_ = input->parts().size();
 }
 
-BusThread::~BusThread() { stop(); }
+BusThread::~BusThread() {
+  stop();
+  if (wake_fd_ >= 0) ::close(wake_fd_);
+}
 
 void BusThread::start() {
   thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
@@ -45,7 +55,23 @@ void BusThread::start() {
 void BusThread::stop() {
   if (!thread_.joinable()) return;
   thread_.request_stop();
+  wake();
   thread_.join();
+}
+
+void BusThread::wake() {
+  const std::uint64_t one = 1;
+  if (wake_fd_ >= 0) (void)!::write(wake_fd_, &one, sizeof one);
+}
+
+void BusThread::pause_until(Time wake_at) {
+  if (wake_fd_ < 0) return sleep_until(wake_at);
+  const Duration left = std::max(wake_at - now(), Duration{});
+  const timespec timeout{left.count() / 1'000'000'000, left.count() % 1'000'000'000};
+  pollfd wait{wake_fd_, POLLIN, 0};
+  if (::ppoll(&wait, 1, &timeout, nullptr) != 1) return;
+  std::uint64_t count = 0;
+  (void)!::read(wake_fd_, &count, sizeof count);
 }
 
 void BusThread::run(const std::stop_token& stop) {
@@ -60,13 +86,15 @@ void BusThread::run(const std::stop_token& stop) {
   Time next = now();
   Time last_start{};
   Time next_read = next, next_health = next;
+  bool in_turn = true;
   while (!stop.stop_requested()) {
     const Time at = now();
     if (writes_) {
-      if (last_start != Time{}) statistics_.record(at - last_start);
+      if (last_start != Time{} && in_turn) statistics_.record(at - last_start);
       last_start = at;
       listen(at);
       write(at);
+      if (orders_.guarded != nullptr) orders_.guarded->beat(LastLookMemory::Beat::output);
     }
     if (driver_->lux_reader() != nullptr && at >= next_read) {
       read(now());
@@ -76,12 +104,13 @@ void BusThread::run(const std::stop_token& stop) {
       publish_health(now());
       next_health = at + kHealthPeriod;
     }
-    next += cycle;
+    if (in_turn) next += cycle;
     // After a stall go on from here: a burst of old frames helps nobody.
     if (const Time late = now(); late > next + cycle) next = late;
     const Time due = std::max(next, now());
-    sleep_until(next);
-    lateness_.record(due, now());
+    pause_until(next);
+    in_turn = now() >= next;  // else somebody has woken us
+    if (in_turn) lateness_.record(due, now());
   }
   driver_->deactivate(now());
 }
@@ -95,26 +124,42 @@ void BusThread::listen(Time at) {
 }
 
 void BusThread::write(Time at) {
+  // The program that follows goes on from what the guardian has sent.
+  if (orders_.guarded != nullptr && orders_.guarded->guardian_has_the_light()) return return_.forget();
+  // The number before what it asks for, and that before the program that may undo it.
+  const std::uint64_t order = orders_.blackout != nullptr ? orders_.blackout->number() : 0;
+  const bool dark = orders_.blackout != nullptr && orders_.blackout->dark();
   programs_.take(program_);
-  if (program_.revision == 0) {  // nobody has said yet what the light shall be: leave it as it is
+  if (program_.revision == 0 && !dark) {  // nobody has said yet what the light shall be: leave it as it is
     // Axes are set up, and perhaps sent home, meanwhile.
     if (driver_->level_output() == nullptr) (void)driver_->mover()->move(at, {});
     return;
   }
-  program_.levels_at(at, levels_);
+  if (dark) {
+    std::fill(levels_.begin(), levels_.end(), 0.0);
+  } else {
+    program_.levels_at(at, levels_);
+  }
+  return_.apply(at, program_, dark || program_.blackout, levels_);
   for (LevelCommand& command : level_commands_) {
     command.drive = drive_from_level(rig_.fixtures[command.fixture].dimmer_curve, levels_[command.fixture]);
   }
-  program_.joints_at(at, joints_);
-  for (AimCommand& command : aim_commands_) command.joints = joints_[command.fixture];
+  if (program_.revision != 0) {
+    program_.joints_at(at, joints_);
+    for (AimCommand& command : aim_commands_) command.joints = joints_[command.fixture];
+  }
   if (LevelInput* input = driver_->level_input()) {
     for (std::size_t part = 0; part < desks_ && first_desk_ + part < program_.desks.size(); ++part) {
-      input->set_silent(at, part, program_.desks[first_desk_ + part].silent);
+      // Under a blackout also lamps that a desk drives itself are sent, and are dark.
+      input->set_silent(at, part, program_.desks[first_desk_ + part].silent && !dark && !program_.blackout);
     }
   }
   // Faults show in the health report.
   if (Mover* mover = driver_->mover(); mover != nullptr && !aim_commands_.empty()) (void)mover->move(at, aim_commands_);
-  if (LevelOutput* output = driver_->level_output()) (void)output->write(at, level_commands_);
+  LevelOutput* output = driver_->level_output();
+  if (output == nullptr) return;
+  const bool written = output->write(at, level_commands_).has_value() && output->settled();
+  if (written && dark) dark_order_.store(order, std::memory_order_release);
 }
 
 void BusThread::read(Time at) {

@@ -9,22 +9,38 @@
 #include <vector>
 
 #include "drivers/driver.h"
+#include "tools/luxrigd/blackout_switch.h"
 #include "tools/luxrigd/cycle_statistics.h"
+#include "tools/luxrigd/last_look.h"
 #include "tools/luxrigd/lateness.h"
 #include "tools/luxrigd/program_mailbox.h"
+#include "tools/luxrigd/smooth_return.h"
 
 namespace luxrig {
+
+/// What else says what goes out. Must outlive the thread; either may be none.
+struct OutputOrders {
+  const BlackoutSwitch* blackout = nullptr;
+  LastLookMemory* guarded = nullptr;  ///< while the guardian has the light, nothing is sent
+};
 
 class BusThread {
  public:
   /// The rig and the mailbox must outlive the thread.
   /// first_desk: where the parts of its driver's input begin in OutputProgram::desks.
   BusThread(const Rig& rig, std::size_t bus, std::unique_ptr<Driver> driver, ProgramMailbox& programs,
-            std::size_t first_desk = 0);
+            std::size_t first_desk = 0, OutputOrders orders = {});
   ~BusThread();  ///< stops, and lets the driver say goodbye
 
   void start();
   void stop();
+
+  /// The next frame goes out now instead of in its turn.
+  void wake();
+  /// The newest order of the blackout switch that every lamp here has been told.
+  [[nodiscard]] std::uint64_t dark_order() const { return dark_order_.load(std::memory_order_acquire); }
+  /// It has lamps.
+  [[nodiscard]] bool lights() const { return driver_->level_output() != nullptr && !level_commands_.empty(); }
 
   /// Readings since the last call, and the newest health report.
   std::vector<LuxReading> take_readings();
@@ -42,6 +58,7 @@ class BusThread {
 
  private:
   void run(const std::stop_token& stop);
+  void pause_until(Time wake_at);
   void write(Time at);
   void listen(Time at);
   void read(Time at);
@@ -51,7 +68,10 @@ class BusThread {
   std::size_t bus_;
   std::unique_ptr<Driver> driver_;
   ProgramMailbox& programs_;
+  OutputOrders orders_;
   DriverBounds bounds_;
+  int wake_fd_ = -1;
+  std::atomic<std::uint64_t> dark_order_{0};
   std::size_t first_desk_, desks_ = 0;
   CycleStatistics statistics_;
   Lateness lateness_;
@@ -63,6 +83,7 @@ class BusThread {
   std::vector<LevelCommand> level_commands_;  ///< of the fixtures whose lamp is on this bus
   std::vector<AimCommand> aim_commands_;      ///< of those that this bus turns
   OutputProgram program_;
+  SmoothReturn return_;
 
   mutable std::mutex mutex_;  ///< guards what follows; the thread only tries it
   std::vector<LuxReading> readings_;

@@ -19,6 +19,7 @@ constexpr Duration kPublishPeriod = std::chrono::milliseconds(100);
 constexpr Duration kSafeLookEvery = std::chrono::seconds(1), kGuardianLook = std::chrono::seconds(1);
 constexpr int kMostDoublings = 6;
 constexpr auto kCommandBound = std::chrono::seconds(2);
+constexpr Duration kDarkWithin = std::chrono::seconds(1);
 
 std::filesystem::path web_folder() { return shared_folder() / "web"; }
 
@@ -43,6 +44,11 @@ Result<int> Daemon::start() {
   const auto port = http_->start(options_.http_port);
   if (!port) return port;
   lock_memory();
+  if (options_.guarded && options_.state_folder) {
+    auto memory = LastLookMemory::create(session_->rig.fixtures.size());
+    if (!memory) return tl::unexpected(memory.error());
+    guarded_.emplace(std::move(*memory));
+  }
   // Drivers and buses keep this rig, also when a reload has exchanged it for one with the same outputs.
   first_session_ = session_;
   const Rig& rig = session_->rig;
@@ -59,37 +65,64 @@ Result<int> Daemon::start() {
         ++desks_;
       }
     }
-    buses_.push_back(std::make_unique<BusThread>(rig, b, std::move(driver), programs_, first_desk));
+    buses_.push_back(std::make_unique<BusThread>(rig, b, std::move(driver), programs_, first_desk,
+                                                 OutputOrders{&blackout_, guarded_ ? &*guarded_ : nullptr}));
   }
-  if (options_.guarded && options_.state_folder) start_guardian();
+  if (options_.guarded && options_.state_folder) {
+    // One that an earlier daemon left behind has the light until ours takes it, and tells what it was.
+    if (const auto light = send_guardian_away(*options_.state_folder, rig.fixtures.size())) {
+      controller_.go_on_from(now(), *light);
+      send_program();
+    }
+    start_guardian(now());
+  }
   for (const auto& bus : buses_) bus->start();
   rig_file_watch_ = std::make_shared<RigFileWatch>(files_of(rig));
   return port;
 }
 
-void Daemon::start_guardian() {
+void Daemon::start_guardian(Time at) {
   GuardianSettings settings;
   settings.rig_file = session_->rig.file;
   settings.fixtures = session_->rig.fixtures.size();
   settings.redirects = options_.redirects;
   settings.state_folder = *options_.state_folder;
-  // One that an earlier daemon left behind has the light until ours takes it, and tells what it was.
-  const auto light = send_guardian_away(settings.state_folder, settings.fixtures);
-  if (light && sent_revision_ == 0) {
-    controller_.go_on_from(now(), *light);
-    programs_.put(controller_.program());
-    sent_revision_ = controller_.program().revision;
-  }
   guardian_.reset();
-  auto started = Guardian::start(std::move(settings));
+  auto started = Guardian::start(std::move(settings), *guarded_, at);
   unguarded_ = started ? "" : started.error().detail;
   if (started) guardian_.emplace(std::move(*started));
-  guardian_seen_ = now();
+  guardian_seen_ = at;
+}
+
+void Daemon::look_after_guardian(Time at) {
+  guarded_->beat(LastLookMemory::Beat::control);
+  if (guarded_->guardian_has_the_light()) {
+    // We have stood still for so long that it has taken over: the light goes on from what it sends.
+    const auto light = send_guardian_away(*options_.state_folder, session_->rig.fixtures.size());
+    if (guardian_) guardian_->leave();
+    if (light) {
+      controller_.take_back(at, light->level);
+      send_program();
+    }
+    guarded_->take_the_light_back();
+    stood_still_at_ = at;
+    return start_guardian(at);
+  }
+  // One that ends as soon as it is started, as its rig file has changed, say, is tried less and less often.
+  if (at - guardian_seen_ < kGuardianLook * (1 << guardian_deaths_)) return;
+  guardian_seen_ = at;
+  if (guardian_ && guardian_->alive(at)) {
+    if (guardian_->looks()) unguarded_since_.reset();
+    return;
+  }
+  if (!unguarded_since_) unguarded_since_ = at;
+  guardian_deaths_ = std::min(guardian_deaths_ + 1, kMostDoublings);
+  start_guardian(at);
 }
 
 /// What would go out if this process died now.
 void Daemon::tell_guardian(Time at) {
-  if (!guardian_) return;
+  if (!guarded_) return;
   const Rig& rig = session_->rig;
   const OutputProgram& program = controller_.program();
   const std::size_t count = rig.fixtures.size();
@@ -116,25 +149,54 @@ void Daemon::tell_guardian(Time at) {
     if (!desk.silent) continue;
     for (const std::size_t f : desk.fixtures) last_look_.silent[f] = 1;
   }
-  guardian_->put(last_look_);
-  // One that ends as soon as it is started, as its rig file has changed, say, is tried less and less often.
-  if (at - guardian_seen_ < kGuardianLook * (1 << guardian_deaths_)) return;
-  guardian_seen_ = at;
-  if (guardian_->alive()) return;
-  guardian_deaths_ = std::min(guardian_deaths_ + 1, kMostDoublings);
-  start_guardian();
+  guarded_->put(last_look_);
+  look_after_guardian(at);
+}
+std::future<void> Daemon::queue(std::function<void(Time)> run) {
+  const std::lock_guard lock(mutex_);
+  commands_.push_back({std::move(run), {}});
+  return commands_.back().done.get_future();
 }
 
 /// Runs something between two ticks, and waits until it was done. Called from the control thread itself (no other
 /// thread ticks then), it would wait for ever: there the queue is just filled.
 void Daemon::on_control_thread(std::function<void(Time)> run) {
-  std::future<void> done;
-  {
-    const std::lock_guard lock(mutex_);
-    commands_.push_back({std::move(run), {}});
-    done = commands_.back().done.get_future();
-  }
+  const std::future<void> done = queue(std::move(run));
   if (std::this_thread::get_id() != control_thread_) done.wait_for(kCommandBound);
+}
+
+Result<void> Daemon::blackout(bool on) {
+  const std::uint64_t order = blackout_.order(on);
+  for (const auto& bus : buses_) bus->wake();
+  queue([this](Time at) {
+    const std::uint64_t newest = blackout_.number();
+    controller_.blackout(at, blackout_.wanted());
+    send_program();
+    blackout_.lift(newest);
+  });
+  // The light first, the disk after; of several at once the last one counts.
+  std::string not_dark;
+  if (on && std::this_thread::get_id() != control_thread_) not_dark = wait_until_dark(order);
+  const auto saved = journal_.keep([this](JournalState& state) { state.blackout = blackout_.wanted(); });
+  if (!saved) return tl::unexpected(Fault{saved.error().cause, {}, "it holds, but would be forgotten: " + saved.error().detail, {}});
+  if (!not_dark.empty())
+    return tl::unexpected(Fault{Cause::timeout, {}, "it holds, but lamps may be lit: " + not_dark, {}});
+  return {};
+}
+
+std::string Daemon::wait_until_dark(std::uint64_t order) const {
+  const Time until = now() + kDarkWithin;
+  std::string late;
+  do {
+    late.clear();
+    for (const auto& bus : buses_) {
+      if (!bus->lights() || bus->dark_order() >= order) continue;
+      late += (late.empty() ? "" : ", ") + ("bus \"" + first_session_->rig.buses[bus->bus()].name + "\" has not taken it yet");
+    }
+    if (late.empty()) return {};
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  } while (now() < until);
+  return late;
 }
 
 bool Daemon::park() { return controller_.park(now(), {}).has_value(); }
@@ -171,11 +233,7 @@ HttpHandlers Daemon::handlers() {
     const std::lock_guard lock(mutex_);
     return room_.png;
   };
-  handlers.blackout = [this](bool on) -> Result<void> {
-    // The light first, the disk after.
-    on_control_thread([this, on](Time at) { controller_.blackout(at, on); });
-    return journal_.keep([on](JournalState& state) { state.blackout = on; });
-  };
+  handlers.blackout = [this](bool on) { return blackout(on); };
   handlers.identify = [this](const std::string& name, double seconds) { return identify(name, seconds); };
   handlers.park = [this](const std::vector<std::string>& names) { return park(names); };
   handlers.hand_back = [this] { on_control_thread([this](Time at) { controller_.hand_back(at); }); };
@@ -189,6 +247,12 @@ HttpHandlers Daemon::handlers() {
   handlers.release = [this](const std::vector<std::string>& names) { return release(names); };
   handlers.reload = [this] { return reload(); };
   return handlers;
+}
+
+void Daemon::send_program() {
+  if (controller_.program().revision == sent_revision_) return;
+  programs_.put(controller_.program());
+  sent_revision_ = controller_.program().revision;
 }
 
 void Daemon::tick() {
@@ -214,10 +278,7 @@ void Daemon::tick() {
   }
   controller_.health(at, devices_);
   controller_.step(at);
-  if (controller_.program().revision != sent_revision_) {
-    programs_.put(controller_.program());
-    sent_revision_ = controller_.program().revision;
-  }
+  send_program();
   tell_guardian(at);
   if (at - last_publish_ >= kPublishPeriod || !commands.empty()) publish(at);
 }

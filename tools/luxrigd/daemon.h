@@ -78,6 +78,9 @@ class Daemon {
   [[nodiscard]] const std::vector<Health>& devices() const { return devices_; }
 
   void go_safe();
+  /// Any thread. Past the control thread; returns when every lamp has been told and the disk has it. Fails, though it
+  /// holds, where a bus has not taken it, or the disk.
+  Result<void> blackout(bool on);
   /// All heads that have a place to rest go there, dark; false: there are none.
   bool park();
   /// Ends output (each driver says goodbye) and the page.
@@ -88,7 +91,10 @@ class Daemon {
     std::function<void(Time)> run;
     std::promise<void> done;
   };
+  std::future<void> queue(std::function<void(Time)> run);
   void on_control_thread(std::function<void(Time)> run);
+  /// Which lamps have not been told, in words; empty: all have.
+  [[nodiscard]] std::string wait_until_dark(std::uint64_t order) const;
   /// What `run` gives on the control thread; nothing when that does not come to it. Shared, as nobody waits longer than
   /// a command's bound for it.
   template <class T>
@@ -112,9 +118,11 @@ class Daemon {
   /// A fixture by its name; an emitter's housing stands for its first.
   [[nodiscard]] Result<std::size_t> fixture_called(const std::string& name) const;
   [[nodiscard]] std::string universes_json();
+  void send_program();
   void publish(Time at);
-  void start_guardian();
+  void start_guardian(Time at);
   void tell_guardian(Time at);
+  void look_after_guardian(Time at);
   [[nodiscard]] HttpHandlers handlers();
   /// What becomes of a plan that cannot be saved.
   enum class Unsaved { is_refused, goes_on };
@@ -125,11 +133,14 @@ class Daemon {
   DaemonOptions options_;
   ShowController controller_;
   ProgramMailbox programs_;
+  BlackoutSwitch blackout_;
+  std::optional<LastLookMemory> guarded_;  ///< shared with the guardian
   std::vector<std::unique_ptr<BusThread>> buses_;
   std::unique_ptr<HttpApi> http_;
   Journal journal_;
   std::optional<Guardian> guardian_;
   std::string unguarded_;
+  std::optional<Time> unguarded_since_, stood_still_at_;
   LastLook last_look_;
   std::vector<double> safe_levels_;
   Time safe_look_at_{}, guardian_seen_{};

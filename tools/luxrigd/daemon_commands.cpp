@@ -16,6 +16,8 @@
 namespace luxrig {
 namespace {
 
+constexpr Duration kStillSaid = std::chrono::seconds(60);
+
 /// By the wall clock, in seconds: for what is remembered.
 double unix_now_s() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
@@ -177,8 +179,8 @@ Resumed Daemon::resume() {
   const JournalState& saved = *left.state;
   // First what makes it darker: it holds whatever becomes of the plan, and of the next save.
   if (saved.blackout) {
+    (void)blackout(true);
     controller_.blackout(now(), true);
-    (void)journal_.keep([](JournalState& state) { state.blackout = true; });
   }
   restore_by_hand(saved.by_hand, resumed);
   if (!saved.plan_json.empty()) {
@@ -329,6 +331,19 @@ void Daemon::add_alarms(Time at) {
   } else {
     unsaved_since_.reset();
   }
+  if (unguarded_since_)
+    status_.alarms.push_back({true, "",
+                              fmt::format("nobody looks after the light if this program dies: its guardian {}; it is "
+                                          "tried again",
+                                          unguarded_.empty() ? std::string("ends as soon as it is started, perhaps as "
+                                                                           "the rig file has changed: luxrig reload")
+                                                             : "cannot be started: " + unguarded_),
+                              *unguarded_since_});
+  if (stood_still_at_ && at - *stood_still_at_ < kStillSaid)
+    status_.alarms.push_back({false, "",
+                              "this program stood still for longer than half a second, and its guardian had the light "
+                              "meanwhile: something else takes this computer's time, or stopped it",
+                              *stood_still_at_});
   const std::lock_guard lock(mutex_);
   if (rig_file_watch_) {
     const auto changed = rig_file_watch_->changed();

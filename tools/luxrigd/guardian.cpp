@@ -23,7 +23,9 @@ namespace luxrig {
 namespace {
 
 constexpr auto kLeavesWithin = std::chrono::seconds(3);
+constexpr auto kEndsWithin = std::chrono::seconds(1);
 constexpr auto kLook = std::chrono::milliseconds(10);
+constexpr Duration kHangs = std::chrono::seconds(1), kStartsWithin = std::chrono::seconds(10);
 
 std::filesystem::path guardian_program() {
   std::error_code error;
@@ -32,10 +34,8 @@ std::filesystem::path guardian_program() {
 
 }  // namespace
 
-Result<Guardian> Guardian::start(GuardianSettings settings) {
-  auto memory = LastLookMemory::create(settings.fixtures);
-  if (!memory) return tl::unexpected(memory.error());
-  Guardian made(std::move(settings), std::move(*memory));
+Result<Guardian> Guardian::start(GuardianSettings settings, LastLookMemory& memory, Time now) {
+  Guardian made(std::move(settings), memory, now);
   if (auto launched = made.launch(); !launched) return tl::unexpected(launched.error());
   return made;
 }
@@ -49,7 +49,7 @@ Result<void> Guardian::launch() {
   int ends[2] = {-1, -1};
   if (::pipe2(ends, O_CLOEXEC) != 0) return tl::unexpected(os_fault("making a pipe to the guardian", errno));
   std::vector<std::string> words = {
-      program.string(), settings_.rig_file.string(), kLookOption, std::to_string(memory_.fd()),
+      program.string(), settings_.rig_file.string(), kLookOption, std::to_string(memory_->fd()),
       kAliveOption,     std::to_string(ends[0]),     kPidOption,  guardian_pid_file(settings_.state_folder).string()};
   for (const auto& [bus, to] : settings_.redirects) {
     words.insert(words.end(), {kRedirectOption, redirect_text(bus, to)});
@@ -65,12 +65,13 @@ Result<void> Guardian::launch() {
     return tl::unexpected(os_fault("starting the guardian", failed));
   }
   if (pid == 0) {
-    // A Ctrl-C at the terminal is for the daemon. Only calls that are safe between fork and exec from here on.
-    ::setpgid(0, 0);
+    // A Ctrl-C at the terminal is for the daemon, and its hanging up for nobody. Only calls that are safe between fork
+    // and exec from here on.
+    ::setsid();
     sigset_t none;
     sigemptyset(&none);
     ::sigprocmask(SIG_SETMASK, &none, nullptr);
-    ::fcntl(memory_.fd(), F_SETFD, 0);
+    ::fcntl(memory_->fd(), F_SETFD, 0);
     ::fcntl(ends[0], F_SETFD, 0);
     ::execve(argv[0], argv.data(), environ);
     ::_exit(127);
@@ -84,31 +85,51 @@ Result<void> Guardian::launch() {
 
 Guardian::Guardian(Guardian&& other) noexcept
     : settings_(std::move(other.settings_)),
-      memory_(std::move(other.memory_)),
+      memory_(other.memory_),
+      beat_at_(other.beat_at_),
+      beats_(other.beats_),
+      looks_(other.looks_),
       pid_(std::exchange(other.pid_, -1)),
       alive_fd_(std::exchange(other.alive_fd_, -1)) {}
 
 Guardian::~Guardian() { end(); }
 
-bool Guardian::alive() {
+bool Guardian::alive(Time now) {
   if (pid_ <= 0) return false;
-  if (::waitpid(pid_, nullptr, WNOHANG) == 0) return true;
-  pid_ = -1;
+  if (::waitpid(pid_, nullptr, WNOHANG) != 0) {
+    pid_ = -1;
+    return false;
+  }
+  if (const std::uint32_t beats = memory_->beats(kBeat); beats != beats_) {
+    beats_ = beats;
+    beat_at_ = now;
+    looks_ = true;
+    return true;
+  }
+  if (now - beat_at_ < (looks_ ? kHangs : kStartsWithin)) return true;
+  leave();
   return false;
+}
+
+void Guardian::leave() {
+  if (pid_ <= 0) return;
+  ::kill(pid_, SIGKILL);
+  ::waitpid(pid_, nullptr, 0);
+  pid_ = -1;
 }
 
 void Guardian::end() {
   if (alive_fd_ < 0) return;
-  memory_.end();
+  if (pid_ > 0) memory_->end();
   ::close(std::exchange(alive_fd_, -1));
+  wait_for_its_end();
+}
+
+void Guardian::wait_for_its_end() {
   if (pid_ <= 0) return;
-  const auto until = std::chrono::steady_clock::now() + kLeavesWithin;
+  const auto until = std::chrono::steady_clock::now() + kEndsWithin;
   while (::waitpid(pid_, nullptr, WNOHANG) == 0) {
-    if (std::chrono::steady_clock::now() > until) {
-      ::kill(pid_, SIGKILL);
-      ::waitpid(pid_, nullptr, 0);
-      break;
-    }
+    if (std::chrono::steady_clock::now() > until) return leave();
     std::this_thread::sleep_for(kLook);
   }
   pid_ = -1;

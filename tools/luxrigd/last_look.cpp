@@ -14,7 +14,7 @@
 namespace luxrig {
 namespace {
 
-constexpr std::uint64_t kMagic = 0x324b4f4f4c58554cULL;  // "LUXLOOK2"
+constexpr std::uint64_t kMagic = 0x334b4f4f4c58554cULL;  // "LUXLOOK3"
 constexpr std::size_t kHeadNumbers = 3;                  // sends, hold, fade
 constexpr std::size_t kFixtureNumbers = 6;               // present, safe, pan, tilt, beam, silent
 constexpr double kLongest_s = 1e6;
@@ -32,6 +32,8 @@ struct LastLookMemory::Header {
   std::uint64_t fixtures = 0;
   std::atomic<std::uint32_t> newest{0};  ///< 1 + the copy that is whole; 0: none yet
   std::atomic<std::uint32_t> ended{0};
+  std::atomic<std::uint32_t> guardian_has_the_light{0};
+  std::atomic<std::uint32_t> beats[3]{};  ///< by Beat
 };
 
 LastLookMemory::Header& LastLookMemory::header() const { return *static_cast<Header*>(memory_); }
@@ -121,6 +123,17 @@ LastLook LastLookMemory::take() const {
   }
   return look;
 }
+
+void LastLookMemory::beat(Beat whose) {
+  header().beats[static_cast<std::size_t>(whose)].fetch_add(1, std::memory_order_relaxed);
+}
+std::uint32_t LastLookMemory::beats(Beat whose) const {
+  return header().beats[static_cast<std::size_t>(whose)].load(std::memory_order_relaxed);
+}
+
+void LastLookMemory::take_the_light() { header().guardian_has_the_light.store(1); }
+void LastLookMemory::take_the_light_back() { header().guardian_has_the_light.store(0); }
+bool LastLookMemory::guardian_has_the_light() const { return header().guardian_has_the_light.load() == 1; }
 
 void LastLookMemory::end() { header().ended.store(1, std::memory_order_release); }
 bool LastLookMemory::ended() const { return header().ended.load(std::memory_order_acquire) == 1; }

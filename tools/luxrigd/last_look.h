@@ -36,6 +36,18 @@ class LastLookMemory {
   /// of what wrote here.
   [[nodiscard]] LastLook take() const;
 
+  /// Who lives counts, here: the daemon's threads that send, its control loop, and the guardian. A count that stands
+  /// still is a process, or a thread, that hangs.
+  enum class Beat { output, control, guardian };
+  void beat(Beat whose);
+  [[nodiscard]] std::uint32_t beats(Beat whose) const;
+
+  /// The guardian takes the light from a daemon that hangs; only one of them sends. The daemon that has sent it away
+  /// takes it back.
+  void take_the_light();
+  void take_the_light_back();
+  [[nodiscard]] bool guardian_has_the_light() const;
+
   /// The daemon ends in order: its guardian has nothing to do.
   void end();
   [[nodiscard]] bool ended() const;

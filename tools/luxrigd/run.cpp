@@ -1,6 +1,8 @@
 #include "tools/luxrigd/run.h"
 
 #include <fmt/format.h>
+#include <signal.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -161,7 +163,12 @@ Result<void> show_before_and_after(Daemon& daemon, RunReport& say, RigPictures& 
 
 int run_rig(const RunArguments& arguments) {
   const Time process_start = now();
+  keep_signal(SIGUSR1);
   const std::stop_token stop = stop_on_signals();
+  // Nobody need be there to be told: a terminal that hangs up, and a pipe that closes, end nothing.
+  ::signal(SIGHUP, SIG_IGN);
+  ::signal(SIGPIPE, SIG_IGN);
+  Teller teller(STDOUT_FILENO), progress(STDERR_FILENO);
   auto opened = open_session(arguments.rig);
   if (!opened) return report(opened.error());
   const auto session = std::make_shared<Session>(std::move(*opened));
@@ -180,7 +187,7 @@ int run_rig(const RunArguments& arguments) {
                              : "--pictures shows the simulated rig as it hangs, then what its tasks make of it",
          rig.cameras.empty() ? "add one" : "give it with --sim or --sim-ports, and without --plan"}});
   }
-  RunReport say(rig, process_start);
+  RunReport say(teller, rig, process_start);
   say.say(fmt::format("{}: {} triangles, {} fixtures, {} points, {} luxmeters", rig.name,
                       session->scene.triangles.size(), rig.fixtures.size(), rig.points.size(), rig.luxmeters.size()));
 
@@ -203,7 +210,7 @@ int run_rig(const RunArguments& arguments) {
 
   // 2. Transport and plan.
   ComputeOptions compute = arguments.compute;
-  compute.watch = {stop, progress_line("  transport")};
+  compute.watch = {stop, progress_line("  transport", [&](std::string text) { progress.tell(std::move(text)); })};
   std::optional<Plan> plan;
   if (arguments.plan) {
     auto read = plan_of_file(*arguments.plan);
@@ -270,6 +277,9 @@ int run_rig(const RunArguments& arguments) {
   Daemon daemon(session, light_model(rig, *transport), options);
   const auto port = daemon.start();
   if (!port) return report(port.error());
+  const std::jthread blackout_by_signal = on_signal(SIGUSR1, [&] {
+    if (const auto dark = daemon.blackout(true); !dark) say.say("warning  blackout by signal: " + dark.error().detail);
+  });
   say.say(fmt::format("page and status: http://127.0.0.1:{}/", *port));
   if (!daemon.unguarded().empty()) {
     say.say("warning  if this process dies, lamps do what they do without data: no guardian: " + daemon.unguarded());
@@ -309,7 +319,7 @@ int run_rig(const RunArguments& arguments) {
       shown = true;
       converged_s = to_seconds(at - process_start);
       if (!arguments.once) {
-        fmt::print("\n{}\n", say.table(daemon.status(), truth()));
+        say.print("\n" + say.table(daemon.status(), truth()) + "\n");
         say.say(fmt::format("{}, in {:.1f} s; page: http://127.0.0.1:{}/ (Ctrl-C fades to the safe look and ends)",
                             goals_text(daemon.status(), rig), converged_s, *port));
       }
@@ -349,7 +359,7 @@ int run_rig(const RunArguments& arguments) {
   const bool held = final_status.phase == Phase::holding && !final_status.blackout;
   const bool done =
       held && final_status.goals.missed == 0 && final_status.limits_exceeded == 0 && (!whole || whole->violations == 0);
-  fmt::print("\n{}\n", say.table(final_status, whole));
+  say.print("\n" + say.table(final_status, whole) + "\n");
   say.say(
       fmt::format("{} after {} correction rounds, {:.1f} s from process start{}",
                   held ? goals_text(final_status, rig) : "the look was not reached: " + final_status.detail,

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "tools/luxrig/table.h"
@@ -21,8 +20,7 @@ std::optional<double> error_of(const PointStatus& status) {
 }  // namespace
 
 void RunReport::say(const std::string& line) const {
-  fmt::print("{:6.1f} s  {}\n", to_seconds(now() - start_), line);
-  std::fflush(stdout);
+  teller_.tell(fmt::format("{:6.1f} s  {}\n", to_seconds(now() - start_), line));
 }
 
 void RunReport::say_readings(const ShowStatus& status) const {

@@ -10,18 +10,22 @@
 #include "core/rig/rig.h"
 #include "tools/luxrigd/clock.h"
 #include "tools/luxrigd/sim_process.h"
+#include "tools/luxrigd/teller.h"
 
 namespace luxrig {
 
 class RunReport {
  public:
-  RunReport(const Rig& rig, Time process_start) : rig_(&rig), start_(process_start) {}
+  /// The teller must outlive it.
+  RunReport(Teller& teller, const Rig& rig, Time process_start) : teller_(teller), rig_(&rig), start_(process_start) {}
 
   /// The rig that a status is of from here on; it must outlive this, or the next call.
   void use(const Rig& rig) { rig_ = &rig; }
 
   /// One line, with the seconds since the process began.
   void say(const std::string& line) const;
+  /// Some lines as they are.
+  void print(const std::string& text) const { teller_.tell(text); }
   /// Says what is new since the last call: phase, first readings, rounds, alarms.
   void follow(const ShowStatus& status, Time now);
   /// The table: point, goal, predicted, measured, error, limit, truth when known.
@@ -33,6 +37,7 @@ class RunReport {
  private:
   void say_readings(const ShowStatus& status) const;
 
+  Teller& teller_;
   const Rig* rig_;
   Time start_;
   Phase phase_ = Phase::idle;
