@@ -24,7 +24,7 @@ BusThread::BusThread(const Rig& rig, std::size_t bus, std::unique_ptr<Driver> dr
       bus_(bus),
       driver_(std::move(driver)),
       programs_(programs),
-      orders_(orders),
+      orders_(std::move(orders)),
       bounds_(driver_->bounds()),
       wake_fd_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
       first_desk_(first_desk),
@@ -41,6 +41,7 @@ BusThread::BusThread(const Rig& rig, std::size_t bus, std::unique_ptr<Driver> dr
   writes_ = (driver_->level_output() != nullptr && !level_commands_.empty()) ||
             (driver_->mover() != nullptr && !aim_commands_.empty());
   if (LevelInput* input = driver_->level_input()) desks_ = input->parts().size();
+  has_contact_ = driver_->contact(Time{}).has_value();
 }
 
 BusThread::~BusThread() {
@@ -100,6 +101,7 @@ void BusThread::run(const std::stop_token& stop) {
       read(now());
       next_read = std::max(next_read + bounds_.read_period, now());
     }
+    if (has_contact_) look_at_contact(now());
     if (at >= next_health) {
       publish_health(now());
       next_health = at + kHealthPeriod;
@@ -170,6 +172,11 @@ void BusThread::read(Time at) {
   readings_.insert(readings_.end(), unsent_readings_.begin(), unsent_readings_.end());
   if (readings_.size() > kMostUnsentReadings) readings_.erase(readings_.begin(), readings_.end() - kMostUnsentReadings);
   unsent_readings_.clear();
+}
+
+void BusThread::look_at_contact(Time at) {
+  const Contact contact = driver_->contact(at).value_or(Contact::unknown);
+  if (contact_.exchange(contact) != contact && contact == Contact::pressed && orders_.pressed) orders_.pressed();
 }
 
 void BusThread::publish_health(Time at) {

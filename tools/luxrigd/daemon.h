@@ -9,15 +9,18 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <semaphore>
 #include <thread>
 
 #include "core/control/show_controller.h"
 #include "drivers/registry.h"
 #include "tools/luxrig/session.h"
 #include "tools/luxrigd/bus_thread.h"
+#include "tools/luxrigd/claims.h"
 #include "tools/luxrigd/guardian.h"
 #include "tools/luxrigd/http_api.h"
 #include "tools/luxrigd/journal.h"
+#include "tools/luxrigd/light_store.h"
 #include "tools/luxrigd/rig_file_watch.h"
 #include "tools/luxrigd/room_view.h"
 
@@ -44,6 +47,8 @@ struct DaemonOptions {
   /// What a rig gives in the session's scene with heads that look elsewhere, for plans that turn them; called on
   /// whatever thread brings the plan. Empty: such plans are refused.
   std::function<Result<LightModel>(const Session&, const Rig&)> light_model{};
+  /// Told whenever a model was worked out that is in force now, on whatever thread did it.
+  std::function<void(const Session&, const KeptLight&)> keep_light{};
   /// Solves the tasks of a rig file that was read again; turns the session's heads as its plan has them. Empty: there
   /// is no reload.
   std::function<Result<SolvedRig>(Session&)> solve{};
@@ -120,6 +125,13 @@ class Daemon {
   [[nodiscard]] std::string universes_json();
   void send_program();
   void publish(Time at);
+  /// What nobody else may have; fails where another has it.
+  [[nodiscard]] Result<void> claim_outputs();
+  void draw_room_beside();
+  [[nodiscard]] OutputOrders orders();
+  /// Takes what was asked for by a contact, past everything that may wait.
+  void watch_contacts(const std::stop_token& stop);
+  void add_contact_alarms(Time at);
   void start_guardian(Time at);
   void tell_guardian(Time at);
   void look_after_guardian(Time at);
@@ -133,8 +145,11 @@ class Daemon {
   DaemonOptions options_;
   ShowController controller_;
   ProgramMailbox programs_;
+  Claims folder_claim_, output_claims_;
   BlackoutSwitch blackout_;
   std::optional<LastLookMemory> guarded_;  ///< shared with the guardian
+  std::counting_semaphore<> contact_pressed_{0};
+  std::vector<std::optional<Time>> contact_unknown_since_;  ///< by bus
   std::vector<std::unique_ptr<BusThread>> buses_;
   std::unique_ptr<HttpApi> http_;
   Journal journal_;
@@ -172,6 +187,8 @@ class Daemon {
   std::mutex model_mutex_;  // guards the two below
   std::vector<Joints> model_joints_;
   LightModel model_;
+
+  std::jthread drawing_, contacts_;  ///< last: they use what stands above
 };
 
 }  // namespace luxrig

@@ -145,7 +145,9 @@ struct HttpApi::State {
     });
     server.Get("/api/events", [this](const httplib::Request&, httplib::Response& response) { stream(response); });
     server.Get("/api/room", [this](const httplib::Request&, httplib::Response& response) {
-      response.set_content(handlers.room_json(), "application/json");
+      const std::string room = handlers.room_json();
+      if (room.empty()) return refuse(response, 503, "the room is being drawn: ask again in a second");
+      response.set_content(room, "application/json");
     });
     server.Get("/api/room.png", [this](const httplib::Request&, httplib::Response& response) {
       const std::string png = handlers.room_png();
