@@ -22,7 +22,7 @@ std::vector<Problem> check_contact(const Rig& rig, const Bus& bus, std::span<con
   if (unit < first_unit || unit > last_unit)
     problems.push_back(problem_at(rig, bus, kContactUnitOption.key, fmt::format("no unit has the number {}", unit),
                                   fmt::format("give one from {} to {}", first_unit, last_unit)));
-  const bool without = integer_option(bus, docs, kContactInputOption.key) < 0;
+  const bool without = !bus.options.contains(std::string(kContactInputOption.key));
   for (const OptionDoc& of_it : {kContactUnitOption, kContactWhenOption})
     if (without && bus.options.contains(std::string(of_it.key)))
       problems.push_back(problem_at(rig, bus, of_it.key, fmt::format("{} says nothing without blackout_input", of_it.key),

@@ -20,8 +20,8 @@ constexpr Duration kSafeLookEvery = std::chrono::seconds(1), kGuardianLook = std
 constexpr int kMostDoublings = 6;
 constexpr auto kCommandBound = std::chrono::seconds(2);
 constexpr Duration kDarkWithin = std::chrono::seconds(1);
-/// A guardian of a daemon that has just ended in order may still be there for a moment.
-constexpr Duration kClaimWait = std::chrono::seconds(1);
+/// A daemon that has just been killed, or the guardian of one that ended in order, is there for a moment yet.
+constexpr Duration kClaimWait = std::chrono::seconds(2);
 
 std::filesystem::path web_folder() { return shared_folder() / "web"; }
 
@@ -44,7 +44,7 @@ Result<int> Daemon::start() {
   if (options_.state_folder) {
     std::error_code error;
     const auto folder = std::filesystem::weakly_canonical(*options_.state_folder, error);
-    if (auto claimed = folder_claim_.take("state folder " + folder.string()); !claimed)
+    if (auto claimed = folder_claim_.take("state folder " + folder.string(), kClaimWait); !claimed)
       return refusal(fmt::format("{}: one Luxrig at a time; end that, or give --state another folder",
                                  claimed.error().detail));
   }
