@@ -66,7 +66,7 @@ class Daemon {
   /// The plan, the blackout, what rests and what is set by hand as it was when the last daemon stopped, taken up again.
   /// A plan that was solved from a rig file which has changed since is left: the caller has a newer one. One that a
   /// person applied is taken up all the same, within the limits of the rig as it is now, and an alarm says so.
-  [[nodiscard]] Resumed resume();
+  [[nodiscard]] Resumed resume(const Journal::Left& left);
 
   /// Applies a plan as if a client had sent it. of_rig: it was solved from this rig file, nobody has chosen it.
   [[nodiscard]] Checked<void> apply(const Plan& plan, bool of_rig = false);

@@ -174,9 +174,8 @@ Result<LightModel> Daemon::model_for(const Session& session, const std::vector<J
 
 // ---- what the last daemon left ----
 
-Resumed Daemon::resume() {
+Resumed Daemon::resume(const Journal::Left& left) {
   Resumed resumed;
-  const Journal::Left left = journal_.load();
   resumed.notes = left.complaints;
   if (!left.state) return resumed;
   const JournalState& saved = *left.state;

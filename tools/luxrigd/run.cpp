@@ -237,9 +237,10 @@ int run_rig(const RunArguments& arguments) {
   const bool goes_on = !arguments.plan && !arguments.once && !arguments.fresh && !arguments.pictures;
   std::optional<LightModel> model;
   std::optional<Plan> plan, hung;
+  Journal::Left left;
+  if (goes_on) left = Journal(options.state_folder).load();
   if (goes_on && options.state_folder) {
-    const auto left = Journal(options.state_folder).load().state;
-    auto kept = left && !left->plan_json.empty() ? kept_light(*options.state_folder, key, rig) : std::nullopt;
+    auto kept = left.state && !left.state->plan_json.empty() ? kept_light(*options.state_folder, key, rig) : std::nullopt;
     if (kept) {
       turn_heads(session->rig, kept->joints);
       model = std::move(kept->model);
@@ -326,7 +327,7 @@ int run_rig(const RunArguments& arguments) {
   bool resumed = false;
   if (goes_on) {
     // A damaged or outdated state must not keep the rig dark: what cannot be taken up is said, and the fresh plan goes.
-    const Resumed state = daemon.resume();
+    const Resumed state = daemon.resume(left);
     resumed = state.plan;
     if (resumed) say.say("resumed the plan that was in force (--fresh starts from the rig file)");
     for (const std::string& note : state.notes) say.say("warning  " + note);
