@@ -54,10 +54,13 @@ void BusThread::start() {
 }
 
 void BusThread::stop() {
-  if (!thread_.joinable()) return;
-  thread_.request_stop();
-  wake();
-  thread_.join();
+  if (thread_.joinable()) {
+    thread_.request_stop();
+    wake();
+    thread_.join();
+  }
+  if (active_) driver_->deactivate(now());
+  active_ = false;
 }
 
 void BusThread::wake() {
@@ -80,32 +83,18 @@ void BusThread::run(const std::stop_token& stop) {
   if (bounds_.write_period > Duration::zero() && bounds_.write_period < std::chrono::milliseconds(60)) {
     realtime_ = make_realtime(kOutputPriority);
   }
-  // A fault of activation is in the health report, and the driver goes on trying.
-  (void)driver_->activate(now());
   const Duration cycle =
       writes_ ? bounds_.write_period : std::max(bounds_.read_period, Duration(std::chrono::milliseconds(20)));
   Time next = now();
   Time last_start{};
-  Time next_read = next, next_health = next;
   bool in_turn = true;
   while (!stop.stop_requested()) {
     const Time at = now();
     if (writes_) {
       if (last_start != Time{} && in_turn) statistics_.record(at - last_start);
       last_start = at;
-      listen(at);
-      write(at);
-      if (orders_.guarded != nullptr) orders_.guarded->beat(LastLookMemory::Beat::output);
     }
-    if (driver_->lux_reader() != nullptr && at >= next_read) {
-      read(now());
-      next_read = std::max(next_read + bounds_.read_period, now());
-    }
-    if (has_contact_) look_at_contact(now());
-    if (at >= next_health) {
-      publish_health(now());
-      next_health = at + kHealthPeriod;
-    }
+    turn(at);
     if (in_turn) next += cycle;
     // After a stall go on from here: a burst of old frames helps nobody.
     if (const Time late = now(); late > next + cycle) next = late;
@@ -114,7 +103,29 @@ void BusThread::run(const std::stop_token& stop) {
     in_turn = now() >= next;  // else somebody has woken us
     if (in_turn) lateness_.record(due, now());
   }
-  driver_->deactivate(now());
+}
+
+void BusThread::turn(Time at) {
+  if (!active_) {
+    // A fault of activation is in the health report, and the driver goes on trying.
+    (void)driver_->activate(at);
+    active_ = true;
+    next_read_ = next_health_ = at;
+  }
+  if (writes_) {
+    listen(at);
+    write(at);
+    if (orders_.guarded != nullptr) orders_.guarded->beat(LastLookMemory::Beat::output);
+  }
+  if (driver_->lux_reader() != nullptr && at >= next_read_) {
+    read(now());
+    next_read_ = std::max(next_read_ + bounds_.read_period, now());
+  }
+  if (has_contact_) look_at_contact(now());
+  if (at >= next_health_) {
+    publish_health(now());
+    next_health_ = at + kHealthPeriod;
+  }
 }
 
 void BusThread::listen(Time at) {

@@ -37,6 +37,8 @@ class BusThread {
 
   void start();
   void stop();
+  /// What its thread does in its turn; called by whoever steps time instead of start().
+  void turn(Time at);
 
   /// The next frame goes out now instead of in its turn.
   void wake();
@@ -83,7 +85,8 @@ class BusThread {
   std::size_t first_desk_, desks_ = 0;
   CycleStatistics statistics_;
   Lateness lateness_;
-  bool writes_ = false;
+  bool writes_ = false, active_ = false;
+  Time next_read_{}, next_health_{};
   std::atomic<bool> realtime_{false};
   bool has_contact_ = false;
   std::atomic<Contact> contact_{Contact::unknown};

@@ -48,11 +48,15 @@ Result<int> Daemon::start() {
       return refusal(fmt::format("{}: one Luxrig at a time; end that, or give --state another folder",
                                  claimed.error().detail));
   }
+  const bool stepped = static_cast<bool>(options_.stepped_driver);
   // The page's port first: when it is taken, nothing has been opened yet.
-  http_ = std::make_unique<HttpApi>(handlers(), web_folder());
-  const auto port = http_->start(options_.http_port);
-  if (!port) return port;
-  lock_memory();
+  Result<int> port = 0;
+  if (!stepped) {
+    http_ = std::make_unique<HttpApi>(handlers(), web_folder());
+    port = http_->start(options_.http_port);
+    if (!port) return port;
+    lock_memory();
+  }
   if (options_.guarded && options_.state_folder) {
     auto memory = LastLookMemory::create(session_->rig.fixtures.size());
     if (!memory) return tl::unexpected(memory.error());
@@ -62,11 +66,7 @@ Result<int> Daemon::start() {
   first_session_ = session_;
   const Rig& rig = session_->rig;
   for (std::size_t b = 0; b < rig.buses.size(); ++b) {
-    const DriverEntry* entry = find_driver(rig.buses[b].driver);
-    std::optional<Redirect> redirect;
-    if (const auto it = options_.redirects.find(rig.buses[b].name); it != options_.redirects.end())
-      redirect = it->second;
-    auto driver = entry->make(rig, b, redirect);
+    auto driver = stepped ? options_.stepped_driver(rig, b) : make_driver(rig, b);
     const std::size_t first_desk = desks_;
     if (const LevelInput* input = driver->level_input()) {
       for (const DeskPart& part : input->parts()) {
@@ -84,6 +84,7 @@ Result<int> Daemon::start() {
       send_program();
     }
   }
+  if (stepped) return port;
   if (auto claimed = claim_outputs(); !claimed) return tl::unexpected(claimed.error());
   if (guarded_) start_guardian(now());
   for (const auto& bus : buses_) bus->start();
@@ -108,6 +109,12 @@ void Daemon::watch_contacts(const std::stop_token& stop) {
     if (stop.stop_requested()) return;
     (void)blackout(true);
   }
+}
+
+std::unique_ptr<Driver> Daemon::make_driver(const Rig& rig, std::size_t bus) const {
+  const auto it = options_.redirects.find(rig.buses[bus].name);
+  return find_driver(rig.buses[bus].driver)
+      ->make(rig, bus, it != options_.redirects.end() ? std::optional(it->second) : std::nullopt);
 }
 
 Result<void> Daemon::claim_outputs() {
@@ -214,11 +221,10 @@ std::future<void> Daemon::queue(std::function<void(Time)> run) {
   return commands_.back().done.get_future();
 }
 
-/// Runs something between two ticks, and waits until it was done. Called from the control thread itself (no other
-/// thread ticks then), it would wait for ever: there the queue is just filled.
+/// Runs something between two ticks, and waits until it was done.
 void Daemon::on_control_thread(std::function<void(Time)> run) {
-  const std::future<void> done = queue(std::move(run));
-  if (std::this_thread::get_id() != control_thread_) done.wait_for(kCommandBound);
+  if (std::this_thread::get_id() == control_thread_) return run(now());
+  queue(std::move(run)).wait_for(kCommandBound);
 }
 
 Result<void> Daemon::blackout(bool on) {
@@ -328,6 +334,7 @@ void Daemon::tick() {
   }
   devices_.clear();
   for (const auto& bus : buses_) {
+    if (options_.stepped_driver) bus->turn(at);
     for (const LuxReading& reading : bus->take_readings()) controller_.reading(at, reading);
     const auto frames = bus->desk_frames();
     for (std::size_t part = 0; part < frames.size(); ++part) {

@@ -44,6 +44,8 @@ struct DaemonOptions {
   std::optional<std::filesystem::path> state_folder;  ///< none: nothing is remembered
   bool guarded = false;  ///< a guardian takes the rig to its safe look when this process dies; needs a state folder
   int http_port = 9620;  ///< 0 = any
+  /// A test steps time (clock.h): no threads, no page; tick() is everybody's turn. Makes drivers, too.
+  std::function<std::unique_ptr<Driver>(const Rig&, std::size_t bus)> stepped_driver{};
   /// What a rig gives in the session's scene with heads that look elsewhere, for plans that turn them; called on
   /// whatever thread brings the plan. Empty: such plans are refused.
   std::function<Result<LightModel>(const Session&, const Rig&)> light_model{};
@@ -81,6 +83,8 @@ class Daemon {
   void tick();
   [[nodiscard]] const ShowStatus& status() const { return status_; }
   [[nodiscard]] const std::vector<Health>& devices() const { return devices_; }
+  /// What a client may ask.
+  [[nodiscard]] HttpHandlers handlers();
 
   void go_safe();
   /// Any thread. Past the control thread; returns when every lamp has been told and the disk has it. Fails, though it
@@ -129,13 +133,13 @@ class Daemon {
   [[nodiscard]] Result<void> claim_outputs();
   void draw_room_beside();
   [[nodiscard]] OutputOrders orders();
+  [[nodiscard]] std::unique_ptr<Driver> make_driver(const Rig& rig, std::size_t bus) const;
   /// Takes what was asked for by a contact, past everything that may wait.
   void watch_contacts(const std::stop_token& stop);
   void add_contact_alarms(Time at);
   void start_guardian(Time at);
   void tell_guardian(Time at);
   void look_after_guardian(Time at);
-  [[nodiscard]] HttpHandlers handlers();
   /// What becomes of a plan that cannot be saved.
   enum class Unsaved { is_refused, goes_on };
   [[nodiscard]] Checked<std::string> apply_json(const std::string& plan_json, bool of_rig, Unsaved unsaved);

@@ -153,7 +153,11 @@ Checked<std::string> Daemon::apply_json(const std::string& plan_json, bool of_ri
     }
     return {controller_.status(at).by_hand, at};
   });
-  if (applied && !applied->held.empty())
+  if (!applied)
+    return tl::unexpected(std::vector<Problem>{
+        {"plan", 0, 0, "the control loop has not come to it yet: the plan is saved, and in force when it does",
+         "look at luxrig status before you apply it again"}});
+  if (!applied->held.empty())
     note += (note.empty() ? "" : "\n") + lines_of(session->rig, applied->held, applied->at);
   return note;
 }
