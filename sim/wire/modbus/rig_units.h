@@ -77,6 +77,7 @@ class RigUnits final : public ModbusUnits {
   [[nodiscard]] double meter_count(const Number& number);
 
   EndpointParts parts_;
+  LampFaults lamp_faults_;
   std::vector<Number> numbers_;
   std::map<Address, Place> places_;
   std::map<int, Unit> units_;
