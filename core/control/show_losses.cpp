@@ -11,9 +11,6 @@ namespace {
 
 /// Of what a meter reads: less than this from lamps that may do anything, and it tells of the others.
 constexpr double kShareThatTells = 0.02;
-
-/// Since a lamp took its last level, drivers have known within this that it takes none.
-constexpr Duration kNoticedWithin = std::chrono::seconds(2);
 /// A meter that showed more than its point may have is trusted to watch over it again below this share of the limit.
 constexpr double kWellBelow = 0.95;
 
@@ -41,6 +38,19 @@ bool ShowController::State::any_lost() const {
 
 bool ShowController::State::too_much_lost() const {
   return rig.safe.scope == SafeScope::rest_stays ? health.all_lost() : health.light_lost();
+}
+
+bool ShowController::State::limits_bear_waiting(Time now) const {
+  if (!health.any_faulted()) return true;
+  std::vector<double> most = present_levels(now);
+  const std::vector<double> before = present_levels(now - kNoticedWithin);
+  for (std::size_t f = 0; f < most.size(); ++f)
+    most[f] = std::max({most[f], before[f], program.blackout ? 0.0 : program.to_level[f]});
+  for (std::size_t p = 0; p < rig.points.size(); ++p)
+    if (rig.points[p].max_lx &&
+        estimator.most_lux_at_point(p, most, now) > *rig.points[p].max_lx * (1 + kBreachSlack))
+      return false;
+  return true;
 }
 
 /// Nothing is told apart when the rig goes to its safe look as a whole.

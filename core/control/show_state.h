@@ -43,6 +43,13 @@ struct LostFixture {
 /// A device that comes and goes is not back; the drivers' own reports come several times in this while.
 inline constexpr Duration kHealthyFor = std::chrono::milliseconds(500);
 
+/// One late answer is no failure: a device that is reported as faulted is done without after this. What a limit may
+/// have meanwhile is looked at first (limits_bear_waiting).
+inline constexpr Duration kPatience = std::chrono::milliseconds(1200);
+/// Since a lamp took its last level, drivers have known within this, and the show after its patience, that it takes
+/// none.
+inline constexpr Duration kNoticedWithin = std::chrono::milliseconds(3200);
+
 /// Housings that blink, or have: each keeps its place among the desks.
 struct Identification {
   std::size_t desk = 0;
@@ -192,6 +199,8 @@ struct ShowController::State {
 
   // What fails alone (show_losses.cpp).
   void watch_losses(Time now);
+  /// No limit would be exceeded were any lamp stuck at the most that it has had lately, while the others go on.
+  [[nodiscard]] bool limits_bear_waiting(Time now) const;
   void tell_lost_lamps();
   void leave_out_lost(std::vector<double>& levels) const;
   [[nodiscard]] bool any_lost() const;

@@ -131,7 +131,7 @@ ShowStatus ShowController::State::status(Time now) const {
   program.joints_at(now, joints);
   for (std::size_t i = 0; i < rig.fixtures.size(); ++i) {
     status.fixtures.push_back({joints[i], level[i], drive_from_level(rig.fixtures[i].dimmer_curve, level[i]),
-                               program.to_level[i], !health.lamp_lost(i), estimator.gain(i),
+                               program.to_level[i], !health.lamp_silent(i), estimator.gain(i),
                                estimator.gain_standard_error(i)});
   }
   for (const Identification& one : identified) {

@@ -36,7 +36,7 @@ void ShowController::State::remember_levels(Time now) {
   std::vector<double> level(rig.fixtures.size());
   program.levels_at(now, level);
   for (std::size_t f = 0; f < level.size(); ++f)
-    if (!health.lamp_lost(f)) taken_level[f] = level[f];
+    if (!health.lamp_silent(f)) taken_level[f] = level[f];
 }
 
 std::vector<double> ShowController::State::levels_out(Time now) const {
@@ -46,7 +46,7 @@ std::vector<double> ShowController::State::levels_out(Time now) const {
     for (std::size_t i = 0; desk.silent && i < desk.fixtures.size(); ++i)
       if (desk.desk_has[i] != 0) level[desk.fixtures[i]] = desk.desk_level[i];
   for (std::size_t f = 0; f < level.size(); ++f)
-    if (health.lamp_lost(f)) level[f] = taken_level[f];
+    if (health.lamp_silent(f)) level[f] = taken_level[f];
   return level;
 }
 
@@ -54,13 +54,13 @@ std::vector<double> ShowController::State::levels_out(Time now) const {
 std::vector<double> ShowController::State::with_lost_lamps_at(std::span<const double> level, bool full) const {
   std::vector<double> out(level.begin(), level.end());
   for (std::size_t f = 0; f < out.size(); ++f)
-    if (health.lamp_lost(f)) out[f] = full ? program.max_level[f] : 0;
+    if (health.lamp_silent(f)) out[f] = full ? program.max_level[f] : 0;
   return out;
 }
 
 bool ShowController::State::any_lamp_lost() const {
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f)
-    if (health.lamp_lost(f)) return true;
+    if (health.lamp_silent(f)) return true;
   return false;
 }
 
@@ -127,7 +127,7 @@ void ShowController::State::judge_goal(std::size_t p, std::span<const double> le
   } else {
     const bool for_lost_lamps = 2 * in_doubt_for_lost_lamps_lx(p, level) > status.light.half_width_lx;
     for (std::size_t f = 0; for_lost_lamps && f < level.size() && settles.empty(); ++f)
-      if (health.lamp_lost(f))
+      if (health.lamp_silent(f))
         settles = fmt::format("fixture \"{}\" does not answer; put it right", rig.fixtures[f].name);
     if (settles.empty()) settles = "by the model; a luxmeter here would settle it";
   }
