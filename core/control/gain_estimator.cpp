@@ -20,7 +20,6 @@ using Eigen::VectorXd;
 constexpr double kLeastLocalSd = 0.02;    ///< even a rig that trusts its model fully does not trust it further
 constexpr double kDark_lx = 0.5;          ///< what a meter may show in the dark (offset, stray light)
 constexpr double kStuckChange = 0.05;     ///< a value that stays while the light changes by this share is stuck
-constexpr double kJump = 0.2;             ///< less than this share off what is expected is never called a jump
 constexpr double kFarthestStep = 4;       ///< of a level, as the logarithm of its ratio: 1 % to half
 constexpr double kSameLevels = 0.005;     ///< evidence at levels nearer than this share replaces the former
 constexpr std::size_t kMostEvidence = 6;  ///< per meter; older goes
@@ -337,6 +336,12 @@ void GainEstimator::set_points(std::span<const Point> points) {
     points_[i].weight = points[i].weight;
     points_[i].max_lx = points[i].max_lx;
   }
+}
+
+double GainEstimator::lux_per_level(std::size_t point, std::size_t fixture) const {
+  const Row row = row_of_point(point);
+  const auto j = static_cast<Index>(fixture);
+  return row.lux_per_level[j] * row.factor[j];
 }
 
 void GainEstimator::forget(std::size_t luxmeter) {

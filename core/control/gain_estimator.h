@@ -75,6 +75,10 @@ class GainEstimator {
   /// rig's sizes (asserted), or be empty.
   GainEstimator(const Rig& rig, const LightModel& model);
 
+  /// A reading that is off from what is expected by less than this share is never called a jump, whatever the cause: a
+  /// lamp that gives a meter less than this may burn out unseen.
+  static constexpr double kJump = 0.2;
+
   /// Would this reading be believed? `level`: per fixture, as it was (settled) when the reading was taken.
   [[nodiscard]] Judgement judge(const LuxReading& reading, std::span<const double> level) const;
 
@@ -107,6 +111,9 @@ class GainEstimator {
   /// What these fixtures (1: counts) would give to a meter at full level, over what it is predicted to read.
   [[nodiscard]] double share_at_meter(std::size_t luxmeter, std::span<const std::uint8_t> fixtures,
                                       std::span<const double> level) const;
+
+  /// What the fixture is believed to give to a point at full level.
+  [[nodiscard]] double lux_per_level(std::size_t point, std::size_t fixture) const;
 
   /// Drops what this meter taught (it is gone, or was exchanged).
   void forget(std::size_t luxmeter);

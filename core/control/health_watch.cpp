@@ -22,6 +22,8 @@ HealthWatch::HealthWatch(const Rig& rig)
   }
   lamp_lost_.assign(rig.fixtures.size(), false);
   lamp_silent_.assign(rig.fixtures.size(), false);
+  lamp_failing_.assign(rig.fixtures.size(), false);
+  lamp_bypassed_.assign(rig.fixtures.size(), false);
   motion_lost_.assign(rig.fixtures.size(), false);
   for (const Luxmeter& luxmeter : rig.luxmeters) {
     meters_.emplace_back();
@@ -72,7 +74,7 @@ void HealthWatch::judged(std::size_t luxmeter, Time now, const std::string& why)
 }
 
 bool HealthWatch::any_meter_lost() const {
-  return std::any_of(meters_.begin(), meters_.end(), [](const Meter& meter) { return meter.trust.lost(); });
+  return std::any_of(meters_.begin(), meters_.end(), [](const Meter& meter) { return meter.trust.lost() && !meter.bypassed; });
 }
 
 Alarm HealthWatch::alarm_of(const Health& health, const Known& known) const {
@@ -124,6 +126,7 @@ Alarm HealthWatch::alarm_of(const Health& health, const Known& known) const {
 void HealthWatch::warn_of(const Health& health) {
   const auto found = known_.find(health.device);
   if (found == known_.end() || found->second.role != Role::fixture) return;
+  lamp_failing_[found->second.index] = true;
   alarms_.push_back(
       {false, health.device,
        fmt::format("fixture \"{}\" {}: its light may not be what is asked; look at its lamp and its dimmer",
@@ -167,6 +170,7 @@ void HealthWatch::join_units() {
                               std::any_of(unit.meters.begin(), unit.meters.end(), same));
     };
     const auto first = std::find_if(alarms_.begin(), alarms_.end(), of_unit);
+    if (first == alarms_.end()) continue;  // all of it is bypassed
     std::string text = fmt::format("unit {} of bus \"{}\" does not answer ({}): ", number,
                                    bus < bus_names_.size() ? bus_names_[bus] : std::string(), detail);
     if (!unit.fixtures.empty())
@@ -196,7 +200,7 @@ void HealthWatch::step_meter(Time now, std::size_t luxmeter, bool faulted, Durat
   const bool missed = counted != counted_.end() && counted->second.missed;
   // Silence and what the model says of it have lasted for long enough when they are known.
   meter.trust.step(now, faulted || silent || implausible, missed, heard, silent || implausible ? Duration{} : patience);
-  if (faulted) return;  // the device or its bus has its own alarm
+  if (faulted || meter.bypassed) return;  // the device or its bus has its own alarm
   if (!silent && !implausible) {
     if (meter.trust.lost()) alarms_.push_back(alarm_of_doubted(meter.name, meter.trust));
     return;
@@ -223,6 +227,20 @@ Alarm HealthWatch::alarm_of_doubted(const std::string& device, const Trust& trus
                       "answered well for {:g} s; check its cable, its power and what else is on its line",
                       device, trust.falls(), to_seconds(trust.row())),
           trust.lost_since()};
+}
+
+void HealthWatch::set_bypassed(const std::vector<std::optional<Time>>& lamps,
+                               const std::vector<std::optional<Time>>& meters) {
+  for (std::size_t f = 0; f < lamps.size(); ++f) lamp_bypassed_[f] = lamps[f].has_value();
+  for (std::size_t i = 0; i < meters.size(); ++i) meters_[i].bypassed = meters[i].has_value();
+}
+
+/// Of a bus: no fixture of it is in use.
+bool HealthWatch::all_on_it_bypassed(const Known& bus) const {
+  if (bus.role != Role::light_bus && bus.role != Role::axes_bus) return false;
+  for (std::size_t f = 0; f < lamp_bypassed_.size(); ++f)
+    if ((bus_of_fixture_[f] == bus.index || motion_bus_of_fixture_[f] == bus.index) && !lamp_bypassed_[f]) return false;
+  return true;
 }
 
 /// Who is lost, by what is reported now and was before.
@@ -275,6 +293,7 @@ void HealthWatch::step(Time now, const Patience& patience) {
   all_lost_ = false;
   lamp_lost_.assign(bus_of_fixture_.size(), false);
   lamp_silent_.assign(bus_of_fixture_.size(), false);
+  lamp_failing_.assign(bus_of_fixture_.size(), false);
   motion_lost_.assign(bus_of_fixture_.size(), false);
   step_trusts(now, patience);
   std::vector<bool> meter_faulted(meters_.size(), false);
@@ -299,7 +318,9 @@ void HealthWatch::step(Time now, const Patience& patience) {
     if (known.role == Role::fixture) lamp_silent_[known.index] = device.faulted;
     if (!device.trust.lost()) continue;
     if (bus) bus_lost[known.index] = true;
-    if (known.role != Role::meter_bus) light_lost_ = true;
+    const bool of_lamp = known.role == Role::fixture || known.role == Role::axis;
+    if (of_lamp ? !lamp_bypassed_[known.index] : known.role != Role::meter_bus && !all_on_it_bypassed(known))
+      light_lost_ = true;
     if (known.role == Role::unknown) all_lost_ = true;
     if (known.role == Role::fixture) lamp_lost_[known.index] = true;
     if (known.role == Role::axis) motion_lost_[known.index] = true;
@@ -311,14 +332,19 @@ void HealthWatch::step(Time now, const Patience& patience) {
     if (lamp_lost_[f] || among(bus_faulted, bus_of_fixture_[f])) lamp_silent_[f] = true;
     if (among(bus_lost, motion_bus_of_fixture_[f])) motion_lost_[f] = true;
   }
-  if (!lamp_lost_.empty() && std::find(lamp_lost_.begin(), lamp_lost_.end(), false) == lamp_lost_.end())
-    all_lost_ = true;
+  std::size_t in_use = 0, in_use_lost = 0;
+  for (std::size_t f = 0; f < lamp_lost_.size(); ++f) {
+    in_use += !lamp_bypassed_[f];
+    in_use_lost += !lamp_bypassed_[f] && lamp_lost_[f];
+  }
+  if (in_use > 0 && in_use == in_use_lost) all_lost_ = true;
   // What hangs on a dead bus is lost with it; once is enough to say so.
   std::erase_if(alarms_, [&](const Alarm& alarm) {
     const auto found = known_.find(alarm.device);
     if (found == known_.end()) return false;
     const auto [role, index] = found->second;
     if (role != Role::luxmeter && role != Role::fixture && role != Role::axis) return false;
+    if (role == Role::luxmeter ? meters_[index].bypassed : lamp_bypassed_[index]) return true;
     const std::size_t bus = role == Role::luxmeter ? meters_[index].bus
                             : role == Role::axis   ? motion_bus_of_fixture_[index]
                                                    : bus_of_fixture_[index];

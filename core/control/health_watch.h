@@ -25,6 +25,10 @@ class HealthWatch {
 
   explicit HealthWatch(const Rig& rig);
 
+  /// Per fixture and luxmeter, something: a person knows of its failure. It raises no alarm, and no light is lost by it;
+  /// a luxmeter counts as lost, but not in any_meter_lost().
+  void set_bypassed(const std::vector<std::optional<Time>>& lamps, const std::vector<std::optional<Time>>& meters);
+
   /// The drivers' latest report; replaces the one before.
   void report(std::span<const Health> devices);
 
@@ -55,10 +59,14 @@ class HealthWatch {
   [[nodiscard]] bool lamp_lost(std::size_t fixture) const { return lamp_lost_[fixture]; }
   /// The same, or it is in doubt: reported as faulted, for less than its patience.
   [[nodiscard]] bool lamp_silent(std::size_t fixture) const { return lamp_silent_[fixture]; }
+  /// It obeys, and its device says that something is wrong with it: its lamp has burnt out, it is too hot.
+  [[nodiscard]] bool lamp_failing(std::size_t fixture) const { return lamp_failing_[fixture]; }
   /// What turns it does not hear or obey: its bus, or an axis.
   [[nodiscard]] bool motion_lost(std::size_t fixture) const { return motion_lost_[fixture]; }
   [[nodiscard]] bool any_meter_lost() const;
-  [[nodiscard]] bool meter_lost(std::size_t luxmeter) const { return meters_[luxmeter].trust.lost(); }
+  [[nodiscard]] bool meter_lost(std::size_t luxmeter) const {
+    return meters_[luxmeter].trust.lost() || meters_[luxmeter].bypassed;
+  }
   [[nodiscard]] bool meter_implausible(std::size_t luxmeter) const { return !meters_[luxmeter].implausible.empty(); }
   /// One for each cause, whatever hangs on it; a text says nothing that changes while it lasts. Those that carry light
   /// first.
@@ -77,6 +85,7 @@ class HealthWatch {
     std::string implausible;  ///< why; empty = believed
     Time implausible_since{};
     Trust trust;
+    bool bypassed = false;
   };
   enum class Role { light_bus, axes_bus, meter_bus, fixture, axis, luxmeter, unknown };
   struct Known {
@@ -90,6 +99,7 @@ class HealthWatch {
   void step_meter(Time now, std::size_t luxmeter, bool faulted, Duration patience);
   /// Of a device that answers again, but has failed too often to be relied on at once.
   [[nodiscard]] static Alarm alarm_of_doubted(const std::string& device, const Trust& trust);
+  [[nodiscard]] bool all_on_it_bypassed(const Known& bus) const;
   void step_trusts(Time now, const Patience& patience);
 
   const std::map<std::string, Known> known_;
@@ -106,7 +116,8 @@ class HealthWatch {
   std::map<std::string, Counted> counted_;  ///< by device
   std::vector<Health> report_;
   std::vector<Alarm> alarms_;
-  std::vector<bool> lamp_lost_, lamp_silent_, motion_lost_;  ///< per fixture
+  std::vector<bool> lamp_bypassed_;  ///< per fixture
+  std::vector<bool> lamp_lost_, lamp_silent_, lamp_failing_, motion_lost_;  ///< per fixture
   bool light_lost_ = false, all_lost_ = false;
   bool started_ = false;
   Time stepped_{};

@@ -79,6 +79,7 @@ struct ShowController::State {
   std::vector<GuardedHead> guarded;     ///< one for each of program.dims
   std::vector<Joints> model_joints;     ///< per fixture: where heads look in the estimator's model
   std::vector<std::uint8_t> parking;    ///< per fixture, 1: parks when it is dark; empty: none
+  std::vector<std::uint8_t> tells_of_lamp;  ///< per fixture, 1: its device would say that its lamp has burnt out
   std::vector<std::uint8_t> powerless;  ///< per fixture, 1: its lamp is lost, and starts as after a power cut
   bool power_came = false;              ///< light has been asked for once
 
@@ -140,6 +141,15 @@ struct ShowController::State {
   [[nodiscard]] std::vector<double> solved_around_hands(Time now, std::vector<double> levels);
   [[nodiscard]] std::vector<ByHand> by_hand() const;
   [[nodiscard]] std::string why_not(Time now, const ByHand& held) const;
+
+  // Bypassed (show_bypass.cpp).
+  std::vector<std::optional<Time>> bypassed_lamp, bypassed_meter;  ///< per fixture and luxmeter: since when
+  void bypass(Time now, std::span<const std::size_t> fixtures, std::span<const std::size_t> luxmeters, bool on);
+  [[nodiscard]] bool any_lamp_bypassed() const;
+  void close_bypassed(Time now);
+  void tell_bypassed(ShowStatus& status) const;
+  /// The most that a plan may ask of it; 0 of one that is parked.
+  [[nodiscard]] double most_of(std::size_t fixture) const;
 
   // A rig file read again (show_reload.cpp).
   void exchange_rig(Time now, const Rig& other, const LightModel& model, bool same_light);
@@ -229,6 +239,11 @@ struct ShowController::State {
                                            const Prediction& prediction) const;
   [[nodiscard]] std::vector<double> with_lost_lamps_at(std::span<const double> level, bool full) const;
   [[nodiscard]] bool any_lamp_lost() const;
+  /// Were its lamp out, that meter would show it.
+  [[nodiscard]] bool seen_by_a_meter(std::size_t fixture, std::span<const double> level) const;
+  /// A lamp without which the point would not be at its goal, and of which nobody knows whether it burns.
+  [[nodiscard]] std::optional<std::size_t> unseen_lamp_for(std::size_t point, std::span<const double> level,
+                                                           const LuxEstimate& light, double allowed_lx) const;
   /// What is believed to be out: of a desk that drives lamps itself, what it sends; of a lamp that does not answer, the
   /// last that it took.
   [[nodiscard]] std::vector<double> levels_out(Time now) const;

@@ -54,13 +54,16 @@ std::vector<double> ShowController::State::levels_out(Time now) const {
 std::vector<double> ShowController::State::with_lost_lamps_at(std::span<const double> level, bool full) const {
   std::vector<double> out(level.begin(), level.end());
   for (std::size_t f = 0; f < out.size(); ++f)
-    if (health.lamp_silent(f)) out[f] = full ? program.max_level[f] : 0;
+    if (health.lamp_silent(f))
+      out[f] = full ? most_of(f) : 0;
+    else if (!full && health.lamp_failing(f))  // it obeys, with a lamp that may be out
+      out[f] = 0;
   return out;
 }
 
 bool ShowController::State::any_lamp_lost() const {
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f)
-    if (health.lamp_silent(f)) return true;
+    if (health.lamp_silent(f) || health.lamp_failing(f)) return true;
   return false;
 }
 
@@ -69,6 +72,27 @@ double ShowController::State::in_doubt_for_lost_lamps_lx(std::size_t point, std:
   const double lux = estimator.at_point(point, level).lux;
   return std::max(lux - estimator.at_point(point, with_lost_lamps_at(level, false)).lux,
                   estimator.at_point(point, with_lost_lamps_at(level, true)).lux - lux);
+}
+
+bool ShowController::State::seen_by_a_meter(std::size_t fixture, std::span<const double> level) const {
+  std::vector<std::uint8_t> chosen(rig.fixtures.size(), 0);
+  chosen[fixture] = 1;
+  for (std::size_t i = 0; i < rig.luxmeters.size(); ++i)
+    if (measured[i] && !health.meter_lost(i) &&
+        level[fixture] * estimator.share_at_meter(i, chosen, level) >= GainEstimator::kJump)
+      return true;
+  return false;
+}
+
+std::optional<std::size_t> ShowController::State::unseen_lamp_for(std::size_t point, std::span<const double> level,
+                                                                  const LuxEstimate& light, double allowed_lx) const {
+  for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
+    if (level[f] <= 0 || tells_of_lamp[f] != 0) continue;
+    const LuxEstimate without{light.lux - level[f] * estimator.lux_per_level(point, f), light.half_width_lx};
+    if (verdict_of(without, *rig.points[point].goal_lx, allowed_lx) != Verdict::met && !seen_by_a_meter(f, level))
+      return f;
+  }
+  return std::nullopt;
 }
 
 LuxEstimate ShowController::State::light_by_model(std::size_t point, std::span<const double> level,
@@ -116,9 +140,17 @@ void ShowController::State::judge_goal(std::size_t p, std::span<const double> le
   // A meter that stands there and contradicts the model: nobody knows which of them is right.
   if (const auto meter = meter_at(p); meter && health.meter_implausible(*meter) && status.verdict == Verdict::met)
     status.verdict = Verdict::unknown;
+  std::optional<std::size_t> unseen;
+  if (!status.measured_lx && status.verdict == Verdict::met) unseen = unseen_lamp_for(p, level, status.light, allowed_lx);
+  if (unseen) status.verdict = Verdict::unknown;
   const std::string state = why_not_the_plan(phase, program.blackout);
   std::string settles;
-  if (const auto meter = meter_at(p); status.measured_lx) {
+  if (unseen) {
+    settles = fmt::format("nobody sees whether fixture \"{}\" burns; a luxmeter in its light would settle it",
+                          rig.fixtures[*unseen].name);
+  } else if (const auto meter = meter_at(p); meter && bypassed_meter[*meter]) {
+    settles = fmt::format("luxmeter \"{}\" is bypassed; put it right", rig.luxmeters[*meter].name);
+  } else if (status.measured_lx) {
     settles = fmt::format(
         "luxmeter \"{}\" is good to ± {:.3g} %; one that is better would settle it, or a wider goal_tolerance",
         rig.luxmeters[*meter].name, 100 * rig.luxmeters[*meter].tolerance);
@@ -127,8 +159,9 @@ void ShowController::State::judge_goal(std::size_t p, std::span<const double> le
   } else {
     const bool for_lost_lamps = 2 * in_doubt_for_lost_lamps_lx(p, level) > status.light.half_width_lx;
     for (std::size_t f = 0; for_lost_lamps && f < level.size() && settles.empty(); ++f)
-      if (health.lamp_silent(f))
-        settles = fmt::format("fixture \"{}\" does not answer; put it right", rig.fixtures[f].name);
+      if (health.lamp_silent(f) || health.lamp_failing(f))
+        settles = fmt::format("fixture \"{}\" {}; put it right", rig.fixtures[f].name,
+                              health.lamp_silent(f) ? "does not answer" : "says that something is wrong with it");
     if (settles.empty()) settles = "by the model; a luxmeter here would settle it";
   }
   status.reason = reason_of(*status.verdict, status.light, *status.goal_lx, allowed_lx,

@@ -133,5 +133,129 @@ TEST(ALyingMeter, IsFoundWithinTwoSecondsAllTheSame) {
   EXPECT_LE(longest_s, 2.0);
 }
 
+const Alarm* notice_of(const std::vector<Alarm>& alarms, const std::string& device) {
+  for (const Alarm& alarm : alarms)
+    if (alarm.device == device && !alarm.severe && alarm.text.find("bypassed") != std::string::npos) return &alarm;
+  return nullptr;
+}
+
+TEST(ABypass, OfALyingMeterEndsTheSafeLookAndSaysWhatNobodyWatches) {
+  ClosedLoop loop(all_to_safe(51), seeded(51));
+  loop.apply();
+  ASSERT_TRUE(loop.run_until(Phase::holding, 40)) << loop.describe();
+  loop.run(3);
+  loop.fault("meter-2", sim::FaultKind::lying, true, 3.0);
+  ASSERT_TRUE(loop.run_until(Phase::safe, 20)) << loop.describe();
+  const std::size_t meters[] = {1};
+  loop.show.bypass(loop.now, {}, meters, true);
+  ASSERT_TRUE(loop.run_until(Phase::holding, 40)) << loop.describe();
+  loop.run(5);
+  const ShowStatus status = loop.status();
+  ASSERT_EQ(status.bypassed.size(), 1u);
+  EXPECT_TRUE(status.bypassed[0].luxmeter);
+  EXPECT_NE(status.bypassed[0].risk.find("the limit at work-2 is then watched by nobody: it is kept by the model alone"),
+            std::string::npos)
+      << status.bypassed[0].risk;
+  ASSERT_NE(notice_of(status.alarms, "meter-2"), nullptr) << loop.describe();
+  EXPECT_EQ(status.alarms.size(), 1u) << loop.describe();
+  EXPECT_FALSE(status.points[1].measured_lx) << "it is not read";
+  EXPECT_EQ(status.points[1].verdict, Verdict::unknown) << status.points[1].reason;
+  EXPECT_TRUE(status.points[0].met()) << "the others are measured on";
+  EXPECT_LE(loop.worst_limit_share(), 1) << loop.describe();
+  EXPECT_LE(loop.largest_step, kLargestStep);
+
+  loop.fault("meter-2", sim::FaultKind::lying, false);
+  loop.show.bypass(loop.now, {}, meters, false);
+  ASSERT_TRUE(loop.run_until([&] { return loop.status().points[1].met(); }, 40)) << loop.describe();
+  EXPECT_TRUE(loop.status().bypassed.empty());
+  EXPECT_TRUE(loop.status().alarms.empty()) << loop.describe();
+  EXPECT_LE(loop.worst_limit_share(), 1) << loop.describe();
+}
+
+TEST(ABypass, OfADeadDimmerEndsTheSafeLookAndTheRestIsSolvedWithoutIt) {
+  ClosedLoop loop(all_to_safe(52), seeded(52));
+  loop.apply();
+  ASSERT_TRUE(loop.run_until(Phase::holding, 40)) << loop.describe();
+  const double before = loop.levels()[9];
+  loop.fault("spot-10", sim::FaultKind::unpowered, true);
+  ASSERT_TRUE(loop.run_until(Phase::safe, 20)) << loop.describe();
+  const std::size_t lamps[] = {9};
+  loop.show.bypass(loop.now, lamps, {}, true);
+  ASSERT_TRUE(loop.run_until(Phase::holding, 40)) << loop.describe();
+  EXPECT_EQ(loop.levels()[9], 0);
+  EXPECT_GT(loop.levels()[0], 0.15) << "the others have their light again";
+  ASSERT_NE(notice_of(loop.status().alarms, "spot-10"), nullptr) << loop.describe();
+  EXPECT_EQ(loop.status().alarms.size(), 1u) << loop.describe();
+  // A new plan does not light it either, and what it was to have is not forgotten.
+  loop.apply();
+  loop.run(25);
+  EXPECT_EQ(loop.levels()[9], 0);
+  EXPECT_EQ(loop.phase(), Phase::holding) << loop.describe();
+  loop.fault("spot-10", sim::FaultKind::unpowered, false);
+  loop.run(2);
+  loop.show.bypass(loop.now, lamps, {}, false);
+  ASSERT_TRUE(loop.run_until([&] { return loop.phase() == Phase::holding && loop.levels()[9] > 0.5 * before; }, 40))
+      << loop.describe();
+  loop.run(15);
+  EXPECT_NEAR(loop.levels()[9], before, 0.25 * before) << loop.describe();
+  EXPECT_TRUE(loop.status().alarms.empty()) << loop.describe();
+  EXPECT_LE(loop.worst_limit_share(), 1) << loop.describe();
+  EXPECT_LE(loop.largest_step, kLargestStep);
+}
+
+TEST(ALampThatNoMeterSees, IsNotTakenAtItsWord) {
+  int met_by_unseen = 0, met = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    Hall hall = make_hall(seed);
+    hall.rig.control.goal_tolerance = 0.3;
+    ClosedLoop loop(hall, seeded(seed));
+    loop.apply();
+    ASSERT_TRUE(loop.run_until(Phase::holding, 40)) << loop.describe();
+    loop.run(3);
+    // spot-7 has no meter below it, and DMX gives no answer.
+    loop.fault("spot-7", sim::FaultKind::lamp_failure, true);
+    loop.run(10);
+    const ShowStatus status = loop.status();
+    const std::vector<sim::PointTruth> truth = loop.devices.world().points();
+    for (std::size_t p = 6; p < status.points.size(); ++p) {
+      const PointStatus& point = status.points[p];
+      const double share = loop.hall.model.point_lux_per_level(static_cast<Eigen::Index>(p), 6) * loop.levels()[6] /
+                           *point.goal_lx;
+      if (!point.met()) continue;
+      ++met;
+      if (share > 0.6) {
+        ++met_by_unseen;
+        ADD_FAILURE() << "seed " << seed << ", " << hall.rig.points[p].name << ": " << truth[p].lux << " of "
+                      << *point.goal_lx << " lx, said to be met";
+      }
+    }
+  }
+  EXPECT_EQ(met_by_unseen, 0);
+  EXPECT_GT(met, 0) << "what meters see is still claimed";
+}
+
+TEST(ALampWhoseDeviceSaysThatItHasBurntOut, LeavesItsPointsUnknownUntilItIsMended) {
+  ClosedLoop loop(make_hall(53), seeded(53));
+  loop.hall.rig.control.goal_tolerance = 0.3;
+  loop.apply();
+  ASSERT_TRUE(loop.run_until(Phase::holding, 40)) << loop.describe();
+  std::size_t place = 6;
+  for (std::size_t p = 6; p < 36; ++p)
+    if (loop.hall.model.point_lux_per_level(static_cast<Eigen::Index>(p), 9) >
+        loop.hall.model.point_lux_per_level(static_cast<Eigen::Index>(place), 9))
+      place = p;
+  const double known_before = loop.status().points[place].light.half_width_lx;
+  Health says;
+  says.device = "spot-10";
+  says.life = Life::active;
+  says.detail = "reports lamp-failure";
+  loop.show.health(loop.now, {&says, 1});
+  loop.show.step(loop.now + std::chrono::milliseconds(1));
+  const PointStatus point = loop.show.status(loop.now).points[place];
+  EXPECT_EQ(point.verdict, Verdict::unknown) << point.reason;
+  EXPECT_GT(point.light.half_width_lx, 2 * known_before);
+  EXPECT_NE(point.reason.find("spot-10"), std::string::npos) << point.reason;
+}
+
 }  // namespace
 }  // namespace luxrig::scenarios
