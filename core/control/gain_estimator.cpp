@@ -18,9 +18,7 @@ using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
 constexpr double kLeastLocalSd = 0.02;    ///< even a rig that trusts its model fully does not trust it further
-constexpr double kDark_lx = 0.5;          ///< what a meter may show in the dark (offset, stray light)
 constexpr double kStuckChange = 0.05;     ///< a value that stays while the light changes by this share is stuck
-constexpr double kFarthestStep = 4;       ///< of a level, as the logarithm of its ratio: 1 % to half
 constexpr double kSameLevels = 0.005;     ///< evidence at levels nearer than this share replaces the former
 constexpr std::size_t kMostEvidence = 6;  ///< per meter; older goes
 

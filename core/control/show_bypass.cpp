@@ -38,6 +38,7 @@ void ShowController::State::bypass(Time now, std::span<const std::size_t> fixtur
     // What it taught may be as wrong as what it says; what it taught before it failed, nobody can tell apart.
     estimator.forget(m);
     measured[m].reset();
+    drifts[m] = Drift{};
     believed[m].reset();
     heard[m].reset();
     health.judged(m, now, "");

@@ -77,6 +77,7 @@ ShowController::State::State(const Rig& rig_in, const LightModel& model)
       hand_goal(rig.points.size()),
       rig_points(rig.points),
       points_as_planned(rig.points),
+      drifts(rig.luxmeters.size()),
       bypassed_lamp(rig.fixtures.size()),
       bypassed_meter(rig.luxmeters.size()) {
   const std::vector<double> dark(rig.fixtures.size(), 0.0);
@@ -198,6 +199,7 @@ void ShowController::State::take_look(Time now) {
   if (other_light) {
     // Gains would still hold; what is wrong locally would not, and telling them apart takes readings.
     estimator = GainEstimator(rig, awaited->model);
+    drifts.assign(rig.luxmeters.size(), {});
     std::fill(measured.begin(), measured.end(), std::nullopt);
     model_joints = awaited->joints;
   }
@@ -372,6 +374,7 @@ void ShowController::apply(Time now, std::span<const double> levels, Look look) 
   std::vector<double> wanted = state.wanted_levels(levels);
   state.asked_safe = false;
   state.afresh = true;
+  state.forget_drift();
   state.first_turn(now, look.joints);
   state.take_levels_of_plan(now, wanted, look);
   state.awaited = std::move(look);

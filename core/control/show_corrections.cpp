@@ -47,6 +47,7 @@ void ShowController::State::take_sample(Time now) {
     }
     measured[judgement.luxmeter] = *samples.sample(judgement.luxmeter);
   }
+  watch_scale(now);
   samples.next();
   sampled_at = now;
   bool all_believed = true;

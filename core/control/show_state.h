@@ -142,6 +142,35 @@ struct ShowController::State {
   [[nodiscard]] std::vector<ByHand> by_hand() const;
   [[nodiscard]] std::string why_not(Time now, const ByHand& held) const;
 
+  // All meters against the model, and each against what it read before (show_scale.cpp).
+  /// A meter's reading over what the model states, when it was first believed and now, as logarithms.
+  struct Drift {
+    bool anchored = false;
+    double log_ratio = 0;
+    std::vector<double> level;  ///< per fixture, then
+    Time since{};
+    double log_change = 0;
+    int seen = 0;  ///< samples in a row that are farther off than anything explains
+    Time known_since{};
+  };
+  struct ScaleDoubt {
+    double log_share = 0;  ///< below 0: meters read less than they would
+    std::string reason;
+  };
+  static constexpr double kDarkForDrift_lx = 2;  ///< below, a meter's offset counts
+  std::optional<double> off_together;            ///< logarithm of all readings over the model, where it is surely not 0
+  Time off_together_since{};
+  std::vector<Drift> drifts;  ///< per luxmeter
+  void watch_scale(Time now);
+  [[nodiscard]] bool drifts_away(std::size_t luxmeter) const;
+  [[nodiscard]] std::optional<double> drift_together() const;
+  [[nodiscard]] ScaleDoubt scale_doubt_of(std::size_t point) const;
+  [[nodiscard]] std::string off_together_text() const;
+  [[nodiscard]] std::string drift_together_text(double log_share) const;
+  [[nodiscard]] std::string drift_text(std::size_t luxmeter) const;
+  void tell_scale(ShowStatus& status) const;
+  void forget_drift();
+
   // Bypassed (show_bypass.cpp).
   std::vector<std::optional<Time>> bypassed_lamp, bypassed_meter;  ///< per fixture and luxmeter: since when
   void bypass(Time now, std::span<const std::size_t> fixtures, std::span<const std::size_t> luxmeters, bool on);

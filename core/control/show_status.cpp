@@ -168,6 +168,7 @@ ShowStatus ShowController::State::status(Time now) const {
   for (ByHand& held : status.by_hand) held.why = why_not(now, held);
   tell_losses(status);
   tell_bypassed(status);
+  tell_scale(status);
   tell_zones(status);
   for (std::size_t d = 0; d < desks.size(); ++d) {
     if (desk_names[d].empty()) continue;

@@ -125,6 +125,9 @@ PointStatus ShowController::State::point_status(std::size_t p, std::span<const d
   } else {
     status.light = light_by_model(p, level, prediction);
   }
+  // Nobody knows which of them is right: the light may be so much more or less.
+  const ScaleDoubt doubt = scale_doubt_of(p);
+  status.light.half_width_lx += status.light.lux * (std::exp(std::abs(doubt.log_share)) - 1);
   judge_goal(p, level, status);
   judge_limit(p, level, now, status);
   return status;
@@ -145,7 +148,9 @@ void ShowController::State::judge_goal(std::size_t p, std::span<const double> le
   if (unseen) status.verdict = Verdict::unknown;
   const std::string state = why_not_the_plan(phase, program.blackout);
   std::string settles;
-  if (unseen) {
+  if (const ScaleDoubt doubt = scale_doubt_of(p); !doubt.reason.empty()) {
+    settles = doubt.reason;
+  } else if (unseen) {
     settles = fmt::format("nobody sees whether fixture \"{}\" burns; a luxmeter in its light would settle it",
                           rig.fixtures[*unseen].name);
   } else if (const auto meter = meter_at(p); meter && bypassed_meter[*meter]) {
@@ -197,6 +202,11 @@ void ShowController::State::judge_limit(std::size_t p, std::span<const double> l
                fmt::format("with its luxmeter's tolerance it may have {:.1f} lx, the limit is {:g} lx; look for light "
                            "that is not the rig's",
                            breach->most_lx, max_lx));
+  if (const ScaleDoubt doubt = scale_doubt_of(p);
+      status.measured_lx && doubt.log_share < 0 && *status.measured_lx * std::exp(-doubt.log_share) > max_lx)
+    return say(LimitVerdict::unknown, fmt::format("it may have {:.1f} lx, the limit is {:g} lx: {}",
+                                                  *status.measured_lx * std::exp(-doubt.log_share), max_lx,
+                                                  doubt.reason));
   if (status.measured_lx) return say(LimitVerdict::kept, "");
   const bool driven_by_desk =
       std::any_of(program.desks.begin(), program.desks.end(), [](const DeskBlend& desk) { return desk.silent; });

@@ -257,5 +257,78 @@ TEST(ALampWhoseDeviceSaysThatItHasBurntOut, LeavesItsPointsUnknownUntilItIsMende
   EXPECT_NE(point.reason.find("spot-10"), std::string::npos) << point.reason;
 }
 
+bool says(const ClosedLoop& loop, const char* text) {
+  for (const Alarm& alarm : loop.status().alarms)
+    if (!alarm.severe && alarm.text.find(text) != std::string::npos) return true;
+  return false;
+}
+
+TEST(AllMetersTogether, OffByAQuarterFromTheStartAreNotBelievedWithoutAWord) {
+  int said = 0, met = 0;
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    ClosedLoop loop(make_hall(seed), seeded(seed));
+    loop.corrupt = [](LuxReading& reading) { reading.lux *= 0.75; };
+    loop.apply();
+    ASSERT_TRUE(loop.run_until(Phase::holding, 40)) << loop.describe();
+    loop.run(3);
+    const bool is_said = says(loop, "less than the model says: either the photometry, the reflectances");
+    said += is_said;
+    const ShowStatus status = loop.status();
+    for (std::size_t p = 0; p < 6; ++p) met += is_said && status.points[p].met();
+    if (is_said) {
+      EXPECT_EQ(status.points[4].verdict, Verdict::unknown);
+      EXPECT_NE(status.points[4].reason.find("compare one with a reference meter"), std::string::npos)
+          << status.points[4].reason;
+    }
+    EXPECT_LE(loop.worst_limit_share(), 1 / 0.75) << "limits rest on meters, within what the model allows";
+  }
+  std::printf("meters × 0.75 from the start: said in %d of 30 halls\n", said);
+  EXPECT_GE(said, 27);
+  EXPECT_EQ(met, 0);
+}
+
+TEST(AllMetersTogether, AreNotDoubtedInHonestHalls) {
+  int off = 0, drift = 0;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    ClosedLoop loop(make_hall(seed), seeded(seed));
+    loop.apply();
+    ASSERT_TRUE(loop.run_until(Phase::holding, 40)) << loop.describe();
+    loop.run(10);
+    loop.show.apply(loop.now, scaled(loop.hall.plan, seed % 2 == 0 ? 0.1 : 0.5));
+    loop.run(25);
+    off += says(loop, "than the model says");
+    drift += says(loop, "than before at the same levels");
+  }
+  std::printf("honest halls: said to be off together in %d of 100, to drift in %d of 100\n", off, drift);
+  EXPECT_LE(off, 2);
+  EXPECT_EQ(drift, 0);
+}
+
+TEST(AMeterThatDrifts, IsSaidToAndItsPointIsUnknown) {
+  for (const double per_s : {0.003, -0.003}) {
+    for (const bool all : {true, false}) {
+      int said = 0;
+      for (std::uint64_t seed = 61; seed <= 70; ++seed) {
+        ClosedLoop loop(make_hall(seed), seeded(seed));
+        loop.apply();
+        ASSERT_TRUE(loop.run_until(Phase::holding, 40)) << loop.describe();
+        loop.run(3);
+        const double begin_s = loop.seconds();
+        loop.corrupt = [&](LuxReading& reading) {
+          if (all || reading.luxmeter == 4)
+            reading.lux *= 1 + per_s * std::clamp(to_seconds(reading.taken - Time{}) - begin_s, 0.0, 75.0);
+        };
+        loop.run(90);
+        const char* text = all ? "most meters read" : "luxmeter \"meter-5\" reads";
+        const bool is_said = says(loop, text) || accused(loop);
+        said += is_said;
+        EXPECT_FALSE(loop.status().points[4].met()) << "seed " << seed << " " << loop.describe();
+        EXPECT_NE(loop.status().points[4].verdict, Verdict::missed) << loop.describe();
+      }
+      EXPECT_EQ(said, 10) << (all ? "all" : "one") << " by " << per_s << " a second";
+    }
+  }
+}
+
 }  // namespace
 }  // namespace luxrig::scenarios
