@@ -66,7 +66,7 @@ std::optional<GainEstimator::CommonScale> GainEstimator::common_scale(std::span<
   const double shared = prior_gain_sd_ * prior_gain_sd_ * mean_share.squaredNorm();
   const double count = static_cast<double>(meters);
   // Of the mean; a median of normal errors is known π/2 times worse.
-  const double variance = EIGEN_PI / 2 * (alone.head(meters).sum() / (count * count) + shared);
+  const double variance = 0.5 * static_cast<double>(EIGEN_PI) * (alone.head(meters).sum() / (count * count) + shared);
   std::sort(log_ratio.begin(), log_ratio.end());
   const std::size_t middle = log_ratio.size() / 2;
   const double median = log_ratio.size() % 2 ? log_ratio[middle] : 0.5 * (log_ratio[middle - 1] + log_ratio[middle]);

@@ -274,7 +274,9 @@ void ShowController::State::fade_to_safe(Time now) {
 }
 
 void ShowController::State::look_at_failures(Time now) {
-  health.step(now, {limits_bear_waiting(now) ? kPatience : Duration{}, kPatience});
+  // Where a loss is a power cut, one that is over by then would let all its lamps come on at once.
+  const bool waits = !rig.startup.after_loss && limits_bear_waiting(now);
+  health.step(now, {waits ? kPatience : Duration{}, kPatience});
   const bool was_failing = failing;
   failing = too_much_lost() || (rig.safe.on_meter_loss && health.any_meter_lost());
   if (was_failing && !failing) healthy_since = now;

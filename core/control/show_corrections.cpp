@@ -115,7 +115,9 @@ void ShowController::State::watch_drift(Time now) {
 void ShowController::State::doubt_the_past(Time now) {
   if (!afresh || sampled_at != now) return;
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
-    if (health.meter_implausible(i) && sample_changed[i]) estimator.forget(i);
+    if (!health.meter_implausible(i) || !sample_changed[i]) continue;
+    estimator.forget(i);
+    drifts[i] = Drift{};
   }
 }
 

@@ -26,7 +26,7 @@ class Trust {
       bad_ = true;
       good_since_ = now;
     }
-    if (!failing && answered) bad_ = false;
+    if (!failing && (answered || failing_)) bad_ = false;  // what is no longer reported has answered
     if (!failing) {
       failing_ = false;
       if (lost_ && !bad_ && now - good_since_ >= row()) lost_ = false;

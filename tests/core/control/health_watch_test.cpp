@@ -183,7 +183,9 @@ TEST(HealthWatch, WhatFailsAgainAndAgainIsGoodOnlyAfterAGrowingRowOfGoodAnswers)
     const double row_s = t - well_s;
     EXPECT_GT(row_s, failure < 5 ? row_before_s * 1.4 : 9.0) << failure;
     EXPECT_LT(row_s, 11);
-    if (failure == 0) EXPECT_LT(row_s, 0.3) << "a clean failure is over with the first answer";
+    if (failure == 0) {
+      EXPECT_LT(row_s, 0.3) << "a clean failure is over with the first answer";
+    }
     row_before_s = row_s;
   }
 }
