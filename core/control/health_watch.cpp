@@ -77,6 +77,18 @@ bool HealthWatch::any_meter_lost() const {
   return std::any_of(meters_.begin(), meters_.end(), [](const Meter& meter) { return meter.trust.lost() && !meter.bypassed; });
 }
 
+HealthWatch::Known HealthWatch::known(const std::string& device) const {
+  if (const auto found = known_.find(device); found != known_.end()) return found->second;
+  for (auto colon = device.find(": "); colon != std::string::npos; colon = device.find(": ", colon + 1)) {
+    const auto found = known_.find(device.substr(0, colon));
+    if (found == known_.end()) continue;
+    const Role role = found->second.role;
+    if (role == Role::light_bus || role == Role::axes_bus || role == Role::meter_bus)
+      return {Role::bus_part, found->second.index};
+  }
+  return {};
+}
+
 Alarm HealthWatch::alarm_of(const Health& health, const Known& known) const {
   Alarm alarm{true, health.device, {}, health.since};
   const std::string detail = health.detail.empty() ? "no cause given" : health.detail;
@@ -103,6 +115,12 @@ Alarm HealthWatch::alarm_of(const Health& health, const Known& known) const {
       alarm.text = fmt::format(
           "bus \"{}\" is gone ({}): its luxmeters are not heard; check its cable, its power and "
           "its address",
+          health.device, detail);
+      break;
+    case Role::bus_part:
+      alarm.text = fmt::format(
+          "\"{}\" is gone ({}): fixtures that hang on it cannot be controlled and do what they do without data; check "
+          "its power and its cable",
           health.device, detail);
       break;
     case Role::fixture:
@@ -235,11 +253,10 @@ void HealthWatch::set_bypassed(const std::vector<std::optional<Time>>& lamps,
   for (std::size_t i = 0; i < meters.size(); ++i) meters_[i].bypassed = meters[i].has_value();
 }
 
-/// Of a bus: no fixture of it is in use.
-bool HealthWatch::all_on_it_bypassed(const Known& bus) const {
-  if (bus.role != Role::light_bus && bus.role != Role::axes_bus) return false;
+/// No fixture of the bus is in use.
+bool HealthWatch::all_bypassed_on(std::size_t bus) const {
   for (std::size_t f = 0; f < lamp_bypassed_.size(); ++f)
-    if ((bus_of_fixture_[f] == bus.index || motion_bus_of_fixture_[f] == bus.index) && !lamp_bypassed_[f]) return false;
+    if ((bus_of_fixture_[f] == bus || motion_bus_of_fixture_[f] == bus) && !lamp_bypassed_[f]) return false;
   return true;
 }
 
@@ -251,8 +268,7 @@ void HealthWatch::step_trusts(Time now, const Patience& patience) {
   }
   for (const Health& health : report_) {
     Counted& device = counted_[health.device];
-    const auto found = known_.find(health.device);
-    const Role role = found == known_.end() ? Role::unknown : found->second.role;
+    const Role role = known(health.device).role;
     const bool single = role == Role::fixture || role == Role::axis || role == Role::luxmeter;
     device.faulted = health.life == Life::faulted;
     device.missed = single && health.errors > device.errors;  // a bus counts those of all that hang on it
@@ -262,15 +278,14 @@ void HealthWatch::step_trusts(Time now, const Patience& patience) {
   }
   for (auto entry = counted_.begin(); entry != counted_.end();) {
     Counted& device = entry->second;
-    const auto found = known_.find(entry->first);
-    const Role role = found == known_.end() ? Role::unknown : found->second.role;
+    const Role role = known(entry->first).role;
     if (role == Role::luxmeter) {  // step_meter knows more
       ++entry;
       continue;
     }
     const bool turns = role == Role::axis || role == Role::axes_bus;
     device.trust.step(now, device.faulted, device.missed, device.answered, turns ? Duration{} : patience.lamps);
-    const bool forgotten = role == Role::unknown && !device.faulted && !device.trust.lost();
+    const bool forgotten = (role == Role::unknown || role == Role::bus_part) && !device.faulted && !device.trust.lost();
     entry = forgotten ? counted_.erase(entry) : std::next(entry);
   }
 }
@@ -298,38 +313,38 @@ void HealthWatch::step(Time now, const Patience& patience) {
   step_trusts(now, patience);
   std::vector<bool> meter_faulted(meters_.size(), false);
   std::vector<bool> bus_faulted(fixtures_on_bus_.size(), false), bus_lost(fixtures_on_bus_.size(), false);
+  std::vector<bool> bus_silent(fixtures_on_bus_.size(), false);
   for (const Health& health : report_) {
     if (health.life == Life::active && !health.detail.empty()) warn_of(health);
     if (health.life != Life::faulted) continue;
-    const auto found = known_.find(health.device);
-    const Known known = found == known_.end() ? Known{} : found->second;
-    if (known.role == Role::luxmeter) meter_faulted[known.index] = true;
-    alarms_.push_back(alarm_of(health, known));
+    const Known device = known(health.device);
+    if (device.role == Role::luxmeter) meter_faulted[device.index] = true;
+    alarms_.push_back(alarm_of(health, device));
   }
   for (const auto& entry : counted_) {
     const std::string& name = entry.first;
     const Counted& device = entry.second;
-    const auto found = known_.find(name);
-    const Known known = found == known_.end() ? Known{} : found->second;
-    if (known.role == Role::luxmeter) continue;
-    const bool bus =
-        known.role == Role::light_bus || known.role == Role::axes_bus || known.role == Role::meter_bus;
-    if (bus) bus_faulted[known.index] = device.faulted;
-    if (known.role == Role::fixture) lamp_silent_[known.index] = device.faulted;
+    const auto [role, index] = known(name);
+    if (role == Role::luxmeter) continue;
+    const bool bus = role == Role::light_bus || role == Role::axes_bus || role == Role::meter_bus;
+    if (bus) bus_faulted[index] = device.faulted;
+    if ((bus || role == Role::bus_part) && device.faulted) bus_silent[index] = true;
+    if (role == Role::fixture) lamp_silent_[index] = device.faulted;
     if (!device.trust.lost()) continue;
-    if (bus) bus_lost[known.index] = true;
-    const bool of_lamp = known.role == Role::fixture || known.role == Role::axis;
-    if (of_lamp ? !lamp_bypassed_[known.index] : known.role != Role::meter_bus && !all_on_it_bypassed(known))
-      light_lost_ = true;
-    if (known.role == Role::unknown) all_lost_ = true;
-    if (known.role == Role::fixture) lamp_lost_[known.index] = true;
-    if (known.role == Role::axis) motion_lost_[known.index] = true;
+    // Which fixtures hang on a part of a bus, nobody here knows.
+    if (bus || role == Role::bus_part) bus_lost[index] = true;
+    const bool of_one = role == Role::fixture || role == Role::axis;
+    const bool of_bus = role == Role::light_bus || role == Role::axes_bus || role == Role::bus_part;
+    if (of_one ? !lamp_bypassed_[index] : of_bus ? !all_bypassed_on(index) : role == Role::unknown) light_lost_ = true;
+    if (role == Role::unknown) all_lost_ = true;
+    if (role == Role::fixture) lamp_lost_[index] = true;
+    if (role == Role::axis) motion_lost_[index] = true;
     if (!device.faulted) alarms_.push_back(alarm_of_doubted(name, device.trust));
   }
   for (std::size_t f = 0; f < bus_of_fixture_.size(); ++f) {
     const auto among = [](const std::vector<bool>& buses, std::size_t bus) { return bus < buses.size() && buses[bus]; };
     if (among(bus_lost, bus_of_fixture_[f])) lamp_lost_[f] = true;
-    if (lamp_lost_[f] || among(bus_faulted, bus_of_fixture_[f])) lamp_silent_[f] = true;
+    if (lamp_lost_[f] || among(bus_silent, bus_of_fixture_[f])) lamp_silent_[f] = true;
     if (among(bus_lost, motion_bus_of_fixture_[f])) motion_lost_[f] = true;
   }
   std::size_t in_use = 0, in_use_lost = 0;
@@ -340,9 +355,8 @@ void HealthWatch::step(Time now, const Patience& patience) {
   if (in_use > 0 && in_use == in_use_lost) all_lost_ = true;
   // What hangs on a dead bus is lost with it; once is enough to say so.
   std::erase_if(alarms_, [&](const Alarm& alarm) {
-    const auto found = known_.find(alarm.device);
-    if (found == known_.end()) return false;
-    const auto [role, index] = found->second;
+    const auto [role, index] = known(alarm.device);
+    if (role == Role::bus_part) return bool{bus_faulted[index]};
     if (role != Role::luxmeter && role != Role::fixture && role != Role::axis) return false;
     if (role == Role::luxmeter ? meters_[index].bypassed : lamp_bypassed_[index]) return true;
     const std::size_t bus = role == Role::luxmeter ? meters_[index].bus

@@ -87,19 +87,21 @@ class HealthWatch {
     Trust trust;
     bool bypassed = false;
   };
-  enum class Role { light_bus, axes_bus, meter_bus, fixture, axis, luxmeter, unknown };
+  enum class Role { light_bus, axes_bus, meter_bus, bus_part, fixture, axis, luxmeter, unknown };
   struct Known {
     Role role = Role::unknown;
     std::size_t index = 0;
   };
 
+  /// By its name; "BUS: anything" is a part of that bus, such as a node.
+  [[nodiscard]] Known known(const std::string& device) const;
   [[nodiscard]] Alarm alarm_of(const Health& health, const Known& known) const;
   void warn_of(const Health& health);
   void join_units();
   void step_meter(Time now, std::size_t luxmeter, bool faulted, Duration patience);
   /// Of a device that answers again, but has failed too often to be relied on at once.
   [[nodiscard]] static Alarm alarm_of_doubted(const std::string& device, const Trust& trust);
-  [[nodiscard]] bool all_on_it_bypassed(const Known& bus) const;
+  [[nodiscard]] bool all_bypassed_on(std::size_t bus) const;
   void step_trusts(Time now, const Patience& patience);
 
   const std::map<std::string, Known> known_;

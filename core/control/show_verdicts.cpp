@@ -189,7 +189,7 @@ void ShowController::State::judge_limit(std::size_t p, std::span<const double> l
   if (status.measured_lx && *status.measured_lx > max_lx * (1 + tolerance))
     return say(LimitVerdict::exceeded, fmt::format("luxmeter \"{}\" reads {:.1f} lx, the limit is {:g} lx",
                                                    rig.luxmeters[*meter].name, *status.measured_lx, max_lx));
-  if (meter && !status.measured_lx && heard[*meter] && heard[*meter]->lux > max_lx * (1 + tolerance))
+  if (meter && !bypassed_meter[*meter] && !status.measured_lx && heard[*meter] && heard[*meter]->lux > max_lx * (1 + tolerance))
     return say(
         LimitVerdict::unknown,
         fmt::format("luxmeter \"{}\" read {:.1f} lx last, over the limit of {:g} lx, and is lost or not believed; "

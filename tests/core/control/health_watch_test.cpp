@@ -222,6 +222,52 @@ TEST(HealthWatch, TellsLossOfLightFromLossOfMeters) {
   }
 }
 
+TEST(HealthWatch, ANodeOfABusThatIsGoneConcernsThatBusAlone) {
+  Rig rig = small_rig();
+  rig.buses.push_back({});
+  rig.buses[2].name = "line";
+  rig.fixtures.push_back(rig.fixtures[0]);
+  rig.fixtures[2].name = "far";
+  rig.fixtures[2].bus = 2;
+  HealthWatch watch(rig);
+  hear_both(watch, 1);
+  Health node = faulted("track: node 7 (10.0.0.7)", 1);
+  watch.report({&node, 1});
+  watch.step(at(1));
+  EXPECT_TRUE(watch.light_lost());
+  EXPECT_FALSE(watch.all_lost()) << "what hangs on another bus goes on";
+  EXPECT_TRUE(watch.lamp_lost(0));
+  EXPECT_FALSE(watch.lamp_lost(2));
+  ASSERT_EQ(watch.alarms().size(), 1u);
+  EXPECT_EQ(watch.alarms()[0].device, node.device);
+  const Health both[] = {faulted("track", 1), node};
+  watch.report(both);
+  watch.step(at(1.1));
+  ASSERT_EQ(watch.alarms().size(), 1u) << "the bus says it";
+  EXPECT_EQ(watch.alarms()[0].device, "track");
+}
+
+TEST(HealthWatch, WhatIsBypassedLosesNoLightAndRaisesNoAlarm) {
+  HealthWatch watch(small_rig());
+  hear_both(watch, 1);
+  const Health report[] = {faulted("left", 1), faulted("meter-2", 1)};
+  watch.report(report);
+  watch.step(at(1));
+  EXPECT_TRUE(watch.light_lost());
+  EXPECT_EQ(watch.alarms().size(), 2u);
+  watch.set_bypassed({at(1), std::nullopt}, {std::nullopt, at(1)});
+  watch.step(at(1.1));
+  EXPECT_FALSE(watch.light_lost());
+  EXPECT_FALSE(watch.any_meter_lost());
+  EXPECT_TRUE(watch.meter_lost(1)) << "it is done without";
+  EXPECT_TRUE(watch.lamp_lost(0)) << "what it gives is not known all the same";
+  EXPECT_TRUE(watch.alarms().empty());
+  const Health all[] = {faulted("left", 1), faulted("right", 1)};
+  watch.report(all);
+  watch.step(at(1.2));
+  EXPECT_TRUE(watch.all_lost()) << "of those in use none is left";
+}
+
 TEST(HealthWatch, SaysOnceThatABusIsGoneNotForEachMeterOnIt) {
   HealthWatch watch(small_rig());
   watch.step(at(0));
