@@ -53,20 +53,20 @@ bool ShowController::State::limits_bear_waiting(Time now) const {
   return true;
 }
 
-/// Nothing is told apart when the rig goes to its safe look as a whole.
+/// Nothing is told apart when the rig goes to its safe look as a whole, but for what a person has taken out of it.
 void ShowController::State::watch_losses(Time now) {
-  if (rig.safe.scope == SafeScope::all) return;
   bool changed = false;
   std::vector<double> present, before;
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
-    const bool lamp = health.lamp_lost(f), gone = lamp || health.motion_lost(f);
+    const bool apart = rig.safe.scope == SafeScope::rest_stays || bypassed_lamp[f];
+    const bool lamp = health.lamp_lost(f), gone = apart && (lamp || health.motion_lost(f));
     std::optional<LostFixture>& one = lost[f];
     if (gone && !one) {
       if (present.empty()) {
         present = present_levels(now);
         before = present_levels(now - kNoticedWithin);
       }
-      one = LostFixture{now, present[f], std::max(present[f], before[f]), lamp, false, {}};
+      one = LostFixture{now, present[f], std::max({present[f], before[f], taken_level[f]}), lamp, false, {}};
       changed = true;
     } else if (gone) {
       one->well_since.reset();
