@@ -128,10 +128,14 @@ void ShowController::State::leave_out_lost(std::vector<double>& levels) const {
 }
 
 bool ShowController::State::in_doubt(std::size_t luxmeter) const {
-  if (!any_lost()) return false;
   std::vector<std::uint8_t> chosen(rig.fixtures.size(), 0);
-  for (std::size_t f = 0; f < chosen.size(); ++f) chosen[f] = lost[f].has_value();
-  return estimator.share_at_meter(luxmeter, chosen, program.to_level) > kShareThatTells;
+  bool any = false;
+  for (std::size_t f = 0; f < chosen.size(); ++f) {
+    // From the first report on: what is learned until a lamp is lost could not be told from what is true.
+    chosen[f] = lost[f].has_value() || health.lamp_silent(f);
+    any = any || chosen[f] != 0;
+  }
+  return any && estimator.share_at_meter(luxmeter, chosen, program.to_level) > kShareThatTells;
 }
 
 void ShowController::State::tell_losses(ShowStatus& status) const {
