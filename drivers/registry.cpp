@@ -26,8 +26,7 @@ constexpr std::string_view kUnits =
 const DriverEntry kDrivers[] = {
     {"sacn", "ANSI E1.31 over UDP, send", sacn_options(), check_sacn, make_sacn, sacn_when_data_stops,
      "nothing comes back; a dead node or lamp is noticed only by a luxmeter or camera"},
-    {"artnet", "Art-Net 4 over UDP, send", artnet_options(), check_artnet, make_artnet,
-     artnet_when_data_stops,
+    {"artnet", "Art-Net 4 over UDP, send", artnet_options(), check_artnet, make_artnet, artnet_when_data_stops,
      "nodes answer polls, lamps do not; a dead lamp is noticed only by a luxmeter or camera"},
     {"enttec_pro", "ENTTEC DMX USB Pro widget, holds its last look", enttec_pro_options(), check_enttec_pro,
      make_enttec_pro, enttec_pro_when_data_stops, kOnlyTheWidget},

@@ -115,8 +115,8 @@ class GainEstimator {
   /// What the fixture is believed to give to a point at full level.
   [[nodiscard]] double lux_per_level(std::size_t point, std::size_t fixture) const;
 
-  /// What all meters read over what the model as stated says (rated lamps, nothing learned): the median, as a logarithm,
-  /// with its standard error by all that is stated: lamps, places, curves, transport, tolerances.
+  /// What all meters read over what the model as stated says (rated lamps, nothing learned): the median, as a
+  /// logarithm, with its standard error by all that is stated: lamps, places, curves, transport, tolerances.
   struct CommonScale {
     double log_scale = 0, log_standard_error = 0;
   };
@@ -220,8 +220,8 @@ class GainEstimator {
   /// The same, with lost lamps as they are believed to be.
   [[nodiscard]] Eigen::VectorXd vector_of(std::span<const double> level) const;
   static constexpr double kDriftPerMinute = 0.001;  ///< of a lamp: old evidence loses weight, old limits grow
-  static constexpr double kDark_lx = 0.5;    ///< what a meter may show in the dark (offset, stray light)
-  static constexpr double kFarthestStep = 4;  ///< of a level, as the logarithm of its ratio: 1 % to half
+  static constexpr double kDark_lx = 0.5;           ///< what a meter may show in the dark (offset, stray light)
+  static constexpr double kFarthestStep = 4;        ///< of a level, as the logarithm of its ratio: 1 % to half
   static constexpr double kCurveError = 0.1;        ///< how far the exponent of level -> true output may be from 1
   [[nodiscard]] static double minutes_between(Time from, Time to) { return std::max(0.0, to_seconds(to - from) / 60); }
   static constexpr int kLimitRounds = 6;  ///< limits hold for the worst case, which depends on where the levels go

@@ -55,9 +55,10 @@ std::optional<GainEstimator::CommonScale> GainEstimator::common_scale(std::span<
     for (Index j = 0; j < at.size(); ++j) {
       if (!(meter_(i, j) > 0)) continue;
       const double transport = meter_error_(i, j) / meter_(i, j);
-      const double curve = j < fixtures() && at[j] > 0 ? kCurveError / 2 * std::min(kFarthestStep, std::abs(std::log(at[j]))) : 0;
-      alone[k] += share(k, j) * share(k, j) *
-                  (prior_local_sd_ * prior_local_sd_ + transport * transport + curve * curve);
+      const double curve =
+          j < fixtures() && at[j] > 0 ? kCurveError / 2 * std::min(kFarthestStep, std::abs(std::log(at[j]))) : 0;
+      alone[k] +=
+          share(k, j) * share(k, j) * (prior_local_sd_ * prior_local_sd_ + transport * transport + curve * curve);
     }
   }
   const auto meters = static_cast<Index>(log_ratio.size());

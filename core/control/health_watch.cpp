@@ -74,7 +74,8 @@ void HealthWatch::judged(std::size_t luxmeter, Time now, const std::string& why)
 }
 
 bool HealthWatch::any_meter_lost() const {
-  return std::any_of(meters_.begin(), meters_.end(), [](const Meter& meter) { return meter.trust.lost() && !meter.bypassed; });
+  return std::any_of(meters_.begin(), meters_.end(),
+                     [](const Meter& meter) { return meter.trust.lost() && !meter.bypassed; });
 }
 
 HealthWatch::Known HealthWatch::known(const std::string& device) const {

@@ -25,8 +25,8 @@ class HealthWatch {
 
   explicit HealthWatch(const Rig& rig);
 
-  /// Per fixture and luxmeter, something: a person knows of its failure. It raises no alarm, and no light is lost by it;
-  /// a luxmeter counts as lost, but not in any_meter_lost().
+  /// Per fixture and luxmeter, something: a person knows of its failure. It raises no alarm, and no light is lost by
+  /// it; a luxmeter counts as lost, but not in any_meter_lost().
   void set_bypassed(const std::vector<std::optional<Time>>& lamps, const std::vector<std::optional<Time>>& meters);
 
   /// The drivers' latest report; replaces the one before.
@@ -118,7 +118,7 @@ class HealthWatch {
   std::map<std::string, Counted> counted_;  ///< by device
   std::vector<Health> report_;
   std::vector<Alarm> alarms_;
-  std::vector<bool> lamp_bypassed_;  ///< per fixture
+  std::vector<bool> lamp_bypassed_;                                         ///< per fixture
   std::vector<bool> lamp_lost_, lamp_silent_, lamp_failing_, motion_lost_;  ///< per fixture
   bool light_lost_ = false, all_lost_ = false;
   bool started_ = false;

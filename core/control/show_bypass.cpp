@@ -69,12 +69,14 @@ void ShowController::State::tell_bypassed(ShowStatus& status) const {
     if (!bypassed_lamp[f]) continue;
     const std::string& name = rig.fixtures[f].name;
     std::string risk = health.lamp_silent(f)
-                           ? fmt::format("fixture \"{}\" is bypassed and does not answer: nobody knows what light it "
-                                         "gives, and none is asked of it",
-                                         name)
-                           : fmt::format("fixture \"{}\" is bypassed: it is held dark, and the others make up for it "
-                                         "as far as they can",
-                                         name);
+                           ? fmt::format(
+                                 "fixture \"{}\" is bypassed and does not answer: nobody knows what light it "
+                                 "gives, and none is asked of it",
+                                 name)
+                           : fmt::format(
+                                 "fixture \"{}\" is bypassed: it is held dark, and the others make up for it "
+                                 "as far as they can",
+                                 name);
     status.bypassed.push_back({false, f, *bypassed_lamp[f], std::move(risk)});
   }
   for (std::size_t m = 0; m < bypassed_meter.size(); ++m) {

@@ -51,7 +51,8 @@ void ShowController::State::take_sample(Time now) {
   samples.next();
   sampled_at = now;
   bool all_believed = true;
-  for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) all_believed = all_believed && (measured[i] || bypassed_meter[i]);
+  for (std::size_t i = 0; i < rig.luxmeters.size(); ++i)
+    all_believed = all_believed && (measured[i] || bypassed_meter[i]);
   afresh = afresh && !all_believed;
 
   std::vector<LimitBreach> present;

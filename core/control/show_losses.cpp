@@ -47,8 +47,7 @@ bool ShowController::State::limits_bear_waiting(Time now) const {
   for (std::size_t f = 0; f < most.size(); ++f)
     most[f] = std::max({most[f], before[f], program.blackout ? 0.0 : program.to_level[f]});
   for (std::size_t p = 0; p < rig.points.size(); ++p)
-    if (rig.points[p].max_lx &&
-        estimator.most_lux_at_point(p, most, now) > *rig.points[p].max_lx * (1 + kBreachSlack))
+    if (rig.points[p].max_lx && estimator.most_lux_at_point(p, most, now) > *rig.points[p].max_lx * (1 + kBreachSlack))
       return false;
   return true;
 }

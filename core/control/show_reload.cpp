@@ -28,8 +28,7 @@ void ShowController::State::exchange_rig(Time now, const Rig& other, const Light
   breaches.clear();
   awaited.reset();
   parking.clear();
-  for (std::size_t f = 0; f < rig.fixtures.size(); ++f)
-    program.max_level[f] = bypassed_lamp[f] ? 0 : most_of(f);
+  for (std::size_t f = 0; f < rig.fixtures.size(); ++f) program.max_level[f] = bypassed_lamp[f] ? 0 : most_of(f);
   if (same_light) {
     for (std::size_t f = 0; f < rig.fixtures.size(); ++f) estimator.set_max_level(f, program.max_level[f]);
   } else {

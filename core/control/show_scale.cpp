@@ -12,6 +12,8 @@ namespace {
 
 /// Standard errors by which the common scale must be off: honest rigs are within.
 constexpr double kSurelyOff = 3;
+/// Once said, it stands until it is nearer than this share of what had it said: noise shall not make it come and go.
+constexpr double kStands = 0.8;
 /// A change of reading over model at one place that is called drift, beyond what a dimmer's curve and ageing explain.
 constexpr double kDrift = 0.08;
 constexpr double kAgeingPerHour = 0.001;
@@ -29,7 +31,8 @@ void ShowController::State::watch_scale(Time now) {
   for (const auto& reading : measured)
     if (reading) readings.push_back(*reading);
   const auto scale = estimator.common_scale(readings, program.to_level);
-  const bool off = scale && std::abs(scale->log_scale) > kSurelyOff * scale->log_standard_error;
+  const bool off =
+      scale && std::abs(scale->log_scale) > (off_together ? kStands : 1) * kSurelyOff * scale->log_standard_error;
   if (off && !off_together) off_together_since = now;
   off_together = off ? std::optional(scale->log_scale) : std::nullopt;
 
@@ -46,7 +49,7 @@ void ShowController::State::watch_scale(Time now) {
     const double allowed = kDrift + kAgeingPerHour * to_seconds(now - drift.since) / 3600 +
                            estimator.curve_error_at_meter(i, drift.level, program.to_level);
     drift.log_change = log_ratio - drift.log_ratio;
-    drift.seen = std::abs(drift.log_change) > allowed ? drift.seen + 1 : 0;
+    drift.seen = std::abs(drift.log_change) > (drifts_away(i) ? kStands : 1) * allowed ? drift.seen + 1 : 0;
     if (drift.seen == kDriftSeen) drift.known_since = now;
   }
 }

@@ -76,12 +76,12 @@ struct ShowController::State {
   OutputProgram program;
 
   KeepOutZones zones;
-  std::vector<GuardedHead> guarded;     ///< one for each of program.dims
-  std::vector<Joints> model_joints;     ///< per fixture: where heads look in the estimator's model
-  std::vector<std::uint8_t> parking;    ///< per fixture, 1: parks when it is dark; empty: none
+  std::vector<GuardedHead> guarded;         ///< one for each of program.dims
+  std::vector<Joints> model_joints;         ///< per fixture: where heads look in the estimator's model
+  std::vector<std::uint8_t> parking;        ///< per fixture, 1: parks when it is dark; empty: none
   std::vector<std::uint8_t> tells_of_lamp;  ///< per fixture, 1: its device would say that its lamp has burnt out
-  std::vector<std::uint8_t> powerless;  ///< per fixture, 1: its lamp is lost, and starts as after a power cut
-  bool power_came = false;              ///< light has been asked for once
+  std::vector<std::uint8_t> powerless;      ///< per fixture, 1: its lamp is lost, and starts as after a power cut
+  bool power_came = false;                  ///< light has been asked for once
 
   std::vector<DeskFollower> desks;      ///< one for each of program.desks
   std::vector<std::string> desk_names;  ///< of the rig's; those that identify fixtures have none

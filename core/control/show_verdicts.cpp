@@ -144,7 +144,8 @@ void ShowController::State::judge_goal(std::size_t p, std::span<const double> le
   if (const auto meter = meter_at(p); meter && health.meter_implausible(*meter) && status.verdict == Verdict::met)
     status.verdict = Verdict::unknown;
   std::optional<std::size_t> unseen;
-  if (!status.measured_lx && status.verdict == Verdict::met) unseen = unseen_lamp_for(p, level, status.light, allowed_lx);
+  if (!status.measured_lx && status.verdict == Verdict::met)
+    unseen = unseen_lamp_for(p, level, status.light, allowed_lx);
   if (unseen) status.verdict = Verdict::unknown;
   const std::string state = why_not_the_plan(phase, program.blackout);
   std::string settles;
@@ -189,7 +190,8 @@ void ShowController::State::judge_limit(std::size_t p, std::span<const double> l
   if (status.measured_lx && *status.measured_lx > max_lx * (1 + tolerance))
     return say(LimitVerdict::exceeded, fmt::format("luxmeter \"{}\" reads {:.1f} lx, the limit is {:g} lx",
                                                    rig.luxmeters[*meter].name, *status.measured_lx, max_lx));
-  if (meter && !bypassed_meter[*meter] && !status.measured_lx && heard[*meter] && heard[*meter]->lux > max_lx * (1 + tolerance))
+  if (meter && !bypassed_meter[*meter] && !status.measured_lx && heard[*meter] &&
+      heard[*meter]->lux > max_lx * (1 + tolerance))
     return say(
         LimitVerdict::unknown,
         fmt::format("luxmeter \"{}\" read {:.1f} lx last, over the limit of {:g} lx, and is lost or not believed; "
@@ -204,9 +206,9 @@ void ShowController::State::judge_limit(std::size_t p, std::span<const double> l
                            breach->most_lx, max_lx));
   if (const ScaleDoubt doubt = scale_doubt_of(p);
       status.measured_lx && doubt.log_share < 0 && *status.measured_lx * std::exp(-doubt.log_share) > max_lx)
-    return say(LimitVerdict::unknown, fmt::format("it may have {:.1f} lx, the limit is {:g} lx: {}",
-                                                  *status.measured_lx * std::exp(-doubt.log_share), max_lx,
-                                                  doubt.reason));
+    return say(LimitVerdict::unknown,
+               fmt::format("it may have {:.1f} lx, the limit is {:g} lx: {}",
+                           *status.measured_lx * std::exp(-doubt.log_share), max_lx, doubt.reason));
   if (status.measured_lx) return say(LimitVerdict::kept, "");
   const bool driven_by_desk =
       std::any_of(program.desks.begin(), program.desks.end(), [](const DeskBlend& desk) { return desk.silent; });

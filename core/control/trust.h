@@ -16,8 +16,8 @@ class Trust {
   static constexpr Duration kRemembers = std::chrono::minutes(10);
   static constexpr Duration kFirstRow = std::chrono::seconds(1), kLongestRow = std::chrono::seconds(10);
 
-  /// What was seen since the last call. failing: it is reported as faulted, or is silent. missed: one answer or more did
-  /// not come, or was spoiled. answered: there was a good answer; true where that cannot be told.
+  /// What was seen since the last call. failing: it is reported as faulted, or is silent. missed: one answer or more
+  /// did not come, or was spoiled. answered: there was a good answer; true where that cannot be told.
   void step(Time now, bool failing, bool missed, bool answered, Duration patience) {
     while (!falls_.empty() && now - falls_.front() > kRemembers) falls_.pop_front();
     if (failing || missed) {

@@ -16,9 +16,9 @@ class Dimmer {
   void set_out(bool out);
   void step(double dt_s);
 
-  [[nodiscard]] double drive() const { return out_ ? 0 : drive_; }  ///< that the lamp gets
+  [[nodiscard]] double drive() const { return out_ ? 0 : drive_; }                  ///< that the lamp gets
   [[nodiscard]] double settled_level() const { return out_ ? 0 : settled_level_; }  ///< where level() goes
-  [[nodiscard]] double level() const { return level_; }                  ///< 0…1, share of this lamp's own full light
+  [[nodiscard]] double level() const { return level_; }  ///< 0…1, share of this lamp's own full light
 
  private:
   DimmerCurve nominal_;

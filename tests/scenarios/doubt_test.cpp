@@ -24,8 +24,10 @@ TEST(ALateAnswer, ChangesNoLight) {
     sim::FaultKind kind;
     double for_s;
   };
-  for (const Late late : {Late{"meter-1", sim::FaultKind::silent, 1.2}, {"spot-10", sim::FaultKind::silent, 0.9},
-                          {"meters", sim::FaultKind::dead, 0.4}, {"dimmers", sim::FaultKind::dead, 0.4}}) {
+  for (const Late late : {Late{"meter-1", sim::FaultKind::silent, 1.2},
+                          {"spot-10", sim::FaultKind::silent, 0.9},
+                          {"meters", sim::FaultKind::dead, 0.4},
+                          {"dimmers", sim::FaultKind::dead, 0.4}}) {
     for (const bool all : {true, false}) {
       for (const double at_s : {1.0, 25.0}) {  // in the fade, and in steady light
         const Hall hall = all ? all_to_safe(41) : make_hall(41);
@@ -153,8 +155,9 @@ TEST(ABypass, OfALyingMeterEndsTheSafeLookAndSaysWhatNobodyWatches) {
   const ShowStatus status = loop.status();
   ASSERT_EQ(status.bypassed.size(), 1u);
   EXPECT_TRUE(status.bypassed[0].luxmeter);
-  EXPECT_NE(status.bypassed[0].risk.find("the limit at work-2 is then watched by nobody: it is kept by the model alone"),
-            std::string::npos)
+  EXPECT_NE(
+      status.bypassed[0].risk.find("the limit at work-2 is then watched by nobody: it is kept by the model alone"),
+      std::string::npos)
       << status.bypassed[0].risk;
   ASSERT_NE(notice_of(status.alarms, "meter-2"), nullptr) << loop.describe();
   EXPECT_EQ(status.alarms.size(), 1u) << loop.describe();
@@ -224,8 +227,8 @@ TEST(ALampThatNoMeterSees, IsNotTakenAtItsWord) {
     const std::vector<sim::PointTruth> truth = loop.devices.world().points();
     for (std::size_t p = 6; p < status.points.size(); ++p) {
       const PointStatus& point = status.points[p];
-      const double share = loop.hall.model.point_lux_per_level(static_cast<Eigen::Index>(p), 6) * loop.levels()[6] /
-                           *point.goal_lx;
+      const double share =
+          loop.hall.model.point_lux_per_level(static_cast<Eigen::Index>(p), 6) * loop.levels()[6] / *point.goal_lx;
       if (!point.met()) continue;
       ++met;
       if (share > 0.6) {

@@ -1,4 +1,5 @@
-// status, blackout, apply, level, goal, release, bypass, reload, park, identify: commands that talk to a running daemon.
+// status, blackout, apply, level, goal, release, bypass, reload, park, identify: commands that talk to a running
+// daemon.
 #include <charconv>
 #include <cmath>
 

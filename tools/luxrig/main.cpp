@@ -334,8 +334,8 @@ int main(int argc, char** argv) {
   group(app, "Make a rig", {"init", "check", "import"});
   group(app, "Work out its light", {"evaluate", "solve", "render"});
   group(app, "Run it",
-        {"run", "status", "apply", "level", "goal", "release", "bypass", "reload", "blackout", "hand-back", "park", "identify",
-         "monitor"});
+        {"run", "status", "apply", "level", "goal", "release", "bypass", "reload", "blackout", "hand-back", "park",
+         "identify", "monitor"});
   group(app, "Devices", {"devices", "rdm", "camera"});
   group(app, "Luxrig itself", {"bench"});
   const auto end = parse_command_line(app, argc, argv);

@@ -1,4 +1,5 @@
-/// What clients may ask of the daemon: plans, parking, what is set by hand or bypassed, and a rig file that was read again.
+/// What clients may ask of the daemon: plans, parking, what is set by hand or bypassed, and a rig file that was read
+/// again.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -361,8 +362,8 @@ void Daemon::restore_bypassed(const std::vector<std::string>& saved, Resumed& re
     all.luxmeters.insert(all.luxmeters.end(), devices->luxmeters.begin(), devices->luxmeters.end());
   }
   if (kept.empty()) return;
-  resumed.notes.push_back(fmt::format("{} still bypassed: {}", fmt::join(kept, ", "),
-                                      "luxrig bypass NAME --undo when it is mended"));
+  resumed.notes.push_back(
+      fmt::format("{} still bypassed: {}", fmt::join(kept, ", "), "luxrig bypass NAME --undo when it is mended"));
   (void)journal_.keep([&](JournalState& state) { state.bypassed = kept; });
   on_control_thread([this, all](Time at) { controller_.bypass(at, all.fixtures, all.luxmeters, true); });
 }

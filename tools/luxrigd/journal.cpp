@@ -40,8 +40,8 @@ Result<void> Journal::save(const JournalState& state) const {
     by_hand.push_back(std::move(entry));
   }
   const nlohmann::json out = {
-      {"luxrig_state", 1},      {"plan", state.plan_json},          {"blackout", state.blackout},
-      {"parked", state.parked}, {"plan_of_rig", state.plan_of_rig}, {"by_hand", std::move(by_hand)},
+      {"luxrig_state", 1},         {"plan", state.plan_json},          {"blackout", state.blackout},
+      {"parked", state.parked},    {"plan_of_rig", state.plan_of_rig}, {"by_hand", std::move(by_hand)},
       {"bypassed", state.bypassed}};
   return write_file(file(), out.dump(1, ' ', false, nlohmann::json::error_handler_t::replace));
 }

@@ -1,6 +1,6 @@
 #pragma once
-/// What must survive a power cut: the plan in force, the blackout switch, heads that rest, what is set by hand, and what
-/// is bypassed.
+/// What must survive a power cut: the plan in force, the blackout switch, heads that rest, what is set by hand, and
+/// what is bypassed.
 
 #include <filesystem>
 #include <functional>
