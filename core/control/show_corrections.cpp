@@ -27,7 +27,7 @@ void ShowController::State::take_sample(Time now) {
   if (phase != Phase::measuring && now - sampled_at < kSampleEvery) return;
   std::vector<LuxReading> readings;
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
-    if (in_doubt(i)) continue;
+    if (in_doubt(i) || bypassed_meter[i]) continue;
     if (samples.ready(now, i)) {
       readings.push_back(*samples.sample(i));
     } else if (!health.meter_lost(i)) {
@@ -47,10 +47,12 @@ void ShowController::State::take_sample(Time now) {
     }
     measured[judgement.luxmeter] = *samples.sample(judgement.luxmeter);
   }
+  watch_scale(now);
   samples.next();
   sampled_at = now;
   bool all_believed = true;
-  for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) all_believed = all_believed && measured[i].has_value();
+  for (std::size_t i = 0; i < rig.luxmeters.size(); ++i)
+    all_believed = all_believed && (measured[i] || bypassed_meter[i]);
   afresh = afresh && !all_believed;
 
   std::vector<LimitBreach> present;
@@ -83,7 +85,7 @@ void ShowController::State::correct_or_hold(Time now) {
     return;
   }
   for (std::size_t i = 0; i < cue->size(); ++i) {
-    if (lost[i]) {
+    if (lost[i] || bypassed_lamp[i]) {
       correction.level[i] = program.to_level[i];
       continue;
     }
@@ -92,7 +94,7 @@ void ShowController::State::correct_or_hold(Time now) {
     (*cue)[i] = correction.level[i];
     if (!same || !any_lost()) asked[i] = correction.level[i];
   }
-  if (by_hand().empty()) without_hands = asked;
+  if (by_hand().empty() && !any_lamp_bypassed()) without_hands = asked;
   ++round;
   corrected_at = now;
   fade(now, present_levels(now), std::move(correction.level), rig.control.correction_fade_s, rig.control.fade_curve);
@@ -114,7 +116,9 @@ void ShowController::State::watch_drift(Time now) {
 void ShowController::State::doubt_the_past(Time now) {
   if (!afresh || sampled_at != now) return;
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
-    if (health.meter_implausible(i) && sample_changed[i]) estimator.forget(i);
+    if (!health.meter_implausible(i) || !sample_changed[i]) continue;
+    estimator.forget(i);
+    drifts[i] = Drift{};
   }
 }
 

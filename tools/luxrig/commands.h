@@ -86,6 +86,8 @@ int run_goal(const ClientArguments& arguments, const std::vector<std::string>& n
              const std::string& for_text);
 /// Fixtures and points, or "all".
 int run_release(const ClientArguments& arguments, const std::vector<std::string>& names);
+/// Fixtures and luxmeters that have failed: done without, or taken back; prints the risk.
+int run_bypass(const ClientArguments& arguments, const std::vector<std::string>& names, bool undo);
 int run_reload(const ClientArguments& arguments);
 /// "90s", "10min", "2h", "90" (seconds) in seconds; nothing when it is none, or not above 0.
 [[nodiscard]] std::optional<double> seconds_of(const std::string& text);

@@ -311,6 +311,7 @@ HttpHandlers Daemon::handlers() {
     return hold(ByHand::What::goal, names, lux, for_s);
   };
   handlers.release = [this](const std::vector<std::string>& names) { return release(names); };
+  handlers.bypass = [this](const std::vector<std::string>& names, bool on) { return bypass(names, on); };
   handlers.reload = [this] { return reload(); };
   return handlers;
 }

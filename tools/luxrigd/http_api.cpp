@@ -215,6 +215,13 @@ struct HttpApi::State {
       }
       answer(response, handlers.release(names.value_or(std::vector<std::string>{})), "released");
     });
+    server.Post("/api/bypass", [this](const httplib::Request& request, httplib::Response& response) {
+      const auto body = nlohmann::json::parse(request.body, nullptr, false);
+      const auto names = names_in(body, "names");
+      if (!names || !body.contains("on") || !body["on"].is_boolean())
+        return refuse(response, 400, "send {\"names\": [\"a fixture or luxmeter\"], \"on\": true} or false");
+      answer(response, handlers.bypass(*names, body["on"].get<bool>()), "done");
+    });
     server.Post("/api/reload", [this](const httplib::Request&, httplib::Response& response) {
       answer_checked(response, handlers.reload(), "reloaded");
     });

@@ -40,8 +40,9 @@ Result<void> Journal::save(const JournalState& state) const {
     by_hand.push_back(std::move(entry));
   }
   const nlohmann::json out = {
-      {"luxrig_state", 1},      {"plan", state.plan_json},          {"blackout", state.blackout},
-      {"parked", state.parked}, {"plan_of_rig", state.plan_of_rig}, {"by_hand", std::move(by_hand)}};
+      {"luxrig_state", 1},         {"plan", state.plan_json},          {"blackout", state.blackout},
+      {"parked", state.parked},    {"plan_of_rig", state.plan_of_rig}, {"by_hand", std::move(by_hand)},
+      {"bypassed", state.bypassed}};
   return write_file(file(), out.dump(1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
@@ -108,9 +109,13 @@ Journal::Left Journal::load() const {
   }
   if (json.is_object()) {
     // Older versions did not write these.
-    if (json.contains("parked") && json["parked"].is_array())
-      for (const auto& one : json["parked"])
-        if (one.is_string()) state.parked.push_back(one.get<std::string>());
+    const auto names = [&](const char* key, std::vector<std::string>& into) {
+      if (!json.contains(key) || !json[key].is_array()) return;
+      for (const auto& one : json[key])
+        if (one.is_string()) into.push_back(one.get<std::string>());
+    };
+    names("parked", state.parked);
+    names("bypassed", state.bypassed);
     if (json.contains("plan_of_rig") && json["plan_of_rig"].is_boolean()) state.plan_of_rig = json["plan_of_rig"];
     if (json.contains("by_hand") && json["by_hand"].is_array())
       for (const auto& one : json["by_hand"])

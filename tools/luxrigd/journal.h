@@ -1,5 +1,6 @@
 #pragma once
-/// What must survive a power cut: the plan in force, the blackout switch, heads that rest, and what is set by hand.
+/// What must survive a power cut: the plan in force, the blackout switch, heads that rest, what is set by hand, and
+/// what is bypassed.
 
 #include <filesystem>
 #include <functional>
@@ -27,6 +28,7 @@ struct JournalState {
   std::vector<std::string> parked{};  ///< fixtures
   bool plan_of_rig = false;           ///< the plan was solved from the rig file at start; else a person applied it
   std::vector<SavedByHand> by_hand{};
+  std::vector<std::string> bypassed{};  ///< fixtures and luxmeters
 };
 
 class Journal {

@@ -43,11 +43,13 @@ TEST(Journal, KeepsWhatIsSetByHandAndLeavesOutWhatIsDamaged) {
   Journal journal(folder / "");
   JournalState state{"p", false, {}};
   state.plan_of_rig = true;
+  state.bypassed = {"meter-3", "spot-1"};
   state.by_hand = {{false, "spot-1", 0.05, 1.75e9, std::nullopt}, {true, "desk", 150, 1.75e9, 1.75e9 + 600}};
   ASSERT_TRUE(save(journal, state));
   const auto loaded = journal.load().state;
   ASSERT_TRUE(loaded);
   EXPECT_TRUE(loaded->plan_of_rig);
+  EXPECT_EQ(loaded->bypassed, (std::vector<std::string>{"meter-3", "spot-1"}));
   ASSERT_EQ(loaded->by_hand.size(), 2u);
   EXPECT_EQ(loaded->by_hand[0].name, "spot-1");
   EXPECT_EQ(loaded->by_hand[0].value, 0.05);
