@@ -138,15 +138,6 @@ std::vector<double> ShowController::State::with_hands(std::vector<double> levels
   return levels;
 }
 
-std::vector<double> ShowController::State::solved_around_hands(Time now, std::vector<double> levels) {
-  levels = with_hands(std::move(levels));
-  if (!std::exchange(unsolved, false)) return levels;
-  Correction correction = estimator.correct(levels, now, true);
-  aimed_lx = std::move(correction.aimed_lx);
-  why = std::move(correction.why);
-  return std::move(correction.level);
-}
-
 std::vector<ByHand> ShowController::State::by_hand() const {
   std::vector<ByHand> all;
   for (const auto& one : hand_level)

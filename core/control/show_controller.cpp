@@ -244,7 +244,22 @@ void ShowController::State::start_cue(Time now, std::vector<double> levels) {
     present = std::move(without);
     take_look(now);
   }
-  asked = solved_around_hands(now, *cue);
+  asked = with_hands(*cue);
+  ++facts;
+  drop_solving();
+  // What is held by hand goes there at once; the rest follows when it is solved around that.
+  if (unsolved && !beside) {
+    unsolved = false;
+    Correction correction = estimator.correct(asked, now, true);
+    aimed_lx = std::move(correction.aimed_lx);
+    why = std::move(correction.why);
+    asked = std::move(correction.level);
+  }
+  go_to_asked(now, std::move(present));
+  if (std::exchange(unsolved, false)) solve(now, Solving::For::hands);
+}
+
+void ShowController::State::go_to_asked(Time now, std::vector<double> present) {
   cue = estimator.within_limits(asked, now);
   std::vector<double> sent = *cue;
   leave_out_lost(sent);
@@ -334,7 +349,7 @@ void ShowController::State::advance(Time now) {
       for (std::size_t i = 0; i < rig.luxmeters.size(); ++i)
         any_living = any_living || (!health.meter_lost(i) && !in_doubt(i));
       if (!any_living) return enter(Phase::holding, now);  // nobody can tell; open loop
-      if (sampled_at == now) correct_or_hold(now);
+      if (sampled_at == now) solve(now, Solving::For::round);
       return;
     }
     default:
@@ -433,12 +448,15 @@ void ShowController::step(Time now) {
   state.step_desks(now);
   state.take_sample(now);
   state.look_at_failures(now);
+  state.take_solved(now);
   state.advance(now);
   state.watch_power(now);
   state.close_bypassed(now);
   state.guard_heads(now);
   state.remember_levels(now);
 }
+
+void ShowController::solve_beside(Beside beside) { state_->beside = std::move(beside); }
 
 std::vector<double> ShowController::safe_look(Time now) const {
   std::vector<double> level = state_->estimator.within_limits(state_->safe_levels(), now);

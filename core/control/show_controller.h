@@ -9,6 +9,7 @@
 ///   blackout lies over all of these and wins; lifting it fades back up.
 
 #include <Eigen/Core>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -206,7 +207,12 @@ class ShowController {
   void reading(Time now, const LuxReading& reading);
   void health(Time now, std::span<const Health> devices);
 
-  /// Advances the state machine; call at 20 Hz or more. Corrections are solved here (milliseconds).
+  /// Who runs what takes long, once and on any thread: what it says is taken up by the step after. Without, step() and
+  /// what sets something by hand do it themselves: milliseconds, but seconds with hundreds of lamps and limits.
+  using Beside = std::function<void(std::function<void()>)>;
+  void solve_beside(Beside beside);
+
+  /// Advances the state machine; call at 20 Hz or more.
   void step(Time now);
 
   /// The levels of the safe look, within limits; a head whose beam could meet a keep-out zone is dark in it. Takes

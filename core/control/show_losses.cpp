@@ -115,6 +115,7 @@ void ShowController::State::tell_lost_lamps() {
     lamps[f] = GainEstimator::Lost{lost[f]->most, unknown ? 1.0 : lost[f]->most};
   }
   estimator.set_lost(std::move(lamps), watched);
+  ++facts;
 }
 
 /// What lost fixtures are sent in place of the look: where they were, then their safe level, unless they were darker.

@@ -27,6 +27,7 @@ void ShowController::State::exchange_rig(Time now, const Rig& other, const Light
   why.clear();
   breaches.clear();
   awaited.reset();
+  drop_solving();
   parking.clear();
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) program.max_level[f] = bypassed_lamp[f] ? 0 : most_of(f);
   if (same_light) {

@@ -2,6 +2,9 @@
 /// What a ShowController keeps; private to show_controller.cpp and its neighbours show_….cpp (what happens), and
 /// show_status.cpp (what is told).
 
+#include <atomic>
+#include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -64,6 +67,14 @@ struct GuardedHead {
   std::optional<JointBox> swept{};  ///< what `zone` was worked out for
   std::optional<Joints> swept_to{};
   std::optional<std::size_t> zone{};  ///< that its beam could meet now
+};
+
+/// A correction that is being worked out beside the loop.
+struct Solving {
+  enum class For { round, drift, hands } what = For::round;
+  std::uint64_t facts = 0;  ///< State::facts when it was asked for
+  std::atomic<bool> done{false};
+  Correction correction{};
 };
 
 struct ShowController::State {
@@ -137,8 +148,6 @@ struct ShowController::State {
   void start_with_hands(Time now);
   /// The levels with those that are held in their place.
   [[nodiscard]] std::vector<double> with_hands(std::vector<double> levels) const;
-  /// The same with the rest solved around them, when something by hand is new.
-  [[nodiscard]] std::vector<double> solved_around_hands(Time now, std::vector<double> levels);
   [[nodiscard]] std::vector<ByHand> by_hand() const;
   [[nodiscard]] std::string why_not(Time now, const ByHand& held) const;
 
@@ -183,6 +192,10 @@ struct ShowController::State {
   // A rig file read again (show_reload.cpp).
   void exchange_rig(Time now, const Rig& other, const LightModel& model, bool same_light);
 
+  ShowController::Beside beside;     ///< may be none
+  std::shared_ptr<Solving> solving;  ///< what has been asked for and not been taken up
+  std::uint64_t facts = 0;           ///< counts what makes another correction of one that was asked for before
+
   // What happens (show_controller.cpp).
   [[nodiscard]] Time at_least_last(Time now);
   void enter(Phase next, Time now);
@@ -190,6 +203,7 @@ struct ShowController::State {
   void fade(Time now, std::vector<double> from, std::vector<double> to, double seconds, FadeCurve curve);
   void guard(Time now, const std::vector<double>& from, const std::vector<double>& to);
   void start_cue(Time now, std::vector<double> levels);
+  void go_to_asked(Time now, std::vector<double> present);
   [[nodiscard]] std::vector<double> wanted_levels(std::span<const double> levels) const;
   [[nodiscard]] bool turns(std::size_t fixture) const;  ///< by the awaited look
   void take_look(Time now);
@@ -197,7 +211,11 @@ struct ShowController::State {
   void resume(Time now);
   void fade_to_safe(Time now);
   void take_sample(Time now);
-  void correct_or_hold(Time now);
+  void solve(Time now, Solving::For what);
+  void take_solved(Time now);
+  void drop_solving();
+  void correct_or_hold(Time now, Correction correction);
+  void look_at_drift(Time now, Correction correction);
   void watch_drift(Time now);
   void doubt_the_past(Time now);
   void look_at_failures(Time now);
