@@ -1,5 +1,6 @@
 #pragma once
-/// HTTP on loopback: the page, the status, and the few things a client may ask. Routes: README.md beside this file.
+/// HTTP on loopback: the page, the status, and the few things a client may ask, for those who may. Routes: README.md
+/// beside this file.
 
 #include <filesystem>
 #include <functional>
@@ -43,8 +44,11 @@ class HttpApi {
   HttpApi(HttpHandlers handlers, std::filesystem::path web_folder);
   ~HttpApi();
 
-  /// Binds 127.0.0.1:port (0 = any) and serves on threads of its own. Returns the port.
+  /// Binds 127.0.0.1:port (0 = any) and this user's socket for it, leaves the token beside that, and serves on threads
+  /// of its own. Returns the port.
   [[nodiscard]] Result<int> start(int port);
+  /// Opens one browser, once, within ten minutes.
+  [[nodiscard]] std::string one_time_address();
   void stop();
 
  private:
