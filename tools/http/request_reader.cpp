@@ -4,6 +4,8 @@
 #include <boost/beast/http/parser.hpp>
 #include <boost/beast/http/string_body.hpp>
 #include <cctype>
+#include <cstdint>
+#include <limits>
 
 namespace luxrig {
 namespace {
@@ -24,7 +26,7 @@ struct RequestReader::Parser {
 
 RequestReader::RequestReader() : parser_(std::make_unique<Parser>()) {
   parser_->beast.header_limit(kMaxHeadBytes);
-  parser_->beast.body_limit(boost::none);  // accept_body() says it
+  parser_->beast.body_limit(std::numeric_limits<std::uint64_t>::max());  // accept_body() says it
 }
 RequestReader::~RequestReader() = default;
 
@@ -51,7 +53,7 @@ void RequestReader::parse() {
     if (error == http::error::need_more) break;
     if (error == http::error::header_limit) return refuse(431, kHeadTooLong);
     if (error == http::error::body_limit) return refuse(413, kBodyTooLong);
-    if (error) return refuse(400, "this is not HTTP/1.1 as it should be");
+    if (error) return refuse(400, "this is no valid HTTP request");
     if (at_ == At::head && beast.is_header_done()) {
       parser_->head_bytes += used;
       pending.erase(0, used);
