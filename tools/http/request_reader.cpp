@@ -13,6 +13,9 @@ namespace {
 namespace http = boost::beast::http;
 constexpr std::size_t kMaxHeadBytes = 8192;
 constexpr std::size_t kMaxHeaders = 64;
+// The C library keeps what was freed for the next time, up to blocks of 32 MiB: a body that may be large gets a larger
+// one, of which only what is written takes memory, and which goes back.
+constexpr std::size_t kKeptBytes = 1u << 20, kNeverKeptBytes = 33u << 20;
 constexpr const char* kHeadTooLong = "the request line and headers are longer than 8 KiB";
 constexpr const char* kBodyTooLong = "the body is too long";
 
@@ -94,6 +97,7 @@ void RequestReader::accept_body(std::size_t max_bytes) {
     return refuse(413, kBodyTooLong);
   parser_->beast.body_limit(max_bytes);
   parser_->beast.eager(true);
+  if (max_bytes >= kKeptBytes && has_body()) parser_->beast.get().body().reserve(kNeverKeptBytes);
   at_ = At::body;
   parse();
 }

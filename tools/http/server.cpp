@@ -1,7 +1,6 @@
 #include "tools/http/server.h"
 
 #include <fmt/format.h>
-#include <malloc.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
@@ -315,10 +314,7 @@ class HttpServer::State::Connection : public std::enable_shared_from_this<Connec
                                                           : server_.changing;
     lane.push([self = this->shared_from_this(), &handler, request]() mutable {
       const auto response = std::make_shared<HttpResponse>(called(handler, *request));
-      const bool large = request->body.size() > kLargeBodyBytes;
       request.reset();
-      // What held it, and what was made of it, goes back to the system: free memory of this size is else kept.
-      if (large) ::malloc_trim(0);
       asio::post(self->server_.io, [self, response] {
         self->free_body();
         if (!self->closed_) self->answer(*response, !self->keep_alive_);
