@@ -27,6 +27,10 @@ async function attack(rig) {
     for (const [route, text] of [['/api/blackout', body], ['/api/level', level], ['/api/blackout', within], ['/', within], ['/none', within]])
       for (const mode of ['no-cors', 'cors'])
         asked.push(tell(`${mode} ${type} ${route}`, fetch(rig + route, { method: 'POST', mode, credentials: 'include', headers: { 'Content-Type': type }, body: text })));
+  // A server that refuses by the headers, and then reads on, takes what it has not read yet for the next request: that
+  // begins where its buffer of 4 KiB ended, wherever that is.
+  for (let head = 400; head < 1000; ++head)
+    asked.push(tell(`behind ${head} bytes`, fetch(`${rig}/api/blackout`, { method: 'POST', mode: 'no-cors', credentials: 'include', body: 'x'.repeat(4096 - head) + within })));
   asked.push(tell('no type', fetch(`${rig}/api/blackout`, { method: 'POST', mode: 'no-cors', credentials: 'include', body: new Blob([body]) })));
   navigator.sendBeacon(`${rig}/api/blackout`, new Blob([within], { type: 'text/plain' }));
   for (const enctype of ['text/plain', 'application/x-www-form-urlencoded', 'multipart/form-data'])
