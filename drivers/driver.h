@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,9 @@ struct CarriedUniverse {
   bool silent = false;              ///< a desk sends it instead
 };
 
+/// A switch of the bus that asks for blackout; unknown: it has not answered for some time.
+enum class Contact { unknown, rests, pressed };
+
 class Driver {
  public:
   virtual ~Driver() = default;
@@ -49,6 +53,9 @@ class Driver {
 
   /// Of a DMX driver.
   [[nodiscard]] virtual std::vector<CarriedUniverse> carried() const { return {}; }
+
+  /// Nothing: it has none.
+  [[nodiscard]] virtual std::optional<Contact> contact(Time) const { return std::nullopt; }
 
   /// Capabilities; null when the bus has none. Owned by the driver.
   virtual LevelOutput* level_output() { return nullptr; }

@@ -29,7 +29,8 @@ ModbusDriver::ModbusDriver(std::unique_ptr<modbus::Link> link, const ModbusTimin
                            std::size_t bus)
     : link_(std::move(link)),
       timing_(timing),
-      rules_(modbus::unit_rules(rig, bus, timing.response_timeout, timing.behind_gateway)),
+      rules_(modbus::unit_rules(rig, bus, timing.response_timeout, timing.behind_gateway,
+                                timing.contact ? std::optional(timing.contact->unit) : std::nullopt)),
       writes_(rig, bus, timing.refresh, rules_),
       reads_(rig, bus, timing.poll, rules_),
       failures_(rules_, writes_.channels()),
@@ -39,6 +40,7 @@ ModbusDriver::ModbusDriver(std::unique_ptr<modbus::Link> link, const ModbusTimin
   for (const modbus::Channel& channel : writes_.channels()) {
     channel_lives_.emplace_back(rig.fixtures[channel.fixture].name);
   }
+  if (timing.contact) contact_.emplace(*timing.contact);
   for (const std::size_t i : reads_.meters()) {
     const Luxmeter& meter = rig.luxmeters[i];
     meters_.push_back({i, meter.patch, meter.range_lx, LifeRecord(meter.name)});
@@ -53,6 +55,8 @@ DriverBounds ModbusDriver::bounds() const {
   bounds.write = bounds.read = timing_.response_timeout + longest + link_->longest_on_wire() + kSchedulingSlack;
   bounds.write_period = kModbusWritePeriod;
   bounds.read_period = meters_.empty() ? Duration{} : timing_.poll;
+  if (contact_ && channel_lives_.empty())
+    bounds.read_period = meters_.empty() ? kModbusWritePeriod : std::min(timing_.poll, kModbusWritePeriod);
   bounds.fault_after = asked_every() + silence_allowed() + bounds.write + kModbusWritePeriod;
   return bounds;
 }
@@ -98,6 +102,7 @@ Result<void> ModbusDriver::write(Time now, std::span<const LevelCommand> command
   count_silence(now);
   const Deadline start_until(timing_.response_timeout);
   if (!ensure_connected(now)) return tl::unexpected(life_.fault());
+  read_contact(now, start_until);
   for (const WriteSchedule::Run& run : writes_.due(now, units_silent_)) {
     if (start_until.passed() || write_run(now, run, start_until) == Outcome::over) break;
   }
@@ -119,6 +124,7 @@ Result<std::vector<LuxReading>> ModbusDriver::read(Time now) {
   count_silence(now);
   const Deadline start_until(timing_.response_timeout);
   if (!ensure_connected(now)) return tl::unexpected(life_.fault());
+  if (channel_lives_.empty()) read_contact(now, start_until);  // else with the levels, which come more often
   std::vector<LuxReading> readings;
   for (const ReadSchedule::Batch& batch : reads_.due(now, units_silent_)) {
     if (start_until.passed() || read_batch(now, batch, start_until, readings) == Outcome::over) break;
@@ -126,6 +132,10 @@ Result<std::vector<LuxReading>> ModbusDriver::read(Time now) {
   if (readings.empty() && life_.life() == Life::faulted) return tl::unexpected(life_.fault());
   if (readings.empty() && missed_) return tl::unexpected(fault_);
   return readings;
+}
+
+std::optional<Contact> ModbusDriver::contact(Time now) const {
+  return contact_ ? std::optional(contact_->contact(now)) : std::nullopt;
 }
 
 Fault ModbusDriver::inactive() const {

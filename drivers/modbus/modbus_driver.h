@@ -11,6 +11,7 @@
 #include "drivers/driver.h"
 #include "drivers/io/deadline.h"
 #include "drivers/life.h"
+#include "drivers/modbus/modbus_contact.h"
 #include "drivers/modbus/modbus_failure_bits.h"
 #include "drivers/modbus/modbus_link.h"
 #include "drivers/modbus/modbus_schedule.h"
@@ -22,6 +23,7 @@ struct ModbusTiming {
   std::chrono::milliseconds response_timeout{200};
   Duration refresh{}, poll{};
   bool behind_gateway = false;  ///< units are reached through something that has delays of its own
+  std::optional<modbus::ContactPatch> contact{};
 };
 
 class ModbusDriver final : public Driver, public LevelOutput, public LuxReader {
@@ -33,10 +35,11 @@ class ModbusDriver final : public Driver, public LevelOutput, public LuxReader {
   void deactivate(Time now) override;
   [[nodiscard]] std::vector<Health> health(Time) const override;
   LevelOutput* level_output() override { return channel_lives_.empty() ? nullptr : this; }
-  LuxReader* lux_reader() override { return meters_.empty() ? nullptr : this; }
+  LuxReader* lux_reader() override { return meters_.empty() && !contact_ ? nullptr : this; }
   Result<void> write(Time now, std::span<const LevelCommand> commands) override;
   [[nodiscard]] bool settled() const override { return writes_.all_confirmed(); }
   Result<std::vector<LuxReading>> read(Time now) override;
+  [[nodiscard]] std::optional<Contact> contact(Time now) const override;
 
  private:
   struct Meter {
@@ -79,6 +82,7 @@ class ModbusDriver final : public Driver, public LevelOutput, public LuxReader {
   Outcome read_batch(Time now, const modbus::ReadSchedule::Batch& batch, const Deadline& start_until,
                      std::vector<LuxReading>& readings);
   Outcome read_failures(Time now, const modbus::FailureBits::Batch& batch, const Deadline& start_until);
+  void read_contact(Time now, const Deadline& start_until);
   void take_reading(Time now, Meter& meter, std::span<const std::uint16_t> words, std::vector<LuxReading>& readings);
 
   std::unique_ptr<modbus::Link> link_;
@@ -87,6 +91,7 @@ class ModbusDriver final : public Driver, public LevelOutput, public LuxReader {
   modbus::WriteSchedule writes_;
   modbus::ReadSchedule reads_;
   modbus::FailureBits failures_;
+  std::optional<modbus::ContactWatch> contact_;
   modbus::UnitBackoff units_silent_;
   modbus::UnitSetup setup_;
   std::map<int, Deadline> resting_;        ///< units that want a gap between requests

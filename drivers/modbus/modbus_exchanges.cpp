@@ -197,6 +197,16 @@ ModbusDriver::Outcome ModbusDriver::read_failures(Time now, const modbus::Failur
   return outcome;
 }
 
+void ModbusDriver::read_contact(Time now, const Deadline& start_until) {
+  if (!contact_ || !units_silent_.may_ask(contact_->unit(), now)) return;
+  const auto request = contact_->due(now);
+  if (!request) return;
+  const Outcome outcome = ask(now, *request, start_until);
+  if (outcome == Outcome::skipped) return;
+  contact_->asked(now);
+  if (outcome == Outcome::done && !values_.empty()) contact_->answered(now, values_.front() != 0);
+}
+
 void ModbusDriver::take_reading(Time now, Meter& meter, std::span<const std::uint16_t> words,
                                 std::vector<LuxReading>& readings) {
   const double lux = modbus::lux_from_registers(meter.patch, words);

@@ -24,6 +24,9 @@ constexpr OptionDoc kModbusRtuOptions[] = {
     {"refresh_ms", "whole number", "ms", "400", "100 to 10000",
      "unchanged dimmer values are written again this often, so that a restarted dimmer gets its level back"},
     {"poll_ms", "whole number", "ms", "200", "20 to 10000", "each luxmeter is read this often"},
+    modbus::kContactInputOption,
+    modbus::kContactUnitOption,
+    modbus::kContactWhenOption,
 };
 
 Duration rtu_option_ms(const Bus& bus, std::string_view key) {
@@ -61,6 +64,8 @@ std::vector<Problem> check_modbus_rtu(const Rig& rig, std::size_t bus) {
           problem_at(rig, entry, "parity", fmt::format("parity cannot be \"{}\"", parity), "choose none, even or odd"));
     }
   }
+  if (problems.empty())
+    problems = modbus::check_contact(rig, entry, kModbusRtuOptions, rules.first_unit, rules.last_unit);
   check_modbus_patches(rig, bus, rules, problems);
   return problems;
 }
@@ -81,6 +86,7 @@ std::unique_ptr<Driver> make_modbus_rtu(const Rig& rig, std::size_t bus, const s
   timing.response_timeout = std::chrono::milliseconds(integer_option(entry, kModbusRtuOptions, "response_timeout_ms"));
   timing.refresh = rtu_option_ms(entry, "refresh_ms");
   timing.poll = rtu_option_ms(entry, "poll_ms");
+  timing.contact = modbus::contact_patch(entry, kModbusRtuOptions);
   return std::make_unique<ModbusDriver>(std::make_unique<modbus::RtuLink>(std::move(settings)), timing, rig, bus);
 }
 

@@ -19,6 +19,9 @@ constexpr OptionDoc kModbusTcpOptions[] = {
     {"refresh_ms", "whole number", "ms", "400", "100 to 10000",
      "unchanged dimmer values are written again this often, so that a restarted dimmer gets its level back"},
     {"poll_ms", "whole number", "ms", "200", "20 to 10000", "each luxmeter is read this often"},
+    modbus::kContactInputOption,
+    modbus::kContactUnitOption,
+    modbus::kContactWhenOption,
 };
 
 Duration tcp_option_ms(const Bus& bus, std::string_view key) {
@@ -43,6 +46,8 @@ std::vector<Problem> check_modbus_tcp(const Rig& rig, std::size_t bus) {
                                     "block)"));
     }
   }
+  if (problems.empty())
+    problems = modbus::check_contact(rig, entry, kModbusTcpOptions, rules.first_unit, rules.last_unit);
   check_modbus_patches(rig, bus, rules, problems);
   return problems;
 }
@@ -53,6 +58,7 @@ std::unique_ptr<Driver> make_modbus_tcp(const Rig& rig, std::size_t bus, const s
   timing.response_timeout = std::chrono::milliseconds(integer_option(entry, kModbusTcpOptions, "response_timeout_ms"));
   timing.refresh = tcp_option_ms(entry, "refresh_ms");
   timing.poll = tcp_option_ms(entry, "poll_ms");
+  timing.contact = modbus::contact_patch(entry, kModbusTcpOptions);
   timing.behind_gateway = true;
   auto link =
       redirect ? std::make_unique<modbus::TcpLink>(redirect->host, redirect->port)

@@ -16,7 +16,7 @@ constexpr Duration kSecondPause = std::chrono::seconds(1);
 }  // namespace
 
 std::map<int, UnitRules> unit_rules(const Rig& rig, std::size_t bus, milliseconds response_timeout,
-                                    bool behind_gateway) {
+                                    bool behind_gateway, std::optional<int> contact_unit) {
   std::map<int, UnitRules> rules;
   const auto add = [&](int unit, const std::shared_ptr<const RegisterMap>& map) {
     UnitRules& unit_rule = rules.try_emplace(unit).first->second;
@@ -37,6 +37,7 @@ std::map<int, UnitRules> unit_rules(const Rig& rig, std::size_t bus, millisecond
   for (const Luxmeter& meter : rig.luxmeters) {
     if (meter.bus == bus) add(meter.patch.unit, meter.patch.map);
   }
+  if (contact_unit) add(*contact_unit, nullptr);
   return rules;
 }
 

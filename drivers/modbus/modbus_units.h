@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <map>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -20,11 +21,12 @@ struct UnitRules {
   std::shared_ptr<const RegisterMap> map;  ///< null: none of its devices has one
 };
 
-/// Every unit that a fixture or a luxmeter of the bus names. A unit's timeout is its product's longest time to an
+/// Every unit that a fixture or a luxmeter of the bus names, and that with its blackout contact. A unit's timeout is its product's longest time to an
 /// answer with some slack for adapters; behind a gateway, which has its own reasons to be slow, not below
 /// `response_timeout`. Without a register map: `response_timeout`.
 [[nodiscard]] std::map<int, UnitRules> unit_rules(const Rig& rig, std::size_t bus,
-                                                  std::chrono::milliseconds response_timeout, bool behind_gateway);
+                                                  std::chrono::milliseconds response_timeout, bool behind_gateway,
+                                                  std::optional<int> contact_unit = {});
 
 /// A unit that does not answer is asked again after `first_pause`, then after a second, then ever more seldom, every 2
 /// s at most. What is waited for in vain is time that the units that answer do not get, so all silent units of a link

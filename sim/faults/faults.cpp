@@ -19,7 +19,7 @@ struct FaultEntry {
   std::string_view does;         // what happens, for a person
 };
 
-constexpr std::array<FaultEntry, 21> kFaults = {{
+constexpr std::array<FaultEntry, 22> kFaults = {{
     {FaultKind::lost, "lost", 0.5, 0, 1, "value of the answers, or of the frames to it, go missing (a share)"},
     {FaultKind::silent, "silent", 1, 0, 1,
      "gets everything, answers nothing; a bus or DMX fixture: what is sent has no effect either"},
@@ -50,6 +50,7 @@ constexpr std::array<FaultEntry, 21> kFaults = {{
     {FaultKind::bus_off, "bus_off", 1, 0, 1, "CAN bus: Luxrig's controller is off the bus"},
     {FaultKind::lamp_failure, "lamp_failure", 1, 0, 1,
      "fixture on Modbus: its lamp gives no light; a product with failure bits says so in them"},
+    {FaultKind::pressed, "pressed", 1, 0, 1, "bus with a blackout contact: somebody presses it"},
 }};
 
 constexpr FaultKind kOnLine[] = {FaultKind::checksum, FaultKind::truncated,  FaultKind::gap,

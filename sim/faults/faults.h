@@ -13,6 +13,7 @@
 ///   unpowered  has no power: no light, no answer; afterwards its registers are as they are when power comes
 ///
 ///   lamp_failure  fixture on Modbus: its lamp gives no light; a product with failure bits says so in them
+///   pressed       bus with a blackout contact (rig file: blackout_input): somebody presses it
 ///
 /// On a serial line only, of its answers:
 ///   checksum        a wrong checksum
@@ -74,7 +75,8 @@ enum class FaultKind {
   reset,
   unmappable,
   bus_off,
-  lamp_failure
+  lamp_failure,
+  pressed
 };
 [[nodiscard]] std::string_view name_of(FaultKind kind);
 [[nodiscard]] std::optional<FaultKind> fault_named(std::string_view name);

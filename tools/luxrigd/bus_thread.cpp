@@ -24,7 +24,7 @@ BusThread::BusThread(const Rig& rig, std::size_t bus, std::unique_ptr<Driver> dr
       bus_(bus),
       driver_(std::move(driver)),
       programs_(programs),
-      orders_(orders),
+      orders_(std::move(orders)),
       bounds_(driver_->bounds()),
       wake_fd_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
       first_desk_(first_desk),
@@ -41,6 +41,7 @@ BusThread::BusThread(const Rig& rig, std::size_t bus, std::unique_ptr<Driver> dr
   writes_ = (driver_->level_output() != nullptr && !level_commands_.empty()) ||
             (driver_->mover() != nullptr && !aim_commands_.empty());
   if (LevelInput* input = driver_->level_input()) desks_ = input->parts().size();
+  has_contact_ = driver_->contact(Time{}).has_value();
 }
 
 BusThread::~BusThread() {
@@ -53,10 +54,13 @@ void BusThread::start() {
 }
 
 void BusThread::stop() {
-  if (!thread_.joinable()) return;
-  thread_.request_stop();
-  wake();
-  thread_.join();
+  if (thread_.joinable()) {
+    thread_.request_stop();
+    wake();
+    thread_.join();
+  }
+  if (active_) driver_->deactivate(now());
+  active_ = false;
 }
 
 void BusThread::wake() {
@@ -79,31 +83,18 @@ void BusThread::run(const std::stop_token& stop) {
   if (bounds_.write_period > Duration::zero() && bounds_.write_period < std::chrono::milliseconds(60)) {
     realtime_ = make_realtime(kOutputPriority);
   }
-  // A fault of activation is in the health report, and the driver goes on trying.
-  (void)driver_->activate(now());
   const Duration cycle =
       writes_ ? bounds_.write_period : std::max(bounds_.read_period, Duration(std::chrono::milliseconds(20)));
   Time next = now();
   Time last_start{};
-  Time next_read = next, next_health = next;
   bool in_turn = true;
   while (!stop.stop_requested()) {
     const Time at = now();
     if (writes_) {
       if (last_start != Time{} && in_turn) statistics_.record(at - last_start);
       last_start = at;
-      listen(at);
-      write(at);
-      if (orders_.guarded != nullptr) orders_.guarded->beat(LastLookMemory::Beat::output);
     }
-    if (driver_->lux_reader() != nullptr && at >= next_read) {
-      read(now());
-      next_read = std::max(next_read + bounds_.read_period, now());
-    }
-    if (at >= next_health) {
-      publish_health(now());
-      next_health = at + kHealthPeriod;
-    }
+    turn(at);
     if (in_turn) next += cycle;
     // After a stall go on from here: a burst of old frames helps nobody.
     if (const Time late = now(); late > next + cycle) next = late;
@@ -112,7 +103,29 @@ void BusThread::run(const std::stop_token& stop) {
     in_turn = now() >= next;  // else somebody has woken us
     if (in_turn) lateness_.record(due, now());
   }
-  driver_->deactivate(now());
+}
+
+void BusThread::turn(Time at) {
+  if (!active_) {
+    // A fault of activation is in the health report, and the driver goes on trying.
+    (void)driver_->activate(at);
+    active_ = true;
+    next_read_ = next_health_ = at;
+  }
+  if (writes_) {
+    listen(at);
+    write(at);
+    if (orders_.guarded != nullptr) orders_.guarded->beat(LastLookMemory::Beat::output);
+  }
+  if (driver_->lux_reader() != nullptr && at >= next_read_) {
+    read(now());
+    next_read_ = std::max(next_read_ + bounds_.read_period, now());
+  }
+  if (has_contact_) look_at_contact(now());
+  if (at >= next_health_) {
+    publish_health(now());
+    next_health_ = at + kHealthPeriod;
+  }
 }
 
 void BusThread::listen(Time at) {
@@ -170,6 +183,11 @@ void BusThread::read(Time at) {
   readings_.insert(readings_.end(), unsent_readings_.begin(), unsent_readings_.end());
   if (readings_.size() > kMostUnsentReadings) readings_.erase(readings_.begin(), readings_.end() - kMostUnsentReadings);
   unsent_readings_.clear();
+}
+
+void BusThread::look_at_contact(Time at) {
+  const Contact contact = driver_->contact(at).value_or(Contact::unknown);
+  if (contact_.exchange(contact) != contact && contact == Contact::pressed && orders_.pressed) orders_.pressed();
 }
 
 void BusThread::publish_health(Time at) {

@@ -3,7 +3,9 @@
 /// delays no other.
 
 #include <atomic>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -22,6 +24,7 @@ namespace luxrig {
 struct OutputOrders {
   const BlackoutSwitch* blackout = nullptr;
   LastLookMemory* guarded = nullptr;  ///< while the guardian has the light, nothing is sent
+  std::function<void()> pressed{};    ///< called when the bus's blackout contact is; must not block
 };
 
 class BusThread {
@@ -34,6 +37,8 @@ class BusThread {
 
   void start();
   void stop();
+  /// What its thread does in its turn; called by whoever steps time instead of start().
+  void turn(Time at);
 
   /// The next frame goes out now instead of in its turn.
   void wake();
@@ -55,6 +60,10 @@ class BusThread {
   [[nodiscard]] const Lateness& lateness() const { return lateness_; }
   [[nodiscard]] bool realtime() const { return realtime_; }
   [[nodiscard]] bool writes() const { return writes_; }
+  /// Its blackout contact; nothing: it has none.
+  [[nodiscard]] std::optional<Contact> contact() const {
+    return has_contact_ ? std::optional(contact_.load()) : std::nullopt;
+  }
 
  private:
   void run(const std::stop_token& stop);
@@ -62,6 +71,7 @@ class BusThread {
   void write(Time at);
   void listen(Time at);
   void read(Time at);
+  void look_at_contact(Time at);
   void publish_health(Time at);
 
   const Rig& rig_;
@@ -75,8 +85,11 @@ class BusThread {
   std::size_t first_desk_, desks_ = 0;
   CycleStatistics statistics_;
   Lateness lateness_;
-  bool writes_ = false;
+  bool writes_ = false, active_ = false;
+  Time next_read_{}, next_health_{};
   std::atomic<bool> realtime_{false};
+  bool has_contact_ = false;
+  std::atomic<Contact> contact_{Contact::unknown};
 
   std::vector<double> levels_;                ///< of all fixtures
   std::vector<Joints> joints_;                ///< of all fixtures

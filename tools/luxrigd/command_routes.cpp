@@ -112,6 +112,12 @@ struct Routes {
     return done_answer(handlers.release(names.value_or(std::vector<std::string>{})), "released");
   }
 
+  [[nodiscard]] HttpResponse room() const {
+    std::string room = handlers.room_json();
+    if (room.empty()) return http_refusal(503, "the room is being drawn: ask again in a second");
+    return json_answer(std::move(room));
+  }
+
   [[nodiscard]] HttpResponse room_png() const {
     std::string png = handlers.room_png();
     if (png.empty()) return http_refusal(404, "this rig has no scene to draw");
@@ -132,7 +138,7 @@ std::vector<HttpRoute> command_routes(HttpHandlers handlers) {
   return {
       {get, "/api/status", [to](Request) { return json_answer(to->handlers.status()); }},
       {get, "/api/universes", [to](Request) { return json_answer(to->handlers.universes()); }},
-      {get, "/api/room", [to](Request) { return json_answer(to->handlers.room_json()); }},
+      {get, "/api/room", [to](Request) { return to->room(); }},
       {get, "/api/room.png", [to](Request) { return to->room_png(); }},
       {post, "/api/blackout", [to](Request request) { return to->blackout(request); }, 1024, true},
       {post, "/api/identify", [to](Request request) { return to->identify(request); }},

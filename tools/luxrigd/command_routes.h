@@ -15,8 +15,8 @@ namespace luxrig {
 struct HttpHandlers {
   std::function<std::string()> status;     ///< JSON
   std::function<std::string()> universes;  ///< JSON
-  std::function<std::string()> room_json;
-  std::function<std::string()> room_png;  ///< empty: there is no scene to draw
+  std::function<std::string()> room_json;  ///< empty: not drawn yet
+  std::function<std::string()> room_png;   ///< empty: there is no scene to draw
   std::function<Result<void>(bool on)> blackout;
   /// Shows for so many seconds which fixture it is.
   std::function<Result<void>(const std::string& fixture, double seconds)> identify;

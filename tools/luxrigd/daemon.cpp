@@ -20,6 +20,8 @@ constexpr Duration kSafeLookEvery = std::chrono::seconds(1), kGuardianLook = std
 constexpr int kMostDoublings = 6;
 constexpr auto kCommandBound = std::chrono::seconds(2);
 constexpr Duration kDarkWithin = std::chrono::seconds(1);
+/// A daemon that has just been killed, or the guardian of one that ended in order, is there for a moment yet.
+constexpr Duration kClaimWait = std::chrono::seconds(2);
 
 std::filesystem::path web_folder() { return shared_folder() / "web"; }
 
@@ -39,11 +41,22 @@ Daemon::~Daemon() { stop(); }
 
 Result<int> Daemon::start() {
   started_ = now();
+  if (options_.state_folder) {
+    std::error_code error;
+    const auto folder = std::filesystem::weakly_canonical(*options_.state_folder, error);
+    if (auto claimed = folder_claim_.take("state folder " + folder.string(), kClaimWait); !claimed)
+      return refusal(fmt::format("{}: one Luxrig at a time; end that, or give --state another folder",
+                                 claimed.error().detail));
+  }
+  const bool stepped = static_cast<bool>(options_.stepped_driver);
   // The page's port first: when it is taken, nothing has been opened yet.
-  http_ = std::make_unique<HttpApi>(handlers(), web_folder());
-  const auto port = http_->start(options_.http_port);
-  if (!port) return port;
-  lock_memory();
+  Result<int> port = 0;
+  if (!stepped) {
+    http_ = std::make_unique<HttpApi>(handlers(), web_folder());
+    port = http_->start(options_.http_port);
+    if (!port) return port;
+    lock_memory();
+  }
   if (options_.guarded && options_.state_folder) {
     auto memory = LastLookMemory::create(session_->rig.fixtures.size());
     if (!memory) return tl::unexpected(memory.error());
@@ -53,11 +66,7 @@ Result<int> Daemon::start() {
   first_session_ = session_;
   const Rig& rig = session_->rig;
   for (std::size_t b = 0; b < rig.buses.size(); ++b) {
-    const DriverEntry* entry = find_driver(rig.buses[b].driver);
-    std::optional<Redirect> redirect;
-    if (const auto it = options_.redirects.find(rig.buses[b].name); it != options_.redirects.end())
-      redirect = it->second;
-    auto driver = entry->make(rig, b, redirect);
+    auto driver = stepped ? options_.stepped_driver(rig, b) : make_driver(rig, b);
     const std::size_t first_desk = desks_;
     if (const LevelInput* input = driver->level_input()) {
       for (const DeskPart& part : input->parts()) {
@@ -66,7 +75,7 @@ Result<int> Daemon::start() {
       }
     }
     buses_.push_back(std::make_unique<BusThread>(rig, b, std::move(driver), programs_, first_desk,
-                                                 OutputOrders{&blackout_, guarded_ ? &*guarded_ : nullptr}));
+                                                 orders()));
   }
   if (options_.guarded && options_.state_folder) {
     // One that an earlier daemon left behind has the light until ours takes it, and tells what it was.
@@ -74,11 +83,59 @@ Result<int> Daemon::start() {
       controller_.go_on_from(now(), *light);
       send_program();
     }
-    start_guardian(now());
   }
+  if (stepped) return port;
+  if (auto claimed = claim_outputs(); !claimed) return tl::unexpected(claimed.error());
+  if (guarded_) start_guardian(now());
   for (const auto& bus : buses_) bus->start();
+  if (std::any_of(buses_.begin(), buses_.end(), [](const auto& bus) { return bus->contact().has_value(); }))
+    contacts_ = std::jthread([this](const std::stop_token& stop) { watch_contacts(stop); });
   rig_file_watch_ = std::make_shared<RigFileWatch>(files_of(rig));
+  draw_room_beside();
   return port;
+}
+
+OutputOrders Daemon::orders() {
+  return {&blackout_, guarded_ ? &*guarded_ : nullptr, [this] {
+            (void)blackout_.order(true);
+            for (const auto& bus : buses_) bus->wake();
+            contact_pressed_.release();
+          }};
+}
+
+void Daemon::watch_contacts(const std::stop_token& stop) {
+  while (true) {
+    contact_pressed_.acquire();
+    if (stop.stop_requested()) return;
+    (void)blackout(true);
+  }
+}
+
+std::unique_ptr<Driver> Daemon::make_driver(const Rig& rig, std::size_t bus) const {
+  const auto it = options_.redirects.find(rig.buses[bus].name);
+  return find_driver(rig.buses[bus].driver)
+      ->make(rig, bus, it != options_.redirects.end() ? std::optional(it->second) : std::nullopt);
+}
+
+Result<void> Daemon::claim_outputs() {
+  for (const std::string& output : outputs_of(session_->rig, options_.redirects)) {
+    const auto claimed = output_claims_.take(output, kClaimWait);
+    if (claimed) continue;
+    if (claimed.error().cause == Cause::refused)
+      return refusal(claimed.error().detail + ": two would fight for the light; end that first");
+    return claimed;
+  }
+  return {};
+}
+
+/// A picture of the room is no reason to be dark for longer.
+void Daemon::draw_room_beside() {
+  drawing_ = std::jthread([this, session = session_] {
+    make_background();
+    RoomView room = draw_room(*session);
+    const std::lock_guard lock(mutex_);
+    if (session == session_) room_ = std::move(room);  // else a reload has brought its own
+  });
 }
 
 void Daemon::start_guardian(Time at) {
@@ -87,11 +144,17 @@ void Daemon::start_guardian(Time at) {
   settings.fixtures = session_->rig.fixtures.size();
   settings.redirects = options_.redirects;
   settings.state_folder = *options_.state_folder;
+  settings.claims = output_claims_.descriptors();
   guardian_.reset();
+  guardian_seen_ = at;
+  // It would read another rig than the one that runs.
+  if (rig_file_watch_ && !rig_file_watch_->changed().empty()) {
+    unguarded_ = "the rig file has changed since it was read: luxrig reload";
+    return;
+  }
   auto started = Guardian::start(std::move(settings), *guarded_, at);
   unguarded_ = started ? "" : started.error().detail;
   if (started) guardian_.emplace(std::move(*started));
-  guardian_seen_ = at;
 }
 
 void Daemon::look_after_guardian(Time at) {
@@ -158,14 +221,18 @@ std::future<void> Daemon::queue(std::function<void(Time)> run) {
   return commands_.back().done.get_future();
 }
 
-/// Runs something between two ticks, and waits until it was done. Called from the control thread itself (no other
-/// thread ticks then), it would wait for ever: there the queue is just filled.
+/// Runs something between two ticks, and waits until it was done.
 void Daemon::on_control_thread(std::function<void(Time)> run) {
-  const std::future<void> done = queue(std::move(run));
-  if (std::this_thread::get_id() != control_thread_) done.wait_for(kCommandBound);
+  if (std::this_thread::get_id() == control_thread_) return run(now());
+  queue(std::move(run)).wait_for(kCommandBound);
 }
 
 Result<void> Daemon::blackout(bool on) {
+  for (const auto& bus : buses_) {
+    if (on || bus->contact() != Contact::pressed) continue;
+    return refusal(fmt::format("the blackout contact of bus \"{}\" asks for it: release that first",
+                               first_session_->rig.buses[bus->bus()].name));
+  }
   const std::uint64_t order = blackout_.order(on);
   for (const auto& bus : buses_) bus->wake();
   queue([this](Time at) {
@@ -224,7 +291,6 @@ HttpHandlers Daemon::handlers() {
     return status_json_;
   };
   handlers.universes = [this] { return universes_json(); };
-  room_ = draw_room(*session_);
   handlers.room_json = [this] {
     const std::lock_guard lock(mutex_);
     return room_.json;
@@ -273,6 +339,7 @@ void Daemon::tick() {
   const bool commanded = run_commands(at);
   devices_.clear();
   for (const auto& bus : buses_) {
+    if (options_.stepped_driver) bus->turn(at);
     for (const LuxReading& reading : bus->take_readings()) controller_.reading(at, reading);
     const auto frames = bus->desk_frames();
     for (std::size_t part = 0; part < frames.size(); ++part) {
@@ -325,6 +392,11 @@ void Daemon::stop() {
     // Handlers that wait for this thread are served; else each would hold up the end.
     auto ended = std::async(std::launch::async, [this] { http_->stop(); });
     while (ended.wait_for(std::chrono::milliseconds(5)) != std::future_status::ready) run_commands(now());
+  }
+  if (contacts_.joinable()) {
+    contacts_.request_stop();
+    contact_pressed_.release();
+    contacts_.join();
   }
   buses_.clear();
   if (guardian_) guardian_->end();

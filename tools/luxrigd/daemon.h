@@ -9,15 +9,18 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <semaphore>
 #include <thread>
 
 #include "core/control/show_controller.h"
 #include "drivers/registry.h"
 #include "tools/luxrig/session.h"
 #include "tools/luxrigd/bus_thread.h"
+#include "tools/luxrigd/claims.h"
 #include "tools/luxrigd/guardian.h"
 #include "tools/luxrigd/http_api.h"
 #include "tools/luxrigd/journal.h"
+#include "tools/luxrigd/light_store.h"
 #include "tools/luxrigd/rig_file_watch.h"
 #include "tools/luxrigd/room_view.h"
 
@@ -41,9 +44,13 @@ struct DaemonOptions {
   std::optional<std::filesystem::path> state_folder;  ///< none: nothing is remembered
   bool guarded = false;  ///< a guardian takes the rig to its safe look when this process dies; needs a state folder
   int http_port = 9620;  ///< 0 = any
+  /// A test steps time (clock.h): no threads, no page; tick() is everybody's turn. Makes drivers, too.
+  std::function<std::unique_ptr<Driver>(const Rig&, std::size_t bus)> stepped_driver{};
   /// What a rig gives in the session's scene with heads that look elsewhere, for plans that turn them; called on
   /// whatever thread brings the plan. Empty: such plans are refused.
   std::function<Result<LightModel>(const Session&, const Rig&)> light_model{};
+  /// Told whenever a model was worked out that is in force now, on whatever thread did it.
+  std::function<void(const Session&, const KeptLight&)> keep_light{};
   /// Solves the tasks of a rig file that was read again; turns the session's heads as its plan has them. Empty: there
   /// is no reload.
   std::function<Result<SolvedRig>(Session&)> solve{};
@@ -59,12 +66,12 @@ class Daemon {
   [[nodiscard]] Result<int> start();
 
   /// Opens the page in one browser, once, within ten minutes.
-  [[nodiscard]] std::string page_address() { return http_->one_time_address(); }
+  [[nodiscard]] std::string page_address() { return http_ ? http_->one_time_address() : ""; }
 
   /// The plan, the blackout, what rests and what is set by hand as it was when the last daemon stopped, taken up again.
   /// A plan that was solved from a rig file which has changed since is left: the caller has a newer one. One that a
   /// person applied is taken up all the same, within the limits of the rig as it is now, and an alarm says so.
-  [[nodiscard]] Resumed resume();
+  [[nodiscard]] Resumed resume(const Journal::Left& left);
 
   /// Applies a plan as if a client had sent it. of_rig: it was solved from this rig file, nobody has chosen it.
   [[nodiscard]] Checked<void> apply(const Plan& plan, bool of_rig = false);
@@ -79,6 +86,8 @@ class Daemon {
   void tick();
   [[nodiscard]] const ShowStatus& status() const { return status_; }
   [[nodiscard]] const std::vector<Health>& devices() const { return devices_; }
+  /// What a client may ask.
+  [[nodiscard]] HttpHandlers handlers();
 
   void go_safe();
   /// Any thread. Past the control thread; returns when every lamp has been told and the disk has it. Fails, though it
@@ -125,10 +134,17 @@ class Daemon {
   [[nodiscard]] std::string universes_json();
   void send_program();
   void publish(Time at);
+  /// What nobody else may have; fails where another has it.
+  [[nodiscard]] Result<void> claim_outputs();
+  void draw_room_beside();
+  [[nodiscard]] OutputOrders orders();
+  [[nodiscard]] std::unique_ptr<Driver> make_driver(const Rig& rig, std::size_t bus) const;
+  /// Takes what was asked for by a contact, past everything that may wait.
+  void watch_contacts(const std::stop_token& stop);
+  void add_contact_alarms(Time at);
   void start_guardian(Time at);
   void tell_guardian(Time at);
   void look_after_guardian(Time at);
-  [[nodiscard]] HttpHandlers handlers();
   /// What becomes of a plan that cannot be saved.
   enum class Unsaved { is_refused, goes_on };
   [[nodiscard]] Checked<std::string> apply_json(const std::string& plan_json, bool of_rig, Unsaved unsaved);
@@ -138,8 +154,11 @@ class Daemon {
   DaemonOptions options_;
   ShowController controller_;
   ProgramMailbox programs_;
+  Claims folder_claim_, output_claims_;
   BlackoutSwitch blackout_;
   std::optional<LastLookMemory> guarded_;  ///< shared with the guardian
+  std::counting_semaphore<> contact_pressed_{0};
+  std::vector<std::optional<Time>> contact_unknown_since_;  ///< by bus
   std::vector<std::unique_ptr<BusThread>> buses_;
   std::unique_ptr<HttpApi> http_;
   Journal journal_;
@@ -177,6 +196,8 @@ class Daemon {
   std::mutex model_mutex_;  // guards the two below
   std::vector<Joints> model_joints_;
   LightModel model_;
+
+  std::jthread drawing_, contacts_;  ///< last: they use what stands above
 };
 
 }  // namespace luxrig

@@ -16,6 +16,7 @@
 namespace luxrig {
 namespace {
 
+constexpr Duration kContactFound = std::chrono::seconds(2);  // it is asked for the first time, or again
 constexpr Duration kStillSaid = std::chrono::seconds(60);
 
 /// By the wall clock, in seconds: for what is remembered.
@@ -152,7 +153,11 @@ Checked<std::string> Daemon::apply_json(const std::string& plan_json, bool of_ri
     }
     return {controller_.status(at).by_hand, at};
   });
-  if (applied && !applied->held.empty())
+  if (!applied)
+    return tl::unexpected(std::vector<Problem>{
+        {"plan", 0, 0, "the control loop has not come to it yet: the plan is saved, and in force when it does",
+         "look at luxrig status before you apply it again"}});
+  if (!applied->held.empty())
     note += (note.empty() ? "" : "\n") + lines_of(session->rig, applied->held, applied->at);
   return note;
 }
@@ -166,14 +171,15 @@ Result<LightModel> Daemon::model_for(const Session& session, const std::vector<J
   auto model = options_.light_model(session, rig);
   if (!model) return model;
   model_joints_ = joints;
-  return model_ = std::move(*model);
+  model_ = std::move(*model);
+  if (options_.keep_light) options_.keep_light(session, {model_joints_, model_});
+  return model_;
 }
 
 // ---- what the last daemon left ----
 
-Resumed Daemon::resume() {
+Resumed Daemon::resume(const Journal::Left& left) {
   Resumed resumed;
-  const Journal::Left left = journal_.load();
   resumed.notes = left.complaints;
   if (!left.state) return resumed;
   const JournalState& saved = *left.state;
@@ -344,6 +350,7 @@ void Daemon::add_alarms(Time at) {
                               "this program stood still for longer than half a second, and its guardian had the light "
                               "meanwhile: something else takes this computer's time, or stopped it",
                               *stood_still_at_});
+  add_contact_alarms(at);
   const std::lock_guard lock(mutex_);
   if (rig_file_watch_) {
     const auto changed = rig_file_watch_->changed();
@@ -367,6 +374,33 @@ void Daemon::add_alarms(Time at) {
                      what_differs(*plan_made_for_, version_),
                      rig_file_changed_at_ ? "luxrig reload takes the rig file as it is now, or " : ""),
          plan_at_});
+  }
+}
+
+void Daemon::add_contact_alarms(Time at) {
+  contact_unknown_since_.resize(buses_.size());
+  for (std::size_t b = 0; b < buses_.size(); ++b) {
+    const auto contact = buses_[b]->contact();
+    if (!contact) continue;
+    const std::string& name = first_session_->rig.buses[buses_[b]->bus()].name;
+    std::optional<Time>& since = contact_unknown_since_[b];
+    if (contact != Contact::unknown) {
+      since.reset();
+    } else if (!since) {
+      since = at;
+    }
+    if (since && at - *since > kContactFound)
+      status_.alarms.push_back({true, name,
+                                fmt::format("the blackout contact of bus \"{}\" does not answer, and could not ask for "
+                                            "blackout: look at its unit and its wires",
+                                            name),
+                                *since});
+    if (contact == Contact::pressed)
+      status_.alarms.push_back({false, name,
+                                fmt::format("the blackout contact of bus \"{}\" asks for blackout; when it is "
+                                            "released, luxrig blackout off brings the light back",
+                                            name),
+                                at});
   }
 }
 
@@ -429,6 +463,7 @@ Checked<std::string> Daemon::reload() {
     const std::lock_guard lock(model_mutex_);
     model_joints_ = look->joints;
     model_ = *model;
+    if (options_.keep_light) options_.keep_light(*session, {model_joints_, model_});
   }
   // All by value: the loop may come to it after we have given up waiting.
   on_control_thread([this, session, version, made_for = plan->made_for, rig = std::move(as_it_looks),

@@ -27,6 +27,20 @@ constexpr auto kEndsWithin = std::chrono::seconds(1);
 constexpr auto kLook = std::chrono::milliseconds(10);
 constexpr Duration kHangs = std::chrono::seconds(1), kStartsWithin = std::chrono::seconds(10);
 
+/// The first that it will be able to write.
+Result<std::filesystem::path> pid_file_in(const std::filesystem::path& state_folder) {
+  int why = ENOENT;
+  for (const std::filesystem::path& file : guardian_pid_files(state_folder)) {
+    const int fd = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+    if (fd >= 0) {
+      ::close(fd);
+      return file;
+    }
+    why = errno;
+  }
+  return tl::unexpected(os_fault("keeping which process it is in " + state_folder.string(), why));
+}
+
 std::filesystem::path guardian_program() {
   std::error_code error;
   return std::filesystem::read_symlink("/proc/self/exe", error).parent_path() / kGuardianName;
@@ -46,11 +60,13 @@ Result<void> Guardian::launch() {
     return refusal(program.string() + " is missing: build it with this program");
   std::error_code error;
   std::filesystem::create_directories(settings_.state_folder, error);
+  const auto pid_file = pid_file_in(settings_.state_folder);
+  if (!pid_file) return tl::unexpected(pid_file.error());
   int ends[2] = {-1, -1};
   if (::pipe2(ends, O_CLOEXEC) != 0) return tl::unexpected(os_fault("making a pipe to the guardian", errno));
   std::vector<std::string> words = {
       program.string(), settings_.rig_file.string(), kLookOption, std::to_string(memory_->fd()),
-      kAliveOption,     std::to_string(ends[0]),     kPidOption,  guardian_pid_file(settings_.state_folder).string()};
+      kAliveOption,     std::to_string(ends[0]),     kPidOption,  pid_file->string()};
   for (const auto& [bus, to] : settings_.redirects) {
     words.insert(words.end(), {kRedirectOption, redirect_text(bus, to)});
   }
@@ -73,6 +89,7 @@ Result<void> Guardian::launch() {
     ::sigprocmask(SIG_SETMASK, &none, nullptr);
     ::fcntl(memory_->fd(), F_SETFD, 0);
     ::fcntl(ends[0], F_SETFD, 0);
+    for (const int fd : settings_.claims) ::fcntl(fd, F_SETFD, 0);
     ::execve(argv[0], argv.data(), environ);
     ::_exit(127);
   }
@@ -135,9 +152,11 @@ void Guardian::wait_for_its_end() {
   pid_ = -1;
 }
 
-std::optional<LightInForce> send_guardian_away(const std::filesystem::path& state_folder, std::size_t fixtures) {
+namespace {
+
+std::optional<LightInForce> send_away_by(const std::filesystem::path& pid_file, std::size_t fixtures) {
   // A guardian that lives holds a lock on its file: a number alone may be another process's by now.
-  const int fd = ::open(guardian_pid_file(state_folder).c_str(), O_RDWR | O_CLOEXEC);
+  const int fd = ::open(pid_file.c_str(), O_RDONLY | O_CLOEXEC);
   if (fd < 0) return std::nullopt;
   const auto gone = [fd] { return ::flock(fd, LOCK_EX | LOCK_NB) == 0; };
   bool there = false;
@@ -157,9 +176,18 @@ std::optional<LightInForce> send_guardian_away(const std::filesystem::path& stat
   }
   ::close(fd);
   if (!there) return std::nullopt;
-  const auto said = read_file(guardian_pid_file(state_folder));
+  const auto said = read_file(pid_file);
   const auto number_ends = said ? said->find('\n') : std::string::npos;
   return number_ends == std::string::npos ? std::nullopt : handed_light_of(said->substr(number_ends + 1), fixtures);
+}
+
+}  // namespace
+
+std::optional<LightInForce> send_guardian_away(const std::filesystem::path& state_folder, std::size_t fixtures) {
+  std::optional<LightInForce> light;
+  for (const std::filesystem::path& file : guardian_pid_files(state_folder))
+    if (auto its = send_away_by(file, fixtures)) light = std::move(its);
+  return light;
 }
 
 }  // namespace luxrig

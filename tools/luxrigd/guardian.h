@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/control/show_controller.h"
 #include "drivers/registry.h"
@@ -21,6 +22,7 @@ struct GuardianSettings {
   std::size_t fixtures = 0;
   std::map<std::string, Redirect> redirects;  ///< by bus name
   std::filesystem::path state_folder;         ///< where it says which process it is
+  std::vector<int> claims{};                  ///< it holds them, too (claims.h)
 };
 
 class Guardian {

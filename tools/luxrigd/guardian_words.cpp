@@ -1,8 +1,22 @@
 #include "tools/luxrigd/guardian_words.h"
 
+#include <fmt/format.h>
+
 #include <charconv>
+#include <functional>
+
+#include "tools/luxrigd/runtime_folder.h"
 
 namespace luxrig {
+
+std::vector<std::filesystem::path> guardian_pid_files(const std::filesystem::path& state_folder) {
+  std::vector<std::filesystem::path> files = {state_folder / "guardian.pid"};
+  std::error_code error;
+  const std::string whole = std::filesystem::weakly_canonical(state_folder, error).string();
+  if (const auto folder = runtime_folder(); folder && !error)
+    files.push_back(*folder / fmt::format("guardian-{:016x}.pid", std::hash<std::string>{}(whole)));
+  return files;
+}
 
 std::string redirect_text(const std::string& bus, const Redirect& to) {
   return bus + "=" + (to.path.empty() ? to.host + ":" + std::to_string(to.port) : to.path);

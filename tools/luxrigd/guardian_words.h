@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "drivers/registry.h"
 
@@ -19,8 +20,8 @@ inline constexpr const char* kRedirectOption = "--redirect";
 [[nodiscard]] std::string redirect_text(const std::string& bus, const Redirect& to);
 [[nodiscard]] std::optional<std::pair<std::string, Redirect>> redirect_of(const std::string& text);
 
-[[nodiscard]] inline std::filesystem::path guardian_pid_file(const std::filesystem::path& state_folder) {
-  return state_folder / "guardian.pid";
-}
+/// Where a guardian may say which process it is: in the state folder, or where that cannot be written, among what lives
+/// as long as a process.
+[[nodiscard]] std::vector<std::filesystem::path> guardian_pid_files(const std::filesystem::path& state_folder);
 
 }  // namespace luxrig

@@ -9,6 +9,7 @@
 #include "tools/http/server.h"
 #include "tools/luxrigd/access.h"
 #include "tools/luxrigd/meeting_place.h"
+#include "tools/luxrigd/runtime_folder.h"
 
 namespace luxrig {
 namespace {
@@ -99,8 +100,14 @@ Result<int> HttpApi::start(int port) {
               {}});
   }
   // Whoever has the port has the socket and the token of that name.
-  const auto folder = make_meeting_folder();
-  if (!folder) return tl::unexpected(folder.error());
+  const auto folder = runtime_folder();
+  if (!folder) {
+    return tl::unexpected(Fault{Cause::system,
+                                {},
+                                "no folder for the daemon's socket that is this user's alone (mode 700): set "
+                                "XDG_RUNTIME_DIR, or remove what is in the way of /tmp/luxrig-UID",
+                                {}});
+  }
   if (const auto made = server.bind_socket(socket_file(*folder, *bound)); !made) return tl::unexpected(made.error());
   state_->token = token_file(*folder, *bound);
   if (const auto left = write_secret(state_->token, state_->access.token() + "\n"); !left)

@@ -17,6 +17,7 @@
 #include "tools/luxrigd/rig_pictures.h"
 #include "tools/luxrigd/run_report.h"
 #include "tools/luxrigd/scheduling.h"
+#include "tools/luxrigd/service_manager.h"
 
 namespace luxrig {
 namespace {
@@ -87,6 +88,22 @@ Result<SolvedRig> solve_again(Session& session, const ComputeOptions& compute) {
     session.rig = std::move(solved->rig);
     return SolvedRig{std::move(solved->plan), light_model(session.rig, solved->transport)};
   });
+}
+
+/// The plan of a rig file alone.
+Checked<Plan> solved_anew(const std::filesystem::path& rig_file, const ComputeOptions& compute) {
+  auto session = open_session(rig_file);
+  if (!session) return tl::unexpected(std::move(session.error()));
+  auto solved = solve_again(*session, compute);
+  if (!solved)
+    return tl::unexpected(std::vector<Problem>{{rig_file.string(), 0, 0, solved.error().detail, "mend the rig file"}});
+  return std::move(solved->plan);
+}
+
+std::vector<Joints> joints_of(const Rig& rig) {
+  std::vector<Joints> joints;
+  for (const Fixture& fixture : rig.fixtures) joints.push_back(fixture.joints);
+  return joints;
 }
 
 /// Ticks until `done` says so.
@@ -163,6 +180,7 @@ Result<void> show_before_and_after(Daemon& daemon, RunReport& say, RigPictures& 
 
 int run_rig(const RunArguments& arguments) {
   const Time process_start = now();
+  ServiceManager service;
   keep_signal(SIGUSR1);
   const std::stop_token stop = stop_on_signals();
   // Nobody need be there to be told: a terminal that hangs up, and a pipe that closes, end nothing.
@@ -208,10 +226,28 @@ int run_rig(const RunArguments& arguments) {
                     arguments.sim_seed));
   }
 
-  // 2. Transport and plan.
+  // 2. What the rig gives, and a plan. Where an earlier daemon has left both, there is light at once.
+  if (arguments.state_folder) {
+    options.state_folder = arguments.state_folder;
+  } else if (!arguments.sim && !arguments.sim_ports) {
+    options.state_folder = default_state_folder(rig.name);
+  }
   ComputeOptions compute = arguments.compute;
+  const std::uint64_t key = light_key(rig, session->scene, compute);
+  const bool goes_on = !arguments.plan && !arguments.once && !arguments.fresh && !arguments.pictures;
+  std::optional<LightModel> model;
+  std::optional<Plan> plan, hung;
+  Journal::Left left;
+  if (goes_on) left = Journal(options.state_folder).load();
+  if (goes_on && options.state_folder) {
+    auto kept = left.state && !left.state->plan_json.empty() ? kept_light(*options.state_folder, key, rig) : std::nullopt;
+    if (kept) {
+      turn_heads(session->rig, kept->joints);
+      model = std::move(kept->model);
+      say.say("transport: as it was worked out for this rig before");
+    }
+  }
   compute.watch = {stop, progress_line("  transport", [&](std::string text) { progress.tell(std::move(text)); })};
-  std::optional<Plan> plan;
   if (arguments.plan) {
     auto read = plan_of_file(*arguments.plan);
     if (!read) return report(read.error());
@@ -220,34 +256,38 @@ int run_rig(const RunArguments& arguments) {
     turn_heads(session->rig, look->joints);
     plan = std::move(*read);
   }
-  ModelUsed used;
-  auto transport =
-      in_background<Result<TransportMatrix>>([&] { return compute_transport(*session, compute, {}, &used); });
-  if (!transport) return report(transport.error());
-  say.say(fmt::format("transport: {} x {} by {}, relative error {:.2g}, {} rays, {} threads", transport->receivers(),
-                      transport->emitters(), used.name, transport->relative_error, transport->rays,
-                      thread_count(compute.threads)));
-  if (const std::string warning = used.warning(); !warning.empty()) say.say("warning: " + warning);
-  compute.watch.progress = nullptr;
-  std::optional<Plan> hung;
-  if (arguments.pictures) {
-    auto solved = solve_what_hangs(*session, *transport, compute, false);
-    if (!solved) return report(solved.error());
-    hung = std::move(solved->plan);
-  }
-  if (!plan) {
-    auto solved = in_background<Result<SolvedTasks>>([&] { return solve_what_hangs(*session, *transport, compute); });
-    if (!solved) return report(solved.error());
-    for (const Task& task : rig.tasks) {
-      if (task.places_lights())
-        say.say(fmt::format("task {}: left out, since it places lights that do not hang yet: luxrig solve does it",
-                            task.name));
+  if (!model) {
+    ModelUsed used;
+    auto transport =
+        in_background<Result<TransportMatrix>>([&] { return compute_transport(*session, compute, {}, &used); });
+    if (!transport) return report(transport.error());
+    say.say(fmt::format("transport: {} x {} by {}, relative error {:.2g}, {} rays, {} threads", transport->receivers(),
+                        transport->emitters(), used.name, transport->relative_error, transport->rays,
+                        thread_count(compute.threads)));
+    if (const std::string warning = used.warning(); !warning.empty()) say.say("warning: " + warning);
+    compute.watch.progress = nullptr;
+    if (arguments.pictures) {
+      auto solved = solve_what_hangs(*session, *transport, compute, false);
+      if (!solved) return report(solved.error());
+      hung = std::move(solved->plan);
     }
-    say_solved(say, rig, solved->plan);
-    plan = std::move(solved->plan);
-    session->rig = std::move(solved->rig);
-    transport = std::move(solved->transport);
+    if (!plan) {
+      auto solved = in_background<Result<SolvedTasks>>([&] { return solve_what_hangs(*session, *transport, compute); });
+      if (!solved) return report(solved.error());
+      for (const Task& task : rig.tasks) {
+        if (task.places_lights())
+          say.say(fmt::format("task {}: left out, since it places lights that do not hang yet: luxrig solve does it",
+                              task.name));
+      }
+      say_solved(say, rig, solved->plan);
+      plan = std::move(solved->plan);
+      session->rig = std::move(solved->rig);
+      transport = std::move(solved->transport);
+    }
+    model = light_model(rig, *transport);
+    if (options.state_folder) keep_light(*options.state_folder, {joints_of(rig), *model}, key);
   }
+  compute.watch.progress = nullptr;
   if (sim) {
     auto ready = sim->wait_ready({stop, nullptr});
     if (!ready) return report(ready.error());
@@ -260,11 +300,6 @@ int run_rig(const RunArguments& arguments) {
   if (ports) options.redirects = ports->buses;
   options.simulated = ports.has_value();
   options.http_port = arguments.http_port.value_or(rig.daemon.http_port);
-  if (arguments.state_folder) {
-    options.state_folder = arguments.state_folder;
-  } else if (!options.simulated) {
-    options.state_folder = default_state_folder(rig.name);
-  }
   // A simulator of our own would die with us.
   options.guarded = !arguments.no_guardian && !sim && options.state_folder.has_value();
   options.light_model = [compute](const Session& in, const Rig& turned) -> Result<LightModel> {
@@ -274,10 +309,15 @@ int run_rig(const RunArguments& arguments) {
     return light_model(turned, *anew);
   };
   options.solve = [compute](Session& reread) { return solve_again(reread, compute); };
-  Daemon daemon(session, light_model(rig, *transport), options);
+  if (options.state_folder) {
+    options.keep_light = [compute, folder = *options.state_folder](const Session& in, const KeptLight& light) {
+      keep_light(folder, light, light_key(in.rig, in.scene, compute));
+    };
+  }
+  Daemon daemon(session, std::move(*model), options);
   const auto port = daemon.start();
   if (!port) return report(port.error());
-  const std::jthread blackout_by_signal = on_signal(SIGUSR1, [&] {
+  std::jthread blackout_by_signal = on_signal(SIGUSR1, [&] {
     if (const auto dark = daemon.blackout(true); !dark) say.say("warning  blackout by signal: " + dark.error().detail);
   });
   say.say("page and status: " + daemon.page_address() + " (opens one browser; luxrig page prints another)");
@@ -285,9 +325,9 @@ int run_rig(const RunArguments& arguments) {
     say.say("warning  if this process dies, lamps do what they do without data: no guardian: " + daemon.unguarded());
   }
   bool resumed = false;
-  if (!arguments.plan && !arguments.once && !arguments.fresh) {
+  if (goes_on) {
     // A damaged or outdated state must not keep the rig dark: what cannot be taken up is said, and the fresh plan goes.
-    const Resumed state = daemon.resume();
+    const Resumed state = daemon.resume(left);
     resumed = state.plan;
     if (resumed) say.say("resumed the plan that was in force (--fresh starts from the rig file)");
     for (const std::string& note : state.notes) say.say("warning  " + note);
@@ -298,8 +338,19 @@ int run_rig(const RunArguments& arguments) {
     if (const auto shown = show_before_and_after(daemon, say, pictures, *hung, *plan, stop); !shown)
       pictures_failed = report(shown.error());
   } else if (!resumed) {
+    if (!plan) {  // what was left could not be taken up
+      auto solving = std::async(std::launch::async, [&] { return solved_anew(rig.file, compute); });
+      tick_until(daemon, [&](Time) {
+        service.alive(now());
+        return solving.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+      });
+      auto solved = solving.get();
+      if (!solved) return report(solved.error());
+      plan = std::move(*solved);
+    }
     if (const auto applied = daemon.apply(*plan, !arguments.plan); !applied) return report(applied.error());
   }
+  service.ready();
 
   if (!realtime_allowed()) {
     say.say(
@@ -312,6 +363,7 @@ int run_rig(const RunArguments& arguments) {
   bool shown = false;
   const auto truth = [&]() -> std::optional<SimTruth> { return ports ? ask_truth(ports->control) : std::nullopt; };
   tick_until(daemon, [&](Time at) {
+    service.alive(at);
     say.use(daemon.session()->rig);
     say.follow(daemon.status(), at);
     const bool settled = daemon.status().phase == Phase::holding;
@@ -329,6 +381,8 @@ int run_rig(const RunArguments& arguments) {
   });
   const ShowStatus final_status = daemon.status();
 
+  service.ending();
+
   // 5. Out: the safe look, then each driver's goodbye.
   const auto seen = arguments.once ? truth() : std::nullopt;
   if (rig.daemon.park_at_end && daemon.park()) {
@@ -345,6 +399,7 @@ int run_rig(const RunArguments& arguments) {
   const Time fade_start = now();
   tick_until(daemon, [&](Time at) { return daemon.status().phase == Phase::safe || at - fade_start > most; });
   const auto after = arguments.once ? truth() : std::nullopt;
+  blackout_by_signal = {};
   daemon.stop();
   say.say(daemon.status().phase == Phase::safe ? "ended in the safe look" : "ended before the safe look was reached");
   if (pictures_failed != kExitOk || !arguments.once) return pictures_failed;

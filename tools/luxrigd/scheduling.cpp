@@ -1,5 +1,6 @@
 #include "tools/luxrigd/scheduling.h"
 
+#include <malloc.h>
 #include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
@@ -23,7 +24,11 @@ bool realtime_allowed() {
   return allowed;
 }
 
-bool lock_memory() { return mlockall(MCL_CURRENT | MCL_FUTURE) == 0; }
+bool lock_memory() {
+  malloc_trim(0);  // what solving has freed
+  // Without ONFAULT every thread's whole stack and every arena would become resident.
+  return mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0;
+}
 
 void make_background() {
   // Linux keeps the nice value per thread; children inherit it.

@@ -44,6 +44,7 @@ RigUnits::RigUnits(const EndpointParts& parts) : parts_(parts) {
     number.writable = false;
     add(patch.unit, patch.input_registers ? RegisterKind::input : RegisterKind::holding, patch.first_register, number);
   }
+  add_contact();
   for (auto& [id, unit] : units_) {
     if (!unit.map) continue;
     std::vector<std::size_t> number_of;  // of each register of the map
@@ -78,6 +79,25 @@ RigUnits::RigUnits(const EndpointParts& parts) : parts_(parts) {
     for (const SetupWrite& write : unit.map->setup) unit.setup.emplace_back(number_of[write.index], write.value_raw);
   }
   for (auto& [id, unit] : units_) power_on(unit);
+}
+
+/// The switch on a discrete input that asks for blackout, when the bus has one.
+void RigUnits::add_contact() {
+  const Bus& bus = parts_.rig.buses[parts_.bus];
+  const auto whole = [&](const char* key, std::int64_t otherwise) {
+    const auto found = bus.options.find(key);
+    const auto* number = found == bus.options.end() ? nullptr : std::get_if<std::int64_t>(&found->second.value);
+    return static_cast<int>(number != nullptr ? *number : otherwise);
+  };
+  const int input = whole("blackout_input", -1), unit = whole("blackout_unit", 1);
+  if (input < 0) return;
+  const auto when = bus.options.find("blackout_when");
+  closed_when_pressed_ = when != bus.options.end() && when->second.value == OptionValue(std::string("closed"));
+  unit_of(unit, bus.name, nullptr);
+  Number number;
+  number.is = Number::Is::contact;
+  number.writable = false;
+  add(unit, RegisterKind::discrete, input, number);
 }
 
 RigUnits::Unit& RigUnits::unit_of(int unit, const std::string& device, const std::shared_ptr<const RegisterMap>& map) {
@@ -180,6 +200,10 @@ std::optional<ModbusException> RigUnits::read(int unit, RegisterKind kind, int f
       number.words[0] = std::any_of(number.about.begin(), number.about.end(), [&](const std::string& fixture) {
         return parts_.faults.find(fixture, FaultKind::lamp_failure).has_value();
       });
+    }
+    if (number.is == Number::Is::contact) {
+      const bool pressed = parts_.faults.find(parts_.rig.buses[parts_.bus].name, FaultKind::pressed).has_value();
+      number.words[0] = pressed == closed_when_pressed_;
     }
     values[i] = number.words[place->second.word];
   }

@@ -43,7 +43,7 @@ class RigUnits final : public ModbusUnits {
   };
   /// One or two registers that are one number.
   struct Number {
-    enum class Is { dimmer, meter, failure, other } is = Is::other;
+    enum class Is { dimmer, meter, failure, contact, other } is = Is::other;
     std::size_t index = 0;  ///< fixture or luxmeter of the rig
     RegisterFormat format;
     double least = 0, most = 65535;
@@ -66,6 +66,7 @@ class RigUnits final : public ModbusUnits {
   };
 
   Unit& unit_of(int unit, const std::string& device, const std::shared_ptr<const RegisterMap>& map);
+  void add_contact();
   std::size_t add(int unit, RegisterKind kind, int first, Number number);
   std::optional<ModbusException> write_table(int unit, RegisterKind kind, int first,
                                              std::span<const std::uint16_t> values);
@@ -77,6 +78,7 @@ class RigUnits final : public ModbusUnits {
   [[nodiscard]] double meter_count(const Number& number);
 
   EndpointParts parts_;
+  bool closed_when_pressed_ = false;  ///< of the blackout contact
   std::vector<Number> numbers_;
   std::map<Address, Place> places_;
   std::map<int, Unit> units_;

@@ -129,5 +129,44 @@ TEST(CycleStatistics, QuantilesCountDeviationsInBothDirections) {
   EXPECT_EQ(statistics.max_us(), 2000);
 }
 
+// It ended at 20 ms, whatever was worse.
+TEST(CycleStatistics, TellsToOnePercentHowBadTheWorstAre) {
+  for (const std::int64_t late_us : std::initializer_list<std::int64_t>{15, 400, 2559, 2560, 2570, 19'990, 20'010, 130'000, 5'000'000, 3'600'000'000}) {
+    CycleStatistics statistics(10ms);
+    for (int i = 0; i < 90; ++i) statistics.record(10ms);
+    for (int i = 0; i < 10; ++i) statistics.record(10ms + std::chrono::microseconds(late_us));
+    const auto told = static_cast<double>(statistics.quantile_us(0.99));
+    EXPECT_GE(told, static_cast<double>(late_us));
+    EXPECT_LE(told, static_cast<double>(late_us) * 1.01 + 10) << late_us;
+  }
+}
+
+TEST(BusThread, ABlackoutIsOutAtOnceAndToldOnlyWhenItIs) {
+  const Rig rig = one_fixture_each(1);
+  ProgramMailbox programs;
+  programs.put(steady(rig, 0.5, 1));
+  RecordingDriver::Record record;
+  BlackoutSwitch blackout;
+  // Its turn comes every 2 s.
+  BusThread bus(rig, 0, std::make_unique<RecordingDriver>(record, 2s, 0ms), programs, 0, {&blackout, nullptr, {}});
+  bus.start();
+  ASSERT_TRUE(eventually([&] { return record.drive == 0.5; }));
+  EXPECT_EQ(bus.dark_order(), 0u);
+  const Time asked = now();
+  const std::uint64_t order = blackout.order(true);
+  bus.wake();
+  ASSERT_TRUE(eventually([&] { return bus.dark_order() >= order; }));
+  EXPECT_LT(now() - asked, 1500ms) << "not in its turn";
+  EXPECT_EQ(record.drive, 0);
+  // A new program does not lift it; the order does.
+  programs.put(steady(rig, 0.7, 2));
+  bus.wake();
+  std::this_thread::sleep_for(20ms);
+  EXPECT_EQ(record.drive, 0);
+  blackout.lift(blackout.order(false));
+  bus.wake();
+  EXPECT_TRUE(eventually([&] { return record.drive == 0.7; }));
+}
+
 }  // namespace
 }  // namespace luxrig

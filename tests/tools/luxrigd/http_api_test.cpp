@@ -16,6 +16,7 @@
 
 #include "core/control/plan.h"
 #include "tools/luxrigd/meeting_place.h"
+#include "tools/luxrigd/runtime_folder.h"
 
 namespace luxrig {
 namespace {
@@ -97,7 +98,7 @@ class HttpApiTest : public ::testing::Test {
     const auto bound = api->start(0);
     ASSERT_TRUE(bound) << bound.error().detail;
     port = *bound;
-    std::ifstream in(token_file(*make_meeting_folder(), port));
+    std::ifstream in(token_file(*runtime_folder(), port));
     in >> g_token;
     ASSERT_EQ(g_token.size(), 64u);
   }
@@ -209,7 +210,7 @@ TEST_F(HttpApiTest, ThePortWantsTheTokenAndTheSocketDoesNot) {
   EXPECT_NE(ask(port, get("/api/session")).find("{\"open\":false}"), std::string::npos);
   g_token = right;
   EXPECT_NE(ask(port, get("/api/session")).find("{\"open\":true}"), std::string::npos);
-  const auto folder = make_meeting_folder();
+  const auto folder = runtime_folder();
   ASSERT_TRUE(folder);
   struct stat is {};
   for (const auto& file : {token_file(*folder, port), socket_file(*folder, port), *folder}) {

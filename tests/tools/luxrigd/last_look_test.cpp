@@ -46,6 +46,24 @@ TEST(LastLook, IsReadAsItWasPut) {
   EXPECT_TRUE(memory->ended());
 }
 
+TEST(LastLook, CountsWhoLivesAndWhoHasTheLight) {
+  auto memory = LastLookMemory::create(2);
+  ASSERT_TRUE(memory);
+  auto other = LastLookMemory::open(::dup(memory->fd()), 2);
+  ASSERT_TRUE(other);
+  using Beat = LastLookMemory::Beat;
+  for (const Beat whose : {Beat::output, Beat::control, Beat::guardian}) {
+    const auto before = other->beats(whose);
+    memory->beat(whose);
+    EXPECT_EQ(other->beats(whose), before + 1);
+  }
+  EXPECT_FALSE(memory->guardian_has_the_light());
+  other->take_the_light();
+  EXPECT_TRUE(memory->guardian_has_the_light());
+  memory->take_the_light_back();
+  EXPECT_FALSE(other->guardian_has_the_light());
+}
+
 TEST(LastLook, OfAnotherRigIsRefused) {
   const auto memory = LastLookMemory::create(7);
   ASSERT_TRUE(memory);

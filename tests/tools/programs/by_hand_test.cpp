@@ -47,12 +47,6 @@ double lux_of(const json& status, const std::string& point) {
   return -1;
 }
 
-bool has_alarm(const json& status, const std::string& text) {
-  for (const json& alarm : status["alarms"])
-    if (alarm["text"].get<std::string>().find(text) != std::string::npos) return true;
-  return false;
-}
-
 TEST(ByHandOverTheWire, ALevelAndAGoalStayThroughCorrectionsAndARestartUntilTheyAreReleased) {
   LiveRig rig(source("tests/rigs/room"));
   ASSERT_TRUE(rig.wait_phase("holding", 90s)) << rig.daemon().output();

@@ -10,6 +10,12 @@ namespace luxrig::testing {
 
 using nlohmann::json;
 
+inline bool has_alarm(const json& status, const std::string& text) {
+  for (const json& alarm : status.value("alarms", json::array()))
+    if (alarm["text"].get<std::string>().find(text) != std::string::npos) return true;
+  return false;
+}
+
 class LiveRig {
  public:
   explicit LiveRig(std::string rig, std::vector<std::string> options = {})
