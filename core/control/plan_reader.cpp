@@ -19,6 +19,8 @@ using Json = nlohmann::json;
 
 constexpr std::size_t kMaxBytes = std::size_t{64} << 20;  // a plan of 100 000 points is about 25 MB
 constexpr std::size_t kMaxDepth = 16;                     // a plan needs 6
+constexpr std::size_t kMaxValues = 2'000'000;             // each takes some memory, however few bytes it has in the file
+constexpr std::size_t kMaxKeys = 1000;                    // of one object; a plan's have 20
 constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
 
 /// First pass over the text: finds what the document parser would throw or silently accept, with its place.
@@ -27,18 +29,22 @@ class SyntaxCheck : public nlohmann::json_sax<Json> {
   std::size_t error_byte = 0;  ///< from 1; 0 = place unknown
   std::string error;           ///< empty = well formed
 
-  bool null() override { return true; }
-  bool boolean(bool) override { return true; }
-  bool number_integer(number_integer_t) override { return true; }
-  bool number_unsigned(number_unsigned_t) override { return true; }
-  bool number_float(number_float_t, const string_t&) override { return true; }
-  bool string(string_t&) override { return true; }
-  bool binary(binary_t&) override { return true; }
+  bool null() override { return count(); }
+  bool boolean(bool) override { return count(); }
+  bool number_integer(number_integer_t) override { return count(); }
+  bool number_unsigned(number_unsigned_t) override { return count(); }
+  bool number_float(number_float_t, const string_t&) override { return count(); }
+  bool string(string_t&) override { return count(); }
+  bool binary(binary_t&) override { return count(); }
   bool start_object(std::size_t) override { return enter(); }
   bool start_array(std::size_t) override { return enter(); }
   bool end_object() override { return leave(); }
   bool end_array() override { return leave(); }
   bool key(string_t& name) override {
+    if (keys_.back().size() >= kMaxKeys) {
+      error = fmt::format("an object with more than {} keys", kMaxKeys);
+      return false;
+    }
     if (keys_.back().insert(name).second) return true;
     error = fmt::format("key \"{}\" is given twice in one object", name);
     return false;
@@ -54,10 +60,16 @@ class SyntaxCheck : public nlohmann::json_sax<Json> {
 
  private:
   std::vector<std::set<std::string>> keys_;
+  std::size_t values_ = 0;
 
+  bool count() {
+    if (++values_ <= kMaxValues) return true;
+    error = fmt::format("more than {} values", kMaxValues);
+    return false;
+  }
   bool enter() {
     keys_.emplace_back();
-    if (keys_.size() <= kMaxDepth) return true;
+    if (keys_.size() <= kMaxDepth) return count();
     error = fmt::format("nested deeper than {}", kMaxDepth);
     return false;
   }

@@ -34,6 +34,7 @@ export class MockDaemon {
   dark = {}; // by name of a fixture: what its entry says besides, as parked and waits_for
   posts = []; // bodies of accepted posts
   silent = false; // the line stays open and says nothing
+  unknown = false; // the browser is, and gets no events
   refuse = false; // posts are answered with 503
   scripted = false;
   #streams = new Set();
@@ -171,6 +172,8 @@ export class MockDaemon {
       return json(200, { on: this.blackout });
     }
     switch (url.pathname) {
+      case '/api/session':
+        return json(200, { open: !this.unknown });
       case '/api/status':
         return json(200, this.status());
       case '/api/room':
@@ -178,6 +181,7 @@ export class MockDaemon {
       case '/api/room.png':
         return response.writeHead(200, { 'Content-Type': 'image/png' }).end(this.#picture);
       case '/api/events':
+        if (this.unknown) return json(401, { error: 'who asks?' });
         response.writeHead(200, { 'Content-Type': 'text/event-stream', 'Cache-Control': 'no-store' });
         this.#streams.add(response);
         request.on('close', () => this.#streams.delete(response));

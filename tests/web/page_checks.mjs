@@ -7,13 +7,14 @@ const PHASES = { idle: 'waiting', moving: 'heads turn', fading: 'fading', settli
   measuring: 'measuring', correcting: 'correcting', holding: 'holding', frozen: 'light held',
   safe_fading: 'fading to the safe look', safe: 'safe look' };
 
-const status = async (url) => (await fetch(new URL('/api/status', url))).json();
+/** As the page's browser may ask for it: a daemon wants to know who asks. */
+const status = async (page, url) => (await page.context().request.get(new URL('/api/status', url).href)).json();
 const text = (page, selector) => page.locator(selector).first().innerText();
 
 /** Names, counts and numbers on the page are those of the daemon's status. */
 export async function showsTheRig(page, url) {
   await page.waitForSelector('body.ready', { timeout: 30000 });
-  const now = await status(url);
+  const now = await status(page, url);
   assert.equal(await text(page, 'h1'), now.rig);
   assert.equal(await page.title(), `${now.rig} · Luxrig`);
   assert.equal(await page.locator('.fixtures li').count(), now.fixtures.length, 'one row per fixture');
@@ -41,7 +42,7 @@ export async function showsTheRig(page, url) {
       return picture.naturalWidth > 0;
     }));
   await eventually('the phase is shown', async () => {
-    const [shown, { phase }] = [await text(page, '#phase'), await status(url)];
+    const [shown, { phase }] = [await text(page, '#phase'), await status(page, url)];
     return shown.startsWith(PHASES[phase]) || [shown, phase];
   });
 }
@@ -51,7 +52,7 @@ export async function numbersAreLive(page, url) {
   const clock = await text(page, '#clock');
   await eventually('the clock goes on', async () => (await text(page, '#clock')) !== clock);
   assert.equal(await page.locator('#line').getAttribute('data-state'), 'live');
-  const now = await status(url);
+  const now = await status(page, url);
   const row = (name) => page.locator('.points tr[data-point]').nth(now.points.findIndex((p) => p.name === name));
   const predicted = now.points.find((p) => p.predicted_lux !== undefined && p.standard_error_lux !== undefined);
   if (predicted) assert.match(await row(predicted.name).locator('td').nth(1).innerText(), /^[\d.]+ ± [\d.]+$/);
@@ -59,7 +60,7 @@ export async function numbersAreLive(page, url) {
   if (!measured) return;
   await eventually(`the measured lux of ${measured.name}`, async () => {
     const shown = await row(measured.name).locator('td').nth(2).innerText();
-    const value = (await status(url)).points.find((p) => p.name === measured.name).measured_lux;
+    const value = (await status(page, url)).points.find((p) => p.name === measured.name).measured_lux;
     const close = Math.abs(parseFloat(shown.replace(/\u202f/g, '')) - value) <= Math.max(0.6, 0.02 * value);
     return (close && /ago/.test(shown)) || [shown, value];
   });
@@ -67,7 +68,7 @@ export async function numbersAreLive(page, url) {
 
 /** Hovering a point tells goal, predicted and measured. */
 export async function tipTellsThePoint(page, url) {
-  const { points } = await status(url);
+  const { points } = await status(page, url);
   const index = Math.max(0, points.findIndex((p) => p.measured_lux !== undefined));
   await page.locator('svg.plan').scrollIntoViewIfNeeded();
   await page.locator('svg.plan .point').nth(index).locator('.shape').hover({ force: true });
@@ -81,11 +82,11 @@ export async function tipTellsThePoint(page, url) {
 /** The button's press reaches the daemon and its state comes back, both ways; here by keyboard. Leaves the light on. */
 export async function blackoutGoesBothWays(page, url) {
   const button = page.locator('#blackout');
-  const before = (await status(url)).blackout;
+  const before = (await status(page, url)).blackout;
   for (const on of before ? [false] : [true, false]) {
     await button.focus();
     await page.keyboard.press('Enter');
-    await eventually(`the daemon's blackout is ${on}`, async () => (await status(url)).blackout === on, 2000);
+    await eventually(`the daemon's blackout is ${on}`, async () => (await status(page, url)).blackout === on, 2000);
     await eventually(`the button says ${on}`, async () => (await button.getAttribute('aria-pressed')) === String(on), 2000);
     if (on)
       await eventually('levels are shown at 0', async () => {

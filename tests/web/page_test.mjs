@@ -1,7 +1,7 @@
 // Drives the page in headless Chromium.
 //   node tests/web/page_test.mjs --dist DIR --out DIR                      against the mock: every check, and screenshots
 //   node tests/web/page_test.mjs --url URL [--screenshot FILE.png] [--leave-light]
-//                                  against a running daemon: the checks that hold for any; blackout on and off again,
+//                                  against a running daemon (the address that luxrig page prints): the checks that hold for any; blackout on and off again,
 //                                  but not with --leave-light
 // Exit code 0 only if all checks held.
 import assert from 'node:assert/strict';

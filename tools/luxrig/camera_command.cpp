@@ -241,6 +241,7 @@ void add_camera_command(CLI::App& command, CameraArguments& arguments, int& code
                   "of source = \"files\": levels stand in their names (wall_40pct_1.png)");
   check->add_option("--fixture", arguments.fixture, "with --levels: what lights the scene (else the only one)");
   check->add_option("--port", arguments.port, "with --levels: of the daemon");
+  check->add_option("--token", arguments.token, "with --levels: file with the daemon's token, if it is another user's");
   check->add_flag("--sim", arguments.sim, "by levels, with a simulated rig and its camera");
   check->add_option("--sim-seed", arguments.sim_seed, "of the simulated rig");
   check->callback([&] { code = run_camera_check(arguments); });

@@ -25,6 +25,7 @@ struct CameraArguments {
   std::uint64_t sim_seed = 1;
   std::string fixture;  ///< what lights it; empty: the only one
   int port = 9620;      ///< of the daemon that drives the rig
+  std::optional<std::filesystem::path> token;  ///< of a daemon of another user
 };
 int run_camera_shot(const CameraArguments& arguments);
 int run_camera_check(const CameraArguments& arguments);

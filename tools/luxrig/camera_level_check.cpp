@@ -90,7 +90,7 @@ int run_camera_levels(const CameraArguments& arguments, const Rig& rig, std::siz
   }
   const auto by_daemon = [&]() -> Result<LevelSeries> {
     if (auto active = source->activate(now()); !active) return tl::unexpected(active.error());
-    const auto light = make_daemon_light(rig, wanted.fixture, arguments.port);
+    const auto light = make_daemon_light(rig, wanted.fixture, arguments.port, arguments.token);
     auto series = take_level_series(
         *light, [&] { return source->take_raw(now()); }, *curve, wanted, progress_line("levels"));
     source->deactivate(now());

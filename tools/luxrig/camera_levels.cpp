@@ -10,8 +10,8 @@
 #include "core/control/plan.h"
 #include "drivers/camera/file_listing.h"
 #include "tools/luxrig/camera_series.h"
-#include "tools/luxrig/http_client.h"
 #include "tools/luxrig/status_fields.h"
+#include "tools/luxrigd/meeting_place.h"
 
 namespace luxrig {
 namespace {
@@ -48,7 +48,8 @@ void normalise(LevelSeries& series) {
 
 class DaemonLight final : public LevelLight {
  public:
-  DaemonLight(const Rig& rig, std::size_t fixture, int port) : rig_(rig), fixture_(fixture), port_(port) {}
+  DaemonLight(const Rig& rig, std::size_t fixture, int port, std::optional<std::filesystem::path> token)
+      : rig_(rig), fixture_(fixture), port_(port), token_(std::move(token)) {}
 
   Result<double> set(double level) override {
     if (before_.empty()) {
@@ -105,17 +106,11 @@ class DaemonLight final : public LevelLight {
                         level),
             {}};
   }
-  [[nodiscard]] Fault no_answer() const {
-    return {
-        Cause::network,
-        {},
-        fmt::format("no daemon answers on 127.0.0.1:{}: start one with `luxrig run RIG`, or give its --port", port_),
-        {}};
-  }
-
   Result<std::vector<double>> levels() const {
-    const auto answer = http_get("127.0.0.1", port_, "/api/status");
-    if (!answer) return tl::unexpected(no_answer());
+    const auto daemon = daemon_on(port_, token_);
+    if (!daemon) return tl::unexpected(daemon.error());
+    const auto answer = http_get(*daemon, "/api/status");
+    if (!answer) return tl::unexpected(no_daemon(port_));
     const json status = json::parse(answer->body, nullptr, false);
     std::vector<double> levels;
     const json fixtures = list_of(status, "fixtures");
@@ -145,8 +140,10 @@ class DaemonLight final : public LevelLight {
       task.lights.push_back(std::move(light));
     }
     plan.tasks.push_back(std::move(task));
-    const auto answer = http_post_json("127.0.0.1", port_, "/api/apply", to_json(plan), 300);
-    if (!answer) return tl::unexpected(no_answer());
+    const auto daemon = daemon_on(port_, token_);
+    if (!daemon) return tl::unexpected(daemon.error());
+    const auto answer = http_post_json(*daemon, "/api/apply", to_json(plan), 300);
+    if (!answer) return tl::unexpected(no_daemon(port_));
     if (answer->status == 200) return {};
     return tl::unexpected(Fault{Cause::refused, {}, "refused by the daemon: " + answer->body, {}});
   }
@@ -154,6 +151,7 @@ class DaemonLight final : public LevelLight {
   const Rig& rig_;
   std::size_t fixture_;
   int port_;
+  std::optional<std::filesystem::path> token_;
   std::vector<double> before_, held_;
 };
 
@@ -172,8 +170,9 @@ std::optional<double> level_in_name(const std::string& name) {
 
 }  // namespace
 
-std::unique_ptr<LevelLight> make_daemon_light(const Rig& rig, std::size_t fixture, int port) {
-  return std::make_unique<DaemonLight>(rig, fixture, port);
+std::unique_ptr<LevelLight> make_daemon_light(const Rig& rig, std::size_t fixture, int port,
+                                              const std::optional<std::filesystem::path>& token) {
+  return std::make_unique<DaemonLight>(rig, fixture, port, token);
 }
 
 Result<LevelSeries> take_level_series(LevelLight& light, const TakeRaw& take, const SampleCurve& curve,

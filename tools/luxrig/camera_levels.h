@@ -1,6 +1,7 @@
 #pragma once
 /// A series of dimmer levels to judge a camera by: one fixture of the rig goes through them, all others are dark.
 
+#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -27,7 +28,8 @@ class LevelLight {
   virtual void give_back() = 0;
 };
 /// Over the API of the daemon on this port.
-[[nodiscard]] std::unique_ptr<LevelLight> make_daemon_light(const Rig& rig, std::size_t fixture, int port);
+[[nodiscard]] std::unique_ptr<LevelLight> make_daemon_light(const Rig& rig, std::size_t fixture, int port,
+                                                            const std::optional<std::filesystem::path>& token);
 
 /// Takes a picture: the camera's own, or that of a simulated one.
 using TakeRaw = std::function<Result<RawPicture>()>;

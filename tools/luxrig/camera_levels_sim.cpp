@@ -8,7 +8,7 @@
 #include "core/control/output_program.h"
 #include "core/transport/pfm.h"
 #include "tools/luxrig/camera_levels.h"
-#include "tools/luxrig/http_client.h"
+#include "tools/http/client.h"
 #include "tools/luxrigd/clock.h"
 #include "tools/luxrigd/sim_process.h"
 
@@ -61,7 +61,7 @@ std::string in_query(const std::string& text) {
 }
 
 Result<RawPicture> picture_of_sim(const Redirect& control, const PictureCamera& camera) {
-  const auto answer = http_get(control.host, control.port, "/picture?camera=" + in_query(camera.name), kPictureWait_s);
+  const auto answer = http_get({control.host, control.port}, "/picture?camera=" + in_query(camera.name), kPictureWait_s);
   if (!answer || answer->status != 200)
     return tl::unexpected(Fault{Cause::network, camera.name, "the simulated rig gives no picture", {}});
   const auto picture = picture_from_pfm(answer->body);

@@ -1,28 +1,36 @@
-// status, blackout, apply, level, goal, release, bypass, reload, park, identify: commands that talk to a running
+// status, page, blackout, apply, level, goal, release, bypass, reload, park, identify: commands that talk to a running
 // daemon.
 #include <charconv>
 #include <cmath>
 
 #include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
-#include "tools/luxrig/http_client.h"
 #include "tools/luxrig/status_fields.h"
 #include "tools/luxrig/table.h"
+#include "tools/luxrigd/meeting_place.h"
 
 namespace luxrig {
 namespace {
 
 using nlohmann::json;
 
+/// Without the name of the cause, which says no more than the text.
+int report_unreachable(const Fault& fault) {
+  fmt::print(stderr, "luxrig: {}\n", fault.detail);
+  return fault.cause == Cause::invalid ? kExitBadInput : kExitFailed;
+}
+
 int post(const ClientArguments& arguments, const char* route, const std::string& body, const std::string& done,
          int wait_s = 5) {
-  const auto answer = http_post_json("127.0.0.1", arguments.port, route, body, wait_s);
-  if (!answer) return no_daemon(arguments.port);
+  const auto daemon = daemon_on(arguments.port, arguments.token);
+  if (!daemon) return report_unreachable(daemon.error());
+  const auto answer = http_post_json(*daemon, route, body, wait_s);
+  if (!answer) return report_unreachable(no_daemon(arguments.port));
   if (answer->status != 200) {
     const json body_json = json::parse(answer->body, nullptr, false);
     const std::string reason = body_json.is_object() ? text_of(body_json, "error") : answer->body;
     fmt::print(stderr, "luxrig: refused by the daemon: {}\n", reason);
-    return answer->status == 400 ? kExitBadInput : kExitFailed;
+    return answer->status == 400 || answer->status == 413 ? kExitBadInput : kExitFailed;
   }
   const std::string told = text_of(json::parse(answer->body, nullptr, false), "text");
   fmt::print("{}\n", arguments.json ? answer->body : done.empty() ? told : told.empty() ? done : done + "\n" + told);
@@ -115,30 +123,40 @@ void print_status(const json& status) {
 
 }  // namespace
 
-int no_daemon(int port) {
-  fmt::print(stderr, "luxrig: no daemon answers on 127.0.0.1:{}: start one with `luxrig run RIG`, or give its --port\n",
-             port);
-  return kExitFailed;
-}
-
 int run_status(const ClientArguments& arguments) {
-  const auto answer = http_get("127.0.0.1", arguments.port, "/api/status");
-  if (!answer) return no_daemon(arguments.port);
-  if (arguments.json) {
-    fmt::print("{}\n", answer->body);
-    return kExitOk;
-  }
+  const auto daemon = daemon_on(arguments.port, arguments.token);
+  if (!daemon) return report_unreachable(daemon.error());
+  const auto answer = http_get(*daemon, "/api/status");
+  if (!answer) return report_unreachable(no_daemon(arguments.port));
   const json status = json::parse(answer->body, nullptr, false);
+  if (answer->status != 200 && status.is_object()) {
+    fmt::print(stderr, "luxrig: refused by the daemon: {}\n", text_of(status, "error"));
+    return kExitFailed;
+  }
   if (!status.is_object()) {
     fmt::print(stderr, "luxrig: what answers on port {} is not a Luxrig daemon\n", arguments.port);
     return kExitFailed;
   }
-  print_status(status);
+  if (arguments.json) {
+    fmt::print("{}\n", answer->body);
+  } else {
+    print_status(status);
+  }
   return kExitOk;
 }
 
 int run_blackout(const ClientArguments& arguments, bool on) {
   return post(arguments, "/api/blackout", json{{"on", on}}.dump(), on ? "blackout" : "blackout lifted");
+}
+
+int run_page(const ClientArguments& arguments) {
+  const auto daemon = daemon_on(arguments.port, arguments.token);
+  if (!daemon) return report_unreachable(daemon.error());
+  const auto answer = http_post_json(*daemon, "/api/session", "{}");
+  const std::string address = answer ? text_of(json::parse(answer->body, nullptr, false), "address") : "";
+  if (address.empty()) return report_unreachable(no_daemon(arguments.port));
+  fmt::print("{}\n", arguments.json ? answer->body : address);
+  return kExitOk;
 }
 
 int run_hand_back(const ClientArguments& arguments) {

@@ -71,7 +71,10 @@ int run_rdm_set(const RdmArguments& arguments);
 struct ClientArguments {
   int port = 9620;
   bool json = false;
+  std::optional<std::filesystem::path> token;  ///< of a daemon of another user, by the port
 };
+/// Prints an address that opens the page in one browser.
+int run_page(const ClientArguments& arguments);
 int run_status(const ClientArguments& arguments);
 int run_blackout(const ClientArguments& arguments, bool on);
 int run_hand_back(const ClientArguments& arguments);
@@ -93,8 +96,6 @@ int run_reload(const ClientArguments& arguments);
 [[nodiscard]] std::optional<double> seconds_of(const std::string& text);
 /// Until Ctrl-C; `once`, or when the output is no terminal: one picture.
 int run_monitor(const ClientArguments& arguments, bool once);
-/// Says that nobody answers on the port, and what would mend it; the exit code.
-int no_daemon(int port);
 int run_apply(const ClientArguments& arguments, const std::filesystem::path& plan);
 
 /// Writes text to a file so that a reader sees the old content or the new, never half; a fault when it cannot.

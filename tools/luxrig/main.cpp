@@ -40,6 +40,7 @@ void add_compute(CLI::App& command, ComputeOptions& compute) {
 
 void add_client(CLI::App& command, ClientArguments& client, bool with_json = true) {
   command.add_option("--port", client.port, "port of the daemon's page")->check(CLI::Range(1, 65535));
+  command.add_option("--token", client.token, "file with the daemon's token, if it is another user's");
   if (with_json) command.add_flag("--json", client.json, "print what the daemon answers");
 }
 
@@ -237,6 +238,10 @@ int main(int argc, char** argv) {
   add_client(*command, client);
   command->callback([&] { code = run_status(client); });
 
+  command = app.add_subcommand("page", "an address that opens the running daemon's page in one browser, once");
+  add_client(*command, client);
+  command->callback([&] { code = run_page(client); });
+
   bool lift = false;
   std::string blackout_state;
   command = app.add_subcommand("blackout", "all light off at once; `blackout off` lifts it");
@@ -334,7 +339,7 @@ int main(int argc, char** argv) {
   group(app, "Make a rig", {"init", "check", "import"});
   group(app, "Work out its light", {"evaluate", "solve", "render"});
   group(app, "Run it",
-        {"run", "status", "apply", "level", "goal", "release", "bypass", "reload", "blackout", "hand-back", "park",
+        {"run", "page", "status", "apply", "level", "goal", "release", "bypass", "reload", "blackout", "hand-back", "park",
          "identify", "monitor"});
   group(app, "Devices", {"devices", "rdm", "camera"});
   group(app, "Luxrig itself", {"bench"});

@@ -10,7 +10,7 @@
 
 #include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
-#include "tools/luxrig/http_client.h"
+#include "tools/luxrigd/meeting_place.h"
 #include "tools/luxrig/monitor_picture.h"
 
 namespace luxrig {
@@ -55,9 +55,9 @@ std::string on_screen(const std::string& picture, int lines) {
 }
 
 /// Nothing when nobody answers.
-std::optional<std::string> picture_of(int port) {
-  const auto status = http_get("127.0.0.1", port, "/api/status");
-  const auto universes = http_get("127.0.0.1", port, "/api/universes");
+std::optional<std::string> picture_of(const HttpPeer& daemon) {
+  const auto status = http_get(daemon, "/api/status");
+  const auto universes = http_get(daemon, "/api/universes");
   if (!status || !universes || status->status != 200) return std::nullopt;
   return monitor_picture(nlohmann::json::parse(status->body, nullptr, false),
                          nlohmann::json::parse(universes->body, nullptr, false), terminal_size().columns);
@@ -66,8 +66,10 @@ std::optional<std::string> picture_of(int port) {
 }  // namespace
 
 int run_monitor(const ClientArguments& arguments, bool once) {
-  auto picture = picture_of(arguments.port);
-  if (!picture) return no_daemon(arguments.port);
+  const auto daemon = daemon_on(arguments.port, arguments.token);
+  if (!daemon) return report(daemon.error());
+  auto picture = picture_of(*daemon);
+  if (!picture) return report(no_daemon(arguments.port));
   if (once || isatty(STDOUT_FILENO) == 0) {
     fmt::print("{}", *picture);
     return kExitOk;
@@ -79,10 +81,10 @@ int run_monitor(const ClientArguments& arguments, bool once) {
       fmt::print("{}", on_screen(*picture, terminal_size().lines));
       std::fflush(stdout);
       std::this_thread::sleep_for(kPicturePeriod);
-      picture = picture_of(arguments.port);
+      picture = picture_of(*daemon);
     }
   }
-  return g_interrupted != 0 ? kExitOk : no_daemon(arguments.port);
+  return g_interrupted != 0 ? kExitOk : report(no_daemon(arguments.port));
 }
 
 }  // namespace luxrig

@@ -335,8 +335,7 @@ void Daemon::send_program() {
   sent_revision_ = controller_.program().revision;
 }
 
-void Daemon::tick() {
-  const Time at = now();
+bool Daemon::run_commands(Time at) {
   std::deque<Command> commands;
   {
     const std::lock_guard lock(mutex_);
@@ -346,6 +345,12 @@ void Daemon::tick() {
     command.run(at);
     command.done.set_value();
   }
+  return !commands.empty();
+}
+
+void Daemon::tick() {
+  const Time at = now();
+  const bool commanded = run_commands(at);
   devices_.clear();
   for (const auto& bus : buses_) {
     if (options_.stepped_driver) bus->turn(at);
@@ -361,7 +366,7 @@ void Daemon::tick() {
   controller_.step(at);
   send_program();
   tell_guardian(at);
-  if (at - last_publish_ >= kPublishPeriod || !commands.empty()) publish(at);
+  if (at - last_publish_ >= kPublishPeriod || commanded) publish(at);
 }
 
 void Daemon::publish(Time at) {
@@ -397,7 +402,11 @@ void Daemon::go_safe() { controller_.go_safe(now()); }
 void Daemon::stop() {
   if (stopped_) return;
   stopped_ = true;
-  if (http_) http_->stop();
+  if (http_) {
+    // Handlers that wait for this thread are served; else each would hold up the end.
+    auto ended = std::async(std::launch::async, [this] { http_->stop(); });
+    while (ended.wait_for(std::chrono::milliseconds(5)) != std::future_status::ready) run_commands(now());
+  }
   if (contacts_.joinable()) {
     contacts_.request_stop();
     contact_pressed_.release();

@@ -65,6 +65,9 @@ class Daemon {
   /// Starts drivers and the page; returns the page's port. Sends nothing until the first plan.
   [[nodiscard]] Result<int> start();
 
+  /// Opens the page in one browser, once, within ten minutes.
+  [[nodiscard]] std::string page_address() { return http_ ? http_->one_time_address() : ""; }
+
   /// The plan, the blackout, what rests and what is set by hand as it was when the last daemon stopped, taken up again.
   /// A plan that was solved from a rig file which has changed since is left: the caller has a newer one. One that a
   /// person applied is taken up all the same, within the limits of the rig as it is now, and an alarm says so.
@@ -101,6 +104,8 @@ class Daemon {
     std::promise<void> done;
   };
   std::future<void> queue(std::function<void(Time)> run);
+  /// Runs what is queued; whether there was anything.
+  bool run_commands(Time at);
   void on_control_thread(std::function<void(Time)> run);
   /// Which lamps have not been told, in words; empty: all have.
   [[nodiscard]] std::string wait_until_dark(std::uint64_t order) const;

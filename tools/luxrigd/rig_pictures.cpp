@@ -7,7 +7,7 @@
 
 #include "core/transport/pfm.h"
 #include "core/transport/rig_camera.h"
-#include "tools/luxrig/http_client.h"
+#include "tools/http/client.h"
 #include "tools/luxrig/picture_png.h"
 #include "tools/luxrig/relief_task.h"
 
@@ -39,7 +39,7 @@ Result<std::vector<TakenByCamera>> RigPictures::take(const std::string& label) {
   }
   std::vector<TakenByCamera> all;
   for (const PictureCamera& camera : rig.cameras) {
-    const auto answer = http_get(control_.host, control_.port, "/picture?camera=" + in_url(camera.name), kWait_s);
+    const auto answer = http_get({control_.host, control_.port}, "/picture?camera=" + in_url(camera.name), kWait_s);
     if (!answer) return refusal(fmt::format("camera \"{}\" gives no picture", camera.name));
     if (answer->status != 200) return refusal(fmt::format("camera \"{}\": {}", camera.name, answer->body));
     const auto picture = picture_from_pfm(answer->body);

@@ -320,7 +320,7 @@ int run_rig(const RunArguments& arguments) {
   std::jthread blackout_by_signal = on_signal(SIGUSR1, [&] {
     if (const auto dark = daemon.blackout(true); !dark) say.say("warning  blackout by signal: " + dark.error().detail);
   });
-  say.say(fmt::format("page and status: http://127.0.0.1:{}/", *port));
+  say.say("page and status: " + daemon.page_address() + " (opens one browser; luxrig page prints another)");
   if (!daemon.unguarded().empty()) {
     say.say("warning  if this process dies, lamps do what they do without data: no guardian: " + daemon.unguarded());
   }
@@ -372,8 +372,8 @@ int run_rig(const RunArguments& arguments) {
       converged_s = to_seconds(at - process_start);
       if (!arguments.once) {
         say.print("\n" + say.table(daemon.status(), truth()) + "\n");
-        say.say(fmt::format("{}, in {:.1f} s; page: http://127.0.0.1:{}/ (Ctrl-C fades to the safe look and ends)",
-                            goals_text(daemon.status(), rig), converged_s, *port));
+        say.say(fmt::format("{}, in {:.1f} s; page: {} (Ctrl-C fades to the safe look and ends)",
+                            goals_text(daemon.status(), rig), converged_s, daemon.page_address()));
       }
     }
     return stop.stop_requested() || pictures_failed != kExitOk ||

@@ -12,7 +12,7 @@
 #include <thread>
 
 #include "tools/luxrig/commands.h"
-#include "tools/luxrig/http_client.h"
+#include "tools/http/client.h"
 
 extern char** environ;
 
@@ -147,7 +147,7 @@ Result<SimPorts> SimProcess::wait_ready(const Watch& watch) {
 }
 
 std::optional<SimTruth> ask_truth(const Redirect& control) {
-  const auto answer = http_get(control.host, control.port, "/truth");
+  const auto answer = http_get({control.host, control.port}, "/truth");
   if (!answer || answer->status != 200) return {};
   const auto json = nlohmann::json::parse(answer->body, nullptr, false);
   if (!json.is_object() || !json.contains("points") || !json.contains("violations")) return {};

@@ -232,6 +232,19 @@ TEST(Plan, RefusesHostileText) {
   }
 }
 
+TEST(Plan, TakesSoManyValuesAsItMayHaveMemoryFor) {
+  std::string many = "[0";
+  for (int i = 0; i < 2'000'000; ++i) many += ",0";
+  const auto values = plan_from_json(many + "]", "bad.json");
+  ASSERT_FALSE(values);
+  EXPECT_NE(values.error()[0].what.find("more than 2000000 values"), std::string::npos) << values.error()[0].text();
+  std::string keys = "{\"k\":0";
+  for (int i = 0; i < 1000; ++i) keys += ",\"" + std::to_string(i) + "\":0";
+  const auto object = plan_from_json(keys + "}", "bad.json");
+  ASSERT_FALSE(object);
+  EXPECT_NE(object.error()[0].what.find("more than 1000 keys"), std::string::npos) << object.error()[0].text();
+}
+
 TEST(Plan, IgnoresKeysThatALaterVersionAdds) {
   EXPECT_TRUE(plan_from_json(R"({"luxrig_plan":1,"rig":"r","tasks":[{"name":"t","lights":[],"coverage":1}],"new":{}})",
                              "plan.json"));

@@ -6,14 +6,23 @@
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
+#include <fstream>
 #include <string>
 #include <thread>
 
+#include "core/control/plan.h"
+#include "tools/luxrigd/meeting_place.h"
+#include "tools/luxrigd/runtime_folder.h"
+
 namespace luxrig {
 namespace {
+
+/// What `post` and `get` send besides: the token of the daemon under test.
+std::string g_token;
 
 /// Sends raw bytes, returns the answer's first line and body.
 std::string ask(int port, const std::string& request, bool wait_for_end = true) {
@@ -37,8 +46,13 @@ std::string ask(int port, const std::string& request, bool wait_for_end = true) 
 }
 
 std::string post(const std::string& route, const std::string& body, const std::string& headers) {
-  return "POST " + route + " HTTP/1.1\r\nConnection: close\r\n" + headers +
+  return "POST " + route + " HTTP/1.1\r\nConnection: close\r\nAuthorization: Bearer " + g_token + "\r\n" + headers +
          "Content-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body;
+}
+
+std::string get(const std::string& route, const std::string& host = "127.0.0.1") {
+  return "GET " + route + " HTTP/1.1\r\nConnection: close\r\nAuthorization: Bearer " + g_token + "\r\nHost: " + host +
+         "\r\n\r\n";
 }
 
 constexpr const char* kJson = "Host: 127.0.0.1\r\nContent-Type: application/json\r\n";
@@ -80,6 +94,8 @@ class HttpApiTest : public ::testing::Test {
     };
     handlers.apply = [this](const std::string& plan) -> Checked<std::string> {
       ++applied;
+      if (const auto read = plan_from_json(plan, "plan"); plan.size() > 100 && !read)
+        return tl::unexpected(read.error());
       if (plan == "{}") return std::string("spot held by hand");
       return tl::unexpected(std::vector<Problem>{{"plan", 1, 2, "is not a plan", "send one"}});
     };
@@ -87,6 +103,9 @@ class HttpApiTest : public ::testing::Test {
     const auto bound = api->start(0);
     ASSERT_TRUE(bound) << bound.error().detail;
     port = *bound;
+    std::ifstream in(token_file(*runtime_folder(), port));
+    in >> g_token;
+    ASSERT_EQ(g_token.size(), 64u);
   }
   std::unique_ptr<HttpApi> api;
   int port = 0;
@@ -95,16 +114,14 @@ class HttpApiTest : public ::testing::Test {
 };
 
 TEST_F(HttpApiTest, AnswersStatusAndBlackout) {
-  EXPECT_NE(ask(port, "GET /api/status HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n").find("holding"),
-            std::string::npos);
+  EXPECT_NE(ask(port, get("/api/status")).find("holding"), std::string::npos);
   EXPECT_NE(ask(port, post("/api/blackout", "{\"on\":true}", kJson)).find(" 200 "), std::string::npos);
   EXPECT_EQ(blackouts, 1);
 }
 
 TEST_F(HttpApiTest, RefusesOtherHostsOriginsAndContentTypes) {
   const std::string on = "{\"on\":false}";
-  EXPECT_NE(ask(port, "GET /api/status HTTP/1.1\r\nHost: evil.example\r\nConnection: close\r\n\r\n").find(" 403 "),
-            std::string::npos);
+  EXPECT_NE(ask(port, get("/api/status", "evil.example")).find(" 403 "), std::string::npos);
   EXPECT_NE(ask(port, post("/api/blackout", on, std::string(kJson) + "Origin: http://evil.example\r\n")).find(" 403 "),
             std::string::npos);
   EXPECT_NE(ask(port, post("/api/blackout", on, std::string(kJson) + "Origin: http://127.0.0.1.evil.example\r\n"))
@@ -184,14 +201,86 @@ TEST_F(HttpApiTest, AReloadThatIsRefusedSaysWhichKeyAndAnApplyWhatItHolds) {
 }
 
 TEST_F(HttpApiTest, StreamsEventsAndStopsWhileAClientListens) {
-  const std::string first =
-      ask(port, "GET /api/events HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n", false);
+  const std::string first = ask(port, get("/api/events"), false);
   EXPECT_NE(first.find("200 OK"), std::string::npos);
-  std::thread listener(
-      [&] { (void)ask(port, "GET /api/events HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n"); });
+  std::thread listener([&] { (void)ask(port, get("/api/events")); });
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   api->stop();
   listener.join();
+}
+
+TEST_F(HttpApiTest, ThePortWantsTheTokenAndTheSocketDoesNot) {
+  const std::string right = g_token;
+  for (const std::string& wrong : {std::string(), right + "0", std::string(64, '0')}) {
+    g_token = wrong;
+    for (const char* route : {"/api/status", "/api/events", "/api/room", "/api/room.png", "/api/universes"})
+      EXPECT_NE(ask(port, get(route)).find(" 401 "), std::string::npos) << route;
+    for (const char* route : {"/api/blackout", "/api/apply", "/api/level", "/api/session", "/api/reload"})
+      EXPECT_NE(ask(port, post(route, "{\"on\":true}", kJson)).find(" 401 "), std::string::npos) << route;
+  }
+  EXPECT_EQ(blackouts, 0);
+  EXPECT_NE(ask(port, get("/api/session")).find("{\"open\":false}"), std::string::npos);
+  g_token = right;
+  EXPECT_NE(ask(port, get("/api/session")).find("{\"open\":true}"), std::string::npos);
+  const auto folder = runtime_folder();
+  ASSERT_TRUE(folder);
+  struct stat is {};
+  for (const auto& file : {token_file(*folder, port), socket_file(*folder, port), *folder}) {
+    ASSERT_EQ(::stat(file.c_str(), &is), 0) << file;
+    EXPECT_EQ(is.st_mode & 077, 0u) << file;
+  }
+  const auto daemon = daemon_on(port);
+  ASSERT_TRUE(daemon) << daemon.error().detail;
+  EXPECT_FALSE(daemon->socket.empty());
+  EXPECT_EQ(http_post_json(*daemon, "/api/blackout", "{\"on\":true}")->status, 200);
+  EXPECT_EQ(blackouts, 1);
+  api->stop();
+  EXPECT_FALSE(std::filesystem::exists(token_file(*folder, port)));
+  EXPECT_NE(daemon_on(port).error().detail.find("luxrig run"), std::string::npos);
+}
+
+TEST_F(HttpApiTest, AOneTimeAddressOpensOneBrowser) {
+  const std::string right = std::exchange(g_token, "none");
+  const std::string address = api->one_time_address();
+  const std::string route = address.substr(address.find("/?"));
+  const std::string first = ask(port, "GET " + route + " HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n");
+  EXPECT_NE(first.find(" 303 "), std::string::npos) << first;
+  EXPECT_NE(first.find("Location: /\r\n"), std::string::npos);
+  const std::size_t at = first.find("Set-Cookie: ") + 12;
+  const std::string cookie = first.substr(at, first.find(';', at) - at);
+  const auto with_cookie = [&](const std::string& path, const std::string& more = "") {
+    return ask(port, "GET " + path + " HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n" + more + "\r\n");
+  };
+  EXPECT_NE(with_cookie("/api/status", "Cookie: " + cookie + "\r\n").find("holding"), std::string::npos);
+  EXPECT_NE(with_cookie("/api/status", "Cookie: " + cookie + "\r\nOrigin: http://127.0.0.1:81\r\n").find(" 403 "),
+            std::string::npos)
+      << "a browser sends it for pages of other ports, too";
+  EXPECT_NE(with_cookie(route).find(" 403 "), std::string::npos) << "used";
+  EXPECT_NE(with_cookie(route, "Cookie: " + cookie + "\r\n").find(" 303 "), std::string::npos) << "it is open already";
+  EXPECT_NE(with_cookie("/").find(" 200 "), std::string::npos) << "the page itself is for everybody";
+  g_token = right;
+  EXPECT_NE(ask(port, post("/api/session", "{}", kJson)).find("/?open="), std::string::npos);
+}
+
+TEST_F(HttpApiTest, SixteenMegabytesOfBracketsAreRefusedAndCostNothingThatStays) {
+  const auto kilobytes = [](const std::string& key) {
+    std::ifstream in("/proc/self/status");
+    for (std::string word; in >> word;)
+      if (int kb = 0; word == key && in >> kb) return kb;
+    return 0;
+  };
+  // What the test itself needs is there before it measures.
+  const std::string body(16u << 20, '[');
+  const std::string plan = post("/api/apply", body, kJson), level = post("/api/level", body, kJson);
+  std::ofstream("/proc/self/clear_refs") << 5;  // the peak is that from now on
+  const int before_kb = kilobytes("VmRSS:");
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NE(ask(port, plan).find(" 400 "), std::string::npos);
+    EXPECT_NE(ask(port, level).find(" 413 "), std::string::npos);
+  }
+  EXPECT_LT(kilobytes("VmHWM:") - before_kb, 64 * 1024);
+  EXPECT_LT(kilobytes("VmRSS:") - before_kb, 2 * 1024);
+  EXPECT_EQ(applied, 3);
 }
 
 TEST_F(HttpApiTest, SecondServerOnTheSamePortIsRefused) {

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/tools/programs/process.h"
-#include "tools/luxrig/http_client.h"
+#include "tools/luxrigd/meeting_place.h"
 
 namespace luxrig::testing {
 
@@ -72,7 +72,8 @@ class LiveRig {
   json status() {
     if (port_ == 0) find_port();
     if (port_ == 0) return {};
-    const auto answer = http_get("127.0.0.1", port_, "/api/status");
+    const auto daemon = daemon_on(port_);
+    const auto answer = daemon ? http_get(*daemon, "/api/status") : std::nullopt;
     return answer ? json::parse(answer->body, nullptr, false) : json();
   }
   bool wait_status(const std::function<bool(const json&)>& wanted, std::chrono::milliseconds bound) {
@@ -95,13 +96,13 @@ class LiveRig {
   void fault(const std::string& device, const std::string& name, bool on, double value = 0) {
     const auto control = json::parse(text_of(ports()))["control"];
     const json body = {{"device", device}, {"fault", name}, {"on", on}, {"value", value}};
-    const auto answer = http_post_json("127.0.0.1", control["port"], "/fault", body.dump());
+    const auto answer = http_post_json({"127.0.0.1", control["port"]}, "/fault", body.dump());
     ASSERT_TRUE(answer && answer->status == 200) << (answer ? answer->body : "no answer");
   }
   /// Peaks of the truth are those from now on.
   void reset_peaks() {
     const auto control = json::parse(text_of(ports()))["control"];
-    const auto answer = http_post_json("127.0.0.1", control["port"], "/reset_peaks", "{}");
+    const auto answer = http_post_json({"127.0.0.1", control["port"]}, "/reset_peaks", "{}");
     ASSERT_TRUE(answer && answer->status == 200);
   }
   /// Of a bus of the simulated rig.
@@ -110,7 +111,7 @@ class LiveRig {
   }
   json truth() {
     const auto control = json::parse(text_of(ports()))["control"];
-    const auto answer = http_get("127.0.0.1", control["port"], "/truth");
+    const auto answer = http_get({"127.0.0.1", control["port"]}, "/truth");
     return answer ? json::parse(answer->body, nullptr, false) : json();
   }
   double level_sum() const {

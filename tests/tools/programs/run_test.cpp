@@ -88,7 +88,9 @@ TEST(Run, LampsOnRelaysAreOnOrOffAndOneThatDimsMakesUpForThem) {
 TEST(Run, PageShowsTheRunningRig) {
   LiveRig rig(source("tests/rigs/room"));
   ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
-  const std::string url = "http://127.0.0.1:" + std::to_string(rig.port());
+  std::string url = luxrig::testing::run({program("luxrig"), "page", "--port", std::to_string(rig.port())}).output;
+  url = url.substr(0, url.find('\n'));
+  EXPECT_NE(url.find("/?open="), std::string::npos) << url;
   std::filesystem::create_directories(program("../screenshots"));
   const Ran page = luxrig::testing::run({"/usr/bin/env", "node", source("tests/web/page_test.mjs"), "--url", url,
                                          "--screenshot", program("../screenshots/daemon.png")},

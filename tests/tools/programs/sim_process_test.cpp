@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/tools/programs/process.h"
-#include "tools/luxrig/http_client.h"
+#include "tools/http/client.h"
 
 namespace luxrig::testing {
 namespace {
@@ -36,11 +36,11 @@ class Simulator {
   [[nodiscard]] const json& ports() const { return ports_; }
   [[nodiscard]] int port(const std::string& bus) const { return ports_["buses"][bus]["port"]; }
   [[nodiscard]] json get(const std::string& route) const {
-    const auto answer = http_get("127.0.0.1", ports_["control"]["port"], route);
+    const auto answer = http_get({"127.0.0.1", ports_["control"]["port"]}, route);
     return answer ? json::parse(answer->body, nullptr, false) : json();
   }
   [[nodiscard]] HttpAnswer post(const std::string& route, const std::string& body) const {
-    return http_post_json("127.0.0.1", ports_["control"]["port"], route, body).value_or(HttpAnswer{});
+    return http_post_json({"127.0.0.1", ports_["control"]["port"]}, route, body).value_or(HttpAnswer{});
   }
   [[nodiscard]] json point(const std::string& name) const {
     const json truth = get("/truth");

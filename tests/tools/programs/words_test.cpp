@@ -104,8 +104,8 @@ TEST(Words, TheSimulatorsControlPortMendsWhatItRefusesAndNeedsNoBody) {
   const int port = json::parse(text_of(rig.file("ports.json")))["control"]["port"].get<int>();
   // What `curl -X POST` sends: no body, and no length of one.
   const auto ask = [&](const std::string& request, const std::string& body) {
-    const std::string length = body.empty() ? "" : "Content-Length: " + std::to_string(body.size()) + "\r\n";
-    const std::string whole = request + " HTTP/1.1\r\nHost: sim\r\nConnection: close\r\n" + length + "\r\n" + body;
+    const std::string length = body.empty() ? "" : "Content-Type: application/json\r\nContent-Length: " + std::to_string(body.size()) + "\r\n";
+    const std::string whole = request + " HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n" + length + "\r\n" + body;
     return luxrig::testing::run({"/bin/bash", "-c",
                                  "exec 3<>/dev/tcp/127.0.0.1/$1; printf %s \"$2\" >&3; timeout 3 cat <&3", "ask",
                                  std::to_string(port), whole});

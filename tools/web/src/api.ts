@@ -254,6 +254,16 @@ export async function fetchRoom(): Promise<Room | undefined> {
   return answer.ok ? readRoom(await answer.json()) : undefined;
 }
 
+/** Whether the daemon knows this browser; true also while it does not answer at all. */
+export async function isKnown(): Promise<boolean> {
+  try {
+    const answer = await fetch('/api/session', { cache: 'no-store' });
+    return !answer.ok || fieldsOf(await answer.json())['open'] !== false;
+  } catch {
+    return true;
+  }
+}
+
 /** Resolves with the daemon's answer once it has acknowledged; rejects with a sentence for a person. */
 async function post(route: string, body: Fields): Promise<Fields> {
   const stop = new AbortController();

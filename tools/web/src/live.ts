@@ -1,10 +1,10 @@
 /** The live line to the daemon: server-sent events, watched by age. The browser's own reconnect gives up after an
  *  HTTP error and cannot see a line that is open but silent, so both are dealt with here. */
 
-import { readStatus, type Status } from './api';
+import { isKnown, readStatus, type Status } from './api';
 
 export interface Line {
-  state: 'connecting' | 'live' | 'lost';
+  state: 'connecting' | 'live' | 'lost' | 'unknown'; // unknown: this browser is, to the daemon
   ageS?: number; // since the last status arrived
 }
 
@@ -17,6 +17,7 @@ export function follow(onStatus: (status: Status) => void, onLine: (line: Line) 
   let openedAt = -Infinity;
   let lastAt: number | undefined;
   let broken = false;
+  let unknown = false;
 
   const open = (): void => {
     source?.close();
@@ -31,12 +32,17 @@ export function follow(onStatus: (status: Status) => void, onLine: (line: Line) 
       }
       if (!status) return;
       lastAt = performance.now();
-      broken = false;
+      broken = unknown = false;
       onStatus(status);
       watch();
     });
     source.addEventListener('error', () => {
       broken = true;
+      // An event stream does not say why it was refused.
+      void isKnown().then((known) => {
+        unknown = !known;
+        watch();
+      });
       watch();
     });
   };
@@ -47,7 +53,7 @@ export function follow(onStatus: (status: Status) => void, onLine: (line: Line) 
     const lost = broken || silentMs > SILENCE_MS;
     if (lost && now - openedAt > RETRY_MS) open();
     const ageS = lastAt === undefined ? undefined : (now - lastAt) / 1000;
-    onLine({ state: lost ? 'lost' : lastAt === undefined ? 'connecting' : 'live', ...(ageS === undefined ? {} : { ageS }) });
+    onLine({ state: lost && unknown ? 'unknown' : lost ? 'lost' : lastAt === undefined ? 'connecting' : 'live', ...(ageS === undefined ? {} : { ageS }) });
   };
 
   open();

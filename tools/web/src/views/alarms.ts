@@ -9,13 +9,13 @@ export class AlarmsView {
   readonly root: HTMLElement;
   private readonly lost = element('div', { id: 'lost', class: 'alarm severe', role: 'alert', hidden: '' });
   private readonly lostText = element('strong');
+  private readonly lostMend = element('span');
   private readonly lostAge = element('span', { class: 'alarm-age', 'aria-hidden': 'true' });
   private readonly rows: Rows<Alarm, HTMLElement>;
 
   constructor() {
     const list = element('div', { id: 'alarms', role: 'alert' });
-    this.lost.append(sign(true), element('div', { class: 'alarm-text' }, this.lostText, element('span', {},
-      'What the page shows is old and may be wrong. The rig goes on by itself; this page tries again all the time.')), this.lostAge);
+    this.lost.append(sign(true), element('div', { class: 'alarm-text' }, this.lostText, this.lostMend), this.lostAge);
     this.rows = new Rows<Alarm, HTMLElement>(
       list,
       () =>
@@ -39,9 +39,12 @@ export class AlarmsView {
   }
 
   showLine(line: Line): void {
-    this.lost.hidden = line.state !== 'lost';
-    if (line.state !== 'lost') return;
-    setText(this.lostText, 'Connection lost');
+    this.lost.hidden = line.state !== 'lost' && line.state !== 'unknown';
+    if (this.lost.hidden) return;
+    setText(this.lostText, line.state === 'lost' ? 'Connection lost' : 'The daemon does not know this browser');
+    setText(this.lostMend, line.state === 'lost'
+      ? 'What the page shows is old and may be wrong. The rig goes on by itself; this page tries again all the time.'
+      : 'Type luxrig page in a terminal of the rig’s computer, and open the address that it prints.');
     setText(this.lostAge, line.ageS === undefined ? 'no update yet' : `last update ${age(Math.max(0, line.ageS))} ago`);
   }
 }

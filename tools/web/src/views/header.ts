@@ -56,7 +56,7 @@ export class HeaderView {
 
   showLine(line: Line): void {
     const words =
-      line.state === 'live' ? 'live' : line.state === 'connecting' ? 'connecting' : 'connection lost';
+      line.state === 'live' ? 'live' : line.state === 'connecting' ? 'connecting' : line.state === 'unknown' ? 'not open' : 'connection lost';
     setText(this.lineText, words);
     setAttribute(this.line, 'data-state', line.state);
   }

@@ -1,0 +1,88 @@
+// Any bytes as what a neighbour sends: never a throw, never more than the limits, and no handler gets what is not for
+// it.
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+#include "core/check.h"
+#include "core/control/plan.h"
+#include "tools/http/json_body.h"
+#include "tools/http/request_reader.h"
+#include "tools/luxrigd/access.h"
+#include "tools/luxrigd/command_routes.h"
+
+namespace {
+
+using luxrig::RequestReader;
+
+luxrig::HttpHandlers checking_handlers() {
+  luxrig::HttpHandlers handlers;
+  handlers.status = handlers.universes = handlers.room_json = [] { return std::string("{}"); };
+  handlers.room_png = [] { return std::string(); };
+  handlers.blackout = [](bool) { return luxrig::Result<void>(); };
+  handlers.identify = [](const std::string&, double seconds) {
+    LUXRIG_CHECK(seconds > 0 && seconds <= 60, "identify for {} s", seconds);
+    return luxrig::Result<void>();
+  };
+  handlers.park = [](const std::vector<std::string>&) { return luxrig::Result<void>(); };
+  handlers.hand_back = [] {};
+  handlers.apply = [](const std::string& plan) -> luxrig::Checked<std::string> {
+    if (const auto read = luxrig::plan_from_json(plan, "plan"); !read) return tl::unexpected(read.error());
+    return std::string("applied");
+  };
+  handlers.level = [](const std::vector<std::string>& names, double value, std::optional<double> for_s) {
+    LUXRIG_CHECK(!names.empty() && !std::isnan(value), "{} names, {}", names.size(), value);
+    LUXRIG_CHECK(!for_s || (*for_s > 0 && *for_s <= 366 * 86400.0), "held for {} s", *for_s);
+    return luxrig::Result<std::string>("held");
+  };
+  handlers.goal = handlers.level;
+  handlers.release = [](const std::vector<std::string>&) { return luxrig::Result<std::string>("released"); };
+  handlers.reload = [] { return luxrig::Checked<std::string>("reloaded"); };
+  return handlers;
+}
+
+/// What the server makes of bytes that arrive in parts: the answer's status, 0 when it waits for more.
+int status_of(std::string_view bytes, std::size_t part, const std::vector<luxrig::HttpRoute>& routes) {
+  static const luxrig::Access access;
+  RequestReader reader;
+  const luxrig::HttpRoute* route = nullptr;
+  for (std::size_t at = 0; at < bytes.size(); at += part) {
+    reader.put(bytes.substr(at, part));
+    if (reader.at() == RequestReader::At::decision) {
+      const luxrig::HttpRequest& request = reader.request();
+      LUXRIG_CHECK(!request.path.empty() && request.path[0] == '/', "path {}", request.path);
+      LUXRIG_CHECK(access.credential(request).empty(), "somebody has guessed the token");
+      if (const auto refusal = luxrig::foreign_request(request, reader.has_body())) return refusal->status;
+      (void)request.parameter("open");
+      for (const luxrig::HttpRoute& one : routes)
+        if (one.path == request.path && one.method == request.method) route = &one;
+      if (!route) return luxrig::static_file("/nonexistent", request.path).status;
+      reader.accept_body(route->max_body_bytes);
+    }
+    if (reader.at() == RequestReader::At::refused) return reader.refusal().status;
+    if (reader.at() == RequestReader::At::whole) break;
+  }
+  if (reader.at() != RequestReader::At::whole) return 0;
+  LUXRIG_CHECK(reader.request().body.size() <= route->max_body_bytes, "a body of {}", reader.request().body.size());
+  return route->handle(reader.request()).status;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const std::vector<luxrig::HttpRoute> routes = luxrig::command_routes(checking_handlers());
+  const std::string_view bytes(reinterpret_cast<const char*>(data), size);
+  const int whole = status_of(bytes, std::max<std::size_t>(size, 1), routes);
+  LUXRIG_CHECK(whole == 0 || (whole >= 200 && whole < 600), "status {}", whole);
+  // What arrives byte by byte is taken or not as at once; of what is wrong, one may still wait for more.
+  const int bit_by_bit = status_of(bytes, 1, routes);
+  const auto taken = [](int status) { return status >= 200 && status < 300; };
+  LUXRIG_CHECK(taken(whole) == taken(bit_by_bit), "{} at once, {} byte by byte", whole, bit_by_bit);
+  // A body alone, past the head.
+  for (const luxrig::HttpRoute& route : routes) {
+    luxrig::HttpRequest request;
+    request.body = std::string(bytes);
+    if (route.method == "POST") (void)route.handle(request);
+  }
+  return 0;
+}

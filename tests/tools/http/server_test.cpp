@@ -1,0 +1,333 @@
+// The HTTP server against neighbours that mean it no good, over real sockets.
+#include "tools/http/server.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <thread>
+#include <vector>
+
+#include "tests/tools/http/wire.h"
+#include "tools/http/client.h"
+
+namespace luxrig {
+namespace {
+
+using namespace std::chrono_literals;
+using test::status_of;
+using test::Wire;
+using SteadyClock = std::chrono::steady_clock;
+
+const std::string kOk = "GET /looked HTTP/1.1\r\nHost: localhost\r\n";
+constexpr const char* kJsonHead = "Host: localhost\r\nContent-Type: application/json\r\n";
+
+std::string post(const std::string& path, const std::string& body, const std::string& headers = kJsonHead) {
+  return "POST " + path + " HTTP/1.1\r\n" + headers + "Content-Length: " + std::to_string(body.size()) + "\r\n\r\n" +
+         body;
+}
+
+class ServerTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    HttpServerOptions options;
+    options.routes = {
+        {"GET", "/looked",
+         [this](const HttpRequest&) {
+           ++looked;
+           return HttpResponse{200, "text/plain", "seen"};
+         }},
+        {"GET", "/slow",
+         [this](const HttpRequest&) {
+           ++slow_ones;
+           while (!released) std::this_thread::sleep_for(1ms);
+           return HttpResponse{200, "text/plain", "late"};
+         }},
+        {"POST", "/changed",
+         [this](const HttpRequest& request) {
+           ++changed;
+           last_body = request.body;
+           return HttpResponse{};
+         }},
+        {"POST", "/throws", [](const HttpRequest&) -> HttpResponse { throw std::runtime_error("a bug"); }},
+        {"POST", "/large",
+         [this](const HttpRequest& request) {
+           large_bytes = request.body.size();
+           return HttpResponse{};
+         },
+         1u << 20},
+        {"POST", "/urgent",
+         [this](const HttpRequest&) {
+           ++urgent;
+           return HttpResponse{};
+         },
+         1024, true},
+    };
+    options.events_path = "/events";
+    options.event = [] { return std::string("event: status\ndata: {}\n\n"); };
+    server = std::make_unique<HttpServer>(std::move(options));
+    const auto bound = server->bind(0);
+    ASSERT_TRUE(bound);
+    port = *bound;
+    server->start();
+  }
+  void TearDown() override { released = true; }
+
+  [[nodiscard]] int status(const std::string& request) const {
+    Wire wire(port);
+    wire.send(request);
+    return status_of(wire.receive(2s, "\r\n\r\n"));
+  }
+
+  std::atomic<int> looked{0}, changed{0}, urgent{0}, slow_ones{0};
+  std::atomic<std::size_t> large_bytes{0};
+  std::atomic<bool> released{false};
+  std::string last_body;
+  std::unique_ptr<HttpServer> server;
+  int port = 0;
+};
+
+TEST_F(ServerTest, KeepsAConnectionForTheNextRequest) {
+  Wire wire(port);
+  for (int i = 0; i < 3; ++i) {
+    wire.send(kOk + "\r\n");
+    EXPECT_NE(wire.receive(2s, "seen").find("seen"), std::string::npos) << i;
+  }
+  wire.send(post("/changed", "{\"a\":1}"));
+  EXPECT_EQ(status_of(wire.receive(2s, "\r\n\r\n")), 200);
+  EXPECT_EQ(last_body, "{\"a\":1}");
+  wire.send(kOk + "Connection: close\r\n\r\n");
+  EXPECT_NE(wire.receive(2s).find("seen"), std::string::npos);
+  EXPECT_TRUE(wire.ended());
+}
+
+TEST_F(ServerTest, WhatFollowsARefusedRequestIsNotARequest) {
+  const std::string smuggled = post("/changed", "{}");
+  for (const std::string& foreign :
+       {std::string("Origin: http://evil.example\r\n"), std::string("Origin: null\r\n"),
+        std::string("Origin: http://localhost:81\r\n"), std::string("Sec-Fetch-Site: cross-site\r\n"),
+        std::string("Sec-Fetch-Site: same-site\r\n"), std::string("Host: localhost\r\n")}) {
+    for (const std::string& type : {std::string("text/plain"), std::string("application/json")}) {
+      Wire wire(port);
+      wire.send("POST /changed HTTP/1.1\r\nHost: localhost\r\n" + foreign + "Content-Type: " + type +
+                "\r\nContent-Length: " + std::to_string(smuggled.size()) + "\r\n\r\n" + smuggled);
+      const std::string answer = wire.receive(3s);
+      EXPECT_EQ(status_of(answer), 403) << foreign << answer;
+      EXPECT_EQ(answer.find("HTTP/1.1", 1), std::string::npos) << "one answer only: " << answer;
+      EXPECT_NE(answer.find("Connection: close"), std::string::npos);
+      EXPECT_TRUE(wire.ended());
+    }
+  }
+  // The same for other refusals: of a route, a method, a type, a length, and for bytes that are not HTTP.
+  for (const std::string& first :
+       {post("/none", smuggled), "PUT" + post("/changed", smuggled).substr(4), std::string("\x16\x03\x01\x02\r\n\r\n"),
+        post("/changed", smuggled, "Host: localhost\r\nContent-Type: text/plain\r\n"),
+        "POST /changed HTTP/1.1\r\n" + std::string(kJsonHead) + "Content-Length: 99999999\r\n\r\n",
+        "POST /changed HTTP/1.1\r\n" + std::string(kJsonHead) +
+            "Content-Length: 5\r\nTransfer-Encoding: chunked\r\n\r\n0\r\n\r\n",
+        "POST /changed HTTP/1.1\r\n" + std::string(kJsonHead) + "Content-Length: 5\r\nContent-Length: 6\r\n\r\n"}) {
+    Wire wire(port);
+    wire.send(first + smuggled);
+    const std::string answer = wire.receive(3s);
+    EXPECT_GE(status_of(answer), 400) << first;
+    EXPECT_EQ(answer.find("HTTP/1.1", 1), std::string::npos) << first << answer;
+    EXPECT_TRUE(wire.ended());
+  }
+  EXPECT_EQ(changed, 0);
+  // Nor is what follows one that was taken: it is answered, and the connection ends.
+  Wire wire(port);
+  wire.send(post("/changed", "{}") + smuggled);
+  EXPECT_EQ(status_of(wire.receive(3s)), 200);
+  EXPECT_TRUE(wire.ended());
+  EXPECT_EQ(changed, 1);
+}
+
+TEST_F(ServerTest, HostHasToBeLoopback) {
+  for (const char* host : {"localhost", "127.0.0.1", "127.0.0.1:81", "[::1]:9620", "LOCALHOST:1"})
+    EXPECT_EQ(status(std::string("GET /looked HTTP/1.1\r\nHost: ") + host + "\r\n\r\n"), 200) << host;
+  looked = 0;
+  for (const char* host : {"evil.example", "localhost.evil.example", "127.0.0.1.nip.io", "localhost:", "localhost:x",
+                           "localhost:123456", "", "127.0.0.2", "localhost@evil.example"})
+    EXPECT_EQ(status(std::string("GET /looked HTTP/1.1\r\nHost: ") + host + "\r\n\r\n"), 403) << host;
+  EXPECT_EQ(status("GET /looked HTTP/1.1\r\n\r\n"), 403) << "no Host";
+  EXPECT_EQ(status(kOk + "Host: localhost\r\n\r\n"), 403) << "two";
+  EXPECT_EQ(status(kOk + "Origin: http://evil.example\r\n\r\n"), 403) << "a GET, too";
+  EXPECT_EQ(status("GET /events HTTP/1.1\r\nHost: localhost\r\nOrigin: http://localhost:81\r\n\r\n"), 403);
+  EXPECT_EQ(looked, 0);
+  EXPECT_EQ(status(kOk + "Origin: http://localhost\r\nSec-Fetch-Site: same-origin\r\n\r\n"), 200);
+}
+
+TEST_F(ServerTest, HeadersAndBodiesHaveLimits) {
+  EXPECT_EQ(status(kOk + "X: " + std::string(8000, 'x') + "\r\n\r\n"), 200);
+  EXPECT_EQ(status(kOk + "X: " + std::string(9000, 'x') + "\r\n\r\n"), 431);
+  EXPECT_EQ(status("GET /" + std::string(9000, 'x') + " HTTP/1.1\r\nHost: localhost\r\n\r\n"), 431);
+  EXPECT_EQ(status("GET /" + std::string(1 << 20, 'x')), 431);
+  std::string many = kOk;
+  for (int i = 0; i < 100; ++i) many += "a: b\r\n";
+  EXPECT_EQ(status(many + "\r\n"), 431);
+
+  EXPECT_EQ(status(post("/changed", std::string(16384, ' '))), 200);
+  EXPECT_EQ(status(post("/changed", std::string(16385, ' '))), 413);
+  EXPECT_EQ(status(post("/looked", " ")), 405);
+  const std::string chunked =
+      "POST /changed HTTP/1.1\r\n" + std::string(kJsonHead) + "Transfer-Encoding: chunked\r\n\r\n";
+  changed = 0;
+  EXPECT_EQ(status(chunked + "2\r\n{}\r\n0\r\n\r\n"), 200);
+  EXPECT_EQ(last_body, "{}");
+  std::string chunks;
+  for (int i = 0; i < 17; ++i) chunks += "400\r\n" + std::string(1024, ' ') + "\r\n";
+  EXPECT_EQ(status(chunked + chunks + "0\r\n\r\n"), 413);
+  EXPECT_EQ(status(chunked + "ffffffffffffffff\r\n"), 413);
+  EXPECT_EQ(status(chunked + "1;x=" + std::string(20000, 'x')), 431) << "a chunk's extension";
+  EXPECT_EQ(status(chunked + "0\r\nx: " + std::string(20000, 'x')), 431) << "a trailer";
+  EXPECT_EQ(changed, 1);
+}
+
+TEST_F(ServerTest, ALargeBodyIsTakenInWholeAndOnlyTwoAtOnce) {
+  const std::string body(1 << 20, 'x');
+  EXPECT_EQ(status(post("/large", body)), 200);
+  EXPECT_EQ(large_bytes, body.size());
+  const std::string head = post("/large", body).substr(0, 200);
+  std::vector<Wire> begun;
+  for (int i = 0; i < 2; ++i) begun.emplace_back(port).send(head);
+  std::this_thread::sleep_for(100ms);
+  EXPECT_EQ(status(head), 503);
+  begun.clear();
+  std::this_thread::sleep_for(100ms);
+  EXPECT_EQ(status(post("/large", body)), 200);
+}
+
+TEST_F(ServerTest, ExpectsToBeToldToContinue) {
+  Wire wire(port);
+  const std::string request = post("/changed", "{}", std::string(kJsonHead) + "Expect: 100-continue\r\n");
+  wire.send(request.substr(0, request.size() - 2));
+  EXPECT_EQ(status_of(wire.receive(2s, "\r\n\r\n")), 100);
+  wire.send("{}");
+  EXPECT_EQ(status_of(wire.receive(2s, "\r\n\r\n")), 200);
+}
+
+TEST_F(ServerTest, TwoHundredThatDribbleLockNobodyOut) {
+  std::vector<Wire> dribbling;
+  for (int i = 0; i < 200; ++i) dribbling.emplace_back(port).send("GET /loo");
+  for (int round = 0; round < 5; ++round) {
+    for (Wire& wire : dribbling) wire.send("k");
+    const auto start = SteadyClock::now();
+    EXPECT_EQ(status(post("/urgent", "{}")), 200) << round;
+    EXPECT_LT(SteadyClock::now() - start, 100ms) << round;
+  }
+  EXPECT_EQ(urgent, 5);
+}
+
+TEST_F(ServerTest, UrgentWaitsForNobody) {
+  std::vector<Wire> waiting;
+  for (int i = 0; i < 20; ++i) waiting.emplace_back(port).send("GET /slow HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  const auto end = SteadyClock::now() + 2s;
+  while (slow_ones == 0 && SteadyClock::now() < end) std::this_thread::sleep_for(1ms);
+  ASSERT_GT(slow_ones, 0);
+  const auto start = SteadyClock::now();
+  EXPECT_EQ(status(post("/urgent", "{}")), 200);
+  EXPECT_LT(SteadyClock::now() - start, 100ms);
+  EXPECT_LT(slow_ones, 20) << "few threads, many that wait";
+  released = true;
+  EXPECT_EQ(status_of(waiting.back().receive(2s, "late")), 200);
+}
+
+TEST_F(ServerTest, OnePeerDoesNotGetAllEventStreams) {
+  std::vector<Wire> streams;
+  int good = 0;
+  for (int i = 0; i < 16; ++i) {
+    streams.emplace_back(port).send("GET /events HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    if (status_of(streams.back().receive(2s, "data: {}\n\n")) == 200) ++good;
+  }
+  EXPECT_EQ(good, 8);
+  EXPECT_NE(streams[0].receive(2s, "data: {}\n\n").find("event: status"), std::string::npos) << "they go on";
+  streams.clear();
+  const auto end = SteadyClock::now() + 5s;
+  int again = 0;
+  while (again != 200 && SteadyClock::now() < end) {
+    std::this_thread::sleep_for(100ms);
+    again = status("GET /events HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  }
+  EXPECT_EQ(again, 200) << "whoever went makes room";
+}
+
+TEST_F(ServerTest, StopsWhateverClientsDo) {
+  std::vector<Wire> hung;
+  for (int i = 0; i < 20; ++i) hung.emplace_back(port).send("GET /loo");
+  for (int i = 0; i < 20; ++i)
+    hung.emplace_back(port).send("POST /changed HTTP/1.1\r\n" + std::string(kJsonHead) + "Content-Length: 9\r\n\r\n{");
+  for (int i = 0; i < 8; ++i) hung.emplace_back(port).send("GET /events HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  std::this_thread::sleep_for(300ms);
+  const auto start = SteadyClock::now();
+  server->stop();
+  EXPECT_LT(SteadyClock::now() - start, 500ms);
+  EXPECT_FALSE(Wire(port).connected());
+  server->stop();
+}
+
+TEST_F(ServerTest, AHandlerThatThrowsIsAnAnswer) {
+  EXPECT_EQ(status(post("/throws", "{}")), 500);
+  EXPECT_EQ(status(kOk + "\r\n"), 200);
+}
+
+TEST_F(ServerTest, SlowRequestsEnd) {
+  Wire wire(port);
+  wire.send("GET /loo");
+  const auto start = SteadyClock::now();
+  std::string got;
+  for (int i = 0; i < 80 && !wire.ended(); ++i) {
+    got += wire.receive(100ms);
+    wire.send("k");  // a byte now and then does not help
+  }
+  EXPECT_TRUE(wire.ended());
+  EXPECT_LT(SteadyClock::now() - start, 6s);
+  EXPECT_GT(SteadyClock::now() - start, 4s);
+}
+
+TEST_F(ServerTest, ItsOwnClientIsUnderstood) {
+  const auto looked_at = http_get({"127.0.0.1", port}, "/looked");
+  ASSERT_TRUE(looked_at);
+  EXPECT_EQ(looked_at->body, "seen");
+  const auto done = http_post_json({"localhost", port}, "/changed", "{}");
+  ASSERT_TRUE(done);
+  EXPECT_EQ(done->status, 200);
+  const auto refused = http_post_json({"localhost", port}, "/changed", std::string(1 << 24, 'x'));
+  ASSERT_TRUE(refused) << "the answer is heard, although the body was not";
+  EXPECT_EQ(refused->status, 413);
+  server->stop();
+  EXPECT_FALSE(http_get({"127.0.0.1", port}, "/looked"));
+}
+
+TEST(HttpServer, AUnixSocketNeedsNoCredentialAndThePortDoes) {
+  const std::string file = "/tmp/luxrig-http-test-" + std::to_string(::getpid()) + ".socket";
+  HttpServerOptions options;
+  options.routes = {{"GET", "/who", [](const HttpRequest& request) {
+                       return HttpResponse{200, "text/plain", request.credential};
+                     }}};
+  options.page = [](const HttpRequest&) { return HttpResponse{200, "text/plain", "the page"}; };
+  options.events_path = "/events";
+  options.event = [] { return std::string("data: 1\n\n"); };
+  options.credential = [](const HttpRequest& request) {
+    return std::string(request.header("authorization") == "Bearer right" ? "known" : "");
+  };
+  HttpServer server(std::move(options));
+  const auto port = server.bind(0);
+  ASSERT_TRUE(port);
+  ASSERT_TRUE(server.bind_socket(file));
+  server.start();
+  HttpPeer peer{"127.0.0.1", *port};
+  EXPECT_EQ(http_get(peer, "/who")->status, 401);
+  EXPECT_EQ(http_get(peer, "/events")->status, 401);
+  EXPECT_EQ(http_get(peer, "/")->body, "the page");
+  peer.token = "wrong";
+  EXPECT_EQ(http_get(peer, "/who")->status, 401);
+  peer.token = "right";
+  EXPECT_EQ(http_get(peer, "/who")->body, "known");
+  HttpPeer by_socket{"", 0, file};
+  EXPECT_TRUE(http_listens(file));
+  EXPECT_EQ(http_get(by_socket, "/who")->body, "socket");
+  server.stop();
+  EXPECT_FALSE(http_listens(file));
+}
+
+}  // namespace
+}  // namespace luxrig

@@ -1,0 +1,529 @@
+#include "tools/http/server.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <boost/asio/generic/stream_protocol.hpp>
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/local/stream_protocol.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/write.hpp>
+#include <condition_variable>
+#include <deque>
+#include <mutex>
+#include <thread>
+
+#include "tools/http/request_reader.h"
+
+namespace luxrig {
+namespace {
+
+namespace asio = boost::asio;
+using boost::system::error_code;
+using Socket = asio::generic::stream_protocol::socket;
+using SteadyClock = std::chrono::steady_clock;
+using Instant = SteadyClock::time_point;
+using std::chrono::milliseconds;
+
+constexpr std::size_t kMaxConnections = 64;  // of TCP, and as many of the Unix socket
+constexpr std::size_t kMaxStreams = 16, kMaxStreamsOfOne = 8;
+constexpr std::size_t kLargeBodyBytes = 64u << 10;
+constexpr int kMaxLargeBodies = 2;  // at once: bodies are held whole
+constexpr milliseconds kIdle{15000}, kHead{5000}, kBody{10000}, kLargeBody{30000}, kAnswer{5000}, kDrain{1000};
+constexpr milliseconds kTick{100};
+constexpr int kTicksPerEvent = 2;
+constexpr int kLowPriority = 10;
+
+/// Linux keeps the nice value per thread.
+void lower_priority() { ::setpriority(PRIO_PROCESS, static_cast<id_t>(::syscall(SYS_gettid)), kLowPriority); }
+
+/// Handlers, one after the other on each of some threads. As a connection waits for its answer, no more wait than there
+/// are connections.
+class Lane {
+ public:
+  Lane(int threads, bool low_priority) {
+    for (int i = 0; i < threads; ++i) {
+      threads_.emplace_back([this, low_priority] {
+        if (low_priority) lower_priority();
+        run();
+      });
+    }
+  }
+  ~Lane() { stop(); }
+  void push(std::function<void()> job) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (stopped_) return;
+      jobs_.push_back(std::move(job));
+    }
+    wake_.notify_one();
+  }
+  /// What waits is dropped, what runs is waited for.
+  void stop() {
+    std::deque<std::function<void()>> dropped;
+    {
+      const std::lock_guard lock(mutex_);
+      stopped_ = true;
+      dropped.swap(jobs_);
+    }
+    wake_.notify_all();
+    for (std::thread& thread : threads_)
+      if (thread.joinable()) thread.join();
+  }
+
+ private:
+  void run() {
+    std::unique_lock lock(mutex_);
+    while (true) {
+      wake_.wait(lock, [this] { return stopped_ || !jobs_.empty(); });
+      if (stopped_) return;
+      {
+        const auto job = std::move(jobs_.front());
+        jobs_.pop_front();
+        lock.unlock();
+        job();
+      }
+      lock.lock();
+    }
+  }
+
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  std::deque<std::function<void()>> jobs_;
+  bool stopped_ = false;
+  std::vector<std::thread> threads_;
+};
+
+const char* phrase_of(int status) {
+  switch (status) {
+    case 200:
+      return "OK";
+    case 303:
+      return "See Other";
+    case 400:
+      return "Bad Request";
+    case 401:
+      return "Unauthorized";
+    case 403:
+      return "Forbidden";
+    case 404:
+      return "Not Found";
+    case 405:
+      return "Method Not Allowed";
+    case 413:
+      return "Content Too Large";
+    case 415:
+      return "Unsupported Media Type";
+    case 431:
+      return "Request Header Fields Too Large";
+    case 503:
+      return "Service Unavailable";
+    default:
+      return status < 500 ? "Refused" : "Failed";
+  }
+}
+
+HttpResponse called(const std::function<HttpResponse(const HttpRequest&)>& handler, const HttpRequest& request) {
+  try {
+    return handler(request);
+  } catch (const std::exception& error) {  // a program that drives lamps does not end over a request
+    return http_refusal(500, error.what());
+  }
+}
+
+/// Root, or the user that this process runs as.
+bool is_ours(Socket& socket) {
+  ucred peer{};
+  socklen_t length = sizeof peer;
+  return ::getsockopt(socket.native_handle(), SOL_SOCKET, SO_PEERCRED, &peer, &length) == 0 &&
+         (peer.uid == 0 || peer.uid == ::geteuid());
+}
+
+}  // namespace
+
+struct HttpServer::State {
+  class Connection;
+
+  explicit State(HttpServerOptions given) : options(std::move(given)) {
+    for (const auto& [name, value] : options.headers) headers += name + ": " + value + "\r\n";
+  }
+
+  template <class Acceptor>
+  void accept(Acceptor& acceptor, bool trusted);
+  void admit(Socket socket, bool trusted);
+  void remove(const std::shared_ptr<Connection>& connection);
+  void tick();
+  void tell_streams();
+  [[nodiscard]] bool stream_is_free(const std::string& credential) const;
+
+  HttpServerOptions options;
+  std::string headers;
+  asio::io_context io{1};  // everything below, up to the lanes, is its thread's
+  asio::ip::tcp::acceptor tcp{io};
+  asio::local::stream_protocol::acceptor local{io};
+  std::string socket_file;
+  asio::steady_timer timer{io};
+  std::vector<std::shared_ptr<Connection>> connections;
+  int large_bodies = 0;
+  int ticks = 0;
+  bool ticking = false, event_wanted = false;
+
+  Lane urgent{1, false}, looking{2, true}, changing{2, true};
+  std::thread thread;
+};
+
+/// One peer: a request, its answer, the next request.
+class HttpServer::State::Connection : public std::enable_shared_from_this<Connection> {
+ public:
+  enum class Doing { waits, reads_body, is_handled, answers, drains, streams };
+
+  Connection(State& server, Socket socket, bool trusted)
+      : server_(server), socket_(std::move(socket)), trusted_(trusted) {}
+
+  [[nodiscard]] Doing doing() const { return doing_; }
+  [[nodiscard]] bool trusted() const { return trusted_; }
+  [[nodiscard]] Instant since() const { return since_; }
+  [[nodiscard]] const std::string& credential() const { return credential_; }
+  /// Has not asked anything yet that somebody works on; may be closed in favour of a new one.
+  [[nodiscard]] bool has_nothing() const {
+    return doing_ == Doing::waits || doing_ == Doing::reads_body || doing_ == Doing::drains;
+  }
+
+  void await_request() {
+    reader_ = std::make_unique<RequestReader>();
+    head_only_ = false;
+    doing_ = Doing::waits;
+    since_ = SteadyClock::now();
+    deadline_ = since_ + kIdle;
+    read();
+  }
+
+  void check(Instant now) {
+    if (deadline_ && now > *deadline_) close();
+  }
+
+  void close() {
+    if (closed_) return;
+    closed_ = true;
+    free_body();
+    error_code ignored;
+    socket_.close(ignored);
+    server_.remove(shared_from_this());
+  }
+
+  void send_event(const std::shared_ptr<const std::string>& text) {
+    if (closed_ || writing_) return;  // whoever reads slowly misses some
+    write(text, [](Connection& self) { self.deadline_.reset(); });
+  }
+
+ private:
+  void read() {
+    socket_.async_read_some(asio::buffer(buffer_), [self = this->shared_from_this()](error_code error, std::size_t n) {
+      if (self->closed_) return;
+      if (error) return self->close();
+      if (self->doing_ == Doing::drains) return self->read();
+      self->take({self->buffer_.data(), n});
+    });
+  }
+
+  void take(std::string_view bytes) {
+    if (!reader_->begun()) deadline_ = SteadyClock::now() + kHead;
+    reader_->put(bytes);
+    if (reader_->at() == RequestReader::At::decision) {
+      if (const auto refusal = decide()) return answer(*refusal, true);
+      if (reader_->at() == RequestReader::At::body && reader_->request().header("expect")) {
+        return write(
+            std::make_shared<const std::string>("HTTP/1.1 100 Continue\r\n\r\n"), [](Connection& self) { self.read(); },
+            false);
+      }
+    }
+    switch (reader_->at()) {
+      case RequestReader::At::refused:
+        return answer(reader_->refusal(), true);
+      case RequestReader::At::whole:
+        return handle();
+      default:
+        read();
+    }
+  }
+
+  /// All that can be known before the body is read.
+  std::optional<HttpResponse> decide() {
+    const HttpRequest& request = reader_->request();
+    if (auto refusal = foreign_request(request, reader_->has_body())) return refusal;
+    head_only_ = request.method == "HEAD";
+    const std::string method = head_only_ ? "GET" : request.method;
+    const HttpServerOptions& options = server_.options;
+    const bool events = !options.events_path.empty() && request.path == options.events_path && request.method == "GET";
+    bool known_path = false;
+    route_ = nullptr;
+    for (const HttpRoute& route : options.routes) {
+      known_path = known_path || route.path == request.path;
+      if (route.path == request.path && route.method == method) route_ = &route;
+    }
+    const bool page = !route_ && !events && method == "GET" && options.page;
+    if (!route_ && !events && !page) {
+      return known_path ? http_refusal(405, "this route is not for " + request.method.substr(0, 16))
+                        : http_refusal(404, options.no_route ? options.no_route(request.path)
+                                                             : "there is no route " + request.path);
+    }
+    credential_ = trusted_ ? "socket" : options.credential ? options.credential(request) : "anybody";
+    if (credential_.empty() && !page) return http_refusal(401, options.no_credential);
+    if (events && !server_.stream_is_free(credential_)) return http_refusal(503, "too many pages are open");
+    const std::size_t most = route_ ? route_->max_body_bytes : 0;
+    const bool large = most > kLargeBodyBytes && reader_->has_body();
+    if (large && server_.large_bodies >= kMaxLargeBodies)
+      return http_refusal(503, "others are sending files just now: try again");
+    reader_->accept_body(most);
+    if (reader_->at() == RequestReader::At::refused) return reader_->refusal();
+    if (reader_->at() == RequestReader::At::body) {
+      doing_ = Doing::reads_body;
+      deadline_ = SteadyClock::now() + (large ? kLargeBody : kBody);
+    }
+    if (large) {
+      has_large_body_ = true;
+      ++server_.large_bodies;
+    }
+    return std::nullopt;
+  }
+
+  void free_body() {
+    if (has_large_body_) --server_.large_bodies;
+    has_large_body_ = false;
+  }
+
+  void handle() {
+    keep_alive_ = reader_->keep_alive() && !reader_->more_came();
+    if (!route_ && reader_->request().path == server_.options.events_path) return stream();
+    doing_ = Doing::is_handled;
+    deadline_.reset();
+    const auto& handler = route_ ? route_->handle : server_.options.page;
+    auto request = std::make_shared<HttpRequest>(reader_->take());
+    request->credential = credential_;
+    reader_.reset();
+    Lane& lane = route_ && route_->urgent                 ? server_.urgent
+                 : request->method == "GET" || head_only_ ? server_.looking
+                                                          : server_.changing;
+    lane.push([self = this->shared_from_this(), &handler, request]() mutable {
+      const auto response = std::make_shared<HttpResponse>(called(handler, *request));
+      request.reset();
+      asio::post(self->server_.io, [self, response] {
+        self->free_body();
+        if (!self->closed_) self->answer(*response, !self->keep_alive_);
+      });
+    });
+  }
+
+  void answer(const HttpResponse& response, bool last) {
+    doing_ = Doing::answers;
+    free_body();
+    std::string text = fmt::format("HTTP/1.1 {} {}\r\n{}Content-Type: {}\r\nContent-Length: {}\r\nConnection: {}\r\n",
+                                   response.status, phrase_of(response.status), server_.headers, response.content_type,
+                                   response.body.size(), last ? "close" : "keep-alive");
+    for (const auto& [name, value] : response.headers) text += name + ": " + value + "\r\n";
+    text += "\r\n";
+    if (!head_only_) text += response.body;
+    write(std::make_shared<const std::string>(std::move(text)),
+          [last](Connection& self) { last ? self.drain() : self.await_request(); });
+  }
+
+  /// The peer may still be sending what nobody wants: closed at once, it would lose the answer.
+  void drain() {
+    doing_ = Doing::drains;
+    since_ = SteadyClock::now();
+    deadline_ = since_ + kDrain;
+    reader_.reset();
+    error_code error;
+    socket_.shutdown(Socket::shutdown_send, error);
+    if (error) return close();
+    read();
+  }
+
+  void stream() {
+    doing_ = Doing::streams;
+    server_.event_wanted = true;
+    write(std::make_shared<const std::string>(fmt::format("HTTP/1.1 200 OK\r\n{}Content-Type: text/event-stream\r\n"
+                                                          "Cache-Control: no-store\r\nConnection: close\r\n\r\n",
+                                                          server_.headers)),
+          [](Connection& self) {
+            self.deadline_.reset();
+            self.server_.tell_streams();
+          });
+  }
+
+  template <class Then>
+  void write(std::shared_ptr<const std::string> text, Then then, bool timed = true) {
+    if (timed) deadline_ = SteadyClock::now() + kAnswer;
+    writing_ = true;
+    asio::async_write(socket_, asio::buffer(*text),
+                      [self = this->shared_from_this(), text, then](error_code error, std::size_t) {
+                        self->writing_ = false;
+                        if (self->closed_) return;
+                        if (error) return self->close();
+                        then(*self);
+                      });
+  }
+
+  State& server_;
+  Socket socket_;
+  const bool trusted_;
+  Doing doing_ = Doing::waits;
+  Instant since_{};  // it waits for a request, or for the end
+  std::optional<Instant> deadline_;
+  std::unique_ptr<RequestReader> reader_;
+  const HttpRoute* route_ = nullptr;
+  std::string credential_;
+  bool head_only_ = false, keep_alive_ = false, has_large_body_ = false, writing_ = false, closed_ = false;
+  std::array<char, 16384> buffer_;
+};
+
+template <class Acceptor>
+void HttpServer::State::accept(Acceptor& acceptor, bool trusted) {
+  acceptor.async_accept([this, &acceptor, trusted](error_code error, auto socket) {
+    if (error == asio::error::operation_aborted) return;
+    if (error) {  // no more files may be open: those that are will end
+      const auto later = std::make_shared<asio::steady_timer>(io, kTick);
+      later->async_wait([this, &acceptor, trusted, later](error_code) { accept(acceptor, trusted); });
+      return;
+    }
+    admit(Socket(std::move(socket)), trusted);
+    accept(acceptor, trusted);
+  });
+}
+
+void HttpServer::State::admit(Socket socket, bool trusted) {
+  if (trusted && !is_ours(socket)) return;
+  std::size_t count = 0;
+  std::shared_ptr<Connection> idlest;
+  for (const auto& connection : connections) {
+    if (connection->trusted() != trusted) continue;
+    ++count;
+    if (connection->has_nothing() && (!idlest || connection->since() < idlest->since())) idlest = connection;
+  }
+  if (count >= kMaxConnections) {
+    if (!idlest) return;
+    idlest->close();
+  }
+  connections.push_back(std::make_shared<Connection>(*this, std::move(socket), trusted));
+  connections.back()->await_request();
+  if (!ticking) tick();
+}
+
+void HttpServer::State::remove(const std::shared_ptr<Connection>& connection) {
+  connections.erase(std::remove(connections.begin(), connections.end(), connection), connections.end());
+}
+
+void HttpServer::State::tick() {
+  ticking = !connections.empty();
+  if (!ticking) return;
+  const auto copy = connections;  // closing one removes it
+  for (const auto& connection : copy) connection->check(SteadyClock::now());
+  if (++ticks % kTicksPerEvent == 0) event_wanted = true;
+  tell_streams();
+  timer.expires_after(kTick);
+  timer.async_wait([this](error_code error) {
+    if (!error) tick();
+  });
+}
+
+void HttpServer::State::tell_streams() {
+  const auto is_stream = [](const auto& one) { return one->doing() == Connection::Doing::streams; };
+  if (!event_wanted || std::none_of(connections.begin(), connections.end(), is_stream)) return;
+  event_wanted = false;
+  looking.push([this, is_stream] {
+    const auto text = std::make_shared<const std::string>(options.event());
+    asio::post(io, [this, is_stream, text] {
+      const auto copy = connections;
+      for (const auto& connection : copy)
+        if (is_stream(connection)) connection->send_event(text);
+    });
+  });
+}
+
+bool HttpServer::State::stream_is_free(const std::string& credential) const {
+  std::size_t all = 0, of_this = 0;
+  for (const auto& connection : connections) {
+    if (connection->doing() != Connection::Doing::streams) continue;
+    ++all;
+    if (connection->credential() == credential) ++of_this;
+  }
+  return all < kMaxStreams && of_this < kMaxStreamsOfOne;
+}
+
+HttpServer::HttpServer(HttpServerOptions options) : state_(std::make_unique<State>(std::move(options))) {}
+HttpServer::~HttpServer() { stop(); }
+
+std::optional<int> HttpServer::bind(int port) {
+  auto& acceptor = state_->tcp;
+  const asio::ip::tcp::endpoint endpoint(asio::ip::address_v4::loopback(), static_cast<unsigned short>(port));
+  error_code error;
+  acceptor.open(endpoint.protocol(), error);
+  // Not SO_REUSEPORT: two servers must not share a port.
+  if (!error) acceptor.set_option(asio::socket_base::reuse_address(true), error);
+  if (!error) acceptor.bind(endpoint, error);
+  if (!error) acceptor.listen(asio::socket_base::max_listen_connections, error);
+  if (error) {
+    error_code ignored;
+    acceptor.close(ignored);
+    return std::nullopt;
+  }
+  return acceptor.local_endpoint().port();
+}
+
+Result<void> HttpServer::bind_socket(const std::string& file) {
+  auto& acceptor = state_->local;
+  const auto fault = [&](const std::string& why) {
+    return tl::unexpected(Fault{Cause::system, {}, fmt::format("socket {}: {}", file, why), {}});
+  };
+  error_code error;
+  acceptor.open(asio::local::stream_protocol(), error);
+  if (error) return fault(error.message());
+  if (file.size() >= sizeof(sockaddr_un::sun_path)) return fault("its path is too long for a socket");
+  ::unlink(file.c_str());
+  acceptor.bind(asio::local::stream_protocol::endpoint(file), error);
+  if (error) return fault(error.message());
+  // Nobody can connect before listen().
+  if (::chmod(file.c_str(), S_IRUSR | S_IWUSR) != 0) return fault("its mode cannot be set to 600");
+  acceptor.listen(asio::socket_base::max_listen_connections, error);
+  if (error) return fault(error.message());
+  state_->socket_file = file;
+  return {};
+}
+
+void HttpServer::start() {
+  state_->thread = std::thread([state = state_.get()] {
+    lower_priority();
+    if (state->tcp.is_open()) state->accept(state->tcp, false);
+    if (state->local.is_open()) state->accept(state->local, true);
+    const auto forever = asio::make_work_guard(state->io);
+    state->io.run();
+  });
+}
+
+void HttpServer::stop() {
+  State& state = *state_;
+  if (state.thread.joinable()) {
+    asio::post(state.io, [&state] {
+      error_code ignored;
+      state.tcp.close(ignored);
+      state.local.close(ignored);
+      const auto copy = state.connections;
+      for (const auto& connection : copy) connection->close();
+      state.io.stop();
+    });
+    state.thread.join();
+  }
+  for (Lane* lane : {&state.urgent, &state.looking, &state.changing}) lane->stop();
+  if (!state.socket_file.empty()) ::unlink(state.socket_file.c_str());
+  state.socket_file.clear();
+}
+
+}  // namespace luxrig
