@@ -44,6 +44,55 @@ bool asks_for_blackout(std::string_view text) {
 
 }  // namespace
 
+std::string state_text(const JournalState& state) {
+  nlohmann::json by_hand = nlohmann::json::array();
+  for (const SavedByHand& one : state.by_hand) {
+    nlohmann::json entry = {
+        {"goal", one.goal}, {"name", one.name}, {"value", one.value}, {"since_unix_s", one.since_unix_s}};
+    if (one.until_unix_s) entry["until_unix_s"] = *one.until_unix_s;
+    by_hand.push_back(std::move(entry));
+  }
+  const nlohmann::json out = {
+      {"luxrig_state", 1},      {"plan", state.plan_json},          {"blackout", state.blackout},
+      {"parked", state.parked}, {"plan_of_rig", state.plan_of_rig}, {"by_hand", std::move(by_hand)}};
+  return out.dump(1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+LegibleState legible_state_of(const std::string& text) {
+  const auto json = nlohmann::json::parse(text, nullptr, false);
+  LegibleState legible;
+  JournalState& state = legible.state;
+  std::string missing;
+  const auto want = [&](const char* key, auto is) {
+    const bool there = json.is_object() && json.contains(key) && (json[key].*is)();
+    if (!there) missing += fmt::format("{}{}", missing.empty() ? "" : ", ", key);
+    return there;
+  };
+  using Json = nlohmann::json;
+  if (want("blackout", &Json::is_boolean)) {
+    state.blackout = json["blackout"];
+  } else {
+    // Torn by a failing disk: the word may still stand there, and dark is what was asked for last.
+    state.blackout = asks_for_blackout(text);
+  }
+  if (want("plan", &Json::is_string)) state.plan_json = json["plan"].get<std::string>();
+  if (!want("luxrig_state", &Json::is_number_integer) || json["luxrig_state"] != 1) {
+    if (missing.empty()) missing = "luxrig_state";
+  }
+  if (json.is_object()) {
+    // Older versions did not write these.
+    if (json.contains("parked") && json["parked"].is_array())
+      for (const auto& one : json["parked"])
+        if (one.is_string()) state.parked.push_back(one.get<std::string>());
+    if (json.contains("plan_of_rig") && json["plan_of_rig"].is_boolean()) state.plan_of_rig = json["plan_of_rig"];
+    if (json.contains("by_hand") && json["by_hand"].is_array())
+      for (const auto& one : json["by_hand"])
+        if (auto saved = by_hand_of(one)) state.by_hand.push_back(std::move(*saved));
+  }
+  if (!missing.empty()) legible.damage = json.is_discarded() ? "no JSON" : "without " + missing;
+  return legible;
+}
+
 Result<void> Journal::make_folder() {
   const auto failed = [&](const std::string& why) {
     return tl::unexpected(Fault{Cause::system, {}, "cannot make " + folder_->string() + ": " + why, {}});
@@ -62,24 +111,10 @@ Result<void> Journal::make_folder() {
   return {};
 }
 
-std::string Journal::text_of(const JournalState& state) {
-  nlohmann::json by_hand = nlohmann::json::array();
-  for (const SavedByHand& one : state.by_hand) {
-    nlohmann::json entry = {
-        {"goal", one.goal}, {"name", one.name}, {"value", one.value}, {"since_unix_s", one.since_unix_s}};
-    if (one.until_unix_s) entry["until_unix_s"] = *one.until_unix_s;
-    by_hand.push_back(std::move(entry));
-  }
-  const nlohmann::json out = {
-      {"luxrig_state", 1},      {"plan", state.plan_json},          {"blackout", state.blackout},
-      {"parked", state.parked}, {"plan_of_rig", state.plan_of_rig}, {"by_hand", std::move(by_hand)}};
-  return out.dump(1, ' ', false, nlohmann::json::error_handler_t::replace);
-}
-
 Result<void> Journal::save(const JournalState& state) {
   if (!folder_) return {};
   if (auto made = make_folder(); !made) return made;
-  return write_file(file(), text_of(state));
+  return write_file(file(), state_text(state));
 }
 
 void Journal::tell(const Result<void>& saved) {
@@ -103,7 +138,7 @@ Result<void> Journal::save_first(const Change& change) {
   change(next);
   if (auto saved = save(next); !saved) {
     // The folder alone may have failed, with the refused state on disk already.
-    if (read_file(file()).value_or("") == text_of(next)) tell(save(state_));
+    if (read_file(file()).value_or("") == state_text(next)) tell(save(state_));
     return saved;
   }
   state_ = std::move(next);
@@ -128,42 +163,13 @@ Journal::Left Journal::load() const {
     left.complaints.push_back(text.error().front().text() + keep_aside());
     return left;
   }
-  const auto json = nlohmann::json::parse(*text, nullptr, false);
-  JournalState state;
-  std::string missing;
-  const auto want = [&](const char* key, auto is) {
-    const bool there = json.is_object() && json.contains(key) && (json[key].*is)();
-    if (!there) missing += fmt::format("{}{}", missing.empty() ? "" : ", ", key);
-    return there;
-  };
-  using Json = nlohmann::json;
-  if (want("blackout", &Json::is_boolean)) {
-    state.blackout = json["blackout"];
-  } else {
-    // Torn by a failing disk: the word may still stand there, and dark is what was asked for last.
-    state.blackout = asks_for_blackout(*text);
-  }
-  if (want("plan", &Json::is_string)) state.plan_json = json["plan"].get<std::string>();
-  if (!want("luxrig_state", &Json::is_number_integer) || json["luxrig_state"] != 1) {
-    if (missing.empty()) missing = "luxrig_state";
-  }
-  if (json.is_object()) {
-    // Older versions did not write these.
-    if (json.contains("parked") && json["parked"].is_array())
-      for (const auto& one : json["parked"])
-        if (one.is_string()) state.parked.push_back(one.get<std::string>());
-    if (json.contains("plan_of_rig") && json["plan_of_rig"].is_boolean()) state.plan_of_rig = json["plan_of_rig"];
-    if (json.contains("by_hand") && json["by_hand"].is_array())
-      for (const auto& one : json["by_hand"])
-        if (auto saved = by_hand_of(one)) state.by_hand.push_back(std::move(*saved));
-  }
-  left.state = std::move(state);
-  if (missing.empty()) return left;
-  left.complaints.push_back(
-      fmt::format("{}: the saved state is damaged ({}); {}{}", file().string(),
-                  json.is_discarded() ? std::string("no JSON") : "without " + missing,
-                  left.state->blackout ? "the blackout that was in force holds" : "what is legible of it holds",
-                  keep_aside()));
+  auto legible = legible_state_of(*text);
+  left.state = std::move(legible.state);
+  if (!legible.damage.empty())
+    left.complaints.push_back(
+        fmt::format("{}: the saved state is damaged ({}); {}{}", file().string(), legible.damage,
+                    left.state->blackout ? "the blackout that was in force holds" : "what is legible of it holds",
+                    keep_aside()));
   return left;
 }
 

@@ -29,6 +29,17 @@ struct JournalState {
   std::vector<SavedByHand> by_hand{};
 };
 
+/// A state as the text of a file.
+[[nodiscard]] std::string state_text(const JournalState& state);
+
+/// Any text as a state: what is legible of it holds, above all the blackout. damage: what is wrong with the text; empty:
+/// nothing.
+struct LegibleState {
+  JournalState state;
+  std::string damage;
+};
+[[nodiscard]] LegibleState legible_state_of(const std::string& text);
+
 class Journal {
  public:
   /// Keeps its one file in `folder` (made when missing). None: in memory only.
@@ -56,7 +67,6 @@ class Journal {
 
  private:
   [[nodiscard]] std::filesystem::path file() const { return *folder_ / "state.json"; }
-  [[nodiscard]] static std::string text_of(const JournalState& state);
   [[nodiscard]] Result<void> make_folder();
   [[nodiscard]] Result<void> save(const JournalState& state);
   [[nodiscard]] std::string keep_aside() const;  ///< what a complaint says of it
