@@ -37,6 +37,11 @@ void ModbusDriver::unit_silent(Time now, int unit, const Fault& fault) {
   const bool bus_is_gone = misses_ > 1 && (nobody || silence_ >= silence_allowed());
   if (!again && !bus_is_gone && fault.cause == Cause::timeout) {
     life_.count_error();
+    // Who reads our health tells one that comes and goes by its count.
+    for (std::size_t i = 0; i < channel_lives_.size(); ++i)
+      if (writes_.channels()[i].patch.unit == unit) channel_lives_[i].count_error();
+    for (Meter& meter : meters_)
+      if (meter.patch.unit == unit) meter.life.count_error();
     return;
   }
   setup_.restart(unit);

@@ -88,6 +88,9 @@ TEST(ModbusLateness, OneAnswerMissedAfterAStallOfOursIsNoFaultOfTheUnitNorOfTheB
     EXPECT_EQ(bus.faulted(), "");
   }
   EXPECT_GT(missed, 1) << "it was asked once more";
+  const std::vector<Health> health = bus.driver->health(at_ms(bus.now_ms));
+  EXPECT_EQ(health.at(2).errors, 1u) << "but it is counted, for who judges by how often";
+  EXPECT_EQ(health.at(1).errors, 0u);
 }
 
 TEST(ModbusLateness, AUnitThatIsSilentIsFaultedInBoundedTimeAndAlone) {
