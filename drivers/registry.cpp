@@ -16,20 +16,29 @@
 namespace luxrig {
 namespace {
 
+constexpr std::string_view kOnlyTheWidget =
+    "the widget answers, lamps do not; a broken line or a dead lamp is noticed only by a luxmeter or camera";
+constexpr std::string_view kUnits =
+    "each unit answers; a dead lamp is noticed where its register map has failure bits, else only by a luxmeter or "
+    "camera";
+
 // One line per driver.
 const DriverEntry kDrivers[] = {
-    {"sacn", "ANSI E1.31 over UDP, send", sacn_options(), check_sacn, make_sacn, sacn_when_data_stops},
-    {"artnet", "Art-Net 4 over UDP, send", artnet_options(), check_artnet, make_artnet, artnet_when_data_stops},
+    {"sacn", "ANSI E1.31 over UDP, send", sacn_options(), check_sacn, make_sacn, sacn_when_data_stops,
+     "nothing comes back; a dead node or lamp is noticed only by a luxmeter or camera"},
+    {"artnet", "Art-Net 4 over UDP, send", artnet_options(), check_artnet, make_artnet, artnet_when_data_stops,
+     "nodes answer polls, lamps do not; a dead lamp is noticed only by a luxmeter or camera"},
     {"enttec_pro", "ENTTEC DMX USB Pro widget, holds its last look", enttec_pro_options(), check_enttec_pro,
-     make_enttec_pro, enttec_pro_when_data_stops},
+     make_enttec_pro, enttec_pro_when_data_stops, kOnlyTheWidget},
     {"open_dmx", "ENTTEC Open DMX or FTDI cable, silent without Luxrig", open_dmx_options(), check_open_dmx,
-     make_open_dmx, open_dmx_when_data_stops},
-    {"udmx", "uDMX widget, holds its last look", udmx_options(), check_udmx, make_udmx, udmx_when_data_stops},
+     make_open_dmx, open_dmx_when_data_stops, kOnlyTheWidget},
+    {"udmx", "uDMX widget, holds its last look", udmx_options(), check_udmx, make_udmx, udmx_when_data_stops,
+     kOnlyTheWidget},
     {"modbus_tcp", "Modbus TCP dimmers and luxmeters", modbus_tcp_options(), check_modbus_tcp, make_modbus_tcp,
-     modbus_when_data_stops},
+     modbus_when_data_stops, kUnits},
     {"modbus_rtu", "Modbus RTU dimmers and luxmeters on RS-485", modbus_rtu_options(), check_modbus_rtu,
-     make_modbus_rtu, modbus_when_data_stops},
-    {"canopen", "CiA 402 pan-tilt axes over CAN", canopen_options(), check_canopen, make_canopen, nullptr},
+     make_modbus_rtu, modbus_when_data_stops, kUnits},
+    {"canopen", "CiA 402 pan-tilt axes over CAN", canopen_options(), check_canopen, make_canopen, nullptr, ""},
 };
 
 }  // namespace

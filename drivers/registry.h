@@ -35,6 +35,8 @@ struct DriverEntry {
   std::unique_ptr<Driver> (*make)(const Rig& rig, std::size_t bus, const std::optional<Redirect>& redirect);
   /// What the lamp of a fixture on it does then; null: this bus carries no lamps.
   WhenDataStops (*when_data_stops)(const Rig& rig, std::size_t fixture);
+  /// What comes back from its lamps, so which failures are noticed without a luxmeter or camera; empty: no lamps.
+  std::string_view comes_back;
 };
 
 [[nodiscard]] std::span<const DriverEntry> drivers();

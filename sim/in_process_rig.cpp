@@ -69,6 +69,7 @@ void InProcessRig::apply_until(Time now) {
 }
 
 void InProcessRig::advance(Time now) {
+  lamp_faults_.obey(rig_, {}, faults_, *world_);
   apply_until(now);
   world_->advance(Time{} + (now - options_.start));
 }

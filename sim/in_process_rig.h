@@ -11,6 +11,7 @@
 #include "core/control/devices.h"
 #include "core/rig/rig.h"
 #include "sim/faults/faults.h"
+#include "sim/lamp_faults.h"
 #include "sim/world/world.h"
 
 namespace luxrig::sim {
@@ -75,6 +76,7 @@ class InProcessRig final : public LevelOutput, public Mover, public LuxReader {
   std::unique_ptr<World> world_;
   InProcessOptions options_;
   Faults faults_;
+  LampFaults lamp_faults_;
   std::deque<Pending> pending_;
   std::deque<Answer> answers_;
   std::vector<Time> taken_;  ///< per luxmeter, sample last looked at

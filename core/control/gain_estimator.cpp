@@ -18,9 +18,7 @@ using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
 constexpr double kLeastLocalSd = 0.02;    ///< even a rig that trusts its model fully does not trust it further
-constexpr double kDark_lx = 0.5;          ///< what a meter may show in the dark (offset, stray light)
 constexpr double kStuckChange = 0.05;     ///< a value that stays while the light changes by this share is stuck
-constexpr double kJump = 0.2;             ///< less than this share off what is expected is never called a jump
 constexpr double kSameLevels = 0.005;     ///< evidence at levels nearer than this share replaces the former
 constexpr std::size_t kMostEvidence = 6;  ///< per meter; older goes
 
@@ -270,7 +268,15 @@ Judgement GainEstimator::judge(const LuxReading& reading, std::span<const double
                     "a dead lamp or other light",
                     reading.lux, judgement.lowest_lx, judgement.highest_lx));
   if (latest(reading.luxmeter) != nullptr) {
-    const double allowed = std::max({kJump * expected.lux, 4 * expected.standard_error_lx, kDark_lx});
+    // A dimmer's true curve is known the less the farther the levels are from those of the last reading.
+    double curve_lx = 0;
+    const VectorXd& before = latest(reading.luxmeter)->level;
+    for (Index j = 0; j < level.size(); ++j)
+      if (level[j] > 0)
+        curve_lx += row.lux_per_level[j] * row.factor[j] * level[j] * kCurveError *
+                    (before[j] > 0 ? std::min(kFarthestStep, std::abs(std::log(level[j] / before[j]))) : kFarthestStep);
+    const double allowed =
+        std::hypot(std::max({kJump * expected.lux, 4 * expected.standard_error_lx, kDark_lx}), curve_lx);
     if (std::abs(reading.lux - expected.lux) > allowed)
       return reject(fmt::format("it reads {:.4g} lx where {:.4g} ± {:.2g} lx are expected from what it read before",
                                 reading.lux, expected.lux, allowed));
@@ -328,6 +334,12 @@ void GainEstimator::set_points(std::span<const Point> points) {
     points_[i].weight = points[i].weight;
     points_[i].max_lx = points[i].max_lx;
   }
+}
+
+double GainEstimator::lux_per_level(std::size_t point, std::size_t fixture) const {
+  const Row row = row_of_point(point);
+  const auto j = static_cast<Index>(fixture);
+  return row.lux_per_level[j] * row.factor[j];
 }
 
 void GainEstimator::forget(std::size_t luxmeter) {

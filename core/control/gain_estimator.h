@@ -75,6 +75,10 @@ class GainEstimator {
   /// rig's sizes (asserted), or be empty.
   GainEstimator(const Rig& rig, const LightModel& model);
 
+  /// A reading that is off from what is expected by less than this share is never called a jump, whatever the cause: a
+  /// lamp that gives a meter less than this may burn out unseen.
+  static constexpr double kJump = 0.2;
+
   /// Would this reading be believed? `level`: per fixture, as it was (settled) when the reading was taken.
   [[nodiscard]] Judgement judge(const LuxReading& reading, std::span<const double> level) const;
 
@@ -107,6 +111,24 @@ class GainEstimator {
   /// What these fixtures (1: counts) would give to a meter at full level, over what it is predicted to read.
   [[nodiscard]] double share_at_meter(std::size_t luxmeter, std::span<const std::uint8_t> fixtures,
                                       std::span<const double> level) const;
+
+  /// What the fixture is believed to give to a point at full level.
+  [[nodiscard]] double lux_per_level(std::size_t point, std::size_t fixture) const;
+
+  /// What all meters read over what the model as stated says (rated lamps, nothing learned): the median, as a
+  /// logarithm, with its standard error by all that is stated: lamps, places, curves, transport, tolerances.
+  struct CommonScale {
+    double log_scale = 0, log_standard_error = 0;
+  };
+  /// readings: settled, at these levels, one of a meter. Nothing with fewer than two meters that have light.
+  [[nodiscard]] std::optional<CommonScale> common_scale(std::span<const LuxReading> readings,
+                                                        std::span<const double> level) const;
+  /// What a meter would read were all as stated.
+  [[nodiscard]] double stated_lux(std::size_t luxmeter, std::span<const double> level) const;
+  /// By which share a reading over stated_lux may change from one level to the other, as curves are not known better
+  /// (and daylight not at all).
+  [[nodiscard]] double curve_error_at_meter(std::size_t luxmeter, std::span<const double> from,
+                                            std::span<const double> to) const;
 
   /// Drops what this meter taught (it is gone, or was exchanged).
   void forget(std::size_t luxmeter);
@@ -198,6 +220,8 @@ class GainEstimator {
   /// The same, with lost lamps as they are believed to be.
   [[nodiscard]] Eigen::VectorXd vector_of(std::span<const double> level) const;
   static constexpr double kDriftPerMinute = 0.001;  ///< of a lamp: old evidence loses weight, old limits grow
+  static constexpr double kDark_lx = 0.5;           ///< what a meter may show in the dark (offset, stray light)
+  static constexpr double kFarthestStep = 4;        ///< of a level, as the logarithm of its ratio: 1 % to half
   static constexpr double kCurveError = 0.1;        ///< how far the exponent of level -> true output may be from 1
   [[nodiscard]] static double minutes_between(Time from, Time to) { return std::max(0.0, to_seconds(to - from) / 60); }
   static constexpr int kLimitRounds = 6;  ///< limits hold for the worst case, which depends on where the levels go

@@ -21,6 +21,9 @@ HealthWatch::HealthWatch(const Rig& rig)
     if (fixture.axes && fixture.axes->bus < heads_on_bus_.size()) ++heads_on_bus_[fixture.axes->bus];
   }
   lamp_lost_.assign(rig.fixtures.size(), false);
+  lamp_silent_.assign(rig.fixtures.size(), false);
+  lamp_failing_.assign(rig.fixtures.size(), false);
+  lamp_bypassed_.assign(rig.fixtures.size(), false);
   motion_lost_.assign(rig.fixtures.size(), false);
   for (const Luxmeter& luxmeter : rig.luxmeters) {
     meters_.emplace_back();
@@ -71,7 +74,20 @@ void HealthWatch::judged(std::size_t luxmeter, Time now, const std::string& why)
 }
 
 bool HealthWatch::any_meter_lost() const {
-  return std::any_of(meters_.begin(), meters_.end(), [](const Meter& meter) { return meter.lost; });
+  return std::any_of(meters_.begin(), meters_.end(),
+                     [](const Meter& meter) { return meter.trust.lost() && !meter.bypassed; });
+}
+
+HealthWatch::Known HealthWatch::known(const std::string& device) const {
+  if (const auto found = known_.find(device); found != known_.end()) return found->second;
+  for (auto colon = device.find(": "); colon != std::string::npos; colon = device.find(": ", colon + 1)) {
+    const auto found = known_.find(device.substr(0, colon));
+    if (found == known_.end()) continue;
+    const Role role = found->second.role;
+    if (role == Role::light_bus || role == Role::axes_bus || role == Role::meter_bus)
+      return {Role::bus_part, found->second.index};
+  }
+  return {};
 }
 
 Alarm HealthWatch::alarm_of(const Health& health, const Known& known) const {
@@ -102,6 +118,12 @@ Alarm HealthWatch::alarm_of(const Health& health, const Known& known) const {
           "its address",
           health.device, detail);
       break;
+    case Role::bus_part:
+      alarm.text = fmt::format(
+          "\"{}\" is gone ({}): fixtures that hang on it cannot be controlled and do what they do without data; check "
+          "its power and its cable",
+          health.device, detail);
+      break;
     case Role::fixture:
       alarm.text = fmt::format(
           "the dimmer of fixture \"{}\" does not answer ({}): it cannot be controlled; check its "
@@ -123,6 +145,7 @@ Alarm HealthWatch::alarm_of(const Health& health, const Known& known) const {
 void HealthWatch::warn_of(const Health& health) {
   const auto found = known_.find(health.device);
   if (found == known_.end() || found->second.role != Role::fixture) return;
+  lamp_failing_[found->second.index] = true;
   alarms_.push_back(
       {false, health.device,
        fmt::format("fixture \"{}\" {}: its light may not be what is asked; look at its lamp and its dimmer",
@@ -166,6 +189,7 @@ void HealthWatch::join_units() {
                               std::any_of(unit.meters.begin(), unit.meters.end(), same));
     };
     const auto first = std::find_if(alarms_.begin(), alarms_.end(), of_unit);
+    if (first == alarms_.end()) continue;  // all of it is bypassed
     std::string text = fmt::format("unit {} of bus \"{}\" does not answer ({}): ", number,
                                    bus < bus_names_.size() ? bus_names_[bus] : std::string(), detail);
     if (!unit.fixtures.empty())
@@ -180,19 +204,26 @@ void HealthWatch::join_units() {
   }
 }
 
-void HealthWatch::step_meter(Time now, std::size_t luxmeter, const Health* faulted, const Health* bus_faulted) {
+void HealthWatch::step_meter(Time now, std::size_t luxmeter, bool faulted, Duration patience) {
   Meter& meter = meters_[luxmeter];
   const auto own =
       std::find_if(report_.begin(), report_.end(), [&](const Health& h) { return h.device == meter.name; });
   const std::uint64_t asked = own == report_.end() ? 0 : own->sent;
-  if (meter.heard != meter.heard_before) meter.asked_before = asked;
+  const bool heard = meter.heard != meter.heard_before;
+  if (heard) meter.asked_before = asked;
   meter.heard_before = meter.heard;
   const Duration silence = now - meter.heard - meter.unseen;
   const bool silent = silence > (asked > 0 && asked == meter.asked_before ? kUnaskedFor : kSilentAfter);
-  const bool lost = faulted || bus_faulted || silent || !meter.implausible.empty();
-  if (lost && !meter.lost) meter.lost_since = now;
-  meter.lost = lost;
-  if (!lost || faulted || bus_faulted) return;  // the device or its bus has its own alarm
+  const bool implausible = !meter.implausible.empty();
+  const auto counted = counted_.find(meter.name);
+  const bool missed = counted != counted_.end() && counted->second.missed;
+  // Silence and what the model says of it have lasted for long enough when they are known.
+  meter.trust.step(now, faulted || silent || implausible, missed, heard, silent || implausible ? Duration{} : patience);
+  if (faulted || meter.bypassed) return;  // the device or its bus has its own alarm
+  if (!silent && !implausible) {
+    if (meter.trust.lost()) alarms_.push_back(alarm_of_doubted(meter.name, meter.trust));
+    return;
+  }
   std::string text;
   if (silent && meter.was_garbled && now - meter.garbled < kSilentAfter) {
     text = fmt::format(
@@ -206,10 +237,65 @@ void HealthWatch::step_meter(Time now, std::size_t luxmeter, const Health* fault
         "says; if it is right as it is, apply the plan again to measure afresh",
         meter.name, meter.implausible);
   }
-  alarms_.push_back({true, meter.name, std::move(text), silent ? meter.lost_since : meter.implausible_since});
+  alarms_.push_back({true, meter.name, std::move(text), silent ? meter.trust.lost_since() : meter.implausible_since});
 }
 
-void HealthWatch::step(Time now) {
+Alarm HealthWatch::alarm_of_doubted(const std::string& device, const Trust& trust) {
+  return {true, device,
+          fmt::format("\"{}\" answers again, but has failed {} times in ten minutes: it is done without until it has "
+                      "answered well for {:g} s; check its cable, its power and what else is on its line",
+                      device, trust.falls(), to_seconds(trust.row())),
+          trust.lost_since()};
+}
+
+void HealthWatch::set_bypassed(const std::vector<std::optional<Time>>& lamps,
+                               const std::vector<std::optional<Time>>& meters) {
+  for (std::size_t f = 0; f < lamps.size(); ++f) lamp_bypassed_[f] = lamps[f].has_value();
+  for (std::size_t i = 0; i < meters.size(); ++i) meters_[i].bypassed = meters[i].has_value();
+}
+
+/// No fixture of the bus is in use.
+bool HealthWatch::all_bypassed_on(std::size_t bus) const {
+  for (std::size_t f = 0; f < lamp_bypassed_.size(); ++f)
+    if ((bus_of_fixture_[f] == bus || motion_bus_of_fixture_[f] == bus) && !lamp_bypassed_[f]) return false;
+  return true;
+}
+
+/// Who is lost, by what is reported now and was before.
+void HealthWatch::step_trusts(Time now, const Patience& patience) {
+  for (auto& entry : counted_) {
+    entry.second.missed = entry.second.faulted = false;
+    entry.second.answered = true;
+  }
+  for (const Health& health : report_) {
+    Counted& device = counted_[health.device];
+    const Role role = known(health.device).role;
+    const bool single = role == Role::fixture || role == Role::axis || role == Role::luxmeter;
+    device.faulted = health.life == Life::faulted;
+    device.missed = single && health.errors > device.errors;  // a bus counts those of all that hang on it
+    device.answered = !single || health.received == 0 || health.received > device.received;
+    device.errors = health.errors;
+    device.received = health.received;
+  }
+  for (auto entry = counted_.begin(); entry != counted_.end();) {
+    Counted& device = entry->second;
+    const Role role = known(entry->first).role;
+    if (role == Role::luxmeter) {  // step_meter knows more
+      ++entry;
+      continue;
+    }
+    const bool turns = role == Role::axis || role == Role::axes_bus;
+    device.trust.step(now, device.faulted, device.missed, device.answered, turns ? Duration{} : patience.lamps);
+    const bool forgotten = (role == Role::unknown || role == Role::bus_part) && !device.faulted && !device.trust.lost();
+    entry = forgotten ? counted_.erase(entry) : std::next(entry);
+  }
+}
+
+bool HealthWatch::any_faulted() const {
+  return std::any_of(report_.begin(), report_.end(), [](const Health& health) { return health.life == Life::faulted; });
+}
+
+void HealthWatch::step(Time now, const Patience& patience) {
   if (!started_) {
     started_ = true;
     for (Meter& meter : meters_) meter.heard = std::max(meter.heard, now);
@@ -222,43 +308,67 @@ void HealthWatch::step(Time now) {
   light_lost_ = false;
   all_lost_ = false;
   lamp_lost_.assign(bus_of_fixture_.size(), false);
+  lamp_silent_.assign(bus_of_fixture_.size(), false);
+  lamp_failing_.assign(bus_of_fixture_.size(), false);
   motion_lost_.assign(bus_of_fixture_.size(), false);
-  std::vector<const Health*> meter_faulted(meters_.size(), nullptr), bus_faulted(fixtures_on_bus_.size(), nullptr);
+  step_trusts(now, patience);
+  std::vector<bool> meter_faulted(meters_.size(), false);
+  std::vector<bool> bus_faulted(fixtures_on_bus_.size(), false), bus_lost(fixtures_on_bus_.size(), false);
+  std::vector<bool> bus_silent(fixtures_on_bus_.size(), false);
   for (const Health& health : report_) {
     if (health.life == Life::active && !health.detail.empty()) warn_of(health);
     if (health.life != Life::faulted) continue;
-    const auto found = known_.find(health.device);
-    const Known known = found == known_.end() ? Known{} : found->second;
-    if (known.role == Role::luxmeter) meter_faulted[known.index] = &health;
-    if (known.role == Role::light_bus || known.role == Role::axes_bus || known.role == Role::meter_bus)
-      bus_faulted[known.index] = &health;
-    if (known.role != Role::luxmeter && known.role != Role::meter_bus) light_lost_ = true;
-    if (known.role == Role::unknown) all_lost_ = true;
-    if (known.role == Role::fixture) lamp_lost_[known.index] = true;
-    if (known.role == Role::axis) motion_lost_[known.index] = true;
-    alarms_.push_back(alarm_of(health, known));
+    const Known device = known(health.device);
+    if (device.role == Role::luxmeter) meter_faulted[device.index] = true;
+    alarms_.push_back(alarm_of(health, device));
+  }
+  for (const auto& entry : counted_) {
+    const std::string& name = entry.first;
+    const Counted& device = entry.second;
+    const auto [role, index] = known(name);
+    if (role == Role::luxmeter) continue;
+    const bool bus = role == Role::light_bus || role == Role::axes_bus || role == Role::meter_bus;
+    if (bus) bus_faulted[index] = device.faulted;
+    if ((bus || role == Role::bus_part) && device.faulted) bus_silent[index] = true;
+    if (role == Role::fixture) lamp_silent_[index] = device.faulted;
+    if (!device.trust.lost()) continue;
+    // Which fixtures hang on a part of a bus, nobody here knows.
+    if (bus || role == Role::bus_part) bus_lost[index] = true;
+    const bool of_one = role == Role::fixture || role == Role::axis;
+    const bool of_bus = role == Role::light_bus || role == Role::axes_bus || role == Role::bus_part;
+    if (of_one ? !lamp_bypassed_[index] : of_bus ? !all_bypassed_on(index) : role == Role::unknown) light_lost_ = true;
+    if (role == Role::unknown) all_lost_ = true;
+    if (role == Role::fixture) lamp_lost_[index] = true;
+    if (role == Role::axis) motion_lost_[index] = true;
+    if (!device.faulted) alarms_.push_back(alarm_of_doubted(name, device.trust));
   }
   for (std::size_t f = 0; f < bus_of_fixture_.size(); ++f) {
-    const auto dead = [&](std::size_t bus) { return bus < bus_faulted.size() && bus_faulted[bus] != nullptr; };
-    if (dead(bus_of_fixture_[f])) lamp_lost_[f] = true;
-    if (dead(motion_bus_of_fixture_[f])) motion_lost_[f] = true;
+    const auto among = [](const std::vector<bool>& buses, std::size_t bus) { return bus < buses.size() && buses[bus]; };
+    if (among(bus_lost, bus_of_fixture_[f])) lamp_lost_[f] = true;
+    if (lamp_lost_[f] || among(bus_silent, bus_of_fixture_[f])) lamp_silent_[f] = true;
+    if (among(bus_lost, motion_bus_of_fixture_[f])) motion_lost_[f] = true;
   }
-  if (!lamp_lost_.empty() && std::find(lamp_lost_.begin(), lamp_lost_.end(), false) == lamp_lost_.end())
-    all_lost_ = true;
+  std::size_t in_use = 0, in_use_lost = 0;
+  for (std::size_t f = 0; f < lamp_lost_.size(); ++f) {
+    in_use += !lamp_bypassed_[f];
+    in_use_lost += !lamp_bypassed_[f] && lamp_lost_[f];
+  }
+  if (in_use > 0 && in_use == in_use_lost) all_lost_ = true;
   // What hangs on a dead bus is lost with it; once is enough to say so.
   std::erase_if(alarms_, [&](const Alarm& alarm) {
-    const auto found = known_.find(alarm.device);
-    if (found == known_.end()) return false;
-    const auto [role, index] = found->second;
+    const auto [role, index] = known(alarm.device);
+    if (role == Role::bus_part) return bool{bus_faulted[index]};
     if (role != Role::luxmeter && role != Role::fixture && role != Role::axis) return false;
+    if (role == Role::luxmeter ? meters_[index].bypassed : lamp_bypassed_[index]) return true;
     const std::size_t bus = role == Role::luxmeter ? meters_[index].bus
                             : role == Role::axis   ? motion_bus_of_fixture_[index]
                                                    : bus_of_fixture_[index];
-    return bus < bus_faulted.size() && bus_faulted[bus] != nullptr;
+    return bus < bus_faulted.size() && (bus_faulted[bus] || bus_lost[bus]);
   });
   join_units();
   for (std::size_t i = 0; i < meters_.size(); ++i) {
-    step_meter(now, i, meter_faulted[i], meters_[i].bus < bus_faulted.size() ? bus_faulted[meters_[i].bus] : nullptr);
+    const bool bus = meters_[i].bus < bus_faulted.size() && bus_faulted[meters_[i].bus];
+    step_meter(now, i, meter_faulted[i] || bus, patience.meters);
   }
   for (Alarm& alarm : alarms_) {
     const auto said =

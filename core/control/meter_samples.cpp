@@ -7,8 +7,9 @@
 namespace luxrig {
 namespace {
 
-constexpr double kAgree = 0.03;  // ten times the noise of a good meter
-constexpr Duration kPatience = std::chrono::seconds(2);
+constexpr double kAgree = 0.03;    // ten times the noise of a good meter
+constexpr double kSettled = 0.01;  // of what is left to go, a lamp of 1 s leaves about as much as a window changes
+constexpr Duration kFlickers = std::chrono::seconds(2), kSettlesWithin = std::chrono::seconds(10);
 
 }  // namespace
 
@@ -45,7 +46,11 @@ bool MeterSamples::ready(Time now, std::size_t luxmeter) const {
   if (meter.window.size() < kReadings) return false;
   const auto [least, most] = std::minmax_element(meter.window.begin(), meter.window.end(),
                                                  [](const auto& a, const auto& b) { return a.lux < b.lux; });
-  return most->lux - least->lux <= kAgree * most->lux || now - meter.full_since >= kPatience;
+  const auto below = [](const LuxReading& a, const LuxReading& b) { return a.lux <= b.lux; };
+  const bool one_way = std::is_sorted(meter.window.begin(), meter.window.end(), below) ||
+                       std::is_sorted(meter.window.rbegin(), meter.window.rend(), below);
+  return most->lux - least->lux <= (one_way ? kSettled : kAgree) * most->lux ||
+         now - meter.full_since >= (one_way ? kSettlesWithin : kFlickers);
 }
 
 std::optional<LuxReading> MeterSamples::sample(std::size_t luxmeter) const {

@@ -26,8 +26,9 @@ class MeterSamples {
   /// Starts the next sample of every meter, under the same light.
   void next();
 
-  /// The meter has kReadings that agree to 3 %; or has had them for two seconds and they will not agree (a flickering
-  /// light is measured as it is).
+  /// The meter has kReadings that agree to 3 %, and to 1 % where each is above, or each below, the one before: lamp and
+  /// meter still settle then. Or it has had them for two seconds and they will not agree (a flickering light is
+  /// measured as it is), or they go one way for ten seconds (nothing settles for so long).
   [[nodiscard]] bool ready(Time now, std::size_t luxmeter) const;
 
   /// Median of the last kReadings since restart() or next(), with the time of the newest; nothing with fewer than two.

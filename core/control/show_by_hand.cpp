@@ -104,7 +104,7 @@ void ShowController::State::take_levels_of_plan(Time now, const std::vector<doub
     if (look.solved_levels.empty() || !look.solved_levels[f]) continue;
     hand_level[f] = ByHand{ByHand::What::level, f, levels[f], now};
     hand_level[f]->of_plan = true;
-    without_hands[f] = std::min(*look.solved_levels[f], program.max_level[f]);
+    without_hands[f] = std::min(*look.solved_levels[f], most_of(f));
   }
   for (const auto& goal : hand_goal) unsolved = unsolved || goal.has_value();
 }
@@ -116,7 +116,10 @@ void ShowController::State::tell_estimator() {
     rig.points[p].weight = points_as_planned[p].weight;
   }
   estimator.set_points(rig.points);
-  for (std::size_t f = 0; f < rig.fixtures.size(); ++f) estimator.set_held(f, hand_level[f].has_value());
+  for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
+    estimator.set_held(f, hand_level[f] && !bypassed_lamp[f]);
+    estimator.set_max_level(f, bypassed_lamp[f] ? 0 : most_of(f));
+  }
   tell_lost_lamps();
 }
 
@@ -128,17 +131,11 @@ void ShowController::State::start_with_hands(Time now) {
 
 std::vector<double> ShowController::State::with_hands(std::vector<double> levels) const {
   for (std::size_t f = 0; f < levels.size(); ++f)
-    if (hand_level[f]) levels[f] = std::min(hand_level[f]->value, program.max_level[f]);
+    if (bypassed_lamp[f])
+      levels[f] = 0;
+    else if (hand_level[f])
+      levels[f] = std::min(hand_level[f]->value, program.max_level[f]);
   return levels;
-}
-
-std::vector<double> ShowController::State::solved_around_hands(Time now, std::vector<double> levels) {
-  levels = with_hands(std::move(levels));
-  if (!std::exchange(unsolved, false)) return levels;
-  Correction correction = estimator.correct(levels, now, true);
-  aimed_lx = std::move(correction.aimed_lx);
-  why = std::move(correction.why);
-  return std::move(correction.level);
 }
 
 std::vector<ByHand> ShowController::State::by_hand() const {
@@ -162,6 +159,7 @@ std::string ShowController::State::why_not(Time now, const ByHand& held) const {
     return held.index < why.size() ? why[held.index] : std::string();
   }
   if (lost[held.index]) return "it does not answer: it is held as it was, then goes to its safe level";
+  if (bypassed_lamp[held.index]) return "it is bypassed";
   if (parked(held.index)) return "it is parked until the next plan";
   const double most = program.max_level[held.index];
   if (held.value > most + kSameLevel) return fmt::format("the most it may have is {:g} (max_level)", most);

@@ -6,6 +6,7 @@
 #include "core/check.h"
 #include "core/control/head_travel.h"
 #include "core/control/show_state.h"
+#include "core/rig/register_map/register_map.h"
 
 namespace luxrig {
 
@@ -35,12 +36,34 @@ const char* name_of(Phase phase) {
   return "unknown";
 }
 
+namespace {
+
+/// Per fixture, 1: its product has a bit for a lamp that has burnt out.
+std::vector<std::uint8_t> fixtures_that_tell_of_lamps(const Rig& rig) {
+  std::vector<std::uint8_t> tell(rig.fixtures.size(), 0);
+  for (std::size_t f = 0; f < tell.size(); ++f) {
+    const auto* patch = std::get_if<ModbusPatch>(&rig.fixtures[f].patch);
+    if (patch == nullptr || !patch->map) continue;
+    const RegisterMap& map = *patch->map;
+    for (const std::size_t level : map.with_role(RegisterRole::level)) {
+      const MappedRegister& output = map.registers[level];
+      if (output.address != patch->holding_register || (output.table == RegisterTable::coil) != patch->coil) continue;
+      for (const std::size_t failure : map.with_role(RegisterRole::failure))
+        if (map.concerns(failure, level)) tell[f] = 1;
+    }
+  }
+  return tell;
+}
+
+}  // namespace
+
 ShowController::State::State(const Rig& rig_in, const LightModel& model)
     : rig(rig_in),
       estimator(rig, model),
       health(rig),
       samples(rig.luxmeters.size()),
       zones(rig),
+      tells_of_lamp(fixtures_that_tell_of_lamps(rig)),
       powerless(rig.fixtures.size(), 0),
       lost(rig.fixtures.size()),
       measured(rig.luxmeters.size()),
@@ -53,7 +76,10 @@ ShowController::State::State(const Rig& rig_in, const LightModel& model)
       without_hands(rig.fixtures.size(), 0.0),
       hand_goal(rig.points.size()),
       rig_points(rig.points),
-      points_as_planned(rig.points) {
+      points_as_planned(rig.points),
+      drifts(rig.luxmeters.size()),
+      bypassed_lamp(rig.fixtures.size()),
+      bypassed_meter(rig.luxmeters.size()) {
   const std::vector<double> dark(rig.fixtures.size(), 0.0);
   for (const Fixture& fixture : rig.fixtures) {
     program.max_level.push_back(std::min(fixture.max_level, rig.limits.max_level));
@@ -173,6 +199,7 @@ void ShowController::State::take_look(Time now) {
   if (other_light) {
     // Gains would still hold; what is wrong locally would not, and telling them apart takes readings.
     estimator = GainEstimator(rig, awaited->model);
+    drifts.assign(rig.luxmeters.size(), {});
     std::fill(measured.begin(), measured.end(), std::nullopt);
     model_joints = awaited->joints;
   }
@@ -217,10 +244,27 @@ void ShowController::State::start_cue(Time now, std::vector<double> levels) {
     present = std::move(without);
     take_look(now);
   }
-  asked = solved_around_hands(now, *cue);
+  asked = with_hands(*cue);
+  ++facts;
+  drop_solving();
+  // What is held by hand goes there at once; the rest follows when it is solved around that.
+  if (unsolved && !beside) {
+    unsolved = false;
+    Correction correction = estimator.correct(asked, now, true);
+    aimed_lx = std::move(correction.aimed_lx);
+    why = std::move(correction.why);
+    asked = std::move(correction.level);
+  }
+  go_to_asked(now, std::move(present));
+  if (std::exchange(unsolved, false)) solve(now, Solving::For::hands);
+}
+
+void ShowController::State::go_to_asked(Time now, std::vector<double> present) {
   cue = estimator.within_limits(asked, now);
   std::vector<double> sent = *cue;
   leave_out_lost(sent);
+  for (std::size_t f = 0; f < sent.size(); ++f)
+    if (bypassed_lamp[f]) sent[f] = (*cue)[f] = 0;
   if (!start_lamps(now, present, sent)) fade(now, std::move(present), sent, rig.control.fade_s, rig.control.fade_curve);
   enter(Phase::fading, now);
 }
@@ -245,7 +289,9 @@ void ShowController::State::fade_to_safe(Time now) {
 }
 
 void ShowController::State::look_at_failures(Time now) {
-  health.step(now);
+  // Where a loss is a power cut, one that is over by then would let all its lamps come on at once.
+  const bool waits = !rig.startup.after_loss && limits_bear_waiting(now);
+  health.step(now, {waits ? kPatience : Duration{}, kPatience});
   const bool was_failing = failing;
   failing = too_much_lost() || (rig.safe.on_meter_loss && health.any_meter_lost());
   if (was_failing && !failing) healthy_since = now;
@@ -303,7 +349,7 @@ void ShowController::State::advance(Time now) {
       for (std::size_t i = 0; i < rig.luxmeters.size(); ++i)
         any_living = any_living || (!health.meter_lost(i) && !in_doubt(i));
       if (!any_living) return enter(Phase::holding, now);  // nobody can tell; open loop
-      if (sampled_at == now) correct_or_hold(now);
+      if (sampled_at == now) solve(now, Solving::For::round);
       return;
     }
     default:
@@ -319,9 +365,9 @@ std::vector<double> ShowController::State::wanted_levels(std::span<const double>
   LUXRIG_CHECK(levels.size() == rig.fixtures.size(), "{} levels for {} fixtures", levels.size(), rig.fixtures.size());
   std::vector<double> wanted(levels.begin(), levels.end());
   for (std::size_t i = 0; i < wanted.size(); ++i)
-    wanted[i] = wanted[i] > 0 ? std::min(wanted[i], program.max_level[i]) : 0.0;  // NaN is dark
+    wanted[i] = wanted[i] > 0 ? std::min(wanted[i], most_of(i)) : 0.0;  // NaN is dark
   for (std::size_t i = 0; i < wanted.size(); ++i)
-    if (program.switched[i] != 0) wanted[i] = std::min(switched_level(wanted[i]), program.max_level[i]);
+    if (program.switched[i] != 0) wanted[i] = std::min(switched_level(wanted[i]), most_of(i));
   return wanted;
 }
 
@@ -345,6 +391,7 @@ void ShowController::apply(Time now, std::span<const double> levels, Look look) 
   std::vector<double> wanted = state.wanted_levels(levels);
   state.asked_safe = false;
   state.afresh = true;
+  state.forget_drift();
   state.first_turn(now, look.joints);
   state.take_levels_of_plan(now, wanted, look);
   state.awaited = std::move(look);
@@ -401,11 +448,15 @@ void ShowController::step(Time now) {
   state.step_desks(now);
   state.take_sample(now);
   state.look_at_failures(now);
+  state.take_solved(now);
   state.advance(now);
   state.watch_power(now);
+  state.close_bypassed(now);
   state.guard_heads(now);
   state.remember_levels(now);
 }
+
+void ShowController::solve_beside(Beside beside) { state_->beside = std::move(beside); }
 
 std::vector<double> ShowController::safe_look(Time now) const {
   std::vector<double> level = state_->estimator.within_limits(state_->safe_levels(), now);

@@ -9,6 +9,7 @@
 ///   blackout lies over all of these and wins; lifting it fades back up.
 
 #include <Eigen/Core>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -94,6 +95,14 @@ struct DeskStatus {
   bool silent = false;
 };
 
+/// A device that a person has taken out of the show.
+struct Bypassed {
+  bool luxmeter = false;  ///< else a fixture
+  std::size_t index = 0;
+  Time since{};
+  std::string risk;  ///< what is done without it, and what nobody watches, for a person
+};
+
 struct ShowStatus {
   Phase phase = Phase::idle;
   std::string detail;  ///< one line for a person
@@ -109,7 +118,8 @@ struct ShowStatus {
   std::vector<std::optional<LuxReading>> luxmeters;  ///< last believed reading
   std::vector<Alarm> alarms;
   std::vector<DeskStatus> desks;
-  std::vector<ByHand> by_hand;  ///< levels by fixture, then goals by point
+  std::vector<ByHand> by_hand;     ///< levels by fixture, then goals by point
+  std::vector<Bypassed> bypassed;  ///< fixtures, then luxmeters
 };
 
 /// What somebody else has sent until now, and goes on to if nobody does anything.
@@ -126,6 +136,11 @@ class ShowController {
   ShowController(const Rig& rig, LightModel model);
   ~ShowController();
   ShowController(ShowController&&) noexcept;
+
+  /// Takes devices that have failed out of the show, or (on = false) back in. A bypassed luxmeter is not read, accuses
+  /// nobody, and what it taught is forgotten. A bypassed fixture fades out and stays dark, whoever asks; the rest is
+  /// solved without it. What they caused (a safe look, alarms) ends. A notice stays until it is undone.
+  void bypass(Time now, std::span<const std::size_t> fixtures, std::span<const std::size_t> luxmeters, bool on);
 
   /// Before anything but add_desk(): that light is on, and goes out from here on; the first apply fades from there.
   /// Lamps of it that burn do not come up by stages; those that are dark do. Limits let it
@@ -192,7 +207,12 @@ class ShowController {
   void reading(Time now, const LuxReading& reading);
   void health(Time now, std::span<const Health> devices);
 
-  /// Advances the state machine; call at 20 Hz or more. Corrections are solved here (milliseconds).
+  /// Who runs what takes long, once and on any thread: what it says is taken up by the step after. Without, step() and
+  /// what sets something by hand do it themselves: milliseconds, but seconds with hundreds of lamps and limits.
+  using Beside = std::function<void(std::function<void()>)>;
+  void solve_beside(Beside beside);
+
+  /// Advances the state machine; call at 20 Hz or more.
   void step(Time now);
 
   /// The levels of the safe look, within limits; a head whose beam could meet a keep-out zone is dark in it. Takes

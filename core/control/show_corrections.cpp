@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/control/show_state.h"
 
@@ -24,10 +25,10 @@ constexpr double kSmallestChange = 1e-4;
 void ShowController::State::take_sample(Time now) {
   if (program.blackout || shared || !program.done(now) || too_much_lost() || dimmed_for_a_zone(now))
     return;  // not the light that was asked for
-  if (phase != Phase::measuring && now - sampled_at < kSampleEvery) return;
+  if (phase == Phase::measuring ? solving != nullptr : now - sampled_at < kSampleEvery) return;
   std::vector<LuxReading> readings;
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
-    if (in_doubt(i)) continue;
+    if (in_doubt(i) || bypassed_meter[i]) continue;
     if (samples.ready(now, i)) {
       readings.push_back(*samples.sample(i));
     } else if (!health.meter_lost(i)) {
@@ -47,10 +48,12 @@ void ShowController::State::take_sample(Time now) {
     }
     measured[judgement.luxmeter] = *samples.sample(judgement.luxmeter);
   }
+  watch_scale(now);
   samples.next();
   sampled_at = now;
   bool all_believed = true;
-  for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) all_believed = all_believed && measured[i].has_value();
+  for (std::size_t i = 0; i < rig.luxmeters.size(); ++i)
+    all_believed = all_believed && (measured[i] || bypassed_meter[i]);
   afresh = afresh && !all_believed;
 
   std::vector<LimitBreach> present;
@@ -65,9 +68,62 @@ void ShowController::State::take_sample(Time now) {
   breaches = std::move(present);
 }
 
+/// Asks for the levels that readings and hands call for, of which take_solved() makes what it was asked for.
+void ShowController::State::solve(Time now, Solving::For what) {
+  solving = std::make_shared<Solving>();
+  solving->what = what;
+  solving->facts = facts;
+  const bool hands = what == Solving::For::hands;
+  std::vector<double> levels = hands ? asked : with_hands(program.to_level);
+  if (!beside) {
+    solving->correction = estimator.correct(levels, now, hands);
+    solving->done = true;
+    return take_solved(now);
+  }
+  // With what is known now: what is learned meanwhile counts the next time.
+  beside([to = solving, known = std::make_shared<const GainEstimator>(estimator), levels = std::move(levels), now,
+          hands] {
+    to->correction = known->correct(levels, now, hands);
+    to->done = true;
+  });
+}
+
+/// Something newer is asked for. What nobody has solved around hands is still to be.
+void ShowController::State::drop_solving() {
+  unsolved = unsolved || (solving && solving->what == Solving::For::hands);
+  solving.reset();
+}
+
+void ShowController::State::take_solved(Time now) {
+  if (!solving || !solving->done) return;
+  const bool fades = phase == Phase::fading || phase == Phase::settling || phase == Phase::measuring ||
+                     phase == Phase::correcting || phase == Phase::holding;
+  const bool hands = solving->what == Solving::For::hands;
+  // Lamps that start after a power cut do so one after the other, to their end.
+  if (hands && fades && !program.lamp_starts.empty() && !program.done(now)) return;
+  const std::shared_ptr<Solving> solved = std::exchange(solving, nullptr);
+  const bool holds = solved->facts == facts && cue && !program.blackout;
+  if (hands) {
+    if (!holds || !fades) {
+      unsolved = true;  // with the next cue
+      if (cue && fades && !program.blackout) {
+        unsolved = false;
+        solve(now, Solving::For::hands);
+      }
+      return;
+    }
+    asked = std::move(solved->correction.level);
+    aimed_lx = std::move(solved->correction.aimed_lx);
+    why = std::move(solved->correction.why);
+    return go_to_asked(now, present_levels(now, false));
+  }
+  if (!holds || (phase != Phase::measuring && phase != Phase::holding)) return;
+  if (solved->what == Solving::For::round) return correct_or_hold(now, std::move(solved->correction));
+  look_at_drift(now, std::move(solved->correction));
+}
+
 /// After a sample: another round when it would bring a metered goal nearer, or when a limit is in question.
-void ShowController::State::correct_or_hold(Time now) {
-  Correction correction = estimator.correct(with_hands(program.to_level), now);
+void ShowController::State::correct_or_hold(Time now, Correction correction) {
   double change = 0;
   for (std::size_t i = 0; i < correction.level.size(); ++i) {
     change = std::max(change, std::abs(correction.level[i] - program.to_level[i]));
@@ -83,7 +139,7 @@ void ShowController::State::correct_or_hold(Time now) {
     return;
   }
   for (std::size_t i = 0; i < cue->size(); ++i) {
-    if (lost[i]) {
+    if (lost[i] || bypassed_lamp[i]) {
       correction.level[i] = program.to_level[i];
       continue;
     }
@@ -92,7 +148,7 @@ void ShowController::State::correct_or_hold(Time now) {
     (*cue)[i] = correction.level[i];
     if (!same || !any_lost()) asked[i] = correction.level[i];
   }
-  if (by_hand().empty()) without_hands = asked;
+  if (by_hand().empty() && !any_lamp_bypassed()) without_hands = asked;
   ++round;
   corrected_at = now;
   fade(now, present_levels(now), std::move(correction.level), rig.control.correction_fade_s, rig.control.fade_curve);
@@ -102,10 +158,14 @@ void ShowController::State::correct_or_hold(Time now) {
 void ShowController::State::watch_drift(Time now) {
   if (sampled_at != now) return;
   converged = all_metered_goals_arrived();
-  if (!breaches.empty()) return correct_or_hold(now);
-  const Correction correction = estimator.correct(with_hands(program.to_level), now);
+  if (solving) return;
+  solve(now, breaches.empty() ? Solving::For::drift : Solving::For::round);
+}
+
+void ShowController::State::look_at_drift(Time now, Correction correction) {
   drifted = possible_gain(correction) > rig.control.tolerance ? drifted + 1 : 0;
-  if (drifted >= kDriftSamples && now - corrected_at >= kDriftCorrectionEvery) correct_or_hold(now);
+  if (drifted >= kDriftSamples && now - corrected_at >= kDriftCorrectionEvery)
+    correct_or_hold(now, std::move(correction));
 }
 
 /// A meter that contradicts only what it said before may have been right before or now; taking its word now could drive
@@ -114,7 +174,10 @@ void ShowController::State::watch_drift(Time now) {
 void ShowController::State::doubt_the_past(Time now) {
   if (!afresh || sampled_at != now) return;
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
-    if (health.meter_implausible(i) && sample_changed[i]) estimator.forget(i);
+    if (!health.meter_implausible(i) || !sample_changed[i]) continue;
+    estimator.forget(i);
+    ++facts;
+    drifts[i] = Drift{};
   }
 }
 

@@ -11,9 +11,6 @@ namespace {
 
 /// Of what a meter reads: less than this from lamps that may do anything, and it tells of the others.
 constexpr double kShareThatTells = 0.02;
-
-/// Since a lamp took its last level, drivers have known within this that it takes none.
-constexpr Duration kNoticedWithin = std::chrono::seconds(2);
 /// A meter that showed more than its point may have is trusted to watch over it again below this share of the limit.
 constexpr double kWellBelow = 0.95;
 
@@ -43,20 +40,32 @@ bool ShowController::State::too_much_lost() const {
   return rig.safe.scope == SafeScope::rest_stays ? health.all_lost() : health.light_lost();
 }
 
-/// Nothing is told apart when the rig goes to its safe look as a whole.
+bool ShowController::State::limits_bear_waiting(Time now) const {
+  if (!health.any_faulted()) return true;
+  std::vector<double> most = present_levels(now);
+  const std::vector<double> before = present_levels(now - kNoticedWithin);
+  for (std::size_t f = 0; f < most.size(); ++f)
+    most[f] = std::max({most[f], before[f], program.blackout ? 0.0 : program.to_level[f]});
+  for (std::size_t p = 0; p < rig.points.size(); ++p)
+    if (rig.points[p].max_lx && estimator.most_lux_at_point(p, most, now) > *rig.points[p].max_lx * (1 + kBreachSlack))
+      return false;
+  return true;
+}
+
+/// Nothing is told apart when the rig goes to its safe look as a whole, but for what a person has taken out of it.
 void ShowController::State::watch_losses(Time now) {
-  if (rig.safe.scope == SafeScope::all) return;
   bool changed = false;
   std::vector<double> present, before;
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
-    const bool lamp = health.lamp_lost(f), gone = lamp || health.motion_lost(f);
+    const bool apart = rig.safe.scope == SafeScope::rest_stays || bypassed_lamp[f];
+    const bool lamp = health.lamp_lost(f), gone = apart && (lamp || health.motion_lost(f));
     std::optional<LostFixture>& one = lost[f];
     if (gone && !one) {
       if (present.empty()) {
         present = present_levels(now);
         before = present_levels(now - kNoticedWithin);
       }
-      one = LostFixture{now, present[f], std::max(present[f], before[f]), lamp, false, {}};
+      one = LostFixture{now, present[f], std::max({present[f], before[f], taken_level[f]}), lamp, false, {}};
       changed = true;
     } else if (gone) {
       one->well_since.reset();
@@ -106,6 +115,7 @@ void ShowController::State::tell_lost_lamps() {
     lamps[f] = GainEstimator::Lost{lost[f]->most, unknown ? 1.0 : lost[f]->most};
   }
   estimator.set_lost(std::move(lamps), watched);
+  ++facts;
 }
 
 /// What lost fixtures are sent in place of the look: where they were, then their safe level, unless they were darker.
@@ -118,10 +128,14 @@ void ShowController::State::leave_out_lost(std::vector<double>& levels) const {
 }
 
 bool ShowController::State::in_doubt(std::size_t luxmeter) const {
-  if (!any_lost()) return false;
   std::vector<std::uint8_t> chosen(rig.fixtures.size(), 0);
-  for (std::size_t f = 0; f < chosen.size(); ++f) chosen[f] = lost[f].has_value();
-  return estimator.share_at_meter(luxmeter, chosen, program.to_level) > kShareThatTells;
+  bool any = false;
+  for (std::size_t f = 0; f < chosen.size(); ++f) {
+    // From the first report on: what is learned until a lamp is lost could not be told from what is true.
+    chosen[f] = lost[f].has_value() || health.lamp_silent(f);
+    any = any || chosen[f] != 0;
+  }
+  return any && estimator.share_at_meter(luxmeter, chosen, program.to_level) > kShareThatTells;
 }
 
 void ShowController::State::tell_losses(ShowStatus& status) const {

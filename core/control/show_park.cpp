@@ -85,7 +85,9 @@ void ShowController::State::unpark() {
   parking.clear();
   for (std::size_t f = 0; f < program.parked.size(); ++f) {
     if (program.parked[f] == 0) continue;
-    program.max_level[f] = std::min(rig.fixtures[f].max_level, rig.limits.max_level);
+    program.parked[f] = 0;
+    if (bypassed_lamp[f]) continue;
+    program.max_level[f] = most_of(f);
     estimator.set_max_level(f, program.max_level[f]);
   }
   program.parked.clear();

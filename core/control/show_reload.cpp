@@ -27,13 +27,14 @@ void ShowController::State::exchange_rig(Time now, const Rig& other, const Light
   why.clear();
   breaches.clear();
   awaited.reset();
+  drop_solving();
   parking.clear();
-  for (std::size_t f = 0; f < rig.fixtures.size(); ++f)
-    program.max_level[f] = parked(f) ? 0 : std::min(rig.fixtures[f].max_level, rig.limits.max_level);
+  for (std::size_t f = 0; f < rig.fixtures.size(); ++f) program.max_level[f] = bypassed_lamp[f] ? 0 : most_of(f);
   if (same_light) {
     for (std::size_t f = 0; f < rig.fixtures.size(); ++f) estimator.set_max_level(f, program.max_level[f]);
   } else {
     estimator = GainEstimator(rig, model);
+    drifts.assign(rig.luxmeters.size(), {});
     std::fill(measured.begin(), measured.end(), std::nullopt);
     model_joints = program.joints;
   }

@@ -2,6 +2,9 @@
 /// What a ShowController keeps; private to show_controller.cpp and its neighbours show_….cpp (what happens), and
 /// show_status.cpp (what is told).
 
+#include <atomic>
+#include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,6 +46,13 @@ struct LostFixture {
 /// A device that comes and goes is not back; the drivers' own reports come several times in this while.
 inline constexpr Duration kHealthyFor = std::chrono::milliseconds(500);
 
+/// One late answer is no failure: a device that is reported as faulted is done without after this. What a limit may
+/// have meanwhile is looked at first (limits_bear_waiting).
+inline constexpr Duration kPatience = std::chrono::milliseconds(1200);
+/// Since a lamp took its last level, drivers have known within this, and the show after its patience, that it takes
+/// none.
+inline constexpr Duration kNoticedWithin = std::chrono::milliseconds(3200);
+
 /// Housings that blink, or have: each keeps its place among the desks.
 struct Identification {
   std::size_t desk = 0;
@@ -59,6 +69,14 @@ struct GuardedHead {
   std::optional<std::size_t> zone{};  ///< that its beam could meet now
 };
 
+/// A correction that is being worked out beside the loop.
+struct Solving {
+  enum class For { round, drift, hands } what = For::round;
+  std::uint64_t facts = 0;  ///< State::facts when it was asked for
+  std::atomic<bool> done{false};
+  Correction correction{};
+};
+
 struct ShowController::State {
   State(const Rig& rig, const LightModel& model);
 
@@ -69,11 +87,12 @@ struct ShowController::State {
   OutputProgram program;
 
   KeepOutZones zones;
-  std::vector<GuardedHead> guarded;     ///< one for each of program.dims
-  std::vector<Joints> model_joints;     ///< per fixture: where heads look in the estimator's model
-  std::vector<std::uint8_t> parking;    ///< per fixture, 1: parks when it is dark; empty: none
-  std::vector<std::uint8_t> powerless;  ///< per fixture, 1: its lamp is lost, and starts as after a power cut
-  bool power_came = false;              ///< light has been asked for once
+  std::vector<GuardedHead> guarded;         ///< one for each of program.dims
+  std::vector<Joints> model_joints;         ///< per fixture: where heads look in the estimator's model
+  std::vector<std::uint8_t> parking;        ///< per fixture, 1: parks when it is dark; empty: none
+  std::vector<std::uint8_t> tells_of_lamp;  ///< per fixture, 1: its device would say that its lamp has burnt out
+  std::vector<std::uint8_t> powerless;      ///< per fixture, 1: its lamp is lost, and starts as after a power cut
+  bool power_came = false;                  ///< light has been asked for once
 
   std::vector<DeskFollower> desks;      ///< one for each of program.desks
   std::vector<std::string> desk_names;  ///< of the rig's; those that identify fixtures have none
@@ -129,13 +148,53 @@ struct ShowController::State {
   void start_with_hands(Time now);
   /// The levels with those that are held in their place.
   [[nodiscard]] std::vector<double> with_hands(std::vector<double> levels) const;
-  /// The same with the rest solved around them, when something by hand is new.
-  [[nodiscard]] std::vector<double> solved_around_hands(Time now, std::vector<double> levels);
   [[nodiscard]] std::vector<ByHand> by_hand() const;
   [[nodiscard]] std::string why_not(Time now, const ByHand& held) const;
 
+  // All meters against the model, and each against what it read before (show_scale.cpp).
+  /// A meter's reading over what the model states, when it was first believed and now, as logarithms.
+  struct Drift {
+    bool anchored = false;
+    double log_ratio = 0;
+    std::vector<double> level;  ///< per fixture, then
+    Time since{};
+    double log_change = 0;
+    int seen = 0;  ///< samples in a row that are farther off than anything explains
+    Time known_since{};
+  };
+  struct ScaleDoubt {
+    double log_share = 0;  ///< below 0: meters read less than they would
+    std::string reason;
+  };
+  static constexpr double kDarkForDrift_lx = 2;  ///< below, a meter's offset counts
+  std::optional<double> off_together;            ///< logarithm of all readings over the model, where it is surely not 0
+  Time off_together_since{};
+  std::vector<Drift> drifts;  ///< per luxmeter
+  void watch_scale(Time now);
+  [[nodiscard]] bool drifts_away(std::size_t luxmeter) const;
+  [[nodiscard]] std::optional<double> drift_together() const;
+  [[nodiscard]] ScaleDoubt scale_doubt_of(std::size_t point) const;
+  [[nodiscard]] std::string off_together_text() const;
+  [[nodiscard]] std::string drift_together_text(double log_share) const;
+  [[nodiscard]] std::string drift_text(std::size_t luxmeter) const;
+  void tell_scale(ShowStatus& status) const;
+  void forget_drift();
+
+  // Bypassed (show_bypass.cpp).
+  std::vector<std::optional<Time>> bypassed_lamp, bypassed_meter;  ///< per fixture and luxmeter: since when
+  void bypass(Time now, std::span<const std::size_t> fixtures, std::span<const std::size_t> luxmeters, bool on);
+  [[nodiscard]] bool any_lamp_bypassed() const;
+  void close_bypassed(Time now);
+  void tell_bypassed(ShowStatus& status) const;
+  /// The most that a plan may ask of it; 0 of one that is parked.
+  [[nodiscard]] double most_of(std::size_t fixture) const;
+
   // A rig file read again (show_reload.cpp).
   void exchange_rig(Time now, const Rig& other, const LightModel& model, bool same_light);
+
+  ShowController::Beside beside;     ///< may be none
+  std::shared_ptr<Solving> solving;  ///< what has been asked for and not been taken up
+  std::uint64_t facts = 0;           ///< counts what makes another correction of one that was asked for before
 
   // What happens (show_controller.cpp).
   [[nodiscard]] Time at_least_last(Time now);
@@ -144,6 +203,7 @@ struct ShowController::State {
   void fade(Time now, std::vector<double> from, std::vector<double> to, double seconds, FadeCurve curve);
   void guard(Time now, const std::vector<double>& from, const std::vector<double>& to);
   void start_cue(Time now, std::vector<double> levels);
+  void go_to_asked(Time now, std::vector<double> present);
   [[nodiscard]] std::vector<double> wanted_levels(std::span<const double> levels) const;
   [[nodiscard]] bool turns(std::size_t fixture) const;  ///< by the awaited look
   void take_look(Time now);
@@ -151,7 +211,11 @@ struct ShowController::State {
   void resume(Time now);
   void fade_to_safe(Time now);
   void take_sample(Time now);
-  void correct_or_hold(Time now);
+  void solve(Time now, Solving::For what);
+  void take_solved(Time now);
+  void drop_solving();
+  void correct_or_hold(Time now, Correction correction);
+  void look_at_drift(Time now, Correction correction);
   void watch_drift(Time now);
   void doubt_the_past(Time now);
   void look_at_failures(Time now);
@@ -192,6 +256,8 @@ struct ShowController::State {
 
   // What fails alone (show_losses.cpp).
   void watch_losses(Time now);
+  /// No limit would be exceeded were any lamp stuck at the most that it has had lately, while the others go on.
+  [[nodiscard]] bool limits_bear_waiting(Time now) const;
   void tell_lost_lamps();
   void leave_out_lost(std::vector<double>& levels) const;
   [[nodiscard]] bool any_lost() const;
@@ -220,6 +286,11 @@ struct ShowController::State {
                                            const Prediction& prediction) const;
   [[nodiscard]] std::vector<double> with_lost_lamps_at(std::span<const double> level, bool full) const;
   [[nodiscard]] bool any_lamp_lost() const;
+  /// Were its lamp out, that meter would show it.
+  [[nodiscard]] bool seen_by_a_meter(std::size_t fixture, std::span<const double> level) const;
+  /// A lamp without which the point would not be at its goal, and of which nobody knows whether it burns.
+  [[nodiscard]] std::optional<std::size_t> unseen_lamp_for(std::size_t point, std::span<const double> level,
+                                                           const LuxEstimate& light, double allowed_lx) const;
   /// What is believed to be out: of a desk that drives lamps itself, what it sends; of a lamp that does not answer, the
   /// last that it took.
   [[nodiscard]] std::vector<double> levels_out(Time now) const;

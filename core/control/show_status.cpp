@@ -14,7 +14,8 @@ std::vector<double> ShowController::State::safe_levels() const {
     const std::size_t bus = rig.fixtures[i].bus;
     const double of_bus = (bus < rig.buses.size() ? rig.buses[bus].safe_level : std::nullopt).value_or(rig.safe.level);
     const double wanted = rig.fixtures[i].safe_level.value_or(of_bus);
-    level.push_back(std::clamp(rig.fixtures[i].switched ? switched_level(wanted) : wanted, 0.0, program.max_level[i]));
+    const double most = bypassed_lamp[i] ? 0 : program.max_level[i];
+    level.push_back(std::clamp(rig.fixtures[i].switched ? switched_level(wanted) : wanted, 0.0, most));
   }
   return level;
 }
@@ -131,7 +132,7 @@ ShowStatus ShowController::State::status(Time now) const {
   program.joints_at(now, joints);
   for (std::size_t i = 0; i < rig.fixtures.size(); ++i) {
     status.fixtures.push_back({joints[i], level[i], drive_from_level(rig.fixtures[i].dimmer_curve, level[i]),
-                               program.to_level[i], !health.lamp_lost(i), estimator.gain(i),
+                               program.to_level[i], !health.lamp_silent(i), estimator.gain(i),
                                estimator.gain_standard_error(i)});
   }
   for (const Identification& one : identified) {
@@ -166,6 +167,8 @@ ShowStatus ShowController::State::status(Time now) const {
   status.by_hand = by_hand();
   for (ByHand& held : status.by_hand) held.why = why_not(now, held);
   tell_losses(status);
+  tell_bypassed(status);
+  tell_scale(status);
   tell_zones(status);
   for (std::size_t d = 0; d < desks.size(); ++d) {
     if (desk_names[d].empty()) continue;

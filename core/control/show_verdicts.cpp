@@ -36,7 +36,7 @@ void ShowController::State::remember_levels(Time now) {
   std::vector<double> level(rig.fixtures.size());
   program.levels_at(now, level);
   for (std::size_t f = 0; f < level.size(); ++f)
-    if (!health.lamp_lost(f)) taken_level[f] = level[f];
+    if (!health.lamp_silent(f)) taken_level[f] = level[f];
 }
 
 std::vector<double> ShowController::State::levels_out(Time now) const {
@@ -46,7 +46,7 @@ std::vector<double> ShowController::State::levels_out(Time now) const {
     for (std::size_t i = 0; desk.silent && i < desk.fixtures.size(); ++i)
       if (desk.desk_has[i] != 0) level[desk.fixtures[i]] = desk.desk_level[i];
   for (std::size_t f = 0; f < level.size(); ++f)
-    if (health.lamp_lost(f)) level[f] = taken_level[f];
+    if (health.lamp_silent(f)) level[f] = taken_level[f];
   return level;
 }
 
@@ -54,13 +54,16 @@ std::vector<double> ShowController::State::levels_out(Time now) const {
 std::vector<double> ShowController::State::with_lost_lamps_at(std::span<const double> level, bool full) const {
   std::vector<double> out(level.begin(), level.end());
   for (std::size_t f = 0; f < out.size(); ++f)
-    if (health.lamp_lost(f)) out[f] = full ? program.max_level[f] : 0;
+    if (health.lamp_silent(f))
+      out[f] = full ? most_of(f) : 0;
+    else if (!full && health.lamp_failing(f))  // it obeys, with a lamp that may be out
+      out[f] = 0;
   return out;
 }
 
 bool ShowController::State::any_lamp_lost() const {
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f)
-    if (health.lamp_lost(f)) return true;
+    if (health.lamp_silent(f) || health.lamp_failing(f)) return true;
   return false;
 }
 
@@ -69,6 +72,27 @@ double ShowController::State::in_doubt_for_lost_lamps_lx(std::size_t point, std:
   const double lux = estimator.at_point(point, level).lux;
   return std::max(lux - estimator.at_point(point, with_lost_lamps_at(level, false)).lux,
                   estimator.at_point(point, with_lost_lamps_at(level, true)).lux - lux);
+}
+
+bool ShowController::State::seen_by_a_meter(std::size_t fixture, std::span<const double> level) const {
+  std::vector<std::uint8_t> chosen(rig.fixtures.size(), 0);
+  chosen[fixture] = 1;
+  for (std::size_t i = 0; i < rig.luxmeters.size(); ++i)
+    if (measured[i] && !health.meter_lost(i) &&
+        level[fixture] * estimator.share_at_meter(i, chosen, level) >= GainEstimator::kJump)
+      return true;
+  return false;
+}
+
+std::optional<std::size_t> ShowController::State::unseen_lamp_for(std::size_t point, std::span<const double> level,
+                                                                  const LuxEstimate& light, double allowed_lx) const {
+  for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
+    if (level[f] <= 0 || tells_of_lamp[f] != 0) continue;
+    const LuxEstimate without{light.lux - level[f] * estimator.lux_per_level(point, f), light.half_width_lx};
+    if (verdict_of(without, *rig.points[point].goal_lx, allowed_lx) != Verdict::met && !seen_by_a_meter(f, level))
+      return f;
+  }
+  return std::nullopt;
 }
 
 LuxEstimate ShowController::State::light_by_model(std::size_t point, std::span<const double> level,
@@ -101,6 +125,9 @@ PointStatus ShowController::State::point_status(std::size_t p, std::span<const d
   } else {
     status.light = light_by_model(p, level, prediction);
   }
+  // Nobody knows which of them is right: the light may be so much more or less.
+  const ScaleDoubt doubt = scale_doubt_of(p);
+  status.light.half_width_lx += status.light.lux * (std::exp(std::abs(doubt.log_share)) - 1);
   judge_goal(p, level, status);
   judge_limit(p, level, now, status);
   return status;
@@ -116,9 +143,20 @@ void ShowController::State::judge_goal(std::size_t p, std::span<const double> le
   // A meter that stands there and contradicts the model: nobody knows which of them is right.
   if (const auto meter = meter_at(p); meter && health.meter_implausible(*meter) && status.verdict == Verdict::met)
     status.verdict = Verdict::unknown;
+  std::optional<std::size_t> unseen;
+  if (!status.measured_lx && status.verdict == Verdict::met)
+    unseen = unseen_lamp_for(p, level, status.light, allowed_lx);
+  if (unseen) status.verdict = Verdict::unknown;
   const std::string state = why_not_the_plan(phase, program.blackout);
   std::string settles;
-  if (const auto meter = meter_at(p); status.measured_lx) {
+  if (const ScaleDoubt doubt = scale_doubt_of(p); !doubt.reason.empty()) {
+    settles = doubt.reason;
+  } else if (unseen) {
+    settles = fmt::format("nobody sees whether fixture \"{}\" burns; a luxmeter in its light would settle it",
+                          rig.fixtures[*unseen].name);
+  } else if (const auto meter = meter_at(p); meter && bypassed_meter[*meter]) {
+    settles = fmt::format("luxmeter \"{}\" is bypassed; put it right", rig.luxmeters[*meter].name);
+  } else if (status.measured_lx) {
     settles = fmt::format(
         "luxmeter \"{}\" is good to ± {:.3g} %; one that is better would settle it, or a wider goal_tolerance",
         rig.luxmeters[*meter].name, 100 * rig.luxmeters[*meter].tolerance);
@@ -127,8 +165,9 @@ void ShowController::State::judge_goal(std::size_t p, std::span<const double> le
   } else {
     const bool for_lost_lamps = 2 * in_doubt_for_lost_lamps_lx(p, level) > status.light.half_width_lx;
     for (std::size_t f = 0; for_lost_lamps && f < level.size() && settles.empty(); ++f)
-      if (health.lamp_lost(f))
-        settles = fmt::format("fixture \"{}\" does not answer; put it right", rig.fixtures[f].name);
+      if (health.lamp_silent(f) || health.lamp_failing(f))
+        settles = fmt::format("fixture \"{}\" {}; put it right", rig.fixtures[f].name,
+                              health.lamp_silent(f) ? "does not answer" : "says that something is wrong with it");
     if (settles.empty()) settles = "by the model; a luxmeter here would settle it";
   }
   status.reason = reason_of(*status.verdict, status.light, *status.goal_lx, allowed_lx,
@@ -151,7 +190,8 @@ void ShowController::State::judge_limit(std::size_t p, std::span<const double> l
   if (status.measured_lx && *status.measured_lx > max_lx * (1 + tolerance))
     return say(LimitVerdict::exceeded, fmt::format("luxmeter \"{}\" reads {:.1f} lx, the limit is {:g} lx",
                                                    rig.luxmeters[*meter].name, *status.measured_lx, max_lx));
-  if (meter && !status.measured_lx && heard[*meter] && heard[*meter]->lux > max_lx * (1 + tolerance))
+  if (meter && !bypassed_meter[*meter] && !status.measured_lx && heard[*meter] &&
+      heard[*meter]->lux > max_lx * (1 + tolerance))
     return say(
         LimitVerdict::unknown,
         fmt::format("luxmeter \"{}\" read {:.1f} lx last, over the limit of {:g} lx, and is lost or not believed; "
@@ -164,6 +204,11 @@ void ShowController::State::judge_limit(std::size_t p, std::span<const double> l
                fmt::format("with its luxmeter's tolerance it may have {:.1f} lx, the limit is {:g} lx; look for light "
                            "that is not the rig's",
                            breach->most_lx, max_lx));
+  if (const ScaleDoubt doubt = scale_doubt_of(p);
+      status.measured_lx && doubt.log_share < 0 && *status.measured_lx * std::exp(-doubt.log_share) > max_lx)
+    return say(LimitVerdict::unknown,
+               fmt::format("it may have {:.1f} lx, the limit is {:g} lx: {}",
+                           *status.measured_lx * std::exp(-doubt.log_share), max_lx, doubt.reason));
   if (status.measured_lx) return say(LimitVerdict::kept, "");
   const bool driven_by_desk =
       std::any_of(program.desks.begin(), program.desks.end(), [](const DeskBlend& desk) { return desk.silent; });

@@ -14,10 +14,12 @@ void Dimmer::set_drive(double drive) {
   settled_level_ = std::pow(level_from_drive(nominal_, drive_), exponent_);
 }
 
+void Dimmer::set_out(bool out) { out_ = out; }
+
 void Dimmer::step(double dt_s) {
-  level_ = lagged(level_, settled_level_, dt_s, lag_s_);
+  level_ = lagged(level_, settled_level(), dt_s, lag_s_);
   // An exponential never arrives; below a billionth of full light it has, and the world need not compute any more.
-  if (std::abs(level_ - settled_level_) < 1e-9) level_ = settled_level_;
+  if (std::abs(level_ - settled_level()) < 1e-9) level_ = settled_level();
 }
 
 }  // namespace luxrig::sim

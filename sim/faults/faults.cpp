@@ -49,7 +49,7 @@ constexpr std::array<FaultEntry, 22> kFaults = {{
      "range"},
     {FaultKind::bus_off, "bus_off", 1, 0, 1, "CAN bus: Luxrig's controller is off the bus"},
     {FaultKind::lamp_failure, "lamp_failure", 1, 0, 1,
-     "fixture on Modbus: its lamp gives no light; a product with failure bits says so in them"},
+     "fixture: its lamp gives no light; on Modbus a product with failure bits says so in them"},
     {FaultKind::pressed, "pressed", 1, 0, 1, "bus with a blackout contact: somebody presses it"},
 }};
 

@@ -12,7 +12,7 @@
 ///   exception  answers with Modbus exception code value (default 4, device failure)
 ///   unpowered  has no power: no light, no answer; afterwards its registers are as they are when power comes
 ///
-///   lamp_failure  fixture on Modbus: its lamp gives no light; a product with failure bits says so in them
+///   lamp_failure  fixture: its lamp gives no light; on Modbus a product with failure bits says so in them
 ///   pressed       bus with a blackout contact (rig file: blackout_input): somebody presses it
 ///
 /// On a serial line only, of its answers:

@@ -9,6 +9,7 @@
 
 #include "core/rig/rig.h"
 #include "sim/faults/faults.h"
+#include "sim/lamp_faults.h"
 #include "sim/world/world.h"
 
 namespace luxrig::sim {

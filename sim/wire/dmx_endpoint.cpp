@@ -22,6 +22,7 @@ DmxEndpoint::DmxEndpoint(const EndpointParts& parts, BoundSocket socket)
 
 void DmxEndpoint::serve(Time now) {
   const std::string& bus = parts_.rig.buses[parts_.bus].name;
+  lamp_faults_.obey(parts_.rig, parts_.bus, parts_.faults, parts_.world);
   if (parts_.faults.find(bus, FaultKind::dead)) {
     socket_.descriptor.reset();
     arrived_.clear();

@@ -58,6 +58,7 @@ class DmxEndpoint : public BusEndpoint {
   std::deque<Arrived> arrived_;
   std::vector<Arrived> overtaken_;
   std::vector<Owed> owed_;  ///< in the order in which they were made
+  LampFaults lamp_faults_;
   std::uint64_t packets_ = 0, frames_ = 0;
 };
 

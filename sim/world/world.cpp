@@ -62,6 +62,11 @@ class MatrixWorld final : public World {
     dimmers_[fixture].set_drive(drive);
   }
 
+  void set_lamp_out(std::size_t fixture, bool out) override {
+    LUXRIG_CHECK(fixture < dimmers_.size(), "fixture {} of {}", fixture, dimmers_.size());
+    dimmers_[fixture].set_out(out);
+  }
+
   void set_aim_target(std::size_t fixture, const Joints& joints) override {
     LUXRIG_CHECK(fixture < heads_.size(), "fixture {} of {}", fixture, heads_.size());
     heads_[fixture].set_target(joints);

@@ -85,6 +85,8 @@ class World {
   virtual ~World() = default;
   /// What the wires carry to the fixtures. Values out of range are clamped, as a device would.
   virtual void set_drive(std::size_t fixture, double drive) = 0;
+  /// Its lamp has burnt out or has no power: dark, whatever drive is set.
+  virtual void set_lamp_out(std::size_t fixture, bool out) = 0;
   virtual void set_aim_target(std::size_t fixture, const Joints& joints) = 0;
   /// Where a head is whose joints are simulated elsewhere (sim/devices/axis_mechanics.h), at the next tick; it does not
   /// turn by itself any more. Not clamped: end stops are the axis's own.
@@ -101,7 +103,7 @@ class World {
   [[nodiscard]] virtual std::vector<PointTruth> points() const = 0;     ///< true lux at the rig's points
   [[nodiscard]] virtual std::vector<PointTruth> luxmeters() const = 0;  ///< true lux at the meters
   [[nodiscard]] virtual std::vector<double> levels() const = 0;         ///< true output over rated, per fixture
-  [[nodiscard]] virtual std::vector<double> drives() const = 0;         ///< as set, clamped
+  [[nodiscard]] virtual std::vector<double> drives() const = 0;         ///< as set, clamped; 0 of a lamp that is out
   [[nodiscard]] virtual std::vector<Joints> joints() const = 0;         ///< where the heads are
   [[nodiscard]] virtual const std::vector<FixtureTruth>& fixtures() const = 0;
   [[nodiscard]] virtual const std::vector<double>& meter_gains() const = 0;

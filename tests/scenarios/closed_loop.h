@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <deque>
 #include <functional>
 #include <random>
 #include <string>
@@ -55,6 +56,12 @@ class ClosedLoop {
   [[nodiscard]] ShowStatus status() const { return show.status(now); }
   [[nodiscard]] Phase phase() const { return status().phase; }
   void apply() { show.apply(now, hall.plan); }
+  /// Corrections are solved beside the loop, and that takes so long.
+  void solve_late(double takes_s) {
+    show.solve_beside([this, takes_s](std::function<void()> solve) {
+      being_solved_.emplace_back(now + from_seconds(takes_s), std::move(solve));
+    });
+  }
   void fault(const std::string& device, sim::FaultKind kind, bool on, std::optional<double> value = {}) {
     devices.faults().set(device, kind, on, value);
   }
@@ -134,11 +141,16 @@ class ClosedLoop {
 
  private:
   std::vector<double> before_;
+  std::deque<std::pair<Time, std::function<void()>>> being_solved_;
 
   [[nodiscard]] sim::World& devices_world() const { return const_cast<sim::InProcessRig&>(devices).world(); }
 
   void tick() {
     now += sim::kTick;
+    while (!being_solved_.empty() && being_solved_.front().first <= now) {
+      being_solved_.front().second();
+      being_solved_.pop_front();
+    }
     const auto tick_number = (now - Time{}) / sim::kTick;
     if (tick_number % 2 != 0) {
       devices.advance(now);

@@ -156,6 +156,31 @@ TEST(InProcessRig, EveryNamedFaultOfAMeterShowsOrIsALie) {
   }
 }
 
+TEST(InProcessRig, ALampThatBurnsOutOrHasNoPowerGivesNoLightOnAnyKindOfBus) {
+  for (const FaultKind kind : {FaultKind::lamp_failure, FaultKind::unpowered}) {
+    for (const std::size_t lamp : {0u, 2u}) {  // on DMX, on Modbus
+      Bench bench;
+      const LevelCommand on[] = {{lamp, 0.8}};
+      ASSERT_TRUE(bench.devices.write(at_s(0), on));
+      bench.devices.advance(at_s(1));
+      ASSERT_GT(bench.devices.world().points()[0].lux, 50);
+      bench.devices.faults().set(lamp == 0 ? "spot-1" : "bulb-1", kind, true);
+      bench.devices.advance(at_s(1.5));
+      EXPECT_EQ(bench.devices.world().points()[0].lux, 0) << name_of(kind) << " with nothing sent since";
+      ASSERT_TRUE(bench.devices.write(at_s(2), on));
+      bench.devices.advance(at_s(2.5));
+      EXPECT_EQ(bench.devices.world().levels()[lamp], 0) << name_of(kind);
+      bench.devices.faults().clear();
+      bench.devices.advance(at_s(3));
+      EXPECT_EQ(bench.devices.world().levels()[lamp] > 0, kind == FaultKind::lamp_failure)
+          << "what had no power knows no level until it is sent one";
+      ASSERT_TRUE(bench.devices.write(at_s(3), on));
+      bench.devices.advance(at_s(4));
+      EXPECT_NEAR(bench.devices.world().levels()[lamp], 0.8, 1e-9);
+    }
+  }
+}
+
 TEST(InProcessRig, OrdersOfOneFixtureNeverOvertakeEachOther) {
   Bench bench;
   bench.devices.faults().set("bulb-1", FaultKind::slow, true, 300);

@@ -169,6 +169,13 @@ void print_outputs(const Rig& rig) {
       "{}\nWith a guardian (luxrigd, not with --no-guardian): held for {:g} s, then the safe look over {:g} s, for as "
       "long as the guardian lives.\n",
       table.text(), rig.safe.hold_s, rig.safe.fade_s);
+  fmt::print("\nwhat comes back when something fails:\n\n");
+  for (std::size_t b = 0; b < rig.buses.size(); ++b) {
+    const std::string_view comes_back = find_driver(rig.buses[b].driver)->comes_back;
+    const bool lights =
+        std::any_of(rig.fixtures.begin(), rig.fixtures.end(), [&](const Fixture& fixture) { return fixture.bus == b; });
+    if (lights) fmt::print("  {} ({}): {}\n", rig.buses[b].name, rig.buses[b].driver, comes_back);
+  }
 }
 
 nlohmann::json outputs_json(const Rig& rig) {
@@ -176,6 +183,7 @@ nlohmann::json outputs_json(const Rig& rig) {
   for (const OutputWithoutData& output : outputs_without_data(rig)) {
     nlohmann::json one = {{"fixture", rig.fixtures[output.fixture].name},
                           {"without_data", name_of(output.lamp.does)},
+                          {"comes_back", find_driver(rig.buses[rig.fixtures[output.fixture].bus].driver)->comes_back},
                           {"by", output.lamp.by}};
     if (output.lamp.after_s) one["after_s"] = *output.lamp.after_s;
     if (output.axes)

@@ -1,4 +1,5 @@
-// status, page, blackout, apply, level, goal, release, reload, park, identify: commands that talk to a running daemon.
+// status, page, blackout, apply, level, goal, release, bypass, reload, park, identify: commands that talk to a running
+// daemon.
 #include <charconv>
 #include <cmath>
 
@@ -100,6 +101,12 @@ void print_status(const json& status) {
                 text_of(p, "limit_reason").empty() ? text_of(p, "reason") : text_of(p, "limit_reason")});
   }
   fmt::print("\n{}\n{}\n{}", devices.text(), fixtures.text(), points.text());
+  if (!list_of(status, "bypassed").empty()) {
+    Table bypassed({"bypassed", ">for s", "risk"});
+    for (const json& b : list_of(status, "bypassed"))
+      bypassed.row({text_of(b, "name"), shown(number_of(b, "age_s"), "{:.0f}"), text_of(b, "risk")});
+    fmt::print("\n{}", bypassed.text());
+  }
   if (list_of(status, "overrides").empty()) return;
   Table by_hand({"by hand", ">set to", ">for s", "until", "at present"});
   for (const json& o : list_of(status, "overrides")) {
@@ -189,6 +196,11 @@ int run_release(const ClientArguments& arguments, const std::vector<std::string>
   const bool all = names == std::vector<std::string>{"all"};
   const json body = all ? json{{"all", true}} : json{{"names", names}};
   return post(arguments, "/api/release", body.dump(-1, ' ', false, json::error_handler_t::replace), "");
+}
+
+int run_bypass(const ClientArguments& arguments, const std::vector<std::string>& names, bool undo) {
+  const json body = {{"names", names}, {"on", !undo}};
+  return post(arguments, "/api/bypass", body.dump(-1, ' ', false, json::error_handler_t::replace), "");
 }
 
 int run_reload(const ClientArguments& arguments) {

@@ -89,6 +89,8 @@ int run_goal(const ClientArguments& arguments, const std::vector<std::string>& n
              const std::string& for_text);
 /// Fixtures and points, or "all".
 int run_release(const ClientArguments& arguments, const std::vector<std::string>& names);
+/// Fixtures and luxmeters that have failed: done without, or taken back; prints the risk.
+int run_bypass(const ClientArguments& arguments, const std::vector<std::string>& names, bool undo);
 int run_reload(const ClientArguments& arguments);
 /// "90s", "10min", "2h", "90" (seconds) in seconds; nothing when it is none, or not above 0.
 [[nodiscard]] std::optional<double> seconds_of(const std::string& text);
@@ -96,8 +98,11 @@ int run_reload(const ClientArguments& arguments);
 int run_monitor(const ClientArguments& arguments, bool once);
 int run_apply(const ClientArguments& arguments, const std::filesystem::path& plan);
 
-/// Writes text to a file so that a reader sees the old content or the new, never half; a fault when it cannot.
+/// Writes text to a file so that a reader, or the start after a power cut, sees the old content or the new, never half.
+/// A fault when it cannot, or when the new content is there but a power cut may bring the old one back.
 [[nodiscard]] Result<void> write_file(const std::filesystem::path& path, const std::string& text);
+/// What was made, renamed or removed in the folder outlives a power cut; else false, and errno says why.
+[[nodiscard]] bool sync_folder(const std::filesystem::path& folder);
 /// Reads a file of at most 64 MiB.
 [[nodiscard]] Checked<std::string> read_file(const std::filesystem::path& path);
 

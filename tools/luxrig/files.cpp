@@ -3,12 +3,68 @@
 
 #include <cerrno>
 #include <cstring>
-#include <fstream>
-#include <iterator>
+#include <string_view>
 
 #include "tools/luxrig/commands.h"
 
 namespace luxrig {
+
+namespace {
+
+/// A call again for as long as signals interrupt it.
+template <class Call>
+auto uninterrupted(Call call) {
+  auto result = call();
+  while (result < 0 && errno == EINTR) result = call();
+  return result;
+}
+
+/// A descriptor that closes with its scope. A failing close() loses nothing: what must be on disk was synced before.
+class OpenFile {
+ public:
+  OpenFile(const std::filesystem::path& path, int flags)
+      : fd_(uninterrupted([&] { return ::open(path.c_str(), flags | O_CLOEXEC, 0644); })) {}
+  ~OpenFile() {
+    if (fd_ < 0) return;
+    const int before = errno;
+    ::close(fd_);
+    errno = before;
+  }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+  [[nodiscard]] bool good() const { return fd_ >= 0; }
+  /// EINVAL: this file system keeps nothing back that could be synced.
+  [[nodiscard]] bool sync() const {
+    return uninterrupted([&] { return ::fsync(fd_); }) == 0 || errno == EINVAL;
+  }
+  [[nodiscard]] bool write(std::string_view text) const {
+    while (!text.empty()) {
+      const ssize_t n = uninterrupted([&] { return ::write(fd_, text.data(), text.size()); });
+      if (n < 0) return false;
+      text.remove_prefix(static_cast<std::size_t>(n));
+    }
+    return true;
+  }
+  /// Appends what is left of it.
+  [[nodiscard]] bool read(std::string& text) const {
+    char block[1 << 16];
+    while (true) {
+      const ssize_t n = uninterrupted([&] { return ::read(fd_, block, sizeof block); });
+      if (n <= 0) return n == 0;
+      text.append(block, static_cast<std::size_t>(n));
+    }
+  }
+
+ private:
+  const int fd_;
+};
+
+}  // namespace
+
+bool sync_folder(const std::filesystem::path& folder) {
+  const OpenFile opened(folder, O_RDONLY | O_DIRECTORY);
+  return opened.good() && opened.sync();
+}
 
 Result<void> write_file(const std::filesystem::path& path, const std::string& text) {
   const auto failed = [&](const char* step) {
@@ -17,28 +73,22 @@ Result<void> write_file(const std::filesystem::path& path, const std::string& te
   };
   // On disk under another name first, then renamed: a power cut leaves the old file or the new one.
   const std::string temporary = path.string() + ".new";
-  const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (file < 0) return failed("write");
-  std::size_t written = 0;
-  while (written < text.size()) {
-    const ssize_t n = ::write(file, text.data() + written, text.size() - written);
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) {
-      const auto fault = failed("write");
-      ::close(file);
-      return fault;
-    }
-    written += static_cast<std::size_t>(n);
+  const char* failing = nullptr;
+  {
+    const OpenFile file(temporary, O_WRONLY | O_CREAT | O_TRUNC);
+    if (!file.good()) return failed("write");
+    if (!file.write(text))
+      failing = "write";
+    else if (!file.sync())
+      failing = "sync";
   }
-  const bool synced = ::fsync(file) == 0;
-  ::close(file);
-  if (!synced) return failed("sync");
-  if (::rename(temporary.c_str(), path.c_str()) != 0) return failed("replace");
-  const auto folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
-  if (const int directory = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); directory >= 0) {
-    ::fsync(directory);
-    ::close(directory);
+  if (failing == nullptr && ::rename(temporary.c_str(), path.c_str()) != 0) failing = "replace";
+  if (failing != nullptr) {
+    const auto fault = failed(failing);
+    ::unlink(temporary.c_str());  // it would keep a full disk full
+    return fault;
   }
+  if (!sync_folder(path.has_parent_path() ? path.parent_path() : ".")) return failed("sync the folder of");
   return {};
 }
 
@@ -50,9 +100,11 @@ Checked<std::string> read_file(const std::filesystem::path& path) {
   const auto size = std::filesystem::file_size(path, error);
   if (error) return refuse("cannot be read: " + error.message(), "give the path of a file that exists");
   if (size > (64u << 20)) return refuse("is larger than 64 MiB", "give the right file");
-  std::ifstream in(path, std::ios::binary);
-  std::string text((std::istreambuf_iterator<char>(in)), {});
-  if (!in && !in.eof()) return refuse("cannot be read", "check its permissions");
+  const OpenFile file(path, O_RDONLY);
+  std::string text;
+  text.reserve(size);
+  if (!file.good() || !file.read(text))
+    return refuse("cannot be read: " + std::string(std::strerror(errno)), "check its permissions and its disk");
   return text;
 }
 

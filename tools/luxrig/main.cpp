@@ -273,6 +273,13 @@ int main(int argc, char** argv) {
   add_client(*command, client);
   command->callback([&] { code = run_release(client, held); });
 
+  bool undo_bypass = false;
+  command = app.add_subcommand("bypass", "do without a fixture or luxmeter that has failed, with the risk said");
+  command->add_option("NAME", held, "fixtures and luxmeters (* and ? for several)")->required();
+  command->add_flag("--undo", undo_bypass, "it is mended: take it back");
+  add_client(*command, client);
+  command->callback([&] { code = run_bypass(client, held, undo_bypass); });
+
   command = app.add_subcommand("reload", "have the running daemon read its rig file again, whole or not at all");
   add_client(*command, client);
   command->callback([&] { code = run_reload(client); });
@@ -332,8 +339,8 @@ int main(int argc, char** argv) {
   group(app, "Make a rig", {"init", "check", "import"});
   group(app, "Work out its light", {"evaluate", "solve", "render"});
   group(app, "Run it",
-        {"run", "page", "status", "apply", "level", "goal", "release", "reload", "blackout", "hand-back", "park", "identify",
-         "monitor"});
+        {"run", "page", "status", "apply", "level", "goal", "release", "bypass", "reload", "blackout", "hand-back", "park",
+         "identify", "monitor"});
   group(app, "Devices", {"devices", "rdm", "camera"});
   group(app, "Luxrig itself", {"bench"});
   const auto end = parse_command_line(app, argc, argv);

@@ -91,4 +91,28 @@ Result<std::vector<ByHand>> anything_called(const Rig& rig, const std::vector<st
   });
 }
 
+Result<Devices> devices_called(const Rig& rig, const std::vector<std::string>& names) {
+  std::vector<std::string_view> known = names_of_fixtures(rig);
+  for (const Luxmeter& luxmeter : rig.luxmeters) known.push_back(luxmeter.name);
+  std::vector<bool> fixture(rig.fixtures.size(), false), luxmeter(rig.luxmeters.size(), false);
+  for (const std::string& name : names) {
+    bool any = false;
+    for (const ByHand& one : fixtures_like(rig, name)) {
+      for (const std::size_t f : one.whole_housing ? housing_of(rig, one.index) : std::vector{one.index})
+        fixture[f] = any = true;
+    }
+    for (std::size_t m = 0; m < luxmeter.size(); ++m)
+      if (is_called(rig.luxmeters[m].name, name)) luxmeter[m] = any = true;
+    if (!any)
+      return refusal(fmt::format("the rig has no fixture or luxmeter \"{}\": {}", name,
+                                 mend_for_unknown(name, known, "it has none")));
+  }
+  Devices devices;
+  for (std::size_t f = 0; f < fixture.size(); ++f)
+    if (fixture[f]) devices.fixtures.push_back(f);
+  for (std::size_t m = 0; m < luxmeter.size(); ++m)
+    if (luxmeter[m]) devices.luxmeters.push_back(m);
+  return devices;
+}
+
 }  // namespace luxrig

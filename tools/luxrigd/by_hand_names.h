@@ -1,5 +1,6 @@
 #pragma once
-/// Names that a person gives to set things by hand: of fixtures, housings and points, with * and ? for several.
+/// Names that a person gives: of fixtures, housings and points to set them by hand, of fixtures, housings and luxmeters
+/// to bypass them; with * and ? for several.
 
 #include <string>
 #include <vector>
@@ -16,5 +17,12 @@ namespace luxrig {
 [[nodiscard]] Result<std::vector<ByHand>> points_called(const Rig& rig, const std::vector<std::string>& names);
 /// Fixtures and points, each name at least one of the two; of a housing each of its fixtures.
 [[nodiscard]] Result<std::vector<ByHand>> anything_called(const Rig& rig, const std::vector<std::string>& names);
+
+/// What can be bypassed, in the rig's order: of a housing each of its fixtures.
+struct Devices {
+  std::vector<std::size_t> fixtures, luxmeters;
+};
+/// Fixtures, housings and luxmeters; refused where a name is nobody's.
+[[nodiscard]] Result<Devices> devices_called(const Rig& rig, const std::vector<std::string>& names);
 
 }  // namespace luxrig

@@ -71,7 +71,7 @@ struct Routes {
     if (!body.is_object() || !body.contains("on") || !body["on"].is_boolean())
       return http_refusal(400, "send {\"on\": true} or {\"on\": false}");
     const bool on = body["on"].get<bool>();
-    if (const auto done = handlers.blackout(on); !done) return http_refusal(500, done.error().detail);
+    if (const auto done = handlers.blackout(on); !done) return fault_answer(done.error());
     return dumped_answer({{"blackout", on}});
   }
 
@@ -110,6 +110,14 @@ struct Routes {
     if (all == names.has_value())  // "all" must be meant: no list is no reason to release everything
       return http_refusal(400, "send {\"names\": [\"a fixture or point\"]} or {\"all\": true}");
     return done_answer(handlers.release(names.value_or(std::vector<std::string>{})), "released");
+  }
+
+  [[nodiscard]] HttpResponse bypass(const HttpRequest& request) const {
+    const auto body = json_body(request.body);
+    const auto names = names_in(body, "names");
+    if (!names || !body.contains("on") || !body["on"].is_boolean())
+      return http_refusal(400, "send {\"names\": [\"a fixture or luxmeter\"], \"on\": true} or false");
+    return done_answer(handlers.bypass(*names, body["on"].get<bool>()), "done");
   }
 
   [[nodiscard]] HttpResponse room() const {
@@ -155,6 +163,7 @@ std::vector<HttpRoute> command_routes(HttpHandlers handlers) {
       {post, "/api/goal",
        [to](Request request) { return Routes::by_hand(request, "points", "goal_lux", to->handlers.goal); }},
       {post, "/api/release", [to](Request request) { return to->release(request); }},
+      {post, "/api/bypass", [to](Request request) { return to->bypass(request); }},
       {post, "/api/reload", [to](Request) { return checked_answer(to->handlers.reload(), "reloaded"); }},
   };
 }

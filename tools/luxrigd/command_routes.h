@@ -33,6 +33,8 @@ struct HttpHandlers {
       goal;
   /// Fixtures and points; none: all.
   std::function<Result<std::string>(const std::vector<std::string>& names)> release;
+  /// Takes fixtures and luxmeters of these names out of the show, or back in. Gives the risk, in lines.
+  std::function<Result<std::string>(const std::vector<std::string>& names, bool on)> bypass;
   /// Reads the rig file again, whole or not at all.
   std::function<Checked<std::string>()> reload;
 };

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <system_error>
+#include <thread>
 
 #include "drivers/registry.h"
 #include "tools/command_line/installed.h"
@@ -85,6 +87,17 @@ Result<int> Daemon::start() {
     }
   }
   if (stepped) return port;
+  controller_.solve_beside([](std::function<void()> solve) {
+    // It keeps all that it needs, so that nobody has to wait for it at the end.
+    try {
+      std::thread([solve] {
+        make_background();
+        solve();
+      }).detach();
+    } catch (const std::system_error&) {
+      solve();  // no thread can be had: late is better than never
+    }
+  });
   if (auto claimed = claim_outputs(); !claimed) return tl::unexpected(claimed.error());
   if (guarded_) start_guardian(now());
   for (const auto& bus : buses_) bus->start();
@@ -311,6 +324,7 @@ HttpHandlers Daemon::handlers() {
     return hold(ByHand::What::goal, names, lux, for_s);
   };
   handlers.release = [this](const std::vector<std::string>& names) { return release(names); };
+  handlers.bypass = [this](const std::vector<std::string>& names, bool on) { return bypass(names, on); };
   handlers.reload = [this] { return reload(); };
   return handlers;
 }

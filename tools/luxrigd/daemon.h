@@ -124,6 +124,8 @@ class Daemon {
   Result<std::string> hold(ByHand::What what, const std::vector<std::string>& names, double value,
                            std::optional<double> for_s);
   Result<std::string> release(const std::vector<std::string>& names);
+  Result<std::string> bypass(const std::vector<std::string>& names, bool on);
+  void restore_bypassed(const std::vector<std::string>& saved, Resumed& resumed);
   [[nodiscard]] Checked<std::string> reload();
   void restore_by_hand(const std::vector<SavedByHand>& saved, Resumed& resumed);
   /// What the controller holds by hand, to be remembered.

@@ -1,4 +1,5 @@
-/// What clients may ask of the daemon: plans, parking, what is set by hand, and a rig file that was read again.
+/// What clients may ask of the daemon: plans, parking, what is set by hand or bypassed, and a rig file that was read
+/// again.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -189,6 +190,7 @@ Resumed Daemon::resume(const Journal::Left& left) {
     controller_.blackout(now(), true);
   }
   restore_by_hand(saved.by_hand, resumed);
+  restore_bypassed(saved.bypassed, resumed);
   if (!saved.plan_json.empty()) {
     const auto plan = plan_from_json(saved.plan_json, "the saved plan");
     const std::string differs =
@@ -322,6 +324,54 @@ Result<std::string> Daemon::release(const std::vector<std::string>& names) {
     return tl::unexpected(saved.error());
   if (released->count == 0) return std::string("nothing of that was set by hand");
   return fmt::format("{} released", released->count);
+}
+
+// ---- devices that are bypassed ----
+
+Result<std::string> Daemon::bypass(const std::vector<std::string>& names, bool on) {
+  const std::lock_guard one_at_a_time(change_mutex_);
+  const std::shared_ptr<const Session> session = this->session();
+  const auto devices = devices_called(session->rig, names);
+  if (!devices) return tl::unexpected(devices.error());
+  struct Done {
+    std::vector<std::string> all;
+    std::string risk;
+  };
+  const auto done = ask_control_thread<Done>([this, session, devices = *devices, on](Time at) -> Done {
+    controller_.bypass(at, devices.fixtures, devices.luxmeters, on);
+    Done out;
+    for (const Bypassed& one : controller_.status(at).bypassed) {
+      const auto& asked = one.luxmeter ? devices.luxmeters : devices.fixtures;
+      out.all.push_back(one.luxmeter ? session->rig.luxmeters[one.index].name : session->rig.fixtures[one.index].name);
+      if (std::find(asked.begin(), asked.end(), one.index) != asked.end())
+        out.risk += (out.risk.empty() ? "" : "\n") + one.risk;
+    }
+    return out;
+  });
+  if (!done) return tl::unexpected(Fault{Cause::timeout, {}, "the control loop did not answer", {}});
+  if (const auto saved = journal_.keep([&](JournalState& state) { state.bypassed = done->all; }); !saved)
+    return tl::unexpected(saved.error());
+  return on ? done->risk : std::string("no longer bypassed: ") + fmt::format("{}", fmt::join(names, ", "));
+}
+
+void Daemon::restore_bypassed(const std::vector<std::string>& saved, Resumed& resumed) {
+  Devices all;
+  std::vector<std::string> kept;
+  for (const std::string& name : saved) {
+    const auto devices = devices_called(session()->rig, {name});
+    if (!devices) {
+      resumed.notes.push_back(fmt::format("{} was bypassed, and the rig has it no more", name));
+      continue;
+    }
+    kept.push_back(name);
+    all.fixtures.insert(all.fixtures.end(), devices->fixtures.begin(), devices->fixtures.end());
+    all.luxmeters.insert(all.luxmeters.end(), devices->luxmeters.begin(), devices->luxmeters.end());
+  }
+  if (kept.empty()) return;
+  resumed.notes.push_back(
+      fmt::format("{} still bypassed: {}", fmt::join(kept, ", "), "luxrig bypass NAME --undo when it is mended"));
+  (void)journal_.keep([&](JournalState& state) { state.bypassed = kept; });
+  on_control_thread([this, all](Time at) { controller_.bypass(at, all.fixtures, all.luxmeters, true); });
 }
 
 // ---- a rig file that has changed ----

@@ -1,5 +1,6 @@
 #pragma once
-/// What must survive a power cut: the plan in force, the blackout switch, heads that rest, and what is set by hand.
+/// What must survive a power cut: the plan in force, the blackout switch, heads that rest, what is set by hand, and
+/// what is bypassed.
 
 #include <filesystem>
 #include <functional>
@@ -27,15 +28,28 @@ struct JournalState {
   std::vector<std::string> parked{};  ///< fixtures
   bool plan_of_rig = false;           ///< the plan was solved from the rig file at start; else a person applied it
   std::vector<SavedByHand> by_hand{};
+  std::vector<std::string> bypassed{};  ///< fixtures and luxmeters
 };
+
+/// A state as the text of a file.
+[[nodiscard]] std::string state_text(const JournalState& state);
+
+/// Any text as a state: what is legible of it holds, above all the blackout. damage: what is wrong with the text; empty:
+/// nothing.
+struct LegibleState {
+  JournalState state;
+  std::string damage;
+};
+[[nodiscard]] LegibleState legible_state_of(const std::string& text);
 
 class Journal {
  public:
   /// Keeps its one file in `folder` (made when missing). None: in memory only.
   explicit Journal(std::optional<std::filesystem::path> folder = {}) : folder_(std::move(folder)) {}
 
-  /// What an earlier program left, as far as it can be read: a damaged file is moved aside, never lost, and what is
-  /// legible of it holds, above all the blackout. complaints: for a person. Does not change state().
+  /// What an earlier program left, as far as it can be read: what is legible of a damaged file holds, above all the
+  /// blackout; the file stays until the next save and gets a second name, so that it is never lost. complaints: for a
+  /// person. Does not change state().
   struct Left {
     std::optional<JournalState> state;  ///< none: nothing was left
     std::vector<std::string> complaints;
@@ -55,12 +69,15 @@ class Journal {
 
  private:
   [[nodiscard]] std::filesystem::path file() const { return *folder_ / "state.json"; }
-  [[nodiscard]] Result<void> save(const JournalState& state) const;
+  [[nodiscard]] Result<void> make_folder();
+  [[nodiscard]] Result<void> save(const JournalState& state);
+  [[nodiscard]] std::string keep_aside() const;  ///< what a complaint says of it
   void tell(const Result<void>& saved);
 
   const std::optional<std::filesystem::path> folder_;
   mutable std::mutex mutex_;  ///< held while the disk works
   JournalState state_;
+  std::vector<std::filesystem::path> unsynced_;  ///< folders that have a new folder
   mutable std::mutex told_mutex_;  ///< never held so long: who asks drives the light
   std::optional<std::string> unsaved_;
 };

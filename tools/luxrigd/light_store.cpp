@@ -17,13 +17,6 @@ namespace {
 constexpr std::uint64_t kLightMagic = 0x31544847494c584c;  // "LXLIGHT1"
 constexpr std::string_view kLightFile = "light.bin";
 
-/// FNV-1a by words: tells a torn or rotten file, not a forged one.
-std::uint64_t sum_of(std::span<const std::uint64_t> words) {
-  std::uint64_t sum = 0xcbf29ce484222325U;
-  for (const std::uint64_t word : words) sum = (sum ^ word ^ (word >> 32U)) * 0x100000001b3U;
-  return sum;
-}
-
 template <class Visit>
 void each_matrix(LightModel& model, Visit visit) {
   for (Eigen::MatrixXd* matrix : {&model.point_lux_per_level, &model.meter_lux_per_level, &model.point_standard_error,
@@ -71,6 +64,13 @@ class WordReader {
 
 }  // namespace
 
+std::uint64_t light_sum(std::span<const std::uint64_t> words) {
+  // FNV-1a by words.
+  std::uint64_t sum = 0xcbf29ce484222325U;
+  for (const std::uint64_t word : words) sum = (sum ^ word ^ (word >> 32U)) * 0x100000001b3U;
+  return sum;
+}
+
 std::uint64_t light_key(const Rig& rig, const Scene& scene, const ComputeOptions& compute) {
   std::error_code error;
   const std::filesystem::path program = "/proc/self/exe";
@@ -95,7 +95,7 @@ std::string light_bytes(const KeptLight& light, std::uint64_t key) {
     words.push_back(static_cast<std::uint64_t>(matrix.cols()));
     for (Eigen::Index i = 0; i < matrix.size(); ++i) words.push_back(std::bit_cast<std::uint64_t>(matrix.data()[i]));
   });
-  words.push_back(sum_of(words));
+  words.push_back(light_sum(words));
   return {reinterpret_cast<const char*>(words.data()), words.size() * sizeof words[0]};
 }
 
@@ -105,7 +105,7 @@ std::optional<KeptLight> light_of_bytes(std::string_view bytes, std::uint64_t ke
   std::memcpy(words.data(), bytes.data(), bytes.size());
   const std::uint64_t sum = words.back();
   words.pop_back();
-  if (sum != sum_of(words) || words[0] != kLightMagic || words[1] != key || words[2] != rig.fixtures.size())
+  if (sum != light_sum(words) || words[0] != kLightMagic || words[1] != key || words[2] != rig.fixtures.size())
     return std::nullopt;
   WordReader reader(std::span<const std::uint64_t>(words).subspan(3));
   KeptLight light;

@@ -22,6 +22,9 @@ struct KeptLight {
 /// What it depends on: the rig and its scene (RigVersion::light), how it was asked for, and this program.
 [[nodiscard]] std::uint64_t light_key(const Rig& rig, const Scene& scene, const ComputeOptions& compute);
 
+/// What the last word of its bytes says of the words before: tells a torn or rotten file, not a forged one.
+[[nodiscard]] std::uint64_t light_sum(std::span<const std::uint64_t> words);
+
 /// Bytes and back; nothing where they are damaged, of another key, or of other sizes than the rig's.
 [[nodiscard]] std::string light_bytes(const KeptLight& light, std::uint64_t key);
 [[nodiscard]] std::optional<KeptLight> light_of_bytes(std::string_view bytes, std::uint64_t key, const Rig& rig);

@@ -30,40 +30,6 @@ std::string tail_of(const std::filesystem::path& file) {
 
 }  // namespace
 
-Checked<SimPorts> read_sim_ports(const std::filesystem::path& file) {
-  const auto refuse = [&](const char* what) {
-    return tl::unexpected(std::vector<Problem>{
-        {file.string(), 0, 0, what, "give the file that `luxrig-sim RIG --ports-file FILE` wrote"}});
-  };
-  const auto text = read_file(file);
-  if (!text) return tl::unexpected(text.error());
-  const auto json = nlohmann::json::parse(*text, nullptr, false);
-  const auto endpoint = [](const nlohmann::json& j) -> std::optional<Redirect> {
-    if (!j.is_object() || !j.contains("host") || !j["host"].is_string() || !j.contains("port") ||
-        !j["port"].is_number_integer()) {
-      return {};
-    }
-    const auto port = j["port"].get<long long>();
-    if (port < 1 || port > 65535) return {};
-    return Redirect{j["host"].get<std::string>(), static_cast<int>(port)};
-  };
-  if (!json.is_object() || !json.contains("buses") || !json["buses"].is_object()) return refuse("is not a ports file");
-  SimPorts ports;
-  for (const auto& [name, value] : json["buses"].items()) {
-    if (value.is_object() && value.contains("path") && value["path"].is_string()) {
-      ports.buses[name] = Redirect{"", 0, value["path"].get<std::string>()};
-      continue;
-    }
-    const auto to = endpoint(value);
-    if (!to) return refuse("has a bus without host and port, or path");
-    ports.buses[name] = *to;
-  }
-  const auto control = json.contains("control") ? endpoint(json["control"]) : std::nullopt;
-  if (!control) return refuse("has no control port");
-  ports.control = *control;
-  return ports;
-}
-
 Result<SimProcess> SimProcess::start(const std::filesystem::path& rig, std::uint64_t seed) {
   std::error_code error;
   const auto self = std::filesystem::read_symlink("/proc/self/exe", error);

@@ -4,7 +4,6 @@
 #include <sys/types.h>
 
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,16 +11,9 @@
 #include "core/result.h"
 #include "core/stop.h"
 #include "drivers/registry.h"
+#include "tools/luxrigd/sim_ports.h"
 
 namespace luxrig {
-
-struct SimPorts {
-  std::map<std::string, Redirect> buses;  ///< by bus name
-  Redirect control;
-};
-
-/// Reads a ports file as luxrig-sim writes it.
-[[nodiscard]] Checked<SimPorts> read_sim_ports(const std::filesystem::path& file);
 
 struct PointTruthSeen {
   std::string name;

@@ -176,6 +176,12 @@ std::string status_json(const StatusInput& input) {
     if (!held.why.empty()) entry["why"] = held.why;
     by_hand.push_back(std::move(entry));
   }
+  json& bypassed = out["bypassed"] = json::array();
+  for (const Bypassed& one : show.bypassed)
+    bypassed.push_back({{"kind", one.luxmeter ? "luxmeter" : "fixture"},
+                        {"name", one.luxmeter ? rig.luxmeters[one.index].name : rig.fixtures[one.index].name},
+                        {"age_s", to_seconds(input.now - one.since)},
+                        {"risk", one.risk}});
   json& desks = out["desks"] = json::array();
   for (const DeskStatus& desk : show.desks) {
     desks.push_back({{"name", desk.name},

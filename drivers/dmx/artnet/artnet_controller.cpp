@@ -49,7 +49,7 @@ bool Controller::hear(Time now, const Datagram& datagram) {
   if (is_new || node.gone ||
       !std::equal(outputs.begin(), outputs.end(), reply->outputs.begin(), reply->outputs.end(), same_port)) {
     if (is_new || node.gone) node.since = now;
-    for (auto& [port_address, stream] : streams_) stream.wanted = true;
+    send_afresh();
   }
   outputs = reply->outputs;
   node.name = reply->short_name.empty() ? text_of(datagram.from.ipv4) : reply->short_name;
@@ -64,10 +64,12 @@ std::optional<std::vector<std::uint8_t>> Controller::due(Time now, int port_addr
   if (slots != stream.slots) {
     stream.slots = slots;
     stream.wanted = true;
+    stream.sent = false;
   }
   if (!stream.wanted && !settings_.continuous && now - stream.last < kKeepAlive) return std::nullopt;
   if (!stream.rate.take(now)) return std::nullopt;
   stream.wanted = false;
+  stream.sent = true;
   stream.last = now;
 
   Dmx packet;
@@ -86,8 +88,7 @@ std::optional<std::vector<std::uint8_t>> Controller::due(Time now, int port_addr
 
 bool Controller::is_sent(int port_address, const DmxSlots& slots) const {
   const auto found = streams_.find(port_address);
-  if (found == streams_.end() || found->second.packets == 0 || found->second.slots != slots) return false;
-  return !found->second.wanted || found->second.packets == 1;  // the first is sent twice
+  return found != streams_.end() && found->second.sent && found->second.slots == slots;
 }
 
 std::optional<std::vector<std::uint8_t>> Controller::sync_due() {
@@ -108,7 +109,14 @@ void Controller::rest() {
   owes_sync_ = false;
   nodes_.clear();
   last_poll_.reset();
-  for (auto& [port_address, stream] : streams_) stream.wanted = true;
+  send_afresh();
+}
+
+void Controller::send_afresh() {
+  for (auto& [port_address, stream] : streams_) {
+    stream.wanted = true;
+    stream.sent = false;
+  }
 }
 
 }  // namespace luxrig::artnet

@@ -70,9 +70,11 @@ class Controller {
     std::uint8_t sequence = 1;  ///< of the next packet
     std::uint64_t packets = 0;
     bool wanted = true;  ///< whatever the keep-alive says
+    bool sent = false;   ///< these slots, to all nodes that are known
     Time last{};
     SendRate rate;
   };
+  void send_afresh();
 
   ControllerSettings settings_;
   bool owes_sync_ = false;

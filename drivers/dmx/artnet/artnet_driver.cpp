@@ -77,7 +77,8 @@ class ArtnetDriver final : public UdpDmxDriver {
     for (const auto& [address, node] : controller_.nodes()) {
       Health health;
       health.device = fmt::format("{}: {} ({})", life_.health().device, node.name, text_of(address.ipv4));
-      health.life = node.gone ? Life::faulted : Life::active;
+      // One that has nothing of ours may come and go: desks, and nodes of other shows.
+      health.life = !node.gone ? Life::active : puts_out_ours(address, node) ? Life::faulted : Life::configured;
       if (node.gone) health.detail = "timeout: three polls without an answer";
       if (!node.gone && merges_ours(node)) health.detail = "merges this bus's data with another sender's";
       health.since = node.since;
@@ -175,6 +176,12 @@ class ArtnetDriver final : public UdpDmxDriver {
     const auto packet = controller_.due(now, universe.number, universe.slots);
     if (!packet) return;
     for (const SocketAddress& node : nodes) send(now, node, *packet);
+  }
+
+  bool puts_out_ours(const SocketAddress& address, const artnet::Node& node) const {
+    if (destination_ && !everywhere_ && address.ipv4 != destination_->ipv4) return false;
+    return std::any_of(bay_.universes().begin(), bay_.universes().end(),
+                       [&](const DmxUniverse& universe) { return node.puts_out(universe.number); });
   }
 
   bool merges_ours(const artnet::Node& node) const {

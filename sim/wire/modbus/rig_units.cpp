@@ -121,9 +121,7 @@ std::size_t RigUnits::add(int unit, RegisterKind kind, int first, Number number)
 void RigUnits::show(const Number& number) {
   if (number.is != Number::Is::dimmer) return;
   const double level = (number_from(number.words, number.format) - number.least) / (number.most - number.least);
-  const bool burnt_out =
-      parts_.faults.find(parts_.rig.fixtures[number.index].name, FaultKind::lamp_failure).has_value();
-  parts_.world.set_drive(number.index, std::isfinite(level) && !burnt_out ? std::clamp(level, 0.0, 1.0) : 0.0);
+  parts_.world.set_drive(number.index, std::isfinite(level) ? std::clamp(level, 0.0, 1.0) : 0.0);
 }
 
 void RigUnits::power_on(Unit& unit) {
@@ -168,10 +166,10 @@ void RigUnits::switch_power(Unit& unit) {
 
 void RigUnits::advance(Time now) {
   now_ = now;
+  lamp_faults_.obey(parts_.rig, parts_.bus, parts_.faults, parts_.world);
   if (const std::uint64_t revision = parts_.faults.revision(); revision != faults_seen_) {
     faults_seen_ = revision;
     for (auto& [id, unit] : units_) switch_power(unit);
-    for (const Number& number : numbers_) show(number);  // a lamp may have burnt out, or be new
   }
   for (auto& [id, unit] : units_) {
     if (unit.powered && unit.heard && !unit.dark && data_loss_armed(unit) &&

@@ -79,6 +79,7 @@ class RigUnits final : public ModbusUnits {
 
   EndpointParts parts_;
   bool closed_when_pressed_ = false;  ///< of the blackout contact
+  LampFaults lamp_faults_;
   std::vector<Number> numbers_;
   std::map<Address, Place> places_;
   std::map<int, Unit> units_;

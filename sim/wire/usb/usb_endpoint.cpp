@@ -34,6 +34,7 @@ class UsbEndpoint final : public BusEndpoint {
   [[nodiscard]] int port() const override { return port_; }
 
   void serve(Time now) override {
+    lamp_faults_.obey(parts_.rig, parts_.bus, parts_.faults, parts_.world);
     if (parts_.faults.find(parts_.rig.buses[parts_.bus].name, FaultKind::dead)) {
       listener_.descriptor.reset();
       hang_up();
@@ -111,6 +112,7 @@ class UsbEndpoint final : public BusEndpoint {
   }
 
   EndpointParts parts_;
+  LampFaults lamp_faults_;
   std::unique_ptr<UsbDevice> device_;
   RdmFixtures fixtures_;
   BoundSocket listener_;

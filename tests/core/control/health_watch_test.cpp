@@ -134,6 +134,62 @@ TEST(HealthWatch, LosesAMeterThatCannotBeBelievedUntilItCan) {
   EXPECT_FALSE(watch.meter_lost(0));
 }
 
+TEST(HealthWatch, OneLateAnswerIsNoLossAndOnesInARowAre) {
+  HealthWatch watch(small_rig());
+  const HealthWatch::Patience patience{std::chrono::milliseconds(1200), std::chrono::milliseconds(1200)};
+  const auto step_with = [&](double from_s, double to_s, bool failing) {
+    for (double t = from_s; t < to_s - 0.01; t += 0.1) {
+      const Health report[] = {faulted("left", from_s), faulted("meter-2", from_s)};
+      watch.report(failing ? std::span<const Health>(report) : std::span<const Health>());
+      hear_both(watch, t);
+      watch.step(at(t), patience);
+    }
+  };
+  step_with(10, 11, false);
+  step_with(11, 12, true);
+  EXPECT_FALSE(watch.light_lost());
+  EXPECT_FALSE(watch.any_meter_lost());
+  EXPECT_TRUE(watch.lamp_silent(0)) << "what it does is not known meanwhile";
+  EXPECT_EQ(watch.alarms().size(), 2u) << "said at once";
+  step_with(12, 13, false);
+  EXPECT_TRUE(watch.alarms().empty());
+  step_with(13, 14.4, true);
+  EXPECT_TRUE(watch.lamp_lost(0));
+  EXPECT_TRUE(watch.meter_lost(1));
+}
+
+TEST(HealthWatch, WhatFailsAgainAndAgainIsGoodOnlyAfterAGrowingRowOfGoodAnswers) {
+  HealthWatch watch(small_rig());
+  double t = 10, row_before_s = -1;
+  for (int failure = 0; failure < 7; ++failure) {
+    for (int i = 0; i < 3; ++i, t += 0.1) {
+      const Health report[] = {faulted("left", t)};
+      watch.report(report);
+      hear_both(watch, t);
+      watch.step(at(t));
+    }
+    ASSERT_TRUE(watch.lamp_lost(0));
+    const double well_s = t;
+    while (watch.lamp_lost(0) && t < well_s + 60) {
+      watch.report({});
+      hear_both(watch, t);
+      watch.step(at(t));
+      if (watch.lamp_lost(0)) {
+        ASSERT_EQ(watch.alarms().size(), 1u);
+        EXPECT_NE(watch.alarms()[0].text.find("answers again"), std::string::npos) << watch.alarms()[0].text;
+      }
+      t += 0.1;
+    }
+    const double row_s = t - well_s;
+    EXPECT_GT(row_s, failure < 5 ? row_before_s * 1.4 : 9.0) << failure;
+    EXPECT_LT(row_s, 11);
+    if (failure == 0) {
+      EXPECT_LT(row_s, 0.3) << "a clean failure is over with the first answer";
+    }
+    row_before_s = row_s;
+  }
+}
+
 TEST(HealthWatch, TellsLossOfLightFromLossOfMeters) {
   const struct {
     const char* device;
@@ -164,6 +220,52 @@ TEST(HealthWatch, TellsLossOfLightFromLossOfMeters) {
     EXPECT_FALSE(watch.light_lost());
     EXPECT_FALSE(watch.any_meter_lost());
   }
+}
+
+TEST(HealthWatch, ANodeOfABusThatIsGoneConcernsThatBusAlone) {
+  Rig rig = small_rig();
+  rig.buses.push_back({});
+  rig.buses[2].name = "line";
+  rig.fixtures.push_back(rig.fixtures[0]);
+  rig.fixtures[2].name = "far";
+  rig.fixtures[2].bus = 2;
+  HealthWatch watch(rig);
+  hear_both(watch, 1);
+  Health node = faulted("track: node 7 (10.0.0.7)", 1);
+  watch.report({&node, 1});
+  watch.step(at(1));
+  EXPECT_TRUE(watch.light_lost());
+  EXPECT_FALSE(watch.all_lost()) << "what hangs on another bus goes on";
+  EXPECT_TRUE(watch.lamp_lost(0));
+  EXPECT_FALSE(watch.lamp_lost(2));
+  ASSERT_EQ(watch.alarms().size(), 1u);
+  EXPECT_EQ(watch.alarms()[0].device, node.device);
+  const Health both[] = {faulted("track", 1), node};
+  watch.report(both);
+  watch.step(at(1.1));
+  ASSERT_EQ(watch.alarms().size(), 1u) << "the bus says it";
+  EXPECT_EQ(watch.alarms()[0].device, "track");
+}
+
+TEST(HealthWatch, WhatIsBypassedLosesNoLightAndRaisesNoAlarm) {
+  HealthWatch watch(small_rig());
+  hear_both(watch, 1);
+  const Health report[] = {faulted("left", 1), faulted("meter-2", 1)};
+  watch.report(report);
+  watch.step(at(1));
+  EXPECT_TRUE(watch.light_lost());
+  EXPECT_EQ(watch.alarms().size(), 2u);
+  watch.set_bypassed({at(1), std::nullopt}, {std::nullopt, at(1)});
+  watch.step(at(1.1));
+  EXPECT_FALSE(watch.light_lost());
+  EXPECT_FALSE(watch.any_meter_lost());
+  EXPECT_TRUE(watch.meter_lost(1)) << "it is done without";
+  EXPECT_TRUE(watch.lamp_lost(0)) << "what it gives is not known all the same";
+  EXPECT_TRUE(watch.alarms().empty());
+  const Health all[] = {faulted("left", 1), faulted("right", 1)};
+  watch.report(all);
+  watch.step(at(1.2));
+  EXPECT_TRUE(watch.all_lost()) << "of those in use none is left";
 }
 
 TEST(HealthWatch, SaysOnceThatABusIsGoneNotForEachMeterOnIt) {

@@ -43,9 +43,24 @@ TEST(MeterSamples, CountsOnlyReadingsTakenSinceTheLightStandsStill) {
   EXPECT_FALSE(samples.sample(0));
 }
 
+TEST(MeterSamples, WaitsLongerForReadingsThatStillGoOneWay) {
+  MeterSamples samples(1);
+  const auto settling_lx = [](double at_s) { return 5 + 95 * std::exp(-at_s); };  // a lamp of a second
+  double ready_s = 0;
+  for (int i = 1; i <= 60 && ready_s == 0; ++i) {
+    samples.add(at(0.2 * i), reading(settling_lx(0.2 * i), 0.2 * i));
+    if (samples.ready(at(0.2 * i), 0)) ready_s = 0.2 * i;
+  }
+  ASSERT_GT(ready_s, 0);
+  EXPECT_NEAR(samples.sample(0)->lux, 5, 0.1) << "after " << ready_s << " s";
+  samples.restart(at(20));
+  for (int i = 0; i <= 80; ++i) samples.add(at(20 + 0.2 * i), reading(100 * std::pow(1.02, i), 20 + 0.2 * i));
+  EXPECT_TRUE(samples.ready(at(36), 0)) << "nothing settles for so long: it is the light that changes";
+}
+
 TEST(MeterSamples, WaitsForReadingsThatAgreeButNotForEver) {
   MeterSamples samples(1);
-  for (int i = 1; i <= 4; ++i) samples.add(at(i), reading(100 + 0.5 * i, i));
+  for (int i = 1; i <= 4; ++i) samples.add(at(i), reading(i % 2 ? 100 : 102, i));
   EXPECT_TRUE(samples.ready(at(4), 0));
   samples.next();
   EXPECT_FALSE(samples.ready(at(4), 0));

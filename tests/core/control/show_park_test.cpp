@@ -175,7 +175,7 @@ TEST(ShowPark, AnotherPlanMeanwhileWinsAndAFailureWaits) {
   EXPECT_EQ(small.head(0), (Joints{0.5, 0.5}));
   const std::vector<Health> dead = {{"", Life::faulted, "", {}, {}}}, well = {{"", Life::active, "", {}, {}}};
   small.show->health(at(small.now_s), dead);
-  small.run(0.5);
+  small.run(1.5);
   ASSERT_EQ(small.status().phase, Phase::frozen);
   ASSERT_TRUE(small.show->park(at(small.now_s), {}));
   small.run(0.5);

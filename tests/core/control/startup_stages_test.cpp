@@ -146,7 +146,7 @@ TEST(StartupStages, BlackoutAndTheSafeLookNeverWait) {
   small.run(1.5);
   EXPECT_EQ(small.levels(), (std::vector<double>{0, 0.8, 0, 0.8}));
   small.lost[1] = true;  // a bus fails
-  small.run(0.1);
+  small.run(1.3);
   ASSERT_EQ(small.phase(), Phase::frozen);
   EXPECT_EQ(small.levels(), (std::vector<double>{0, 0.8, 0, 0.8}));  // no jump
   small.run(2.1);

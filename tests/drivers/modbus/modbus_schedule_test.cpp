@@ -191,5 +191,37 @@ TEST(ModbusUnitBackoff, AllSilentUnitsShareATwentiethOfTheTimeAndEachHasItsTurn)
   EXPECT_GE(next.size(), static_cast<std::size_t>(kDead)) << "all but those asked within 2 s";
 }
 
+// A blackout is acknowledged by this.
+TEST(ModbusWriteSchedule, IsConfirmedWhenEachDeviceHasAcknowledgedWhatIsWantedLast) {
+  Rig rig = rig_with(bus_of("modbus_tcp"));
+  add_modbus(rig, "near", 1, 2);
+  add_modbus(rig, "far", 2, 2);
+  WriteSchedule schedule(rig, 0, milliseconds(400), rules_of(rig));
+  const auto want = [&](double drive) {
+    for (Channel& channel : schedule.channels()) channel.wanted = words_from_drive(drive, channel.patch);
+  };
+  want(0.5);
+  EXPECT_FALSE(schedule.all_confirmed());
+  auto runs = schedule.due(at_ms(0), {});
+  ASSERT_EQ(runs.size(), 2u) << "a request for each unit";
+  for (const auto& run : runs) schedule.tried(run, at_ms(0));
+  EXPECT_FALSE(schedule.all_confirmed()) << "sent is not confirmed";
+  schedule.confirmed(runs[0]);
+  EXPECT_FALSE(schedule.all_confirmed()) << "one of two";
+  schedule.confirmed(runs[1]);
+  EXPECT_TRUE(schedule.all_confirmed());
+
+  want(0);
+  EXPECT_FALSE(schedule.all_confirmed());
+  ASSERT_TRUE(schedule.due(at_ms(10), {}).empty()) << "not rewritten so soon";
+  EXPECT_FALSE(schedule.all_confirmed());
+  runs = schedule.due(at_ms(60), {});
+  ASSERT_EQ(runs.size(), 2u);
+  for (const auto& run : runs) schedule.confirmed(run);
+  EXPECT_TRUE(schedule.all_confirmed());
+  schedule.forget();
+  EXPECT_FALSE(schedule.all_confirmed()) << "after a lost connection nothing is known";
+}
+
 }  // namespace
 }  // namespace luxrig::modbus

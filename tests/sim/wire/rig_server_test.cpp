@@ -129,6 +129,31 @@ TEST(RigServer, ASilentFixtureOrBusKeepsItsLight) {
   }
 }
 
+TEST(RigServer, ALampThatBurnsOutOrHasNoPowerGoesDarkThoughNothingMoreIsSent) {
+  for (const FaultKind fault : {FaultKind::lamp_failure, FaultKind::unpowered}) {
+    for (const char* driver : {"sacn", "artnet"}) {
+      Served served(driver);
+      const Client desk(SOCK_DGRAM, served.server->ports().at("dmx"));
+      const bool sacn = std::string(driver) == "sacn";
+      desk.send(sacn ? sacn_one_slot(0, 255) : artdmx_two_slots(255));
+      served.serve(at_s(0.1));
+      ASSERT_EQ(served.world->drives()[0], 1);
+      served.faults.set("spot-1", fault, true);
+      served.serve_only(at_s(0.2));
+      served.serve_only(at_s(0.3));
+      EXPECT_EQ(served.world->points()[0].lux, 0) << driver << ' ' << name_of(fault);
+      desk.send(sacn ? sacn_one_slot(1, 255) : artdmx_two_slots(255));
+      served.serve(at_s(0.4));
+      served.serve_only(at_s(0.5));
+      EXPECT_EQ(served.world->points()[0].lux, 0) << driver << ' ' << name_of(fault);
+      served.faults.clear();
+      desk.send(sacn ? sacn_one_slot(2, 255) : artdmx_two_slots(255));
+      served.serve(at_s(0.6));
+      EXPECT_EQ(served.world->drives()[0], 1) << driver << ' ' << name_of(fault);
+    }
+  }
+}
+
 TEST(RigServer, ASlowBusActsLateAndInOrder) {
   Served served("sacn");
   const Client desk(SOCK_DGRAM, served.server->ports().at("dmx"));

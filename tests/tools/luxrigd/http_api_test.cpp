@@ -84,6 +84,11 @@ class HttpApiTest : public ::testing::Test {
       held += fmt::format("-{} ", fmt::join(names, "+"));
       return std::string("1 released");
     };
+    handlers.bypass = [this](const std::vector<std::string>& names, bool on) -> Result<std::string> {
+      if (names[0] == "nobody") return refusal("there is no nobody");
+      held += fmt::format("{}{} ", on ? "bypass " : "undo ", fmt::join(names, "+"));
+      return std::string("watched by nobody");
+    };
     handlers.reload = []() -> Checked<std::string> {
       return tl::unexpected(std::vector<Problem>{{"rig.toml", 7, 1, "[[bus]] \"dmx\" has changed", "restart"}});
     };
@@ -157,9 +162,11 @@ TEST_F(HttpApiTest, HoldsByHandAndReleases) {
            std::pair{"/api/goal", R"({"points":["p"],"goal_lux":150})"},
            std::pair{"/api/release", R"({"names":["p"]})"},
            std::pair{"/api/release", R"({"all":true})"},
+           std::pair{"/api/bypass", R"({"names":["m","s*"],"on":true})"},
+           std::pair{"/api/bypass", R"({"names":["m"],"on":false})"},
        })
     EXPECT_NE(ask(port, post(route, body, kJson)).find(" 200 "), std::string::npos) << route << body;
-  EXPECT_EQ(held, "a+b*=0.05/-1 a=1/600 p=150/-1 -p - ");
+  EXPECT_EQ(held, "a+b*=0.05/-1 a=1/600 p=150/-1 -p - bypass m+s* undo m ");
   held.clear();
   for (const auto& [route, body] : {
            std::pair{"/api/level", R"({"fixtures":[],"level":0.05})"},
@@ -174,6 +181,11 @@ TEST_F(HttpApiTest, HoldsByHandAndReleases) {
            std::pair{"/api/release", R"({"all":false})"},
            std::pair{"/api/release", R"({"all":true,"names":["a"]})"},
            std::pair{"/api/release", "["},
+           std::pair{"/api/bypass", R"({"names":[],"on":true})"},
+           std::pair{"/api/bypass", R"({"names":["m"]})"},
+           std::pair{"/api/bypass", R"({"names":["m"],"on":1})"},
+           std::pair{"/api/bypass", R"({"names":["nobody"],"on":true})"},
+           std::pair{"/api/bypass", "7"},
        })
     EXPECT_NE(ask(port, post(route, body, kJson)).find(" 400 "), std::string::npos) << route << body;
   EXPECT_EQ(held, "");

@@ -18,9 +18,11 @@ TEST(Control, OutputsDoWithoutDataWhatCheckSays) {
   const std::string rig_file = source("tests/rigs/without-data");
   const Ran table = luxrig::testing::run({program("luxrig"), "check", rig_file, "--outputs"});
   ASSERT_EQ(table.code, 0) << table.output;
-  for (const char* text : {"noticed after 2.5 s; then its maker's choice", "goes dark after 2 s",
-                           "WAGO 750 coupler with 750-559, its watchdog, which Luxrig arms", "holds its last level",
-                           "nobody says", "Modbus does not: give its product's register_map"})
+  for (const char* text :
+       {"noticed after 2.5 s; then its maker's choice", "goes dark after 2 s",
+        "WAGO 750 coupler with 750-559, its watchdog, which Luxrig arms", "holds its last level", "nobody says",
+        "(sacn): nothing comes back; a dead node or lamp is noticed only by a luxmeter or camera",
+        "Modbus does not: give its product's register_map"})
     EXPECT_NE(table.output.find(text), std::string::npos) << text << "\n" << table.output;
   const Ran checked = luxrig::testing::run({program("luxrig"), "check", rig_file, "--outputs", "--json"});
   const json outputs = json::parse(checked.output, nullptr, false)["outputs"];

@@ -70,6 +70,21 @@ TEST(ArtnetDriver, SendsOnlyToNodesThatPutTheUniverseOut) {
   EXPECT_EQ(bench.health(2).device, "the-bus: Other (10.0.0.8)");
 }
 
+TEST(ArtnetDriver, ANodeThatPutsOutNothingOfOursMayGo) {
+  Bench bench;
+  ASSERT_TRUE(bench.driver->activate(at_ms(0)));
+  bench.hear("10.0.0.7", reply_of("Right", 1));
+  bench.hear("10.0.0.8", reply_of("Other", 2));
+  for (int ms = 0; ms <= 12000; ms += 23) {
+    if (ms % 2300 == 0) bench.hear("10.0.0.7", reply_of("Right", 1));
+    (void)bench.write(ms, 0.2);
+  }
+  EXPECT_EQ(bench.health(1).life, Life::active);
+  EXPECT_EQ(bench.health(2).device, "the-bus: Other (10.0.0.8)");
+  EXPECT_EQ(bench.health(2).life, Life::configured) << "no light hangs on it";
+  EXPECT_NE(bench.health(2).detail, "");
+}
+
 TEST(ArtnetDriver, SendsChangesAtOnceAndTheRestEverySecond) {
   Bench bench({{"destination", std::string("10.0.0.7")}});
   ASSERT_TRUE(bench.driver->activate(at_ms(0)));

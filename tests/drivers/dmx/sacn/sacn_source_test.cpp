@@ -142,5 +142,55 @@ TEST(SacnSource, ReadsACidAsUuidgenPrintsIt) {
   }
 }
 
+// A blackout is acknowledged by this.
+TEST(SacnSource, LevelsAreSentWhenTheirPacketHasGoneOutAndNotBefore) {
+  for (const bool continuous : {false, true}) {
+    for (const bool with_priorities : {false, true}) {
+      SourceSettings settings;
+      settings.continuous = continuous;
+      Source source(settings);
+      if (with_priorities) source.set_slot_priorities(1, DmxSlots{});
+      DmxSlots lit{};
+      lit[4] = 200;
+      const DmxSlots dark{};
+      EXPECT_FALSE(source.is_sent(1, lit)) << "nothing was";
+      double ms = 0;
+      if (with_priorities) {
+        ASSERT_TRUE(source.due(at_ms(ms), 1, lit));
+        EXPECT_FALSE(source.is_sent(1, lit)) << "the packet was of priorities";
+        ms += 25;
+      }
+      ASSERT_TRUE(source.due(at_ms(ms), 1, lit));
+      EXPECT_TRUE(source.is_sent(1, lit));
+      EXPECT_FALSE(source.is_sent(1, dark));
+      EXPECT_FALSE(source.is_sent(2, lit)) << "of another universe";
+      ASSERT_FALSE(source.due(at_ms(ms + 5), 1, dark)) << "the rate of a DMX line";
+      EXPECT_FALSE(source.is_sent(1, dark));
+      ASSERT_TRUE(source.due(at_ms(ms + 25), 1, dark));
+      EXPECT_TRUE(source.is_sent(1, dark));
+      EXPECT_FALSE(source.is_sent(1, lit));
+      source.rest();
+      EXPECT_FALSE(source.is_sent(1, dark)) << "each universe starts afresh";
+    }
+  }
+}
+
+TEST(SacnSource, LevelsWaitForPrioritiesThatAreDueBetween) {
+  Source source({});
+  source.set_slot_priorities(1, DmxSlots{});
+  DmxSlots lit{};
+  lit[4] = 200;
+  double ms = 0;
+  for (; ms < 875; ms += 25) (void)source.due(at_ms(ms), 1, lit);
+  ASSERT_TRUE(source.is_sent(1, lit));
+  ms = 885;
+  const auto packet = source.due(at_ms(ms), 1, DmxSlots{});
+  ASSERT_TRUE(packet);
+  ASSERT_EQ(decode(*packet)->start_code, kSlotPriority);
+  EXPECT_FALSE(source.is_sent(1, DmxSlots{}));
+  ASSERT_TRUE(source.due(at_ms(ms + 25), 1, DmxSlots{}));
+  EXPECT_TRUE(source.is_sent(1, DmxSlots{}));
+}
+
 }  // namespace
 }  // namespace luxrig::sacn
