@@ -262,22 +262,22 @@ class HttpServer::State::Connection : public std::enable_shared_from_this<Connec
     head_only_ = request.method == "HEAD";
     const std::string method = head_only_ ? "GET" : request.method;
     const HttpServerOptions& options = server_.options;
-    const bool events = !options.events_path.empty() && request.path == options.events_path && request.method == "GET";
+    events_ = !options.events_path.empty() && request.path == options.events_path && request.method == "GET";
     bool known_path = false;
     route_ = nullptr;
     for (const HttpRoute& route : options.routes) {
       known_path = known_path || route.path == request.path;
       if (route.path == request.path && route.method == method) route_ = &route;
     }
-    const bool page = !route_ && !events && method == "GET" && options.page;
-    if (!route_ && !events && !page) {
+    const bool page = !route_ && !events_ && method == "GET" && options.page;
+    if (!route_ && !events_ && !page) {
       return known_path ? http_refusal(405, "this route is not for " + request.method.substr(0, 16))
                         : http_refusal(404, options.no_route ? options.no_route(request.path)
                                                              : "there is no route " + request.path);
     }
     credential_ = trusted_ ? "socket" : options.credential ? options.credential(request) : "anybody";
     if (credential_.empty() && !page) return http_refusal(401, options.no_credential);
-    if (events && !server_.stream_is_free(credential_)) return http_refusal(503, "too many pages are open");
+    if (events_ && !server_.stream_is_free(credential_)) return http_refusal(503, "too many pages are open");
     const std::size_t most = route_ ? route_->max_body_bytes : 0;
     const bool large = most > kLargeBodyBytes && reader_->has_body();
     if (large && server_.large_bodies >= kMaxLargeBodies)
@@ -302,7 +302,7 @@ class HttpServer::State::Connection : public std::enable_shared_from_this<Connec
 
   void handle() {
     keep_alive_ = reader_->keep_alive() && !reader_->more_came();
-    if (!route_ && reader_->request().path == server_.options.events_path) return stream();
+    if (events_) return stream();
     doing_ = Doing::is_handled;
     deadline_.reset();
     const auto& handler = route_ ? route_->handle : server_.options.page;
@@ -381,7 +381,7 @@ class HttpServer::State::Connection : public std::enable_shared_from_this<Connec
   std::unique_ptr<RequestReader> reader_;
   const HttpRoute* route_ = nullptr;
   std::string credential_;
-  bool head_only_ = false, keep_alive_ = false, has_large_body_ = false, writing_ = false, closed_ = false;
+  bool events_ = false, head_only_ = false, keep_alive_ = false, has_large_body_ = false, writing_ = false, closed_ = false;
   std::array<char, 16384> buffer_;
 };
 

@@ -215,6 +215,8 @@ TEST_F(HttpApiTest, ThePortWantsTheTokenAndTheSocketDoesNot) {
     g_token = wrong;
     for (const char* route : {"/api/status", "/api/events", "/api/room", "/api/room.png", "/api/universes"})
       EXPECT_NE(ask(port, get(route)).find(" 401 "), std::string::npos) << route;
+    for (const char* route : {"/api/status", "/api/events"})
+      EXPECT_EQ(ask(port, "HEAD" + get(route).substr(3)).find(" 200 "), std::string::npos) << route;
     for (const char* route : {"/api/blackout", "/api/apply", "/api/level", "/api/session", "/api/reload"})
       EXPECT_NE(ask(port, post(route, "{\"on\":true}", kJson)).find(" 401 "), std::string::npos) << route;
   }

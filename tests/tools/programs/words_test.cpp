@@ -69,7 +69,7 @@ TEST(Words, EveryProgramTellsItsVersionAndItsManual) {
 TEST(Words, TheSimulatorsHelpAndReadmeListEveryFault) {
   const Ran ran = luxrig::testing::run({program("luxrig-sim"), "--help"});
   const std::string readme = text_of(source("tools/luxrig-sim/README.md"));
-  EXPECT_EQ(sim::all_faults().size(), 21u);
+  EXPECT_EQ(sim::all_faults().size(), 22u);
   for (const sim::FaultKind kind : sim::all_faults()) {
     const std::string name(sim::name_of(kind));
     EXPECT_NE(ran.output.find("  " + name + " "), std::string::npos) << name;
