@@ -15,6 +15,7 @@ namespace {
 constexpr int kOutputPriority = 50;
 constexpr Duration kHealthPeriod = std::chrono::milliseconds(200);
 constexpr std::size_t kMostUnsentReadings = 1000;
+constexpr Duration kDarkAgain = std::chrono::milliseconds(5);
 
 }  // namespace
 
@@ -90,8 +91,8 @@ void BusThread::run(const std::stop_token& stop) {
   bool in_turn = true;
   while (!stop.stop_requested()) {
     const Time at = now();
-    if (writes_) {
-      if (last_start != Time{} && in_turn) statistics_.record(at - last_start);
+    if (writes_ && in_turn) {  // a frame between for a blackout makes no other late
+      if (last_start != Time{}) statistics_.record(at - last_start);
       last_start = at;
     }
     turn(at);
@@ -99,10 +100,15 @@ void BusThread::run(const std::stop_token& stop) {
     // After a stall go on from here: a burst of old frames helps nobody.
     if (const Time late = now(); late > next + cycle) next = late;
     const Time due = std::max(next, now());
-    pause_until(next);
+    pause_until(is_to_be_dark() ? std::min(next, now() + kDarkAgain) : next);
     in_turn = now() >= next;  // else somebody has woken us
     if (in_turn) lateness_.record(due, now());
   }
+}
+
+/// A blackout was asked for, and some lamp has not been told: a device has its shortest time between two writes.
+bool BusThread::is_to_be_dark() const {
+  return orders_.blackout != nullptr && lights() && orders_.blackout->dark() && dark_order() < orders_.blackout->number();
 }
 
 void BusThread::turn(Time at) {

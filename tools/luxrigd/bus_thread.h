@@ -68,6 +68,7 @@ class BusThread {
  private:
   void run(const std::stop_token& stop);
   void pause_until(Time wake_at);
+  [[nodiscard]] bool is_to_be_dark() const;
   void write(Time at);
   void listen(Time at);
   void read(Time at);
