@@ -188,7 +188,10 @@ void Daemon::look_after_guardian(Time at) {
   if (at - guardian_seen_ < kGuardianLook * (1 << guardian_deaths_)) return;
   guardian_seen_ = at;
   if (guardian_ && guardian_->alive(at)) {
-    if (guardian_->looks()) unguarded_since_.reset();
+    if (guardian_->looks()) {
+      unguarded_since_.reset();
+      guardian_deaths_ = 0;  // it has lived for as long as this look was waited for
+    }
     return;
   }
   if (!unguarded_since_) unguarded_since_ = at;

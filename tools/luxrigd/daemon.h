@@ -147,8 +147,8 @@ class Daemon {
   void start_guardian(Time at);
   void tell_guardian(Time at);
   void look_after_guardian(Time at);
-  /// What becomes of a plan that cannot be saved.
-  enum class Unsaved { is_refused, goes_on };
+  /// What becomes of a plan that cannot be saved; is_saved: it is on disk already.
+  enum class Unsaved { is_refused, goes_on, is_saved };
   [[nodiscard]] Checked<std::string> apply_json(const std::string& plan_json, bool of_rig, Unsaved unsaved);
   /// The look's model: the last one made, when heads looked so then, too.
   [[nodiscard]] Result<LightModel> model_for(const Session& session, const std::vector<Joints>& joints);

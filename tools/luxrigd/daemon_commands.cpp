@@ -137,9 +137,12 @@ Checked<std::string> Daemon::apply_json(const std::string& plan_json, bool of_ri
     state.plan_of_rig = of_rig;
     state.parked.clear();
   };
-  const auto saved = unsaved == Unsaved::is_refused ? journal_.save_first(with_plan) : journal_.keep(with_plan);
-  if (!saved && unsaved == Unsaved::is_refused)
-    return tl::unexpected(problem_with("plan", saved.error(), "free disk space or mend the permissions"));
+  if (unsaved == Unsaved::is_refused) {
+    if (const auto saved = journal_.save_first(with_plan); !saved)
+      return tl::unexpected(problem_with("plan", saved.error(), "free disk space or mend the permissions"));
+  } else if (unsaved == Unsaved::goes_on) {
+    (void)journal_.keep(with_plan);
+  }
   struct Applied {
     std::vector<ByHand> held;
     Time at;
@@ -184,6 +187,8 @@ Resumed Daemon::resume(const Journal::Left& left) {
   resumed.notes = left.complaints;
   if (!left.state) return resumed;
   const JournalState& saved = *left.state;
+  // All of it at once: who kills this daemon while it takes up one after the other loses nothing.
+  (void)journal_.keep([&](JournalState& state) { state = saved; });
   // First what makes it darker: it holds whatever becomes of the plan, and of the next save.
   if (saved.blackout) {
     (void)blackout(true);
@@ -199,7 +204,7 @@ Resumed Daemon::resume(const Journal::Left& left) {
       resumed.notes.push_back(fmt::format(
           "the rig file has changed since ({} differ): its goals are solved again, the saved plan is left", differs));
     } else {
-      if (auto applied = apply_json(saved.plan_json, saved.plan_of_rig, Unsaved::goes_on); applied) {
+      if (auto applied = apply_json(saved.plan_json, saved.plan_of_rig, Unsaved::is_saved); applied) {
         resumed.plan = true;
       } else {
         for (const Problem& problem : applied.error())
@@ -217,10 +222,7 @@ Resumed Daemon::resume(const Journal::Left& left) {
   for (const std::string& name : saved.parked) {
     if (const auto head = fixture_called(name); head && session()->rig.fixtures[*head].park) heads.push_back(*head);
   }
-  if (resumed.plan && !heads.empty()) {
-    on_control_thread([this, heads](Time at) { (void)controller_.park(at, heads); });
-    (void)journal_.keep([&](JournalState& state) { state.parked = saved.parked; });  // as it was before the plan
-  }
+  if (resumed.plan && !heads.empty()) on_control_thread([this, heads](Time at) { (void)controller_.park(at, heads); });
   return resumed;
 }
 
@@ -229,6 +231,7 @@ void Daemon::restore_by_hand(const std::vector<SavedByHand>& saved, Resumed& res
   const double unix_s = unix_now_s();
   const Time at = now();
   std::vector<ByHand> held;
+  std::vector<SavedByHand> kept;
   for (const SavedByHand& one : saved) {
     if (one.until_unix_s && *one.until_unix_s <= unix_s) continue;
     const auto find = [&](const auto& list) {
@@ -247,10 +250,11 @@ void Daemon::restore_by_hand(const std::vector<SavedByHand>& saved, Resumed& res
     by_hand.since = at - from_seconds(std::clamp(unix_s - one.since_unix_s, 0.0, to_seconds(at - Time{})));
     if (one.until_unix_s) by_hand.until = at + from_seconds(*one.until_unix_s - unix_s);
     held.push_back(by_hand);
+    kept.push_back(one);
   }
+  if (kept.size() != saved.size()) (void)journal_.keep([&](JournalState& state) { state.by_hand = kept; });
   if (held.empty()) return;
   resumed.notes.push_back(fmt::format("{} set by hand {} again", held.size(), held.size() == 1 ? "is" : "are"));
-  (void)journal_.keep([&](JournalState& state) { state.by_hand = saved; });
   on_control_thread([this, held](Time now_then) { (void)controller_.hold(now_then, held); });
 }
 

@@ -48,6 +48,25 @@ TEST(LeftAlone, AGuardianThatStandsStillIsReplaced) {
   EXPECT_TRUE(wait_for([&] { return !runs(first); }, 5s));
 }
 
+// Each death doubled for ever how long the next one went unnoticed.
+TEST(LeftAlone, AGuardianThatDiesNowAndThenIsReplacedAsSoonAsTheFirstTime) {
+  LiveRig rig(source("tests/rigs/room"));
+  ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
+  const auto unguarded = [](const json& s) {
+    for (const json& alarm : s["alarms"])
+      if (alarm["text"].get<std::string>().find("nobody looks after the light") != std::string::npos) return true;
+    return false;
+  };
+  for (int death = 0; death < 5; ++death) {
+    ASSERT_TRUE(wait_for([&] { return rig.guardian_pid() > 1 && runs(rig.guardian_pid()); }, 5s)) << death;
+    const pid_t guardian = rig.guardian_pid();
+    std::this_thread::sleep_for(3s);  // it looks, and has for a while
+    ASSERT_EQ(::kill(guardian, SIGKILL), 0);
+    ASSERT_TRUE(wait_for([&] { return rig.guardian_pid() > 1 && rig.guardian_pid() != guardian; }, 5s)) << death;
+    ASSERT_TRUE(rig.wait_status([&](const json& s) { return !unguarded(s); }, 6s)) << rig.last()["alarms"].dump(1);
+  }
+}
+
 TEST(LeftAlone, ASignalIsABlackoutThatIsRemembered) {
   LiveRig rig(source("tests/rigs/room"));
   ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();

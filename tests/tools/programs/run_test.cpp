@@ -1,6 +1,9 @@
 // `luxrig run` as a user starts it: on a simulated rig, over the real protocols, in real time.
+#include <atomic>
 #include <cmath>
 #include <fstream>
+#include <set>
+#include <thread>
 
 #include "tests/tools/programs/live_rig.h"
 
@@ -149,6 +152,36 @@ TEST(Run, ABlackoutOutlivesRestartsAndADamagedState) {
     EXPECT_EQ(rig.level_sum(), 0) << restart;
   }
   EXPECT_NE(rig.daemon().output().find("state is damaged"), std::string::npos) << rig.daemon().output();
+}
+
+// A daemon that was killed while it took up one after the other had saved that there was no plan.
+TEST(Run, AtNoInstantOfAStartDoesTheDiskForgetWhatHolds) {
+  LiveRig rig(source("tests/rigs/room"));
+  ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
+  const std::string port = std::to_string(rig.port());
+  ASSERT_EQ(luxrig::testing::run({program("luxrig"), "level", "spot-1", "0.05", "--port", port}).code, 0);
+  ASSERT_EQ(luxrig::testing::run({program("luxrig"), "blackout", "--port", port}).code, 0);
+  rig.daemon().signal(SIGKILL);
+  const std::string saved = text_of(rig.file("state/state.json"));
+  std::atomic<bool> watching{true};
+  std::set<std::string> others;
+  int looks = 0;
+  std::thread watch([&] {
+    for (; watching; ++looks)
+      if (std::string text = text_of(rig.file("state/state.json")); text != saved) others.insert(std::move(text));
+  });
+  rig.start_daemon();
+  EXPECT_TRUE(rig.wait_status([&](const json& s) { return s["blackout"] == true; }, 30s)) << rig.daemon().output();
+  std::this_thread::sleep_for(1s);
+  watching = false;
+  watch.join();
+  EXPECT_GT(looks, 1000);
+  const json before = json::parse(saved);
+  for (const std::string& text : others) {
+    const json now = json::parse(text, nullptr, false);
+    ASSERT_FALSE(now.is_discarded()) << text;
+    for (const char* key : {"blackout", "plan", "plan_of_rig", "by_hand"}) EXPECT_EQ(now[key], before[key]) << key;
+  }
 }
 
 // It could not start, and had sent the guardian away before.
