@@ -98,7 +98,8 @@ class SteppedSubject final : public Subject {
       std::optional<double> value;
     };
     const One faults[] = {{"meter-1", FaultKind::silent, {}}, {"meter-2", FaultKind::lost, 0.5},
-                          {"meter-3", FaultKind::stuck, {}},  {"meter-4", FaultKind::lying, 0.5},
+                          // Less than a weak lamp could explain; what it could explain nobody can tell from one.
+                          {"meter-3", FaultKind::stuck, {}},  {"meter-4", FaultKind::lying, 0.3},
                           {"spot-9", FaultKind::silent, {}},  {"meters", FaultKind::dead, {}}};
     devices_.faults().set(faults[which].device, faults[which].kind, on, faults[which].value);
   }
