@@ -82,6 +82,9 @@ class Daemon {
   /// Why nobody looks after the light if this process dies although somebody should; empty when all is well.
   [[nodiscard]] const std::string& unguarded() const { return unguarded_; }
 
+  /// Why commands will not find it; empty when all is well.
+  [[nodiscard]] std::string unreachable() const { return http_ ? http_->unreachable() : std::string(); }
+
   /// One turn of the control loop; call every 20 ms or so.
   void tick();
   [[nodiscard]] const ShowStatus& status() const { return status_; }

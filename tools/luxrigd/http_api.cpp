@@ -33,6 +33,7 @@ struct HttpApi::State {
   Access access;
   std::string address;
   std::filesystem::path token;
+  std::string unreachable;
   std::optional<HttpServer> server;
 
   [[nodiscard]] std::string one_time_address() { return address + "?open=" + access.one_time_code(); }
@@ -100,23 +101,26 @@ Result<int> HttpApi::start(int port) {
               {}});
   }
   // Whoever has the port has the socket and the token of that name.
-  const auto folder = runtime_folder();
-  if (!folder) {
-    return tl::unexpected(Fault{Cause::system,
-                                {},
-                                "no folder for the daemon's socket that is this user's alone (mode 700): set "
-                                "XDG_RUNTIME_DIR, or remove what is in the way of /tmp/luxrig-UID",
-                                {}});
-  }
-  if (const auto made = server.bind_socket(socket_file(*folder, *bound)); !made) return tl::unexpected(made.error());
-  state_->token = token_file(*folder, *bound);
-  if (const auto left = write_secret(state_->token, state_->access.token() + "\n"); !left)
-    return tl::unexpected(left.error());
+  if (const auto met = meet(*bound); !met) state_->unreachable = met.error().detail;
   state_->access.set_port(*bound);
   state_->address = fmt::format("http://127.0.0.1:{}/", *bound);
   server.start();
   return *bound;
 }
+
+Result<void> HttpApi::meet(int port) {
+  const auto folder = runtime_folder();
+  if (!folder)
+    return refusal(
+        "no folder for the daemon's socket that is this user's alone (mode 700): set XDG_RUNTIME_DIR, or remove what is "
+        "in the way of /tmp/luxrig-UID");
+  forget_dead_daemons(*folder);
+  if (auto made = state_->server->bind_socket(socket_file(*folder, port)); !made) return made;
+  state_->token = token_file(*folder, port);
+  return write_secret(state_->token, state_->access.token() + "\n");
+}
+
+const std::string& HttpApi::unreachable() const { return state_->unreachable; }
 
 std::string HttpApi::one_time_address() { return state_->one_time_address(); }
 

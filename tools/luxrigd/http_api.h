@@ -19,11 +19,14 @@ class HttpApi {
   /// Binds 127.0.0.1:port (0 = any) and this user's socket for it, leaves the token beside that, and serves on threads
   /// of its own. Returns the port.
   [[nodiscard]] Result<int> start(int port);
+  /// Why commands of this user will not find it, a full disk, say; empty: they will. The page is served all the same.
+  [[nodiscard]] const std::string& unreachable() const;
   /// Opens one browser, once, within ten minutes.
   [[nodiscard]] std::string one_time_address();
   void stop();
 
  private:
+  Result<void> meet(int port);
   struct State;
   std::unique_ptr<State> state_;
 };

@@ -4,6 +4,7 @@
 #include <sys/socket.h>
 #include <sys/un.h>
 
+#include <chrono>
 #include <fstream>
 
 #include "tools/luxrigd/runtime_folder.h"
@@ -11,6 +12,7 @@
 namespace luxrig {
 namespace {
 
+constexpr auto kBeingMade = std::chrono::seconds(10);
 constexpr std::size_t kMaxSocketPath = sizeof(sockaddr_un::sun_path) - 1;
 
 }  // namespace
@@ -20,6 +22,19 @@ std::filesystem::path socket_file(const std::filesystem::path& folder, int port)
 }
 std::filesystem::path token_file(const std::filesystem::path& folder, int port) {
   return folder / (std::to_string(port) + ".token");
+}
+
+void forget_dead_daemons(const std::filesystem::path& folder) {
+  std::error_code error;
+  for (std::filesystem::directory_iterator file(folder, error), end; !error && file != end; file.increment(error)) {
+    std::filesystem::path socket = file->path();
+    std::error_code gone;
+    // One that is just being made does not listen yet.
+    const auto age = std::filesystem::file_time_type::clock::now() - std::filesystem::last_write_time(socket, gone);
+    if (socket.extension() != ".socket" || gone || age < kBeingMade || http_listens(socket)) continue;
+    std::filesystem::remove(socket, gone);
+    std::filesystem::remove(socket.replace_extension(".token"), gone);
+  }
 }
 
 Fault no_daemon(int port) {

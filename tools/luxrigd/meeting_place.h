@@ -14,6 +14,9 @@ namespace luxrig {
 [[nodiscard]] std::filesystem::path socket_file(const std::filesystem::path& folder, int port);
 [[nodiscard]] std::filesystem::path token_file(const std::filesystem::path& folder, int port);
 
+/// Removes what daemons that were killed have left there.
+void forget_dead_daemons(const std::filesystem::path& folder);
+
 /// Nobody answers there, and what would mend it.
 [[nodiscard]] Fault no_daemon(int port);
 /// The daemon on that port as a command of this user reaches it: by its socket, or else by the port with the token of a

@@ -321,6 +321,8 @@ int run_rig(const RunArguments& arguments) {
     if (const auto dark = daemon.blackout(true); !dark) say.say("warning  blackout by signal: " + dark.error().detail);
   });
   say.say("page and status: " + daemon.page_address() + " (opens one browser; luxrig page prints another)");
+  if (const std::string why = daemon.unreachable(); !why.empty())
+    say.say("warning  the page is served, but luxrig status, blackout and the other commands will not find this daemon: " + why);
   if (!daemon.unguarded().empty()) {
     say.say("warning  if this process dies, lamps do what they do without data: no guardian: " + daemon.unguarded());
   }
