@@ -141,10 +141,10 @@ Result<void> Daemon::claim_outputs() {
   return {};
 }
 
-/// A picture of the room is no reason to be dark for longer.
+/// A picture of the room is no reason to be dark for longer. Not at low priority: it takes a second, and on a computer
+/// that is busy with other things it would never come.
 void Daemon::draw_room_beside() {
   drawing_ = std::jthread([this, session = session_] {
-    make_background();
     RoomView room = draw_room(*session);
     const std::lock_guard lock(mutex_);
     if (session == session_) room_ = std::move(room);  // else a reload has brought its own
