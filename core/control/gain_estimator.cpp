@@ -230,6 +230,10 @@ Prediction GainEstimator::at_meter(std::size_t luxmeter, std::span<const double>
   return predict(row_of_meter(luxmeter), vector_of(level));
 }
 
+double GainEstimator::smallest_jump_lx(const Prediction& expected) {
+  return std::max({kJump * expected.lux, 4 * expected.standard_error_lx, kDark_lx});
+}
+
 Judgement GainEstimator::judge(const LuxReading& reading, std::span<const double> given_level) const {
   const VectorXd level = vector_of(given_level);
   const Luxmeter& luxmeter = luxmeters_.at(reading.luxmeter);
@@ -276,7 +280,7 @@ Judgement GainEstimator::judge(const LuxReading& reading, std::span<const double
         curve_lx += row.lux_per_level[j] * row.factor[j] * level[j] * kCurveError *
                     (before[j] > 0 ? std::min(kFarthestStep, std::abs(std::log(level[j] / before[j]))) : kFarthestStep);
     const double allowed =
-        std::hypot(std::max({kJump * expected.lux, 4 * expected.standard_error_lx, kDark_lx}), curve_lx);
+        std::hypot(smallest_jump_lx(expected), curve_lx);
     if (std::abs(reading.lux - expected.lux) > allowed)
       return reject(fmt::format("it reads {:.4g} lx where {:.4g} ± {:.2g} lx are expected from what it read before",
                                 reading.lux, expected.lux, allowed));

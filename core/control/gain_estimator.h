@@ -78,6 +78,8 @@ class GainEstimator {
   /// A reading that is off from what is expected by less than this share is never called a jump, whatever the cause: a
   /// lamp that gives a meter less than this may burn out unseen.
   static constexpr double kJump = 0.2;
+  /// A reading at the same levels that is off by less is taken for noise, or for what was not known before.
+  [[nodiscard]] static double smallest_jump_lx(const Prediction& expected);
 
   /// Would this reading be believed? `level`: per fixture, as it was (settled) when the reading was taken.
   [[nodiscard]] Judgement judge(const LuxReading& reading, std::span<const double> level) const;

@@ -10,6 +10,10 @@
 namespace luxrig {
 namespace {
 
+/// What a lamp gives to a meter is known as badly as the model: that much more than a jump that the meter would be
+/// asked about.
+constexpr double kSurelySeen = 1.5;
+
 /// Why the light is not that of the plan; empty when it is.
 const char* why_not_the_plan(Phase phase, bool blackout) {
   if (blackout) return "blackout";
@@ -77,10 +81,12 @@ double ShowController::State::in_doubt_for_lost_lamps_lx(std::size_t point, std:
 bool ShowController::State::seen_by_a_meter(std::size_t fixture, std::span<const double> level) const {
   std::vector<std::uint8_t> chosen(rig.fixtures.size(), 0);
   chosen[fixture] = 1;
-  for (std::size_t i = 0; i < rig.luxmeters.size(); ++i)
-    if (measured[i] && !health.meter_lost(i) &&
-        level[fixture] * estimator.share_at_meter(i, chosen, level) >= GainEstimator::kJump)
-      return true;
+  for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
+    if (!measured[i] || health.meter_lost(i)) continue;
+    const Prediction there = estimator.at_meter(i, level);
+    const double its_lx = level[fixture] * estimator.share_at_meter(i, chosen, level) * there.lux;
+    if (its_lx >= kSurelySeen * GainEstimator::smallest_jump_lx(there)) return true;
+  }
   return false;
 }
 
