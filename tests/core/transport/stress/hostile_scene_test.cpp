@@ -4,21 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/sanitized.h"
+
 namespace luxrig {
 namespace {
 
 // Sanitizers make each scene many times slower and look at each access, not at chance: a share of the scenes will do.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr int kScenes = 100;
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-constexpr int kScenes = 100;
-#else
-constexpr int kScenes = 1000;
-#endif
-#else
-constexpr int kScenes = 1000;
-#endif
+constexpr int kScenes = test::kSanitized ? 100 : 1000;
 
 struct Entry {
   const char* name;
