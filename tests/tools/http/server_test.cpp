@@ -7,11 +7,16 @@
 #include <thread>
 #include <vector>
 
+#include "tests/sanitized.h"
 #include "tests/tools/http/wire.h"
 #include "tools/http/client.h"
 
 namespace luxrig {
 namespace {
+
+/// Nobody is waited for. How long it takes on a machine that has nothing else to do, tools/bench/http-load says; here
+/// other tests run beside, and what waits for a neighbour waits for seconds.
+constexpr std::chrono::milliseconds kAtOnce(test::kSanitized ? 1000 : 400);
 
 using namespace std::chrono_literals;
 using test::status_of;
@@ -212,7 +217,7 @@ TEST_F(ServerTest, TwoHundredThatDribbleLockNobodyOut) {
     for (Wire& wire : dribbling) wire.send("k");
     const auto start = SteadyClock::now();
     EXPECT_EQ(status(post("/urgent", "{}")), 200) << round;
-    EXPECT_LT(SteadyClock::now() - start, 100ms) << round;
+    EXPECT_LT(SteadyClock::now() - start, kAtOnce) << round;
   }
   EXPECT_EQ(urgent, 5);
 }
@@ -225,7 +230,7 @@ TEST_F(ServerTest, UrgentWaitsForNobody) {
   ASSERT_GT(slow_ones, 0);
   const auto start = SteadyClock::now();
   EXPECT_EQ(status(post("/urgent", "{}")), 200);
-  EXPECT_LT(SteadyClock::now() - start, 100ms);
+  EXPECT_LT(SteadyClock::now() - start, kAtOnce);
   EXPECT_LT(slow_ones, 20) << "few threads, many that wait";
   released = true;
   EXPECT_EQ(status_of(waiting.back().receive(2s, "late")), 200);
@@ -259,7 +264,7 @@ TEST_F(ServerTest, StopsWhateverClientsDo) {
   std::this_thread::sleep_for(300ms);
   const auto start = SteadyClock::now();
   server->stop();
-  EXPECT_LT(SteadyClock::now() - start, 500ms);
+  EXPECT_LT(SteadyClock::now() - start, 5 * kAtOnce);
   EXPECT_FALSE(Wire(port).connected());
   server->stop();
 }
@@ -279,7 +284,7 @@ TEST_F(ServerTest, SlowRequestsEnd) {
     wire.send("k");  // a byte now and then does not help
   }
   EXPECT_TRUE(wire.ended());
-  EXPECT_LT(SteadyClock::now() - start, 6s);
+  EXPECT_LT(SteadyClock::now() - start, 5s + 10 * kAtOnce);
   EXPECT_GT(SteadyClock::now() - start, 4s);
 }
 
