@@ -7,16 +7,14 @@
 #include <thread>
 #include <vector>
 
-#include "tests/sanitized.h"
 #include "tests/tools/http/wire.h"
 #include "tools/http/client.h"
 
 namespace luxrig {
 namespace {
 
-/// Nobody is waited for. How long it takes on a machine that has nothing else to do, tools/bench/http-load says; here
-/// other tests run beside, and what waits for a neighbour waits for seconds.
-constexpr std::chrono::milliseconds kAtOnce(test::kSanitized ? 1000 : 400);
+/// Nobody is waited for.
+constexpr std::chrono::milliseconds kAtOnce(100);
 
 using namespace std::chrono_literals;
 using test::status_of;
