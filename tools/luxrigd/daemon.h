@@ -163,7 +163,7 @@ class Daemon {
   BlackoutSwitch blackout_;
   std::optional<LastLookMemory> guarded_;  ///< shared with the guardian
   std::counting_semaphore<> contact_pressed_{0};
-  std::vector<std::optional<Time>> contact_unknown_since_;  ///< by bus
+  std::vector<std::optional<Time>> contact_unknown_since_, contact_pressed_since_;  ///< by bus
   std::vector<std::unique_ptr<BusThread>> buses_;
   std::unique_ptr<HttpApi> http_;
   Journal journal_;

@@ -433,6 +433,7 @@ void Daemon::add_alarms(Time at) {
 
 void Daemon::add_contact_alarms(Time at) {
   contact_unknown_since_.resize(buses_.size());
+  contact_pressed_since_.resize(buses_.size());
   for (std::size_t b = 0; b < buses_.size(); ++b) {
     const auto contact = buses_[b]->contact();
     if (!contact) continue;
@@ -449,12 +450,18 @@ void Daemon::add_contact_alarms(Time at) {
                                             "blackout: look at its unit and its wires",
                                             name),
                                 *since});
-    if (contact == Contact::pressed)
+    std::optional<Time>& pressed = contact_pressed_since_[b];
+    if (contact != Contact::pressed) {
+      pressed.reset();
+    } else if (!pressed) {
+      pressed = at;
+    }
+    if (pressed)
       status_.alarms.push_back({false, name,
                                 fmt::format("the blackout contact of bus \"{}\" asks for blackout; when it is "
                                             "released, luxrig blackout off brings the light back",
                                             name),
-                                at});
+                                *pressed});
   }
 }
 
