@@ -126,6 +126,7 @@ ShowStatus ShowController::State::status(Time now) const {
   status.round = round;
   status.converged = converged && !program.blackout;
   status.blackout = program.blackout;
+  status.plan_waits = awaited.has_value();
 
   const std::vector<double> level = levels_out(now);
   std::vector<Joints> joints(rig.fixtures.size());

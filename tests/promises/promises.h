@@ -46,6 +46,7 @@ class Subject {
   struct Seen {
     bool blackout = false;
     std::optional<std::size_t> plan;       ///< in force; none: of no plan of ours
+    bool plan_waits = false;               ///< says that one waits until a failure is over
     std::map<std::size_t, double> by_hand; ///< lamps held
   };
   virtual Seen seen() = 0;
@@ -78,11 +79,22 @@ class Model {
       const std::string why = take(subject, steps[i]);
       if (!why.empty()) return fmt::format("step {}: {}", i, why);
     }
+    // When all is well again, what waited for that comes into force.
+    for (const Step& step : steps)
+      if (step.act == Act::fault) subject.fault(step.which, false);
+    subject.disk(false);
+    for (int s = 0; s < kLongestRecovery_s && subject.seen().plan_waits; ++s) subject.wait(1);
+    const Subject::Seen seen = subject.seen();
+    if (seen.plan_waits) return "all is well, and a plan still waits";
+    if (seen.plan.value_or(kNoPlan) != plan_.live)
+      return fmt::format("all is well, and plan {} is in force instead of {}", seen.plan.value_or(kNoPlan), plan_.live);
     return {};
   }
 
  private:
   using Hands = std::map<std::size_t, double>;
+  /// A dead unit is asked again within some seconds, then light fades.
+  static constexpr int kLongestRecovery_s = 30;
 
   /// A command that says it is saved has saved everything that held.
   void all_saved() {
@@ -173,7 +185,7 @@ class Model {
     if (const std::string broken = subject.broken(); !broken.empty()) return broken;
     const Subject::Seen seen = subject.seen();
     if (seen.blackout != blackout_.live) return seen.blackout ? "there is a blackout" : "the blackout is gone";
-    if (seen.plan.value_or(kNoPlan) != plan_.live)
+    if (!seen.plan_waits && seen.plan.value_or(kNoPlan) != plan_.live)
       return fmt::format("plan {} is in force instead of {}", seen.plan.value_or(kNoPlan), plan_.live);
     if (seen.by_hand != hands_.live) return "what is held by hand is not what was asked";
     return {};

@@ -129,6 +129,7 @@ class SteppedSubject final : public Subject {
     const ShowStatus& status = daemon_->status();
     Seen seen;
     seen.blackout = status.blackout;
+    seen.plan_waits = status.plan_waits;
     for (std::size_t k = 0; k < kPlans; ++k) {
       const auto goal = status.points[kTellingPoint].goal_lx;
       if (goal && std::abs(*goal - goal_of(k)) < 1e-6) seen.plan = k;

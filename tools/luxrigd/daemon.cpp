@@ -261,10 +261,11 @@ Result<void> Daemon::blackout(bool on) {
   std::string not_dark;
   if (on && std::this_thread::get_id() != control_thread_) not_dark = wait_until_dark(order);
   const auto saved = journal_.keep([this](JournalState& state) { state.blackout = blackout_.wanted(); });
-  if (!saved) return tl::unexpected(Fault{saved.error().cause, {}, "it holds, but would be forgotten: " + saved.error().detail, {}});
-  if (!not_dark.empty())
-    return tl::unexpected(Fault{Cause::timeout, {}, "it holds, but lamps may be lit: " + not_dark, {}});
-  return {};
+  if (saved && not_dark.empty()) return {};
+  std::string why = "it holds, but ";
+  if (!not_dark.empty()) why += "lamps may be lit: " + not_dark;
+  if (!saved) why += (not_dark.empty() ? "" : "; and it ") + ("would be forgotten: " + saved.error().detail);
+  return tl::unexpected(Fault{saved ? Cause::timeout : saved.error().cause, {}, why, {}});
 }
 
 std::string Daemon::wait_until_dark(std::uint64_t order) const {

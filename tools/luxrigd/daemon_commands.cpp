@@ -146,6 +146,7 @@ Checked<std::string> Daemon::apply_json(const std::string& plan_json, bool of_ri
   struct Applied {
     std::vector<ByHand> held;
     Time at;
+    bool waits;
   };
   const auto applied = ask_control_thread<Applied>([this, made_for = plan->made_for, levels = std::move(look->levels),
                                                     wanted = look_of(*look, std::move(*model))](Time at) -> Applied {
@@ -155,12 +156,18 @@ Checked<std::string> Daemon::apply_json(const std::string& plan_json, bool of_ri
       plan_made_for_ = made_for;
       plan_at_ = at;
     }
-    return {controller_.status(at).by_hand, at};
+    const ShowStatus status = controller_.status(at);
+    const bool failed =
+        status.phase == Phase::frozen || status.phase == Phase::safe_fading || status.phase == Phase::safe;
+    return {status.by_hand, at, status.plan_waits && failed};
   });
   if (!applied)
     return tl::unexpected(std::vector<Problem>{
         {"plan", 0, 0, "the control loop has not come to it yet: the plan is saved, and in force when it does",
          "look at luxrig status before you apply it again"}});
+  if (applied->waits)
+    note += std::string(note.empty() ? "" : "\n") +
+            "it waits: something has failed (luxrig status), and the plan comes into force when that is over";
   if (!applied->held.empty())
     note += (note.empty() ? "" : "\n") + lines_of(session->rig, applied->held, applied->at);
   return note;

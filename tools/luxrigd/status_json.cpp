@@ -121,6 +121,7 @@ std::string status_json(const StatusInput& input) {
               {"phase_s", to_seconds(input.now - show.phase_since)},
               {"simulated", input.simulated},
               {"blackout", show.blackout},
+              {"plan_waits", show.plan_waits},
               {"round", show.round},
               {"rounds", rig.control.rounds},
               {"converged", show.converged}};

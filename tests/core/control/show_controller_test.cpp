@@ -230,6 +230,9 @@ TEST(ShowController, TakesAPlanDuringAFailureAndShowsItWhenEverythingIsBack) {
   small.show->apply(small.now(), std::vector<double>{0.3, 0.3});
   small.run(1);
   EXPECT_EQ(small.status().phase, Phase::frozen);
+  EXPECT_FALSE(small.status().plan_waits);
+  small.show->apply(small.now(), std::vector<double>{0.2, 0.2});
+  EXPECT_TRUE(small.status().plan_waits) << "while light is held";
   small.run(10);
   EXPECT_EQ(small.status().phase, Phase::safe);
   gone.life = Life::active;
@@ -239,6 +242,7 @@ TEST(ShowController, TakesAPlanDuringAFailureAndShowsItWhenEverythingIsBack) {
   EXPECT_EQ(small.status().phase, Phase::safe) << "not before it has been well for half a second";
   small.run(15);
   EXPECT_TRUE(small.status().converged) << small.status().detail;
+  EXPECT_FALSE(small.status().plan_waits);
 }
 
 TEST(ShowController, RunsARigWithoutLuxmetersOpenLoop) {
