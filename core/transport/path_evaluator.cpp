@@ -62,6 +62,7 @@ class PathEvaluation {
         receivers_(receivers),
         emitters_(emitters),
         options_(options),
+        colour_of_emitters_(3, static_cast<Eigen::Index>(emitters.size())),
         bsdfs_(bsdfs_of(scene)),
         openings_(
             find_sky_openings(scene, receivers, emitters, options.seed, options.threads, options.watch, matrix_.rays)),
@@ -74,7 +75,10 @@ class PathEvaluation {
         hits_(lamps_, receivers.size()),
         spent_(receivers.size(), options),
         sums_(0, channels_, levels_) {
-    for (std::size_t e = 0; e < emitters.size(); ++e) importance_[e] = lamps_.importance(e);
+    for (std::size_t e = 0; e < emitters.size(); ++e) {
+      importance_[e] = lamps_.importance(e);
+      colour_of_emitters_.col(static_cast<Eigen::Index>(e)) = emitters[e].colour_rgb;
+    }
     if (shares_tails) tails_.emplace(scene_, sampler_, bsdfs_, emitters.size(), kPathReplicates, options.seed);
   }
 
@@ -246,6 +250,7 @@ class PathEvaluation {
       cuts_lx.push_back(cut_lx(task.receiver));
       paths += task.end - task.begin;
     }
+    if (from.empty()) return;  // each goes on by itself
     const std::size_t wanted = tails_->records(0).size() == 0
                                    ? std::max(kFewestRecords, first_records_each() * chunk.size())
                                    : paths / (chunk.size() < kFewestSharing ? kPathsPerRecord / 2 : kPathsPerRecord);
@@ -319,6 +324,8 @@ class PathEvaluation {
     const auto believed = record_bias_.believed();
     if (!believed) return;
     const auto [bias, error] = *believed;
+    std::vector<Eigen::MatrixXd> direct_rgb;
+    for (std::size_t c = 0; c < matrix_.rgb_per_level.size(); ++c) direct_rgb.push_back(direct_of_primary(c));
     // Half up and half down by `a` gives a standard error of a · √(16/15) / 4, times Student's factor.
     const double up_and_down =
         error * 4 / (std::sqrt(16.0 / 15) * student_t_975(kPathReplicates - 1) / student_t_975(1e9));
@@ -331,7 +338,9 @@ class PathEvaluation {
       const auto row = static_cast<Eigen::Index>(r);
       const auto reflected = (matrix_.lux_per_level.row(row) - matrix_.direct_lux_per_level.row(row)).eval();
       matrix_.lux_per_level.row(row) -= share * bias / (1 + bias) * reflected;
-      for (auto& rgb : matrix_.rgb_per_level) rgb.row(row) *= 1 - share * bias / (1 + bias) * reflected_lx / spent.lux;
+      for (std::size_t c = 0; c < matrix_.rgb_per_level.size(); ++c)
+        matrix_.rgb_per_level[c].row(row) -=
+            share * bias / (1 + bias) * (matrix_.rgb_per_level[c].row(row) - direct_rgb[c].row(row));
       for (std::size_t k = 0; k < kPathReplicates; ++k)
         matrix_.replicates[k].row(row) -=
             share * (bias / (1 + bias) + (k % 2 == 0 ? up_and_down : -up_and_down)) * reflected;
@@ -339,13 +348,11 @@ class PathEvaluation {
     }
   }
 
-  /// The direct part by primary.
+  [[nodiscard]] Eigen::MatrixXd direct_of_primary(std::size_t c) const {
+    return matrix_.direct_lux_per_level * colour_of_emitters_.row(static_cast<Eigen::Index>(c)).asDiagonal();
+  }
   void start_colours() {
-    matrix_.rgb_per_level.assign(3, matrix_.direct_lux_per_level);
-    for (std::size_t c = 0; c < 3; ++c)
-      for (Eigen::Index e = 0; e < levels_.size(); ++e)
-        matrix_.rgb_per_level[c].col(e) *=
-            emitters_[static_cast<std::size_t>(e)].colour_rgb[static_cast<Eigen::Index>(c)];
+    for (std::size_t c = 0; c < 3; ++c) matrix_.rgb_per_level.push_back(direct_of_primary(c));
   }
 
   const RayScene& scene_;
@@ -353,6 +360,7 @@ class PathEvaluation {
   std::span<const Emitter> emitters_;
   const EvaluateOptions& options_;
   TransportMatrix matrix_;
+  Eigen::Matrix3Xd colour_of_emitters_;  ///< linear Rec. 709
   std::vector<Bsdf> bsdfs_;
   SkyOpenings openings_;
   Lamps lamps_;

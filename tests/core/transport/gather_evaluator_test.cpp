@@ -61,6 +61,23 @@ TEST(GatherEvaluator, FewReceiversFallBackToTheirOwnPaths) {
   EXPECT_EQ(gather.lux_per_level, evaluated(make_path_evaluator(rays), receivers, lamps, within(0.02)).lux_per_level);
 }
 
+TEST(GatherEvaluator, ARoomWhereNobodyCanShareEnds) {
+  // All walls varnished, the lamp in a corner: no record has a place. With this seed all points
+  // go on alone after 14 million rays.
+  Scene box = make_cube(4, 0.3);
+  for (auto& corner : box.vertices_m) corner.z() *= 0.75f;
+  for (Material& wall : box.materials) wall.specular_reflectance = 0.04, wall.roughness = 0.1;
+  const RayScene rays(box);
+  std::vector<Receiver> receivers;
+  for (int i = 0; i < 30; ++i)
+    receivers.push_back({{-1.6 + 0.6 * (i % 6), -1.6 + 0.6 * (i / 6), -1.4995}, Vec3::UnitZ()});
+  EvaluateOptions options = within(0.01, 3);
+  options.max_rays = 15'000'000;
+  const auto gather =
+      evaluated(make_gather_evaluator(rays), receivers, {bulb(3000, {-1.95, -1.95, 1.45})}, options);
+  EXPECT_TRUE((gather.lux_per_level.array() > 0).all());
+}
+
 TEST(GatherEvaluator, NumberOfThreadsChangesNoBit) {
   const LitRoom room = make_box_room();
   const RayScene rays(room.scene);

@@ -28,12 +28,14 @@ class HostileScenes {
     HostileScene made;
     size_m_ = std::pow(10, between(-3, 6));
     made.scene.origin_world_m = below(3) == 0 ? Vec3(any() * std::pow(10, between(0, 7))) : Vec3::Zero();
+    const bool glossy = below(8) == 0;
     for (int m = 0; m < 3; ++m) {
       Material material;
       material.name = "material";
       material.reflectance_rgb = Vec3(between(0, 0.95), between(0, 0.95), between(0, 0.95));
       if (below(4) == 0) material.reflectance_rgb = Vec3::Constant(below(2) ? 0.95 : 0.0);
-      if (below(4) == 0) material.specular_reflectance = between(0, 0.95), material.roughness = between(0.05, 1);
+      if (glossy || below(4) == 0)
+        material.specular_reflectance = between(0, 0.95), material.roughness = between(0.0, 1);
       made.scene.materials.push_back(material);
     }
     made.scene.object_names = {"scene"};
@@ -43,7 +45,8 @@ class HostileScenes {
     made.scene.object_of_triangle.assign(made.scene.triangles.size(), 0);
     for (std::size_t t = 0; t < made.scene.triangles.size(); ++t)
       made.scene.material_of_triangle.push_back(static_cast<std::uint32_t>(below(3)));
-    const int receivers = 1 + below(4), emitters = 1 + below(3);
+    // Enough to share what their paths find, now and then; all of them glossy, more often.
+    const int receivers = below(glossy ? 3 : 12) == 0 ? 24 + below(12) : 1 + below(4), emitters = 1 + below(3);
     for (int i = 0; i < receivers; ++i) made.receivers.push_back({place(made.scene), normal(made.scene)});
     for (int i = 0; i < emitters; ++i) made.emitters.push_back(lamp(made.scene));
     if (below(4) == 0) give_size(made);
