@@ -112,7 +112,8 @@ struct ShowStatus {
   VerdictCounts goals;
   int limits_kept = 0, limits_exceeded = 0, limits_unknown = 0;
   bool blackout = false;
-  bool plan_waits = false;  ///< one was taken that is not in force yet: for a failure, or until heads have turned in the dark
+  /// A plan was taken that is not in force yet: something has failed, a desk may have the light, or heads go dark first.
+  bool plan_waits = false;
   bool resting = false;  ///< heads that were parked have got there
   std::vector<FixtureStatus> fixtures;
   std::vector<PointStatus> points;

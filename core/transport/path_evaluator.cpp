@@ -348,6 +348,7 @@ class PathEvaluation {
     }
   }
 
+  /// The direct part by primary.
   [[nodiscard]] Eigen::MatrixXd direct_of_primary(std::size_t c) const {
     return matrix_.direct_lux_per_level * colour_of_emitters_.row(static_cast<Eigen::Index>(c)).asDiagonal();
   }

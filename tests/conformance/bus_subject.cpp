@@ -156,7 +156,7 @@ class BusSubject final : public Subject {
     return at(0);
   }
   double outputs() const override { return static_cast<double>(rig_.fixtures.size()); }
-  std::uint64_t times_held_up() const override { return far_.times_held_up(); }
+  std::uint64_t answers_held_up() const override { return far_.answers_held_up(); }
   void set_fault(sim::FaultKind fault) override { far_.faults().set("the-bus", fault, true); }
   void clear_faults() override { far_.faults().clear(); }
 

@@ -104,7 +104,7 @@ TEST_P(EveryDriver, MovesItsPeerToTheSetpointAndReadsBackTheSame) {
   EXPECT_EQ(health.life, Life::active);
   EXPECT_GT(health.sent, 0u);
   EXPECT_GT(health.last_ok, start);
-  EXPECT_LE(health.errors, subject->times_held_up()) << health.detail;
+  EXPECT_LE(health.errors, subject->answers_held_up()) << health.detail;
 }
 
 TEST_P(EveryDriver, RefusesWhatCannotBeSentAndSendsNothing) {

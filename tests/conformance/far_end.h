@@ -62,10 +62,9 @@ class FarEnd {
     const std::uint64_t wanted = rounds_ + 2;
     while (rounds_ < wanted) std::this_thread::yield();
   }
-  /// How often the machine held this far end up, since it was made, for so long that its answers may have been late:
-  /// drivers wait 180 ms and more, and an answer is served in at most three rounds. A driver that finds answers missing
-  /// no more often than this may be right.
-  [[nodiscard]] std::uint64_t times_held_up() const { return times_held_up_; }
+  /// How many answers may have been late since it was made, as the machine held this far end up: drivers wait 180 ms
+  /// and more for one, and one takes at most three rounds. A driver that misses no more of them may be right.
+  [[nodiscard]] std::uint64_t answers_held_up() const { return answers_held_up_; }
   [[nodiscard]] std::vector<double> drives() const {
     const std::lock_guard lock(mutex_);
     return world_->drives();
@@ -93,7 +92,8 @@ class FarEnd {
         std::vector<int> descriptors;
         endpoint_->descriptors(descriptors);
         const auto served = std::chrono::steady_clock::now();
-        if (served - last_round > std::chrono::milliseconds(50)) ++times_held_up_;
+        if (served - last_round > std::chrono::milliseconds(50))
+          answers_held_up_ += 1 + static_cast<std::uint64_t>((served - last_round) / std::chrono::milliseconds(180));
         last_round = served;
         for (const int fd : descriptors) waits.push_back({fd, POLLIN, 0});
       }
@@ -111,7 +111,7 @@ class FarEnd {
   mutable std::mutex mutex_;
   Time base_{}, now_{};
   std::chrono::steady_clock::time_point base_real_ = std::chrono::steady_clock::now();
-  std::atomic<std::uint64_t> rounds_{0}, times_held_up_{0};
+  std::atomic<std::uint64_t> rounds_{0}, answers_held_up_{0};
   std::atomic<bool> stopping_{false};
   std::thread thread_;
 };

@@ -260,7 +260,7 @@ TEST(ModbusProducts, EightOutputsAreOneRequestAndTheMeterReadsThem) {
   EXPECT_TRUE(line.all_at(0.25));
   ASSERT_FALSE(line.readings[0].empty());
   EXPECT_NEAR(line.readings[0].back().lux, 200, 0.01);  // eight times a quarter of 100 lx
-  EXPECT_LE(line.health("the-bus").errors, line.far.times_held_up()) << line.health("the-bus").detail;
+  EXPECT_LE(line.health("the-bus").errors, line.far.answers_held_up()) << line.health("the-bus").detail;
 }
 
 TEST(ModbusProducts, TheDimmersFadeTimeIsSetUpBeforeItsFirstLevel) {
@@ -315,7 +315,7 @@ TEST(ModbusProducts, AGapThatADeviceWantsIsKept) {
   line.run(1.5, 0.5);
   EXPECT_GE(line.readings[0].size(), 5u);
   EXPECT_GE(line.readings[1].size(), 5u);
-  EXPECT_LE(line.health("the-bus").errors, line.far.times_held_up()) << line.health("the-bus").detail;
+  EXPECT_LE(line.health("the-bus").errors, line.far.answers_held_up()) << line.health("the-bus").detail;
 }
 
 TEST(ModbusRtuLine, ADeadUnitOfEightDelaysTheOthersByOneTimeoutAtMost) {

@@ -45,8 +45,8 @@ class Subject {
   virtual void set_fault(sim::FaultKind fault) = 0;
   virtual void clear_faults() = 0;
 
-  /// How often the machine kept the peer from its work for so long that its answers may have been late.
-  [[nodiscard]] virtual std::uint64_t times_held_up() const { return 0; }
+  /// How many of the peer's answers may have been late, as the machine kept it from its work.
+  [[nodiscard]] virtual std::uint64_t answers_held_up() const { return 0; }
   /// The peer is as it was before the driver was.
   [[nodiscard]] virtual bool untouched() = 0;
   /// Things that one cycle may have to send to.

@@ -70,8 +70,9 @@ int hold(const ClientArguments& arguments, std::vector<std::string> words, const
 }
 
 void print_status(const json& status) {
-  fmt::print("{}: {}{}: {}\n", text_of(status, "rig"), text_of(status, "phase"),
-             flag_of(status, "blackout") ? ", BLACKOUT" : "", text_of(status, "detail"));
+  fmt::print("{}: {}{}{}: {}\n", text_of(status, "rig"), text_of(status, "phase"),
+             flag_of(status, "blackout") ? ", BLACKOUT" : "", flag_of(status, "plan_waits") ? ", a plan waits" : "",
+             text_of(status, "detail"));
   for (const json& alarm : list_of(status, "alarms")) {
     fmt::print("{}  {} ({} s ago)\n", flag_of(alarm, "severe") ? "ALARM  " : "warning", text_of(alarm, "text"),
                shown(number_of(alarm, "since_s"), "{:.1f}"));

@@ -146,7 +146,7 @@ Checked<std::string> Daemon::apply_json(const std::string& plan_json, bool of_ri
   struct Applied {
     std::vector<ByHand> held;
     Time at;
-    bool waits;
+    std::string waits;  ///< for what; empty: it does not
   };
   const auto applied = ask_control_thread<Applied>([this, made_for = plan->made_for, levels = std::move(look->levels),
                                                     wanted = look_of(*look, std::move(*model))](Time at) -> Applied {
@@ -157,17 +157,16 @@ Checked<std::string> Daemon::apply_json(const std::string& plan_json, bool of_ri
       plan_at_ = at;
     }
     const ShowStatus status = controller_.status(at);
-    const bool failed =
-        status.phase == Phase::frozen || status.phase == Phase::safe_fading || status.phase == Phase::safe;
-    return {status.by_hand, at, status.plan_waits && failed};
+    // Heads that go dark first are how a plan begins.
+    const bool waits = status.plan_waits && status.phase != Phase::moving;
+    return {status.by_hand, at, waits ? status.detail : std::string()};
   });
   if (!applied)
     return tl::unexpected(std::vector<Problem>{
         {"plan", 0, 0, "the control loop has not come to it yet: the plan is saved, and in force when it does",
          "look at luxrig status before you apply it again"}});
-  if (applied->waits)
-    note += std::string(note.empty() ? "" : "\n") +
-            "it waits: something has failed (luxrig status), and the plan comes into force when that is over";
+  if (!applied->waits.empty())
+    note += (note.empty() ? "" : "\n") + ("it waits until this is over: " + applied->waits);
   if (!applied->held.empty())
     note += (note.empty() ? "" : "\n") + lines_of(session->rig, applied->held, applied->at);
   return note;
