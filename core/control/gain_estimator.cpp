@@ -18,7 +18,9 @@ using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
 constexpr double kLeastLocalSd = 0.02;    ///< even a rig that trusts its model fully does not trust it further
-constexpr double kStuckChange = 0.05;     ///< a value that stays while the light changes by this share is stuck
+/// A value that stays to the last bit while the light changes by this share is stuck: by no more than what limits leave
+/// for a reading's noise, so that one frozen in the middle of a fade cannot carry light past them.
+constexpr double kStuckChange = 0.01;
 constexpr double kSameLevels = 0.005;     ///< evidence at levels nearer than this share replaces the former
 constexpr std::size_t kMostEvidence = 6;  ///< per meter; older goes
 
@@ -256,13 +258,14 @@ Judgement GainEstimator::judge(const LuxReading& reading, std::span<const double
   if (reading.lux < 0) return reject(fmt::format("it reads {:.4g} lx, less than nothing", reading.lux));
   if (reading.lux > luxmeter.range_lx)
     return reject(fmt::format("it reads {:.4g} lx, beyond its range of {:.4g} lx", reading.lux, luxmeter.range_lx));
-  if (meter.lux && *meter.lux == reading.lux) {
+  if (meter.lux == reading.lux) {
     // Both by the present estimate: what was learned in between is no change of the light.
     const double former = predict(row, meter.level).lux;
     const double change = std::abs(expected.lux - former);
     const double visible =
         std::max({kStuckChange * std::max(expected.lux, former), kDark_lx, 3 * luxmeter.patch.lux_per_count});
-    if (change > visible)
+    judgement.stuck = change > visible;
+    if (judgement.stuck)
       return reject(fmt::format("it is stuck: still {:.4g} lx while the light there went from {:.4g} to {:.4g} lx",
                                 reading.lux, former, expected.lux));
   }
@@ -303,6 +306,12 @@ void GainEstimator::learn(const LuxReading& reading, const VectorXd& level) {
   evidence_.push_back({reading.luxmeter, reading.lux, reading.taken, level});
 }
 
+void GainEstimator::shows(const LuxReading& reading, std::span<const double> level) {
+  Meter& meter = meters_.at(reading.luxmeter);
+  if (meter.lux == reading.lux) return;
+  meter = {reading.lux, reading.taken, vector_of(level)};
+}
+
 std::vector<Judgement> GainEstimator::update(Time now, std::span<const LuxReading> readings,
                                              std::span<const double> level) {
   const VectorXd at = vector_of(level);
@@ -310,20 +319,15 @@ std::vector<Judgement> GainEstimator::update(Time now, std::span<const LuxReadin
   std::vector<const LuxReading*> believed;
   // All are judged by what was known before, so that their order does not matter.
   for (const LuxReading& reading : readings) {
-    const Judgement judgement = judge(reading, level);
-    Meter& meter = meters_[reading.luxmeter];
-    if (!meter.lux || *meter.lux != reading.lux) {  // while a value stays, the light it first came with counts
-      meter.lux = reading.lux;
-      meter.level = at;
-    }
-    if (judgement.believed) believed.push_back(&reading);
-    judgements.push_back(judgement);
+    judgements.push_back(judge(reading, level));
+    if (judgements.back().believed) believed.push_back(&reading);
   }
-  for (std::size_t k = 0; k < readings.size(); ++k)
-    // What a stuck meter said before cannot be trusted either.
-    if (!judgements[k].believed && meters_[readings[k].luxmeter].lux == readings[k].lux &&
-        judgements[k].why.starts_with("it is stuck"))
-      std::erase_if(evidence_, [&](const Evidence& e) { return e.luxmeter == readings[k].luxmeter; });
+  // What a stuck meter said since it has stood still cannot be trusted either.
+  for (const Judgement& judgement : judgements)
+    if (judgement.stuck)
+      std::erase_if(evidence_, [&](const Evidence& e) {
+        return e.luxmeter == judgement.luxmeter && e.taken >= meters_[judgement.luxmeter].since;
+      });
   for (const LuxReading* reading : believed)
     // In the dark there is nothing to learn but the meter's offset.
     if (meter_.row(static_cast<Index>(reading->luxmeter)).dot(at) > 2 * kDark_lx) learn(*reading, at);

@@ -38,6 +38,7 @@ namespace luxrig {
 struct Judgement {
   std::size_t luxmeter = 0;
   bool believed = false;
+  bool stuck = false;                    ///< not believed, since its value stood still while the light changed
   std::string why;                       ///< empty when believed
   double predicted_lx = 0;               ///< by what was known before
   double lowest_lx = 0, highest_lx = 0;  ///< what the model allows
@@ -84,8 +85,12 @@ class GainEstimator {
   /// Would this reading be believed? `level`: per fixture, as it was (settled) when the reading was taken.
   [[nodiscard]] Judgement judge(const LuxReading& reading, std::span<const double> level) const;
 
-  /// Judges and learns from what is believed; nothing else moves an estimate. Also remembers values, to tell a stuck
-  /// meter (the same to the last bit while the light changed). One judgement per reading, in order.
+  /// What a meter shows just now, believed or not, while the lamps are at `level`: tells a stuck meter, whose value is
+  /// the same to the last bit while the light changed. For every reading as it comes, also in the middle of a fade;
+  /// moves no estimate.
+  void shows(const LuxReading& reading, std::span<const double> level);
+
+  /// Judges and learns from what is believed; nothing else moves an estimate. One judgement per reading, in order.
   std::vector<Judgement> update(Time now, std::span<const LuxReading> readings, std::span<const double> level);
 
   /// Goals, weights and limits from now on: of these, one per point of the rig.
@@ -193,7 +198,8 @@ class GainEstimator {
   };
   struct Meter {
     std::optional<double> lux;  ///< last value, believed or not
-    Eigen::VectorXd level;      ///< when that value first came
+    Time since{};               ///< it is the same since then
+    Eigen::VectorXd level;      ///< as it was then
   };
 
   /// Rows of M and of the transport's standard error, with what is known of x there.

@@ -41,6 +41,8 @@ void ShowController::State::remember_levels(Time now) {
   program.levels_at(now, level);
   for (std::size_t f = 0; f < level.size(); ++f)
     if (!health.lamp_silent(f)) taken_level[f] = level[f];
+  for (const std::optional<LuxReading>& reading : heard)
+    if (reading) estimator.shows(*reading, taken_level);
 }
 
 std::vector<double> ShowController::State::levels_out(Time now) const {

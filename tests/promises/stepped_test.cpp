@@ -1,6 +1,7 @@
 // The promises against the daemon itself, under a clock that the test steps, on a simulated hall.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -16,6 +17,8 @@ namespace {
 
 constexpr Duration kTick = std::chrono::milliseconds(20);
 constexpr std::size_t kPlans = 3;
+constexpr std::size_t kOverWorks[] = {0, 3, 5, 10};  ///< lamps: what they give decides about the limits
+constexpr std::size_t kFrozen = 2;                   ///< of the faults
 constexpr double kLargestStep = 0.0376;  ///< as in tests/scenarios/closed_loop.h
 
 /// One bus of the simulated hall.
@@ -75,7 +78,7 @@ class SteppedSubject final : public Subject {
   }
   bool apply(std::size_t plan) override { return handlers_.apply(plans_[plan]).has_value(); }
   bool hold(std::size_t lamp, double level) override {
-    return handlers_.level({lamp_name(lamp)}, level, std::nullopt).has_value();
+    return handlers_.level({lamp_name(kOverWorks[lamp])}, level, std::nullopt).has_value();
   }
   bool release() override { return handlers_.release({}).has_value(); }
   bool nonsense(std::size_t kind) override {
@@ -135,7 +138,9 @@ class SteppedSubject final : public Subject {
       if (goal && std::abs(*goal - goal_of(k)) < 1e-6) seen.plan = k;
     }
     for (const ByHand& held : status.by_hand)
-      if (!held.of_plan) seen.by_hand[held.index] = held.value;
+      if (!held.of_plan)
+        seen.by_hand[std::find(std::begin(kOverWorks), std::end(kOverWorks), held.index) - std::begin(kOverWorks)] =
+            held.value;
     return seen;
   }
   std::string broken() override { return std::exchange(broken_, {}); }
@@ -178,6 +183,13 @@ class SteppedSubject final : public Subject {
     point.name = hall_.rig.points[kTellingPoint].name;
     point.goal_lux = goal_of(k);
     plan.points.push_back(point);
+    // More than the works may have: it is always their limits that decide.
+    for (std::size_t p = 0; p < scenarios::kWorks; ++p) {
+      PlannedPoint work;
+      work.name = hall_.rig.points[p].name;
+      work.goal_lux = 1.2 * *hall_.rig.points[p].max_lx;
+      plan.points.push_back(work);
+    }
     return plan;
   }
 
@@ -261,6 +273,19 @@ TEST(Promises, HoldThroughRandomCommandsFaultsKillsAndDiskErrors) {
     const auto shortest = shrunk(steps, [&](const auto& tried) { return !outcome(seed, tried).empty(); });
     ADD_FAILURE() << "sequence " << seed << ": " << outcome(seed, shortest) << "\n" << in_words(shortest);
     break;
+  }
+}
+
+// A value from the middle of a fade says too little, and near enough to be believed.
+TEST(Promises, HoldWhenAMeterFreezesInTheMiddleOfAFade) {
+  for (std::uint64_t seed = 1; seed <= 120; ++seed) {
+    const double after_s = 0.1 * static_cast<double>(seed % 60);
+    const std::vector<Step> steps = {{Act::apply, 0, 0},
+                                     {Act::hold, 2, 0.75},
+                                     {Act::wait, 0, after_s},
+                                     {Act::fault, kFrozen, 0},
+                                     {Act::wait, 0, 12}};
+    EXPECT_EQ(outcome(seed, steps), "") << "seed " << seed << ", " << after_s << " s after the beginning";
   }
 }
 

@@ -152,6 +152,7 @@ Outcome run(World& world, int rounds, const Spoil& spoil = nullptr) {
     now_s += 2;
     std::vector<LuxReading> readings = world.readings(level, at_s(now_s));
     if (spoil) spoil(round, readings);
+    for (const LuxReading& reading : readings) estimator.shows(reading, level);
     for (const Judgement& judgement : estimator.update(at_s(now_s), readings, level)) {
       outcome.rejected += !judgement.believed;
       EXPECT_EQ(judgement.believed, judgement.why.empty());
@@ -314,12 +315,46 @@ TEST(GainEstimator, CallsAMeterStuckThatKeepsItsValueWhileTheLightCreeps) {
   int believed = 0;
   for (int k = 0; k < 12; ++k) {
     const LuxReading reading{0, lux, at_s(k)};
+    estimator.shows(reading, level);
     believed += estimator.update(at_s(k), std::span(&reading, 1), level).front().believed;
-    for (double& each : level) each *= 1.01;
+    for (double& each : level) each *= 1.002;
   }
-  EXPECT_GE(believed, 4);  // up to 5 % of change could be noise
+  EXPECT_GE(believed, 4);  // up to 1 % of change could be noise
   EXPECT_LE(believed, 7);
   EXPECT_FALSE(estimator.confirmed(0));
+}
+
+// What it said before it froze stays; what it froze at in the middle of a fade teaches nothing, near as it may be.
+TEST(GainEstimator, DoesNotBelieveAMeterThatFreezesInTheMiddleOfAFade) {
+  World world(3);
+  GainEstimator estimator(world.rig, world.model);
+  const auto at = [&](double share) {
+    std::vector<double> level = world.plan;
+    for (double& each : level) each *= share;
+    return level;
+  };
+  const auto show = [&](double time_s, double share, double of_light) {
+    LuxReading reading = world.readings(at(of_light), at_s(time_s))[0];
+    reading.taken = at_s(time_s);
+    estimator.shows(reading, at(share));
+    return reading;
+  };
+  const LuxReading before = show(1, 0.7, 0.7);
+  ASSERT_TRUE(estimator.update(at_s(1), std::span(&before, 1), at(0.7)).front().believed);
+  const double gain = estimator.gain(0);
+  show(2, 0.8, 0.8);
+  LuxReading frozen = show(3, 0.95, 0.95);
+  const double lux = frozen.lux;
+  for (int k = 4; k < 8; ++k) {
+    frozen.taken = at_s(k);
+    estimator.shows(frozen, at(1));
+    const Judgement judgement = estimator.update(at_s(k), std::span(&frozen, 1), at(1)).front();
+    EXPECT_TRUE(judgement.stuck);
+    EXPECT_FALSE(judgement.believed);
+  }
+  EXPECT_EQ(frozen.lux, lux);
+  EXPECT_TRUE(estimator.confirmed(0));
+  EXPECT_NEAR(estimator.gain(0), gain, 1e-5);  // it grows older
 }
 
 TEST(GainEstimator, FindsTheOutputOfASingleLampAndSaysHowSureItIs) {
