@@ -208,7 +208,7 @@ double Lamps::weigh(const Vec3& position_world_m, const Vec3& normal_world, Weig
       if (std::isfinite(product)) weights.places[w.place[begin + k]] += product;
     }
   }
-  if (!places_.empty() && places_.back().kind == Kind::sky) weigh_skies(position_world_m, normal_world, weights);
+  if (any_sky()) weigh_skies(position_world_m, normal_world, weights);
   double sum = weights.cell->rest_sum_lx;
   for (const double one : weights.places) sum += one;
   return sum;

@@ -126,6 +126,31 @@ class Lamps {
     }
   }
 
+  /// What skies show in a direction from a surface point above whose horizon it lies, as lit(emitter, luminance
+  /// [cd/m²] at level 1, density per sr with which choose() asks for it, density with which emit() of its group makes a
+  /// first hit just there, in the same unit). Nothing may stand in between; weights and their sum as from weigh() there.
+  template <class Lit>
+  void each_sky_towards(const Vec3& position_world_m, const Vec3& normal_world, const Vec3& direction_world,
+                        const Weights& weights, double sum, Lit&& lit) const {
+    for (std::size_t p = places_.size(); p > 0 && places_[p - 1].kind == Kind::sky; --p) {
+      const Place& place = places_[p - 1];
+      for (std::size_t i = place.begin; i < place.end; ++i) {
+        const Lamp& lamp = lamps_[i];
+        const double luminance_cd_m2 = lamp.sky->luminance_cd_m2(direction_world);
+        if (!(luminance_cd_m2 > 0)) continue;
+        lit(lamp.emitter, luminance_cd_m2,
+            choice_density(lamp.emitter, position_world_m, direction_world, weights, sum),
+            lamp.share * lamp.sky->density_per_sr(direction_world) * normal_world.dot(direction_world) *
+                line_density_per_m2(direction_world, position_world_m));
+      }
+    }
+  }
+  /// A place outside of all geometry.
+  [[nodiscard]] Vec3 beyond_world_m(const Vec3& position_world_m, const Vec3& direction_world) const;
+  /// A path that leaves the scene can meet it by chance.
+  [[nodiscard]] bool is_sky(std::size_t emitter) const { return places_[place_of_emitter_[emitter]].kind == Kind::sky; }
+  [[nodiscard]] bool any_sky() const { return !places_.empty() && places_.back().kind == Kind::sky; }
+
   /// Light as it leaves a group: a lamp by its share and a direction by (u, v), a place on it by (s, t).
   [[nodiscard]] LampRay emit(std::size_t group, double u, double v, double s, double t) const;
 
@@ -193,8 +218,6 @@ class Lamps {
   }
   /// Density [1/m², across it] with which emit() draws the line of light through a point.
   [[nodiscard]] double line_density_per_m2(const Vec3& towards_world, const Vec3& position_world_m) const;
-  /// A place outside of all geometry.
-  [[nodiscard]] Vec3 beyond_world_m(const Vec3& position_world_m, const Vec3& direction_world) const;
 
   std::vector<Lamp> lamps_;
   std::vector<Place> places_;

@@ -67,6 +67,7 @@ PathSampler::Join PathSampler::join(const Vertex& vertex, const LightHit& hit, d
   const double geometry = height_m * hit_height_m * per_distance2 * per_distance2;
   const double by_hit = hits * hit.density;
   double of_surface = height_m * std::sqrt(per_distance2) / kPi;
+  double asked = hit.choice_density;
   Vec3 rgb = vertex.through_rgb;
   if (hit.bsdf->matt() && (vertex.bsdf == nullptr || vertex.bsdf->matt())) {
     rgb = rgb.cwiseProduct(hit.matt_rgb);
@@ -75,6 +76,7 @@ PathSampler::Join PathSampler::join(const Vertex& vertex, const LightHit& hit, d
     const Vec3 direction = towards_m * std::sqrt(per_distance2);
     rgb =
         rgb.cwiseProduct(hit.bsdf->value(hit.normal_world, -direction, hit.to_light_world)).cwiseProduct(hit.flux_rgb);
+    asked += met_density_per_sr(hit.emitter, *hit.bsdf, hit.normal_world, -direction, hit.to_light_world);
     if (vertex.bsdf) {
       rgb = rgb.cwiseProduct(vertex.bsdf->value(vertex.normal_world, vertex.out_world, direction));
       of_surface = vertex.bsdf->density(vertex.normal_world, vertex.out_world, direction);
@@ -82,7 +84,7 @@ PathSampler::Join PathSampler::join(const Vertex& vertex, const LightHit& hit, d
   }
   const double density =
       vertex.outside ? next_density_per_sr(vertex, towards_m * std::sqrt(per_distance2), of_surface) : of_surface;
-  const double by_path = density * hit_height_m * per_distance2 * std::sqrt(per_distance2) * hit.choice_density;
+  const double by_path = density * hit_height_m * per_distance2 * std::sqrt(per_distance2) * asked;
   const double factor = geometry / hits * (by_hit / (by_hit + by_path));
   if (!(factor > 0) || !std::isfinite(factor)) return {};
   rgb *= factor;
@@ -198,9 +200,9 @@ std::uint64_t PathSampler::join_deeper(const Vertex& vertex, const HitPool& pool
 std::uint64_t PathSampler::ask_lamps(const Vertex& vertex, double density_per_m2, std::span<const double> hits,
                                      double cut, double select, double u, double v, double chance, PathScratch& scratch,
                                      const PathSums& sums) const {
-  const double sum = lamps_.weigh(vertex.position_world_m, vertex.normal_world, scratch.weights);
-  const LampChoice choice =
-      lamps_.choose(vertex.position_world_m, vertex.normal_world, scratch.weights, sum, select, u, v);
+  scratch.weights_sum = lamps_.weigh(vertex.position_world_m, vertex.normal_world, scratch.weights);
+  const LampChoice choice = lamps_.choose(vertex.position_world_m, vertex.normal_world, scratch.weights,
+                                          scratch.weights_sum, select, u, v);
   if (!(choice.density > 0)) return 0;
   const Vec3 per_lux = vertex.through_rgb.cwiseProduct(
       vertex.bsdf->value(vertex.normal_world, vertex.out_world, choice.direction_world));
@@ -208,7 +210,9 @@ std::uint64_t PathSampler::ask_lamps(const Vertex& vertex, double density_per_m2
   scratch.lit.clear();
   double worth = 0;
   lamps_.light(choice, [&](std::size_t emitter, double lux, double hit_density) {
-    const double share = by_path / (by_path + hits[lamps_.group_of(emitter)] * hit_density);
+    const double by_chance = density_per_m2 * met_density_per_sr(emitter, *vertex.bsdf, vertex.normal_world,
+                                                                 vertex.out_world, choice.direction_world);
+    const double share = by_path / (by_path + hits[lamps_.group_of(emitter)] * hit_density + by_chance);
     const Vec3 rgb = share * lux * per_lux.cwiseProduct(lamps_.colour_rgb(emitter));
     worth += luminance_of_rgb(rgb) * level(emitter);
     scratch.lit.push_back({emitter, rgb});
@@ -223,6 +227,25 @@ std::uint64_t PathSampler::ask_lamps(const Vertex& vertex, double density_per_m2
   return 1;
 }
 
+void PathSampler::meet_skies(const Vertex& vertex, const Bsdf::Sample& next, double density_per_m2,
+                             std::span<const double> hits, const PathScratch& scratch, const PathSums& sums) const {
+  if (vertex.bsdf == nullptr || vertex.bsdf->matt() || !lamps_.any_sky()) return;
+  const double of_gloss = vertex.bsdf->density(vertex.normal_world, vertex.out_world, next.in);
+  const double through =
+      through_glass(vertex.position_world_m, lamps_.beyond_world_m(vertex.position_world_m, next.in));
+  lamps_.each_sky_towards(
+      vertex.position_world_m, vertex.normal_world, next.in, scratch.weights, scratch.weights_sum,
+      [&](std::size_t emitter, double luminance_cd_m2, double choice_density, double hit_density) {
+        // Shared by what gloss does alone; that some paths go on towards openings makes it more often than that.
+        const double share =
+            of_gloss / (of_gloss + choice_density + hits[lamps_.group_of(emitter)] * hit_density / density_per_m2);
+        const double counts = through * share * luminance_cd_m2;
+        if (!(counts > 0) || !std::isfinite(counts)) return;
+        sums.add(emitter, counts * vertex.through_rgb.cwiseProduct(next.weight_rgb)
+                                       .cwiseProduct(lamps_.colour_rgb(emitter)));
+      });
+}
+
 std::uint64_t PathSampler::add_path(const Vertex& start, const SobolSequence& samples, std::uint32_t index,
                                     const HitPool& pool, const HitPlan& plan, double cut, PathScratch& scratch,
                                     const PathSums& sums, TailShare* tails) const {
@@ -230,6 +253,7 @@ std::uint64_t PathSampler::add_path(const Vertex& start, const SobolSequence& sa
   scratch.first_leg_m = HUGE_VAL;
   PathDice dice(samples, index);
   Vertex vertex = start;
+  double arrived_per_m2 = 0;
   if (tails != nullptr) tails->linked.reset();
   const PathSums* into = &sums;
   PathSums beside;  // where a path goes that is only there to check a record
@@ -242,7 +266,11 @@ std::uint64_t PathSampler::add_path(const Vertex& start, const SobolSequence& sa
     if (!(next.density_per_sr > 0)) break;
     ++rays;
     const auto hit = scene_.nearest(vertex.position_world_m, next.in, vertex.normal_world);
-    if (!hit) break;
+    if (!hit) {
+      if (bounce > 0)
+        meet_skies(vertex, next, arrived_per_m2, bounce == 1 ? plan.at_start : plan.deeper, scratch, *into);
+      break;
+    }
     const Bsdf& bsdf = bsdfs_[scene_.material_index_of(hit->triangle)];
     if (bsdf.black()) break;
     Vertex reached{hit->position_world_m, hit->normal_world, -next.in, &bsdf,
@@ -250,11 +278,11 @@ std::uint64_t PathSampler::add_path(const Vertex& start, const SobolSequence& sa
                        vertex.through_rgb.cwiseProduct(next.weight_rgb)};
     const double cosine = reached.normal_world.dot(reached.out_world);
     const double distance2_m2 = (reached.position_world_m - vertex.position_world_m).squaredNorm();
-    const double density_per_m2 = next.density_per_sr * cosine / distance2_m2;
+    // In a corner, where the distance rounds to nothing, the path is the sharper way.
+    const double density_per_m2 = std::min(next.density_per_sr * cosine / distance2_m2, 1e200);
     const auto [select, chance] = dice.pair(bounce, 1);
     const auto [s, t] = lamps_.have_size() ? dice.pair(bounce, 2) : std::array<double, 2>{};
-    // In a corner, where the distance rounds to nothing, the path is the sharper way.
-    rays += ask_lamps(reached, std::min(density_per_m2, 1e200), bounce == 0 ? plan.at_start : plan.deeper, cut, select,
+    rays += ask_lamps(reached, density_per_m2, bounce == 0 ? plan.at_start : plan.deeper, cut, select,
                       s, t, chance, scratch, *into);
     if (bounce == 0) scratch.first_leg_m = std::sqrt(distance2_m2);
     if (tails != nullptr && tails->records != nullptr && into == &sums && bsdf.matt()) {
@@ -286,6 +314,7 @@ std::uint64_t PathSampler::add_path(const Vertex& start, const SobolSequence& sa
       reached.through_rgb /= goes_on;
     }
     vertex = reached;
+    arrived_per_m2 = density_per_m2;
   }
   if (into == &beside)
     tails->ends->checks.push_back(

@@ -4,9 +4,11 @@
 /// With L the radiance that arrives, E = ∫ L cosθ dω, and every surface sends on L = ∫ f L' cosθ' dω'. A path follows
 /// that recursion from the receiver. At each vertex y the light of the next surface z comes in two ways:
 ///   a  the path goes on to z by chance and there asks a lamp for its direct light (next-event estimation);
-///   b  y is joined with a first hit z of light that was traced from the lamps.
-/// Both densities at z are known, so they share the work by the balance heuristic (E. Veach, L. Guibas 1995): b finds
-/// the bright patches that lamps make on what is near them, a the light of wide and far surfaces and corners. Hits are
+///   b  y is joined with a first hit z of light that was traced from the lamps;
+///   c  the path goes on from a glossy z by its gloss, meets nothing, and sees what the sky shows there.
+/// All densities at z are known, so they share the work by the balance heuristic (E. Veach, L. Guibas 1995): b finds
+/// the bright patches that lamps make on what is near them, a the light of wide and far surfaces and corners, c what
+/// mirrors the sky. Hits are
 /// shared by all receivers (as the light vertex cache of T. Davidovič et al. 2014, with subpaths of one hit). A plan
 /// says how many hits of which lamps: those that matter at the receiver.
 /// Unbiased, whatever the roulettes.
@@ -23,7 +25,8 @@ struct PathScratch {
     std::size_t emitter;
     Vec3 rgb;  ///< lux at level 1 by primary, MIS weight included
   };
-  Lamps::Weights weights;
+  Lamps::Weights weights;  ///< of the lamps at the vertex that was reached last
+  double weights_sum = 0;
   SkyOpenings::Outside outside;
   std::vector<Lit> lit;
   std::vector<double> beside;  ///< sums of a path that checks a record
@@ -140,6 +143,15 @@ class PathSampler {
   std::uint64_t ask_lamps(const Vertex& vertex, double density_per_m2, std::span<const double> hits, double cut,
                           double select, double u, double v, double chance, PathScratch& scratch,
                           const PathSums& sums) const;
+  /// What a path sees of skies that leaves the scene from a glossy vertex: c above. Density and hits as for
+  /// ask_lamps() there, from which the scratch has the weights.
+  void meet_skies(const Vertex& vertex, const Bsdf::Sample& next, double density_per_m2, std::span<const double> hits,
+                  const PathScratch& scratch, const PathSums& sums) const;
+  /// Density [1/sr] with which gloss alone finds a light of which it knows nothing; 0 for what it never meets.
+  [[nodiscard]] double met_density_per_sr(std::size_t emitter, const Bsdf& bsdf, const Vec3& normal_world,
+                                          const Vec3& out_world, const Vec3& towards_world) const {
+    return bsdf.matt() || !lamps_.is_sky(emitter) ? 0 : bsdf.density(normal_world, out_world, towards_world);
+  }
   /// Where a path goes on from a vertex; the weight is f cosθ / density of all ways to draw it.
   [[nodiscard]] Bsdf::Sample next_direction(const Vertex& vertex, double u, double v, double lobe) const;
   /// Density with which it goes there, given that of the surface's own way to draw it.
