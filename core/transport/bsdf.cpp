@@ -67,13 +67,13 @@ Bsdf::Bsdf(const Material& material) : body_rgb_(material.reflectance_rgb), spec
   if (matt()) return;
   const double roughness = std::clamp(material.roughness, 0.05, 1.0);
   alpha_ = roughness * roughness;
-  // Es(o) = mean over visible microfacets of F G2/G1: 1024 points are good to 1e-3 of Es.
+  // The share that one facet sends on = mean over visible microfacets of F G2/G1: 1024 points are good to 1e-3 of it.
   constexpr std::uint32_t kPoints = 1024;
   const SobolSequence points(0xc0a7);
   for (std::size_t i = 0; i <= kSteps; ++i) {
-    const double cosine = std::max(1e-4, static_cast<double>(i) / kSteps);
+    const double root = static_cast<double>(i) / kSteps, cosine = std::max(1e-4, root * root);
     const Vec3 out(std::sqrt(1 - cosine * cosine), 0, cosine);
-    double sum = 0;
+    double sum = 0, sum_of_all = 0;
     for (std::uint32_t k = 0; k < kPoints; ++k) {
       const auto [u, v] = points.pair(k, 0, 0);
       const Vec3 half = visible_half(out, alpha_, u, v);
@@ -81,30 +81,49 @@ Bsdf::Bsdf(const Material& material) : body_rgb_(material.reflectance_rgb), spec
       const Vec3 in = 2 * out_half * half - out;
       if (in.z() <= 0) continue;
       const double lambda_out = smith_lambda(out.z(), alpha_), lambda_in = smith_lambda(in.z(), alpha_);
-      sum += schlick(specular_, out_half) * (1 + lambda_out) / (1 + lambda_out + lambda_in);
+      const double seen = (1 + lambda_out) / (1 + lambda_out + lambda_in);
+      sum += schlick(specular_, out_half) * seen;
+      sum_of_all += seen;
     }
     albedo_[i] = sum / kPoints;
+    missing_[i] = 1 - sum_of_all / kPoints;
   }
-  // Mean of the interpolated table, exactly: 2 ∫ Es(μ) μ dμ over each step.
-  for (std::size_t i = 0; i < kSteps; ++i) {
-    const double h = 1.0 / kSteps, a = static_cast<double>(i) * h;
-    const double slope = (albedo_[i + 1] - albedo_[i]) / h;
-    const auto antiderivative = [&](double x) { return (albedo_[i] - slope * a) * x * x / 2 + slope * x * x * x / 3; };
-    mean_albedo_ += 2 * (antiderivative(a + h) - antiderivative(a));
+  mean_missing_ = mean_of(missing_);
+  if (mean_missing_ > 1e-9) {
+    const double mean_fresnel = specular_ + (1 - specular_) / 21;  // of Schlick's F, by the cosine
+    several_ = mean_fresnel * mean_fresnel * (1 - mean_missing_) / (1 - mean_fresnel * mean_missing_) / mean_missing_;
   }
+  for (std::size_t i = 0; i <= kSteps; ++i) albedo_[i] += several_ * mean_missing_ * missing_[i];
+  const double of_body = 1 - mean_of(albedo_);
+  per_body_ = of_body > 1e-9 ? 1 / (of_body * kPi) : 0;  // a coat that reflects all leaves it nothing
 }
 
-double Bsdf::coat_albedo(double cosine) const {
-  if (matt()) return 0;
-  const double x = std::clamp(cosine, 0.0, 1.0) * kSteps;
+double Bsdf::at(const Table& table, double cosine) {
+  const double x = std::sqrt(std::clamp(cosine, 0.0, 1.0)) * kSteps;
   const std::size_t i = std::min(kSteps - 1, static_cast<std::size_t>(x));
-  return albedo_[i] + (x - static_cast<double>(i)) * (albedo_[i + 1] - albedo_[i]);
+  return table[i] + (x - static_cast<double>(i)) * (table[i + 1] - table[i]);
 }
+
+/// By the cosine, of the interpolated table, exactly: 4 ∫ E(t) t³ dt over each step, t the root of the cosine.
+double Bsdf::mean_of(const Table& table) {
+  double mean = 0;
+  for (std::size_t i = 0; i < kSteps; ++i) {
+    const double h = 1.0 / kSteps, a = static_cast<double>(i) * h, slope = (table[i + 1] - table[i]) / h;
+    const auto antiderivative = [&](double t) {
+      return (table[i] - slope * a) * std::pow(t, 4) + 0.8 * slope * std::pow(t, 5);
+    };
+    mean += antiderivative(a + h) - antiderivative(a);
+  }
+  return mean;
+}
+
+double Bsdf::coat_albedo(double cosine) const { return matt() ? 0 : at(albedo_, cosine); }
 
 double Bsdf::coat_share(double cosine) const {
   if (matt()) return 0;
-  const double coat = coat_albedo(cosine), body = (1 - coat) * body_rgb_.maxCoeff();
-  return coat / (coat + body);
+  const double coat = at(albedo_, cosine), several = several_ * mean_missing_ * at(missing_, cosine);
+  const double body = (1 - coat) * body_rgb_.maxCoeff();
+  return (coat - several) / (coat + body);
 }
 
 double Bsdf::coat(double cos_in, double cos_out, double cos_half, double in_half) const {
@@ -117,8 +136,9 @@ Vec3 Bsdf::value(const Vec3& normal, const Vec3& out, const Vec3& in) const {
   if (!(cos_in > 0) || !(cos_out > 0)) return Vec3::Zero();
   if (matt()) return body_rgb_ / kPi;
   const Vec3 half = (in + out).normalized();
-  const double body = (1 - coat_albedo(cos_in)) * (1 - coat_albedo(cos_out)) / ((1 - mean_albedo_) * kPi);
-  return body * body_rgb_ + Vec3::Constant(coat(cos_in, cos_out, normal.dot(half), in.dot(half)));
+  const double body = (1 - at(albedo_, cos_in)) * (1 - at(albedo_, cos_out)) * per_body_;
+  const double several = several_ * at(missing_, cos_in) * at(missing_, cos_out) / kPi;
+  return body * body_rgb_ + Vec3::Constant(several + coat(cos_in, cos_out, normal.dot(half), in.dot(half)));
 }
 
 double Bsdf::density(const Vec3& normal, const Vec3& out, const Vec3& in) const {

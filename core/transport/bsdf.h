@@ -2,11 +2,15 @@
 /// How a surface sends light on: a diffuse body under a rough glossy coat.
 ///
 /// f(i, o) = ρ/π (1 - Es(i)) (1 - Es(o)) / (1 - Ēs)  +  D(h) F(i·h) G(i, o) / (4 cos i cos o)
+///           +  Fm/π (1 - E1(i)) (1 - E1(o)) / (1 - Ē1)
 ///
 /// The coat: GGX distribution D, height-correlated Smith G (B. Walter et al. 2007; E. Heitz 2014), F after Schlick from
-/// the reflectance at normal incidence, the same for all colours. Es(o) is the share of light from o that the coat
-/// reflects, Ēs its cosine-weighted mean; the body gets what is left (C. Kelemen, L. Szirmay-Kalos 2001). So f is
-/// reciprocal, and the whole reflects Es(o) + ρ (1 - Es(o)) of the light from o: less than all of it for ρ < 1.
+/// the reflectance at normal incidence, the same for all colours. The last term is light that meets several facets of a
+/// rough coat before it leaves (C. Kulla, A. Conty 2017): E1(o) is the share that one facet would send on did each
+/// reflect all, Ē1 its cosine-weighted mean, Fm = F̄² Ē1 / (1 - F̄ (1 - Ē1)) with the mean F̄ of F. So a rough metal is as
+/// bright as a smooth one. Es(o) is the share of light from o that the coat reflects, by one facet or several, Ēs its
+/// mean; the body gets what is left (C. Kelemen, L. Szirmay-Kalos 2001). So f is reciprocal, and the whole reflects
+/// Es(o) + ρ (1 - Es(o)) of the light from o: less than all of it for ρ < 1.
 
 #include <array>
 
@@ -39,18 +43,23 @@ class Bsdf {
   /// lobe   0…1, chooses between body and coat; not used when matt
   [[nodiscard]] Sample sample(const Vec3& normal, const Vec3& out, double u, double v, double lobe) const;
 
-  /// Es(cosθ), and the share of samples that go to the coat there.
+  /// Es(cosθ), and the share of samples that go to its facets there.
   [[nodiscard]] double coat_albedo(double cosine) const;
   [[nodiscard]] double coat_share(double cosine) const;
 
  private:
   static constexpr std::size_t kSteps = 64;
+  using Table = std::array<double, kSteps + 1>;  ///< over the root of the cosine, even steps: steep where it is flat
+  [[nodiscard]] static double at(const Table& table, double cosine);
+  [[nodiscard]] static double mean_of(const Table& table);
   [[nodiscard]] double coat(double cos_in, double cos_out, double cos_half, double in_half) const;
 
   Vec3 body_rgb_;
   double specular_ = 0, alpha_ = 1;
-  double mean_albedo_ = 0;
-  std::array<double, kSteps + 1> albedo_{};  ///< over the cosine, even steps
+  double per_body_ = 0;                    ///< 1 / (π (1 - Ēs))
+  double mean_missing_ = 0, several_ = 0;  ///< 1 - Ē1, and Fm / (1 - Ē1)
+  Table albedo_{};                         ///< Es
+  Table missing_{};                        ///< 1 - E1
 };
 
 /// Tangents of a unit normal, without a branch on it (T. Duff et al., JCGT 6(1), 2017).

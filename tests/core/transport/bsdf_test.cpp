@@ -68,6 +68,14 @@ TEST(Bsdf, ReflectsTheCoatsShareAndTheBodysOfTheRest) {
     }
 }
 
+// A coat that absorbs nothing sends all on, however rough: what one facet throws on another is not lost.
+TEST(Bsdf, ACoatThatReflectsAllLosesNothing) {
+  for (const double roughness : {0.3, 0.6, 1.0})
+    for (const double cosine : kCosines)
+      EXPECT_NEAR(brute_albedo(Bsdf(glossy(1, roughness, 0.5)), direction(cosine, 0.3)), 1, 0.006)
+          << "roughness " << roughness << " cosine " << cosine;
+}
+
 // A smooth coat at normal incidence is a mirror of the stated reflectance.
 TEST(Bsdf, ASmoothCoatReflectsItsStatedShareStraightOn) {
   EXPECT_NEAR(Bsdf(glossy(0.04, 0.05, 0.5)).coat_albedo(1), 0.04, 0.0005);
