@@ -11,11 +11,13 @@ std::string in_words(const std::vector<std::string>& words) {
   return text;
 }
 
-CLI::Validator one_of(std::vector<std::string> words) {
+CLI::Validator one_of(std::vector<std::string> words, std::vector<RefusedWord> refused) {
   std::string description = "one of " + in_words(words);
   return CLI::Validator(
-      [words = std::move(words)](std::string& given) -> std::string {
+      [words = std::move(words), refused = std::move(refused)](std::string& given) -> std::string {
         if (std::find(words.begin(), words.end(), given) != words.end()) return "";
+        for (const RefusedWord& one : refused)
+          if (one.word == given) return "\"" + given + "\" " + one.told;
         const std::vector<std::string_view> known(words.begin(), words.end());
         return "there is no \"" + given + "\": " + mend_for_unknown(given, known, "");
       },

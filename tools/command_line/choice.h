@@ -12,14 +12,20 @@ namespace luxrig {
 /// "auto, direct or path".
 [[nodiscard]] std::string in_words(const std::vector<std::string>& words);
 
+/// A word that help does not tell of, and what whoever types it is told: "is refused, as …: use …".
+struct RefusedWord {
+  std::string word, told;
+};
+
 /// Takes these words only. Its description, which help and completion read, is "one of auto, direct or path".
-[[nodiscard]] CLI::Validator one_of(std::vector<std::string> words);
+[[nodiscard]] CLI::Validator one_of(std::vector<std::string> words, std::vector<RefusedWord> refused = {});
 
 /// Sets `value` (an enum, or an optional one) by a word. The word of the value that it has at this moment is the
 /// default.
 template <class Value, class Choice>
 CLI::Option* add_choice(CLI::App& app, const std::string& names, Value& value, const std::string& description,
-                        const std::vector<std::pair<std::string, Choice>>& choices) {
+                        const std::vector<std::pair<std::string, Choice>>& choices,
+                        std::vector<RefusedWord> refused = {}) {
   std::vector<std::string> words;
   for (const auto& [word, choice] : choices) words.push_back(word);
   auto* option = app.add_option_function<std::string>(
@@ -29,7 +35,7 @@ CLI::Option* add_choice(CLI::App& app, const std::string& names, Value& value, c
             std::find_if(choices.begin(), choices.end(), [&](const auto& one) { return one.first == word; })->second;
       },
       description);
-  option->check(one_of(words));
+  option->check(one_of(words, std::move(refused)));
   for (const auto& [word, choice] : choices)
     if (value == choice) option->default_str(word);
   return option;

@@ -16,13 +16,11 @@ namespace {
 using namespace luxrig;
 
 void add_compute(CLI::App& command, ComputeOptions& compute) {
-  add_choice<Model, Model>(command, "--model", compute.model,
-                           "how light is computed; auto: the cheapest that meets the error; direct: no interreflection",
-                           {{"auto", Model::automatic},
-                            {"direct", Model::direct},
-                            {"gather", Model::gather},
-                            {"path", Model::path},
-                            {"cache", Model::cache}});
+  add_choice<Model, Model>(
+      command, "--model", compute.model,
+      "how light is computed; auto: the cheapest that meets the error; direct: no interreflection",
+      {{"auto", Model::automatic}, {"direct", Model::direct}, {"gather", Model::gather}, {"path", Model::path}},
+      {{"cache", "is refused, as its error bars were too short to be believed: use gather or path"}});
   command.add_option("--max-error", compute.max_error, "wanted relative standard error")->check(CLI::Range(1e-4, 1.0));
   command
       .add_option("--error-floor", compute.error_floor_lx,

@@ -55,7 +55,7 @@ Result<std::vector<double>> lux_at(const ReliefSurroundings& around, std::span<c
   const Rig at = rig_at(around.rig, places, lit);
   ComputeOptions compute = options;
   compute.watch.progress = nullptr;
-  const auto transport = compute_transport(at, around.scene, around.rays, compute, of_lit);
+  const auto transport = compute_transport(at, around.rays, compute, of_lit);
   if (!transport) return tl::unexpected(transport.error());
   const Eigen::VectorXd sum = transport->lux(levels_with_daylight(
       *transport, Eigen::Map<const Eigen::VectorXd>(of_lit.data(), static_cast<Eigen::Index>(of_lit.size()))));

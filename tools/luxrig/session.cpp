@@ -7,7 +7,6 @@
 #include "core/rig/rig_file.h"
 #include "core/scene/scene_builder.h"
 #include "core/solve/placement/mounting.h"
-#include "core/transport/cache/radiance_cache.h"
 #include "core/transport/evaluator_choice.h"
 #include "core/transport/rig_notes/rig_notes.h"
 #include "core/transport/rig_transport.h"
@@ -47,12 +46,11 @@ Checked<Session> open_session(const std::filesystem::path& rig_path) {
 
 Result<TransportMatrix> compute_transport(const Session& session, const ComputeOptions& options,
                                           const std::vector<double>& levels, ModelUsed* used) {
-  return compute_transport(session.rig, session.scene, *session.rays, options, levels, used);
+  return compute_transport(session.rig, *session.rays, options, levels, used);
 }
 
-Result<TransportMatrix> compute_transport(const Rig& rig, const Scene& scene, const RayScene& rays,
-                                          const ComputeOptions& options, const std::vector<double>& levels,
-                                          ModelUsed* used) {
+Result<TransportMatrix> compute_transport(const Rig& rig, const RayScene& rays, const ComputeOptions& options,
+                                          const std::vector<double>& levels, ModelUsed* used) {
   const std::optional<double> seconds = options.max_seconds > 0 ? std::optional(options.max_seconds) : std::nullopt;
   SearchWatch watch(options.said_as, "starting", seconds, {});
   EvaluateOptions evaluate;
@@ -100,9 +98,6 @@ Result<TransportMatrix> compute_transport(const Rig& rig, const Scene& scene, co
       break;
     case Model::path:
       choice.evaluator = make_path_evaluator(rays);
-      break;
-    case Model::cache:
-      choice.evaluator = make_cache_evaluator(scene, rays);
       break;
   }
   auto transport = choice.evaluator->evaluate(receivers, emitters, evaluate);

@@ -24,7 +24,7 @@ struct Session {
 /// Reads and checks everything: rig, photometry, buses, meshes, where lights may hang. All problems, or a Session.
 [[nodiscard]] Checked<Session> open_session(const std::filesystem::path& rig_path);
 
-enum class Model { automatic, direct, gather, path, cache };
+enum class Model { automatic, direct, gather, path };
 
 struct ComputeOptions {
   Model model = Model::automatic;
@@ -57,7 +57,7 @@ struct ModelUsed {
                                                         ModelUsed* used = nullptr);
 
 /// The same for a rig in a scene, with lights hung that the session's rig does not have.
-[[nodiscard]] Result<TransportMatrix> compute_transport(const Rig& rig, const Scene& scene, const RayScene& rays,
+[[nodiscard]] Result<TransportMatrix> compute_transport(const Rig& rig, const RayScene& rays,
                                                         const ComputeOptions& options,
                                                         const std::vector<double>& levels = {},
                                                         ModelUsed* used = nullptr);

@@ -250,7 +250,7 @@ Result<void> TaskSolver::light_anew(const std::vector<double>& levels) {
   ComputeOptions compute = options_;
   compute.watch = {};
   ModelUsed used;
-  auto transport = compute_transport(rig_, session_.scene, *session_.rays, compute, levels, &used);
+  auto transport = compute_transport(rig_, *session_.rays, compute, levels, &used);
   if (!transport) return tl::unexpected(std::move(transport.error()));
   transport_ = std::move(*transport);
   used_ = std::move(used);

@@ -304,7 +304,7 @@ int run_rig(const RunArguments& arguments) {
   options.guarded = !arguments.no_guardian && !sim && options.state_folder.has_value();
   options.light_model = [compute](const Session& in, const Rig& turned) -> Result<LightModel> {
     const auto anew =
-        in_background<Result<TransportMatrix>>([&] { return compute_transport(turned, in.scene, *in.rays, compute); });
+        in_background<Result<TransportMatrix>>([&] { return compute_transport(turned, *in.rays, compute); });
     if (!anew) return tl::unexpected(anew.error());
     return light_model(turned, *anew);
   };

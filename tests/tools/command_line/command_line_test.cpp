@@ -24,7 +24,8 @@ class CommandLine : public ::testing::Test {
     draw->group("Work");
     draw->add_option("FILE", file, "where to")->required();
     add_choice<Shape, Shape>(*draw, "--shape", shape, "what it looks like",
-                             {{"round", Shape::round}, {"square", Shape::square}});
+                             {{"round", Shape::round}, {"square", Shape::square}},
+                             {{"oval", "is refused, as it was neither: use round"}});
     draw->add_option("-s,--size", size, "how large")->check(CLI::Range(0.5, 8.0));
     draw->add_flag("--fill", fill, "inside, too");
     auto* list = app.add_subcommand("list", "what there is");
@@ -73,6 +74,15 @@ TEST_F(CommandLine, RefusesWhatIsMistypedWithTheNearest) {
   }
   EXPECT_EQ(parse({"draw", "x", "--shape", "sqare"}), 2);
   EXPECT_NE(output.find("there is no \"sqare\": did you mean \"square\"?"), std::string::npos) << output;
+}
+
+TEST_F(CommandLine, RefusesAWordThatItNoLongerTakesWithTheReason) {
+  EXPECT_EQ(parse({"draw", "x", "--shape", "oval"}), 2);
+  EXPECT_EQ(output,
+            "tool draw: --shape: \"oval\" is refused, as it was neither: use round: `tool draw --help` tells all\n");
+  EXPECT_EQ(parse({"draw", "--help"}), 0);
+  EXPECT_EQ(output.find("oval"), std::string::npos) << output;
+  EXPECT_EQ(bash_completion(app).find("oval"), std::string::npos);
 }
 
 TEST_F(CommandLine, HelpIsInWords) {
