@@ -94,7 +94,7 @@ int run_evaluate(const EvaluateArguments& arguments) {
   }
   if (const std::string warning = used.warning(); !warning.empty())
     fmt::print(stderr, "luxrig: warning: {}\n", warning);
-  return kExitOk;
+  return compute.strict && !used.reached() ? kExitFailed : kExitOk;
 }
 
 }  // namespace luxrig

@@ -32,6 +32,7 @@ void add_compute(CLI::App& command, ComputeOptions& compute) {
                   "after so long light is taken as it is known by then, with a warning (0: no end)")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 1e9));
+  command.add_flag("--strict", compute.strict, "exit code 1 when the wanted error is not reached (else a warning)");
   command.add_option("--seed", compute.seed, "seed of the samples");
   command.add_option("--threads", compute.threads, "threads (0: one per core)")->check(CLI::Range(0, 1024));
 }

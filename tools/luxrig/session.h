@@ -31,6 +31,7 @@ struct ComputeOptions {
   double max_error = 0.01;
   std::optional<double> error_floor_lx;  ///< standard error that is small enough at any point; none: by the goals
   double max_seconds = 120;              ///< of each computation of transport; 0: without an end
+  bool strict = false;                   ///< a command fails when the wanted error is not reached
   std::uint64_t seed = 1;
   int threads = 0;
   Watch watch;

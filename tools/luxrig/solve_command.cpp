@@ -155,7 +155,8 @@ int run_solve(const SolveArguments& arguments) {
   if (arguments.output) {
     if (const auto written = write_file(*arguments.output, plan_json); !written) return report(written.error());
   }
-  const int exit_code = nothing_missed(*plan) ? kExitOk : kExitFailed;
+  const bool as_exact_as_wanted = used.reached() || !compute.strict;
+  const int exit_code = nothing_missed(*plan) && as_exact_as_wanted ? kExitOk : kExitFailed;
   if (arguments.json) {
     fmt::print("{}\n", plan_json);
     return exit_code;

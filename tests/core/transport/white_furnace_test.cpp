@@ -94,7 +94,7 @@ TEST_P(WhiteFurnace, APlateMirrorsTheSkyAsItsModelSays) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Evaluators, WhiteFurnace, testing::Values(make_path_evaluator, make_gather_evaluator),
-                         [](const auto& info) { return info.index == 0 ? "path" : "gather"; });
+                         [](const auto& which) { return which.index == 0 ? "path" : "gather"; });
 
 }  // namespace
 }  // namespace luxrig

@@ -184,5 +184,14 @@ TEST(Enough, WhenTheTimeIsUpWhatIsReachedIsSaidAndProgressBeforeThat) {
   for (const json& point : out["points"]) EXPECT_GT(point["standard_error_lux"].get<double>(), 0) << point;
 }
 
+TEST(Enough, StrictFailsWhenTheErrorIsNotReachedAndOnlyThen) {
+  SpoiltRoom room;
+  const std::vector<std::string> too_much = {"--max-error", "0.0001", "--max-seconds", "1", "--strict"};
+  EXPECT_EQ(room.run("evaluate", too_much).code, 1);
+  EXPECT_EQ(room.run("solve", too_much).code, 1);
+  EXPECT_EQ(room.run("evaluate", {"--strict"}).code, 0);
+  EXPECT_EQ(room.run("solve", {"--strict"}).code, room.run("solve", {}).code);
+}
+
 }  // namespace
 }  // namespace luxrig::testing
