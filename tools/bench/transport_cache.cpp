@@ -6,7 +6,7 @@
 #include <chrono>
 #include <cmath>
 
-#include "core/transport/cache/cache_ablation.h"
+#include "tools/bench/cache/cache_ablation.h"
 #include "tools/bench/transport_case.h"
 
 namespace luxrig {

@@ -6,8 +6,8 @@
 
 #include <cmath>
 
-#include "core/transport/cache/radiance_cache.h"
 #include "core/transport/candidates/incremental_transport.h"
+#include "tools/bench/cache/radiance_cache.h"
 #include "tools/bench/transport_moved.h"
 
 namespace luxrig {

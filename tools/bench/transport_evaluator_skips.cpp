@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/transport/cache/radiance_cache.h"
 #include "core/transport/direct_sources.h"
+#include "tools/bench/cache/radiance_cache.h"
 #include "tools/bench/transport_case.h"
 
 namespace luxrig {

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "core/transport/cache/radiance_cache.h"
 #include "core/transport/rig_transport.h"
 #include "tests/core/transport/boxes.h"
 
@@ -80,8 +79,8 @@ TEST(Enough, EndsEveryEvaluatorWithWhatItHasAndTheErrorThatThatHas) {
   rooms.options.enough = enough.get_token();
   rooms.options.wanted_relative_error = 1e-4;
   rooms.options.max_rays = 1'000'000'000'000;
-  for (const auto& evaluator : {make_direct_evaluator(*rooms.rays), make_path_evaluator(*rooms.rays),
-                                make_gather_evaluator(*rooms.rays), make_cache_evaluator(rooms.scene, *rooms.rays)}) {
+  for (const auto& evaluator :
+       {make_direct_evaluator(*rooms.rays), make_path_evaluator(*rooms.rays), make_gather_evaluator(*rooms.rays)}) {
     const auto matrix = evaluator->evaluate(rooms.receivers, rooms.emitters, rooms.options);
     ASSERT_TRUE(matrix) << evaluator->name() << ": " << matrix.error().detail;
     EXPECT_TRUE(matrix->lux_per_level.allFinite());

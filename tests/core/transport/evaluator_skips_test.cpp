@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "core/transport/cache/radiance_cache.h"
 #include "core/transport/direct_sources.h"
 #include "core/transport/enclosures.h"
 #include "core/transport/rooms/lit_room.h"
@@ -99,25 +98,6 @@ TEST(PathSkips, LampsThatMatterToNoReceiverCostFewRaysAndMoveNothingBeyondItsErr
                                    .sqrt();
   EXPECT_GE((moved <= 2 * error).count(), moved.size() * 85 / 100);
   EXPECT_LT(std::abs(alone->lux(one).sum() / among->lux(of_first).sum() - 1), 0.01);
-}
-
-TEST(CacheSkips, CellsThatNoReceiverNeedsMoveNothingBeyondItsError) {
-  const LitRoom room = make_box_room();
-  const RayScene rays(room.scene);
-  CacheSettings settings;
-  settings.voxels = 64;
-  settings.gather_rays = settings.light_samples = 512;
-  const auto few = RadianceCache::build(room.scene, rays, room.receivers, settings, {});
-  settings.only_needed = false;
-  const auto all = RadianceCache::build(room.scene, rays, room.receivers, settings, {});
-  ASSERT_TRUE(few && all);
-  EXPECT_LT(few->report().cells, all->report().cells * 2 / 3);
-  const auto a = few->evaluate(room.emitters, {}), b = all->evaluate(room.emitters, {});
-  ASSERT_TRUE(a && b);
-  const Eigen::VectorXd levels = Eigen::VectorXd::Ones(a->emitters());
-  const Eigen::ArrayXd moved = (a->lux(levels) - b->lux(levels)).array().abs(),
-                       error = a->standard_error_lux(levels).array();
-  EXPECT_TRUE((moved <= error).all()) << (moved / error).maxCoeff();
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <random>
 
-#include "core/transport/cache/radiance_cache.h"
 #include "core/transport/candidates/incremental_transport.h"
 #include "core/transport/enclosures.h"
 #include "core/transport/evaluator.h"
@@ -164,15 +163,6 @@ TEST(Glass, DimsTheDirectLightOfCandidates) {
     const auto row = static_cast<Eigen::Index>(r);
     EXPECT_NEAR(streamed_lux[row], exact->lux_per_level(row, 0), 1e-6 * exact->lux_per_level.maxCoeff()) << r;
   }
-}
-
-TEST(Glass, IsRefusedByTheRadianceCache) {
-  Scene cube = make_cube(2, 0.5);
-  cube.panes = pane_at(0, 0.9);
-  const RayScene rays(cube);
-  const auto cache = RadianceCache::build(cube, rays, some_receivers(), CacheSettings{}, {});
-  ASSERT_FALSE(cache);
-  EXPECT_NE(cache.error().detail.find("glass"), std::string::npos);
 }
 
 }  // namespace
