@@ -24,13 +24,14 @@ constexpr ModelKey kModelKeys[] = {
     {"beam_angle_deg", " spot ", true},
     {"field_angle_deg", " spot ", true},
     {"zoom_deg", " spot ", false},
+    {"exponent", " cosine ", true},
     {"length_m", " rectangle cylinder ", true},
     {"width_m", " rectangle ", true},
     {"diameter_m", " disk sphere cylinder ", true},
     {"near_field", " ies ", false},
 };
 constexpr double kSlack_deg = 1e-9;
-constexpr const char* kModelNames[] = {"ies", "isotropic", "spot", "rectangle", "disk", "sphere", "cylinder"};
+constexpr const char* kModelNames[] = {"ies", "isotropic", "spot", "cosine", "rectangle", "disk", "sphere", "cylinder"};
 
 std::string models_text(std::string_view models) {
   std::string text;
@@ -226,6 +227,10 @@ void RigReader::read_distribution(Section& s, StatedLight& stated, Luminaire& lu
       break;
     case LuminaireModel::spot:
       read_spot(s, luminaire);
+      break;
+    case LuminaireModel::cosine:
+      if (double exponent = 0; s.read("exponent", exponent) && luminaire.lumens > 0)
+        luminaire.intensity = make_cosine_power(luminaire.lumens, exponent);
       break;
     case LuminaireModel::isotropic:
       if (luminaire.lumens > 0) luminaire.intensity = make_isotropic(luminaire.lumens);

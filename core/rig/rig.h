@@ -56,9 +56,9 @@ struct SceneSpec {
   Place place;
 };
 
-/// ies: a measured file, IES LM-63 or EULUMDAT. The last four are surfaces of one luminance: a rectangle or disk that
-/// faces down, a sphere, an upright cylinder.
-enum class LuminaireModel { ies, isotropic, spot, rectangle, disk, sphere, cylinder };
+/// ies: a measured file, IES LM-63 or EULUMDAT. cosine: a power of the cosine off the axis. The last four are surfaces
+/// of one luminance: a rectangle or disk that faces down, a sphere, an upright cylinder.
+enum class LuminaireModel { ies, isotropic, spot, cosine, rectangle, disk, sphere, cylinder };
 
 struct Luminaire {
   std::string name;

@@ -15,14 +15,14 @@ constexpr Bounds kPixels{16, 8192};
 constexpr Bounds kExposure_ms{0, 10000, true};
 constexpr Bounds kGainSteps{0, 1'000'000};
 constexpr Bounds kDarkShare{0, 0.5};
+constexpr Bounds kCosinePower{0, 10000};
 constexpr Bounds kFullScale{0, 1e9, true};
 
 constexpr KeySpec kFixtureKeys[] = {
     {"luminaire", "name", name, "", kRequired, kAny, "", "what fixtures call it"},
-    {"luminaire", "model", text, "", kRequired, kAny, "ies, isotropic, spot, rectangle, disk, sphere, cylinder",
-     "a measured distribution, the same all round, a round spot, or an evenly shining surface: a rectangle or disk "
-     "that "
-     "faces down, a sphere, an upright cylinder"},
+    {"luminaire", "model", text, "", kRequired, kAny, "ies, isotropic, spot, cosine, rectangle, disk, sphere, cylinder",
+     "a measured distribution, the same all round, a round spot, one that falls as a power of the cosine off its axis, "
+     "or an evenly shining surface: a rectangle or disk that faces down, a sphere, an upright cylinder"},
     {"luminaire", "file", file, "", kNone, kAny, "",
      "photometric file: IES LM-63 (.ies), EULUMDAT (.ldt), IES TM-33 (.xml) or GLDF (.gldf), told apart by content "
      "(only "
@@ -33,7 +33,8 @@ constexpr KeySpec kFixtureKeys[] = {
      "id or name of the emitter in a GLDF or TM-33 file (only with model `ies`); needed where there are several"},
     {"luminaire", "beam_angle_deg", number, "°", kNone, kFullCone, "",
      "full angle to half the peak intensity (only with model `spot`, and required there unless a fixture's GDTF file "
-     "states both angles)"},
+     "states both angles). Between and beyond the two angles intensity falls as 2^-(γ/b)^p, γ off the axis and b half "
+     "the beam angle, with the p that gives both; to nothing from the field angle to twice as far off the axis"},
     {"luminaire", "field_angle_deg", number, "°", kNone, kFullCone, "",
      "full angle to a tenth of the peak (only with model `spot`, and required there, the same); more than the beam "
      "angle"},
@@ -42,6 +43,9 @@ constexpr KeySpec kFixtureKeys[] = {
      "angle "
      "keeps its ratio to the beam angle. `beam_angle_deg` is what it is set to unless a solve finds better; a fixture "
      "without a zoom slot keeps that"},
+    {"luminaire", "exponent", number, "", kNone, kCosinePower, "",
+     "intensity falls as the cosine of the angle off the axis to this power, to nothing at 90° (only with model "
+     "`cosine`, and required there): 1 is a Lambertian surface seen from afar, 100 a beam of 13.5°"},
     {"luminaire", "length_m", number, "m", kNone, kLuminousSize, "",
      "size of a `rectangle` along the lamp's x, or of a `cylinder` along its axis (only there, and required)"},
     {"luminaire", "width_m", number, "m", kNone, kLuminousSize, "",

@@ -78,6 +78,11 @@ model = "isotropic"  #> "spot" ; beam_angle_deg = 20 ; field_angle_deg = 40
 lumens = 700
 colour = [1, 0.9, 0.8]  #> [1, 0.9, 0.7]
 [[luminaire]]
+name = "downlight"
+model = "cosine"
+exponent = 4  #> 5
+lumens = 900
+[[luminaire]]
 name = "panel"
 model = "rectangle"
 length_m = 1.2  #> 1.3

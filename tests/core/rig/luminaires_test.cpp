@@ -35,6 +35,23 @@ TEST(Luminaires, OfARectangleOrDiskAreLambertianAndFaceDown) {
   EXPECT_NEAR(downlight.intensity->max_intensity_cd(), 900 / kPi, 1e-9);
 }
 
+TEST(Luminaires, OfACosineFallAsItsPower) {
+  const Luminaire lamp = luminaire_of("model = \"cosine\"\nexponent = 4\nlumens = 900\n");
+  const double peak_cd = 900 * 5 / (2 * kPi);
+  EXPECT_NEAR(lamp.intensity->intensity_cd(at(0)), peak_cd, 1e-9);
+  EXPECT_NEAR(lamp.intensity->intensity_cd(at(60)), peak_cd / 16, 1e-9);
+  EXPECT_EQ(lamp.intensity->intensity_cd(at(91)), 0);
+  EXPECT_NEAR(lamp.lumens, 900, 0);
+  const auto said = [](const std::string& keys) {
+    const auto rig =
+        parse_rig("[rig]\nname = \"r\"\n[[luminaire]]\nname = \"l\"\nlumens = 1\n" + keys, "rig.toml", kData);
+    return rig ? std::string() : rig.error().front().text();
+  };
+  EXPECT_NE(said("model = \"cosine\"\n").find("exponent"), std::string::npos) << said("model = \"cosine\"\n");
+  EXPECT_NE(said("model = \"isotropic\"\nexponent = 2\n").find("exponent has no effect on this model"),
+            std::string::npos);
+}
+
 TEST(Luminaires, OfASphereOrCylinderHaveOneLuminanceAllOver) {
   using Kind = LuminousShape::Kind;
   const Luminaire globe = luminaire_of("model = \"sphere\"\ndiameter_m = 0.4\nlumens = 900\n");
