@@ -8,10 +8,14 @@
 #include <utility>
 
 #include "core/rig/plain_text.h"
+#include "core/scene/large_faces.h"
 #include "core/scene/mesh_reading.h"
 
 namespace luxrig {
 namespace {
+
+/// A scene that reaches no farther from its middle has the middle as origin: float tells 8 µm there.
+constexpr double kFarFromMiddle_m = 100;
 
 /// A closed box about the origin, normals outwards; its one material has the object's name.
 PlacedMesh box(const std::string& name, const Vec3& size_m) {
@@ -44,6 +48,7 @@ class Builder {
     if (!problems_.empty()) return tl::unexpected(std::move(problems_));
     warn_of_idle_rules();
     join();
+    if (!problems_.empty()) return tl::unexpected(std::move(problems_));
     return std::move(scene_);
   }
 
@@ -154,12 +159,44 @@ class Builder {
     }
   }
 
-  /// Puts the parts together about the middle of all of them, so that floats are small.
+  /// Puts the parts together about an origin, so that floats are small where it matters.
   void join() {
     Eigen::AlignedBox3d bounds;
     for (const auto& [object, part] : parts_) bounds.extend(bounds_of(part));
-    if (!bounds.isEmpty()) scene_.origin_world_m = bounds.center();
-    for (const auto& [object, part] : parts_) append_rounded(part, object, scene_);
+    if (bounds.isEmpty()) return;
+    const bool reaches_far = bounds.sizes().maxCoeff() > 2 * kFarFromMiddle_m;
+    scene_.origin_world_m = reaches_far ? middle_of_use(bounds) : bounds.center();
+    for (auto& [object, part] : parts_) {
+      if (reaches_far && !cut_large_faces(scene_.origin_world_m, part))
+        return problem(place_of(object), in_quotes(scene_.object_names[object]) + " has too many faces of over 50 m",
+                       "give a mesh without what lies far around the venue");
+      append_rounded(part, object, scene_);
+    }
+  }
+
+  /// Amid what the rig hangs and measures; without any, amid the corners of all triangles, which are many where a
+  /// venue is modelled and few in the ground around. One far-off thing does not move a median.
+  [[nodiscard]] Vec3 middle_of_use(const Eigen::AlignedBox3d& bounds) const {
+    std::vector<Vec3> places;
+    for (const Fixture& fixture : rig_.fixtures) places.push_back(fixture.world_from_lamp().translation_m);
+    for (const Point& point : rig_.points) places.push_back(point.position_world_m);
+    for (const Luxmeter& meter : rig_.luxmeters) places.push_back(meter.position_world_m);
+    if (places.empty())
+      for (const auto& [object, part] : parts_)
+        for (const auto& triangle : part.triangles)
+          for (const std::uint32_t vertex : triangle) places.push_back(part.vertices_world_m[vertex]);
+    const auto half = places.begin() + static_cast<std::ptrdiff_t>(places.size() / 2);
+    Vec3 middle;
+    for (int axis = 0; axis < 3; ++axis) {
+      std::nth_element(places.begin(), half, places.end(),
+                       [axis](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; });
+      middle[axis] = (*half)[axis];
+    }
+    return middle.cwiseMax(bounds.min()).cwiseMin(bounds.max());
+  }
+
+  [[nodiscard]] const Place& place_of(std::uint32_t object) const {
+    return object == 0 ? rig_.scene.place : rig_.scene.objects[object - 1].place;
   }
 
   const Rig& rig_;
