@@ -30,14 +30,13 @@ tl::unexpected<std::vector<Problem>> refuse_mesh(const std::string& file, std::s
 }
 
 /// Places, splits and cleans what a file says.
-class SceneOfMesh {
+class MeshPlacing {
  public:
-  SceneOfMesh(PolygonMesh mesh, const Eigen::Affine3d& world_from_mesh)
+  MeshPlacing(PolygonMesh mesh, const Eigen::Affine3d& world_from_mesh)
       : mesh_(std::move(mesh)), world_from_mesh_(world_from_mesh), colours_(mesh_) {}
 
-  Scene make(std::string name) {
-    scene_.object_names.push_back(std::move(name));
-    scene_.warnings = std::move(mesh_.warnings);
+  PlacedMesh make() {
+    placed_.warnings = std::move(mesh_.warnings);
     place_vertices();
     std::vector<Vec3> points;
     std::vector<std::array<std::uint32_t, 3>> split;
@@ -47,7 +46,7 @@ class SceneOfMesh {
       const auto begin = mesh_.corners.begin() + static_cast<std::ptrdiff_t>(first);
       const auto end = begin + static_cast<std::ptrdiff_t>(count);
       const bool bad = std::any_of(begin, end, [&](std::uint32_t index) { return index >= mesh_.vertices.size(); });
-      scene_.cleaning.bad_indices += bad ? 1 : 0;
+      placed_.cleaning.bad_indices += bad ? 1 : 0;
       if (!bad && count >= 3) {  // points and lines carry no light
         points.clear();
         for (auto corner = begin; corner != end; ++corner) points.push_back(mesh_.vertices[*corner]);
@@ -58,33 +57,22 @@ class SceneOfMesh {
       }
       first += count;
     }
-    scene_.materials = colours_.take();
+    placed_.materials = colours_.take();
     note_cleaning();
-    return std::move(scene_);
+    placed_.vertices_world_m = std::move(mesh_.vertices);
+    return std::move(placed_);
   }
 
  private:
   void place_vertices() {
     usable_.resize(mesh_.vertices.size());
-    Eigen::AlignedBox3d bounds;
     for (std::size_t i = 0; i < mesh_.vertices.size(); ++i) {
       Vec3& vertex = mesh_.vertices[i];
       vertex = world_from_mesh_ * vertex;
       usable_[i] = vertex.allFinite() && vertex.cwiseAbs().maxCoeff() <= kMaxCoordinate_m;
-      if (usable_[i]) {
-        bounds.extend(vertex);
-      } else {
-        ++scene_.cleaning.non_finite_vertices;
-        vertex.setZero();
-      }
-    }
-    const bool far_out = !bounds.isEmpty() &&
-                         std::max(bounds.min().cwiseAbs().maxCoeff(), bounds.max().cwiseAbs().maxCoeff()) > kFarOut_m;
-    if (far_out) scene_.origin_world_m = bounds.center();
-    scene_.vertices_m.reserve(mesh_.vertices.size());
-    for (std::size_t i = 0; i < mesh_.vertices.size(); ++i) {
-      if (usable_[i]) mesh_.vertices[i] -= scene_.origin_world_m;
-      scene_.vertices_m.push_back(mesh_.vertices[i].cast<float>());
+      if (usable_[i]) continue;
+      ++placed_.cleaning.non_finite_vertices;
+      vertex.setZero();
     }
   }
 
@@ -96,40 +84,36 @@ class SceneOfMesh {
     }
     const double area_m2 = area_unless_degenerate(triangle);
     if (!(area_m2 > 0)) {
-      ++scene_.cleaning.degenerate_triangles;
+      ++placed_.cleaning.degenerate_triangles;
       return;
     }
-    scene_.triangles.push_back(triangle);
-    scene_.material_of_triangle.push_back(
+    placed_.triangles.push_back(triangle);
+    placed_.material_of_triangle.push_back(
         colours_.material_of(mesh_.face_materials.empty() ? 0 : mesh_.face_materials[face], corners, area_m2));
-    scene_.object_of_triangle.push_back(0);
   }
 
-  /// 0 where its height over its longest side is within the rounding of its coordinates.
+  /// 0 where its height over its longest side is within the rounding of float, were it about the origin.
   [[nodiscard]] double area_unless_degenerate(const std::array<std::uint32_t, 3>& triangle) const {
-    const Vec3 a = scene_.vertices_m[triangle[0]].cast<double>();
-    const Vec3 ab = scene_.vertices_m[triangle[1]].cast<double>() - a;
-    const Vec3 ac = scene_.vertices_m[triangle[2]].cast<double>() - a;
-    const double longest_m = std::sqrt(std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()}));
-    const double reach_m =
-        std::max({a.cwiseAbs().maxCoeff(), (a + ab).cwiseAbs().maxCoeff(), (a + ac).cwiseAbs().maxCoeff()});
+    const Vec3& a = mesh_.vertices[triangle[0]];
+    const Vec3 ab = mesh_.vertices[triangle[1]] - a, ac = mesh_.vertices[triangle[2]] - a;
+    const double longest_m2 = std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()});
     const double twice_area_m2 = ab.cross(ac).norm();
-    return twice_area_m2 > 0x1p-24 * reach_m * longest_m ? twice_area_m2 / 2 : 0;
+    return twice_area_m2 > 0x1p-24 * longest_m2 ? twice_area_m2 / 2 : 0;
   }
 
   void note_cleaning() {
-    const Cleaning& c = scene_.cleaning;
+    const Cleaning& c = placed_.cleaning;
     if (c.total() == 0) return;
-    scene_.warnings.push_back("cleaned: " + std::to_string(c.non_finite_vertices) + " vertices without a place, " +
-                              std::to_string(c.bad_indices) + " triangles with bad indices, " +
-                              std::to_string(c.degenerate_triangles) + " triangles without area");
+    placed_.warnings.push_back("cleaned: " + std::to_string(c.non_finite_vertices) + " vertices without a place, " +
+                               std::to_string(c.bad_indices) + " triangles with bad indices, " +
+                               std::to_string(c.degenerate_triangles) + " triangles without area");
   }
 
   PolygonMesh mesh_;
   Eigen::Affine3d world_from_mesh_;
   SurfaceColours colours_;
   std::vector<bool> usable_;
-  Scene scene_;
+  PlacedMesh placed_;
 };
 
 }  // namespace
@@ -155,11 +139,11 @@ Checked<PolygonMesh> read_mesh(std::string bytes, const std::string& extension, 
   return refuse_mesh(file, "is of no known mesh format", "give an .obj, .ply, .stl, .gltf, .glb or .3ds file");
 }
 
-Scene scene_of_mesh(PolygonMesh mesh, const Eigen::Affine3d& world_from_mesh, std::string name) {
-  return SceneOfMesh(std::move(mesh), world_from_mesh).make(std::move(name));
+PlacedMesh place_mesh(PolygonMesh mesh, const Eigen::Affine3d& world_from_mesh) {
+  return MeshPlacing(std::move(mesh), world_from_mesh).make();
 }
 
-Checked<Scene> load_mesh(const MeshFile& file) {
+Checked<PlacedMesh> load_placed_mesh(const MeshFile& file) {
   const std::string name = file.path.string();
   std::error_code error;
   if (!std::filesystem::is_regular_file(file.path, error))  // a pipe would block
@@ -179,11 +163,24 @@ Checked<Scene> load_mesh(const MeshFile& file) {
   if (!mesh) return tl::unexpected(std::move(mesh.error()));
   Eigen::Affine3d world_from_mesh = Eigen::Affine3d::Identity();
   world_from_mesh.linear() = file.metres_per_unit * rotation_to_z_up(file.up_axis);
-  Scene scene = scene_of_mesh(std::move(*mesh), world_from_mesh, file.path.filename().string());
-  if (scene.triangles.empty()) {
-    return refuse_mesh(name, "holds no usable triangle (" + std::to_string(scene.cleaning.total()) + " faults)",
+  PlacedMesh placed = place_mesh(std::move(*mesh), world_from_mesh);
+  if (placed.triangles.empty()) {
+    return refuse_mesh(name, "holds no usable triangle (" + std::to_string(placed.cleaning.total()) + " faults)",
                        "give a mesh with faces");
   }
+  return placed;
+}
+
+Checked<Scene> load_mesh(const MeshFile& file) {
+  auto placed = load_placed_mesh(file);
+  if (!placed) return tl::unexpected(std::move(placed.error()));
+  Scene scene;
+  scene.object_names.push_back(file.path.filename().string());
+  scene.warnings = std::move(placed->warnings);
+  const Eigen::AlignedBox3d bounds = bounds_of(*placed);
+  if (std::max(bounds.min().cwiseAbs().maxCoeff(), bounds.max().cwiseAbs().maxCoeff()) > kFarOut_m)
+    scene.origin_world_m = bounds.center();
+  append_rounded(*placed, 0, scene);
   return scene;
 }
 

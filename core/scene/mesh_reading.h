@@ -1,13 +1,15 @@
 #pragma once
-/// The halves of load_mesh(), for meshes that lie in an archive. Internal to core/scene, and to the import of MVR.
+/// The parts of load_mesh(), for meshes that lie in an archive or are placed among others. Internal to core/scene, and
+/// to the import of MVR.
 
 #include <filesystem>
 #include <string>
 
 #include "core/result.h"
 #include "core/scene/files_beside.h"
+#include "core/scene/mesh_file.h"
+#include "core/scene/placed_mesh.h"
 #include "core/scene/polygon_mesh.h"
-#include "core/scene/scene.h"
 
 namespace luxrig {
 
@@ -19,6 +21,9 @@ namespace luxrig {
                                              const FilesBeside& beside);
 
 /// Placed, split into triangles and cleaned; may be left without any.
-[[nodiscard]] Scene scene_of_mesh(PolygonMesh mesh, const Eigen::Affine3d& world_from_mesh, std::string name);
+[[nodiscard]] PlacedMesh place_mesh(PolygonMesh mesh, const Eigen::Affine3d& world_from_mesh);
+
+/// load_mesh() before anything is rounded. Refuses likewise.
+[[nodiscard]] Checked<PlacedMesh> load_placed_mesh(const MeshFile& file);
 
 }  // namespace luxrig

@@ -10,10 +10,18 @@ namespace {
 
 constexpr double kUnitTolerance = 1e-6;
 
+/// An edge longer than so much of its distance from the origin.
+bool is_near(const Vec3& from_m, const Vec3& edge_m) {
+  const double length_m2 = edge_m.squaredNorm();
+  if (!(length_m2 > 0)) return true;
+  const Vec3 nearest_m = from_m + std::clamp(-from_m.dot(edge_m) / length_m2, 0.0, 1.0) * edge_m;
+  return length_m2 > kNearEdgePerDistance * kNearEdgePerDistance * nearest_m.squaredNorm();
+}
+
 }  // namespace
 
 void RayScene::State::measure(const std::vector<std::uint32_t>& material_of_triangle) {
-  double longest_edge_m = 0;
+  double longest_m2 = 0, longest_near_m2 = 0;
   triangles.resize(indices.size());
   for (std::size_t t = 0; t < indices.size(); ++t) {
     Triangle& triangle = triangles[t];
@@ -24,14 +32,19 @@ void RayScene::State::measure(const std::vector<std::uint32_t>& material_of_tria
       const Vec3 next = vertices_m[indices[t][(i + 1) % 3]].cast<double>();
       LUXRIG_CHECK(here.allFinite(), "vertex {}", indices[t][i]);
       bounds_m.extend(here);
-      longest_edge_m = std::max(longest_edge_m, (next - here).norm());
+      const Vec3 edge = next - here;
+      const double length_m2 = edge.squaredNorm();
+      longest_m2 = std::max(longest_m2, length_m2);
+      if (length_m2 > longest_near_m2 && is_near(here, edge)) longest_near_m2 = length_m2;
     }
     const Vec3 a = triangle.corners_m[0].cast<double>();
     const Vec3 normal =
         (triangle.corners_m[1].cast<double>() - a).cross(triangle.corners_m[2].cast<double>() - a).normalized();
     triangle.normal = {normal.x(), normal.y(), normal.z()};
   }
-  edge_error_m = kUnit * kPerEdge * longest_edge_m + kWorldUnit * origin_world_m.cwiseAbs().maxCoeff();
+  edge_error_m = kUnit * kPerEdge * std::sqrt(longest_m2);
+  near_edge_error_m = kUnit * kPerEdge * std::sqrt(longest_near_m2);
+  world_error_m = kWorldUnit * origin_world_m.cwiseAbs().maxCoeff();
 }
 
 RayScene::RayScene(const Scene& scene) : state_(std::make_unique<State>()) {

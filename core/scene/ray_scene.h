@@ -2,10 +2,12 @@
 /// A Scene made ready for rays (Embree behind a wall).
 ///
 /// Rays run in float, relative to the scene's origin. A surface may be off its true place there by
-///   e(p) = 2^-24 · (4 |p|∞ + 16 L) + 2^-50 |origin|∞,   p = point relative to the origin, L = the scene's longest edge
-/// (derived in ray_scene_state.h; 10 µm in a room of 10 m). So a ray that leaves a surface starts 2 e off it. A shadow
-/// ray stops 1 e short of its target and passes triangles whose plane is within 2 e of it, since the target may lie on
-/// them. What stands nearer than that to either end may be missed; nothing else is.
+///   e(p) = 2^-24 · (4 |p|∞ + 16 L) + 2^-50 |origin|∞,   p = point relative to the origin, L = longest edge at p:
+/// no more than the scene's longest, nor than the larger of 1.6 |p|∞ and the longest edge among those that are longer
+/// than half of their distance from the origin (derived in ray_scene_state.h; 10 µm in a room of 10 m, 50 µm in one on
+/// a plane of 20 km). So a ray that leaves a surface starts 2 e off it. A shadow ray stops 1 e short of its target and
+/// passes triangles whose plane is within 2 e of it, since the target may lie on them. What stands nearer than that to
+/// either end may be missed; nothing else is.
 
 #include <memory>
 #include <optional>

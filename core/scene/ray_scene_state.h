@@ -13,8 +13,8 @@
 
 namespace luxrig {
 
-// With u = 2^-24 (half a unit in the last place), p the point at which it matters and L the longest edge, so that every
-// vertex of a triangle there is within |p| + L of the origin:
+// With u = 2^-24 (half a unit in the last place), p the point at which it matters and L the longest edge of a triangle
+// there, all of whose vertices are then within |p| + L of the origin:
 //   the vertices were rounded to float              √3 u (|p| + L)
 //   the start of the ray is rounded to float        √3 u |p|
 //   Embree subtracts the start from the vertices    √3 u L
@@ -22,12 +22,18 @@ namespace luxrig {
 //                                                            long side, where it moves points within the
 //                                                            sliver by no more than this
 //   its dot product with that normal, and division   6 u L
-// together u (3.5 |p| + 15.5 L), rounded up. World coordinates, in double, are off by 2^-53 of their size; a point that
-// was computed from others there, by a few of that.
+// together u (3.5 |p| + 15.5 L), rounded up. L is at most the scene's longest edge. It is also at most the longest of
+// those edges that are "near": longer than k = 0.51 of their distance from the origin. For if the longest edge of a
+// triangle, l, is not near, then l ≤ k (|p| + √3/2 l), as p is no farther from that edge than the triangle is high over
+// it: so l ≤ k |p| / (1 - k √3/2) < 0.92 √3 |p|∞. That is how large_faces.h cuts, but for the rounding of its corners.
+// World coordinates, in double, are off by 2^-53 of their size; a point that was computed from others there, by a few
+// of that.
 inline constexpr double kUnit = 0x1p-24;
 inline constexpr double kPerPosition = 4;
 inline constexpr double kPerEdge = 16;
 inline constexpr double kWorldUnit = 0x1p-50;
+inline constexpr double kNearEdgePerDistance = 0.51;  // k
+inline constexpr double kFarEdgePerPosition = 1.6;    // 0.92 √3
 
 inline constexpr double kStartErrors = 2;  // the start is lifted by so many e, then set back by one (see `start`)
 
@@ -48,7 +54,8 @@ struct RayScene::State {
   std::vector<Material> materials;
   Panes panes;
   Eigen::AlignedBox3d bounds_m;  // relative to the origin
-  double edge_error_m = 0;       // e(0)
+  double edge_error_m = 0, near_edge_error_m = 0;  // by the longest edge of all, and of those that are near
+  double world_error_m = 0;                        // by the rounding of world coordinates
   mutable std::once_flag tree_built;
   mutable TriangleTree tree;
 
@@ -69,7 +76,9 @@ struct RayScene::State {
   [[nodiscard]] bool aim(const Vec3& from_m, const Vec3& normal, const Vec3& to_m, double error_m, RTCRay& ray) const;
 
   [[nodiscard]] double error_m(const Vec3& point_m) const {
-    return kUnit * kPerPosition * point_m.cwiseAbs().maxCoeff() + edge_error_m;
+    const double reach_m = point_m.cwiseAbs().maxCoeff();
+    return kUnit * kPerPosition * reach_m + world_error_m +
+           std::min(edge_error_m, std::max(near_edge_error_m, kUnit * kPerEdge * kFarEdgePerPosition * reach_m));
   }
 
   /// Lifts the start off its surface by 2 e along the normal, then sets it back by e along the ray: still e

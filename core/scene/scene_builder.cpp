@@ -2,46 +2,24 @@
 
 #include <fnmatch.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "core/rig/plain_text.h"
+#include "core/scene/large_faces.h"
+#include "core/scene/mesh_reading.h"
 
 namespace luxrig {
 namespace {
 
-/// One mesh or box, placed in double precision; the float of its file is left behind here.
-struct Part {
-  std::vector<Vec3> vertices_world_m;
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-  std::vector<std::uint32_t> material_of_triangle;
-  std::vector<Material> materials;
-  Cleaning cleaning;
-};
-
-Eigen::AlignedBox3d bounds_of(const Part& part) {
-  Eigen::AlignedBox3d bounds;
-  for (const auto& triangle : part.triangles) {
-    for (const std::uint32_t index : triangle) bounds.extend(part.vertices_world_m[index]);
-  }
-  return bounds;
-}
-
-Part part_from(const Scene& mesh) {
-  Part part;
-  part.vertices_world_m.reserve(mesh.vertices_m.size());
-  for (std::uint32_t i = 0; i < mesh.vertices_m.size(); ++i) part.vertices_world_m.push_back(mesh.vertex_world_m(i));
-  part.triangles = mesh.triangles;
-  part.material_of_triangle = mesh.material_of_triangle;
-  part.materials = mesh.materials;
-  part.cleaning = mesh.cleaning;
-  return part;
-}
+/// A scene that reaches no farther from its middle has the middle as origin: float tells 8 µm there.
+constexpr double kFarFromMiddle_m = 100;
 
 /// A closed box about the origin, normals outwards; its one material has the object's name.
-Part box(const std::string& name, const Vec3& size_m) {
-  Part part;
+PlacedMesh box(const std::string& name, const Vec3& size_m) {
+  PlacedMesh part;
   for (int corner = 0; corner < 8; ++corner) {
     const Vec3 sign((corner & 1) ? 0.5 : -0.5, (corner & 2) ? 0.5 : -0.5, (corner & 4) ? 0.5 : -0.5);
     part.vertices_world_m.push_back(sign.cwiseProduct(size_m));
@@ -70,6 +48,7 @@ class Builder {
     if (!problems_.empty()) return tl::unexpected(std::move(problems_));
     warn_of_idle_rules();
     join();
+    if (!problems_.empty()) return tl::unexpected(std::move(problems_));
     return std::move(scene_);
   }
 
@@ -78,8 +57,8 @@ class Builder {
     problems_.push_back({rig_.file.string(), place.line, place.column, std::move(what), std::move(mend)});
   }
 
-  std::optional<Part> load(const MeshFile& file, const std::string& name, const Place& place) {
-    auto mesh = load_mesh(file);
+  std::optional<PlacedMesh> load(const MeshFile& file, const std::string& name, const Place& place) {
+    auto mesh = load_placed_mesh(file);
     if (!mesh) {
       for (Problem& one : mesh.error()) {
         std::string where = one.line > 0 ? ", line " + std::to_string(one.line) : "";
@@ -89,7 +68,7 @@ class Builder {
       return std::nullopt;
     }
     for (const std::string& warning : mesh->warnings) scene_.warnings.push_back(name + ": " + warning);
-    return part_from(*mesh);
+    return std::move(*mesh);
   }
 
   void add(const SceneObject& object) {
@@ -99,7 +78,7 @@ class Builder {
       problem(object.place, "object '" + object.name + "' stands nowhere", "give a finite position and turn");
       return;
     }
-    std::optional<Part> part;
+    std::optional<PlacedMesh> part;
     if (object.mesh) {
       part = load(*object.mesh, "object '" + object.name + "'", object.place);
     } else if (object.box_m.allFinite() && object.box_m.minCoeff() > 0) {
@@ -113,14 +92,14 @@ class Builder {
     parts_.emplace_back(index, std::move(*part));
   }
 
-  void glaze(const Part& part, double transmittance, std::uint32_t object) {
+  void glaze(const PlacedMesh& part, double transmittance, std::uint32_t object) {
     for (const auto& [a, b, c] : part.triangles)
       scene_.panes.push_back(
           {{part.vertices_world_m[a], part.vertices_world_m[b], part.vertices_world_m[c]}, transmittance, object});
   }
 
   /// Scales evenly to the wanted height, then puts the middle of its underside at the object's position.
-  bool place(const SceneObject& object, Part& part) {
+  bool place(const SceneObject& object, PlacedMesh& part) {
     const Eigen::AlignedBox3d bounds = bounds_of(part);
     double scale = 1;
     if (object.height_m) {
@@ -140,7 +119,7 @@ class Builder {
     return true;
   }
 
-  void set_reflectances(Part& part, const std::string& whose, const std::optional<Vec3>& of_object) {
+  void set_reflectances(PlacedMesh& part, const std::string& whose, const std::optional<Vec3>& of_object) {
     for (Material& material : part.materials) {
       const Vec3* stated = of_object ? &*of_object : nullptr;
       for (std::size_t i = 0; i < rig_.scene.reflectances.size(); ++i) {
@@ -180,35 +159,49 @@ class Builder {
     }
   }
 
-  /// Puts the parts together about the middle of all of them, so that floats are small.
+  /// Puts the parts together about an origin, so that floats are small where it matters.
   void join() {
     Eigen::AlignedBox3d bounds;
     for (const auto& [object, part] : parts_) bounds.extend(bounds_of(part));
-    if (!bounds.isEmpty()) scene_.origin_world_m = bounds.center();
+    if (bounds.isEmpty()) return;
+    const bool reaches_far = bounds.sizes().maxCoeff() > 2 * kFarFromMiddle_m;
+    scene_.origin_world_m = reaches_far ? middle_of_use(bounds) : bounds.center();
     for (auto& [object, part] : parts_) {
-      const auto vertex_base = static_cast<std::uint32_t>(scene_.vertices_m.size());
-      const auto material_base = static_cast<std::uint32_t>(scene_.materials.size());
-      for (const Vec3& vertex : part.vertices_world_m) {
-        scene_.vertices_m.push_back((vertex - scene_.origin_world_m).cast<float>());
-      }
-      for (auto triangle : part.triangles) {
-        for (std::uint32_t& index : triangle) index += vertex_base;
-        scene_.triangles.push_back(triangle);
-      }
-      for (const std::uint32_t material : part.material_of_triangle) {
-        scene_.material_of_triangle.push_back(material_base + material);
-      }
-      scene_.object_of_triangle.insert(scene_.object_of_triangle.end(), part.triangles.size(), object);
-      scene_.materials.insert(scene_.materials.end(), part.materials.begin(), part.materials.end());
-      scene_.cleaning.non_finite_vertices += part.cleaning.non_finite_vertices;
-      scene_.cleaning.bad_indices += part.cleaning.bad_indices;
-      scene_.cleaning.degenerate_triangles += part.cleaning.degenerate_triangles;
+      if (reaches_far && !cut_large_faces(scene_.origin_world_m, part))
+        return problem(place_of(object), in_quotes(scene_.object_names[object]) + " has too many faces of over 50 m",
+                       "give a mesh without what lies far around the venue");
+      append_rounded(part, object, scene_);
     }
+  }
+
+  /// Amid what the rig hangs and measures; without any, amid the corners of all triangles, which are many where a
+  /// venue is modelled and few in the ground around. One far-off thing does not move a median.
+  [[nodiscard]] Vec3 middle_of_use(const Eigen::AlignedBox3d& bounds) const {
+    std::vector<Vec3> places;
+    for (const Fixture& fixture : rig_.fixtures) places.push_back(fixture.world_from_lamp().translation_m);
+    for (const Point& point : rig_.points) places.push_back(point.position_world_m);
+    for (const Luxmeter& meter : rig_.luxmeters) places.push_back(meter.position_world_m);
+    if (places.empty())
+      for (const auto& [object, part] : parts_)
+        for (const auto& triangle : part.triangles)
+          for (const std::uint32_t vertex : triangle) places.push_back(part.vertices_world_m[vertex]);
+    const auto half = places.begin() + static_cast<std::ptrdiff_t>(places.size() / 2);
+    Vec3 middle;
+    for (int axis = 0; axis < 3; ++axis) {
+      std::nth_element(places.begin(), half, places.end(),
+                       [axis](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; });
+      middle[axis] = (*half)[axis];
+    }
+    return middle.cwiseMax(bounds.min()).cwiseMin(bounds.max());
+  }
+
+  [[nodiscard]] const Place& place_of(std::uint32_t object) const {
+    return object == 0 ? rig_.scene.place : rig_.scene.objects[object - 1].place;
   }
 
   const Rig& rig_;
   Scene scene_;
-  std::vector<std::pair<std::uint32_t, Part>> parts_;  // with the index of their object
+  std::vector<std::pair<std::uint32_t, PlacedMesh>> parts_;  // with the index of their object
   std::vector<bool> rule_used_;
   std::vector<Problem> problems_;
 };

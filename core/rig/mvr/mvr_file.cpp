@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kMostMvrFixtures = 10'000, kMostMvrGeometries = 100'000, kMostMvrNotes = 100;
 constexpr int kDeepestSymbol = 8;
 constexpr std::size_t kMostGdtfBytes = std::size_t{64} << 20, kMostGdtfBytesInAll = std::size_t{512} << 20;
-constexpr double kMetresPerMillimetre = 0.001, kFarthest_m = 0.99e6;  // a rig's is 1e6, and lamps stand off their bases
+constexpr double kMetresPerMillimetre = 0.001, kFarthest_m = 9.9e6;  // a rig's is 1e7, and lamps stand off their bases
 
 /// A matrix as MVR writes it: where x, y and z go, then the origin in millimetres.
 std::optional<Eigen::Affine3d> affine_of(const pugi::xml_node& node) {
@@ -96,7 +96,7 @@ class MvrReader {
       if (world.matrix().allFinite() && world.translation().cwiseAbs().maxCoeff() <= kFarthest_m) return world;
     }
     problems_.add(xml_.place_of(node),
-                  fmt::format("the Matrix of {} is no four times three numbers within 990 km",
+                  fmt::format("the Matrix of {} is no four times three numbers within 9900 km",
                               in_quotes(node.attribute("name").value())),
                   "export the file again from the program that made it");
     return std::nullopt;

@@ -96,15 +96,13 @@ class SceneryWriter {
     } else {
       metres_from_model.linear() *= 0.001;
     }
-    const Scene placed = scene_of_mesh(model, geometry.world_from_model_m * metres_from_model, geometry.object);
+    const PlacedMesh placed = place_mesh(model, geometry.world_from_model_m * metres_from_model);
     if (placed.triangles.empty()) return;
     ++out_.models;
     out_.triangles += placed.triangles.size();
     obj_ += fmt::format("o {}\n", geometry.object.empty() ? "object" : geometry.object);
-    for (std::uint32_t i = 0; i < placed.vertices_m.size(); ++i) {
-      const Vec3 at = placed.vertex_world_m(i);
+    for (const Vec3& at : placed.vertices_world_m)
       obj_ += fmt::format("v {:.6f} {:.6f} {:.6f}\n", at.x(), at.y(), at.z());
-    }
     std::vector<std::string> names;
     for (const Material& material : placed.materials) names.push_back(name_of_material(material));
     std::uint32_t current = kNoIndex;
@@ -114,7 +112,7 @@ class SceneryWriter {
       const auto& [a, b, c] = placed.triangles[i];
       obj_ += fmt::format("f {} {} {}\n", vertices_ + a + 1, vertices_ + b + 1, vertices_ + c + 1);
     }
-    vertices_ += placed.vertices_m.size();
+    vertices_ += placed.vertices_world_m.size();
   }
 
   /// Materials of one name and colour are one; of two colours the second is "NAME 2".

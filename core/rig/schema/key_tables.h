@@ -6,7 +6,7 @@
 namespace luxrig::schema {
 
 inline constexpr Bounds kAny{};
-inline constexpr Bounds kPosition{-1e6, 1e6};
+inline constexpr Bounds kPosition{-1e7, 1e7};  // m, as in map coordinates: 10 000 km from the equator to a pole
 inline constexpr Bounds kSize{0, 1e4, true};
 inline constexpr Bounds kShare{0, 1};
 inline constexpr Bounds kAngle{-3600, 3600};

@@ -23,6 +23,10 @@ constexpr double kNearlyAll = 0.9;
 constexpr double kPlainlyMore = 0.25;
 /// Too small: most points are so many of the scene's diagonals away from it. A foot taken for a metre is less.
 constexpr double kFarDiagonals = 8;
+/// Not too small but elsewhere: what is placed is spread over no more than so many of the scene's diagonals.
+constexpr double kSameSize = 2;
+/// Outside by more than so much of the scene's diagonal: not what merely stands on a floor.
+constexpr double kOutside = 0.1;
 /// Too large: higher than a building, and so many times as high as the highest thing in it.
 constexpr double kTowering_m = 100, kToweringTimes = 30;
 
@@ -43,8 +47,10 @@ class Reading {
   }
 
   std::optional<Problem> doubt(const std::string& file) const {
-    auto what = wrong_unit();
+    auto what = elsewhere();
+    if (!what) what = wrong_unit();
     if (!what) what = wrong_axis();
+    if (!what) what = all_outside();
     if (!what) return std::nullopt;
     return Problem{file, spec_.place.line, spec_.place.column, what->first, what->second};
   }
@@ -93,6 +99,48 @@ class Reading {
     return std::nullopt;
   }
 
+  /// As large as what is in it, but far from it: one of the two is in map coordinates.
+  std::optional<Note> elsewhere() const {
+    Eigen::AlignedBox3d things;
+    for (const Vec3& at : all_) things.extend(at);
+    const double diagonal_m = bounds_.diagonal().norm(), apart_m = bounds_.exteriorDistance(things);
+    if (apart_m <= kFarDiagonals * diagonal_m || things.diagonal().norm() > kSameSize * diagonal_m) return std::nullopt;
+    const Vec3 way_m = things.center() - bounds_.center();
+    return Note{
+        fmt::format("the scene ({}) is {} away from all fixtures, points and luxmeters ({})", extent_text(bounds_),
+                    length_text(apart_m), extent_text(things)),
+        fmt::format("give both in the same coordinates: the mesh moved by about {}, or the positions back by it",
+                    position_text(way_m))};
+  }
+
+  /// Points belong in a scene or on it, whatever its lamps do. Where none is, another unit may bring all in.
+  std::optional<Note> all_outside() const {
+    const std::size_t judged = all_.size() - fixtures_;
+    if (judged == 0 || within(bounds_, kOutside, fixtures_) > 0) return std::nullopt;
+    for (const UpAxis up : axes_to_try())
+      for (const MeshUnit& unit : kUnitsByLength) {
+        const Eigen::AlignedBox3d then = read_as(up, unit.metres);
+        if (!nearly_all(within(then, 0.02), all_.size())) continue;
+        return Note{fmt::format("the scene is read as {} in size, with all {} points and luxmeters outside of it",
+                                size_text(bounds_.sizes()), judged),
+                    mend_of(unit, up, then)};
+      }
+    return std::nullopt;
+  }
+
+  [[nodiscard]] std::vector<UpAxis> axes_to_try() const {
+    std::vector<UpAxis> axes = {mesh().up_axis};
+    for (const UpAxis up : kUpAxes)
+      if (up != mesh().up_axis) axes.push_back(up);
+    return axes;
+  }
+
+  [[nodiscard]] std::string mend_of(const MeshUnit& unit, UpAxis up, const Eigen::AlignedBox3d& then) const {
+    return fmt::format("set unit = \"{}\"{} in [scene], which makes it {}", unit.name,
+                       up == mesh().up_axis ? "" : " and up_axis = \"" + name_of_axis(up) + "\"",
+                       size_text(then.sizes()));
+  }
+
   std::optional<Note> wrong_unit() const {
     const std::size_t begin = fixtures_ < all_.size() ? fixtures_ : 0;  // without points, by the fixtures
     const std::size_t judged = all_.size() - begin;
@@ -111,19 +159,14 @@ class Reading {
         "the scene is {} in size, far too {} for what is in it: fixtures, points and "
         "luxmeters are spread over {}",
         size_text(bounds_.sizes()), too_small ? "small" : "large", size_text(things.sizes()));
-    std::vector<UpAxis> axes = {mesh().up_axis};
-    for (const UpAxis up : kUpAxes)
-      if (up != mesh().up_axis) axes.push_back(up);
     // Well within, if any reading does that; else near by, as lamps above a mere floor are.
     for (const double margin : {0.02, 0.25})
-      for (const UpAxis up : axes)
+      for (const UpAxis up : axes_to_try())
         for (const MeshUnit& unit : kUnitsByLength) {
           if (too_small != (unit.metres > mesh().metres_per_unit)) continue;
           const Eigen::AlignedBox3d then = read_as(up, unit.metres);
           if (!nearly_all(within(then, margin), all_.size())) continue;
-          return Note{what, fmt::format("set unit = \"{}\"{} in [scene], which makes it {}", unit.name,
-                                        up == mesh().up_axis ? "" : " and up_axis = \"" + name_of_axis(up) + "\"",
-                                        size_text(then.sizes()))};
+          return Note{what, mend_of(unit, up, then)};
         }
     return Note{what, "correct unit in [scene], or export the mesh in metres"};
   }

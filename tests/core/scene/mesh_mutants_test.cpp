@@ -78,10 +78,10 @@ bool takes_mesh(const std::string& bytes, const std::string& extension) {
     for (const Problem& problem : mesh.error()) EXPECT_FALSE(problem.what.empty() || problem.mend.empty());
     return false;
   }
-  const Scene scene = scene_of_mesh(std::move(*mesh), Eigen::Affine3d::Identity(), "mutant");
-  for (const auto& triangle : scene.triangles)
-    for (const std::uint32_t index : triangle) EXPECT_LT(index, scene.vertices_m.size());
-  for (const Material& material : scene.materials) {
+  const PlacedMesh placed = place_mesh(std::move(*mesh), Eigen::Affine3d::Identity());
+  for (const auto& triangle : placed.triangles)
+    for (const std::uint32_t index : triangle) EXPECT_LT(index, placed.vertices_world_m.size());
+  for (const Material& material : placed.materials) {
     EXPECT_GE(material.reflectance_rgb.minCoeff(), 0);
     EXPECT_LE(material.reflectance_rgb.maxCoeff(), 0.95);
   }

@@ -164,6 +164,30 @@ TEST_F(RigNotes, AMeshInAnotherUnitIsNoted) {
   expect_one(3, {"0.0060 x 0.0050 x 0.0030 m in size, far too small", "set unit = \"m\"", "6.00 x 5.00 x 3.00 m"});
 }
 
+TEST_F(RigNotes, AMeshInMetresReadAsFeetIsNotedWhereAllPointsAreOutsideOfIt) {
+  rig.scene.place = {3, 1};
+  rig.scene.objects.clear();
+  rig.scene.mesh->metres_per_unit = 0.3048;  // 1.8 x 1.5 x 0.9 m: not far too small, and in the open all are in sight
+  for (Point& point : rig.points) point.position_world_m += Vec3(1, 1, 0);
+  expect_one(3, {"is read as 1.83 x 1.52 x 0.91 m in size, with all 4 points and luxmeters outside",
+                 "set unit = \"m\" in [scene], which makes it 6.00 x 5.00 x 3.00 m"});
+  // A lone object on which the points are: nothing to note of how it is read.
+  rig.scene.mesh->metres_per_unit = 0.1;
+  rig.luxmeters.clear();
+  for (Point& point : rig.points) point.position_world_m = Vec3(0.3, 0.25, 0.31);
+  EXPECT_TRUE(notes().empty()) << notes()[0].text();
+}
+
+TEST_F(RigNotes, ARigInOtherCoordinatesThanItsSceneIsNoted) {
+  rig.scene.place = {3, 1};
+  rig.scene.objects.clear();
+  for (Fixture& fixture : rig.fixtures) fixture.world_from_mount.translation_m += Vec3(1e5, -2e4, 0);
+  for (Point& point : rig.points) point.position_world_m += Vec3(1e5, -2e4, 0);
+  rig.luxmeters.front().position_world_m += Vec3(1e5, -2e4, 0);
+  expect_one(3, {"the scene (x 0.00 to 6.00", "away from all fixtures, points and luxmeters (x 100001.00",
+                 "the mesh moved by about"});
+}
+
 TEST_F(RigNotes, ALampAFewMillimetresFromAPointIsNotedAndOneInItRefused) {
   EXPECT_TRUE(lamps_in_points(rig).empty());
   rig.fixtures[2].world_from_mount.translation_m = rig.points[2].position_world_m + Vec3(0, 0, 0.005);

@@ -1,9 +1,10 @@
 #pragma once
 /// Random scenes of everything that goes wrong in meshes people have: slivers, needles, duplicate and intersecting
-/// triangles, stacks of coplanar ones, lamps on surfaces, receivers on edges and vertices, from micrometres to a
-/// thousand kilometres, and far from the origin.
+/// triangles, stacks of coplanar ones, every face twice, faces of 20 km through scenes of millimetres, lamps on
+/// surfaces, receivers on edges and vertices, from micrometres to a thousand kilometres, and far from the origin.
 
 #include <random>
+#include <utility>
 
 #include "core/photometry/sky.h"
 #include "core/transport/evaluator.h"
@@ -56,6 +57,8 @@ class HostileScenes {
         const double largest_m = std::max(r.position_world_m.cwiseAbs().maxCoeff(), distance_m);
         made.may_be_refused |= distance_m <= 1e-8 * largest_m + e.shape.size_m.norm();
       }
+    if (below(4) == 0) huge_faces(made.scene);
+    if (below(4) == 0) double_faces(made.scene);
     return made;
   }
 
@@ -77,6 +80,29 @@ class HostileScenes {
     const auto first = static_cast<std::uint32_t>(scene.vertices_m.size());
     for (const Vec3& v : {a, b, c}) scene.vertices_m.push_back((size_m_ * v).cast<float>());
     scene.triangles.push_back({first, first + 1, first + 2});
+  }
+
+  /// Uncut, and so coarse in float: build_scene() cuts them.
+  void huge_faces(Scene& scene) {
+    const double size_m = std::exchange(size_m_, 1e4);
+    const std::size_t before = scene.triangles.size();
+    const Vec3 lift = size_m / size_m_ * any(), u = unit(), v = u.cross(unit()).normalized();
+    triangle(scene, lift - u - v, lift + u - v, lift + v);
+    triangle(scene, lift - u - v, lift + v, lift - u + v);
+    size_m_ = size_m;
+    scene.object_of_triangle.resize(scene.triangles.size(), 0);
+    while (scene.material_of_triangle.size() < scene.triangles.size())
+      scene.material_of_triangle.push_back(scene.material_of_triangle[before / 2]);
+  }
+
+  static void double_faces(Scene& scene) {
+    const auto twice = [](auto& list) {
+      const auto once = list;
+      list.insert(list.end(), once.begin(), once.end());
+    };
+    twice(scene.triangles);
+    twice(scene.material_of_triangle);
+    twice(scene.object_of_triangle);
   }
 
   void box(Scene& scene, const Vec3& low, const Vec3& high) {
