@@ -264,10 +264,11 @@ Judgement GainEstimator::judge(const LuxReading& reading, std::span<const double
     const double change = std::abs(expected.lux - former);
     const double visible =
         std::max({kStuckChange * std::max(expected.lux, former), kDark_lx, 3 * luxmeter.patch.lux_per_count});
-    judgement.stuck = change > visible;
-    if (judgement.stuck)
+    judgement.stuck = change > visible || !meter.stuck.empty();
+    if (change > visible)
       return reject(fmt::format("it is stuck: still {:.4g} lx while the light there went from {:.4g} to {:.4g} lx",
                                 reading.lux, former, expected.lux));
+    if (judgement.stuck) return reject(meter.stuck);
   }
   if (reading.lux < judgement.lowest_lx || reading.lux > judgement.highest_lx)
     return reject(
@@ -309,7 +310,7 @@ void GainEstimator::learn(const LuxReading& reading, const VectorXd& level) {
 void GainEstimator::shows(const LuxReading& reading, std::span<const double> level) {
   Meter& meter = meters_.at(reading.luxmeter);
   if (meter.lux == reading.lux) return;
-  meter = {reading.lux, reading.taken, vector_of(level)};
+  meter = {reading.lux, reading.taken, vector_of(level), ""};
 }
 
 std::vector<Judgement> GainEstimator::update(Time now, std::span<const LuxReading> readings,
@@ -322,12 +323,15 @@ std::vector<Judgement> GainEstimator::update(Time now, std::span<const LuxReadin
     judgements.push_back(judge(reading, level));
     if (judgements.back().believed) believed.push_back(&reading);
   }
-  // What a stuck meter said since it has stood still cannot be trusted either.
-  for (const Judgement& judgement : judgements)
-    if (judgement.stuck)
-      std::erase_if(evidence_, [&](const Evidence& e) {
-        return e.luxmeter == judgement.luxmeter && e.taken >= meters_[judgement.luxmeter].since;
-      });
+  // What a stuck meter said since it has stood still cannot be trusted either, nor what it says when the light is by
+  // chance what it was then.
+  for (const Judgement& judgement : judgements) {
+    if (!judgement.stuck) continue;
+    Meter& meter = meters_[judgement.luxmeter];
+    meter.stuck = judgement.why;
+    std::erase_if(evidence_,
+                  [&](const Evidence& e) { return e.luxmeter == judgement.luxmeter && e.taken >= meter.since; });
+  }
   for (const LuxReading* reading : believed)
     // In the dark there is nothing to learn but the meter's offset.
     if (meter_.row(static_cast<Index>(reading->luxmeter)).dot(at) > 2 * kDark_lx) learn(*reading, at);

@@ -200,6 +200,7 @@ class GainEstimator {
     std::optional<double> lux;  ///< last value, believed or not
     Time since{};               ///< it is the same since then
     Eigen::VectorXd level;      ///< as it was then
+    std::string stuck;          ///< why it is known to be; empty: it is not. Until the value changes
   };
 
   /// Rows of M and of the transport's standard error, with what is known of x there.

@@ -353,8 +353,14 @@ TEST(GainEstimator, DoesNotBelieveAMeterThatFreezesInTheMiddleOfAFade) {
     EXPECT_FALSE(judgement.believed);
   }
   EXPECT_EQ(frozen.lux, lux);
+  // Nor when the light is what it was when it froze; but as soon as its value changes.
+  frozen.taken = at_s(9);
+  estimator.shows(frozen, at(0.95));
+  EXPECT_TRUE(estimator.update(at_s(9), std::span(&frozen, 1), at(0.95)).front().stuck);
+  EXPECT_NEAR(estimator.gain(0), gain, 1e-4);
+  const LuxReading well = show(10, 0.95, 0.9501);
+  EXPECT_TRUE(estimator.update(at_s(10), std::span(&well, 1), at(0.95)).front().believed);
   EXPECT_TRUE(estimator.confirmed(0));
-  EXPECT_NEAR(estimator.gain(0), gain, 1e-5);  // it grows older
 }
 
 TEST(GainEstimator, FindsTheOutputOfASingleLampAndSaysHowSureItIs) {
