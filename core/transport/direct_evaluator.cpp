@@ -19,6 +19,7 @@ class DirectEvaluator final : public Evaluator {
     matrix.lux_per_level = matrix.direct_lux_per_level;
     matrix.replicates = std::move(direct->replicates);
     matrix.relative_error = direct->relative_error;
+    matrix.rms_error = direct->rms_error;
     matrix.floor_lx = direct->floor_lx;
     matrix.rays = direct->rays;
     if (options.colour)

@@ -23,8 +23,6 @@ namespace {
 constexpr std::size_t kDirectReplicates = 16;
 constexpr std::uint32_t kFirstSamples = 16;  ///< per replicate
 constexpr std::uint32_t kMostSamples = 1u << 26;
-/// As in the path evaluator: done when this many standard errors are within what is wanted.
-constexpr double kStopMargin = 2.5;
 /// Shadow edges mostly run along or across a lamp, and so along the strata of the samples: of N strata one is cut, and
 /// each replicate finds it lit or dark, with probabilities p and 1-p. When all 16 agree by chance (one time in eight
 /// for p anywhere in 0…1) their spread shows nothing. The rule of succession, p = 1/18, gives what error is then to be
@@ -230,7 +228,7 @@ class Evaluation {
     for (std::size_t r = 0; r < receivers_.size(); ++r) {
       // Where all is dark so far, any doubt is too much.
       const bool dark = lux_[r] == 0 && floor_lx_ == 0;
-      const bool wants = dark ? error_lx(r) > 0 : relative_error(r) * kStopMargin > options_.wanted_relative_error;
+      const bool wants = dark ? error_lx(r) > 0 : relative_error(r) > options_.wanted_standard_error();
       if (!wants) continue;
       double most = 0;
       for (std::size_t i = pairs_of_[r]; i < pairs_of_[r + 1]; ++i)
@@ -256,8 +254,12 @@ class Evaluation {
           direct_.replicates[k](index(pair.receiver), index(pair.emitter)) = estimates[k];
         direct_.lux_per_level(index(pair.receiver), index(pair.emitter)) = pair.mean_lux();
       }
-      for (std::size_t r = 0; r < receivers_.size(); ++r)
+      double squares = 0;
+      for (std::size_t r = 0; r < receivers_.size(); ++r) {
         direct_.relative_error = std::max(direct_.relative_error, relative_error(r));
+        squares += relative_error(r) * relative_error(r);
+      }
+      direct_.rms_error = std::sqrt(squares / static_cast<double>(receivers_.size()));
       direct_.floor_lx = floor_lx_;
     }
     if (options_.watch.progress) options_.watch.progress(progress_end_);

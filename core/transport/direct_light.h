@@ -10,6 +10,7 @@ struct DirectLight {
   /// Independent unbiased estimates whose mean it is, equal where an entry is exact; empty when all are.
   std::vector<Eigen::MatrixXd> replicates;
   double relative_error = 0;  ///< standard error reached at the options' levels, largest over receivers; 0 when exact
+  double rms_error = 0;       ///< the same, root mean square over receivers
   double floor_lx = 0;        ///< of a dimmer receiver, relative to this; 0 when exact
   std::uint64_t rays = 0;
 };

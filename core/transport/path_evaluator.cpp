@@ -86,9 +86,8 @@ class PathEvaluation {
     const bool reflects = obstacles_in(scene_) && !emitters_.empty() && !receivers_.empty() &&
                           std::any_of(bsdfs_.begin(), bsdfs_.end(), [](const Bsdf& b) { return !b.black(); });
     EvaluateOptions direct_options = options_;
-    if (options_.wanted_rms_error > 0)
-      direct_options.wanted_relative_error = PathRounds::kStopMargin * options_.wanted_rms_error;
-    direct_options.wanted_relative_error /= reflects ? kDirectMargin : 1;
+    for (double* wanted : {&direct_options.wanted_relative_error, &direct_options.wanted_rms_error})
+      *wanted /= reflects ? kDirectMargin : 1;
     auto direct = direct_light(scene_, receivers_, emitters_, direct_options, reflects ? 0.05 : 1.0, &openings_);
     if (!direct) return tl::unexpected(std::move(direct.error()));
     matrix_.direct_lux_per_level = std::move(direct->lux_per_level);
@@ -98,6 +97,7 @@ class PathEvaluation {
       matrix_.lux_per_level = matrix_.direct_lux_per_level;
       matrix_.replicates = std::move(direct_replicates_);
       matrix_.relative_error = direct->relative_error;
+      matrix_.rms_error = direct->rms_error;
       matrix_.floor_lx = direct->floor_lx;
       if (channels_ == 3) start_colours();
       return std::move(matrix_);
@@ -135,7 +135,7 @@ class PathEvaluation {
       for (std::size_t i = 0; i < sampled.size(); ++i) spent_[sampled[i]].rays += rays[i], matrix_.rays += rays[i];
     }
     for (const std::size_t r : sampled) estimate(r);
-    if (ends_) record_bias_ = ends_->bias(spent_);
+    if (ends_) judge_records();
     done_ = spent_.done_after({}, done_);
     spent_.find_floor();
     return true;
@@ -262,7 +262,7 @@ class PathEvaluation {
 
   /// Records per receiver at first: what they are off by is to fall with the wanted error.
   std::size_t first_records_each() const {
-    const double records = kFirstRecords * std::pow(0.01 / spent_.last_standard_error(), 1.5);
+    const double records = kFirstRecords * std::pow(0.01 / options_.wanted_standard_error(), 1.5);
     return static_cast<std::size_t>(std::clamp(records, kFewestFirst, kMostFirst));
   }
 
@@ -286,11 +286,8 @@ class PathEvaluation {
     if (channels_ == 3) start_colours();
     if (ends_) {
       matrix_.rays += ends_->take(sums_, channels_, options_.threads);
-      for (std::size_t r = 0; r < receivers_.size(); ++r) {
-        spent_[r].taken_lx += ends_->important_lx(r);
-        estimate(r);
-      }
-      record_bias_ = ends_->bias(spent_);
+      for (std::size_t r = 0; r < receivers_.size(); ++r) estimate(r);
+      judge_records();
       spent_.find_floor();
     }
     std::vector<std::uint32_t> samples;
@@ -310,12 +307,29 @@ class PathEvaluation {
     matrix_.floor_lx = spent_.floor_lx();
     for (std::size_t r = 0; r < receivers_.size(); ++r)
       matrix_.relative_error = std::max(matrix_.relative_error, spent_.relative_error(r));
+    matrix_.rms_error = spent_.rms_error();
     if (options_.watch.progress) options_.watch.progress(1.0);
   }
 
   bool bias_is_known() const {
     const auto bias = record_bias_.measured();
-    return bias && bias->error < kBiasPart * spent_.last_standard_error();
+    return bias && bias->error < kBiasPart * options_.wanted_standard_error();
+  }
+
+  /// How far records are off, and what of it no receiver can know.
+  void judge_records() {
+    record_bias_ = ends_->bias(spent_);
+    const auto believed = record_bias_.believed();
+    for (std::size_t r = 0; r < receivers_.size() && believed; ++r)
+      spent_[r].shared_error_lx = share_of_records(r) * believed->error * spent_[r].reflected_lx;
+  }
+
+  /// Of a receiver's reflected light.
+  [[nodiscard]] double share_of_records(std::size_t r) const {
+    const ReceiverProgress& spent = spent_[r];
+    const double taken_lx = (spent.taken_lx + ends_->important_lx(r)) /
+                            (kPathReplicates * std::max(1.0, static_cast<double>(spent.samples)));
+    return spent.reflected_lx > 0 ? std::clamp(taken_lx / spent.reflected_lx, 0.0, 1.0) : 0;
   }
 
   /// Takes the records' common bias, as the checked paths show it, out of what was taken from them; and adds what
@@ -330,11 +344,8 @@ class PathEvaluation {
     const double up_and_down =
         error * 4 / (std::sqrt(16.0 / 15) * student_t_975(kPathReplicates - 1) / student_t_975(1e9));
     for (std::size_t r = 0; r < receivers_.size(); ++r) {
-      ReceiverProgress& spent = spent_[r];
-      const double reflected_lx = spent.reflected_lx;
-      if (!(spent.taken_lx > 0) || !(reflected_lx > 0)) continue;
-      const double taken_lx = spent.taken_lx / (kPathReplicates * static_cast<double>(spent.samples));
-      const double share = std::min(1.0, taken_lx / reflected_lx);
+      const double share = share_of_records(r);
+      if (!(share > 0)) continue;
       const auto row = static_cast<Eigen::Index>(r);
       const auto reflected = (matrix_.lux_per_level.row(row) - matrix_.direct_lux_per_level.row(row)).eval();
       matrix_.lux_per_level.row(row) -= share * bias / (1 + bias) * reflected;
@@ -344,7 +355,6 @@ class PathEvaluation {
       for (std::size_t k = 0; k < kPathReplicates; ++k)
         matrix_.replicates[k].row(row) -=
             share * (bias / (1 + bias) + (k % 2 == 0 ? up_and_down : -up_and_down)) * reflected;
-      spent.error_lx = std::hypot(spent.error_lx, share * error * reflected_lx);
     }
   }
 

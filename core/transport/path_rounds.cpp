@@ -71,7 +71,8 @@ std::vector<double> PathRounds::samples_by_rms() const {
     if (rays > 0) weights[r] = std::sqrt(progress_[r].scatter / rays);
   }
   if (rms_error() <= options_.wanted_rms_error) return wanted;
-  // As last rounds told it, all of it off by the same factor from what is known now.
+  // As last rounds told it, all of it off by the same factor from what is known now: what receivers share falls with
+  // their samples, too.
   double scattered = 0;
   for (const ReceiverProgress& one : progress_) scattered += one.scatter / std::max(1u, one.samples);
   const double aim = scattered / kStepMargin * std::pow(options_.wanted_rms_error / rms_error(), 2);
@@ -91,10 +92,6 @@ double PathRounds::rms_error() const {
   double squares = 0;
   for (std::size_t r = 0; r < progress_.size(); ++r) squares += relative_error(r) * relative_error(r);
   return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(1, progress_.size())));
-}
-
-double PathRounds::last_standard_error() const {
-  return by_rms() ? options_.wanted_rms_error : options_.wanted_relative_error / kStopMargin;
 }
 
 std::vector<PathTask> PathRounds::next(std::uint64_t rays_cast) const {
@@ -138,19 +135,20 @@ void PathRounds::find_floor() {
 }
 
 double PathRounds::relative_error(std::size_t receiver) const {
-  const double scale_lx = std::max(progress_[receiver].lux, floor_lx_);
-  return scale_lx > 0 ? progress_[receiver].error_lx / scale_lx : 0;
+  const ReceiverProgress& one = progress_[receiver];
+  const double scale_lx = std::max(one.lux, floor_lx_);
+  return scale_lx > 0 ? std::hypot(one.error_lx, one.shared_error_lx) / scale_lx : 0;
 }
 
 double PathRounds::overshoot(std::size_t receiver) const {
   const ReceiverProgress& one = progress_[receiver];
   if (one.error_lx == 0) return one.found || one.samples >= kSamplesToBelieveNothing ? 0 : HUGE_VAL;
-  return relative_error(receiver) / last_standard_error();
+  return relative_error(receiver) / options_.wanted_standard_error();
 }
 
 double PathRounds::done_after(const std::vector<PathTask>& round, double before) const {
   double spent = 0, left = 0;
-  const double rms = by_rms() ? rms_error() / last_standard_error() : 0;
+  const double rms = by_rms() ? rms_error() / options_.wanted_standard_error() : 0;
   for (std::size_t r = 0; r < progress_.size(); ++r) {
     spent += progress_[r].samples;
     const double factor = std::min(by_rms() ? rms : overshoot(r), 1e3);

@@ -17,7 +17,8 @@ struct ReceiverProgress {
   double lux = 0;  ///< under the options' levels
   double direct_lx = 0;
   double reflected_lx = 0;          ///< lux without direct_lx; of a first round's hits alone before there is more
-  double error_lx = 0;              ///< standard error of lux
+  double error_lx = 0;              ///< standard error of lux by its own replicates
+  double shared_error_lx = 0;       ///< what tail records' common bias adds to it
   double taken_lx = 0;              ///< from tail records, summed over samples and replicates
   double scatter = 0;               ///< about relative error² × samples, by the last rounds
   std::uint32_t scatter_of = 0;     ///< samples when it was last told
@@ -34,12 +35,6 @@ struct PathTask {
 
 class PathRounds {
  public:
-  /// A receiver is done when this many of its standard errors are within the wanted error. One would keep the contract
-  /// on average; 2.5 makes the error itself, not only its standard deviation, stay below the wanted one for 98 of 100
-  /// receivers, and leaves room for the estimate from 16 replicates to be too low by 1.44 (χ², 15 degrees of freedom,
-  /// 5 %), which stopping at the first low estimate would make the rule.
-  static constexpr double kStopMargin = 2.5;
-
   /// options   must outlive it
   PathRounds(std::size_t receivers, const EvaluateOptions& options) : options_(options), progress_(receivers) {}
 
@@ -58,10 +53,10 @@ class PathRounds {
   /// Below which errors are relative to this (error_floor.h).
   [[nodiscard]] double floor_lx() const { return floor_lx_; }
 
-  /// Standard error of a receiver at which sampling stops; under a wanted rms error, their rms.
-  [[nodiscard]] double last_standard_error() const;
-  /// Relative to the receiver's lux or the floor.
+  /// Relative to the receiver's lux or the floor, with what it shares.
   [[nodiscard]] double relative_error(std::size_t receiver) const;
+  /// Root mean square of them all.
+  [[nodiscard]] double rms_error() const;
   /// Share of the whole work done so far, or after a round: error falls at least with the root of the samples. At least
   /// `before`.
   [[nodiscard]] double done_after(const std::vector<PathTask>& round, double before) const;
@@ -69,7 +64,6 @@ class PathRounds {
  private:
   [[nodiscard]] std::uint64_t rays_left(std::uint64_t rays_cast) const;
   [[nodiscard]] bool by_rms() const { return options_.wanted_rms_error > 0; }
-  [[nodiscard]] double rms_error() const;
   /// Samples that receivers should have in all, for the wanted rms error.
   [[nodiscard]] std::vector<double> samples_by_rms() const;
   /// Those that want more, by themselves: without a limit of rays.

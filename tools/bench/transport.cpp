@@ -43,7 +43,7 @@ std::vector<BenchRow> bench_transport(const BenchOptions& options) {
   std::vector<BenchRow> rows;
   for (const auto add :
        {add_identity_rows, add_moved_rows, add_candidate_rows, add_growth_rows, add_candidate_skip_rows,
-        add_evaluator_skip_rows, add_changed_lamp_rows, add_cache_rows, add_curve_rows})
+        add_evaluator_skip_rows, add_changed_lamp_rows, add_cache_rows, add_error_bar_rows_of_rooms, add_curve_rows})
     add(options, rows);
   return rows;
 }

@@ -91,13 +91,12 @@ RoomError error_of(const Eigen::VectorXd& lux, const Eigen::VectorXd& reference_
 }
 
 Reference reference_of(const TransportCase& one, const BenchOptions& options, const ReferenceLevels& of_lamps) {
-  // Path tracing stops at 2.5 standard errors within the wanted error.
-  const double wanted = 2.5 * (options.quick ? 0.0016 : options.reference_error);
+  const double wanted = options.quick ? 0.0016 : options.reference_error;
   if (!options.references_folder.empty())
     if (auto kept = read_reference(file_of(one, options, of_lamps), one.room.receivers.size(), wanted)) return *kept;
   fmt::print(stderr, "{}: converged reference, wanted error {:g} …\n", one.room.name, wanted);
   EvaluateOptions evaluate;
-  evaluate.wanted_relative_error = wanted;
+  evaluate.wanted_rms_error = wanted;
   evaluate.seed = 0xC0FFEE;
   evaluate.threads = options.threads;
   evaluate.levels = of_lamps.steering;

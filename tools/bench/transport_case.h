@@ -56,6 +56,7 @@ struct RoomError {
 void set_note(BenchRow& row, std::string note);
 
 /// Parts of the suite, a file each.
+void add_error_bar_rows_of_rooms(const BenchOptions& options, std::vector<BenchRow>& rows);
 void add_curve_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
 void add_identity_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
 void add_moved_rows(const BenchOptions& options, std::vector<BenchRow>& rows);

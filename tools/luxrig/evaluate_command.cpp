@@ -87,10 +87,13 @@ int run_evaluate(const EvaluateArguments& arguments) {
     out["threads"] = threads;
     fmt::print("{}\n", out.dump(1));
   } else {
-    fmt::print("{}\n{} model ({}): relative error {:.2g} (wanted {:.2g}{}), {} rays, {:.2f} s, {} threads\n",
-               table.text(), used.name, used.reason, transport->relative_error, compute.max_error,
-               used.error_floor_lx > 0 ? fmt::format(", or ± {:.2g} lx", used.error_floor_lx) : "", transport->rays,
-               seconds, threads);
+    fmt::print(
+        "{}\n{} model ({}): standard error {:.2g} rms, {:.2g} at most (wanted {:g} {}{}), {} rays, {:.2f} s, "
+        "{} threads\n",
+        table.text(), used.name, used.reason, used.rms_error, used.relative_error, used.wanted,
+        used.of_worst ? "of each point, with a margin" : "rms",
+        used.error_floor_lx > 0 ? fmt::format(", or ± {:.2g} lx", used.error_floor_lx) : "", transport->rays, seconds,
+        threads);
   }
   if (const std::string warning = used.warning(); !warning.empty())
     fmt::print(stderr, "luxrig: warning: {}\n", warning);

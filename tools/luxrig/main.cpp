@@ -8,6 +8,7 @@
 #include "tools/luxrig/camera_command.h"
 #include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
+#include "tools/luxrig/compute_arguments.h"
 #include "tools/luxrig/render_command.h"
 #include "tools/luxrigd/run_options.h"
 
@@ -15,26 +16,14 @@ namespace {
 
 using namespace luxrig;
 
-void add_compute(CLI::App& command, ComputeOptions& compute) {
+void add_model(CLI::App& command, ComputeOptions& compute) {
   add_choice<Model, Model>(
       command, "--model", compute.model,
       "how light is computed; auto: the cheapest that meets the error; direct: no interreflection",
       {{"auto", Model::automatic}, {"direct", Model::direct}, {"gather", Model::gather}, {"path", Model::path}},
       {{"cache", "is refused, as its error bars were too short to be believed: use gather or path"}});
-  command.add_option("--max-error", compute.max_error, "wanted relative standard error")->check(CLI::Range(1e-4, 1.0));
-  command
-      .add_option("--error-floor", compute.error_floor_lx,
-                  "standard error in lux that is small enough at any point (else --max-error of a tenth of the rig's "
-                  "smallest goal or limit; without any, of a tenth of the points' mean)")
-      ->check(CLI::Range(1e-9, 1e9));
-  command
-      .add_option("--max-seconds", compute.max_seconds,
-                  "after so long light is taken as it is known by then, with a warning (0: no end)")
-      ->capture_default_str()
-      ->check(CLI::Range(0.0, 1e9));
   command.add_flag("--strict", compute.strict, "exit code 1 when the wanted error is not reached (else a warning)");
-  command.add_option("--seed", compute.seed, "seed of the samples");
-  command.add_option("--threads", compute.threads, "threads (0: one per core)")->check(CLI::Range(0, 1024));
+  add_compute(command, compute);
 }
 
 void add_client(CLI::App& command, ClientArguments& client, bool with_json = true) {
@@ -118,7 +107,7 @@ int main(int argc, char** argv) {
   command = app.add_subcommand("evaluate", "lux at every measurement point and luxmeter");
   add_rig_option(*command, evaluate.rig);
   command->add_option("--levels", evaluate.levels_plan, "levels of this plan (else every fixture at 100 %)");
-  add_compute(*command, evaluate.compute);
+  add_model(*command, evaluate.compute);
   command->add_flag("--json", evaluate.json, "print JSON");
   command->callback([&] { code = run_evaluate(evaluate); });
 
@@ -126,7 +115,7 @@ int main(int argc, char** argv) {
   command = app.add_subcommand("solve", "do what the rig's tasks ask, and write a plan");
   add_rig_option(*command, solve.rig);
   command->add_option("-o,--output", solve.output, "write the plan here");
-  add_compute(*command, solve.compute);
+  add_model(*command, solve.compute);
   command->add_flag("--json", solve.json, "print the plan");
   command->callback([&] { code = run_solve(solve); });
 

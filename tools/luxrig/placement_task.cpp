@@ -115,7 +115,7 @@ Result<PlacedInScene> search_places(const Rig& rig, const Scene& scene, const Ra
       evaluate.levels.push_back(level);
     }
     if (lamps.empty()) return Eigen::VectorXd::Zero(points * channels);
-    evaluate.wanted_relative_error = evaluate.wanted_rms_error = options.max_error;  // as the error of a goal is
+    options.want_error(evaluate);
     set_error_floor(rig, evaluate);
     evaluate.seed = options.seed;
     evaluate.threads = options.threads;

@@ -19,10 +19,17 @@ namespace luxrig {
 std::string ModelUsed::warning() const {
   if (reached()) return "";
   return fmt::format(
-      "not as exact as wanted: relative error {:.2g}, wanted {:g}{}: {} or ask for less (--max-error, --error-floor)",
-      relative_error, wanted,
+      "not as exact as wanted: error {:.2g} {}, wanted {:g}{}: {} or ask for less (--{}-error, --error-floor)",
+      of_worst ? 2 * relative_error : rms_error, of_worst ? "of the worst point (two standard errors)" : "rms", wanted,
       time_was_up ? fmt::format(", when {:g} s were over", max_seconds) : ", after the most rays that are cast",
-      time_was_up ? "give it more time (--max-seconds)" : "take another --model");
+      time_was_up ? "give it more time (--max-seconds)" : "take another --model", of_worst ? "worst" : "max");
+}
+
+void ComputeOptions::want_error(EvaluateOptions& evaluate) const {
+  if (worst_error)
+    evaluate.wanted_relative_error = *worst_error;
+  else
+    evaluate.wanted_rms_error = max_error;
 }
 
 Checked<Session> open_session(const std::filesystem::path& rig_path) {
@@ -54,7 +61,7 @@ Result<TransportMatrix> compute_transport(const Rig& rig, const RayScene& rays, 
   const std::optional<double> seconds = options.max_seconds > 0 ? std::optional(options.max_seconds) : std::nullopt;
   SearchWatch watch(options.said_as, "starting", seconds, {});
   EvaluateOptions evaluate;
-  evaluate.wanted_relative_error = options.max_error;
+  options.want_error(evaluate);
   evaluate.seed = options.seed;
   evaluate.threads = options.threads;
   evaluate.levels = levels;
@@ -67,14 +74,15 @@ Result<TransportMatrix> compute_transport(const Rig& rig, const RayScene& rays, 
     };
   set_error_floor(rig, evaluate);
   if (options.error_floor_lx) {
-    evaluate.floor_lx = *options.error_floor_lx / options.max_error;
+    evaluate.floor_lx = *options.error_floor_lx / evaluate.wanted_standard_error();
     evaluate.floor_of_mean = 0;
   }
   evaluate.colour = rig.colour_goals();
   const auto receivers = receivers_of(rig);
   const auto emitters = all_emitters_of(rig);
+  const double wanted = options.worst_error.value_or(options.max_error);
   if (emitters.empty()) {  // a rig in which all light is yet to be placed
-    if (used) *used = {"direct", "nothing shines", options.max_error};
+    if (used) *used = {"direct", "nothing shines", wanted, options.worst_error.has_value()};
     TransportMatrix dark;
     dark.lux_per_level = dark.direct_lux_per_level =
         Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(receivers.size()), 0);
@@ -102,8 +110,15 @@ Result<TransportMatrix> compute_transport(const Rig& rig, const RayScene& rays, 
   }
   auto transport = choice.evaluator->evaluate(receivers, emitters, evaluate);
   if (used && transport)
-    *used = {std::string(choice.evaluator->name()),   choice.reason,      options.max_error,  transport->relative_error,
-             options.max_error * transport->floor_lx, watch.time_is_up(), options.max_seconds};
+    *used = {.name = std::string(choice.evaluator->name()),
+             .reason = choice.reason,
+             .wanted = wanted,
+             .of_worst = options.worst_error.has_value(),
+             .relative_error = transport->relative_error,
+             .rms_error = transport->rms_error,
+             .error_floor_lx = evaluate.wanted_standard_error() * transport->floor_lx,
+             .time_was_up = watch.time_is_up(),
+             .max_seconds = options.max_seconds};
   return transport;
 }
 

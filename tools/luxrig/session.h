@@ -28,7 +28,8 @@ enum class Model { automatic, direct, gather, path };
 
 struct ComputeOptions {
   Model model = Model::automatic;
-  double max_error = 0.01;
+  double max_error = 0.01;               ///< wanted root mean square of the points' standard errors
+  std::optional<double> worst_error;     ///< in its place: wanted error of each point (EvaluateOptions::kStopMargin)
   std::optional<double> error_floor_lx;  ///< standard error that is small enough at any point; none: by the goals
   double max_seconds = 120;              ///< of each computation of transport; 0: without an end
   bool strict = false;                   ///< a command fails when the wanted error is not reached
@@ -36,17 +37,23 @@ struct ComputeOptions {
   int threads = 0;
   Watch watch;
   std::string said_as;  ///< before lines of progress on standard error; empty: none
+
+  /// Asks an evaluator for that error.
+  void want_error(EvaluateOptions& evaluate) const;
 };
 
 /// Which evaluator did it, why that one, and how close it came.
 struct ModelUsed {
   std::string name, reason;
-  double wanted = 0, relative_error = 0;
+  double wanted = 0;
+  bool of_worst = false;                     ///< wanted of each point, not of their rms
+  double relative_error = 0, rms_error = 0;  ///< standard errors: largest over the points, and root mean square
   double error_floor_lx = 0;  ///< standard error that was small enough at any point; 0: exact
   bool time_was_up = false;   ///< it ended by ComputeOptions::max_seconds
   double max_seconds = 0;
 
-  [[nodiscard]] bool reached() const { return relative_error <= wanted; }
+  /// Whether the rms is as wanted; of the worst, whether two of its standard errors are.
+  [[nodiscard]] bool reached() const { return (of_worst ? 2 * relative_error : rms_error) <= wanted; }
   /// What a person should know when the wanted error was not reached, and what would mend it; else empty.
   [[nodiscard]] std::string warning() const;
 };

@@ -8,14 +8,14 @@
 
 namespace luxrig {
 
-/// "model", "model_reason", "wanted" and "relative_error" (standard errors, of max(a point's lux, floor)), "reached":
-/// whether the second is within the first, "error_floor_lux": small enough at any point (absent when all is exact),
+/// "model", "model_reason"; "rms_error" and "relative_error": standard errors, of max(a point's lux, floor), root mean
+/// square over the points and largest; "wanted", "wanted_of" ("rms" or "worst"), "reached" (of the worst: two standard
+/// errors are within it); "error_floor_lux": standard error small enough at any point (absent when all is exact);
 /// "ended_by_time" and "warning" when it was not reached.
 [[nodiscard]] inline nlohmann::ordered_json transport_json(const ModelUsed& used) {
-  nlohmann::ordered_json out = {{"model", used.name},
-                                {"model_reason", used.reason},
-                                {"wanted", used.wanted},
-                                {"relative_error", used.relative_error},
+  nlohmann::ordered_json out = {{"model", used.name},          {"model_reason", used.reason},
+                                {"wanted", used.wanted},       {"wanted_of", used.of_worst ? "worst" : "rms"},
+                                {"rms_error", used.rms_error}, {"relative_error", used.relative_error},
                                 {"reached", used.reached()}};
   if (used.error_floor_lx > 0) out["error_floor_lux"] = used.error_floor_lx;
   if (!used.reached()) {

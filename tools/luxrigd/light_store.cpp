@@ -76,9 +76,9 @@ std::uint64_t light_key(const Rig& rig, const Scene& scene, const ComputeOptions
   const std::filesystem::path program = "/proc/self/exe";
   const auto written = std::filesystem::last_write_time(program, error).time_since_epoch().count();
   const auto size = std::filesystem::file_size(program, error);
-  const std::string asked =
-      fmt::format("{} {} {} {} {} {} {}", static_cast<int>(compute.model), compute.max_error,
-                  compute.error_floor_lx.value_or(-1), compute.max_seconds, compute.seed, written, size);
+  const std::string asked = fmt::format("{} {} {} {} {} {} {} {}", static_cast<int>(compute.model), compute.max_error,
+                                        compute.worst_error.value_or(-1), compute.error_floor_lx.value_or(-1),
+                                        compute.max_seconds, compute.seed, written, size);
   std::uint64_t key = version_of(rig, scene).light;
   for (const char c : asked) key = (key ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
   return key;

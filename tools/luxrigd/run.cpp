@@ -261,9 +261,9 @@ int run_rig(const RunArguments& arguments) {
     auto transport =
         in_background<Result<TransportMatrix>>([&] { return compute_transport(*session, compute, {}, &used); });
     if (!transport) return report(transport.error());
-    say.say(fmt::format("transport: {} x {} by {}, relative error {:.2g}, {} rays, {} threads", transport->receivers(),
-                        transport->emitters(), used.name, transport->relative_error, transport->rays,
-                        thread_count(compute.threads)));
+    say.say(fmt::format("transport: {} x {} by {}, error {:.2g} rms, {:.2g} at most, {} rays, {} threads",
+                        transport->receivers(), transport->emitters(), used.name, used.rms_error, used.relative_error,
+                        transport->rays, thread_count(compute.threads)));
     if (const std::string warning = used.warning(); !warning.empty()) say.say("warning: " + warning);
     compute.watch.progress = nullptr;
     if (arguments.pictures) {

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "tools/command_line/installed.h"
+#include "tools/luxrig/compute_arguments.h"
 
 namespace luxrig {
 
@@ -28,15 +29,7 @@ void add_run_options(CLI::App& app, RunArguments& arguments) {
   app.add_option("--pictures", arguments.pictures,
                  "simulated only: the rig's cameras take pictures, into this folder, of the rig as it hangs and of the "
                  "plan; heads look where the rig file says first");
-  app.add_option("--max-error", arguments.compute.max_error, "wanted relative error of the transport")
-      ->check(CLI::Range(1e-4, 1.0));
-  app.add_option("--max-seconds", arguments.compute.max_seconds,
-                 "after so long light is taken as it is known by then, with a warning (0: no end)")
-      ->capture_default_str()
-      ->check(CLI::Range(0.0, 1e9));
-  app.add_option("--seed", arguments.compute.seed, "seed of the samples");
-  app.add_option("--threads", arguments.compute.threads, "threads to compute with (0: one per core)")
-      ->check(CLI::Range(0, 1024));
+  add_compute(app, arguments.compute);
 }
 
 }  // namespace luxrig

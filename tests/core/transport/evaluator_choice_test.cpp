@@ -44,6 +44,7 @@ TEST(EvaluatorChoice, ReflectedLightBelowTheWantedErrorIsLeftOut) {
 
 TEST(EvaluatorChoice, ManyPointsShareUnlessTheErrorIsTooFineForIt) {
   EXPECT_EQ(chosen(0.5, 100, 0.01), "gather");
+  EXPECT_EQ(chosen(0.5, 100, 0.003), "gather") << "a standard error of 0.0012";
   EXPECT_EQ(chosen(0.5, 100, 0.001), "path");
   EXPECT_EQ(chosen(0.5, 3, 0.01), "path");
 }

@@ -159,7 +159,8 @@ TEST(Enough, APointInACupboardDoesNotKeepEvaluateAndSolveFromEnding) {
   ASSERT_TRUE(out.is_object());
   EXPECT_TRUE(out["reached"].get<bool>()) << out;
   EXPECT_DOUBLE_EQ(out["wanted"].get<double>(), 0.003);
-  EXPECT_LE(out["relative_error"].get<double>(), 0.003);
+  EXPECT_EQ(out["wanted_of"], "rms");
+  EXPECT_LE(out["rms_error"].get<double>(), 0.003);
   EXPECT_GT(out["error_floor_lux"].get<double>(), 0);
   const Ran solved = room.run("solve", {"--max-error", "0.003", "--json"});
   EXPECT_TRUE(json_in(solved)["transport"]["reached"].get<bool>()) << solved.output;
@@ -179,9 +180,23 @@ TEST(Enough, WhenTheTimeIsUpWhatIsReachedIsSaidAndProgressBeforeThat) {
   ASSERT_TRUE(out.is_object()) << ran.output;
   EXPECT_FALSE(out["reached"].get<bool>());
   EXPECT_TRUE(out["ended_by_time"].get<bool>());
-  EXPECT_GT(out["relative_error"].get<double>(), 0.0001);
+  EXPECT_GT(out["rms_error"].get<double>(), 0.0001);
   EXPECT_FALSE(out["warning"].get<std::string>().empty());
   for (const json& point : out["points"]) EXPECT_GT(point["standard_error_lux"].get<double>(), 0) << point;
+}
+
+TEST(Enough, TheWorstPointIsHeldToItsOwnErrorWhenThatIsAskedFor) {
+  const json out = json_in(luxrig::testing::run(
+      {program("luxrig"), "evaluate", source("tests/rigs/room"), "--worst-error", "0.02", "--json"}));
+  ASSERT_TRUE(out.is_object());
+  EXPECT_EQ(out["wanted_of"], "worst");
+  EXPECT_TRUE(out["reached"].get<bool>()) << out;
+  EXPECT_LE(2 * out["relative_error"].get<double>(), 0.02);
+  EXPECT_EQ(luxrig::testing::run({program("luxrig"), "evaluate", source("tests/rigs/room"), "--worst-error", "0.02",
+                                  "--max-error", "0.02"})
+                .code,
+            2)
+      << "one of both";
 }
 
 TEST(Enough, StrictFailsWhenTheErrorIsNotReachedAndOnlyThen) {
