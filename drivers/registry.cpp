@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/rig/nearest.h"
+#include "core/rig/null_bus.h"
 #include "drivers/can/canopen_driver.h"
 #include "drivers/dmx/artnet/artnet_driver.h"
 #include "drivers/dmx/enttec_pro/enttec_pro_driver.h"
@@ -52,12 +53,18 @@ const DriverEntry* find_driver(std::string_view name) {
   return nullptr;
 }
 
+std::string_view what_comes_back(const Bus& bus) {
+  return is_null_bus(bus) ? "nothing: it is a null bus" : find_driver(bus.driver)->comes_back;
+}
+
 std::vector<Problem> check_buses(const Rig& rig) {
   std::vector<std::string_view> names;
   for (const DriverEntry& entry : kDrivers) names.push_back(entry.name);
+  names.push_back(kNullDriver);
   std::vector<Problem> problems;
   for (std::size_t i = 0; i < rig.buses.size(); ++i) {
     const Bus& bus = rig.buses[i];
+    if (is_null_bus(bus)) continue;
     const DriverEntry* entry = find_driver(bus.driver);
     if (entry == nullptr) {
       problems.push_back({rig.file.string(), bus.place.line, bus.place.column,

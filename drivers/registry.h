@@ -42,6 +42,9 @@ struct DriverEntry {
 [[nodiscard]] std::span<const DriverEntry> drivers();
 [[nodiscard]] const DriverEntry* find_driver(std::string_view name);
 
+/// DriverEntry::comes_back of its driver; of a null bus, nothing. requires check_buses() to be empty.
+[[nodiscard]] std::string_view what_comes_back(const Bus& bus);
+
 /// Every bus of the rig: driver known (else the nearest name), options and patches good.
 [[nodiscard]] std::vector<Problem> check_buses(const Rig& rig);
 

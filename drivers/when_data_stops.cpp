@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/check.h"
+#include "core/rig/null_bus.h"
 #include "drivers/can/canopen_driver.h"
 #include "drivers/registry.h"
 
@@ -24,11 +25,16 @@ std::vector<OutputWithoutData> outputs_without_data(const Rig& rig) {
   std::vector<OutputWithoutData> outputs;
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
     const Fixture& fixture = rig.fixtures[f];
-    const DriverEntry* entry = find_driver(rig.buses[fixture.bus].driver);
-    LUXRIG_CHECK(entry != nullptr && entry->when_data_stops != nullptr, "no lamp hangs on {}",
-                 rig.buses[fixture.bus].driver);
-    outputs.push_back({f, entry->when_data_stops(rig, f), std::nullopt});
-    if (fixture.axes) outputs.back().axes = canopen_axes_without_data(rig, f);
+    const Bus& bus = rig.buses[fixture.bus];
+    WhenDataStops lamp{WithoutData::makers_choice, std::nullopt, "its bus is yet to be chosen"};
+    if (!is_null_bus(bus)) {
+      const DriverEntry* entry = find_driver(bus.driver);
+      LUXRIG_CHECK(entry != nullptr && entry->when_data_stops != nullptr, "no lamp hangs on {}", bus.driver);
+      lamp = entry->when_data_stops(rig, f);
+    }
+    outputs.push_back({f, std::move(lamp), std::nullopt});
+    if (fixture.axes && !is_null_bus(rig.buses[fixture.axes->bus]))
+      outputs.back().axes = canopen_axes_without_data(rig, f);
   }
   return outputs;
 }

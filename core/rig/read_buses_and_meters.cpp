@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/rig/null_bus.h"
 #include "core/rig/rig_reader.h"
 
 namespace luxrig {
@@ -78,7 +79,7 @@ void RigReader::read_luxmeters() {
     const bool good = read_modbus_meter(s, meter);
     if (const auto bus = buses.read_reference(s, "bus")) {
       meter.bus = *bus;
-      if (good) {
+      if (good && !is_null_bus(rig.buses[*bus])) {
         const ModbusMeterPatch& patch = meter.patch;
         const Place place = s.place_of(s.has("register")       ? "register"
                                        : s.has("register_map") ? "register_map"

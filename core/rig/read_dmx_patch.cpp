@@ -112,12 +112,12 @@ std::optional<ModeSlots> RigReader::read_slots_of_mode(Section& s, const std::op
   return slots;
 }
 
-bool RigReader::read_dmx(Section& s, const std::optional<SlotOwner>& owner, Fixture& fixture,
+bool RigReader::read_dmx(Section& s, const std::optional<SlotOwner>& owner, bool planned, Fixture& fixture,
                          std::vector<NamedSlot>& named, std::optional<ModeSlots>& of_mode) {
   DmxPatch patch;
   s.read("universe", patch.universe);
-  if (!s.has("address")) s.require("address", "which DMX needs");
-  bool good = s.read("address", patch.address);
+  if (!s.has("address") && !planned) s.require("address", "which DMX needs");
+  bool good = s.read("address", patch.address) || planned;
   if (s.has("personality")) {
     of_mode = read_slots_of_mode(s, owner, fixture);
     if (of_mode) named = of_mode->slots;
@@ -126,7 +126,10 @@ bool RigReader::read_dmx(Section& s, const std::optional<SlotOwner>& owner, Fixt
     for (const std::string key : {"mode", "dimmer"})
       s.refuse(key, key + " has no effect without a personality",
                "add personality, a GDTF or Open Fixture Library file");
-    good &= read_slots(s, owner, named);
+    if (planned && owner && !owner->emitters.empty() && !s.has("slots"))
+      for (std::size_t e = 0; e < owner->emitters.size(); ++e) named.push_back({DmxSlot{}, e, s.place()});
+    else
+      good &= read_slots(s, owner, named);
   }
   patch.slots = slots_of(named, named.empty() || !owner || owner->emitters.empty() ? std::nullopt : std::optional(0ul));
   const auto count = static_cast<int>(std::min<std::size_t>(patch.slots.size(), 10000));

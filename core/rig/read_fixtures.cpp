@@ -5,6 +5,7 @@
 
 #include "core/rig/dmx_slots.h"
 #include "core/rig/mode_slots.h"
+#include "core/rig/null_bus.h"
 #include "core/rig/rig_reader.h"
 
 namespace luxrig {
@@ -20,7 +21,8 @@ constexpr double kNearest_m = 0.001;  // an aim nearer than this has no directio
 
 enum class PatchKind { none, dmx, modbus };
 
-PatchKind patch_kind(Section& s, ProblemList& problems) {
+/// `planned`: on a null bus, where nobody has an address yet.
+PatchKind patch_kind(Section& s, bool planned, ProblemList& problems) {
   const auto any = [&](std::span<const std::string_view> keys) {
     for (const std::string_view key : keys) {
       if (s.has(key)) return true;
@@ -29,6 +31,7 @@ PatchKind patch_kind(Section& s, ProblemList& problems) {
   };
   const bool dmx = any(kDmxKeys), modbus = any(kModbusKeys);
   if (dmx != modbus) return dmx ? PatchKind::dmx : PatchKind::modbus;
+  if (planned && !dmx) return PatchKind::dmx;
   problems.add(
       s.place(), dmx ? "[[fixture]] has both a DMX and a Modbus address" : "[[fixture]] has no address",
       "give it universe, address and slots (DMX), or unit and register_map, or unit, register and full_scale (Modbus)");
@@ -275,16 +278,18 @@ void RigReader::read_fixtures() {
     const PatchMap::Owner owner{"fixture " + in_quotes(fixture.name), s.place_of(s.has("address")    ? "address"
                                                                                  : s.has("register") ? "register"
                                                                                                      : "register_map")};
-    const PatchKind kind = patch_kind(s, problems);
+    const bool planned = bus && is_null_bus(rig.buses[*bus]);
+    const PatchKind kind = patch_kind(s, planned, problems);
     std::vector<NamedSlot> slots;
     std::optional<ModeSlots> of_mode;
-    if (kind == PatchKind::dmx && read_dmx(s, slot_owner, fixture, slots, of_mode) && bus) {
+    if (kind == PatchKind::dmx && read_dmx(s, slot_owner, planned, fixture, slots, of_mode) && bus) {
       const auto& dmx = std::get<DmxPatch>(fixture.patch);
-      patches.claim_slots(*bus, dmx.universe, dmx.address, static_cast<int>(dmx.slots.size()), owner);
+      if (!planned) patches.claim_slots(*bus, dmx.universe, dmx.address, static_cast<int>(dmx.slots.size()), owner);
     } else if (kind == PatchKind::modbus && read_modbus(s, slot_owner, fixture) && bus) {
       const auto& modbus = std::get<ModbusPatch>(fixture.patch);
-      patches.claim_registers(*bus, modbus.unit, modbus.coil ? RegisterTable::coil : RegisterTable::holding,
-                              modbus.holding_register, modbus.format.registers, owner);
+      if (!planned)
+        patches.claim_registers(*bus, modbus.unit, modbus.coil ? RegisterTable::coil : RegisterTable::holding,
+                                modbus.holding_register, modbus.format.registers, owner);
     }
     // A personality that cannot be used leaves open whether the fixture moves, so nothing is said of that.
     if (of_mode || !s.has("personality")) {

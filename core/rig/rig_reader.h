@@ -137,7 +137,7 @@ struct RigReader {
   void need_watts_of_fixtures(const Place& place, const std::string& what);
   /// Reads the DMX patch, and its slots as they are named; true when they can be claimed. `of_mode`: with a personality
   /// that can be used.
-  bool read_dmx(Section& section, const std::optional<SlotOwner>& owner, Fixture& fixture,
+  bool read_dmx(Section& section, const std::optional<SlotOwner>& owner, bool planned, Fixture& fixture,
                 std::vector<NamedSlot>& named, std::optional<ModeSlots>& of_mode);
   std::shared_ptr<const Personality> read_personality(Section& section);
   /// Read once; null when it cannot be used, which read_personality() reports.

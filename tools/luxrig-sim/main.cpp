@@ -8,6 +8,7 @@
 #include <csignal>
 #include <cstdio>
 
+#include "core/rig/null_bus.h"
 #include "core/rig/rig_file.h"
 #include "sim/faults/faults.h"
 #include "sim/wire/rig_server.h"
@@ -91,6 +92,7 @@ int simulate(const Options& options) {
 
   const auto rig = load_rig(options.rig);
   if (!rig) return refused(rig.error());
+  if (const auto unwired = null_buses_in_use(*rig); !unwired.empty()) return refused(unwired);
   const auto begun = Clock::now();
   Watch watch;
   watch.progress = progress_on_stderr();

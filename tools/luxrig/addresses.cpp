@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include "core/rig/null_bus.h"
+
 namespace luxrig {
 
 std::string fixture_address(const Rig& rig, const Fixture& fixture) {
+  if (is_null_bus(rig.buses[fixture.bus])) return "none yet";
   if (fixture.axes) {
     Fixture lamp = fixture;
     lamp.axes.reset();

@@ -8,6 +8,7 @@
 
 #include "core/control/keep_out.h"
 #include "core/photometry/beam.h"
+#include "core/rig/null_bus.h"
 #include "core/rig/personality/personality.h"
 #include "core/rig/register_map/register_map.h"
 #include "core/transport/rig_notes/rig_notes.h"
@@ -171,7 +172,7 @@ void print_outputs(const Rig& rig) {
       table.text(), rig.safe.hold_s, rig.safe.fade_s);
   fmt::print("\nwhat comes back when something fails:\n\n");
   for (std::size_t b = 0; b < rig.buses.size(); ++b) {
-    const std::string_view comes_back = find_driver(rig.buses[b].driver)->comes_back;
+    const std::string_view comes_back = what_comes_back(rig.buses[b]);
     const bool lights =
         std::any_of(rig.fixtures.begin(), rig.fixtures.end(), [&](const Fixture& fixture) { return fixture.bus == b; });
     if (lights) fmt::print("  {} ({}): {}\n", rig.buses[b].name, rig.buses[b].driver, comes_back);
@@ -183,7 +184,7 @@ nlohmann::json outputs_json(const Rig& rig) {
   for (const OutputWithoutData& output : outputs_without_data(rig)) {
     nlohmann::json one = {{"fixture", rig.fixtures[output.fixture].name},
                           {"without_data", name_of(output.lamp.does)},
-                          {"comes_back", find_driver(rig.buses[rig.fixtures[output.fixture].bus].driver)->comes_back},
+                          {"comes_back", what_comes_back(rig.buses[rig.fixtures[output.fixture].bus])},
                           {"by", output.lamp.by}};
     if (output.lamp.after_s) one["after_s"] = *output.lamp.after_s;
     if (output.axes)
@@ -209,6 +210,7 @@ std::vector<Problem> all_notes(const Session& session) {
                        fmt::format("{} looks into keep-out zone \"{}\" as it hangs", fixture.name, zones.name(*zone)),
                        "it stays dark until it is turned"});
   }
+  for (Problem& note : null_buses_in_use(rig)) notes.push_back(std::move(note));
   for (Problem& note : notes_on(rig, session.scene, *session.rays)) notes.push_back(std::move(note));
   return notes;
 }
@@ -355,7 +357,8 @@ int run_check(const CheckArguments& arguments) {
   if (notes.empty()) {
     fmt::print("{}: no problems found\n", rig.name);
   } else {
-    fmt::print("{}: nothing keeps it from running, but {} above {} a look\n", rig.name,
+    fmt::print("{}: {}, but {} above {} a look\n", rig.name,
+               null_buses_in_use(rig).empty() ? "nothing keeps it from running" : "it can be planned and not yet run",
                notes.size() == 1 ? "the note" : fmt::format("the {} notes", notes.size()),
                notes.size() == 1 ? "is worth" : "are worth");
   }

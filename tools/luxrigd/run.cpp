@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "core/parallel.h"
+#include "core/rig/null_bus.h"
 #include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
 #include "tools/luxrig/solve_tasks.h"
@@ -191,6 +192,7 @@ int run_rig(const RunArguments& arguments) {
   if (!opened) return report(opened.error());
   const auto session = std::make_shared<Session>(std::move(*opened));
   const Rig& rig = session->rig;
+  if (const auto unwired = null_buses_in_use(rig); !unwired.empty()) return report(unwired);
   const bool places =
       std::any_of(rig.tasks.begin(), rig.tasks.end(), [](const Task& task) { return task.places_lights(); });
   if (rig.fixtures.empty() && places) {

@@ -159,6 +159,22 @@ bus = "dmx"
 address = 18
 )";
 
+TEST(Luminaires, WithEmittersNeedNoSlotsOnANullBus) {
+  std::string text = kPar;
+  text.replace(text.find("\"sacn\""), 6, "\"null\"");
+  for (const char* line : {"address = 11\n", "address = 18\n",
+                           "slots = [\"constant:255\", \"emitter:white\", \"emitter:white-fine\", \"pan\", \"tilt\", "
+                           "\"emitter:red\", \"unused\"]\n"}) {
+    const auto at = text.find(line);
+    ASSERT_NE(at, std::string::npos) << line;
+    text.erase(at, std::string(line).size());
+  }
+  const Checked<Rig> rig = parse_rig(text, "rig.toml", kData);
+  ASSERT_TRUE(rig) << rig.error().front().text();
+  ASSERT_EQ(rig->fixtures.size(), 3u) << "an emitter each of a, and b";
+  EXPECT_EQ(rig->fixtures[1].name, "a/white");
+}
+
 TEST(Luminaires, WithEmittersAreOneEachAndAllOfThemTogether) {
   const Checked<Rig> rig = parse_rig(kPar, "rig.toml", kData);
   ASSERT_TRUE(rig) << rig.error().front().text();

@@ -7,6 +7,7 @@
 #include <random>
 #include <string>
 
+#include "core/rig/null_bus.h"
 #include "tests/folders.h"
 
 namespace luxrig {
@@ -164,6 +165,29 @@ TEST(RigFile, SendsTwoClashingFixturesToDifferentFreeAddresses) {
   ASSERT_EQ(rig.error().size(), 2u);
   EXPECT_EQ(rig.error()[0].mend, "address 3 is free for it");
   EXPECT_EQ(rig.error()[1].mend, "address 5 is free for it");
+}
+
+TEST(RigFile, OnANullBusNobodyNeedsAnAddress) {
+  const std::string null_bus = "[[bus]]\nname = \"paper\"\ndriver = \"null\"\n";
+  const auto on_paper = [](const std::string& name, const std::string& patch) {
+    std::string text = fixture(name, patch);
+    const std::string bus = "bus = \"dmx\"";
+    return text.replace(text.find(bus), bus.size(), "bus = \"paper\"");
+  };
+  const Checked<Rig> rig = parse(kSmall + null_bus + on_paper("a", "") + on_paper("b", "") +
+                                 on_paper("c", "slots = [\"dimmer\", \"pan\", \"tilt\"]") +
+                                 on_paper("d", "unit = 1\nregister = 0\nfull_scale = 1000") +
+                                 on_paper("e", "unit = 1\nregister = 0\nfull_scale = 1000"));
+  ASSERT_TRUE(rig) << listed(rig.error());
+  ASSERT_EQ(rig->fixtures.size(), 5u);
+  EXPECT_FALSE(rig->fixtures[1].moves);
+  EXPECT_TRUE(rig->fixtures[2].moves);
+  const auto problems = null_buses_in_use(*rig);
+  ASSERT_EQ(problems.size(), 1u);
+  EXPECT_NE(problems[0].what.find("\"paper\" is a null bus"), std::string::npos) << problems[0].text();
+  EXPECT_TRUE(null_buses_in_use(*parse(kSmall + null_bus + fixture("a", "address = 1"))).empty())
+      << "nobody hangs there";
+  EXPECT_FALSE(parse(kSmall + null_bus + fixture("a", ""))) << "on a real bus one is needed";
 }
 
 TEST(RigFile, SaysWhenAUniverseIsFull) {

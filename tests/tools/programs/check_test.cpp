@@ -152,6 +152,49 @@ position_m = [3.0, 4.7, 0.3]
 normal = [0, 0, -1]
 )";
 
+TEST(Check, ANullBusIsPlannedWithAndNotRun) {
+  SpoiltRoom room;
+  for (const char* driver : {"driver = \"sacn\"", "driver = \"modbus_tcp\""}) room.replace(driver, "driver = \"null\"");
+  for (int address = 1; address <= 6; ++address) room.replace("address = " + std::to_string(address) + "\n", "");
+  const Ran checked = room.run("check", {"--outputs"});
+  EXPECT_EQ(checked.code, 0) << checked.output;
+  EXPECT_NE(checked.output.find("it can be planned and not yet run"), std::string::npos) << checked.output;
+  EXPECT_NE(checked.output.find("nothing: it is a null bus"), std::string::npos) << checked.output;
+  EXPECT_EQ(room.run("check", {"--json", "--outputs"}).code, 0);
+  EXPECT_EQ(room.run("solve", {"--max-error", "0.05"}).code, 0);
+  for (const std::vector<std::string>& how : {std::vector<std::string>{"--sim", "--once"}, {"--once"}}) {
+    const Ran ran = room.run("run", how);
+    EXPECT_EQ(ran.code, 2) << ran.output;
+    EXPECT_NE(ran.output.find("rig.toml:77:1: bus \"dmx\" is a null bus"), std::string::npos) << ran.output;
+  }
+  EXPECT_EQ(luxrig::testing::run({program("luxrig-sim"), room.path()}).code, 2);
+}
+
+TEST(Check, ALampOnAPointIsRefusedByName) {
+  SpoiltRoom room;
+  room.add(R"([[luminaire]]
+name = "bulb"
+model = "isotropic"
+lumens = 800
+[[fixture]]
+name = "bare bulb"
+luminaire = "bulb"
+position_m = [3.0, 2.6, 1.5]
+bus = "dmx"
+address = 100
+[[point]]
+name = "at the lamp"
+position_m = [3.0, 2.6, 1.5]
+normal = [0, 0, 1]
+)");
+  for (const char* command : {"check", "evaluate", "solve"}) {
+    const Ran ran = room.run(command);
+    EXPECT_EQ(ran.code, 2) << ran.output;
+    EXPECT_NE(ran.output.find("at the lamp"), std::string::npos) << ran.output;
+    EXPECT_NE(ran.output.find("bare bulb"), std::string::npos) << ran.output;
+  }
+}
+
 TEST(Enough, APointInACupboardDoesNotKeepEvaluateAndSolveFromEnding) {
   SpoiltRoom room;
   room.add(kCupboard);
