@@ -4,18 +4,10 @@
 
 #include <algorithm>
 
-#include "core/transport/bsdf.h"
+#include "core/transport/light_hits.h"
 
 namespace luxrig {
 namespace {
-
-/// Most that any surface reflects, coat included.
-double largest_reflectance(const RayScene& scene) {
-  double largest = 0;
-  for (const Material& m : scene.materials())
-    largest = std::max({largest, m.reflectance_rgb.maxCoeff(), m.specular_reflectance});
-  return scene.bounds_world_m().isEmpty() ? 0 : largest;
-}
 
 /// A trial pays when reflected light may well be negligible: below this reflectance, or from this wanted error on.
 constexpr double kDarkReflectance = 0.1;

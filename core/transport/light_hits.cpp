@@ -33,6 +33,13 @@ std::vector<Bsdf> bsdfs_of(const RayScene& scene) {
   return bsdfs;
 }
 
+double largest_reflectance(const RayScene& scene) {
+  double largest = 0;
+  for (const Material& m : scene.materials())
+    largest = std::max({largest, m.reflectance_rgb.maxCoeff(), m.specular_reflectance});
+  return scene.bounds_world_m().isEmpty() ? 0 : largest;
+}
+
 LightHit LightHits::trace(std::size_t group, const SobolSequence& samples, std::uint32_t index, Lamps::Weights& weights,
                           std::uint64_t& rays) const {
   LightHit light;

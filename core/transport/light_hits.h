@@ -12,6 +12,9 @@ namespace luxrig {
 /// The materials of a scene, by RayScene::material_index_of.
 [[nodiscard]] std::vector<Bsdf> bsdfs_of(const RayScene& scene);
 
+/// Most that any of its surfaces reflects, by body or coat.
+[[nodiscard]] double largest_reflectance(const RayScene& scene);
+
 /// Where a ray from a lamp lands. flux_rgb is zero when it lands nowhere or on black.
 struct LightHit {
   Vec3 position_world_m = Vec3::Zero();

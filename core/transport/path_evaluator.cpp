@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "core/parallel.h"
@@ -42,6 +43,9 @@ constexpr std::size_t kPathsPerRecord = 4;
 constexpr std::uint32_t kRecordPaths = 4, kHitsPerRecordPath = 4;
 /// Fewer receivers than this have more to gain from paths of their own than from shared noise.
 constexpr std::size_t kFewestSharing = 24;
+/// What a bright place sends on to a receiver is seldom more: by two surfaces or more, or by one that sends it
+/// elsewhere, too.
+constexpr double kMostSentOn = 0.5;
 constexpr std::size_t kMostRecords = 1u << 15, kMostRecordBytes = 256u << 20;
 /// Every so many paths one goes on beside its record, to tell how far records are off; fewer once that is known to this
 /// part of the error that is left to the receivers.
@@ -73,7 +77,8 @@ class PathEvaluation {
         sampler_(scene, lamps_, bsdfs_, importance_),
         levels_(levels_of(options, emitters.size())),
         hits_(lamps_, receivers.size()),
-        spent_(receivers.size(), options),
+        spent_(receivers.size(), options, std::min(kMostSentOn, largest_reflectance(scene)),
+               shares_tails && receivers.size() >= kFewestSharing ? kRecordPaths : 1),
         sums_(0, channels_, levels_) {
     for (std::size_t e = 0; e < emitters.size(); ++e) {
       importance_[e] = lamps_.importance(e);
@@ -105,9 +110,15 @@ class PathEvaluation {
     sums_ = ReplicateSums(receivers_.size(), channels_, levels_);
     if (tails_) ends_.emplace(sampler_, *tails_, receivers_.size(), levels_);
     done_ = 0.05;
-    for (auto round = spent_.first(matrix_.rays); !round.empty(); round = spent_.next(matrix_.rays)) {
+    for (auto round = spent_.first(matrix_.rays); !round.empty();) {
       if (!sample(round)) return tl::unexpected(Fault{Cause::cancelled, "", "stopped while tracing paths", {}});
       if (options_.enough.stop_requested()) break;
+      std::vector<std::size_t> others = not_in(round);
+      round = spent_.next(matrix_.rays);
+      if (!round.empty() || !ends_ || others.empty()) continue;
+      // The others were done by fewer records than there are now, and will be judged by all.
+      judge(others);
+      round = spent_.next(matrix_.rays);
     }
     finish();
     return std::move(matrix_);
@@ -130,15 +141,29 @@ class PathEvaluation {
     }
     std::vector<std::size_t> sampled;
     for (const PathTask& task : round) sampled.push_back(task.receiver);
+    judge(sampled);
+    return true;
+  }
+
+  /// Works out anew what some receivers get, by all that is there.
+  void judge(const std::vector<std::size_t>& receivers) {
     if (ends_) {
-      const auto rays = ends_->look_up(sampled, options_.threads);
-      for (std::size_t i = 0; i < sampled.size(); ++i) spent_[sampled[i]].rays += rays[i], matrix_.rays += rays[i];
+      const auto rays = ends_->look_up(receivers, options_.threads);
+      for (std::size_t i = 0; i < receivers.size(); ++i) spent_[receivers[i]].rays += rays[i], matrix_.rays += rays[i];
     }
-    for (const std::size_t r : sampled) estimate(r);
+    for (const std::size_t r : receivers) estimate(r);
     if (ends_) judge_records();
     done_ = spent_.done_after({}, done_);
     spent_.find_floor();
-    return true;
+  }
+
+  [[nodiscard]] std::vector<std::size_t> not_in(const std::vector<PathTask>& round) const {
+    std::vector<bool> in(receivers_.size(), false);
+    for (const PathTask& task : round) in[task.receiver] = true;
+    std::vector<std::size_t> others;
+    for (std::size_t r = 0; r < in.size(); ++r)
+      if (!in[r]) others.push_back(r);
+    return others;
   }
 
   void sample_chunk(const std::vector<PathTask>& chunk, CallingThreadProgress& progress) {
@@ -304,6 +329,7 @@ class PathEvaluation {
       for (std::size_t r = 0; r < receivers_.size(); ++r) spent_[r].error_lx = error_lx[static_cast<Eigen::Index>(r)];
     }
     if (tails_) own_up_to_bias();
+    own_up_to_unfound();
     matrix_.floor_lx = spent_.floor_lx();
     for (std::size_t r = 0; r < receivers_.size(); ++r)
       matrix_.relative_error = std::max(matrix_.relative_error, spent_.relative_error(r));
@@ -356,6 +382,22 @@ class PathEvaluation {
         matrix_.replicates[k].row(row) -=
             share * (bias / (1 + bias) + (k % 2 == 0 ? up_and_down : -up_and_down)) * reflected;
     }
+  }
+
+  /// Adds to every replicate, up and down, what paths may not have found of each emitter; those of several emitters add
+  /// up as independent errors do, and the mean stays.
+  void own_up_to_unfound() {
+    const Eigen::RowVectorXd brightest_lx = matrix_.lux_per_level.colwise().maxCoeff();
+    const double up_and_down = 4 / (std::sqrt(16.0 / 15) * student_t_975(kPathReplicates - 1) / student_t_975(1e9));
+    for (std::size_t k = 0; k < kPathReplicates; ++k)
+      for (Eigen::Index e = 0; e < matrix_.emitters(); ++e) {
+        // Walsh functions: half up and half down, each orthogonal to all others. The first is that of the bias.
+        const auto pattern = static_cast<unsigned>(2 + e % (static_cast<Eigen::Index>(kPathReplicates) - 2));
+        const bool down = std::popcount(pattern & static_cast<unsigned>(k)) % 2 != 0;
+        for (std::size_t r = 0; r < receivers_.size(); ++r)
+          matrix_.replicates[k](static_cast<Eigen::Index>(r), e) +=
+              (down ? -up_and_down : up_and_down) * spent_.unfound_lx(r, brightest_lx[e]);
+      }
   }
 
   /// The direct part by primary.

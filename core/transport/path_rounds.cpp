@@ -123,6 +123,7 @@ void PathRounds::find_floor() {
   std::vector<double> lux;
   for (const ReceiverProgress& one : progress_) lux.push_back(one.lux);
   floor_lx_ = error_floor_lx(options_, lux);
+  brightest_lx_ = lux.empty() ? 0 : *std::max_element(lux.begin(), lux.end());
   if (!by_rms()) return;
   for (std::size_t r = 0; r < progress_.size(); ++r) {
     ReceiverProgress& one = progress_[r];
@@ -137,7 +138,14 @@ void PathRounds::find_floor() {
 double PathRounds::relative_error(std::size_t receiver) const {
   const ReceiverProgress& one = progress_[receiver];
   const double scale_lx = std::max(one.lux, floor_lx_);
-  return scale_lx > 0 ? std::hypot(one.error_lx, one.shared_error_lx) / scale_lx : 0;
+  return scale_lx > 0 ? std::hypot(one.error_lx, one.shared_error_lx, unfound_lx(receiver, brightest_lx_)) / scale_lx
+                      : 0;
+}
+
+double PathRounds::unfound_lx(std::size_t receiver, double brightest_lx) const {
+  const ReceiverProgress& one = progress_[receiver];
+  const double paths = RecordBias::kReplicates * static_cast<double>(one.samples) * (one.alone ? 1 : ways_each_);
+  return paths > 0 ? sends_on_ * brightest_lx / paths : 0;
 }
 
 double PathRounds::overshoot(std::size_t receiver) const {

@@ -35,8 +35,11 @@ struct PathTask {
 
 class PathRounds {
  public:
-  /// options   must outlive it
-  PathRounds(std::size_t receivers, const EvaluateOptions& options) : options_(options), progress_(receivers) {}
+  /// options     must outlive it
+  /// sends_on    what a bright place sends on of its light
+  /// ways_each   a path goes on by
+  PathRounds(std::size_t receivers, const EvaluateOptions& options, double sends_on, double ways_each)
+      : options_(options), sends_on_(sends_on), ways_each_(ways_each), progress_(receivers) {}
 
   [[nodiscard]] ReceiverProgress& operator[](std::size_t receiver) { return progress_[receiver]; }
   [[nodiscard]] const ReceiverProgress& operator[](std::size_t receiver) const { return progress_[receiver]; }
@@ -50,6 +53,10 @@ class PathRounds {
   void judge_sharing(std::size_t receiver);
   /// To be called when the lux of receivers is known anew.
   void find_floor();
+  /// What a receiver may yet have to find: its paths were so many, and one more of them could lead to where it is
+  /// brightest. Beside a replicates' spread that is little, unless bright paths are rare: through doors, say. There
+  /// spread alone tells nothing of those that nobody has found.
+  [[nodiscard]] double unfound_lx(std::size_t receiver, double brightest_lx) const;
   /// Below which errors are relative to this (error_floor.h).
   [[nodiscard]] double floor_lx() const { return floor_lx_; }
 
@@ -72,8 +79,9 @@ class PathRounds {
   [[nodiscard]] double overshoot(std::size_t receiver) const;
 
   const EvaluateOptions& options_;
+  double sends_on_, ways_each_;
   std::vector<ReceiverProgress> progress_;
-  double floor_lx_ = 0;
+  double floor_lx_ = 0, brightest_lx_ = 0;
 };
 
 }  // namespace luxrig

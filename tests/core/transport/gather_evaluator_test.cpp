@@ -109,6 +109,36 @@ TEST(GatherEvaluator, AnRmsErrorIsReachedAndTakesFewerRaysThanTheSameErrorOfEach
   EXPECT_LT(apart(by_rms.lux(levels), of_each.lux(levels)), 1.5 * std::hypot(0.012, 0.012));
 }
 
+// What gets through doors is found by few paths, and by none at many points: their bars were 0 or next to it.
+TEST(GatherEvaluator, WhatALampSendsIntoOtherRoomsIsNoBetterKnownThanItIsFound) {
+  LitRoom flat = make_eight_room_flat();
+  flat.emitters = {flat.emitters[2]};
+  std::vector<Receiver> receivers;
+  for (std::size_t r = 0; r < flat.receivers.size(); r += 5) receivers.push_back(flat.receivers[r]);
+  const RayScene rays(flat.scene);
+  const Eigen::VectorXd lit = Eigen::VectorXd::Ones(1);
+  std::vector<TransportMatrix> runs;
+  for (const std::uint64_t seed : {1, 2}) {
+    EvaluateOptions options = within(1, seed);
+    options.wanted_rms_error = 0.2;
+    runs.push_back(evaluated(make_path_evaluator(rays), receivers, flat.emitters, options));
+    runs.push_back(evaluated(make_gather_evaluator(rays), receivers, flat.emitters, options));
+  }
+  int within_two = 0, pairs = 0;
+  for (std::size_t a = 0; a < runs.size(); ++a) {
+    EXPECT_LE(runs[a].rms_error, 0.2);
+    EXPECT_GT(runs[a].standard_error_lux(lit).minCoeff(), 0);
+    for (std::size_t b = 0; b < a; ++b) {
+      const Eigen::ArrayXd off_lx = (runs[a].lux(lit) - runs[b].lux(lit)).array().abs();
+      const Eigen::ArrayXd squares =
+          runs[a].standard_error_lux(lit).array().square() + runs[b].standard_error_lux(lit).array().square();
+      within_two += static_cast<int>((off_lx <= 2 * squares.sqrt()).count());
+      pairs += static_cast<int>(off_lx.size());
+    }
+  }
+  EXPECT_GE(within_two, 0.93 * pairs);
+}
+
 // Their own paths may have less than they all owe to records: that has to fall, too.
 TEST(GatherEvaluator, AFineRmsErrorContainsWhatRecordsAreOffBy) {
   const LitRoom room = make_box_room();
