@@ -22,13 +22,14 @@ TEST(Commands, EvaluateJsonHasTheContractsKeys) {
   ASSERT_EQ(ran.code, 0) << ran.output;
   const json out = json_of(ran);
   ASSERT_TRUE(out.is_object()) << ran.output;
-  for (const char* key : {"model", "points", "relative_error", "rays", "seconds", "threads"})
+  for (const char* key :
+       {"model", "points", "wanted", "wanted_of", "rms_error", "relative_error", "rays", "seconds", "threads"})
     EXPECT_TRUE(out.contains(key)) << key;
   ASSERT_EQ(out["points"].size(), 4u) << "points, then luxmeters";
   for (const char* key : {"name", "position", "normal", "lux", "direct_lux", "standard_error_lux", "goal_lux"}) {
     EXPECT_TRUE(out["points"][0].contains(key)) << key;
   }
-  EXPECT_LE(out["relative_error"].get<double>(), 0.05);
+  EXPECT_LE(out["rms_error"].get<double>(), 0.05);
 }
 
 TEST(Commands, SolveJsonHasTheContractsKeysAndEvaluateAgreesWithIt) {
