@@ -13,9 +13,8 @@
 namespace luxrig {
 namespace {
 
-/// Nobody is waited for: a peer that dribbles has 5 s. How fast it is on an idle machine tools/bench/http-load tells;
-/// beside other work 100 ms were too short.
-constexpr std::chrono::milliseconds kAtOnce(1000);
+/// Nobody is waited for.
+constexpr std::chrono::milliseconds kAtOnce(100);
 
 using namespace std::chrono_literals;
 using test::status_of;
@@ -263,7 +262,7 @@ TEST_F(ServerTest, StopsWhateverClientsDo) {
   std::this_thread::sleep_for(300ms);
   const auto start = SteadyClock::now();
   server->stop();
-  EXPECT_LT(SteadyClock::now() - start, kAtOnce);
+  EXPECT_LT(SteadyClock::now() - start, 5 * kAtOnce);
   EXPECT_FALSE(Wire(port).connected());
   server->stop();
 }
@@ -283,7 +282,7 @@ TEST_F(ServerTest, SlowRequestsEnd) {
     wire.send("k");  // a byte now and then does not help
   }
   EXPECT_TRUE(wire.ended());
-  EXPECT_LT(SteadyClock::now() - start, 5s + kAtOnce);
+  EXPECT_LT(SteadyClock::now() - start, 5s + 10 * kAtOnce);
   EXPECT_GT(SteadyClock::now() - start, 4s);
 }
 
