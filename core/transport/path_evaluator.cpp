@@ -58,6 +58,12 @@ Eigen::VectorXd levels_of(const EvaluateOptions& options, std::size_t emitters) 
   return levels;
 }
 
+/// By how much half of the replicates go up and half down for a standard error: half up and half down by `a` gives one
+/// of a · √(16/15) / 4, times Student's factor.
+double up_and_down_of(double error) {
+  return error * 4 / (std::sqrt(16.0 / 15) * student_t_975(kPathReplicates - 1) / student_t_975(1e9));
+}
+
 class PathEvaluation {
  public:
   PathEvaluation(const RayScene& scene, std::span<const Receiver> receivers, std::span<const Emitter> emitters,
@@ -366,9 +372,7 @@ class PathEvaluation {
     const auto [bias, error] = *believed;
     std::vector<Eigen::MatrixXd> direct_rgb;
     for (std::size_t c = 0; c < matrix_.rgb_per_level.size(); ++c) direct_rgb.push_back(direct_of_primary(c));
-    // Half up and half down by `a` gives a standard error of a · √(16/15) / 4, times Student's factor.
-    const double up_and_down =
-        error * 4 / (std::sqrt(16.0 / 15) * student_t_975(kPathReplicates - 1) / student_t_975(1e9));
+    const double up_and_down = up_and_down_of(error);
     for (std::size_t r = 0; r < receivers_.size(); ++r) {
       const double share = share_of_records(r);
       if (!(share > 0)) continue;
@@ -388,7 +392,7 @@ class PathEvaluation {
   /// up as independent errors do, and the mean stays.
   void own_up_to_unfound() {
     const Eigen::RowVectorXd brightest_lx = matrix_.lux_per_level.colwise().maxCoeff();
-    const double up_and_down = 4 / (std::sqrt(16.0 / 15) * student_t_975(kPathReplicates - 1) / student_t_975(1e9));
+    const double up_and_down = up_and_down_of(1);
     for (std::size_t k = 0; k < kPathReplicates; ++k)
       for (Eigen::Index e = 0; e < matrix_.emitters(); ++e) {
         // Walsh functions: half up and half down, each orthogonal to all others. The first is that of the bias.

@@ -150,7 +150,7 @@ double PathRounds::unfound_lx(std::size_t receiver, double brightest_lx) const {
 
 double PathRounds::overshoot(std::size_t receiver) const {
   const ReceiverProgress& one = progress_[receiver];
-  if (one.error_lx == 0) return one.found || one.samples >= kSamplesToBelieveNothing ? 0 : HUGE_VAL;
+  if (one.error_lx == 0 && !one.found && one.samples < kSamplesToBelieveNothing) return HUGE_VAL;
   return relative_error(receiver) / options_.wanted_standard_error();
 }
 

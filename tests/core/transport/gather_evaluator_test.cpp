@@ -5,6 +5,7 @@
 #include "core/photometry/sky.h"
 #include "core/transport/enclosures.h"
 #include "core/transport/rooms/lit_room.h"
+#include "tests/core/transport/boxes.h"
 #include "tests/core/transport/within.h"
 
 namespace luxrig {
@@ -73,8 +74,7 @@ TEST(GatherEvaluator, ARoomWhereNobodyCanShareEnds) {
     receivers.push_back({{-1.6 + 0.6 * (i % 6), -1.6 + 0.6 * (i / 6), -1.4995}, Vec3::UnitZ()});
   EvaluateOptions options = within(0.01, 3);
   options.max_rays = 15'000'000;
-  const auto gather =
-      evaluated(make_gather_evaluator(rays), receivers, {bulb(3000, {-1.95, -1.95, 1.45})}, options);
+  const auto gather = evaluated(make_gather_evaluator(rays), receivers, {bulb(3000, {-1.95, -1.95, 1.45})}, options);
   EXPECT_TRUE((gather.lux_per_level.array() > 0).all());
 }
 
@@ -137,6 +137,21 @@ TEST(GatherEvaluator, WhatALampSendsIntoOtherRoomsIsNoBetterKnownThanItIsFound) 
     }
   }
   EXPECT_GE(within_two, 0.93 * pairs);
+}
+
+// Where nothing is found, paths go on until it is known as well as was asked for.
+TEST(PathEvaluator, APointInAClosedBoxIsDarkToTheWantedError) {
+  Scene scene;
+  scene.materials.resize(1);
+  scene.materials[0].reflectance_rgb.setConstant(0.5);
+  add_box(scene, {0, 0, 0}, {4, 4, 3});
+  add_box(scene, {3, 3, 1}, {3.5, 3.5, 1.5});
+  const RayScene rays(scene);
+  const std::vector<Receiver> receivers = {{{3.25, 3.25, 1.2}, Vec3::UnitZ()}, {{1, 1, 0.5}, Vec3::UnitZ()}};
+  const auto path = evaluated(make_path_evaluator(rays), receivers, {bulb(800, {2, 2, 2.5})}, within(0.05));
+  EXPECT_EQ(path.lux_per_level(0, 0), 0);
+  EXPECT_GT(path.standard_error_lux(Eigen::VectorXd::Ones(1))[0], 0);
+  EXPECT_LE(path.relative_error, 0.05 / EvaluateOptions::kStopMargin);
 }
 
 // Their own paths may have less than they all owe to records: that has to fall, too.
