@@ -68,6 +68,22 @@ Vec3 place_m(const Cylinder& of, const Vec3& direction, double u, double v) {
   return place;
 }
 
+double way_m(const Rectangle&, const Vec3& from_m, const Vec3& d) { return -from_m.z() / d.z(); }
+double way_m(const Disk&, const Vec3& from_m, const Vec3& d) { return -from_m.z() / d.z(); }
+double way_m(const Ball& of, const Vec3& from_m, const Vec3& d) {
+  const double towards_m = -from_m.dot(d), miss_m = from_m.cross(d).norm();
+  return towards_m - std::sqrt(std::max(0.0, (of.radius_m - miss_m) * (of.radius_m + miss_m)));
+}
+double way_m(const Cylinder& of, const Vec3& from_m, const Vec3& d) {
+  // Through the near end, if it is that; else on to the wall.
+  const double end_m = (-std::copysign(of.half_length_m, d.z()) - from_m.z()) / d.z();
+  if (end_m > 0 && std::hypot(from_m.x() + end_m * d.x(), from_m.y() + end_m * d.y()) <= of.radius_m) return end_m;
+  const double across2 = d.x() * d.x() + d.y() * d.y();
+  const double towards = -(from_m.x() * d.x() + from_m.y() * d.y()) / across2;
+  const double miss_m = (from_m.x() * d.y() - from_m.y() * d.x()) / std::sqrt(across2);
+  return towards - std::sqrt(std::max(0.0, (of.radius_m - miss_m) * (of.radius_m + miss_m)) / across2);
+}
+
 }  // namespace
 
 double projected_area_m2(const LuminousShape& shape, const Vec3& direction_lamp) {
@@ -86,6 +102,10 @@ double density_seen_from(const LuminousShape& shape, const Vec3& point_lamp_m, c
   const double density =
       by_kind(shape, 0.0, [&](const auto& kind) { return density_seen_from(kind, point_lamp_m, direction_lamp); });
   return std::isfinite(density) ? density : 0;
+}
+
+double distance_towards_m(const LuminousShape& shape, const Vec3& point_lamp_m, const Vec3& direction_lamp) {
+  return by_kind(shape, 0.0, [&](const auto& kind) { return way_m(kind, point_lamp_m, direction_lamp); });
 }
 
 Vec3 sample_leaving_place_m(const LuminousShape& shape, const Vec3& direction_lamp, double u, double v) {

@@ -25,6 +25,10 @@ struct ShapeSample {
 [[nodiscard]] double density_seen_from(const LuminousShape& shape, const Vec3& point_lamp_m,
                                        const Vec3& direction_lamp);
 
+/// Way to the nearer place of the shape along a direction that density_seen_from() has above 0.
+[[nodiscard]] double distance_towards_m(const LuminousShape& shape, const Vec3& point_lamp_m,
+                                        const Vec3& direction_lamp);
+
 /// Place from which light leaves in a given direction, drawn evenly over the shape's projected area (density
 /// 1 / projected_area_m2 per m² perpendicular to the direction). The origin for a point.
 [[nodiscard]] Vec3 sample_leaving_place_m(const LuminousShape& shape, const Vec3& direction_lamp, double u, double v);

@@ -133,6 +133,15 @@ std::span<const Material> RayScene::materials() const { return state_->materials
 
 std::uint32_t RayScene::material_index_of(std::uint32_t triangle) const { return state_->triangles[triangle].material; }
 
+std::size_t RayScene::triangles() const { return state_->triangles.size(); }
+
+std::array<Vec3, 3> RayScene::corners_world_m(std::uint32_t triangle) const {
+  std::array<Vec3, 3> corners_world_m;
+  for (std::size_t i = 0; i < 3; ++i)
+    corners_world_m[i] = state_->triangles[triangle].corners_m[i].cast<double>() + state_->origin_world_m;
+  return corners_world_m;
+}
+
 Eigen::AlignedBox3d RayScene::bounds_world_m() const {
   Eigen::AlignedBox3d bounds = state_->bounds_m;
   if (!bounds.isEmpty()) bounds.translate(state_->origin_world_m);

@@ -9,6 +9,7 @@
 /// passes triangles whose plane is within 2 e of it, since the target may lie on them. What stands nearer than that to
 /// either end may be missed; nothing else is.
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <span>
@@ -84,6 +85,10 @@ class RayScene {
   /// All materials, and the index of a triangle's into them.
   [[nodiscard]] std::span<const Material> materials() const;
   [[nodiscard]] std::uint32_t material_index_of(std::uint32_t triangle) const;
+
+  [[nodiscard]] std::size_t triangles() const;
+  /// As they are held: faces that are large were split.
+  [[nodiscard]] std::array<Vec3, 3> corners_world_m(std::uint32_t triangle) const;
 
   /// Bounding box in world coordinates; empty box when there are no triangles.
   [[nodiscard]] Eigen::AlignedBox3d bounds_world_m() const;

@@ -63,10 +63,14 @@ Vec3 cosine_direction(const Vec3& normal_world, double u, double v) {
   return Frame(normal_world).world({d.x(), d.y(), std::sqrt(std::max(0.0, 1 - d.squaredNorm()))}).normalized();
 }
 
+double Bsdf::alpha_of(const Material& material) {
+  const double roughness = std::clamp(material.roughness, 0.05, 1.0);
+  return roughness * roughness;
+}
+
 Bsdf::Bsdf(const Material& material) : body_rgb_(material.reflectance_rgb), specular_(material.specular_reflectance) {
   if (matt()) return;
-  const double roughness = std::clamp(material.roughness, 0.05, 1.0);
-  alpha_ = roughness * roughness;
+  alpha_ = alpha_of(material);
   // The share that one facet sends on = mean over visible microfacets of F G2/G1: 1024 points are good to 1e-3 of it.
   constexpr std::uint32_t kPoints = 1024;
   const SobolSequence points(0xc0a7);

@@ -22,6 +22,9 @@ class Bsdf {
  public:
   explicit Bsdf(const Material& material);
 
+  /// Of GGX; smoother than 0.05 is taken as that.
+  [[nodiscard]] static double alpha_of(const Material& material);
+
   /// Without gloss f is ρ/π whatever the directions, and sampling is by the cosine.
   [[nodiscard]] bool matt() const { return specular_ <= 0; }
   [[nodiscard]] bool black() const { return matt() && !(body_rgb_.maxCoeff() > 0); }

@@ -8,7 +8,6 @@
 #include <numeric>
 #include <tuple>
 
-#include "core/photometry/shape_sampling.h"
 #include "core/transport/bsdf.h"
 #include "core/transport/sobol.h"
 
@@ -84,6 +83,8 @@ Lamps::Lamps(std::span<const Emitter> emitters, std::span<const double> levels,
     colours_rgb_[e] = emitter.colour_rgb;
     importances_[e] = lamps_.back().importance;
   }
+  for (std::size_t p = 0; p < places_.size(); ++p)
+    if (places_[p].kind == Kind::shape) shapes_.push_back(p);
   form_groups();
   form_cells(bounds_world_m);
   share_out();
@@ -120,7 +121,8 @@ void Lamps::form_cells(const Eigen::AlignedBox3d& bounds_world_m) {
 void Lamps::form_groups() {
   const auto skies = static_cast<std::size_t>(
       std::count_if(places_.begin(), places_.end(), [](const Place& p) { return p.kind == Kind::sky; }));
-  const std::size_t luminaires = places_.size() - skies, groups = std::min(luminaires, kMostGroups);
+  const std::size_t luminaires = luminous_places_ = places_.size() - skies;
+  const std::size_t groups = std::min(luminaires, kMostGroups);
   group_of_emitter_.resize(place_of_emitter_.size());
   for (std::size_t p = 0; p < places_.size(); ++p) {
     const std::size_t g = p < luminaires ? p * groups / luminaires : groups + p - luminaires;
@@ -235,6 +237,30 @@ LampChoice Lamps::choose(const Vec3& position_world_m, const Vec3& normal_world,
     }
   const Place& place = places_[choice.place];
   const double probability = weight / sum;
+  if (place.kind != Kind::sky) return ask_place(choice.place, probability, position_world_m, normal_world, u, v);
+  const double whole = whole_sky_share(place, weights);
+  // What is left of the number after each choice is as good as it was.
+  const double rest = std::clamp(left / weight, 0.0, 1 - 0x1p-53);
+  DirectionSample sample = rest < whole
+                               ? lamps_[place.begin].sky->sample(u, v)
+                               : openings_->sample(weights.view, position_world_m, (rest - whole) / (1 - whole), u, v);
+  const double cosine = normal_world.dot(sample.direction);
+  if (!(sample.density_per_sr > 0) || !(cosine > 0)) return choice;
+  if (whole < 1) sample.density_per_sr = sky_density_per_sr(place, position_world_m, sample.direction, weights);
+  choice.direction_world = sample.direction;
+  choice.target_world_m = beyond_world_m(position_world_m, sample.direction);
+  choice.factor = cosine;
+  choice.hit_factor = cosine * line_density_per_m2(sample.direction, position_world_m);
+  choice.in_place = sample.density_per_sr;
+  choice.density = probability * sample.density_per_sr;
+  return choice;
+}
+
+LampChoice Lamps::ask_place(std::size_t which, double probability, const Vec3& position_world_m,
+                            const Vec3& normal_world, double u, double v) const {
+  LampChoice choice;
+  choice.place = which;
+  const Place& place = places_[which];
   if (place.kind == Kind::point) {
     const Vec3 towards_m = place.position_world_m - position_world_m;
     const double distance_m = towards_m.norm();
@@ -243,35 +269,40 @@ LampChoice Lamps::choose(const Vec3& position_world_m, const Vec3& normal_world,
     choice.factor = normal_world.dot(choice.direction_world) / (distance_m * distance_m);
     choice.hit_factor = choice.factor;
     choice.density = choice.factor > 0 ? probability : 0;
-  } else if (place.kind == Kind::shape) {
-    const Vec3 at_lamp_m = place.world_from_lamp.transpose() * (position_world_m - place.position_world_m);
-    const ShapeSample seen = sample_seen_from(place.shape, at_lamp_m, u, v);
-    if (!(seen.density_per_sr > 0)) return choice;
-    choice.direction_world = place.world_from_lamp * seen.direction;
-    choice.target_world_m = position_world_m + seen.distance_m * choice.direction_world;
-    const double cosine = normal_world.dot(choice.direction_world);
-    const double area_m2 = projected_area_m2(place.shape, -seen.direction);
-    if (!(cosine > 0) || !(area_m2 > 0)) return choice;
-    choice.factor = cosine / area_m2;
-    choice.hit_factor = choice.factor;
-    choice.density = probability * seen.density_per_sr;
   } else {
-    const double whole = whole_sky_share(place, weights);
-    // What is left of the number after each choice is as good as it was.
-    const double rest = std::clamp(left / weight, 0.0, 1 - 0x1p-53);
-    DirectionSample sample =
-        rest < whole ? lamps_[place.begin].sky->sample(u, v)
-                     : openings_->sample(weights.view, position_world_m, (rest - whole) / (1 - whole), u, v);
-    const double cosine = normal_world.dot(sample.direction);
-    if (!(sample.density_per_sr > 0) || !(cosine > 0)) return choice;
-    if (whole < 1) sample.density_per_sr = sky_density_per_sr(place, position_world_m, sample.direction, weights);
-    choice.direction_world = sample.direction;
-    choice.target_world_m = beyond_world_m(position_world_m, sample.direction);
-    choice.factor = cosine;
-    choice.hit_factor = cosine * line_density_per_m2(sample.direction, position_world_m);
-    choice.density = probability * sample.density_per_sr;
+    const ShapeSample seen = sample_seen_from(place.shape, at_lamp_m(place, position_world_m), u, v);
+    if (seen.density_per_sr > 0)
+      fill_in(choice, position_world_m, seen.distance_m, seen.density_per_sr, normal_world,
+              place.world_from_lamp * seen.direction);
+    choice.density *= probability;
   }
   return choice;
+}
+
+LampChoice Lamps::place_towards(std::size_t which, const Vec3& position_world_m, const Vec3& normal_world,
+                                const Vec3& direction_world) const {
+  LampChoice choice;
+  choice.place = which;
+  const Place& place = places_[which];
+  const Vec3 from_m = at_lamp_m(place, position_world_m);
+  const Vec3 direction = place.world_from_lamp.transpose() * direction_world;
+  const double density = density_seen_from(place.shape, from_m, direction);
+  if (density > 0)
+    fill_in(choice, position_world_m, distance_towards_m(place.shape, from_m, direction), density, normal_world,
+            direction_world);
+  return choice;
+}
+
+void Lamps::fill_in(LampChoice& choice, const Vec3& position_world_m, double distance_m, double density_per_sr,
+                    const Vec3& normal_world, const Vec3& direction_world) const {
+  const Place& place = places_[choice.place];
+  const double cosine = normal_world.dot(direction_world);
+  const double area_m2 = projected_area_m2(place.shape, -(place.world_from_lamp.transpose() * direction_world));
+  if (!(cosine > 0) || !(area_m2 > 0)) return;
+  choice.direction_world = direction_world;
+  choice.target_world_m = position_world_m + distance_m * direction_world;
+  choice.factor = choice.hit_factor = cosine / area_m2;
+  choice.in_place = choice.density = density_per_sr;
 }
 
 Vec3 Lamps::beyond_world_m(const Vec3& position_world_m, const Vec3& direction_world) const {
@@ -281,16 +312,44 @@ Vec3 Lamps::beyond_world_m(const Vec3& position_world_m, const Vec3& direction_w
 double Lamps::choice_density(std::size_t emitter, const Vec3& position_world_m, const Vec3& direction_world,
                              const Weights& weights, double sum) const {
   const std::size_t p = place_of_emitter_[emitter];
-  const std::size_t slot = weights.cell->slot_of(p);
-  const double weight = slot < weights.places.size() ? weights.places[slot] : weights.cell->rest_of(p);
-  if (!(weight > 0)) return 0;
+  const double probability = place_probability(p, weights, sum);
+  if (!(probability > 0)) return 0;
   const Place& place = places_[p];
-  const double probability = weight / sum;
-  if (place.kind == Kind::point) return probability;
   if (place.kind == Kind::sky)
     return probability * sky_density_per_sr(place, position_world_m, direction_world, weights);
-  const Vec3 at_lamp_m = place.world_from_lamp.transpose() * (position_world_m - place.position_world_m);
-  return probability * density_seen_from(place.shape, at_lamp_m, place.world_from_lamp.transpose() * direction_world);
+  return probability * density_in_place(p, position_world_m, direction_world);
+}
+
+double Lamps::place_probability(std::size_t p, const Weights& weights, double sum) const {
+  const std::size_t slot = weights.cell->slot_of(p);
+  const double weight = slot < weights.places.size() ? weights.places[slot] : weights.cell->rest_of(p);
+  return weight > 0 ? weight / sum : 0;
+}
+
+double Lamps::density_in_place(std::size_t which, const Vec3& position_world_m, const Vec3& direction_world) const {
+  const Place& place = places_[which];
+  if (place.kind == Kind::point) return 1;
+  return density_seen_from(place.shape, at_lamp_m(place, position_world_m),
+                           place.world_from_lamp.transpose() * direction_world);
+}
+
+double Lamps::importance_cd(std::size_t which, const Vec3& leaving_world) const {
+  const Place& place = places_[which];
+  double candela = 0;
+  for (std::size_t i = place.begin; i < place.end; ++i) {
+    const Lamp& lamp = lamps_[i];
+    if (lamp.axis_world.dot(leaving_world) < lamp.cos_half_cone) continue;
+    candela += lamp.importance * lamp.intensity->intensity_cd(lamp.lamp_from_world * leaving_world);
+  }
+  return candela;
+}
+
+double Lamps::place_share(std::size_t which) const {
+  const Place& place = places_[which];
+  double share = 0;
+  for (std::size_t i = place.begin; i < place.end; ++i)
+    share += lamps_[i].share * groups_[group_of_emitter_[lamps_[i].emitter]].share;
+  return share;
 }
 
 LampRay Lamps::emit(std::size_t group, double u, double v, double s, double t) const {

@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "core/photometry/shape_sampling.h"
 #include "core/transport/evaluator.h"
 #include "core/transport/lamp_cells.h"
 #include "core/transport/sky_openings.h"
@@ -25,6 +26,7 @@ struct LampChoice {
   Vec3 target_world_m = Vec3::Zero();    ///< where a shadow ray ends
   double density = 0;     ///< probability of the place, times the density per sr of the direction where it has a choice
   double factor = 0;      ///< lux = intensity [cd] (of a sky: luminance [cd/m²]) times this, per 1 / density
+  double in_place = 1;    ///< the same without the probability of the place: 1 for a point
   double hit_factor = 0;  ///< density of light-traced first hits of the group = direction density times this
 };
 
@@ -104,6 +106,14 @@ class Lamps {
   [[nodiscard]] LampChoice choose(const Vec3& position_world_m, const Vec3& normal_world, const Weights& weights,
                                   double sum, double select, double u, double v) const;
 
+  /// A place of luminaires by its number, drawn with some probability; for what has size a direction by u and v.
+  [[nodiscard]] LampChoice ask_place(std::size_t place, double probability, const Vec3& position_world_m,
+                                     const Vec3& normal_world, double u, double v) const;
+
+  /// The same for a place of what has size, in a direction drawn by other means; density 0: the direction misses it.
+  [[nodiscard]] LampChoice place_towards(std::size_t place, const Vec3& position_world_m, const Vec3& normal_world,
+                                         const Vec3& direction_world) const;
+
   /// What each lamp of the chosen place gives unshadowed, as lit(emitter, lux / choice.density, density with which
   /// emit() of its group makes a first hit just there, in the unit of choice.density).
   template <class Lit>
@@ -126,30 +136,49 @@ class Lamps {
     }
   }
 
-  /// What skies show in a direction from a surface point above whose horizon it lies, as lit(emitter, luminance
-  /// [cd/m²] at level 1, density per sr with which choose() asks for it, density with which emit() of its group makes a
-  /// first hit just there, in the same unit). Nothing may stand in between; weights and their sum as from weigh() there.
+  /// What luminaires with size and skies show in a direction from a surface point above whose horizon it lies, as
+  /// lit(emitter, luminance [cd/m²] at level 1, density per sr with which choose() asks for it, density with which
+  /// emit() of its group makes a first hit just there, in the same unit, where it is). Weights and their sum as from
+  /// weigh() there.
+  /// free_m   so far nothing stands in the way; infinite: skies are seen
   template <class Lit>
-  void each_sky_towards(const Vec3& position_world_m, const Vec3& normal_world, const Vec3& direction_world,
-                        const Weights& weights, double sum, Lit&& lit) const {
+  void each_towards(const Vec3& position_world_m, const Vec3& normal_world, const Vec3& direction_world, double free_m,
+                    const Weights& weights, double sum, Lit&& lit) const {
+    for (const std::size_t p : shapes_) {
+      const Place& place = places_[p];
+      const Vec3 towards_m = place.position_world_m - position_world_m;
+      if (towards_m.cross(direction_world).squaredNorm() > place.radius_m * place.radius_m) continue;
+      const double asked = place_probability(p, weights, sum) * density_in_place(p, position_world_m, direction_world);
+      if (!(asked > 0)) continue;
+      const Vec3 leaving = -(place.world_from_lamp.transpose() * direction_world);
+      const double area_m2 = projected_area_m2(place.shape, leaving);
+      const double way_m = distance_towards_m(place.shape, at_lamp_m(place, position_world_m), -leaving);
+      if (!(area_m2 > 0) || !(way_m <= free_m)) continue;
+      const Lamp& lamp = lamps_[place.begin];
+      const double luminance_cd_m2 = lamp.intensity->intensity_cd(leaving) / area_m2;
+      if (luminance_cd_m2 > 0)
+        lit(lamp.emitter, luminance_cd_m2, asked,
+            lamp.share * lamp.intensity->density_per_sr(leaving) * normal_world.dot(direction_world) / area_m2,
+            Vec3(position_world_m + way_m * direction_world));
+    }
+    if (std::isfinite(free_m)) return;
     for (std::size_t p = places_.size(); p > 0 && places_[p - 1].kind == Kind::sky; --p) {
-      const Place& place = places_[p - 1];
-      for (std::size_t i = place.begin; i < place.end; ++i) {
-        const Lamp& lamp = lamps_[i];
-        const double luminance_cd_m2 = lamp.sky->luminance_cd_m2(direction_world);
-        if (!(luminance_cd_m2 > 0)) continue;
-        lit(lamp.emitter, luminance_cd_m2,
-            choice_density(lamp.emitter, position_world_m, direction_world, weights, sum),
-            lamp.share * lamp.sky->density_per_sr(direction_world) * normal_world.dot(direction_world) *
-                line_density_per_m2(direction_world, position_world_m));
-      }
+      const Lamp& lamp = lamps_[places_[p - 1].begin];
+      const double luminance_cd_m2 = lamp.sky->luminance_cd_m2(direction_world);
+      if (!(luminance_cd_m2 > 0)) continue;
+      lit(lamp.emitter, luminance_cd_m2, choice_density(lamp.emitter, position_world_m, direction_world, weights, sum),
+          lamp.share * lamp.sky->density_per_sr(direction_world) * normal_world.dot(direction_world) *
+              line_density_per_m2(direction_world, position_world_m),
+          beyond_world_m(position_world_m, direction_world));
     }
   }
   /// A place outside of all geometry.
   [[nodiscard]] Vec3 beyond_world_m(const Vec3& position_world_m, const Vec3& direction_world) const;
-  /// A path that leaves the scene can meet it by chance.
   [[nodiscard]] bool is_sky(std::size_t emitter) const { return places_[place_of_emitter_[emitter]].kind == Kind::sky; }
   [[nodiscard]] bool any_sky() const { return !places_.empty() && places_.back().kind == Kind::sky; }
+  /// A path can meet it by chance.
+  [[nodiscard]] bool has_size(std::size_t emitter) const { return place_has_size(place_of_emitter_[emitter]); }
+  [[nodiscard]] bool place_has_size(std::size_t place) const { return places_[place].kind != Kind::point; }
 
   /// Light as it leaves a group: a lamp by its share and a direction by (u, v), a place on it by (s, t).
   [[nodiscard]] LampRay emit(std::size_t group, double u, double v, double s, double t) const;
@@ -161,10 +190,25 @@ class Lamps {
   [[nodiscard]] double group_share(std::size_t group) const { return groups_[group].share; }
   [[nodiscard]] std::size_t group_of(std::size_t emitter) const { return group_of_emitter_[emitter]; }
 
+  /// Places of luminaires; those of skies come after them.
+  [[nodiscard]] std::size_t luminous_places() const { return luminous_places_; }
+  [[nodiscard]] std::size_t place_of(std::size_t emitter) const { return place_of_emitter_[emitter]; }
+  [[nodiscard]] const Vec3& place_world_m(std::size_t place) const { return places_[place].position_world_m; }
+  [[nodiscard]] double radius_m(std::size_t place) const { return places_[place].radius_m; }
+  /// What its lamps send in a direction, times importance [cd].
+  [[nodiscard]] double importance_cd(std::size_t place, const Vec3& leaving_world) const;
+  /// Part of all light, times importance, that a place of luminaires gives.
+  [[nodiscard]] double place_share(std::size_t place) const;
+
   /// Density with which choose() asks the place of an emitter from a surface point in a direction. Weights as from
   /// weigh() there.
   [[nodiscard]] double choice_density(std::size_t emitter, const Vec3& position_world_m, const Vec3& direction_world,
                                       const Weights& weights, double sum) const;
+  /// Probability with which choose() takes a place.
+  [[nodiscard]] double place_probability(std::size_t place, const Weights& weights, double sum) const;
+  /// Density with which ask_place() draws a direction: 1 for a point.
+  [[nodiscard]] double density_in_place(std::size_t place, const Vec3& position_world_m,
+                                        const Vec3& direction_world) const;
 
   [[nodiscard]] const Vec3& colour_rgb(std::size_t emitter) const { return colours_rgb_[emitter]; }
   /// Level of an emitter as far as choices go: above 0 for all.
@@ -207,6 +251,11 @@ class Lamps {
   void share_out();
   /// Share of a lamp's light, about, that can meet the sphere around all geometry.
   [[nodiscard]] double inward_share(const Lamp& lamp, const Place& place) const;
+  [[nodiscard]] static Vec3 at_lamp_m(const Place& place, const Vec3& position_world_m) {
+    return place.world_from_lamp.transpose() * (position_world_m - place.position_world_m);
+  }
+  void fill_in(LampChoice& choice, const Vec3& position_world_m, double distance_m, double density_per_sr,
+               const Vec3& normal_world, const Vec3& direction_world) const;
   void weigh_skies(const Vec3& position_world_m, const Vec3& normal_world, Weights& weights) const;
   [[nodiscard]] LampRay emit_sky(const Lamp& lamp, double u, double v, double s, double t) const;
   /// Density [1/sr] with which choose() draws a direction towards the sky.
@@ -223,6 +272,8 @@ class Lamps {
   std::vector<Place> places_;
   LampCells cells_;
   std::vector<Group> groups_;
+  std::size_t luminous_places_ = 0;
+  std::vector<std::size_t> shapes_;  ///< places of luminaires with size
   std::vector<std::size_t> place_of_emitter_, group_of_emitter_;
   std::vector<Vec3> colours_rgb_;
   std::vector<double> importances_;

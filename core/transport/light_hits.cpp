@@ -64,6 +64,10 @@ LightHit LightHits::trace(std::size_t group, const SobolSequence& samples, std::
   light.density = ray.density * cosine * spread;
   const double sum = lamps_.weigh(light.position_world_m, light.normal_world, weights);
   light.choice_density = lamps_.choice_density(ray.emitter, light.position_world_m, light.to_light_world, weights, sum);
+  if (images_) light.plane = images_->plane_of(hit->triangle);
+  if (light.plane != MirrorImages::kNoPlane && !lamps_.is_sky(ray.emitter))
+    light.in_place =
+        lamps_.density_in_place(lamps_.place_of(ray.emitter), light.position_world_m, light.to_light_world);
   if (!std::isfinite(light.density)) return light;
   const double through = scene_.has_panes() ? scene_.transmittance(ray.from_world_m, hit->position_world_m) : 1;
   light.flux_rgb = through * ray.flux_lm * lamps_.colour_rgb(ray.emitter);

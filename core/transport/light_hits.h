@@ -5,6 +5,7 @@
 
 #include "core/transport/bsdf.h"
 #include "core/transport/lamps.h"
+#include "core/transport/mirror_images.h"
 #include "core/transport/sobol.h"
 
 namespace luxrig {
@@ -26,14 +27,17 @@ struct LightHit {
   std::size_t emitter = 0;
   double density = 0;         ///< with which the group's samples fall here: per m², and per sr for what has size
   double choice_density = 0;  ///< with which next-event estimation here would ask for the same light
+  double in_place = 0;        ///< the same, had its place of lamps been chosen
+  std::uint32_t plane = MirrorImages::kNoPlane;  ///< that shows images of lamps
 
   [[nodiscard]] bool shines() const { return bsdf != nullptr && flux_rgb.maxCoeff() > 0; }
 };
 
 class LightHits {
  public:
-  LightHits(const RayScene& scene, const Lamps& lamps, const std::vector<Bsdf>& bsdfs)
-      : scene_(scene), lamps_(lamps), bsdfs_(bsdfs), bounds_world_m_(scene.bounds_world_m()) {}
+  LightHits(const RayScene& scene, const Lamps& lamps, const std::vector<Bsdf>& bsdfs,
+            const MirrorImages* images = nullptr)
+      : scene_(scene), lamps_(lamps), bsdfs_(bsdfs), images_(images), bounds_world_m_(scene.bounds_world_m()) {}
 
   /// The hit of one sample of a group of lamps. Adds the rays it cost: none when it can meet no geometry.
   [[nodiscard]] LightHit trace(std::size_t group, const SobolSequence& samples, std::uint32_t index,
@@ -43,6 +47,7 @@ class LightHits {
   const RayScene& scene_;
   const Lamps& lamps_;
   const std::vector<Bsdf>& bsdfs_;
+  const MirrorImages* images_;
   Eigen::AlignedBox3d bounds_world_m_;
 };
 

@@ -80,7 +80,8 @@ class PathEvaluation {
         channels_(options.colour ? 3 : 1),
         columns_(emitters.size() * channels_),
         importance_(emitters.size()),
-        sampler_(scene, lamps_, bsdfs_, importance_),
+        images_(scene, lamps_),
+        sampler_(scene, lamps_, bsdfs_, images_, importance_),
         levels_(levels_of(options, emitters.size())),
         hits_(lamps_, receivers.size()),
         spent_(receivers.size(), options, std::min(kMostSentOn, largest_reflectance(scene)),
@@ -114,6 +115,12 @@ class PathEvaluation {
       return std::move(matrix_);
     }
     sums_ = ReplicateSums(receivers_.size(), channels_, levels_);
+    if (images_.any()) {
+      images_seen_.resize(receivers_.size());
+      parallel_for(receivers_.size(), options_.threads, [&](std::size_t r) {
+        images_seen_[r] = images_.seen_from(receivers_[r].position_world_m, receivers_[r].normal_world);
+      });
+    }
     if (tails_) ends_.emplace(sampler_, *tails_, receivers_.size(), levels_);
     done_ = 0.05;
     for (auto round = spent_.first(matrix_.rays); !round.empty();) {
@@ -199,7 +206,7 @@ class PathEvaluation {
       TailShare tails;
       if (shares_now && !spent_[r].alone) tails.records = &tails_->records(k);
       if (keeps_ends) tails.ends = &ends_->of(r, k);
-      const auto start = PathSampler::at(receivers_[r]);
+      const auto start = start_at(r);
       for (std::uint32_t i = begin; i < end; ++i) {
         if (options_.watch.stop.stop_requested()) return;
         tails.check = i % checked == r % checked;
@@ -218,6 +225,12 @@ class PathEvaluation {
     }
   }
 
+  [[nodiscard]] PathSampler::Vertex start_at(std::size_t r) const {
+    auto start = PathSampler::at(receivers_[r]);
+    if (!images_seen_.empty()) start.images = &images_seen_[r];
+    return start;
+  }
+
   /// Connections of a receiver's paths that are worth less are made only now and then.
   double cut_lx(std::size_t r) const { return kCut * spent_[r].reflected_lx; }
 
@@ -226,7 +239,7 @@ class PathEvaluation {
     std::vector<std::uint32_t> paths;
     for (const PathTask& task : chunk) paths.push_back(task.end - task.begin);
     const auto counts = ReceiverHits::pool_counts(lamps_, plans_, paths);
-    const LightHits lights(scene_, lamps_, bsdfs_);
+    const LightHits lights(scene_, lamps_, bsdfs_, &images_);
     pools_.resize(kPathReplicates);
     std::vector<std::uint64_t> rays(kPathReplicates, 0);
     parallel_for(kPathReplicates, options_.threads, [&](std::size_t k) {
@@ -254,8 +267,8 @@ class PathEvaluation {
         draw_stretches(plans_[i], pools_[k], samples, key, stretches);
         std::fill(values.begin(), values.end(), 0.0);
         std::fill(squares.begin(), squares.end(), 0.0);
-        rays[i] += sampler_.join_start(PathSampler::at(receivers_[r]), pools_[k], plans_[i], stretches, cut_lx(r),
-                                       mixed(key, groups), {values, channels_}, squares);
+        rays[i] += sampler_.join_start(start_at(r), pools_[k], plans_[i], stretches, cut_lx(r), mixed(key, groups),
+                                       {values, channels_}, squares);
         hits_.learn(r, squares, stretches);
         sums_.add(k, r, values);
       }
@@ -423,6 +436,8 @@ class PathEvaluation {
   Lamps lamps_;
   std::size_t channels_, columns_;
   std::vector<double> importance_;
+  MirrorImages images_;
+  std::vector<ImageChoice> images_seen_;  ///< by receiver; empty when there are none
   PathSampler sampler_;
   Eigen::VectorXd levels_;
   ReceiverHits hits_;

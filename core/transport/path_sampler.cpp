@@ -85,7 +85,12 @@ PathSampler::Join PathSampler::join(const Vertex& vertex, const LightHit& hit, d
   const double density =
       vertex.outside ? next_density_per_sr(vertex, towards_m * std::sqrt(per_distance2), of_surface) : of_surface;
   const double by_path = density * hit_height_m * per_distance2 * std::sqrt(per_distance2) * asked;
-  const double factor = geometry / hits * (by_hit / (by_hit + by_path));
+  const std::size_t place = lamps_.place_of(hit.emitter);
+  double by_image = image_density_per_m2(vertex, hit.plane, place, hit.position_world_m);
+  if (by_image > 0)
+    by_image *= image_direction_density(place, hit.in_place, *hit.bsdf, hit.normal_world,
+                                        -towards_m * std::sqrt(per_distance2), hit.to_light_world);
+  const double factor = geometry / hits * (by_hit / (by_hit + by_path + by_image));
   if (!(factor > 0) || !std::isfinite(factor)) return {};
   rgb *= factor;
   const double worth = luminance_of_rgb(rgb) * level(hit.emitter);
@@ -197,9 +202,69 @@ std::uint64_t PathSampler::join_deeper(const Vertex& vertex, const HitPool& pool
   return 1;
 }
 
-std::uint64_t PathSampler::ask_lamps(const Vertex& vertex, double density_per_m2, std::span<const double> hits,
-                                     double cut, double select, double u, double v, double chance, PathScratch& scratch,
-                                     const PathSums& sums) const {
+std::uint64_t PathSampler::join_image(const Vertex& vertex, std::span<const double> hits, double cut,
+                                      const ImageDice& dice, PathScratch& scratch, const PathSums& sums) const {
+  const auto place = images_.draw(*vertex.images, vertex.position_world_m, dice.select, dice.u, dice.v);
+  if (place.plane == MirrorImages::kNoPlane) return 0;
+  const Vec3 towards_m = place.position_world_m - vertex.position_world_m;
+  const double height_m = vertex.normal_world.dot(towards_m), place_height_m = -place.normal_world.dot(towards_m);
+  if (!(height_m > 0) || !(place_height_m > 0)) return 0;
+  const double per_distance2 = 1 / towards_m.squaredNorm(), per_distance = std::sqrt(per_distance2);
+  const Vec3 direction = towards_m * per_distance;
+  const Bsdf& bsdf = bsdfs_[images_.material_of(place.plane)];
+  const std::size_t lamp = place.place_of_lamp;
+  LampChoice choice;
+  if (lamps_.place_has_size(lamp) && dice.by_gloss < 0.5) {
+    const Bsdf::Sample drawn = bsdf.sample(place.normal_world, -direction, dice.s, dice.t, dice.lobe);
+    if (!(drawn.density_per_sr > 0)) return 0;
+    choice = lamps_.place_towards(lamp, place.position_world_m, place.normal_world, drawn.in);
+  } else {
+    choice = lamps_.ask_place(lamp, 1, place.position_world_m, place.normal_world, dice.s, dice.t);
+  }
+  if (!(choice.density > 0)) return 0;
+  choice.density =
+      image_direction_density(lamp, choice.in_place, bsdf, place.normal_world, -direction, choice.direction_world);
+  Vec3 per_lux = vertex.through_rgb.cwiseProduct(bsdf.value(place.normal_world, -direction, choice.direction_world)) *
+                 (height_m * place_height_m * per_distance2 * per_distance2 / place.density_per_m2);
+  double of_surface = height_m * per_distance / kPi;
+  if (vertex.bsdf) {
+    per_lux = per_lux.cwiseProduct(vertex.bsdf->value(vertex.normal_world, vertex.out_world, direction));
+    of_surface = vertex.bsdf->density(vertex.normal_world, vertex.out_world, direction);
+  }
+  if (!(per_lux.maxCoeff() > 0)) return 0;
+  if (vertex.outside) of_surface = next_density_per_sr(vertex, direction, of_surface);
+  const double path_per_m2 = of_surface * place_height_m * per_distance2 * per_distance;
+  const double sum = lamps_.weigh(place.position_world_m, place.normal_world, scratch.image_weights);
+  const double asked = lamps_.place_probability(lamp, scratch.image_weights, sum);
+  const double by_image = place.density_per_m2 * choice.density, by_path = path_per_m2 * asked * choice.in_place;
+  scratch.lit.clear();
+  double worth = 0;
+  lamps_.light(choice, [&](std::size_t emitter, double lux, double hit_density) {
+    const double by_chance =
+        path_per_m2 * met_density_per_sr(emitter, bsdf, place.normal_world, -direction, choice.direction_world);
+    const double by_hit = hits[lamps_.group_of(emitter)] * hit_density;
+    const double share = by_image / (by_image + by_path + by_hit + by_chance);
+    const Vec3 rgb = share * lux * per_lux.cwiseProduct(lamps_.colour_rgb(emitter));
+    worth += luminance_of_rgb(rgb) * level(emitter);
+    scratch.lit.push_back({emitter, rgb});
+  });
+  if (!(worth > 0) || !std::isfinite(worth)) return 0;
+  const double counts = kept(worth, cut, dice.chance);
+  if (counts == 0) return 0;
+  // The plane has a surface only where its triangles are.
+  const auto hit = scene_.nearest(vertex.position_world_m, direction, vertex.normal_world);
+  if (!hit || images_.plane_of(hit->triangle) != place.plane) return 1;
+  if (!scene_.occluded(hit->position_world_m, hit->normal_world, choice.target_world_m)) {
+    const double share = counts * through_glass(vertex.position_world_m, hit->position_world_m) *
+                         through_glass(hit->position_world_m, choice.target_world_m);
+    for (const PathScratch::Lit& lit : scratch.lit) sums.add(lit.emitter, share * lit.rgb);
+  }
+  return 2;
+}
+
+std::uint64_t PathSampler::ask_lamps(const Vertex& before, const Vertex& vertex, double density_per_m2,
+                                     std::span<const double> hits, double cut, double select, double u, double v,
+                                     double chance, PathScratch& scratch, const PathSums& sums) const {
   scratch.weights_sum = lamps_.weigh(vertex.position_world_m, vertex.normal_world, scratch.weights);
   const LampChoice choice = lamps_.choose(vertex.position_world_m, vertex.normal_world, scratch.weights,
                                           scratch.weights_sum, select, u, v);
@@ -207,12 +272,16 @@ std::uint64_t PathSampler::ask_lamps(const Vertex& vertex, double density_per_m2
   const Vec3 per_lux = vertex.through_rgb.cwiseProduct(
       vertex.bsdf->value(vertex.normal_world, vertex.out_world, choice.direction_world));
   const double by_path = density_per_m2 * choice.density;
+  double by_image = image_density_per_m2(before, vertex.plane, choice.place, vertex.position_world_m);
+  if (by_image > 0)
+    by_image *= image_direction_density(choice.place, choice.in_place, *vertex.bsdf, vertex.normal_world,
+                                        vertex.out_world, choice.direction_world);
   scratch.lit.clear();
   double worth = 0;
   lamps_.light(choice, [&](std::size_t emitter, double lux, double hit_density) {
     const double by_chance = density_per_m2 * met_density_per_sr(emitter, *vertex.bsdf, vertex.normal_world,
                                                                  vertex.out_world, choice.direction_world);
-    const double share = by_path / (by_path + hits[lamps_.group_of(emitter)] * hit_density + by_chance);
+    const double share = by_path / (by_path + hits[lamps_.group_of(emitter)] * hit_density + by_chance + by_image);
     const Vec3 rgb = share * lux * per_lux.cwiseProduct(lamps_.colour_rgb(emitter));
     worth += luminance_of_rgb(rgb) * level(emitter);
     scratch.lit.push_back({emitter, rgb});
@@ -227,19 +296,24 @@ std::uint64_t PathSampler::ask_lamps(const Vertex& vertex, double density_per_m2
   return 1;
 }
 
-void PathSampler::meet_skies(const Vertex& vertex, const Bsdf::Sample& next, double density_per_m2,
-                             std::span<const double> hits, const PathScratch& scratch, const PathSums& sums) const {
-  if (vertex.bsdf == nullptr || vertex.bsdf->matt() || !lamps_.any_sky()) return;
+void PathSampler::meet_lights(const Vertex& before, const Vertex& vertex, const Bsdf::Sample& next, double free_m,
+                              double density_per_m2, std::span<const double> hits, const PathScratch& scratch,
+                              const PathSums& sums) const {
+  if (vertex.bsdf == nullptr || vertex.bsdf->matt() || !lamps_.have_size()) return;
   const double of_gloss = vertex.bsdf->density(vertex.normal_world, vertex.out_world, next.in);
-  const double through =
-      through_glass(vertex.position_world_m, lamps_.beyond_world_m(vertex.position_world_m, next.in));
-  lamps_.each_sky_towards(
-      vertex.position_world_m, vertex.normal_world, next.in, scratch.weights, scratch.weights_sum,
-      [&](std::size_t emitter, double luminance_cd_m2, double choice_density, double hit_density) {
+  lamps_.each_towards(
+      vertex.position_world_m, vertex.normal_world, next.in, free_m, scratch.weights, scratch.weights_sum,
+      [&](std::size_t emitter, double luminance_cd_m2, double choice_density, double hit_density,
+          const Vec3& at_world_m) {
+        const std::size_t place = lamps_.place_of(emitter);
+        double by_image = image_density_per_m2(before, vertex.plane, place, vertex.position_world_m);
+        if (by_image > 0)
+          by_image *= image_direction_density(place, lamps_.density_in_place(place, vertex.position_world_m, next.in),
+                                              *vertex.bsdf, vertex.normal_world, vertex.out_world, next.in);
         // Shared by what gloss does alone; that some paths go on towards openings makes it more often than that.
-        const double share =
-            of_gloss / (of_gloss + choice_density + hits[lamps_.group_of(emitter)] * hit_density / density_per_m2);
-        const double counts = through * share * luminance_cd_m2;
+        const double share = of_gloss / (of_gloss + choice_density +
+                                         (hits[lamps_.group_of(emitter)] * hit_density + by_image) / density_per_m2);
+        const double counts = through_glass(vertex.position_world_m, at_world_m) * share * luminance_cd_m2;
         if (!(counts > 0) || !std::isfinite(counts)) return;
         sums.add(emitter, counts * vertex.through_rgb.cwiseProduct(next.weight_rgb)
                                        .cwiseProduct(lamps_.colour_rgb(emitter)));
@@ -252,7 +326,7 @@ std::uint64_t PathSampler::add_path(const Vertex& start, const SobolSequence& sa
   std::uint64_t rays = 0;
   scratch.first_leg_m = HUGE_VAL;
   PathDice dice(samples, index);
-  Vertex vertex = start;
+  Vertex vertex = start, before = start;
   double arrived_per_m2 = 0;
   if (tails != nullptr) tails->linked.reset();
   const PathSums* into = &sums;
@@ -260,30 +334,41 @@ std::uint64_t PathSampler::add_path(const Vertex& start, const SobolSequence& sa
   for (std::uint32_t bounce = 0; bounce < kLongestPath; ++bounce) {
     look_outside(vertex, scratch.outside);
     if (bounce > 0) rays += join_deeper(vertex, pool, plan, cut, dice.pair(bounce, 3)[0], dice.plain(), *into);
+    if (vertex.images && !vertex.images->images.empty()) {
+      const auto [u, v] = dice.pair(bounce, 5);
+      const ImageDice of_image{
+          dice.pair(bounce, 4)[1], u, v, dice.plain(), dice.plain(), dice.plain(), dice.plain(), dice.plain()};
+      rays += join_image(vertex, bounce == 0 ? plan.at_start : plan.deeper, cut, of_image, scratch, *into);
+    }
     const auto [u, v] = dice.pair(bounce, 0);
     const double lobe = vertex.bsdf && !vertex.bsdf->matt() ? dice.pair(bounce, 4)[0] : 0;
     const Bsdf::Sample next = next_direction(vertex, u, v, lobe);
     if (!(next.density_per_sr > 0)) break;
     ++rays;
     const auto hit = scene_.nearest(vertex.position_world_m, next.in, vertex.normal_world);
-    if (!hit) {
-      if (bounce > 0)
-        meet_skies(vertex, next, arrived_per_m2, bounce == 1 ? plan.at_start : plan.deeper, scratch, *into);
-      break;
+    if (bounce > 0) {
+      const double free_m = hit ? hit->distance_m + 2 * scene_.surface_error_m(hit->position_world_m) : HUGE_VAL;
+      meet_lights(before, vertex, next, free_m, arrived_per_m2, bounce == 1 ? plan.at_start : plan.deeper, scratch,
+                  *into);
     }
+    if (!hit) break;
     const Bsdf& bsdf = bsdfs_[scene_.material_index_of(hit->triangle)];
     if (bsdf.black()) break;
     Vertex reached{hit->position_world_m, hit->normal_world, -next.in, &bsdf,
                    through_glass(vertex.position_world_m, hit->position_world_m) *
                        vertex.through_rgb.cwiseProduct(next.weight_rgb)};
+    if (images_.any()) {
+      reached.images = &images_.from_anywhere();
+      reached.plane = images_.plane_of(hit->triangle);
+    }
     const double cosine = reached.normal_world.dot(reached.out_world);
     const double distance2_m2 = (reached.position_world_m - vertex.position_world_m).squaredNorm();
     // In a corner, where the distance rounds to nothing, the path is the sharper way.
     const double density_per_m2 = std::min(next.density_per_sr * cosine / distance2_m2, 1e200);
     const auto [select, chance] = dice.pair(bounce, 1);
     const auto [s, t] = lamps_.have_size() ? dice.pair(bounce, 2) : std::array<double, 2>{};
-    rays += ask_lamps(reached, density_per_m2, bounce == 0 ? plan.at_start : plan.deeper, cut, select,
-                      s, t, chance, scratch, *into);
+    rays += ask_lamps(vertex, reached, density_per_m2, bounce == 0 ? plan.at_start : plan.deeper, cut, select, s, t,
+                      chance, scratch, *into);
     if (bounce == 0) scratch.first_leg_m = std::sqrt(distance2_m2);
     if (tails != nullptr && tails->records != nullptr && into == &sums && bsdf.matt()) {
       if (const auto record = record_for(reached.position_world_m, reached.normal_world, *tails->records, rays)) {
@@ -313,6 +398,7 @@ std::uint64_t PathSampler::add_path(const Vertex& start, const SobolSequence& sa
       if (dice.pair(bounce, 3)[1] >= goes_on) break;
       reached.through_rgb /= goes_on;
     }
+    before = vertex;
     vertex = reached;
     arrived_per_m2 = density_per_m2;
   }

@@ -5,15 +5,17 @@
 /// that recursion from the receiver. At each vertex y the light of the next surface z comes in two ways:
 ///   a  the path goes on to z by chance and there asks a lamp for its direct light (next-event estimation);
 ///   b  y is joined with a first hit z of light that was traced from the lamps;
-///   c  the path goes on from a glossy z by its gloss, meets nothing, and sees what the sky shows there.
+///   c  the path goes on from a glossy z by its gloss, and meets a luminaire with size, or nothing and sees the sky;
+///   d  y is joined with a place z of a smooth plane, drawn about where that shows a lamp (mirror_images.h).
 /// All densities at z are known, so they share the work by the balance heuristic (E. Veach, L. Guibas 1995): b finds
 /// the bright patches that lamps make on what is near them, a the light of wide and far surfaces and corners, c what
-/// mirrors the sky. Hits are
+/// mirrors sky and wide luminaires, d the highlights of lamps. Hits are
 /// shared by all receivers (as the light vertex cache of T. Davidovič et al. 2014, with subpaths of one hit). A plan
 /// says how many hits of which lamps: those that matter at the receiver.
 /// Unbiased, whatever the roulettes.
 
 #include "core/transport/hit_pool.h"
+#include "core/transport/mirror_images.h"
 #include "core/transport/tail_ends.h"
 #include "core/transport/tail_records.h"
 
@@ -27,6 +29,7 @@ struct PathScratch {
   };
   Lamps::Weights weights;  ///< of the lamps at the vertex that was reached last
   double weights_sum = 0;
+  Lamps::Weights image_weights;  ///< of the lamps where an image of one was drawn
   SkyOpenings::Outside outside;
   std::vector<Lit> lit;
   std::vector<double> beside;  ///< sums of a path that checks a record
@@ -76,8 +79,9 @@ class PathSampler {
   /// lights the room, and a small part of what a path would meet by chance.
   static constexpr double kOutsideShare = 0.2;
 
-  PathSampler(const RayScene& scene, const Lamps& lamps, const std::vector<Bsdf>& bsdfs, std::span<const double> levels)
-      : scene_(scene), lamps_(lamps), bsdfs_(bsdfs), levels_(levels) {}
+  PathSampler(const RayScene& scene, const Lamps& lamps, const std::vector<Bsdf>& bsdfs, const MirrorImages& images,
+              std::span<const double> levels)
+      : scene_(scene), lamps_(lamps), bsdfs_(bsdfs), images_(images), levels_(levels) {}
 
   struct Vertex {
     Vec3 position_world_m, normal_world;
@@ -86,6 +90,8 @@ class PathSampler {
     Vec3 through_rgb = Vec3::Ones();  ///< lux at the receiver per radiance that leaves the vertex towards out_world
     /// What is seen of the outside, towards which some paths go on; null: nothing.
     const SkyOpenings::Outside* outside = nullptr;
+    const ImageChoice* images = nullptr;           ///< of lamps, that are looked for from here; null: none
+    std::uint32_t plane = MirrorImages::kNoPlane;  ///< that the vertex lies in, of those that show images
   };
 
   /// Vertex of a receiver: sums become illuminance.
@@ -125,6 +131,11 @@ class PathSampler {
   /// Of the emitters: what paths are chosen by.
   [[nodiscard]] std::span<const double> importances() const { return levels_; }
 
+  /// Of lamps, for a start about which nothing more is known; null: there are none.
+  [[nodiscard]] const ImageChoice* images_from_anywhere() const {
+    return images_.any() ? &images_.from_anywhere() : nullptr;
+  }
+
   /// Whether nothing stands between a place of a surface and a record on it; one ray.
   [[nodiscard]] bool sees_record(const Vec3& position_world_m, const Vec3& normal_world,
                                  const TailRecords::Place& record, double distance_m) const;
@@ -140,17 +151,40 @@ class PathSampler {
   [[nodiscard]] Join join(const Vertex& vertex, const LightHit& hit, double hits, double cut, double chance) const;
   std::uint64_t join_deeper(const Vertex& vertex, const HitPool& pool, const HitPlan& plan, double cut, double select,
                             double chance, const PathSums& sums) const;
-  std::uint64_t ask_lamps(const Vertex& vertex, double density_per_m2, std::span<const double> hits, double cut,
-                          double select, double u, double v, double chance, PathScratch& scratch,
-                          const PathSums& sums) const;
-  /// What a path sees of skies that leaves the scene from a glossy vertex: c above. Density and hits as for
-  /// ask_lamps() there, from which the scratch has the weights.
-  void meet_skies(const Vertex& vertex, const Bsdf::Sample& next, double density_per_m2, std::span<const double> hits,
-                  const PathScratch& scratch, const PathSums& sums) const;
+  /// Random numbers for an image, the place on its plane, and that on a lamp with size.
+  struct ImageDice {
+    double select, u, v, by_gloss, lobe, s, t, chance;
+  };
+  /// One image of a lamp, joined with the vertex that sees it: d above. hits: for each path, by group, at that place.
+  std::uint64_t join_image(const Vertex& vertex, std::span<const double> hits, double cut, const ImageDice& dice,
+                           PathScratch& scratch, const PathSums& sums) const;
+  /// before: the vertex that this one was reached from.
+  std::uint64_t ask_lamps(const Vertex& before, const Vertex& vertex, double density_per_m2,
+                          std::span<const double> hits, double cut, double select, double u, double v, double chance,
+                          PathScratch& scratch, const PathSums& sums) const;
+  /// What a path that goes on from a glossy vertex sees of skies and of luminaires with size: c above. Density and hits
+  /// as for ask_lamps() there, from which the scratch has the weights. free_m: so far nothing stands in the way.
+  void meet_lights(const Vertex& before, const Vertex& vertex, const Bsdf::Sample& next, double free_m,
+                   double density_per_m2, std::span<const double> hits, const PathScratch& scratch,
+                   const PathSums& sums) const;
   /// Density [1/sr] with which gloss alone finds a light of which it knows nothing; 0 for what it never meets.
   [[nodiscard]] double met_density_per_sr(std::size_t emitter, const Bsdf& bsdf, const Vec3& normal_world,
                                           const Vec3& out_world, const Vec3& towards_world) const {
-    return bsdf.matt() || !lamps_.is_sky(emitter) ? 0 : bsdf.density(normal_world, out_world, towards_world);
+    return bsdf.matt() || !lamps_.has_size(emitter) ? 0 : bsdf.density(normal_world, out_world, towards_world);
+  }
+  /// Density with which join_image() draws a direction towards a place of lamps, given that with which the place is
+  /// asked for it: of what has size, half of them are drawn by the gloss, which may be much narrower.
+  [[nodiscard]] double image_direction_density(std::size_t place_of_lamp, double in_place, const Bsdf& bsdf,
+                                               const Vec3& normal_world, const Vec3& out_world,
+                                               const Vec3& towards_world) const {
+    if (!lamps_.place_has_size(place_of_lamp)) return in_place;
+    return in_place > 0 ? 0.5 * (in_place + bsdf.density(normal_world, out_world, towards_world)) : 0;
+  }
+  /// Density [1/m²] with which join_image() of a vertex draws a place of a plane, with a place of lamps.
+  [[nodiscard]] double image_density_per_m2(const Vertex& from, std::uint32_t plane, std::size_t place_of_lamp,
+                                            const Vec3& position_world_m) const {
+    if (plane == MirrorImages::kNoPlane || from.images == nullptr) return 0;
+    return images_.density_per_m2(*from.images, from.position_world_m, plane, place_of_lamp, position_world_m);
   }
   /// Where a path goes on from a vertex; the weight is f cosθ / density of all ways to draw it.
   [[nodiscard]] Bsdf::Sample next_direction(const Vertex& vertex, double u, double v, double lobe) const;
@@ -177,6 +211,7 @@ class PathSampler {
   const RayScene& scene_;
   const Lamps& lamps_;
   const std::vector<Bsdf>& bsdfs_;
+  const MirrorImages& images_;
   std::span<const double> levels_;  ///< of importance: above 0 for all
 };
 

@@ -67,7 +67,8 @@ class Renderer {
         importance_(emitters_.size(), 1.0),
         by_light_(light_of(lamps_)),
         plan_(HitPlan::of(lamps_, by_light_, kPictureHitsPerPath, 1)),
-        sampler_(scene, lamps_, bsdfs_, importance_),
+        images_(scene, lamps_),
+        sampler_(scene, lamps_, bsdfs_, images_, importance_),
         tails_(scene, sampler_, bsdfs_, emitters_.size(), 1, options.seed),
         camera_(camera),
         options_(options) {}
@@ -135,7 +136,7 @@ class Renderer {
                            ? 0
                            : std::bit_ceil(static_cast<std::uint32_t>(16 + kHitsPerPass * lamps_.group_share(g))));
     Lamps::Weights weights;
-    pool_.refill(LightHits(scene_, lamps_, bsdfs_), mixed(options_.seed, 0x11647), counts, weights);
+    pool_.refill(LightHits(scene_, lamps_, bsdfs_, &images_), mixed(options_.seed, 0x11647), counts, weights);
   }
 
   /// Records where first legs from the surfaces in view end.
@@ -288,6 +289,7 @@ class Renderer {
   std::vector<double> importance_;
   std::vector<double> by_light_;  ///< shares of the groups of lamps
   HitPlan plan_;
+  MirrorImages images_;
   PathSampler sampler_;
   SharedTails tails_;
   HitPool pool_;

@@ -81,7 +81,8 @@ void SharedTails::sample(std::size_t k, std::uint32_t first, std::uint32_t paths
   for (auto record = first; record < records.size(); ++record) {
     if (watch.stop.stop_requested()) return;
     const TailRecords::Place& place = records.place(record);
-    const auto start = PathSampler::at({place.position_world_m, place.normal_world});
+    auto start = PathSampler::at({place.position_world_m, place.normal_world});
+    start.images = sampler_.images_from_anywhere();
     const HitPlan& plan = plans[replicate.seen_by[record - first]];
     const double cut_lx = cuts_lx[replicate.seen_by[record - first]];
     const std::uint64_t key = mixed(mixed(seed_, kPathKey), mixed(record, k));
