@@ -66,8 +66,9 @@ struct PlanView {
 };
 
 /// longest_edge_px sets the scale; cut_z_world_m defaults to 1.2 m above the lowest point, at most to 0.6 of the
-/// scene's height. An empty scene gives a white picture of one pixel.
+/// height of what is shown: the scene, or what of it is in a box. An empty scene gives a white picture of one pixel.
 [[nodiscard]] PlanView render_plan_view(const RayScene& scene, int longest_edge_px,
-                                        std::optional<double> cut_z_world_m = std::nullopt, int threads = 0);
+                                        std::optional<double> cut_z_world_m = std::nullopt, int threads = 0,
+                                        const std::optional<Eigen::AlignedBox3d>& shown_world_m = std::nullopt);
 
 }  // namespace luxrig

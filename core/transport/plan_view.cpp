@@ -31,9 +31,9 @@ double openness(const RayScene& scene, const Hit& at, std::uint64_t key, double 
 
 }  // namespace
 
-PlanView render_plan_view(const RayScene& scene, int longest_edge_px, std::optional<double> cut_z_world_m,
-                          int threads) {
-  const Eigen::AlignedBox3d box = scene.bounds_world_m();
+PlanView render_plan_view(const RayScene& scene, int longest_edge_px, std::optional<double> cut_z_world_m, int threads,
+                          const std::optional<Eigen::AlignedBox3d>& shown_world_m) {
+  const Eigen::AlignedBox3d box = shown_world_m.value_or(scene.bounds_world_m());
   PlanView view;
   if (box.isEmpty() || longest_edge_px < 1) {
     view.width_px = view.height_px = 1;

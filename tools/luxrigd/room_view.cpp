@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/transport/picture.h"
+#include "core/transport/rig_notes/rig_notes.h"
 #include "tools/luxrig/picture_png.h"
 
 namespace luxrig {
@@ -13,11 +14,11 @@ constexpr int kLongestSide_px = 900;
 }  // namespace
 
 RoomView draw_room(const Session& session) {
-  auto box = session.rays->bounds_world_m();
+  auto box = room_of(session.rig, session.scene);
   RoomView view;
   nlohmann::json json = {{"name", session.rig.name}};
   if (!session.scene.triangles.empty()) {
-    const PlanView plan = render_plan_view(*session.rays, kLongestSide_px);
+    const PlanView plan = render_plan_view(*session.rays, kLongestSide_px, std::nullopt, 0, box);
     view.png = plan_view_png(plan);
     const double right = plan.left_x_world_m + plan.width_px * plan.metres_per_px;
     const double bottom = plan.top_y_world_m - plan.height_px * plan.metres_per_px;

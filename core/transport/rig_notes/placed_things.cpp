@@ -22,6 +22,13 @@ std::vector<PlacedThing> placed_receivers(const Rig& rig) {
   return placed;
 }
 
+std::vector<Vec3> placed_positions(const Rig& rig) {
+  std::vector<Vec3> positions;
+  for (const PlacedFixture& fixture : placed_fixtures(rig)) positions.push_back(fixture.position_world_m);
+  for (const PlacedThing& receiver : placed_receivers(rig)) positions.push_back(receiver.position_world_m);
+  return positions;
+}
+
 std::string size_text(const Vec3& size_m) {
   const auto text = [](double m) { return fmt::format("{:.{}f}", m, m < 0.1 ? 4 : 2); };
   return fmt::format("{} x {} x {} m", text(size_m.x()), text(size_m.y()), text(size_m.z()));

@@ -1,5 +1,5 @@
 #pragma once
-/// What a rig file puts somewhere, as notes speak of it. Private to rig_notes.
+/// What a rig file puts somewhere, as notes speak of it. Internal to core/transport.
 
 #include <fmt/format.h>
 
@@ -24,6 +24,9 @@ struct PlacedFixture : PlacedThing {
 
 /// The rig's points, then its luxmeters: in the order of receivers_of().
 [[nodiscard]] std::vector<PlacedThing> placed_receivers(const Rig& rig);
+
+/// Where all of these are.
+[[nodiscard]] std::vector<Vec3> placed_positions(const Rig& rig);
 
 /// "4.00 x 3.00 x 2.80 m"
 [[nodiscard]] std::string size_text(const Vec3& size_m);

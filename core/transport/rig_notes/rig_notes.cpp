@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/scene/room_bounds.h"
 #include "core/transport/lamps.h"
 #include "core/transport/rig_notes/closed_objects.h"
 #include "core/transport/rig_notes/scene_reading.h"
@@ -36,7 +37,7 @@ class Notes {
         rays_(rays),
         threads_(threads),
         stop_(std::move(stop)),
-        bounds_(rays.bounds_world_m()),
+        bounds_(room_of(rig, scene)),
         diagonal_m_(bounds_.diagonal().norm()),
         fixtures_(placed_fixtures(rig)),
         things_(placed_receivers(rig)),
@@ -245,7 +246,7 @@ class Notes {
   const RayScene& rays_;
   int threads_;
   std::stop_token stop_;
-  Eigen::AlignedBox3d bounds_;
+  Eigen::AlignedBox3d bounds_;  ///< of the room
   double diagonal_m_;
   std::vector<PlacedFixture> fixtures_;
   std::vector<PlacedThing> things_;  ///< as receivers_
@@ -264,6 +265,10 @@ std::vector<Problem> notes_on(const Rig& rig, const Scene& scene, const RayScene
   if (scene.triangles.empty()) return {};
   if (auto doubt = doubt_of_reading(rig, scene)) return {std::move(*doubt)};
   return Notes(rig, scene, rays, threads, std::move(stop)).all();
+}
+
+Eigen::AlignedBox3d room_of(const Rig& rig, const Scene& scene) {
+  return room_bounds_world_m(scene, placed_positions(rig));
 }
 
 std::vector<Problem> lamps_in_points(const Rig& rig) {

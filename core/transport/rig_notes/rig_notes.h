@@ -20,6 +20,10 @@ namespace luxrig {
 [[nodiscard]] std::vector<Problem> notes_on(const Rig& rig, const Scene& scene, const RayScene& rays, int threads = 0,
                                             std::stop_token stop = {});
 
+/// The bounds of the room that the rig's things are in, without a ground that goes on far beyond it
+/// (core/scene/room_bounds.h): what notes_on() means by the scene, and what a plan view shows.
+[[nodiscard]] Eigen::AlignedBox3d room_of(const Rig& rig, const Scene& scene);
+
 /// Lamps that lie in a point or luxmeter: it would get infinitely much light, and nothing can be computed.
 [[nodiscard]] std::vector<Problem> lamps_in_points(const Rig& rig);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/scene/room_bounds.h"
 #include "core/scene/up_axis.h"
 
 namespace luxrig {
@@ -40,7 +41,8 @@ Eigen::AlignedBox3d bounds_of_mesh(const Scene& scene) {
 
 class Reading {
  public:
-  Reading(const Rig& rig, const Eigen::AlignedBox3d& bounds) : spec_(rig.scene), bounds_(bounds) {
+  Reading(const Rig& rig, const Eigen::AlignedBox3d& bounds, const Eigen::AlignedBox3d& room)
+      : spec_(rig.scene), bounds_(bounds), room_(room) {
     for (const PlacedFixture& fixture : placed_fixtures(rig)) all_.push_back(fixture.position_world_m);
     fixtures_ = all_.size();
     for (const PlacedThing& receiver : placed_receivers(rig)) all_.push_back(receiver.position_world_m);
@@ -62,11 +64,12 @@ class Reading {
   static std::string name_of_axis(UpAxis axis) { return kAxisNames[static_cast<std::size_t>(axis)]; }
 
   /// The mesh's bounds, had the file been read so.
-  Eigen::AlignedBox3d read_as(UpAxis up, double metres_per_unit) const {
+  Eigen::AlignedBox3d read_as(UpAxis up, double metres_per_unit) const { return read_as(bounds_, up, metres_per_unit); }
+  Eigen::AlignedBox3d read_as(const Eigen::AlignedBox3d& as_now, UpAxis up, double metres_per_unit) const {
     const Mat3 turn = rotation_to_z_up(up) * rotation_to_z_up(mesh().up_axis).transpose();
     const double scale = metres_per_unit / mesh().metres_per_unit;
-    Eigen::AlignedBox3d box(Vec3(scale * (turn * bounds_.min())));
-    box.extend(Vec3(scale * (turn * bounds_.max())));
+    Eigen::AlignedBox3d box(Vec3(scale * (turn * as_now.min())));
+    box.extend(Vec3(scale * (turn * as_now.max())));
     return box;
   }
 
@@ -81,18 +84,19 @@ class Reading {
     return static_cast<double>(count) >= kNearlyAll * static_cast<double>(of);
   }
 
+  /// By the room alone: a ground of 20 km is on its edge then, and would have all within.
   std::optional<Note> wrong_axis() const {
-    const std::size_t now = within(bounds_, 0.02);
+    const std::size_t now = within(room_, 0.02);
     if (all_.size() < 2 || nearly_all(now, all_.size())) return std::nullopt;
     for (const UpAxis up : kUpAxes) {
-      const std::size_t then = within(read_as(up, mesh().metres_per_unit), 0.02);
+      const std::size_t then = within(read_as(room_, up, mesh().metres_per_unit), 0.02);
       const double more = static_cast<double>(then) - static_cast<double>(now);
       if (!nearly_all(then, all_.size()) || more < std::max(2.0, kPlainlyMore * static_cast<double>(all_.size())))
         continue;
       return Note{
           fmt::format("the scene's file is read with {} up, which makes it {} ({}): {} of {} fixtures, points and "
                       "luxmeters are within that; with {} up, {} of them would be",
-                      name_of_axis(mesh().up_axis), size_text(bounds_.sizes()), extent_text(bounds_), now, all_.size(),
+                      name_of_axis(mesh().up_axis), size_text(room_.sizes()), extent_text(room_), now, all_.size(),
                       name_of_axis(up), then),
           fmt::format("set up_axis = \"{}\" in [scene]", name_of_axis(up))};
     }
@@ -172,7 +176,7 @@ class Reading {
   }
 
   const SceneSpec& spec_;
-  const Eigen::AlignedBox3d bounds_;
+  const Eigen::AlignedBox3d bounds_, room_;  ///< of the whole mesh, and without a ground beyond the room
   std::vector<Vec3> all_;  ///< fixtures, then points and luxmeters
   std::size_t fixtures_ = 0;
 };
@@ -184,7 +188,7 @@ std::optional<Problem> doubt_of_reading(const Rig& rig, const Scene& scene) {
   const Eigen::AlignedBox3d bounds = bounds_of_mesh(scene);
   if (bounds.isEmpty() || !(bounds.diagonal().norm() > 0)) return std::nullopt;
   if (rig.fixtures.empty() && rig.points.empty() && rig.luxmeters.empty()) return std::nullopt;
-  return Reading(rig, bounds).doubt(rig.file.string());
+  return Reading(rig, bounds, built_bounds_world_m(scene, placed_positions(rig), 0)).doubt(rig.file.string());
 }
 
 }  // namespace luxrig

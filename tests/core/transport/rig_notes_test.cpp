@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "core/scene/scene_builder.h"
+#include "core/transport/picture.h"
 
 namespace luxrig {
 namespace {
@@ -57,6 +58,15 @@ class RigNotes : public testing::Test {
     out << "f 1 2 4 3\nf 5 6 8 7\nf 1 2 6 5\nf 3 4 8 7\nf 1 3 7 5\nf 2 4 8 6\n";
   }
 
+  /// Of 20 km, 1 cm below the room.
+  void add_ground() {
+    SceneObject ground;
+    ground.name = "ground";
+    ground.box_m = Vec3(20000, 20000, 1);
+    ground.position_world_m = Vec3(3, 2, -1.01);
+    rig.scene.objects.push_back(ground);
+  }
+
   std::vector<Problem> notes() {
     const auto scene = build_scene(rig);
     EXPECT_TRUE(scene.has_value()) << (scene ? "" : scene.error()[0].text());
@@ -96,6 +106,47 @@ TEST_F(RigNotes, AFixtureFarAwayIsNotedEvenWhereItSeesAPoint) {
 TEST_F(RigNotes, LampsAboutALoneObjectAreNotOutside) {
   rig.scene.mesh.reset();
   EXPECT_TRUE(notes().empty()) << notes()[0].text();
+}
+
+TEST_F(RigNotes, AGroundOfTwentyKilometresHidesNothingThatIsOutsideOfTheRoom) {
+  add_ground();
+  EXPECT_TRUE(notes().empty()) << notes()[0].text();
+  rig.fixtures[1].world_from_mount.translation_m = Vec3(500, 2.5, 2.8);
+  expect_one(11, {"fixture \"lamp 2\"", "494.00 m outside of the scene (x 0.00 to 6.00, y 0.00 to 5.00"});
+  rig.fixtures[1].world_from_mount.translation_m = Vec3(8, 2.5, 2.8);
+  expect_one(11, {"fixture \"lamp 2\"", "2.00 m outside of the scene"});
+  rig.fixtures[1].world_from_mount.translation_m = Vec3(3, 2.5, 2.8);
+  rig.points[1].position_world_m = Vec3(6.5, 2.5, 0.8);
+  expect_one(21, {"point \"desk 2\"", "0.50 m outside of the scene"});
+}
+
+TEST_F(RigNotes, OnOpenGroundWhatStandsAboutALoneObjectIsNotOutside) {
+  rig.scene.mesh.reset();
+  add_ground();
+  EXPECT_TRUE(notes().empty()) << notes()[0].text();
+}
+
+TEST_F(RigNotes, ARoomOnItsGroundThatIsReadWithTheWrongAxisUpIsNoted) {
+  write_room(1.0, false);
+  std::ofstream(file_, std::ios::app) << "v -10000 -10000 -0.01\nv 10000 -10000 -0.01\nv 10000 10000 -0.01\n"
+                                         "v -10000 10000 -0.01\nf 9 10 11 12\n";
+  EXPECT_TRUE(notes().empty()) << notes()[0].text();
+  rig.scene.mesh->up_axis = UpAxis::y;
+  expect_one(rig.scene.place.line, {"set up_axis = \"z\" in [scene]"});
+}
+
+TEST_F(RigNotes, TheRoomOfARigIsWithoutItsGround) {
+  add_ground();
+  const auto scene = build_scene(rig);
+  ASSERT_TRUE(scene);
+  const Eigen::AlignedBox3d room = room_of(rig, *scene);
+  EXPECT_LT((room.min() - Vec3(0, 0, 0)).norm() + (room.max() - Vec3(6, 5, 3)).norm(), 1e-3);
+  const PlanView plan = render_plan_view(RayScene(*scene), 104, std::nullopt, 1, room);
+  EXPECT_NEAR(plan.metres_per_px, 0.06, 1e-6) << "the plan shows the room";
+  rig.fixtures.clear();
+  rig.points.clear();
+  rig.luxmeters.clear();
+  EXPECT_GT(room_of(rig, *scene).sizes().x(), 19000) << "nothing says where the room is";
 }
 
 TEST_F(RigNotes, APointRightBehindAWallIsNoted) {
