@@ -302,6 +302,9 @@ class PathEvaluation {
     const std::size_t room = std::min(kMostRecords, memory_allows) - std::min(kMostRecords, tails_->records(0).size());
     matrix_.rays += tails_->grow(from, std::min(wanted, room), kRecordPaths, pools_, plans, cuts_lx, options_.threads,
                                  options_.watch);
+    // Where all shines, there is no place for a record: paths end by themselves, and each finds as much as one does.
+    if (tails_->records(0).size() == 0)
+      for (const PathTask& task : chunk) spent_[task.receiver].alone = true;
   }
 
   /// Records per receiver at first: what they are off by is to fall with the wanted error.
