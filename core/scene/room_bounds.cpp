@@ -99,33 +99,23 @@ class Faces {
   std::optional<std::uint32_t> object_;
 };
 
-/// The whole bounds, and those about the things where the scene reaches farther.
-std::pair<Box, std::optional<Box>> bounds_of(const Faces& faces, std::span<const Vec3> things_world_m) {
+}  // namespace
+
+RoomBounds room_bounds_of(const Scene& scene, std::span<const Vec3> things_world_m,
+                          std::optional<std::uint32_t> object) {
+  const Faces faces(scene, object);
   const Box all = faces.bounds();
-  if (all.isEmpty() || things_world_m.empty()) return {all, std::nullopt};
+  if (all.isEmpty() || things_world_m.empty()) return {all, all};
   const auto [middle_world_m, spread_m] = cluster_of(things_world_m);
   const Vec3 reach_m = Vec3::Constant(kAround * std::max(kLeastSpread_m, spread_m));
   const Box about(middle_world_m - reach_m, middle_world_m + reach_m);
-  if (about.contains(all)) return {all, std::nullopt};
-  const Box left = faces.bounds_within(about);
-  return {all, left.isEmpty() ? std::nullopt : std::optional(left)};
-}
-
-}  // namespace
-
-Box built_bounds_world_m(const Scene& scene, std::span<const Vec3> things_world_m,
-                         std::optional<std::uint32_t> object) {
-  const auto [all, about] = bounds_of(Faces(scene, object), things_world_m);
-  return about.value_or(all);
-}
-
-Box room_bounds_world_m(const Scene& scene, std::span<const Vec3> things_world_m) {
-  auto [all, about] = bounds_of(Faces(scene, std::nullopt), things_world_m);
-  if (!about) return all;
-  const auto [middle_world_m, spread_m] = cluster_of(things_world_m);
+  if (about.contains(all)) return {all, all};
+  const Box built = faces.bounds_within(about);
+  if (built.isEmpty()) return {all, all};
+  RoomBounds room{built, built};
   for (const Vec3& at : things_world_m)
-    if ((at - middle_world_m).norm() <= spread_m) about->extend(at);
-  return *about;
+    if ((at - middle_world_m).norm() <= spread_m) room.with_things_world_m.extend(at);
+  return room;
 }
 
 }  // namespace luxrig

@@ -25,8 +25,8 @@ struct LampChoice {
   Vec3 direction_world = Vec3::UnitZ();  ///< unit, towards the light
   Vec3 target_world_m = Vec3::Zero();    ///< where a shadow ray ends
   double density = 0;     ///< probability of the place, times the density per sr of the direction where it has a choice
+  double in_place = 1;    ///< that density without the probability of the place: 1 for a point
   double factor = 0;      ///< lux = intensity [cd] (of a sky: luminance [cd/m²]) times this, per 1 / density
-  double in_place = 1;    ///< the same without the probability of the place: 1 for a point
   double hit_factor = 0;  ///< density of light-traced first hits of the group = direction density times this
 };
 
@@ -137,9 +137,9 @@ class Lamps {
   }
 
   /// What luminaires with size and skies show in a direction from a surface point above whose horizon it lies, as
-  /// lit(emitter, luminance [cd/m²] at level 1, density per sr with which choose() asks for it, density with which
-  /// emit() of its group makes a first hit just there, in the same unit, where it is). Weights and their sum as from
-  /// weigh() there.
+  /// lit(emitter, luminance [cd/m²] at level 1, density per sr with which choose() asks for it, that of ask_place() (of
+  /// a sky: 0), density with which emit() of its group makes a first hit just there, in the same unit, where it is).
+  /// Weights and their sum as from weigh() there.
   /// free_m   so far nothing stands in the way; infinite: skies are seen
   template <class Lit>
   void each_towards(const Vec3& position_world_m, const Vec3& normal_world, const Vec3& direction_world, double free_m,
@@ -148,7 +148,8 @@ class Lamps {
       const Place& place = places_[p];
       const Vec3 towards_m = place.position_world_m - position_world_m;
       if (towards_m.cross(direction_world).squaredNorm() > place.radius_m * place.radius_m) continue;
-      const double asked = place_probability(p, weights, sum) * density_in_place(p, position_world_m, direction_world);
+      const double in_place = density_in_place(p, position_world_m, direction_world),
+                   asked = place_probability(p, weights, sum) * in_place;
       if (!(asked > 0)) continue;
       const Vec3 leaving = -(place.world_from_lamp.transpose() * direction_world);
       const double area_m2 = projected_area_m2(place.shape, leaving);
@@ -157,7 +158,7 @@ class Lamps {
       const Lamp& lamp = lamps_[place.begin];
       const double luminance_cd_m2 = lamp.intensity->intensity_cd(leaving) / area_m2;
       if (luminance_cd_m2 > 0)
-        lit(lamp.emitter, luminance_cd_m2, asked,
+        lit(lamp.emitter, luminance_cd_m2, asked, in_place,
             lamp.share * lamp.intensity->density_per_sr(leaving) * normal_world.dot(direction_world) / area_m2,
             Vec3(position_world_m + way_m * direction_world));
     }
@@ -167,6 +168,7 @@ class Lamps {
       const double luminance_cd_m2 = lamp.sky->luminance_cd_m2(direction_world);
       if (!(luminance_cd_m2 > 0)) continue;
       lit(lamp.emitter, luminance_cd_m2, choice_density(lamp.emitter, position_world_m, direction_world, weights, sum),
+          0.0,
           lamp.share * lamp.sky->density_per_sr(direction_world) * normal_world.dot(direction_world) *
               line_density_per_m2(direction_world, position_world_m),
           beyond_world_m(position_world_m, direction_world));

@@ -404,20 +404,33 @@ class PathEvaluation {
     }
   }
 
-  /// Adds to every replicate, up and down, what paths may not have found of each emitter; those of several emitters add
-  /// up as independent errors do, and the mean stays.
+  /// Adds to every replicate, up and down, what paths may not have found of each emitter; the mean stays. One more path
+  /// would bring the light of one bright place: in the sum under the levels that is less than if each emitter had one
+  /// to itself, so there the parts cancel for what is too much.
   void own_up_to_unfound() {
-    const Eigen::RowVectorXd brightest_lx = matrix_.lux_per_level.colwise().maxCoeff();
-    const double up_and_down = up_and_down_of(1);
-    for (std::size_t k = 0; k < kPathReplicates; ++k)
-      for (Eigen::Index e = 0; e < matrix_.emitters(); ++e) {
-        // Walsh functions: half up and half down, each orthogonal to all others. The first is that of the bias.
-        const auto pattern = static_cast<unsigned>(2 + e % (static_cast<Eigen::Index>(kPathReplicates) - 2));
-        const bool down = std::popcount(pattern & static_cast<unsigned>(k)) % 2 != 0;
-        for (std::size_t r = 0; r < receivers_.size(); ++r)
-          matrix_.replicates[k](static_cast<Eigen::Index>(r), e) +=
-              (down ? -up_and_down : up_and_down) * spent_.unfound_lx(r, brightest_lx[e]);
+    const Eigen::Index emitters = matrix_.emitters();
+    const auto replicates = static_cast<Eigen::Index>(kPathReplicates);
+    // Walsh functions: half up and half down, each orthogonal to all others. The first is that of the bias.
+    Eigen::MatrixXd up_and_down(emitters, replicates);
+    for (Eigen::Index e = 0; e < emitters; ++e)
+      for (Eigen::Index k = 0; k < replicates; ++k) {
+        const auto pattern = static_cast<unsigned>(2 + e % (replicates - 2));
+        up_and_down(e, k) = std::popcount(pattern & static_cast<unsigned>(k)) % 2 != 0 ? -1 : 1;
       }
+    up_and_down *= up_and_down_of(1);
+    // As all receivers have the same brightest places, what is added differs by a factor alone.
+    const Eigen::VectorXd brightest_lx = matrix_.lux_per_level.colwise().maxCoeff();
+    Eigen::MatrixXd by = brightest_lx.asDiagonal() * up_and_down;
+    const Eigen::RowVectorXd sum = levels_.transpose() * by;
+    const double sum_lx = sum.norm() / std::sqrt(static_cast<double>(replicates)) / up_and_down_of(1),
+                 all_lx = spent_.brightest_lx();
+    const Eigen::VectorXd squares = levels_.cwiseProduct(brightest_lx).cwiseAbs2();
+    for (Eigen::Index e = 0; e < emitters && sum_lx > all_lx; ++e)
+      if (squares[e] > 0) by.row(e) -= squares[e] / (squares.sum() * levels_[e]) * (1 - all_lx / sum_lx) * sum;
+    for (std::size_t r = 0; r < receivers_.size(); ++r)
+      for (std::size_t k = 0; k < kPathReplicates; ++k)
+        matrix_.replicates[k].row(static_cast<Eigen::Index>(r)) +=
+            spent_.unfound_lx(r, 1) * by.col(static_cast<Eigen::Index>(k)).transpose();
   }
 
   /// The direct part by primary.

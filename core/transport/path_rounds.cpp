@@ -124,7 +124,6 @@ void PathRounds::find_floor() {
   for (const ReceiverProgress& one : progress_) lux.push_back(one.lux);
   floor_lx_ = error_floor_lx(options_, lux);
   brightest_lx_ = lux.empty() ? 0 : *std::max_element(lux.begin(), lux.end());
-  if (!by_rms()) return;
   for (std::size_t r = 0; r < progress_.size(); ++r) {
     ReceiverProgress& one = progress_[r];
     if (one.samples == one.scatter_of) continue;
@@ -151,7 +150,9 @@ double PathRounds::unfound_lx(std::size_t receiver, double brightest_lx) const {
 double PathRounds::overshoot(std::size_t receiver) const {
   const ReceiverProgress& one = progress_[receiver];
   if (one.error_lx == 0 && !one.found && one.samples < kSamplesToBelieveNothing) return HUGE_VAL;
-  return relative_error(receiver) / options_.wanted_standard_error();
+  // Who stops at the first estimate that is low enough stops at one that is too low: the last ones together have a say.
+  const double by_last = by_rms() || one.samples == 0 ? 0 : std::sqrt(one.scatter / one.samples);
+  return std::max(relative_error(receiver), by_last) / options_.wanted_standard_error();
 }
 
 double PathRounds::done_after(const std::vector<PathTask>& round, double before) const {

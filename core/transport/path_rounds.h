@@ -57,6 +57,8 @@ class PathRounds {
   /// brightest. Beside a replicates' spread that is little, unless bright paths are rare: through doors, say. There
   /// spread alone tells nothing of those that nobody has found.
   [[nodiscard]] double unfound_lx(std::size_t receiver, double brightest_lx) const;
+  /// Largest lux of a receiver.
+  [[nodiscard]] double brightest_lx() const { return brightest_lx_; }
   /// Below which errors are relative to this (error_floor.h).
   [[nodiscard]] double floor_lx() const { return floor_lx_; }
 

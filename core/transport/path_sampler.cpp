@@ -299,17 +299,16 @@ std::uint64_t PathSampler::ask_lamps(const Vertex& before, const Vertex& vertex,
 void PathSampler::meet_lights(const Vertex& before, const Vertex& vertex, const Bsdf::Sample& next, double free_m,
                               double density_per_m2, std::span<const double> hits, const PathScratch& scratch,
                               const PathSums& sums) const {
-  if (vertex.bsdf == nullptr || vertex.bsdf->matt() || !lamps_.have_size()) return;
   const double of_gloss = vertex.bsdf->density(vertex.normal_world, vertex.out_world, next.in);
   lamps_.each_towards(
       vertex.position_world_m, vertex.normal_world, next.in, free_m, scratch.weights, scratch.weights_sum,
-      [&](std::size_t emitter, double luminance_cd_m2, double choice_density, double hit_density,
+      [&](std::size_t emitter, double luminance_cd_m2, double choice_density, double in_place, double hit_density,
           const Vec3& at_world_m) {
         const std::size_t place = lamps_.place_of(emitter);
         double by_image = image_density_per_m2(before, vertex.plane, place, vertex.position_world_m);
         if (by_image > 0)
-          by_image *= image_direction_density(place, lamps_.density_in_place(place, vertex.position_world_m, next.in),
-                                              *vertex.bsdf, vertex.normal_world, vertex.out_world, next.in);
+          by_image *=
+              image_direction_density(place, in_place, *vertex.bsdf, vertex.normal_world, vertex.out_world, next.in);
         // Shared by what gloss does alone; that some paths go on towards openings makes it more often than that.
         const double share = of_gloss / (of_gloss + choice_density +
                                          (hits[lamps_.group_of(emitter)] * hit_density + by_image) / density_per_m2);
@@ -326,7 +325,7 @@ std::uint64_t PathSampler::add_path(const Vertex& start, const SobolSequence& sa
   std::uint64_t rays = 0;
   scratch.first_leg_m = HUGE_VAL;
   PathDice dice(samples, index);
-  Vertex vertex = start, before = start;
+  Vertex vertex = start, before = start;  // that before the vertex, where it may see images of lamps
   double arrived_per_m2 = 0;
   if (tails != nullptr) tails->linked.reset();
   const PathSums* into = &sums;
@@ -346,7 +345,7 @@ std::uint64_t PathSampler::add_path(const Vertex& start, const SobolSequence& sa
     if (!(next.density_per_sr > 0)) break;
     ++rays;
     const auto hit = scene_.nearest(vertex.position_world_m, next.in, vertex.normal_world);
-    if (bounce > 0) {
+    if (bounce > 0 && lamps_.have_size() && !vertex.bsdf->matt()) {
       const double free_m = hit ? hit->distance_m + 2 * scene_.surface_error_m(hit->position_world_m) : HUGE_VAL;
       meet_lights(before, vertex, next, free_m, arrived_per_m2, bounce == 1 ? plan.at_start : plan.deeper, scratch,
                   *into);
@@ -398,7 +397,7 @@ std::uint64_t PathSampler::add_path(const Vertex& start, const SobolSequence& sa
       if (dice.pair(bounce, 3)[1] >= goes_on) break;
       reached.through_rgb /= goes_on;
     }
-    before = vertex;
+    if (images_.any()) before = vertex;
     vertex = reached;
     arrived_per_m2 = density_per_m2;
   }

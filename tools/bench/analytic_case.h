@@ -20,13 +20,17 @@ struct AnalyticCase {
   double direct_target = 1e-6;    ///< where nothing is reflected
 };
 
-/// Largest relative error over the receivers, each relative to max(exact, 0.001 of the brightest).
-[[nodiscard]] double worst_error(const AnalyticCase& one, const TransportMatrix& matrix);
+/// Relative errors over the receivers, each relative to max(exact, 0.001 of the brightest).
+struct AnalyticError {
+  double rms = 0, worst = 0;  ///< both NaN when one of them is
+};
+[[nodiscard]] AnalyticError error_of(const AnalyticCase& one, const TransportMatrix& matrix);
 
 /// The same case with at most so many of its receivers, spread evenly over the list: for quick runs.
 [[nodiscard]] AnalyticCase with_receivers(AnalyticCase one, std::size_t most);
 
-/// Every method that claims the case. Without reflection one run; with it a curve, the last point of which, with a
+/// Every method that claims the case. Without reflection one run, judged by its worst receiver; with it a curve under
+/// the users' stop, judged as that is: by the rms over the receivers (the note tells the worst). Its last point, with a
 /// third of the method's target as wanted error, has that target. With quick only that last point is run, and of direct
 /// light that has to be sampled only the direct method's (the others have the same).
 void measure_case(const AnalyticCase& one, const BenchOptions& options, std::vector<BenchRow>& rows);

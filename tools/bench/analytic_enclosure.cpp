@@ -98,7 +98,7 @@ void add_cube_means(const BenchOptions& options, std::vector<BenchRow>& rows) {
     if (!method.reflects) continue;
     const double wanted = options.quick ? 0.02 : 0.005;
     EvaluateOptions evaluate;
-    evaluate.wanted_relative_error = wanted;
+    evaluate.wanted_rms_error = wanted;
     evaluate.threads = options.threads;
     const Measured run = measure(method, rays, receivers, source, evaluate);
     double mean_lx = 0;

@@ -40,7 +40,7 @@ void add_rows(int seeds, int per_edge, double wanted, const BenchOptions& option
     int within = 0, count = 0;
     for (int seed = 1; seed <= seeds && all.refused.empty(); ++seed) {
       EvaluateOptions evaluate;
-      evaluate.wanted_relative_error = wanted;
+      evaluate.wanted_rms_error = wanted;
       evaluate.seed = static_cast<std::uint64_t>(seed);
       evaluate.threads = options.threads;
       all = measure(method, rays, receivers, source, evaluate);

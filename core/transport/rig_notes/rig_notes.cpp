@@ -268,7 +268,7 @@ std::vector<Problem> notes_on(const Rig& rig, const Scene& scene, const RayScene
 }
 
 Eigen::AlignedBox3d room_of(const Rig& rig, const Scene& scene) {
-  return room_bounds_world_m(scene, placed_positions(rig));
+  return room_bounds_of(scene, placed_positions(rig)).with_things_world_m;
 }
 
 std::vector<Problem> lamps_in_points(const Rig& rig) {

@@ -188,7 +188,7 @@ std::optional<Problem> doubt_of_reading(const Rig& rig, const Scene& scene) {
   const Eigen::AlignedBox3d bounds = bounds_of_mesh(scene);
   if (bounds.isEmpty() || !(bounds.diagonal().norm() > 0)) return std::nullopt;
   if (rig.fixtures.empty() && rig.points.empty() && rig.luxmeters.empty()) return std::nullopt;
-  return Reading(rig, bounds, built_bounds_world_m(scene, placed_positions(rig), 0)).doubt(rig.file.string());
+  return Reading(rig, bounds, room_bounds_of(scene, placed_positions(rig), 0).built_world_m).doubt(rig.file.string());
 }
 
 }  // namespace luxrig

@@ -149,8 +149,12 @@ TEST_P(AnyShape, DensityIntegratesToOneAndItsInverseToTheSolidAngle) {
   for (int i = 0; i < kDirections; ++i) {
     const Vec3 d = cap.direction(random.between(0, 1), random.between(0, 1));
     const double density = density_seen_from(shape, from_m, d);
-    const bool meets = met_at_m(shape, from_m, d).has_value();
+    const auto met_m = met_at_m(shape, from_m, d);
+    const bool meets = met_m.has_value();
     EXPECT_EQ(meets, density > 0) << d.transpose();
+    if (meets && density > 0) {
+      EXPECT_NEAR(distance_towards_m(shape, from_m, d), *met_m, 1e-9 * *met_m) << d.transpose();
+    }
     total += density;
     total2 += density * density;
     hits += meets;

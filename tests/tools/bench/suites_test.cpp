@@ -37,21 +37,23 @@ TEST(AnalyticSuite, DirectLightMeetsItsTargetsInPointFluxAndAreaRows) {
     }
 }
 
-TEST(AnalyticCase, WorstErrorIsOverTheReceiversAndOfThePartAskedFor) {
+TEST(AnalyticCase, ErrorsAreOverTheReceiversAndOfThePartAskedFor) {
   AnalyticCase one;
   one.exact_lx = {100, 10, 0.01};
   TransportMatrix matrix;
   matrix.lux_per_level = Eigen::Vector3d(101, 10, 0.02);
   matrix.direct_lux_per_level = Eigen::Vector3d(50, 10, 0);
   // The third is judged against a thousandth of the brightest: 0.01 / 0.1.
-  EXPECT_NEAR(worst_error(one, matrix), 0.1, 1e-12);
+  EXPECT_NEAR(error_of(one, matrix).worst, 0.1, 1e-12);
+  EXPECT_NEAR(error_of(one, matrix).rms, std::sqrt((0.01 * 0.01 + 0.1 * 0.1) / 3), 1e-12);
   one.part = AnalyticCase::Part::direct;
-  EXPECT_NEAR(worst_error(one, matrix), 0.5, 1e-12);
+  EXPECT_NEAR(error_of(one, matrix).worst, 0.5, 1e-12);
   one.part = AnalyticCase::Part::reflected;
-  EXPECT_NEAR(worst_error(one, matrix), 1.0, 1e-12);
+  EXPECT_NEAR(error_of(one, matrix).worst, 1.0, 1e-12);
   matrix.lux_per_level(1, 0) = std::nan("");
   one.part = AnalyticCase::Part::total;
-  EXPECT_TRUE(std::isnan(worst_error(one, matrix)));
+  EXPECT_TRUE(std::isnan(error_of(one, matrix).worst));
+  EXPECT_TRUE(std::isnan(error_of(one, matrix).rms));
 }
 
 TEST(AnalyticCase, FewerReceiversAreSpreadOverAllAndKeepTheirExactLux) {
