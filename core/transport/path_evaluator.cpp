@@ -404,9 +404,10 @@ class PathEvaluation {
     }
   }
 
-  /// Adds to every replicate, up and down, what paths may not have found of each emitter; the mean stays. One more path
-  /// would bring the light of one bright place: in the sum under the levels that is less than if each emitter had one
-  /// to itself, so there the parts cancel for what is too much.
+  /// Adds to every replicate, up and down, what paths may not have found of each emitter, as far as it is more than
+  /// what replicates differ by; the mean stays. One more path would bring the light of one bright place: in the sum
+  /// under the levels that is less than if each emitter had one to itself, so there the parts cancel for what is too
+  /// much.
   void own_up_to_unfound() {
     const Eigen::Index emitters = matrix_.emitters();
     const auto replicates = static_cast<Eigen::Index>(kPathReplicates);
@@ -417,20 +418,29 @@ class PathEvaluation {
         const auto pattern = static_cast<unsigned>(2 + e % (replicates - 2));
         up_and_down(e, k) = std::popcount(pattern & static_cast<unsigned>(k)) % 2 != 0 ? -1 : 1;
       }
-    up_and_down *= up_and_down_of(1);
-    // As all receivers have the same brightest places, what is added differs by a factor alone.
     const Eigen::VectorXd brightest_lx = matrix_.lux_per_level.colwise().maxCoeff();
-    Eigen::MatrixXd by = brightest_lx.asDiagonal() * up_and_down;
-    const Eigen::RowVectorXd sum = levels_.transpose() * by;
-    const double sum_lx = sum.norm() / std::sqrt(static_cast<double>(replicates)) / up_and_down_of(1),
-                 all_lx = spent_.brightest_lx();
-    const Eigen::VectorXd squares = levels_.cwiseProduct(brightest_lx).cwiseAbs2();
-    for (Eigen::Index e = 0; e < emitters && sum_lx > all_lx; ++e)
-      if (squares[e] > 0) by.row(e) -= squares[e] / (squares.sum() * levels_[e]) * (1 - all_lx / sum_lx) * sum;
-    for (std::size_t r = 0; r < receivers_.size(); ++r)
-      for (std::size_t k = 0; k < kPathReplicates; ++k)
-        matrix_.replicates[k].row(static_cast<Eigen::Index>(r)) +=
-            spent_.unfound_lx(r, 1) * by.col(static_cast<Eigen::Index>(k)).transpose();
+    const auto more_than_spread = [](double unfound_lx, const Eigen::RowVectorXd& lux) {
+      const double spread_lx = standard_error_of_mean({lux.data(), kPathReplicates}),
+                   both_lx = PathRounds::with_unfound_lx(spread_lx, unfound_lx);
+      return std::sqrt(std::max(0.0, (both_lx - spread_lx) * (both_lx + spread_lx)));
+    };
+    parallel_for(receivers_.size(), options_.threads, [&](std::size_t r) {
+      const auto row = static_cast<Eigen::Index>(r);
+      Eigen::MatrixXd lux(emitters, replicates), by_lx = up_and_down;
+      for (Eigen::Index k = 0; k < replicates; ++k)
+        lux.col(k) = matrix_.replicates[static_cast<std::size_t>(k)].row(row).transpose();
+      for (Eigen::Index e = 0; e < emitters; ++e)
+        by_lx.row(e) *= more_than_spread(spent_.unfound_lx(r, brightest_lx[e]), lux.row(e));
+      const Eigen::RowVectorXd all_by_lx = levels_.transpose() * by_lx;
+      const double sum_lx = all_by_lx.norm() / std::sqrt(static_cast<double>(replicates)),
+                   wanted_lx = more_than_spread(spent_.unfound_lx(r, spent_.brightest_lx()), levels_.transpose() * lux);
+      const Eigen::VectorXd shares = levels_.cwiseAbs2().cwiseProduct(by_lx.rowwise().squaredNorm());
+      for (Eigen::Index e = 0; e < emitters && sum_lx > wanted_lx; ++e)
+        if (shares[e] > 0)
+          by_lx.row(e) -= shares[e] / (shares.sum() * levels_[e]) * (1 - wanted_lx / sum_lx) * all_by_lx;
+      for (Eigen::Index k = 0; k < replicates; ++k)
+        matrix_.replicates[static_cast<std::size_t>(k)].row(row) += up_and_down_of(1) * by_lx.col(k).transpose();
+    });
   }
 
   /// The direct part by primary.

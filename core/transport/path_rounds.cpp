@@ -124,6 +124,7 @@ void PathRounds::find_floor() {
   for (const ReceiverProgress& one : progress_) lux.push_back(one.lux);
   floor_lx_ = error_floor_lx(options_, lux);
   brightest_lx_ = lux.empty() ? 0 : *std::max_element(lux.begin(), lux.end());
+  if (!by_rms()) return;
   for (std::size_t r = 0; r < progress_.size(); ++r) {
     ReceiverProgress& one = progress_[r];
     if (one.samples == one.scatter_of) continue;
@@ -137,8 +138,12 @@ void PathRounds::find_floor() {
 double PathRounds::relative_error(std::size_t receiver) const {
   const ReceiverProgress& one = progress_[receiver];
   const double scale_lx = std::max(one.lux, floor_lx_);
-  return scale_lx > 0 ? std::hypot(one.error_lx, one.shared_error_lx, unfound_lx(receiver, brightest_lx_)) / scale_lx
-                      : 0;
+  const double own_lx = with_unfound_lx(one.error_lx, unfound_lx(receiver, brightest_lx_));
+  return scale_lx > 0 ? std::hypot(own_lx, one.shared_error_lx) / scale_lx : 0;
+}
+
+double PathRounds::with_unfound_lx(double spread_lx, double unfound_lx) {
+  return std::cbrt(spread_lx * spread_lx * spread_lx + unfound_lx * unfound_lx * unfound_lx);
 }
 
 double PathRounds::unfound_lx(std::size_t receiver, double brightest_lx) const {
@@ -150,9 +155,7 @@ double PathRounds::unfound_lx(std::size_t receiver, double brightest_lx) const {
 double PathRounds::overshoot(std::size_t receiver) const {
   const ReceiverProgress& one = progress_[receiver];
   if (one.error_lx == 0 && !one.found && one.samples < kSamplesToBelieveNothing) return HUGE_VAL;
-  // Who stops at the first estimate that is low enough stops at one that is too low: the last ones together have a say.
-  const double by_last = by_rms() || one.samples == 0 ? 0 : std::sqrt(one.scatter / one.samples);
-  return std::max(relative_error(receiver), by_last) / options_.wanted_standard_error();
+  return relative_error(receiver) / options_.wanted_standard_error();
 }
 
 double PathRounds::done_after(const std::vector<PathTask>& round, double before) const {
