@@ -68,7 +68,7 @@ GainEstimator::GainEstimator(const Rig& rig, const LightModel& model)
   max_watts_ = rig.limits.max_watts.value_or(std::numeric_limits<double>::infinity());
   for (Index j = 0; j < fixtures; ++j) {
     const Fixture& fixture = rig.fixtures[static_cast<std::size_t>(j)];
-    max_level_[j] = std::min(fixture.max_level, rig.limits.max_level);
+    max_level_[j] = rig.max_level(fixture);
     watts_[j] = rig.limits.max_watts ? rig.luminaires[fixture.luminaire].watts.value_or(0) : 0;
     housing_.push_back(fixture.housing.value_or(static_cast<std::size_t>(j)));
     fixture_names_.push_back(fixture.name);

@@ -145,7 +145,7 @@ class PlanLevels {
         problem(fmt::format("{}/name: fixture \"{}\" stands twice in this task", path, light.name),
                 "keep one of the two");
       }
-      const double most = std::min(rig.fixtures[i].max_level, rig.limits.max_level);
+      const double most = rig.max_level(rig.fixtures[i]);
       if (!(light.level >= 0 && light.level <= most)) {
         problem(fmt::format("{}/level: {} for fixture \"{}\" is outside 0…{}", path, light.level, light.name, most),
                 "give a level within the fixture's limits, or solve again");

@@ -12,7 +12,7 @@ bool ShowController::State::any_lamp_bypassed() const {
 }
 
 double ShowController::State::most_of(std::size_t fixture) const {
-  return parked(fixture) ? 0 : std::min(rig.fixtures[fixture].max_level, rig.limits.max_level);
+  return parked(fixture) ? 0 : rig.max_level(rig.fixtures[fixture]);
 }
 
 void ShowController::State::bypass(Time now, std::span<const std::size_t> fixtures,

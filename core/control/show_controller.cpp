@@ -82,7 +82,7 @@ ShowController::State::State(const Rig& rig_in, const LightModel& model)
       bypassed_meter(rig.luxmeters.size()) {
   const std::vector<double> dark(rig.fixtures.size(), 0.0);
   for (const Fixture& fixture : rig.fixtures) {
-    program.max_level.push_back(std::min(fixture.max_level, rig.limits.max_level));
+    program.max_level.push_back(rig.max_level(fixture));
     program.joints.push_back(fixture.joints);
   }
   program.switched = switched_fixtures(rig);

@@ -19,7 +19,6 @@ struct Curvature {
 
   [[nodiscard]] bool known() const { return radius_m > 0; }
   [[nodiscard]] double mean_per_m() const { return (larger_per_m + smaller_per_m) / 2; }
-  [[nodiscard]] double gaussian_per_m2() const { return larger_per_m * smaller_per_m; }
 };
 
 struct CurvatureOptions {

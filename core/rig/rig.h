@@ -493,6 +493,8 @@ struct Rig {
   [[nodiscard]] bool colour_goals() const {
     return std::any_of(points.begin(), points.end(), [](const Point& p) { return p.goal_lx && p.goal_rgb; });
   }
+  /// Highest level that it may have: its own limit and that of the rig.
+  [[nodiscard]] double max_level(const Fixture& fixture) const { return std::min(fixture.max_level, limits.max_level); }
   /// What of a luminaire is set one by one: its emitters, or the luminaire itself.
   [[nodiscard]] std::vector<std::size_t> emitters_or_itself(std::size_t luminaire) const {
     const std::vector<std::size_t>& emitters = luminaires[luminaire].emitters;

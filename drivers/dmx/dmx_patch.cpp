@@ -45,8 +45,6 @@ bool is_shutter_at_dark(const DmxSlot& slot) {
 
 }  // namespace
 
-int encode_8bit(double value) { return static_cast<int>(std::lround(value * 255.0)); }
-int encode_16bit(double value) { return static_cast<int>(std::lround(value * 65535.0)); }
 std::uint32_t encode_dmx(double value, int bytes) {
   return static_cast<std::uint32_t>(std::lround(value * ((1 << (8 * bytes)) - 1)));
 }

@@ -30,10 +30,7 @@ struct DmxUniverse {
   DmxSlots slots{};
 };
 
-/// value 0…1 to the nearest of 0…255, or 0…65535.
-[[nodiscard]] int encode_8bit(double value);
-[[nodiscard]] int encode_16bit(double value);
-/// The same in 1…3 bytes; 24 bit: 0…16777215.
+/// value 0…1 to the nearest whole number of 1…3 bytes: of 0…255, 0…65535 or 0…16777215.
 [[nodiscard]] std::uint32_t encode_dmx(double value, int bytes);
 
 /// Share 0…1 of a joint's travel: the inverse of angle = from + v/65535·(to − from), clamped to the travel.

@@ -7,10 +7,6 @@ namespace luxrig::modbus {
 
 constexpr double kBeyondFullScale = 1.05;
 
-std::uint16_t raw_from_drive(double drive, int full_scale_raw) {
-  return static_cast<std::uint16_t>(std::lround(std::clamp(drive, 0.0, 1.0) * full_scale_raw));
-}
-
 RegisterWords words_from_drive(double drive, const ModbusPatch& patch) {
   const double share = std::clamp(drive, 0.0, 1.0);
   if (patch.coil) return {{static_cast<std::uint16_t>(share >= kRelayOnFrom ? 1 : 0), 0}, 1};

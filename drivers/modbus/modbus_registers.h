@@ -11,9 +11,6 @@
 
 namespace luxrig::modbus {
 
-/// drive 0…1 to the nearest of 0…full_scale_raw.
-[[nodiscard]] std::uint16_t raw_from_drive(double drive, int full_scale_raw);
-
 /// drive 0…1 to what goes into the registers of a dimmer: the nearest of dark_raw…full_scale_raw; of a coil 0 or 1.
 [[nodiscard]] RegisterWords words_from_drive(double drive, const ModbusPatch& patch);
 

@@ -110,8 +110,7 @@ OutputProgram program_of(const Rig& rig, const LastLook& look, Time now) {
   program.duration = from_seconds(look.fade_s);
   program.curve = rig.control.fade_curve;
   program.joints = look.joints;
-  for (const Fixture& fixture : rig.fixtures)
-    program.max_level.push_back(std::min(fixture.max_level, rig.limits.max_level));
+  for (const Fixture& fixture : rig.fixtures) program.max_level.push_back(rig.max_level(fixture));
   program.switched = switched_fixtures(rig);
   return program;
 }

@@ -216,10 +216,6 @@ PngSurface plan_surface(const PlanView& view) {
 
 }  // namespace
 
-std::string write_plan_view(const PlanView& view, const std::filesystem::path& file) {
-  return write_picture(plan_surface(view), file);
-}
-
 std::string plan_view_png(const PlanView& view) {
   std::string bytes;
   const auto append = [](void* to, const unsigned char* data, unsigned int size) {

@@ -21,8 +21,7 @@ namespace luxrig {
 [[nodiscard]] std::string write_false_colour(const Picture& picture, const std::string& title,
                                              std::optional<double> max_lx, const std::filesystem::path& file);
 
-[[nodiscard]] std::string write_plan_view(const PlanView& view, const std::filesystem::path& file);
-/// The same as the bytes of a PNG; empty when there is no memory for it.
+/// The bytes of a PNG; empty when there is no memory for it.
 [[nodiscard]] std::string plan_view_png(const PlanView& view);
 
 /// Colour of the viridis scale at 0 … 1, sRGB 0 … 1: linear between nine of its table's entries.

@@ -108,7 +108,7 @@ HangingHead hanging_head(const Rig& rig, std::size_t index, BeamsOfLuminaires& k
   }
   if (fixture.range.zooms()) head.zoom_speed_rad_s = fixture.zoom_speed_rad_s;
   head.zoom = zoom_stops(luminaire, fixture, known);
-  head.max_level = std::min(fixture.max_level, rig.limits.max_level);
+  head.max_level = rig.max_level(fixture);
   head.watts = luminaire.watts.value_or(0);
   return head;
 }

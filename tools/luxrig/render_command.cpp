@@ -30,7 +30,7 @@ constexpr int kMostPasses = 4096;
 Checked<std::vector<double>> levels_of(const RenderOptions& options, Rig& rig) {
   if (!options.plan) {
     std::vector<double> levels;
-    for (const Fixture& fixture : rig.fixtures) levels.push_back(std::min(fixture.max_level, rig.limits.max_level));
+    for (const Fixture& fixture : rig.fixtures) levels.push_back(rig.max_level(fixture));
     return levels;
   }
   std::ifstream in(*options.plan, std::ios::binary);

@@ -36,7 +36,7 @@ class TaskSolver {
   [[nodiscard]] double most_level(Index light) const {
     const auto f = static_cast<std::size_t>(light);
     if (zones_.met(f, rig_.fixtures[f].joints)) return 0;
-    return std::min(rig_.fixtures[f].max_level, rig_.limits.max_level);
+    return rig_.max_level(rig_.fixtures[f]);
   }
   [[nodiscard]] std::optional<double> watts_of(Index light) const {
     return rig_.luminaires[rig_.fixtures[static_cast<std::size_t>(light)].luminaire].watts;

@@ -2,8 +2,8 @@
 /// Least squared error of one block of rows with at most so many lights of its own: a certified lower bound that gets
 /// better with work. Internal to error_bound.
 ///
-///   f(c) = min ‖A x + F s − b‖² − 2 pᵀx + 2 qᵀs    x, s ≥ 0; at most c lights of those that are at home here have x >
-///   0
+///   f(c) = min ‖A x + F s − b‖² − 2 pᵀx + 2 qᵀs    x, s ≥ 0; at most c lights that are at home here have
+///                                                  x > 0
 ///
 /// A: columns at home here; F: columns at home elsewhere, which any number of lights may burn in at the price q; p:
 /// what a level at home saves elsewhere at the prices there. Columns have norm 1 over all rows of the problem.

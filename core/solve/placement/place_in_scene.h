@@ -71,10 +71,10 @@ struct PlacedInScene {
   bool stopped = false;  ///< before the search was at its end
 };
 
-/// luminaire   at rated flux, hung with its own rotation unless aimed; one with size is searched as a point in its
-/// middle receivers   one per point of the goal Cause::cancelled when stopped before any light was placed;
-/// Cause::invalid as Mounting::candidates and candidate_transport, for an unknown method, and when no candidate lights
-/// any receiver.
+/// luminaire   at rated flux, hung with its own rotation unless aimed; one with size is searched as a point in its middle
+/// receivers   one per point of the goal
+/// returns     Cause::cancelled when stopped before any light was placed; Cause::invalid as Mounting::candidates and
+///             candidate_transport, for an unknown method, and when no candidate lights any receiver
 [[nodiscard]] Result<PlacedInScene> place_in_scene(const Scene& scene, const RayScene& rays, const Mounting& mounting,
                                                    const Emitter& luminaire, std::span<const Receiver> receivers,
                                                    const LightingGoal& goal, const PlaceInSceneOptions& options);

@@ -123,8 +123,7 @@ using TakeColumns = std::function<bool(const CandidateColumns&)>;
 ///
 /// scene, rays   the same geometry twice: as triangles and ready for rays
 /// returns       Cause::invalid for what check_evaluation() refuses, a shape or sky, or a memory bound that not even
-/// one
-///               small block keeps to; Cause::cancelled when stopped. A candidate in a receiver (infinite lux) has no
+///               one small block keeps to; Cause::cancelled when stopped. A candidate in a receiver (infinite lux) has no
 ///               entry there.
 [[nodiscard]] Result<CandidateStatistics> stream_candidates(const Scene& scene, const RayScene& rays,
                                                             std::span<const Receiver> receivers,

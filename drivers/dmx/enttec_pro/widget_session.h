@@ -41,7 +41,6 @@ class WidgetSession {
   [[nodiscard]] bool has_answered() const { return has_answered_; }
   [[nodiscard]] const Identity& identity() const { return identity_; }
   [[nodiscard]] std::uint64_t answers() const { return answers_; }
-  [[nodiscard]] std::uint64_t dropped_bytes() const { return decoder_.dropped(); }
 
   static constexpr Duration kAnswerWithin = std::chrono::milliseconds(500);
 

@@ -12,25 +12,25 @@ namespace luxrig {
 namespace {
 
 TEST(DmxPatch, RoundsDrivesToTheNearestValueOfTheSlot) {
-  EXPECT_EQ(encode_8bit(0), 0);
-  EXPECT_EQ(encode_8bit(1), 255);
-  EXPECT_EQ(encode_8bit(0.5), 128);  // 127.5 rounds away from zero
-  EXPECT_EQ(encode_8bit(1.0 / 255 * 0.49), 0);
-  EXPECT_EQ(encode_8bit(1.0 / 255 * 0.51), 1);
-  EXPECT_EQ(encode_16bit(0.5), 0x8000);
-  EXPECT_EQ(encode_16bit(1), 0xFFFF);
+  EXPECT_EQ(encode_dmx(0, 1), 0u);
+  EXPECT_EQ(encode_dmx(1, 1), 255u);
+  EXPECT_EQ(encode_dmx(0.5, 1), 128u);  // 127.5 rounds away from zero
+  EXPECT_EQ(encode_dmx(1.0 / 255 * 0.49, 1), 0u);
+  EXPECT_EQ(encode_dmx(1.0 / 255 * 0.51, 1), 1u);
+  EXPECT_EQ(encode_dmx(0.5, 2), 0x8000u);
+  EXPECT_EQ(encode_dmx(1, 2), 0xFFFFu);
 }
 
 TEST(DmxPatch, EncodesThePublishedAimVectors) {
   // Pan −270…270, tilt −135…135.
-  const auto pan = [](double deg) { return encode_16bit(share_of_travel(deg, -270, 270)); };
-  const auto tilt = [](double deg) { return encode_16bit(share_of_travel(deg, -135, 135)); };
-  EXPECT_EQ(pan(0), 0x8000);
-  EXPECT_EQ(pan(-90), 0x5555);
-  EXPECT_EQ(pan(90), 0xAAAA);
-  EXPECT_EQ(tilt(90), 0xD555);
-  EXPECT_EQ(tilt(-90), 0x2AAB);
-  EXPECT_EQ(tilt(0), 0x8000);
+  const auto pan = [](double deg) { return encode_dmx(share_of_travel(deg, -270, 270), 2); };
+  const auto tilt = [](double deg) { return encode_dmx(share_of_travel(deg, -135, 135), 2); };
+  EXPECT_EQ(pan(0), 0x8000u);
+  EXPECT_EQ(pan(-90), 0x5555u);
+  EXPECT_EQ(pan(90), 0xAAAAu);
+  EXPECT_EQ(tilt(90), 0xD555u);
+  EXPECT_EQ(tilt(-90), 0x2AABu);
+  EXPECT_EQ(tilt(0), 0x8000u);
 }
 
 TEST(DmxPatch, Gives16BitAnglesBackWithinHalfAStep) {
@@ -38,7 +38,7 @@ TEST(DmxPatch, Gives16BitAnglesBackWithinHalfAStep) {
   std::uniform_real_distribution<double> angle(-270, 270);
   for (int i = 0; i < 2000; ++i) {
     const double wanted = angle(random);
-    const double got = -270 + encode_16bit(share_of_travel(wanted, -270, 270)) / 65535.0 * 540;
+    const double got = -270 + encode_dmx(share_of_travel(wanted, -270, 270), 2) / 65535.0 * 540;
     EXPECT_LE(std::abs(got - wanted), 540.0 / 65535 / 2 + 1e-9);
   }
 }

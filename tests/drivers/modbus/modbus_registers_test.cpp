@@ -11,12 +11,17 @@ namespace {
 double lux(const ModbusMeterPatch& patch, std::vector<std::uint16_t> raw) { return lux_from_registers(patch, raw); }
 
 TEST(ModbusRegisters, RoundsADriveToTheNearestCount) {
-  EXPECT_EQ(raw_from_drive(0, 1000), 0);
-  EXPECT_EQ(raw_from_drive(1, 1000), 1000);
-  EXPECT_EQ(raw_from_drive(0.5004, 1000), 500);
-  EXPECT_EQ(raw_from_drive(0.5006, 1000), 501);
-  EXPECT_EQ(raw_from_drive(1, 65535), 65535);
-  EXPECT_EQ(raw_from_drive(1, 1), 1);
+  const auto raw_of = [](double drive, int full_scale_raw) {
+    ModbusPatch patch;
+    patch.full_scale_raw = full_scale_raw;
+    return words_from_drive(drive, patch).word[0];
+  };
+  EXPECT_EQ(raw_of(0, 1000), 0);
+  EXPECT_EQ(raw_of(1, 1000), 1000);
+  EXPECT_EQ(raw_of(0.5004, 1000), 500);
+  EXPECT_EQ(raw_of(0.5006, 1000), 501);
+  EXPECT_EQ(raw_of(1, 65535), 65535);
+  EXPECT_EQ(raw_of(1, 1), 1);
 }
 
 TEST(ModbusRegisters, ReadsTheLuxmetersOfTheirManuals) {
