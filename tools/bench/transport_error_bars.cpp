@@ -115,7 +115,12 @@ void add_column_rows(const TransportCase& one, double wanted, const BenchOptions
   evaluate.seed = 0xC0FFEE;
   fmt::print(stderr, "{}: reference of each lamp, wanted error {:g} …\n", one.room.name, evaluate.wanted_rms_error);
   const auto reference = make_path_evaluator(one.rays)->evaluate(one.room.receivers, one.room.emitters, evaluate);
-  if (!reference) return;
+  if (!reference) {
+    Measured none;
+    none.refused = reference.error().detail;
+    rows.push_back(transport_row("columns-" + one.room.name, "path", 0, none, wanted, std::nullopt));
+    return;
+  }
   const Columns exact = columns_of(*reference);
   const Eigen::ArrayXd of_lx =
       exact.lux.rowwise().sum().max(kFloorOfAll * exact.lux.sum() / static_cast<double>(exact.lux.rows()));
