@@ -11,10 +11,11 @@
 
 #include "core/solve/emittance.h"
 #include "core/solve/limited_methods.h"
+#include "core/tasks/session.h"
 #include "core/transport/rig_transport.h"
 #include "tools/bench/aisles_rig.h"
 #include "tools/bench/row_progress.h"
-#include "tools/luxrig/session.h"
+#include "tools/luxrig/open_session.h"
 
 namespace luxrig {
 namespace {

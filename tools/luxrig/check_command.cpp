@@ -17,6 +17,7 @@
 #include "tools/luxrig/addresses.h"
 #include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
+#include "tools/luxrig/open_session.h"
 #include "tools/luxrig/table.h"
 
 namespace luxrig {

@@ -32,7 +32,7 @@ int report(const Fault& fault) {
   return kExitFailed;
 }
 
-Progress progress_line(std::string what, std::function<void(std::string)> sink) {
+Progress progress_line(std::string what) {
   using Steady = std::chrono::steady_clock;
   struct Line {
     std::string what;
@@ -43,8 +43,7 @@ Progress progress_line(std::string what, std::function<void(std::string)> sink) 
   };
   auto line = std::make_shared<Line>();
   line->what = std::move(what);
-  if (!sink) sink = tell;
-  return [line, sink](double done) {
+  return [line](double done) {
     const int percent = static_cast<int>(100 * done);
     const double seconds = std::chrono::duration<double>(Steady::now() - line->start).count();
     const bool last = done >= 1;
@@ -52,7 +51,7 @@ Progress progress_line(std::string what, std::function<void(std::string)> sink) 
     if (!line->terminal && !last && percent / 25 == line->last_percent / 25) return;
     line->last_percent = percent;
     line->shown = true;
-    sink(fmt::format("{}{} {:3d} %  {:.1f} s{}", line->terminal ? "\r" : "", line->what, percent, seconds,
+    tell(fmt::format("{}{} {:3d} %  {:.1f} s{}", line->terminal ? "\r" : "", line->what, percent, seconds,
                      line->terminal && !last ? "" : "\n"));
   };
 }

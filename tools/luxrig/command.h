@@ -1,7 +1,6 @@
 #pragma once
 /// What the subcommands share: exit codes, how problems and faults are told to a person, progress.
 
-#include <functional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -21,8 +20,8 @@ int report(const std::vector<Problem>& problems);
 int report(const Fault& fault);
 
 /// A progress line on standard error, rewritten in place on a terminal, and a line per quarter elsewhere; silent for
-/// the first half second. sink: where the text goes instead.
-[[nodiscard]] Progress progress_line(std::string what, std::function<void(std::string)> sink = {});
+/// the first half second.
+[[nodiscard]] Progress progress_line(std::string what);
 
 /// Stops when the process gets SIGINT or SIGTERM. Install once, before other threads begin.
 [[nodiscard]] std::stop_token stop_on_signals();

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/luxrig/session.h"
+#include "core/tasks/session.h"
 
 namespace luxrig {
 

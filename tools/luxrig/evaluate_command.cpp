@@ -7,7 +7,9 @@
 #include "core/transport/rig_transport.h"
 #include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
+#include "tools/luxrig/open_session.h"
 #include "tools/luxrig/table.h"
+#include "tools/luxrig/terminal_watch.h"
 #include "tools/luxrig/transport_json.h"
 
 namespace luxrig {
@@ -37,7 +39,9 @@ int run_evaluate(const EvaluateArguments& arguments) {
 
   ComputeOptions compute = arguments.compute;
   compute.watch = {stop_on_signals(), {}};
-  compute.said_as = "evaluating";
+  TerminalWatch terminal(false);
+  compute.tell = terminal.tell();
+  compute.stage = "evaluating";
   ModelUsed used;
   const auto transport = compute_transport(*session, compute, *levels, &used);
   if (!transport) return report(transport.error());

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "tools/luxrig/solve_tasks.h"
+#include "core/tasks/solve_tasks.h"
 
 namespace luxrig {
 

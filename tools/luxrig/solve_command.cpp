@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <chrono>
 
+#include "core/tasks/solve_tasks.h"
 #include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
+#include "tools/luxrig/open_session.h"
 #include "tools/luxrig/opening_light.h"
-#include "tools/luxrig/solve_tasks.h"
 #include "tools/luxrig/table.h"
+#include "tools/luxrig/terminal_watch.h"
 #include "tools/luxrig/transport_json.h"
 
 namespace luxrig {
@@ -137,7 +139,8 @@ int run_solve(const SolveArguments& arguments) {
   if (!session) return report(session.error());
   ComputeOptions compute = arguments.compute;
   compute.watch = {stop, {}};
-  compute.said_as = "transport";
+  TerminalWatch terminal(true);
+  compute.tell = terminal.tell();
   ModelUsed used;
   const auto transport = compute_transport(*session, compute, {}, &used);
   if (!transport) return report(transport.error());

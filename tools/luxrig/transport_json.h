@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "tools/luxrig/session.h"
+#include "core/tasks/session.h"
 
 namespace luxrig {
 

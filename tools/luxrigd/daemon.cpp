@@ -7,9 +7,9 @@
 #include <system_error>
 #include <thread>
 
+#include "core/tasks/rig_version.h"
 #include "drivers/registry.h"
 #include "tools/command_line/installed.h"
-#include "tools/luxrig/rig_version.h"
 #include "tools/luxrigd/clock.h"
 #include "tools/luxrigd/scheduling.h"
 #include "tools/luxrigd/status_json.h"

@@ -13,8 +13,8 @@
 #include <thread>
 
 #include "core/control/show_controller.h"
+#include "core/tasks/session.h"
 #include "drivers/registry.h"
-#include "tools/luxrig/session.h"
 #include "tools/luxrigd/bus_thread.h"
 #include "tools/luxrigd/claims.h"
 #include "tools/luxrigd/guardian.h"

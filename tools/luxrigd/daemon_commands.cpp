@@ -8,7 +8,8 @@
 #include <chrono>
 
 #include "core/rig/nearest.h"
-#include "tools/luxrig/rig_version.h"
+#include "core/tasks/rig_version.h"
+#include "tools/luxrig/open_session.h"
 #include "tools/luxrigd/by_hand_names.h"
 #include "tools/luxrigd/clock.h"
 #include "tools/luxrigd/daemon.h"

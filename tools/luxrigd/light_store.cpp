@@ -8,8 +8,8 @@
 #include <cstring>
 #include <span>
 
+#include "core/tasks/rig_version.h"
 #include "tools/luxrig/commands.h"
-#include "tools/luxrig/rig_version.h"
 
 namespace luxrig {
 namespace {

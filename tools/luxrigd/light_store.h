@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/control/show_controller.h"
-#include "tools/luxrig/session.h"
+#include "core/tasks/session.h"
 
 namespace luxrig {
 

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "core/tasks/relief_task.h"
 #include "core/transport/pfm.h"
 #include "core/transport/rig_camera.h"
 #include "tools/http/client.h"
 #include "tools/luxrig/picture_png.h"
-#include "tools/luxrig/relief_task.h"
 
 namespace luxrig {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/highlight/picture_contrast.h"
-#include "tools/luxrig/session.h"
+#include "core/tasks/session.h"
 #include "tools/luxrigd/sim_process.h"
 
 namespace luxrig {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "tools/luxrig/session.h"
+#include "core/tasks/session.h"
 
 namespace luxrig {
 

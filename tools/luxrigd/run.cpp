@@ -11,9 +11,11 @@
 
 #include "core/parallel.h"
 #include "core/rig/null_bus.h"
+#include "core/tasks/solve_tasks.h"
 #include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
-#include "tools/luxrig/solve_tasks.h"
+#include "tools/luxrig/open_session.h"
+#include "tools/luxrig/terminal_watch.h"
 #include "tools/luxrigd/daemon.h"
 #include "tools/luxrigd/rig_pictures.h"
 #include "tools/luxrigd/run_report.h"
@@ -249,7 +251,10 @@ int run_rig(const RunArguments& arguments) {
       say.say("transport: as it was worked out for this rig before");
     }
   }
-  compute.watch = {stop, progress_line("  transport", [&](std::string text) { progress.tell(std::move(text)); })};
+  compute.watch = {stop, nullptr};
+  std::optional<TerminalWatch> terminal(std::in_place, false,
+                                        [&](std::string text) { progress.tell(std::move(text)); });
+  compute.tell = terminal->tell();
   if (arguments.plan) {
     auto read = plan_of_file(*arguments.plan);
     if (!read) return report(read.error());
@@ -267,7 +272,6 @@ int run_rig(const RunArguments& arguments) {
                         transport->receivers(), transport->emitters(), used.name, used.rms_error, used.relative_error,
                         transport->rays, thread_count(compute.threads)));
     if (const std::string warning = used.warning(); !warning.empty()) say.say("warning: " + warning);
-    compute.watch.progress = nullptr;
     if (arguments.pictures) {
       auto solved = solve_what_hangs(*session, *transport, compute, false);
       if (!solved) return report(solved.error());
@@ -289,7 +293,8 @@ int run_rig(const RunArguments& arguments) {
     model = light_model(rig, *transport);
     if (options.state_folder) keep_light(*options.state_folder, {joints_of(rig), *model}, key);
   }
-  compute.watch.progress = nullptr;
+  compute.tell = nullptr;
+  terminal.reset();
   if (sim) {
     auto ready = sim->wait_ready({stop, nullptr});
     if (!ready) return report(ready.error());

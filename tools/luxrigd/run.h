@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "tools/luxrig/session.h"
+#include "core/tasks/session.h"
 
 namespace luxrig {
 

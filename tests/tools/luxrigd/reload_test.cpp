@@ -4,9 +4,10 @@
 #include <fstream>
 #include <thread>
 
+#include "core/tasks/rig_version.h"
+#include "core/tasks/session.h"
 #include "tests/tools/programs/process.h"
-#include "tools/luxrig/rig_version.h"
-#include "tools/luxrig/session.h"
+#include "tools/luxrig/open_session.h"
 #include "tools/luxrigd/by_hand_names.h"
 #include "tools/luxrigd/reload_check.h"
 #include "tools/luxrigd/rig_file_watch.h"

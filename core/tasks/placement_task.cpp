@@ -1,4 +1,4 @@
-#include "tools/luxrig/placement_task.h"
+#include "core/tasks/placement_task.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,6 @@
 
 #include "core/transport/evaluator_choice.h"
 #include "core/transport/rig_transport.h"
-#include "tools/luxrig/search_watch.h"
 
 namespace luxrig {
 namespace {
@@ -78,7 +77,7 @@ Result<PlacedInScene> search_places(const Rig& rig, const Scene& scene, const Ra
   set_emitters(rig, spec.luminaire, goal, channels);
   goal.max_watts = max_watts;
 
-  SearchWatch watch(task.name, "looking at places", spec.seconds, options.watch.stop);
+  const Stage stage(options.tell, task.name, "looking at places", spec.seconds, options.watch.stop);
   PlaceInSceneOptions place;
   if (spec.lights) place.lights = static_cast<std::size_t>(*spec.lights);
   place.max_lights = static_cast<std::size_t>(spec.max_lights);
@@ -91,9 +90,9 @@ Result<PlacedInScene> search_places(const Rig& rig, const Scene& scene, const Ra
   place.bound_of_number = spec.bound;
   place.seed = options.seed;
   place.threads = options.threads;
-  place.stop = watch.stop();
+  place.stop = stage.stop();
   place.better = [&](std::size_t lights, double error) {
-    watch.say(fmt::format("{} light{}, error {:.2f} %", lights, lights == 1 ? "" : "s", 100 * error));
+    stage.say(fmt::format("{} light{}, error {:.2f} %", lights, lights == 1 ? "" : "s", 100 * error));
   };
   place.front_limits = static_cast<std::size_t>(spec.energy_front);
   const Luminaire& luminaire = rig.luminaires[spec.luminaire];
@@ -119,7 +118,7 @@ Result<PlacedInScene> search_places(const Rig& rig, const Scene& scene, const Ra
     set_error_floor(rig, evaluate);
     evaluate.seed = options.seed;
     evaluate.threads = options.threads;
-    evaluate.watch.stop = watch.stop();
+    evaluate.watch.stop = stage.stop();
     std::unique_ptr<Evaluator> evaluator = make_direct_evaluator(rays);
     if (place.indirect) {
       auto chosen = choose_evaluator(rays, receivers, lamps, evaluate);

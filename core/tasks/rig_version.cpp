@@ -1,4 +1,4 @@
-#include "tools/luxrig/rig_version.h"
+#include "core/tasks/rig_version.h"
 
 #include <bit>
 #include <cmath>

@@ -4,7 +4,7 @@
 
 #include "core/solve/placement/mounting.h"
 #include "core/solve/placement/place_in_scene.h"
-#include "tools/luxrig/relief_task.h"
+#include "core/tasks/relief_task.h"
 
 namespace luxrig {
 

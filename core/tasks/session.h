@@ -1,7 +1,6 @@
 #pragma once
-/// From a rig file to something that can be computed with; what every command starts from.
+/// A rig and its scene, and what its light is.
 
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,6 +10,7 @@
 #include "core/rig/rig.h"
 #include "core/scene/ray_scene.h"
 #include "core/scene/scene.h"
+#include "core/tasks/stage.h"
 #include "core/transport/evaluator.h"
 
 namespace luxrig {
@@ -21,8 +21,8 @@ struct Session {
   std::unique_ptr<RayScene> rays;
 };
 
-/// Reads and checks everything: rig, photometry, buses, meshes, where lights may hang. All problems, or a Session.
-[[nodiscard]] Checked<Session> open_session(const std::filesystem::path& rig_path);
+/// Builds the scene and checks where lights may hang and whether a point lies in a lamp. All problems, or a Session.
+[[nodiscard]] Checked<Session> session_of(Rig rig);
 
 enum class Model { automatic, direct, gather, path };
 
@@ -36,7 +36,8 @@ struct ComputeOptions {
   std::uint64_t seed = 1;
   int threads = 0;
   Watch watch;
-  std::string said_as;  ///< before lines of progress on standard error; empty: none
+  Tell tell;                        ///< hears of every stage; may be empty
+  std::string stage = "transport";  ///< what `tell` hears a computation of transport called
 
   /// Asks an evaluator for that error.
   void want_error(EvaluateOptions& evaluate) const;
@@ -48,8 +49,8 @@ struct ModelUsed {
   double wanted = 0;
   bool of_worst = false;                     ///< wanted of each point, not of their rms
   double relative_error = 0, rms_error = 0;  ///< standard errors: largest over the points, and root mean square
-  double error_floor_lx = 0;  ///< standard error that was small enough at any point; 0: exact
-  bool time_was_up = false;   ///< it ended by ComputeOptions::max_seconds
+  double error_floor_lx = 0;                 ///< standard error that was small enough at any point; 0: exact
+  bool time_was_up = false;                  ///< it ended by ComputeOptions::max_seconds
   double max_seconds = 0;
 
   /// Whether the rms is as wanted; of the worst, whether two of its standard errors are.

@@ -3,7 +3,7 @@
 
 #include "core/control/plan.h"
 #include "core/result.h"
-#include "tools/luxrig/session.h"
+#include "core/tasks/session.h"
 
 namespace luxrig {
 

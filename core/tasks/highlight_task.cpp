@@ -1,4 +1,4 @@
-#include "tools/luxrig/highlight_task.h"
+#include "core/tasks/highlight_task.h"
 
 #include <fmt/format.h>
 #include <fnmatch.h>
@@ -10,7 +10,6 @@
 #include "core/highlight/judged_lights.h"
 #include "core/photometry/beam.h"
 #include "core/scene/object_scene.h"
-#include "tools/luxrig/search_watch.h"
 
 namespace luxrig {
 namespace {
@@ -80,7 +79,7 @@ Result<PlacedReliefLights> find_relief_lights(const ReliefSurroundings& around, 
   const auto refuse = [&](const Fault& fault) {
     return refusal(fmt::format("task \"{}\": {}", task.name, fault.detail));
   };
-  SearchWatch watch(task.name, "looking for shadow edges", {}, options.watch.stop);
+  const Stage stage(options.tell, task.name, "looking for shadow edges", {}, options.watch.stop);
   const ReliefStudy& study = object.study;
   ShadowEdgeOptions of_edges;
   of_edges.threads = options.threads;
@@ -88,7 +87,7 @@ Result<PlacedReliefLights> find_relief_lights(const ReliefSurroundings& around, 
   const auto edges = find_shadow_edges(study.rays, study.points, of_edges);
   if (!edges) return refuse(edges.error());
 
-  watch.say("asking where lights may hang");
+  stage.say("asking where lights may hang");
   const auto domain = domain_of(around, object, mounting);
   if (!domain) return refuse(domain.error());
   const auto others = scene_without_object(around.scene, around.rig.scene.objects[spec.relief.object].name);
@@ -112,7 +111,7 @@ Result<PlacedReliefLights> find_relief_lights(const ReliefSurroundings& around, 
                     "[mounting], or lower clearance_m",
                     task.name, domain->cell_centres().size()));
 
-  watch.say("judging lights");
+  stage.say("judging lights");
   JudgedLightOptions of_judge;
   of_judge.surroundings.environment = &environment;
   of_judge.lift_m = 1e-4 * study.surface.diagonal_m();
@@ -135,7 +134,7 @@ Result<PlacedReliefLights> find_relief_lights(const ReliefSurroundings& around, 
     chosen = std::move(count->by_number[count->best]);
   }
 
-  watch.say("aiming");
+  stage.say("aiming");
   AimWishes wishes;
   wishes.limits = limits_at_points(around);
   wishes.max_object_lx = spec.relief.max_lx.value_or(std::numeric_limits<double>::infinity());
@@ -158,7 +157,7 @@ Result<PlacedReliefLights> find_relief_lights(const ReliefSurroundings& around, 
   }
   AimOptions aim;
   aim.threads = options.threads;
-  aim.stop = watch.stop();
+  aim.stop = stage.stop();
   const auto search =
       HeadAims::make(object.samples, study.features, around.rays, std::move(heads), std::move(wishes), aim);
   if (!search) return refuse(search.error());

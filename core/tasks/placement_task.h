@@ -5,7 +5,7 @@
 #include "core/rig/rig.h"
 #include "core/solve/placement/mounting.h"
 #include "core/solve/placement/place_in_scene.h"
-#include "tools/luxrig/session.h"
+#include "core/tasks/session.h"
 
 namespace luxrig {
 

@@ -1,4 +1,4 @@
-#include "tools/luxrig/solve_tasks.h"
+#include "core/tasks/solve_tasks.h"
 
 #include <fmt/format.h>
 
@@ -7,11 +7,10 @@
 #include <limits>
 
 #include "core/solve/emittance.h"
+#include "core/tasks/placement_task.h"
+#include "core/tasks/rig_version.h"
+#include "core/tasks/task_solver.h"
 #include "core/transport/rig_transport.h"
-#include "tools/luxrig/placement_task.h"
-#include "tools/luxrig/rig_version.h"
-#include "tools/luxrig/search_watch.h"
-#include "tools/luxrig/task_solver.h"
 
 namespace luxrig {
 namespace {
@@ -79,7 +78,7 @@ void TaskSolver::light_as_hung() {
 Result<void> TaskSolver::placement(const Task& task) {
   const auto start = Steady::now();
   const auto mounting = Mounting::make(rig_.mounting, rig_.file, session_.scene, *session_.rays);
-  if (!mounting) return refusal(mounting.error()[0].text());  // open_session() has made it before
+  if (!mounting) return refusal(mounting.error()[0].text());  // session_of() has made it before
   const PlacementSpec& spec = task.placement;
   for (Index j = 0; j < own_ && spec.fixtures != FixturesMeanwhile::as_set; ++j)
     level_[j] = spec.fixtures == FixturesMeanwhile::full ? most_level(j) : 0;
@@ -207,8 +206,8 @@ Result<void> TaskSolver::solve_levels_of(Index begin, Index end, double max_watt
   EmittanceProblem problem = problem_of(begin, end);
   problem.max_watts = max_watts;
   if (auto kept = limits_left(problem.fixed_lx); !kept) return kept;
-  const SearchWatch watch(planned.name,
-                          fmt::format("levels of {} lights at {} points", end - begin, rig_.points.size()), {}, {});
+  const Stage stage(options_.tell, planned.name,
+                    fmt::format("levels of {} lights at {} points", end - begin, rig_.points.size()), {}, {});
   // An interrupt has ended the search, not what becomes of it.
   auto solution = solve_emittance(problem, planned.kind == name_of(TaskKind::placement) ? Watch{} : options_.watch);
   if (!solution) return tl::unexpected(std::move(solution.error()));

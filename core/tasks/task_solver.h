@@ -7,8 +7,8 @@
 #include "core/control/keep_out.h"
 #include "core/solve/emittance.h"
 #include "core/solve/placement/place_in_scene.h"
-#include "tools/luxrig/relief_task.h"
-#include "tools/luxrig/solve_tasks.h"
+#include "core/tasks/relief_task.h"
+#include "core/tasks/solve_tasks.h"
 
 namespace luxrig {
 

@@ -7,7 +7,7 @@
 #include "core/highlight/relief_study.h"
 #include "core/rig/rig.h"
 #include "core/scene/ray_scene.h"
-#include "tools/luxrig/session.h"
+#include "core/tasks/session.h"
 
 namespace luxrig {
 

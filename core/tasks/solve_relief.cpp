@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "core/rig/housing.h"
-#include "tools/luxrig/highlight_task.h"
-#include "tools/luxrig/solve_tasks.h"
-#include "tools/luxrig/task_solver.h"
+#include "core/tasks/highlight_task.h"
+#include "core/tasks/solve_tasks.h"
+#include "core/tasks/task_solver.h"
 
 namespace luxrig {
 
@@ -108,7 +108,7 @@ Result<void> TaskSolver::highlight(const Task& task) {
   const auto start = Steady::now();
   const HighlightSpec& spec = task.highlight;
   const auto mounting = Mounting::make(rig_.mounting, rig_.file, session_.scene, *session_.rays);
-  if (!mounting) return refusal(mounting.error()[0].text());  // open_session() has made it before
+  if (!mounting) return refusal(mounting.error()[0].text());  // session_of() has made it before
   const auto dark = surroundings(std::vector<bool>(rig_.fixtures.size(), false), task);
   if (!dark) return tl::unexpected(dark.error());
   const auto object = study_object(session_, spec.relief, options_);

@@ -1,4 +1,4 @@
-#include "tools/luxrig/relief_task.h"
+#include "core/tasks/relief_task.h"
 
 #include <fmt/format.h>
 
@@ -15,7 +15,6 @@
 #include "core/scene/object_scene.h"
 #include "core/transport/rig_camera.h"
 #include "core/transport/rig_transport.h"
-#include "tools/luxrig/search_watch.h"
 
 namespace luxrig {
 namespace {
@@ -176,7 +175,7 @@ Result<std::vector<double>> staying_lux(const ReliefSurroundings& around, const 
 Result<AimedFixtures> aim_fixtures(const ReliefSurroundings& around, const StudiedObject& object, const Task& task,
                                    std::span<const double> present_levels, const ComputeOptions& options) {
   const AimSpec& spec = task.aim;
-  SearchWatch watch(task.name, "light that stays", {}, options.watch.stop);
+  const Stage stage(options.tell, task.name, "light that stays", {}, options.watch.stop);
 
   AimWishes wishes;
   wishes.limits = limits_of(around, spec);
@@ -205,10 +204,10 @@ Result<AimedFixtures> aim_fixtures(const ReliefSurroundings& around, const Studi
     heads.back().may_light = [&zones, head = spec.heads[k]](const Joints& at) { return !zones.met(head, at); };
     present.push_back({fixture.joints, 0, present_levels[k]});
   }
-  watch.say("aiming");
+  stage.say("aiming");
   AimOptions aim;
   aim.threads = options.threads;
-  aim.stop = watch.stop();
+  aim.stop = stage.stop();
   const auto search =
       HeadAims::make(object.samples, object.study.features, around.rays, std::move(heads), std::move(wishes), aim);
   if (!search) return refusal(fmt::format("task \"{}\": {}", task.name, search.error().detail));

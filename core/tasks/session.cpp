@@ -1,18 +1,14 @@
-#include "tools/luxrig/session.h"
+#include "core/tasks/session.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "core/rig/rig_file.h"
 #include "core/scene/scene_builder.h"
 #include "core/solve/placement/mounting.h"
 #include "core/transport/evaluator_choice.h"
 #include "core/transport/rig_notes/rig_notes.h"
 #include "core/transport/rig_transport.h"
-#include "drivers/camera/camera_source.h"
-#include "drivers/registry.h"
-#include "tools/luxrig/search_watch.h"
 
 namespace luxrig {
 
@@ -32,15 +28,11 @@ void ComputeOptions::want_error(EvaluateOptions& evaluate) const {
     evaluate.wanted_rms_error = max_error;
 }
 
-Checked<Session> open_session(const std::filesystem::path& rig_path) {
-  auto rig = load_rig(rig_path);
-  if (!rig) return tl::unexpected(std::move(rig.error()));
-  if (auto problems = check_buses(*rig); !problems.empty()) return tl::unexpected(std::move(problems));
-  if (auto problems = check_cameras(*rig); !problems.empty()) return tl::unexpected(std::move(problems));
-  if (auto problems = lamps_in_points(*rig); !problems.empty()) return tl::unexpected(std::move(problems));
-  auto scene = build_scene(*rig);
+Checked<Session> session_of(Rig rig) {
+  if (auto problems = lamps_in_points(rig); !problems.empty()) return tl::unexpected(std::move(problems));
+  auto scene = build_scene(rig);
   if (!scene) return tl::unexpected(std::move(scene.error()));
-  Session session{std::move(*rig), std::move(*scene), nullptr};
+  Session session{std::move(rig), std::move(*scene), nullptr};
   session.rays = std::make_unique<RayScene>(session.scene);
   const bool places = std::any_of(session.rig.tasks.begin(), session.rig.tasks.end(),
                                   [](const Task& task) { return task.places_lights(); });
@@ -59,17 +51,17 @@ Result<TransportMatrix> compute_transport(const Session& session, const ComputeO
 Result<TransportMatrix> compute_transport(const Rig& rig, const RayScene& rays, const ComputeOptions& options,
                                           const std::vector<double>& levels, ModelUsed* used) {
   const std::optional<double> seconds = options.max_seconds > 0 ? std::optional(options.max_seconds) : std::nullopt;
-  SearchWatch watch(options.said_as, "starting", seconds, {});
+  const Stage stage(options.tell, options.stage, "starting", seconds, {});
   EvaluateOptions evaluate;
   options.want_error(evaluate);
   evaluate.seed = options.seed;
   evaluate.threads = options.threads;
   evaluate.levels = levels;
   evaluate.watch = options.watch;
-  evaluate.enough = watch.stop();
-  if (!options.said_as.empty())
+  evaluate.enough = stage.stop();
+  if (options.tell)
     evaluate.watch.progress = [&](double done) {
-      watch.say(fmt::format("{:.0f} %", 100 * done));
+      stage.say(fmt::format("{:.0f} %", 100 * done));
       if (options.watch.progress) options.watch.progress(done);
     };
   set_error_floor(rig, evaluate);
@@ -117,7 +109,7 @@ Result<TransportMatrix> compute_transport(const Rig& rig, const RayScene& rays, 
              .relative_error = transport->relative_error,
              .rms_error = transport->rms_error,
              .error_floor_lx = evaluate.wanted_standard_error() * transport->floor_lx,
-             .time_was_up = watch.time_is_up(),
+             .time_was_up = stage.time_is_up(),
              .max_seconds = options.max_seconds};
   return transport;
 }

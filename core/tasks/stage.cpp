@@ -1,0 +1,46 @@
+#include "core/tasks/stage.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace luxrig {
+namespace {
+
+constexpr double kLongest_s = 1e8;  // what a condition variable can still wait for
+
+}  // namespace
+
+Stage::Stage(Tell tell, std::string task, std::string first, std::optional<double> seconds, const std::stop_token& stop)
+    : tell_(std::move(tell)), task_(std::move(task)), asked_(stop, [this] { source_.request_stop(); }) {
+  say(std::move(first));
+  if (!seconds) return;
+  const std::chrono::duration<double> time(std::clamp(*seconds, 0.0, kLongest_s));
+  timer_ = std::thread([this, time] {
+    std::unique_lock lock(mutex_);
+    if (changed_.wait_for(lock, time, [this] { return ended_; })) return;
+    time_is_up_ = true;
+    lock.unlock();  // a callback of the token may ask this stage
+    source_.request_stop();
+  });
+}
+
+Stage::~Stage() {
+  {
+    const std::lock_guard lock(mutex_);
+    ended_ = true;
+  }
+  changed_.notify_one();
+  if (timer_.joinable()) timer_.join();
+  if (tell_) tell_({task_, "", true});
+}
+
+bool Stage::time_is_up() const {
+  const std::lock_guard lock(mutex_);
+  return time_is_up_;
+}
+
+void Stage::say(std::string what) const {
+  if (tell_) tell_({task_, std::move(what)});
+}
+
+}  // namespace luxrig

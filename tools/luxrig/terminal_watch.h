@@ -1,0 +1,49 @@
+#pragma once
+/// Lines about a long computation for a person: how far it is, before two seconds have passed.
+
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "core/tasks/stage.h"
+
+namespace luxrig {
+
+/// On a terminal one line a stage, written over twice a second; elsewhere a line every ten seconds.
+class TerminalWatch {
+ public:
+  /// may_take   an interrupt ends a search with its best so far, and the line says so
+  /// sink       gets the text; none: standard error
+  explicit TerminalWatch(bool may_take, std::function<void(std::string)> sink = nullptr);
+  ~TerminalWatch();
+  TerminalWatch(const TerminalWatch&) = delete;
+  TerminalWatch& operator=(const TerminalWatch&) = delete;
+
+  /// What a computation calls; it must not outlive this.
+  [[nodiscard]] Tell tell() {
+    return [this](const Doing& doing) { told(doing); };
+  }
+
+ private:
+  struct Line {
+    Doing doing;
+    double start_s = 0, said_s = 0;
+    bool said = false;
+  };
+
+  void told(const Doing& doing);
+  void run();
+
+  const bool may_take_, terminal_;
+  std::function<void(std::string)> sink_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<Line> stages_;  ///< of stages that are under way; the innermost is last
+  bool ended_ = false;
+  std::thread thread_;  ///< last: it uses all of these
+};
+
+}  // namespace luxrig
