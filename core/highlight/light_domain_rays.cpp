@@ -91,7 +91,9 @@ void LightDomain::hits_along(const Vec3& from_world_m, std::span<const Vec3f> di
       rays.dir_x[k] = direction.x();
       rays.dir_y[k] = direction.y();
       rays.dir_z[k] = direction.z();
-      rays.tfar[k] = std::numeric_limits<float>::infinity();
+      // Where processors have no lanes for 16, Embree 3.13 takes two times 8 and forgets which are valid. A ray that
+      // ends before it begins is none.
+      rays.tfar[k] = valid[k] != 0 ? std::numeric_limits<float>::infinity() : -std::numeric_limits<float>::infinity();
       rays.time[k] = 0;
       rays.mask[k] = ~0u;
       rays.id[k] = static_cast<unsigned>(begin + k);

@@ -103,7 +103,8 @@ void cast_at_target(RTCScene scene, const Vec3f& start, const Aim& aim, std::spa
       rays.dir_x[k] = direction.x();
       rays.dir_y[k] = direction.y();
       rays.dir_z[k] = direction.z();
-      rays.tfar[k] = end;
+      // Embree 3.13 casts lanes that are not valid, too, where processors have no lanes for 16.
+      rays.tfar[k] = valid[k] != 0 ? end : -std::numeric_limits<float>::infinity();
     }
     rtcOccluded16(valid.data(), scene, &context, &rays);
     for (std::size_t k = 0; k < count; ++k) blocked[begin + k] = valid[k] != 0 && rays.tfar[k] < 0;
