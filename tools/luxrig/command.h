@@ -1,6 +1,7 @@
 #pragma once
 /// What the subcommands share: exit codes, how problems and faults are told to a person, progress.
 
+#include <functional>
 #include <string>
 #include <thread>
 #include <vector>

@@ -39,7 +39,7 @@ int run_evaluate(const EvaluateArguments& arguments) {
 
   ComputeOptions compute = arguments.compute;
   compute.watch = {stop_on_signals(), {}};
-  TerminalWatch terminal(false);
+  TerminalWatch terminal;
   compute.tell = terminal.tell();
   compute.stage = "evaluating";
   ModelUsed used;

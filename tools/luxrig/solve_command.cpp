@@ -139,7 +139,7 @@ int run_solve(const SolveArguments& arguments) {
   if (!session) return report(session.error());
   ComputeOptions compute = arguments.compute;
   compute.watch = {stop, {}};
-  TerminalWatch terminal(true);
+  TerminalWatch terminal;
   compute.tell = terminal.tell();
   ModelUsed used;
   const auto transport = compute_transport(*session, compute, {}, &used);

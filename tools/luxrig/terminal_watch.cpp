@@ -22,9 +22,8 @@ void to_standard_error(const std::string& text) {
 
 }  // namespace
 
-TerminalWatch::TerminalWatch(bool may_take, std::function<void(std::string)> sink)
-    : may_take_(may_take),
-      terminal_(isatty(STDERR_FILENO) != 0),
+TerminalWatch::TerminalWatch(std::function<void(std::string)> sink)
+    : terminal_(isatty(STDERR_FILENO) != 0),
       sink_(sink ? std::move(sink) : to_standard_error),
       thread_([this] { run(); }) {}
 
@@ -62,9 +61,9 @@ void TerminalWatch::run() {
     line.said_s = now;
     line.said = true;
     sink_(fmt::format("{}{}: {:.0f} s, {}{}", terminal_ ? "\r\x1b[K" : "", line.doing.task, spent_s, line.doing.what,
-                      !terminal_  ? "\n"
-                      : may_take_ ? " (Ctrl-C: take this)"
-                                  : ""));
+                      !terminal_                ? "\n"
+                      : line.doing.can_be_taken ? " (Ctrl-C: take this)"
+                                                : ""));
   }
 }
 

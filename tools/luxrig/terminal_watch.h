@@ -15,9 +15,8 @@ namespace luxrig {
 /// On a terminal one line a stage, written over twice a second; elsewhere a line every ten seconds.
 class TerminalWatch {
  public:
-  /// may_take   an interrupt ends a search with its best so far, and the line says so
-  /// sink       gets the text; none: standard error
-  explicit TerminalWatch(bool may_take, std::function<void(std::string)> sink = nullptr);
+  /// sink   gets the text; none: standard error
+  explicit TerminalWatch(std::function<void(std::string)> sink = nullptr);
   ~TerminalWatch();
   TerminalWatch(const TerminalWatch&) = delete;
   TerminalWatch& operator=(const TerminalWatch&) = delete;
@@ -37,7 +36,7 @@ class TerminalWatch {
   void told(const Doing& doing);
   void run();
 
-  const bool may_take_, terminal_;
+  const bool terminal_;
   std::function<void(std::string)> sink_;
   std::mutex mutex_;
   std::condition_variable changed_;

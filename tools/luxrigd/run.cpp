@@ -252,8 +252,7 @@ int run_rig(const RunArguments& arguments) {
     }
   }
   compute.watch = {stop, nullptr};
-  std::optional<TerminalWatch> terminal(std::in_place, false,
-                                        [&](std::string text) { progress.tell(std::move(text)); });
+  std::optional<TerminalWatch> terminal(std::in_place, [&](std::string text) { progress.tell(std::move(text)); });
   compute.tell = terminal->tell();
   if (arguments.plan) {
     auto read = plan_of_file(*arguments.plan);

@@ -46,6 +46,15 @@ TEST(Stage, StopsWhenAskedFromOutsideAndThenItsTimeWasNotUp) {
   EXPECT_FALSE(stage.time_is_up());
 }
 
+TEST(Stage, SaysWhetherAStopTakesTheBestItHas) {
+  std::vector<bool> told;
+  const Tell tell = [&](const Doing& doing) { told.push_back(doing.can_be_taken); };
+  const std::stop_source person;
+  { const Stage search(tell, "places", "looking", {}, person.get_token()); }
+  { const Stage transport(tell, "transport", "starting", 3600, {}); }
+  EXPECT_EQ(told, (std::vector<bool>{true, true, false, false}));
+}
+
 TEST(Stage, BegunAfterTheStopIsStopped) {
   std::stop_source outside;
   outside.request_stop();
