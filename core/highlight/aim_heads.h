@@ -13,18 +13,17 @@
 #include "core/highlight/aim_objective.h"
 #include "core/highlight/hanging_head.h"
 #include "core/result.h"
-#include "core/stop.h"
+#include "core/run.h"
 
 namespace luxrig {
 
 /// So many interest points are enough to judge real lights by: more take longer and change little.
 constexpr std::size_t kAimPoints = 1000;
 
-struct AimOptions {
+/// A stop ends the search with the best so far.
+struct AimOptions : Run {
   std::size_t search_points = 800;  ///< interest points that the search judges by, evenly strided; the answer by all
   std::size_t most_aims = 24;       ///< candidates per head
-  int threads = 0;                  ///< 0 = one per core; the result does not depend on it
-  std::stop_token stop;             ///< ends it with the best so far
 };
 
 struct AimedHead {

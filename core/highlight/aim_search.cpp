@@ -83,7 +83,7 @@ class AimSearch {
     double level = 0, objective = -std::numeric_limits<double>::infinity();
   };
 
-  [[nodiscard]] bool stopped() const { return state_.options.stop.stop_requested(); }
+  [[nodiscard]] bool stopped() const { return state_.options.watch.stop.stop_requested(); }
   [[nodiscard]] HeadRole role_of(std::size_t head) const { return role_in(judge_.wishes, head); }
 
   /// The sum of all heads but one, each at a share of its level.

@@ -79,6 +79,7 @@ Result<CoverageVotes> vote_for_coverage(const LightDomain& domain, const TargetS
     result.votes.point_factor.push_back(surface.areas_m2[point] / area_m2);
   std::vector<GatheredPart> parts((count + kPointsPerCoverageTask - 1) / kPointsPerCoverageTask);
   parallel_for(parts.size(), options.threads, [&](std::size_t p) {
+    if (options.watch.stop.stop_requested()) return;
     const std::size_t end = std::min(count, (p + 1) * kPointsPerCoverageTask);
     for (std::size_t k = p * kPointsPerCoverageTask; k < end; ++k) {
       const std::uint32_t point = result.surface_point[k];
@@ -87,6 +88,8 @@ Result<CoverageVotes> vote_for_coverage(const LightDomain& domain, const TargetS
                 options, nearest_m, parts[p]);
     }
   });
+  if (options.watch.stop.stop_requested())
+    return tl::unexpected(Fault{Cause::cancelled, "", "the votes of the surface were stopped", {}});
   std::vector<std::uint32_t> feature_of_point(count);
   std::iota(feature_of_point.begin(), feature_of_point.end(), 0u);
   sort_into_cells(domain, parts, feature_of_point, result.votes, options.threads);

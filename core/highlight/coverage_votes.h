@@ -5,16 +5,16 @@
 #include "core/highlight/domain_votes.h"
 #include "core/highlight/target_rays.h"
 #include "core/highlight/target_surface.h"
+#include "core/run.h"
 
 namespace luxrig {
 
-struct CoverageVoteOptions {
+struct CoverageVoteOptions : Run {
   Surroundings surroundings;
   double nearest_m = 0;  ///< as in DomainVoteOptions
   double reach_m = std::numeric_limits<double>::infinity();
   std::size_t most_points = 2000;                 ///< a larger surface is judged by evenly strided points of it
   std::size_t most_votes = std::size_t{1} << 23;  ///< fewer points still, if half of all cells reach each
-  int threads = 0;
 };
 
 struct CoverageVotes {

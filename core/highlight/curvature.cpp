@@ -164,7 +164,7 @@ Result<std::vector<Curvature>> curvature_at(const TargetSurface& surface, std::s
             [&](std::uint32_t i, std::uint32_t j) { return cells[i] != cells[j] ? cells[i] < cells[j] : i < j; });
   const std::size_t tasks = (count + kPointsPerTask - 1) / kPointsPerTask;
   parallel_for(tasks, options.threads, [&](std::size_t task) {
-    if (options.stop.stop_requested()) return;
+    if (options.watch.stop.stop_requested()) return;
     Neighbourhood neighbourhood(grid);
     for (std::size_t k = task * kPointsPerTask; k < std::min(count, (task + 1) * kPointsPerTask); ++k) {
       const std::uint32_t i = order[k];
@@ -173,7 +173,8 @@ Result<std::vector<Curvature>> curvature_at(const TargetSurface& surface, std::s
       if (!curvatures[i].known()) curvatures[i] = neighbourhood.fit(places_m[i], facing[i], kWiden * radius_m);
     }
   });
-  if (options.stop.stop_requested()) return tl::unexpected(Fault{Cause::cancelled, "", "curvature was stopped", {}});
+  if (options.watch.stop.stop_requested())
+    return tl::unexpected(Fault{Cause::cancelled, "", "curvature was stopped", {}});
   return curvatures;
 }
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/highlight/target_surface.h"
-#include "core/stop.h"
+#include "core/run.h"
 
 namespace luxrig {
 
@@ -21,12 +21,10 @@ struct Curvature {
   [[nodiscard]] double mean_per_m() const { return (larger_per_m + smaller_per_m) / 2; }
 };
 
-struct CurvatureOptions {
+struct CurvatureOptions : Run {
   /// Scale: features much smaller than this are smoothed away. Where fewer than nine samples of the surface lie within
   /// it, twice the radius is tried, once.
   double radius_m = 0;
-  int threads = 0;
-  std::stop_token stop;
 };
 
 /// A scale for an object of which nothing is known: 3 % of its size, but not below 1.5 times its median edge. 0 for a

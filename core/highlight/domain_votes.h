@@ -8,7 +8,7 @@
 #include "core/highlight/light_domain.h"
 #include "core/highlight/shadow_edges.h"
 #include "core/highlight/surroundings.h"
-#include "core/stop.h"
+#include "core/run.h"
 
 namespace luxrig {
 
@@ -53,7 +53,7 @@ struct DomainVotes {
   }
 };
 
-struct DomainVoteOptions {
+struct DomainVoteOptions : Run {
   Surroundings surroundings;
   /// Luminaires are not nearer to a point than this, nor farther than reach_m. 0: a hundredth of the diagonal of the
   /// points' bounding box, at least 1 mm.
@@ -63,8 +63,6 @@ struct DomainVoteOptions {
   /// When rays times layers are more, only each so manieth ray is traced that they are not: bounds the memory, to
   /// 218 MB here (twice that where every ray crosses every layer twice). 0: all.
   std::size_t most_votes = std::size_t{1} << 22;
-  int threads = 0;
-  Watch watch;
 };
 
 /// Traces the open ray of each shadow edge, which the target lets pass, on to every layer of the domain; a hit votes

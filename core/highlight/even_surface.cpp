@@ -132,7 +132,7 @@ Result<EvenSurface> even_surface(const TargetSurface& mesh, const EvenSurfaceOpt
     even.surface.areas_m2.push_back(sample.area_m2);
   }
   auto curvature =
-      curvature_at(mesh, even.surface.points_m, even.surface.normals, {options.scale_m, options.threads, options.stop});
+      curvature_at(mesh, even.surface.points_m, even.surface.normals, {options.of_part(), options.scale_m});
   if (!curvature) return tl::unexpected(curvature.error());
   even.curvature = std::move(*curvature);
   for (std::size_t i = 0; i < even.curvature.size(); ++i)

@@ -2,13 +2,12 @@
 /// A surface told by evenly spread points: much the same for any mesh of it.
 
 #include "core/highlight/curvature.h"
+#include "core/run.h"
 
 namespace luxrig {
 
-struct EvenSurfaceOptions {
+struct EvenSurfaceOptions : Run {
   double scale_m = 0;  ///< of curvature and of what is compared; positive
-  int threads = 0;
-  std::stop_token stop;
 };
 
 /// Points a fifth of the scale apart or more, whatever the mesh: contrast between the vertices of a mesh grows with

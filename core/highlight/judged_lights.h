@@ -8,18 +8,17 @@
 #include "core/highlight/place_sights.h"
 #include "core/highlight/potential_lights.h"
 #include "core/photometry/intensity.h"
+#include "core/run.h"
 
 namespace luxrig {
 
-struct JudgedLightOptions {
+struct JudgedLightOptions : Run {
   Surroundings surroundings;
   double coverage_weight = 0.1, least_angle_rad = rad_from_deg(30);  ///< as JudgedWishes
   /// All places are judged first by so many of the interest points, evenly strided; then the best candidates, as
   /// many as this but not too many from one direction, by all.
   std::size_t first_points = 150, most_candidates = 480;
   double lift_m = 0;  ///< rays start so far off the surface; hides relief smaller than it
-  int threads = 0;
-  Watch watch;
 };
 
 struct JudgedLightSet {

@@ -4,14 +4,13 @@
 
 #include "core/highlight/contrast_samples.h"
 #include "core/highlight/direction_bins.h"
+#include "core/run.h"
 
 namespace luxrig {
 
-struct LitTableOptions {
+struct LitTableOptions : Run {
   bool every_ray = false;  ///< no search: a ray for each place and each bin that it faces
   double lift_m = 0;       ///< rays start so far off the surface
-  int threads = 0;
-  Watch watch;
 };
 
 struct LitTable {

@@ -70,6 +70,7 @@ Result<PotentialLights> potential_lights(const DomainVotes& votes, const Potenti
   const double window_rad = options.beam_angle_rad / 2;
   std::vector<LightsOfCell> cells(votes.cells.size());
   parallel_for(cells.size(), options.threads, [&](std::size_t c) {
+    if (options.watch.stop.stop_requested()) return;
     std::vector<Vec3f> directions;
     std::vector<double> weights;
     for (const DomainVote& vote : votes.of(c)) {
@@ -81,6 +82,8 @@ Result<PotentialLights> potential_lights(const DomainVotes& votes, const Potenti
       add_light(votes, static_cast<std::uint32_t>(c), mode.direction, window_rad, mine, cells[c]);
     drop_small(options, cells[c]);
   });
+  if (options.watch.stop.stop_requested())
+    return tl::unexpected(Fault{Cause::cancelled, "", "the search for potential lights was stopped", {}});
   PotentialLights all;
   all.features = votes.features;
   all.points_of_feature = votes.points_of_feature;

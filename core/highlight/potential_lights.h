@@ -5,16 +5,16 @@
 #include <vector>
 
 #include "core/highlight/domain_votes.h"
+#include "core/run.h"
 
 namespace luxrig {
 
-struct PotentialLightOptions {
+struct PotentialLightOptions : Run {
   /// Full angle of the luminaire's beam: cone_of_flux_rad(intensity, 0.9) of core/photometry/beam.h.
   double beam_angle_rad = rad_from_deg(30);
   /// Lights with fewer votes than this, or with less weight than this share of the heaviest in their cell, are dropped.
   std::uint32_t least_votes = 8;
   double least_share = 0.1;
-  int threads = 0;
 };
 
 struct PotentialLight {

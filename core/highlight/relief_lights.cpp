@@ -39,8 +39,7 @@ Result<ReliefLightSearch> ReliefLightSearch::make(const TargetSurface& surface, 
                                options.preference));
   if (interest.empty()) return refusal("no interest points: there is no relief that a light could bring out");
   ContrastSamples samples = one_ring_samples(surface, interest);
-  auto table = find_lit_bins(target, samples, DirectionBins(options.side),
-                             {false, options.lift_m, options.threads, options.watch});
+  auto table = find_lit_bins(target, samples, DirectionBins(options.side), {options, false, options.lift_m});
   if (!table) return tl::unexpected(table.error());
   ReliefLightSearch search(std::move(samples), std::move(*table), options);
   if (!(*std::max_element(search.alone_lx_.begin(), search.alone_lx_.end()) > 0))

@@ -3,10 +3,11 @@
 
 #include "core/highlight/bin_neighbours.h"
 #include "core/highlight/tabled_contrast.h"
+#include "core/run.h"
 
 namespace luxrig {
 
-struct ReliefLightOptions {
+struct ReliefLightOptions : Run {
   int side = 16;  ///< of the sphere's bins: 3 072 of 3.7°
   /// Lights nearer to each other cast nearly the same shadows: they are one brighter light, and as contrast is convex
   /// in the lights' levels, nothing but this would keep the best of them apart.
@@ -19,8 +20,6 @@ struct ReliefLightOptions {
   /// brings out counts less by the share `preference`. An object's symmetries make such directions. Zero: none.
   Vec3 preferred = Vec3::Zero();
   double preference = 0.05;
-  int threads = 0;
-  Watch watch;
 };
 
 struct ReliefLights {

@@ -16,7 +16,7 @@ Result<ReliefStudy> study_relief(const Scene& target, const ReliefStudyOptions& 
                                             : "no triangle of the target has any area");
   ReliefStudy study{std::move(*mesh), TargetRays(target), options.scale_m, {}, {}, {}, {}, {}};
   if (study.scale_m == 0) study.scale_m = suggested_curvature_radius_m(study.mesh);
-  auto even = even_surface(study.mesh, {study.scale_m, options.threads, options.stop});
+  auto even = even_surface(study.mesh, {options.of_part(), study.scale_m});
   if (!even) return tl::unexpected(even.error());
   study.surface = std::move(even->surface);
   study.curvature = std::move(even->curvature);

@@ -6,15 +6,14 @@
 #include "core/highlight/even_surface.h"
 #include "core/highlight/feature_clusters.h"
 #include "core/highlight/interest_points.h"
+#include "core/run.h"
 
 namespace luxrig {
 
-struct ReliefStudyOptions {
+struct ReliefStudyOptions : Run {
   double scale_m = 0;  ///< of curvature; 0: suggested
   InterestOptions interest = {{}, 0.1, 0.02, 3000};
   double largest_angle_rad = rad_from_deg(36);  ///< of a feature
-  int threads = 0;
-  std::stop_token stop;
 };
 
 struct ReliefStudy {

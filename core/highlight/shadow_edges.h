@@ -6,8 +6,8 @@
 #include "core/highlight/horizon_mask.h"
 #include "core/highlight/target_rays.h"
 #include "core/result.h"
+#include "core/run.h"
 #include "core/scene/ray_scene.h"
-#include "core/stop.h"
 
 namespace luxrig {
 
@@ -31,13 +31,11 @@ struct ShadowEdges {
   }
 };
 
-struct ShadowEdgeOptions {
+struct ShadowEdgeOptions : Run {
   /// 1: every direction is asked, 32 400 rays per point. Above: the search below, whose first rays are so many degrees
   /// apart; 2…8. See core/highlight/README.md for rays and error of each.
   int step = 4;
   double lift_m = 0;  ///< rays start so far off the surface; hides relief smaller than it
-  int threads = 0;
-  Watch watch;
 };
 
 /// Search: rays `step` degrees apart over the hemisphere; what lies between is taken to be as the nearest of them. Then

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "core/highlight/target_surface.h"
+#include "core/run.h"
 #include "core/scene/ray_scene.h"
-#include "core/stop.h"
 #include "core/transport/picture.h"
 
 namespace luxrig {

@@ -79,11 +79,10 @@ Result<PlacedReliefLights> find_relief_lights(const ReliefSurroundings& around, 
   const auto refuse = [&](const Fault& fault) {
     return refusal(fmt::format("task \"{}\": {}", task.name, fault.detail));
   };
-  const Stage stage(options.tell, task.name, "looking for shadow edges", {}, options.watch.stop);
+  const Stage stage(options.watch, task.name, "looking for shadow edges");
   const ReliefStudy& study = object.study;
   ShadowEdgeOptions of_edges;
-  of_edges.threads = options.threads;
-  of_edges.watch.stop = options.watch.stop;
+  of_edges.run() = options.of_part();
   const auto edges = find_shadow_edges(study.rays, study.points, of_edges);
   if (!edges) return refuse(edges.error());
 
@@ -95,13 +94,12 @@ Result<PlacedReliefLights> find_relief_lights(const ReliefSurroundings& around, 
   const RayScene environment(*others);
   DomainVoteOptions of_votes;
   of_votes.surroundings.environment = &environment;
-  of_votes.threads = options.threads;
-  of_votes.watch.stop = options.watch.stop;
+  of_votes.run() = options.of_part();
   const auto votes = vote_on_domain(*domain, *edges, study.points, study.features.cluster_of_point, of_votes);
   if (!votes) return refuse(votes.error());
   PotentialLightOptions of_lights;
   of_lights.beam_angle_rad = cone_of_flux_rad(*luminaire.intensity, kBeamShare);
-  of_lights.threads = options.threads;
+  of_lights.run() = options.of_part();
   const auto potential = potential_lights(*votes, of_lights);
   if (!potential) return refuse(potential.error());
   const std::vector<Vec3> places = hangable_places(*domain, mounting);
@@ -116,8 +114,7 @@ Result<PlacedReliefLights> find_relief_lights(const ReliefSurroundings& around, 
   of_judge.surroundings.environment = &environment;
   of_judge.lift_m = 1e-4 * study.surface.diagonal_m();
   of_judge.coverage_weight = spec.relief.coverage_weight;
-  of_judge.threads = options.threads;
-  of_judge.watch.stop = options.watch.stop;
+  of_judge.run() = options.of_part();
   const auto judge = JudgedLights::make(study.surface, study.rays, study.interest, study.features, places,
                                         hangable_lights(*potential, mounting), luminaire.intensity, of_judge);
   if (!judge) return refuse(judge.error());
@@ -156,8 +153,8 @@ Result<PlacedReliefLights> find_relief_lights(const ReliefSurroundings& around, 
     heads.push_back(std::move(head));
   }
   AimOptions aim;
-  aim.threads = options.threads;
-  aim.stop = stage.stop();
+  aim.run() = options.of_part();
+  aim.watch.stop = stage.stop();
   const auto search =
       HeadAims::make(object.samples, study.features, around.rays, std::move(heads), std::move(wishes), aim);
   if (!search) return refuse(search.error());

@@ -77,7 +77,7 @@ Result<PlacedInScene> search_places(const Rig& rig, const Scene& scene, const Ra
   set_emitters(rig, spec.luminaire, goal, channels);
   goal.max_watts = max_watts;
 
-  const Stage stage(options.tell, task.name, "looking at places", spec.seconds, options.watch.stop);
+  const Stage stage(options.watch, task.name, "looking at places", spec.seconds);
   PlaceInSceneOptions place;
   if (spec.lights) place.lights = static_cast<std::size_t>(*spec.lights);
   place.max_lights = static_cast<std::size_t>(spec.max_lights);
@@ -88,9 +88,8 @@ Result<PlacedInScene> search_places(const Rig& rig, const Scene& scene, const Ra
   place.aimed = spec.aimed;
   place.indirect = spec.indirect && options.model != Model::direct;
   place.bound_of_number = spec.bound;
-  place.seed = options.seed;
-  place.threads = options.threads;
-  place.stop = stage.stop();
+  place.run() = options.of_part();
+  place.watch.stop = stage.stop();
   place.better = [&](std::size_t lights, double error) {
     stage.say(fmt::format("{} light{}, error {:.2f} %", lights, lights == 1 ? "" : "s", 100 * error));
   };
@@ -116,9 +115,7 @@ Result<PlacedInScene> search_places(const Rig& rig, const Scene& scene, const Ra
     if (lamps.empty()) return Eigen::VectorXd::Zero(points * channels);
     options.want_error(evaluate);
     set_error_floor(rig, evaluate);
-    evaluate.seed = options.seed;
-    evaluate.threads = options.threads;
-    evaluate.watch.stop = stage.stop();
+    evaluate.run() = place;
     std::unique_ptr<Evaluator> evaluator = make_direct_evaluator(rays);
     if (place.indirect) {
       auto chosen = choose_evaluator(rays, receivers, lamps, evaluate);

@@ -137,8 +137,7 @@ Result<StudiedObject> study_object(const Session& session, const ReliefSpec& rel
   how.scale_m = relief.scale_m.value_or(0);
   how.interest.wanted_share = relief.interest;
   how.interest.most_points = kAimPoints;
-  how.threads = options.threads;
-  how.stop = options.watch.stop;
+  how.run() = options.of_part();
   auto study = study_relief(*object, how);
   if (!study) return refusal(fmt::format("object \"{}\": {}", name, study.error().detail));
   if (relief.camera) {
@@ -175,7 +174,7 @@ Result<std::vector<double>> staying_lux(const ReliefSurroundings& around, const 
 Result<AimedFixtures> aim_fixtures(const ReliefSurroundings& around, const StudiedObject& object, const Task& task,
                                    std::span<const double> present_levels, const ComputeOptions& options) {
   const AimSpec& spec = task.aim;
-  const Stage stage(options.tell, task.name, "light that stays", {}, options.watch.stop);
+  const Stage stage(options.watch, task.name, "light that stays");
 
   AimWishes wishes;
   wishes.limits = limits_of(around, spec);
@@ -206,8 +205,8 @@ Result<AimedFixtures> aim_fixtures(const ReliefSurroundings& around, const Studi
   }
   stage.say("aiming");
   AimOptions aim;
-  aim.threads = options.threads;
-  aim.stop = stage.stop();
+  aim.run() = options.of_part();
+  aim.watch.stop = stage.stop();
   const auto search =
       HeadAims::make(object.samples, object.study.features, around.rays, std::move(heads), std::move(wishes), aim);
   if (!search) return refusal(fmt::format("task \"{}\": {}", task.name, search.error().detail));

@@ -51,15 +51,13 @@ Result<TransportMatrix> compute_transport(const Session& session, const ComputeO
 Result<TransportMatrix> compute_transport(const Rig& rig, const RayScene& rays, const ComputeOptions& options,
                                           const std::vector<double>& levels, ModelUsed* used) {
   const std::optional<double> seconds = options.max_seconds > 0 ? std::optional(options.max_seconds) : std::nullopt;
-  const Stage stage(options.tell, options.stage, "starting", seconds, {});
+  const Stage stage(options.watch.without_stop(), options.stage, "starting", seconds);
   EvaluateOptions evaluate;
   options.want_error(evaluate);
-  evaluate.seed = options.seed;
-  evaluate.threads = options.threads;
   evaluate.levels = levels;
-  evaluate.watch = options.watch;
+  evaluate.run() = options;
   evaluate.enough = stage.stop();
-  if (options.tell)
+  if (options.watch.tell)
     evaluate.watch.progress = [&](double done) {
       stage.say(fmt::format("{:.0f} %", 100 * done));
       if (options.watch.progress) options.watch.progress(done);

@@ -8,6 +8,7 @@
 #include "core/control/plan.h"
 #include "core/control/show_controller.h"
 #include "core/rig/rig.h"
+#include "core/run.h"
 #include "core/scene/ray_scene.h"
 #include "core/scene/scene.h"
 #include "core/tasks/stage.h"
@@ -26,18 +27,14 @@ struct Session {
 
 enum class Model { automatic, direct, gather, path };
 
-struct ComputeOptions {
+struct ComputeOptions : Run {
   Model model = Model::automatic;
   double max_error = 0.01;               ///< wanted root mean square of the points' standard errors
   std::optional<double> worst_error;     ///< in its place: wanted error of each point (EvaluateOptions::kStopMargin)
   std::optional<double> error_floor_lx;  ///< standard error that is small enough at any point; none: by the goals
   double max_seconds = 120;              ///< of each computation of transport; 0: without an end
   bool strict = false;                   ///< a command fails when the wanted error is not reached
-  std::uint64_t seed = 1;
-  int threads = 0;
-  Watch watch;
-  Tell tell;                        ///< hears of every stage; may be empty
-  std::string stage = "transport";  ///< what `tell` hears a computation of transport called
+  std::string stage = "transport";       ///< what `watch.tell` hears a computation of transport called
 
   /// Asks an evaluator for that error.
   void want_error(EvaluateOptions& evaluate) const;

@@ -206,8 +206,8 @@ Result<void> TaskSolver::solve_levels_of(Index begin, Index end, double max_watt
   EmittanceProblem problem = problem_of(begin, end);
   problem.max_watts = max_watts;
   if (auto kept = limits_left(problem.fixed_lx); !kept) return kept;
-  const Stage stage(options_.tell, planned.name,
-                    fmt::format("levels of {} lights at {} points", end - begin, rig_.points.size()), {}, {});
+  const Stage stage(options_.watch.without_stop(), planned.name,
+                    fmt::format("levels of {} lights at {} points", end - begin, rig_.points.size()));
   // An interrupt has ended the search, not what becomes of it.
   auto solution = solve_emittance(problem, planned.kind == name_of(TaskKind::placement) ? Watch{} : options_.watch);
   if (!solution) return tl::unexpected(std::move(solution.error()));
@@ -247,7 +247,7 @@ Result<void> TaskSolver::hang(const Task& task, std::size_t luminaire, std::span
 
 Result<void> TaskSolver::light_anew(const std::vector<double>& levels) {
   ComputeOptions compute = options_;
-  compute.watch = {};
+  compute.watch = options_.watch.without_stop();
   ModelUsed used;
   auto transport = compute_transport(rig_, *session_.rays, compute, levels, &used);
   if (!transport) return tl::unexpected(std::move(transport.error()));

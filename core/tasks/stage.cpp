@@ -10,11 +10,11 @@ constexpr double kLongest_s = 1e8;  // what a condition variable can still wait 
 
 }  // namespace
 
-Stage::Stage(Tell tell, std::string task, std::string first, std::optional<double> seconds, const std::stop_token& stop)
-    : tell_(std::move(tell)),
-      task_(std::move(task)),
-      can_be_taken_(stop.stop_possible()),
-      asked_(stop, [this] { source_.request_stop(); }) {
+Stage::Stage(const Watch& watch, std::string name, std::string first, std::optional<double> seconds)
+    : tell_(watch.tell),
+      name_(std::move(name)),
+      can_be_taken_(watch.stop.stop_possible()),
+      asked_(watch.stop, [this] { source_.request_stop(); }) {
   say(std::move(first));
   if (!seconds) return;
   const std::chrono::duration<double> time(std::clamp(*seconds, 0.0, kLongest_s));
@@ -34,7 +34,7 @@ Stage::~Stage() {
   }
   changed_.notify_one();
   if (timer_.joinable()) timer_.join();
-  if (tell_) tell_({task_, "", true, can_be_taken_});
+  if (tell_) tell_({name_, "", true, can_be_taken_});
 }
 
 bool Stage::time_is_up() const {
@@ -43,7 +43,7 @@ bool Stage::time_is_up() const {
 }
 
 void Stage::say(std::string what) const {
-  if (tell_) tell_({task_, std::move(what), false, can_be_taken_});
+  if (tell_) tell_({name_, std::move(what), false, can_be_taken_});
 }
 
 }  // namespace luxrig

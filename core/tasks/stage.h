@@ -9,26 +9,17 @@
 #include <string>
 #include <thread>
 
+#include "core/run.h"
+
 namespace luxrig {
-
-struct Doing {
-  std::string task;  ///< its name
-  std::string what;  ///< what it does now, or the best it has
-  bool ended = false;
-  bool can_be_taken = false;  ///< a stop ends it with the best it has; else a stop cancels it
-};
-
-/// Called at the start of a stage, whenever there is news, and at its end, from any thread of the computation. A stage
-/// may begin inside another, and ends before it.
-using Tell = std::function<void(const Doing&)>;
 
 /// The only time limit of core. Its thread ends with the stage.
 class Stage {
  public:
-  /// tell      may be empty
+  /// watch     its stop ends the stage with the best it has; Watch::without_stop() when a stop is not the stage's
+  /// first     what it does first
   /// seconds   after which the computation is asked to end; none: never
-  /// stop      ends it with the best it has; none: a stop is not the stage's
-  Stage(Tell tell, std::string task, std::string first, std::optional<double> seconds, const std::stop_token& stop);
+  Stage(const Watch& watch, std::string name, std::string first, std::optional<double> seconds = {});
   ~Stage();
   Stage(const Stage&) = delete;
   Stage& operator=(const Stage&) = delete;
@@ -40,7 +31,7 @@ class Stage {
 
  private:
   Tell tell_;
-  std::string task_;
+  std::string name_;
   bool can_be_taken_;
   std::stop_source source_;
   std::stop_callback<std::function<void()>> asked_;

@@ -15,8 +15,8 @@
 #include "core/photometry/luminous_shape.h"
 #include "core/photometry/sky_luminance.h"
 #include "core/result.h"
+#include "core/run.h"
 #include "core/scene/ray_scene.h"
-#include "core/stop.h"
 
 namespace luxrig {
 
@@ -36,7 +36,7 @@ struct Emitter {
   Sky sky{};  ///< when set, this is a sky: intensity, pose and shape are not looked at
 };
 
-struct EvaluateOptions {
+struct EvaluateOptions : Run {
   /// How many standard errors of each receiver are within wanted_relative_error. One would keep that on average; 2.5
   /// make the error itself stay below it for 98 of 100 receivers, and leave room for the estimate from 16 replicates to
   /// be too low by 1.44 (χ², 15 degrees of freedom, 5 %), which stopping at the first low estimate would make the rule.
@@ -51,12 +51,9 @@ struct EvaluateOptions {
   /// Above 0: wanted root mean square of the receivers' standard errors, in place of the error of each. Samples then go
   /// where they lower it most; receivers that are hard to tell keep larger errors.
   double wanted_rms_error = 0;
-  std::uint64_t seed = 1;
-  int threads = 0;                         ///< 0 = one per core; the result does not depend on it
   std::uint64_t max_rays = 2'000'000'000;  ///< gives up there and reports the error it has
   std::vector<double> levels;              ///< per emitter, ≥ 0; empty = all 1
   bool colour = false;                     ///< also fill TransportMatrix::rgb_per_level
-  Watch watch;
   std::stop_token enough;  ///< when requested, the answer is what has been reached soon after, with the error it has
 
   /// Standard error at which a receiver is done; with wanted_rms_error, all of them together.

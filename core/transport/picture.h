@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/run.h"
 #include "core/transport/evaluator.h"
 
 namespace luxrig {
@@ -30,15 +31,13 @@ struct PixelPlace {
 /// Nothing for a place behind the camera or outside its picture.
 [[nodiscard]] std::optional<PixelPlace> pixel_of(const Camera& camera, const Vec3& place_world_m);
 
-struct PictureOptions {
+/// Its progress is not called: see after_pass.
+struct PictureOptions : Run {
   int most_passes = 64;                 ///< samples per pixel
   double wanted_relative_error = 0.02;  ///< stops when the picture's noise (Picture::relative_error) is as low
   /// After each pass, with the share of the way to the end (0…1) and the noise so far: false ends the picture there.
   /// A caller with a clock keeps a time budget with it.
   std::function<bool(double done, double relative_error)> after_pass;
-  std::uint64_t seed = 1;
-  int threads = 0;
-  Watch watch;  ///< progress is not called; see after_pass
 };
 
 /// Rows from the top, pixels from the left.

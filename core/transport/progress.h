@@ -5,7 +5,7 @@
 #include <atomic>
 #include <thread>
 
-#include "core/stop.h"
+#include "core/run.h"
 
 namespace luxrig {
 

@@ -1,7 +1,7 @@
 #pragma once
 /// Fills tail records: what receivers see beyond their paths' second vertices, worked out once for all of them.
 
-#include "core/stop.h"
+#include "core/run.h"
 #include "core/transport/path_sampler.h"
 
 namespace luxrig {

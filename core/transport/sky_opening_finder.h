@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "core/stop.h"
+#include "core/run.h"
 #include "core/transport/evaluator.h"
 #include "core/transport/sky_openings.h"
 

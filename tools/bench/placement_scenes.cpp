@@ -47,7 +47,7 @@ double bound_for(const ReadyCase& ready, const Solved& solved, bool quick) {
     options.nodes_a_round = options.nodes = 50;
   }
   const StopAfter time_up(kBoundSeconds);
-  options.stop = time_up.token();
+  options.watch.stop = time_up.token();
   return goal_error_bounds_by_count(ready.problem().columns, ready.goal(), options).back();
 }
 

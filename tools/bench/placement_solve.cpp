@@ -95,7 +95,7 @@ Solved solve_case(const ReadyCase& ready, const PlacementMethod& method, const S
   options.number.wanted_error = how.wanted_error;
   options.most_columns = ready.of().global ? kGlobalColumns : kSearchColumns;
   const StopAfter time_up(how.most_seconds);
-  options.stop = time_up.token();
+  options.watch.stop = time_up.token();
   const auto start = Steady::now();
   options.better = [&](const BestSoFar& best) {
     solved.curve.push_back(

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "core/radiometry/level_check.h"
-#include "core/stop.h"
+#include "core/run.h"
 #include "drivers/camera/camera_source.h"
 
 namespace luxrig {

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "core/radiometry/camera_check.h"
-#include "core/stop.h"
+#include "core/run.h"
 #include "drivers/camera/camera_source.h"
 
 namespace luxrig {

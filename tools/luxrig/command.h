@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/result.h"
-#include "core/stop.h"
+#include "core/run.h"
 
 namespace luxrig {
 

@@ -38,9 +38,9 @@ int run_evaluate(const EvaluateArguments& arguments) {
   const Rig& rig = session->rig;
 
   ComputeOptions compute = arguments.compute;
-  compute.watch = {stop_on_signals(), {}};
+  compute.watch.stop = stop_on_signals();
   TerminalWatch terminal;
-  compute.tell = terminal.tell();
+  compute.watch.tell = terminal.tell();
   compute.stage = "evaluating";
   ModelUsed used;
   const auto transport = compute_transport(*session, compute, *levels, &used);

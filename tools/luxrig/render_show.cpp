@@ -54,7 +54,7 @@ Result<ShownObject> open_shown_object(const ShownRig& rig, const RenderOptions& 
     fmt::print(stderr, "relief of {} ({} triangles) ...\n", *name, target->triangles.size());
   ReliefStudyOptions how;
   how.threads = options.threads;
-  how.stop = stop_on_signals();
+  how.watch.stop = stop_on_signals();
   auto study = study_relief(*target, how);
   if (!study) {
     Fault fault = study.error();

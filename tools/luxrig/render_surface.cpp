@@ -95,7 +95,8 @@ std::vector<Disc> interest_discs(const ShownObject& object, double size) {
 Result<Figure> curvature_figure(const ShownObject& object, const RenderOptions& options) {
   const ReliefStudy& study = object.study;
   // Drawn between the corners of the mesh; the study has that of its own points only.
-  const auto curvature = curvature_of(study.mesh, {study.scale_m, options.threads, stop_on_signals()});
+  const auto curvature =
+      curvature_of(study.mesh, {{.threads = options.threads, .watch = {stop_on_signals(), {}}}, study.scale_m});
   if (!curvature) return tl::unexpected(curvature.error());
   std::vector<double> mean_per_m;
   bool all_known = true;

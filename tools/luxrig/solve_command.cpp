@@ -138,9 +138,9 @@ int run_solve(const SolveArguments& arguments) {
   const auto session = open_session(arguments.rig);
   if (!session) return report(session.error());
   ComputeOptions compute = arguments.compute;
-  compute.watch = {stop, {}};
+  compute.watch.stop = stop;
   TerminalWatch terminal;
-  compute.tell = terminal.tell();
+  compute.watch.tell = terminal.tell();
   ModelUsed used;
   const auto transport = compute_transport(*session, compute, {}, &used);
   if (!transport) return report(transport.error());

@@ -39,7 +39,7 @@ TerminalWatch::~TerminalWatch() {
 void TerminalWatch::told(const Doing& doing) {
   const std::lock_guard lock(mutex_);
   const auto at =
-      std::find_if(stages_.rbegin(), stages_.rend(), [&](const Line& line) { return line.doing.task == doing.task; });
+      std::find_if(stages_.rbegin(), stages_.rend(), [&](const Line& line) { return line.doing.stage == doing.stage; });
   if (doing.ended) {
     if (at == stages_.rend()) return;
     if (at->said && terminal_) sink_("\n");
@@ -60,7 +60,7 @@ void TerminalWatch::run() {
     if (spent_s < kSilent_s || (line.said && now - line.said_s < (terminal_ ? kEveryOnTerminal_s : kEvery_s))) continue;
     line.said_s = now;
     line.said = true;
-    sink_(fmt::format("{}{}: {:.0f} s, {}{}", terminal_ ? "\r\x1b[K" : "", line.doing.task, spent_s, line.doing.what,
+    sink_(fmt::format("{}{}: {:.0f} s, {}{}", terminal_ ? "\r\x1b[K" : "", line.doing.stage, spent_s, line.doing.what,
                       !terminal_                ? "\n"
                       : line.doing.can_be_taken ? " (Ctrl-C: take this)"
                                                 : ""));

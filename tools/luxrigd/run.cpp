@@ -251,9 +251,9 @@ int run_rig(const RunArguments& arguments) {
       say.say("transport: as it was worked out for this rig before");
     }
   }
-  compute.watch = {stop, nullptr};
+  compute.watch.stop = stop;
   std::optional<TerminalWatch> terminal(std::in_place, [&](std::string text) { progress.tell(std::move(text)); });
-  compute.tell = terminal->tell();
+  compute.watch.tell = terminal->tell();
   if (arguments.plan) {
     auto read = plan_of_file(*arguments.plan);
     if (!read) return report(read.error());
@@ -292,7 +292,7 @@ int run_rig(const RunArguments& arguments) {
     model = light_model(rig, *transport);
     if (options.state_folder) keep_light(*options.state_folder, {joints_of(rig), *model}, key);
   }
-  compute.tell = nullptr;
+  compute.watch.tell = nullptr;
   terminal.reset();
   if (sim) {
     auto ready = sim->wait_ready({stop, nullptr});

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/result.h"
-#include "core/stop.h"
+#include "core/run.h"
 #include "drivers/registry.h"
 #include "tools/luxrigd/sim_ports.h"
 

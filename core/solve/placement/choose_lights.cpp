@@ -38,7 +38,7 @@ class Choice {
 
  private:
   [[nodiscard]] bool ended() const {
-    return options_.exchange.stop.stop_requested() || exchange_.columns() >= options_.most_columns;
+    return options_.exchange.watch.stop.stop_requested() || exchange_.columns() >= options_.most_columns;
   }
   [[nodiscard]] double error(std::size_t lights) const {
     return curve_.cuts[std::min(lights, curve_.cuts.size() - 1)].error();

@@ -9,7 +9,7 @@ Result<CorrectedPlacement> place_and_correct(const PlacementMethod& method, cons
   if (!found) return tl::unexpected(std::move(found.error()));
   CorrectedPlacement placed{std::move(*found), {}, {}, 0};
   placed.columns = placed.found.columns;
-  if (!correction.lux_of || options.stop.stop_requested()) return placed;
+  if (!correction.lux_of || options.watch.stop.stop_requested()) return placed;
   const auto search_again = [&](const LightingGoal& goal, const PlacedLights& from) {
     PlacementProblem again = problem;
     again.goal = &goal;

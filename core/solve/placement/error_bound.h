@@ -20,6 +20,7 @@
 #include <string>
 #include <vector>
 
+#include "core/run.h"
 #include "core/solve/columns_view.h"
 
 namespace luxrig {
@@ -51,7 +52,8 @@ struct PriceGuess {
   Eigen::VectorXd residual;  ///< W (b − A x)
 };
 
-struct CountBoundOptions {
+/// A stop returns what is proven so far.
+struct CountBoundOptions : Run {
   std::size_t most_lights = 20;
   /// Bounds are made for these numbers of lights, and hold for fewer as well. Empty: greedy solutions of most_lights
   /// and of three fractions of it.
@@ -61,8 +63,6 @@ struct CountBoundOptions {
   std::size_t price_rounds = 12, nodes_a_round = 150, nodes = 1000;
   /// Points that share fewer of their lights than this are apart (light_blocks.h).
   double least_similarity = 0.12;
-  int threads = 0;       ///< 0 = one per core; the result does not depend on it
-  std::stop_token stop;  ///< returns what is proven so far
 };
 
 /// [k], k = 0 … most_lights: no k lights come closer. Never rises. Asserted: no complaint().

@@ -66,7 +66,7 @@ class PricedBounds {
 
   /// Where the least is, is looked into, until nothing there can be told better.
   void refine(std::size_t lights, std::size_t most_nodes) {
-    for (std::size_t nodes = 0; nodes < most_nodes && !options_.stop.stop_requested();) {
+    for (std::size_t nodes = 0; nodes < most_nodes && !options_.watch.stop.stop_requested();) {
       const LightShares shares = share_out_lights(value_, lights);
       std::vector<std::size_t> before(bounds_.size()), after(bounds_.size());
       parallel_for(bounds_.size(), options_.threads, [&](std::size_t b) {
@@ -154,7 +154,7 @@ VectorXd better_prices(const BlockedLights& lights, VectorXd price, const PriceG
   double turn = 1;
   proven = 0;
   for (std::size_t round = 0; round < options.price_rounds && turn > kLeastTurn; ++round) {
-    if (options.stop.stop_requested()) break;
+    if (options.watch.stop.stop_requested()) break;
     PricedBounds priced(lights, price, options);
     priced.refine(guess.lights, options.nodes_a_round);
     const double value = priced.squared_error(guess.lights);
@@ -200,7 +200,7 @@ std::vector<double> error_bounds_by_count(const BoundProblem& of, const CountBou
     prove(guess.lights, proven);
     PricedBounds priced(lights, price, options);
     priced.refine(guess.lights, options.nodes);
-    for (std::size_t k = 0; k <= options.most_lights && !options.stop.stop_requested(); ++k)
+    for (std::size_t k = 0; k <= options.most_lights && !options.watch.stop.stop_requested(); ++k)
       prove(k, priced.squared_error(k));
   }
   for (std::size_t k = options.most_lights; k-- > 0;) bounds[k] = std::max(bounds[k], bounds[k + 1]);

@@ -47,7 +47,7 @@ RefineOptions LightExchange::steps(int most) const {
   RefineOptions refine;
   refine.most_steps = most;
   refine.longest_step_m = options_.longest_step_m;
-  refine.stop = options_.stop;
+  refine.stop = options_.watch.stop;
   return refine;
 }
 
@@ -89,7 +89,7 @@ LightExchange::Trial LightExchange::exchanged(const ComplementSearch::About& abo
   }
   keep_best_ways(ways, kRefined);
   for (PlacedLights& way : ways) {
-    if (options_.stop.stop_requested()) break;
+    if (options_.watch.stop.stop_requested()) break;
     trial.columns += refine_lights(way, steps(kQuickSteps));
     if (!trial.lights || way.error() < trial.lights->error()) trial.lights = std::move(way);
   }
@@ -135,7 +135,7 @@ LightExchange::Trial LightExchange::pair_exchanged(const ComplementSearch::About
   others.drop(pair.first);
   for (const Complement& first :
        candidates_.best(about, {pair.first, pair.second}, others, options_.complements, options_.apart_m)) {
-    if (options_.stop.stop_requested()) break;
+    if (options_.watch.stop.stop_requested()) break;
     PlacedLights way = others;
     ++trial.columns;
     if (!way.add(candidates_.pose(first.candidate))) continue;
@@ -169,7 +169,7 @@ bool LightExchange::through_more(PlacedLights& lights, std::size_t beyond, std::
   PlacedLights way = lights;
   while (way.size() < lights.size() + beyond && with_one_more(way, 1, random)) {
   }
-  while (way.size() > lights.size() && !options_.stop.stop_requested()) {
+  while (way.size() > lights.size() && !options_.watch.stop.stop_requested()) {
     way = without_one(way);
     singly(way, random);
   }

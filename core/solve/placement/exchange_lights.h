@@ -12,20 +12,19 @@
 #include <stop_token>
 #include <utility>
 
+#include "core/run.h"
 #include "core/solve/placement/complement_search.h"
 #include "core/solve/placement/refine_lights.h"
 
 namespace luxrig {
 
-struct ExchangeOptions {
+struct ExchangeOptions : Run {
   std::size_t complements = 6;   ///< candidates tried for a light that was taken out
   std::size_t near_places = 48;  ///< places tried about it
   double apart_m = 0.5;          ///< between candidates that are tried
   double near_m = 0.4;           ///< of those places: standard deviation along each axis
   double near_rad = 0.3;         ///< and of their aims, about each of two axes
   double longest_step_m = 0.5;   ///< of a light in one step of refinement
-  int threads = 0;               ///< 0 = one per core; the result does not depend on it
-  std::stop_token stop;
 
   /// Lengths that suit candidates so far apart.
   [[nodiscard]] static ExchangeOptions for_spacing(double spacing_m) {

@@ -51,11 +51,10 @@ std::vector<PowerAndError> front_of(const PlacementProblem& problem, const Light
                                     const PlacedLights& lights, const PlaceInSceneOptions& options) {
   constexpr int kRounds = 2;
   const double watts = lights.watts();
-  if (options.front_limits == 0 || !(watts > 0) || options.stop.stop_requested()) return {};
+  if (options.front_limits == 0 || !(watts > 0) || options.watch.stop.stop_requested()) return {};
   const ComplementSearch candidates(problem.columns, problem.poses, goal);
   ExchangeOptions of_exchange = ExchangeOptions::for_spacing(problem.spacing_m);
-  of_exchange.threads = options.threads;
-  of_exchange.stop = options.stop;
+  of_exchange.run() = options.of_part();
   LightExchange exchange(candidates, of_exchange);
   std::vector<double> limits;
   for (std::size_t k = 0; k <= options.front_limits; ++k)
@@ -80,9 +79,7 @@ Result<PlacedInScene> place_in_scene(const Scene& scene, const RayScene& rays, c
   SearchSpaceOptions of_space;
   of_space.indirect = options.indirect && reflects(rays);
   if (options.aimed) of_space.aims_world = aims_over_sphere(kAims);
-  of_space.seed = options.seed;
-  of_space.threads = options.threads;
-  of_space.watch = Watch{options.stop, {}};
+  of_space.run() = options.of_part();
   // A shape counts when what is found is corrected; the search would be a hundred times as long with it.
   Emitter lamp = luminaire;
   lamp.shape = {};
@@ -111,9 +108,7 @@ Result<PlacedInScene> place_in_scene(const Scene& scene, const RayScene& rays, c
   place.number.least_improvement = options.improvement;
   place.most_columns = !of_space.indirect ? kMostColumns : options.aimed ? kMostTracedColumns : kReflectedColumns;
   place.whole_curve = true;
-  place.seed = options.seed;
-  place.threads = options.threads;
-  place.stop = options.stop;
+  place.run() = options.of_part();
   if (options.better) place.better = [&](const BestSoFar& best) { options.better(best.poses.size(), best.error); };
   CorrectedPlacementOptions correction;
   if (of_space.indirect || has_size) correction.lux_of = options.lux_of;
@@ -125,7 +120,7 @@ Result<PlacedInScene> place_in_scene(const Scene& scene, const RayScene& rays, c
   const PlacedLights& lights = done->corrected ? done->corrected->lights : done->found.lights;
   placed.lights = lit_ones(lights, mounting, options.aimed);
   if (placed.lights.empty()) {
-    if (options.stop.stop_requested())
+    if (options.watch.stop.stop_requested())
       return tl::unexpected(Fault{Cause::cancelled, "", "stopped before any light was placed", {}});
     return refusal("no light anywhere brings the points nearer to their goals");
   }
@@ -134,22 +129,21 @@ Result<PlacedInScene> place_in_scene(const Scene& scene, const RayScene& rays, c
     if (cut.size() > (placed.numbers.empty() ? 0 : placed.numbers.back().lights))
       placed.numbers.push_back({cut.size(), cut.error()});
   if (placed.numbers.empty()) placed.numbers.push_back({lights.size(), placed.error});
-  if (placed.error > options.error_wanted && !options.stop.stop_requested()) {
-    placed.lower_bound = goal_error_bound(problem.columns, bounded, options.stop);
+  if (placed.error > options.error_wanted && !options.watch.stop.stop_requested()) {
+    placed.lower_bound = goal_error_bound(problem.columns, bounded, options.watch.stop);
     if (options.bound_of_number) {
       CountBoundOptions counted;
       counted.most_lights = placed.lights.size();
       // By the search's own light: the residual of corrected lights is the evaluator's.
       counted.guesses = {{placed.lights.size(), done->found.lights.residual()}};
-      counted.threads = options.threads;
-      counted.stop = options.stop;
+      counted.run() = options.of_part();
       placed.lower_bound_of_number =
           std::max(*placed.lower_bound, goal_error_bounds_by_count(problem.columns, bounded, counted).back());
     }
   }
   placed.front = front_of(problem, done->corrected ? *done->corrected->goal : bounded, lights, options);
   placed.candidates = problem.poses.size();
-  placed.stopped = options.stop.stop_requested();
+  placed.stopped = options.watch.stop.stop_requested();
   return placed;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/result.h"
+#include "core/run.h"
 #include "core/solve/placement/correct_lights.h"
 #include "core/solve/placement/mounting.h"
 #include "core/solve/placement/placed_lights.h"
@@ -23,7 +24,8 @@ struct LightInScene {
   std::vector<double> levels{};     ///< of each emitter of the goal
 };
 
-struct PlaceInSceneOptions {
+/// A stop ends the search with the best so far.
+struct PlaceInSceneOptions : Run {
   std::optional<std::size_t> lights;  ///< else as few as will do
   std::size_t max_lights = 20;        ///< without `lights`
   double error_wanted = 0.001;        ///< normalised, weighted (PlacedLights::error()), at which the search ends
@@ -39,9 +41,6 @@ struct PlaceInSceneOptions {
   /// Needs the goal's watts.
   std::size_t front_limits = 0;
   bool bound_of_number = false;  ///< prove PlacedInScene::lower_bound_of_number, too
-  std::uint64_t seed = 1;
-  int threads = 0;       ///< 0 = one per core; the result does not depend on it
-  std::stop_token stop;  ///< ends the search with the best so far
   /// Called from the calling thread when there is something better of so many lights.
   std::function<void(std::size_t lights, double error)> better;
 };

@@ -35,7 +35,7 @@ class Search {
 
  private:
   [[nodiscard]] bool ended() const {
-    return options_.exchange.stop.stop_requested() || best_.lights.error() <= options_.wanted_error ||
+    return options_.exchange.watch.stop.stop_requested() || best_.lights.error() <= options_.wanted_error ||
            exchange_.columns() >= options_.most_columns;
   }
 
@@ -79,7 +79,7 @@ class Search {
     if (start == 0)
       for (const LightPose& pose : options_.start)
         if (lights.size() < options_.lights) lights.add(pose);
-    while (lights.size() < options_.lights && !options_.exchange.stop.stop_requested())
+    while (lights.size() < options_.lights && !options_.exchange.watch.stop.stop_requested())
       if (!exchange_.with_one_more(lights, start == 0 ? 1 : 3, random)) break;
     exchange_.refine(lights);
     return lights;

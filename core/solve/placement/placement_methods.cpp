@@ -33,12 +33,12 @@ OtherStart annealed_candidates(const PlacementProblem& problem, const PlacementO
       candidates = *made;
     }
     ChosenCandidates first(candidates);
-    pursue(first, lights, options.number.wanted_error, options.stop);
+    pursue(first, lights, options.number.wanted_error, options.watch.stop);
     AnnealOptions annealing;
     annealing.nearest = 0;
     annealing.iterations = kStartIterations;
     annealing.wanted_error = options.number.wanted_error;
-    annealing.stop = options.stop;
+    annealing.stop = options.watch.stop;
     std::vector<ChosenCandidates> annealed(kStartAnnealings, first);
     parallel_for(annealed.size(), options.threads, [&](std::size_t i) {
       std::mt19937_64 random(seed * kStartAnnealings + i);
@@ -55,8 +55,7 @@ Result<FoundLights> place_by_luxrig(const PlacementProblem& problem, const Place
   const ComplementSearch candidates(problem.columns, problem.poses, *problem.goal);
   ExchangeOptions exchange =
       problem.spacing_m > 0 ? ExchangeOptions::for_spacing(problem.spacing_m) : ExchangeOptions{};
-  exchange.threads = options.threads;
-  exchange.stop = options.stop;
+  exchange.run() = options.of_part();
   if (options.lights > 0) {
     PlaceOptions place;
     place.lights = options.lights;

@@ -45,9 +45,8 @@ Result<SearchSpace> SearchSpace::make(const Scene& scene, const RayScene& rays, 
   SearchSpace space;
   IncrementalOptions incremental;
   incremental.indirect = indirect && !by_field;
-  incremental.seed = options.seed;
-  incremental.threads = options.threads;
-  auto transport = IncrementalTransport::make(scene, rays, receivers, incremental, options.watch);
+  incremental.run() = options;
+  auto transport = IncrementalTransport::make(scene, rays, receivers, incremental);
   if (!transport) return tl::unexpected(transport.error());
   space.transport_ = std::move(*transport);
 
@@ -55,9 +54,7 @@ Result<SearchSpace> SearchSpace::make(const Scene& scene, const RayScene& rays, 
   lamp.shape = {};
   lamp.world_from_lamp.translation_m.setZero();
   CandidateOptions of_candidates;
-  of_candidates.seed = options.seed;
-  of_candidates.threads = options.threads;
-  of_candidates.watch = options.watch;
+  of_candidates.run() = options;
   of_candidates.surface_cells = options.surface_cells;
   of_candidates.wanted_relative_error = options.reflected_error;
   if (by_field) {

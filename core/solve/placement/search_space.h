@@ -7,13 +7,14 @@
 #include <span>
 #include <vector>
 
+#include "core/run.h"
 #include "core/solve/columns_view.h"
 #include "core/solve/placement/movable_light.h"
 #include "core/solve/placement/scene_light.h"
 
 namespace luxrig {
 
-struct SearchSpaceOptions {
+struct SearchSpaceOptions : Run {
   /// Directions to try at each place, for a light that is aimed; empty: it is hung as its luminaire is.
   std::vector<Vec3> aims_world;
   bool indirect = false;
@@ -23,9 +24,6 @@ struct SearchSpaceOptions {
   std::size_t surface_cells = 1'500;
   double reflected_error = 0.1;
   std::function<bool(const Vec3&)> may_hang;  ///< for places that are not candidates; empty: anywhere
-  std::uint64_t seed = 1;
-  int threads = 0;  ///< 0 = one per core; the result does not depend on it
-  Watch watch;
 };
 
 class SearchSpace {

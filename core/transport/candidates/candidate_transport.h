@@ -16,6 +16,7 @@
 #include <span>
 #include <vector>
 
+#include "core/run.h"
 #include "core/transport/evaluator.h"
 
 namespace luxrig {
@@ -47,7 +48,7 @@ struct CandidateSkips {
   bool foretold = true;
 };
 
-struct CandidateOptions {
+struct CandidateOptions : Run {
   bool indirect = true;  ///< false: direct light only, exact
   /// Wanted median, over the entries kept, of standard error / lux: decides how many rays a candidate casts, up to
   /// most_rays_per_candidate.
@@ -61,12 +62,9 @@ struct CandidateOptions {
   /// Entries below this [lx per unit emittance] are left out; direct light that must stay below it is not traced, so
   /// that it moves no entry by more. 0: everything is kept.
   double least_lux = 0;
-  std::uint64_t seed = 1;
-  int threads = 0;  ///< 0 = one per core; the result does not depend on it
   /// For everything that is allocated here, the returned matrix included.
   std::size_t memory_bound_bytes = std::size_t{4} << 30;
   CandidateSkips skips;
-  Watch watch;
 };
 
 /// Columns of T, one behind the other: the entries of column c (counted from first_column) are those from begin[c] to

@@ -43,16 +43,15 @@ class Incremental final : public IncrementalTransport {
   Incremental(const Scene& scene, const RayScene& rays, std::span<const Receiver> receivers,
               const IncrementalOptions& options)
       : scene_(scene), rays_(rays), receivers_(receivers.begin(), receivers.end()), options_(options) {
+    options_.watch = {};  // of make() only
     if (!scene_.triangles.empty()) blockers_ = std::make_unique<Blockers>(scene_);
     visibility_ = {blockers_ ? &rays_ : nullptr, blockers_.get()};
   }
 
-  Result<void> prepare(const Watch& watch) {
+  Result<void> prepare(const Run& run) {
     if (!options_.indirect || !blockers_ || receivers_.empty()) return {};
     CandidateOptions wanted;
-    wanted.seed = options_.seed;
-    wanted.threads = options_.threads;
-    wanted.watch = watch;
+    wanted.run() = run;
     IndirectSettings settings;
     settings.cell_m = cell_size_m(scene_, options_.cells);
     settings.keep_links = true;
@@ -175,14 +174,13 @@ class Incremental final : public IncrementalTransport {
 
 Result<std::unique_ptr<IncrementalTransport>> IncrementalTransport::make(const Scene& scene, const RayScene& rays,
                                                                          std::span<const Receiver> receivers,
-                                                                         const IncrementalOptions& options,
-                                                                         const Watch& watch) {
+                                                                         const IncrementalOptions& options) {
   if (auto checked = check_evaluation(receivers, {}, {}); !checked) return tl::unexpected(std::move(checked.error()));
   if (options.cells == 0 || options.rays_per_cell < 3 || options.rays_per_column < 16)
     return refusal(fmt::format("{} cells, {} rays per cell and {} per column are too few; at least 1, 3 and 16",
                                options.cells, options.rays_per_cell, options.rays_per_column));
   auto made = std::make_unique<Incremental>(scene, rays, receivers, options);
-  if (auto prepared = made->prepare(watch); !prepared) return tl::unexpected(std::move(prepared.error()));
+  if (auto prepared = made->prepare(options); !prepared) return tl::unexpected(std::move(prepared.error()));
   return made;
 }
 

@@ -9,19 +9,18 @@
 
 #include <memory>
 
+#include "core/run.h"
 #include "core/transport/candidates/candidate_transport.h"
 
 namespace luxrig {
 
-struct IncrementalOptions {
+struct IncrementalOptions : Run {
   bool indirect = true;
   /// Surface cells per estimate, and rays per cell: see surface_importance.h. Finer is slower to begin with, not per
   /// column.
   std::size_t cells = 10'000;
   std::uint32_t rays_per_cell = 48;
   std::uint32_t rays_per_column = 16'384;  ///< of a luminaire, in all
-  std::uint64_t seed = 1;
-  int threads = 0;  ///< 0 = one per core; results do not depend on it
 };
 
 /// lux at all receivers, per unit emittance.
@@ -38,8 +37,7 @@ class IncrementalTransport {
   /// Cause::invalid for what check_evaluation() refuses; Cause::cancelled when stopped.
   [[nodiscard]] static Result<std::unique_ptr<IncrementalTransport>> make(const Scene& scene, const RayScene& rays,
                                                                           std::span<const Receiver> receivers,
-                                                                          const IncrementalOptions& options,
-                                                                          const Watch& watch = {});
+                                                                          const IncrementalOptions& options);
   virtual ~IncrementalTransport() = default;
 
   /// Cause::invalid for an emitter that check_evaluation() refuses, a shape or a sky. May be called from several

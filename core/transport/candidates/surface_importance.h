@@ -18,7 +18,7 @@
 #include <span>
 #include <vector>
 
-#include "core/stop.h"
+#include "core/run.h"
 #include "core/transport/candidates/candidate_transport.h"
 #include "core/transport/candidates/surface_cells.h"
 #include "core/transport/candidates/visible_points.h"

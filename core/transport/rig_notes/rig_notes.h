@@ -3,9 +3,9 @@
 /// it: for a person before anything is computed, hung or sent.
 
 #include "core/rig/rig.h"
+#include "core/run.h"
 #include "core/scene/ray_scene.h"
 #include "core/scene/scene.h"
-#include "core/stop.h"
 
 namespace luxrig {
 

@@ -18,7 +18,7 @@ struct Measured {
 Measured measured(const Scene& scene, double radius_m, int threads = 0) {
   auto surface = make_target_surface(scene);
   EXPECT_TRUE(surface);
-  auto curvature = curvature_of(*surface, {radius_m, threads, {}});
+  auto curvature = curvature_of(*surface, {{.threads = threads}, radius_m});
   EXPECT_TRUE(curvature);
   return {*surface, *curvature};
 }
@@ -279,7 +279,7 @@ TEST(Curvature, OfNothingIsUnknownOrRefused) {
   ASSERT_TRUE(surface);
   for (const double bad :
        {0.0, -1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
-    EXPECT_FALSE(curvature_of(*surface, {bad, 1, {}}));
+    EXPECT_FALSE(curvature_of(*surface, {{}, bad}));
   points.vertices_m[1].y() = std::numeric_limits<float>::quiet_NaN();
   EXPECT_FALSE(make_target_surface(with_one_material(points)));
   points.vertices_m[1].y() = 0;

@@ -74,7 +74,7 @@ struct Chosen {
 
 Chosen chosen(const Scene& scene, const TargetRays& target, std::size_t most, int lights) {
   const auto surface = make_target_surface(scene);
-  const auto curvature = curvature_of(*surface, {suggested_curvature_radius_m(*surface), 0, {}});
+  const auto curvature = curvature_of(*surface, {{}, suggested_curvature_radius_m(*surface)});
   InterestOptions options;
   options.most_points = most;
   const auto interest = interest_points(*surface, *curvature, options);

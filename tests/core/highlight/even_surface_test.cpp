@@ -20,7 +20,7 @@ TargetSurface mesh_of(const Scene& scene) {
 }
 
 EvenSurface even_of(const TargetSurface& mesh, double scale_m, int threads = 0) {
-  auto even = even_surface(mesh, {scale_m, threads, {}});
+  auto even = even_surface(mesh, {{.threads = threads}, scale_m});
   EXPECT_TRUE(even);
   return std::move(*even);
 }
@@ -141,10 +141,10 @@ TEST(EvenSurface, IsTheSameForAnyNumberOfThreads) {
 
 TEST(EvenSurface, TakesAnyMeshAndRefusesScalesThatAreNone) {
   for (const double bad : {0.0, -1.0, std::numeric_limits<double>::infinity(), std::nan("")})
-    EXPECT_FALSE(even_surface(mesh_of(uv_sphere(1, 10)), {bad, 1, {}})) << bad;
+    EXPECT_FALSE(even_surface(mesh_of(uv_sphere(1, 10)), {{}, bad})) << bad;
   EXPECT_TRUE(even_of(mesh_of(Scene{}), 1).surface.points_m.empty());
   // Far too fine: said, with what would do, instead of all memory taken.
-  const auto too_fine = even_surface(mesh_of(uv_sphere(1, 10)), {1e-5, 1, {}});
+  const auto too_fine = even_surface(mesh_of(uv_sphere(1, 10)), {{}, 1e-5});
   ASSERT_FALSE(too_fine);
   EXPECT_NE(too_fine.error().detail.find("too fine"), std::string::npos) << too_fine.error().detail;
   // Thin facets all along the object, which would take hundreds of pieces each.
@@ -155,7 +155,7 @@ TEST(EvenSurface, TakesAnyMeshAndRefusesScalesThatAreNone) {
     for (const Vec3f& v : {Vec3f(0, y, 0), Vec3f(1, y, 0), Vec3f(0, y + 0.9e-5f, 0)}) slivers.vertices_m.push_back(v);
     slivers.triangles.push_back({first, first + 1, first + 2});
   }
-  const auto sliced = even_surface(mesh_of(with_one_material(slivers)), {0.03, 1, {}});
+  const auto sliced = even_surface(mesh_of(with_one_material(slivers)), {{}, 0.03});
   ASSERT_FALSE(sliced);
   EXPECT_NE(sliced.error().detail.find("pieces"), std::string::npos) << sliced.error().detail;
   // Triangles with nothing in common, millimetres and kilometres of them.

@@ -15,7 +15,7 @@ struct Prepared {
 
 Prepared prepared(const Scene& scene, double radius_m) {
   auto surface = make_target_surface(scene);
-  auto curvature = curvature_of(*surface, {radius_m, 0, {}});
+  auto curvature = curvature_of(*surface, {{}, radius_m});
   EXPECT_TRUE(curvature);
   return {*surface, *curvature};
 }

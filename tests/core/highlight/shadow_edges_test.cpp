@@ -21,7 +21,7 @@ struct Bench {
 
 Bench with_interest_points(const Scene& scene, std::size_t most) {
   const auto surface = make_target_surface(scene);
-  const auto curvature = curvature_of(*surface, {suggested_curvature_radius_m(*surface), 0, {}});
+  const auto curvature = curvature_of(*surface, {{}, suggested_curvature_radius_m(*surface)});
   InterestOptions options;
   options.most_points = most;
   const auto interest = interest_points(*surface, *curvature, options);

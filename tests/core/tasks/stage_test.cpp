@@ -20,11 +20,11 @@ bool is_requested(const std::stop_token& token) {
 TEST(Stage, TellsItsBeginningItsNewsAndItsEnd) {
   std::vector<Doing> told;
   {
-    const Stage stage([&](const Doing& doing) { told.push_back(doing); }, "places", "looking", {}, {});
+    const Stage stage({{}, {}, [&](const Doing& doing) { told.push_back(doing); }}, "places", "looking");
     stage.say("3 lights");
   }
   ASSERT_EQ(told.size(), 3);
-  for (const Doing& doing : told) EXPECT_EQ(doing.task, "places");
+  for (const Doing& doing : told) EXPECT_EQ(doing.stage, "places");
   EXPECT_EQ(told[0].what, "looking");
   EXPECT_EQ(told[1].what, "3 lights");
   EXPECT_FALSE(told[1].ended);
@@ -32,14 +32,14 @@ TEST(Stage, TellsItsBeginningItsNewsAndItsEnd) {
 }
 
 TEST(Stage, StopsWhenItsTimeIsUp) {
-  const Stage stage(nullptr, "transport", "starting", 0.01, {});
+  const Stage stage({}, "transport", "starting", 0.01);
   EXPECT_TRUE(is_requested(stage.stop()));
   EXPECT_TRUE(stage.time_is_up());
 }
 
 TEST(Stage, StopsWhenAskedFromOutsideAndThenItsTimeWasNotUp) {
   std::stop_source outside;
-  const Stage stage(nullptr, "transport", "starting", 3600, outside.get_token());
+  const Stage stage({outside.get_token(), {}}, "transport", "starting", 3600);
   EXPECT_FALSE(stage.stop().stop_requested());
   outside.request_stop();
   EXPECT_TRUE(stage.stop().stop_requested());
@@ -50,21 +50,21 @@ TEST(Stage, SaysWhetherAStopTakesTheBestItHas) {
   std::vector<bool> told;
   const Tell tell = [&](const Doing& doing) { told.push_back(doing.can_be_taken); };
   const std::stop_source person;
-  { const Stage search(tell, "places", "looking", {}, person.get_token()); }
-  { const Stage transport(tell, "transport", "starting", 3600, {}); }
+  { const Stage search({person.get_token(), {}, tell}, "places", "looking"); }
+  { const Stage transport({{}, {}, tell}, "transport", "starting", 3600); }
   EXPECT_EQ(told, (std::vector<bool>{true, true, false, false}));
 }
 
 TEST(Stage, BegunAfterTheStopIsStopped) {
   std::stop_source outside;
   outside.request_stop();
-  const Stage stage(nullptr, "transport", "starting", {}, outside.get_token());
+  const Stage stage({outside.get_token(), {}}, "transport", "starting");
   EXPECT_TRUE(stage.stop().stop_requested());
 }
 
 TEST(Stage, EndsAtOnceHoweverMuchTimeItHas) {
   for (const double seconds : {0.0, -1.0, 1e300, std::numeric_limits<double>::infinity()}) {
-    const Stage stage(nullptr, "transport", "starting", seconds, {});
+    const Stage stage({}, "transport", "starting", seconds);
     if (seconds <= 0) {
       EXPECT_TRUE(is_requested(stage.stop())) << seconds;
     }

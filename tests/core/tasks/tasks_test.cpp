@@ -79,7 +79,7 @@ TEST(ComputeTransport, TellsItsStageAndReachesTheErrorWanted) {
   std::vector<Doing> told;
   ComputeOptions options;
   options.stage = "light of the room";
-  options.tell = [&](const Doing& doing) { told.push_back(doing); };
+  options.watch.tell = [&](const Doing& doing) { told.push_back(doing); };
   ModelUsed used;
   const TransportMatrix transport = transport_of(session, options, &used);
   EXPECT_EQ(transport.receivers(), 4);
@@ -114,7 +114,7 @@ TEST(ComputeTransport, EndsWhenAskedWhileItRuns) {
   options.max_seconds = 0;
   std::stop_source person;
   options.watch.stop = person.get_token();
-  options.tell = [&](const Doing& doing) {
+  options.watch.tell = [&](const Doing& doing) {
     if (doing.what.ends_with('%')) person.request_stop();  // it is under way
   };
   const auto transport = compute_transport(session, options);
@@ -183,8 +183,8 @@ TEST(SolveTasks, ASearchEndedByAPersonGivesItsBestSoFar) {
   std::stop_source person;
   options.watch.stop = person.get_token();
   std::vector<std::string> bests;
-  options.tell = [&](const Doing& doing) {
-    if (doing.task != "bulbs" || !doing.what.ends_with('%')) return;
+  options.watch.tell = [&](const Doing& doing) {
+    if (doing.stage != "bulbs" || !doing.what.ends_with('%')) return;
     bests.push_back(doing.what);
     person.request_stop();
   };

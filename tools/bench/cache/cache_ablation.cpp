@@ -105,9 +105,7 @@ Result<std::vector<AblationRow>> run_cache_ablation(const Scene& scene, const Ra
   std::vector<AblationRow> rows;
   for (const NamedCacheSettings& one : settings) {
     RadianceCache::BuildOptions build;
-    build.seed = options.seed;
-    build.threads = options.threads;
-    build.watch.stop = options.watch.stop;
+    build.run() = options.of_part();
     EvaluateOptions evaluate = options;
     evaluate.watch.progress = {};
     evaluate.levels.clear();

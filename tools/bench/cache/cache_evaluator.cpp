@@ -50,8 +50,7 @@ class CacheEvaluator final : public Evaluator {
     for (int attempt = 0;; ++attempt) {
       const double end = begin + (1 - begin) * 0.2;
       RadianceCache::BuildOptions build;
-      build.seed = options.seed;
-      build.threads = options.threads;
+      build.run() = options;
       build.watch = part_of(options.watch, begin, begin + (end - begin) / 2);
       if (reached) build.watch.stop = halt.get_token();
       // Nothing to light or nothing that shines, and open air, need no cache; an empty one says so.

@@ -19,6 +19,7 @@
 #include <memory>
 #include <span>
 
+#include "core/run.h"
 #include "core/scene/scene.h"
 #include "core/transport/evaluator.h"
 #include "tools/bench/cache/cache_settings.h"
@@ -38,11 +39,7 @@ struct CacheReport {
 
 class RadianceCache {
  public:
-  struct BuildOptions {
-    std::uint64_t seed = 1;
-    int threads = 0;  ///< 0 = one per core; the cache does not depend on it
-    Watch watch;
-  };
+  struct BuildOptions : Run {};
 
   /// Works out all that emitters have no part in. `scene` is what `rays` was made from; `rays` must outlive the cache,
   /// the scene need not. Cause::cancelled when stopped; Cause::invalid when a setting is out of its range, or the scene

@@ -38,8 +38,7 @@ Result<PlacementCase> known_lights_case(const std::string& name, LitRoom room, b
   const RayScene rays(one.scene);
   const Eigen::VectorXd all = Eigen::VectorXd::Ones(static_cast<Eigen::Index>(lamps.size()));
   EvaluateOptions evaluate;
-  evaluate.threads = options.threads;
-  evaluate.watch = options.watch;
+  evaluate.run() = options;
   const auto direct = make_direct_evaluator(rays)->evaluate(one.receivers, lamps, evaluate);
   if (!direct) return tl::unexpected(direct.error());
   Eigen::VectorXd lux = direct->direct_lux(all);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/run.h"
 #include "core/transport/evaluator.h"
 
 namespace luxrig {
@@ -30,13 +31,11 @@ struct PlacementCase {
   std::optional<double> thesis_error;
 };
 
-struct PlacementCaseOptions {
+struct PlacementCaseOptions : Run {
   /// Holds office-scan.obj and apartment.glb (data/README.md); cases that need what is not there are refused.
   std::filesystem::path data_folder;
   /// Wanted standard error of the goal of a `…-known-global` case, relative as in EvaluateOptions.
   double goal_error = 0.02;
-  int threads = 0;  ///< 0 = one per core; the case does not depend on it
-  Watch watch;
 };
 
 [[nodiscard]] std::vector<std::string> placement_case_names();

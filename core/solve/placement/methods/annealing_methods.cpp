@@ -16,7 +16,7 @@ Result<FoundLights> annealed_and_refined(const PlacementProblem& problem, const 
   if (!candidates) return tl::unexpected(candidates.error());
   if (options.iterations > 0) annealing.iterations = options.iterations;
   annealing.wanted_error = options.number.wanted_error;
-  annealing.stop = options.stop;
+  annealing.stop = options.watch.stop;
   return best_of_starts(options, [&](const PlacementStart& start) {
     std::mt19937_64 random(start.seed);
     std::size_t columns = 0;
@@ -24,7 +24,7 @@ Result<FoundLights> annealed_and_refined(const PlacementProblem& problem, const 
     of_start.better = reporter(start.better, columns);
     ChosenCandidates first(*candidates);
     if (annealing.nearest > 0 && start.index == 0)
-      pursue(first, options.lights, options.number.wanted_error, options.stop, of_start.better);
+      pursue(first, options.lights, options.number.wanted_error, options.watch.stop, of_start.better);
     if (first.size() < options.lights && first.error() > options.number.wanted_error) {
       std::vector<std::size_t> lights = first.chosen();
       for (const std::size_t drawn : drawn_candidates(**candidates, options.lights, random))

@@ -19,7 +19,7 @@ class CutWalk {
       : problem_(problem), options_(options), start_(start), candidates_(candidates), random_(start.seed) {
     annealing_.iterations = options.iterations > 0 ? options.iterations : kCutIterations;
     annealing_.wanted_error = options.number.wanted_error;
-    annealing_.stop = options.stop;
+    annealing_.stop = options.watch.stop;
     annealing_.better = reporter(start.better, columns_);
   }
 
@@ -27,7 +27,7 @@ class CutWalk {
     ChosenCandidates state(candidates_);
     for (const TreeCut& cut : cuts)
       if (cut.candidates.size() <= lights) state.choose(cut.candidates);
-    pursue(state, lights, options_.number.wanted_error, options_.stop);
+    pursue(state, lights, options_.number.wanted_error, options_.watch.stop);
     return refined(anneal(std::move(state), annealing_, random_), {});
   }
 
@@ -44,7 +44,7 @@ class CutWalk {
       looked_at.push_back(state.placed(columns_));
       if (chosen.size() > 0 && !(state.error() <= (1 - options_.number.least_improvement) * was)) break;
       chosen = std::move(state);
-      if (chosen.error() <= options_.number.wanted_error || options_.stop.stop_requested()) break;
+      if (chosen.error() <= options_.number.wanted_error || options_.watch.stop.stop_requested()) break;
     }
     return refined(chosen, std::move(looked_at));
   }
@@ -82,7 +82,7 @@ class CutWalk {
 Result<FoundLights> place_by_gp16(const PlacementProblem& problem, const PlacementOptions& options) {
   const auto candidates = CandidateLights::make(problem);
   if (!candidates) return tl::unexpected(candidates.error());
-  const std::vector<TreeCut> cuts = light_tree_cuts(*candidates, options.stop);
+  const std::vector<TreeCut> cuts = light_tree_cuts(*candidates, options.watch.stop);
   FoundLights found = best_of_starts(options, [&](const PlacementStart& start) {
     CutWalk walk(problem, options, start, *candidates);
     return options.lights > 0 ? walk.at(cuts, options.lights) : walk.down(cuts);

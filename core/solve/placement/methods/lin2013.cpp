@@ -22,7 +22,7 @@ class LinCuts {
                                       simplex_of(problem_, options_, options_.most_columns, columns_, options_.better));
     return lights;
   }
-  [[nodiscard]] bool ended() const { return options_.stop.stop_requested() || columns_ >= options_.most_columns; }
+  [[nodiscard]] bool ended() const { return options_.watch.stop.stop_requested() || columns_ >= options_.most_columns; }
   [[nodiscard]] std::size_t columns() const { return columns_; }
 
  private:
@@ -37,7 +37,7 @@ class LinCuts {
 Result<FoundLights> place_by_lin2013(const PlacementProblem& problem, const PlacementOptions& options) {
   const auto candidates = CandidateLights::make(problem);
   if (!candidates) return tl::unexpected(candidates.error());
-  std::vector<TreeCut> cuts = coarse_to_fine_cuts(*candidates, options.stop);
+  std::vector<TreeCut> cuts = coarse_to_fine_cuts(*candidates, options.watch.stop);
   const std::size_t most = options.lights > 0 ? options.lights : options.most_lights;
   std::vector<std::pair<std::size_t, double>> tree;
   for (const TreeCut& cut : cuts) tree.emplace_back(cut.candidates.size(), cut.error);

@@ -17,7 +17,7 @@ SimplexOptions simplex_of(const PlacementProblem& problem, const PlacementOption
   simplex.cell_m = problem.spacing_m;
   simplex.wanted_error = options.number.wanted_error;
   simplex.most_columns = most_columns > columns ? most_columns - columns : 0;
-  simplex.stop = options.stop;
+  simplex.stop = options.watch.stop;
   if (better)
     simplex.better = [better, columns](const BestSoFar& best) {
       BestSoFar with_former = best;

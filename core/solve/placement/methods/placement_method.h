@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/result.h"
+#include "core/run.h"
 #include "core/solve/columns_view.h"
 #include "core/solve/placement/number_of_lights.h"
 #include "core/solve/placement/placed_lights.h"
@@ -33,7 +34,7 @@ struct BestSoFar {
   std::size_t columns = 0;        ///< worked out anew until now, beside the candidates'
 };
 
-struct PlacementOptions {
+struct PlacementOptions : Run {
   std::size_t lights = 0;        ///< 0: the method is to choose the number
   std::size_t most_lights = 64;  ///< that it may choose
   /// wanted_error is also that at which a search of a given number ends; coarse_error is GP16's ε_opt, above which it
@@ -48,9 +49,6 @@ struct PlacementOptions {
   bool subplex = false;
   bool whole_curve = false;        ///< ChooseOptions::whole_curve, of luxrig's own
   std::vector<LightPose> start{};  ///< lights to begin with, of methods that can (luxrig's own)
-  std::uint64_t seed = 1;
-  int threads = 0;  ///< 0 = one per core; the result does not depend on it
-  std::stop_token stop;
   /// Called with each better one, never by two threads at a time, but by any.
   std::function<void(const BestSoFar&)> better;
 };

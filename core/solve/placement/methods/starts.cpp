@@ -20,7 +20,7 @@ FoundLights best_of_starts(const PlacementOptions& options,
   std::vector<std::optional<FoundLights>> found(count);
   std::atomic<std::size_t> first_to_reach = count;
   parallel_for(count, options.threads, [&](std::size_t i) {
-    if (i > first_to_reach || (i > 0 && options.stop.stop_requested())) return;
+    if (i > first_to_reach || (i > 0 && options.watch.stop.stop_requested())) return;
     PlacementStart start{
         static_cast<int>(i), options.seed * 0x9E3779B97F4A7C15ull + i, options.most_columns / count, {}};
     if (options.better)

@@ -65,7 +65,7 @@ TEST(ChooseLights, GivesTheSameForAnyNumberOfThreadsAndTheBestSoFarWhenStopped) 
   for (std::size_t k = 0; k < one.cuts.size(); ++k) EXPECT_EQ(one.cuts[k].poses(), four.cuts[k].poses());
 
   std::stop_source stop;
-  options.exchange.stop = stop.get_token();
+  options.exchange.watch.stop = stop.get_token();
   options.better = [&](const PlacedLights& best, std::size_t) {
     if (best.size() == 2) stop.request_stop();
   };

@@ -155,7 +155,7 @@ TEST(PlaceInScene, StoppedItGivesTheBestSoFar) {
   std::stop_source stop;
   PlaceInSceneOptions options = direct_light();
   options.lights = 4;
-  options.stop = stop.get_token();
+  options.watch.stop = stop.get_token();
   double best = 1;
   options.better = [&](std::size_t, double error) {
     best = error;

@@ -134,7 +134,7 @@ TEST(PlaceLights, TellsOfBetterOnesAsItGoesAndReturnsTheBestWhenStopped) {
   PlaceOptions options;
   options.lights = 2;
   options.wanted_error = 0;
-  options.exchange.stop = stop.get_token();
+  options.exchange.watch.stop = stop.get_token();
   double last = 2;
   int told = 0;
   options.better = [&](const PlacedLights& best, std::size_t) {

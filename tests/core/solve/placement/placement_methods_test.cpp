@@ -142,7 +142,7 @@ TEST(PlacementMethods, TellOfBetterOnesAndEndWhenStopped) {
     options.starts = 1000;  // more than a test has time for
     options.most_columns = 1'000'000'000;
     options.iterations = 100;
-    options.stop = stop.get_token();
+    options.watch.stop = stop.get_token();
     double last = std::numeric_limits<double>::infinity();
     int told = 0;
     options.better = [&](const BestSoFar& best) {

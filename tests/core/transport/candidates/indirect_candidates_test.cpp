@@ -309,7 +309,9 @@ TEST(IncrementalTransport, RefusesAndStops) {
   options.cells = 500;
   std::stop_source source;
   source.request_stop();
-  const auto stopped = IncrementalTransport::make(scene, rays, receivers, options, {source.get_token(), {}});
+  IncrementalOptions stopping = options;
+  stopping.watch.stop = source.get_token();
+  const auto stopped = IncrementalTransport::make(scene, rays, receivers, stopping);
   ASSERT_FALSE(stopped);
   EXPECT_EQ(stopped.error().cause, Cause::cancelled);
   const auto made = IncrementalTransport::make(scene, rays, receivers, options);
