@@ -16,6 +16,7 @@
 #include "core/rig/rig_file.h"
 #include "drivers/io/os_fault.h"
 #include "drivers/registry.h"
+#include "tools/command_line/version.h"
 #include "tools/luxrig/command.h"
 #include "tools/luxrigd/bus_thread.h"
 #include "tools/luxrigd/clock.h"
@@ -234,6 +235,7 @@ int guard(const GuardianArguments& arguments) {
 
 int main(int argc, char** argv) {
   CLI::App app("Luxrig's guardian: started by the daemon, it takes the rig to its safe look when that dies");
+  app.set_version_flag("--version", std::string("luxrig-guardian ") + luxrig::kVersion, "print version and commit");
   luxrig::GuardianArguments arguments;
   app.add_option("RIG", arguments.rig)->required();
   app.add_option(luxrig::kLookOption, arguments.look_fd, "memory in which the daemon keeps its last look")->required();

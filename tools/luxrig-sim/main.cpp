@@ -14,6 +14,7 @@
 #include "sim/wire/rig_server.h"
 #include "tools/command_line/installed.h"
 #include "tools/command_line/parse_command_line.h"
+#include "tools/command_line/version.h"
 #include "tools/luxrig-sim/control_http.h"
 #include "tools/luxrig-sim/deviations_option.h"
 #include "tools/luxrig-sim/ports_file.h"
@@ -126,7 +127,7 @@ int main(int argc, char** argv) {
   CLI::App app("simulates a rig's devices on loopback ports, in a seeded true world, with faults to switch on",
                "luxrig-sim");
   begin_command_line(app);
-  app.set_version_flag("--version", LUXRIG_VERSION, "print the version");
+  app.set_version_flag("--version", std::string("luxrig-sim ") + kVersion, "print version and commit");
   app.footer("Faults, by POST /fault to the control port:\n" + sim::faults_in_words());
   add_rig_option(app, options.rig);
   app.add_option("--seed", options.seed, "of everything that differs from the rig file");

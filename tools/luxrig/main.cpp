@@ -5,6 +5,7 @@
 #include "tools/command_line/choice.h"
 #include "tools/command_line/installed.h"
 #include "tools/command_line/parse_command_line.h"
+#include "tools/command_line/version.h"
 #include "tools/luxrig/camera_command.h"
 #include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
@@ -79,7 +80,7 @@ void group(CLI::App& app, const char* title, std::initializer_list<const char*> 
 int main(int argc, char** argv) {
   CLI::App app("sets a lighting rig to goals in lux, measures and corrects it", "luxrig");
   begin_command_line(app);
-  app.set_version_flag("--version", LUXRIG_VERSION, "print the version");
+  app.set_version_flag("--version", std::string("luxrig ") + kVersion, "print version and commit");
   app.require_subcommand(1);
   int code = kExitOk;
 
