@@ -20,6 +20,9 @@ struct RefusedWord {
 /// Takes these words only. Its description, which help and completion read, is "one of auto, direct or path".
 [[nodiscard]] CLI::Validator one_of(std::vector<std::string> words, std::vector<RefusedWord> refused = {});
 
+/// The words of an option that takes some only; none for any other.
+[[nodiscard]] std::vector<std::string> words_to_choose(const CLI::Option& option);
+
 /// Sets `value` (an enum, or an optional one) by a word. The word of the value that it has at this moment is the
 /// default.
 template <class Value, class Choice>

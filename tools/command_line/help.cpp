@@ -7,7 +7,7 @@
 namespace luxrig {
 namespace {
 
-constexpr std::size_t kLeft = 26, kLine = 100;
+constexpr std::size_t kLeft = 26, kLeftOfCommands = 12, kLine = 80;
 
 /// Breaks at spaces, so that no line of `text` is longer than `width`.
 std::string wrapped(const std::string& text, std::size_t width, const std::string& between) {
@@ -28,11 +28,11 @@ std::string wrapped(const std::string& text, std::size_t width, const std::strin
   return all;
 }
 
-std::string two_columns(const std::string& left, const std::string& right) {
-  const std::string indent = "\n" + std::string(kLeft + 2, ' ');
-  const std::string told = wrapped(right, kLine - kLeft - 2, indent);
-  if (left.size() + 2 > kLeft) return "  " + left + indent + told + "\n";
-  return fmt::format("  {:<{}}{}\n", left, kLeft, told);
+std::string two_columns(const std::string& left, const std::string& right, std::size_t width = kLeft) {
+  const std::string indent = "\n" + std::string(width + 2, ' ');
+  const std::string told = wrapped(right, kLine - width - 2, indent);
+  if (left.size() + 2 > width) return "  " + left + indent + told + "\n";
+  return fmt::format("  {:<{}}{}\n", left, width, told);
 }
 
 class InWords : public CLI::Formatter {
@@ -41,7 +41,7 @@ class InWords : public CLI::Formatter {
     return two_columns(option_names(*option), option_in_words(*option));
   }
   std::string make_subcommand(const CLI::App* command) const override {
-    return two_columns(command->get_name(), command->get_description());
+    return two_columns(command->get_name(), command->get_description(), kLeftOfCommands);
   }
   std::string make_description(const CLI::App* app) const override {
     return wrapped(app->get_description(), kLine, "\n") + "\n";

@@ -1,6 +1,9 @@
 #include "tools/command_line/installed.h"
 
+#include <algorithm>
 #include <system_error>
+
+#include "tools/command_line/completion.h"
 
 namespace luxrig {
 
@@ -8,6 +11,15 @@ std::filesystem::path shared_folder() {
   std::error_code error;
   const auto self = std::filesystem::read_symlink("/proc/self/exe", error);
   return self.parent_path().parent_path() / "share/luxrig";
+}
+
+std::vector<std::string> shipped_rigs() {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(shared_folder() / "rigs", error))
+    if (std::filesystem::exists(entry.path() / "rig.toml", error)) names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
 }
 
 CLI::Option* add_rig_option(CLI::App& app, std::filesystem::path& rig) {
@@ -22,7 +34,7 @@ CLI::Option* add_rig_option(CLI::App& app, std::filesystem::path& rig) {
             if (std::filesystem::exists(shipped / "rig.toml", error)) given = shipped.string();
             return "";
           },
-          ""));
+          "", kOffersRigs));
 }
 
 }  // namespace luxrig

@@ -3,11 +3,16 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 namespace luxrig {
 
 /// "<prefix>/share/luxrig" of a program in "<prefix>/bin".
 [[nodiscard]] std::filesystem::path shared_folder();
+
+/// Names of the rigs that came with the program, sorted.
+[[nodiscard]] std::vector<std::string> shipped_rigs();
 
 /// The option RIG: a rig file, a folder with one, or the name of a rig that came with the program ("gallery").
 CLI::Option* add_rig_option(CLI::App& app, std::filesystem::path& rig);

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <vector>
 
 #include "tools/command_line/help.h"
 
@@ -51,106 +50,65 @@ std::string synopsis(const CLI::App& app, const std::string& name) {
   return text + " [options]";
 }
 
-std::string command_page(const CLI::App& app, const std::string& name) {
-  const auto commands = commands_in(app);
-  std::string page;
-  if (!commands.empty()) {
-    for (const CLI::App* command : commands) page += command_page(*command, name + " " + command->get_name());
-    return page;
-  }
-  page = fmt::format(".SS {}\n{}\n", roff(synopsis(app, name)), roff(app.get_description()));
-  return page + options_page(app);
-}
-
 std::string upper(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
                  [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   return text;
 }
 
-/// The words of an option that is chosen from some; empty otherwise.
-std::string choices_of(const CLI::Option& option) {
-  if (option.get_type_name().find(":one of ") == std::string::npos) return "";
-  std::string values = values_in_words(option);
-  if (const auto last = values.rfind(" or "); last != std::string::npos) values.replace(last, 4, ", ");
-  values.erase(std::remove(values.begin(), values.end(), ','), values.end());
-  return values;
+std::string heading(const std::string& name, const std::string& summary) {
+  return fmt::format(".TH {} 1 \"\" \"Luxrig {}\"\n.SH NAME\n{} \\- {}\n", upper(roff(name)), LUXRIG_VERSION,
+                     roff(name), roff(summary));
 }
 
-/// Lines of the three `case` statements, for a command and those in it.
-struct Completion {
-  std::string paths, values, words;
-};
-
-void complete(const CLI::App& app, const std::string& path, Completion& out) {
-  std::string names, options;
-  for (const CLI::App* command : commands_in(app)) {
-    names += command->get_name() + " ";
-    out.paths += fmt::format("      '{} {}') path=\"$path $one\" ;;\n", path, command->get_name());
-    complete(*command, path + " " + command->get_name(), out);
-  }
-  for (const CLI::Option* option : app.get_options()) {
-    const std::string choices = choices_of(*option);
-    if (option->get_positional() && !choices.empty()) names += choices + " ";
-    for (const std::string& name : option->get_lnames()) {
-      options += "--" + name + " ";
-      if (!choices.empty()) out.values += fmt::format("    '{} --{}') names='{}' ;;\n", path, name, choices);
-    }
-  }
-  out.words += fmt::format("    '{}') names='{}' options='{}' ;;\n", path, names, options);
-}
-
-}  // namespace
-
-std::string man_page(const CLI::App& app) {
-  const std::string& name = app.get_name();
-  std::string page = fmt::format(".TH {} 1 \"\" \"Luxrig {}\"\n.SH NAME\n{} \\- {}\n", upper(roff(name)),
-                                 LUXRIG_VERSION, roff(name), roff(app.get_description()));
-  const auto commands = commands_in(app);
-  if (commands.empty()) {
-    page += fmt::format(".SH SYNOPSIS\n.B {}\n.SH OPTIONS\n{}", roff(synopsis(app, name)), options_page(app));
-  } else {
-    page += fmt::format(".SH SYNOPSIS\n.B {}\n.I COMMAND\n[arguments] [options]\n", roff(name));
-    std::vector<std::string> groups;
-    for (const CLI::App* command : commands)
-      if (std::find(groups.begin(), groups.end(), command->get_group()) == groups.end())
-        groups.push_back(command->get_group());
-    for (const std::string& group : groups) {
-      page += ".SH " + upper(roff(group)) + "\n";
-      for (const CLI::App* command : commands)
-        if (command->get_group() == group) page += command_page(*command, name + " " + command->get_name());
-    }
-  }
+/// What stands at the end of every page.
+std::string ending(const CLI::App& app) {
+  std::string page;
   if (!app.get_footer().empty()) page += ".SH MORE\n.nf\n" + roff(app.get_footer()) + "\n.fi\n";
   return page +
          ".SH EXIT STATUS\n.TP\n0\ndone\n.TP\n1\nthe world failed, or goals were not met\n.TP\n2\nbad input; nothing "
          "has moved\n";
 }
 
-std::string bash_completion(const CLI::App& app) {
-  std::string function = "_" + app.get_name();
-  std::replace(function.begin(), function.end(), '-', '_');
-  Completion of;
-  complete(app, app.get_name(), of);
-  return fmt::format(R"(# Completion of {0} for bash. Where no word fits, files are offered.
-{1}() {{
-  local word="${{COMP_WORDS[COMP_CWORD]}}" last="${{COMP_WORDS[COMP_CWORD-1]}}" path={0} names='' options='' one
-  for one in "${{COMP_WORDS[@]:1:COMP_CWORD-1}}"; do
-    case "$path $one" in
-{2}      *) ;;
-    esac
-  done
-  case "$path" in
-{3}  esac
-  case "$path $last" in
-{4}    *) ;;
-  esac
-  [[ "$word" == -* ]] && names=$options
-  COMPREPLY=($(compgen -W "$names" -- "$word"))
-}}
-complete -o default -F {1} {0}
-)",
-                     app.get_name(), function, of.paths, of.words, of.values);
+/// words: what is typed before the options: "luxrig check".
+std::string page_of_one(const CLI::App& app, const std::string& name, const std::string& words) {
+  std::string page = heading(name, app.get_description());
+  const auto commands = commands_in(app);
+  if (commands.empty()) {
+    page += fmt::format(".SH SYNOPSIS\n.B {}\n.SH OPTIONS\n{}", roff(synopsis(app, words)), options_page(app));
+    return page;
+  }
+  page += ".SH SYNOPSIS\n";
+  for (const CLI::App* command : commands)
+    page += fmt::format(".B {}\n.br\n", roff(synopsis(*command, words + " " + command->get_name())));
+  page += ".SH COMMANDS\n";
+  for (const CLI::App* command : commands) {
+    page += fmt::format(".SS {}\n{}\n{}", roff(synopsis(*command, words + " " + command->get_name())),
+                        roff(command->get_description()), options_page(*command));
+  }
+  return page;
+}
+
+}  // namespace
+
+std::vector<ManPage> man_pages(const CLI::App& app) {
+  const std::string& program = app.get_name();
+  const auto commands = commands_in(app);
+  if (commands.empty()) return {{program, page_of_one(app, program, program) + ending(app)}};
+  std::string page = heading(program, app.get_description()) +
+                     fmt::format(".SH SYNOPSIS\n.B {}\n.I COMMAND\n[arguments] [options]\n", roff(program));
+  std::vector<ManPage> pages(1);
+  std::string group;
+  for (const CLI::App* command : commands) {
+    if (command->get_group() != group) page += ".SH " + upper(roff(command->get_group())) + "\n";
+    group = command->get_group();
+    const std::string name = program + "-" + command->get_name();
+    page += fmt::format(".TP\n.BR {} (1)\n{}\n", roff(name), roff(command->get_description()));
+    pages.push_back({name, page_of_one(*command, name, program + " " + command->get_name()) + ending(*command) +
+                               fmt::format(".SH SEE ALSO\n.BR {} (1)\n", roff(program))});
+  }
+  pages.front() = {program, page + ".SH OPTIONS\n" + options_page(app) + ending(app)};
+  return pages;
 }
 
 }  // namespace luxrig

@@ -1,14 +1,17 @@
 #pragma once
-/// Man page and completion, from what a program declares of its options.
+/// Man pages, from what a program declares of its options.
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 namespace luxrig {
 
-/// Section 1, in man(7).
-[[nodiscard]] std::string man_page(const CLI::App& app);
-/// For bash: commands, options, words to choose from, else files.
-[[nodiscard]] std::string bash_completion(const CLI::App& app);
+struct ManPage {
+  std::string name;  ///< "luxrig-check"; the file is name + ".1"
+  std::string text;  ///< section 1, in man(7)
+};
+/// The program's, then one for each of its commands.
+[[nodiscard]] std::vector<ManPage> man_pages(const CLI::App& app);
 
 }  // namespace luxrig

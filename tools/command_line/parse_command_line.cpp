@@ -2,17 +2,20 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <fstream>
 #include <string_view>
 #include <vector>
 
 #include "core/rig/nearest.h"
+#include "tools/command_line/completion.h"
 #include "tools/command_line/help.h"
 #include "tools/command_line/manual.h"
 
 namespace luxrig {
 namespace {
 
-constexpr int kBadInput = 2;
+constexpr int kFailed = 1, kBadInput = 2;
 
 std::vector<const CLI::App*> commands_of(const CLI::App& app) {
   return app.get_subcommands([](const CLI::App*) { return true; });
@@ -43,6 +46,40 @@ const CLI::App& command_meant(const CLI::App& app, std::span<const std::string> 
     for (std::size_t i = 0; i < words.size(); ++i)
       if (words[i] == command->get_name()) return command_meant(*command, words.subspan(i + 1));
   return app;
+}
+
+/// Writes each page to its file in the folder, which is there.
+int write_man_pages(const CLI::App& app, const std::filesystem::path& folder) {
+  for (const ManPage& page : man_pages(app)) {
+    const auto file = folder / (page.name + ".1");
+    std::ofstream out(file, std::ios::binary);
+    out << page.text;
+    out.close();
+    if (!out) {
+      fmt::print(stderr, "{}: cannot be written\n", file.string());
+      return kFailed;
+    }
+  }
+  return 0;
+}
+
+/// What no person asks, so that no help tells of it: the shell that completes a line, and the build of what is installed.
+std::optional<int> answer_a_tool(CLI::App& app, std::span<const std::string> words) {
+  if (words.empty()) return std::nullopt;
+  if (words[0] == "--complete") {
+    fmt::print("{}", offer_text(offer_for(app, words.subspan(1))));
+    return 0;
+  }
+  if (words.size() != 2) return std::nullopt;
+  if (words[0] == "--man-pages") return write_man_pages(app, words[1]);
+  if (words[0] == "--completion") {
+    for (const auto& [name, shell] : shells()) {
+      if (name != words[1]) continue;
+      fmt::print("{}", completion_script(app.get_name(), shell));
+      return 0;
+    }
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -94,14 +131,7 @@ std::string mend_of(const CLI::App& app, std::span<const std::string> words) {
 std::optional<int> parse_command_line(CLI::App& app, int argc, char** argv) {
   tell_help_in_words(app);
   const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
-  if (words.size() == 1 && words[0] == "--man-page") {
-    fmt::print("{}", man_page(app));
-    return 0;
-  }
-  if (words.size() == 1 && words[0] == "--bash-completion") {
-    fmt::print("{}", bash_completion(app));
-    return 0;
-  }
+  if (const auto end = answer_a_tool(app, words)) return end;
   try {
     app.parse(argc, argv);
     return std::nullopt;

@@ -6,21 +6,26 @@ include(GNUInstallDirs)
 file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/share/luxrig)
 file(CREATE_LINK ${PROJECT_SOURCE_DIR}/rigs ${CMAKE_BINARY_DIR}/share/luxrig/rigs SYMBOLIC)
 
-# Man pages and completion are written by the programs themselves, from what they declare of their options.
+# Man pages and completion are written by the programs themselves, from what they declare of their options. Which pages
+# there are only they know: one for each command, and those of commands that are no more go with the folder.
 set(manual ${CMAKE_BINARY_DIR}/manual)
-set(pages "")
+set(manuals "")
 foreach(program luxrig luxrigd luxrig-sim)
+  set(of_program ${manual}/${program})
   add_custom_command(
-    OUTPUT ${manual}/${program}.1 ${manual}/completion/${program}
-    COMMAND ${CMAKE_COMMAND} -E make_directory ${manual}/completion
-    COMMAND ${program} --man-page > ${manual}/${program}.1
-    COMMAND ${program} --bash-completion > ${manual}/completion/${program}
+    OUTPUT ${of_program}/bash ${of_program}/zsh ${of_program}/fish
+    COMMAND ${CMAKE_COMMAND} -E rm -rf ${of_program}
+    COMMAND ${CMAKE_COMMAND} -E make_directory ${of_program}/man1
+    COMMAND ${program} --man-pages ${of_program}/man1
+    COMMAND ${program} --completion bash > ${of_program}/bash
+    COMMAND ${program} --completion zsh > ${of_program}/zsh
+    COMMAND ${program} --completion fish > ${of_program}/fish
     DEPENDS ${program}
-    COMMENT "Man page and completion of ${program}"
+    COMMENT "Man pages and completion of ${program}"
     VERBATIM)
-  list(APPEND pages ${manual}/${program}.1)
+  list(APPEND manuals ${of_program}/fish)
 endforeach()
-add_custom_target(manual DEPENDS ${pages})
+add_custom_target(manual DEPENDS ${manuals})
 # All that `cmake --install` wants.
 add_custom_target(installable DEPENDS luxrig luxrigd luxrig-sim luxrig-guardian manual)
 if(TARGET web)
@@ -32,8 +37,21 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/rigs/ DESTINATION ${CMAKE_INSTALL_DATADI
 if(TARGET web)
   install(DIRECTORY ${LUXRIG_WEB_DIR}/ DESTINATION ${CMAKE_INSTALL_DATADIR}/luxrig/web)
 endif()
-install(FILES ${pages} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
-install(DIRECTORY ${manual}/completion/ DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+# Debian's zsh reads what packages bring from another folder than what was installed by hand.
+install(CODE [[
+  set(zsh_folder site-functions)
+  if(CMAKE_INSTALL_PREFIX MATCHES "/usr$")
+    set(zsh_folder vendor-completions)
+  endif()
+]])
+foreach(program luxrig luxrigd luxrig-sim)
+  install(DIRECTORY ${manual}/${program}/man1/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+  install(FILES ${manual}/${program}/bash RENAME ${program}
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+  install(FILES ${manual}/${program}/zsh RENAME _${program} DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/\${zsh_folder})
+  install(FILES ${manual}/${program}/fish RENAME ${program}.fish
+          DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
+endforeach()
 install(FILES ${CMAKE_CURRENT_LIST_DIR}/luxrigd@.service DESTINATION lib/systemd/system)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
 

@@ -12,6 +12,7 @@
 #include "core/rig/rig_file.h"
 #include "sim/faults/faults.h"
 #include "sim/wire/rig_server.h"
+#include "tools/command_line/completion.h"
 #include "tools/command_line/installed.h"
 #include "tools/command_line/parse_command_line.h"
 #include "tools/command_line/version.h"
@@ -131,7 +132,8 @@ int main(int argc, char** argv) {
   app.footer("Faults, by POST /fault to the control port:\n" + sim::faults_in_words());
   add_rig_option(app, options.rig);
   app.add_option("--seed", options.seed, "of everything that differs from the rig file");
-  app.add_option("--ports-file", options.ports_file, "JSON: taken from there when it exists, written when ready");
+  app.add_option("--ports-file", options.ports_file, "JSON: taken from there when it exists, written when ready")
+      ->check(offers_files());
   app.add_option("--control-port", options.control_port, "HTTP control port (0: any free one)")
       ->check(CLI::Range(0, 65535));
   app.add_option("--max-error", options.max_error, "relative error of the true light transport")

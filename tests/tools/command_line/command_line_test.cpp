@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "tools/command_line/choice.h"
+#include "tools/command_line/completion.h"
 #include "tools/command_line/help.h"
 #include "tools/command_line/manual.h"
 #include "tools/command_line/parse_command_line.h"
@@ -15,6 +16,18 @@ namespace {
 
 enum class Shape { round, square };
 
+/// In characters, of UTF-8.
+std::size_t widest_line(const std::string& text) {
+  std::size_t widest = 0, width = 0;
+  for (const char c : text) {
+    if (c == '\n')
+      width = 0;
+    else if ((static_cast<unsigned char>(c) & 0xC0) != 0x80)
+      widest = std::max(widest, ++width);
+  }
+  return widest;
+}
+
 class CommandLine : public ::testing::Test {
  protected:
   CommandLine() {
@@ -22,12 +35,16 @@ class CommandLine : public ::testing::Test {
     app.require_subcommand(1);
     auto* draw = app.add_subcommand("draw", "draws -- a shape");
     draw->group("Work");
-    draw->add_option("FILE", file, "where to")->required();
+    draw->add_option("FILE", file, "where to")->required()->check(offers_files());
     add_choice<Shape, Shape>(*draw, "--shape", shape, "what it looks like",
                              {{"round", Shape::round}, {"square", Shape::square}},
                              {{"oval", "is refused, as it was neither: use round"}});
     draw->add_option("-s,--size", size, "how large")->check(CLI::Range(0.5, 8.0));
     draw->add_flag("--fill", fill, "inside, too");
+    auto* copy = app.add_subcommand("copy", "to folders");
+    copy->group("Work");
+    copy->add_option("FILE", file, "what")->required()->check(offers_files());
+    copy->add_option("FOLDERS", folders, "to where")->check(offers_folders());
     auto* list = app.add_subcommand("list", "what there is");
     list->group("Work");
     list->require_subcommand(1);
@@ -45,8 +62,16 @@ class CommandLine : public ::testing::Test {
     output = ::testing::internal::GetCapturedStdout() + ::testing::internal::GetCapturedStderr();
     return end.value_or(-1);
   }
+  Offer offer(const std::vector<std::string>& words) { return offer_for(app, words); }
+  /// What is offered for the last word, with blanks between.
+  std::string texts(const std::vector<std::string>& words) {
+    std::string all;
+    for (const Offer::Word& word : offer(words).words) all += (all.empty() ? "" : " ") + word.text;
+    return all;
+  }
   CLI::App app{"a tool", "tool"};
   std::string file, output;
+  std::vector<std::string> folders;
   Shape shape = Shape::square;
   double size = 2;
   bool fill = false;
@@ -82,7 +107,7 @@ TEST_F(CommandLine, RefusesAWordThatItNoLongerTakesWithTheReason) {
             "tool draw: --shape: \"oval\" is refused, as it was neither: use round: `tool draw --help` tells all\n");
   EXPECT_EQ(parse({"draw", "--help"}), 0);
   EXPECT_EQ(output.find("oval"), std::string::npos) << output;
-  EXPECT_EQ(bash_completion(app).find("oval"), std::string::npos);
+  EXPECT_EQ(texts({"draw", "--shape", ""}), "round square");
 }
 
 TEST_F(CommandLine, HelpIsInWords) {
@@ -94,33 +119,100 @@ TEST_F(CommandLine, HelpIsInWords) {
   EXPECT_NE(output.find("Work:\n  draw "), std::string::npos) << output;
 }
 
-TEST_F(CommandLine, TheManPageHasEveryCommandAndOption) {
-  const std::string page = man_page(app);
-  for (const char* text : {".TH TOOL 1", ".SH WORK\n", ".SS tool draw FILE [options]\ndraws \\-\\- a shape\n",
-                           ".B \\-s, \\-\\-size N\nhow large; 0.5 to 8; default 2\n", ".SS tool list shapes [options]"})
-    EXPECT_NE(page.find(text), std::string::npos) << text << "\n" << page;
+TEST_F(CommandLine, NoLineOfHelpIsWiderThanATerminal) {
+  app.get_subcommand("draw")->add_flag("--slowly", fill,
+                                       "so that all who stand around can see how it is done, and may do the same "
+                                       "some day when nobody stands around who could show them how it is done");
+  EXPECT_EQ(parse({"draw", "--help"}), 0);
+  EXPECT_EQ(widest_line(output), 80u) << output;
 }
 
-/// What bash offers for these words, the last of which is being typed.
-std::string offered(const std::string& script, const std::string& words, int last) {
-  const std::string file = ::testing::TempDir() + "luxrig-completion";
-  std::ofstream(file) << script << "COMP_WORDS=(" << words << ")\nCOMP_CWORD=" << last
-                      << "\n_tool\necho \"${COMPREPLY[*]}\"\n";
+TEST_F(CommandLine, EveryCommandHasAManPageWithItsOptions) {
+  const std::vector<ManPage> pages = man_pages(app);
+  ASSERT_EQ(pages.size(), 4u);
+  const std::pair<const char*, std::vector<const char*>> told[] = {
+      {"tool", {".TH TOOL 1", ".SH WORK\n", ".BR tool\\-draw (1)\ndraws \\-\\- a shape\n"}},
+      {"tool-draw",
+       {".TH TOOL\\-DRAW 1", ".B tool draw FILE [options]\n", "tool\\-draw \\- draws \\-\\- a shape\n",
+        ".B \\-s, \\-\\-size N\nhow large; 0.5 to 8; default 2\n"}},
+      {"tool-copy", {".B tool copy FILE [FOLDERS...] [options]\n"}},
+      {"tool-list", {".SS tool list shapes [options]\nall shapes\n", ".SH SEE ALSO\n.BR tool (1)\n"}}};
+  for (std::size_t i = 0; i < pages.size(); ++i) {
+    EXPECT_EQ(pages[i].name, told[i].first);
+    for (const char* text : told[i].second)
+      EXPECT_NE(pages[i].text.find(text), std::string::npos) << text << "\n" << pages[i].text;
+  }
+}
+
+TEST_F(CommandLine, CommandsOptionsAndWordsAreOffered) {
+  EXPECT_EQ(texts({""}), "draw copy list");
+  EXPECT_EQ(offer({"dr"}).words.front().told, "draws -- a shape");
+  EXPECT_EQ(texts({"-"}), "--help");
+  EXPECT_EQ(texts({"draw", "--s"}), "--help --shape --size --fill");
+  EXPECT_EQ(texts({"draw", "x", "--shape", ""}), "round square");
+  EXPECT_EQ(texts({"draw", "--shape=r"}), "round square");
+  EXPECT_EQ(texts({"draw", "--shape", "=", "r"}), "round square") << "as bash takes it apart";
+  EXPECT_EQ(texts({"list", ""}), "shapes files");
+  EXPECT_EQ(texts({"list", "shapes", ""}), "");
+  EXPECT_EQ(texts({"lits", ""}), "draw copy list") << "as long as the command is not known";
+}
+
+TEST_F(CommandLine, FilesAreOfferedWhereTheyCanStandAndNowhereElse) {
+  using Places = Offer::Places;
+  EXPECT_EQ(offer({"draw", ""}).places, Places::files);
+  EXPECT_EQ(offer({"draw", "--fill", "-s", "3", "--shape=round", ""}).places, Places::files);
+  EXPECT_EQ(offer({"draw", "-s", ""}).places, Places::none);
+  EXPECT_EQ(offer({"draw", "--shape", ""}).places, Places::none);
+  EXPECT_EQ(offer({"copy", "x", ""}).places, Places::folders);
+  EXPECT_EQ(offer({"copy", "x", "y", "z", ""}).places, Places::folders) << "as many as one likes";
+  EXPECT_EQ(offer({"copy", "--", "-x", ""}).places, Places::folders);
+  EXPECT_EQ(offer({""}).places, Places::none);
+}
+
+/// What a shell command prints.
+std::string told_by(const std::string& command) {
   std::string told;
-  std::FILE* const bash = ::popen(("bash " + file).c_str(), "r");
+  std::FILE* const shell = ::popen(command.c_str(), "r");
   std::array<char, 256> part{};
-  while (std::fgets(part.data(), part.size(), bash) != nullptr) told += part.data();
-  ::pclose(bash);
-  return told;
+  while (std::fgets(part.data(), part.size(), shell) != nullptr) told += part.data();
+  const int status = ::pclose(shell);
+  return status == 0 ? told : told + "failed\n";
 }
 
-TEST_F(CommandLine, BashCompletesCommandsOptionsAndWords) {
-  const std::string script = bash_completion(app);
-  EXPECT_EQ(offered(script, "tool d", 1), "draw\n");
-  EXPECT_EQ(offered(script, "tool draw --s", 2), "--shape --size\n");
-  EXPECT_EQ(offered(script, "tool draw x --shape ''", 4), "round square\n");
-  EXPECT_EQ(offered(script, "tool list ''", 2), "shapes files\n");
-  EXPECT_EQ(offered(script, "tool draw ''", 2), "\n") << "files";
+TEST_F(CommandLine, BashTakesWhatFitsOfWhatTheProgramOffers) {
+  const auto offered = [this](const std::vector<std::string>& words) {
+    const std::string file = ::testing::TempDir() + "luxrig-completion";
+    std::ofstream script(file);
+    script << completion_script("tool", Shell::bash)
+           << "tool() { [[ $1 == --complete ]] && shift && printf '%s|' \"$@\" >" << file << ".asked; cat <<'END'\n"
+           << offer_text(offer(words)) << "END\n}\nCOMP_WORDS=(tool";
+    std::string asked;
+    for (const std::string& word : words) {
+      script << " '" << word << "'";
+      asked += word + "|";
+    }
+    script << ")\nCOMP_CWORD=" << words.size() << "\n_tool\necho \"${COMPREPLY[*]}\"\n";
+    script.close();
+    std::string told = told_by("bash " + file);
+    EXPECT_EQ(told_by("cat " + file + ".asked"), asked);
+    return told;
+  };
+  EXPECT_EQ(offered({"d"}), "draw\n");
+  EXPECT_EQ(offered({"draw", "--s"}), "--shape --size\n");
+  EXPECT_EQ(offered({"draw", "x", "--shape", ""}), "round square\n");
+  EXPECT_EQ(offered({"draw", "x", "--shape", "s"}), "square\n");
+  EXPECT_EQ(offered({"draw", ""}), "\n") << "bash offers files by itself";
+}
+
+TEST_F(CommandLine, EachShellAcceptsItsScript) {
+  for (const auto& [name, shell] : shells()) {
+    const std::string file = ::testing::TempDir() + "luxrig-completion." + name;
+    std::ofstream(file) << completion_script("tool", shell);
+    const std::string check = "command -v " + name + " >/dev/null || exit 0; " + name + " -n " + file + " 2>&1";
+    EXPECT_EQ(told_by(check), "") << name;
+    std::ofstream(file) << completion_script("tool", shell) << "\n'";
+    if (told_by("command -v " + name) != "failed\n") EXPECT_NE(told_by(check), "") << name << " sees what is wrong";
+  }
 }
 
 }  // namespace

@@ -58,14 +58,6 @@ TEST(Words, EveryCommandIsInAGroupOfHelp) {
   EXPECT_EQ(ran.output.find("Subcommands:"), std::string::npos) << "a command without a group: " << ran.output;
 }
 
-TEST(Words, EveryProgramTellsItsManual) {
-  for (const char* name : {"luxrig", "luxrigd", "luxrig-sim"}) {
-    const Ran manual = luxrig::testing::run({program(name), "--man-page"});
-    EXPECT_EQ(manual.code, 0) << name;
-    EXPECT_TRUE(manual.output.starts_with(".TH LUXRIG")) << manual.output;
-  }
-}
-
 TEST(Words, TheSimulatorsHelpAndReadmeListEveryFault) {
   const Ran ran = luxrig::testing::run({program("luxrig-sim"), "--help"});
   const std::string readme = text_of(source("tools/luxrig-sim/README.md"));
