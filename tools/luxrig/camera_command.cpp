@@ -4,16 +4,19 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "core/rig/nearest.h"
 #include "core/rig/rig_file.h"
 #include "core/transport/pfm.h"
 #include "drivers/camera/camera_source.h"
+#include "tools/command_line/completion.h"
 #include "tools/command_line/installed.h"
 #include "tools/luxrig/camera_series.h"
 #include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
+#include "tools/luxrig/files.h"
 #include "tools/luxrigd/clock.h"
 
 namespace luxrig {
@@ -135,8 +138,6 @@ void print_text(const CameraCheck& check, int counts) {
   for (const CameraFinding& finding : check.findings) fmt::print("  {}: {}\n", finding.what, finding.mend);
 }
 
-}  // namespace
-
 int run_camera_shot(const CameraArguments& arguments) {
   auto camera = open_camera(arguments);
   if (!camera) return report(camera.error());
@@ -217,34 +218,41 @@ int run_camera_check(const CameraArguments& arguments) {
   return check->good ? kExitOk : kExitFailed;
 }
 
-void add_camera_command(CLI::App& command, CameraArguments& arguments, int& code) {
+Action declare_camera(CLI::App& command) {
+  const auto camera = std::make_shared<CameraArguments>();
   command.require_subcommand(1);
-  const auto add_shared = [&arguments](CLI::App& one) {
-    add_rig_option(one, arguments.rig);
-    one.add_option("--camera", arguments.camera, "its name (else the only one with a source)");
-    one.add_flag("--json", arguments.json, "print JSON");
+  const auto add_shared = [&camera](CLI::App& one) {
+    add_rig_option(one, camera->rig);
+    one.add_option("--camera", camera->camera, "its name (else the only one with a source)");
+    one.add_flag("--json", camera->json, "print JSON");
   };
   auto* shot = command.add_subcommand("shot", "take one picture, as linear light (PFM)");
   add_shared(*shot);
-  shot->add_option("-o,--output", arguments.output, "PFM file")->required();
-  shot->callback([&] { code = run_camera_shot(arguments); });
+  shot->add_option("-o,--output", camera->output, "PFM file")->required()->check(offers_files());
   auto* check = command.add_subcommand(
       "check", "linearity, dark level, saturation and noise, from a series of exposures of a still scene");
   add_shared(*check);
-  check->add_option("-o,--output", arguments.output, "write the measured response here (CSV), for response_file");
-  check->add_option("--shortest-ms", arguments.shortest_ms, "shortest exposure")->check(CLI::PositiveNumber);
-  check->add_option("--longest-ms", arguments.longest_ms, "longest exposure")->check(CLI::PositiveNumber);
-  check->add_option("--steps", arguments.steps, "exposures")->check(CLI::Range(3, 40));
-  check->add_option("--frames", arguments.frames, "pictures of each")->check(CLI::Range(3, 100));
-  check->add_flag("--levels", arguments.levels,
+  check->add_option("-o,--output", camera->output, "write the measured response here (CSV), for response_file")
+      ->check(offers_files());
+  check->add_option("--shortest-ms", camera->shortest_ms, "shortest exposure")->check(CLI::PositiveNumber);
+  check->add_option("--longest-ms", camera->longest_ms, "longest exposure")->check(CLI::PositiveNumber);
+  check->add_option("--steps", camera->steps, "exposures")->check(CLI::Range(3, 40));
+  check->add_option("--frames", camera->frames, "pictures of each")->check(CLI::Range(3, 100));
+  check->add_flag("--levels", camera->levels,
                   "by known dimmer levels of a fixture of the rig, which its daemon drives, instead of by exposures; "
                   "of source = \"files\": levels stand in their names (wall_40pct_1.png)");
-  check->add_option("--fixture", arguments.fixture, "with --levels: what lights the scene (else the only one)");
-  check->add_option("--port", arguments.port, "with --levels: of the daemon");
-  check->add_option("--token", arguments.token, "with --levels: file with the daemon's token, if it is another user's");
-  check->add_flag("--sim", arguments.sim, "by levels, with a simulated rig and its camera");
-  check->add_option("--sim-seed", arguments.sim_seed, "of the simulated rig");
-  check->callback([&] { code = run_camera_check(arguments); });
+  check->add_option("--fixture", camera->fixture, "with --levels: what lights the scene (else the only one)");
+  check->add_option("--port", camera->port, "with --levels: of the daemon");
+  check->add_option("--token", camera->token, "with --levels: file with the daemon's token, if it is another user's")
+      ->check(offers_files());
+  check->add_flag("--sim", camera->sim, "by levels, with a simulated rig and its camera");
+  check->add_option("--sim-seed", camera->sim_seed, "of the simulated rig");
+  return [camera, shot] { return *shot ? run_camera_shot(*camera) : run_camera_check(*camera); };
 }
+
+}  // namespace
+
+const Command kCameraCommand{"camera", command_group::kDevices,
+                             "take a picture with a rig's camera, or check that camera", declare_camera};
 
 }  // namespace luxrig

@@ -7,10 +7,6 @@
 
 #include "drivers/camera/camera_source.h"
 
-namespace CLI {
-class App;
-}
-
 namespace luxrig {
 
 struct CameraArguments {
@@ -27,13 +23,8 @@ struct CameraArguments {
   int port = 9620;      ///< of the daemon that drives the rig
   std::optional<std::filesystem::path> token;  ///< of a daemon of another user
 };
-int run_camera_shot(const CameraArguments& arguments);
-int run_camera_check(const CameraArguments& arguments);
 
 /// requires `camera` to be one of the rig's, and its source unless arguments.sim.
 int run_camera_levels(const CameraArguments& arguments, const Rig& rig, std::size_t camera, CameraSource* source);
-
-/// The subcommands and their options; the chosen one's exit code goes to `code`.
-void add_camera_command(CLI::App& command, CameraArguments& arguments, int& code);
 
 }  // namespace luxrig

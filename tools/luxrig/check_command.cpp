@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <span>
 
@@ -14,6 +16,7 @@
 #include "core/transport/rig_notes/rig_notes.h"
 #include "drivers/registry.h"
 #include "drivers/when_data_stops.h"
+#include "tools/command_line/installed.h"
 #include "tools/luxrig/addresses.h"
 #include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
@@ -22,6 +25,12 @@
 
 namespace luxrig {
 namespace {
+
+struct CheckArguments {
+  std::filesystem::path rig;
+  bool json = false;
+  bool outputs = false;  ///< also what each output does when data stops
+};
 
 /// In the planes C0 and C90; once when they are alike.
 std::string angles_text(const PlaneAngles& angles) {
@@ -262,8 +271,6 @@ std::string place_text(const Vec3& p) {
   return fmt::format("{:.2f} {:.2f} {:.2f}", cm.x() / 100, cm.y() / 100, cm.z() / 100);
 }
 
-}  // namespace
-
 int run_check(const CheckArguments& arguments) {
   const auto session = open_session(arguments.rig);
   if (!session) {
@@ -366,5 +373,18 @@ int run_check(const CheckArguments& arguments) {
   if (arguments.outputs) print_outputs(rig);
   return kExitOk;
 }
+
+Action declare_check(CLI::App& command) {
+  const auto check = std::make_shared<CheckArguments>();
+  add_rig_option(command, check->rig);
+  command.add_flag("--json", check->json, "print JSON");
+  command.add_flag("--outputs", check->outputs, "also say what each output does when data stops");
+  return [check] { return run_check(*check); };
+}
+
+}  // namespace
+
+const Command kCheckCommand{"check", command_group::kMake, "validate a rig and print what was understood",
+                            declare_check};
 
 }  // namespace luxrig

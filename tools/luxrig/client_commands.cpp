@@ -1,12 +1,17 @@
-// status, page, blackout, apply, level, goal, release, bypass, reload, park, identify: commands that talk to a running
-// daemon.
-#include <charconv>
-#include <cmath>
+// apply, page, reload, blackout, hand-back, park, bypass, identify: commands that only tell a running daemon something.
+#include <fmt/format.h>
 
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "core/control/plan.h"
+#include "tools/command_line/choice.h"
+#include "tools/command_line/completion.h"
+#include "tools/luxrig/client.h"
 #include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
+#include "tools/luxrig/files.h"
 #include "tools/luxrig/status_fields.h"
-#include "tools/luxrig/table.h"
 #include "tools/luxrigd/meeting_place.h"
 
 namespace luxrig {
@@ -14,143 +19,34 @@ namespace {
 
 using nlohmann::json;
 
-/// Without the name of the cause, which says no more than the text.
-int report_unreachable(const Fault& fault) {
-  fmt::print(stderr, "luxrig: {}\n", fault.detail);
-  return fault.cause == Cause::invalid ? kExitBadInput : kExitFailed;
+/// A plan that turns heads waits for the light that it makes to be worked out; a rig that is read again is solved before
+/// anything changes.
+constexpr int kWaitForSolving_s = 300;
+
+struct TellArguments {
+  ClientArguments client;
+  std::filesystem::path plan;
+  std::vector<std::string> names;
+  std::string name, state;
+  double seconds = 5;
+  bool undo = false;
+};
+using Told = std::shared_ptr<TellArguments>;
+
+Action declare_apply(CLI::App& command) {
+  const Told told = std::make_shared<TellArguments>();
+  command.add_option("PLAN", told->plan, "plan file (JSON)")->required()->check(offers_files());
+  add_client(command, told->client);
+  return [told] {
+    const auto body = read_file(told->plan);
+    if (!body) return report(body.error());
+    // Checked here first: the messages then carry the file's name.
+    if (const auto parsed = plan_from_json(*body, told->plan.string()); !parsed) return report(parsed.error());
+    return post(told->client, "/api/apply", *body, "applied: " + told->plan.string(), kWaitForSolving_s);
+  };
 }
 
-int post(const ClientArguments& arguments, const char* route, const std::string& body, const std::string& done,
-         int wait_s = 5) {
-  const auto daemon = daemon_on(arguments.port, arguments.token);
-  if (!daemon) return report_unreachable(daemon.error());
-  const auto answer = http_post_json(*daemon, route, body, wait_s);
-  if (!answer) return report_unreachable(no_daemon(arguments.port));
-  if (answer->status != 200) {
-    const json body_json = json::parse(answer->body, nullptr, false);
-    const std::string reason = body_json.is_object() ? text_of(body_json, "error") : answer->body;
-    fmt::print(stderr, "luxrig: refused by the daemon: {}\n", reason);
-    return answer->status == 400 || answer->status == 413 ? kExitBadInput : kExitFailed;
-  }
-  const std::string told = text_of(json::parse(answer->body, nullptr, false), "text");
-  fmt::print("{}\n", arguments.json ? answer->body : done.empty() ? told : told.empty() ? done : done + "\n" + told);
-  return kExitOk;
-}
-
-/// The value behind the names; nothing when there is none.
-std::optional<double> value_of(const std::string& text, bool percent) {
-  double value = 0;
-  const char* end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc{} || !std::isfinite(value)) return std::nullopt;
-  if (rest == end) return value;
-  return percent && std::string_view(rest, end) == "%" ? std::optional(value / 100) : std::nullopt;
-}
-
-int hold(const ClientArguments& arguments, std::vector<std::string> words, const std::string& for_text, bool level) {
-  const std::optional<double> value = words.size() < 2 ? std::nullopt : value_of(words.back(), level);
-  if (!value) {
-    fmt::print(stderr, "luxrig: {}\n",
-               level ? "give names and then a level: luxrig level spot-1 0.05"
-                     : "give names and then a goal in lux: luxrig goal desk 150");
-    return kExitBadInput;
-  }
-  words.pop_back();
-  json body = {{level ? "fixtures" : "points", words}, {level ? "level" : "goal_lux", *value}};
-  if (!for_text.empty()) {
-    const auto for_s = seconds_of(for_text);
-    if (!for_s) {
-      fmt::print(stderr, "luxrig: --for {} is no duration: give 90s, 10min or 2h\n", for_text);
-      return kExitBadInput;
-    }
-    body["for_s"] = *for_s;
-  }
-  return post(arguments, level ? "/api/level" : "/api/goal", body.dump(-1, ' ', false, json::error_handler_t::replace),
-              "");
-}
-
-void print_status(const json& status) {
-  fmt::print("{}: {}{}{}: {}\n", text_of(status, "rig"), text_of(status, "phase"),
-             flag_of(status, "blackout") ? ", BLACKOUT" : "", flag_of(status, "plan_waits") ? ", a plan waits" : "",
-             text_of(status, "detail"));
-  for (const json& alarm : list_of(status, "alarms")) {
-    fmt::print("{}  {} ({} s ago)\n", flag_of(alarm, "severe") ? "ALARM  " : "warning", text_of(alarm, "text"),
-               shown(number_of(alarm, "since_s"), "{:.1f}"));
-  }
-  Table devices({"device", "state", ">last ok s ago", ">sent", ">received", ">errors", "detail"});
-  for (const json& d : list_of(status, "devices")) {
-    devices.row({text_of(d, "name"), text_of(d, "life"), shown(number_of(d, "last_ok_s"), "{:.2f}"),
-                 shown(number_of(d, "sent"), "{:.0f}"), shown(number_of(d, "received"), "{:.0f}"),
-                 shown(number_of(d, "errors"), "{:.0f}"), text_of(d, "detail")});
-  }
-  Table fixtures({"fixture", "bus", ">level", ">drive", ">gain", ">± se"});
-  for (const json& f : list_of(status, "fixtures")) {
-    const bool known = !f.contains("level_known") || flag_of(f, "level_known");
-    fixtures.row({text_of(f, "name"), text_of(f, "bus"), shown(number_of(f, "level"), known ? "{:.3f}" : "{:.3f}?"),
-                  shown(number_of(f, "drive"), "{:.3f}"), shown(number_of(f, "gain"), "{:.3f}"),
-                  shown(number_of(f, "gain_standard_error"), "{:.3f}")});
-  }
-  Table points(
-      {"point", ">goal lx", ">predicted", ">± se", ">measured", ">age s", ">error", "goal", ">max lx", "limit", "why"});
-  for (const json& p : list_of(status, "points")) {
-    const auto error = number_of(p, "error");
-    points.row({text_of(p, "name"), shown(number_of(p, "goal_lux"), "{:g}"),
-                shown(number_of(p, "predicted_lux"), "{:.1f}"), shown(number_of(p, "standard_error_lux"), "{:.1f}"),
-                shown(number_of(p, "measured_lux"), "{:.1f}"), shown(number_of(p, "measured_age_s"), "{:.1f}"),
-                error ? fmt::format("{:+.1f} %", 100 * *error) : "-", text_of(p, "verdict"),
-                shown(number_of(p, "max_lux"), "{:g}"), text_of(p, "limit"),
-                text_of(p, "limit_reason").empty() ? text_of(p, "reason") : text_of(p, "limit_reason")});
-  }
-  fmt::print("\n{}\n{}\n{}", devices.text(), fixtures.text(), points.text());
-  if (!list_of(status, "bypassed").empty()) {
-    Table bypassed({"bypassed", ">for s", "risk"});
-    for (const json& b : list_of(status, "bypassed"))
-      bypassed.row({text_of(b, "name"), shown(number_of(b, "age_s"), "{:.0f}"), text_of(b, "risk")});
-    fmt::print("\n{}", bypassed.text());
-  }
-  if (list_of(status, "overrides").empty()) return;
-  Table by_hand({"by hand", ">set to", ">for s", "until", "at present"});
-  for (const json& o : list_of(status, "overrides")) {
-    const auto level = number_of(o, "level"), remaining_s = number_of(o, "remaining_s");
-    by_hand.row({text_of(o, "name"), level ? shown(level, "{:.3f}") : shown(number_of(o, "goal_lux"), "{:.4g} lx"),
-                 shown(number_of(o, "age_s"), "{:.0f}"),
-                 flag_of(o, "of_plan") ? "the next plan"
-                 : remaining_s         ? fmt::format("in {:.0f} s", *remaining_s)
-                                       : "luxrig release",
-                 text_of(o, "why").empty() ? "so" : text_of(o, "why")});
-  }
-  fmt::print("\n{}", by_hand.text());
-}
-
-}  // namespace
-
-int run_status(const ClientArguments& arguments) {
-  const auto daemon = daemon_on(arguments.port, arguments.token);
-  if (!daemon) return report_unreachable(daemon.error());
-  const auto answer = http_get(*daemon, "/api/status");
-  if (!answer) return report_unreachable(no_daemon(arguments.port));
-  const json status = json::parse(answer->body, nullptr, false);
-  if (answer->status != 200 && status.is_object()) {
-    fmt::print(stderr, "luxrig: refused by the daemon: {}\n", text_of(status, "error"));
-    return kExitFailed;
-  }
-  if (!status.is_object()) {
-    fmt::print(stderr, "luxrig: what answers on port {} is not a Luxrig daemon\n", arguments.port);
-    return kExitFailed;
-  }
-  if (arguments.json) {
-    fmt::print("{}\n", answer->body);
-  } else {
-    print_status(status);
-  }
-  return kExitOk;
-}
-
-int run_blackout(const ClientArguments& arguments, bool on) {
-  return post(arguments, "/api/blackout", json{{"on", on}}.dump(), on ? "blackout" : "blackout lifted");
-}
-
-int run_page(const ClientArguments& arguments) {
+int print_page(const ClientArguments& arguments) {
   const auto daemon = daemon_on(arguments.port, arguments.token);
   if (!daemon) return report_unreachable(daemon.error());
   const auto answer = http_post_json(*daemon, "/api/session", "{}");
@@ -160,67 +56,84 @@ int run_page(const ClientArguments& arguments) {
   return kExitOk;
 }
 
-int run_hand_back(const ClientArguments& arguments) {
-  return post(arguments, "/api/hand-back", "{}", "desks that wait for the light get it");
+Action declare_page(CLI::App& command) {
+  const Told told = std::make_shared<TellArguments>();
+  add_client(command, told->client);
+  return [told] { return print_page(told->client); };
 }
 
-int run_park(const ClientArguments& arguments, const std::vector<std::string>& fixtures) {
-  return post(arguments, "/api/park", json{{"fixtures", fixtures}}.dump(),
-              fixtures.empty()
-                  ? "heads go dark and to where they rest, until the next apply"
-                  : fmt::format("{} go dark and to where they rest, until the next apply", fmt::join(fixtures, ", ")));
+Action declare_blackout(CLI::App& command) {
+  const Told told = std::make_shared<TellArguments>();
+  command.add_option("STATE", told->state, "on if left out")->check(one_of({"on", "off"}));
+  command.add_flag("--off", told->undo, "lift the blackout");
+  add_client(command, told->client);
+  return [told] {
+    const bool on = !told->undo && told->state != "off";
+    return post(told->client, "/api/blackout", json{{"on", on}}.dump(), on ? "blackout" : "blackout lifted");
+  };
 }
 
-std::optional<double> seconds_of(const std::string& text) {
-  double value = 0;
-  const char* end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc{} || !std::isfinite(value) || value <= 0) return std::nullopt;
-  const std::string_view unit(rest, end);
-  constexpr std::pair<std::string_view, double> kUnits[] = {{"", 1}, {"s", 1}, {"min", 60}, {"h", 3600}};
-  for (const auto& [name, seconds] : kUnits)
-    if (unit == name) return value * seconds;
-  return std::nullopt;
+Action declare_hand_back(CLI::App& command) {
+  const Told told = std::make_shared<TellArguments>();
+  add_client(command, told->client);
+  return [told] { return post(told->client, "/api/hand-back", "{}", "desks that wait for the light get it"); };
 }
 
-int run_level(const ClientArguments& arguments, const std::vector<std::string>& names_and_level,
-              const std::string& for_text) {
-  return hold(arguments, names_and_level, for_text, true);
+Action declare_park(CLI::App& command) {
+  const Told told = std::make_shared<TellArguments>();
+  command.add_option("FIXTURE", told->names, "these heads (else all that have a place to rest)");
+  add_client(command, told->client);
+  return [told] {
+    const std::string which = told->names.empty() ? "heads" : fmt::format("{}", fmt::join(told->names, ", "));
+    return post(told->client, "/api/park", json{{"fixtures", told->names}}.dump(),
+                which + " go dark and to where they rest, until the next apply");
+  };
 }
 
-int run_goal(const ClientArguments& arguments, const std::vector<std::string>& names_and_lux,
-             const std::string& for_text) {
-  return hold(arguments, names_and_lux, for_text, false);
+Action declare_bypass(CLI::App& command) {
+  const Told told = std::make_shared<TellArguments>();
+  command.add_option("NAME", told->names, "fixtures and luxmeters (* and ? for several)")->required();
+  command.add_flag("--undo", told->undo, "it is mended: take it back");
+  add_client(command, told->client);
+  return [told] {
+    const json body = {{"names", told->names}, {"on", !told->undo}};
+    return post(told->client, "/api/bypass", body.dump(-1, ' ', false, json::error_handler_t::replace), "");
+  };
 }
 
-int run_release(const ClientArguments& arguments, const std::vector<std::string>& names) {
-  const bool all = names == std::vector<std::string>{"all"};
-  const json body = all ? json{{"all", true}} : json{{"names", names}};
-  return post(arguments, "/api/release", body.dump(-1, ' ', false, json::error_handler_t::replace), "");
+Action declare_reload(CLI::App& command) {
+  const Told told = std::make_shared<TellArguments>();
+  add_client(command, told->client);
+  return [told] { return post(told->client, "/api/reload", "{}", "", kWaitForSolving_s); };
 }
 
-int run_bypass(const ClientArguments& arguments, const std::vector<std::string>& names, bool undo) {
-  const json body = {{"names", names}, {"on", !undo}};
-  return post(arguments, "/api/bypass", body.dump(-1, ' ', false, json::error_handler_t::replace), "");
+Action declare_identify(CLI::App& command) {
+  const Told told = std::make_shared<TellArguments>();
+  command.add_option("FIXTURE", told->name, "its name in the rig file")->required();
+  command.add_option("--seconds", told->seconds, "for how long")->check(CLI::Range(0.5, 60.0));
+  add_client(command, told->client);
+  return [told] {
+    return post(told->client, "/api/identify", json{{"fixture", told->name}, {"seconds", told->seconds}}.dump(),
+                fmt::format("{} blinks, or nods, for {:g} s", told->name, told->seconds));
+  };
 }
 
-int run_reload(const ClientArguments& arguments) {
-  // The rig is solved before anything changes.
-  return post(arguments, "/api/reload", "{}", "", 300);
-}
+}  // namespace
 
-int run_identify(const ClientArguments& arguments, const std::string& fixture, double seconds) {
-  return post(arguments, "/api/identify", json{{"fixture", fixture}, {"seconds", seconds}}.dump(),
-              fmt::format("{} blinks, or nods, for {:g} s", fixture, seconds));
-}
-
-int run_apply(const ClientArguments& arguments, const std::filesystem::path& plan) {
-  const auto body = read_file(plan);
-  if (!body) return report(body.error());
-  // Checked here first: the messages then carry the file's name.
-  if (const auto parsed = plan_from_json(*body, plan.string()); !parsed) return report(parsed.error());
-  // A plan that turns heads waits for the light that it makes to be worked out.
-  return post(arguments, "/api/apply", *body, "applied: " + plan.string(), 300);
-}
+const Command kApplyCommand{"apply", command_group::kRun, "have the running daemon fade to a plan", declare_apply};
+const Command kPageCommand{"page", command_group::kRun, "an address that opens the daemon's page in one browser, once",
+                           declare_page};
+const Command kReloadCommand{"reload", command_group::kRun,
+                             "have the daemon read its rig file again, whole or not at all", declare_reload};
+const Command kBlackoutCommand{"blackout", command_group::kByHand, "all light off at once; `blackout off` lifts it",
+                               declare_blackout};
+const Command kHandBackCommand{"hand-back", command_group::kByHand,
+                               "lighting desks that are back and wait for it get the light", declare_hand_back};
+const Command kParkCommand{"park", command_group::kByHand, "heads go dark and to where they rest, until the next apply",
+                           declare_park};
+const Command kBypassCommand{"bypass", command_group::kByHand,
+                             "do without a failed fixture or luxmeter; the risk is said", declare_bypass};
+const Command kIdentifyCommand{"identify", command_group::kDevices,
+                               "which one is it? it blinks, or nods, and is then as it was", declare_identify};
 
 }  // namespace luxrig

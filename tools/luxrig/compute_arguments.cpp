@@ -1,5 +1,7 @@
 #include "tools/luxrig/compute_arguments.h"
 
+#include "tools/command_line/choice.h"
+
 namespace luxrig {
 
 void add_compute(CLI::App& command, ComputeOptions& compute) {
@@ -30,6 +32,16 @@ void add_compute(CLI::App& command, ComputeOptions& compute) {
       ->check(CLI::Range(0.0, 1e9));
   command.add_option("--seed", compute.seed, "seed of the samples");
   command.add_option("--threads", compute.threads, "threads (0: one per core)")->check(CLI::Range(0, 1024));
+}
+
+void add_model(CLI::App& command, ComputeOptions& compute) {
+  add_choice<Model, Model>(
+      command, "--model", compute.model,
+      "how light is computed; auto: the cheapest that meets the error; direct: no interreflection",
+      {{"auto", Model::automatic}, {"direct", Model::direct}, {"gather", Model::gather}, {"path", Model::path}},
+      {{"cache", "is refused, as its error bars were too short to be believed: use gather or path"}});
+  command.add_flag("--strict", compute.strict, "exit code 1 when the wanted error is not reached (else a warning)");
+  add_compute(command, compute);
 }
 
 }  // namespace luxrig

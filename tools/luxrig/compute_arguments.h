@@ -7,6 +7,9 @@
 
 namespace luxrig {
 
+/// Seed, threads, and how exact.
 void add_compute(CLI::App& command, ComputeOptions& compute);
+/// The same, and which model.
+void add_model(CLI::App& command, ComputeOptions& compute);
 
 }  // namespace luxrig

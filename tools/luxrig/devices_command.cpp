@@ -1,8 +1,10 @@
 // devices: what is there to be driven, without a rig file.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -16,9 +18,13 @@
 namespace luxrig {
 namespace {
 
-constexpr auto kStepPeriod = std::chrono::milliseconds(20);
+struct DevicesArguments {
+  double seconds = 3;
+  std::string broadcast = "255.255.255.255", interface;
+  bool json = false;
+};
 
-}  // namespace
+constexpr auto kStepPeriod = std::chrono::milliseconds(20);
 
 int run_devices(const DevicesArguments& arguments) {
   ScanOptions options;
@@ -70,5 +76,20 @@ int run_devices(const DevicesArguments& arguments) {
   }
   return kExitOk;
 }
+
+Action declare_devices(CLI::App& command) {
+  const auto devices = std::make_shared<DevicesArguments>();
+  command.add_option("--seconds", devices->seconds, "how long to listen")->check(CLI::Range(0.1, 600.0));
+  command.add_option("--broadcast", devices->broadcast, "where Art-Net nodes are asked: the lighting network's");
+  command.add_option("--interface", devices->interface, "network interface by which sACN sources are heard");
+  command.add_flag("--json", devices->json, "print the list as JSON");
+  command.footer("Art-Net nodes, sACN sources, USB widgets, serial ports, CAN interfaces, cameras.");
+  return [devices] { return run_devices(*devices); };
+}
+
+}  // namespace
+
+const Command kDevicesCommand{"devices", command_group::kDevices, "what is there to be driven, without a rig file",
+                              declare_devices};
 
 }  // namespace luxrig

@@ -1,12 +1,19 @@
+// evaluate: lux at points and luxmeters.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <chrono>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "core/parallel.h"
 #include "core/transport/rig_transport.h"
+#include "tools/command_line/completion.h"
+#include "tools/command_line/installed.h"
 #include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
+#include "tools/luxrig/compute_arguments.h"
+#include "tools/luxrig/files.h"
 #include "tools/luxrig/open_session.h"
 #include "tools/luxrig/table.h"
 #include "tools/luxrig/terminal_watch.h"
@@ -14,6 +21,13 @@
 
 namespace luxrig {
 namespace {
+
+struct EvaluateArguments {
+  std::filesystem::path rig;
+  std::optional<std::filesystem::path> levels_plan;  ///< else every fixture at 1
+  ComputeOptions compute;
+  bool json = false;
+};
 
 nlohmann::json array_of(const Vec3& v) { return nlohmann::json::array({v.x(), v.y(), v.z()}); }
 
@@ -26,8 +40,6 @@ Checked<std::vector<double>> wanted_levels(const EvaluateArguments& arguments, R
   if (!plan) return tl::unexpected(plan.error());
   return levels_when_hung(*plan, rig, arguments.levels_plan->string());
 }
-
-}  // namespace
 
 int run_evaluate(const EvaluateArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
@@ -103,5 +115,20 @@ int run_evaluate(const EvaluateArguments& arguments) {
     fmt::print(stderr, "luxrig: warning: {}\n", warning);
   return compute.strict && !used.reached() ? kExitFailed : kExitOk;
 }
+
+Action declare_evaluate(CLI::App& command) {
+  const auto evaluate = std::make_shared<EvaluateArguments>();
+  add_rig_option(command, evaluate->rig);
+  command.add_option("--levels", evaluate->levels_plan, "levels of this plan (else every fixture at 100 %)")
+      ->check(offers_files());
+  add_model(command, evaluate->compute);
+  command.add_flag("--json", evaluate->json, "print JSON");
+  return [evaluate] { return run_evaluate(*evaluate); };
+}
+
+}  // namespace
+
+const Command kEvaluateCommand{"evaluate", command_group::kLight, "lux at every measurement point and luxmeter",
+                               declare_evaluate};
 
 }  // namespace luxrig

@@ -1,11 +1,11 @@
+#include "tools/luxrig/files.h"
+
 #include <fcntl.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 #include <string_view>
-
-#include "tools/luxrig/commands.h"
 
 namespace luxrig {
 

@@ -1,21 +1,31 @@
+// import: a rig folder of an MVR file.
 #include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
 
 #include "core/rig/mvr/mvr_rig.h"
 #include "core/rig/plain_text.h"
 #include "core/rig/rig_file.h"
 #include "core/scene/mesh_reading.h"
+#include "tools/command_line/completion.h"
 #include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
+#include "tools/luxrig/files.h"
 
 namespace luxrig {
 namespace {
+
+struct ImportArguments {
+  std::filesystem::path file;
+  std::filesystem::path rig_folder;
+};
 
 std::vector<Problem> one_problem(const std::filesystem::path& file, std::string what, std::string mend) {
   return {{file.string(), 0, 0, std::move(what), std::move(mend)}};
 }
 
-}  // namespace
-
+/// Never writes over a rig.
 int run_import(const ImportArguments& arguments) {
   if (extension_of(arguments.file) != "mvr") {
     return report(one_problem(arguments.file, "not an MVR file by its name",
@@ -46,5 +56,19 @@ int run_import(const ImportArguments& arguments) {
   fmt::print("next: fill in what says FILL IN, then luxrig check {}\n", arguments.rig_folder.string());
   return kExitOk;
 }
+
+Action declare_import(CLI::App& command) {
+  const auto import_mvr = std::make_shared<ImportArguments>();
+  command.add_option("FILE", import_mvr->file, "MVR file")->required()->check(offers_files());
+  command.add_option("-o,--output", import_mvr->rig_folder, "folder to write rig.toml and the GDTF files to")
+      ->required()
+      ->check(offers_folders());
+  command.footer("What hangs in the file, with positions, orientation, patch and personalities.");
+  return [import_mvr] { return run_import(*import_mvr); };
+}
+
+}  // namespace
+
+const Command kImportCommand{"import", command_group::kMake, "make a rig folder of an MVR file", declare_import};
 
 }  // namespace luxrig

@@ -1,18 +1,22 @@
 // init: a commented rig to start from, as `rigs/start` has it.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+#include <memory>
+
 #include "core/rig/plain_text.h"
+#include "tools/command_line/completion.h"
 #include "tools/command_line/installed.h"
 #include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
+#include "tools/luxrig/files.h"
 
 namespace luxrig {
 namespace {
 
 constexpr std::string_view kNameOfStart = "name = \"start\"\n";
 
-}  // namespace
-
+/// Never writes over a rig.
 int run_init(const std::filesystem::path& folder) {
   const std::filesystem::path rig_file = folder / "rig.toml";
   std::error_code error;
@@ -48,5 +52,16 @@ int run_init(const std::filesystem::path& folder) {
       rig_file.string(), folder.string());
   return kExitOk;
 }
+
+Action declare_init(CLI::App& command) {
+  const auto folder = std::make_shared<std::filesystem::path>();
+  command.add_option("NAME", *folder, "folder to make")->required()->check(offers_folders());
+  return [folder] { return run_init(*folder); };
+}
+
+}  // namespace
+
+const Command kInitCommand{"init", command_group::kMake, "a commented rig to start from, in a folder of that name",
+                           declare_init};
 
 }  // namespace luxrig

@@ -6,12 +6,14 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <memory>
 #include <thread>
 
+#include "tools/luxrig/client.h"
 #include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
-#include "tools/luxrigd/meeting_place.h"
 #include "tools/luxrig/monitor_picture.h"
+#include "tools/luxrigd/meeting_place.h"
 
 namespace luxrig {
 namespace {
@@ -63,8 +65,7 @@ std::optional<std::string> picture_of(const HttpPeer& daemon) {
                          nlohmann::json::parse(universes->body, nullptr, false), terminal_size().columns);
 }
 
-}  // namespace
-
+/// Until Ctrl-C; `once`, or when the output is no terminal: one picture.
 int run_monitor(const ClientArguments& arguments, bool once) {
   const auto daemon = daemon_on(arguments.port, arguments.token);
   if (!daemon) return report(daemon.error());
@@ -86,5 +87,18 @@ int run_monitor(const ClientArguments& arguments, bool once) {
   }
   return g_interrupted != 0 ? kExitOk : report(no_daemon(arguments.port));
 }
+
+Action declare_monitor(CLI::App& command) {
+  const auto client = std::make_shared<ClientArguments>();
+  const auto once = std::make_shared<bool>(false);
+  command.add_flag("--once", *once, "one picture, then end");
+  add_client_without_json(command, *client);
+  return [client, once] { return run_monitor(*client, *once); };
+}
+
+}  // namespace
+
+const Command kMonitorCommand{"monitor", command_group::kRun,
+                              "universes, heads, dimmers and meters, live in the terminal", declare_monitor};
 
 }  // namespace luxrig

@@ -1,12 +1,15 @@
 // rdm: which devices are behind Art-Net nodes or a USB widget, how they are set, and setting them.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <charconv>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "drivers/dmx/artnet/artnet_codec.h"
 #include "drivers/usb/usb_search.h"
+#include "tools/command_line/choice.h"
 #include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
 #include "tools/luxrig/rdm_bus.h"
@@ -17,6 +20,19 @@ namespace luxrig {
 namespace {
 
 using Json = nlohmann::json;
+
+/// Devices on the DMX lines behind Art-Net nodes or a USB widget.
+struct RdmArguments {
+  std::string node;  ///< address, with or without port; empty: all that answer to the broadcast
+  std::string broadcast = "255.255.255.255";
+  std::optional<int> universe;  ///< Art-Net port address; else all
+  double seconds = 3;
+  bool rediscover = false;
+  bool usb = false;                         ///< a widget's line instead of nodes
+  std::string usb_serial, usb_port, usbip;  ///< which; any of them is enough to say `usb`
+  bool json = false, toml = false;
+  std::string uid, parameter, value;
+};
 
 int refuse_input(const std::string& text) {
   fmt::print(stderr, "luxrig: {}\n", text);
@@ -190,8 +206,6 @@ tl::expected<Setting, std::string> setting_of(const std::string& what, const std
   return Setting{rdm::Pid::device_label, {value.begin(), value.end()}};
 }
 
-}  // namespace
-
 int run_rdm_list(const RdmArguments& arguments) {
   const auto found = find_bus(arguments);
   if (!found) return kExitBadInput;
@@ -287,5 +301,48 @@ int run_rdm_set(const RdmArguments& arguments) {
   }
   return kExitOk;
 }
+
+void add_search(CLI::App& command, RdmArguments& rdm) {
+  command.add_option("--node", rdm.node, "ask this node only (IPv4 address, with or without :port)");
+  command.add_option("--broadcast", rdm.broadcast, "where nodes are asked: the lighting network's");
+  command
+      .add_option("--universe", rdm.universe, "only this Art-Net port address; of a widget, what its line is called")
+      ->check(CLI::Range(0, 32767));
+  command.add_option("--seconds", rdm.seconds, "how long to wait for the nodes' tables of devices")
+      ->check(CLI::Range(0.1, 600.0));
+  command.add_flag("--rediscover", rdm.rediscover, "have the nodes search their lines anew");
+  command.add_flag("--usb", rdm.usb, "on the line of an ENTTEC DMX USB Pro, which puts out no levels meanwhile");
+  command.add_option("--usb-serial", rdm.usb_serial, "of the widget with this serial number");
+  command.add_option("--usb-port", rdm.usb_port, "of the widget that is plugged in there, such as 1-1.4");
+  command.add_option("--usbip", rdm.usbip,
+                     "of a widget behind this USB/IP server, such as a simulated one (IPv4:port)");
+  command.add_flag("--json", rdm.json, "print JSON");
+}
+
+Action declare_rdm(CLI::App& command) {
+  const auto rdm = std::make_shared<RdmArguments>();
+  command.require_subcommand(1);
+  auto* list = command.add_subcommand("list", "a table of all devices");
+  add_search(*list, *rdm);
+  list->add_flag("--toml", rdm->toml, "print [[fixture]] entries for a rig file");
+  auto* get = command.add_subcommand("get", "read one parameter of a device");
+  get->add_option("UID", rdm->uid, "which device")->required();
+  get->add_option("PARAMETER", rdm->parameter, "its name (device_info, lamp_hours …) or number (0x8001)")->required();
+  get->add_option("INDEX", rdm->value, "of which sensor (from 0) or personality (from 1)");
+  add_search(*get, *rdm);
+  auto* set = command.add_subcommand("set", "set one parameter of a device");
+  set->add_option("UID", rdm->uid, "which device")->required();
+  set->add_option("PARAMETER", rdm->parameter, "which")
+      ->required()
+      ->check(one_of({"address", "label", "personality", "identify"}));
+  set->add_option("VALUE", rdm->value, "1 to 512, a text, a number, on or off")->required();
+  add_search(*set, *rdm);
+  return [rdm, list, get] { return *list ? run_rdm_list(*rdm) : *get ? run_rdm_get(*rdm) : run_rdm_set(*rdm); };
+}
+
+}  // namespace
+
+const Command kRdmCommand{"rdm", command_group::kDevices,
+                          "list, read and set devices behind Art-Net nodes or a USB widget", declare_rdm};
 
 }  // namespace luxrig

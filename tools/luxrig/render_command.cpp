@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <memory>
 #include <sstream>
 
 #include "core/control/plan.h"
@@ -14,7 +16,11 @@
 #include "core/rig/rig_file.h"
 #include "core/scene/scene_builder.h"
 #include "core/transport/rig_transport.h"
+#include "tools/command_line/choice.h"
+#include "tools/command_line/completion.h"
+#include "tools/command_line/installed.h"
 #include "tools/luxrig/command.h"
+#include "tools/luxrig/commands.h"
 #include "tools/luxrig/dark_picture.h"
 #include "tools/luxrig/exposure.h"
 #include "tools/luxrig/picture_png.h"
@@ -72,6 +78,8 @@ Checked<std::pair<Rig, std::vector<double>>> load_rig_for_picture(const RenderOp
   if (!levels) return tl::unexpected(levels.error());
   return std::pair{std::move(*rig), std::move(*levels)};
 }
+
+namespace {
 
 int run_render(const RenderOptions& options) {
   if (!is_picture_name(options.output)) {
@@ -134,5 +142,99 @@ int run_render(const RenderOptions& options) {
   if (!dark.empty()) fmt::print("{}\n", dark);
   return 0;
 }
+
+/// What is typed, before it is understood.
+struct RenderLine {
+  RenderOptions options;
+  std::filesystem::path plan;
+  std::vector<double> eye_m, target_m;
+  std::string false_colour, exposure, white_balance;
+};
+
+void add_how_it_looks(CLI::App& command, RenderLine& line, CLI::Option* with_false_colour) {
+  command
+      .add_option("--exposure", line.exposure,
+                  "stops brighter (+1) or darker (-1) than metered, or the luminance shown white: 300cd/m2")
+      ->check(CLI::Validator(
+          [](std::string& text) {
+            return exposure_of(text) ? "" : "write stops from -20 to 20 (+1), or a luminance (300cd/m2)";
+          },
+          ""))
+      ->excludes(with_false_colour);
+  command
+      .add_option("--white-balance", line.white_balance,
+                  "what is shown neutral: light as of the lamps in use (lamps, the default), daylight, or a colour "
+                  "temperature (2700K)")
+      ->check(CLI::Validator(
+          [](std::string& text) {
+            return white_balance_of(text) ? "" : "write lamps, daylight, or 1667 to 25000 with or without K";
+          },
+          ""))
+      ->excludes(with_false_colour);
+}
+
+Action declare_render(CLI::App& command) {
+  const auto line = std::make_shared<RenderLine>();
+  RenderOptions& render = line->options;
+  add_rig_option(command, render.rig);
+  auto* with_plan =
+      command.add_option("PLAN", line->plan, "levels of this plan (else every fixture at its highest level)")
+          ->check(offers_files());
+  command.add_option("-o,--output", render.output, "picture to write: .png or .jpg")->required()->check(offers_files());
+  auto* with_false_colour =
+      command.add_option("--false-colour", line->false_colour, "lux: a map of illuminance with a scale")
+          ->check(one_of({"lux"}));
+  auto* with_show =
+      add_choice<std::optional<ShowWhat>, ShowWhat>(
+          command, "--show", render.show,
+          "why: an object's curvature, its interest points, its features, the histogram of shadow directions, the "
+          "domain where lights may hang; or where the beams go",
+          {{"curvature", ShowWhat::curvature},
+           {"interest", ShowWhat::interest},
+           {"features", ShowWhat::features},
+           {"histogram", ShowWhat::histogram},
+           {"domain", ShowWhat::domain},
+           {"beams", ShowWhat::beams}})
+          ->excludes(with_false_colour);
+  command.add_option("--object", render.object, "with --show: whose relief (else the only one from a mesh file)")
+      ->needs(with_show);
+  command.add_option("--lights", render.lights, "with --show histogram: so many directions are chosen")
+      ->check(CLI::Range(1, 64))
+      ->needs(with_show);
+  command.add_option("--width", render.width_px, "pixels")->check(CLI::Range(16, 8192));
+  command.add_option("--height", render.height_px, "pixels")->check(CLI::Range(16, 8192));
+  auto* with_eye = command.add_option("--eye", line->eye_m, "x y z [m] of the viewer")->expected(3);
+  auto* with_target = command.add_option("--target", line->target_m, "x y z [m] looked at")->expected(3);
+  command.add_option("--fov-deg", render.vertical_fov_deg, "vertical field of view (60; with --show 30)")
+      ->check(CLI::Range(1.0, 170.0));
+  add_how_it_looks(command, *line, with_false_colour);
+  command.add_option("--max-lx", render.max_lx, "top of the false-colour scale")->check(CLI::PositiveNumber);
+  command.add_option("--max-error", render.max_error, "noise at which the picture is done")
+      ->check(CLI::Range(1e-4, 1.0));
+  command.add_option("--seconds", render.seconds, "or after this time")->check(CLI::PositiveNumber);
+  command.add_option("--passes", render.passes, "or after so many samples per pixel, whatever the time")
+      ->check(CLI::Range(1, 65536));
+  command.add_option("--threads", render.threads, "threads (0: one per core)")->check(CLI::Range(0, 1024));
+  command.footer(
+      "As a photograph, as a false-colour map of lux, or with --show as a drawing of\n"
+      "why its lights are where they are.");
+  return [line, with_plan, with_eye, with_target] {
+    RenderOptions options = line->options;
+    const auto& eye = line->eye_m;
+    const auto& target = line->target_m;
+    if (*with_plan) options.plan = line->plan;
+    if (*with_eye) options.eye_world_m = Vec3(eye[0], eye[1], eye[2]);
+    if (*with_target) options.target_world_m = Vec3(target[0], target[1], target[2]);
+    options.false_colour = !line->false_colour.empty();
+    if (!line->exposure.empty()) options.exposure = *exposure_of(line->exposure);
+    if (!line->white_balance.empty()) options.white_balance = *white_balance_of(line->white_balance);
+    return run_render(options);
+  };
+}
+
+}  // namespace
+
+const Command kRenderCommand{"render", command_group::kLight,
+                             "a picture of the lit rig, or of its lux, or of why it is lit so", declare_render};
 
 }  // namespace luxrig

@@ -36,9 +36,8 @@ struct RenderOptions {
   int threads = 0;
 };
 
-/// Returns the exit code: 0, 2 for bad input (told on stderr), 1 when the file cannot be written.
-int run_render(const RenderOptions& options);
-/// The same for `options.show`, which must be set.
+/// For `options.show`, which must be set. Returns the exit code: 0, 2 for bad input (told on stderr), 1 when the file
+/// cannot be written.
 int run_show(const RenderOptions& options);
 
 /// The rig and a level per fixture: those of the plan, whose placed lights are hung for it; or each fixture's highest.

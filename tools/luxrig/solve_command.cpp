@@ -1,11 +1,18 @@
+// solve: what the rig's tasks ask, as a plan.
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
+#include <memory>
 
 #include "core/tasks/solve_tasks.h"
+#include "tools/command_line/completion.h"
+#include "tools/command_line/installed.h"
 #include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
+#include "tools/luxrig/compute_arguments.h"
+#include "tools/luxrig/files.h"
 #include "tools/luxrig/open_session.h"
 #include "tools/luxrig/opening_light.h"
 #include "tools/luxrig/table.h"
@@ -14,6 +21,13 @@
 
 namespace luxrig {
 namespace {
+
+struct SolveArguments {
+  std::filesystem::path rig;
+  std::optional<std::filesystem::path> output;
+  ComputeOptions compute;
+  bool json = false;
+};
 
 std::string percent(double share) { return fmt::format("{:.1f} %", 100 * share); }
 
@@ -129,8 +143,6 @@ void print_relief(const Rig& rig, const PlannedTask& task) {
                task.name);
 }
 
-}  // namespace
-
 int run_solve(const SolveArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
   // First of all: a thread that there is before (the ray tracer's) would take the signal, and the process would end.
@@ -221,5 +233,19 @@ int run_solve(const SolveArguments& arguments) {
              plan->seconds, arguments.output ? ", plan in " + arguments.output->string() : "");
   return exit_code;
 }
+
+Action declare_solve(CLI::App& command) {
+  const auto solve = std::make_shared<SolveArguments>();
+  add_rig_option(command, solve->rig);
+  command.add_option("-o,--output", solve->output, "write the plan here")->check(offers_files());
+  add_model(command, solve->compute);
+  command.add_flag("--json", solve->json, "print the plan");
+  return [solve] { return run_solve(*solve); };
+}
+
+}  // namespace
+
+const Command kSolveCommand{"solve", command_group::kLight, "do what the rig's tasks ask, and write a plan",
+                            declare_solve};
 
 }  // namespace luxrig

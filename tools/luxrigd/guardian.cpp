@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "drivers/io/os_fault.h"
-#include "tools/luxrig/commands.h"
+#include "tools/luxrig/files.h"
 #include "tools/luxrigd/guardian_words.h"
 #include "tools/luxrigd/handed_light.h"
 

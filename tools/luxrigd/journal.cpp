@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "tools/luxrig/commands.h"
+#include "tools/luxrig/files.h"
 
 namespace luxrig {
 namespace {

@@ -9,7 +9,7 @@
 #include <span>
 
 #include "core/tasks/rig_version.h"
-#include "tools/luxrig/commands.h"
+#include "tools/luxrig/files.h"
 
 namespace luxrig {
 namespace {

@@ -13,7 +13,7 @@
 #include "core/rig/null_bus.h"
 #include "core/tasks/solve_tasks.h"
 #include "tools/luxrig/command.h"
-#include "tools/luxrig/commands.h"
+#include "tools/luxrig/files.h"
 #include "tools/luxrig/open_session.h"
 #include "tools/luxrig/terminal_watch.h"
 #include "tools/luxrigd/daemon.h"

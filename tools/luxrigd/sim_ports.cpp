@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "core/rig/plain_text.h"
-#include "tools/luxrig/commands.h"
+#include "tools/luxrig/files.h"
 
 namespace luxrig {
 

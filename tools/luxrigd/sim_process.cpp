@@ -11,8 +11,8 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "tools/luxrig/commands.h"
 #include "tools/http/client.h"
+#include "tools/luxrig/files.h"
 
 extern char** environ;
 

@@ -1,0 +1,36 @@
+#pragma once
+/// The subcommands of luxrig, in one table: parsing, help, man pages and completion all come from it.
+
+#include <functional>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace luxrig {
+
+/// What a command does once its line is understood; returns the exit code.
+using Action = std::function<int()>;
+
+struct Command {
+  const char* name;
+  const char* group;                     ///< one of those below
+  const char* summary;                   ///< its line of `luxrig --help`, where 66 letters have room
+  Action (*declare)(CLI::App& command);  ///< adds its options; the action keeps what they set
+};
+
+/// What a person wants: help and man page sort the commands by it.
+namespace command_group {
+inline constexpr char kMake[] = "Make a rig";
+inline constexpr char kLight[] = "Work out its light";
+inline constexpr char kRun[] = "Run it";
+inline constexpr char kByHand[] = "Set it by hand";
+inline constexpr char kDevices[] = "Devices";
+inline constexpr char kLuxrig[] = "Luxrig itself";
+}  // namespace command_group
+
+/// By group, and in each as a person comes to need them.
+[[nodiscard]] const std::vector<Command>& command_table();
+
+}  // namespace luxrig
