@@ -1,8 +1,10 @@
 // Parsing, help, man page and completion of a small program.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <array>
 #include <cstdio>
+#include <filesystem>
 #include <fstream>
 
 #include "tools/command_line/choice.h"
@@ -181,10 +183,11 @@ std::string told_by(const std::string& command) {
 
 TEST_F(CommandLine, BashTakesWhatFitsOfWhatTheProgramOffers) {
   const auto offered = [this](const std::vector<std::string>& words) {
-    const std::string file = ::testing::TempDir() + "luxrig-completion";
-    std::ofstream script(file);
+    const std::string script_file = ::testing::TempDir() + "luxrig-completion-" + std::to_string(::getpid());
+    std::ofstream script(script_file);
     script << completion_script("tool", Shell::bash)
-           << "tool() { [[ $1 == --complete ]] && shift && printf '%s|' \"$@\" >" << file << ".asked; cat <<'END'\n"
+           << "tool() { [[ $1 == --complete ]] && shift && printf '%s|' \"$@\" >" << script_file
+           << ".asked; cat <<'END'\n"
            << offer_text(offer(words)) << "END\n}\nCOMP_WORDS=(tool";
     std::string asked;
     for (const std::string& word : words) {
@@ -193,8 +196,9 @@ TEST_F(CommandLine, BashTakesWhatFitsOfWhatTheProgramOffers) {
     }
     script << ")\nCOMP_CWORD=" << words.size() << "\n_tool\necho \"${COMPREPLY[*]}\"\n";
     script.close();
-    std::string told = told_by("bash " + file);
-    EXPECT_EQ(told_by("cat " + file + ".asked"), asked);
+    std::string told = told_by("bash " + script_file);
+    EXPECT_EQ(told_by("cat " + script_file + ".asked"), asked);
+    for (const char* ending : {"", ".asked"}) std::filesystem::remove(script_file + ending);
     return told;
   };
   EXPECT_EQ(offered({"d"}), "draw\n");
@@ -206,12 +210,16 @@ TEST_F(CommandLine, BashTakesWhatFitsOfWhatTheProgramOffers) {
 
 TEST_F(CommandLine, EachShellAcceptsItsScript) {
   for (const auto& [name, shell] : shells()) {
-    const std::string file = ::testing::TempDir() + "luxrig-completion." + name;
-    std::ofstream(file) << completion_script("tool", shell);
-    const std::string check = "command -v " + name + " >/dev/null || exit 0; " + name + " -n " + file + " 2>&1";
+    const std::string script_file =
+        ::testing::TempDir() + "luxrig-completion-" + std::to_string(::getpid()) + "." + name;
+    std::ofstream(script_file) << completion_script("tool", shell);
+    const std::string check = "command -v " + name + " >/dev/null || exit 0; " + name + " -n " + script_file + " 2>&1";
     EXPECT_EQ(told_by(check), "") << name;
-    std::ofstream(file) << completion_script("tool", shell) << "\n'";
-    if (told_by("command -v " + name) != "failed\n") EXPECT_NE(told_by(check), "") << name << " sees what is wrong";
+    std::ofstream(script_file) << completion_script("tool", shell) << "\n'";
+    if (told_by("command -v " + name) != "failed\n") {
+      EXPECT_NE(told_by(check), "") << name << " sees what is wrong";
+    }
+    std::filesystem::remove(script_file);
   }
 }
 

@@ -108,21 +108,25 @@ TEST(CommandTable, TheShellIsOfferedEveryCommandAndItsOptions) {
   // What help tells of is what is offered.
   for (const Command& command : command_table()) {
     const std::string help = help_of({command.name});
-    for (const std::string& option : offered({command.name, "--"}))
-      EXPECT_NE(help.find(option), std::string::npos) << command.name << option;
+    const std::vector<std::string> options = offered({command.name, "--"});
+    EXPECT_EQ(std::count(options.begin(), options.end(), "--help"), 1) << command.name;
+    for (const std::string& option : options) EXPECT_NE(help.find(option), std::string::npos) << command.name << option;
   }
 }
 
 /// What bash, with the program's script, completes the last word to; with blanks between.
-std::string completed(const std::vector<std::string>& words) {
-  std::string line = "source <('" + program("luxrig") + "' completion bash)\nCOMP_WORDS=('" + program("luxrig") + "'";
+std::string completed(const std::vector<std::string>& words, const std::string& folder = "/") {
+  std::string line = "cd '" + folder +
+                     "'\n"
+                     "source <('" +
+                     program("luxrig") + "' completion bash)\nCOMP_WORDS=('" + program("luxrig") + "'";
   for (const std::string& word : words) line += " '" + word + "'";
   line += ")\nCOMP_CWORD=" + std::to_string(words.size()) + "\n_luxrig\necho \"${COMPREPLY[*]}\"";
   return luxrig::testing::run({"/bin/bash", "-c", line}).output;
 }
 
 TEST(CommandTable, BashCompletesCommandsOptionsWordsAndRigs) {
-  EXPECT_EQ(completed({"rel"}), "release reload\n");
+  EXPECT_EQ(completed({"rel"}), "reload release\n");
   EXPECT_EQ(completed({"completion", ""}), "bash zsh fish\n");
   EXPECT_EQ(completed({"render", "gallery", "--false"}), "--false-colour\n");
   EXPECT_EQ(completed({"evaluate", "gallery", "--model", "g"}), "gather\n");
@@ -130,7 +134,9 @@ TEST(CommandTable, BashCompletesCommandsOptionsWordsAndRigs) {
   EXPECT_EQ(completed({"blackout", ""}), "on off\n");
   EXPECT_EQ(completed({"rdm", "set", "7ff0:00000001", "per"}), "personality\n");
   EXPECT_EQ(completed({"check", "gal"}), "gallery\n");
-  EXPECT_EQ(completed({"check", source("rigs/gallery/rig.to")}), source("rigs/gallery/rig.toml") + "\n");
+  const Folder folder;
+  std::ofstream(folder / "gallows.toml") << "";
+  EXPECT_EQ(completed({"check", "gal"}, (folder / "").string()), "gallery gallows.toml\n") << "files, too";
   EXPECT_EQ(completed({"apply", ""}), "\n") << "bash offers files by itself";
 }
 
