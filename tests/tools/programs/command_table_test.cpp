@@ -116,10 +116,8 @@ TEST(CommandTable, TheShellIsOfferedEveryCommandAndItsOptions) {
 
 /// What bash, with the program's script, completes the last word to; with blanks between.
 std::string completed(const std::vector<std::string>& words, const std::string& folder = "/") {
-  std::string line = "cd '" + folder +
-                     "'\n"
-                     "source <('" +
-                     program("luxrig") + "' completion bash)\nCOMP_WORDS=('" + program("luxrig") + "'";
+  const std::string luxrig = "'" + program("luxrig") + "'";
+  std::string line = "cd '" + folder + "'; source <(" + luxrig + " completion bash)\nCOMP_WORDS=(" + luxrig;
   for (const std::string& word : words) line += " '" + word + "'";
   line += ")\nCOMP_CWORD=" + std::to_string(words.size()) + "\n_luxrig\necho \"${COMPREPLY[*]}\"";
   return luxrig::testing::run({"/bin/bash", "-c", line}).output;
