@@ -54,6 +54,7 @@ Action declare_bench(CLI::App& command) {
 
 }  // namespace
 
-const Command kBenchCommand{"bench", command_group::kLuxrig, "run time against error, on a named suite", declare_bench};
+const Command kBenchCommand{"bench", command_group::kMeasure, "run time against error, on a named suite",
+                            declare_bench};
 
 }  // namespace luxrig

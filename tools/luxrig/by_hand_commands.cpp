@@ -96,11 +96,11 @@ Action declare_release(CLI::App& command) {
 
 }  // namespace
 
-const Command kLevelCommand{"level", command_group::kByHand,
-                            "hold fixtures at a level by hand, until they are released", declare_level};
-const Command kGoalCommand{"goal", command_group::kByHand,
-                           "hold points at another goal by hand, until they are released", declare_goal};
-const Command kReleaseCommand{"release", command_group::kByHand, "what was set by hand goes back to the plan",
+const Command kLevelCommand{"level", command_group::kRun, "hold fixtures at a level by hand, until they are released",
+                            declare_level};
+const Command kGoalCommand{"goal", command_group::kRun, "hold points at another goal by hand, until they are released",
+                           declare_goal};
+const Command kReleaseCommand{"release", command_group::kRun, "what was set by hand goes back to the plan",
                               declare_release};
 
 }  // namespace luxrig

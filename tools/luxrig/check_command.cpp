@@ -384,7 +384,7 @@ Action declare_check(CLI::App& command) {
 
 }  // namespace
 
-const Command kCheckCommand{"check", command_group::kMake, "validate a rig and print what was understood",
+const Command kCheckCommand{"check", command_group::kSet, "validate a rig and print what was understood",
                             declare_check};
 
 }  // namespace luxrig

@@ -125,14 +125,14 @@ const Command kPageCommand{"page", command_group::kRun, "an address that opens t
                            declare_page};
 const Command kReloadCommand{"reload", command_group::kRun,
                              "have the daemon read its rig file again, whole or not at all", declare_reload};
-const Command kBlackoutCommand{"blackout", command_group::kByHand, "all light off at once; `blackout off` lifts it",
+const Command kBlackoutCommand{"blackout", command_group::kRun, "all light off at once; `blackout off` lifts it",
                                declare_blackout};
-const Command kHandBackCommand{"hand-back", command_group::kByHand,
+const Command kHandBackCommand{"hand-back", command_group::kRun,
                                "lighting desks that are back and wait for it get the light", declare_hand_back};
-const Command kParkCommand{"park", command_group::kByHand, "heads go dark and to where they rest, until the next apply",
+const Command kParkCommand{"park", command_group::kRun, "heads go dark and to where they rest, until the next apply",
                            declare_park};
-const Command kBypassCommand{"bypass", command_group::kByHand,
-                             "do without a failed fixture or luxmeter; the risk is said", declare_bypass};
+const Command kBypassCommand{"bypass", command_group::kRun, "do without a failed fixture or luxmeter; the risk is said",
+                             declare_bypass};
 const Command kIdentifyCommand{"identify", command_group::kDevices,
                                "which one is it? it blinks, or nods, and is then as it was", declare_identify};
 

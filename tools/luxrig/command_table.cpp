@@ -6,11 +6,11 @@ namespace luxrig {
 
 const std::vector<Command>& command_table() {
   static const std::vector<Command> table = {
-      kInitCommand,     kCheckCommand,    kImportCommand,   kEvaluateCommand, kSolveCommand,
-      kRenderCommand,   kRunCommand,      kPageCommand,     kStatusCommand,   kMonitorCommand,
-      kApplyCommand,    kReloadCommand,   kLevelCommand,    kGoalCommand,     kReleaseCommand,
-      kParkCommand,     kBlackoutCommand, kHandBackCommand, kBypassCommand,   kDevicesCommand,
-      kIdentifyCommand, kRdmCommand,      kCameraCommand,   kBenchCommand,    kCompletionCommand,
+      kInitCommand,   kCheckCommand,    kImportCommand,  kEvaluateCommand, kSolveCommand,
+      kRenderCommand, kRunCommand,      kApplyCommand,   kStatusCommand,   kLevelCommand,
+      kGoalCommand,   kReleaseCommand,  kParkCommand,    kBlackoutCommand, kHandBackCommand,
+      kReloadCommand, kPageCommand,     kMonitorCommand, kBypassCommand,   kDevicesCommand,
+      kRdmCommand,    kIdentifyCommand, kCameraCommand,  kBenchCommand,    kCompletionCommand,
   };
   return table;
 }

@@ -20,14 +20,13 @@ struct Command {
   Action (*declare)(CLI::App& command);  ///< adds its options; the action keeps what they set
 };
 
-/// What a person wants: help and man page sort the commands by it.
+/// What a person wants: help, man page and README sort the commands by it.
 namespace command_group {
-inline constexpr char kMake[] = "Make a rig";
-inline constexpr char kLight[] = "Work out its light";
-inline constexpr char kRun[] = "Run it";
-inline constexpr char kByHand[] = "Set it by hand";
+inline constexpr char kSet[] = "Set a rig";
+inline constexpr char kRun[] = "Run a show";
 inline constexpr char kDevices[] = "Devices";
-inline constexpr char kLuxrig[] = "Luxrig itself";
+inline constexpr char kMeasure[] = "Measure";
+inline constexpr char kShell[] = "Shell";
 }  // namespace command_group
 
 /// By group, and in each as a person comes to need them.

@@ -29,7 +29,7 @@ Action declare_completion(CLI::App& command) {
 
 }  // namespace
 
-const Command kCompletionCommand{"completion", command_group::kLuxrig,
+const Command kCompletionCommand{"completion", command_group::kShell,
                                  "print what bash, zsh or fish completes luxrig's words by", declare_completion};
 
 }  // namespace luxrig

@@ -128,7 +128,7 @@ Action declare_evaluate(CLI::App& command) {
 
 }  // namespace
 
-const Command kEvaluateCommand{"evaluate", command_group::kLight, "lux at every measurement point and luxmeter",
+const Command kEvaluateCommand{"evaluate", command_group::kSet, "lux at every measurement point and luxmeter",
                                declare_evaluate};
 
 }  // namespace luxrig

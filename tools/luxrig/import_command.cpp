@@ -69,6 +69,6 @@ Action declare_import(CLI::App& command) {
 
 }  // namespace
 
-const Command kImportCommand{"import", command_group::kMake, "make a rig folder of an MVR file", declare_import};
+const Command kImportCommand{"import", command_group::kSet, "make a rig folder of an MVR file", declare_import};
 
 }  // namespace luxrig

@@ -61,7 +61,7 @@ Action declare_init(CLI::App& command) {
 
 }  // namespace
 
-const Command kInitCommand{"init", command_group::kMake, "a commented rig to start from, in a folder of that name",
+const Command kInitCommand{"init", command_group::kSet, "a commented rig to start from, in a folder of that name",
                            declare_init};
 
 }  // namespace luxrig

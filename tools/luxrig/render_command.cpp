@@ -234,7 +234,7 @@ Action declare_render(CLI::App& command) {
 
 }  // namespace
 
-const Command kRenderCommand{"render", command_group::kLight,
+const Command kRenderCommand{"render", command_group::kSet,
                              "a picture of the lit rig, or of its lux, or of why it is lit so", declare_render};
 
 }  // namespace luxrig

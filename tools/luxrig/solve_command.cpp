@@ -245,7 +245,7 @@ Action declare_solve(CLI::App& command) {
 
 }  // namespace
 
-const Command kSolveCommand{"solve", command_group::kLight, "do what the rig's tasks ask, and write a plan",
+const Command kSolveCommand{"solve", command_group::kSet, "do what the rig's tasks ask, and write a plan",
                             declare_solve};
 
 }  // namespace luxrig

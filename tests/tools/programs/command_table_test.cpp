@@ -124,7 +124,7 @@ std::string completed(const std::vector<std::string>& words, const std::string& 
 }
 
 TEST(CommandTable, BashCompletesCommandsOptionsWordsAndRigs) {
-  EXPECT_EQ(completed({"rel"}), "reload release\n");
+  EXPECT_EQ(completed({"rel"}), "release reload\n");
   EXPECT_EQ(completed({"completion", ""}), "bash zsh fish\n");
   EXPECT_EQ(completed({"render", "gallery", "--false"}), "--false-colour\n");
   EXPECT_EQ(completed({"evaluate", "gallery", "--model", "g"}), "gather\n");

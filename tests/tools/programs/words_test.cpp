@@ -53,7 +53,7 @@ TEST(Words, HelpTellsWordsAndDefaults) {
 
 TEST(Words, EveryCommandIsInAGroupOfHelp) {
   const Ran ran = luxrig::testing::run({program("luxrig"), "--help"});
-  for (const char* text : {"Make a rig:", "Run it:", "Devices:", "  init ", "  blackout "})
+  for (const char* text : {"Set a rig:", "Run a show:", "Devices:", "Measure:", "  init ", "  blackout "})
     EXPECT_NE(ran.output.find(text), std::string::npos) << text << ran.output;
   EXPECT_EQ(ran.output.find("Subcommands:"), std::string::npos) << "a command without a group: " << ran.output;
 }
