@@ -19,8 +19,9 @@
 namespace luxrig {
 namespace {
 
-/// Where the object is brightest by direct light is where it is with reflected light, or next to it.
-constexpr std::size_t kCheckedSamples = 48;
+/// Where the object is brightest by direct light is where it is with reflected light, or next to it: at so many places
+/// all light is worked out, and among so many of the brightest by lamps they are sought where there is daylight, too.
+constexpr std::size_t kCheckedPlaces = 48, kPlacesInDaylight = 4000;
 /// Of a zoom, in even ratios: a third wider from one to the next where it goes from 6° to 40°.
 constexpr int kZoomStops = 8;
 constexpr double kSameBeam = 0.02;
@@ -42,16 +43,18 @@ Rig rig_at(const Rig& rig, std::span<const OrientedPoint> places, const std::vec
   return at;
 }
 
-/// Lux at places of fixtures at their levels (those at 0 cost nothing), and daylight.
+/// Lux at places of fixtures at their levels (those at 0 cost nothing), and daylight unless it is left out.
 Result<std::vector<double>> lux_at(const ReliefSurroundings& around, std::span<const OrientedPoint> places,
-                                   std::span<const double> levels, const ComputeOptions& options) {
+                                   std::span<const double> levels, const ComputeOptions& options,
+                                   bool with_daylight = true) {
   std::vector<bool> lit(levels.size());
   std::vector<double> of_lit;
   for (std::size_t f = 0; f < levels.size(); ++f)
     if ((lit[f] = levels[f] > 0)) of_lit.push_back(levels[f]);
   std::vector<double> lux(places.size(), 0);
-  if (places.empty() || (of_lit.empty() && !around.rig.daylight)) return lux;
-  const Rig at = rig_at(around.rig, places, lit);
+  if (places.empty() || (of_lit.empty() && !(with_daylight && around.rig.daylight))) return lux;
+  Rig at = rig_at(around.rig, places, lit);
+  if (!with_daylight) at.daylight.reset();
   ComputeOptions compute = options;
   compute.watch.progress = nullptr;
   const auto transport = compute_transport(at, around.rays, compute, of_lit);
@@ -60,6 +63,23 @@ Result<std::vector<double>> lux_at(const ReliefSurroundings& around, std::span<c
       *transport, Eigen::Map<const Eigen::VectorXd>(of_lit.data(), static_cast<Eigen::Index>(of_lit.size()))));
   for (std::size_t i = 0; i < lux.size(); ++i) lux[i] = sum[static_cast<Eigen::Index>(i)];
   return lux;
+}
+
+/// The brightest places, none within `apart_m` of a brighter one.
+std::vector<OrientedPoint> brightest(std::span<const OrientedPoint> places, std::span<const double> lux,
+                                     std::size_t most, double apart_m) {
+  std::vector<std::size_t> order(places.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return lux[a] > lux[b]; });
+  std::vector<OrientedPoint> kept;
+  for (const std::size_t i : order) {
+    if (kept.size() == most) break;
+    const auto near = [&](const OrientedPoint& one) {
+      return (one.position_world_m - places[i].position_world_m).norm() < apart_m;
+    };
+    if (!(apart_m > 0) || std::none_of(kept.begin(), kept.end(), near)) kept.push_back(places[i]);
+  }
+  return kept;
 }
 
 std::vector<double> staying_levels(const ReliefSurroundings& around, std::span<const double> levels) {
@@ -139,7 +159,7 @@ Result<StudiedObject> study_object(const Session& session, const ReliefSpec& rel
   how.interest.most_points = kAimPoints;
   how.run() = options.of_part();
   auto study = study_relief(*object, how);
-  if (!study) return refusal(fmt::format("object \"{}\": {}", name, study.error().detail));
+  if (!study) return in_words(study.error(), fmt::format("object \"{}\"", name));
   if (relief.camera) {
     const PictureCamera& camera = rig.cameras[*relief.camera];
     std::vector<bool> seen;
@@ -174,8 +194,12 @@ Result<std::vector<double>> staying_lux(const ReliefSurroundings& around, const 
 Result<AimedFixtures> aim_fixtures(const ReliefSurroundings& around, const StudiedObject& object, const Task& task,
                                    std::span<const double> present_levels, const ComputeOptions& options) {
   const AimSpec& spec = task.aim;
-  const Stage stage(options.watch, task.name, "light that stays");
+  std::optional<Stage> before(std::in_place, options.watch.without_stop(), task.name, "light that stays");
+  auto fixed = staying_lux(around, object, options);
+  if (!fixed) return tl::unexpected(fixed.error());
+  before.reset();
 
+  const Stage stage(options.watch, task.name, "aiming");
   AimWishes wishes;
   wishes.limits = limits_of(around, spec);
   wishes.max_object_lx = spec.relief.max_lx.value_or(std::numeric_limits<double>::infinity());
@@ -188,8 +212,6 @@ Result<AimedFixtures> aim_fixtures(const ReliefSurroundings& around, const Studi
   wishes.base_weight = spec.base_weight;
   wishes.travel_weight = spec.travel_weight;
   wishes.base_lx = spec.base_lx;
-  auto fixed = staying_lux(around, object, options);
-  if (!fixed) return tl::unexpected(fixed.error());
   wishes.fixed_lux = std::move(*fixed);
 
   const KeepOutZones zones(around.rig);
@@ -203,15 +225,14 @@ Result<AimedFixtures> aim_fixtures(const ReliefSurroundings& around, const Studi
     heads.back().may_light = [&zones, head = spec.heads[k]](const Joints& at) { return !zones.met(head, at); };
     present.push_back({fixture.joints, 0, present_levels[k]});
   }
-  stage.say("aiming");
   AimOptions aim;
   aim.run() = options.of_part();
   aim.watch.stop = stage.stop();
   const auto search =
       HeadAims::make(object.samples, object.study.features, around.rays, std::move(heads), std::move(wishes), aim);
-  if (!search) return refusal(fmt::format("task \"{}\": {}", task.name, search.error().detail));
+  if (!search) return in_words(search.error(), fmt::format("task \"{}\"", task.name));
   auto found = search->solve();
-  if (!found) return refusal(fmt::format("task \"{}\": {}", task.name, found.error().detail));
+  if (!found) return in_words(found.error(), fmt::format("task \"{}\"", task.name));
   AimedFixtures aimed;
   aimed.heads = std::move(found->heads);
   aimed.score = std::move(found->score);
@@ -220,30 +241,48 @@ Result<AimedFixtures> aim_fixtures(const ReliefSurroundings& around, const Studi
   return aimed;
 }
 
-Result<double> share_within_object_limit(const ReliefSurroundings& around, const StudiedObject& object, double max_lx,
-                                         std::span<const double> levels, const ComputeOptions& options) {
-  const std::vector<OrientedPoint>& all = object.samples.points;
+tl::unexpected<Fault> in_words(Fault fault, const std::string& of) {
+  fault.detail = of + ": " + fault.detail;
+  return tl::unexpected(std::move(fault));
+}
+
+Result<ObjectLight> light_on_object(const ReliefSurroundings& around, const StudiedObject& object,
+                                    std::span<const double> levels, const ComputeOptions& options) {
+  const TargetSurface& surface = object.study.surface;
+  std::vector<OrientedPoint> places;
+  for (std::uint32_t i = 0; i < surface.points_m.size(); ++i)
+    if (!surface.normals[i].isZero(0)) places.push_back({surface.point_world_m(i), surface.normals[i]});
   ComputeOptions direct = options;
   direct.model = Model::direct;
-  const auto by_direct = lux_at(around, all, levels, direct);
+  auto by_direct = lux_at(around, places, levels, direct, false);
   if (!by_direct) return tl::unexpected(by_direct.error());
-  std::vector<std::size_t> order(all.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  const std::size_t checked = std::min(kCheckedSamples, order.size());
-  std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(checked), order.end(),
-                    [&](std::size_t a, std::size_t b) { return (*by_direct)[a] > (*by_direct)[b]; });
-  std::vector<OrientedPoint> brightest;
-  for (std::size_t i = 0; i < checked; ++i) brightest.push_back(all[order[i]]);
-  const auto lux = lux_at(around, brightest, levels, options);
-  if (!lux) return tl::unexpected(lux.error());
-  const auto fixed = lux_at(around, brightest, staying_levels(around, levels), options);
-  if (!fixed) return tl::unexpected(fixed.error());
-  double share = 1;
-  for (std::size_t i = 0; i < checked; ++i) {
-    const double by_sought = (*lux)[i] - (*fixed)[i];
-    if ((*lux)[i] > max_lx && by_sought > 0) share = std::min(share, std::max(0.0, (max_lx - (*fixed)[i]) / by_sought));
+  if (around.rig.daylight) {
+    places = brightest(places, *by_direct, kPlacesInDaylight, 0);
+    by_direct = lux_at(around, places, levels, direct);
+    if (!by_direct) return tl::unexpected(by_direct.error());
   }
+  places = brightest(places, *by_direct, kCheckedPlaces, object.study.scale_m / 2);
+  const auto lux = lux_at(around, places, levels, options);
+  if (!lux) return tl::unexpected(lux.error());
+  auto fixed = lux_at(around, places, staying_levels(around, levels), options);
+  if (!fixed) return tl::unexpected(fixed.error());
+  ObjectLight light{std::move(*fixed), *lux};
+  for (std::size_t i = 0; i < places.size(); ++i) light.sought_lx[i] -= light.fixed_lx[i];
+  return light;
+}
+
+double ObjectLight::share_within(double max_lx) const {
+  double share = 1;
+  for (std::size_t i = 0; i < fixed_lx.size(); ++i)
+    if (fixed_lx[i] + sought_lx[i] > max_lx && sought_lx[i] > 0)
+      share = std::min(share, std::max(0.0, (max_lx - fixed_lx[i]) / sought_lx[i]));
   return share;
+}
+
+double ObjectLight::brightest_lx(double share) const {
+  double most = 0;
+  for (std::size_t i = 0; i < fixed_lx.size(); ++i) most = std::max(most, fixed_lx[i] + share * sought_lx[i]);
+  return most;
 }
 
 }  // namespace luxrig

@@ -58,7 +58,7 @@ TEST(ComputeTransport, TellsItsStageAndReachesTheErrorWanted) {
   EXPECT_TRUE(used.reached()) << used.rms_error;
   EXPECT_LE(used.rms_error, 0.01);
   ASSERT_GE(told.size(), 2);
-  EXPECT_EQ(told.front().task, "light of the room");
+  EXPECT_EQ(told.front().stage, "light of the room");
   EXPECT_TRUE(told.back().ended);
 }
 
