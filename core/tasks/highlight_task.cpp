@@ -132,11 +132,13 @@ Result<PlacedReliefLights> find_relief_lights(const ReliefSurroundings& around, 
   before->say("light that stays");
   auto fixed = staying_lux(around, object, options);
   if (!fixed) return refuse(fixed.error());
+  auto limits = limits_of(around, object, spec.relief, options);
+  if (!limits) return refuse(limits.error());
   before.reset();
 
   const Stage stage(options.watch, task.name, "aiming");
   AimWishes wishes;
-  wishes.limits = limits_at_points(around);
+  wishes.limits = std::move(*limits);
   wishes.max_object_lx = spec.relief.max_lx.value_or(std::numeric_limits<double>::infinity());
   wishes.max_watts = around.max_watts;
   wishes.coverage_weight = spec.relief.coverage_weight;

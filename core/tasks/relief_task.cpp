@@ -22,6 +22,8 @@ namespace {
 /// Where the object is brightest by direct light is where it is with reflected light, or next to it: at so many places
 /// all light is worked out, and among so many of the brightest by lamps they are sought where there is daylight, too.
 constexpr std::size_t kCheckedPlaces = 48, kPlacesInDaylight = 4000;
+/// Of the whole surface, at which a search keeps the object's limit beside the places where it judges the relief.
+constexpr std::size_t kLimitedPlaces = 256;
 /// Of a zoom, in even ratios: a third wider from one to the next where it goes from 6° to 40°.
 constexpr int kZoomStops = 8;
 constexpr double kSameBeam = 0.02;
@@ -63,6 +65,15 @@ Result<std::vector<double>> lux_at(const ReliefSurroundings& around, std::span<c
       *transport, Eigen::Map<const Eigen::VectorXd>(of_lit.data(), static_cast<Eigen::Index>(of_lit.size()))));
   for (std::size_t i = 0; i < lux.size(); ++i) lux[i] = sum[static_cast<Eigen::Index>(i)];
   return lux;
+}
+
+/// All over its surface.
+std::vector<OrientedPoint> places_of(const StudiedObject& object) {
+  const TargetSurface& surface = object.study.surface;
+  std::vector<OrientedPoint> places;
+  for (std::uint32_t i = 0; i < surface.points_m.size(); ++i)
+    if (!surface.normals[i].isZero(0)) places.push_back({surface.point_world_m(i), surface.normals[i]});
+  return places;
 }
 
 /// The brightest places, none within `apart_m` of a brighter one.
@@ -132,10 +143,9 @@ HangingHead hanging_head(const Rig& rig, std::size_t index, BeamsOfLuminaires& k
   return head;
 }
 
-/// Points with a limit, eyes and cameras.
-std::vector<AimLimit> limits_of(const ReliefSurroundings& around, const AimSpec& aim) {
-  std::vector<AimLimit> limits = limits_at_points(around);
-  if (!aim.max_eye_lx) return limits;
+/// Eyes and cameras.
+void add_limits_of_eyes(const ReliefSurroundings& around, const AimSpec& aim, std::vector<AimLimit>& limits) {
+  if (!aim.max_eye_lx) return;
   for (const std::size_t eye : aim.eyes)
     limits.push_back({around.rig.points[eye].name + " (eye)",
                       {around.rig.points[eye].position_world_m, Vec3::Zero()},
@@ -143,7 +153,6 @@ std::vector<AimLimit> limits_of(const ReliefSurroundings& around, const AimSpec&
                       0});
   for (const PictureCamera& camera : around.rig.cameras)
     limits.push_back({camera.name + " (camera)", {camera.position_world_m, Vec3::Zero()}, *aim.max_eye_lx, 0});
-  return limits;
 }
 
 }  // namespace
@@ -173,7 +182,8 @@ Result<StudiedObject> study_object(const Session& session, const ReliefSpec& rel
   return StudiedObject{std::move(*study), std::move(samples)};
 }
 
-std::vector<AimLimit> limits_at_points(const ReliefSurroundings& around) {
+Result<std::vector<AimLimit>> limits_of(const ReliefSurroundings& around, const StudiedObject& object,
+                                        const ReliefSpec& relief, const ComputeOptions& options) {
   std::vector<AimLimit> limits;
   for (std::size_t i = 0; i < around.rig.points.size(); ++i) {
     const Point& point = around.rig.points[i];
@@ -183,6 +193,15 @@ std::vector<AimLimit> limits_at_points(const ReliefSurroundings& around) {
                       *point.max_lx,
                       around.point_lux[static_cast<Eigen::Index>(i)]});
   }
+  if (!relief.max_lx) return limits;
+  const std::vector<OrientedPoint> all = places_of(object);
+  std::vector<OrientedPoint> places;
+  for (std::size_t k = 0; k < std::min(kLimitedPlaces, all.size()); ++k)
+    places.push_back(all[k * all.size() / std::min(kLimitedPlaces, all.size())]);
+  const auto fixed = lux_at(around, places, staying_levels(around, around.levels), options);
+  if (!fixed) return tl::unexpected(fixed.error());
+  for (std::size_t k = 0; k < places.size(); ++k)
+    limits.push_back({around.rig.scene.objects[relief.object].name, places[k], *relief.max_lx, (*fixed)[k]});
   return limits;
 }
 
@@ -197,11 +216,14 @@ Result<AimedFixtures> aim_fixtures(const ReliefSurroundings& around, const Studi
   std::optional<Stage> before(std::in_place, options.watch.without_stop(), task.name, "light that stays");
   auto fixed = staying_lux(around, object, options);
   if (!fixed) return tl::unexpected(fixed.error());
+  auto limits = limits_of(around, object, spec.relief, options);
+  if (!limits) return tl::unexpected(limits.error());
   before.reset();
 
   const Stage stage(options.watch, task.name, "aiming");
   AimWishes wishes;
-  wishes.limits = limits_of(around, spec);
+  wishes.limits = std::move(*limits);
+  add_limits_of_eyes(around, spec, wishes.limits);
   wishes.max_object_lx = spec.relief.max_lx.value_or(std::numeric_limits<double>::infinity());
   wishes.relative = spec.relief.relative;
   wishes.max_watts = around.max_watts;
@@ -248,10 +270,7 @@ tl::unexpected<Fault> in_words(Fault fault, const std::string& of) {
 
 Result<ObjectLight> light_on_object(const ReliefSurroundings& around, const StudiedObject& object,
                                     std::span<const double> levels, const ComputeOptions& options) {
-  const TargetSurface& surface = object.study.surface;
-  std::vector<OrientedPoint> places;
-  for (std::uint32_t i = 0; i < surface.points_m.size(); ++i)
-    if (!surface.normals[i].isZero(0)) places.push_back({surface.point_world_m(i), surface.normals[i]});
+  std::vector<OrientedPoint> places = places_of(object);
   ComputeOptions direct = options;
   direct.model = Model::direct;
   auto by_direct = lux_at(around, places, levels, direct, false);

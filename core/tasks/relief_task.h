@@ -43,8 +43,9 @@ struct AimedFixtures {
                                                  const Task& task, std::span<const double> present_levels,
                                                  const ComputeOptions& options);
 
-/// The rig's points with a limit, and what stays there.
-[[nodiscard]] std::vector<AimLimit> limits_at_points(const ReliefSurroundings& around);
+/// The rig's points with a limit, and some of the object's places where it has one, with what stays there.
+[[nodiscard]] Result<std::vector<AimLimit>> limits_of(const ReliefSurroundings& around, const StudiedObject& object,
+                                                      const ReliefSpec& relief, const ComputeOptions& options);
 
 /// What stays at each of the object's samples [lx].
 [[nodiscard]] Result<std::vector<double>> staying_lux(const ReliefSurroundings& around, const StudiedObject& object,
