@@ -12,9 +12,12 @@ namespace {
 constexpr double kSeenShare = 0.02;
 /// What seconds of movement are compared with: about how long a head takes from one look to the next.
 constexpr double kUsualMove_s = 4;
-/// Rounding may carry a level that was scaled to a limit over it.
 /// Of the mean illuminance: relative contrast is nought beside this.
 constexpr double kDarkShare = 0.1;
+/// Of what the strongest head, or the limit, lets the object have: an eye adapts to less than this no more, or the
+/// faint edge of a beam that misses the object would be the best light in a dark room.
+constexpr double kAdapts = 0.02;
+/// Rounding may carry a level that was scaled to a limit over it.
 constexpr double kLimitSlack = 1e-9;
 
 }  // namespace
@@ -87,7 +90,8 @@ double AimObjective::most_level(const AimSum& others, const AimColumn& column, H
 
 void AimObjective::measure_contrast(const AimSum& sum, AimScore& score) const {
   const std::vector<double>& lux = sum.sample_lux;
-  const double dark_lx = kDarkShare * sum.mean_lux;
+  const double bright_lx = std::min(reference_lx_, wishes_.max_object_lx);
+  const double dark_lx = kDarkShare * std::max(sum.mean_lux, kAdapts * bright_lx);
   for (std::size_t i = 0; i < samples_.interest; ++i) {
     double largest = 0, relative = 0;
     for (const std::uint32_t j : samples_.of(i)) {

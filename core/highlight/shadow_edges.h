@@ -33,7 +33,7 @@ struct ShadowEdges {
 
 struct ShadowEdgeOptions : Run {
   /// 1: every direction is asked, 32 400 rays per point. Above: the search below, whose first rays are so many degrees
-  /// apart; 2…8. See core/highlight/README.md for rays and error of each.
+  /// apart; 2…8. See core/highlight/NOTES.md for rays and error of each.
   int step = 4;
   double lift_m = 0;  ///< rays start so far off the surface; hides relief smaller than it
 };

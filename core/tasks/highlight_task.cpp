@@ -76,17 +76,15 @@ Result<PlacedReliefLights> find_relief_lights(const ReliefSurroundings& around, 
                                               const ComputeOptions& options) {
   const HighlightSpec& spec = task.highlight;
   const Luminaire& luminaire = around.rig.luminaires[spec.luminaire];
-  const auto refuse = [&](const Fault& fault) {
-    return refusal(fmt::format("task \"{}\": {}", task.name, fault.detail));
-  };
-  const Stage stage(options.watch, task.name, "looking for shadow edges");
+  const auto refuse = [&](const Fault& fault) { return in_words(fault, fmt::format("task \"{}\"", task.name)); };
+  std::optional<Stage> before(std::in_place, options.watch.without_stop(), task.name, "looking for shadow edges");
   const ReliefStudy& study = object.study;
   ShadowEdgeOptions of_edges;
   of_edges.run() = options.of_part();
   const auto edges = find_shadow_edges(study.rays, study.points, of_edges);
   if (!edges) return refuse(edges.error());
 
-  stage.say("asking where lights may hang");
+  before->say("asking where lights may hang");
   const auto domain = domain_of(around, object, mounting);
   if (!domain) return refuse(domain.error());
   const auto others = scene_without_object(around.scene, around.rig.scene.objects[spec.relief.object].name);
@@ -109,7 +107,7 @@ Result<PlacedReliefLights> find_relief_lights(const ReliefSurroundings& around, 
                     "[mounting], or lower clearance_m",
                     task.name, domain->cell_centres().size()));
 
-  stage.say("judging lights");
+  before->say("judging lights");
   JudgedLightOptions of_judge;
   of_judge.surroundings.environment = &environment;
   of_judge.lift_m = 1e-4 * study.surface.diagonal_m();
@@ -131,15 +129,20 @@ Result<PlacedReliefLights> find_relief_lights(const ReliefSurroundings& around, 
     chosen = std::move(count->by_number[count->best]);
   }
 
-  stage.say("aiming");
+  before->say("light that stays");
+  auto fixed = staying_lux(around, object, options);
+  if (!fixed) return refuse(fixed.error());
+  auto limits = limits_of(around, object, spec.relief, options);
+  if (!limits) return refuse(limits.error());
+  before.reset();
+
+  const Stage stage(options.watch, task.name, "aiming");
   AimWishes wishes;
-  wishes.limits = limits_at_points(around);
+  wishes.limits = std::move(*limits);
   wishes.max_object_lx = spec.relief.max_lx.value_or(std::numeric_limits<double>::infinity());
   wishes.max_watts = around.max_watts;
   wishes.coverage_weight = spec.relief.coverage_weight;
   wishes.travel_weight = 0;
-  auto fixed = staying_lux(around, object, options);
-  if (!fixed) return refuse(fixed.error());
   wishes.fixed_lux = std::move(*fixed);
   std::vector<HangingHead> heads;
   for (const JudgedLight& light : chosen.lights) {

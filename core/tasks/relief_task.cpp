@@ -19,8 +19,11 @@
 namespace luxrig {
 namespace {
 
-/// Where the object is brightest by direct light is where it is with reflected light, or next to it.
-constexpr std::size_t kCheckedSamples = 48;
+/// Where the object is brightest by direct light is where it is with reflected light, or next to it: at so many places
+/// all light is worked out, and among so many of the brightest by lamps they are sought where there is daylight, too.
+constexpr std::size_t kCheckedPlaces = 48, kPlacesInDaylight = 4000;
+/// Of the whole surface, at which a search keeps the object's limit beside the places where it judges the relief.
+constexpr std::size_t kLimitedPlaces = 256;
 /// Of a zoom, in even ratios: a third wider from one to the next where it goes from 6° to 40°.
 constexpr int kZoomStops = 8;
 constexpr double kSameBeam = 0.02;
@@ -42,16 +45,18 @@ Rig rig_at(const Rig& rig, std::span<const OrientedPoint> places, const std::vec
   return at;
 }
 
-/// Lux at places of fixtures at their levels (those at 0 cost nothing), and daylight.
+/// Lux at places of fixtures at their levels (those at 0 cost nothing), and daylight unless it is left out.
 Result<std::vector<double>> lux_at(const ReliefSurroundings& around, std::span<const OrientedPoint> places,
-                                   std::span<const double> levels, const ComputeOptions& options) {
+                                   std::span<const double> levels, const ComputeOptions& options,
+                                   bool with_daylight = true) {
   std::vector<bool> lit(levels.size());
   std::vector<double> of_lit;
   for (std::size_t f = 0; f < levels.size(); ++f)
     if ((lit[f] = levels[f] > 0)) of_lit.push_back(levels[f]);
   std::vector<double> lux(places.size(), 0);
-  if (places.empty() || (of_lit.empty() && !around.rig.daylight)) return lux;
-  const Rig at = rig_at(around.rig, places, lit);
+  if (places.empty() || (of_lit.empty() && !(with_daylight && around.rig.daylight))) return lux;
+  Rig at = rig_at(around.rig, places, lit);
+  if (!with_daylight) at.daylight.reset();
   ComputeOptions compute = options;
   compute.watch.progress = nullptr;
   const auto transport = compute_transport(at, around.rays, compute, of_lit);
@@ -60,6 +65,32 @@ Result<std::vector<double>> lux_at(const ReliefSurroundings& around, std::span<c
       *transport, Eigen::Map<const Eigen::VectorXd>(of_lit.data(), static_cast<Eigen::Index>(of_lit.size()))));
   for (std::size_t i = 0; i < lux.size(); ++i) lux[i] = sum[static_cast<Eigen::Index>(i)];
   return lux;
+}
+
+/// All over its surface.
+std::vector<OrientedPoint> places_of(const StudiedObject& object) {
+  const TargetSurface& surface = object.study.surface;
+  std::vector<OrientedPoint> places;
+  for (std::uint32_t i = 0; i < surface.points_m.size(); ++i)
+    if (!surface.normals[i].isZero(0)) places.push_back({surface.point_world_m(i), surface.normals[i]});
+  return places;
+}
+
+/// The brightest places, none within `apart_m` of a brighter one.
+std::vector<OrientedPoint> brightest(std::span<const OrientedPoint> places, std::span<const double> lux,
+                                     std::size_t most, double apart_m) {
+  std::vector<std::size_t> order(places.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return lux[a] > lux[b]; });
+  std::vector<OrientedPoint> kept;
+  for (const std::size_t i : order) {
+    if (kept.size() == most) break;
+    const auto near = [&](const OrientedPoint& one) {
+      return (one.position_world_m - places[i].position_world_m).norm() < apart_m;
+    };
+    if (!(apart_m > 0) || std::none_of(kept.begin(), kept.end(), near)) kept.push_back(places[i]);
+  }
+  return kept;
 }
 
 std::vector<double> staying_levels(const ReliefSurroundings& around, std::span<const double> levels) {
@@ -112,10 +143,9 @@ HangingHead hanging_head(const Rig& rig, std::size_t index, BeamsOfLuminaires& k
   return head;
 }
 
-/// Points with a limit, eyes and cameras.
-std::vector<AimLimit> limits_of(const ReliefSurroundings& around, const AimSpec& aim) {
-  std::vector<AimLimit> limits = limits_at_points(around);
-  if (!aim.max_eye_lx) return limits;
+/// Eyes and cameras.
+void add_limits_of_eyes(const ReliefSurroundings& around, const AimSpec& aim, std::vector<AimLimit>& limits) {
+  if (!aim.max_eye_lx) return;
   for (const std::size_t eye : aim.eyes)
     limits.push_back({around.rig.points[eye].name + " (eye)",
                       {around.rig.points[eye].position_world_m, Vec3::Zero()},
@@ -123,7 +153,6 @@ std::vector<AimLimit> limits_of(const ReliefSurroundings& around, const AimSpec&
                       0});
   for (const PictureCamera& camera : around.rig.cameras)
     limits.push_back({camera.name + " (camera)", {camera.position_world_m, Vec3::Zero()}, *aim.max_eye_lx, 0});
-  return limits;
 }
 
 }  // namespace
@@ -139,7 +168,7 @@ Result<StudiedObject> study_object(const Session& session, const ReliefSpec& rel
   how.interest.most_points = kAimPoints;
   how.run() = options.of_part();
   auto study = study_relief(*object, how);
-  if (!study) return refusal(fmt::format("object \"{}\": {}", name, study.error().detail));
+  if (!study) return in_words(study.error(), fmt::format("object \"{}\"", name));
   if (relief.camera) {
     const PictureCamera& camera = rig.cameras[*relief.camera];
     std::vector<bool> seen;
@@ -153,7 +182,8 @@ Result<StudiedObject> study_object(const Session& session, const ReliefSpec& rel
   return StudiedObject{std::move(*study), std::move(samples)};
 }
 
-std::vector<AimLimit> limits_at_points(const ReliefSurroundings& around) {
+Result<std::vector<AimLimit>> limits_of(const ReliefSurroundings& around, const StudiedObject& object,
+                                        const ReliefSpec& relief, const ComputeOptions& options) {
   std::vector<AimLimit> limits;
   for (std::size_t i = 0; i < around.rig.points.size(); ++i) {
     const Point& point = around.rig.points[i];
@@ -163,6 +193,15 @@ std::vector<AimLimit> limits_at_points(const ReliefSurroundings& around) {
                       *point.max_lx,
                       around.point_lux[static_cast<Eigen::Index>(i)]});
   }
+  if (!relief.max_lx) return limits;
+  const std::vector<OrientedPoint> all = places_of(object);
+  std::vector<OrientedPoint> places;
+  for (std::size_t k = 0; k < std::min(kLimitedPlaces, all.size()); ++k)
+    places.push_back(all[k * all.size() / std::min(kLimitedPlaces, all.size())]);
+  const auto fixed = lux_at(around, places, staying_levels(around, around.levels), options);
+  if (!fixed) return tl::unexpected(fixed.error());
+  for (std::size_t k = 0; k < places.size(); ++k)
+    limits.push_back({around.rig.scene.objects[relief.object].name, places[k], *relief.max_lx, (*fixed)[k]});
   return limits;
 }
 
@@ -174,10 +213,17 @@ Result<std::vector<double>> staying_lux(const ReliefSurroundings& around, const 
 Result<AimedFixtures> aim_fixtures(const ReliefSurroundings& around, const StudiedObject& object, const Task& task,
                                    std::span<const double> present_levels, const ComputeOptions& options) {
   const AimSpec& spec = task.aim;
-  const Stage stage(options.watch, task.name, "light that stays");
+  std::optional<Stage> before(std::in_place, options.watch.without_stop(), task.name, "light that stays");
+  auto fixed = staying_lux(around, object, options);
+  if (!fixed) return tl::unexpected(fixed.error());
+  auto limits = limits_of(around, object, spec.relief, options);
+  if (!limits) return tl::unexpected(limits.error());
+  before.reset();
 
+  const Stage stage(options.watch, task.name, "aiming");
   AimWishes wishes;
-  wishes.limits = limits_of(around, spec);
+  wishes.limits = std::move(*limits);
+  add_limits_of_eyes(around, spec, wishes.limits);
   wishes.max_object_lx = spec.relief.max_lx.value_or(std::numeric_limits<double>::infinity());
   wishes.relative = spec.relief.relative;
   wishes.max_watts = around.max_watts;
@@ -188,8 +234,6 @@ Result<AimedFixtures> aim_fixtures(const ReliefSurroundings& around, const Studi
   wishes.base_weight = spec.base_weight;
   wishes.travel_weight = spec.travel_weight;
   wishes.base_lx = spec.base_lx;
-  auto fixed = staying_lux(around, object, options);
-  if (!fixed) return tl::unexpected(fixed.error());
   wishes.fixed_lux = std::move(*fixed);
 
   const KeepOutZones zones(around.rig);
@@ -203,15 +247,14 @@ Result<AimedFixtures> aim_fixtures(const ReliefSurroundings& around, const Studi
     heads.back().may_light = [&zones, head = spec.heads[k]](const Joints& at) { return !zones.met(head, at); };
     present.push_back({fixture.joints, 0, present_levels[k]});
   }
-  stage.say("aiming");
   AimOptions aim;
   aim.run() = options.of_part();
   aim.watch.stop = stage.stop();
   const auto search =
       HeadAims::make(object.samples, object.study.features, around.rays, std::move(heads), std::move(wishes), aim);
-  if (!search) return refusal(fmt::format("task \"{}\": {}", task.name, search.error().detail));
+  if (!search) return in_words(search.error(), fmt::format("task \"{}\"", task.name));
   auto found = search->solve();
-  if (!found) return refusal(fmt::format("task \"{}\": {}", task.name, found.error().detail));
+  if (!found) return in_words(found.error(), fmt::format("task \"{}\"", task.name));
   AimedFixtures aimed;
   aimed.heads = std::move(found->heads);
   aimed.score = std::move(found->score);
@@ -220,30 +263,45 @@ Result<AimedFixtures> aim_fixtures(const ReliefSurroundings& around, const Studi
   return aimed;
 }
 
-Result<double> share_within_object_limit(const ReliefSurroundings& around, const StudiedObject& object, double max_lx,
-                                         std::span<const double> levels, const ComputeOptions& options) {
-  const std::vector<OrientedPoint>& all = object.samples.points;
+tl::unexpected<Fault> in_words(Fault fault, const std::string& of) {
+  fault.detail = of + ": " + fault.detail;
+  return tl::unexpected(std::move(fault));
+}
+
+Result<ObjectLight> light_on_object(const ReliefSurroundings& around, const StudiedObject& object,
+                                    std::span<const double> levels, const ComputeOptions& options) {
+  std::vector<OrientedPoint> places = places_of(object);
   ComputeOptions direct = options;
   direct.model = Model::direct;
-  const auto by_direct = lux_at(around, all, levels, direct);
+  auto by_direct = lux_at(around, places, levels, direct, false);
   if (!by_direct) return tl::unexpected(by_direct.error());
-  std::vector<std::size_t> order(all.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  const std::size_t checked = std::min(kCheckedSamples, order.size());
-  std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(checked), order.end(),
-                    [&](std::size_t a, std::size_t b) { return (*by_direct)[a] > (*by_direct)[b]; });
-  std::vector<OrientedPoint> brightest;
-  for (std::size_t i = 0; i < checked; ++i) brightest.push_back(all[order[i]]);
-  const auto lux = lux_at(around, brightest, levels, options);
-  if (!lux) return tl::unexpected(lux.error());
-  const auto fixed = lux_at(around, brightest, staying_levels(around, levels), options);
-  if (!fixed) return tl::unexpected(fixed.error());
-  double share = 1;
-  for (std::size_t i = 0; i < checked; ++i) {
-    const double by_sought = (*lux)[i] - (*fixed)[i];
-    if ((*lux)[i] > max_lx && by_sought > 0) share = std::min(share, std::max(0.0, (max_lx - (*fixed)[i]) / by_sought));
+  if (around.rig.daylight) {
+    places = brightest(places, *by_direct, kPlacesInDaylight, 0);
+    by_direct = lux_at(around, places, levels, direct);
+    if (!by_direct) return tl::unexpected(by_direct.error());
   }
+  places = brightest(places, *by_direct, kCheckedPlaces, object.study.scale_m / 2);
+  const auto lux = lux_at(around, places, levels, options);
+  if (!lux) return tl::unexpected(lux.error());
+  auto fixed = lux_at(around, places, staying_levels(around, levels), options);
+  if (!fixed) return tl::unexpected(fixed.error());
+  ObjectLight light{std::move(*fixed), *lux};
+  for (std::size_t i = 0; i < places.size(); ++i) light.sought_lx[i] -= light.fixed_lx[i];
+  return light;
+}
+
+double ObjectLight::share_within(double max_lx) const {
+  double share = 1;
+  for (std::size_t i = 0; i < fixed_lx.size(); ++i)
+    if (fixed_lx[i] + sought_lx[i] > max_lx && sought_lx[i] > 0)
+      share = std::min(share, std::max(0.0, (max_lx - fixed_lx[i]) / sought_lx[i]));
   return share;
+}
+
+double ObjectLight::brightest_lx(double share) const {
+  double most = 0;
+  for (std::size_t i = 0; i < fixed_lx.size(); ++i) most = std::max(most, fixed_lx[i] + share * sought_lx[i]);
+  return most;
 }
 
 }  // namespace luxrig

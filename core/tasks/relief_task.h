@@ -43,17 +43,29 @@ struct AimedFixtures {
                                                  const Task& task, std::span<const double> present_levels,
                                                  const ComputeOptions& options);
 
-/// The rig's points with a limit, and what stays there.
-[[nodiscard]] std::vector<AimLimit> limits_at_points(const ReliefSurroundings& around);
+/// The rig's points with a limit, and some of the object's places where it has one, with what stays there.
+[[nodiscard]] Result<std::vector<AimLimit>> limits_of(const ReliefSurroundings& around, const StudiedObject& object,
+                                                      const ReliefSpec& relief, const ComputeOptions& options);
 
 /// What stays at each of the object's samples [lx].
 [[nodiscard]] Result<std::vector<double>> staying_lux(const ReliefSurroundings& around, const StudiedObject& object,
                                                       const ComputeOptions& options);
 
-/// By how much the lights that were sought must be dimmed so that nowhere on the object is more than max_lx, with what
-/// is reflected: 0…1. levels: of all fixtures of the rig, as set.
-[[nodiscard]] Result<double> share_within_object_limit(const ReliefSurroundings& around, const StudiedObject& object,
-                                                       double max_lx, std::span<const double> levels,
-                                                       const ComputeOptions& options);
+/// All light, with what is reflected, at the object's brightest places.
+struct ObjectLight {
+  std::vector<double> fixed_lx, sought_lx;  ///< of what stays, and of the lights that were sought
+
+  /// By how much the lights that were sought must be dimmed so that nowhere is more: 0…1.
+  [[nodiscard]] double share_within(double max_lx) const;
+  /// When they are dimmed by `share`.
+  [[nodiscard]] double brightest_lx(double share) const;
+};
+
+/// Looks for them on the whole of its surface. levels: of all fixtures of the rig, as set.
+[[nodiscard]] Result<ObjectLight> light_on_object(const ReliefSurroundings& around, const StudiedObject& object,
+                                                  std::span<const double> levels, const ComputeOptions& options);
+
+/// The same fault, and what it is about: a stop stays a stop.
+[[nodiscard]] tl::unexpected<Fault> in_words(Fault fault, const std::string& of);
 
 }  // namespace luxrig

@@ -24,12 +24,12 @@ Result<ReliefSurroundings> TaskSolver::surroundings(std::vector<bool> sought, co
 Result<void> TaskSolver::settle_relief(const Task& task, const ReliefSpec& spec, const ReliefSurroundings& around,
                                        const StudiedObject& object, const AimScore& score, const AimScore* before,
                                        PlannedTask& planned) {
-  double share = 1;
-  if (spec.max_lx) {
-    const auto within = share_within_object_limit(around, object, *spec.max_lx, levels(), options_);
-    if (!within) return tl::unexpected(within.error());
-    share = *within;
-  }
+  // A stop has ended the search, not what becomes of it.
+  ComputeOptions to_the_end = options_;
+  to_the_end.watch = options_.watch.without_stop();
+  const auto light = light_on_object(around, object, levels(), to_the_end);
+  if (!light) return tl::unexpected(light.error());
+  double share = spec.max_lx ? light->share_within(*spec.max_lx) : 1;
   const Eigen::VectorXd lux = lux_of_points();
   for (std::size_t i = 0; i < rig_.points.size(); ++i) {
     const auto row = static_cast<Index>(i);
@@ -44,7 +44,7 @@ Result<void> TaskSolver::settle_relief(const Task& task, const ReliefSpec& spec,
   relief.local_contrast_lx = share * score.local_contrast_lx;
   relief.coverage = score.coverage;
   relief.relative_contrast = score.relative_contrast;
-  relief.object_lux = share * score.object_lx;
+  relief.object_lux = light->brightest_lx(share);
   if (std::isfinite(score.key_to_fill)) relief.key_to_fill = score.key_to_fill;
   if (before) {
     relief.before_local_contrast_lx = before->local_contrast_lx;

@@ -8,11 +8,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <optional>
 
 #include "drivers/registry.h"
 #include "sim/wire/modbus/pty_line.h"
+#include "tests/conformance/broken_driver.h"
 #include "tests/conformance/far_end.h"
 #include "tests/conformance/subject.h"
 #include "tests/drivers/modbus/scripted_peer.h"
@@ -22,6 +24,12 @@ namespace luxrig {
 namespace {
 
 using std::chrono::milliseconds;
+
+/// The driver; broken where this process is to show that the suite notices.
+std::unique_ptr<Driver> made(const DriverEntry& entry, const Rig& rig, const Redirect& to) {
+  const char* breakage = std::getenv(kBreakVariable);
+  return broken(entry.make(rig, 0, to), breakage != nullptr ? breakage : "");
+}
 
 /// The bus as a person would write it: what is required, and nothing else.
 Bus plain_bus(const DriverEntry& entry) {
@@ -101,7 +109,7 @@ class BusSubject final : public Subject {
       : entry_(entry),
         rig_(rig_for(entry)),
         far_(rig_, only_turns(rig_) ? Duration(milliseconds(5)) : Duration(std::chrono::hours(1))) {
-    driver = entry.make(rig_, 0, far_.redirect());
+    driver = made(entry, rig_, far_.redirect());
     bounds = driver->bounds();
   }
   ~BusSubject() override { driver.reset(); }
@@ -281,7 +289,7 @@ class Recorder {
 std::vector<std::vector<std::uint8_t>> record_bus(const DriverEntry& entry) {
   const Rig rig = rig_for(entry);
   Recorder recorder;
-  const auto driver = entry.make(rig, 0, Redirect{"127.0.0.1", recorder.port(), recorder.path()});
+  const auto driver = made(entry, rig, Redirect{"127.0.0.1", recorder.port(), recorder.path()});
   EXPECT_TRUE(driver->activate(at_ms(0)));
   for (int i = 0; i < 5; ++i) {
     (void)write_all(*driver, rig, at_ms(0) + i * driver->bounds().write_period, 0.1 * i);
@@ -308,7 +316,7 @@ std::vector<Kind> bus_kinds() {
     kind.alone = [&entry] {
       static std::vector<std::unique_ptr<Rig>> rigs;  // drivers may look at theirs
       rigs.push_back(std::make_unique<Rig>(rig_for(entry)));
-      return entry.make(*rigs.back(), 0, Redirect{"127.0.0.1", 9, {}});  // the discard port: nobody is there
+      return made(entry, *rigs.back(), Redirect{"127.0.0.1", 9, {}});  // the discard port: nobody is there
     };
     kind.record = [&entry] { return record_bus(entry); };
     kind.problems_of_misspelt_option = [&entry](std::string& known) {

@@ -1,4 +1,4 @@
-// Speaks the daemon's HTTP API (tools/luxrigd/README.md) without a rig, for the page's test and for work on the page:
+// Speaks the daemon's HTTP API (tools/luxrigd/API.md) without a rig, for the page's test and for work on the page:
 //   node tests/web/mock_server.mjs [--port 9620] [--dist build/release/share/luxrig/web] [--script]
 // --script plays a whole show with faults, over and over; without it the rig holds.
 import { readFile } from 'node:fs/promises';

@@ -22,7 +22,7 @@ std::vector<OrientedPoint> voting_points(HighlightObject& object, const BenchOpt
   const ReliefStudy& study = object.study();
   InterestOptions more = options_of_study(options).interest;
   more.most_points = kHundredMillionRays * 3 / 2;
-  const auto curvature = curvature_of(study.mesh, {{.threads = options.threads}, study.scale_m});
+  const auto curvature = curvature_of(study.mesh, {{.threads = options.threads, .watch = {}}, study.scale_m});
   if (!curvature) return study.points;
   const auto interest = interest_points(study.mesh, *curvature, more);
   if (!interest) return study.points;
@@ -79,7 +79,7 @@ void add_curvature_rows(HighlightObject& object, const BenchOptions& options, st
   if (!highlight_wanted(options, name)) return;
   const ReliefStudy& study = object.study();
   HighlightRow row{name, "quadric"};
-  row.took = timed([&] { (void)curvature_of(study.mesh, {{.threads = options.threads}, study.scale_m}); });
+  row.took = timed([&] { (void)curvature_of(study.mesh, {{.threads = options.threads, .watch = {}}, study.scale_m}); });
   const auto points = static_cast<double>(study.mesh.points_m.size());
   row.error = std::nan("");
   row.note = fmt::format("{} points; {:.1f} us of processor each; scale {:.4g} m", study.mesh.points_m.size(),

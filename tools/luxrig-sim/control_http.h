@@ -1,6 +1,6 @@
 #pragma once
 /// The simulator's control port: HTTP on loopback, through which a test looks at the truth and makes things go wrong.
-/// Routes: README.md.
+/// Routes: API.md.
 
 #include <functional>
 #include <memory>

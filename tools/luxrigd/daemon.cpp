@@ -320,7 +320,7 @@ HttpHandlers Daemon::handlers() {
   handlers.identify = [this](const std::string& name, double seconds) { return identify(name, seconds); };
   handlers.park = [this](const std::vector<std::string>& names) { return park(names); };
   handlers.hand_back = [this] { on_control_thread([this](Time at) { controller_.hand_back(at); }); };
-  handlers.apply = [this](const std::string& plan_json) { return apply_json(plan_json, false, Unsaved::is_refused); };
+  handlers.apply = [this](const std::string& plan_json) { return apply_json(plan_json); };
   handlers.level = [this](const std::vector<std::string>& names, double level, std::optional<double> for_s) {
     return hold(ByHand::What::level, names, level, for_s);
   };

@@ -152,7 +152,11 @@ class Daemon {
   void look_after_guardian(Time at);
   /// What becomes of a plan that cannot be saved; is_saved: it is on disk already.
   enum class Unsaved { is_refused, goes_on, is_saved };
-  [[nodiscard]] Checked<std::string> apply_json(const std::string& plan_json, bool of_rig, Unsaved unsaved);
+  /// plan_json: the same plan as a file, for the journal.
+  [[nodiscard]] Checked<std::string> apply(const Plan& plan, const std::string& plan_json, bool of_rig,
+                                           Unsaved unsaved);
+  /// As a client sent it.
+  [[nodiscard]] Checked<std::string> apply_json(const std::string& plan_json);
   /// The look's model: the last one made, when heads looked so then, too.
   [[nodiscard]] Result<LightModel> model_for(const Session& session, const std::vector<Joints>& joints);
 

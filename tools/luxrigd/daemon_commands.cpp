@@ -108,17 +108,21 @@ Result<void> Daemon::park(const std::vector<std::string>& names) {
 // ---- plans ----
 
 Checked<void> Daemon::apply(const Plan& plan, bool of_rig) {
-  auto applied = apply_json(to_json(plan), of_rig, Unsaved::goes_on);
+  auto applied = apply(plan, to_json(plan), of_rig, Unsaved::goes_on);
   if (!applied) return tl::unexpected(std::move(applied.error()));
   return {};
 }
 
-Checked<std::string> Daemon::apply_json(const std::string& plan_json, bool of_rig, Unsaved unsaved) {
-  const std::lock_guard one_at_a_time(change_mutex_);
+Checked<std::string> Daemon::apply_json(const std::string& plan_json) {
   const auto plan = plan_from_json(plan_json, "plan");
   if (!plan) return tl::unexpected(plan.error());
+  return apply(*plan, plan_json, false, Unsaved::is_refused);
+}
+
+Checked<std::string> Daemon::apply(const Plan& plan, const std::string& plan_json, bool of_rig, Unsaved unsaved) {
+  const std::lock_guard one_at_a_time(change_mutex_);
   const std::shared_ptr<const Session> session = this->session();
-  auto look = look_for(*plan, session->rig, "plan");
+  auto look = look_for(plan, session->rig, "plan");
   if (!look) return tl::unexpected(look.error());
   auto model = model_for(*session, look->joints);
   if (!model) {
@@ -128,8 +132,8 @@ Checked<std::string> Daemon::apply_json(const std::string& plan_json, bool of_ri
   std::string note;
   {
     const std::lock_guard lock(mutex_);
-    if (plan->made_for && *plan->made_for != version_) {
-      note = fmt::format("made for another version of this rig ({} differ)", what_differs(*plan->made_for, version_));
+    if (plan.made_for && *plan.made_for != version_) {
+      note = fmt::format("made for another version of this rig ({} differ)", what_differs(*plan.made_for, version_));
     }
   }
   // Acknowledged means: it survives a power cut. A rig that is to be lit at its start is lit all the same.
@@ -149,7 +153,7 @@ Checked<std::string> Daemon::apply_json(const std::string& plan_json, bool of_ri
     Time at;
     std::string waits;  ///< for what; empty: it does not
   };
-  const auto applied = ask_control_thread<Applied>([this, made_for = plan->made_for, levels = std::move(look->levels),
+  const auto applied = ask_control_thread<Applied>([this, made_for = plan.made_for, levels = std::move(look->levels),
                                                     wanted = look_of(*look, std::move(*model))](Time at) -> Applied {
     controller_.apply(at, levels, wanted);
     {
@@ -211,7 +215,9 @@ Resumed Daemon::resume(const Journal::Left& left) {
       resumed.notes.push_back(fmt::format(
           "the rig file has changed since ({} differ): its goals are solved again, the saved plan is left", differs));
     } else {
-      if (auto applied = apply_json(saved.plan_json, saved.plan_of_rig, Unsaved::is_saved); applied) {
+      const auto applied = plan ? apply(*plan, saved.plan_json, saved.plan_of_rig, Unsaved::is_saved)
+                                : Checked<std::string>(tl::unexpected(plan.error()));
+      if (applied) {
         resumed.plan = true;
       } else {
         for (const Problem& problem : applied.error())
@@ -496,8 +502,7 @@ Checked<std::string> Daemon::reload() {
 
   // The goals of the rig file where they are in force; a person's plan stays, within the limits of the new rig.
   const bool of_rig = remembered.plan_of_rig || remembered.plan_json.empty();
-  std::string plan_json = of_rig ? to_json(solved->plan) : remembered.plan_json;
-  const auto plan = plan_from_json(plan_json, "the plan in force");
+  const auto plan = of_rig ? std::move(solved->plan) : plan_from_json(remembered.plan_json, "the plan in force");
   if (!plan) return tl::unexpected(plan.error());
   auto look = look_for(*plan, session->rig, of_rig ? file : "the plan in force");
   if (!look) return tl::unexpected(std::move(look.error()));
@@ -522,7 +527,7 @@ Checked<std::string> Daemon::reload() {
   RoomView room = draw_room(*session);
 
   const auto saved = journal_.save_first([&](JournalState& state) {
-    if (of_rig) state.plan_json = plan_json;
+    if (of_rig) state.plan_json = to_json(*plan);
     state.plan_of_rig = of_rig;
   });
   if (!saved)

@@ -1,5 +1,5 @@
 #pragma once
-/// HTTP on loopback: the page, the status, and the few things a client may ask, for those who may. Routes: README.md
+/// HTTP on loopback: the page, the status, and the few things a client may ask, for those who may. Routes: API.md
 /// beside this file.
 
 #include <filesystem>

@@ -1,5 +1,5 @@
 #pragma once
-/// The status as JSON; keys are listed in README.md beside this file and are a contract.
+/// The status as JSON; keys are listed in API.md beside this file and are a contract.
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>

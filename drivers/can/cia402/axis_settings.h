@@ -1,5 +1,5 @@
 #pragma once
-/// What an axis's drive is told before it moves: every object by SDO, in order. README.md has the table. Pure.
+/// What an axis's drive is told before it moves: every object by SDO, in order. NOTES.md has the table. Pure.
 
 #include <string>
 #include <vector>

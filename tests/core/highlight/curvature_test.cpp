@@ -18,7 +18,7 @@ struct Measured {
 Measured measured(const Scene& scene, double radius_m, int threads = 0) {
   auto surface = make_target_surface(scene);
   EXPECT_TRUE(surface);
-  auto curvature = curvature_of(*surface, {{.threads = threads}, radius_m});
+  auto curvature = curvature_of(*surface, {{.threads = threads, .watch = {}}, radius_m});
   EXPECT_TRUE(curvature);
   return {*surface, *curvature};
 }

@@ -20,7 +20,7 @@ TargetSurface mesh_of(const Scene& scene) {
 }
 
 EvenSurface even_of(const TargetSurface& mesh, double scale_m, int threads = 0) {
-  auto even = even_surface(mesh, {{.threads = threads}, scale_m});
+  auto even = even_surface(mesh, {{.threads = threads, .watch = {}}, scale_m});
   EXPECT_TRUE(even);
   return std::move(*even);
 }

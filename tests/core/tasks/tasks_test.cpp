@@ -4,42 +4,25 @@
 #include <fstream>
 #include <sstream>
 
-#include "core/rig/rig_file.h"
-#include "core/tasks/session.h"
 #include "core/tasks/solve_tasks.h"
 #include "core/transport/rig_notes/rig_notes.h"
-#include "tests/folders.h"
+#include "tests/core/tasks/opened_rigs.h"
 
 namespace luxrig {
 namespace {
 
 constexpr const char* kLevels = "[[task]]\nname = \"levels\"\nkind = \"emittance\"\n";
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const auto at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return text.replace(at, from.size(), to);
-}
+std::filesystem::path room_folder() { return test::source_folder() / "tests/rigs/room"; }
 
 std::string room_text() {
-  std::ifstream in(test::source_folder() / "tests/rigs/room/rig.toml");
+  std::ifstream in(room_folder() / "rig.toml");
   std::stringstream text;
   text << in.rdbuf();
   return text.str();
 }
 
-Checked<Session> open(const std::string& text) {
-  auto rig =
-      parse_rig(text, test::source_folder() / "tests/rigs/room/rig.toml", test::source_folder() / "tests/rigs/room");
-  if (!rig) return tl::unexpected(rig.error());
-  return session_of(std::move(*rig));
-}
-
-Session opened(const std::string& text) {
-  auto session = open(text);
-  EXPECT_TRUE(session) << session.error()[0].text();
-  return std::move(*session);
-}
+Session opened(const std::string& text) { return opened_rig(text, room_folder()); }
 
 /// Two bulbs somewhere under the ceiling, in place of the tasks of the room.
 std::string room_with_places() {
@@ -49,27 +32,15 @@ std::string room_with_places() {
                   "fixtures = \"off\"\nseconds = 60\n");
 }
 
-TransportMatrix transport_of(const Session& session, const ComputeOptions& options, ModelUsed* used = nullptr) {
-  auto transport = compute_transport(session, options, {}, used);
-  EXPECT_TRUE(transport) << transport.error().detail;
-  return std::move(*transport);
-}
-
-/// What a plan says but for the time it took.
-std::string text_of(Plan plan) {
-  plan.seconds = 0;
-  for (PlannedTask& task : plan.tasks) task.seconds = 0;
-  return to_json(plan);
-}
-
 TEST(Session, OfARigWithALampInAPointIsRefused) {
-  const auto session = open(replaced(room_text(), "position_m = [-1.5, 0.0, 2.9]", "position_m = [1.5, -1.0, 0.0]"));
+  const auto session =
+      open_rig(replaced(room_text(), "position_m = [-1.5, 0.0, 2.9]", "position_m = [1.5, -1.0, 0.0]"), room_folder());
   ASSERT_FALSE(session);
   EXPECT_NE(session.error()[0].text().find("\"floor\""), std::string::npos) << session.error()[0].text();
 }
 
 TEST(Session, WithoutItsMeshIsRefused) {
-  const auto session = open(replaced(room_text(), "file = \"room.obj\"", "file = \"hall.obj\""));
+  const auto session = open_rig(replaced(room_text(), "file = \"room.obj\"", "file = \"hall.obj\""), room_folder());
   ASSERT_FALSE(session);
   EXPECT_NE(session.error()[0].text().find("hall.obj"), std::string::npos) << session.error()[0].text();
 }
@@ -87,7 +58,7 @@ TEST(ComputeTransport, TellsItsStageAndReachesTheErrorWanted) {
   EXPECT_TRUE(used.reached()) << used.rms_error;
   EXPECT_LE(used.rms_error, 0.01);
   ASSERT_GE(told.size(), 2);
-  EXPECT_EQ(told.front().task, "light of the room");
+  EXPECT_EQ(told.front().stage, "light of the room");
   EXPECT_TRUE(told.back().ended);
 }
 

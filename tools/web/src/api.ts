@@ -1,4 +1,4 @@
-/** The daemon's HTTP API (tools/luxrigd/README.md) as types, and the reading of it. What arrives is not trusted:
+/** The daemon's HTTP API (tools/luxrigd/API.md) as types, and the reading of it. What arrives is not trusted:
  *  a number that is missing or not finite becomes undefined, a list that is no list becomes empty. */
 
 export type Vec3 = readonly [number, number, number];

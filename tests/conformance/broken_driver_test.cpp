@@ -1,0 +1,58 @@
+/// The suite of all drivers can fail: each driver that is broken on purpose is caught by the test that is there for it.
+
+#include "tests/conformance/broken_driver.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <string>
+
+namespace luxrig {
+namespace {
+
+struct Ran {
+  int exit_code = 0;
+  std::string said;
+};
+
+/// One test of EveryDriver in a process of its own, with every driver broken so.
+Ran run_suite(const Breakage& breakage) {
+  const std::string program = std::filesystem::read_symlink("/proc/self/exe").string();
+  const std::string command = std::string("exec env ") + kBreakVariable + "='" + breakage.name + "' '" + program +
+                              "' --gtest_filter='Registry/EveryDriver." + breakage.failing_test + "/" +
+                              breakage.driver + "' 2>&1";
+  Ran ran;
+  std::FILE* const out = ::popen(command.c_str(), "r");
+  if (out == nullptr) return ran;
+  char buffer[4096];
+  for (std::size_t got = 0; (got = std::fread(buffer, 1, sizeof(buffer), out)) > 0;) ran.said.append(buffer, got);
+  const int status = ::pclose(out);
+  ran.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return ran;
+}
+
+class ABrokenDriver : public ::testing::TestWithParam<std::size_t> {
+ protected:
+  const Breakage& breakage() const { return breakages()[GetParam()]; }
+};
+
+TEST_P(ABrokenDriver, FailsTheTestThatIsThereForIt) {
+  const Ran ran = run_suite(breakage());
+  EXPECT_EQ(ran.exit_code, 1) << ran.said;
+  EXPECT_NE(ran.said.find("1 FAILED TEST"), std::string::npos)
+      << "a driver that " << breakage().name << " passed " << breakage().failing_test << "\n"
+      << ran.said;
+}
+
+std::string name_of_breakage(const ::testing::TestParamInfo<std::size_t>& which) {
+  std::string name = breakages()[which.param].name;
+  for (char& c : name) c = c == ' ' ? '_' : c;
+  return name + "_" + std::to_string(which.param);
+}
+
+INSTANTIATE_TEST_SUITE_P(That, ABrokenDriver, ::testing::Range(std::size_t{0}, breakages().size()), name_of_breakage);
+
+}  // namespace
+}  // namespace luxrig
