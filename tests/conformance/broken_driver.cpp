@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <deque>
 #include <thread>
 #include <vector>
 
@@ -22,11 +23,11 @@ constexpr std::array kBreakages{
     Breakage{"blocks", "sacn", "ReturnsWithinItsBoundWhateverItsPeerDoes"},
     Breakage{"is never faulted", "modbus_tcp",
              "IsFaultedInTimeWhenItsPeerGoesAndComesBackByItselfWithTheCurrentSetpoint"},
-    Breakage{"sends the setpoint of before", "modbus_tcp",
+    Breakage{"sends what it could not send before", "modbus_tcp",
              "IsFaultedInTimeWhenItsPeerGoesAndComesBackByItselfWithTheCurrentSetpoint"},
     Breakage{"gives up for good", "modbus_tcp", "StartsWithoutItsPeerAndFindsItByItself"},
     Breakage{"gives up for good", "modbus_tcp", "ResumesAfterGarbledAnswers"},
-    Breakage{"goes dark when it stops", "modbus_tcp", "LeavesWhatWasAgreedWhenItStopsAndStartsAgain"},
+    Breakage{"goes dark when it stops", "artnet", "LeavesWhatWasAgreedWhenItStopsAndStartsAgain"},
     Breakage{"shares its setpoint with others of its kind", "sacn", "OfWhichThereAreTwoGoTheirOwnWays"},
     Breakage{"is silent while nothing changes", "sacn", "KeepsToItsRateAndSendsKeepAlives"},
     Breakage{"is not the same twice", "sacn", "SendsTheSameBytesForTheSameInputsUnderASteppedClock"},
@@ -80,7 +81,7 @@ class BrokenDriver final : public Driver, public LevelOutput, public LuxReader {
       blocked_ = true;
       std::this_thread::sleep_for(whole_->bounds().write + std::chrono::milliseconds(400));
     }
-    if (is("sends the setpoint of before") && !before_.empty()) sent = before_;
+    if (is("sends what it could not send before") && !unsent_.empty()) sent = unsent_.front();
     if (is("shares its setpoint with others of its kind") && !sent.empty()) {
       const double other = shared_.exchange(sent.front().drive);
       for (LevelCommand& command : sent) command.drive = other;
@@ -95,6 +96,8 @@ class BrokenDriver final : public Driver, public LevelOutput, public LuxReader {
     auto written = whole_->level_output()->write(now, sent);
     if (!written && is("takes anything")) return {};
     if (!written && is("gives up for good")) lost_ = written.error();
+    if (written && !unsent_.empty()) unsent_.pop_front();
+    if (!written) unsent_.emplace_back(commands.begin(), commands.end());
     return written;
   }
   bool settled() const override { return whole_->level_output()->settled(); }
@@ -122,6 +125,7 @@ class BrokenDriver final : public Driver, public LevelOutput, public LuxReader {
   int descriptor_ = -1;
   bool blocked_ = false;
   std::vector<LevelCommand> before_;
+  std::deque<std::vector<LevelCommand>> unsent_;
   std::optional<Fault> lost_;
 };
 

