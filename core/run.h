@@ -27,7 +27,7 @@ struct Watch {
   Progress progress;     ///< may be empty
   Tell tell = {};        ///< may be empty
 
-  /// The same for what a stop must not end: it is only heard.
+  /// For work that a stop must not end: it still tells its news.
   [[nodiscard]] Watch without_stop() const { return {{}, {}, tell}; }
 };
 

@@ -14,9 +14,9 @@ constexpr double kSeenShare = 0.02;
 constexpr double kUsualMove_s = 4;
 /// Of the mean illuminance: relative contrast is nought beside this.
 constexpr double kDarkShare = 0.1;
-/// Of what the strongest head, or the limit, lets the object have: an eye adapts to less than this no more, or the
-/// faint edge of a beam that misses the object would be the best light in a dark room.
-constexpr double kAdapts = 0.02;
+/// Of the lux that the strongest head can give or the limit allows: an eye does not adapt to a darker object than this.
+/// Without it, in a dark room, the faint edge of a beam that misses the object would score best.
+constexpr double kDarkestAdaptation = 0.02;
 /// Rounding may carry a level that was scaled to a limit over it.
 constexpr double kLimitSlack = 1e-9;
 
@@ -91,7 +91,7 @@ double AimObjective::most_level(const AimSum& others, const AimColumn& column, H
 void AimObjective::measure_contrast(const AimSum& sum, AimScore& score) const {
   const std::vector<double>& lux = sum.sample_lux;
   const double bright_lx = std::min(reference_lx_, wishes_.max_object_lx);
-  const double dark_lx = kDarkShare * std::max(sum.mean_lux, kAdapts * bright_lx);
+  const double dark_lx = kDarkShare * std::max(sum.mean_lux, kDarkestAdaptation * bright_lx);
   for (std::size_t i = 0; i < samples_.interest; ++i) {
     double largest = 0, relative = 0;
     for (const std::uint32_t j : samples_.of(i)) {

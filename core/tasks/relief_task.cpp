@@ -19,10 +19,10 @@
 namespace luxrig {
 namespace {
 
-/// Where the object is brightest by direct light is where it is with reflected light, or next to it: at so many places
-/// all light is worked out, and among so many of the brightest by lamps they are sought where there is daylight, too.
+/// The object is brightest by all light where it is by direct light, or close to it. All light is computed at so many
+/// of its brightest places. With daylight, they are picked from so many that the lamps make brightest.
 constexpr std::size_t kCheckedPlaces = 48, kPlacesInDaylight = 4000;
-/// Of the whole surface, at which a search keeps the object's limit beside the places where it judges the relief.
+/// Places all over the surface where a search keeps the object's limit, besides those where it judges the relief.
 constexpr std::size_t kLimitedPlaces = 256;
 /// Of a zoom, in even ratios: a third wider from one to the next where it goes from 6° to 40°.
 constexpr int kZoomStops = 8;
@@ -67,7 +67,7 @@ Result<std::vector<double>> lux_at(const ReliefSurroundings& around, std::span<c
   return lux;
 }
 
-/// All over its surface.
+/// Points all over its surface.
 std::vector<OrientedPoint> places_of(const StudiedObject& object) {
   const TargetSurface& surface = object.study.surface;
   std::vector<OrientedPoint> places;

@@ -65,7 +65,7 @@ struct ObjectLight {
 [[nodiscard]] Result<ObjectLight> light_on_object(const ReliefSurroundings& around, const StudiedObject& object,
                                                   std::span<const double> levels, const ComputeOptions& options);
 
-/// The same fault, and what it is about: a stop stays a stop.
+/// The same fault with its task or object named first; its cause stays, so that a stop stays a stop.
 [[nodiscard]] tl::unexpected<Fault> in_words(Fault fault, const std::string& of);
 
 }  // namespace luxrig

@@ -1,4 +1,4 @@
-# Writes the file that defines luxrig::kVersion, at each build; only when it changes, so that only it is compiled anew.
+# Writes the file that defines luxrig::kVersion, at each build; only when it changes, so that nothing else is compiled again.
 #   cmake -D SOURCE=FOLDER -D VERSION=0.1.0 -D OUTPUT=FILE -P commit.cmake
 set(commit "")
 find_program(GIT git)
