@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "core/control/devices.h"
+#include "core/output/devices.h"
 #include "core/rig/rig.h"
 
 namespace luxrig {

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "core/control/devices.h"
+#include "core/output/devices.h"
 
 namespace luxrig {
 

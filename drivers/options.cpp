@@ -4,7 +4,7 @@
 #include <charconv>
 
 #include "core/check.h"
-#include "core/rig/nearest.h"
+#include "core/text/nearest.h"
 
 namespace luxrig {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "core/rig/nearest.h"
 #include "core/rig/null_bus.h"
+#include "core/text/nearest.h"
 #include "drivers/can/canopen_driver.h"
 #include "drivers/dmx/artnet/artnet_driver.h"
 #include "drivers/dmx/enttec_pro/enttec_pro_driver.h"

@@ -8,7 +8,7 @@
 #include <deque>
 #include <memory>
 
-#include "core/control/devices.h"
+#include "core/output/devices.h"
 #include "core/rig/rig.h"
 #include "sim/faults/faults.h"
 #include "sim/lamp_faults.h"

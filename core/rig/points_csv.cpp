@@ -9,10 +9,10 @@
 #include <fstream>
 #include <optional>
 
-#include "core/rig/nearest.h"
 #include "core/rig/problem_list.h"
+#include "core/rig/reading/section.h"
 #include "core/rig/schema.h"
-#include "core/rig/section.h"
+#include "core/text/nearest.h"
 
 namespace luxrig {
 namespace {

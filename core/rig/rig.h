@@ -17,7 +17,7 @@
 #include "core/photometry/luminous_shape.h"
 #include "core/result.h"
 #include "core/rig/frames.h"
-#include "core/scene/mesh_file.h"
+#include "core/scene/mesh/mesh_file.h"
 
 namespace luxrig {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <fstream>
 
-#include "core/rig/nearest.h"
-#include "core/rig/rig_reader.h"
+#include "core/rig/reading/rig_reader.h"
+#include "core/text/nearest.h"
 
 namespace luxrig {
 namespace {

@@ -4,7 +4,7 @@
 #include <map>
 #include <utility>
 
-#include "core/scene/polygon_mesh.h"
+#include "core/scene/mesh/polygon_mesh.h"
 
 namespace luxrig {
 namespace {

@@ -3,7 +3,7 @@
 #include <limits>
 #include <string>
 
-#include "core/rig/nearest.h"
+#include "core/text/nearest.h"
 
 namespace luxrig {
 namespace {

@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "core/solve/emittance_reasons.h"
-#include "core/solve/limited_least_squares.h"
-#include "core/solve/switched_least_squares.h"
+#include "core/solve/least_squares/limited_least_squares.h"
+#include "core/solve/least_squares/switched_least_squares.h"
 
 namespace luxrig {
 namespace {

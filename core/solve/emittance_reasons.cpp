@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "core/photometry/light_colour.h"
-#include "core/solve/nnls.h"
+#include "core/solve/least_squares/nnls.h"
 
 namespace luxrig {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/solve/limited_nnls.h"
+#include "core/solve/least_squares/limited_nnls.h"
 
 namespace luxrig {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/highlight/judged_lights.h"
+#include "core/highlight/lights/judged_lights.h"
 #include "core/photometry/beam.h"
 #include "core/scene/object_scene.h"
 

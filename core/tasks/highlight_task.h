@@ -1,6 +1,6 @@
 #pragma once
 /// One highlight task: lights that do not hang yet, found on what may carry them
-/// (core/highlight/judged_lights.h), then aimed and dimmed as heads that hang are (aim_heads.h).
+/// (core/highlight/lights/judged_lights.h), then aimed and dimmed as heads that hang are (aim_heads.h).
 
 #include "core/solve/placement/mounting.h"
 #include "core/solve/placement/place_in_scene.h"

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/transport/evaluator_choice.h"
-#include "core/transport/rig_transport.h"
+#include "core/tasks/evaluator_choice.h"
+#include "core/tasks/rig_transport.h"
 
 namespace luxrig {
 namespace {

@@ -8,13 +8,13 @@
 #include <map>
 #include <numeric>
 
-#include "core/control/keep_out.h"
-#include "core/highlight/picture_contrast.h"
+#include "core/highlight/picture/picture_contrast.h"
+#include "core/output/keep_out.h"
+#include "core/picture/rig_camera.h"
 #include "core/rig/housing.h"
 #include "core/rig/zoom.h"
 #include "core/scene/object_scene.h"
-#include "core/transport/rig_camera.h"
-#include "core/transport/rig_transport.h"
+#include "core/tasks/rig_transport.h"
 
 namespace luxrig {
 namespace {

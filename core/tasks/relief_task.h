@@ -3,8 +3,8 @@
 
 #include <span>
 
-#include "core/highlight/aim_heads.h"
-#include "core/highlight/relief_study.h"
+#include "core/highlight/aim/aim_heads.h"
+#include "core/highlight/surface/relief_study.h"
 #include "core/rig/rig.h"
 #include "core/scene/ray_scene.h"
 #include "core/tasks/session.h"

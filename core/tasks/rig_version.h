@@ -2,7 +2,7 @@
 /// Fingerprints of a rig: whether a plan or a saved state was made for the rig as its file has it now. Of values, not
 /// of text: a comment or another order of keys changes nothing, another mesh under the same name does.
 
-#include "core/control/plan.h"
+#include "core/plan/plan.h"
 #include "core/rig/rig.h"
 #include "core/scene/scene.h"
 

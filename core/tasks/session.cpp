@@ -4,11 +4,11 @@
 
 #include <algorithm>
 
-#include "core/scene/scene_builder.h"
 #include "core/solve/placement/mounting.h"
-#include "core/transport/evaluator_choice.h"
-#include "core/transport/rig_notes/rig_notes.h"
-#include "core/transport/rig_transport.h"
+#include "core/tasks/evaluator_choice.h"
+#include "core/tasks/rig_notes/rig_notes.h"
+#include "core/tasks/rig_transport.h"
+#include "core/tasks/scene_builder.h"
 
 namespace luxrig {
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "core/control/plan.h"
-#include "core/control/show_controller.h"
+#include "core/estimation/light_model.h"
+#include "core/plan/plan.h"
 #include "core/rig/rig.h"
 #include "core/run.h"
 #include "core/scene/ray_scene.h"

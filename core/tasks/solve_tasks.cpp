@@ -8,9 +8,9 @@
 
 #include "core/solve/emittance.h"
 #include "core/tasks/placement_task.h"
+#include "core/tasks/rig_transport.h"
 #include "core/tasks/rig_version.h"
 #include "core/tasks/task_solver.h"
-#include "core/transport/rig_transport.h"
 
 namespace luxrig {
 namespace {

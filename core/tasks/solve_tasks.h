@@ -1,7 +1,7 @@
 #pragma once
 /// What the rig's `[[task]]` entries ask, done one after the other.
 
-#include "core/control/plan.h"
+#include "core/plan/plan.h"
 #include "core/result.h"
 #include "core/tasks/session.h"
 

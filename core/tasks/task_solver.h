@@ -4,7 +4,7 @@
 
 #include <chrono>
 
-#include "core/control/keep_out.h"
+#include "core/output/keep_out.h"
 #include "core/solve/emittance.h"
 #include "core/solve/placement/place_in_scene.h"
 #include "core/tasks/relief_task.h"

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "core/control/devices.h"
+#include "core/output/devices.h"
 #include "core/radiometry/sample_curve.h"
 #include "core/rig/rig.h"
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "core/rig/nearest.h"
+#include "core/text/nearest.h"
 
 namespace luxrig {
 namespace {

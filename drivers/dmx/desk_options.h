@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/control/devices.h"
+#include "core/output/devices.h"
 #include "drivers/dmx/dmx_merge.h"
 #include "drivers/options.h"
 

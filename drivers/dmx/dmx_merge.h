@@ -8,7 +8,7 @@
 #include <span>
 #include <string>
 
-#include "core/control/devices.h"
+#include "core/output/devices.h"
 #include "drivers/dmx/dmx_patch.h"
 
 namespace luxrig {

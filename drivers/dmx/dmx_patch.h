@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-#include "core/control/devices.h"
+#include "core/output/devices.h"
 #include "core/rig/rig.h"
 
 namespace luxrig {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/transport/rig_camera.h"
-#include "core/transport/rig_transport.h"
+#include "core/picture/rig_camera.h"
+#include "core/tasks/rig_transport.h"
 #include "sim/world/random.h"
 
 namespace luxrig::sim {

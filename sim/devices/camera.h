@@ -3,9 +3,9 @@
 
 #include <vector>
 
+#include "core/picture/picture.h"
 #include "core/rig/rig.h"
 #include "core/scene/ray_scene.h"
-#include "core/transport/picture.h"
 #include "sim/world/world.h"
 
 namespace luxrig::sim {

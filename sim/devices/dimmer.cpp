@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/control/output_program.h"
+#include "core/output/output_program.h"
 #include "sim/devices/lag.h"
 
 namespace luxrig::sim {

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/rig/nearest.h"
+#include "core/text/nearest.h"
 #include "sim/world/random.h"
 
 namespace luxrig::sim {

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "core/photometry/shape_sampling.h"
-#include "core/transport/rig_transport.h"
-#include "core/transport/shape_light.h"
+#include "core/tasks/rig_transport.h"
+#include "core/transport/direct/shape_light.h"
 
 namespace luxrig::sim {
 namespace {

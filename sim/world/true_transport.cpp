@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 
 #include "core/scene/ray_scene.h"
-#include "core/scene/scene_builder.h"
+#include "core/tasks/rig_transport.h"
+#include "core/tasks/scene_builder.h"
 #include "core/transport/evaluator.h"
-#include "core/transport/rig_transport.h"
 #include "sim/world/head_light.h"
 #include "sim/world/world.h"
 

@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "core/control/devices.h"
+#include "core/output/devices.h"
 #include "core/rig/rig.h"
 #include "core/transport/evaluator.h"
 
@@ -69,7 +69,7 @@ class HeadLight {
 class World {
  public:
   /// Loads the scene and computes the true transport with the true poses (seconds). `max_error`: of that transport.
-  /// Luminaires and daylight are made as for the planner (core/transport/rig_transport.h).
+  /// Luminaires and daylight are made as for the planner (core/tasks/rig_transport.h).
   static Result<std::unique_ptr<World>> make(const Rig& rig, const Deviations& deviations, double max_error,
                                              const Watch& watch = {});
 

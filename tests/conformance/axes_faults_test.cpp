@@ -2,7 +2,7 @@
 // unasked.
 #include <gtest/gtest.h>
 
-#include "core/control/head_move.h"
+#include "core/output/head_move.h"
 #include "tests/conformance/axes_bench.h"
 
 namespace luxrig {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/control/head_move.h"
+#include "core/output/head_move.h"
 #include "tests/conformance/axes_bench.h"
 
 namespace luxrig {

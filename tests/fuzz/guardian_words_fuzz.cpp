@@ -3,7 +3,7 @@
 #include <string>
 
 #include "core/check.h"
-#include "tools/luxrigd/guardian_words.h"
+#include "tools/luxrigd/guardian/guardian_words.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);

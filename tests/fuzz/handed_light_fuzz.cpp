@@ -4,7 +4,7 @@
 #include <string>
 
 #include "core/check.h"
-#include "tools/luxrigd/handed_light.h"
+#include "tools/luxrigd/guardian/handed_light.h"
 
 namespace {
 

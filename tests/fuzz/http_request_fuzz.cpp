@@ -5,11 +5,11 @@
 #include <string>
 
 #include "core/check.h"
-#include "core/control/plan.h"
+#include "core/plan/plan.h"
 #include "tools/http/json_body.h"
 #include "tools/http/request_reader.h"
-#include "tools/luxrigd/access.h"
-#include "tools/luxrigd/command_routes.h"
+#include "tools/luxrigd/api/access.h"
+#include "tools/luxrigd/api/command_routes.h"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/check.h"
-#include "tools/luxrigd/light_store.h"
+#include "tools/luxrigd/state/light_store.h"
 
 namespace {
 

@@ -9,8 +9,8 @@
 #include <string>
 
 #include "core/check.h"
-#include "core/rig/plain_text.h"
-#include "core/scene/mesh_file.h"
+#include "core/scene/mesh/mesh_file.h"
+#include "core/text/plain_text.h"
 
 namespace luxrig {
 

@@ -1,7 +1,7 @@
 // Any bytes as the material file of an OBJ: refused with a remedy, or materials with plain names; never a crash.
 #include "core/check.h"
-#include "core/rig/plain_text.h"
-#include "core/scene/mtl_file.h"
+#include "core/scene/mesh/mtl_file.h"
+#include "core/text/plain_text.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto file = luxrig::parse_mtl({reinterpret_cast<const char*>(data), size}, "fuzz.mtl");

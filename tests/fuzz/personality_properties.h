@@ -4,8 +4,8 @@
 #include <set>
 
 #include "core/check.h"
-#include "core/rig/mode_slots.h"
-#include "core/rig/plain_text.h"
+#include "core/rig/reading/mode_slots.h"
+#include "core/text/plain_text.h"
 
 namespace luxrig::fuzz {
 

@@ -2,7 +2,7 @@
 #include <cstdint>
 
 #include "core/check.h"
-#include "core/transport/pfm.h"
+#include "core/picture/pfm.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto picture = luxrig::picture_from_pfm({reinterpret_cast<const char*>(data), size});

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "core/check.h"
-#include "core/control/plan.h"
+#include "core/plan/plan.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto plan = luxrig::plan_from_json(std::string(reinterpret_cast<const char*>(data), size), "fuzz.json");

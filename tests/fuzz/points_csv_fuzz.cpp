@@ -3,8 +3,8 @@
 #include <cstdint>
 
 #include "core/check.h"
-#include "core/rig/plain_text.h"
 #include "core/rig/points_csv.h"
+#include "core/text/plain_text.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);

@@ -4,9 +4,9 @@
 #include <set>
 
 #include "core/check.h"
-#include "core/rig/plain_text.h"
 #include "core/rig/register_map/register_map_file.h"
 #include "core/rig/register_map/register_value.h"
+#include "core/text/plain_text.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view text(reinterpret_cast<const char*>(data), size);

@@ -6,10 +6,10 @@
 #include <filesystem>
 
 #include "core/check.h"
-#include "core/control/keep_out.h"
-#include "core/rig/plain_text.h"
+#include "core/output/keep_out.h"
 #include "core/rig/rig_file.h"
-#include "core/transport/rig_transport.h"
+#include "core/tasks/rig_transport.h"
+#include "core/text/plain_text.h"
 
 namespace {
 

@@ -3,8 +3,8 @@
 #include <string>
 
 #include "core/check.h"
-#include "core/rig/plain_text.h"
-#include "tools/luxrigd/sim_ports.h"
+#include "core/text/plain_text.h"
+#include "tools/process/sim_ports.h"
 
 namespace {
 

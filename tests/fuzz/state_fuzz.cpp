@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/check.h"
-#include "tools/luxrigd/journal.h"
+#include "tools/luxrigd/state/journal.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);

@@ -1,9 +1,9 @@
 /// Misuses that must not compile. tests/misuse/check compiles this file with MISUSE = 0, which must do, and then once
 /// for each number, which must not. The comment behind a number is what the compiler must say.
 
-#include "core/control/show_controller.h"
 #include "core/rig/rig_file.h"
 #include "core/scene/ray_scene.h"
+#include "core/show/show_controller.h"
 #include "core/tasks/stage.h"
 #include "core/transport/evaluator.h"
 #include "drivers/driver.h"

@@ -9,8 +9,8 @@
 #include "sim/in_process_rig.h"
 #include "tests/promises/promises.h"
 #include "tests/scenarios/hall.h"
-#include "tools/luxrigd/clock.h"
 #include "tools/luxrigd/daemon.h"
+#include "tools/process/clock.h"
 
 namespace luxrig::promises {
 namespace {

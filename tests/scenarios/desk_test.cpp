@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/control/show_controller.h"
+#include "core/show/show_controller.h"
 #include "drivers/registry.h"
 #include "tests/conformance/far_end.h"
 #include "tests/drivers/test_rig.h"

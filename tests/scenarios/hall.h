@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "core/control/show_controller.h"
 #include "core/rig/rig.h"
+#include "core/show/show_controller.h"
 
 namespace luxrig::scenarios {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/control/show_controller.h"
 #include "core/rig/rig_file.h"
+#include "core/show/show_controller.h"
 #include "drivers/registry.h"
 #include "tests/conformance/far_end.h"
 #include "tests/drivers/test_rig.h"

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "tools/bench/transport_case.h"
+#include "tools/bench/transport/case.h"
 
 namespace luxrig {
 namespace {

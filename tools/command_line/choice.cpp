@@ -3,7 +3,7 @@
 #include <sstream>
 #include <string_view>
 
-#include "core/rig/nearest.h"
+#include "core/text/nearest.h"
 
 namespace luxrig {
 namespace {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/rig/nearest.h"
+#include "core/text/nearest.h"
 #include "tools/command_line/completion.h"
 #include "tools/command_line/help.h"
 #include "tools/command_line/manual.h"

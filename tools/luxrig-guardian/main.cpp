@@ -1,5 +1,5 @@
 // luxrig-guardian: waits for its daemon to die; then it holds the last look, and fades to the safe one. The daemon
-// starts it (tools/luxrigd/guardian.h); a person has no need to.
+// starts it (tools/luxrigd/guardian/guardian.h); a person has no need to.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
@@ -17,14 +17,14 @@
 #include "drivers/io/os_fault.h"
 #include "drivers/registry.h"
 #include "tools/command_line/version.h"
-#include "tools/luxrig/command.h"
 #include "tools/luxrigd/bus_thread.h"
-#include "tools/luxrigd/clock.h"
-#include "tools/luxrigd/guardian_words.h"
-#include "tools/luxrigd/handed_light.h"
-#include "tools/luxrigd/last_look.h"
+#include "tools/luxrigd/guardian/guardian_words.h"
+#include "tools/luxrigd/guardian/handed_light.h"
+#include "tools/luxrigd/guardian/last_look.h"
 #include "tools/luxrigd/scheduling.h"
 #include "tools/luxrigd/teller.h"
+#include "tools/process/clock.h"
+#include "tools/terminal/command.h"
 
 namespace luxrig {
 namespace {

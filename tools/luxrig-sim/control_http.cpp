@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "core/rig/nearest.h"
+#include "core/text/nearest.h"
 #include "tools/http/json_body.h"
 #include "tools/http/server.h"
 

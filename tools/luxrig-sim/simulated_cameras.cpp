@@ -3,8 +3,8 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "core/scene/scene_builder.h"
-#include "core/transport/pfm.h"
+#include "core/picture/pfm.h"
+#include "core/tasks/scene_builder.h"
 #include "sim/devices/camera.h"
 
 namespace luxrig::sim {

@@ -6,9 +6,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "tools/luxrig/client.h"
-#include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
+#include "tools/process/client.h"
+#include "tools/terminal/command.h"
 
 namespace luxrig {
 namespace {

@@ -8,20 +8,20 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "core/control/keep_out.h"
+#include "core/output/keep_out.h"
 #include "core/photometry/beam.h"
 #include "core/rig/null_bus.h"
 #include "core/rig/personality/personality.h"
 #include "core/rig/register_map/register_map.h"
-#include "core/transport/rig_notes/rig_notes.h"
+#include "core/tasks/rig_notes/rig_notes.h"
 #include "drivers/registry.h"
 #include "drivers/when_data_stops.h"
 #include "tools/command_line/installed.h"
 #include "tools/luxrig/addresses.h"
-#include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
 #include "tools/luxrig/open_session.h"
-#include "tools/luxrig/table.h"
+#include "tools/terminal/command.h"
+#include "tools/terminal/table.h"
 
 namespace luxrig {
 namespace {

@@ -4,15 +4,15 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "core/control/plan.h"
+#include "core/plan/plan.h"
 #include "tools/command_line/choice.h"
 #include "tools/command_line/completion.h"
-#include "tools/luxrig/client.h"
-#include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
-#include "tools/luxrig/files.h"
 #include "tools/luxrig/status_fields.h"
-#include "tools/luxrigd/meeting_place.h"
+#include "tools/luxrigd/guardian/meeting_place.h"
+#include "tools/process/client.h"
+#include "tools/process/files.h"
+#include "tools/terminal/command.h"
 
 namespace luxrig {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "tools/command_line/choice.h"
 #include "tools/command_line/completion.h"
-#include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
+#include "tools/terminal/command.h"
 
 namespace luxrig {
 namespace {

@@ -10,10 +10,10 @@
 
 #include "drivers/io/datagram.h"
 #include "drivers/scan/scan.h"
-#include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
-#include "tools/luxrig/table.h"
-#include "tools/luxrigd/clock.h"
+#include "tools/process/clock.h"
+#include "tools/terminal/command.h"
+#include "tools/terminal/table.h"
 
 namespace luxrig {
 namespace {

@@ -7,17 +7,17 @@
 #include <nlohmann/json.hpp>
 
 #include "core/parallel.h"
-#include "core/transport/rig_transport.h"
+#include "core/tasks/rig_transport.h"
 #include "tools/command_line/completion.h"
 #include "tools/command_line/installed.h"
-#include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
 #include "tools/luxrig/compute_arguments.h"
-#include "tools/luxrig/files.h"
 #include "tools/luxrig/open_session.h"
-#include "tools/luxrig/table.h"
-#include "tools/luxrig/terminal_watch.h"
 #include "tools/luxrig/transport_json.h"
+#include "tools/process/files.h"
+#include "tools/terminal/command.h"
+#include "tools/terminal/table.h"
+#include "tools/terminal/terminal_watch.h"
 
 namespace luxrig {
 namespace {

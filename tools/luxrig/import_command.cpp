@@ -5,13 +5,13 @@
 #include <memory>
 
 #include "core/rig/mvr/mvr_rig.h"
-#include "core/rig/plain_text.h"
 #include "core/rig/rig_file.h"
-#include "core/scene/mesh_reading.h"
+#include "core/scene/mesh/mesh_reading.h"
+#include "core/text/plain_text.h"
 #include "tools/command_line/completion.h"
-#include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
-#include "tools/luxrig/files.h"
+#include "tools/process/files.h"
+#include "tools/terminal/command.h"
 
 namespace luxrig {
 namespace {

@@ -4,12 +4,12 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 
-#include "core/rig/plain_text.h"
+#include "core/text/plain_text.h"
 #include "tools/command_line/completion.h"
 #include "tools/command_line/installed.h"
-#include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
-#include "tools/luxrig/files.h"
+#include "tools/process/files.h"
+#include "tools/terminal/command.h"
 
 namespace luxrig {
 namespace {

@@ -9,11 +9,11 @@
 #include <memory>
 #include <thread>
 
-#include "tools/luxrig/client.h"
-#include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
 #include "tools/luxrig/monitor_picture.h"
-#include "tools/luxrigd/meeting_place.h"
+#include "tools/luxrigd/guardian/meeting_place.h"
+#include "tools/process/client.h"
+#include "tools/terminal/command.h"
 
 namespace luxrig {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "tools/luxrig/status_fields.h"
-#include "tools/luxrig/table.h"
+#include "tools/terminal/table.h"
 
 namespace luxrig {
 namespace {

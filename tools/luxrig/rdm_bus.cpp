@@ -12,7 +12,7 @@
 #include "drivers/dmx/usb/usb_dmx_driver.h"
 #include "drivers/io/host_id.h"
 #include "drivers/io/udp.h"
-#include "tools/luxrigd/clock.h"
+#include "tools/process/clock.h"
 
 namespace luxrig {
 namespace {

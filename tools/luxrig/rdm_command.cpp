@@ -10,11 +10,11 @@
 #include "drivers/dmx/artnet/artnet_codec.h"
 #include "drivers/usb/usb_search.h"
 #include "tools/command_line/choice.h"
-#include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
 #include "tools/luxrig/rdm_bus.h"
 #include "tools/luxrig/rdm_stubs.h"
-#include "tools/luxrig/table.h"
+#include "tools/terminal/command.h"
+#include "tools/terminal/table.h"
 
 namespace luxrig {
 namespace {

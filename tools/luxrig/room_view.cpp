@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/transport/rig_transport.h"
+#include "core/tasks/rig_transport.h"
 #include "core/transport/sobol.h"
 
 namespace luxrig {

@@ -1,8 +1,8 @@
 #pragma once
 /// A camera for who names none.
 
+#include "core/picture/picture.h"
 #include "core/rig/rig.h"
-#include "core/transport/picture.h"
 
 namespace luxrig {
 

@@ -9,15 +9,15 @@
 #include "core/tasks/solve_tasks.h"
 #include "tools/command_line/completion.h"
 #include "tools/command_line/installed.h"
-#include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
 #include "tools/luxrig/compute_arguments.h"
-#include "tools/luxrig/files.h"
 #include "tools/luxrig/open_session.h"
-#include "tools/luxrig/opening_light.h"
-#include "tools/luxrig/table.h"
-#include "tools/luxrig/terminal_watch.h"
+#include "tools/luxrig/render/opening_light.h"
 #include "tools/luxrig/transport_json.h"
+#include "tools/process/files.h"
+#include "tools/terminal/command.h"
+#include "tools/terminal/table.h"
+#include "tools/terminal/terminal_watch.h"
 
 namespace luxrig {
 namespace {

@@ -3,12 +3,12 @@
 
 #include <memory>
 
-#include "tools/luxrig/client.h"
-#include "tools/luxrig/command.h"
 #include "tools/luxrig/commands.h"
 #include "tools/luxrig/status_fields.h"
-#include "tools/luxrig/table.h"
-#include "tools/luxrigd/meeting_place.h"
+#include "tools/luxrigd/guardian/meeting_place.h"
+#include "tools/process/client.h"
+#include "tools/terminal/command.h"
+#include "tools/terminal/table.h"
 
 namespace luxrig {
 namespace {

@@ -6,8 +6,8 @@
 
 #include <algorithm>
 
-#include "tools/luxrigd/clock.h"
 #include "tools/luxrigd/scheduling.h"
+#include "tools/process/clock.h"
 
 namespace luxrig {
 namespace {

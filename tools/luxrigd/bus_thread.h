@@ -5,18 +5,18 @@
 #include <atomic>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
 
 #include "drivers/driver.h"
 #include "tools/luxrigd/blackout_switch.h"
 #include "tools/luxrigd/cycle_statistics.h"
-#include "tools/luxrigd/last_look.h"
+#include "tools/luxrigd/guardian/last_look.h"
+#include "tools/luxrigd/guardian/smooth_return.h"
 #include "tools/luxrigd/lateness.h"
 #include "tools/luxrigd/program_mailbox.h"
-#include "tools/luxrigd/smooth_return.h"
 
 namespace luxrig {
 

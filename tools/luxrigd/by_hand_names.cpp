@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "core/rig/housing.h"
-#include "core/rig/nearest.h"
+#include "core/text/nearest.h"
 
 namespace luxrig {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "core/control/by_hand.h"
 #include "core/rig/rig.h"
+#include "core/show/by_hand.h"
 
 namespace luxrig {
 

@@ -14,7 +14,7 @@
 #include <thread>
 
 #include "drivers/io/os_fault.h"
-#include "tools/luxrigd/clock.h"
+#include "tools/process/clock.h"
 
 namespace luxrig {
 namespace {

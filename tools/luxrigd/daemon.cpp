@@ -10,9 +10,9 @@
 #include "core/tasks/rig_version.h"
 #include "drivers/registry.h"
 #include "tools/command_line/installed.h"
-#include "tools/luxrigd/clock.h"
+#include "tools/luxrigd/api/status_json.h"
 #include "tools/luxrigd/scheduling.h"
-#include "tools/luxrigd/status_json.h"
+#include "tools/process/clock.h"
 
 namespace luxrig {
 namespace {

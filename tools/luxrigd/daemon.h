@@ -12,17 +12,17 @@
 #include <semaphore>
 #include <thread>
 
-#include "core/control/show_controller.h"
+#include "core/show/show_controller.h"
 #include "core/tasks/session.h"
 #include "drivers/registry.h"
+#include "tools/luxrigd/api/http_api.h"
+#include "tools/luxrigd/api/room_view.h"
 #include "tools/luxrigd/bus_thread.h"
 #include "tools/luxrigd/claims.h"
-#include "tools/luxrigd/guardian.h"
-#include "tools/luxrigd/http_api.h"
-#include "tools/luxrigd/journal.h"
-#include "tools/luxrigd/light_store.h"
+#include "tools/luxrigd/guardian/guardian.h"
 #include "tools/luxrigd/rig_file_watch.h"
-#include "tools/luxrigd/room_view.h"
+#include "tools/luxrigd/state/journal.h"
+#include "tools/luxrigd/state/light_store.h"
 
 namespace luxrig {
 

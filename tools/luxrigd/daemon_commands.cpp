@@ -7,13 +7,13 @@
 #include <algorithm>
 #include <chrono>
 
-#include "core/rig/nearest.h"
 #include "core/tasks/rig_version.h"
+#include "core/text/nearest.h"
 #include "tools/luxrig/open_session.h"
 #include "tools/luxrigd/by_hand_names.h"
-#include "tools/luxrigd/clock.h"
 #include "tools/luxrigd/daemon.h"
 #include "tools/luxrigd/reload_check.h"
+#include "tools/process/clock.h"
 
 namespace luxrig {
 namespace {

@@ -5,7 +5,7 @@
 #include <atomic>
 #include <mutex>
 
-#include "core/control/output_program.h"
+#include "core/output/output_program.h"
 
 namespace luxrig {
 

@@ -12,15 +12,15 @@
 #include "core/parallel.h"
 #include "core/rig/null_bus.h"
 #include "core/tasks/solve_tasks.h"
-#include "tools/luxrig/command.h"
-#include "tools/luxrig/files.h"
 #include "tools/luxrig/open_session.h"
-#include "tools/luxrig/terminal_watch.h"
+#include "tools/luxrigd/api/rig_pictures.h"
 #include "tools/luxrigd/daemon.h"
-#include "tools/luxrigd/rig_pictures.h"
 #include "tools/luxrigd/run_report.h"
 #include "tools/luxrigd/scheduling.h"
 #include "tools/luxrigd/service_manager.h"
+#include "tools/process/files.h"
+#include "tools/terminal/command.h"
+#include "tools/terminal/terminal_watch.h"
 
 namespace luxrig {
 namespace {

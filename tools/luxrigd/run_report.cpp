@@ -6,8 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "tools/luxrig/table.h"
-#include "tools/luxrigd/status_json.h"
+#include "tools/luxrigd/api/status_json.h"
+#include "tools/terminal/table.h"
 
 namespace luxrig {
 namespace {

@@ -5,12 +5,12 @@
 #include <optional>
 #include <string>
 
-#include "core/control/alarm_log.h"
-#include "core/control/show_controller.h"
 #include "core/rig/rig.h"
-#include "tools/luxrigd/clock.h"
-#include "tools/luxrigd/sim_process.h"
+#include "core/show/alarm_log.h"
+#include "core/show/show_controller.h"
 #include "tools/luxrigd/teller.h"
+#include "tools/process/clock.h"
+#include "tools/process/sim_process.h"
 
 namespace luxrig {
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "core/rig/plain_text.h"
+#include "core/text/plain_text.h"
 
 namespace luxrig {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "core/photometry/file_text.h"
 #include "core/rig/personality/xml_file.h"
-#include "core/rig/plain_text.h"
+#include "core/text/plain_text.h"
 
 namespace luxrig {
 

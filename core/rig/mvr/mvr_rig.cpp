@@ -6,11 +6,11 @@
 #include <cmath>
 #include <set>
 
-#include "core/rig/mode_slots.h"
 #include "core/rig/mvr/free_addresses.h"
 #include "core/rig/mvr/mvr_scenery.h"
 #include "core/rig/personality/gdtf_file.h"
-#include "core/rig/plain_text.h"
+#include "core/rig/reading/mode_slots.h"
+#include "core/text/plain_text.h"
 
 namespace luxrig {
 namespace {

@@ -6,8 +6,8 @@
 #include <map>
 #include <set>
 
-#include "core/rig/plain_text.h"
-#include "core/scene/mesh_reading.h"
+#include "core/scene/mesh/mesh_reading.h"
+#include "core/text/plain_text.h"
 
 namespace luxrig {
 namespace {

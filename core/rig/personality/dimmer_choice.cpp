@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/rig/personality/held_values.h"
-#include "core/rig/plain_text.h"
+#include "core/text/plain_text.h"
 
 namespace luxrig {
 namespace {

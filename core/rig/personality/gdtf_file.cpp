@@ -6,7 +6,7 @@
 
 #include "core/rig/personality/gdtf_modes.h"
 #include "core/rig/personality/zip_archive.h"
-#include "core/rig/plain_text.h"
+#include "core/text/plain_text.h"
 
 namespace luxrig {
 namespace {

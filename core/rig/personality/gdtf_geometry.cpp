@@ -7,8 +7,8 @@
 #include <cmath>
 #include <set>
 
-#include "core/rig/nearest.h"
-#include "core/rig/plain_text.h"
+#include "core/text/nearest.h"
+#include "core/text/plain_text.h"
 
 namespace luxrig {
 namespace {

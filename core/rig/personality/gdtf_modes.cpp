@@ -9,7 +9,7 @@
 #include "core/rig/personality/gdtf_functions.h"
 #include "core/rig/personality/gdtf_geometry.h"
 #include "core/rig/personality/slot_overlap.h"
-#include "core/rig/plain_text.h"
+#include "core/text/plain_text.h"
 
 namespace luxrig {
 namespace {

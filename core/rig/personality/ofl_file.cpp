@@ -10,7 +10,7 @@
 #include "core/rig/personality/ofl_capabilities.h"
 #include "core/rig/personality/ofl_pixels.h"
 #include "core/rig/personality/slot_overlap.h"
-#include "core/rig/plain_text.h"
+#include "core/text/plain_text.h"
 
 namespace luxrig {
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/rig/personality/xml_file.h"
-#include "core/rig/plain_text.h"
+#include "core/text/plain_text.h"
 
 namespace luxrig {
 namespace {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "core/rig/plain_text.h"
+#include "core/text/plain_text.h"
 
 namespace luxrig {
 namespace {

@@ -6,9 +6,9 @@
 #include <functional>
 #include <map>
 
-#include "core/rig/nearest.h"
+#include "core/rig/reading/section.h"
 #include "core/rig/register_map/register_value.h"
-#include "core/rig/section.h"
+#include "core/text/nearest.h"
 
 namespace luxrig {
 namespace {

@@ -41,7 +41,7 @@ constexpr SectionSpec kSections[] = {
      "A region that no lit beam of a head may meet: an audience, a camera, a mirror. A box (`box_m`), or a sphere "
      "round "
      "`centre_m`. The beam counts to its field angle, zoomed as it is, through walls, and however far. What happens "
-     "then: core/control/NOTES.md."},
+     "then: core/show/NOTES.md."},
     {"limits", false, 1, false, "What holds for the whole rig."},
     {"control", false, 1, false, "How looks change, and how readings correct them."},
     {"safe", false, 1, false, "What the light does when something fails."},

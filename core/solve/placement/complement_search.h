@@ -14,7 +14,7 @@
 #include <span>
 #include <vector>
 
-#include "core/solve/columns_view.h"
+#include "core/solve/least_squares/columns_view.h"
 #include "core/solve/placement/placed_lights.h"
 
 namespace luxrig {

@@ -9,9 +9,9 @@
 #include <limits>
 
 #include "core/parallel.h"
-#include "core/rig/nearest.h"
-#include "core/rig/plain_text.h"
 #include "core/solve/placement/surface_lattice.h"
+#include "core/text/nearest.h"
+#include "core/text/plain_text.h"
 
 namespace luxrig {
 namespace {

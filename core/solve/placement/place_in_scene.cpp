@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <optional>
 
+#include "core/solve/bounds/goal_bounds.h"
 #include "core/solve/placement/corrected_placement.h"
 #include "core/solve/placement/energy_front.h"
-#include "core/solve/placement/goal_bounds.h"
 #include "core/solve/placement/mounted_light.h"
 #include "core/solve/placement/placement_methods.h"
 #include "core/solve/placement/search_space.h"

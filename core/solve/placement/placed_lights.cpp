@@ -3,8 +3,8 @@
 #include <limits>
 
 #include "core/check.h"
+#include "core/solve/least_squares/nnls.h"
 #include "core/solve/lux_limits.h"
-#include "core/solve/nnls.h"
 
 namespace luxrig {
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/check.h"
-#include "core/transport/direct_light.h"
+#include "core/transport/direct/direct_light.h"
 
 namespace luxrig {
 namespace {

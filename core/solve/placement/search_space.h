@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/run.h"
-#include "core/solve/columns_view.h"
+#include "core/solve/least_squares/columns_view.h"
 #include "core/solve/placement/movable_light.h"
 #include "core/solve/placement/scene_light.h"
 

@@ -7,7 +7,7 @@
 
 #include "core/parallel.h"
 #include "core/transport/candidates/indirect_plan.h"
-#include "core/transport/lamps.h"
+#include "core/transport/direct/lamps.h"
 
 namespace luxrig {
 namespace {

@@ -10,7 +10,7 @@
 #include "core/transport/candidates/error_histogram.h"
 #include "core/transport/candidates/indirect_plan.h"
 #include "core/transport/candidates/reflected_columns.h"
-#include "core/transport/lamps.h"
+#include "core/transport/direct/lamps.h"
 
 namespace luxrig {
 namespace {

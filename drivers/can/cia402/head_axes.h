@@ -1,5 +1,5 @@
 #pragma once
-/// The two axes of one head, turned in step (core/control/head_move.h). When one of them is lost or has a fault the
+/// The two axes of one head, turned in step (core/output/head_move.h). When one of them is lost or has a fault the
 /// other stops, so that the beam stays on the path it was on. That path is a straight line from a standstill; towards
 /// an aim that replaces one under way each axis bends off as fast as its own limits let it. Neither begins before both
 /// drives know how fast: one that is told by SDO needs some cycles for it. Pure.
@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "core/control/head_move.h"
+#include "core/output/head_move.h"
 #include "core/rig/rig.h"
 #include "drivers/can/cia402/axis.h"
 

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/rig/moment.h"
+#include "core/rig/reading/moment.h"
 #include "core/rig/rig_file.h"
 
 namespace luxrig {

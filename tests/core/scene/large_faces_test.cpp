@@ -7,7 +7,7 @@
 #include <map>
 
 #include "core/scene/ray_scene.h"
-#include "core/scene/scene_builder.h"
+#include "core/tasks/scene_builder.h"
 #include "tests/core/scene/room_on_ground.h"
 #include "tests/random.h"
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/scene/ray_scene.h"
-#include "core/scene/scene_builder.h"
+#include "core/tasks/scene_builder.h"
 #include "tests/folders.h"
 
 namespace luxrig {

@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "core/solve/nnls.h"
+#include "core/solve/least_squares/nnls.h"
 #include "tests/core/solve/emittance_goals.h"
 
 namespace luxrig {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <fstream>
 
+#include "core/tasks/rig_transport.h"
 #include "core/tasks/solve_tasks.h"
-#include "core/transport/rig_transport.h"
 #include "tests/core/tasks/opened_rigs.h"
 
 namespace luxrig {

@@ -4,8 +4,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "core/tasks/rig_notes/rig_notes.h"
 #include "core/tasks/solve_tasks.h"
-#include "core/transport/rig_notes/rig_notes.h"
 #include "tests/core/tasks/opened_rigs.h"
 
 namespace luxrig {

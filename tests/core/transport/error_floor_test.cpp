@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/transport/rig_transport.h"
+#include "core/tasks/rig_transport.h"
 #include "tests/core/transport/boxes.h"
 
 namespace luxrig {

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "core/transport/direct_sources.h"
-#include "core/transport/enclosures.h"
-#include "core/transport/rooms/lit_room.h"
+#include "core/transport/direct/direct_sources.h"
+#include "tools/bench/rooms/enclosures.h"
+#include "tools/bench/rooms/lit_room.h"
 
 namespace luxrig {
 namespace {

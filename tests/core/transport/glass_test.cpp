@@ -5,10 +5,10 @@
 #include <random>
 
 #include "core/transport/candidates/incremental_transport.h"
-#include "core/transport/enclosures.h"
 #include "core/transport/evaluator.h"
 #include "tests/core/transport/candidates/computed.h"
 #include "tests/core/transport/within.h"
+#include "tools/bench/rooms/enclosures.h"
 
 namespace luxrig {
 namespace {

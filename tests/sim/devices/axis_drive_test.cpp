@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "core/control/trapezoid.h"
+#include "core/output/trapezoid.h"
 
 namespace luxrig::sim {
 namespace {

@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "core/transport/enclosures.h"
-#include "core/transport/rig_transport.h"
+#include "core/tasks/rig_transport.h"
 #include "tests/sim/tiny_rig.h"
+#include "tools/bench/rooms/enclosures.h"
 
 namespace luxrig::sim {
 namespace {

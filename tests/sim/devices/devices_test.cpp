@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/control/output_program.h"
+#include "core/output/output_program.h"
 #include "sim/devices/dimmer.h"
 #include "sim/devices/dmx_fixture.h"
 #include "sim/devices/head.h"

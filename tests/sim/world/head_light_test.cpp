@@ -6,9 +6,9 @@
 #include <cmath>
 #include <random>
 
-#include "core/transport/enclosures.h"
+#include "core/tasks/rig_transport.h"
 #include "core/transport/evaluator.h"
-#include "core/transport/rig_transport.h"
+#include "tools/bench/rooms/enclosures.h"
 
 namespace luxrig::sim {
 namespace {

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "core/scene/ray_scene.h"
-#include "core/scene/scene_builder.h"
-#include "core/transport/rig_transport.h"
+#include "core/tasks/rig_transport.h"
+#include "core/tasks/scene_builder.h"
 #include "tests/sim/tiny_rig.h"
 
 namespace luxrig::sim {

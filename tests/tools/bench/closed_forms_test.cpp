@@ -1,9 +1,9 @@
-#include "tools/bench/closed_forms.h"
+#include "tools/bench/analytic/closed_forms.h"
 
 #include <gtest/gtest.h>
 
-#include "tools/bench/box_radiosity.h"
-#include "tools/bench/reference_sky.h"
+#include "tools/bench/analytic/box_radiosity.h"
+#include "tools/bench/analytic/reference_sky.h"
 
 namespace luxrig {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/bench/fault_cases.h"
+#include "tools/bench/faults/fault_cases.h"
 
 #include <gtest/gtest.h>
 

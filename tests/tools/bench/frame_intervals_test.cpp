@@ -1,4 +1,4 @@
-#include "tools/bench/frame_intervals.h"
+#include "tools/bench/buses/frame_intervals.h"
 
 #include <gtest/gtest.h>
 

@@ -3,10 +3,10 @@
 #include <fstream>
 #include <iterator>
 
-#include "core/highlight/targets/relief_targets.h"
-#include "core/scene/mesh_file.h"
+#include "core/scene/mesh/mesh_file.h"
 #include "tests/folders.h"
-#include "tools/bench/highlight_rows.h"
+#include "tools/bench/highlight/rows.h"
+#include "tools/bench/rooms/relief_targets.h"
 
 namespace luxrig {
 namespace {

@@ -1,9 +1,8 @@
-#include "tools/bench/highlight_variants.h"
-
 #include <gtest/gtest.h>
 
-#include "core/highlight/target_surface.h"
+#include "core/highlight/surface/target_surface.h"
 #include "tests/core/highlight/shapes.h"
+#include "tools/bench/highlight/variants.h"
 
 namespace luxrig {
 namespace {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "tools/bench/nnls_problems.h"
+#include "tools/bench/nnls/problems.h"
 #include "tools/bench/suites.h"
 
 namespace luxrig {

@@ -3,8 +3,8 @@
 #include <fstream>
 #include <set>
 
-#include "tools/bench/analytic_case.h"
-#include "tools/bench/transport_case.h"
+#include "tools/bench/analytic/case.h"
+#include "tools/bench/transport/case.h"
 
 namespace luxrig {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "tools/bench/transport_candidates.h"
+#include "tools/bench/transport/candidates.h"
 
 namespace luxrig {
 namespace {

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/highlight/direction_map.h"
+#include "core/highlight/picture/direction_map.h"
 #include "tests/core/highlight/shapes.h"
-#include "tools/luxrig/picture_png.h"
-#include "tools/luxrig/render_show.h"
+#include "tools/luxrig/render/render_show.h"
+#include "tools/terminal/picture_png.h"
 
 namespace luxrig {
 namespace {

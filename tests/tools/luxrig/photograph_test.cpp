@@ -10,13 +10,13 @@
 
 #include "core/photometry/light_colour.h"
 #include "core/rig/rig_file.h"
-#include "core/scene/scene_builder.h"
-#include "core/transport/rig_transport.h"
-#include "tools/luxrig/dark_picture.h"
-#include "tools/luxrig/exposure.h"
-#include "tools/luxrig/picture_png.h"
-#include "tools/luxrig/png_canvas.h"
+#include "core/tasks/rig_transport.h"
+#include "core/tasks/scene_builder.h"
+#include "tools/luxrig/render/dark_picture.h"
+#include "tools/luxrig/render/exposure.h"
 #include "tools/luxrig/room_view.h"
+#include "tools/terminal/picture_png.h"
+#include "tools/terminal/png_canvas.h"
 
 namespace luxrig {
 namespace {

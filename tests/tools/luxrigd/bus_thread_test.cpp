@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tools/luxrigd/clock.h"
+#include "tools/process/clock.h"
 
 namespace luxrig {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/core/control/at.h"
+#include "tests/core/output/at.h"
 
 namespace luxrig {
 namespace {

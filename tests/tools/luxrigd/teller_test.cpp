@@ -7,7 +7,7 @@
 
 #include <string>
 
-#include "tools/luxrigd/clock.h"
+#include "tools/process/clock.h"
 
 namespace luxrig {
 namespace {

@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "core/transport/enclosures.h"
 #include "core/transport/sobol.h"
 #include "tools/bench/cache/volume/voxel_walk.h"
 #include "tools/bench/cache/volume/voxelise.h"
+#include "tools/bench/rooms/enclosures.h"
 
 namespace luxrig {
 namespace {

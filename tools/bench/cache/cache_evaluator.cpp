@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "core/transport/lamps.h"
+#include "core/transport/direct/lamps.h"
 #include "tools/bench/cache/radiance_cache.h"
 
 namespace luxrig {

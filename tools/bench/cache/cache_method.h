@@ -1,7 +1,7 @@
 #pragma once
 /// What the kinds of cache have in common.
 
-#include "core/transport/lamps.h"
+#include "core/transport/direct/lamps.h"
 #include "tools/bench/cache/radiance_cache.h"
 
 namespace luxrig {

@@ -6,7 +6,7 @@
 
 #include "core/parallel.h"
 #include "core/transport/bsdf.h"
-#include "core/transport/direct_light.h"
+#include "core/transport/direct/direct_light.h"
 #include "core/transport/progress.h"
 #include "tools/bench/cache/cache_method.h"
 #include "tools/bench/cache/direction_cells.h"

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/transport/direct_light.h"
+#include "core/transport/direct/direct_light.h"
 #include "core/transport/error_floor.h"
 #include "core/transport/progress.h"
 #include "core/transport/replicate_error.h"

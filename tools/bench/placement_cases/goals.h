@@ -1,8 +1,8 @@
 #pragma once
 /// What light is asked for.
 
-#include "core/transport/rooms/lit_room.h"
 #include "tools/bench/placement_cases/placement_case.h"
+#include "tools/bench/rooms/lit_room.h"
 
 namespace luxrig {
 

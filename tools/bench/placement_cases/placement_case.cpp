@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include "core/transport/rooms/lit_room.h"
-#include "core/transport/rooms/surface_spread.h"
 #include "tools/bench/placement_cases/goals.h"
 #include "tools/bench/placement_cases/scanned_rooms.h"
+#include "tools/bench/rooms/lit_room.h"
+#include "tools/bench/rooms/surface_spread.h"
 
 namespace luxrig {
 namespace {

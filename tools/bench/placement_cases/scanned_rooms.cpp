@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "core/scene/mesh_file.h"
-#include "core/transport/rooms/surface_spread.h"
+#include "core/scene/mesh/mesh_file.h"
 #include "tools/bench/placement_cases/goals.h"
+#include "tools/bench/rooms/surface_spread.h"
 
 namespace luxrig {
 namespace {

@@ -3,7 +3,7 @@
 import type { Fixture, Point, Status } from './api';
 
 /** The sign of a point. Colour never stands alone: each has its own shape and its own word. What counts as met, missed or
- *  unknown, kept or exceeded, the daemon decides (core/control/verdict.h); a miss is low or high here. */
+ *  unknown, kept or exceeded, the daemon decides (core/plan/verdict.h); a miss is low or high here. */
 export type Verdict = 'met' | 'low' | 'high' | 'over' | 'unknown' | 'limit-unknown' | 'none';
 
 export interface Judged {

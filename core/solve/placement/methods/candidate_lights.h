@@ -5,7 +5,7 @@
 #include <memory>
 #include <span>
 
-#include "core/solve/nnls_of_few.h"
+#include "core/solve/least_squares/nnls_of_few.h"
 #include "core/solve/placement/methods/placement_method.h"
 
 namespace luxrig {

@@ -8,7 +8,7 @@
 
 #include "core/result.h"
 #include "core/run.h"
-#include "core/solve/columns_view.h"
+#include "core/solve/least_squares/columns_view.h"
 #include "core/solve/placement/number_of_lights.h"
 #include "core/solve/placement/placed_lights.h"
 

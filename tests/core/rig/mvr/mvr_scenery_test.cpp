@@ -8,8 +8,8 @@
 
 #include "core/rig/mvr/mvr_rig.h"
 #include "core/rig/rig_file.h"
-#include "core/scene/scene_builder.h"
-#include "tests/core/scene/mesh_maker.h"
+#include "core/tasks/scene_builder.h"
+#include "tests/core/scene/mesh/mesh_maker.h"
 #include "tests/folders.h"
 
 namespace luxrig {

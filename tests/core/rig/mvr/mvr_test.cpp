@@ -5,8 +5,8 @@
 #include <random>
 
 #include "core/rig/mvr/mvr_rig.h"
-#include "core/rig/plain_text.h"
 #include "core/rig/rig_file.h"
+#include "core/text/plain_text.h"
 #include "tests/folders.h"
 
 namespace luxrig {

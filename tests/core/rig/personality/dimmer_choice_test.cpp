@@ -6,9 +6,9 @@
 #include <cmath>
 #include <fstream>
 
-#include "core/rig/mode_slots.h"
 #include "core/rig/personality/gdtf_file.h"
 #include "core/rig/personality/ofl_file.h"
+#include "core/rig/reading/mode_slots.h"
 #include "core/rig/rig_file.h"
 #include "tests/folders.h"
 

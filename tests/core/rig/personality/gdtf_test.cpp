@@ -8,7 +8,7 @@
 #include "core/rig/personality/dmx_value.h"
 #include "core/rig/personality/gdtf_file.h"
 #include "core/rig/personality/personality_file.h"
-#include "core/rig/plain_text.h"
+#include "core/text/plain_text.h"
 #include "tests/folders.h"
 
 namespace luxrig {

@@ -10,8 +10,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "core/rig/mode_slots.h"
 #include "core/rig/personality/personality_file.h"
+#include "core/rig/reading/mode_slots.h"
 #include "tests/folders.h"
 
 namespace luxrig {

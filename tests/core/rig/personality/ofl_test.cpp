@@ -7,7 +7,7 @@
 
 #include "core/rig/personality/ofl_file.h"
 #include "core/rig/personality/personality_file.h"
-#include "core/rig/plain_text.h"
+#include "core/text/plain_text.h"
 #include "tests/folders.h"
 
 namespace luxrig {

@@ -9,7 +9,7 @@
 #include "core/solve/placement/complement_search.h"
 #include "core/solve/placement/lattice.h"
 #include "core/solve/placement/scene_light.h"
-#include "core/transport/rooms/lit_room.h"
+#include "tools/bench/rooms/lit_room.h"
 
 namespace luxrig {
 

@@ -6,8 +6,8 @@
 #include <random>
 
 #include "core/transport/candidates/candidate_transport.h"
-#include "core/transport/rooms/lit_room.h"
 #include "tests/core/transport/candidates/box_rooms.h"
+#include "tools/bench/rooms/lit_room.h"
 
 namespace luxrig {
 namespace {

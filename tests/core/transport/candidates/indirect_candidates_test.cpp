@@ -6,10 +6,10 @@
 #include "core/photometry/sky.h"
 #include "core/transport/candidates/candidate_transport.h"
 #include "core/transport/candidates/incremental_transport.h"
-#include "core/transport/enclosures.h"
 #include "tests/core/transport/candidates/box_rooms.h"
 #include "tests/core/transport/candidates/computed.h"
 #include "tests/core/transport/cube_radiosity.h"
+#include "tools/bench/rooms/enclosures.h"
 
 namespace luxrig {
 namespace {

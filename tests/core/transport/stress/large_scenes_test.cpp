@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "core/scene/scene_builder.h"
+#include "core/tasks/rig_transport.h"
+#include "core/tasks/scene_builder.h"
 #include "core/transport/evaluator.h"
-#include "core/transport/rig_transport.h"
 #include "tests/core/scene/room_on_ground.h"
 #include "tests/random.h"
 

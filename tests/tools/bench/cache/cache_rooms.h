@@ -1,9 +1,9 @@
 #pragma once
 /// Small scenes for the cache's tests.
 
-#include "core/transport/enclosures.h"
 #include "tests/core/transport/boxes.h"
 #include "tools/bench/cache/radiance_cache.h"
+#include "tools/bench/rooms/enclosures.h"
 
 namespace luxrig {
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/transport/direct_light.h"
+#include "core/transport/direct/direct_light.h"
 #include "tests/core/transport/lamp_pose.h"
 #include "tests/tools/bench/cache/cache_rooms.h"
 

@@ -4,10 +4,10 @@
 
 #include <random>
 
-#include "core/transport/rooms/lit_room.h"
 #include "tests/core/transport/cube_radiosity.h"
 #include "tests/core/transport/lamp_pose.h"
 #include "tests/tools/bench/cache/cache_rooms.h"
+#include "tools/bench/rooms/lit_room.h"
 
 namespace luxrig {
 namespace {

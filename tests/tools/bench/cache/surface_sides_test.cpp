@@ -4,9 +4,9 @@
 
 #include <random>
 
-#include "core/transport/rooms/lit_room.h"
 #include "tests/tools/bench/cache/cache_rooms.h"
 #include "tools/bench/cache/volume/voxelise.h"
+#include "tools/bench/rooms/lit_room.h"
 
 namespace luxrig {
 namespace {

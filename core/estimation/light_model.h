@@ -1,0 +1,18 @@
+#pragma once
+/// The light that fixtures give at points and luxmeters: what the controller and the estimator work with.
+
+#include <Eigen/Core>
+
+namespace luxrig {
+
+/// T at the rig's aims, and the light that no fixture gives (daylight).
+struct LightModel {
+  Eigen::MatrixXd point_lux_per_level;   ///< points × fixtures
+  Eigen::MatrixXd meter_lux_per_level;   ///< luxmeters × fixtures
+  Eigen::MatrixXd point_standard_error;  ///< of each entry, same shape; empty = exact
+  Eigen::MatrixXd meter_standard_error;
+  Eigen::VectorXd point_fixed_lx, meter_fixed_lx;              ///< daylight; empty = none
+  Eigen::VectorXd point_fixed_error_lx, meter_fixed_error_lx;  ///< standard error of that; empty = exact
+};
+
+}  // namespace luxrig

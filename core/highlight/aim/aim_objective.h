@@ -1,0 +1,113 @@
+#pragma once
+/// What heads are aimed for, and what they must not do: local contrast and covered features, against energy, darkness
+/// and long moves, under limits of lux.
+
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/highlight/shadow/contrast_samples.h"
+#include "core/highlight/surface/feature_clusters.h"
+
+namespace luxrig {
+
+/// Where light is limited: a place on a surface, or (normal zero) an eye or a camera, which no beam may blind.
+struct AimLimit {
+  std::string name;
+  OrientedPoint at;
+  double max_lx = 0;    ///< 0: stays dark
+  double fixed_lx = 0;  ///< of light that stays
+};
+
+struct AimWishes {
+  /// Judge by relative contrast, as an eye or a camera that adapts: then heads are as bright as limits let them, but
+  /// with a weight of energy. Else by contrast in lux.
+  bool relative = false;
+  std::vector<AimLimit> limits;
+  double max_object_lx = std::numeric_limits<double>::infinity();  ///< at every sample of the object
+  double max_watts = std::numeric_limits<double>::infinity();      ///< of all heads together
+  /// Mean illuminance of the interest points by the key light, over that by everything else.
+  std::optional<std::size_t> key;  ///< a head
+  double min_key_to_fill = 0, max_key_to_fill = std::numeric_limits<double>::infinity();
+  /// What each is worth beside a local contrast of HeadAims::reference_lx(), or a relative one of 1.
+  double coverage_weight = 0.25, energy_weight = 0, base_weight = 0, travel_weight = 0.01;
+  double base_lx = 0;  ///< that interest points should have, with base_weight
+  /// Of what is there anyway (daylight, lights that stay) at each sample [lx]; empty: darkness.
+  std::vector<double> fixed_lux;
+
+  [[nodiscard]] bool limited() const {
+    return !limits.empty() || std::isfinite(max_object_lx) || std::isfinite(max_watts) || key.has_value();
+  }
+};
+
+enum class HeadRole { any, key, fill };
+[[nodiscard]] inline HeadRole role_in(const AimWishes& wishes, std::size_t head) {
+  if (!wishes.key) return HeadRole::any;
+  return *wishes.key == head ? HeadRole::key : HeadRole::fill;
+}
+
+/// Of heads as they are set.
+struct AimScore {
+  double local_contrast_lx = 0;  ///< largest difference in illuminance to a neighbour, mean over interest points
+  /// Mean of the largest |E - E'| / (E + E' + a tenth of the mean): what is darker than that is dark to an eye, and
+  /// light reflected in the room would be there.
+  double relative_contrast = 0;
+  double coverage = 0;    ///< share of features where a head draws a shadow's edge that can be seen
+  double mean_lx = 0;     ///< of interest points
+  double below_base = 0;  ///< how much of base_lx is missing, mean over interest points, 0…1
+  double watts = 0;
+  double travel_s = 0;                                            ///< until the last head is there
+  double key_to_fill = std::numeric_limits<double>::quiet_NaN();  ///< NaN without a key
+  double object_lx = 0;                                           ///< of the brightest sample
+  std::vector<double> limit_lx;                                   ///< at each of AimWishes::limits
+  bool within_limits = true;
+  double objective = 0;  ///< contrast / reference_lx (or the relative one) + weights; what the search makes large
+};
+
+/// One head's light on all that is judged, at full level.
+struct AimColumn {
+  std::vector<double> sample_lux, limit_lux;
+  std::vector<double> feature_lux;  ///< on the lit side of its brightest shadow edge in each feature
+  double mean_lux = 0;              ///< over interest points
+};
+
+/// The heads' light together.
+struct AimSum {
+  std::vector<double> sample_lux, limit_lux;
+  std::vector<std::uint8_t> covered;  ///< per feature
+  double mean_lux = 0, key_mean_lux = 0, watts = 0, travel_s = 0, travel_total_s = 0;
+};
+
+class AimObjective {
+ public:
+  /// All must stay.
+  /// reference_lx   the strongest head's lux on the object: the unit of contrast; > 0
+  AimObjective(const ContrastSamples& samples, const FeatureClusters& features, const AimWishes& wishes,
+               double reference_lx, double all_watts);
+
+  [[nodiscard]] std::size_t samples() const { return samples_.points.size(); }
+  /// Light that stays.
+  [[nodiscard]] AimSum nothing() const;
+  /// lux   of a head at every sample, and at every limit
+  [[nodiscard]] AimColumn column(std::vector<double> sample_lux, std::vector<double> limit_lux) const;
+  void add(AimSum& sum, const AimColumn& column, double level, HeadRole role, double watts, double travel_s) const;
+
+  /// Largest level at which this much more light breaks no limit; 0 where one is broken already.
+  /// watts    of the head at full level
+  /// ratios   whether key to fill counts, too
+  [[nodiscard]] double most_level(const AimSum& others, const AimColumn& column, HeadRole role, double max_level,
+                                  double watts, bool ratios = true) const;
+  [[nodiscard]] AimScore score(const AimSum& sum) const;
+
+ private:
+  void measure_contrast(const AimSum& sum, AimScore& score) const;
+
+  const ContrastSamples& samples_;
+  const FeatureClusters& features_;
+  const AimWishes& wishes_;
+  double reference_lx_, all_watts_;
+};
+
+}  // namespace luxrig

@@ -1,0 +1,13 @@
+#pragma once
+/// A camera of the rig as pictures know it.
+
+#include "core/picture/picture.h"
+#include "core/rig/rig.h"
+
+namespace luxrig {
+
+[[nodiscard]] inline Camera view_of(const PictureCamera& camera) {
+  return {camera.position_world_m, camera.aim_world_m, camera.vertical_fov_rad, camera.width_px, camera.height_px};
+}
+
+}  // namespace luxrig

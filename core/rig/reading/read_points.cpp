@@ -1,0 +1,105 @@
+#include <fmt/format.h>
+
+#include "core/rig/points_csv.h"
+#include "core/rig/reading/rig_reader.h"
+
+namespace luxrig {
+
+void RigReader::read_points_file(Section& s) {
+  const auto path = read_file(s, "file");
+  if (!path) return;
+  const Place place = s.place_of("file");
+  const std::size_t room = section_spec("point").most - std::min(rig.points.size(), section_spec("point").most);
+  PointsTable table = load_points_csv(*path, room);
+  for (Problem& problem : table.problems) problems.add(std::move(problem));
+  for (PointsTable::Row& row : table.rows) {
+    row.point.place = place;
+    if (const auto taken = points.find(row.point.name)) {
+      problems.add({path->string(), row.place.line, row.place.column,
+                    fmt::format("a second point is called {}", in_quotes(row.point.name)),
+                    "give each point its own name"});
+    } else {
+      points.add(row.point.name, rig.points.size(), place, problems);
+    }
+    if (row.goal_xy) set_goal_xy(row.point, *row.goal_xy, path->string(), row.place);
+    rig.points.push_back(std::move(row.point));
+    point_places.emplace_back(path->string(), row.place);
+  }
+}
+
+void RigReader::set_goal_xy(Point& point, const Chromaticity& xy, const std::string& file, const Place& place) {
+  const ColourWithin709 colour = within_rec709(rgb_of_xy(xy));
+  point.goal_rgb = colour.rgb;
+  if (colour.moved)
+    note_colour_moved(file, place, fmt::format("the goal of point {},", in_quotes(point.name)), xy, colour.rgb);
+}
+
+void RigReader::read_goal(Section& s, Point& point) {
+  s.read("goal_lx", point.goal_lx);
+  Chromaticity xy;
+  double cct_k = 0;
+  const bool by_xy = s.read("goal_xy", xy), by_cct = s.read("goal_cct_k", cct_k);
+  if (by_xy && by_cct) {
+    problems.add(s.place_of("goal_cct_k"), "goal_xy and goal_cct_k both say what colour the goal has",
+                 "remove one of the two");
+  } else if (by_xy) {
+    set_goal_xy(point, xy, problems.file(), s.place_of("goal_xy"));
+  } else if (by_cct) {
+    point.goal_rgb = rgb_of_cct(cct_k);
+  }
+  if (s.has("goal_lx")) return;
+  for (const char* key : {"goal_xy", "goal_cct_k"})
+    s.refuse(key, fmt::format("{} has no effect without goal_lx", key), "add goal_lx, or remove it");
+}
+
+/// A goal without colour has no place among others that have one: it would weigh as a goal of white light.
+void RigReader::check_goal_colours() {
+  const auto counts = [](const Point& point) { return point.goal_lx && point.weight > 0; };
+  const Point* coloured = nullptr;
+  std::size_t first = rig.points.size(), grey = 0;
+  for (std::size_t i = 0; i < rig.points.size(); ++i) {
+    const Point& point = rig.points[i];
+    if (!counts(point)) continue;
+    if (point.goal_rgb) {
+      if (!coloured) coloured = &point;
+    } else {
+      if (grey++ == 0) first = i;
+    }
+  }
+  if (!coloured || grey == 0) return;
+  const auto& [file, place] = point_places[first];
+  problems.add({file, place.line, place.column,
+                fmt::format("the goal of point {} has no colour{}, but that of point {} has one",
+                            in_quotes(rig.points[first].name), grey > 1 ? fmt::format(" (as {} more)", grey - 1) : "",
+                            in_quotes(coloured->name)),
+                "give every goal a goal_xy or goal_cct_k (daylight white: goal_cct_k = 6500), or none"});
+}
+
+void RigReader::read_points() {
+  each(root, "point", [&](Section& s) {
+    Point point;
+    point.place = s.place();
+    point.position_world_m.setConstant(std::numeric_limits<double>::quiet_NaN());  // until it is known
+    if (s.read("name", point.name)) points.add(point.name, rig.points.size(), s.place_of("name"), problems);
+    s.read("position_m", point.position_world_m);
+    s.read_normal("normal", point.normal_world);
+    read_goal(s, point);
+    s.read("weight", point.weight);
+    s.read("max_lx", point.max_lx);
+    rig.points.push_back(std::move(point));
+    point_places.emplace_back(problems.file(), s.place());
+  });
+  each(root, "points", [&](Section& s) { read_points_file(s); });
+  check_goal_colours();
+  for (const Point& point : rig.points) {
+    // Legal, since the limit wins; but seldom what was meant.
+    if (point.goal_lx && point.max_lx && *point.goal_lx > *point.max_lx) {
+      rig.notes.push_back({problems.file(), point.place.line, point.place.column,
+                           fmt::format("point {} has a goal of {} lx above its max_lx of {} lx", in_quotes(point.name),
+                                       *point.goal_lx, *point.max_lx),
+                           "the limit wins; lower the goal if that is not meant"});
+    }
+  }
+}
+
+}  // namespace luxrig

@@ -1,0 +1,114 @@
+// Tasks that bring out an object's relief: aim, highlight.
+#include <fmt/format.h>
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "core/rig/housing.h"
+#include "core/rig/reading/rig_reader.h"
+#include "core/text/nearest.h"
+
+namespace luxrig {
+
+std::vector<std::size_t> RigReader::read_patterns(Section& s, std::string_view key,
+                                                  const std::vector<std::string_view>& names, std::string_view what) {
+  std::vector<std::pair<std::string, Place>> patterns;
+  s.read_texts(key, patterns);
+  std::vector<std::size_t> found;
+  for (const auto& [pattern, place] : patterns) {
+    const std::size_t before = found.size();
+    for (std::size_t i = 0; i < names.size(); ++i)
+      if (fnmatch(pattern.c_str(), std::string(names[i]).c_str(), 0) == 0) found.push_back(i);
+    if (found.size() == before)
+      problems.add(place, fmt::format("{} {} fits no {}", key, in_quotes(pattern), what),
+                   mend_for_unknown(pattern, names, fmt::format("add a [[{}]] of that name", what)));
+  }
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
+}
+
+void RigReader::read_relief(Section& s, ReliefSpec& relief) {
+  if (!s.has("object")) s.require("object", "the mesh whose relief shall read");
+  if (const auto object = objects.read_reference(s, "object")) {
+    relief.object = *object;
+    if (*object < rig.scene.objects.size() && rig.scene.objects[*object].transmittance)
+      problems.add(s.place_of("object"),
+                   fmt::format("scene object {} is of glass: light finds no relief on it",
+                               in_quotes(rig.scene.objects[*object].name)),
+                   "name an object without transmittance");
+    else if (*object < rig.scene.objects.size() && !rig.scene.objects[*object].mesh)
+      problems.add(
+          s.place_of("object"),
+          fmt::format("scene object {} is a box: it has no relief", in_quotes(rig.scene.objects[*object].name)),
+          "name an object that is a mesh file");
+  }
+  relief.camera = cameras.read_reference(s, "seen_by");
+  double scale_mm = 0;
+  if (s.read("scale_mm", scale_mm)) relief.scale_m = scale_mm / 1000;
+  s.read("interest", relief.interest);
+  s.read("max_object_lx", relief.max_lx);
+  if (relief.max_lx && !(*relief.max_lx > 0))
+    problems.add(s.place_of("max_object_lx"), "max_object_lx of 0 leaves nothing to light", "give it some lux");
+  s.read("coverage_weight", relief.coverage_weight);
+}
+
+void RigReader::read_highlight(Section& s, HighlightSpec& highlight) {
+  read_placed(s, TaskKind::highlight, highlight.luminaire, highlight.lights, highlight.max_lights);
+  read_relief(s, highlight.relief);
+}
+
+void RigReader::read_aim_task(Section& s, AimSpec& aim) {
+  read_relief(s, aim.relief);
+  s.read_choice("contrast", aim.relief.relative);
+  std::vector<std::string_view> fixture_names, point_names;
+  std::vector<std::string> head_names;
+  NameIndex heads("fixture");
+  for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
+    head_names.push_back(housing_name(rig, f));
+    if (!heads.find(head_names[f])) heads.add(head_names[f], f, rig.fixtures[f].place, problems);
+  }
+  fixture_names.assign(head_names.begin(), head_names.end());
+  for (const Point& point : rig.points) point_names.push_back(point.name);
+  if (s.has("heads")) {
+    aim.heads = read_patterns(s, "heads", fixture_names, "fixture");
+  } else {
+    for (std::size_t f = 0; f < rig.fixtures.size(); ++f)
+      if (rig.fixtures[f].moves) aim.heads.push_back(f);
+    if (aim.heads.empty() && problems.empty())
+      problems.add(s.place(), "there is nothing to aim: no fixture has pan and tilt",
+                   "give a fixture pan and tilt slots, or name the heads that shall at least be dimmed");
+  }
+  for (std::size_t& head : aim.heads) head = rig.fixtures[head].housing.value_or(head);
+  aim.heads.erase(std::unique(aim.heads.begin(), aim.heads.end()), aim.heads.end());
+  for (const std::size_t head : aim.heads)
+    if (rig.fixtures[head].switched)
+      problems.add(s.has("heads") ? s.place_of("heads") : s.place(),
+                   fmt::format("fixture {} is on or off, and an aim sets levels", in_quotes(rig.fixtures[head].name)),
+                   "name the other heads as heads = […], or put its lamp on a dimmer");
+  if ((aim.key = heads.read_reference(s, "key")) &&
+      std::find(aim.heads.begin(), aim.heads.end(), *aim.key) == aim.heads.end())
+    problems.add(s.place_of("key"), "the key light is none of the heads", "name one of them");
+  s.read("min_key_to_fill", aim.min_key_to_fill);
+  s.read("max_key_to_fill", aim.max_key_to_fill);
+  if (!s.has("key"))
+    for (const char* key : {"min_key_to_fill", "max_key_to_fill"})
+      s.refuse(key, fmt::format("{} has no effect without a key light", key), "add key = …");
+  if (aim.max_key_to_fill && *aim.max_key_to_fill < aim.min_key_to_fill)
+    problems.add(
+        s.place_of("max_key_to_fill"),
+        fmt::format("max_key_to_fill {:g} is below min_key_to_fill {:g}", *aim.max_key_to_fill, aim.min_key_to_fill),
+        "raise it, or lower that");
+  aim.eyes = read_patterns(s, "eyes", point_names, "point");
+  s.read("max_eye_lx", aim.max_eye_lx);
+  if (aim.max_eye_lx && aim.eyes.empty() && rig.cameras.empty())
+    s.refuse("max_eye_lx", "max_eye_lx has no effect: there are no eyes and no camera", "add eyes = [\"…\"]");
+  if (!s.has("max_eye_lx")) s.refuse("eyes", "eyes have no effect without a limit", "add max_eye_lx");
+  s.read("base_lx", aim.base_lx);
+  s.read("base_weight", aim.base_weight);
+  s.read("energy_weight", aim.energy_weight);
+  s.read("travel_weight", aim.travel_weight);
+}
+
+}  // namespace luxrig

@@ -1,0 +1,91 @@
+#pragma once
+/// One table of the rig file, read key by key against the schema: type, range, required, unknown keys.
+///
+///   Section s(table, place, "control", problems);
+///   s.read("fade_s", control.fade_s);   // keeps the default when the key is absent or wrong
+///
+/// Every read reports what is wrong with its value, once. Naming a key that the schema does not have, or reading it
+/// as another type, is a bug of the reader (asserted).
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/rig/problem_list.h"
+#include "core/rig/reading/document.h"
+#include "core/rig/schema.h"
+#include "core/text/plain_text.h"
+
+namespace luxrig {
+
+class Section {
+ public:
+  /// Reports unknown keys at once.
+  Section(const NodeTable& table, const Place& place, std::string_view section, ProblemList& problems);
+
+  [[nodiscard]] bool has(std::string_view key) const { return find(table_, key) != nullptr; }
+  /// Of the value; of the table when the key is absent.
+  [[nodiscard]] Place place_of(std::string_view key) const;
+  [[nodiscard]] const Place& place() const { return place_; }
+  [[nodiscard]] const NodeTable& table() const { return table_; }
+  [[nodiscard]] ProblemList& problems() { return problems_; }
+
+  /// True when the key is there and good; only then `out` changes. An absent required key is reported.
+  bool read(std::string_view key, double& out);
+  bool read(std::string_view key, int& out);
+  bool read(std::string_view key, bool& out);
+  bool read(std::string_view key, std::string& out);
+  bool read(std::string_view key, Vec3& out);  ///< vector3 or colour
+  bool read(std::string_view key, std::pair<double, double>& out);
+  bool read(std::string_view key, Eigen::Vector2d& out);  ///< chromaticity: x + y ≤ 1
+  bool read(std::string_view key,
+            Eigen::AlignedBox3d& out);  ///< corners in any order; a box without volume is reported
+  bool read(std::string_view key, std::vector<int>& out);
+  template <class T>
+  bool read(std::string_view key, std::optional<T>& out) {
+    T value{};
+    if (!read(key, value)) return false;
+    out = std::move(value);
+    return true;
+  }
+
+  /// Of a key with choices: its value's place among them becomes the enumerator.
+  template <class Enum>
+  bool read_choice(std::string_view key, Enum& out) {
+    const int index = choice(key);
+    if (index >= 0) out = static_cast<Enum>(index);
+    return index >= 0;
+  }
+  bool read_deg(std::string_view key, double& out_rad);
+  /// A direction, made unit; a zero length is reported.
+  bool read_normal(std::string_view key, Vec3& out);
+  /// Each text with its place.
+  bool read_texts(std::string_view key, std::vector<std::pair<std::string, Place>>& out);
+
+  /// Reports a key that has no meaning here: "beam_angle_deg has no effect: only with model = "spot"".
+  void refuse(std::string_view key, std::string why, std::string mend);
+  /// Reports that a key is missing that this table needs, for a reason the schema cannot know.
+  void require(std::string_view key, std::string_view why);
+
+ private:
+  const KeySpec& spec(std::string_view key) const;
+  const Node* value(const KeySpec& spec);
+  bool number_from(const KeySpec& spec, const Node& node, double& out);
+  bool text_from(const KeySpec& spec, const Node& node, std::string& out);
+  /// A list of two; else null, and the problem is added.
+  const NodeList* pair_from(const KeySpec& spec, const Node& node, std::string_view parts);
+  bool three_numbers_from(const KeySpec& spec, const Node& node, Vec3& out);
+  int choice(std::string_view key);
+
+  const NodeTable& table_;
+  Place place_;
+  const SectionSpec& section_;
+  std::span<const KeySpec> keys_;
+  ProblemList& problems_;
+};
+
+}  // namespace luxrig

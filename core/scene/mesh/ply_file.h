@@ -1,0 +1,16 @@
+#pragma once
+/// PLY files, read here, strictly. Internal to core/scene.
+
+#include <filesystem>
+
+#include "core/result.h"
+#include "core/scene/mesh/polygon_mesh.h"
+
+namespace luxrig {
+
+/// Reads ascii and both binary forms, with the vertices' red, green and blue (as sRGB); other elements and properties
+/// are skipped. Memory stays within a small multiple
+/// of the file's size. Problems carry the line of the header, or of an ascii body.
+[[nodiscard]] Checked<PolygonMesh> read_ply(const std::filesystem::path& path);
+
+}  // namespace luxrig

@@ -1,0 +1,39 @@
+#pragma once
+/// Which lamp is that? A fixture that blinks, or a head that nods, for a while; then everything is as it was. It is a
+/// desk of our own that has a say in one housing (desk_follower.h): limits hold, no meter is believed meanwhile, and
+/// the way back needs no memory of what was before.
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "core/output/devices.h"
+#include "core/output/keep_out.h"
+#include "core/rig/rig.h"
+
+namespace luxrig {
+
+class IdentifyPattern {
+ public:
+  /// present_level, present_joints: per fixture of the rig, at `start`. may_turn: whether a head may turn while lit.
+  IdentifyPattern(const Rig& rig, std::vector<std::size_t> fixtures, std::span<const double> present_level,
+                  std::span<const Joints> present_joints, bool may_turn, Time start, Duration how_long);
+
+  /// What it wants at `now`: its fixtures dark or bright by turns of half a second, dark first where they were bright.
+  /// A head that may turn stays bright and nods by 5°, away from the nearer end of its travel. Absent once it is over.
+  [[nodiscard]] DeskFrame frame_at(Time now) const;
+  /// Every posture that the first of its fixtures goes through where it nods.
+  [[nodiscard]] JointBox nodding() const { return JointBox::at(joints_.front()).joined(JointBox::at(nod_.front())); }
+  void prolong(Time end) { end_ = std::max(end_, end); }
+  [[nodiscard]] bool over(Time now) const { return now >= end_; }
+  [[nodiscard]] const std::vector<std::size_t>& fixtures() const { return fixtures_; }
+
+ private:
+  std::vector<std::size_t> fixtures_;
+  std::vector<double> bright_drive_;  ///< of each
+  std::vector<Joints> joints_, nod_;  ///< of each, as it looked and as it nods
+  bool bright_first_ = true, turns_ = false;
+  Time start_{}, end_{};
+};
+
+}  // namespace luxrig

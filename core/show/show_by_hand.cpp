@@ -1,0 +1,193 @@
+/// Levels and goals that a person has set while the show runs.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/check.h"
+#include "core/rig/housing.h"
+#include "core/show/show_state.h"
+
+namespace luxrig {
+namespace {
+
+/// A level lower than it was set by more than this is said to be kept down.
+constexpr double kSameLevel = 1e-3;
+constexpr double kMostGoal_lx = 1e6;
+
+}  // namespace
+
+std::string ByHand::complaint(bool switched) const {
+  if (what == What::goal) {
+    if (value >= 0 && value <= kMostGoal_lx) return {};
+    return fmt::format("a goal is 0 to {:g} lx, not {:g}", kMostGoal_lx, value);
+  }
+  if (!(value >= 0 && value <= 1)) return fmt::format("a level is 0 (dark) to 1 (full), not {:g}", value);
+  if (switched && value > 0 && value < 1) return fmt::format("it is on or off: give 0 or 1, not {:g}", value);
+  return {};
+}
+
+Result<void> ShowController::State::hold(Time now, std::span<const ByHand> wanted) {
+  if (asked_safe) return refusal("the show has ended in its safe look: apply a plan first");
+  for (const ByHand& one : wanted) {
+    const bool level = one.what == ByHand::What::level;
+    LUXRIG_CHECK(one.index < (level ? rig.fixtures.size() : rig.points.size()), "{} is none of the rig's", one.index);
+    if (const std::string wrong = one.complaint(level && rig.fixtures[one.index].switched); !wrong.empty())
+      return refusal(fmt::format("{}: {}", level ? rig.fixtures[one.index].name : rig.points[one.index].name, wrong));
+  }
+  for (const ByHand& one : wanted) {
+    if (one.what == ByHand::What::goal) {
+      hand_goal[one.index] = one;
+      continue;
+    }
+    std::vector<std::size_t> fixtures = {one.index};
+    if (one.whole_housing) fixtures = housing_of(rig, one.index);
+    double brightest = 0;
+    for (const std::size_t f : fixtures) brightest = std::max(brightest, without_hands[f]);
+    for (const std::size_t f : fixtures) {
+      hand_level[f] = one;
+      hand_level[f]->index = f;
+      hand_level[f]->whole_housing = false;
+      if (fixtures.size() > 1 && brightest > 0) hand_level[f]->value = one.value * without_hands[f] / brightest;
+    }
+  }
+  start_with_hands(now);
+  return {};
+}
+
+std::size_t ShowController::State::release(Time now, std::span<const std::size_t> fixtures,
+                                           std::span<const std::size_t> points) {
+  std::size_t released = 0;
+  for (const std::size_t f : fixtures) {
+    if (!hand_level.at(f)) continue;
+    hand_level[f].reset();
+    ++released;
+  }
+  for (const std::size_t p : points) {
+    if (!hand_goal.at(p)) continue;
+    hand_goal[p].reset();
+    ++released;
+  }
+  if (released > 0) start_with_hands(now);
+  return released;
+}
+
+void ShowController::State::release_what_is_over(Time now) {
+  std::vector<std::size_t> fixtures, points;
+  for (std::size_t f = 0; f < hand_level.size(); ++f)
+    if (hand_level[f] && hand_level[f]->until && *hand_level[f]->until <= now) fixtures.push_back(f);
+  for (std::size_t p = 0; p < hand_goal.size(); ++p)
+    if (hand_goal[p] && hand_goal[p]->until && *hand_goal[p]->until <= now) points.push_back(p);
+  if (!fixtures.empty() || !points.empty()) release(now, fixtures, points);
+}
+
+void ShowController::State::take_points(const Look& look) {
+  for (std::size_t p = 0; p < rig.points.size(); ++p) {
+    Point& point = points_as_planned[p];
+    point.goal_lx = look.goal_lx[p];
+    point.max_lx = look.max_lx.empty() ? rig_points[p].max_lx : look.max_lx[p];
+    point.weight = look.weight.empty() ? rig_points[p].weight : look.weight[p];
+  }
+}
+
+/// A plan ends what the one before had by hand; what was set at the running show stays.
+void ShowController::State::take_levels_of_plan(Time now, const std::vector<double>& levels, const Look& look) {
+  without_hands = levels;
+  for (std::size_t f = 0; f < levels.size(); ++f) {
+    if (hand_level[f] && !hand_level[f]->of_plan) {
+      unsolved = true;  // the plan did not know of it
+      continue;
+    }
+    hand_level[f].reset();
+    if (look.solved_levels.empty() || !look.solved_levels[f]) continue;
+    hand_level[f] = ByHand{ByHand::What::level, f, levels[f], now};
+    hand_level[f]->of_plan = true;
+    without_hands[f] = std::min(*look.solved_levels[f], most_of(f));
+  }
+  for (const auto& goal : hand_goal) unsolved = unsolved || goal.has_value();
+}
+
+void ShowController::State::tell_estimator() {
+  for (std::size_t p = 0; p < rig.points.size(); ++p) {
+    rig.points[p].goal_lx = hand_goal[p] ? std::optional(hand_goal[p]->value) : points_as_planned[p].goal_lx;
+    rig.points[p].max_lx = points_as_planned[p].max_lx;
+    rig.points[p].weight = points_as_planned[p].weight;
+  }
+  estimator.set_points(rig.points);
+  for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
+    estimator.set_held(f, hand_level[f] && !bypassed_lamp[f]);
+    estimator.set_max_level(f, bypassed_lamp[f] ? 0 : most_of(f));
+  }
+  tell_lost_lamps();
+}
+
+void ShowController::State::start_with_hands(Time now) {
+  unsolved = true;
+  tell_estimator();
+  if (cue) start_cue(now, with_hands(without_hands));
+}
+
+std::vector<double> ShowController::State::with_hands(std::vector<double> levels) const {
+  for (std::size_t f = 0; f < levels.size(); ++f)
+    if (bypassed_lamp[f])
+      levels[f] = 0;
+    else if (hand_level[f])
+      levels[f] = std::min(hand_level[f]->value, program.max_level[f]);
+  return levels;
+}
+
+std::vector<ByHand> ShowController::State::by_hand() const {
+  std::vector<ByHand> all;
+  for (const auto& one : hand_level)
+    if (one) all.push_back(*one);
+  for (const auto& one : hand_goal)
+    if (one) all.push_back(*one);
+  return all;
+}
+
+/// What keeps what is set by hand from being so.
+std::string ShowController::State::why_not(Time now, const ByHand& held) const {
+  if (program.blackout) return "blackout";
+  if (phase == Phase::safe || phase == Phase::safe_fading) return "safe look";
+  if (phase == Phase::frozen) return "the light is held, as something has failed";
+  if (!cue) return "no plan is in force yet";
+  if (held.what == ByHand::What::goal) {
+    const std::optional<double> max_lx = rig.points[held.index].max_lx;
+    if (max_lx && held.value > *max_lx) return fmt::format("its limit of {:g} lx wins", *max_lx);
+    return held.index < why.size() ? why[held.index] : std::string();
+  }
+  if (lost[held.index]) return "it does not answer: it is held as it was, then goes to its safe level";
+  if (bypassed_lamp[held.index]) return "it is bypassed";
+  if (parked(held.index)) return "it is parked until the next plan";
+  const double most = program.max_level[held.index];
+  if (held.value > most + kSameLevel) return fmt::format("the most it may have is {:g} (max_level)", most);
+  if (program.to_level[held.index] >= held.value - kSameLevel) return {};
+  // Alone at that level, or with what is lit beside it: whose limit would be broken.
+  std::vector<double> level = program.to_level;
+  level[held.index] = held.value;
+  std::string limits;
+  for (std::size_t p = 0; p < rig.points.size(); ++p) {
+    if (!rig.points[p].max_lx || estimator.most_lux_at_point(p, level, now) <= *rig.points[p].max_lx) continue;
+    limits += fmt::format("{}\"{}\" ({:g} lx)", limits.empty() ? "" : ", ", rig.points[p].name, *rig.points[p].max_lx);
+  }
+  return limits.empty()
+             ? fmt::format("{:.3f} is the most that limits leave", program.to_level[held.index])
+             : fmt::format("the limit of point {} wins: {:.3f} is the most", limits, program.to_level[held.index]);
+}
+
+Result<void> ShowController::hold(Time now, std::span<const ByHand> wanted) {
+  now = state_->at_least_last(now);
+  return state_->hold(now, wanted);
+}
+
+std::size_t ShowController::release(Time now, std::span<const std::size_t> fixtures,
+                                    std::span<const std::size_t> points) {
+  now = state_->at_least_last(now);
+  return state_->release(now, fixtures, points);
+}
+
+std::vector<ByHand> ShowController::by_hand() const { return state_->by_hand(); }
+
+}  // namespace luxrig

@@ -1,0 +1,110 @@
+// Devices that a person has taken out of the show since they have failed: what is done without them, and the risk.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/show/show_state.h"
+
+namespace luxrig {
+
+bool ShowController::State::any_lamp_bypassed() const {
+  return std::any_of(bypassed_lamp.begin(), bypassed_lamp.end(), [](const auto& since) { return since.has_value(); });
+}
+
+double ShowController::State::most_of(std::size_t fixture) const {
+  return parked(fixture) ? 0 : rig.max_level(rig.fixtures[fixture]);
+}
+
+void ShowController::State::bypass(Time now, std::span<const std::size_t> fixtures,
+                                   std::span<const std::size_t> luxmeters, bool on) {
+  bool lamps = false, meters = false;
+  const auto set = [&](std::optional<Time>& since, bool& any) {
+    if (since.has_value() == on) return;
+    since = on ? std::optional(now) : std::nullopt;
+    any = true;
+  };
+  for (const std::size_t f : fixtures) {
+    bool changed = false;
+    set(bypassed_lamp.at(f), changed);
+    if (!changed) continue;
+    lamps = true;
+    if (!on) program.max_level[f] = most_of(f);
+  }
+  for (const std::size_t m : luxmeters) {
+    bool changed = false;
+    set(bypassed_meter.at(m), changed);
+    if (!changed) continue;
+    meters = true;
+    // What it taught may be as wrong as what it says; what it taught before it failed, nobody can tell apart.
+    estimator.forget(m);
+    measured[m].reset();
+    drifts[m] = Drift{};
+    believed[m].reset();
+    heard[m].reset();
+    health.judged(m, now, "");
+  }
+  if (!lamps && !meters) return;
+  health.set_bypassed(bypassed_lamp, bypassed_meter);
+  breaches.clear();
+  if (lamps) return start_with_hands(now);  // the rest is solved without them
+  tell_estimator();
+  // Limits that rested on what it taught hold by the model alone from here on.
+  if (cue && phase != Phase::idle) start_cue(now, asked);
+}
+
+/// A bypassed lamp is dark: from now on nothing lights it, no desk either.
+void ShowController::State::close_bypassed(Time now) {
+  for (std::size_t f = 0; f < bypassed_lamp.size(); ++f) {
+    if (!bypassed_lamp[f] || program.max_level[f] <= 0 || program.to_level[f] > 0 || !program.done(now)) continue;
+    program.max_level[f] = 0;
+    ++program.revision;
+  }
+}
+
+void ShowController::State::tell_bypassed(ShowStatus& status) const {
+  const auto share = [](const PointStatus& point) {
+    return point.light.lux > 0 ? 100 * point.light.half_width_lx / point.light.lux : 100.0;
+  };
+  for (std::size_t f = 0; f < bypassed_lamp.size(); ++f) {
+    if (!bypassed_lamp[f]) continue;
+    const std::string& name = rig.fixtures[f].name;
+    std::string risk = health.lamp_silent(f)
+                           ? fmt::format(
+                                 "fixture \"{}\" is bypassed and does not answer: nobody knows what light it "
+                                 "gives, and none is asked of it",
+                                 name)
+                           : fmt::format(
+                                 "fixture \"{}\" is bypassed: it is held dark, and the others make up for it "
+                                 "as far as they can",
+                                 name);
+    status.bypassed.push_back({false, f, *bypassed_lamp[f], std::move(risk)});
+  }
+  for (std::size_t m = 0; m < bypassed_meter.size(); ++m) {
+    if (!bypassed_meter[m]) continue;
+    const Luxmeter& meter = rig.luxmeters[m];
+    std::string risk = fmt::format("luxmeter \"{}\" is bypassed: it is not read", meter.name);
+    if (meter.point) {
+      const PointStatus& point = status.points[*meter.point];
+      const std::string& name = rig.points[*meter.point].name;
+      if (rig.points[*meter.point].max_lx)
+        risk += fmt::format("; the limit at {} is then watched by nobody: it is kept by the model alone, ± {:.0f} %",
+                            name, share(point));
+      else
+        risk += fmt::format("; the light at {} is then known by the model alone, ± {:.0f} %", name, share(point));
+    }
+    status.bypassed.push_back({true, m, *bypassed_meter[m], std::move(risk)});
+  }
+  for (const Bypassed& one : status.bypassed) {
+    const std::string& name = one.luxmeter ? rig.luxmeters[one.index].name : rig.fixtures[one.index].name;
+    status.alarms.push_back(
+        {false, name, fmt::format("{}; when it is mended: luxrig bypass {} --undo", one.risk, name), one.since});
+  }
+}
+
+void ShowController::bypass(Time now, std::span<const std::size_t> fixtures, std::span<const std::size_t> luxmeters,
+                            bool on) {
+  now = state_->at_least_last(now);
+  state_->bypass(now, fixtures, luxmeters, on);
+}
+
+}  // namespace luxrig

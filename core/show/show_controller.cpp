@@ -1,0 +1,473 @@
+#include "core/show/show_controller.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/check.h"
+#include "core/output/head_travel.h"
+#include "core/rig/register_map/register_map.h"
+#include "core/show/show_state.h"
+
+namespace luxrig {
+
+const char* name_of(Phase phase) {
+  switch (phase) {
+    case Phase::idle:
+      return "idle";
+    case Phase::moving:
+      return "moving";
+    case Phase::fading:
+      return "fading";
+    case Phase::settling:
+      return "settling";
+    case Phase::measuring:
+      return "measuring";
+    case Phase::correcting:
+      return "correcting";
+    case Phase::holding:
+      return "holding";
+    case Phase::frozen:
+      return "frozen";
+    case Phase::safe_fading:
+      return "safe_fading";
+    case Phase::safe:
+      return "safe";
+  }
+  return "unknown";
+}
+
+namespace {
+
+/// Per fixture, 1: its product has a bit for a lamp that has burnt out.
+std::vector<std::uint8_t> fixtures_that_tell_of_lamps(const Rig& rig) {
+  std::vector<std::uint8_t> tell(rig.fixtures.size(), 0);
+  for (std::size_t f = 0; f < tell.size(); ++f) {
+    const auto* patch = std::get_if<ModbusPatch>(&rig.fixtures[f].patch);
+    if (patch == nullptr || !patch->map) continue;
+    const RegisterMap& map = *patch->map;
+    for (const std::size_t level : map.with_role(RegisterRole::level)) {
+      const MappedRegister& output = map.registers[level];
+      if (output.address != patch->holding_register || (output.table == RegisterTable::coil) != patch->coil) continue;
+      for (const std::size_t failure : map.with_role(RegisterRole::failure))
+        if (map.concerns(failure, level)) tell[f] = 1;
+    }
+  }
+  return tell;
+}
+
+}  // namespace
+
+ShowController::State::State(const Rig& rig_in, const LightModel& model)
+    : rig(rig_in),
+      estimator(rig, model),
+      health(rig),
+      samples(rig.luxmeters.size()),
+      zones(rig),
+      tells_of_lamp(fixtures_that_tell_of_lamps(rig)),
+      powerless(rig.fixtures.size(), 0),
+      lost(rig.fixtures.size()),
+      measured(rig.luxmeters.size()),
+      sampled_lx(rig.luxmeters.size()),
+      sample_changed(rig.luxmeters.size(), false),
+      believed(rig.luxmeters.size()),
+      heard(rig.luxmeters.size()),
+      taken_level(rig.fixtures.size(), 0.0),
+      hand_level(rig.fixtures.size()),
+      without_hands(rig.fixtures.size(), 0.0),
+      hand_goal(rig.points.size()),
+      rig_points(rig.points),
+      points_as_planned(rig.points),
+      drifts(rig.luxmeters.size()),
+      bypassed_lamp(rig.fixtures.size()),
+      bypassed_meter(rig.luxmeters.size()) {
+  const std::vector<double> dark(rig.fixtures.size(), 0.0);
+  for (const Fixture& fixture : rig.fixtures) {
+    program.max_level.push_back(rig.max_level(fixture));
+    program.joints.push_back(fixture.joints);
+  }
+  program.switched = switched_fixtures(rig);
+  model_joints = program.joints;
+  for (const std::size_t f : zones.heads()) {
+    guarded.push_back({f, HeadWhereabouts(rig.fixtures[f])});
+    program.dims.push_back({f, 0, 0, {}, {}, false, {}});  // nobody knows yet where it looks
+  }
+  fade(Time{}, dark, dark, 0, FadeCurve::linear);
+}
+
+/// Commands are obeyed whatever the clock says; time itself never goes back.
+Time ShowController::State::at_least_last(Time now) { return last = std::max(last, now); }
+
+void ShowController::State::enter(Phase next, Time now) {
+  if (phase == next) return;
+  phase = next;
+  phase_since = now;
+}
+
+/// As they would be without a blackout, so that what happens under it goes on from there. Under ceilings: also what
+/// power-up still keeps down.
+std::vector<double> ShowController::State::present_levels(Time now, bool under_ceilings) const {
+  std::vector<double> level(rig.fixtures.size());
+  OutputProgram lit = program;
+  lit.blackout = false;
+  lit.desks.clear();  // Luxrig's own, whatever a desk makes of it
+  if (!under_ceilings) lit.lamp_starts.clear();
+  lit.levels_at(now, level);
+  return level;
+}
+
+void ShowController::State::fade(Time now, std::vector<double> from, std::vector<double> to, double seconds,
+                                 FadeCurve curve) {
+  guard(now, from, to);
+  program.from_level = std::move(from);
+  program.to_level = std::move(to);
+  program.start = std::max(now, arrive);
+  program.duration = from_seconds(seconds);
+  program.curve = curve;
+  ++program.revision;
+  guard_against_desks(now);
+  samples.restart(program.start + program.duration + from_seconds(rig.control.settle_s));
+  drifted = 0;
+}
+
+/// Rows for the output. Where the whole way is known to stay within a limit, the row is loosened until it just lets
+/// both ends pass: a row is one factor for all levels, and what it must assume for the dim end would dim the bright
+/// one, with a jump, at the moment the fade starts. Levels that the rows in force let pass stay allowed until a meter
+/// says more.
+void ShowController::State::guard(Time now, const std::vector<double>& from, const std::vector<double>& to) {
+  constexpr int kSamples = 8;
+  constexpr double kOfRounding = 1 + 1e-9, kAllowed = 1 + kBreachSlack;
+  const bool nothing_new = sampled_at <= program.start;  // a correction starts at the instant of its sample
+  WorstCase worst = estimator.worst_case(from, to, now);
+  const auto lights = static_cast<Eigen::Index>(from.size());
+  const Eigen::Map<const Eigen::VectorXd> begin(from.data(), lights), end(to.data(), lights);
+  for (std::size_t k = 0; k < worst.points.size(); ++k) {
+    auto row = worst.worst_lux_per_level.row(static_cast<Eigen::Index>(k));
+    const double max_lx = worst.max_lx[static_cast<Eigen::Index>(k)];
+    const double ends_lx = std::max(row.dot(begin), row.dot(end));
+    if (ends_lx <= max_lx) continue;
+    bool safe = true;
+    // Who sent the light that was there before knew more than the open-loop margin.
+    const auto was = static_cast<Eigen::Index>(in_force.size());
+    const bool was_so =
+        was == lights && ends_lx <= row.dot(Eigen::Map<const Eigen::VectorXd>(in_force.data(), was)) * kOfRounding;
+
+    for (int s = nothing_new ? 1 : 0; s <= kSamples && safe && !was_so; ++s) {
+      Eigen::VectorXd level(lights);
+      for (std::size_t j = 0; j < from.size(); ++j)
+        level[static_cast<Eigen::Index>(j)] =
+            level_on_the_way(from[j], to[j], static_cast<double>(s) / kSamples, program.switched[j] != 0);
+      const double most_lx = estimator.most_lux_at_point(worst.points[k], {level.data(), from.size()}, now);
+      safe = most_lx <= *rig.points[worst.points[k]].max_lx * kAllowed;  // all light; the row's limit lacks daylight
+    }
+    if (safe) row *= max_lx / ends_lx * (1 - 1e-9);
+  }
+  program.worst_lux_per_level = std::move(worst.worst_lux_per_level);
+  program.max_lx = std::move(worst.max_lx);
+  program.worth = estimator.worth();
+  if (!rig.limits.max_watts) return;
+  // A limit of power is one more row: watts per level.
+  const Eigen::Index row = program.max_lx.size();
+  program.worst_lux_per_level.conservativeResize(row + 1, lights);
+  program.max_lx.conservativeResize(row + 1);
+  for (Eigen::Index j = 0; j < lights; ++j)
+    program.worst_lux_per_level(row, j) =
+        rig.luminaires[rig.fixtures[static_cast<std::size_t>(j)].luminaire].watts.value_or(0);
+  program.max_lx[row] = *rig.limits.max_watts;
+}
+
+bool ShowController::State::turns(std::size_t fixture) const {
+  return rig.fixtures[fixture].moves && !(awaited->joints[fixture] == program.joints[fixture]);
+}
+
+/// What it turns is dark. `moving` until the light may come back.
+void ShowController::State::take_look(Time now) {
+  double wait_s = 0;
+  bool any = false, other_light = false;
+  for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
+    // What parks is dark: the light is as before without it.
+    const bool parks = !parking.empty() && parking[f] != 0;
+    if (rig.fixtures[f].moves && !parks && !parked(f) && !(awaited->joints[f] == model_joints[f])) other_light = true;
+    if (!turns(f)) continue;
+    any = true;
+    wait_s = std::max(wait_s, travel_s(rig.fixtures[f], program.joints[f], awaited->joints[f]) + kHeadDelay_s);
+    rig.fixtures[f].joints = program.joints[f] = awaited->joints[f];
+    rig.fixtures[f].aim_world_m.reset();
+  }
+  take_points(*awaited);
+  // From the way to where it was told to look before: what is left of that comes first.
+  if (any) arrive = std::max(arrive, now) + from_seconds(wait_s);
+  if (other_light) {
+    // Gains would still hold; what is wrong locally would not, and telling them apart takes readings.
+    estimator = GainEstimator(rig, awaited->model);
+    drifts.assign(rig.luxmeters.size(), {});
+    std::fill(measured.begin(), measured.end(), std::nullopt);
+    model_joints = awaited->joints;
+  }
+  tell_estimator();
+  finish_parking();
+  awaited.reset();
+}
+
+void ShowController::State::start_cue(Time now, std::vector<double> levels) {
+  asked = levels;
+  cue = std::move(levels);
+  round = 0;
+  converged = false;
+  aimed_lx.clear();
+  why.clear();
+  breaches.clear();
+  // Goes there when everything is back. Before the first step nothing is known to fail.
+  const bool waits = phase == Phase::frozen || phase == Phase::safe_fading || phase == Phase::safe;
+  if ((failing && waits) || waits_for_desks(now)) return;
+  // Ceilings stay, and a fade that began below one would add to what it adds.
+  std::vector<double> present = present_levels(now, false);
+  if (awaited) {
+    const std::vector<double> lit_now = present_levels(now);
+    std::vector<double> without = present;
+    bool any = false, lit = false;
+    for (std::size_t f = 0; f < without.size(); ++f) {
+      const bool parks = !parking.empty() && parking[f] != 0;
+      if (!turns(f) && !parks) continue;
+      any = any || !parks;
+      if (lit_now[f] <= 0) present[f] = 0;  // a ceiling that opens meanwhile must not let it through
+      lit = lit || present[f] > 0;
+      without[f] = 0;
+    }
+    // What stays goes, too, to where limits are kept without what meters have taught, or it would jump there.
+    if (any) without = GainEstimator(rig, awaited->model).within_limits(without, now);
+    // Once, that is: what is within limits then may be so by another rounding.
+    if ((lit || (without != present && phase != Phase::moving)) && !program.blackout) {
+      fade(now, std::move(present), std::move(without), rig.control.fade_s, rig.control.fade_curve);
+      enter(Phase::moving, now);
+      return;
+    }
+    present = std::move(without);
+    take_look(now);
+  }
+  asked = with_hands(*cue);
+  ++facts;
+  drop_solving();
+  // What is held by hand goes there at once; the rest follows when it is solved around that.
+  if (unsolved && !beside) {
+    unsolved = false;
+    Correction correction = estimator.correct(asked, now, true);
+    aimed_lx = std::move(correction.aimed_lx);
+    why = std::move(correction.why);
+    asked = std::move(correction.level);
+  }
+  go_to_asked(now, std::move(present));
+  if (std::exchange(unsolved, false)) solve(now, Solving::For::hands);
+}
+
+void ShowController::State::go_to_asked(Time now, std::vector<double> present) {
+  cue = estimator.within_limits(asked, now);
+  std::vector<double> sent = *cue;
+  leave_out_lost(sent);
+  for (std::size_t f = 0; f < sent.size(); ++f)
+    if (bypassed_lamp[f]) sent[f] = (*cue)[f] = 0;
+  if (!start_lamps(now, present, sent)) fade(now, std::move(present), sent, rig.control.fade_s, rig.control.fade_curve);
+  enter(Phase::fading, now);
+}
+
+void ShowController::State::freeze(Time now) {
+  const std::vector<double> present = present_levels(now);
+  program.lamp_starts.clear();
+  fade(now, present, present, 0, FadeCurve::linear);
+  converged = false;
+  enter(Phase::frozen, now);
+}
+
+void ShowController::State::resume(Time now) { start_cue(now, asked); }
+
+void ShowController::State::fade_to_safe(Time now) {
+  std::vector<double> present = present_levels(now);
+  program.lamp_starts.clear();  // the safe look waits for nothing
+  fade(now, std::move(present), estimator.within_limits(safe_levels(), now), rig.safe.fade_s, rig.control.fade_curve);
+  converged = false;
+  breaches.clear();
+  enter(Phase::safe_fading, now);
+}
+
+void ShowController::State::look_at_failures(Time now) {
+  // Where a loss is a power cut, one that is over by then would let all its lamps come on at once.
+  const bool waits = !rig.startup.after_loss && limits_bear_waiting(now);
+  health.step(now, {waits ? kPatience : Duration{}, kPatience});
+  const bool was_failing = failing;
+  failing = too_much_lost() || (rig.safe.on_meter_loss && health.any_meter_lost());
+  if (was_failing && !failing) healthy_since = now;
+  if (failing && !health.alarms().empty()) failure = health.alarms().front().text;
+  for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
+    if (health.meter_lost(i)) measured[i].reset();
+  }
+  converged = converged && all_metered_goals_arrived();
+  watch_losses(now);
+}
+
+void ShowController::State::advance(Time now) {
+  const bool back = !failing && now - healthy_since >= kHealthyFor;
+  switch (phase) {
+    case Phase::idle:
+      return begin_after_listening(now);
+    case Phase::frozen:
+      if (back && cue) return resume(now);
+      if (now - phase_since >= from_seconds(rig.safe.hold_s)) fade_to_safe(now);
+      return;
+    case Phase::safe_fading:
+      if (back && cue && !asked_safe) return resume(now);
+      if (!program.done(now)) return;
+      in_force.clear();
+      enter(Phase::safe, now);
+      return;
+    case Phase::safe:
+      doubt_the_past(now);
+      if (back && cue && !asked_safe) resume(now);
+      return;
+    default:
+      break;
+  }
+  if (failing) return freeze(now);
+  if (phase == Phase::moving && (program.done(now) || program.blackout)) {
+    if (program.blackout)
+      for (std::size_t f = 0; f < rig.fixtures.size(); ++f)
+        if (turns(f)) program.from_level[f] = program.to_level[f] = 0;
+    return start_cue(now, *cue);
+  }
+  if (shared) return;            // a desk's light says nothing about the plan's
+  if (program.blackout) return;  // nothing to measure in the dark; lifting it fades anew
+  switch (phase) {
+    case Phase::fading:
+    case Phase::correcting:
+      if (!program.done(now)) return;
+      in_force.clear();
+      enter(Phase::settling, now);
+      return;
+    case Phase::settling:
+      if (now >= program.start + program.duration + from_seconds(rig.control.settle_s)) enter(Phase::measuring, now);
+      return;
+    case Phase::measuring: {
+      bool any_living = false;
+      for (std::size_t i = 0; i < rig.luxmeters.size(); ++i)
+        any_living = any_living || (!health.meter_lost(i) && !in_doubt(i));
+      if (!any_living) return enter(Phase::holding, now);  // nobody can tell; open loop
+      if (sampled_at == now) solve(now, Solving::For::round);
+      return;
+    }
+    default:
+      watch_drift(now);
+  }
+}
+
+ShowController::ShowController(const Rig& rig, LightModel model) : state_(std::make_unique<State>(rig, model)) {}
+ShowController::~ShowController() = default;
+ShowController::ShowController(ShowController&&) noexcept = default;
+
+std::vector<double> ShowController::State::wanted_levels(std::span<const double> levels) const {
+  LUXRIG_CHECK(levels.size() == rig.fixtures.size(), "{} levels for {} fixtures", levels.size(), rig.fixtures.size());
+  std::vector<double> wanted(levels.begin(), levels.end());
+  for (std::size_t i = 0; i < wanted.size(); ++i)
+    wanted[i] = wanted[i] > 0 ? std::min(wanted[i], most_of(i)) : 0.0;  // NaN is dark
+  for (std::size_t i = 0; i < wanted.size(); ++i)
+    if (program.switched[i] != 0) wanted[i] = std::min(switched_level(wanted[i]), most_of(i));
+  return wanted;
+}
+
+void ShowController::apply(Time now, std::span<const double> levels) {
+  Look look;
+  look.joints = state_->model_joints;
+  for (const Point& point : state_->points_as_planned) {
+    look.goal_lx.push_back(point.goal_lx);
+    look.max_lx.push_back(point.max_lx);
+    look.weight.push_back(point.weight);
+  }
+  apply(now, levels, std::move(look));
+}
+
+void ShowController::apply(Time now, std::span<const double> levels, Look look) {
+  State& state = *state_;
+  now = state.at_least_last(now);
+  LUXRIG_CHECK(look.joints.size() == state.rig.fixtures.size() && look.goal_lx.size() == state.rig.points.size(),
+               "a look of another rig");
+  state.unpark();
+  std::vector<double> wanted = state.wanted_levels(levels);
+  state.asked_safe = false;
+  state.afresh = true;
+  state.forget_drift();
+  state.first_turn(now, look.joints);
+  state.take_levels_of_plan(now, wanted, look);
+  state.awaited = std::move(look);
+  state.start_cue(now, std::move(wanted));
+}
+
+void ShowController::blackout(Time now, bool on) {
+  State& state = *state_;
+  now = state.at_least_last(now);
+  if (state.program.blackout == on) return;
+  state.program.blackout = on;
+  ++state.program.revision;
+  state.converged = false;
+  if (on || state.phase == Phase::idle) return;
+  const bool to_safe = state.phase == Phase::safe_fading || state.phase == Phase::safe;
+  state.fade(now, std::vector<double>(state.rig.fixtures.size(), 0.0), state.program.to_level,
+             to_safe ? state.rig.safe.fade_s : state.rig.control.fade_s, state.rig.control.fade_curve);
+  if (to_safe) {
+    state.enter(Phase::safe_fading, now);
+  } else if (state.phase != Phase::frozen && state.phase != Phase::moving) {
+    state.enter(Phase::fading, now);
+  }
+}
+
+void ShowController::go_safe(Time now) {
+  State& state = *state_;
+  now = state.at_least_last(now);
+  state.cue.reset();
+  state.awaited.reset();
+  state.asked_safe = true;
+  if (state.phase != Phase::safe && state.phase != Phase::safe_fading) state.fade_to_safe(now);
+}
+
+void ShowController::reading(Time now, const LuxReading& reading) {
+  State& state = *state_;
+  if (now < state.last || reading.luxmeter >= state.rig.luxmeters.size()) return;
+  if (!std::isfinite(reading.lux) || reading.lux < 0) return state.health.garbled(reading.luxmeter, now);
+  if (!state.samples.add(now, reading)) return;
+  state.health.heard(reading.luxmeter, reading.taken);
+  state.heard[reading.luxmeter] = reading;
+  if (!state.health.meter_lost(reading.luxmeter)) state.believed[reading.luxmeter] = reading;
+}
+
+void ShowController::health(Time now, std::span<const Health> devices) {
+  if (now < state_->last) return;
+  state_->health.report(devices);
+}
+
+void ShowController::step(Time now) {
+  State& state = *state_;
+  if (now < state.last) return;
+  state.last = now;
+  state.release_what_is_over(now);
+  state.step_desks(now);
+  state.take_sample(now);
+  state.look_at_failures(now);
+  state.take_solved(now);
+  state.advance(now);
+  state.watch_power(now);
+  state.close_bypassed(now);
+  state.guard_heads(now);
+  state.remember_levels(now);
+}
+
+void ShowController::solve_beside(Beside beside) { state_->beside = std::move(beside); }
+
+std::vector<double> ShowController::safe_look(Time now) const {
+  std::vector<double> level = state_->estimator.within_limits(state_->safe_levels(), now);
+  for (const HeadDim& dim : state_->program.dims) {
+    if (dim.to == 0) level[dim.fixture] = 0;
+  }
+  return level;
+}
+
+const OutputProgram& ShowController::program() const { return state_->program; }
+
+ShowStatus ShowController::status(Time now) const { return state_->status(now); }
+
+}  // namespace luxrig

@@ -1,0 +1,184 @@
+/// What meters say of the light, and what is made of it: corrections, and drift while the light stands still.
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/show/show_state.h"
+
+namespace luxrig {
+namespace {
+
+// While the light stands still, the meters are looked at once a second (they are slow, and so is a lamp's ageing).
+constexpr Duration kSampleEvery = std::chrono::seconds(1);
+// A drift must be seen in three samples, so that somebody walking past a meter moves no light; and lamps drift over
+// hours, so more than one correction in ten seconds would only follow noise.
+constexpr int kDriftSamples = 3;
+constexpr Duration kDriftCorrectionEvery = std::chrono::seconds(10);
+// Level changes smaller than half a step of a 12-bit dimmer are not worth a fade.
+constexpr double kSmallestChange = 1e-4;
+
+}  // namespace
+
+/// When every living meter has its sample: learn from it. Lost ones take part as soon as they have one, since a
+/// believable sample is how a meter that was not believed comes back.
+void ShowController::State::take_sample(Time now) {
+  if (program.blackout || shared || !program.done(now) || too_much_lost() || dimmed_for_a_zone(now))
+    return;  // not the light that was asked for
+  if (phase == Phase::measuring ? solving != nullptr : now - sampled_at < kSampleEvery) return;
+  std::vector<LuxReading> readings;
+  for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
+    if (in_doubt(i) || bypassed_meter[i]) continue;
+    if (samples.ready(now, i)) {
+      readings.push_back(*samples.sample(i));
+    } else if (!health.meter_lost(i)) {
+      return;
+    }
+  }
+  if (readings.empty()) return;
+  for (const LuxReading& reading : readings) {
+    sample_changed[reading.luxmeter] = sampled_lx[reading.luxmeter] != reading.lux;
+    sampled_lx[reading.luxmeter] = reading.lux;
+  }
+  for (const Judgement& judgement : estimator.update(now, readings, program.to_level)) {
+    health.judged(judgement.luxmeter, now, judgement.why);
+    if (!judgement.believed) {
+      measured[judgement.luxmeter].reset();  // what it taught before stays: the limits rest on it
+      continue;
+    }
+    measured[judgement.luxmeter] = *samples.sample(judgement.luxmeter);
+  }
+  watch_scale(now);
+  samples.next();
+  sampled_at = now;
+  bool all_believed = true;
+  for (std::size_t i = 0; i < rig.luxmeters.size(); ++i)
+    all_believed = all_believed && (measured[i] || bypassed_meter[i]);
+  afresh = afresh && !all_believed;
+
+  std::vector<LimitBreach> present;
+  for (std::size_t p = 0; p < rig.points.size(); ++p) {
+    if (!rig.points[p].max_lx || !estimator.confirmed(p)) continue;
+    const double most_lx = estimator.most_lux_at_point(p, program.to_level, now);
+    if (most_lx <= *rig.points[p].max_lx * (1 + kBreachSlack)) continue;
+    const auto known =
+        std::find_if(breaches.begin(), breaches.end(), [&](const LimitBreach& breach) { return breach.point == p; });
+    present.push_back({p, most_lx, known == breaches.end() ? now : known->since});
+  }
+  breaches = std::move(present);
+}
+
+/// Asks for the levels that readings and hands call for, of which take_solved() makes what it was asked for.
+void ShowController::State::solve(Time now, Solving::For what) {
+  solving = std::make_shared<Solving>();
+  solving->what = what;
+  solving->facts = facts;
+  const bool hands = what == Solving::For::hands;
+  std::vector<double> levels = hands ? asked : with_hands(program.to_level);
+  if (!beside) {
+    solving->correction = estimator.correct(levels, now, hands);
+    solving->done = true;
+    return take_solved(now);
+  }
+  // With what is known now: what is learned meanwhile counts the next time.
+  beside(
+      [to = solving, known = std::make_shared<const GainEstimator>(estimator), levels = std::move(levels), now, hands] {
+        to->correction = known->correct(levels, now, hands);
+        to->done = true;
+      });
+}
+
+/// Something newer is asked for. What nobody has solved around hands is still to be.
+void ShowController::State::drop_solving() {
+  unsolved = unsolved || (solving && solving->what == Solving::For::hands);
+  solving.reset();
+}
+
+void ShowController::State::take_solved(Time now) {
+  if (!solving || !solving->done) return;
+  const bool fades = phase == Phase::fading || phase == Phase::settling || phase == Phase::measuring ||
+                     phase == Phase::correcting || phase == Phase::holding;
+  const bool hands = solving->what == Solving::For::hands;
+  // Lamps that start after a power cut do so one after the other, to their end.
+  if (hands && fades && !program.lamp_starts.empty() && !program.done(now)) return;
+  const std::shared_ptr<Solving> solved = std::exchange(solving, nullptr);
+  const bool holds = solved->facts == facts && cue && !program.blackout;
+  if (hands) {
+    if (!holds || !fades) {
+      unsolved = true;  // with the next cue
+      if (cue && fades && !program.blackout) {
+        unsolved = false;
+        solve(now, Solving::For::hands);
+      }
+      return;
+    }
+    asked = std::move(solved->correction.level);
+    aimed_lx = std::move(solved->correction.aimed_lx);
+    why = std::move(solved->correction.why);
+    return go_to_asked(now, present_levels(now, false));
+  }
+  if (!holds || (phase != Phase::measuring && phase != Phase::holding)) return;
+  if (solved->what == Solving::For::round) return correct_or_hold(now, std::move(solved->correction));
+  look_at_drift(now, std::move(solved->correction));
+}
+
+/// After a sample: another round when it would bring a metered goal nearer, or when a limit is in question.
+void ShowController::State::correct_or_hold(Time now, Correction correction) {
+  double change = 0;
+  for (std::size_t i = 0; i < correction.level.size(); ++i) {
+    change = std::max(change, std::abs(correction.level[i] - program.to_level[i]));
+  }
+  const bool wanted = possible_gain(correction) > rig.control.tolerance;
+  const bool worth_it = change > kSmallestChange && (wanted || !breaches.empty());
+  const bool in_rounds = phase == Phase::measuring ? round < rig.control.rounds : true;
+  aimed_lx = std::move(correction.aimed_lx);
+  why = std::move(correction.why);
+  converged = all_metered_goals_arrived();
+  if (!worth_it || (!in_rounds && breaches.empty())) {
+    enter(Phase::holding, now);
+    return;
+  }
+  for (std::size_t i = 0; i < cue->size(); ++i) {
+    if (lost[i] || bypassed_lamp[i]) {
+      correction.level[i] = program.to_level[i];
+      continue;
+    }
+    // What limits dimmed for a lost lamp comes back with it.
+    const bool same = std::abs(correction.level[i] - program.to_level[i]) <= kSmallestChange;
+    (*cue)[i] = correction.level[i];
+    if (!same || !any_lost()) asked[i] = correction.level[i];
+  }
+  if (by_hand().empty() && !any_lamp_bypassed()) without_hands = asked;
+  ++round;
+  corrected_at = now;
+  fade(now, present_levels(now), std::move(correction.level), rig.control.correction_fade_s, rig.control.fade_curve);
+  enter(Phase::correcting, now);
+}
+
+void ShowController::State::watch_drift(Time now) {
+  if (sampled_at != now) return;
+  converged = all_metered_goals_arrived();
+  if (solving) return;
+  solve(now, breaches.empty() ? Solving::For::drift : Solving::For::round);
+}
+
+void ShowController::State::look_at_drift(Time now, Correction correction) {
+  drifted = possible_gain(correction) > rig.control.tolerance ? drifted + 1 : 0;
+  if (drifted >= kDriftSamples && now - corrected_at >= kDriftCorrectionEvery)
+    correct_or_hold(now, std::move(correction));
+}
+
+/// A meter that contradicts only what it said before may have been right before or now; taking its word now could drive
+/// the light up (somebody's coat over it), so a person must ask for that by applying the plan again. Only in the safe
+/// look, where no limit rests on what it taught; and never one whose value stood still while the light changed.
+void ShowController::State::doubt_the_past(Time now) {
+  if (!afresh || sampled_at != now) return;
+  for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
+    if (!health.meter_implausible(i) || !sample_changed[i]) continue;
+    estimator.forget(i);
+    ++facts;
+    drifts[i] = Drift{};
+  }
+}
+
+}  // namespace luxrig

@@ -1,0 +1,159 @@
+/// Failure domains: what hangs on a lost bus or dimmer is held and then goes to its safe level, and the rest goes on.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/show/show_state.h"
+
+namespace luxrig {
+namespace {
+
+/// Of what a meter reads: less than this from lamps that may do anything, and it tells of the others.
+constexpr double kShareThatTells = 0.02;
+/// A meter that showed more than its point may have is trusted to watch over it again below this share of the limit.
+constexpr double kWellBelow = 0.95;
+
+/// What an output may do without data beside keeping its level or going dark: anything, unless its maker says.
+bool may_brighten(const Fixture& fixture) {
+  const auto* modbus = std::get_if<ModbusPatch>(&fixture.patch);
+  return modbus == nullptr || modbus->map == nullptr;
+}
+
+/// In quotes; of many the first and how many more, so that a phone shows them.
+std::string some_of(const std::vector<std::string>& names) {
+  constexpr std::size_t kMostNames = 4;
+  std::string text;
+  for (std::size_t i = 0; i < names.size() && i < kMostNames; ++i)
+    text += fmt::format("{}\"{}\"", i == 0 ? "" : ", ", names[i]);
+  if (names.size() > kMostNames) text += fmt::format(" and {} more", names.size() - kMostNames);
+  return text;
+}
+
+}  // namespace
+
+bool ShowController::State::any_lost() const {
+  return std::any_of(lost.begin(), lost.end(), [](const auto& one) { return one.has_value(); });
+}
+
+bool ShowController::State::too_much_lost() const {
+  return rig.safe.scope == SafeScope::rest_stays ? health.all_lost() : health.light_lost();
+}
+
+bool ShowController::State::limits_bear_waiting(Time now) const {
+  if (!health.any_faulted()) return true;
+  std::vector<double> most = present_levels(now);
+  const std::vector<double> before = present_levels(now - kNoticedWithin);
+  for (std::size_t f = 0; f < most.size(); ++f)
+    most[f] = std::max({most[f], before[f], program.blackout ? 0.0 : program.to_level[f]});
+  for (std::size_t p = 0; p < rig.points.size(); ++p)
+    if (rig.points[p].max_lx && estimator.most_lux_at_point(p, most, now) > *rig.points[p].max_lx * (1 + kBreachSlack))
+      return false;
+  return true;
+}
+
+/// Nothing is told apart when the rig goes to its safe look as a whole, but for what a person has taken out of it.
+void ShowController::State::watch_losses(Time now) {
+  bool changed = false;
+  std::vector<double> present, before;
+  for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
+    const bool apart = rig.safe.scope == SafeScope::rest_stays || bypassed_lamp[f];
+    const bool lamp = health.lamp_lost(f), gone = apart && (lamp || health.motion_lost(f));
+    std::optional<LostFixture>& one = lost[f];
+    if (gone && !one) {
+      if (present.empty()) {
+        present = present_levels(now);
+        before = present_levels(now - kNoticedWithin);
+      }
+      one = LostFixture{now, present[f], std::max({present[f], before[f], taken_level[f]}), lamp, false, {}};
+      changed = true;
+    } else if (gone) {
+      one->well_since.reset();
+      changed = changed || (lamp && !one->lamp);
+      one->lamp = one->lamp || lamp;
+      if (!one->to_safe && now - one->since >= from_seconds(rig.safe.hold_s)) one->to_safe = changed = true;
+    } else if (one && !one->well_since) {
+      one->well_since = now;
+    } else if (one && now - *one->well_since >= kHealthyFor) {
+      one.reset();
+      changed = true;
+    }
+  }
+  const std::vector<std::uint8_t> seen = watched_meters();
+  if (any_lost()) changed = changed || seen != watched;
+  if (!changed) return;
+  watched = seen;
+  tell_lost_lamps();
+  for (std::size_t i = 0; i < rig.luxmeters.size(); ++i)
+    if (in_doubt(i)) {
+      measured[i].reset();
+      health.judged(i, now, "");  // what it shows is no fault of its own
+    }
+  const bool goes_on = phase == Phase::moving || phase == Phase::fading || phase == Phase::settling ||
+                       phase == Phase::measuring || phase == Phase::correcting || phase == Phase::holding;
+  if (goes_on && cue && !failing) start_cue(now, asked);
+}
+
+/// 1 where a meter is read and shows no more than its point may have.
+std::vector<std::uint8_t> ShowController::State::watched_meters() const {
+  std::vector<std::uint8_t> seen(rig.luxmeters.size(), 0);
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const Luxmeter& meter = rig.luxmeters[i];
+    if (health.meter_lost(i) || !believed[i] || !meter.point) continue;
+    const bool was = i >= watched.size() || watched[i] != 0;
+    seen[i] = believed[i]->lux <= rig.points[*meter.point].max_lx.value_or(meter.range_lx) * (was ? 1 : kWellBelow);
+  }
+  return seen;
+}
+
+void ShowController::State::tell_lost_lamps() {
+  std::vector<std::optional<GainEstimator::Lost>> lamps(rig.fixtures.size());
+  for (std::size_t f = 0; f < lamps.size(); ++f) {
+    if (!lost[f] || !lost[f]->lamp) continue;
+    // For as long as the present look is held anyway, it is taken to hold, too.
+    const bool unknown = lost[f]->to_safe && may_brighten(rig.fixtures[f]);
+    lamps[f] = GainEstimator::Lost{lost[f]->most, unknown ? 1.0 : lost[f]->most};
+  }
+  estimator.set_lost(std::move(lamps), watched);
+  ++facts;
+}
+
+/// What lost fixtures are sent in place of the look: where they were, then their safe level, unless they were darker.
+/// They may take it at any instant, and limits count on what they had.
+void ShowController::State::leave_out_lost(std::vector<double>& levels) const {
+  if (!any_lost()) return;
+  const std::vector<double> safe = safe_levels();
+  for (std::size_t f = 0; f < levels.size(); ++f)
+    if (lost[f]) levels[f] = lost[f]->to_safe ? std::min(safe[f], lost[f]->level) : lost[f]->level;
+}
+
+bool ShowController::State::in_doubt(std::size_t luxmeter) const {
+  std::vector<std::uint8_t> chosen(rig.fixtures.size(), 0);
+  bool any = false;
+  for (std::size_t f = 0; f < chosen.size(); ++f) {
+    // From the first report on: what is learned until a lamp is lost could not be told from what is true.
+    chosen[f] = lost[f].has_value() || health.lamp_silent(f);
+    any = any || chosen[f] != 0;
+  }
+  return any && estimator.share_at_meter(luxmeter, chosen, program.to_level) > kShareThatTells;
+}
+
+void ShowController::State::tell_losses(ShowStatus& status) const {
+  std::vector<std::string> points, lamps;
+  for (const std::size_t p : estimator.beyond_dimming()) points.push_back(rig.points[p].name);
+  if (points.empty()) return;
+  Time since = Time::max();
+  for (std::size_t f = 0; f < lost.size(); ++f) {
+    if (!lost[f] || !lost[f]->lamp || !may_brighten(rig.fixtures[f])) continue;
+    lamps.push_back(rig.fixtures[f].name);
+    since = std::min(since, lost[f]->since);
+  }
+  status.alarms.push_back(
+      {true, "",
+       fmt::format("nobody knows what light {} give{} now, and it could be above the limit of {}; look there, or cut "
+                   "the power of {}",
+                   some_of(lamps), lamps.size() == 1 ? "s" : "", some_of(points), lamps.size() == 1 ? "it" : "them"),
+       since});
+}
+
+}  // namespace luxrig

@@ -1,0 +1,52 @@
+/// A rig file that was read again while the show runs.
+
+#include <algorithm>
+#include <utility>
+
+#include "core/check.h"
+#include "core/show/show_state.h"
+
+namespace luxrig {
+
+void ShowController::State::exchange_rig(Time now, const Rig& other, const LightModel& model, bool same_light) {
+  LUXRIG_CHECK(other.fixtures.size() == rig.fixtures.size() && other.luxmeters.size() == rig.luxmeters.size() &&
+                   (!same_light || other.points.size() == rig.points.size()),
+               "another rig's outputs");
+  std::vector<std::optional<ByHand>> goals(other.points.size());
+  for (std::size_t p = 0; p < other.points.size(); ++p)
+    for (std::size_t q = 0; q < rig.points.size(); ++q)
+      if (rig.points[q].name == other.points[p].name && hand_goal[q]) {
+        goals[p] = hand_goal[q];
+        goals[p]->index = p;
+      }
+  hand_goal = std::move(goals);
+  const std::vector<double> present = present_levels(now);
+  rig = other;
+  rig_points = points_as_planned = rig.points;
+  aimed_lx.clear();
+  why.clear();
+  breaches.clear();
+  awaited.reset();
+  drop_solving();
+  parking.clear();
+  for (std::size_t f = 0; f < rig.fixtures.size(); ++f) program.max_level[f] = bypassed_lamp[f] ? 0 : most_of(f);
+  if (same_light) {
+    for (std::size_t f = 0; f < rig.fixtures.size(); ++f) estimator.set_max_level(f, program.max_level[f]);
+  } else {
+    estimator = GainEstimator(rig, model);
+    drifts.assign(rig.luxmeters.size(), {});
+    std::fill(measured.begin(), measured.end(), std::nullopt);
+    model_joints = program.joints;
+  }
+  if (rig.safe.scope == SafeScope::all) lost.assign(rig.fixtures.size(), std::nullopt);
+  tell_estimator();
+  in_force = present;  // limits let it pass until the next look is on
+  fade(now, present, present, 0, FadeCurve::linear);
+}
+
+void ShowController::exchange_rig(Time now, const Rig& rig, const LightModel& model, bool same_light) {
+  now = state_->at_least_last(now);
+  state_->exchange_rig(now, rig, model, same_light);
+}
+
+}  // namespace luxrig

@@ -1,0 +1,124 @@
+// What no meter can say of itself: whether all of them are off together against the model, or drift against what they
+// said before at the same levels.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/show/show_state.h"
+
+namespace luxrig {
+namespace {
+
+/// Standard errors by which the common scale must be off: honest rigs are within.
+constexpr double kSurelyOff = 3;
+/// Once said, it stands until it is nearer than this share of what had it said: noise shall not make it come and go.
+constexpr double kStands = 0.8;
+/// A change of reading over model at one place that is called drift, beyond what a dimmer's curve and ageing explain.
+constexpr double kDrift = 0.08;
+constexpr double kAgeingPerHour = 0.001;
+/// As many samples in a row, so that somebody walking past is no drift.
+constexpr int kDriftSeen = 3;
+
+std::string less_or_more(double log_share) {
+  return fmt::format("{:.0f} % {}", 100 * std::abs(std::exp(log_share) - 1), log_share < 0 ? "less" : "more");
+}
+
+}  // namespace
+
+void ShowController::State::watch_scale(Time now) {
+  std::vector<LuxReading> readings;
+  for (const auto& reading : measured)
+    if (reading) readings.push_back(*reading);
+  const auto scale = estimator.common_scale(readings, program.to_level);
+  const bool off =
+      scale && std::abs(scale->log_scale) > (off_together ? kStands : 1) * kSurelyOff * scale->log_standard_error;
+  if (off && !off_together) off_together_since = now;
+  off_together = off ? std::optional(scale->log_scale) : std::nullopt;
+
+  for (std::size_t i = 0; i < drifts.size(); ++i) {
+    Drift& drift = drifts[i];
+    if (!measured[i] || measured[i]->lux <= 0) continue;
+    const double stated_lx = estimator.stated_lux(i, program.to_level);
+    if (!(stated_lx > kDarkForDrift_lx)) continue;
+    const double log_ratio = std::log(measured[i]->lux / stated_lx);
+    if (!drift.anchored) {
+      drift = Drift{true, log_ratio, program.to_level, now, 0, 0, {}};
+      continue;
+    }
+    const double allowed = kDrift + kAgeingPerHour * to_seconds(now - drift.since) / 3600 +
+                           estimator.curve_error_at_meter(i, drift.level, program.to_level);
+    drift.log_change = log_ratio - drift.log_ratio;
+    drift.seen = std::abs(drift.log_change) > (drifts_away(i) ? kStands : 1) * allowed ? drift.seen + 1 : 0;
+    if (drift.seen == kDriftSeen) drift.known_since = now;
+  }
+}
+
+bool ShowController::State::drifts_away(std::size_t luxmeter) const { return drifts[luxmeter].seen >= kDriftSeen; }
+
+/// Whatever moved more than half of the meters one way moved what the model has learned from them.
+std::optional<double> ShowController::State::drift_together() const {
+  std::vector<double> change;
+  std::size_t known = 0;
+  for (std::size_t i = 0; i < drifts.size(); ++i) {
+    if (!drifts[i].anchored || !measured[i]) continue;
+    ++known;
+    if (drifts_away(i)) change.push_back(drifts[i].log_change);
+  }
+  if (change.size() < 2 || 2 * change.size() <= known) return std::nullopt;
+  std::nth_element(change.begin(), change.begin() + static_cast<std::ptrdiff_t>(change.size() / 2), change.end());
+  return change[change.size() / 2];
+}
+
+ShowController::State::ScaleDoubt ShowController::State::scale_doubt_of(std::size_t point) const {
+  ScaleDoubt doubt;
+  const auto take = [&](double log_share, std::string reason) {
+    if (std::abs(log_share) <= std::abs(doubt.log_share)) return;
+    doubt = {log_share, std::move(reason)};
+  };
+  if (off_together) take(*off_together, off_together_text());
+  if (const auto together = drift_together()) take(*together, drift_together_text(*together));
+  if (const auto meter = meter_at(point); meter && measured[*meter] && drifts_away(*meter))
+    take(drifts[*meter].log_change, drift_text(*meter));
+  return doubt;
+}
+
+std::string ShowController::State::off_together_text() const {
+  return fmt::format(
+      "all meters read {} than the model says: either the photometry, the reflectances or the lamps' age, or the "
+      "meters' calibration; compare one with a reference meter, and mend the rig file or the meters",
+      less_or_more(*off_together));
+}
+
+std::string ShowController::State::drift_together_text(double log_share) const {
+  return fmt::format(
+      "most meters read {} than before at the same levels: either the lamps or other light, or the meters' "
+      "calibration drifts; compare one with a reference meter; applying the plan again takes the light as it is",
+      less_or_more(log_share));
+}
+
+std::string ShowController::State::drift_text(std::size_t luxmeter) const {
+  return fmt::format(
+      "luxmeter \"{}\" reads {} than before at the same levels: either the lamps or other light there, or its "
+      "calibration drifts; compare it with a reference meter; applying the plan again takes the light as it is",
+      rig.luxmeters[luxmeter].name, less_or_more(drifts[luxmeter].log_change));
+}
+
+void ShowController::State::tell_scale(ShowStatus& status) const {
+  if (off_together) status.alarms.push_back({false, "", off_together_text(), off_together_since});
+  const auto together = drift_together();
+  Time since = Time::max();
+  for (std::size_t i = 0; i < drifts.size(); ++i) {
+    if (!measured[i] || !drifts_away(i)) continue;
+    since = std::min(since, drifts[i].known_since);
+    if (!together) status.alarms.push_back({false, rig.luxmeters[i].name, drift_text(i), drifts[i].known_since});
+  }
+  if (together) status.alarms.push_back({false, "", drift_together_text(*together), since});
+}
+
+void ShowController::State::forget_drift() {
+  for (std::size_t i = 0; i < drifts.size(); ++i)
+    if (drifts_away(i)) drifts[i] = Drift{};
+}
+
+}  // namespace luxrig

@@ -1,0 +1,306 @@
+#pragma once
+/// What a ShowController keeps; private to show_controller.cpp and its neighbours show_….cpp (what happens), and
+/// show_status.cpp (what is told).
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/estimation/gain_estimator.h"
+#include "core/estimation/meter_samples.h"
+#include "core/show/desk_follower.h"
+#include "core/show/head_whereabouts.h"
+#include "core/show/health_watch.h"
+#include "core/show/identify.h"
+#include "core/show/show_controller.h"
+
+namespace luxrig {
+
+/// Noise of a reading that no correction could take away: nearer than this to what was aimed at is there.
+inline constexpr double kArrivedTolerance = 0.03;
+
+/// most_lux_at_point holds 1 % for a meter's noise on top of its tolerance, and corrections aim at the limit itself:
+/// half of that may be used up before a reading counts, or noise alone would start one correction after another.
+inline constexpr double kBreachSlack = 0.005;
+
+/// A point above its limit, by its meter; kept while it lasts.
+struct LimitBreach {
+  std::size_t point = 0;
+  double most_lx = 0;
+  Time since{};
+};
+
+/// A fixture whose lamp or axes do not answer, while the rest goes on.
+struct LostFixture {
+  Time since{};
+  double level = 0;      ///< that it is held at
+  double most = 0;       ///< that it may have taken last
+  bool lamp = true;      ///< false: only what turns it
+  bool to_safe = false;  ///< it has been held for long enough
+  std::optional<Time> well_since{};
+};
+
+/// A device that comes and goes is not back; the drivers' own reports come several times in this while.
+inline constexpr Duration kHealthyFor = std::chrono::milliseconds(500);
+
+/// One late answer is no failure: a device that is reported as faulted is done without after this. What a limit may
+/// have meanwhile is looked at first (limits_bear_waiting).
+inline constexpr Duration kPatience = std::chrono::milliseconds(1200);
+/// Since a lamp took its last level, drivers have known within this, and the show after its patience, that it takes
+/// none.
+inline constexpr Duration kNoticedWithin = std::chrono::milliseconds(3200);
+
+/// Housings that blink, or have: each keeps its place among the desks.
+struct Identification {
+  std::size_t desk = 0;
+  IdentifyPattern pattern;
+};
+
+/// A head that keep-out zones hold for.
+struct GuardedHead {
+  std::size_t fixture = 0;
+  HeadWhereabouts where;
+  std::optional<Joints> told{};     ///< when last looked
+  std::optional<JointBox> swept{};  ///< what `zone` was worked out for
+  std::optional<Joints> swept_to{};
+  std::optional<std::size_t> zone{};  ///< that its beam could meet now
+};
+
+/// A correction that is being worked out beside the loop.
+struct Solving {
+  enum class For { round, drift, hands } what = For::round;
+  std::uint64_t facts = 0;  ///< State::facts when it was asked for
+  std::atomic<bool> done{false};
+  Correction correction{};
+};
+
+struct ShowController::State {
+  State(const Rig& rig, const LightModel& model);
+
+  Rig rig;
+  GainEstimator estimator;
+  HealthWatch health;
+  MeterSamples samples;
+  OutputProgram program;
+
+  KeepOutZones zones;
+  std::vector<GuardedHead> guarded;         ///< one for each of program.dims
+  std::vector<Joints> model_joints;         ///< per fixture: where heads look in the estimator's model
+  std::vector<std::uint8_t> parking;        ///< per fixture, 1: parks when it is dark; empty: none
+  std::vector<std::uint8_t> tells_of_lamp;  ///< per fixture, 1: its device would say that its lamp has burnt out
+  std::vector<std::uint8_t> powerless;      ///< per fixture, 1: its lamp is lost, and starts as after a power cut
+  bool power_came = false;                  ///< light has been asked for once
+
+  std::vector<DeskFollower> desks;      ///< one for each of program.desks
+  std::vector<std::string> desk_names;  ///< of the rig's; those that identify fixtures have none
+  std::optional<Time> listens_until{};  ///< a first look waits so long for what is heard of desks
+  std::vector<Identification> identified;
+  bool shared = false;  ///< a desk had a say in the light when last looked
+
+  Phase phase = Phase::idle;
+  Time phase_since{};
+  Time last{};              ///< the latest instant given to any call
+  Time healthy_since{};     ///< meaningful while not failing
+  bool failing = true;      ///< something that the light depends on is lost; true until a step has looked
+  bool asked_safe = false;  ///< by go_safe: no return by itself
+  std::string failure;      ///< what froze the show, for the detail line
+  std::optional<std::vector<double>> cue;        ///< levels in force, as corrected so far
+  std::vector<double> asked;                     ///< levels in force before limits dimmed them, as corrected so far
+  std::vector<std::optional<LostFixture>> lost;  ///< per fixture
+  std::vector<std::uint8_t> watched;             ///< per luxmeter: what the estimator was told
+  std::optional<Look> awaited;                   ///< taken as soon as what it turns is dark
+  Time arrive{};                                 ///< heads look where they shall from here on; no fade starts before
+  bool turned = false;                           ///< heads have been told where to look
+  std::vector<double> in_force;  ///< levels of somebody else's light, until a look of ours is on; or empty
+  bool afresh = false;           ///< a person applied a plan, and the meters have not all been believed since
+  int round = 0;
+  bool converged = false;
+  Time corrected_at{};                              ///< when the last correction was decided
+  int drifted = 0;                                  ///< samples in a row, while holding, that ask for a correction
+  Time sampled_at{};                                ///< when the last sample was complete
+  std::vector<std::optional<LuxReading>> measured;  ///< per luxmeter: last believed sample
+  std::vector<std::optional<double>> sampled_lx;    ///< per luxmeter: last sample, believed or not
+  std::vector<bool> sample_changed;                 ///< whether it differed from the one before
+  std::vector<std::optional<LuxReading>> believed;  ///< per luxmeter: last reading while it was not lost
+  std::vector<std::optional<LuxReading>> heard;     ///< per luxmeter: last reading, believed or not
+  std::vector<double> taken_level;                  ///< per fixture: the last that its device took, so far as is known
+  std::vector<double> aimed_lx;  ///< per point: what the last correction could reach; empty before the first
+  std::vector<std::string> why;  ///< per point: what keeps it from its goal; empty before the first
+  std::vector<LimitBreach> breaches;
+
+  // Set by hand (show_by_hand.cpp).
+  std::vector<std::optional<ByHand>> hand_level;  ///< per fixture
+  std::vector<double> without_hands;  ///< levels of the plan, as corrected before hands came: where a release goes
+  std::vector<std::optional<ByHand>> hand_goal;  ///< per point
+  std::vector<Point> rig_points;                 ///< as the rig file has them
+  std::vector<Point> points_as_planned;          ///< of the look in force, without goals by hand
+  bool unsolved = false;                         ///< something by hand is newer than the levels in force
+  [[nodiscard]] Result<void> hold(Time now, std::span<const ByHand> wanted);
+  std::size_t release(Time now, std::span<const std::size_t> fixtures, std::span<const std::size_t> points);
+  void release_what_is_over(Time now);
+  void take_points(const Look& look);
+  void take_levels_of_plan(Time now, const std::vector<double>& levels, const Look& look);
+  /// Tells goals, limits, who is held and who is lost to the estimator.
+  void tell_estimator();
+  void start_with_hands(Time now);
+  /// The levels with those that are held in their place.
+  [[nodiscard]] std::vector<double> with_hands(std::vector<double> levels) const;
+  [[nodiscard]] std::vector<ByHand> by_hand() const;
+  [[nodiscard]] std::string why_not(Time now, const ByHand& held) const;
+
+  // All meters against the model, and each against what it read before (show_scale.cpp).
+  /// A meter's reading over what the model states, when it was first believed and now, as logarithms.
+  struct Drift {
+    bool anchored = false;
+    double log_ratio = 0;
+    std::vector<double> level;  ///< per fixture, then
+    Time since{};
+    double log_change = 0;
+    int seen = 0;  ///< samples in a row that are farther off than anything explains
+    Time known_since{};
+  };
+  struct ScaleDoubt {
+    double log_share = 0;  ///< below 0: meters read less than they would
+    std::string reason;
+  };
+  static constexpr double kDarkForDrift_lx = 2;  ///< below, a meter's offset counts
+  std::optional<double> off_together;            ///< logarithm of all readings over the model, where it is surely not 0
+  Time off_together_since{};
+  std::vector<Drift> drifts;  ///< per luxmeter
+  void watch_scale(Time now);
+  [[nodiscard]] bool drifts_away(std::size_t luxmeter) const;
+  [[nodiscard]] std::optional<double> drift_together() const;
+  [[nodiscard]] ScaleDoubt scale_doubt_of(std::size_t point) const;
+  [[nodiscard]] std::string off_together_text() const;
+  [[nodiscard]] std::string drift_together_text(double log_share) const;
+  [[nodiscard]] std::string drift_text(std::size_t luxmeter) const;
+  void tell_scale(ShowStatus& status) const;
+  void forget_drift();
+
+  // Bypassed (show_bypass.cpp).
+  std::vector<std::optional<Time>> bypassed_lamp, bypassed_meter;  ///< per fixture and luxmeter: since when
+  void bypass(Time now, std::span<const std::size_t> fixtures, std::span<const std::size_t> luxmeters, bool on);
+  [[nodiscard]] bool any_lamp_bypassed() const;
+  void close_bypassed(Time now);
+  void tell_bypassed(ShowStatus& status) const;
+  /// The most that a plan may ask of it; 0 of one that is parked.
+  [[nodiscard]] double most_of(std::size_t fixture) const;
+
+  // A rig file read again (show_reload.cpp).
+  void exchange_rig(Time now, const Rig& other, const LightModel& model, bool same_light);
+
+  ShowController::Beside beside;     ///< may be none
+  std::shared_ptr<Solving> solving;  ///< what has been asked for and not been taken up
+  std::uint64_t facts = 0;           ///< counts what makes another correction of one that was asked for before
+
+  // What happens (show_controller.cpp).
+  [[nodiscard]] Time at_least_last(Time now);
+  void enter(Phase next, Time now);
+  [[nodiscard]] std::vector<double> present_levels(Time now, bool under_ceilings = true) const;
+  void fade(Time now, std::vector<double> from, std::vector<double> to, double seconds, FadeCurve curve);
+  void guard(Time now, const std::vector<double>& from, const std::vector<double>& to);
+  void start_cue(Time now, std::vector<double> levels);
+  void go_to_asked(Time now, std::vector<double> present);
+  [[nodiscard]] std::vector<double> wanted_levels(std::span<const double> levels) const;
+  [[nodiscard]] bool turns(std::size_t fixture) const;  ///< by the awaited look
+  void take_look(Time now);
+  void freeze(Time now);
+  void resume(Time now);
+  void fade_to_safe(Time now);
+  void take_sample(Time now);
+  void solve(Time now, Solving::For what);
+  void take_solved(Time now);
+  void drop_solving();
+  void correct_or_hold(Time now, Correction correction);
+  void look_at_drift(Time now, Correction correction);
+  void watch_drift(Time now);
+  void doubt_the_past(Time now);
+  void look_at_failures(Time now);
+  void advance(Time now);
+
+  // Lighting desks (show_desks.cpp).
+  void guard_against_desks(Time now);
+  void put_desk(std::size_t index);
+  /// Calls back with what goes out now but for a blackout, which is none of a desk's business.
+  template <class Call>
+  bool with_present_light(Time now, Call call);
+  [[nodiscard]] bool desk_shares(Time now) const;
+  [[nodiscard]] bool listens_in_silence() const;  ///< nobody knows yet whether a desk has light of ours
+  [[nodiscard]] bool waits_for_desks(Time now);
+  void begin_after_listening(Time now);
+  void step_desks(Time now);
+  std::size_t add_desk(DeskFollowerSettings settings, const std::string& name);
+  [[nodiscard]] DeskFollowerSettings desk_settings(const DeskRules& rules,
+                                                   const std::vector<std::size_t>& fixtures) const;
+  void hear_desk(Time now, std::size_t index, const DeskFrame& frame);
+  Result<void> identify(Time now, std::size_t fixture, Duration how_long);
+
+  // Keep-out zones (show_keep_out.cpp).
+  void guard_heads(Time now);
+  void guard_head(Time now, GuardedHead& head, HeadDim& dim, const Joints& wanted, const Joints& at_last, bool lit);
+  [[nodiscard]] bool dimmed_for_a_zone(Time now) const;
+  void tell_zones(ShowStatus& status) const;
+
+  // Parking (show_park.cpp).
+  Result<void> park(Time now, std::span<const std::size_t> fixtures);
+  void unpark();
+  [[nodiscard]] bool parked(std::size_t fixture) const {
+    return !program.parked.empty() && program.parked[fixture] != 0;
+  }
+  void finish_parking();
+  /// Nobody knows yet where heads look: light waits for their longest way there, and for their finding their zero.
+  void first_turn(Time now, std::span<const Joints> joints);
+
+  // What fails alone (show_losses.cpp).
+  void watch_losses(Time now);
+  /// No limit would be exceeded were any lamp stuck at the most that it has had lately, while the others go on.
+  [[nodiscard]] bool limits_bear_waiting(Time now) const;
+  void tell_lost_lamps();
+  void leave_out_lost(std::vector<double>& levels) const;
+  [[nodiscard]] bool any_lost() const;
+  [[nodiscard]] bool too_much_lost() const;  ///< of what gives light, for the show to go on
+  [[nodiscard]] std::vector<std::uint8_t> watched_meters() const;
+  /// A lost fixture gives it light, or might: nobody knows how much.
+  [[nodiscard]] bool in_doubt(std::size_t luxmeter) const;
+  void tell_losses(ShowStatus& status) const;
+
+  // Power (show_startup.cpp).
+  /// Levels as they come on the first time, by stages, from what is lit already; false when nothing is staged.
+  bool start_lamps(Time now, const std::vector<double>& present, const std::vector<double>& levels);
+  void watch_power(Time now);
+
+  // What is known (show_status.cpp).
+  [[nodiscard]] std::vector<double> safe_levels() const;
+  /// Largest |aimed − measured| / goal over the metered goals; 0 without any.
+  [[nodiscard]] double possible_gain(const Correction& correction) const;
+  [[nodiscard]] std::optional<std::size_t> meter_at(std::size_t point) const;
+  /// Whether a point at `lux` is where corrections want it: at its goal, or at the best that the limits allow.
+  [[nodiscard]] bool arrived(std::size_t point, double lux) const;
+  [[nodiscard]] bool all_metered_goals_arrived() const;
+  [[nodiscard]] PointStatus point_status(std::size_t point, std::span<const double> level, Time now) const;
+  [[nodiscard]] double in_doubt_for_lost_lamps_lx(std::size_t point, std::span<const double> level) const;
+  [[nodiscard]] LuxEstimate light_by_model(std::size_t point, std::span<const double> level,
+                                           const Prediction& prediction) const;
+  [[nodiscard]] std::vector<double> with_lost_lamps_at(std::span<const double> level, bool full) const;
+  [[nodiscard]] bool any_lamp_lost() const;
+  /// Were its lamp out, that meter would show it.
+  [[nodiscard]] bool seen_by_a_meter(std::size_t fixture, std::span<const double> level) const;
+  /// A lamp without which the point would not be at its goal, and of which nobody knows whether it burns.
+  [[nodiscard]] std::optional<std::size_t> unseen_lamp_for(std::size_t point, std::span<const double> level,
+                                                           const LuxEstimate& light, double allowed_lx) const;
+  /// What is believed to be out: of a desk that drives lamps itself, what it sends; of a lamp that does not answer, the
+  /// last that it took.
+  [[nodiscard]] std::vector<double> levels_out(Time now) const;
+  void judge_goal(std::size_t point, std::span<const double> level, PointStatus& status) const;
+  void judge_limit(std::size_t point, std::span<const double> level, Time now, PointStatus& status) const;
+  /// Remembers what lamps took whose devices answer.
+  void remember_levels(Time now);
+  [[nodiscard]] std::string detail(Time now, const VerdictCounts& goals) const;
+  [[nodiscard]] std::string who_shares(Time now) const;
+  [[nodiscard]] ShowStatus status(Time now) const;
+};
+
+}  // namespace luxrig

@@ -1,0 +1,55 @@
+/// Light that somebody else has sent until now: the guardian of a daemon that died.
+
+#include <algorithm>
+#include <utility>
+
+#include "core/check.h"
+#include "core/show/show_state.h"
+
+namespace luxrig {
+
+void ShowController::go_on_from(Time now, const LightInForce& light) {
+  State& state = *state_;
+  now = state.at_least_last(now);
+  const std::size_t count = state.rig.fixtures.size();
+  LUXRIG_CHECK(light.level.size() == count && light.safe.size() == count && light.joints.size() == count,
+               "light of another rig");
+  std::vector<double> level = light.level, safe = light.safe;
+  bool all_known = true;
+  for (std::size_t f = 0; f < count; ++f) {
+    Fixture& fixture = state.rig.fixtures[f];
+    if (!fixture.moves) continue;
+    fixture.joints = state.program.joints[f] = light.joints[f];
+    fixture.aim_world_m.reset();
+    if (!fixture.axes) continue;
+    all_known = false;
+    level[f] = safe[f] = 0;
+  }
+  state.turned = all_known;
+  for (std::size_t d = 0; d < state.desks.size(); ++d) {
+    const std::vector<std::size_t>& fixtures = state.desks[d].blend().fixtures;
+    const bool silent = std::any_of(fixtures.begin(), fixtures.end(),
+                                    [&](std::size_t f) { return f < light.silent.size() && light.silent[f] != 0; });
+    if (silent) continue;  // somebody may drive them: it is listened for as ever
+    state.desks[d].have_light(now);
+    state.put_desk(d);
+  }
+  state.in_force = level;
+  state.fade(now + from_seconds(light.hold_s), std::move(level), std::move(safe), light.fade_s,
+             state.rig.control.fade_curve);
+}
+
+void ShowController::take_back(Time now, std::span<const double> level) {
+  State& state = *state_;
+  now = state.at_least_last(now);
+  LUXRIG_CHECK(level.size() == state.rig.fixtures.size(), "light of another rig");
+  if (state.phase == Phase::idle) return;
+  const Phase before = state.phase;
+  state.in_force.assign(level.begin(), level.end());
+  state.fade(now, state.in_force, state.in_force, 0, FadeCurve::linear);
+  if (before == Phase::frozen) return;
+  if (before == Phase::safe || before == Phase::safe_fading || !state.cue) return state.fade_to_safe(now);
+  state.resume(now);
+}
+
+}  // namespace luxrig

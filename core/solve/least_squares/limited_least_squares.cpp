@@ -1,0 +1,118 @@
+#include "core/solve/least_squares/limited_least_squares.h"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+#include "core/solve/least_squares/limited_methods.h"
+#include "core/solve/least_squares/limited_nnls.h"
+
+namespace luxrig {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Unknowns from which on many constraints at a time are faster (`luxrig bench nnls --only levels`).
+constexpr Index kMany = 200;
+
+/// A row without slack keeps all that it touches at 0. As a limit it would leave no inside, and multipliers no end.
+struct LitProblem {
+  explicit LitProblem(const LimitedLeastSquares& p) : upper(p.upper) {
+    for (Index i = 0; i < p.G.rows(); ++i) {
+      if (p.slack[i] > 0 || p.G.row(i).minCoeff() < 0) {
+        rows.push_back(i);
+        continue;
+      }
+      for (Index j = 0; j < p.G.cols(); ++j)
+        if (p.G(i, j) > 0) upper[j] = 0;
+    }
+  }
+  VectorXd upper;
+  std::vector<Index> rows;  ///< the other limits
+};
+
+}  // namespace
+
+std::vector<Index> free_variables(const std::vector<BoundState>& state) {
+  std::vector<Index> free;
+  for (std::size_t j = 0; j < state.size(); ++j)
+    if (state[j] == BoundState::free) free.push_back(static_cast<Index>(j));
+  return free;
+}
+
+VectorXd row_multipliers(const MatrixXd& G, const LimitedLeastSquaresResult& at, const VectorXd& gradient) {
+  const std::vector<Index> free = free_variables(at.state);
+  if (at.working_rows.empty() || free.empty()) return VectorXd::Zero(static_cast<Index>(at.working_rows.size()));
+  const MatrixXd rows = G(at.working_rows, free).transpose();
+  const VectorXd part = -gradient(free);
+  return rows.colPivHouseholderQr().solve(part);
+}
+
+double kkt_violation(const LimitedLeastSquares& p, const LimitedLeastSquaresResult& at, const VectorXd& multiplier) {
+  if (!at.z.allFinite() || !multiplier.allFinite()) return HUGE_VAL;
+  VectorXd gradient = p.E.transpose() * (p.E * at.z - p.f);
+  const VectorXd over = p.G * at.z - p.slack;
+  double worst = over.size() > 0 ? std::max(0.0, over.maxCoeff()) : 0;
+  for (std::size_t k = 0; k < at.working_rows.size(); ++k) {
+    const Index row = at.working_rows[k];
+    const double lambda = multiplier[static_cast<Index>(k)];
+    gradient += lambda * p.G.row(row).transpose();
+    worst = std::max({worst, -lambda, std::abs(lambda * over[row])});
+  }
+  for (Index j = 0; j < at.z.size(); ++j) {
+    worst = std::max({worst, -at.z[j], at.z[j] - p.upper[j]});
+    if (p.upper[j] == 0) continue;
+    if (at.z[j] > 0) worst = std::max(worst, gradient[j]);
+    if (at.z[j] < p.upper[j]) worst = std::max(worst, -gradient[j]);
+  }
+  return worst;
+}
+
+std::optional<LimitedLeastSquaresResult> solve_by_multipliers(const LimitedLeastSquares& p,
+                                                              const std::stop_token& stop) {
+  const LitProblem lit(p);
+  NnlsProblem problem;
+  problem.columns = ColumnsView(p.E);
+  problem.goal = p.f;
+  problem.upper = lit.upper;
+  LinearLimits limits;
+  limits.rows = p.G(lit.rows, Eigen::all).sparseView();
+  limits.most = p.slack(lit.rows);
+  NnlsOptions options;
+  options.stop = stop;
+  const auto guess = solve_limited_nnls(problem, limits, options);
+  LimitedLeastSquaresResult at;
+  at.stopped = stop.stop_requested();
+  if (at.stopped) return at;
+  if (!guess || !guess->conflict.empty()) return std::nullopt;
+  at.z = guess->least_squares.x;
+  at.iterations = guess->least_squares.iterations;
+  at.state.assign(static_cast<std::size_t>(at.z.size()), BoundState::free);
+  for (Index j = 0; j < at.z.size(); ++j)
+    if (at.z[j] == 0 || at.z[j] == p.upper[j])
+      at.state[static_cast<std::size_t>(j)] = at.z[j] == 0 ? BoundState::lower : BoundState::upper;
+  for (std::size_t k = 0; k < lit.rows.size(); ++k)
+    if (guess->multiplier[static_cast<Index>(k)] > 0) at.working_rows.push_back(lit.rows[k]);
+  if (LimitedLeastSquaresResult settled = at; settle_active_set(p, settled, stop)) return settled;
+  at = solve_by_active_set(p, stop, std::move(at));
+  if (at.stopped) return at;
+  const VectorXd gradient = p.E.transpose() * (p.E * at.z - p.f);
+  if (!at.converged || kkt_violation(p, at, row_multipliers(p.G, at, gradient)) > kVerified) return std::nullopt;
+  return at;
+}
+
+LimitedLeastSquaresResult solve_limited_least_squares(const LimitedLeastSquares& problem, const std::stop_token& stop) {
+  if (problem.E.cols() == 0) {
+    LimitedLeastSquaresResult none;
+    none.z.resize(0);
+    none.converged = true;
+    return none;
+  }
+  if (problem.E.cols() >= kMany)
+    if (auto result = solve_by_multipliers(problem, stop)) return std::move(*result);
+  return solve_by_active_set(problem, stop);
+}
+
+}  // namespace luxrig

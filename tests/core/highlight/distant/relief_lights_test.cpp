@@ -1,0 +1,338 @@
+#include "core/highlight/distant/relief_lights.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "core/highlight/shadow/relief_contrast.h"
+#include "core/highlight/surface/relief_study.h"
+#include "tests/core/highlight/shapes.h"
+#include "tools/bench/rooms/relief_targets.h"
+
+namespace luxrig {
+namespace {
+
+ReliefStudy studied(const Scene& scene, std::size_t most) {
+  ReliefStudyOptions options;
+  options.interest.most_points = most;
+  auto study = study_relief(scene, options);
+  EXPECT_TRUE(study);
+  return std::move(*study);
+}
+
+ReliefLightSearch searched(const ReliefStudy& study, const ReliefLightOptions& options) {
+  auto search = ReliefLightSearch::make(study.surface, study.rays, study.interest, options);
+  EXPECT_TRUE(search);
+  return std::move(*search);
+}
+
+double contrast_by_rays(const ReliefStudy& study, const std::vector<Vec3>& directions) {
+  std::vector<DistantBeam> beams;
+  for (const Vec3& direction : directions) beams.push_back({direction, 1});
+  return relief_contrast(study.surface, study.rays, study.interest, beams, 0, 0).local_contrast_lx;
+}
+
+LitTable table_of(const ReliefStudy& study, const ContrastSamples& samples, int side, bool every_ray) {
+  LitTableOptions options;
+  options.every_ray = every_ray;
+  auto table = find_lit_bins(study.rays, samples, DirectionBins(side), options);
+  EXPECT_TRUE(table);
+  return std::move(*table);
+}
+
+/// Level ground with a straight groove along Y, half a metre wide and as deep.
+Scene grooved_ground() {
+  return parametric(120, 60, [](double u, double v) {
+    const double x = 6 * u - 3;
+    return Vec3(x, 6 * v - 3, -0.5 * std::exp(-x * x / (2 * 0.25 * 0.25)));
+  });
+}
+
+/// Twelve triangles and more of a box seen from inside: its triangles face inwards.
+Scene box_from_inside() {
+  Scene box;
+  const int split = 12;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {-1.0, 1.0}) {
+      const Scene face = parametric(split, split, [&](double u, double v) {
+        Vec3 p;
+        p[axis] = side;
+        p[(axis + 1) % 3] = side * (1 - 2 * u);
+        p[(axis + 2) % 3] = 2 * v - 1;
+        return p;
+      });
+      const auto first = static_cast<std::uint32_t>(box.vertices_m.size());
+      box.vertices_m.insert(box.vertices_m.end(), face.vertices_m.begin(), face.vertices_m.end());
+      for (const auto& t : face.triangles) box.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    }
+  }
+  return with_one_material(box);
+}
+
+TEST(LitTable, OfTheSearchIsThatOfEveryRayWithFewer) {
+  for (const Scene& scene : {make_carved_relief(0.02), make_terrain(100, 60), torus(1, 0.7, 60, 40)}) {
+    const ReliefStudy study = studied(scene, 150);
+    const ContrastSamples samples = one_ring_samples(study.surface, study.interest);
+    const LitTable every = table_of(study, samples, 16, true), found = table_of(study, samples, 16, false);
+    std::uint64_t lit = 0, wrong = 0, facing = 0;
+    for (std::size_t i = 0; i < every.rows.size(); ++i) {
+      lit += static_cast<std::uint64_t>(std::popcount(every.rows[i]));
+      wrong += static_cast<std::uint64_t>(std::popcount(every.rows[i] ^ found.rows[i]));
+    }
+    for (std::size_t p = 0; p < samples.points.size(); ++p)
+      for (std::uint32_t b = 0; b < every.bins.count(); ++b)
+        facing += samples.points[p].normal.dot(every.bins.direction_of(b)) > 0 ? 1 : 0;
+    EXPECT_NEAR(static_cast<double>(every.rays), static_cast<double>(facing), 0.001 * static_cast<double>(facing));
+    EXPECT_GT(lit, every.rays / 10);
+    EXPECT_LT(static_cast<double>(wrong), 0.005 * static_cast<double>(lit));
+    EXPECT_LT(found.rays, every.rays / 2);
+  }
+}
+
+TEST(TabledContrast, IsThatOfRays) {
+  const ReliefStudy study = studied(make_terrain(100, 50), 120);
+  const ContrastSamples samples = one_ring_samples(study.surface, study.interest);
+  const LitTable table = table_of(study, samples, 8, true);
+  const TabledContrast contrast(samples, table, 0);
+  Random random(3);
+  for (std::size_t lights = 1; lights <= 4; ++lights) {
+    std::vector<std::uint32_t> bins;
+    std::vector<Vec3> directions;
+    while (bins.size() < lights) {
+      bins.push_back(static_cast<std::uint32_t>(random.below(table.bins.count())));
+      directions.push_back(table.bins.direction_of(bins.back()));
+    }
+    const double by_rays = contrast_by_rays(study, directions);
+    EXPECT_NEAR(contrast.of(bins).local_contrast_lx, by_rays, 1e-5);
+    // The last of them on top of the others.
+    const std::uint32_t last = bins.back();
+    bins.pop_back();
+    EXPECT_NEAR(contrast.with_each_bin(contrast.illuminance_lx(bins))[last], by_rays, 1e-5);
+  }
+  const SampleContrast dark = contrast.of({});
+  EXPECT_EQ(dark.local_contrast_lx, 0);
+  EXPECT_EQ(dark.exposed_contrast, 0);
+}
+
+TEST(TabledContrast, ExposedIsAShareOfTheBrighterOrOfTheMean) {
+  // Two level places, one in the dark; and one that looks sideways, lit at half.
+  ContrastSamples samples;
+  samples.interest = 1;
+  samples.points = {
+      {Vec3::Zero(), Vec3::UnitZ()}, {Vec3::UnitX(), Vec3::UnitZ()}, {Vec3::UnitY(), Vec3(std::sqrt(0.75), 0, 0.5)}};
+  samples.neighbours = {1, 2};
+  samples.begin = {0, 2};
+  LitTable table{DirectionBins(1), 1, {1, 0, 1}, 0};  // bin 0 only
+  const Vec3 light = table.bins.direction_of(0);
+  const double level = light.z(), tilted = std::max(0.0, light.dot(samples.points[2].normal));
+  const std::array<std::uint32_t, 1> bins = {0};
+  const SampleContrast found = TabledContrast(samples, table, 1).of(bins);
+  EXPECT_NEAR(found.local_contrast_lx, std::max(level, std::abs(level - tilted)), 1e-6);
+  const double mean = (level + tilted) / 3;
+  EXPECT_NEAR(found.exposed_contrast,
+              std::max(level / std::max(level, mean), std::abs(level - tilted) / std::max({level, tilted, mean})),
+              1e-6);
+}
+
+TEST(ReliefLights, OneIsTheBestOfAllDirectionsTried) {
+  for (const Scene& scene : {make_terrain(100, 50), make_carved_relief(0.02)}) {
+    const ReliefStudy study = studied(scene, 100);
+    ReliefLightOptions options;
+    options.side = 5;
+    options.spread_rad = 0;
+    const ReliefLightSearch search = searched(study, options);
+    const DirectionBins bins(options.side);
+    double best_lx = 0;
+    for (std::uint32_t b = 0; b < bins.count(); ++b) {
+      const double lx = contrast_by_rays(study, {bins.direction_of(b)});
+      EXPECT_NEAR(search.of_each_bin()[b], lx, 0.03) << b;
+      best_lx = std::max(best_lx, lx);
+    }
+    const auto one = search.lights(1);
+    ASSERT_TRUE(one);
+    EXPECT_GE(one->local_contrast_lx, 0.98 * best_lx);
+    EXPECT_LE(one->local_contrast_lx, 1.02 * best_lx);
+  }
+}
+
+TEST(ReliefLights, ShineAcrossAGroove) {
+  const ReliefStudy study = studied(grooved_ground(), 200);
+  const auto one = searched(study, {}).lights(1);
+  ASSERT_TRUE(one);
+  ASSERT_EQ(one->directions.size(), 1u);
+  const Vec3& direction = one->directions[0];
+  EXPECT_NEAR(direction.norm(), 1, 1e-12);
+  EXPECT_LT(std::abs(direction.y()), std::sin(rad_from_deg(8)));
+  EXPECT_GT(direction.z(), 0.1);
+  EXPECT_GT(std::abs(direction.x()), 0.3);
+  // Three times what light along it does, as steep.
+  const Vec3 along(0, std::abs(direction.x()), direction.z());
+  EXPECT_GT(contrast_by_rays(study, {direction}), 3 * contrast_by_rays(study, {along}));
+}
+
+TEST(ReliefLights, TurnWithTheObjectAndDoNotMindAScannersNoise) {
+  const Scene terrain = make_terrain();
+  const auto one_light = [](const Scene& scene) {
+    const ReliefStudy study = studied(scene, 3000);
+    return searched(study, {}).lights(1)->directions.at(0);
+  };
+  const auto degrees = [](const Vec3& a, const Vec3& b) {
+    return deg_from_rad(std::atan2(a.cross(b).norm(), a.dot(b)));
+  };
+  const Vec3 wanted = one_light(terrain);
+  const Mat3 rotation = Eigen::AngleAxisd(rad_from_deg(67), Vec3(0.3, -0.5, 0.8).normalized()).toRotationMatrix();
+  Scene turned = terrain;
+  for (Vec3f& v : turned.vertices_m) v = (rotation * v.cast<double>()).cast<float>();
+  EXPECT_LT(degrees(rotation.transpose() * one_light(turned), wanted), 5);
+  // 0.1 % of its size, 14 cm, on triangles of 62 cm.
+  Scene noisy = terrain;
+  Random random(1);
+  const double sigma_m = 0.001 * make_target_surface(terrain)->size_m();
+  for (Vec3f& v : noisy.vertices_m) {
+    double sum = 0;  // of six: much like a normal distribution
+    for (int k = 0; k < 6; ++k) sum += random.between(-1, 1);
+    v.z() += static_cast<float>(sigma_m * sum / std::sqrt(2));
+  }
+  EXPECT_LT(degrees(one_light(noisy), wanted), 5);
+}
+
+TEST(ReliefLights, ComeFromWhereTheyArePreferredIfTheObjectLeavesItOpen) {
+  // A bowl in level ground: as good from any side.
+  const ReliefStudy study = studied(parametric(120, 120,
+                                               [](double u, double v) {
+                                                 const double x = 4 * u - 2, y = 4 * v - 2;
+                                                 return Vec3(x, y, -0.5 * std::exp(-(x * x + y * y) / 0.32));
+                                               }),
+                                    0);
+  const auto plain = searched(study, {}).lights(1);
+  ASSERT_TRUE(plain);
+  for (const double azimuth_deg : {10.0, 100.0, 235.0}) {
+    ReliefLightOptions options;
+    options.preference = 0.1;  // samples leave some 2 % between one side of the bowl and another
+    options.preferred = Vec3(std::cos(rad_from_deg(azimuth_deg)), std::sin(rad_from_deg(azimuth_deg)), 0.5);
+    const auto one = searched(study, options).lights(1);
+    ASSERT_TRUE(one);
+    const Vec3& direction = one->directions[0];
+    const double off_deg = deg_from_rad(std::atan2(direction.y(), direction.x())) - azimuth_deg;
+    EXPECT_LT(std::abs(std::remainder(off_deg, 360)), 45) << azimuth_deg;
+    EXPECT_GT(one->local_contrast_lx, (1 - options.preference) * plain->local_contrast_lx);
+  }
+}
+
+TEST(ReliefLights, KeepTheirDistanceAndAreBetterThanWhereTheyStart) {
+  const ReliefStudy study = studied(make_terrain(100, 60), 200);
+  ReliefLightOptions options;
+  options.least_angle_rad = rad_from_deg(40);
+  const ReliefLightSearch search = searched(study, options);
+  const std::vector<Vec3> start = {Vec3(0.1, 0, 1), Vec3(-1, 0.2, 0.1), Vec3(0, -0.3, 1)};
+  const auto from_start = search.lights(3, start), greedy = search.lights(3);
+  ASSERT_TRUE(from_start && greedy);
+  for (const auto* lights : {&*from_start, &*greedy}) {
+    ASSERT_EQ(lights->directions.size(), 3u);
+    // Of bins 40°; a peak may lie a bin's width beside its bin.
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < i; ++j)
+        EXPECT_LT(lights->directions[i].dot(lights->directions[j]), std::cos(rad_from_deg(40 - 2 * 3.7)));
+    EXPECT_GT(lights->local_contrast_lx,
+              contrast_by_rays(study, {start[0].normalized(), start[1].normalized(), start[2].normalized()}));
+    EXPECT_NEAR(lights->local_contrast_lx, contrast_by_rays(study, lights->directions),
+                0.1 * lights->local_contrast_lx);
+  }
+}
+
+TEST(ReliefLights, TheirNumberIsWhereExposedContrastPeaks) {
+  const ReliefStudy study = studied(make_terrain(100, 50), 150);
+  const auto count = searched(study, {}).count_lights(6);
+  ASSERT_TRUE(count);
+  ASSERT_EQ(count->by_number.size(), 6u);
+  ASSERT_EQ(count->exposed_contrast.size(), 6u);
+  for (std::size_t k = 0; k < 6; ++k) {
+    EXPECT_EQ(count->by_number[k].directions.size(), k + 1);
+    EXPECT_LE(0.98 * count->exposed_contrast[k], count->exposed_contrast[count->best]);
+  }
+  EXPECT_LT(count->exposed_contrast[5], count->exposed_contrast[count->best]);
+}
+
+TEST(ReliefLights, AreTheSameBytesForAnyNumberOfThreads) {
+  const ReliefStudy study = studied(make_carved_relief(0.02), 150);
+  ReliefLightOptions options;
+  options.threads = 1;
+  const auto one = searched(study, options).lights(3);
+  for (const int threads : {2, 5}) {
+    options.threads = threads;
+    const ReliefLightSearch search = searched(study, options);
+    const auto many = search.lights(3);
+    ASSERT_EQ(one->directions.size(), many->directions.size());
+    EXPECT_EQ(std::memcmp(one->directions.data(), many->directions.data(), one->directions.size() * sizeof(Vec3)), 0);
+    EXPECT_EQ(one->local_contrast_lx, many->local_contrast_lx);
+  }
+}
+
+TEST(ReliefStudy, SaysWhatATargetLacks) {
+  const auto why = [](const Scene& scene) {
+    const auto study = study_relief(scene, {});
+    return study ? std::string("nothing") : study.error().detail;
+  };
+  EXPECT_NE(why(uv_sphere(1, 40)).find("no recessed places"), std::string::npos);
+  Scene cloud = uv_sphere(1, 10);
+  cloud.triangles.clear();
+  EXPECT_NE(why(with_one_material(cloud)).find("no triangles"), std::string::npos);
+  EXPECT_NE(why(Scene{}).find("no triangles"), std::string::npos);
+  Scene flat = uv_sphere(1, 10);
+  for (auto& t : flat.triangles) t[2] = t[1];
+  EXPECT_NE(why(flat).find("any area"), std::string::npos);
+  Scene broken = uv_sphere(1, 10);
+  broken.vertices_m[3].x() = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_NE(why(broken).find("not finite"), std::string::npos);
+  EXPECT_EQ(why(make_terrain(100, 30)), "nothing");
+}
+
+TEST(ReliefLights, RefuseTheInsideOfAClosedBox) {
+  const ReliefStudy study = studied(box_from_inside(), 100);  // its corners are recessed
+  ASSERT_FALSE(study.interest.empty());
+  const auto search = ReliefLightSearch::make(study.surface, study.rays, study.interest, {});
+  ASSERT_FALSE(search);
+  EXPECT_NE(search.error().detail.find("closed hull"), std::string::npos);
+}
+
+TEST(ReliefLights, RefuseWhatMakesNoSense) {
+  const ReliefStudy study = studied(make_terrain(100, 30), 20);
+  const auto made = [&](const ReliefLightOptions& options) {
+    return ReliefLightSearch::make(study.surface, study.rays, study.interest, options).has_value();
+  };
+  ReliefLightOptions options;
+  EXPECT_TRUE(made(options));
+  EXPECT_FALSE(ReliefLightSearch::make(study.surface, study.rays, {}, options));
+  options.side = 0;
+  EXPECT_FALSE(made(options));
+  options = {};
+  options.preferred = Vec3(std::nan(""), 0, 0);
+  EXPECT_FALSE(made(options));
+  options.preferred = Vec3::UnitX();
+  options.preference = 1.5;
+  EXPECT_FALSE(made(options));
+  options = {};
+  options.least_angle_rad = -1;
+  EXPECT_FALSE(made(options));
+  options = {};
+  options.spread_rad = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(made(options));
+  options = {};
+  std::stop_source stop;
+  stop.request_stop();
+  options.watch.stop = stop.get_token();
+  EXPECT_FALSE(made(options));
+  const ReliefLightSearch search = searched(study, {});
+  EXPECT_FALSE(search.lights(0));
+  EXPECT_FALSE(search.lights(65));
+  const std::vector<Vec3> two = {Vec3::UnitX(), Vec3::UnitZ()}, none = {Vec3::Zero()};
+  EXPECT_FALSE(search.lights(1, two));
+  EXPECT_FALSE(search.lights(1, none));
+  EXPECT_FALSE(search.count_lights(0));
+}
+
+}  // namespace
+}  // namespace luxrig

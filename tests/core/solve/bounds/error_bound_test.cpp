@@ -1,0 +1,225 @@
+#include "core/solve/bounds/error_bound.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numeric>
+
+#include "core/solve/least_squares/nnls.h"
+#include "tests/random.h"
+
+namespace luxrig {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Lights with one or three emitters in rooms that share a little light, with all that can be wrong with them.
+struct TinyLights {
+  MatrixXd A;
+  VectorXd goal, weight;
+  std::vector<std::uint32_t> light;
+  std::size_t lights = 0;
+
+  explicit TinyLights(unsigned seed) {
+    Random random(seed);
+    const auto rows = static_cast<Index>(1 + random.below(12));
+    const std::size_t emitters = seed % 5 == 0 ? 3 : 1;
+    lights = 1 + random.below(emitters == 3 ? 5 : 12);
+    const std::size_t rooms = 1 + random.below(4);
+    A = MatrixXd::Zero(rows, static_cast<Index>(lights * emitters));
+    goal.resize(rows);
+    for (double& g : goal) g = random.between(0, 1) < 0.1 ? 0 : random.between(0.2, 2);
+    if (seed % 7 == 1) goal.setOnes();
+    for (std::size_t l = 0; l < lights; ++l)
+      for (std::size_t e = 0; e < emitters; ++e) {
+        auto column = A.col(static_cast<Index>(l * emitters + e));
+        for (Index i = 0; i < rows; ++i) {
+          const bool same_room = static_cast<std::size_t>(i) % rooms == l % rooms;
+          if (same_room || random.between(0, 1) < 0.15)
+            column[i] = std::pow(random.between(0, 1), 2) * (same_room ? 1 : 0.2);
+          if (random.between(0, 1) < 0.2) column[i] = 0;
+        }
+        light.push_back(static_cast<std::uint32_t>(l));
+      }
+    if (seed % 6 == 2) A.col(static_cast<Index>(random.below(static_cast<std::size_t>(A.cols())))).setZero();
+    if (seed % 6 == 3) A.col(0) = 2 * A.col(A.cols() - 1);
+    if (seed % 6 == 4) A.row(0).setZero();  // reached by nothing
+    if (seed % 6 == 5) {                    // units
+      for (Index j = 0; j < A.cols(); ++j) A.col(j) *= std::pow(10, random.between(-12, 12));
+      goal *= std::pow(10, random.between(-12, 12));
+    }
+    if (seed % 11 == 0) {
+      VectorXd x = VectorXd::Zero(A.cols());
+      x[0] = 1;
+      x[A.cols() - 1] = 2;
+      goal = A * x;  // two lights are all that is needed
+    }
+    if (seed % 13 == 0) goal.setZero();
+    if (seed % 4 == 1) {
+      weight.resize(rows);
+      for (double& w : weight) w = random.between(0, 1) < 0.1 ? 0 : random.between(0.1, 3);
+    }
+  }
+
+  [[nodiscard]] BoundProblem candidates() const { return {ColumnsView(A), goal, weight, light}; }
+  [[nodiscard]] MatrixXd weighted() const { return weight.size() > 0 ? MatrixXd(weight.asDiagonal() * A) : A; }
+  [[nodiscard]] VectorXd weighted_goal() const {
+    return weight.size() > 0 ? VectorXd(weight.cwiseProduct(goal)) : goal;
+  }
+
+  /// Least errors with at most 0 … most lights, by trying all choices.
+  [[nodiscard]] std::vector<double> least_errors(std::size_t most) const {
+    const VectorXd b = weighted_goal();
+    const MatrixXd all = weighted();
+    std::vector<double> least(most + 1, b.norm() > 0 ? 1.0 : 0.0);
+    for (unsigned choice = 1; choice < 1u << lights && b.norm() > 0; ++choice) {
+      const auto count = static_cast<std::size_t>(std::popcount(choice));
+      if (count > most) continue;
+      MatrixXd some(all.rows(), 0);
+      for (Index j = 0; j < all.cols(); ++j)
+        if (choice >> light[static_cast<std::size_t>(j)] & 1u) {
+          some.conservativeResize(Eigen::NoChange, some.cols() + 1);
+          some.rightCols(1) = all.col(j);
+        }
+      const double error = solve_nnls(some, b).residual_norm / b.norm();
+      for (std::size_t k = count; k <= most; ++k) least[k] = std::min(least[k], error);
+    }
+    return least;
+  }
+};
+
+constexpr double kEnumerationRounding = 1e-12;
+
+TEST(ErrorBound, IsTheLeastErrorWhereLevelsAreTheBest) {
+  int above_zero = 0;
+  for (unsigned seed = 1; seed <= 3000; ++seed) {
+    const TinyLights tiny(seed);
+    const VectorXd b = tiny.weighted_goal();
+    const auto best = solve_nnls(NnlsProblem{ColumnsView(tiny.A), tiny.goal, tiny.weight, {}});
+    ASSERT_TRUE(best.has_value());
+    const double least = b.norm() > 0 ? best->residual_norm / b.norm() : 0;
+    const double bound = error_bound(tiny.candidates(), best->x);
+    EXPECT_LE(bound, least + kEnumerationRounding) << seed;
+    EXPECT_GE(bound, least - 1e-9) << seed;
+    above_zero += bound > 1e-3 ? 1 : 0;
+  }
+  EXPECT_GT(above_zero, 1500);
+}
+
+TEST(ErrorBound, HoldsForAnyLevels) {
+  for (unsigned seed = 1; seed <= 3000; ++seed) {
+    const TinyLights tiny(seed);
+    const VectorXd b = tiny.weighted_goal();
+    const auto best = solve_nnls(NnlsProblem{ColumnsView(tiny.A), tiny.goal, tiny.weight, {}});
+    ASSERT_TRUE(best.has_value());
+    Random random(seed);
+    VectorXd x = best->x;
+    for (double& level : x) level *= random.between(0.5, 1.5);
+    if (seed % 3 == 0) x.setZero();
+    if (seed % 50 == 0) x[0] = -1;
+    if (seed % 51 == 0) x[0] = std::numeric_limits<double>::infinity();
+    EXPECT_LE(error_bound(tiny.candidates(), x),
+              (b.norm() > 0 ? best->residual_norm / b.norm() : 0) + kEnumerationRounding)
+        << seed;
+  }
+}
+
+// Of thousands of problems, with prices made up as well as sensible ones, and blocks from one to as many as rows.
+TEST(ErrorBoundsByCount, AreNeverAboveWhatAnyChoiceOfLightsReaches) {
+  constexpr std::size_t kMost = 3;
+  double bound_sum = 0, least_sum = 0;
+  for (unsigned seed = 1; seed <= 4000; ++seed) {
+    const TinyLights tiny(seed);
+    Random random(seed);
+    CountBoundOptions options;
+    options.most_lights = kMost;
+    options.threads = 1;
+    options.price_rounds = random.below(4);
+    options.nodes_a_round = 10;
+    options.nodes = random.below(60);
+    options.least_similarity = random.between(0, 1);
+    const bool made_up = seed % 2 == 0;
+    if (made_up) {
+      PriceGuess guess{random.below(5), tiny.weighted_goal()};
+      for (double& r : guess.residual) r *= random.between(-1, 1);
+      options.guesses = {guess};
+    }
+    const std::vector<double> least = tiny.least_errors(kMost);
+    const std::vector<double> bound = error_bounds_by_count(tiny.candidates(), options);
+    ASSERT_EQ(bound.size(), kMost + 1);
+    for (std::size_t k = 0; k <= kMost; ++k) {
+      EXPECT_LE(bound[k], least[k] + kEnumerationRounding) << seed << ", " << k << " lights";
+      if (k > 0) {
+        EXPECT_LE(bound[k], bound[k - 1]) << seed;
+      }
+      if (!made_up && options.nodes > 30) bound_sum += bound[k], least_sum += least[k];
+    }
+  }
+  EXPECT_GT(bound_sum, 0.8 * least_sum);
+}
+
+// In one block nothing is lost: branch and bound ends at the least error.
+TEST(ErrorBoundsByCount, InOneBlockReachTheLeastError) {
+  for (unsigned seed = 1; seed <= 400; ++seed) {
+    const TinyLights tiny(seed);
+    CountBoundOptions options;
+    options.most_lights = 3;
+    options.threads = 1;
+    options.price_rounds = 0;
+    options.nodes = 2000;
+    options.least_similarity = -1;
+    for (std::size_t k = 1; k <= 3; ++k) options.guesses.push_back({k, VectorXd::Zero(tiny.goal.size())});
+    const std::vector<double> least = tiny.least_errors(3);
+    const std::vector<double> bound = error_bounds_by_count(tiny.candidates(), options);
+    for (std::size_t k = 1; k <= 3; ++k) {
+      EXPECT_LE(bound[k], least[k] + kEnumerationRounding) << seed << ", " << k << " lights";
+      EXPECT_GE(bound[k] * bound[k], least[k] * least[k] - 1e-5) << seed << ", " << k << " lights";
+    }
+  }
+}
+
+TEST(ErrorBoundsByCount, AreTheSameForAnyNumberOfThreads) {
+  const TinyLights tiny(17);
+  std::vector<std::vector<double>> all;
+  for (const int threads : {1, 2, 5}) {
+    CountBoundOptions options;
+    options.most_lights = 4;
+    options.threads = threads;
+    all.push_back(error_bounds_by_count(tiny.candidates(), options));
+  }
+  EXPECT_EQ(all[0], all[1]);
+  EXPECT_EQ(all[0], all[2]);
+}
+
+TEST(ErrorBound, NamesRowsThatNothingReachesAndCountsThem) {
+  MatrixXd A(3, 2);
+  A << 1, 2, 0, 0, 1, 1;
+  const VectorXd goal = VectorXd::Ones(3);
+  const BoundProblem of{ColumnsView(A), goal, {}, {}};
+  EXPECT_EQ(unreachable_rows(of), std::vector<Index>{1});
+  EXPECT_NEAR(error_bound(of, VectorXd::Unit(2, 0)), std::sqrt(1.0 / 3), 1e-12);
+  CountBoundOptions options;
+  options.most_lights = 1;
+  const std::vector<double> bound = error_bounds_by_count(of, options);
+  EXPECT_NEAR(bound[0], 1, 1e-12);
+  EXPECT_NEAR(bound[1], std::sqrt(1.0 / 3), 1e-6);
+}
+
+TEST(ErrorBound, RefusesWhatItCannotProveAnythingAbout) {
+  MatrixXd A(1, 2);
+  A << 1, -1;
+  const VectorXd goal = VectorXd::Ones(1);
+  EXPECT_NE(BoundProblem({ColumnsView(A), goal, {}, {}}).complaint(), "");
+  A(0, 1) = 1;
+  EXPECT_EQ(BoundProblem({ColumnsView(A), goal, {}, {}}).complaint(), "");
+  EXPECT_NE(BoundProblem({ColumnsView(A), goal, {}, {0}}).complaint(), "");
+  EXPECT_NE(BoundProblem({ColumnsView(A), goal, -goal, {}}).complaint(), "");
+  EXPECT_NE(BoundProblem({ColumnsView(A), VectorXd::Ones(2), {}, {}}).complaint(), "");
+}
+
+}  // namespace
+}  // namespace luxrig

@@ -1,0 +1,299 @@
+// The HTTP API against hostile and honest clients, over a real socket.
+#include "tools/luxrigd/api/http_api.h"
+
+#include <arpa/inet.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <fstream>
+#include <string>
+#include <thread>
+
+#include "core/plan/plan.h"
+#include "tests/sanitized.h"
+#include "tools/luxrigd/guardian/meeting_place.h"
+#include "tools/luxrigd/state/runtime_folder.h"
+
+namespace luxrig {
+namespace {
+
+/// What `post` and `get` send besides: the token of the daemon under test.
+std::string g_token;
+
+/// Sends raw bytes, returns the answer's first line and body.
+std::string ask(int port, const std::string& request, bool wait_for_end = true) {
+  const int client = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in to{};
+  to.sin_family = AF_INET;
+  to.sin_port = htons(static_cast<std::uint16_t>(port));
+  to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  std::string answer;
+  if (::connect(client, reinterpret_cast<sockaddr*>(&to), sizeof to) == 0) {
+    (void)::send(client, request.data(), request.size(), MSG_NOSIGNAL);
+    char buffer[4096];
+    ssize_t n = 0;
+    while ((n = ::recv(client, buffer, sizeof buffer, 0)) > 0) {
+      answer.append(buffer, static_cast<std::size_t>(n));
+      if (!wait_for_end) break;
+    }
+  }
+  ::close(client);
+  return answer;
+}
+
+std::string post(const std::string& route, const std::string& body, const std::string& headers) {
+  return "POST " + route + " HTTP/1.1\r\nConnection: close\r\nAuthorization: Bearer " + g_token + "\r\n" + headers +
+         "Content-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body;
+}
+
+std::string get(const std::string& route, const std::string& host = "127.0.0.1") {
+  return "GET " + route + " HTTP/1.1\r\nConnection: close\r\nAuthorization: Bearer " + g_token + "\r\nHost: " + host +
+         "\r\n\r\n";
+}
+
+constexpr const char* kJson = "Host: 127.0.0.1\r\nContent-Type: application/json\r\n";
+
+class HttpApiTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    HttpHandlers handlers;
+    handlers.status = [] { return std::string("{\"phase\":\"holding\"}"); };
+    handlers.room_json = [] { return std::string("{}"); };
+    handlers.room_png = [] { return std::string(); };
+    handlers.blackout = [this](bool on) -> Result<void> {
+      blackouts += on ? 1 : 100;
+      return {};
+    };
+    handlers.park = [this](const std::vector<std::string>& fixtures) -> Result<void> {
+      if (!fixtures.empty() && fixtures[0] == "nobody") return refusal("there is no nobody");
+      parked += static_cast<int>(fixtures.size()) + 1;
+      return {};
+    };
+    handlers.level = [this](const std::vector<std::string>& names, double value,
+                            std::optional<double> for_s) -> Result<std::string> {
+      if (names[0] == "nobody") return refusal("there is no nobody");
+      held += fmt::format("{}={}/{} ", fmt::join(names, "+"), value, for_s.value_or(-1));
+      return std::string("held");
+    };
+    handlers.goal = handlers.level;
+    handlers.release = [this](const std::vector<std::string>& names) -> Result<std::string> {
+      held += fmt::format("-{} ", fmt::join(names, "+"));
+      return std::string("1 released");
+    };
+    handlers.bypass = [this](const std::vector<std::string>& names, bool on) -> Result<std::string> {
+      if (names[0] == "nobody") return refusal("there is no nobody");
+      held += fmt::format("{}{} ", on ? "bypass " : "undo ", fmt::join(names, "+"));
+      return std::string("watched by nobody");
+    };
+    handlers.reload = []() -> Checked<std::string> {
+      return tl::unexpected(std::vector<Problem>{{"rig.toml", 7, 1, "[[bus]] \"dmx\" has changed", "restart"}});
+    };
+    handlers.apply = [this](const std::string& plan) -> Checked<std::string> {
+      ++applied;
+      if (const auto read = plan_from_json(plan, "plan"); plan.size() > 100 && !read)
+        return tl::unexpected(read.error());
+      if (plan == "{}") return std::string("spot held by hand");
+      return tl::unexpected(std::vector<Problem>{{"plan", 1, 2, "is not a plan", "send one"}});
+    };
+    api = std::make_unique<HttpApi>(std::move(handlers), "/nonexistent");
+    const auto bound = api->start(0);
+    ASSERT_TRUE(bound) << bound.error().detail;
+    port = *bound;
+    std::ifstream in(token_file(*runtime_folder(), port));
+    in >> g_token;
+    ASSERT_EQ(g_token.size(), 64u);
+  }
+  std::unique_ptr<HttpApi> api;
+  int port = 0;
+  std::atomic<int> blackouts{0}, applied{0}, parked{0};
+  std::string held;
+};
+
+TEST_F(HttpApiTest, AnswersStatusAndBlackout) {
+  EXPECT_NE(ask(port, get("/api/status")).find("holding"), std::string::npos);
+  EXPECT_NE(ask(port, post("/api/blackout", "{\"on\":true}", kJson)).find(" 200 "), std::string::npos);
+  EXPECT_EQ(blackouts, 1);
+}
+
+TEST_F(HttpApiTest, RefusesOtherHostsOriginsAndContentTypes) {
+  const std::string on = "{\"on\":false}";
+  EXPECT_NE(ask(port, get("/api/status", "evil.example")).find(" 403 "), std::string::npos);
+  EXPECT_NE(ask(port, post("/api/blackout", on, std::string(kJson) + "Origin: http://evil.example\r\n")).find(" 403 "),
+            std::string::npos);
+  EXPECT_NE(ask(port, post("/api/blackout", on, std::string(kJson) + "Origin: http://127.0.0.1.evil.example\r\n"))
+                .find(" 403 "),
+            std::string::npos);
+  EXPECT_NE(ask(port, post("/api/blackout", on, "Host: 127.0.0.1\r\nContent-Type: text/plain\r\n")).find(" 415 "),
+            std::string::npos);
+  EXPECT_EQ(blackouts, 0);
+}
+
+TEST_F(HttpApiTest, RefusesBadBodiesWithAReason) {
+  for (const char* body : {"", "{", "[]", "{\"on\":1}", "{\"on\":\"yes\"}", "null"}) {
+    EXPECT_NE(ask(port, post("/api/blackout", body, kJson)).find(" 400 "), std::string::npos) << body;
+  }
+  EXPECT_EQ(blackouts, 0);
+  const std::string answer = ask(port, post("/api/apply", "nonsense", kJson));
+  EXPECT_NE(answer.find(" 400 "), std::string::npos);
+  EXPECT_NE(answer.find("plan:1:2: is not a plan: send one"), std::string::npos) << answer;
+}
+
+TEST_F(HttpApiTest, ParksNamedHeadsOrAll) {
+  EXPECT_NE(ask(port, post("/api/park", "{}", kJson)).find(" 200 "), std::string::npos);
+  EXPECT_EQ(parked, 1);
+  EXPECT_NE(ask(port, post("/api/park", R"({"fixtures":["a","b"]})", kJson)).find(" 200 "), std::string::npos);
+  EXPECT_EQ(parked, 4);
+  for (const char* body : {"", "[]", R"({"fixtures":"a"})", R"({"fixtures":[1]})", R"({"fixtures":{}})"})
+    EXPECT_NE(ask(port, post("/api/park", body, kJson)).find(" 400 "), std::string::npos) << body;
+  const std::string refused = ask(port, post("/api/park", R"({"fixtures":["nobody"]})", kJson));
+  EXPECT_NE(refused.find(" 400 "), std::string::npos);
+  EXPECT_NE(refused.find("there is no nobody"), std::string::npos) << refused;
+  EXPECT_EQ(parked, 4);
+}
+
+TEST_F(HttpApiTest, HoldsByHandAndReleases) {
+  for (const auto& [route, body] : {
+           std::pair{"/api/level", R"({"fixtures":["a","b*"],"level":0.05})"},
+           std::pair{"/api/level", R"({"fixtures":["a"],"level":1,"for_s":600})"},
+           std::pair{"/api/goal", R"({"points":["p"],"goal_lux":150})"},
+           std::pair{"/api/release", R"({"names":["p"]})"},
+           std::pair{"/api/release", R"({"all":true})"},
+           std::pair{"/api/bypass", R"({"names":["m","s*"],"on":true})"},
+           std::pair{"/api/bypass", R"({"names":["m"],"on":false})"},
+       })
+    EXPECT_NE(ask(port, post(route, body, kJson)).find(" 200 "), std::string::npos) << route << body;
+  EXPECT_EQ(held, "a+b*=0.05/-1 a=1/600 p=150/-1 -p - bypass m+s* undo m ");
+  held.clear();
+  for (const auto& [route, body] : {
+           std::pair{"/api/level", R"({"fixtures":[],"level":0.05})"},
+           std::pair{"/api/level", R"({"fixtures":"a","level":0.05})"},
+           std::pair{"/api/level", R"({"fixtures":["a"],"level":"full"})"},
+           std::pair{"/api/level", R"({"fixtures":["a"]})"},
+           std::pair{"/api/level", R"({"fixtures":["a"],"level":0.1,"for_s":0})"},
+           std::pair{"/api/level", R"({"fixtures":["a"],"level":0.1,"for_s":1e300})"},
+           std::pair{"/api/level", R"({"fixtures":["nobody"],"level":0.1})"},
+           std::pair{"/api/goal", R"({"fixtures":["a"],"goal_lux":3})"},
+           std::pair{"/api/release", "{}"},
+           std::pair{"/api/release", R"({"all":false})"},
+           std::pair{"/api/release", R"({"all":true,"names":["a"]})"},
+           std::pair{"/api/release", "["},
+           std::pair{"/api/bypass", R"({"names":[],"on":true})"},
+           std::pair{"/api/bypass", R"({"names":["m"]})"},
+           std::pair{"/api/bypass", R"({"names":["m"],"on":1})"},
+           std::pair{"/api/bypass", R"({"names":["nobody"],"on":true})"},
+           std::pair{"/api/bypass", "7"},
+       })
+    EXPECT_NE(ask(port, post(route, body, kJson)).find(" 400 "), std::string::npos) << route << body;
+  EXPECT_EQ(held, "");
+}
+
+TEST_F(HttpApiTest, AReloadThatIsRefusedSaysWhichKeyAndAnApplyWhatItHolds) {
+  const std::string refused = ask(port, post("/api/reload", "{}", kJson));
+  EXPECT_NE(refused.find(" 400 "), std::string::npos);
+  EXPECT_NE(refused.find("rig.toml:7:1: [[bus]] \\\"dmx\\\" has changed: restart"), std::string::npos) << refused;
+  const std::string applied_answer = ask(port, post("/api/apply", "{}", kJson));
+  EXPECT_NE(applied_answer.find("\"applied\":true"), std::string::npos) << applied_answer;
+  EXPECT_NE(applied_answer.find("spot held by hand"), std::string::npos) << applied_answer;
+}
+
+TEST_F(HttpApiTest, StreamsEventsAndStopsWhileAClientListens) {
+  const std::string first = ask(port, get("/api/events"), false);
+  EXPECT_NE(first.find("200 OK"), std::string::npos);
+  std::thread listener([&] { (void)ask(port, get("/api/events")); });
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  api->stop();
+  listener.join();
+}
+
+TEST_F(HttpApiTest, ThePortWantsTheTokenAndTheSocketDoesNot) {
+  const std::string right = g_token;
+  for (const std::string& wrong : {std::string(), right + "0", std::string(64, '0')}) {
+    g_token = wrong;
+    for (const char* route : {"/api/status", "/api/events", "/api/room", "/api/room.png", "/api/universes"})
+      EXPECT_NE(ask(port, get(route)).find(" 401 "), std::string::npos) << route;
+    for (const char* route : {"/api/status", "/api/events"})
+      EXPECT_EQ(ask(port, "HEAD" + get(route).substr(3)).find(" 200 "), std::string::npos) << route;
+    for (const char* route : {"/api/blackout", "/api/apply", "/api/level", "/api/session", "/api/reload"})
+      EXPECT_NE(ask(port, post(route, "{\"on\":true}", kJson)).find(" 401 "), std::string::npos) << route;
+  }
+  EXPECT_EQ(blackouts, 0);
+  EXPECT_NE(ask(port, get("/api/session")).find("{\"open\":false}"), std::string::npos);
+  g_token = right;
+  EXPECT_NE(ask(port, get("/api/session")).find("{\"open\":true}"), std::string::npos);
+  const auto folder = runtime_folder();
+  ASSERT_TRUE(folder);
+  struct stat is {};
+  for (const auto& file : {token_file(*folder, port), socket_file(*folder, port), *folder}) {
+    ASSERT_EQ(::stat(file.c_str(), &is), 0) << file;
+    EXPECT_EQ(is.st_mode & 077, 0u) << file;
+  }
+  const auto daemon = daemon_on(port);
+  ASSERT_TRUE(daemon) << daemon.error().detail;
+  EXPECT_FALSE(daemon->socket.empty());
+  EXPECT_EQ(http_post_json(*daemon, "/api/blackout", "{\"on\":true}")->status, 200);
+  EXPECT_EQ(blackouts, 1);
+  api->stop();
+  EXPECT_FALSE(std::filesystem::exists(token_file(*folder, port)));
+  EXPECT_NE(daemon_on(port).error().detail.find("luxrig run"), std::string::npos);
+}
+
+TEST_F(HttpApiTest, AOneTimeAddressOpensOneBrowser) {
+  const std::string right = std::exchange(g_token, "none");
+  const std::string address = api->one_time_address();
+  const std::string route = address.substr(address.find("/?"));
+  const std::string first = ask(port, "GET " + route + " HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n");
+  EXPECT_NE(first.find(" 303 "), std::string::npos) << first;
+  EXPECT_NE(first.find("Location: /\r\n"), std::string::npos);
+  const std::size_t at = first.find("Set-Cookie: ") + 12;
+  const std::string cookie = first.substr(at, first.find(';', at) - at);
+  const auto with_cookie = [&](const std::string& path, const std::string& more = "") {
+    return ask(port, "GET " + path + " HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n" + more + "\r\n");
+  };
+  EXPECT_NE(with_cookie("/api/status", "Cookie: " + cookie + "\r\n").find("holding"), std::string::npos);
+  EXPECT_NE(with_cookie("/api/status", "Cookie: " + cookie + "\r\nOrigin: http://127.0.0.1:81\r\n").find(" 403 "),
+            std::string::npos)
+      << "a browser sends it for pages of other ports, too";
+  EXPECT_NE(with_cookie(route).find(" 403 "), std::string::npos) << "used";
+  EXPECT_NE(with_cookie(route, "Cookie: " + cookie + "\r\n").find(" 303 "), std::string::npos) << "it is open already";
+  EXPECT_NE(with_cookie("/").find(" 200 "), std::string::npos) << "the page itself is for everybody";
+  g_token = right;
+  EXPECT_NE(ask(port, post("/api/session", "{}", kJson)).find("/?open="), std::string::npos);
+}
+
+TEST_F(HttpApiTest, SixteenMegabytesOfBracketsAreRefusedAndCostNothingThatStays) {
+  const auto kilobytes = [](const std::string& key) {
+    std::ifstream in("/proc/self/status");
+    for (std::string word; in >> word;)
+      if (int kb = 0; word == key && in >> kb) return kb;
+    return 0;
+  };
+  // What the test itself needs is there before it measures.
+  const std::string body(16u << 20, '[');
+  const std::string plan = post("/api/apply", body, kJson), level = post("/api/level", body, kJson);
+  std::ofstream("/proc/self/clear_refs") << 5;  // the peak is that from now on
+  const int before_kb = kilobytes("VmRSS:");
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NE(ask(port, plan).find(" 400 "), std::string::npos);
+    EXPECT_NE(ask(port, level).find(" 413 "), std::string::npos);
+  }
+  if (!test::kSanitized) {
+    EXPECT_LT(kilobytes("VmHWM:") - before_kb, 64 * 1024);
+    EXPECT_LT(kilobytes("VmRSS:") - before_kb, 2 * 1024);
+  }
+  EXPECT_EQ(applied, 3);
+}
+
+TEST_F(HttpApiTest, SecondServerOnTheSamePortIsRefused) {
+  HttpApi second({}, "/nonexistent");
+  const auto bound = second.start(port);
+  ASSERT_FALSE(bound);
+  EXPECT_NE(bound.error().detail.find(std::to_string(port)), std::string::npos);
+}
+
+}  // namespace
+}  // namespace luxrig

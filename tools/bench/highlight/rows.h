@@ -1,0 +1,75 @@
+#pragma once
+/// Objects of the highlight suite, made ready when first asked for, and its rows: all have the same columns.
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/highlight/surface/relief_study.h"
+#include "tools/bench/bench.h"
+#include "tools/bench/measured.h"
+
+namespace luxrig {
+
+class HighlightObject {
+ public:
+  HighlightObject(std::string name, Scene scene, const BenchOptions& options)
+      : name_(std::move(name)), scene_(std::move(scene)), options_(&options) {}
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] const Scene& scene() const { return scene_; }
+  /// As `options_of_study` has it; one that is refused ends the program: these objects have relief.
+  [[nodiscard]] const ReliefStudy& study();
+
+ private:
+  std::string name_;
+  Scene scene_;
+  const BenchOptions* options_;
+  std::unique_ptr<ReliefStudy> study_;
+};
+
+[[nodiscard]] ReliefStudyOptions options_of_study(const BenchOptions& options);
+
+/// The generated ones, and those of five files that are in the folder of data.
+/// missing   names of files that are not there or cannot be read, with the reason
+[[nodiscard]] std::vector<HighlightObject> highlight_objects(const BenchOptions& options,
+                                                             std::vector<std::string>& missing);
+
+/// Whether `--only` lets a case be.
+[[nodiscard]] bool highlight_wanted(const BenchOptions& options, const std::string& case_name);
+
+/// What lights do, by rays: beams of 1 lx.
+struct ShownRelief {
+  std::size_t lights = 0;
+  double transitions = 0;  ///< share of the interest points with a shadow transition
+  double local_contrast_lx = 0;
+  double coverage = 0;  ///< share of the feature clusters with one
+};
+[[nodiscard]] ShownRelief shown_relief(const ReliefStudy& study, std::span<const Vec3> directions, int threads);
+
+struct HighlightRow {
+  std::string case_name, method;
+  double error = 0;
+  CallSeconds took = {};
+  std::optional<double> target_error = {}, target_seconds = {};
+  std::optional<std::uint64_t> rays = {};
+  std::optional<ShownRelief> shown = {};
+  std::string note = {};  ///< without commas
+};
+[[nodiscard]] BenchRow bench_row_of(const HighlightRow& row);
+
+/// Writes the generated ones as OBJ, in metres; a file that cannot be written is told on stderr.
+[[nodiscard]] std::vector<BenchRow> export_highlight_objects(const std::filesystem::path& folder);
+
+/// Parts of the suite.
+void add_edge_rows(HighlightObject& object, const BenchOptions& options, std::vector<BenchRow>& rows);
+void add_light_rows(HighlightObject& object, const BenchOptions& options, std::vector<BenchRow>& rows);
+void add_number_rows(HighlightObject& object, const BenchOptions& options, std::vector<BenchRow>& rows);
+void add_stable_rows(HighlightObject& object, const BenchOptions& options, std::vector<BenchRow>& rows);
+void add_aim_rows(HighlightObject& object, const BenchOptions& options, std::vector<BenchRow>& rows);
+void add_mounted_rows(HighlightObject& object, const BenchOptions& options, std::vector<BenchRow>& rows);
+void add_mounted_number_rows(HighlightObject& object, const BenchOptions& options, std::vector<BenchRow>& rows);
+void add_curvature_rows(HighlightObject& object, const BenchOptions& options, std::vector<BenchRow>& rows);
+void add_cluster_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
+
+}  // namespace luxrig

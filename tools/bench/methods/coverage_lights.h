@@ -1,0 +1,25 @@
+#pragma once
+/// Distant lights that light as much of a surface as possible: the method that highlighting is compared with (thesis
+/// §6.5.5, "maximum surface coverage").
+
+#include <vector>
+
+#include "core/highlight/shadow/direction_bins.h"
+#include "core/highlight/surface/target_surface.h"
+
+namespace luxrig {
+
+struct CoverageLight {
+  Vec3 direction;    ///< unit, from the object to the light; the middle of a bin
+  double new_share;  ///< of the surface's area: what it lights and those before it do not
+};
+
+/// Every point of the surface votes, with its area, for the middle of each bin from which light reaches it; the bin
+/// with most votes is taken (ties: the lower), the votes of the points it lights are removed from all others, and so
+/// on. Ends early when no bin lights anything more. most_points: a larger surface is judged by evenly strided points of
+/// it; 0: by all. The same for any number of threads.
+[[nodiscard]] std::vector<CoverageLight> coverage_lights(const TargetSurface& surface, const TargetRays& target,
+                                                         const DirectionBins& bins, int lights, std::size_t most_points,
+                                                         int threads);
+
+}  // namespace luxrig

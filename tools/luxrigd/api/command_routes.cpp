@@ -1,0 +1,171 @@
+#include "tools/luxrigd/api/command_routes.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "tools/http/json_body.h"
+
+namespace luxrig {
+namespace {
+
+constexpr double kIdentifyFor_s = 5, kIdentifyAtMost_s = 60;
+constexpr double kLongestByHand_s = 366.0 * 86400;
+constexpr std::size_t kMaxPlanBytes = 16u << 20;
+
+/// A list of texts, not empty.
+std::optional<std::vector<std::string>> names_in(const nlohmann::json& body, const char* key) {
+  if (!body.is_object() || !body.contains(key) || !body[key].is_array() || body[key].empty()) return std::nullopt;
+  std::vector<std::string> names;
+  for (const auto& one : body[key]) {
+    if (!one.is_string()) return std::nullopt;
+    names.push_back(one.get<std::string>());
+  }
+  return names;
+}
+
+HttpResponse dumped_answer(const nlohmann::json& json) {
+  return json_answer(json.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
+HttpResponse fault_answer(const Fault& fault) {
+  const bool theirs = fault.cause == Cause::invalid || fault.cause == Cause::refused;
+  return http_refusal(theirs ? 400 : 500, fault.detail);
+}
+
+/// {"<key>": true, "text": …}, or why not.
+HttpResponse done_answer(const Result<std::string>& done, const char* key) {
+  if (!done) return fault_answer(done.error());
+  return dumped_answer({{key, true}, {"text", *done}});
+}
+HttpResponse checked_answer(const Checked<std::string>& done, const char* key) {
+  if (done) return done_answer(*done, key);
+  std::string text;
+  for (const Problem& problem : done.error()) text += (text.empty() ? "" : "\n") + problem.text();
+  return http_refusal(400, text);
+}
+
+struct Routes {
+  HttpHandlers handlers;
+
+  using ByHandHandler =
+      std::function<Result<std::string>(const std::vector<std::string>&, double, std::optional<double>)>;
+  static HttpResponse by_hand(const HttpRequest& request, const char* names_key, const char* value_key,
+                              const ByHandHandler& handler) {
+    const auto body = json_body(request.body);
+    const auto names = names_in(body, names_key);
+    const bool timed = body.is_object() && body.contains("for_s");
+    if (!names || !body.contains(value_key) || !body[value_key].is_number() ||
+        (timed && !(body["for_s"].is_number() && body["for_s"] > 0 && body["for_s"] <= kLongestByHand_s))) {
+      return http_refusal(
+          400, fmt::format("send {{\"{}\": [\"a name\"], \"{}\": a number}}, and with \"for_s\" above 0 for how long",
+                           names_key, value_key));
+    }
+    return done_answer(handler(*names, body[value_key].get<double>(),
+                               timed ? std::optional(body["for_s"].get<double>()) : std::nullopt),
+                       "held");
+  }
+
+  [[nodiscard]] HttpResponse blackout(const HttpRequest& request) const {
+    const auto body = json_body(request.body);
+    if (!body.is_object() || !body.contains("on") || !body["on"].is_boolean())
+      return http_refusal(400, "send {\"on\": true} or {\"on\": false}");
+    const bool on = body["on"].get<bool>();
+    if (const auto done = handlers.blackout(on); !done) return fault_answer(done.error());
+    return dumped_answer({{"blackout", on}});
+  }
+
+  [[nodiscard]] HttpResponse identify(const HttpRequest& request) const {
+    const auto body = json_body(request.body);
+    if (!body.is_object() || !body.contains("fixture") || !body["fixture"].is_string() ||
+        (body.contains("seconds") && !body["seconds"].is_number()))
+      return http_refusal(400, "send {\"fixture\": \"its name\", \"seconds\": 5}");
+    const double seconds = body.value("seconds", kIdentifyFor_s);
+    if (!(seconds > 0 && seconds <= kIdentifyAtMost_s))
+      return http_refusal(400, fmt::format("seconds must be above 0 and at most {:g}", kIdentifyAtMost_s));
+    if (const auto done = handlers.identify(body["fixture"].get<std::string>(), seconds); !done)
+      return http_refusal(400, done.error().detail);
+    return dumped_answer({{"seconds", seconds}});
+  }
+
+  [[nodiscard]] HttpResponse park(const HttpRequest& request) const {
+    const auto body = json_body(request.body);
+    std::vector<std::string> fixtures;
+    bool good = body.is_object() && (!body.contains("fixtures") || body["fixtures"].is_array());
+    if (good && body.contains("fixtures")) {
+      for (const auto& one : body["fixtures"]) {
+        good = good && one.is_string();
+        if (one.is_string()) fixtures.push_back(one.get<std::string>());
+      }
+    }
+    if (!good) return http_refusal(400, "send {\"fixtures\": [\"a head's name\"]}, or {} for all");
+    if (const auto done = handlers.park(fixtures); !done) return fault_answer(done.error());
+    return dumped_answer({{"parked", true}});
+  }
+
+  [[nodiscard]] HttpResponse release(const HttpRequest& request) const {
+    const auto body = json_body(request.body);
+    const bool all = body.is_object() && body.contains("all") && body["all"] == true;
+    const auto names = names_in(body, "names");
+    if (all == names.has_value())  // "all" must be meant: no list is no reason to release everything
+      return http_refusal(400, "send {\"names\": [\"a fixture or point\"]} or {\"all\": true}");
+    return done_answer(handlers.release(names.value_or(std::vector<std::string>{})), "released");
+  }
+
+  [[nodiscard]] HttpResponse bypass(const HttpRequest& request) const {
+    const auto body = json_body(request.body);
+    const auto names = names_in(body, "names");
+    if (!names || !body.contains("on") || !body["on"].is_boolean())
+      return http_refusal(400, "send {\"names\": [\"a fixture or luxmeter\"], \"on\": true} or false");
+    return done_answer(handlers.bypass(*names, body["on"].get<bool>()), "done");
+  }
+
+  [[nodiscard]] HttpResponse room() const {
+    std::string room = handlers.room_json();
+    if (room.empty()) return http_refusal(503, "the room is being drawn: ask again in a second");
+    return json_answer(std::move(room));
+  }
+
+  [[nodiscard]] HttpResponse room_png() const {
+    std::string png = handlers.room_png();
+    if (png.empty()) return http_refusal(404, "this rig has no scene to draw");
+    return {200, "image/png", std::move(png)};
+  }
+};
+
+}  // namespace
+
+HttpResponse json_answer(std::string json) {
+  return {200, "application/json", std::move(json), {{"Cache-Control", "no-store"}}};
+}
+
+std::vector<HttpRoute> command_routes(HttpHandlers handlers) {
+  const auto to = std::make_shared<const Routes>(Routes{std::move(handlers)});
+  using Request = const HttpRequest&;
+  const std::string get = "GET", post = "POST";
+  return {
+      {get, "/api/status", [to](Request) { return json_answer(to->handlers.status()); }},
+      {get, "/api/universes", [to](Request) { return json_answer(to->handlers.universes()); }},
+      {get, "/api/room", [to](Request) { return to->room(); }},
+      {get, "/api/room.png", [to](Request) { return to->room_png(); }},
+      {post, "/api/blackout", [to](Request request) { return to->blackout(request); }, 1024, true},
+      {post, "/api/identify", [to](Request request) { return to->identify(request); }},
+      {post, "/api/park", [to](Request request) { return to->park(request); }},
+      {post, "/api/hand-back",
+       [to](Request) {
+         to->handlers.hand_back();
+         return dumped_answer({{"handed_back", true}});
+       }},
+      {post, "/api/apply",
+       [to](Request request) { return checked_answer(to->handlers.apply(request.body), "applied"); }, kMaxPlanBytes},
+      {post, "/api/level",
+       [to](Request request) { return Routes::by_hand(request, "fixtures", "level", to->handlers.level); }},
+      {post, "/api/goal",
+       [to](Request request) { return Routes::by_hand(request, "points", "goal_lux", to->handlers.goal); }},
+      {post, "/api/release", [to](Request request) { return to->release(request); }},
+      {post, "/api/bypass", [to](Request request) { return to->bypass(request); }},
+      {post, "/api/reload", [to](Request) { return checked_answer(to->handlers.reload(), "reloaded"); }},
+  };
+}
+
+}  // namespace luxrig

@@ -1,0 +1,38 @@
+#pragma once
+/// The status as JSON; keys are listed in API.md beside this file and are a contract.
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "core/rig/rig.h"
+#include "core/show/show_controller.h"
+
+namespace luxrig {
+
+struct OutputFigures {
+  double rate_hz = 0;
+  std::uint64_t frames = 0;
+  std::int64_t p50_us = 0, p99_us = 0, max_us = 0;
+  bool realtime = false;
+};
+
+struct StatusInput {
+  const Rig& rig;
+  const ShowStatus& show;
+  const std::vector<Health>& devices;
+  OutputFigures output;
+  bool simulated = false;
+  Time started{};
+  Time now{};
+};
+
+[[nodiscard]] std::string status_json(const StatusInput& input);
+
+/// Of one point: "lux" and "uncertainty_lux" (half of the 95 % interval), "verdict" and "reason", "limit" and
+/// "limit_reason"; each where there is something to say.
+void put_verdicts(nlohmann::json& out, const PointStatus& status);
+/// "goals": {"met", "missed", "unknown", "tolerance"} and "limits": {"kept", "exceeded", "unknown"}.
+void put_counts(nlohmann::json& out, const ShowStatus& show, double goal_tolerance);
+
+}  // namespace luxrig

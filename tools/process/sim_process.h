@@ -1,0 +1,47 @@
+#pragma once
+/// The simulated rig as a child process, and what it says about the truth.
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "core/run.h"
+#include "drivers/registry.h"
+#include "tools/process/sim_ports.h"
+
+namespace luxrig {
+
+struct PointTruthSeen {
+  std::string name;
+  double lux = 0, max_lux_seen = 0;
+};
+struct SimTruth {
+  std::vector<PointTruthSeen> points;
+  std::size_t violations = 0;
+};
+
+class SimProcess {
+ public:
+  /// Starts luxrig-sim, found beside this program. `seed`: of its deviations.
+  [[nodiscard]] static Result<SimProcess> start(const std::filesystem::path& rig, std::uint64_t seed);
+  ~SimProcess();  ///< ends the child
+  SimProcess(SimProcess&& other) noexcept;
+  SimProcess& operator=(SimProcess&&) = delete;
+
+  /// Waits until it answers (it computes its own truth first).
+  [[nodiscard]] Result<SimPorts> wait_ready(const Watch& watch);
+
+ private:
+  explicit SimProcess(pid_t pid, std::filesystem::path folder) : pid_(pid), folder_(std::move(folder)) {}
+  pid_t pid_ = -1;
+  std::filesystem::path folder_;  ///< its ports file and log
+};
+
+/// Asks the simulator what truly happened; nothing when it does not answer.
+[[nodiscard]] std::optional<SimTruth> ask_truth(const Redirect& control);
+
+}  // namespace luxrig

@@ -1,0 +1,37 @@
+#pragma once
+/// Pictures as PNG or JPEG files: tone mapping, false colour with its scale, plan views.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "core/picture/picture.h"
+#include "tools/luxrig/render/exposure.h"
+
+namespace luxrig {
+
+/// As a photograph: exposed and balanced as `look` says, highlights rolled off (E. Reinhard et al. 2002, eq. 4), sRGB.
+/// `title` is written in the corner; may be empty. PNG, or JPEG by the name's ending.
+/// Returns an empty string, or why the file could not be written.
+[[nodiscard]] std::string write_photograph(const Picture& picture, const std::string& title, const PhotographLook& look,
+                                           const std::filesystem::path& file);
+
+/// Illuminance in colours of the viridis scale, logarithmic, with lines of equal lux and a legend. max_lx (top of the
+/// scale) defaults to the 99.5th percentile, rounded up to 1, 2 or 5 times a power of ten; the scale spans two decades.
+[[nodiscard]] std::string write_false_colour(const Picture& picture, const std::string& title,
+                                             std::optional<double> max_lx, const std::filesystem::path& file);
+
+/// The bytes of a PNG; empty when there is no memory for it.
+[[nodiscard]] std::string plan_view_png(const PlanView& view);
+
+/// Colour of the viridis scale at 0 … 1, sRGB 0 … 1: linear between nine of its table's entries.
+[[nodiscard]] Vec3 viridis(double at);
+
+/// Blue below the middle (0.5), nearly white in it, red above: told apart by people who cannot tell red from green. The
+/// scale RdBu of nine entries (C. Brewer, colorbrewer2.org), turned round.
+[[nodiscard]] Vec3 blue_white_red(double at);
+
+/// Smallest of 1, 2, 5 × 10^k that is at least `value` (> 0).
+[[nodiscard]] double round_up_1_2_5(double value);
+
+}  // namespace luxrig
