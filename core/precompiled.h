@@ -1,5 +1,5 @@
 #pragma once
-/// What nearly every file includes, compiled once. Every file still includes what it uses.
+/// Headers that nearly every file includes, compiled once. Every file still includes what it uses.
 
 #include <fmt/format.h>
 
