@@ -47,7 +47,7 @@ double tolerance_lx(double goal_lx, double tolerance, double largest_goal_lx) {
 
 Verdict verdict_of(const LuxEstimate& estimate, double goal_lx, double tolerance_lx) {
   const double off_lx = std::abs(estimate.lux - goal_lx), allowed_lx = tolerance_lx * (1 + kRounding);
-  // Not known is never met, nor is what is no number.
+  // Unknown is never met, nor is NaN.
   if (!std::isfinite(off_lx) || !std::isfinite(estimate.half_width_lx)) return Verdict::unknown;
   if (off_lx + estimate.half_width_lx <= allowed_lx) return Verdict::met;
   if (off_lx - estimate.half_width_lx > allowed_lx) return Verdict::missed;

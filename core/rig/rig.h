@@ -44,8 +44,7 @@ struct SceneObject {
   double turn_rad = 0;                   ///< about +Z, counter-clockwise from above
   std::optional<double> height_m;        ///< mesh scaled evenly to this height
   std::optional<Vec3> reflectance_rgb;   ///< of all its materials; if not given, rules and file colours apply
-  std::optional<double> transmittance;   ///< of each face, at normal incidence; if given, it is glass
-                                         ///< (core/scene/panes.h)
+  std::optional<double> transmittance;   ///< of each face, at normal incidence; set = glass (core/scene/panes.h)
   Place place;
 };
 
@@ -70,8 +69,8 @@ struct Luminaire {
   std::optional<std::pair<double, double>> zoom_beam_rad{};
   double lumens = 0;  ///< rated flux = flux of `intensity`
   std::optional<double> watts;
-  Intensity intensity;  ///< at rated flux; never null in a checked Rig
-  LuminousShape shape;  ///< a point, unless the model has a size or near_field asks for the file's opening
+  Intensity intensity;             ///< at rated flux; never null in a checked Rig
+  LuminousShape shape;             ///< a point, unless the model has a size or near_field asks for the file's opening
   Vec3 colour_rgb = Vec3::Ones();  ///< of its light, linear Rec. 709 with a luminance of 1
   std::optional<LampTilt> tilt;    ///< model == ies: output by its angle from upright
   /// Its emitters, if they are set one by one: each is a luminaire of the rig, called "<name>/<emitter>", and directly
@@ -145,7 +144,7 @@ struct ModbusPatch {
   int dark_raw = 0;           ///< register value at no drive
   RegisterFormat format{};
   std::shared_ptr<const RegisterMap> map{};  ///< of its product; null = only the register is known
-  bool coil = false;  ///< holding_register is a coil number (functions 5 and 15): on or off
+  bool coil = false;                         ///< holding_register is a coil number (functions 5 and 15): on or off
 };
 
 using Patch = std::variant<DmxPatch, ModbusPatch>;
@@ -181,8 +180,7 @@ struct FixtureMode {
   std::shared_ptr<const Personality> personality;  ///< never null
   std::size_t mode = 0;                            ///< of its modes
   std::string emitter{};                           ///< name in the rig file; empty = the fixture is one light
-  std::string dimmer{};                            ///< the channel that the rig file names as the dimmer; empty = none
-                                                   ///< named
+  std::string dimmer{};                            ///< its dimmer channel by the rig file; empty = none named
   std::vector<std::string> told{};                 ///< how the file was interpreted, for a person
 };
 
@@ -194,7 +192,7 @@ struct Fixture {
   std::optional<std::size_t> housing{};  ///< of an emitter: the first fixture of its housing
   Pose world_from_mount;                 ///< base as hung
   std::optional<Vec3> aim_world_m;       ///< point aimed at; if none, `joints` are given
-  Joints joints;  ///< pan and tilt, derived from the aim if there is one; zoom as its luminaire
+  Joints joints;                         ///< pan and tilt, derived from the aim if there is one; zoom as its luminaire
   double roll_rad = 0;
   bool moves = false;                                ///< has pan and tilt slots, or axes; perhaps a zoom slot
   JointRange range;                                  ///< only if it moves
@@ -449,8 +447,7 @@ struct SafeSpec {
 struct StartupSpec {
   double stage_s = 0;                       ///< from the start of one stage to the start of the next
   std::optional<double> max_watts_per_s{};  ///< highest rise of power, all fixtures together
-  bool after_loss = false;                  ///< a device that comes back after a loss is taken to have had no power,
-                                            ///< and is staged, too
+  bool after_loss = false;                  ///< a device back after a loss had no power, and is staged, too
   Place place;
 };
 
