@@ -57,11 +57,9 @@ struct WorstCase {
 };
 
 struct Correction {
-  std::vector<double> level;     ///< per fixture; within max_level and all limits, in the worst case that the evidence
-                                 ///< allows
+  std::vector<double> level;     ///< per fixture; within max_level and, in the worst case of the evidence, all limits
   std::vector<double> aimed_lx;  ///< per point of the rig: present prediction at `level`
-  std::vector<std::string> why;  ///< per point: what keeps it from its goal; empty if the goal will be met or there is
-                                 ///< none
+  std::vector<std::string> why;  ///< per point: why it misses its goal; empty if it does not or has none
 };
 
 /// The levels of a show before any luxmeter is read: within the limits, with the margins that then apply. One per
@@ -71,8 +69,7 @@ struct Correction {
 
 class GainEstimator {
  public:
-  static constexpr double kRepeatability = 0.005;  ///< standard deviation, share of a reading; the rest of its error is
-                                                   ///< its tolerance
+  static constexpr double kRepeatability = 0.005;  ///< standard deviation, share of a reading; beside its tolerance
 
   /// Uses the rig's fixtures (max_level), luxmeters, points, limits and control. The model's matrices must have the
   /// rig's sizes (asserted), or be empty.

@@ -8,8 +8,7 @@ namespace luxrig {
 namespace {
 
 constexpr double kAgree = 0.03;    // ten times the noise of a good meter
-constexpr double kSettled = 0.01;  // a lamp with a time constant of 1 s still has about as far to go as a window
-                                   // changes
+constexpr double kSettled = 0.01;  // a lamp of 1 s then still has about one window's change to go
 constexpr Duration kFlickers = std::chrono::seconds(2), kSettlesWithin = std::chrono::seconds(10);
 
 }  // namespace

@@ -104,8 +104,7 @@ struct DeskCommand {
 enum class DeskPresence { unknown, absent, present };
 struct DeskFrame {
   DeskPresence presence = DeskPresence::unknown;
-  std::vector<DeskCommand> commands;  ///< the newest, or the last before the desk was lost; only fixtures that it
-                                      ///< controls
+  std::vector<DeskCommand> commands;  ///< newest, or last before the desk was lost; only fixtures it controls
   std::string source;                 ///< name of the desk; empty = none yet
 };
 

@@ -6,7 +6,6 @@
 /// zone's margin. The test of one posture is exact. The test of a range is conservative: it never misses a posture that
 /// meets the zone, but may report a range that passes it within kSweepSlack_rad, or one too wide to check in a
 /// millisecond.
-/// is too wide to be told in a millisecond.
 
 #include <optional>
 #include <span>

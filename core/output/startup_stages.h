@@ -29,7 +29,7 @@ using LampStarts = std::vector<LampStart>;
 /// one after the other, in order of the rig file, each over max_level · watts / max_watts_per_s. No two rises overlap,
 /// so power never rises faster than that. A head is also dark for its reset_s.
 ///
-/// not_before: no start is earlier (others are still rising, or heads are turning).
+/// not_before: no rise begins earlier (others are still rising, or heads are turning).
 /// burning: per fixture, 0…1 of its max_level; may be empty. Those above 0 had already begun. They form a stage before
 /// all others, never fall below that level, and continue to rise from there.
 [[nodiscard]] LampStarts lamp_starts(const Rig& rig, std::span<const double> max_level,

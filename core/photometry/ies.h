@@ -5,9 +5,9 @@
 /// (counter-clockwise seen from above). In types A and B, horizontal angles turn clockwise. In type B, (0, 0) is -Z, V
 /// rises from there towards +X, H goes towards -Y, and the half-planes of V meet in the horizontal axis Y:
 ///   direction = (cos H sin V, -sin H, -cos H cos V).
-/// Type A is for luminaires with a level beam (headlamps, floodlights): its planes of X meet in the vertical, and (0,
-/// 0) is the beam. Here, too, the beam is -Z of frame lamp, as for every head and spot. When it is aimed level, that
-/// frame's +Y is up and its +X is to the right, seen along the beam. So Y still counts upwards and X to the right:
+/// Type A is for luminaires with a level beam (headlamps, floodlights): its planes of X meet in the vertical, and
+/// (0, 0) is the beam. Here, too, the beam is -Z of frame lamp, as for every head and spot. When it is aimed level,
+/// that frame's +Y is up and its +X is to the right, seen along the beam. So Y still counts upwards and X to the right:
 ///   direction = (cos Y sin X, sin Y, -cos Y cos X).
 /// Hung without an aim, such a luminaire shines down. Aim it level (aim_m, or tilt_deg = 90) for its measured
 /// orientation.
@@ -68,8 +68,8 @@ using TiltFiles = std::function<std::optional<std::string>(std::string_view name
 ///   0…180       mirrored about the plane 0–180
 ///   90…270      mirrored about the plane 90–270
 ///   0…360       as it is; also 0 and planes that stop one spacing short of 360
-/// Types A and B: an angle from 0 is mirrored to negative ones; one horizontal angle = round about the direction (0,
-/// 0).
+/// Types A and B: an angle from 0 is mirrored to negative ones; one horizontal angle = round about the
+/// direction (0, 0).
 /// requires a file returned by parse_ies.
 [[nodiscard]] Intensity make_intensity(const IesFile& file);
 

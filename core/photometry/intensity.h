@@ -56,16 +56,16 @@ using Intensity = std::shared_ptr<const IntensityDistribution>;  // one file ser
 /// I0 cosⁿγ below the horizontal, I0 = flux (n + 1) / 2π. requires flux_lm > 0 and 0 ≤ exponent ≤ 1e6.
 [[nodiscard]] Intensity make_cosine_power(double flux_lm, double exponent);
 
-/// An upright cylinder (axis z) of uniform luminance, including both ends: I = L (d l sinγ + π/4 d² |cosγ|) with L =
-/// flux / (π² d (l + d/2)). requires flux_lm, diameter_m and length_m > 0.
+/// An upright cylinder (axis z) of uniform luminance, including both ends: I = L (d l sinγ + π/4 d² |cosγ|) with
+/// L = flux / (π² d (l + d/2)). requires flux_lm, diameter_m and length_m > 0.
 [[nodiscard]] Intensity make_lambertian_cylinder(double flux_lm, double diameter_m, double length_m);
 
 /// A spot about -Z with a soft edge. With b = half the beam angle and f = half the field angle,
 ///   I(γ) = I0 · 2^-(γ/b)^p · w(γ),   p = ln(log2 10) / ln(f/b),
-/// so that I(b) is exactly I0/2 and I(f) exactly I0/10. w is 1 up to f and falls to 0 at γ = 2f along the quintic 1 -
-/// 6t⁵ + 15t⁴ - 10t³: nothing is emitted beyond the full field angle from the axis. p is 2 (a Gaussian) at f/b = 1.82,
-/// larger (a flatter top) for a sharper edge. Beyond f/b = 3.3 the axis has a hot spot. I0 follows from the flux by
-/// quadrature to 1e-12.
+/// so that I(b) is exactly I0/2 and I(f) exactly I0/10. w is 1 up to f and falls to 0 at γ = 2f along the quintic
+/// 1 - 6t⁵ + 15t⁴ - 10t³: nothing is emitted beyond the full field angle from the axis. p is 2 (a Gaussian) at f/b =
+/// 1.82, larger (a flatter top) for a sharper edge. Beyond f/b = 3.3 the axis has a hot spot. I0 follows from the flux
+/// by quadrature to 1e-12.
 /// requires flux_lm > 0 and 0 < beam_angle < field_angle < π (asserted; the rig file is checked before).
 [[nodiscard]] Intensity make_spot(double flux_lm, double beam_angle_rad, double field_angle_rad);
 

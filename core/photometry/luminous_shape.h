@@ -7,7 +7,6 @@
 /// is a point from far away (five times the largest size, ±1 % for a diffuser), and has its true size nearby. A
 /// Lambertian intensity I0 cosγ on a rectangle or disk gives a surface of uniform luminance. Luminous surfaces only
 /// emit; they neither block nor reflect light.
-/// block light nor reflect it.
 
 #include "core/geometry.h"
 

@@ -102,7 +102,7 @@ struct RigVersion {
   bool operator==(const RigVersion&) const = default;
 };
 
-/// Differences between two versions, in words ("goals and limits"); empty = none.
+/// Differences between two versions, in words ("goals, limits"); empty = none.
 [[nodiscard]] std::string what_differs(const RigVersion& one, const RigVersion& other);
 
 struct Plan {

@@ -11,10 +11,8 @@ namespace {
 
 constexpr int kShareLevels = 20, kMostRounds = 200;
 constexpr double kLowestShare = 0.05, kHighestShare = 0.95;  ///< of full samples. Source: EMVA 1288, as in line_fit.cpp
-constexpr double kLevelKnownTo = 0.003;                      ///< samples are never taken as known better than this,
-                                                             ///< relative
-constexpr double kPlacesDiffer = 3;                          ///< brightest over darkest place at one level, needed for
-                                                             ///< a verdict
+constexpr double kLevelKnownTo = 0.003;                      ///< no sample is taken as known better, relative
+constexpr double kPlacesDiffer = 3;                          ///< least ratio of brightest to darkest place at a level
 constexpr double kProportionRms = 0.01, kProportionWorst = 0.03;
 constexpr double kStraightRms = 0.02, kExponentOff = 0.02;
 constexpr double kFlickersMuch = 0.005, kMuchOtherLight = 0.5;

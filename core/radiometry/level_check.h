@@ -33,8 +33,7 @@ struct LevelCheck {
   std::vector<SeenLevel> seen;
   bool camera_told = false;                 ///< places differ enough in light to separate camera and dimmer
   double camera_rms = 0, camera_worst = 0;  ///< deviation of places from growing in proportion; requires camera_told
-  double line_rms = 0, line_worst = 0;      ///< relative deviation of light from a straight line through zero at level
-                                            ///< 0
+  double line_rms = 0, line_worst = 0;      ///< relative deviation of light from proportion to level
   double exponent = 1, exponent_error = 0;  ///< observed light grows as the level to this power
   double power_rms = 0;                     ///< deviation of light from that power
   double other_light = 0;                   ///< light at level 0, as a share of that at the highest level

@@ -8,8 +8,7 @@
 namespace luxrig {
 
 inline constexpr double kLongEdge_m = 50;        ///< shorter edges are not cut
-inline constexpr double kEdgePerDistance = 0.5;  ///< nor edges shorter than this share of their distance from the
-                                                 ///< origin
+inline constexpr double kEdgePerDistance = 0.5;  ///< nor edges within this share of their distance to the origin
 
 /// Halves edges until each is shorter than one of the two limits above. Edges shared by triangles are cut at the same
 /// points, so no gap opens. The parts of a triangle take its place in the order. Returns false if the mesh would exceed

@@ -6,8 +6,8 @@
 /// the reflectance of one surface at this angle and polarisation, and a the share left after one passage,
 ///   T = (1 - r)² a / (1 - r² a²),   a(θ) = a(0)^(1 / cosθ'),   sinθ' = sinθ / n
 /// averaged over both polarisations. n and a(0) come from the transmittance at normal incidence: n = 1.52 (float
-/// glass), and a(0) solves the formula. If a(0) would exceed 1 (transmittance over 0.918: antireflective coating), a =
-/// 1 and n is lower. Light reflected by panes is lost: up to 1 - T of the light that meets them.
+/// glass), and a(0) solves the formula. If a(0) would exceed 1 (transmittance over 0.918: antireflective coating),
+/// a = 1 and n is lower. Light reflected by panes is lost: up to 1 - T of the light that meets them.
 
 #include <array>
 #include <span>

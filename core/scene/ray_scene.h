@@ -42,9 +42,10 @@ class RayScene {
   RayScene(RayScene&&) noexcept;
   RayScene& operator=(RayScene&&) noexcept;
 
-  /// Nearest hit along a ray, or nullopt. direction_world must be unit (asserted to 1e-6). `leaving_normal_world` =
-  /// normal of the surface on which the ray starts (zero vector = none). The start is moved off that surface along the
-  /// normal. Another surface that meets it there in a corner still stops the ray, at distance 0.
+  /// Nearest hit along a ray, or nullopt. direction_world must be unit (asserted to 1e-6).
+  /// `leaving_normal_world` = normal of the surface on which the ray starts (zero vector = none). The start is moved
+  /// off that surface along the normal. Another surface that meets it there in a corner still stops the ray, at
+  /// distance 0.
   [[nodiscard]] std::optional<Hit> nearest(const Vec3& from_world_m, const Vec3& direction_world,
                                            const Vec3& leaving_normal_world) const;
 

@@ -22,12 +22,12 @@ namespace luxrig {
 //                                                            long side, where it moves points within the
 //                                                            sliver by no more than this
 //   its dot product with that normal, and division   6 u L
-// Together u (3.5 |p| + 15.5 L), rounded up. L is at most the scene's longest edge. It is also bounded by the longest
-// "near" edge: one longer than k = 0.51 of its distance from the origin. If the longest edge l of a triangle is not
-// near, then l ≤ k (|p| + √3/2 l), since p is no farther from that edge than the height of the triangle over it. So l ≤
-// k |p| / (1 - k √3/2) < 0.92 √3 |p|∞. large_faces.h cuts faces this way, except for the rounding of corners. World
-// coordinates, in double, are off by 2^-53 of their size; points computed from others there, by a few times that.
-// of that.
+// Together u (3.5 |p| + 15.5 L), rounded up. L is at most the scene's longest edge. It is also at most the larger of
+// 0.92 √3 |p|∞ and the longest "near" edge: one longer than k = 0.51 of its distance from the origin. For if a
+// triangle's longest edge l is not near, then l ≤ k (|p| + √3/2 l), since p is no farther from that edge than the
+// height of the triangle over it. So l ≤ k |p| / (1 - k √3/2) < 0.92 √3 |p|∞. large_faces.h cuts faces this way,
+// except for the rounding of corners. World coordinates, in double, are off by 2^-53 of their size; points computed
+// from others there, by a few times that.
 inline constexpr double kUnit = 0x1p-24;
 inline constexpr double kPerPosition = 4;
 inline constexpr double kPerEdge = 16;

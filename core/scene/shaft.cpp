@@ -119,8 +119,7 @@ void TriangleTree::build(std::uint32_t begin, std::uint32_t end) {
   if (end - begin <= kLeaf) return;
   Eigen::Index axis = 0;
   middles.sizes().maxCoeff(&axis);
-  const std::uint32_t middle = begin + (end - begin) / 2;  // halves, so that a pile of equal triangles does not grow
-                                                           // deep
+  const std::uint32_t middle = begin + (end - begin) / 2;  // halves, so that equal triangles do not nest deep
   std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
                    [&](std::uint32_t a, std::uint32_t b) {
                      const float of_a = middles_m_[a][axis], of_b = middles_m_[b][axis];

@@ -17,8 +17,7 @@ namespace {
 constexpr std::size_t kMostMvrFixtures = 10'000, kMostMvrGeometries = 100'000, kMostMvrNotes = 100;
 constexpr int kDeepestSymbol = 8;
 constexpr std::size_t kMostGdtfBytes = std::size_t{64} << 20, kMostGdtfBytesInAll = std::size_t{512} << 20;
-constexpr double kMetresPerMillimetre = 0.001, kFarthest_m = 9.9e6;  // a rig allows 1e7, and lamps are offset from
-                                                                     // their bases
+constexpr double kMetresPerMillimetre = 0.001, kFarthest_m = 9.9e6;  // a rig allows 1e7; lamps are offset
 
 /// A matrix as MVR writes it: the x, y and z axes, then the origin in millimetres.
 std::optional<Eigen::Affine3d> affine_of(const pugi::xml_node& node) {

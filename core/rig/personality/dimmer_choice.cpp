@@ -14,8 +14,7 @@ namespace {
 constexpr double kLeastChange = 0.05;  // of full light: a smaller change is not dimming
 constexpr double kAsBright = 0.99;     // of the brightest place
 constexpr double kNoLight = 1e-6;
-constexpr double kLeastPart = 0.25;  // share of a channel's values that its dimmer must cover to be the channel's
-                                     // purpose
+constexpr double kLeastPart = 0.25;  // least share of a channel's values for its main dimmer function
 constexpr std::size_t kFewestOfStandIn = 3;
 
 double brightest_of(const ChannelFunction& f) { return std::max(f.physical_from, f.physical_to); }

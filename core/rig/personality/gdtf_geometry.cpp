@@ -15,8 +15,7 @@ namespace {
 
 constexpr std::size_t kMostInstances = 4096;
 constexpr double kLargestPart_m = 100;  // 100 nested levels of it stay within the size of a rig
-constexpr double kStraight = 0.01;      // sine of the angle up to which axes count as parallel, since drawings are not
-                                        // exact
+constexpr double kStraight = 0.01;      // largest sine between parallel axes, since drawings are inexact
 
 bool is_geometry(const pugi::xml_node& node) {
   // Other children (Break, pins of a connector, …) are not parts of the fixture that channels could act on.

@@ -82,8 +82,7 @@ class GltfReader {
     std::vector<bool> seen(count);
     const auto push = [&](const nlohmann::json* list, const Eigen::Matrix4d& parent) {
       if (list == nullptr || !list->is_array()) return;
-      for (auto one = list->rbegin(); one != list->rend(); ++one) {  // last first, so that they are popped in file
-                                                                     // order
+      for (auto one = list->rbegin(); one != list->rend(); ++one) {  // last first: popped in file order
         const std::size_t node = one->is_number_unsigned() ? one->get<std::size_t>() : count;
         if (node >= count) {
           warn("a node that is not there is left out");
