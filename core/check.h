@@ -1,6 +1,6 @@
 #pragma once
-/// LUXRIG_CHECK(condition, "text", values…): a caller's bug. Prints the values and aborts; on in every build,
-/// since no check stands in an inner loop.
+/// LUXRIG_CHECK(condition, "text", values…): catches a caller's bug. Prints the values and aborts. On in every build,
+/// since no check is in an inner loop.
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 #pragma once
-/// The controller's clock. It has no now(): only programs in tools/ read a real clock, and pass the
-/// instant on, so that every part below runs as well under a stepped clock.
+/// The controller's clock. It has no now(): only programs in tools/ read a real clock and pass the instant on. So all
+/// code below also runs under a stepped clock.
 
 #include <chrono>
 

@@ -1,4 +1,4 @@
-/// GainEstimator::correct(): levels anew from what the readings say.
+/// GainEstimator::correct(): new levels from readings.
 
 #include <fmt/format.h>
 
@@ -17,16 +17,16 @@ using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
-constexpr double kMeteredWeight = 30;  ///< a metered goal goes before goals that nobody measures
-/// Weight of "stay at the present level" against a goal that nobody measures, in units of the fixture's brightest
-/// point. Without it such goals move levels so far in one round that the next reading surprises (of 500 simulated rigs,
-/// five instead of one or none missed a metered goal by more than 2 % after three rounds).
+constexpr double kMeteredWeight = 30;  ///< a metered goal comes before unmetered ones
+/// Weight of "stay at the present level" against an unmetered goal, in units of the fixture's brightest point. Without
+/// it, such goals move levels so far in one round that the next reading surprises (of 500 simulated rigs, five instead
+/// of one or none missed a metered goal by more than 2 % after three rounds).
 constexpr double kCaution = 0.5;
-/// Above rounding: a share is given once.
+/// Slightly above 1, so that rounding does not call for a second cut.
 constexpr double kAbove = 1 + 1e-12;
 
-/// Where what is set is alone above a limit, what dims of it gives the same share; then what is on or off goes off, the
-/// brightest at that point first.
+/// Where the lights of `set` alone exceed a limit, those in `dims` all dim by the same share. If that does not suffice,
+/// the brightest at that point go off.
 void keep_within(const VectorXd& max_lx, const VectorXd& daylight_lx, const MatrixXd& lux_per_level,
                  const std::vector<Index>& dims, VectorXd& set) {
   for (Index i = 0; i < lux_per_level.rows(); ++i) {
@@ -45,8 +45,8 @@ void keep_within(const VectorXd& max_lx, const VectorXd& daylight_lx, const Matr
 
 }  // namespace
 
-/// Fixtures × lights: what a fixture gives per level of a light. Emitters of one housing are one light, at the shares
-/// they have at present (a meter sees no colour, and must not change it); one that is dark stays so.
+/// Fixtures × lights: level of a fixture per level of a light. Emitters of one housing are one light, at their present
+/// shares (a meter sees no colour, and must not change it). A dark housing stays dark.
 MatrixXd GainEstimator::fixtures_per_light(const VectorXd& present) const {
   MatrixXd per_light = MatrixXd::Zero(fixtures(), fixtures());
   Index lights = 0;
@@ -69,7 +69,7 @@ Correction GainEstimator::correct(std::span<const double> present, Time now, boo
   const auto points = static_cast<Index>(points_.size());
   const VectorXd present_level = vector_of(present).head(fixtures()).cwiseMax(0).cwiseMin(max_level_);
   const MatrixXd per_light = fixtures_per_light(present_level);
-  // After the points one row per light, whose goal is its present level.
+  // After the points, one row per light, whose goal is its present level.
   const Index lights = per_light.cols(), all = points + lights;
   problem.lux_per_level.setZero(all, lights);
   problem.fixed_lx.setZero(all);
@@ -115,7 +115,7 @@ Correction GainEstimator::correct(std::span<const double> present, Time now, boo
     if (brightest > 0 && !at_once) problem.goal_lx[points + j] = brightest * problem.near_level[j];
   }
 
-  // What does not obey is light that is there anyway.
+  // Lamps that do not respond are fixed light.
   for (Index k = 0; k < lights; ++k) {
     Index brightest = 0;
     per_light.col(k).maxCoeff(&brightest);
@@ -127,7 +127,7 @@ Correction GainEstimator::correct(std::span<const double> present, Time now, boo
     std::erase(on_or_off, k);
     std::erase(held, k);
   }
-  // So is what is on or off, and what a person holds.
+  // So are on-or-off lamps and those held by hand.
   const VectorXd daylight_lx = problem.fixed_lx.head(points);
   const MatrixXd lux_per_level = problem.lux_per_level.topRows(points);
   VectorXd set = VectorXd::Zero(lights);
@@ -144,7 +144,7 @@ Correction GainEstimator::correct(std::span<const double> present, Time now, boo
   Correction correction;
   correction.why.resize(points_.size());
   VectorXd level = problem.near_level + set;
-  // The limits hold for the worst case, which depends on where the levels go: solve, look, tighten, solve again.
+  // Limits hold for the worst case, which depends on the new levels: solve, check, tighten, solve again.
   for (int round = 0; round < kLimitRounds; ++round) {
     bool over = round == 0;
     for (Index i = 0; i < points; ++i) {
@@ -160,7 +160,7 @@ Correction GainEstimator::correct(std::span<const double> present, Time now, boo
     if (!over) break;
     keep_within(problem.max_lx, daylight_lx, lux_per_level, held, set);
     problem.fixed_lx.head(points) = daylight_lx + lux_per_level * set;
-    problem.max_lx = problem.max_lx.cwiseMax(problem.fixed_lx);  // but for rounding it is
+    problem.max_lx = problem.max_lx.cwiseMax(problem.fixed_lx);  // already so, except for rounding
     problem.max_watts = std::max(0.0, max_watts_ - problem.watts.dot(set));
     const auto solution = solve_emittance(problem);
     if (!solution) break;

@@ -17,12 +17,13 @@ using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
-constexpr double kLeastLocalSd = 0.02;  ///< even a rig that trusts its model fully does not trust it further
-/// A value that stays to the last bit while the light changes by this share is stuck: by no more than what limits leave
-/// for a reading's noise, so that one frozen in the middle of a fade cannot carry light past them.
+constexpr double kLeastLocalSd = 0.02;  ///< a lower bound, even if a rig trusts its model fully
+/// A value that stays constant to the last bit while the light changes by this share is stuck. The share is no larger
+/// than the noise of a reading that limits allow for, so that a value frozen during a fade cannot carry light past
+/// them.
 constexpr double kStuckChange = 0.01;
-constexpr double kSameLevels = 0.005;     ///< evidence at levels nearer than this share replaces the former
-constexpr std::size_t kMostEvidence = 6;  ///< per meter; older goes
+constexpr double kSameLevels = 0.005;     ///< evidence at levels closer than this share replaces the old
+constexpr std::size_t kMostEvidence = 6;  ///< per meter; older evidence is dropped
 
 /// |ln(b/a)|, at most 1; 1 where one of them is 0.
 double log_ratio(double a, double b) {
@@ -37,7 +38,7 @@ MatrixXd matrix_or_zero(const MatrixXd& matrix, Index rows, Index columns, const
   return matrix;
 }
 
-/// With one more column, unless nothing at all is given for it.
+/// With one more column, unless it is not given at all.
 MatrixXd joined(const MatrixXd& lit, const VectorXd& fixed, bool any_fixed, const char* what) {
   if (!any_fixed) return lit;
   MatrixXd all(lit.rows(), lit.cols() + 1);
@@ -139,7 +140,7 @@ double GainEstimator::upper_gain(std::size_t fixture) const {
   return std::min(gain_max_, gain(fixture) + 3 * gain_standard_error(fixture));
 }
 
-/// Prior covariance of the light at a row at some levels with the light behind a reading.
+/// Prior covariance of the light at a row, at some levels, with the light behind a reading.
 double GainEstimator::covariance(const Row& one, const VectorXd& one_level, const Evidence& other) const {
   const auto i = static_cast<Index>(other.luxmeter);
   const bool same = one.luxmeter == other.luxmeter;
@@ -164,7 +165,7 @@ void GainEstimator::estimate(Time now) {
   factor_error_ = (local_variance.array() + prior_gain_sd_ * prior_gain_sd_).sqrt();
   if (count == 0) return;
 
-  MatrixXd light(count, columns);  // H: what each fixture gives to each reading, at rated output
+  MatrixXd light(count, columns);  // H: light of each fixture at each reading, at rated output
   VectorXd surprise(count);
   for (Index k = 0; k < count; ++k) {
     const Evidence& e = evidence_[static_cast<std::size_t>(k)];
@@ -180,7 +181,7 @@ void GainEstimator::estimate(Time now) {
     const double minutes = minutes_between(e.taken, now);
     double noise = std::pow(kRepeatability * expected, 2) + std::pow(kDriftPerMinute * minutes * expected, 2) +
                    std::pow(luxmeters_[e.luxmeter].patch.lux_per_count, 2) / 12;
-    // At levels other than the present ones the dimmer's true curve makes the gain another one.
+    // At levels other than the present, the dimmer's true curve changes the gain.
     const VectorXd& present = latest(e.luxmeter)->level;
     for (Index j = 0; j < columns; ++j)
       noise += std::pow(light(k, j) * kCurveError * log_ratio(e.level[j], present[j]), 2);
@@ -259,7 +260,7 @@ Judgement GainEstimator::judge(const LuxReading& reading, std::span<const double
   if (reading.lux > luxmeter.range_lx)
     return reject(fmt::format("it reads {:.4g} lx, beyond its range of {:.4g} lx", reading.lux, luxmeter.range_lx));
   if (meter.lux == reading.lux) {
-    // Both by the present estimate: what was learned in between is no change of the light.
+    // Both by the present estimate, since learning between them is not a change of light.
     const double former = predict(row, meter.level).lux;
     const double change = std::abs(expected.lux - former);
     const double visible =
@@ -276,7 +277,7 @@ Judgement GainEstimator::judge(const LuxReading& reading, std::span<const double
                     "a dead lamp or other light",
                     reading.lux, judgement.lowest_lx, judgement.highest_lx));
   if (latest(reading.luxmeter) != nullptr) {
-    // A dimmer's true curve is known the less the farther the levels are from those of the last reading.
+    // The farther the levels are from those of the last reading, the less certain is a dimmer's true curve.
     double curve_lx = 0;
     const VectorXd& before = latest(reading.luxmeter)->level;
     for (Index j = 0; j < level.size(); ++j)
@@ -317,13 +318,13 @@ std::vector<Judgement> GainEstimator::update(Time now, std::span<const LuxReadin
   const VectorXd at = vector_of(level);
   std::vector<Judgement> judgements;
   std::vector<const LuxReading*> believed;
-  // All are judged by what was known before, so that their order does not matter.
+  // All are judged by the knowledge before, so that their order does not matter.
   for (const LuxReading& reading : readings) {
     judgements.push_back(judge(reading, level));
     if (judgements.back().believed) believed.push_back(&reading);
   }
-  // What a stuck meter said since it has stood still cannot be trusted either, nor what it says when the light is by
-  // chance what it was then.
+  // Values of a stuck meter since it stopped changing cannot be trusted either, nor later ones that happen to match the
+  // light at that time.
   for (const Judgement& judgement : judgements) {
     if (!judgement.stuck) continue;
     Meter& meter = meters_[judgement.luxmeter];
@@ -332,7 +333,7 @@ std::vector<Judgement> GainEstimator::update(Time now, std::span<const LuxReadin
                   [&](const Evidence& e) { return e.luxmeter == judgement.luxmeter && e.taken >= meter.since; });
   }
   for (const LuxReading* reading : believed)
-    // In the dark there is nothing to learn but the meter's offset.
+    // In the dark, only the meter's offset could be learned.
     if (meter_.row(static_cast<Index>(reading->luxmeter)).dot(at) > 2 * kDark_lx) learn(*reading, at);
   estimate(now);
   return judgements;

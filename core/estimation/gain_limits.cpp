@@ -1,4 +1,4 @@
-/// GainEstimator: the most light that the evidence allows, and levels that keep limits with it.
+/// GainEstimator: the most light that the evidence allows, and levels within limits by it.
 
 #include <algorithm>
 #include <cmath>
@@ -28,8 +28,8 @@ double GainEstimator::most_lux(const Row& row, const VectorXd& level, Time now) 
   const double unmeasured = unmeasured_worst(row).dot(level);
   if (!row.luxmeter || latest(*row.luxmeter) == nullptr) return unmeasured + row.unseen_lx;
   const Evidence& e = *latest(*row.luxmeter);
-  // max Σ A_j w_j over lower ≤ A ≤ upper, A · (levels of the reading) ≤ what it can truly have been: a fractional
-  // knapsack, filled by best w_j per level. w_j: level, times what the dimmer's true curve may add on the way there.
+  // max Σ A_j w_j over lower ≤ A ≤ upper, A · (levels of the reading) ≤ the true value at most: a fractional knapsack,
+  // filled by best w_j per level. w_j: level, times the most that the dimmer's true curve may add on the way there.
   const Index n = level.size();
   VectorXd lower(n), upper(n), w(n);
   double least = 0;
@@ -58,7 +58,7 @@ double GainEstimator::most_lux(const Row& row, const VectorXd& level, Time now) 
   return most + row.unseen_lx;
 }
 
-/// Of daylight, and of lamps that do not obey.
+/// Light of daylight and of lamps that do not respond.
 double GainEstimator::most_without_fixtures(const Row& row, Time now) const {
   if (meter_.cols() == fixtures() && !any_lost()) return 0;
   return most_lux(row, vector_of(std::vector<double>(static_cast<std::size_t>(fixtures()), 0.0)), now);
@@ -139,12 +139,12 @@ WorstCase GainEstimator::worst_case(std::span<const double> from, std::span<cons
     const std::size_t p = worst.points[static_cast<std::size_t>(k)];
     const double max_lx = *points_[p].max_lx;
     const Row row = row_of_point(p);
-    // most_lux() is convex in the levels: above what it is without fixtures it grows at most in proportion.
+    // most_lux() is convex in the levels: beyond its value without fixtures, it grows at most in proportion.
     const double daylight_lx = most_without_fixtures(row, now);
     worst.max_lx[k] = std::max(0.0, max_lx - daylight_lx);
     worst.worst_lux_per_level.row(k) = without_lost(unmeasured_worst(row).head(fixtures()));
     if (!row.luxmeter) continue;
-    // One factor on the best estimate, large enough wherever on the way the limit could be near.
+    // One factor on the best estimate, large enough wherever the limit could be near on the way.
     const RowVectorXd estimate =
         without_lost((row.lux_per_level.cwiseProduct(row.factor) + 3 * row.standard_error).head(fixtures()));
     double factor = 0;
@@ -194,7 +194,7 @@ LampWorth GainEstimator::worth() const {
   return worth;
 }
 
-/// Of those that are on or off, by the model.
+/// Of the on-or-off fixtures, by the model.
 void GainEstimator::switch_off_brightest(const Row& row, std::span<double> level) const {
   std::size_t brightest = level.size();
   double most_lx = 0;
@@ -210,7 +210,7 @@ void GainEstimator::switch_off_brightest(const Row& row, std::span<double> level
 std::vector<double> GainEstimator::within_limits(std::span<const double> given, Time now) const {
   std::vector<double> level = dimmed_to_limits(given, now);
   for (std::size_t j = 0; j < lost_.size(); ++j)
-    if (lost_[j]) level[j] = given[j];  // it does not obey: dimming it would help nobody
+    if (lost_[j]) level[j] = given[j];  // it does not respond, so dimming it does not help
   return level;
 }
 
@@ -225,7 +225,7 @@ std::vector<double> GainEstimator::dimmed_to_limits(std::span<const double> give
     scale_to_limits(worst.worst_lux_per_level, worst.max_lx, level, 0, switched_, of_goals);
     if (level == before) return level;
   }
-  // Not settled: scaling down may need a little more each time (the curve's uncertainty). A last step that is certain.
+  // Not converged: each scaling may need a little more (the curve's uncertainty). So a last step that is certain.
   for (std::size_t p = 0; p < points_.size(); ++p) {
     if (!points_[p].max_lx) continue;
     const Row row = row_of_point(p);

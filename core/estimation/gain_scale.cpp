@@ -1,4 +1,4 @@
-/// GainEstimator: readings against the model as it is stated, whatever was learned since.
+/// GainEstimator: readings against the model as stated, ignoring everything learned.
 
 #include <algorithm>
 #include <cmath>
@@ -27,7 +27,7 @@ double GainEstimator::curve_error_at_meter(std::size_t luxmeter, std::span<const
     const double given_lx = meter_(i, j) * std::max(begin[j], end[j]);
     lux += meter_(i, j) * end[j];
     if (j >= fixtures()) {
-      uncertain_lx += given_lx;  // daylight changes as it likes
+      uncertain_lx += given_lx;  // all daylight is uncertain
     } else if (begin[j] != end[j]) {
       uncertain_lx +=
           given_lx * kCurveError *
@@ -42,7 +42,7 @@ std::optional<GainEstimator::CommonScale> GainEstimator::common_scale(std::span<
   const VectorXd at = as_given(level);
   std::vector<double> log_ratio;
   MatrixXd share(static_cast<Index>(readings.size()), at.size());  // of each fixture in the model's light at each meter
-  VectorXd alone(static_cast<Index>(readings.size()));             // variance that no two meters share
+  VectorXd alone(static_cast<Index>(readings.size()));             // variance that meters do not share
   for (const LuxReading& reading : readings) {
     const auto i = static_cast<Index>(reading.luxmeter);
     const double stated_lx = stated_lux(reading.luxmeter, level);
@@ -51,7 +51,7 @@ std::optional<GainEstimator::CommonScale> GainEstimator::common_scale(std::span<
     log_ratio.push_back(std::log(reading.lux / stated_lx));
     share.row(k) = meter_.row(i).cwiseProduct(at.transpose()) * prior_gain_ / stated_lx;
     const double tolerance = luxmeters_[reading.luxmeter].tolerance;
-    alone[k] = tolerance * tolerance / 3 + kRepeatability * kRepeatability;  // evenly spread over ± tolerance
+    alone[k] = tolerance * tolerance / 3 + kRepeatability * kRepeatability;  // evenly distributed over ± tolerance
     for (Index j = 0; j < at.size(); ++j) {
       if (!(meter_(i, j) > 0)) continue;
       const double transport = meter_error_(i, j) / meter_(i, j);
@@ -66,7 +66,7 @@ std::optional<GainEstimator::CommonScale> GainEstimator::common_scale(std::span<
   const VectorXd mean_share = share.topRows(meters).colwise().mean().transpose();
   const double shared = prior_gain_sd_ * prior_gain_sd_ * mean_share.squaredNorm();
   const double count = static_cast<double>(meters);
-  // Of the mean; a median of normal errors is known π/2 times worse.
+  // Variance of the mean, times π/2 for the median of normal errors.
   const double variance = 0.5 * static_cast<double>(EIGEN_PI) * (alone.head(meters).sum() / (count * count) + shared);
   std::sort(log_ratio.begin(), log_ratio.end());
   const std::size_t middle = log_ratio.size() / 2;

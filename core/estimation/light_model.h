@@ -1,11 +1,11 @@
 #pragma once
-/// The light that fixtures give at points and luxmeters: what the controller and the estimator work with.
+/// The light that fixtures give at points and luxmeters, as used by the controller and the estimator.
 
 #include <Eigen/Core>
 
 namespace luxrig {
 
-/// T at the rig's aims, and the light that no fixture gives (daylight).
+/// T at the rig's aims, and the light of no fixture (daylight).
 struct LightModel {
   Eigen::MatrixXd point_lux_per_level;   ///< points × fixtures
   Eigen::MatrixXd meter_lux_per_level;   ///< luxmeters × fixtures

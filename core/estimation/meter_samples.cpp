@@ -8,7 +8,7 @@ namespace luxrig {
 namespace {
 
 constexpr double kAgree = 0.03;    // ten times the noise of a good meter
-constexpr double kSettled = 0.01;  // of what is left to go, a lamp of 1 s leaves about as much as a window changes
+constexpr double kSettled = 0.01;  // a lamp of 1 s then still has about one window's change to go
 constexpr Duration kFlickers = std::chrono::seconds(2), kSettlesWithin = std::chrono::seconds(10);
 
 }  // namespace

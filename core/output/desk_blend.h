@@ -1,5 +1,5 @@
 #pragma once
-/// How a lighting desk and Luxrig share the fixtures of one part of the rig, as a pure function of time: DeskFollower
+/// How a lighting desk and Luxrig share the fixtures of one part of the rig, as a pure function of time. DeskFollower
 /// makes one, OutputProgram evaluates it.
 
 #include <cstdint>
@@ -14,23 +14,22 @@ namespace luxrig {
 struct DeskBlend {
   std::vector<std::size_t> fixtures;
   DeskMode mode = DeskMode::merge;
-  bool to_desk = false;  ///< else Luxrig alone has the light, from the end of the fade on
+  bool to_desk = false;  ///< false = Luxrig alone has control once the fade has ended
   Time start{};
-  Duration duration{};  ///< 0: at once
+  Duration duration{};  ///< 0 = at once
   FadeCurve curve = FadeCurve::s_curve;
   bool silent = false;  ///< nothing is sent: the desk drives the lamps itself
   // Per fixture of the part.
-  std::vector<double> from_level;      ///< what went out at `start`
-  std::vector<double> desk_level;      ///< what the desk wants, or wanted last
-  std::vector<std::uint8_t> desk_has;  ///< 1: the desk has a say there
+  std::vector<double> from_level;      ///< levels sent at `start`
+  std::vector<double> desk_level;      ///< levels from the desk, current or last received
+  std::vector<std::uint8_t> desk_has;  ///< 1 = the desk controls it
   std::vector<Joints> from_joints, desk_joints;
-  std::vector<std::uint8_t> desk_turns;  ///< 1: desk_joints count
+  std::vector<std::uint8_t> desk_turns;  ///< 1 = desk_joints applies
 
-  /// Luxrig alone has the light, and no fade to that is going on.
+  /// Luxrig alone has control, and the fade to it has ended.
   [[nodiscard]] bool is_own(Time now) const { return !to_desk && now >= start + duration; }
-  /// `level`, `joints`: of all fixtures of the rig, as Luxrig wants them; those of the part are changed. Levels are
-  /// within 0…1; limits are the caller's.
-  /// `kept`: fixtures of the rig that a desk has no say in just now, as 1; may be empty.
+  /// `level`, `joints`: for all fixtures of the rig, as Luxrig wants them. Changes those of the part. Levels are within
+  /// 0…1; the caller applies limits. `kept`: per fixture of the rig, 1 = no desk controls it at present; may be empty.
   void apply(Time now, std::span<const std::uint8_t> kept, std::span<double> level) const;
   void turn(Time now, std::span<Joints> joints) const;
 

@@ -1,13 +1,13 @@
 #pragma once
-/// Pan and tilt turned in step: both axes start and arrive together and stand at the same share of their ways at every
-/// instant, so that the joints run along a straight line and the beam's path is known beforehand.
+/// Pan and tilt in step: both axes start and arrive together, and at every instant have done the same share of their
+/// ways. So the joints run along a straight line, and the beam's path is known in advance.
 ///
 /// For ways d₁, d₂ and limits of speed v₁, v₂ and of acceleration a₁, a₂, the share s(t) of the way obeys
 ///   ṡ ≤ V = min(v₁/d₁, v₂/d₂),   s̈ ≤ A = min(a₁/d₁, a₂/d₂)
-/// and the quickest such move is the trapezoid (trapezoid.h) over a way of 1:
-///   T = 1/V + V/A when A ≥ V², else 2/√A, whose peak is min(V, √A).
-/// Axis i then runs with speed dᵢ·V and acceleration dᵢ·A. From rest to rest; an axis that does not move has no say.
-/// Either axis alone may be quicker: where one has the lower speed and the other the lower acceleration, both wait.
+/// The quickest such move is the trapezoid (trapezoid.h) over a way of 1:
+///   T = 1/V + V/A if A ≥ V², else 2/√A, whose peak is min(V, √A).
+/// Axis i then runs with speed dᵢ·V and acceleration dᵢ·A. From rest to rest. An axis that does not move sets no limit.
+/// If one axis has the lower speed and the other the lower acceleration, either alone would be quicker than both.
 
 #include <algorithm>
 #include <cmath>
@@ -17,14 +17,14 @@
 
 namespace luxrig {
 
-/// Of one axis, all > 0 in any one unit of angle.
+/// For one axis; all > 0, in any unit of angle.
 struct AxisLimits {
   double speed = 0, acceleration = 0;
 };
 
 struct HeadMove {
   double seconds = 0;
-  AxisLimits pan, tilt;  ///< to move with; 0 of an axis that stays
+  AxisLimits pan, tilt;  ///< to move with; 0 for an axis that stays
 };
 
 [[nodiscard]] inline HeadMove head_move(double pan_way, double tilt_way, const AxisLimits& pan,

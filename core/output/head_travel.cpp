@@ -21,7 +21,7 @@ double travel_s(const Fixture& fixture, const std::optional<Joints>& from, const
                      {fixture.tilt_speed_rad_s, axes->tilt.acceleration_rad_s2})
         .seconds;
   }
-  // Heads on DMX do not say how they speed up: kHeadDelay_s covers it.
+  // The acceleration of heads on DMX is unknown: kHeadDelay_s covers it.
   const double longest_s = std::max(pan_rad / fixture.pan_speed_rad_s, tilt_rad / fixture.tilt_speed_rad_s);
   if (!range.zooms()) return longest_s;
   const double beam_rad =

@@ -1,5 +1,5 @@
 #pragma once
-/// How long a head needs from one posture to another.
+/// Time a head needs from one posture to another.
 
 #include <optional>
 
@@ -7,8 +7,8 @@
 
 namespace luxrig {
 
-/// Seconds until a fixture that moves looks there, from its first movement on (kHeadDelay_s before that is the
-/// caller's); wherever it looked before when that is not known.
+/// Seconds from its first movement until the fixture has arrived at `to`. The caller adds kHeadDelay_s before that.
+/// Without `from`, the longest time from any posture.
 [[nodiscard]] double travel_s(const Fixture& fixture, const std::optional<Joints>& from, const Joints& to);
 
 }  // namespace luxrig

@@ -8,7 +8,7 @@
 namespace luxrig {
 namespace {
 
-/// Parts of a range of postures that are looked at; where they do not suffice, the beam counts as meeting the zone.
+/// Most parts of a range of postures to examine. If they do not suffice, the beam counts as meeting the zone.
 constexpr int kMostParts = 1000;
 constexpr int kMostHalvings = 10;  ///< of a straight line
 constexpr double kFieldShare = 0.1;
@@ -16,7 +16,7 @@ constexpr double kGammaStep_rad = rad_from_deg(0.5), kAzimuthStep_rad = rad_from
 
 double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
-/// From a unit direction to the arc of a great circle in which a line from a to b is seen from the origin.
+/// Angle between a unit direction and the great-circle arc in which the line from a to b is seen from the origin.
 double angle_to_edge_rad(const Vec3& direction, const Vec3& a, const Vec3& b) {
   const double ends = std::min(angle_between(direction, a), angle_between(direction, b));
   const Vec3 across = a.cross(b);
@@ -24,12 +24,12 @@ double angle_to_edge_rad(const Vec3& direction, const Vec3& a, const Vec3& b) {
   if (!(area > 1e-12 * a.norm() * b.norm())) return ends;  // seen end-on
   const Vec3 normal = across / area;
   const Vec3 foot = direction - direction.dot(normal) * normal;
-  // The foot lies between the ends when it is on the inner side of both.
+  // The foot lies between the ends if it is on the inner side of both.
   if (across.dot(a.cross(foot)) < 0 || across.dot(foot.cross(b)) < 0) return ends;
   return std::min(ends, std::abs(std::asin(std::clamp(direction.dot(normal), -1.0, 1.0))));
 }
 
-/// A ray from the origin goes through the box.
+/// Whether a ray from the origin goes through the box.
 bool ray_meets(const Vec3& direction, const Vec3& min_m, const Vec3& max_m) {
   double enter = 0, leave = std::numeric_limits<double>::infinity();
   for (int axis = 0; axis < 3; ++axis) {
@@ -92,8 +92,8 @@ double angle_to_ball_rad(const Vec3& from_m, const Vec3& direction, const Vec3& 
   return std::max(0.0, angle_between(direction, towards) - std::asin(radius_m / distance_m));
 }
 
-/// From outside, a box is seen as a convex polygon on the sphere of directions: what is nearest to a direction that
-/// does not meet it lies on its outline, and that is made of edges of the box.
+/// From outside, a box is a convex polygon on the sphere of directions. If a direction does not meet it, its nearest
+/// point lies on the outline, which consists of edges of the box.
 double angle_to_box_rad(const Vec3& from_m, const Vec3& direction, const Eigen::AlignedBox3d& box_m) {
   const Vec3 low = box_m.min() - from_m, high = box_m.max() - from_m;
   if (ray_meets(direction, low, high)) return 0;
@@ -151,8 +151,8 @@ std::optional<std::size_t> KeepOutZones::met(std::size_t fixture, const Joints& 
   return std::nullopt;
 }
 
-/// The axis of no posture of a part is further from that of its middle than half its tilts and, as a parallel is
-/// shorter than the equator, half its pans times the largest sine of a tilt.
+/// Bounds the angle between the axis of any posture of a part and that of its middle: half the tilt range, plus half
+/// the pan range times the largest sine of a tilt (a parallel is shorter than the equator).
 bool KeepOutZones::box_meets(const KeepOut& zone, const Beam& beam, const JointBox& whole) {
   const double half_angle = half_angle_rad(beam, whole.most.beam_rad);
   std::vector<JointBox> parts = {whole};

@@ -1,11 +1,11 @@
 #pragma once
-/// Keep-out zones: whether a head's beam meets a box or a sphere, for one posture and for all that it may go through.
+/// Keep-out zones: whether a head's beam meets a box or a sphere, for one posture or for a range of postures.
 ///
-/// A beam is a cone about the lamp's axis from the pivot, as far as there is world: what stands between lamp and zone,
-/// and what is reflected, does not count. Its half angle is that of the field (a tenth of the most intensity) at the
-/// zoom it has, and the zone's margin. The test of one posture is exact. That of a range of postures is conservative:
-/// it never misses one that meets the zone, and may report a range that passes it within kSweepSlack_rad, or one that
-/// is too wide to be told in a millisecond.
+/// A beam is an unlimited cone about the lamp's axis from the pivot. Objects between lamp and zone are ignored, as is
+/// reflected light. Its half angle is that of the field (a tenth of the peak intensity) at its present zoom, plus the
+/// zone's margin. The test of one posture is exact. The test of a range is conservative: it never misses a posture that
+/// meets the zone, but may report a range that passes it within kSweepSlack_rad, or one too wide to check in a
+/// millisecond.
 
 #include <optional>
 #include <span>
@@ -15,10 +15,10 @@
 
 namespace luxrig {
 
-/// Within this of a zone's edge a range of postures may be taken to meet it.
+/// A range of postures this close to a zone's edge may be reported as meeting it.
 inline constexpr double kSweepSlack_rad = rad_from_deg(1);
 
-/// All joint angles between two postures, each joint by itself. least ≤ most.
+/// All joint angles between two postures, each joint independently. least ≤ most.
 struct JointBox {
   Joints least, most;
   [[nodiscard]] static JointBox at(const Joints& joints) { return {joints, joints}; }
@@ -26,31 +26,30 @@ struct JointBox {
   bool operator==(const JointBox&) const = default;
 };
 
-/// Largest angle from a luminaire's axis (-Z) in which it gives a tenth of its most intensity, 0…π: half the field
-/// angle where it shines evenly round that axis. beam_rad: its zoom; 0: as stated. Of a measured distribution to 0.5°,
-/// upwards.
+/// Largest angle from a luminaire's axis (-Z) at which it gives a tenth of its peak intensity, 0…π. For a symmetric
+/// beam, half the field angle. beam_rad: its zoom; 0 = as stated. A measured distribution is rounded up to 0.5°.
 [[nodiscard]] double field_half_angle_rad(const Luminaire& luminaire, double beam_rad);
 
-/// Least angle [rad, 0…π] between a direction (unit) and those in which anything of the box, or the ball, is seen from
-/// a place; 0 from within. Exact.
+/// Smallest angle [rad, 0…π] between a unit direction and the directions in which the box or ball is seen from
+/// `from_m`; 0 from inside. Exact.
 [[nodiscard]] double angle_to_box_rad(const Vec3& from_m, const Vec3& direction, const Eigen::AlignedBox3d& box_m);
 [[nodiscard]] double angle_to_ball_rad(const Vec3& from_m, const Vec3& direction, const Vec3& centre_m,
                                        double radius_m);
 
 class KeepOutZones {
  public:
-  /// Keeps what it needs of the rig.
+  /// Copies what it needs of the rig.
   explicit KeepOutZones(const Rig& rig);
 
-  /// Fixtures that some zone holds for, rising.
+  /// Fixtures that some zone applies to, rising.
   [[nodiscard]] std::span<const std::size_t> heads() const { return heads_; }
   [[nodiscard]] const std::string& name(std::size_t zone) const { return zones_[zone].name; }
 
-  /// The first zone that the fixture's beam meets when it looks so; none for one that no zone holds for.
+  /// The first zone that the fixture's beam meets in this posture; none if no zone applies to it.
   [[nodiscard]] std::optional<std::size_t> met(std::size_t fixture, const Joints& joints) const;
-  /// The first that it may meet while its joints are anywhere in the box.
+  /// The first zone that it may meet with its joints anywhere in the box.
   [[nodiscard]] std::optional<std::size_t> may_meet(std::size_t fixture, const JointBox& box) const;
-  /// The first that it may meet on straight joint lines from anywhere in the box.
+  /// The first zone that it may meet on straight joint lines from anywhere in the box.
   [[nodiscard]] std::optional<std::size_t> may_meet_on_line(std::size_t fixture, const JointBox& from,
                                                             const Joints& to) const;
 
@@ -62,7 +61,7 @@ class KeepOutZones {
   };
   [[nodiscard]] const Beam* beam_of(std::size_t fixture) const;
   [[nodiscard]] static double half_angle_rad(const Beam& beam, double zoom_rad);
-  /// From the beam's axis to the zone's edge, less margin and beam.
+  /// Angle from the beam's axis to the zone's edge, minus margin and beam.
   [[nodiscard]] static double room_rad(const KeepOut& zone, const Beam& beam, const Joints& at, double half_angle_rad);
   [[nodiscard]] static bool box_meets(const KeepOut& zone, const Beam& beam, const JointBox& box);
   [[nodiscard]] static bool line_meets(const KeepOut& zone, const Beam& beam, const JointBox& from, const Joints& to,

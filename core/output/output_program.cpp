@@ -7,7 +7,7 @@
 namespace luxrig {
 namespace {
 
-/// 0…1; what is not a number counts as 0 (dark).
+/// 0…1; NaN counts as 0 (dark).
 double clamped_share(double x) { return x > 0 ? std::min(x, 1.0) : 0.0; }
 
 double smooth_step(double x) { return std::min(x * x * (3 - 2 * x), 1.0); }
@@ -20,12 +20,12 @@ bool is_on_or_off(std::span<const std::uint8_t> switched, Eigen::Index i) {
 
 double at_or_zero(const std::vector<double>& values, std::size_t i) { return i < values.size() ? values[i] : 0.0; }
 
-/// Of all light at a point, that of fixtures which dim, and of those that are on or off.
+/// Light at a point from fixtures that dim, and from those that are on or off.
 struct OfRow {
   double dimmed = 0, switched = 0;
 };
 
-/// What is on or off cannot be scaled: while it alone is above `most`, the brightest of it goes off.
+/// On-or-off lamps cannot be scaled: while they alone exceed `most`, the brightest of them goes off.
 OfRow switch_off_above(double most, Eigen::Index row, const Eigen::MatrixXd& worst_lux_per_level,
                        std::span<const std::uint8_t> switched, std::span<double> level) {
   const auto lights = std::min<Eigen::Index>(worst_lux_per_level.cols(), static_cast<Eigen::Index>(level.size()));
@@ -48,7 +48,8 @@ OfRow switch_off_above(double most, Eigen::Index row, const Eigen::MatrixXd& wor
   }
 }
 
-/// Lamps that dim at a row, those of one housing as one: what they give there, and what they are worth.
+/// Calls `call` for each lamp that dims at a row, with its light there and its worth. Emitters of one housing are one
+/// lamp.
 template <class Call>
 void each_dimmed(const Eigen::MatrixXd& worst_lux_per_level, Eigen::Index row, std::span<const double> level,
                  std::span<const std::uint8_t> switched, const LampWorth& worth, Call call) {
@@ -67,9 +68,9 @@ void each_dimmed(const Eigen::MatrixXd& worst_lux_per_level, Eigen::Index row, s
   }
 }
 
-/// Takes light away until what dims gives `room_lx` at the row, of `dimmed_lx` > 0 now. A lamp that gives the share p
-/// of those, and is worth v, dims by min(1, λ p / v): λ by Newton's method, which comes from below, as what is left is
-/// convex in it.
+/// Dims lamps until they give `room_lx` at the row; now they give `dimmed_lx` > 0. A lamp with share p of that light
+/// and worth v dims by min(1, λ p / v). λ by Newton's method, which converges from below, since the remaining light is
+/// convex in λ.
 void dim_by_worth(double room_lx, double dimmed_lx, const Eigen::MatrixXd& worst_lux_per_level, Eigen::Index row,
                   std::span<const std::uint8_t> switched, const LampWorth& worth, std::span<double> level) {
   constexpr int kPasses = 100;
@@ -150,7 +151,7 @@ std::vector<std::uint8_t> switched_fixtures(const Rig& rig) {
 }
 
 double level_on_the_way(double from, double to, double share, bool switched) {
-  // from + (to − from) · 1 need not be `to` in floating point.
+  // from + (to − from) · 1 may differ from `to` in floating point.
   if (share >= 1) return to;
   if (share <= 0) return from;
   return switched ? std::min(from, to) : from + (to - from) * share;
@@ -160,9 +161,9 @@ void scale_to_limits(const Eigen::MatrixXd& worst_lux_per_level, const Eigen::Ve
                      double relief, std::span<const std::uint8_t> switched, const LampWorth& worth) {
   const auto lights = std::min<Eigen::Index>(worst_lux_per_level.cols(), static_cast<Eigen::Index>(level.size()));
   const Eigen::Index rows = std::min(worst_lux_per_level.rows(), max_lx.size());
-  // Room for rounding, so that the limit holds in whatever order somebody adds the contributions up.
+  // Allows for rounding, so that the limit holds in whatever order the contributions are added up.
   const double rounding = 2.0 * static_cast<double>(lights + 2) * std::numeric_limits<double>::epsilon();
-  // Rows one after the other: scaling only takes light away, so a row once met stays met.
+  // One row after the other: scaling only takes light away, so a row that is met stays met.
   for (Eigen::Index row = 0; row < rows; ++row) {
     double lux = 0;
     bool unknown = false;
@@ -175,7 +176,7 @@ void scale_to_limits(const Eigen::MatrixXd& worst_lux_per_level, const Eigen::Ve
     }
     if (!unknown && lux <= max_lx[row] * (1 - rounding)) continue;
     if (!unknown && lux <= 0 && max_lx[row] >= 0) continue;
-    // Below the smallest normal number, products lose their relative accuracy: dark is as good.
+    // Below the smallest normal number, products lose their relative accuracy, so dark is good enough.
     double most = max_lx[row] > 1e-290 && !unknown ? max_lx[row] * (1 - 2 * rounding) : 0.0;
     if (relief > 0 && std::isfinite(lux)) most += relief * (lux - most);
     const OfRow set = switch_off_above(most, row, worst_lux_per_level, switched, level);
@@ -191,7 +192,7 @@ void scale_to_limits(const Eigen::MatrixXd& worst_lux_per_level, const Eigen::Ve
   }
 }
 
-/// Somebody gives a lamp that is on or off less than all it has: it is off.
+/// An on-or-off lamp that is given less than full level is off.
 void OutputProgram::switch_off_partial(std::span<double> level) const {
   const std::size_t known = std::min(level.size(), switched.size());
   for (std::size_t i = 0; i < known; ++i)
@@ -248,8 +249,8 @@ void OutputProgram::shared_levels_at(Time now, std::span<double> level) const {
   own_levels_at(now, level);
   if (desks.empty()) return;
   if (!desk_has_a_say(now)) {
-    // What goes out now is Luxrig's own and within limits by what meters taught, which may be brighter than the limits
-    // for any levels let through until now.
+    // The levels sent now are Luxrig's own. They are within the limits by meter readings, but may be brighter than the
+    // limits for any levels allowed so far.
     Time last{};
     for (const DeskBlend& desk : desks) last = std::max(last, desk.start + desk.duration);
     if (now >= last + limits_released) return;

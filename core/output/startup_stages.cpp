@@ -41,11 +41,11 @@ LampStarts lamp_starts(const Rig& rig, std::span<const double> max_level, std::s
       lamps[f] = {held > 0 ? stage_begins : std::max(stage_begins, power + from_seconds(fixture.reset_s)), rise, held};
       if (rig.startup.max_watts_per_s) {
         const double watts = rig.luminaires[fixture.luminaire].watts.value_or(0) * max_level[f];
-        // Up to the next nanosecond, so that it is never faster than allowed.
+        // Rounded up to the next nanosecond, so that it is never faster than allowed.
         lamps[f].begin = std::max(lamps[f].begin, free);
         lamps[f].rise = from_seconds(watts / *rig.startup.max_watts_per_s) + Duration(1);
       }
-      lamps[f].begin -= from_seconds(held * to_seconds(lamps[f].rise));  // it is so far already
+      lamps[f].begin -= from_seconds(held * to_seconds(lamps[f].rise));  // it has already risen so far
       free = std::max(free, lamps[f].begin + lamps[f].rise);
     }
     stage_begins =

@@ -1,11 +1,11 @@
 #pragma once
-/// Closed form of a move from rest to rest over `distance` that never exceeds `speed` and `acceleration` (both > 0,
-/// the same acceleration up and down):
+/// Closed form of a move from rest to rest over `distance` that never exceeds `speed` and `acceleration` (both > 0; the
+/// same acceleration up and down):
 ///
 ///   d ≥ v²/a   speed is reached:      T = d/v + v/a
 ///   d < v²/a   it is not (triangle):  T = 2·√(d/a)
 ///
-/// Any unit of length will do, if all three have it.
+/// Any unit of length works if all three share it.
 
 #include <cmath>
 

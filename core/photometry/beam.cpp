@@ -65,14 +65,14 @@ double cone_of_flux_rad(const IntensityDistribution& of, double share) {
     for (int i = 0; i < kSpokes; ++i) sum += of.intensity_cd(direction(gamma, 2 * kPi * (i + 0.5) / kSpokes));
     return sum * (2 * kPi / kSpokes) * std::sin(gamma);
   };
-  std::vector<double> reached{0};  // flux within the outer edge of each ring
+  std::vector<double> reached{0};  // flux inside the outer edge of each ring
   for (int i = 0; i < kRings; ++i) {
     const double width = half / kRings;
     const double middle = (i + 0.5) * width;
     reached.push_back(reached.back() +
                       0.5 * width * (ring(middle - 0.5 * kNode * width) + ring(middle + 0.5 * kNode * width)));
   }
-  // Of what the rule finds, so that all of it is within reach.
+  // Share of the flux found by the rule, so that all of it can be reached.
   const double wanted = share * reached.back();
   const auto above = std::lower_bound(reached.begin() + 1, reached.end() - 1, wanted);
   const auto i = static_cast<std::size_t>(above - reached.begin());

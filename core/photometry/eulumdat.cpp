@@ -17,9 +17,9 @@ constexpr std::size_t kMaxValues = 4'000'000;
 constexpr std::size_t kMaxLampSets = 100;
 constexpr double kMaxLamps = 1e6;
 constexpr double kMaxIntensity = 1e9;  // cd per 1000 lm
-constexpr double kMinFlux_lm = 1e-6;   // below it nobody sees or dims anything
+constexpr double kMinFlux_lm = 1e-6;   // below it, light is neither seen nor dimmed
 constexpr double kMaxFlux_lm = 1e12;
-constexpr double kFluxTolerance = 0.05;  // how far the integral may be from LORL · lamp flux
+constexpr double kFluxTolerance = 0.05;  // allowed difference of the integral from LORL · lamp flux
 
 std::size_t stored_planes_of(EulumdatFile::Symmetry symmetry, std::size_t planes) {
   switch (symmetry) {
@@ -72,8 +72,8 @@ class EulumdatParser {
     return false;
   }
 
-  /// A number on its own line. `empty_is_0`: many writers leave sizes and the like blank. False when the file has
-  /// ended or the line holds no number; one out of range is a problem, and reading goes on.
+  /// A number on its own line. `empty_is_0`: many writers leave sizes and similar fields blank. False if the file has
+  /// ended or the line holds no number. A number out of range is a problem, but reading continues.
   bool number(const std::string& what, double least, double most, double& out, bool empty_is_0 = false) {
     const At at = cursor_.at();
     const auto field = line(what);
@@ -127,7 +127,7 @@ class EulumdatParser {
     planes_ = static_cast<std::size_t>(planes);
     gammas_ = static_cast<std::size_t>(gammas);
     file_.symmetry = static_cast<EulumdatFile::Symmetry>(static_cast<int>(symmetry));
-    if (planes_ == 1) file_.symmetry = EulumdatFile::Symmetry::round;  // whatever field 3 says, there is one plane
+    if (planes_ == 1) file_.symmetry = EulumdatFile::Symmetry::round;  // there is one plane, whatever field 3 says
     const std::size_t multiple = file_.symmetry == EulumdatFile::Symmetry::about_c0_c180 ? 2
                                  : static_cast<int>(file_.symmetry) >= 3                 ? 4
                                                                                          : 1;
@@ -233,7 +233,7 @@ class EulumdatParser {
     return numbers("intensity", stored_planes_of(file_.symmetry, planes_) * gammas_, kMaxIntensity, file_.cd_per_klm);
   }
 
-  /// The planes that the symmetry turns on must be where it says.
+  /// The symmetry's planes must be at the right angles.
   bool check_planes() {
     if (file_.symmetry == EulumdatFile::Symmetry::round) return true;
     if (!check_ascending("C", file_.c_deg, c_at_, problems_)) return false;

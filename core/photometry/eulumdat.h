@@ -1,8 +1,8 @@
 #pragma once
-/// EULUMDAT photometric files (.ldt; A. Stockmar 1990, revised 1998). Numbers of fields are those of its list.
+/// EULUMDAT photometric files (.ldt; A. Stockmar 1990, revised 1998), with its field numbers.
 ///
-/// In frame lamp C plane 0 contains +X and γ counts from -Z, as in IES type C. But a long luminaire lies along C90 here
-/// (y), and along C0 (x) in IES files: turn the fixture by 90° when one file takes the other's place.
+/// In frame lamp, C plane 0 contains +X and γ counts from -Z, as in IES type C. But a long luminaire lies along C90 (y)
+/// here, and along C0 (x) in IES files. If one file replaces the other, turn the fixture by 90°.
 
 #include <array>
 #include <filesystem>
@@ -34,34 +34,38 @@ struct EulumdatFile {
   std::vector<double> cd_per_klm;                      ///< [stored plane][gamma], as written
   double conversion_factor = 1;                        ///< field 24: multiplies the intensities
   double length_m = 0, width_m = 0, height_m = 0;      ///< of the body
-  double luminous_length_m = 0, luminous_width_m = 0;  ///< width 0: round, length is the diameter
+  double luminous_length_m = 0, luminous_width_m = 0;  ///< width 0 = round, length is the diameter
   std::array<double, 4> luminous_height_m{};           ///< at C0, C90, C180, C270
   double downward_share = 0, light_output_ratio = 0;   ///< fields 22 and 23, 0…1
-  double tilt_deg = 0;                                 ///< while it was measured
+  double tilt_deg = 0;                                 ///< during the measurement
   std::vector<LampSet> lamp_sets;                      ///< alternatives; at least one
   std::array<double, 10> direct_ratios{};              ///< field 27
-  std::vector<std::string> warnings;                   ///< e.g. flux contradicts LORL · lamp flux
+  std::vector<std::string> warnings;                   ///< for example if the flux contradicts LORL · lamp flux
 
-  /// Planes that cd_per_klm holds: stored_first() and the next ones, turning past the last to the first.
+  /// Planes held in cd_per_klm: stored_first() and the following ones, wrapping from the last to the first.
   [[nodiscard]] std::size_t stored_first() const;
   [[nodiscard]] std::size_t stored_planes() const;
 };
 
-/// Parses the text of a file: ISO 8859-1, UTF-8 or anything else that leaves digits as they are, or UTF-16, with or
-/// without byte order mark; decimal point or comma; trailing blanks. What stands after the last intensity is a warning.
-/// Empty numbers among the sizes, ratios and watts are 0.
-/// Refuses, with line and column: files that end early (naming the field), counts outside 1…10 000 or that do not fit
-/// the symmetry, angles that do not ascend or do not reach its planes, values that are negative or no numbers, no lamp
-/// set, no light, and radiometric files. `file_name` is only for problems.
+/// Parses the text of a file: ISO 8859-1, UTF-8 or any encoding that keeps digits, or UTF-16, with or without
+/// byte-order mark; decimal point or comma; trailing blanks. Text after the last intensity gives a warning. Empty
+/// numbers among sizes, ratios and watts are 0. Refuses, with line and column:
+/// - files that end early (naming the field)
+/// - counts outside 1…10 000 or in conflict with the symmetry
+/// - angles that do not ascend or do not reach the symmetry's planes
+/// - values that are negative or not numbers
+/// - files without a lamp set or without light
+/// - radiometric files
+/// `file_name` is for problems only.
 [[nodiscard]] Checked<EulumdatFile> parse_eulumdat(std::string_view text, const std::string& file_name);
 
 /// The distribution of a parsed file with one of its lamp sets [cd] = cd/klm · conversion factor · flux / 1000:
-/// bilinear in C and γ, 0 outside the range of γ, mirrored as its symmetry says.
-/// requires a file that parse_eulumdat returned, and lamp_set < lamp_sets.size() (asserted)
+/// bilinear in C and γ, 0 outside the range of γ, mirrored by its symmetry.
+/// requires a file returned by parse_eulumdat, and lamp_set < lamp_sets.size() (asserted)
 [[nodiscard]] Intensity make_intensity(const EulumdatFile& file, std::size_t lamp_set = 0);
 
-/// The luminous area (fields 16…21), width along x and length along y. A round one with height is a cylinder; of a
-/// rectangle with height only the rectangle is kept.
+/// The luminous area (fields 16…21), width along x and length along y. A round one with height is a cylinder. A
+/// rectangle with height loses its height.
 [[nodiscard]] LuminousOpening luminous_opening(const EulumdatFile& file);
 
 /// Reads and parses. Refuses files over 64 MiB.

@@ -31,7 +31,7 @@ Intensity make_intensity(const EulumdatFile& file, std::size_t lamp_set) {
       symmetry = Table::quadrant;
       break;
     case EulumdatFile::Symmetry::about_c90_c270: {
-      // Held are C270 … C0 … C90; the table wants their mirror images C270 … C180 … C90, ascending.
+      // Stored: C270 … C0 … C90. The table needs their mirror images C270 … C180 … C90, ascending.
       symmetry = Table::half_90_270;
       c_deg.assign(planes, 0);
       for (std::size_t i = 0; i < planes; ++i) {
@@ -45,7 +45,7 @@ Intensity make_intensity(const EulumdatFile& file, std::size_t lamp_set) {
       break;
     }
     case EulumdatFile::Symmetry::none:
-      if (c_deg.back() < 360) {  // plane 0 again, to close the turn
+      if (c_deg.back() < 360) {  // repeat plane 0 to close the circle
         c_deg.push_back(360);
         candela.resize(candela.size() + gammas);
         std::copy_n(candela.begin(), gammas, candela.end() - static_cast<std::ptrdiff_t>(gammas));

@@ -14,7 +14,7 @@ constexpr std::size_t kMaxProblems = 20;
 constexpr std::uintmax_t kMaxPhotometryBytes = 64u << 20;
 constexpr double kMinSpacing_deg = 1e-6;
 
-// Old files hold form feeds, NUL and ^Z; commas separate as blanks do.
+// Old files contain form feeds, NUL and ^Z. Commas separate like blanks.
 bool is_separator(char c) { return static_cast<unsigned char>(c) <= ' ' || c == ','; }
 
 }  // namespace
@@ -73,7 +73,7 @@ std::optional<std::string> from_utf16(std::string_view text) {
     } else if (unit < 0x800) {
       out += {static_cast<char>(0xC0 | unit >> 6), static_cast<char>(0x80 | (unit & 0x3F))};
     } else if (unit >= 0xD800 && unit < 0xE000) {
-      out += '?';  // half of a character that no number or key needs
+      out += '?';  // half of a character, which numbers and keys never need
     } else {
       out += {static_cast<char>(0xE0 | unit >> 12), static_cast<char>(0x80 | (unit >> 6 & 0x3F)),
               static_cast<char>(0x80 | (unit & 0x3F))};
@@ -130,7 +130,7 @@ std::string words_of_rest(Cursor cursor, const std::string& after) {
     if (values == 0) first = token;
     values += !token.empty();
   }
-  if (values == 1 && (first == "END" || first == "end")) return "";  // some programs close the file so
+  if (values == 1 && (first == "END" || first == "end")) return "";  // some programs end the file this way
   return "from line " + std::to_string(line) + " on, " +
          (values == 1 ? "1 value" : std::to_string(values) + " values") + " after " + after +
          " are not read: " + excerpt(first) + (values > 1 ? " …" : "");
@@ -172,7 +172,7 @@ std::optional<std::size_t> NumberReader::whole(const std::string& what, std::siz
   const std::size_t before = problems_.size();
   const auto value = number(what, static_cast<double>(least), static_cast<double>(most));
   if (!value) return std::nullopt;
-  if (problems_.size() > before || problems_.full()) return least;  // reported; go on
+  if (problems_.size() > before || problems_.full()) return least;  // reported; continue
   if (*value != std::floor(*value)) {
     problems_.add(at, what + " is not a whole number", "write a whole number");
     return least;

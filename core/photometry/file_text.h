@@ -1,5 +1,5 @@
 #pragma once
-/// Text of a photometric file: places in it, its lines and numbers, and what is wrong with them. For the parsers alone.
+/// Text of a photometric file: positions, lines, numbers, and its problems. For the parsers only.
 
 #include <cstddef>
 #include <filesystem>
@@ -18,7 +18,7 @@ struct At {
   int column = 0;
 };
 
-/// A place in the text that counts lines; \n, \r\n and lone \r end one.
+/// A position in the text that counts lines; \n, \r\n and lone \r end a line.
 class Cursor {
  public:
   explicit Cursor(std::string_view text) : text_(text) {}  ///< `text` must outlive it
@@ -29,7 +29,7 @@ class Cursor {
   [[nodiscard]] std::size_t remaining() const { return text_.size() - offset_; }
 
   void advance();
-  /// The rest of this line without its end; the cursor moves to the next line.
+  /// The rest of this line, without its end. The cursor moves to the next line.
   std::string_view take_line();
   /// The next run of characters between separators (blanks, control characters, commas); empty at the end.
   std::string_view take_token();
@@ -43,20 +43,20 @@ class Cursor {
 };
 
 [[nodiscard]] std::string_view without_bom(std::string_view text);
-/// UTF-16 with or without byte order mark, as Notepad may save it, as UTF-8; nothing for any other text.
+/// Converts UTF-16, with or without byte-order mark (as saved by Notepad), to UTF-8; nullopt for any other text.
 [[nodiscard]] std::optional<std::string> from_utf16(std::string_view text);
 [[nodiscard]] std::string_view trimmed(std::string_view text);
 [[nodiscard]] std::string lower(std::string_view text);            ///< ASCII letters only
 [[nodiscard]] std::string excerpt(std::string_view text);          ///< for messages: quoted, short, printable
 [[nodiscard]] std::string number_text(double value);               ///< six digits
 [[nodiscard]] std::optional<double> number_of(std::string_view);   ///< a plain finite number, whole text; "+1" too
-[[nodiscard]] bool is_radiometric(std::string_view lowered_line);  ///< speaks of W/sr or radiometric units
+[[nodiscard]] bool is_radiometric(std::string_view lowered_line);  ///< mentions W/sr or radiometric units
 
-/// What stands from here to the end, when it is more than blanks and control characters: "from line 40 on, 12 values
-/// after the last candela value are not read: …". Empty: nothing.
+/// Describes the remaining text, if it is more than blanks and control characters: "from line 40 on, 12 values after
+/// the last candela value are not read: …". Empty = nothing remains.
 [[nodiscard]] std::string words_of_rest(Cursor cursor, const std::string& after);
 
-/// Problems of one file, up to a limit: a garbled one would give thousands.
+/// Problems of one file, up to a limit, since a garbled file would give thousands.
 class ProblemLog {
  public:
   explicit ProblemLog(std::string file_name) : file_name_(std::move(file_name)) {}
@@ -73,27 +73,27 @@ class ProblemLog {
   std::vector<Problem> problems_;
 };
 
-/// Free-form numbers in a row, each named for the message it gives when it is wrong.
+/// Reads free-form numbers in sequence, each with a name for its error message.
 class NumberReader {
  public:
   NumberReader(Cursor& cursor, ProblemLog& problems) : cursor_(cursor), problems_(problems) {}
 
   /// Place of the next token.
   [[nodiscard]] At place();
-  /// The next number; nothing at the end or at a token that is no number (then reading must stop). One out of range is
-  /// a problem, and returned.
+  /// The next number; nullopt at the end or at a token that is not a number (reading must then stop). A number out of
+  /// range is a problem, but is returned.
   std::optional<double> number(const std::string& what, double least, double most);
   std::optional<std::size_t> whole(const std::string& what, std::size_t least, std::size_t most);
-  /// `count` numbers into `out`; stops at the first that cannot be read. False with any problem.
+  /// Reads `count` numbers into `out`; stops at the first unreadable one. False if there was any problem.
   bool numbers(const std::string& what, std::size_t count, double least, double most, std::vector<double>& out);
 
  private:
   Cursor& cursor_;
   ProblemLog& problems_;
-  bool broken_ = false;  // a token that is no number: what follows has lost its meaning
+  bool broken_ = false;  // a token was not a number, so the rest has lost its meaning
 };
 
-/// True when each angle exceeds the one before by 1e-6°; else adds a problem.
+/// True if each angle exceeds the previous one by 1e-6°; otherwise adds a problem.
 bool check_ascending(const std::string& name, const std::vector<double>& angles_deg, At at, ProblemLog& problems);
 
 /// Text of a file of at most 64 MiB. `kind` names the format for the message.

@@ -24,7 +24,7 @@ Vec3 lamp_from_table(GridAxes axes, const Vec3& d) {
   return table_from_lamp(axes, d);  // a mirror, its own inverse
 }
 
-/// Largest angle from -Z at which a table in axes C shines.
+/// Largest angle from -Z at which a table in axes C is not dark.
 double half_cone_about_pole_rad(const SphereTable& table) {
   const auto& polar = table.polar_rad();
   const std::size_t columns = table.symmetry() == SphereTable::Symmetry::round ? 1 : table.azimuth_rad().size();

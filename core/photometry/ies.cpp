@@ -14,8 +14,8 @@ using namespace file_text;
 constexpr std::size_t kMaxIesAngles = 10'000;
 constexpr std::size_t kMaxIesValues = 4'000'000;
 constexpr double kMaxCandela = 1e12;        // a lighthouse has 1e7
-constexpr double kMinIesFlux_lm = 1e-6;     // below it nobody sees or dims anything
-constexpr double kIesFluxTolerance = 1.05;  // how far photometry may exceed its lamps' lumens
+constexpr double kMinIesFlux_lm = 1e-6;     // below it, light is neither seen nor dimmed
+constexpr double kIesFluxTolerance = 1.05;  // factor by which photometry may exceed its lamps' lumens
 constexpr double kMetresPerFoot = 0.3048;
 
 class IesParser {
@@ -26,7 +26,7 @@ class IesParser {
   Checked<IesFile> parse() {
     const bool read = parse_all() && problems_.empty();
     const std::string rest = read ? words_of_rest(cursor_, "the last candela value") : "";
-    // Each decimal comma makes two numbers of one: then numbers are left over, or their counts make no sense.
+    // Each decimal comma splits one number into two. Then numbers are left over, or their counts make no sense.
     if (numbers_from_ && (!read || !rest.empty()) && add_decimal_comma()) return tl::unexpected(problems_.take());
     if (!read) return tl::unexpected(problems_.take());
     if (!rest.empty()) file_.warnings.push_back(rest);
@@ -34,8 +34,8 @@ class IesParser {
   }
 
  private:
-  /// Commas between digits in a file whose numbers are separated by blanks: reports the first, instead of what came of
-  /// reading it as two numbers.
+  /// Looks for commas between digits in a file whose numbers are separated by blanks. Reports the first one, instead of
+  /// the errors from reading it as two numbers.
   bool add_decimal_comma() {
     Cursor cursor = *numbers_from_;
     std::optional<At> at;
@@ -54,7 +54,7 @@ class IesParser {
       const bool decimal = number_of(whole) && !decimals.empty() &&
                            decimals.find_first_not_of("0123456789eE+-") == std::string::npos &&
                            whole.find('.') == std::string::npos;
-      if (!decimal) return false;  // commas separate here
+      if (!decimal) return false;  // commas are separators in this file
       if (!at) at = start, found = word;
     }
     if (!at) return false;
@@ -72,7 +72,7 @@ class IesParser {
     return parse_fields() && parse_angles() && parse_candela() && check_flux();
   }
 
-  /// Up to "TILT="; the cursor then stands behind the '='. Returns where the line began.
+  /// Reads up to "TILT="; the cursor is then after the '='. Returns the start of that line.
   std::optional<At> parse_header() {
     bool first = true;
     while (!cursor_.at_end()) {
@@ -92,7 +92,7 @@ class IesParser {
       if (first && small.rfind("ies", 0) == 0) {
         file_.edition = std::string(line);
       } else if (!line.empty()) {
-        // Far-UVC makers use this format with mW for lm; taken as candela it would light nothing anyone sees.
+        // Far-UVC makers use this format with mW for lm. Read as candela, it would be light that nobody sees.
         if (is_radiometric(small)) {
           problems_.add(at, "radiometric data " + excerpt(line) + ", not candela",
                         "give the file of a visible-light luminaire, in candela");
@@ -113,7 +113,7 @@ class IesParser {
     const std::string small = lower(value);
     if (small == "none") return true;
     if (small == "include") return parse_tilt_section(cursor_, problems_);
-    const std::string name(trimmed(line_start.take_line()));  // may hold blanks
+    const std::string name(trimmed(line_start.take_line()));  // may contain blanks
     const std::optional<std::string> text = tilt_files_ ? tilt_files_(name) : std::nullopt;
     if (!text) {
       problems_.add(at, "TILT factors in another file, " + excerpt(name) + ", that is not here",
@@ -168,7 +168,7 @@ class IesParser {
     const auto ballast = read_.number("ballast factor", 0, 1e6);
     const auto second = read_.number("ballast-lamp photometric factor", 0, 1e6);
     const auto watts = read_.number("input watts", 0, 1e9);
-    if (!watts || !problems_.empty()) return false;  // `watts` is the last: without it the stream ended or broke
+    if (!watts || !problems_.empty()) return false;  // `watts` is the last: without it, the stream ended or broke
     factor_at_ = factor_at;
     if (*vertical < 2) problems_.add(counts_at, "one vertical angle makes no distribution", "give two or more");
     if (*vertical * *horizontal > kMaxIesValues) {
@@ -263,7 +263,7 @@ Checked<IesFile> parse_ies(std::string_view text, const std::string& file_name, 
 
 TiltFiles tilt_files_beside(const std::filesystem::path& path) {
   return [path](std::string_view name) -> std::optional<std::string> {
-    // Names come from strangers: nothing but the folder itself.
+    // Names are untrusted: only files in the folder itself.
     if (name.empty() || name.find_first_of("/\\:") != std::string_view::npos || name.front() == '.') return {};
     const Checked<std::string> tilt = read_text(path.parent_path() / std::string(name), "tilt");
     return tilt ? std::optional(*tilt) : std::nullopt;

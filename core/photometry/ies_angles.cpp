@@ -19,7 +19,7 @@ bool fits_type_c(const std::vector<double>& horizontal) {
   if (first == 90 && last == 270) return true;
   double widest = 0;
   for (std::size_t i = 1; i < horizontal.size(); ++i) widest = std::max(widest, horizontal[i] - horizontal[i - 1]);
-  // Planes that leave out 360: the gap to it is one spacing, as 0, 15 … 345.
+  // Planes without 360, as 0, 15 … 345: the gap to 360 is one spacing.
   return first == 0 && last > 180 && 360 - last <= 1.01 * widest;
 }
 

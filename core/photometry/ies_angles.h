@@ -1,5 +1,5 @@
 #pragma once
-/// Which ranges of angles an IES file may have, by photometric type. For the parser alone.
+/// Ranges of angles that an IES file may have, by photometric type. For the parser only.
 
 #include <string>
 #include <vector>
@@ -10,7 +10,7 @@
 namespace luxrig {
 
 /// Checks the ranges of ascending angles against the symmetries of the file's type (LM-63-2002 §5.13, 5.14; planes
-/// 90…270 from LM-63-1995). False with a problem; a range that leaves directions out is a warning.
+/// 90…270 from LM-63-1995). False with a problem. A range that omits directions gives a warning.
 bool check_ies_angles(const IesFile& file, file_text::At vertical_at, file_text::At horizontal_at,
                       file_text::ProblemLog& problems, std::vector<std::string>& warnings);
 

@@ -22,7 +22,7 @@ Intensity type_c(const IesFile& file) {
   const Symmetry symmetry = symmetry_of(file.horizontal_deg);
   std::vector<double> horizontal_deg = file.horizontal_deg;
   std::vector<double> candela = file.candela;
-  if (symmetry == Symmetry::none && horizontal_deg.back() < 360) {  // plane 0 again, to close the turn
+  if (symmetry == Symmetry::none && horizontal_deg.back() < 360) {  // repeat plane 0 to close the circle
     horizontal_deg.push_back(360);
     candela.reserve(candela.size() + file.vertical_deg.size());
     for (std::size_t i = 0; i < file.vertical_deg.size(); ++i) candela.push_back(file.candela[i]);
@@ -32,8 +32,7 @@ Intensity type_c(const IesFile& file) {
       GridAxes::c);
 }
 
-/// A range that starts at 0 is mirrored: its angles from the negative of the last on, and for each where its values
-/// are.
+/// Mirrors a range that starts at 0: angles from minus the last one on, with the index of the values for each.
 struct BothSides {
   explicit BothSides(const std::vector<double>& angles_deg) {
     if (angles_deg.front() == 0) {
@@ -59,7 +58,7 @@ Intensity type_a_or_b(const IesFile& file) {
   }
   const BothSides vertical(file.vertical_deg);
   const BothSides horizontal(file.horizontal_deg);
-  // Planes share the polar axis: H runs from pole to pole in type B, Y (vertical) in type A.
+  // Planes share the polar axis: in type B, H runs from pole to pole; in type A, Y (vertical) does.
   const BothSides& polar = b ? horizontal : vertical;
   const BothSides& azimuth = b ? vertical : horizontal;
   std::vector<double> values;

@@ -32,7 +32,8 @@ class CosinePower final : public IntensityDistribution {
   double max_intensity_cd() const override { return peak_cd_; }
   double emission_cone_rad() const override { return kPi; }
   DirectionSample sample(double u, double v) const override {
-    // cosγ = (1-v)^(1/(n+1)); 1 - cosγ by expm1, so that a narrow beam keeps its digits. v = 1 lies on the horizon.
+    // cosγ = (1-v)^(1/(n+1)). 1 - cosγ is computed by expm1, so that a narrow beam keeps its digits. v = 1 is the
+    // horizon.
     const double versine = -std::expm1(std::log1p(-std::min(v, 1 - 1e-12)) / (exponent_ + 1));
     const double sine = std::sqrt(versine * (2 - versine));
     const double angle = 2 * kPi * u;

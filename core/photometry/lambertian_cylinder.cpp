@@ -30,9 +30,9 @@ class LambertianCylinder final : public IntensityDistribution {
   double density_per_sr(const Vec3& d) const override { return drawn_.at(d) / drawn_.integral(); }
 
  private:
-  /// The same up and down, so that the table's +Z may be the lamp's.
+  /// Symmetric up and down, so the table's +Z may be the lamp's.
   [[nodiscard]] SphereTable tabulated() const {
-    constexpr int kSteps = 180;  // 90° is one of them: the ends' share has a kink there
+    constexpr int kSteps = 180;  // includes 90°, where the ends' share has a kink
     std::vector<double> polar, values;
     for (int i = 0; i <= kSteps; ++i) {
       polar.push_back(kPi * i / kSteps);
@@ -42,7 +42,7 @@ class LambertianCylinder final : public IntensityDistribution {
   }
 
   double flux_lm_;
-  double side_cd_, end_cd_;  // seen square on
+  double side_cd_, end_cd_;  // seen perpendicularly
   SphereTable drawn_;
 };
 

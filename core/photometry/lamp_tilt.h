@@ -1,20 +1,22 @@
 #pragma once
-/// Lamps whose output depends on how they hang.
+/// Lamps whose output depends on their orientation.
 
 #include <vector>
 
 namespace luxrig {
 
-/// How a lamp's output depends on how far its luminaire hangs off upright (TILT=INCLUDE).
+/// A lamp's output by the tilt of its luminaire from upright (TILT=INCLUDE).
 struct LampTilt {
-  /// 1: the lamp stands upright, 2: it lies and keeps lying when the luminaire is tilted, 3: it lies and is tilted with
-  /// the luminaire. The angles below are the luminaire's in all three.
+  /// The angles below are the luminaire's in all three cases.
+  ///   1   the lamp is upright
+  ///   2   it is horizontal, and stays so when the luminaire is tilted
+  ///   3   it is horizontal, and tilts with the luminaire
   int geometry = 1;
   std::vector<double> angle_deg;  ///< ascending, 0…180
   std::vector<double> factor;     ///< 0.001…10
 
-  /// Factor at a tilt [rad, 0…π], over the factor of an upright luminaire: linear between the angles, held beyond them;
-  /// a list that ends at 90° is mirrored there.
+  /// Factor at a tilt [rad, 0…π] over the factor of an upright luminaire. Linear between the angles, constant beyond
+  /// them. A list that ends at 90° is mirrored there.
   [[nodiscard]] double over_upright(double tilt_rad) const;
 };
 

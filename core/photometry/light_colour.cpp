@@ -46,7 +46,7 @@ Chromaticity xy_of_rgb(const Vec3& rgb) {
 }
 
 ColourWithin709 within_rec709(const Vec3& rgb) {
-  // Published chromaticities of the primaries themselves have three digits.
+  // Published chromaticities of the primaries themselves have only three digits.
   constexpr double kRounding = 2e-3;
   return {*with_luminance_1(rgb.cwiseMax(0.0)), rgb.minCoeff() < -kRounding * rgb.maxCoeff()};
 }

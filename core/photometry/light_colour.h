@@ -12,7 +12,7 @@ namespace luxrig {
   return 0.2126 * rgb.x() + 0.7152 * rgb.y() + 0.0722 * rgb.z();
 }
 
-/// `rgb` scaled to a luminance of 1; nothing when it has none or is not finite or negative.
+/// `rgb` scaled to a luminance of 1; nullopt if it has none, or is negative or not finite.
 [[nodiscard]] std::optional<Vec3> with_luminance_1(const Vec3& rgb);
 
 inline constexpr double kLeastCct_k = 1667, kMostCct_k = 25000;
@@ -20,20 +20,20 @@ inline constexpr double kLeastCct_k = 1667, kMostCct_k = 25000;
 /// Chromaticity, CIE 1931 2° observer.
 using Chromaticity = Eigen::Vector2d;  ///< x, y
 
-/// Colour of a chromaticity, with a luminance of 1. A primary is negative where it lies outside Rec. 709.
+/// Colour of a chromaticity, with a luminance of 1. A primary is negative if the colour is outside Rec. 709.
 /// requires   y > 0 (asserted)
 [[nodiscard]] Vec3 rgb_of_xy(const Chromaticity& xy);
-/// The inverse, whatever the luminance. requires   a sum of tristimulus values above 0, as any light has
+/// The inverse, for any luminance. requires   a positive sum of tristimulus values, as any light has
 [[nodiscard]] Chromaticity xy_of_rgb(const Vec3& rgb);
 
-/// A colour as it can be computed with: primaries that would be negative are 0, luminance 1.
+/// A colour usable in computation: negative primaries set to 0, luminance 1.
 struct ColourWithin709 {
   Vec3 rgb;
-  bool moved = false;  ///< it lay outside by more than rounding
+  bool moved = false;  ///< it was outside by more than rounding
 };
 [[nodiscard]] ColourWithin709 within_rec709(const Vec3& rgb);
 
-/// Colour of a black body. Primaries that would be negative (below 1900 K) are 0.
+/// Colour of a black body. Negative primaries (below 1900 K) are set to 0.
 /// requires   kLeastCct_k ≤ cct_k ≤ kMostCct_k (asserted)
 /// accuracy   0.001 in x and y
 /// source     cubic fit of the Planckian locus by Kim et al., US patent 7024034 (2006); Rec. 709 primaries, white D65

@@ -1,5 +1,5 @@
 #pragma once
-/// What a photometric file says of the size of its light, as a shape.
+/// Size of the luminous area in a photometric file, as a shape.
 
 #include <string>
 
@@ -8,8 +8,8 @@
 namespace luxrig {
 
 struct LuminousOpening {
-  LuminousShape shape;  ///< in frame lamp; a point when the file gives no size
-  std::string note;     ///< what had to be simplified, since no shape is quite like it; empty: nothing
+  LuminousShape shape;  ///< in frame lamp; a point if the file gives no size
+  std::string note;     ///< simplifications, if no shape fits exactly; empty = none
 };
 
 }  // namespace luxrig

@@ -1,12 +1,12 @@
 #pragma once
-/// The part of a luminaire that shines, as a surface with size.
+/// The luminous part of a luminaire, as a surface with size.
 ///
-/// A luminaire of intensity I(ω) [cd] spreads it evenly over its luminous surface as seen from ω: its luminance is
+/// A luminaire of intensity I(ω) [cd] spreads it evenly over its luminous surface as seen from ω. Its luminance is
 ///   L(ω) = I(ω) / A(ω) [cd/m²],   A(ω) = projected area of the surface [m²],
-/// at every place of the surface that ω can see. Integrated over the surface this gives I(ω) back, so that far away
-/// (five times the largest size, ±1 % for a diffuser) the luminaire is a point; near by it is what it is. A Lambertian
-/// intensity I0 cosγ on a rectangle or disk gives a surface of one luminance. Luminous surfaces emit; they neither
-/// block light nor reflect it.
+/// at every place of the surface visible from ω. Integrated over the surface, this gives I(ω) again. So the luminaire
+/// is a point from far away (five times the largest size, ±1 % for a diffuser), and has its true size nearby. A
+/// Lambertian intensity I0 cosγ on a rectangle or disk gives a surface of uniform luminance. Luminous surfaces only
+/// emit; they neither block nor reflect light.
 
 #include "core/geometry.h"
 
@@ -21,7 +21,7 @@ struct LuminousShape {
     cylinder    ///< diameter size_m.x, length size_m.z along z, with both ends
   };
   Kind kind = Kind::point;
-  Vec3 size_m = Vec3::Zero();  ///< what the kind does not name is not looked at
+  Vec3 size_m = Vec3::Zero();  ///< components that the kind does not use are ignored
 
   friend bool operator==(const LuminousShape&, const LuminousShape&) = default;
 };

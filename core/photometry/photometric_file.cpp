@@ -21,7 +21,7 @@ bool has_tilt_line(std::string_view text) {
   return false;
 }
 
-/// Lines 2 to 7 hold one number each; the two distances may be empty.
+/// Whether lines 2 to 7 hold one number each. The two distances may be empty.
 bool has_numbers_of_eulumdat(std::string_view text) {
   Cursor cursor(text);
   cursor.take_line();

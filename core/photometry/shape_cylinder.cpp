@@ -1,9 +1,9 @@
-/// The cylinder as seen from a point: its wall, and the one end that looks there.
+/// The cylinder as seen from a point: its wall, and the one end that faces the point.
 ///
-/// The wall is drawn by azimuth η about the observer's own vertical, even between the two tangents, and then even in
-/// the sine of the elevation over the wall's height at that azimuth: dω = dη d(sin elevation), so the density is known
-/// exactly. An end is a disk. The two are chosen in proportion to about what solid angle each fills. The cylinder being
-/// convex, each direction meets exactly one of them from outside.
+/// The wall is sampled by azimuth η about the observer's own vertical, uniformly between the two tangents, and then
+/// uniformly in the sine of the elevation over the wall's height at that azimuth. dω = dη d(sin elevation), so the
+/// density is exact. An end is a disk. Wall and end are chosen roughly in proportion to their solid angles. Since the
+/// cylinder is convex, each direction meets exactly one of them from outside.
 
 #include <algorithm>
 #include <cmath>
@@ -32,7 +32,7 @@ class Seen {
       tangent_squared_m2_ = (rho_m_ - radius_m_) * (rho_m_ + radius_m_);
       half_azimuth_rad_ = std::atan2(radius_m_, std::sqrt(tangent_squared_m2_));
       const auto rise = [this](double azimuth_rad) { return height(wall_distance_m(std::sin(azimuth_rad))); };
-      // Simpson's rule over the half-width; the tangent, where the distance changes fastest, weighs least.
+      // Simpson's rule over the half-width. The tangent, where the distance changes fastest, has the least weight.
       wall_sr = 2 * half_azimuth_rad_ / 6 * (rise(0) + 4 * rise(0.5 * half_azimuth_rad_) + rise(half_azimuth_rad_));
     }
     if (sees_end_) end_sr = DiskCone({radius_m_}, from_end_m_).rough_solid_angle_sr();
@@ -77,11 +77,11 @@ class Seen {
     return tangent_squared_m2_ / (forward_m + half_chord_m);
   }
 
-  /// Difference of the sines of the elevations of the wall's upper and lower edge, seen at a horizontal distance.
+  /// Difference of the sines of elevation of the wall's upper and lower edge, seen from a horizontal distance.
   [[nodiscard]] double height(double distance_m) const {
     const double low = std::hypot(low_m_, distance_m), high = std::hypot(high_m_, distance_m);
     if (low_m_ < 0 && high_m_ > 0) return high_m_ / high - low_m_ / low;
-    // Of like sign: (b²-a²) d² / (lo hi (b lo + a hi)), without their difference.
+    // Same sign: (b²-a²) d² / (lo hi (b lo + a hi)), which avoids their difference.
     const double a = std::abs(low_m_), b = std::abs(high_m_);
     return std::abs(distance_m / low * (distance_m / high) * ((b - a) * (b + a)) / (b * low + a * high));
   }
@@ -97,7 +97,7 @@ class Seen {
     return {way_m / length_m, length_m, wall_share_ / (2 * half_azimuth_rad_ * height(distance_m))};
   }
 
-  /// Height over the observer whose elevation has the share `part` of the sines between the edges.
+  /// Height above the observer at which the sine of the elevation is at share `part` between those of the edges.
   [[nodiscard]] double climb(double distance_m, double part) const {
     const double low = std::hypot(low_m_, distance_m), high = std::hypot(high_m_, distance_m);
     double climb_m;
@@ -105,7 +105,7 @@ class Seen {
       const double sine = (1 - part) * (low_m_ / low) + part * (high_m_ / high);
       climb_m = distance_m * sine / std::sqrt((1 - sine) * (1 + sine));
     } else {
-      // By the sines' distance from ±1, which keeps its digits far above and far below.
+      // From the distance of the sines to ±1, which keeps its digits far above and far below.
       const double sign = low_m_ < 0 ? -1 : 1;
       const double at_low = distance_m / low * (distance_m / (low + std::abs(low_m_)));
       const double at_high = distance_m / high * (distance_m / (high + std::abs(high_m_)));
@@ -116,8 +116,8 @@ class Seen {
   }
 
   double radius_m_, end_z_m_, rho_m_;
-  double low_m_, high_m_;  ///< the wall's lower and upper edge, from the observer's height
-  Vec3 from_end_m_;        ///< the observer, from the middle of the end that looks at it
+  double low_m_, high_m_;  ///< the wall's lower and upper edge, relative to the observer's height
+  Vec3 from_end_m_;        ///< the observer, relative to the middle of the facing end
   bool sees_wall_, sees_end_;
   Vec3 inwards_ = Vec3::UnitX();
   double tangent_squared_m2_ = 0, half_azimuth_rad_ = 0;

@@ -1,6 +1,6 @@
 #pragma once
-/// Internal to core/photometry: solid-angle sampling of each kind of luminous shape, as shape_sampling.h describes it.
-/// All in frame lamp. None of these is asked about points or sizes that are not finite.
+/// Internal to core/photometry: solid-angle sampling of each kind of luminous shape, as described in shape_sampling.h.
+/// All in frame lamp. Points and sizes are finite.
 
 #include <array>
 
@@ -8,7 +8,7 @@
 
 namespace luxrig {
 
-/// Sizes as the formulas want them.
+/// Sizes as used in the formulas.
 struct Rectangle {
   double half_x_m, half_y_m;
 };
@@ -34,18 +34,18 @@ struct Cylinder {
 [[nodiscard]] ShapeSample sample_seen_from(const Cylinder& cylinder, const Vec3& from_m, double u, double v);
 [[nodiscard]] double density_seen_from(const Cylinder& cylinder, const Vec3& from_m, const Vec3& direction);
 
-/// The unit square onto the unit disk, keeping areas in proportion (P. Shirley and K. Chiu, 1997).
+/// Maps the unit square to the unit disk, preserving area ratios (P. Shirley and K. Chiu, 1997).
 struct OnUnitDisk {
   double cos_angle, sin_angle;
-  double radius_squared;  ///< even over 0…1
+  double radius_squared;  ///< uniform over 0…1
 };
 [[nodiscard]] OnUnitDisk concentric(double u, double v);
 
-/// The disk as seen from a point off its plane: a cone with an elliptical cross-section.
+/// A disk seen from a point off its plane: a cone with an elliptical cross-section.
 ///
-/// The rays to the two ends of the diameter that points at the observer lie in the cone's plane of symmetry, so the
-/// bisector of the two is the cone's axis; with l0, l1 the lengths of those rays, half the wider opening (across that
-/// plane) is α with sin α = 2r/(l0+l1), and half the narrower is β, by the law of cosines.
+/// Take the diameter that points at the observer. The rays to its two ends lie in the cone's plane of symmetry, so
+/// their bisector is the cone's axis. Let l0, l1 be the lengths of those rays. Half the wider opening (across that
+/// plane) is α with sin α = 2r/(l0+l1). Half the narrower one is β, by the law of cosines.
 class DiskCone {
  public:
   /// requires r > 0 and height (|z|) > 0
@@ -61,7 +61,7 @@ class DiskCone {
   [[nodiscard]] double rim(double cos_azimuth, double sin_azimuth) const;
   [[nodiscard]] double density_at(double cos_azimuth, double sin_azimuth) const;
 
-  Vec3 axis_, across_, along_;  ///< unit; `across_` at right angles to the plane of symmetry, `along_` in it
+  Vec3 axis_, across_, along_;  ///< unit; `across_` perpendicular to the plane of symmetry, `along_` in it
   double tan2_wide_, tan2_narrow_;
   double wide_, narrow_;  ///< 2 sin(α/2), 2 sin(β/2)
 };

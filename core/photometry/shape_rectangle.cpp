@@ -1,10 +1,10 @@
-/// The rectangle as seen from a point: even over its solid angle.
+/// The rectangle as seen from a point: uniform over its solid angle.
 ///
 /// C. Ureña, M. Fajardo and A. King, "An Area-Preserving Parametrization for Spherical Rectangles", EGSR 2013; inverted
-/// here in another form, which keeps its digits near the rectangle's plane. With the observer in the origin and the
+/// here in another form, which keeps its digits near the rectangle's plane. With the observer at the origin and the
 /// rectangle [x0, x1] × [y0, y1] at height h, the part of the solid angle below x is
 ///   Ω(x) = g(x) - g(x0),   g(x) = asin(s b1) - asin(s b0),   s = x/√(x²+h²),   bi = yi/√(yi²+h²).
-/// sin g(x) and the two bi are in the proportion of the sides of a triangle, whose law of cosines gives s from g:
+/// sin g(x) and the two bi have the ratio of the sides of a triangle, whose law of cosines gives s from g:
 ///   s = sin g / √(b0² + b1² - 2 b0 b1 cos g).
 
 #include <algorithm>
@@ -15,13 +15,13 @@
 namespace luxrig {
 namespace {
 
-/// Below this solid angle [sr] Ω is a difference of angles that has lost half its digits; points are then drawn evenly
-/// over the area, which for a rectangle that far away is as good.
+/// Below this solid angle [sr], Ω is a difference of angles that has lost half its digits. Points are then sampled
+/// uniformly over the area, which is as good for a rectangle so far away.
 constexpr double kSmall = 1e-7;
-/// A direction that was aimed at the rim may pass it by rounding.
+/// A direction aimed at the rim may miss it through rounding.
 constexpr double kRectangleRim = 1 + 1e-12;
 
-/// y/√(y²+d²) with its distance from ±1, both to full precision.
+/// y/√(y²+d²) and its distance from ±1, both to full precision.
 struct Sine {
   Sine(double y, double d) : sign(y < 0 ? -1 : 1) {
     const double hypotenuse = std::hypot(y, d);
@@ -56,7 +56,7 @@ struct SeenRectangle {
 
   [[nodiscard]] bool visible() const { return area > 0 && height > 0; }
 
-  /// Density of drawing by area, at a distance along a direction whose slope to the plane is `cosine`.
+  /// Density of sampling by area, at a distance along a direction whose cosine to the plane's normal is `cosine`.
   [[nodiscard]] double area_density(double distance_m, double cosine) const {
     return distance_m * (distance_m / area) / cosine;
   }
@@ -78,7 +78,7 @@ double place_at(const SeenRectangle& seen, double part) {
   return std::isnan(x) ? seen.x0 + part * (seen.x1 - seen.x0) : std::clamp(x, seen.x0, seen.x1);
 }
 
-/// Even in y/√(y²+d²), with d the distance from the line x = const.
+/// Uniform in y/√(y²+d²), with d the distance from the line x = const.
 double along_line(const SeenRectangle& seen, double x, double part) {
   const double d = std::hypot(x, seen.height);
   const Sine h0(seen.y0, d), h1(seen.y1, d);

@@ -8,7 +8,7 @@
 namespace luxrig {
 namespace {
 
-/// A direction that was aimed at the rim may pass it by rounding.
+/// A direction aimed at the rim may miss it through rounding.
 constexpr double kRoundRim = 1 + 1e-12;
 
 /// 1 - cos θ from tan² θ, θ ≤ π/2, to full precision.
@@ -18,7 +18,7 @@ double versine_from_tan2(double tan2) {
   return tan2 / (secant * (1 + secant));
 }
 
-/// Any two unit vectors at right angles to a unit vector (T. Duff et al., JCGT 6(1), 2017).
+/// Any two unit vectors perpendicular to a unit vector (T. Duff et al., JCGT 6(1), 2017).
 std::array<Vec3, 2> basis_about(const Vec3& n) {
   const double sign = std::copysign(1.0, n.z());
   const double a = -1 / (sign + n.z()), b = n.x() * n.y() * a;
@@ -39,10 +39,10 @@ OnUnitDisk concentric(double u, double v) {
 
 DiskCone::DiskCone(const Disk& disk, const Vec3& from_m) {
   const double r = disk.radius_m, h = std::abs(from_m.z()), rho = std::hypot(from_m.x(), from_m.y());
-  // In units of the largest length, so that squares neither overflow nor vanish.
+  // In units of the largest length, so that squares neither overflow nor underflow.
   const double unit = std::max({r, h, rho});
   const double r1 = r / unit, h1 = h / unit, rho1 = rho / unit;
-  // l0 l1 = √(m² + 4r²h²), (l0 ± l1)² ∓ 4r² = 2 (l0 l1 ± m): written without differences of like numbers.
+  // l0 l1 = √(m² + 4r²h²), (l0 ± l1)² ∓ 4r² = 2 (l0 l1 ± m): written without differences of similar numbers.
   const double m = (rho1 - r1) * (rho1 + r1) + h1 * h1;
   const double cross = 2 * r1 * h1;
   const double product = std::hypot(m, cross);
@@ -72,8 +72,8 @@ double DiskCone::density_at(double cos_azimuth, double sin_azimuth) const {
   return wide_ * narrow_ / (2 * kPi * (c * c + s * s)) / rim(cos_azimuth, sin_azimuth);
 }
 
-// Azimuths as in an ellipse with the axes that the cone has in Lambert's equal-area projection, radii even in solid
-// angle. In that projection the cone is nearly that ellipse; the density makes up for the difference exactly.
+// Azimuths as in an ellipse with the axes of the cone in Lambert's equal-area projection, radii uniform in solid angle.
+// In that projection the cone is nearly that ellipse. The density corrects the difference exactly.
 DirectionSample DiskCone::sample(double u, double v) const {
   const OnUnitDisk at = concentric(u, v);
   const double c = wide_ * at.cos_angle, s = narrow_ * at.sin_angle, length = std::hypot(c, s);
@@ -109,7 +109,7 @@ double density_seen_from(const Disk& disk, const Vec3& from_m, const Vec3& direc
 
 namespace {
 
-/// The cone that a sphere fills.
+/// The cone filled by a sphere.
 struct BallCone {
   BallCone(const Ball& ball, const Vec3& from_m) : distance_m(from_m.norm()), radius_m(ball.radius_m) {
     if (!(radius_m > 0) || !(distance_m > radius_m)) return;
@@ -131,7 +131,7 @@ ShapeSample sample_seen_from(const Ball& ball, const Vec3& from_m, double u, dou
   const OnUnitDisk at = concentric(u, v);
   const double versine = at.radius_squared * cone.versine;
   const double sine = std::sqrt(versine * (2 - versine)), across_m = cone.distance_m * sine;
-  // The nearer of the two places has the tangent's square as product with the farther one.
+  // The product of the distances to both intersections is the tangent's square; this gives the nearer one.
   const double half_chord_m = std::sqrt(std::max(0.0, (cone.radius_m - across_m) * (cone.radius_m + across_m)));
   const double distance_m = cone.tangent_squared_m2 / (cone.distance_m * (1 - versine) + half_chord_m);
   return {(1 - versine) * axis + sine * (at.cos_angle * x + at.sin_angle * y), distance_m, cone.density_per_sr};

@@ -8,7 +8,7 @@
 namespace luxrig {
 namespace {
 
-/// Calls `ask` with the shape's kind as its own type; `none` for a point.
+/// Calls `ask` with the shape as its own type; returns `none` for a point.
 template <class Answer, class Ask>
 Answer by_kind(const LuminousShape& shape, Answer none, Ask&& ask) {
   const Vec3 half_m = 0.5 * shape.size_m;
@@ -75,7 +75,7 @@ double way_m(const Ball& of, const Vec3& from_m, const Vec3& d) {
   return towards_m - std::sqrt(std::max(0.0, (of.radius_m - miss_m) * (of.radius_m + miss_m)));
 }
 double way_m(const Cylinder& of, const Vec3& from_m, const Vec3& d) {
-  // Through the near end, if it is that; else on to the wall.
+  // Through the near end if the ray hits it; else on to the wall.
   const double end_m = (-std::copysign(of.half_length_m, d.z()) - from_m.z()) / d.z();
   if (end_m > 0 && std::hypot(from_m.x() + end_m * d.x(), from_m.y() + end_m * d.y()) <= of.radius_m) return end_m;
   const double across2 = d.x() * d.x() + d.y() * d.y();
@@ -93,7 +93,7 @@ double projected_area_m2(const LuminousShape& shape, const Vec3& direction_lamp)
 ShapeSample sample_seen_from(const LuminousShape& shape, const Vec3& point_lamp_m, double u, double v) {
   const ShapeSample sample =
       by_kind(shape, ShapeSample{}, [&](const auto& kind) { return sample_seen_from(kind, point_lamp_m, u, v); });
-  // Sizes and distances whose squares leave the range of double fill no solid angle worth the name.
+  // Sizes and distances whose squares exceed the range of double fill no relevant solid angle.
   if (!std::isfinite(sample.density_per_sr) || !(sample.distance_m > 0) || !sample.direction.allFinite()) return {};
   return sample;
 }

@@ -28,14 +28,14 @@ struct GeneralProfile {
   }
 };
 
-/// (1 + 2 sin h) / 3 of the zenith's.
+/// (1 + 2 sin h) / 3 of the zenith's luminance.
 struct OvercastProfile {
-  Vec3 towards_sun = Vec3::UnitZ();  // has no say: any will do
+  Vec3 towards_sun = Vec3::UnitZ();  // unused: any will do
   [[nodiscard]] double operator()(const Vec3& d) const { return (1 + 2 * d.z()) / 3; }
 };
 
-/// ∫ f dx over [from, to], 8-point Gauss in each of `panels` that are finer towards `to` (quadratically): the sun's
-/// halo has a tip there, which a smooth substitution takes away.
+/// ∫ f dx over [from, to], 8-point Gauss in each of `panels`, which get finer towards `to` (quadratically). The sun's
+/// halo has a cusp there, which a smooth substitution removes.
 template <class F>
 double towards_end(const F& f, double from, double to, int panels) {
   double sum = 0;
@@ -45,7 +45,7 @@ double towards_end(const F& f, double from, double to, int panels) {
   return sum * (to - from);
 }
 
-/// A sky by a formula: luminance from it, directions from a table of it.
+/// A sky by formula: luminance from the formula, directions from a table of it.
 template <class Profile>
 class FormulaSky final : public SkyLuminance {
  public:
@@ -80,7 +80,7 @@ class FormulaSky final : public SkyLuminance {
     return level > 1e-12 ? Vec3(d.x() / level, d.y() / level, 0) : Vec3::UnitX();
   }
 
-  /// The table's azimuth counts from the sun's.
+  /// The table's azimuth counts from that of the sun.
   Vec3 world_from_table(const Vec3& d) const {
     return {d.x() * towards_sun_level_.x() - d.y() * towards_sun_level_.y(),
             d.x() * towards_sun_level_.y() + d.y() * towards_sun_level_.x(), d.z()};
@@ -96,7 +96,7 @@ class FormulaSky final : public SkyLuminance {
     constexpr int kZeniths = 36, kAzimuths = 48;
     std::vector<double> zenith, azimuth, values;
     for (int i = 0; i <= kZeniths; ++i) zenith.push_back(0.5 * kPi * i / kZeniths);
-    // A row through the sun, so that its halo's tip is in the table.
+    // Adds a row through the sun, so that the cusp of its halo is in the table.
     const double gap = 0.1 * zenith[1];
     const auto row = std::lower_bound(zenith.begin(), zenith.end(), sun_zenith_rad_);
     if (row != zenith.end() && row != zenith.begin() && *row - sun_zenith_rad_ > gap &&
@@ -174,14 +174,14 @@ class Sun final : public SkyLuminance {
   static inline const double kVersine = versine_of(0.5 * kSunDiameter_rad);
   static inline const double kDensity = 1 / (2 * kPi * kVersine);
 
-  /// By the chord, which keeps the digits that a cosine near 1 loses; a hair wider than what is drawn.
+  /// By the chord, which keeps the digits that a cosine near 1 loses. Slightly wider than the range of samples.
   bool within(const Vec3& d) const { return (d - towards_sun_).squaredNorm() <= 2 * kVersine * (1 + 1e-9); }
 
-  /// Of a disk that the horizon cuts.
+  /// For a disk that the horizon cuts.
   [[nodiscard]] double rising_illuminance_lx() const {
     const double radius = 0.5 * kSunDiameter_rad;
     const double height = std::asin(towards_sun_.z());
-    // Rows of the small disk above the horizon, flat: sin h = h.
+    // Rows of the small disk above the horizon, taken as flat: sin h = h.
     constexpr int kRows = 2000;
     double sum = 0;
     for (int i = 0; i < kRows; ++i) {

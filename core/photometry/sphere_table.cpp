@@ -12,13 +12,13 @@
 namespace luxrig {
 namespace {
 
-// Rounding must not darken a direction that lies on the first or last angle.
+// Rounding must not darken a direction at the first or last angle.
 constexpr double kRounding_rad = 1e-9;
-// Widest piece for which the series below hold to 1e-15.
+// Widest piece for which the series below are good to 1e-15.
 constexpr double kWidestPiece_rad = 0.05;
 // Shares are kept off the ends, where a value of 0 would give a direction of density 0.
 constexpr double kLeastShare = 1e-12;
-// Values fainter than this part of the largest count as dark: the squares of fainter ones would underflow to 0 / 0.
+// Values below this share of the largest count as dark: the squares of smaller ones would underflow to 0 / 0.
 constexpr double kFaintest = 1e-60;
 constexpr double kLeastPeak = 1e-60, kMostPeak = 1e60;
 
@@ -41,7 +41,7 @@ const auto kTurns = [] {
   return table;
 }();
 
-/// Sine and cosine of `turns` times 2π, |turns| ≤ 2: from a table and the series, at a third of the library's time.
+/// Sine and cosine of `turns` times 2π, |turns| ≤ 2: from a table and the series, in a third of the library's time.
 struct Turn {
   explicit Turn(double turns) {
     constexpr int kAbove0 = 4 * kTurnSteps;
@@ -54,7 +54,7 @@ struct Turn {
   double sine, cosine;
 };
 
-/// Place 0…1 in a cell whose density runs linearly from a to b at which a share s of its integral is reached.
+/// Position 0…1 in a cell at which a share s of its integral is reached; the density is linear from a to b.
 double linear_place(double a, double b, double s) {
   return s * (a + b) / (a + std::sqrt(std::max(0.0, a * a + s * (b * b - a * a))));
 }
@@ -82,7 +82,7 @@ Ascending::Ascending(std::vector<double> knots) : knots_(std::move(knots)) {
     even = even && std::abs(knots_[i] - (knots_.front() + step * static_cast<double>(i))) <= 1e-9 * step;
   }
   if (even) inverse_step_ = 1 / step;
-  // So many buckets that no two knots share one, where that can be had: one comparison then finds the interval.
+  // Enough buckets that no two knots share one, if possible. One comparison then finds the interval.
   double least_gap = range;
   for (std::size_t i = 1; i < knots_.size(); ++i) least_gap = std::min(least_gap, knots_[i] - knots_[i - 1]);
   const double wanted = std::ceil(1.001 * range / std::max(least_gap, 1e-6 * range));
@@ -156,7 +156,7 @@ SphereTable::SphereTable(Symmetry symmetry, std::vector<double> polar_rad, std::
   for (const Piece& piece : pieces_) sum += piece.integral;
   integral_ = sum * copies(symmetry_);
   LUXRIG_CHECK(integral_ > 0 && std::isfinite(integral_), "integral {}", integral_);
-  // Pieces that would be lost in the rounding of the sum are never drawn.
+  // Pieces that would be lost in the rounding of the sum are never sampled.
   std::erase_if(pieces_, [sum](const Piece& piece) { return piece.integral < 1e-14 * sum; });
   std::vector<double> cumulative{0};
   for (const Piece& piece : pieces_) cumulative.push_back(cumulative.back() + piece.integral / sum);
@@ -166,7 +166,7 @@ SphereTable::SphereTable(Symmetry symmetry, std::vector<double> polar_rad, std::
 void SphereTable::add_pieces(std::size_t band, double ring_lower, double ring_upper) {
   const double from = polar_.knots()[band];
   const double width = polar_.knots()[band + 1] - from;
-  // A band that is dark at one end and has a pole at the other gives nothing at either: its middle must show it.
+  // A band that is dark at one end and has a pole at the other has density 0 at both, so its middle is needed.
   const int fewest = ring_lower > 0 && ring_upper > 0 ? 1 : 2;
   const int count = std::max(fewest, static_cast<int>(std::ceil(width / kWidestPiece_rad)));
   const double slope = (ring_upper - ring_lower) / width;
@@ -245,7 +245,7 @@ SphereTable::Polar SphereTable::draw_polar(const Piece& piece, double share) {
   };
   double x = piece.width_rad * linear_place(piece.density_start, piece.density_end, share);
   double excess = 0;
-  if (piece.gentle) {  // the first guess is good to 1e-3 of the width, and each step squares that
+  if (piece.gentle) {  // the first guess is good to 1e-3 of the width, and each step squares that error
     x -= step(x, excess);
     x -= step(x, excess);
     x = std::clamp(x, 0.0, piece.width_rad);
@@ -273,7 +273,7 @@ SphereTable::Sample SphereTable::sample(double u, double v) const {
   const Piece& piece = pieces_[at];
   const Polar polar = draw_polar(piece, std::clamp(share, kLeastShare, 1 - kLeastShare));
   const auto& knots = polar_.knots();
-  // Off the ends, where a row may be dark.
+  // Kept off the ends, where a row may be dark.
   const double t = std::clamp((polar.angle_rad - knots[piece.band]) / (knots[piece.band + 1] - knots[piece.band]),
                               kLeastShare, 1 - kLeastShare);
 
@@ -283,7 +283,7 @@ SphereTable::Sample SphereTable::sample(double u, double v) const {
     return {{polar.sine * turn.cosine, polar.sine * turn.sine, polar.cosine}, value};
   }
 
-  // Which mirror image; every other one is run through backwards, so that the azimuth has no jumps.
+  // Selects the mirror image. Every other one runs backwards, so that the azimuth has no jumps.
   const int images = copies(symmetry_);
   const double turned = u * images;
   const int image = std::clamp(static_cast<int>(turned), 0, images - 1);
@@ -293,10 +293,10 @@ SphereTable::Sample SphereTable::sample(double u, double v) const {
   const auto& azimuth = azimuth_.knots();
   const double* const lower = rings_.data() + piece.band * azimuth.size();
   const double* const upper = lower + azimuth.size();
-  // Never falls along a row, however unlike the two rows are: a difference of the two would by its rounding.
+  // Never decreases along a row, however different the two rows are; a difference of the two would, through rounding.
   const auto reached = [&](std::size_t a) { return (1 - t) * lower[a] + t * upper[a]; };
   const double target = along * reached(azimuth.size() - 1);
-  // Cell with reached(low) ≤ target < reached(low + 1), by quarters and without branches, which would mispredict.
+  // Cell with reached(low) ≤ target < reached(low + 1), by quarters and without branches, which would be mispredicted.
   std::size_t low = 0;
   for (std::size_t left = azimuth.size() - 1; left > 1;) {
     const std::size_t quarter = std::max<std::size_t>(1, left / 4);
@@ -317,7 +317,7 @@ SphereTable::Sample SphereTable::sample(double u, double v) const {
   const double place = linear_place(from, to, of_cell);
   const double angle = azimuth[low] + place * (azimuth[high] - azimuth[low]);
   const Turn turn(angle * (0.5 / kPi));
-  // Signs of x and y by symmetry and image: a table, since random images would mispredict.
+  // Signs of x and y by symmetry and image: a table, since random images would be mispredicted.
   constexpr double kSigns[6][4][2] = {{{1, 1}, {1, 1}, {1, 1}, {1, 1}},  {{1, 1}, {-1, 1}, {-1, -1}, {1, -1}},
                                       {{1, 1}, {1, -1}, {1, 1}, {1, 1}}, {{1, 1}, {-1, 1}, {1, 1}, {1, 1}},
                                       {{1, 1}, {1, 1}, {1, 1}, {1, 1}},  {{1, 1}, {1, 1}, {1, 1}, {1, 1}}};

@@ -15,7 +15,7 @@
 namespace luxrig {
 namespace {
 
-/// Of f ≥ 0. Halves the interval until both halves agree with the whole to `allowed`, or as far as they round.
+/// Integral of f ≥ 0. Halves the interval until both halves agree with the whole to `allowed`, or to rounding.
 template <class F>
 double integral(const F& f, double from, double to, double allowed, int depth) {
   const double middle = 0.5 * (from + to);
@@ -36,8 +36,8 @@ class Spot final : public IntensityDistribution {
         cos_cut_off_(std::cos(2 * field_rad_)),
         power_(std::log(std::log2(10.0)) / (std::log(field_angle_rad) - std::log(beam_angle_rad))) {
     const auto ring = [this](double gamma_rad) { return 2 * kPi * profile(gamma_rad) * std::sin(gamma_rad); };
-    // Pieces over each of which (γ/b)^p doubles: without them the rule would step over the edge of a spot whose
-    // field is hardly wider than its beam, and find itself agreed.
+    // Intervals over each of which (γ/b)^p doubles. Without them, the rule would step over the edge of a spot whose
+    // field is hardly wider than its beam, and seem to have converged.
     std::vector<double> edges{0};
     const auto add = [&](double to_rad) {
       if (to_rad > edges.back()) edges.push_back(to_rad);
@@ -48,7 +48,8 @@ class Spot final : public IntensityDistribution {
       add(std::min(edge_rad, 2 * field_rad_));
     }
     add(2 * field_rad_);
-    // Of all of it, not of the beam: in a wide field that holds most of the light, and no sum is better than it rounds.
+    // Relative to all of it, not to the beam: in a wide field, that holds most of the light, and no sum is better than
+    // its rounding.
     double about = 0, per_cd = 0;
     for (std::size_t i = 1; i < edges.size(); ++i) about += gauss8(ring, edges[i - 1], edges[i]);
     for (std::size_t i = 1; i < edges.size(); ++i) per_cd += integral(ring, edges[i - 1], edges[i], 1e-14 * about, 40);
@@ -76,8 +77,8 @@ class Spot final : public IntensityDistribution {
  private:
   static double gamma_rad(const Vec3& d) { return angle_rad(std::sqrt(d.x() * d.x() + d.y() * d.y()), -d.z()); }
 
-  /// The profile at a few hundred angles, linear between: what directions are drawn from. Positive wherever the
-  /// profile is, since that falls steadily and every stretch between two angles begins where it has not ended.
+  /// The profile at a few hundred angles, linear between them, for sampling directions. Positive wherever the profile
+  /// is: it falls monotonically, so every interval begins where it has not ended.
   SphereTable tabulated() const {
     constexpr int kSteps = 96;
     const double end_rad = 2 * field_rad_;
@@ -88,8 +89,8 @@ class Spot final : public IntensityDistribution {
     for (int i = 1; i < kSteps; ++i) {
       const double share = static_cast<double>(i) / kSteps;
       add(end_rad * share);
-      add(field_rad_ * share * share);                           // finer about the axis
-      add(beam_rad_ * std::pow(-std::log2(share), 1 / power_));  // even steps down the edge
+      add(field_rad_ * share * share);                           // finer near the axis
+      add(beam_rad_ * std::pow(-std::log2(share), 1 / power_));  // equal steps down the edge
       if (i <= 40) add(beam_rad_ * std::pow(i, 1 / power_));     // 2^-i: its foot
     }
     std::sort(angles.begin(), angles.end());

@@ -1,5 +1,5 @@
 #pragma once
-/// Where the sun stands, by date, time and place.
+/// Position of the sun, by date, time and place.
 
 #include "core/geometry.h"
 
@@ -8,7 +8,7 @@ namespace luxrig {
 /// Gregorian date and universal time (UTC).
 struct UtcTime {
   int year = 2000, month = 1, day = 1;
-  double hours = 12;  ///< 0…24; more or less counts into neighbouring days
+  double hours = 12;  ///< 0…24; values beyond count into neighbouring days
 };
 
 struct SunPosition {
@@ -23,7 +23,7 @@ struct SunPosition {
 [[nodiscard]] SunPosition sun_position(const UtcTime& time, double latitude_rad, double longitude_rad);
 
 /// Unit vector towards a sky position in frame world.
-/// north_turn_rad   how far north lies counter-clockwise (from above) of +Y
+/// north_turn_rad   angle of north from +Y, counter-clockwise seen from above
 [[nodiscard]] Vec3 towards_sky_world(double azimuth_rad, double altitude_rad, double north_turn_rad = 0);
 
 }  // namespace luxrig

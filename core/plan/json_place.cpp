@@ -7,7 +7,7 @@
 namespace luxrig {
 namespace {
 
-/// Walks over text that is known to be well-formed; never past its end.
+/// Walks over well-formed text; never past its end.
 class JsonWalk {
  public:
   explicit JsonWalk(std::string_view text) : text_(text) {}
@@ -34,7 +34,7 @@ class JsonWalk {
     take('"');
     return inside;
   }
-  /// Past a whole value, however deep.
+  /// Skips a whole value, however deep.
   void skip_value() {
     int depth = 0;
     do {
@@ -57,7 +57,7 @@ class JsonWalk {
       if (depth == 0) return;
     } while (at_ < text_.size());
   }
-  /// To the value of a key or number in the object or array that begins here. False when it is not there.
+  /// Moves to the value of a key or index in the object or array that begins here. False if there is none.
   bool enter(std::string_view step) {
     skip_blanks();
     if (take('{')) {

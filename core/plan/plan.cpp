@@ -134,7 +134,7 @@ std::string to_json(const Plan& plan) {
   for (const PlannedLimit& limit : plan.limits) json["limits"].push_back(json_of(limit));
   put(json, "seconds", plan.seconds);
   json["seed"] = plan.seed;
-  // Names come from files; one that is not UTF-8 must not make writing throw.
+  // Names come from files. One that is not UTF-8 must not make the writer throw.
   return json.dump(1, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What a solve decided, as a file (JSON) that a person can read, diff, version and apply later.
+/// Results of a solve, as a file (JSON) that a person can read, diff, version and apply later.
 
 #include <filesystem>
 #include <optional>
@@ -15,41 +15,41 @@
 namespace luxrig {
 
 struct PlannedLight {
-  std::string name;  ///< fixture, or what it is to be called
+  std::string name;  ///< of the fixture, or the name it should get
   std::string luminaire;
   Vec3 position_world_m = Vec3::Zero();
   std::optional<Vec3> aim_world_m;
   std::optional<double> pan_deg, tilt_deg;
-  std::optional<double> beam_angle_deg;  ///< that its zoom makes
+  std::optional<double> beam_angle_deg;  ///< as set by its zoom
   double level = 0;                      ///< emittance factor 0…1
-  /// What the solver wrote as level: one that differs is a person's, and is held as such. None: nobody knows.
+  /// Level written by the solver. If `level` differs, a person changed it, and it is held. None = unknown.
   std::optional<double> solved_level{};
   double lumens = 0;              ///< level × rated flux
-  std::optional<double> watts{};  ///< level × rated power; none when that is not known
+  std::optional<double> watts{};  ///< level × rated power; none = unknown
 };
 
-/// So many lights would leave so much of the error (normalised, weighted, none above its highest level); or, kind
-/// "highlight", give so much contrast, each at full level (then the error is NaN).
+/// The best with another number of lights. The error is normalised and weighted, with no light above its highest level.
+/// Kind "highlight" has the contrast instead, with each light at full level; the error is then NaN.
 struct PlannedNumber {
   int lights = 0;
   double normalised_error = 0;
   std::optional<double> local_contrast_lx{};
 };
 
-/// Within so much power the lights would leave so much of the error.
+/// Error that the lights would leave within a power limit.
 struct PlannedPower {
   double max_watts = 0, watts = 0;
   double normalised_error = 0;
 };
 
-/// What lights do for an object's relief (core/highlight).
+/// Effect of the lights on an object's relief (core/highlight).
 struct PlannedRelief {
   double local_contrast_lx = 0;  ///< largest difference in illuminance to a neighbour, mean over its recessed places
-  double coverage = 0;           ///< share of its features where a light draws a shadow's edge
-  double relative_contrast = 0;  ///< the difference over the sum, likewise; 0…1
+  double coverage = 0;           ///< share of its features where a light draws a shadow edge
+  double relative_contrast = 0;  ///< the same as the difference over the sum; 0…1
   double object_lux = 0;         ///< at its brightest place
   std::optional<double> before_local_contrast_lx{}, before_coverage{},
-      before_relative_contrast{};  ///< kind "aim": of the look that was there
+      before_relative_contrast{};  ///< kind "aim": values of the look before
   std::optional<double> key_to_fill{};
 };
 
@@ -58,18 +58,18 @@ struct PlannedTask {
   double normalised_error = 0;
   int iterations = 0;
   double seconds = 0;
-  std::vector<PlannedLight> lights;  ///< of an emittance task, fixtures; of a placement, lights that need not hang yet
-  /// Kinds that place lights: what the rig's fixtures give meanwhile.
+  std::vector<PlannedLight> lights;  ///< fixtures; of a task that places lights: lights that may not hang yet
+  /// Kinds that place lights: the rig's fixtures during the search.
   std::vector<PlannedLight> fixtures{};
-  /// Kinds that place lights: the best with other numbers of lights, so that a person can choose.
+  /// Kinds that place lights: the best with other numbers of lights, for a person to choose from.
   std::vector<PlannedNumber> numbers{};
-  /// kind "placement": proven by the search's own light: no number of lights at the places it tried comes closer, and
-  /// none up to this task's number does.
+  /// kind "placement": lower bounds of the error, proven in the search's own model of light, for the places it tried.
+  /// The first holds for any number of lights, the second for up to this task's number.
   std::optional<double> lower_bound{}, lower_bound_of_number{};
-  bool switches_proven = true;            ///< false: other settings of what is on or off could be better
-  std::optional<double> watts{};          ///< of its lights together; none when one's is not known
-  std::vector<PlannedPower> front{};      ///< kind "placement": what each watt less would cost
-  std::optional<PlannedRelief> relief{};  ///< kind "aim" and "highlight"; their normalised_error is 0
+  bool switches_proven = true;            ///< false = other settings of on-or-off lamps could be better
+  std::optional<double> watts{};          ///< of its lights together; none if one is unknown
+  std::vector<PlannedPower> front{};      ///< kind "placement": error at lower power limits
+  std::optional<PlannedRelief> relief{};  ///< kinds "aim" and "highlight"; their normalised_error is 0
 };
 
 struct PlannedPoint {
@@ -77,14 +77,14 @@ struct PlannedPoint {
   Vec3 position_world_m = Vec3::Zero();
   Vec3 normal_world = Vec3::UnitZ();
   double lux = 0, direct_lux = 0, standard_error_lux = 0;
-  std::optional<double> goal_lux;               ///< what corrections aim at while the plan is in force
-  std::string why;                              ///< what keeps it from its goal; empty when nothing does
-  std::optional<Verdict> verdict{};             ///< by the model, were the rig as its file says; none without a goal
-  std::string reason{};                         ///< of that verdict; empty when met
-  std::optional<double> daylight_lux{};         ///< what of lux is daylight; none in a rig without
+  std::optional<double> goal_lux;               ///< goal of corrections while the plan is in force
+  std::string why;                              ///< why it misses its goal; empty if it does not
+  std::optional<Verdict> verdict{};             ///< by the model, if the rig is as its file states; none without a goal
+  std::string reason{};                         ///< for that verdict; empty if met
+  std::optional<double> daylight_lux{};         ///< share of `lux` from daylight, in lux; none in a rig without
   std::optional<Chromaticity> xy{}, goal_xy{};  ///< in a rig whose goals have colours
-  std::optional<double> weight{}, max_lux{};    ///< as solved for; weight: of a goal
-  /// What the show lets out there while no luxmeter confirms the limits, where that is less than lux.
+  std::optional<double> weight{}, max_lux{};    ///< as used in the solve; weight: of a goal
+  /// Light that the show allows there until a luxmeter confirms the limits, if less than `lux`.
   std::optional<double> opening_lux{};
 };
 
@@ -94,81 +94,85 @@ struct PlannedLimit {
   bool met = false;
 };
 
-/// Fingerprints of what a plan rests on, to notice that the rig file is another one by now.
+/// Fingerprints of the rig that a plan was made for, to notice a changed rig file.
 struct RigVersion {
   std::uint64_t goals = 0;   ///< goals in lux and colour, and their weights
   std::uint64_t limits = 0;  ///< of lux, levels and power
-  std::uint64_t light = 0;   ///< scene, photometry, where fixtures, points and luxmeters are
+  std::uint64_t light = 0;   ///< scene, photometry, positions of fixtures, points and luxmeters
   bool operator==(const RigVersion&) const = default;
 };
 
-/// What differs between two versions, in words ("goals and limits"); empty: nothing.
+/// Differences between two versions, in words ("goals, limits"); empty = none.
 [[nodiscard]] std::string what_differs(const RigVersion& one, const RigVersion& other);
 
 struct Plan {
-  std::string rig;                       ///< name of the rig it is for
-  std::optional<RigVersion> made_for{};  ///< none: nobody knows
+  std::string rig;                       ///< name of its rig
+  std::optional<RigVersion> made_for{};  ///< none = unknown
   std::uint64_t seed = 0;
   double seconds = 0;
-  std::vector<PlannedTask> tasks;  ///< the light list of the last task that names a fixture counts
+  std::vector<PlannedTask> tasks;  ///< for each fixture, the last task that names it counts
   std::vector<PlannedPoint> points;
   std::vector<PlannedLimit> limits;
 };
 
-/// Gives each point with a goal its verdict (core/plan/verdict.h): the light of the plan, were the rig exactly as
-/// its file says, known to the standard error of the transport. A goal with a colour is missed, too, when its light is
-/// further than 0.02 in CIE 1976 u'v' from it.
+/// Gives each point with a goal its verdict (core/plan/verdict.h): for the light of the plan, if the rig is exactly as
+/// its file states, known to the standard error of the transport. A goal with a colour is also missed if its light is
+/// further than 0.02 from it in CIE 1976 u'v'.
 void judge(Plan& plan, double goal_tolerance);
 [[nodiscard]] VerdictCounts goals_of(const Plan& plan);
-/// No goal is missed (some may be unknown), and every limit is kept, both by the model.
+/// By the model, no goal is missed (some may be unknown) and every limit is kept.
 [[nodiscard]] bool nothing_missed(const Plan& plan);
 
-/// Whether the last task to set fixtures was an aim: then what the plan predicts is what shall be held, and goals of
-/// the rig are set aside.
+/// Whether the last task to set fixtures was an aim. Then the light predicted by the plan is held, and the rig's goals
+/// are set aside.
 [[nodiscard]] bool holds_a_look(const Plan& plan);
 
-/// What a plan wants of a rig that hangs.
+/// A plan, applied to an existing rig.
 struct PlannedLook {
   std::vector<double> levels;  ///< per fixture
-  std::vector<Joints> joints;  ///< per fixture: of one that does not move, or that the plan gives none, the rig's
-  /// Per point: the plan's, or what it predicts when that shall be held; none: it is not corrected towards anything.
+  std::vector<Joints> joints;  ///< per fixture; the rig's if it does not move or the plan has none for it
+  /// Per point: the plan's goal, or the predicted light if that is to be held. None = not corrected.
   std::vector<std::optional<double>> goal_lx;
-  /// Per point: the lower of the rig's and the plan's.
+  /// Per point: the lower of the rig's and the plan's limit.
   std::vector<std::optional<double>> max_lx;
   std::vector<double> weight;  ///< per point: the plan's, else the rig's
-  /// Per fixture: what was solved, where a person has written another level; none: the level is as it was solved.
+  /// Per fixture: the solved level if a person has changed it; none = unchanged.
   std::vector<std::optional<double>> solved_levels;
 };
 
-/// In the rig's order; problems when the plan is for another rig, names an unknown fixture (or a placed light that does
-/// not hang yet: then the mend says where and how), leaves one out, or has a level outside 0…max_level or an angle
-/// outside a head's range.
+/// In the rig's order. Problems if the plan:
+/// - is for another rig
+/// - names an unknown fixture, or a placed light that is not hung yet (then the mend says where and how)
+/// - leaves out a fixture
+/// - has a level outside 0…max_level or an angle outside a head's range
 [[nodiscard]] Checked<PlannedLook> look_for(const Plan& plan, const Rig& rig, const std::string& file_name);
 
-/// The rig with its heads turned so: joints, and no aim where they differ. One of each per fixture.
+/// Turns the heads of the rig: sets their joints, and drops the aim where they differ. One Joints per fixture.
 void turn_heads(Rig& rig, std::span<const Joints> joints);
 
-/// The levels, with each placed light that is no fixture of the rig hung at its place first: `rig` gets a fixture more
-/// for each, after its own. They have no bus (their `bus` is past the last one): for light in the model, never for
-/// output. Heads look where the plan has them look.
+/// Levels of the plan after each placed light that is not a fixture of the rig is hung at its place. Each becomes a
+/// fixture of `rig`, after its own. These have no bus (`bus` is past the last one): they are for light in the model,
+/// never for output. Heads point as planned.
 [[nodiscard]] Checked<std::vector<double>> levels_when_hung(const Plan& plan, Rig& rig, const std::string& file_name);
 
-/// A fixture without a bus: a luminaire at a place, straight down or looking at an aim. requires luminaire < the rig's.
+/// A fixture without a bus: a luminaire at a position, pointing straight down or at an aim. requires luminaire < the
+/// rig's.
 [[nodiscard]] Fixture hung_light(const Rig& rig, const std::string& name, std::size_t luminaire,
                                  const Vec3& position_world_m, const std::optional<Vec3>& aim_world_m);
 
-/// JSON, keys as in design.md `solve --json`, plus "luxrig_plan": 1, "rig", "made_for": {"goals", "limits", "light"}
-/// (fingerprints of the rig, in hex), "solved_level" of a light, "weight" and "max_lux" of a point (and a point's "why"
-/// when there is one, and a placement's "fixtures", like "lights", and "numbers": [{"lights", "normalised_error",
-/// "local_contrast"}], "beam_angle_deg" of a light that zooms, "local_contrast", "relative_contrast", "coverage", the
-/// same with "before_", "object_lux", "key_to_fill" of a task for an object's relief, "lower_bound" and
-/// "lower_bound_of_number", "switches_proven" where false, "front":
-/// [{"max_watts", "watts", "normalised_error"}], "watts" of lights and tasks, and with goals of a colour a point's "xy"
-/// and "goal_xy"). Numbers are finite or the key is absent.
+/// JSON with the keys of design.md `solve --json`, and these:
+///   top level  "luxrig_plan": 1, "rig", "made_for": {"goals", "limits", "light"} (fingerprints of the rig, in hex)
+///   a light    "solved_level", "watts", "beam_angle_deg" if it zooms
+///   a point    "weight", "max_lux", "why" if there is one, "xy" and "goal_xy" if goals have a colour
+///   a task     "watts", "switches_proven" if false
+///   placement  "fixtures" (like "lights"), "numbers": [{"lights", "normalised_error", "local_contrast"}],
+///              "lower_bound", "lower_bound_of_number", "front": [{"max_watts", "watts", "normalised_error"}]
+///   relief     "local_contrast", "relative_contrast", "coverage", the same with "before_", "object_lux", "key_to_fill"
+/// Numbers are finite, or the key is absent.
 [[nodiscard]] std::string to_json(const Plan& plan);
-/// Never throws. Problems of syntax carry line and column, others a path (/tasks/0/lights/3/level) in `what`. Needed
-/// are luxrig_plan, rig, tasks, and the name and level of each light; another number that is absent becomes NaN (0 for
-/// a whole number), and unknown keys are left alone, since later versions add some.
+/// Never throws. Problems of syntax have line and column; others have a path (/tasks/0/lights/3/level) in `what`.
+/// Required: luxrig_plan, rig, tasks, and the name and level of each light. Any other absent number becomes NaN (a
+/// whole number 0). Unknown keys are ignored, since later versions add some.
 [[nodiscard]] Checked<Plan> plan_from_json(const std::string& text, const std::string& file_name);
 
 }  // namespace luxrig

@@ -1,4 +1,4 @@
-// A plan's levels and aims for a rig, with or without the lights that it wants hung.
+// A plan's levels and aims for a rig, with or without hanging the lights that it places.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ class PlanLevels {
  public:
   PlanLevels(const Plan& plan, const std::string& file_name) : plan_(plan), file_name_(file_name) {}
 
-  /// With `hang` null, a light that is no fixture is a problem.
+  /// If `hang` is null, a light that is not a fixture is a problem.
   Checked<PlannedLook> read(const Rig& rig, Rig* hang) {
     if (plan_.rig != rig.name) {
       problem(fmt::format("/rig: this plan is for rig \"{}\", not for \"{}\"", plan_.rig, rig.name),
@@ -82,12 +82,12 @@ class PlanLevels {
 
  private:
   void problem(std::string what, std::string mend) {
-    // A thousand wrong entries help nobody more than the first fifty.
+    // Fifty wrong entries are enough for a person.
     if (problems_.size() < 50) problems_.push_back({file_name_, 0, 0, std::move(what), std::move(mend)});
   }
 
-  /// Goals are the plan's alone: a point that it gives none, or does not know, is corrected towards nothing. Its limits
-  /// come on top of the rig's.
+  /// Only the plan's goals count: a point that has none in the plan, or is not in it, is not corrected. Its limits
+  /// apply in addition to the rig's.
   void take_goals(const Rig& rig, PlannedLook& look) const {
     std::map<std::string_view, const PlannedPoint*> planned_at;
     for (const PlannedPoint& planned : plan_.points) planned_at.emplace(planned.name, &planned);
@@ -120,7 +120,7 @@ class PlanLevels {
                          range.zooms() && light.beam_angle_deg
                              ? within(*light.beam_angle_deg, range.beam_min_rad, range.beam_max_rad, "beam_angle_deg")
                              : fixture.joints.beam_rad};
-    // The way through degrees is not another aim.
+    // A difference from converting through degrees is not another aim.
     const bool same = std::abs(planned.pan_rad - fixture.joints.pan_rad) < kRounding_rad &&
                       std::abs(planned.tilt_rad - fixture.joints.tilt_rad) < kRounding_rad &&
                       std::abs(planned.beam_rad - fixture.joints.beam_rad) < kRounding_rad;
@@ -220,7 +220,7 @@ Fixture hung_light(const Rig& rig, const std::string& name, std::size_t luminair
   fixture.bus = rig.buses.size();
   fixture.aim_world_m = aim_world_m;
   if (aim_world_m) {
-    // It is hung so: no joint stops it.
+    // It is hung this way, so no joint limits apply.
     const JointRange any{-kPi, kPi, -kPi, kPi};
     if (const auto joints = pan_tilt_towards(fixture.world_from_mount, *aim_world_m - position_world_m, any, {}))
       fixture.joints = *joints;

@@ -1,4 +1,4 @@
-/// plan_from_json(): a plan as somebody may have written it, with the place of every mistake.
+/// plan_from_json(): reads a plan that a person may have edited, with the place of every mistake.
 
 #include <fmt/format.h>
 
@@ -19,11 +19,11 @@ using Json = nlohmann::json;
 
 constexpr std::size_t kMaxBytes = std::size_t{64} << 20;  // a plan of 100 000 points is about 25 MB
 constexpr std::size_t kMaxDepth = 16;                     // a plan needs 6
-constexpr std::size_t kMaxValues = 2'000'000;  // each takes some memory, however few bytes it has in the file
-constexpr std::size_t kMaxKeys = 1000;         // of one object; a plan's have 20
+constexpr std::size_t kMaxValues = 2'000'000;             // each takes memory, however few bytes it has in the file
+constexpr std::size_t kMaxKeys = 1000;                    // of one object; those of a plan have 20
 constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
 
-/// First pass over the text: finds what the document parser would throw or silently accept, with its place.
+/// First pass over the text: finds errors that the document parser would throw on or silently accept, with their place.
 class SyntaxCheck : public nlohmann::json_sax<Json> {
  public:
   std::size_t error_byte = 0;  ///< from 1; 0 = place unknown
@@ -79,17 +79,17 @@ class SyntaxCheck : public nlohmann::json_sax<Json> {
   }
 };
 
-/// Reads typed members of a document, and remembers every problem with its path (/tasks/0/lights/3/level).
+/// Reads typed members of a document and collects every problem with its path (/tasks/0/lights/3/level).
 class Reader {
  public:
   Reader(const std::string& file_name, std::vector<Problem>& problems) : file_name_(file_name), problems_(problems) {}
 
   void problem(std::string what, std::string mend) const {
-    // A thousand wrong entries help nobody more than the first fifty.
+    // Fifty wrong entries are enough for a person.
     if (problems_.size() < 50) problems_.push_back({file_name_, 0, 0, std::move(what), std::move(mend)});
   }
 
-  /// The member, or null when absent (a problem when required).
+  /// The member, or null if absent (a problem if required).
   [[nodiscard]] const Json* member(const Json& object, const std::string& path, const char* key, bool required) const {
     const auto found = object.find(key);
     if (found != object.end()) return &*found;
@@ -105,7 +105,7 @@ class Reader {
     return {};
   }
 
-  /// Not a number (NaN) when absent, as a key is left out when its number is not known.
+  /// NaN if absent, since the key of an unknown number is left out.
   [[nodiscard]] double number(const Json& object, const std::string& path, const char* key, bool required) const {
     const Json* value = member(object, path, key, required);
     if (!value) return kAbsent;
@@ -120,7 +120,7 @@ class Reader {
     return std::isfinite(value) ? std::optional(value) : std::nullopt;
   }
 
-  /// A fingerprint in hex digits; 0 when there is none.
+  /// A fingerprint in hex digits; 0 = none.
   [[nodiscard]] std::uint64_t fingerprint(const Json& object, const std::string& path, const char* key) const {
     const std::string digits = text(object, path, key, false);
     std::uint64_t value = 0;
@@ -130,7 +130,7 @@ class Reader {
     return 0;
   }
 
-  /// As it was when it is left out.
+  /// Leaves `value` unchanged if the key is absent.
   void read_yes_no(const Json& object, const std::string& path, const char* key, bool& value) const {
     const Json* found = member(object, path, key, false);
     if (!found) return;
@@ -352,7 +352,7 @@ Checked<Plan> plan_from_json(const std::string& text, const std::string& file_na
   });
   if (problems.empty()) return plan;
   for (Problem& problem : problems) {
-    const std::string_view what = problem.what;  // begins with the path of what is wrong
+    const std::string_view what = problem.what;  // begins with the path of the wrong value
     const JsonPlace place = place_in_json(text, what.substr(0, what.find_first_of(" :")));
     problem.line = place.line;
     problem.column = place.column;

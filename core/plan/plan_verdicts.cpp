@@ -7,7 +7,7 @@
 namespace luxrig {
 namespace {
 
-constexpr double kColourTolerance_uv = 0.02;  ///< seen at a glance, without another colour beside it
+constexpr double kColourTolerance_uv = 0.02;  ///< visible at a glance, without another colour beside it
 
 Chromaticity uv_of(const Chromaticity& xy) {
   const double scale = -2 * xy.x() + 12 * xy.y() + 3;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kNormal95 = 1.96;   ///< of a normal distribution, in standard deviations
 constexpr double kUniform95 = 0.95;  ///< of an even distribution, in half widths
-constexpr double kToleranceRounding = 1e-9;  ///< of the tolerance: a goal met exactly is met
+constexpr double kToleranceRounding = 1e-9;   ///< of the tolerance: a goal met exactly is met
 
 std::string share_text(double lux, double goal_lx) {
   if (!(goal_lx > 0)) return fmt::format("{:.3g} lx too bright", lux);
@@ -47,7 +47,7 @@ double tolerance_lx(double goal_lx, double tolerance, double largest_goal_lx) {
 
 Verdict verdict_of(const LuxEstimate& estimate, double goal_lx, double tolerance_lx) {
   const double off_lx = std::abs(estimate.lux - goal_lx), allowed_lx = tolerance_lx * (1 + kToleranceRounding);
-  // Not known is never met, nor is what is no number.
+  // Unknown is never met, nor is NaN.
   if (!std::isfinite(off_lx) || !std::isfinite(estimate.half_width_lx)) return Verdict::unknown;
   if (off_lx + estimate.half_width_lx <= allowed_lx) return Verdict::met;
   if (off_lx - estimate.half_width_lx > allowed_lx) return Verdict::missed;

@@ -3,9 +3,9 @@
 ///
 /// The true illuminance of a point lies in an interval [low, high] with 95 % confidence. A goal g with tolerance t
 /// allows [g − t, g + t].
-///   met      the interval lies within what is allowed
-///   missed   the interval lies outside of it
-///   unknown  it overlaps the edge: too little is known to tell; the reason says what would settle it
+///   met      the interval is inside the allowed range
+///   missed   the interval is outside it
+///   unknown  it overlaps an edge, so too little is known; the reason says how to settle it
 /// Source: ISO 14253-1, decision rules with measurement uncertainty. "As near as the limits allow" is a reason for
 /// missed, not a kind of met.
 
@@ -19,32 +19,34 @@ enum class Verdict { met, missed, unknown };
 [[nodiscard]] const char* name_of(Verdict verdict);
 [[nodiscard]] std::optional<Verdict> verdict_named(const std::string& name);
 
-/// Illuminance of a point: best estimate, and half of its 95 % interval.
+/// Illuminance at a point: best estimate, and half the width of its 95 % interval.
 struct LuxEstimate {
   double lux = 0, half_width_lx = 0;
 };
 
-/// By a model or a reading with this standard error; 95 % of a normal distribution.
+/// From a model or a reading with this standard error; 95 % of a normal distribution.
 [[nodiscard]] LuxEstimate estimate_of(double lux, double standard_error_lx);
 
-/// By a luxmeter: what it reads, its repeatability (standard deviation, share of the reading), its tolerance (the true
-/// value lies within ± that share, evenly spread) and its step.
+/// From a luxmeter: its reading, its repeatability (standard deviation, share of the reading), its tolerance (the true
+/// value lies within ± that share, evenly distributed) and its step.
 [[nodiscard]] LuxEstimate estimate_of_reading(double lux, double repeatability, double tolerance, double step_lx);
 
-/// What a goal allows either way: a share of it; of a goal of 0, of the largest goal beside it.
+/// Deviation that a goal allows: a share of it. For a goal of 0: of the largest goal beside it.
 [[nodiscard]] double tolerance_lx(double goal_lx, double tolerance, double largest_goal_lx);
 
 [[nodiscard]] Verdict verdict_of(const LuxEstimate& estimate, double goal_lx, double tolerance_lx);
 
-/// One sentence for a person. met: empty. missed: by how much, and `binding`, what keeps the point from its goal (may
-/// be empty). unknown: how well the light is known, and `settles`, what would settle it.
+/// One sentence for a person.
+///   met      empty
+///   missed   by how much, and `binding`: what keeps the point from its goal (may be empty)
+///   unknown  how well the light is known, and `settles`: how to settle it
 [[nodiscard]] std::string reason_of(Verdict verdict, const LuxEstimate& estimate, double goal_lx, double tolerance_lx,
                                     const std::string& binding, const std::string& settles);
 
 enum class LimitVerdict { kept, exceeded, unknown };
 [[nodiscard]] const char* name_of(LimitVerdict verdict);
 
-/// How many points have which verdict.
+/// Number of points with each verdict.
 struct VerdictCounts {
   int met = 0, missed = 0, unknown = 0;
   [[nodiscard]] int goals() const { return met + missed + unknown; }

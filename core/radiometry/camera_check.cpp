@@ -8,13 +8,13 @@ namespace luxrig {
 namespace {
 
 constexpr double kLinearRms = 0.01, kLinearWorst = 0.03;   ///< of light
-constexpr double kCurveRms = 0.02, kCurveWorst = 0.06;     ///< what a measured curve must leave
+constexpr double kCurveRms = 0.02, kCurveWorst = 0.06;     ///< deviation allowed after a measured curve
 constexpr double kDarkOff = 0.005;                         ///< of full light
 constexpr double kFlickers = 0.005, kStepOff = 0.01;       ///< of light
-constexpr double kFollowsTooLittle = 0.5;                  ///< of what the exposures' ratio should give, as a power
+constexpr double kFollowsTooLittle = 0.5;                  ///< of the power of the exposures' ratio that is expected
 constexpr double kTooMuchClipped = 0.02, kTooDark = 0.25;  ///< of samples; of full scale
 
-/// Samples that rise with the exposure's power of a third or less are held down by something that adapts.
+/// If samples grow only as the exposure to the power of a quarter or less, something adapts and holds them down.
 bool adapts(const SampleGroups& groups) {
   const double ratio = groups.exposures_s.back() / groups.exposures_s.front();
   return groups.follows > 0 && ratio > 2 && std::log(groups.follows) < kFollowsTooLittle * 0.5 * std::log(ratio);

@@ -9,8 +9,8 @@ namespace luxrig {
 namespace {
 
 constexpr int kPieces = 20, kCoefficients = kPieces + 3, kCurveRounds = 6, kFineness = 512;
-constexpr double kKnownTo = 0.003;   ///< no light counts as known better than that, relative
-constexpr double kSmoothing = 1e-4;  ///< of third differences, beside the weight of the data
+constexpr double kKnownTo = 0.003;   ///< light is never taken as known better than this, relative
+constexpr double kSmoothing = 1e-4;  ///< of third differences, relative to the weight of the data
 
 /// Uniform cubic B-splines over [low, high].
 struct Spline {
@@ -43,7 +43,7 @@ struct CurvePoint {
 
 using CurveGroup = std::vector<CurvePoint>;
 
-/// Adds what a group says: light over exposure is the same in all of its points.
+/// Adds the equations of a group: light over exposure is the same at all of its points.
 void add_group(const CurveGroup& group, const Eigen::VectorXd& before, Eigen::MatrixXd& normal) {
   const auto n = static_cast<Eigen::Index>(group.size());
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(n, kCoefficients);
@@ -88,7 +88,7 @@ Result<SampleCurve> fit_curve(const SampleGroups& groups) {
   }
   if (points < 3 * kCoefficients) return refusal("too few lights that two exposures see without clipping");
 
-  // Begins with a line through the least light seen, to have weights.
+  // Starts with a line through the least light seen, to have weights.
   Eigen::VectorXd c(kCoefficients);
   for (Eigen::Index i = 0; i < kCoefficients; ++i) c[i] = std::max(1e-3, (static_cast<double>(i) - 1) / kPieces);
   Eigen::MatrixXd differences = Eigen::MatrixXd::Zero(kCoefficients - 3, kCoefficients);
@@ -104,14 +104,15 @@ Result<SampleCurve> fit_curve(const SampleGroups& groups) {
     const double scale = normal.trace() / kCoefficients;
     normal += kSmoothing * scale * differences.transpose() * differences;
     normal.diagonal().array() += 1e-12 * scale;
-    // The least of cᵀ N c with light 1 at the upper end.
+    // Minimum of cᵀ N c with light 1 at the upper end.
     const Eigen::VectorXd solved = normal.ldlt().solve(one_at_end);
     const double height = one_at_end.dot(solved);
     if (!solved.allFinite() || !(std::abs(height) > 0)) return refusal("the series does not tell the response");
     c = solved / height;
   }
 
-  // Down to where there is no light and up to saturation in straight lines; what noise makes fall is kept level.
+  // Extended down to no light and up to saturation by straight lines. Where noise makes the curve fall, it is kept
+  // level.
   const auto light_at = [&](double x) {
     const Spline::Place place = spline.at(x);
     const double edge = std::clamp(x, spline.low, spline.high);
@@ -141,7 +142,8 @@ CurveShape shape_of(const SampleCurve& curve, double saturation) {
   constexpr int kSteps = 90, kDarkSteps = 60;
   constexpr double kNoLight = 0.002;
   const double full = curve.light(saturation);
-  // Where light begins is hard to see on a curve that begins flat: tried from no sample to where there is some light.
+  // The start of light is hard to see on a curve that starts flat, so candidates run from zero to where there is some
+  // light.
   double some_light = 0;
   while (some_light < 0.9 * saturation && curve.light(some_light) < kNoLight * full) some_light += 0.002;
   CurveShape shape;
@@ -154,7 +156,7 @@ CurveShape shape_of(const SampleCurve& curve, double saturation) {
         if (const double light = curve.light(dark + share * (saturation - dark)) / full; light > 0) body(share, light);
       }
     };
-    double top = 0, bottom = 0;  // the exponent by logarithms, through (1, 1)
+    double top = 0, bottom = 0;  // the exponent from logarithms, through (1, 1)
     int count = 0;
     each([&](double share, double light) {
       top += std::log(share) * std::log(light), bottom += std::log(share) * std::log(share), ++count;
@@ -169,7 +171,7 @@ CurveShape shape_of(const SampleCurve& curve, double saturation) {
       const SampleCurve& candidate = entry.second;
       double squares = 0;
       each([&](double share, double light) { squares += std::pow(light / candidate.light(share) - 1, 2); });
-      // A name is taken when it is nearly as good as a free exponent.
+      // A named curve is chosen if it is nearly as good as a free exponent.
       const double rms = std::sqrt(squares / count);
       const double judged = rms + (std::string_view(entry.first) == "power" ? 0.01 : 0.0);
       if (judged >= best) continue;

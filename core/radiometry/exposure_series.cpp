@@ -10,7 +10,7 @@ namespace luxrig {
 namespace {
 
 constexpr std::size_t kLeastPixels = 64, kGroupPixels = 8, kMostGroups = 256;
-constexpr double kGroupWidth = 0.03;  // brighter by that, and a pixel is of another group
+constexpr double kGroupWidth = 0.03;  // a pixel brighter by this much starts another group
 constexpr double kNearlyAll = 0.999, kPlateau = 0.01, kClippedAllowed = 0.001;
 constexpr double kSharesOfRatios[2] = {1.0, 1.7};
 
@@ -41,7 +41,7 @@ double nearly_largest(const ExposureStep& step) {
   return static_cast<double>(all[static_cast<std::size_t>(at)]);
 }
 
-/// Where samples rise no more though the exposure does.
+/// Finds the level at which samples stop rising although the exposure does.
 void find_saturation(const ExposureSeries& series, SampleGroups& out) {
   const double count = 1.0 / series.full_scale_counts;
   const ExposureStep &longest = series.steps.back(), &before = series.steps[series.steps.size() - 2];
@@ -59,7 +59,8 @@ void find_saturation(const ExposureSeries& series, SampleGroups& out) {
   out.clipped_share = static_cast<double>(clipped) / static_cast<double>(shortest.size());
 }
 
-/// Where many samples are as dark as any, noise is cut off: by zero, or by electronics before they add a dark level.
+/// If many samples are as dark as the darkest, noise is cut off: by zero, or by electronics before they add a dark
+/// level.
 void find_floor(const ExposureSeries& series, SampleGroups& out) {
   const double half_count = 0.5 / series.full_scale_counts;
   out.floor = half_count;
@@ -75,11 +76,11 @@ void find_floor(const ExposureSeries& series, SampleGroups& out) {
     out.floor = std::max(out.floor, static_cast<double>(least) + half_count);
 }
 
-/// First pixels of groups in `order`, and its end. brightness: sum of a pixel's samples over all exposures.
+/// First pixels of groups in `order`, and the end of `order`. brightness: sum of a pixel's samples over all exposures.
 std::vector<std::size_t> cuts_of(const ExposureSeries& series, const SampleGroups& of,
                                  const std::vector<std::size_t>& order, const std::vector<double>& brightness) {
   const double darkest = brightness[order.front()] / static_cast<double>(series.steps.size());
-  // Samples that are full do not tell how bright a pixel is.
+  // Full samples do not show how bright a pixel is.
   const auto told = [&](std::size_t pixel) {
     double sum = 0;
     for (const ExposureStep& step : series.steps)
@@ -129,7 +130,7 @@ GroupSample measure(const ExposureStep& step, const std::vector<std::size_t>& or
   const auto samples = static_cast<double>(out.samples);
   out.mean = sum / samples;
   out.variance = variance / pairs;
-  // Rounding to counts does not average out where noise is smaller than they are.
+  // Rounding to counts does not average out if noise is smaller than a count.
   const double rounding = 0.1 * count;
   out.mean_variance = out.variance / samples + rounding * rounding;
   const double room = 4 * std::sqrt(out.variance);
@@ -138,7 +139,7 @@ GroupSample measure(const ExposureStep& step, const std::vector<std::size_t>& or
   return out;
 }
 
-/// What whole frames differ by, where nothing is clipped.
+/// Variation of whole frames, where nothing is clipped.
 double flicker_of(const ExposureStep& step, const std::vector<std::size_t>& pixels) {
   if (pixels.empty()) return 0;
   std::vector<double> means;
@@ -192,7 +193,7 @@ Result<SampleGroups> group_samples(const ExposureSeries& series) {
     out.groups.push_back(std::move(group));
   }
   for (std::size_t s = 0; s < series.steps.size(); ++s) {
-    // Pixels whose light is well above noise: the upper half of those that are usable.
+    // Pixels with light well above noise: the upper half of the usable ones.
     std::vector<std::size_t> bright;
     for (const std::size_t p : order) {
       const auto& frames = series.steps[s].frames;

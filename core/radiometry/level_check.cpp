@@ -10,14 +10,14 @@ namespace luxrig {
 namespace {
 
 constexpr int kShareLevels = 20, kMostRounds = 200;
-constexpr double kLowestShare = 0.05, kHighestShare = 0.95;  ///< of full samples. Source: EMVA 1288, as line_fit.cpp
-constexpr double kLevelKnownTo = 0.003;                      ///< no sample counts as known better, relative
-constexpr double kPlacesDiffer = 3;                          ///< brightest over darkest at one level, to tell
+constexpr double kLowestShare = 0.05, kHighestShare = 0.95;  ///< of full samples. Source: EMVA 1288, as in line_fit.cpp
+constexpr double kLevelKnownTo = 0.003;                      ///< no sample is taken as known better, relative
+constexpr double kPlacesDiffer = 3;                          ///< least ratio of brightest to darkest place at a level
 constexpr double kProportionRms = 0.01, kProportionWorst = 0.03;
 constexpr double kStraightRms = 0.02, kExponentOff = 0.02;
 constexpr double kFlickersMuch = 0.005, kMuchOtherLight = 0.5;
 
-/// The steps without what was there before: light of the dimmer alone.
+/// The steps without the light at level 0: light of the dimmer alone.
 Result<ExposureSeries> without_dark(const LevelSeries& series) {
   if (series.dark.frames.empty()) return refusal("a series of levels needs pictures at level 0");
   std::vector<double> dark(series.dark.frames.front().size(), 0.0);
@@ -45,12 +45,12 @@ struct PlacePoint {
   double value, weight;
 };
 
-/// value = place × light of the step, by turns, until neither changes.
+/// Fits value = place × light of the step, alternately, until both converge.
 struct ProductFit {
   std::vector<std::vector<PlacePoint>> places;
-  std::vector<double> place, light, light_weight;  ///< weight 0: nothing was seen at that step
+  std::vector<double> place, light, light_weight;  ///< weight 0 = nothing was seen at that step
 
-  /// dark_known_to: what was taken off as light of before; noise that is cut off at 0 makes it a little too bright.
+  /// dark_known_to: error of the dark light subtracted. Noise cut off at 0 makes that light slightly too bright.
   ProductFit(const SampleGroups& groups, double dark_known_to) : light(groups.exposures_s) {
     for (const std::vector<GroupSample>& group : groups.groups) {
       std::vector<PlacePoint> points;
@@ -65,7 +65,7 @@ struct ProductFit {
     place.assign(places.size(), 0.0);
   }
 
-  /// Steps that no place joins with the others say nothing of one another.
+  /// Steps that share no place with the others have no relation to them.
   [[nodiscard]] bool joined() const {
     std::vector<bool> reached(light.size(), false), there(light.size(), false);
     for (const auto& points : places)
@@ -144,7 +144,7 @@ void judge_camera(const ProductFit& fit, double full, LevelCheck& out) {
   out.camera_linear = out.camera_told && out.camera_rms <= kProportionRms && out.camera_worst <= kProportionWorst;
 }
 
-/// dark_known_to: as in ProductFit. It is the same for all places, so their number does not make it smaller.
+/// dark_known_to: as in ProductFit. It is the same for all places, so more places do not reduce it.
 void judge_light(const ProductFit& fit, const SampleGroups& groups, double dark_known_to, LevelCheck& out) {
   std::vector<double> brightest(fit.light.size(), 0.0);
   for (const auto& points : fit.places)
@@ -186,7 +186,7 @@ void judge_light(const ProductFit& fit, const SampleGroups& groups, double dark_
     left += weight[s] * off * off;
   }
   out.power_rms = std::sqrt(left / weights);
-  // What is left over, or what was known of the light where less is left than that.
+  // The deviation, or the known error of the light if that is larger.
   const auto free = std::max(1.0, static_cast<double>(out.seen.size()) - 2);
   out.exponent_error = std::sqrt(std::max(1.0, left / free) / xx);
 }

@@ -8,14 +8,14 @@ namespace luxrig {
 namespace {
 
 constexpr int kLevels = 20, kLineRounds = 3;
-constexpr double kLowest = 0.05, kHighest = 0.95;  ///< of the way from dark to saturation. Source: EMVA 1288
-constexpr double kRelativeFloor = 0.003;           ///< no sample counts as known better than that
+constexpr double kLowest = 0.05, kHighest = 0.95;  ///< of the range from dark to saturation. Source: EMVA 1288
+constexpr double kRelativeFloor = 0.003;           ///< samples are never taken as known better than this
 
 struct LinePoint {
   double exposure_s, value, variance, sample;
 };
 
-/// What one group says of the common dark level d when its own slope is taken out: a + b d is off by noise alone.
+/// Equations of one group for the common dark level d, with its own slope eliminated: a + b d is off only by noise.
 struct LineGroup {
   std::vector<LinePoint> points;
   std::vector<double> weight;
@@ -31,7 +31,7 @@ Result<LinearityFit> fit_line(const SampleGroups& groups, const SampleCurve* cur
     for (std::size_t s = 0; s < group.size(); ++s) {
       if (!group[s].usable) continue;
       const double slope = curve ? curve->slope(group[s].mean) : 1;
-      // Noise bends with the curve: the mean of light is not the light of the mean sample.
+      // Noise is bent by the curve: the mean of light is not the light of the mean sample.
       double value = group[s].mean;
       if (curve) {
         const double spread = std::sqrt(group[s].variance);
@@ -61,7 +61,7 @@ Result<LinearityFit> fit_line(const SampleGroups& groups, const SampleCurve* cur
         const double floor = kRelativeFloor * (p.value - out.dark_share);
         g.weight.push_back(1 / (p.variance + floor * floor + 1e-14));
       }
-      // Values and ones, each without its part along the exposures.
+      // Values and ones, each without its component along the exposures.
       const double value_slope = slope_of(g, 0), one_slope = value_slope - slope_of(g, 1);
       for (std::size_t i = 0; i < g.points.size(); ++i) {
         const double value = g.points[i].value - value_slope * g.points[i].exposure_s;

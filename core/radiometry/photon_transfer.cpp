@@ -7,11 +7,11 @@ namespace luxrig {
 namespace {
 
 constexpr int kTransferRounds = 4;
-constexpr double kLeastNoise_counts = 0.65;  // with rounding's; below it, that is no noise of its own kind
+constexpr double kLeastNoise_counts = 0.65;  // including rounding noise; less than this is not noise of its own
 constexpr double kKnown = 0.1;               // relative standard error of the slope
 
 struct TransferPoint {
-  double light_counts, variance, per_sample;  ///< variance is known to `per_sample` of itself
+  double light_counts, variance, per_sample;  ///< variance has the relative error `per_sample`
 };
 
 }  // namespace
@@ -27,7 +27,7 @@ std::optional<PhotonTransfer> photon_transfer(const SampleGroups& groups, int fu
       if (!sample.usable || sample.samples < 16) continue;
       const double light = curve.light(sample.mean) * counts;
       const double noise_counts = std::sqrt(sample.variance) * counts;
-      // Rounding adds a twelfth of a count squared where samples have noise.
+      // Rounding adds a twelfth of a count squared if samples have noise.
       const double encoded = noise_counts * noise_counts - 1.0 / 12;
       if (light > 0.2 * full) quiet += noise_counts < kLeastNoise_counts;
       if (noise_counts < kLeastNoise_counts || encoded <= 0) continue;
@@ -40,7 +40,7 @@ std::optional<PhotonTransfer> photon_transfer(const SampleGroups& groups, int fu
     double w = 0, wx = 0, wy = 0, wxx = 0, wxy = 0;
     for (const TransferPoint& p : points) {
       const double expected = round == 0 ? p.variance : std::max(offset + slope * p.light_counts, 0.25 * p.variance);
-      // The fit's own faults (flicker, an uneven curve) are a hundredth.
+      // Errors of the model itself (flicker, an uneven curve) are one hundredth.
       const double weight = 1 / (expected * expected * (p.per_sample * p.per_sample + 1e-4));
       w += weight, wx += weight * p.light_counts, wy += weight * p.variance;
       wxx += weight * p.light_counts * p.light_counts, wxy += weight * p.light_counts * p.variance;

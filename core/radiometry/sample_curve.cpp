@@ -11,7 +11,7 @@
 namespace luxrig {
 namespace {
 
-constexpr int kCurvePoints = 2049;  // straight lines between them are off by less than 1e-6 of full scale
+constexpr int kCurvePoints = 2049;  // straight lines between this many are off by less than 1e-6 of full scale
 constexpr std::size_t kCurveSlices = 1024;
 constexpr std::size_t kMostCurvePoints = 70'000;
 constexpr std::string_view kCurveHead = "sample,light";

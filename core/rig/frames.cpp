@@ -9,12 +9,12 @@
 namespace luxrig {
 namespace {
 
-// What rounding may add to an angle; a joint this far past its stop counts as on it.
+// Rounding error of an angle; a joint this far past its stop counts as on it.
 constexpr double kSlack_rad = 1e-9;
-// Below this sine of the tilt a turn of the pan moves the beam by less than 1 nm per metre.
+// Below this sine of the tilt, turning the pan moves the beam by less than 1 nm per metre.
 constexpr double kVertical = 1e-9;
 
-/// The image angle + 2πk nearest to `from` that lies within [min, max]; nothing when none does.
+/// The image angle + 2πk nearest to `from` within [min, max]; nullopt if there is none.
 std::optional<double> nearest_image(double angle_rad, double from_rad, double min_rad, double max_rad) {
   constexpr double kTurn = 2 * kPi;
   const double first = std::ceil((min_rad - kSlack_rad - angle_rad) / kTurn);
@@ -47,7 +47,7 @@ std::optional<Joints> pan_tilt_towards(const Pose& world_from_mount, const Vec3&
   const bool pan_is_free = across < kVertical;
   const double pan_rad = std::atan2(-d.x(), d.y());
 
-  // The same beam has two postures: (pan, tilt), and flipped (pan + 180°, -tilt).
+  // The same beam has two postures: (pan, tilt), or flipped (pan + 180°, -tilt).
   std::optional<Joints> best;
   double best_move_rad = 0;
   bool best_flips = false;

@@ -1,5 +1,5 @@
 #pragma once
-/// Frames of a fixture, and where a pan-tilt head must turn to look at something.
+/// Frames of a fixture, and how a pan-tilt head must turn to point at something.
 ///
 ///   world    right-handed, +Z up
 ///   mount    the fixture's base as hung: origin in the pan-tilt pivot, X right, Y away, Z up; identity
@@ -8,8 +8,8 @@
 ///
 ///   world_from_lamp.rotation = world_from_mount · Rz(pan) · Rx(tilt) · Rz(roll)
 ///
-/// Pan is positive counter-clockwise seen from above, tilt positive from straight down towards +Y of
-/// the panned base. In frame mount the beam is d = (-sin p sin t, cos p sin t, -cos t).
+/// Pan is positive counter-clockwise seen from above. Tilt is positive from straight down towards +Y of the panned
+/// base. In frame mount the beam is d = (-sin p sin t, cos p sin t, -cos t).
 
 #include <optional>
 
@@ -20,11 +20,11 @@ namespace luxrig {
 struct Joints {
   double pan_rad = 0;
   double tilt_rad = 0;
-  double beam_rad = 0;  ///< beam angle that its zoom is set to; 0: its luminaire's own
+  double beam_rad = 0;  ///< beam angle set by the zoom; 0 = as the luminaire states
   bool operator==(const Joints&) const = default;
 };
 
-/// What the joints of a head run through; a zoom only where beam_max_rad is above 0.
+/// Range of a head's joints. It zooms only if beam_max_rad is above 0.
 struct JointRange {
   double pan_min_rad = -1.5 * kPi, pan_max_rad = 1.5 * kPi;      // ±270°, the usual moving head
   double tilt_min_rad = -0.75 * kPi, tilt_max_rad = 0.75 * kPi;  // ±135°
@@ -35,9 +35,9 @@ struct JointRange {
 /// Pose of the lamp of a head at the given joint angles.
 [[nodiscard]] Pose world_from_lamp(const Pose& world_from_mount, const Joints& joints, double roll_rad = 0);
 
-/// The joint angles, within range, that point the beam along direction_world (need not be unit, must not
-/// be zero), nearest to `from` in the larger of the two joint movements; nothing when out of reach.
-/// Straight down keeps the present pan; the zoom stays.
+/// Joint angles within range that point the beam along direction_world, which must not be zero and need not be unit. Of
+/// several solutions, the one whose larger joint movement from `from` is least. nullopt if out of reach. Straight down
+/// keeps the present pan. The zoom stays.
 [[nodiscard]] std::optional<Joints> pan_tilt_towards(const Pose& world_from_mount, const Vec3& direction_world,
                                                      const JointRange& range, const Joints& from);
 

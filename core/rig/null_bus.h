@@ -1,5 +1,5 @@
 #pragma once
-/// A bus that is yet to be chosen: what hangs on it is planned, and never driven.
+/// A bus that is not chosen yet. Its fixtures are planned but never driven.
 
 #include <string_view>
 #include <vector>
@@ -12,7 +12,7 @@ inline constexpr std::string_view kNullDriver = "null";
 
 [[nodiscard]] inline bool is_null_bus(const Bus& bus) { return bus.driver == kNullDriver; }
 
-/// Why a rig cannot be run, simulated or not: each null bus that a fixture or meter hangs on.
+/// Reasons why a rig cannot run, simulated or not: one for each null bus with a fixture or meter on it.
 [[nodiscard]] std::vector<Problem> null_buses_in_use(const Rig& rig);
 
 }  // namespace luxrig

@@ -14,7 +14,7 @@ std::string run_of(int first, int count) {
   return count == 1 ? fmt::format("{}", first) : fmt::format("{} to {}", first, first + count - 1);
 }
 
-/// First address with `count` free slots in a row; 0 when there is none.
+/// First address with `count` free slots in a row; 0 = none.
 int free_address(const std::vector<const void*>& taken, int count) {
   int run = 0;
   for (int slot = 1; slot <= kSlots; ++slot) {
@@ -39,7 +39,7 @@ void PatchMap::claim_node(std::size_t bus, int node, Owner owner) { nodes_[{bus,
 void PatchMap::report(const std::vector<Bus>& buses, ProblemList& problems) const {
   for (const auto& [where, claims] : slots_) {
     std::vector<const void*> taken(kSlots + 1, nullptr);
-    std::vector<std::pair<const Claim*, const Claim*>> clashes;  // who came later, whom it meets
+    std::vector<std::pair<const Claim*, const Claim*>> clashes;  // the later claim, and the one it overlaps
     for (const Claim& claim : claims) {
       const auto first = taken.begin() + claim.first, last = first + claim.count;
       const auto hit = std::find_if(first, last, [](const void* owner) { return owner != nullptr; });
@@ -51,7 +51,7 @@ void PatchMap::report(const std::vector<Bus>& buses, ProblemList& problems) cons
     }
     for (const auto& [claim, other] : clashes) {
       if (problems.full()) return;
-      // A free run is taken at once, so that two clashing fixtures are not sent to the same place.
+      // Marks the free run as taken, so that two clashing fixtures are not offered the same address.
       const int free = free_address(taken, claim->count);
       if (free > 0) std::fill_n(taken.begin() + free, claim->count, claim);
       problems.add(claim->owner.place,

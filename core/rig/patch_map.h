@@ -1,5 +1,5 @@
 #pragma once
-/// Who sits where on a bus, so that no two devices share a DMX slot, a Modbus register or a CANopen node.
+/// Addresses in use on each bus, so that no two devices share a DMX slot, a Modbus register or a CANopen node.
 
 #include <map>
 #include <string>
@@ -14,7 +14,7 @@ namespace luxrig {
 class PatchMap {
  public:
   struct Owner {
-    std::string name;  ///< as in a message: fixture "spot-1"
+    std::string name;  ///< as printed in messages: fixture "spot-1"
     Place place;       ///< of its address
   };
   /// requires 1 ≤ first, first + count - 1 ≤ 512
@@ -22,8 +22,8 @@ class PatchMap {
   void claim_registers(std::size_t bus, int unit, RegisterTable table, int first, int count, Owner owner);
   void claim_node(std::size_t bus, int node, Owner owner);
 
-  /// Reports each claim that meets an earlier one, naming both and, for DMX, an address that is free.
-  /// Cost: proportional to the slots and registers claimed.
+  /// Reports each claim that overlaps an earlier one, naming both and, for DMX, a free address. Cost: proportional to
+  /// the slots and registers claimed.
   void report(const std::vector<Bus>& buses, ProblemList& problems) const;
 
  private:

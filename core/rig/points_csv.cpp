@@ -37,7 +37,7 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-/// Cells of one line; nothing, and a problem, when a quote is not closed.
+/// Cells of one line; nullopt and a problem if a quote is not closed.
 std::optional<std::vector<Cell>> split(std::string_view line, int line_number, ProblemList& problems) {
   std::vector<Cell> cells;
   std::size_t at = 0;

@@ -1,12 +1,12 @@
 #pragma once
-/// Measurement points from a CSV file with a header line.
+/// Measurement points from a CSV file with a header line:
 ///
 ///   name,x_m,y_m,z_m,nx,ny,nz,goal_lx,weight,max_lx
 ///
-/// and, for the colour of a goal, goal_x and goal_y, or goal_cct_k.
+/// For the colour of a goal, add goal_x and goal_y, or goal_cct_k.
 ///
-/// Columns in any order; name, x_m, y_m and z_m must be there. An empty cell takes the default of the key of the same
-/// name in [[point]] (schema.h, whose ranges hold). Cells may stand in double quotes, "" in them is one quote. Empty
+/// Columns may be in any order. name, x_m, y_m and z_m are required. An empty cell takes the default of the key of the
+/// same name in [[point]] (schema.h; its ranges apply). Cells may be in double quotes, where "" is one quote. Empty
 /// lines and lines that begin with # are skipped. UTF-8, with or without a byte-order mark; LF or CR LF.
 
 #include <filesystem>
@@ -24,9 +24,9 @@ struct PointsTable {
   struct Row {
     Point point;
     std::optional<Chromaticity> goal_xy;  ///< not yet in point.goal_rgb, since it may have to be moved
-    Place place;                          ///< of its name, in the CSV file
+    Place place;                          ///< of the name, in the CSV file
   };
-  std::vector<Row> rows;          ///< those without a problem
+  std::vector<Row> rows;          ///< rows without a problem
   std::vector<Problem> problems;  ///< file:line:column of the CSV file; at most 1000
 };
 

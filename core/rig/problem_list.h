@@ -1,5 +1,5 @@
 #pragma once
-/// Collects what is wrong with a file, in any order, and gives it back in the order of the file.
+/// Collects the problems of a file in any order and returns them in file order.
 
 #include <string>
 #include <vector>
@@ -18,12 +18,12 @@ class ProblemList {
   }
   void add(Problem problem);
 
-  /// So many that a person mends the first ones and runs again; more are counted, not kept.
+  /// Full at a number of problems that sends a person off to mend the first ones. Further ones are counted, not kept.
   [[nodiscard]] bool full() const { return problems_.size() >= kMost; }
   [[nodiscard]] bool empty() const { return problems_.empty(); }
   [[nodiscard]] const std::string& file() const { return file_; }
 
-  /// Those of this file by line and column, then those of other files as they came.
+  /// Problems of this file by line and column, then those of other files in the order they came.
   [[nodiscard]] std::vector<Problem> take();
 
  private:

@@ -41,7 +41,7 @@ std::optional<std::size_t> NameIndex::read_reference(Section& section, std::stri
   std::vector<std::string_view> known;
   known.reserve(entries_.size());
   for (const auto& [known_name, entry] : entries_) known.push_back(known_name);
-  // In the order of the file, whatever the hash table made of it.
+  // In file order, whatever the order of the hash table.
   std::sort(known.begin(), known.end(), [&](std::string_view a, std::string_view b) {
     return entries_.find(std::string(a))->second.index < entries_.find(std::string(b))->second.index;
   });
@@ -165,7 +165,7 @@ void RigReader::read_all() {
   read_daylight();
   read_luminaires();
   read_buses();
-  read_points();  // before fixtures and meters, which name points
+  read_points();  // before fixtures and meters, which refer to points
   read_fixtures();
   read_luxmeters();
   read_cameras();
@@ -173,7 +173,7 @@ void RigReader::read_all() {
   read_mounting();
   read_keep_outs();
   read_startup();
-  read_tasks();  // which name luminaires, fixtures, objects and points, and need goals
+  read_tasks();  // they refer to luminaires, fixtures, objects and points, and need goals
 }
 
 Checked<Rig> parse_rig(std::string_view text, const std::filesystem::path& file, const std::filesystem::path& folder) {
@@ -198,7 +198,7 @@ Checked<Rig> load_rig(const std::filesystem::path& path) {
   }
   std::ifstream in(file, std::ios::binary);
   std::string text;
-  // One byte more than allowed tells a file that is too long from one that just fits.
+  // One byte beyond the limit shows that a file is too long.
   text.resize(kMostRigBytes + 1);
   in.read(text.data(), static_cast<std::streamsize>(text.size()));
   if (!in.is_open() || in.bad()) return refuse(file, "the file cannot be read", "check who may read it");

@@ -9,13 +9,13 @@
 
 namespace luxrig {
 
-/// Reads, checks and completes a rig: every problem in the file is reported, with its line and column
-/// (unknown keys with the nearest known one). Loads the photometric files; checks that mesh files
-/// exist, but does not read them (scene_builder.h does). `path` may be a folder with a rig.toml in it.
-/// Driver names and bus options are the drivers' to check (drivers/registry.h).
+/// Reads, checks and completes a rig. Reports every problem in the file with its line and column (and the nearest known
+/// key for an unknown one). Loads the photometric files. Checks that mesh files exist, but does not read them
+/// (scene_builder.h does). `path` may be a folder with a rig.toml in it. Driver names and bus options are checked by
+/// the drivers (drivers/registry.h).
 [[nodiscard]] Checked<Rig> load_rig(const std::filesystem::path& path);
 
-/// The same from text; files beside it are looked up in `folder`.
+/// The same from text. Relative paths start at `folder`.
 [[nodiscard]] Checked<Rig> parse_rig(std::string_view text, const std::filesystem::path& file,
                                      const std::filesystem::path& folder);
 

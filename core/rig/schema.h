@@ -1,6 +1,6 @@
 #pragma once
 /// Every key of the rig file and of register maps, once: type, unit, default, range and meaning. The reader checks
-/// values against this table (section.h), and a test holds rigs/REFERENCE.md against it.
+/// values against this table (section.h). A test compares it with rigs/REFERENCE.md.
 
 #include <limits>
 #include <span>
@@ -11,7 +11,7 @@ namespace luxrig {
 
 enum class ValueType {
   text,
-  name,  ///< text a person refers to things by: 1…100 characters
+  name,  ///< text by which a person refers to an object: 1…100 characters
   file,  ///< path, relative to the folder of the rig file
   number,
   whole_number,
@@ -40,10 +40,10 @@ struct KeySpec {
   std::string_view section;
   std::string_view key;
   ValueType type;
-  std::string_view unit;      ///< empty: none
-  std::string_view fallback;  ///< as TOML; or kRequired, or kNone (left out, it has no value)
+  std::string_view unit;      ///< empty = none
+  std::string_view fallback;  ///< as TOML; or kRequired, or kNone (no value if left out)
   Bounds bounds;
-  std::string_view choices;  ///< "m, cm, mm": the only texts allowed, in the order of the enumeration they become
+  std::string_view choices;  ///< "m, cm, mm": the only texts allowed, in the order of their enumeration
   std::string_view summary;
 };
 inline constexpr std::string_view kRequired = "required";
@@ -51,26 +51,26 @@ inline constexpr std::string_view kNone = "none";
 
 struct SectionSpec {
   std::string_view name;     ///< "fixture", "scene.object"
-  bool list;                 ///< [[name]], any number of times; else [name], at most once
-  std::size_t most;          ///< entries allowed in a list
-  bool takes_other_keys;     ///< [[bus]]: the driver's own
+  bool list;                 ///< [[name]], any number of times; if false, [name], at most once
+  std::size_t most;          ///< most entries of a list
+  bool takes_other_keys;     ///< [[bus]]: the driver's own keys
   std::string_view summary;  ///< one line for the reference
-  /// Which file it stands in.
+  /// File that it belongs to.
   enum class File { rig, register_map } file = File::rig;
 };
 
-/// Of all files.
+/// Sections of all files.
 [[nodiscard]] std::span<const SectionSpec> sections();
 [[nodiscard]] const SectionSpec& section_spec(std::string_view section);
 
-/// All keys; those of one section stand together, in the order of the reference.
+/// All keys. Those of one section are adjacent, in the order of the reference.
 [[nodiscard]] std::span<const KeySpec> keys();
 [[nodiscard]] std::span<const KeySpec> keys_of(std::string_view section);
 
 /// "[[fixture]]", "[limits]".
 [[nodiscard]] std::string heading_of(const SectionSpec& section);
 
-/// "0 to 1", "above 0", "m, cm or mm", empty when anything goes.
+/// "0 to 1", "above 0", "m, cm or mm"; empty if anything is allowed.
 [[nodiscard]] std::string range_text(const KeySpec& spec);
 [[nodiscard]] std::string_view type_text(ValueType type);
 

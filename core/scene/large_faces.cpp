@@ -11,7 +11,7 @@ namespace {
 
 using FaceCorners = std::array<std::uint32_t, 3>;
 
-/// Whichever end is named first, the answer is the same to the last bit: both triangles at an edge must agree.
+/// The result is the same to the last bit for either order of the ends: both triangles at an edge must agree.
 bool is_long(const Vec3& origin_world_m, const Vec3& a_world_m, const Vec3& b_world_m) {
   if ((b_world_m - a_world_m).squaredNorm() <= kLongEdge_m * kLongEdge_m) return false;
   const bool in_order =
@@ -64,11 +64,11 @@ class Cutter {
     return at->second;
   }
 
-  /// False when there is nothing to cut.
+  /// False if there is nothing to cut.
   bool cut_once(FaceCorners triangle, std::vector<FaceCorners>& open) {
     int edges = long_edges(triangle);
     if (edges == 0) return false;
-    // Turned so that one long edge comes first, of two the first two.
+    // Turned so that a long edge comes first; if there are two, they come first and second.
     const auto turn = [&] {
       std::rotate(triangle.begin(), triangle.begin() + 1, triangle.end());
       edges = edges >> 1 | (edges & 1) << 2;

@@ -8,7 +8,7 @@
 namespace luxrig {
 namespace {
 
-/// One mark per object: is it the one asked for?
+/// One mark per object, 1 = the one asked for.
 Result<std::vector<std::uint8_t>> marks_of_object(const Scene& scene, std::string_view name) {
   std::vector<std::uint8_t> marks;
   bool found = false;
@@ -17,14 +17,14 @@ Result<std::vector<std::uint8_t>> marks_of_object(const Scene& scene, std::strin
     found = found || known == name;
   }
   if (found) return marks;
-  // "scene" is the mesh of the whole room, if there is one; a person asks for an object in it.
+  // "scene" is the mesh of the whole room, if there is one. A person asks for an object in it.
   std::vector<std::string_view> names;
   for (std::size_t i = 1; i < scene.object_names.size(); ++i) names.push_back(scene.object_names[i]);
   return refusal("there is no object \"" + std::string(name) +
                  "\": " + mend_for_unknown(name, names, "add one with [[scene.object]]"));
 }
 
-/// Index of each used entry among those kept; kDropped for the others.
+/// Index of each used entry among those kept; kDropped = not kept.
 constexpr std::uint32_t kDropped = std::numeric_limits<std::uint32_t>::max();
 
 }  // namespace

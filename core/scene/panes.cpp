@@ -8,13 +8,13 @@ namespace luxrig {
 namespace {
 
 constexpr double kFloatGlassIndex = 1.52;
-/// Of the way: two triangles met within so much are one pane.
+/// Share of the way; two triangles crossed within it are one pane.
 constexpr double kSamePlace = 1e-9;
 
-/// How glass of such a transmittance at normal incidence is made up.
+/// Composition of glass with a given transmittance at normal incidence.
 struct Glass {
   double index = 1;
-  double passage = 1;  ///< share that one passage straight through leaves
+  double passage = 1;  ///< share left after one passage straight through
 };
 
 Glass glass_of(double at_normal) {
@@ -23,12 +23,12 @@ Glass glass_of(double at_normal) {
     const double root = std::sqrt((1 - at_normal) / (1 + at_normal));  // = (n - 1) / (n + 1)
     return {(1 + root) / (1 - root), 1};
   }
-  // (1 - r)² a / (1 - r² a²) = T, the root above 0, in the form that keeps its digits when r is small.
+  // Positive root of (1 - r)² a / (1 - r² a²) = T, in the form that keeps its digits for small r.
   const double b = (1 - r) * (1 - r);
   return {kFloatGlassIndex, 2 * at_normal / (b + std::sqrt(b * b + 4 * r * r * at_normal * at_normal))};
 }
 
-/// Entry and exit of the segment from + t way, t in 0…1.
+/// Whether the segment from + t way, t in 0…1, meets the box.
 bool meets(const Eigen::AlignedBox3d& box, const Vec3& from, const Vec3& way) {
   double near = 0, far = 1;
   for (int axis = 0; axis < 3; ++axis) {
@@ -78,7 +78,7 @@ double Panes::transmittance(const Vec3& from_world_m, const Vec3& to_world_m, do
   const double length_m = way_m.norm();
   if (!(length_m > 0) || !std::isfinite(length_m)) return share;
   const double first = near_m / length_m, last = 1 - first;
-  std::vector<double> met;  // no room is taken until something is
+  std::vector<double> met;  // allocates nothing until there is a crossing
   for (const Object& object : objects_) {
     if (!meets(object.box_world_m, from_world_m, way_m)) continue;
     met.clear();
@@ -87,7 +87,7 @@ double Panes::transmittance(const Vec3& from_world_m, const Vec3& to_world_m, do
       if (along_m == 0) continue;
       const double at = triangle.normal.dot(triangle.corners_m[0] - from_world_m) / along_m;
       if (!(at > first && at < last)) continue;
-      // On the inner side of all three edges, or on one: a shared edge is met by both of its triangles.
+      // Inside all three edges, or on one: a shared edge is met by both of its triangles.
       const Vec3 place = from_world_m + at * way_m;
       bool inside = true;
       for (std::size_t i = 0; i < 3 && inside; ++i) {

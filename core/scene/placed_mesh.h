@@ -1,6 +1,6 @@
 #pragma once
-/// A mesh in place, not yet rounded: float keeps only what is relative to a scene's origin, and that is chosen when all
-/// of a scene is there. Internal to core/scene, and to the import of MVR scenery.
+/// A mesh in place, not yet rounded to float. Float needs the scene's origin, which is chosen when the whole scene is
+/// known. Internal to core/scene, and to the import of MVR scenery.
 
 #include <array>
 #include <cstdint>
@@ -20,10 +20,10 @@ struct PlacedMesh {
   std::vector<std::string> warnings;
 };
 
-/// Of what its triangles use.
+/// Bounds of the vertices that its triangles use.
 [[nodiscard]] Eigen::AlignedBox3d bounds_of(const PlacedMesh& mesh);
 
-/// Adds it to a scene whose origin is set, its vertices rounded to float. Warnings stay behind.
+/// Adds the mesh to a scene whose origin is set. Rounds its vertices to float. Does not copy warnings.
 void append_rounded(const PlacedMesh& mesh, std::uint32_t object, Scene& scene);
 
 }  // namespace luxrig

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kUnitTolerance = 1e-6;
 
-/// An edge longer than so much of its distance from the origin.
+/// Whether an edge is longer than kNearEdgePerDistance of its distance from the origin.
 bool is_near(const Vec3& from_m, const Vec3& edge_m) {
   const double length_m2 = edge_m.squaredNorm();
   if (!(length_m2 > 0)) return true;
@@ -76,7 +76,7 @@ RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 
 std::optional<Hit> RayScene::nearest(const Vec3& from_world_m, const Vec3& direction_world,
                                      const Vec3& leaving_normal_world) const {
-  // The square: a root here would cost a tenth of the ray.
+  // Squared, since a root here would cost a tenth of the ray.
   LUXRIG_CHECK(std::abs(direction_world.squaredNorm() - 1) <= 2 * kUnitTolerance, "|direction| = {}",
                direction_world.norm());
   const State& state = *state_;
@@ -107,7 +107,7 @@ std::optional<Hit> RayScene::nearest(const Vec3& from_world_m, const Vec3& direc
   const State::Triangle& triangle = state.triangles[query.hit.primID];
   const double u = query.hit.u, v = query.hit.v;
   const Vec3 a = triangle.corners_m[0].cast<double>();
-  // From the place within the triangle, not from the distance: so it lies on the surface to double rounding.
+  // From barycentric coordinates, not from the distance, so that it is on the surface to double rounding.
   const Vec3 position_m =
       a + u * (triangle.corners_m[1].cast<double>() - a) + v * (triangle.corners_m[2].cast<double>() - a);
   Vec3 normal(triangle.normal[0], triangle.normal[1], triangle.normal[2]);

@@ -1,4 +1,4 @@
-// How near the next surface is: Embree finds the triangles, double says how far they are.
+// Distance to the nearest surface: Embree finds the triangles; distances are computed in double.
 #include <algorithm>
 #include <limits>
 
@@ -8,7 +8,8 @@
 namespace luxrig {
 namespace {
 
-/// Of the triangle to p, by the region of its plane that p lies over (Ericson, Real-Time Collision Detection, 5.1.5).
+/// Closest point of the triangle to p, by the region of its plane that p is over (Ericson, Real-Time Collision
+/// Detection, 5.1.5).
 Vec3 closest_in_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 ab = b - a, ac = c - a, ap = p - a;
   const double d1 = ab.dot(ap), d2 = ac.dot(ap);
@@ -26,7 +27,7 @@ Vec3 closest_in_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3
   const double va = d3 * d6 - d5 * d4;
   if (va <= 0 && d4 >= d3 && d5 >= d6) return b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b);
   const double sum = va + vb + vc;
-  if (!(sum > 0)) return a;  // without area, and not caught above by rounding
+  if (!(sum > 0)) return a;  // no area, missed above through rounding
   return a + vb / sum * ab + vc / sum * ac;
 }
 
@@ -48,7 +49,7 @@ struct RayScene::NearestQuery {
     const Vec3 place_m = closest_in_triangle(self.from_m, corners[0].cast<double>(), corners[1].cast<double>(),
                                              corners[2].cast<double>());
     const double squared_m2 = (place_m - self.from_m).squaredNorm();
-    // Of equally near ones the first in the file, in whatever order they are met.
+    // Of equally near ones, the first in the file, whatever the order of traversal.
     if (!(squared_m2 < self.squared_m2 || (squared_m2 == self.squared_m2 && (!self.triangle || t < *self.triangle))))
       return false;
     self.squared_m2 = squared_m2;
@@ -58,7 +59,7 @@ struct RayScene::NearestQuery {
     return true;
   }
 
-  /// A little more than the distance, so that rounding hides nothing that is as near.
+  /// Slightly more than the distance, so that rounding hides no surface that is as near.
   [[nodiscard]] float radius() const {
     return static_cast<float>(std::sqrt(squared_m2) * (1 + 1e-5) + 2 * state->error_m(from_m));
   }

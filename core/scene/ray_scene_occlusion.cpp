@@ -1,10 +1,10 @@
 /// Shadow rays.
 ///
-/// A ray runs up to its target, less what rounding may add. A target often lies on a surface (a lamp flush with the
-/// ceiling), and a ray that comes in at a slant may then meet that surface before its end, by as much as rounding
-/// divided by the cosine. But a straight way that ends in a plane crosses it nowhere else: so a triangle in whose plane
-/// the target lies, to rounding, does not stand in the way, and a filter lets the ray pass it. Ending rays shorter
-/// instead (by 32 e, for up to 88°) missed what stood within that of a lamp, a third of a millimetre in a room of 10 m.
+/// A ray runs to its target, minus a margin for rounding. A target is often on a surface (a lamp flush with the
+/// ceiling). A slanted ray may hit that surface before its end, by the rounding error divided by the cosine. But a
+/// straight line that ends in a plane crosses it nowhere else. So a triangle whose plane contains the target, within
+/// rounding, is no obstacle, and a filter lets the ray pass it. Ending rays earlier instead (by 32 e, for up to 88°)
+/// missed obstacles within that distance of a lamp: a third of a millimetre in a room of 10 m.
 
 #include <limits>
 
@@ -13,9 +13,9 @@
 
 namespace luxrig {
 
-/// Target and scene, for the filter. Embree hands the context through.
+/// Targets and scene for the filter. Embree passes the context through.
 struct RayScene::State::Targets {
-  RTCIntersectContext context;  // first: Embree's pointer to it is one to this
+  RTCIntersectContext context;  // must be first: Embree's pointer to it also points to this struct
   const State* state;
   const Vec3* to_m;       ///< by ray id
   const double* error_m;  ///< by ray id
@@ -23,9 +23,9 @@ struct RayScene::State::Targets {
 
 namespace {
 
-/// A triangle within so many surface errors of the target is taken to hold it: its own error and the target's.
+/// A triangle within this many surface errors of the target is taken to hold it: its own error and the target's.
 constexpr double kOnSurface = 2;
-/// Only hits in the last part of a ray are looked at: nearer ones are obstacles unless the ray grazes the target's
+/// Only hits in the last part of a ray are examined. Earlier hits are obstacles, unless the ray grazes the target's
 /// surface to within e over that part of its length.
 constexpr float kLastPart = 1.0f / 16;
 
@@ -45,17 +45,18 @@ void RayScene::State::pass_what_holds_the_target(const RTCFilterFunctionNArgumen
   }
 }
 
-/// Sets a ray in motion from a surface point; false when it has no length. Its direction is not unit: it reaches the
-/// target at 1.
+/// Sets up a ray from a surface point; false if it has no length. Its direction is not unit: it reaches the target at
+/// 1.
 bool RayScene::State::aim(const Vec3& from_m, const Vec3& normal, const Vec3& to_m, double error_m, RTCRay& ray) const {
   const Vec3 straight_m = to_m - from_m;
-  // In float, which is faster and enough for offsets of a few e. Infinite below 1e-19 m, which is no length.
+  // In float, which is faster and precise enough for offsets of a few e. Infinite below 1e-19 m, which counts as no
+  // length.
   const double per_distance = 1 / std::sqrt(static_cast<float>(straight_m.squaredNorm()));
   if (!std::isfinite(per_distance)) return false;
   const Vec3f start_m = start(from_m, per_distance * straight_m, normal).cast<float>();
-  // Aimed from where the ray really starts, so that it ends where it should.
+  // Aimed from its actual start, so that it ends in the right place.
   const Vec3f way_m = (to_m - start_m.cast<double>()).cast<float>();
-  // The end is off by the surface's error and by the rounding of the direction (√3 u per metre).
+  // The end is off by the surface error and by the rounding of the direction (√3 u per metre).
   const double length = 1 - error_m * per_distance - 2 * kUnit;
   if (!(length > 0)) return false;
   ray.org_x = start_m.x();
@@ -74,7 +75,7 @@ bool RayScene::State::aim(const Vec3& from_m, const Vec3& normal, const Vec3& to
 }
 
 void RayScene::State::build() {
-  // No files from the working folder or home may change how we trace.
+  // Files in the working folder or home must not change how rays are traced.
   device = rtcNewDevice("ignore_config_files=1,set_affinity=0");
   LUXRIG_CHECK(device != nullptr, "Embree error {}", static_cast<int>(rtcGetDeviceError(nullptr)));
   scene = rtcNewScene(device);
@@ -114,9 +115,9 @@ bool RayScene::occluded(const Vec3& from_world_m, const Vec3& from_normal_world,
 
 namespace {
 
-/// Rays that Embree gets at once. What they ask is the same as for single rays.
+/// Number of rays passed to Embree at once. The queries are the same as for single rays.
 constexpr std::size_t kBatch = 64;
-/// Below this cosine between any two directions of a batch, packets of 8 that know nothing of each other are faster.
+/// Below this cosine between any two directions of a batch, independent packets of 8 are faster.
 constexpr double kCoherent = 0.9;
 
 }  // namespace
@@ -196,7 +197,7 @@ bool RayScene::surely_blocked(const Vec3& from_world_m, const Vec3& from_normal_
   std::array<std::array<std::uint32_t, 3>, 2> vertices{};
   for (std::size_t i = 0; i < count; ++i) vertices[i] = state.indices[ids[i]];
   if (count == 2) {
-    // Both turned so that the shared edge comes first.
+    // Both rotated so that the shared edge comes first.
     const auto place = [&](std::uint32_t vertex) { return state.vertices_m[vertex]; };
     bool found = false;
     for (int i = 0; i < 3 && !found; ++i) {

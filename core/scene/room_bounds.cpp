@@ -9,10 +9,10 @@ namespace {
 
 using Box = Eigen::AlignedBox3d;
 
-constexpr double kMostThings = 0.8;                 ///< of the things say how far they are spread
-constexpr double kLeastSpread_m = 5, kAround = 30;  ///< so many times the spread is still about them
+constexpr double kMostThings = 0.8;                 ///< share of the things that defines their spread
+constexpr double kLeastSpread_m = 5, kAround = 30;  ///< multiple of the spread that still counts as surroundings
 constexpr std::size_t kMostPlanes = 64;
-/// Faces of one plane: cutting a face of 20 km leaves so little of a difference.
+/// Tolerance for faces of one plane: cutting a face of 20 km leaves differences this small.
 constexpr double kSamePlane_m = 0.01, kSameNormal = 0.9999;
 
 struct Plane {
@@ -20,7 +20,7 @@ struct Plane {
   double at_m;
 };
 
-/// Most of the things, by their distance from the middle one on each axis.
+/// Most of the things, by their distance from the median on each axis.
 struct Cluster {
   Vec3 middle_world_m;
   double spread_m;
@@ -61,7 +61,7 @@ class Faces {
     });
     return all;
   }
-  /// Of those wholly within a box that no face beyond it goes on into.
+  /// Bounds of faces wholly within a box, without those that continue beyond it in the same plane.
   [[nodiscard]] Box bounds_within(const Box& box) const {
     const auto inside = [&](const std::array<Vec3, 3>& corners) {
       return std::all_of(corners.begin(), corners.end(), [&](const Vec3& corner) { return box.contains(corner); });

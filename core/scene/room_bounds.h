@@ -1,5 +1,5 @@
 #pragma once
-/// The room within its scene: a ground of 20 km beneath it says nothing of where the room ends.
+/// Bounds of the room in its scene, ignoring for example a ground plane of 20 km beneath it.
 
 #include <optional>
 #include <span>
@@ -8,19 +8,20 @@
 
 namespace luxrig {
 
-/// Of what is built around the things of a rig.
+/// Bounds of the built surroundings of a rig's things.
 struct RoomBounds {
   Eigen::AlignedBox3d built_world_m;
-  /// The same, and where the scene reaches farther, also the nearest four fifths of the things: what stands on open
-  /// ground with little built there is in its place too.
+  /// The same, and if the scene extends farther, also the nearest four fifths of the things. Things on open ground with
+  /// few buildings belong there, too.
   Eigen::AlignedBox3d with_things_world_m;
 };
 
-/// What is built around `things_world_m`: lamps, meters, goals, of which nearly all are taken to be in their place.
-/// Where the scene reaches more than 30 times as far around their middle as most of them do (and farther than 150 m),
-/// what lies farther off does not count, nor do flat faces that go on from there: a ground plane, cut up or not. Ground
-/// with hills counts as far as that. The whole scene where it does not reach so far, where there are no things, or
-/// where nothing is left. With `object`, of that object alone, as in Scene::object_of_triangle.
+/// Bounds of the building around `things_world_m` (lamps, meters, goals), nearly all of which are taken to be well
+/// placed. A scene is too large if it extends more than 30 times as far around the things' middle as most of them do,
+/// and farther than 150 m. Parts beyond that distance do not count, nor do flat faces that continue beyond it (a ground
+/// plane, cut or not). Hilly ground counts up to that distance. The result is the whole scene if it is not too large,
+/// if there are no things, or if nothing remains. With `object`, bounds of that object alone, as in
+/// Scene::object_of_triangle.
 [[nodiscard]] RoomBounds room_bounds_of(const Scene& scene, std::span<const Vec3> things_world_m,
                                         std::optional<std::uint32_t> object = std::nullopt);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Geometry that light meets: triangles with diffuse reflectance, in frame world.
+/// Geometry that light hits: triangles with diffuse reflectance, in frame world.
 
 #include <array>
 #include <cstdint>
@@ -11,19 +11,19 @@
 
 namespace luxrig {
 
-/// Whiter paint there is not, and a closed room of it would hardly absorb.
+/// No paint is whiter, and a closed room of it would hardly absorb.
 inline constexpr double kMaxReflectance = 0.95;
 
 struct Material {
   std::string name;
   Vec3 reflectance_rgb = Vec3::Constant(0.5);  ///< diffuse, linear Rec. 709, each 0…0.95
-  /// Gloss: a GGX microfacet coat over the diffuse body, which gets what the coat lets through. Its reflectance at
-  /// normal incidence, 0…0.95 (0: matt; varnish and polished floors 0.04; metals more), and the roughness
-  /// α = roughness², 0.05…1.
+  /// Gloss: a GGX microfacet coat over the diffuse body, which receives the light that the coat lets through.
+  /// Reflectance at normal incidence, 0…0.95 (0: matt; varnish and polished floors 0.04; metals more), and the
+  /// roughness α = roughness², 0.05…1.
   double specular_reflectance = 0;
   double roughness = 0.3;
-  bool coloured = false;    ///< reflectance_rgb was stated by the mesh file or the rig, not assumed
-  bool too_bright = false;  ///< the mesh file stated more than 0.95, which was taken as 0.95
+  bool coloured = false;    ///< reflectance_rgb is from the mesh file or the rig, not assumed
+  bool too_bright = false;  ///< the mesh file stated more than 0.95; taken as 0.95
 
   /// Luminous reflectance: the Rec. 709 luminance of reflectance_rgb.
   [[nodiscard]] double luminous_reflectance() const {
@@ -31,16 +31,16 @@ struct Material {
   }
 };
 
-/// What was thrown away while loading.
+/// Counts of geometry dropped while loading.
 struct Cleaning {
   std::size_t non_finite_vertices = 0;   ///< NaN or infinite; triangles that use them are dropped
   std::size_t bad_indices = 0;           ///< triangles with an index past the vertices
-  std::size_t degenerate_triangles = 0;  ///< no area, to rounding
+  std::size_t degenerate_triangles = 0;  ///< no area, within rounding
   [[nodiscard]] std::size_t total() const { return non_finite_vertices + bad_indices + degenerate_triangles; }
 };
 
-/// All triangles of a venue, two-sided. Vertices are relative to origin_world_m, so that float holds
-/// them to a few micrometres whatever the map coordinates.
+/// All triangles of a venue, two-sided. Vertices are relative to origin_world_m, so that float keeps them to a few
+/// micrometres whatever the map coordinates.
 struct Scene {
   Vec3 origin_world_m = Vec3::Zero();
   std::vector<Vec3f> vertices_m;                        ///< relative to origin_world_m
@@ -49,7 +49,7 @@ struct Scene {
   std::vector<std::uint32_t> object_of_triangle;  ///< index into object_names
   std::vector<Material> materials;
   std::vector<std::string> object_names;  ///< "scene", then the rig's objects in order
-  std::vector<Pane> panes;                ///< of glass: apart from the triangles, which stop light
+  std::vector<Pane> panes;                ///< glass, kept apart from the triangles, which stop light
   Cleaning cleaning;
   std::vector<std::string> warnings;
 

@@ -37,7 +37,7 @@ Shaft shaft_to_hull(const Vec3& from_world_m, const Vec3& normal_world, std::spa
   Vec3 middle_m = Vec3::Zero();
   for (const Vec3& corner : corners_world_m) middle_m += corner / static_cast<double>(corners_world_m.size());
   const Vec3 axis = (middle_m - from_world_m).normalized();
-  // Sides at right angles to the hull's own first edge, so that long shapes get narrow shafts.
+  // Sides perpendicular to the hull's first edge, so that long shapes get narrow shafts.
   const Vec3 edge = corners_world_m[1] - corners_world_m[0];
   Vec3 u = edge - edge.dot(axis) * axis;
   u = u.norm() > 1e-6 * edge.norm() ? Vec3(u.normalized()) : axis.unitOrthogonal();
@@ -60,7 +60,7 @@ Shaft shaft_to_hull(const Vec3& from_world_m, const Vec3& normal_world, std::spa
     add_plane(shaft, from_world_m, high[side] * axis - across, from_world_m + axis + (high[side] - 1) * across);
   }
   add_plane(shaft, from_world_m + farthest_m * axis, -axis, from_world_m);
-  // The hull itself, not the pyramid's base: it is all that light leaves from.
+  // The hull itself, not the pyramid's base, since light leaves only from the hull.
   shaft.corners_world_m.assign(corners_world_m.begin(), corners_world_m.end());
   shaft.corners_world_m.push_back(from_world_m);
   return shaft;
@@ -68,7 +68,7 @@ Shaft shaft_to_hull(const Vec3& from_world_m, const Vec3& normal_world, std::spa
 
 bool hull_lies_behind(const Vec3& from_m, std::span<const Vec3> corners_m,
                       std::span<const std::array<Vec3, 3>> triangles_m, std::span<const std::size_t> of_corner) {
-  // A triangle's cone is convex, so between corners behind the same triangle nothing can be past it.
+  // A triangle's cone is convex, so everything between corners behind the same triangle is behind it.
   const auto behind = [&](const std::array<Vec3, 3>& t, const Vec3& p) {
     const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
     const double of_point = normal.dot(p - t[0]), of_from = normal.dot(from_m - t[0]);
@@ -80,7 +80,7 @@ bool hull_lies_behind(const Vec3& from_m, std::span<const Vec3> corners_m,
   const Vec3 first = triangles_m[0][0] - from_m, second = triangles_m[0][1] - from_m;
   const Vec3 across = first.cross(second);  // normal of the plane through the point and the shared edge
   const double side0 = across.dot(triangles_m[0][2] - from_m), side1 = across.dot(triangles_m[1][2] - from_m);
-  if (!(side0 * side1 < 0)) return false;  // folded over, or seen edge on
+  if (!(side0 * side1 < 0)) return false;  // folded over, or seen edge-on
   for (std::size_t i = 0; i < corners_m.size(); ++i) {
     for (std::size_t j = 0; j < corners_m.size(); ++j) {
       if (of_corner[i] != 0 || of_corner[j] != 1) continue;
@@ -119,7 +119,7 @@ void TriangleTree::build(std::uint32_t begin, std::uint32_t end) {
   if (end - begin <= kLeaf) return;
   Eigen::Index axis = 0;
   middles.sizes().maxCoeff(&axis);
-  const std::uint32_t middle = begin + (end - begin) / 2;  // halves, so that no pile of equal triangles grows deep
+  const std::uint32_t middle = begin + (end - begin) / 2;  // halves, so that equal triangles do not nest deep
   std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
                    [&](std::uint32_t a, std::uint32_t b) {
                      const float of_a = middles_m_[a][axis], of_b = middles_m_[b][axis];

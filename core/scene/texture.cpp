@@ -89,7 +89,7 @@ Vec3 Texture::mean_over(const std::array<std::array<float, 2>, 3>& corners) cons
     const double longest = std::max(
         {(b - a).cwiseProduct(size).norm(), (c - a).cwiseProduct(size).norm(), (c - b).cwiseProduct(size).norm()});
     if (longest > kMostSteps) continue;
-    // The middles of steps² equal parts of the triangle.
+    // The centres of steps² equal parts of the triangle.
     const int steps = std::max(1, static_cast<int>(std::ceil(longest)));
     Vec3 sum = Vec3::Zero();
     const auto add = [&](double u, double v) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Pictures on surfaces, in linear light: what a triangle reflects in the mean.
+/// Pictures on surfaces, in linear light: the mean reflectance of a triangle.
 
 #include <array>
 #include <memory>
@@ -16,7 +16,7 @@ namespace luxrig {
 
 class Texture {
  public:
-  /// Rows of red, green, blue from the upper left, one after another, into a reduced copy of at most 512 x 512.
+  /// Takes rows of red, green, blue from the upper left, and makes a reduced copy of at most 512 x 512.
   class Rows {
    public:
     Rows(std::size_t width, std::size_t height);
@@ -30,7 +30,8 @@ class Texture {
   };
 
   [[nodiscard]] const Vec3& mean() const { return mean_; }
-  /// Mean over a triangle of the picture, which repeats in both directions; corners from the upper left, 1 = its size.
+  /// Mean of the picture over a triangle. The picture repeats in both directions. Corners from the upper left, 1 = its
+  /// size.
   [[nodiscard]] Vec3 mean_over(const std::array<std::array<float, 2>, 3>& corners) const;
 
  private:
@@ -40,16 +41,16 @@ class Texture {
   };
   void add_levels();
 
-  std::vector<Level> levels_;  // each half of the one before, down to a single texel
+  std::vector<Level> levels_;  // each half the size of the one before, down to a single texel
   Vec3 mean_ = Vec3::Zero();
 };
 
 struct DecodedTexture {
-  std::shared_ptr<const Texture> texture;  ///< null: not read
+  std::shared_ptr<const Texture> texture;  ///< null = not read
   std::string trouble;                     ///< why, for a message: "is of no known kind (WebP)"
 };
 
-/// A PNG or JPEG, told apart by content whatever its name; at most 64 million pixels.
+/// Decodes a PNG or JPEG, told apart by content, not name; at most 64 million pixels.
 [[nodiscard]] DecodedTexture decode_texture(std::string_view bytes);
 
 }  // namespace luxrig

@@ -7,7 +7,7 @@
 namespace luxrig {
 namespace {
 
-constexpr std::size_t kLongestCompared = 100;  // a name; longer text is not a slip of the finger
+constexpr std::size_t kLongestCompared = 100;  // longer text is not a slip of the finger
 
 char folded(char c) { return c == '-' ? '_' : static_cast<char>(std::tolower(static_cast<unsigned char>(c))); }
 
@@ -35,7 +35,7 @@ std::size_t distance(std::string_view a, std::string_view b) {
 std::string_view nearest_name(std::string_view wanted, std::span<const std::string_view> known) {
   std::string_view best;
   if (wanted.size() > kLongestCompared) return best;
-  // A unit left off: "beam_angle" for "beam_angle_deg".
+  // An omitted unit: "beam_angle" for "beam_angle_deg".
   for (const std::string_view name : known) {
     if (!wanted.empty() && name.size() > wanted.size() && name.starts_with(wanted) && name[wanted.size()] == '_') {
       return name;

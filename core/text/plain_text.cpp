@@ -5,7 +5,7 @@
 namespace luxrig {
 namespace {
 
-/// Bytes of the character at the start of `text`; 0 when it is not sound UTF-8.
+/// Bytes of the character at the start of `text`; 0 if it is not valid UTF-8.
 std::size_t character_bytes(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned lead = byte(0);
@@ -26,7 +26,7 @@ bool is_control(std::string_view character) {
   return lead < 0x20 || lead == 0x7F || (lead == 0xC2 && static_cast<unsigned char>(character[1]) < 0xA0);
 }
 
-/// Plain text of at most `most` characters of `text`, which is left with the rest.
+/// Removes up to `most` characters from the start of `text` and returns them as plain text.
 std::string take_plain(std::string_view& text, std::size_t most) {
   std::string out;
   for (std::size_t taken = 0; !text.empty() && taken < most; ++taken) {

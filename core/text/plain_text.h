@@ -1,20 +1,20 @@
 #pragma once
-/// What of a person's text may be kept and shown: names end up in terminals, in JSON and on a page.
+/// Restricts a person's text to what can be stored and shown: names end up in terminals, in JSON and on a page.
 
 #include <string>
 #include <string_view>
 
 namespace luxrig {
 
-/// Whether a text is sound UTF-8 without control characters.
+/// Whether a text is valid UTF-8 without control characters.
 [[nodiscard]] bool is_plain_text(std::string_view text);
 
-/// Characters, not bytes, of sound UTF-8.
+/// Number of characters, not bytes, in valid UTF-8.
 [[nodiscard]] std::size_t length_in_characters(std::string_view text);
 
 inline constexpr std::size_t kLongestName = 100;  ///< characters
 
-/// `text` with ? for whatever is not plain.
+/// `text` with every character that is not plain replaced by ?.
 [[nodiscard]] std::string made_plain(std::string_view text);
 
 /// The same in double quotes, cut after 60 characters.

@@ -1,5 +1,5 @@
 #pragma once
-/// Which of several parts of a luminaire file is meant: the one that a key of the rig file names, or the only one.
+/// Chooses one of several parts of a luminaire file: the one named by a key of the rig file, or the only one.
 
 #include <optional>
 #include <string>
@@ -15,8 +15,8 @@ struct Choice {
   std::string description;  ///< may be empty
 };
 
-/// Index of the choice, by its name, or by its description when only one has it. Else a problem without a place: which
-/// there are, and the key that chooses. `kind`: "variant", "emitter". requires choices
+/// Index of the choice with that name, or with that description if only one has it. Otherwise a problem without a
+/// place, which lists the choices and the key that selects one. `kind`: "variant", "emitter". requires choices
 [[nodiscard]] tl::expected<std::size_t, Problem> choose(const std::vector<Choice>& choices,
                                                         const std::optional<std::string>& wanted, std::string_view kind,
                                                         std::string_view key);

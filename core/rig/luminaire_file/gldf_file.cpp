@@ -19,7 +19,7 @@ constexpr double kMostRated_lm = 1e8;
 
 using Names = std::vector<std::string>;
 
-/// The text of the first <Locale> of <Name>, in whatever language comes first.
+/// The text of the first <Locale> of <Name>, whichever language that is.
 std::string first_name(const pugi::xml_node& node) { return text_of_child(child_called(node, "Name"), "Locale"); }
 
 class GldfProduct {
@@ -40,7 +40,7 @@ class GldfProduct {
     problems_.push_back({xml_.file(), place.line, place.column, std::move(what), std::move(mend)});
   }
 
-  /// The element of that id in a list of <GeneralDefinitions>; a problem when it is not there.
+  /// The element with that id in a list of <GeneralDefinitions>; a problem if it is missing.
   pugi::xml_node defined(std::string_view list, std::string_view id, const pugi::xml_node& wanted_by) {
     for (const pugi::xml_node& node : child_called(definitions_, list).children())
       if (node.type() == pugi::node_element && id == node.attribute("id").value()) return node;
@@ -49,7 +49,7 @@ class GldfProduct {
     return {};
   }
 
-  /// Ids of the emitters that an element refers to, in its order, each once.
+  /// Ids of the emitters that an element refers to, in order, each once.
   static Names emitters_in(const pugi::xml_node& node) {
     Names ids;
     struct Walker : pugi::xml_tree_walker {
@@ -66,7 +66,7 @@ class GldfProduct {
     return ids;
   }
 
-  /// Emitters of the variant that is meant; empty with a problem.
+  /// Emitters of the chosen variant; empty with a problem.
   Names variant_emitters() {
     const pugi::xml_node list = child_called(child_called(xml_.root(), "ProductDefinitions"), "Variants");
     std::vector<Choice> choices;
@@ -101,7 +101,7 @@ class GldfProduct {
     for (const std::string& id : ids) {
       const pugi::xml_node node = defined("Emitters", id, child_called(xml_.root(), "ProductDefinitions"));
       if (!node) return {};
-      if (child_called(node, "Sensor")) continue;  // listed as emitters, but they give no light
+      if (child_called(node, "Sensor")) continue;  // listed as emitters, but give no light
       choices.push_back({made_plain(id), first_name(normal_option(node))});
       nodes.push_back(node);
     }
@@ -118,7 +118,7 @@ class GldfProduct {
     return {};
   }
 
-  /// The light of an emitter when nothing is wrong in the building.
+  /// The light of an emitter in normal operation (not emergency lighting).
   static pugi::xml_node normal_option(const pugi::xml_node& emitter) {
     for (const pugi::xml_node& option : emitter.children()) {
       const bool light = local_name(option) == "FixedLightEmitter" || local_name(option) == "ChangeableLightEmitter" ||
@@ -196,7 +196,7 @@ class GldfProduct {
   GldfLight light_;
 };
 
-/// The entry of the archive that product.xml means: in ldc/ if it is there, else wherever it is.
+/// The archive entry that product.xml means: in ldc/ if it is there, else in any folder.
 const std::string* entry_called(const ZipArchive& archive, const std::string& name) {
   const std::string wanted = file_text::lower(name);
   const std::string* found = nullptr;

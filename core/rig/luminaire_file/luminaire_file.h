@@ -1,5 +1,5 @@
 #pragma once
-/// What a rig file may name as a luminaire's photometry: IES LM-63, EULUMDAT, IES TM-33 (XML) or GLDF (zip), told apart
+/// Photometry files that a rig may name for a luminaire: IES LM-63, EULUMDAT, IES TM-33 (XML) or GLDF (zip), told apart
 /// by content.
 
 #include <filesystem>
@@ -8,7 +8,7 @@
 
 namespace luxrig {
 
-/// Reads, parses and makes the distribution. A part that a file of one luminaire has no use for is refused.
+/// Reads and parses the file and makes the distribution. Refuses a part if the file holds only one luminaire.
 [[nodiscard]] Checked<PhotometricFile> load_luminaire_file(const std::filesystem::path& path,
                                                            const LuminairePart& part = {});
 

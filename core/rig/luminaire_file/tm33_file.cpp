@@ -30,7 +30,7 @@ At at_of(const XmlFile& xml, const pugi::xml_node& node) {
   return {place.line, place.column};
 }
 
-/// Letters and digits only: writers put "CIE-C", "CIE _ C" and "Symm _ Quad".
+/// Letters and digits only: files have "CIE-C", "CIE _ C" and "Symm _ Quad".
 std::string letters_of(std::string_view text) {
   std::string out;
   for (const char c : file_text::lower(text))
@@ -38,7 +38,7 @@ std::string letters_of(std::string_view text) {
   return out;
 }
 
-/// The element that holds an emitter's <IntensityData>; none: it has no distribution.
+/// The element that holds an emitter's <IntensityData>; null if it has no distribution.
 pugi::xml_node distribution_of(const pugi::xml_node& emitter) {
   return emitter.find_node([](const pugi::xml_node& node) { return local_name(node) == "IntensityData"; }).parent();
 }
@@ -67,7 +67,7 @@ class Tm33Reader {
   }
 
  private:
-  /// A text about the data: beside them, or of the emitter.
+  /// A text about the data: beside the data, else from the emitter.
   std::string said(std::string_view name) const {
     const std::string near = text_of_child(data_, name);
     return near.empty() ? text_of_child(emitter_, name) : near;

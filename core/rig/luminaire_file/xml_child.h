@@ -1,5 +1,5 @@
 #pragma once
-/// Elements of XML by their names without a namespace prefix, and their text.
+/// XML elements by name without namespace prefix, and their text.
 
 #include <pugixml.hpp>
 #include <string>
@@ -31,12 +31,12 @@ namespace luxrig {
   return {};
 }
 
-/// Text of a child, plain, without blanks at its ends; empty when there is none.
+/// Text of a child, made plain and trimmed; empty if there is no such child.
 [[nodiscard]] inline std::string text_of_child(const pugi::xml_node& parent, std::string_view name) {
   return made_plain(without_blanks(child_called(parent, name).child_value()));
 }
 
-/// Whether a file begins as XML does, in UTF-8 or UTF-16.
+/// Whether the file starts as XML does, in UTF-8 or UTF-16.
 [[nodiscard]] inline bool is_xml(std::string_view text) {
   const std::string head = file_text::from_utf16(text.substr(0, 64)).value_or(std::string(text.substr(0, 64)));
   return file_text::trimmed(file_text::without_bom(head)).starts_with('<');

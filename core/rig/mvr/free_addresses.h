@@ -1,5 +1,5 @@
 #pragma once
-/// Which DMX slots of which universe are given away. Private to core/rig/mvr.
+/// DMX slots in use, by universe. Private to core/rig/mvr.
 
 #include <bitset>
 #include <map>
@@ -13,7 +13,7 @@ struct UniverseAddress {
 
 class FreeAddresses {
  public:
-  /// Takes the slots when all are free and within 1…512.
+  /// Takes the slots if all are free and within 1…512.
   bool take(const UniverseAddress& at, int slots) {
     if (at.address < 1 || at.address - 1 + slots > 512) return false;
     std::bitset<512>& taken = taken_[at.universe];
@@ -23,7 +23,7 @@ class FreeAddresses {
     return true;
   }
 
-  /// The next free ones after those that were found before, from `first_universe` on. requires slots ≤ 512
+  /// Takes the next free slots after those found before, from `first_universe` on. requires slots ≤ 512
   UniverseAddress take_next(int first_universe, int slots) {
     if (next_.universe < first_universe) next_ = {first_universe, 1};
     while (!take(next_, slots)) {

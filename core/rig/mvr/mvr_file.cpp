@@ -17,9 +17,9 @@ namespace {
 constexpr std::size_t kMostMvrFixtures = 10'000, kMostMvrGeometries = 100'000, kMostMvrNotes = 100;
 constexpr int kDeepestSymbol = 8;
 constexpr std::size_t kMostGdtfBytes = std::size_t{64} << 20, kMostGdtfBytesInAll = std::size_t{512} << 20;
-constexpr double kMetresPerMillimetre = 0.001, kFarthest_m = 9.9e6;  // a rig's is 1e7, and lamps stand off their bases
+constexpr double kMetresPerMillimetre = 0.001, kFarthest_m = 9.9e6;  // a rig allows 1e7; lamps are offset
 
-/// A matrix as MVR writes it: where x, y and z go, then the origin in millimetres.
+/// A matrix as MVR writes it: the x, y and z axes, then the origin in millimetres.
 std::optional<Eigen::Affine3d> affine_of(const pugi::xml_node& node) {
   const std::string_view text = without_blanks(node.child_value("Matrix"));
   if (text.empty()) return Eigen::Affine3d::Identity();
@@ -33,7 +33,7 @@ std::optional<Eigen::Affine3d> affine_of(const pugi::xml_node& node) {
   return affine;
 }
 
-/// The rotation nearest to what may also scale or mirror.
+/// The rotation nearest to a matrix that may also scale or mirror.
 Mat3 rotation_nearest_to(const Mat3& m) {
   const Eigen::JacobiSVD<Mat3> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Mat3 u = svd.matrixU();
@@ -58,7 +58,7 @@ std::optional<MvrAddress> address_of(const pugi::xml_node& node) {
     out.address = *address;
     return out;
   }
-  const auto absolute = whole(text, 63999.0 * 512);  // 0: not patched
+  const auto absolute = whole(text, 63999.0 * 512);  // 0 = not patched
   if (!absolute) return std::nullopt;
   out.universe = (*absolute - 1) / 512 + 1;
   out.address = (*absolute - 1) % 512 + 1;
@@ -88,7 +88,7 @@ class MvrReader {
     if (out_.notes.size() < kMostMvrNotes) out_.notes.push_back(std::move(text));
   }
 
-  /// In the world; nothing, and a problem, when its matrix is wrong.
+  /// In the world; nullopt and a problem if its matrix is wrong.
   std::optional<Eigen::Affine3d> placed(const pugi::xml_node& node, const Eigen::Affine3d& parent) {
     const auto own = affine_of(node);
     if (own) {
@@ -148,7 +148,7 @@ class MvrReader {
     if (out_.geometries.size() == before) ++shapeless_;
   }
 
-  /// Models, and symbols: models that are defined once for many places. Their matrices multiply.
+  /// Models and symbols. A symbol is a model defined once for many places. Matrices multiply.
   void read_models(const pugi::xml_node& list, const Eigen::Affine3d& parent, const std::string& object, int depth) {
     for (const pugi::xml_node& node : list.children()) {
       if (problems_.full()) return;
@@ -172,7 +172,7 @@ class MvrReader {
         note(fmt::format("{} shows a symbol that is not in the file", in_quotes(object)));
         continue;
       }
-      for (const char* const where : {"ChildList", "Geometries"})  // the standard says the former; both are met
+      for (const char* const where : {"ChildList", "Geometries"})  // the standard has the former; files have either
         read_models(symbol->second.child(where), *pose, object, depth + 1);
     }
   }
@@ -203,7 +203,7 @@ class MvrReader {
   ProblemList& problems_;
   std::map<std::string, Vec3> focus_;
   std::map<std::string, pugi::xml_node> symbols_;
-  std::size_t shapeless_ = 0, models_looked_at_ = 0;  // the latter with symbols, which may hold each other
+  std::size_t shapeless_ = 0, models_looked_at_ = 0;  // the latter with symbols, which may contain each other
   bool too_many_models_ = false;
   MvrScene out_;
 };

@@ -1,9 +1,9 @@
 #pragma once
-/// What hangs where and how it is patched, from a My Virtual Rig file. Source: DIN SPEC 15801 (MVR 1.5, 1.6).
+/// Positions and patch of fixtures from a My Virtual Rig file. Source: DIN SPEC 15801 (MVR 1.5, 1.6).
 ///
-/// Its matrices (node `Matrix`) are {u}{v}{w}{o}: where x, y and z of the object point in the frame around it, then its
-/// origin, in millimetres; right-handed, z up. A fixture's own frame is that of its GDTF file: origin in the middle of
-/// its base, hanging (personality/gdtf_geometry.h has the pivot).
+/// Its matrices (node `Matrix`) are {u}{v}{w}{o}: the object's x, y and z axes in the frame around it, then its origin
+/// in millimetres; right-handed, z up. A fixture's own frame is that of its GDTF file: origin in the middle of its
+/// base, hanging (for the pivot, see personality/gdtf_geometry.h).
 
 #include <map>
 #include <optional>
@@ -26,38 +26,37 @@ struct MvrAddress {
 struct MvrFixture {
   std::string name;
   std::string gdtf_file, gdtf_mode;
-  Pose world_from_base;  ///< metres; layers and groups around it counted in
+  Pose world_from_base;  ///< metres; includes the layers and groups around it
   std::optional<Vec3> focus_world_m;
-  std::vector<MvrAddress> addresses;  ///< those that are patched
+  std::vector<MvrAddress> addresses;  ///< patched ones only
   bool inverts_pan = false, inverts_tilt = false;
   int line = 0;
 };
 
-/// A model of a thing that is no fixture (scenery, truss, screen …), in one of its places.
+/// A model of an object that is not a fixture (scenery, truss, screen …), at one of its places.
 struct MvrGeometry {
   std::string object;                  ///< its name, plain text
-  std::string file;                    ///< of the model, by its name in the archive; without an extension: .3ds
-  Eigen::Affine3d world_from_model_m;  ///< metres; of a model in metres with +Z up
+  std::string file;                    ///< of the model, name in the archive; without an extension: .3ds
+  Eigen::Affine3d world_from_model_m;  ///< metres; for a model in metres with +Z up
 };
 
 struct MvrScene {
   std::vector<MvrFixture> fixtures;
   std::vector<MvrGeometry> geometries;
-  std::vector<std::string> notes;  ///< what was left out, or odd
+  std::vector<std::string> notes;  ///< things left out, or odd
 };
 
-/// GeneralSceneDescription.xml alone; at most 10 000 fixtures, and 100 000 models of other things. `file` is for the
-/// messages.
+/// Reads GeneralSceneDescription.xml alone. At most 10 000 fixtures and 100 000 other models. `file` is for messages.
 [[nodiscard]] Checked<MvrScene> parse_mvr_scene(std::string_view xml, const std::string& file);
 
 struct MvrFile {
   MvrScene scene;
-  /// Content of the GDTF files that fixtures name, by that name; those that are not in the archive are absent.
+  /// Content of the GDTF files that fixtures name, by that name. Without those missing in the archive.
   std::map<std::string, std::string> gdtf_files;
   std::optional<ZipArchive> archive = std::nullopt;  ///< for the models
 };
 
-/// A whole .mvr file (a zip archive).
+/// Reads a whole .mvr file (a zip archive).
 [[nodiscard]] Checked<MvrFile> read_mvr(std::string bytes, const std::string& file);
 
 }  // namespace luxrig

@@ -17,9 +17,9 @@ namespace {
 
 constexpr double kFallbackBeam_deg = 25, kFallbackField_deg = 40, kFallbackLumens = 1000;
 constexpr double kNearestFocus_m = 0.01;
-constexpr int kLastUniverse = 50'000;  // above it there might be too few left of sACN's 63 999 for what is unpatched
+constexpr int kLastUniverse = 50'000;  // above it, sACN's 63 999 might leave too few for unpatched fixtures
 
-/// As TOML. Names here are plain text already.
+/// As TOML. Names are already plain text here.
 std::string quoted(const std::string& text) {
   std::string out = "\"";
   for (const char letter : text) {
@@ -29,9 +29,9 @@ std::string quoted(const std::string& text) {
   return out + '"';
 }
 
-/// Within a comment, on one line: plain text has no line ends.
+/// For a comment on one line: plain text has no line ends.
 std::string cut(const std::string& text, std::size_t most_characters) {
-  std::string out = text.substr(0, 4 * most_characters);  // a character has four bytes at most
+  std::string out = text.substr(0, 4 * most_characters);  // a character has at most four bytes
   while (!out.empty() && !is_plain_text(out)) out.pop_back();
   while (length_in_characters(out) > most_characters) {
     out.pop_back();
@@ -52,7 +52,7 @@ class UniqueNames {
 
  private:
   std::set<std::string> taken_;
-  std::map<std::string, int> counts_;  // so that ten thousand of one name take no longer than their number
+  std::map<std::string, int> counts_;  // keeps the cost linear if ten thousand share one name
 };
 
 std::string file_name_of(const std::string& gdtf_file) {
@@ -71,7 +71,7 @@ std::string file_name_of(const std::string& gdtf_file) {
 /// A kind of fixture: a GDTF file in one mode.
 struct FixtureKind {
   std::string luminaire;
-  std::string personality_file;  // empty: none can be used
+  std::string personality_file;  // empty = none can be used
   std::string mode;
   std::string trouble;  // why none can be used
   int footprint = 1;
@@ -166,7 +166,7 @@ class RigWriter {
     kind.personality_file = file_of(fixture.gdtf_file);
   }
 
-  /// Read once; null, and the trouble with it, when it cannot be.
+  /// Read once; null and `trouble` if it cannot be read.
   const Personality* personality_of(const std::string& gdtf_file, FixtureKind& kind) {
     const auto bytes = mvr_.gdtf_files.find(gdtf_file);
     if (bytes == mvr_.gdtf_files.end()) {
@@ -225,7 +225,7 @@ class RigWriter {
     return false;
   }
 
-  /// Addresses of the file first, so that made-up ones keep out of their way.
+  /// The file's own addresses first, so that made-up ones avoid them.
   void reserve_addresses() {
     for (const MvrFixture& fixture : mvr_.scene.fixtures) {
       const FixtureKind& kind = kind_of(fixture);
@@ -293,7 +293,7 @@ class RigWriter {
       text_ += fmt::format("aim_m = [{:.4f}, {:.4f}, {:.4f}]\n", p.x(), p.y(), p.z());
       return;
     }
-    // A comment between keys of one table is as good as before it.
+    // A comment may also stand between the keys of a table.
     remark(fmt::format("FILL IN: {} cannot reach its focus point in the MVR file; it looks straight out.",
                        in_quotes(name)));
   }
@@ -314,7 +314,7 @@ class RigWriter {
 }  // namespace
 
 Vec3 mount_deg_of(const Mat3& r) {
-  // R = Rz(yaw) · Rx(pitch) · Ry(roll); where the pitch is a quarter turn, roll does what yaw does and is taken as 0.
+  // R = Rz(yaw) · Rx(pitch) · Ry(roll). At a pitch of a quarter turn, roll and yaw do the same, so roll is taken as 0.
   const double pitch = std::asin(std::clamp(r(2, 1), -1.0, 1.0));
   const bool upright = std::abs(r(2, 1)) > 1 - 1e-12;
   const double yaw = upright ? std::atan2(r(1, 0), r(0, 0)) : std::atan2(-r(0, 1), r(1, 1));

@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kMostSceneryTriangles = 5'000'000, kMostModelBytes = std::size_t{256} << 20;
 constexpr std::size_t kMostSceneryNotes = 50;
 
-/// The archive's root, as the folder that a model lies in.
+/// The archive's root, as the folder that holds the model.
 class ArchiveBeside final : public FilesBeside {
  public:
   explicit ArchiveBeside(const ZipArchive& archive) : archive_(archive) {}
@@ -57,7 +57,7 @@ class SceneryWriter {
     if (out_.notes.size() < kMostSceneryNotes) out_.notes.push_back(std::move(text));
   }
 
-  /// Read once; null, and a note (once), when it cannot be.
+  /// Read once; null and one note if it cannot be read.
   const PolygonMesh* model_of(const MvrGeometry& geometry) {
     const auto [at, is_new] = models_.try_emplace(geometry.file);
     if (is_new) at->second = read_model(geometry);
@@ -115,7 +115,7 @@ class SceneryWriter {
     vertices_ += placed.vertices_world_m.size();
   }
 
-  /// Materials of one name and colour are one; of two colours the second is "NAME 2".
+  /// Materials with the same name and colour are one. A second colour under the same name is called "NAME 2".
   std::string name_of_material(const Material& material) {
     std::array<long, 3> colour = {-1, -1, -1};
     if (material.coloured)

@@ -11,22 +11,22 @@
 namespace luxrig {
 namespace {
 
-constexpr double kLeastChange = 0.05;  // of full light: what changes less does not dim
+constexpr double kLeastChange = 0.05;  // of full light: a smaller change is not dimming
 constexpr double kAsBright = 0.99;     // of the brightest place
 constexpr double kNoLight = 1e-6;
-constexpr double kLeastPart = 0.25;  // of a channel's values, for its dimmer to be what the channel is for
+constexpr double kLeastPart = 0.25;  // least share of a channel's values for its main dimmer function
 constexpr std::size_t kFewestOfStandIn = 3;
 
 double brightest_of(const ChannelFunction& f) { return std::max(f.physical_from, f.physical_to); }
 double darkest_of(const ChannelFunction& f) { return std::min(f.physical_from, f.physical_to); }
 double width_of(const DmxInterval& dmx) { return static_cast<double>(dmx.to - dmx.from) + 1; }
 
-/// A range's place that is safest from its neighbours: its end where the channel ends, else its middle.
+/// The place of a range that is safest from its neighbours: its end if the channel ends there, else its middle.
 std::uint32_t inside(const PersonalityChannel& channel, const DmxInterval& dmx) {
   return dmx.from == 0 ? 0 : dmx.to == channel.max_dmx() ? dmx.to : dmx.middle();
 }
 
-/// A value that the file says is dark: a range of the kind without light, or a closed shutter on the same channel.
+/// A value that the file states as dark: a range of the kind without light, or a closed shutter on the same channel.
 std::optional<std::uint32_t> dark_value(const PersonalityChannel& channel, const std::vector<std::uint32_t>& dmx,
                                         const FunctionKind& kind, double full) {
   std::optional<std::uint32_t> shut;
@@ -85,7 +85,7 @@ std::optional<LevelRange> level_range(const PersonalityChannel& channel, const s
 bool dims_light(const PersonalityChannel& channel, const std::vector<std::uint32_t>& dmx) {
   const auto range = level_range(channel, dmx, is_dimmer);
   if (!range) return false;
-  // A channel of nothing but light (with its shutter, and a command for its lamp) is there to dim, however short.
+  // A channel for light only (with shutter and lamp command) is there to dim, however short its dimmer range.
   const bool only_light = std::all_of(channel.functions.begin(), channel.functions.end(), [](const auto& f) {
     return is_dimmer(f) || f.attribute == "NoFeature" || f.attribute == "LampControl" || f.attribute == "Control1" ||
            f.attribute.starts_with("Shutter") || f.attribute.starts_with("Strobe");

@@ -92,7 +92,7 @@ class FunctionReader {
       set.name = plain_attribute(set_node, "Name");
       const std::string from = plain_attribute(set_node, "DMXFrom");
       const auto dmx = from.empty() ? std::optional(function.dmx.from) : dmx_value(from, bytes_);
-      // A set only names a part of its function: without one that is wrong the fixture works all the same.
+      // A set only names a part of its function. The fixture also works without a wrong one.
       if (!dmx || !function.dmx.contains(*dmx)) {
         if (personality_.notes.size() < 50) {
           personality_.notes.push_back(fmt::format("line {}: set {} at {} does not lie within its function; left out",

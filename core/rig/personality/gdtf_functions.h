@@ -6,18 +6,18 @@
 
 namespace luxrig {
 
-/// As written: it can be resolved once all channels of the mode are known.
+/// As written. Can be resolved once all channels of the mode are known.
 struct GdtfCondition {
-  std::string master, from, to;  ///< empty master: the function is always there
+  std::string master, from, to;  ///< empty master = the function always exists
 };
 
 struct GdtfFunctions {
   std::vector<ChannelFunction> functions;
-  std::vector<GdtfCondition> conditions;  ///< for each
+  std::vector<GdtfCondition> conditions;  ///< one per function
   std::uint32_t default_dmx = 0;          ///< of the channel
 };
 
-/// `bytes`: resolution of the channel. A function ends before the next higher one that exists under the same condition.
+/// `bytes`: resolution of the channel. A function ends before the next higher one with the same condition.
 [[nodiscard]] GdtfFunctions read_gdtf_functions(const XmlFile& xml, const pugi::xml_node& channel, int bytes,
                                                 Personality& personality, ProblemList& problems);
 

@@ -14,11 +14,11 @@ namespace luxrig {
 namespace {
 
 constexpr std::size_t kMostInstances = 4096;
-constexpr double kLargestPart_m = 100;  // 100 levels of it stay within what a rig can hold
-constexpr double kStraight = 0.01;      // sine of an angle up to which axes count as parallel: drawings are not exact
+constexpr double kLargestPart_m = 100;  // 100 nested levels of it stay within the size of a rig
+constexpr double kStraight = 0.01;      // largest sine between parallel axes, since drawings are inexact
 
 bool is_geometry(const pugi::xml_node& node) {
-  // All other children (Break, pins of a connector, …) are no parts of the fixture that channels could act on.
+  // Other children (Break, pins of a connector, …) are not parts of the fixture that channels could act on.
   static const std::set<std::string_view> kOthers = {"Break", "PinPatch", "Protocol", "MagnetGroup", "LaserLine"};
   return node.type() == pugi::node_element && !kOthers.contains(node.name());
 }
@@ -46,7 +46,7 @@ Pose pose_of(const pugi::xml_node& node) {
   return pose;
 }
 
-/// The part of a tree walk that goes on below a reference.
+/// State of the tree walk that applies below a reference.
 struct ReferenceOffsets {
   std::map<int, int> added_by_break;
   std::optional<std::pair<int, int>> overwrite;
@@ -59,7 +59,7 @@ ReferenceOffsets offsets_of(const pugi::xml_node& reference, const ReferenceOffs
     const int added = static_cast<int>(std::clamp(number_attribute(node, "DMXOffset", 1), 1.0, 512.0)) - 1;
     const auto outer_added = outer.added_by_break.find(number);
     own.added_by_break[number] = added + (outer_added == outer.added_by_break.end() ? 0 : outer_added->second);
-    own.overwrite = {number, own.added_by_break[number]};  // the last one is meant
+    own.overwrite = {number, own.added_by_break[number]};  // the last one applies
   }
   return own;
 }
@@ -141,7 +141,7 @@ pugi::xml_node geometry_named(const pugi::xml_node& geometries, const std::strin
       [&](const pugi::xml_node& node) { return is_geometry(node) && plain_attribute(node, "Name") == name; });
 }
 
-/// Of a geometry in the frame of one above it; without that, in the fixture's.
+/// Pose of a geometry in the frame of one above it, or in the fixture's frame if none is given.
 Pose pose_in(const std::vector<GdtfInstance>& instances, std::optional<std::size_t> above, std::size_t below) {
   Pose pose;
   for (std::optional<std::size_t> at = below; at && at != above; at = instances[*at].geometry.parent) {

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kMostChannels = 2048;
 
-/// Up to the first dot of a link: "Head_Gobo1.Gobo1.Gobo1 Index" names a function of channel Head_Gobo1.
+/// The part of a link before its first dot: "Head_Gobo1.Gobo1.Gobo1 Index" names a function of channel Head_Gobo1.
 std::string_view channel_of_link(std::string_view link) { return link.substr(0, link.find('.')); }
 std::string_view function_of_link(std::string_view link) {
   const auto dot = link.rfind('.');
@@ -53,7 +53,7 @@ class GdtfModeReader {
   }
 
  private:
-  struct Link {  // of the file, for each channel of the mode
+  struct Link {  // as in the file, for each channel of the mode
     std::string file_name;
     std::size_t instance;
     std::vector<GdtfCondition> conditions;
@@ -64,7 +64,7 @@ class GdtfModeReader {
     if (personality_.notes.size() < 50) personality_.notes.push_back(whole);
   }
 
-  /// "1,2" as 0-based slots, before what references add. False, and a problem, when it is wrong.
+  /// Reads "1,2" as 0-based slots, before references add to them. False and a problem if it is wrong.
   bool read_offsets(const pugi::xml_node& node, std::vector<int>& offsets) {
     const auto problem = [&] {
       problems_.add(xml_.place_of(node),
@@ -150,7 +150,7 @@ class GdtfModeReader {
     for (int& offset : channel.offsets) offset += added;
   }
 
-  /// The channel that a link of channel `from` means: of its own geometry instance where there are several.
+  /// The channel that a link of channel `from` refers to: the one of its own geometry instance if there are several.
   std::optional<std::size_t> linked(std::string_view link, std::optional<std::size_t> from) const {
     const std::string_view name = channel_of_link(link);
     std::optional<std::size_t> first;
@@ -187,7 +187,7 @@ class GdtfModeReader {
     const int bytes = channel.is_virtual() ? 4 : static_cast<int>(channel.offsets.size());
     DmxInterval dmx{dmx_value(condition.from, bytes).value_or(0),
                     dmx_value(condition.to, bytes).value_or(channel.max_dmx())};
-    // Some files name a function and leave 0 to 0 beside it: then the function's own range is meant.
+    // Some files name a function and state 0 to 0 with it. Then the function's own range applies.
     const std::string_view wanted = function_of_link(condition.master);
     for (const ChannelFunction& function : channel.functions) {
       if (wanted.empty() || function.name != wanted) continue;
@@ -211,7 +211,7 @@ class GdtfModeReader {
     }
   }
 
-  /// What a macro that strikes the lamp sends, and for how long, is the best that the file says of it.
+  /// The best information in the file: what a macro that strikes the lamp sends, and for how long.
   void read_macros(const pugi::xml_node& node) {
     for (const pugi::xml_node& macro : node.child("FTMacros").children("FTMacro")) {
       for (const pugi::xml_node& step : macro.child("MacroDMX").children("MacroDMXStep")) {

@@ -6,12 +6,12 @@
 
 namespace luxrig {
 
-/// Functions and sets of all modes together, those of referenced geometries counted for each reference: references
-/// could make a small file endless.
+/// Most functions and sets of all modes together, where a referenced geometry counts once per reference. Without a
+/// limit, references could make a small file endless.
 inline constexpr std::size_t kMostGdtfParts = 500'000;
 
-/// `type`: the <FixtureType> it belongs to. `personality` has its profiles already, and takes notes. `room`: how many
-/// functions and sets may still come.
+/// `type`: the <FixtureType> around it. `personality` already has its profiles, and collects notes. `room`: how many
+/// more functions and sets are allowed.
 [[nodiscard]] PersonalityMode read_gdtf_mode(const XmlFile& xml, const pugi::xml_node& type, const pugi::xml_node& mode,
                                              Personality& personality, std::size_t& room, ProblemList& problems);
 

@@ -23,7 +23,7 @@ bool is_open_place(const ChannelFunction& function, std::uint32_t value) {
   return says(name, "open");
 }
 
-/// The parts of a function that differ: its sets, or all of it.
+/// The distinct parts of a function: its sets, or all of it.
 std::vector<DmxInterval> distinct_parts_of(const ChannelFunction& function) {
   std::vector<DmxInterval> parts;
   for (const ChannelSet& set : function.sets) parts.push_back(set.dmx);
@@ -44,7 +44,7 @@ class OpenHolder {
       const auto is_open = [](const ChannelFunction& f, std::uint32_t value) {
         return shutter_state(f, value) == ShutterState::open;
       };
-      // A strobe's range without a function leaves the light as it is.
+      // A range of a strobe channel without a function leaves the light unchanged.
       const auto is_idle = [](const ChannelFunction& f) { return f.attribute == "NoFeature"; };
       const auto idle = [&](const ChannelFunction& f, std::uint32_t) { return is_idle(f); };
       const bool found =
@@ -61,7 +61,7 @@ class OpenHolder {
   }
 
  private:
-  /// Keeps the default where it is of the wanted kind; else takes the first place that is.
+  /// Keeps the default if it is good; else takes the first place that is.
   template <class Of, class Good>
   bool take(std::size_t c, const char* what, bool middle, const Of& of, const Good& good) {
     const PersonalityChannel& channel = mode_.channels[c];
@@ -71,7 +71,7 @@ class OpenHolder {
     for (const ChannelFunction& function : channel.functions) {
       if (!of(function) || !is_active(function, held_.dmx)) continue;
       for (const DmxInterval& part : distinct_parts_of(function)) {
-        // The end of a shutter that opens bit by bit is open, too.
+        // The end of a shutter that opens gradually is open, too.
         for (const std::uint32_t value : {middle ? part.middle() : part.from, part.to}) {
           if (!good(function, value)) continue;
           held_.dmx[c] = value;
@@ -87,7 +87,7 @@ class OpenHolder {
     const ChannelFunction* zoom =
         active_function(mode_.channels[c], held_.dmx, [](const ChannelFunction& f) { return f.attribute == "Zoom"; });
     const double from = zoom->physical_from, to = zoom->physical_to;
-    if (std::abs(to - from) < 1.5) {  // 0 to 1 says nothing, and so little is no zoom
+    if (std::abs(to - from) < 1.5) {  // 0 to 1 states no angles, and so small a range is no zoom
       if (tell_)
         told(c, "{} stays at its default {}: its file states no angles{}, so set it to the luminaire's {:.3g}° by hand",
              in_quotes(mode_.channels[c].name), held_.dmx[c],
@@ -156,7 +156,7 @@ HeldValues held_values(const PersonalityMode& mode, std::optional<double> zoom_d
   HeldValues held;
   for (const PersonalityChannel& channel : mode.channels) held.dmx.push_back(channel.default_dmx);
   OpenHolder holder(mode, zoom_deg, held);
-  // Twice: what a channel does may depend on where another one is held.
+  // Two passes, since a channel's function may depend on the held value of another.
   for (const bool tell : {false, true})
     for (std::size_t c = 0; c < mode.channels.size(); ++c) {
       if (tell) held.dmx[c] = mode.channels[c].default_dmx;

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMostCapabilities = 1024;
 
-// GDTF's attributes for the types that need no more than another name. Types not listed keep their own.
+// GDTF attributes for types that only need another name. Types not listed keep their own.
 constexpr std::pair<std::string_view, std::string_view> kPlainTypes[] = {
     {"NoFunction", "NoFeature"},
     {"PanContinuous", "PanRotate"},
@@ -67,8 +67,8 @@ void read_level(const OflJson& capability, ChannelFunction& function) {
   read_span(capability, "brightness", ofl_brightness, function);
 }
 
-/// Angles in degrees; 0 to 1, which says nothing, where the file has shares or words. Of a zoom the words say which end
-/// is wide: then the wide one is 1.
+/// Angles in degrees. If the file has shares or words, 0 to 1, which states no angle. For a zoom, the words say which
+/// end is wide: the wide one is then 1.
 void read_angle(const OflJson& capability, ChannelFunction& function) {
   const auto degrees = [](const OflJson& v) { return ofl_entity(v, "deg"); };
   if (read_span(capability, "angle", degrees, function)) return;
@@ -118,7 +118,7 @@ void translate(const OflFixture& fixture, const std::string& channel_key, const 
   const std::string type = ofl_text(ofl_member(capability, "type"));
   function.name = ofl_text(ofl_member(capability, "comment"));
   if (function.name.empty()) function.name = ofl_text(ofl_member(capability, "effectName"));
-  // Files call the parts of a hue, saturation and intensity mix intensities, too.
+  // In files, parts of a hue, saturation and intensity mix are called intensities, too.
   const bool tints = says(channel_key, "hue") || says(channel_key, "saturation");
   if (type == "Intensity" && tints) {
     function.attribute = says(channel_key, "hue") ? "HSB_Hue" : "HSB_Saturation";
@@ -191,7 +191,7 @@ OflFunctions read_ofl_functions(const OflFixture& fixture, const std::string& ke
       const bool two = range.is_array() && range.size() == 2;
       const auto from = two ? ofl_dmx(range[0], resolution, bytes) : std::nullopt;
       auto to = two ? ofl_dmx(range[1], resolution, bytes) : std::nullopt;
-      if (to && bytes > resolution) *to |= (1u << (8 * (bytes - resolution))) - 1;  // the whole of its last step
+      if (to && bytes > resolution) *to |= (1u << (8 * (bytes - resolution))) - 1;  // to the end of its last step
       if (!from || !to || *from > *to) {
         problem("a dmxRange is no two rising DMX values", fmt::format("write [from, to] in {} bytes", resolution));
         continue;

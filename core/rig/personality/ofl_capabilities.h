@@ -9,7 +9,7 @@ namespace luxrig {
 
 struct OflFixture {
   const OflJson& json;
-  bool adds_colours = true;  ///< false: its cyan, magenta and yellow are filters before a white lamp
+  bool adds_colours = true;  ///< false = its cyan, magenta and yellow are filters before a white lamp
 };
 
 struct OflFunctions {
@@ -22,10 +22,10 @@ struct OflFunctions {
 [[nodiscard]] OflFunctions read_ofl_functions(const OflFixture& fixture, const std::string& key, const OflJson& channel,
                                               int bytes, ProblemList& problems);
 
-/// How many bytes the channel can have: one and its fine channels.
+/// Number of bytes of the channel: one plus its fine channels.
 [[nodiscard]] int ofl_resolution(const OflJson& channel);
 
-/// Each capability of a channel, whether it has one or several.
+/// All capabilities of a channel, one or several.
 [[nodiscard]] std::vector<const OflJson*> ofl_capabilities(const OflJson& channel);
 
 }  // namespace luxrig

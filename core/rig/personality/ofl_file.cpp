@@ -86,7 +86,7 @@ class OflReader {
   }
 
  private:
-  /// A channel as it is called in modes: its definition, which of its bytes, and of which pixel.
+  /// A channel by its name in modes: its definition, which of its bytes, and which pixel.
   struct Known {
     const OflJson* channel = nullptr;
     std::string coarse;  ///< name of its coarse byte
@@ -127,7 +127,7 @@ class OflReader {
     }
   }
 
-  /// Which channel a switching alias is by default: what its trigger's default value says.
+  /// The default channel of each switching alias, from the default value of its trigger.
   void index_switches() {
     index_switches_of(ofl_member(json_, "availableChannels"));
     index_switches_of(ofl_member(json_, "templateChannels"));
@@ -154,7 +154,7 @@ class OflReader {
   const Known* find(const std::string& name) {
     const std::string wanted = switched(name);
     if (const auto at = known_.find(wanted); at != known_.end()) return &at->second;
-    // A template channel, made for the pixel that its name has in it: only those that modes use.
+    // A template channel, made for the pixel in its name. Only those used by modes are made.
     const OflJson& templates = ofl_member(json_, "templateChannels");
     if (!templates.is_object()) return nullptr;
     for (const auto& [key, channel] : templates.items()) {
@@ -168,7 +168,7 @@ class OflReader {
     return nullptr;
   }
 
-  /// The channel that a switching alias is by default; any other name as it is.
+  /// The default channel of a switching alias; any other name unchanged.
   std::string switched(const std::string& name) const {
     if (const auto alias = switches_.find(name); alias != switches_.end()) return alias->second;
     for (const auto& [alias, target] : switches_)
@@ -183,7 +183,7 @@ class OflReader {
     return patterns;
   }
 
-  /// The pixel that makes the name of the pattern, which may have it in several places; empty: it is none of its names.
+  /// The pixel that turns the pattern into the name, where it may occur several times; empty = the name does not fit.
   static std::string pixel_in(const std::string& name, const std::string& pattern) {
     constexpr std::string_view kKey = "$pixelKey";
     const auto first = pattern.find(kKey);
@@ -195,7 +195,7 @@ class OflReader {
     return with_pixel(pattern, pixel) == name ? pixel : std::string();
   }
 
-  /// The names of a mode's slots; empty for one that is not used.
+  /// The names of a mode's slots; empty = unused.
   std::vector<std::string> slot_names(const OflJson& mode, const std::string& mode_name) {
     std::vector<std::string> names;
     const OflJson& channels = ofl_member(mode, "channels");
@@ -265,7 +265,7 @@ class OflReader {
     }
     for (const Known& known : order) add_channel(known, slots[known.coarse], mode);
     lay_out_slots(mode, std::vector<Place>(mode.channels.size()), problems_);
-    // Slots at the end that nothing uses still belong to the fixture.
+    // Unused slots at the end still belong to the fixture.
     if (!names.empty()) mode.break_footprints = {static_cast<int>(names.size())};
     centre_angles(mode);
     return mode;
@@ -312,7 +312,7 @@ class OflReader {
   std::map<std::string, std::string> switches_;
 };
 
-/// Later versions may mean other things by the same words.
+/// Later versions may use the same words with other meanings.
 bool is_known_schema(const std::string& schema) {
   return schema.find("open-fixture-library/") != std::string::npos && schema.ends_with("/schemas/fixture.json") &&
          (schema.find("/schema-") == std::string::npos || schema.find("/schema-12.") != std::string::npos);
@@ -333,11 +333,11 @@ Checked<Personality> parse_ofl(std::string_view text, const std::string& manufac
   if (depth_of_brackets(text) > kMostOflDepth)
     return refuse({}, fmt::format("nested deeper than {}", kMostOflDepth), "no such file needs that; do not trust it");
   OflJson json;
-  try {  // the parser tells the place of an error by an exception only
+  try {  // only an exception of the parser has the place of an error
     json = OflJson::parse(text);
   } catch (const OflJson::parse_error& error) {
     return refuse(place_in_text(text, error.byte), "not well-formed JSON", "get the file again from the library");
-  } catch (const OflJson::exception&) {  // a number past all bounds
+  } catch (const OflJson::exception&) {  // a number out of range
     return refuse({}, "a number that no computer can hold", "get the file again from the library");
   }
   const std::string schema = ofl_text(ofl_member(json, "$schema"));

@@ -1,5 +1,5 @@
 #pragma once
-/// Fixtures of the Open Fixture Library. Source: its fixture format, schema version 12
+/// Fixtures from the Open Fixture Library. Source: its fixture format, schema version 12
 /// (github.com/OpenLightingProject/open-fixture-library, docs/fixture-format.md).
 
 #include <string>
@@ -10,9 +10,9 @@
 
 namespace luxrig {
 
-/// A fixture's JSON. The format names no manufacturer: that is the folder's name. `file` is for the messages. All modes
-/// are read; a channel that switches its meaning has the one that it has by default. Angles count from one end of the
-/// travel and nothing says where that points, so the middle of pan and tilt is taken as straight down.
+/// Reads a fixture's JSON. The manufacturer is not in the file: it is the name of its folder. `file` is for messages.
+/// Reads all modes. A switching channel is read with its default meaning. Angles count from one end of the travel, and
+/// the format does not say where that points, so the middle of pan and tilt is taken as straight down.
 [[nodiscard]] Checked<Personality> parse_ofl(std::string_view json, const std::string& manufacturer,
                                              const std::string& file);
 

@@ -9,7 +9,7 @@
 namespace luxrig {
 namespace {
 
-/// Numbers within a text count as numbers: "M2" comes before "M10".
+/// Compares numbers within a text by value: "M2" comes before "M10".
 bool comes_before(const std::string& a, const std::string& b) {
   const auto digit = [](char letter) { return std::isdigit(static_cast<unsigned char>(letter)) != 0; };
   std::size_t i = 0, j = 0;
@@ -51,7 +51,7 @@ void read_counted(const OflJson& count, OflMatrix& out) {
   for (int z = 1; z <= size[2]; ++z)
     for (int y = 1; y <= size[1]; ++y)
       for (int x = 1; x <= size[0]; ++x) {
-        // One axis: 1, 2, …; two: those that there are; three: all.
+        // One axis: 1, 2, …; two: those two; three: all.
         std::string key;
         for (const auto& [at, along] : {std::pair{x, size[0]}, std::pair{y, size[1]}, std::pair{z, size[2]}}) {
           if (axes < 3 && along == 1) continue;
@@ -69,7 +69,7 @@ void read_keyed(const OflJson& layers, OflMatrix& out) {
       if (!layers[z][y].is_array()) continue;
       for (std::size_t x = 0; x < layers[z][y].size(); ++x) {
         const std::string key = ofl_text(layers[z][y][x]);
-        if (key.empty() || out.has(key)) continue;  // one pixel may fill several places
+        if (key.empty() || out.has(key)) continue;  // one pixel may fill several cells
         if (out.pixels.size() == kMostPixels) {
           out.too_large = true;
           return;

@@ -21,7 +21,7 @@ struct OflMatrix {
   bool too_large = false;
 
   [[nodiscard]] bool has(std::string_view key) const;
-  /// The keys that `repeatFor` means ("eachPixelABC", "eachPixelXYZ", …, "eachPixelGroup"); none for another word.
+  /// The keys selected by `repeatFor` ("eachPixelABC", "eachPixelXYZ", …, "eachPixelGroup"); none for any other word.
   [[nodiscard]] std::vector<std::string> order(std::string_view repeat_for) const;
 };
 

@@ -7,7 +7,7 @@
 namespace luxrig {
 namespace {
 
-// DIN SPEC 15800, annex of attributes; colours as lighting people call them.
+// DIN SPEC 15800, annex of attributes; colour names as usual in lighting.
 constexpr std::pair<std::string_view, std::string_view> kAttributeEmitters[] = {
     {"ColorAdd_R", "red"},     {"ColorAdd_G", "green"},       {"ColorAdd_B", "blue"},        {"ColorAdd_C", "cyan"},
     {"ColorAdd_M", "magenta"}, {"ColorAdd_Y", "yellow"},      {"ColorAdd_RY", "amber"},      {"ColorAdd_GY", "lime"},

@@ -1,9 +1,9 @@
 #pragma once
-/// What a maker's fixture file says of a fixture: its modes, and in each what every DMX channel does.
+/// Content of a maker's fixture file: the modes, and the function of every DMX channel in each.
 ///
-/// GDTF files (DIN SPEC 15800) and Open Fixture Library files fill the same values (personality_file.h). Functions are
-/// named by GDTF's attributes ("Dimmer", "Pan", "ColorAdd_R", "Shutter1", "LampControl"); those of an OFL file are
-/// translated. DMX values count in the resolution of their channel: 0…255, 0…65535, …
+/// GDTF files (DIN SPEC 15800) and Open Fixture Library files fill the same values (personality_file.h). Functions have
+/// GDTF attribute names ("Dimmer", "Pan", "ColorAdd_R", "Shutter1", "LampControl"); those of OFL files are translated.
+/// DMX values are in the resolution of their channel: 0…255, 0…65535, …
 
 #include <cstdint>
 #include <optional>
@@ -16,22 +16,22 @@
 namespace luxrig {
 
 struct DmxInterval {
-  std::uint32_t from = 0, to = 0;  ///< both within
+  std::uint32_t from = 0, to = 0;  ///< both inclusive
   [[nodiscard]] bool contains(std::uint32_t value) const { return value >= from && value <= to; }
   [[nodiscard]] std::uint32_t middle() const { return from + (to - from) / 2; }
   bool operator==(const DmxInterval&) const = default;
 };
 
-/// A named part of a function's range: a wheel's slot, a shutter that is open.
+/// A named part of a function's range: a slot of a wheel, an open shutter.
 struct ChannelSet {
   std::string name;  ///< may be empty
   DmxInterval dmx;
   double physical_from = 0, physical_to = 1;
 };
 
-/// The function exists only while another channel's value lies in a range (GDTF: ModeMaster).
+/// The function exists only while another channel's value is in a range (GDTF: ModeMaster).
 struct FunctionCondition {
-  std::size_t channel = 0;  ///< of the mode
+  std::size_t channel = 0;  ///< index in the mode
   DmxInterval dmx;          ///< in that channel's resolution
 };
 
@@ -41,24 +41,24 @@ struct ChannelFunction {
   DmxInterval dmx;
   std::uint32_t default_dmx = 0;
   double physical_from = 0, physical_to = 1;  ///< at dmx.from and dmx.to; degrees for angles, share for levels
-  std::string emitter;                        ///< as the file calls it; empty: none is named
-  std::optional<std::size_t> profile;         ///< of Personality::profiles: how physical follows DMX, when not straight
+  std::string emitter;                        ///< name in the file; empty = not named
+  std::optional<std::size_t> profile;         ///< in Personality::profiles: how physical follows DMX, if not linear
   std::optional<FunctionCondition> when;
-  double hold_s = 0;       ///< how long a command must stand before it is obeyed; 0: not stated
-  double real_fade_s = 0;  ///< from one end of its range to the other; 0: not stated
+  double hold_s = 0;       ///< time that a command must be held before it is obeyed; 0 = not stated
+  double real_fade_s = 0;  ///< from one end of its range to the other; 0 = not stated
   std::vector<ChannelSet> sets;
 
   /// requires dmx.contains(value)
   [[nodiscard]] double physical_at(std::uint32_t value) const;
-  /// The set that holds the value; none when the file names none there.
+  /// The set that contains the value; null if the file names none there.
   [[nodiscard]] const ChannelSet* set_at(std::uint32_t value) const;
 };
 
 struct PersonalityChannel {
   std::string name;
-  std::size_t geometry = 0;  ///< of PersonalityMode::geometries: what it acts on
-  int dmx_break = 1;         ///< which of the fixture's addresses it counts from
-  std::vector<int> offsets;  ///< of its slots from that address, 0-based, most significant first; none: virtual
+  std::size_t geometry = 0;  ///< in PersonalityMode::geometries: the part it acts on
+  int dmx_break = 1;         ///< the fixture's address that its offsets count from
+  std::vector<int> offsets;  ///< of its slots from that address, 0-based, most significant first; none = virtual
   std::uint32_t default_dmx = 0;
   std::optional<std::uint32_t> highlight_dmx;
   std::vector<ChannelFunction> functions;
@@ -68,7 +68,7 @@ struct PersonalityChannel {
   [[nodiscard]] std::uint32_t max_dmx() const;
 };
 
-/// Light leaves here.
+/// Where light leaves.
 struct BeamGeometry {
   double lumens = 0;
   double beam_angle_deg = 0, field_angle_deg = 0;  ///< full angles to 50 % and 10 %
@@ -76,7 +76,7 @@ struct BeamGeometry {
   double power_w = 0;
 };
 
-/// A part that channels act on; the first is the whole fixture. OFL: the whole, and each pixel.
+/// A part that channels act on. The first is the whole fixture. OFL: the whole, and each pixel.
 struct GeometryInstance {
   std::string name;
   std::optional<std::size_t> parent;
@@ -91,61 +91,61 @@ struct ChannelRelation {
 
 struct PersonalityMode {
   std::string name;
-  std::vector<int> break_footprints;  ///< slots taken from each address of the fixture: one, for nearly all
+  std::vector<int> break_footprints;  ///< slots used from each address of the fixture; nearly all have one
   std::vector<GeometryInstance> geometries;
   std::vector<PersonalityChannel> channels;
   std::vector<ChannelRelation> relations;
-  /// To add to a physical angle so that it counts as in the rig file: from straight down, pan from the base's y.
+  /// Added to a physical angle to convert it to the rig file's: tilt from straight down, pan from the base's y.
   double pan_offset_deg = 0, tilt_offset_deg = 0;
-  std::string axes_problem;  ///< why its pan and tilt cannot be computed with; empty: they can
-  /// Where light leaves: of a head its pivot, the base not turned; of a fixture that does not move, its lamp as it is.
+  std::string axes_problem;  ///< why its pan and tilt cannot be computed with; empty = they can
+  /// Where light leaves. Of a head: its pivot, with the base not turned. Of a fixture that does not move: its lamp.
   Pose base_from_lamp;
 
   [[nodiscard]] int footprint() const { return break_footprints.empty() ? 0 : break_footprints.front(); }
-  /// Whether one lies within the other, or they are the same.
+  /// Whether one is inside the other, or they are the same.
   [[nodiscard]] bool share_a_branch(std::size_t geometry_a, std::size_t geometry_b) const;
 };
 
-/// Piecewise cubic, GDTF's DMXProfile: from each point on, with x the share of the range since it,
-/// y = c0 + c1·x + c2·x² + c3·x³.
+/// Piecewise cubic, GDTF's DMXProfile. From each point on, y = c0 + c1·x + c2·x² + c3·x³, where x is the share of the
+/// range since that point.
 struct DmxProfile {
   struct Piece {
     double from = 0;  ///< share of the DMX range, 0…1
     double c[4] = {0, 0, 0, 0};
   };
   std::string name;
-  std::vector<Piece> pieces;  ///< rising
+  std::vector<Piece> pieces;  ///< by `from`, rising
   [[nodiscard]] double at(double share) const;
 };
 
-/// The light of all of a mode's beams together: fluxes and powers added, angles and colour of the first. All 0 where
-/// the file states none, as those of the Open Fixture Library.
+/// The light of all beams of a mode together: fluxes and powers added, angles and colour from the first. All 0 if the
+/// file states none; OFL files never do.
 [[nodiscard]] BeamGeometry light_of_mode(const PersonalityMode& mode);
 
 struct Personality {
   std::string manufacturer, name;
   std::vector<PersonalityMode> modes;
   std::vector<DmxProfile> profiles;
-  std::vector<std::string> notes;  ///< what was odd in the file and how it was taken
+  std::vector<std::string> notes;  ///< oddities of the file, and how they were read
 };
 
-/// "Shutter1" -> "Shutter": an attribute without its number.
+/// An attribute without its number: "Shutter1" -> "Shutter".
 [[nodiscard]] std::string_view attribute_stem(std::string_view attribute);
 
-/// What an additive colour attribute lights: "red" of ColorAdd_R, "amber" of ColorAdd_RY; empty for any other.
+/// Emitter of an additive colour attribute: "red" for ColorAdd_R, "amber" for ColorAdd_RY; empty for any other.
 [[nodiscard]] std::string_view emitter_of_attribute(std::string_view attribute);
-/// Whether the function is that emitter's level. Case, blanks, - and _ do not count.
+/// Whether the function is the level of that emitter. Ignores case, blanks, - and _.
 [[nodiscard]] bool sets_emitter(const ChannelFunction& function, std::string_view emitter);
 
-/// What light does in a function of a shutter.
+/// Effect of a shutter function on the light.
 enum class ShutterState { open, closed, unsteady };
-/// Nothing when the function is no shutter's.
+/// nullopt if it is not a shutter function.
 [[nodiscard]] std::optional<ShutterState> shutter_state(const ChannelFunction& function, std::uint32_t value);
 
-/// Whether the value commands the lamp to be struck.
+/// Whether the value strikes the lamp.
 [[nodiscard]] bool strikes_lamp(const ChannelFunction& function, std::uint32_t value);
 
-/// Whether text says so, whatever its case.
+/// Whether `text` contains `word`, ignoring case.
 [[nodiscard]] bool says(std::string_view text, std::string_view word);
 
 }  // namespace luxrig

@@ -9,7 +9,7 @@
 
 namespace luxrig {
 
-/// Problems name the file, and the place in it where that is known.
+/// Problems name the file, and the place in it if known.
 [[nodiscard]] Checked<Personality> load_personality(const std::filesystem::path& path);
 
 }  // namespace luxrig

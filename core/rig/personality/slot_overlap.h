@@ -1,5 +1,5 @@
 #pragma once
-/// Which channel of a mode takes which slot. Private to core/rig/personality.
+/// Which channel of a mode uses which slot. Private to core/rig/personality.
 
 #include <string>
 
@@ -8,8 +8,8 @@
 
 namespace luxrig {
 
-/// Sets the footprints of the mode from its channels. Problems, at `places[i]` of channel i: a slot outside 1…512, a
-/// slot that two channels share.
+/// Sets the footprints of the mode from its channels. Problems, at `places[i]` for channel i: a slot outside 1…512, a
+/// slot shared by two channels.
 void lay_out_slots(PersonalityMode& mode, const std::vector<Place>& places, ProblemList& problems);
 
 }  // namespace luxrig

@@ -16,7 +16,7 @@ tl::unexpected<std::vector<Problem>> refuse_xml(const std::string& file, const P
   return tl::unexpected(std::vector<Problem>{{file, place.line, place.column, std::move(what), std::move(mend)}});
 }
 
-/// The first node that is nested too deep, if any. Without recursion: the depth is not known yet.
+/// The first node that is nested too deep, if any. No recursion, since the depth is not known yet.
 pugi::xml_node too_deep(const pugi::xml_node& root) {
   int depth = 1;
   for (pugi::xml_node at = root; at;) {

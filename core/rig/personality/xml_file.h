@@ -1,5 +1,5 @@
 #pragma once
-/// A well-formed, bounded XML document, and where its nodes stand. Private to core/rig.
+/// A well-formed XML document of limited size, with the position of its nodes. Private to core/rig.
 
 #include <memory>
 #include <optional>
@@ -17,8 +17,8 @@ inline constexpr int kMostXmlDepth = 100;
 
 class XmlFile {
  public:
-  /// Refuses, with its place, what is not well-formed UTF-8 XML, has a DOCTYPE (entities could come with it), is nested
-  /// deeper or is larger than stated above. `file` is for the messages.
+  /// Refuses, with its place, a text that is not well-formed UTF-8 XML, has a DOCTYPE (it could bring entities), or
+  /// exceeds the limits above. `file` is for messages.
   [[nodiscard]] static Checked<XmlFile> parse(std::string_view text, std::string file);
 
   [[nodiscard]] pugi::xml_node root() const { return document_->document_element(); }
@@ -32,16 +32,16 @@ class XmlFile {
   std::string file_;
 };
 
-/// An attribute's text, plain (plain_text.h), without blanks at its ends; empty when it is absent.
+/// An attribute's text, made plain (plain_text.h) and trimmed; empty if absent.
 [[nodiscard]] std::string plain_attribute(const pugi::xml_node& node, const char* name);
 
-/// A finite number; `fallback` when the attribute is absent, empty or no number.
+/// A finite number; `fallback` if the attribute is absent, empty or not a number.
 [[nodiscard]] double number_attribute(const pugi::xml_node& node, const char* name, double fallback);
 
-/// The whole of a text as a finite number.
+/// The whole text as a finite number.
 [[nodiscard]] std::optional<double> finite_number(std::string_view text);
 
-/// All numbers in {…}{…}; empty when anything else stands there, or one is not finite.
+/// All numbers in {…}{…}; empty if it contains anything else, or if one is not finite.
 [[nodiscard]] std::vector<double> numbers_in_braces(std::string_view text);
 
 [[nodiscard]] std::string_view without_blanks(std::string_view text);

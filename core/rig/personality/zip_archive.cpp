@@ -11,8 +11,8 @@
 namespace luxrig {
 namespace {
 
-constexpr std::size_t kMostInflation = 1000;     // deflate reaches 1032, real descriptions 30
-constexpr std::size_t kFreeOfRatio = 64 * 1024;  // an entry so small is no bomb
+constexpr std::size_t kMostInflation = 1000;     // deflate can reach 1032; real descriptions reach 30
+constexpr std::size_t kFreeOfRatio = 64 * 1024;  // an entry this small is not a bomb
 
 tl::unexpected<std::vector<Problem>> refuse_zip(const std::string& file, std::string what, std::string mend) {
   return tl::unexpected(std::vector<Problem>{{file, 0, 0, std::move(what), std::move(mend)}});

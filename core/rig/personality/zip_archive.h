@@ -1,5 +1,5 @@
 #pragma once
-/// A zip archive in memory, read as from a stranger: GDTF and MVR files are such. libzip takes it apart.
+/// A zip archive in memory, as used by GDTF and MVR files. Treated as untrusted. libzip unpacks it.
 
 #include <memory>
 #include <string>
@@ -15,16 +15,16 @@ inline constexpr std::size_t kMostZipEntries = 10'000;
 
 class ZipArchive {
  public:
-  /// Refuses what is no zip archive, is larger or has more entries than stated above. `file` is for the messages.
+  /// Refuses a file that is not a zip archive or exceeds the limits above. `file` is for messages.
   [[nodiscard]] static Checked<ZipArchive> open(std::string bytes, const std::string& file);
 
   /// Names as stored, in the order of the archive.
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
-  /// The entry of that name at the archive's root: letter by letter, else whatever its case, else without extension
-  /// where `extension` ("." included) is given. Never one in a folder.
+  /// The entry of that name in the archive's root: the exact name, else ignoring case, else without its extension if
+  /// `extension` ("." included) is given. Never an entry in a folder.
   [[nodiscard]] const std::string* find(std::string_view name, std::string_view extension = {}) const;
-  /// The content of an entry, at most `most_bytes`, and at most 1000 times what it takes in the archive. Reading stops
-  /// there, whatever size the archive states.
+  /// The content of an entry. At most `most_bytes`, and at most 1000 times its compressed size. Reading stops at that
+  /// limit, whatever size the archive states.
   [[nodiscard]] Checked<std::string> read(const std::string& name, std::size_t most_bytes) const;
 
  private:

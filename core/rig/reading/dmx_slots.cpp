@@ -11,7 +11,7 @@
 namespace luxrig {
 namespace {
 
-// In the order of SlotUse; a constant carries its number.
+// In the order of SlotUse; a constant is followed by its number.
 constexpr std::string_view kSlotNames[] = {"dimmer",    "dimmer-fine", "dimmer-ultra", "pan",        "pan-fine",
                                            "pan-ultra", "tilt",        "tilt-fine",    "tilt-ultra", "zoom",
                                            "zoom-fine", "zoom-ultra",  "constant:",    "unused"};
@@ -26,7 +26,7 @@ std::string emitter_slot(const std::string& emitter, SlotUse use = SlotUse::dimm
                                                     : "");
 }
 
-/// ["emitter:red", "emitter:green"], to be copied.
+/// ["emitter:red", "emitter:green"], for copying.
 std::string slots_for(const SlotOwner& owner) {
   std::string text;
   for (const std::string& emitter : owner.emitters)
@@ -63,7 +63,7 @@ class SlotReader {
     return NamedSlot{{use, 0}, std::nullopt, place};
   }
 
-  /// What the slots of a fixture need of one another.
+  /// Checks that the slots of a fixture fit together.
   bool check(const std::vector<NamedSlot>& slots, const Place& list) {
     bool good = true;
     std::set<std::pair<SlotUse, std::size_t>> uses;

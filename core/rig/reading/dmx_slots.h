@@ -1,5 +1,5 @@
 #pragma once
-/// The slots of a DMX fixture, as the rig file names them. Private to core/rig.
+/// The slots of a DMX fixture, as named in the rig file. Private to core/rig.
 
 #include <optional>
 #include <span>
@@ -11,24 +11,24 @@
 
 namespace luxrig {
 
-/// Whose slots they are.
+/// The luminaire that the slots belong to.
 struct SlotOwner {
   std::string luminaire;
-  std::vector<std::string> emitters;  ///< as slots call them; none: it has one dimmer
+  std::vector<std::string> emitters;  ///< names used by slots; none = it has one dimmer
 };
 
 struct NamedSlot {
-  DmxSlot slot;                        ///< a dimmer where it is an emitter's
+  DmxSlot slot;                        ///< a dimmer if it belongs to an emitter
   std::optional<std::size_t> emitter;  ///< in SlotOwner::emitters
   Place place;
 };
 
-/// The key `slots`, or its default; false, and problems, when it is wrong: then `slots` has those that are not. Without
-/// an owner (its luminaire is not known, which is reported elsewhere) what depends on it goes unchecked.
+/// Reads the key `slots`, or its default. False and problems if it is wrong; `slots` then holds the good ones. Without
+/// an owner (the luminaire is unknown, which is reported elsewhere), checks that need it are skipped.
 [[nodiscard]] bool read_slots(Section& section, const std::optional<SlotOwner>& owner, std::vector<NamedSlot>& slots);
 
-/// As one emitter of the owner sees them, or (nothing) a fixture with one dimmer. Slots of no emitter are sent for the
-/// first and obeyed by all.
+/// The slots as seen by one emitter of the owner, or (nullopt) by a fixture with one dimmer. Slots of no emitter are
+/// sent for the first one and obeyed by all.
 [[nodiscard]] std::vector<DmxSlot> slots_of(std::span<const NamedSlot> slots, std::optional<std::size_t> emitter);
 
 }  // namespace luxrig

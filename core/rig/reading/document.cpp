@@ -5,8 +5,8 @@
 #include "core/text/plain_text.h"
 
 // toml++ 3.3 asserts, and in release builds assumes, that a table header begins like a key; "[*" does not (found by
-// fuzzing). Without its assertions it goes on to report that as the error it is. It turns them into assumptions, which
-// would be undefined behaviour, only under NDEBUG.
+// fuzzing). Without its assertions it goes on to report the error. It turns them into assumptions, which would be
+// undefined behaviour, only under NDEBUG.
 #undef NDEBUG
 #define TOML_ASSERT(condition) static_cast<void>(0)
 #define TOML_HEADER_ONLY 1
@@ -25,14 +25,14 @@ struct ParseRefusal {
   std::string what, mend;
 };
 
-/// Refuses what toml++ 3.3 must not see, outside strings and comments:
-///   - dotted keys of very many parts: it bounds the nesting of [ and {, but not that of a.b.c.d…, and takes its tables
-///     apart by recursion;
-///   - letters outside ASCII, which TOML does not allow there: its test for other white space runs into code that it
-///     declares unreachable (found by fuzzing); in a text the same after a backslash and blanks, as it looks for the
-///     end of the line there (found by fuzzing);
-///   - quotes within a word, where it does not see the beginning of a text (found by fuzzing).
-/// Up to its first error toml++ must read as this does; after that it reads nothing.
+/// Refuses texts that toml++ 3.3 must not see, outside strings and comments:
+///   - dotted keys of very many parts: toml++ limits the nesting of [ and {, but not that of a.b.c.d…, and destroys its
+///     tables by recursion;
+///   - letters outside ASCII, which TOML does not allow there: its test for other white space reaches code that it
+///     declares unreachable (found by fuzzing). The same in a string after a backslash and blanks, where it looks for
+///     the end of the line (found by fuzzing);
+///   - quotes within a word, which it does not see as the start of a string (found by fuzzing).
+/// Must agree with toml++ up to the first error of toml++; after that, toml++ reads nothing.
 std::optional<ParseRefusal> look_ahead(std::string_view text) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   Place here{1, 1};
@@ -47,7 +47,7 @@ std::optional<ParseRefusal> look_ahead(std::string_view text) {
     if ((static_cast<unsigned char>(text[i]) & 0xC0) != 0x80) ++here.column;
     ++i;
   };
-  const auto skip_string = [&](char quote) -> bool {  // false: `here` is a letter after a backslash
+  const auto skip_string = [&](char quote) -> bool {  // false = `here` is a letter after a backslash
     const std::string triple(3, quote);
     const bool multi_line = at(triple);
     for (int k = multi_line ? 3 : 1; k > 0; --k) step();
@@ -59,7 +59,7 @@ std::optional<ParseRefusal> look_ahead(std::string_view text) {
         if (i < text.size() && static_cast<unsigned char>(text[i]) >= 0x80) return false;
         if (!blank && i < text.size()) step();
       } else if (multi_line && at(triple)) {
-        // Up to two quotes may stand before the closing three.
+        // Up to two quotes may precede the closing three.
         for (int k = 0; k < 5 && i < text.size() && text[i] == quote; ++k) step();
         return true;
       } else if (!multi_line && (text[i] == quote || text[i] == '\n')) {
@@ -71,8 +71,8 @@ std::optional<ParseRefusal> look_ahead(std::string_view text) {
     }
     return true;
   };
-  // Where a word began, toml++ takes all up to a blank, comma or closing bracket for it, also quotes, = and [. So what
-  // a sign means depends on whether a key or a value is due.
+  // Once a word has begun, toml++ takes everything up to a blank, comma or closing bracket as part of it, even quotes,
+  // = and [. So the meaning of a character depends on whether a key or a value is due.
   std::string open;  // brackets of lists and tables within values
   bool value = false, word = false;
   while (i < text.size()) {
@@ -148,7 +148,7 @@ std::optional<ParseRefusal> look_ahead(std::string_view text) {
 }
 
 Place place_of(const toml::source_region& region, const Place& otherwise) {
-  if (region.begin.line == 0) return otherwise;  // a table that only its children imply
+  if (region.begin.line == 0) return otherwise;  // a table implied only by its children
   return {static_cast<int>(region.begin.line), static_cast<int>(region.begin.column)};
 }
 
@@ -179,7 +179,7 @@ Node plain(const toml::node& node, const Place& parent) {
 }
 
 NodeTable plain_table(const toml::table& table, const Place& parent) {
-  NodeTable out;  // sorted, as toml++ keeps its tables
+  NodeTable out;  // sorted, as in toml++
   out.reserve(table.size());
   for (const auto& [key, node] : table) {
     const Place key_place = place_of(key.source(), parent);

@@ -1,6 +1,5 @@
 #pragma once
-/// A TOML text as a plain tree in which every value knows its line and column. The only file of the project that
-/// sees toml++ is document.cpp.
+/// A TOML text as a plain tree, where every value has its line and column. Only document.cpp includes toml++.
 
 #include <cstdint>
 #include <string>
@@ -30,14 +29,14 @@ struct Member {
   Node node;
 };
 
-/// Nothing when the table has no such key.
+/// Null if the table has no such key.
 [[nodiscard]] const Member* find(const NodeTable& table, std::string_view key);
 
-/// What a person calls a value of this type: "a number", "text in quotes" …
+/// Plain name for a value of this type: "a number", "text in quotes" …
 [[nodiscard]] const char* kind_of(const Node& node);
 
-/// The root table. Refuses what is not TOML, and nesting deeper than any rig needs (it would only serve to exhaust
-/// the stack). `file_name` is only for problems.
+/// The root table. Refuses a text that is not TOML, and nesting deeper than any rig needs (it could only exhaust the
+/// stack). `file_name` is for problems only.
 [[nodiscard]] Checked<NodeTable> parse_document(std::string_view text, const std::string& file_name);
 
 }  // namespace luxrig

@@ -14,12 +14,12 @@ namespace {
 
 constexpr double kSlack_deg = 1e-6;
 
-/// Placeholders: files without a travel say 0 to 1.
+/// 0 to 1 is a placeholder of files without a travel.
 bool states_travel(const ChannelFunction& function) {
   return std::abs(function.physical_to - function.physical_from) > 1.5;
 }
 
-/// Which of the named curves a profile is, within 5 % of the rated flux.
+/// The named curve that fits a profile within 5 % of the rated flux.
 std::optional<DimmerCurve> curve_like(const DmxProfile& profile) {
   const auto level = [](DimmerCurve curve, double x) {
     return curve == DimmerCurve::linear ? x : curve == DimmerCurve::square ? x * x : x * x * (3 - 2 * x);
@@ -32,7 +32,7 @@ std::optional<DimmerCurve> curve_like(const DmxProfile& profile) {
   return std::nullopt;
 }
 
-/// Whether its zoom is one more joint of a head.
+/// Whether its zoom is a further joint of a head.
 bool zooms(const PersonalityMode& mode, const ModeWanted& wanted) {
   const auto has = [&](std::string_view attribute) {
     return std::any_of(mode.channels.begin(), mode.channels.end(), [&](const PersonalityChannel& channel) {
@@ -128,7 +128,7 @@ class ModeFitter {
     return level_range(mode_.channels[c], held_.dmx, kind);
   }
 
-  /// Nothing, and a problem, when it cannot be told.
+  /// nullopt and a problem if the choice is not clear.
   std::optional<DimmerChoice> choose() {
     std::optional<std::size_t> chosen;
     std::vector<std::string_view> known;
@@ -160,7 +160,7 @@ class ModeFitter {
     return std::nullopt;
   }
 
-  /// Channels that have a dimmer's function among others.
+  /// Channels where a dimmer is one function among others.
   std::string slight_dimmers() const {
     for (const PersonalityChannel& channel : mode_.channels) {
       if (channel.is_virtual()) continue;
@@ -174,8 +174,8 @@ class ModeFitter {
     return "";
   }
 
-  /// A dimmer whose lowest place still gives light has a shutter beside it that shuts at level 0, or that is told.
-  /// `one_level`: not one for each emitter, behind the same shutter.
+  /// If the lowest value of a dimmer still gives light, a shutter beside it shuts at level 0, or a remark says so.
+  /// `one_level`: false for one dimmer per emitter, all behind the same shutter.
   void shut_where_level_0_is_not_dark(bool one_level) {
     for (const auto& [dimmer, least_share] : bright_at_0_) {
       bool shut = false;
@@ -267,7 +267,8 @@ class ModeFitter {
     }
   }
 
-  /// `use` is the coarse one; those of the bytes below follow it. A fourth byte, which nothing here resolves, stays 0.
+  /// `use` is the coarse one; those of the lower bytes follow it. A fourth byte is beyond the resolution here and stays
+  /// 0.
   void place(std::size_t c, SlotUse use, std::optional<std::size_t> emitter, DmxTravel travel) {
     carried_[c] = true;
     const int cell = cells_++;
@@ -311,7 +312,7 @@ class ModeFitter {
     return pan_good && tilt_good && carry_zoom();
   }
 
-  /// Through what both the file and the luminaire say that it goes through.
+  /// Uses the overlap of the zoom ranges of the file and the luminaire.
   bool carry_zoom() {
     const auto zoom = [](const ChannelFunction& f) { return f.attribute == "Zoom"; };
     const std::vector<std::size_t> zooms = channels_of(zoom);

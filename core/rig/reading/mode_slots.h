@@ -9,13 +9,13 @@
 
 namespace luxrig {
 
-/// What the rig file says of the fixture that its mode has to fit.
+/// Facts from the rig file that the mode of a fixture has to fit.
 struct ModeWanted {
-  std::optional<SlotOwner> owner;  ///< none: its luminaire is not known, and what depends on it goes unchecked
+  std::optional<SlotOwner> owner;  ///< none = its luminaire is unknown; checks that need it are skipped
   std::optional<double> beam_deg;  ///< of its luminaire; zooms are set to it
-  std::optional<std::pair<double, double>> zoom_deg;  ///< what its luminaire's zoom goes through; none: it is held
+  std::optional<std::pair<double, double>> zoom_deg;  ///< zoom range of its luminaire; none = the zoom is held
   bool turned_elsewhere = false;                      ///< pan and tilt are drives on another bus
-  std::string dimmer;                                 ///< channel that is its dimmer; empty: the file has to say
+  std::string dimmer;                                 ///< its dimmer channel; empty = the maker's file must show it
   std::optional<std::pair<double, double>> pan_range_deg, tilt_range_deg;
   Place place, pan_place, tilt_place, dimmer_place;  ///< of `mode`, `pan_range_deg`, `tilt_range_deg`, `dimmer`
 };
@@ -23,20 +23,20 @@ struct ModeWanted {
 struct ModeSlots {
   std::vector<NamedSlot> slots;
   bool moves = false;
-  bool steps = false;                                ///< its dimmer is on or off
-  JointRange range;                                  ///< only when it moves
-  double pan_speed_rad_s = 0, tilt_speed_rad_s = 0;  ///< 0: the file states none
-  double zoom_speed_rad_s = 0;                       ///< the same
-  std::optional<DimmerCurve> dimmer_curve;           ///< none: the file states none
-  std::vector<std::string> told;                     ///< how it was understood, for a person
+  bool steps = false;                                ///< its dimmer only switches on and off
+  JointRange range;                                  ///< only if it moves
+  double pan_speed_rad_s = 0, tilt_speed_rad_s = 0;  ///< 0 = not stated in the file
+  double zoom_speed_rad_s = 0;                       ///< 0 = not stated in the file
+  std::optional<DimmerCurve> dimmer_curve;           ///< none = not stated in the file
+  std::vector<std::string> told;                     ///< how the file was interpreted, for a person
 };
 
-/// Nothing, and problems, when the mode cannot serve: no dimmer, two that could be it, no channel for an emitter, a
-/// travel that is too short, axes that cannot be computed with, several start addresses.
+/// Slots of the mode. nullopt and problems if the mode cannot be used: no dimmer, two possible dimmers, no channel for
+/// an emitter, too short a travel, axes that cannot be computed with, several start addresses.
 ///
-/// Light follows the level by the topmost dimmers (personality/dimmer_choice.h), or, in a luminaire with emitters or a
-/// mode without dimmers, by the colours. Held full: dimmers above and below those, and colours. Held dark: colours that
-/// the luminaire does not have. All else, other dimmers too, stays at its stated default.
+/// Light follows the level by the topmost dimmers (personality/dimmer_choice.h). In a luminaire with emitters or a mode
+/// without dimmers, it follows by the colours. Held full: dimmers above and below those, and colours. Held dark:
+/// colours that the luminaire does not have. Everything else, including other dimmers, stays at its stated default.
 [[nodiscard]] std::optional<ModeSlots> slots_of_mode(const Personality& personality, const PersonalityMode& mode,
                                                      const ModeWanted& wanted, ProblemList& problems);
 

@@ -17,7 +17,7 @@ int days_of_month(int year, int month) {
   return month == 2 && leap(year) ? 29 : kDays[month - 1];
 }
 
-/// Takes `digits` digits and, before them, `mark` off the text.
+/// Removes one of `marks`, then `digits` digits, from the start of the text.
 std::optional<int> take(std::string_view& text, std::string_view marks, std::size_t digits) {
   if (!marks.empty()) {
     if (text.empty() || marks.find(text.front()) == std::string_view::npos) return std::nullopt;

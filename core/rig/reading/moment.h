@@ -1,5 +1,5 @@
 #pragma once
-/// A moment as a person writes it: "2026-06-21T12:00:00+02:00".
+/// A moment as written by a person: "2026-06-21T12:00:00+02:00".
 
 #include <string>
 #include <string_view>
@@ -9,10 +9,10 @@
 
 namespace luxrig {
 
-/// Date, `T` or a blank, hours and minutes (seconds if wanted, whole), and the offset from UTC: `Z`, or + or - hh:mm.
-/// The offset has to be there: a moment without one would be an hour or a continent off.
-/// Years 1900 to 2100, for which sun_position() is made. The error says what is wrong, for a Problem's `what`.
-/// source   RFC 3339, without fractions of a second and without leap seconds
+/// Reads a date, `T` or a blank, hours and minutes (whole seconds are optional), and the offset from UTC: `Z`, or + or
+/// - hh:mm. The offset is required: without it, a moment could be an hour or a continent off. Years 1900 to 2100, as
+/// for sun_position(). The error is a text for `what` of a Problem.
+/// Source: RFC 3339, without fractions of a second and without leap seconds.
 [[nodiscard]] tl::expected<UtcTime, std::string> utc_time(std::string_view text);
 
 /// 1…366

@@ -8,7 +8,7 @@
 namespace luxrig {
 namespace {
 
-/// A driver's own option, as written; nothing, and a problem, when no driver could want it.
+/// A driver's own option, as written; nullopt and a problem if no driver could use it.
 std::optional<Option> option_from(const Member& member, ProblemList& problems) {
   const Node& node = member.node;
   const auto refuse = [&](std::string what, std::string mend) {

@@ -40,7 +40,7 @@ void RigReader::read_cameras() {
     camera.place = s.place();
     if (s.read("name", camera.name)) {
       cameras.add(camera.name, rig.cameras.size(), s.place_of("name"), problems);
-      // Its pictures are files of that name.
+      // Its pictures are saved in files of that name.
       if (camera.name.find('/') != std::string::npos || camera.name.starts_with('.'))
         problems.add(s.place_of("name"), fmt::format("{} cannot be the name of a file", in_quotes(camera.name)),
                      "leave out / and a leading dot");

@@ -19,7 +19,7 @@ constexpr std::array kByPlace = {"latitude_deg", "longitude_deg", "time"};
 constexpr const char* kHowToGiveTheSun =
     "add sun_azimuth_deg and sun_elevation_deg, or latitude_deg, longitude_deg and time";
 
-/// A sun that gives less is none.
+/// A weaker sun counts as none.
 constexpr double kLeastSun_lx = 1e-3;
 
 struct SunOfMoment {
@@ -31,7 +31,7 @@ bool has_any(const Section& s, std::span<const char* const> keys) {
   return std::any_of(keys.begin(), keys.end(), [&](const char* key) { return s.has(key); });
 }
 
-/// Those that are not there, but must, since one of their group is.
+/// Reports the missing keys of a group that needs all of them once one is given.
 void require_all(Section& s, std::span<const char* const> keys) {
   const char* given = *std::find_if(keys.begin(), keys.end(), [&](const char* key) { return s.has(key); });
   for (const char* key : keys)

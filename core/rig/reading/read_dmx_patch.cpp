@@ -12,7 +12,7 @@
 namespace luxrig {
 namespace {
 
-/// Full angle that a zoom has to be set to so that the light is as its luminaire says.
+/// Full angle to set the zoom to so that the light is as the luminaire states.
 std::optional<double> zoom_deg_of(const Luminaire& luminaire) {
   if (luminaire.model == LuminaireModel::spot) return deg_from_rad(luminaire.beam_angle_rad);
   if (luminaire.model != LuminaireModel::ies || !luminaire.intensity) return std::nullopt;

@@ -17,11 +17,11 @@ constexpr std::string_view kTravelKeys[] = {"pan_range_deg", "tilt_range_deg", "
 constexpr std::string_view kAxisKeys[] = {
     "pan_node",     "tilt_node",     "pan_counts_per_degree",   "tilt_counts_per_degree",
     "pan_home_deg", "tilt_home_deg", "pan_acceleration_deg_s2", "tilt_acceleration_deg_s2"};
-constexpr double kNearest_m = 0.001;  // an aim nearer than this has no direction worth the name
+constexpr double kNearest_m = 0.001;  // a nearer aim has no useful direction
 
 enum class PatchKind { none, dmx, modbus };
 
-/// `planned`: on a null bus, where nobody has an address yet.
+/// `planned`: on a null bus, where no fixture has an address yet.
 PatchKind patch_kind(Section& s, bool planned, ProblemList& problems) {
   const auto any = [&](std::span<const std::string_view> keys) {
     for (const std::string_view key : keys) {
@@ -38,7 +38,7 @@ PatchKind patch_kind(Section& s, bool planned, ProblemList& problems) {
   return PatchKind::none;
 }
 
-/// One of "pan" and "tilt"; false when it cannot be claimed.
+/// `joint` is "pan" or "tilt". False if it cannot be claimed.
 bool read_axis(Section& s, const std::string& joint, double acceleration_deg_s2, AxisPatch& axis) {
   for (const char* key : {"_node", "_counts_per_degree", "_home_deg"}) {
     if (!s.has(joint + key)) s.require(joint + key, "which a head with an axes_bus needs");
@@ -54,7 +54,7 @@ bool read_axis(Section& s, const std::string& joint, double acceleration_deg_s2,
   return s.read(joint + "_node", axis.node);
 }
 
-/// `stated`: what its maker's file says of it; else it has none.
+/// `stated`: travel from its maker's file; null = none.
 void read_travel(Section& s, const ModeSlots* stated, Fixture& fixture) {
   if (!fixture.moves) {
     for (const std::string_view key : kTravelKeys) {
@@ -66,7 +66,7 @@ void read_travel(Section& s, const ModeSlots* stated, Fixture& fixture) {
   }
   std::pair<double, double> range_deg;
   if (stated) {
-    fixture.range = stated->range;  // which the two keys have narrowed already
+    fixture.range = stated->range;  // already narrowed by the two keys
   } else if (s.read("pan_range_deg", range_deg)) {
     fixture.range.pan_min_rad = rad_from_deg(range_deg.first);
     fixture.range.pan_max_rad = rad_from_deg(range_deg.second);
@@ -87,7 +87,7 @@ bool has_zoom_slot(const Fixture& fixture) {
                             [](const DmxSlot& slot) { return slot.use == SlotUse::zoom; });
 }
 
-/// `luminaire`: null when it is not known, which is reported.
+/// `luminaire`: null if unknown, which is reported.
 void read_zoom(Section& s, const Luminaire* luminaire, const ModeSlots* stated, Fixture& fixture) {
   const bool zooms = has_zoom_slot(fixture);
   if (!zooms) {
@@ -203,7 +203,7 @@ void RigReader::read_aim(Section& s, Fixture& fixture) {
     return;
   }
   const Vec3 direction_world = *fixture.aim_world_m - fixture.world_from_mount.translation_m;
-  if (!direction_world.allFinite()) return;  // one of the two is wrong, and reported
+  if (!direction_world.allFinite()) return;  // one of the two is wrong and reported
   if (direction_world.norm() < kNearest_m) {
     problems.add(s.place_of(key), "the fixture stands where it shall look", "aim it at another place, or move it");
     return;
@@ -291,7 +291,7 @@ void RigReader::read_fixtures() {
         patches.claim_registers(*bus, modbus.unit, modbus.coil ? RegisterTable::coil : RegisterTable::holding,
                                 modbus.holding_register, modbus.format.registers, owner);
     }
-    // A personality that cannot be used leaves open whether the fixture moves, so nothing is said of that.
+    // If a personality cannot be used, it is unknown whether the fixture moves, so nothing is reported about that.
     if (of_mode || !s.has("personality")) {
       read_axes(s, fixture);
       const ModeSlots* stated = of_mode && !fixture.axes ? &*of_mode : nullptr;

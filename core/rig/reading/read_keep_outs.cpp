@@ -1,4 +1,4 @@
-// What heads must not light, and how light comes on.
+// Keep-outs of heads, and how light comes on.
 #include <fmt/format.h>
 
 #include <algorithm>

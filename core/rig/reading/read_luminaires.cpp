@@ -14,7 +14,7 @@ namespace {
 /// Keys that belong to some models only.
 struct ModelKey {
   const char* key;
-  const char* models;  ///< with a blank about each
+  const char* models;  ///< with a blank before and after each
   bool required;
 };
 constexpr ModelKey kModelKeys[] = {
@@ -44,7 +44,7 @@ std::string models_text(std::string_view models) {
   return text;
 }
 
-/// "" when the luminaire has no maker's file.
+/// "" if the luminaire has no maker's file.
 std::string why_not_stated(const StatedLight& stated) {
   if (stated.file.empty()) return "";
   const BeamGeometry& l = stated.light;
@@ -75,7 +75,7 @@ void RigReader::check_model_keys(Section& s, LuminaireModel model, const StatedL
 }
 
 void RigReader::read_spot(Section& s, Luminaire& luminaire) {
-  s.read_deg("beam_angle_deg", luminaire.beam_angle_rad);  // else 0, or as its maker's file states
+  s.read_deg("beam_angle_deg", luminaire.beam_angle_rad);  // if absent: 0, or as its maker's file states
   s.read_deg("field_angle_deg", luminaire.field_angle_rad);
   if (!(luminaire.beam_angle_rad > 0) || !(luminaire.field_angle_rad > 0)) return;
   if (luminaire.beam_angle_rad >= luminaire.field_angle_rad) {
@@ -220,7 +220,7 @@ void RigReader::read_distribution(Section& s, StatedLight& stated, Luminaire& lu
   if (!s.read_choice("model", luminaire.model)) return;
   check_model_keys(s, luminaire.model, stated);
   take_stated_light(s, stated, luminaire);
-  if (!s.has("emitters")) s.read("lumens", luminaire.lumens);  // stays 0 when it is absent or wrong
+  if (!s.has("emitters")) s.read("lumens", luminaire.lumens);  // stays 0 if absent or wrong
   switch (luminaire.model) {
     case LuminaireModel::ies:
       read_photometric_file(s, luminaire);
@@ -269,7 +269,7 @@ std::vector<Luminaire> RigReader::read_emitters(Section& s, const std::string& l
   return emitters;
 }
 
-/// All emitters at full, for what asks after the luminaire as a whole.
+/// All emitters at full, for code that needs the luminaire as a whole.
 void RigReader::add_up(const std::vector<Luminaire>& emitters, Luminaire& luminaire) {
   luminaire.lumens = 0;
   luminaire.watts = 0;
@@ -306,7 +306,7 @@ void RigReader::read_luminaires() {
     for (auto at = emitters.begin(); at != emitters.end(); ++at) {
       const Luminaire& emitter = *at;
       const auto is_called_so = [&](const Luminaire& other) { return other.name == emitter.name; };
-      if (std::none_of(emitters.begin(), at, is_called_so))  // else it is reported
+      if (std::none_of(emitters.begin(), at, is_called_so))  // a second one is reported
         luminaires.add(emitter.name, rig.luminaires.size(), emitter.place, problems);
       Luminaire part = luminaire;
       part.name = emitter.name;

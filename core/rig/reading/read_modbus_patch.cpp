@@ -14,7 +14,7 @@ std::vector<std::string_view> names_in(const RegisterMap& map, const std::vector
   return names;
 }
 
-/// Of those, the one that `key` names; without the key the only one there is.
+/// The register in `of` that `key` names; without the key, the only one.
 std::optional<std::size_t> named_register(Section& s, std::string_view key, std::string_view kind,
                                           const RegisterMap& map, const std::vector<std::size_t>& of) {
   std::string wanted;

@@ -52,7 +52,7 @@ void RigReader::read_goal(Section& s, Point& point) {
     s.refuse(key, fmt::format("{} has no effect without goal_lx", key), "add goal_lx, or remove it");
 }
 
-/// A goal without colour has no place among others that have one: it would weigh as a goal of white light.
+/// If some goals have a colour, all must: a goal without one would weigh as a goal of white light.
 void RigReader::check_goal_colours() {
   const auto counts = [](const Point& point) { return point.goal_lx && point.weight > 0; };
   const Point* coloured = nullptr;
@@ -79,7 +79,7 @@ void RigReader::read_points() {
   each(root, "point", [&](Section& s) {
     Point point;
     point.place = s.place();
-    point.position_world_m.setConstant(std::numeric_limits<double>::quiet_NaN());  // until it is known
+    point.position_world_m.setConstant(std::numeric_limits<double>::quiet_NaN());  // until known
     if (s.read("name", point.name)) points.add(point.name, rig.points.size(), s.place_of("name"), problems);
     s.read("position_m", point.position_world_m);
     s.read_normal("normal", point.normal_world);
@@ -92,7 +92,7 @@ void RigReader::read_points() {
   each(root, "points", [&](Section& s) { read_points_file(s); });
   check_goal_colours();
   for (const Point& point : rig.points) {
-    // Legal, since the limit wins; but seldom what was meant.
+    // Legal, since the limit wins, but seldom intended.
     if (point.goal_lx && point.max_lx && *point.goal_lx > *point.max_lx) {
       rig.notes.push_back({problems.file(), point.place.line, point.place.column,
                            fmt::format("point {} has a goal of {} lx above its max_lx of {} lx", in_quotes(point.name),

@@ -1,4 +1,4 @@
-// Tasks that bring out an object's relief: aim, highlight.
+// Tasks that bring out the relief of an object: aim, highlight.
 #include <fmt/format.h>
 #include <fnmatch.h>
 

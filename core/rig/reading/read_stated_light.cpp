@@ -10,7 +10,7 @@
 namespace luxrig {
 namespace {
 
-/// Empty when there is none, or it is no text: that is reported where the fixture is read.
+/// Empty if absent or not text; that is reported when the fixture is read.
 std::string text_member(const NodeTable& table, std::string_view key) {
   const Member* member = find(table, key);
   const auto* text = member ? std::get_if<std::string>(&member->node.value) : nullptr;
@@ -86,7 +86,7 @@ void RigReader::take_stated_light(Section& s, StatedLight& stated, Luminaire& lu
     add(taken, fmt::format("{:g} W", light.power_w));
   }
   stated.used = !taken.empty();
-  // What the format takes where a maker has filled in nothing (DIN SPEC 15800, table of <Beam>).
+  // The format's defaults, used when a maker fills in nothing (DIN SPEC 15800, table of <Beam>).
   const bool defaults = light.lumens == 10000 && light.beam_angle_deg == 25 && light.field_angle_deg == 25;
   if (!taken.empty())
     stated.told.push_back(fmt::format("its light from its file: {}{}", taken,

@@ -8,7 +8,7 @@
 namespace luxrig {
 namespace {
 
-/// Keys that only some kinds have.
+/// Keys of some kinds only.
 struct KindKeys {
   std::vector<TaskKind> kinds;
   std::vector<const char*> keys;
@@ -69,7 +69,7 @@ void RigReader::read_placement(Section& s, PlacementSpec& placement) {
 }
 
 void RigReader::need_watts_of(std::size_t luminaire, const Place& place, const std::string& what) {
-  // After another problem, an entry may stand for one that is not there.
+  // After another problem, an entry may stand in for one that is missing.
   if (!problems.empty() && lacks_watts.empty()) return;
   const Luminaire& lamp = rig.luminaires[luminaire];
   if (lamp.watts || !lacks_watts.insert(lamp.emitter_of.value_or(luminaire)).second) return;

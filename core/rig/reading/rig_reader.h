@@ -1,7 +1,7 @@
 #pragma once
-/// The pass over the document that makes the Rig. Each read_… fills its part of `rig` and reports what is wrong;
-/// entries that are wrong are kept in place, so that references to them by name still resolve and one mistake gives
-/// one problem. Private to core/rig.
+/// Makes the Rig from the document in one pass. Each read_… fills its part of `rig` and reports problems. Wrong entries
+/// stay in place, so that references to them by name still resolve and one mistake gives one problem. Private to
+/// core/rig.
 
 #include <filesystem>
 #include <functional>
@@ -30,7 +30,7 @@ class NameIndex {
   /// `kind` as in "two fixtures are called …".
   explicit NameIndex(std::string kind) : kind_(std::move(kind)) {}
 
-  /// Reports a name that is taken.
+  /// Reports a name that is already taken.
   void add(const std::string& name, std::size_t index, const Place& place, ProblemList& problems);
   [[nodiscard]] std::optional<std::size_t> find(const std::string& name) const;
   /// Reads the key that names an entry; an unknown name is reported with the nearest known one.
@@ -45,13 +45,13 @@ class NameIndex {
   std::unordered_map<std::string, Entry> entries_;
 };
 
-/// What a maker's file says of the light of a luminaire, where the rig file leaves that out.
+/// Light of a luminaire as a maker's file states it, for values missing in the rig file.
 struct StatedLight {
-  BeamGeometry light;   ///< 0: not stated
-  std::string fixture;  ///< whose file it is
+  BeamGeometry light;   ///< 0 = not stated
+  std::string fixture;  ///< the fixture that the file is for
   std::string file;
-  bool used = false;              ///< the luminaire takes something from it
-  std::vector<std::string> told;  ///< what was taken and what was not
+  bool used = false;              ///< the luminaire uses some of it
+  std::vector<std::string> told;  ///< which values were used and which were not
 };
 
 struct RigReader {
@@ -67,12 +67,12 @@ struct RigReader {
   NameIndex luminaires{"luminaire"}, buses{"bus"}, points{"point"}, objects{"scene object"}, fixtures{"fixture"},
       cameras{"camera"};
   PatchMap patches;
-  /// Where each point stands: the rig file, or the points file.
+  /// Place of each point, in the rig file or the points file.
   std::vector<std::pair<std::string, Place>> point_places;
-  std::map<std::string, std::shared_ptr<const Personality>> personalities;  ///< by path; null: cannot be used
-  std::map<std::string, std::shared_ptr<const RegisterMap>> register_maps;  ///< the same
+  std::map<std::string, std::shared_ptr<const Personality>> personalities;  ///< by path; null = cannot be used
+  std::map<std::string, std::shared_ptr<const RegisterMap>> register_maps;  ///< by path; null = cannot be used
   std::map<std::size_t, StatedLight> stated_lights;                         ///< by luminaire
-  std::set<std::size_t> lacks_watts;                                        ///< luminaires that this was reported of
+  std::set<std::size_t> lacks_watts;                                        ///< luminaires for which this was reported
 
   void read_all();
 
@@ -93,7 +93,7 @@ struct RigReader {
   void read_relief(Section& section, ReliefSpec& relief);
   void read_aim_task(Section& section, AimSpec& aim);
   void read_highlight(Section& section, HighlightSpec& highlight);
-  /// Indices of the entries whose names fit a key's patterns, rising; a pattern that fits none is reported.
+  /// Indices of the entries whose names match a key's patterns, rising. A pattern without a match is reported.
   [[nodiscard]] std::vector<std::size_t> read_patterns(Section& section, std::string_view key,
                                                        const std::vector<std::string_view>& names,
                                                        std::string_view what);
@@ -104,21 +104,22 @@ struct RigReader {
   void read_startup();
   void read_settings();
 
-  /// Every entry of a list section, or the one of a plain section, in order of the file. A section of the wrong shape
-  /// or with too many entries is reported and skipped.
+  /// Calls body for every entry of a list section, or for the one of a plain section, in file order. A section of the
+  /// wrong shape or with too many entries is reported and skipped.
   void each(const NodeTable& table, std::string_view section, const std::function<void(Section&)>& body);
-  /// The path that the key names, when there is a file.
+  /// The path given by the key, if there is such a file.
   std::optional<std::filesystem::path> read_file(Section& section, std::string_view key);
   void read_mesh(Section& section, std::optional<MeshFile>& out);
   void read_box_or_mesh(Section& section, SceneObject& object);
   void read_distribution(Section& section, StatedLight& stated, Luminaire& luminaire);
   void check_model_keys(Section& section, LuminaireModel model, const StatedLight& stated);
-  /// Of the first [[fixture]] with that luminaire and a maker's file that states light; all 0 when there is none. What
-  /// is wrong with that fixture or its file is reported when fixtures are read.
+  /// Light from the first [[fixture]] with that luminaire and a maker's file that states light; all 0 if there is none.
+  /// Problems of that fixture or its file are reported when fixtures are read.
   [[nodiscard]] StatedLight light_stated_for(const std::string& luminaire);
-  /// Fills in what the section leaves out.
+  /// Fills in values missing in the section.
   static void take_stated_light(Section& section, StatedLight& stated, Luminaire& luminaire);
-  /// Another fixture of the luminaire, in a mode with its own light. Reports light that differs from what was taken.
+  /// Checks another fixture of the luminaire, in a mode with its own light. Reports light that differs from the light
+  /// used.
   void check_stated_light(const Section& section, const Fixture& fixture, const PersonalityMode& mode);
   void read_spot(Section& section, Luminaire& luminaire);
   void read_photometric_file(Section& section, Luminaire& luminaire);
@@ -126,35 +127,35 @@ struct RigReader {
   void read_colour(Section& section, Vec3& colour_rgb);
   void note_colour_moved(const std::string& file, const Place& place, const std::string& whose,
                          const Chromaticity& wanted, const Vec3& taken_rgb);
-  /// Only what is an emitter's own.
+  /// Reads only the emitters' own keys.
   std::vector<Luminaire> read_emitters(Section& section, const std::string& luminaire_name);
   static void add_up(const std::vector<Luminaire>& emitters, Luminaire& luminaire);
   void read_goal(Section& section, Point& point);
   void set_goal_xy(Point& point, const Chromaticity& xy, const std::string& file, const Place& place);
   void check_goal_colours();
-  /// Reports a luminaire without, once.
+  /// Reports a luminaire without watts, once.
   void need_watts_of(std::size_t luminaire, const Place& place, const std::string& what);
   void need_watts_of_fixtures(const Place& place, const std::string& what);
-  /// Reads the DMX patch, and its slots as they are named; true when they can be claimed. `of_mode`: with a personality
-  /// that can be used.
+  /// Reads the DMX patch, and its slots as named. True if they can be claimed. `of_mode`: set if a personality can be
+  /// used.
   bool read_dmx(Section& section, const std::optional<SlotOwner>& owner, bool planned, Fixture& fixture,
                 std::vector<NamedSlot>& named, std::optional<ModeSlots>& of_mode);
   std::shared_ptr<const Personality> read_personality(Section& section);
-  /// Read once; null when it cannot be used, which read_personality() reports.
+  /// Read once; null if it cannot be used, which read_personality() reports.
   std::shared_ptr<const Personality> personality_at(const std::filesystem::path& path);
   std::shared_ptr<const RegisterMap> read_register_map(Section& section);
-  /// The fixture's patch over Modbus; true when its registers can be claimed.
+  /// Reads the fixture's patch over Modbus. True if its registers can be claimed.
   bool read_modbus(Section& section, const std::optional<SlotOwner>& owner, Fixture& fixture);
   bool read_modbus_meter(Section& section, Luxmeter& meter);
   std::optional<std::size_t> read_mode(Section& section, const Personality& personality);
   std::optional<ModeSlots> read_slots_of_mode(Section& section, const std::optional<SlotOwner>& owner,
                                               Fixture& fixture);
-  /// Pan and tilt that are drives on a bus of their own.
+  /// Reads pan and tilt that are drives on their own bus.
   void read_axes(Section& section, Fixture& fixture);
   void read_aim(Section& section, Fixture& fixture);
-  /// When it cannot dim: what has no meaning then is a problem. `steps`: its maker's file says so.
+  /// For a fixture that cannot dim. Keys that need dimming are problems. `steps`: its maker's file says that it cannot.
   void read_switched(Section& section, bool has_emitters, bool steps, Fixture& fixture);
-  /// Of keys "pan_deg" and "tilt_deg", with `prefix` before them.
+  /// Of keys "pan_deg" and "tilt_deg" with `prefix` in front.
   void check_joints(Section& section, const Fixture& fixture, const Joints& at, const std::string& prefix);
   void read_park(Section& section, Fixture& fixture);
 };

@@ -174,7 +174,7 @@ bool Section::read(std::string_view key, int& out) {
     return false;
   }
   if (!number_from(k, *node, x)) return false;
-  out = static_cast<int>(x);  // within the schema's bounds, which fit
+  out = static_cast<int>(x);  // fits: the schema's bounds are within int
   return true;
 }
 

@@ -2,10 +2,10 @@
 /// One table of the rig file, read key by key against the schema: type, range, required, unknown keys.
 ///
 ///   Section s(table, place, "control", problems);
-///   s.read("fade_s", control.fade_s);   // keeps the default when the key is absent or wrong
+///   s.read("fade_s", control.fade_s);   // keeps the default if the key is absent or wrong
 ///
-/// Every read reports what is wrong with its value, once. Naming a key that the schema does not have, or reading it
-/// as another type, is a bug of the reader (asserted).
+/// Every read reports problems of its value, once. Using a key that is not in the schema, or reading it as another
+/// type, is a bug of the reader (asserted).
 
 #include <Eigen/Geometry>
 #include <cstdint>
@@ -28,13 +28,13 @@ class Section {
   Section(const NodeTable& table, const Place& place, std::string_view section, ProblemList& problems);
 
   [[nodiscard]] bool has(std::string_view key) const { return find(table_, key) != nullptr; }
-  /// Of the value; of the table when the key is absent.
+  /// Of the value, or of the table if the key is absent.
   [[nodiscard]] Place place_of(std::string_view key) const;
   [[nodiscard]] const Place& place() const { return place_; }
   [[nodiscard]] const NodeTable& table() const { return table_; }
   [[nodiscard]] ProblemList& problems() { return problems_; }
 
-  /// True when the key is there and good; only then `out` changes. An absent required key is reported.
+  /// True if the key is there and good; `out` changes only then. Reports an absent required key.
   bool read(std::string_view key, double& out);
   bool read(std::string_view key, int& out);
   bool read(std::string_view key, bool& out);
@@ -53,7 +53,7 @@ class Section {
     return true;
   }
 
-  /// Of a key with choices: its value's place among them becomes the enumerator.
+  /// For a key with choices: the position of its value among them becomes the enumerator.
   template <class Enum>
   bool read_choice(std::string_view key, Enum& out) {
     const int index = choice(key);
@@ -61,14 +61,14 @@ class Section {
     return index >= 0;
   }
   bool read_deg(std::string_view key, double& out_rad);
-  /// A direction, made unit; a zero length is reported.
+  /// A direction, made unit. Reports zero length.
   bool read_normal(std::string_view key, Vec3& out);
   /// Each text with its place.
   bool read_texts(std::string_view key, std::vector<std::pair<std::string, Place>>& out);
 
-  /// Reports a key that has no meaning here: "beam_angle_deg has no effect: only with model = "spot"".
+  /// Reports a key that has no effect here: "beam_angle_deg has no effect: only with model = "spot"".
   void refuse(std::string_view key, std::string why, std::string mend);
-  /// Reports that a key is missing that this table needs, for a reason the schema cannot know.
+  /// Reports a missing key that this table needs for a reason beyond the schema.
   void require(std::string_view key, std::string_view why);
 
  private:
@@ -76,7 +76,7 @@ class Section {
   const Node* value(const KeySpec& spec);
   bool number_from(const KeySpec& spec, const Node& node, double& out);
   bool text_from(const KeySpec& spec, const Node& node, std::string& out);
-  /// A list of two; else null, and the problem is added.
+  /// A list of two; otherwise null and a problem.
   const NodeList* pair_from(const KeySpec& spec, const Node& node, std::string_view parts);
   bool three_numbers_from(const KeySpec& spec, const Node& node, Vec3& out);
   int choice(std::string_view key);

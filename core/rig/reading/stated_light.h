@@ -1,11 +1,11 @@
 #pragma once
-/// The light that a maker's file states, where the rig file states none. Private to core/rig.
+/// Light stated by a maker's file, for values missing in the rig file. Private to core/rig.
 
 #include "core/rig/personality/personality.h"
 
 namespace luxrig {
 
-/// Whether it states what a rig file could have: within what the rig file allows.
+/// Whether the file states a value that a rig file could have, within the rig file's ranges.
 [[nodiscard]] bool states_lumens(const BeamGeometry& light);
 [[nodiscard]] bool states_spot(const BeamGeometry& light);
 [[nodiscard]] bool states_cct(const BeamGeometry& light);

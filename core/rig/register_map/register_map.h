@@ -1,5 +1,5 @@
 #pragma once
-/// What a product keeps in its Modbus registers, its limits on the line, and what it does when data stops.
+/// Modbus registers of a product, its limits on the line, and its behaviour when data stops.
 
 #include <memory>
 #include <optional>
@@ -13,7 +13,7 @@
 namespace luxrig {
 
 enum class RegisterRole { other, level, illuminance, temperature, status, setting, failure };
-/// The four tables of a unit, each with addresses of its own.
+/// The four tables of a unit, each with its own addresses.
 enum class RegisterTable {
   holding,  ///< functions 3, 6, 16
   input,    ///< function 4
@@ -26,7 +26,7 @@ enum class RegisterTable {
 [[nodiscard]] const char* name_of(RegisterTable table);
 enum class RegisterAccess { read_write, read_only, write_only };
 
-/// One number of the product; with `count` in the file, one for each.
+/// One number of the product. `count` in the file makes several of them.
 struct MappedRegister {
   std::string name;
   RegisterRole role = RegisterRole::other;
@@ -36,9 +36,9 @@ struct MappedRegister {
   double scale = 1;  ///< of one count, in `unit`
   std::string unit;
   RegisterAccess access = RegisterAccess::read_write;
-  std::optional<std::pair<double, double>> range_raw;  ///< always there for a level: dark, full
+  std::optional<std::pair<double, double>> range_raw;  ///< always set for a level: dark, full
   int power_on_raw = 0;
-  int of_several = 0;  ///< with `count` in the file: 1, 2 …; 0: it is alone
+  int of_several = 0;  ///< with `count` in the file: 1, 2 …; 0 = single
   Place place;         ///< in the map file
 };
 
@@ -62,10 +62,10 @@ struct RegisterMap {
   std::vector<MappedRegister> registers;
   std::vector<SetupWrite> setup;
 
-  /// Of a bit by which the product says that something is wrong (role failure): whether that concerns this level. One
-  /// of a series is about the level of its number, where levels are a series, too; any other is about all of them.
+  /// Whether a failure bit (role failure) concerns this level. A bit of a series concerns the level of the same number
+  /// if levels are a series, too. Any other concerns all levels.
   [[nodiscard]] bool concerns(std::size_t failure, std::size_t level) const;
-  /// Those of one role, in the order of the file.
+  /// Registers of one role, in the order of the file.
   [[nodiscard]] std::vector<std::size_t> with_role(RegisterRole role) const;
   [[nodiscard]] std::optional<std::size_t> find(std::string_view register_name) const;
 };

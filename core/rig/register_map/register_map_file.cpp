@@ -14,9 +14,9 @@ namespace luxrig {
 namespace {
 
 constexpr std::size_t kMostMapBytes = std::size_t{1} << 20;
-constexpr std::size_t kMostMapped = 4096;  // numbers that one product keeps
+constexpr std::size_t kMostMapped = 4096;  // numbers of one product
 
-/// As the file writes them.
+/// Types as written in the file.
 enum class RegisterType { u16, s16, u32, s32, float32 };
 
 class MapReader {
@@ -124,7 +124,7 @@ class MapReader {
     }
   }
 
-  /// A bit is 0 or 1 and nothing else.
+  /// A bit is only 0 or 1.
   void check_bit(Section& s, MappedRegister& reg) {
     for (const std::string_view key : {"type", "word_order", "byte_order", "scale", "unit", "range"}) {
       s.refuse(key,
@@ -142,7 +142,7 @@ class MapReader {
       problems_.add(s.place_of("what"), "an illuminance of one bit", "say kind input or holding");
   }
 
-  /// What a role asks of the rest.
+  /// Requirements of a role on the other keys.
   void check_role(Section& s, MappedRegister& reg) {
     const auto wrong = [&](std::string_view key, std::string what, std::string mend) {
       problems_.add(s.place_of(key), std::move(what), std::move(mend));
@@ -265,7 +265,7 @@ class MapReader {
   }
 
   void check_overlaps() {
-    std::map<std::pair<RegisterTable, int>, std::size_t> taken;  // by kind and address
+    std::map<std::pair<RegisterTable, int>, std::size_t> taken;  // by table and address
     for (std::size_t i = 0; i < map_.registers.size(); ++i) {
       const MappedRegister& reg = map_.registers[i];
       for (int word = 0; word < reg.format.registers; ++word) {

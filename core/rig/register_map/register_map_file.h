@@ -9,7 +9,7 @@
 
 namespace luxrig {
 
-/// `file` is only for problems.
+/// `file` is for problems only.
 [[nodiscard]] Checked<RegisterMap> parse_register_map(std::string_view text, const std::string& file);
 [[nodiscard]] Checked<RegisterMap> load_register_map(const std::filesystem::path& path);
 

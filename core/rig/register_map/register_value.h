@@ -1,5 +1,5 @@
 #pragma once
-/// Numbers <-> the registers they stand in. Pure.
+/// Converts between numbers and their registers. Pure.
 
 #include <array>
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace luxrig {
 
-/// What goes into one or two registers.
+/// Content of one or two registers.
 struct RegisterWords {
   std::array<std::uint16_t, 2> word{};
   std::size_t count = 1;  ///< 1 or 2
@@ -19,10 +19,10 @@ struct RegisterWords {
 /// Least and largest number that the format can hold (floating: ±the largest float).
 [[nodiscard]] std::pair<double, double> register_limits(const RegisterFormat& format);
 
-/// The nearest number that the format can hold; whole ones are rounded. requires value not NaN.
+/// The nearest number that the format can hold; whole formats round. requires value not NaN.
 [[nodiscard]] RegisterWords words_of(double value, const RegisterFormat& format);
 
-/// The number in the registers; of a floating one perhaps not finite. requires words.size() == format.registers.
+/// The number in the registers; a floating one may not be finite. requires words.size() == format.registers.
 [[nodiscard]] double value_of(std::span<const std::uint16_t> words, const RegisterFormat& format);
 
 }  // namespace luxrig

@@ -1,4 +1,4 @@
-// Keys of how the rig is driven: regions kept out of, limits, control, what fails, start, daemon.
+// Keys for driving the rig: keep-outs, limits, control, failure, startup, daemon.
 #include "core/rig/schema/key_tables.h"
 
 namespace luxrig::schema {

@@ -1,4 +1,4 @@
-// Keys of what hangs in it and how it is reached: luminaires, buses, fixtures, meters, cameras.
+// Keys for equipment and how it is reached: luminaires, buses, fixtures, meters, cameras.
 #include "core/rig/schema/key_tables.h"
 
 namespace luxrig::schema {

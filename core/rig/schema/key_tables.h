@@ -1,5 +1,5 @@
 #pragma once
-/// The table of schema.h in parts: each gives the keys of its sections, in the order of the reference.
+/// The table of schema.h in parts. Each has the keys of its sections, in the order of the reference.
 
 #include "core/rig/schema.h"
 

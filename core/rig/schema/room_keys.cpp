@@ -1,4 +1,4 @@
-// Keys of the room: the rig itself, scene, daylight.
+// Keys for the room: the rig itself, scene, daylight.
 #include "core/rig/schema/key_tables.h"
 
 namespace luxrig::schema {
@@ -8,7 +8,7 @@ using enum ValueType;
 
 constexpr Bounds kReflectance{0, 0.95};
 constexpr Bounds kRoughness{0.05, 1};
-constexpr Bounds kOutdoors{0, 200'000, true};  // the sun above the air gives 127,500 lx
+constexpr Bounds kOutdoors{0, 200'000, true};  // the sun above the atmosphere gives 127,500 lx
 constexpr Bounds kBearing{-360, 360};
 constexpr Bounds kQuarterTurn{-90, 90};
 constexpr std::string_view kUnits = "m, cm, mm, in, ft";

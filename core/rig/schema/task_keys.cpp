@@ -1,4 +1,4 @@
-// Keys of what is wanted: points, tasks, where lights may hang.
+// Keys for goals: points, tasks, where lights may hang.
 #include "core/rig/schema/key_tables.h"
 
 namespace luxrig::schema {

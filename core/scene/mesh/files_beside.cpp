@@ -40,7 +40,7 @@ std::optional<std::filesystem::path> FolderBeside::find(const std::string& name)
   if (name.empty() || name.find('\0') != std::string::npos) return std::nullopt;
   const auto inside = [&](const std::filesystem::path& file) -> std::optional<std::filesystem::path> {
     std::error_code error;
-    const auto real = std::filesystem::canonical(file, error);  // links followed: what counts is where it is
+    const auto real = std::filesystem::canonical(file, error);  // links followed, since its real location counts
     if (error || !std::filesystem::is_regular_file(real, error)) return std::nullopt;
     const auto [folder_end, rest] = std::mismatch(folder_.begin(), folder_.end(), real.begin(), real.end());
     if (folder_end != folder_.end()) return std::nullopt;
@@ -54,7 +54,7 @@ std::optional<std::filesystem::path> FolderBeside::find(const std::string& name)
   }
   const std::string last = lower_case(std::filesystem::path(slashed).filename().string());
   if (last.empty()) return std::nullopt;
-  // Beside the mesh, or in the folder that the name states.
+  // Beside the mesh, or in the folder given in the name.
   for (const auto& folder : {folder_, folder_ / std::filesystem::path(slashed).parent_path()}) {
     std::error_code error;
     int looked_at = 0;

@@ -1,5 +1,5 @@
 #pragma once
-/// The further files that a mesh names (.mtl, .bin, pictures), and none outside its own place.
+/// The other files that a mesh names (.mtl, .bin, pictures), restricted to its own folder or archive.
 
 #include <filesystem>
 #include <map>
@@ -15,12 +15,11 @@ namespace luxrig {
 class FilesBeside {
  public:
   virtual ~FilesBeside() = default;
-  /// The content of the file of that name; nothing when there is none, or it is larger than `most_bytes`.
+  /// The content of the named file; nullopt if there is none, or it is larger than `most_bytes`.
   [[nodiscard]] virtual std::optional<std::string> read(const std::string& name, std::size_t most_bytes) const = 0;
 };
 
-/// Files below the folder of a mesh, links followed. A name as Windows writes it is found by its last part, too, and
-/// whatever its capitals.
+/// Files below the folder of a mesh, links followed. A Windows path is also found by its last part, ignoring case.
 class FolderBeside final : public FilesBeside {
  public:
   explicit FolderBeside(const std::filesystem::path& mesh);
@@ -31,7 +30,7 @@ class FolderBeside final : public FilesBeside {
   std::filesystem::path folder_;  // canonical
 };
 
-/// All of a regular file; nothing when it cannot be read, or is larger than `most_bytes`.
+/// The whole of a regular file; nullopt if it cannot be read, or is larger than `most_bytes`.
 [[nodiscard]] std::optional<std::string> whole_file(const std::filesystem::path& path, std::size_t most_bytes);
 
 /// The textures of one mesh, each read once.
@@ -39,7 +38,7 @@ class TextureShelf {
  public:
   explicit TextureShelf(const FilesBeside& beside) : beside_(beside) {}  ///< `beside` must outlive it
 
-  /// Null, and a warning (once), when it cannot be read.
+  /// Null and one warning if it cannot be read.
   std::shared_ptr<const Texture> of_file(const std::string& name, std::vector<std::string>& warnings);
   std::shared_ptr<const Texture> of_bytes(const std::string& name, std::string_view bytes,
                                           std::vector<std::string>& warnings);

@@ -148,7 +148,7 @@ Checked<GltfDocument> GltfDocument::open(std::string bytes, const std::string& f
   std::string text;
   const bool binary = bytes.starts_with("glTF");
   if (binary) {
-    out.file_bytes_ = std::move(bytes);  // long enough below that views into it outlive a move of it
+    out.file_bytes_ = std::move(bytes);  // long enough that views into it survive a move
     const std::string_view all = out.file_bytes_;
     const auto word = [&](std::size_t at) {
       std::uint32_t value = 0;
@@ -262,7 +262,7 @@ tl::expected<std::string_view, GltfRefusal> GltfDocument::view(std::size_t index
   const std::size_t offset = index_member(*one, "byteOffset").value_or(0);
   if (!in || !length)
     return tl::unexpected(broken("has buffer view " + std::to_string(index) + " without a buffer and a length"));
-  // meshopt's data stands elsewhere; this buffer is a promise, unless the exporter filled it.
+  // meshopt's data is elsewhere; this buffer is only a placeholder, unless the exporter filled it.
   const nlohmann::json* const extensions = member_of(*one, "extensions");
   const nlohmann::json* const stated = entry("buffers", *in);
   for (const char* const name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kMostGltfVertices = 3 * kMaxTriangles, kMostNodes = 10'000'000, kMostInstances = 10'000'000;
 
-/// Extensions that may be required and do no harm: read here, or of what light does not meet.
+/// Extensions that may be required and do no harm: supported here, or irrelevant to light.
 bool is_known(std::string_view extension) {
   if (extension == "KHR_mesh_quantization" || extension == "EXT_mesh_gpu_instancing" || extension == "KHR_xmp_json_ld")
     return true;
@@ -25,7 +25,7 @@ bool is_known(std::string_view extension) {
 
 Eigen::Matrix4d matrix_of_node(const nlohmann::json& node) {
   Eigen::Matrix4d out = Eigen::Matrix4d::Identity();
-  if (const auto m = numbers_member(node, "matrix", 16)) {  // column after column
+  if (const auto m = numbers_member(node, "matrix", 16)) {  // column by column
     out = Eigen::Map<const Eigen::Matrix4d>(m->data());
     return out;
   }
@@ -97,7 +97,7 @@ class GltfReader {
     const Eigen::Matrix4d world = Eigen::Matrix4d::Identity();
     if (scene != nullptr) {
       push(member_of(*scene, "nodes"), world);
-    } else {  // no scene: whatever hangs below nothing
+    } else {  // no scene: take all nodes without a parent
       std::vector<bool> child(count);
       for (std::size_t i = 0; i < count; ++i) {
         const nlohmann::json* const children = member_of((*all)[i], "children");
@@ -138,7 +138,7 @@ class GltfReader {
     return true;
   }
 
-  /// Where a node shows its mesh: once, or wherever EXT_mesh_gpu_instancing says.
+  /// Places where a node shows its mesh: one, or those of EXT_mesh_gpu_instancing.
   std::optional<std::vector<Eigen::Matrix4d>> instances(const nlohmann::json& node, const Eigen::Matrix4d& here) {
     const nlohmann::json* const extensions = member_of(node, "extensions");
     const nlohmann::json* const many =
@@ -196,7 +196,7 @@ class GltfReader {
     return std::nullopt;
   }
 
-  /// Draco's data stands in the place of the accessors', unless the exporter wrote both.
+  /// Draco's data replaces that of the accessors, unless the exporter wrote both.
   bool check_draco(const nlohmann::json& primitive) {
     const nlohmann::json* const attributes = member_of(primitive, "attributes");
     const auto position = attributes != nullptr ? index_member(*attributes, "POSITION") : std::nullopt;
@@ -209,7 +209,7 @@ class GltfReader {
 
   bool read_primitive(const nlohmann::json& primitive, const std::vector<Eigen::Matrix4d>& places) {
     const double mode = number_member(primitive, "mode", 4);
-    if (mode != 4 && mode != 5 && mode != 6) return true;  // points and lines carry no light
+    if (mode != 4 && mode != 5 && mode != 6) return true;  // points and lines reflect no light
     if (!check_draco(primitive)) return false;
     bool failed = false;
     const auto positions = attribute(primitive, "POSITION", failed);
@@ -256,7 +256,7 @@ class GltfReader {
       for (std::size_t i = 0; i < triangles; ++i) {
         if (mode == 4) {
           corner(3 * i), corner(3 * i + 1), corner(3 * i + 2);
-        } else if (mode == 5) {  // a strip: every second is wound the other way
+        } else if (mode == 5) {  // a strip: every second triangle has the opposite winding
           corner(i), corner(i + 1 + i % 2), corner(i + 2 - i % 2);
         } else {
           corner(0), corner(i + 1), corner(i + 2);

@@ -1,5 +1,5 @@
 #pragma once
-/// glTF 2.0, .gltf and .glb, read here: from strangers, so every bound is checked. Source: Khronos glTF 2.0.0,
+/// Reader of glTF 2.0, .gltf and .glb. Files are untrusted, so every bound is checked. Source: Khronos glTF 2.0.0,
 /// KHR_mesh_quantization, EXT_mesh_gpu_instancing, KHR_texture_transform. Internal to core/scene, and to the import of
 /// MVR scenery.
 
@@ -11,9 +11,9 @@
 
 namespace luxrig {
 
-/// The triangles of the file's scene, nodes and instances placed, in metres and +Y up. Skins and morphs stay as they
-/// are bound. Refuses by name what an extension does to geometry and is not known here (Draco, meshopt). `file` is for
-/// the messages.
+/// The triangles of the file's scene, with nodes and instances placed, in metres and +Y up. Skins and morphs stay in
+/// their bind pose. Refuses extensions that change geometry and are not supported (Draco, meshopt), by name. `file` is
+/// for messages.
 [[nodiscard]] Checked<PolygonMesh> read_gltf(std::string bytes, const std::string& file, const FilesBeside& beside);
 
 }  // namespace luxrig

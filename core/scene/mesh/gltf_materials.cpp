@@ -34,7 +34,7 @@ FileMaterial GltfMaterials::read(const nlohmann::json& from, GltfPicture& pictur
   const auto warn = [&](const std::string& text) {
     if (warnings.size() < 100) warnings.push_back(name + text);
   };
-  // The older way to say it stands beside the newer one, for programs that know it.
+  // The older form stands beside the newer one, for programs that support it, and takes precedence.
   const nlohmann::json* const older = extension_of_gltf(from, "KHR_materials_pbrSpecularGlossiness");
   const nlohmann::json* const newer = member_of(from, "pbrMetallicRoughness");
   const nlohmann::json& look = older != nullptr ? *older : newer != nullptr ? *newer : kNone;
@@ -88,7 +88,7 @@ std::shared_ptr<const Texture> GltfMaterials::texture_of(const nlohmann::json& i
   const std::string uri = text_member(*image, "uri");
   std::string name = text_member(*image, "name");
   if (name.empty()) name = "image " + std::to_string(*source);
-  name += ", no. " + std::to_string(*source);  // two may have one name
+  name += ", no. " + std::to_string(*source);  // two may share a name
   if (const auto data = GltfDocument::data_of_uri(uri)) return textures_.of_bytes(name, *data, warnings);
   if (!uri.empty() && !uri.starts_with("data:")) return textures_.of_file(GltfDocument::name_of_uri(uri), warnings);
   const auto in = index_member(*image, "bufferView");

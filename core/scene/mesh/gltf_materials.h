@@ -1,5 +1,5 @@
 #pragma once
-/// What a glTF says of its surfaces. Internal to core/scene.
+/// Surface materials of a glTF. Internal to core/scene.
 
 #include <array>
 #include <map>
@@ -11,7 +11,7 @@
 
 namespace luxrig {
 
-/// Where a material's picture lies on the mesh.
+/// Placement of a material's picture on the mesh.
 struct GltfPicture {
   int coordinates = 0;  ///< TEXCOORD_…
   std::array<double, 2> offset{0, 0}, scale{1, 1};
@@ -25,7 +25,7 @@ class GltfMaterials {
 
   /// The material of a primitive, read once, as an index into `mesh.materials`.
   std::uint32_t of_primitive(const nlohmann::json& primitive, PolygonMesh& mesh);
-  /// Of a material that of_primitive() gave.
+  /// For a material returned by of_primitive().
   [[nodiscard]] const GltfPicture& picture_of(std::uint32_t material) const { return pictures_[material]; }
 
  private:

@@ -22,14 +22,14 @@ namespace luxrig {
 namespace {
 
 constexpr std::size_t kMaxFileBytes = std::size_t{8} << 30;
-constexpr double kMaxCoordinate_m = 1e9;  // beyond it a mesh is broken, or its unit wrong
-constexpr double kFarOut_m = 1000;        // from there on float is coarser than 0.06 mm
+constexpr double kMaxCoordinate_m = 1e9;  // beyond this, a mesh is broken or its unit wrong
+constexpr double kFarOut_m = 1000;        // beyond this, float is coarser than 0.06 mm
 
 tl::unexpected<std::vector<Problem>> refuse_mesh(const std::string& file, std::string what, std::string mend) {
   return tl::unexpected(std::vector<Problem>{{file, 0, 0, std::move(what), std::move(mend)}});
 }
 
-/// Places, splits and cleans what a file says.
+/// Places, splits and cleans the content of a file.
 class MeshPlacing {
  public:
   MeshPlacing(PolygonMesh mesh, const Eigen::Affine3d& world_from_mesh)
@@ -47,7 +47,7 @@ class MeshPlacing {
       const auto end = begin + static_cast<std::ptrdiff_t>(count);
       const bool bad = std::any_of(begin, end, [&](std::uint32_t index) { return index >= mesh_.vertices.size(); });
       placed_.cleaning.bad_indices += bad ? 1 : 0;
-      if (!bad && count >= 3) {  // points and lines carry no light
+      if (!bad && count >= 3) {  // points and lines reflect no light
         points.clear();
         for (auto corner = begin; corner != end; ++corner) points.push_back(mesh_.vertices[*corner]);
         split.clear();
@@ -92,7 +92,7 @@ class MeshPlacing {
         colours_.material_of(mesh_.face_materials.empty() ? 0 : mesh_.face_materials[face], corners, area_m2));
   }
 
-  /// 0 where its height over its longest side is within the rounding of float, were it about the origin.
+  /// 0 if its height over its longest side is within float rounding, taken about the origin.
   [[nodiscard]] double area_unless_degenerate(const std::array<std::uint32_t, 3>& triangle) const {
     const Vec3& a = mesh_.vertices[triangle[0]];
     const Vec3 ab = mesh_.vertices[triangle[1]] - a, ac = mesh_.vertices[triangle[2]] - a;

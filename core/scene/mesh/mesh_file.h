@@ -1,5 +1,5 @@
 #pragma once
-/// Meshes from files (OBJ, PLY, STL, glTF/GLB, 3DS).
+/// Reads meshes from files (OBJ, PLY, STL, glTF/GLB, 3DS).
 
 #include <filesystem>
 
@@ -16,10 +16,13 @@ struct MeshFile {
   UpAxis up_axis = UpAxis::y;
 };
 
-/// Reads a mesh: units applied, +Z up (a +Y-up file is turned by +90° about X, so that its -Z becomes
-/// world +Y), node transforms applied, cleaned with a count; materials that a triangle uses, in shades of one name
-/// where a picture or vertex colours vary. The Scene has one object, named after the file; its origin is zero, or the
-/// middle of what reaches over 1 km out. Refuses what cannot be read, has no usable triangle, or more than 50 million.
+/// Reads a mesh as a Scene with one object, named after the file:
+/// - units applied, +Z up (a +Y-up file is turned by +90° about X, so that its -Z becomes world +Y), node transforms
+///   applied
+/// - cleaned, with counts
+/// - only materials in use, split into shades of one name if a picture or vertex colours vary
+/// - origin zero, or the middle of a mesh that extends beyond 1 km
+/// Refuses a file that cannot be read, has no usable triangle, or has more than 50 million.
 [[nodiscard]] Checked<Scene> load_mesh(const MeshFile& file);
 
 }  // namespace luxrig

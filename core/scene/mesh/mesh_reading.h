@@ -1,6 +1,6 @@
 #pragma once
-/// The parts of load_mesh(), for meshes that lie in an archive or are placed among others. Internal to core/scene, and
-/// to the import of MVR.
+/// The steps of load_mesh(), for meshes in an archive or placed among others. Internal to core/scene, and to the import
+/// of MVR.
 
 #include <filesystem>
 #include <string>
@@ -13,17 +13,17 @@
 
 namespace luxrig {
 
-/// In lower case, without its dot.
+/// In lower case, without the dot.
 [[nodiscard]] std::string extension_of(const std::filesystem::path& path);
 
-/// Any format but PLY, by the extension (in lower case). `file` is for the messages.
+/// Reads any format but PLY, by the extension (in lower case). `file` is for messages.
 [[nodiscard]] Checked<PolygonMesh> read_mesh(std::string bytes, const std::string& extension, const std::string& file,
                                              const FilesBeside& beside);
 
-/// Placed, split into triangles and cleaned; may be left without any.
+/// Places, splits into triangles and cleans; the result may have no triangles.
 [[nodiscard]] PlacedMesh place_mesh(PolygonMesh mesh, const Eigen::Affine3d& world_from_mesh);
 
-/// load_mesh() before anything is rounded. Refuses likewise.
+/// load_mesh() before rounding. Refuses likewise.
 [[nodiscard]] Checked<PlacedMesh> load_placed_mesh(const MeshFile& file);
 
 }  // namespace luxrig

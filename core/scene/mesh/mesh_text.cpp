@@ -25,7 +25,7 @@ void append_utf8(std::string& out, std::uint32_t code) {
   }
 }
 
-/// Unpaired halves of a pair become U+FFFD.
+/// Unpaired surrogates become U+FFFD.
 std::string utf8_of_utf16(std::string_view bytes, bool big_endian) {
   std::string out;
   out.reserve(bytes.size() / 2 + bytes.size() / 8);

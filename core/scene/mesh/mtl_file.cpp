@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kMostMtlMaterials = 100'000;
 
-/// The file of a map statement: after its options, each of which has its own number of arguments.
+/// The file of a map statement. Before it come options, each with its own number of arguments.
 std::string file_of_map(TextLine& line) {
   for (;;) {
     TextLine ahead = line;
@@ -85,7 +85,7 @@ class MtlReader {
     if (colour.allFinite()) out_.materials.back().colour = colour;
   }
 
-  /// Glass and glow: light passes no mesh, and comes only from fixtures.
+  /// Transparency and emission: light does not pass through meshes, and comes only from fixtures.
   void read_ignored(std::string_view key, TextLine& line) {
     const auto value = number_of_word(line.next());
     if (!value || out_.materials.empty()) return;

@@ -14,7 +14,7 @@ namespace luxrig {
 struct MtlMaterial {
   std::string name;            ///< plain text
   std::optional<Vec3> colour;  ///< Kd, as linear light
-  std::string texture;         ///< of map_Kd; empty: none
+  std::string texture;         ///< of map_Kd; empty = none
 };
 
 struct MtlFile {
@@ -22,8 +22,8 @@ struct MtlFile {
   std::vector<std::string> warnings;
 };
 
-/// The text in whatever encoding. What stands before the first newmtl, and what light does not need, is left out, the
-/// former with a warning. A colour that is no number is refused, with line and column. `file` is for the messages.
+/// Parses a text in any encoding. Skips statements before the first newmtl (with a warning) and those that light does
+/// not need. Refuses a colour that is not a number, with line and column. `file` is for messages.
 [[nodiscard]] Checked<MtlFile> parse_mtl(std::string bytes, const std::string& file);
 
 }  // namespace luxrig

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMostMtlBytes = std::size_t{64} << 20;
 
-/// A corner of a face: a vertex, and perhaps a place in the picture, from 1, or from -1 backwards.
+/// A corner of a face: a vertex, and perhaps a point of the picture; from 1, or from -1 backwards.
 struct ObjCorner {
   long long vertex = 0, uv = 0;
 };
@@ -41,7 +41,7 @@ std::optional<ObjCorner> corner_of_word(std::string_view word) {
   return at == end ? std::optional(corner) : std::nullopt;
 }
 
-/// As an index from 0; kNoIndex where there can be none.
+/// As an index from 0; kNoIndex if invalid.
 std::uint32_t index_of(long long stated, std::size_t count) {
   const long long index = stated < 0 ? static_cast<long long>(count) + stated : stated - 1;
   return stated == 0 || index < 0 || index >= kNoIndex ? kNoIndex : static_cast<std::uint32_t>(index);
@@ -98,7 +98,7 @@ class ObjReader {
     return std::any_of(kKeys.begin(), kKeys.end(), [&](std::string_view known) { return known == key; });
   }
 
-  /// Numbers to the line's end, at most `values.size()`; how many, or nothing after a problem.
+  /// Reads numbers to the end of the line, at most `most`. Returns how many; nullopt after a problem.
   std::optional<std::size_t> numbers(TextLine& line, std::array<double, 7>& values, std::size_t least,
                                      std::size_t most) {
     std::size_t count = 0;
@@ -136,13 +136,13 @@ class ObjReader {
     const auto count = numbers(line, values, 1, 3);
     if (!count) return;
     const auto as_float = [](double value) { return std::abs(value) < 1e6 ? static_cast<float>(value) : 0.f; };
-    mesh_.uvs.push_back({as_float(values[0]), *count > 1 ? 1 - as_float(values[1]) : 0});  // from below in OBJ
+    mesh_.uvs.push_back({as_float(values[0]), *count > 1 ? 1 - as_float(values[1]) : 0});  // OBJ counts from below
   }
 
   void read_face(TextLine& line) {
     std::size_t count = 0;
     for (std::string_view word = line.next(); !word.empty(); word = line.next()) {
-      if (word == "\\") {  // goes on in the next line
+      if (word == "\\") {  // continues on the next line
         if (auto next = lines_.next()) {
           line = *next;
           continue;
@@ -188,7 +188,7 @@ class ObjReader {
     return at->second;
   }
 
-  /// One file, whose name may hold blanks, or several.
+  /// One file, whose name may contain blanks, or several.
   void read_libraries(const std::string& names) {
     if (read_library(names)) return;
     TextLine words(names, 0);

@@ -1,5 +1,5 @@
 #pragma once
-/// Wavefront OBJ, read here: in double, strictly, with lines and columns. Internal to core/scene.
+/// Strict reader of Wavefront OBJ: in double, with lines and columns. Internal to core/scene.
 
 #include <string>
 
@@ -9,9 +9,9 @@
 
 namespace luxrig {
 
-/// Polygons with their materials, textures and vertex colours (as sRGB); points, lines, curves and normals are left
-/// out. UTF-8 or UTF-16. Refuses numbers that are none (decimal commas), with line and column, and what is larger than
-/// kMaxTriangles and kMaxCorners allow. `file` is for the messages.
+/// Reads polygons with their materials, textures and vertex colours (as sRGB). Skips points, lines, curves and normals.
+/// UTF-8 or UTF-16. Refuses invalid numbers (decimal commas), with line and column, and files beyond kMaxTriangles and
+/// kMaxCorners. `file` is for messages.
 [[nodiscard]] Checked<PolygonMesh> read_obj(std::string bytes, const std::string& file, const FilesBeside& beside);
 
 }  // namespace luxrig

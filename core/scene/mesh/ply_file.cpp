@@ -18,7 +18,7 @@
 namespace luxrig {
 namespace {
 
-/// The bytes of a body, a block at a time.
+/// The bytes of a body, read in blocks.
 class Bytes {
  public:
   Bytes(std::ifstream& in) : in_(in), block_(std::size_t{1} << 16) {}
@@ -32,7 +32,7 @@ class Bytes {
     for (; count > 0;) {
       if (at_ == end_ && !refill()) return false;
       const std::size_t some = std::min(count, end_ - at_);
-      if (to != nullptr) {  // else skipped
+      if (to != nullptr) {  // null = skip
         std::memcpy(to, &block_[at_], some);
         to += some;
       }
@@ -55,7 +55,7 @@ class Bytes {
   std::size_t at_ = 0, end_ = 0;
 };
 
-/// Values one after another, whatever the format. Each read returns none at the end or on what is no number.
+/// Values in sequence, in any format. Each read returns nullopt at the end or if there is no number.
 class Values {
  public:
   Values(std::ifstream& in, const PlyHeader& header) : bytes_(in), format_(header.format), line_(header.lines + 1) {}
@@ -118,7 +118,7 @@ class Values {
     return std::nullopt;
   }
 
-  /// One word of at most 63 characters, parted by white space.
+  /// One word of at most 63 characters, delimited by white space.
   std::optional<std::string_view> next_word() {
     int c = bytes_.next();
     while (c == ' ' || c == '\t' || c == '\r' || c == '\n') {
@@ -145,7 +145,7 @@ class Values {
     const char* const end = word->data() + word->size();
     const auto [stop, error] = std::from_chars(word->data(), end, value);
     if (stop != end || error == std::errc::invalid_argument) return std::nullopt;
-    if (error != std::errc()) value = std::numeric_limits<double>::quiet_NaN();  // beyond double: no place
+    if (error != std::errc()) value = std::numeric_limits<double>::quiet_NaN();  // beyond double: not a position
     if (is_integer(type) && (!std::isfinite(value) || value != std::trunc(value))) return std::nullopt;
     return value;
   }
@@ -163,7 +163,7 @@ double to_coordinate(double value) {
   return std::abs(value) <= kMost ? value : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// The value of a colour that is white in full, by its type.
+/// The value of full white, by type.
 double full_colour(PlyType type) {
   return type == PlyType::uint8 ? 255 : type == PlyType::uint16 ? 65535 : is_integer(type) ? 0 : 1;
 }
@@ -188,7 +188,7 @@ class BodyReader {
     for (const PlyElement& element : header_.elements) {
       const bool is_vertex = element.name == "vertex";
       const bool is_face = element.name == "face";
-      if (is_vertex) mesh_.vertices.reserve(element.count);  // the header's check: no more than the file can hold
+      if (is_vertex) mesh_.vertices.reserve(element.count);  // the header is checked: no more than the file can hold
       if (is_face) mesh_.corner_counts.reserve(element.count);
       coloured_ = is_vertex && std::any_of(element.properties.begin(), element.properties.end(), [](const auto& p) {
                     return !p.length_type && full_colour(p.type) > 0 && colour_of(p.name) >= 0;

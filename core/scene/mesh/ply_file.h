@@ -1,5 +1,5 @@
 #pragma once
-/// PLY files, read here, strictly. Internal to core/scene.
+/// Strict reader of PLY files. Internal to core/scene.
 
 #include <filesystem>
 
@@ -8,9 +8,9 @@
 
 namespace luxrig {
 
-/// Reads ascii and both binary forms, with the vertices' red, green and blue (as sRGB); other elements and properties
-/// are skipped. Memory stays within a small multiple
-/// of the file's size. Problems carry the line of the header, or of an ascii body.
+/// Reads ascii and both binary forms, with the vertices' red, green and blue (as sRGB). Skips other elements and
+/// properties. Memory stays within a small multiple of the file's size. Problems have the line of the header, or of an
+/// ascii body.
 [[nodiscard]] Checked<PolygonMesh> read_ply(const std::filesystem::path& path);
 
 }  // namespace luxrig

@@ -14,7 +14,7 @@ struct NamedType {
   std::string_view name;
   PlyType type;
 };
-/// The names of 1994, and those with sizes that came later.
+/// The names of 1994, and the later ones with sizes.
 constexpr std::array<NamedType, 16> kTypes = {{{"char", PlyType::int8},
                                                {"uchar", PlyType::uint8},
                                                {"short", PlyType::int16},
@@ -201,7 +201,7 @@ class HeaderParser {
     }
   }
 
-  /// The least that each element needs: binary its values and list lengths, ascii a digit and a space for each.
+  /// The minimum that each element needs: in binary its values and list lengths, in ascii a digit and a space for each.
   void check_sizes() {
     std::uintmax_t left = file_bytes_ - std::min<std::uintmax_t>(file_bytes_, header_.bytes);
     if (header_.format == PlyFormat::ascii) ++left;  // the last space may be missing

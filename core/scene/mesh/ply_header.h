@@ -1,5 +1,6 @@
 #pragma once
-/// The head of a PLY file (Turk 1994, "The PLY Polygon File Format"): what its bytes are, checked before any is read.
+/// The header of a PLY file (Turk 1994, "The PLY Polygon File Format"): the layout of its bytes, checked before any is
+/// read.
 
 #include <cstdint>
 #include <optional>
@@ -18,7 +19,7 @@ enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64
 struct PlyProperty {
   std::string name;
   PlyType type = PlyType::float32;     ///< of the value, or of each value of a list
-  std::optional<PlyType> length_type;  ///< of the number before a list; none = a single value
+  std::optional<PlyType> length_type;  ///< of the count before a list; none = a single value
 };
 
 struct PlyElement {
@@ -33,7 +34,7 @@ enum class PlyFormat { ascii, little_endian, big_endian };
 struct PlyHeader {
   PlyFormat format = PlyFormat::ascii;
   std::vector<PlyElement> elements;  ///< in the order of the body; one `vertex`, one `face`
-  std::size_t bytes = 0;             ///< where the body begins
+  std::size_t bytes = 0;             ///< start of the body
   int lines = 0;                     ///< lines of the header
 };
 
@@ -41,12 +42,12 @@ inline constexpr std::size_t kMaxPlyHeaderBytes = std::size_t{1} << 16;
 inline constexpr std::uint64_t kMaxPlyFaces = 50'000'000;
 inline constexpr std::uint64_t kMaxPlyVertices = 3 * kMaxPlyFaces;
 
-/// The list of a face that names its corners.
+/// Whether this property of a face is the list of its corners.
 [[nodiscard]] bool names_corners(const PlyProperty& property);
 
-/// `start` holds the file's first kMaxPlyHeaderBytes (all of a shorter file), `file_bytes` its whole size; `file` names
-/// it in problems. A header that comes back promises no more than the file can hold, has `vertex` with single x, y
-/// and z, and `face` with one list of integers that names corners.
+/// `start` holds the file's first kMaxPlyHeaderBytes (all of a shorter file). `file_bytes` is its whole size. `file`
+/// names it in problems. A returned header promises no more than the file can hold. It has `vertex` with single x, y
+/// and z, and `face` with one list of integers for corners.
 [[nodiscard]] Checked<PlyHeader> parse_ply_header(std::string_view start, std::uintmax_t file_bytes,
                                                   const std::string& file);
 

@@ -13,18 +13,18 @@ double turn(const FlatPoint& a, const FlatPoint& b, const FlatPoint& c) {
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
 }
 
-/// Where a quadrilateral's diagonal begins: at its inward corner, if it has one.
+/// Corner where a quadrilateral's diagonal begins: its reflex corner, if it has one.
 std::uint32_t first_corner_of_quad(std::span<const Vec3> p) {
   for (std::uint32_t i = 0; i < 4; ++i) {
     const Vec3 left = (p[(i + 3) % 4] - p[i]).normalized(), across = (p[(i + 2) % 4] - p[i]).normalized(),
                right = (p[(i + 1) % 4] - p[i]).normalized();
     const auto angle_rad = [](double cosine) { return std::acos(std::clamp(cosine, -1.0, 1.0)); };
-    if (angle_rad(left.dot(across)) + angle_rad(right.dot(across)) > 3.14159274) return i;  // π as float has it
+    if (angle_rad(left.dot(across)) + angle_rad(right.dot(across)) > 3.14159274) return i;  // π as a float
   }
   return 0;
 }
 
-/// In the plane of the polygon's area, counter-clockwise.
+/// Projected to the plane of the polygon's area, counter-clockwise.
 std::vector<FlatPoint> flattened(std::span<const Vec3> points) {
   Vec3 normal = Vec3::Zero();  // Newell's
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -57,7 +57,7 @@ void split_polygon(std::span<const Vec3> points, std::vector<std::array<std::uin
     triangles.push_back({i, (i + 2) % 4, (i + 3) % 4});
     return;
   }
-  // Ears are cut off one after another: corners that bulge out and whose triangle holds no other corner.
+  // Cuts off ears one after another: convex corners whose triangle contains no other corner.
   const std::vector<FlatPoint> flat = flattened(points);
   std::vector<std::uint32_t> open(points.size());
   std::iota(open.begin(), open.end(), 0u);
@@ -77,7 +77,7 @@ void split_polygon(std::span<const Vec3> points, std::vector<std::array<std::uin
       at = (at + 1) % n;
       continue;
     }
-    triangles.push_back({before, here, after});  // an ear, or, when there is none, whatever comes
+    triangles.push_back({before, here, after});  // an ear, or if there is none, the present corner
     open.erase(open.begin() + static_cast<std::ptrdiff_t>(at));
     at = at % open.size();
     tried = 0;

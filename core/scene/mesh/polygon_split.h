@@ -1,5 +1,5 @@
 #pragma once
-/// Polygons into triangles. Internal to core/scene.
+/// Splits polygons into triangles. Internal to core/scene.
 
 #include <array>
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace luxrig {
 
-/// Appends points.size() - 2 triangles, as indices into `points`, wound as the polygon is: those of a simple polygon
-/// that is flat, or nearly so, cover it once. One that crosses itself is cut at its corners in turn.
+/// Appends points.size() - 2 triangles as indices into `points`, wound like the polygon. They cover a simple, roughly
+/// flat polygon exactly once. A polygon that crosses itself is cut at its corners in turn.
 void split_polygon(std::span<const Vec3> points, std::vector<std::array<std::uint32_t, 3>>& triangles);
 
 }  // namespace luxrig

@@ -83,7 +83,7 @@ Checked<PolygonMesh> ascii_stl(const std::string& text, const std::string& file)
 }  // namespace
 
 Checked<PolygonMesh> read_stl(std::string bytes, const std::string& file) {
-  // A binary header, too, may begin with "solid": then the size that it promises tells.
+  // A binary header may also begin with "solid". Then the size that it promises decides.
   std::uint32_t count = 0;
   if (bytes.size() >= kStlHeaderBytes) std::memcpy(&count, &bytes[80], sizeof count);
   const bool size_fits =

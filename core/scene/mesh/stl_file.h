@@ -1,5 +1,5 @@
 #pragma once
-/// STL, ascii and binary, read here. Internal to core/scene.
+/// Reader of STL, ascii and binary. Internal to core/scene.
 
 #include <string>
 
@@ -8,8 +8,8 @@
 
 namespace luxrig {
 
-/// Triangles; normals and colours are left out. Refuses a binary file that is shorter than it promises, and, with line
-/// and column, an ascii one with words that are no numbers. `file` is for the messages.
+/// Reads triangles; skips normals and colours. Refuses a binary file shorter than it promises, and an ascii one with
+/// invalid numbers, with line and column. `file` is for messages.
 [[nodiscard]] Checked<PolygonMesh> read_stl(std::string bytes, const std::string& file);
 
 }  // namespace luxrig

@@ -6,10 +6,10 @@
 namespace luxrig {
 namespace {
 
-constexpr double kShades = 32;  // of each primary, spaced as the eye sees them
+constexpr double kShades = 32;  // per primary, spaced perceptually
 
 std::uint32_t rounded_colour(const Vec3& colour) {
-  std::uint32_t code = 1;  // 0: the material has but one
+  std::uint32_t code = 1;  // 0 = the material has only one
   for (const double part : colour)
     code = code * 64 + static_cast<std::uint32_t>(std::lround(kShades * std::sqrt(std::clamp(part, 0.0, 1.0))));
   return code;

@@ -1,6 +1,6 @@
 #pragma once
-/// What each triangle of a mesh reflects: its material's colour, times its picture, times its vertices' colours.
-/// Internal to core/scene.
+/// Reflectance of each triangle of a mesh: its material's colour, times its picture, times its vertex colours. Internal
+/// to core/scene.
 
 #include <map>
 #include <vector>
@@ -10,17 +10,17 @@
 
 namespace luxrig {
 
-/// Materials for triangles, made as they are asked for: triangles of one material of the file whose colours are nearly
-/// alike share one, which has the mean of their colours by area.
+/// Makes materials for triangles on demand. Triangles with the same file material and nearly equal colours share one,
+/// with the mean of their colours by area.
 class SurfaceColours {
  public:
   /// `mesh` must outlive this.
   explicit SurfaceColours(const PolygonMesh& mesh);
 
-  /// The index that the triangle of these corners (places in mesh.corners) gets in the materials.
+  /// Index in the materials for the triangle with these corners (positions in mesh.corners).
   std::uint32_t material_of(std::uint32_t file_material, const std::array<std::size_t, 3>& corners, double area_m2);
 
-  /// In the order in which they were first used.
+  /// In the order of first use.
   [[nodiscard]] std::vector<Material> take();
 
  private:

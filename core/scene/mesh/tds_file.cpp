@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kDeepestChunk = 16;
 
-/// A stretch of the file; what is read past its end is zero, and remembered.
+/// A range of the file. Reads past its end give zero and are recorded.
 class ChunkBytes {
  public:
   explicit ChunkBytes(std::string_view bytes) : bytes_(bytes) {}
@@ -67,7 +67,7 @@ class TdsReader {
       if (texture == texture_names_.end()) continue;
       material.texture = textures_.of_file(texture->second, mesh_.warnings);
       material.unknown = material.texture == nullptr;
-      material.colour.reset();  // 3D Studio shows the picture in its place
+      material.colour.reset();  // 3D Studio shows the picture instead of it
     }
     return std::move(mesh_);
   }
@@ -146,7 +146,7 @@ class TdsReader {
     const std::size_t count = content.take<std::uint16_t>();
     for (std::size_t i = 0; i < count && !content.ran_short(); ++i) {
       const auto u = content.take<float>(), v = content.take<float>();
-      mesh_.uvs.push_back({u, 1 - v});  // from below
+      mesh_.uvs.push_back({u, 1 - v});  // counted from below
     }
     short_ = short_ || content.ran_short();
   }
@@ -177,7 +177,7 @@ class TdsReader {
     short_ = short_ || content.ran_short();
   }
 
-  /// Each vertex of a mesh has one place in the picture, or none has.
+  /// Either every vertex of a mesh has a point of the picture, or none has.
   void add_uvs() {
     const std::size_t uvs = mesh_.uvs.size() - uv_base_;
     if (uvs == 0) return;
@@ -206,7 +206,7 @@ class TdsReader {
       }
       if (rgb.ran_short() || !colour.allFinite()) continue;
       material_->colour = colour.unaryExpr(&linear_of_srgb);
-      return;  // the second, if there is one, says the same
+      return;  // a second one, if any, repeats it
     }
   }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// 3D Studio's .3ds, as MVR and GDTF files hold it. Internal to core/scene, and to the import of MVR scenery.
+/// Reader of 3D Studio's .3ds, as used in MVR and GDTF files. Internal to core/scene, and to the import of MVR scenery.
 
 #include <string>
 
@@ -9,8 +9,8 @@
 
 namespace luxrig {
 
-/// The triangles of all meshes with their materials' diffuse colours (as sRGB) and pictures, in the file's unit and
-/// axes (+Z up by custom). Animation, lights and cameras are left out. `file` is for the messages.
+/// Reads the triangles of all meshes with their materials' diffuse colours (as sRGB) and pictures, in the file's unit
+/// and axes (+Z up by custom). Skips animation, lights and cameras. `file` is for messages.
 [[nodiscard]] Checked<PolygonMesh> read_3ds(std::string_view bytes, const std::string& file, const FilesBeside& beside);
 
 }  // namespace luxrig

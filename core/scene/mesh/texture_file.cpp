@@ -12,7 +12,7 @@ namespace luxrig {
 namespace {
 
 constexpr std::size_t kMostPixels = std::size_t{1} << 26;
-constexpr int kMostScans = 200;  // a progressive JPEG of a few bytes may promise more work than a day holds
+constexpr int kMostScans = 200;  // a progressive JPEG of a few bytes may promise more than a day's work
 
 DecodedTexture not_read(std::string trouble) { return {nullptr, std::move(trouble)}; }
 
@@ -24,7 +24,7 @@ DecodedTexture decode_png(std::string_view bytes) {
     png_image_free(&image);
     return not_read("has more than 64 million pixels");
   }
-  // With alpha, which is then ignored: without it libpng lays the picture over black. sRGB of 8 bits, whatever it was.
+  // With alpha, which is then ignored; without it, libpng composes onto black. 8-bit sRGB, whatever the file has.
   image.format = PNG_FORMAT_RGBA;
   std::vector<unsigned char> pixels(PNG_IMAGE_SIZE(image));
   if (png_image_finish_read(&image, nullptr, pixels.data(), 0, nullptr) == 0) {
@@ -36,9 +36,9 @@ DecodedTexture decode_png(std::string_view bytes) {
   return {rows.finish(), ""};
 }
 
-/// libjpeg's way out of an error is a long jump, so what lives across it is here, and plain.
+/// libjpeg leaves errors by longjmp, so objects that must survive it are here, and plain.
 struct JpegErrors {
-  jpeg_error_mgr base;  // first: libjpeg knows only this
+  jpeg_error_mgr base;  // must be first: libjpeg knows only this
   std::jmp_buf out;
   bool cut_short = false;
 };
@@ -57,7 +57,7 @@ void stop_long_work(j_common_ptr info) {
 
 enum class JpegEnd { read, damaged, too_large };
 
-/// No object with a destructor may begin in here: the jump would pass it by.
+/// No object with a destructor may be created in here: the jump would skip it.
 JpegEnd read_jpeg(std::string_view bytes, JpegErrors& errors, std::unique_ptr<Texture::Rows>& rows,
                   std::vector<unsigned char>& row) {
   jpeg_decompress_struct info;
