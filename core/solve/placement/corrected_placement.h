@@ -1,5 +1,5 @@
 #pragma once
-/// Any method's lights, corrected by what a better model of light says of them (correct_lights.h).
+/// Lights of any method, corrected by a better light model (correct_lights.h).
 
 #include <optional>
 
@@ -9,9 +9,9 @@
 namespace luxrig {
 
 struct CorrectedPlacement {
-  FoundLights found;                         ///< as the method gave them, by the problem's own model
-  std::optional<CorrectedLights> corrected;  ///< none: no better model was given, or it failed
-  std::optional<Fault> failed;               ///< why it did
+  FoundLights found;                         ///< as the method returned them, by the problem's own model
+  std::optional<CorrectedLights> corrected;  ///< empty = no better model was given, or it failed
+  std::optional<Fault> failed;               ///< why it failed
   std::size_t columns = 0;                   ///< of all searches
 };
 
