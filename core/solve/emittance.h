@@ -27,14 +27,12 @@ struct EmittanceProblem {
   Eigen::VectorXd weight;         ///< w ≥ 0; empty = 1
   Eigen::VectorXd max_lx;         ///< m; +inf where there is no limit
   Eigen::VectorXd max_level;      ///< u ≥ 0; empty = 1
-  Eigen::VectorXd near_level;     ///< if several levels give the same light: the nearest to these; empty = 0 (least
-                                  ///< power)
+  Eigen::VectorXd near_level;     ///< among levels that give the same light: nearest to these; empty = 0 (power)
   /// Colour, linear Rec. 709 with E in each primary for white of E lux. T by primary (three), points × lights; empty =
   /// goals without colour. lux_per_level and fixed_lx are the luminances of these.
   std::vector<Eigen::MatrixXd> rgb_per_level{};
   Eigen::MatrixXd fixed_rgb{};                                 ///< points × 3; empty = 0
-  Eigen::MatrixXd goal_rgb{};                                  ///< points × 3: colour of each goal, with a luminance of
-                                                               ///< 1
+  Eigen::MatrixXd goal_rgb{};                                  ///< points × 3: colour of each goal, luminance 1
   Eigen::VectorXd watts{};                                     ///< p ≥ 0: power of each light at level 1; empty = 0
   double max_watts = std::numeric_limits<double>::infinity();  ///< P ≥ 0
   /// Per light: it is either off or at max_level (finite), as on a relay; empty = all dim.

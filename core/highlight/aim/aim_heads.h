@@ -21,8 +21,7 @@ constexpr std::size_t kAimPoints = 1000;
 
 /// A stop ends the search with the best so far.
 struct AimOptions : Run {
-  std::size_t search_points = 800;  ///< interest points used by the search, evenly strided; the result is scored with
-                                    ///< all
+  std::size_t search_points = 800;  ///< interest points used by the search, evenly strided; the score uses all
   std::size_t most_aims = 24;       ///< candidates per head
 };
 
@@ -34,8 +33,8 @@ struct AimedHead {
 
 struct AimResult {
   std::vector<AimedHead> heads;  ///< one per head
-  AimScore score;                ///< settings of one head that were tried
-  std::size_t tried = 0;         ///< settings of one head
+  AimScore score;                ///< by all samples; within limits
+  std::size_t tried = 0;         ///< settings of one head that were tried
 };
 
 class HeadAims {

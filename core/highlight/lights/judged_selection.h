@@ -29,8 +29,7 @@ struct JudgedWishes {
 
 struct JudgedScore {
   double local_contrast_lx = 0, exposed_contrast = 0;  ///< as in SampleContrast
-  double coverage = 0;                                 ///< share of features where one of the lights draws a visible
-                                                       ///< edge
+  double coverage = 0;                                 ///< share of features where a light draws a visible edge
   double judged = 0;                                   ///< contrast × (1 + weight × coverage)
 };
 
@@ -64,8 +63,8 @@ class JudgedSelection {
   [[nodiscard]] const JudgedWishes& wishes() const { return wishes_; }
   /// Contrast of each candidate alone: upper bound of its gain over fixed light [lx].
   [[nodiscard]] const std::vector<double>& alone_lx() const { return alone_lx_; }
-  [[nodiscard]] std::uint64_t added_up() const { return added_up_; }  ///< candidates evaluated together with others, in
-                                                                      ///< all steps so far
+  [[nodiscard]] std::uint64_t added_up() const { return added_up_; }  ///< candidates added to others, in all steps so
+                                                                      ///< far
 
  private:
   using Shown = std::vector<std::uint64_t>;  // a bit per feature

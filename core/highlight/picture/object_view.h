@@ -35,8 +35,7 @@ struct Sight {
 
 struct CutAwayCamera {
   Camera camera;
-  double near_m = 0;  ///< everything shown is at least this far away; nearer things may be omitted (walls between eye
-                      ///< and room)
+  double near_m = 0;  ///< everything shown is at least this far; nearer things may be omitted (walls before the eye)
   double seen = 0;    ///< share of the wanted weight then in sight
 };
 

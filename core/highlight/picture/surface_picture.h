@@ -26,8 +26,7 @@ struct SurfaceCorners {
   std::array<std::uint32_t, 3> points;
   std::array<double, 3> weights;  ///< of each, ≥ 0; their sum is 1
 
-  [[nodiscard]] Vec3 normal(const TargetSurface& surface) const;        ///< smooth, unit; zero where the points'
-                                                                        ///< normals cancel
+  [[nodiscard]] Vec3 normal(const TargetSurface& surface) const;        ///< smooth, unit; zero where normals cancel
   [[nodiscard]] double value(std::span<const double> of_points) const;  ///< linear between them
 };
 

@@ -24,8 +24,7 @@ struct ReliefStudy {
   std::vector<Curvature> curvature;     ///< per point of the surface
   std::vector<std::uint32_t> interest;  ///< points of the surface
   std::vector<OrientedPoint> points;    ///< the same, with normals
-  FeatureClusters features;             ///< of the points; linked within three times their typical spacing, or the
-                                        ///< scale
+  FeatureClusters features;             ///< of the points; linked within 3 × their typical spacing, or the scale
 };
 
 /// From mesh to features. Refuses, naming what is missing: a mesh without triangles (a point cloud), one without known

@@ -17,8 +17,7 @@ inline constexpr std::uint32_t kNoBlock = 0xffffffff;
 
 struct LightBlocks {
   std::vector<std::uint32_t> of_row;    ///< kNoBlock = no light reaches it
-  std::vector<std::uint32_t> of_light;  ///< the block that gets most of its squared light; kNoBlock = it reaches
-                                        ///< nothing
+  std::vector<std::uint32_t> of_light;  ///< the block with most of its squared light; kNoBlock = none
   std::size_t count = 0;
 };
 

@@ -73,8 +73,7 @@ class Settling {
     const Eigen::LLT<MatrixXd> factor(gram_(free, free));
     if (factor.info() != Eigen::Success) return false;
     const MatrixXd rows = p_.G(at_.working_rows, free).transpose();
-    const MatrixXd seen = rows.cols() > 0 ? MatrixXd(factor.matrixL().solve(rows)) : rows;  // Eigen reads it even when
-                                                                                            // empty
+    const MatrixXd seen = rows.cols() > 0 ? MatrixXd(factor.matrixL().solve(rows)) : rows;  // Eigen reads empty ones
     const MatrixXd products = seen.transpose() * seen;
     const Eigen::LLT<MatrixXd> of_rows(products);
     if (rows.cols() > 0) {

@@ -17,8 +17,7 @@ namespace luxrig {
 struct ChooseOptions {
   std::size_t most_lights = 64;
   NumberRule number;
-  double least_progress = 0.003;  ///< least share of the error that a round over all lights must take away; a round
-                                  ///< below it is the last
+  double least_progress = 0.003;  ///< least share of the error that a round over all lights must remove to go on
   /// Limit of columns to compute; the search may exceed it by the columns of one round.
   std::size_t most_columns = 400'000;
   /// Refine fewer lights than chosen as carefully as more, so that the user can pick another number.
@@ -32,8 +31,7 @@ struct ChooseOptions {
 };
 
 struct LightCurve {
-  std::vector<PlacedLights> cuts;  ///< cuts[k]: best found with k lights, k = 0 first; never worse than with fewer
-                                   ///< lights
+  std::vector<PlacedLights> cuts;  ///< cuts[k]: best found with k lights, from k = 0; never worse than with fewer
   std::size_t chosen = 0;          ///< index of the chosen cut
   std::size_t columns = 0;         ///< computed, without the candidates'
 };

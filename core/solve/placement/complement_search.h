@@ -37,8 +37,7 @@ class ComplementSearch {
   /// the lights. The lights must outlive it.
   struct About {
     const PlacedLights* lights = nullptr;
-    std::vector<ByCandidate> products;  ///< per emitter of a candidate: products of W a with W A; the last column is
-                                        ///< with the residual
+    std::vector<ByCandidate> products;  ///< per emitter of a candidate: W a with W A, and last with the residual
   };
   [[nodiscard]] About about(const PlacedLights& lights) const;
 

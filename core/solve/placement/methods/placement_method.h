@@ -40,8 +40,7 @@ struct PlacementOptions : Run {
   /// wanted_error also ends a search with a given number. coarse_error is GP16's ε_opt: GP16 does not refine
   /// numbers of lights with a larger error.
   NumberRule number;
-  std::size_t most_columns = 200'000;  ///< limit of columns to compute; a method may exceed it by the columns of one
-                                       ///< step
+  std::size_t most_columns = 200'000;  ///< limit of columns to compute; the last step may exceed it
   int iterations = 0;                  ///< of one annealing; 0 = as many as the method was described or tuned with
   /// Number of starts of a method that draws at random; the best stays, and most_columns is for all together.
   int starts = 1;
