@@ -3,7 +3,6 @@
 /// Numerical Optimization (2006), algorithm 16.3; null space by QR). With few unknowns it starts from z = 0. With many
 /// it starts near the optimum, from the result of the method of multipliers. If the answer then fails the optimality
 /// conditions, it solves again from z = 0.
-/// solved from z = 0 after all.
 
 #include <Eigen/Core>
 #include <stop_token>

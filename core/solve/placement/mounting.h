@@ -7,7 +7,6 @@
 ///   without surfaces: at least `clearance_m` from everything.
 /// Distances are from the luminaire's centre. The side of a wall is not checked: behind closed surfaces a light reaches
 /// no point, and candidates there cost nothing (core/transport/candidates/air_regions.h).
-/// surfaces a light lights no point, and candidates there cost nothing (core/transport/candidates/air_regions.h).
 
 #include <filesystem>
 #include <optional>

@@ -70,8 +70,7 @@ struct PlacedInScene {
   bool stopped = false;  ///< before the search ended
 };
 
-/// luminaire   at rated flux, hung with its own rotation unless aimed; one with size is searched as a point at its
-///             centre
+/// luminaire   at rated flux, hung with its own rotation unless aimed; one with size is searched as its centre point
 /// receivers   one per point of the goal
 /// returns     Cause::cancelled when stopped before any light was placed; Cause::invalid as Mounting::candidates and
 ///             candidate_transport, for an unknown method, and when no candidate lights any receiver

@@ -7,7 +7,6 @@
 /// different closed pieces exchange none, by any number of reflections. That decides solids, the inside of walls, the
 /// outdoors of a modelled shell, and sealed rooms. It needs no outward normals; open pieces (sheets, scans with holes)
 /// are ignored.
-/// no outward normals, and open pieces (sheets, scans with holes) are not judged at all.
 
 #include <bit>
 #include <cstdint>

@@ -6,7 +6,6 @@
 /// cheaply. Its error is the larger of two estimates, since either may be small by chance: the difference to the next
 /// lower rule (10 times that between 3 and 5 nodes), and an extrapolation of the highest coefficients h, summed without
 /// sign, at their rate of fall to degree 2n, the first that a rule of n nodes misses: |f| (h/|f|)^(2n/(n-1)).
-/// places misses first: |f| (h/|f|)^(2n/(n-1)).
 
 #include <algorithm>
 #include <array>

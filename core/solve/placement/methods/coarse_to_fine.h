@@ -6,8 +6,7 @@
 /// the strongest are removed; the cells of the others are split in eight, and so on down to the candidates' spacing.
 /// Then lights are joined in pairs: the pair that one of the two can replace with the least change against the goal.
 /// The method is known here from the thesis, which states neither the first grid (here about eight cells along the
-/// longest side), nor the base of the 5 %, nor what replaces two lights.
-/// longest side) nor what 5 % is a share of, nor what stands for two lights.
+/// longest side), nor the base of the 5 %, nor which light replaces two.
 
 #include "core/solve/placement/methods/light_tree.h"
 
