@@ -60,8 +60,8 @@ struct DomainVoteOptions : Run {
   double nearest_m = 0;
   double reach_m = std::numeric_limits<double>::infinity();
   std::span<const double> reflectance;  ///< per point, 0…1; empty = unknown, taken as 1
-  /// If rays times layers exceed this, only every n-th ray is traced so that they do not. This limits the memory, here
-  /// to 218 MB (twice that if every ray crosses every layer twice). 0 = all.
+  /// If rays times layers exceed this, only every n-th ray is traced, with the least n that does not exceed it. This
+  /// limits the memory, here to 218 MB (twice that if every ray crosses every layer twice). 0 = all.
   std::size_t most_votes = std::size_t{1} << 22;
 };
 

@@ -20,8 +20,8 @@ struct PictureContrast {
                                                    const OrientedPoint& point);
 
 /// Per point: the standard deviation of luminance over its mean (RMS contrast; Peli, JOSA A 7, 1990) in a square
-/// window. Its half side is the relief's scale at that distance, at least a pixel. 0 in the dark. Noise counts: a
-/// camera's noise adds to the contrast of dark places, and so does sampling.
+/// window. Its half side is the relief's scale at that distance, at least a pixel. 0 in the dark. Sampling scale and
+/// noise matter: a camera's noise adds to the contrast of dark places.
 /// points    interest points of an object in the scene; scale_m > 0 (asserted)
 /// camera    that took the picture and has its size (asserted)
 [[nodiscard]] PictureContrast picture_contrast(const Picture& picture, const Camera& camera, const RayScene& scene,

@@ -16,12 +16,12 @@ struct CorrectedPlacement {
 };
 
 struct CorrectedPlacementOptions {
-  LuxOfLights lux_of;   ///< the better model; none: nothing is corrected
+  LuxOfLights lux_of;   ///< the better model; empty = no correction
   int most_rounds = 3;  ///< evaluations of it
-  double share = 0.5;   ///< of most_columns, for each search that goes on after a correction
+  double share = 0.5;   ///< of most_columns, for each search that continues after a correction
 };
 
-/// Cause as the method's.
+/// Cause: that of the method.
 [[nodiscard]] Result<CorrectedPlacement> place_and_correct(const PlacementMethod& method,
                                                            const PlacementProblem& problem,
                                                            const PlacementOptions& options,

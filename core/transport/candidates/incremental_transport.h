@@ -34,7 +34,7 @@ struct LuminaireColumn {
 class IncrementalTransport {
  public:
   /// Solves the importance of surfaces. scene and rays must outlive it.
-  /// Cause::invalid for what check_evaluation() refuses; Cause::cancelled when stopped.
+  /// Cause::invalid for inputs that check_evaluation() refuses; Cause::cancelled when stopped.
   [[nodiscard]] static Result<std::unique_ptr<IncrementalTransport>> make(const Scene& scene, const RayScene& rays,
                                                                           std::span<const Receiver> receivers,
                                                                           const IncrementalOptions& options);

@@ -22,7 +22,7 @@ struct PatchLimits {
   [[nodiscard]] bool empty() const { return !(high > low); }
 };
 
-/// The receiver and its field of view.
+/// The receiver, and the limits of what it can see.
 struct Viewer {
   Vec3 position_m;
   Vec3 normal;

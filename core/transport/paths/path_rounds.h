@@ -16,7 +16,7 @@ struct ReceiverProgress {
   std::uint64_t rays = 0;
   double lux = 0;  ///< under the options' levels
   double direct_lx = 0;
-  double reflected_lx = 0;          ///< lux without direct_lx; after a first round, from hits alone
+  double reflected_lx = 0;          ///< lux without direct_lx; at first from the first round's hits alone
   double error_lx = 0;              ///< standard error of lux from its own replicates
   double shared_error_lx = 0;       ///< error added by the tail records' common bias
   double taken_lx = 0;              ///< from tail records, summed over samples and replicates

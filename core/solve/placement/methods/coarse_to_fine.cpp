@@ -105,7 +105,7 @@ std::size_t light_to_join(const ChosenCandidates& state) {
     if (!(products(a, a) > 0)) return static_cast<std::size_t>(a);
     for (Eigen::Index b = 0; b < of.cols(); ++b) {
       if (a == b) continue;
-      // What a, scaled, would have to do instead of both, and for the rest.
+      // The residual plus the light of both, which a, scaled, would have to replace.
       const double whole = products(a, a) + products(b, b) + 2 * (products(a, b) + pull[a] + pull[b]);
       const double along = std::max(0.0, products(a, a) + products(a, b) + pull[a]);
       const double left = whole - along * along / products(a, a);
