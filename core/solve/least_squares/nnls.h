@@ -7,11 +7,11 @@
 /// cycles and never returns a NaN.
 ///
 /// Sources:
-/// active sets and their termination: Lawson & Hanson (1974), algorithm NNLS; with bounds, Stark & Parker (1995);
-/// products of columns instead of orthogonal factors: Bro & de Jong (1997);
-/// many columns entering and leaving at a time, with a step along the projected Newton direction: Bertsekas (1982) and
-/// Kim, Sra & Dhillon (2010);
-/// accuracy by corrected semi-normal equations: Björck (1987).
+///   active sets and their termination: Lawson & Hanson (1974), algorithm NNLS; with bounds, Stark & Parker (1995);
+///   products of columns instead of orthogonal factors: Bro & de Jong (1997);
+///   many columns entering and leaving at a time, with a step along the projected Newton direction: Bertsekas (1982)
+///   and Kim, Sra & Dhillon (2010);
+///   accuracy by corrected semi-normal equations: Björck (1987).
 
 #include <Eigen/Core>
 #include <memory>
