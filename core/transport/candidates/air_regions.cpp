@@ -12,8 +12,8 @@
 namespace luxrig {
 namespace {
 
-/// A surface may be off by e (ray_scene.h), and rays stop short of it by 32 e. A point within this many e of a surface
-/// may be meant to be on either side.
+/// A surface may be off by e, and rays stop 1 e short of their ends (ray_scene.h). A point within this many e of a
+/// surface may be meant to be on either side.
 constexpr double kErrorsOfDoubt = 64;
 
 struct Welded {

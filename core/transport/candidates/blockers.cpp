@@ -6,8 +6,8 @@
 namespace luxrig {
 namespace {
 
-/// RayScene::occluded() stops 32 e short of the far end, and surfaces may be off by e; the tests here require twice
-/// that.
+/// Margins in e (ray_scene.h). Wider than needed: RayScene::occluded() stops 1 e short of the far end and passes
+/// triangles within 2 e of it.
 constexpr double kErrorsBehind = 64;
 constexpr double kErrorsBeside = 8;
 

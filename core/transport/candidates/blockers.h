@@ -38,7 +38,7 @@ class Blockers {
 class BlockerShadow {
  public:
   BlockerShadow() = default;  ///< hides nothing
-  /// error_m   the larger e (ray_scene.h) of this place and of the whole scene
+  /// error_m   e of ray_scene.h: the largest at this place and at the boxes to be tested
   BlockerShadow(const FlatBlocker& blocker, const Vec3& from_world_m, double error_m);
 
   /// True when the whole box is in the shadow.

@@ -9,8 +9,8 @@
 namespace luxrig {
 namespace {
 
-/// Light starts a little away from a lamp, just as RayScene::occluded() stops short of it: a lamp flush with a ceiling
-/// shines away from it, not into it.
+/// Light starts this many e (ray_scene.h) away from a lamp: a lamp flush with a ceiling shines away from it, not into
+/// it.
 constexpr double kErrorsFromLamp = 32;
 constexpr std::uint32_t kPilotRays = 1024;
 
