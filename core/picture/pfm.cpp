@@ -13,7 +13,7 @@ namespace {
 constexpr int kMostSide_px = 16384;
 static_assert(std::endian::native == std::endian::little, "samples are copied as they are");
 
-/// The next word of the header and the one white space after it; empty when there is none.
+/// The next word of the header, consumed with one white space; empty if there is none.
 std::string_view next_word(std::string_view& rest) {
   std::size_t end = 0;
   while (end < rest.size() && end < 32 && rest[end] != ' ' && rest[end] != '\n') ++end;

@@ -9,10 +9,10 @@
 
 namespace luxrig {
 
-/// luminance_cd_m2 alone is kept.
+/// Keeps only luminance_cd_m2.
 [[nodiscard]] std::string to_pfm(const Picture& picture);
 
-/// Refuses another format, sizes outside 1…16384, big-endian samples, bytes missing or left over, and values that are
+/// Refuses another format, sizes outside 1…16384, big-endian samples, missing or extra bytes, and values that are
 /// negative or not finite.
 [[nodiscard]] Result<Picture> picture_from_pfm(std::string_view bytes);
 

@@ -14,13 +14,13 @@
 namespace luxrig {
 namespace {
 
-/// Light hits of a pass, from which each pixel takes its own; those a pixel is joined with, for each path.
+/// Light hits of a pass, and how many of them each path is joined with.
 constexpr std::uint32_t kHitsPerPass = 1u << 14;
 constexpr std::uint32_t kPictureHitsPerPath = 4;
-/// Tail records at first, and added each time the passes double.
+/// Initial tail records, and those added each time the passes double.
 constexpr std::size_t kFirstPictureRecords = 6000, kMoreRecords = 2000;
 constexpr std::uint32_t kPictureRecordPaths = 8;
-/// Connections worth less than this share of the mean reflected light are made only now and then.
+/// Connections worth less than this share of the mean reflected light are made only occasionally.
 constexpr double kPictureCut = 0.05;
 
 std::vector<Emitter> of_kind(const std::vector<Emitter>& emitters, bool point) {
@@ -36,7 +36,7 @@ std::vector<double> light_of(const Lamps& lamps) {
   return shares;
 }
 
-/// Through which the surfaces in view see the sky.
+/// Openings through which the surfaces in view see the sky.
 SkyOpenings openings_in_view(const RayScene& scene, const std::vector<Emitter>& emitters, const Camera& camera,
                              const PictureOptions& options) {
   constexpr int kAcross = 16;
@@ -139,7 +139,7 @@ class Renderer {
     pool_.refill(LightHits(scene_, lamps_, bsdfs_, &images_), mixed(options_.seed, 0x11647), counts, weights);
   }
 
-  /// Records where first legs from the surfaces in view end.
+  /// Adds records where first legs from the surfaces in view end.
   void grow_tails(std::uint32_t index) {
     const std::size_t count = index == 0 ? kFirstPictureRecords : kMoreRecords;
     const SobolSequence samples(mixed(options_.seed, 0x7a113 + index));
@@ -192,7 +192,7 @@ class Renderer {
     return sum;
   }
 
-  /// Light reflected before, of one path that starts at `start`, by primary.
+  /// Light that was already reflected, from one path that starts at `start`, by primary.
   Vec3 reflected(const PathSampler::Vertex& start, const SobolSequence& samples, std::uint32_t index, std::uint64_t key,
                  Scratch& scratch) const {
     std::fill(scratch.sums.begin(), scratch.sums.end(), 0.0);
@@ -275,7 +275,7 @@ class Renderer {
     picture_.illuminance_lx.assign(sums_.size(), -1.0f);
     for (std::size_t i = 0; i < sums_.size(); ++i) {
       const PixelSum& s = sums_[i];
-      // Where an edge crosses the pixel, what lies beyond is sky or black; its lux is that of what is seen.
+      // At an edge across the pixel, the rest is sky or black; the lux is that of the surface seen.
       picture_.luminance_cd_m2[i] = s.luminance_cd_m2 / static_cast<float>(picture_.passes);
       if (s.seen > 0) picture_.illuminance_lx[i] = s.lux / static_cast<float>(s.seen);
     }
@@ -287,7 +287,7 @@ class Renderer {
   SkyOpenings openings_;
   Lamps lamps_, point_lamps_, sized_lamps_;
   std::vector<double> importance_;
-  std::vector<double> by_light_;  ///< shares of the groups of lamps
+  std::vector<double> by_light_;  ///< shares of the lamp groups
   HitPlan plan_;
   MirrorImages images_;
   PathSampler sampler_;

@@ -1,7 +1,7 @@
 #pragma once
-/// Pictures of a lit scene. Every pixel is sampled by itself, by the estimators of the evaluators (direct light of
-/// points exactly, paths joined with traced light, tails shared by records on surfaces); nothing is smoothed over
-/// pixels afterwards, so what a pixel says of lux is a measurement with a known noise.
+/// Pictures of a lit scene. Every pixel is sampled independently with the evaluators' estimators (exact direct light of
+/// points, paths joined with traced light, tails shared through records on surfaces). There is no smoothing over
+/// pixels, so a pixel's lux is a measurement with known noise.
 
 #include <functional>
 #include <optional>
@@ -19,35 +19,35 @@ struct Camera {
   int width_px = 960, height_px = 600;
 };
 
-/// Direction of the ray through a place of the picture; x and y in pixels from the top left corner. Up is +Z, or +Y for
-/// a camera that looks straight up or down.
+/// Direction of the ray through a point of the picture; x and y in pixels from the top left corner. Up is +Z, or +Y if
+/// the camera looks straight up or down.
 [[nodiscard]] Vec3 ray_direction(const Camera& camera, double x_px, double y_px);
 
-/// Where a place is in the picture, and how large a metre across is there.
+/// Position of a place in the picture, and the scale there.
 struct PixelPlace {
   double x_px = 0, y_px = 0;  ///< from the top left corner
   double px_per_m = 0;
 };
-/// Nothing for a place behind the camera or outside its picture.
+/// Empty for a place behind the camera or outside its picture.
 [[nodiscard]] std::optional<PixelPlace> pixel_of(const Camera& camera, const Vec3& place_world_m);
 
-/// Its progress is not called: see after_pass.
+/// Its progress callback is not used: see after_pass.
 struct PictureOptions : Run {
   int most_passes = 64;                 ///< samples per pixel
-  double wanted_relative_error = 0.02;  ///< stops when the picture's noise (Picture::relative_error) is as low
-  /// After each pass, with the share of the way to the end (0…1) and the noise so far: false ends the picture there.
-  /// A caller with a clock keeps a time budget with it.
+  double wanted_relative_error = 0.02;  ///< stops when the picture's noise (Picture::relative_error) is this low
+  /// Called after each pass with the progress (0…1) and the noise so far; false ends the picture. A caller with a clock
+  /// can keep a time budget.
   std::function<bool(double done, double relative_error)> after_pass;
 };
 
 /// Rows from the top, pixels from the left.
 struct Picture {
   int width_px = 0, height_px = 0;
-  std::vector<Vec3f> luminance_cd_m2;  ///< linear Rec. 709, towards the camera; the sky where nothing is seen
-  std::vector<float> illuminance_lx;   ///< of the surface seen, on the side seen; negative where nothing is seen
+  std::vector<Vec3f> luminance_cd_m2;  ///< linear Rec. 709, towards the camera; the sky where no surface is seen
+  std::vector<float> illuminance_lx;   ///< of the surface seen, on the side seen; negative where no surface is seen
   int passes = 0;
-  /// Root mean square over what is seen of the standard error of a pixel's lux, relative to it (or to a twentieth of
-  /// the mean where it is darker).
+  /// Root mean square, over all pixels that see a surface, of the standard error of a pixel's lux, relative to that lux
+  /// (or to a twentieth of the mean if that is more).
   double relative_error = 0;
 };
 
@@ -56,7 +56,7 @@ struct Picture {
                                              std::span<const double> levels, const Camera& camera,
                                              const PictureOptions& options);
 
-/// The room from straight above without what is over the cut: +X to the right, +Y up in the picture.
+/// The room from straight above, without anything above the cut: +X to the right, +Y up in the picture.
 struct PlanView {
   int width_px = 0, height_px = 0;
   double metres_per_px = 0;
@@ -64,8 +64,8 @@ struct PlanView {
   std::vector<float> shade;                      ///< 0 black … 1 white: walls at the cut dark, open floor light
 };
 
-/// longest_edge_px sets the scale; cut_z_world_m defaults to 1.2 m above the lowest point, at most to 0.6 of the
-/// height of what is shown: the scene, or what of it is in a box. An empty scene gives a white picture of one pixel.
+/// longest_edge_px sets the scale. cut_z_world_m defaults to 1.2 m above the lowest point, but at most 0.6 of the
+/// height of what is shown: the scene, or its part within the box. An empty scene gives a white picture of one pixel.
 [[nodiscard]] PlanView render_plan_view(const RayScene& scene, int longest_edge_px,
                                         std::optional<double> cut_z_world_m = std::nullopt, int threads = 0,
                                         const std::optional<Eigen::AlignedBox3d>& shown_world_m = std::nullopt);

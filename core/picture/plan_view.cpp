@@ -9,14 +9,14 @@
 namespace luxrig {
 namespace {
 
-/// Something upright crosses the cut so near that a line of about three pixels is drawn.
+/// Whether something upright crosses the cut near enough to draw a line of about three pixels.
 bool wall_at(const RayScene& scene, const Vec3& at_world_m, double metres_per_px) {
   for (const Vec3& direction : {Vec3(Vec3::UnitX()), Vec3(-Vec3::UnitX()), Vec3(Vec3::UnitY()), Vec3(-Vec3::UnitY())})
     if (scene.occluded(at_world_m, Vec3::Zero(), at_world_m + 1.5 * metres_per_px * direction)) return true;
   return false;
 }
 
-/// Share of the sky that things within reach leave free, cosine-weighted.
+/// Cosine-weighted share of the sky that nearby things leave open.
 double openness(const RayScene& scene, const Hit& at, std::uint64_t key, double reach_m) {
   constexpr std::uint32_t kRays = 16;
   const SobolSequence samples(key);
@@ -43,7 +43,7 @@ PlanView render_plan_view(const RayScene& scene, int longest_edge_px, std::optio
   }
   const Vec3 size_m = box.sizes();
   const double longest_m = std::max({size_m.x(), size_m.y(), 1e-9});
-  // A border of 2 % so that outer walls are drawn whole.
+  // A border of 2 % so that outer walls are drawn in full.
   view.metres_per_px = 1.04 * longest_m / longest_edge_px;
   view.width_px = std::max(1, static_cast<int>(std::ceil((size_m.x() + 0.04 * longest_m) / view.metres_per_px)));
   view.height_px = std::max(1, static_cast<int>(std::ceil((size_m.y() + 0.04 * longest_m) / view.metres_per_px)));
@@ -63,7 +63,7 @@ PlanView render_plan_view(const RayScene& scene, int longest_edge_px, std::optio
       }
       const auto hit = scene.nearest(at, -Vec3::UnitZ(), Vec3::Zero());
       if (!hit) continue;  // no floor: white, like the paper
-      // Things above the floor a little darker, so that furniture reads even where it stands free.
+      // Things above the floor are a little darker, so that furniture shows even where it stands free.
       const double height = std::clamp((hit->position_world_m.z() - box.min().z()) / (cut_m - box.min().z()), 0.0, 1.0);
       const double light = openness(scene, *hit, mixed(1, pixel), reach_m);
       view.shade[pixel] = static_cast<float>((0.35 + 0.6 * light) * (1 - 0.25 * height));

@@ -1,5 +1,5 @@
 #pragma once
-/// A camera of the rig as pictures know it.
+/// Converts a camera of the rig to a picture camera.
 
 #include "core/picture/picture.h"
 #include "core/rig/rig.h"

@@ -114,21 +114,21 @@ struct ScaledProblem {
   MatrixXd objective;  ///< W T without tie rows
   VectorXd target;     ///< W (g − b)
   VectorXd unit;
-  VectorXd rounding;           ///< per row of G: what sums may be off, with room to spare
-  std::vector<Index> limited;  ///< points of the rows of G, but for a last one that limits power
+  VectorXd rounding;           ///< per row of G: rounding error of sums, with a margin
+  std::vector<Index> limited;  ///< points of the rows of G, except a last one that limits power
 };
 
 bool power_limited(const EmittanceProblem& p) {
   return std::isfinite(p.max_watts) && p.watts.size() > 0 && p.watts.maxCoeff() > 0;
 }
 
-/// W T and W (g − b) of the points with goals; with colour, their three primaries one after the other.
+/// W T and W (g − b) of the points with goals; with colour, channel after channel.
 void set_goals(const EmittanceProblem& p, const std::vector<Index>& goals, ScaledProblem& s) {
   const Index channels = p.rgb_per_level.empty() ? 1 : 3;
   s.objective.resize(static_cast<Index>(goals.size()) * channels, p.lux_per_level.cols());
   s.target.resize(s.objective.rows());
   Index row = 0;
-  // Lights only add: a point that has more than its goal without them asks for none, and holds no other point down.
+  // Lights only add: a point that exceeds its goal without them asks for none, and does not hold others down.
   for (const Index i : goals) {
     if (channels == 1) {
       s.objective.row(row) = p.weight[i] * p.lux_per_level.row(i);
@@ -194,7 +194,7 @@ ScaledProblem scaled(const EmittanceProblem& p) {
   return s;
 }
 
-/// Sets what is switched, and leaves a problem of what dims. Also what light there were, could all of it dim.
+/// Sets the switched lights and leaves a problem of the dimmable ones. Also returns the light if all could dim.
 Result<LightAtPoints> set_switched(const EmittanceProblem& p, ScaledProblem& s, VectorXd& level,
                                    EmittanceSolution& solution, const Watch& watch) {
   std::vector<Index> switched;
@@ -224,8 +224,9 @@ VectorXd levels_of(const EmittanceProblem& p, const ScaledProblem& s, const Limi
   return level;
 }
 
-/// Takes the last rounding off what dims: row · c ≤ room holds whatever the order of summation, since the room left is
-/// more than the error of a sum of so many terms. Switched lights alone are below it (they were set with that room).
+/// Removes the last rounding from dimmable lights: row · c ≤ room then holds for any order of summation, since the
+/// remaining room is more than the error of a sum of that many terms. Switched lights alone are below it (they were set
+/// with that room).
 void keep_limit(const Eigen::RowVectorXd& row, double room, const std::vector<bool>& switched, VectorXd& level) {
   double set = 0;
   for (Index j = 0; j < level.size(); ++j)
@@ -248,8 +249,8 @@ void keep_limits(const EmittanceProblem& p, VectorXd& level) {
   if (power_limited(p)) keep_limit(p.watts.transpose(), p.max_watts * (1 - rounding), p.switched, level);
 }
 
-/// Largest violation of stationarity, signs and complementarity of the problem without tie term, in scaled variables:
-/// relative to the columns' norms times the norm of the right-hand side.
+/// Largest violation of stationarity, signs and complementarity of the problem without the tie term, in scaled
+/// variables: relative to the columns' norms times the norm of the right-hand side.
 double kkt_residual(const ScaledProblem& s, const LimitedLeastSquaresResult& at, const VectorXd& level) {
   if (at.z.size() == 0) return 0;
   const LimitedLeastSquares& q = s.least_squares;

@@ -18,7 +18,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kMet = 0.01;
-constexpr std::size_t kMostNames = 3;  ///< in a sentence; the lists have them all
+constexpr std::size_t kMostNames = 3;  ///< in a sentence; the lists have all of them
 
 std::string name_of(const std::vector<std::string>& names, int index, const char* kind) {
   const auto at = static_cast<std::size_t>(index);
@@ -50,7 +50,7 @@ Vec3 goal_rgb_lx(const EmittanceProblem& problem, Index point) {
   return problem.goal_lx[point] * problem.goal_rgb.row(point).transpose();
 }
 
-/// "312 lx", and of what colour where that matters.
+/// "312 lx", and its colour if that matters.
 std::string light_text(double lux, const std::optional<Vec3>& rgb) {
   if (!rgb || !(rgb->sum() > 0)) return fmt::format("{:.4g} lx", lux);
   const Chromaticity xy = xy_of_rgb(*rgb);
@@ -64,7 +64,7 @@ double met_within_lx(const EmittanceProblem& problem, Index point) {
   return kMet * scale;
 }
 
-/// The nearest that the lights which reach a point could bring it by themselves, whatever else they do.
+/// Distance of the nearest mix of the lights that reach a point, with free levels.
 double nearest_mix_lx(const EmittanceProblem& problem, Index point) {
   MatrixXd columns(3, problem.lux_per_level.cols());
   for (Index c = 0; c < 3; ++c) columns.row(c) = problem.rgb_per_level[static_cast<std::size_t>(c)].row(point);
@@ -131,7 +131,7 @@ void explain(const EmittanceProblem& problem, const VectorXd& level, const Held&
                fmt::format("{} are there with all its lights off, {}",
                            text_of(problem.fixed_lx[point], problem.fixed_rgb), wanted));
 
-  // Which relief would help? More than half of the miss gone counts as "it binds".
+  // Which relief would help? "It binds" if more than half of the miss goes.
   const auto left = [&](const LightAtPoints& lifted) { return distance_lx(problem, point, lifted); };
   const double without_limits = left(what_if.no_max_lx), without_levels = left(what_if.no_max_level);
   const double without_power = held.power ? left(what_if.no_max_watts) : miss;

@@ -31,8 +31,8 @@ void LuxLimits::contrast_at_most(Index bright, Index dark, double ratio) {
                    fmt::format("at most {:g} times as bright at point {} as at point {}", ratio, bright, dark)});
 }
 
-/// An auxiliary t at least as large as the mean (or each E); each E at least share · t. t can be that mean or maximum,
-/// so nothing is lost, and the rows stay short.
+/// An auxiliary t ≥ the mean (or each E), and each E ≥ share · t. t can equal that mean or maximum, so this is
+/// equivalent, and the rows stay short.
 void LuxLimits::uniformity(const std::vector<Index>& points, double share, bool mean) {
   if (points.empty()) return;
   const Index t = auxiliaries_++;

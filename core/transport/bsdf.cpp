@@ -23,7 +23,7 @@ double schlick(double specular, double cosine) {
   return specular + (1 - specular) * m * m * m * m * m;
 }
 
-/// Normal of a microfacet that `out` sees, by its visible area (E. Heitz, JCGT 7(4), 2018). Local frame, z up.
+/// Normal of a microfacet visible from `out`, drawn by visible area (E. Heitz, JCGT 7(4), 2018). Local frame, z up.
 Vec3 visible_half(const Vec3& out, double alpha, double u, double v) {
   const Vec3 stretched = Vec3(alpha * out.x(), alpha * out.y(), out.z()).normalized();
   const double flat2 = stretched.x() * stretched.x() + stretched.y() * stretched.y();
@@ -51,7 +51,7 @@ Eigen::Vector2d concentric_disk(double u, double v) {
   if (a == 0 && b == 0) return {0, 0};
   const bool wide = std::abs(a) > std::abs(b);
   const double radius = wide ? a : b;
-  // Angles up to 45° from an axis, where sine and cosine are short polynomials (to 1e-11, far below what counts here).
+  // Angles up to 45° from an axis: sine and cosine are short polynomials (to 1e-11, which is more than enough).
   const double angle = kPi / 4 * (wide ? b / a : a / b), x = angle * angle;
   const double sine = angle * (1 - x / 6 * (1 - x / 20 * (1 - x / 42 * (1 - x / 72 * (1 - x / 110)))));
   const double cosine = 1 - x / 2 * (1 - x / 12 * (1 - x / 30 * (1 - x / 56 * (1 - x / 90 * (1 - x / 132)))));
@@ -71,7 +71,7 @@ double Bsdf::alpha_of(const Material& material) {
 Bsdf::Bsdf(const Material& material) : body_rgb_(material.reflectance_rgb), specular_(material.specular_reflectance) {
   if (matt()) return;
   alpha_ = alpha_of(material);
-  // The share that one facet sends on = mean over visible microfacets of F G2/G1: 1024 points are good to 1e-3 of it.
+  // Share reflected by one facet = mean over visible microfacets of F G2/G1: 1024 points give it to 1e-3.
   constexpr std::uint32_t kPoints = 1024;
   const SobolSequence points(0xc0a7);
   for (std::size_t i = 0; i <= kSteps; ++i) {
@@ -94,12 +94,12 @@ Bsdf::Bsdf(const Material& material) : body_rgb_(material.reflectance_rgb), spec
   }
   mean_missing_ = mean_of(missing_);
   if (mean_missing_ > 1e-9) {
-    const double mean_fresnel = specular_ + (1 - specular_) / 21;  // of Schlick's F, by the cosine
+    const double mean_fresnel = specular_ + (1 - specular_) / 21;  // of Schlick's F, cosine-weighted
     several_ = mean_fresnel * mean_fresnel * (1 - mean_missing_) / (1 - mean_fresnel * mean_missing_) / mean_missing_;
   }
   for (std::size_t i = 0; i <= kSteps; ++i) albedo_[i] += several_ * mean_missing_ * missing_[i];
   const double of_body = 1 - mean_of(albedo_);
-  per_body_ = of_body > 1e-9 ? 1 / (of_body * kPi) : 0;  // a coat that reflects all leaves it nothing
+  per_body_ = of_body > 1e-9 ? 1 / (of_body * kPi) : 0;  // a coat that reflects all leaves the body nothing
 }
 
 double Bsdf::at(const Table& table, double cosine) {
@@ -108,7 +108,7 @@ double Bsdf::at(const Table& table, double cosine) {
   return table[i] + (x - static_cast<double>(i)) * (table[i + 1] - table[i]);
 }
 
-/// By the cosine, of the interpolated table, exactly: 4 ∫ E(t) t³ dt over each step, t the root of the cosine.
+/// Cosine-weighted mean of the interpolated table, exactly: 4 ∫ E(t) t³ dt over each step, t the root of the cosine.
 double Bsdf::mean_of(const Table& table) {
   double mean = 0;
   for (std::size_t i = 0; i < kSteps; ++i) {

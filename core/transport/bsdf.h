@@ -1,16 +1,16 @@
 #pragma once
-/// How a surface sends light on: a diffuse body under a rough glossy coat.
+/// Reflection of a surface: a diffuse body under a rough glossy coat.
 ///
 /// f(i, o) = ρ/π (1 - Es(i)) (1 - Es(o)) / (1 - Ēs)  +  D(h) F(i·h) G(i, o) / (4 cos i cos o)
 ///           +  Fm/π (1 - E1(i)) (1 - E1(o)) / (1 - Ē1)
 ///
-/// The coat: GGX distribution D, height-correlated Smith G (B. Walter et al. 2007; E. Heitz 2014), F after Schlick from
-/// the reflectance at normal incidence, the same for all colours. The last term is light that meets several facets of a
-/// rough coat before it leaves (C. Kulla, A. Conty 2017): E1(o) is the share that one facet would send on did each
-/// reflect all, Ē1 its cosine-weighted mean, Fm = F̄² Ē1 / (1 - F̄ (1 - Ē1)) with the mean F̄ of F. So a rough metal is as
-/// bright as a smooth one. Es(o) is the share of light from o that the coat reflects, by one facet or several, Ēs its
-/// mean; the body gets what is left (C. Kelemen, L. Szirmay-Kalos 2001). So f is reciprocal, and the whole reflects
-/// Es(o) + ρ (1 - Es(o)) of the light from o: less than all of it for ρ < 1.
+/// The coat: GGX distribution D, height-correlated Smith G (B. Walter et al. 2007; E. Heitz 2014), F by Schlick from
+/// the reflectance at normal incidence, equal for all colours. The last term is light that meets several facets of a
+/// rough coat before it leaves (C. Kulla, A. Conty 2017): E1(o) is the share that one facet would reflect if each
+/// reflected all, Ē1 its cosine-weighted mean, Fm = F̄² Ē1 / (1 - F̄ (1 - Ē1)) with the mean F̄ of F. So a rough metal
+/// is as bright as a smooth one. Es(o) is the share of light from o that the coat reflects, by one or several facets,
+/// Ēs its mean; the body gets the rest (C. Kelemen, L. Szirmay-Kalos 2001). So f is reciprocal, and the total
+/// reflectance for o is Es(o) + ρ (1 - Es(o)), below 1 for ρ < 1.
 
 #include <array>
 
@@ -22,16 +22,16 @@ class Bsdf {
  public:
   explicit Bsdf(const Material& material);
 
-  /// Of GGX; smoother than 0.05 is taken as that.
+  /// Of GGX; at least 0.05.
   [[nodiscard]] static double alpha_of(const Material& material);
 
-  /// Without gloss f is ρ/π whatever the directions, and sampling is by the cosine.
+  /// Without gloss f is ρ/π in all directions, and sampling is by the cosine.
   [[nodiscard]] bool matt() const { return specular_ <= 0; }
   [[nodiscard]] bool black() const { return matt() && !(body_rgb_.maxCoeff() > 0); }
   [[nodiscard]] const Vec3& body_rgb() const { return body_rgb_; }
 
-  /// f [1/sr] by linear Rec. 709 primary. Both directions are unit, point away from the surface, and lie on the side
-  /// of `normal`, or f is zero.
+  /// f [1/sr] by linear Rec. 709 primary. Both directions are unit and point away from the surface; f is zero unless
+  /// both are on the side of `normal`.
   [[nodiscard]] Vec3 value(const Vec3& normal, const Vec3& out, const Vec3& in) const;
 
   /// Density [1/sr] with which sample() draws `in` when light leaves towards `out`.
@@ -39,20 +39,20 @@ class Bsdf {
 
   struct Sample {
     Vec3 in = Vec3::UnitZ();
-    Vec3 weight_rgb = Vec3::Zero();  ///< f cosθ / density; zero when nothing could be drawn
+    Vec3 weight_rgb = Vec3::Zero();  ///< f cosθ / density; zero if nothing could be drawn
     double density_per_sr = 0;
   };
-  /// Direction from which light comes that leaves towards `out`.
+  /// Incoming direction of light that leaves towards `out`.
   /// lobe   0…1, chooses between body and coat; not used when matt
   [[nodiscard]] Sample sample(const Vec3& normal, const Vec3& out, double u, double v, double lobe) const;
 
-  /// Es(cosθ), and the share of samples that go to its facets there.
+  /// Es(cosθ), and the share of samples that go to the coat's facets there.
   [[nodiscard]] double coat_albedo(double cosine) const;
   [[nodiscard]] double coat_share(double cosine) const;
 
  private:
   static constexpr std::size_t kSteps = 64;
-  using Table = std::array<double, kSteps + 1>;  ///< over the root of the cosine, even steps: steep where it is flat
+  using Table = std::array<double, kSteps + 1>;  ///< even steps over the root of the cosine: finer at grazing angles
   [[nodiscard]] static double at(const Table& table, double cosine);
   [[nodiscard]] static double mean_of(const Table& table);
   [[nodiscard]] double coat(double cos_in, double cos_out, double cos_half, double in_half) const;
@@ -65,7 +65,7 @@ class Bsdf {
   Table missing_{};                        ///< 1 - E1
 };
 
-/// Tangents of a unit normal, without a branch on it (T. Duff et al., JCGT 6(1), 2017).
+/// Tangents of a unit normal, without a branch (T. Duff et al., JCGT 6(1), 2017).
 struct Frame {
   Vec3 tangent, bitangent, normal;
   explicit Frame(const Vec3& n);
@@ -77,8 +77,7 @@ struct Frame {
   }
 };
 
-/// Point of the unit disk for a point of the unit square (concentric map of P. Shirley and K. Chiu, 1997, which keeps
-/// the square's strata).
+/// Maps the unit square to the unit disk (concentric map of P. Shirley and K. Chiu, 1997, which preserves strata).
 [[nodiscard]] Eigen::Vector2d concentric_disk(double u, double v);
 
 /// Direction in the hemisphere about `normal_world`, with density cosθ/π.

@@ -1,6 +1,6 @@
 #pragma once
-/// The illuminance below which a receiver's error is judged as if it had as much. A relative error of next to nothing
-/// costs without end and is of no use to anybody.
+/// Illuminance floor for relative errors: errors of dimmer receivers are relative to the floor. A small relative error
+/// of almost no light costs without end and is useless.
 
 #include <algorithm>
 

@@ -33,44 +33,44 @@ struct Emitter {
   LuminousShape shape{};
   /// Colour of its light in linear Rec. 709, with a luminance of 1: 0.2126 r + 0.7152 g + 0.0722 b = 1.
   Vec3 colour_rgb = Vec3::Ones();
-  Sky sky{};  ///< when set, this is a sky: intensity, pose and shape are not looked at
+  Sky sky{};  ///< if set, this is a sky: intensity, pose and shape are ignored
 };
 
 struct EvaluateOptions : Run {
-  /// How many standard errors of each receiver are within wanted_relative_error. One would keep that on average; 2.5
-  /// make the error itself stay below it for 98 of 100 receivers, and leave room for the estimate from 16 replicates to
-  /// be too low by 1.44 (χ², 15 degrees of freedom, 5 %), which stopping at the first low estimate would make the rule.
+  /// wanted_relative_error in standard errors of each receiver. 1 would keep it on average; 2.5 keeps the actual error
+  /// below it for 98 of 100 receivers. It also covers an estimate from 16 replicates that is too low by 1.44 (χ², 15
+  /// degrees of freedom, 5 %), which is common since sampling stops at the first low estimate.
   static constexpr double kStopMargin = 2.5;
 
   /// Wanted error of each receiver's illuminance, relative to max(its illuminance, the floor below). Exact evaluators
   /// ignore it.
   double wanted_relative_error = 0.01;
-  /// The floor: the larger of a figure in lux and a share of the receivers' mean, and never less than 0.001 of the
-  /// brightest receiver's illuminance.
+  /// The floor: the larger of a value in lux and a share of the receivers' mean, but at least 0.001 of the brightest
+  /// receiver's illuminance.
   double floor_lx = 0, floor_of_mean = 0;
-  /// Above 0: wanted root mean square of the receivers' standard errors, in place of the error of each. Samples then go
-  /// where they lower it most; receivers that are hard to tell keep larger errors.
+  /// If above 0: wanted root mean square of the receivers' standard errors, instead of each receiver's error. Samples
+  /// then go where they lower it most; receivers that converge slowly keep larger errors.
   double wanted_rms_error = 0;
-  std::uint64_t max_rays = 2'000'000'000;  ///< gives up there and reports the error it has
+  std::uint64_t max_rays = 2'000'000'000;  ///< stops there and reports the error reached
   std::vector<double> levels;              ///< per emitter, ≥ 0; empty = all 1
   bool colour = false;                     ///< also fill TransportMatrix::rgb_per_level
-  std::stop_token enough;  ///< when requested, the answer is what has been reached soon after, with the error it has
+  std::stop_token enough;  ///< on request, returns soon with the result so far and its error
 
-  /// Standard error at which a receiver is done; with wanted_rms_error, all of them together.
+  /// Standard error at which a receiver is done; with wanted_rms_error, of all receivers together.
   [[nodiscard]] double wanted_standard_error() const {
     return wanted_rms_error > 0 ? wanted_rms_error : wanted_relative_error / kStopMargin;
   }
 };
 
-/// T with its statistics. Rows are receivers, columns emitters.
+/// T with statistics. Rows are receivers, columns emitters.
 struct TransportMatrix {
   Eigen::MatrixXd lux_per_level;  ///< total (direct and indirect)
   Eigen::MatrixXd direct_lux_per_level;
-  /// Independent unbiased estimates of lux_per_level whose mean it is; empty when it is exact. They carry the
-  /// correlations between columns, so that the error of T c is right for every c.
+  /// Independent unbiased estimates with mean lux_per_level; empty when exact. They carry the correlations between
+  /// columns, so that the error of T c is right for every c.
   std::vector<Eigen::MatrixXd> replicates;
-  /// With EvaluateOptions::colour, lux_per_level by linear Rec. 709 primary: the three, weighted with 0.2126, 0.7152
-  /// and 0.0722, add up to it. Else empty.
+  /// With EvaluateOptions::colour, lux_per_level by linear Rec. 709 primary; weighted with 0.2126, 0.7152 and 0.0722
+  /// the three sum to it. Otherwise empty.
   std::vector<Eigen::MatrixXd> rgb_per_level;
   double relative_error = 0;  ///< standard error reached, at the options' levels; largest over receivers
   double rms_error = 0;       ///< the same, root mean square over receivers
@@ -91,8 +91,8 @@ class Evaluator {
  public:
   virtual ~Evaluator() = default;
   [[nodiscard]] virtual std::string_view name() const = 0;
-  /// Cause::cancelled when stopped; Cause::invalid when an emitter lies in a receiver (its lux is infinite) or an
-  /// input is not finite.
+  /// Cause::cancelled when stopped; Cause::invalid when an emitter is in a receiver (its lux is infinite) or an input
+  /// is not finite.
   [[nodiscard]] virtual Result<TransportMatrix> evaluate(std::span<const Receiver> receivers,
                                                          std::span<const Emitter> emitters,
                                                          const EvaluateOptions& options) const = 0;
@@ -105,8 +105,8 @@ class Evaluator {
 /// emitters, Owen-scrambled Sobol samples, Russian roulette. Unbiased; standard error from replicates. The reference.
 [[nodiscard]] std::unique_ptr<Evaluator> make_path_evaluator(const RayScene& scene);
 
-/// The same, but what paths find beyond their second vertex is shared among all receivers, by records on the surfaces
-/// that they see. Several times cheaper for tens of receivers and more; biased by a fraction of a per cent.
+/// The same, but the light beyond a path's second vertex is shared among all receivers, through records on the surfaces
+/// that they see. Several times cheaper for tens of receivers or more; biased by a fraction of a per cent.
 [[nodiscard]] std::unique_ptr<Evaluator> make_gather_evaluator(const RayScene& scene);
 
 }  // namespace luxrig

@@ -1,5 +1,5 @@
 #pragma once
-/// Progress of work that many threads do, reported from the one that called.
+/// Progress of multi-threaded work, reported from the calling thread.
 
 #include <algorithm>
 #include <atomic>
@@ -9,8 +9,7 @@
 
 namespace luxrig {
 
-/// One stretch of work, from share `begin` to share `end`, of `parts` equal parts. Reports rise, each by 1 % or
-/// more.
+/// One stretch of work, from share `begin` to share `end`, in `parts` equal parts. Reports rise, each by at least 1 %.
 class CallingThreadProgress {
  public:
   CallingThreadProgress(const Watch& watch, double begin, double end, std::size_t parts)

@@ -29,7 +29,7 @@ constexpr std::array<std::uint32_t, 32> direction_numbers(std::uint32_t dimensio
   return v;
 }
 
-/// XOR of the direction numbers of a byte of the index: four look-ups instead of up to 32 steps.
+/// XOR of the direction numbers of one byte of the index: four look-ups instead of up to 32 steps.
 using ByteTables = std::array<std::array<std::uint32_t, 256>, 4>;
 constexpr ByteTables byte_tables(std::uint32_t dimension) {
   ByteTables tables{};
@@ -49,8 +49,8 @@ constexpr std::uint32_t reversed(std::uint32_t x) {
   return __builtin_bswap32(x);
 }
 
-/// A permutation in which each bit depends on lower bits only; on reversed bits that is a nested uniform (Owen)
-/// scramble. The even multipliers of Laine and Karras, in Burley's order.
+/// A permutation in which each bit depends only on lower bits; on reversed bits it is a nested uniform (Owen) scramble.
+/// The even multipliers of Laine and Karras, in Burley's order.
 constexpr std::uint32_t laine_karras(std::uint32_t x, std::uint32_t seed) {
   x += seed;
   x ^= x * 0x6c50b47cu;

@@ -1,6 +1,6 @@
 #pragma once
-/// Owen-scrambled Sobol points without state: any sample of any replicate can be computed alone, which is what
-/// makes the evaluators deterministic for any number of threads.
+/// Stateless Owen-scrambled Sobol points: any sample of any replicate can be computed alone, so the evaluators are
+/// deterministic for any number of threads.
 ///
 /// Direction numbers: S. Joe and F. Y. Kuo, "Constructing Sobol sequences with better two-dimensional
 /// projections", SIAM J. Sci. Comput. 30 (2008), dimensions 1 to 4. More dimensions are padded: each set of four is
@@ -26,17 +26,17 @@ class SobolSequence {
   /// of a pair (0, 1) or (2, 3) holds its exact share.
   [[nodiscard]] std::array<double, kSetDimensions> set(std::uint32_t index, std::uint32_t set) const;
 
-  /// Two of them, for less: coordinates 4·set + 2·half and the next; half is 0 or 1.
+  /// Only two of them, at less cost: coordinates 4·set + 2·half and the next; half is 0 or 1.
   [[nodiscard]] std::array<double, 2> pair(std::uint32_t index, std::uint32_t set, std::uint32_t half) const;
 
-  /// 64 random bits that belong to a point: to seed what needs no strata.
+  /// 64 random bits of a point: a seed where no strata are needed.
   [[nodiscard]] std::uint64_t number(std::uint32_t index) const { return mixed(key_, 0x100000000ull + index); }
 
  private:
   std::uint64_t key_;
 };
 
-/// The unscrambled sequence, as 32-bit fractions; dimension 0…3. For tests and for the curious.
+/// The unscrambled sequence, as 32-bit fractions; dimension 0…3. For tests.
 [[nodiscard]] std::uint32_t sobol_bits(std::uint32_t index, std::uint32_t dimension);
 
 }  // namespace luxrig

@@ -14,7 +14,7 @@
 namespace luxrig {
 namespace {
 
-constexpr double kBeamShare = 0.9;  ///< of the flux, in what counts as the beam (thesis §6.5)
+constexpr double kBeamShare = 0.9;  ///< of the flux within the beam (thesis §6.5)
 
 bool is_finite_pose(const Pose& pose) { return pose.rotation.allFinite() && pose.translation_m.allFinite(); }
 
@@ -62,7 +62,7 @@ std::string complaint_of_wishes(const AimWishes& wishes, const ContrastSamples& 
   return "";
 }
 
-/// Every n-th interest point, with what it is compared with.
+/// Every n-th interest point, with its neighbours.
 AimJudge thinned_judge(const AimJudge& full, std::size_t n) {
   AimJudge judge;
   judge.wishes = full.wishes;
@@ -102,8 +102,8 @@ AimJudge thinned_judge(const AimJudge& full, std::size_t n) {
   return judge;
 }
 
-/// The search has judged some of the samples: all of them have to keep the limits. All heads are dimmed by the same
-/// share, then the key light to its ratio.
+/// The search judged only some of the samples, but all must keep the limits. Dims all heads by the same share, then the
+/// key light to its ratio.
 void keep_limits(const HeadAims::State& state, std::vector<HeadSetting>& settings) {
   const AimWishes& wishes = state.full.wishes;
   const AimSum fixed = state.full.objective->nothing(), sum = state.sum(state.full, settings);
@@ -130,7 +130,7 @@ void keep_limits(const HeadAims::State& state, std::vector<HeadSetting>& setting
   }
 }
 
-/// All heads brighter by one factor, as far as their levels and the limits go.
+/// Brightens all heads by one factor, as far as their levels and the limits allow.
 void brighten(const HeadAims::State& state, std::vector<HeadSetting>& settings) {
   const AimWishes& wishes = state.full.wishes;
   const AimSum fixed = state.full.objective->nothing(), sum = state.sum(state.full, settings);
@@ -149,7 +149,7 @@ void brighten(const HeadAims::State& state, std::vector<HeadSetting>& settings) 
     settings[k].level = std::min(factor * settings[k].level, state.heads[k].max_level);
 }
 
-/// Heads of one kind share their distributions, and each takes a quarter of a million values to know.
+/// Heads of one kind share their distributions, and each cone evaluates a quarter of a million values.
 std::vector<std::vector<double>> cones_of(const std::vector<HangingHead>& heads, int threads) {
   std::vector<const IntensityDistribution*> kinds;
   for (const HangingHead& head : heads)
@@ -270,7 +270,7 @@ Result<AimResult> HeadAims::solve() const {
   keep_limits(state, found.settings);
   if (state.full.wishes.relative && !(state.full.wishes.energy_weight > 0)) {
     brighten(state, found.settings);
-    keep_limits(state, found.settings);  // light that stays may have shifted the ratio of key to fill
+    keep_limits(state, found.settings);  // fixed light may have shifted the ratio of key to fill
   }
   for (std::size_t k = 0; k < count; ++k) {
     AimedHead head;

@@ -1,14 +1,13 @@
 #pragma once
-/// Aiming what hangs: where given heads look, how far they zoom and how bright they are, so that an object's relief
-/// reads.
+/// Aims mounted heads: finds where they look, their zoom and their level, so that an object's relief shows.
 ///
-/// Votes are where it begins: an interest point votes for the direction from a head to it when that head, where it
-/// hangs, draws a shadow's edge there; each head's directions with most votes are its first aims. The measured
-/// objective (aim_objective.h) is the judge: head by head, every aim, zoom and level that the limits leave is tried
-/// with the others as they are, until none gains; then the aims are refined between the candidates. What a head can see
-/// is found once (head_sight.h), so that all of this is arithmetic.
+/// Votes give the first aims. An interest point votes for the direction from a head to it if that head, where it hangs,
+/// draws a shadow edge there; the directions with most votes are the head's first aims. The measured objective
+/// (aim_objective.h) decides: head by head, every aim, zoom and level within the limits is tried with the other heads
+/// fixed, until nothing gains. Then the aims are refined between the candidates. Visibility from each head is found
+/// once (head_sight.h), so all of this is arithmetic.
 ///
-/// Direct light of heads that are points. What is reflected counts as fixed light when it is given.
+/// Direct light of heads as points. Reflected light can be given as fixed light.
 
 #include "core/highlight/aim/aim_objective.h"
 #include "core/highlight/aim/hanging_head.h"
@@ -17,33 +16,34 @@
 
 namespace luxrig {
 
-/// So many interest points are enough to judge real lights by: more take longer and change little.
+/// This many interest points are enough to judge real lights; more take longer and change little.
 constexpr std::size_t kAimPoints = 1000;
 
 /// A stop ends the search with the best so far.
 struct AimOptions : Run {
-  std::size_t search_points = 800;  ///< interest points that the search judges by, evenly strided; the answer by all
+  std::size_t search_points = 800;  ///< interest points used by the search, evenly strided; the score uses all
   std::size_t most_aims = 24;       ///< candidates per head
 };
 
 struct AimedHead {
-  HeadSetting setting;              ///< a head that stays dark stays where it looks
-  Vec3 aim_world_m = Vec3::Zero();  ///< on the beam, as far away as the object
-  bool reaches = true;              ///< it can be turned towards something of the object that it sees
+  HeadSetting setting;              ///< a dark head keeps its present aim
+  Vec3 aim_world_m = Vec3::Zero();  ///< on the beam, at the distance of the object
+  bool reaches = true;              ///< it can turn towards a part of the object that it sees
 };
 
 struct AimResult {
   std::vector<AimedHead> heads;  ///< one per head
   AimScore score;                ///< by all samples; within limits
-  std::size_t tried = 0;         ///< settings of one head
+  std::size_t tried = 0;         ///< settings of one head that were tried
 };
 
 class HeadAims {
  public:
-  /// samples, features   of the object (contrast_samples.h, feature_clusters.h); room: everything, the object too. All
-  /// must stay.
-  /// Refuses: no interest points, no heads, heads none of which sees any of the object, numbers that are not finite,
-  /// sizes that disagree, a key that is no head, and light that stays which is alone above a limit.
+  /// samples, features   of the object (contrast_samples.h, feature_clusters.h)
+  /// room                everything, including the object
+  /// All must outlive it.
+  /// Refuses: no interest points, no heads, no head that sees the object, numbers that are not finite, sizes that
+  /// disagree, a key that is not a head, and fixed light that alone exceeds a limit.
   [[nodiscard]] static Result<HeadAims> make(const ContrastSamples& samples, const FeatureClusters& features,
                                              const RayScene& room, std::vector<HangingHead> heads, AimWishes wishes,
                                              const AimOptions& options);
@@ -51,9 +51,9 @@ class HeadAims {
   HeadAims(HeadAims&&) noexcept;
   HeadAims& operator=(HeadAims&&) noexcept;
 
-  /// Of these settings, one per head: movements are from where each head looks now.
+  /// Score of these settings, one per head. Movements start from each head's present aim.
   [[nodiscard]] AimScore score(std::span<const HeadSetting> settings) const;
-  /// The best settings found. A refusal when no head can be turned to anything that it sees of the object.
+  /// The best settings found. Refuses if no head can turn to any part of the object that it sees.
   [[nodiscard]] Result<AimResult> solve() const;
   [[nodiscard]] double reference_lx() const;  ///< lux of the strongest head on the object, at full level
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Private to aim_heads: a judge for some of the samples, and the search by it.
+/// Private to aim_heads: an objective over some of the samples, and the search with it.
 
 #include <memory>
 
@@ -8,11 +8,11 @@
 
 namespace luxrig {
 
-/// Samples with what each head sees of them.
+/// Samples, with each head's view of them.
 struct AimJudge {
   ContrastSamples samples;
   FeatureClusters features;
-  AimWishes wishes;  ///< fixed_lux as the samples
+  AimWishes wishes;  ///< fixed_lux matches the samples
   std::vector<HeadSight> sights, limit_sights;
   std::unique_ptr<AimObjective> objective;
 
@@ -21,23 +21,23 @@ struct AimJudge {
 
 struct HeadAims::State {
   std::vector<HangingHead> heads;
-  std::vector<std::vector<double>> cone_rad;  ///< per head and stop of its zoom: full angle of what counts as its beam
+  std::vector<std::vector<double>> cone_rad;  ///< per head and zoom stop: full angle of the beam
   AimOptions options;
   Vec3 middle_world_m = Vec3::Zero();  ///< of the interest points
   double reference_lx = 0, all_watts = 0;
   AimJudge full;
-  std::unique_ptr<AimJudge> thinned;  ///< none: there are few samples
+  std::unique_ptr<AimJudge> thinned;  ///< empty if there are few samples
   [[nodiscard]] const AimJudge& search_judge() const { return thinned ? *thinned : full; }
 
   [[nodiscard]] AimSum sum(const AimJudge& judge, std::span<const HeadSetting> settings) const;
 };
 
-/// First aims of a head whose narrowest beam is that wide: unit, those with most votes first, the middle of what it
-/// sees last; only where it can look.
+/// First aims of a head with this narrowest beam: unit, by falling votes, then the middle of what it sees. Only
+/// directions that it can reach.
 [[nodiscard]] std::vector<Vec3> voted_aims(const HangingHead& head, double narrowest_rad, const HeadSight& sight,
                                            const ContrastSamples& samples, std::size_t most);
 
-/// Settings by the search's judge, and how many were tried.
+/// Settings found with search_judge(), and the number tried.
 struct SearchedAims {
   std::vector<HeadSetting> settings;
   std::size_t tried = 0;

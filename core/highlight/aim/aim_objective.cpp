@@ -8,16 +8,16 @@
 namespace luxrig {
 namespace {
 
-/// Of reference_lx: what the lit side of a shadow's edge must get from the head that draws it, to be seen.
+/// Share of reference_lx that a head must give the lit side of its shadow edge to make it visible.
 constexpr double kSeenShare = 0.02;
-/// What seconds of movement are compared with: about how long a head takes from one look to the next.
+/// Unit of movement time: about the time a head takes from one aim to the next.
 constexpr double kUsualMove_s = 4;
-/// Of the mean illuminance: relative contrast is nought beside this.
+/// Share of the mean illuminance below which relative contrast fades to zero.
 constexpr double kDarkShare = 0.1;
-/// Of the lux that the strongest head can give or the limit allows: an eye does not adapt to a darker object than this.
+/// Share of the lux that the strongest head can give or the limit allows: an eye does not adapt to a darker object.
 /// Without it, in a dark room, the faint edge of a beam that misses the object would score best.
 constexpr double kDarkestAdaptation = 0.02;
-/// Rounding may carry a level that was scaled to a limit over it.
+/// Rounding may lift a level that was scaled to a limit slightly over it.
 constexpr double kLimitSlack = 1e-9;
 
 }  // namespace
@@ -97,7 +97,7 @@ void AimObjective::measure_contrast(const AimSum& sum, AimScore& score) const {
     for (const std::uint32_t j : samples_.of(i)) {
       const double difference = std::abs(lux[i] - lux[j]);
       largest = std::max(largest, difference);
-      // In the dark there is nothing to see.
+      // In the dark nothing is visible.
       if (difference > 0) relative = std::max(relative, difference / (lux[i] + lux[j] + dark_lx));
     }
     score.local_contrast_lx += largest;
@@ -131,13 +131,13 @@ AimScore AimObjective::score(const AimSum& sum) const {
   if (all_watts_ > 0) score.objective -= wishes_.energy_weight * sum.watts / all_watts_;
   if (wishes_.key) {
     const double fill = sum.mean_lux - sum.key_mean_lux;
-    // Without any fill a key light is as far from its ratio as can be; without a key light it keeps every ratio.
+    // A key light without fill exceeds every ratio. With no light at all every ratio holds.
     score.key_to_fill =
         fill > 0 ? sum.key_mean_lux / fill : (sum.key_mean_lux > 0 ? std::numeric_limits<double>::infinity() : 0);
     if (score.key_to_fill > wishes_.max_key_to_fill * (1 + kLimitSlack) ||
         (sum.mean_lux > 0 && score.key_to_fill < wishes_.min_key_to_fill * (1 - kLimitSlack))) {
       score.within_limits = false;
-      score.objective -= 1;  // a head that fills less than the key light needs is no better for it
+      score.objective -= 1;  // so that a head with less fill than the key light needs is not preferred
     }
   }
   return score;

@@ -1,6 +1,6 @@
 #pragma once
-/// What heads are aimed for, and what they must not do: local contrast and covered features, against energy, darkness
-/// and long moves, under limits of lux.
+/// The objective for aimed heads: local contrast and covered features, against energy, darkness and long moves, under
+/// limits of lux.
 
 #include <cmath>
 #include <limits>
@@ -13,17 +13,17 @@
 
 namespace luxrig {
 
-/// Where light is limited: a place on a surface, or (normal zero) an eye or a camera, which no beam may blind.
+/// A place with limited light: on a surface, or (normal zero) an eye or a camera, which no beam may blind.
 struct AimLimit {
   std::string name;
   OrientedPoint at;
-  double max_lx = 0;    ///< 0: stays dark
-  double fixed_lx = 0;  ///< of light that stays
+  double max_lx = 0;    ///< 0 = stays dark
+  double fixed_lx = 0;  ///< of light that stays on
 };
 
 struct AimWishes {
-  /// Judge by relative contrast, as an eye or a camera that adapts: then heads are as bright as limits let them, but
-  /// with a weight of energy. Else by contrast in lux.
+  /// Judge by relative contrast, as an adapting eye or camera does; heads are then as bright as the limits allow,
+  /// unless energy has a weight. Otherwise judge by contrast in lux.
   bool relative = false;
   std::vector<AimLimit> limits;
   double max_object_lx = std::numeric_limits<double>::infinity();  ///< at every sample of the object
@@ -31,10 +31,10 @@ struct AimWishes {
   /// Mean illuminance of the interest points by the key light, over that by everything else.
   std::optional<std::size_t> key;  ///< a head
   double min_key_to_fill = 0, max_key_to_fill = std::numeric_limits<double>::infinity();
-  /// What each is worth beside a local contrast of HeadAims::reference_lx(), or a relative one of 1.
+  /// Weight of each term against a local contrast of HeadAims::reference_lx(), or a relative contrast of 1.
   double coverage_weight = 0.25, energy_weight = 0, base_weight = 0, travel_weight = 0.01;
-  double base_lx = 0;  ///< that interest points should have, with base_weight
-  /// Of what is there anyway (daylight, lights that stay) at each sample [lx]; empty: darkness.
+  double base_lx = 0;  ///< wanted at interest points, with base_weight
+  /// Fixed light (daylight, lights that stay on) at each sample [lx]; empty = darkness.
   std::vector<double> fixed_lux;
 
   [[nodiscard]] bool limited() const {
@@ -48,32 +48,32 @@ enum class HeadRole { any, key, fill };
   return *wishes.key == head ? HeadRole::key : HeadRole::fill;
 }
 
-/// Of heads as they are set.
+/// Score of heads at their settings.
 struct AimScore {
   double local_contrast_lx = 0;  ///< largest difference in illuminance to a neighbour, mean over interest points
-  /// Mean of the largest |E - E'| / (E + E' + a tenth of the mean): what is darker than that is dark to an eye, and
-  /// light reflected in the room would be there.
+  /// Mean of the largest |E - E'| / (E + E' + a tenth of the mean): an eye sees anything darker as dark, and in reality
+  /// reflected light would fill it.
   double relative_contrast = 0;
-  double coverage = 0;    ///< share of features where a head draws a shadow's edge that can be seen
+  double coverage = 0;    ///< share of features where a head draws a visible shadow edge
   double mean_lx = 0;     ///< of interest points
-  double below_base = 0;  ///< how much of base_lx is missing, mean over interest points, 0…1
+  double below_base = 0;  ///< share of base_lx that is missing, mean over interest points, 0…1
   double watts = 0;
-  double travel_s = 0;                                            ///< until the last head is there
+  double travel_s = 0;                                            ///< until the last head has arrived
   double key_to_fill = std::numeric_limits<double>::quiet_NaN();  ///< NaN without a key
   double object_lx = 0;                                           ///< of the brightest sample
   std::vector<double> limit_lx;                                   ///< at each of AimWishes::limits
   bool within_limits = true;
-  double objective = 0;  ///< contrast / reference_lx (or the relative one) + weights; what the search makes large
+  double objective = 0;  ///< contrast / reference_lx (or relative contrast) + weighted terms; the search maximises it
 };
 
-/// One head's light on all that is judged, at full level.
+/// Light of one head at full level at everything that is judged.
 struct AimColumn {
   std::vector<double> sample_lux, limit_lux;
-  std::vector<double> feature_lux;  ///< on the lit side of its brightest shadow edge in each feature
+  std::vector<double> feature_lux;  ///< in each feature: on the lit side of the head's brightest shadow edge
   double mean_lux = 0;              ///< over interest points
 };
 
-/// The heads' light together.
+/// Light of all heads together.
 struct AimSum {
   std::vector<double> sample_lux, limit_lux;
   std::vector<std::uint8_t> covered;  ///< per feature
@@ -82,21 +82,21 @@ struct AimSum {
 
 class AimObjective {
  public:
-  /// All must stay.
-  /// reference_lx   the strongest head's lux on the object: the unit of contrast; > 0
+  /// All must outlive it.
+  /// reference_lx   the strongest head's lux on the object, which is the unit of contrast; > 0
   AimObjective(const ContrastSamples& samples, const FeatureClusters& features, const AimWishes& wishes,
                double reference_lx, double all_watts);
 
   [[nodiscard]] std::size_t samples() const { return samples_.points.size(); }
-  /// Light that stays.
+  /// The fixed light alone.
   [[nodiscard]] AimSum nothing() const;
   /// lux   of a head at every sample, and at every limit
   [[nodiscard]] AimColumn column(std::vector<double> sample_lux, std::vector<double> limit_lux) const;
   void add(AimSum& sum, const AimColumn& column, double level, HeadRole role, double watts, double travel_s) const;
 
-  /// Largest level at which this much more light breaks no limit; 0 where one is broken already.
+  /// Largest level at which the added light breaks no limit; 0 if one is already broken.
   /// watts    of the head at full level
-  /// ratios   whether key to fill counts, too
+  /// ratios   also keep the ratio of key to fill
   [[nodiscard]] double most_level(const AimSum& others, const AimColumn& column, HeadRole role, double max_level,
                                   double watts, bool ratios = true) const;
   [[nodiscard]] AimScore score(const AimSum& sum) const;

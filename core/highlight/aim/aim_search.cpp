@@ -10,13 +10,13 @@
 namespace luxrig {
 namespace {
 
-/// Of what the limits leave, or of the highest level.
+/// Shares of the level that the limits allow, or of the highest level.
 constexpr double kLevelShares[] = {0, 0.05, 0.1, 0.2, 0.35, 0.5, 0.75, 1};
-/// Where a limit is shared, a head's room may be what others give up.
+/// If heads share a limit, a head's room may be what the others give up.
 constexpr double kOthersShares[] = {1, 0.7, 0.4};
 constexpr int kMostSweeps = 12;
 constexpr double kLeastGain = 1e-6;  ///< of the objective
-/// Aims are refined from so much of the beam down to so much.
+/// First and last step of aim refinement, as shares of the beam.
 constexpr double kFirstStep = 0.25, kLastStep = 0.015;
 constexpr double kWidestStep_rad = rad_from_deg(20);
 
@@ -28,7 +28,7 @@ std::optional<Joints> joints_towards(const HangingHead& head, const Vec3& direct
   return may_light(head, *joints) ? joints : std::nullopt;
 }
 
-/// Two unit vectors at right angles to a unit one and to each other.
+/// Two unit vectors at right angles to a unit vector and to each other.
 std::pair<Vec3, Vec3> across(const Vec3& direction) {
   const Vec3 x = direction.unitOrthogonal();
   return {x, direction.cross(x)};
@@ -75,7 +75,7 @@ class AimSearch {
   };
   struct Look {
     std::vector<HeadSetting> settings;
-    std::vector<AimColumn> columns;  ///< of the settings; of a dark head, anything
+    std::vector<AimColumn> columns;  ///< of the settings; undefined for a dark head
     double objective = 0;
   };
   enum class Start { dark, bright, shared, present };
@@ -103,8 +103,8 @@ class AimSearch {
                           travel_s(head, head.present, setting.joints));
   }
 
-  /// Dark; each with its first aim as bright as the others leave it; each with an equal share of what it could have
-  /// alone; or as they look now, with such a share.
+  /// Starts: dark; each head with its first aim as bright as the others allow; each with an equal share of its level
+  /// alone; or the present aims with such a share.
   [[nodiscard]] Look begun(Start start) const {
     Look look;
     const std::size_t count = state_.heads.size();
@@ -123,7 +123,7 @@ class AimSearch {
     for (std::size_t k = 0; start != Start::dark && k < count; ++k) {
       if (columns_[k].empty() || !may_light(state_.heads[k], look.settings[k].joints)) continue;
       const AimSum others = start == Start::bright ? without(look, k) : judge_.objective->nothing();
-      // Of a ratio between heads nothing can be said while the others are dark.
+      // A ratio between heads has no meaning while the others are dark.
       const bool alone = start != Start::bright;
       look.settings[k].level = judge_.objective->most_level(others, look.columns[k], role_of(k),
                                                             state_.heads[k].max_level, state_.heads[k].watts, !alone) /
@@ -133,7 +133,7 @@ class AimSearch {
     return look;
   }
 
-  /// The best level of a head with this light, the others as they are.
+  /// The best level of a head with this light, with the others fixed.
   [[nodiscard]] Tried best_level(const AimSum& others, std::size_t k, const HeadSetting& setting,
                                  const AimColumn& column) const {
     Tried best;
@@ -151,7 +151,7 @@ class AimSearch {
     return best;
   }
 
-  /// Each head in turn to its best candidate, the others as they are or, where limits are shared, dimmed. False when
+  /// Moves each head in turn to its best candidate, with the others fixed or, if limits are shared, dimmed. False when
   /// none gains.
   bool swept(Look& look) {
     bool gained = false;
@@ -168,7 +168,7 @@ class AimSearch {
       });
       tried_ += tried.size();
       const auto best = std::max_element(tried.begin(), tried.end(), [](const Tried& a, const Tried& b) {
-        return a.objective < b.objective;  // the first of equals
+        return a.objective < b.objective;  // the first of equal ones
       });
       if (best->objective < look.objective + kLeastGain) continue;
       const auto at = static_cast<std::size_t>(best - tried.begin());
@@ -183,7 +183,7 @@ class AimSearch {
 
   void set(Look& look, std::size_t k, HeadSetting setting, double level, AimColumn column, double objective) const {
     setting.level = level;
-    if (!(level > 0)) {  // nothing to turn for
+    if (!(level > 0)) {  // no reason to turn
       setting.joints = state_.heads[k].present;
       setting.zoom = 0;
     }
@@ -192,7 +192,7 @@ class AimSearch {
     look.objective = objective;
   }
 
-  /// One head's aim a step to each side, its zoom to another stop, and its level.
+  /// Tries one head's aim a step to each side, its other zoom stops, and its level.
   void refine(Look& look, std::size_t k, double step_of_beam) {
     const HangingHead& head = state_.heads[k];
     if (!(look.settings[k].level > 0) || stopped()) return;
@@ -233,7 +233,7 @@ class AimSearch {
 
   const HeadAims::State& state_;
   const AimJudge& judge_;
-  bool limited_;  ///< something is limited that heads share
+  bool limited_;  ///< heads share a limit
   std::vector<std::vector<Candidate>> columns_;
   std::size_t tried_ = 0;
 };
@@ -252,7 +252,7 @@ std::vector<Vec3> voted_aims(const HangingHead& head, double narrowest_rad, cons
     aims.push_back(lamp_pose(head, head.present).direction({0, 0, -1}));
     return aims;
   }
-  // Votes gather in squares of half a beam on a plane across the way to the middle.
+  // Votes are collected in squares of half a beam on a plane across the direction to the middle.
   const double cell = std::tan(std::clamp(narrowest_rad / 2, rad_from_deg(0.5), rad_from_deg(40)));
   const auto [x, y] = across(middle);
   struct Cell {

@@ -1,5 +1,5 @@
 #pragma once
-/// A luminaire that hangs somewhere and may pan, tilt, zoom and dim.
+/// A mounted luminaire that may pan, tilt, zoom and dim.
 
 #include <algorithm>
 #include <cmath>
@@ -11,34 +11,34 @@
 
 namespace luxrig {
 
-/// One of the settings of a zoom.
+/// One setting of a zoom.
 struct ZoomStop {
   Intensity intensity;  ///< at rated flux
-  double beam_rad = 0;  ///< what Joints calls it
+  double beam_rad = 0;  ///< its value in Joints
 };
 
 struct HangingHead {
-  Pose world_from_mount;  ///< base as hung; light leaves from the pivot
+  Pose world_from_mount;  ///< of the base as mounted; light leaves from the pivot
   double roll_rad = 0;
-  bool moves = true;  ///< else it looks where `present` says, for ever
-  JointRange range;   ///< only when it moves
-  Joints present;     ///< where it looks now
+  bool moves = true;  ///< false = it always looks as in `present`
+  JointRange range;   ///< only if it moves
+  Joints present;     ///< its present aim
   double pan_speed_rad_s = rad_from_deg(180), tilt_speed_rad_s = rad_from_deg(120);  ///< > 0
   double zoom_speed_rad_s = rad_from_deg(30);                                        ///< > 0
-  std::vector<ZoomStop> zoom;  ///< at least one; the first as it is now
+  std::vector<ZoomStop> zoom;  ///< at least one; the first is the present one
   double max_level = 1;        ///< 0…1
   double watts = 0;            ///< at full level
-  /// Whether it may be lit looking so; only when it moves. Empty: anywhere.
+  /// Whether it may be lit with these joints; only if it moves. Empty = with any.
   std::function<bool(const Joints&)> may_light{};
 };
 
 struct HeadSetting {
-  Joints joints;         ///< its beam as `zoom` says
+  Joints joints;         ///< beam_rad matches `zoom`
   std::size_t zoom = 0;  ///< index of HangingHead::zoom
   double level = 0;      ///< 0…1
 };
 
-/// Seconds until it looks there: all joints turn at once, each at its own speed.
+/// Seconds until the move ends: all joints turn at once, each at its own speed.
 [[nodiscard]] inline double travel_s(const HangingHead& head, const Joints& from, const Joints& to) {
   return std::max({std::abs(to.pan_rad - from.pan_rad) / head.pan_speed_rad_s,
                    std::abs(to.tilt_rad - from.tilt_rad) / head.tilt_speed_rad_s,
@@ -49,7 +49,7 @@ struct HeadSetting {
   return !head.moves || !head.may_light || head.may_light(joints);
 }
 
-/// Its lamp, looking so.
+/// Pose of its lamp with these joints.
 [[nodiscard]] inline Pose lamp_pose(const HangingHead& head, const Joints& joints) {
   return world_from_lamp(head.world_from_mount, joints, head.roll_rad);
 }

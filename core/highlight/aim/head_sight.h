@@ -1,6 +1,6 @@
 #pragma once
-/// What a head can light, wherever it looks: the lamp sits in the pivot, so what is hidden from it does not depend on
-/// its aim, and every aim after that is arithmetic without a ray.
+/// The places that a head can light with any aim. The lamp is at the pivot, so visibility does not depend on the aim,
+/// and any aim is then arithmetic without rays.
 
 #include <span>
 #include <vector>
@@ -11,16 +11,16 @@
 namespace luxrig {
 
 struct HeadSight {
-  std::vector<Vec3> direction;     ///< unit, from the head to each receiver; zero where it hangs on it
-  std::vector<double> lux_per_cd;  ///< cosθ / d² [1/m²]; 0 where it is hidden or faces away
+  std::vector<Vec3> direction;     ///< unit, from the head to each receiver; zero if they coincide
+  std::vector<double> lux_per_cd;  ///< cosθ / d² [1/m²]; 0 where hidden or facing away
 };
 
-/// receivers   a normal of zero: faces the head whatever its place (an eye, a camera)
-/// room        all that stands in the way, the target too
+/// receivers   a normal of zero always faces the head (an eye, a camera)
+/// room        everything that can block light, including the target
 [[nodiscard]] HeadSight sight_of(const RayScene& room, const Vec3& head_world_m,
                                  std::span<const OrientedPoint> receivers, int threads);
 
-/// Lux at every receiver [lx], full level. lux: one per receiver.
+/// Lux at every receiver [lx] at full level. lux: one per receiver.
 void lux_of_aim(const HeadSight& sight, const IntensityDistribution& intensity, const Pose& world_from_lamp,
                 std::span<double> lux);
 

@@ -15,7 +15,7 @@ BinNeighbours bins_within(const DirectionBins& bins, double angle_rad) {
     direction[b] = bins.direction_of(b);
     from_pole_rad[b] = std::acos(std::clamp(direction[b].z(), -1.0, 1.0));
   }
-  // Bins come in rings from the pole: those farther from it by more than the angle end the search.
+  // Bins come in rings from the pole; the search ends at those farther from it by more than the angle.
   const double least_cosine = std::cos(angle_rad), past_rad = angle_rad + 1e-9;
   std::vector<std::vector<std::uint32_t>> near(bins.count());
   for (std::uint32_t a = 0; a < bins.count(); ++a) {

@@ -12,12 +12,12 @@ namespace {
 
 constexpr std::size_t kPlacesPerLitTask = 32;
 
-/// What all searches over the same bins share.
+/// Data shared by all searches over the same bins.
 struct LitBinGrid {
   explicit LitBinGrid(const DirectionBins& all)
       : bins(all), around(bins_within(bins, std::min(kPi, 1.6 * bin_width_rad(bins)))) {
     for (std::uint32_t b = 0; b < bins.count(); ++b) directions.push_back(bins.direction_of(b).cast<float>());
-    // Rays that go together lie together: by cells four bins wide.
+    // Sorts rays into cells four bins wide, so that neighbouring rays are cast together.
     const DirectionBins cells(std::max(1, bins.side() / 4));
     std::vector<std::uint32_t> cell(bins.count());
     for (std::uint32_t b = 0; b < bins.count(); ++b) cell[b] = cells.bin_of(bins.direction_of(b));
@@ -26,7 +26,7 @@ struct LitBinGrid {
     std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return cell[a] < cell[b]; });
     rank.resize(bins.count());
     for (std::uint32_t k = 0; k < order.size(); ++k) rank[order[k]] = k;
-    // First rays: the bin in the middle of each of a coarser division, for all that are nearest to it.
+    // First rays: the bin at the centre of each cell of a coarser division, for all bins nearest to it.
     const DirectionBins coarse(std::max(1, bins.side() / 2));
     first_of.resize(bins.count());
     for (std::uint32_t b = 0; b < bins.count(); ++b)
@@ -45,7 +45,7 @@ class LitSearch {
   LitSearch(const TargetRays& target, const LitBinGrid& grid, double lift_m)
       : target_(target), grid_(grid), lift_m_(lift_m), state_(grid.bins.count()) {}
 
-  /// like   the row of a place near by; empty: none
+  /// like   the row of a nearby place; empty = none
   void run(const OrientedPoint& place, std::span<const std::uint64_t> like, const Vec3f& like_normal, bool every_ray,
            std::span<std::uint64_t> row) {
     place_ = &place;
@@ -58,7 +58,7 @@ class LitSearch {
       ask_if([&](std::uint32_t b) { return state_[b] == kFaces && grid_.first_of[b] == b; });
       for (std::uint32_t b = 0; b < state_.size(); ++b)
         if (state_[b] == kFaces && (state_[grid_.first_of[b]] & kOpen)) state_[b] |= kOpen;
-      // Where the nearest first ray is below the horizon nothing is known.
+      // If the nearest first ray is below the horizon, nothing is known.
       ask_if([&](std::uint32_t b) { return faces_unknown(b) && !(state_[grid_.first_of[b]] & kFaces); });
       follow_borders();
     } else {
@@ -90,7 +90,7 @@ class LitSearch {
     cast();
   }
 
-  /// Asks for asked_; keeps in flipped_ those that were guessed wrongly.
+  /// Casts rays for asked_; flipped_ gets the wrong guesses.
   void cast() {
     flipped_.clear();
     if (asked_.empty()) return;
@@ -113,7 +113,7 @@ class LitSearch {
       return false;
     };
     ask_if(at_a_border);
-    // A new border is there only where a guess was wrong.
+    // A new border can appear only where a guess was wrong.
     while (!flipped_.empty()) {
       asked_.clear();
       for (const std::uint32_t b : flipped_)
@@ -153,7 +153,7 @@ Result<LitTable> find_lit_bins(const TargetRays& target, const ContrastSamples& 
   const std::size_t tasks = (samples.points.size() + kPlacesPerLitTask - 1) / kPlacesPerLitTask + 1;
   CallingThreadProgress progress(options.watch, 0, 1, tasks);
   std::vector<std::uint64_t> rays;
-  // Interest points first, as the others start from what these found.
+  // Interest points first, since the others start from their results.
   for (const auto& [begin, end] :
        {std::pair(std::size_t{0}, samples.interest), std::pair(samples.interest, samples.points.size())}) {
     const std::size_t parts = (end - begin + kPlacesPerLitTask - 1) / kPlacesPerLitTask;

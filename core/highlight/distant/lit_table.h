@@ -1,6 +1,6 @@
 #pragma once
-/// From which directions light reaches each place: a bit per place and direction. With it the local contrast of any
-/// lights is arithmetic, without rays.
+/// Directions from which light reaches each place: one bit per place and direction. With this table, the local contrast
+/// of any lights is arithmetic, without rays.
 
 #include "core/highlight/shadow/contrast_samples.h"
 #include "core/highlight/shadow/direction_bins.h"
@@ -9,14 +9,14 @@
 namespace luxrig {
 
 struct LitTableOptions : Run {
-  bool every_ray = false;  ///< no search: a ray for each place and each bin that it faces
-  double lift_m = 0;       ///< rays start so far off the surface
+  bool every_ray = false;  ///< no search: one ray for each place and each bin that it faces
+  double lift_m = 0;       ///< rays start this far off the surface
 };
 
 struct LitTable {
   DirectionBins bins;
   std::size_t words = 0;            ///< per place
-  std::vector<std::uint64_t> rows;  ///< bit b of a place: light from the middle of bin b reaches it
+  std::vector<std::uint64_t> rows;  ///< bit b of a place: light from the centre of bin b reaches it
   std::uint64_t rays = 0;           ///< cast
   [[nodiscard]] std::span<const std::uint64_t> of(std::size_t point) const {
     return std::span(rows).subspan(point * words, words);
@@ -26,13 +26,13 @@ struct LitTable {
   }
 };
 
-/// A place is not lit from bins that it faces away from, and without a normal from none.
+/// Bins that a place faces away from do not light it. A place without a normal is lit by none.
 ///
-/// Search: at an interest point, rays to every fourth bin or so, twice as far apart as bins are; what lies between is
-/// taken to be as the nearest of them. Then each bin that differs from one around it is asked, until every such pair
-/// consists of two that were. Another place starts from what its first interest point found, so it asks along
-/// that one's borders only. Missed are patches that no first ray met. The same answer for any number of threads.
-/// Fails only when stopped.
+/// Search: an interest point gets rays to about every fourth bin, at twice the bin spacing; bins between take the
+/// result of the nearest ray. Then each bin that differs from a neighbour is traced, until both bins of every such pair
+/// have been. Other places start from the result of their first interest point, so they trace only along its borders.
+/// The search misses patches that no first ray met. The result does not depend on the number of threads. Fails only
+/// when stopped.
 [[nodiscard]] Result<LitTable> find_lit_bins(const TargetRays& target, const ContrastSamples& samples,
                                              const DirectionBins& bins, const LitTableOptions& options);
 

@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kMostRelightRounds = 12;
 constexpr int kMostReliefLights = 64;
 constexpr double kSpreadReach = 2.5;  // of its standard deviation
-/// A light moves for a gain of more than this share: less is within what another mesh of the same object would change.
+/// Least gain for which a light moves: less is within the change between two meshes of the same object.
 constexpr double kLeastRelightGain = 0.01;
 
 double angle_rad(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
@@ -84,7 +84,7 @@ std::vector<double> ReliefLightSearch::smoothed(const std::vector<double>& value
   return means;
 }
 
-/// Least squares of a second-order surface over the tangent plane; at most a bin's width away.
+/// Least-squares fit of a quadric over the tangent plane; moves at most a bin's width.
 Vec3 ReliefLightSearch::peak_near(std::uint32_t bin, const std::vector<double>& smooth) const {
   const Vec3& middle = directions_[bin];
   const Vec3 x = middle.unitOrthogonal(), y = middle.cross(x);
@@ -131,7 +131,7 @@ Result<ReliefLights> ReliefLightSearch::lights(int lights, std::span<const Vec3>
     return std::ranges::any_of(
         others, [&](std::uint32_t other) { return directions_[bin].dot(directions_[other]) > most_cosine; });
   };
-  // The best bin that keeps its distance from the others; kNone where they leave no place that any light reaches.
+  // The best bin apart from the others; kNone if no lit bin is left.
   const auto best_beside = [&](const std::vector<std::uint32_t>& others) {
     Choice choice{TargetSurface::kNone, {}};
     choice.smooth = others.empty() ? alone_smooth_ : smoothed(contrast.with_each_bin(contrast.illuminance_lx(others)));
@@ -145,7 +145,7 @@ Result<ReliefLights> ReliefLightSearch::lights(int lights, std::span<const Vec3>
   };
 
   std::vector<Vec3> peaks(chosen.size());
-  std::size_t settled = 0;  // lights in a row that are where they are best with the others as they are
+  std::size_t settled = 0;  // lights in a row that are already at their best with the others fixed
   while (chosen.size() < static_cast<std::size_t>(lights)) {
     if (options_.watch.stop.stop_requested()) return relief_search_stopped();
     const Choice next = best_beside(chosen);

@@ -11,8 +11,8 @@ namespace {
 
 constexpr std::size_t kPointsPerTabledTask = 64;
 
-/// Illuminance at one place from a beam of 1 lx out of each bin, on top of base_lx. Vectors throughout: the bit is
-/// masked out, not branched on.
+/// Illuminance at one place from a beam of 1 lx out of each bin, plus base_lx. Fully vectorised: the bit masks, it does
+/// not branch.
 void beam_row(const OrientedPoint& place, std::span<const std::uint64_t> lit, float base_lx, const float* x,
               const float* y, const float* z, float* row_lx, std::size_t bins) {
   const Vec3f normal = place.normal.cast<float>();

@@ -8,17 +8,18 @@ namespace luxrig {
 /// Largest differences in illuminance to a neighbour, as in `relief_contrast`.
 class TabledContrast {
  public:
-  /// Both must stay.
+  /// Both must outlive it.
   TabledContrast(const ContrastSamples& samples, const LitTable& table, int threads);
 
-  /// Illuminance at each of the samples' points from beams of 1 lx out of the middles of bins [lx].
+  /// Illuminance at each sample point from beams of 1 lx out of the centres of bins [lx].
   [[nodiscard]] std::vector<float> illuminance_lx(std::span<const std::uint32_t> bins) const;
 
-  /// Of beams of 1 lx, each out of the middle of a bin.
+  /// Contrast of beams of 1 lx, each out of the centre of a bin.
   [[nodiscard]] SampleContrast of(std::span<const std::uint32_t> bins) const;
 
-  /// Local contrast [lx] with a beam of 1 lx from each bin in turn on top of what there is; one per bin. The same bytes
-  /// for any number of threads. base_lx   per point; empty: darkness
+  /// Local contrast [lx] with a beam of 1 lx from each bin in turn added to the base; one per bin. The result is
+  /// bit-identical for any number of threads.
+  /// base_lx   per point; empty = darkness
   [[nodiscard]] std::vector<double> with_each_bin(std::span<const float> base_lx) const;
 
  private:

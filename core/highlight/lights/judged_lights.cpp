@@ -14,16 +14,16 @@
 namespace luxrig {
 namespace {
 
-constexpr double kJudgedBeamShare = 0.9;  ///< of the flux, in what counts as the beam (thesis §6.5)
+constexpr double kJudgedBeamShare = 0.9;  ///< of the flux within the beam (thesis §6.5)
 constexpr double kSeenOfReference = 0.02;
 constexpr std::size_t kMostAimsOfPlace = 3;
-/// Candidates kept from within half the least angle of one another, and from one place.
+/// Most candidates kept within half the least angle of one another, and from one place.
 constexpr std::size_t kMostFromDirection = 12, kMostFromPlace = 2;
 constexpr int kMostJudgedLights = 64;
-/// Lights taken by votes that are kept as a beginning, whatever is judged of each alone.
+/// Lights chosen by votes that are kept as a start, whatever their own score.
 constexpr std::size_t kMostBegun = 16;
 constexpr int kAimsAround = 8;
-/// Of the beam's angle.
+/// As shares of the beam's angle.
 constexpr double kFirstAimStep = 0.25, kLastAimStep = 1.0 / 64;
 constexpr int kMostMovesOfStep = 4;
 
@@ -56,7 +56,7 @@ struct TriedAim {
   double contrast_lx;
 };
 
-/// What votes would take, in their order.
+/// Aims that votes would choose, in their order.
 std::vector<TriedAim> begun_aims(const PotentialLights& voted, const std::vector<PlaceOfAims>& places) {
   std::vector<TriedAim> begun;
   if (voted.lights.empty()) return begun;
@@ -71,7 +71,7 @@ std::vector<TriedAim> begun_aims(const PotentialLights& voted, const std::vector
   return begun;
 }
 
-/// Aims at one place, with the contrast that each makes at some samples.
+/// Aims at one place, with the contrast of each at some samples.
 std::vector<TriedAim> tried_aims(const PlaceOfAims& place, std::uint32_t index, const HeadSight& sight,
                                  const ContrastSamples& samples, const IntensityDistribution& intensity,
                                  double window_rad) {
@@ -105,7 +105,7 @@ std::vector<TriedAim> tried_aims(const PlaceOfAims& place, std::uint32_t index, 
   return tried;
 }
 
-/// Those begun with, then the best, but of each direction and place only some.
+/// The start aims, then the best ones, with limits per direction and place.
 std::vector<TriedAim> kept_aims(std::vector<TriedAim> begun, std::vector<TriedAim> tried,
                                 const std::vector<PlaceOfAims>& places, const Vec3& middle_world_m,
                                 const JudgedLightOptions& options) {
@@ -161,7 +161,7 @@ struct JudgedLights::State {
   std::vector<Vec3> places_world_m;  // of the candidates
   PlaceSights sights;
   std::vector<JudgedLight> candidates;
-  std::uint32_t begun = 0;  // the first of them: what votes would take
+  std::uint32_t begun = 0;  // the first candidates: those that votes would choose
   std::uint64_t rays = 0;
 
   [[nodiscard]] JudgedLight light(std::uint32_t place, const Vec3& direction, const HeadSight& sight) const {

@@ -1,5 +1,5 @@
 #pragma once
-/// Real luminaires that bring out an object's relief, judged by the contrast that they make.
+/// Real luminaires that bring out an object's relief, judged by measured contrast.
 
 #include <memory>
 #include <optional>
@@ -15,36 +15,36 @@ namespace luxrig {
 struct JudgedLightOptions : Run {
   Surroundings surroundings;
   double coverage_weight = 0.1, least_angle_rad = rad_from_deg(30);  ///< as JudgedWishes
-  /// All places are judged first by so many of the interest points, evenly strided; then the best candidates, as
-  /// many as this but not too many from one direction, by all.
+  /// All places are first judged by this many interest points, evenly strided. Then the most_candidates best, but not
+  /// too many from one direction, are judged by all interest points.
   std::size_t first_points = 150, most_candidates = 480;
-  double lift_m = 0;  ///< rays start so far off the surface; hides relief smaller than it
+  double lift_m = 0;  ///< rays start this far off the surface; hides smaller relief
 };
 
 struct JudgedLightSet {
-  std::vector<JudgedLight> lights;  ///< may be fewer than asked for
+  std::vector<JudgedLight> lights;  ///< may be fewer than requested
   JudgedScore score;
 };
 
-/// Per number of lights, from one.
+/// Results for one light, two, and so on.
 struct JudgedLightCount {
   std::vector<JudgedLightSet> by_number;
-  std::size_t best = 0;  ///< index of the number to take: number_at_peak
+  std::size_t best = 0;  ///< index of the recommended number: number_at_peak
 };
 
-/// What each place sees is found once; then any number of lights is chosen without a ray.
+/// Visibility from each place is found once; any number of lights is then chosen without rays.
 class JudgedLights {
  public:
-  /// At each place lights are tried that shine where its own light would make most contrast: along modes of the
-  /// directions to interest points, weighted by the contrast that an even light there would make at them
-  /// (direction_modes, with half the beam as window); and along those of votes.
+  /// At each place, lights are tried in the directions of most contrast: modes of the directions to interest points,
+  /// weighted by the contrast that an even light there would make at them (direction_modes, with half the beam as
+  /// window); and modes of the votes.
   /// interest    indices of points of the surface, each once
-  /// features    of them
-  /// places_world_m   where a luminaire may be: cell_centres() of a LightDomain
-  /// voted       potential_lights of votes, tried too; may be empty. Those that votes would take (LightSelection) are a
-  ///             second beginning for the choice of several
-  /// intensity   of all of them, at rated flux, turned as by aimed_beam
-  /// Refuses: no interest points, no place, a place from which light reaches none of them, numbers that make no sense.
+  /// features    of the interest points
+  /// places_world_m   possible places of a luminaire: cell_centres() of a LightDomain
+  /// voted       potential_lights of votes, also tried; may be empty. Those that votes would choose (LightSelection)
+  ///             are a second start for choosing several
+  /// intensity   of all lights, at rated flux, turned as by aimed_beam
+  /// Refuses: no interest points, no place, a place from which light reaches no interest point, invalid numbers.
   [[nodiscard]] static Result<JudgedLights> make(const TargetSurface& surface, const TargetRays& target,
                                                  std::span<const std::uint32_t> interest,
                                                  const FeatureClusters& features, std::span<const Vec3> places_world_m,
@@ -54,15 +54,15 @@ class JudgedLights {
   JudgedLights(JudgedLights&&) noexcept;
   JudgedLights& operator=(JudgedLights&&) noexcept;
 
-  /// None taken yet; must not outlive this. A light more is selection.add(), one less remove(): a step each.
+  /// An empty selection; must not outlive this. selection.add() and remove() change it by one light each.
   [[nodiscard]] JudgedSelection selection() const;
-  /// Aims of the lights taken, refined between the candidates, each in turn, down to a sixty-fourth of the beam.
+  /// Refines the aims of the chosen lights between the candidates, each in turn, down to a sixty-fourth of the beam.
   void refine_aims(JudgedSelection& selection) const;
 
-  /// Begun one by one by contrast, and once more with those that votes would take; settled and refined, the better of
-  /// both. Refuses a number outside 1…64.
+  /// The better of two starts, both settled and refined: one by one by contrast, and with the lights that votes would
+  /// choose. Refuses a number outside 1…64.
   [[nodiscard]] Result<JudgedLightSet> lights(int lights) const;
-  /// From one to most_lights, each from the one before, or from those that votes would take.
+  /// For one light up to most_lights, each started from the one before or from the lights that votes would choose.
   [[nodiscard]] Result<JudgedLightCount> count_lights(int most_lights) const;
 
   [[nodiscard]] std::span<const JudgedLight> candidates() const;
@@ -71,9 +71,10 @@ class JudgedLights {
 
  private:
   struct State;
-  /// `lights` of them, the taken ones first, as far as there are enough; settled and refined. False when stopped.
+  /// Fills up to `lights` lights, keeping the chosen ones first, as far as there are enough; settled and refined. False
+  /// when stopped.
   bool complete(JudgedSelection& selection, int lights) const;
-  /// None when votes take too few, or one light is wanted, which is judged by trying all.
+  /// Empty when votes choose too few, or for a single light, which is found by trying all.
   [[nodiscard]] std::optional<JudgedSelection> begun_by_votes(int lights) const;
   explicit JudgedLights(std::unique_ptr<State> state);
   std::unique_ptr<State> state_;

@@ -9,9 +9,9 @@
 namespace luxrig {
 namespace {
 
-/// A light gives way for a gain of more than this share: less is rounding, and would let two take turns for ever.
+/// Least gain for which a light is replaced: less is rounding, and could make two alternate for ever.
 constexpr double kLeastJudgedGain = 1e-6;
-/// What rounding of float sums may put a sum's contrast above that of its parts.
+/// Possible excess of a sum's contrast over that of its parts, by float rounding.
 constexpr double kBoundSlack = 1e-5;
 
 }  // namespace
@@ -134,7 +134,7 @@ void JudgedSelection::remove(std::size_t i) {
 
 bool JudgedSelection::settle(int most_rounds) {
   bool any = false;
-  std::size_t settled = 0;  // lights in a row that none can better
+  std::size_t settled = 0;  // lights in a row that cannot be improved
   for (std::size_t step = 0; settled < taken_.size() && step < static_cast<std::size_t>(most_rounds) * taken_.size();
        ++step) {
     const std::size_t k = step % taken_.size();

@@ -1,5 +1,5 @@
 #pragma once
-/// Lights chosen for the local contrast that they make together: arithmetic on what each gives at every sample.
+/// Lights chosen for their joint local contrast: arithmetic on the light of each at every sample.
 
 #include <optional>
 
@@ -11,59 +11,60 @@ namespace luxrig {
 /// A luminaire as it would hang, and its light.
 struct JudgedLight {
   Vec3 position_world_m = Vec3::Zero();
-  Vec3 direction = -Vec3::UnitZ();  ///< unit, in which it shines
-  std::uint32_t place = 0;          ///< of JudgedLights
+  Vec3 direction = -Vec3::UnitZ();  ///< unit, of its beam
+  std::uint32_t place = 0;          ///< index in JudgedLights
   std::vector<float> lux;           ///< at each of the samples' points
 };
 
 struct JudgedWishes {
-  /// Of choices much alike in contrast the one that shows more features: what is made large is contrast × (1 + this ×
-  /// coverage). So for coverage no more than this share of the contrast is given away.
+  /// Of choices with similar contrast, prefers the one that shows more features: the objective is contrast × (1 + this
+  /// × coverage). So coverage costs at most this share of the contrast.
   double coverage_weight = 0.1;
-  /// Lights are so far apart as seen from the object. Contrast is convex in the lights' levels: without it the best of
-  /// several are one place many times over.
+  /// Least angle between lights as seen from the object. Contrast is convex in the lights' levels: without a limit the
+  /// best set is one place many times over.
   double least_angle_rad = rad_from_deg(30);
-  double seen_lx = 0;            ///< a shadow's edge shows its feature where its lit side gets more than this
-  std::vector<float> fixed_lux;  ///< light that stays, at each of the samples' points; empty: darkness
+  double seen_lx = 0;            ///< a shadow edge shows its feature if its lit side gets more than this
+  std::vector<float> fixed_lux;  ///< light that stays on, at each sample point; empty = darkness
 };
 
 struct JudgedScore {
   double local_contrast_lx = 0, exposed_contrast = 0;  ///< as in SampleContrast
-  double coverage = 0;                                 ///< share of features where one of the lights draws an edge seen
+  double coverage = 0;                                 ///< share of features where a light draws a visible edge
   double judged = 0;                                   ///< contrast × (1 + weight × coverage)
 };
 
-/// Lights taken so far. Local contrast is a seminorm of the illuminance: the sum of two has no more than both together.
-/// So a candidate whose own contrast would not lift what there is above the best so far is never added up; which of
-/// them is taken does not depend on that.
+/// Lights chosen so far. Local contrast is a seminorm of the illuminance: the contrast of a sum is at most the sum of
+/// the contrasts. So a candidate whose own contrast cannot lift the total above the best so far is skipped; that does
+/// not change the choice.
 class JudgedSelection {
  public:
-  /// All must stay.
+  /// All must outlive it.
   /// features     one cluster per interest point of the samples (asserted)
   /// candidates   each with lux for all samples (asserted)
-  /// middle_world_m   of the object: where angles between lights are measured
+  /// middle_world_m   of the object: vertex of the angles between lights
   JudgedSelection(const ContrastSamples& samples, const FeatureClusters& features,
                   std::span<const JudgedLight> candidates, const Vec3& middle_world_m, JudgedWishes wishes);
 
-  /// Takes the candidate that is best beside those taken, which stay as they are. Nothing when none is left that keeps
-  /// its distance from them and lights anything. Ties: the one that has more contrast of its own.
+  /// Adds the best candidate, with the chosen ones fixed. Empty when no candidate is left that stands apart from them
+  /// and lights anything. Ties: the one with more contrast of its own.
   std::optional<std::uint32_t> add();
   void add(std::uint32_t candidate);
-  /// Whether it keeps its distance from those taken.
+  /// Whether it keeps its distance from the chosen lights.
   [[nodiscard]] bool stands_apart(std::uint32_t candidate) const;
-  void remove(std::size_t i);  ///< the i-th taken; those after it move up
-  /// Each light in turn gives way to the candidate that is best beside the others, until none does or so many rounds
-  /// are over. Whether any did.
+  void remove(std::size_t i);  ///< the i-th chosen; later ones move up
+  /// Replaces each light in turn by the best candidate with the others fixed, until no replacement gains or after
+  /// most_rounds. True if any light was replaced.
   bool settle(int most_rounds = 8);
-  /// The i-th taken shines otherwise, if that is judged better. Whether it was.
+  /// Replaces the i-th chosen light by this one if that is judged better. True if so.
   bool improve(std::size_t i, const JudgedLight& light);
 
   [[nodiscard]] std::span<const JudgedLight> taken() const { return taken_; }
   [[nodiscard]] JudgedScore score() const;
   [[nodiscard]] const JudgedWishes& wishes() const { return wishes_; }
-  /// Contrast of each candidate alone, above that of light that stays at most so much is gained by it [lx].
+  /// Contrast of each candidate alone: upper bound of its gain over fixed light [lx].
   [[nodiscard]] const std::vector<double>& alone_lx() const { return alone_lx_; }
-  [[nodiscard]] std::uint64_t added_up() const { return added_up_; }  ///< candidates beside others, by all steps so far
+  [[nodiscard]] std::uint64_t added_up() const { return added_up_; }  ///< candidates added to others, in all steps so
+                                                                      ///< far
 
  private:
   using Shown = std::vector<std::uint64_t>;  // a bit per feature

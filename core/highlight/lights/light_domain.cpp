@@ -13,12 +13,13 @@ namespace luxrig {
 namespace {
 
 constexpr int kFinestCellSide = 1024;
-/// Pieces of a cell's surface: of this share of its width, but not smaller than this share of the domain.
+/// Size of the pieces of a cell's surface: share of the cell's width, and least share of the domain's size.
 constexpr double kPieceOfCell = 0.25, kSmallestPiece = 0x1p-12;
-/// A corner of a layer moves along the mean normal at most so many times the offset; else along the triangle's.
+/// A layer's corner moves along the mean normal by at most this many times the offset; beyond that along the
+/// triangle's.
 constexpr double kFarthestMitre = 4;
 
-/// Which contiguous piece each triangle belongs to; numbered in the order of their first triangles.
+/// The contiguous piece of each triangle; numbered by their first triangles.
 std::vector<std::uint32_t> parts_of(const TargetSurface& surface, std::uint32_t& count) {
   std::vector<std::uint32_t> parent(surface.points_m.size());
   std::iota(parent.begin(), parent.end(), 0u);
@@ -160,7 +161,7 @@ Result<LightDomain> mesh_light_domain(const Scene& scene, std::span<const std::u
     }
     chosen.triangles.push_back(scene.triangles[t]);
   }
-  // Vertices that no chosen triangle uses are of no concern.
+  // Vertices that no chosen triangle uses do not matter.
   for (Vec3f& vertex : chosen.vertices_m)
     if (!vertex.allFinite()) vertex.setZero();
   if (!scene.origin_world_m.allFinite()) return refusal("the light domain's origin is not finite");

@@ -1,5 +1,5 @@
 #pragma once
-/// Where luminaires may be (thesis §6.5.1): chosen surfaces with layers above them, or boxes around the target.
+/// Possible places of luminaires (thesis §6.5.1): chosen surfaces with layers above them, or boxes around the target.
 
 #include <memory>
 #include <span>
@@ -13,37 +13,37 @@
 namespace luxrig {
 
 struct LightDomainOptions {
-  /// One copy of the surfaces for each, so far off along their normals; negative: behind them.
+  /// One copy of the surfaces for each, offset along their normals; negative = behind them.
   std::vector<double> layer_offsets_m = {0};
   int cell_side = 16;  ///< of DirectionBins: cells are 59° / side wide as seen from the target
 };
 
-/// 0, step, 2 step …: the thesis's layers. requires layers ≥ 1 (asserted)
+/// 0, step, 2 step …: the thesis's layers. Asserted: layers ≥ 1.
 [[nodiscard]] std::vector<double> even_layers_m(int layers, double step_m = 0.1);
 
 struct NestedBoxOptions {
-  int boxes = 3;        ///< each is a layer; the smallest is the first
-  double margin_m = 0;  ///< from the target's bounding box to the first; 0: half that box's diagonal
-  double step_m = 0;    ///< from each to the next; 0: as the margin
+  int boxes = 3;        ///< each is a layer, smallest first
+  double margin_m = 0;  ///< from the target's bounding box to the first; 0 = half that box's diagonal
+  double step_m = 0;    ///< from each to the next; 0 = the margin
   int cell_side = 16;
 };
 
-/// A cell of the domain: what lies, seen from the target's centre, within one of DirectionBins' cells of equal area
-/// (which serve here instead of the thesis's tessellated icosahedron, whose cells are not of equal area), on one layer,
-/// and belongs together. A group is a layer of one contiguous piece of the surfaces, so that a rail in front of a wall
-/// is not averaged with it; a piece that folds back on itself as seen from the centre is.
+/// A cell of the domain: the part of one group that lies, seen from the target's centre, within one of DirectionBins'
+/// cells. These have equal area, unlike the thesis's tessellated icosahedron. A group is one layer of one contiguous
+/// piece of the surfaces, so a rail in front of a wall is not averaged with the wall. A piece that folds back on itself
+/// as seen from the centre is averaged.
 struct DomainCell {
   std::uint32_t group, bin;
   auto operator<=>(const DomainCell&) const = default;
 };
 
 struct DomainHit {
-  std::uint32_t ray;       ///< index of the direction asked for
+  std::uint32_t ray;       ///< index of the direction
   std::uint32_t triangle;  ///< of LightDomain::triangles
   double distance_m;
 };
 
-/// Immutable; may be asked from many threads.
+/// Immutable and thread-safe.
 class LightDomain {
  public:
   struct Triangle {
@@ -62,8 +62,8 @@ class LightDomain {
   [[nodiscard]] std::uint32_t groups() const;
   [[nodiscard]] std::uint32_t layer_of(std::uint32_t group) const;
 
-  /// Every hit along each ray, on all layers, appended by ray, group and distance. A ray through an edge that two
-  /// triangles of a group share hits it once. Directions need not be unit, distances are in metres all the same.
+  /// Appends every hit along each ray, on all layers, by ray, group and distance. A ray through an edge shared by two
+  /// triangles of a group hits it once. Directions need not be unit; distances are in metres in any case.
   void hits_along(const Vec3& from_world_m, std::span<const Vec3f> directions_world,
                   std::vector<DomainHit>& hits) const;
 
@@ -74,8 +74,8 @@ class LightDomain {
     Vec3 position_world_m;
     double area_m2;
   };
-  /// All cells and their middles, by cell: their surface is cut into pieces of a quarter of a cell, as far as
-  /// 2^-12 of the domain's size; the piece whose middle is nearest to the mean of all, weighted by area.
+  /// All cells and their centres, by cell. A cell's surface is cut into pieces of a quarter of the cell's width, at
+  /// least 2^-12 of the domain's size. The centre is that of the piece nearest to the area-weighted mean.
   [[nodiscard]] std::vector<CellCentre> cell_centres() const;
 
  private:
@@ -89,16 +89,17 @@ class LightDomain {
   std::unique_ptr<State> state_;
 };
 
-/// Surfaces of a mesh. A layer's triangles lie in planes exactly that far off; at shared corners they move along the
-/// mean normal, so that layers of a curved surface, or of a box, stay closed.
-/// of_triangles     one mark per triangle; empty: all
+/// Surfaces of a mesh. A layer's triangles lie in planes at exactly that offset; shared corners move along the mean
+/// normal, so that layers of a curved surface or a box stay closed.
+/// of_triangles     one flag per triangle; empty = all
 /// centre_world_m   of the target: TargetSurface::centroid_world_m
-/// Refuses a domain without area, coordinates and offsets that are not finite, no layer, and a cell_side outside
+/// Refuses a domain without area, coordinates and offsets that are not finite, no layers, and a cell_side outside
 /// 1…1024.
 [[nodiscard]] Result<LightDomain> mesh_light_domain(const Scene& scene, std::span<const std::uint8_t> of_triangles,
                                                     const Vec3& centre_world_m, const LightDomainOptions& options);
 
-/// Where none is given. Refuses a target without area, fewer than one box, and sizes that are negative or not finite.
+/// For targets without a given domain. Refuses a target without area, fewer than one box, and sizes that are negative
+/// or not finite.
 [[nodiscard]] Result<LightDomain> nested_box_domain(const TargetSurface& target, const NestedBoxOptions& options);
 
 }  // namespace luxrig

@@ -1,4 +1,4 @@
-// Every hit of a ray with a light domain: Embree's filter is told of each and lets the ray go on.
+// Every hit of a ray with a light domain: Embree's filter records each and lets the ray continue.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,7 +12,7 @@ namespace luxrig {
 namespace {
 
 constexpr std::size_t kDomainPacket = 16;
-/// Hits of one group nearer together than this share of their distance are one, at an edge that triangles share.
+/// Hits of one group nearer together than this share of their distance count as one, at an edge shared by triangles.
 constexpr double kSameHit = 1e-5;
 
 struct FoundOnDomain {
@@ -21,7 +21,7 @@ struct FoundOnDomain {
 };
 
 struct DomainQuery {
-  RTCIntersectContext context;  // first: Embree's pointer to it is one to this
+  RTCIntersectContext context;  // must be first: Embree's pointer to it is also a pointer to DomainQuery
   std::vector<FoundOnDomain>* found;
 };
 
@@ -51,7 +51,7 @@ void LightDomain::State::build() {
   LUXRIG_CHECK(device != nullptr, "Embree error {}", static_cast<int>(rtcGetDeviceError(nullptr)));
   scene = rtcNewScene(device);
   rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-  // Medium: results must not depend on the timing of threads, and no triangle may be split, or its hits come twice.
+  // Medium: results must not depend on thread timing, and no triangle may be split, or its hits come twice.
   rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, vertices_m.data(), 0,
@@ -91,8 +91,8 @@ void LightDomain::hits_along(const Vec3& from_world_m, std::span<const Vec3f> di
       rays.dir_x[k] = direction.x();
       rays.dir_y[k] = direction.y();
       rays.dir_z[k] = direction.z();
-      // Where processors have no lanes for 16, Embree 3.13 takes two times 8 and forgets which are valid. A ray that
-      // ends before it begins is none.
+      // On processors without 16 lanes, Embree 3.13 casts 8 twice and ignores the valid mask. A ray that ends before it
+      // begins has no hits.
       rays.tfar[k] = valid[k] != 0 ? std::numeric_limits<float>::infinity() : -std::numeric_limits<float>::infinity();
       rays.time[k] = 0;
       rays.mask[k] = ~0u;
@@ -105,7 +105,8 @@ void LightDomain::hits_along(const Vec3& from_world_m, std::span<const Vec3f> di
   for (const FoundOnDomain& one : found) {
     const Vec3 direction = directions_world[one.ray].cast<double>();
     const Triangle& triangle = state.triangles[one.triangle];
-    // Where the ray meets the triangle's plane, in double; unless it runs so flat along it that this says less.
+    // Distance to the triangle's plane in double, unless the ray is so nearly parallel to it that this is less
+    // accurate.
     const double length = direction.norm(), across = triangle.normal.dot(direction);
     double distance_m = one.along * length;
     const double exact_m = triangle.normal.dot(triangle.corners_m[0] - from_m) / across * length;

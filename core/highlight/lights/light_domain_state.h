@@ -1,5 +1,5 @@
 #pragma once
-/// Internal to light_domain*.cpp: what a LightDomain holds.
+/// Internal to light_domain*.cpp: the data of a LightDomain.
 
 #include <embree3/rtcore.h>
 
@@ -14,8 +14,8 @@ struct LightDomain::State {
   DirectionBins bins;
   std::vector<Triangle> triangles;
   std::vector<std::uint32_t> layer_of_group;
-  double size_m = 0;              // farthest corner from the centre
-  std::vector<Vec3f> vertices_m;  // three per triangle, and one more, for Embree
+  double size_m = 0;              // from the centre to the farthest corner
+  std::vector<Vec3f> vertices_m;  // three per triangle, and one extra for Embree
   std::vector<std::array<std::uint32_t, 3>> indices;
 
   explicit State(int cell_side) : bins(cell_side) {}

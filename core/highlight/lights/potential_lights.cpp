@@ -25,7 +25,7 @@ void add_light(const DomainVotes& votes, std::uint32_t cell, const Vec3& towards
     if ((vote.direction.cast<double>() - towards).squaredNorm() <= chord2 && votes.weight(vote) > 0)
       mine.push_back(&vote);
   if (mine.empty()) return;
-  // Votes come by point, and stay so within each feature.
+  // Votes come sorted by point, and stay so within each feature.
   std::stable_sort(mine.begin(), mine.end(),
                    [](const DomainVote* a, const DomainVote* b) { return a->feature < b->feature; });
   Vec3 sum = Vec3::Zero();

@@ -34,7 +34,7 @@ void sort_into_cells(const LightDomain& domain, std::vector<GatheredPart>& parts
                      std::span<const std::uint32_t> feature_of_point, DomainVotes& votes, int threads) {
   const std::vector<DomainCell> cells = cells_voted_for(parts, threads);
   for (const DomainCell& cell : cells) votes.cells.push_back({cell, domain.layer_of(cell.group), Vec3::Zero()});
-  // A vote's cell becomes its index: it is looked for once, by many threads.
+  // Replaces a vote's cell by its index: one look-up each, in parallel.
   parallel_for(parts.size(), threads, [&](std::size_t p) {
     for (GatheredVote& vote : parts[p].votes)
       vote.cell.bin =

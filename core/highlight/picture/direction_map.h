@@ -1,13 +1,13 @@
 #pragma once
-/// The sphere of directions on paper: two discs of equal area to scale.
+/// Flat map of the sphere of directions: two discs with areas to scale.
 
 #include "core/geometry.h"
 
 namespace luxrig {
 
-/// Directions from an object, as one who looks at it sees them: on the front disc those towards the viewer's side, on
-/// the other those behind the object, seen through it, so that left stays left on both. Lambert's azimuthal
-/// projection: equal solid angles have equal areas (J. Snyder, "Map projections: a working manual", 1987, p. 182).
+/// Directions from an object as its viewer sees them. The front disc has those towards the viewer's side. The other has
+/// those behind the object, seen through it, so that left stays left on both. Lambert's azimuthal projection: equal
+/// solid angles have equal areas (J. Snyder, "Map projections: a working manual", 1987, p. 182).
 class DirectionMap {
  public:
   struct Place {
@@ -19,7 +19,7 @@ class DirectionMap {
   explicit DirectionMap(const Vec3& towards_viewer);
 
   [[nodiscard]] Place place_of(const Vec3& direction) const;  ///< need not be unit; not zero
-  [[nodiscard]] Vec3 direction_at(const Place& place) const;  ///< unit; a place outside the circle counts as on it
+  [[nodiscard]] Vec3 direction_at(const Place& place) const;  ///< unit; a place outside the circle is moved onto it
 
  private:
   Vec3 right_, up_, front_;

@@ -14,7 +14,7 @@ std::vector<std::uint32_t> feature_colours(std::span<const OrientedPoint> points
   LUXRIG_CHECK(colours >= 1, "{} colours", colours);
   LUXRIG_CHECK(points.size() == features.cluster_of_point.size(), "{} points, {} of clusters", points.size(),
                features.cluster_of_point.size());
-  // Pairs that are near each other, by a sweep along x.
+  // Finds near pairs by a sweep along x.
   std::vector<std::uint32_t> along(points.size());
   std::iota(along.begin(), along.end(), 0u);
   const auto x_of = [&](std::uint32_t i) { return points[i].position_world_m.x(); };

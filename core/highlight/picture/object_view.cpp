@@ -9,7 +9,7 @@
 namespace luxrig {
 namespace {
 
-/// As ray_direction has them.
+/// As in ray_direction.
 struct CameraAxes {
   Vec3 ahead, right, up;
 };
@@ -38,7 +38,7 @@ Camera camera_that_shows(std::span<const Vec3> points_world_m, const Vec3& towar
   LUXRIG_CHECK(towards_eye.norm() > 0, "no direction");
   const CameraAxes axes = camera_axes(-towards_eye.normalized());
   const double slope_up = fill * std::tan(vertical_fov_rad / 2), slope_right = slope_up * width_px / height_px;
-  // A point is within the wanted rectangle if ±(x - x_eye) ≤ slope · (z - z_eye): the tightest of these on each side.
+  // A point is within the wanted rectangle if ±(x - x_eye) ≤ slope · (z - z_eye): keep the tightest on each side.
   constexpr double kNone = -std::numeric_limits<double>::infinity();
   double left = kNone, right = kNone, below = kNone, above = kNone, middle_z = 0;
   const Vec3& first = points_world_m.front();
@@ -64,7 +64,7 @@ Camera camera_that_shows(std::span<const Vec3> points_world_m, const Vec3& towar
 
 namespace {
 
-/// A view from a less usual height must show so much more.
+/// Extra share that a view from a less usual height must show.
 constexpr double kWorthwhileShare = 0.01;
 
 double share_in_sight(const RayScene& scene, const CutAwayCamera& view, std::span<const Sight> wanted) {

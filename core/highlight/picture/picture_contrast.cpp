@@ -9,7 +9,7 @@
 namespace luxrig {
 namespace {
 
-/// Sums over rectangles from one corner of the picture: any window costs four look-ups.
+/// Summed-area table from one corner of the picture: any window costs four look-ups.
 class WindowSums {
  public:
   WindowSums(const Picture& picture)

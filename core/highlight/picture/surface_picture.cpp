@@ -46,7 +46,7 @@ std::optional<SurfaceCorners> corners_at(const Scene& target, const TargetSurfac
   if (!(area.squaredNorm() > 0)) return std::nullopt;
   double sum = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    // The part of the triangle that lies opposite; rounding may put the place a little outside.
+    // Weight = area of the opposite part; rounding may put the place slightly outside.
     corners.weights[i] = std::max(0.0, way_m[(i + 1) % 3].cross(way_m[(i + 2) % 3]).dot(area) / area.squaredNorm());
     sum += corners.weights[i];
   }
@@ -95,8 +95,8 @@ bool SurfacePicture::draw(const RayScene& scene, const ColourOf& colour_of, int 
   return true;
 }
 
-/// All samples that a ball may be seen in: the rectangle around the corners of its cube, or everything when the cube
-/// reaches behind the eye.
+/// All samples that may show a ball: the rectangle around the corners of its cube, or everything when the cube reaches
+/// behind the eye.
 SurfacePicture::Area SurfacePicture::area_of(const Vec3& centre_world_m, double radius_m) const {
   Area area{width_, 0, height_, 0};
   for (int corner = 0; corner < 8; ++corner) {
@@ -141,7 +141,7 @@ void SurfacePicture::draw(std::span<const Disc> discs) {
 }
 
 void SurfacePicture::draw(const DrawnLine& line) {
-  // What lies behind the eye's plane is cut off.
+  // Cuts off the part behind the eye's plane.
   const Vec3 ahead = (camera_.target_world_m - camera_.eye_world_m).normalized();
   Vec3 from_m = line.from_world_m - camera_.eye_world_m, to_m = line.to_world_m - camera_.eye_world_m;
   if (from_m.dot(ahead) > to_m.dot(ahead)) std::swap(from_m, to_m);
@@ -166,7 +166,7 @@ void SurfacePicture::draw(const DrawnLine& line) {
       const Eigen::Vector2d here(x + 0.5, y + 0.5);
       const double along = std::clamp((here - a).dot(b - a) / length2, 0.0, 1.0);
       if ((here - a - along * (b - a)).squaredNorm() > half * half) continue;
-      // Evenly in the picture is not evenly in space: 1 / ahead is linear along the line in the picture.
+      // Even steps in the picture are not even in space: 1 / ahead is linear along the line in the picture.
       const double share = along * from->ahead_m / ((1 - along) * to->ahead_m + along * from->ahead_m);
       const double distance_m = (from_m + share * (to_m - from_m)).norm();
       Sample& sample = at(x, y);

@@ -1,6 +1,6 @@
 #pragma once
-/// Pictures of what a surface is like, not of its light: each sample of the picture is coloured by whoever asks, and
-/// discs and lines are drawn among the surfaces, hidden where they are behind one.
+/// Pictures of surface properties, not of light: the caller colours each sample. Discs and lines are drawn among the
+/// surfaces and hidden behind them.
 
 #include <array>
 #include <functional>
@@ -21,26 +21,26 @@ struct ColourPicture {
   std::vector<Vec3f> rgb;
 };
 
-/// The three points of a surface that a place on its mesh lies between.
+/// The three points of a surface around a place on its mesh, with weights.
 struct SurfaceCorners {
   std::array<std::uint32_t, 3> points;
-  std::array<double, 3> weights;  ///< of each, ≥ 0, together 1
+  std::array<double, 3> weights;  ///< of each, ≥ 0; their sum is 1
 
-  [[nodiscard]] Vec3 normal(const TargetSurface& surface) const;        ///< smooth, unit; zero where the points' cancel
+  [[nodiscard]] Vec3 normal(const TargetSurface& surface) const;        ///< smooth, unit; zero where normals cancel
   [[nodiscard]] double value(std::span<const double> of_points) const;  ///< linear between them
 };
 
-/// A place that a ray met; nothing on triangles that the surface leaves out, as they have no area.
-/// target    that the surface was made of, and the rays' scene
+/// Corners around a ray's hit; empty on triangles that the surface leaves out because they have no area.
+/// target    the scene of both the surface and the rays
 [[nodiscard]] std::optional<SurfaceCorners> corners_at(const Scene& target, const TargetSurface& surface,
                                                        const Hit& hit);
 
-/// Flat, in space. Seen from both sides.
+/// A flat disc in space, seen from both sides.
 struct Disc {
   Vec3 centre_world_m;
-  Vec3 normal;  ///< unit; zero: it faces the eye
+  Vec3 normal;  ///< unit; zero = it faces the eye
   double radius_m = 0;
-  /// It counts as so much nearer to the eye than it is: one that lies on a bent surface is not cut by it.
+  /// It counts as this much nearer to the eye, so that a curved surface under it does not cut it.
   double lift_m = 0;
   Vec3f rgb = Vec3f::Zero();
   double opacity = 1;  ///< 0…1
@@ -54,28 +54,28 @@ struct DrawnLine {
   double lift_m = 0;          ///< as of a Disc
 };
 
-/// A picture under work: samples_per_edge² samples a pixel, evenly spaced, each with a colour and how far off what it
-/// sees is. The same for any number of threads.
+/// A picture in progress: samples_per_edge² evenly spaced samples a pixel, each with a colour and a distance. The
+/// result does not depend on the number of threads.
 class SurfacePicture {
  public:
-  /// What nearest to the eye than near_m is left away, so that one may look into a room through its wall.
-  /// requires a picture of 1 to 16384 pixels each way, 1 to 8 samples per edge (asserted)
+  /// Everything nearer to the eye than near_m is left out, so that one can look into a room through its wall.
+  /// Asserted: 1 to 16384 pixels each way, 1 to 8 samples per edge.
   SurfacePicture(const Camera& camera, int samples_per_edge, double near_m, const Vec3f& background_rgb);
 
-  /// sRGB of what a sample sees. Called from many threads.
+  /// sRGB of the hit of a sample. Called from many threads.
   using ColourOf = std::function<Vec3f(const Hit& hit, const Vec3& towards_eye)>;
 
-  /// Nearest surface of each sample, where it is nearer than what was drawn before. False if stopped.
+  /// Draws the nearest surface of each sample if it is nearer than earlier drawings. False if stopped.
   bool draw(const RayScene& scene, const ColourOf& colour_of, int threads, const Watch& watch);
 
-  /// Far ones first; what was drawn by draw() hides them, they do not hide one another but by being drawn over.
+  /// Farthest first. Surfaces drawn by draw() hide them; discs only overdraw one another.
   void draw(std::span<const Disc> discs);
-  void draw(const DrawnLine& line);  ///< also what of it is nearer than near_m
+  void draw(const DrawnLine& line);  ///< including the part nearer than near_m
 
-  /// Means over the samples of each pixel.
+  /// Mean of the samples of each pixel.
   [[nodiscard]] ColourPicture resolved() const;
 
-  /// Is this place in the picture, and nothing drawn by draw(scene) before it (lift_m nearer to the eye)?
+  /// Whether this place is in the picture with no surface drawn in front of it (lift_m nearer to the eye).
   [[nodiscard]] bool shows(const Vec3& place_world_m, double lift_m) const;
 
  private:

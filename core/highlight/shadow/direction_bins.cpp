@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kPointsPerVote = 64;
 constexpr int kFinestSide = 1024;
 
-/// Ring and place in a polar cap that has `before` cells up to and with the wanted one.
+/// Ring (from 1) of a cell in a polar cap. twice: 2 · number of the cell, counted from 0 at the pole, + 1.
 std::int64_t ring_in_cap(std::int64_t twice) {
   auto root = static_cast<std::int64_t>(std::sqrt(static_cast<double>(twice)));
   while (root * root > twice) --root;
@@ -44,7 +44,7 @@ std::uint32_t DirectionBins::bin_of(const Vec3& direction) const {
     place = (place % (4 * side) + 4 * side) % (4 * side);
     return static_cast<std::uint32_t>(2 * side * (side - 1) + (ring - 1) * 4 * side + place);
   }
-  // 1 - |z| without what a subtraction loses near the poles.
+  // 1 - |z| without the cancellation near the poles.
   const double across2 = (direction.x() * direction.x() + direction.y() * direction.y()) / (length * length);
   const double from_pole = n * std::sqrt(3 * across2 / (1 + std::abs(z))), within = quarter - std::floor(quarter);
   const auto rising = static_cast<std::int64_t>(std::floor(within * from_pole));

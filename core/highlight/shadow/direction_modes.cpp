@@ -17,7 +17,7 @@ constexpr std::size_t kModeLeaf = 8;
 
 struct WeighedDirection {
   std::uint32_t bin;
-  Vec3 direction;  // a sum until it is made unit
+  Vec3 direction;  // a sum until normalised
   double weight;
 };
 
@@ -91,7 +91,8 @@ std::vector<DirectionMode> direction_modes(std::span<const Vec3f> directions, st
     DirectionMode mode{start.direction, 0};
     for (int shift = 0; shift < kMostShifts; ++shift) {
       const Vec3 sum = mean_around(mode.direction, mode.weight);
-      // Nothing near a start that is the mean of far ones; or directions that cancel, in a window of half a sphere.
+      // No direction near a start that is the mean of far ones; or directions that cancel, in a window of half a
+      // sphere.
       if (!(mode.weight > 0) || !(sum.norm() > 1e-9 * mode.weight)) break;
       const Vec3 next = sum.normalized();
       const double moved = (next - mode.direction).norm();

@@ -41,7 +41,7 @@ std::vector<Vec3> first_means(const std::vector<VotedBin>& bins, std::size_t wan
   return means;
 }
 
-/// The mean by angle: where weighted steps towards all directions, along great circles, cancel.
+/// The spherical mean: the point where weighted steps along great circles to all directions cancel.
 Vec3 mean_on_sphere(const std::vector<VotedBin>& bins, std::size_t cluster, Vec3 mean) {
   for (int round = 0; round < 20; ++round) {
     Vec3 step = Vec3::Zero();

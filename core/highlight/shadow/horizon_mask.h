@@ -1,5 +1,5 @@
 #pragma once
-/// The scan of a hemisphere: which of 360 × 90 directions are blocked.
+/// Scan of a hemisphere: a bit for each of 360 × 90 directions, set if blocked.
 
 #include <array>
 #include <cstdint>
@@ -12,8 +12,8 @@ namespace luxrig {
 inline constexpr int kScanAzimuths = 360;
 inline constexpr int kScanElevations = 90;
 
-/// Directions of the scan around a normal. Azimuth i is i degrees from an axis at right angles to the normal, elevation
-/// j is j + ½ degrees above the plane: so none lies in the plane, and at the apex no two coincide.
+/// Directions of the scan around a normal. Azimuth i is i degrees from an axis at right angles to the normal; elevation
+/// j is j + ½ degrees above the plane. So none lies in the plane, and no two coincide at the apex.
 class ScanFrame {
  public:
   explicit ScanFrame(const Vec3& normal);
@@ -23,7 +23,7 @@ class ScanFrame {
   Vec3f x_, y_, normal_;
 };
 
-/// A bit for each direction of a scan; one row per elevation, azimuths around it.
+/// A bit for each direction of a scan; one row per elevation, azimuths along it.
 class HorizonMask {
  public:
   static constexpr int kWords = (kScanAzimuths + 63) / 64;

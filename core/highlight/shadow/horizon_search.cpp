@@ -1,4 +1,4 @@
-// The scan of a hemisphere with a tenth of its rays: sparse rays, then along every border between blocked and open.
+// Scan of a hemisphere with a tenth of the rays: sparse rays, then along every border between blocked and open.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -11,16 +11,16 @@ namespace {
 using MaskRow = HorizonMask::Row;
 
 constexpr int kCoarsestStep = 8;
-/// A patch as small as the gaps between the first rays is met by one of them, or missed: so one that was met tells of
-/// several that were not, and then every direction is asked.
+/// A first ray may meet or miss a patch smaller than the gaps between them. One such hit means several missed patches,
+/// so every direction is then traced.
 constexpr int kLonelyRays = 1;
 
-/// One of the first rays; it stands for `gap` azimuths around it.
+/// One of the first rays; it represents `gap` azimuths around it.
 struct SparseRay {
   int azimuth, elevation, gap;
 };
 
-/// Per step: rows `step` apart, and within a row azimuths that are as far from each other on the sphere.
+/// Per step: rows `step` apart; within a row, azimuths about as far apart on the sphere.
 const std::array<std::vector<SparseRay>, kCoarsestStep + 1>& sparse_rays() {
   static const auto all = [] {
     std::array<std::vector<SparseRay>, kCoarsestStep + 1> made;
@@ -31,7 +31,7 @@ const std::array<std::vector<SparseRay>, kCoarsestStep + 1>& sparse_rays() {
         const int gap = std::clamp(static_cast<int>(step / along), step, kScanAzimuths / 8);
         for (int i = 0; i < kScanAzimuths; i += gap) order.push_back({i, j, gap});
       }
-      // Sixteen rays that go together are four in each of four rows.
+      // Sixteen rays cast together are four in each of four rows.
       const auto key = [&](const SparseRay& s) {
         return std::array{s.elevation / (4 * step), s.azimuth / (4 * s.gap), s.elevation, s.azimuth};
       };
@@ -57,7 +57,7 @@ class HorizonSearch {
     guess_rows_between(step);
     HorizonMask wanted;
     while (next_to_a_border(wanted)) {
-      // In squares of 8 × 4, so that rays that go together lie together.
+      // In blocks of 8 × 4, so that rays cast together lie together.
       for (int j = 0; j < kScanElevations; j += 4)
         for (int w = 0; w < HorizonMask::kWords; ++w)
           for (int shift = 0; shift < 64; shift += 8)
@@ -103,7 +103,7 @@ class HorizonSearch {
     }
   }
 
-  /// First rays that found otherwise than all four around them.
+  /// Number of first rays that differ from all four around them.
   [[nodiscard]] int lonely_rays(int step) const {
     int count = 0;
     for (const SparseRay& s : sparse_rays()[static_cast<std::size_t>(step)]) {
@@ -127,8 +127,8 @@ class HorizonSearch {
     }
   }
 
-  /// Marks what to ask next: guesses that differ from a neighbour. Of two guesses that differ the blocked one goes
-  /// first, since its answer often settles the other. False when nothing is left.
+  /// Marks the next rays: guesses that differ from a neighbour. Of two differing guesses the blocked one goes first,
+  /// since its answer often settles the other. False when nothing is left.
   [[nodiscard]] bool next_to_a_border(HorizonMask& wanted) const {
     const MaskRow full = HorizonMask::full_row();
     std::uint64_t any = 0;
@@ -141,7 +141,7 @@ class HorizonSearch {
       const MaskRow next_kb = HorizonMask::to_next(known_blocked),
                     previous_kb = HorizonMask::to_previous(known_blocked);
       for (std::size_t w = 0; w < b.size(); ++w) {
-        // Neighbours past the base and the apex: as the direction itself, so no border.
+        // Neighbours beyond the base and the apex equal the direction itself, so there is no border.
         const std::uint64_t below_b = j > 0 ? blocked_.rows[j - 1][w] : ~std::uint64_t{0};
         const std::uint64_t above_b = j + 1 < kScanElevations ? blocked_.rows[j + 1][w] : ~std::uint64_t{0};
         const std::uint64_t below_kb = j > 0 ? below_b & known_.rows[j - 1][w] : 0;

@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kPointsPerContrastTask = 256;
 constexpr std::uint32_t kNotAsked = ~0u;
 
-/// What points get from each beam: rows of points, columns of beams.
+/// Illuminance of points by beam: rows of points, columns of beams.
 struct LitPoints {
   std::size_t beams = 0;
   std::vector<std::uint8_t> lit;
@@ -22,7 +22,7 @@ struct LitPoints {
   }
 };
 
-/// light(position_world_m, normal, lux) writes what each beam gives there: 0 or less: nothing.
+/// light(position_world_m, normal, lux) writes the lux of each beam there; 0 or less = none.
 template <class Light>
 LitPoints lit_points(const TargetSurface& surface, std::span<const std::uint32_t> asked, std::size_t beams,
                      const Light& light, int threads) {

@@ -1,6 +1,5 @@
 #pragma once
-/// How well lights bring out interest points: the thesis's measures (§6.4.3, §6.5.5), for distant lights and for real
-/// ones.
+/// How well lights bring out interest points: the thesis's measures (§6.4.3, §6.5.5), for distant and for real lights.
 
 #include <span>
 #include <vector>
@@ -25,35 +24,35 @@ struct MountedBeam {
   double level = 1;  ///< of its rated flux
 };
 
-/// Aimed along a direction (unit); turned about it by the shortest way from straight down.
+/// Aimed along a direction (unit); rotated from straight down by the shortest rotation.
 [[nodiscard]] MountedBeam aimed_beam(const Vec3& position_world_m, const Vec3& direction_world, Intensity intensity,
                                      double level = 1);
 
 struct ReliefContrast {
-  /// Shadow transition: of two neighbours (ring()), one is lit by a beam and the other is not, as it faces away or
-  /// is shaded, or the beam ends between them.
+  /// Shadow transition: of two neighbours (ring()), a beam lights one but not the other, because it faces away or is
+  /// shaded, or because the beam ends between them.
   double points_with_transition = 0;  ///< share of the interest points with one to any neighbour, for any beam
   double pairs_with_transition = 0;   ///< share of all pairs (interest point, neighbour)
   double local_contrast_lx = 0;       ///< largest difference in illuminance to a neighbour, mean over interest points
-  double lit_points = 0;              ///< share of the interest points that some beam reaches
-  /// Feature coverage: share of the features with a transition at one of their points; 0 if they are not told.
+  double lit_points = 0;              ///< share of the interest points that at least one beam reaches
+  /// Feature coverage: share of the features with a transition at one of their points; 0 if no features are given.
   double features_with_transition = 0;
 };
 
-/// interest              indices of points of the surface. Zeros when there are none.
+/// interest              indices of points of the surface; if empty, all results are 0
 /// feature_of_interest   one per interest point (FeatureClusters), or empty
 [[nodiscard]] ReliefContrast relief_contrast(const TargetSurface& surface, const TargetRays& target,
                                              std::span<const std::uint32_t> interest,
                                              std::span<const DistantBeam> beams, double lift_m, int threads,
                                              std::span<const std::uint32_t> feature_of_interest = {});
 
-/// The same for luminaires: the target and what is given of its surroundings stand in their way.
+/// The same for luminaires, which the target and the given surroundings may block.
 [[nodiscard]] ReliefContrast relief_contrast(const TargetSurface& surface, const TargetRays& target,
                                              const Surroundings& surroundings, std::span<const std::uint32_t> interest,
                                              std::span<const MountedBeam> beams, double lift_m, int threads,
                                              std::span<const std::uint32_t> feature_of_interest = {});
 
-/// Illuminance [lx] at each of some points of the surface, as the measure above has it.
+/// Illuminance [lx] at given points of the surface, as in the measure above.
 [[nodiscard]] std::vector<double> illuminance_lx(const TargetSurface& surface, const TargetRays& target,
                                                  const Surroundings& surroundings,
                                                  std::span<const std::uint32_t> points,

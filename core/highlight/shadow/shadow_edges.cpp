@@ -19,7 +19,7 @@ constexpr std::size_t kPointsPerScanTask = 8;
 HorizonMask scan_every_direction(const TargetRays& target, const OrientedPoint& point, double lift_m) {
   const ScanFrame frame(point.normal);
   HorizonMask blocked;
-  // Sixteen at once are faster the nearer together they lie: 4 × 4.
+  // Sixteen rays at once are faster if they are close together: 4 × 4.
   std::array<Vec3f, 16> directions;
   std::array<std::uint8_t, 16> answers{};
   for (int j = 0; j < kScanElevations; j += 4) {
@@ -37,7 +37,7 @@ HorizonMask scan_every_direction(const TargetRays& target, const OrientedPoint& 
 }
 
 void append_edges(const HorizonMask& blocked, std::vector<ShadowEdge>& edges) {
-  // Rows first, where a word at a time says whether there is anything; then by azimuth, by counting.
+  // Rows first, one word at a time to skip empty ones; then a counting sort by azimuth.
   std::array<std::uint16_t, kScanAzimuths + 1> begin{};
   std::array<ShadowEdge, kScanAzimuths * kScanElevations> found;
   std::size_t count = 0;
@@ -118,7 +118,7 @@ ShadowEdges reachable_edges(const ShadowEdges& edges, std::span<const OrientedPo
     if (mine.empty()) return;
     const Vec3& from_m = points[i].position_world_m;
     double far_m = reach_m;
-    if (!std::isfinite(far_m)) {  // a little beyond the corner that is farthest
+    if (!std::isfinite(far_m)) {  // slightly beyond the farthest corner
       far_m = 0;
       if (!box.isEmpty())
         far_m = 1.01 * (from_m - box.center()).cwiseAbs().cwiseMax(box.sizes() / 2).norm() + box.diagonal().norm();

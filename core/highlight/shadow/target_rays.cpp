@@ -15,7 +15,7 @@ struct TargetRays::State {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
   Vec3 middle_world_m = Vec3::Zero();
-  std::vector<Vec3f> vertices_m;  // relative to the middle, where float is finest; one more than used, for Embree
+  std::vector<Vec3f> vertices_m;  // relative to the middle, where float is most accurate; one extra for Embree
   std::vector<std::array<std::uint32_t, 3>> triangles;
   double diagonal_m = 0;
 
@@ -46,8 +46,8 @@ TargetRays::TargetRays(const Scene& target) : state_(std::make_unique<State>()) 
   state.vertices_m.push_back(Vec3f::Zero());
   state.triangles = target.triangles;
 
-  // No files from the working folder or home may change how we trace; medium quality, as results must not depend on
-  // the timing of threads.
+  // No files from the working folder or home may change the tracing. Medium quality, since results must not depend on
+  // thread timing.
   state.device = rtcNewDevice("ignore_config_files=1,set_affinity=0");
   LUXRIG_CHECK(state.device != nullptr, "Embree error {}", static_cast<int>(rtcGetDeviceError(nullptr)));
   state.scene = rtcNewScene(state.device);
@@ -103,7 +103,7 @@ void cast_at_target(RTCScene scene, const Vec3f& start, const Aim& aim, std::spa
       rays.dir_x[k] = direction.x();
       rays.dir_y[k] = direction.y();
       rays.dir_z[k] = direction.z();
-      // Embree 3.13 casts lanes that are not valid, too, where processors have no lanes for 16.
+      // On processors without 16 lanes, Embree 3.13 also casts invalid lanes.
       rays.tfar[k] = valid[k] != 0 ? end : -std::numeric_limits<float>::infinity();
     }
     rtcOccluded16(valid.data(), scene, &context, &rays);

@@ -1,5 +1,5 @@
 #pragma once
-/// "Does the target itself stand in the way?", for many directions from one of its points.
+/// Tests whether the target itself blocks many directions from one of its points.
 
 #include <array>
 #include <memory>
@@ -9,26 +9,25 @@
 
 namespace luxrig {
 
-/// The target alone, sixteen rays at once with nothing to ask at a hit: about 1.5 times as fast as core/scene's
-/// RayScene, which takes care of rays that end on a surface; these end nowhere, or at a light. Immutable; may be asked
-/// from many threads.
+/// Rays against the target alone, sixteen at once and without a filter at hits: about 1.5 times as fast as core/scene's
+/// RayScene, which handles rays that end on a surface; these end nowhere, or at a light. Immutable and thread-safe.
 class TargetRays {
  public:
-  /// Vertices must be finite and indices within them (asserted); the Scene may go. None of its triangles is fine, too.
+  /// Vertices must be finite and indices within them (asserted). The Scene need not outlive it and may have no
+  /// triangles.
   explicit TargetRays(const Scene& target);
   ~TargetRays();
   TargetRays(TargetRays&&) noexcept;
   TargetRays& operator=(TargetRays&&) noexcept;
 
-  /// blocked   one per direction: 1 if the target stands in the way, however far off
+  /// blocked   one per direction: 1 if the target is in the way, at any distance
   /// The start is lifted off the surface along its normal (unit) by 2^-18.5 of the bounding box's diagonal, which
-  /// covers the rounding of float (4 u |p| + 16 u L of ray_scene.h with |p|, L ≤ the diagonal), and by lift_m more.
+  /// covers float rounding (4 u |p| + 16 u L of ray_scene.h with |p|, L ≤ the diagonal), plus lift_m.
   /// directions_world   need not be unit
   void blocked(const Vec3& from_world_m, const Vec3& normal_world, double lift_m,
                std::span<const Vec3f> directions_world, std::span<std::uint8_t> blocked) const;
 
-  /// The same for rays that end at places: what stands behind these does not block, nor what is nearer to them than
-  /// the lift.
+  /// The same for rays that end at places: nothing blocks behind a place, or nearer to it than the lift.
   void blocked_before(const Vec3& from_world_m, const Vec3& normal_world, double lift_m,
                       std::span<const Vec3> to_world_m, std::span<std::uint8_t> blocked) const;
 

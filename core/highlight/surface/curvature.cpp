@@ -15,24 +15,24 @@
 namespace luxrig {
 namespace {
 
-constexpr double kWiden = 2;             ///< once, where samples are few
-constexpr double kManyNeighbours = 300;  ///< beyond so many on average, samples are merged
+constexpr double kWiden = 2;             ///< once, if samples are few
+constexpr double kManyNeighbours = 300;  ///< samples are merged if they average more than this
 constexpr double kMergeCells = 8;        ///< per radius
-constexpr double kMostPieces = 4096;     ///< of one facet; one that would need more counts by its corners alone
-constexpr double kPieceEdge = 1.0 / 3;   ///< of the radius: edges of what long facets are cut into
-constexpr double kOneSided = 0.6;        ///< length of the mean normal of a neighbourhood that is not two sheets
-constexpr double kRefitTilt = 0.1;       ///< slope of the fit from which on it is made again over its own plane
+constexpr double kMostPieces = 4096;     ///< of one facet; one that needs more counts by its corners alone
+constexpr double kPieceEdge = 1.0 / 3;   ///< of the radius: longest edge of the pieces of long facets
+constexpr double kOneSided = 0.6;        ///< least length of the mean normal of a neighbourhood with a single sheet
+constexpr double kRefitTilt = 0.1;       ///< slope of the fit above which it is repeated over its own plane
 constexpr std::size_t kPointsPerTask = 256;
 
-/// One point's neighbourhood after another; keeps its memory.
+/// One point's neighbourhood at a time; keeps its memory.
 class Neighbourhood {
  public:
   explicit Neighbourhood(const SampleGrid& grid) : grid_(grid) {}
 
   Curvature fit(const Vec3& place_m, const Vec3& facing, double radius_m) {
     gather(place_m, radius_m);
-    // Where all around faces much the same way, the mean normal of that; else of what faces as the point's own normal
-    // does, which noise may have turned. Then that of what faces the same way as this mean.
+    // If all neighbours face much the same way: their mean normal. Otherwise the mean of those that face like the
+    // point's own normal, which noise may have turned. Then the mean of those that face like that mean.
     Vec3 first = Vec3::Zero();
     double whole = 0;
     for (const Near& sample : near_) {
@@ -139,7 +139,7 @@ Result<std::vector<Curvature>> curvature_at(const TargetSurface& surface, std::s
   if (count == 0) return curvatures;
 
   std::vector<SurfaceSample> samples = surface_samples(surface, radius_m, kPieceEdge * radius_m, kMostPieces);
-  // Of the samples, how many are within a radius of one: the mean over some of them.
+  // Mean number of samples within a radius, estimated from some of them.
   {
     const SampleGrid grid(samples, radius_m);
     std::vector<std::span<const SurfaceSample>> stretches;
@@ -155,7 +155,7 @@ Result<std::vector<Curvature>> curvature_at(const TargetSurface& surface, std::s
   }
   const SampleGrid grid(std::move(samples), radius_m);
 
-  // Neighbours one after another, so that they find their samples in the cache.
+  // Neighbours in sequence, so that their samples are in the cache.
   std::vector<std::uint32_t> order(count);
   std::iota(order.begin(), order.end(), 0u);
   std::vector<std::array<std::int32_t, 3>> cells(count);

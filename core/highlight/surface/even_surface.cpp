@@ -15,9 +15,9 @@ namespace luxrig {
 namespace {
 
 constexpr double kMostPoints = 1e6, kMostSlivers = 3e7;
-constexpr double kSpacing = 0.2;                  ///< of the scale: no two points that face alike are nearer
-constexpr double kWidestSpacing = 0.35;           ///< where that would be too many: rings need it
-constexpr double kRing = 0.7;                     ///< of the scale: what a point is compared with is so far away
+constexpr double kSpacing = 0.2;                  ///< of the scale: least distance of points that face alike
+constexpr double kWidestSpacing = 0.35;           ///< used if that gives too many points; rings need it
+constexpr double kRing = 0.7;                     ///< of the scale: distance of the points a point is compared with
 constexpr double kRingFrom = 0.6, kRingTo = 1.5;  ///< of that distance
 constexpr std::size_t kSectors = 6;
 constexpr double kStandOff = 0.003;  ///< of the size
@@ -29,8 +29,8 @@ std::uint64_t mixed(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-/// Some of the samples, none nearer to another than `apart_m` if they face alike, with the area of all that are nearest
-/// to them. Taken in an order that has nothing to do with where they lie.
+/// A subset of the samples with at least `apart_m` between any two that face alike, each with the area of all samples
+/// nearest to it. Chosen in an order unrelated to position.
 std::vector<SurfaceSample> spread_out(std::vector<SurfaceSample> all, double apart_m) {
   const SampleGrid grid(std::move(all), apart_m);
   const std::span<const SurfaceSample> samples = grid.samples();
@@ -63,7 +63,7 @@ std::vector<SurfaceSample> spread_out(std::vector<SurfaceSample> all, double apa
   return result;
 }
 
-/// Per point, of each sector around its normal the one whose distance is nearest to `distance_m`.
+/// Per point: in each sector around its normal, the point whose distance is nearest to `distance_m`.
 void add_far_rings(TargetSurface& surface, const SampleGrid& grid, double distance_m, int threads) {
   const std::span<const SurfaceSample> samples = grid.samples();
   std::vector<std::array<std::uint32_t, kSectors>> rings(samples.size());
@@ -107,7 +107,7 @@ void add_far_rings(TargetSurface& surface, const SampleGrid& grid, double distan
 Result<EvenSurface> even_surface(const TargetSurface& mesh, const EvenSurfaceOptions& options) {
   if (!(options.scale_m > 0) || !std::isfinite(options.scale_m))
     return refusal(fmt::format("a surface cannot be told by points at a scale of {} m", options.scale_m));
-  // No more than one per square of their distance, or little more.
+  // At most about one point per square of their distance.
   const double least_apart_m = std::sqrt(mesh.area_m2() / kMostPoints);
   if (least_apart_m > kWidestSpacing * options.scale_m)
     return refusal(

@@ -1,5 +1,5 @@
 #pragma once
-/// A surface told by evenly spread points: much the same for any mesh of it.
+/// A surface as evenly spread points: nearly the same for any mesh of it.
 
 #include "core/highlight/surface/curvature.h"
 #include "core/run.h"
@@ -7,22 +7,22 @@
 namespace luxrig {
 
 struct EvenSurfaceOptions : Run {
-  double scale_m = 0;  ///< of curvature and of what is compared; positive
+  double scale_m = 0;  ///< of curvature and of the distance between compared points; positive
 };
 
-/// Points a fifth of the scale apart or more, whatever the mesh: contrast between the vertices of a mesh grows with
-/// their distance, and so would what is measured between them.
+/// Points at least a fifth of the scale apart, whatever the mesh. Contrast between mesh vertices would grow with their
+/// distance, and any measure on them would too.
 struct EvenSurface {
-  /// No triangles. Normals are those of the fitted surface where that is known. Points stand off the mesh by 0.3 % of
-  /// its size, so that a scanner's noise does not shade them; a ring is those about 0.7 scales away that face the same
-  /// half-space, one of each sixth of the way round. Each point's area is what lies nearest to it.
+  /// No triangles. Normals are those of the fitted surface where known. Points stand off the mesh by 0.3 % of its size,
+  /// so that a scanner's noise does not shade them. A ring has one point from each sixth of the way round, about 0.7
+  /// scales away and facing the same half-space. A point's area is the surface nearest to it.
   TargetSurface surface;
   std::vector<Curvature> curvature;  ///< one per point
 };
 
-/// Refuses a scale that is not positive and finite, one so fine that it would take over a million points, and slivers
-/// by the hundred thousand, as long as the object. Neither
-/// turning nor shifting nor another mesh of the same surface changes more than which places are taken.
+/// Refuses a scale that is not positive and finite, a scale that would need over a million points, and hundreds of
+/// thousands of slivers as long as the object. Rotation, translation or another mesh of the same surface changes only
+/// which places are chosen.
 [[nodiscard]] Result<EvenSurface> even_surface(const TargetSurface& mesh, const EvenSurfaceOptions& options);
 
 }  // namespace luxrig

@@ -10,7 +10,7 @@
 namespace luxrig {
 namespace {
 
-constexpr std::size_t kNeighbours = 13;  // with the point itself
+constexpr std::size_t kNeighbours = 13;  // including the point itself
 constexpr std::size_t kFeatureLeaf = 10;
 
 struct PointCloud {
@@ -31,7 +31,7 @@ struct Link {
   auto operator<=>(const Link&) const = default;
 };
 
-/// Whom a point may join; each pair at least once, by the point with the lower index first.
+/// Possible links of each point; each pair at least once, first from the lower index.
 std::vector<Link> links_between(std::span<const OrientedPoint> points, double link_m) {
   using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, PointCloud>, PointCloud, 3,
                                                    std::uint32_t>;
@@ -68,7 +68,7 @@ class JoinedClusters {
     if (a == b) return;
     const Vec3 &p = normals_[a], &q = normals_[b];
     if (!(p.dot(q) >= least_cosine * p.norm() * q.norm()) || p.isZero(0) || q.isZero(0)) return;
-    // The lower index stays: so a tree is never deeper than halving its paths can keep short.
+    // The lower index stays as root; path halving keeps the trees shallow.
     parent_[std::max(a, b)] = std::min(a, b);
     normals_[std::min(a, b)] = p + q;
   }

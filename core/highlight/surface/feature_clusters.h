@@ -1,5 +1,5 @@
 #pragma once
-/// Interest points gathered into contiguous features (thesis §6.5.1).
+/// Interest points grouped into contiguous features (thesis §6.5.1).
 
 #include <span>
 #include <vector>
@@ -14,14 +14,14 @@ struct FeatureOptions {
 };
 
 struct FeatureClusters {
-  std::vector<std::uint32_t> cluster_of_point;  ///< clusters are numbered in the order of their first points
+  std::vector<std::uint32_t> cluster_of_point;  ///< numbered by their first points
   std::vector<std::uint32_t> sizes;             ///< per cluster
 };
 
-/// Single linkage: pairs of neighbours, nearest first (ties in the order of the points), join their clusters when the
-/// mean normals of these are within the angle; for a cluster of one point that is the point's own. A pair that is
-/// turned down is not asked again. Neighbours of a point are its twelve nearest within link_m, so the time is O(n log
-/// n). Refuses a link that is not positive and finite, and points that are not finite.
+/// Single linkage: pairs of neighbours, nearest first (ties in the order of the points), join their clusters if the
+/// clusters' mean normals are within the angle; a single point has its own normal. A rejected pair is not tried again.
+/// Neighbours of a point are its twelve nearest within link_m, so the time is O(n log n). Refuses a link that is not
+/// positive and finite, and points that are not finite.
 [[nodiscard]] Result<FeatureClusters> cluster_features(std::span<const OrientedPoint> points,
                                                        const FeatureOptions& options);
 

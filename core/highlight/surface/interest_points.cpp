@@ -15,11 +15,11 @@ bool is_recessed(const Curvature& c, double least_turn_rad) {
   return depth_per_m * c.radius_m > least_turn_rad && depth_per_m > 2 * c.mean_error_per_m;
 }
 
-/// The most recessed of each occupied cell, of points in order of depth.
+/// The most recessed point of each occupied cell; by_depth is in order of depth.
 std::vector<std::uint32_t> one_per_cell(const TargetSurface& surface, const std::vector<std::uint32_t>& by_depth,
                                         double cell_m) {
   using Key = std::array<std::int64_t, 3>;
-  std::vector<std::pair<Key, std::uint32_t>> cells;  // with the place in by_depth
+  std::vector<std::pair<Key, std::uint32_t>> cells;  // with the index in by_depth
   for (std::uint32_t k = 0; k < by_depth.size(); ++k) {
     Key key;
     for (int axis = 0; axis < 3; ++axis)
@@ -65,7 +65,7 @@ Result<std::vector<std::uint32_t>> interest_points(const TargetSurface& surface,
     points.resize(count);
   }
   if (options.most_points > 0 && points.size() > options.most_points) {
-    // The finest grid that leaves few enough, to a hundredth of its cell.
+    // The finest grid that keeps the limit, to a hundredth of its cell.
     double fine_m = 0, coarse_m = 2 * surface.diagonal_m();
     std::vector<std::uint32_t> kept = {points.front()};
     for (int round = 0; round < 60 && coarse_m - fine_m > 0.01 * coarse_m; ++round) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Where an object has relief worth showing: recessed places.
+/// Recessed places: where an object has relief worth showing.
 
 #include <optional>
 #include <vector>
@@ -9,15 +9,15 @@
 namespace luxrig {
 
 struct InterestOptions {
-  /// Points with a mean curvature below this count [1/m], if given; must be negative. Else `wanted_share`.
+  /// If given, points with a mean curvature below this [1/m] count; must be negative. Otherwise `wanted_share` decides.
   std::optional<double> mean_curvature_below_per_m;
-  /// Share of the surface's area (as far as its curvature is known) that should count, the most recessed first.
+  /// Share of the surface's area (where its curvature is known) that should count, the most recessed first.
   double wanted_share = 0.1;
-  /// Not recessed at all: where the surface turns by less than this over the radius of its fit [rad], or by less than
+  /// A place is not recessed if the surface turns by less than this over the radius of its fit [rad], or by less than
   /// twice the standard error of the curvature.
   double least_turn_rad = 0.02;
-  /// At most so many points; 0: any number. More are thinned out evenly: the most recessed of each cell of a grid that
-  /// is as fine as that allows.
+  /// Upper limit of points; 0 = none. If there are more, the most recessed of each cell of a grid stays, with the
+  /// finest grid that keeps the limit.
   std::size_t most_points = 0;
 };
 

@@ -6,17 +6,17 @@
 namespace luxrig {
 namespace {
 
-/// Fewer determine the six coefficients, but say nothing of their error.
+/// Fewer samples determine the six coefficients but not their error.
 constexpr int kLeastSamples = 9;
-/// Least pivot of the normal equations, scaled to a diagonal of 1. Samples all around leave 1e-2 and more; those of a
-/// half-disc 1e-3; on a curve of second order it is rounding, 1e-15.
+/// Least pivot of the normal equations, scaled to a diagonal of 1. Samples all around give 1e-2 and more, a half-disc
+/// 1e-3, a curve of second order only rounding, 1e-15.
 constexpr double kLeastPivot = 1e-6;
 
 }  // namespace
 
 std::optional<QuadricFit> QuadricSums::fit() const {
   if (count_ < kLeastSamples || !(sum_ > 0)) return std::nullopt;
-  // Few samples that carry all the weight are few samples.
+  // Few samples with all of the weight count as few samples.
   const double effective = sum_ * sum_ / sum_of_squares_;
   if (!(effective > 6.5)) return std::nullopt;
   Eigen::Matrix<double, 6, 6> normal;
@@ -43,7 +43,7 @@ std::optional<QuadricFit> QuadricSums::fit() const {
   Eigen::Matrix<double, 6, 1> bend = Eigen::Matrix<double, 6, 1>::Zero();
   bend(3) = bend(5) = 0.5;
   const Eigen::Matrix<double, 6, 1> scaled_bend = scale.cwiseProduct(bend);
-  // Weights vary: so many samples of equal weight would tell as much.
+  // Weights vary: this many samples of equal weight would be as accurate.
   const double variance = left * effective / std::max(effective - 6, 0.5);
   fit.mean_bend_error = std::sqrt(variance * scaled_bend.dot(factor.solve(scaled_bend)) * sum_ / effective);
   if (!fit.coefficients.allFinite() || !std::isfinite(fit.mean_bend_error)) return std::nullopt;
@@ -60,7 +60,7 @@ PrincipalCurvatures principal_curvatures(const Eigen::Matrix<double, 6, 1>& quad
   second << quadric(3), quadric(4), quadric(4), quadric(5);
   const double uu = up.dot(second * up) / (w * w * w), uv = up.dot(second * across) / (w * w),
                vv = across.dot(second * across) / w;
-  // -(uu uv; uv vv): bulging outwards is bending down.
+  // -(uu uv; uv vv): bulging outwards means bending down.
   const double middle = -(uu + vv) / 2, half = (vv - uu) / 2, spread = std::hypot(half, uv);
   const double turn = 0.5 * std::atan2(-uv, half);
   const double c = std::cos(turn), s = std::sin(turn);

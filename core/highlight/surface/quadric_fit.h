@@ -1,5 +1,5 @@
 #pragma once
-/// Inside curvature: a quadric over a tangent plane, by weighted least squares.
+/// Internal to curvature: a quadric over a tangent plane, by weighted least squares.
 
 #include <optional>
 
@@ -32,7 +32,7 @@ class QuadricSums {
   }
   [[nodiscard]] int count() const { return count_; }
 
-  /// Nothing when the samples do not determine it: too few, or on a line or another curve of second order.
+  /// Empty when the samples do not determine it: too few, or on a line or another curve of second order.
   [[nodiscard]] std::optional<QuadricFit> fit() const;
 
  private:
@@ -41,8 +41,8 @@ class QuadricSums {
   int count_ = 0;
 };
 
-/// Principal curvatures of the graph z = quadric above the origin, z outwards, positive where it bulges outwards, and
-/// their directions as tangent vectors (x, y, z), unit. Same unit of length as the quadric's, to the power -1.
+/// Principal curvatures of the graph z = quadric at the origin, z outwards, positive where it bulges outwards, and
+/// their directions as tangent vectors (x, y, z), unit. Unit: 1 / that of the quadric's length.
 struct PrincipalCurvatures {
   double larger, smaller;
   Vec3 larger_direction, smaller_direction;

@@ -34,7 +34,7 @@ Result<ReliefStudy> study_relief(const Scene& target, const ReliefStudyOptions& 
   }
   FeatureOptions features;
   features.largest_angle_rad = options.largest_angle_rad;
-  // Thinned-out points lie farther apart than their own areas say; the scale is what a feature is wide.
+  // Thinned-out points lie farther apart than their own areas suggest; a feature is about as wide as the scale.
   features.link_m = std::max(study.scale_m, 3 * std::sqrt(area_m2 / static_cast<double>(study.interest.size())));
   auto clusters = cluster_features(study.points, features);
   if (!clusters) return tl::unexpected(clusters.error());

@@ -22,7 +22,7 @@ std::size_t hash_of(const CellPlace& at) {
 CellPlace cell_at(const Vec3& place_m, const Vec3& low_m, double cell_m) {
   CellPlace at;
   for (int axis = 0; axis < 3; ++axis)
-    // A grid so fine that its cells have no number: its far cells are joined, which costs time only.
+    // In a grid too fine for cell numbers, far cells are joined, which only costs time.
     at[static_cast<std::size_t>(axis)] =
         static_cast<std::int32_t>(std::clamp(std::floor((place_m[axis] - low_m[axis]) / cell_m), -1e9, 1e9));
   return at;

@@ -1,5 +1,5 @@
 #pragma once
-/// Samples of a surface in the cells of a grid, for all within a radius.
+/// Samples of a surface in the cells of a grid, for queries within a radius.
 
 #include <cstdint>
 #include <span>
@@ -9,23 +9,23 @@
 
 namespace luxrig {
 
-/// A place on a surface, and how much of it it stands for.
+/// A place on a surface, and the area it represents.
 struct SurfaceSample {
   Vec3 position_m;
-  Vec3 normal;  ///< unit; zero when not known
+  Vec3 normal;  ///< unit; zero = unknown
   double area_m2;
 };
 
 class SampleGrid {
  public:
-  /// Cells of cell_m, which must be positive; only those that hold something take memory.
+  /// Cells of cell_m, which must be positive; empty cells take no memory.
   SampleGrid(std::vector<SurfaceSample> samples, double cell_m);
 
   [[nodiscard]] double cell_m() const { return cell_m_; }
   [[nodiscard]] std::size_t cells() const { return cells_.size(); }
   [[nodiscard]] std::span<const SurfaceSample> samples() const { return samples_; }
 
-  /// Stretches of samples() that hold everything within reach_m of a place (and more). Always in the same order.
+  /// Stretches of samples() that contain everything within reach_m of a place (and more). Always in the same order.
   void near(const Vec3& place_m, double reach_m, std::vector<std::span<const SurfaceSample>>& stretches) const;
 
   /// Integer coordinates of a place's cell.
@@ -45,8 +45,7 @@ class SampleGrid {
   std::vector<std::uint32_t> table_;  ///< open addressing: cell + 1, or 0
 };
 
-/// Samples in one cell of the grid that face the same half-space as those before them, made one: means weighted by
-/// area.
+/// Merges the samples of each grid cell that face the same half-space as those before them: means weighted by area.
 [[nodiscard]] std::vector<SurfaceSample> merged_in_cells(const std::vector<SurfaceSample>& samples, double cell_m);
 
 }  // namespace luxrig

@@ -28,7 +28,7 @@ void cut_up(const std::array<Vec3, 3>& p, const Vec3& normal, double edge_m, std
   cut_up({middle, b, c}, normal, edge_m, samples);
 }
 
-/// Of a facet: those that its area needs, and those along it where it is thin.
+/// Pieces of a facet: those for its area, plus those along it if it is thin.
 double pieces_of(double area_m2, double longest_edge_m, double edge_m) {
   return 2 * area_m2 / (edge_m * edge_m) + 2 * longest_edge_m / edge_m;
 }

@@ -11,10 +11,10 @@
 namespace luxrig {
 namespace {
 
-/// A triangle whose height is below this share of its longest edge has no area: of floats, that is rounding.
+/// A triangle whose height is below this share of its longest edge has no area: in floats that is rounding.
 constexpr double kFlattest = 1e-7;
 
-/// Vertices nearer to each other than this share of the mesh's largest coordinate are one: float may have parted them.
+/// Vertices nearer than this share of the mesh's largest coordinate are one: float rounding may have separated them.
 constexpr double kSamePlace = 3e-7;
 
 /// For each vertex the first vertex at the same place.
@@ -34,7 +34,7 @@ std::vector<std::uint32_t> first_at_same_place(const std::vector<Vec3f>& vertice
     for (const std::int64_t i : cell) h = (h ^ static_cast<std::uint64_t>(i)) * 0x9E3779B97F4A7C15ull + (h >> 29);
     return static_cast<std::size_t>(h ^ (h >> 31));
   };
-  // Firsts of a cell, one list each.
+  // Heads of the lists of first vertices, one per cell.
   std::unordered_map<Cell, std::uint32_t, decltype(hash)> head(2 * vertices_m.size(), hash);
   std::vector<std::uint32_t> next(vertices_m.size(), TargetSurface::kNone), first(vertices_m.size());
   for (std::uint32_t i = 0; i < vertices_m.size(); ++i) {
@@ -98,7 +98,7 @@ double TargetSurface::size_m() const {
   for (const auto& t : triangles) {
     const Vec3 a = points_m[t[0]] - middle_m, b = points_m[t[1]] - middle_m, c = points_m[t[2]] - middle_m;
     const double area_m2 = (b - a).cross(c - a).norm() / 2;
-    // Mean of the squared distance over a triangle, from its corners.
+    // Mean squared distance over a triangle, from its corners.
     sum += area_m2 * (a.squaredNorm() + b.squaredNorm() + c.squaredNorm() + (a + b + c).squaredNorm()) / 12;
     all_m2 += area_m2;
   }

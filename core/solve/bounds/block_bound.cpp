@@ -12,9 +12,10 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// The row of prices has this goal, in norms of the block's: then its own residual hardly changes, as a linear term's.
+/// Goal of the price row, in norms of the block's goal. It is so large that the row's own residual hardly changes, like
+/// a linear term.
 constexpr double kPriceGoal = 300;
-/// A column that pulls less than this, in norms of the goal, is not taken up: what it is charged for is nothing.
+/// A column that pulls less than this, in norms of the goal, is not taken up: its charge is negligible.
 constexpr double kLeastPull = 1e-6;
 constexpr int kMostTakenUp = 400;
 
@@ -71,13 +72,13 @@ BlockBound::BlockBound(const VectorXd& goal, std::vector<BlockLight> home, const
   product_.resize(static_cast<Index>(most_.size()));
 }
 
-/// Halves of halves: by which of two far lights each is nearer to.
+/// Recursive halving: each light goes to the nearer of two lights that are far apart.
 std::uint32_t BlockBound::cell_of(std::vector<std::uint32_t>& order, std::uint32_t first, std::uint32_t count) {
   const auto index = static_cast<std::uint32_t>(cells_.size());
   cells_.push_back({first, count});
   if (count < 2) return index;
   const auto begin = order.begin() + first;
-  // The view is of the lights' first columns, of norm 1, in their own order; made by sort_into_cells.
+  // The view shows the lights' first columns, of norm 1, in their own order; sort_into_cells made it.
   const ColumnsView lights(goal_.size(), begin_, row_, std::span<const double>(value_));
   const auto dots_with = [&](std::uint32_t light) {
     VectorXd dense = VectorXd::Zero(goal_.size()), result(static_cast<Index>(count));
@@ -126,7 +127,7 @@ void BlockBound::sort_into_cells(std::vector<BlockLight>& home) {
   value_.clear();
 }
 
-/// Into product_, for a range of columns.
+/// Writes product_ for a range of columns.
 void BlockBound::products(std::size_t first, std::size_t columns, const VectorXd& vector) {
   if (columns == 0) return;
   static constexpr std::size_t kPart = 4096;
@@ -216,7 +217,7 @@ void BlockBound::evaluate(Node& node, std::span<const Index> start) {
   node.closed = is_integral(node);
 }
 
-/// Are the lights in use no more than those that each cell may have?
+/// Whether the burning lights are no more than each cell allows.
 bool BlockBound::is_integral(const Node& node) const {
   std::size_t single = 0;
   for (const std::uint32_t cell : node.cells) single += cells_[cell].count == 1 ? 1 : 0;
@@ -249,7 +250,7 @@ BlockBound::Tree& BlockBound::tree(std::size_t count) {
   node.cells.assign(count, root_);
   if (count == 0) {
     evaluate(node, {});
-  } else {  // whatever the count, at first any number may burn
+  } else {  // for any count, the first node lets any number burn
     if (root_residual_.size() == 0) {
       evaluate(node, {});
       anywhere_ = node;
@@ -276,7 +277,7 @@ std::vector<BurningColumn> BlockBound::burning(std::size_t count) {
   return burning;
 }
 
-/// Halves the largest cell in which more lights burn than may; a cell that several lights share is halved for all of
+/// Halves the largest cell in which more lights burn than allowed. A cell shared by several lights is halved for all of
 /// them, so that no arrangement comes twice.
 void BlockBound::split(const Node& node, Tree& tree) {
   std::uint32_t cell = 0;

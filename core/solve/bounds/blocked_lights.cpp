@@ -74,7 +74,7 @@ BlockedLights::Column BlockedLights::cut(std::span<const std::uint32_t> rows, st
     piece->row.push_back(row_in_block[rows[k]]);
     piece->value.push_back(values[k]);
   }
-  // Dark, the error is 1. What is no worse does not light these points by more than goal and error together.
+  // With no light the error is 1. A solution that is no worse lights these points by at most goal and error together.
   column.most = (1 + std::sqrt(goal_squares)) * (1 + 1e-9);
   return column;
 }
@@ -102,7 +102,7 @@ std::vector<std::unique_ptr<BlockBound>> BlockedLights::priced(const VectorXd& p
         there.value.push_back(piece.value);
         there.most.push_back(column.most);
         there.column.push_back(column.number);
-        // An emitter that is not seen at home saves nothing there, so it pays nothing elsewhere.
+        // An emitter that does not reach its home block saves nothing there, so it pays nothing elsewhere.
         const double paid = is_home && piece.block != at_home ? price(piece, price_of_row) : 0;
         there.price.push_back(paid);
         elsewhere += paid;

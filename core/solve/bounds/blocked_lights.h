@@ -1,5 +1,5 @@
 #pragma once
-/// The lights of a placement problem cut into blocks of rows that hardly share lights. Internal to error_bound.
+/// The lights of a placement problem, cut into blocks of rows that share few lights. Internal to error_bound.
 
 #include <memory>
 #include <span>
@@ -11,9 +11,9 @@
 
 namespace luxrig {
 
-/// All columns with norm 1 and a goal of norm 1, in W; lights in blocks.
+/// W A with columns of norm 1, W b with norm 1, and the lights by block.
 struct BlockedLights {
-  /// What one column does in one block.
+  /// The part of one column in one block.
   struct Piece {
     std::uint32_t block = 0;
     std::vector<std::uint32_t> row;  ///< of the block
@@ -21,20 +21,20 @@ struct BlockedLights {
   };
   struct Column {
     std::vector<Piece> pieces;
-    double most = 0;  ///< level that no solution worth considering exceeds
+    double most = 0;  ///< level that no useful solution exceeds
     std::uint32_t number = 0;
   };
   LightBlocks blocks;
   Eigen::VectorXd goal;
-  std::vector<std::vector<Column>> of_light;  ///< without those that are zero
+  std::vector<std::vector<Column>> of_light;  ///< without zero columns
   std::vector<std::uint32_t> light_of;        ///< of each column
   std::vector<std::vector<Eigen::Index>> rows_of_block;
   std::vector<std::uint32_t> row_in_block;
-  double dark = 0;  ///< squared error of what nothing reaches
+  double dark = 0;  ///< squared error of rows that no light reaches
 
-  /// of must have no complaint(), goal_norm is ‖W b‖ > 0.
+  /// `of` must have no complaint(); goal_norm = ‖W b‖ > 0.
   BlockedLights(const BoundProblem& of, double goal_norm, double least_similarity);
-  /// A bound for each block, with light that falls from one to another at these prices, which may be any.
+  /// One bound per block. Light that spills from one block into another has these prices; any prices are valid.
   [[nodiscard]] std::vector<std::unique_ptr<BlockBound>> priced(const Eigen::VectorXd& price_of_row,
                                                                 std::size_t most_lights, int threads) const;
 

@@ -70,8 +70,8 @@ double error_bound(const BoundProblem& of, const VectorXd& x) {
   VectorXd y = (weight.cast<long double>().cwiseProduct(exact) / static_cast<long double>(goal_norm)).cast<double>();
   if (!y.allFinite()) y = goal;
 
-  // Aᵀ W y ≤ 0 is what makes y a proof. It is nearly so; y lowered by the same everywhere makes it so: a column of norm
-  // 1 sums to 1 at least.
+  // Aᵀ W y ≤ 0 makes y a proof. It nearly holds; lowering all of y by a constant makes it hold, because a column of
+  // norm 1 sums to at least 1.
   VectorXd reached = VectorXd::Ones(rows);
   for (const Index i : unreachable_rows(of)) reached[i] = 0;
   const VectorXd vector = weight.cwiseProduct(y), sum = weight.cwiseProduct(reached), size = vector.cwiseAbs();
@@ -86,7 +86,7 @@ double error_bound(const BoundProblem& of, const VectorXd& x) {
     if (sums[j] > 0) lower = std::max(lower, (pull[j] + rounding * sizes[j]) / sums[j]);
   y -= lower * (1 + 4 * rounding) * reached;
 
-  // Any multiple of y proves as well; the best proves yᵀb / ‖y‖.
+  // Any multiple of y is also a proof; the best proves yᵀb / ‖y‖.
   const double norm = y.norm();
   if (!(norm > 0)) return 0;
   const double proven = (y.dot(goal) - rounding * y.cwiseAbs().dot(goal.cwiseAbs())) / norm;

@@ -13,11 +13,11 @@ namespace {
 using Eigen::Index;
 using Eigen::VectorXd;
 
-/// Light between blocks is worth a little more than a good solution's residual says, before prices are improved: else
-/// blocks that have fewer lights than there get it for nothing.
+/// Initial prices of light between blocks are a little above a good solution's residual. Otherwise blocks with fewer
+/// lights than in that solution would get it for free.
 constexpr double kPriceOfGoal = 0.1;
 
-/// Squared error, and how many lights each block has, where the blocks' bounds are least together.
+/// Least sum of the blocks' bounds, and the number of lights in each block there.
 struct LightShares {
   double squared_error = 0;
   std::vector<std::size_t> lights;  ///< by block
@@ -46,7 +46,7 @@ LightShares share_out_lights(const std::vector<std::vector<double>>& value, std:
 
 constexpr std::size_t kNodesAtATime = 4;
 
-/// The bounds of all numbers of lights under one set of prices.
+/// Bounds for all numbers of lights at one set of prices.
 class PricedBounds {
  public:
   PricedBounds(const BlockedLights& lights, const VectorXd& price_of_row, const CountBoundOptions& options)
@@ -64,7 +64,7 @@ class PricedBounds {
     return share_out_lights(value_, lights).squared_error + dark_;
   }
 
-  /// Where the least is, is looked into, until nothing there can be told better.
+  /// Refines the bounds at the minimum until they cannot improve.
   void refine(std::size_t lights, std::size_t most_nodes) {
     for (std::size_t nodes = 0; nodes < most_nodes && !options_.watch.stop.stop_requested();) {
       const LightShares shares = share_out_lights(value_, lights);
@@ -82,8 +82,8 @@ class PricedBounds {
     }
   }
 
-  /// By how much, by row, light that blocks take from others exceeds what these send: where it is scarce, and prices
-  /// should rise. Half the slope of the squared error by price, where `lights` are.
+  /// By row: light that blocks take from others, minus light that these send. Where positive, light is scarce and
+  /// prices should rise. Half the slope of the squared error by price at `lights`.
   VectorXd scarcity(std::size_t lights, const BlockedLights& all) {
     VectorXd scarce = VectorXd::Zero(all.goal.size());
     const LightShares shares = share_out_lights(value_, lights);
@@ -109,13 +109,13 @@ class PricedBounds {
 
  private:
   std::vector<std::unique_ptr<BlockBound>> bounds_;
-  std::vector<std::vector<double>> value_;  ///< by block and number of its lights; more than it has are no use
+  std::vector<std::vector<double>> value_;  ///< by block and its number of lights; more than it has are no use
   const CountBoundOptions& options_;
   double dark_;
 };
 
-/// Solutions of most_lights, three quarters, half and a quarter of it: each time the light whose column is nearest to
-/// what is left over.
+/// Solutions with most_lights, three quarters, half and a quarter of it; each step adds the light whose column is
+/// nearest to the residual.
 std::vector<PriceGuess> greedy_guesses(const BoundProblem& of, const BlockedLights& lights, std::size_t most_lights) {
   auto shared = share_problem({of.columns, of.goal, of.row_weight, {}});
   LUXRIG_CHECK(shared.has_value(), "{}", shared.has_value() ? "" : shared.error().detail);
@@ -146,8 +146,8 @@ std::vector<PriceGuess> greedy_guesses(const BoundProblem& of, const BlockedLigh
 
 constexpr double kLeastTurn = 0.05;
 
-/// Prices that prove more, from round to round: a step along the scarcity, as long as would close the gap to the
-/// squared error that was reached (Polyak 1969), shorter each time that it went too far.
+/// Improves prices round by round: a step along the scarcity, of the length that would close the gap to the squared
+/// error reached (Polyak 1969), shorter after each overshoot.
 VectorXd better_prices(const BlockedLights& lights, VectorXd price, const PriceGuess& guess, double reached,
                        const CountBoundOptions& options, double& proven) {
   VectorXd best = price;

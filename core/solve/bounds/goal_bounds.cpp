@@ -8,8 +8,8 @@
 namespace luxrig {
 namespace {
 
-/// Columns of all emitters, rows channel after channel; what is left for lights to do; and how much of the goal that
-/// is.
+/// Columns of all emitters, rows channel after channel; the residual goal without the fixed light; and its share of the
+/// goal.
 class GoalBoundProblem {
  public:
   GoalBoundProblem(const ColumnsView& columns, const LightingGoal& goal) {
@@ -43,7 +43,7 @@ class GoalBoundProblem {
   GoalBoundProblem& operator=(const GoalBoundProblem&) = delete;
 
   [[nodiscard]] const BoundProblem& problem() const { return problem_; }
-  /// From an error relative to what is left to do, to one relative to the goal.
+  /// Converts an error relative to the residual goal to one relative to the goal.
   [[nodiscard]] double of_goal(double error) const { return share_ * error; }
 
  private:

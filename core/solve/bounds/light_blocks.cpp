@@ -9,17 +9,17 @@
 namespace luxrig {
 namespace {
 
-/// Similarities are shares, for which this many lights, evenly chosen, are enough.
+/// Similarities are shares; this many evenly chosen lights are enough for them.
 constexpr std::size_t kMostSampledLights = 4096;
 
-/// Joins rows, the most similar first.
+/// Joins rows, most similar first.
 class RowLinkage {
  public:
   explicit RowLinkage(Eigen::MatrixXf similarity)
       : similarity_(std::move(similarity)), size_(static_cast<std::size_t>(similarity_.rows()), 1) {}
 
-  /// Block of each row, by the number of one of its rows. Average linkage by chains of nearest neighbours, which gives
-  /// the same blocks as joining the nearest pair each time (Bruynooghe 1978).
+  /// Block of each row, named by one of its rows. Average linkage by chains of nearest neighbours, which gives the same
+  /// blocks as joining the nearest pair each time (Bruynooghe 1978).
   std::vector<std::uint32_t> joined(float least) {
     const auto count = static_cast<Eigen::Index>(size_.size());
     std::vector<std::uint32_t> block(size_.size());
@@ -41,7 +41,7 @@ class RowLinkage {
           best = similarity_(other, last);
           nearest = other;
         }
-      if (nearest < 0) {  // nobody is near enough, and averages only fall
+      if (nearest < 0) {  // none is near enough, and averages only fall
         done_.push_back(last);
         chain.pop_back();
       } else if (nearest == before) {
@@ -57,7 +57,7 @@ class RowLinkage {
   }
 
  private:
-  /// A block of a row or two decides nothing: to the one that is most like it, however little.
+  /// A block of a few rows is too small: it joins the most similar one, however small the similarity.
   void join_small(std::vector<std::uint32_t>& block) {
     const float small = static_cast<float>(size_.size()) / 50;
     for (Eigen::Index row = 0; row < similarity_.rows(); ++row) {
@@ -88,7 +88,7 @@ class RowLinkage {
   }
 
   Eigen::MatrixXf similarity_;
-  std::vector<float> size_;  ///< 0: joined to another
+  std::vector<float> size_;  ///< 0 = joined to another
   std::vector<Eigen::Index> done_;
 };
 
@@ -144,7 +144,7 @@ LightBlocks light_blocks(const ColumnsView& columns, const Eigen::VectorXd& row_
   std::vector<double> squares(lights * blocks.count, 0.0);
   for (Eigen::Index j = 0; j < columns.columns(); ++j) {
     columns.entries(j, entry_rows, values);
-    // Each emitter in its own unit: the strongest does not decide alone.
+    // Each emitter in its own unit, so that the strongest does not decide alone.
     double largest = 0, sum = 0;
     for (std::size_t k = 0; k < values.size(); ++k)
       largest = std::max(largest, row_weight[entry_rows[k]] * std::abs(values[k]));

@@ -20,7 +20,7 @@ class ActiveSet {
  public:
   ActiveSet(const LimitedLeastSquares& problem, LimitedLeastSquaresResult start) : p_(problem), at_(std::move(start)) {
     if (at_.z.size() == 0) {
-      // Many steps are to come: E = Q R once; afterwards only R and Qᵀ f are needed.
+      // Many steps follow, so E = Q R once; afterwards only R and Qᵀ f are needed.
       const Eigen::HouseholderQR<MatrixXd> qr(p_.E);
       const Index n = p_.E.cols();
       const VectorXd turned = qr.householderQ().adjoint() * p_.f;
@@ -46,7 +46,7 @@ class ActiveSet {
         at_.stopped = true;
         return at_;
       }
-      // Bland's rule (least index) once the vertex looks degenerate: it cannot cycle.
+      // Bland's rule (least index) once the vertex looks degenerate; it cannot cycle.
       const bool least_index = without_progress > 2 * size;
       if (stationary_ && !release(least_index)) {
         at_.converged = true;
@@ -70,7 +70,7 @@ class ActiveSet {
     Index bound = -1, row = -1;
   };
 
-  /// Lets go the constraint with the worst multiplier; false when all have the right sign: then z is the optimum.
+  /// Releases the constraint with the worst multiplier; false when all have the right sign: z is then the optimum.
   bool release(bool least_index) {
     const VectorXd gradient = r_.transpose() * (r_ * at_.z - q_);
     const VectorXd multiplier = row_multipliers(p_.G, at_, gradient);
@@ -112,7 +112,7 @@ class ActiveSet {
     return false;
   }
 
-  /// The step to the minimum over the free variables with the working rows kept.
+  /// Step to the minimum over the free variables, with the working rows kept.
   [[nodiscard]] VectorXd direction(const std::vector<Index>& free) {
     VectorXd whole = VectorXd::Zero(at_.z.size());
     if (free.empty()) return whole;
@@ -130,7 +130,7 @@ class ActiveSet {
       qr.setThreshold(1e-12);
       qr.compute(rows);
       const Index rank = qr.rank();
-      if (rank < rows.cols()) {  // rounding made rows dependent: those left over follow from the others
+      if (rank < rows.cols()) {  // rounding made rows dependent: the remaining ones follow from the others
         std::vector<Index> kept;
         for (Index k = 0; k < rank; ++k)
           kept.push_back(at_.working_rows[static_cast<std::size_t>(qr.colsPermutation().indices()[k])]);
@@ -146,7 +146,7 @@ class ActiveSet {
     return whole;
   }
 
-  /// Goes as far as the constraints allow and takes up the one that blocks. Returns the length gone.
+  /// Goes as far as the constraints allow and adds the blocking one. Returns the length of the step.
   double step(bool least_index) {
     const std::vector<Index> free = free_variables(at_.state);
     const VectorXd p = direction(free);
@@ -191,7 +191,8 @@ class ActiveSet {
       at_.state[static_cast<std::size_t>(bound)] = low ? BoundState::lower : BoundState::upper;
     }
     if (row >= 0) at_.working_rows.push_back(row);
-    // What was let go and at once came back had a multiplier of rounding: it stays until something moves.
+    // A constraint that was released and came back at once had a rounding-sized multiplier: it stays until something
+    // moves.
     if (share * length <= 1e-15) {
       if (released_.bound >= 0 && (bound == released_.bound || stationary_))
         refused_bound_[static_cast<std::size_t>(released_.bound)] = true;

@@ -13,10 +13,10 @@ namespace {
 
 using Index = Eigen::Index;
 
-/// Eight doubles, in as many registers as the processor needs for them.
+/// Eight doubles, in as many registers as the processor needs.
 using Eight [[gnu::vector_size(64)]] = double;
 
-/// Entries of one column, whatever they are stored as.
+/// Entries of one column, in any storage type.
 template <class Value>
 struct SparseEntries {
   const std::uint32_t* rows;
@@ -32,7 +32,7 @@ struct DenseEntries {
   [[nodiscard]] double value(std::size_t k) const { return values[k]; }
 };
 
-/// Four sums side by side: one would wait for itself.
+/// Four parallel sums: a single one would wait for its own latency.
 template <class Entries>
 [[gnu::always_inline]] inline double dot_of(const Entries& a, const double* vector) {
   double sum[4] = {0, 0, 0, 0};
@@ -61,7 +61,7 @@ template <class Entries>
   std::memcpy(result, &even, sizeof even);
 }
 
-/// Without a branch per entry, as nearly all are.
+/// Without a branch per entry, since nearly all are sound.
 template <class Entries>
 bool is_sound(const Entries& a, std::size_t rows) {
   bool sound = a.count == 0 || a.row(a.count - 1) < rows;
@@ -119,7 +119,7 @@ auto dense_of(const double* values, Index rows) {
 
 }  // namespace
 
-/// Calls what is written with `of`, which gives a column's entries in the type they have.
+/// Runs its argument with `of`, which returns a column's entries in their own type.
 #define LUXRIG_WITH_COLUMNS(...)                         \
   do {                                                   \
     if (dense_ != nullptr) {                             \
@@ -145,7 +145,7 @@ ColumnsView::ColumnsView(Index rows, std::span<const std::uint64_t> begin, std::
 ColumnsView::ColumnsView(const Eigen::MatrixXd& dense)
     : rows_(dense.rows()), columns_(dense.cols()), dense_(dense.data()) {
   static const double kNothing = 0;
-  if (dense_ == nullptr) dense_ = &kNothing;  // which has no entries
+  if (dense_ == nullptr) dense_ = &kNothing;  // it has no entries
 }
 
 std::string ColumnsView::complaint() const {

@@ -1,6 +1,6 @@
 #pragma once
-/// The columns of a matrix that somebody else holds: sparse in float or double, or dense. What least squares needs of
-/// them, and no more, so that a matrix of 10⁸ entries is neither copied nor converted.
+/// View of the columns of a matrix: sparse in float or double, or dense. It offers only the operations that least
+/// squares needs, so a matrix of 10⁸ entries is neither copied nor converted.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -10,13 +10,13 @@
 
 namespace luxrig {
 
-/// A view: what it shows must outlive it and keep still. Every sum is in double and in one order.
+/// The matrix must outlive the view and must not change. Every sum is in double and in a fixed order.
 class ColumnsView {
  public:
   using Index = Eigen::Index;
 
   ColumnsView() = default;
-  /// Column c has the entries from begin[c] to begin[c + 1], with rising rows (as CandidateColumns has them).
+  /// Column c has the entries from begin[c] to begin[c + 1], with rising rows (as in CandidateColumns).
   ColumnsView(Index rows, std::span<const std::uint64_t> begin, std::span<const std::uint32_t> row,
               std::span<const float> value);
   ColumnsView(Index rows, std::span<const std::uint64_t> begin, std::span<const std::uint32_t> row,
@@ -26,8 +26,8 @@ class ColumnsView {
   [[nodiscard]] Index rows() const { return rows_; }
   [[nodiscard]] Index columns() const { return columns_; }
 
-  /// Empty, or what is wrong: sizes that disagree, rows that do not rise or are out of range, entries that are not
-  /// finite or too large to be squared. Reads everything once.
+  /// Empty, or the error: sizes that disagree, rows that do not rise or are out of range, entries that are not finite
+  /// or too large to square. Reads everything once.
   [[nodiscard]] std::string complaint() const;
   static constexpr double kLargestEntry = 1e140;
 
@@ -38,7 +38,7 @@ class ColumnsView {
   void add(Index column, long double times, long double* to) const;
   /// to = 0 where the column has entries
   void clear(Index column, double* to) const;
-  /// What the column holds that is not 0, by rising rows; replaces what was in the vectors.
+  /// Non-zero entries of the column, by rising rows; replaces the contents of the vectors.
   void entries(Index column, std::vector<std::uint32_t>& rows, std::vector<double>& values) const;
   /// Σ_i weight_i a_ij²
   [[nodiscard]] double squared_norm(Index column, const double* weight) const;
@@ -46,8 +46,8 @@ class ColumnsView {
   void dot_all(const double* vector, const double* scale, double* result) const;
 
   static constexpr Index kTile = 8;
-  /// For each of the columns: result[kTile k … kTile k + 7] = Σ_i a_ij tile[kTile i … kTile i + 7], that is its
-  /// products with eight vectors at once, at nearly the price of one.
+  /// For each column: result[kTile k … kTile k + 7] = Σ_i a_ij tile[kTile i … kTile i + 7]: its products with eight
+  /// vectors at once, at little more than the cost of one.
   void dot_tile(std::span<const Index> columns, const double* tile, double* result) const;
 
  private:

@@ -11,11 +11,11 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Columns nearer than this to the span of the others (squared) are not put through L Lᵀ once more: it would cost them
-/// their digits. Rotations do not.
+/// Columns whose squared distance from the span of the others is below this are not factored again through L Lᵀ: they
+/// would lose their digits. Rotations keep them.
 constexpr double kLeastPivotToFactor = 1e-4;
 
-/// Turns two columns of L into one another's plane, the first moving up a row.
+/// Rotates two columns of L into one another, moving the first up a row.
 [[gnu::always_inline]] inline void rotated(double* first, double* second, double c, double s, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     const double a = first[i + 1], b = second[i + 1];
@@ -91,7 +91,7 @@ void GramCholesky::append_row(const VectorXd& row, double pivot) {
 void GramCholesky::remove(std::span<const Index> places) {
   if (places.empty()) return;
   const Index after = size_ - places.front();
-  // Rotations go once through what is behind for each column; factoring anew does a third of a cube, but in blocks.
+  // Rotations pass once through the rest for each column; a new factorisation costs a third of a cube, but in blocks.
   if (after > 32 && 7 * static_cast<Index>(places.size()) > after && remove_by_factoring(places)) return;
   for (std::size_t k = places.size(); k-- > 0;) remove_by_rotation(places[k]);
 }

@@ -1,6 +1,6 @@
 #pragma once
-/// L Lᵀ = G, the Gram matrix of a changing set of columns of norm 1: columns come one at a time or in blocks, and leave
-/// from anywhere, without G being formed anew (Gill, Golub, Murray & Saunders 1974).
+/// L Lᵀ = G, the Gram matrix of a changing set of columns of norm 1. Columns come singly or in blocks and leave from
+/// any place; G is never formed again (Gill, Golub, Murray & Saunders 1974).
 
 #include <Eigen/Core>
 #include <span>
@@ -15,16 +15,16 @@ class GramCholesky {
   [[nodiscard]] Index size() const { return size_; }
   void clear() { size_ = 0; }
 
-  /// Appends, in their order, those of K columns whose squared distance from the span of all before them is at least
-  /// least_pivot, and says which.
+  /// Appends, in order, those of K columns whose squared distance from the span of all earlier ones is at least
+  /// least_pivot. Returns which were appended.
   /// cross   size() × K: products of the present columns with the new ones; overwritten
-  /// own     K × K: products of the new ones with one another; its lower half is overwritten
+  /// own     K × K: products of the new columns with one another; its lower half is overwritten
   std::vector<char> append(Eigen::MatrixXd& cross, Eigen::MatrixXd& own, double least_pivot);
 
-  /// One column whose row of L somebody has worked out more accurately than from its products (passive_columns.h).
+  /// Appends one column whose row of L was computed more accurately than from products (passive_columns.h).
   void append_row(const Eigen::VectorXd& row, double pivot);
 
-  /// Takes out the columns at these places (rising).
+  /// Removes the columns at these places (rising).
   void remove(std::span<const Index> places);
 
   /// vector = L⁻¹ vector, and L⁻ᵀ vector: together G⁻¹ vector.

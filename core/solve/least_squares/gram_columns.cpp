@@ -11,15 +11,15 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Squared distance from the span below which products of columns are too coarse to know it.
+/// Squared distance from the span below which products of columns are too coarse to measure it.
 constexpr double kLeastGramPivot = 1e-5;
 
-/// Products of columns with eight others at a time, those spread out to rows of eight.
+/// Products of columns with eight others at a time, which are interleaved in rows of eight.
 class Products {
  public:
   explicit Products(const ScaledColumns& problem) : p_(problem) {}
 
-  /// result = A_withᵀ W² A_of, columns of norm 1; `lower`: only what is not above the diagonal.
+  /// result = A_withᵀ W² A_of, columns of norm 1; `lower`: only the lower triangle.
   void of(std::span<const Index> with, std::span<const Index> columns, bool lower, MatrixXd& result) {
     constexpr Index kTile = ColumnsView::kTile;
     result.resize(static_cast<Index>(with.size()), static_cast<Index>(columns.size()));
@@ -88,8 +88,8 @@ class GramColumns final : public PassiveColumns {
   }
 
  private:
-  /// L's new row from the products; where the column is near the others' span they cancel, and the row is corrected
-  /// with what is left of the column itself.
+  /// New row of L from the products. If the column is near the others' span the products cancel, and the residual of
+  /// the column itself corrects the row.
   bool append_one(Index column) {
     if (size() >= p_.rows()) return false;
     VectorXd row = cross_.col(0);

@@ -14,10 +14,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Unknowns from which on many constraints at a time are faster (`luxrig bench nnls --only levels`).
+/// From this many unknowns on, changing many constraints at a time is faster (`luxrig bench nnls --only levels`).
 constexpr Index kMany = 200;
 
-/// A row without slack keeps all that it touches at 0. As a limit it would leave no inside, and multipliers no end.
+/// A row without slack fixes all its unknowns at 0. As a limit it would leave no interior and unbounded multipliers.
 struct LitProblem {
   explicit LitProblem(const LimitedLeastSquares& p) : upper(p.upper) {
     for (Index i = 0; i < p.G.rows(); ++i) {

@@ -1,8 +1,8 @@
 #pragma once
-/// min ‖E z − f‖₂ subject to 0 ≤ z ≤ upper and G z ≤ slack, by a primal active-set method that stays feasible (Nocedal
-/// & Wright, Numerical Optimization (2006), algorithm 16.3; null space by QR). Few unknowns: it starts from z = 0.
-/// Many: beside the optimum, where the method of multipliers leads; what does not meet the optimum's conditions then is
-/// solved from z = 0 after all.
+/// min ‖E z − f‖₂ subject to 0 ≤ z ≤ upper and G z ≤ slack, by a feasible primal active-set method (Nocedal & Wright,
+/// Numerical Optimization (2006), algorithm 16.3; null space by QR). With few unknowns it starts from z = 0. With many
+/// it starts near the optimum, from the result of the method of multipliers. If the answer then fails the optimality
+/// conditions, it solves again from z = 0.
 
 #include <Eigen/Core>
 #include <stop_token>
@@ -15,13 +15,13 @@ struct LimitedLeastSquares {
   Eigen::VectorXd f;      ///< norm about 1
   Eigen::VectorXd upper;  ///< ≥ 0, may be +inf
   Eigen::MatrixXd G;      ///< rows of norm about 1
-  Eigen::VectorXd slack;  ///< ≥ 0: what G z may be
+  Eigen::VectorXd slack;  ///< ≥ 0: upper limit of G z
 };
 
 enum class BoundState : char { free, lower, upper };
 
 struct LimitedLeastSquaresResult {
-  Eigen::VectorXd z;                       ///< within bounds exactly, within the rows to rounding
+  Eigen::VectorXd z;                       ///< exactly within bounds; within the rows to rounding
   std::vector<BoundState> state;           ///< of each variable
   std::vector<Eigen::Index> working_rows;  ///< rows of G held as equalities
   int iterations = 0;

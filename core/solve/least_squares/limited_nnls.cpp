@@ -17,16 +17,16 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr double kNoBound = std::numeric_limits<double>::infinity();
-/// Violations and changes of multipliers below this (rows have norm 1, the goal too) are rounding.
+/// Violations and changes of multipliers below this (rows and goal have norm 1) are rounding.
 constexpr double kTolerance = 1e-14;
-/// The least violation of limits that can be kept is rounding; that of a conflict is above this, relative to d.
+/// The least violation of feasible limits is rounding; that of a conflict is above this, relative to d.
 constexpr double kConflict = 1e-9;
 constexpr int kMostRounds = 200;
-/// Of limits against the goal. A heavy weight leads to the multipliers in few rounds, but what limits weigh the goal
-/// loses in digits: the last rounds have a light one.
+/// Weight of limits against the goal. A heavy weight finds the multipliers in few rounds but costs the goal digits, so
+/// the last rounds use a light one.
 constexpr double kFirstWeight = 100, kLightWeight = 1;
 
-/// Sparse columns of our own, built one after the other.
+/// Sparse columns built one after the other.
 struct BuiltColumns {
   std::vector<std::uint64_t> begin = {0};
   std::vector<std::uint32_t> row;
@@ -41,7 +41,7 @@ struct BuiltColumns {
   [[nodiscard]] ColumnsView view(Index rows) const { return {rows, begin, row, std::span<const double>(value)}; }
 };
 
-/// The limits in z: rows brought to about 1, infinite ones left out.
+/// The limits in z: rows scaled to about 1, infinite ones left out.
 struct ScaledLimits {
   Eigen::SparseMatrix<double> rows;  ///< kept limits × (columns and auxiliaries)
   VectorXd most;
@@ -58,14 +58,14 @@ ScaledLimits scaled_limits(const ScaledColumns& p, const NnlsProblem& problem, c
   for (Index j = 0; j < all; ++j) {
     double norm = 0;
     if (j < n && p.inverse_norm(j) > 0) norm = 1 / p.inverse_norm(j);
-    if (norm == 0) {  // no light at any point that counts: its own entries in the limits set the unit
+    if (norm == 0) {  // no light at any point with weight: its own entries in the limits set the unit
       double largest = 0;
       for (Eigen::SparseMatrix<double>::InnerIterator it(limits.rows, j); it; ++it)
         largest = std::max(largest, std::abs(it.value()));
       norm = largest > 0 ? largest : 1;
     }
     s.z_per_x.push_back(norm);
-    // What a column can give at most is what counts of it: a bound may hold it far below the goal.
+    // A column matters only up to its largest contribution: a bound may hold it far below the goal.
     const double upper = j < n && problem.upper.size() > 0 ? problem.upper[j] : kNoBound;
     const double most = p.nothing_wanted() ? 1 : std::min(1.0, upper * (norm / p.in_units(1)));
     for (Eigen::SparseMatrix<double>::InnerIterator it(limits.rows, j); it; ++it)
@@ -101,7 +101,7 @@ ScaledLimits scaled_limits(const ScaledColumns& p, const NnlsProblem& problem, c
   return s;
 }
 
-/// What violates the given ones of the limits least, and by how much each.
+/// Least violation of the given limits, and the violation of each.
 struct LeastViolation {
   VectorXd z, left;
   double norm = 0, relative = 0;
@@ -137,7 +137,7 @@ LeastViolation least_violation(const ScaledLimits& s, const std::vector<Index>& 
   return least;
 }
 
-/// Those of the limits in a proven conflict that it needs: each that can go while a conflict stays, goes.
+/// The limits that a proven conflict needs: each one is dropped if a conflict remains without it.
 std::vector<Index> needed(const ScaledLimits& s, const LeastViolation& proof, const NnlsOptions& options) {
   std::vector<Index> conflict;
   for (Index k = 0; k < proof.left.size(); ++k)
@@ -197,19 +197,20 @@ class Multipliers {
       const double change = (next - lambda_).size() == 0 ? 0 : (next - lambda_).cwiseAbs().maxCoeff() / rho_;
       lambda_ = next;
       const bool near_enough = change <= kTolerance * (1 + largest_most());
-      if (converged) {  // with the light weight: as long as it pays
+      if (converged) {  // with the light weight: as long as it pays off
         if (near_enough || change > 0.9 * before) return;
         before = change;
         continue;
       }
-      if (near_enough || (change > 0.9 * before && change < 1e-12)) {  // as near as doubles come
+      if (near_enough || (change > 0.9 * before && change < 1e-12)) {  // as near as doubles get
         converged = true;
         if (rounds + 1 == kMostRounds || s_.most.size() == 0) return;
         renew(kLightWeight, inner.x);
         before = kNoBound;
         continue;
       }
-      // Far from linear convergence at a good rate: limits weigh more. Not near the end, where rounding is all.
+      // Far from linear convergence at a good rate: increase the weight of limits. Not near the end, where rounding
+      // dominates.
       if (change > 0.25 * before && rho_ < 1e5 && change > 1e-12) {
         renew(rho_ * 10, inner.x);
         before = kNoBound;

@@ -17,7 +17,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kLargestGramEntry = ColumnsView::kLargestEntry;
-/// A worse answer than this is sought again with orthogonal factors.
+/// An answer worse than this is solved again with orthogonal factors.
 constexpr double kGoodEnough = 1e-12;
 
 std::string entry_complaint(const VectorXd& values, const char* name, double most, bool signs) {
@@ -134,7 +134,7 @@ int exponent_of(const Eigen::Ref<const VectorXd>& v) {
 NnlsResult solve_nnls(const MatrixXd& A, const VectorXd& b) {
   LUXRIG_CHECK(A.rows() == b.size(), "{} rows, {} right-hand sides", A.rows(), b.size());
   LUXRIG_CHECK(A.allFinite() && b.allFinite(), "entries must be finite");
-  // Columns and b to about 1 by powers of two, which is exact.
+  // Scales columns and b to about 1 by powers of two, which is exact.
   const int of_b = exponent_of(b);
   VectorXd goal = b;
   if (of_b != kNoExponent)

@@ -12,11 +12,11 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr double kGradientTolerance = 1e-13;
-/// Squared distance from the span below which products do not tell a column from rounding.
+/// Squared distance from the span below which products cannot tell a column from rounding.
 constexpr double kLeastPivot = 1e-11;
-/// A refused column that pulls more than this makes us solve from the matrix itself.
+/// If a refused column pulls more than this, the matrix itself is solved.
 constexpr double kWorthwhilePull = 1e-11;
-/// Below it the squared error is summed from the residuals: the difference of products has lost its digits.
+/// Below this the squared error is summed from the residuals: the difference of products has lost its digits.
 constexpr double kSmallSquaredError = 1e-5;
 
 }  // namespace
@@ -52,7 +52,7 @@ void NnlsOfFew::reserve(std::size_t count) {
   capacity_ = wanted;
 }
 
-/// Products of the column at a place with all that are chosen.
+/// Products of the column at a place with all chosen columns.
 void NnlsOfFew::fill(std::size_t place) {
   const ScaledColumns& p = problem_->scaled();
   const Index column = column_[place];
@@ -128,7 +128,7 @@ void NnlsOfFew::renew_gradient() {
   }
 }
 
-/// Appends to the factor. False when the column is in the span of the passive ones, as far as products tell.
+/// Appends to the factor. False when the products show the column to be in the span of the passive ones.
 bool NnlsOfFew::take_up(std::size_t place) {
   const std::size_t p = passive_.size();
   double* row = &factor_[p * capacity_];
@@ -147,7 +147,7 @@ bool NnlsOfFew::take_up(std::size_t place) {
   return true;
 }
 
-/// Out of the factor: the rows below move up and are made triangular again by rotations.
+/// Removes from the factor: the rows below move up, and rotations make them triangular again.
 void NnlsOfFew::let_go(std::size_t position) {
   is_passive_[passive_[position]] = 0;
   passive_.erase(passive_.begin() + static_cast<std::ptrdiff_t>(position));
@@ -183,7 +183,8 @@ void NnlsOfFew::solve_factor() {
   }
 }
 
-/// Lawson & Hanson's inner loop: to the least error over the passive columns, dropping those that meet their bounds.
+/// Lawson & Hanson's inner loop: moves to the least error over the passive columns, dropping those that meet their
+/// bounds.
 void NnlsOfFew::to_least_error() {
   while (!passive_.empty()) {
     solve_factor();
@@ -239,12 +240,12 @@ bool NnlsOfFew::search() {
     }
     const double before = z_[best];
     to_least_error();
-    if (z_[best] == before) refused_[best] = 1;  // its pull was rounding
+    if (z_[best] == before) refused_[best] = 1;  // its pull was only rounding
   }
   return false;
 }
 
-/// The chosen columns as a small matrix, through the solver that spares no effort. The factor starts anew.
+/// Solves the chosen columns as a small matrix with the most careful solver. The factor restarts.
 void NnlsOfFew::solve_from_matrix() {
   const ScaledColumns& p = problem_->scaled();
   const auto k = static_cast<Index>(column_.size());
@@ -264,7 +265,7 @@ void NnlsOfFew::solve_from_matrix() {
   passive_.clear();
   std::fill(is_passive_.begin(), is_passive_.end(), char{0});
   for (Index a = 0; a < k; ++a) z_[static_cast<std::size_t>(a)] = solution->x[a];
-  // Those the factor will not take stay where they are, as a bound would hold them, until something is exchanged.
+  // Columns that the factor refuses keep their level, as if at a bound, until an exchange.
   from_matrix_ = true;
 }
 

@@ -1,9 +1,9 @@
 #pragma once
-/// Non-negative least squares over a few columns chosen of very many, one of which is exchanged at a time: what
-/// annealing does thousands of times a second.
+/// Non-negative least squares over a few columns chosen from very many, with one exchanged at a time. Annealing does
+/// this thousands of times a second.
 ///
-/// Products of the chosen columns, their Cholesky factor and the levels are kept. An exchange makes the products of one
-/// column with the others, updates the factor, and goes on from the levels that were there (Bro & de Jong 1997).
+/// It keeps the products of the chosen columns, their Cholesky factor and the levels. An exchange computes the products
+/// of one column with the others, updates the factor and continues from the present levels (Bro & de Jong 1997).
 
 #include <memory>
 #include <span>
@@ -14,7 +14,7 @@
 
 namespace luxrig {
 
-/// What all searches in one problem share; made by one pass over the matrix. Its matrix must outlive it.
+/// Data shared by all searches in one problem; made by one pass over the matrix. The matrix must outlive it.
 class SharedProblem {
  public:
   explicit SharedProblem(const NnlsProblem& problem);
@@ -30,25 +30,24 @@ class SharedProblem {
 /// Cause::invalid with the problem's complaint.
 [[nodiscard]] Result<std::shared_ptr<const SharedProblem>> share_problem(const NnlsProblem& problem);
 
-/// A copy is a state to return to; it costs as many numbers as there are rows, and a few hundred. Each thread needs one
-/// of its own.
+/// A copy is a state to return to; it costs one number per row and a few hundred more. Each thread needs its own.
 class NnlsOfFew {
  public:
   using Index = Eigen::Index;
 
   explicit NnlsOfFew(std::shared_ptr<const SharedProblem> problem);
 
-  /// The optimum over the chosen columns holds after each of these. A column may be chosen twice.
+  /// The optimum over the chosen columns holds after each of these calls. A column may be chosen twice.
   void choose(std::span<const Index> columns);
   void exchange(std::size_t place, Index column);
   void add(Index column);
-  void drop(std::size_t place);  ///< places behind it move up
+  void drop(std::size_t place);  ///< later places move up
 
   [[nodiscard]] std::span<const Index> columns() const { return column_; }
   [[nodiscard]] double level(std::size_t place) const;  ///< x
   [[nodiscard]] double residual_norm() const;           ///< ‖W (A x − b)‖₂
   [[nodiscard]] Eigen::VectorXd residual() const;       ///< b − A x
-  /// Over the chosen columns, worked out afresh from the matrix.
+  /// Over the chosen columns, computed from the matrix.
   [[nodiscard]] KktResiduals kkt() const;
 
  private:
@@ -71,14 +70,14 @@ class NnlsOfFew {
   std::shared_ptr<const SharedProblem> problem_;
   std::vector<Index> column_;
   std::vector<double> z_, gradient_;
-  std::vector<double> gram_, factor_;  ///< capacity² each; factor_ by rows of L, in the order of passive_
+  std::vector<double> gram_, factor_;  ///< capacity² each; factor_ holds rows of L, in the order of passive_
   std::vector<std::size_t> passive_;   ///< places
   std::vector<char> is_passive_, refused_;
   std::vector<double> step_;
-  std::vector<double> spread_;  ///< of as many zeros as there are rows
+  std::vector<double> spread_;  ///< zeros, one per row
   std::size_t capacity_ = 0;
   double squared_error_ = 1;
-  bool from_matrix_ = false;  ///< z_ was solved without the factor: the next search starts anew
+  bool from_matrix_ = false;  ///< z_ was solved without the factor: the next search starts from scratch
 };
 
 }  // namespace luxrig

@@ -14,7 +14,7 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 /// A gradient below this is rounding: columns and goal have norm 1.
 constexpr double kSearchTolerance = 1e-13;
 
-/// Number of a set of columns, by which a set already visited is known again (Zobrist).
+/// Hash of a set of columns, to recognise sets already visited (Zobrist).
 std::uint64_t key_of(Index column) {
   std::uint64_t z = (static_cast<std::uint64_t>(column) + 1) * 0x9e3779b97f4a7c15ULL;  // splitmix64
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
@@ -60,7 +60,7 @@ void NnlsSearch::start_from(const VectorXd& x) {
   z_.setZero();
   for (Index j = 0; j < z_.size(); ++j)
     if (x[j] > 0 && std::isfinite(x[j]) && allowed_[at(j)] && p_.upper(j) > 0) positive.push_back(j);
-  // In parts: the products of all with all could be more than memory holds.
+  // In parts: all products at once could exceed memory.
   constexpr std::size_t kPart = 256;
   for (std::size_t first = 0; first < positive.size() && passive_->size() < p_.rows(); first += kPart) {
     const std::size_t count = std::min(kPart, positive.size() - first);
@@ -100,7 +100,7 @@ void NnlsSearch::run(const NnlsOptions& options) {
   stopped_ = false;
   if (converged_) z_.setZero();
   careful_ = options.most_entering == 1;
-  // Measured on random and on nearly equal columns: with more at a time, products are made in vain.
+  // Measured on random and on nearly equal columns: more at a time wastes products.
   most_ = options.most_entering > 0 ? at(options.most_entering) : at(std::max<Index>(1, p_.rows() / 8));
   block_ = std::min(most_, std::max<std::size_t>(1, at(p_.rows()) / 16));
   refused_.assign(refused_.size(), 0);
@@ -148,7 +148,7 @@ std::vector<Index> NnlsSearch::entering(std::size_t most) {
   return columns;
 }
 
-/// False when none could be taken up: then the first is refused.
+/// False when none could enter: the first is then refused.
 bool NnlsSearch::enter(const std::vector<Index>& columns) {
   std::vector<char> taken = passive_->append(columns);
   bool any = std::find(taken.begin(), taken.end(), 1) != taken.end();
@@ -166,7 +166,7 @@ bool NnlsSearch::enter(const std::vector<Index>& columns) {
   return any;
 }
 
-/// Takes columns that stand at a bound, and whose step leads out, from the passive ones. True when there were any.
+/// Removes passive columns that stand at a bound and whose step leads out of it. True if there were any.
 bool NnlsSearch::leave_at_bounds(const VectorXd& d) {
   std::vector<Index> places;
   for (Index k = 0; k < passive_->size(); ++k) {
@@ -182,8 +182,8 @@ bool NnlsSearch::leave_at_bounds(const VectorXd& d) {
   return !places.empty();
 }
 
-/// To the least error over the passive columns, or to less by dropping those that meet their bounds. False when the
-/// factor has broken down.
+/// Moves to the least error over the passive columns, or below it by dropping those that meet their bounds. False when
+/// the factor has broken down.
 bool NnlsSearch::descend() {
   while (passive_->size() > 0) {
     const PassiveColumns::Step step = passive_->step(residual_);
@@ -214,8 +214,8 @@ bool NnlsSearch::descend() {
       renew_residual();
       return true;
     }
-    // The whole step, cut off at the bounds, where that lowers the error at least half as much as going only to the
-    // first bound: then many columns leave at once.
+    // Takes the whole step, clipped at the bounds, if that lowers the error at least half as much as stopping at the
+    // first bound: many columns can then leave at once.
     const double error = residual_.cwiseAbs2().dot(p_.squared_weight());
     const double sure = (2 - first) * first * step.gain;
     VectorXd z;
@@ -242,7 +242,7 @@ bool NnlsSearch::descend() {
 
 void NnlsSearch::after_round(const std::vector<Index>& columns) {
   const double now = p_.norm(residual_);
-  if (now < least_ * (1 - 16 * kEpsilon)) {  // real progress: what was refused may be tried again
+  if (now < least_ * (1 - 16 * kEpsilon)) {  // real progress: refused columns may be tried again
     least_ = now;
     refused_.assign(refused_.size(), 0);
     visited_.clear();
@@ -254,8 +254,8 @@ void NnlsSearch::after_round(const std::vector<Index>& columns) {
       block_ = std::max<std::size_t>(1, block_ / 2);
     return;
   }
-  // On a plateau of rounding: as Lawson & Hanson, one at a time; and when the same set comes back, what was entered
-  // last stays out.
+  // On a plateau of rounding: one column at a time, as Lawson & Hanson. If a set repeats, the last column that entered
+  // stays out.
   block_ = 1;
   if (!visited_.insert(key_).second) refused_[at(columns.front())] = 1;
 }

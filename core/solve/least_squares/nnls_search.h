@@ -1,6 +1,6 @@
 #pragma once
-/// The search for the columns in use: an active-set method in which many columns may come and go in one round. Internal
-/// to the NNLS family.
+/// Active-set search for the columns in use, in which many columns may come and go in one round. Internal to the NNLS
+/// family.
 
 #include <cstdint>
 #include <memory>
@@ -22,7 +22,7 @@ class NnlsSearch {
   void allow_as(const NnlsSearch& other);
   void start_from(const VectorXd& x);
   [[nodiscard]] VectorXd x() const;
-  /// The problem has another goal; x as it was.
+  /// The goal of the problem has changed; x is the solution so far.
   void goal_changed(const VectorXd& x);
 
   void run(const NnlsOptions& options);

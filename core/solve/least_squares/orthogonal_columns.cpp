@@ -9,8 +9,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Thin Q by Gram-Schmidt, done again (Daniel, Gragg, Kaufman & Stewart 1976), which also tells how far a column stands
-/// from the span; columns leave by Givens rotations.
+/// Thin Q by Gram-Schmidt with reorthogonalisation (Daniel, Gragg, Kaufman & Stewart 1976), which also gives a column's
+/// distance from the span. Columns leave by Givens rotations.
 class OrthogonalColumns final : public PassiveColumns {
  public:
   explicit OrthogonalColumns(const ScaledColumns& problem)
@@ -48,7 +48,7 @@ class OrthogonalColumns final : public PassiveColumns {
     VectorXd rest = VectorXd::Zero(p_.rows());
     p_.view().add(column, p_.inverse_norm(column), rest.data());
     rest.array() *= weight_.array();
-    // A third pass for when most of the column has gone: else the rest need not be orthogonal to working accuracy.
+    // A third pass if most of the column has cancelled: otherwise the rest may not be orthogonal to working accuracy.
     VectorXd along = VectorXd::Zero(p);
     double distance = 1;
     for (int pass = 0; pass < 3; ++pass) {

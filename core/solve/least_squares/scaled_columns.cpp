@@ -6,7 +6,7 @@
 namespace luxrig {
 namespace {
 
-/// x of a column this much shorter than the goal would leave the range of double.
+/// For a column this much shorter than the goal, x would leave the range of double.
 constexpr double kShortestColumn = 1e-290;
 
 }  // namespace

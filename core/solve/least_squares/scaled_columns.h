@@ -1,6 +1,6 @@
 #pragma once
-/// A least-squares problem in variables z in which every column and the goal have norm 1, whatever the units; without a
-/// copy of the matrix. Internal to the NNLS family.
+/// A least-squares problem in variables z, scaled so that every column and the goal have norm 1, without a copy of the
+/// matrix. Internal to the NNLS family.
 
 #include <Eigen/Core>
 #include <string>
@@ -26,15 +26,15 @@ class ScaledColumns {
   [[nodiscard]] bool unweighted() const { return unweighted_; }
   [[nodiscard]] const VectorXd& goal() const { return goal_; }
   [[nodiscard]] double inverse_norm(Index j) const { return inverse_norm_[j]; }
-  /// Bounds of z; 0 for columns that cannot count: zero ones, and those too short for their x to be a double.
+  /// Bounds of z; 0 for unusable columns: zero columns, and columns too short for their x to be a double.
   [[nodiscard]] double upper(Index j) const { return upper_[j]; }
   /// The goal is zero, or there are no rows.
   [[nodiscard]] bool nothing_wanted() const { return scale_ == 0; }
 
-  /// goal − A z; only columns of `support` have z ≠ 0. The second sums in long double, for refinement.
+  /// goal − A z; only columns of `support` have z ≠ 0. exact_residual sums in long double, for refinement.
   [[nodiscard]] VectorXd residual(const VectorXd& z, const std::vector<Index>& support) const;
   [[nodiscard]] VectorXd exact_residual(const VectorXd& z, const std::vector<Index>& support) const;
-  /// Aᵀ W² residual: how fast half the squared error falls with each z.
+  /// Aᵀ W² residual: rate at which half the squared error falls with each z.
   void gradient(const VectorXd& residual, VectorXd& result) const;
   [[nodiscard]] double gradient_of(Index j, const VectorXd& weighted_residual) const {
     return inverse_norm_[j] * view_.dot(j, weighted_residual.data());
@@ -49,7 +49,7 @@ class ScaledColumns {
   [[nodiscard]] KktResiduals kkt(const VectorXd& z, const VectorXd& residual, const std::vector<char>& allowed) const;
   [[nodiscard]] double x_of(Index j, double z) const;
   [[nodiscard]] double z_of(Index j, double x) const;
-  /// A norm of ours in the units of the problem.
+  /// A scaled norm in the units of the problem.
   [[nodiscard]] double in_units(double norm) const { return scale_ > 0 ? norm * scale_ : norm; }
 
  private:

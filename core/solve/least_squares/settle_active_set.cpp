@@ -15,10 +15,10 @@ using Eigen::VectorXd;
 constexpr int kMostSettlingRounds = 30, kRefinements = 3;
 /// Multipliers and rooms nearer to 0 than this are rounding.
 constexpr double kRoundingOfSigns = 1e-14, kRoundingOfRows = 1e-13;
-/// A row whose square, less what the rows before it say, is below this share of it follows from them.
+/// A row depends on earlier rows if its squared remainder after them is below this share of its square.
 constexpr double kFollows = 1e-12;
 
-/// EᵀE. Spots reach few points each; and a row of one entry, as the tie has, only adds to the diagonal.
+/// EᵀE. Spots reach few points each; a row of one entry, as in the tie term, only adds to the diagonal.
 MatrixXd products_of_columns(const MatrixXd& E) {
   const double filled = static_cast<double>((E.array() != 0).count());
   if (filled < 0.1 * static_cast<double>(E.size())) {
@@ -61,7 +61,7 @@ class Settling {
   }
 
  private:
-  /// z and multipliers where the free unknowns are best with the working rows kept; the rest is at its bounds.
+  /// Solves for z and multipliers: free unknowns are optimal with the working rows kept, the rest is at its bounds.
   bool solve() {
     for (std::size_t j = 0; j < at_.state.size(); ++j) {
       const auto k = static_cast<Index>(j);
@@ -73,7 +73,7 @@ class Settling {
     const Eigen::LLT<MatrixXd> factor(gram_(free, free));
     if (factor.info() != Eigen::Success) return false;
     const MatrixXd rows = p_.G(at_.working_rows, free).transpose();
-    const MatrixXd seen = rows.cols() > 0 ? MatrixXd(factor.matrixL().solve(rows)) : rows;  // Eigen reads of none, too
+    const MatrixXd seen = rows.cols() > 0 ? MatrixXd(factor.matrixL().solve(rows)) : rows;  // Eigen reads empty ones
     const MatrixXd products = seen.transpose() * seen;
     const Eigen::LLT<MatrixXd> of_rows(products);
     if (rows.cols() > 0) {
@@ -98,7 +98,8 @@ class Settling {
     return at_.z.allFinite() && multiplier_.allFinite();
   }
 
-  /// Fixes what is beyond its bound, takes up rows that are broken, lets go what pulls the other way. Returns how many.
+  /// Fixes unknowns beyond their bounds, adds violated rows and releases constraints with a wrong sign. Returns the
+  /// number of changes.
   std::size_t change() {
     pull_ = p_.E.transpose() * (p_.f - p_.E * at_.z);
     std::vector<char> working(static_cast<std::size_t>(p_.G.rows()), 0);

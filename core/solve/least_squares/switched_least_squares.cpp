@@ -12,14 +12,15 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// A bound counts as no better than the best answer within this share of it: rounding must not search all alike.
+/// A bound within this share of the best answer counts as no better: otherwise rounding would search all equal
+/// settings.
 constexpr double kAlike = 1e-9;
-/// As near to one of its two values as rounding leaves it.
+/// Distance from one of its two values that counts as rounding.
 constexpr double kWhole = 1e-9;
 
 enum class Setting : char { open, off, on };
 
-/// A row's room below which rounding decides.
+/// Room of a row below which rounding decides.
 double rounding_of(const LimitedLeastSquares& p, Index row) {
   return 64 * static_cast<double>(p.E.cols() + 1) * std::numeric_limits<double>::epsilon() * p.slack[row];
 }
@@ -29,7 +30,7 @@ class SettingSearch {
   SettingSearch(const LimitedLeastSquares& problem, const std::vector<Index>& switched, const std::stop_token& stop,
                 int most_nodes)
       : switched_(switched), stop_(stop), most_nodes_(most_nodes), reduced_(problem) {
-    // ‖E z − f‖² = ‖R z − Qᵀf‖² + what no z can mend: every node then has as many rows as unknowns.
+    // ‖E z − f‖² = ‖R z − Qᵀf‖² + a constant: every node then has as many rows as unknowns.
     const Index n = problem.E.cols();
     const Eigen::HouseholderQR<MatrixXd> qr(problem.E);
     reduced_.E = qr.matrixQR().topRows(n).triangularView<Eigen::Upper>();
@@ -45,7 +46,7 @@ class SettingSearch {
   }
 
  private:
-  /// The problem with what is set so far; false when that alone is above a limit.
+  /// The problem with the settings so far; false when these alone exceed a limit.
   bool build(LimitedLeastSquares& node) const {
     node = reduced_;
     bool any_on = false;
@@ -82,7 +83,7 @@ class SettingSearch {
     if (found_.relaxed.size() == 0) found_.relaxed = at.z;
     const double error = (node.E * at.z - node.f).norm();
     if (error >= best_ * (1 - kAlike)) return;
-    // The one that is furthest from either of its values, as it matters.
+    // The unknown furthest from both of its values, weighted by its effect.
     std::size_t next = switched_.size();
     double most = 0;
     for (std::size_t k = 0; k < switched_.size(); ++k) {
@@ -111,7 +112,7 @@ class SettingSearch {
     setting_[next] = Setting::open;
   }
 
-  /// All are at one of their values already, to rounding; whether that is within limits, setting them tells.
+  /// All are at one of their values, to rounding. Setting them shows whether that keeps the limits.
   void settle(const VectorXd& z, double error) {
     const std::vector<Setting> before = setting_;
     std::size_t last_on = switched_.size();

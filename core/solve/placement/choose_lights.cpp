@@ -7,10 +7,10 @@
 namespace luxrig {
 namespace {
 
-/// Lights beyond what is chosen that the way up goes: a share of them, and at least this many.
+/// Lights added beyond the chosen number: that number / kBeyondOf, at least kLeastBeyond.
 constexpr std::size_t kLeastBeyond = 2;
 constexpr std::size_t kBeyondOf = 5;
-/// Times the wanted error.
+/// In units of the wanted error.
 constexpr double kNearlyWanted = 10;
 
 class Choice {
@@ -44,7 +44,7 @@ class Choice {
     return curve_.cuts[std::min(lights, curve_.cuts.size() - 1)].error();
   }
 
-  /// Keeps them if they are the best of their number. True when they are.
+  /// Keeps them if they are the best of their number; true if so.
   bool offer(const PlacedLights& lights) {
     const std::size_t count = lights.size();
     while (curve_.cuts.size() < count) curve_.cuts.push_back(curve_.cuts.back());
@@ -81,7 +81,7 @@ class Choice {
     return lights;
   }
 
-  /// From more lights than are needed to one fewer than are chosen.
+  /// From more lights than needed down to one fewer than chosen.
   void way_down(PlacedLights lights) {
     exchange_.refine(lights);
     offer(lights);
@@ -94,7 +94,7 @@ class Choice {
     }
   }
 
-  /// The chosen number begun in the other way where the goal is hard.
+  /// If the goal is hard, starts the chosen number the other way.
   void begin_otherwise() {
     if (ended() || !options_.other || !options_.start.empty() || chosen_error_ <= kHardGoalError) return;
     const auto other = begun_otherwise(exchange_, curve_.cuts.front(), options_.other, curve_.chosen, options_.seed,
@@ -102,7 +102,7 @@ class Choice {
     if (other) offer(*other);
   }
 
-  /// Whether, from the best there is now, more lights are worth it after all.
+  /// Whether more lights are worth it after all, from the present best.
   bool look_ahead() {
     const std::size_t was = curve_.chosen;
     PlacedLights lights = curve_.cuts[was];
@@ -124,7 +124,7 @@ class Choice {
     }
   }
 
-  /// Whether one light fewer, nearly good enough, comes to be so.
+  /// Whether one light fewer, if nearly good enough, can be made good enough.
   bool fewer_will_do() {
     const std::size_t was = curve_.chosen;
     if (was < 2 || chosen_error_ > options_.number.wanted_error ||

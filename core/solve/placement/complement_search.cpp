@@ -12,19 +12,19 @@ namespace {
 
 using ByCandidate = ComplementSearch::ByCandidate;
 
-/// A column with less than this left of its square is a mix of the chosen ones: nothing but rounding to gain.
+/// A column with less than this share of its square left is a mix of the chosen ones: it gains only rounding.
 constexpr double kLeastLeft = 1e-4;
 
-/// Columns at a time: of 300 points, a megabyte.
+/// Columns per block: a megabyte with 300 points.
 constexpr std::size_t kBlock = 512;
 
 const double kSameWay = std::cos(rad_from_deg(30));
 
-/// Columns nearer than this to a mix of the others span nothing of their own: products with them would be rounding.
+/// Columns nearer than this to a mix of the others add nothing to the span: their products would be rounding.
 constexpr double kOwnShare = 1e-6;
 
-/// ‖Qᵀa‖², where Q is an orthonormal basis of columns A, of any a by its products g = Aᵀa. With A P = Q R it is
-/// ‖R⁻ᵀ Pᵀ g‖².
+/// ‖Qᵀa‖² for any a from its products g = Aᵀa, where Q is an orthonormal basis of columns A. With A P = Q R it is ‖R⁻ᵀ
+/// Pᵀ g‖².
 class SquareWithin {
  public:
   explicit SquareWithin(const Eigen::MatrixXd& columns) {
@@ -40,7 +40,7 @@ class SquareWithin {
                    .solve(Eigen::MatrixXd::Identity(rank, rank));
     within_.resize(rank);
   }
-  /// Most lights have nothing in common with most candidates where walls part them.
+  /// Where walls separate them, most lights share no points with most candidates.
   [[nodiscard]] double of(const double* products, std::span<const Eigen::Index> column) {
     const Eigen::Index rank = within_.size();
     within_.setZero();
@@ -81,8 +81,8 @@ ComplementSearch::ComplementSearch(const ColumnsView& columns, std::span<const L
   squared_norm_.conservativeResize(static_cast<Eigen::Index>(lit_.size()), Eigen::NoChange);
 }
 
-/// Of each lit candidate's column with vectors over points: candidates × vectors. A block of columns stays in the cache
-/// while all vectors go over it.
+/// Products of each lit candidate's column with vectors over points: candidates × vectors. A block of columns stays in
+/// the cache while all vectors pass over it.
 ComplementSearch::ByCandidate ComplementSearch::products(const Eigen::MatrixXd& vectors) const {
   constexpr Eigen::Index kTile = ColumnsView::kTile;
   const Eigen::Index tiles = (vectors.cols() + kTile - 1) / kTile, tile_size = kTile * vectors.rows();
@@ -130,7 +130,7 @@ Eigen::VectorXd ComplementSearch::gains(const About& about, std::initializer_lis
   const Eigen::Index of_each = chosen.emitters(), all = about.lights->columns().cols();
   LUXRIG_CHECK(about.lights->size() == chosen.size() + without.size(), "{} lights, {} of them chosen, {} not",
                about.lights->size(), chosen.size(), without.size());
-  // Of all lights' columns: how their levels differ, and those in use.
+  // Over all lights' columns: differences of levels, and the columns in use.
   Eigen::RowVectorXd less = Eigen::RowVectorXd::Zero(all + 1);
   less.head(all) = about.lights->levels().transpose();
   less[all] = 1;
@@ -149,7 +149,7 @@ Eigen::VectorXd ComplementSearch::gains(const About& about, std::initializer_lis
   for (std::size_t e = 0; e < about.products.size(); ++e) {
     const ByCandidate& products = about.products[e];
     for (Eigen::Index i = 0; i < lit; ++i) {
-      // Levels cannot fall below 0: an emitter that does not pull gains nothing, whatever the chosen lights do.
+      // Levels cannot fall below 0: an emitter without a pull gains nothing, whatever the chosen lights do.
       const double pull = products.row(i).dot(less);
       if (!(pull > 0)) continue;
       const double whole = squared_norm_(i, static_cast<Eigen::Index>(e));
@@ -169,7 +169,7 @@ std::vector<Complement> ComplementSearch::best(const About& about, std::initiali
   const Eigen::VectorXd gain = gains(about, without, chosen);
   std::vector<std::size_t> order(lit_.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  // Enough for `count` that stand apart in nearly every case; the rest is sorted only when it is needed.
+  // Nearly always enough for `count` that stand apart; the rest is sorted only if needed.
   const auto by_gain = [&](std::size_t a, std::size_t b) {
     const double of_a = gain[static_cast<Eigen::Index>(a)], of_b = gain[static_cast<Eigen::Index>(b)];
     return of_a != of_b ? of_a > of_b : a < b;

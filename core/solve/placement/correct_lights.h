@@ -1,9 +1,9 @@
 #pragma once
-/// Lights found with a quick model of light, brought to what a better one says of them.
+/// Lights found with a fast light model, corrected by a better one.
 ///
-/// The quick model's fault at the lights' present poses is measured and taken as light that is there anyway; the quick
-/// search goes on from there, and the fault is measured again. Where it changes little with the poses this ends where
-/// the better model would (defect correction: Stetter 1978), at the price of a few of its evaluations.
+/// The error of the fast model at the present poses is measured and treated as fixed light. The fast search continues
+/// from there, and the error is measured again. If it changes little with the poses, this ends where the better model
+/// would (defect correction: Stetter 1978), at the cost of a few of its evaluations.
 
 #include <functional>
 #include <memory>
@@ -18,24 +18,24 @@ namespace luxrig {
 using LuxOfLights =
     std::function<Result<Eigen::VectorXd>(std::span<const LightPose> poses, const Eigen::VectorXd& levels)>;
 
-/// Lights for a goal by the quick model, from those there are; they refer to that goal.
+/// Lights for a goal by the fast model, starting from `start`; they refer to that goal.
 using SearchAgain = std::function<PlacedLights(const LightingGoal& goal, const PlacedLights& start)>;
 
 struct CorrectedLights {
-  std::unique_ptr<LightingGoal> goal;  ///< the lights' own, with the fault as fixed light
+  std::unique_ptr<LightingGoal> goal;  ///< the lights' own, with the error of the fast model as fixed light
   PlacedLights lights;
-  Eigen::VectorXd lux;  ///< by the better model, fixed light of the goal included
+  Eigen::VectorXd lux;  ///< by the better model, with the goal's fixed light
   double error = 0;     ///< of this lux: ‖W (lux − b)‖ / ‖W b‖
   int rounds = 0;       ///< evaluations of the better model
 };
 
 struct CorrectOptions {
   int most_rounds = 4;
-  double least_improvement = 0.05;  ///< share of the error; a round below it is the last
+  double least_improvement = 0.05;  ///< share of the error; a round that improves less is the last
 };
 
-/// The best of the rounds by the better model; never worse than the lights as they came.
-/// Cause: that of lux_of, when its first call fails; later failures end it with the best so far.
+/// The best of the rounds by the better model; never worse than the given lights.
+/// Cause: that of lux_of if its first call fails. Later failures end the rounds with the best so far.
 [[nodiscard]] Result<CorrectedLights> correct_lights(const MovableLight& light, const LightingGoal& goal,
                                                      const PlacedLights& lights, const LuxOfLights& lux_of,
                                                      const SearchAgain& search_again,

@@ -1,5 +1,5 @@
 #pragma once
-/// Any method's lights, corrected by what a better model of light says of them (correct_lights.h).
+/// Lights of any method, corrected by a better light model (correct_lights.h).
 
 #include <optional>
 
@@ -9,19 +9,19 @@
 namespace luxrig {
 
 struct CorrectedPlacement {
-  FoundLights found;                         ///< as the method gave them, by the problem's own model
-  std::optional<CorrectedLights> corrected;  ///< none: no better model was given, or it failed
-  std::optional<Fault> failed;               ///< why it did
+  FoundLights found;                         ///< as the method returned them, by the problem's own model
+  std::optional<CorrectedLights> corrected;  ///< empty = no better model was given, or it failed
+  std::optional<Fault> failed;               ///< why it failed
   std::size_t columns = 0;                   ///< of all searches
 };
 
 struct CorrectedPlacementOptions {
-  LuxOfLights lux_of;   ///< the better model; none: nothing is corrected
+  LuxOfLights lux_of;   ///< the better model; empty = no correction
   int most_rounds = 3;  ///< evaluations of it
-  double share = 0.5;   ///< of most_columns, for each search that goes on after a correction
+  double share = 0.5;   ///< of most_columns, for each search that continues after a correction
 };
 
-/// Cause as the method's.
+/// Cause: that of the method.
 [[nodiscard]] Result<CorrectedPlacement> place_and_correct(const PlacementMethod& method,
                                                            const PlacementProblem& problem,
                                                            const PlacementOptions& options,

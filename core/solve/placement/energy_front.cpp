@@ -31,7 +31,7 @@ std::vector<FrontPoint> energy_front(const MovableLight& light, const LightingGo
     front.push_back({std::move(limited), std::move(lights)});
     before = &front.back().lights;
   }
-  // What does better with less power does so with more.
+  // A result that is better with less power is also allowed with more.
   for (std::size_t i = front.size(); i-- > 1;)
     if (front[i].lights.error() < front[i - 1].lights.error())
       front[i - 1].lights = hung_again(light, *front[i - 1].goal, front[i].lights);

@@ -1,5 +1,5 @@
 #pragma once
-/// Error against power: what each watt less costs, with lights free to move and to be exchanged.
+/// Error against power: the cost in error of each watt saved, with lights free to move and to be exchanged.
 
 #include <memory>
 #include <span>
@@ -14,8 +14,8 @@ struct FrontPoint {
   PlacedLights lights;
 };
 
-/// For each power limit, falling, the best found from the lights of the one before (ε-constraint method: Haimes, Lasdon
-/// & Wismer 1971). Errors rise along it.
+/// For each power limit, falling, the best lights found from those of the limit before (ε-constraint method: Haimes,
+/// Lasdon & Wismer 1971). Errors rise along it.
 ///
 /// start        lights to begin with
 /// goal         with watts per emitter

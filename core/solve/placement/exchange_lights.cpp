@@ -10,11 +10,11 @@
 namespace luxrig {
 namespace {
 
-constexpr int kQuickSteps = 4;       ///< of refinement, for what may be dropped again
-constexpr std::size_t kRefined = 3;  ///< of the ways to put a light back that are refined at all
+constexpr int kQuickSteps = 4;       ///< of refinement, for lights that may be dropped again
+constexpr std::size_t kRefined = 3;  ///< trial positions of a light that are refined
 constexpr double kLeastProgress = 0.999;
 
-/// Each light with the one whose light falls most on the same points.
+/// Pairs each light with the one that shares most light at the same points.
 std::vector<std::pair<std::size_t, std::size_t>> neighbours(const PlacedLights& lights) {
   const Eigen::Index emitters = lights.emitters();
   Eigen::MatrixXd unit(lights.columns().rows(), static_cast<Eigen::Index>(lights.size()));
@@ -33,7 +33,7 @@ std::vector<std::pair<std::size_t, std::size_t>> neighbours(const PlacedLights& 
   return pairs;
 }
 
-/// The best few, rising error.
+/// The best few, by rising error.
 void keep_best_ways(std::vector<PlacedLights>& ways, std::size_t count) {
   count = std::min(count, ways.size());
   std::partial_sort(ways.begin(), ways.begin() + static_cast<std::ptrdiff_t>(count), ways.end(),
@@ -61,7 +61,7 @@ bool LightExchange::with_one_more(PlacedLights& lights, std::size_t choice, std:
   return true;
 }
 
-/// The lights without one of them, and the best found in its place.
+/// The lights without one of them, and the best replacement found.
 LightExchange::Trial LightExchange::exchanged(const ComplementSearch::About& about, std::size_t light,
                                               std::uint64_t seed) const {
   const PlacedLights& lights = *about.lights;
@@ -125,8 +125,8 @@ bool LightExchange::singly(PlacedLights& lights, std::mt19937_64& random) {
   return true;
 }
 
-/// The lights without two of them, and the best found in their places: one of the best complements for the first, the
-/// best for the second.
+/// The lights without two of them, and the best replacements found: for the first one of the best complements, for the
+/// second the best.
 LightExchange::Trial LightExchange::pair_exchanged(const ComplementSearch::About& about,
                                                    std::pair<std::size_t, std::size_t> pair) const {
   Trial trial;

@@ -1,10 +1,10 @@
 #pragma once
-/// Moves through what places alone cannot leave: lights taken out and put back elsewhere, singly or by twos.
+/// Moves out of local optima: lights are removed and put back elsewhere, singly or in pairs.
 ///
-/// Refinement ends in basins which shadows cut off. A light that is taken out and put where it does most for what is
-/// left over (the thesis's mutation, §5.4.2, with every light in turn instead of one at random) leaves them: at a
-/// candidate anywhere, or at a fresh place near by, which may lie beyond an edge of a shadow. Two lights that make up
-/// for each other's faults hold each other there, and go together.
+/// Refinement ends in basins bounded by shadow edges. To leave one, a light is removed and put where it reduces the
+/// residual most (the thesis's mutation, §5.4.2, but for every light in turn instead of a random one): at any
+/// candidate, or at a new place nearby, perhaps beyond a shadow edge. Two lights that compensate each other's errors
+/// hold each other in place, so they move together.
 
 #include <cstdint>
 #include <optional>
@@ -19,14 +19,14 @@
 namespace luxrig {
 
 struct ExchangeOptions : Run {
-  std::size_t complements = 6;   ///< candidates tried for a light that was taken out
-  std::size_t near_places = 48;  ///< places tried about it
-  double apart_m = 0.5;          ///< between candidates that are tried
-  double near_m = 0.4;           ///< of those places: standard deviation along each axis
+  std::size_t complements = 6;   ///< candidates tried for a removed light
+  std::size_t near_places = 48;  ///< places tried around it
+  double apart_m = 0.5;          ///< between tried candidates
+  double near_m = 0.4;           ///< standard deviation of those places along each axis
   double near_rad = 0.3;         ///< and of their aims, about each of two axes
   double longest_step_m = 0.5;   ///< of a light in one step of refinement
 
-  /// Lengths that suit candidates so far apart.
+  /// Lengths that suit candidates at this spacing.
   [[nodiscard]] static ExchangeOptions for_spacing(double spacing_m) {
     ExchangeOptions options;
     options.apart_m = options.longest_step_m = 5.0 / 3 * spacing_m;
@@ -41,22 +41,24 @@ class LightExchange {
   LightExchange(const ComplementSearch& candidates, const ExchangeOptions& options)
       : candidates_(candidates), options_(options) {}
 
-  /// One round: every light is taken out and put back; the best of these is kept, and of the others what improves that
-  /// in turn: lights in rooms of their own do not wait for each other. False, and nothing changed, when none is better.
+  /// One round: every light is removed and put back. The best move is kept, then each other move that improves on it in
+  /// turn, so that lights in separate rooms need not wait for each other. False, and nothing changed, when no move is
+  /// better.
   bool singly(PlacedLights& lights, std::mt19937_64& random);
-  /// The same by twos that share points.
+  /// The same with pairs of lights that share points.
   bool by_twos(PlacedLights& lights);
-  /// Through lights more than are wanted: as many as `beyond` are added and, each time the one that is missed least,
-  /// taken out again, the others following. With more lights fewer basins are dead ends.
+  /// Detour through more lights: `beyond` lights are added one by one, and each time the least useful light is removed
+  /// while the others follow. With more lights fewer basins are dead ends.
   bool through_more(PlacedLights& lights, std::size_t beyond, std::mt19937_64& random);
-  /// The best of the lights without one of them, refined a little. At least one light.
+  /// The best set without one of the lights, refined a little. Needs at least one light.
   [[nodiscard]] PlacedLights without_one(const PlacedLights& lights);
-  /// A light more, at the best candidate (or, drawn, one of the `choice` best), all refined. False when none gains.
+  /// Adds a light at the best candidate (or at a random one of the `choice` best) and refines all. False when none
+  /// gains.
   bool with_one_more(PlacedLights& lights, std::size_t choice, std::mt19937_64& random);
-  /// All places to the end of the basin.
+  /// Moves all places to the bottom of their basin.
   void refine(PlacedLights& lights) { columns_ += refine_lights(lights, steps(RefineOptions{}.most_steps)); }
 
-  /// Columns worked out by all of these so far.
+  /// Columns computed by all of these calls so far.
   [[nodiscard]] std::size_t columns() const { return columns_; }
 
  private:

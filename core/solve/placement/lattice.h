@@ -1,5 +1,5 @@
 #pragma once
-/// Places to try: the middles of cubes that fill a box.
+/// Places to try: the centres of cubes that fill a box.
 
 #include <Eigen/Geometry>
 #include <vector>

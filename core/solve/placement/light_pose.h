@@ -1,5 +1,5 @@
 #pragma once
-/// Where a light hangs and where it points.
+/// Position and aim of a light.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -12,15 +12,15 @@ namespace luxrig {
 struct LightPose {
   Vec3 position_world_m = Vec3::Zero();
   Vec3 aim_world =
-      -Vec3::UnitZ();  ///< unit: where the -Z of its luminaire points; lights without an aim leave it alone
+      -Vec3::UnitZ();  ///< unit: direction of its luminaire's -Z; lights without an aim leave it unchanged
 
   friend bool operator==(const LightPose& a, const LightPose& b) {
     return a.position_world_m == b.position_world_m && a.aim_world == b.aim_world;
   }
 };
 
-/// Two unit vectors that make a right-handed basis with `unit`: its columns are first, second, unit. Continuous but at
-/// one direction (Duff et al., "Building an Orthonormal Basis, Revisited", 2017).
+/// Two unit vectors that make a right-handed basis with `unit`: its columns are first, second, unit. Discontinuous in
+/// one direction only (Duff et al., "Building an Orthonormal Basis, Revisited", 2017).
 [[nodiscard]] inline Mat3 basis_about(const Vec3& unit) {
   const double sign = std::copysign(1.0, unit.z());
   const double a = -1 / (sign + unit.z()), b = unit.x() * unit.y() * a;
@@ -31,13 +31,13 @@ struct LightPose {
   return basis;
 }
 
-/// `hung` turned the shortest way so that its -Z points along `aim`.
+/// `hung` turned by the shortest rotation that points its -Z along `aim`.
 [[nodiscard]] inline Mat3 aimed_rotation(const Mat3& hung, const Vec3& aim) {
   return Eigen::Quaterniond::FromTwoVectors(-hung.col(2), aim).toRotationMatrix() * hung;
 }
 
-/// The pose moved by step: metres along x, y and z, and, if it has five numbers, radians in which the aim turns towards
-/// the first and second vector of basis_about().
+/// The pose moved by step: metres along x, y and z; with five numbers, also radians by which the aim turns towards the
+/// first and second vector of basis_about().
 [[nodiscard]] inline LightPose moved(const LightPose& pose, const Eigen::VectorXd& step) {
   LightPose to = pose;
   to.position_world_m += step.head<3>();

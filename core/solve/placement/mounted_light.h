@@ -1,6 +1,6 @@
 #pragma once
-/// A light that hangs at the mounting's place nearest to the one it is asked for, so that a search that steps out of
-/// the mounting slides along its edge.
+/// A light that hangs at the mounting's place nearest to the requested one, so that a search that leaves the mounting
+/// slides along its edge.
 
 #include "core/solve/placement/mounting.h"
 #include "core/solve/placement/movable_light.h"

@@ -19,14 +19,14 @@ namespace {
 constexpr double kPlacesInAir = 20'000, kPlacesOffSurfaces = 5'000;
 constexpr std::size_t kPlacesPerTask = 512;
 
-/// Places were moved to a bound and stand there to within rounding.
+/// Places moved to a bound are there only to within rounding.
 double rounding_at(const Vec3& place_m) { return 1e-12 * (1 + place_m.cwiseAbs().maxCoeff()); }
 
 bool fits(const std::string& pattern, const std::string& name) {
   return fnmatch(pattern.c_str(), name.c_str(), 0) == 0;
 }
 
-/// A pattern's names are those of materials and of objects.
+/// A pattern may match names of materials and of objects.
 std::vector<std::string_view> names_of(const Scene& scene) {
   std::vector<std::string_view> names;
   for (const Material& material : scene.materials) names.push_back(material.name);
@@ -101,7 +101,7 @@ bool Mounting::may_hang(const Vec3& place_world_m) const {
 std::optional<Mounting::Snapped> Mounting::snapped(const Vec3& wanted_world_m) const {
   if (!wanted_world_m.allFinite()) return std::nullopt;
   Snapped at{wanted_world_m, Mat3::Identity()};
-  // A move to the offsets may leave the box and the other way round: a few turns settle it where it can be.
+  // A move to the offsets may leave the box, and the other way round: a few turns converge where possible.
   for (int turn = 0; turn < 4; ++turn) {
     const Vec3 in_box_m = at.place_world_m.cwiseMax(box_world_m_.min()).cwiseMin(box_world_m_.max());
     for (Eigen::Index axis = 0; axis < 3; ++axis)
@@ -113,7 +113,7 @@ std::optional<Mounting::Snapped> Mounting::snapped(const Vec3& wanted_world_m) c
     if (!near || !(near->distance_m > 0)) return std::nullopt;
     const Vec3 out = (at.place_world_m - near->position_world_m) / near->distance_m;
     const double wanted_m = std::clamp(near->distance_m, spec_.offset_min_m, spec_.offset_max_m);
-    if (wanted_m == near->distance_m) return std::nullopt;  // something else is too near
+    if (wanted_m == near->distance_m) return std::nullopt;  // another surface is too near
     at.place_world_m = near->position_world_m + wanted_m * out;
     at.per_wanted = (Mat3::Identity() - out * out.transpose()) * at.per_wanted;
   }
@@ -189,7 +189,7 @@ Result<std::vector<Vec3>> Mounting::candidates(int threads) const {
                     spacing_m, count, kMostPlaces));
   }
   std::vector<Vec3> places_m, good_m;
-  // Surfaces smaller than the spacing may fall through its meshes.
+  // The lattice may miss surfaces smaller than the spacing.
   for (int finer = 0; finer < 6 && good_m.empty() && places_at(spacing_m) <= static_cast<double>(kMostPlaces);
        ++finer, spacing_m /= 2) {
     places_m = is_surface_.empty() ? places_in_air(spacing_m) : places_off_surfaces(spacing_m);

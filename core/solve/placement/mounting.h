@@ -1,12 +1,12 @@
 #pragma once
-/// Where a luminaire may hang in a scene: `[mounting]` of the rig file, made ready to be asked about many places.
+/// Where a luminaire may hang in a scene: `[mounting]` of the rig file, prepared for many queries.
 ///
-/// A place may be hung at when it is
-///   within the box, or the scene's bounds without one;
-///   with surfaces: within the offsets of the nearest of them, and `clearance_m` or more from all others;
-///   without: `clearance_m` or more from everything.
-/// Distances are of the luminaire's middle. Nothing is said of which side of a wall a place is on: behind closed
-/// surfaces a light lights no point, and candidates there cost nothing (core/transport/candidates/air_regions.h).
+/// A luminaire may hang at a place
+///   within the box, or within the scene's bounds if there is no box;
+///   with surfaces: within the offsets of the nearest of them, and at least `clearance_m` from all others;
+///   without surfaces: at least `clearance_m` from everything.
+/// Distances are from the luminaire's centre. The side of a wall is not checked: behind closed surfaces a light reaches
+/// no point, and candidates there cost nothing (core/transport/candidates/air_regions.h).
 
 #include <filesystem>
 #include <optional>
@@ -26,7 +26,7 @@ class Mounting {
   static constexpr std::size_t kMostPlaces = 1'000'000;
 
   /// scene, rays   the same geometry; `rays` must outlive it
-  /// rig_file      for problems: a pattern that fits no material or object, or nothing that bounds the places
+  /// rig_file      for problems: a pattern that matches no material or object, or nothing that bounds the places
   [[nodiscard]] static Checked<Mounting> make(const MountingSpec& spec, const std::filesystem::path& rig_file,
                                               const Scene& scene, const RayScene& rays);
 
@@ -34,22 +34,22 @@ class Mounting {
 
   struct Snapped {
     Vec3 place_world_m;
-    /// d place / d wanted: the identity within the mounting, else without the directions that box or offsets hold.
+    /// d place / d wanted: the identity within the mounting; otherwise without the directions fixed by box or offsets.
     Mat3 per_wanted;
   };
-  /// The place nearest to a wanted one where a light may hang, as far as box and offsets go; nothing when something
-  /// else stands too near there. Keeps a wanted place that is good as it is, to the last bit.
+  /// The allowed place nearest to a wanted one, within box and offsets; empty when something else is too near there.
+  /// Returns an allowed place unchanged, to the last bit.
   [[nodiscard]] std::optional<Snapped> snapped(const Vec3& wanted_world_m) const;
 
-  /// Places to try, evenly spread: a lattice in the box, or one laid on each of the surfaces and lifted off both of
-  /// its sides. All of them may be hung at. Always the same, whatever the threads.
-  /// Cause::invalid, with the figures, when the spacing makes more than kMostPlaces, or no place is left.
+  /// Places to try, evenly spaced: a lattice in the box, or one laid on each surface and lifted off both of its sides.
+  /// A light may hang at all of them. The result does not depend on threads.
+  /// Cause::invalid, with the figures, when the spacing gives more than kMostPlaces, or no place is left.
   [[nodiscard]] Result<std::vector<Vec3>> candidates(int threads) const;
 
   /// Between neighbouring candidates.
   [[nodiscard]] double spacing_m() const { return spec_.spacing_m.value_or(default_spacing_m()); }
   [[nodiscard]] const Eigen::AlignedBox3d& box_world_m() const { return box_world_m_; }
-  /// One mark per triangle of the scene: 1 where lights hang off it. Empty: anywhere in the air.
+  /// One flag per triangle of the scene: 1 where lights hang off it. Empty = anywhere in the air.
   [[nodiscard]] const std::vector<std::uint8_t>& is_surface() const { return is_surface_; }
 
  private:

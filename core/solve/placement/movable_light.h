@@ -1,5 +1,5 @@
 #pragma once
-/// Light at fixed points from one luminaire that may hang at many places: what places are searched with.
+/// Light at fixed points from one luminaire that may hang at many places: the model that placement searches use.
 
 #include <Eigen/Core>
 
@@ -11,14 +11,14 @@ class MovableLight {
  public:
   virtual ~MovableLight() = default;
   [[nodiscard]] virtual Eigen::Index points() const = 0;
-  /// What a pose may change in, as moved() takes it: 3 where the aim does not matter, else 5.
+  /// Degrees of freedom of a pose, as moved() takes them: 3 if the aim does not matter, otherwise 5.
   [[nodiscard]] virtual Eigen::Index freedoms() const { return 3; }
 
-  /// lux        per unit emittance at every point, with the light in that pose
-  /// slopes     points × freedoms(); nullptr: not asked for. How lux changes while what is lit and what is in shadow
-  ///            stays
-  /// False where no light may hang or can be worked out; then both are as they were. From any thread, and always the
-  /// same for the same pose.
+  /// lux      per unit emittance at every point, with the light in that pose
+  /// slopes   points × freedoms(): change of lux with the pose, with lit and shadowed points unchanged; nullptr = not
+  ///          wanted
+  /// False if no light may hang there or the light cannot be computed; both are then unchanged. Callable from any
+  /// thread; always the same result for the same pose.
   virtual bool column(const LightPose& pose, Eigen::VectorXd& lux, Eigen::MatrixXd* slopes) const = 0;
 };
 

@@ -3,7 +3,7 @@
 namespace luxrig {
 namespace {
 
-/// Of least_improvement, where the error is coarse.
+/// Share of least_improvement used while the error is coarse.
 constexpr double kCoarseShare = 0.05;
 
 }  // namespace

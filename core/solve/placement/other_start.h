@@ -1,10 +1,10 @@
 #pragma once
-/// Another way to begin a hard goal: from candidates that were annealed.
+/// Another start for a hard goal: from annealed candidates.
 ///
-/// Lights added one by one share out a hard goal (an even floor with few lights, say) as the first of them happened to,
-/// and exchanges that work out a column for every try mend it slowly. Candidates' columns are there: exchanging one for
-/// another costs microseconds, so that a second of annealing over them (methods/anneal_candidates.h) tries some hundred
-/// thousand. Where the goal can nearly be met the first way is as good, and does not pay for that.
+/// Lights added one by one divide a hard goal (an even floor with few lights, for example) by the accident of the first
+/// ones, and exchanges mend that slowly, since each try computes a column. Candidates already have columns: exchanging
+/// them costs microseconds, so a second of annealing (methods/anneal_candidates.h) tries some hundred thousand. If the
+/// goal can nearly be met, the first way is as good, and annealing does not pay off.
 
 #include <functional>
 #include <optional>
@@ -13,14 +13,15 @@
 
 namespace luxrig {
 
-/// Poses to begin with, for so many lights: about as many as these, or none; others for another seed.
+/// Poses to start from for this number of lights: about as many, or none; other seeds give others.
 using OtherStart = std::function<std::vector<LightPose>(std::size_t lights, std::uint64_t seed)>;
 
-/// Above this error a search begins the other way, too.
+/// Above this error a search also tries the other start.
 inline constexpr double kHardGoalError = 0.1;
 
-/// As many lights, begun from those and refined, or fewer where no more would gain; nothing when there are none, or
-/// when it ended with too many still. none   no lights, of the problem that is solved
+/// `lights` lights started from those poses and refined, or fewer if no more would gain. Empty if there are no poses,
+/// or if it ended with too many lights.
+/// none   an empty set of lights of the same problem
 [[nodiscard]] std::optional<PlacedLights> begun_otherwise(LightExchange& exchange, const PlacedLights& none,
                                                           const OtherStart& other, std::size_t lights,
                                                           std::uint64_t seed, const std::function<bool()>& ended);

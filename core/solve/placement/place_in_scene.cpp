@@ -15,10 +15,10 @@
 namespace luxrig {
 namespace {
 
-/// Directions that are tried at each place with an aimed light.
+/// Directions tried at each place with an aimed light.
 constexpr std::size_t kAims = 26;
 
-/// Columns of a search, which are what its time goes into. Reflected light of an aimed one costs some hundred times as
+/// Columns of a search: they take most of its time. Reflected light of an aimed light costs about a hundred times as
 /// much.
 constexpr std::size_t kMostColumns = 150'000, kReflectedColumns = 80'000, kMostTracedColumns = 4'000;
 
@@ -28,7 +28,7 @@ bool reflects(const RayScene& rays) {
   });
 }
 
-/// Emittance factors of lights as they hang; dark ones are left out.
+/// Emittance factors of the lights at their mounted places; dark lights are left out.
 std::vector<LightInScene> lit_ones(const PlacedLights& lights, const Mounting& mounting, bool aimed) {
   std::vector<LightInScene> lit;
   for (std::size_t i = 0; i < lights.size(); ++i) {
@@ -46,7 +46,7 @@ std::vector<LightInScene> lit_ones(const PlacedLights& lights, const Mounting& m
   return lit;
 }
 
-/// What each watt less costs, from the lights found.
+/// Error against power, starting from the found lights.
 std::vector<PowerAndError> front_of(const PlacementProblem& problem, const LightingGoal& goal,
                                     const PlacedLights& lights, const PlaceInSceneOptions& options) {
   constexpr int kRounds = 2;
@@ -80,7 +80,7 @@ Result<PlacedInScene> place_in_scene(const Scene& scene, const RayScene& rays, c
   of_space.indirect = options.indirect && reflects(rays);
   if (options.aimed) of_space.aims_world = aims_over_sphere(kAims);
   of_space.run() = options.of_part();
-  // A shape counts when what is found is corrected; the search would be a hundred times as long with it.
+  // The shape matters when the found lights are corrected; with it, the search would take a hundred times as long.
   Emitter lamp = luminaire;
   lamp.shape = {};
   const bool has_size = luminaire.shape.kind != LuminousShape::Kind::point;
@@ -134,7 +134,7 @@ Result<PlacedInScene> place_in_scene(const Scene& scene, const RayScene& rays, c
     if (options.bound_of_number) {
       CountBoundOptions counted;
       counted.most_lights = placed.lights.size();
-      // By the search's own light: the residual of corrected lights is the evaluator's.
+      // With the search's own light: the residual of corrected lights comes from the evaluator.
       counted.guesses = {{placed.lights.size(), done->found.lights.residual()}};
       counted.run() = options.of_part();
       placed.lower_bound_of_number =

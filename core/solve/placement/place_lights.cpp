@@ -6,7 +6,7 @@ namespace luxrig {
 namespace {
 
 constexpr std::uint64_t kMostStarts = 1'000;
-/// Of two beginnings, one whose error is below so much of the other's needs no race.
+/// If the error of one of two starts is below this share of the other's, no race is needed.
 constexpr double kClearlyBetter = 0.85;
 constexpr int kRaceRounds = 2;
 
@@ -39,7 +39,7 @@ class Search {
            exchange_.columns() >= options_.most_columns;
   }
 
-  /// Changed for lights begun in the other way, where the goal is hard and these come closer.
+  /// Replaces the lights with the other start if the goal is hard and that start is better.
   void begin_otherwise(PlacedLights& lights, std::uint64_t start) {
     if (ended() || !options_.other || !options_.start.empty() || lights.error() <= kHardGoalError) return;
     auto other = begun_otherwise(exchange_, none_, options_.other, options_.lights, options_.seed + start,
@@ -47,7 +47,7 @@ class Search {
     if (!other || other->error() > lights.error() / kClearlyBetter) return;
     offer(*other);
     if (other->error() > kClearlyBetter * lights.error()) {
-      // Which of two alike ends lower shows after a few exchanges only.
+      // Two similar starts show only after a few exchanges which one ends lower.
       std::mt19937_64 random(options_.seed + start);
       for (PlacedLights* way : {&lights, &*other}) {
         for (int round = 0; round < kRaceRounds && !ended() && exchange_.singly(*way, random); ++round) {
@@ -58,7 +58,7 @@ class Search {
     if (other->error() < lights.error()) lights = std::move(*other);
   }
 
-  /// False when nothing makes it much better.
+  /// False when nothing improves it enough.
   bool exchanged(PlacedLights& lights, std::mt19937_64& random) {
     const double enough = (1 - options_.least_progress) * lights.error();
     const auto more_than_enough = [&](bool changed) { return changed && lights.error() < enough; };
@@ -73,7 +73,7 @@ class Search {
     if (options_.better) options_.better(best_.lights, exchange_.columns());
   }
 
-  /// The first start takes the best each time, later ones one of the three best.
+  /// The first start takes the best candidate each time, later ones one of the three best.
   PlacedLights added_one_by_one(std::uint64_t start, std::mt19937_64& random) {
     PlacedLights lights = none_;
     if (start == 0)

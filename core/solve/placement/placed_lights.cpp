@@ -113,13 +113,13 @@ void PlacedLights::solve_limited() {
   const NnlsProblem problem{
       ColumnsView(columns_), weighted_goal_, {}, Eigen::VectorXd::Constant(columns_.cols(), goal_->max_level)};
   const auto solved = solve_limited_nnls(problem, limits.limits());
-  // What is there anyway may break a limit by itself: then nothing is added.
+  // The fixed light may break a limit by itself: then nothing is added.
   if (!solved || !solved->conflict.empty()) {
     levels_.setZero(columns_.cols());
     return;
   }
   levels_ = solved->least_squares.x;
-  // Limits hold to the solver's rounding; a hair less light makes them hold.
+  // Limits hold to the solver's rounding; slightly less light makes them hold exactly.
   for (double less = 1e-12; less < 1e-3 && !keeps_limits(); less *= 10) levels_ *= 1 - less;
   if (!keeps_limits()) levels_.setZero();
 }
@@ -137,7 +137,7 @@ void PlacedLights::solve() {
                                        {},
                                        Eigen::VectorXd::Constant(columns_.cols(), goal_->max_level)})
                     ->x;
-    // The best without limits is the best within them if it keeps them.
+    // The optimum without limits is also the optimum within them if it keeps them.
     if (goal_->limited() && !keeps_limits()) solve_limited();
     residual_ = weighted_goal_ - columns_ * levels_;
   }

@@ -1,5 +1,5 @@
 #pragma once
-/// Lights in poses, with the levels that come closest to a goal.
+/// Lights in poses, with the levels nearest to a goal.
 
 #include <Eigen/Core>
 #include <vector>
@@ -26,19 +26,19 @@ class PlacedLights {
   /// ‖W (A x + f − b)‖ / ‖W b‖; 0 for a goal of zero that no light disturbs.
   [[nodiscard]] double error() const { return error_; }
   [[nodiscard]] const Eigen::MatrixXd& columns() const { return columns_; }  ///< W A, ordered as levels()
-  /// Of all lights together, without what is there anyway.
+  /// Of all lights together, without the fixed light.
   [[nodiscard]] double watts() const;
-  [[nodiscard]] Eigen::VectorXd lux() const;  ///< A x, points × channels: the same
+  [[nodiscard]] Eigen::VectorXd lux() const;  ///< A x, points × channels, without the fixed light
 
-  /// False, and nothing changed, where no light may hang. Levels are the best ones after each.
+  /// False, and nothing changed, if no light may hang there. Levels are optimal after each call.
   bool add(const LightPose& pose);
   bool replace(std::size_t light, const LightPose& pose);
   void drop(std::size_t light);
-  /// Poses one for one, those where no light may hang kept as they are; levels follow.
+  /// One pose per light; a light keeps its pose if it may not hang at the new one. Levels follow.
   void move(const std::vector<LightPose>& poses);
 
   [[nodiscard]] Eigen::Index freedoms() const { return light_->freedoms(); }
-  /// How W A x changes with the pose of a light at its levels: rows × freedoms().
+  /// Change of W A x with the pose of a light at its levels: rows × freedoms().
   [[nodiscard]] Eigen::MatrixXd slopes(std::size_t light) const;
 
  private:
@@ -56,7 +56,7 @@ class PlacedLights {
   Eigen::VectorXd weighted_goal_;
   double goal_norm_;
   std::vector<LightPose> poses_;
-  Eigen::MatrixXd columns_, lux_;  ///< lux_: unweighted, a column per light
+  Eigen::MatrixXd columns_, lux_;  ///< lux_: unweighted, one column per light
   Eigen::VectorXd levels_, residual_;
   double error_ = 1;
 };

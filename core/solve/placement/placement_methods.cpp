@@ -18,8 +18,8 @@ std::function<void(const PlacedLights&, std::size_t)> passed_on(const PlacementO
   };
 }
 
-/// Mutations of an annealing to begin with, and how many of these, of which the best counts: no more than two, as that
-/// many cores are usual.
+/// Mutations of one initial annealing, and the number of annealings, of which the best counts: two, as that many cores
+/// are common.
 constexpr int kStartIterations = 200'000;
 constexpr std::size_t kStartAnnealings = 2;
 
@@ -85,7 +85,7 @@ Result<FoundLights> place_by_luxrig(const PlacementProblem& problem, const Place
   return found;
 }
 
-/// What the method could have been with a simplex for many unknowns.
+/// The method as it could have been with a simplex for many unknowns.
 template <Result<FoundLights> (*method)(const PlacementProblem&, const PlacementOptions&)>
 Result<FoundLights> with_subplex(const PlacementProblem& problem, const PlacementOptions& options) {
   PlacementOptions changed = options;

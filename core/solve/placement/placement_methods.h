@@ -1,5 +1,5 @@
 #pragma once
-/// All ways to place lights, by name: luxrig's own and those it is compared with.
+/// All placement methods by name: luxrig's own and those it is compared with.
 
 #include <span>
 #include <string_view>
@@ -11,7 +11,7 @@ namespace luxrig {
 /// Luxrig's own first.
 [[nodiscard]] std::span<const PlacementMethod> placement_methods();
 
-/// nullptr: there is none of that name.
+/// nullptr if there is none of that name.
 [[nodiscard]] const PlacementMethod* find_placement_method(std::string_view name);
 
 }  // namespace luxrig

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kFirstDamping = 1e-2, kMostDamping = 1e8, kLeastDamping = 1e-9;
 
-/// One linear model about the present places.
+/// Linear model at the present places.
 struct PlaceModel {
   Eigen::Index freedoms;
   std::vector<std::size_t> lit;  ///< lights whose pose matters: a level is above 0
@@ -23,7 +23,7 @@ struct PlaceModel {
     Eigen::MatrixXd jacobian(rows, freedoms * static_cast<Eigen::Index>(lit.size()));
     for (std::size_t i = 0; i < lit.size(); ++i)
       jacobian.middleCols(freedoms * static_cast<Eigen::Index>(i), freedoms) = lights.slopes(lit[i]);
-    // What a change of levels can do, is not a place's to do.
+    // Projects out the part that a change of levels can fit.
     Eigen::MatrixXd in_use(rows, lights.columns().cols());
     Eigen::Index count = 0;
     for (Eigen::Index k = 0; k < in_use.cols(); ++k)

@@ -1,10 +1,10 @@
 #pragma once
-/// Places improved where the light falls off smoothly: Levenberg–Marquardt on all places at once, with the levels
-/// projected out.
+/// Refines places while light changes smoothly: Levenberg–Marquardt on all places at once, with the levels projected
+/// out.
 ///
-/// Levels are linear, so at every step they are those of least error for the places, and only places are unknowns: the
-/// step is taken in what the columns cannot do by changing levels (Kaufman 1975, after Golub & Pereyra 1973). The model
-/// knows nothing of shadow edges; every step is judged by light that was worked out anew, shadows included.
+/// Levels are linear, so each step uses the optimal levels for its places, and only places are unknowns. A step fits
+/// the part that a change of levels cannot reach (Kaufman 1975, after Golub & Pereyra 1973). The model ignores shadow
+/// edges; every step is judged by recomputed light, shadows included.
 
 #include <stop_token>
 
@@ -16,12 +16,12 @@ struct RefineOptions {
   int most_steps = 30;
   double longest_step_m = 0.5;      ///< of one light in one step
   double longest_turn_rad = 0.3;    ///< of its aim
-  double least_error = 1e-7;        ///< PlacedLights::error() at which it ends
-  double least_improvement = 1e-3;  ///< share of the error; two steps in turn below it end it, too
+  double least_error = 1e-7;        ///< PlacedLights::error(); ends the search
+  double least_improvement = 1e-3;  ///< share of the error; two successive steps below it also end it
   std::stop_token stop;
 };
 
-/// Never makes the error larger. Returns how many columns were worked out.
+/// Never increases the error. Returns the number of computed columns.
 std::size_t refine_lights(PlacedLights& lights, const RefineOptions& options = {});
 
 }  // namespace luxrig

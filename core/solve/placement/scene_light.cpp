@@ -8,10 +8,10 @@
 namespace luxrig {
 namespace {
 
-/// A step in which intensity hardly changes and rounding hardly counts.
+/// A step over which intensity hardly changes and rounding hardly matters.
 constexpr double kTurn = 1e-4;
 
-/// Wanted of a luminaire with size where something may stand in between.
+/// Error wanted for a luminaire with size that may be partly blocked.
 constexpr double kSizeError = 0.003;
 
 }  // namespace
@@ -65,7 +65,7 @@ bool SceneLight::column(const LightPose& pose, Eigen::VectorXd& lux, Eigen::Matr
   return true;
 }
 
-/// Of E = I(-d) n·d / |d|³ with d from the receiver to the light.
+/// Slopes of E = I(-d) n·d / |d|³ with d from the receiver to the light.
 Eigen::MatrixXd SceneLight::slopes_at(const LightPose& pose, const Eigen::VectorXd& direct_lux) const {
   const Mat3 lamp_from_world = hung(pose).world_from_lamp.rotation.transpose();
   std::vector<Mat3> turned;  // behind and ahead of each freedom of the aim

@@ -12,22 +12,22 @@
 namespace luxrig {
 
 struct SceneLightOptions {
-  bool aimed = false;     ///< its aim matters: it is turned the shortest way from its own rotation to that of a pose
-  bool indirect = false;  ///< reflected light, too
-  /// Where reflected light is taken from, made for the same luminaire and receivers. Without one, of an aimed light and
-  /// beside its nodes: by rays, milliseconds a column, and without its slopes.
+  bool aimed = false;     ///< its aim matters: it turns by the shortest rotation from its own to that of a pose
+  bool indirect = false;  ///< includes reflected light
+  /// Source of reflected light, made for the same luminaire and receivers. Without it, for an aimed light and away from
+  /// its nodes, rays are traced: milliseconds a column, and no slopes of reflected light.
   const ReflectedField* reflected = nullptr;
-  /// For a luminaire with size: its direct light is then that of its surface, without reflected light; it is moved by
-  /// the slopes of a point.
+  /// For a luminaire with size: its direct light is then that of its surface, without reflected light. Slopes are those
+  /// of a point.
   const RayScene* rays = nullptr;
-  std::function<bool(const Vec3&)> may_hang{};  ///< empty: wherever light gets to a receiver
+  std::function<bool(const Vec3&)> may_hang{};  ///< empty = wherever light reaches a receiver
 };
 
 class SceneLight final : public MovableLight {
  public:
-  /// transport     must outlive it, made for these receivers
-  /// luminaire     hung with its own rotation; its translation is not used. No sky; a shape is asserted to come with
-  /// rays.
+  /// transport     made for these receivers; must outlive it
+  /// luminaire     hung with its own rotation; its translation is not used. No sky. A luminaire with size needs
+  ///               options.rays (asserted).
   SceneLight(const IncrementalTransport& transport, std::vector<Receiver> receivers, Emitter luminaire,
              SceneLightOptions options = {});
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kLeastShare = 1e-3;  ///< of a column's brightest entry
 
-/// Direct columns, and what the field adds to each.
+/// Direct columns, and the field's contribution to each.
 struct LitColumn {
   std::vector<std::uint32_t> row;
   std::vector<float> lux;

@@ -1,6 +1,5 @@
 #pragma once
-/// Everything a search for lights in a scene needs, made once: the light that is moved, and candidates with their
-/// columns.
+/// Everything a search for lights in a scene needs, made once: the movable light, and candidates with their columns.
 
 #include <functional>
 #include <memory>
@@ -15,21 +14,21 @@
 namespace luxrig {
 
 struct SearchSpaceOptions : Run {
-  /// Directions to try at each place, for a light that is aimed; empty: it is hung as its luminaire is.
+  /// Directions to try at each place for an aimed light; empty = hung with the luminaire's rotation.
   std::vector<Vec3> aims_world;
   bool indirect = false;
-  /// Of reflected light: places at which it is looked at, cells that surfaces are cut into (candidate_transport.h), and
-  /// its wanted relative error there.
+  /// For reflected light: places where it is sampled, cells of the surfaces (candidate_transport.h), and its wanted
+  /// relative error there.
   std::size_t most_nodes = 4'000;
   std::size_t surface_cells = 1'500;
   double reflected_error = 0.1;
-  std::function<bool(const Vec3&)> may_hang;  ///< for places that are not candidates; empty: anywhere
+  std::function<bool(const Vec3&)> may_hang;  ///< for places that are not candidates; empty = anywhere
 };
 
 class SearchSpace {
  public:
   /// scene, rays   the same geometry; both must outlive it
-  /// luminaire     with size: candidates are taken as points, and there is no reflected light
+  /// luminaire     with size: candidates are points, without reflected light
   /// places        to try
   /// Cause::invalid as candidate_transport(); Cause::cancelled when stopped.
   [[nodiscard]] static Result<SearchSpace> make(const Scene& scene, const RayScene& rays,
@@ -38,7 +37,7 @@ class SearchSpace {
                                                 const SearchSpaceOptions& options);
 
   [[nodiscard]] const SceneLight& light() const { return *light_; }
-  /// Lux per unit emittance, a column per pose. Reflected light below a thousandth of a column's brightest is left out.
+  /// Lux per unit emittance, one column per pose. Reflected light below a thousandth of a column's maximum is left out.
   [[nodiscard]] const ColumnsView& columns() const { return view_; }
   [[nodiscard]] std::span<const LightPose> poses() const { return poses_; }
   [[nodiscard]] bool lights_anything() const { return !row_.empty(); }

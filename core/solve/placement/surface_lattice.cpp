@@ -15,7 +15,7 @@ Vec3 doubled_area(const std::array<Vec3, 3>& triangle_m) {
   return (triangle_m[1] - triangle_m[0]).cross(triangle_m[2] - triangle_m[0]);
 }
 
-/// Twice the signed area of (a, b, p), the same number but for its sign when a and b change places.
+/// Twice the signed area of (a, b, p); swapping a and b changes only its sign.
 double side_of(const Vec2& a, const Vec2& b, const Vec2& p) {
   const bool swapped = b.x() < a.x() || (b.x() == a.x() && b.y() < a.y());
   const Vec2 &first = swapped ? b : a, &second = swapped ? a : b;
@@ -24,7 +24,7 @@ double side_of(const Vec2& a, const Vec2& b, const Vec2& p) {
   return swapped ? -side : side;
 }
 
-/// A point on the edge belongs to the triangle left of it when the edge runs down, or level to the right.
+/// A point on an edge belongs to the triangle left of it if the edge runs down, or horizontally to the right.
 bool owns_its_points(const Vec2& a, const Vec2& b) { return b.y() < a.y() || (b.y() == a.y() && b.x() > a.x()); }
 
 bool covers(const std::array<Vec2, 3>& corners, const Vec2& p) {
@@ -36,7 +36,7 @@ bool covers(const std::array<Vec2, 3>& corners, const Vec2& p) {
   return true;
 }
 
-/// Between which x the triangle has this y, to rounding: rows of a long slanting one need not be searched in all.
+/// Range of x in the triangle at this y, to rounding: rows of a long slanting triangle need no full search.
 std::pair<double, double> span_at(const std::array<Vec2, 3>& corners, double y) {
   std::pair<double, double> span{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
   for (std::size_t i = 0; i < 3; ++i) {

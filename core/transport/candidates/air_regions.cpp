@@ -12,12 +12,12 @@
 namespace luxrig {
 namespace {
 
-/// A surface may be off its place by e (ray_scene.h); rays stop short of it by 32 e. Within this many e of a surface a
-/// point may be meant to be on either side.
+/// A surface may be off by e, and rays stop 1 e short of their ends (ray_scene.h). A point within this many e of a
+/// surface may be meant to be on either side.
 constexpr double kErrorsOfDoubt = 64;
 
 struct Welded {
-  std::vector<std::uint32_t> vertex_of;  ///< first vertex in the same place
+  std::vector<std::uint32_t> vertex_of;  ///< first vertex at the same place
 };
 
 Welded weld(const Scene& scene) {
@@ -33,13 +33,13 @@ Welded weld(const Scene& scene) {
   welded.vertex_of.resize(scene.vertices_m.size());
   for (std::uint32_t i = 0; i < scene.vertices_m.size(); ++i) {
     const Vec3f& v = scene.vertices_m[i];
-    // Adding 0 makes -0 and 0 one place.
+    // Adding 0 makes -0 equal to 0.
     welded.vertex_of[i] = first.try_emplace({v.x() + 0.0f, v.y() + 0.0f, v.z() + 0.0f}, i).first->second;
   }
   return welded;
 }
 
-/// Pieces of surface, by union and find.
+/// Pieces of surface, by union-find.
 class Pieces {
  public:
   explicit Pieces(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), 0u); }
@@ -139,8 +139,8 @@ std::size_t AirRegions::column(double at, int axis) const {
   return static_cast<std::size_t>(std::clamp(cell, 0.0, static_cast<double>(per_side_ - 1)));
 }
 
-/// Point in polygon by crossings to the right. Each edge answers alike for all triangles that share it, so that a
-/// vertical line through a closed piece never slips between two of them.
+/// Point-in-polygon test by crossings to the right. Each edge answers equally for all triangles that share it, so that
+/// a vertical line through a closed piece never slips between two of them.
 bool AirRegions::over(const Triangle& triangle, double x, double y) {
   bool inside = false;
   for (const Edge& e : triangle.edges)

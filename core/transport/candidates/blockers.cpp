@@ -6,14 +6,14 @@
 namespace luxrig {
 namespace {
 
-/// RayScene::occluded() stops 32 e short of the far end, and sees surfaces e off their place; twice that is asked for
-/// here.
+/// Margins in e (ray_scene.h). Wider than needed: RayScene::occluded() stops 1 e short of the far end and passes
+/// triangles within 2 e of it.
 constexpr double kErrorsBehind = 64;
 constexpr double kErrorsBeside = 8;
 
 struct Side {
   std::uint64_t ends;
-  std::uint32_t triangle, corner;  ///< the corner across
+  std::uint32_t triangle, corner;  ///< the opposite corner
 };
 
 Vec3 corner_m(const Scene& scene, std::uint32_t triangle, std::uint32_t k) {
@@ -88,7 +88,7 @@ BlockerShadow::BlockerShadow(const FlatBlocker& blocker, const Vec3& from_world_
   Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
   double height_m = normal.dot(corners[0] - from_world_m);
   if (height_m < 0) normal = -normal, height_m = -height_m;
-  // So near its plane that rays may pass by it, or seen edge-on: it hides nothing for certain.
+  // So near its plane that rays may pass it, or seen edge-on: it hides nothing with certainty.
   if (!(height_m > kErrorsBehind * error_m)) return;
   Vec3 middle = Vec3::Zero();
   for (std::uint32_t k = 0; k < blocker.sides; ++k) middle += corners[k] / blocker.sides;
@@ -100,9 +100,9 @@ BlockerShadow::BlockerShadow(const FlatBlocker& blocker, const Vec3& from_world_
     if (inward.dot(middle - from_world_m) < 0) inward = -inward;
     if (!inward.allFinite()) return;
     inward_[k + 1] = inward;
-    // A point behind the plane is at least as far from this side of the shadow as where its ray crosses the plane, so
-    // asking here for a distance that is several e there has to allow for how far behind it is: the ray crosses at the
-    // share height / (height + depth) of the way. Asked in hides_box().
+    // A point behind the plane is at least as far from this side of the shadow as its ray's crossing of the plane. To
+    // require several e at the crossing, the test must scale with depth: the ray crosses at the share height / (height
+    // + depth) of its length. Done in hides_box().
     least_m_[k + 1] = inward.dot(from_world_m);
   }
   planes_ = blocker.sides + 1;
@@ -112,7 +112,7 @@ BlockerShadow::BlockerShadow(const FlatBlocker& blocker, const Vec3& from_world_
 
 bool BlockerShadow::hides_box(const Vec3& low_world_m, const Vec3& high_world_m) const {
   if (planes_ == 0) return false;
-  // Furthest corner in the direction of a vector, and the one against it.
+  // Least and largest product of a vector with the box's corners.
   const auto least = [&](const Vec3& n) {
     return std::min(n.x() * low_world_m.x(), n.x() * high_world_m.x()) +
            std::min(n.y() * low_world_m.y(), n.y() * high_world_m.y()) +

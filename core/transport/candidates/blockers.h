@@ -1,10 +1,10 @@
 #pragma once
 /// Walls that hide whole groups of points from a receiver.
 ///
-/// Seen from a point, what a convex flat polygon hides is a convex cone cut off by the polygon's plane: five planes at
-/// most. A box of points is hidden if it is inside of all five, so that a few sums decide any number of pairs, exactly:
-/// what is found hidden here RayScene::occluded() would find occluded too, since every plane is asked for with a margin
-/// of several times the error that rays have.
+/// From a given point, a convex flat polygon hides a convex cone cut off by the polygon's plane: five planes at most. A
+/// box of points is hidden if it is inside all five, so a few sums decide any number of pairs. This is exact:
+/// RayScene::occluded() would find the same pairs occluded, since every plane is tested with a margin of several times
+/// the error of rays.
 
 #include <array>
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace luxrig {
 
-/// A triangle, or two that lie in one plane, share an edge and make a convex quadrilateral.
+/// A triangle, or two in one plane that share an edge and form a convex quadrilateral.
 struct FlatBlocker {
   std::array<Vec3, 4> corners_world_m;
   std::uint32_t sides = 3;
@@ -34,11 +34,11 @@ class Blockers {
   std::vector<std::uint32_t> blocker_of_triangle_;
 };
 
-/// The shadow that a blocker throws, seen from one point.
+/// The shadow of a blocker, seen from one point.
 class BlockerShadow {
  public:
   BlockerShadow() = default;  ///< hides nothing
-  /// error_m   e of ray_scene.h at the place and the largest of the scene
+  /// error_m   e of ray_scene.h: the largest at this place and at the boxes to be tested
   BlockerShadow(const FlatBlocker& blocker, const Vec3& from_world_m, double error_m);
 
   /// True when the whole box is in the shadow.
@@ -48,8 +48,8 @@ class BlockerShadow {
   std::array<Vec3, 5> inward_;  ///< unit normals: of the plane, away from the point; then of the shadow's sides
   std::array<double, 5> least_m_{};
   std::uint32_t planes_ = 0;
-  double height_m_ = 0;  ///< of the plane over the point
-  double beside_m_ = 0;  ///< margin where the plane is crossed
+  double height_m_ = 0;  ///< of the point over the plane
+  double beside_m_ = 0;  ///< margin at the crossing with the plane
 };
 
 }  // namespace luxrig

@@ -31,7 +31,7 @@ double unobstructed_lux(const CandidateLuminaire& luminaire, const Vec3& lamp_wo
   const double height_m = receiver.normal_world.dot(towards_m);
   if (!(height_m > 0)) return 0;
   const double distance_squared_m2 = towards_m.squaredNorm();
-  // As in smallest_distance_m() of core/transport/direct/lamps.h: nearer, coordinates do not tell the two apart.
+  // As in smallest_distance_m() of core/transport/direct/lamps.h: nearer, coordinates cannot distinguish the two.
   const double rounding_m = kRoundings * receiver.position_world_m.cwiseAbs().maxCoeff();
   if (distance_squared_m2 <= rounding_m * rounding_m) return 0;
   const double per_distance = 1 / std::sqrt(distance_squared_m2);
@@ -49,7 +49,7 @@ bool direct_of_block(const VisibilityScene& scene, std::span<const Receiver> rec
                      std::vector<float>& lux, CandidateStatistics& statistics) {
   const std::size_t positions = positions_world_m.size(), kinds = luminaires.size();
   lux.assign(receivers.size() * positions * kinds, 0.0f);
-  // Luminaires in one place share their shadow rays: one group of kinds per distinct offset.
+  // Luminaires at one place share their shadow rays: one group of luminaires per distinct offset.
   for (std::size_t first = 0; first < kinds; ++first) {
     const Vec3& offset_m = luminaires[first].offset_world_m;
     std::vector<std::size_t> group;
@@ -60,7 +60,7 @@ bool direct_of_block(const VisibilityScene& scene, std::span<const Receiver> rec
         group.push_back(l);
       }
     if (done_before) continue;
-    std::vector<Vec3> lamps_world_m;  // of the positions used
+    std::vector<Vec3> lamps_world_m;  // of the positions in use
     std::vector<std::uint32_t> position_of_lamp;
     double peak_cd = 0;
     for (const std::size_t l : group) peak_cd = std::max(peak_cd, luminaires[l].peak_cd);

@@ -5,7 +5,7 @@
 
 namespace luxrig {
 
-/// Prototypes made ready: what of a luminaire does not change with its place.
+/// Prepared luminaire prototype: the data that do not depend on its place.
 struct CandidateLuminaire {
   Mat3 lamp_from_world;
   Vec3 offset_world_m;  ///< of the prototype's own pose
@@ -16,12 +16,13 @@ struct CandidateLuminaire {
 };
 [[nodiscard]] std::vector<CandidateLuminaire> luminaires_ready(std::span<const Emitter> luminaires);
 
-/// I(ω) cosθ / d² [lx at emittance 1] of a luminaire, unobstructed; 0 behind the receiver, out of its cone, or in it.
+/// I(ω) cosθ / d² [lx at emittance 1] of a luminaire, unobstructed; 0 behind the receiver, outside its cone, or at the
+/// receiver itself.
 [[nodiscard]] double unobstructed_lux(const CandidateLuminaire& luminaire, const Vec3& lamp_world_m,
                                       const Receiver& receiver);
 
-/// Dense: lux[(r · positions + p) · luminaires + l], positions counted within the block. Positions of which `use` is
-/// false are left at 0. Adds to statistics.pairs_… and rays. False when stopped.
+/// Dense: lux[(r · positions + p) · luminaires + l], positions counted within the block. Positions with `use` false
+/// stay 0. Adds to statistics.pairs_… and rays. False when stopped.
 [[nodiscard]] bool direct_of_block(const VisibilityScene& scene, std::span<const Receiver> receivers,
                                    std::span<const Vec3> positions_world_m, const std::vector<std::uint8_t>& use,
                                    std::span<const CandidateLuminaire> luminaires, const CandidateOptions& options,

@@ -6,9 +6,9 @@
 namespace luxrig {
 namespace {
 
-/// Share that is drawn evenly whatever was worth it.
+/// Share that is drawn evenly, whatever the worth.
 constexpr double kEven = 0.1;
-/// Of a direction's worth, what goes to the bins about its own.
+/// Share of a direction's worth that goes to neighbouring bins.
 constexpr double kSpread = 0.5;
 constexpr std::size_t kBins = DirectionGuide::kRings * DirectionGuide::kSectors;
 

@@ -1,5 +1,5 @@
 #pragma once
-/// The median of very many relative errors, without keeping them.
+/// Median of very many relative errors, without storing them.
 
 #include <array>
 #include <cstdint>
@@ -14,7 +14,7 @@ class ErrorHistogram {
   [[nodiscard]] double median() const;
 
  private:
-  static constexpr std::size_t kBins = 640;  ///< 3 % each, from 10⁻⁶ to 160; the first holds what is below
+  static constexpr std::size_t kBins = 640;  ///< 3 % each, from 10⁻⁶ to 160; the first also holds smaller ones
   std::array<std::uint64_t, kBins> counts_{};
 };
 

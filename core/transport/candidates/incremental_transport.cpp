@@ -43,7 +43,7 @@ class Incremental final : public IncrementalTransport {
   Incremental(const Scene& scene, const RayScene& rays, std::span<const Receiver> receivers,
               const IncrementalOptions& options)
       : scene_(scene), rays_(rays), receivers_(receivers.begin(), receivers.end()), options_(options) {
-    options_.watch = {};  // of make() only
+    options_.watch = {};  // only for make()
     if (!scene_.triangles.empty()) blockers_ = std::make_unique<Blockers>(scene_);
     visibility_ = {blockers_ ? &rays_ : nullptr, blockers_.get()};
   }

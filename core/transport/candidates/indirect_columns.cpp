@@ -9,8 +9,8 @@
 namespace luxrig {
 namespace {
 
-/// As RayScene::occluded() stops short of a lamp, light starts a little way from it: a lamp flush with a ceiling shines
-/// off it, not into it.
+/// Light starts this many e (ray_scene.h) away from a lamp: a lamp flush with a ceiling shines away from it, not into
+/// it.
 constexpr double kErrorsFromLamp = 32;
 constexpr std::uint32_t kPilotRays = 1024;
 
@@ -22,7 +22,7 @@ Vec3 world_direction(const CandidateLuminaire& luminaire, const Vec3& direction_
 
 struct Leaving {
   Vec3 direction_world;
-  double candela = 0;  ///< 0: nothing leaves
+  double candela = 0;  ///< 0 = nothing leaves
   double density_per_sr = 0;
 };
 
@@ -49,8 +49,8 @@ IndirectColumns::Met IndirectColumns::meet(const SurfaceImportance& field, const
   return {field.row_at(hit->position_world_m, hit->normal_world, rays), reflectance};
 }
 
-/// Worth of a direction: what its light brings to each receiver, as a share of what all pilot rays bring there, summed
-/// over receivers. So those that get little count as much as those that get much.
+/// Worth of a direction: its light at each receiver as a share of all pilot rays' light there, summed over receivers.
+/// So receivers with little light count as much as those with much.
 DirectionGuide IndirectColumns::guide(const CandidateLuminaire& luminaire, std::span<const Vec3> lamps_world_m,
                                       std::uint64_t& rays) const {
   DirectionGuide guide;
@@ -62,7 +62,7 @@ DirectionGuide IndirectColumns::guide(const CandidateLuminaire& luminaire, std::
     const auto [u, v] = samples.pair(i, 0, 0);
     const Leaving ray = leaving(luminaire, u, v);
     if (!(ray.candela > 0)) continue;
-    // Neighbouring points of the sequence go to different places, so that each gets its share of all directions.
+    // Neighbouring points of the sequence go to different places, so that each place covers all directions.
     const Vec3& lamp_m = lamps_world_m[i % lamps_world_m.size()];
     const double off_lamp_m = kErrorsFromLamp * scene_.surface_error_m(lamp_m);
     const Met one = meet(field, lamp_m + off_lamp_m * ray.direction_world, ray.direction_world, rays);

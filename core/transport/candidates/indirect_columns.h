@@ -1,8 +1,8 @@
 #pragma once
-/// Reflected light of candidates at all receivers, with its error, read off several importance fields.
+/// Reflected light of candidates at all receivers, with its error, from several importance fields.
 ///
 /// A candidate's rays are drawn by two strategies, weighted by the balance heuristic: half by the luminaire's
-/// intensity, half where pilot rays from about there found surfaces that matter (direction_guide.h).
+/// intensity, half towards important surfaces that pilot rays from nearby found (direction_guide.h).
 
 #include <memory>
 
@@ -15,37 +15,37 @@ namespace luxrig {
 class IndirectColumns {
  public:
   static constexpr std::size_t kReplicates = 8;
-  /// Rays of the first replicate after which a candidate may be given up as unlit.
+  /// Rays of the first replicate after which a candidate may be rejected as unlit.
   static constexpr std::uint32_t kFirstRays = 16;
 
-  /// flatness_error   relative; added to what the replicates show
+  /// flatness_error   relative; added to the replicates' spread
   IndirectColumns(const RayScene& scene, std::vector<std::unique_ptr<SurfaceImportance>> fields, double flatness_error,
                   std::uint64_t seed);
 
-  /// What is worth looking at from about some places. Adds the rays cast to `rays`.
+  /// Important directions for lamps at or near some places. Adds the rays cast to `rays`.
   [[nodiscard]] DirectionGuide guide(const CandidateLuminaire& luminaire, std::span<const Vec3> lamps_world_m,
                                      std::uint64_t& rays) const;
 
-  /// How a candidate is looked at.
+  /// Rays of a candidate.
   struct Rays {
-    std::uint32_t per_replicate;  ///< of both strategies together, even
-    std::uint64_t key;            ///< candidates with different keys err independently, but for the fields
-    bool may_give_up;  ///< stop after a few rays if they and the pilot rays met no surface from which light comes
+    std::uint32_t per_replicate;  ///< of both strategies together; an even number
+    std::uint64_t key;            ///< candidates with different keys err independently, except for the fields
+    bool may_give_up;  ///< stop after a few rays if these and the pilot rays met no useful surface
   };
-  /// One replicate; the fields are large, so that it pays to ask for it for many candidates before the next.
+  /// One replicate. The fields are large, so do one replicate for many candidates before the next.
   /// lux   overwritten: stride() floats. Returns the rays cast.
   std::uint64_t evaluate(std::size_t replicate, const CandidateLuminaire& luminaire, const Vec3& lamp_world_m,
                          const DirectionGuide& guide, const Rays& rays, std::span<float> lux) const;
-  /// All of them, one behind the other.
+  /// All replicates, in sequence.
   std::uint64_t evaluate(const CandidateLuminaire& luminaire, const Vec3& lamp_world_m, const DirectionGuide& guide,
                          const Rays& rays, std::span<float> replicates) const;
 
-  /// Mean of the replicates, and its standard error, widened for so few of them (replicate_error.h).
-  /// further_squared_lux2   per receiver, or empty: square of what else may be wrong
+  /// Mean of the replicates, and its standard error, widened for their small number (replicate_error.h).
+  /// further_squared_lux2   per receiver, or empty: square of other errors
   void summarise(std::span<const float> replicates, std::span<const float> further_squared_lux2, std::span<float> lux,
                  std::span<float> standard_error_lux) const;
 
-  /// Receivers, rounded up: the length of a replicate.
+  /// Number of receivers, rounded up: the length of a replicate.
   [[nodiscard]] std::size_t stride() const { return fields_.front()->stride(); }
   [[nodiscard]] std::vector<std::unique_ptr<SurfaceImportance>>& fields() { return fields_; }
   [[nodiscard]] const std::vector<std::unique_ptr<SurfaceImportance>>& fields() const { return fields_; }
@@ -53,7 +53,7 @@ class IndirectColumns {
 
  private:
   struct Met {
-    std::uint32_t row;  ///< of the field; SurfaceImportance::kNoRow: nothing that matters
+    std::uint32_t row;  ///< of the field; SurfaceImportance::kNoRow = no important surface
     double reflectance;
   };
   [[nodiscard]] Met meet(const SurfaceImportance& field, const Vec3& from_world_m, const Vec3& direction,

@@ -12,22 +12,21 @@
 namespace luxrig {
 namespace {
 
-/// Candidates that cells are also grown from, and those on which rays are counted out.
+/// Candidates used as extra starts for cells, and candidates used to find the number of rays.
 constexpr std::size_t kGrownFrom = 256;
 constexpr std::size_t kTried = 48;
-/// Rays per replicate with which they are tried.
+/// Rays per replicate in these trials.
 constexpr std::uint32_t kFewTried = 32, kManyTried = 256;
-/// Where the fields' own error leaves nothing to rays, these may still add this share of its square: less would cost
-/// rays and bring little.
+/// Rays may always add this share of the square of the fields' own error, even if the fields use up the wanted error: a
+/// smaller share would cost many rays and gain little.
 constexpr double kLeastRayShare = 0.25;
 constexpr double kAloneShare = 0.5;
 constexpr std::size_t kFewestCells = 200;
-/// As many nodes as this share of the positions; where there are many positions, fewer, as then even sparser nodes are
-/// close together.
+/// One node per this many positions. With many positions, fewer: even sparser nodes are then close together.
 constexpr std::size_t kPositionsPerNode = 3;
 constexpr std::size_t kManyNodes = 16'384, kManyPositionsPerNode = 16;
 constexpr std::size_t kFewestPositions = 256;
-/// Of the memory bound, for the nodes' values.
+/// Fraction of the memory bound for the nodes' values.
 constexpr std::size_t kNodesShare = 4;
 
 /// Median of standard error / lux over the entries of some candidates.
@@ -63,7 +62,7 @@ double median_error(const IndirectColumns& indirect, const VisibilityScene& visi
   return all.median();
 }
 
-/// What is left of the nodes' noise (squared) in the answers made of them; 1 where most answers have none.
+/// Median share of the nodes' squared noise that remains in interpolated results; 1 for positions without any.
 double noise_share(const InterpolationNodes& nodes, const VisibilityScene& visibility,
                    std::span<const Vec3> positions_m, std::span<const CandidateLuminaire> luminaires,
                    std::uint64_t& rays) {
@@ -173,7 +172,7 @@ Result<IndirectColumns> plan_indirect(const Scene& scene, const VisibilityScene&
   const double few = error_with(kFewTried), many = error_with(kManyTried);
   if (options.watch.stop.stop_requested())
     return tl::unexpected(Fault{Cause::cancelled, "", "stopped while counting out the rays of candidates", {}});
-  // Squares add: what rays make of it goes down with their number, what the fields make of it stays.
+  // Squares add: the part from rays falls with their number, the part from the fields stays.
   const double of_one_ray = std::max(0.0, (few * few - many * many) / (1.0 / kFewTried - 1.0 / kManyTried));
   const double of_fields = std::max(0.0, many * many - of_one_ray / kManyTried);
   const double wanted = options.wanted_relative_error;
@@ -184,7 +183,7 @@ Result<IndirectColumns> plan_indirect(const Scene& scene, const VisibilityScene&
     const double rays = std::clamp(share * of_one_ray / left, std::min<double>(kFewTried, most), most);
     return static_cast<std::uint32_t>(IndirectColumns::kReplicates) * 2 * static_cast<std::uint32_t>(rays / 2);
   };
-  // Those looked at by themselves are few: they may err a little more than the others.
+  // Candidates with their own rays are few: their error may be slightly larger than that of the others.
   statistics.rays_per_candidate = rays_for(kAloneShare);
   statistics.rays_per_node = rays_for(noise_share(nodes, visibility, tried_m, luminaires, statistics.rays));
   return indirect;

@@ -1,5 +1,5 @@
 #pragma once
-/// Choosing how finely to look, and building the importance fields.
+/// Chooses the resolution, and builds the importance fields.
 
 #include "core/transport/candidates/indirect_columns.h"
 #include "core/transport/candidates/interpolation_nodes.h"
@@ -13,24 +13,24 @@ struct IndirectSettings {
   bool keep_links = false;  ///< so that receivers can move
 };
 
-/// Edge of cells of which `cells` cover the scene's area.
+/// Edge of a cell if `cells` cells cover the scene's area.
 [[nodiscard]] double cell_size_m(const Scene& scene, std::size_t cells);
 
-/// Relative error of reflected light that replicates cannot show, since they share it: light and importance that vary
-/// together about a place. Goes as the distance of places: 0.9 % for 12 000 cells.
+/// Relative error of reflected light that replicates share and so cannot show: light and importance vary together
+/// within a cell. Proportional to the distance of places: 0.9 % for 12 000 cells.
 [[nodiscard]] double flatness_error(std::size_t cells);
 
-/// Fields for the settings, one after another seeded; Cause::cancelled when stopped.
+/// Fields for these settings, with successive seeds; Cause::cancelled when stopped.
 [[nodiscard]] Result<std::vector<std::unique_ptr<SurfaceImportance>>> importance_fields(
     const Scene& scene, const VisibilityScene& visibility, std::span<const Receiver> receivers,
     std::span<const Vec3> also_from_world_m, const IndirectSettings& settings, const CandidateOptions& options);
 
-/// Positions that reflected light is looked at from; none where there are few candidates.
+/// Positions at which reflected light is evaluated; empty if there are few candidates.
 [[nodiscard]] InterpolationNodes choose_nodes(const CandidateSet& candidates, std::span<const std::uint8_t> usable,
                                               std::size_t receivers, const CandidateOptions& options);
 
-/// Fields, and as many rays as give the wanted error on a few of the candidates. Adds to statistics, and sets its
-/// rays_per_candidate and rays_per_node.
+/// Fields, and the number of rays that gives the wanted error on a few of the candidates. Adds to statistics, and sets
+/// its rays_per_candidate and rays_per_node.
 [[nodiscard]] Result<IndirectColumns> plan_indirect(const Scene& scene, const VisibilityScene& visibility,
                                                     std::span<const Receiver> receivers, const CandidateSet& candidates,
                                                     std::span<const CandidateLuminaire> luminaires,

@@ -8,15 +8,15 @@
 namespace luxrig {
 namespace {
 
-/// Nodes count up to this many steps away, less with distance.
+/// Nodes count up to this many steps away, with falling weight.
 constexpr double kReach = 1.8;
 constexpr std::int64_t kReachCubes = 2;
-/// A slope may follow from nodes that lie this little apart, as a share of the reach (squared): less is taken as flat.
+/// Least extent of nodes that defines a slope, as a share of the reach (squared): below it the plane is taken as flat.
 constexpr double kRidge = 1e-3;
-/// Noise of the nodes together, as a share of that of one (squared): more means that the place is beside its nodes.
+/// Largest noise of the combined nodes, as a share of that of one (squared): above it the place is outside its nodes.
 constexpr double kMostNoise = 0.6;
 constexpr std::size_t kFewestNodes = 4;
-/// Of means where no plane can be laid, in steps.
+/// Reach of means where no plane fits, in steps.
 constexpr double kMeanReach = 3;
 constexpr double kFiner = 0.8;
 constexpr double kMostCubesPerSide = 1 << 20;
@@ -81,7 +81,7 @@ double InterpolationNodes::step_for(std::span<const Vec3> positions_world_m, std
       if (usable[p]) cubes.insert(key_of(cube_of(positions_world_m[p], box.min(), step_m)));
     if (cubes.size() > most_nodes) break;
     fits_m = step_m;
-    if (cubes.size() == all) break;  // finer, and no place would have a neighbour within reach
+    if (cubes.size() == all) break;  // any finer, and no place would have a neighbour within reach
   }
   return fits_m;
 }
@@ -129,7 +129,7 @@ void InterpolationNodes::shares(const RayScene& scene, const Vec3& position_worl
     shares[i].weight *= static_cast<float>(first.dot(bases[i]));
     noise += static_cast<double>(shares[i].weight) * static_cast<double>(shares[i].weight);
   }
-  // Without the ridge weights add up to 1; with it, nearly.
+  // Without the ridge the weights sum to 1; with it, nearly.
   float sum = 0;
   for (const WeightedRow& share : shares) sum += share.weight;
   if (!(sum > 0.5f) || !(noise < kMostNoise)) return shares.clear();

@@ -1,10 +1,10 @@
 #pragma once
-/// Some of very many places, and how the others follow from them.
+/// Chooses nodes among very many places, and interpolates the others from them.
 ///
-/// Reflected light varies smoothly with the place of a lamp as long as no wall comes between. So a few places, spread
-/// evenly, are looked at; at the others the value is that of the plane through the values about them that fits best
-/// (moving least squares; P. Lancaster and K. Salkauskas, 1981), among the nodes that can be seen from there. Since
-/// many nodes take part, the noise of one matters less.
+/// Reflected light varies smoothly with the place of a lamp unless a wall intervenes. So only a few evenly spread
+/// places are evaluated. Elsewhere the value is that of the best plane through the values of surrounding visible nodes
+/// (moving least squares; P. Lancaster and K. Salkauskas, 1981). Since many nodes contribute, the noise of one matters
+/// less.
 
 #include <cstdint>
 #include <span>
@@ -20,12 +20,12 @@ class InterpolationNodes {
  public:
   InterpolationNodes() = default;  ///< none
 
-  /// One node in each cube of a grid that has a usable position: the one nearest to its middle.
+  /// One node in each grid cube with a usable position: the one nearest to the cube's centre.
   /// usable   per position
   InterpolationNodes(std::span<const Vec3> positions_world_m, std::span<const std::uint8_t> usable, double step_m);
 
-  /// The finest grid's step that does not give more than `most_nodes`, to a fifth, but none finer than lets every
-  /// position be a node; 0 if `most_nodes` is.
+  /// Step of the finest grid with at most `most_nodes` nodes, to a fifth, but not finer than needed to make every
+  /// position a node; 0 if `most_nodes` is 0.
   [[nodiscard]] static double step_for(std::span<const Vec3> positions_world_m, std::span<const std::uint8_t> usable,
                                        std::size_t most_nodes);
 
@@ -34,16 +34,16 @@ class InterpolationNodes {
   /// Index of the position that is node n.
   [[nodiscard]] std::uint32_t position(std::size_t n) const { return nodes_[n]; }
 
-  /// Nodes (as rows) and their weights, which add up to 1. Empty where too few can be seen, or only on one side.
-  /// offset_world_m   what lamps hang off their positions
-  /// without          a node that is not to take part
-  /// slopes_per_m     when asked for: how the plane rises along x, y and z, as a weight for each node of shares
+  /// Nodes (as rows) and their weights, which sum to 1. Empty if too few are visible, or only on one side.
+  /// offset_world_m   of lamps from their positions
+  /// without          a node to leave out
+  /// slopes_per_m     optional: slope of the plane along x, y and z, as a weight for each node of shares
   void shares(const RayScene& scene, const Vec3& position_world_m, const Vec3& offset_world_m,
               std::vector<WeightedRow>& shares, std::uint64_t& rays, std::uint32_t without = ~0u,
               std::vector<Vec3>* slopes_per_m = nullptr) const;
 
-  /// For where no plane can be laid: the mean of the nodes about it that can be seen, the nearer the more. Empty where
-  /// there is none: behind a wall, say.
+  /// Where no plane fits: the distance-weighted mean of the surrounding visible nodes. Empty if there are none, for
+  /// example behind a wall.
   void mean_shares(const RayScene& scene, const Vec3& position_world_m, std::vector<WeightedRow>& shares) const;
 
  private:

@@ -9,16 +9,16 @@
 namespace luxrig {
 namespace {
 
-/// Of the memory bound, for guides.
+/// Fraction of the memory bound for guides.
 constexpr std::size_t kGuidesShare = 16;
-/// A node is foretold from nodes a step away; other positions lie about half as far from theirs, and the error of a
-/// straight line goes with the square of the distance.
+/// The error at a node is measured from nodes a step away. Other positions are about half as far from theirs, and the
+/// error of a linear fit grows with the square of the distance.
 constexpr double kErrorShare = 0.35;
-/// What interpolation may add to a typical entry of a candidate, as a share of the wanted error; and how many times its
-/// square one receiver may count.
+/// Error that interpolation may add to a typical entry of a candidate, as a share of the wanted error; and the most
+/// that one receiver's squared error counts, in units of that error squared.
 constexpr double kMostError = 1;
 constexpr double kMostCounted = 4;
-/// Of the weights of the nodes that an answer is made of, those whose error is known make up at least so much.
+/// Least share of the weights of an interpolated result that must come from nodes with known error.
 constexpr float kLeastForetold = 0.5f;
 constexpr std::size_t kPlacesPerGuide = 8;
 constexpr std::size_t kFewestPerGuide = 64;
@@ -61,13 +61,13 @@ void ReflectedColumns::make_groups(std::size_t places) {
   guides_made_ = 0;
 }
 
-/// Guides that are wanted and not there. What they are does not depend on when they are made.
+/// Makes missing guides. A guide does not depend on when it is made.
 void ReflectedColumns::make_guides(std::span<const Asked> asked) {
   if (guides_made_ * sizeof(DirectionGuide) > options_.memory_bound_bytes / kGuidesShare) {
     for (Group& group : groups_) group.guides.clear();
     guides_made_ = 0;
   }
-  std::vector<Asked> wanted;  // with groups for positions
+  std::vector<Asked> wanted;  // with groups in place of positions
   for (const Asked& one : asked) {
     Group& group = groups_[group_of_[one.position]];
     group.guides.resize(luminaires_.size());
@@ -99,7 +99,7 @@ void ReflectedColumns::evaluate(std::span<const Asked> asked, std::uint32_t rays
   const std::uint32_t per_replicate = rays_each / IndirectColumns::kReplicates;
   const std::size_t stride = indirect_.stride();
   std::vector<std::uint64_t> cast(asked.size(), 0);
-  // Neighbours one after the other: they look at the same surfaces, whose rows then stay in the cache.
+  // Neighbours in sequence: they see the same surfaces, whose rows then stay in the cache.
   std::vector<std::uint32_t> order(asked.size());
   std::iota(order.begin(), order.end(), 0u);
   std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -121,7 +121,7 @@ void ReflectedColumns::evaluate(std::span<const Asked> asked, std::uint32_t rays
   statistics_.rays += std::accumulate(cast.begin(), cast.end(), std::uint64_t{0});
 }
 
-/// What is reflected from each node, and how well the others foretell it.
+/// Traces reflected light at the nodes, and finds how well the others predict it.
 void ReflectedColumns::look_at_nodes() {
   const auto usable = static_cast<std::size_t>(std::count(usable_.begin(), usable_.end(), std::uint8_t{1}));
   const std::size_t kinds = luminaires_.size();
@@ -138,7 +138,7 @@ void ReflectedColumns::look_at_nodes() {
   if (!stopped()) find_errors();
 }
 
-/// How far off each node would be if it were interpolated between the others, squared, less what noise makes of it.
+/// Squared error of each node if interpolated from the others, minus the part from noise.
 void ReflectedColumns::find_errors() {
   const std::size_t kinds = luminaires_.size(), stride = indirect_.stride();
   squared_errors_.assign(kinds, std::vector<float>(nodes_.size() * stride));
@@ -164,7 +164,8 @@ void ReflectedColumns::find_errors() {
           mean += off / kCount;
           squares += off * off;
         }
-        // Twice: once it is in the mean's square, once that is what is sought. Sums over nodes average it out.
+        // Subtracted twice: once since it is in the mean's square, once since it is in the wanted value. Sums over
+        // nodes average it out.
         const double noise = (squares - kCount * mean * mean) / (kCount * (kCount - 1));
         squared_errors_[l][n * stride + r] = static_cast<float>(kErrorShare * kErrorShare * (mean * mean - noise));
       }
@@ -173,7 +174,7 @@ void ReflectedColumns::find_errors() {
   statistics_.rays += std::accumulate(cast.begin(), cast.end(), std::uint64_t{0});
 }
 
-/// False where it would be too far off.
+/// False if the error would be too large.
 bool ReflectedColumns::interpolate(const Asked& one, std::span<const WeightedRow> shares, std::span<float> replicates,
                                    std::span<float> squared_error_lux2) const {
   if (shares.empty()) return false;
@@ -190,8 +191,8 @@ bool ReflectedColumns::interpolate(const Asked& one, std::span<const WeightedRow
   for (WeightedRow& share : error_shares) share.weight /= sum;
   std::fill(squared_error_lux2.begin(), squared_error_lux2.end(), 0.0f);
   add_weighted_rows(squared_errors_[one.luminaire].data(), error_shares, squared_error_lux2);
-  // Errors of each receiver are mostly noise, of either sign; their mean is not. Each counts for little, so that a few
-  // at the edge of a shadow, whose error is stated, do not decide for all.
+  // Errors of single receivers are mostly noise, of either sign; their mean is not. Each is clamped, so that a few at a
+  // shadow edge, whose error is stated anyway, do not decide for all.
   const std::size_t stride = indirect_.stride();
   constexpr double kCount = IndirectColumns::kReplicates;
   const double most = kMostError * options_.wanted_relative_error;
@@ -211,7 +212,7 @@ bool ReflectedColumns::interpolate(const Asked& one, std::span<const WeightedRow
     ++lit;
   }
   if (off > static_cast<double>(lit)) return false;
-  // Noise of a slope may reach below nothing.
+  // Noise of a slope may go below 0.
   for (float& lux : replicates) lux = std::max(lux, 0.0f);
   for (float& square : squared_error_lux2) square = std::max(square, 0.0f);
   return true;

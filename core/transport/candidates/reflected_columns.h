@@ -1,5 +1,5 @@
 #pragma once
-/// Reflected light of all candidates, block by block: looked at where it must be, interpolated where it can be.
+/// Reflected light of all candidates, block by block: traced where necessary, interpolated where possible.
 
 #include <memory>
 
@@ -18,8 +18,8 @@ class ReflectedColumns {
                    std::span<const CandidateLuminaire> luminaires, std::span<const std::uint8_t> usable,
                    InterpolationNodes nodes, const CandidateOptions& options, CandidateStatistics& statistics);
 
-  /// Of the positions from `first`: rows of `receivers` floats, one per column; those of unusable positions are left
-  /// alone. False when stopped.
+  /// For `count` positions from `first`: rows of `receivers` floats, one per column. Rows of unusable positions are
+  /// unchanged. False when stopped.
   [[nodiscard]] bool block(std::size_t first, std::size_t count, std::size_t receivers, std::span<float> lux,
                            std::span<float> standard_error_lux);
 
@@ -29,7 +29,7 @@ class ReflectedColumns {
   struct Asked {
     std::uint32_t position, luminaire;
   };
-  /// Neighbouring positions that share what pilot rays found.
+  /// Neighbouring positions that share the result of pilot rays.
   struct Group {
     std::uint32_t begin, end;                             ///< into group_order_
     std::vector<std::unique_ptr<DirectionGuide>> guides;  ///< per luminaire; null until made
@@ -37,7 +37,7 @@ class ReflectedColumns {
 
   void make_groups(std::size_t places);
   void make_guides(std::span<const Asked> asked);
-  /// Replicates of each into its place; of none when stopped.
+  /// Writes the replicates of each to its place; writes nothing when stopped.
   void evaluate(std::span<const Asked> asked, std::uint32_t rays_each,
                 const std::function<std::span<float>(std::size_t)>& replicates_of);
   void look_at_nodes();
@@ -56,7 +56,7 @@ class ReflectedColumns {
   std::size_t row_;  ///< floats of all replicates of a column
   std::vector<Group> groups_;
   std::vector<std::uint32_t> group_of_;        ///< per position
-  std::vector<std::uint32_t> group_order_;     ///< positions, neighbours together
+  std::vector<std::uint32_t> group_order_;     ///< positions, neighbours in sequence
   std::vector<std::uint32_t> place_in_order_;  ///< per position
   std::size_t guides_made_ = 0;
   InterpolationNodes nodes_;

@@ -9,7 +9,7 @@ namespace luxrig {
 
 namespace {
 
-/// So many may all be nodes.
+/// Up to this number, all places may be nodes.
 constexpr std::size_t kFewPlaces = 60;
 
 }  // namespace
@@ -24,7 +24,7 @@ Result<ReflectedField> ReflectedField::make(const Scene& scene, const RayScene& 
 
   ReflectedField field;
   field.rays_ = &rays;
-  // Where every place were a node, none would be known better than one look tells.
+  // If every place were a node, none would be more accurate than a single evaluation.
   const auto all = static_cast<std::size_t>(std::count(usable.begin(), usable.end(), 1));
   const double step_m =
       InterpolationNodes::step_for(places_world_m, usable, std::min(most_nodes, std::max(all / 2, kFewPlaces)));
@@ -38,7 +38,7 @@ Result<ReflectedField> ReflectedField::make(const Scene& scene, const RayScene& 
     set.positions_world_m.push_back(places_world_m[field.nodes_.position(n)]);
   CandidateOptions looked_at = options;
   looked_at.indirect = true;
-  looked_at.skips.foretold = false;  // nodes are the few places that are looked at
+  looked_at.skips.foretold = false;  // nodes are the few places with their own rays
   auto statistics = stream_candidates(scene, rays, receivers, set, looked_at, [&](const CandidateColumns& block) {
     for (std::size_t c = 0; c < block.columns(); ++c) {
       float* to = field.lux_.data() + (block.first_column + c) * field.stride_;
@@ -65,7 +65,7 @@ bool ReflectedField::add(const Vec3& place_world_m, Eigen::VectorXd& lux, Eigen:
   std::vector<float> sums(stride_, 0.0F);
   add_weighted_rows(lux_.data(), shares, sums);
   const auto count = static_cast<Eigen::Index>(receivers_);
-  // A plane through noise may dip below 0 where there is hardly any light.
+  // A noisy plane may dip below 0 where there is almost no light.
   for (Eigen::Index r = 0; r < count; ++r)
     lux[r] += std::max(0.0, static_cast<double>(sums[static_cast<std::size_t>(r)]));
   if (slopes)

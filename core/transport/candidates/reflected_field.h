@@ -1,8 +1,8 @@
 #pragma once
-/// Reflected light of one luminaire as its place varies: looked at in few places, known in all.
+/// Reflected light of one luminaire as a function of its place: traced at few places, interpolated at all others.
 ///
-/// Direct light has sharp edges and costs a shadow ray per receiver; reflected light is smooth and costs thousands. So
-/// the second is worked out at nodes once, and elsewhere it is that of the plane through those about the place
+/// Direct light has sharp edges and costs one shadow ray per receiver; reflected light is smooth and costs thousands.
+/// So reflected light is computed once at nodes; elsewhere it is the plane through the nodes around the place
 /// (interpolation_nodes.h): microseconds, with its slope.
 
 #include <vector>
@@ -15,16 +15,16 @@ namespace luxrig {
 class ReflectedField {
  public:
   /// scene, rays   the same geometry; rays must outlive it
-  /// luminaire     hung with its own rotation, here and later. No shape, no sky
-  /// places        among which nodes are chosen, evenly spread, `most_nodes` at most
-  /// options       as for candidate_transport(), whose errors these are
+  /// luminaire     hung with this rotation, which add() also assumes. No shape, no sky
+  /// places        to choose nodes from, evenly spread, `most_nodes` at most
+  /// options       as for candidate_transport(); they set the errors here
   [[nodiscard]] static Result<ReflectedField> make(const Scene& scene, const RayScene& rays,
                                                    std::span<const Receiver> receivers, const Emitter& luminaire,
                                                    std::span<const Vec3> places_world_m, std::size_t most_nodes,
                                                    const CandidateOptions& options);
 
-  /// Adds reflected lux per unit emittance and, when asked for, its slopes (receivers × 3 first columns). From any
-  /// thread. False, and nothing added, where no node can be seen.
+  /// Adds reflected lux per unit emittance and, if wanted, its slopes (receivers × first 3 columns). From any thread.
+  /// False, and nothing added, if no node is visible.
   bool add(const Vec3& place_world_m, Eigen::VectorXd& lux, Eigen::MatrixXd* slopes) const;
 
   [[nodiscard]] std::size_t nodes() const { return nodes_.size(); }

@@ -114,7 +114,7 @@ class Stream {
     return true;
   }
 
-  /// A position may be used if any of its luminaires hangs in air that reaches a receiver.
+  /// A position is usable if any of its luminaires is in air that reaches a receiver.
   void find_usable() {
     const std::size_t positions = candidates_.positions_world_m.size();
     usable_.assign(positions, 1);
@@ -190,7 +190,7 @@ class Stream {
   std::optional<ReflectedColumns> reflected_;
   CandidateStatistics statistics_;
   ErrorHistogram errors_;
-  // Of the block at hand:
+  // Of the current block:
   std::vector<std::uint8_t> use_;    ///< per position
   std::vector<float> direct_lux_;    ///< receivers × columns
   std::vector<float> indirect_lux_;  ///< columns × receivers
@@ -222,7 +222,7 @@ Result<CandidateTransport> candidate_transport(const Scene& scene, const RayScen
                                                const CandidateOptions& options) {
   CandidateOptions working = options;
   working.memory_bound_bytes = options.memory_bound_bytes / 4;
-  // Blocks are joined one kind of number after the other, so that at most five quarters of the matrix exist at once.
+  // Blocks are joined one array at a time, so that at most five quarters of the matrix exist at once.
   const std::size_t matrix_bound = (options.memory_bound_bytes - working.memory_bound_bytes) / 5 * 4;
   std::vector<CandidateColumns> blocks;
   std::size_t bytes = 0;

@@ -9,12 +9,12 @@ namespace luxrig {
 namespace {
 
 constexpr std::uint32_t kSeveral = 0x80000000;
-/// Longer lists are not walked: a ray is quicker.
+/// Longer lists are not searched: a ray is faster.
 constexpr std::size_t kMostListed = 48;
-/// Cubes are looked at with this much round them, of their size; lifts of less stay within what was looked at.
+/// Margin around each cube in its tests, as a share of its size; smaller lifts stay within the tested region.
 constexpr double kMargin = 0.06;
 constexpr double kCellLift = 0.03;
-/// More cubes than this are not looked at (all then count as having several planes).
+/// Above this number, cubes are not tested (all then count as having several planes).
 constexpr double kMostCubes = 5e7;
 constexpr std::uint32_t kMostPieces = 8;
 
@@ -81,7 +81,7 @@ void SurfaceCells::mark_cubes(const Scene& scene) {
       for (int y = low.y(); y <= high.y(); ++y)
         for (int x = low.x(); x <= high.x(); ++x) {
           const Vec3 middle_m = start_world_m_ + cell_m_ * Vec3(x + 0.5, y + 0.5, z + 0.5);
-          // Most cubes in a slanting triangle's box are far from its plane.
+          // Most cubes in the box of a slanting triangle are far from its plane.
           if (std::abs(normal.dot(middle_m - a)) > half_m * normal.cwiseAbs().sum()) continue;
           if (!overlaps(a, b, c, middle_m, half_m)) continue;
           const auto index = static_cast<std::uint32_t>(x + size_.x() * (y + size_.y() * z));
@@ -137,7 +137,7 @@ bool SurfaceCells::sees(const Vec3& position_world_m, const Vec3& normal_world, 
                           cell.first_world_m + lift_m * cell.first_normal_world);
 }
 
-/// Segment and triangle: T. Möller and B. Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997; edges
+/// Segment and triangle: T. Möller and B. Trumbore, "Fast, Minimum Storage Ray/Triangle Intersection", 1997. Edges
 /// belong to both of their triangles, so that nothing passes between.
 bool SurfaceCells::sees_within(const Cube& cube, const Vec3& position_world_m, const Vec3& normal_world,
                                const Cell& cell, std::uint64_t& rays) const {
@@ -175,8 +175,8 @@ std::uint32_t SurfaceCells::piece(std::uint32_t first, const Cube& cube, const V
   return kNone;
 }
 
-/// A place that was found may come to stand for its cell. Each one of n with the same chance for each: the n-th
-/// replaces what was drawn before with chance 1/n.
+/// Reservoir sampling: a new place may represent its cell. For equal chances, the n-th hit replaces the previous choice
+/// with probability 1/n.
 void SurfaceCells::stand_in(Cell& cell, std::uint64_t key, const Place& place, Found by) {
   if (by == Found::from_receiver) return;
   const bool lamp = by == Found::from_lamp;
@@ -222,7 +222,7 @@ std::uint32_t SurfaceCells::find(const Vec3& position_world_m, const Vec3& norma
     const std::uint32_t found = piece(slot.first, cube, position_world_m, normal_world, rays);
     if (found != kNone) return found;
   }
-  // A corner that no ray has found: the nearest cell about it that faces the same way and sees it.
+  // A corner that no ray has found: the nearest surrounding cell that faces the same way and sees it.
   std::uint32_t nearest = kNone;
   double nearest_m2 = HUGE_VAL;
   for (int z = -1; z <= 1; ++z)

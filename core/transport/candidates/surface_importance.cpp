@@ -12,17 +12,17 @@ namespace {
 
 constexpr std::uint32_t kRaysPerReceiver = 128;
 constexpr std::uint32_t kRaysPerPlace = 128;
-/// Nearer than this many cells, the kernel is averaged over a cell's square instead of taken at its middle.
+/// Within this many cells, the kernel is averaged over a cell's square, not taken at its centre.
 constexpr double kNearCells = 4;
 constexpr int kNearGrid = 4;
-/// Sweeps end when one changes W by less than this, relative, on average over all patches and receivers: those behind
-/// two doors, which light reaches last, count as much as those that have most of it.
+/// Sweeps end when one changes W by less than this, relative, on average over all patches and receivers. Receivers
+/// behind two doors, which light reaches last, count as much as bright ones.
 constexpr double kConverged = 3e-4;
-constexpr double kRoughlyConverged = 5e-2;  ///< to say where rays are worth while
-constexpr float kLeast = 1e-30f;            ///< nothing, where it is divided by
-/// Columns that are solved together: few enough for the rows of all patches to stay in a core's own cache.
+constexpr double kRoughlyConverged = 5e-2;  ///< enough to decide where rays are worthwhile
+constexpr float kLeast = 1e-30f;            ///< zero, for divisions
+/// Columns solved together: few enough for the rows of all patches to stay in a core's own cache.
 constexpr std::size_t kStrip = 2 * kRowUnit;
-/// Neighbouring cells that share what their rays found.
+/// Neighbouring cells that share the results of their rays.
 constexpr std::uint32_t kCellsPerGuide = 32;
 constexpr std::uint32_t kMostSweeps = 400;
 constexpr double kCellsPerPatch = 1.5;
@@ -36,7 +36,7 @@ Vec3 grid_offset(std::uint64_t seed) {
   return {u[0], u[1], u[2]};
 }
 
-/// The node after a node's descendants; the number of nodes after the last.
+/// The node after a node's descendants; the number of nodes if there is none.
 std::size_t next_after(const PointTree& tree, std::size_t node) {
   const std::uint32_t end = tree.nodes[node].end;
   while (node < tree.nodes.size() && tree.nodes[node].begin < end) ++node;
@@ -82,7 +82,7 @@ SurfaceImportance::SurfaceImportance(const Scene& scene, const VisibilityScene& 
   }
 }
 
-/// Cells of a grid kCellsPerPatch times as coarse, of which the cells are parts.
+/// Cells of a grid kCellsPerPatch times as coarse; each cell is part of one.
 void SurfaceImportance::make_patches(const Scene& scene) {
   SurfaceCells coarse(scene, scene_, kCellsPerPatch * settings_.cell_m, grid_offset(mixed(settings_.seed, kPatchKey)));
   for (const auto& cell : surfaces_.cells())
@@ -90,11 +90,11 @@ void SurfaceImportance::make_patches(const Scene& scene) {
                                             settings_.most_cells, SurfaceCells::Found::from_surface));
   patches_ = static_cast<std::uint32_t>(coarse.cells().size());
   for (std::uint32_t& patch : patch_of_cell_)
-    if (patch == SurfaceCells::kNone) patch = patches_++;  // in a cube with too many pieces: a patch of its own
+    if (patch == SurfaceCells::kNone) patch = patches_++;  // in a cube with too many pieces: its own patch
   rays_ += coarse.rays_cast();
 }
 
-/// Cells that receivers see, places see, and cells see, until there are no more.
+/// Finds cells that receivers, places and cells see, until there are no new ones.
 void SurfaceImportance::discover(std::span<const Vec3> also_from_world_m) {
   const auto look = [&](const Vec3& from_m, const Vec3& direction, const Vec3& normal, SurfaceCells::Found by) {
     ++rays_;
@@ -163,7 +163,7 @@ void SurfaceImportance::trace_bounces(std::uint32_t cell) {
   const SobolSequence samples(mixed(mixed(settings_.seed, kCellKey), cell));
   for (std::uint32_t i = 0; i < settings_.rays_per_cell; ++i) {
     const auto [u, v] = samples.pair(i, 0, 0);
-    // A copy, from where the cell stands now: another place may come to stand for it, and cells may move.
+    // A copy of the cell's present place: the cell may get another place, and cells may move in memory.
     const SurfaceCells::Place from = surfaces_.cells()[cell].places[i % kPlaces];
     Bounce bounce = trace(from, cosine_direction(from.normal_world, u, v), true);
     bounce.weight = bounce.reflectance / static_cast<float>(settings_.rays_per_cell);
@@ -171,10 +171,10 @@ void SurfaceImportance::trace_bounces(std::uint32_t cell) {
   }
 }
 
-/// Rays of the second round, drawn where those of the first, from this cell and its neighbours, brought the largest
-/// shares of what a receiver gets by way of the cell; every receiver counts alike, so that those behind two doors have
-/// their rays through the doors. The first rays themselves are not used again: a ray that makes its own direction
-/// likely would be weighted down for it, and reflected light come out too low (by 10 % in a flat of eight rooms).
+/// Rays of the second round go where those of the first, from this cell and its neighbours, brought the largest shares
+/// of a receiver's light through the cell. Every receiver counts equally, so that rays for those behind two doors go
+/// through the doors. The first rays are not reused: a ray that makes its own direction likely would get a lower
+/// weight, and reflected light would be too low (by 10 % in a flat of eight rooms).
 void SurfaceImportance::gather_bounces() {
   const auto& cells = surfaces_.cells();
   const std::size_t first = settings_.rays_per_cell, guided = settings_.guided_rays_per_cell;
@@ -246,7 +246,7 @@ void SurfaceImportance::gather_bounces() {
   bounces_ = std::move(fresh);
 }
 
-/// cosθr cosθy / (π d²), at a place; near by, its mean over a square of the size that it stands for.
+/// cosθr cosθy / (π d²) at a place; nearby, its mean over a square of the size that the place represents.
 double SurfaceImportance::kernel(const Receiver& receiver, const SurfaceCells::Place& place) const {
   const auto at = [&](const Vec3& at_m) {
     const Vec3 towards_m = at_m - receiver.position_world_m;
@@ -323,7 +323,7 @@ void SurfaceImportance::update_receiver(const VisibilityScene& visibility, std::
   add_terms();
 }
 
-/// What the rays of each patch's cells meet: rows, for the first term; patches, for the second.
+/// Hits of the rays of each patch's cells: rows for the first term, patches for the second.
 void SurfaceImportance::link_patches() {
   const std::size_t cells = surfaces_.cells().size(), per_cell = cells == 0 ? 0 : bounces_.size() / cells;
   std::vector<std::vector<std::uint32_t>> cells_of_patch(patches_);
@@ -333,7 +333,7 @@ void SurfaceImportance::link_patches() {
   const auto hits_of = [&](std::uint32_t cell) {
     return static_cast<float>(surfaces_.cells()[cell].hits_from_surfaces + 1);
   };
-  // Where a row stands in the list at hand; stale where that list does not have it there.
+  // Index of a row in the current list; stale if the list does not have the row there.
   std::vector<std::uint32_t> place(std::max<std::size_t>(rows_count(), patches_), 0);
   std::vector<WeightedRow> gathered;
   const auto add = [&](std::uint32_t row, float weight) {
@@ -346,7 +346,7 @@ void SurfaceImportance::link_patches() {
     }
   };
   for (std::uint32_t p = 0; p < patches_; ++p) {
-    // A sliver of a cell at the edge of a wall counts by how often it was hit, which goes with its area.
+    // A sliver of a cell at the edge of a wall counts by its number of hits, which is proportional to its area.
     float hits = 0;
     for (const std::uint32_t c : cells_of_patch[p]) hits += hits_of(c);
     const auto gather = [&](std::vector<WeightedRow>& list, const auto& row_of) {
@@ -362,8 +362,8 @@ void SurfaceImportance::link_patches() {
   }
 }
 
-/// The second term: what a patch gathers of the first term by its cells' rays, and then of itself, by Gauss and
-/// Seidel's iteration, there and back in turn. Receivers are independent of each other.
+/// The second term: each patch gathers the first term by its cells' rays, and then the second by Gauss–Seidel
+/// iteration, forwards and backwards in turn. Receivers are independent.
 void SurfaceImportance::solve(double converged) {
   link_patches();
   further_.resize(patches_ * stride_, 0.0f);

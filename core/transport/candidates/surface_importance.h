@@ -1,18 +1,18 @@
 #pragma once
-/// How many lux at each receiver a lumen brings, by where on the surfaces it falls: the adjoint of reflected light,
-/// once for all emitters.
+/// Lux at each receiver per lumen on each place of the surfaces: the adjoint of reflected light, computed once for all
+/// emitters.
 ///
-/// With W(r, y) [lx/lm] the illuminance at receiver r, by any number of diffuse reflections, per lumen that falls on
-/// the surface at y and is not absorbed there (ρ left out),
+/// W(r, y) [lx/lm] is the illuminance at receiver r, by any number of diffuse reflections, per lumen that falls on the
+/// surface at y and is not absorbed there (ρ left out):
 ///   W(r, y) = cosθr cosθy V / (π d²) + mean over cosine-weighted directions at y of ρ(z) W(r, z),   z = what they hit,
 ///   E_reflected(r) = ∫ ρ(y) W(r, y) dΦ(y),   Φ = flux that comes straight from the emitter.
-/// The first term is kept for each of a cell's places (surface_cells.h), with a visibility ray per receiver, and holds
-/// for what lies nearest to that place. The second is smooth: it is kept on patches, cells of a coarser grid, and
-/// solved by iteration with rays cast once from every cell. Emitters then cast rays and look up W where these hit; so
-/// the bright spot that a lamp makes on a ceiling close by is sampled where it is.
+/// The first term is kept for each of a cell's places (surface_cells.h), with one visibility ray per receiver; it
+/// applies to the surface nearest to that place. The second term is smooth: it is kept on patches, the cells of a
+/// coarser grid, and solved by iteration with rays cast once from every cell. Emitters then cast rays and look up W at
+/// their hits, so the bright spot of a lamp on a ceiling close by is sampled where it is.
 ///
-/// One field is one independent estimate: its grid, places and rays are random. Errors come from several (replicates):
-/// their spread holds the error of cells being flat, of visibility asked at one place per cell, and of all rays.
+/// One field is one independent estimate: its grid, places and rays are random. The spread of several (replicates)
+/// gives the error: it includes the flatness of cells, visibility tested at one place, and all rays.
 
 #include <array>
 #include <span>
@@ -28,8 +28,8 @@ namespace luxrig {
 
 struct ImportanceSettings {
   double cell_m = 0.25;
-  /// Rays by the cosine that find cells and directions; then as many again, together with guided_rays_per_cell where
-  /// the first found much, that light is gathered with.
+  /// Cosine-weighted rays that find cells and directions. Then the same number again, plus guided_rays_per_cell in the
+  /// directions where the first found much, gathers light.
   std::uint32_t rays_per_cell = 16;
   std::uint32_t guided_rays_per_cell = 32;
   std::uint32_t most_cells = 200'000;
@@ -39,20 +39,20 @@ struct ImportanceSettings {
 
 class SurfaceImportance {
  public:
-  /// also_from_world_m   places from which light will come: what they see gets cells too
+  /// also_from_world_m   further places that light will come from: cells are also made where these see surfaces
   SurfaceImportance(const Scene& scene, const VisibilityScene& visibility, std::span<const Receiver> receivers,
                     std::span<const Vec3> also_from_world_m, const ImportanceSettings& settings,
                     const CandidateSkips& skips, const std::stop_token& stop);
 
-  /// The receiver of this index (which the span given to the constructor now shows) is elsewhere: its column of both
-  /// terms is computed again. Cells stay as they are.
+  /// Recomputes both terms of a receiver that has moved (the span given to the constructor now has its new data). Cells
+  /// stay unchanged.
   void update_receiver(const VisibilityScene& visibility, std::size_t receiver, const CandidateSkips& skips);
 
-  /// Receivers, rounded up to a multiple of kRowUnit: the length of the rows below.
+  /// Number of receivers, rounded up to a multiple of kRowUnit: the length of the rows below.
   [[nodiscard]] std::size_t stride() const { return stride_; }
   /// W [lx/lm], a row of stride() for each place of each cell.
   [[nodiscard]] const float* rows() const { return settings_.keep_links ? both_.data() : first_.data(); }
-  /// The row that holds for a place on a surface, or kNoRow where no light gets from to a receiver. Adds the rays cast.
+  /// Row of W for a place on a surface, or kNoRow if no light gets from there to a receiver. Adds the rays cast.
   [[nodiscard]] std::uint32_t row_at(const Vec3& position_world_m, const Vec3& normal_world, std::uint64_t& rays) const;
   static constexpr std::uint32_t kNoRow = ~0u;
   [[nodiscard]] const SurfaceCells& surfaces() const { return surfaces_; }
@@ -64,9 +64,9 @@ class SurfaceImportance {
   /// A ray that leaves a cell.
   struct Bounce {
     std::array<float, 3> direction_world;
-    std::uint32_t row;  ///< of what was hit; kNoRow: nothing
-    float reflectance;  ///< of what was hit
-    float weight;       ///< in the mean over cosine-weighted directions, with the reflectance
+    std::uint32_t row;  ///< of the hit; kNoRow = none
+    float reflectance;  ///< of the hit
+    float weight;       ///< in the mean over cosine-weighted directions, including the reflectance
   };
 
   void discover(std::span<const Vec3> also_from_world_m);
@@ -95,20 +95,20 @@ class SurfaceImportance {
   std::stop_token stop_;
   SurfaceCells surfaces_;
   std::size_t stride_;
-  std::vector<Bounce> bounces_;  ///< as many for each cell
+  std::vector<Bounce> bounces_;  ///< the same number for each cell
   std::vector<std::uint32_t> patch_of_cell_;
   std::uint32_t patches_ = 0;
-  std::vector<std::vector<WeightedRow>> from_rows_, from_patches_;  ///< per patch: what its rays meet, with weights
-  std::vector<float> first_;  ///< first term of W, rows × stride; with the second added at the end, unless links stay
+  std::vector<std::vector<WeightedRow>> from_rows_, from_patches_;  ///< per patch: hits of its rays, with weights
+  std::vector<float> first_;  ///< first term of W, rows × stride; the second is added at the end, unless links are kept
   std::vector<float> further_;      ///< second term, patches × stride
-  std::vector<float> both_;         ///< their sum, when links stay: rows × stride
+  std::vector<float> both_;         ///< their sum, if links are kept: rows × stride
   std::vector<std::uint8_t> live_;  ///< per row: W is above 0 for a receiver
   std::uint64_t rays_ = 0;
   std::uint32_t sweeps_ = 0;
 };
 
-/// Reflectance that counts here: diffuse, and gloss as further diffuse reflectance. A Fresnel coat of F0 reflects
-/// F0 + (1 - F0)/21 of diffuse light (Schlick's approximation, averaged over the hemisphere); the body gets the rest.
+/// Effective diffuse reflectance: gloss counts as extra diffuse reflectance. A Fresnel coat of F0 reflects F0 + (1 -
+/// F0)/21 of diffuse light (Schlick's approximation, averaged over the hemisphere); the body gets the rest.
 [[nodiscard]] double diffuse_reflectance(const Material& material);
 
 }  // namespace luxrig

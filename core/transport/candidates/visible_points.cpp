@@ -19,7 +19,7 @@ bool VisiblePoints::wholly_out_of_reach(const PointTree::Node& node) const {
 bool VisiblePoints::hidden(const PointTree::Node& node) {
   for (const Remembered& r : remembered_)
     if (r.shadow.hides_box(node.low_m, node.high_m)) return true;
-  if (node.right == 0) return false;  // as many rays again would be saved at the most
+  if (node.right == 0) return false;  // a test ray could save at most as many rays again
   const Vec3 towards_m = (node.low_m + node.high_m) / 2 - from_.position_world_m;
   const double distance_m = towards_m.norm();
   if (!(distance_m > 0)) return false;

@@ -1,5 +1,5 @@
 #pragma once
-/// Which of many points a receiver sees, with as few rays as can be.
+/// Finds which of many points a receiver sees, with as few rays as possible.
 
 #include <cmath>
 #include <optional>
@@ -10,21 +10,21 @@
 
 namespace luxrig {
 
-/// What all visibility questions have in common.
+/// Data shared by all visibility tests.
 struct VisibilityScene {
-  const RayScene* rays;      ///< null: nothing can stand in between
-  const Blockers* blockers;  ///< null: no groups are decided together
+  const RayScene* rays;      ///< null = nothing can be in between
+  const Blockers* blockers;  ///< null = no groups are decided together
 };
 
 class VisiblePoints {
  public:
-  /// peak_cd, least_lux   groups so far off that a source of peak_cd there brings less than least_lux are left out
+  /// peak_cd, least_lux   skip groups so far away that a source of peak_cd there gives less than least_lux
   VisiblePoints(const VisibilityScene& scene, const Receiver& from, const CandidateSkips& skips, double peak_cd,
                 double least_lux)
       : scene_(scene), from_(from), skips_(skips), peak_cd_(peak_cd), least_lux_(skips.reach ? least_lux : 0) {}
 
-  /// Calls wants(point) for each point in front of the receiver that no group test has settled; true has a shadow ray
-  /// cast, and then seen(point) if nothing is in between. Counts what is skipped, in points.
+  /// Calls wants(point) for each point in front of the receiver that no group test decided. If it returns true, a
+  /// shadow ray is cast, and seen(point) is called if nothing is in between. Counts skipped points by reason.
   template <class Wants, class Seen>
   void visit(const PointTree& tree, std::span<const Vec3> points_world_m, Wants&& wants, Seen&& seen) {
     if (!tree.nodes.empty()) visit_node(tree, points_world_m, 0, wants, seen);
@@ -75,7 +75,7 @@ class VisiblePoints {
 
   [[nodiscard]] bool wholly_behind(const PointTree::Node& node) const;
   [[nodiscard]] bool wholly_out_of_reach(const PointTree::Node& node) const;
-  /// In the shadow of a blocker that has served before, or of what a ray to its middle meets.
+  /// In the shadow of a recently used blocker, or of the one that a ray to its centre meets.
   [[nodiscard]] bool hidden(const PointTree::Node& node);
 
   static constexpr std::size_t kRemembered = 6;

@@ -7,7 +7,7 @@
 namespace luxrig {
 namespace {
 
-/// A strip of columns stays in registers while all rows go by.
+/// A strip of columns stays in registers while all rows pass.
 template <std::size_t kStrip>
 [[gnu::always_inline]] inline void add_strip(const float* rows, std::size_t stride, std::span<const WeightedRow> list,
                                              float* sums) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Sums of rows of a matrix: where nearly all arithmetic of indirect light is done.
+/// Weighted sums of matrix rows: nearly all arithmetic of indirect light.
 
 #include <cstdint>
 #include <span>
@@ -14,7 +14,7 @@ struct WeightedRow {
 /// Rows of matrices for add_weighted_rows() have a multiple of this many floats.
 inline constexpr std::size_t kRowUnit = 16;
 
-/// sums += Σ weight · rows[row], in the order of the list. Uses AVX2 and FMA where the processor has them.
+/// sums += Σ weight · rows[row], in the order of the list. Uses AVX2 and FMA if the processor has them.
 /// rows     row-major, sums.size() floats each
 void add_weighted_rows(const float* rows, std::span<const WeightedRow> list, std::span<float> sums);
 

@@ -1,12 +1,11 @@
 #pragma once
-/// Integrals over rectangles, refined where they need it.
+/// Adaptive integration over rectangles.
 ///
-/// Products of Gauss rules of 3, 5 and 8 places per side. A piece is looked at with 3 and 5, then with 8, then halved:
-/// along the side across which its highest Legendre coefficients are larger, so that a kink that runs along the other
-/// side is closed in on for little. Its error is taken as the larger of two estimates, since either may be small by
-/// chance: the difference to the next worse rule (10 times that between 3 and 5 places), and what the highest
-/// coefficients h, summed without sign, promise if they go on falling as they have, to the degree 2n that a rule of n
-/// places misses first: |f| (h/|f|)^(2n/(n-1)).
+/// Products of Gauss rules of 3, 5 and 8 nodes per side. A piece is evaluated with 3 and 5, then with 8, then halved
+/// along the side whose highest Legendre coefficients are larger, so that a kink parallel to the other side is isolated
+/// cheaply. Its error is the larger of two estimates, since either may be small by chance: the difference to the next
+/// lower rule (10 times that between 3 and 5 nodes), and an extrapolation of the highest coefficients h, summed without
+/// sign, at their rate of fall to degree 2n, the first that a rule of n nodes misses: |f| (h/|f|)^(2n/(n-1)).
 
 #include <algorithm>
 #include <array>
@@ -44,13 +43,13 @@ struct CubaturePiece {
   std::size_t function = 0;
   double t0 = 0, t1 = 1, w0 = 0, w1 = 1;
   double value = 0, error = 0;
-  bool by_eight = false;  ///< looked at with 8 places per side
+  bool by_eight = false;  ///< evaluated with 8 nodes per side
   bool split_t = true;
 };
 
 namespace cubature {
 
-/// w P and P / |P|², for the two highest Legendre polynomials that N places tell apart, one even and one odd.
+/// w P and P / |P|², for the two highest Legendre polynomials that N nodes can distinguish, one even and one odd.
 template <std::size_t N>
 struct HighWeights {
   explicit HighWeights(const GaussRule<N>& rule) {
@@ -79,7 +78,7 @@ double product_rule(const GaussRule<N>& rule, const CubaturePiece& piece, F&& f)
   return a * b * sum;
 }
 
-/// Looks at a piece with N places per side; sets value, error by the coefficients, and the side to halve.
+/// Evaluates a piece with N nodes per side; sets value, error from the coefficients, and the side to halve.
 template <std::size_t N, class F>
 void look(const GaussRule<N>& rule, CubaturePiece& piece, F&& f) {
   static const HighWeights<N> high(rule);
@@ -94,7 +93,7 @@ void look(const GaussRule<N>& rule, CubaturePiece& piece, F&& f) {
     size += rule.weight[i] * rule.weight[j] * std::abs(value);
     return value;
   });
-  size *= 0.5;  // as the sums below, over one side of length 2
+  size *= 0.5;  // like the sums below, over one side of length 2
   double bend_t = 0, bend_w = 0;
   for (std::size_t i = 0; i < N; ++i) {
     bend_t += rule.weight[i] * (std::abs(lower_t[i]) + std::abs(upper_t[i]));
@@ -126,13 +125,13 @@ void look_with_eight(CubaturePiece& piece, F&& f) {
 }  // namespace cubature
 
 /// Sum of the integrals of f(function, t, w) over `pieces`, until the estimated error is below `wanted_relative` of the
-/// value or `most_evaluations` are spent. `pieces` is also the room to work in.
+/// value or `most_evaluations` are used. `pieces` also serves as working memory.
 template <class F>
 CubatureResult integrate_pieces(std::vector<CubaturePiece>& pieces, double wanted_relative,
                                 std::size_t most_evaluations, F&& f) {
   CubatureResult result;
   const auto less = [](const CubaturePiece& a, const CubaturePiece& b) { return a.error < b.error; };
-  const auto sum = [&] {  // anew each time it matters: differences would gather rounding
+  const auto sum = [&] {  // in full each time: differences would accumulate rounding
     result.value = result.error = 0;
     for (const CubaturePiece& piece : pieces) {
       result.value += piece.value;
@@ -145,7 +144,7 @@ CubatureResult integrate_pieces(std::vector<CubaturePiece>& pieces, double wante
   sum();
   while (!pieces.empty() && result.error > wanted_relative * std::abs(result.value) &&
          result.evaluations < most_evaluations) {
-    double error_left = result.error;  // near enough to know when to sum again
+    double error_left = result.error;  // accurate enough to know when to sum again
     do {
       std::pop_heap(pieces.begin(), pieces.end(), less);
       CubaturePiece& worst = pieces.back();

@@ -24,18 +24,18 @@ constexpr std::size_t kDirectReplicates = 16;
 constexpr std::uint32_t kFirstSamples = 16;  ///< per replicate
 constexpr std::uint32_t kMostSamples = 1u << 26;
 /// Shadow edges mostly run along or across a lamp, and so along the strata of the samples: of N strata one is cut, and
-/// each replicate finds it lit or dark, with probabilities p and 1-p. When all 16 agree by chance (one time in eight
-/// for p anywhere in 0…1) their spread shows nothing. The rule of succession, p = 1/18, gives what error is then to be
-/// expected: √(p (1-p) / 16) of a stratum.
+/// each replicate finds it lit or dark, with probabilities p and 1-p. If all 16 agree by chance (one time in eight for
+/// p anywhere in 0…1), their spread shows nothing. The rule of succession, p = 1/18, gives the error to expect: √(p
+/// (1-p) / 16) of a stratum.
 constexpr double kDoubtPerStratum = 0.057;
-/// Where nothing arrives, or nothing is lost, from so many samples per replicate on that is believed.
+/// From this many samples per replicate on, a result of no light, or no loss, is believed.
 constexpr std::uint32_t kSamplesToBelieve = 64;
 
 tl::unexpected<Fault> stopped() {
   return tl::unexpected(Fault{Cause::cancelled, "", "stopped while computing direct light", {}});
 }
 
-/// A receiver and an emitter between which something may stand, or a sky.
+/// A receiver, and an emitter that may be partly blocked or is a sky.
 struct Pair {
   std::size_t receiver, emitter;
   Way way;
@@ -60,7 +60,7 @@ struct Pair {
     return doubt;
   }
 
-  /// The replicates' estimates, with the doubt put into their spread in an even pattern, other for each pair.
+  /// The replicates' estimates, with the doubt added to their spread in a balanced pattern, different for each pair.
   [[nodiscard]] std::array<double, kDirectReplicates> estimates() const {
     std::array<double, kDirectReplicates> means{};
     const double spread = doubt_lx() * std::sqrt(kDirectReplicates - 1.0);
@@ -176,7 +176,7 @@ class Evaluation {
       for (std::size_t k = 0; k < kDirectReplicates; ++k) {
         if (options_.watch.stop.stop_requested()) return;
         const SobolSequence samples(mixed(mixed(mixed(options_.seed, pair.receiver), pair.emitter + 0x5a1a), k));
-        // In stretches, so that room and the answer to a stop stay small.
+        // In stretches, which limits memory and the delay of a stop.
         for (std::uint32_t from = begin; from < last; from += std::min(last - from, 4096u)) {
           if (options_.watch.stop.stop_requested()) return;
           const DirectSum sum = sample_direct(scene_, receivers_[pair.receiver], emitters_[pair.emitter], pair.way,
@@ -218,15 +218,15 @@ class Evaluation {
     return scale_lx > 0 ? error_lx(r) / scale_lx : 0;
   }
 
-  /// The pairs to be sampled as often again as they have been: of each receiver that is not done, those that have the
-  /// larger part in its error.
+  /// The pairs whose samples are to be doubled: for each receiver that is not done, those with the larger part of its
+  /// error.
   std::vector<std::size_t> next_round() const {
     std::vector<std::size_t> round;
     if (options_.enough.stop_requested()) return round;
     std::uint64_t left =
         options_.max_rays > direct_.rays + rays_sampled_ ? options_.max_rays - direct_.rays - rays_sampled_ : 0;
     for (std::size_t r = 0; r < receivers_.size(); ++r) {
-      // Where all is dark so far, any doubt is too much.
+      // If everything is dark so far, any doubt is too much.
       const bool dark = lux_[r] == 0 && floor_lx_ == 0;
       const bool wants = dark ? error_lx(r) > 0 : relative_error(r) > options_.wanted_standard_error();
       if (!wants) continue;
@@ -276,7 +276,7 @@ class Evaluation {
   std::vector<double> levels_;
   DirectLight direct_;
   std::vector<Pair> pairs_;              ///< by receiver
-  std::vector<std::size_t> pairs_of_;    ///< per receiver, and the end
+  std::vector<std::size_t> pairs_of_;    ///< per receiver, plus the end
   std::vector<double> exact_lux_, lux_;  ///< per receiver, under the levels
   double floor_lx_ = 0, done_ = 0;
   std::uint64_t rays_sampled_ = 0;

@@ -19,12 +19,12 @@ auto place_of(const Emitter& emitter) {
 
 bool is_point(const Emitter& emitter) { return !emitter.sky && emitter.shape.kind == LuminousShape::Kind::point; }
 
-/// Points around a shape, in frame world: the four corners of a plane one in order, else the eight of a box.
+/// Points around a shape, in frame world: the four corners of a plane one in order, or the eight of a box.
 std::vector<Vec3> corners_around(const Emitter& emitter, const Vec3& seen_from_world_m) {
   const Pose& pose = emitter.world_from_lamp;
   const Vec3 from_m = pose.inverse_direction(seen_from_world_m - pose.translation_m);
   Vec3 half_m = 0.5 * emitter.shape.size_m;
-  // Round shapes may be boxed in any direction: in that of the observer the box looks smallest.
+  // Boxes of round shapes may have any orientation: turned to the observer, the box looks smallest.
   Vec3 x = Vec3::UnitX();
   const double level = std::hypot(from_m.x(), from_m.y());
   using Kind = LuminousShape::Kind;
@@ -47,7 +47,7 @@ std::vector<Vec3> corners_around(const Emitter& emitter, const Vec3& seen_from_w
   return corners;
 }
 
-/// Farther from a point than anything in the scene.
+/// A distance from a point beyond everything in the scene.
 double beyond_m(const Eigen::AlignedBox3d& bounds, const Vec3& from_world_m) {
   return 2 * ((bounds.center() - from_world_m).norm() + bounds.diagonal().norm()) + 1e-3;
 }
@@ -113,12 +113,12 @@ bool DirectSources::may_light(std::size_t e, const Receiver& receiver) const {
 }
 
 Way way_between(const RayScene& scene, const Receiver& receiver, const Emitter& emitter, std::uint64_t& rays) {
-  if (scene.has_panes()) return Way::unknown;  // what they take must be sampled
+  if (scene.has_panes()) return Way::unknown;  // their loss must be sampled
   const Eigen::AlignedBox3d bounds = scene.bounds_world_m();
   if (bounds.isEmpty()) return Way::clear;
   const Vec3& from = receiver.position_world_m;
   if (emitter
-          .sky) {  // all that lies above the receiver's horizon; larger than the scene, since light comes from beyond
+          .sky) {  // everything above the receiver's horizon; beyond the scene, since the light comes from there
     Shaft above{{{receiver.normal_world, receiver.normal_world.dot(from)}}, {}};
     Eigen::AlignedBox3d all = bounds;
     all.extend(from);
@@ -137,13 +137,13 @@ Way way_between(const RayScene& scene, const Receiver& receiver, const Emitter& 
 
 namespace {
 
-/// Where openings show the sky, the rest of it is looked at once in so many samples.
+/// If openings show the sky, one in this many samples goes to the rest of it.
 constexpr std::uint32_t kSeldom = 4;
 
 /// Directions towards a sky, as add(direction, weight / density [sr] per sample, part). The sky's own directions and
-/// cosine-weighted ones share the work by the balance heuristic. Where openings show the sky, there is a third
-/// strategy, which is by far the best where it applies: it shares with both by the power heuristic (E. Veach, 1997,
-/// §9.2.3), since even a few of the others' samples there would be most of the noise.
+/// cosine-weighted ones are combined by the balance heuristic. If openings show the sky, there is a third strategy, by
+/// far the best where it applies: it is combined with the other two by the power heuristic (E. Veach, 1997, §9.2.3),
+/// since even a few of their samples there would be most of the noise.
 template <class Add>
 void draw_sky_directions(const SkyLuminance& sky, const Receiver& receiver, const SkyOpenings& openings, bool through,
                          const SobolSequence& samples, std::uint32_t begin, std::uint32_t end,

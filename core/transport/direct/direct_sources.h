@@ -1,5 +1,5 @@
 #pragma once
-/// Internal to direct light: emitters made ready for one receiver after another.
+/// Internal to direct light: emitters prepared for many receivers.
 
 #include <array>
 #include <cstdint>
@@ -17,7 +17,7 @@ class DirectSources {
  public:
   explicit DirectSources(std::span<const Emitter> emitters);
 
-  /// Room to work in, one per thread or call.
+  /// Working memory, one per thread or call.
   struct Scratch {
     struct Lit {
       std::size_t emitter, target;
@@ -31,8 +31,8 @@ class DirectSources {
     SkyOpenings::View view;
   };
 
-  /// Illuminance from each point luminaire [lx at level 1], called as lit(emitter, lux > 0). Returns the shadow rays
-  /// cast: one per distinct place from which something could come. obstacles: null when nothing can stand between.
+  /// Illuminance from each point luminaire [lx at level 1], reported as lit(emitter, lux > 0). Returns the shadow rays
+  /// cast: one per distinct place that could send light. obstacles: null when nothing can be in between.
   template <class Lit>
   std::uint64_t add_points(const RayScene* obstacles, const Receiver& receiver, Scratch& scratch, Lit&& lit) const {
     gather_points(receiver, scratch);
@@ -50,10 +50,11 @@ class DirectSources {
     return rays;
   }
 
-  /// Emitters with size or a sky, by index.
+  /// Emitters with size and skies, by index.
   [[nodiscard]] std::span<const std::size_t> extended() const { return extended_; }
 
-  /// False when no light of an emitter with size or a sky can reach the receiver: behind it, or outside its cone.
+  /// False when no light of an emitter with size or a sky can reach the receiver: it is behind it, or the receiver is
+  /// outside its cone.
   [[nodiscard]] bool may_light(std::size_t emitter, const Receiver& receiver) const;
 
  private:
@@ -65,7 +66,7 @@ class DirectSources {
     double cos_half_cone;
     Mat3 lamp_from_world;
   };
-  /// Lamps in one place, such as the candidate aims of one head: they see the same.
+  /// Lamps at one position, such as the candidate aims of one head: they share visibility.
   struct Group {
     Vec3 position_world_m;
     std::size_t begin, end;  ///< into lamps_
@@ -76,24 +77,24 @@ class DirectSources {
   std::vector<std::size_t> extended_;
 };
 
-/// What can be proven about the way between a receiver and an emitter with size or a sky.
+/// Provable state of the path between a receiver and an emitter with size or a sky.
 enum class Way { clear, blocked, unknown };
 [[nodiscard]] Way way_between(const RayScene& scene, const Receiver& receiver, const Emitter& emitter,
                               std::uint64_t& rays);
 
 /// Sums over samples begin … end - 1.
 struct DirectSum {
-  /// Light that is sampled in strata of its own: that which openings show, and the rest of a sky. All else is one part.
+  /// Light sampled in separate strata: through openings, and the rest of a sky. All other light is one part.
   static constexpr std::size_t kParts = 2;
   struct Part {
-    double lux = 0;               ///< of what arrives
-    double unobstructed_lux = 0;  ///< of what would arrive if nothing stood in the way
+    double lux = 0;               ///< light that arrives
+    double unobstructed_lux = 0;  ///< light that would arrive without obstacles
     std::uint32_t samples = 0;    ///< strata
   };
   std::array<Part, kParts> parts{};
   std::uint64_t rays = 0;
 };
-/// way        clear: no ray is cast
+/// way        clear = no ray is cast
 /// openings   through which skies may be seen
 [[nodiscard]] DirectSum sample_direct(const RayScene& scene, const Receiver& receiver, const Emitter& emitter, Way way,
                                       const SkyOpenings& openings, const SobolSequence& samples, std::uint32_t begin,

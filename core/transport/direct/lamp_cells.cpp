@@ -7,11 +7,11 @@
 namespace luxrig {
 namespace {
 
-/// Places up to which all are weighed at every point: cells would cost more than they save.
+/// Up to this number of places, all are weighed at every point: cells would cost more than they save.
 constexpr std::size_t kFewPlaces = 100;
-/// Cells times places, at most: their rests are kept in memory.
+/// Limits of cells times places (their rests are in memory), and of cells.
 constexpr std::size_t kMostCellEntries = 4'000'000, kMostCells = 8192;
-/// Share of what places could give in a cell that is left to the rest, and how many are weighed at most.
+/// Share of the places' possible light in a cell that is left to the rest; and the most places weighed.
 constexpr double kShareOfRest = 0.02;
 constexpr std::size_t kMostWeighed = 48;
 
@@ -20,7 +20,7 @@ constexpr std::size_t kMostWeighed = 48;
 LampProfile LampProfile::of(const IntensityDistribution& intensity, bool sized) {
   constexpr int kAzimuths = 16, kAngles = 2;
   LampProfile profile;
-  // Other places of a shape see a point under other angles.
+  // Other points of a shape see a point at other angles.
   const auto least = static_cast<float>((sized ? 0.05 : 0.01) * intensity.max_intensity_cd());
   for (std::size_t bin = 0; bin < kBins; ++bin) {
     double most = 0;
@@ -78,7 +78,7 @@ LampCells::LampCells(WeighedLamps lamps, std::vector<LampProfile> profiles, std:
   const double side_m = std::cbrt(size_m.prod() / wanted);
   count_ = (size_m / side_m).floor().max(1).cast<int>();
   const Vec3 cell_m = (box_world_m_.sizes().array() / count_.cast<double>()).matrix();
-  // A point on the rim of a cell may round into the next one.
+  // A point on the rim of a cell may round into the next cell.
   const double radius_m = 0.5 * cell_m.norm() + 1e-6 * (box_world_m_.min().norm() + box_world_m_.sizes().norm());
   for (int z = 0; z < count_.z(); ++z)
     for (int y = 0; y < count_.y(); ++y)
@@ -89,7 +89,7 @@ LampCells::LampCells(WeighedLamps lamps, std::vector<LampProfile> profiles, std:
 
 LampCells::Cell LampCells::cell_of(const Vec3& centre_world_m, double radius_m) const {
   const WeighedLamps& w = all_.lamps;
-  std::vector<double> could_lx(luminaires_, 0.0);  // at most about, by place, facing it; infinite: near
+  std::vector<double> could_lx(luminaires_, 0.0);  // approximate maximum by place, facing it; infinite = near
   for (std::size_t i = 0; i < w.place.size(); ++i) {
     const Vec3 towards_m = Vec3(w.x_m[i], w.y_m[i], w.z_m[i]) - centre_world_m;
     const double distance_m = towards_m.norm(), reach_m = radius_m + static_cast<double>(w.radius_m[i]);
@@ -98,7 +98,7 @@ LampCells::Cell LampCells::cell_of(const Vec3& centre_world_m, double radius_m) 
       could = std::numeric_limits<double>::infinity();
       continue;
     }
-    // The angle from the axis, and by how much it differs over the cell.
+    // Angle from the axis, and its variation over the cell.
     const Vec3 axis(w.axis_x[i], w.axis_y[i], w.axis_z[i]);
     const double cosine = std::clamp(-axis.dot(towards_m) / distance_m, -1.0, 1.0);
     const double angle = std::acos(cosine), spread = std::asin(reach_m / distance_m) + 1e-4;

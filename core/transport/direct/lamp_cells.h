@@ -1,10 +1,10 @@
 #pragma once
-/// Which of many lamps matter where. Internal to Lamps.
+/// Chooses which of many lamps matter where. Internal to Lamps.
 ///
-/// A scene with more than a few places of light is cut into cells. In each, those that could give most are weighed one
-/// by one for every surface point; all others that could give anything at all share a small part of the choice, by what
-/// they could give in the cell. So no lamp that lights a point has probability 0 there, and what a choice costs does
-/// not grow with the number of lamps. With few lamps, and outside of the cells, all are weighed.
+/// A scene with more than a few light positions is cut into cells. In each cell the places that could give most are
+/// weighed individually for every surface point. All others that could give any light share a small part of the
+/// probability, by their possible light in the cell. So no lamp that lights a point has probability 0 there, and the
+/// cost of a choice does not grow with the number of lamps. With few lamps, and outside the cells, all are weighed.
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -16,7 +16,7 @@
 
 namespace luxrig {
 
-/// Intensity about, by the angle from the axis: enough to choose by, and quick.
+/// Approximate intensity by the angle from the axis: accurate enough for choices, and fast.
 struct LampProfile {
   static constexpr std::size_t kBins = 128;
   std::array<float, kBins> candela{};  ///< over sin(angle / 2), at least a hundredth of the largest
@@ -26,11 +26,11 @@ struct LampProfile {
   }
 };
 
-/// Lamps of luminaires in arrays, to weigh several at a time.
+/// Lamps of luminaires as arrays, to weigh several at a time.
 struct WeighedLamps {
   std::vector<double> x_m, y_m, z_m;
   std::vector<float> axis_x, axis_y, axis_z, cos_half_cone, importance, radius_m;
-  std::vector<std::uint32_t> place, profile;  ///< place: in a cell, of its places
+  std::vector<std::uint32_t> place, profile;  ///< place: index in the cell's places
 
   void add(const WeighedLamps& from, std::size_t lamp, std::uint32_t at_place);
 };
@@ -40,19 +40,19 @@ class LampCells {
   struct Cell {
     WeighedLamps lamps;
     std::vector<std::uint32_t> places;  ///< rising; skies last
-    std::vector<std::uint32_t> rest;    ///< rising: further places that could give light
-    std::vector<float> rest_lx;         ///< of each, about, > 0
+    std::vector<std::uint32_t> rest;    ///< rising: other places that could give light
+    std::vector<float> rest_lx;         ///< approximate lux of each, > 0
     double rest_sum_lx = 0;
 
-    /// Which of `places` it is, or as many as there are.
+    /// Index of `place` in `places`, or their number if it is not there.
     [[nodiscard]] std::size_t slot_of(std::size_t place) const;
-    /// About the lux of a place of the rest; 0 of all others.
+    /// Approximate lux of a place of the rest; 0 for all others.
     [[nodiscard]] double rest_of(std::size_t place) const;
   };
 
   /// lamps     all of them, in the order of their places
-  /// places    how many there are: those with lamps, then skies
-  /// bounds    of what is cut into cells; may be empty
+  /// places    their number: those with lamps, then skies
+  /// bounds    of the region cut into cells; may be empty
   LampCells(WeighedLamps lamps, std::vector<LampProfile> profiles, std::size_t places,
             const Eigen::AlignedBox3d& bounds_world_m);
   LampCells() = default;
@@ -66,7 +66,7 @@ class LampCells {
   Cell all_;
   std::vector<LampProfile> profiles_;
   std::vector<Cell> cells_;
-  std::size_t luminaires_ = 0, places_ = 0;  ///< places with lamps; all
+  std::size_t luminaires_ = 0, places_ = 0;  ///< number of places with lamps; of all places
   Eigen::AlignedBox3d box_world_m_;
   Eigen::Array3i count_ = Eigen::Array3i::Zero();
 };

@@ -14,7 +14,7 @@
 namespace luxrig {
 namespace {
 
-/// Importance of a lamp that is off, relative to the brightest: its column is wanted, but not at the others' cost.
+/// Importance of a lamp that is off, relative to the brightest: its column is wanted, but should cost less.
 constexpr double kLeastImportance = 0.02;
 
 auto kind_and_place_of(const Emitter& emitter) {
@@ -143,11 +143,11 @@ void Lamps::share_out() {
       lamp.share = lamp.importance * lamp.intensity->flux_lm() * inward_share(lamp, place);
       luminaires += lamp.share;
     }
-  // Most light of a sky falls outside: together they get half of what the luminaires get.
+  // Most light of a sky falls outside: all skies together get half as much as the luminaires.
   const double per_sky = skies == 0 ? 0 : luminaires > 0 ? 0.5 * luminaires / static_cast<double>(skies) : 1.0;
   double sum = 0;
   for (Lamp& lamp : lamps_) sum += lamp.share = lamp.sky ? per_sky : lamp.share;
-  if (!(sum > 0)) return;  // no light can be traced; paths find it all
+  if (!(sum > 0)) return;  // no light can be traced; paths find all of it
   for (Group& group : groups_) {
     double of_group = 0, before = 0;
     for (std::size_t i = group.begin; i < group.end; ++i) of_group += lamps_[i].share;
@@ -169,7 +169,7 @@ double Lamps::inward_share(const Lamp& lamp, const Place& place) const {
     const auto [u, v] = probes.pair(k, 0, 0);
     const DirectionSample sample = lamp.intensity->sample(u, v);
     if (!(sample.density_per_sr > 0)) continue;
-    // Does the ray pass the sphere around all geometry, widened by the lamp's size?
+    // Whether the ray passes the sphere around all geometry, widened by the lamp's size.
     const Vec3 direction_world = lamp.lamp_from_world.transpose() * sample.direction;
     const Vec3 to_centre_m = centre_world_m_ - place.position_world_m;
     const double along_m = to_centre_m.dot(direction_world);
@@ -189,7 +189,7 @@ double Lamps::weigh(const Vec3& position_world_m, const Vec3& normal_world, Weig
   const WeighedLamps& w = weights.cell->lamps;
   for (std::size_t begin = 0; begin < w.place.size(); begin += kAtOnce) {
     const std::size_t count = std::min(kAtOnce, w.place.size() - begin);
-    // No branches and no calls: the compiler makes vector instructions of it.
+    // No branches and no calls, so that the compiler vectorises it.
     for (std::size_t k = 0; k < count; ++k) {
       const std::size_t i = begin + k;
       const auto x = static_cast<float>(w.x_m[i] - at_x), y = static_cast<float>(w.y_m[i] - at_y),
@@ -239,7 +239,7 @@ LampChoice Lamps::choose(const Vec3& position_world_m, const Vec3& normal_world,
   const double probability = weight / sum;
   if (place.kind != Kind::sky) return ask_place(choice.place, probability, position_world_m, normal_world, u, v);
   const double whole = whole_sky_share(place, weights);
-  // What is left of the number after each choice is as good as it was.
+  // The remainder of the number after each choice is again uniform.
   const double rest = std::clamp(left / weight, 0.0, 1 - 0x1p-53);
   DirectionSample sample = rest < whole
                                ? lamps_[place.begin].sky->sample(u, v)
@@ -359,7 +359,7 @@ LampRay Lamps::emit(std::size_t group, double u, double v, double s, double t) c
   const auto after = std::upper_bound(begin, end, u, [](double at, const Lamp& lamp) { return at < lamp.share_begin; });
   const Lamp& lamp = *(after - 1);
   if (!(lamp.share > 0)) return ray;
-  // What is left of u after the choice is as good a number as u was.
+  // The remainder of u after the choice is again uniform.
   const double rest = std::clamp((u - lamp.share_begin) / lamp.share, 0.0, 1 - 0x1p-53);
   ray.emitter = lamp.emitter;
   const Place& place = places_[place_of_emitter_[lamp.emitter]];
@@ -384,7 +384,7 @@ LampRay Lamps::emit(std::size_t group, double u, double v, double s, double t) c
 
 double smallest_distance_m(const Vec3& a_world_m, const Vec3& b_world_m) {
   const double size_m = std::max(a_world_m.cwiseAbs().maxCoeff(), b_world_m.cwiseAbs().maxCoeff());
-  // Error of d: each point off by size·ε/2, so 2·size·ε/2; error of d⁻² twice its relative error.
+  // Error of d: each point is off by size·ε/2, so 2·size·ε/2; error of d⁻²: twice the relative error.
   return std::max(2e6 * size_m * std::numeric_limits<double>::epsilon(), 1e-100);
 }
 

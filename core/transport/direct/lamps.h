@@ -1,9 +1,9 @@
 #pragma once
-/// Emitters made ready for many questions "what reaches this point directly?" and "where does this light land first?".
+/// Emitters prepared for many queries: direct light at a point, and first landing places of traced light.
 ///
-/// Lamps in one place, such as the candidate aims of one head, see the same: they form one Place. A luminaire with size
-/// and a sky are each a place of their own. Places form groups, from which light is traced: one group each, as long as
-/// there are few.
+/// Lamps at one position, such as the candidate aims of one head, share visibility and form one Place. Each luminaire
+/// with size and each sky is its own Place. Places form groups, from which light is traced: one group per place as long
+/// as there are few.
 
 #include <algorithm>
 #include <array>
@@ -19,13 +19,13 @@
 
 namespace luxrig {
 
-/// One place of light, or one point or direction of it, asked for from a surface point (next-event estimation).
+/// A place of light, or a point or direction of it, chosen from a surface point (next-event estimation).
 struct LampChoice {
   std::size_t place = 0;
   Vec3 direction_world = Vec3::UnitZ();  ///< unit, towards the light
   Vec3 target_world_m = Vec3::Zero();    ///< where a shadow ray ends
-  double density = 0;     ///< probability of the place, times the density per sr of the direction where it has a choice
-  double in_place = 1;    ///< that density without the probability of the place: 1 for a point
+  double density = 0;     ///< probability of the place, times the density per sr of the direction if it has a choice
+  double in_place = 1;    ///< that density without the probability of the place; 1 for a point
   double factor = 0;      ///< lux = intensity [cd] (of a sky: luminance [cd/m²]) times this, per 1 / density
   double hit_factor = 0;  ///< density of light-traced first hits of the group = direction density times this
 };
@@ -35,28 +35,28 @@ struct LampRay {
   std::size_t emitter = 0;
   Vec3 from_world_m = Vec3::Zero();
   Vec3 direction_world = Vec3::UnitZ();
-  double flux_lm = 0;   ///< of this sample: mean over samples = flux of all lamps of the group; 0: nothing leaves
-  double density = 0;   ///< probability of the lamp in its group times the density per sr of the direction
-  double per_area = 0;  ///< 1 / projected area [1/m²] for what has size; 0 for a point
+  double flux_lm = 0;   ///< of this sample; the mean over samples is the flux of all lamps of the group; 0 = none
+  double density = 0;   ///< probability of the lamp in its group, times the density per sr of the direction
+  double per_area = 0;  ///< 1 / projected area [1/m²] for lamps with size; 0 for a point
 };
 
 /// Keeps pointers into the emitters' distributions and to the openings: they must outlive it.
 class Lamps {
  public:
-  /// levels    what the light is for: lamps are chosen by it. Empty = all 1. Lamps at 0 are chosen seldom, not never.
+  /// levels    weights for choosing lamps. Empty = all 1. Lamps at 0 are chosen seldom, but not never.
   /// bounds    of all geometry: a sky's light enters through the sphere around it
-  /// openings  where skies shine into rooms; null or empty = not known
+  /// openings  where skies shine into rooms; null or empty = unknown
   explicit Lamps(std::span<const Emitter> emitters, std::span<const double> levels = {},
                  const Eigen::AlignedBox3d& bounds_world_m = {}, const SkyOpenings* openings = nullptr);
 
   /// Direct illuminance [lx at level 1] at a surface point from each point luminaire that lights it,
   ///   E = I(ω) cosθ V / d²   (photometric distance law)
   ///
-  /// scene         what can stand in between; null = nothing can, and no ray is cast
+  /// scene         possible obstacles; null = none, and no ray is cast
   /// normal_world  unit, on the lit side
-  /// lit           called as lit(emitter index, lux > 0), once per emitter that contributes
-  /// returns       shadow rays cast: one per distinct lamp position from which something could come; none for lamps
-  ///               behind the surface, whose cone misses the point, or without intensity towards it
+  /// lit           called as lit(emitter index, lux > 0), once per contributing emitter
+  /// returns       shadow rays cast: one per distinct lamp position that could send light; none for lamps behind the
+  ///               surface, with a cone that misses the point, or without intensity towards it
   template <class Lit>
   std::uint64_t light(const RayScene* scene, const Vec3& position_world_m, const Vec3& normal_world, Lit&& lit) const {
     std::uint64_t rays = 0;
@@ -89,33 +89,32 @@ class Lamps {
     return rays;
   }
 
-  /// Weights of the places of a cell for one surface point, in place order, and the openings it sees; reused from call
-  /// to call.
+  /// Weights of a cell's places for one surface point, in place order, and the openings it sees; reused between calls.
   struct Weights {
     const LampCells::Cell* cell = nullptr;
     std::vector<double> places;
     SkyOpenings::View view;
   };
 
-  /// About the lux (times level) that each place would give unshadowed; above 0 for every place that could give any.
-  /// Where there are many, only those that matter in the cell are weighed here, the others as lamp_cells.h says.
-  /// Returns the sum.
+  /// Approximate unshadowed lux (times level) of each place; above 0 for every place that could give any. With many
+  /// places, only those that matter in the cell are weighed here, the others as in lamp_cells.h. Returns the sum.
   double weigh(const Vec3& position_world_m, const Vec3& normal_world, Weights& weights) const;
 
-  /// A place by `select` in [0, 1), of those weighed, and for what has size a direction by u and v. density 0: none.
+  /// Chooses one of the weighed places by `select` in [0, 1), and a direction by u and v if it has size. density 0 =
+  /// none.
   [[nodiscard]] LampChoice choose(const Vec3& position_world_m, const Vec3& normal_world, const Weights& weights,
                                   double sum, double select, double u, double v) const;
 
-  /// A place of luminaires by its number, drawn with some probability; for what has size a direction by u and v.
+  /// The same for a given place of luminaires that was drawn with this probability.
   [[nodiscard]] LampChoice ask_place(std::size_t place, double probability, const Vec3& position_world_m,
                                      const Vec3& normal_world, double u, double v) const;
 
-  /// The same for a place of what has size, in a direction drawn by other means; density 0: the direction misses it.
+  /// The same for a place with size, in a direction drawn by other means; density 0 = the direction misses it.
   [[nodiscard]] LampChoice place_towards(std::size_t place, const Vec3& position_world_m, const Vec3& normal_world,
                                          const Vec3& direction_world) const;
 
-  /// What each lamp of the chosen place gives unshadowed, as lit(emitter, lux / choice.density, density with which
-  /// emit() of its group makes a first hit just there, in the unit of choice.density).
+  /// Unshadowed light of each lamp of the chosen place, as lit(emitter, lux / choice.density, density with which emit()
+  /// of its group makes a first hit here, in the unit of choice.density).
   template <class Lit>
   void light(const LampChoice& choice, Lit&& lit) const {
     const Place& place = places_[choice.place];
@@ -136,11 +135,15 @@ class Lamps {
     }
   }
 
-  /// What luminaires with size and skies show in a direction from a surface point above whose horizon it lies, as
-  /// lit(emitter, luminance [cd/m²] at level 1, density per sr with which choose() asks for it, that of ask_place() (of
-  /// a sky: 0), density with which emit() of its group makes a first hit just there, in the same unit, where it is).
+  /// Light of luminaires with size and of skies in a direction above the horizon of a surface point, as lit(
+  ///   emitter,
+  ///   luminance [cd/m²] at level 1,
+  ///   density per sr with which choose() draws it,
+  ///   density of ask_place() (0 for a sky),
+  ///   density with which emit() of its group makes a first hit here, in the same unit,
+  ///   position of the light).
   /// Weights and their sum as from weigh() there.
-  /// free_m   so far nothing stands in the way; infinite: skies are seen
+  /// free_m   distance without obstacles; infinite = skies are visible
   template <class Lit>
   void each_towards(const Vec3& position_world_m, const Vec3& normal_world, const Vec3& direction_world, double free_m,
                     const Weights& weights, double sum, Lit&& lit) const {
@@ -174,21 +177,20 @@ class Lamps {
           beyond_world_m(position_world_m, direction_world));
     }
   }
-  /// A place outside of all geometry.
+  /// A point outside all geometry.
   [[nodiscard]] Vec3 beyond_world_m(const Vec3& position_world_m, const Vec3& direction_world) const;
   [[nodiscard]] bool is_sky(std::size_t emitter) const { return places_[place_of_emitter_[emitter]].kind == Kind::sky; }
   [[nodiscard]] bool any_sky() const { return !places_.empty() && places_.back().kind == Kind::sky; }
-  /// A path can meet it by chance.
+  /// Whether a path can meet it by chance.
   [[nodiscard]] bool has_size(std::size_t emitter) const { return place_has_size(place_of_emitter_[emitter]); }
   [[nodiscard]] bool place_has_size(std::size_t place) const { return places_[place].kind != Kind::point; }
 
-  /// Light as it leaves a group: a lamp by its share and a direction by (u, v), a place on it by (s, t).
+  /// Light that leaves a group: a lamp by its share and a direction by (u, v), a place on it by (s, t).
   [[nodiscard]] LampRay emit(std::size_t group, double u, double v, double s, double t) const;
 
   static constexpr std::size_t kMostGroups = 64;  ///< of luminaires; each sky is one more
   [[nodiscard]] std::size_t groups() const { return groups_.size(); }
-  /// Part of all light, times importance, that a group gives: about, and above 0 unless it gives none. They add up
-  /// to 1.
+  /// Approximate share of a group in all light, weighted by importance; above 0 unless it gives none. Shares sum to 1.
   [[nodiscard]] double group_share(std::size_t group) const { return groups_[group].share; }
   [[nodiscard]] std::size_t group_of(std::size_t emitter) const { return group_of_emitter_[emitter]; }
 
@@ -197,29 +199,29 @@ class Lamps {
   [[nodiscard]] std::size_t place_of(std::size_t emitter) const { return place_of_emitter_[emitter]; }
   [[nodiscard]] const Vec3& place_world_m(std::size_t place) const { return places_[place].position_world_m; }
   [[nodiscard]] double radius_m(std::size_t place) const { return places_[place].radius_m; }
-  /// What its lamps send in a direction, times importance [cd].
+  /// Intensity of its lamps in a direction, times importance [cd].
   [[nodiscard]] double importance_cd(std::size_t place, const Vec3& leaving_world) const;
-  /// Part of all light, times importance, that a place of luminaires gives.
+  /// Share of a place of luminaires in all light, weighted by importance.
   [[nodiscard]] double place_share(std::size_t place) const;
 
-  /// Density with which choose() asks the place of an emitter from a surface point in a direction. Weights as from
+  /// Density with which choose() draws an emitter's place and this direction from a surface point. Weights as from
   /// weigh() there.
   [[nodiscard]] double choice_density(std::size_t emitter, const Vec3& position_world_m, const Vec3& direction_world,
                                       const Weights& weights, double sum) const;
-  /// Probability with which choose() takes a place.
+  /// Probability with which choose() chooses a place.
   [[nodiscard]] double place_probability(std::size_t place, const Weights& weights, double sum) const;
-  /// Density with which ask_place() draws a direction: 1 for a point.
+  /// Density with which ask_place() draws a direction; 1 for a point.
   [[nodiscard]] double density_in_place(std::size_t place, const Vec3& position_world_m,
                                         const Vec3& direction_world) const;
 
   [[nodiscard]] const Vec3& colour_rgb(std::size_t emitter) const { return colours_rgb_[emitter]; }
-  /// Level of an emitter as far as choices go: above 0 for all.
+  /// Level of an emitter for choices: above 0 for all.
   [[nodiscard]] double importance(std::size_t emitter) const { return importances_[emitter]; }
   [[nodiscard]] std::size_t emitters() const { return colours_rgb_.size(); }
-  /// Whether choose() looks at u and v at all.
+  /// Whether choose() uses u and v at all.
   [[nodiscard]] bool have_size() const { return have_size_; }
   [[nodiscard]] bool any() const { return !lamps_.empty(); }
-  /// Through which skies shine into rooms; null when none are known.
+  /// Openings through which skies shine into rooms; null if unknown.
   [[nodiscard]] const SkyOpenings* openings() const { return openings_; }
 
  private:
@@ -231,9 +233,9 @@ class Lamps {
     Mat3 lamp_from_world;
     const IntensityDistribution* intensity;
     const SkyLuminance* sky;
-    double importance;   ///< level, or a little where that is 0
-    double share;        ///< probability that emit() takes it, of its group
-    double share_begin;  ///< sum of the shares before it in the group
+    double importance;   ///< level, or a small value if that is 0
+    double share;        ///< probability that emit() chooses it within its group
+    double share_begin;  ///< sum of the previous shares in the group
   };
   struct Group {
     double share;
@@ -244,14 +246,14 @@ class Lamps {
     Vec3 position_world_m;
     std::size_t begin, end;  ///< into lamps_
     LuminousShape shape;
-    double radius_m;  ///< about the position: all of the shape
+    double radius_m;  ///< around the position: encloses the shape
     Mat3 world_from_lamp;
-    std::optional<Vec3> towards_sun_world;  ///< of a sky whose light comes from one direction
+    std::optional<Vec3> towards_sun_world;  ///< for a sky with light from one direction
   };
   void form_groups();
   void form_cells(const Eigen::AlignedBox3d& bounds_world_m);
   void share_out();
-  /// Share of a lamp's light, about, that can meet the sphere around all geometry.
+  /// Approximate share of a lamp's light that can meet the sphere around all geometry.
   [[nodiscard]] double inward_share(const Lamp& lamp, const Place& place) const;
   [[nodiscard]] static Vec3 at_lamp_m(const Place& place, const Vec3& position_world_m) {
     return place.world_from_lamp.transpose() * (position_world_m - place.position_world_m);
@@ -263,11 +265,11 @@ class Lamps {
   /// Density [1/sr] with which choose() draws a direction towards the sky.
   [[nodiscard]] double sky_density_per_sr(const Place& place, const Vec3& position_world_m, const Vec3& direction_world,
                                           const Weights& weights) const;
-  /// Share of the directions towards the sky that are drawn from all of it.
+  /// Share of the directions towards the sky that are drawn from the whole sky.
   [[nodiscard]] double whole_sky_share(const Place& place, const Weights& weights) const {
     return openings_ && !place.towards_sun_world ? openings_->whole_sky_share(weights.view) : 1;
   }
-  /// Density [1/m², across it] with which emit() draws the line of light through a point.
+  /// Density [1/m², across the line] with which emit() draws the line of light through a point.
   [[nodiscard]] double line_density_per_m2(const Vec3& towards_world, const Vec3& position_world_m) const;
 
   std::vector<Lamp> lamps_;
@@ -281,17 +283,17 @@ class Lamps {
   std::vector<double> importances_;
   Vec3 centre_world_m_ = Vec3::Zero();  ///< of the sphere around all geometry
   double radius_m_ = 1;
-  const SkyOpenings* openings_ = nullptr;  ///< null when there are none
+  const SkyOpenings* openings_ = nullptr;  ///< null if there are none
   bool have_size_ = false;
 };
 
-/// Refuses what evaluators cannot work on, naming receiver or emitter and the figure: not finite, a normal or
-/// rotation that is not unit, no distribution, levels of the wrong number or sign, and an emitter in a receiver.
+/// Refuses invalid inputs, naming receiver or emitter and the figure: not finite, a normal or rotation that is not
+/// unit, no distribution, levels of the wrong number or sign, and an emitter in a receiver.
 [[nodiscard]] Result<void> check_evaluation(std::span<const Receiver> receivers, std::span<const Emitter> emitters,
                                             const EvaluateOptions& options);
 
-/// Smallest distance [m] at which two points are told apart well enough for 1/d²: coordinates of size M are rounded
-/// to M·2⁻⁵³, which at this distance changes the illuminance by one part in a million.
+/// Smallest distance [m] at which two points are distinct enough for 1/d²: coordinates of size M are rounded to M·2⁻⁵³,
+/// which at this distance changes the illuminance by one part in a million.
 [[nodiscard]] double smallest_distance_m(const Vec3& a_world_m, const Vec3& b_world_m);
 
 }  // namespace luxrig

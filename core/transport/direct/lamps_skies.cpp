@@ -1,5 +1,5 @@
-/// Skies as lamps: directions towards them from a surface point, and lines along which their light falls. Where
-/// openings are known, either is a mixture of all the sky, or all the scene, and what the openings show.
+/// Skies as lamps: directions towards them from a surface point, and lines along which their light falls. With known
+/// openings, each is a mixture: the whole sky, or the whole scene, and the part through the openings.
 
 #include <algorithm>
 

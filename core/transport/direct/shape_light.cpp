@@ -10,7 +10,7 @@
 namespace luxrig {
 namespace {
 
-/// No distribution changes by its own size within a smaller angle [rad].
+/// Smallest angle [rad] at which a distribution changes by its own size.
 constexpr double kSharpest = 0.01;
 constexpr double kMostPerSide = 16;
 
@@ -23,8 +23,8 @@ double point_lux(const Vec3& towards_m, const Vec3& normal_world, const Emitter&
   return std::isfinite(lux) ? lux : 0;
 }
 
-/// Pieces per side of a patch to start with, so that a beam does not fall between the places first looked at: its
-/// width follows from flux over peak, the solid angle into which the peak would send all the light.
+/// Initial pieces per side of a patch, so that a beam does not fall between the first nodes. Its width follows from
+/// flux over peak, the solid angle into which the peak would send all light.
 double pieces_per_side(double radius_m, double distance_m, const IntensityDistribution& intensity) {
   const double seen_rad = distance_m > radius_m ? 2 * std::asin(radius_m / distance_m) : kPi;
   const double beam_sr = intensity.flux_lm() / intensity.max_intensity_cd();

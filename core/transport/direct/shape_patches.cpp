@@ -1,14 +1,12 @@
 /// Coordinates, with the receiver in the origin:
 ///
-/// Plane (strip, disk)   x, y in the plane, h its distance; d² = x² + h², r² = d² + y²; dω = h dx dy / r³. Near by,
-///                       x = h sinh τ and y = d sinh υ, so dω = dτ/cosh τ dυ/cosh² υ: in these the angles about the
-///                       point below the receiver, and what a luminaire of any intensity does there, vary on a scale
-///                       of 1.
-/// Disk                  x = x₀ + R sin t, y = y₀ ± R cos t: the chord's end points, which have a root at the rim,
-/// become
-///                       smooth. x runs at right angles to the horizon's line, which so is a limit of t.
-/// Ball                  directions √(1-s²) (cos a X + sin a Y) + s Z, with X to the middle and Z in the receiver's
-///                       horizon: planes through Z are a = const, the horizon among them. With Θ half the angle of the
+/// Plane (strip, disk)   x, y in the plane, h its distance; d² = x² + h², r² = d² + y²; dω = h dx dy / r³. Nearby,
+///                       x = h sinh τ and y = d sinh υ, so dω = dτ/cosh τ dυ/cosh² υ. In these coordinates the angles
+///                       around the point below the receiver, and light of any intensity there, vary on a scale of 1.
+/// Disk                  x = x₀ + R sin t, y = y₀ ± R cos t: this smooths the chord's end points, which have a root at
+///                       the rim. x is at right angles to the horizon's line, so the horizon is a limit of t.
+/// Ball                  directions √(1-s²) (cos a X + sin a Y) + s Z, with X to the centre and Z in the receiver's
+///                       horizon: planes through Z are a = const, including the horizon. With Θ half the angle of the
 ///                       ball and sin a = sin Θ sin t, |s| ≤ sin Θ cos t / cos a; dω = da ds.
 /// Wall (of a cylinder)  azimuth η with sin η = (R/ρ) sin t, elevation by height: dω = dη d² dz / r³; the horizon is a
 ///                       limit of z.
@@ -22,14 +20,14 @@
 namespace luxrig {
 namespace {
 
-/// A shape whose radius is less than this share of its distance is far.
+/// A shape is far if its radius is less than this share of its distance.
 constexpr double kFar = 0.35;
 
 double squared(double x) { return x * x; }
 
 double asin_within(double sine) { return std::asin(std::clamp(sine, -1.0, 1.0)); }
 
-/// A length along a line at distance d, from the share w of its limits; and dy/dw · d²/r³, r² = d² + y².
+/// A coordinate along a line at distance d, from the share w of its limits; and dy/dw · d²/r³, r² = d² + y².
 struct Along {
   double y, per_w;
 };
@@ -47,7 +45,7 @@ struct Point {
   double x, y;
 };
 
-/// The part of a convex polygon where a·x + b·y + c ≥ 0.
+/// Clips a convex polygon to a·x + b·y + c ≥ 0.
 std::vector<Point> clipped(const std::vector<Point>& polygon, double a, double b, double c) {
   std::vector<Point> kept;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -62,7 +60,7 @@ std::vector<Point> clipped(const std::vector<Point>& polygon, double a, double b
   return kept;
 }
 
-/// y of a convex polygon's outline at x: the lower and the upper one.
+/// Lower and upper y of a convex polygon's outline at x.
 PatchLimits outline(const std::vector<Point>& polygon, double x) {
   PatchLimits y{HUGE_VAL, -HUGE_VAL};
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -78,7 +76,7 @@ PatchLimits outline(const std::vector<Point>& polygon, double x) {
   return y;
 }
 
-/// How far to either side, in a plane at height h over the receiver, a beam may start that reaches it.
+/// How far to either side of the receiver, in a plane at this height, a beam that reaches it may start.
 double reach_in_plane_m(const Viewer& viewer, double height_m) {
   return viewer.half_cone_rad < 0.49 * kPi ? height_m * std::tan(viewer.half_cone_rad) * (1 + 1e-9) : HUGE_VAL;
 }
@@ -105,7 +103,7 @@ void cut_rectangle(double half_x_m, double half_y_m, const Viewer& viewer, std::
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
     strip.along = {cuts[i], cuts[i + 1]};
     if (!(strip.along.width() > 1e-14 * (x.high - x.low))) continue;
-    // Just inside, so that an upright edge at a cut belongs to one side only.
+    // Slightly inside, so that an upright edge at a cut belongs to one side only.
     const double inset = 1e-9 * strip.along.width();
     const PatchLimits at_low = outline(seen, cuts[i] + inset), at_high = outline(seen, cuts[i + 1] - inset);
     strip.low_edge = {at_low.low, at_high.low};
@@ -154,7 +152,7 @@ void cut_ball(double radius_m, const Viewer& viewer, std::vector<ShapePatch>& pa
   const double aside = sideways.norm();
   ball.y_axis = aside > 1e-12 ? Vec3(sideways / aside) : ball.x_axis.unitOrthogonal();
   ball.z_axis = ball.x_axis.cross(ball.y_axis);
-  // n · direction ∝ facing cos a + aside sin a, which is above the horizon from a = -atan(facing / aside).
+  // n · direction ∝ facing cos a + aside sin a, which is above the horizon from a = -atan(facing / aside) on.
   const double least_rad = aside > 1e-12 ? -std::atan2(facing, aside) : (facing > 0 ? -kPi / 2 : kPi / 2);
   ball.along = {least_rad > -kPi / 2 ? asin_within(std::sin(least_rad) / ball.sin_half) : -kPi / 2, kPi / 2};
   if (least_rad < kPi / 2 && !ball.along.empty()) patches.push_back(ball);

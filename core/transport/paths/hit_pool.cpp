@@ -6,7 +6,7 @@
 namespace luxrig {
 namespace {
 
-/// Share of the hits at further vertices that goes by the light that lamps give, not by what the start learnt.
+/// Share of the hits at further vertices that follows the lamps' light, not the values learnt at the start.
 constexpr double kByLight = 0.5;
 
 double fraction_of(std::uint64_t bits) { return static_cast<double>(bits >> 11) * 0x1p-53; }

@@ -6,7 +6,7 @@
 namespace luxrig {
 namespace {
 
-/// Dimensions of their own, apart from those of paths.
+/// Dimensions separate from those of paths.
 constexpr std::uint32_t kLightSet = 1u << 17;
 
 bool box_meets(const Eigen::AlignedBox3d& box, const Vec3& from, const Vec3& direction) {
@@ -21,7 +21,7 @@ bool box_meets(const Eigen::AlignedBox3d& box, const Vec3& from, const Vec3& dir
     near = std::max(near, std::min(a, b));
     far = std::min(far, std::max(a, b));
   }
-  // A box without thickness, or touched in passing, is met.
+  // A box without thickness, or one only touched, is hit.
   return near <= far * (1 + 1e-9) + 1e-300;
 }
 
@@ -48,7 +48,7 @@ LightHit LightHits::trace(std::size_t group, const SobolSequence& samples, std::
   const LampRay ray = lamps_.emit(group, u, v, s, t);
   if (!(ray.flux_lm > 0) || !box_meets(bounds_world_m_, ray.from_world_m, ray.direction_world)) return light;
   ++rays;
-  // Moved off along the ray: a panel may lie flush in a wall, which must not stop its light where that begins.
+  // Moved off along the ray: a panel may be flush with a wall, which must not stop its light at the start.
   const auto hit = scene_.nearest(ray.from_world_m, ray.direction_world, ray.direction_world);
   if (!hit) return light;
   const Bsdf& bsdf = bsdfs_[scene_.material_index_of(hit->triangle)];

@@ -12,13 +12,13 @@ namespace luxrig {
 namespace {
 
 constexpr std::size_t kMostPlanes = 64, kMostImages = 4096;
-/// Planes that are smaller than this part of the largest are left to other ways.
+/// Planes smaller than this share of the largest are left to other ways.
 constexpr double kLeastArea = 1e-3;
-/// Rougher surfaces show no highlights that other ways would not find.
+/// Rougher surfaces show no highlights that other ways would miss.
 constexpr double kMostAlpha = 0.25;
-/// An image that brings less than this part of what all bring is not looked for.
+/// Images that bring less than this share of the total are not searched for.
 constexpr double kLeastShare = 1e-3;
-/// Triangles lie in one plane when normals agree to this, and offsets to this part of the scene's size.
+/// Triangles are in one plane if normals agree to this, and offsets to this share of the scene's size.
 constexpr double kSameNormal = 1e-5, kSameOffset = 1e-6;
 
 /// GGX slopes (B. Walter et al. 2007).
@@ -27,7 +27,7 @@ double slope_density(double squared, double alpha) {
   return 1 / (kPi * a2 * t * t);
 }
 
-/// What slopes beyond a distance still bring, of all.
+/// Share of the light from slopes beyond a distance.
 double slope_tail(double squared, double alpha) { return 1 / (1 + squared / (alpha * alpha)); }
 
 ImageChoice chosen_by(const std::vector<double>& weights) {
@@ -200,7 +200,7 @@ ImageChoice MirrorImages::seen_from(const Vec3& position_world_m, const Vec3& no
       if (!image) continue;
       const Vec3 towards_foot_m = image->foot_world_m - position_world_m;
       const double cosine = normal_world.dot(towards_foot_m) / towards_foot_m.norm();
-      // Off the plane's own area only what slopes that far bring.
+      // Outside the plane's own area only such distant slopes contribute.
       const Eigen::Vector2d foot_m(plane.across_world.dot(image->foot_world_m),
                                    plane.along_world.dot(image->foot_world_m));
       const double off = image->per_slope_along * plane.bounds_m.exteriorDistance(foot_m);

@@ -1,7 +1,8 @@
-/// Bidirectional path tracing with randomised quasi-Monte-Carlo samples, spent where the error is.
+/// Bidirectional path tracing with randomised quasi-Monte-Carlo samples, distributed by error.
 ///
 /// Each receiver has 16 replicates: estimates from independent scrambles of one Sobol sequence. Their spread gives the
-/// standard error. All replicates of a receiver have the same number of samples, which grows until that is as wanted.
+/// standard error. All replicates of a receiver have the same number of samples, which grows until the error is as
+/// wanted.
 
 #include <fmt/format.h>
 
@@ -26,29 +27,29 @@ namespace luxrig {
 namespace {
 
 constexpr std::size_t kPathReplicates = ReplicateSums::kReplicates;
-/// Samples that are taken from one filling of the pools of light hits.
+/// Samples per filling of the pools of light hits.
 constexpr std::uint32_t kChunk = 512;
-/// Hits that a receiver is joined with, for each of its paths.
+/// Hits that each path of a receiver is joined with.
 constexpr std::uint32_t kHitsPerPath = 4;
-/// Light of sources with size is sampled, too: closer than the whole is wanted, so that it does not keep it waiting.
+/// Light of sources with size is sampled, too: to a closer error than the total, so that it does not delay it.
 constexpr double kDirectMargin = 5;
-/// Connections worth less than this share of a path's mean are made only now and then.
+/// Connections worth less than this share of a path's mean are made only occasionally.
 constexpr double kCut = 0.1;
-/// With shared tails: records per receiver and replicate at first, for a standard error of 1 %, then one for so many
-/// paths of the receivers, each with so many paths of its own. With few of them, records that end in one another follow
-/// the same few ways again and again, and are too bright for it; half as much with twice as many records.
+/// With shared tails: initial records per receiver and replicate for a standard error of 1 % and their limits; later
+/// one record for a fixed number of paths of the receivers, each with a fixed number of its own paths. Few records that
+/// end in one another follow the same few ways repeatedly and are too bright; twice as many records halve that.
 constexpr double kFirstRecords = 8, kFewestFirst = 6, kMostFirst = 48;
 constexpr std::size_t kFewestRecords = 256;
 constexpr std::size_t kPathsPerRecord = 4;
 constexpr std::uint32_t kRecordPaths = 4, kHitsPerRecordPath = 4;
-/// Fewer receivers than this have more to gain from paths of their own than from shared noise.
+/// With fewer receivers, own paths gain more than shared noise.
 constexpr std::size_t kFewestSharing = 24;
-/// What a bright place sends on to a receiver is seldom more: by two surfaces or more, or by one that sends it
-/// elsewhere, too.
+/// Upper limit of the share that a bright place sends to a receiver: usually its light takes two surfaces or more, or
+/// one that also sends it elsewhere.
 constexpr double kMostSentOn = 0.5;
 constexpr std::size_t kMostRecords = 1u << 15, kMostRecordBytes = 256u << 20;
-/// Every so many paths one goes on beside its record, to tell how far records are off; fewer once that is known to this
-/// part of the error that is left to the receivers.
+/// One in so many paths continues beside its record, to measure the records' bias; fewer once the bias is known to this
+/// share of the wanted error.
 constexpr std::uint32_t kCheckedPaths = 8, kSeldomCheckedPaths = 64;
 constexpr double kBiasPart = 0.3;
 
@@ -58,8 +59,8 @@ Eigen::VectorXd levels_of(const EvaluateOptions& options, std::size_t emitters) 
   return levels;
 }
 
-/// By how much half of the replicates go up and half down for a standard error: half up and half down by `a` gives one
-/// of a · √(16/15) / 4, times Student's factor.
+/// Amount `a` by which half of the replicates go up and half down for a given standard error: they give a standard
+/// error of a · √(16/15) / 4, times Student's factor.
 double up_and_down_of(double error) {
   return error * 4 / (std::sqrt(16.0 / 15) * student_t_975(kPathReplicates - 1) / student_t_975(1e9));
 }
@@ -129,7 +130,7 @@ class PathEvaluation {
       std::vector<std::size_t> others = not_in(round);
       round = spent_.next(matrix_.rays);
       if (!round.empty() || !ends_ || others.empty()) continue;
-      // The others were done by fewer records than there are now, and will be judged by all.
+      // The others were done with fewer records than there are now, and are judged again with all.
       judge(others);
       round = spent_.next(matrix_.rays);
     }
@@ -138,7 +139,7 @@ class PathEvaluation {
   }
 
  private:
-  /// Works through the tasks of a round, a chunk of each at a time.
+  /// Processes the tasks of a round, a chunk of each at a time.
   bool sample(const std::vector<PathTask>& round) {
     std::size_t parts = 0;
     for (const PathTask& task : round) parts += (task.end - task.begin + kChunk - 1) / kChunk * kPathReplicates;
@@ -158,7 +159,7 @@ class PathEvaluation {
     return true;
   }
 
-  /// Works out anew what some receivers get, by all that is there.
+  /// Recomputes the results of some receivers from everything so far.
   void judge(const std::vector<std::size_t>& receivers) {
     if (ends_) {
       const auto rays = ends_->look_up(receivers, options_.threads);
@@ -197,7 +198,7 @@ class PathEvaluation {
     const bool keeps_ends = shares_now && ends_->have_room(paths);
     const std::uint32_t checked = bias_is_known() ? kSeldomCheckedPaths : kCheckedPaths;
     parallel_for(rays.size(), options_.threads, [&](std::size_t task) {
-      // A replicate's records and hits stay near while all receivers use them.
+      // A replicate's records and hits stay in the cache while all receivers use them.
       const std::size_t k = task / chunk.size(), i_chunk = task % chunk.size();
       const auto& [r, begin, end] = chunk[i_chunk];
       const SobolSequence samples(mixed(mixed(options_.seed, r), k));
@@ -231,10 +232,10 @@ class PathEvaluation {
     return start;
   }
 
-  /// Connections of a receiver's paths that are worth less are made only now and then.
+  /// A receiver's connections worth less are made only occasionally.
   double cut_lx(std::size_t r) const { return kCut * spent_[r].reflected_lx; }
 
-  /// Fills the pools with light hits, as many as the plans ask for.
+  /// Fills the pools with as many light hits as the plans need.
   void fill_pools(const std::vector<PathTask>& chunk) {
     std::vector<std::uint32_t> paths;
     for (const PathTask& task : chunk) paths.push_back(task.end - task.begin);
@@ -250,7 +251,7 @@ class PathEvaluation {
     for (const std::uint64_t n : rays) matrix_.rays += n;
   }
 
-  /// Joins the receivers with light hits, and learns from it which lamps matter to whom.
+  /// Joins the receivers with light hits, and learns which lamps matter to which receiver.
   void join_hits(const std::vector<PathTask>& chunk) {
     if (options_.watch.stop.stop_requested()) return;
     const std::size_t groups = lamps_.groups();
@@ -280,8 +281,8 @@ class PathEvaluation {
     }
   }
 
-  /// Adds records for a chunk: many at first, that all receivers have one near wherever they look, then as many as
-  /// keeps their noise and distance in step with the receivers' own noise.
+  /// Adds records for a chunk: many at first, so that all receivers have one near wherever they look; then as many as
+  /// keep their noise and distance in step with the receivers' own noise.
   void grow_tails(const std::vector<PathTask>& chunk) {
     std::vector<Receiver> from;
     std::vector<HitPlan> plans;
@@ -294,7 +295,7 @@ class PathEvaluation {
       cuts_lx.push_back(cut_lx(task.receiver));
       paths += task.end - task.begin;
     }
-    if (from.empty()) return;  // each goes on by itself
+    if (from.empty()) return;  // all continue by themselves
     const std::size_t wanted = tails_->records(0).size() == 0
                                    ? std::max(kFewestRecords, first_records_each() * chunk.size())
                                    : paths / (chunk.size() < kFewestSharing ? kPathsPerRecord / 2 : kPathsPerRecord);
@@ -302,12 +303,12 @@ class PathEvaluation {
     const std::size_t room = std::min(kMostRecords, memory_allows) - std::min(kMostRecords, tails_->records(0).size());
     matrix_.rays += tails_->grow(from, std::min(wanted, room), kRecordPaths, pools_, plans, cuts_lx, options_.threads,
                                  options_.watch);
-    // Where all shines, there is no place for a record: paths end by themselves, and each finds as much as one does.
+    // Where everything shines, records have no place: paths end by themselves and find as much as one does.
     if (tails_->records(0).size() == 0)
       for (const PathTask& task : chunk) spent_[task.receiver].alone = true;
   }
 
-  /// Records per receiver at first: what they are off by is to fall with the wanted error.
+  /// Initial records per receiver: their bias should fall with the wanted error.
   std::size_t first_records_each() const {
     const double records = kFirstRecords * std::pow(0.01 / options_.wanted_standard_error(), 1.5);
     return static_cast<std::size_t>(std::clamp(records, kFewestFirst, kMostFirst));
@@ -364,7 +365,7 @@ class PathEvaluation {
     return bias && bias->error < kBiasPart * options_.wanted_standard_error();
   }
 
-  /// How far records are off, and what of it no receiver can know.
+  /// Finds the records' bias, and the part of it that no receiver can know.
   void judge_records() {
     record_bias_ = ends_->bias(spent_);
     const auto believed = record_bias_.believed();
@@ -372,7 +373,7 @@ class PathEvaluation {
       spent_[r].shared_error_lx = share_of_records(r) * believed->error * spent_[r].reflected_lx;
   }
 
-  /// Of a receiver's reflected light.
+  /// Share of records in a receiver's reflected light.
   [[nodiscard]] double share_of_records(std::size_t r) const {
     const ReceiverProgress& spent = spent_[r];
     const double taken_lx = (spent.taken_lx + ends_->important_lx(r)) /
@@ -380,8 +381,8 @@ class PathEvaluation {
     return spent.reflected_lx > 0 ? std::clamp(taken_lx / spent.reflected_lx, 0.0, 1.0) : 0;
   }
 
-  /// Takes the records' common bias, as the checked paths show it, out of what was taken from them; and adds what
-  /// remains unsure to every replicate, up and down in turn, so that standard errors contain it.
+  /// Subtracts the records' common bias, as the checked paths show it, from the light taken from them. Adds the
+  /// remaining uncertainty to every replicate, up and down in turn, so that standard errors contain it.
   void own_up_to_bias() {
     const auto believed = record_bias_.believed();
     if (!believed) return;
@@ -404,14 +405,13 @@ class PathEvaluation {
     }
   }
 
-  /// Adds to every replicate, up and down, what paths may not have found of each emitter, as far as it is more than
-  /// what replicates differ by; the mean stays. One more path would bring the light of one bright place: in the sum
-  /// under the levels that is less than if each emitter had one to itself, so there the parts cancel for what is too
-  /// much.
+  /// Adds to every replicate, up and down, the light of each emitter that paths may have missed, as far as it exceeds
+  /// the replicates' spread; the mean stays. One more path would bring the light of one bright place. In the sum under
+  /// the levels that is less than one such place per emitter, so there the patterns cancel the excess.
   void own_up_to_unfound() {
     const Eigen::Index emitters = matrix_.emitters();
     const auto replicates = static_cast<Eigen::Index>(kPathReplicates);
-    // Walsh functions: half up and half down, each orthogonal to all others. The first is that of the bias.
+    // Walsh functions: half up and half down, each orthogonal to all others. The first is used for the bias.
     Eigen::MatrixXd up_and_down(emitters, replicates);
     for (Eigen::Index e = 0; e < emitters; ++e)
       for (Eigen::Index k = 0; k < replicates; ++k) {
@@ -463,14 +463,14 @@ class PathEvaluation {
   std::size_t channels_, columns_;
   std::vector<double> importance_;
   MirrorImages images_;
-  std::vector<ImageChoice> images_seen_;  ///< by receiver; empty when there are none
+  std::vector<ImageChoice> images_seen_;  ///< by receiver; empty if there are none
   PathSampler sampler_;
   Eigen::VectorXd levels_;
   ReceiverHits hits_;
   std::vector<HitPool> pools_;  ///< by replicate
   std::vector<HitPlan> plans_;  ///< by task of the chunk
   std::optional<SharedTails> tails_;
-  std::optional<ReceiverEnds> ends_;  ///< with tails
+  std::optional<ReceiverEnds> ends_;  ///< only with tails
   RecordBias record_bias_;
   PathRounds spent_;
   std::vector<Eigen::MatrixXd> direct_replicates_;  ///< empty when the direct part is exact

@@ -8,21 +8,21 @@
 namespace luxrig {
 namespace {
 
-/// First number of samples per replicate: 128 paths say roughly how bright it is, which later rounds build on.
+/// First number of samples per replicate: 128 paths show the approximate illuminance for later rounds.
 constexpr std::uint32_t kFirstRoundSamples = 8;
-/// A path has seldom more than 4 vertices, each with a ray to reach it, one to a lamp and one to a light hit.
+/// A path seldom has more than 4 vertices, each with one ray to reach it, one to a lamp and one to a light hit.
 constexpr std::uint64_t kRaysPerPath = 12;
-/// Where nothing reflected was found at all, an error of zero proves nothing yet; it is believed from here on.
+/// If no reflected light was found, an error of zero is believed only from this many samples on.
 constexpr std::uint32_t kSamplesToBelieveNothing = 256;
 constexpr std::uint32_t kMostRoundSamples = 1u << 30;
-/// Rounds end at so many steps between as many samples as before and twice as many, a little beyond what is needed.
+/// Rounds multiply samples by 1 to 2 in this many steps, ending slightly beyond the need.
 constexpr int kStepsToDouble = 8;
 constexpr double kStepMargin = 1.05;
-/// A receiver does not err less by more paths that end in records when there is no room for more of those: when
-/// error² × samples has grown so much, it goes on without.
+/// More paths that end in records do not reduce a receiver's error when there is no room for more records: once error²
+/// × samples has grown by this factor, it continues without records.
 constexpr double kMostScatter = 3;
 constexpr std::uint32_t kSamplesToTellScatter = 32;
-/// For an rms error, fewer than this part of the samples that a receiver has are left out of a round.
+/// With a wanted rms error, a receiver is left out of a round if it would get less than its samples divided by this.
 constexpr double kFewestShare = 32;
 
 }  // namespace
@@ -71,8 +71,8 @@ std::vector<double> PathRounds::samples_by_rms() const {
     if (rays > 0) weights[r] = std::sqrt(progress_[r].scatter / rays);
   }
   if (rms_error() <= options_.wanted_rms_error) return wanted;
-  // As last rounds told it, all of it off by the same factor from what is known now: what receivers share falls with
-  // their samples, too.
+  // From the scatter of the last rounds, corrected by one common factor to the present error: shared error also falls
+  // with the receivers' samples.
   double scattered = 0;
   for (const ReceiverProgress& one : progress_) scattered += one.scatter / std::max(1u, one.samples);
   const double aim = scattered / kStepMargin * std::pow(options_.wanted_rms_error / rms_error(), 2);
@@ -96,7 +96,7 @@ double PathRounds::rms_error() const {
 
 std::vector<PathTask> PathRounds::next(std::uint64_t rays_cast) const {
   std::vector<PathTask> wanting = this->wanting();
-  // As many as the remaining rays allow, the worst first.
+  // As many as the remaining rays allow, worst first.
   std::stable_sort(wanting.begin(), wanting.end(),
                    [&](const PathTask& a, const PathTask& b) { return overshoot(a.receiver) > overshoot(b.receiver); });
   std::uint64_t left = rays_left(rays_cast);
@@ -128,7 +128,7 @@ void PathRounds::find_floor() {
   for (std::size_t r = 0; r < progress_.size(); ++r) {
     ReceiverProgress& one = progress_[r];
     if (one.samples == one.scatter_of) continue;
-    // Estimates of 16 replicates are off by a third or so: the last ones together are less so.
+    // Estimates from 16 replicates are off by about a third: averaging the last ones reduces that.
     const double scatter = relative_error(r) * relative_error(r) * one.samples;
     one.scatter = one.scatter_of == 0 ? scatter : (one.scatter + 2 * scatter) / 3;
     one.scatter_of = one.samples;

@@ -11,10 +11,10 @@ namespace {
 
 constexpr std::array<double, 3> kLuminance = {0.2126, 0.7152, 0.0722};
 
-/// Sets of four Sobol dimensions per bounce; far bounces matter little and take plain random numbers.
+/// Sets of four Sobol dimensions per bounce; far bounces matter little and use plain random numbers.
 constexpr std::uint32_t kSetsPerBounce = 3;
 constexpr std::uint32_t kSobolBounces = 4;
-/// Shadow rays of a start that are cast together.
+/// Shadow rays of a start cast together.
 constexpr std::size_t kJoinsAtOnce = 64;
 
 /// Random numbers without strata.
@@ -49,7 +49,7 @@ class PathDice : public Dice {
   std::uint32_t index_;
 };
 
-/// Whether a connection worth `value` is made; if so, by what it counts.
+/// Weight of a connection worth `value`; 0 if it is not made.
 double kept(double value, double cut, double chance) {
   if (value >= cut) return 1;
   return chance * cut < value ? cut / value : 0;
@@ -188,10 +188,10 @@ std::uint64_t PathSampler::join_deeper(const Vertex& vertex, const HitPool& pool
   while (g + 1 < pool.groups() && select >= plan.deeper[g]) select -= plan.deeper[g++];
   const auto shining = pool.shining(g);
   if (shining.empty() || !(plan.deeper[g] > 0)) return 0;
-  // What is left of the number after the choice is as good as it was.
+  // The remainder of the number after the choice is again uniform.
   const double rest = std::clamp(select / plan.deeper[g], 0.0, 1 - 0x1p-53);
   const auto pick = static_cast<std::size_t>(rest * static_cast<double>(shining.size()));
-  // Hits without flux count as drawn: of all samples, so many shine.
+  // Hits without flux count as drawn: this many of all samples shine.
   Vertex weighed = vertex;
   weighed.through_rgb *= static_cast<double>(shining.size()) / pool.count(g);
   const LightHit& hit = pool.hits(g)[shining[pick]];
@@ -309,7 +309,8 @@ void PathSampler::meet_lights(const Vertex& before, const Vertex& vertex, const 
         if (by_image > 0)
           by_image *=
               image_direction_density(place, in_place, *vertex.bsdf, vertex.normal_world, vertex.out_world, next.in);
-        // Shared by what gloss does alone; that some paths go on towards openings makes it more often than that.
+        // The MIS weight uses the density of gloss alone, although some paths towards openings raise the actual
+        // density.
         const double share = of_gloss / (of_gloss + choice_density +
                                          (hits[lamps_.group_of(emitter)] * hit_density + by_image) / density_per_m2);
         const double counts = through_glass(vertex.position_world_m, at_world_m) * share * luminance_cd_m2;
@@ -325,11 +326,11 @@ std::uint64_t PathSampler::add_path(const Vertex& start, const SobolSequence& sa
   std::uint64_t rays = 0;
   scratch.first_leg_m = HUGE_VAL;
   PathDice dice(samples, index);
-  Vertex vertex = start, before = start;  // that before the vertex, where it may see images of lamps
+  Vertex vertex = start, before = start;  // `before`: the previous vertex, where it may see images of lamps
   double arrived_per_m2 = 0;
   if (tails != nullptr) tails->linked.reset();
   const PathSums* into = &sums;
-  PathSums beside;  // where a path goes that is only there to check a record
+  PathSums beside;  // for a path that only checks a record
   for (std::uint32_t bounce = 0; bounce < kLongestPath; ++bounce) {
     look_outside(vertex, scratch.outside);
     if (bounce > 0) rays += join_deeper(vertex, pool, plan, cut, dice.pair(bounce, 3)[0], dice.plain(), *into);
@@ -362,7 +363,7 @@ std::uint64_t PathSampler::add_path(const Vertex& start, const SobolSequence& sa
     }
     const double cosine = reached.normal_world.dot(reached.out_world);
     const double distance2_m2 = (reached.position_world_m - vertex.position_world_m).squaredNorm();
-    // In a corner, where the distance rounds to nothing, the path is the sharper way.
+    // In a corner, where the distance rounds to 0, the path is the more accurate way.
     const double density_per_m2 = std::min(next.density_per_sr * cosine / distance2_m2, 1e200);
     const auto [select, chance] = dice.pair(bounce, 1);
     const auto [s, t] = lamps_.have_size() ? dice.pair(bounce, 2) : std::array<double, 2>{};
@@ -422,7 +423,7 @@ std::optional<std::uint32_t> PathSampler::record_for(const Vec3& position_world_
                                                      std::optional<std::uint32_t> so_far) const {
   const auto found = records.nearest(position_world_m, normal_world);
   if (!found) return std::nullopt;
-  if (found->record == so_far) return so_far;  // the way to it was clear
+  if (found->record == so_far) return so_far;  // the path to it was clear
   const TailRecords::Place& place = records.place(found->record);
   if (found->distance_m <= place.clear_m) return found->record;
   ++rays;
@@ -432,7 +433,7 @@ std::optional<std::uint32_t> PathSampler::record_for(const Vec3& position_world_
 
 bool PathSampler::sees_record(const Vec3& position_world_m, const Vec3& normal_world, const TailRecords::Place& record,
                               double distance_m) const {
-  // Above both surfaces by a part of their distance, so that what is nearly plane does not stand in its own way.
+  // Above both surfaces by a share of their distance, so that a nearly plane surface does not block itself.
   const double lift_m = 0.05 * distance_m;
   return !scene_.occluded(position_world_m + lift_m * normal_world, normal_world,
                           record.position_world_m + lift_m * record.normal_world);
@@ -444,7 +445,7 @@ PathSampler::EndsSum PathSampler::add_ends(TailEnds& ends, const TailRecords& re
   for (std::size_t i = 0; i < ends.ends.size(); ++i) {
     TailEnd& end = ends.ends[i];
     if (end.looked_at < records.size()) {
-      // A nearer one behind an edge does not speak for it; then the one so far still does.
+      // A nearer record behind an edge does not represent it; then the present one stays.
       if (const auto record =
               record_for(end.position_world_m, end.normal_world.cast<double>(), records, sum.rays, end.record))
         end.record = *record;
@@ -464,7 +465,7 @@ double PathSampler::add_record(const Vec3& per_lux_rgb, const TailRecords& recor
                                const PathSums& sums) const {
   const Vec3 luminous = Vec3(kLuminance[0], kLuminance[1], kLuminance[2]).cwiseProduct(per_lux_rgb);
   if (!sums.values.empty()) {
-    // Plain loops over arrays that lie together, which the compiler makes into vector instructions.
+    // Plain loops over contiguous arrays, which the compiler vectorises.
     const std::size_t emitters = levels_.size();
     const float* const from = records.told(record).data();
     records.each_lit(record, [&](std::size_t begin, std::size_t end) {

@@ -17,9 +17,9 @@ bool ReceiverEnds::have_room(std::size_t paths) const {
 
 std::vector<std::uint64_t> ReceiverEnds::look_up(std::span<const std::size_t> receivers, int threads) {
   parallel_for(receivers.size() * kReplicates, threads, [&](std::size_t task) {
-    // A replicate's records stay near while all receivers look into them.
+    // A replicate's records stay in the cache while all receivers use them.
     const std::size_t k = task / receivers.size(), at = receivers[task % receivers.size()] * kReplicates + k;
-    if (as_important_) {  // then their sum is all that is asked for, and needs no emitter by itself
+    if (as_important_) {  // then only their sum is needed, not each emitter
       sums_[at] = sampler_.add_ends(ends_[at], tails_.records(k), {});
       taken_lx_[at] = sums_[at].taken_lx;
       return;

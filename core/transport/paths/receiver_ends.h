@@ -1,5 +1,5 @@
 #pragma once
-/// Where the receivers' paths ended in tail records, and what those records say.
+/// Ends of the receivers' paths in tail records, and the light of those records.
 
 #include <algorithm>
 
@@ -15,7 +15,7 @@ class ReceiverEnds {
   static constexpr std::size_t kReplicates = ReplicateSums::kReplicates;
 
   /// sampler, tails   must outlive it
-  /// levels           of the emitters, at which lux is told
+  /// levels           of the emitters, for the lux
   ReceiverEnds(const PathSampler& sampler, const SharedTails& tails, std::size_t receivers, Eigen::VectorXd levels)
       : sampler_(sampler),
         tails_(tails),
@@ -25,26 +25,26 @@ class ReceiverEnds {
         sums_(receivers * kReplicates),
         taken_lx_(receivers * kReplicates, 0.0) {}
 
-  /// Whether the ends of so many more paths may be kept.
+  /// Whether there is room for the ends of this many more paths.
   [[nodiscard]] bool have_room(std::size_t paths) const;
   [[nodiscard]] TailEnds& of(std::size_t receiver, std::size_t replicate) {
     return ends_[receiver * kReplicates + replicate];
   }
 
-  /// Looks up the ends of some receivers by the records that there are now. Returns the rays cast, by receiver.
+  /// Looks up the ends of some receivers in the present records. Returns the rays cast, by receiver.
   std::vector<std::uint64_t> look_up(std::span<const std::size_t> receivers, int threads);
-  /// At the levels, by the last look, summed over samples [lx].
+  /// At the levels, from the last look_up(), summed over samples [lx].
   [[nodiscard]] double taken_lx(std::size_t receiver, std::size_t replicate) const {
     return taken_lx_[receiver * kReplicates + replicate];
   }
 
-  /// Looks up all ends for the last time, adds what records say to the sums, and lets the ends go. Returns the rays.
+  /// Looks up all ends for the last time, adds the records' values to the sums, and frees the ends. Returns the rays.
   std::uint64_t take(ReplicateSums& sums, std::size_t channels, int threads);
-  /// At the importances that paths are chosen by, summed over samples and replicates; after take() [lx].
+  /// At the importances used for choosing paths, summed over samples and replicates; after take() [lx].
   [[nodiscard]] double important_lx(std::size_t receiver) const;
 
-  /// How far the records are off, by the last look: relative to each receiver's reflected light, since errors are to be
-  /// right for the dim ones, too.
+  /// Bias of the records, from the last look_up(): relative to each receiver's reflected light, so that errors are
+  /// right for dim receivers, too.
   [[nodiscard]] RecordBias bias(const PathRounds& spent) const;
 
  private:

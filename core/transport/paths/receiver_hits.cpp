@@ -7,11 +7,11 @@
 namespace luxrig {
 namespace {
 
-/// Part of a receiver's hits that goes by the light of the lamps whatever it has learnt.
+/// Share of a receiver's hits that follows the lamps' light, whatever it has learnt.
 constexpr double kUnlearnt = 0.1;
 
-/// Hits cost one ray and serve all receivers, so that pools hold more than one receiver needs: receivers then err less
-/// in the same direction, and paths are joined with more different hits.
+/// Hits cost one ray and serve all receivers, so pools hold more than one receiver needs: receivers' errors are then
+/// less correlated, and paths are joined with more different hits.
 constexpr std::size_t kReceiversPerHit = 8;
 constexpr std::size_t kFewestHits = 32, kMostHits = 4096;  ///< of a group, unless one receiver needs more
 

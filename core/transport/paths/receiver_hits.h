@@ -1,5 +1,5 @@
 #pragma once
-/// Which lamps' light hits matter to which receiver: learnt from what joining with them gave.
+/// Learns which lamps' light hits matter to which receiver from the results of joining.
 
 #include <cstdint>
 #include <span>
@@ -13,21 +13,21 @@ class ReceiverHits {
  public:
   ReceiverHits(const Lamps& lamps, std::size_t receivers) : lamps_(lamps), learnt_(receivers * lamps.groups()) {}
 
-  /// A plan for `paths` paths of the receiver with `per_path` hits each, about: where its hits scatter most, most.
+  /// A plan for `paths` paths of the receiver with about `per_path` hits each: most hits where they scatter most.
   [[nodiscard]] HitPlan plan(std::size_t receiver, double per_path, std::uint32_t paths) const;
 
   /// squares   by group, as PathSampler::join_start() gives them for these stretches
-  /// Different receivers may be told of at once.
+  /// May run for different receivers at once.
   void learn(std::size_t receiver, std::span<const double> squares, std::span<const HitStretch> stretches);
 
-  /// Hits that a pool needs of each group when many plans share it.
+  /// Hits per group that a pool needs when many plans share it.
   /// paths   by plan
   [[nodiscard]] static std::vector<std::uint32_t> pool_counts(const Lamps& lamps, std::span<const HitPlan> plans,
                                                               std::span<const std::uint32_t> paths);
 
  private:
   struct Learnt {
-    double squares = 0;  ///< of what joins with one hit per path would have given, summed
+    double squares = 0;  ///< sum of squares of the result of one hit per path
     double hits = 0;
   };
   const Lamps& lamps_;

@@ -1,5 +1,5 @@
 #pragma once
-/// How far tail records are off, all of them together: from paths that were followed beside their records.
+/// Common bias of all tail records, measured by paths that continued beside their records.
 
 #include <array>
 #include <cstddef>
@@ -11,19 +11,19 @@ class RecordBias {
  public:
   static constexpr std::size_t kReplicates = 16;
 
-  /// Light by record and by path of the same paths, in any unit.
+  /// Light of the same paths by record and by path, in any unit.
   void add(std::size_t replicate, double by_record, double by_path) {
     by_record_[replicate] += by_record;
     by_path_[replicate] += by_path;
   }
 
   struct Estimate {
-    double mean = 0;   ///< records say (1 + mean) times what paths find
+    double mean = 0;   ///< records give (1 + mean) times the light that paths find
     double error = 0;  ///< standard error of the mean
   };
-  /// As measured; nothing until every replicate has found light.
+  /// As measured; empty until every replicate has found light.
   [[nodiscard]] std::optional<Estimate> measured() const;
-  /// Weighed, by its certainty, with what is known beforehand: that records err by a hundredth or so.
+  /// Combined, weighted by certainty, with prior knowledge: records err by about a hundredth.
   [[nodiscard]] std::optional<Estimate> believed() const;
 
  private:

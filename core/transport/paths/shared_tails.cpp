@@ -10,16 +10,16 @@ namespace {
 
 constexpr std::uint64_t kTailPlaceKey = 0x7a11, kPathKey = 0x7a12, kHitKey = 0x7a13, kCutKey = 0x7a14;
 
-/// Mean change, relative to the mean, at which records count as settled: far below their noise.
+/// Mean relative change at which records count as settled: far below their noise.
 constexpr double kSettled = 3e-4;
 
-/// One place of so many is a leg farther from the receivers, where the records' own paths end.
+/// One place in this many is a leg farther from the receivers, where the records' own paths end.
 constexpr std::size_t kFartherPlaces = 3;
 
-/// A record speaks for its neighbours without a ray up to this share of the shortest leg that its paths found.
+/// A record represents its neighbours without a ray up to this share of the shortest leg of its paths.
 constexpr double kClearShare = 0.25;
 
-/// Records tell each other's light without a ray up to this part of that: more of them do, and the farther ones, too.
+/// Records are averaged without a ray up to this share of that distance, as more and farther records take part.
 constexpr double kBlendClear = 0.4;
 
 }  // namespace
@@ -102,8 +102,8 @@ void SharedTails::sample(std::size_t k, std::uint32_t first, std::uint32_t paths
   }
 }
 
-/// Solves E = H + W E by Gauss–Seidel, where H are the heads and W the links. Reflectances below 1 make it converge.
-/// What older records say does not depend on newer ones, to which no link of theirs goes.
+/// Solves E = H + W E by Gauss–Seidel, where H are the heads and W the links. Reflectances below 1 ensure convergence.
+/// Older records do not depend on newer ones: none of their links goes there.
 void SharedTails::settle(std::size_t k, std::uint32_t first) {
   Replicate& replicate = replicates_[k];
   TailRecords& records = replicate.records;
@@ -137,7 +137,7 @@ void SharedTails::settle(std::size_t k, std::uint32_t first) {
   }
 }
 
-/// Each tells the mean of itself and of those beside it that it sees.
+/// The told value of each record is the mean of itself and the visible records beside it.
 void SharedTails::blend(std::size_t k) {
   Replicate& replicate = replicates_[k];
   TailRecords& records = replicate.records;
@@ -149,7 +149,7 @@ void SharedTails::blend(std::size_t k) {
     records.find_beside(i, beside);
     const TailRecords::Place& here = records.place(i);
     for (const std::uint32_t j : beside) {
-      if (j < i) continue;  // had its turn
+      if (j < i) continue;  // already done
       const TailRecords::Place& there = records.place(j);
       const double distance_m = (there.position_world_m - here.position_world_m).norm();
       if (distance_m > kBlendClear * std::max(here.clear_m, there.clear_m)) {

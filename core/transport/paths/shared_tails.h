@@ -1,5 +1,5 @@
 #pragma once
-/// Fills tail records: what receivers see beyond their paths' second vertices, worked out once for all of them.
+/// Fills tail records: the light that receivers see beyond their paths' second vertices, computed once for all.
 
 #include "core/run.h"
 #include "core/transport/paths/path_sampler.h"
@@ -12,11 +12,12 @@ class SharedTails {
               std::size_t replicates, std::uint64_t seed)
       : scene_(scene), sampler_(sampler), bsdfs_(bsdfs), columns_(3 * emitters), seed_(seed), replicates_(replicates) {}
 
-  /// Adds up to `count` records to each replicate, where first legs of paths from the receivers end, samples each by
-  /// `paths` paths (which may end in other records), and settles them with each other. Older records stay as they are.
+  /// Adds up to `count` records to each replicate, at the ends of first legs of paths from the receivers. Samples each
+  /// with `paths` paths (which may end in other records), and settles them with each other. Older records stay
+  /// unchanged.
   /// pools    light hits, one per replicate
   /// plans    by receiver, for `paths` paths; cuts [lx] of connections likewise (PathSampler::join_start)
-  /// Returns the rays cast. When stopped, the records are of no use.
+  /// Returns the rays cast. When stopped, the records are unusable.
   std::uint64_t grow(std::span<const Receiver> receivers, std::size_t count, std::uint32_t paths,
                      std::span<const HitPool> pools, std::span<const HitPlan> plans, std::span<const double> cuts_lx,
                      int threads, const Watch& watch);
@@ -24,7 +25,7 @@ class SharedTails {
   [[nodiscard]] const TailRecords& records(std::size_t replicate) const { return replicates_[replicate].records; }
 
  private:
-  /// One record's light by way of another's.
+  /// Light of one record that comes through another.
   struct Link {
     std::uint32_t to, from;
     Vec3f per_lux_rgb;
@@ -32,9 +33,9 @@ class SharedTails {
   struct Replicate {
     TailRecords records;
     std::uint32_t drawn = 0;             ///< first legs so far
-    std::vector<std::uint32_t> seen_by;  ///< of records that are being added: the receiver it was found from
-    std::vector<float> heads;  ///< likewise, × columns: lux of first reflections, or of paths that found no record
-    std::vector<Link> links;   ///< of the records that are being added, by `to`
+    std::vector<std::uint32_t> seen_by;  ///< per new record: the receiver it was found from
+    std::vector<float> heads;  ///< per new record, × columns: lux of first reflections, or of paths without a record
+    std::vector<Link> links;   ///< of the new records, by `to`
     std::uint64_t rays = 0;
   };
   void add_places(std::size_t k, std::span<const Receiver> receivers, std::size_t count);

@@ -1,8 +1,8 @@
 #pragma once
-/// Where paths ended in tail records: kept until the end, to be looked up again when there are more records.
+/// Stored ends of paths in tail records, to be looked up again when there are more records.
 ///
-/// The first records are few and far between. A path that took its light from one of them for good would keep that
-/// record's noise and distance; as it is, all paths have the light of the records that there are at last.
+/// The first records are few and far apart. A path that took its light from one of them for good would keep that
+/// record's noise and distance. With stored ends, all paths get the light of the final records.
 
 #include <cstdint>
 #include <vector>
@@ -14,14 +14,14 @@ namespace luxrig {
 struct TailEnd {
   Vec3 position_world_m;
   Vec3f normal_world;
-  Vec3f per_lux_rgb;        ///< what reflected lux there counts at the path's start
-  std::uint32_t record;     ///< that speaks for it so far
-  std::uint32_t looked_at;  ///< so many records there were when it was looked up last
+  Vec3f per_lux_rgb;        ///< weight of the reflected lux there at the path's start
+  std::uint32_t record;     ///< that represents it so far
+  std::uint32_t looked_at;  ///< number of records at the last look-up
 };
 
 /// The ends of one receiver's paths in one replicate.
 struct TailEnds {
-  /// A path that went on beside its record, to tell how far that is off.
+  /// A path that continued beside its record, to measure the record's bias.
   struct Check {
     std::uint32_t end;
     float by_path_lx;  ///< luminous, at the levels

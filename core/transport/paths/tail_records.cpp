@@ -7,8 +7,8 @@
 namespace luxrig {
 namespace {
 
-/// Records in the cell of a record, on average over the records, above which cells are narrowed. Where records are
-/// spread all over the surfaces of a venue they are 3 to 4.
+/// Mean number of records in a record's cell above which cells are narrowed. With records spread over all surfaces of a
+/// venue it is 3 to 4.
 constexpr double kMostCrowded = 8;
 
 }  // namespace
@@ -24,7 +24,7 @@ void TailRecords::append(std::span<const Place> places, std::size_t columns) {
 }
 
 void TailRecords::sum_up(std::size_t record, std::span<const double> levels) {
-  // Shorter gaps cost more to pass over than to add.
+  // Shorter gaps cost more to skip than to add.
   constexpr std::uint32_t kShortestGap = 16;
   const auto emitters = static_cast<std::uint32_t>(levels.size());
   const float* const from = told(record).data();
@@ -47,10 +47,10 @@ void TailRecords::build_grid() {
   Eigen::AlignedBox3d box;
   for (const Place& place : places_) box.extend(place.position_world_m);
   origin_world_m_ = box.min();
-  // Records lie on surfaces: about the spacing they would have spread over the box's six sides.
+  // Records are on surfaces: the approximate spacing if they were spread over the box's six sides.
   const Vec3 size = box.sizes();
   const double area_m2 = 2 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
-  const auto least_cell_m = static_cast<float>(1e-6 * size.norm() + 1e-15);  // its square is no float 0
+  const auto least_cell_m = static_cast<float>(1e-6 * size.norm() + 1e-15);  // its square is not 0 in float
   cell_m_ = std::max(static_cast<float>(1.5 * std::sqrt(area_m2 / static_cast<double>(places_.size()))), least_cell_m);
   std::size_t buckets = 16;
   while (buckets < 2 * places_.size()) buckets *= 2;
@@ -68,7 +68,7 @@ void TailRecords::build_grid() {
     for (const std::uint32_t count : bucket_begin_) squares += static_cast<double>(count) * count;
     return squares / static_cast<double>(places_.size());
   };
-  // A few far off, seen through a door, must not make one cell of the room in which the others are.
+  // A few distant records, seen through a door, must not put the whole room with the others into one cell.
   while (spread() > kMostCrowded && cell_m_ > 2 * least_cell_m) cell_m_ *= 0.5f;
   for (std::size_t b = 0; b < buckets; ++b) bucket_begin_[b + 1] += bucket_begin_[b];
   packed_.resize(places_.size());
@@ -81,7 +81,7 @@ void TailRecords::build_grid() {
 TailRecords::Cell TailRecords::cell_of(const Vec3f& position_m) const {
   Cell cell{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    // What lies far off the records has none near it; the bound keeps the conversion defined.
+    // A place far from all records has none nearby; the bound keeps the conversion defined.
     const float at = std::floor(position_m[static_cast<Eigen::Index>(axis)] / cell_m_);
     cell[axis] = static_cast<std::int32_t>(std::clamp(at, -1e9f, 1e9f));
   }
@@ -89,7 +89,7 @@ TailRecords::Cell TailRecords::cell_of(const Vec3f& position_m) const {
 }
 
 std::size_t TailRecords::bucket_of(const Cell& cell) const {
-  // Row by row, so that neighbours lie together; what is beyond the table shares its buckets.
+  // Row by row, so that neighbours are contiguous; cells beyond the table share its buckets.
   const std::uint32_t at = static_cast<std::uint32_t>(cell[0]) + static_cast<std::uint32_t>(cell[1]) * row_cells_ +
                            static_cast<std::uint32_t>(cell[2]) * layer_cells_;
   return at & (static_cast<std::uint32_t>(bucket_begin_.size()) - 2);
@@ -133,8 +133,8 @@ std::optional<TailRecords::Found> TailRecords::nearest(const Vec3& position_worl
     }
   };
   const Cell cell = cell_of(position_m);
-  // Neighbouring cells only as far as the best so far reaches, those on the nearer side first; above and below the
-  // surface only as far as its plane may be off.
+  // Neighbouring cells only within the reach of the best so far, those on the nearer side first; above and below the
+  // surface only within the tolerance of its plane.
   struct Side {
     std::int32_t step;
     float gap2_m2;

@@ -10,18 +10,19 @@ namespace luxrig {
 namespace {
 
 constexpr std::size_t kMostOpenings = 24;
-/// An opening is worth its cost when so many glimpses pass it, and when it is a small part of their sky.
+/// An opening is worth its cost if this many glimpses pass it and it is a small part of their sky.
 constexpr std::size_t kFewestThrough = 6;
 constexpr double kLeastGain = 1.0;  ///< mean of log(2π / solid angle)
-/// Glimpses left over that need no explanation.
+/// Share of glimpses that may stay unexplained.
 constexpr double kLeftOver = 0.01;
-/// Rays this far beside a rectangle, as a part of its size, still belong to it; so much is added in the end.
+/// Margin beside a rectangle, as a share of its size, within which rays still belong to it; and margin added at the
+/// end.
 constexpr double kBeside = 0.1, kFitMargin = 0.02;
 constexpr int kMostGrowth = 32;
-/// Planes are given up that are seen edge-on.
+/// Planes seen edge-on are rejected.
 constexpr double kLeastSlope = 0.1;
 
-/// A plane with axes: x level.
+/// A plane with axes: x is level.
 struct OpeningPlane {
   Vec3 origin_world_m;
   Mat3 axes;
@@ -30,7 +31,7 @@ struct OpeningPlane {
     if (!(normal.norm() > 0.5) || !normal.allFinite()) return std::nullopt;
     normal.normalize();
     if (normal.dot(outwards) < 0) normal = -normal;
-    // Nearly level or upright is meant to be.
+    // A nearly level or upright plane is made exactly so.
     if (std::abs(normal.z()) > 0.9998) normal = Vec3(0, 0, normal.z() > 0 ? 1 : -1);
     if (std::abs(normal.z()) < 0.02) normal = Vec3(normal.x(), normal.y(), 0).normalized();
     OpeningPlane plane{origin_world_m, Mat3::Identity()};
@@ -43,7 +44,7 @@ struct OpeningPlane {
     return plane;
   }
 
-  /// Where a ray that goes outwards meets the plane, or nothing.
+  /// Where an outgoing ray meets the plane; empty if it does not.
   [[nodiscard]] std::optional<Eigen::Vector2d> met(const Vec3& from_world_m, const Vec3& direction_world) const {
     const Vec3 from_m = axes.transpose() * (from_world_m - origin_world_m), d = axes.transpose() * direction_world;
     if (!(from_m.z() < 0) || !(d.z() > kLeastSlope)) return std::nullopt;
@@ -98,7 +99,7 @@ class OpeningFit {
     std::size_t through = 0;
   };
 
-  /// Planes that the rim seen from one place may lie in: its stops' own, or one through all of them.
+  /// Candidate planes of the rim seen from one place: those of its stops, and one through all of them.
   void propose(const OpeningRim& rim, std::vector<Candidate>& candidates) const {
     if (rim.stops.size() < 3) return;
     const SkyGlimpse& glimpse = glimpses_[rim.glimpse];
@@ -114,7 +115,7 @@ class OpeningFit {
     for (const auto& stop : rim.stops) {
       if (std::abs(stop.normal_world.dot(glimpse.direction_world)) < kLeastSlope) continue;
       add(rim, stop.position_world_m, stop.normal_world, candidates);
-      // The outer edge of a thick wall, where its inner face is not what ends the view.
+      // The outer edge of a thick wall, if its inner face does not end the view.
       for (const auto& other : rim.stops)
         if (std::abs(other.normal_world.dot(stop.normal_world)) < 0.1)
           add(rim, other.position_world_m, stop.normal_world, candidates);
@@ -137,13 +138,13 @@ class OpeningFit {
       const double size_m = candidate.box.diagonal().norm();
       if (std::abs(apart_m) > 0.01 * size_m) continue;
       const Vec3 shift_m = known.plane.axes.transpose() * (plane->origin_world_m - known.plane.origin_world_m);
-      if (known.box.contains(*at + shift_m.head<2>())) return;  // it has been proposed
+      if (known.box.contains(*at + shift_m.head<2>())) return;  // already proposed
     }
     grow(candidate);
     candidates.push_back(candidate);
   }
 
-  /// Takes in the rays that pass it or just miss it, and the rims about them, until it no longer grows.
+  /// Adds the rays that pass it or just miss it, and the rims around them, until it no longer grows.
   void grow(Candidate& candidate) const {
     for (int round = 0; round < kMostGrowth; ++round) {
       const Box2 reach = widened(candidate.box, kBeside);
@@ -163,7 +164,7 @@ class OpeningFit {
     }
   }
 
-  /// How much better it aims at the glimpses left over than the whole sky does: log of the densities' ratio, summed.
+  /// Gain in aim at the remaining glimpses over the whole sky: sum of the log ratio of densities.
   void rate(Candidate& candidate) const {
     candidate.gain = 0;
     candidate.through = 0;

@@ -1,5 +1,5 @@
 #pragma once
-/// Internal to finding openings: from glimpses of the sky to rectangles that explain them.
+/// Internal to finding openings: fits rectangles to glimpses of the sky.
 
 #include "core/transport/sky/sky_openings.h"
 
@@ -10,21 +10,21 @@ struct SkyGlimpse {
   Vec3 from_world_m, normal_world, direction_world;
 };
 
-/// What was felt of an opening's rim from where one glimpse started.
+/// Rim of an opening, found by probing around one glimpse.
 struct OpeningRim {
   struct Stop {
     Vec3 position_world_m, normal_world;
   };
   std::size_t glimpse = 0;
   std::vector<Vec3> free_world;  ///< directions that just reach the sky
-  std::vector<Stop> stops;       ///< what just stops those beyond them
+  std::vector<Stop> stops;       ///< obstacles just outside them
 };
 
 struct FoundOpenings {
   std::vector<SkyOpening> openings;
-  double missed_share = 1;  ///< of the glimpses, about
+  double missed_share = 1;  ///< approximate share of the glimpses
 };
-/// Rectangles, most explaining first, until few glimpses are left that pass through none.
+/// Rectangles, by falling number of glimpses explained, until few glimpses remain that pass through none.
 [[nodiscard]] FoundOpenings fit_openings(const std::vector<SkyGlimpse>& glimpses, const std::vector<OpeningRim>& rims);
 
 }  // namespace luxrig

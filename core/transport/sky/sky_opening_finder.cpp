@@ -12,17 +12,18 @@
 namespace luxrig {
 namespace {
 
-/// Paths that feel for the sky: few first, that tell open country from rooms, then more until enough of them see it.
+/// Paths that search for the sky: a few first, which distinguish open country from rooms, then more until enough see
+/// it.
 constexpr std::size_t kFirstPaths = 256, kPathsPerRound = 2048, kMostFinderRounds = 8, kRoundsToBelieveNothing = 2;
 constexpr std::uint32_t kLegs = 3;
 constexpr std::size_t kWantedGlimpses = 400, kFewestGlimpses = 12;
-/// From where more of the cosine-weighted hemisphere is sky than this, the whole sky is a good enough target.
+/// If more of the cosine-weighted hemisphere than this is sky, the whole sky is a good enough target.
 constexpr double kOpenShare = 0.4;
 constexpr std::uint32_t kOpenProbes = 12;
-/// Glimpses whose opening's rim is felt for, in so many directions.
+/// Glimpses whose opening's rim is probed, and directions of each.
 constexpr std::size_t kFelt = 64;
 constexpr int kSpokes = 8;
-/// Added to where an opening was seen from, as a part of that.
+/// Margin added to the box from which an opening was seen, as a share of it.
 constexpr double kFinderMargin = 0.02;
 
 class Finder {
@@ -46,10 +47,10 @@ class Finder {
  private:
   struct Leg {
     Vec3 from_world_m, direction_world;
-    double distance_m;  ///< infinite where nothing was met
+    double distance_m;  ///< infinite if nothing was met
   };
 
-  /// Places from which a little of the sky is seen, and in which direction.
+  /// Places from which a little of the sky is seen, with the direction.
   std::vector<SkyGlimpse> look_around() {
     std::vector<SkyGlimpse> glimpses;
     std::size_t paths = 0;
@@ -115,7 +116,7 @@ class Finder {
     return seen > kOpenShare * kOpenProbes;
   }
 
-  /// Completes an opening with what is seen through it, sky or surfaces, and from where.
+  /// Completes an opening with the view through it, sky or surfaces, and the box it is seen from.
   void look_through(SkyOpening& opening) const {
     std::array<double, 2> surfaces{}, all{};
     Eigen::AlignedBox3d from_m;
@@ -153,7 +154,7 @@ class Finder {
     return rims;
   }
 
-  /// Turns away from a glimpse until something stops the ray, then halves the angle between.
+  /// Turns away from a glimpse until something stops the ray, then bisects the angle.
   void feel(const SkyGlimpse& glimpse, const Frame& frame, double azimuth_rad, OpeningRim& rim,
             std::uint64_t& rays) const {
     const Vec3 aside = std::cos(azimuth_rad) * frame.tangent + std::sin(azimuth_rad) * frame.bitangent;

@@ -1,5 +1,5 @@
 #pragma once
-/// Finds the openings through which the sky is seen from within rooms, without being told of any.
+/// Finds the openings through which the sky is seen from within rooms, from geometry alone.
 
 #include <cstdint>
 
@@ -9,13 +9,13 @@
 
 namespace luxrig {
 
-/// Short paths from the receivers show from where a little of the sky is seen. About some of the rays that reach it the
-/// rim of the opening is felt for, which gives planes that it may lie in; the rectangle is kept that explains most rays
-/// by the smallest solid angles, then, of those it leaves out, the next.
+/// Short paths from the receivers find places from which a little of the sky is seen. Around some of the rays that
+/// reach it, the rim of the opening is probed, which gives candidate planes. The rectangle that explains most rays with
+/// the smallest solid angles is kept, then the next for the remaining rays.
 ///
-/// Empty when no emitter is a sky, when nothing stands about, or when what is lit sees so much of the sky that there is
-/// nothing to gain. What is found depends on scene, receivers and seed only, not on the number of threads.
-/// rays   adds those cast: some thousands in the open, up to about 100,000 where openings are small
+/// Empty if no emitter is a sky, the scene is empty, or the lit surfaces see so much of the sky that there is nothing
+/// to gain. The result depends on scene, receivers and seed only, not on the number of threads.
+/// rays   adds those cast: some thousands in the open, up to about 100,000 with small openings
 [[nodiscard]] SkyOpenings find_sky_openings(const RayScene& scene, std::span<const Receiver> receivers,
                                             std::span<const Emitter> emitters, std::uint64_t seed, int threads,
                                             const Watch& watch, std::uint64_t& rays);

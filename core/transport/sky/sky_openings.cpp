@@ -10,14 +10,14 @@
 namespace luxrig {
 namespace {
 
-/// Least share of directions that are drawn over the whole sky where openings are known.
+/// Least share of directions drawn over the whole sky if openings are known.
 constexpr double kLeastWholeShare = 0.12;
-/// Least share of the sky that counts as seen, where no opening shows any.
+/// Least share of the sky that counts as visible if no opening shows any.
 constexpr double kLeastLitShare = 0.02;
 
-/// The part of an opening that lies above or below a point's horizon, as a shape about its own centre.
+/// The part of an opening above or below a point's horizon, as a shape around its own centre.
 struct SeenPart {
-  Vec3 from_m;  ///< the point as seen from that centre, in the opening's frame
+  Vec3 from_m;  ///< the point relative to that centre, in the opening's frame
   LuminousShape shape;
 };
 
@@ -36,7 +36,7 @@ std::optional<SeenPart> part_of(const SkyOpening& opening, const Vec3& position_
   return SeenPart{from_m, {LuminousShape::Kind::rectangle, {2 * opening.half_x_m, high_m - low_m, 0}}};
 }
 
-/// Mean cosine over the corners and the middle, of those that the surface faces.
+/// Mean cosine over those of the corners and the centre that the surface faces.
 double mean_cosine(const SeenPart& part, const Vec3& normal) {
   const double x = 0.5 * part.shape.size_m.x(), y = 0.5 * part.shape.size_m.y();
   double sum = 0;
@@ -48,17 +48,17 @@ double mean_cosine(const SeenPart& part, const Vec3& normal) {
   return sum / 5;
 }
 
-/// ∫ cosθ dω over a part, about.
+/// Approximate ∫ cosθ dω over a part.
 double weight_of(const SeenPart& part, const Vec3& normal) {
   const double area_m2 = part.shape.size_m.x() * part.shape.size_m.y(), distance_m = part.from_m.norm();
-  // Of a disk of that area seen from its axis, times the slope: not above the half space.
+  // As for a disk of that area seen from its axis, times the slope: at most the half space.
   const double solid_angle =
       area_m2 * -part.from_m.z() / (distance_m * (distance_m * distance_m + area_m2 / (2 * kPi)));
   const double weight = solid_angle * mean_cosine(part, normal);
   return weight > 0 && std::isfinite(weight) ? weight : 0;
 }
 
-/// Takes a number's choice out of it by weights; what is left is as good as it was.
+/// Chooses by weights and replaces `number` by its remainder, which is again uniform.
 std::size_t chosen_by(std::span<const double> weights, double sum, double& number) {
   double left = number * sum;
   std::size_t chosen = 0;
@@ -118,7 +118,7 @@ double SkyOpenings::density_per_sr(const View& view, const Vec3& position_world_
   for (std::size_t i = 0; i < openings_.size(); ++i) {
     if (!(view.weights[i] > 0)) continue;
     const SkyOpening& opening = openings_[i];
-    // Cheap first: most directions miss most openings.
+    // Cheap test first: most directions miss most openings.
     if (!opening.passed_by(position_world_m, direction_world, 1e-9 * opening.half_x_m)) continue;
     if (const auto above = part_of(opening, position_world_m, true))
       density +=
@@ -179,7 +179,7 @@ double SkyOpenings::lit_share(const View& view, const Vec3& position_world_m, co
   const double least = std::max(kLeastLitShare, missed_share_);
   if (!towards_world) return std::min(1.0, least + view.sum / kPi);
   for (const SkyOpening& opening : openings_) {
-    // The light is not quite of one direction: beyond the rim some of it still comes in.
+    // The light is not from exactly one direction: beyond the rim some of it still enters.
     const double distance_m = (opening.centre_world_m - position_world_m).norm();
     if (opening.passed_by(position_world_m, *towards_world, 0.01 * distance_m)) return 1;
   }
@@ -198,7 +198,7 @@ bool SkyOpenings::sample_line(const Vec3& towards_world, double s, double t, Vec
   for (const SkyOpening& opening : openings_) {
     const double area_m2 = opening.area_m2() * std::max(0.0, opening.outwards_world().dot(towards_world));
     if (!(area_m2 > 0)) continue;
-    // What is left of the number after the choice is as good as it was.
+    // The remainder of the number after the choice is again uniform.
     const double rest = std::min(left / area_m2, 1.0);
     on_line_world_m = opening.centre_world_m + opening.world_from_opening * Vec3((2 * rest - 1) * opening.half_x_m,
                                                                                  (2 * t - 1) * opening.half_y_m, 0);

@@ -9,7 +9,7 @@ std::size_t drawn_below(std::size_t count, std::mt19937_64& random) {
   return std::uniform_int_distribution<std::size_t>(0, count - 1)(random);
 }
 
-/// False when there is nothing to put in the light's place; then `state` is spoilt.
+/// False when there is no replacement for the light; `state` is then unusable.
 bool mutate(ChosenCandidates& state, std::size_t nearest, std::mt19937_64& random) {
   const std::size_t light = drawn_below(state.size(), random);
   const CandidateLights& candidates = state.candidates();

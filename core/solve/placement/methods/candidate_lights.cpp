@@ -105,7 +105,7 @@ std::vector<std::size_t> CandidateLights::nearest(const Eigen::VectorXd& residua
   Eigen::VectorXd likeness(nnls_.columns.columns());
   const Eigen::VectorXd weighted = shared_->scaled().weighted(residual);
   nnls_.columns.dot_all(weighted.data(), inverse_norm_.data(), likeness.data());
-  // The best so far, worst in front: nearly every candidate is turned away by one comparison.
+  // The best so far, worst in front: one comparison rejects nearly every candidate.
   using Found = std::pair<double, std::size_t>;
   const auto better = [](const Found& a, const Found& b) {
     return a.first != b.first ? a.first > b.first : a.second < b.second;

@@ -1,6 +1,6 @@
 #pragma once
-/// Candidates as least squares sees them, and which of them are alike to a residual: what all searches over candidates
-/// share.
+/// Candidates as columns for least squares, and the search for those most similar to a residual. Shared by all searches
+/// over candidates.
 
 #include <memory>
 #include <span>
@@ -18,23 +18,23 @@ class CandidateLights {
   CandidateLights& operator=(const CandidateLights&) = delete;
 
   [[nodiscard]] const PlacementProblem& problem() const { return problem_; }
-  /// Those with light on any point that counts, rising.
+  /// Candidates that light any point with weight, rising.
   [[nodiscard]] std::span<const std::size_t> lit() const { return lit_; }
   [[nodiscard]] const LightPose& pose(std::size_t candidate) const { return problem_.poses[candidate]; }
   [[nodiscard]] std::size_t emitters() const { return emitters_; }
-  /// Columns of a candidate's emitters in nnls() and shared() are candidate · emitters() and those that follow.
+  /// Columns of a candidate's emitters in nnls() and shared() start at candidate · emitters().
   [[nodiscard]] const NnlsProblem& nnls() const { return nnls_; }
   [[nodiscard]] const std::shared_ptr<const SharedProblem>& shared() const { return shared_; }
-  /// Of a residual's norm, PlacedLights::error().
+  /// PlacedLights::error() for a residual's norm.
   [[nodiscard]] double error_of(double residual_norm) const {
     return goal_norm_ > 0 ? residual_norm / goal_norm_ : residual_norm;
   }
-  /// W times the column of all emitters of a candidate together, of norm 1.
+  /// W times the column of all emitters of a candidate together, scaled to norm 1.
   [[nodiscard]] Eigen::VectorXd unit_column(std::size_t candidate) const;
 
-  /// The `count` whose normalised columns are nearest to the normalised residual (b − f − A x), the nearest first; only
-  /// such as make it smaller. One pass over all columns. Several emitters: by what they do together if none shares a
-  /// channel.
+  /// The `count` candidates whose normalised columns are nearest to the normalised residual (b − f − A x), nearest
+  /// first; only those that reduce it. One pass over all columns. Several emitters: by their joint effect, exact if no
+  /// two share a channel.
   [[nodiscard]] std::vector<std::size_t> nearest(const Eigen::VectorXd& residual, std::size_t count) const;
 
  private:
@@ -44,13 +44,13 @@ class CandidateLights {
   const PlacementProblem& problem_;
   std::size_t emitters_;
   double goal_norm_;
-  // Columns of emitters, where a candidate's column is not that of its one emitter.
+  // Columns of emitters, unless each candidate has one emitter with the candidate's own column.
   std::vector<std::uint64_t> begin_;
   std::vector<std::uint32_t> row_;
   std::vector<double> value_;
   NnlsProblem nnls_;
   std::shared_ptr<const SharedProblem> shared_;
-  Eigen::VectorXd inverse_norm_;  ///< 0 of columns that are dark
+  Eigen::VectorXd inverse_norm_;  ///< 0 for dark columns
   std::vector<std::size_t> lit_;
 };
 

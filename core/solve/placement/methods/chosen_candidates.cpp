@@ -72,7 +72,7 @@ void pursue(ChosenCandidates& chosen, std::size_t lights, double error, const st
     const auto next = chosen.candidates().nearest(chosen.residual(), 1);
     if (next.empty() || chosen.holds(next.front())) return;
     chosen.add(next.front());
-    if (!(chosen.error() < was)) {  // nothing but rounding pulled at it
+    if (!(chosen.error() < was)) {  // its pull was only rounding
       chosen.drop(chosen.size() - 1);
       return;
     }

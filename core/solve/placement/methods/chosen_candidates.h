@@ -1,5 +1,5 @@
 #pragma once
-/// Lights at some of the candidates, with their best levels; exchanging one costs microseconds and no column.
+/// Lights at some of the candidates, with optimal levels. An exchange costs microseconds and no column.
 
 #include <memory>
 #include <random>
@@ -26,7 +26,8 @@ class ChosenCandidates {
   void drop(std::size_t light);
   void exchange(std::size_t light, std::size_t candidate);
 
-  /// The lights at their places, columns worked out anew and counted; without those that may not hang there after all.
+  /// The lights at their places with newly computed and counted columns; without those that may not hang there after
+  /// all.
   [[nodiscard]] PlacedLights placed(std::size_t& columns) const;
 
  private:
@@ -35,13 +36,12 @@ class ChosenCandidates {
   NnlsOfFew few_;
 };
 
-/// Lights added one by one, each the candidate most like what is left over, until there are `lights` or `error` is
-/// reached, or no candidate makes it smaller: non-negative orthogonal matching pursuit (Bruckstein, Elad & Zibulevsky
-/// 2008).
+/// Adds lights one by one, each the candidate most similar to the residual, until there are `lights`, `error` is
+/// reached or no candidate reduces it: non-negative orthogonal matching pursuit (Bruckstein, Elad & Zibulevsky 2008).
 void pursue(ChosenCandidates& chosen, std::size_t lights, double error, const std::stop_token& stop,
             const std::function<void(const ChosenCandidates&)>& added = {});
 
-/// As many different lit candidates, drawn; all of them if there are no more.
+/// `count` different random lit candidates; all of them if there are no more.
 [[nodiscard]] std::vector<std::size_t> drawn_candidates(const CandidateLights& candidates, std::size_t count,
                                                         std::mt19937_64& random);
 

@@ -39,8 +39,8 @@ class CandidateGrid {
     return {static_cast<std::int64_t>(std::floor(at.x())), static_cast<std::int64_t>(std::floor(at.y())),
             static_cast<std::int64_t>(std::floor(at.z()))};
   }
-  /// Of each cell at this level, for each aim, the candidate nearest to its middle. Only within cells of the level
-  /// above that are kept.
+  /// For each cell at this level and each aim, the candidate nearest to the cell's middle. Only within `kept` cells of
+  /// the level above.
   [[nodiscard]] std::vector<std::size_t> middles(int level, const std::set<GridCell>* kept) const {
     std::map<std::pair<GridCell, std::size_t>, std::pair<double, std::size_t>> nearest;
     const double side_m = std::ldexp(side_m_, -level);
@@ -65,10 +65,10 @@ class CandidateGrid {
   Vec3 corner_m_;
   double side_m_ = 0;  ///< of cells at level 0
   int halvings_ = 0;
-  std::vector<std::size_t> aim_;  ///< which of the different ones, for each lit candidate
+  std::vector<std::size_t> aim_;  ///< index of the aim of each lit candidate
 };
 
-/// What each light does at its level: W A x of it alone.
+/// Light of each light alone at its level: W A x.
 Eigen::MatrixXd contributions_of(const ChosenCandidates& state) {
   const NnlsProblem& nnls = state.candidates().nnls();
   const std::size_t emitters = state.candidates().emitters();
@@ -92,8 +92,8 @@ void drop_weak(ChosenCandidates& state) {
   state.choose(std::move(strong));
 }
 
-/// Which light goes, when two are joined: the pair and the one of it that can stand for both with the least difference
-/// to the goal, its light scaled.
+/// Index of the light to drop when two are joined: of all pairs, the light whose partner, scaled, can replace both with
+/// the least difference to the goal.
 std::size_t light_to_join(const ChosenCandidates& state) {
   const Eigen::MatrixXd of = contributions_of(state);
   const Eigen::VectorXd rest = state.candidates().problem().goal->weighted(state.residual());
@@ -105,7 +105,7 @@ std::size_t light_to_join(const ChosenCandidates& state) {
     if (!(products(a, a) > 0)) return static_cast<std::size_t>(a);
     for (Eigen::Index b = 0; b < of.cols(); ++b) {
       if (a == b) continue;
-      // What a, scaled, would have to do instead of both, and for the rest.
+      // The residual plus the light of both, which a, scaled, would have to replace.
       const double whole = products(a, a) + products(b, b) + 2 * (products(a, b) + pull[a] + pull[b]);
       const double along = std::max(0.0, products(a, a) + products(a, b) + pull[a]);
       const double left = whole - along * along / products(a, a);

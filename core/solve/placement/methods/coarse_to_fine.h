@@ -1,12 +1,12 @@
 #pragma once
-/// Lin et al. 2013, up to the cut (thesis §4.4.3): which few of the candidates to begin from, coarse to fine, and how
-/// to join them.
+/// Lin et al. 2013, up to the cut (thesis §4.4.3): finds a few candidates to start from, coarse to fine, and joins
+/// them.
 ///
-/// A light in the middle of every cell of a coarse grid, with the best levels; those that do less than 5 % of what the
-/// strongest does are removed; the cells of the others are split in eight, and so on down to the candidates' spacing.
-/// Then two lights at a time are joined: those which one of the two can stand for with the least difference to the
-/// goal. The thesis, which the method is known from, says neither the first grid (here about eight cells along the
-/// longest side) nor what 5 % is a share of, nor what stands for two lights.
+/// A light in the middle of every cell of a coarse grid, with optimal levels. Lights that contribute less than 5 % of
+/// the strongest are removed; the cells of the others are split in eight, and so on down to the candidates' spacing.
+/// Then lights are joined in pairs: the pair that one of the two can replace with the least change against the goal.
+/// The method is known here from the thesis, which states neither the first grid (here about eight cells along the
+/// longest side), nor the base of the 5 %, nor which light replaces two.
 
 #include "core/solve/placement/methods/light_tree.h"
 

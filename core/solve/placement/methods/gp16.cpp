@@ -50,7 +50,7 @@ class CutWalk {
   }
 
  private:
-  /// The first below ε_opt. Where a goal is so hard that none is, the first that is nearly as good as any.
+  /// The first cut below ε_opt. If the goal is too hard for that, the first that is nearly as good as any.
   [[nodiscard]] std::size_t first_cut(const std::vector<TreeCut>& cuts, std::size_t within) const {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < within; ++i) least = std::min(least, cuts[i].error);

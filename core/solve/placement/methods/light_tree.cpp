@@ -7,7 +7,7 @@
 namespace luxrig {
 namespace {
 
-/// Of the goal's norm: a leaf that does less is none.
+/// Share of the goal's norm below which a leaf is dropped.
 constexpr double kLeastLeaf = 1e-3;
 
 std::vector<std::size_t> leaves_of(const CandidateLights& candidates, const std::stop_token& stop) {
@@ -47,7 +47,7 @@ class LightLikeness {
     products_.erase(products_.begin() + at);
     for (auto& row : products_) row.erase(row.begin() + at);
   }
-  /// first < second; of at least two lights.
+  /// first < second; needs at least two lights.
   [[nodiscard]] std::pair<std::size_t, std::size_t> nearest_two() const {
     std::pair<std::size_t, std::size_t> nearest = {0, 1};
     for (std::size_t a = 0; a < products_.size(); ++a)
@@ -78,7 +78,7 @@ std::vector<TreeCut> light_tree_cuts(const std::shared_ptr<const CandidateLights
       likeness.drop(light);
     }
     const auto joined = candidates->nearest(state.residual(), 1);
-    if (joined.empty() || state.holds(joined.front())) continue;  // the two did nothing that is missed
+    if (joined.empty() || state.holds(joined.front())) continue;  // the two contributed nothing that is missed
     state.add(joined.front());
     likeness.add(candidates->unit_column(joined.front()));
   }

@@ -11,7 +11,7 @@ class LinCuts {
           const std::shared_ptr<const CandidateLights>& candidates)
       : problem_(problem), options_(options), candidates_(candidates) {}
 
-  /// A cut, or none, refined.
+  /// A cut, possibly empty, refined.
   PlacedLights refined(const TreeCut& cut) {
     ChosenCandidates state(candidates_);
     state.choose(cut.candidates);

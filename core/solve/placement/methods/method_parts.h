@@ -1,5 +1,5 @@
 #pragma once
-/// What the baselines share beside annealing.
+/// Parts that the baselines share, besides annealing.
 
 #include <optional>
 
@@ -8,10 +8,10 @@
 
 namespace luxrig {
 
-/// Cause::invalid: the method wants to be told how many lights.
+/// Cause::invalid: the method needs a number of lights.
 [[nodiscard]] std::optional<Fault> missing_number(const PlacementOptions& options);
 
-/// Of the simplex for lights that stand on candidates, `columns` of its budget gone.
+/// Simplex options for lights at candidates, with `columns` of the budget already used.
 [[nodiscard]] SimplexOptions simplex_of(const PlacementProblem& problem, const PlacementOptions& options,
                                         std::size_t most_columns, std::size_t columns,
                                         const std::function<void(const BestSoFar&)>& better);
@@ -20,7 +20,7 @@ namespace luxrig {
 [[nodiscard]] std::function<void(const ChosenCandidates&)> reporter(const std::function<void(const BestSoFar&)>& better,
                                                                     const std::size_t& columns);
 
-/// Of (lights, error), fewest first: by the rule of luxrig's own (number_of_lights.h).
+/// Of (lights, error), fewest first: by luxrig's own rule (number_of_lights.h).
 [[nodiscard]] std::size_t fewest_worth_it(const std::vector<std::pair<std::size_t, double>>& cuts,
                                           const PlacementOptions& options);
 

@@ -11,9 +11,9 @@
 namespace luxrig {
 namespace {
 
-/// Of the first simplex, as a share of the way to the bounds.
+/// Size of the first simplex, as a share of the way to the bounds.
 constexpr double kFirstStep = 0.5;
-/// A level rises by at most this many times where it starts.
+/// A level rises by at most this many times its start.
 constexpr double kMostRise = 3;
 
 struct SimplexProblem {
@@ -34,7 +34,7 @@ double simplex_error(unsigned count, const double* unknowns, double*, void* data
   return error;
 }
 
-/// The problem keeps what was best: NLopt's own answer is not needed.
+/// The problem keeps the best result: NLopt's own answer is not needed.
 void run_simplex(const SimplexProblem& problem, const SimplexOptions& options) {
   const auto count = static_cast<unsigned>(problem.lower.size());
   const std::unique_ptr<nlopt_opt_s, void (*)(nlopt_opt)> solver(
@@ -42,7 +42,7 @@ void run_simplex(const SimplexProblem& problem, const SimplexOptions& options) {
   LUXRIG_CHECK(solver != nullptr, "no simplex of {} unknowns", count);
   SimplexCall call{&problem, solver.get()};
   Eigen::VectorXd unknowns = Eigen::VectorXd::Zero(count);
-  // Down where there is no way up; NLopt leaves out what can go neither way, but wants a step.
+  // Downwards if there is no way up; NLopt leaves out unknowns that can go neither way, but needs a step.
   Eigen::VectorXd first_step(count);
   for (Eigen::Index i = 0; i < first_step.size(); ++i) {
     const double up = std::min(1.0, problem.upper[i]), down = std::min(1.0, -problem.lower[i]);
@@ -59,7 +59,7 @@ void run_simplex(const SimplexProblem& problem, const SimplexOptions& options) {
   nlopt_optimize(solver.get(), unknowns.data(), &error);
 }
 
-/// Unknowns that move and turn one light.
+/// Bounds of the unknowns that move and turn one light.
 Eigen::VectorXd bounds_of_pose(Eigen::Index freedoms, const SimplexOptions& options) {
   Eigen::VectorXd bounds = Eigen::VectorXd::Constant(freedoms, options.turn_rad);
   bounds.head<3>().setConstant(options.cell_m);
@@ -116,7 +116,7 @@ std::size_t refine_with_levels_by_simplex(PlacedLights& lights, const MovableLig
     problem.lower.segment(at, freedoms) = -problem.upper.segment(at, freedoms);
     for (Eigen::Index e = 0; e < emitters; ++e) {
       const double level = start.levels()[k * emitters + e];
-      // One that is dark at first is measured by the brightest.
+      // A light that starts dark is measured by the brightest.
       double& unit = scale[k * emitters + e] = level > 0 ? level : largest_level > 0 ? largest_level : 1;
       problem.lower[at + freedoms + e] = -level / unit;
       problem.upper[at + freedoms + e] = std::clamp((goal.max_level - level) / unit, 0.0, kMostRise);
