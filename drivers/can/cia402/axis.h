@@ -110,7 +110,7 @@ class Axis {
   bool asked_ = false, stands_still_ = false;
 
   std::optional<Time> status_at_;  ///< time of the newest believed statusword
-  std::optional<Time> pdo_at_;     ///< of any process data
+  std::optional<Time> pdo_at_;     ///< of any TPDO 1, believed or not
   bool fresh_ = false;
   std::uint16_t statusword_ = 0, error_code_ = 0;
   std::int32_t position_ = 0, velocity_ = 0;
