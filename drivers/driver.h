@@ -4,9 +4,9 @@
 /// configured --activate()--> active <--> faulted --deactivate()--> configured
 ///
 /// The constructor touches no device. An active driver becomes faulted, and active again, as the device goes and
-/// returns.
-/// It reconnects inside write() and read(), within their bounds, with backoff. After a return it sends the current
-/// setpoint, never an older one. One driver serves one [[bus]] or one [[camera]]. All its calls come from one thread.
+/// returns. It reconnects inside write() and read(), within their bounds, with backoff. After a return it sends the
+/// current setpoint, never an older one. One driver serves one [[bus]] or one [[camera]]. All its calls come from one
+/// thread.
 
 #include <cstdint>
 #include <memory>

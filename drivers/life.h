@@ -17,8 +17,7 @@ class LifeRecord {
   /// remark: worth knowing although all is well; may be empty.
   void active(Time now, std::string remark = {}) { enter(Life::active, now, std::move(remark)); }
   /// `since` stays if it is faulted already; the text is always the newest. Counts an error if `is_new`; false is for
-  /// an
-  /// old error whose figures have grown.
+  /// an old error whose figures have grown.
   void faulted(Time now, const Fault& fault, bool is_new = true) {
     if (is_new) ++health_.errors;
     enter(Life::faulted, now, std::string(name_of(fault.cause)) + ": " + fault.detail);

@@ -1,7 +1,6 @@
 #pragma once
 /// Behaviour of each output of a rig when data stops: Luxrig's process dies without a stand-in, or the cable is cut.
-/// The
-/// behaviour follows from a standard or from a product's register map; if neither states it, that is reported.
+/// The behaviour follows from a standard or from a product's register map; if neither states it, that is reported.
 
 #include <optional>
 #include <string>

@@ -55,8 +55,7 @@ class VideoCamera final : public CameraSource {
     auto picture = fresh_picture(now);
     if (!picture) {
       if (picture.error().cause == Cause::network) found_.reset();  // it may have lost power and its settings with it
-      channel_->close();                                            // whatever the fault, the next attempt starts from
-                                                                    // scratch
+      channel_->close();                                            // whatever the fault, start over next time
       retry_at_ = now + kVideoRetry;
       return faulted(now, picture.error());
     }

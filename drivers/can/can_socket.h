@@ -1,7 +1,7 @@
 #pragma once
 /// A CAN interface of Linux (SocketCAN, PF_CAN raw). Bit rate, restart-ms (recovery from bus-off) and txqueuelen are
-/// set
-/// at the interface: `ip link set can0 type can bitrate 500000 restart-ms 100`, `ip link set can0 txqueuelen 100 up`.
+/// set at the interface: `ip link set can0 type can bitrate 500000 restart-ms 100`, `ip link set can0 txqueuelen 100
+/// up`.
 
 #include <memory>
 #include <string>

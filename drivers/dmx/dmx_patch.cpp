@@ -25,7 +25,7 @@ ByteOfValue byte_of_value(SlotUse use) {
 static_assert(static_cast<int>(SlotUse::pan) == 3 && static_cast<int>(SlotUse::tilt) == 6 &&
               static_cast<int>(SlotUse::zoom) == 9 && static_cast<int>(SlotUse::constant) == 12);
 
-/// Number of the patch's slots that form the value of which `slot` is one byte.
+/// Number of the patch's slots that form this slot's value.
 int bytes_of_value(const DmxPatch& patch, const DmxSlot& slot) {
   if (slot.use >= SlotUse::constant) return 1;
   const SlotUse coarse = byte_of_value(slot.use).coarse;

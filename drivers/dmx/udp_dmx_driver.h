@@ -47,7 +47,7 @@ class UdpDmxDriver : public Driver, public LevelOutput, public Mover, public Lev
   virtual void opened(DatagramChannel&) {}                          ///< a channel has just been opened
   virtual void hear(Time, const Datagram&) {}                       ///< a datagram has arrived
   virtual void send_frame(Time now) = 0;                            ///< sends the packets that are due
-  [[nodiscard]] virtual bool is_sent(const DmxUniverse& universe) const = 0;  ///< its present slots
+  [[nodiscard]] virtual bool is_sent(const DmxUniverse& universe) const = 0;  ///< its slots as they are now
   virtual void say_goodbye(Time) {}                                 ///< about to close
   virtual void fall_silent(Time, const DmxUniverse&) {}             ///< this universe is not sent for now
   virtual HeardUniverse heard(Time, int) { return {}; }             ///< of one of the desk's universes

@@ -1,7 +1,6 @@
 #pragma once
 /// The time left of a call's bound. Blocking on a descriptor takes real time whatever clock the controller uses, so
-/// this
-/// class, the only one in drivers/, reads the real clock. No value that is sent or reported depends on it.
+/// this class, the only one in drivers/, reads the real clock. No value that is sent or reported depends on it.
 
 #include <algorithm>
 #include <chrono>

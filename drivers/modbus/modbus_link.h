@@ -35,8 +35,7 @@ class Link {
   /// Time on the wire of the largest frames, on top of a timeout.
   [[nodiscard]] virtual std::chrono::milliseconds longest_on_wire() const { return std::chrono::milliseconds(0); }
   /// False if answers carry no request number. A unit that let a request time out must then be left alone until its
-  /// answer
-  /// can no longer come.
+  /// answer can no longer come.
   [[nodiscard]] virtual bool answers_are_numbered() const = 0;
 
   /// Exception code of the last exchange; 0 = it had none.

@@ -26,8 +26,7 @@ inline constexpr double kRelayOnFrom = 0.5, kRelayOffBelow = 0.4;
 [[nodiscard]] double lux_from_registers(const ModbusMeterPatch& patch, std::span<const std::uint16_t> raw);
 
 /// The light of a plausible reading. Up to 5 % over full scale it counts as full scale (instruments clip there, and
-/// their
-/// own gain error may exceed it). Empty beyond that: broken sensors show 0xFFFF….
+/// their own gain error may exceed it). Empty beyond that: broken sensors show 0xFFFF….
 [[nodiscard]] std::optional<double> plausible_lux(double lux, double range_lx);
 
 }  // namespace luxrig::modbus

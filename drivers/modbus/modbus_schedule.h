@@ -42,8 +42,7 @@ class WriteSchedule {
   [[nodiscard]] Request request_for(const Run& run) const;
   /// The runs due at `now`: changed (and not tried within kShortestRewrite), or not refreshed for `refresh`. They start
   /// after the last one tried, so a call cut short by its bound continues there. Silent units come last, since their
-  /// timeout
-  /// ends the call; of these, the longest unasked comes first.
+  /// timeout ends the call; of these, the longest unasked comes first.
   [[nodiscard]] std::vector<Run> due(Time now, const UnitBackoff& units) const;
   void tried(const Run& run, Time now);
   void confirmed(const Run& run);
@@ -79,8 +78,7 @@ class ReadSchedule {
     Request request;
   };
   /// The batches due at `now` or up to an eighth of `poll` later. They start after the last one asked; silent units
-  /// come
-  /// last, as above.
+  /// come last, as above.
   [[nodiscard]] std::vector<Batch> due(Time now, const UnitBackoff& units) const;
   /// The next read is due `poll` after this one was due, so late calls do not slow a meter in the long run.
   void asked(const Batch& batch, Time now);

@@ -28,15 +28,11 @@ struct UnitRules {
                                                   std::chrono::milliseconds response_timeout, bool behind_gateway,
                                                   std::optional<int> contact_unit = {});
 
-/// Asks a silent unit again after `first_pause`, then after 1 s, then every 2 s at most. Waiting in vain takes time
-/// from
-/// the units that answer. So all silent units of a link share a twentieth of its time, and the longest unasked comes
-/// first
-/// (`before`). After some initial credit, a silent unit that is back is found within 2 s plus kProbeShare times the sum
-/// of
-/// the silent units' timeouts: 6 s for one unit with 200 ms, 42 s for ten. If they come back together, the first one
-/// found
-/// brings all of them.
+/// Asks a silent unit again after `first_pause`, then after 1 s, then at most every 2 s. Waiting in vain takes time
+/// from the units that answer. So all silent units of a link share a twentieth of its time, and the longest unasked
+/// comes first (`before`). After some initial credit, a silent unit that is back is found within 2 s plus kProbeShare
+/// times the sum of the silent units' timeouts: 6 s for one unit with 200 ms, 42 s for ten. If they come back together,
+/// the first one found brings all of them.
 class UnitBackoff {
  public:
   static constexpr int kProbeShare = 20;  ///< silent units get 1 / kProbeShare of the link's time
@@ -44,7 +40,7 @@ class UnitBackoff {
   static constexpr Duration kProbeCredit = std::chrono::milliseconds(500);
 
   [[nodiscard]] bool may_ask(int unit, Time now) const;
-  /// Whether a comes before b; both are silent.
+  /// True if both are silent and a comes first.
   [[nodiscard]] bool before(int a, int b) const;
   void answered(int unit);
   /// `waited`: time spent on its missing answer.

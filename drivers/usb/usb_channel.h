@@ -3,9 +3,8 @@
 /// reaches a stand-in, and tests use tests/drivers/usb/scripted_usb.h.
 ///
 /// Starting a transfer gives a ticket. take() returns ended transfers in the order in which they ended. Transfers of
-/// one
-/// endpoint are done in the order of their start; those of different endpoints are not ordered. No transfer has its own
-/// timeout: the caller decides when it has taken too long, and cancels it.
+/// one endpoint are done in the order of their start; those of different endpoints are not ordered. No transfer has its
+/// own timeout: the caller decides when it has taken too long, and cancels it.
 
 #include <chrono>
 #include <cstdint>
@@ -24,8 +23,7 @@ struct UsbSetup {
   std::uint16_t value = 0, index = 0;
   friend bool operator==(const UsbSetup&, const UsbSetup&) = default;
 };
-inline constexpr std::uint8_t kUsbVendorOut = 0x40, kUsbVendorIn = 0xC0;  ///< request_type: vendor request to the
-                                                                          ///< device
+inline constexpr std::uint8_t kUsbVendorOut = 0x40, kUsbVendorIn = 0xC0;  ///< request_type: vendor's, to the device
 
 enum class UsbStatus {
   done,

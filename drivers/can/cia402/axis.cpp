@@ -20,8 +20,8 @@ constexpr Duration kStartAgain = milliseconds(500), kStartTimeout = milliseconds
 constexpr Duration kResetPause = milliseconds(1000), kResetPulse = milliseconds(200);
 constexpr Duration kTryRefusedAgain = milliseconds(5000);
 constexpr Duration kForgiveAfter = milliseconds(30000);
-constexpr int kHomingAnswers = 3;  ///< statuswords skipped after the start, as the first may be older
-constexpr int kEndedAnswers = 3;   ///< in a row that report the end: every later move depends on the home position
+constexpr int kHomingAnswers = 3;      ///< statuswords skipped after the start, as the first may be older
+constexpr int kEndedAnswers = 3;       ///< in a row that report the end: every later move depends on the home position
 constexpr double kHomeSlack_s = 0.05;  ///< as a distance at full speed
 
 void append(std::vector<std::uint8_t>& to, std::uint32_t value, int bytes) {

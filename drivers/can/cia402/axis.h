@@ -1,15 +1,13 @@
 #pragma once
 /// One drive on the bus: found, set up, enabled, homed, moved, and taken back into service after a loss. Pure: `now`
-/// and
-/// frames in, frames out. One step() each cycle; the SYNC follows it.
+/// and frames in, frames out. One step() each cycle; the SYNC follows it.
 ///
 ///   absent -> setting_up -> starting -> running
 ///   running -> absent (no heartbeat) -> checking -> running or setting_up
 ///   any -> failed (refused, or faulted too often): stands still until the node boots again
 ///
 /// Only homing (as the rule says) and ordered set-points move the axis. No controlword takes the torque off an axis
-/// that
-/// may be turning, whatever its statusword says: it would run on by its momentum.
+/// that may be turning, whatever its statusword says: it would run on by its momentum.
 
 #include <map>
 #include <optional>

@@ -87,8 +87,7 @@ void Axis::take_sdo_result(Time now) {
       break;
     case Phase::checking: {
       // If it is still operational and still listens to us, it was not reset while away, so its position is valid.
-      // Evidence
-      // of a reset must come twice, identically.
+      // Evidence of a reset must come twice, identically.
       if (!result->has_value() && !result->error().abort_code) return lost(now, "does not answer");
       const std::uint32_t entry = result->has_value() ? number_in(**result) : *result->error().abort_code;
       const bool same = result->has_value() && entry == consumer_entry(settings_);
@@ -108,8 +107,7 @@ void Axis::take_sdo_result(Time now) {
       break;
     case Phase::running:
       if (telling_) return take_told(now, *result);
-      if (rereading_) take_reread(now, *result);  // else the mode of operation was written: its display shows the
-                                                  // result
+      if (rereading_) take_reread(now, *result);  // else the mode of operation was written; its display shows it
       break;
     case Phase::starting:
     case Phase::failed:

@@ -126,8 +126,7 @@ void HeadAxes::step(Time now, Frames& out) {
     HeadMove move =
         head_move(target_->pan_rad - here->pan_rad, target_->tilt_rad - here->tilt_rad, pan_limits_, tilt_limits_);
     // From a standstill both axes keep step. A moving axis needs its full limits: scaled to the remaining distance,
-    // they
-    // could be too low to stop it or to turn it back in time. A node's report of standstill is not proof of it.
+    // they could be too low to stop it or to turn it back in time. A node's report of standstill is not proof of it.
     if (under_way(pan_) || under_way(tilt_) || now < under_way_until_) {
       move.pan = pan_limits_;
       move.tilt = tilt_limits_;

@@ -1,11 +1,8 @@
 #pragma once
 /// The two axes of one head, turned in step (core/output/head_move.h). If one is lost or faulted the other stops, so
-/// that
-/// the beam stays on its path. From a standstill that path is a straight line. Towards an aim that replaces one under
-/// way,
-/// each axis bends off as fast as its own limits allow. Neither begins before both drives have their limits; a drive
-/// that
-/// gets them by SDO needs some cycles. Pure.
+/// that the beam stays on its path. From a standstill that path is a straight line. Towards an aim that replaces one
+/// under way, each axis bends off as fast as its own limits allow. Neither begins before both drives have their limits;
+/// a drive that gets them by SDO needs some cycles. Pure.
 
 #include <optional>
 #include <string>
@@ -43,8 +40,7 @@ class HeadAxes {
   [[nodiscard]] const Axis& pan() const { return pan_; }
   [[nodiscard]] const Axis& tilt() const { return tilt_; }
   /// Why the head is not at its aim: the axis's own trouble, or its way back after a loss. Empty in service, even while
-  /// it
-  /// turns to a new aim.
+  /// it turns to a new aim.
   [[nodiscard]] std::string pan_trouble() const { return trouble(pan_); }
   [[nodiscard]] std::string tilt_trouble() const { return trouble(tilt_); }
   /// Position that the drives report; empty until both are ready.

@@ -1,10 +1,8 @@
 #pragma once
 /// Checks a drive's reports in TPDO 1 (statusword 6041, position 6064, mode display 6061) for plausibility. A CRC
-/// catches
-/// line errors; this check catches a node that reports nonsense: words of no state, PDOs of another length, positions
-/// that
-/// no speed and acceleration can reach in that time, changes taken back at once. It drops such a report. After several
-/// within half a second it trusts no report of the drive until they have made sense for a while. Pure.
+/// catches line errors; this check catches a node that reports nonsense: words of no state, PDOs of another length,
+/// positions that no speed and acceleration can reach in that time, changes taken back at once. It drops such a report.
+/// After several within half a second it trusts no report of the drive until they have made sense for a while. Pure.
 
 #include <optional>
 #include <span>

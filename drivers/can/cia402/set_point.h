@@ -1,8 +1,7 @@
 #pragma once
 /// The handshake of profile position mode (CiA 402-2, 10.3.2). Target and limits go first. Then the controlword's bit 4
 /// rises until the drive acknowledges (statusword bit 12), and falls until the drive clears that bit. Bit 5 is set, so
-/// a new
-/// target replaces the one under way. Pure; one step() a cycle.
+/// a new target replaces the one under way. Pure; one step() a cycle.
 
 #include <optional>
 

@@ -54,8 +54,7 @@ class Controller {
   [[nodiscard]] bool is_sent(int port_address, const DmxSlots& slots) const;
 
   /// After all universes of a frame: the ArtSync that makes nodes act. Empty if no ArtDmx was due since the last one,
-  /// or
-  /// if sync is off.
+  /// or if sync is off.
   [[nodiscard]] std::optional<std::vector<std::uint8_t>> sync_due();
 
   [[nodiscard]] const std::map<SocketAddress, Node>& nodes() const { return nodes_; }

@@ -1,9 +1,7 @@
 #pragma once
 /// The receiving side of an Art-Net node: ArtDmx with its sequence rule, merge of two senders, ArtSync, ArtAddress
-/// about
-/// merging, and answers to ArtPoll, so that desks find it and send to it. `now` and datagrams in, levels and answers
-/// out.
-/// Source: Art-Net 4 Protocol Release V1.4.
+/// about merging, and answers to ArtPoll, so that desks find it and send to it. `now` and datagrams in, levels and
+/// answers out. Source: Art-Net 4 Protocol Release V1.4.
 ///
 /// - Senders are identified by IPv4 address. A third one is ignored; one that is silent for 10 s is forgotten.
 /// - After an ArtSync from the only sender of a port's data, data waits for the next ArtSync, until none has come for 4

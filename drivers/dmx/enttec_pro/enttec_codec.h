@@ -57,7 +57,7 @@ class StreamDecoder {
 
 /// break and mark after break in units of 10.67 µs (32/3 µs).
 struct Parameters {
-  int firmware = 0;  ///< 0x0144 = 1.44
+  int firmware = 0;  ///< high byte, low byte: 0x0144 = 1.68
   int break_units = 9, mark_units = 1;
   int rate_hz = 40;  ///< 0…40; 0 = as fast as possible
 };

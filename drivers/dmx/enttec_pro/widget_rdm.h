@@ -3,8 +3,7 @@
 /// ENTTEC, DMX USB Pro Widget API Specification 1.44: labels 7 and 11, answers 5 and 12.
 ///
 /// It waits in real time and uses the widget alone, which sends no levels during that. So it is for tools, not for a
-/// bus
-/// that lights lamps.
+/// bus that lights lamps.
 
 #include <deque>
 #include <memory>

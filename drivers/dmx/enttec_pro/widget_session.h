@@ -3,10 +3,9 @@
 /// bytes out.
 ///
 /// First it identifies the widget (parameters, serial number, names). Any request but 6 and 3 stops the widget's
-/// output, so
-/// these are never repeated. Then it is live. It sends levels on change, at most `rate_hz` times a second, and every
-/// 0.9 s.
-/// Label 6 has no answer, so it asks for parameters four times a second to see that the widget is there.
+/// output, so these are never repeated. Then it is live. It sends levels on change, at most `rate_hz` times a second,
+/// and every 0.9 s. Label 6 has no answer, so it asks for parameters four times a second to see that the widget is
+/// there.
 
 #include <optional>
 #include <string>

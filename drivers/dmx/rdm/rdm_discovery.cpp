@@ -106,12 +106,9 @@ class Search {
   }
 
   /// For a device that answers but cannot be muted: true if it may hide others, so the range must be halved. It may
-  /// hide
-  /// them within its own range. Its answer for another range means that no other device answered, and halving that
-  /// would never
-  /// end. The exception: it does not exist, and two answers added up to a valid one. So ask for its UID alone: a real
-  /// device
-  /// answers.
+  /// hide them within its own range. Its answer for another range means that no other device answered, and halving that
+  /// would never end. The exception: it does not exist, and two answers added up to a valid one. So ask for its UID
+  /// alone: a real device answers.
   Result<bool> hides_others(const UidRange& range, const Uid& who) {
     if (range.holds(who)) return true;
     if (everywhere_.contains(who)) return false;

@@ -5,8 +5,7 @@
 /// All devices are un-muted. The search asks a range of UIDs. A single answer is muted and the range asked again; a
 /// collision halves the range; silence ends it. Devices in the field answer although muted, do not confirm, answer for
 /// ranges that are not theirs, or send noise. None of these may hide others or keep the search from ending. But where
-/// the
-/// bits of several answers add up, a device that never stops answering hides those that add no bit to its answer.
+/// the bits of several answers add up, a device that never stops answering hides those that add no bit to its answer.
 
 #include <array>
 #include <cstdint>
@@ -21,8 +20,7 @@
 namespace luxrig::rdm {
 
 /// The encoded answer to DISC_UNIQUE_BRANCH as transmitted: seven times 0xFE, 0xAA, then UID and checksum with each
-/// byte
-/// as b | 0xAA, b | 0x55.
+/// byte as b | 0xAA, b | 0x55.
 [[nodiscard]] std::vector<std::uint8_t> encode_branch_answer(const Uid& uid);
 /// 0…7 times 0xFE may be left of the preamble, and bytes may follow. Empty for garbage: a collision.
 [[nodiscard]] std::optional<Uid> decode_branch_answer(std::span<const std::uint8_t> bytes);

@@ -3,11 +3,9 @@
 /// Source: ANSI E1.20-2010, chapter 6.
 ///
 /// - ACK_TIMER: waits for the stated time, then asks for QUEUED_MESSAGE until the answer comes. If the device has no
-///   queue,
-///   it repeats the request.
+///   queue, it repeats the request.
 /// - ACK_OVERFLOW: collects the parts. After a lost part it asks for another parameter, which ends the responder's
-///   session,
-///   and collects all parts again.
+///   session, and collects all parts again.
 /// - No answer: two more tries. NACK: a fault that names the reason.
 /// - Ignored: packets of other devices, to other controllers, with another transaction number or parameter.
 

@@ -247,8 +247,7 @@ std::unique_ptr<Driver> make_sacn(const Rig& rig, std::size_t bus, const std::op
   settings.multicast_ttl = static_cast<int>(integer_option(rig.buses[bus], kSacnOptions, "ttl"));
   std::vector<std::string> interfaces = list_in(string_option(rig.buses[bus], kSacnOptions, "interface"));
   // A stand-in on loopback needs none of the real network's interfaces, which may not exist. And unicast is routed by
-  // the
-  // system, so a second channel would only send it twice.
+  // the system, so a second channel would only send it twice.
   const bool multicast = string_option(rig.buses[bus], kSacnOptions, "destination") == "multicast";
   if (redirect) interfaces.clear();
   if (const DeskOptions desk = desk_options(rig.buses[bus], kSacnOptions); desk.rules) {

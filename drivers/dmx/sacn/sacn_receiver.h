@@ -3,14 +3,11 @@
 /// in, levels out. Source: ANSI E1.31-2018; clauses in the .cpp.
 ///
 /// - For 1.5 s after the first call a universe is `unknown`, as the highest priority is not known yet. It becomes
-///   `absent`
-///   after 2.5 s, the longest silence of a live source. A source heard by then still gets its 1.5 s first, so it takes
-///   4 s
-///   at most.
+///   `absent` after 2.5 s, the longest silence of a live source. A source heard by then still gets its 1.5 s first, so
+///   it takes 4 s at most.
 /// - A new source does not count until it has sent its slot priorities (start code 0xDD), or for 1.5 s.
 /// - A source is lost after 2.5 s without levels. While others may have been lost with it (a cable pulled), no source
-///   of
-///   lower priority gets control: the loss counts once each of them was heard after it or is lost too.
+///   of lower priority gets control: the loss counts once each of them was heard after it or is lost too.
 /// - Without sources the last levels stay, and the universe is `absent`.
 
 #include <map>

@@ -81,8 +81,7 @@ std::optional<std::vector<std::uint8_t>> Source::due(Time now, int universe, con
     stream.sending = true;
   }
   // Priorities go first, so a receiver knows them with the first levels. They replace a packet of levels, since the
-  // rate
-  // counts all packets of a universe (clause 6.6.1).
+  // rate counts all packets of a universe (clause 6.6.1).
   if (stream.priorities && (!stream.priorities_sent || now - *stream.priorities_sent >= kKeepAlive)) {
     if (!stream.rate.take(now)) return std::nullopt;
     stream.priorities_sent = now;

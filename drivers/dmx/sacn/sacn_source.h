@@ -25,8 +25,7 @@ struct SourceSettings {
 };
 
 /// A component identifier that is the same after a restart and differs between hosts, rigs and buses: a UUID of version
-/// 8
-/// (RFC 9562) hashed from the three.
+/// 8 (RFC 9562) hashed from the three.
 [[nodiscard]] Cid derive_cid(std::string_view host, std::string_view rig, std::string_view bus);
 
 /// "6ba7b810-9dad-11d1-80b4-00c04fd430c8" -> its bytes.
@@ -46,12 +45,10 @@ class Source {
   [[nodiscard]] bool is_sent(int universe, const DmxSlots& slots) const;
 
   /// The goodbye of a universe that has sent before: one packet with the stream-terminated bit; clause 6.2.6 wants
-  /// three.
-  /// Empty for a universe that never sent or has said goodbye.
+  /// three. Empty for a universe that never sent or has said goodbye.
   [[nodiscard]] std::optional<std::vector<std::uint8_t>> goodbye(int universe);
   /// After all universes of a frame: the packet that makes them act together. Empty if none was sent since the last
-  /// one,
-  /// or without a sync_universe.
+  /// one, or without a sync_universe.
   [[nodiscard]] std::optional<std::vector<std::uint8_t>> sync_due();
 
   /// Every 10 s the pages that list the universes being sent; otherwise, and if none is sent, empty.

@@ -2,10 +2,8 @@
 /// How late a uDMX is with its levels, and whether to report it. Pure.
 ///
 /// A healthy widget refuses a transfer now and then. The next one mends that without visible effect. The widget is late
-/// if
-/// levels requested kUdmxLateAfter ago have not arrived. It is reported after kUdmxLateFor of lateness in total within
-/// the
-/// last kUdmxLateWindow: fades then jerk or stop. The report ends after kUdmxInTimeFor without lateness.
+/// if levels requested kUdmxLateAfter ago have not arrived. It is reported after kUdmxLateFor of lateness in total
+/// within the last kUdmxLateWindow: fades then jerk or stop. The report ends after kUdmxInTimeFor without lateness.
 
 #include <array>
 #include <cstdint>
@@ -15,7 +13,7 @@
 
 namespace luxrig::udmx {
 
-/// A universe takes 33 ms and waits up to a cycle of 23 ms for the one before; one refused transfer doubles both.
+/// A universe takes 33 ms and waits up to a cycle of 23 ms for the one before; one refused transfer adds both again.
 inline constexpr Duration kUdmxLateAfter = std::chrono::milliseconds(150);
 /// One hanging transfer is cancelled after 500 ms and sent again: late for 450 ms.
 inline constexpr Duration kUdmxLateFor = std::chrono::milliseconds(600);

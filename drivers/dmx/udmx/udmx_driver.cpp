@@ -42,7 +42,7 @@ class UdmxDriver final : public UsbDmxDriver {
     sending_.reset();
     switch (completion.status) {
       case UsbStatus::done:
-        // A truncated transfer may have lost its last packet, so only a complete one counts.
+        // A cancelled transfer may have delivered its last packet or not, so only a complete one counts.
         if (completion.transferred != range_.count) return failed(now, "ended early");
         known_ = on_its_way_;
         failures_ = stalls_ = 0;

@@ -1,7 +1,6 @@
 #pragma once
 /// Common base of drivers of a USB widget: one bus is one widget with one universe. Life cycle, reopening a lost
-/// device,
-/// options. A derived driver decides what to send when.
+/// device, options. A derived driver decides what to send when.
 
 #include <initializer_list>
 #include <memory>
@@ -59,12 +58,10 @@ class UsbDmxDriver : public Driver, public LevelOutput, public Mover {
   // Implemented by a derived driver. None blocks longer than stated.
   virtual Result<void> opened(Time now) = 0;                                ///< sets the device up; kUsbPrepareBound
   virtual void ended(Time now, const UsbCompletion& completion) = 0;        ///< a transfer has ended
-  virtual void send_frame(Time now) = 0;                                    ///< starts transfers that are due;
-                                                                            ///< kUsbFrameBound
+  virtual void send_frame(Time now) = 0;                                    ///< starts due transfers; kUsbFrameBound
   virtual void leave(Time) {}                                               ///< about to close; kUsbLeaveBound
   virtual void closed() = 0;                                                ///< every ticket is invalid
-  [[nodiscard]] virtual bool proves_itself_later() const { return false; }  ///< opened() does not prove that the widget
-                                                                            ///< works
+  [[nodiscard]] virtual bool proves_itself_later() const { return false; }  ///< opened() proves nothing of the widget
 
   [[nodiscard]] UsbChannel& usb() { return *channel_; }
   [[nodiscard]] const DmxSlots& slots() const;
