@@ -1,5 +1,5 @@
 #pragma once
-/// Where one device stands in its life cycle, with the counters that its health report shows.
+/// Position of one device in its life cycle, with the counters of its health report.
 
 #include <optional>
 #include <string>
@@ -14,10 +14,10 @@ class LifeRecord {
   explicit LifeRecord(std::string device) { health_.device = std::move(device); }
 
   void configured(Time now) { enter(Life::configured, now, {}); }
-  /// remark: what a person may want to know although all is well; else empty.
+  /// remark: worth knowing although all is well; may be empty.
   void active(Time now, std::string remark = {}) { enter(Life::active, now, std::move(remark)); }
-  /// `since` stays when it is faulted already; the text is the newest. Counts an error, unless it is an old one whose
-  /// figures have grown.
+  /// `since` stays if it is faulted already; the text is always the newest. Counts an error if `is_new`; false is for
+  /// an old error whose figures have grown.
   void faulted(Time now, const Fault& fault, bool is_new = true) {
     if (is_new) ++health_.errors;
     enter(Life::faulted, now, std::string(name_of(fault.cause)) + ": " + fault.detail);
@@ -29,7 +29,7 @@ class LifeRecord {
     ++health_.received;
     health_.last_ok = now;
   }
-  /// A success where the protocol has no answers.
+  /// A success in a protocol without answers.
   void mark_ok(Time now) { health_.last_ok = now; }
   void count_error() { ++health_.errors; }
 

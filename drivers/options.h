@@ -1,10 +1,10 @@
 #pragma once
-/// A bus's options against the table that documents them. The table is the only place where type, default and range
-/// stand, so the reference cannot say one thing and the code do another.
+/// Checks a bus's options against the table that documents them. Type, default and range are stated only in that table,
+/// so reference and code cannot disagree.
 ///
 ///   type     "text", "whole number" or "true or false"
 ///   range    of a whole number: "lowest to highest"; of text: words for a person (the driver checks it)
-///   fallback value when absent, as it would be written; "required" when there is none
+///   fallback value when absent, as it would be written; "required" if there is none
 
 #include <cstdint>
 #include <span>
@@ -17,7 +17,7 @@
 
 namespace luxrig {
 
-/// Unknown keys (with the nearest known one), wrong types, integers out of range, required keys that are absent.
+/// Reports unknown keys (with the nearest known one), wrong types, integers out of range, absent required keys.
 [[nodiscard]] std::vector<Problem> check_options(const Rig& rig, const Bus& bus, std::span<const OptionDoc> docs);
 
 /// The option's value, or its fallback. requires check_options() to be empty and `key` in `docs` with that type.
@@ -25,10 +25,10 @@ namespace luxrig {
 [[nodiscard]] std::int64_t integer_option(const Bus& bus, std::span<const OptionDoc> docs, std::string_view key);
 [[nodiscard]] bool boolean_option(const Bus& bus, std::span<const OptionDoc> docs, std::string_view key);
 
-/// "a, b" -> {"a", "b"}; blanks around an entry do not count. Empty text has no entries.
+/// "a, b" -> {"a", "b"}; blanks around an entry are dropped. Empty text has no entries.
 [[nodiscard]] std::vector<std::string> list_in(std::string_view text);
 
-/// A problem at an option if it is written, else at its bus.
+/// A problem located at the option if it is written, else at its bus.
 [[nodiscard]] Problem problem_at(const Rig& rig, const Bus& bus, std::string_view key, std::string what,
                                  std::string mend);
 

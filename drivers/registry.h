@@ -12,15 +12,14 @@
 
 namespace luxrig {
 
-/// Where a bus is really to be reached: instead of what the rig file says, everything goes to a stand-in, on loopback
-/// or at a path.
+/// Redirects a bus: all its traffic goes to a stand-in, on loopback or at a path, not where the rig file points.
 struct Redirect {
   std::string host;  ///< "127.0.0.1"
   int port = 0;
-  std::string path{};  ///< of a serial port; empty: the stand-in has none
+  std::string path{};  ///< of a serial port; empty = the stand-in has none
 };
 
-/// One option a driver reads from its [[bus]] entry; the rig-file reference is compared with these.
+/// One option that a driver reads from its [[bus]] entry; a test compares the rig-file reference with these.
 struct OptionDoc {
   std::string_view key, type, unit, fallback, range, summary;
 };
@@ -33,19 +32,19 @@ struct DriverEntry {
   std::vector<Problem> (*check)(const Rig& rig, std::size_t bus);
   /// requires check() to be empty.
   std::unique_ptr<Driver> (*make)(const Rig& rig, std::size_t bus, const std::optional<Redirect>& redirect);
-  /// What the lamp of a fixture on it does then; null: this bus carries no lamps.
+  /// The lamp's behaviour when data stops; null = this bus carries no lamps.
   WhenDataStops (*when_data_stops)(const Rig& rig, std::size_t fixture);
-  /// What comes back from its lamps, so which failures are noticed without a luxmeter or camera; empty: no lamps.
+  /// Feedback from its lamps: which failures are noticed without a luxmeter or camera; empty = no lamps.
   std::string_view comes_back;
 };
 
 [[nodiscard]] std::span<const DriverEntry> drivers();
 [[nodiscard]] const DriverEntry* find_driver(std::string_view name);
 
-/// DriverEntry::comes_back of its driver; of a null bus, nothing. requires check_buses() to be empty.
+/// DriverEntry::comes_back of the bus's driver; empty for a null bus. requires check_buses() to be empty.
 [[nodiscard]] std::string_view what_comes_back(const Bus& bus);
 
-/// Every bus of the rig: driver known (else the nearest name), options and patches good.
+/// Checks every bus of the rig: driver known (else suggests the nearest name), options and patches valid.
 [[nodiscard]] std::vector<Problem> check_buses(const Rig& rig);
 
 }  // namespace luxrig

@@ -1,6 +1,6 @@
 #pragma once
-/// What each output of a rig does when data stops: Luxrig's process dies and nobody stands in for it, or the cable is
-/// cut. By a standard, by a product's register map, or not stated by anybody, and then that is said.
+/// Behaviour of each output of a rig when data stops: Luxrig's process dies without a stand-in, or the cable is cut.
+/// The behaviour follows from a standard or from a product's register map; if neither states it, that is reported.
 
 #include <optional>
 #include <string>
@@ -13,17 +13,17 @@ namespace luxrig {
 enum class WithoutData {
   holds,         ///< the lamp keeps its last level for as long as it has power
   goes_dark,     ///< the lamp goes out
-  makers_choice  ///< the data's end is noticed, and what follows is set in the fixture or was chosen by its maker
+  makers_choice  ///< the fixture notices the loss; its settings or its maker decide what follows
 };
 [[nodiscard]] const char* name_of(WithoutData does);
 
 struct WhenDataStops {
   WithoutData does = WithoutData::makers_choice;
-  std::optional<double> after_s;  ///< after the last data; none: never noticed, or nobody says when
-  std::string by;                 ///< which standard, register map or device says so
+  std::optional<double> after_s;  ///< after the last data; none = never noticed, or the time is not stated
+  std::string by;                 ///< the standard, register map or device that says so
 };
 
-/// What a head does whose axes are on this bus, beside its lamp: it stops where it is.
+/// A head with its axes on this bus stops where it is. Its lamp is a separate matter.
 struct AxesWithoutData {
   bool released = false;  ///< the drives switch off; else they hold their place under current
   double after_s = 0;

@@ -74,7 +74,7 @@ void InProcessRig::advance(Time now) {
   world_->advance(Time{} + (now - options_.start));
 }
 
-/// Axes count as a device that answers: of each head one, for both.
+/// A head's axes count as one device that answers.
 template <class Command, class Queue>
 Result<void> InProcessRig::send(Time now, std::span<const Command> commands, std::vector<Device>& devices,
                                 const Queue& queue) {
@@ -95,7 +95,7 @@ Result<void> InProcessRig::send(Time now, std::span<const Command> commands, std
     ++device.health.sent;
     ++bus.health.sent;
     went_well(bus, now);
-    // A frame that is garbled or refused changes nothing at the far end; only devices that answer let us know.
+    // A garbled or refused frame has no effect at the far end; only a device that answers reveals it.
     if (disturbance.silent || disturbance.garbled || disturbance.on_line || disturbance.exception ||
         disturbance.delay > options_.fault_after) {
       if (!device.answers) {
@@ -105,7 +105,7 @@ Result<void> InProcessRig::send(Time now, std::span<const Command> commands, std
       } else {
         went_wrong(device, now, disturbance.garbled || disturbance.on_line ? "answer is garbled" : "no answer");
       }
-      // A device that is late, or whose answer the line spoils, still obeys.
+      // A late device still obeys, and so does one whose answer the line garbles.
       if (!(disturbance.delay > options_.fault_after) && !disturbance.on_line) continue;
     } else {
       if (device.answers) ++device.health.received;
@@ -113,7 +113,7 @@ Result<void> InProcessRig::send(Time now, std::span<const Command> commands, std
     }
     Pending order = queue(command);
     order.due = now + options_.write_latency + disturbance.delay;
-    // One fixture's orders never overtake each other.
+    // Orders of one fixture never overtake each other.
     for (const Pending& earlier : pending_) {
       if (earlier.fixture == order.fixture) order.due = std::max(order.due, earlier.due);
     }
@@ -173,7 +173,7 @@ Result<std::vector<LuxReading>> InProcessRig::read(Time now) {
     }
     ++reachable;
     const Time sampled = world_->meter_sampled_at(m);
-    if (sampled == taken_[m]) continue;  // nothing new
+    if (sampled == taken_[m]) continue;  // no new sample
     taken_[m] = sampled;
     const Disturbance disturbance = disturb(device.bus, device.health.device);
     ++device.health.sent;
@@ -195,7 +195,7 @@ Result<std::vector<LuxReading>> InProcessRig::read(Time now) {
   }
   if (gone && reachable == 0) return tl::unexpected(*gone);
   std::vector<LuxReading> readings;
-  std::erase_if(answers_, [&](const Answer& answer) {  // visited once each, in order
+  std::erase_if(answers_, [&](const Answer& answer) {  // visits each once, in order
     if (answer.due > now) return false;
     readings.push_back(answer.reading);
     return true;
@@ -215,7 +215,7 @@ std::vector<Health> InProcessRig::health(Time now) {
     }
     all.push_back(health);
   };
-  for (Device& bus : buses_) add(bus, Duration{});  // a refused connection needs no waiting
+  for (Device& bus : buses_) add(bus, Duration{});  // a refused connection is known at once
   for (Device& fixture : fixtures_) {
     if (fixture.answers) add(fixture, options_.fault_after);
   }

@@ -1,5 +1,5 @@
 #pragma once
-/// A whole rig without wires: the controller's device interfaces, directly on a World, under whatever clock the caller
+/// A whole rig without wires: the controller's device interfaces directly on a World, under any clock that the caller
 /// steps. Faults as over the wire (sim/faults/faults.h), on fixtures, luxmeters and buses.
 ///
 ///   InProcessRig devices(rig, std::move(world));
@@ -17,27 +17,28 @@
 namespace luxrig::sim {
 
 struct InProcessOptions {
-  Time start{};              ///< the controller's instant at which the world's clock starts
+  Time start{};              ///< the controller's time at the start of the world's clock
   Duration write_latency{};  ///< from write() or move() to the fixture
   Duration read_latency{};   ///< from a meter's sample to read()
-  /// How long a device that can answer is silent before health() calls it faulted.
+  /// Silence after which health() calls a device that can answer faulted.
   Duration fault_after = std::chrono::milliseconds(500);
 };
 
-/// Serves all buses of the rig at once. A bus that is `dead` makes write() return a fault when a command is for it
-/// (commands for the other buses are sent all the same) and read() when no meter is left on a living bus.
-/// Devices on DMX do not answer, so that a fixture there fails unseen, as in life; those on Modbus show in health().
+/// Serves all buses of the rig at once. If a bus is `dead`, write() returns a fault for a command to it, but still
+/// sends commands to the other buses. read() returns a fault if no meter is left on a living bus.
+/// Devices on DMX do not answer, so a failed fixture there is not noticed, as in reality; one on Modbus shows in
+/// health().
 class InProcessRig final : public LevelOutput, public Mover, public LuxReader {
  public:
   /// requires a world made for this rig; keeps a copy of the rig.
   InProcessRig(Rig rig, std::unique_ptr<World> world, const InProcessOptions& options = {});
 
-  /// Each call first brings the world to `now` (earlier than before: it stays where it is).
+  /// Each call first advances the world to `now`; an earlier time leaves it unchanged.
   Result<void> write(Time now, std::span<const LevelCommand> commands) override;
   Result<void> move(Time now, std::span<const AimCommand> commands) override;
   Result<std::vector<LuxReading>> read(Time now) override;
 
-  /// Every bus, then the Modbus fixtures, the pan axes of heads that have axes, and the luxmeters, in the rig's order.
+  /// Every bus, then the Modbus fixtures, the pan axes of heads with axes, and the luxmeters, in the rig's order.
   [[nodiscard]] std::vector<Health> health(Time now);
 
   void advance(Time now);
@@ -59,7 +60,7 @@ class InProcessRig final : public LevelOutput, public Mover, public LuxReader {
     Health health;
     std::size_t bus = 0;
     bool answers = false;
-    Time silent_since{};  ///< first exchange that failed, while it fails
+    Time silent_since{};  ///< first failed exchange, while it fails
     bool failing = false;
     std::string failure;
   };
@@ -79,9 +80,9 @@ class InProcessRig final : public LevelOutput, public Mover, public LuxReader {
   LampFaults lamp_faults_;
   std::deque<Pending> pending_;
   std::deque<Answer> answers_;
-  std::vector<Time> taken_;  ///< per luxmeter, sample last looked at
+  std::vector<Time> taken_;  ///< per luxmeter, last sample taken
   std::vector<Device> buses_, fixtures_, luxmeters_;
-  std::vector<Device> heads_;  ///< per fixture, what turns it
+  std::vector<Device> heads_;  ///< per fixture, its axes
   std::uint64_t exchanges_ = 0;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Lamps that give no light whatever they are sent: burnt out (fault lamp_failure), or without power (unpowered).
+/// Lamps that give no light whatever their level: burnt out (fault lamp_failure), or without power (unpowered).
 
 #include <optional>
 
@@ -11,8 +11,8 @@ namespace luxrig::sim {
 
 class LampFaults {
  public:
-  /// For the fixtures of this bus; none: of all. Call it before what is sent is obeyed; costs nothing while no fault
-  /// changes. What loses its power forgets what it was sent.
+  /// For the fixtures of this bus; empty = of all. Call it before levels are applied; cheap while no fault changes. A
+  /// device that loses power forgets its level.
   void obey(const Rig& rig, std::optional<std::size_t> bus, const Faults& faults, World& world) {
     if (faults.revision() == seen_) return;
     seen_ = faults.revision();

@@ -1,4 +1,4 @@
-/// A camera whose pictures some other program puts into a folder.
+/// A camera whose pictures another program puts into a folder.
 
 #include <fmt/format.h>
 
@@ -21,7 +21,7 @@ class FileCamera final : public CameraSource {
   DriverBounds bounds() const override {
     DriverBounds bounds;
     bounds.read = std::chrono::seconds(10);  // a large picture on a slow disk
-    bounds.fault_after = bounds.read;        // that its folder has gone; that no more pictures come nobody says
+    bounds.fault_after = bounds.read;        // for a lost folder; a folder that gets no more pictures is not noticed
     return bounds;
   }
   Result<void> activate(Time now) override {

@@ -13,16 +13,16 @@ namespace luxrig {
 struct FrameLayout {
   PixelFormat format = PixelFormat::grey8;  ///< not `any`
   int width_px = 0, height_px = 0;
-  std::size_t bytes_per_line = 0;  ///< ≥ what a line's samples need
+  std::size_t bytes_per_line = 0;  ///< ≥ the bytes of a line's samples
   bool limited_range = false;      ///< YUYV: luma 16…235, else 0…255
-  bool bt709 = false;              ///< YUYV: by the matrix of Rec. 709, else of 601
+  bool bt709 = false;              ///< YUYV: matrix of Rec. 709, else of Rec. 601
 };
 
 [[nodiscard]] const char* name_of(PixelFormat format);
 [[nodiscard]] std::size_t bytes_per_pixel(PixelFormat format);
 [[nodiscard]] int counts_of(PixelFormat format, bool limited_range = false);
 
-/// Cause::protocol: sizes that cannot be, bytes missing, a sample with more bits than its format has.
+/// Cause::protocol: impossible sizes, missing bytes, a sample with more bits than its format has.
 [[nodiscard]] Result<RawPicture> decode_frame(const FrameLayout& layout, std::span<const std::uint8_t> bytes);
 
 }  // namespace luxrig

@@ -16,7 +16,7 @@ tl::unexpected<Fault> bad_picture(std::string detail) {
 
 bool is_blank(char letter) { return letter == ' ' || letter == '\n' || letter == '\t' || letter == '\r'; }
 
-/// The next word of a netpbm header, comments skipped, and the one blank after it.
+/// The next word of a netpbm header, without comments. Also consumes the one blank after it.
 std::string_view header_word(std::string_view& rest) {
   while (!rest.empty() && (is_blank(rest.front()) || rest.front() == '#')) {
     if (rest.front() == '#') rest.remove_prefix(std::min(rest.find('\n'), rest.size()));
@@ -37,7 +37,7 @@ bool header_number(std::string_view& rest, T& out) {
   return !word.empty() && error == std::errc() && end == word.data() + word.size();
 }
 
-/// A picture of that size without samples; a reason when it cannot be.
+/// A picture of that size without samples; a fault if the size is impossible.
 Result<RawPicture> sized(int width_px, int height_px, int channels) {
   if (width_px < 1 || height_px < 1 || width_px > kMostPictureSide_px || height_px > kMostPictureSide_px ||
       static_cast<long long>(width_px) * height_px > kMostPicturePixels)

@@ -8,8 +8,8 @@
 namespace luxrig {
 namespace {
 
-/// What libpng reads from, and why it stopped. It leaves a function by longjmp, so nothing with a destructor may live
-/// in one that calls it.
+/// libpng's input, and why it stopped. libpng leaves a function by longjmp, so a function that calls it must have no
+/// objects with destructors.
 struct PngInput {
   const unsigned char* bytes;
   std::size_t size, at;
@@ -34,7 +34,7 @@ struct PngHead {
   int channels, bits;
 };
 
-/// Everything up to the samples; false with a reason.
+/// Reads everything before the samples; false with a reason in the input.
 bool read_png_head(png_structp png, png_infop info, PngHead* head) {
   if (setjmp(png_jmpbuf(png))) return false;  // NOLINT: libpng's way
   png_set_user_limits(png, kMostPictureSide_px, kMostPictureSide_px);
@@ -86,7 +86,7 @@ Result<RawPicture> decode_png(std::string_view bytes) {
   const std::size_t row_bytes = png_get_rowbytes(png, info), per_sample = head.bits == 16 ? 2 : 1;
   const std::size_t row_samples = static_cast<std::size_t>(head.width) * static_cast<std::size_t>(head.channels);
   if (row_bytes != row_samples * per_sample) return bad_png("an unusual kind");
-  // A few bytes may claim a large picture: what is not there is not made room for. Deflate packs 1032 to 1 at most.
+  // A short file may claim a large picture, so check before allocating. Deflate packs 1032 to 1 at most.
   if (row_bytes * head.height / 1100 > bytes.size()) return bad_png("it ends too early");
   std::vector<unsigned char> data(row_bytes * head.height);
   std::vector<png_bytep> rows;

@@ -90,7 +90,7 @@ class V4l2Channel final : public VideoChannel {
       return tl::unexpected(
           Fault{Cause::refused, {}, path + " streams no pictures: luxrig devices lists devices that do", {}});
     }
-    // Programs of ordinary priority cannot change the controls then; a driver that has no priorities is as good.
+    // Programs of ordinary priority then cannot change the controls. A driver without priorities also works.
     v4l2_priority priority = V4L2_PRIORITY_RECORD;
     (void)call(VIDIOC_S_PRIORITY, &priority);
     where_ = fmt::format("{} at {} ({})", reinterpret_cast<const char*>(capability.card),
@@ -122,7 +122,7 @@ class V4l2Channel final : public VideoChannel {
       about.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
       if (call(VIDIOC_ENUM_FMT, &about) != 0) break;
       for (const FourCc& known : kFourCcs)
-        // What the kernel's driver makes of another format in software says less of light.
+        // A format that the kernel's driver converts in software is less faithful to the light.
         if (known.code == about.pixelformat && (about.flags & V4L2_FMT_FLAG_EMULATED) == 0)
           formats.push_back(known.format);
     }
@@ -154,7 +154,7 @@ class V4l2Channel final : public VideoChannel {
     layout.width_px = static_cast<int>(std::min<std::uint32_t>(pix.width, kMostPictureSide_px + 1));
     layout.height_px = static_cast<int>(std::min<std::uint32_t>(pix.height, kMostPictureSide_px + 1));
     layout.bytes_per_line = pix.bytesperline != 0 ? pix.bytesperline : pix.width * bytes_per_pixel(format);
-    // Where the device says nothing, Y'CbCr is of limited range and by Rec. 601.
+    // If the device does not say, Y'CbCr has limited range and Rec. 601.
     layout.limited_range = format == PixelFormat::yuyv && pix.quantization != V4L2_QUANTIZATION_FULL_RANGE &&
                            pix.colorspace != V4L2_COLORSPACE_JPEG;
     layout.bt709 = pix.ycbcr_enc == V4L2_YCBCR_ENC_709 ||
@@ -207,7 +207,7 @@ class V4l2Channel final : public VideoChannel {
       const int count = ::poll(&ready, 1, left);
       if (count < 0 && errno != EINTR) return tl::unexpected(failed("a frame"));
       if (count > 0 && (ready.revents & (POLLERR | POLLHUP)) != 0) {
-        // Gone, or the stream has ended: what it is, taking a frame says.
+        // The device is gone or the stream has ended: VIDIOC_DQBUF shows which.
         if (call(VIDIOC_DQBUF, &buffer) == 0) return frame_in(buffer);
         if (errno == EAGAIN || errno == EINVAL) errno = ENODEV;
         return tl::unexpected(failed("a frame"));
@@ -252,7 +252,7 @@ class V4l2Channel final : public VideoChannel {
     }
   }
 
-  /// Why a call failed, by errno; a device that has gone is closed.
+  /// Why a call failed, by errno; closes a device that is gone.
   Fault failed(const std::string& what) {
     const int error = errno;
     const std::string where = where_;

@@ -22,20 +22,20 @@ std::string line_of(const fs::path& file) {
   return line;
 }
 
-/// Of the device or what it is plugged into.
+/// Serial number of the device or of the device it is plugged into.
 std::string serial_above(fs::path folder, const fs::path& root) {
   for (int level = 0; level < 6 && folder != root && folder.has_relative_path(); ++level, folder = folder.parent_path())
     if (std::string serial = line_of(folder / "serial"); !serial.empty()) return serial;
   return {};
 }
 
-/// A C string that need not end.
+/// A C string that may lack its terminator.
 template <std::size_t N>
 std::string text_in(const unsigned char (&bytes)[N]) {
   return {reinterpret_cast<const char*>(bytes), ::strnlen(reinterpret_cast<const char*>(bytes), N)};
 }
 
-/// False for what gives no pictures.
+/// False for a device that gives no pictures.
 bool ask_device(const fs::path& path, V4l2Device& device) {
   const int fd = ::open(path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
   if (fd < 0) {
@@ -60,7 +60,7 @@ std::string names_of(const std::vector<V4l2Device>& devices) {
   return names;
 }
 
-/// Numbers by their value: video10 after video9.
+/// Numeric order: video10 after video9.
 bool before(const std::string& a, const std::string& b) { return a.size() != b.size() ? a.size() < b.size() : a < b; }
 
 }  // namespace

@@ -1,4 +1,4 @@
-/// A camera whose frames come one after the other by themselves.
+/// A camera that streams frames by itself.
 
 #include <fmt/format.h>
 
@@ -14,10 +14,10 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds kOpening(1500);    ///< to open a device and to set its controls
-constexpr milliseconds kSlowFrame(400);   ///< apart: large pictures over USB 2 come at 5 Hz or less
-constexpr int kSettleFrames = 4;          ///< that a sensor's pipeline may hold when a control changes
-constexpr int kQueuedFrames = 4;          ///< that the kernel may hold
+constexpr milliseconds kOpening(1500);    ///< to open a device and set its controls
+constexpr milliseconds kSlowFrame(400);   ///< between frames: large pictures over USB 2 come at 5 Hz or less
+constexpr int kSettleFrames = 4;          ///< a sensor's pipeline may hold when a control changes
+constexpr int kQueuedFrames = 4;          ///< the kernel may hold
 constexpr milliseconds kVideoRetry(500);  ///< after a failure
 
 class VideoCamera final : public CameraSource {
@@ -54,8 +54,8 @@ class VideoCamera final : public CameraSource {
     life_.count_sent();
     auto picture = fresh_picture(now);
     if (!picture) {
-      if (picture.error().cause == Cause::network) found_.reset();  // it lost power, and what it was set to
-      channel_->close();                                            // whatever is wrong, the next attempt begins anew
+      if (picture.error().cause == Cause::network) found_.reset();  // it may have lost power and its settings with it
+      channel_->close();                                            // whatever the fault, start over next time
       retry_at_ = now + kVideoRetry;
       return faulted(now, picture.error());
     }
@@ -77,13 +77,13 @@ class VideoCamera final : public CameraSource {
   }
 
  private:
-  /// Until a fresh frame must have come: those thrown away, and one more that began before the call.
+  /// Time within which a fresh frame must arrive: after the discarded frames and one that began before the call.
   milliseconds frames_bound() const {
     const auto exposure = std::chrono::ceil<milliseconds>(from_seconds(camera_.taking.exposure_s.value_or(0)));
     return (kSettleFrames + 4) * std::max(kSlowFrame, exposure + milliseconds(50));
   }
 
-  /// Opened, in its format, with its settings, streaming.
+  /// Opens the camera, sets format and settings, starts the stream.
   Result<VideoSettings> get_ready(Time now) {
     const bool was_open = channel_->is_open();
     if (auto opened = channel_->open(); !opened) return tl::unexpected(opened.error());
@@ -105,7 +105,7 @@ class VideoCamera final : public CameraSource {
     if (formats.empty())
       return tl::unexpected(Fault{
           Cause::refused, {}, "the camera has none of GREY, Y10, Y12, Y16, YUYV, RGB24, BGR24: take another", {}});
-    // The most steps, and of those the least to carry.
+    // Prefer the most steps; among equals, the fewest bytes.
     std::sort(formats.begin(), formats.end(),
               [](PixelFormat a, PixelFormat b) { return std::pair(-counts_of(a), a) < std::pair(-counts_of(b), b); });
     if (wanted != PixelFormat::any && std::find(formats.begin(), formats.end(), wanted) == formats.end()) {
@@ -130,14 +130,14 @@ class VideoCamera final : public CameraSource {
     return {};
   }
 
-  /// A frame of which all light fell after now, with the settings that were asked for before and after.
+  /// A frame exposed wholly after `now`, with the wanted settings checked before and after.
   Result<RawPicture> fresh_picture(Time now) {
     const auto settings = get_ready(now);
     if (!settings) return tl::unexpected(settings.error());
     const Deadline deadline(frames_bound());
     const Duration since = channel_->clock(), until = since + frames_bound();
     const Duration exposure = from_seconds(settings->exposure_s);
-    // The first frame that ends after the call may have begun before, more so when the exposure is not known.
+    // The first frame that ends after the call may have begun before it, more so if the exposure is unknown.
     int skip = 1 + (unsettled_ ? kSettleFrames : 0), untimed = kQueuedFrames, damaged = 0, stale = 0;
     while (!deadline.passed() && channel_->clock() < until) {
       auto frame = channel_->take(deadline.left());
@@ -172,7 +172,7 @@ class VideoCamera final : public CameraSource {
                                 {}});
   }
 
-  /// Gives the camera back as it was found. It may be closed after a failure and be there all the same.
+  /// Restores the settings found at the start. After a failure the channel may be closed although the camera is there.
   void leave() {
     if (found_ && channel_->open()) (void)give_back(*channel_, *found_);
     found_.reset();
@@ -180,7 +180,7 @@ class VideoCamera final : public CameraSource {
   }
 
   std::unique_ptr<VideoChannel> channel_;
-  std::optional<FoundSettings> found_;  ///< nothing: never opened, or not since it had power
+  std::optional<FoundSettings> found_;  ///< empty = never opened, or not since it had power
   FrameLayout layout_;
   bool unsettled_ = true;  ///< a control has changed since the last picture
   Time retry_at_{};

@@ -1,5 +1,5 @@
 #pragma once
-/// One video device: what it is, its formats and controls, its frames. Nothing of exposure policy or of light.
+/// One video device: identity, formats, controls, frames. No exposure policy, no light.
 
 #include <chrono>
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace luxrig {
 
 enum class VideoControl {
   exposure_auto,           ///< a menu: 1 is manual
-  exposure_auto_priority,  ///< 1: the device may lengthen exposures by a lower frame rate
+  exposure_auto_priority,  ///< 1: the device may lower its frame rate for longer exposures
   exposure,                ///< in 100 µs
   autogain,
   gain,
@@ -32,41 +32,41 @@ struct ControlRange {
 
 struct VideoFrame {
   std::vector<std::uint8_t> bytes;
-  /// On the channel's clock, at the end of the exposure or later; nothing: the device does not say.
+  /// On the channel's clock, at the end of the exposure or later; empty if the device does not say.
   std::optional<Duration> captured;
-  bool damaged = false;  ///< the device says that data are missing
+  bool damaged = false;  ///< the device reports missing data
 };
 
 class VideoChannel {
  public:
   virtual ~VideoChannel() = default;
 
-  /// Finds and opens the device; idempotent. A Fault says what is wrong and what would mend it.
+  /// Finds and opens the device; idempotent. A Fault states the problem and its remedy.
   virtual Result<void> open() = 0;
-  /// Ends the stream, too.
+  /// Also ends the stream.
   virtual void close() = 0;
   [[nodiscard]] virtual bool is_open() const = 0;
   /// "HD Webcam at usb-0000:00:14.0-2 (/dev/video0)"; empty while closed.
   [[nodiscard]] virtual std::string where() const = 0;
 
-  // requires is_open(). Whoever finds the device gone closes the channel and gives Cause::network.
-  /// Of those that can be decoded.
+  // requires is_open(). A call that finds the device gone closes the channel and returns Cause::network.
+  /// Only formats that can be decoded.
   [[nodiscard]] virtual std::vector<PixelFormat> formats() = 0;
-  /// The layout that the device really takes, which may be another.
+  /// Returns the layout that the device really uses; it may differ.
   virtual Result<FrameLayout> set_format(PixelFormat format, int width_px, int height_px) = 0;
-  /// Nothing when the device has no such control, or none that can be set.
+  /// Empty if the device has no such control or it cannot be set.
   [[nodiscard]] virtual std::optional<ControlRange> range(VideoControl control) = 0;
   virtual Result<void> set(VideoControl control, std::int64_t value) = 0;
   [[nodiscard]] virtual Result<std::int64_t> get(VideoControl control) = 0;
 
   virtual Result<void> start() = 0;  ///< idempotent
-  /// The next frame, or nothing within `wait`.
+  /// The next frame; empty if none arrives within `wait`.
   virtual Result<std::optional<VideoFrame>> take(std::chrono::milliseconds wait) = 0;
-  /// Frames' times are on this clock.
+  /// The clock of the frames' times.
   [[nodiscard]] virtual Duration clock() const = 0;
 };
 
-/// A Video4Linux capture device. `device`: path, bus, serial number or name; empty: the only one there is.
+/// A Video4Linux capture device. `device`: path, bus, serial number or name; empty = the only one there is.
 [[nodiscard]] std::unique_ptr<VideoChannel> make_v4l2_channel(std::string device);
 
 }  // namespace luxrig

@@ -9,11 +9,11 @@ namespace luxrig {
 namespace {
 
 constexpr double kExposureUnit_s = 1e-4;    ///< of V4L2_CID_EXPOSURE_ABSOLUTE
-constexpr double kExposureKept = 0.02;      ///< relative
+constexpr double kExposureKept = 0.02;      ///< relative tolerance
 constexpr std::int64_t kManual = 1;         ///< V4L2_EXPOSURE_MANUAL
 constexpr std::int64_t kLinearGamma = 100;  ///< USB Video Class 1.5, 4.2.2.3.8: hundredths
 
-/// Values first, then what would choose them.
+/// Values first, then the automatic modes that would choose them.
 constexpr VideoControl kGivenBackInOrder[] = {
     VideoControl::exposure,
     VideoControl::gain,
@@ -31,7 +31,7 @@ tl::unexpected<Fault> not_kept(std::string detail) {
   return tl::unexpected(Fault{Cause::refused, {}, std::move(detail), {}});
 }
 
-/// Sets it unless it is so already, and reads it back.
+/// Sets the control unless it has that value already, and reads it back.
 Result<std::int64_t> keep(VideoChannel& channel, VideoControl control, std::int64_t value, bool& changed) {
   const auto before = channel.get(control);
   if (!before) return before;
@@ -41,7 +41,7 @@ Result<std::int64_t> keep(VideoChannel& channel, VideoControl control, std::int6
   return channel.get(control);
 }
 
-/// Of a control that must be exactly so, where the device has it.
+/// For a control that must have exactly this value, if the device has it.
 Result<void> keep_exactly(VideoChannel& channel, VideoControl control, std::int64_t value, bool& changed,
                           const char* mend) {
   const auto range = channel.range(control);
@@ -134,7 +134,7 @@ Result<void> give_back(VideoChannel& channel, const FoundSettings& found) {
     if (now && *now == value) continue;
     auto done = now ? channel.set(control, value) : tl::unexpected(now.error());
     if (!done && outcome) outcome = std::move(done);
-    if (!channel.is_open()) break;  // it has gone
+    if (!channel.is_open()) break;  // the device is gone
   }
   return outcome;
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// Has a camera expose as it is told, and nothing by itself; and sees that it does.
+/// Makes a camera expose exactly as asked, with nothing automatic, and verifies that it does.
 
 #include <utility>
 #include <vector>
@@ -9,24 +9,25 @@
 namespace luxrig {
 
 struct VideoSettings {
-  double exposure_s = 0;  ///< as the device has it; 0: it has no control of it
-  bool changed = false;   ///< frames under way may have been exposed before
+  double exposure_s = 0;  ///< as the device reports it; 0 = it has no exposure control
+  bool changed = false;   ///< pending frames may have been exposed with the old settings
 };
 
-/// Everything automatic off, tone at its default, then exposure and gain; all is read back. Cause::refused: the device
-/// does not keep what it was told, cannot expose so, or wants to be told and was not.
+/// Turns off everything automatic, sets tone to its default, then exposure and gain, and reads all back.
+/// Cause::refused: the device does not keep a value, cannot expose as wanted, or needs a value that the rig does not
+/// give.
 [[nodiscard]] Result<VideoSettings> fix_settings(VideoChannel& channel, const PictureTaking& wanted);
 
-/// What the controls that fix_settings() sets were before, in the order in which they can be set; those that the device
-/// has and tells.
+/// Earlier values of the controls that fix_settings() sets, in an order in which they can be set back. Only controls
+/// that the device has and can report.
 using FoundSettings = std::vector<std::pair<VideoControl, std::int64_t>>;
 [[nodiscard]] FoundSettings settings_found(VideoChannel& channel);
 
-/// Sets them so again; automatic modes last, as devices refuse an exposure or a gain that they choose themselves. All
-/// are tried; the first that failed is given.
+/// Restores them. Automatic modes come last, as devices refuse an exposure or gain that they choose themselves. Tries
+/// all; returns the first failure.
 [[nodiscard]] Result<void> give_back(VideoChannel& channel, const FoundSettings& found);
 
-/// Least and most exposure the device has; nothing when it has no control of it.
+/// Shortest and longest exposure of the device; empty if it has no exposure control.
 [[nodiscard]] std::optional<std::pair<double, double>> exposure_range_s(VideoChannel& channel);
 
 }  // namespace luxrig

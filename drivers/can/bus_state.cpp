@@ -26,7 +26,7 @@ const char* name_of(ControllerState state) {
 
 void BusState::heard(const CanFrame& frame) {
   if (!frame.error) {
-    if (state_ == ControllerState::off) state_ = ControllerState::active;  // what is off the bus hears nothing
+    if (state_ == ControllerState::off) state_ = ControllerState::active;  // it hears nothing while off the bus
     return;
   }
   if ((frame.id & kController) != 0) {

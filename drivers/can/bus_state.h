@@ -1,6 +1,6 @@
 #pragma once
-/// What error frames (linux/can/error.h) and good frames say of the CAN controller. A write may still succeed while it
-/// is off the bus, so that only this tells.
+/// State of the CAN controller, from error frames (linux/can/error.h) and good frames. A write may succeed while the
+/// controller is off the bus, so only this state shows it.
 
 #include <cstdint>
 
@@ -14,7 +14,7 @@ enum class ControllerState { active, warning, passive, off };
 
 class BusState {
  public:
-  /// A frame of either kind.
+  /// A data frame or an error frame.
   void heard(const CanFrame& frame);
   [[nodiscard]] ControllerState state() const { return state_; }
   [[nodiscard]] std::uint64_t overruns() const { return overruns_; }  ///< frames that the controller lost

@@ -1,6 +1,6 @@
 #pragma once
-/// CAN frames in and out without ever blocking: over a SocketCAN interface (can_socket.h), or in datagrams to a
-/// simulated bus (can_datagrams.h). Error frames are received like others.
+/// CAN frames in and out, never blocking: over a SocketCAN interface (can_socket.h), or as datagrams to a simulated bus
+/// (can_datagrams.h). Error frames are received like others.
 
 #include <optional>
 
@@ -11,21 +11,21 @@ namespace luxrig::can {
 
 enum class Sent {
   yes,
-  queue_full  ///< not taken (ENOBUFS): nobody acknowledges, or there is too much to send
+  queue_full  ///< not taken (ENOBUFS): no node acknowledges, or there is too much to send
 };
 
 class CanChannel {
  public:
   virtual ~CanChannel() = default;
-  /// Idempotent. Fault network when there is no such interface or it is down, system when the kernel has no CAN.
+  /// Idempotent. Fault network if there is no such interface or it is down, system if the kernel has no CAN.
   virtual Result<void> open() = 0;
   virtual void close() = 0;
-  /// False also after an error that only opening again may mend (the interface went down or away).
+  /// Also false after an error that only reopening may mend (the interface is down or gone).
   [[nodiscard]] virtual bool is_open() const = 0;
   /// requires is_open(). Success says nothing about arrival.
   virtual Result<Sent> send(const CanFrame& frame) = 0;
   virtual std::optional<CanFrame> receive() = 0;
-  /// What went wrong since the last call, once.
+  /// An error since the last call, once.
   virtual std::optional<Fault> take_error() = 0;
 };
 

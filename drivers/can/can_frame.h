@@ -24,11 +24,11 @@ struct CanFrame {
   [[nodiscard]] std::span<const std::uint8_t> payload() const { return {data.data(), size}; }
 };
 
-/// requires an id of 11 bit and at most 8 bytes.
+/// requires an 11-bit id and at most 8 bytes.
 [[nodiscard]] CanFrame data_frame(std::uint32_t id, std::span<const std::uint8_t> payload);
 
 [[nodiscard]] std::array<std::uint8_t, kFrameBytes> to_bytes(const CanFrame& frame);
-/// Nothing when there are not just 16, or the length is above 8.
+/// Empty unless there are exactly 16 bytes and the length is at most 8.
 [[nodiscard]] std::optional<CanFrame> from_bytes(std::span<const std::uint8_t> bytes);
 
 }  // namespace luxrig::can

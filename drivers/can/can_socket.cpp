@@ -58,7 +58,7 @@ class CanSocket final : public CanChannel {
     if (::bind(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
       return failed("using the interface " + settings_.interface_name);
     }
-    // An interface that is down can be bound to; the socket says so only as a pending error.
+    // A socket can bind to an interface that is down; it shows only as a pending error.
     int pending = 0;
     socklen_t size = sizeof pending;
     if (::getsockopt(fd_, SOL_SOCKET, SO_ERROR, &pending, &size) == 0 && pending != 0) {
@@ -83,7 +83,7 @@ class CanSocket final : public CanChannel {
     if (::write(fd_, &raw, sizeof raw) == sizeof raw) return Sent::yes;
     if (errno == ENOBUFS || errno == EAGAIN) return Sent::queue_full;
     const Fault fault = os_fault("sending on " + settings_.interface_name, errno);
-    close();  // down, or gone: opening it again may help
+    close();  // down or gone: reopening may help
     return tl::unexpected(fault);
   }
 

@@ -1,6 +1,6 @@
 #pragma once
 /// A CAN interface of Linux (SocketCAN, PF_CAN raw). Bit rate, restart-ms (recovery from bus-off) and txqueuelen are
-/// the interface's own: `ip link set can0 type can bitrate 500000 restart-ms 100`, `ip link set can0 txqueuelen 100
+/// set at the interface: `ip link set can0 type can bitrate 500000 restart-ms 100`, `ip link set can0 txqueuelen 100
 /// up`.
 
 #include <memory>
@@ -13,7 +13,7 @@ namespace luxrig::can {
 
 struct CanSocketSettings {
   std::string interface_name;      ///< "can0"
-  std::vector<std::uint32_t> ids;  ///< 11-bit data frames to hear; beside them, error frames of the controller's state
+  std::vector<std::uint32_t> ids;  ///< 11-bit data frames to receive, besides error frames of the controller's state
 };
 
 [[nodiscard]] std::unique_ptr<CanChannel> make_can_socket(CanSocketSettings settings);

@@ -21,10 +21,10 @@ namespace {
 using cia402::HeadAxes;
 using std::chrono::milliseconds;
 
-constexpr Duration kCallBound = milliseconds(20);  ///< nothing waits; this is for a slow machine
+constexpr Duration kCallBound = milliseconds(20);  ///< nothing waits; this allows for a slow machine
 constexpr Duration kShortestReopen = milliseconds(100), kLongestReopen = milliseconds(1000);
 constexpr Duration kShortestQueuePause = milliseconds(20), kLongestQueuePause = milliseconds(200);
-constexpr int kMostFramesAtOnce = 2000;  ///< per call, so that a flood cannot hold it up
+constexpr int kMostFramesAtOnce = 2000;  ///< per call, so that a flood cannot delay it
 constexpr double kTravelSlack_rad = 1e-6;
 
 cia402::AxesOptions axes_options(const Bus& bus) {
@@ -117,12 +117,12 @@ class CanopenDriver final : public Driver, public Mover {
     for (const AimCommand& command : commands) {
       const auto head =
           std::find_if(heads_.begin(), heads_.end(), [&](const Head& h) { return h.fixture == command.fixture; });
-      // The zoom is the lamp's, on another bus: it turns no axis.
+      // The zoom belongs to the lamp, on another bus: it turns no axis.
       if (head != heads_.end()) head->axes.set_target({command.joints.pan_rad, command.joints.tilt_rad, 0});
     }
     listen(now);
     if (now >= next_cycle_) {
-      next_cycle_ = std::max(next_cycle_ + period_, now + period_ / 2);  // after a stall no burst
+      next_cycle_ = std::max(next_cycle_ + period_, now + period_ / 2);  // no burst after a stall
       cycle(now);
     }
     judge(now);
@@ -202,7 +202,7 @@ class CanopenDriver final : public Driver, public Mover {
     }
   }
 
-  /// What each axis is told, then the SYNC on which all of them act at once.
+  /// Sends each axis its frames, then the SYNC on which all act at once.
   void cycle(Time now) {
     cia402::Frames frames;
     if (now >= heartbeat_at_) {
@@ -232,7 +232,7 @@ class CanopenDriver final : public Driver, public Mover {
         return;
       }
       if (*sent == can::Sent::queue_full) {
-        // Nobody acknowledges, or the line is full: more would only wait. What is due is said again in the next cycle.
+        // No node acknowledges, or the line is full: more frames would only wait. The next cycle repeats them.
         quiet_until_ = now + queue_pause_;
         queue_pause_ = std::min(2 * queue_pause_, kLongestQueuePause);
         trouble_ =
@@ -244,7 +244,7 @@ class CanopenDriver final : public Driver, public Mover {
     queue_pause_ = kShortestQueuePause;
   }
 
-  // --- what is said of it ---
+  // --- health ---
 
   /// Life of the bus, then of each axis.
   void judge(Time now) {
@@ -290,7 +290,7 @@ class CanopenDriver final : public Driver, public Mover {
   std::unique_ptr<can::CanChannel> channel_;
   can::BusState state_;
   std::vector<Head> heads_;
-  std::map<std::size_t, JointRange> ranges_;  ///< by fixture, of every light that is turned here
+  std::map<std::size_t, JointRange> ranges_;  ///< by fixture, for every light that is turned here
   LifeRecord life_;
   Time next_cycle_{}, heartbeat_at_{}, open_at_{}, quiet_until_{};
   Duration reopen_after_ = kShortestReopen, queue_pause_ = kShortestQueuePause;
@@ -298,7 +298,7 @@ class CanopenDriver final : public Driver, public Mover {
   std::optional<Fault> trouble_;  ///< of the channel, until a frame arrives
 };
 
-/// What its nodes send to a master.
+/// Identifiers that the bus's nodes send to a master.
 std::vector<std::uint32_t> ids_to_hear(const Rig& rig, std::size_t bus) {
   std::vector<std::uint32_t> ids;
   for (const Fixture& fixture : rig.fixtures) {
@@ -334,7 +334,7 @@ std::unique_ptr<Driver> make_canopen(const Rig& rig, std::size_t bus, const std:
 
 AxesWithoutData canopen_axes_without_data(const Rig& rig, std::size_t fixture) {
   const cia402::AxesOptions options = axes_options(rig.buses[rig.fixtures[fixture].axes->bus]);
-  return {!options.hold_on_stop, to_seconds(3 * options.heartbeat),  // as 1016 is set
+  return {!options.hold_on_stop, to_seconds(3 * options.heartbeat),  // as object 1016 is set
           "CiA 301: 1016, 1029; CiA 402: 6007, 605A"};
 }
 

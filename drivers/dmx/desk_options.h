@@ -1,5 +1,5 @@
 #pragma once
-/// The options of a DMX bus that follows a lighting desk: the same for every protocol that can be heard.
+/// The options of a DMX bus that follows a lighting desk; the same for every protocol with an input.
 
 #include <cstdint>
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace luxrig {
 
-// Rows for a driver's table; it adds its own "input_port".
+// Rows for a driver's option table; it adds its own "input_port".
 inline constexpr OptionDoc kInputOption = {
     "input",
     "text",
@@ -44,7 +44,7 @@ inline constexpr OptionDoc kInputMergeOption = {"input_merge",
                                                 "takes precedence, or the latest change"};
 
 struct DeskOptions {
-  std::optional<DeskRules> rules;  ///< nothing: no desk is listened to
+  std::optional<DeskRules> rules;  ///< empty = no desk input
   int offset = 0;
   std::uint16_t port = 0;
   MergeRule merge = MergeRule::htp;
@@ -52,7 +52,7 @@ struct DeskOptions {
 /// requires check_desk_options() to be empty.
 [[nodiscard]] DeskOptions desk_options(const Bus& bus, std::span<const OptionDoc> docs);
 
-/// Words that are none of those known, and desk universes outside the range. requires check_options() to be empty.
+/// Unknown words, and desk universes outside the range. requires check_options() to be empty.
 [[nodiscard]] std::vector<Problem> check_desk_options(const Rig& rig, std::size_t bus, std::span<const OptionDoc> docs,
                                                       int lowest_universe, int highest_universe);
 

@@ -1,6 +1,5 @@
 #pragma once
-/// Several senders of one universe -> the slots that count. sACN and Art-Net merge alike, but for priorities, which
-/// Art-Net has not.
+/// Merges several senders of one universe. sACN and Art-Net merge alike, except that Art-Net has no priorities.
 
 #include <array>
 #include <bitset>
@@ -13,16 +12,16 @@
 
 namespace luxrig {
 
-/// Among senders of equal priority, slot by slot: the highest value takes precedence, or the one that changed last.
+/// Among senders of equal priority, slot by slot: the highest value takes precedence, or the latest change.
 enum class MergeRule { htp, ltp };
 
-/// What one sender has said. A packet with fewer slots leaves the others as they were.
+/// The slots of one sender. A packet with fewer slots leaves the others unchanged.
 struct SentSlots {
   DmxSlots value{};
-  std::array<std::uint64_t, kDmxSlots> changed{};  ///< `tick` of the last change; 0 = never said
-  std::size_t count = 0;                           ///< slots said so far
+  std::array<std::uint64_t, kDmxSlots> changed{};  ///< `tick` of the last change; 0 = never sent
+  std::size_t count = 0;                           ///< slots sent so far
 
-  /// tick: grows from packet to packet, over all senders.
+  /// tick: grows with each packet, over all senders.
   void take(std::span<const std::uint8_t> slots, std::uint64_t tick);
 };
 
@@ -30,20 +29,20 @@ struct SentSlots {
 struct MergeInput {
   const SentSlots* slots = nullptr;
   int priority = 0;                         ///< of all its slots
-  const DmxSlots* slot_priority = nullptr;  ///< if not null: per slot instead, 0 = no value there
+  const DmxSlots* slot_priority = nullptr;  ///< if not null: priority per slot instead, 0 = no value there
 };
 
 struct Merged {
   DmxSlots slots{};
-  std::bitset<kDmxSlots> given;  ///< somebody has a value there
+  std::bitset<kDmxSlots> given;  ///< slots for which a sender has a value
 };
 [[nodiscard]] Merged merge(std::span<const MergeInput> senders, MergeRule rule);
 
 /// One universe as a receiver knows it.
 struct HeardUniverse {
   DeskPresence presence = DeskPresence::unknown;
-  Merged levels;       ///< the newest, or the last before everybody went
-  std::string source;  ///< name of who has the highest priority, with the number of others; empty: nobody yet
+  Merged levels;       ///< the newest, or the last before all senders went
+  std::string source;  ///< name of the source with the highest priority, with the number of others; empty = none yet
 };
 
 }  // namespace luxrig

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kAngleSlack_rad = 1e-6;
 
-/// Most significant first, in the order of SlotUse.
+/// Most significant byte first, in the order of SlotUse.
 struct ByteOfValue {
   SlotUse coarse;
   int byte;  // 0…2
@@ -25,7 +25,7 @@ ByteOfValue byte_of_value(SlotUse use) {
 static_assert(static_cast<int>(SlotUse::pan) == 3 && static_cast<int>(SlotUse::tilt) == 6 &&
               static_cast<int>(SlotUse::zoom) == 9 && static_cast<int>(SlotUse::constant) == 12);
 
-/// How many slots of the patch make up the value that a slot is a byte of.
+/// Number of the patch's slots that form this slot's value.
 int bytes_of_value(const DmxPatch& patch, const DmxSlot& slot) {
   if (slot.use >= SlotUse::constant) return 1;
   const SlotUse coarse = byte_of_value(slot.use).coarse;
@@ -38,7 +38,7 @@ int bytes_of_value(const DmxPatch& patch, const DmxSlot& slot) {
   return bytes;
 }
 
-/// It is shut at level 0 and open at any other: it tells no level.
+/// A shutter slot: shut at level 0, open at any other. It shows no level.
 bool is_shutter_at_dark(const DmxSlot& slot) {
   return slot.travel.at_dark && slot.travel.at_start == slot.travel.at_end;
 }
@@ -68,7 +68,7 @@ DmxPatchbay::DmxPatchbay(const Rig& rig, std::size_t bus) : bus_(rig.buses[bus].
     entry.name = fixture.name;
     entry.patch = std::get<DmxPatch>(fixture.patch);
     entry.range = fixture.range;
-    entry.moves = fixture.moves && (!fixture.axes || fixture.range.zooms());  // of a head on axes the zoom is here
+    entry.moves = fixture.moves && (!fixture.axes || fixture.range.zooms());  // the zoom of a head on axes is here
     for (const DmxSlot& slot : entry.patch.slots) entry.bytes.push_back(bytes_of_value(entry.patch, slot));
     entry.universe = static_cast<std::size_t>(std::distance(numbers.begin(), numbers.find(entry.patch.universe)));
     entry.joints = fixture.joints;
@@ -142,7 +142,7 @@ void DmxPatchbay::encode(const Entry& entry) {
                          : coarse == SlotUse::tilt ? tilt
                          : coarse == SlotUse::zoom ? zoom
                                                    : entry.drive;
-    // The coarse byte of a value that has a fine one is its high byte; alone it is the whole value in 8 bits.
+    // If a value has a fine byte, the coarse byte is its high byte; else it is the whole value in 8 bits.
     return encode_dmx(slot.travel.at(share), entry.bytes[i]) >> (8 * (entry.bytes[i] - 1 - byte)) & 0xFF;
   };
   DmxSlots& out = universes_[entry.universe].slots;
@@ -173,7 +173,7 @@ std::vector<std::size_t> DmxPatchbay::fixtures_of(std::size_t universe) const {
   return fixtures;
 }
 
-/// Share 0…1 of level or travel that the slots of a cell carry; nothing when one of them is not given.
+/// Share 0…1 of level or travel in a cell's slots; empty if one of them is not given.
 std::optional<double> DmxPatchbay::share_in_cell(const Entry& entry, std::size_t coarse_slot, const DmxSlots& slots,
                                                  const std::bitset<kDmxSlots>& given) {
   const DmxSlot& coarse = entry.patch.slots[coarse_slot];

@@ -1,8 +1,8 @@
 #pragma once
-/// What the fixtures of one bus put into which DMX slots.
+/// Maps the fixtures of one bus to DMX slots.
 ///
-/// Drives and joint angles in, whole 512-slot universes out: DMX512-A receivers keep the slots that a short packet
-/// leaves out, so none is sent. A 16-bit value is encoded once, so its two bytes always travel in the same frame.
+/// Drives and joint angles in, whole 512-slot universes out. Short packets are not sent, as DMX512-A receivers keep the
+/// slots that a short packet leaves out. A 16-bit value is encoded once, so its two bytes always go in the same frame.
 
 #include <array>
 #include <bitset>
@@ -20,9 +20,9 @@ namespace luxrig {
 inline constexpr std::size_t kDmxSlots = 512;
 using DmxSlots = std::array<std::uint8_t, kDmxSlots>;  ///< [0] is address 1
 
-/// The fastest that E1.11 allows a full universe to repeat: break 92 µs + mark 12 µs + 513 slots · 44 µs.
+/// Shortest period of a full universe in E1.11: break 92 µs + mark 12 µs + 513 slots · 44 µs.
 inline constexpr Duration kDmxShortestPeriod = std::chrono::microseconds(22676);
-/// How often Luxrig makes a frame: 44 a second.
+/// Luxrig's frame period: 44 frames a second.
 inline constexpr Duration kDmxWritePeriod = std::chrono::nanoseconds(22727273);
 
 struct DmxUniverse {
@@ -30,7 +30,7 @@ struct DmxUniverse {
   DmxSlots slots{};
 };
 
-/// value 0…1 to the nearest whole number of 1…3 bytes: of 0…255, 0…65535 or 0…16777215.
+/// value 0…1 as the nearest whole number of 1…3 bytes: of 0…255, 0…65535 or 0…16777215.
 [[nodiscard]] std::uint32_t encode_dmx(double value, int bytes);
 
 /// Share 0…1 of a joint's travel: the inverse of angle = from + v/65535·(to − from), clamped to the travel.
@@ -38,22 +38,22 @@ struct DmxUniverse {
 
 class DmxPatchbay {
  public:
-  /// requires the patch to be checked (check_dmx_patch). Every fixture starts dark, heads where the rig file aims them.
+  /// requires the patch to be checked (check_dmx_patch). Every fixture starts dark; heads start at the rig file's aim.
   DmxPatchbay(const Rig& rig, std::size_t bus);
 
-  /// All or nothing: Cause::invalid names the fixture and what is wrong with its value.
+  /// All or nothing: Cause::invalid names the fixture and the error in its value.
   Result<void> set_levels(std::span<const LevelCommand> commands);
   /// The same for heads; takes effect with the next set_levels. Angles may pass the range by 1e-6 rad (rounding).
   Result<void> set_aims(std::span<const AimCommand> commands);
 
   /// Every universe that a fixture of the bus uses, in ascending order.
   [[nodiscard]] std::span<const DmxUniverse> universes() const { return universes_; }
-  /// Which slots of a universe a fixture of this bus uses and sends, as 1; index as in universes().
+  /// The slots of a universe that this bus's fixtures use and send, as 1; index as in universes().
   [[nodiscard]] DmxSlots used_slots(std::size_t universe) const;
   /// Fixtures of a universe, ascending; index as in universes().
   [[nodiscard]] std::vector<std::size_t> fixtures_of(std::size_t universe) const;
-  /// What slots that somebody else sends would make these fixtures do; a fixture whose dimmer is not `given` is left
-  /// out, and so are joints of which a part is not. The inverse of what universes() holds, to half a step.
+  /// The effect that these slots, sent by a desk, would have on the fixtures. Leaves out a fixture whose dimmer is not
+  /// `given`, and joints with a missing part. The inverse of universes(), to half a step.
   [[nodiscard]] std::vector<DeskCommand> decode(std::size_t universe, const DmxSlots& slots,
                                                 const std::bitset<kDmxSlots>& given) const;
   [[nodiscard]] bool has_heads() const { return has_heads_; }
@@ -64,7 +64,7 @@ class DmxPatchbay {
     DmxPatch patch;
     JointRange range;
     bool moves = false;
-    std::vector<int> bytes;    ///< by slot: how many make up the value that it is a byte of
+    std::vector<int> bytes;    ///< by slot: number of bytes in its value
     std::size_t universe = 0;  ///< index in universes_
     double drive = 0;
     Joints joints;

@@ -8,11 +8,11 @@ namespace luxrig {
 namespace {
 
 constexpr Duration kReopenEvery = std::chrono::seconds(1);
-// The network may answer as seldom as once a second (Linux limits its ICMP to that), so silence counts as recovery
-// only after more than a second.
+// Network errors may come only once a second (Linux limits ICMP to that), so silence means recovery only after more
+// than a second.
 constexpr Duration kQuietBeforeRecovery = std::chrono::milliseconds(1200);
 constexpr int kErrorsPerCycle = 64;
-constexpr int kDatagramsPerCycle = 256;  // a flood must not hold up the output
+constexpr int kDatagramsPerCycle = 256;  // a flood must not delay the output
 
 }  // namespace
 
@@ -170,7 +170,7 @@ void UdpDmxDriver::send(Time now, const SocketAddress& to, std::span<const std::
 }
 
 void UdpDmxDriver::note_error(Time now, const Fault& fault) {
-  if (life_.life() == Life::configured) return;  // a goodbye that cannot be sent: nobody is left to be told
+  if (life_.life() == Life::configured) return;  // an unsendable goodbye has no one to report to
   last_error_ = now;
   Fault with_figures = fault;
   with_figures.detail += fmt::format(" ({} errors, {} packets)", life_.health().errors + 1, life_.health().sent);

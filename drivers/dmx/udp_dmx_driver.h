@@ -1,6 +1,6 @@
 #pragma once
-/// What every driver that carries DMX universes over UDP has in common: life cycle, reopening, errors of the network
-/// and recovery from them. A driver derives from it and says what is sent when, and what it makes of what arrives.
+/// Common base of drivers that carry DMX universes over UDP: life cycle, reopening, network errors and recovery. A
+/// derived driver decides what to send when, and handles received datagrams.
 
 #include <memory>
 #include <optional>
@@ -30,7 +30,7 @@ class UdpDmxDriver : public Driver, public LevelOutput, public Mover, public Lev
   Result<void> write(Time now, std::span<const LevelCommand> commands) final;
   [[nodiscard]] bool settled() const final;
 
-  /// A part for each universe.
+  /// One part for each universe.
   LevelInput* level_input() final { return desk_.rules ? this : nullptr; }
   [[nodiscard]] DeskRules rules() const final { return desk_.rules.value_or(DeskRules{}); }
   [[nodiscard]] std::vector<DeskPart> parts() const final;
@@ -38,32 +38,32 @@ class UdpDmxDriver : public Driver, public LevelOutput, public Mover, public Lev
   void set_silent(Time now, std::size_t part, bool silent) final;
 
  protected:
-  /// One channel, or one for each network interface: everything goes out by all of them.
+  /// One channel, or one for each network interface; every packet goes out on all of them.
   UdpDmxDriver(std::vector<std::unique_ptr<DatagramChannel>> channels, const Rig& rig, std::size_t bus,
                DeskOptions desk);
 
-  // What a derived driver fills in.
+  // Implemented by a derived driver.
   virtual void begin(Time) {}                                       ///< activated; the channels are not open yet
   virtual void opened(DatagramChannel&) {}                          ///< a channel has just been opened
-  virtual void hear(Time, const Datagram&) {}                       ///< something has arrived
-  virtual void send_frame(Time now) = 0;                            ///< sends what is due
+  virtual void hear(Time, const Datagram&) {}                       ///< a datagram has arrived
+  virtual void send_frame(Time now) = 0;                            ///< sends the packets that are due
   [[nodiscard]] virtual bool is_sent(const DmxUniverse& universe) const = 0;  ///< its slots as they are now
   virtual void say_goodbye(Time) {}                                 ///< about to close
-  virtual void fall_silent(Time, const DmxUniverse&) {}             ///< this universe is sent no more, for now
-  virtual HeardUniverse heard(Time, int) { return {}; }             ///< of a universe of the desk's
-  virtual void rest() {}                                            ///< closed; the next activation starts afresh
-  [[nodiscard]] virtual bool has_answers() const { return false; }  ///< peers answer, so a send alone proves nothing
-  /// What keeps data from reaching a lamp although the network has nothing to say; nothing when all is well.
+  virtual void fall_silent(Time, const DmxUniverse&) {}             ///< this universe is not sent for now
+  virtual HeardUniverse heard(Time, int) { return {}; }             ///< of one of the desk's universes
+  virtual void rest() {}                                            ///< closed; the next activation starts over
+  [[nodiscard]] virtual bool has_answers() const { return false; }  ///< peers answer, so a send alone is no proof
+  /// A reason why data does not reach a lamp although the network reports no error; empty if all is well.
   [[nodiscard]] virtual std::optional<std::string> missing(Time) const { return std::nullopt; }
 
-  /// Sends by all channels, and counts.
+  /// Sends on all channels, and counts.
   void send(Time now, const SocketAddress& to, std::span<const std::uint8_t> bytes);
-  /// Goodbye and close. A derived destructor calls it: the base's is too late for what it overrides.
+  /// Says goodbye and closes. A derived destructor must call it: the base's is too late for overridden functions.
   void close();
   [[nodiscard]] const std::vector<std::unique_ptr<DatagramChannel>>& channels() const { return channels_; }
-  [[nodiscard]] Duration write_bound() const;  ///< sends never block; 0.1 ms each is ten times what one costs
+  [[nodiscard]] Duration write_bound() const;  ///< sends never block; allows 0.1 ms each, ten times the real cost
 
-  /// Takes what has arrived, and what the network says about earlier packets.
+  /// Takes received datagrams, and network errors about earlier packets.
   void listen_to_network(Time now);
 
   /// Whether a universe is left out of the frame; index as in bay_.universes().

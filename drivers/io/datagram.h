@@ -1,5 +1,5 @@
 #pragma once
-/// Datagrams in and out without ever blocking. udp.h is the real one; tests put a scripted one in its place.
+/// Datagrams in and out, never blocking. udp.h has the real channel; tests use a scripted one.
 
 #include <array>
 #include <cstdint>
@@ -35,7 +35,7 @@ class DatagramChannel {
  public:
   virtual ~DatagramChannel() = default;
 
-  /// Idempotent. Fault system or network with the failed call and what the operating system said.
+  /// Idempotent. Fault system or network, with the failed call and the operating system's message.
   virtual Result<void> open() = 0;
   virtual void close() = 0;
   [[nodiscard]] virtual bool is_open() const = 0;
@@ -43,13 +43,13 @@ class DatagramChannel {
   /// Hands one datagram to the network. Success says nothing about arrival.
   virtual Result<void> send(const SocketAddress& to, std::span<const std::uint8_t> bytes) = 0;
 
-  /// Hears what is sent to a multicast group from now on, until closed. Idempotent.
+  /// Receives from a multicast group until closed. Idempotent.
   virtual Result<void> join(std::uint32_t group) = 0;
 
-  /// What the network said about earlier datagrams (port closed, host unreachable), oldest first; each once.
+  /// Network errors about earlier datagrams (port closed, host unreachable), oldest first, each once.
   virtual std::optional<Fault> take_error() = 0;
 
-  /// The next datagram that has arrived, or nothing.
+  /// The next datagram that has arrived, if any.
   virtual std::optional<Datagram> receive() = 0;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-/// How much of a call's bound is left. Blocking on a descriptor takes real time whatever clock the controller runs
-/// on, so this, alone in drivers/, reads the real one; no value that is sent or reported depends on it.
+/// The time left of a call's bound. Blocking on a descriptor takes real time whatever clock the controller uses, so
+/// this class, the only one in drivers/, reads the real clock. No value that is sent or reported depends on it.
 
 #include <algorithm>
 #include <chrono>
@@ -11,7 +11,7 @@ class Deadline {
  public:
   explicit Deadline(std::chrono::milliseconds budget) : end_(std::chrono::steady_clock::now() + budget) {}
 
-  /// Rounded up, so that waiting for it does pass the deadline; 0 once it has passed.
+  /// Rounded up, so that a wait of this length does pass the deadline; 0 once it has passed.
   [[nodiscard]] std::chrono::milliseconds left() const {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(end_ - std::chrono::steady_clock::now());
     return std::max(left, std::chrono::milliseconds(0));

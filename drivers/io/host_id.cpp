@@ -13,11 +13,11 @@ std::uint64_t fnv_1a(std::string_view text, std::uint64_t state) {
     state ^= static_cast<std::uint8_t>(letter);
     state *= 0x100000001b3ULL;
   }
-  state ^= 0xFF;  // the end of a part: ("ab", "c") is not ("a", "bc")
+  state ^= 0xFF;  // end of a part: ("ab", "c") differs from ("a", "bc")
   return state * 0x100000001b3ULL;
 }
 
-std::uint64_t mixed(std::uint64_t x) {  // splitmix64's finaliser: FNV alone leaves the high bits thin
+std::uint64_t mixed(std::uint64_t x) {  // splitmix64's finaliser: FNV alone mixes the high bits poorly
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
   x = (x ^ (x >> 27)) * 0x94d049bb133111ebULL;
   return x ^ (x >> 31);

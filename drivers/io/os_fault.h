@@ -1,5 +1,5 @@
 #pragma once
-/// What the operating system refused, as a Fault.
+/// An error of the operating system as a Fault.
 
 #include <string>
 
@@ -7,8 +7,8 @@
 
 namespace luxrig {
 
-/// `error` is an errno. Trouble with the way to the peer is Cause::network, the rest (permission, descriptors, no such
-/// interface) Cause::system. The caller adds device and since.
+/// `error` is an errno. Trouble on the way to the peer is Cause::network. The rest (permission, descriptors, no such
+/// interface) is Cause::system. The caller adds device and since.
 [[nodiscard]] Fault os_fault(const std::string& doing, int error);
 
 }  // namespace luxrig

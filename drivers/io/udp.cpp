@@ -56,7 +56,7 @@ class Udp final : public DatagramChannel {
 
   Result<void> send(const SocketAddress& to, std::span<const std::uint8_t> bytes) override {
     const sockaddr_in address = to_sockaddr(to);
-    // An error about an earlier datagram is reported by the next send in place of sending: take it and try again.
+    // A pending error about an earlier datagram makes the next send fail without sending: take the error and retry.
     for (int attempt = 0;; ++attempt) {
       const auto sent = ::sendto(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL,
                                  reinterpret_cast<const sockaddr*>(&address), sizeof(address));
@@ -77,7 +77,7 @@ class Udp final : public DatagramChannel {
     };
     const int last = further_.empty() ? fd_ : further_.back();
     bool added = add(last);
-    // A socket may be in so many groups only (net.ipv4.igmp_max_memberships, 20): then another one hears the rest.
+    // A socket can join only so many groups (net.ipv4.igmp_max_memberships, 20). Further groups use another socket.
     if (!added && errno == ENOBUFS) {
       if (auto opened = open_another(); !opened) return opened;
       added = add(further_.back());
@@ -88,7 +88,7 @@ class Udp final : public DatagramChannel {
   }
 
   std::optional<Fault> take_error() override {
-    // IP_RECVERR keeps each ICMP answer, with the address it is about, even though the socket is not connected.
+    // IP_RECVERR keeps each ICMP error with its destination address, although the socket is not connected.
     std::array<std::uint8_t, 8> payload{};
     std::array<std::uint8_t, 512> control{};
     sockaddr_in about{};
@@ -120,7 +120,7 @@ class Udp final : public DatagramChannel {
 
  private:
   static std::optional<Datagram> receive_by(int fd) {
-    // Twice, since a pending error is reported once in place of the datagram behind it.
+    // Twice, since a pending error is reported once in place of the next datagram.
     for (int attempt = 0; attempt < 2; ++attempt) {
       std::array<std::uint8_t, 2048> buffer{};
       sockaddr_in from{};
@@ -145,7 +145,7 @@ class Udp final : public DatagramChannel {
     return {};
   }
 
-  /// The interface of the settings; of no interface in particular when they name none.
+  /// The interface of the settings; unspecified if they name none.
   Result<ip_mreqn> interface_request() const {
     ip_mreqn request{};
     if (settings_.multicast_interface.empty()) return request;
@@ -182,7 +182,7 @@ class Udp final : public DatagramChannel {
       }
     }
     if (settings_.local_port != 0) {
-      // Only the groups joined here: else a group that another program of this host has joined comes along.
+      // Only groups joined here. Otherwise this socket also gets groups that another program of this host has joined.
       if (auto done = set(IPPROTO_IP, IP_MULTICAST_ALL, 0, "limiting multicast to its groups"); !done) return done;
       const sockaddr_in local = to_sockaddr({INADDR_ANY, settings_.local_port});
       if (::bind(fd_, reinterpret_cast<const sockaddr*>(&local), sizeof(local)) != 0) {
@@ -194,7 +194,7 @@ class Udp final : public DatagramChannel {
 
   UdpSettings settings_;
   int fd_ = -1;
-  std::vector<int> further_;  ///< sockets for groups beyond what one may join
+  std::vector<int> further_;  ///< sockets for groups beyond the limit of one socket
   std::set<std::uint32_t> joined_;
 };
 
@@ -220,7 +220,7 @@ std::string text_of(const SocketAddress& address) { return text_of(address.ipv4)
 std::uint32_t local_address_towards(std::uint32_t ipv4) {
   const int fd = ::socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
   if (fd < 0) return 0;
-  // To connect a UDP socket only looks up the route.
+  // Connecting a UDP socket only looks up the route.
   const sockaddr_in to = to_sockaddr({ipv4, 9});
   sockaddr_in local{};
   socklen_t size = sizeof(local);

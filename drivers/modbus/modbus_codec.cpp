@@ -23,7 +23,7 @@ constexpr std::uint8_t kExceptionFlag = 0x80;
 // Offsets in a TCP frame. MBAP header: Messaging on TCP/IP 1.0b, 3.1.3.
 constexpr std::size_t kTransaction = 0;
 constexpr std::size_t kProtocol = 2;
-constexpr std::size_t kLength = 4;  // of what follows: unit and PDU
+constexpr std::size_t kLength = 4;  // of unit and PDU, which follow
 constexpr std::size_t kUnit = 6;
 constexpr std::size_t kPdu = 7;
 
@@ -56,7 +56,7 @@ std::size_t most_of(Function function) {
   return 0;
 }
 
-/// What stands where a request has its count, and a write's answer the same.
+/// Value of a request's count field; a write's answer repeats it.
 std::size_t value_field(const Request& request) {
   if (reads(request.function)) return request.count;
   if (request.function == Function::write_coil) return request.values[0] != 0 ? kCoilOn : 0;
@@ -127,7 +127,7 @@ Answer decode_pdu(const Request& request, std::span<const std::uint8_t> pdu) {
           fmt::format("{} data bytes announced, {} there, {} wanted", pdu[kByteCount], pdu.size() - kReadData, bytes));
     }
     for (std::size_t i = 0; i < request.count; ++i) {
-      // Bits beyond the last that was asked for are padding, and some products leave what they have there.
+      // Bits beyond the last one requested are padding, and some products leave other data there.
       answer.values.push_back(is_of_bits(request.function)
                                   ? static_cast<std::uint16_t>(pdu[kReadData + i / 8] >> i % 8 & 1)
                                   : get16(pdu, kReadData + 2 * i));

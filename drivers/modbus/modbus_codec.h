@@ -2,8 +2,8 @@
 /// Modbus requests and answers, as PDUs and as Modbus TCP frames (Modbus Application Protocol 1.1b3, Messaging on
 /// TCP/IP 1.0b). Pure.
 ///
-/// libmodbus frames and receives (modbus_tcp_link.h), but takes an answer whose length field, unit or echoed address is
-/// wrong; every field is checked here.
+/// libmodbus frames and receives (modbus_tcp_link.h), but accepts an answer with a wrong length field, unit or echoed
+/// address. So every field is checked here.
 
 #include <cstdint>
 #include <span>
@@ -44,21 +44,21 @@ struct Request {
   return function == Function::read_coils || function == Function::read_discrete || function == Function::write_coil ||
          function == Function::write_coils;
 }
-/// Of the data of an answer to a read.
+/// In the answer to a read.
 [[nodiscard]] constexpr std::size_t data_bytes(const Request& request) {
   return is_of_bits(request.function) ? (request.count + 7) / 8 : 2 * request.count;
 }
 
-/// Function and data. requires counts within the limits above and registers that end at or before 65535.
+/// Function and data. requires counts within the limits above and no register beyond 65535.
 [[nodiscard]] std::vector<std::uint8_t> encode_pdu(const Request& request);
 
 /// A whole Modbus TCP frame. requires the same.
 [[nodiscard]] std::vector<std::uint8_t> encode(const Request& request, std::uint16_t transaction);
 
 enum class Verdict {
-  good,       ///< `values` holds what was read, bits as 0 and 1 (empty after a write)
-  exception,  ///< the device understood and said no: `exception_code`
-  foreign,    ///< well-formed header of another transaction: `transaction` says which
+  good,       ///< `values` holds the data read, bits as 0 and 1 (empty after a write)
+  exception,  ///< the device understood and refused: `exception_code`
+  foreign,    ///< valid header of another transaction: `transaction`
   garbled     ///< breaks the protocol: `what` says where
 };
 
@@ -70,10 +70,10 @@ struct Answer {
   std::string what;
 };
 
-/// Function and data of an answer, against the request it should belong to: good, exception or garbled.
+/// Function and data of an answer, checked against its request: good, exception or garbled.
 [[nodiscard]] Answer decode_pdu(const Request& request, std::span<const std::uint8_t> pdu);
 
-/// One whole Modbus TCP answer as received, against the request it should belong to.
+/// One whole Modbus TCP answer as received, checked against its request.
 [[nodiscard]] Answer decode(const Request& request, std::uint16_t transaction, std::span<const std::uint8_t> bytes);
 
 /// "illegal data address (2)"

@@ -1,6 +1,5 @@
 #pragma once
-/// A switch on a discrete input of a unit, by which a person asks for blackout without a computer. `now` in, requests
-/// out; no socket.
+/// A switch on a discrete input of a unit, for a blackout without a computer. `now` in, requests out; no socket.
 
 #include <optional>
 #include <span>
@@ -13,7 +12,7 @@
 
 namespace luxrig::modbus {
 
-// Rows for a driver's table.
+// Rows for a driver's option table.
 inline constexpr OptionDoc kContactInputOption = {
     "blackout_input", "whole number", "", "-1", "-1 to 65535",
     "discrete input (function 2, counted from 0) of a switch that asks for blackout; -1: there is none"};
@@ -29,16 +28,16 @@ struct ContactPatch {
   bool when_open = true;
 };
 
-/// Nothing: there is none. requires check_options() and check_contact() to be empty.
+/// Empty if there is none. requires check_options() and check_contact() to be empty.
 [[nodiscard]] std::optional<ContactPatch> contact_patch(const Bus& bus, std::span<const OptionDoc> docs);
 [[nodiscard]] std::vector<Problem> check_contact(const Rig& rig, const Bus& bus, std::span<const OptionDoc> docs,
                                                  int first_unit, int last_unit);
 
 class ContactWatch {
  public:
-  /// Asked in every call that writes levels.
+  /// Below the write period, so every call that writes levels also asks.
   static constexpr Duration kEvery = std::chrono::milliseconds(90);
-  /// After so long without an answer nobody knows.
+  /// After this long without an answer the state is unknown.
   static constexpr Duration kKnownFor = std::chrono::seconds(1);
 
   explicit ContactWatch(const ContactPatch& patch) : patch_(patch) {}

@@ -1,6 +1,6 @@
 #pragma once
-/// What a dimmer behind Modbus does when nobody writes any more. The protocol says nothing of that; its product's
-/// register map does.
+/// Behaviour of a dimmer behind Modbus when writes stop. The protocol does not define it; its product's register map
+/// does.
 
 #include "drivers/when_data_stops.h"
 

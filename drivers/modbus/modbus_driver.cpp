@@ -16,11 +16,10 @@ using std::chrono::milliseconds;
 constexpr Duration kModbusWritePeriod = milliseconds(100);
 constexpr Duration kShortestBackoff = milliseconds(100), kLongestBackoff = milliseconds(1000);
 constexpr milliseconds kSchedulingSlack(50);
-/// Between two calls, beyond their period, before the time counts as our own lateness.
+/// Allowed on top of the calls' period; a longer gap between two calls is this computer's own lateness.
 constexpr Duration kCallSlack = milliseconds(150);
-/// A bus is gone when nobody has answered for this long (or for two rounds, if rounds are longer) and two requests
-/// timed out; one silent unit among others that answer is that unit's fault only, once it has let two in a row time
-/// out.
+/// A bus is lost after two timeouts, once all its units are silent or none has answered for this long (two rounds, if
+/// longer). One silent unit among answering ones is a fault of that unit only, after two timeouts in a row.
 constexpr Duration kBusSilent = milliseconds(500);
 
 }  // namespace
@@ -51,7 +50,7 @@ DriverBounds ModbusDriver::bounds() const {
   milliseconds longest = timing_.response_timeout;
   for (const auto& [unit, rule] : rules_) longest = std::max(longest, rule.timeout);
   DriverBounds bounds;
-  // A request starts only within the response timeout, and takes the longest of them at most.
+  // A request starts only within the response timeout and takes the longest unit timeout at most.
   bounds.write = bounds.read = timing_.response_timeout + longest + link_->longest_on_wire() + kSchedulingSlack;
   bounds.write_period = kModbusWritePeriod;
   bounds.read_period = meters_.empty() ? Duration{} : timing_.poll;
@@ -183,7 +182,7 @@ Result<void> ModbusDriver::set_wanted(std::span<const LevelCommand> commands) {
 }
 
 bool ModbusDriver::ensure_connected(Time now) {
-  // Gateways close connections that were idle for a while: that is no fault, if the next one is accepted.
+  // Gateways close idle connections. That is no fault if the next connection is accepted.
   if (link_->connected() && link_->found_closed()) {
     writes_.forget();
     setup_.restart_all();
@@ -206,7 +205,7 @@ bool ModbusDriver::connect(Time now) {
 void ModbusDriver::disconnect() {
   link_->close();
   writes_.forget();
-  setup_.restart_all();  // a new connection may lead to a device that has restarted
+  setup_.restart_all();  // the device behind a new connection may have restarted
   units_silent_.forget();
   failures_.forget();
 }
@@ -217,7 +216,7 @@ void ModbusDriver::reconnect_later(Time now) {
   backoff_ = std::min(2 * backoff_, kLongestBackoff);
 }
 
-/// The connection is gone, and with it every device behind it.
+/// The connection is lost, and with it every device behind it.
 void ModbusDriver::bus_fault(Time now, const Fault& fault) {
   reconnect_later(now);
   all_faulted(now, fault);

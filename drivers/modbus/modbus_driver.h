@@ -1,6 +1,5 @@
 #pragma once
-/// Dimmers and luxmeters behind one Modbus link, whichever it is: life cycle, what is asked when, errors and recovery.
-/// See README.md.
+/// Dimmers and luxmeters behind any Modbus link: life cycle, request schedule, errors and recovery. See README.md.
 
 #include <map>
 #include <memory>
@@ -22,7 +21,7 @@ namespace luxrig {
 struct ModbusTiming {
   std::chrono::milliseconds response_timeout{200};
   Duration refresh{}, poll{};
-  bool behind_gateway = false;  ///< units are reached through something that has delays of its own
+  bool behind_gateway = false;  ///< a gateway between link and units adds its own delays
   std::optional<modbus::ContactPatch> contact{};
 };
 
@@ -48,19 +47,19 @@ class ModbusDriver final : public Driver, public LevelOutput, public LuxReader {
     double range_lx = 0;
     LifeRecord life;
   };
-  /// How one exchange ended, as far as the call that made it is concerned.
+  /// Result of one exchange, for the call that made it.
   enum class Outcome {
-    done,     ///< answered well
+    done,     ///< answered without error
     refused,  ///< answered with an exception, or garbled: the fault is in fault_
-    skipped,  ///< not asked: the unit rests, or waits for its set-up
-    over      ///< the call should end: a timeout has used up its bound, or the link is gone
+    skipped,  ///< not asked: the unit rests or waits for its set-up
+    over      ///< the call should end: a timeout has used up its bound, or the link is lost
   };
 
   [[nodiscard]] Fault inactive() const;
   [[nodiscard]] Duration asked_every() const;
   [[nodiscard]] Duration silence_allowed() const;
-  /// Counts the time since the call before as silence of the line, but no more of it than calls are apart: when this
-  /// computer was late, nobody listened.
+  /// Counts the time since the previous call as silence of the line, up to the period of calls plus slack. If this
+  /// computer ran late, it was not listening in the rest.
   void count_silence(Time now);
   Result<void> set_wanted(std::span<const LevelCommand> commands);
 
@@ -74,9 +73,9 @@ class ModbusDriver final : public Driver, public LevelOutput, public LuxReader {
   void answered(Time now, int unit);
   void unit_faulted(Time now, int unit, const Fault& fault);
   void unit_silent(Time now, int unit, const Fault& fault);
-  /// One request, repeated once when it was spoiled on the wire; sets values_ or fault_.
+  /// One request, repeated once if it was garbled on the wire; sets values_ or fault_.
   Outcome ask(Time now, const modbus::Request& request, const Deadline& start_until);
-  /// Writes what the unit's map wants written first.
+  /// Writes the set-up registers of the unit's map.
   Outcome set_up(Time now, int unit, const Deadline& start_until);
   Outcome write_run(Time now, const modbus::WriteSchedule::Run& run, const Deadline& start_until);
   Outcome read_batch(Time now, const modbus::ReadSchedule::Batch& batch, const Deadline& start_until,
@@ -94,17 +93,17 @@ class ModbusDriver final : public Driver, public LevelOutput, public LuxReader {
   std::optional<modbus::ContactWatch> contact_;
   modbus::UnitBackoff units_silent_;
   modbus::UnitSetup setup_;
-  std::map<int, Deadline> resting_;        ///< units that want a gap between requests
-  std::vector<LifeRecord> channel_lives_;  ///< beside writes_.channels()
-  std::vector<Meter> meters_;              ///< beside reads_.meters()
+  std::map<int, Deadline> resting_;        ///< units that need a gap between requests
+  std::vector<LifeRecord> channel_lives_;  ///< parallel to writes_.channels()
+  std::vector<Meter> meters_;              ///< parallel to reads_.meters()
   LifeRecord life_;
   std::vector<std::uint16_t> values_;
   Fault fault_;
   Time last_answer_{}, answer_at_last_close_{};
   std::optional<Time> called_at_;
-  Duration silence_{};   ///< since the last answer, of the time in which somebody asked
+  Duration silence_{};   ///< since the last answer, as count_silence() counts
   int misses_ = 0;       ///< requests without an answer since then
-  bool missed_ = false;  ///< one of this call
+  bool missed_ = false;  ///< one in this call
   Time connect_at_{};
   Duration backoff_{};
 };

@@ -1,4 +1,4 @@
-// The requests of ModbusDriver, and what their answers mean for the devices.
+// The requests of ModbusDriver, and the effect of their answers on the devices.
 #include <fmt/format.h>
 #include <poll.h>
 
@@ -18,26 +18,26 @@ using std::chrono::milliseconds;
 
 constexpr Duration kReconnectSilentAfter = milliseconds(1000);
 
-/// Function 16 or 3 of several not known, or one of the registers: they may be good one by one.
+/// Function 16, or reading several, may be unknown, or one of the registers bad: single requests may succeed.
 bool may_be_good_singly(int exception) { return exception >= 1 && exception <= 3; }
 
 }  // namespace
 
 void ModbusDriver::unit_silent(Time now, int unit, const Fault& fault) {
-  // Where answers are not numbered, a late one would be taken for the next: the unit is left alone until its longest
-  // time to an answer has passed once more.
+  // Where answers are not numbered, a late one would pass for the next. So the unit is left alone until its longest
+  // answer time has passed once more.
   const Duration timeout = rules_.at(unit).timeout;
   const bool again = units_silent_.is_silent(unit);
   units_silent_.silent(unit, now, link_->answers_are_numbered() ? Duration{} : 2 * timeout, timeout);
   ++misses_;
   missed_ = true;
-  // One answer that did not come, from a machine that is busy perhaps, is no failure: the unit is asked once more.
+  // One missing answer, perhaps of a busy machine, is not a failure: the unit is asked once more.
   const bool nobody =
       std::all_of(rules_.begin(), rules_.end(), [&](const auto& rule) { return units_silent_.is_silent(rule.first); });
   const bool bus_is_gone = misses_ > 1 && (nobody || silence_ >= silence_allowed());
   if (!again && !bus_is_gone && fault.cause == Cause::timeout) {
     life_.count_error();
-    // Who reads our health tells one that comes and goes by its count.
+    // The error count in the health report reveals a unit that comes and goes.
     for (std::size_t i = 0; i < channel_lives_.size(); ++i)
       if (writes_.channels()[i].patch.unit == unit) channel_lives_[i].count_error();
     for (Meter& meter : meters_)
@@ -81,7 +81,7 @@ ModbusDriver::Outcome ModbusDriver::ask(Time now, const Request& request, const 
     return Outcome::over;
   }
   if (fault_.cause == Cause::refused) {
-    answered(now, request.unit);  // it said no, but it spoke
+    answered(now, request.unit);  // it refused, but it answered
     return Outcome::refused;
   }
   unit_silent(now, request.unit, fault_);
@@ -101,7 +101,7 @@ ModbusDriver::Outcome ModbusDriver::set_up(Time now, int unit, const Deadline& s
                           write->words.word.begin() + static_cast<std::ptrdiff_t>(write->words.count));
     const Outcome outcome = ask(now, request, start_until);
     if (outcome == Outcome::refused) {
-      // Without its watchdog armed it would hold its light when it should not: it gets none.
+      // Without an armed watchdog it would hold its light when it must not, so it gets no levels.
       unit_faulted(now, unit,
                    {fault_.cause,
                     {},
@@ -196,7 +196,7 @@ ModbusDriver::Outcome ModbusDriver::read_failures(Time now, const modbus::Failur
   const Outcome outcome = ask(now, batch.request, start_until);
   if (outcome == Outcome::skipped) return outcome;
   failures_.asked(batch, now);
-  // A unit that refuses them says nothing of itself; its levels are as good as before.
+  // Refusing these reads is no fault of the unit; its levels are as good as before.
   if (outcome == Outcome::refused) life_.count_error();
   if (outcome == Outcome::done) failures_.answered(batch, values_);
   return outcome;

@@ -38,7 +38,7 @@ std::vector<FailureBits::Batch> FailureBits::due(Time now, const UnitBackoff& un
   for (std::size_t i = 0; i < bits_.size(); ++i) {
     const Bit& bit = bits_[i];
     if (bit.asked && now - *bit.asked < kFailuresEvery) continue;
-    if (units.is_silent(bit.unit)) continue;  // whether it is there, its levels find out
+    if (units.is_silent(bit.unit)) continue;  // its levels will show whether it is back
     const Function function = bit.discrete ? Function::read_discrete : Function::read_coils;
     if (!batches.empty() && batches.back().end == i) {
       Request& before = batches.back().request;

@@ -1,6 +1,6 @@
 #pragma once
-/// Bits by which products say that something is wrong (lamp failure, too hot), and whom of the bus's fixtures that
-/// concerns. `now` in, requests out; no socket.
+/// Failure bits of products (lamp failure, too hot), and the fixtures of the bus that they concern. `now` in, requests
+/// out; no socket.
 
 #include <map>
 #include <optional>
@@ -14,29 +14,29 @@
 
 namespace luxrig::modbus {
 
-/// Asked so often: a person is told, nothing is controlled by them.
+/// Period of the reads: they inform a person and control nothing.
 inline constexpr Duration kFailuresEvery = std::chrono::seconds(1);
 
 class FailureBits {
  public:
-  /// channels: of the bus, as in WriteSchedule.
+  /// channels: those of the bus, as in WriteSchedule.
   FailureBits(const std::map<int, UnitRules>& rules, std::span<const Channel> channels);
 
-  /// One for each run of neighbours, no larger than the unit's map allows.
+  /// One for each run of neighbours, within the unit's largest read.
   struct Batch {
-    std::size_t begin = 0, end = 0;  ///< of the bits
+    std::size_t begin = 0, end = 0;  ///< indices of bits
     Request request;
   };
-  /// Those due at `now`; of silent units none.
+  /// Batches due at `now`, without those of silent units.
   [[nodiscard]] std::vector<Batch> due(Time now, const UnitBackoff& units) const;
   void asked(const Batch& batch, Time now);
-  /// What was answered: 0 or 1 for each bit. requires bits.size() == batch.end - batch.begin.
+  /// The answer: 0 or 1 for each bit. requires bits.size() == batch.end - batch.begin.
   void answered(const Batch& batch, std::span<const std::uint16_t> bits);
-  /// Nothing is known any more of that unit, or of any.
+  /// Forgets the bits of that unit, or of all.
   void forget(int unit);
   void forget();
 
-  /// Names of the bits that are set and concern that channel, "lamp-failure2, too-hot"; empty: none is known to be.
+  /// Names of the set bits of that channel, "lamp-failure2, too-hot"; empty = none known to be set.
   [[nodiscard]] std::string of_channel(std::size_t channel) const;
 
  private:
@@ -44,11 +44,11 @@ class FailureBits {
     int unit = 0, address = 0;
     bool discrete = false;
     std::string name;
-    std::vector<std::size_t> channels;  ///< whom it concerns
+    std::vector<std::size_t> channels;  ///< that it concerns
     bool set = false;
     std::optional<Time> asked;
   };
-  std::vector<Bit> bits_;  ///< in the order of unit, table and address
+  std::vector<Bit> bits_;  ///< sorted by unit, table and address
   std::map<int, std::size_t> largest_;
 };
 

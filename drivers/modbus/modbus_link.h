@@ -1,5 +1,5 @@
 #pragma once
-/// The way to a bus's units: open it, ask, be answered, each within a bound. Over TCP or a serial line.
+/// The link to a bus's units over TCP or a serial line: connect and exchange, each within a bound.
 
 #include <chrono>
 #include <cstdint>
@@ -22,25 +22,25 @@ class Link {
   virtual void close() = 0;
 
   /// requires connected(). Returns within `timeout` and longest_on_wire(), whatever the peer does. Faults:
-  ///   timeout   no answer; the link stays, unless it cannot tell where the next answer begins
-  ///   network   the way is gone; the link is closed here too
-  ///   protocol  garbled; a TCP link is closed, since nobody knows where the next answer begins
+  ///   timeout   no answer; the link stays, unless the start of the next answer is unknown
+  ///   network   the connection is lost; the link is closed here too
+  ///   protocol  garbled; a TCP link is closed, since the start of the next answer is unknown
   ///   refused   an exception, by name; the link stays. last_exception() has its code
-  /// A late answer to an earlier request is never taken for this one's, as far as the protocol lets it be told.
+  /// A late answer to an earlier request is never taken for this one's, as far as the protocol can tell them apart.
   virtual Result<std::vector<std::uint16_t>> exchange(const Request& request, std::chrono::milliseconds timeout) = 0;
 
-  /// True when the peer has closed an idle link (found without waiting); it is then closed here too.
+  /// True if the peer has closed an idle link (found without waiting); the link is then closed here too.
   virtual bool found_closed() = 0;
 
-  /// What frames of the largest size take on the wire, on top of a timeout.
+  /// Time on the wire of the largest frames, on top of a timeout.
   [[nodiscard]] virtual std::chrono::milliseconds longest_on_wire() const { return std::chrono::milliseconds(0); }
-  /// An answer has no number that says which request it belongs to: a unit that has just let a request time out must
-  /// be left alone until its answer can come no more.
+  /// False if answers carry no request number. A unit that let a request time out must then be left alone until its
+  /// answer can no longer come.
   [[nodiscard]] virtual bool answers_are_numbered() const = 0;
 
-  /// Code of the exception that the last exchange ended with; 0: it did not.
+  /// Exception code of the last exchange; 0 = it had none.
   [[nodiscard]] int last_exception() const { return last_exception_; }
-  /// The last exchange was spoiled on the wire, and its answer has been and gone: it may be asked again at once.
+  /// The last exchange was garbled on the wire and its answer is over, so it may be repeated at once.
   [[nodiscard]] bool may_repeat() const { return may_repeat_; }
 
  protected:

@@ -1,5 +1,5 @@
 #pragma once
-/// What a Modbus bus can carry, checked before anything is opened.
+/// Limits of a Modbus bus, checked before anything is opened.
 
 #include <vector>
 
@@ -9,11 +9,11 @@ namespace luxrig {
 
 struct ModbusLineRules {
   int first_unit = 0, last_unit = 255;
-  std::optional<int> baud;  ///< of a serial line; nothing: not known here
+  std::optional<int> baud;  ///< of a serial line; empty = unknown
   Duration refresh{};       ///< how often an unchanged level is written
 };
 
-/// Appends what is wrong with the fixtures and luxmeters on the bus.
+/// Appends the problems of the bus's fixtures and luxmeters.
 void check_modbus_patches(const Rig& rig, std::size_t bus, const ModbusLineRules& rules,
                           std::vector<Problem>& problems);
 

@@ -6,8 +6,7 @@
 namespace luxrig::modbus {
 namespace {
 
-// Calls are seldom at the very instant: what is due a little later is asked now, or it would wait for a whole call
-// more.
+// Calls rarely come at the exact time. A meter due slightly later is read now, or it would wait for one more call.
 constexpr int kEarlyShare = 8;
 
 }  // namespace

@@ -48,7 +48,7 @@ std::vector<Problem> check_modbus_rtu(const Rig& rig, std::size_t bus) {
   const Bus& entry = rig.buses[bus];
   std::vector<Problem> problems = check_options(rig, entry, kModbusRtuOptions);
   ModbusLineRules rules;
-  rules.first_unit = 1;  // 0 is everybody, from whom no answer comes
+  rules.first_unit = 1;  // 0 is the broadcast address, which gets no answer
   rules.last_unit = 247;
   if (problems.empty()) {
     rules.refresh = rtu_option_ms(entry, "refresh_ms");
@@ -80,7 +80,7 @@ std::unique_ptr<Driver> make_modbus_rtu(const Rig& rig, std::size_t bus, const s
   settings.rs485 = boolean_option(entry, kModbusRtuOptions, "rs485");
   if (redirect) {
     settings.device = redirect->path;
-    settings.parity = modbus::Parity::none;  // a pseudo terminal takes no other
+    settings.parity = modbus::Parity::none;  // a pseudo terminal accepts no other
   }
   ModbusTiming timing;
   timing.response_timeout = std::chrono::milliseconds(integer_option(entry, kModbusRtuOptions, "response_timeout_ms"));

@@ -10,23 +10,23 @@ namespace luxrig::modbus {
 
 inline constexpr std::size_t kLongestRtuFrame = 256;
 
-/// CRC-16 of the serial line: polynomial 0xA001, begun with 0xFFFF. Its low byte is sent first.
+/// CRC-16 of the serial line: polynomial 0xA001, initial value 0xFFFF. Its low byte is sent first.
 [[nodiscard]] std::uint16_t rtu_checksum(std::span<const std::uint8_t> bytes);
 
-/// requires what encode_pdu() requires, and a unit in 1…247.
+/// requires the same as encode_pdu(), and a unit in 1…247.
 [[nodiscard]] std::vector<std::uint8_t> encode_rtu(const Request& request);
 
-/// Bytes of the answer when it is no exception.
+/// Bytes of the answer, unless it is an exception.
 [[nodiscard]] std::size_t rtu_answer_size(const Request& request);
 
 struct RtuSearch {
   std::optional<Answer> answer;  ///< good, exception or garbled (right checksum, wrong content)
-  bool spoiled = false;          ///< a whole answer of the unit is there, but its checksum is wrong
-  std::string what;              ///< without an answer: what the bytes look like, for a person
+  bool spoiled = false;          ///< a complete answer of the unit is there, but its checksum is wrong
+  std::string what;              ///< without an answer: description of the bytes, for a person
 };
 
-/// Looks for the answer to `request` in what has come since it was sent. A frame counts from wherever its checksum is
-/// right: line noise, a stale half and frames of other units before it are skipped.
+/// Finds the answer to `request` in the bytes received since it was sent. A frame may start anywhere if its checksum is
+/// right, so line noise, stale halves and frames of other units before it are skipped.
 /// Cost: bytes × length of the answer, only where unit and function fit.
 [[nodiscard]] RtuSearch find_rtu_answer(const Request& request, std::span<const std::uint8_t> bytes);
 

@@ -22,8 +22,8 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr milliseconds kLongestChatter(50);  // of a line that should be silent
-// USB adapters hand on what they have every 16 ms, so a pause in mid-frame may be that long.
+constexpr milliseconds kLongestChatter(50);  // on a line that should be silent
+// USB adapters pass bytes on every 16 ms, so a pause within a frame may be that long.
 constexpr milliseconds kAdapterPause(20);
 constexpr std::size_t kMostBytesHeard = 2048;
 
@@ -90,7 +90,7 @@ Result<void> RtuLink::connect(milliseconds) {
     shut();
     return tl::unexpected(absent(EINVAL));
   }
-  ::ioctl(fd_, TIOCEXCL);  // a second master on the line would be a fault that nobody finds
+  ::ioctl(fd_, TIOCEXCL);  // a second master on the line would be a fault that is hard to find
   if (settings_.rs485) (void)modbus_rtu_set_serial_mode(context_, MODBUS_RTU_RS485);
   return {};
 }
@@ -148,7 +148,7 @@ Result<bool> RtuLink::take(std::vector<std::uint8_t>& into) {
 }
 
 Result<void> RtuLink::wait_for_silence() {
-  // Of each wait no more counts than it can take: when we are late, one byte is no chatter.
+  // Each wait counts for its own length at most: if we run late, one byte is not chatter.
   std::chrono::steady_clock::duration chatter{};
   std::vector<std::uint8_t> unasked;
   for (auto before = std::chrono::steady_clock::now(); wait_readable(silence_);) {
@@ -183,7 +183,7 @@ Result<std::vector<std::uint16_t>> RtuLink::exchange(const Request& request, mil
     const auto taken = take(heard);
     if (!taken) return tl::unexpected(taken.error());
     search = find_rtu_answer(request, heard);
-    // Behind the deadline what has come by then is still read: perhaps only we are late.
+    // Bytes that have arrived by the deadline are still read after it: perhaps only we are late.
     if (search.answer || heard.size() > kMostBytesHeard) break;
   }
   if (!search.answer) {

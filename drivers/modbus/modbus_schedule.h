@@ -1,6 +1,6 @@
 #pragma once
-/// Which request is due when: what must be written in which runs of neighbouring registers, and which meters are read
-/// together. `now` in, requests out; no socket.
+/// Schedules requests: which runs of neighbouring registers to write, and which meters to read together, at `now`.
+/// `now` in, requests out; no socket.
 
 #include <cstddef>
 #include <cstdint>
@@ -15,16 +15,16 @@
 
 namespace luxrig::modbus {
 
-/// A dimmer channel and what its register is known to hold.
+/// A dimmer channel and the known content of its register.
 struct Channel {
   std::size_t fixture = 0;  ///< index in the rig
   ModbusPatch patch;
-  std::optional<RegisterWords> wanted;     ///< nothing until the first setpoint
+  std::optional<RegisterWords> wanted;     ///< empty until the first setpoint
   std::optional<RegisterWords> confirmed;  ///< last value the device acknowledged
-  std::optional<Time> tried;               ///< last time it was written, with or without success
+  std::optional<Time> tried;               ///< last write, successful or not
 };
 
-/// Channels in the order of unit and register; a run of neighbours that are due together is one request.
+/// Channels sorted by unit and register; a run of neighbours that are due together is one request.
 class WriteSchedule {
  public:
   WriteSchedule(const Rig& rig, std::size_t bus, Duration refresh, const std::map<int, UnitRules>& rules);
@@ -38,19 +38,19 @@ class WriteSchedule {
     [[nodiscard]] std::size_t size() const { return end - begin; }
   };
   [[nodiscard]] Run alone(std::size_t channel) const;
-  /// What writes the run's wanted values.
+  /// The request that writes the run's wanted values.
   [[nodiscard]] Request request_for(const Run& run) const;
-  /// The runs due at `now`, starting behind the last one that was tried, so that a call cut short by its bound goes on
-  /// where it stopped; silent units last, since their timeout ends the call, the longest unasked first. Due: changed
-  /// (and not tried within kShortestRewrite), or not refreshed for `refresh`.
+  /// The runs due at `now`: changed (and not tried within kShortestRewrite), or not refreshed for `refresh`. They start
+  /// after the last one tried, so a call cut short by its bound continues there. Silent units come last, since their
+  /// timeout ends the call; of these, the longest unasked comes first.
   [[nodiscard]] std::vector<Run> due(Time now, const UnitBackoff& units) const;
   void tried(const Run& run, Time now);
   void confirmed(const Run& run);
-  /// Every device has acknowledged what is wanted of it now.
+  /// Every device has acknowledged its wanted value.
   [[nodiscard]] bool all_confirmed() const;
-  /// After a lost connection nothing is known about any register.
+  /// After a lost connection the content of all registers is unknown.
   void forget();
-  /// A unit that rejected function 16, or a register among its neighbours, gets single writes from now on.
+  /// For a unit that rejected function 16, or a register among its neighbours: single writes from now on.
   void write_singly(int unit) { single_.insert(unit); }
 
   static constexpr Duration kShortestRewrite = std::chrono::milliseconds(50);
@@ -65,31 +65,31 @@ class WriteSchedule {
   std::set<int> single_;
 };
 
-/// Meters in the order of unit, kind and register; neighbours of a unit that are due together are read at once.
+/// Meters sorted by unit, kind and register; neighbours of a unit that are due together are read at once.
 class ReadSchedule {
  public:
   ReadSchedule(const Rig& rig, std::size_t bus, Duration poll, const std::map<int, UnitRules>& rules);
 
-  /// Indices in the rig, in the order of Batch.
+  /// Indices in the rig, in the order that Batch uses.
   [[nodiscard]] const std::vector<std::size_t>& meters() const { return meters_; }
 
   struct Batch {
     std::size_t begin = 0, end = 0;  ///< in meters()
     Request request;
   };
-  /// The batches due at `now` or up to an eighth of `poll` later, starting behind the last one that was asked; those of
-  /// silent units last, as above.
+  /// The batches due at `now` or up to an eighth of `poll` later. They start after the last one asked; silent units
+  /// come last, as above.
   [[nodiscard]] std::vector<Batch> due(Time now, const UnitBackoff& units) const;
-  /// The next is due `poll` after this one was, so that calls that are late make no meter slower in the long run.
+  /// The next read is due `poll` after this one was due, so late calls do not slow a meter in the long run.
   void asked(const Batch& batch, Time now);
   void forget();
-  /// A unit that rejected a read of several is asked for each by itself from now on.
+  /// For a unit that rejected a read of several registers: single reads from now on.
   void read_singly(int unit) { single_.insert(unit); }
 
  private:
   std::vector<std::size_t> meters_;
   std::vector<ModbusMeterPatch> patches_;
-  std::vector<std::optional<Time>> due_at_;  ///< nothing: never asked
+  std::vector<std::optional<Time>> due_at_;  ///< empty = never asked
   Duration poll_{};
   std::map<int, std::size_t> largest_;
   std::size_t next_ = 0;

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kRememberedUnanswered = 16;
 constexpr int kMostDrains = 16;
-/// An answer that has begun is read to its end, also when we come late to it.
+/// Extra time to read the rest of an answer that has begun, even if we come to it late.
 constexpr std::chrono::milliseconds kRestOfAnswer(20);
 
 void set_timeout(modbus_t* context, std::chrono::milliseconds timeout) {
@@ -45,7 +45,7 @@ Result<void> TcpLink::connect(std::chrono::milliseconds timeout) {
     return tl::unexpected(os_fault(fmt::format("connecting to {}:{}", host_, port_), error));
   }
   fd_ = modbus_get_socket(context_);
-  if (fd_ >= FD_SETSIZE) {  // libmodbus waits with select(), which cannot name higher descriptors
+  if (fd_ >= FD_SETSIZE) {  // libmodbus waits with select(), which cannot handle higher descriptors
     shut();
     return tl::unexpected(os_fault(fmt::format("connecting to {}:{}", host_, port_), EMFILE));
   }

@@ -18,7 +18,7 @@ class TcpLink final : public Link {
   [[nodiscard]] bool connected() const override { return context_ != nullptr; }
   Result<void> connect(std::chrono::milliseconds timeout) override;
   void close() override { shut(); }
-  /// A late answer is recognised by its transaction number and skipped.
+  /// Recognises a late answer by its transaction number and skips it.
   Result<std::vector<std::uint16_t>> exchange(const Request& request, std::chrono::milliseconds timeout) override;
   bool found_closed() override;
   [[nodiscard]] bool answers_are_numbered() const override { return true; }

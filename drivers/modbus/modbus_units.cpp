@@ -53,7 +53,7 @@ bool UnitBackoff::before(int a, int b) const {
 }
 
 void UnitBackoff::answered(int unit) {
-  // What brought it back, power perhaps, may have brought back others: they are asked at once.
+  // The cause, perhaps power, may have brought back other units too: ask them at once.
   if (silent_.erase(unit) > 0) paid_until_ = Time{};
 }
 

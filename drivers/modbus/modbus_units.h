@@ -1,5 +1,5 @@
 #pragma once
-/// What is known of each unit of a bus: its limits from its register map, and whether it answers.
+/// State of each unit of a bus: the limits from its register map, and whether it answers.
 
 #include <chrono>
 #include <map>
@@ -18,32 +18,32 @@ struct UnitRules {
   std::chrono::milliseconds timeout{};
   std::chrono::milliseconds gap{};  ///< between two requests
   std::size_t largest_read = kMostReadRegisters, largest_write = kMostWriteRegisters;
-  std::shared_ptr<const RegisterMap> map;  ///< null: none of its devices has one
+  std::shared_ptr<const RegisterMap> map;  ///< null = none of its devices has one
 };
 
-/// Every unit that a fixture or a luxmeter of the bus names, and that with its blackout contact. A unit's timeout is its product's longest time to an
-/// answer with some slack for adapters; behind a gateway, which has its own reasons to be slow, not below
+/// Every unit of the bus's fixtures and luxmeters, and the unit of its blackout contact. A unit's timeout is its
+/// product's longest answer time plus slack for adapters. Behind a gateway, which adds its own delays, it is at least
 /// `response_timeout`. Without a register map: `response_timeout`.
 [[nodiscard]] std::map<int, UnitRules> unit_rules(const Rig& rig, std::size_t bus,
                                                   std::chrono::milliseconds response_timeout, bool behind_gateway,
                                                   std::optional<int> contact_unit = {});
 
-/// A unit that does not answer is asked again after `first_pause`, then after a second, then ever more seldom, every 2
-/// s at most. What is waited for in vain is time that the units that answer do not get, so all silent units of a link
-/// share a twentieth of it, and the one that has waited longest comes first (`before`). With some credit at the
-/// beginning, a silent unit that is back is found within 2 s and kProbeShare times the sum of the silent units'
-/// timeouts: 6 s for one of 200 ms, 42 s for ten; all of them with the first one when they come back together.
+/// Asks a silent unit again after `first_pause`, then after 1 s, then at most every 2 s. Waiting in vain takes time
+/// from the units that answer. So all silent units of a link share a twentieth of its time, and the longest unasked
+/// comes first (`before`). After some initial credit, a silent unit that is back is found within 2 s plus kProbeShare
+/// times the sum of the silent units' timeouts: 6 s for one unit with 200 ms, 42 s for ten. If they come back together,
+/// the first one found brings all of them.
 class UnitBackoff {
  public:
-  static constexpr int kProbeShare = 20;  ///< one part in so many of the link's time
-  /// As much may be waited in vain at once, before the share binds.
+  static constexpr int kProbeShare = 20;  ///< silent units get 1 / kProbeShare of the link's time
+  /// This much may be waited in vain at once before the share limits it.
   static constexpr Duration kProbeCredit = std::chrono::milliseconds(500);
 
   [[nodiscard]] bool may_ask(int unit, Time now) const;
-  /// Whether a comes before b when both are silent.
+  /// True if both are silent and a comes first.
   [[nodiscard]] bool before(int a, int b) const;
   void answered(int unit);
-  /// `waited`: for its answer, in vain.
+  /// `waited`: time spent on its missing answer.
   void silent(int unit, Time now, Duration first_pause, Duration waited);
   [[nodiscard]] bool is_silent(int unit) const { return silent_.contains(unit); }
   void forget();
@@ -54,10 +54,10 @@ class UnitBackoff {
     int times = 0;
   };
   std::map<int, Silence> silent_;
-  Time paid_until_{};  ///< what was waited in vain is paid for by then
+  Time paid_until_{};  ///< by then the time waited in vain is paid for
 };
 
-/// What must be written to units before anything else, since they may have restarted: the [[setup]] of their maps.
+/// Registers to write to a unit first, since it may have restarted: the [[setup]] of its map.
 class UnitSetup {
  public:
   explicit UnitSetup(const std::map<int, UnitRules>& rules);
@@ -68,7 +68,7 @@ class UnitSetup {
     bool coil = false;
     std::string name;  ///< of the register
   };
-  /// The next one; null when all has been written.
+  /// The next write; null if all are done.
   [[nodiscard]] const Write* next(int unit) const;
   void written(int unit) { ++units_.at(unit).done; }
   void restart(int unit);
@@ -79,7 +79,7 @@ class UnitSetup {
     std::vector<Write> writes;
     std::size_t done = 0;
   };
-  std::map<int, Unit> units_;  ///< only those with something to write
+  std::map<int, Unit> units_;  ///< only units with something to write
 };
 
 }  // namespace luxrig::modbus

@@ -9,7 +9,7 @@ class CameraScan final : public Scan {
   explicit CameraScan(std::string root) : root_(std::move(root)) {}
 
   Result<void> step(Time) override {
-    if (looked_) return {};  // asking opens each device: once is enough
+    if (looked_) return {};  // a query opens each device, so query once only
     looked_ = true;
     for (const V4l2Device& device : v4l2_devices(root_)) {
       std::string detail = device.bus;

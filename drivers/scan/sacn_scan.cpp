@@ -11,7 +11,7 @@ namespace luxrig {
 namespace {
 
 constexpr int kPacketsPerStep = 256;
-constexpr std::size_t kMostSources = 4096;  ///< of a network that makes up more, the first
+constexpr std::size_t kMostSources = 4096;  ///< bounds memory if a network invents sources
 
 class SacnScan final : public Scan {
  public:

@@ -1,6 +1,6 @@
 #pragma once
-/// What is there to be driven, without a rig file: each way to look is a Scan, a line in the table of scans.cpp.
-/// Looking moves no light: nodes are asked who they are, sources are listened to, the system's lists are read.
+/// Finds devices that could be driven, without a rig file. Each way to look is a Scan, one line in scans.cpp's table.
+/// Looking moves no light: it polls nodes for their identity, listens to sources and reads the system's lists.
 
 #include <memory>
 #include <optional>
@@ -13,31 +13,31 @@
 namespace luxrig {
 
 struct FoundDevice {
-  std::string driver;   ///< of the registry, that would use it
-  std::string address;  ///< as its option in the rig file has it: "10.0.0.7", "/dev/ttyUSB0", "can0"
-  std::string name;     ///< what it calls itself; may be empty
-  std::string detail;   ///< what a person would want to know: universes, serial number, state
+  std::string driver;   ///< registry name of the driver that would use it
+  std::string address;  ///< as written in the rig file's option: "10.0.0.7", "/dev/ttyUSB0", "can0"
+  std::string name;     ///< the device's own name; may be empty
+  std::string detail;   ///< for a person: universes, serial number, state
 };
 
 class Scan {
  public:
   virtual ~Scan() = default;
-  /// Begins, or goes on; never blocks. A fault when this way of looking is not to be had here: others may be.
+  /// Begins or continues; never blocks. A fault if this way to look is unavailable here; others may still work.
   virtual Result<void> step(Time now) = 0;
-  /// Until now, in the order of addresses.
+  /// Devices found so far, in the order of addresses.
   [[nodiscard]] virtual std::vector<FoundDevice> found() const = 0;
 };
 
 struct ScanOptions {
-  std::string broadcast = "255.255.255.255";  ///< where Art-Net nodes are asked
-  std::string interface;                      ///< by which sACN sources are heard; empty: the system's choice
-  std::string root = "/";                     ///< where dev and sys are
+  std::string broadcast = "255.255.255.255";  ///< address for Art-Net polls
+  std::string interface;                      ///< to listen for sACN sources; empty = the system chooses
+  std::string root = "/";                     ///< folder that contains dev and sys
 };
 
 struct NamedScan {
   std::string what;  ///< "Art-Net nodes"
   std::unique_ptr<Scan> scan;
-  /// How long it needs to see everything; 0: the first step does.
+  /// Time until it has seen everything; 0 = the first step is enough.
   Duration complete_after{};
 };
 
@@ -46,12 +46,12 @@ struct NamedScan {
 // The ways to look.
 [[nodiscard]] std::unique_ptr<Scan> make_artnet_scan(const ScanOptions& options);
 [[nodiscard]] std::unique_ptr<Scan> make_sacn_scan(const ScanOptions& options);
-/// Serial ports that a USB or on-board adapter stands behind, by their lasting names where they have one.
+/// Serial ports of a USB or on-board adapter, by their persistent names if they have one.
 [[nodiscard]] std::unique_ptr<Scan> make_serial_scan(const ScanOptions& options);
-/// DMX widgets by their ids; those of FTDI are any maker's, so the driver is a guess until the widget answers.
+/// DMX widgets by their ids. Any maker may use FTDI's ids, so there the driver is a guess until the widget answers.
 [[nodiscard]] std::unique_ptr<Scan> make_usb_scan(const ScanOptions& options);
 [[nodiscard]] std::unique_ptr<Scan> make_can_scan(const ScanOptions& options);
-/// Video4Linux devices that give pictures; those of one name by their buses.
+/// Video4Linux devices that give pictures; devices of the same name by their buses.
 [[nodiscard]] std::unique_ptr<Scan> make_camera_scan(const ScanOptions& options);
 
 }  // namespace luxrig

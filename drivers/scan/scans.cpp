@@ -3,7 +3,7 @@
 namespace luxrig {
 
 std::vector<NamedScan> all_scans(const ScanOptions& options) {
-  // One line per way to look. Art-Net nodes answer within a second; sACN sources say what they send every ten.
+  // One line per way to look. Art-Net nodes answer within a second; sACN sources announce themselves every ten seconds.
   std::vector<NamedScan> scans;
   scans.push_back({"Art-Net nodes", make_artnet_scan(options), std::chrono::milliseconds(1500)});
   scans.push_back({"sACN sources", make_sacn_scan(options), std::chrono::milliseconds(10500)});

@@ -1,4 +1,4 @@
-/// What the operating system lists: USB widgets, serial ports and CAN interfaces.
+/// Devices that the operating system lists: USB widgets, serial ports and CAN interfaces.
 
 #include <algorithm>
 #include <filesystem>
@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 constexpr int kCanLink = 280;  ///< ARPHRD_CAN of linux/if_arp.h
 
-/// The first line of a small file of sysfs; empty when there is none.
+/// The first line of a small sysfs file; empty if there is none.
 std::string first_line(const fs::path& file) {
   std::ifstream in(file);
   std::string line;
@@ -31,7 +31,7 @@ std::vector<fs::path> entries_of(const fs::path& folder) {
   return entries;
 }
 
-/// A value that a folder of sysfs, or the nearest one above it, has: of a USB device's interface, that of the device.
+/// The value in a sysfs folder or its nearest parent that has it. For a USB interface that is the device's value.
 std::string value_above(fs::path folder, const fs::path& root, const char* name) {
   for (int level = 0; level < 8 && folder != root && folder.has_relative_path(); ++level, folder = folder.parent_path())
     if (std::string value = first_line(folder / name); !value.empty()) return value;
@@ -44,14 +44,14 @@ class SerialScan final : public Scan {
 
   Result<void> step(Time) override {
     std::error_code error;
-    std::map<fs::path, fs::path> lasting;  // by what it points at
+    std::map<fs::path, fs::path> lasting;  // by the link's target
     for (const fs::path& link : entries_of(root_ / "dev/serial/by-id")) {
       const fs::path target = fs::weakly_canonical(link, error);
       if (!error) lasting[target.filename()] = fs::path("/dev/serial/by-id") / link.filename();
     }
     found_.clear();
     for (const fs::path& tty : entries_of(root_ / "sys/class/tty")) {
-      // Consoles have no device; ports of the board that nothing is wired to have one, but no chip (type 0).
+      // Consoles have no device. Unwired ports of the board have one, but no chip (type 0).
       const fs::path device = fs::weakly_canonical(tty / "device", error);
       if (error || !fs::exists(tty / "device", error) || first_line(tty / "type") == "0") continue;
       const std::string product = value_above(device, root_ / "sys", "product");

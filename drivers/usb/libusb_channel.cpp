@@ -18,7 +18,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kStringTimeout(50), kCancelTimeout(200);
-constexpr std::size_t kMostHubs = 7;  // USB 2.0: as deep as it goes
+constexpr std::size_t kMostHubs = 7;  // USB 2.0: deepest nesting
 
 Fault usb_fault(const std::string& doing, int error) {
   switch (error) {
@@ -55,14 +55,14 @@ UsbStatus status_of(libusb_transfer_status status) {
   }
 }
 
-/// A device that is open, to be closed unless it is taken.
+/// Closes an open device unless it is taken.
 struct DeviceCloser {
   void operator()(libusb_device_handle* handle) const { libusb_close(handle); }
 };
 using OpenDevice = std::unique_ptr<libusb_device_handle, DeviceCloser>;
 
 std::string string_of(libusb_device_handle* handle, std::uint8_t index, const Deadline& deadline) {
-  constexpr std::uint16_t kEnglish = 0x0409;  // what devices that have but one language give as that
+  constexpr std::uint16_t kEnglish = 0x0409;  // also what devices with only one language report
   std::array<unsigned char, 255> bytes{};
   if (index == 0 || deadline.passed()) return {};
   const auto timeout = static_cast<unsigned>(std::min(kStringTimeout, deadline.left()).count());
@@ -99,7 +99,7 @@ class LibusbChannel final : public UsbChannel {
       if (detached_) libusb_attach_kernel_driver(handle_.get(), search_.interface);
       handle_.reset();
     }
-    // What could not even be cancelled ended with the handle; its memory is ours.
+    // Transfers that could not be cancelled ended with the handle; their memory is ours to free.
     for (const auto& transfer : under_way_) libusb_free_transfer(transfer->libusb);
     under_way_.clear();
     ended_.clear();
@@ -175,7 +175,7 @@ class LibusbChannel final : public UsbChannel {
       matching.push_back(std::move(candidate));
       devices.push_back(list[i]);
     }
-    // A device that may be the one, but cannot be asked, explains more than "none is there".
+    // A candidate device that cannot be queried explains more than "none is there".
     Result<void> result;
     if (matching.empty() && trouble) {
       result = tl::unexpected(*trouble);

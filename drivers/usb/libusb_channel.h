@@ -8,8 +8,8 @@
 
 namespace luxrig {
 
-/// Each attempt to open scans the bus with a fresh libusb context: without udevd (containers, small images) an old one
-/// never hears of a device that was plugged in later, and registering for hot-plug succeeds all the same.
+/// Each attempt to open scans the bus with a fresh libusb context. Without udevd (containers, small images) an old
+/// context never hears of a device plugged in later, although registering for hot-plug succeeds.
 [[nodiscard]] std::unique_ptr<UsbChannel> make_libusb_channel(UsbSearch search);
 
 }  // namespace luxrig

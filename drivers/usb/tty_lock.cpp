@@ -11,7 +11,7 @@ namespace luxrig {
 std::optional<TtyUser> tty_user(const std::string& port, int interface, const std::filesystem::path& devices,
                                 const std::filesystem::path& locks) {
   std::error_code error;
-  // "1-1.4:1.0": configuration 1, which all of these devices have alone.
+  // "1-1.4:1.0": configuration 1, the only one that these devices have.
   const auto folder = devices / fmt::format("{}:1.{}", port, interface);
   for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
     const std::string tty = entry->path().filename().string();

@@ -1,5 +1,5 @@
 #pragma once
-/// Whether another program works with a widget through the kernel's serial port.
+/// Whether another program uses a widget through the kernel's serial port.
 
 #include <filesystem>
 #include <optional>
@@ -12,8 +12,8 @@ struct TtyUser {
   int pid = 0;
 };
 
-/// The living process that holds the UUCP lock (/var/lock/LCK..ttyUSB0) of the serial port that the kernel made of an
-/// interface; olad and others take it. Locks of processes that have ended do not count.
+/// The living process that holds the UUCP lock (/var/lock/LCK..ttyUSB0) of an interface's serial port; olad and others
+/// take such locks. Locks of ended processes are ignored.
 [[nodiscard]] std::optional<TtyUser> tty_user(const std::string& port, int interface,
                                               const std::filesystem::path& devices = "/sys/bus/usb/devices",
                                               const std::filesystem::path& locks = "/var/lock");

@@ -70,7 +70,7 @@ class UsbipChannel final : public UsbChannel {
     const auto found = under_way_.find(ticket);
     if (found == under_way_.end() || found->second.cancelled) return;
     found->second.cancelled = true;
-    // The server may have hung itself, so nobody waits for its word.
+    // The server may hang, so do not wait for its answer.
     ended_.push_back({ticket, UsbStatus::cancelled, 0, {}});
     unlinks_[++sequence_] = ticket;
     if (!send(usbip::unlink_header(sequence_, device_, ticket))) unplugged();
@@ -140,7 +140,7 @@ class UsbipChannel final : public UsbChannel {
   }
 
   bool send(std::span<const std::uint8_t> bytes) {
-    // Half a message would spoil the stream, so a peer that does not read its socket counts as unplugged.
+    // Half a message would corrupt the stream, so a peer that does not read its socket counts as unplugged.
     return socket_ >= 0 &&
            ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(bytes.size());
   }
@@ -204,8 +204,8 @@ class UsbipChannel final : public UsbChannel {
   bool imported_ = false;
   std::uint32_t device_ = 0, sequence_ = 0;
   std::vector<std::uint8_t> received_;
-  std::map<std::uint32_t, Transfer> under_way_;  ///< cancelled ones until nothing more can come
-  std::map<std::uint32_t, UsbTicket> unlinks_;   ///< by the unlink's own number
+  std::map<std::uint32_t, Transfer> under_way_;  ///< cancelled ones stay until nothing more can arrive
+  std::map<std::uint32_t, UsbTicket> unlinks_;   ///< by the sequence number of the unlink
   std::deque<UsbCompletion> ended_;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-/// The USB channel to a stand-in: a device behind a USB/IP server on a TCP port, as luxrig-sim has one for each USB
-/// bus. The connection is the cable: closed is unplugged.
+/// The USB channel to a stand-in: a device behind a USB/IP server on a TCP port; luxrig-sim has one for each USB bus.
+/// The connection acts as the cable: closed = unplugged.
 
 #include <memory>
 

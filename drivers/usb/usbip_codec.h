@@ -1,6 +1,6 @@
 #pragma once
 /// The part of USB/IP (Linux, Documentation/usb/usbip_protocol.rst, version 1.1.1) that a client needs: import one
-/// device, submit and unlink transfers. All fields big-endian but for the setup packet.
+/// device, submit and unlink transfers. All fields are big-endian except the setup packet.
 
 #include <array>
 #include <cstdint>
@@ -14,11 +14,11 @@
 namespace luxrig::usbip {
 
 inline constexpr std::size_t kImportReplyBytes = 320, kHeaderBytes = 48;
-/// No transfer of ours is longer; what claims to be is garbage.
+/// Luxrig makes no longer transfers, so a larger length is garbage.
 inline constexpr std::uint32_t kMostBytes = 4096;
 
 [[nodiscard]] std::vector<std::uint8_t> import_request(std::string_view bus_id);
-/// The imported device's number, bus << 16 | device; nothing when it was refused or is no such reply.
+/// The imported device's number, bus << 16 | device. Empty if the server refused or the reply is malformed.
 /// requires kImportReplyBytes, or the first 8 of them of a refusal.
 [[nodiscard]] std::optional<std::uint32_t> imported(std::span<const std::uint8_t> reply);
 
@@ -37,9 +37,9 @@ struct Answer {
   bool unlink = false;
   std::uint32_t sequence = 0;
   std::int32_t status = 0;   ///< 0, or a negative errno
-  std::uint32_t length = 0;  ///< of a submitted transfer: bytes done; for one that goes in they follow
+  std::uint32_t length = 0;  ///< of a submitted transfer: bytes done; for an IN transfer the bytes follow
 };
-/// Nothing for a header that is none: the stream is lost then.
+/// Empty for an invalid header: the stream is lost then.
 [[nodiscard]] std::optional<Answer> decode_answer(std::span<const std::uint8_t, kHeaderBytes> header);
 
 /// -EPIPE -> stalled, -ENODEV and -ESHUTDOWN -> gone, -ECONNRESET and -ENOENT -> cancelled.

@@ -159,7 +159,7 @@ void AxisDrive::ramp_to(double speed, double acceleration, double dt_s) {
 
 void AxisDrive::run_towards(double target, double speed, double acceleration, double deceleration, double dt_s) {
   const double way = target - demand_;
-  // The speed from which it can still stop there; a step ahead, since it will have moved on by then.
+  // The speed from which it can still stop there, one step ahead since it will have moved by then.
   const double step = deceleration * dt_s / 2;
   const double stopping = std::sqrt(step * step + 2 * deceleration * std::abs(way)) - step;
   const double wanted = std::copysign(std::min(speed, stopping), way);
@@ -222,7 +222,7 @@ void AxisDrive::step_homing(double dt_s) {
 }
 
 void AxisDrive::step_profile(double dt_s) {
-  const double most = std::abs(counts_of(1.0)) * 1e4;  // what is asked in numbers is not always what a motor can
+  const double most = std::abs(counts_of(1.0)) * 1e4;  // numbers may exceed what a motor can do
   const auto within = [most](std::uint32_t value) { return std::clamp(static_cast<double>(value), 1.0, most); };
   if (state_ == State::quick_stop) {
     ramp_to(0, within(parameters.quick_stop_deceleration), dt_s);
@@ -272,7 +272,7 @@ void AxisDrive::step(bool stuck) {
       off_window_ms_ = std::abs(demand_ - raw()) > parameters.following_window ? off_window_ms_ + 1 : 0;
       if (off_window_ms_ > parameters.following_time_ms) fail(kFollowingError);
     }
-    // Beyond a switch only back: else the end stop comes next. Homing looks for them.
+    // Beyond a switch only the way back is allowed, as the end stop comes next. Homing searches for the switches.
     const bool outward = (negative_switch() && demand_speed_ < 0) || (positive_switch() && demand_speed_ > 0);
     if (state_ == State::enabled && outward && mode_ != kHome) fail(kLimitError);
   }

@@ -1,6 +1,6 @@
 #pragma once
-/// The drive of one axis as CiA 402-2 has it: state machine, profile position, homing, quick stop, limits and following
-/// error, with a servo loop on the mechanics. In counts of its encoder. Knows nothing of a bus. Steps of 1 ms.
+/// The drive of one axis as in CiA 402-2: state machine, profile position, homing, quick stop, limits and following
+/// error, with a servo loop on the mechanics. In counts of its encoder. Knows no bus. Steps of 1 ms.
 
 #include <cstdint>
 #include <optional>
@@ -9,35 +9,36 @@
 
 namespace luxrig::sim {
 
-/// Objects that are set from outside, by their numbers.
+/// Objects that are set from outside, with their numbers.
 struct DriveParameters {
   std::int8_t mode = 0;                                               ///< 6060: 1 profile position, 6 homing
   std::int32_t target = 0;                                            ///< 607A
-  std::int32_t lowest = INT32_MIN, highest = INT32_MAX;               ///< 607D; equal or crossed: off
+  std::int32_t lowest = INT32_MIN, highest = INT32_MAX;               ///< 607D; equal or crossed = off
   std::uint32_t speed = 1000;                                         ///< 6081
   std::uint32_t acceleration = 10000, deceleration = 10000;           ///< 6083, 6084
   std::uint32_t quick_stop_deceleration = 50000;                      ///< 6085
   std::int16_t quick_stop_option = 2;                                 ///< 605A: 2 ramp then off, 6 ramp and hold
-  std::int32_t home_offset = 0;                                       ///< 607C: what it counts at the home position
+  std::int32_t home_offset = 0;                                       ///< 607C: position counted at home
   std::int8_t homing_method = 0;                                      ///< 6098
   std::uint32_t homing_speed_switch = 1000, homing_speed_zero = 100;  ///< 6099
   std::uint32_t homing_acceleration = 10000;                          ///< 609A
-  std::uint32_t following_window = 0;                                 ///< 6065; 0: not watched
+  std::uint32_t following_window = 0;                                 ///< 6065; 0 = not watched
   std::uint16_t following_time_ms = 20;                               ///< 6066
 };
 
 class AxisDrive {
  public:
-  /// Wakes without power at the joint's angle, and counts from 0 there.
+  /// Starts without power at the joint's angle and counts from 0 there.
   AxisDrive(const AxisTruth& truth, double angle_deg);
 
   DriveParameters parameters;
 
-  /// Electronics on or off. Off, the motor is free and turns on by its momentum; on again, the count begins at 0 and
-  /// nothing is known of home.
+  /// Electronics on or off. When off, the motor is free and runs on by its momentum. When on again, the count starts at
+  /// 0 and home is unknown.
   void set_power(bool on);
   void set_controlword(std::uint16_t word);
-  /// As at loss of the master, by the abort connection option (6007): 0 nothing, 1 fault, 2 voltage off, 3 quick stop.
+  /// Reaction to the loss of the master, by the abort connection option (6007): 0 nothing, 1 fault, 2 voltage off, 3
+  /// quick stop.
   void abort_connection(int option);
   void step(bool stuck);
 
@@ -76,7 +77,7 @@ class AxisDrive {
   State state_ = State::disabled;
   std::uint16_t word_ = 0, error_code_ = 0;
   int mode_ = 0;
-  double demand_ = 0, demand_speed_ = 0, demand_acceleration_ = 0;  ///< what the servo follows
+  double demand_ = 0, demand_speed_ = 0, demand_acceleration_ = 0;  ///< followed by the servo
   double target_ = 0;
   bool acknowledged_ = false, internal_limit_ = false;
   std::optional<double> queued_;

@@ -12,7 +12,7 @@ void AxisMechanics::step(double dt_s, double torque_deg_s2, bool stuck) {
   }
   const double torque = std::clamp(torque_deg_s2, -truth_.most_torque_deg_s2, truth_.most_torque_deg_s2);
   double speed = speed_deg_s_ + torque * dt_s;
-  // Friction takes speed away, at most all of it: it never turns a motor round.
+  // Friction takes at most all of the speed: it never reverses a motor.
   const double friction = (truth_.dry_friction_deg_s2 + truth_.viscous_friction_per_s * std::abs(speed)) * dt_s;
   speed = std::copysign(std::max(std::abs(speed) - friction, 0.0), speed);
   speed_deg_s_ = speed;

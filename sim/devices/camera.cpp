@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kBrightestShare = 0.01, kExposedTo = 0.8;
 
-/// The luminance that fills a pixel: the brightest hundredth of all samples comes to four fifths of it.
+/// The luminance that fills a pixel: the brightest hundredth of all samples reaches four fifths of it.
 double full_cd_m2(const Picture& picture) {
   std::vector<float> brightest;
   for (const Vec3f& pixel : picture.luminance_cd_m2) brightest.push_back(pixel.maxCoeff());

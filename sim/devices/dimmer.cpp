@@ -18,7 +18,8 @@ void Dimmer::set_out(bool out) { out_ = out; }
 
 void Dimmer::step(double dt_s) {
   level_ = lagged(level_, settled_level(), dt_s, lag_s_);
-  // An exponential never arrives; below a billionth of full light it has, and the world need not compute any more.
+  // An exponential never arrives. Below a billionth of full light it counts as arrived, so the world can stop
+  // computing.
   if (std::abs(level_ - settled_level()) < 1e-9) level_ = settled_level();
 }
 

@@ -12,12 +12,12 @@ class Dimmer {
 
   /// Clamped to 0…1; a NaN is ignored, as no wire can carry one.
   void set_drive(double drive);
-  /// The lamp has burnt out or has no power: it goes dark by its lag, and comes back to what was set last.
+  /// The lamp is burnt out or has no power: it goes dark with its lag, and returns to the last drive.
   void set_out(bool out);
   void step(double dt_s);
 
-  [[nodiscard]] double drive() const { return out_ ? 0 : drive_; }                  ///< that the lamp gets
-  [[nodiscard]] double settled_level() const { return out_ ? 0 : settled_level_; }  ///< where level() goes
+  [[nodiscard]] double drive() const { return out_ ? 0 : drive_; }                  ///< received by the lamp
+  [[nodiscard]] double settled_level() const { return out_ ? 0 : settled_level_; }  ///< final value of level()
   [[nodiscard]] double level() const { return level_; }  ///< 0…1, share of this lamp's own full light
 
  private:

@@ -5,7 +5,7 @@
 namespace luxrig::sim {
 namespace {
 
-// One parameter, collected from its coarse, fine and ultra slots wherever they are.
+// One parameter, collected from its coarse, fine and ultra slots in any order.
 struct Parameter {
   std::optional<int> coarse, fine, ultra;
   [[nodiscard]] double share() const {

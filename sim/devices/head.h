@@ -1,5 +1,5 @@
 #pragma once
-/// The joints of a pan-tilt head: each turns at its own constant speed to where it was told, within its range.
+/// The joints of a pan-tilt head: each turns at its own constant speed to its target, within its range.
 /// Acceleration is not modelled: a head that ramps arrives later by about (speed / acceleration).
 
 #include "core/rig/rig.h"
@@ -8,14 +8,13 @@ namespace luxrig::sim {
 
 class Head {
  public:
-  /// `fixture` must move (speeds > 0). It wakes at pan = tilt = 0, or as near as its range allows, its zoom at
-  /// the narrow end, as heads do when they are switched on. A fixture that does not move stays at its joints for ever.
+  /// `fixture` must move (speeds > 0). It starts at pan = tilt = 0, or as near as its range allows, its zoom at the
+  /// narrow end, like heads at power-on. A fixture that does not move stays at its joints for ever.
   explicit Head(const Fixture& fixture);
 
-  /// Clamped to the range, as the end stops would; NaN ignored.
+  /// Clamped to the range, as by end stops; NaN is ignored.
   void set_target(const Joints& joints);
-  /// Pan and tilt are turned by axes of their own from now on: they stand there after the next step. The zoom is as
-  /// ever.
+  /// From now on separate axes turn pan and tilt: they are there after the next step. The zoom is unaffected.
   void carry_to(const Joints& joints);
   void step(double dt_s);
 

@@ -14,7 +14,7 @@ void LuxmeterDevice::step(double true_lx, double dt_s, std::uint64_t tick) {
   if (tick % period != static_cast<std::uint64_t>(truth_.first_tick) % period) return;
   const double noisy =
       sensor_lx_ * (1 + truth_.noise * random_normal(truth_.seed, Draw::meter_noise, truth_.index, tick));
-  // The counter behind the display is whole and cannot pass full scale.
+  // The counter behind the display is a whole number and cannot pass full scale.
   const double full_scale_counts = std::floor(truth_.range_lx / truth_.lux_per_count);
   const double counts = std::clamp(std::round(noisy / truth_.lux_per_count), 0.0, full_scale_counts);
   reading_lx_ = counts * truth_.lux_per_count;

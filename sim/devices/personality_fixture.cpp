@@ -12,7 +12,7 @@ bool of_shutter(const ChannelFunction& f) { return f.attribute.starts_with("Shut
 
 class FixtureFirmware {
  public:
-  /// `dimmer`: which of several on one part of the fixture dims plain light, where its file does not say.
+  /// `dimmer`: names the one that dims plain light, if several act on one part and the file does not say.
   FixtureFirmware(const PersonalityMode& mode, const std::string& dimmer, const DmxPatch& patch,
                   std::span<const std::uint8_t, kDmxSlots> slots)
       : mode_(mode) {
@@ -42,14 +42,14 @@ class FixtureFirmware {
     return sources.empty() ? 0 : sum / static_cast<double>(sources.size());
   }
 
-  /// Physical angle of the first channel of that attribute, as the rig file counts it.
+  /// Physical angle of the attribute's first channel, in the rig file's convention.
   std::optional<double> angle_rad(std::string_view attribute, double offset_deg, double least_rad,
                                   double most_rad) const {
     for (std::size_t c = 0; c < mode_.channels.size(); ++c) {
       if (mode_.channels[c].is_virtual()) continue;
       const ChannelFunction* f = at_work(c);
       if (f == nullptr || f->attribute != attribute) continue;
-      // A file that states no travel says 0 to 1: then the travel is what the rig file says.
+      // A file without stated travel has 0 to 1. Then the rig file's travel applies.
       const bool stated = std::abs(f->physical_to - f->physical_from) > 1.5;
       const double angle = stated ? rad_from_deg(f->physical_at(values_[c]) + offset_deg)
                                   : least_rad + (most_rad - least_rad) * share_in(*f, values_[c]);
@@ -65,7 +65,7 @@ class FixtureFirmware {
 
   bool exists(const ChannelFunction& f) const { return !f.when || f.when->dmx.contains(values_[f.when->channel]); }
 
-  /// The function that the channel's value calls for.
+  /// The function that the channel's value selects.
   const ChannelFunction* at_work(std::size_t c) const {
     for (const ChannelFunction& f : mode_.channels[c].functions)
       if (exists(f) && f.dmx.contains(values_[c])) return &f;
@@ -79,8 +79,8 @@ class FixtureFirmware {
                        [&](const ChannelFunction& f) { return exists(f) && of(f); });
   }
 
-  /// One that is struck by a channel of its own burns while that says so. Where the same channel is its shutter or
-  /// dimmer, somebody has struck it before.
+  /// A lamp with its own strike channel burns while that channel says so. If that channel is also its shutter or
+  /// dimmer, the lamp counts as already struck.
   bool lamp_burns() const {
     for (std::size_t c = 0; c < mode_.channels.size(); ++c) {
       if (mode_.channels[c].is_virtual() || can(c, of_shutter) || dims_[c]) continue;
@@ -106,7 +106,7 @@ class FixtureFirmware {
       if (dims_[c]) dimmers.push_back(c);
     }
     if (!of_colour.empty() || !emitter.empty()) return of_colour;
-    std::vector<std::size_t> lowest;  // no other dimmer in a part of what it dims
+    std::vector<std::size_t> lowest;  // dimmers without another dimmer on a geometry below theirs
     for (const std::size_t c : dimmers) {
       if (std::none_of(dimmers.begin(), dimmers.end(), [&](std::size_t other) { return is_within(other, c); }))
         lowest.push_back(c);
@@ -121,13 +121,13 @@ class FixtureFirmware {
     return false;
   }
 
-  /// 0…1 of a dimmer or a colour; a shutter's open place on the same channel is 1, its others 0.
+  /// 0…1 of a dimmer or a colour. On a channel with shutter functions, open is 1 and other states 0.
   double level(std::size_t c) const {
     const ChannelFunction* f = at_work(c);
     if (f == nullptr) return 0;
     if (const auto state = shutter_state(*f, values_[c])) return *state == ShutterState::open ? 1 : 0;
     if (!is_dimmer(*f) && !is_colour(*f)) return 0;
-    double most = 1e-9;  // of the brightest place that the channel has
+    double most = 1e-9;  // of the channel's brightest value
     for (const ChannelFunction& other : mode_.channels[c].functions)
       if (exists(other) && other.attribute == f->attribute)
         most = std::max({most, std::abs(other.physical_from), std::abs(other.physical_to)});

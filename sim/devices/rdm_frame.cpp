@@ -3,7 +3,7 @@
 namespace luxrig::sim {
 namespace {
 
-// Bytes of a packet without parameter data, and where the numbers stand.
+// Bytes of a packet without parameter data, and offsets of the UIDs.
 constexpr std::size_t kLeastLength = 24, kTo = 3, kFrom = 9, kUidBytes = 6;
 
 int sum_of(std::span<const std::uint8_t> bytes) {

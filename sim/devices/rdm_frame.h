@@ -11,7 +11,7 @@ namespace luxrig::sim {
 inline constexpr std::uint64_t kRdmEverybody = 0xFFFFFFFFFFFF;
 inline constexpr std::size_t kMostRdmData = 231;
 
-/// A request, or an answer that a controller would take: all that stands between start code and checksum.
+/// A request, or an answer valid for a controller: everything between start code and checksum.
 struct RdmFrame {
   std::uint64_t to = 0, from = 0;  ///< 48 bits: manufacturer, device
   std::uint8_t transaction = 0;
@@ -23,11 +23,11 @@ struct RdmFrame {
   std::vector<std::uint8_t> data;
 };
 
-/// From the start code on. Nothing when lengths or checksum are wrong.
+/// From the start code on. Empty if lengths or checksum are wrong.
 [[nodiscard]] std::optional<RdmFrame> read_rdm(std::span<const std::uint8_t> bytes);
 /// requires at most kMostRdmData of data.
 [[nodiscard]] std::vector<std::uint8_t> write_rdm(const RdmFrame& frame);
-/// What a responder says to DISC_UNIQUE_BRANCH: no break, no start code.
+/// A responder's answer to DISC_UNIQUE_BRANCH: no break, no start code.
 [[nodiscard]] std::vector<std::uint8_t> write_branch_answer(std::uint64_t uid);
 
 }  // namespace luxrig::sim

@@ -22,9 +22,9 @@ RdmLine::Answer RdmLine::exchange(Time now, std::span<const std::uint8_t> packet
     const bool has_power = !faults_.find(member.name, FaultKind::unpowered);
     if (has_power && !member.had_power) member.responder->power_up();
     member.had_power = has_power;
-    if (!has_power || faults_.find(member.name, FaultKind::dead)) continue;  // it hears nothing either
+    if (!has_power || faults_.find(member.name, FaultKind::dead)) continue;  // it does not receive either
     std::vector<std::uint8_t> bytes = member.responder->receive(now, packet);
-    // A number for each exchange of each member, so that losses on a line have nothing to do with each other.
+    // One number per exchange and member, so that losses on a line are independent.
     const Disturbance disturbance = faults_.disturbance({&member.name, 1}, exchanges_ * 512 + i);
     if (bytes.empty() || disturbance.silent) continue;
     if (disturbance.garbled) {

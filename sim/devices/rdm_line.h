@@ -1,8 +1,8 @@
 #pragma once
-/// RDM responders on one DMX pair: who answers at once with others is not understood. Pure.
+/// RDM responders on one DMX pair; simultaneous answers collide. Pure.
 ///
-/// Faults of a fixture, as sim/faults has them: lost, silent, dead and unpowered: no answer; garbled: a byte of its
-/// answer is another; slow: late. Where several answer, their bits add up, as open-collector lines do.
+/// Faults of a fixture as in sim/faults. lost, silent, dead and unpowered: no answer; garbled: one byte of its answer
+/// is changed; slow: late. Simultaneous answers are ORed bit by bit, as on open-collector lines.
 
 #include <cstdint>
 #include <memory>
@@ -20,17 +20,17 @@ class RdmLine {
   /// `faults` outlives it.
   explicit RdmLine(const Faults& faults) : faults_(faults) {}
 
-  /// `name`: whose faults it has.
+  /// `name`: the device whose faults apply.
   RdmResponder& add(std::string name, RdmIdentity identity);
 
   struct Answer {
-    std::vector<std::uint8_t> bytes;  ///< from the start code on; empty: silence
+    std::vector<std::uint8_t> bytes;  ///< from the start code on; empty = silence
     Duration late{};
   };
   /// A packet goes out on the line, from its start code on.
   Answer exchange(Time now, std::span<const std::uint8_t> packet);
 
-  /// Who could be found on it now, ascending.
+  /// UIDs that a search could find now, ascending.
   [[nodiscard]] std::vector<std::uint64_t> reachable() const;
 
  private:

@@ -14,7 +14,7 @@ constexpr int kModel = 0x0080, kManufacturer = 0x0081, kLabel = 0x0082, kSoftwar
 constexpr int kPersonality = 0x00e0, kPersonalityDescription = 0x00e1, kAddress = 0x00f0, kSlotInfo = 0x0120;
 constexpr int kSensorDefinition = 0x0200, kSensorValue = 0x0201, kDeviceHours = 0x0400, kLampHours = 0x0401;
 constexpr int kLampState = 0x0403, kIdentify = 0x1000;
-// Those that every responder has are not listed in SUPPORTED_PARAMETERS.
+// SUPPORTED_PARAMETERS omits those that every responder must have.
 constexpr int kListed[] = {
     kQueuedMessage, kStatusMessages,   kModel,       kManufacturer, kLabel,     kPersonality, kPersonalityDescription,
     kSlotInfo,      kSensorDefinition, kSensorValue, kDeviceHours,  kLampHours, kLampState};
@@ -268,7 +268,7 @@ RdmResponder::Reply RdmResponder::sensor(const RdmFrame& request) const {
     tenths(150);
     tenths(0);
     tenths(kRoom_c + kRiseAtFull_c);
-    data.push_back(0x02);  // lowest and highest are kept
+    data.push_back(0x02);  // lowest and highest are recorded
     const Bytes text = label_bytes("housing");
     data.insert(data.end(), text.begin(), text.end());
   } else {

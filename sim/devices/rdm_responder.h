@@ -1,12 +1,14 @@
 #pragma once
-/// The RDM side of a DMX fixture: discovery, parameters, sensors. Pure: bytes from the line and the time come in,
-/// bytes for the line go out. Source: ANSI E1.20-2010.
+/// The RDM side of a DMX fixture: discovery, parameters, sensors. Pure: bytes from the line and the time in, bytes for
+/// the line out. Source: ANSI E1.20-2010.
 ///
-/// - Takes part in discovery until it is muted; answers nothing that is broadcast.
-/// - Slow to tell: LAMP_HOURS, which its ballast has to be asked for: ACK_TIMER, then QUEUED_MESSAGE.
-/// - Long: SLOT_INFO of more than 46 slots goes in parts (ACK_OVERFLOW); anything else but its next part ends that.
-/// - The start address moves within the universe as far as the footprint fits; the label lasts as long as the process.
-/// - A sensor: the temperature of its housing, which follows its light within minutes.
+/// - Takes part in discovery until it is muted; answers no broadcast.
+/// - Slow: LAMP_HOURS, which its ballast must supply: ACK_TIMER, then QUEUED_MESSAGE.
+/// - Long: SLOT_INFO of more than 46 slots comes in parts (ACK_OVERFLOW); a request for anything but the next part ends
+///   it.
+/// - The start address can move within the universe as far as the footprint fits; the label lasts as long as the
+///   process.
+/// - One sensor: the temperature of its housing, which follows its light within minutes.
 
 #include <cstdint>
 #include <optional>
@@ -21,7 +23,7 @@ namespace luxrig::sim {
 
 struct RdmSlot {
   std::uint8_t type = 0;    ///< 0 primary, 1 fine
-  std::uint16_t label = 1;  ///< primary: 0x0001 intensity …; fine: offset of the slot that it is fine of
+  std::uint16_t label = 1;  ///< primary: 0x0001 intensity …; fine: offset of its coarse slot
 };
 
 struct RdmIdentity {
@@ -32,29 +34,29 @@ struct RdmIdentity {
   int address = 1;             ///< 1…512
   std::vector<RdmSlot> slots;  ///< its footprint
   std::uint32_t lamp_hours = 0;
-  bool write_protected = false;  ///< a lock at its panel: NACK to every SET but IDENTIFY_DEVICE
+  bool write_protected = false;  ///< locked at its panel: NACK to every SET but IDENTIFY_DEVICE
 };
 
 class RdmResponder {
  public:
   explicit RdmResponder(RdmIdentity identity);
 
-  /// A packet from the line, from its start code on; what it answers, empty = nothing.
+  /// A packet from the line, from its start code on. Returns its answer; empty = none.
   std::vector<std::uint8_t> receive(Time now, std::span<const std::uint8_t> bytes);
-  /// What its lamp gives, 0…1, from the last call until now.
+  /// Output of its lamp, 0…1, from the last call until now.
   void shine(Time now, double level);
 
   [[nodiscard]] std::uint64_t uid() const { return identity_.uid; }
-  [[nodiscard]] int address() const { return identity_.address; }  ///< where it listens now
+  [[nodiscard]] int address() const { return identity_.address; }  ///< present start address
   [[nodiscard]] bool identifies() const { return identifies_; }
   [[nodiscard]] bool muted() const { return muted_; }
   [[nodiscard]] const std::string& label() const { return identity_.label; }
-  /// Power comes: the mute state and the queue are gone.
+  /// Power returns: the mute state and the queue are lost.
   void power_up();
 
  private:
   using Bytes = std::vector<std::uint8_t>;
-  /// What it says to a request, before it is cut into parts.
+  /// Its answer to a request, before it is cut into parts.
   struct Reply {
     int type = 0;
     Bytes data;
@@ -83,7 +85,7 @@ class RdmResponder {
   };
   std::vector<Waiting> queue_;
   std::optional<RdmFrame> last_queued_;
-  std::optional<int> overflow_pid_;  ///< parts of this parameter are being told …
+  std::optional<int> overflow_pid_;  ///< parts of this parameter are being sent …
   Bytes overflow_;                   ///< … and these are left
 };
 

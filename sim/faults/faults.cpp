@@ -16,7 +16,7 @@ struct FaultEntry {
   FaultKind kind;
   std::string_view name;
   double fallback, least, most;  // of its value
-  std::string_view does;         // what happens, for a person
+  std::string_view does;         // its effect, for a person
 };
 
 constexpr std::array<FaultEntry, 22> kFaults = {{

@@ -7,7 +7,7 @@ namespace {
 
 struct EndpointEntry {
   std::string_view driver;
-  /// One of the two: at a port, or at a path.
+  /// One of the two is set: at a port, or at a path.
   Result<std::unique_ptr<BusEndpoint>> (*at_port)(const EndpointParts& parts, int port);
   Result<std::unique_ptr<BusEndpoint>> (*at_path)(const EndpointParts& parts, const std::string& path) = nullptr;
 };

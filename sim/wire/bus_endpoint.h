@@ -1,6 +1,6 @@
 #pragma once
-/// The far end of one [[bus]]: a loopback port, or a pseudo terminal for a serial line, that behaves as the devices of
-/// that bus do.
+/// The far end of one [[bus]]: a loopback port, or a pseudo terminal for a serial line, that behaves like the devices
+/// of that bus.
 
 #include <memory>
 #include <string>
@@ -17,16 +17,16 @@ namespace luxrig::sim {
 class BusEndpoint {
  public:
   virtual ~BusEndpoint() = default;
-  [[nodiscard]] virtual int port() const = 0;  ///< 0: it has a path
-  /// Where a program opens it as its serial port; empty: it has a port.
+  [[nodiscard]] virtual int port() const = 0;  ///< 0 = it has a path
+  /// Path of the serial port that a program opens; empty = it has a port.
   [[nodiscard]] virtual std::string path() const { return {}; }
-  /// Takes what has arrived and answers what is due. Never blocks.
+  /// Takes received data and sends due answers. Never blocks.
   virtual void serve(Time now) = 0;
-  /// Adds what a caller may poll for reading.
+  /// Adds descriptors that a caller may poll for reading.
   virtual void descriptors(std::vector<int>& into) const = 0;
 };
 
-/// What an endpoint stands between. All outlive it.
+/// Context of an endpoint. All parts outlive it.
 struct EndpointParts {
   const Rig& rig;
   std::size_t bus;
@@ -34,13 +34,13 @@ struct EndpointParts {
   Faults& faults;
 };
 
-/// Where an endpoint shall be: at a port (0 = any free one), or at a path (empty: a new one).
+/// Wanted place of an endpoint: a port (0 = any free one) or a path (empty = a new one).
 struct EndpointPlace {
   int port = 0;
   std::string path{};
 };
 
-/// Cause::invalid for a driver that has no far end here.
+/// Cause::invalid for a driver that the simulator does not support.
 [[nodiscard]] Result<std::unique_ptr<BusEndpoint>> open_endpoint(const EndpointParts& parts,
                                                                  const EndpointPlace& place);
 [[nodiscard]] inline Result<std::unique_ptr<BusEndpoint>> open_endpoint(const EndpointParts& parts, int port) {

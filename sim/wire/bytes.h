@@ -1,5 +1,5 @@
 #pragma once
-/// Numbers in packets. requires: the bytes are there.
+/// Numbers in packets. requires enough bytes.
 
 #include <cstdint>
 #include <span>

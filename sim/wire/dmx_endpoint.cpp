@@ -11,8 +11,8 @@
 namespace luxrig::sim {
 namespace {
 
-constexpr int kMostPacketsAtOnce = 256;  // per serve(), so that a flood cannot hold up the world
-constexpr Duration kOvertakenAfter = std::chrono::milliseconds(40);  // the next frame is there by then
+constexpr int kMostPacketsAtOnce = 256;  // per serve(), so that a flood cannot delay the world
+constexpr Duration kOvertakenAfter = std::chrono::milliseconds(40);  // the next frame has arrived by then
 constexpr std::size_t kMostArrived = 4096;                           // waiting under the fault `slow`
 
 }  // namespace
@@ -83,13 +83,13 @@ void DmxEndpoint::take(Time now) {
     const auto received = ::recvfrom(socket_.descriptor.get(), buffer.data(), buffer.size(), 0,
                                      reinterpret_cast<sockaddr*>(&from), &from_length);
     if (received < 0) {
-      if (errno == EINTR || errno == ECONNREFUSED) continue;  // an answer of ours met a closed port: not our trouble
+      if (errno == EINTR || errno == ECONNREFUSED) continue;  // one of our answers met a closed port: ignore it
       break;
     }
     const Disturbance disturbance = parts_.faults.disturbance({&parts_.rig.buses[parts_.bus].name, 1}, packets_++);
     if (disturbance.silent || arrived_.size() >= kMostArrived) continue;
     Packet bytes(buffer.begin(), buffer.begin() + received);
-    // UDP has a checksum of its own, so what a fault spoils here is what a broken sender would send: the header.
+    // UDP has its own checksum, so the fault imitates a broken sender: it changes the header.
     if (disturbance.garbled && !bytes.empty())
       bytes[disturbance.random % std::min<std::size_t>(bytes.size(), 8)] ^= 0xff;
     Time due = now + disturbance.delay;

@@ -1,6 +1,6 @@
 #pragma once
-/// What sACN and Art-Net have in common here: a UDP port, frames that may be lost, late or spoiled, and fixtures that
-/// read their slots.
+/// Common part of sACN and Art-Net: a UDP port, frames that may be lost, late or garbled, and fixtures that read their
+/// slots.
 
 #include <array>
 #include <deque>
@@ -24,12 +24,12 @@ class DmxEndpoint : public BusEndpoint {
   using Packet = std::vector<std::uint8_t>;
   struct Answer {
     Packet packet;
-    Duration late{};  ///< so much later than at once
+    Duration late{};  ///< delay of the answer
   };
-  /// One packet from the network; returns what to send back to its sender. `from`: IPv4 address.
+  /// Takes one packet from the network; returns the answers to its sender. `from`: IPv4 address.
   virtual std::vector<Answer> receive(Time now, std::uint32_t from, std::span<const std::uint8_t> packet) = 0;
   virtual std::optional<std::array<std::uint8_t, kDmxSlots>> levels(int universe, Time now) = 0;
-  /// By how many slots a fixture listens elsewhere than the rig file has it.
+  /// Offset in slots from the rig file's address to the fixture's present one.
   [[nodiscard]] virtual int moved_by(std::size_t) const { return 0; }
 
   EndpointParts parts_;
@@ -57,7 +57,7 @@ class DmxEndpoint : public BusEndpoint {
   int port_;
   std::deque<Arrived> arrived_;
   std::vector<Arrived> overtaken_;
-  std::vector<Owed> owed_;  ///< in the order in which they were made
+  std::vector<Owed> owed_;  ///< in order of creation
   LampFaults lamp_faults_;
   std::uint64_t packets_ = 0, frames_ = 0;
 };

@@ -8,7 +8,7 @@ void obey_dmx(const EndpointParts& parts, std::uint64_t frame, const DmxLevelsOf
     const Fixture& fixture = parts.rig.fixtures[f];
     const auto* patch = std::get_if<DmxPatch>(&fixture.patch);
     if (fixture.bus != parts.bus || patch == nullptr) continue;
-    // A fixture has no way to be late on DMX, and a broken line to it is silence.
+    // A DMX fixture cannot be late, and a broken line to it is silence.
     const Disturbance disturbance = parts.faults.disturbance({&fixture.name, 1}, frame);
     if (disturbance.silent || disturbance.garbled) continue;
     const auto slots = levels_of(patch->universe);

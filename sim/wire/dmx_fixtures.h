@@ -1,5 +1,5 @@
 #pragma once
-/// Fixtures at the end of a DMX line, however the packets came there.
+/// Fixtures at the end of a DMX line, by whichever protocol the packets came.
 
 #include <array>
 #include <cstdint>
@@ -11,13 +11,13 @@
 
 namespace luxrig::sim {
 
-/// Levels of a universe, address 1 first; nothing while nobody sends it: its fixtures hold.
+/// Levels of a universe, address 1 first; empty while it is not sent: its fixtures hold.
 using DmxLevelsOf = std::function<std::optional<std::array<std::uint8_t, kDmxSlots>>(int universe)>;
 
-/// By how many slots a fixture listens elsewhere than where it is patched: RDM may have moved it.
+/// Offset in slots from the fixture's patched address: RDM may have moved it.
 using DmxMovedBy = std::function<int(std::size_t fixture)>;
 
-/// Each fixture of the bus that hears does as its slots say. `frame`: another number each time, for faults at random.
+/// Each fixture of the bus that receives follows its slots. `frame`: a different number each time, for random faults.
 void obey_dmx(const EndpointParts& parts, std::uint64_t frame, const DmxLevelsOf& levels_of,
               const DmxMovedBy& moved_by = {});
 

@@ -8,7 +8,7 @@ namespace {
 constexpr std::uint64_t kPrototypes = 0x7ff0;
 constexpr int kFixedFixture = 0x0101, kMovingHead = 0x0102;
 
-// Table C-2 of E1.20; a fine slot says which slot it is fine of: the coarse ones stand just before theirs.
+// Table C-2 of E1.20. A fine slot names its coarse slot: the coarse slots directly precede their fine ones.
 RdmSlot slot_of(SlotUse use, std::size_t offset) {
   const auto before = [offset](std::size_t distance) {
     return static_cast<std::uint16_t>(offset >= distance ? offset - distance : 0);
@@ -62,7 +62,7 @@ RdmFixtures::RdmFixtures(const Rig& rig, std::size_t bus, const World& world, co
       identity.lamp_hours = static_cast<std::uint32_t>(100 + 37 * first);
       universes[first] = patch->universe;
     }
-    // Parts of a housing may be patched apart: the footprint is from the first slot of all to the last.
+    // Parts of a housing may be patched apart: the footprint extends from the first slot to the last.
     const int begin = std::min(identity.address, patch->address);
     if (begin < identity.address) {
       identity.slots.insert(identity.slots.begin(), static_cast<std::size_t>(identity.address - begin), RdmSlot{});

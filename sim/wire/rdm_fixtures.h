@@ -1,6 +1,6 @@
 #pragma once
-/// The DMX fixtures of one bus as RDM responders, one line for each universe. All parts of one housing are one
-/// responder, named as its first. UIDs are of the range for prototypes (manufacturer 0x7FF0).
+/// The DMX fixtures of one bus as RDM responders, one line for each universe. All parts of one housing form one
+/// responder, named after the first. UIDs are from the range for prototypes (manufacturer 0x7FF0).
 
 #include <map>
 #include <optional>
@@ -16,11 +16,11 @@ class RdmFixtures {
   /// All arguments outlive it.
   RdmFixtures(const Rig& rig, std::size_t bus, const World& world, const Faults& faults);
 
-  /// Universe -> the line it goes out on.
+  /// Universe -> its line.
   [[nodiscard]] std::map<int, RdmLine>& lines() { return lines_; }
-  /// By how many slots a fixture's start address has been moved from where the rig file has it.
+  /// Offset in slots of a fixture's start address from the rig file's.
   [[nodiscard]] int moved_by(std::size_t fixture) const;
-  /// Their lamps warm them.
+  /// Warms the housings by their lamps.
   void shine(Time now);
 
  private:

@@ -14,14 +14,14 @@ namespace luxrig::sim {
 
 class RigServer {
  public:
-  /// `ports`, `paths`: by bus name, where an endpoint shall be; any other gets a free one. All arguments outlive the
+  /// `ports`, `paths`: wanted places of endpoints, by bus name; any other gets a free one. All arguments outlive the
   /// server.
   static Result<std::unique_ptr<RigServer>> open(const Rig& rig, World& world, Faults& faults,
                                                  const std::map<std::string, int>& ports = {},
                                                  const std::map<std::string, std::string>& paths = {});
 
-  [[nodiscard]] std::map<std::string, int> ports() const;          ///< by bus name, of those that have one
-  [[nodiscard]] std::map<std::string, std::string> paths() const;  ///< of serial lines, the same
+  [[nodiscard]] std::map<std::string, int> ports() const;          ///< by bus name; only buses with a port
+  [[nodiscard]] std::map<std::string, std::string> paths() const;  ///< by bus name; only serial lines
   void serve(Time now);                                            ///< never blocks
   [[nodiscard]] std::vector<int> descriptors() const;              ///< to poll for reading
 

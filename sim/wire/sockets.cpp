@@ -22,7 +22,7 @@ Result<BoundSocket> bound(int type, int port) {
   };
   Descriptor descriptor(::socket(AF_INET, type | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   if (!descriptor.open()) return failed("socket");
-  // A restarted simulator must get its port back while old connections are still in TIME_WAIT.
+  // A restarted simulator must get its port back although old connections are still in TIME_WAIT.
   const int yes = 1;
   if (type == SOCK_STREAM) ::setsockopt(descriptor.get(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
   sockaddr_in address{};

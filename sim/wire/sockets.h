@@ -1,5 +1,5 @@
 #pragma once
-/// Loopback sockets that never block. The simulator listens nowhere else.
+/// Loopback sockets that never block. The simulator listens on no other address.
 
 #include <cstdint>
 #include <utility>
@@ -33,7 +33,7 @@ struct BoundSocket {
   int port = 0;
 };
 
-/// Bound to 127.0.0.1; port 0 = any free one. Cause::system with the port and what the system said.
+/// Bound to 127.0.0.1; port 0 = any free one. Cause::system with the port and the system's message.
 [[nodiscard]] Result<BoundSocket> bind_udp(int port);
 [[nodiscard]] Result<BoundSocket> listen_tcp(int port);
 

@@ -93,8 +93,8 @@ Vec3 beam_mount(const Joints& joints) {
 }
 
 std::vector<Joints> spread_aims(const JointRange& range, int count) {
-  // A Fibonacci lattice over the cap that the tilt can reach, straight down first. Aims whose pan is out of range are
-  // left out: such a head cannot look there.
+  // A Fibonacci lattice over the cap that the tilt can reach, straight down first. Leaves out aims with a pan out of
+  // range, as such a head cannot look there.
   const double reach_rad = std::min(kPi, std::max(std::abs(range.tilt_min_rad), std::abs(range.tilt_max_rad)));
   const double golden_turn_rad = kPi * (3 - std::sqrt(5.0));
   std::vector<Joints> aims;
@@ -103,7 +103,7 @@ std::vector<Joints> spread_aims(const JointRange& range, int count) {
     Joints joints;
     joints.tilt_rad = std::acos(1 - share * (1 - std::cos(reach_rad)));
     joints.pan_rad = std::remainder(i * golden_turn_rad, 2 * kPi);
-    if (joints.tilt_rad > range.tilt_max_rad) {  // the other way over the top
+    if (joints.tilt_rad > range.tilt_max_rad) {  // tilt to the other side
       joints.tilt_rad = -joints.tilt_rad;
       joints.pan_rad = std::remainder(joints.pan_rad + kPi, 2 * kPi);
     }

@@ -1,6 +1,6 @@
 #pragma once
-/// Counter-based random numbers: a value is a pure function of (seed, stream, counter), so nothing depends on the order
-/// in which devices are stepped or asked.
+/// Counter-based random numbers: a value is a pure function of (seed, stream, counter), so the order in which devices
+/// are stepped or queried does not matter.
 ///
 /// Source: the finaliser of SplitMix64 (Steele, Lea, Flood 2014) over a Weyl-style combination of the three keys.
 
@@ -11,7 +11,7 @@
 
 namespace luxrig::sim {
 
-/// What a stream of numbers is for; with the device's index it makes the stream.
+/// Purpose of a stream of numbers; with the device's index it selects the stream.
 enum class Draw : std::uint64_t {
   lamp_output = 1,
   curve_exponent,
@@ -48,7 +48,7 @@ enum class Draw : std::uint64_t {
   return 2 * random_unit(seed, draw, device, counter) - 1;
 }
 
-/// Standard normal by Box–Muller, cut off at ±3 so that no device is ever absurd.
+/// Standard normal by Box–Muller, clamped to ±3 so that no device is absurd.
 [[nodiscard]] inline double random_normal(std::uint64_t seed, Draw draw, std::uint64_t device, std::uint64_t counter) {
   const double u = 1 - random_unit(seed, draw, device, 2 * counter);  // (0, 1]
   const double v = random_unit(seed, draw, device, 2 * counter + 1);

@@ -1,4 +1,4 @@
-// World::make from a rig alone: its scene, its true poses, and the light that follows from them.
+// World::make from a rig alone: its scene, true poses, and their light.
 #include <fmt/format.h>
 
 #include "core/scene/ray_scene.h"
@@ -12,7 +12,7 @@ namespace luxrig::sim {
 namespace {
 
 constexpr int kSpreadAims = 32;  // per moving head; see head_light.h
-// The indirect light at those is a small part of the whole, and is interpolated besides.
+// Indirect light at these aims is a small part of the whole, and is interpolated anyway.
 constexpr double kSpreadErrorFactor = 3;
 
 // Progress of one part of the work, within the whole.
@@ -37,7 +37,7 @@ Result<std::unique_ptr<const HeadLight>> light_of_heads(const Rig& rig, const st
                                                         const TransportMatrix& nominal,
                                                         const EvaluateOptions& options) {
   std::vector<HeadSamples> heads;
-  std::vector<Emitter> emitters;  // every head at its spread aims, head by head
+  std::vector<Emitter> emitters;  // each head at its spread aims, head by head
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
     const Fixture& fixture = rig.fixtures[f];
     if (!fixture.moves) continue;
@@ -88,7 +88,7 @@ Result<std::unique_ptr<World>> World::make(const Rig& rig, const Deviations& dev
   }
   const RayScene scene(*built);
   const std::vector<FixtureTruth> truths = draw_fixtures(rig, deviations);
-  Rig true_rig = rig;  // hung as it really is, aimed by the joints of the file
+  Rig true_rig = rig;  // true poses, with the file's joints
   for (std::size_t f = 0; f < truths.size(); ++f) {
     true_rig.fixtures[f].world_from_mount = truths[f].world_from_mount;
   }

@@ -54,7 +54,7 @@ class MatrixWorld final : public World {
     }
     for (const Point& point : rig.points) limits_lx_.push_back(point.max_lx);
     open_violation_.assign(points_, false);
-    watch_limits();  // daylight may be above one
+    watch_limits();  // daylight may already exceed one
   }
 
   void set_drive(std::size_t fixture, double drive) override {
@@ -138,7 +138,7 @@ class MatrixWorld final : public World {
       changed = changed || level != level_[i];
       level_[i] = level;
     }
-    if (changed) {  // a rig at rest costs nothing but its meters
+    if (changed) {  // a rig at rest only costs its meters
       lux_.noalias() = lux_per_level_ * level_;
       lux_ += fixed_lx_;
       peak_lx_ = peak_lx_.cwiseMax(lux_);
@@ -157,7 +157,7 @@ class MatrixWorld final : public World {
     for (std::size_t p = 0; p < points_; ++p) {
       if (!limits_lx_[p]) continue;
       const double lux = lux_[static_cast<Eigen::Index>(p)];
-      if (lux <= *limits_lx_[p] * (1 + 1e-9)) {  // a limit met exactly, but for rounding, is kept
+      if (lux <= *limits_lx_[p] * (1 + 1e-9)) {  // a limit met exactly, up to rounding, is kept
         open_violation_[p] = false;
         continue;
       }

@@ -40,7 +40,7 @@ constexpr ErrorName kErrorNames[] = {
     {0x8611, "following error"},
     {0x8612, "limit of travel"},
 };
-// By their first byte, or first digit.
+// By their first byte or first digit.
 constexpr ErrorName kClassNames[] = {
     {0x1000, "generic error"},  {0x2000, "current"},         {0x3000, "voltage"},         {0x4000, "temperature"},
     {0x5000, "hardware"},       {0x6000, "software"},        {0x7000, "additional part"}, {0x8000, "monitoring"},

@@ -11,15 +11,15 @@
 namespace luxrig::canopen {
 
 struct Emergency {
-  std::uint16_t code = 0;           ///< 0: errors are gone
+  std::uint16_t code = 0;           ///< 0 = errors are gone
   std::uint8_t error_register = 0;  ///< object 1001
   std::array<std::uint8_t, 5> of_maker{};
 };
 
-/// Nothing when it has not 8 bytes.
+/// Empty unless it has 8 bytes.
 [[nodiscard]] std::optional<Emergency> decode_emergency(const can::CanFrame& frame);
 
-/// "following error (8611)"; a code without a name of its own has that of its class.
+/// "following error (8611)"; a code without its own name gets the name of its class.
 [[nodiscard]] std::string error_text(std::uint16_t code);
 
 }  // namespace luxrig::canopen

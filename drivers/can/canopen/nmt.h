@@ -1,5 +1,5 @@
 #pragma once
-/// Network management and heartbeat (CiA 301, 7.2.8): commands to nodes, and who is alive. Pure.
+/// Network management and heartbeat (CiA 301, 7.2.8): commands to nodes and their states. Pure.
 
 #include <optional>
 
@@ -21,7 +21,7 @@ enum class NmtState : std::uint8_t { boot_up = 0, stopped = 4, operational = 5, 
 /// node 0 = all
 [[nodiscard]] can::CanFrame nmt_frame(NmtCommand command, int node);
 [[nodiscard]] can::CanFrame heartbeat_frame(NmtState state, int node);
-/// Nothing when it is no heartbeat: not one byte, or none of the states.
+/// Empty if it is no heartbeat: not one byte, or an unknown state.
 [[nodiscard]] std::optional<NmtState> decode_heartbeat(const can::CanFrame& frame);
 
 /// Listens to one node's heartbeat.
@@ -30,7 +30,7 @@ class HeartbeatConsumer {
   explicit HeartbeatConsumer(Duration timeout) : timeout_(timeout) {}
   void heard(Time now, NmtState state) { last_ = now, state_ = state; }
   void forget() { last_.reset(); }
-  /// Its newest state; nothing when it has not been heard for too long.
+  /// Its newest state; empty after the timeout.
   [[nodiscard]] std::optional<NmtState> state(Time now) const {
     return last_ && now - *last_ <= timeout_ ? std::optional(state_) : std::nullopt;
   }

@@ -1,6 +1,6 @@
 #pragma once
-/// The client of one node's SDO server: one transfer at a time, repeated when no answer comes. Pure: `now` and frames
-/// in, frames out.
+/// The client of one node's SDO server: one transfer at a time, repeated if no answer comes. Pure: `now` and frames in,
+/// frames out.
 
 #include <deque>
 #include <optional>
@@ -13,23 +13,23 @@
 
 namespace luxrig::canopen {
 
-/// A write when there is a value (1 to 4 bytes, little-endian), else a read.
+/// With a value (1 to 4 bytes, little-endian) a write, else a read.
 struct SdoRequest {
   ObjectAddress object;
   std::vector<std::uint8_t> value;
 };
 
 struct SdoFailure {
-  std::optional<std::uint32_t> abort_code;  ///< of the node; none: no answer
+  std::optional<std::uint32_t> abort_code;  ///< from the node; empty = no answer
 };
-/// What was read; empty after a write.
+/// The value read; empty after a write.
 using SdoResult = tl::expected<std::vector<std::uint8_t>, SdoFailure>;
 
 class SdoClient {
  public:
   static constexpr Duration kAnswerTimeout = std::chrono::milliseconds(500);
   static constexpr int kRetries = 2;
-  static constexpr std::size_t kLongestValue = 1024;  ///< of a segmented read; what is longer is aborted
+  static constexpr std::size_t kLongestValue = 1024;  ///< of a segmented read; a longer one is aborted
 
   explicit SdoClient(int node) : node_(node) {}
 
@@ -37,12 +37,12 @@ class SdoClient {
   void start(SdoRequest request);  ///< requires idle()
   void cancel() { request_.reset(), result_.reset(); }
 
-  /// What to send now: the request, its repetition, the next segment; nothing while the answer is awaited.
+  /// The frame to send now: the request, its repetition, or the next segment. Empty while waiting for the answer.
   [[nodiscard]] std::optional<can::CanFrame> to_send(Time now);
-  /// A frame from the node's server (0x580 + node). One that does not belong to the transfer is ignored: an answer that
-  /// came too late, or a garbled one.
+  /// A frame from the node's server (0x580 + node). Ignores a late or garbled answer that does not belong to the
+  /// transfer.
   void receive(const can::CanFrame& frame);
-  /// Once, when the transfer has ended.
+  /// The result, once, after the transfer has ended.
   [[nodiscard]] std::optional<SdoResult> take_result();
 
  private:
@@ -54,7 +54,7 @@ class SdoClient {
   std::optional<SdoRequest> request_;
   std::optional<SdoResult> result_;
   std::optional<SdoBytes> due_;      ///< to be sent next
-  std::optional<SdoBytes> parting_;  ///< an abort of ours, behind the transfer's end
+  std::optional<SdoBytes> parting_;  ///< our abort, sent after the transfer has ended
   Time sent_{};
   int tries_ = 0;
   bool in_segments_ = false, toggle_ = false;

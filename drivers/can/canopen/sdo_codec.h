@@ -1,6 +1,6 @@
 #pragma once
-/// Service data objects of CANopen (CiA 301, 7.2.4.3): requests of a client and answers of a server, 8 bytes each.
-/// Writes are expedited (at most 4 bytes); reads are either. Pure.
+/// Service data objects of CANopen (CiA 301, 7.2.4.3): client requests and server answers, 8 bytes each. Writes are
+/// expedited (at most 4 bytes); reads are expedited or segmented. Pure.
 
 #include <array>
 #include <cstdint>
@@ -29,8 +29,8 @@ struct ObjectAddress {
 
 enum class SdoAnswerKind {
   downloaded,  ///< a write was done: `object`
-  uploaded,    ///< a whole value of at most 4 bytes: `object`, `bytes` (4 of them when no size was given)
-  started,     ///< a longer value follows in segments: `object`, `size` when it was given
+  uploaded,    ///< a whole value of at most 4 bytes: `object`, `bytes` (4 if no size was given)
+  started,     ///< a longer value follows in segments: `object`, `size` if given
   segment,     ///< a part of it: `toggle`, `bytes`, `last`
   aborted,     ///< refused: `object`, `abort_code`
   garbled      ///< breaks the protocol
@@ -40,7 +40,7 @@ struct SdoAnswer {
   SdoAnswerKind kind = SdoAnswerKind::garbled;
   ObjectAddress object;
   std::vector<std::uint8_t> bytes;
-  std::uint32_t size = 0;  ///< 0: not given
+  std::uint32_t size = 0;  ///< 0 = not given
   std::uint32_t abort_code = 0;
   bool toggle = false, last = false;
 };

@@ -20,9 +20,9 @@ constexpr Duration kStartAgain = milliseconds(500), kStartTimeout = milliseconds
 constexpr Duration kResetPause = milliseconds(1000), kResetPulse = milliseconds(200);
 constexpr Duration kTryRefusedAgain = milliseconds(5000);
 constexpr Duration kForgiveAfter = milliseconds(30000);
-constexpr int kHomingAnswers = 3;  ///< statuswords after the start before one is believed: the first may be older
-constexpr int kEndedAnswers = 3;   ///< in a row that say so: what is taken for home decides about every way from there
-constexpr double kHomeSlack_s = 0.05;  ///< of way at full speed
+constexpr int kHomingAnswers = 3;      ///< statuswords skipped after the start, as the first may be older
+constexpr int kEndedAnswers = 3;       ///< in a row that report the end: every later move depends on the home position
+constexpr double kHomeSlack_s = 0.05;  ///< as a distance at full speed
 
 void append(std::vector<std::uint8_t>& to, std::uint32_t value, int bytes) {
   const auto more = little_endian(value, bytes);
@@ -78,7 +78,7 @@ void Axis::begin_setup(Time now) {
   doubt_counted_ = false;
   steps_ = {{{kDeviceType, {}}, false}, {{kDeviceName, {}}, true}, {{kSupportedModes, {}}, false}};
   for (SetupStep& step : setup_steps(settings_)) steps_.push_back(std::move(step));
-  limits_by_sdo_ = false;  // it may be another drive by now
+  limits_by_sdo_ = false;  // it may be another drive now
   step_ = 0;
   nmt_due_ = true;
 }
@@ -94,7 +94,7 @@ bool Axis::ready() const {
          state_of(statusword_) == DriveState::operation_enabled;
 }
 
-// --- what goes to the bus ---
+// --- frames to the bus ---
 
 void Axis::next_setup_step(Time now, Frames& out) {
   if (nmt_due_) {
@@ -131,7 +131,7 @@ void Axis::step(Time now, bool stand_still, bool asked, bool together, Frames& o
       if (sdo_.idle()) sdo_.start({kDeviceType, {}});
       [[fallthrough]];
     case Phase::checking:
-      if (set_up_once_) send_pdos(safe_word(now, kQuickStop), out);  // it may hear, though it is not heard
+      if (set_up_once_) send_pdos(safe_word(now, kQuickStop), out);  // it may hear us although we do not hear it
       break;
     case Phase::setting_up:
       next_setup_step(now, out);
@@ -246,7 +246,7 @@ bool Axis::in_mode(int mode) {
 
 std::uint16_t Axis::go_home(Time now) {
   if (!in_mode(kHoming)) return kEnableOperation;
-  if (!homing_since_) {  // a cycle with bit 4 low, so that the drive sees it rise
+  if (!homing_since_) {  // one cycle with bit 4 low, so that the drive sees it rise
     homing_since_ = now;
     homing_answers_ = ended_answers_ = 0;
     return kEnableOperation;
@@ -312,7 +312,7 @@ std::string Axis::trouble() const {
   if (state != DriveState::operation_enabled) return fmt::format("{} is {}", who, name_of(state));
   if (referenced_) return mode_ == kProfilePosition ? "" : who + " changes its mode";
   if (settings_.home == HomeRule::when_needed && !asked_) return "";
-  // Without a figure that grows: each text is an alarm of its own.
+  // No growing figure in the text, as each new text is an alarm of its own.
   return who + (homing_since_ ? " is on its way to its home position" : " does not know its position");
 }
 

@@ -1,12 +1,13 @@
 #pragma once
-/// One drive on the bus: found, set up, enabled, sent home, moved, and taken back into service after a loss. Pure:
-/// `now` and frames in, frames out; one step() each cycle, the SYNC goes out behind it.
+/// One drive on the bus: found, set up, enabled, homed, moved, and taken back into service after a loss. Pure: `now`
+/// and frames in, frames out. One step() each cycle; the SYNC follows it.
 ///
-///   absent -> setting_up -> starting -> running;   running -> absent (no heartbeat) -> checking -> running or
-///   setting_up any -> failed (refused, or faulted too often): stands still until the node boots anew
+///   absent -> setting_up -> starting -> running
+///   running -> absent (no heartbeat) -> checking -> running or setting_up
+///   any -> failed (refused, or faulted too often): stands still until the node boots again
 ///
-/// Nothing here moves the axis but homing (as the rule says) and the set-points ordered. No word takes the torque off
-/// an axis that may be turning, whatever its statusword says: it would run on by its momentum.
+/// Only homing (as the rule says) and ordered set-points move the axis. No controlword takes the torque off an axis
+/// that may be turning, whatever its statusword says: it would run on by its momentum.
 
 #include <map>
 #include <optional>
@@ -29,33 +30,34 @@ class Axis {
  public:
   explicit Axis(const AxisSettings& settings);
 
-  /// Knows nothing of the drive from here on.
+  /// Forgets all state of the drive.
   void activate(Time now);
   /// A data frame; those of other nodes are ignored.
   void receive(Time now, const can::CanFrame& frame);
-  /// stand_still: the head's other axis is not sound, so this one stops; asked: the head has a target; together: a
-  /// set-point may be offered, as the other axis can begin with it, too.
+  /// stand_still  the head's other axis is not sound, so this one stops
+  /// asked        the head has a target
+  /// together     a set-point may be offered, as the other axis can begin with it
   void step(Time now, bool stand_still, bool asked, bool together, Frames& out);
-  /// What stops it when nobody steps it any more.
+  /// Frames that stop it before step() is no longer called.
   void stop(Frames& out) const;
 
   [[nodiscard]] const AxisSettings& settings() const { return settings_; }
   /// It answers, and its drive has no fault.
   [[nodiscard]] bool sound() const;
-  /// It can be ordered about: enabled, and its position is known.
+  /// It accepts orders: enabled, and its position is known.
   [[nodiscard]] bool ready() const;
   /// requires ready().
   void order(const SetPoint& set_point) { handshake_.order(set_point); }
   [[nodiscard]] bool order_taken() const { return handshake_.idle(); }
-  /// The drive knows speed and acceleration of the order, or hears them with it. Not yet, where they are written by
-  /// SDO.
+  /// True if the drive has the order's speed and acceleration, or gets them with it. False while they are still being
+  /// written by SDO.
   [[nodiscard]] bool limits_told() const;
   [[nodiscard]] std::int32_t position() const { return position_; }
   [[nodiscard]] std::int32_t velocity() const { return velocity_; }  ///< counts/s
-  /// Why it does not do what it is asked; empty when it does.
+  /// Why it does not follow its orders; empty if it does.
   [[nodiscard]] std::string trouble() const;
   [[nodiscard]] bool referenced() const { return referenced_; }
-  /// What of it a person may want to know although it is in order; empty: nothing.
+  /// Worth knowing although it is in order; may be empty.
   [[nodiscard]] std::string remark() const;
 
  private:
@@ -95,32 +97,32 @@ class Axis {
 
   Phase phase_ = Phase::absent;
   Time since_{};
-  std::string why_;         ///< it is absent or has failed
-  std::string drive_name_;  ///< object 1008, when it has one
+  std::string why_;         ///< why it is absent or has failed
+  std::string drive_name_;  ///< object 1008, if it has one
   std::size_t step_ = 0;
   bool set_up_once_ = false;  ///< since activate()
-  bool refused_ = false;      ///< it failed in its set-up, which is tried again
+  bool refused_ = false;      ///< its set-up failed and is tried again
   bool nmt_due_ = false;
   Time nmt_sent_{};
   bool referenced_ = false;
   bool asked_ = false, stands_still_ = false;
 
-  std::optional<Time> status_at_;  ///< of the newest that is believed
-  std::optional<Time> pdo_at_;     ///< of any
+  std::optional<Time> status_at_;  ///< time of the newest believed statusword
+  std::optional<Time> pdo_at_;     ///< of any TPDO 1, believed or not
   bool fresh_ = false;
   std::uint16_t statusword_ = 0, error_code_ = 0;
   std::int32_t position_ = 0, velocity_ = 0;
   int mode_ = 0;
 
   std::optional<Time> homing_since_;
-  int homing_answers_ = 0, ended_answers_ = 0;  ///< ended: < 0 by an error
-  std::optional<std::uint32_t> other_entry_;    ///< that was read in place of consumer_entry()
+  int homing_answers_ = 0, ended_answers_ = 0;  ///< ended_answers_ < 0: ended with an error
+  std::optional<std::uint32_t> other_entry_;    ///< read in place of consumer_entry()
   bool doubt_counted_ = false;
-  std::optional<Time> told_to_stop_;  ///< nothing that would turn it was sent since
+  std::optional<Time> told_to_stop_;  ///< nothing that moves it was sent since
   std::optional<canopen::ObjectAddress> rereading_;
-  std::optional<std::int32_t> target_told_;      ///< that is read back
-  bool limits_by_sdo_ = false;                   ///< no PDO of it carries speed and acceleration
-  std::map<std::uint16_t, std::uint32_t> told_;  ///< of their objects, what it has taken
+  std::optional<std::int32_t> target_told_;      ///< target sent, whose read-back was started
+  bool limits_by_sdo_ = false;                   ///< none of its PDOs carries speed and acceleration
+  std::map<std::uint16_t, std::uint32_t> told_;  ///< values it has accepted, by object index
   std::optional<canopen::SdoRequest> telling_;
   Time tell_again_at_{};
   std::optional<Time> reset_at_;

@@ -1,4 +1,4 @@
-// Speed and acceleration of a move for a drive that no PDO can tell them.
+// Speed and acceleration of a move, for a drive that cannot receive them by PDO.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,8 +24,8 @@ bool is_of_limits_pdos(const SetupStep& step) {
 
 }  // namespace
 
-/// The rest of what those two PDOs were to be told is left out. A mapping of the maker's own may be on: it is not to
-/// hear ours.
+/// Skips the rest of the set-up of those two PDOs. A mapping of the maker's own may be active; it must not receive our
+/// data.
 bool Axis::limits_go_by_sdo(const canopen::SdoRequest& refused, std::uint32_t abort_code) {
   if (refused.object.index != kLimitsMapping && refused.object.index != kBrakingMapping) return false;
   if (abort_code != kNotMappable && abort_code != kPdoTooLong && abort_code != kValueOutOfRange) return false;
@@ -39,7 +39,7 @@ bool Axis::limits_go_by_sdo(const canopen::SdoRequest& refused, std::uint32_t ab
   return true;
 }
 
-/// The accelerations first: a drive that takes a speed at once then has its ramp for it.
+/// Accelerations come first, so a drive that applies a new speed at once has its ramp already.
 std::optional<canopen::SdoRequest> Axis::limit_to_tell() const {
   const auto& order = handshake_.current();
   if (!order) return std::nullopt;
@@ -62,7 +62,7 @@ void Axis::tell_limits(Time now) {
   if (!limits_by_sdo_ || !handshake_.prepared() || rereading_ || !sdo_.idle() || now < tell_again_at_) return;
   telling_ = limit_to_tell();
   if (!telling_) return;
-  told_.erase(telling_->object.index);  // whatever comes of it
+  told_.erase(telling_->object.index);  // whatever the outcome
   sdo_.start(*telling_);
 }
 

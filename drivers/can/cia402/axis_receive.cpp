@@ -1,4 +1,4 @@
-// What an axis makes of its node's frames.
+// An axis's handling of frames from its node.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -14,14 +14,14 @@ namespace {
 using canopen::NmtState;
 
 constexpr std::uint32_t kDriveProfile = 402;
-constexpr double kTargetSlack_s = 0.005, kRereadSlack_s = 0.02;  ///< of way at full speed
+constexpr double kTargetSlack_s = 0.005, kRereadSlack_s = 0.02;  ///< as a distance at full speed
 
 }  // namespace
 
 void Axis::heartbeat_heard(Time now, NmtState state) {
   const bool reset = state == NmtState::boot_up;
   heartbeat_.heard(now, state);
-  if (reset) {  // it has forgotten everything, its position included
+  if (reset) {  // it has forgotten everything, including its position
     failures_ = 0;
     begin_setup(now);
     return;
@@ -36,7 +36,7 @@ void Axis::heartbeat_heard(Time now, NmtState state) {
       }
       break;
     case Phase::running:
-      if (state != NmtState::operational) begin_setup(now);  // reset unseen, or taken out of service by another
+      if (state != NmtState::operational) begin_setup(now);  // reset unseen, or stopped by another master
       break;
     default:
       break;
@@ -86,8 +86,8 @@ void Axis::take_sdo_result(Time now) {
       }
       break;
     case Phase::checking: {
-      // Still operational and still listening to us: it has not been reset while it was away, so its position holds.
-      // That it has been must be said twice in the same words.
+      // If it is still operational and still listens to us, it was not reset while away, so its position is valid.
+      // Evidence of a reset must come twice, identically.
       if (!result->has_value() && !result->error().abort_code) return lost(now, "does not answer");
       const std::uint32_t entry = result->has_value() ? number_in(**result) : *result->error().abort_code;
       const bool same = result->has_value() && entry == consumer_entry(settings_);
@@ -96,7 +96,7 @@ void Axis::take_sdo_result(Time now) {
         enter(now, Phase::running);
       } else if (same ? !state && now - since_ < heartbeat_timeout(settings_) : other_entry_ != entry) {
         if (!same) other_entry_ = entry;
-        sdo_.start({kConsumer, {}});  // its heartbeat is still to come
+        sdo_.start({kConsumer, {}});  // wait for its heartbeat
       } else {
         begin_setup(now);
       }
@@ -107,7 +107,7 @@ void Axis::take_sdo_result(Time now) {
       break;
     case Phase::running:
       if (telling_) return take_told(now, *result);
-      if (rereading_) take_reread(now, *result);  // else the mode of operation was written: its display tells
+      if (rereading_) take_reread(now, *result);  // else the mode of operation was written; its display shows it
       break;
     case Phase::starting:
     case Phase::failed:

@@ -37,20 +37,20 @@ std::vector<SetupStep> setup_steps(const AxisSettings& s) {
   };
   const auto heartbeat_ms = std::chrono::duration_cast<std::chrono::milliseconds>(s.heartbeat).count();
 
-  write(0x6040, 0, kQuickStop, 2, true);  // it may be turning; from here on it hears no PDOs
+  write(0x6040, 0, kQuickStop, 2, true);  // it may be turning; from here on it receives no PDOs
   pdo(PdoDirection::to_node, 1, {{{0x6040, 0}, 16}, {{0x607A, 0}, 32}});
   pdo(PdoDirection::to_node, 2, {{{0x6081, 0}, 32}, {{0x6083, 0}, 32}});
   pdo(PdoDirection::to_node, 3, {{{0x6084, 0}, 32}});
   pdo(PdoDirection::from_node, 1, {{{0x6041, 0}, 16}, {{0x6064, 0}, 32}, {{0x6061, 0}, 8}});
   pdo(PdoDirection::from_node, 2, {{{0x603F, 0}, 16}, {{0x606C, 0}, 32}});
 
-  // What it does when the master dies: stops as by a quick stop, and stays in its communication state.
+  // When the master dies, the drive makes a quick stop and stays in its communication state.
   write(0x6007, 0, kQuickStopOnAbort, 2);
   write(0x1029, 1, kStayInState, 1, true);
   write(0x605A, 0, s.hold_on_stop ? kRampThenHold : kRampThenOff, 2);
   write(0x6085, 0, s.acceleration, 4);
 
-  write(0x607C, 0, 0, 4);  // the angle of the home position is added here, not by the drive: makers differ in its sign
+  write(0x607C, 0, 0, 4);  // the home position's angle is added here, not by the drive: makers differ in its sign
   write(0x607D, 1, static_cast<std::uint32_t>(s.lowest), 4);
   write(0x607D, 2, static_cast<std::uint32_t>(s.highest), 4);
   write(0x6081, 0, s.speed, 4);
@@ -63,7 +63,7 @@ std::vector<SetupStep> setup_steps(const AxisSettings& s) {
     write(0x609A, 0, s.acceleration, 4);
   }
   write(0x1017, 0, static_cast<std::uint32_t>(heartbeat_ms), 2);
-  write(0x1016, 1, consumer_entry(s), 4);  // last: with it, the node is all set up
+  write(0x1016, 1, consumer_entry(s), 4);  // last: with it, the node is fully set up
   return steps;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What an axis's drive is told before it moves: every object by SDO, in order. NOTES.md has the table. Pure.
+/// Set-up of an axis's drive before it moves: every object by SDO, in order. NOTES.md has the table. Pure.
 
 #include <string>
 #include <vector>
@@ -9,9 +9,9 @@
 namespace luxrig::cia402 {
 
 enum class HomeRule {
-  at_start,     ///< as soon as the drive can, after every loss of its position
-  when_needed,  ///< the same, but not before a first aim is asked
-  never         ///< the drive knows its position by itself
+  at_start,     ///< as soon as the drive is able to, after every loss of its position
+  when_needed,  ///< the same, but not before the first aim is ordered
+  never         ///< the drive knows its own position
 };
 
 /// In the drive's own units: counts, counts/s, counts/s².
@@ -19,31 +19,31 @@ struct AxisSettings {
   int node = 1;
   int master_node = 127;
   Duration cycle = std::chrono::milliseconds(20);       ///< between two SYNCs
-  Duration heartbeat = std::chrono::milliseconds(100);  ///< of node and master; each misses the other after three
+  Duration heartbeat = std::chrono::milliseconds(100);  ///< of node and master; each times out after three
   std::int32_t lowest = 0, highest = 0;                 ///< soft limits of the position
   std::uint32_t speed = 1, acceleration = 1;
   HomeRule home = HomeRule::at_start;
   int homing_method = 17;
-  std::uint32_t homing_speed = 1;  ///< towards the switch; a quarter of it to find its edge
+  std::uint32_t homing_speed = 1;  ///< towards the switch; a quarter of it to find the edge
   Duration homing_timeout = std::chrono::seconds(60);
   bool hold_on_stop = true;  ///< after a quick stop stay energised, else switch off
-  int fault_resets = 3;      ///< in a row, before a person is needed
+  int fault_resets = 3;      ///< in a row, before a person must act
 };
 
-/// What is missed when the master falls silent for so long.
+/// Timeout for the master's silence.
 [[nodiscard]] inline Duration heartbeat_timeout(const AxisSettings& settings) { return 3 * settings.heartbeat; }
 
-/// A quick stop from full speed, and the time until it is heard.
+/// Time of a quick stop from full speed, including the time until the drive notices.
 [[nodiscard]] Duration stops_within(const AxisSettings& settings);
 
 struct SetupStep {
   canopen::SdoRequest request;
-  bool optional = false;  ///< a drive without that object will do
+  bool optional = false;  ///< a drive may lack this object
 };
 
 [[nodiscard]] std::vector<SetupStep> setup_steps(const AxisSettings& settings);
-/// Of object 1016:1, by which the node listens to the master. Lost when the node resets: that it is still there shows
-/// that the node has not.
+/// Value of object 1016:1, by which the node listens to the master. A reset clears it, so its presence proves that the
+/// node was not reset.
 [[nodiscard]] std::uint32_t consumer_entry(const AxisSettings& settings);
 
 }  // namespace luxrig::cia402

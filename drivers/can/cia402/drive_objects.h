@@ -12,7 +12,7 @@ inline constexpr canopen::ObjectAddress kDeviceType{0x1000, 0}, kDeviceName{0x10
     kAcceleration{0x6083, 0}, kDeceleration{0x6084, 0}, kSupportedModes{0x6502, 0};
 inline constexpr int kProfilePosition = 1, kHoming = 6;  ///< modes of operation
 
-/// Little-endian, of the first four bytes.
+/// Little-endian value of the first four bytes.
 [[nodiscard]] inline std::uint32_t number_in(const std::vector<std::uint8_t>& bytes) {
   std::uint32_t value = 0;
   for (std::size_t i = 0; i < bytes.size() && i < 4; ++i) value |= static_cast<std::uint32_t>(bytes[i]) << (8 * i);

@@ -1,6 +1,6 @@
 #pragma once
-/// The state machine of a drive (CiA 402-2, 7.1): what its statusword (6041) says, and which controlword (6040) leads
-/// on from there. Pure.
+/// The state machine of a drive (CiA 402-2, 7.1): the state in its statusword (6041), and the controlword (6040) that
+/// leads onward. Pure.
 
 #include <cstdint>
 
@@ -29,13 +29,13 @@ inline constexpr std::uint16_t kHomingError = 1 << 13;           ///< in homing;
 // Controlwords.
 inline constexpr std::uint16_t kDisableVoltage = 0x0000, kQuickStop = 0x0002, kShutdown = 0x0006, kSwitchOn = 0x0007,
                                kEnableOperation = 0x000F, kFaultReset = 0x0080;
-// Bits beside kEnableOperation.
+// Bits used together with kEnableOperation.
 inline constexpr std::uint16_t kNewSetPoint = 1 << 4;        ///< in homing: start
-inline constexpr std::uint16_t kChangeImmediately = 1 << 5;  ///< a new set-point replaces the old one, or it queues
+inline constexpr std::uint16_t kChangeImmediately = 1 << 5;  ///< a new set-point replaces the old one; else it queues
 inline constexpr std::uint16_t kHalt = 1 << 8;
 
-/// The next controlword on the way to operation enabled. From quick stop active: holds = true when its option code
-/// (605A, 5 to 8) lets it go back at once, else by switching off. A fault needs a reset first: kDisableVoltage here.
+/// The next controlword towards operation enabled. From quick stop active: `holds` = its option code (605A, 5 to 8)
+/// allows the direct way back, else it must switch off first. A fault needs a reset first: kDisableVoltage here.
 [[nodiscard]] std::uint16_t towards_operation(DriveState state, bool holds);
 
 }  // namespace luxrig::cia402

@@ -10,15 +10,15 @@ namespace luxrig::cia402 {
 namespace {
 
 constexpr double kThere_rad = rad_from_deg(0.5);
-constexpr double kExact_rad = rad_from_deg(0.03);  // backlash, and what a standing servo is off
+constexpr double kExact_rad = rad_from_deg(0.03);  // backlash, and the error of a standing servo
 constexpr Duration kReturnSlack = std::chrono::seconds(1);
 constexpr Duration kArrivalSlack = std::chrono::seconds(3);  // it may have to turn back first
 constexpr Duration kBeginsWithin = std::chrono::milliseconds(300);
-constexpr int kCyclesToBegin = 6;  // three objects by SDO, a read that was under way, and the offer
+constexpr int kCyclesToBegin = 6;  // three objects by SDO, a read in progress, and the offer
 
 double counts_per_rad(const AxisPatch& patch) { return std::abs(patch.counts_per_degree) * deg_from_rad(1.0); }
 
-/// A speed or acceleration as the drive takes it: whole, and at least 1.
+/// A speed or acceleration for the drive: whole, and at least 1.
 std::uint32_t whole_counts(double counts) {
   return static_cast<std::uint32_t>(std::clamp(std::round(counts), 1.0, 4e9));
 }
@@ -100,12 +100,12 @@ std::optional<Joints> HeadAxes::joints() const {
 void HeadAxes::step(Time now, Frames& out) {
   const auto here = joints();
   if (!here) {
-    ordered_.reset();  // it is asked again as soon as both can go there
+    ordered_.reset();  // ordered again once both axes can follow
     returning_ = true;
     due_back_.reset();
     arrive_by_.reset();
     waits_since_.reset();
-    // By a quick stop, whatever the nodes say of it.
+    // It stops by a quick stop, whatever the nodes report.
     under_way_until_ =
         std::min(under_way_until_, now + std::max(stops_within(pan_.settings()), stops_within(tilt_.settings())));
   }
@@ -113,10 +113,10 @@ void HeadAxes::step(Time now, Frames& out) {
     arrive_by_.reset();
     if (is_there(*here, kExact_rad)) {
       ordered_again_ = false;
-    } else if (is_there(*here, kThere_rad)) {  // it stopped for a moment and went on without its order, unseen
+    } else if (is_there(*here, kThere_rad)) {  // it paused unseen and went on without its order
       if (!ordered_again_) ordered_.reset();
       ordered_again_ = true;
-    } else {  // reckoned from a position that was wrong, or part of the order was lost: from here, anew
+    } else {  // computed from a wrong position, or part of the order was lost: order again from here
       ordered_.reset();
       returning_ = true;
       due_back_.reset();
@@ -125,8 +125,8 @@ void HeadAxes::step(Time now, Frames& out) {
   if (here && target_ && ordered_ != target_ && pan_.order_taken() && tilt_.order_taken()) {
     HeadMove move =
         head_move(target_->pan_rad - here->pan_rad, target_->tilt_rad - here->tilt_rad, pan_limits_, tilt_limits_);
-    // From a standstill both keep step. Under way, a share of the limits that fits the way left would neither stop an
-    // axis in time nor bring it back in any. Nor does an axis stand still because its node says so.
+    // From a standstill both axes keep step. A moving axis needs its full limits: scaled to the remaining distance,
+    // they could be too low to stop it or to turn it back in time. A node's report of standstill is not proof of it.
     if (under_way(pan_) || under_way(tilt_) || now < under_way_until_) {
       move.pan = pan_limits_;
       move.tilt = tilt_limits_;
@@ -148,8 +148,8 @@ void HeadAxes::step(Time now, Frames& out) {
   tilt_.step(now, !pan_sound, asked, together, out);
 }
 
-/// Both drives know how fast: with an axis that is told by SDO the other one waits. A wait that is too long counts as a
-/// loss, as by others' reckoning the head is under way.
+/// True once both drives have their limits: if one axis gets them by SDO, the other waits. Too long a wait counts as a
+/// loss, as others already reckon that the head is moving.
 bool HeadAxes::begin_together(Time now) {
   if (!waits_since_) return true;
   const Duration waited = now - *waits_since_;

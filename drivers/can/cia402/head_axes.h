@@ -1,8 +1,8 @@
 #pragma once
-/// The two axes of one head, turned in step (core/output/head_move.h). When one of them is lost or has a fault the
-/// other stops, so that the beam stays on the path it was on. That path is a straight line from a standstill; towards
-/// an aim that replaces one under way each axis bends off as fast as its own limits let it. Neither begins before both
-/// drives know how fast: one that is told by SDO needs some cycles for it. Pure.
+/// The two axes of one head, turned in step (core/output/head_move.h). If one is lost or faulted the other stops, so
+/// that the beam stays on its path. From a standstill that path is a straight line. Towards an aim that replaces one
+/// under way, each axis bends off as fast as its own limits allow. Neither begins before both drives have their limits;
+/// a drive that gets them by SDO needs some cycles. Pure.
 
 #include <optional>
 #include <string>
@@ -13,7 +13,7 @@
 
 namespace luxrig::cia402 {
 
-/// What of the bus's options its axes share; units of the joint where it has any.
+/// Bus options that its axes share; in units of the joint.
 struct AxesOptions {
   int master_node = 127;
   Duration cycle = std::chrono::milliseconds(20);
@@ -39,11 +39,11 @@ class HeadAxes {
 
   [[nodiscard]] const Axis& pan() const { return pan_; }
   [[nodiscard]] const Axis& tilt() const { return tilt_; }
-  /// Why the head does not look where it is asked: the axis's own trouble, or, after a loss, that it is on its way
-  /// back. Empty in service, also while it turns to a new aim.
+  /// Why the head is not at its aim: the axis's own trouble, or its way back after a loss. Empty in service, even while
+  /// it turns to a new aim.
   [[nodiscard]] std::string pan_trouble() const { return trouble(pan_); }
   [[nodiscard]] std::string tilt_trouble() const { return trouble(tilt_); }
-  /// Where the drives say it is; only once both are ready.
+  /// Position that the drives report; empty until both are ready.
   [[nodiscard]] std::optional<Joints> joints() const;
 
  private:
@@ -55,12 +55,12 @@ class HeadAxes {
   AxisLimits pan_limits_, tilt_limits_;  ///< rad/s, rad/s²
   Axis pan_, tilt_;
   std::optional<Joints> target_, ordered_;
-  bool ordered_again_ = false;       ///< as it stood a little beside its aim
-  bool returning_ = true;            ///< from a loss, or from the start, to the aim
-  std::optional<Time> due_back_;     ///< at the latest: it may follow an aim that moves
-  Time under_way_until_{};           ///< by our own reckoning
-  std::optional<Time> waits_since_;  ///< an order that has not begun
-  std::optional<Time> arrive_by_;    ///< else the order did not mean what it should
+  bool ordered_again_ = false;       ///< because it stood slightly beside its aim
+  bool returning_ = true;            ///< to the aim, after a loss or the start
+  std::optional<Time> due_back_;     ///< latest time of return: it may follow a moving aim
+  Time under_way_until_{};           ///< by our own calculation
+  std::optional<Time> waits_since_;  ///< an order has waited to begin since then
+  std::optional<Time> arrive_by_;    ///< if missed, the order did not have its intended effect
 };
 
 }  // namespace luxrig::cia402

@@ -11,9 +11,9 @@
 namespace luxrig::cia402 {
 namespace {
 
-// A profile's speed and acceleration are the servo's to keep: it runs over by some.
+// The servo keeps a profile's speed and acceleration, with some overshoot.
 constexpr double kSpeedMargin = 1.25, kAccelerationMargin = 1.5;
-constexpr double kRounding_s = 0.005;  ///< of way at full speed: backlash, the following error that is made good
+constexpr double kRounding_s = 0.005;  ///< as a distance at full speed: backlash, and following error being caught up
 constexpr double kPlaceSlack_s = 0.02;
 
 bool same_state(const DriveReport& a, const DriveReport& b) {
@@ -34,7 +34,7 @@ void ReportCheck::forget() {
 }
 
 double ReportCheck::reach(Time now) const {
-  // A report may be as late as it takes until the next: the way of a cycle more, at either end.
+  // A report may come up to a cycle late, so add a cycle's distance at either end.
   const double seconds = to_seconds(now - at_ + 2 * cycle_);
   const double speed = std::min(kSpeedMargin * speed_, last_speed_ + kAccelerationMargin * acceleration_ * seconds);
   return speed * seconds + kRounding_s * speed_ + 2;
@@ -57,7 +57,7 @@ std::optional<DriveReport> ReportCheck::take(Time now, std::span<const std::uint
   if (last_ && positions_follow && way > reach(now)) {
     contradicted(now, fmt::format("its position went from {} to {} counts at once", last_->position, report.position));
     if (!doubted()) return std::nullopt;
-    last_ = report;  // what follows is compared with the newest, until some agree
+    last_ = report;  // compare the next with the newest, until some agree
     at_ = now;
     last_speed_ = 0;
     return std::nullopt;
@@ -72,7 +72,7 @@ std::optional<DriveReport> ReportCheck::take(Time now, std::span<const std::uint
     contradicted(now, "its state or mode changed for one word");
   }
   unconfirmed_.reset();
-  // Two at once, one twice or one that was late are no sign that it stands or slows down.
+  // Two reports at once, a repeated one or a late one are no sign that it stands or slows down.
   const double slowed = last_speed_ - kAccelerationMargin * acceleration_ * to_seconds(cycle_);
   const double seen = way / to_seconds(cycle_);
   last_speed_ = last_ && positions_follow ? std::min(std::max({seen, slowed, 0.0}), kSpeedMargin * speed_) : 0;
@@ -95,7 +95,7 @@ void ReportCheck::doubt(Time now, std::string why) {
   in_a_row_ = 0;
   why_ = std::move(why);
   believed_position_ = last_ ? std::optional<double>(last_->position) : std::nullopt;
-  // It may have gathered speed since, until it hears that it must stop.
+  // It may have gained speed since, until it receives the stop.
   const double seconds = to_seconds(now - at_ + 2 * cycle_);
   const double fastest = std::min(speed_, last_speed_ + acceleration_ * seconds);
   way_to_stop_ = fastest * seconds + fastest * fastest / (2 * acceleration_);

@@ -16,7 +16,7 @@ std::uint16_t SetPointHandshake::step(Time now, std::uint16_t statusword, bool f
       phase_ = Phase::prepared;
       return kRest;
     case Phase::prepared:
-      if (acknowledged || !may_offer) return kRest;  // still of the last one: no edge would be seen
+      if (acknowledged || !may_offer) return kRest;  // still for the last one: the drive would see no edge
       phase_ = Phase::offered;
       since_ = now;
       return kRest | kNewSetPoint;

@@ -9,7 +9,7 @@
 namespace luxrig::artnet {
 namespace {
 
-// Offsets; the table of the specification that defines each field. Op codes travel low byte first, most else high.
+// Offsets, grouped by the specification's table. Op codes are low byte first, most other fields high byte first.
 constexpr std::size_t kOpCode = 8;
 constexpr std::size_t kProtocol = 10;
 constexpr std::array<std::uint8_t, 8> kId = {'A', 'r', 't', '-', 'N', 'e', 't', 0};
@@ -60,7 +60,7 @@ constexpr std::size_t kMostPorts = 4;
 constexpr std::size_t kStatus2 = 212, kStatus3 = 217;
 constexpr std::uint8_t kPortPutsOut = 0x80;
 constexpr std::uint8_t kSending = 0x80, kMerging = 0x08, kMergesLtp = 0x02;
-constexpr std::uint8_t kLongPortAddresses = 0x08;  // Status2: 15 bits, Art-Net 3 and later
+constexpr std::uint8_t kLongPortAddresses = 0x08;  // Status2: 15-bit port addresses, Art-Net 3 and later
 constexpr std::uint8_t kIndicatorsNormal = 0xC0;   // Status1, bits 7 and 6
 constexpr std::uint8_t kOemUnknown = 0xFF;
 
@@ -234,7 +234,7 @@ std::vector<std::uint8_t> encode(const PollReply& reply, std::uint32_t ipv4) {
   std::copy(reply.mac.begin(), reply.mac.end(), out.begin() + kMac);
   out[kBindIndex] = static_cast<std::uint8_t>(reply.bind_index);
   out[kStatus2] = kLongPortAddresses;
-  out[kStatus3] = 0;  // failsafe: the last look is held
+  out[kStatus3] = 0;  // failsafe: hold the last look
   return out;
 }
 

@@ -7,7 +7,7 @@
 namespace luxrig::artnet {
 namespace {
 
-// A network of more nodes than this is not a rig but a flood.
+// Bounds memory: more nodes than this are a flood, not a rig.
 constexpr std::size_t kMostNodes = 1024;
 
 }  // namespace
@@ -76,10 +76,10 @@ std::optional<std::vector<std::uint8_t>> Controller::due(Time now, int port_addr
   packet.sequence = settings_.sequence ? stream.sequence : 0;
   packet.port_address = port_address;
   packet.slots.assign(slots.begin(), slots.end());
-  // 1…255 and round again, leaving out 0, which would mean "no order".
+  // 1…255, wrapping past 0, which would mean "no order".
   const int step = stream.packets == 0 ? kJumpAfterFirstPacket : 1;
   stream.sequence = static_cast<std::uint8_t>((stream.sequence - 1 + step) % 255 + 1);
-  // The packet behind the jump must not wait for the keep-alive: the one before it may have been dropped.
+  // The packet after the jump must not wait for the keep-alive: the one before it may have been dropped.
   if (stream.packets == 0) stream.wanted = true;
   ++stream.packets;
   owes_sync_ = settings_.sync;

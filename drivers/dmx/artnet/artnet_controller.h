@@ -1,5 +1,5 @@
 #pragma once
-/// What an Art-Net controller sends when, and which nodes it knows. `now`, slots and replies in, packets out.
+/// Schedule of an Art-Net controller's packets, and the nodes it knows. `now`, slots and replies in, packets out.
 
 #include <cstdint>
 #include <map>
@@ -13,17 +13,17 @@
 
 namespace luxrig::artnet {
 
-/// A controller polls every 2.5…3 s; a node may take 1 s to answer; one unheard for three polls is gone.
+/// A controller polls every 2.5…3 s. A node may take 1 s to answer. After three unanswered polls it is gone.
 inline constexpr Duration kPollPeriod = std::chrono::milliseconds(2500);
 inline constexpr Duration kNodeGone = 3 * kPollPeriod + std::chrono::milliseconds(1000);
-/// Unchanged data is repeated this often. The specification says 4 s; nodes in the field blank earlier.
+/// Unchanged data is repeated this often. The specification says 4 s; nodes in the field black out earlier.
 inline constexpr Duration kKeepAlive = std::chrono::milliseconds(1000);
 
 struct Node {
   std::string name;
   std::map<int, std::vector<PortOutput>> outputs;  ///< by bind index
   Time last_seen{};
-  Time since{};  ///< last change between there and gone
+  Time since{};  ///< last change of `gone`
   bool gone = false;
   std::uint64_t replies = 0;
 
@@ -32,7 +32,7 @@ struct Node {
 };
 
 struct ControllerSettings {
-  bool continuous = false;  ///< send every cycle in place of on change and every kKeepAlive
+  bool continuous = false;  ///< send every cycle; false: on change and every kKeepAlive
   bool sequence = true;     ///< false: sequence number 0, "no order"
   bool sync = false;        ///< ArtSync after each frame
 };
@@ -41,27 +41,27 @@ class Controller {
  public:
   explicit Controller(ControllerSettings settings) : settings_(settings) {}
 
-  /// True when an ArtPoll is to be sent now; it then counts as sent. Also notices which nodes are gone.
+  /// True if an ArtPoll is due; it then counts as sent. Also detects lost nodes.
   [[nodiscard]] bool poll_due(Time now);
 
-  /// A datagram that has arrived; false when it is no ArtPollReply. A node that is new or back gets data at once.
+  /// Takes a received datagram; false if it is no ArtPollReply. A new or returned node gets data at once.
   bool hear(Time now, const Datagram& datagram);
 
-  /// The ArtDmx of this universe that is due at `now`, if one is.
+  /// The ArtDmx of this universe that is due at `now`, if any.
   [[nodiscard]] std::optional<std::vector<std::uint8_t>> due(Time now, int port_address, const DmxSlots& slots);
 
-  /// Whether these levels have gone out.
+  /// Whether these levels have been sent.
   [[nodiscard]] bool is_sent(int port_address, const DmxSlots& slots) const;
 
-  /// After all universes of a frame: the ArtSync that lets nodes act. Nothing when no ArtDmx was due since the last, or
-  /// when it is not asked for.
+  /// After all universes of a frame: the ArtSync that makes nodes act. Empty if no ArtDmx was due since the last one,
+  /// or if sync is off.
   [[nodiscard]] std::optional<std::vector<std::uint8_t>> sync_due();
 
   [[nodiscard]] const std::map<SocketAddress, Node>& nodes() const { return nodes_; }
-  /// Where the nodes are that put this universe out.
+  /// Addresses of the nodes that output this universe.
   [[nodiscard]] std::vector<SocketAddress> subscribers(int port_address) const;
 
-  /// Forgets all nodes; every universe is sent afresh, and goes on counting.
+  /// Forgets all nodes. Every universe is sent again in full; sequence numbers continue.
   void rest();
 
  private:
@@ -69,8 +69,8 @@ class Controller {
     DmxSlots slots{};
     std::uint8_t sequence = 1;  ///< of the next packet
     std::uint64_t packets = 0;
-    bool wanted = true;  ///< whatever the keep-alive says
-    bool sent = false;   ///< these slots, to all nodes that are known
+    bool wanted = true;  ///< regardless of the keep-alive
+    bool sent = false;   ///< these slots, to all known nodes
     Time last{};
     SendRate rate;
   };

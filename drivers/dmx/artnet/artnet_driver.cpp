@@ -77,7 +77,7 @@ class ArtnetDriver final : public UdpDmxDriver {
     for (const auto& [address, node] : controller_.nodes()) {
       Health health;
       health.device = fmt::format("{}: {} ({})", life_.health().device, node.name, text_of(address.ipv4));
-      // One that has nothing of ours may come and go: desks, and nodes of other shows.
+      // A node without our universes may come and go: desks, and nodes of other shows.
       health.life = !node.gone ? Life::active : puts_out_ours(address, node) ? Life::faulted : Life::configured;
       if (node.gone) health.detail = "timeout: three polls without an answer";
       if (!node.gone && merges_ours(node)) health.detail = "merges this bus's data with another sender's";
@@ -102,7 +102,7 @@ class ArtnetDriver final : public UdpDmxDriver {
     settings.short_name = "Luxrig";
     settings.long_name = fmt::format("Luxrig {}, {}", rig_name_, life_.health().device);
     std::copy_n(id.begin(), mac_.size(), mac_.begin());
-    mac_[0] = static_cast<std::uint8_t>((mac_[0] & 0xFC) | 0x02);  // locally administered, of one host
+    mac_[0] = static_cast<std::uint8_t>((mac_[0] & 0xFC) | 0x02);  // locally administered, unique to the host
     settings.mac = mac_;
     settings.reply_delay = std::chrono::milliseconds(1000 * id[6] / 256);
     receiver_.emplace(std::move(settings));
@@ -115,7 +115,7 @@ class ArtnetDriver final : public UdpDmxDriver {
 
   void hear(Time now, const Datagram& datagram) override {
     if (receiver_) {
-      // Its own answer to its own poll: else it would send to itself, and follow that.
+      // Ignore its own answer to its own poll, or it would send to itself and follow that.
       const auto reply = artnet::decode_poll_reply(datagram.bytes);
       if (reply && reply->mac == mac_) return;
       if (everywhere_ && is_own(datagram.from)) return;
@@ -135,7 +135,7 @@ class ArtnetDriver final : public UdpDmxDriver {
     return known->second && from.port == desk().port;
   }
 
-  /// Nodes would go on merging what was sent last, for 10 s.
+  /// Without this, nodes keep merging the last data for 10 s.
   void fall_silent(Time now, const DmxUniverse& universe) override {
     for (const auto& [address, node] : controller_.nodes()) {
       for (const auto& [bind_index, outputs] : node.outputs) {
@@ -220,10 +220,10 @@ class ArtnetDriver final : public UdpDmxDriver {
   artnet::Controller controller_;
   bool expect_reply_ = true;
   SocketAddress poll_to_;
-  std::optional<SocketAddress> destination_;  ///< nothing: to subscribers
+  std::optional<SocketAddress> destination_;  ///< empty = to subscribers
   Time activated_{};
   std::string rig_name_;
-  bool everywhere_ = false;  ///< destination_ is a broadcast address, which brings it back to us
+  bool everywhere_ = false;  ///< destination_ is a broadcast address, so our packets come back to us
   std::optional<artnet::Receiver> receiver_;
   std::array<std::uint8_t, 6> mac_{};
   std::map<std::uint32_t, bool> own_addresses_;

@@ -1,5 +1,5 @@
 #pragma once
-/// Sends the fixtures of one bus by Art-Net 4 over UDP to nodes that it finds, or to one it is told. See README.md.
+/// Sends the fixtures of one bus by Art-Net 4 over UDP, to nodes that it finds or to a given one. See README.md.
 
 #include <memory>
 #include <optional>
@@ -17,7 +17,7 @@ namespace luxrig {
 
 [[nodiscard]] WhenDataStops artnet_when_data_stops(const Rig& rig, std::size_t fixture);
 
-/// The same over a channel of the caller's.
+/// The same over the caller's channel.
 [[nodiscard]] std::unique_ptr<Driver> make_artnet_over(std::unique_ptr<DatagramChannel> channel, const Rig& rig,
                                                        std::size_t bus, const std::optional<Redirect>& redirect);
 

@@ -49,7 +49,7 @@ bool ArtnetRdmLink::hear(const Datagram& datagram) {
 void ArtnetRdmLink::take(const TodData& data) {
   table_.heard = true;
   if (!data.full) return;
-  // A block 0, or another total, begins a table anew.
+  // Block 0, or another total, starts a new table.
   if (data.block == 0 || data.total != total_) blocks_.clear();
   total_ = data.total;
   blocks_[data.block] = data.uids;
@@ -60,7 +60,7 @@ void ArtnetRdmLink::take(const TodData& data) {
   }
   table_.complete = count >= static_cast<std::size_t>(total_);
   if (!table_.complete) return;
-  table_.uids.clear();  // what an older table had besides is gone
+  table_.uids.clear();  // drop devices that only an older table had
   for (const auto& [block, uids] : blocks_) table_.uids.insert(uids.begin(), uids.end());
 }
 

@@ -14,36 +14,36 @@
 
 namespace luxrig::artnet {
 
-/// What a node has told about the devices on one of its ports.
+/// The devices on one port, as its node reports them.
 struct TableOfDevices {
   std::set<rdm::Uid> uids;
-  bool heard = false;     ///< some answer has come
-  bool complete = false;  ///< all blocks have, and the node had a table
+  bool heard = false;     ///< an answer has come
+  bool complete = false;  ///< all blocks have come, and the node had a table
 };
 
 class ArtnetRdmLink final : public rdm::RdmLink {
  public:
-  /// The channel is opened by the caller, and outlives the link. `node`: where requests go; what comes from another
-  /// IPv4 address is not listened to.
+  /// The caller opens the channel; it outlives the link. `node`: destination of requests; packets from other IPv4
+  /// addresses are ignored.
   ArtnetRdmLink(DatagramChannel& channel, SocketAddress node, int port_address);
 
   [[nodiscard]] const SocketAddress& node() const { return node_; }
   [[nodiscard]] int port_address() const { return port_address_; }
 
-  /// Asks for the table as it is.
+  /// Asks for the present table.
   Result<void> ask_table();
-  /// Has the node search the line anew; what was known is forgotten. It may tell an empty table first.
+  /// Makes the node search the line again and forgets the known table. The node may report an empty table first.
   Result<void> flush_table();
   [[nodiscard]] const TableOfDevices& table() const { return table_; }
 
-  /// Takes what has arrived.
+  /// Takes all received datagrams.
   void listen();
-  /// The same, of a datagram that somebody else has taken off the channel; false when it is none of this link's.
+  /// The same, for a datagram taken off the channel elsewhere; false if it does not belong to this link.
   bool hear(const Datagram& datagram);
 
   Result<void> send(Time now, std::span<const std::uint8_t> packet) override;
   std::optional<std::vector<std::uint8_t>> receive(Time now) override;
-  /// The line takes milliseconds; nodes let requests wait behind DMX and behind other controllers'.
+  /// The line takes milliseconds, but nodes queue requests behind DMX and behind other controllers' requests.
   [[nodiscard]] Duration answer_within() const override { return std::chrono::milliseconds(800); }
 
  private:
@@ -54,7 +54,7 @@ class ArtnetRdmLink final : public rdm::RdmLink {
   int port_address_;
   TableOfDevices table_;
   int total_ = 0;
-  std::map<int, std::vector<rdm::Uid>> blocks_;  ///< of the table that is being told
+  std::map<int, std::vector<rdm::Uid>> blocks_;  ///< of the table being received
   std::deque<std::vector<std::uint8_t>> answers_;
 };
 

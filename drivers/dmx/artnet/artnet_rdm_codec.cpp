@@ -10,9 +10,9 @@ namespace {
 
 constexpr std::array<std::uint8_t, 8> kRdmId = {'A', 'r', 't', '-', 'N', 'e', 't', 0};
 constexpr std::uint16_t kOpTodRequest = 0x8000, kOpTodData = 0x8100, kOpTodControl = 0x8200, kOpRdm = 0x8300;
-constexpr std::uint8_t kRdmProtocolVersion = 14, kRdmVersion = 1;  // RDM 1.0, as E1.20-2006 and later have it
+constexpr std::uint8_t kRdmProtocolVersion = 14, kRdmVersion = 1;  // RDM 1.0, as in E1.20-2006 and later
 
-// Offsets that the four have in common.
+// Offsets common to all four.
 constexpr std::size_t kRdmVer = 12, kRdmPort = 13, kRdmBindIndex = 20, kRdmNet = 21, kRdmCommand = 22;
 constexpr std::size_t kAdCount = 23, kAddresses = 24, kMostAddresses = 32;  // ArtTodRequest
 constexpr std::size_t kRdmAddress = 23, kControlSize = 24;                  // the others
@@ -31,7 +31,7 @@ std::vector<std::uint8_t> rdm_header(std::size_t size, std::uint16_t op_code, in
   return out;
 }
 
-/// Whether it is such a packet of at least that size, with a net that exists.
+/// Whether it is such a packet of at least that size, with a valid net.
 bool is_rdm_packet(std::span<const std::uint8_t> bytes, std::uint16_t op_code, std::size_t least) {
   return bytes.size() >= least && std::equal(kRdmId.begin(), kRdmId.end(), bytes.begin()) && bytes[8] == 0 &&
          bytes[9] == op_code >> 8 && bytes[kRdmNet] <= 0x7F;
@@ -44,7 +44,7 @@ int rdm_port_address(std::span<const std::uint8_t> bytes) { return bytes[kRdmNet
 std::vector<std::uint8_t> encode_tod_request(std::span<const int> port_addresses) {
   LUXRIG_CHECK(!port_addresses.empty() && port_addresses.size() <= kMostAddresses, "{} port addresses",
                port_addresses.size());
-  // Older nodes want room for all 32.
+  // Older nodes need room for all 32.
   auto out = rdm_header(kAddresses + kMostAddresses, kOpTodRequest, port_addresses.front());
   out[kAdCount] = static_cast<std::uint8_t>(port_addresses.size());
   for (std::size_t i = 0; i < port_addresses.size(); ++i) {

@@ -13,16 +13,16 @@ namespace luxrig::artnet {
 
 inline constexpr std::size_t kMostTodUids = 200;  ///< in one ArtTodData
 
-/// Asks the nodes that put these universes out for their table of devices (TOD). requires 1…32 port addresses, all of
+/// Asks the nodes that output these universes for their table of devices (TOD). requires 1…32 port addresses, all of
 /// one net.
 [[nodiscard]] std::vector<std::uint8_t> encode_tod_request(std::span<const int> port_addresses);
-/// The port addresses it asks about; nothing unless it is one.
+/// The port addresses it asks about; empty if it is no such packet.
 [[nodiscard]] std::optional<std::vector<int>> decode_tod_request(std::span<const std::uint8_t> bytes);
 
 enum class TodCommand : std::uint8_t { none = 0, flush = 1, end = 2, incremental_on = 3, incremental_off = 4 };
 struct TodControl {
   int port_address = 0;
-  TodCommand command = TodCommand::flush;  ///< flush: forget the table, and look for devices anew
+  TodCommand command = TodCommand::flush;  ///< flush: forget the table and search for devices again
 };
 [[nodiscard]] std::vector<std::uint8_t> encode(const TodControl& packet);
 [[nodiscard]] std::optional<TodControl> decode_tod_control(std::span<const std::uint8_t> bytes);
@@ -43,11 +43,11 @@ struct TodData {
 
 struct ArtRdm {
   int port_address = 0;
-  std::vector<std::uint8_t> rdm;  ///< from start code to checksum, though the start code does not travel
+  std::vector<std::uint8_t> rdm;  ///< from start code to checksum, although the start code is not transmitted
 };
 /// requires an RDM packet of at most rdm::kMostBytes.
 [[nodiscard]] std::vector<std::uint8_t> encode(const ArtRdm& packet);
-/// Whether the RDM in it makes sense is for rdm::decode to say.
+/// Does not check the RDM in it; rdm::decode does.
 [[nodiscard]] std::optional<ArtRdm> decode_art_rdm(std::span<const std::uint8_t> bytes);
 
 }  // namespace luxrig::artnet

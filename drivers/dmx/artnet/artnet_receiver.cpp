@@ -10,7 +10,7 @@ namespace luxrig::artnet {
 namespace {
 
 constexpr std::size_t kMostSenders = 2, kPortsPerPage = 4;
-constexpr std::size_t kMostPollers = 32;  // more are not controllers but a flood
+constexpr std::size_t kMostPollers = 32;  // more are a flood, not controllers
 
 }  // namespace
 
@@ -88,7 +88,7 @@ void Receiver::show(Time, Port& port, bool hold) {
 void Receiver::synchronise(Time now, std::uint32_t from) {
   for (auto& [port_address, port] : ports_) {
     forget_lost(now, port);
-    // Only the controller whose data a port shows may synchronise it, and a port that merges does not.
+    // Only the controller whose data a port shows may synchronise it; a merging port is never synchronised.
     if (port.senders.size() != 1 || port.senders[0].ipv4 != from) continue;
     port.last_sync = now;
     if (port.held) port.last.levels = *port.held;
@@ -97,7 +97,7 @@ void Receiver::synchronise(Time now, std::uint32_t from) {
 }
 
 void Receiver::obey(const Address& packet) {
-  const auto page = static_cast<std::size_t>(std::max(packet.bind_index, 1) - 1);  // 0 and 1 are both the first
+  const auto page = static_cast<std::size_t>(std::max(packet.bind_index, 1) - 1);  // 0 and 1 both mean the first
   if (page >= pages_.size()) return;
   const std::vector<int>& on_page = pages_[page].port_addresses;
   if (packet.command == AddressCommand::cancel_merge) {
@@ -112,7 +112,7 @@ void Receiver::forget_lost(Time now, Port& port) {
   const auto gone =
       std::erase_if(port.senders, [now](const Sender& sender) { return now - sender.last > kSenderLoss; });
   if (gone > 0 && !port.senders.empty()) show(now, port, false);
-  if (port.held && port.last_sync && now - *port.last_sync > kSyncLoss) {  // back to acting at once
+  if (port.held && port.last_sync && now - *port.last_sync > kSyncLoss) {  // back to immediate output
     port.last.levels = *port.held;
     port.held.reset();
   }

@@ -1,13 +1,13 @@
 #pragma once
-/// What an Art-Net node makes of what arrives: ArtDmx with its sequence rule, merge of two senders, ArtSync, ArtAddress
+/// The receiving side of an Art-Net node: ArtDmx with its sequence rule, merge of two senders, ArtSync, ArtAddress
 /// about merging, and answers to ArtPoll, so that desks find it and send to it. `now` and datagrams in, levels and
 /// answers out. Source: Art-Net 4 Protocol Release V1.4.
 ///
-/// - Senders are told apart by IPv4 address; a third one is ignored; one that is silent for 10 s is forgotten.
-/// - After an ArtSync from the one sender whose data a port shows, data waits for the next, until none has come for 4
-/// s.
-/// - When nobody is left the last levels stay. A desk may repeat unchanged data as seldom as every 4 s: for so long
-///   after the first call nobody can say that there is none.
+/// - Senders are identified by IPv4 address. A third one is ignored; one that is silent for 10 s is forgotten.
+/// - After an ArtSync from the only sender of a port's data, data waits for the next ArtSync, until none has come for 4
+///   s.
+/// - Without senders the last levels stay. A desk may repeat unchanged data only every 4 s, so for that long after the
+///   first call its absence is unknown.
 
 #include <map>
 #include <optional>
@@ -28,7 +28,7 @@ inline constexpr Duration kSlowestRefresh = std::chrono::seconds(4);
 
 struct ReceiverSettings {
   std::vector<int> port_addresses;
-  MergeRule rule = MergeRule::htp;  ///< until ArtAddress says otherwise
+  MergeRule rule = MergeRule::htp;  ///< until an ArtAddress changes it
   std::string short_name, long_name;
   std::array<std::uint8_t, 6> mac{};
   Duration reply_delay{};  ///< after a poll: nodes spread their answers over a second
@@ -47,7 +47,7 @@ class Receiver {
     SocketAddress to;
     PollReply reply;
   };
-  /// The answers to polls that are due now; each once.
+  /// The answers to polls that are due now, each once.
   [[nodiscard]] std::vector<Answer> answers_due(Time now);
 
   void restart();
@@ -63,7 +63,7 @@ class Receiver {
     MergeRule rule = MergeRule::htp;
     std::optional<Time> started;
     std::vector<Sender> senders;  ///< at most two
-    bool cancel_merge = false;    ///< the next ArtDmx is the only sender's
+    bool cancel_merge = false;    ///< the sender of the next ArtDmx becomes the only one
     std::optional<Merged> held;   ///< waits for ArtSync
     std::optional<Time> last_sync;
     HeardUniverse last;
@@ -81,7 +81,7 @@ class Receiver {
   ReceiverSettings settings_;
   std::map<int, Port> ports_;
   std::vector<PortPage> pages_;
-  std::map<SocketAddress, Time> polled_;  ///< who waits for an answer, and until when
+  std::map<SocketAddress, Time> polled_;  ///< pollers waiting for an answer, and when it is due
   std::uint64_t tick_ = 0, taken_ = 0;
 };
 

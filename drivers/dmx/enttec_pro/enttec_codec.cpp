@@ -32,7 +32,7 @@ std::vector<std::uint8_t> encode_output(const DmxSlots& slots) {
 
 std::optional<Message> StreamDecoder::next() {
   std::optional<Message> message;
-  std::size_t at = 0;  // everything before it is done with
+  std::size_t at = 0;  // everything before it is processed
   while (at < bytes_.size() && !message) {
     if (bytes_[at] != kStart) {
       ++at;

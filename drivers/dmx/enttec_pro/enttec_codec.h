@@ -1,5 +1,5 @@
 #pragma once
-/// Messages of the ENTTEC DMX USB Pro and of what is compatible with it. Pure.
+/// Messages of the ENTTEC DMX USB Pro and compatible widgets. Pure.
 /// Source: ENTTEC, DMX USB Pro Widget API Specification 1.44: 0x7E, label, length LSB, length MSB, data, 0xE7.
 
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace luxrig::enttec {
 
 inline constexpr std::size_t kMostData = 600;
 
-/// A widget has others; these are the ones Luxrig sends or understands.
+/// The labels that Luxrig sends or understands; a widget has more.
 enum class Label : std::uint8_t {
   get_parameters = 3,
   set_parameters = 4,
@@ -24,7 +24,7 @@ enum class Label : std::uint8_t {
   serial_number = 10,
   send_rdm_discovery = 11,
   rdm_timeout = 12,
-  manufacturer = 77,  ///< community extension, as is device_name; original widgets are silent
+  manufacturer = 77,  ///< community extension, as is device_name; original widgets do not answer
   device_name = 78,
 };
 
@@ -38,14 +38,14 @@ struct Message {
 [[nodiscard]] std::vector<std::uint8_t> encode(Label label, std::span<const std::uint8_t> data);
 [[nodiscard]] std::vector<std::uint8_t> encode_output(const DmxSlots& slots);
 
-/// Takes a stream apart. Data may contain 0x7E and 0xE7, so it goes by the length; where that leads to a wrong end byte
-/// it drops the start byte and looks for the next.
+/// Splits a stream into messages. Data may contain 0x7E and 0xE7, so it relies on the length. If that leads to a wrong
+/// end byte, it drops the start byte and searches for the next.
 class StreamDecoder {
  public:
   void add(std::span<const std::uint8_t> bytes) { bytes_.insert(bytes_.end(), bytes.begin(), bytes.end()); }
-  /// The next whole message, or nothing yet. Call it until then after each add().
+  /// The next whole message, if any. After each add(), call it until it is empty.
   [[nodiscard]] std::optional<Message> next();
-  /// The rest of a message that has begun does not come: looks for another start behind that one.
+  /// Drops a message whose rest does not arrive, and searches for the next start.
   void give_up();
   [[nodiscard]] std::uint64_t dropped() const { return dropped_; }  ///< bytes that belonged to no message
   void clear() { bytes_.clear(); }
@@ -57,13 +57,13 @@ class StreamDecoder {
 
 /// break and mark after break in units of 10.67 µs (32/3 µs).
 struct Parameters {
-  int firmware = 0;  ///< 0x0144: 1.44
+  int firmware = 0;  ///< high byte, low byte: 0x0144 = 1.68
   int break_units = 9, mark_units = 1;
-  int rate_hz = 40;  ///< 0…40; 0: as fast as it can
+  int rate_hz = 40;  ///< 0…40; 0 = as fast as possible
 };
 [[nodiscard]] int units_of_us(int us);
 
-/// Nothing when it is cut short or a value is outside its range.
+/// Empty if it is truncated or a value is outside its range.
 [[nodiscard]] std::optional<Parameters> decode_parameters(std::span<const std::uint8_t> data);
 [[nodiscard]] std::vector<std::uint8_t> encode_set_parameters(const Parameters& parameters);
 /// 4 bytes BCD, least significant first: 12 34 56 02 -> "02563412".

@@ -22,11 +22,11 @@ constexpr OptionDoc kEnttecProOptions[] = {
     {"mab_us", "whole number", "µs", "21", "11 to 1355", "length of the mark after it, in steps of 10.67 µs"},
 };
 
-constexpr int kSerialBaud = 57600;  // to the chip that plays no part on USB, but clones pass it on to a real UART
+constexpr int kSerialBaud = 57600;  // irrelevant for a chip on USB, but clones pass it on to a real UART
 constexpr int kLatency_ms = 2;
 constexpr std::size_t kBulkInBytes = 512;
-/// How long a widget that seems silent is listened to in real time before it counts as such: a controller's clock may
-/// run faster, and a busy machine may have kept the answer back.
+/// Extra real time before a silent widget counts as lost: the controller's clock may run faster, and a busy machine may
+/// have delayed the answer.
 constexpr milliseconds kLastListen(20);
 
 enttec::Parameters wanted_parameters(const Bus& bus) {
@@ -85,7 +85,7 @@ class EnttecProDriver final : public UsbDmxDriver {
     if (session_.is_overdue(now) || is_hung(now)) take_ended(now, kLastListen);
     if (!usb().is_open()) return;
     if (session_.is_overdue(now) || is_hung(now)) return silent(now);
-    if (sending_) return;  // the widget takes its time: the newest levels go out when it has caught up
+    if (sending_) return;  // the widget is busy: the newest levels go out when it has caught up
     send(now, session_.due(now, slots()));
   }
 

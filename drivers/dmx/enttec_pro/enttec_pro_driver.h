@@ -1,5 +1,5 @@
 #pragma once
-/// DMX through an ENTTEC DMX USB Pro or a widget that speaks its protocol, over libusb. See README.md.
+/// DMX through an ENTTEC DMX USB Pro or a compatible widget, over libusb. See README.md.
 
 #include <memory>
 #include <optional>

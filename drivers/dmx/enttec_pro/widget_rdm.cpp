@@ -20,7 +20,7 @@ bool is_answer(const Message& message) {
          message.label == static_cast<std::uint8_t>(Label::rdm_timeout);
 }
 
-/// What came from the line: behind a status byte, whose bits say that something of it was lost.
+/// Bytes received from the line. A status byte precedes them; its bits report losses.
 std::vector<std::uint8_t> bytes_of(const Message& message) {
   if (message.label != static_cast<std::uint8_t>(Label::received_dmx) || message.data.empty()) return {};
   return {message.data.begin() + 1, message.data.end()};
@@ -114,7 +114,7 @@ Result<std::optional<Message>> WidgetRdm::next_answer() {
       if (is_answer(message)) return message;
     }
     if (deadline.passed()) {
-      decoder_.give_up();  // of a message that has begun the rest is lost
+      decoder_.give_up();  // the rest of a begun message is lost
       return std::optional<Message>();
     }
     if (auto listened = listen(deadline.left()); !listened) return tl::unexpected(listened.error());
@@ -144,7 +144,7 @@ std::optional<std::vector<std::uint8_t>> WidgetRdm::receive(Time) {
 
 Result<void> WidgetRdm::un_mute_everybody() {
   if (auto sent = send({}, rdm::encode(rdm::un_mute_request(controller_, number_++))); !sent) return sent;
-  // Nobody answers, and not every widget says so.
+  // No device answers, and not every widget reports that.
   if (auto none = next_answer(); !none) return tl::unexpected(none.error());
   return {};
 }

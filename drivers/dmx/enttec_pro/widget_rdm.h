@@ -1,10 +1,9 @@
 #pragma once
-/// RDM on the line of an ENTTEC DMX USB Pro, or of a widget that speaks its protocol: questions for rdm::Client, and
-/// the search for devices. Source: ENTTEC, DMX USB Pro Widget API Specification 1.44: labels 7 and 11, answers 5
-/// and 12.
+/// RDM on the line of an ENTTEC DMX USB Pro or compatible widget: requests for rdm::Client, and discovery. Source:
+/// ENTTEC, DMX USB Pro Widget API Specification 1.44: labels 7 and 11, answers 5 and 12.
 ///
-/// It waits in real time and has the widget for itself, which puts out no levels meanwhile: for tools, not for a bus
-/// that lights lamps.
+/// It waits in real time and uses the widget alone, which sends no levels during that. So it is for tools, not for a
+/// bus that lights lamps.
 
 #include <deque>
 #include <memory>
@@ -19,16 +18,16 @@ namespace luxrig::enttec {
 
 class WidgetRdm final : public rdm::RdmLink, public rdm::DiscoveryLine {
  public:
-  /// `controller`: who asks. The channel is not open yet.
+  /// `controller`: UID of the requester. The channel is not open yet.
   WidgetRdm(std::unique_ptr<UsbChannel> channel, const rdm::Uid& controller);
   ~WidgetRdm() override;
 
-  /// Claims the widget and asks who it is; takes a second at most. Faults as UsbChannel::open, and timeout when nothing
-  /// answers as such a widget does.
+  /// Claims the widget and asks for its identity; takes a second at most. Faults as UsbChannel::open, and timeout if
+  /// nothing answers like such a widget.
   Result<void> open();
   [[nodiscard]] std::string where() const { return channel_->where(); }
   [[nodiscard]] int firmware() const { return firmware_; }  ///< 0x0204: 2.4
-  /// ENTTEC's own widgets have RDM from firmware 2 on, which is another one to be loaded.
+  /// ENTTEC's own widgets support RDM from firmware 2 on, which must be loaded separately.
   [[nodiscard]] bool may_lack_rdm() const { return firmware_ < 0x0200; }
 
   Result<void> send(Time now, std::span<const std::uint8_t> packet) override;
@@ -41,11 +40,12 @@ class WidgetRdm final : public rdm::RdmLink, public rdm::DiscoveryLine {
 
  private:
   Result<void> say(Label label, std::span<const std::uint8_t> data);
-  /// What was said before answers nothing that is asked now.
+  /// Discards earlier messages, which do not belong to the next request.
   void forget();
-  /// Takes what has come, waiting for at most that long.
+  /// Takes received messages; waits for at most `wait`.
   Result<void> listen(std::chrono::milliseconds wait);
-  /// The next message that is an answer from the line or the widget's word that there was none; nothing: neither came.
+  /// The next message that is an answer from the line, or the widget's report that there was none. Empty if neither
+  /// came.
   Result<std::optional<Message>> next_answer();
 
   std::unique_ptr<UsbChannel> channel_;

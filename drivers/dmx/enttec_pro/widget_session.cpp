@@ -5,10 +5,10 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// Original widgets never say their names, and some clones no serial number.
+// Original widgets never report their names, and some clones no serial number.
 constexpr Duration kIdentifyWithin = milliseconds(200);
 constexpr Duration kAskEvery = milliseconds(250), kRepeatEvery = milliseconds(900);
-constexpr Duration kPauseWithin = milliseconds(100);  // a message; a widget sends it in one go
+constexpr Duration kPauseWithin = milliseconds(100);  // within a message; a widget sends it in one go
 
 void append(std::vector<std::uint8_t>& to, const std::vector<std::uint8_t>& bytes) {
   to.insert(to.end(), bytes.begin(), bytes.end());
@@ -35,7 +35,7 @@ void WidgetSession::start(Time now) {
 
 void WidgetSession::receive(Time now, std::span<const std::uint8_t> bytes) {
   if (bytes.empty()) return;
-  // A length that was garbled may ask for more than the widget will say in many seconds.
+  // A garbled length may ask for more bytes than the widget sends in many seconds.
   if (now - received_at_ > kPauseWithin) decoder_.give_up();
   received_at_ = now;
   decoder_.add(bytes);
@@ -72,7 +72,7 @@ void WidgetSession::understand(Time now, const Message& message) {
       device_known_ = true;
       break;
     default:
-      return;  // nobody asked for it
+      return;  // unexpected
   }
   go_live_if_ready(now);
 }
@@ -86,7 +86,7 @@ std::vector<std::uint8_t> WidgetSession::due(Time now, const DmxSlots& slots) {
   go_live_if_ready(now);
   std::vector<std::uint8_t> bytes;
   bytes.swap(queued_);
-  if (!bytes.empty()) sent_.reset();  // what stops the widget's output is followed by the levels
+  if (!bytes.empty()) sent_.reset();  // a request that stops the widget's output is followed by the levels
   if (!live_) return bytes;
   const bool wanted = !sent_ || *sent_ != slots || now - sent_at_ >= kRepeatEvery;
   if (wanted && rate_.take(now)) {

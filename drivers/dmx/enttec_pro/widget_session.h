@@ -1,9 +1,11 @@
 #pragma once
-/// What is said to an ENTTEC DMX USB Pro when, and what its answers mean. No I/O: `now` and bytes in, bytes out.
+/// The dialogue with an ENTTEC DMX USB Pro: what to send when, and what its answers mean. No I/O: `now` and bytes in,
+/// bytes out.
 ///
-/// First it asks who is there (parameters, serial number, names); any request but 6 and 3 stops the widget's output, so
-/// that is never asked again. Then it is live: levels when they change, at most `rate_hz` times a second, and every
-/// 0.9 s; parameters four times a second, to see that the widget is there, as label 6 has no answer.
+/// First it identifies the widget (parameters, serial number, names). Any request but 6 and 3 stops the widget's
+/// output, so these are never repeated. Then it is live. It sends levels on change, at most `rate_hz` times a second,
+/// and every 0.9 s. Label 6 has no answer, so it asks for parameters four times a second to see that the widget is
+/// there.
 
 #include <optional>
 #include <string>
@@ -15,28 +17,28 @@
 namespace luxrig::enttec {
 
 struct Identity {
-  std::string serial, manufacturer, device_name;  ///< empty: not said
+  std::string serial, manufacturer, device_name;  ///< empty = not reported
   int firmware = 0;
 };
 
 class WidgetSession {
  public:
-  /// `wanted.firmware` does not count.
+  /// `wanted.firmware` is ignored.
   explicit WidgetSession(const Parameters& wanted) : wanted_(wanted) {}
 
-  /// A widget has been plugged in, and nothing is known of it.
+  /// For a newly plugged-in widget: forgets everything.
   void start(Time now);
   void receive(Time now, std::span<const std::uint8_t> bytes);
-  /// What to send now; perhaps nothing. requires start().
+  /// Bytes to send now; may be empty. requires start().
   [[nodiscard]] std::vector<std::uint8_t> due(Time now, const DmxSlots& slots);
-  /// Levels that have not been sent yet, whatever the rate says: before leaving. Empty while it is not live.
+  /// Levels not sent yet, regardless of the rate; for use before closing. Empty while it is not live.
   [[nodiscard]] std::vector<std::uint8_t> unsent(const DmxSlots& slots);
 
   [[nodiscard]] bool is_sent(const DmxSlots& slots) const { return live_ && sent_ == slots; }
 
-  /// Whether levels go out.
+  /// Whether levels are sent.
   [[nodiscard]] bool is_live() const { return live_; }
-  /// A question has waited for its answer for longer than 500 ms.
+  /// A request has waited longer than 500 ms for its answer.
   [[nodiscard]] bool is_overdue(Time now) const;
   [[nodiscard]] bool has_answered() const { return has_answered_; }
   [[nodiscard]] const Identity& identity() const { return identity_; }

@@ -26,13 +26,12 @@ constexpr OptionDoc kOpenDmxOptions[] = {
 
 constexpr int kDmxBaud = 250000;
 constexpr int kQuietLatency_ms = 16;  // nothing is read
-/// For one of the control transfers of a packet; it takes 1 ms. One that takes longer (a busy hub, or host) costs that
-/// packet; the cable counts as hung when no packet has come through for kUsbTransferTimeout.
+/// For one control transfer of a packet; normally 1 ms. A longer one (busy hub or host) costs that packet. The cable
+/// counts as hung if no packet has come through for kUsbTransferTimeout.
 constexpr milliseconds kControlWithin(10);
-/// How long write() waits for the chip to put out what is left of the packet before; if longer, this packet is left
-/// out.
+/// Longest wait of write() until the chip has sent the previous packet; after that, this packet is left out.
 constexpr milliseconds kEmptyWithin(8);
-/// Real time given to data that seems to hang: a packet needs 23 ms, and a controller's clock may run faster.
+/// Extra real time before data counts as hung: a packet needs 23 ms, and the controller's clock may run faster.
 constexpr milliseconds kLastPatience(30);
 
 class OpenDmxDriver final : public UsbDmxDriver {
@@ -87,7 +86,7 @@ class OpenDmxDriver final : public UsbDmxDriver {
     while (sending_ && usb().is_open() && !deadline.passed()) {
       if (const auto completion = usb().take(deadline.left())) ended(now, *completion);
     }
-    // The last look is the newest; after it the line falls silent with its mark, not in the middle of a packet.
+    // Send the newest look last; then the line rests at mark, not in the middle of a packet.
     if (usb().is_open() && !sending_ && last_ != slots() && line_is_free(now)) put_packet(now);
     while (sending_ && usb().is_open() && !deadline.passed()) {
       if (const auto completion = usb().take(deadline.left())) ended(now, *completion);
@@ -98,7 +97,8 @@ class OpenDmxDriver final : public UsbDmxDriver {
 
   [[nodiscard]] bool settled() const override { return !sending_ && last_ == slots(); }
 
-  /// A break while the chip still puts out slots would cut the packet short, and USB says only that the chip has them.
+  /// A break while the chip still sends slots would cut the packet short. USB completion only means that the chip has
+  /// them.
   bool line_is_free(Time now) {
     for (const Deadline deadline(kEmptyWithin);;) {
       const auto status = control(now, usb().control_in(ftdi::get_modem_status(port_), ftdi::kModemStatusBytes));
@@ -108,7 +108,7 @@ class OpenDmxDriver final : public UsbDmxDriver {
     }
   }
 
-  /// Break, mark after break, data: each begins when the one before has ended, as endpoints are not ordered.
+  /// Break, mark after break, data. Each begins after the one before has ended, as endpoints are not ordered.
   void put_packet(Time now) {
     const auto format = [&](bool breaks) { return ftdi::set_format(port_, ftdi::Format::eight_n_two, breaks); };
     if (!control(now, usb().control_out(format(true), {}))) return;
@@ -148,7 +148,7 @@ class OpenDmxDriver final : public UsbDmxDriver {
   SendRate rate_;
   std::optional<UsbTicket> sending_;
   Time sent_at_{}, latest_{};
-  std::optional<Time> late_since_{};  ///< when the first request was late since the last packet
+  std::optional<Time> late_since_{};  ///< first late request since the last packet
   DmxSlots last_{};
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-/// DMX through an ENTTEC Open DMX USB or another FTDI cable with an RS-485 driver: the host makes the timing. See
+/// DMX through an ENTTEC Open DMX USB or another FTDI cable with an RS-485 driver; the host makes the timing. See
 /// README.md.
 
 #include <memory>

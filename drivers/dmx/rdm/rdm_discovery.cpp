@@ -10,9 +10,9 @@ constexpr std::size_t kPreambleSize = 7;
 constexpr std::size_t kEncodedUid = 12, kEncodedChecksum = 4;
 constexpr std::uint8_t kOdd = 0xAA, kEven = 0x55;
 constexpr std::uint64_t kLastUid = 0xFFFFFFFFFFFE;
-// A broadcast is not confirmed, and who misses it stays mute.
+// A broadcast is not confirmed, and a device that misses it stays muted.
 constexpr int kUnMutes = 3;
-// One answer that is lost on the line would end a branch: silence counts when it is heard twice.
+// One answer lost on the line would end a branch, so silence must be heard twice.
 constexpr int kSilences = 2;
 
 void append_encoded(std::vector<std::uint8_t>& bytes, std::uint8_t byte) {
@@ -72,14 +72,14 @@ class Search {
     return {};
   }
 
-  /// Mutes one after the other until the range is silent, or cannot be told apart: then true.
+  /// Mutes one device after another until the range is silent. True if answers collide: the range must be halved.
   Result<bool> look_into(const UidRange& range) {
     const bool single = range.lowest == range.highest;
     while (may_ask()) {
       const auto answer = ask(range);
       if (!answer) return tl::unexpected(answer.error());
       if (answer->heard == Heard::nobody) return false;
-      // Of a single UID nothing is left to be told apart, whatever was heard: it either confirms or is not there.
+      // For a single UID nothing is left to tell apart, whatever was heard: it confirms or is not there.
       const Uid who = single ? uid_of(range.lowest) : answer->who;
       const bool surely = answer->heard == Heard::one && answer->who == who;
       if (single && found_.contains(who)) {
@@ -87,7 +87,7 @@ class Search {
         return false;
       }
       if (!single && answer->heard == Heard::many) return true;
-      // It answers though it is muted, or does not confirm.
+      // It answers although muted, or does not confirm.
       if (!single && (found_.contains(who) || unconfirmed_.contains(who))) return hides_others(range, who);
       const auto confirmed = mute(who);
       if (!confirmed) return tl::unexpected(confirmed.error());
@@ -96,7 +96,7 @@ class Search {
         if (single) return false;
         continue;
       }
-      // Two answers may add up to one that makes sense; so only of a single UID is it certain who spoke.
+      // Two answers may add up to a valid one. Only for a single UID is it certain which device answered.
       if (single && surely) unmutable_.insert(who);
       if (single) return false;
       unconfirmed_.insert(who);
@@ -105,9 +105,10 @@ class Search {
     return false;
   }
 
-  /// Of one that answers and cannot be muted: in its own range it may hide others. For another range it says only that
-  /// nobody else spoke, and halving that would never end; unless it is not there at all, but two answers added up to
-  /// one that makes sense. Asked about itself alone, who is there answers so.
+  /// For a device that answers but cannot be muted: true if it may hide others, so the range must be halved. It may
+  /// hide them within its own range. Its answer for another range means that no other device answered, and halving that
+  /// would never end. The exception: it does not exist, and two answers added up to a valid one. So ask for its UID
+  /// alone: a real device answers.
   Result<bool> hides_others(const UidRange& range, const Uid& who) {
     if (range.holds(who)) return true;
     if (everywhere_.contains(who)) return false;

@@ -1,5 +1,5 @@
 #pragma once
-/// RDM packets as they travel on a DMX pair, and the numbers in them by name. Pure.
+/// RDM packets as transmitted on a DMX pair, and names for their numbers. Pure.
 /// Source: ANSI E1.20-2010; DMX_FAIL_MODE and its kin: ANSI E1.37-1.
 
 #include <cstdint>
@@ -15,16 +15,16 @@ inline constexpr std::uint8_t kStartCode = 0xCC;
 inline constexpr std::size_t kMostData = 231;   ///< bytes of parameter data in one packet
 inline constexpr std::size_t kMostBytes = 257;  ///< of a packet, from start code to checksum
 
-/// Who a device is, for life: manufacturer as ESTA numbers them, and a number of the manufacturer's own.
+/// Permanent identity of a device: ESTA's number of the manufacturer, and the manufacturer's own number.
 struct Uid {
   std::uint16_t manufacturer = 0;
   std::uint32_t device = 0;
   friend auto operator<=>(const Uid&, const Uid&) = default;
 };
 inline constexpr Uid kEverybody{0xFFFF, 0xFFFFFFFF};
-/// Everybody, or everybody of one manufacturer: such a request is not answered.
+/// All devices, or all of one manufacturer: such a request is not answered.
 [[nodiscard]] constexpr bool is_broadcast(const Uid& uid) { return uid.device == 0xFFFFFFFF; }
-/// As a number of 48 bits, and back. requires number < 2⁴⁸.
+/// As a 48-bit number, and back. requires number < 2⁴⁸.
 [[nodiscard]] constexpr std::uint64_t number_of(const Uid& uid) {
   return std::uint64_t{uid.manufacturer} << 32 | uid.device;
 }
@@ -32,7 +32,7 @@ inline constexpr Uid kEverybody{0xFFFF, 0xFFFFFFFF};
   return {static_cast<std::uint16_t>(number >> 32 & 0xFFFF), static_cast<std::uint32_t>(number & 0xFFFFFFFF)};
 }
 [[nodiscard]] std::string text_of(const Uid& uid);  ///< "7a70:ffffff02"
-/// "7a70:ffffff02" or "7a70ffffff02"; nothing for anything else.
+/// "7a70:ffffff02" or "7a70ffffff02"; else empty.
 [[nodiscard]] std::optional<Uid> parse_uid(std::string_view text);
 /// requires six bytes.
 [[nodiscard]] Uid uid_from(std::span<const std::uint8_t> six_bytes);
@@ -46,7 +46,7 @@ enum class CommandClass : std::uint8_t {
   set = 0x30,
   set_response = 0x31
 };
-/// requires a request's class.
+/// requires the class of a request.
 [[nodiscard]] constexpr CommandClass response_to(CommandClass request) {
   return static_cast<CommandClass>(static_cast<std::uint8_t>(request) + 1);
 }
@@ -66,7 +66,7 @@ enum class NackReason : std::uint16_t {
   sub_device_out_of_range,
   proxy_buffer_full
 };
-/// "write protect (4): what would mend it"; a number that has no name is told as a number.
+/// "write protect (4): remedy"; an unknown reason as its number.
 [[nodiscard]] std::string text_of_nack(std::uint16_t reason);
 
 enum class Pid : std::uint16_t {
@@ -99,7 +99,7 @@ enum class Pid : std::uint16_t {
   identify_device = 0x1000,
   reset_device = 0x1001
 };
-/// "dmx_start_address"; "0x8001" for one that has no name here.
+/// "dmx_start_address"; "0x8001" for an unknown one.
 [[nodiscard]] std::string text_of(Pid pid);
 /// "dmx_start_address", "DMX-START-ADDRESS" or "0x00f0".
 [[nodiscard]] std::optional<Pid> parse_pid(std::string_view text);
@@ -108,16 +108,16 @@ struct Packet {
   Uid to, from;
   std::uint8_t transaction = 0;
   std::uint8_t port_or_type = 1;   ///< of a request: port, 1…255; of a response: ResponseType
-  std::uint8_t message_count = 0;  ///< of a response: so many messages wait in the responder's queue
-  std::uint16_t sub_device = 0;    ///< 0: the device itself; 0xFFFF: all its parts
+  std::uint8_t message_count = 0;  ///< of a response: messages waiting in the responder's queue
+  std::uint16_t sub_device = 0;    ///< 0 = the device itself; 0xFFFF = all its sub-devices
   CommandClass command_class = CommandClass::get;
   Pid pid = Pid::device_info;
   std::vector<std::uint8_t> data;  ///< at most kMostData
 };
 /// From start code to checksum. requires data.size() <= kMostData.
 [[nodiscard]] std::vector<std::uint8_t> encode(const Packet& packet);
-/// From the start code on; what follows the checksum is not looked at. Nothing unless lengths agree, the checksum is
-/// right and the command class is one of the six.
+/// From the start code on; bytes after the checksum are ignored. Empty unless the lengths agree, the checksum is right
+/// and the command class is one of the six.
 [[nodiscard]] std::optional<Packet> decode(std::span<const std::uint8_t> bytes);
 
 /// Sum of all bytes, modulo 2¹⁶.

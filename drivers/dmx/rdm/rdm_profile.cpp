@@ -7,7 +7,7 @@ namespace {
 
 constexpr int kMostSensors = 16;
 
-/// Asks one device; `gone` holds the fault of a device or line that does not answer any more.
+/// Asks one device; `gone` holds the fault of a device or line that no longer answers.
 struct Reader {
   const Ask& ask;
   Uid uid;
@@ -47,7 +47,7 @@ Result<DeviceProfile> read_profile(const Ask& ask, const Uid& uid) {
   profile.uid = uid;
   profile.info = *info;
   Reader reader{ask, uid};
-  // The few that every device must have need not stand in the list.
+  // The few that every device must have need not be in the list.
   const auto listed = reader.get(Pid::supported_parameters);
   const auto pids = decode_supported_parameters(listed.value_or(std::vector<std::uint8_t>{}));
   const auto has = [&pids](Pid pid) { return pids && std::find(pids->begin(), pids->end(), pid) != pids->end(); };

@@ -1,5 +1,5 @@
 #pragma once
-/// What one device is and how it is set, read parameter by parameter.
+/// Identity and settings of one device, read parameter by parameter.
 
 #include <functional>
 #include <optional>
@@ -13,25 +13,25 @@ namespace luxrig::rdm {
 
 struct SensorState {
   SensorDefinition definition;
-  std::optional<SensorValue> value;  ///< nothing: it cannot be read now
+  std::optional<SensorValue> value;  ///< empty = it cannot be read now
 };
 
 struct DeviceProfile {
   Uid uid;
   DeviceInfo info;
-  std::string manufacturer, model, label, software;  ///< empty: not told
+  std::string manufacturer, model, label, software;  ///< empty = not reported
   std::optional<PersonalityDescription> personality;
-  std::vector<SlotInfo> slots;       ///< empty: not told
+  std::vector<SlotInfo> slots;       ///< empty = not reported
   std::vector<SensorState> sensors;  ///< the first 16
   std::optional<std::uint32_t> lamp_hours, device_hours;
   std::optional<LampState> lamp;
 };
 
-/// Asks one question and returns the data of the answer.
+/// Sends one request and returns the data of the answer.
 using Ask = std::function<Result<std::vector<std::uint8_t>>(const Request&)>;
 
-/// DEVICE_INFO must be answered; of everything else, what the device says it has and does answer. A device that says
-/// nothing at all any more ends it.
+/// DEVICE_INFO must be answered. Of the rest, it reads what the device lists and answers. A device that no longer
+/// answers ends it with a fault.
 [[nodiscard]] Result<DeviceProfile> read_profile(const Ask& ask, const Uid& uid);
 
 }  // namespace luxrig::rdm

@@ -8,11 +8,11 @@ namespace luxrig::rdm {
 namespace {
 
 constexpr int kQuestions = 3;
-constexpr int kMostQueued = 32;  // messages about something else, before the one that is waited for
+constexpr int kMostQueued = 32;  // messages about other parameters before the expected one
 constexpr std::size_t kMostCollected = 65536;
 constexpr int kMostRestarts = 2;
 constexpr Duration kTimerUnit = std::chrono::milliseconds(100);
-// Status types of QUEUED_MESSAGE: the last one again; advisories and worse, when there is no message.
+// Status types of QUEUED_MESSAGE: repeat the last message; advisories and worse, if there is no message.
 constexpr std::uint8_t kLastMessage = 0x01, kAdvisory = 0x02;
 
 int number_16(const std::vector<std::uint8_t>& data) { return data[0] << 8 | data[1]; }
@@ -39,9 +39,9 @@ std::optional<Packet> Transaction::due(Time now) {
     sent_.reset();
     ++lost_;
     if (stage_ == Stage::session_end) {
-      next(Stage::question, now);  // it has heard that, or hears nothing
+      next(Stage::question, now);  // the session has ended, or the device hears nothing
     } else if (stage_ == Stage::queue) {
-      queue_last_ = true;  // the message has left the queue, and is lost unless it is asked for as the last
+      queue_last_ = true;  // the message has left the queue and is lost unless requested as the last one
     } else if (collecting_) {
       collecting_ = false;
       parts_.clear();
@@ -122,7 +122,7 @@ void Transaction::accept(Time now, const Packet& packet) {
     case ResponseType::nack: {
       if (packet.data.size() != 2) break;
       const auto reason = static_cast<std::uint16_t>(number_16(packet.data));
-      // What a device without a queue says when it is asked for it; then the answer is to be had by asking again.
+      // A device without a queue answers so. Then repeat the request itself.
       if (stage_ == Stage::queue && packet.pid == Pid::queued_message) return next(Stage::question, now);
       if (stage_ == Stage::queue && packet.pid != request_.pid) return next(Stage::queue, now);
       return fail(Cause::refused, fmt::format("{}: {}", text_of(request_.pid), text_of_nack(reason)));
@@ -140,7 +140,7 @@ void Transaction::take_ack(Time now, const Packet& packet) {
     }
     const bool about_it = packet.pid == request_.pid && packet.command_class == response_to(request_.command_class);
     if (!about_it) {
-      // Something else was waiting; an empty queue (STATUS_MESSAGES) says that the answer was lost on its way.
+      // A different message was waiting. An empty queue (STATUS_MESSAGES) means that the answer was lost in transit.
       const bool empty = packet.pid == Pid::status_messages && packet.message_count == 0;
       if (empty && queue_last_) return next(Stage::question, now);
       queue_last_ = empty;
@@ -153,7 +153,7 @@ void Transaction::take_ack(Time now, const Packet& packet) {
   }
   parts_.insert(parts_.end(), packet.data.begin(), packet.data.end());
   if (static_cast<ResponseType>(packet.port_or_type) == ResponseType::ack_overflow) {
-    // The rest is had by asking for the parameter itself, also of an answer that was queued.
+    // Get the rest by asking for the parameter itself, even if the answer was queued.
     collecting_ = true;
     return next(Stage::question, now);
   }

@@ -1,4 +1,4 @@
-// What values of RDM parameters are called.
+// Names of RDM parameter values.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -53,7 +53,7 @@ struct NamedCategory {
   std::uint16_t category;
   std::string_view name;
 };
-// Table A-5: the coarse category is the high byte; of the fine ones those that Luxrig cares about.
+// Table A-5. The high byte is the coarse category; of the fine ones, those that matter here.
 constexpr NamedCategory kCategories[] = {
     {0x0101, "fixed fixture"},
     {0x0102, "moving head"},
@@ -93,7 +93,7 @@ std::string text_of_seconds(double seconds) {
   return std::isfinite(seconds) ? fmt::format("{:.1f} s", seconds) : std::string("for ever");
 }
 
-/// What is known about the data, or nothing when they do not fit.
+/// The data in words, or empty if they do not fit the form.
 std::optional<std::string> in_words(Pid pid, std::span<const std::uint8_t> data) {
   switch (pid) {
     case Pid::device_info:
@@ -181,7 +181,7 @@ std::string_view name_of_sensor_type(std::uint8_t type) {
 }
 
 int exponent_of_prefix(std::uint8_t prefix) {
-  // Down: deci, centi, milli, then by thousands to yocto; up: deca, hecto, kilo, then by thousands to yotta.
+  // Down: deci, centi, milli, then by thousands to yocto. Up: deca, hecto, kilo, then by thousands to yotta.
   static constexpr int kSteps[] = {0, 1, 2, 3, 6, 9, 12, 15, 18, 21, 24};
   const std::size_t step = prefix & 0x0F;
   if (prefix > 0x1A || step >= std::size(kSteps)) return 0;

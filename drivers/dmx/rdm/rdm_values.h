@@ -1,6 +1,6 @@
 #pragma once
-/// What RDM parameters say: bytes of parameter data ↔ values. A decoder gives nothing for data of the wrong length or
-/// form. Pure. Source: ANSI E1.20-2010, chapter 10 and appendix A; E1.37-1 for the fail mode.
+/// RDM parameter data ↔ values. A decoder returns empty for data of the wrong length or form. Pure. Source: ANSI
+/// E1.20-2010, chapter 10 and appendix A; E1.37-1 for the fail mode.
 
 #include <cstdint>
 #include <optional>
@@ -22,7 +22,7 @@ struct DeviceInfo {
   std::uint32_t software_version = 0;
   int footprint_slots = 0;
   int personality = 0, personalities = 0;  ///< counted from 1
-  std::optional<int> start_address;        ///< 1…512; nothing: it has no slots
+  std::optional<int> start_address;        ///< 1…512; empty = it has no slots
   int sub_devices = 0;
   int sensors = 0;
 };
@@ -30,10 +30,10 @@ struct DeviceInfo {
 
 [[nodiscard]] std::optional<std::vector<Pid>> decode_supported_parameters(std::span<const std::uint8_t> data);
 
-/// A label: up to the first NUL, what is not printable ASCII as '?'; nothing above 32 bytes.
+/// A label up to the first NUL; a byte outside printable ASCII becomes '?'. Empty above 32 bytes.
 [[nodiscard]] std::optional<std::string> decode_label(std::span<const std::uint8_t> data);
 
-/// 1…512, or nothing inside: the device has no slots.
+/// 1…512; an inner empty value = the device has no slots.
 [[nodiscard]] std::optional<std::optional<int>> decode_start_address(std::span<const std::uint8_t> data);
 /// requires 1…512.
 [[nodiscard]] std::vector<std::uint8_t> encode_start_address(int address);
@@ -49,18 +49,18 @@ struct PersonalityDescription {
 };
 [[nodiscard]] std::optional<PersonalityDescription> decode_personality_description(std::span<const std::uint8_t> data);
 
-/// IDENTIFY_DEVICE, PAN_INVERT and others that are 0 or 1.
+/// IDENTIFY_DEVICE, PAN_INVERT and other values of 0 or 1.
 [[nodiscard]] std::optional<bool> decode_flag(std::span<const std::uint8_t> data);
 
 /// DEVICE_HOURS, LAMP_HOURS.
 [[nodiscard]] std::optional<std::uint32_t> decode_hours(std::span<const std::uint8_t> data);
 
 enum class LampState : std::uint8_t { off, on, strike, standby, not_present, error = 0x7F };
-/// A state that has no name is given as its number.
+/// An unknown state keeps its number.
 [[nodiscard]] std::optional<LampState> decode_lamp_state(std::span<const std::uint8_t> data);
 [[nodiscard]] std::string text_of(LampState state);
 
-/// What a sensor measures, in which unit, scaled by a power of ten.
+/// A sensor's quantity and unit, scaled by a power of ten.
 struct SensorDefinition {
   int number = 0;
   std::uint8_t type = 0;                                             ///< 0x00 temperature, 0x01 voltage …
@@ -78,12 +78,12 @@ struct SensorValue {
 [[nodiscard]] std::optional<SensorValue> decode_sensor_value(std::span<const std::uint8_t> data);
 /// "41.5 °C": a value of this sensor in its unit, prefix applied.
 [[nodiscard]] std::string text_of(const SensorDefinition& sensor, int value);
-[[nodiscard]] std::string_view name_of_unit(std::uint8_t unit);         ///< "°C"; empty: none, or none known
+[[nodiscard]] std::string_view name_of_unit(std::uint8_t unit);         ///< "°C"; empty = none, or unknown
 [[nodiscard]] std::string_view name_of_sensor_type(std::uint8_t type);  ///< "temperature"
-/// 10ⁿ of a prefix; 0 for one that is not in the standard.
+/// 10ⁿ of a prefix; 0 for one outside the standard.
 [[nodiscard]] int exponent_of_prefix(std::uint8_t prefix);
 
-/// What a slot of the footprint is for.
+/// Purpose of one slot of the footprint.
 struct SlotInfo {
   int offset = 0;           ///< from 0
   std::uint8_t type = 0;    ///< 0 primary, 1 fine, 2 timing, 3 speed …
@@ -93,9 +93,9 @@ struct SlotInfo {
 inline constexpr std::uint16_t kIntensitySlot = 0x0001, kPanSlot = 0x0101, kTiltSlot = 0x0102, kZoomSlot = 0x0405;
 
 struct FailMode {
-  int scene = 0;            ///< 0: hold the last look
-  double loss_delay_s = 0;  ///< infinity: never
-  double hold_s = 0;        ///< infinity: for ever
+  int scene = 0;            ///< 0 = hold the last look
+  double loss_delay_s = 0;  ///< infinity = never
+  double hold_s = 0;        ///< infinity = for ever
   int level_dmx = 0;
 };
 /// DMX_FAIL_MODE and DMX_STARTUP_MODE.
@@ -104,7 +104,7 @@ struct FailMode {
 /// "moving head", "dimmer" …, by the coarse and fine category.
 [[nodiscard]] std::string_view name_of_category(std::uint16_t category);
 
-/// Data of a GET answer for a person: in words where the form is known here and fits, else the bytes.
+/// Data of a GET answer for a person: in words if the form is known here and fits, else the bytes.
 [[nodiscard]] std::string describe(Pid pid, std::span<const std::uint8_t> data);
 
 }  // namespace luxrig::rdm

@@ -7,7 +7,7 @@
 namespace luxrig::sacn {
 namespace {
 
-// Offsets from the start of the datagram; the clause that defines each field.
+// Offsets from the start of the datagram, with the clause of each field.
 constexpr std::size_t kPreambleSize = 0;    // 5.1
 constexpr std::size_t kPostambleSize = 2;   // 5.2
 constexpr std::size_t kAcnId = 4;           // 5.3
@@ -72,7 +72,7 @@ std::uint32_t get32(std::span<const std::uint8_t> in, std::size_t at) {
   return static_cast<std::uint32_t>(get16(in, at)) << 16 | get16(in, at + 2);
 }
 
-/// As many whole UTF-8 characters as fit beside the NUL.
+/// As many whole UTF-8 characters as fit, with the NUL.
 std::size_t fitting_bytes(const std::string& name) {
   if (name.size() < kSourceNameBytes) return name.size();
   std::size_t end = kSourceNameBytes - 1;
@@ -112,7 +112,7 @@ Cid cid_in(std::span<const std::uint8_t> in) {
   return cid;
 }
 
-/// Nothing without its NUL.
+/// Empty without its NUL.
 std::optional<std::string> name_in(std::span<const std::uint8_t> in) {
   const auto field = in.subspan(kSourceName, kSourceNameBytes);
   std::string name(field.begin(), std::find(field.begin(), field.end(), 0));

@@ -13,19 +13,19 @@ namespace luxrig::sacn {
 inline constexpr std::uint16_t kPort = 5568;                         ///< appendix A, ACN_SDT_MULTICAST_PORT
 inline constexpr int kLowestUniverse = 1, kHighestUniverse = 63999;  ///< clause 6.2.7
 inline constexpr int kHighestPriority = 200;                         ///< clause 6.2.3
-inline constexpr std::size_t kSourceNameBytes = 64;                  ///< clause 6.2.2, its NUL included
+inline constexpr std::size_t kSourceNameBytes = 64;                  ///< clause 6.2.2, including its NUL
 
 inline constexpr std::uint16_t kDiscoveryUniverse = 64214;  ///< appendix A, E131_DISCOVERY_UNIVERSE
 inline constexpr std::size_t kUniversesPerPage = 512;       ///< clause 8.5
 inline constexpr std::uint8_t kLevels = 0x00;               ///< start code of levels
-/// Start code of per-address priority, from which a receiver takes the priority of each slot; 0: no value here.
+/// Start code of per-address priority: gives receivers the priority of each slot; 0 = no value here.
 inline constexpr std::uint8_t kSlotPriority = 0xDD;
 
 using Cid = std::array<std::uint8_t, 16>;  ///< component identifier: a UUID, clause 5.6
 
 struct DataPacket {
   Cid cid{};
-  std::string source_name;  ///< UTF-8; cut to 63 bytes at a character
+  std::string source_name;  ///< UTF-8; truncated to 63 bytes at a character
   std::uint8_t priority = 100;
   std::uint16_t sync_universe = 0;
   std::uint8_t sequence = 0;
@@ -40,11 +40,11 @@ struct DataPacket {
 /// requires slots.size() <= 512. The result has 126 + slots bytes.
 [[nodiscard]] std::vector<std::uint8_t> encode(const DataPacket& packet);
 
-/// Nothing unless the packet is a well-formed data packet: every fixed field as the standard wants it, all lengths
-/// consistent with the datagram, universe and priority in range.
+/// Empty unless the packet is a well-formed data packet: every fixed field as in the standard, all lengths consistent
+/// with the datagram, universe and priority in range.
 [[nodiscard]] std::optional<DataPacket> decode(std::span<const std::uint8_t> bytes);
 
-/// Clause 6.3: data that waits for `sync_universe` shall act now.
+/// Clause 6.3: data that waits for `sync_universe` takes effect now.
 struct SyncPacket {
   Cid cid{};
   std::uint8_t sequence = 0;
@@ -53,10 +53,10 @@ struct SyncPacket {
 [[nodiscard]] std::vector<std::uint8_t> encode(const SyncPacket& packet);
 [[nodiscard]] std::optional<SyncPacket> decode_sync(std::span<const std::uint8_t> bytes);
 
-/// Clause 8: what a source is sending, 512 universes to a page.
+/// Clause 8: universes that a source sends, 512 to a page.
 struct DiscoveryPacket {
   Cid cid{};
-  std::string source_name;  ///< UTF-8; cut to 63 bytes at a character
+  std::string source_name;  ///< UTF-8; truncated to 63 bytes at a character
   std::uint8_t page = 0, last_page = 0;
   std::vector<std::uint16_t> universes;  ///< ascending, each once, at most 512
 };

@@ -90,14 +90,14 @@ class SacnDriver final : public UdpDmxDriver {
       heard.universes = desk_universes();
       heard.own = settings_.cid;
       heard.rule = desk().merge;
-      // What Luxrig stands by for is what receivers would rather obey; anything below it stands by for Luxrig.
+      // In standby, Luxrig yields to sources that receivers prefer, so it ignores those of lower priority.
       if (desk().rules->mode == DeskMode::standby) heard.lowest_priority = settings_.priority;
       receiver_.emplace(std::move(heard));
     }
     if (!slot_priority_) return;
     for (std::size_t i = 0; i < bay_.universes().size(); ++i) {
       DmxSlots priorities = bay_.used_slots(i);
-      // 0 would say that this source has no value there, so that is not what priority = 0 can mean.
+      // 0 would mean that this source has no value there, so priority = 0 becomes 1.
       const int priority = std::max(1, settings_.priority);
       for (std::uint8_t& slot : priorities) slot = static_cast<std::uint8_t>(slot * priority);
       source_->set_slot_priorities(bay_.universes()[i].number, priorities);
@@ -152,7 +152,7 @@ class SacnDriver final : public UdpDmxDriver {
     return receiver_->heard(now, universe);
   }
 
-  /// The desk's universes, and those it synchronises by; a channel that has been opened anew has joined none.
+  /// The desk's universes, and their synchronisation universes. A reopened channel has joined none yet.
   void join_groups(Time now) {
     if (now < join_again_at_) return;
     for (const auto& channel : channels()) {
@@ -161,7 +161,7 @@ class SacnDriver final : public UdpDmxDriver {
         const auto joined = channel->join(sacn::multicast_group(static_cast<std::uint16_t>(universe)));
         if (joined) continue;
         join_again_at_ = now + kJoinAgainEvery;
-        // Towards a stand-in, on a host that may have no network at all, a desk can still send to this host alone.
+        // With a stand-in, on a host perhaps without a network, a desk can still send to this host alone.
         if (joins_must_succeed_) note_error(now, joined.error());
         return;
       }
@@ -176,7 +176,7 @@ class SacnDriver final : public UdpDmxDriver {
   }
 
   std::string rig_name_;
-  std::vector<std::uint32_t> unicast_;  ///< empty: multicast
+  std::vector<std::uint32_t> unicast_;  ///< empty = multicast
   std::uint16_t port_ = 0;
   std::optional<sacn::Cid> cid_;
   sacn::SourceSettings settings_;
@@ -246,8 +246,8 @@ std::unique_ptr<Driver> make_sacn(const Rig& rig, std::size_t bus, const std::op
   UdpSettings settings;
   settings.multicast_ttl = static_cast<int>(integer_option(rig.buses[bus], kSacnOptions, "ttl"));
   std::vector<std::string> interfaces = list_in(string_option(rig.buses[bus], kSacnOptions, "interface"));
-  // Towards a stand-in on loopback the interfaces named for the real network do not matter, and may not exist. And a
-  // unicast finds its own way, so that a second channel would only send it twice.
+  // A stand-in on loopback needs none of the real network's interfaces, which may not exist. And unicast is routed by
+  // the system, so a second channel would only send it twice.
   const bool multicast = string_option(rig.buses[bus], kSacnOptions, "destination") == "multicast";
   if (redirect) interfaces.clear();
   if (const DeskOptions desk = desk_options(rig.buses[bus], kSacnOptions); desk.rules) {

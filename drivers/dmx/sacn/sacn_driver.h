@@ -18,7 +18,7 @@ namespace luxrig {
 
 [[nodiscard]] WhenDataStops sacn_when_data_stops(const Rig& rig, std::size_t fixture);
 
-/// The same over channels of the caller's, one for each network interface.
+/// The same over the caller's channels, one for each network interface.
 [[nodiscard]] std::unique_ptr<Driver> make_sacn_over(std::vector<std::unique_ptr<DatagramChannel>> channels,
                                                      const Rig& rig, std::size_t bus,
                                                      const std::optional<Redirect>& redirect);

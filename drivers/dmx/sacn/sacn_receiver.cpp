@@ -9,7 +9,7 @@
 namespace luxrig::sacn {
 namespace {
 
-// More than these are not a rig but a flood of forged packets.
+// Bounds memory: more are a flood of forged packets, not a rig.
 constexpr std::size_t kMostSources = 16, kMostSyncUniverses = 64;
 
 /// Names come from the network and go into reports: no control characters.
@@ -70,8 +70,8 @@ Receiver::Verdict Receiver::take_data(Time now, const DataPacket& packet) {
   if (packet.priority < settings_.lowest_priority) return Verdict::ignored;
   Universe& universe = found->second;
   if (!universe.started) universe.started = now;
-  // Who is lost is judged when all that has arrived is read (heard): a reader that is late must not take one for lost
-  // whose packets wait behind another's.
+  // Losses are judged after all arrived packets are read (heard). A late reader must not declare a source lost whose
+  // packets wait behind another's.
   const auto known = universe.sources.find(packet.cid);
   if (known == universe.sources.end() && (packet.terminated || universe.sources.size() >= kMostSources)) {
     return packet.terminated ? Verdict::terminated : Verdict::ignored;
@@ -79,7 +79,7 @@ Receiver::Verdict Receiver::take_data(Time now, const DataPacket& packet) {
   const bool is_new = known == universe.sources.end();
   Source& source = is_new ? universe.sources[packet.cid] : known->second;
   if (is_new) source.first = source.last = now;
-  if (source.lost) {  // it is back before its loss has counted: as a new one, its numbers start afresh (6.7.1)
+  if (source.lost) {  // back before its loss has counted: treated as new, with new sequence numbers (6.7.1)
     source.lost.reset();
     source.levels_sequence.reset();
     source.priorities_sequence.reset();
@@ -122,8 +122,8 @@ void Receiver::take_levels(Time now, Source& source, const DataPacket& packet) {
   }
 }
 
-/// 6.2.4.1, 11.1: before the first synchronisation packet data acts at once; when they stop for 2.5 s the force-sync
-/// bit says whether to go on without (1) or to freeze (0).
+/// 6.2.4.1, 11.1: before the first synchronisation packet data acts at once. If these packets stop for 2.5 s, the
+/// force-sync bit decides: 1 = go on without, 0 = freeze.
 bool Receiver::synchronised(Time now, const Source& source) const {
   if (source.sync_universe == 0) return false;
   const auto sync = syncs_.find(source.sync_universe);
@@ -141,7 +141,7 @@ void Receiver::forget_lost(Time now, Universe& universe) {
       source.shown = true;
     }
   }
-  // All are looked at before any is forgotten, so that several lost together never hand over to one another.
+  // Judge all sources before removing any, so that sources lost together never hand over to one another.
   std::vector<Cid> gone;
   for (const auto& [cid, source] : sources) {
     if (!source.lost) continue;
@@ -175,7 +175,7 @@ HeardUniverse Receiver::heard(Time now, int number) {
   }
   if (listened < kSamplingPeriod) return universe.last;
   if (senders.empty()) {
-    // One that is about to have a say: "nobody" would light what it has the light of.
+    // A source may be about to count: reporting "absent" would light its lamps.
     const bool may_be_there = listened < kSourceLoss || (sampling && listened < kSourceLoss + kSamplingPeriod);
     if (universe.last.presence != DeskPresence::unknown || !may_be_there) universe.last.presence = DeskPresence::absent;
     return universe.last;

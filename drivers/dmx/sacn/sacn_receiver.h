@@ -1,14 +1,14 @@
 #pragma once
-/// What an sACN receiver makes of what arrives: sequence rule, priorities, merge, synchronisation, loss of sources.
-/// `now` and datagrams in, levels out. Source: ANSI E1.31-2018; clauses in the .cpp.
+/// The receiving side of sACN: sequence rule, priorities, merge, synchronisation, loss of sources. `now` and datagrams
+/// in, levels out. Source: ANSI E1.31-2018; clauses in the .cpp.
 ///
-/// - For 1.5 s after the first call a universe is `unknown`: who has the highest priority is not known yet. That there
-///   is nobody is known after 2.5 s, the longest that a source which is not lost is silent, and not before a source
-///   that was heard by then has had its 1.5 s: 4 s at most.
-/// - A source that is new has no say until it has told the priorities of its slots (start code 0xDD), or for 1.5 s.
-/// - A source is lost after 2.5 s without levels. While others may have been lost with it (a cable pulled), nobody of
-///   lower priority gets control: the loss counts once each of them was heard after it or is lost, too.
-/// - When nobody is left the last levels stay, and the universe is `absent`.
+/// - For 1.5 s after the first call a universe is `unknown`, as the highest priority is not known yet. It becomes
+///   `absent` after 2.5 s, the longest silence of a live source. A source heard by then still gets its 1.5 s first, so
+///   it takes 4 s at most.
+/// - A new source does not count until it has sent its slot priorities (start code 0xDD), or for 1.5 s.
+/// - A source is lost after 2.5 s without levels. While others may have been lost with it (a cable pulled), no source
+///   of lower priority gets control: the loss counts once each of them was heard after it or is lost too.
+/// - Without sources the last levels stay, and the universe is `absent`.
 
 #include <map>
 #include <optional>
@@ -27,9 +27,9 @@ inline constexpr Duration kSamplingPeriod = std::chrono::milliseconds(1500);  //
 
 struct ReceiverSettings {
   std::vector<int> universes;
-  std::optional<Cid> own;  ///< packets of this source are not heard: what Luxrig itself sends
+  std::optional<Cid> own;  ///< packets of this source are ignored: Luxrig's own
   MergeRule rule = MergeRule::htp;
-  int lowest_priority = 0;  ///< sources below have no say
+  int lowest_priority = 0;  ///< sources with a lower priority are ignored
 };
 
 class Receiver {
@@ -39,24 +39,24 @@ class Receiver {
   enum class Verdict { taken, not_sacn, preview, out_of_order, terminated, ignored };
   Verdict receive(Time now, std::span<const std::uint8_t> bytes);
 
-  /// What holds for a universe of the settings at `now`; time must not go back.
+  /// State of a universe of the settings at `now`; time must not go back.
   [[nodiscard]] HeardUniverse heard(Time now, int universe);
-  /// Sources that are tracked, lost ones not counted.
+  /// Number of tracked sources without lost ones.
   [[nodiscard]] std::size_t sources(Time now, int universe);
 
-  /// The universes whose groups it must hear: its own, and those that sources synchronise by.
+  /// Universes whose groups to join: its own, and those used for synchronisation.
   [[nodiscard]] const std::set<int>& groups() const { return groups_; }
-  /// Forgets everything that was heard.
+  /// Forgets everything received.
   void restart();
 
  private:
   struct Source {
     std::string name;
     Time first{}, last{};
-    std::optional<Time> lost;  ///< when its loss was due; others may keep it from counting
+    std::optional<Time> lost;  ///< when its loss was due; other sources may delay its effect
     std::optional<std::uint8_t> levels_sequence, priorities_sequence;
     int priority = 0;
-    bool shown = false;  ///< `slots` holds something to act on
+    bool shown = false;  ///< `slots` holds levels to act on
     SentSlots slots;
     std::optional<SentSlots> held;  ///< waits for its synchronisation packet
     int sync_universe = 0;

@@ -9,7 +9,7 @@ namespace luxrig::sacn {
 namespace {
 
 // Clause 6.6.2: three packets of unchanged data, then one every 800…1000 ms. 880 ms leaves both ends room for a late
-// cycle of 44 Hz.
+// 44 Hz cycle.
 constexpr int kRepeatsAfterChange = 3;
 constexpr Duration kKeepAlive = std::chrono::milliseconds(880);
 
@@ -80,8 +80,8 @@ std::optional<std::vector<std::uint8_t>> Source::due(Time now, int universe, con
     stream.slots = slots;
     stream.sending = true;
   }
-  // Priorities go first, so that a receiver knows them with the first levels; and they take a packet's place, since
-  // the rate counts all packets of a universe (clause 6.6.1).
+  // Priorities go first, so a receiver knows them with the first levels. They replace a packet of levels, since the
+  // rate counts all packets of a universe (clause 6.6.1).
   if (stream.priorities && (!stream.priorities_sent || now - *stream.priorities_sent >= kKeepAlive)) {
     if (!stream.rate.take(now)) return std::nullopt;
     stream.priorities_sent = now;
@@ -116,7 +116,7 @@ std::optional<std::vector<std::uint8_t>> Source::sync_due() {
 }
 
 std::vector<std::vector<std::uint8_t>> Source::discovery_due(Time now) {
-  if (!listed_) listed_ = now;  // the first list after one interval, when it is known what is sent
+  if (!listed_) listed_ = now;  // the first list goes out after one interval, when the universes are known
   if (now - *listed_ < kDiscoveryInterval) return {};
   listed_ = now;
   std::vector<std::uint16_t> universes;

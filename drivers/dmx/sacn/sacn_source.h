@@ -1,6 +1,6 @@
 #pragma once
-/// What an sACN source sends when: sequence numbers, rate, suppression, priority per slot, synchronisation, universe
-/// discovery, goodbye. `now` and slots in, packets out.
+/// Schedule of an sACN source's packets: sequence numbers, rate, suppression, priority per slot, synchronisation,
+/// universe discovery, goodbye. `now` and slots in, packets out.
 
 #include <cstdint>
 #include <map>
@@ -18,14 +18,14 @@ struct SourceSettings {
   Cid cid{};
   std::string source_name;
   int priority = 100;      ///< 0…200
-  bool continuous = true;  ///< false: transmission is suppressed while nothing changes (clause 6.6.2)
+  bool continuous = true;  ///< false: suppress packets while nothing changes (clause 6.6.2)
   bool preview = false;    ///< for visualisers only (clause 6.2.6)
-  /// Data waits for a packet to this universe (clause 11); 0: acts at once. Receivers go on without when it is lost.
+  /// Data waits for a packet to this universe (clause 11); 0 = acts at once. Receivers go on without it if it is lost.
   int sync_universe = 0;
 };
 
-/// A component identifier that stays over restarts and differs between hosts, rigs and buses: a UUID of version 8
-/// (RFC 9562) hashed from the three.
+/// A component identifier that is the same after a restart and differs between hosts, rigs and buses: a UUID of version
+/// 8 (RFC 9562) hashed from the three.
 [[nodiscard]] Cid derive_cid(std::string_view host, std::string_view rig, std::string_view bus);
 
 /// "6ba7b810-9dad-11d1-80b4-00c04fd430c8" -> its bytes.
@@ -35,28 +35,28 @@ class Source {
  public:
   explicit Source(SourceSettings settings) : settings_(std::move(settings)) {}
 
-  /// From now on packets of start code 0xDD say these priorities, slot by slot (0: this source has no say there).
+  /// From now on packets of start code 0xDD carry these priorities per slot (0 = this source does not count there).
   void set_slot_priorities(int universe, const DmxSlots& priorities) { streams_[universe].priorities = priorities; }
 
-  /// The packet of this universe that is due at `now`, if one is: levels or, in their place, priorities of slots.
+  /// The packet of this universe that is due at `now`, if any: levels or, in their place, slot priorities.
   [[nodiscard]] std::optional<std::vector<std::uint8_t>> due(Time now, int universe, const DmxSlots& slots);
 
-  /// Whether these levels have gone out.
+  /// Whether these levels have been sent.
   [[nodiscard]] bool is_sent(int universe, const DmxSlots& slots) const;
 
   /// The goodbye of a universe that has sent before: one packet with the stream-terminated bit; clause 6.2.6 wants
-  /// three of them. Nothing for a universe that never sent or has said goodbye.
+  /// three. Empty for a universe that never sent or has said goodbye.
   [[nodiscard]] std::optional<std::vector<std::uint8_t>> goodbye(int universe);
-  /// After all universes of a frame: the packet that lets them act together. Nothing when none was sent since the
-  /// last, or without a sync_universe.
+  /// After all universes of a frame: the packet that makes them act together. Empty if none was sent since the last
+  /// one, or without a sync_universe.
   [[nodiscard]] std::optional<std::vector<std::uint8_t>> sync_due();
 
-  /// Every 10 s the pages that list what is being sent; nothing else, and nothing while nothing is sent.
+  /// Every 10 s the pages that list the universes being sent; otherwise, and if none is sent, empty.
   [[nodiscard]] std::vector<std::vector<std::uint8_t>> discovery_due(Time now);
 
-  /// The same for one universe, when it alone falls silent.
+  /// The same for one universe that falls silent alone.
   void rest(int universe);
-  /// After the goodbyes: each universe starts afresh with its next packet, and goes on counting.
+  /// After the goodbyes: each universe restarts with its next packet; sequence numbers continue.
   void rest();
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-/// What a uDMX must be told. Pure.
+/// The slots to send to a uDMX. Pure.
 
 #include <cstddef>
 #include <optional>
@@ -14,12 +14,12 @@ struct SlotRange {
   friend bool operator==(const SlotRange&, const SlotRange&) = default;
 };
 
-/// The shortest range that holds every difference, for one transfer: two would let the widget send a packet with half
-/// of a 16-bit value. Nothing when they are the same.
+/// The shortest range that holds every difference, for one transfer: with two, the widget could send a packet with half
+/// of a 16-bit value. Empty if there is no difference.
 [[nodiscard]] std::optional<SlotRange> changed_range(const DmxSlots& known, const DmxSlots& wanted);
 
-/// A packet of the widget ends with the highest slot it was ever told, and short packets upset some fixtures: so the
-/// first range is all of them.
+/// The widget's packets end with the highest slot it ever received, and short packets upset some fixtures. So the first
+/// range covers all slots.
 inline constexpr SlotRange kAllSlots{0, kDmxSlots};
 
 }  // namespace luxrig::udmx

@@ -14,7 +14,7 @@ void Lateness::step(Time now, bool up_to_date) {
   last_ = now;
   const auto before = clock_ / kPart;
   clock_ += passed;
-  if (clock_ / kPart != before) part() = {};  // what was there is a window old
+  if (clock_ / kPart != before) part() = {};  // its old content has left the window
   if (up_to_date) {
     behind_since_.reset();
   } else if (!behind_since_) {

@@ -16,9 +16,9 @@ using udmx::SlotRange;
 
 constexpr OptionDoc kUdmxOptions[] = {kUsbSerialOption, kUsbPortOption, kUsbUniverseOption};
 
-constexpr std::uint8_t kSetChannelRange = 2;  // anyma's uDMX_cmds.h; value: how many, index: first, from 0
+constexpr std::uint8_t kSetChannelRange = 2;  // anyma's uDMX_cmds.h; value: count, index: first slot, from 0
 constexpr int kMostFailures = 3;              // in a row
-constexpr int kMostStalls = 100;              // in a row, about 2 s: healthy units stall once in a while
+constexpr int kMostStalls = 100;              // in a row, about 2 s: healthy units stall occasionally
 constexpr milliseconds kLastWait(20);         // in real time, before a transfer counts as slow or hung
 
 class UdmxDriver final : public UsbDmxDriver {
@@ -28,7 +28,7 @@ class UdmxDriver final : public UsbDmxDriver {
   ~UdmxDriver() override { close(latest_); }
 
  private:
-  // Nothing to ask for: that it answers shows with the first range.
+  // It has no identity request: the first range shows whether it answers.
   bool proves_itself_later() const override { return true; }
   Result<void> opened(Time now) override {
     latest_ = now;
@@ -42,7 +42,7 @@ class UdmxDriver final : public UsbDmxDriver {
     sending_.reset();
     switch (completion.status) {
       case UsbStatus::done:
-        // The last packet of a cancelled transfer may have been in time or not: only a whole one counts.
+        // A cancelled transfer may have delivered its last packet or not, so only a complete one counts.
         if (completion.transferred != range_.count) return failed(now, "ended early");
         known_ = on_its_way_;
         failures_ = stalls_ = 0;
@@ -93,7 +93,7 @@ class UdmxDriver final : public UsbDmxDriver {
 
   [[nodiscard]] bool settled() const override { return known_ && *known_ == slots(); }
 
-  /// The widget is there and the light follows too late, or not at all: that is a fault like any other, until it ends.
+  /// The widget is there but the light follows too late or not at all: a fault like any other, until it ends.
   void watch_lateness(Time now) {
     const bool was_known = lateness_.should_be_known();
     lateness_.step(now, known_ && *known_ == slots());
@@ -113,7 +113,7 @@ class UdmxDriver final : public UsbDmxDriver {
     }
   }
 
-  /// The widget repeats what it has for ever, so that must be the newest.
+  /// The widget repeats its slots for ever, so they must be the newest.
   void leave(Time now) override {
     const Deadline deadline(kUsbLeaveBound);
     for (int transfers = 0; transfers < 2; ++transfers) {
@@ -157,7 +157,7 @@ class UdmxDriver final : public UsbDmxDriver {
   udmx::Lateness lateness_;
   std::optional<UsbTicket> sending_;
   SlotRange range_;
-  std::optional<DmxSlots> known_;  ///< what the widget has
+  std::optional<DmxSlots> known_;  ///< the widget's slots
   DmxSlots on_its_way_{};
   Time sent_at_{}, whole_at_{}, latest_{};
   int failures_ = 0, stalls_ = 0;
@@ -174,7 +174,7 @@ std::unique_ptr<Driver> make_udmx_over(std::unique_ptr<UsbChannel> channel, cons
 }
 
 std::unique_ptr<Driver> make_udmx(const Rig& rig, std::size_t bus, const std::optional<Redirect>& redirect) {
-  // The first id belongs to everybody who uses that USB stack, so the names count as well.
+  // Every user of that USB stack may use the first id, so the names must match as well.
   UsbSearch search =
       usb_search(rig.buses[bus], kUdmxOptions, "uDMX", {{0x16c0, 0x05dc, "www.anyma.ch", "uDMX"}, {0x03eb, 0x8888}});
   return make_udmx_over(make_usb_channel(std::move(search), redirect), rig, bus);

@@ -1,6 +1,6 @@
 #pragma once
-/// Vendor requests of FTDI's USB serial chips, and what their bulk packets carry. Pure.
-/// Source: the requests that Linux' ftdi_sio and FTDI's application notes agree on.
+/// Vendor requests of FTDI's USB serial chips, and the format of their bulk packets. Pure.
+/// Source: Linux' ftdi_sio and FTDI's application notes, where they agree.
 
 #include <cstdint>
 #include <span>
@@ -13,8 +13,7 @@ namespace luxrig::ftdi {
 inline constexpr std::uint16_t kVendor = 0x0403;
 inline constexpr std::uint16_t kFt232 = 0x6001, kFt2232 = 0x6010, kFt4232 = 0x6011;
 
-/// One port of a chip. Single-port chips: index 0, interface 0; port n of a chip with several: index n, interface n
-/// − 1.
+/// One port of a chip. Single-port chip: index 0, interface 0. Port n of a multi-port chip: index n, interface n − 1.
 struct Port {
   std::uint16_t index = 0;
   [[nodiscard]] int interface() const { return index == 0 ? 0 : index - 1; }
@@ -34,10 +33,10 @@ enum class Format : std::uint16_t { eight_n_one = 0x0008, eight_n_two = 0x1008 }
 [[nodiscard]] UsbSetup set_latency(Port port, int latency_ms);
 inline constexpr std::size_t kModemStatusBytes = 2;
 [[nodiscard]] UsbSetup get_modem_status(Port port);
-/// Whether the last bit has left the chip. Of the two bytes that get_modem_status() answers; false when cut short.
+/// Whether the last bit has left the chip, from the two bytes of get_modem_status(); false if truncated.
 [[nodiscard]] bool transmitter_is_empty(std::span<const std::uint8_t> modem_status);
 
-/// The received bytes of one bulk transfer in: each USB packet of it starts with two status bytes.
+/// The received bytes of one bulk IN transfer: each USB packet starts with two status bytes.
 [[nodiscard]] std::vector<std::uint8_t> received_bytes(std::span<const std::uint8_t> transfer,
                                                        std::size_t packet_bytes = 64);
 

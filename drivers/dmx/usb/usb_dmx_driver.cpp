@@ -13,7 +13,7 @@ using std::chrono::milliseconds;
 
 constexpr Duration kUsbReopenEvery = std::chrono::seconds(1);
 constexpr milliseconds kUsbCloseBound(50);
-constexpr int kMostEndedPerCycle = 64;  // a device that answers without end must not hold up the output
+constexpr int kMostEndedPerCycle = 64;  // a device that answers without end must not delay the output
 constexpr int kHighestUsbUniverse = 63999;
 
 }  // namespace
@@ -36,7 +36,7 @@ Fault UsbDmxDriver::inactive() const {
 
 DriverBounds UsbDmxDriver::bounds() const {
   DriverBounds bounds;
-  // As long as the widget works a call takes kUsbFrameBound at most; the rest is for closing it and opening it again.
+  // With a working widget a call takes kUsbFrameBound at most; the rest is for closing and reopening it.
   bounds.write = kUsbOpenBound + kUsbPrepareBound + kUsbCloseBound + kUsbFrameBound;
   bounds.write_period = kDmxWritePeriod;
   bounds.fault_after = kUsbRefreshEvery + 2 * kUsbTransferTimeout + kDmxWritePeriod;

@@ -1,6 +1,6 @@
 #pragma once
-/// What every driver of a USB widget has in common: one bus is one widget with one universe. Life cycle, opening the
-/// device again when it is lost, options. A driver derives from it and says what is sent when.
+/// Common base of drivers of a USB widget: one bus is one widget with one universe. Life cycle, reopening a lost
+/// device, options. A derived driver decides what to send when.
 
 #include <initializer_list>
 #include <memory>
@@ -16,7 +16,7 @@
 
 namespace luxrig {
 
-// Rows for a driver's table.
+// Rows for a driver's option table.
 inline constexpr OptionDoc kUsbSerialOption = {
     "serial", "text", "", "\"\"", "as `lsusb -v` shows it", "serial number of the widget; empty: whichever is there"};
 inline constexpr OptionDoc kUsbPortOption = {
@@ -32,9 +32,9 @@ inline constexpr OptionDoc kUsbUniverseOption = {
     "0 to 63999", "the universe of the patch that this widget puts out; 0: the one that its fixtures are in"};
 
 inline constexpr std::chrono::milliseconds kUsbPrepareBound(150), kUsbLeaveBound(100);
-/// A transfer that takes longer than this has hung.
+/// A transfer that takes longer than this counts as hung.
 inline constexpr Duration kUsbTransferTimeout = std::chrono::milliseconds(500);
-/// Unchanged levels are sent again this often, as a widget that lost power for an instant has forgotten them.
+/// Unchanged levels are repeated this often, as a widget that lost power for an instant has forgotten them.
 inline constexpr Duration kUsbRefreshEvery = std::chrono::milliseconds(900);
 
 class UsbDmxDriver : public Driver, public LevelOutput, public Mover {
@@ -55,27 +55,27 @@ class UsbDmxDriver : public Driver, public LevelOutput, public Mover {
  protected:
   UsbDmxDriver(std::unique_ptr<UsbChannel> channel, const Rig& rig, std::size_t bus);
 
-  // What a derived driver fills in. None blocks longer than stated.
+  // Implemented by a derived driver. None blocks longer than stated.
   virtual Result<void> opened(Time now) = 0;                                ///< sets the device up; kUsbPrepareBound
-  virtual void ended(Time now, const UsbCompletion& completion) = 0;        ///< a transfer has
-  virtual void send_frame(Time now) = 0;                                    ///< starts what is due; kUsbFrameBound
+  virtual void ended(Time now, const UsbCompletion& completion) = 0;        ///< a transfer has ended
+  virtual void send_frame(Time now) = 0;                                    ///< starts due transfers; kUsbFrameBound
   virtual void leave(Time) {}                                               ///< about to close; kUsbLeaveBound
-  virtual void closed() = 0;                                                ///< every ticket is void
-  [[nodiscard]] virtual bool proves_itself_later() const { return false; }  ///< opened() says nothing about the widget
+  virtual void closed() = 0;                                                ///< every ticket is invalid
+  [[nodiscard]] virtual bool proves_itself_later() const { return false; }  ///< opened() proves nothing of the widget
 
   [[nodiscard]] UsbChannel& usb() { return *channel_; }
   [[nodiscard]] const DmxSlots& slots() const;
-  /// Control transfers without data, one after the other; the first that fails, or a timeout.
+  /// Control transfers without data, one after another; returns the first failure or a timeout.
   Result<void> set_up(std::initializer_list<UsbSetup> requests);
-  /// The completion of that ticket, others going to ended() on the way; nothing when it takes longer.
+  /// The completion of that ticket; others go to ended(). Empty if it takes longer than `wait`.
   std::optional<UsbCompletion> wait_for(Time now, UsbTicket ticket, std::chrono::milliseconds wait);
-  /// What has ended meanwhile.
+  /// Passes ended transfers to ended().
   void take_ended(Time now, std::chrono::milliseconds wait = std::chrono::milliseconds(0));
-  /// Closes; opened again after a while.
+  /// Closes; reopens after a while.
   void lost(Time now, Fault fault);
   /// The device has shown that it works.
   void well(Time now);
-  /// A derived destructor calls it: the base's is too late for what it overrides.
+  /// A derived destructor must call it: the base's is too late for overridden functions.
   void close(Time now);
 
   DmxPatchbay bay_;
@@ -92,11 +92,11 @@ class UsbDmxDriver : public Driver, public LevelOutput, public Mover {
 
 inline constexpr std::chrono::milliseconds kUsbFrameBound(50);
 
-/// The device that the bus's options name. requires check_usb_dmx() to be empty.
+/// The device named by the bus's options. requires check_usb_dmx() to be empty.
 [[nodiscard]] UsbSearch usb_search(const Bus& bus, std::span<const OptionDoc> docs, std::string what,
                                    std::vector<UsbKind> kinds);
 
-/// Options, patch, and that all fixtures of the bus are in one universe.
+/// Checks options, patch, and that all fixtures of the bus are in one universe.
 [[nodiscard]] std::vector<Problem> check_usb_dmx(const Rig& rig, std::size_t bus, std::span<const OptionDoc> docs);
 
 /// libusb, or the stand-in.

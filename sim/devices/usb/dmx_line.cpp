@@ -22,7 +22,7 @@ void DmxLine::set_break(Time at, bool asserted) {
   if (asserted) {
     if (state_ == State::in_packet && at < packet_end_) {
       ++short_;
-      look_.reset();  // which slots of it arrived nobody knows
+      look_.reset();  // it is unknown which slots of it arrived
     }
     state_ = State::in_break;
     break_at_ = at;
@@ -46,7 +46,7 @@ void DmxLine::receive(Time start, Duration slot, const LineSettings& settings, s
   shortest_mark_ = std::min(shortest_mark_, start - break_end_);
   state_ = State::in_packet;
   packet_end_ = start + slot * static_cast<std::int64_t>(bytes.size());
-  if (bytes[0] != 0) return;  // another start code is nothing for a dimmer
+  if (bytes[0] != 0) return;  // a dimmer ignores other start codes
   UsbDmxLook look = look_.value_or(UsbDmxLook{});
   std::copy(bytes.begin() + 1, bytes.end(), look.begin());
   look_ = look;

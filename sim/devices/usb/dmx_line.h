@@ -1,5 +1,5 @@
 #pragma once
-/// What a DMX receiver at the end of a serial line makes of it: break, mark after break, start code, slots.
+/// A DMX receiver at the end of a serial line: break, mark after break, start code, slots.
 /// Source: ANSI E1.11 section 8: break at least 88 µs, mark after break at least 8 µs, 250 kbit/s, 8 data bits, 2 stop
 /// bits; a packet that a break cuts short ends there; data is lost after 1 s without a packet.
 
@@ -15,10 +15,10 @@ class DmxLine final : public SerialPeer {
   [[nodiscard]] std::optional<UsbDmxLook> line(Time now) override;
 
   [[nodiscard]] std::uint64_t packets() const { return packets_; }   ///< whole ones, start code 0
-  [[nodiscard]] std::uint64_t short_ones() const { return short_; }  ///< a break came before their end
+  [[nodiscard]] std::uint64_t short_ones() const { return short_; }  ///< cut short by a break
   [[nodiscard]] std::uint64_t spoiled() const {
     return spoiled_;
-  }  ///< bytes at the wrong rate, in a break, without one
+  }  ///< bytes at the wrong rate, in a break, or without one
   [[nodiscard]] Duration shortest_break() const { return shortest_break_; }
   [[nodiscard]] Duration shortest_mark() const { return shortest_mark_; }
 

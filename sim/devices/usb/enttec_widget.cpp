@@ -75,7 +75,7 @@ void EnttecWidget::obey(Time now, std::uint8_t label, std::span<const std::uint8
       rate_hz_ = data[4];
       return;
     case 6: {
-      // At least 24 slots, or packets would follow one another faster than DMX allows.
+      // At least 24 slots, or packets would come faster than DMX allows.
       if (data.size() < 25 || data.size() > 1 + kDmxSlots || data[0] != 0) return;
       UsbDmxLook look = look_.value_or(UsbDmxLook{});
       std::copy(data.begin() + 1, data.end(), look.begin());
@@ -104,7 +104,7 @@ void EnttecWidget::ask_line(Time now, std::span<const std::uint8_t> packet) {
   if (!line_answer_) return;
   const std::vector<std::uint8_t> heard = line_answer_(now, packet);
   if (heard.empty()) return answer(12, {});
-  std::vector<std::uint8_t> received{0};  // nothing of it was lost
+  std::vector<std::uint8_t> received{0};  // nothing was lost
   received.insert(received.end(), heard.begin(), heard.end());
   answer(5, received);
 }

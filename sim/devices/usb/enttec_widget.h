@@ -3,8 +3,8 @@
 /// Source: ENTTEC, DMX USB Pro Widget API Specification 1.44.
 ///
 /// It repeats the last packet by itself until it gets a request other than 6 and 3. Slots that a short packet leaves
-/// out stay as they are in the fixtures. Faults: deaf, silent, on labels 77 and 78 as the original is, wrong end byte,
-/// noise before each answer.
+/// out keep their value in the fixtures. Possible faults: deaf, silent, no names (labels 77 and 78) like the original,
+/// wrong end byte, noise before each answer.
 
 #include <deque>
 
@@ -17,13 +17,13 @@ class EnttecWidget final : public SerialPeer {
   struct Character {
     bool says_names = true;             ///< labels 77 and 78
     bool wrong_end = false;             ///< of every answer
-    bool silent = false;                ///< does what it is told, and answers nothing
+    bool silent = false;                ///< obeys, but does not answer
     std::vector<std::uint8_t> noise{};  ///< before every answer
   };
   EnttecWidget() = default;
   explicit EnttecWidget(Character character) : character_(std::move(character)) {}
   void set_character(Character character) { character_ = std::move(character); }
-  /// Its firmware is the one with RDM from now on: labels 7 and 11, answered by 5 or, after silence, 12.
+  /// From now on it has the firmware with RDM: labels 7 and 11, answered by 5 or, after silence, 12.
   void connect(UsbDevice::LineAnswer answer) { line_answer_ = std::move(answer); }
 
   void power_on(Time now) override;
@@ -31,10 +31,10 @@ class EnttecWidget final : public SerialPeer {
   std::vector<std::uint8_t> take(Time now, std::size_t most) override;
   [[nodiscard]] std::optional<UsbDmxLook> line(Time) override { return putting_out_ ? look_ : std::nullopt; }
 
-  // What a test looks at.
+  // For tests.
   [[nodiscard]] std::uint64_t frames() const { return frames_; }    ///< label 6
   [[nodiscard]] std::uint64_t dropped() const { return dropped_; }  ///< bytes that belonged to no message
-  [[nodiscard]] std::uint64_t stops() const { return stops_; }      ///< requests that stopped a running output
+  [[nodiscard]] std::uint64_t stops() const { return stops_; }      ///< requests that stopped the running output
   [[nodiscard]] int break_units() const { return break_units_; }
   [[nodiscard]] int mark_units() const { return mark_units_; }
   [[nodiscard]] int rate_hz() const { return rate_hz_; }

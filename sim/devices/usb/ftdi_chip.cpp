@@ -11,7 +11,7 @@ constexpr std::uint16_t kBreak = 0x4000;
 constexpr int kInEndpoint = 0x81, kOutEndpoint = 0x02;
 constexpr std::size_t kPacket = 64, kStatus = 2, kTransmitBuffer = 256;
 constexpr Duration kUsbFrame = std::chrono::milliseconds(1);
-constexpr Duration kUsbPacket = std::chrono::microseconds(50);  // 64 bytes at 12 Mbit/s, before the chip has any
+constexpr Duration kUsbPacket = std::chrono::microseconds(50);  // 64 bytes at 12 Mbit/s, before the chip receives them
 constexpr Duration kDefaultLatency = std::chrono::milliseconds(16);
 constexpr double kClock_hz = 3e6;
 
@@ -70,7 +70,7 @@ UsbReply FtdiChip::vendor(Time now, const UsbControl& setup, std::span<const std
     case kRequestFormat: {
       const bool was = (settings_.format & kBreak) != 0, is = (setup.value & kBreak) != 0;
       settings_.format = setup.value;
-      // What the request does it does when the frame ends; so a break is never shorter than a frame.
+      // A request takes effect at the end of the frame, so a break is never shorter than a frame.
       if (was != is) peer_.set_break(now + kUsbFrame, is);
       return reply;
     }
@@ -103,7 +103,7 @@ UsbReply FtdiChip::bulk_out(Time now, int endpoint, std::span<const std::uint8_t
   busy_until_ = start + slot * static_cast<std::int64_t>(data.size());
   UsbReply reply;
   reply.taken = data.size();
-  // The host has handed over its last byte when there is room for it.
+  // The host's last byte is accepted once there is room for it.
   reply.takes = std::max(Duration{}, busy_until_ - slot * static_cast<std::int64_t>(kTransmitBuffer) - now);
   return reply;
 }

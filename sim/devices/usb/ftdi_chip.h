@@ -1,8 +1,8 @@
 #pragma once
-/// FTDI FT232R: vendor requests, two bulk endpoints, and what hangs on its serial side.
-/// Source: requests as Linux' ftdi_sio and FTDI's notes have them. A control transfer takes a USB frame (1 ms); bulk
-/// data out waits while the transmit buffer of 256 bytes is full; bulk data in comes when there is some or the latency
-/// timer has passed, always behind two status bytes.
+/// FTDI FT232R: vendor requests, two bulk endpoints, and the device on its serial side.
+/// Source: requests as in Linux' ftdi_sio and FTDI's notes. A control transfer takes a USB frame (1 ms). Bulk OUT data
+/// waits while the transmit buffer of 256 bytes is full. Bulk IN data comes when there is some or the latency timer has
+/// expired, always after two status bytes.
 
 #include <deque>
 
@@ -15,7 +15,7 @@ class SerialPeer {
  public:
   virtual ~SerialPeer() = default;
   virtual void power_on(Time) {}
-  /// The chip begins to send these at `start`, and needs `slot` for each. `settings`: FTDI data format and divisor.
+  /// The chip begins to send the bytes at `start` and needs `slot` for each. `settings`: FTDI data format and divisor.
   struct LineSettings {
     std::uint16_t format = 0, divisor = 0;
     bool rts_low = false;
@@ -23,14 +23,14 @@ class SerialPeer {
   virtual void receive(Time start, Duration slot, const LineSettings& settings,
                        std::span<const std::uint8_t> bytes) = 0;
   virtual void set_break(Time, bool) {}
-  /// What it has to say; taken once. At most that many bytes.
+  /// Takes its output bytes, at most that many.
   virtual std::vector<std::uint8_t> take(Time, std::size_t) { return {}; }
   [[nodiscard]] virtual std::optional<UsbDmxLook> line(Time now) = 0;
 };
 
 class FtdiChip final : public UsbDevice {
  public:
-  /// The peer outlives it. `paced`: bytes leave at the line's rate; false where the chip's other side is a parallel bus
+  /// The peer outlives it. `paced`: bytes leave at the line's rate; false if the chip's other side is a parallel bus
   /// (FT245, as in the ENTTEC Pro).
   FtdiChip(SerialPeer& peer, std::string product, std::string serial, bool paced);
 

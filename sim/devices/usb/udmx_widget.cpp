@@ -6,7 +6,7 @@ namespace luxrig::sim {
 namespace {
 
 constexpr std::uint8_t kSingleChannel = 1, kChannelRange = 2;
-/// Low speed moves 8 bytes a packet, and the firmware keeps the host waiting: a universe takes 33 ms.
+/// Low speed carries 8 bytes a packet, and the firmware delays the host: a universe takes 33 ms.
 constexpr std::size_t kLowSpeedPacket = 8;
 constexpr Duration kSetupTakes = std::chrono::milliseconds(1), kPacketTakes = std::chrono::microseconds(500);
 

@@ -1,7 +1,7 @@
 #pragma once
-/// A uDMX of anyma: a microcontroller that does low-speed USB in software and DMX beside it.
-/// Source: anyma's uDMX_cmds.h and what its firmware is known to do: it sends nothing before the first data, then
-/// packets that end with the highest slot ever set, for ever. Range out of bounds: refused.
+/// A uDMX of anyma: a microcontroller with low-speed USB in software, and DMX.
+/// Source: anyma's uDMX_cmds.h and the known behaviour of its firmware. It sends nothing before the first data, then
+/// for ever packets that end with the highest slot ever set. It refuses a range out of bounds.
 
 #include "sim/devices/usb/usb_device.h"
 

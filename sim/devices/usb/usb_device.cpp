@@ -10,7 +10,7 @@ constexpr std::uint8_t kGetStatus = 0, kGetDescriptor = 6, kGetConfiguration = 8
 constexpr int kDeviceDescriptor = 1, kConfigurationDescriptor = 2, kStringDescriptor = 3;
 
 std::vector<std::uint8_t> string_descriptor(const UsbDescriptors& all, std::size_t index) {
-  if (index == 0) return {4, kStringDescriptor, 0x09, 0x04};  // the languages: English alone
+  if (index == 0) return {4, kStringDescriptor, 0x09, 0x04};  // the languages: only English
   if (index > all.strings.size()) return {};
   const std::string& text = all.strings[index - 1];
   std::vector<std::uint8_t> bytes{static_cast<std::uint8_t>(2 + 2 * text.size()), kStringDescriptor};

@@ -1,8 +1,8 @@
 #pragma once
 /// A USB device as the host's controller sees it: control and bulk transfers. One model serves the simulated rig
-/// (wire/usb/), a device that umockdev pretends, and one behind vhci_hcd in a guest's kernel.
+/// (wire/usb/), a device emulated by umockdev, and one behind vhci_hcd in a guest's kernel.
 ///
-/// Pure: the time comes in. A transfer is begun once; the model says how it ends and how long it takes.
+/// Pure: the time comes in. A transfer begins once; the model returns its result and duration.
 
 #include <array>
 #include <cstdint>
@@ -27,7 +27,7 @@ struct UsbReply {
   enum class Kind {
     done,
     stall,
-    wait,  ///< the device has nothing to give yet (NAK): ask again
+    wait,  ///< the device has no data yet (NAK): ask again
   };
   Kind kind = Kind::done;
   std::vector<std::uint8_t> data;  ///< to the host
@@ -48,20 +48,20 @@ class UsbDevice {
   virtual ~UsbDevice() = default;
   [[nodiscard]] virtual const UsbDescriptors& descriptors() const = 0;
 
-  /// Standard requests are answered here, the others by the model. `out`: what the host sends with it.
+  /// Answers standard requests here; the model answers the others. `out`: data from the host.
   UsbReply control(Time now, const UsbControl& setup, std::span<const std::uint8_t> out);
   /// `endpoint` with its direction bit.
   virtual UsbReply bulk_out(Time, int, std::span<const std::uint8_t>) { return {UsbReply::Kind::stall, {}, 0, {}}; }
   virtual UsbReply bulk_in(Time, int, std::size_t) { return {UsbReply::Kind::stall, {}, 0, {}}; }
 
-  /// Devices that answer on its DMX line: a packet goes out at `now`, from its start code on, and what comes back is
-  /// returned, empty for silence. Nothing happens in a device that cannot listen to its line.
+  /// Connects devices that answer on its DMX line. A packet leaves at `now`, from its start code on; the function
+  /// returns the answer, empty = silence. Has no effect on a device that cannot listen to its line.
   using LineAnswer = std::function<std::vector<std::uint8_t>(Time now, std::span<const std::uint8_t> packet)>;
   virtual void connect(LineAnswer) {}
 
-  /// Plugged in: everything that was only in its memory is forgotten.
+  /// Plugged in: everything in volatile memory is lost.
   virtual void power_on(Time now) = 0;
-  /// What is put out on its DMX line now; nothing while there are no packets.
+  /// Present output on its DMX line; empty while it sends no packets.
   [[nodiscard]] virtual std::optional<UsbDmxLook> line(Time now) = 0;
 
  protected:

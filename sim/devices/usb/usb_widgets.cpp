@@ -7,7 +7,7 @@
 namespace luxrig::sim {
 namespace {
 
-/// An FTDI chip that owns what hangs on its serial side.
+/// An FTDI chip that owns the device on its serial side.
 template <class Peer>
 class ChipWithPeer final : public UsbDevice {
  public:

@@ -1,5 +1,5 @@
 #pragma once
-/// The simulated USB widgets, by the name of the driver that they are for.
+/// The simulated USB widgets, by the name of their driver.
 
 #include <memory>
 #include <string_view>
@@ -8,7 +8,7 @@
 
 namespace luxrig::sim {
 
-/// A device together with what hangs on it. Nothing for a driver without one. Named: enttec_pro, open_dmx, udmx.
+/// A device with everything behind it; null for a driver without one. Drivers: enttec_pro, open_dmx, udmx.
 [[nodiscard]] std::unique_ptr<UsbDevice> make_usb_widget(std::string_view driver);
 
 }  // namespace luxrig::sim

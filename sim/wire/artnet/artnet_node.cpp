@@ -58,7 +58,7 @@ std::vector<std::vector<std::uint8_t>> ArtnetNode::receive(Time now, std::uint32
   if (is_art_poll(packet)) return poll_replies();
   if (is_art_sync(packet)) {
     for (auto& [port_address, port] : ports_) {
-      // Only the controller whose data a port shows may synchronise it, and a port that merges does not synchronise.
+      // Only the controller whose data a port shows may synchronise it; a merging port is never synchronised.
       if (port.sources.size() != 1 || port.sources[0].address != from) continue;
       port.last_sync = now;
       if (port.held) port.look = port.held;
@@ -78,7 +78,7 @@ void ArtnetNode::take(Time now, std::uint32_t from, const ArtDmx& dmx) {
                              [from](const Source& known) { return known.address == from; });
   if (source == port.sources.end()) {
     if (port.sources.size() >= kMostSources) return;  // a third source is ignored
-    // What a first source leaves unsaid stays as it was held; a second one says nothing about it.
+    // Slots that the first source does not send keep the held look; a second source does not affect them.
     const Levels unsaid = port.sources.empty() ? port.look.value_or(Levels{}) : Levels{};
     source = port.sources.insert(port.sources.end(), Source{from, now, 0, unsaid});
     if (port.sources.size() > 1) port.held.reset();  // merging starts, synchronisation ends
@@ -87,7 +87,7 @@ void ArtnetNode::take(Time now, std::uint32_t from, const ArtDmx& dmx) {
   }
   source->last_seen = now;
   source->sequence = dmx.sequence;
-  // A packet with fewer slots leaves the others as they were.
+  // A packet with fewer slots leaves the others unchanged.
   std::copy(dmx.slots.begin(), dmx.slots.end(), source->slots.begin());
   ++accepted_;
   const bool synchronised = port.last_sync && now - *port.last_sync <= kSyncTimeout && port.sources.size() < 2;
@@ -106,7 +106,7 @@ void ArtnetNode::forget_lost(Time now) {
   for (auto& [port_address, port] : ports_) {
     const auto gone =
         std::erase_if(port.sources, [now](const Source& source) { return now - source.last_seen > kSourceTimeout; });
-    if (gone > 0 && !port.sources.empty()) port.look = merged(port);            // with none left the look is held
+    if (gone > 0 && !port.sources.empty()) port.look = merged(port);            // without sources the look is held
     if (port.held && port.last_sync && now - *port.last_sync > kSyncTimeout) {  // back to immediate mode
       port.look = port.held;
       port.held.reset();
@@ -147,7 +147,7 @@ std::vector<std::vector<std::uint8_t>> ArtnetNode::poll_replies() const {
     reply[173] = static_cast<std::uint8_t>(on_page.size());                        // NumPorts
     for (std::size_t i = 0; i < on_page.size(); ++i) {
       const Port& state = on_page[i]->second;
-      reply[174 + i] = 0x80;  // puts DMX out, from the network
+      reply[174 + i] = 0x80;  // outputs DMX from the network
       reply[182 + i] = static_cast<std::uint8_t>((state.look ? 0x80 : 0) | (state.sources.size() > 1 ? 0x08 : 0));
       reply[190 + i] = static_cast<std::uint8_t>(on_page[i]->first & 0x0f);  // SwOut
     }

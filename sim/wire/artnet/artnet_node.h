@@ -1,11 +1,10 @@
 #pragma once
-/// An Art-Net 4 node with DMX outputs. Pure: packets and the time come in, levels and answers come out.
+/// An Art-Net 4 node with DMX outputs. Pure: packets and the time in, levels and answers out.
 /// Source: Art-Net 4 specification (Artistic Licence).
 ///
-/// Kept: ArtPoll -> one ArtPollReply per page of four ports of the same net and sub-net, ArtDmx with its sequence rule,
-/// merge of at most two sources by address (HTP, 10 s), ArtSync (from the one controller whose
-/// data a port shows) with its 4 s way back. With no source left the last
-/// look is held, and the replies say so (failsafe: hold).
+/// Implemented: ArtPoll -> one ArtPollReply per page of four ports of the same net and sub-net, ArtDmx with its
+/// sequence rule, merge of at most two sources by address (HTP, 10 s), ArtSync (from the only controller of a port's
+/// data) with its 4 s timeout. Without sources the last look is held, and the replies say so (failsafe: hold).
 /// Answers at once instead of after a random 0…1 s, so that tests and tools need not wait.
 
 #include <array>
@@ -27,20 +26,20 @@ struct ArtDmx {
   std::span<const std::uint8_t> slots;
 };
 
-/// Nothing when the bytes are not a good packet of that kind.
+/// Empty unless the bytes are a valid packet of that kind.
 [[nodiscard]] std::optional<ArtDmx> decode_art_dmx(std::span<const std::uint8_t> packet);
 [[nodiscard]] bool is_art_poll(std::span<const std::uint8_t> packet);
 [[nodiscard]] bool is_art_sync(std::span<const std::uint8_t> packet);
 
 class ArtnetNode {
  public:
-  /// `port_addresses`: universes it puts out (0…32767).
+  /// `port_addresses`: universes it outputs (0…32767).
   explicit ArtnetNode(std::vector<int> port_addresses);
 
   /// `from`: the sender's IPv4 address. Returns the packets to send back to it.
   std::vector<std::vector<std::uint8_t>> receive(Time now, std::uint32_t from, std::span<const std::uint8_t> packet);
 
-  /// Levels of a universe, address 1 first; nothing before its first data or for a universe it has not.
+  /// Levels of a universe, address 1 first; empty before its first data or if it lacks that universe.
   [[nodiscard]] std::optional<std::array<std::uint8_t, kDmxSlots>> levels(int port_address, Time now);
 
   [[nodiscard]] std::uint64_t accepted() const { return accepted_; }

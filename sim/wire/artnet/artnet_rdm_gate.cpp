@@ -70,7 +70,7 @@ std::vector<ArtnetRdmGate::Answer> ArtnetRdmGate::receive(Time now, std::span<co
   std::vector<std::uint8_t> on_line = {0xcc};
   on_line.insert(on_line.end(), packet.begin() + 24, packet.end());
   const RdmLine::Answer answer = port->second.line->exchange(now, on_line);
-  // What begins with no start code is an answer to discovery, which a node keeps for itself.
+  // Bytes without a start code answer a discovery request; a node does not pass these on.
   if (answer.bytes.empty() || answer.bytes[0] != 0xcc) return answers;
   std::vector<std::uint8_t> back = head_of(kOpRdm, port->first);
   back.insert(back.end(), answer.bytes.begin() + 1, answer.bytes.end());

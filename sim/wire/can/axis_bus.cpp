@@ -59,7 +59,7 @@ const AxisBus::Axis& AxisBus::axis_of(std::size_t fixture, bool tilts) const {
 }
 
 BusFrame AxisBus::garbled(BusFrame frame, std::uint64_t random) {
-  // A CRC catches what the line spoils; what is left is a node that says something wrong.
+  // A CRC catches line errors, so this models a node that sends wrong data.
   if (random % 3 == 0) {
     frame.size = static_cast<std::uint8_t>(random / 3 % 9);
   } else if (frame.size > 0) {

@@ -1,6 +1,6 @@
 #pragma once
-/// All axes of one CAN bus, with the faults that befall them and the bus, and the heads of the world turned by them.
-/// Steps of 1 ms; a function of what it was told when. No socket: can_endpoint.cpp puts one around it.
+/// All axes of one CAN bus, with the faults of axes and bus; they turn the heads of the world. Steps of 1 ms;
+/// deterministic in its timed inputs. No socket: can_endpoint.cpp adds one.
 
 #include <deque>
 #include <memory>
@@ -12,23 +12,23 @@
 
 namespace luxrig::sim {
 
-/// What an axis truly is, where the rig file says nothing: its limit switches stand at its home when that is at or
-/// beyond an end of its travel, else 5° past the ends; the end stops 3° past the switches.
+/// True axis, where the rig file is silent. If the home position is at or beyond an end of the travel, that limit
+/// switch stands there; otherwise the switches are 5° past the ends. The end stops are 3° past the switches.
 [[nodiscard]] AxisTruth axis_truth(const AxisPatch& patch, double min_rad, double max_rad);
 
 class AxisBus {
  public:
-  /// The axes have power from `parts.world.now()` on, and stand where the world's heads do.
+  /// The axes have power from `parts.world.now()` on, and start at the world's head positions.
   explicit AxisBus(const EndpointParts& parts);
 
-  /// A frame from outside, the master's. It takes effect at `now`, or later under the fault `slow`.
+  /// A frame from the master. It takes effect at `now`, or later under the fault `slow`.
   void receive(Time now, const BusFrame& frame);
-  /// Runs to `now`, and turns the world's heads.
+  /// Runs to `now` and turns the world's heads.
   void advance(Time now);
-  /// What the nodes have sent to the outside until the time it was run to.
+  /// Frames that the nodes have sent up to the time of advance().
   [[nodiscard]] std::vector<BusFrame> take_sent();
 
-  /// Of a fixture, as it truly is; for tests.
+  /// True node of a fixture, for tests.
   [[nodiscard]] const AxisNode& pan(std::size_t fixture) const { return *axis_of(fixture, false).node; }
   [[nodiscard]] const AxisNode& tilt(std::size_t fixture) const { return *axis_of(fixture, true).node; }
 

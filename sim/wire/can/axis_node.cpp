@@ -261,7 +261,7 @@ void AxisNode::apply_pdo(int number, const BusFrame& frame) {
     values.push_back({{static_cast<int>(entry >> 16), static_cast<int>(entry >> 8 & 0xFF)}, word_in(frame, at, bytes)});
     at += static_cast<std::size_t>(bytes);
   }
-  // Numbers first: what the controlword starts must not start with old ones.
+  // Numbers first: an action of the controlword must not start with old ones.
   std::stable_partition(values.begin(), values.end(), [](const auto& v) { return v.first.first != 0x6040; });
   for (const auto& [key, value] : values) {
     objects_->put(key, value);
@@ -338,7 +338,7 @@ void AxisNode::upload_segment(const BusFrame& frame) {
 
 void AxisNode::download(const BusFrame& frame, const ObjectKey& key) {
   const int command = frame.data[0];
-  if ((command & 0x02) == 0) return abort_sdo(key, kUnknownCommand);  // in segments: no object here is so long
+  if ((command & 0x02) == 0) return abort_sdo(key, kUnknownCommand);  // segmented: no object here is that long
   const int bytes = (command & 0x01) != 0 ? 4 - (command >> 2 & 3) : 0;
   const std::uint32_t value = word_in(frame, 4, bytes == 0 ? 4 : bytes);
   if (const auto refused = objects_->write(key, value, bytes, nmt_ == Nmt::pre_operational))

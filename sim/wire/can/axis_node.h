@@ -1,7 +1,7 @@
 #pragma once
 /// One axis as a CANopen node: NMT slave, heartbeat both ways, emergency messages, SDO server, PDOs mapped by SDO,
-/// SYNC, around an AxisDrive. Written from CiA 301 and CiA 402-2 without a look at the driver. Pure: time and frames
-/// in, frames out, so it is fuzzed.
+/// SYNC, around an AxisDrive. Written from CiA 301 and CiA 402-2 without reference to the driver. Pure: time and frames
+/// in, frames out, so it can be fuzzed.
 
 #include <memory>
 #include <optional>
@@ -16,20 +16,20 @@ namespace luxrig::sim {
 
 class AxisNode {
  public:
-  /// Is off at first. following_window: object 6065 as its maker sets it, in counts.
+  /// Starts switched off. following_window: object 6065 as set by its maker, in counts.
   AxisNode(int node, const AxisTruth& truth, double angle_deg, std::uint32_t following_window);
   AxisNode(const AxisNode&) = delete;
   AxisNode& operator=(const AxisNode&) = delete;
 
   void set_power(Time now, bool on);
-  /// As NMT "reset node" or its watchdog: the electronics begin anew, the motor turns on by its momentum.
+  /// As NMT "reset node" or its watchdog: the electronics restart, the motor runs on by its momentum.
   void reset(Time now);
   /// From now on, and after each boot: ObjectDictionary::refuse_limits_in_pdos().
   void refuse_limits_in_pdos(std::optional<std::uint32_t> abort_code);
   void receive(Time now, const BusFrame& frame);
-  /// One millisecond, which ends at `now`. stuck: something blocks the axis.
+  /// One millisecond that ends at `now`. stuck: the axis is blocked.
   void step(Time now, bool stuck);
-  /// What it has sent since the last call.
+  /// Frames sent since the last call.
   [[nodiscard]] std::vector<BusFrame> take_sent();
 
   [[nodiscard]] int node() const { return node_; }
@@ -65,7 +65,7 @@ class AxisNode {
   std::uint16_t told_error_ = 0, communication_error_ = 0;
   std::optional<BusFrame> waiting_[4];  ///< PDOs to the node that take effect with the next SYNC
   int syncs_[4] = {};
-  std::optional<std::size_t> text_at_;  ///< of object 1008, while it is read
+  std::optional<std::size_t> text_at_;  ///< in object 1008, while it is read
   bool toggle_ = false;
   std::vector<BusFrame> sent_;
 };

@@ -1,6 +1,6 @@
 #pragma once
-/// A CAN frame on the simulated bus, and the 16 bytes in which it travels through a datagram: identifier (32 bit,
-/// little-endian; bit 29 marks an error frame as Linux reports it), length, three unused, eight of data.
+/// A CAN frame on the simulated bus, and its 16 bytes in a datagram: identifier (32 bit, little-endian; bit 29 marks an
+/// error frame as Linux reports it), length, three unused, eight of data.
 
 #include <array>
 #include <cstdint>
@@ -10,7 +10,7 @@
 namespace luxrig::sim {
 
 struct BusFrame {
-  std::uint32_t id = 0;  ///< 11 bit; with kErrorFrame the classes of an error
+  std::uint32_t id = 0;  ///< 11 bit; with kErrorFrame: error classes
   std::uint8_t size = 0;
   std::array<std::uint8_t, 8> data{};
   bool operator==(const BusFrame&) const = default;
@@ -32,7 +32,7 @@ inline constexpr std::uint32_t kErrorFrame = 0x20000000, kBusOffError = 0x40, kR
   return bytes;
 }
 
-/// Nothing when it is no data frame with an 11-bit identifier.
+/// Empty unless it is a data frame with an 11-bit identifier.
 [[nodiscard]] inline std::optional<BusFrame> unpacked(std::span<const std::uint8_t> bytes) {
   if (bytes.size() != 16 || bytes[4] > 8) return std::nullopt;
   BusFrame frame;

@@ -11,11 +11,11 @@
 namespace luxrig::sim {
 namespace {
 
-constexpr int kMostCanFramesAtOnce = 1000;  // per serve(), so that a flood cannot hold up the world
+constexpr int kMostCanFramesAtOnce = 1000;  // per serve(), so that a flood cannot delay the world
 constexpr std::size_t kMostMasters = 4;
 constexpr Duration kForgetMaster = std::chrono::seconds(5);
 
-/// A CAN bus as datagrams on loopback: who has sent a frame lately hears what the nodes say.
+/// A CAN bus as datagrams on loopback: recent senders of frames receive the nodes' frames.
 class CanEndpoint final : public BusEndpoint {
  public:
   CanEndpoint(const EndpointParts& parts, BoundSocket socket)
@@ -29,7 +29,7 @@ class CanEndpoint final : public BusEndpoint {
     } else if (!socket_.descriptor.open()) {
       if (auto again = bind_udp(port_)) socket_ = std::move(*again);
     }
-    bus_.advance(now);  // the axes go on, whoever listens
+    bus_.advance(now);  // the axes run even without a listener
     take(now);
     for (const BusFrame& frame : bus_.take_sent()) {
       const auto bytes = packed(frame);

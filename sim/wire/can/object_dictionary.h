@@ -1,6 +1,6 @@
 #pragma once
-/// The objects of a simulated drive (CiA 301, CiA 402-2) with their sizes and rights, and the values that they were
-/// given. What the drive measures is asked of it when it is read. Values are unsigned; signed ones in two's complement.
+/// The objects of a simulated drive (CiA 301, CiA 402-2) with sizes, access rights and written values. Measured values
+/// are queried on each read. Values are unsigned; signed ones in two's complement.
 
 #include <cstdint>
 #include <functional>
@@ -29,20 +29,20 @@ inline constexpr std::uint32_t kNoObject = 0x06020000, kNoSubIndex = 0x06090011,
 
 class ObjectDictionary {
  public:
-  /// `measured`: what an object of that kind is worth now.
+  /// `measured`: returns the present value of a measured object.
   explicit ObjectDictionary(std::function<std::uint32_t(const ObjectKey&)> measured);
 
   [[nodiscard]] const DictionaryObject* find(const ObjectKey& key) const;
   [[nodiscard]] bool has_index(int index) const;
-  /// requires an object of that key.
+  /// requires an object with that key.
   [[nodiscard]] std::uint32_t value(const ObjectKey& key) const;
-  /// An abort code when it cannot be written so. PDO parameters are checked as CiA 301 asks.
+  /// Returns an abort code if it refuses. PDO parameters are checked as in CiA 301.
   [[nodiscard]] std::optional<std::uint32_t> write(const ObjectKey& key, std::uint32_t value, int bytes,
                                                    bool pre_operational);
-  /// No PDO carries profile speed and accelerations: with that abort code, of the entry where it says that one cannot
-  /// be mapped or is out of range, else of the number of entries. Nothing: they can be mapped.
+  /// Makes PDOs refuse profile speed and accelerations with that abort code: at the entry if the code means not
+  /// mappable or out of range, else at the number of entries. Empty = they can be mapped.
   void refuse_limits_in_pdos(std::optional<std::uint32_t> abort_code) { limits_refused_ = abort_code; }
-  /// As a PDO or the node itself does it: no rights asked. Unknown keys are ignored.
+  /// Write by a PDO or the node itself: no access check. Unknown keys are ignored.
   void put(const ObjectKey& key, std::uint32_t value);
 
  private:

@@ -7,7 +7,7 @@
 namespace luxrig::sim {
 namespace {
 
-// The four bytes (or two) as they follow one another on the wire: ABCD, CDAB, BADC or DCBA.
+// Orders the four bytes (or two) as on the wire: ABCD, CDAB, BADC or DCBA.
 void order(std::vector<std::uint8_t>& bytes, const RegisterFormat& format) {
   if (format.low_word_first && bytes.size() == 4) std::rotate(bytes.begin(), bytes.begin() + 2, bytes.end());
   if (!format.low_byte_first) return;

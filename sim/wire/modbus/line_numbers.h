@@ -1,5 +1,5 @@
 #pragma once
-/// Numbers as a device keeps them in its registers.
+/// Numbers in a device's registers.
 
 #include <cstdint>
 #include <span>
@@ -9,7 +9,7 @@
 
 namespace luxrig::sim {
 
-/// A full counter stays full. requires value not NaN.
+/// Whole numbers are clamped to the format's range. requires value not NaN.
 [[nodiscard]] std::vector<std::uint16_t> registers_from(double value, const RegisterFormat& format);
 /// requires as many words as the format has.
 [[nodiscard]] double number_from(std::span<const std::uint16_t> words, const RegisterFormat& format);

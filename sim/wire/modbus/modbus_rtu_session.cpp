@@ -10,7 +10,7 @@ using LineBytes = std::span<const std::uint8_t>;
 
 constexpr std::size_t kShortestFrame = 4, kLongestFrame = 256;
 
-// CRC by table, as appendix B of the standard has it.
+// CRC by table, as in appendix B of the standard.
 constexpr std::array<std::uint16_t, 256> kLineTable = [] {
   std::array<std::uint16_t, 256> table{};
   for (unsigned i = 0; i < 256; ++i) {
@@ -21,7 +21,7 @@ constexpr std::array<std::uint16_t, 256> kLineTable = [] {
   return table;
 }();
 
-/// Length of the request that begins here; 0: not known yet; -1: only its end tells.
+/// Length of the request at the start; 0 = not known yet; -1 = unknown until it ends.
 int request_length(LineBytes bytes) {
   if (bytes.size() < 2) return 0;
   const int function = bytes[1];
@@ -42,7 +42,7 @@ FaultKind some_damage(std::uint64_t random) {
   return kDamages[random % std::size(kDamages)];
 }
 
-/// The answer as the line carries it, with what is wrong with it.
+/// The answer as the line carries it, with its fault.
 std::vector<LinePiece> on_line(std::vector<std::uint8_t> frame, Time due, const Disturbance& disturbance) {
   std::optional<FaultKind> damage = disturbance.on_line;
   double value = disturbance.on_line_value;
@@ -108,7 +108,7 @@ std::vector<LinePiece> ModbusRtuSession::receive(Time now, LineBytes bytes, Modb
       break;
     }
     const LineBytes frame = LineBytes(pending_).first(size);
-    if (line_checksum(frame) != 0) {  // nobody knows where the next begins: silence will tell
+    if (line_checksum(frame) != 0) {  // the start of the next frame is unknown: wait for silence
       if (length > 0) pending_.clear();
       break;
     }

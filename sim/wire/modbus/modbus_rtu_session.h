@@ -1,5 +1,5 @@
 #pragma once
-/// All units on one RS-485 line, as a master hears them. Pure: bytes come in, answers come out, each when it is due.
+/// All units on one RS-485 line, as a master sees them. Pure: bytes in, answers out, each with its due time.
 /// Source: MODBUS over Serial Line V1.02 and Application Protocol V1.1b3.
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace luxrig::sim {
 
-/// Bytes that a unit puts on the line at one go.
+/// Bytes that a unit sends in one go.
 struct LinePiece {
   Time due{};
   std::vector<std::uint8_t> bytes;
@@ -19,12 +19,12 @@ struct LinePiece {
 
 class ModbusRtuSession {
  public:
-  /// Takes what has arrived. A frame that is broken, for nobody or for everybody is not answered. What stands alone
-  /// for longer than kLongestPause is thrown away, as a unit does after 3.5 silent characters.
+  /// Takes received bytes. Does not answer a frame that is broken, a broadcast, or for an unknown unit. Discards a
+  /// partial frame after a pause longer than kLongestPause, as a unit does after 3.5 silent characters.
   std::vector<LinePiece> receive(Time now, std::span<const std::uint8_t> bytes, ModbusUnits& units);
   void forget() { pending_.clear(); }
 
-  /// Far above the standard's 3.5 characters: a pseudo terminal hands bytes on when the machine has time.
+  /// Far above the standard's 3.5 characters: a pseudo terminal may delay bytes on a busy machine.
   static constexpr Duration kLongestPause = std::chrono::milliseconds(40);
 
  private:

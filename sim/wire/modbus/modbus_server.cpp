@@ -12,7 +12,7 @@ namespace luxrig::sim {
 namespace {
 
 constexpr std::size_t kMostConnections = 16;
-constexpr std::size_t kMostWaiting = 64;  // answers a peer may leave unread or asked for in advance
+constexpr std::size_t kMostWaiting = 64;  // answers not read by a peer, or requested in advance
 constexpr std::size_t kMostUnsentBytes = 65536;
 
 }  // namespace
@@ -29,7 +29,7 @@ Result<std::unique_ptr<ModbusServer>> ModbusServer::open(int port, ModbusUnits& 
 void ModbusServer::set_open(bool open) {
   if (open == listener_.descriptor.open()) return;
   if (open) {
-    // Taken meanwhile by somebody else: stays closed, tried again with the next call.
+    // The port was taken in the meantime: it stays closed until the next call tries again.
     if (auto listener = listen_tcp(port_)) listener_ = std::move(*listener);
     return;
   }
@@ -42,7 +42,7 @@ void ModbusServer::serve(Time now) {
     Descriptor socket(::accept4(listener_.descriptor.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
     if (!socket.open()) break;
     if (connections_.size() >= kMostConnections) continue;
-    const int at_once = 1;  // a second answer shall not wait for the first's acknowledgement
+    const int at_once = 1;  // a second answer must not wait for the acknowledgement of the first
     ::setsockopt(socket.get(), IPPROTO_TCP, TCP_NODELAY, &at_once, sizeof at_once);
     connections_.emplace_back().socket = std::move(socket);
   }
@@ -60,7 +60,7 @@ bool ModbusServer::serve(Connection& connection, Time now) {
       return false;
     }
     for (ModbusReply& reply : connection.session.receive({buffer.data(), static_cast<std::size_t>(received)}, units_)) {
-      // One line, one order: an answer never overtakes an earlier one.
+      // One connection, one order: an answer never overtakes an earlier one.
       Time due = now + reply.delay;
       if (!connection.waiting.empty()) due = std::max(due, connection.waiting.back().due);
       connection.waiting.push_back({due, std::move(reply.bytes)});

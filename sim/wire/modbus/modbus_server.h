@@ -1,5 +1,5 @@
 #pragma once
-/// Modbus TCP on a loopback port: connections, and answers that leave when they are due. Never blocks.
+/// Modbus TCP on a loopback port: connections, and answers sent when they are due. Never blocks.
 
 #include <deque>
 #include <list>
@@ -17,7 +17,7 @@ class ModbusServer {
   static Result<std::unique_ptr<ModbusServer>> open(int port, ModbusUnits& units);
 
   [[nodiscard]] int port() const { return port_; }
-  /// Closed: connections are dropped and new ones refused. Opened again on the same port.
+  /// Closed: drops connections and refuses new ones. Reopens on the same port.
   void set_open(bool open);
   /// Accepts, reads, answers.
   void serve(Time now);

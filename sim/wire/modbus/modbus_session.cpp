@@ -162,7 +162,7 @@ std::vector<ModbusReply> ModbusSession::receive(Bytes bytes, ModbusUnits& units)
 
     std::vector<std::uint8_t> pdu;
     Disturbance disturbance;
-    if (!units.has(unit)) {  // a gateway says that nobody is there
+    if (!units.has(unit)) {  // a gateway reports a missing unit
       pdu = refusal(request[0], ModbusException::gateway_no_response);
     } else {
       disturbance = units.disturbance(unit);
@@ -182,7 +182,7 @@ std::vector<ModbusReply> ModbusSession::receive(Bytes bytes, ModbusUnits& units)
 }
 
 std::vector<std::uint8_t> garbled_reply(std::vector<std::uint8_t> reply, std::uint64_t random) {
-  const auto change = static_cast<std::uint8_t>(1 + (random >> 8) % 255);  // never 0: a byte xored with it differs
+  const auto change = static_cast<std::uint8_t>(1 + (random >> 8) % 255);  // never 0, so an xored byte differs
   switch (random % 6) {
     case 0:
       reply[1] ^= change;  // transaction
@@ -194,13 +194,13 @@ std::vector<std::uint8_t> garbled_reply(std::vector<std::uint8_t> reply, std::ui
       reply[kHeader] ^= static_cast<std::uint8_t>(change & 0x7f ? change & 0x7f : 1);  // function, not an exception
       break;
     case 3:
-      // Byte count of a read; of a write's echo the address, of an exception the code.
+      // Byte count of a read, address of a write's echo, or code of an exception.
       reply[kHeader + 1] ^= change;
       break;
     case 4:
-      reply.resize(kHeader + (random >> 16) % (reply.size() - kHeader));  // cut short
+      reply.resize(kHeader + (random >> 16) % (reply.size() - kHeader));  // truncated
       break;
-    default: {  // more than was asked for
+    default: {  // too long
       const std::size_t extra = 1 + (random >> 16) % 16;
       reply.insert(reply.end(), extra, static_cast<std::uint8_t>(random >> 24));
       reply[5] = static_cast<std::uint8_t>(std::min<std::size_t>(reply.size() - 6, 255));

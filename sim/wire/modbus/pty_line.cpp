@@ -31,7 +31,7 @@ Result<std::unique_ptr<PtyLine>> PtyLine::open(const std::string& path) {
     line->path_ = folder + "/port";
   } else if (const std::string folder = std::filesystem::path(path).parent_path().string();
              !folder.empty() && ::mkdir(folder.c_str(), 0700) == 0) {
-    line->folder_ = folder;  // where a simulator before this one had its own
+    line->folder_ = folder;  // an earlier simulator had made it for its own line
   }
   if (auto plugged = line->plug_in(); !plugged) return tl::unexpected(plugged.error());
   return line;
@@ -68,7 +68,7 @@ Result<void> PtyLine::plug_in() {
 void PtyLine::set_open(bool open) {
   if (open == master_.open()) return;
   if (open) {
-    (void)plug_in();  // when it cannot be had it stays out, and is tried again with the next call
+    (void)plug_in();  // if it fails it stays unplugged, and the next call tries again
     return;
   }
   ::unlink(path_.c_str());

@@ -1,6 +1,6 @@
 #pragma once
-/// A serial line without hardware: a pseudo terminal, whose other end a program opens as its serial port. The path
-/// stays when the adapter is pulled out and plugged in again, as names in /dev/serial/by-id do.
+/// A serial line without hardware: a pseudo terminal whose other end a program opens as its serial port. The path stays
+/// the same when the adapter is unplugged and plugged in again, like names in /dev/serial/by-id.
 
 #include <cstdint>
 #include <memory>
@@ -15,20 +15,19 @@ namespace luxrig::sim {
 
 class PtyLine {
  public:
-  /// `path` empty: in a new folder of its own. A link that stands there already is replaced; another file is not. A
-  /// missing folder is made.
+  /// `path` empty: in a new folder of its own. Replaces an existing link, but no other file. Creates a missing folder.
   static Result<std::unique_ptr<PtyLine>> open(const std::string& path);
   ~PtyLine();
   PtyLine(const PtyLine&) = delete;
   PtyLine& operator=(const PtyLine&) = delete;
 
   [[nodiscard]] const std::string& path() const { return path_; }
-  /// Closed: the adapter is gone, who has it open is hung up on, and the path leads nowhere.
+  /// Closed: the adapter is unplugged, programs that have it open are hung up on, and the path is invalid.
   void set_open(bool open);
   [[nodiscard]] bool is_open() const { return master_.open(); }
-  /// What has arrived, perhaps nothing.
+  /// Bytes received; may be empty.
   [[nodiscard]] std::vector<std::uint8_t> take();
-  /// What finds no room, since nobody reads, is lost.
+  /// Bytes without room, as no program reads, are lost.
   void put(std::span<const std::uint8_t> bytes);
   [[nodiscard]] int descriptor() const { return master_.get(); }
 
@@ -37,9 +36,9 @@ class PtyLine {
   Result<void> plug_in();
 
   Descriptor master_;
-  Descriptor slave_;  ///< held, or reading would fail while nobody has the port open
+  Descriptor slave_;  ///< kept open, or reads would fail while no program has the port open
   std::string path_;
-  std::string folder_;  ///< made for it; empty: the path was given
+  std::string folder_;  ///< created for it; empty = the path was given
 };
 
 }  // namespace luxrig::sim

@@ -22,7 +22,7 @@ RegisterKind kind_of(RegisterTable table) {
   return RegisterKind::holding;
 }
 
-constexpr Duration kSlowClock = std::chrono::milliseconds(2);  // a gap that is nearly over counts as over
+constexpr Duration kSlowClock = std::chrono::milliseconds(2);  // a gap that is almost over counts as over
 
 }  // namespace
 
@@ -47,7 +47,7 @@ RigUnits::RigUnits(const EndpointParts& parts) : parts_(parts) {
   add_contact();
   for (auto& [id, unit] : units_) {
     if (!unit.map) continue;
-    std::vector<std::size_t> number_of;  // of each register of the map
+    std::vector<std::size_t> number_of;  // by register of the map
     for (const MappedRegister& reg : unit.map->registers) {
       const RegisterKind kind = kind_of(reg.table);
       const auto there = places_.find({id, kind, reg.address});
@@ -81,7 +81,7 @@ RigUnits::RigUnits(const EndpointParts& parts) : parts_(parts) {
   for (auto& [id, unit] : units_) power_on(unit);
 }
 
-/// The switch on a discrete input that asks for blackout, when the bus has one.
+/// Adds the bus's blackout contact, a switch on a discrete input, if it has one.
 void RigUnits::add_contact() {
   const Bus& bus = parts_.rig.buses[parts_.bus];
   const auto whole = [&](const char* key, std::int64_t otherwise) {
@@ -190,7 +190,7 @@ std::optional<ModbusException> RigUnits::read(int unit, RegisterKind kind, int f
     if (place == places_.end()) return ModbusException::illegal_address;
     Number& number = numbers_[place->second.number];
     if (!number.readable) return ModbusException::illegal_address;
-    // Both words of a meter are of one moment: the second is what the first was taken with.
+    // Both words of a meter belong to one moment: the second comes from the sample of the first.
     if (number.is == Number::Is::meter && (place->second.word == 0 || i == 0)) {
       number.words = registers_from(meter_count(number), number.format);
     }
@@ -260,7 +260,7 @@ Disturbance RigUnits::disturbance(int unit) {
   Unit& asked = found->second;
   Disturbance disturbance = parts_.faults.disturbance(asked.devices, exchanges_++);
   if (asked.map && asked.heard && now_ - asked.last_heard + kSlowClock < asked.map->shortest_gap) {
-    disturbance.silent = true;  // busy with the one before
+    disturbance.silent = true;  // busy with the request before
     return disturbance;
   }
   if (!disturbance.silent) {

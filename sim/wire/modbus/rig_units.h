@@ -1,10 +1,10 @@
 #pragma once
-/// The Modbus units of one bus of a rig: dimmer channels, luxmeters, and what else the register maps of their products
-/// say is there. Any other register is exception 2.
+/// The Modbus units of one bus of a rig: dimmer channels, luxmeters, and the other registers in their products'
+/// register maps. Any other register gives exception 2.
 ///
-/// A unit with a register map obeys its limits: requests it does not take are refused, one that comes before its gap
-/// is over is not heard, and its levels go dark when nobody speaks to it for as long as it says (with a watchdog, once
-/// every register of its set-up holds what the set-up writes).
+/// A unit with a register map has its limits. It refuses requests that the product does not accept, and ignores one
+/// that comes before its gap is over. Its levels go dark after the stated time without requests (with a watchdog, once
+/// every register of its set-up holds the set-up's value).
 
 #include <map>
 #include <memory>
@@ -21,17 +21,17 @@ class RigUnits final : public ModbusUnits {
  public:
   explicit RigUnits(const EndpointParts& parts);
 
-  /// Call it before requests are served: watchdogs run out, power goes and comes.
+  /// Call it before serving requests: handles watchdog timeouts and power changes.
   void advance(Time now);
 
   [[nodiscard]] bool has(int unit) const override { return units_.contains(unit); }
   std::optional<ModbusException> read(int unit, RegisterKind kind, int first, std::span<std::uint16_t> values) override;
   [[nodiscard]] bool has_bits(int unit) const override;
   std::optional<ModbusException> write_coils(int unit, int first, std::span<const std::uint16_t> bits) override;
-  /// Exception 3 for a value outside what its product takes; then nothing is written.
+  /// Exception 3 for a value that its product does not accept; then nothing is written.
   std::optional<ModbusException> write(int unit, int first, std::span<const std::uint16_t> values) override;
   [[nodiscard]] std::optional<ModbusException> refuses(int unit, int function, int count) const override;
-  /// Of the bus and of every device of that unit.
+  /// Faults of the bus and of every device of that unit.
   Disturbance disturbance(int unit) override;
 
  private:
@@ -41,16 +41,16 @@ class RigUnits final : public ModbusUnits {
     int number;
     auto operator<=>(const Address&) const = default;
   };
-  /// One or two registers that are one number.
+  /// One or two registers that form one number.
   struct Number {
     enum class Is { dimmer, meter, failure, contact, other } is = Is::other;
     std::size_t index = 0;  ///< fixture or luxmeter of the rig
     RegisterFormat format;
     double least = 0, most = 65535;
     bool readable = true, writable = true;
-    std::vector<std::uint16_t> words{};  ///< as they stand in its registers
+    std::vector<std::uint16_t> words{};  ///< present content of its registers
     double power_on = 0;
-    std::vector<std::string> about{};  ///< of a failure bit: fixtures
+    std::vector<std::string> about{};  ///< fixtures of a failure bit
   };
   struct Place {
     std::size_t number = 0;  ///< in numbers_
@@ -78,7 +78,7 @@ class RigUnits final : public ModbusUnits {
   [[nodiscard]] double meter_count(const Number& number);
 
   EndpointParts parts_;
-  bool closed_when_pressed_ = false;  ///< of the blackout contact
+  bool closed_when_pressed_ = false;  ///< state of the blackout contact
   LampFaults lamp_faults_;
   std::vector<Number> numbers_;
   std::map<Address, Place> places_;

@@ -10,7 +10,7 @@ namespace {
 
 using Bytes = std::span<const std::uint8_t>;
 
-// Nobody needs more than this many sources or universes at once; a flood of forged ones must not eat the memory.
+// Bounds memory against a flood of forged sources or universes.
 constexpr std::size_t kMostSacnSources = 16;
 constexpr std::size_t kMostUniverses = 256;
 
@@ -35,7 +35,7 @@ std::array<std::uint8_t, size> copied(Bytes packet, std::size_t offset) {
   return bytes;
 }
 
-// §6.7.2: out of order when the distance to the last number is in (-20, 0].
+// §6.7.2: out of order if the distance to the last number is in (-20, 0].
 bool sacn_out_of_order(std::uint8_t sequence, std::uint8_t last) {
   const auto distance = static_cast<std::int8_t>(sequence - last);
   return distance <= 0 && distance > -20;
@@ -44,7 +44,7 @@ bool sacn_out_of_order(std::uint8_t sequence, std::uint8_t last) {
 }  // namespace
 
 std::optional<SacnData> decode_sacn_data(Bytes packet) {
-  constexpr std::size_t kDataHeader = 126;  // up to and with the start code
+  constexpr std::size_t kDataHeader = 126;  // including the start code
   if (packet.size() < kDataHeader || packet.size() > kDataHeader + kDmxSlots) return std::nullopt;
   if (!root_layer_fits(packet, 0x00000004)) return std::nullopt;  // VECTOR_ROOT_E131_DATA
   // Framing layer, §6.2: VECTOR_E131_DATA_PACKET.
@@ -102,7 +102,7 @@ SacnReceiver::Verdict SacnReceiver::receive(Time now, Bytes packet) {
   if (universes_.size() >= kMostUniverses && !universes_.contains(data->universe)) return Verdict::ignored;
 
   Universe& universe = universes_[data->universe];
-  forget_lost(universe, now);  // so that a source that returns is new, and its numbers start afresh (§6.7.1)
+  forget_lost(universe, now);  // so a returning source is new, with new sequence numbers (§6.7.1)
   const auto known = universe.sources.find(data->cid);
   if (known != universe.sources.end() && sacn_out_of_order(data->sequence, known->second.sequence)) {
     return Verdict::out_of_order;
@@ -120,14 +120,14 @@ SacnReceiver::Verdict SacnReceiver::receive(Time now, Bytes packet) {
   source.priority = data->priority;
   source.sync_universe = data->sync_universe;
   source.force_sync = data->force_sync;
-  // §6.2.4.1, §11: synchronised data waits for its packet. Before the first such packet is heard data acts at once;
-  // when they stop for 2.5 s, the force-sync bit says whether to go on without (1) or to freeze (0).
+  // §6.2.4.1, §11: synchronised data waits for its packet. Before the first such packet it acts at once. If these
+  // packets stop for 2.5 s, the force-sync bit decides: 1 = go on without, 0 = freeze.
   bool wait = false;
   if (data->sync_universe != 0) {
     const auto sync = last_sync_.find(data->sync_universe);
     wait = sync != last_sync_.end() && !(now - sync->second > kLossTimeout && data->force_sync);
   }
-  // A packet with fewer slots leaves the others as they were.
+  // A packet with fewer slots leaves the others unchanged.
   Levels& into = wait ? source.held : source.slots;
   if (wait && !source.waiting) source.held = source.slots;
   std::copy(data->slots.begin(), data->slots.end(), into.begin());
@@ -152,8 +152,8 @@ std::size_t SacnReceiver::sources(int universe, Time now) {
 }
 
 void SacnReceiver::forget_lost(Universe& universe, Time now) {
-  // Network data loss, §6.7.1. All sources are looked at in one go, so that several lost together never hand over to
-  // one another for an instant.
+  // Network data loss, §6.7.1. All sources are judged at once, so that sources lost together never hand over to one
+  // another.
   const auto gone =
       std::erase_if(universe.sources, [now](const auto& entry) { return now - entry.second.last_seen > kLossTimeout; });
   if (gone > 0) merge(universe);
@@ -164,7 +164,7 @@ void SacnReceiver::merge(Universe& universe) {
   for (const auto& [cid, source] : universe.sources) {
     if (source.live) highest = std::max(highest, source.priority);
   }
-  if (highest < 0) return;  // nobody left: the last look is held
+  if (highest < 0) return;  // without sources the last look is held
   Levels look{};
   for (const auto& [cid, source] : universe.sources) {
     if (!source.live || source.priority != highest) continue;

@@ -1,11 +1,11 @@
 #pragma once
-/// The receiving end of streaming ACN, as a DMX gateway has it. Pure: bytes and the time come in, levels come out.
+/// The receiving end of streaming ACN, like a DMX gateway. Pure: bytes and the time in, levels out.
 /// Source: ANSI E1.31-2018; clause numbers in the .cpp.
 ///
-/// Kept: sequence rule, preview, stream terminated, priority, merge of equal priorities (highest takes precedence, slot
-/// by slot), synchronisation with force-sync, network data loss after 2.5 s. When no source is left the last look is
-/// held, for ever: this is this gateway's declared choice.
-/// Left out: per-address priority (start code 0xDD; ignored) and the 1.5 s sampling period of a new receiver.
+/// Implemented: sequence rule, preview, stream terminated, priority, merge of equal priorities (highest takes
+/// precedence, slot by slot), synchronisation with force-sync, network data loss after 2.5 s. Without sources it holds
+/// the last look for ever: the declared choice of this gateway.
+/// Not implemented: per-address priority (start code 0xDD; ignored) and the 1.5 s sampling period of a new receiver.
 
 #include <array>
 #include <cstdint>
@@ -28,7 +28,7 @@ struct SacnData {
   bool preview = false, terminated = false, force_sync = false;
   int universe = 0;  ///< 1…63999
   std::uint8_t start_code = 0;
-  std::span<const std::uint8_t> slots;  ///< into the packet
+  std::span<const std::uint8_t> slots;  ///< view into the packet
 };
 
 struct SacnSync {
@@ -37,7 +37,7 @@ struct SacnSync {
   int sync_universe = 0;
 };
 
-/// Nothing when the bytes are not a good packet of that kind.
+/// Empty unless the bytes are a valid packet of that kind.
 [[nodiscard]] std::optional<SacnData> decode_sacn_data(std::span<const std::uint8_t> packet);
 [[nodiscard]] std::optional<SacnSync> decode_sacn_sync(std::span<const std::uint8_t> packet);
 
@@ -48,7 +48,7 @@ class SacnReceiver {
   enum class Verdict { accepted, not_sacn, preview, out_of_order, terminated, ignored };
   Verdict receive(Time now, std::span<const std::uint8_t> packet);
 
-  /// Levels of a universe now, address 1 first; nothing before its first data. Forgets sources that are lost.
+  /// Present levels of a universe, address 1 first; empty before its first data. Forgets lost sources.
   [[nodiscard]] std::optional<std::array<std::uint8_t, kDmxSlots>> levels(int universe, Time now);
   /// Sources present now.
   [[nodiscard]] std::size_t sources(int universe, Time now);
@@ -59,7 +59,7 @@ class SacnReceiver {
     Time last_seen{};
     std::uint8_t sequence = 0;
     int priority = 0;
-    bool live = false;  ///< `slots` holds something to show
+    bool live = false;  ///< `slots` holds levels to show
     Levels slots{};
     int sync_universe = 0;
     bool force_sync = false, waiting = false;

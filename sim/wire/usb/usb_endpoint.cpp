@@ -15,7 +15,7 @@
 namespace luxrig::sim {
 namespace {
 
-/// A widget behind a USB/IP server. The fault `dead` unplugs it; plugged in again it has forgotten everything.
+/// A widget behind a USB/IP server. The fault `dead` unplugs it; plugged in again, it has forgotten everything.
 class UsbEndpoint final : public BusEndpoint {
  public:
   UsbEndpoint(const EndpointParts& parts, std::unique_ptr<UsbDevice> device, BoundSocket listener)
@@ -24,7 +24,7 @@ class UsbEndpoint final : public BusEndpoint {
         fixtures_(parts.rig, parts.bus, parts.world, parts.faults),
         listener_(std::move(listener)),
         port_(listener_.port) {
-    // One widget is one line, whatever the number of its universe.
+    // A widget has one line, whatever its universe number.
     device_->connect([this](Time now, std::span<const std::uint8_t> packet) {
       auto& lines = fixtures_.lines();
       return lines.empty() ? std::vector<std::uint8_t>{} : lines.begin()->second.exchange(now, packet).bytes;
@@ -75,7 +75,7 @@ class UsbEndpoint final : public BusEndpoint {
       if (!client.open()) return;
       const int yes = 1;
       ::setsockopt(client.get(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
-      hang_up();  // one host at a time: the newest counts
+      hang_up();  // one host at a time: the newest wins
       client_ = std::move(client);
       session_.emplace(*device_, UsbipSession::Beginning::handshake, [this] {
         return parts_.faults.disturbance({&parts_.rig.buses[parts_.bus].name, 1}, transfers_++);

@@ -14,7 +14,7 @@ constexpr std::size_t kOpHeader = 8, kBusIdField = 32, kPathField = 256, kUrbHea
 constexpr std::uint32_t kCmdSubmit = 1, kCmdUnlink = 2, kRetSubmit = 3, kRetUnlink = 4;
 constexpr std::string_view kBusId = "1-1", kPath = "/sys/devices/luxrig-sim/usb1/1-1";
 constexpr std::uint32_t kBusNumber = 1, kDeviceNumber = 2, kLowSpeed = 1, kFullSpeed = 2;
-// As errno has them on Linux, which the protocol is of.
+// As in errno on Linux, where the protocol comes from.
 constexpr std::int32_t kBrokenPipe = -32, kConnectionReset = -104;
 constexpr std::size_t kMostUrbBytes = 4096, kMostUrbs = 64, kMostSaidBytes = 1 << 20;
 
@@ -70,7 +70,7 @@ bool UsbipSession::take_operation() {
     append_32(said_, 0);
     append_32(said_, 1);  // devices
     put_device(said_);
-    said_.insert(said_.end(), {0xff, 0xff, 0xff, 0});  // its interface: vendor's class
+    said_.insert(said_.end(), {0xff, 0xff, 0xff, 0});  // its interface: vendor class
   } else {
     std::string wanted(heard_.begin() + kOpHeader, heard_.begin() + kOpHeader + kBusIdField);
     wanted.resize(std::min(wanted.find('\0'), wanted.size()));
@@ -144,7 +144,7 @@ void UsbipSession::begin(Time now, Urb& urb) {
   }
   if (reply.kind == UsbReply::Kind::wait) return;
   reply.data.resize(std::min(reply.data.size(), urb.length));
-  // The first two bytes of what these devices say are the chip's own status.
+  // The first two bytes of these devices' data are the chip's own status.
   if (wrong.garbled && reply.data.size() > 2) reply.data[2 + wrong.random % (reply.data.size() - 2)] ^= 0xff;
   ++begun_;
   urb.due = now + reply.takes + wrong.delay;

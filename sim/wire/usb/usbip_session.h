@@ -1,9 +1,9 @@
 #pragma once
-/// A USB/IP server with one device. Pure: bytes and the time come in, bytes go out.
+/// A USB/IP server with one device. Pure: bytes and the time in, bytes out.
 /// Source: Linux, Documentation/usb/usbip_protocol.rst (version 1.1.1).
 ///
-/// Kept: device list, import, submit and unlink of control and bulk transfers. Transfers of one endpoint are done one
-/// after the other, each for as long as the device takes. What breaks the protocol breaks the session.
+/// Implemented: device list, import, submit and unlink of control and bulk transfers. Transfers of one endpoint are
+/// done one after another, each for the time the device takes. A protocol error ends the session.
 /// It serves luxrig-sim's buses, `usbip attach`, and vhci_hcd in a guest.
 
 #include <deque>
@@ -17,19 +17,22 @@ namespace luxrig::sim {
 
 class UsbipSession {
  public:
-  /// attached: the other side is vhci_hcd, which begins with transfers.
+  /// attached: the peer is vhci_hcd, which starts with transfers.
   enum class Beginning { handshake, attached };
-  /// `fault`: what is wrong with a transfer that begins; asked once for each. silent: it hangs until it is unlinked.
-  /// delay: it takes longer. exception: it stalls. garbled: control stalls, a byte of what goes in is wrong.
+  /// `fault`: called once at the start of each transfer; returns its fault:
+  ///   silent     it hangs until it is unlinked
+  ///   delay      it takes longer
+  ///   exception  it stalls
+  ///   garbled    a control transfer stalls; an IN transfer has a wrong byte
   using FaultOf = std::function<Disturbance()>;
   /// The device outlives it.
   UsbipSession(UsbDevice& device, Beginning beginning, FaultOf fault = {});
 
   void receive(Time now, std::span<const std::uint8_t> bytes);
-  /// Begins and ends what is due.
+  /// Begins and ends transfers that are due.
   void serve(Time now);
   [[nodiscard]] std::vector<std::uint8_t> take_output();
-  /// The other side has broken the protocol, or asks for more than fits: hang up.
+  /// The peer broke the protocol or asked for more than fits: hang up.
   [[nodiscard]] bool is_broken() const { return broken_; }
   [[nodiscard]] std::uint64_t begun() const { return begun_; }  ///< transfers that reached the device
 
