@@ -15,7 +15,7 @@ class Aisles {
  public:
   Aisles(int fixtures, int points) : fixtures_(fixtures), points_(points) {
     walls_ = std::max(1, (points + kWorksPerWall - 1) / kWorksPerWall);
-    walls_ += walls_ % 2;  // an aisle has two
+    walls_ += walls_ % 2;  // an aisle has two walls
     length_m_ = kWorksPerWall * kBetweenWorks_m + 4;
   }
 
@@ -62,7 +62,7 @@ class Aisles {
       box(fmt::format("partition {}", k), x, kAisle_m * k, 0, kWorksPerWall * kBetweenWorks_m, 0.2, 3.4, 0.7);
   }
 
-  /// Where a work hangs, and which way its wall faces (along y).
+  /// Place of a work, and the direction that its wall faces (along y).
   struct Place {
     double x, y, faces;
   };
@@ -90,7 +90,8 @@ class Aisles {
   }
 
   void spots() {
-    // As many to each work as there are, and the rest one by one to the first; those of a work hang side by side.
+    // The same number of spots for each work; the first works get one more each until all are used. The spots of a work
+    // hang side by side.
     int made = 0;
     for (int i = 0; i < points_; ++i) {
       const int of_this = fixtures_ / points_ + (i < fixtures_ % points_ ? 1 : 0);

@@ -12,7 +12,7 @@ namespace luxrig {
 namespace {
 
 constexpr double kWidth_px = 900, kHeight_px = 560, kLeft_px = 80, kRight_px = 260, kTop_px = 50, kBottom_px = 60;
-constexpr double kLeast = 1e-16;  ///< of an error that is drawn
+constexpr double kLeast = 1e-16;  ///< smallest error that is drawn
 
 /// A logarithmic axis that covers whole decades.
 struct Axis {
@@ -44,13 +44,13 @@ void line(cairo_t* pen, double x0, double y0, double x1, double y1) {
 std::string write_plot(const std::vector<BenchRow>& rows, const std::string& title, const std::filesystem::path& file) {
   if (std::all_of(rows.begin(), rows.end(), [](const BenchRow& row) { return std::isnan(row.error); }))
     return "nothing to draw";
-  // Logarithms need something above zero: exact results are drawn at 1e-16.
+  // Logarithms need positive values: exact results are drawn at 1e-16.
   const auto error_of = [](const BenchRow& row) { return std::clamp(row.error, kLeast, 1e16); };
   const auto seconds_of = [](const BenchRow& row) { return std::max(row.seconds, 1e-6); };
   Axis x{kLeft_px, kWidth_px - kRight_px}, y{kHeight_px - kBottom_px, kTop_px};
   double least_s = 1e9, most_s = 1e-9, least = 1e9, most = 1e-16;
   std::map<std::string, std::vector<const BenchRow*>> lines;
-  bool one_case = true;  // is then in the title
+  bool one_case = true;  // then it is in the title
   for (const BenchRow& row : rows) {
     if (std::isnan(row.error)) continue;
     least_s = std::min(least_s, seconds_of(row));
@@ -100,7 +100,7 @@ std::string write_plot(const std::vector<BenchRow>& rows, const std::string& tit
     for (const BenchRow* row : points) cairo_line_to(pen, x.at(seconds_of(*row)), y.at(error_of(*row)));
     cairo_stroke(pen);
     for (const BenchRow* row : points) {
-      // Next to each other where many lines have a point at the same time.
+      // Side by side, where many lines have a point at the same time.
       const double at_px = x.at(seconds_of(*row)) + (row->quartiles ? 2.5 * static_cast<double>(index % 6) - 6 : 0);
       if (row->quartiles)
         line(pen, at_px, y.at(std::max(row->quartiles->first, kLeast)), at_px,

@@ -1,5 +1,5 @@
 #pragma once
-/// The evaluators under measurement, and one evaluation with its clock.
+/// The evaluators to measure, and one timed evaluation.
 
 #include <functional>
 #include <memory>
@@ -17,35 +17,35 @@ struct Method {
   const char* name;
   std::unique_ptr<Evaluator> (*make)(const RayScene&);
   bool reflects;            ///< claims interreflection, not only direct light
-  double reflected_target;  ///< relative error its reflected light may have in `bench analytic`
+  double reflected_target;  ///< relative error allowed for its reflected light in `bench analytic`
 };
 
 /// Each with its line in methods.cpp.
 [[nodiscard]] std::span<const Method> methods();
 
-/// What a call took, by the wall and by the processors: on a machine with other work only the second means much.
+/// Time of a call, by the wall and by the processors. On a machine with other work only processor time is meaningful.
 struct CallSeconds {
   double wall = 0;
   double cpu = 0;  ///< of all threads of the process
 };
 [[nodiscard]] CallSeconds timed(const std::function<void()>& call);
 
-/// Middle of three, upper middle of an even number; NaN of none.
+/// Middle of three, upper middle of an even number; NaN if empty.
 [[nodiscard]] double median_of(std::vector<double> values);
-/// Of wall and processor time each by itself.
+/// The median of wall time and that of processor time, separately.
 [[nodiscard]] CallSeconds median_of(std::span<const CallSeconds> calls);
 
 struct Measured {
   TransportMatrix matrix;
-  double seconds = 0;      ///< making the evaluator and evaluating; the RayScene was there before
-  double cpu_seconds = 0;  ///< the same in processor time; 0 when not measured
-  std::string refused;     ///< what the evaluator said when it did not take the case
+  double seconds = 0;      ///< making the evaluator and evaluating; without making the RayScene
+  double cpu_seconds = 0;  ///< the same in processor time; 0 if not measured
+  std::string refused;     ///< the evaluator's reason, if it refused the case
 };
 
 [[nodiscard]] Measured measure(const Method& method, const RayScene& rays, std::span<const Receiver> receivers,
                                std::span<const Emitter> emitters, const EvaluateOptions& options);
 
-/// A row with the columns that all suites of evaluators have. A refused case has no error (NaN), and so no target.
+/// A row with the columns of all suites of evaluators. A refused case has no error (NaN) and so no target.
 [[nodiscard]] BenchRow row_of(const std::string& case_name, const std::string& method, double error,
                               const Measured& run, std::optional<double> wanted_error,
                               std::optional<double> target_error);

@@ -1,8 +1,8 @@
-/// A room as Radiance's input: surfaces, lamps and measuring points, and our own answer's units.
+/// A room as input for Radiance: surfaces, lamps and measuring points, in units that give our own answer.
 ///
-/// Radiance counts watts per steradian and square metre by channel; its convention is 179 lm/W. Lamps shine white
-/// there, so that 179 times a channel of `rtrace -I` is the lux by that channel's reflectances; weighted as Rec. 709's
-/// luminance, the three are what evaluators here mean by lux.
+/// Radiance counts watts per steradian and square metre by channel; its convention is 179 lm/W. Lamps are white there.
+/// So 179 times a channel of `rtrace -I` is the lux by that channel's reflectances. The three, weighted as Rec. 709's
+/// luminance, are lux as the evaluators here define it.
 
 #include <fmt/format.h>
 
@@ -15,10 +15,10 @@ namespace luxrig {
 namespace {
 
 constexpr double kLumensPerWatt = 179;
-/// Lamps become small spheres (spots: rays from them, by a distribution over direction).
+/// Lamps become small spheres (Radiance spots: rays from them, with a distribution over direction).
 constexpr double kLampRadius_m = 0.005;
 
-/// Intensity by angle off the axis [cd], every degree, the mean round about; Radiance takes it as a data file.
+/// Intensity by angle off the axis [cd], every degree, averaged around the axis. Radiance reads it as a data file.
 std::string distribution(const Emitter& lamp) {
   std::string text = "1\n0 180 181\n";
   for (int deg = 0; deg <= 180; ++deg) {
@@ -64,7 +64,7 @@ std::string export_for_radiance(const LitRoom& room, const std::filesystem::path
     }
     rad += '\n';
   }
-  // Radiance looks a distribution up by a function of the ray's direction; it measures from the lamp's axis.
+  // Radiance looks up a distribution by a function of the ray's direction. This one measures from the lamp's axis.
   std::string trouble;
   for (std::size_t e = 0; e < room.emitters.size(); ++e) {
     const Emitter& lamp = room.emitters[e];
@@ -77,7 +77,7 @@ std::string export_for_radiance(const LitRoom& room, const std::filesystem::path
           written(folder / (name + ".cal"), fmt::format("off = 180/PI*Acos(-({:.12g}*Dx+{:.12g}*Dy+{:.12g}*Dz));\n"
                                                         "as_is(v) = v;\n",
                                                         axis.x(), axis.y(), axis.z()));
-    // cd to W/sr/m² of a small sphere: over its cross-section and 179.
+    // From cd to W/sr/m² of a small sphere: divided by its cross-section and by 179.
     const double scale = 1 / (kLumensPerWatt * kPi * kLampRadius_m * kLampRadius_m);
     rad += fmt::format("void brightdata shape{0} 4 as_is {1}.dat {1}.cal off 0 0\n", e, name);
     rad += fmt::format("shape{0} light glow{0} 0 0 3 {1:.9g} {1:.9g} {1:.9g}\n", e, scale);

@@ -52,7 +52,7 @@ void say_row_made(const BenchRow& row) {
     const std::string text = csv_of({row});
     const std::size_t header = text.find('\n') + 1;
     std::ofstream(at.csv_file, at.csv_begun ? std::ios::binary | std::ios::app : std::ios::binary)
-        << (at.csv_begun ? text.substr(header) : text);  // one that cannot be written is told of at the end
+        << (at.csv_begun ? text.substr(header) : text);  // a failed write is reported at the end
     at.csv_begun = true;
   }
   say_row_made(row.case_name, row.method);

@@ -1,5 +1,5 @@
 #pragma once
-/// Says on stderr what a suite has done so far, and keeps it, for suites take minutes and may be stopped.
+/// Reports a suite's progress on stderr and saves its rows, because suites take minutes and may be stopped.
 
 #include <filesystem>
 #include <string_view>
@@ -8,14 +8,14 @@
 
 namespace luxrig {
 
-/// Rows go to this file as they are made, until end_row_progress(); empty: to none. What is there is replaced by the
-/// first row.
+/// Rows go to this file as they are made, until end_row_progress(); empty = no file. The first row replaces the old
+/// content.
 void keep_rows_in(const std::filesystem::path& csv_file);
-/// To be called for every row that is made: on a terminal one line that is written over, else one every ten seconds.
+/// Call for every row: one line on a terminal, rewritten in place; elsewhere a line every ten seconds.
 void say_row_made(const BenchRow& row);
-/// Of work that gives no row by itself.
+/// The same for work that makes no row.
 void say_row_made(std::string_view case_name, std::string_view method);
-/// Before the table is printed: the line goes.
+/// Clears the line. Call before the table is printed.
 void end_row_progress();
 
 }  // namespace luxrig

@@ -1,5 +1,5 @@
 #pragma once
-/// A stop that comes by itself.
+/// A stop token that stops after a time.
 
 #include <chrono>
 #include <condition_variable>
@@ -12,7 +12,7 @@ namespace luxrig {
 
 class StopAfter {
  public:
-  /// none: never
+  /// none = never
   explicit StopAfter(std::optional<double> seconds) {
     if (!seconds) return;
     waiting_ = std::jthread([this, seconds = *seconds](const std::stop_token& ended) {
@@ -28,7 +28,7 @@ class StopAfter {
   std::stop_source source_;
   std::mutex mutex_;
   std::condition_variable_any never_;
-  std::jthread waiting_;  // last: it uses the others
+  std::jthread waiting_;  // last: it uses the other members
 };
 
 }  // namespace luxrig

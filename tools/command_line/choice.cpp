@@ -8,7 +8,7 @@
 namespace luxrig {
 namespace {
 
-/// As it stands in the name of an option's type, where CLI11 puts a validator's description.
+/// Prefix within an option's type name, where CLI11 puts a validator's description.
 constexpr std::string_view kOneOf = ":one of ";
 
 }  // namespace

@@ -12,19 +12,18 @@ namespace luxrig {
 /// "auto, direct or path".
 [[nodiscard]] std::string in_words(const std::vector<std::string>& words);
 
-/// A word that help does not tell of, and what whoever types it is told: "is refused, as …: use …".
+/// A word that help leaves out, and the answer to a person who types it: "is refused, as …: use …".
 struct RefusedWord {
   std::string word, told;
 };
 
-/// Takes these words only. Its description, which help and completion read, is "one of auto, direct or path".
+/// Accepts only these words. Its description, which help and completion read, is "one of auto, direct or path".
 [[nodiscard]] CLI::Validator one_of(std::vector<std::string> words, std::vector<RefusedWord> refused = {});
 
-/// The words of an option that takes some only; none for any other.
+/// The words that an option accepts; empty for an option with free values.
 [[nodiscard]] std::vector<std::string> words_to_choose(const CLI::Option& option);
 
-/// Sets `value` (an enum, or an optional one) by a word. The word of the value that it has at this moment is the
-/// default.
+/// Sets `value` (an enum, or an optional one) by a word. The default is the word of its present value.
 template <class Value, class Choice>
 CLI::Option* add_choice(CLI::App& app, const std::string& names, Value& value, const std::string& description,
                         const std::vector<std::pair<std::string, Choice>>& choices,

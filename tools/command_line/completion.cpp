@@ -49,7 +49,7 @@ Offer options_offered(const CLI::App& command) {
   return offer;
 }
 
-/// The option that the positional word after `before` others is for.
+/// The option of the positional word that follows `before` others.
 CLI::Option* positional_after(CLI::App& command, int before) {
   for (CLI::Option* option : command.get_options()) {
     if (!option->get_positional()) continue;
@@ -59,17 +59,17 @@ CLI::Option* positional_after(CLI::App& command, int before) {
   return nullptr;
 }
 
-/// Where the words before the one being typed have led.
+/// State after the words before the one being typed.
 struct Reached {
   CLI::App* command;
-  int places = 0;                  ///< positional words of it so far
+  int places = 0;                  ///< positional words of this command so far
   CLI::Option* waiting = nullptr;  ///< option whose values follow
   int values_left = 0;
   bool only_places = false;  ///< after "--"
 
   void step(const std::string& word) {
     if (values_left > 0) {
-      // bash takes "--name=value" apart.
+      // bash splits "--name=value".
       if (word != "=" && --values_left == 0) waiting = nullptr;
     } else if (word == "--") {
       only_places = true;

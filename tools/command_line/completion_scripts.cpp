@@ -1,4 +1,4 @@
-// What each shell needs to ask the program: the same few lines, in its own language.
+// The script with which each shell asks the program: the same few lines, in its own language.
 #include <algorithm>
 #include <string_view>
 

@@ -52,7 +52,7 @@ class InWords : public CLI::Formatter {
   }
 };
 
-/// A number as short as it is exact enough for a person.
+/// A number as short as it can be and still exact enough for a person.
 std::string number_text(const std::string& text) {
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);

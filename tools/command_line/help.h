@@ -6,9 +6,10 @@
 
 namespace luxrig {
 
-/// What an option takes, in words: "1 to 64", "above 0", "one of auto or path"; empty when anything of its kind.
+/// Values of an option, in words: "1 to 64", "above 0", "one of auto or path"; empty if any value of its kind is
+/// accepted.
 [[nodiscard]] std::string values_in_words(const CLI::Option& option);
-/// Its description, what it takes, its default.
+/// Its description, its values, its default.
 [[nodiscard]] std::string option_in_words(const CLI::Option& option);
 /// "-o, --output FILE", "--json", "RIG".
 [[nodiscard]] std::string option_names(const CLI::Option& option);

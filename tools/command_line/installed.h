@@ -1,5 +1,5 @@
 #pragma once
-/// Where what came with the programs lies: beside them, in `share/luxrig`, in a build as well as installed.
+/// Files that came with the programs: in `share/luxrig` beside them, in a build as well as installed.
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
@@ -8,7 +8,7 @@
 
 namespace luxrig {
 
-/// "<prefix>/share/luxrig" of a program in "<prefix>/bin".
+/// "<prefix>/share/luxrig" for a program in "<prefix>/bin".
 [[nodiscard]] std::filesystem::path shared_folder();
 
 /// Names of the rigs that came with the program, sorted.

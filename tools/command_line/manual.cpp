@@ -14,7 +14,7 @@ std::vector<const CLI::App*> commands_in(const CLI::App& app) {
   return app.get_subcommands([](const CLI::App*) { return true; });
 }
 
-/// Text as man(7) takes it.
+/// Text escaped for man(7).
 std::string roff(const std::string& text) {
   std::string out;
   for (const char c : text) {
@@ -61,7 +61,7 @@ std::string heading(const std::string& name, const std::string& summary) {
                      roff(name), roff(summary));
 }
 
-/// What stands at the end of every page.
+/// The end of every page.
 std::string ending(const CLI::App& app) {
   std::string page;
   if (!app.get_footer().empty()) page += ".SH MORE\n.nf\n" + roff(app.get_footer()) + "\n.fi\n";
@@ -70,7 +70,7 @@ std::string ending(const CLI::App& app) {
          "has moved\n";
 }
 
-/// words: what is typed before the options: "luxrig check".
+/// words: the words before the options: "luxrig check".
 std::string page_of_one(const CLI::App& app, const std::string& name, const std::string& words) {
   std::string page = heading(name, app.get_description());
   const auto commands = commands_in(app);

@@ -1,5 +1,5 @@
 #pragma once
-/// Man pages, from what a program declares of its options.
+/// Man pages, from the options that a program declares.
 
 #include <CLI/CLI.hpp>
 #include <string>
@@ -11,7 +11,7 @@ struct ManPage {
   std::string name;  ///< "luxrig-check"; the file is name + ".1"
   std::string text;  ///< section 1, in man(7)
 };
-/// The program's, then one for each of its commands.
+/// The program's page, then one for each of its commands.
 [[nodiscard]] std::vector<ManPage> man_pages(const CLI::App& app);
 
 }  // namespace luxrig

@@ -21,7 +21,7 @@ std::vector<const CLI::App*> commands_of(const CLI::App& app) {
   return app.get_subcommands([](const CLI::App*) { return true; });
 }
 
-/// Of the command itself.
+/// Options of the command itself, without its subcommands.
 std::vector<std::string> options_of(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::Option* option : app.get_options()) {
@@ -48,7 +48,7 @@ const CLI::App& command_meant(const CLI::App& app, std::span<const std::string> 
   return app;
 }
 
-/// Writes each page to its file in the folder, which is there.
+/// Writes each page to its file in the folder, which exists.
 int write_man_pages(const CLI::App& app, const std::filesystem::path& folder) {
   for (const ManPage& page : man_pages(app)) {
     const auto file = folder / (page.name + ".1");
@@ -63,7 +63,7 @@ int write_man_pages(const CLI::App& app, const std::filesystem::path& folder) {
   return 0;
 }
 
-/// What no person asks, so that no help tells of it: the shell that completes a line, and the build of what is installed.
+/// Options for other programs, which help leaves out: the shell that completes a line, and the build of the man pages.
 std::optional<int> answer_a_tool(CLI::App& app, std::span<const std::string> words) {
   if (words.empty()) return std::nullopt;
   if (words[0] == "--complete") {

@@ -31,14 +31,14 @@ std::optional<HttpAnswer> exchange(const typename Protocol::endpoint& endpoint,
   http::response_parser<http::string_body> parser;
   parser.body_limit(kMaxAnswerBytes);
   boost::system::error_code failed = asio::error::would_block;
-  // Only asynchronous steps have a deadline.
+  // Only asynchronous calls have a deadline.
   stream.expires_after(kConnect);
   stream.async_connect(endpoint, [&](boost::system::error_code error) {
     failed = error;
     if (error) return;
     stream.expires_after(std::chrono::seconds(wait_s));
     http::async_write(stream, request, [&](boost::system::error_code, std::size_t) {
-      // Whoever refuses may have closed before all was written, and its answer says why.
+      // A server that refuses may close before everything is written. Its answer says why.
       http::async_read(stream, buffer, parser, [&](boost::system::error_code read, std::size_t) { failed = read; });
     });
   });

@@ -11,18 +11,18 @@ struct HttpAnswer {
   std::string body;
 };
 
-/// Where a program answers: by a Unix socket when one is named, else by the port.
+/// Address of a program: a Unix socket if one is named, else the port.
 struct HttpPeer {
   std::string host = "127.0.0.1";
   int port = 0;
   std::string socket{};
-  std::string token{};  ///< sent when it is not empty
+  std::string token{};  ///< sent unless empty
 };
 
-/// Somebody listens at that Unix socket.
+/// A program listens on that Unix socket.
 [[nodiscard]] bool http_listens(const std::string& socket);
 
-/// Nothing when nobody answers within 2 s (connecting) or `wait_s` (the answer).
+/// Nothing without an answer within 2 s (connecting) or `wait_s` (the answer).
 [[nodiscard]] std::optional<HttpAnswer> http_get(const HttpPeer& peer, const std::string& route, int wait_s = 5);
 [[nodiscard]] std::optional<HttpAnswer> http_post_json(const HttpPeer& peer, const std::string& route,
                                                        const std::string& body, int wait_s = 5);

@@ -7,7 +7,7 @@ namespace {
 
 constexpr int kMaxDepth = 16;
 
-/// Brackets that are open at once, outside of texts; of JSON that is none, about so many.
+/// Open brackets at once, outside strings; approximate for text that is not JSON.
 int depth_of(const std::string& text) {
   int depth = 0, deepest = 0;
   bool in_text = false;

@@ -95,7 +95,7 @@ HttpResponse http_refusal(int status, const std::string& what) {
 HttpResponse static_file(const std::string& folder, std::string_view path) {
   const HttpResponse none = http_refusal(404, "there is no such page");
   const std::string inside(path == "/" ? "/index.html" : path);
-  // Names of files of a built page need no other letters; so nothing leads out of the folder.
+  // File names of a built page need no other letters. So no path leads out of the folder.
   const bool plain = std::all_of(inside.begin(), inside.end(), [](unsigned char c) {
     return std::isalnum(c) != 0 || c == '/' || c == '.' || c == '-' || c == '_';
   });
@@ -121,7 +121,7 @@ std::optional<HttpResponse> foreign_request(const HttpRequest& request, bool has
   for (const auto& [name, value] : request.headers) {
     if (name == "origin" && small_letters(value) != "http://" + hosts[0])
       return http_refusal(403, "refused from another origin");
-    // Another port of loopback is the same site, and yet somebody else.
+    // Another port of loopback is the same site, but another program.
     if (name == "sec-fetch-site" && value != "same-origin" && value != "none")
       return http_refusal(403, "refused from another site: type the address, or open it from the terminal");
   }

@@ -1,5 +1,5 @@
 #pragma once
-/// What is asked and answered over HTTP, as plain values.
+/// HTTP requests and answers, as plain values.
 
 #include <optional>
 #include <string>
@@ -12,14 +12,14 @@ namespace luxrig {
 using HttpHeaders = std::vector<std::pair<std::string, std::string>>;
 
 struct HttpRequest {
-  std::string method, path, query;  ///< path and query as they came, not decoded
-  HttpHeaders headers;              ///< names in small letters
+  std::string method, path, query;  ///< path and query as received, not decoded
+  HttpHeaders headers;              ///< names in lower case
   std::string body;
-  std::string credential;  ///< who asks, as HttpServerOptions::credential said; empty: nobody known
+  std::string credential;  ///< the sender, from HttpServerOptions::credential; empty = unknown
 
-  /// The first of that name (in small letters).
+  /// The first header of that name (in lower case).
   [[nodiscard]] std::optional<std::string_view> header(std::string_view name) const;
-  /// Of the query, decoded; nothing when there is none, or when it is not validly encoded.
+  /// A query parameter, decoded; nothing if absent or not validly encoded.
   [[nodiscard]] std::optional<std::string> parameter(std::string_view name) const;
 };
 
@@ -33,12 +33,12 @@ struct HttpResponse {
 /// {"error": what}
 [[nodiscard]] HttpResponse http_refusal(int status, const std::string& what);
 
-/// A regular file below the folder by a request's path, "/" being index.html; 404 for anything else.
+/// A regular file below the folder by a request's path, with index.html for "/"; 404 for anything else.
 [[nodiscard]] HttpResponse static_file(const std::string& folder, std::string_view path);
 
-/// Why a request is refused whatever it asks for: a page of another site must not reach this program through the
-/// browser. Host has to be a name of loopback (DNS rebinding), Origin the very origin that was asked, Sec-Fetch-Site
-/// nobody else's, and a body JSON, which a browser sends to another origin only if that allows it.
+/// Why a request is refused, whatever its path: a page of another site must not reach this program through the browser.
+/// Host has to be a loopback name (against DNS rebinding), Origin the requested origin itself, Sec-Fetch-Site the same
+/// origin or none. A body has to be JSON: a browser sends that to another origin only with that origin's permission.
 [[nodiscard]] std::optional<HttpResponse> foreign_request(const HttpRequest& request, bool has_body);
 
 }  // namespace luxrig

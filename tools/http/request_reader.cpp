@@ -13,8 +13,8 @@ namespace {
 namespace http = boost::beast::http;
 constexpr std::size_t kMaxHeadBytes = 8192;
 constexpr std::size_t kMaxHeaders = 64;
-// The C library keeps what was freed for the next time, up to blocks of 32 MiB: a body that may be large gets a larger
-// one, of which only what is written takes memory, and which goes back.
+// The C library keeps freed blocks of up to 32 MiB for reuse. A body that may be large gets a larger block: only the
+// written part takes memory, and the block is returned to the system.
 constexpr std::size_t kKeptBytes = 1u << 20, kNeverKeptBytes = 33u << 20;
 constexpr std::size_t kLastChunkBytes = 5;  // "0\r\n\r\n"
 constexpr const char* kHeadTooLong = "the request line and headers are longer than 8 KiB";
@@ -24,13 +24,13 @@ constexpr const char* kBodyTooLong = "the body is too long";
 
 struct RequestReader::Parser {
   http::request_parser<http::string_body> beast;
-  std::string pending;  ///< what it could not use yet
+  std::string pending;  ///< not parsed yet
   std::size_t head_bytes = 0;
 };
 
 RequestReader::RequestReader() : parser_(std::make_unique<Parser>()) {
   parser_->beast.header_limit(kMaxHeadBytes);
-  parser_->beast.body_limit(std::numeric_limits<std::uint64_t>::max());  // accept_body() says it
+  parser_->beast.body_limit(std::numeric_limits<std::uint64_t>::max());  // accept_body() sets the limit
 }
 RequestReader::~RequestReader() = default;
 
@@ -52,7 +52,7 @@ void RequestReader::parse() {
   auto& pending = parser_->pending;
   std::size_t used = 0;
   while (used < pending.size() && !beast.is_done()) {
-    // Beast 1.74 asserts that it is not asked about a last chunk of fewer bytes; no chunked body ends in fewer.
+    // Beast 1.74 asserts when given a last chunk of fewer bytes. No chunked body ends in fewer.
     if (at_ == At::body && beast.chunked() && pending.size() - used < kLastChunkBytes) break;
     boost::system::error_code error;
     used += beast.put(boost::asio::const_buffer(pending.data() + used, pending.size() - used), error);
@@ -72,7 +72,7 @@ void RequestReader::parse() {
     at_ = At::whole;
     request_.body = std::move(beast.get().body());
   } else if (pending.size() > kMaxHeadBytes) {
-    // Of a chunk's extensions and of trailers Beast itself takes any amount.
+    // Beast has no limit for chunk extensions and trailers.
     refuse(431, kHeadTooLong);
   }
 }

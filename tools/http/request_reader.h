@@ -1,5 +1,5 @@
 #pragma once
-/// Bytes from the wire to one request, within limits.
+/// From bytes on the wire to one request, within limits.
 
 #include <cstddef>
 #include <memory>
@@ -12,11 +12,11 @@ namespace luxrig {
 class RequestReader {
  public:
   enum class At {
-    head,      ///< of the request line and headers more is wanted
-    decision,  ///< the head is there; accept_body() or no more bytes
-    body,      ///< of the body more is wanted
+    head,      ///< more of the request line and headers is needed
+    decision,  ///< the head is complete: call accept_body(), or put no more bytes
+    body,      ///< more of the body is needed
     whole,
-    refused,  ///< see refusal(); what follows on the wire means nothing
+    refused,  ///< see refusal(); later bytes on the wire mean nothing
   };
 
   RequestReader();
@@ -25,13 +25,13 @@ class RequestReader {
   /// Takes bytes; at `head` and `body` only.
   void put(std::string_view bytes);
   [[nodiscard]] At at() const { return at_; }
-  /// Reads on, a body of at most so many bytes, also in chunks; refused at once when it says that it is longer.
+  /// Goes on to read a body of at most this many bytes, chunked or not. Refuses at once if its stated length is longer.
   void accept_body(std::size_t max_bytes);
 
   [[nodiscard]] bool begun() const { return begun_; }
   [[nodiscard]] bool has_body() const;  ///< from `decision` on
   [[nodiscard]] bool keep_alive() const;
-  /// Bytes came that are not of this request: once it is answered, the connection is to be closed.
+  /// There were bytes beyond this request: close the connection after the answer.
   [[nodiscard]] bool more_came() const;
   [[nodiscard]] const HttpRequest& request() const { return request_; }
   [[nodiscard]] HttpRequest take() { return std::move(request_); }

@@ -33,10 +33,10 @@ using SteadyClock = std::chrono::steady_clock;
 using Instant = SteadyClock::time_point;
 using std::chrono::milliseconds;
 
-constexpr std::size_t kMaxConnections = 64;  // of TCP, and as many of the Unix socket
+constexpr std::size_t kMaxConnections = 64;  // of TCP, and as many again of the Unix socket
 constexpr std::size_t kMaxStreams = 16, kMaxStreamsOfOne = 8;
 constexpr std::size_t kLargeBodyBytes = 64u << 10;
-constexpr int kMaxLargeBodies = 2;  // at once: bodies are held whole
+constexpr int kMaxLargeBodies = 2;  // at once: bodies are held in memory whole
 constexpr milliseconds kIdle{15000}, kHead{5000}, kBody{10000}, kLargeBody{30000}, kAnswer{5000}, kDrain{1000};
 constexpr milliseconds kTick{100};
 constexpr int kTicksPerEvent = 2;
@@ -45,8 +45,8 @@ constexpr int kLowPriority = 10;
 /// Linux keeps the nice value per thread.
 void lower_priority() { ::setpriority(PRIO_PROCESS, static_cast<id_t>(::syscall(SYS_gettid)), kLowPriority); }
 
-/// Handlers, one after the other on each of some threads. As a connection waits for its answer, no more wait than there
-/// are connections.
+/// Handlers on some threads, each running one after the other. A connection waits for its answer, so the queue is never
+/// longer than the number of connections.
 class Lane {
  public:
   Lane(int threads, bool low_priority) {
@@ -66,7 +66,7 @@ class Lane {
     }
     wake_.notify_one();
   }
-  /// What waits is dropped, what runs is waited for.
+  /// Drops queued handlers and waits for running ones.
   void stop() {
     std::deque<std::function<void()>> dropped;
     {
@@ -134,12 +134,12 @@ const char* phrase_of(int status) {
 HttpResponse called(const std::function<HttpResponse(const HttpRequest&)>& handler, const HttpRequest& request) {
   try {
     return handler(request);
-  } catch (const std::exception& error) {  // a program that drives lamps does not end over a request
+  } catch (const std::exception& error) {  // a request must not end a program that drives lamps
     return http_refusal(500, error.what());
   }
 }
 
-/// Root, or the user that this process runs as.
+/// The peer is root, or the user of this process.
 bool is_ours(Socket& socket) {
   ucred peer{};
   socklen_t length = sizeof peer;
@@ -166,7 +166,7 @@ struct HttpServer::State {
 
   HttpServerOptions options;
   std::string headers;
-  asio::io_context io{1};  // everything below, up to the lanes, is its thread's
+  asio::io_context io{1};  // one thread uses everything below, except the lanes
   asio::ip::tcp::acceptor tcp{io};
   asio::local::stream_protocol::acceptor local{io};
   std::string socket_file;
@@ -192,7 +192,7 @@ class HttpServer::State::Connection : public std::enable_shared_from_this<Connec
   [[nodiscard]] bool trusted() const { return trusted_; }
   [[nodiscard]] Instant since() const { return since_; }
   [[nodiscard]] const std::string& credential() const { return credential_; }
-  /// Has not asked anything yet that somebody works on; may be closed in favour of a new one.
+  /// No request of its own is being handled; it may be closed in favour of a new connection.
   [[nodiscard]] bool has_nothing() const {
     return doing_ == Doing::waits || doing_ == Doing::reads_body || doing_ == Doing::drains;
   }
@@ -220,7 +220,7 @@ class HttpServer::State::Connection : public std::enable_shared_from_this<Connec
   }
 
   void send_event(const std::shared_ptr<const std::string>& text) {
-    if (closed_ || writing_) return;  // whoever reads slowly misses some
+    if (closed_ || writing_) return;  // a slow reader misses some events
     write(text, [](Connection& self) { self.deadline_.reset(); });
   }
 
@@ -255,7 +255,7 @@ class HttpServer::State::Connection : public std::enable_shared_from_this<Connec
     }
   }
 
-  /// All that can be known before the body is read.
+  /// Every check that is possible before the body is read.
   std::optional<HttpResponse> decide() {
     const HttpRequest& request = reader_->request();
     if (auto refusal = foreign_request(request, reader_->has_body())) return refusal;
@@ -335,7 +335,7 @@ class HttpServer::State::Connection : public std::enable_shared_from_this<Connec
           [last](Connection& self) { last ? self.drain() : self.await_request(); });
   }
 
-  /// The peer may still be sending what nobody wants: closed at once, it would lose the answer.
+  /// The peer may still be sending an unwanted body. Closing at once would lose the answer.
   void drain() {
     doing_ = Doing::drains;
     since_ = SteadyClock::now();
@@ -376,7 +376,7 @@ class HttpServer::State::Connection : public std::enable_shared_from_this<Connec
   Socket socket_;
   const bool trusted_;
   Doing doing_ = Doing::waits;
-  Instant since_{};  // it waits for a request, or for the end
+  Instant since_{};  // start of the wait for a request, or for the end
   std::optional<Instant> deadline_;
   std::unique_ptr<RequestReader> reader_;
   const HttpRoute* route_ = nullptr;
@@ -389,7 +389,7 @@ template <class Acceptor>
 void HttpServer::State::accept(Acceptor& acceptor, bool trusted) {
   acceptor.async_accept([this, &acceptor, trusted](error_code error, auto socket) {
     if (error == asio::error::operation_aborted) return;
-    if (error) {  // no more files may be open: those that are will end
+    if (error) {  // out of file descriptors: wait until some are closed
       const auto later = std::make_shared<asio::steady_timer>(io, kTick);
       later->async_wait([this, &acceptor, trusted, later](error_code) { accept(acceptor, trusted); });
       return;
@@ -424,7 +424,7 @@ void HttpServer::State::remove(const std::shared_ptr<Connection>& connection) {
 void HttpServer::State::tick() {
   ticking = !connections.empty();
   if (!ticking) return;
-  const auto copy = connections;  // closing one removes it
+  const auto copy = connections;  // close() removes the connection
   for (const auto& connection : copy) connection->check(SteadyClock::now());
   if (++ticks % kTicksPerEvent == 0) event_wanted = true;
   tell_streams();
@@ -490,7 +490,7 @@ Result<void> HttpServer::bind_socket(const std::string& file) {
   ::unlink(file.c_str());
   acceptor.bind(asio::local::stream_protocol::endpoint(file), error);
   if (error) return fault(error.message());
-  // Nobody can connect before listen().
+  // No peer can connect before listen().
   if (::chmod(file.c_str(), S_IRUSR | S_IWUSR) != 0) return fault("its mode cannot be set to 600");
   acceptor.listen(asio::socket_base::max_listen_connections, error);
   if (error) return fault(error.message());

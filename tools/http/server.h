@@ -1,6 +1,6 @@
 #pragma once
-/// A small HTTP/1.1 server for loopback that hostile neighbours cannot stop: limits and deadlines everywhere, and what
-/// is urgent waits for nobody. README.md beside this file says how.
+/// A small HTTP/1.1 server for loopback that hostile neighbours cannot stop. Everything has limits and deadlines, and
+/// urgent requests wait for nothing. README.md beside this file has the details.
 
 #include <chrono>
 #include <functional>
@@ -19,24 +19,24 @@ struct HttpRoute {
   /// Called on threads of the server.
   std::function<HttpResponse(const HttpRequest&)> handle;
   std::size_t max_body_bytes = 16u << 10;
-  bool urgent = false;  ///< has a thread of its own, at normal priority
+  bool urgent = false;  ///< runs on a thread of its own, at normal priority
 };
 
 struct HttpServerOptions {
   std::vector<HttpRoute> routes;
-  /// Answers every GET that has no route, for everybody. Empty: 404.
+  /// Answers every GET without a route, for all senders. Empty: 404.
   std::function<HttpResponse(const HttpRequest&)> page{};
   /// GET of this path is a stream of server-sent events, each a whole `event: …\ndata: …\n\n`, five a second.
   std::string events_path{};
   std::function<std::string()> event{};
-  /// Who asks, by the request's headers; empty: nobody known, whom only `page` answers. Called on the server's thread
-  /// for the wire, so it must be quick. No function: everybody may everything. Who comes through the Unix socket is not
-  /// asked.
+  /// The sender of a request, from its headers. Empty = unknown: only `page` answers then. Called on the server's wire
+  /// thread, so it must be quick. Without this function everything is allowed to all senders. Not called for the Unix
+  /// socket, whose peers are trusted.
   std::function<std::string(const HttpRequest&)> credential{};
-  /// What somebody is told who asks for a path that there is not. Empty: that.
+  /// The answer to a request for an unknown path. Empty: a default text.
   std::function<std::string(const std::string& path)> no_route{};
-  std::string no_credential = "not allowed";  ///< what such a one is told
-  HttpHeaders headers{};                      ///< of every answer
+  std::string no_credential = "not allowed";  ///< the answer to an unknown sender
+  HttpHeaders headers{};                      ///< sent with every answer
 };
 
 class HttpServer {
@@ -46,12 +46,12 @@ class HttpServer {
   HttpServer(const HttpServer&) = delete;
   HttpServer& operator=(const HttpServer&) = delete;
 
-  /// Binds 127.0.0.1:port (0 = any) and returns the port; nothing when it is taken. Connections wait until start().
+  /// Binds 127.0.0.1:port (0 = any) and returns the port; nothing if it is taken. Connections wait until start().
   [[nodiscard]] std::optional<int> bind(int port);
-  /// Binds a Unix socket, mode 600, for root and our own user. A file of that name is replaced. Before start().
+  /// Binds a Unix socket, mode 600, for root and our own user. Replaces a file of that name. Call before start().
   [[nodiscard]] Result<void> bind_socket(const std::string& file);
   void start();
-  /// Closes every connection; returns when no handler runs any more.
+  /// Closes every connection. Returns when no handler runs any more.
   void stop();
 
  private:

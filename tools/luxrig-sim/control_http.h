@@ -1,6 +1,6 @@
 #pragma once
-/// The simulator's control port: HTTP on loopback, through which a test looks at the truth and makes things go wrong.
-/// Routes: API.md.
+/// The simulator's control port: HTTP on loopback, through which a test reads the truth and switches faults on. Routes:
+/// API.md.
 
 #include <functional>
 #include <memory>
@@ -15,15 +15,15 @@ namespace luxrig::sim {
 
 class ControlHttp {
  public:
-  /// Serves on its own threads from here to the destructor. `world_mutex` guards `world`; all outlive this.
-  /// seed   of what its cameras' sensors add
+  /// Serves on its own threads until the destructor. `world_mutex` guards `world`; all arguments outlive this.
+  /// seed   of the noise of its cameras' sensors
   static Result<std::unique_ptr<ControlHttp>> open(const Rig& rig, World& world, Faults& faults,
                                                    std::mutex& world_mutex, int port, std::uint64_t seed);
   virtual ~ControlHttp() = default;
   [[nodiscard]] virtual int port() const = 0;
 };
 
-/// What GET /truth answers.
+/// The body of GET /truth.
 [[nodiscard]] std::string truth_json(const Rig& rig, const World& world);
 
 }  // namespace luxrig::sim

@@ -1,5 +1,5 @@
 #pragma once
-/// `--deviations`: how far the truth is from the rig file.
+/// `--deviations`: how far the truth differs from the rig file.
 
 #include <string>
 

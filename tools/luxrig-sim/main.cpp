@@ -1,4 +1,4 @@
-// luxrig-sim: a rig's devices on loopback ports, behaving as the simulated world makes them. See README.md.
+// luxrig-sim: a rig's devices on loopback ports, driven by the simulated world. See README.md.
 #include <fmt/format.h>
 #include <poll.h>
 #include <sys/prctl.h>
@@ -59,7 +59,7 @@ Progress progress_on_stderr() {
   };
 }
 
-// Steps the world at 100 Hz of real time and serves the wires as packets arrive, until asked to stop.
+// Steps the world at 100 Hz of real time and serves the wires as packets arrive, until it is asked to stop.
 void run(sim::World& world, sim::RigServer& server, std::mutex& world_mutex) {
   const auto start = Clock::now();
   std::vector<pollfd> waiting;
@@ -150,7 +150,7 @@ int main(int argc, char** argv) {
   if (options.with_parent) {
     const pid_t parent = ::getppid();
     ::prctl(PR_SET_PDEATHSIG, SIGTERM);
-    if (::getppid() != parent) return kExitFailed;  // it ended before we had asked
+    if (::getppid() != parent) return kExitFailed;  // it ended before prctl()
   }
   return simulate(options);
 }

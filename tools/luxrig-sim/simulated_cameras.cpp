@@ -11,7 +11,7 @@ namespace luxrig::sim {
 
 Result<std::string> SimulatedCameras::take(const PictureCamera& camera) {
   const std::lock_guard one_at_a_time(mutex_);
-  ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), 10);  // of this thread, and of those it starts
+  ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), 10);  // of this thread, and of threads that it starts
   if (!rays_) {
     const auto scene = build_scene(rig_);
     if (!scene) return refusal(scene.error().front().text());

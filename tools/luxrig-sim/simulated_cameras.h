@@ -1,6 +1,6 @@
 #pragma once
-/// The rig's cameras, looking at the simulated world as it is when they are asked. Apart from the HTTP part, whose
-/// library's system headers define macros that Eigen does not survive.
+/// The rig's cameras, which see the simulated world as it is at that moment. Separate from the HTTP part: its library's
+/// system headers define macros that break Eigen.
 
 #include <memory>
 #include <mutex>
@@ -14,11 +14,12 @@ namespace luxrig::sim {
 
 class SimulatedCameras {
  public:
-  /// All outlive this; world_mutex guards world.
+  /// All arguments outlive this; world_mutex guards world.
   SimulatedCameras(const Rig& rig, const World& world, std::mutex& world_mutex, std::uint64_t seed)
       : rig_(rig), world_(world), world_mutex_(world_mutex), seed_(seed) {}
 
-  /// A picture in the format PFM. Takes seconds, one at a time, at low priority: the wires are served meanwhile.
+  /// A picture in the format PFM. Takes seconds, at low priority, one picture at a time. The wires are served all the
+  /// while.
   [[nodiscard]] Result<std::string> take(const PictureCamera& camera);
 
  private:
@@ -26,7 +27,7 @@ class SimulatedCameras {
   const World& world_;
   std::mutex& world_mutex_;
   std::uint64_t seed_;
-  std::mutex mutex_;  ///< guards the two below
+  std::mutex mutex_;  ///< guards the two members below
   std::unique_ptr<RayScene> rays_;
   std::uint64_t shots_ = 0;
 };

@@ -1,4 +1,4 @@
-// level, goal, release: what a person sets by hand while the daemon runs.
+// level, goal, release: settings by hand while the daemon runs.
 #include <fmt/format.h>
 
 #include <charconv>
@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-/// The value behind the names; nothing when there is none.
+/// The value behind the names; nothing if there is none.
 std::optional<double> value_of(const std::string& text, bool percent) {
   double value = 0;
   const char* end = text.data() + text.size();
@@ -25,7 +25,7 @@ std::optional<double> value_of(const std::string& text, bool percent) {
   return percent && std::string_view(rest, end) == "%" ? std::optional(value / 100) : std::nullopt;
 }
 
-/// "90s", "10min", "2h", "90" (seconds) in seconds; nothing when it is none, or not above 0.
+/// "90s", "10min", "2h", "90" (seconds) in seconds; nothing for other text, or if not above 0.
 std::optional<double> seconds_of(const std::string& text) {
   double value = 0;
   const char* end = text.data() + text.size();
@@ -41,7 +41,7 @@ std::optional<double> seconds_of(const std::string& text) {
 struct HeldArguments {
   ClientArguments client;
   std::vector<std::string> words;  ///< names (with * and ? for several), then the value
-  std::string for_text;            ///< "10min"; empty: until it is released
+  std::string for_text;            ///< "10min"; empty = until released
 };
 
 int hold(const HeldArguments& arguments, bool level) {

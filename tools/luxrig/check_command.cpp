@@ -29,10 +29,10 @@ namespace {
 struct CheckArguments {
   std::filesystem::path rig;
   bool json = false;
-  bool outputs = false;  ///< also what each output does when data stops
+  bool outputs = false;  ///< also show how each output behaves when data stops
 };
 
-/// In the planes C0 and C90; once when they are alike.
+/// In the planes C0 and C90; once if they are alike.
 std::string angles_text(const PlaneAngles& angles) {
   const std::string c0 = fmt::format("{:.1f}°", deg_from_rad(angles.c0_rad));
   const std::string c90 = fmt::format("{:.1f}°", deg_from_rad(angles.c90_rad));
@@ -86,7 +86,7 @@ std::string lights_text(const std::optional<int>& lights, int most, const std::s
       "{} of {}", lights ? fmt::format("{}", *lights) : fmt::format("as few as will do, at most {},", most), luminaire);
 }
 
-/// What a task will do; empty where its kind says all.
+/// What a task will do; empty if its kind says it all.
 std::string task_text(const Rig& rig, const Task& task) {
   switch (task.kind) {
     case TaskKind::emittance:
@@ -111,11 +111,11 @@ std::string task_text(const Rig& rig, const Task& task) {
   return "";
 }
 
-/// How each fixture with a maker's file was understood; one of a housing speaks for all of it, and fixtures that are
-/// set alike are told once.
+/// How each fixture with a maker's file was understood. One fixture of a housing stands for all of it, and fixtures
+/// with the same setting share a line.
 void print_personalities(const Rig& rig) {
   constexpr std::size_t kMostNamed = 4;
-  std::vector<std::pair<std::string, std::vector<std::string>>> told;  // what, and the fixtures it is true of
+  std::vector<std::pair<std::string, std::vector<std::string>>> told;  // text, and the fixtures that it is true for
   for (std::size_t i = 0; i < rig.fixtures.size(); ++i) {
     const Fixture& fixture = rig.fixtures[i];
     if (!fixture.mode || fixture.housing.value_or(i) != i) continue;
@@ -141,7 +141,7 @@ void print_personalities(const Rig& rig) {
   }
 }
 
-/// The products behind Modbus units: what their levels do without Luxrig, and what nobody has stated.
+/// The products behind Modbus units: how their levels behave without Luxrig, and what is not stated.
 void print_register_maps(const Rig& rig) {
   std::vector<std::pair<std::shared_ptr<const RegisterMap>, std::vector<std::string>>> products;
   const auto add = [&](const std::shared_ptr<const RegisterMap>& map, const std::string& device) {
@@ -167,7 +167,7 @@ void print_register_maps(const Rig& rig) {
   }
 }
 
-/// What each output does without Luxrig.
+/// How each output behaves without Luxrig.
 void print_outputs(const Rig& rig) {
   fmt::print("\nwhen data stops (Luxrig dies and no guardian stands in for it, or a cable is cut):\n\n");
   Table table({"fixture", "bus", "its lamp", "says who"});
@@ -208,7 +208,7 @@ nlohmann::json problem_json(const Problem& p) {
   return {{"file", p.file}, {"line", p.line}, {"column", p.column}, {"what", p.what}, {"mend", p.mend}};
 }
 
-/// All that is legal but worth a look: what the file says, where heads look, how the rig fits its scene.
+/// Everything legal but worth a look: in the file, where heads look, how the rig fits its scene.
 std::vector<Problem> all_notes(const Session& session) {
   const Rig& rig = session.rig;
   std::vector<Problem> notes = rig.notes;
@@ -225,7 +225,7 @@ std::vector<Problem> all_notes(const Session& session) {
   return notes;
 }
 
-/// A material of the scene by its name; where a picture lies on it, it comes in several shades.
+/// A material of the scene by its name. Under a picture it comes in several shades.
 struct MaterialSummary {
   std::string name;
   double mean = 0, least = 1, most = 0, area_m2 = 0;
@@ -266,7 +266,7 @@ std::string reflectance_source(const MaterialSummary& material) {
 }
 
 std::string place_text(const Vec3& p) {
-  // Centimetres, and no zero with a sign.
+  // Centimetres, without negative zero.
   const Vec3 cm = (100 * p).array().round() + 0.0;
   return fmt::format("{:.2f} {:.2f} {:.2f}", cm.x() / 100, cm.y() / 100, cm.z() / 100);
 }

@@ -1,4 +1,5 @@
-// apply, page, reload, blackout, hand-back, park, bypass, identify: commands that only tell a running daemon something.
+// apply, page, reload, blackout, hand-back, park, bypass, identify: commands that only send a request to a running
+// daemon.
 #include <fmt/format.h>
 
 #include <memory>
@@ -19,8 +20,8 @@ namespace {
 
 using nlohmann::json;
 
-/// A plan that turns heads waits for the light that it makes to be worked out; a rig that is read again is solved before
-/// anything changes.
+/// Before a plan that turns heads is applied, its light is computed. Before a reload changes anything, the rig is
+/// solved.
 constexpr int kWaitForSolving_s = 300;
 
 struct TellArguments {

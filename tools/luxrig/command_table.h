@@ -10,17 +10,17 @@ class App;
 
 namespace luxrig {
 
-/// What a command does once its line is understood; returns the exit code.
+/// Runs a command whose line has been parsed; returns the exit code.
 using Action = std::function<int()>;
 
 struct Command {
   const char* name;
   const char* group;                     ///< one of those below
-  const char* summary;                   ///< its line of `luxrig --help`, where 66 letters have room
+  const char* summary;                   ///< its line in `luxrig --help`, up to 66 letters
   Action (*declare)(CLI::App& command);  ///< adds its options; the action keeps what they set
 };
 
-/// What a person wants: help, man page and README sort the commands by it.
+/// Purpose of a command: help, man page and README sort the commands by it.
 namespace command_group {
 inline constexpr char kSet[] = "Set a rig";
 inline constexpr char kRun[] = "Run a show";
@@ -29,7 +29,7 @@ inline constexpr char kMeasure[] = "Measure";
 inline constexpr char kShell[] = "Shell";
 }  // namespace command_group
 
-/// By group, and in each as a person comes to need them.
+/// By group, and within a group in the order in which a person needs them.
 [[nodiscard]] const std::vector<Command>& command_table();
 
 }  // namespace luxrig

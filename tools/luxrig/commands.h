@@ -1,5 +1,5 @@
 #pragma once
-/// The entries of the table: each is defined in the file that does what it says, NAME_command.cpp.
+/// The entries of the table. Each is defined in the file that does the work, NAME_command.cpp.
 
 #include "tools/luxrig/command_table.h"
 
@@ -11,7 +11,7 @@ extern const Command kRunCommand, kStatusCommand, kMonitorCommand;
 extern const Command kDevicesCommand, kRdmCommand, kCameraCommand;
 extern const Command kCompletionCommand;
 
-/// In client_commands.cpp, what only tells a running daemon something.
+/// In client_commands.cpp: commands that only send a request to a running daemon.
 extern const Command kPageCommand, kApplyCommand, kReloadCommand, kIdentifyCommand, kBlackoutCommand, kParkCommand,
     kHandBackCommand, kBypassCommand;
 /// In by_hand_commands.cpp.

@@ -1,4 +1,4 @@
-// completion: what a shell needs so that it completes luxrig's commands, options and their values.
+// completion: the shell script that completes luxrig's commands, options and their values.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>

@@ -7,9 +7,9 @@
 
 namespace luxrig {
 
-/// Seed, threads, and how exact.
+/// Seed, threads and accuracy.
 void add_compute(CLI::App& command, ComputeOptions& compute);
-/// The same, and which model.
+/// The same, and the model.
 void add_model(CLI::App& command, ComputeOptions& compute);
 
 }  // namespace luxrig

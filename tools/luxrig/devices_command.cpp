@@ -1,4 +1,4 @@
-// devices: what is there to be driven, without a rig file.
+// devices: lists connected devices, without a rig file.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>

@@ -24,14 +24,14 @@ namespace {
 
 struct EvaluateArguments {
   std::filesystem::path rig;
-  std::optional<std::filesystem::path> levels_plan;  ///< else every fixture at 1
+  std::optional<std::filesystem::path> levels_plan;  ///< none = every fixture at 1
   ComputeOptions compute;
   bool json = false;
 };
 
 nlohmann::json array_of(const Vec3& v) { return nlohmann::json::array({v.x(), v.y(), v.z()}); }
 
-/// Levels from a plan, whose placed lights are hung for it; or all 1.
+/// Levels of a plan, after its placed lights are hung; or all 1.
 Checked<std::vector<double>> wanted_levels(const EvaluateArguments& arguments, Rig& rig) {
   if (!arguments.levels_plan) return std::vector<double>(rig.fixtures.size(), 1.0);
   auto text = read_file(*arguments.levels_plan);

@@ -1,4 +1,4 @@
-// import: a rig folder of an MVR file.
+// import: a rig folder from an MVR file.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -25,7 +25,7 @@ std::vector<Problem> one_problem(const std::filesystem::path& file, std::string 
   return {{file.string(), 0, 0, std::move(what), std::move(mend)}};
 }
 
-/// Never writes over a rig.
+/// Never overwrites a rig.
 int run_import(const ImportArguments& arguments) {
   if (extension_of(arguments.file) != "mvr") {
     return report(one_problem(arguments.file, "not an MVR file by its name",
@@ -48,7 +48,7 @@ int run_import(const ImportArguments& arguments) {
   }
   if (const auto written = write_file(rig_file, rig.rig_toml); !written) return report(written.error());
   for (const std::string& remark : rig.remarks) fmt::print("{}\n", remark);
-  const std::size_t personalities = rig.files.size() - (rig.models > 0 ? 2 : 0);  // and the scene's two files
+  const std::size_t personalities = rig.files.size() - (rig.models > 0 ? 2 : 0);  // not counting the scene's two files
   fmt::print("{}: {} fixtures of {} kinds, {} personalities beside it{}\n", rig_file.string(), rig.fixtures,
              rig.luminaires, personalities,
              rig.models > 0 ? fmt::format("; scene.obj: {} models of scenery", rig.models) : "");

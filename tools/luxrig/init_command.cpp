@@ -1,4 +1,4 @@
-// init: a commented rig to start from, as `rigs/start` has it.
+// init: a commented rig to start from, a copy of `rigs/start`.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::string_view kNameOfStart = "name = \"start\"\n";
 
-/// Never writes over a rig.
+/// Never overwrites a rig.
 int run_init(const std::filesystem::path& folder) {
   const std::filesystem::path rig_file = folder / "rig.toml";
   std::error_code error;
@@ -35,7 +35,7 @@ int run_init(const std::filesystem::path& folder) {
   const auto name_at = text->find(kNameOfStart);
   if (name_at == std::string::npos)
     return report(Fault{Cause::system, "", start.string() + " is not the rig that came with this Luxrig", {}});
-  // "gallery", "gallery/" and "." alike.
+  // "gallery", "gallery/" and "." give the same place.
   auto place = std::filesystem::weakly_canonical(folder, error);
   if (!place.has_filename()) place = place.parent_path();
   std::string name = made_plain(place.filename().string());

@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
     CLI::App* one = app.add_subcommand(command.name, command.summary)->group(command.group);
     actions[one] = command.declare(*one);
   }
-  // After the commands, which would inherit it.
+  // After the commands, because they would inherit it.
   app.footer(
       "`luxrig COMMAND --help` tells a command's options; so does `man luxrig-COMMAND`.\n"
       "New here? `luxrig init mine` makes a rig, `luxrig run mine --sim` lights it on\n"

@@ -1,4 +1,4 @@
-// monitor: what the running daemon sends and reads, live in the terminal.
+// monitor: output and readings of the running daemon, live in the terminal.
 #include <fmt/format.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -23,7 +23,7 @@ constexpr int kUsualColumns = 100;
 
 volatile std::sig_atomic_t g_interrupted = 0;
 
-/// The terminal's other screen, without a cursor; whatever ends the program's life in order gives the old one back.
+/// The terminal's alternate screen, without a cursor. Any orderly end of the program restores the normal screen.
 class OtherScreen {
  public:
   OtherScreen() { fmt::print("\033[?1049h\033[?25l"); }
@@ -36,7 +36,7 @@ class OtherScreen {
 };
 
 struct TerminalSize {
-  int columns = kUsualColumns, lines = 0;  ///< lines 0: not known, as many as there are
+  int columns = kUsualColumns, lines = 0;  ///< lines 0: not known, no limit
 };
 TerminalSize terminal_size() {
   winsize size{};
@@ -44,7 +44,7 @@ TerminalSize terminal_size() {
   return {size.ws_col, size.ws_row};
 }
 
-/// The first lines that fit, each from the screen's left and with what stood right of it cleared; long ones are cut.
+/// The first lines that fit. Each starts at the left and clears the rest of its line; long lines are cut.
 std::string on_screen(const std::string& picture, int lines) {
   std::string text = "\033[H\033[?7l";
   int shown_lines = 0;
@@ -56,7 +56,7 @@ std::string on_screen(const std::string& picture, int lines) {
   return text + "\033[J\033[?7h";
 }
 
-/// Nothing when nobody answers.
+/// Nothing if no daemon answers.
 std::optional<std::string> picture_of(const HttpPeer& daemon) {
   const auto status = http_get(daemon, "/api/status");
   const auto universes = http_get(daemon, "/api/universes");
@@ -65,7 +65,7 @@ std::optional<std::string> picture_of(const HttpPeer& daemon) {
                          nlohmann::json::parse(universes->body, nullptr, false), terminal_size().columns);
 }
 
-/// Until Ctrl-C; `once`, or when the output is no terminal: one picture.
+/// Until Ctrl-C. With `once`, or if the output is no terminal: one picture.
 int run_monitor(const ClientArguments& arguments, bool once) {
   const auto daemon = daemon_on(arguments.port, arguments.token);
   if (!daemon) return report(daemon.error());

@@ -25,7 +25,7 @@ std::string bar(double share) {
   return text;
 }
 
-/// Why a head is dark, and until when; or that it is the one looked for.
+/// Why a head is dark, and until when; or that it is being identified.
 std::string state_of_fixture(const json& f) {
   if (flag_of(f, "identified")) return "← this one";
   const std::string why = flag_of(f, "parked") ? "parked" : flag_of(f, "kept_dark") ? "kept dark" : "";
@@ -33,7 +33,7 @@ std::string state_of_fixture(const json& f) {
   return why.empty() || waits_for.empty() ? why : fmt::format("{}, waits for {}", why, waits_for);
 }
 
-/// Slots in rows of 8, 16, 24 or 32, each as 0…255; rows with nothing in them are left out.
+/// Slots in rows of 8, 16, 24 or 32, each as 0…255; rows of zeros are left out.
 std::string universe_picture(const json& universe, int width) {
   const json slots = list_of(universe, "slots");
   const int per_row = std::clamp((width - 6) / 4 / 8 * 8, 8, 32);

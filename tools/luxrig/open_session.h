@@ -1,5 +1,5 @@
 #pragma once
-/// From a rig file to something that can be computed with; what every command starts from.
+/// From a rig file to something that can be computed with. Every command starts here.
 
 #include <filesystem>
 
@@ -7,7 +7,7 @@
 
 namespace luxrig {
 
-/// Reads and checks everything: rig, photometry, buses, meshes, where lights may hang. All problems, or a Session.
+/// Reads and checks everything: rig, photometry, buses, meshes, mounting. All problems, or a Session.
 [[nodiscard]] Checked<Session> open_session(const std::filesystem::path& rig_path);
 
 }  // namespace luxrig

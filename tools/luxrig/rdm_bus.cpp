@@ -22,11 +22,12 @@ constexpr auto kRdmStep = std::chrono::milliseconds(1);
 constexpr Duration kNodesAnswer = std::chrono::milliseconds(1200);
 constexpr Duration kPagesFollow = std::chrono::milliseconds(200);
 constexpr Duration kAskTableEvery = std::chrono::milliseconds(1000);
-// A node that has flushed its table may tell an empty one at first, and searches for a second or more.
+// A node that has flushed its table may first report an empty one, and searches for a second or more.
 constexpr Duration kSearchTakes = std::chrono::milliseconds(2000);
 constexpr std::uint16_t kPrototypeManufacturer = 0x7FF0;
 
-/// Luxrig has no manufacturer number of its own: one of those for prototypes, and a device number that is this host's.
+/// Luxrig has no manufacturer number of its own. It uses one reserved for prototypes, and a device number from this
+/// host.
 rdm::Uid controller_uid() {
   const std::string host = host_id();
   const std::string_view parts[] = {"rdm controller", host};
@@ -126,7 +127,7 @@ Result<void> RdmBus::read_tables(const RdmSearch& search, std::span<const NodeLi
     }
   }
   Time ask_at = search.rediscover ? start + kSearchTakes : start;
-  // What was told before the search was over does not count.
+  // Tables reported before the search was over do not count.
   const Time not_before = search.rediscover ? ask_at + kPagesFollow : start;
   const Time end = ask_at + from_seconds(search.seconds);
   const auto known = [](const NodeLine& line) { return line.link->table().complete; };

@@ -1,5 +1,5 @@
 #pragma once
-/// The DMX lines that can be reached by RDM, behind Art-Net nodes or a USB widget. Waits in real time.
+/// The DMX lines that RDM can reach, behind Art-Net nodes or a USB widget. Waits in real time.
 
 #include <memory>
 #include <optional>
@@ -15,42 +15,42 @@
 namespace luxrig {
 
 struct RdmSearch {
-  SocketAddress poll_to;        ///< a node, or where all are asked
-  bool one_node = false;        ///< the former
-  std::optional<int> universe;  ///< only this one
-  double seconds = 3;           ///< for the tables of devices, after nodes have been found
-  bool rediscover = false;      ///< have the nodes search their lines anew
+  SocketAddress poll_to;        ///< a node, or a broadcast address
+  bool one_node = false;        ///< `poll_to` is a node
+  std::optional<int> universe;  ///< only this one; none = all
+  double seconds = 3;           ///< for the tables of devices, once nodes have been found
+  bool rediscover = false;      ///< have the nodes search their lines again
 };
 
-/// A widget that is plugged in, or (with a server) stands behind USB/IP.
+/// A plugged-in widget, or (with a server) one behind USB/IP.
 struct RdmWidgetSearch {
-  std::string serial, port;  ///< as UsbSearch has them; empty: any
+  std::string serial, port;  ///< as in UsbSearch; empty: any
   std::optional<Redirect> server;
-  int universe = 1;  ///< what its line is called
+  int universe = 1;  ///< the number given to its line
 };
 
-/// One line, and what its node says is on it.
+/// One line, and the devices that its node reports on it.
 struct RdmUniverse {
   std::string node;  ///< its name
   int universe = 0;
   std::unique_ptr<rdm::RdmLink> link;
   std::unique_ptr<rdm::Client> client;
-  std::set<rdm::Uid> uids;  ///< who is on it
-  bool complete = true;     ///< else there may be more
+  std::set<rdm::Uid> uids;  ///< devices on the line
+  bool complete = true;     ///< else there may be more devices
 };
 
 class RdmBus {
  public:
-  /// Fault system or network when there is no port to be had; no node, no device is no fault.
+  /// Fault system or network when no port can be opened. Finding no node or no device is no fault.
   static Result<RdmBus> find(const RdmSearch& search);
   /// Searches the line of a widget. Faults as WidgetRdm::open.
   static Result<RdmBus> find(const RdmWidgetSearch& search);
 
   [[nodiscard]] std::size_t nodes() const { return nodes_; }  ///< or widgets
   [[nodiscard]] const std::vector<RdmUniverse>& universes() const { return universes_; }
-  /// The line on which this device is; null: on none.
+  /// The line of this device; null if it is on none.
   [[nodiscard]] const RdmUniverse* line_of(const rdm::Uid& uid) const;
-  /// Asks one question; returns when it is answered, or given up.
+  /// Asks one question. Returns when it is answered or given up.
   [[nodiscard]] static Result<std::vector<std::uint8_t>> ask(const RdmUniverse& universe, const rdm::Request& request);
 
  private:

@@ -1,4 +1,4 @@
-// rdm: which devices are behind Art-Net nodes or a USB widget, how they are set, and setting them.
+// rdm: lists the devices behind Art-Net nodes or a USB widget, reads their settings and changes them.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -23,13 +23,13 @@ using Json = nlohmann::json;
 
 /// Devices on the DMX lines behind Art-Net nodes or a USB widget.
 struct RdmArguments {
-  std::string node;  ///< address, with or without port; empty: all that answer to the broadcast
+  std::string node;  ///< address, with or without port; empty: all nodes that answer a broadcast
   std::string broadcast = "255.255.255.255";
-  std::optional<int> universe;  ///< Art-Net port address; else all
+  std::optional<int> universe;  ///< Art-Net port address; none = all
   double seconds = 3;
   bool rediscover = false;
   bool usb = false;                         ///< a widget's line instead of nodes
-  std::string usb_serial, usb_port, usbip;  ///< which; any of them is enough to say `usb`
+  std::string usb_serial, usb_port, usbip;  ///< selects the widget; any of them implies `usb`
   bool json = false, toml = false;
   std::string uid, parameter, value;
 };
@@ -63,7 +63,7 @@ std::optional<SocketAddress> address_of(const std::string& text) {
 
 std::string text_of_json(const Json& value) { return value.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
-/// Searches the line of a widget; says what is wrong and returns nothing when an argument is.
+/// Searches the line of a widget. Prints a problem and returns nothing if an argument is wrong.
 std::optional<Result<RdmBus>> find_widget(const RdmArguments& arguments) {
   RdmWidgetSearch search{arguments.usb_serial, arguments.usb_port, std::nullopt, arguments.universe.value_or(1)};
   if (!arguments.node.empty()) {
@@ -86,7 +86,7 @@ std::optional<Result<RdmBus>> find_widget(const RdmArguments& arguments) {
   return RdmBus::find(search);
 }
 
-/// Looks for nodes and tables; says what is wrong and returns nothing when an argument is.
+/// Looks for nodes and their tables. Prints a problem and returns nothing if an argument is wrong.
 std::optional<Result<RdmBus>> find_bus(const RdmArguments& arguments) {
   if (arguments.usb || !arguments.usb_serial.empty() || !arguments.usb_port.empty() || !arguments.usbip.empty())
     return find_widget(arguments);
@@ -153,7 +153,7 @@ std::vector<std::string> row_of(const PatchedDevice& device) {
           std::move(sensors)};
 }
 
-/// The line of a device; says so when it is on none.
+/// The line of a device; prints a problem if it is on none.
 const RdmUniverse* line_with(const RdmBus& bus, const rdm::Uid& uid) {
   const RdmUniverse* line = bus.line_of(uid);
   if (line != nullptr) return line;
@@ -164,7 +164,7 @@ const RdmUniverse* line_with(const RdmBus& bus, const rdm::Uid& uid) {
   return nullptr;
 }
 
-/// What a GET needs besides the parameter: the number of a sensor or a personality.
+/// The data that a GET needs besides the parameter: the number of a sensor or a personality.
 std::optional<std::vector<std::uint8_t>> index_of(rdm::Pid pid, const std::string& index) {
   if (pid == rdm::Pid::sensor_definition || pid == rdm::Pid::sensor_value) {
     const auto number = number_in(index.empty() ? "0" : index, 0, 254);
@@ -182,7 +182,7 @@ struct Setting {
   std::vector<std::uint8_t> data;
 };
 
-/// What a person wants set; else what would mend it.
+/// The setting that a person wants; else how to mend the request.
 tl::expected<Setting, std::string> setting_of(const std::string& what, const std::string& value) {
   if (what == "address") {
     const auto address = number_in(value, 1, 512);
@@ -290,7 +290,7 @@ int run_rdm_set(const RdmArguments& arguments) {
   if (auto done = RdmBus::ask(*line, {*uid, rdm::CommandClass::set, setting->pid, setting->data}); !done) {
     return report(done.error());
   }
-  // What it says afterwards counts: a device may take what it likes of a value.
+  // Read it back: a device may round or limit a value.
   const auto after = RdmBus::ask(*line, {*uid, rdm::CommandClass::get, setting->pid});
   if (!after) return report(after.error());
   const std::string text = rdm::describe(setting->pid, *after);

@@ -40,7 +40,7 @@ std::vector<std::string> slot_names(const rdm::DeviceProfile& profile) {
                             : slot.label == rdm::kTiltSlot    ? "tilt"
                             : slot.label == rdm::kZoomSlot    ? "zoom"
                                                               : "";
-    if (use.empty() || !taken.insert(use).second) continue;  // of several the first
+    if (use.empty() || !taken.insert(use).second) continue;  // the first of several
     uses[slot.offset] = names[static_cast<std::size_t>(slot.offset)] = use;
   }
   for (const rdm::SlotInfo& slot : profile.slots) {

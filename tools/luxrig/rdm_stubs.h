@@ -1,5 +1,5 @@
 #pragma once
-/// What was found by RDM, as the beginning of a rig file.
+/// Devices found by RDM, as the beginning of a rig file.
 
 #include <string>
 #include <vector>
@@ -13,11 +13,11 @@ struct PatchedDevice {
   rdm::DeviceProfile profile;
 };
 
-/// Names of slots as a rig file has them, from what the device says its slots are; "unused" for all that Luxrig does
-/// not drive. Empty when the device did not say.
+/// Names of slots as in a rig file, from the device's own description of its slots. Slots that Luxrig does not drive
+/// are "unused". Empty when the device gave no description.
 [[nodiscard]] std::vector<std::string> slot_names(const rdm::DeviceProfile& profile);
 
-/// A [[fixture]] for each device that has slots; lines with FILL IN need a person. Names are made unique.
+/// A [[fixture]] for each device that has slots. Lines with FILL IN need a person. Names are made unique.
 [[nodiscard]] std::string fixture_stubs(const std::vector<PatchedDevice>& devices);
 
 }  // namespace luxrig

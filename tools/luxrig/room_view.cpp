@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint32_t kRaysPerLamp = 32;
 constexpr std::size_t kMostLampsAsked = 256;
 
-/// Where the light of the lamps falls first.
+/// Places where the lamps' light falls first.
 std::vector<Receiver> lit_places(const RayScene& scene, const std::vector<Emitter>& lamps) {
   std::vector<Receiver> places;
   const SobolSequence samples(mixed(1, 0x711e));
@@ -29,7 +29,7 @@ std::vector<Receiver> lit_places(const RayScene& scene, const std::vector<Emitte
   return places;
 }
 
-/// What lies open below a grid at half the scene's height.
+/// Open places below a grid at half the scene's height.
 std::vector<Receiver> floor_places(const RayScene& scene) {
   std::vector<Receiver> places;
   constexpr int kGrid = 12;
@@ -43,7 +43,8 @@ std::vector<Receiver> floor_places(const RayScene& scene) {
   return places;
 }
 
-/// Share of `wanted_m` in the picture with nothing in front; a wish seen from nearby or behind does not count.
+/// Share of `wanted` in the picture with nothing in front. A place nearer than 0.3 m does not count; one seen from
+/// behind counts as 0.3.
 double seen_share(const RayScene& scene, const Camera& camera, const std::vector<Receiver>& wanted) {
   const Vec3 ahead = (camera.target_world_m - camera.eye_world_m).normalized();
   const double half_fov_rad = camera.vertical_fov_rad / 2;
@@ -52,12 +53,12 @@ double seen_share(const RayScene& scene, const Camera& camera, const std::vector
     const Vec3 to_m = wish.position_world_m - camera.eye_world_m;
     if (to_m.norm() < 0.3 || to_m.normalized().dot(ahead) < std::cos(1.2 * half_fov_rad)) continue;
     if (scene.occluded(wish.position_world_m, wish.normal_world, camera.eye_world_m)) continue;
-    seen += wish.normal_world.dot(to_m) < 0 ? 1.0 : 0.3;  // lit side towards us
+    seen += wish.normal_world.dot(to_m) < 0 ? 1.0 : 0.3;  // its lit side faces the camera
   }
   return wanted.empty() ? 0 : seen / static_cast<double>(wanted.size());
 }
 
-/// Mean, over a coarse grid of the picture, of how far one sees, bounded: a view into a near wall is none.
+/// Mean visible distance over a coarse grid of the picture, bounded: a view of a near wall shows nothing.
 double openness(const RayScene& scene, const Camera& camera, double far_m) {
   double sum = 0;
   for (int j = 0; j < 6; ++j)
@@ -80,7 +81,7 @@ Camera automatic_camera(const RayScene& scene, const Rig& rig, int width_px, int
     const std::vector<Emitter> lamps = emitters_of(rig);
     wanted = lit_places(scene, lamps);
     if (!wanted.empty()) {
-      // Ground that goes on for a kilometre, or what stands behind the walls, is not the room.
+      // Ground that goes on for a kilometre, and things behind the walls, are not the room.
       Eigen::AlignedBox3d lit;
       for (const Receiver& wish : wanted) lit.extend(wish.position_world_m);
       for (const Emitter& lamp : lamps) lit.extend(lamp.world_from_lamp.translation_m);

@@ -1,13 +1,13 @@
 #pragma once
-/// A camera for who names none.
+/// The default camera.
 
 #include "core/picture/picture.h"
 #include "core/rig/rig.h"
 
 namespace luxrig {
 
-/// A view from the rim of the room, inside it, from which most of the rig's points are seen; where it has none, most of
-/// what its lamps and openings light first.
+/// A view from the rim of the room, inside it, that shows most of the rig's points. In a rig without points it shows
+/// most of the places that lamps and openings light first.
 [[nodiscard]] Camera automatic_camera(const RayScene& scene, const Rig& rig, int width_px, int height_px,
                                       double vertical_fov_rad);
 

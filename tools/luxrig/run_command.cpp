@@ -1,4 +1,4 @@
-// run: the daemon in the foreground, which is tools/luxrigd/run.cpp.
+// run: the daemon in the foreground (tools/luxrigd/run.cpp).
 #include <CLI/CLI.hpp>
 #include <memory>
 

@@ -1,4 +1,4 @@
-// solve: what the rig's tasks ask, as a plan.
+// solve: does the rig's tasks and writes a plan.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -37,7 +37,7 @@ std::string xy_text(const std::optional<Chromaticity>& xy) {
   return xy ? fmt::format("{:.4f} {:.4f}", xy->x(), xy->y()) : "-";
 }
 
-/// What the last task to set fixtures has set them to.
+/// Levels from the last task that sets fixtures.
 void print_levels(const PlannedTask& task) {
   Table lights({"fixture", "luminaire", ">level", ">lumens", ">watts"});
   for (const PlannedLight& light : task.lights)
@@ -123,7 +123,7 @@ void print_aim(const PlannedTask& task) {
 void print_relief(const Rig& rig, const PlannedTask& task) {
   const PlannedRelief& relief = *task.relief;
   const char* const when = levels_set_before(rig, task.name) ? "before" : "as they hang, at full level";
-  const bool dark = relief.before_local_contrast_lx.value_or(1) == 0;  // no light, so no figure of it
+  const bool dark = relief.before_local_contrast_lx.value_or(1) == 0;  // without light there is no figure
   const auto was = [&](const std::optional<double>& before, const std::string& text) {
     return before && !dark ? fmt::format(" ({}: {})", when, text) : std::string();
   };
@@ -145,7 +145,7 @@ void print_relief(const Rig& rig, const PlannedTask& task) {
 
 int run_solve(const SolveArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
-  // First of all: a thread that there is before (the ray tracer's) would take the signal, and the process would end.
+  // First of all: a thread started earlier (the ray tracer's) would take the signal, and the process would end.
   const std::stop_token stop = stop_on_signals();
   const auto session = open_session(arguments.rig);
   if (!session) return report(session.error());
@@ -197,7 +197,7 @@ int run_solve(const SolveArguments& arguments) {
     if (coloured) cells.insert(cells.end() - 3, {xy_text(p.goal_xy), xy_text(p.xy)});
     points.row(std::move(cells));
   }
-  // What the last task to set fixtures has set them to; and each light that is to be hung.
+  // Levels from the last task that sets fixtures, and each light that is to be hung.
   const auto last_levels = std::find_if(plan->tasks.rbegin(), plan->tasks.rend(), [](const PlannedTask& task) {
     return task.kind == name_of(TaskKind::emittance) || task.kind == name_of(TaskKind::aim);
   });

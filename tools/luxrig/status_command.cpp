@@ -1,4 +1,4 @@
-// status: what the running daemon does and how its devices are.
+// status: phase, goals and devices of the running daemon.
 #include <fmt/format.h>
 
 #include <memory>

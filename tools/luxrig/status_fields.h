@@ -1,5 +1,5 @@
 #pragma once
-/// Fields of the daemon's status (tools/luxrigd/API.md) as a person reads them: what is not known is "-".
+/// Fields of the daemon's status (tools/luxrigd/API.md) as text for a person; an unknown value is "-".
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// How a computation of transport went, as `evaluate --json` and plans tell it.
+/// Report on a computation of transport, for `evaluate --json` and plans.
 
 #include <nlohmann/json.hpp>
 #include <string>
@@ -8,10 +8,12 @@
 
 namespace luxrig {
 
-/// "model", "model_reason"; "rms_error" and "relative_error": standard errors, of max(a point's lux, floor), root mean
-/// square over the points and largest; "wanted", "wanted_of" ("rms" or "worst"), "reached" (of the worst: two standard
-/// errors are within it); "error_floor_lux": standard error small enough at any point (absent when all is exact);
-/// "ended_by_time" and "warning" when it was not reached.
+/// "model", "model_reason"
+/// "rms_error", "relative_error": standard errors over max(a point's lux, floor): root mean square over the points, and
+/// largest
+/// "wanted", "wanted_of" ("rms" or "worst"), "reached" (for the worst: two standard errors are within it)
+/// "error_floor_lux": a standard error that is small enough at any point (absent when all is exact)
+/// "ended_by_time" and "warning" if it was not reached
 [[nodiscard]] inline nlohmann::ordered_json transport_json(const ModelUsed& used) {
   nlohmann::ordered_json out = {{"model", used.name},          {"model_reason", used.reason},
                                 {"wanted", used.wanted},       {"wanted_of", used.of_worst ? "worst" : "rms"},
@@ -25,7 +27,7 @@ namespace luxrig {
   return out;
 }
 
-/// A plan with that under "transport".
+/// A plan with this report under "transport".
 [[nodiscard]] inline std::string with_transport(const std::string& plan_json, const ModelUsed& used) {
   auto plan = nlohmann::ordered_json::parse(plan_json);
   plan["transport"] = transport_json(used);

@@ -10,7 +10,7 @@
 
 namespace luxrig {
 
-/// Time that a test steps by itself, in place of the clock; null: the clock.
+/// A time that a test steps, used in place of the clock; null = the clock.
 inline std::atomic<const std::atomic<Time>*> stepped_time{nullptr};
 
 [[nodiscard]] inline Time now() {

@@ -11,7 +11,7 @@ namespace luxrig {
 
 namespace {
 
-/// A call again for as long as signals interrupt it.
+/// Repeats a call while signals interrupt it.
 template <class Call>
 auto uninterrupted(Call call) {
   auto result = call();
@@ -19,7 +19,7 @@ auto uninterrupted(Call call) {
   return result;
 }
 
-/// A descriptor that closes with its scope. A failing close() loses nothing: what must be on disk was synced before.
+/// A descriptor that closes with its scope. A failing close() loses nothing: the data was synced before.
 class OpenFile {
  public:
   OpenFile(const std::filesystem::path& path, int flags)
@@ -33,7 +33,7 @@ class OpenFile {
   OpenFile(const OpenFile&) = delete;
   OpenFile& operator=(const OpenFile&) = delete;
   [[nodiscard]] bool good() const { return fd_ >= 0; }
-  /// EINVAL: this file system keeps nothing back that could be synced.
+  /// EINVAL: this file system has nothing to sync.
   [[nodiscard]] bool sync() const {
     return uninterrupted([&] { return ::fsync(fd_); }) == 0 || errno == EINVAL;
   }
@@ -45,7 +45,7 @@ class OpenFile {
     }
     return true;
   }
-  /// Appends what is left of it.
+  /// Appends the rest of the file.
   [[nodiscard]] bool read(std::string& text) const {
     char block[1 << 16];
     while (true) {
@@ -71,7 +71,7 @@ Result<void> write_file(const std::filesystem::path& path, const std::string& te
     return tl::unexpected(Fault{
         Cause::system, {}, "cannot " + std::string(step) + " " + path.string() + ": " + std::strerror(errno), {}});
   };
-  // On disk under another name first, then renamed: a power cut leaves the old file or the new one.
+  // Written to disk under another name first, then renamed: a power cut leaves the old file or the new one.
   const std::string temporary = path.string() + ".new";
   const char* failing = nullptr;
   {

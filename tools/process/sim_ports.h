@@ -1,5 +1,5 @@
 #pragma once
-/// Where a simulated rig listens in place of the rig's devices.
+/// The ports of a simulated rig, in place of the rig's devices.
 
 #include <filesystem>
 #include <map>
@@ -15,7 +15,7 @@ struct SimPorts {
   Redirect control;
 };
 
-/// The text of a ports file as luxrig-sim writes it; `file`: its name in problems.
+/// Parses a ports file as luxrig-sim writes it; `file`: its name in problems.
 [[nodiscard]] Checked<SimPorts> sim_ports_of(const std::string& text, const std::string& file);
 [[nodiscard]] Checked<SimPorts> read_sim_ports(const std::filesystem::path& file);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// The simulated rig as a child process, and what it says about the truth.
+/// The simulated rig as a child process, and the truth that it reports.
 
 #include <sys/types.h>
 
@@ -26,7 +26,7 @@ struct SimTruth {
 
 class SimProcess {
  public:
-  /// Starts luxrig-sim, found beside this program. `seed`: of its deviations.
+  /// Starts luxrig-sim from the folder of this program. `seed`: of its deviations.
   [[nodiscard]] static Result<SimProcess> start(const std::filesystem::path& rig, std::uint64_t seed);
   ~SimProcess();  ///< ends the child
   SimProcess(SimProcess&& other) noexcept;
@@ -41,7 +41,7 @@ class SimProcess {
   std::filesystem::path folder_;  ///< its ports file and log
 };
 
-/// Asks the simulator what truly happened; nothing when it does not answer.
+/// Asks the simulator for the true light; nothing if it does not answer.
 [[nodiscard]] std::optional<SimTruth> ask_truth(const Redirect& control);
 
 }  // namespace luxrig

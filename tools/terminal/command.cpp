@@ -13,7 +13,7 @@ namespace luxrig {
 
 namespace {
 
-/// Not fmt::print, which throws when the disk of a log is full or nobody reads.
+/// Not fmt::print, which throws if the disk of a log is full or a pipe has no reader.
 void tell(const std::string& text) {
   (void)std::fwrite(text.data(), 1, text.size(), stderr);
   (void)std::fflush(stderr);
@@ -69,7 +69,7 @@ std::stop_token stop_on_signals() {
       int signal = 0;
       sigwait(&set, &signal);
       made.request_stop();
-      // A second signal ends the process the ordinary way.
+      // A second signal ends the process in the ordinary way.
       pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
       sigwait(&set, &signal);
       _exit(128 + signal);

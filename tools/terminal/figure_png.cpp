@@ -17,7 +17,7 @@ constexpr double kTitleFont_px = 15, kFont_px = 12;
 
 void ink(cairo_t* pen, const Vec3& rgb) { cairo_set_source_rgb(pen, rgb.x(), rgb.y(), rgb.z()); }
 
-/// White under everything that is written or marked in a picture, so that it reads on any colour.
+/// White under all text and marks in a picture, so that they read on any colour.
 void fill_on_white(cairo_t* pen, const Vec3& rgb) {
   cairo_set_source_rgba(pen, 1, 1, 1, 0.9);
   cairo_set_line_width(pen, 3);
@@ -67,8 +67,8 @@ void draw_mark(cairo_t* pen, FigureMark mark, double x, double y, const Vec3& rg
   }
 }
 
-/// Where a label's words go, and what earlier ones have taken: on its own line if that is free, else a few below or
-/// above.
+/// Places for the words of labels, clear of earlier ones: on the label's own line if it is free, else a few lines below
+/// or above.
 class LabelPlaces {
  public:
   [[nodiscard]] double free_y(double x, double y, double wide) {
@@ -112,7 +112,7 @@ void draw_label(cairo_t* pen, const FigureLabel& label, LabelPlaces& places, dou
   fill_on_white(pen, alone ? label.rgb : Vec3(Vec3::Constant(0.1)));
 }
 
-/// Lays the column out; draws it if there is a pen to draw with. Returns how far down it reached.
+/// Lays the column out, and draws it if there is a pen. Returns how far down it reached.
 class FigureColumn {
  public:
   FigureColumn(cairo_t* pen, bool draws, double left, double top) : pen_(pen), draws_(draws), left_(left), y_(top) {}

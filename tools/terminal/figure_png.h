@@ -1,5 +1,5 @@
 #pragma once
-/// A picture with what it takes to read it: title, scale, key, names in it.
+/// A picture with everything needed to read it: title, scale, key, labels.
 
 #include <filesystem>
 #include <functional>
@@ -26,7 +26,7 @@ struct FigureKey {
   std::string words;
 };
 
-/// In the picture: the mark at the place, the words beside it, within the picture.
+/// A mark at a place in the picture, with words beside it; both stay within the picture.
 struct FigureLabel {
   double x_px = 0, y_px = 0;
   FigureMark mark = FigureMark::none;
@@ -42,13 +42,13 @@ struct Figure {
   std::vector<FigureLabel> labels;
 };
 
-/// Title and caption above the picture, scale and key in a column on its right: the file is kFigureColumn_px wider
-/// than the picture, and as much higher as words need. Returns an empty string, or why it could not be written.
+/// Title and caption above the picture, scale and key in a column on its right. The file is kFigureColumn_px wider than
+/// the picture, and higher by the height of the words. Returns an empty string, or why it could not be written.
 inline constexpr int kFigureColumn_px = 170;
 [[nodiscard]] std::string write_figure(const Figure& figure, const std::filesystem::path& file);
 
-/// Values for a scale's ticks: multiples of 1, 2 or 5 × 10^k, at most `most` of them (≥ 2), bottom and top included
-/// where they are some.
+/// Values for a scale's ticks: multiples of 1, 2 or 5 × 10^k, at most `most` (≥ 2). Bottom and top are included if they
+/// are such multiples.
 [[nodiscard]] std::vector<double> even_ticks(double bottom, double top, int most);
 
 }  // namespace luxrig

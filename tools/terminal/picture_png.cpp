@@ -78,9 +78,9 @@ double round_up_1_2_5(double value) {
 
 std::string write_photograph(const Picture& picture, const std::string& title, const PhotographLook& look,
                              const std::filesystem::path& file) {
-  constexpr double kWhite = 6;  // exposed luminance that becomes white
+  constexpr double kWhite = 6;  // exposed luminance shown as white
   const double exposure = kWhite / look.white_cd_m2;
-  // A black body's blue may be nearly nothing: what little there is in the picture is not made into much.
+  // A black body's blue may be nearly zero. Do not amplify the little that there is.
   const Vec3 balance = look.white_rgb.cwiseMax(0.05).cwiseInverse();
   const PngSurface surface = make_png_surface(picture.width_px, picture.height_px);
   paint_png(surface.get(), 0, 0, picture.width_px, picture.height_px, [&](int x, int y) {
@@ -100,8 +100,8 @@ std::string write_photograph(const Picture& picture, const std::string& title, c
 
 namespace {
 
-/// Lux averaged over like neighbours, as many as the picture's noise asks for; for lines only: they are drawn where the
-/// eye would draw them, not along noise.
+/// Lux averaged over similar neighbours, as many as the picture's noise requires. For lines only: they follow what the
+/// eye sees, not the noise.
 std::vector<float> calmed(const Picture& picture) {
   constexpr double kCalm = 0.01;
   const int reach = std::clamp(static_cast<int>(std::ceil(picture.relative_error / kCalm / 2)), 2, 8);
@@ -136,7 +136,7 @@ void draw_isolux_lines(cairo_t* pen, const Picture& picture, double bottom_lx, d
       for (int x = 0; x + 1 < picture.width_px; ++x) {
         const float here = at(x, y), right = at(x + 1, y), below = at(x, y + 1);
         if (here < 0 || right < 0 || below < 0) continue;
-        // A step of more than a third between neighbours is an edge of things, not a line of light.
+        // A step of more than a third between neighbours is the edge of an object, not a gradient of light.
         const float steepest = std::max(std::abs(right - here), std::abs(below - here));
         const bool crosses = (here < line_lx) != (right < line_lx) || (here < line_lx) != (below < line_lx);
         if (!crosses || steepest > here / 3) continue;

@@ -10,9 +10,9 @@
 
 namespace luxrig {
 
-/// As a photograph: exposed and balanced as `look` says, highlights rolled off (E. Reinhard et al. 2002, eq. 4), sRGB.
-/// `title` is written in the corner; may be empty. PNG, or JPEG by the name's ending.
-/// Returns an empty string, or why the file could not be written.
+/// As a photograph: exposed and balanced by `look`, highlights rolled off (E. Reinhard et al. 2002, eq. 4), sRGB.
+/// `title` is written in the corner; may be empty. PNG or JPEG, by the name's ending. Returns an empty string, or why
+/// the file could not be written.
 [[nodiscard]] std::string write_photograph(const Picture& picture, const std::string& title, const PhotographLook& look,
                                            const std::filesystem::path& file);
 
@@ -21,14 +21,14 @@ namespace luxrig {
 [[nodiscard]] std::string write_false_colour(const Picture& picture, const std::string& title,
                                              std::optional<double> max_lx, const std::filesystem::path& file);
 
-/// The bytes of a PNG; empty when there is no memory for it.
+/// The bytes of a PNG; empty if memory runs out.
 [[nodiscard]] std::string plan_view_png(const PlanView& view);
 
 /// Colour of the viridis scale at 0 … 1, sRGB 0 … 1: linear between nine of its table's entries.
 [[nodiscard]] Vec3 viridis(double at);
 
-/// Blue below the middle (0.5), nearly white in it, red above: told apart by people who cannot tell red from green. The
-/// scale RdBu of nine entries (C. Brewer, colorbrewer2.org), turned round.
+/// Blue below the middle (0.5), nearly white in it, red above. People who cannot tell red from green can read it. The
+/// scale RdBu of nine entries (C. Brewer, colorbrewer2.org), reversed.
 [[nodiscard]] Vec3 blue_white_red(double at);
 
 /// Smallest of 1, 2, 5 × 10^k that is at least `value` (> 0).

@@ -5,7 +5,7 @@
 #include <cctype>
 #include <cerrno>
 #include <csetjmp>
-#include <cstdio>  // jpeglib.h needs it before
+#include <cstdio>  // jpeglib.h needs it first
 #include <cstring>
 #include <sstream>
 
@@ -27,7 +27,7 @@ std::string ending_of(const std::filesystem::path& file) {
 
 bool is_jpeg_ending(const std::string& ending) { return ending == ".jpg" || ending == ".jpeg"; }
 
-/// libjpeg comes back here with what is wrong: nothing may be thrown through C.
+/// libjpeg returns here with an error: nothing may be thrown through C.
 struct JpegErrors {
   jpeg_error_mgr manager{};
   std::jmp_buf back;

@@ -1,5 +1,5 @@
 #pragma once
-/// What pictures are drawn on: a cairo surface, colours into it, text onto it.
+/// The canvas of pictures: a cairo surface, with colours and text.
 
 #include <cairo.h>
 
@@ -24,17 +24,17 @@ using PngPen = std::unique_ptr<cairo_t, decltype(&cairo_destroy)>;
 /// Whether the name ends in .png, .jpg or .jpeg, in any case.
 [[nodiscard]] bool is_picture_name(const std::filesystem::path& file);
 
-/// As PNG, or as JPEG (quality 92) where the name ends in .jpg or .jpeg.
-/// Returns an empty string, or why the file could not be written.
+/// As PNG, or as JPEG (quality 92) if the name ends in .jpg or .jpeg. Returns an empty string, or why the file could
+/// not be written.
 [[nodiscard]] std::string write_picture(const PngSurface& surface, const std::filesystem::path& file);
 
 enum class PngFont { regular, bold };
 void set_png_font(cairo_t* pen, double size_px, PngFont font = PngFont::regular);
 [[nodiscard]] double png_text_width_px(cairo_t* pen, const std::string& text);
-/// Lines of at most this width in the pen's font, broken at spaces; a longer word has a line of its own.
+/// Lines of at most this width in the pen's font, broken at spaces. A longer word gets a line of its own.
 [[nodiscard]] std::vector<std::string> png_text_lines(cairo_t* pen, const std::string& text, double width_px);
 
-/// colour_of(x, y) gives sRGB 0…1, of the pixels from left and top on.
+/// colour_of(x, y) gives sRGB 0…1; x and y count from the left and top of the painted area.
 template <class ColourOf>
 void paint_png(cairo_surface_t* surface, int left, int top, int width_px, int height_px, const ColourOf& colour_of) {
   cairo_surface_flush(surface);

@@ -6,7 +6,7 @@
 namespace luxrig {
 namespace {
 
-/// Columns a UTF-8 text takes on a terminal (one per code point).
+/// Columns that UTF-8 text takes on a terminal (one per code point).
 std::size_t width_of(const std::string& text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<std::uint8_t>(c) & 0xC0) != 0x80; }));

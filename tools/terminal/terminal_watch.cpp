@@ -14,7 +14,7 @@ constexpr double kSilent_s = 1.5, kEvery_s = 10, kEveryOnTerminal_s = 0.5;
 
 double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-/// Not fmt::print, which throws when the disk of a log is full or nobody reads.
+/// Not fmt::print, which throws if the disk of a log is full or a pipe has no reader.
 void to_standard_error(const std::string& text) {
   (void)std::fwrite(text.data(), 1, text.size(), stderr);
   (void)std::fflush(stderr);

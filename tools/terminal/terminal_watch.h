@@ -1,5 +1,5 @@
 #pragma once
-/// Lines about a long computation for a person: how far it is, before two seconds have passed.
+/// Progress lines about a long computation for a person, the first within two seconds.
 
 #include <condition_variable>
 #include <functional>
@@ -12,16 +12,16 @@
 
 namespace luxrig {
 
-/// On a terminal one line a stage, written over twice a second; elsewhere a line every ten seconds.
+/// On a terminal one line per stage, rewritten twice a second; elsewhere a line every ten seconds.
 class TerminalWatch {
  public:
-  /// sink   gets the text; none: standard error
+  /// sink   gets the text; none = standard error
   explicit TerminalWatch(std::function<void(std::string)> sink = nullptr);
   ~TerminalWatch();
   TerminalWatch(const TerminalWatch&) = delete;
   TerminalWatch& operator=(const TerminalWatch&) = delete;
 
-  /// What a computation calls; it must not outlive this.
+  /// The callback for a computation; it must not outlive this object.
   [[nodiscard]] Tell tell() {
     return [this](const Doing& doing) { told(doing); };
   }
@@ -40,7 +40,7 @@ class TerminalWatch {
   std::function<void(std::string)> sink_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::vector<Line> stages_;  ///< of stages that are under way; the innermost is last
+  std::vector<Line> stages_;  ///< stages under way; the innermost is last
   bool ended_ = false;
   std::thread thread_;  ///< last: it uses all of these
 };

@@ -38,7 +38,7 @@ void disks(const BenchOptions& options, std::vector<BenchRow>& rows) {
       const double turn = 1.3 * a + h;
       const Vec3 out(std::cos(turn), std::sin(turn), 0), at_m = a * out - Vec3(0, 0, h);
       expect(parallel, at_m, Vec3::UnitZ(), form_factor_of_parallel_disk(r, h, a), area_m2);
-      // The closed form looks past the axis: its horizon must not cut the disk.
+      // The closed form looks across the axis: the element's horizon must not cut the disk.
       if (a > r) expect(perpendicular, at_m, -out, form_factor_of_perpendicular_disk(r, h, a), area_m2);
     }
   measure_case(parallel, options, rows);
@@ -57,7 +57,7 @@ void rectangles(const BenchOptions& options, std::vector<BenchRow>& rows) {
         for (const double a : {left, right})
           for (const double b : {front, back}) sum += form_factor_of_parallel_rectangle(a, b, h);
         expect(parallel, {x * u, y * v, -h}, Vec3::UnitZ(), sum, area_m2);
-        // Beside the lamp, at right angles to it, looking along +Y over it from `gap` before its edge.
+        // Beside the lamp, at right angles to it, facing +Y across the lamp, `gap` before its edge.
         for (const double gap : {0.0, 0.07, 1.0}) {
           double side = 0;
           for (const double a : {left, right})
@@ -71,7 +71,7 @@ void rectangles(const BenchOptions& options, std::vector<BenchRow>& rows) {
   measure_case(perpendicular, options, rows);
 }
 
-/// A sphere of one luminance shines as a point does, Φ/4π cosθ/d², until the horizon cuts it.
+/// A sphere of uniform luminance shines like a point, Φ/4π cosθ/d², until the horizon cuts it.
 void spheres(const BenchOptions& options, std::vector<BenchRow>& rows) {
   const double r = 0.2;
   AnalyticCase whole, cut;
@@ -87,7 +87,7 @@ void spheres(const BenchOptions& options, std::vector<BenchRow>& rows) {
       const Vec3 away = Vec3(std::cos(0.3 * k), std::sin(0.3 * k), 0.2 * std::cos(k)).normalized();
       const Vec3 side = away.cross(Vec3::UnitZ()).normalized();
       const Vec3 normal = -away * std::cos(theta) + side * std::sin(theta);
-      // π L = Φ / (4 π r²) for a sphere of one luminance
+      // π L = Φ / (4 π r²) for a sphere of uniform luminance
       expect(d / r * std::cos(theta) >= 1 ? whole : cut, d * away, normal, factor, 4 * kPi * r * r);
     }
   measure_case(whole, options, rows);

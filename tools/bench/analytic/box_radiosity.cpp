@@ -71,8 +71,8 @@ double BoxRadiosity::reflected_lx(const Vec3& position_m, const Vec3& normal) co
   return (4 * gathered_lx(fine_, position_m, normal) - gathered_lx(coarse_, position_m, normal)) / 3;
 }
 
-/// Lambert's formula for a polygon. In a box none is cut by a wall point's horizon; one in the point's own plane fills
-/// nothing.
+/// Lambert's formula for a polygon. In a box the horizon of a wall point cuts no polygon. A polygon in the point's own
+/// plane contributes nothing.
 double BoxRadiosity::form_factor(const Vec3& position_m, const Vec3& normal, const Patch& patch) {
   if (normal.dot(patch.centre_m - position_m) <= 1e-9) return 0;
   const std::array<Vec3, 4> corners = {patch.corner_m, patch.corner_m + patch.u_m,

@@ -1,6 +1,6 @@
 #pragma once
-/// Radiosity of an empty box round a point source, of independent make: patches, exact form factors from points, no
-/// sampling and no ray. What `luxrig bench analytic` judges evaluators by.
+/// Radiosity of an empty box with a point source, made independently: patches, exact form factors from points, no
+/// sampling and no rays. `luxrig bench analytic` judges evaluators by it.
 
 #include <array>
 #include <vector>
@@ -10,15 +10,15 @@
 namespace luxrig {
 
 struct BoxRoom {
-  Vec3 size_m;                        ///< from the origin
+  Vec3 size_m;                        ///< one corner is at the origin
   std::array<double, 6> reflectance;  ///< of the faces x = 0, x = size, y = 0, y = size, z = 0, z = size
   double flux_lm;                     ///< of an isotropic source
   Vec3 source_m;
 };
 
-/// Reflected illuminance [lx] at points on the walls: patches of constant radiosity, per_edge² to a face, and their
-/// refinement to twice as many, extrapolated. With 8 it is good to 2e-4 away from the box's edges, as its test shows,
-/// and to some per cent in its corners.
+/// Reflected illuminance [lx] at points on the walls. The walls have patches of constant radiosity, per_edge² to a
+/// face. The result is extrapolated from these and from twice as many per edge. With 8 it is good to 2e-4 away from the
+/// box's edges, as its test shows, and to some per cent in the corners.
 class BoxRadiosity {
  public:
   BoxRadiosity(const BoxRoom& room, int per_edge);

@@ -7,7 +7,7 @@ namespace luxrig {
 
 double form_factor_of_parallel_disk(double r, double h, double a) {
   const double z = r * r + h * h + a * a;
-  // 1 + (r² - h² - a²)/root, without the cancellation that a small disk gives: root² - (z - 2r²)² = 4 h² r².
+  // 1 + (r² - h² - a²)/root, without the cancellation for a small disk: root² - (z - 2r²)² = 4 h² r².
   const double root = std::sqrt(z * z - 4 * a * a * r * r), rest = z - 2 * r * r;
   return rest > 0 ? 2 * h * h * r * r / (root * (root + rest)) : 0.5 * (1 - rest / root);
 }

@@ -1,7 +1,7 @@
 #pragma once
-/// Form factors from a small plane element to finite surfaces, in closed form: the share of the element's illuminance
-/// that a surface of one luminance L gives it, E = π L F. (J. R. Howell, A Catalog of Radiation Heat Transfer
-/// Configuration Factors: B-4, B-5, B-12, B-13, B-43.)
+/// Form factors from a small plane element to finite surfaces, in closed form: a surface of uniform luminance L gives
+/// the element E = π L F. (J. R. Howell, A Catalog of Radiation Heat Transfer Configuration Factors: B-4, B-5, B-12,
+/// B-13, B-43.)
 
 #include <vector>
 
@@ -9,29 +9,30 @@
 
 namespace luxrig {
 
-/// Disk of radius r parallel to the element: element at distance h from its plane, a off its axis.
+/// Disk of radius r parallel to the element. The element is at distance h from its plane, a off its axis.
 [[nodiscard]] double form_factor_of_parallel_disk(double r_m, double h_m, double a_m);
 
-/// Disk at right angles to the element, which looks at the disk's axis from a > 0 off it and h below its plane.
+/// Disk at right angles to the element. The element is a > 0 off the disk's axis and h below its plane, and faces the
+/// axis.
 [[nodiscard]] double form_factor_of_perpendicular_disk(double r_m, double h_m, double a_m);
 
-/// Rectangle of a by b parallel to the element, which lies h below one of its corners.
+/// Rectangle of a by b parallel to the element, which is h below one of its corners.
 [[nodiscard]] double form_factor_of_parallel_rectangle(double a_m, double b_m, double h_m);
 
-/// Rectangle of a by b at right angles to the element, which lies h below one end of a side of length a and looks along
-/// b, over the rectangle.
+/// Rectangle of a by b at right angles to the element. The element is h below one end of a side of length a and faces
+/// along b, over the rectangle.
 [[nodiscard]] double form_factor_of_perpendicular_rectangle(double a_m, double b_m, double h_m);
 
-/// Sphere of radius r at distance d > r, at angle θ off the element's normal; also when the horizon cuts it.
+/// Sphere of radius r at distance d > r, at angle θ off the element's normal; also if the horizon cuts it.
 [[nodiscard]] double form_factor_of_sphere(double r_m, double d_m, double theta_rad);
 
-/// Nodes and weights of Gauss and Legendre on [-1, 1].
+/// Nodes and weights of Gauss-Legendre quadrature on [-1, 1].
 struct GaussNodes {
   std::vector<double> nodes, weights;
 };
 [[nodiscard]] GaussNodes gauss_rule(int count);
 
-/// ∫∫ f over [a, b] × [c, d] by `count` nodes each way; f(x, y).
+/// ∫∫ f over [a, b] × [c, d], with `count` nodes each way; f(x, y).
 template <class F>
 [[nodiscard]] double integral(const GaussNodes& rule, double a, double b, double c, double d, F&& f) {
   double sum = 0;

@@ -1,6 +1,6 @@
-/// CIE 171:2006, 5.9, 5.11, 5.13 and 5.14 from first principles: light of the CIE's skies through an unglazed opening
-/// in a roof or façade, the ground outside, and masks before it. Dimensions are our own; the references are quadratures
-/// of the sky's formula over the opening. (5.5, 5.10 and 5.12 need glass, which scenes do not have.)
+/// CIE 171:2006, 5.9, 5.11, 5.13 and 5.14 from first principles: light of the CIE skies through an unglazed opening in
+/// a roof or façade, with outside ground and masks before the opening. Dimensions are our own; the references are
+/// quadratures of the sky's formula over the opening. (5.5, 5.10 and 5.12 need glass, which these scenes do not have.)
 
 #include <fmt/format.h>
 
@@ -25,7 +25,7 @@ std::shared_ptr<const ReferenceSky> sky_of(int type) {
       type, Vec3(std::cos(up) * std::cos(turn), std::cos(up) * std::sin(turn), std::sin(up)), 3000.0);
 }
 
-/// The sky under test of the same type, sun and illuminance.
+/// The sky under test, with the same type, sun and illuminance.
 Emitter daylight(int type, const ReferenceSky& like) {
   Emitter emitter;
   emitter.sky = make_general_sky(type, like.towards_sun_world(), like.horizontal_illuminance_lx());
@@ -68,9 +68,9 @@ AnalyticCase roof(int type, double edge_m) {
 
 enum class Mask { none, overhang, opposite };
 
-/// Black room, 4 m wide, 4 m deep and 3 m high, 150 m above the ground, so that its own shadow on the ground is below
-/// 2e-4; a window of 2 × 1 m, 1 m above its floor, in the façade y = 0. Ground of reflectance 0.3, 4 × 4 km. Masks are
-/// black and 400 m wide: an overhang of 2 m at the level of the roof, or a wall 6 m away up to 2 m above the floor.
+/// Black room, 4 m wide, 4 m deep and 3 m high. It is 150 m above the ground, so that its own shadow on the ground is
+/// below 2e-4. A window of 2 × 1 m, 1 m above the floor, in the façade y = 0. Ground of reflectance 0.3, 4 × 4 km.
+/// Masks are black and 400 m wide: an overhang of 2 m at roof level, or a wall 6 m away up to 2 m above the floor.
 AnalyticCase facade(int type, Mask mask) {
   constexpr double kGround = 0.3, kBelow_m = 150, kGroundHalf_m = 2000, kOverhang_m = 2, kAway_m = 6, kTop_m = 2;
   AnalyticCase one;
@@ -112,7 +112,7 @@ AnalyticCase facade(int type, Mask mask) {
   };
   const GaussNodes rule = gauss_rule(40);
   const auto expect = [&](const Vec3& at_m, const Vec3& normal) {
-    // The heights of the window at which what is seen through it changes: the horizon, the ground's end, the masks.
+    // Heights in the window at which the view through it changes: the horizon, the ground's end, the masks.
     std::vector<double> levels = {1, 2};
     const auto edge = [&](double z_m) {
       if (z_m > 1 && z_m < 2) levels.push_back(z_m);

@@ -1,4 +1,4 @@
-/// Light that stays in: the integrating sphere, and a cube against radiosity.
+/// Closed rooms: the integrating sphere, and a cube judged by radiosity.
 
 #include <fmt/format.h>
 
@@ -16,9 +16,9 @@ constexpr double kBulb_lm = 1000;
 
 Emitter bulb(const Vec3& position_m) { return {make_isotropic(kBulb_lm), {Mat3::Identity(), position_m}}; }
 
-/// E = Φ/A (direct + ρ/(1-ρ)): a sphere of 20 480 facets round a source at its centre. The facets are seen slightly
-/// tilted, which makes the wall uneven by the square of their half angle, 1e-4. Both the whole, and the reflected part
-/// by itself, are judged.
+/// E = Φ/A (direct + ρ/(1-ρ)): a sphere of 20 480 facets around a source at its centre. The source sees the facets
+/// slightly tilted, so the wall is uneven by the square of their half angle, 1e-4. The total and the reflected part are
+/// judged separately.
 void add_spheres(const BenchOptions& options, std::vector<BenchRow>& rows) {
   for (const double reflectance : {0.5, 0.9}) {
     if (options.quick && reflectance > 0.5) continue;
@@ -46,8 +46,8 @@ void add_spheres(const BenchOptions& options, std::vector<BenchRow>& rows) {
   }
 }
 
-/// CIE 171:2006, 5.8: interreflection in a cube of 4 m with a source in its middle, against radiosity of independent
-/// make at each place (the text's own formula holds for the mean only), and with the source off the middle.
+/// CIE 171:2006, 5.8: interreflection in a cube of 4 m with a source in its middle, and with the source off the middle.
+/// Judged by independent radiosity at each place (the text's own formula holds for the mean only).
 void add_cubes(const BenchOptions& options, std::vector<BenchRow>& rows) {
   const double edge_m = 4;
   for (const double reflectance : {0.3, 0.5, 0.8})
@@ -63,7 +63,7 @@ void add_cubes(const BenchOptions& options, std::vector<BenchRow>& rows) {
       same.fill(reflectance);
       const BoxRadiosity exact({Vec3::Constant(edge_m), same, kBulb_lm, source_m}, 8);
       for (const WallPoint& p : cube_wall_grid(edge_m, options.quick ? 1 : 2)) {
-        // Off the middles of patches and their edges.
+        // Not in the middle of patches or on their edges.
         const Vec3 shift = Vec3(0.31, -0.23, 0.17),
                    at_m = p.position_m + shift - shift.dot(p.normal) * p.normal + one.scene.origin_world_m;
         one.receivers.push_back({at_m, p.normal});
@@ -74,7 +74,7 @@ void add_cubes(const BenchOptions& options, std::vector<BenchRow>& rows) {
     }
 }
 
-/// Flux is conserved: the mean over the walls of a closed cube is Φ/(A (1-ρ)) wherever the source is.
+/// Flux is conserved: the mean over the walls of a closed cube is Φ/(A (1-ρ)), wherever the source is.
 void add_cube_means(const BenchOptions& options, std::vector<BenchRow>& rows) {
   const double edge_m = 3, reflectance = 0.5;
   const Scene scene = make_cube(edge_m, reflectance);

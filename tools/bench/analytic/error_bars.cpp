@@ -1,4 +1,4 @@
-/// Are reported errors honest? Many seeds on one cheap room: how often the truth is within two reported standard
+/// Are reported errors honest? Many seeds in one cheap room: how often the truth is within two reported standard
 /// errors.
 
 #include <fmt/format.h>
@@ -13,7 +13,7 @@ namespace luxrig {
 
 namespace {
 
-/// per_edge    receivers along each edge of each wall: `gather` shares what it finds from some dozens on
+/// per_edge    receivers along each edge of each wall: from some dozens on `gather` shares paths between them
 void add_rows(int seeds, int per_edge, double wanted, const BenchOptions& options, std::vector<BenchRow>& rows) {
   const double edge_m = 3, reflectance = 0.6;
   const Vec3 source_m(1.7, 1.2, 2.0);

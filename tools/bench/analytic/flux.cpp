@@ -1,4 +1,4 @@
-/// Luminous flux: what falls on a sphere round a luminaire is what it emits, near by and far away.
+/// Luminous flux: the flux onto a sphere around a luminaire equals its emission, at any distance.
 
 #include <cmath>
 
@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kSource_lm = 1000;
 
-/// Receivers on a sphere of radius_m: Gauss' rule in the cosine of γ between `breaks_rad`, where the distribution has
-/// its kinks, and even steps round about. One row, whose error is that of their weighted sum.
+/// Receivers on a sphere of radius_m: Gauss' rule in the cosine of γ between `breaks_rad`, the kinks of the
+/// distribution, and even steps around the axis. One row, with the error of their weighted sum.
 void add_flux(const std::string& name, const Emitter& lamp, double radius_m, std::vector<double> breaks_rad,
               double target, const BenchOptions& options, std::vector<BenchRow>& rows) {
   const GaussNodes rule = gauss_rule(24);
@@ -59,7 +59,7 @@ void add_flux_rows(const BenchOptions& options, std::vector<BenchRow>& rows) {
   const double field = rad_from_deg(54);
   add_flux("flux-spot", {make_spot(kSource_lm, rad_from_deg(30), field), pose}, 3, {field / 2, field}, kFluxTarget,
            options, rows);
-  // The whole sphere round a luminaire with size, from well within five times its size.
+  // The whole sphere around a luminaire with size, from well within five times its size.
   const auto sized = [&](const Intensity& intensity, LuminousShape::Kind kind, const Vec3& size_m) {
     Emitter lamp{intensity, pose};
     lamp.shape = {kind, size_m};

@@ -1,5 +1,5 @@
-/// A furnace: a closed box all of whose surfaces emit M lm/m² and reflect the share ρ. Every radiosity in it is then
-/// B = M + ρB, so that a receiver anywhere, facing anywhere, gets M/(1-ρ) in all and M directly, whatever the mesh.
+/// A furnace: a closed box. All its surfaces emit M lm/m² and reflect the share ρ. Then every radiosity in it is B = M
+/// + ρB. So any receiver gets M/(1-ρ) in total and M directly, whatever its place, direction or the mesh.
 
 #include <cmath>
 #include <random>
@@ -12,12 +12,12 @@ namespace {
 
 constexpr double kExitance_lm_m2 = 50, kWallReflectance = 0.6;
 
-/// A box's faces: rectangles that shine outwards (or inwards), and the mesh they lie on.
+/// A box's faces: rectangles that shine outwards (or inwards), and the mesh under them.
 void add_shining_box(const Vec3& low_m, const Vec3& high_m, bool inwards, RectangleScene& scene, AnalyticCase& one) {
   const Vec3 size_m = high_m - low_m;
   for (int axis = 0; axis < 3; ++axis)
     for (const int side : {0, 1}) {
-      // A block's foot is on the floor, and shines at nothing.
+      // A block's underside is on the floor and lights nothing.
       if (!inwards && axis == 2 && side == 0) continue;
       const int a = (axis + 1) % 3, b = (axis + 2) % 3;
       const Vec3 corner_m = low_m + side * size_m[axis] * Vec3::Unit(axis);
@@ -67,7 +67,7 @@ void add_furnace_rows(const BenchOptions& options, std::vector<BenchRow>& rows) 
     one.name = bumpy ? "furnace-bumpy-direct" : "furnace-direct";
     one.part = AnalyticCase::Part::direct;
     one.exact_lx.assign(one.receivers.size(), kExitance_lm_m2);
-    // Behind blocks a luminaire is seen in part, and its light is no closed form any more.
+    // Behind blocks a luminaire is partly hidden, and its light has no closed form any more.
     one.direct_target = bumpy ? 1e-3 : 1e-4;
     measure_case(one, options, rows);
     one.name = bumpy ? "furnace-bumpy" : "furnace";

@@ -1,4 +1,4 @@
-/// Luminaires without size: the distance law, analytic distributions, and lookup in a table.
+/// Luminaires without size: the distance law, analytic distributions, and table look-up.
 
 #include <fmt/format.h>
 
@@ -14,7 +14,8 @@ namespace {
 
 constexpr double kPoint_lm = 1000, kPointTarget = 1e-6;
 
-/// E = Φ/4π cosθ/d² in open air, for 1 000 random pairs from millimetres to kilometres: the largest relative error.
+/// E = Φ/4π cosθ/d² in open air, for 1 000 random pairs from millimetres to kilometres apart: the largest relative
+/// error.
 void add_pairs(const BenchOptions& options, std::vector<BenchRow>& rows) {
   const RayScene open_air{Scene{}};
   for (const Method& method : methods()) {
@@ -48,7 +49,7 @@ void add_pairs(const BenchOptions& options, std::vector<BenchRow>& rows) {
   }
 }
 
-/// A lamp at 2.5 m that is turned by `turn` and looks down, over a floor of 21 × 21 places.
+/// A lamp at 2.5 m that is rotated by `turn` and shines down, over a floor of 21 × 21 places.
 AnalyticCase over_a_floor(const std::string& name, const Intensity& intensity, const Mat3& turn,
                           double (*candela)(double gamma_rad, double c_rad)) {
   AnalyticCase one;
@@ -72,8 +73,8 @@ double cosine_power(double gamma_rad, double) {
   return gamma_rad < kPi / 2 ? kPoint_lm * (kExponent + 1) / (2 * kPi) * std::pow(std::cos(gamma_rad), kExponent) : 0;
 }
 
-/// The formula of make_spot's header for a beam of 30° and a field of 54°, its flux by Gauss' rule over the two pieces
-/// of it that are smooth.
+/// The formula in make_spot's header for a beam of 30° and a field of 54°. Its flux is by Gauss' rule over its two
+/// smooth pieces.
 double spot_candela(double gamma_rad, double) {
   const double b = rad_from_deg(15), f = rad_from_deg(27), p = std::log(std::log2(10)) / std::log(f / b);
   const auto shape = [&](double g) {
@@ -91,11 +92,11 @@ double spot_candela(double gamma_rad, double) {
   return kPoint_lm / flux * shape(gamma_rad);
 }
 
-constexpr int kPlanes = 13, kAngles = 19;  ///< every 30° round about, every 5° from the nadir to the horizon
+constexpr int kPlanes = 13, kAngles = 19;  ///< every 30° around the axis, every 5° from the nadir to the horizon
 
 double table_candela(int plane, int angle) { return 100 + 37 * ((plane % 12) * 7 % 5) + 11 * ((angle * 5) % 17); }
 
-/// LM-63 text of that table, absolute photometry.
+/// The table as LM-63 text, absolute photometry.
 std::string table_file() {
   std::string text = "IESNA:LM-63-2002\n[TEST] bench\n[MANUFAC] none\nTILT=NONE\n";
   text += fmt::format("1 -1 1 {} {} 1 2 0 0 0\n1 1 10\n", kAngles, kPlanes);
@@ -118,7 +119,7 @@ double between_candela(double gamma_rad, double c_rad) {
          (1 - u) * v * table_candela(p0 + 1, a0) + u * v * table_candela(p0 + 1, a0 + 1);
 }
 
-/// Receivers on a sphere about the lamp, at the table's own directions: what the file says, to the candela.
+/// Receivers on a sphere around the lamp, in the table's own directions: the file's values, to the candela.
 AnalyticCase on_the_grid(const Intensity& intensity, const Mat3& turn) {
   AnalyticCase one;
   one.name = "ies-on-grid";
@@ -126,7 +127,7 @@ AnalyticCase on_the_grid(const Intensity& intensity, const Mat3& turn) {
   const Vec3 lamp_m(1, 2, 3);
   one.emitters.push_back({intensity, {turn, lamp_m}});
   for (int p = 0; p + 1 < kPlanes; ++p)
-    for (int a = 1; a < kAngles - 1; ++a) {  // straight down all planes meet, and the table need not agree with itself
+    for (int a = 1; a < kAngles - 1; ++a) {  // not straight down: all planes meet there, and the table's may differ
       const double gamma = rad_from_deg(5 * a), c = rad_from_deg(30 * p);
       const Vec3 leaving = turn * Vec3(std::sin(gamma) * std::cos(c), std::sin(gamma) * std::sin(c), -std::cos(gamma));
       one.receivers.push_back({lamp_m + 2 * leaving, -leaving});

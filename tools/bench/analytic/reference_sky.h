@@ -1,12 +1,12 @@
 #pragma once
-/// The fifteen skies of CIE S 011/E:2003 (ISO 15469), written here once more so that the answers of
-/// `luxrig bench analytic` do not come from the code under test.
+/// The fifteen skies of CIE S 011/E:2003 (ISO 15469), written a second time so that the answers of `luxrig bench
+/// analytic` do not come from the code under test.
 
 #include "core/geometry.h"
 
 namespace luxrig {
 
-/// A general sky of type 1 … 15, of 1 cd/m² in the zenith times `zenith_cd_m2`, without the sun's disk.
+/// A general sky of type 1 … 15 with zenith luminance `zenith_cd_m2`, without the sun's disk.
 class ReferenceSky {
  public:
   ReferenceSky(int type, const Vec3& towards_sun_world, double zenith_cd_m2);

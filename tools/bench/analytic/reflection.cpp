@@ -10,7 +10,7 @@
 namespace luxrig {
 namespace {
 
-/// A black room of 4 × 4 × 3 m, lit through a luminous opening of 1 × 1 m in its ceiling: all its flux lands inside.
+/// A black room of 4 × 4 × 3 m, lit through a luminous opening of 1 × 1 m in its ceiling: all its flux falls inside.
 void add_opening_flux(const BenchOptions& options, std::vector<BenchRow>& rows) {
   constexpr double kFlux_lm = 1000;
   const Vec3 size_m(4, 4, 3);
@@ -49,8 +49,8 @@ void add_opening_flux(const BenchOptions& options, std::vector<BenchRow>& rows) 
   }
 }
 
-/// A surface S2 (z = 0, |x|, |y| ≤ half) of reflectance 0.8 under a lamp 20 m away, 35° off its normal; nothing else
-/// reflects. S1-v stands at x = 4 and faces it, with its back to the lamp; S1-hz hangs at z = 3 and looks down. With an
+/// A surface S2 (z = 0, |x|, |y| ≤ half) of reflectance 0.8 under a lamp 20 m away, 35° off its normal. Nothing else
+/// reflects. S1-v stands at x = 4, faces S2 and has its back to the lamp. S1-hz hangs at z = 3 and faces down. With an
 /// obstruction, a black screen of 1.5 m stands at x = 2.5, far wider than S2.
 AnalyticCase one_reflection(const std::string& name, double half_m, bool obstructed) {
   constexpr double kReflectance = 0.8, kScreenX_m = 2.5, kScreenHeight_m = 1.5, kFlux_lm = 1e6;
@@ -69,7 +69,7 @@ AnalyticCase one_reflection(const std::string& name, double half_m, bool obstruc
   const auto expect = [&](const Vec3& at_m, const Vec3& normal) {
     double right_m = half_m;
     if (obstructed && at_m.x() > kScreenX_m) {
-      // The screen's edge, seen from the receiver, lies on S2's plane at this x; what is nearer is hidden.
+      // Seen from the receiver, the screen's edge meets S2's plane at this x; everything nearer is hidden.
       if (at_m.z() <= kScreenHeight_m) return;
       right_m = std::min(half_m, at_m.x() - (at_m.x() - kScreenX_m) * at_m.z() / (at_m.z() - kScreenHeight_m));
       if (right_m <= -half_m) return;

@@ -1,5 +1,5 @@
 // 64 axes on four CAN buses of eight heads each, from the daemon's bus threads through datagrams to simulated drives
-// that keep their own time. One bus of 1 Mbit/s has no room for 32 heads in a cycle of 20 ms.
+// that measure their own timing. One bus of 1 Mbit/s has no room for 32 heads in a cycle of 20 ms.
 #include <fmt/format.h>
 #include <poll.h>
 
@@ -24,10 +24,10 @@ namespace luxrig {
 namespace {
 
 constexpr double kCycleJitter_s = 0.002;
-constexpr double kFrame_s = 135e-6;  // of eight bytes with stuffing, at 1 Mbit/s
+constexpr double kFrame_s = 135e-6;  // eight bytes with stuffing, at 1 Mbit/s
 constexpr const char* kAxesCase = "axes-64";
 
-/// All buses' far ends, in a thread of their own.
+/// The far ends of all buses, in a thread of their own.
 class Heads {
  public:
   explicit Heads(const Rig& rig) : start_(now()) {
@@ -63,7 +63,7 @@ class Heads {
       std::vector<pollfd> waits;
       {
         const std::lock_guard lock(mutex_);
-        const Time at = Time{} + (now() - start_);  // the world's clock begins with it
+        const Time at = Time{} + (now() - start_);  // the world starts at Time{}
         descriptors.clear();
         for (const auto& endpoint : endpoints_) {
           endpoint->serve(at);
@@ -129,12 +129,12 @@ struct HeadBuses {
 
 struct Arrivals {
   int moves = 0, never = 0;
-  TimeCounts late;         ///< of the slowest head behind its closed form
-  std::vector<Joints> at;  ///< asked last, and come to rest there
+  TimeCounts late;         ///< delay of the slowest head after its closed form
+  std::vector<Joints> at;  ///< last aims, where all have come to rest
   std::mt19937 random{7};
 };
 
-/// A new aim for every head, again and again; each round until all have come to rest there.
+/// Gives every head a new aim, again and again. Each round lasts until all have come to rest.
 void turn_heads(const Rig& rig, const Heads& heads, HeadBuses& buses, double seconds, Arrivals& arrivals) {
   std::uniform_real_distribution<double> pan_deg(-60, 60), tilt_deg(-40, 40);
   std::vector<Joints>& at = arrivals.at;
@@ -195,7 +195,7 @@ Rig rig_of_heads() {
 }
 
 std::vector<BenchRow> bench_axes_load(const BenchOptions& options) {
-  // By its full name only: many minutes.
+  // Only by its full name: takes many minutes.
   if (options.only == kAxesDay) return {measure_axes_day(options.seconds.value_or(options.quick ? 600 : 86400))};
   if (!std::string_view(kAxesCase).starts_with(options.only)) return {};
   const double seconds = options.seconds.value_or(options.quick ? 6 : 10);
@@ -213,7 +213,7 @@ std::vector<BenchRow> bench_axes_load(const BenchOptions& options) {
   }
   lock_memory();
   HeadBuses buses(rig, heads);
-  // Found, set up and homed where they stand.
+  // Wait until all are found, set up and homed where they stand.
   buses.aim(rig, std::vector<Joints>(rig.fixtures.size()));
   const Time patience = now() + std::chrono::seconds(30);
   sleep_until(now() + std::chrono::seconds(1));
@@ -274,7 +274,7 @@ std::vector<BenchRow> bench_axes_load(const BenchOptions& options) {
     load.note += "; memory grows";
   }
   add_columns(cycle, load);
-  // Later than the closed form, as a share of what is allowed for the handshake.
+  // Delay after the closed form, as a share of the delay allowed for the handshake.
   arrival.target_error = 1;
   arrival.error = arrivals->late.largest() / kLatestArrival_s;
   if (arrivals->never > 0 || faulted > 0) arrival.error = std::max(arrival.error, 100.0);

@@ -1,4 +1,4 @@
-// 64 axes for a day, in simulated time: what the driver's state, the buses and memory do.
+// 64 axes for a day, in simulated time: the driver's state, the buses and memory.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace {
 constexpr double kSetUpWithin_s = 30, kGiveUpMove_s = 60;
 constexpr double kShortestShow_s = 10, kLongestShow_s = 60;
 
-/// Four buses of drives, and the drivers that turn them.
+/// Four buses of drives, and their drivers.
 class DayOfHeads {
  public:
   DayOfHeads() : rig_(rig_of_heads()), aim_(rig_.fixtures.size()) {
@@ -49,7 +49,7 @@ class DayOfHeads {
     for (Line& line : lines_)
       for (AimCommand& command : line.aims) command.joints = aim_[command.fixture];
   }
-  /// One cycle of every driver, and what the drives did until then.
+  /// One cycle of every driver, and the drives' motion until then.
   void cycle() {
     now_ += lines_[0].driver->bounds().write_period;
     while (world_->now() + sim::kTick <= now_) {
@@ -95,7 +95,7 @@ class DayOfHeads {
   bool never_ = false, ok_ = false;
 };
 
-/// Other aims, and how long the slowest head needs for its way by the closed form.
+/// New aims, and the time of the slowest head by the closed form.
 std::pair<std::vector<Joints>, double> other_aims(const std::vector<Joints>& from, std::mt19937& random) {
   std::uniform_real_distribution<double> pan_deg(-160, 160), tilt_deg(-110, 110);
   std::vector<Joints> to = from;

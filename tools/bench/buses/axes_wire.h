@@ -1,5 +1,5 @@
 #pragma once
-/// A CAN bus of simulated axes without a socket, under a clock that is stepped.
+/// A CAN bus of simulated axes without a socket, under a stepped clock.
 
 #include <cstdint>
 #include <deque>
@@ -11,10 +11,10 @@
 
 namespace luxrig {
 
-/// The bus as the driver sees it: frames straight into the simulated axes.
+/// The bus as the driver sees it: frames go straight to the simulated axes.
 class AxesWire final : public can::CanChannel {
  public:
-  /// `down`: there is no interface at present.
+  /// `down`: the interface is absent at present.
   AxesWire(sim::AxisBus& axes, const Time& now, const bool& down) : axes_(axes), now_(now), down_(down) {}
   Result<void> open() override {
     if (down_) return tl::unexpected(gone());
@@ -43,7 +43,7 @@ class AxesWire final : public can::CanChannel {
   }
   std::optional<Fault> take_error() override { return std::nullopt; }
 
-  std::uint64_t frames = 0;  ///< of both directions
+  std::uint64_t frames = 0;  ///< both directions
 
  private:
   static Fault gone() { return {Cause::network, {}, "no such interface", {}}; }

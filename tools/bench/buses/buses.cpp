@@ -27,7 +27,7 @@ constexpr int kFixturesPerUniverse = 64;
 constexpr double kRate_hz = 44;
 constexpr double kTarget_s = 0.002;  // p99 deviation from the period
 
-/// Receives everything sent to it, and keeps the kernel's arrival times of universe 1.
+/// Receives all packets, and keeps the kernel's arrival times of universe 1.
 class Sink {
  public:
   Sink() {
@@ -51,7 +51,7 @@ class Sink {
   }
   [[nodiscard]] bool ok() const { return ok_; }
   [[nodiscard]] int port() const { return port_; }
-  /// Intervals [s] between packets of universe 1, and how many packets of any universe came.
+  /// Intervals [s] between packets of universe 1, and the number of packets of any universe.
   std::pair<std::vector<double>, std::uint64_t> finish() {
     thread_.request_stop();
     if (thread_.joinable()) thread_.join();
@@ -183,7 +183,7 @@ BenchRow bench_output_cycle(const BenchOptions& options) {
   {
     BusThread bus(rig, 0, find_driver("sacn")->make(rig, 0, Redirect{"127.0.0.1", sink.port()}), programs);
     const SolverLoad load;
-    std::this_thread::sleep_for(std::chrono::milliseconds(500));  // the load is at full strength
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));  // until the load is at full strength
     bus.start();
     std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
     realtime = bus.realtime();

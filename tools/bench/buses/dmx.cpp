@@ -29,10 +29,10 @@ namespace {
 
 constexpr double kLoadJitter_s = 0.002;
 constexpr double kFullFrame_s = 0.022676;  // E1.11: break 92 us, mark 12 us, 513 slots of 44 us
-constexpr double kLongestGap_s = 1;        // E1.11: after that a receiver takes the data for lost
+constexpr double kLongestGap_s = 1;        // E1.11: a receiver then takes the data for lost
 constexpr Duration kWarmUp = std::chrono::seconds(2);
 
-/// The receivers of all universes behind one port: what came when, by the kernel's clock, and what is missing.
+/// The receivers of all universes behind one port: times of arrival by the kernel's clock, and missing frames.
 class LoadReceivers {
  public:
   explicit LoadReceivers(bool artnet) : artnet_(artnet), node_(universe_numbers()) {
@@ -53,7 +53,7 @@ class LoadReceivers {
     ::clock_gettime(clock, &t);
     return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
   }
-  /// From now on it counts.
+  /// Starts counting.
   void count() { counting_ = true; }
   void stop() {
     thread_.request_stop();
@@ -63,7 +63,7 @@ class LoadReceivers {
   // To be read after stop().
   TimeCounts deviations, intervals;
   std::uint64_t frames = 0, lost = 0, disordered = 0, short_intervals = 0, long_intervals = 0;
-  std::uint64_t merged = 0;  ///< never on a line of full frames: a newer one came first
+  std::uint64_t merged = 0;  ///< never starts on a line of full frames: a newer one came first
 
  private:
   struct Line {
@@ -115,7 +115,7 @@ class LoadReceivers {
     }
   }
 
-  /// `numbers`: sequence numbers before they begin anew; of Art-Net 1 to 255.
+  /// `numbers`: sequence numbers until they repeat; on Art-Net 1 to 255.
   void take(double at_s, int universe, int sequence, int numbers) {
     Line& line = lines_.at(static_cast<std::size_t>(universe));
     if (counting_ && line.sequence >= 0) {
@@ -133,7 +133,7 @@ class LoadReceivers {
     }
     line.arrived_s = at_s;
     line.sequence = sequence;
-    // A gateway begins the newest frame as soon as the one before is out.
+    // A gateway starts the newest frame as soon as the previous one is out.
     if (line.waits && line.begun_s + kFullFrame_s <= at_s) {
       line.begun_s += kFullFrame_s;
       line.waits = false;

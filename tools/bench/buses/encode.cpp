@@ -1,5 +1,5 @@
-// From an output program to the packets of 64 universes, without a network: processor time of a frame, and a day of
-// them.
+// From an output program to the packets of 64 universes, without a network: processor time per frame, and a day of
+// frames.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 constexpr double kMostEncodeShare = 0.1;  // of a core
 constexpr const char* kDmxDay = "dmx-day";
 
-/// Takes everything.
+/// Accepts every packet.
 class NoNetwork final : public DatagramChannel {
  public:
   Result<void> open() override {
@@ -117,7 +117,7 @@ BenchRow measure_encoding(const std::string& driver_name, int frames) {
   return row;
 }
 
-/// A day's frames one after another, under a clock that is stepped: what memory does.
+/// A day's frames one after another, under a stepped clock, for the growth of memory.
 BenchRow measure_day(const std::string& driver_name, double simulated_s) {
   BenchRow row;
   row.case_name = kDmxDay;
@@ -189,7 +189,7 @@ std::vector<BenchRow> bench_dmx_encoding(const BenchOptions& options) {
     if (fmt::format("dmx-encode-{}-universes", kLoadUniverses).starts_with(options.only))
       rows.push_back(measure_encoding(driver, options.quick ? 500 : 5000));
   }
-  // By its full name only: many minutes.
+  // Only by its full name: takes many minutes.
   if (options.only == kDmxDay) {
     rows.push_back(measure_day("sacn", options.seconds.value_or(options.quick ? 600 : 86400)));
   }

@@ -1,6 +1,6 @@
 #pragma once
-/// The simulated far end of one bus of levels under a stepped clock: served by its caller where the driver never waits,
-/// else by a thread of its own, whose clock runs on in real time while the driver waits for an answer.
+/// The simulated far end of a bus of levels under a stepped clock. If the driver never waits, the caller serves it.
+/// Else it has its own thread, and its clock runs on in real time while the driver waits for an answer.
 
 #include <atomic>
 #include <chrono>
@@ -16,7 +16,7 @@ namespace luxrig {
 
 class FarSide {
  public:
-  /// `rig` outlives it. The world has no deviations: what is set is what is.
+  /// `rig` outlives it. The world has no deviations: a lamp gives exactly the level that is set.
   static Result<std::unique_ptr<FarSide>> open(const Rig& rig, bool driver_waits, std::uint64_t seed);
   ~FarSide();
   FarSide(const FarSide&) = delete;
@@ -24,9 +24,9 @@ class FarSide {
 
   [[nodiscard]] Redirect redirect() const { return {"127.0.0.1", endpoint_->port(), endpoint_->path()}; }
   [[nodiscard]] sim::Faults& faults() { return faults_; }
-  /// Serves what has arrived, at `at` or later, and steps the world. Returns its clock.
+  /// Serves the messages that have arrived, at `at` or later, and steps the world. Returns its clock.
   Time step_to(Time at);
-  /// What each lamp truly gives.
+  /// The true level of each lamp.
   [[nodiscard]] std::vector<double> levels() const;
 
  private:
@@ -42,7 +42,7 @@ class FarSide {
   std::chrono::steady_clock::time_point base_real_{};
   std::atomic<std::uint64_t> rounds_{0};
   std::atomic<bool> stopping_{false};
-  int wake_ = -1;  ///< an eventfd; -1: no thread
+  int wake_ = -1;  ///< an eventfd; -1 = no thread
   std::thread thread_;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-/// How evenly something comes. Counted in microseconds, so that a day of it takes no more memory than a second.
+/// Regularity of events. Counted in microseconds, so that a day takes no more memory than a second.
 
 #include <array>
 #include <cstdint>
@@ -11,7 +11,7 @@ class TimeCounts {
  public:
   void add(double seconds);
   [[nodiscard]] std::uint64_t count() const { return count_; }
-  /// The time [s] that `share` (0…1) of them stay within, to a microsecond up to 100 ms; 0 when there are none.
+  /// The time [s] within which `share` (0…1) of them stay, to a microsecond up to 100 ms; 0 without any.
   [[nodiscard]] double quantile(double share) const;
   [[nodiscard]] double largest() const { return largest_; }  ///< [s]
   /// A line for each step from 50 µs to 50 ms: count, percentage, bar.
@@ -19,7 +19,7 @@ class TimeCounts {
 
  private:
   static constexpr std::size_t kMost_us = 100'000;
-  std::array<std::uint32_t, kMost_us + 1> counts_{};  ///< [i]: more than i-1, at most i; the last: all that is longer
+  std::array<std::uint32_t, kMost_us + 1> counts_{};  ///< [i]: more than i-1, at most i; the last has all longer ones
   std::uint64_t count_ = 0;
   double largest_ = 0;
 };

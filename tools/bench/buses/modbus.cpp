@@ -1,4 +1,4 @@
-// 247 Modbus units behind one server, each a dimmer and a luxmeter: how often each is reached, and what it costs.
+// 247 Modbus units behind one server, each a dimmer and a luxmeter: how often each is reached, and at what cost.
 #include <fmt/format.h>
 #include <poll.h>
 
@@ -19,7 +19,7 @@ namespace {
 using std::chrono::milliseconds;
 using BenchClock = std::chrono::steady_clock;
 
-constexpr double kWantedRound_s = 0.2;  // a luxmeter is read this often
+constexpr double kWantedRound_s = 0.2;  // wanted period of a luxmeter's readings
 
 Time bench_now() { return Time{} + std::chrono::duration_cast<Duration>(BenchClock::now().time_since_epoch()); }
 
@@ -101,7 +101,7 @@ BenchRow measure(const ModbusLoad& load, double seconds) {
       "write and read together {:.0f} ms at worst; {:.1f} % of a core; {} requests, {} errors\n",
       row.case_name, load.driver, living, 1e3 * *middle, 1e3 * worst_round, 1e3 * worst_call / (2.0 * living),
       1e3 * worst_call, 100 * busy / seconds, bus.sent, bus.errors);
-  row.error = std::max(0.0, *middle / kWantedRound_s - 1);  // later than wanted, as a share
+  row.error = std::max(0.0, *middle / kWantedRound_s - 1);  // delay beyond the wanted period, as a share of it
   row.seconds = seconds;
   figures.core_share = busy / seconds;
   figures.note = fmt::format("each unit every {:.0f} ms; {:.0f} at worst; {} errors", 1e3 * *middle, 1e3 * worst_round,
@@ -137,7 +137,7 @@ Rig unit_rig(const ModbusLoad& load) {
 }
 
 std::vector<BenchRow> bench_modbus_load(const BenchOptions& options) {
-  // By its full name only: many minutes.
+  // Only by its full name: takes many minutes.
   if (options.only == kModbusDay) return {measure_modbus_day(options.seconds.value_or(options.quick ? 600 : 86400))};
   std::vector<BenchRow> rows;
   for (const ModbusLoad& load :

@@ -1,4 +1,4 @@
-// 247 Modbus units for a day, in simulated time: what the driver's state, the units and memory do.
+// 247 Modbus units for a day, in simulated time: the driver's state, the units and memory.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ constexpr int kDayUnits = 247;
 constexpr Duration kDayPeriod = milliseconds(100), kDayPoll = milliseconds(200);
 constexpr double kLevelStep = 0.5 / 1000;  // of a register that counts to 1000
 
-/// Requests as Modbus TCP frames straight into the simulated units, and their answers back.
+/// Requests go as Modbus TCP frames straight to the simulated units, and answers come back.
 class UnitsLink final : public modbus::Link {
  public:
   explicit UnitsLink(sim::ModbusUnits& units) : units_(units) {}
@@ -53,7 +53,7 @@ class UnitsLink final : public modbus::Link {
   bool connected_ = false;
 };
 
-/// All lamps fade up and down, each a little later than the one before.
+/// All lamps fade up and down, each a little later than the previous one.
 double level_of(std::size_t fixture, double at_s) {
   return 0.5 + 0.45 * std::sin(at_s / 7 + 0.1 * static_cast<double>(fixture));
 }
@@ -95,7 +95,7 @@ BenchRow measure_modbus_day(double simulated_s) {
     at += kDayPeriod;
     (*world)->advance(at);
     units.advance(at);
-    // What was written last has taken effect.
+    // The levels written last have taken effect.
     const std::vector<double> drives = (*world)->drives();
     for (std::size_t f = 0; call > 0 && f < drives.size(); ++f)
       furthest = std::max(furthest, std::abs(drives[f] - commands[f].drive));

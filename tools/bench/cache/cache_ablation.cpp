@@ -23,7 +23,7 @@ double unit_number_of(std::uint64_t seed, std::uint64_t key) {
   return static_cast<double>(mixed(seed, key) >> 11) * 0x1p-53;
 }
 
-/// Between places that lie half a cell off random surfaces: where the cache has its cells.
+/// Between places half a cell off random surfaces, where the cache has its cells.
 std::vector<SightLine> lines_in(const Scene& scene, const VoxelGrid& grid, std::size_t count, std::uint64_t seed) {
   const Eigen::AlignedBox3d box_m = triangle_bounds_m(scene);
   const auto near = spread_over_walls(scene, 2 * count, scene.origin_world_m + box_m.center());

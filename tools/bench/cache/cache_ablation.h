@@ -1,6 +1,6 @@
 #pragma once
-/// What each part of the radiance cache buys: its switches one by one, and its ways through voxels side by side. The
-/// core has no clock: the caller lends one.
+/// The gain of each part of the radiance cache: its switches one by one, and its ways through voxels side by side. The
+/// cache has no clock: the caller passes one in.
 
 #include <functional>
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace luxrig {
 
-/// Seconds since some moment.
+/// Seconds since some fixed moment.
 using StopWatch = std::function<double()>;
 
 struct NamedCacheSettings {
@@ -18,8 +18,8 @@ struct NamedCacheSettings {
   CacheSettings settings;
 };
 
-/// First the default and it with one part changed each; then the thesis's method and it with one part changed each, and
-/// with one improvement after the other, each on top of the last.
+/// First the default and its variants with one part changed each. Then the thesis's method and its variants with one
+/// part changed each, and with one improvement after another, each added to the previous ones.
 [[nodiscard]] std::vector<NamedCacheSettings> cache_ablation_settings();
 
 struct AblationRow {
@@ -34,7 +34,7 @@ struct AblationRow {
 };
 
 /// One row per entry of `settings`, all levels 1.
-/// reference_lux   of each receiver, from a converged evaluator; receivers with 0 are left out of the errors
+/// reference_lux   per receiver, from a converged evaluator; receivers with 0 are left out of the errors
 /// Cause::cancelled when stopped, else as RadianceCache.
 [[nodiscard]] Result<std::vector<AblationRow>> run_cache_ablation(
     const Scene& scene, const RayScene& rays, std::span<const Receiver> receivers, std::span<const Emitter> emitters,
@@ -44,12 +44,12 @@ struct AblationRow {
 struct TraversalRow {
   std::string name;
   double seconds_per_ray = 0;
-  double missed = 0;    ///< share of rays that something blocks and this lets through
-  double invented = 0;  ///< share of free rays that this blocks
+  double missed = 0;    ///< share of blocked rays that this way lets through
+  double invented = 0;  ///< share of free rays that this way blocks
 };
 
-/// Lines between random places near surfaces: whether something is in between, by each way through voxels and by exact
-/// rays, whose answers count as right. As in the cache, the ends of lines through voxels are a cell (four voxels) off.
+/// Lines between random places near surfaces: whether a surface is in between, by each way through voxels and by exact
+/// rays, which count as right. As in the cache, the ends of lines through voxels are a cell (four voxels) off.
 /// voxels   of the geometry volume, along the longest side
 [[nodiscard]] std::vector<TraversalRow> compare_traversals(const Scene& scene, const RayScene& rays, int voxels,
                                                            std::size_t lines, std::uint64_t seed,

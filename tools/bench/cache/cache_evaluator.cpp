@@ -7,7 +7,7 @@
 namespace luxrig {
 namespace {
 
-/// Refinements: each takes four times the samples and, twice in all, cells of 1/√2 the size.
+/// Refinements: each takes four times the samples and cells of 1/√2 the size, so half the size in total.
 constexpr int kRefinements = 2;
 
 CacheSettings refined(CacheSettings settings) {
@@ -19,7 +19,7 @@ CacheSettings refined(CacheSettings settings) {
   return settings;
 }
 
-/// The part of a Watch's progress that one of several attempts has, each four times as long as the last.
+/// The part of a Watch's progress for one of several attempts, each four times as long as the previous one.
 Watch part_of(const Watch& watch, double begin, double end) {
   Watch part{watch.stop, {}};
   if (watch.progress)
@@ -42,7 +42,7 @@ class CacheEvaluator final : public Evaluator {
     CacheSettings settings = settings_;
     double begin = 0;
     std::uint64_t spent = 0;
-    // Ends a refinement half done: the attempt before is then the answer.
+    // Stops a refinement halfway; the previous attempt is then the answer.
     std::stop_source halt;
     const std::stop_callback when_stopped(options.watch.stop, [&] { halt.request_stop(); });
     const std::stop_callback when_enough(options.enough, [&] { halt.request_stop(); });
@@ -53,7 +53,7 @@ class CacheEvaluator final : public Evaluator {
       build.run() = options;
       build.watch = part_of(options.watch, begin, begin + (end - begin) / 2);
       if (reached) build.watch.stop = halt.get_token();
-      // Nothing to light or nothing that shines, and open air, need no cache; an empty one says so.
+      // Without receivers, emitters or surfaces no cache is needed; an empty one is returned.
       const bool dark = emitters.empty() || receivers.empty() || scene_.triangles.empty();
       auto cache = RadianceCache::build(dark ? Scene{} : scene_, rays_, receivers, settings, build);
       const auto ended_early = [&] {

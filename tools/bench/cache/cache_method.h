@@ -1,21 +1,21 @@
 #pragma once
-/// What the kinds of cache have in common.
+/// Shared by both kinds of cache.
 
 #include "core/transport/direct/lamps.h"
 #include "tools/bench/cache/radiance_cache.h"
 
 namespace luxrig {
 
-/// Reflected light as a method estimates it: receivers × emitters, per transported channel.
+/// Reflected light by a method's estimate: receivers × emitters, per transported channel.
 struct ReflectedLight {
-  /// One matrix when all surfaces are grey (the light of every primary, and of their sum), else one per linear
-  /// Rec. 709 primary, of an emitter of that colour.
+  /// One matrix if all surfaces are grey (light of each primary, and of their sum). Else one per linear Rec. 709
+  /// primary, for an emitter of that colour.
   std::vector<Eigen::MatrixXd> lux_per_level;
   /// Luminance of independent estimates, kCacheReplicates of them.
   std::vector<Eigen::MatrixXd> replicates;
-  /// Luminance of the same light from coarser cells.
+  /// Luminance of the same light with coarser cells.
   Eigen::MatrixXd coarser;
-  /// The error of `lux_per_level` for its resolution, as a share of its difference from `coarser`.
+  /// The error of `lux_per_level` from its resolution, as a share of its difference from `coarser`.
   double share_of_difference = 0;
   std::uint64_t rays = 0;
 };
@@ -35,7 +35,7 @@ class RadianceCache::Method {
 /// Weights of the linear Rec. 709 primaries in luminance.
 inline const Vec3 kLuminanceOfRgb(0.2126, 0.7152, 0.0722);
 
-/// True when every material reflects all primaries alike.
+/// True if every material reflects all primaries alike.
 [[nodiscard]] bool all_grey(const Scene& scene);
 
 using BuiltMethod = Result<std::unique_ptr<RadianceCache::Method>>;

@@ -1,4 +1,4 @@
-/// CacheContents::directions: the thesis's volumetric radiance cache (§3.2), and what improves on it.
+/// CacheContents::directions: the thesis's volumetric radiance cache (§3.2), with improvements.
 
 #include <algorithm>
 #include <cmath>
@@ -18,8 +18,8 @@ namespace {
 
 constexpr std::uint64_t kSeedOfReads = 0x7265616473, kSeedOfLight = 0x6c69676874, kSeedOfPlaces = 0x706c616365;
 constexpr std::size_t kReplicates = kCacheReplicates;
-/// Reflections are followed until one adds less than this share of all so far. Phantom surfaces can send on more light
-/// than they get (the thesis's own remark on eq. 3.10), so there is an end to it, too.
+/// Reflections are followed until one adds less than this share of the sum. Phantom surfaces can reflect more light
+/// than they get (the thesis's own remark on eq. 3.10), so the number is limited, too.
 constexpr double kNegligible = 1e-3;
 constexpr int kMostReflections = 24;
 
@@ -51,7 +51,7 @@ class DirectionCache final : public RadianceCache::Method {
     for (const Read& read : above_)
       mark(read.place, receivers[read.receiver].position_world_m, receivers[read.receiver].normal_world);
     for (const Gathered& one : gathered_) mark(one.place, one.position_world_m, one.normal_world);
-    // With a gather the last reflection is the gather's own.
+    // With a gather, the gather makes the last reflection itself.
     const int reflections = settings_.reflections == 0 ? 0 : std::max(1, settings_.reflections - (gathers ? 1 : 0));
     cells_.link(scene, *rays, settings_, reflections, options.seed, options.threads, options.watch.stop);
     return !options.watch.stop.stop_requested();
@@ -94,7 +94,7 @@ class DirectionCache final : public RadianceCache::Method {
     std::uint32_t receiver, replicate;
     Place place;
   };
-  /// A surface that a receiver's ray meets.
+  /// A surface that a receiver's ray hits.
   struct Gathered {
     std::uint32_t receiver, replicate;
     Vec3 position_world_m;
@@ -177,7 +177,7 @@ class DirectionCache final : public RadianceCache::Method {
           const Vec3 way = hit_m - at_m;
           const double cosine = -way.dot(hit.normal_world);
           if (!(cosine > 0)) continue;
-          // Places nearer than half a cell stand for the cell, in which light does not grow without bound.
+          // Places nearer than half a cell stand for the whole cell, whose light must not grow without bound.
           const double distance_m = way.norm(), least_m = 0.5 * cells_.cell_m();
           if (!cells_.visible(*rays, settings_, at_m, hit_m, jitter, rays_of_cell[c])) continue;
           const Vec3 rgb = hit.flux_lm / kPi * (cosine / distance_m) / std::pow(std::max(distance_m, least_m), 2) *
@@ -205,7 +205,7 @@ class DirectionCache final : public RadianceCache::Method {
     return to;
   }
 
-  /// Each cell replaced by the mean of those in its block of 2³.
+  /// Each cell replaced by the mean of its block of 2³ cells.
   Field coarsened(const Field& field) const {
     std::vector<std::pair<std::array<int, 3>, std::size_t>> block(cells_.size());
     for (std::size_t c = 0; c < cells_.size(); ++c) {
@@ -234,7 +234,7 @@ class DirectionCache final : public RadianceCache::Method {
     return layout_.illuminance(mixture, lobe);
   }
 
-  /// Illuminance of the receivers per replicate: rows receivers, columns 3 · replicate + primary.
+  /// Illuminance of the receivers per replicate: rows = receivers, columns = 3 · replicate + primary.
   using Estimates = Eigen::Matrix<double, Eigen::Dynamic, 3 * kReplicates>;
 
   void add_read(const std::vector<const Field*>& fields, Estimates& out) const {
@@ -259,7 +259,7 @@ class DirectionCache final : public RadianceCache::Method {
     if (options.watch.stop.stop_requested()) return false;
     Field first = Field::Zero(fields[0].rows(), fields[0].cols());
     for (const Field& field : fields) first += field / static_cast<float>(kReplicates);
-    // The two buffers of §3.2.2: `last` is read, the next one written, and they change places.
+    // The two buffers of §3.2.2: `last` is read, the next one is written, and they swap.
     Field later = Field::Zero(first.rows(), first.cols()), last = first;
     const int most = settings_.reflections == 0 ? kMostReflections : settings_.reflections - 1 - (gathers ? 1 : 0);
     for (int i = 0; i < most; ++i) {

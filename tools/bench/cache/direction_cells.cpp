@@ -18,7 +18,7 @@ Vec3 direction_of(double u, double v) {
   return Vec3(r * std::cos(2 * kPi * v), r * std::sin(2 * kPi * v), z).normalized();
 }
 
-/// Mean over the triangles' area.
+/// Weighted by the triangles' area.
 Vec3 mean_reflectance_rgb(const Scene& scene) {
   Vec3 sum = Vec3::Zero();
   double whole = 0;
@@ -50,7 +50,7 @@ DirectionCells::DirectionCells(const Scene& scene, const RayScene&, std::span<co
   if (settings.first_visibility == Traversal::distance || settings.link_traversal == Traversal::distance)
     field_ = DistanceField(geometry_);
   BitVolume occupied = geometry_.reduced(settings.reduction);
-  // Receivers in mid-air read cells, too.
+  // Receivers in mid-air also read cells.
   for (const Receiver& receiver : receivers)
     occupied.set(cells_.nearest_voxel(receiver.position_world_m - origin_world_m_));
   occupied = occupied.dilated();
@@ -75,7 +75,7 @@ void DirectionCells::need(std::int32_t cell, const Vec3& surface_m, const Vec3& 
 Vec3 DirectionCells::place_m(std::size_t cell, double u, double v, double w) const {
   const Vec3 place = cells_.scene_from_grid(voxel_[cell].cast<double>() + Vec3(u, v, w));
   if (!open_places_) return place;
-  // What lies behind the reader's surface is mirrored to the front.
+  // Places behind the reader's surface are mirrored to the front.
   const double height = (place - reader_[cell].surface_m).dot(reader_[cell].normal);
   return height < 0 ? Vec3(place - 2 * height * reader_[cell].normal) : place;
 }
@@ -109,7 +109,7 @@ bool DirectionCells::visible(const RayScene& rays, const CacheSettings& settings
     ++cast;
     return !rays.occluded(from_m + origin_world_m_, Vec3::Zero(), to_m + origin_world_m_);
   }
-  // The ends are a cell off, so that the surfaces they are near do not count.
+  // The ends are a cell off, so that the surfaces near them do not count.
   const Vec3 way = to_m - from_m;
   const double length_m = way.norm();
   if (length_m <= 2 * cells_.voxel_m) return true;
@@ -159,7 +159,7 @@ void DirectionCells::link_one(const Scene& scene, const RayScene& rays, const Ca
       } else if (settings.link_traversal == Traversal::distance) {
         hit = first_voxel_by_distance(field_, start, end);
       } else {
-        // The march's looks are spread over what is left of the way to the rim of the volume.
+        // The march's samples are spread over the part of the way within the volume.
         double rim = 1;
         for (int k = 0; k < 3; ++k) {
           const double way = end[k] - start[k];

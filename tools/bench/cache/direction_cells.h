@@ -1,6 +1,6 @@
 #pragma once
-/// The cells of the thesis's volumetric cache and what they read of each other: everything that emitters have no part
-/// in. Cells hold incoming radiance as spherical harmonics.
+/// The cells of the thesis's volumetric cache, and how they read each other: everything that does not depend on
+/// emitters. Cells hold incoming radiance as spherical harmonics.
 
 #include <array>
 #include <stop_token>
@@ -17,21 +17,21 @@ class DirectionCells {
  public:
   static constexpr std::int32_t kNone = -1;
 
-  /// A cell read at a place, and with what weight; weights at a place add up to 1, or there are none.
+  /// A cell to read at a place, with its weight. The weights at a place add up to 1, or there are none.
   struct CellShare {
     std::int32_t cell;
     float weight;
   };
   using Shares = std::array<CellShare, 8>;
 
-  /// A ray from a cell to the surface whose light it brings.
+  /// A ray from a cell to the surface that sends it light.
   struct Link {
     std::int32_t from;      ///< the cell read there
     Vec3f direction_world;  ///< of the ray, unit
     Vec3f normal_world;     ///< of the surface
     Vec3f reflectance_rgb;
   };
-  /// Where a cell was first read from; no normal when that is not known.
+  /// Where a cell was first read from; zero normal if not known.
   struct Reader {
     Vec3 surface_m = Vec3::Zero();
     Vec3 normal = Vec3::Zero();
@@ -40,20 +40,20 @@ class DirectionCells {
   DirectionCells(const Scene& scene, const RayScene& rays, std::span<const Receiver> receivers,
                  const CacheSettings& settings);
 
-  /// The eight cells about a place, by trilinear weights; those that do not exist get none. With a normal that is not
-  /// zero, only cells whose centre is on that side of the place. Returns how many.
+  /// The eight cells around a place with trilinear weights, without cells that do not exist. With a non-zero normal,
+  /// only cells with their centre on that side of the place. Returns their number.
   std::size_t shares_at(const Vec3& place_m, const Vec3& side_normal, Shares& shares) const;
 
-  /// Marks a cell as needed by who stands at a surface and looks along its normal; the first one decides which part of
-  /// the cell is open (CacheSettings::open_places).
+  /// Marks a cell as needed from a surface with this normal. The first call decides which part of the cell is open
+  /// (CacheSettings::open_places).
   void need(std::int32_t cell, const Vec3& surface_m, const Vec3& normal);
 
-  /// Rays of all needed cells, and of those they reach when `reflections` (0: all) follow; then, unless
-  /// settings.only_needed, of all others, which then count as needed.
+  /// Rays of all needed cells, and of the cells that they reach if `reflections` (0 = all) follow. Then, unless
+  /// settings.only_needed, also of all other cells, which count as needed from then on.
   void link(const Scene& scene, const RayScene& rays, const CacheSettings& settings, int reflections,
             std::uint64_t seed, int threads, const std::stop_token& stop);
 
-  /// True when nothing stands between a place of a cell and a surface.
+  /// True if nothing is between a place in a cell and a surface.
   [[nodiscard]] bool visible(const RayScene& rays, const CacheSettings& settings, const Vec3& from_m, const Vec3& to_m,
                              double jitter, std::uint64_t& cast) const;
 
@@ -61,7 +61,7 @@ class DirectionCells {
   [[nodiscard]] bool needed(std::size_t cell) const { return needed_[cell]; }
   [[nodiscard]] const Eigen::Vector3i& voxel(std::size_t cell) const { return voxel_[cell]; }
   [[nodiscard]] double cell_m() const { return cells_.voxel_m; }
-  /// A place in a cell for three numbers of 0…1, relative to the scene's origin.
+  /// A place in a cell for three numbers in 0…1, relative to the scene's origin.
   [[nodiscard]] Vec3 place_m(std::size_t cell, double u, double v, double w) const;
   [[nodiscard]] std::span<const Link> links_of(std::size_t cell) const {
     return std::span(links_).subspan(first_link_[cell], first_link_[cell + 1] - first_link_[cell]);

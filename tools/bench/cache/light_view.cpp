@@ -10,7 +10,7 @@ namespace {
 
 struct Start {
   Vec3 from_world_m, direction_world;
-  double flux_lm = 0;  ///< of all samples
+  double flux_lm = 0;  ///< total of all samples
 };
 
 Start leaves_luminaire(const RayScene& scene, const Emitter& emitter, const std::array<double, 4>& u) {
@@ -23,13 +23,13 @@ Start leaves_luminaire(const RayScene& scene, const Emitter& emitter, const std:
   Vec3 from_m = pose.translation_m;
   if (emitter.shape.kind != LuminousShape::Kind::point)
     from_m = pose.point(sample_leaving_place_m(emitter.shape, drawn.direction, u[2], u[3]));
-  // Shadow rays stop this far short of a lamp, so that one flush with a ceiling is not shaded by it: light that leaves
-  // it starts as far outside.
+  // Shadow rays stop this far short of a lamp, so that a ceiling does not shade a lamp flush with it. So light that
+  // leaves the lamp starts this far outside.
   from_m += 32 * scene.surface_error_m(from_m) * direction;
   return {from_m, direction, intensity_cd / drawn.density_per_sr};
 }
 
-/// Light that falls through a disk across its direction, which hides the scene from the sky.
+/// Light that passes through a disk, at right angles to its direction, that covers the scene from the sky.
 Start leaves_sky(const RayScene& scene, const SkyLuminance& sky, const std::array<double, 4>& u) {
   const DirectionSample drawn = sky.sample(u[0], u[1]);
   if (!(drawn.density_per_sr > 0)) return {};

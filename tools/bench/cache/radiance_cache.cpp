@@ -99,7 +99,7 @@ Result<TransportMatrix> RadianceCache::evaluate(std::span<const Emitter> emitter
   auto light = method_->reflected(emitters, options);
   if (!light) return tl::unexpected(Fault{Cause::cancelled, "", "stopped while evaluating the radiance cache", {}});
   matrix.rays += light->rays;
-  // Illuminance is never negative; harmonics may make it so where it is nearly nothing.
+  // Illuminance is never negative; harmonics can make it negative where it is nearly zero.
   for (Eigen::MatrixXd& lux : light->lux_per_level) lux = lux.cwiseMax(0.0);
   Eigen::MatrixXd reflected = Eigen::MatrixXd::Zero(matrix.receivers(), matrix.emitters());
   const bool grey = light->lux_per_level.size() == 1;
@@ -112,9 +112,8 @@ Result<TransportMatrix> RadianceCache::evaluate(std::span<const Emitter> emitter
           coloured(matrix.direct_lux_per_level, c) +
           (grey ? coloured(reflected, c) : light->lux_per_level[static_cast<std::size_t>(c)]));
 
-  // Replicates about the answer, with the resolution's error added in a pattern whose standard error it is. When the
-  // direct part has replicates of its own, there are as many, and the reflected ones repeat, scaled to keep their
-  // standard error.
+  // Replicates around the answer, plus the resolution's error in a pattern with that standard error. If the direct part
+  // has its own replicates, the number is theirs, and the reflected ones repeat, scaled to keep their standard error.
   const std::size_t count = std::max(kCacheReplicates, direct->replicates.size());
   const double n = static_cast<double>(count), repeats = n / static_cast<double>(kCacheReplicates);
   constexpr double kOf = static_cast<double>(kCacheReplicates - 1);

@@ -1,5 +1,5 @@
 #pragma once
-/// Incoming radiance of cells as spherical harmonics, in one channel (all surfaces grey), RGB, or YCoCg with less
+/// Incoming radiance of cells as spherical harmonics: in one channel (all surfaces grey), RGB, or YCoCg with less
 /// detail in the chrominance (thesis §3.2.2; K. Vardis et al. 2014).
 
 #include "tools/bench/cache/cache_settings.h"
@@ -19,7 +19,7 @@ class FieldLayout {
   /// Numbers per cell.
   [[nodiscard]] int size() const { return first_ + (channels_ - 1) * others_; }
 
-  /// Adds radiance [cd/m² · sr, per primary] that comes from a direction with harmonics `y` to a cell's numbers.
+  /// Adds radiance [cd/m² · sr, per primary] from a direction with harmonics `y` to a cell's numbers.
   template <class Row>
   void add(const Harmonics& y, const Vec3& rgb, Row&& cell) const {
     const Vec3 colour = ycocg_ ? ycocg_of(rgb) : rgb;
@@ -48,7 +48,7 @@ class FieldLayout {
  private:
   int channels_;
   bool ycocg_;
-  int first_, others_;  ///< coefficients of the first channel and of each other
+  int first_, others_;  ///< coefficients of the first channel, and of each other one
 };
 
 }  // namespace luxrig

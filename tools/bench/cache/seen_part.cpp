@@ -13,9 +13,9 @@ namespace {
 constexpr std::uint64_t kSeenSamples = 0x7365656e;
 constexpr std::size_t kSightRays = 16384;
 constexpr std::size_t kMostReceivers = 1024;
-constexpr double kLeftOut = 0.005;  ///< of the rays, on either side
+constexpr double kLeftOut = 0.005;  ///< of the rays, at either end
 constexpr double kMargin = 0.5;     ///< of the longest side
-/// Nothing is cut off a scene that is less than so many times as long: cells are then a little larger, and that is all.
+/// A scene less than this many times as long is kept whole: cells are then only a little larger.
 constexpr double kFarLarger = 4;
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-/// Which part of a scene the cells of a cache are for.
+/// The part of a scene that the cells of a cache cover.
 
 #include <cstdint>
 #include <span>
@@ -9,9 +9,9 @@
 
 namespace luxrig {
 
-/// The box, in the scene's frame, of what receivers see from near: all of the scene, unless that is far larger (a room
-/// whose door opens to a kilometre of ground); then what 99 of 100 rays from receivers meet along each axis, the
-/// receivers themselves, and half as much again on each side.
+/// The box, in the scene's frame, that receivers see from nearby. It is the whole scene, unless that is far larger (a
+/// room with a door to a kilometre of ground). Then it holds 99 of 100 hits of rays from receivers along each axis and
+/// the receivers themselves, with half of its longest side as a margin on each side.
 [[nodiscard]] Eigen::AlignedBox3d seen_part_m(const Scene& scene, const RayScene& rays,
                                               std::span<const Receiver> receivers, std::uint64_t seed);
 

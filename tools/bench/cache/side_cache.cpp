@@ -1,5 +1,5 @@
-/// CacheContents::sides. With B_p the radiosity of first reflection of side p and G_rp the share of receiver r's
-/// hemisphere (cosine-weighted) that shows it, the first reflection is Σ G_rp B_p; later ones are exchanged between
+/// CacheContents::sides. B_p is the radiosity of the first reflection of side p. G_rp is the share of receiver r's
+/// hemisphere (cosine-weighted) that shows p. The first reflection is Σ G_rp B_p. Later ones are exchanged between
 /// groups of sides (side_exchange.h) and read with the same G, summed by group.
 
 #include <fmt/format.h>
@@ -24,21 +24,21 @@ namespace {
 constexpr std::uint64_t kGatherSamples = 0x676174686572, kSideLightSamples = 0x6c69676874,
                         kBrightSamples = 0x627269676874;
 constexpr std::size_t kSideReplicates = kCacheReplicates;
-/// The thinnest walls that are to be expected, as a share of the part of a scene that is looked at.
+/// The thinnest walls to expect, as a share of the covered part of the scene.
 constexpr double kLeastWall = 0.01;
 
-/// A side is bright for an emitter when it throws back at least this share of what the emitter's light does.
+/// A side is bright for an emitter if it reflects at least this share of all that the emitter's light reflects.
 constexpr double kBrightShare = 1.0 / 256;
-/// Where so many of a receiver's rays meet a side, they measure its form factor well enough.
+/// If this many of a receiver's rays hit a side, they measure its form factor well enough.
 constexpr double kRaysThatMeasure = 64;
-/// The most unknowns for which later reflections are solved ahead, and the most numbers then kept.
+/// The most unknowns for which later reflections are solved in advance, and the most numbers kept then.
 constexpr std::size_t kMostSolvedRows = 2048, kMostSolvedReads = 20'000'000;
-/// With cells n times as large the error of resolution is n times as large or more: so much of the difference between
-/// both is the finer one's. Later reflections use the larger cells in either, which the difference does not show:
-/// measured on the rooms of `luxrig bench transport`, twice the share covers both.
+/// With cells n times as large the error of resolution is n times as large or more, so this share of the difference
+/// between both belongs to the finer one. Later reflections use the larger cells in both, which the difference does not
+/// show. Measured in the rooms of `luxrig bench transport`: twice the share covers both.
 [[nodiscard]] double share_of_difference(int group_cells) { return 1.0 / std::max(1, group_cells - 1); }
 
-/// Radiosity of one side's first reflection, from one emitter.
+/// Radiosity of one side's first reflection of one emitter.
 struct SideLight {
   std::uint32_t side;
   Eigen::Matrix<float, kSideReplicates, 1> of_replicate[3];  ///< [lm/m²], per channel
@@ -134,14 +134,14 @@ class SideCache final : public RadianceCache::Method {
   }
 
  private:
-  /// Share of a receiver's hemisphere that shows a side, as one replicate's rays have it.
+  /// Share of a receiver's hemisphere that shows a side, by the rays of one replicate.
   struct Read {
     std::uint32_t receiver;
     std::uint32_t replicate;
     float share;
   };
 
-  /// Rays from the receivers, and what sides they meet.
+  /// Traces rays from the receivers and finds the sides that they hit.
   bool gather(const RadianceCache::BuildOptions& options) {
     struct Met {
       std::uint32_t side, replicate;
@@ -178,7 +178,7 @@ class SideCache final : public RadianceCache::Method {
     });
     if (options.watch.stop.stop_requested()) return false;
     cast_ = std::accumulate(cast.begin(), cast.end(), std::uint64_t{0});
-    // By side: what light falls on few sides then needs few of them.
+    // Ordered by side: light that falls on few sides then needs few of them.
     first_read_.assign(sides_.sides() + 1, 0);
     for (const auto& list : met)
       for (const Met& one : list) ++first_read_[one.side + 1];
@@ -225,7 +225,7 @@ class SideCache final : public RadianceCache::Method {
     return falls;
   }
 
-  /// The replicates' radiosities together, one entry per side.
+  /// The radiosities of all replicates together, one entry per side.
   std::vector<SideLight> merged(std::span<const std::vector<std::pair<std::uint32_t, Eigen::Vector3f>>> falls) const {
     std::vector<std::uint32_t> sides;
     for (const auto& list : falls)
@@ -251,11 +251,11 @@ class SideCache final : public RadianceCache::Method {
     return channels_ == 1 ? channels[0] : channels.dot(kLuminanceOfRgb);
   }
 
-  /// What all receivers get of one emitter by way of groups.
+  /// The light of one emitter at all receivers through groups.
   struct ByGroups {
     Eigen::VectorXd of_channel[3];   ///< reflections after the first
     Eigen::VectorXd luminance;       ///< the same
-    Eigen::VectorXd first_by_group;  ///< luminance of the first reflection, had it been stored in groups
+    Eigen::VectorXd first_by_group;  ///< luminance of the first reflection, if it were stored in groups
   };
   ByGroups by_groups(const std::vector<SideLight>& light) const {
     const auto n = static_cast<Eigen::Index>(receivers.size());
@@ -280,7 +280,7 @@ class SideCache final : public RadianceCache::Method {
     return out;
   }
 
-  /// What receivers [begin, end) get of one emitter. Returns the shadow rays cast.
+  /// The light of one emitter at receivers [begin, end). Returns the number of shadow rays.
   std::uint64_t read(const std::vector<SideLight>& light, const ByGroups& later, std::size_t begin, std::size_t end,
                      Eigen::Index emitter, ReflectedLight& out) const {
     std::uint64_t cast = 0;
@@ -325,8 +325,8 @@ class SideCache final : public RadianceCache::Method {
     return cast;
   }
 
-  /// Reads one side by its form factor at a place drawn for each replicate, with a shadow ray, at the receivers whose
-  /// rays would seldom meet it; `measured` says which.
+  /// Reads one side by its form factor at a random place per replicate, with a shadow ray. Only for receivers whose
+  /// rays would seldom hit it; `measured` says which.
   template <class Own, class All>
   std::uint64_t read_bright(std::uint32_t side, std::size_t begin, std::size_t end, const Vec3& sum,
                             const Eigen::Matrix<double, kSideReplicates, 1>& of_replicate, std::vector<bool>& measured,
@@ -350,7 +350,7 @@ class SideCache final : public RadianceCache::Method {
       measured[r - begin] = measure;
       if (!measure || most == 0) continue;
       for (std::uint32_t k = 0; k < kSideReplicates; ++k) {
-        // One draw in so many equal parts of the area for each replicate.
+        // One random place per replicate, each in its own equal part of the area.
         const double jitter =
             static_cast<double>(mixed(mixed(mixed(seed_, kBrightSamples), r), side * kSideReplicates + k) >> 11) *
             0x1p-53;
@@ -378,9 +378,9 @@ class SideCache final : public RadianceCache::Method {
   std::vector<std::uint32_t> material_of_triangle_;
   std::uint32_t rays_per_replicate_ = 0;
   std::vector<Read> reads_;                      ///< ordered by side
-  std::vector<std::size_t> first_read_;          ///< of each side, and one more
+  std::vector<std::size_t> first_read_;          ///< per side, and one more
   Eigen::SparseMatrix<float> group_reads_;       ///< receivers × rows of the exchange
-  std::vector<Eigen::MatrixXf> reads_of_later_;  ///< per channel, or empty: then solved for each set of emitters
+  std::vector<Eigen::MatrixXf> reads_of_later_;  ///< per channel; empty = solved for each set of emitters
   std::unique_ptr<SideExchange> exchange_;
   std::uint64_t cast_ = 0;
 };
@@ -391,7 +391,7 @@ BuiltMethod build_side_cache(const Scene& scene, const RayScene& rays, std::span
                              const CacheSettings& settings, const RadianceCache::BuildOptions& options) {
   const Eigen::AlignedBox3d part_m = seen_part_m(scene, rays, receivers, options.seed);
   if (!part_m.isEmpty()) {
-    // Both sides of a wall are told apart where it is thicker than this.
+    // The two sides of a wall are distinguished if it is thicker than this.
     const double least_wall_m = 6 * rays.surface_error_m(scene.origin_world_m + part_m.center());
     const double part_side_m = part_m.sizes().maxCoeff(), whole_side_m = triangle_bounds_m(scene).sizes().maxCoeff();
     if (least_wall_m > kLeastWall * part_side_m)

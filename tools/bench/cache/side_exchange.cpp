@@ -12,8 +12,8 @@
 namespace luxrig {
 namespace {
 
-constexpr std::uint64_t kExchangeSamples = 0x6c696e6b73;  // keeps these random numbers apart from others
-/// Reflections after which the rest is below this share of the first are left out.
+constexpr std::uint64_t kExchangeSamples = 0x6c696e6b73;  // separates these random numbers from others
+/// Reflections are left out once the rest is below this share of the first.
 constexpr double kNegligibleShare = 1e-5;
 constexpr int kMostExchanges = 400;
 
@@ -60,8 +60,8 @@ SideExchange::SideExchange(const Scene& scene, const RayScene& rays, const Surfa
   for (std::uint32_t group = 0; group < sides.groups(); ++group)
     if (seen[group]) take(group);
 
-  // In waves: the groups that the last wave's groups see are the next. What is seen only at the last reflection that is
-  // followed needs no row of links.
+  // In waves: the groups seen by one wave are the next wave. Groups seen only at the last reflection need no row of
+  // links.
   std::vector<Row> rows;
   for (int wave = 1; rows.size() < group_of_row_.size() && (reflections == 0 || wave < reflections); ++wave) {
     const std::size_t begin = rows.size(), end = group_of_row_.size();

@@ -1,5 +1,5 @@
 #pragma once
-/// What groups of sides give each other: every reflection after the first.
+/// The exchange of light between groups of sides: every reflection after the first.
 
 #include <functional>
 
@@ -8,12 +8,12 @@
 
 namespace luxrig {
 
-/// With radiosity B [lm/m²] of groups, the illuminance of group g is E_g = Σ F_gh B_h, F_gh the share of g's
-/// hemisphere (cosine-weighted, mean over its places) that shows group h; and what it reflects of it, ρ_g E_g.
+/// With radiosity B [lm/m²] of groups, group g has illuminance E_g = Σ F_gh B_h and reflects ρ_g E_g. F_gh is the share
+/// of g's hemisphere (cosine-weighted, mean over its places) that shows group h.
 class SideExchange {
  public:
-  /// Groups that a receiver sees (`seen`, by group), those that these see, and so on: only they have rows.
-  /// reflections   after the first that matter; 0 = all. Rows of the last ones need not exist.
+  /// Only these groups have rows: those that a receiver sees (`seen`, by group), those that these see, and so on.
+  /// reflections   the number that matters, without the first; 0 = all. Rows of the last ones need not exist.
   SideExchange(const Scene& scene, const RayScene& rays, const SurfaceSides& sides, std::vector<bool> seen,
                bool only_needed, int reflections, int rays_per_group, int channels, std::uint64_t seed, int threads,
                const std::stop_token& stop);
@@ -22,12 +22,12 @@ class SideExchange {
   /// SurfaceSides::kNone for groups that cannot matter.
   [[nodiscard]] std::uint32_t row_of_group(std::size_t group) const { return row_of_group_[group]; }
 
-  /// All that follows the first reflection: with b the radiosity of first reflection by row,
+  /// All reflections after the first. With b the radiosity of the first reflection by row,
   ///   A b + A² b + …, A = diag(ρ) F, as many terms as there are reflections.
   [[nodiscard]] Eigen::VectorXd later(const Eigen::VectorXd& first, int channel) const;
 
-  /// later() for every b at once: the rows of `reads` (what receivers read of each row) times A + A² + …
-  /// By an LU factorisation, so for moderate numbers of rows.
+  /// later() for every b at once: the rows of `reads` (what receivers read of each row) times A + A² + … By an LU
+  /// factorisation, so only for moderate numbers of rows.
   [[nodiscard]] Eigen::MatrixXf reads_of_later(const Eigen::MatrixXf& reads, int channel) const;
 
   [[nodiscard]] std::size_t links() const { return share_.size(); }
@@ -36,7 +36,7 @@ class SideExchange {
 
  private:
   std::vector<std::uint32_t> row_of_group_, group_of_row_;
-  std::vector<std::size_t> first_link_;  ///< of each row, and one more
+  std::vector<std::size_t> first_link_;  ///< per row, and one more
   std::vector<std::uint32_t> seen_row_;
   std::vector<float> share_;
   std::vector<Eigen::VectorXd> reflectance_;  ///< per channel, by row

@@ -17,9 +17,9 @@ using Harmonics = Eigen::Matrix<double, kMostCoefficients, 1>;
 /// Y_lm(direction) for all nine; direction is unit.
 [[nodiscard]] Harmonics harmonics(const Vec3& direction);
 
-/// Coefficients of the lobe max(0, cosθ) about a unit axis, exact for each band (π, 2π/3, π/4 times Y). Its dot product
-/// with the coefficients of the incoming radiance [cd/m²] is the illuminance [lx] of a plane with that normal, of the
-/// radiance as far as three orders hold it: the exact lobe has 99.2 % of its energy in them.
+/// Coefficients of the lobe max(0, cosθ) around a unit axis, exact for each band (π, 2π/3, π/4 times Y). Its dot
+/// product with the coefficients of the incoming radiance [cd/m²] is the illuminance [lx] of a plane with that normal,
+/// within three orders: they hold 99.2 % of the energy of the exact lobe.
 [[nodiscard]] Harmonics cosine_lobe(const Vec3& axis);
 
 }  // namespace luxrig

@@ -10,16 +10,16 @@
 namespace luxrig {
 namespace {
 
-/// Height above a surface at which its places look at each other, as a share of a cell.
+/// Height above a surface of the lines of sight between its places, as a share of a cell.
 constexpr double kLift = 0.02;
 /// Pieces to a cell's face; one more for each triangle that crosses the cell.
 constexpr double kPiecesPerFace = 16;
-/// At most: what lies outside the grid is of its outermost cells, however large it is.
+/// Maximum: surfaces outside the grid belong to its outermost cells, however large they are.
 constexpr double kMostPieces = 64;
-/// Polygons that are thinner than this [cells] across an axis lie in one cell along it.
+/// Polygons thinner than this [cells] along an axis lie in one cell along it.
 constexpr double kThin = 1e-9;
-/// Parts of triangles smaller than this [cell faces] are left out: where a cell's rim runs along a triangle's edge,
-/// rounding leaves slivers whose places may lie outside.
+/// Parts of triangles smaller than this [cell faces] are left out. Where a cell's border runs along a triangle's edge,
+/// rounding leaves slivers with places that may lie outside.
 constexpr double kDust = 1e-9;
 /// Sides of less than this share of a cell's face join a larger neighbour whose normal is within 37°.
 constexpr double kSmallSide = 0.2;
@@ -90,7 +90,7 @@ void cut_by_cells(const Polygon& polygon, int axis, Eigen::Vector3i cell, const 
   }
 }
 
-/// A place in a convex polygon, evenly by area, for a point of the unit square.
+/// A place in a convex polygon, uniform by area, for a point of the unit square.
 Vec3 place_in(const Polygon& polygon, double u, double v) {
   std::array<double, 10> area{};
   double whole = 0;
@@ -184,13 +184,13 @@ void SurfaceSides::cut_up(const Scene& scene, int threads) {
 
 bool SurfaceSides::sees(const Vec3& a_world_m, const Vec3& normal_a, const Vec3& b_world_m, const Vec3& normal_b,
                         double lift_m) const {
-  // Rays stop short of their ends by twice the error of a surface: what the places stand on must be further off.
+  // Rays stop short of their ends by twice the error of a surface. The surface under the places must be farther away.
   lift_m = std::max(lift_m, 4 * rays_.surface_error_m(a_world_m));
   return !rays_.occluded(a_world_m + lift_m * normal_a, Vec3::Zero(), b_world_m + lift_m * normal_b);
 }
 
 void SurfaceSides::make_sides(int threads) {
-  // Slots hold ranges of pieces as yet. Within each, pieces are numbered by the first piece that they see.
+  // Slots still hold ranges of pieces. Within each, pieces are numbered by the first piece that they see.
   for (std::size_t begin = 0, end = 0; begin < slots_.size(); begin = end) {
     while (end < slots_.size() && slots_[end].cell == slots_[begin].cell) ++end;
     const SurfacePiece& first = pieces_[slots_[begin].first_place];
@@ -279,8 +279,8 @@ void SurfaceSides::join_small_sides(int threads) {
     if (joined[side] == side) number[side] = count++;
   for (std::uint32_t& side : side_of_place_) side = number[joined[side]];
   for (SurfacePiece& piece : pieces_) piece.side = side_of_place_[piece.side];
-  // Stable: each side's own pieces come before those that joined it only if their numbers did; any of them may stand
-  // for the side.
+  // Stable. A side's own pieces come before those that joined it only if their numbers did. Any of its pieces may
+  // represent the side.
   std::stable_sort(pieces_.begin(), pieces_.end(),
                    [](const SurfacePiece& a, const SurfacePiece& b) { return a.side < b.side; });
   index_pieces();
@@ -370,8 +370,8 @@ std::uint32_t SurfaceSides::side_at(const Vec3& position_world_m, const Vec3& no
     look_in(slot, position_world_m, normal_world, rays, seen, nearest);
   }
   if (seen.side != kNone) return seen.side;
-  // No place of the cell is seen: a corner between solids that cut each other, too small to have a place of its own; or
-  // rounding put the place into the next cell. What the next cells show to it is the same surface.
+  // The place sees no place of its cell: it is in a corner between intersecting solids, too small for a place of its
+  // own, or rounding moved it into the next cell. Places in neighbouring cells that it sees are the same surface.
   for (int n = 0; n < 27; ++n) {
     const Eigen::Vector3i cell = here + Eigen::Vector3i(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
     if (cell == here || !cells_.contains(cell)) continue;
@@ -380,7 +380,7 @@ std::uint32_t SurfaceSides::side_at(const Vec3& position_world_m, const Vec3& no
   }
   if (seen.side != kNone) return seen.side;
   if (nearest.side != kNone) return nearest.side;
-  // Rounding put its normal into the next part of the cube.
+  // Rounding moved its normal into the next part of the cube.
   for (int n = 0; n < 27; ++n) {
     const Eigen::Vector3i cell = here + Eigen::Vector3i(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1);
     if (!cells_.contains(cell)) continue;

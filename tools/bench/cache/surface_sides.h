@@ -1,5 +1,5 @@
 #pragma once
-/// The surfaces of a scene cut up by the cells of a grid into sides: patches that light is stored on.
+/// The surfaces of a scene, cut by the cells of a grid into sides: patches that light is stored on.
 
 #include <cmath>
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace luxrig {
 
-/// A place on one face of a triangle that stands for some area about it.
+/// A place on one face of a triangle that represents some area around it.
 struct SurfacePiece {
   Vec3 position_world_m;
   Vec3f normal_world;
@@ -20,15 +20,15 @@ struct SurfacePiece {
   std::uint32_t side;
 };
 
-/// A side is what lies in one cell, looks about the same way (one of 54 equal parts of a cube about the normals) and
-/// sees itself: two places belong together when nothing stands between them just above the surface. Both faces of each
-/// triangle are cut up. Groups are the same with larger cells, made of whole sides.
+/// A side is the surface within one cell that faces about the same way (one of 54 equal parts of a cube around the
+/// normals) and sees itself. Two places belong together if nothing is between them just above the surface. Both faces
+/// of each triangle are cut. Groups are the same with larger cells, made of whole sides.
 class SurfaceSides {
  public:
   static constexpr std::uint32_t kNone = 0xffffffff;
 
-  /// cells          grid in the scene's frame; what lies outside is of its nearest cells
-  /// group_cells    cells to a group's cell, per axis
+  /// cells          grid in the scene's frame; surfaces outside belong to the nearest cells
+  /// group_cells    cells per group cell, per axis
   SurfaceSides(const Scene& scene, const RayScene& rays, const VoxelGrid& cells, int group_cells, int threads);
 
   [[nodiscard]] std::size_t sides() const { return area_of_side_m2_.size(); }
@@ -37,14 +37,14 @@ class SurfaceSides {
   [[nodiscard]] double area_of_group_m2(std::size_t group) const { return area_of_group_m2_[group]; }
   [[nodiscard]] std::uint32_t group_of_side(std::size_t side) const { return group_of_side_[side]; }
 
-  /// All pieces, ordered by side; together they have the area of each side exactly.
+  /// All pieces, ordered by side; together they have exactly the area of each side.
   [[nodiscard]] std::span<const SurfacePiece> pieces() const { return pieces_; }
   [[nodiscard]] std::span<const SurfacePiece> pieces_of_side(std::size_t side) const {
     return std::span(pieces_).subspan(first_piece_[side], first_piece_[side + 1] - first_piece_[side]);
   }
 
-  /// The side on which a place lies; kNone when no surface is near that looks there. `rays` counts what was cast to
-  /// tell sides apart that share a cell.
+  /// The side of a place; kNone if no surface nearby faces that way. `rays` counts the rays that distinguish sides
+  /// within one cell.
   [[nodiscard]] std::uint32_t side_at(const Vec3& position_world_m, const Vec3& normal_world,
                                       std::uint64_t& rays) const;
 
@@ -54,13 +54,13 @@ class SurfaceSides {
   struct Slot {
     std::uint32_t cell;
     std::uint32_t facing;
-    bool plain = false;  ///< all surfaces of the cell lie in one plane: nothing can come between its places
-    std::uint32_t first_place, end_place;  ///< into side_of_place_; while sides are made, into pieces_
+    bool plain = false;  ///< all surfaces of the cell lie in one plane: its places always see each other
+    std::uint32_t first_place, end_place;  ///< into side_of_place_; while sides are being made, into pieces_
   };
   [[nodiscard]] bool sees(const Vec3& a_world_m, const Vec3& normal_a, const Vec3& b_world_m, const Vec3& normal_b,
                           double lift_m) const;
   [[nodiscard]] std::span<const Slot> slots_of_cell(std::uint32_t cell) const;
-  /// The side whose nearest place a place sees, and how far that is; none when it sees no side of the slot.
+  /// The side with the nearest place that a place sees, and its distance; none if it sees no side of the slot.
   struct Found {
     std::uint32_t side = kNone;
     double distance_squared_m2 = HUGE_VAL;
@@ -78,15 +78,15 @@ class SurfaceSides {
   Vec3 origin_world_m_;
   VoxelGrid cells_;
   std::vector<SurfacePiece> pieces_;
-  std::vector<std::uint32_t> side_of_place_;  ///< of each place in slots, after small ones were joined
-  std::vector<std::uint32_t> first_piece_;    ///< of each side, and one more
+  std::vector<std::uint32_t> side_of_place_;  ///< per place in slots, after small ones were joined
+  std::vector<std::uint32_t> first_piece_;    ///< per side, and one more
   std::vector<double> area_of_side_m2_, area_of_group_m2_;
   std::vector<std::uint32_t> group_of_side_;
   std::vector<Slot> slots_;                ///< ordered by cell and facing
-  std::vector<std::uint32_t> first_slot_;  ///< of each cell, and one more
+  std::vector<std::uint32_t> first_slot_;  ///< per cell, and one more
 };
 
-/// Which of 54 parts of a cube a direction goes through: nine to a face, the middle one about the axis.
+/// The part of a cube, out of 54, that a direction passes through: nine per face, the middle one around the axis.
 [[nodiscard]] std::uint32_t facing_of(const Vec3& normal);
 
 }  // namespace luxrig

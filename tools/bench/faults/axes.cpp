@@ -1,5 +1,4 @@
-// Axes on a CAN bus: where the simulated joints truly went while something was wrong. In simulated time, without
-// sockets.
+// Axes on a CAN bus: the true motion of the simulated joints during a fault. In simulated time, without sockets.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,8 +17,8 @@ using sim::FaultKind;
 
 constexpr const char* kAxesBus = "the-bus";
 constexpr double kArrived_deg = 0.05, kOffPath_deg = 0.5;
-constexpr double kStray_deg = 0.5;          // more than a set-point's rounding and a drive's following error
-constexpr double kAxesRecoverWithin_s = 5;  // and the homing, where the position was lost
+constexpr double kStray_deg = 0.5;          // above a set-point's rounding and a drive's following error
+constexpr double kAxesRecoverWithin_s = 5;  // without the homing after a lost position
 constexpr double kHoming_s = 60, kAxesGiveUp_s = 120;
 constexpr Duration kAxesWellFor = std::chrono::milliseconds(500);
 
@@ -74,7 +73,7 @@ class AxisCases {
     began_ = now_;
     switch_fault(true, between(plan_.value_least, plan_.value_most));
     const Time over = now_ + from_seconds(between(plan_.shortest_s, plan_.longest_s));
-    // In half of the cases somebody asks for another aim meanwhile.
+    // In half of the cases a new aim is asked during the fault.
     const bool again = between(0, 1) < 0.5;
     const Time asked_at = now_ + from_seconds(between(0, to_seconds(over - now_)));
     while (now_ < over) {
@@ -113,7 +112,7 @@ class AxisCases {
     }
   }
 
-  /// A new aim: from here on the joints may be anywhere between where they stand and there.
+  /// A new aim: from now on the joints may be anywhere between their present place and the aim.
   void order(double pan_deg, double tilt_deg) {
     const Joints stand = joints();
     from_ = stand;
@@ -128,7 +127,7 @@ class AxisCases {
     run_out();
   }
 
-  /// An axis under way cannot stop at once: a new aim behind it lets it run on as far as its deceleration needs.
+  /// A moving axis cannot stop at once. After a new aim behind it, it may run on as far as its deceleration requires.
   void run_out() {
     const auto stop_deg = [](const sim::AxisDrive& drive, double most_deg_s2) {
       const double speed = drive.speed_deg_s();
@@ -167,26 +166,26 @@ class AxisCases {
     }
   }
 
-  /// Compares the truth with what is asked.
+  /// Compares the truth with the aim.
   void look() {
     if (!began_) return;
     const Joints at = joints();
     const double pan_deg = deg_from_rad(at.pan_rad), tilt_deg = deg_from_rad(at.tilt_rad);
     if (!pan_drive().homed() || !tilt_drive().homed()) lost_position_ = true;
     if (lost_position_ && std::abs(pan_drive().speed_deg_s()) < 0.01 && std::abs(tilt_drive().speed_deg_s()) < 0.01) {
-      came_to_rest_ = true;  // what moves from here on is on its way home, by its rule
+      came_to_rest_ = true;  // later motion is homing, by its own rule
     }
-    if (lost_position_ && !plan_.loses_position) came_to_rest_ = true;  // taken for restarted: the same
+    if (lost_position_ && !plan_.loses_position) came_to_rest_ = true;  // taken for restarted: same rule
     if (came_to_rest_) {
       check_travel(pan_deg, tilt_deg);
       return;
     }
     const double off = off_path_deg(pan_deg, tilt_deg), beyond = excess(pan_deg, tilt_deg);
-    // The way from an aim under way to another is no straight line.
+    // The way from an aim in progress to another is no straight line.
     if (!asked_again_) outcome_.departure = std::max(outcome_.departure, off);
     if (!asked_again_ && off > kOffPath_deg) outcome_.departed_s += to_seconds(sim::kTick);
     outcome_.excess = std::max(outcome_.excess, beyond);
-    // Without power an axis turns on by its momentum: nobody can help that.
+    // Without power an axis runs on by its momentum: that cannot be prevented.
     if (beyond > kStray_deg && !lost_position_ && outcome_.astray.empty()) {
       outcome_.astray =
           fmt::format("at {:.1f} and {:.1f} deg: {:.1f} beyond what was asked; {:.2f} s after the beginning", pan_deg,
@@ -195,7 +194,7 @@ class AxisCases {
   }
 
   void check_travel(double pan_deg, double tilt_deg) {
-    // Home is at its switch, 5 degrees past the travel.
+    // The home switch is 5 degrees past the travel.
     if (std::abs(pan_deg) < 178 && std::abs(tilt_deg) < 128) return;
     if (outcome_.astray.empty()) outcome_.astray = fmt::format("at {:.1f} and {:.1f} deg", pan_deg, tilt_deg);
   }
@@ -203,7 +202,7 @@ class AxisCases {
   [[nodiscard]] double excess(double pan_deg, double tilt_deg) const {
     return std::max(pan_.beyond(pan_deg), tilt_.beyond(tilt_deg));
   }
-  /// From the straight line between where the aim was asked and the aim.
+  /// Distance from the straight line between the place where the aim was asked and the aim.
   [[nodiscard]] double off_path_deg(double pan_deg, double tilt_deg) const {
     const double x = deg_from_rad(from_.pan_rad), y = deg_from_rad(from_.tilt_rad);
     const double dx = deg_from_rad(aim_.pan_rad) - x, dy = deg_from_rad(aim_.tilt_rad) - y;
@@ -226,7 +225,7 @@ class AxisCases {
   bool interface_down_ = false, lost_position_ = false, came_to_rest_ = false, asked_again_ = false;
   std::unique_ptr<Driver> driver_;
   Joints aim_{}, from_{};
-  Span pan_, tilt_;  ///< where the joints may be [deg]
+  Span pan_, tilt_;  ///< allowed range of the joints [deg]
   std::optional<Time> began_, well_since_;
   FaultOutcome outcome_;
 };

@@ -1,5 +1,5 @@
 #pragma once
-/// One fault of a bus, from its beginning to the recovery, and the row that hundreds of a kind make.
+/// One fault of a bus, from its beginning to the recovery, and the row for hundreds of one kind.
 
 #include <optional>
 #include <string>
@@ -12,38 +12,38 @@
 namespace luxrig {
 
 struct FaultOutcome {
-  double departure = 0;   ///< largest, of what is from what is asked: of a level 0…1, or of a joint [deg]
-  double departed_s = 0;  ///< how long it was off
-  /// Most beyond all that was asked since it was right last: a level brighter than any, or a joint past its aim [deg].
+  double departure = 0;   ///< largest deviation from the asked value: level 0…1, or joint [deg]
+  double departed_s = 0;  ///< duration of the deviation
+  /// Most beyond all values asked since it was last right: a level brighter than any, or a joint past its aim [deg].
   double excess = 0;
-  std::optional<double> reported_s;   ///< after it began; nothing: never, as when nobody can notice
-  std::optional<double> recovered_s;  ///< after it ended: all is as asked and said to be well; nothing: not in time
-  std::string astray;                 ///< what state nobody asked for; empty: none
+  std::optional<double> reported_s;   ///< time after its beginning; nothing = never, if it cannot be noticed
+  std::optional<double> recovered_s;  ///< from its end until all is right and reported healthy; nothing = not in time
+  std::string astray;                 ///< a state that was never asked for; empty = none
 };
 
-/// What a kind of fault is injected with.
+/// How a kind of fault is injected.
 struct FaultPlan {
   sim::FaultKind kind;
   std::string device;                          ///< a bus, a fixture, an axis
-  double value_least = 1, value_most = 1;      ///< drawn between them
-  double shortest_s = 0.3, longest_s = 2.5;    ///< it lasts, drawn between them
+  double value_least = 1, value_most = 1;      ///< drawn from this range
+  double shortest_s = 0.3, longest_s = 2.5;    ///< its duration, drawn from this range
   double rest_s = 0;                           ///< between two cases
-  bool loses_position = false, homes = false;  ///< of an axis: it does by itself; it may be homed for it
-  const char* suffix = "";                     ///< of the row's name: what is hit
+  bool loses_position = false, homes = false;  ///< an axis loses it by this fault; it may be homed afterwards
+  const char* suffix = "";                     ///< end of the row's name: the part that is hit
   const char* note = "";                       ///< without commas
 };
 
-/// `unit`: of departure and excess. error: the share of cases that were astray or did not recover; target 0.
-/// seconds: longest recovery; target `bound_s`.
+/// `unit`: of departure and excess. error: share of cases that went astray or did not recover; target 0. seconds:
+/// longest recovery; target `bound_s`.
 [[nodiscard]] BenchRow row_of_faults(const std::string& bus, const FaultPlan& plan, const std::string& unit,
                                      const std::vector<FaultOutcome>& outcomes, double bound_s);
 
-/// Whether --only wants this kind on this bus: a beginning of "bus-kind".
+/// Whether --only selects this kind on this bus: it is a prefix of "bus-kind".
 [[nodiscard]] bool fault_wanted(const BenchOptions& options, const std::string& bus, const FaultPlan& plan);
-/// How many cases of each kind.
+/// Number of cases of each kind.
 [[nodiscard]] int fault_count(const BenchOptions& options);
 
-/// Lamps by sACN, Art-Net, USB and Modbus.
+/// Lamps on sACN, Art-Net, USB and Modbus.
 void add_level_faults(const BenchOptions& options, std::vector<BenchRow>& rows);
 /// Axes on a CAN bus.
 void add_axis_faults(const BenchOptions& options, std::vector<BenchRow>& rows);

@@ -1,4 +1,4 @@
-// Lamps on every bus that carries levels: what their light truly did while something was wrong.
+// Lamps on every bus that carries levels: their true light during a fault.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,20 +23,20 @@ using std::chrono::milliseconds;
 constexpr const char* kBusName = "the-bus";
 constexpr int kLamps = 3;
 constexpr std::size_t kWaitingAtOnce = 6;
-constexpr double kRight = 0.002;  // of full level: the registers and slots have 10 to 16 bits
-constexpr double kOff = 0.01;     // seen as off from here on
+constexpr double kRight = 0.002;  // of full level: registers and slots have 10 to 16 bits
+constexpr double kOff = 0.01;     // counts as off from here on
 constexpr double kRecoverWithin_s = 5, kGiveUp_s = 20;
 constexpr Duration kTruthTick = milliseconds(10);
-constexpr Duration kWellFor = milliseconds(600);  // longer than anything is late
+constexpr Duration kWellFor = milliseconds(600);  // longer than any delay
 
 struct LevelBus {
   const char* driver;
-  bool waits;  ///< its driver waits for answers, in real time
+  bool waits;  ///< its driver waits for answers in real time
   std::vector<std::pair<const char*, OptionValue>> options;
   std::vector<FaultPlan> plans;
 };
 
-/// What the network, the line, the cable can do. Values: shares, milliseconds, exception codes.
+/// Possible faults of the network, the line and the cable. Values: shares, milliseconds, exception codes.
 std::vector<LevelBus> level_buses() {
   const std::string bus = kBusName;
   const auto plan = [&](FaultKind kind, double least = 1, double most = 1, const char* note = "") {
@@ -104,7 +104,7 @@ Rig lamps_on(const LevelBus& on) {
     Fixture lamp;
     lamp.name = fmt::format("lamp-{}", i + 1);
     if (modbus) {
-      lamp.patch = ModbusPatch{10 + i / 2, i % 2, 1000, 0, {}, nullptr};  // two of one unit, one of another
+      lamp.patch = ModbusPatch{10 + i / 2, i % 2, 1000, 0, {}, nullptr};  // two on one unit, one on another
     } else {
       lamp.patch = DmxPatch{1, 1 + 2 * i, {{SlotUse::dimmer, 0}, {SlotUse::dimmer_fine, 0}}};
     }
@@ -121,7 +121,7 @@ Rig lamps_on(const LevelBus& on) {
   return rig;
 }
 
-/// Fades without end, each lamp its own. at() is to be called with times that grow.
+/// Endless fades, a different one for each lamp. Call at() with rising times.
 class Fades {
  public:
   explicit Fades(std::uint64_t seed) : random_(seed) {}
@@ -155,7 +155,7 @@ class LevelCases {
     driver_ = find_driver(on.driver)->make(rig_, 0, far_->redirect());
     const DriverBounds bounds = driver_->bounds();
     period_ = bounds.write_period;
-    // An asked level is on its way for a cycle, and for another until the next is asked.
+    // A level travels for one cycle, and is in force for another until the next is asked.
     usual_lag_ = 2 * period_ + milliseconds(50);
     (void)driver_->activate(now_);
   }
@@ -190,8 +190,8 @@ class LevelCases {
 
  private:
   struct Lamp {
-    std::deque<std::pair<Time, double>> asked;  ///< newest last, for as long as the usual lag
-    double least = 0, most = 0;                 ///< asked since it was right for a while, or since the fault began
+    std::deque<std::pair<Time, double>> asked;  ///< newest last, kept for the usual lag
+    double least = 0, most = 0;                 ///< asked since it was last right for a while, or since the fault began
     std::optional<Time> right_since;
     bool dark_allowed = false;
   };
@@ -236,7 +236,7 @@ class LevelCases {
     return level;
   }
 
-  /// Compares the truth with what is asked.
+  /// Compares the truth with the asked levels.
   void look(Time at) {
     const std::vector<double> levels = far_->levels();
     right_ = true;
@@ -263,7 +263,7 @@ class LevelCases {
         lamp.right_since.reset();
         continue;
       }
-      // What is late may be right by chance, for a moment: while a fault lasts all that was asked counts.
+      // A late level may be right by chance for a moment. So during a fault all levels asked since its beginning count.
       if (!lamp.right_since) lamp.right_since = at;
       if (fault_on_ || at - *lamp.right_since < kWellFor) continue;
       lamp.least = low->second;
@@ -317,7 +317,7 @@ void add_level_faults(const BenchOptions& options, std::vector<BenchRow>& rows) 
       if (fault_wanted(options, bus.driver, plan)) jobs.push_back({&bus, &plan, seed, {}});
     }
   }
-  // Those that wait for answers in real time do little else: some at once.
+  // Cases that wait for answers in real time use little processor time: run several at once.
   std::atomic<std::size_t> next{0};
   std::mutex saying;
   const auto work = [&](bool waits) {

@@ -1,4 +1,4 @@
-/// Heads on a ring above an object, aimed: against all of them on its middle, and against random looks.
+/// Heads on a ring above an object, aimed: compared with all aimed at its middle, and with random aims.
 
 #include <fmt/format.h>
 
@@ -17,8 +17,8 @@ namespace {
 
 constexpr int kRandomLooks = 200;
 constexpr double kAimTarget_s = 3;
-constexpr double kSpotLumens = 2000, kSpotExponent = 60;  // half of its maximum 12° off
-/// Of the object's diagonal: how far out and how far up the ring is.
+constexpr double kSpotLumens = 2000, kSpotExponent = 60;  // half of the maximum 12° off axis
+/// Radius and height of the ring, as multiples of the object's diagonal.
 constexpr double kRingRadius = 2, kRingHeight = 1.2;
 
 std::vector<HangingHead> ring_of_heads(const ReliefStudy& study, int count) {

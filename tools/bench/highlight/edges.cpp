@@ -12,11 +12,11 @@ namespace luxrig {
 namespace {
 
 constexpr int kEveryRay = 1, kJudgedStep = 4;
-/// So many points are 10⁸ rays.
+/// This many points make 10⁸ rays.
 constexpr std::size_t kHundredMillionRays = 100'000'000 / (kScanAzimuths * kScanElevations) + 1;
 constexpr double kEdgeError = 0.01, kEdgeSeconds = 2;
 
-/// Recessed places of the mesh itself, evenly strided to the number that makes 10⁸ rays where there are as many.
+/// Recessed places of the mesh itself, evenly strided to the number that makes 10⁸ rays, if there are that many.
 std::vector<OrientedPoint> voting_points(HighlightObject& object, const BenchOptions& options) {
   if (options.quick) return object.study().points;
   const ReliefStudy& study = object.study();

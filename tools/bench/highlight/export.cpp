@@ -34,7 +34,7 @@ std::vector<BenchRow> export_highlight_objects(const std::filesystem::path& fold
   std::vector<BenchRow> rows;
   for (const MadeUpObject& object : kMadeUpObjects) {
     HighlightRow row{fmt::format("exported-{}", object.name), "", std::nan("")};
-    row.target_error = 0;  // one that cannot be written is a failure
+    row.target_error = 0;  // a file that cannot be written is a failure
     const auto file = folder / fmt::format("{}.obj", object.name);
     std::ofstream out(file, std::ios::binary);
     if (out) {

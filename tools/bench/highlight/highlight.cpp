@@ -1,4 +1,4 @@
-/// Highlighting with distant lights: what is measured is in highlight_*.cpp, a part each.
+/// Highlighting of objects: the parts of the suite, each in its own file.
 
 #include <fmt/format.h>
 

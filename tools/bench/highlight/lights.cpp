@@ -1,4 +1,4 @@
-/// Distant lights by every method, and how many of them.
+/// Distant lights by every method, and their number.
 
 #include <fmt/format.h>
 
@@ -25,7 +25,7 @@ Vec3 random_direction(std::mt19937_64& random) {
   return Vec3(x, y, z).normalized();
 }
 
-/// Best of random placements, by the table; then shown by rays.
+/// Best of random placements, by the table; rays then measure it.
 std::vector<Vec3> best_of_random(const ReliefLightSearch& search, int lights) {
   std::mt19937_64 random(static_cast<std::uint64_t>(lights));
   const TabledContrast contrast(search.samples(), search.table(), 1);
@@ -48,7 +48,7 @@ std::vector<Vec3> best_of_random(const ReliefLightSearch& search, int lights) {
 
 CallSeconds operator+(const CallSeconds& a, const CallSeconds& b) { return {a.wall + b.wall, a.cpu + b.cpu}; }
 
-/// What the methods share, however many lights: votes, table, coverage.
+/// Shared by the methods, for any number of lights: votes, table, coverage.
 struct LightMethods {
   std::optional<DirectionHistogram> votes;
   std::optional<ReliefLightSearch> search;
@@ -143,7 +143,7 @@ void add_light_rows(HighlightObject& object, const BenchOptions& options, std::v
       if (row.method == "coverage") coverage_lx = row.shown->local_contrast_lx;
     }
     for (HighlightRow& row : set) row.error = 1 - row.shown->local_contrast_lx / best_lx;
-    // Nearly as good as all bins tried out; with more lights, which cannot be tried out, better than coverage.
+    // One light: nearly as good as all bins tried out. More lights cannot be tried out: better than coverage.
     set.front().target_error = lights == 1 ? kWithinExhaustive : 1 - coverage_lx / best_lx;
     for (const HighlightRow& row : set) rows.push_back(bench_row_of(row));
   }

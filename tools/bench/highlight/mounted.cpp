@@ -1,4 +1,4 @@
-/// Real luminaires around an object by every method, and how many of them.
+/// Real luminaires around an object by every method, and their number.
 
 #include <fmt/format.h>
 
@@ -19,12 +19,12 @@
 namespace luxrig {
 namespace {
 
-constexpr double kMountedWithin = 0.05;  // of exhaustive
+constexpr double kMountedWithin = 0.05;  // below exhaustive
 constexpr int kMountedRandom = 200, kMostMounted = 12, kQuickMounted = 4;
 constexpr double kMountedLumens = 1000, kMountedBeam_rad = rad_from_deg(20), kMountedField_rad = rad_from_deg(40);
 constexpr double kBoxStep_m = 0.5;
 
-/// With a diagonal of 1 m.
+/// Scaled to a diagonal of 1 m.
 Scene of_one_metre(Scene scene) {
   Eigen::AlignedBox3d box_m;
   for (const auto& triangle : scene.triangles)
@@ -39,7 +39,7 @@ struct AimedPlace {
   Vec3 position_world_m, direction;
 };
 
-/// What all methods share: the object, its domain, the luminaire.
+/// Shared by all methods: the object, its domain, the luminaire.
 struct MountedCase {
   HighlightObject object;
   const BenchOptions& options;
@@ -84,7 +84,7 @@ struct MountedCase {
 
 CallSeconds sum_of(const CallSeconds& a, const CallSeconds& b) { return {a.wall + b.wall, a.cpu + b.cpu}; }
 
-/// Lights that votes speak for, and what it took.
+/// Lights from votes, and the cost of finding them.
 struct VotedLights {
   std::optional<PotentialLights> lights;
   CallSeconds took;
@@ -170,7 +170,7 @@ JudgedLights judged_lights_of(MountedCase& of, const PotentialLights& voted) {
   return std::move(*judged);
 }
 
-/// What lights give at the samples, from sights of their places.
+/// Illuminance from lights at the samples, from the sights of their places.
 std::vector<float> lux_of_light(const MountedCase& of, const PlaceSights& sights, std::size_t place,
                                 const ContrastSamples& samples, const AimedPlace& light) {
   const HeadSight sight = sight_from(sights, place, light.position_world_m, samples.points);
@@ -180,7 +180,7 @@ std::vector<float> lux_of_light(const MountedCase& of, const PlaceSights& sights
   return {lux.begin(), lux.end()};
 }
 
-/// Every light that votes speak for, at every cell, by all interest points: nothing is left out first.
+/// The best of all potential lights of the votes, at every cell, by all interest points, without preselection.
 std::vector<AimedPlace> exhaustive_mounted(MountedCase& of, const PotentialLights& voted, std::uint64_t& rays) {
   const ReliefStudy& study = of.object.study();
   const ContrastSamples samples = one_ring_samples(study.surface, study.interest);
@@ -202,7 +202,7 @@ std::vector<AimedPlace> exhaustive_mounted(MountedCase& of, const PotentialLight
   return {all[static_cast<std::size_t>(best)]};
 }
 
-/// After each light of a list: contrast in lux, and what is left of it in an exposed picture.
+/// After each light of a list: contrast in lux, and its remainder in an exposed picture.
 std::vector<SampleContrast> contrast_curve(MountedCase& of, const std::vector<AimedPlace>& lights) {
   const ReliefStudy& study = of.object.study();
   const ContrastSamples samples = one_ring_samples(study.surface, study.interest);

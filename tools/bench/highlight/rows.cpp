@@ -18,7 +18,7 @@ struct ObjectFile {
   const char* file;
   double metres_per_unit;
 };
-/// Skull and cat have no unit of their own: two metres tall. Nothing that is measured depends on it.
+/// The files of skull and cat have no unit: taken as two metres tall. No measurement depends on it.
 constexpr ObjectFile kObjectFiles[] = {{"venus", "venus-bust.glb", 1},
                                        {"skull", "skull.obj", 1},
                                        {"teapot", "teapot.glb", 0.001},

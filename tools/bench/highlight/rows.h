@@ -1,5 +1,5 @@
 #pragma once
-/// Objects of the highlight suite, made ready when first asked for, and its rows: all have the same columns.
+/// Objects of the highlight suite, made ready at first use, and its rows: all have the same columns.
 
 #include <memory>
 #include <optional>
@@ -18,7 +18,7 @@ class HighlightObject {
       : name_(std::move(name)), scene_(std::move(scene)), options_(&options) {}
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] const Scene& scene() const { return scene_; }
-  /// As `options_of_study` has it; one that is refused ends the program: these objects have relief.
+  /// With `options_of_study`. A refusal ends the program: these objects have relief.
   [[nodiscard]] const ReliefStudy& study();
 
  private:
@@ -30,20 +30,20 @@ class HighlightObject {
 
 [[nodiscard]] ReliefStudyOptions options_of_study(const BenchOptions& options);
 
-/// The generated ones, and those of five files that are in the folder of data.
-/// missing   names of files that are not there or cannot be read, with the reason
+/// The generated objects, and those of five files in the data folder.
+/// missing   names of files that are absent or cannot be read, with the reason
 [[nodiscard]] std::vector<HighlightObject> highlight_objects(const BenchOptions& options,
                                                              std::vector<std::string>& missing);
 
-/// Whether `--only` lets a case be.
+/// Whether `--only` selects a case.
 [[nodiscard]] bool highlight_wanted(const BenchOptions& options, const std::string& case_name);
 
-/// What lights do, by rays: beams of 1 lx.
+/// Effect of lights, by rays: beams of 1 lx.
 struct ShownRelief {
   std::size_t lights = 0;
   double transitions = 0;  ///< share of the interest points with a shadow transition
   double local_contrast_lx = 0;
-  double coverage = 0;  ///< share of the feature clusters with one
+  double coverage = 0;  ///< share of the feature clusters with a shadow transition
 };
 [[nodiscard]] ShownRelief shown_relief(const ReliefStudy& study, std::span<const Vec3> directions, int threads);
 
@@ -58,7 +58,7 @@ struct HighlightRow {
 };
 [[nodiscard]] BenchRow bench_row_of(const HighlightRow& row);
 
-/// Writes the generated ones as OBJ, in metres; a file that cannot be written is told on stderr.
+/// Writes the generated objects as OBJ, in metres. A file that cannot be written is reported on stderr.
 [[nodiscard]] std::vector<BenchRow> export_highlight_objects(const std::filesystem::path& folder);
 
 /// Parts of the suite.

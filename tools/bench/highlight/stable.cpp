@@ -1,4 +1,4 @@
-/// How far chosen lights move when the same object is given in other words.
+/// How far chosen lights move when the same object comes in another form.
 
 #include <fmt/format.h>
 
@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kStableWithin_rad = rad_from_deg(5);
 
-/// From where a person might want the light, of what the object leaves open; of the object as it comes.
+/// A direction that a person might prefer for the light; of the object in its original form.
 const Vec3 kWantedFrom(-0.5, -0.6, 0.6);
 
 /// One and two lights.
@@ -34,7 +34,7 @@ ChosenLights chosen_lights(const ReliefStudy& study, const Vec3& preferred, int 
   return {search->lights(1)->directions, search->lights(2)->directions};
 }
 
-/// Largest angle between two sets of lights, matched as well as they can be.
+/// Largest angle between two sets of lights, in their best matching.
 double moved_rad(const std::vector<Vec3>& before, std::vector<Vec3> after) {
   if (before.size() != after.size()) return kPi;
   std::vector<std::size_t> order(after.size());

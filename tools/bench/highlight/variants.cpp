@@ -41,7 +41,7 @@ Vec3 doubled_area(const MeshTriangle& t, const std::vector<Vec3>& points_m) {
   return (points_m[t[1]] - points_m[t[0]]).cross(points_m[t[2]] - points_m[t[0]]);
 }
 
-/// One pass: edges that have no point in common with each other's surroundings.
+/// One pass: collapses edges whose surroundings have no point in common.
 std::size_t collapse_short_edges(std::vector<Vec3>& points_m, std::vector<MeshTriangle>& triangles,
                                  std::size_t wanted) {
   std::vector<std::vector<std::uint32_t>> of_point(points_m.size());
@@ -52,7 +52,7 @@ std::size_t collapse_short_edges(std::vector<Vec3>& points_m, std::vector<MeshTr
       edges.push_back(std::minmax(triangles[t][k], triangles[t][(k + 1) % 3]));
     }
   std::sort(edges.begin(), edges.end());
-  // Only inner edges of two triangles: an open border keeps its shape.
+  // Only inner edges between two triangles: an open border keeps its shape.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> inner;
   for (std::size_t i = 0, j = 0; i < edges.size(); i = j) {
     while (j < edges.size() && edges[j] == edges[i]) ++j;
@@ -67,7 +67,7 @@ std::size_t collapse_short_edges(std::vector<Vec3>& points_m, std::vector<MeshTr
     return (points_m[a.first] - points_m[a.second]).squaredNorm() <
            (points_m[b.first] - points_m[b.second]).squaredNorm();
   });
-  // The shortest third only: what is left is sorted anew in the next pass.
+  // The shortest third only: the next pass sorts the rest again.
   inner.resize((inner.size() + 2) / 3);
 
   const auto neighbours = [&](std::uint32_t point) {

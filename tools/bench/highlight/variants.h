@@ -1,5 +1,5 @@
 #pragma once
-/// The same object in other words: what chosen lights should not mind.
+/// The same object in other forms, which should not change the chosen lights.
 
 #include <span>
 #include <string>
@@ -10,7 +10,7 @@ namespace luxrig {
 
 struct HighlightVariant {
   Scene scene;
-  Mat3 rotation = Mat3::Identity();  ///< directions of the variant are these, turned
+  Mat3 rotation = Mat3::Identity();  ///< rotates directions of the object to those of the variant
 };
 
 /// rotate, translate, scale, decimate, noise
@@ -23,8 +23,8 @@ struct HighlightVariant {
 /// noise      white, along the normals, with a standard deviation of 0.1 % of the diagonal
 [[nodiscard]] HighlightVariant highlight_variant(const Scene& object, const std::string& kind);
 
-/// Edges are collapsed to their middles, the shortest first, unless that would turn a triangle over or tear the
-/// surface, until `triangles` are left or none can go.
+/// Collapses edges to their middles, shortest first, until `triangles` are left or no edge can go. Skips an edge that
+/// would flip a triangle or tear the surface.
 [[nodiscard]] Scene decimated(const Scene& object, std::size_t triangles);
 
 }  // namespace luxrig

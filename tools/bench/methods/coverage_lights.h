@@ -1,6 +1,6 @@
 #pragma once
-/// Distant lights that light as much of a surface as possible: the method that highlighting is compared with (thesis
-/// §6.5.5, "maximum surface coverage").
+/// Distant lights that light as much of a surface as possible: the method to compare highlighting with (thesis §6.5.5,
+/// "maximum surface coverage").
 
 #include <vector>
 
@@ -11,12 +11,14 @@ namespace luxrig {
 
 struct CoverageLight {
   Vec3 direction;    ///< unit, from the object to the light; the middle of a bin
-  double new_share;  ///< of the surface's area: what it lights and those before it do not
+  double new_share;  ///< share of the surface's area that it lights and earlier lights do not
 };
 
-/// Every point of the surface votes, with its area, for the middle of each bin from which light reaches it; the bin
-/// with most votes is taken (ties: the lower), the votes of the points it lights are removed from all others, and so
-/// on. Ends early when no bin lights anything more. most_points: a larger surface is judged by evenly strided points of
+/// Every point of the surface votes, with its area, for the middle of each bin from which light reaches it. The bin
+/// with most votes is taken (on a tie, the lower one), and the votes of the points that it lights are removed from all
+/// other bins. This repeats, and ends early when no bin lights anything more.
+/// most_points   a larger surface is judged by evenly strided points; 0 = all
+/// The same for any number of threads.
 /// it; 0: by all. The same for any number of threads.
 [[nodiscard]] std::vector<CoverageLight> coverage_lights(const TargetSurface& surface, const TargetRays& target,
                                                          const DirectionBins& bins, int lights, std::size_t most_points,

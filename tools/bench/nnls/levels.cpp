@@ -41,7 +41,7 @@ EmittanceProblem problem_of(const Rig& rig, const MatrixXd& lux_per_level) {
   return problem;
 }
 
-/// As solve_emittance() makes of it: columns, rows and goal of norm 1, and the tie term. All points have a goal.
+/// As in solve_emittance(): columns, rows and goal of norm 1, and the tie term. All points have a goal.
 LimitedLeastSquares least_squares_of(const EmittanceProblem& problem) {
   const MatrixXd& lux = problem.lux_per_level;
   const Index lights = lux.cols();
@@ -133,7 +133,7 @@ std::vector<BenchRow> bench_levels(const BenchOptions& options) {
     const std::filesystem::path folder =
         (keep ? options.export_folder : std::filesystem::temp_directory_path() / fmt::format("luxrig-{}", getpid())) /
         name;
-    std::error_code ignored;  // what cannot be written cannot be opened below
+    std::error_code ignored;  // an unwritten file cannot be opened below
     std::filesystem::create_directories(folder, ignored);
     std::ofstream(folder / "rig.toml") << aisles_rig_text(spots, kWorks);
     const auto session = open_session(folder);
@@ -150,7 +150,7 @@ std::vector<BenchRow> bench_levels(const BenchOptions& options) {
     EmittanceProblem problem =
         problem_of(session->rig, transport->lux_per_level.topRows(static_cast<Index>(session->rig.points.size())));
     add_rows(name, problem, options.quick, rows);
-    // What a work has from lamps afar is a little of each, more from those near by.
+    // Reflected light: a little from every lamp, more from nearby lamps.
     for (Index j = 0; j < problem.lux_per_level.cols(); ++j)
       for (Index i = 0; i < problem.lux_per_level.rows(); ++i)
         problem.lux_per_level(i, j) +=

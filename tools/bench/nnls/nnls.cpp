@@ -1,4 +1,4 @@
-/// The solvers that placement lives on: time and optimality, cold and warm.
+/// The solvers behind placement: time and optimality, cold and warm.
 
 #include <fmt/format.h>
 
@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kTargetKkt = 1e-9;
 
-/// Processor time, since the machine may be shared; all of this is one thread.
+/// Processor time, since the machine may be shared. This runs in one thread.
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 template <class Work>
@@ -70,7 +70,7 @@ void add_whole(const NnlsBenchProblem& one, int runs, bool slow, std::vector<Ben
     rows.push_back(nnls_row(one, "one-at-a-time", other.kkt.worst(), seconds, {}, other.residual_norm, in_use(other.x),
                             other.iterations, "as Lawson & Hanson enter columns"));
   }
-  // A column in use is forbidden, another allowed again: what a cut or a mutation over all candidates asks.
+  // A column in use is forbidden, another is allowed again: as a cut or a mutation over all candidates does.
   auto solver = NnlsSolver::make(problem);
   if (!solver) return;
   const Eigen::VectorXd first = solver->solve().x;
@@ -155,7 +155,7 @@ std::vector<BenchRow> bench_nnls(const BenchOptions& options) {
                              {lamps_nnls, 300, 20'000, 0.1, 5e-6, "lamps-300x20000"},
                              {lamps_nnls, 3'000, 20'000, 0.1, 25e-6, "lamps-3000x20000"}};
   std::vector<BenchRow> rows;
-  std::error_code ignored;  // what cannot be written is told of below
+  std::error_code ignored;  // a failed write is reported below
   if (!options.export_folder.empty()) std::filesystem::create_directories(options.export_folder, ignored);
   for (const Case& one : kCases) {
     if (std::string(one.name).rfind(options.only, 0) != 0) continue;

@@ -24,15 +24,16 @@ struct NnlsBenchProblem {
   }
 };
 
-/// Entries evenly at random in (0, 1), a share of them not zero; goals evenly at random: no column is like another.
+/// Entries uniformly random in (0, 1), with the given share not zero; goals uniformly random: no column is like
+/// another.
 [[nodiscard]] NnlsBenchProblem random_nnls(Eigen::Index rows, Eigen::Index columns, double share);
 
-/// Lamps evenly at random above a floor of points, each reaching about a share of them by the inverse square; goals are
-/// what ten lamps, which are not among the columns, would give, and 5 % noise: many columns are nearly alike.
+/// Lamps uniformly random above a floor of points. Each reaches about `share` of them by the inverse square law. Goals
+/// are the light of ten lamps that are not among the columns, with 5 % noise: many columns are nearly alike.
 [[nodiscard]] NnlsBenchProblem lamps_nnls(Eigen::Index rows, Eigen::Index columns, double share);
 
 /// Little-endian: rows, columns, entries (int64 each), begin (uint64), row (uint32), value (float), goal (double).
-/// False when it could not be written.
+/// False if it could not be written.
 [[nodiscard]] bool write_nnls(const NnlsBenchProblem& problem, const std::filesystem::path& file);
 
 }  // namespace luxrig

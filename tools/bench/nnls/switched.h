@@ -1,5 +1,5 @@
 #pragma once
-/// Lights that are on or off among such that dim, for `luxrig bench nnls`.
+/// On-off lights among lights that dim, for `luxrig bench nnls`.
 
 #include <vector>
 
@@ -8,9 +8,9 @@
 
 namespace luxrig {
 
-/// relays-N: N lamps on relays and 8 that dim, 4 m above a hall of 30 m by 20 m with 300 points of which every tenth
-/// has a limit; goals at random. 20 halls each (3 with quick): medians. `branch-and-bound` against `all-dim`, which
-/// bounds it from below; error: the normalised error of solve_emittance.
+/// relays-N: N lamps on relays and 8 that dim, 4 m above a hall of 30 m by 20 m with 300 points. Every tenth point has
+/// a limit; goals are random. Medians of 20 halls (3 with quick). `branch-and-bound` is compared with `all-dim`, which
+/// bounds it from below. error: the normalised error of solve_emittance.
 [[nodiscard]] std::vector<BenchRow> bench_switched(const BenchOptions& options);
 
 }  // namespace luxrig

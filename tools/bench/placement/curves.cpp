@@ -1,4 +1,4 @@
-/// Error against time: the best there is at a time, over seeds. By name only (`--only curve`).
+/// Error against time: the best error up to each time, over seeds. By name only (`--only curve`).
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@ namespace {
 
 struct CurveCase {
   const char* name;
-  std::size_t lights;  ///< 0: as many as are known
+  std::size_t lights;  ///< 0 = the number of known lights
 };
 constexpr CurveCase kCurveCases[] = {{"apartment-known", 0},    {"office-known", 0},     {"sewers-uniform", 11},
                                      {"apartment-uniform", 15}, {"cloister-statue", 14}, {"museum-near-surfaces", 15},

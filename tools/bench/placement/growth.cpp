@@ -1,4 +1,4 @@
-/// What a solve costs as candidates and points grow, with memory. By name only (`--only growth`).
+/// Cost of a solve as candidates and points grow, with memory. By name only (`--only growth`).
 
 #include <fmt/format.h>
 #include <sys/resource.h>
@@ -13,7 +13,7 @@
 namespace luxrig {
 namespace {
 
-/// A lattice may come out a little larger than asked for, and a million places is the most there may be.
+/// A lattice may come out a little larger than requested, and a million places is the maximum.
 constexpr double kRoom = 0.98;
 
 double peak_mib() {

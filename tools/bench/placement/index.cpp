@@ -1,5 +1,5 @@
-/// The complement of a residual among all candidates of the flat, by three ways to look for it: through the columns as
-/// they lie (what the search does), through a dense matrix of them, and by a k-d tree over them.
+/// The complement of a residual among all candidates of the flat, found in three ways: through the sparse columns (as
+/// the search does), through a dense matrix of them, and by a k-d tree over them.
 
 #include <fmt/format.h>
 
@@ -25,11 +25,11 @@ using Eigen::VectorXf;
 constexpr double kIndexLattice_m = 0.3, kIndexGoal_lux = 200;
 constexpr std::size_t kIndexQueries = 10, kIndexLeaf = 16;
 
-/// Candidates that light anything, and residuals to complement: those of 0 to 9 lights, each the best for what the
-/// others leave over.
+/// Candidates that light any point, and residuals to complement: those of 0 to 9 lights. Each light is the best one for
+/// the residual of the previous ones.
 struct IndexCase {
   std::vector<Index> lit;
-  VectorXd norm;  ///< of each lit column
+  VectorXd norm;  ///< per lit column
   std::vector<PlacedLights> chosen;
 };
 
@@ -54,7 +54,7 @@ IndexCase index_case(const ColumnsView& columns, const MovableLight& light, cons
   return of;
 }
 
-/// Columns of norm 1 in float, as nanoflann asks for them.
+/// Columns of norm 1 in float, as nanoflann needs them.
 struct UnitColumns {
   MatrixXf of;
 
@@ -79,7 +79,7 @@ struct UnitColumns {
   }
 };
 
-/// Looks for the column with the largest product of norm 1 with each residual.
+/// Finds the column of norm 1 with the largest product with each residual.
 BenchRow index_row(const std::string& name, const char* method, double build_seconds, const ColumnsView& columns,
                    const IndexCase& of, const std::function<Index(const PlacedLights&)>& best) {
   double worst = 0;
@@ -159,8 +159,8 @@ void add_index_rows(std::size_t points, int threads, std::vector<BenchRow>& rows
     return best;
   }));
 
-  // What the search asks for in earnest: levels of the chosen lights follow. Its answer is another one, so it has no
-  // error here.
+  // The search's real query: the levels of the chosen lights follow. It answers another question, so it has no error
+  // here.
   rows.push_back(index_row(name, "complement", search_build, columns, of, [&](const PlacedLights& chosen) {
     return static_cast<Index>(search->best(chosen, 1, 0).front().candidate);
   }));

@@ -1,4 +1,4 @@
-/// Light placement: what is measured is in placement_*.cpp, a part each.
+/// Light placement: the parts of the suite, each in its own file.
 
 #include "tools/bench/suites.h"
 

@@ -1,4 +1,4 @@
-/// Known lights found again over many seeds, rooms furnished and lamps hung anew for each.
+/// Known lights found again over many seeds. Each seed furnishes the rooms and hangs the lamps differently.
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-/// Every scene and goal by every method, in one run, with the certified bound for as many lights as Luxrig takes.
+/// Every scene and goal by every method in one run, with the certified bound for Luxrig's number of lights.
 
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@ namespace {
 
 struct SceneTarget {
   const char* case_name;
-  std::size_t lights;  ///< given; 0: open
+  std::size_t lights;  ///< given; 0 = open
   std::optional<double> most_error, most_seconds;
 };
 const SceneTarget kSceneTargets[] = {
@@ -29,15 +29,15 @@ const SceneTarget kSceneTargets[] = {
     {"studio-two-lights", 2, {}, {}},  {"real-apartment", 0, {}, {}},
     {"real-office", 0, {}, {}},
 };
-/// In global cases all of them are corrected by gathered light, though only luxrig's goes on from where it was.
+/// In global cases gathered light corrects the result of each method, though only luxrig continues from its own state.
 constexpr const char* kOpenMethods[] = {"luxrig", "gp16", "gp16-subplex", "lin2013", "pursuit"};
 constexpr const char* kGivenMethods[] = {"luxrig",       "gpk15",   "gpk15-subplex", "gp16",
                                          "gp16-subplex", "lin2013", "annealing",     "pursuit"};
 
-/// What is found and proven by then counts: GP16 builds its tree of 50 000 coloured columns for many minutes.
+/// The best found and proven by then counts: GP16 takes many minutes to build its tree of 50 000 coloured columns.
 constexpr double kSearchSeconds = 60, kBoundSeconds = 60;
 
-/// Of at most as many lights. Searched-for lights may lie off the candidates, which bounds are for.
+/// For at most as many lights. Lights of the search may lie off the candidates; bounds are for the candidates.
 double bound_for(const ReadyCase& ready, const Solved& solved, bool quick) {
   CountBoundOptions options;
   options.most_lights = solved.poses.size();
@@ -77,7 +77,7 @@ std::vector<BenchRow> bench_placement_scenes(const BenchOptions& options) {
       set_further(rows.back(), "note", ready.error().detail);
       continue;
     }
-    // How many lights it took; none when it was left out or refused.
+    // Returns the number of lights; 0 if left out or refused.
     const auto run = [&](const std::string& row_name, const char* method_name, std::size_t lights) -> std::size_t {
       if (!options.method.empty() && options.method != method_name) return 0;
       const PlacementMethod& method = *find_placement_method(method_name);
@@ -105,7 +105,7 @@ std::vector<BenchRow> bench_placement_scenes(const BenchOptions& options) {
       if (std::string_view(method) == "luxrig") of_luxrig = lights;
       if (std::string_view(method) == "lin2013") of_lin = lights;
     }
-    // Another number says nothing of which is better; the same does.
+    // Different numbers of lights cannot be compared, so run Luxrig with Lin's number, too.
     if (of_luxrig > 0 && of_lin > of_luxrig) run(fmt::format("{}-{}-lights", name, of_lin), "luxrig", of_lin);
   }
   return rows;

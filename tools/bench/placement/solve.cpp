@@ -8,11 +8,11 @@
 namespace luxrig {
 namespace {
 
-/// Root mean square over the points, as the error of a goal is.
+/// Of gathered light: rms over the points, like the error of a goal.
 constexpr double kGatherError = 0.01;
 constexpr int kGatherRounds = 3;
 constexpr std::size_t kSearchColumns = 150'000;
-/// With reflected light, which a model corrects later anyway.
+/// With reflected light. Fewer, because a better model corrects the lights later anyway.
 constexpr std::size_t kGlobalColumns = 80'000;
 
 MountingSpec mounting_of(const PlacementCase& one) {
@@ -27,7 +27,7 @@ MountingSpec mounting_of(const PlacementCase& one) {
   return spec;
 }
 
-/// Of isotropic lights, by gathered light.
+/// The light of isotropic lights, by gathered light.
 Result<Eigen::VectorXd> gathered_lux(const ReadyCase& ready, std::span<const LightPose> poses,
                                      const Eigen::VectorXd& levels, int threads) {
   std::vector<Emitter> lamps;

@@ -1,5 +1,5 @@
 #pragma once
-/// A placement case made ready for any method, and one solve with its clock.
+/// A placement case made ready for any method, and one timed solve.
 
 #include <memory>
 #include <optional>
@@ -14,10 +14,10 @@
 
 namespace luxrig {
 
-/// Everything but the scene's tree of rays counts: places and clearance, transport of the candidates.
+/// Its time includes everything except the scene's tree of rays: places and clearance, transport of the candidates.
 class ReadyCase {
  public:
-  /// spacing_m   of candidates; none: about 20 000 of them
+  /// spacing_m   of candidates; none = about 20 000 of them
   [[nodiscard]] static Result<std::unique_ptr<ReadyCase>> make(PlacementCase one, int threads,
                                                                std::optional<double> spacing_m = {});
 
@@ -40,9 +40,9 @@ class ReadyCase {
   CallSeconds seconds_;
 };
 
-/// The best there was at a time.
+/// The best error up to a time.
 struct BetterAt {
-  double seconds = 0;  ///< wall, of the search
+  double seconds = 0;  ///< wall time of the search
   double error = 1;
   std::size_t lights = 0;
 };
@@ -50,24 +50,24 @@ struct BetterAt {
 struct Solved {
   std::vector<LightPose> poses;
   Eigen::VectorXd levels;
-  double error = 1;          ///< of the light that the case is to be judged by
+  double error = 1;          ///< of the light that the case is judged by
   Eigen::VectorXd residual;  ///< by the search's own model
   std::size_t columns = 0;
   int evaluations = 0;          ///< of a better model, in a global case
-  CallSeconds seconds;          ///< the case made ready included
-  std::vector<BetterAt> curve;  ///< as the search went, by its own model
+  CallSeconds seconds;          ///< making the case ready included
+  std::vector<BetterAt> curve;  ///< during the search, by its own model
   std::string refused;
 };
 
 struct SolveCaseOptions {
-  std::size_t lights = 0;  ///< 0: the number is the method's to choose
+  std::size_t lights = 0;  ///< 0 = the method chooses the number
   std::uint64_t seed = 1;
   int threads = 0;
   double wanted_error = 1e-4;
   std::optional<double> most_seconds{};  ///< of the search, which then ends with the best so far
 };
 
-/// Global cases end with correct_lights() against gathered light of 1.5 %.
+/// Global cases end with correct_lights() against gathered light of 1 %.
 [[nodiscard]] Solved solve_case(const ReadyCase& ready, const PlacementMethod& method, const SolveCaseOptions& options);
 
 }  // namespace luxrig

@@ -5,7 +5,7 @@
 namespace luxrig {
 namespace {
 
-/// Neighbours in a list of rooms get colours far apart.
+/// Neighbours in a list of rooms get very different colours.
 const std::array<Vec3, 6> kPaintedColours = {{{1.00, 0.25, 0.20},
                                               {0.30, 0.50, 1.00},
                                               {1.00, 0.80, 0.35},

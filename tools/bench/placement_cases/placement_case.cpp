@@ -17,7 +17,7 @@ constexpr double kStudioFloor_lux[2] = {60, 150}, kStudioFurniture_lux[2] = {120
 
 using CaseOptions = PlacementCaseOptions;
 
-/// `count` receivers on the floor of a room, of the objects named, below a height.
+/// `count` receivers on the floor of a room, on the named objects, below a height.
 void put_on_floor(LitRoom& room, const std::vector<std::string>& objects, double below_m, std::size_t count,
                   std::uint64_t seed) {
   SurfacePart floor;
@@ -108,7 +108,7 @@ Result<PlacementCase> atrium_colour(const std::string& name, std::uint64_t seed,
   return coloured_floor(name, court_with_floors(seed), 50, 0.232);
 }
 
-/// Dim walks round a bright statue.
+/// Dim walks around a bright statue.
 Result<PlacementCase> cloister_statue(const std::string& name, std::uint64_t seed, const CaseOptions&) {
   PlacementCase one = case_of_room(name, make_cloister(seed));
   ask_uniform(one, kCloisterFloor_lux);
@@ -118,7 +118,7 @@ Result<PlacementCase> cloister_statue(const std::string& name, std::uint64_t see
   return one;
 }
 
-/// The upper floor, and brighter what stands in the middle hall; nothing is asked of the lower floor.
+/// The upper floor, with brighter exhibits in the middle hall; no goal on the lower floor.
 Result<PlacementCase> museum_near_surfaces(const std::string& name, std::uint64_t seed, const CaseOptions&) {
   LitRoom room = make_museum(seed);
   std::erase_if(room.receivers, [](const Receiver& r) { return r.position_world_m.z() < 0.1; });

@@ -14,7 +14,7 @@ constexpr double kScannedFloor_lux = 300;
 struct ScannedRoom {
   const char* file;
   Eigen::AlignedBox3d interior_world_m;  ///< as measured in the file
-  Vec3 air_world_m;                      ///< a place in the open
+  Vec3 air_world_m;                      ///< a place in open air
   SurfacePart lit;
   std::size_t receivers;
 };
@@ -42,7 +42,8 @@ Result<PlacementCase> uniform_case(const std::string& name, const ScannedRoom& r
 
 Result<PlacementCase> real_apartment_case(const std::string& name, std::uint64_t seed,
                                           const PlacementCaseOptions& options) {
-  // The file also holds a figure several metres off the flat. Walls are hollow, with lids: floor is what sees the sky.
+  // The file also holds a figure several metres away from the flat. Walls are hollow, with lids: the floor is what sees
+  // the sky.
   ScannedRoom room{"apartment.glb", {}, {8, 6, 1.6}, {}, 400};
   room.interior_world_m = Eigen::AlignedBox3d(Vec3(4.56, 2.43, 0), Vec3(12.5, 10.7, 2.5));
   room.lit.box_world_m = Eigen::AlignedBox3d(Vec3(4.56, 2.43, -0.05), Vec3(12.5, 10.7, 0.12));
@@ -57,7 +58,7 @@ Result<PlacementCase> real_office_case(const std::string& name, std::uint64_t se
   room.interior_world_m = Eigen::AlignedBox3d(Vec3(-1.72, -3.55, 0), Vec3(1.56, 1.95, 2.44));
   room.lit.box_world_m = room.interior_world_m;
   room.lit.box_world_m.max().z() = 1.1;
-  room.lit.within_rad = rad_from_deg(30);  // what is flat is not quite so in a scan
+  room.lit.within_rad = rad_from_deg(30);  // flat surfaces are not quite flat in a scan
   room.lit.either_side = true;
   room.lit.headroom_m = 0.8;
   return uniform_case(name, room, seed, options);

@@ -1,5 +1,5 @@
 #pragma once
-/// Rooms read from files that others made.
+/// Rooms from files made by others.
 
 #include "tools/bench/placement_cases/placement_case.h"
 
@@ -9,7 +9,8 @@ namespace luxrig {
 [[nodiscard]] Result<PlacementCase> real_apartment_case(const std::string& name, std::uint64_t seed,
                                                         const PlacementCaseOptions& options);
 
-/// office-scan.obj: a headset's scan, one closed shell. Uniform on all that looks up below 1.1 m: floor and desks.
+/// office-scan.obj: a headset's scan, one closed shell. Uniform on everything that faces up below 1.1 m: floor and
+/// desks.
 [[nodiscard]] Result<PlacementCase> real_office_case(const std::string& name, std::uint64_t seed,
                                                      const PlacementCaseOptions& options);
 

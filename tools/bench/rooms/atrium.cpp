@@ -72,11 +72,11 @@ class Atrium {
                      kRailHigh[2] = {kCourtHigh_m[0] + 0.12, kCourtHigh_m[1] + 0.12};
     constexpr double kEdgeLow[2] = {kCourtLow_m[0] - 0.02, kCourtLow_m[1] - 0.02},
                      kEdgeHigh[2] = {kCourtHigh_m[0] + 0.02, kCourtHigh_m[1] + 0.02};
-    // The balustrade stands 10 cm off the floor.
+    // The balustrade starts 10 cm above the floor.
     model_.ring(kRailLow, kRailHigh, kEdgeLow, kEdgeHigh, z + 0.1, z + 1.05, rail_);
   }
 
-  /// Cross walls with doorways behind the balconies, one in four painted, and a shelf in each bay.
+  /// Cross walls with doorways behind the balconies, every fourth one painted, and a shelf in each bay.
   void bays(int storey) {
     const double z = storey * kStorey_m, top = z + kStorey_m - (storey + 1 < kStoreys ? kSlab_m : 0) + 0.02;
     for (int i = 1; i <= 4; ++i) {

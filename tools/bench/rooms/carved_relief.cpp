@@ -14,7 +14,7 @@ struct ReliefLimb {
   double radius, blend;
 };
 
-/// Of a figure of height 1 that stands on the origin and looks along -Y; `swing` turns its arms.
+/// For a figure of height 1 that stands on the origin and faces -Y; `swing` turns its arms.
 double relief_figure_distance(const Vec3& p, double swing) {
   const Vec3 left(-0.16 - 0.10 * swing, -0.04, 0.62 + 0.22 * swing),
       right(0.16 + 0.10 * swing, -0.04, 0.62 - 0.1 * swing);
@@ -44,7 +44,7 @@ Scene make_carved_relief(double cell_m) {
   const Vec3 half_m(kReliefHalfWidth_m, kReliefHalfDepth_m, kReliefHalfHeight_m);
   const auto distance_m = [&](const Vec3& p) {
     double slab_m = box_distance_m(p, Vec3::Zero(), half_m - Vec3::Constant(0.005)) - 0.005;
-    // The border: what is left where the front is cut back by 25 mm.
+    // The border remains where the front is not cut back by 25 mm.
     slab_m = std::max(slab_m, -box_distance_m(p, {0, -kReliefHalfDepth_m - 0.035, 0}, {0.54, 0.06, 0.34}));
     double figures_m = 1;
     for (int k = 0; k < 3; ++k) {

@@ -46,7 +46,7 @@ class Cloister {
   }
 
  private:
-  /// What is planned for the walk along y = 0, turned to its side.
+  /// Rotates a point of the walk along y = 0 to another side.
   [[nodiscard]] static Vec3 turned(int side, const Vec3& p) {
     const double far = kCloister_m;
     if (side == 0) return p;
@@ -62,7 +62,7 @@ class Cloister {
     return {p.cwiseMin(q), p.cwiseMax(q)};
   }
 
-  /// Five arches towards the court on columns, a rib across the walk behind each column, and a parapet but in the
+  /// Five arches on columns towards the court, a rib across the walk behind each column, and a parapet except in the
   /// middle.
   void arcade(int side) {
     for (int bay = 0; bay < kBays; ++bay) {
@@ -118,7 +118,7 @@ class Cloister {
       }
   }
 
-  /// Three under the roof of each walk, and four low ones round the statue.
+  /// Three under the roof of each walk, and four low ones around the statue.
   void lamps() {
     for (const int side : {0, 1, 2, 3})
       for (const double x : {2.0, 8.8, 15.2})

@@ -73,7 +73,7 @@ class Colonnades {
     model_.box(a.cwiseMin(b), a.cwiseMax(b), material);
   }
 
-  /// Columns round the court that carry arches up to what is above; cloth hangs in some of the bays.
+  /// Columns around the court with arches up to the next level; cloth hangs in some of the bays.
   void storey(double floor_m) {
     const bool upper = floor_m > 0;
     const double top_m = upper ? kCourtRoof_m + 0.05 : kGallery_m + 0.05;

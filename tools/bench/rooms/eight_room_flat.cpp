@@ -12,7 +12,7 @@ constexpr double kRoomWidths_m[2][4] = {{4.2, 3.2, 3.6, 3.3}, {3.0, 4.0, 3.2, 4.
 
 /// A room's floor.
 struct Floor {
-  double left_m, right_m, front_m, back_m;  ///< front: the side of the hallway
+  double left_m, right_m, front_m, back_m;  ///< front: towards the hallway
   [[nodiscard]] double inward() const { return back_m > front_m ? 1 : -1; }
 };
 
@@ -78,7 +78,7 @@ class Flat {
     }
   }
 
-  /// A box in a room: from its left wall and from its back wall inwards.
+  /// A box in a room, at distances from its left wall and its back wall.
   void piece(std::size_t floor_index, const char* name, double left_m, double back_m, const Vec3& size_m,
              SolidModel::MaterialIndex material, double bottom_m = 0) {
     const Floor& floor = floors_[floor_index];

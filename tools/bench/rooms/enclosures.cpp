@@ -24,7 +24,7 @@ std::array<Vec3, 3> corners_m(const Scene& scene, std::size_t triangle) {
   return {scene.vertex_world_m(t[0]), scene.vertex_world_m(t[1]), scene.vertex_world_m(t[2])};
 }
 
-/// Normal whose length is the area.
+/// A normal with the area as its length.
 Vec3 area_normal_m2(const Scene& scene, std::size_t triangle) {
   const auto [a, b, c] = corners_m(scene, triangle);
   return 0.5 * (b - a).cross(c - a);
@@ -105,12 +105,12 @@ std::vector<WallPoint> spread_over_walls(const Scene& scene, std::size_t count, 
     area_up_to_m2.push_back(sum_m2 += area_normal_m2(scene, t).norm());
   std::vector<WallPoint> points;
   for (std::size_t i = 0; i < count && sum_m2 > 0; ++i) {
-    // Stratified along the area; within the triangle by a square folded into it.
+    // Stratified along the area; within the triangle by folding the unit square into it.
     const double at_m2 = sum_m2 * (static_cast<double>(i) + 0.5) / static_cast<double>(count);
     const auto found = std::upper_bound(area_up_to_m2.begin(), area_up_to_m2.end(), at_m2);
     const auto t = static_cast<std::size_t>(found - area_up_to_m2.begin());
     const auto [a, b, c] = corners_m(scene, t);
-    // Additive recurrence with the plastic number's powers, which fills the square evenly and without a bias.
+    // Additive recurrence with powers of the plastic number: it fills the square evenly, without bias.
     double u = std::fmod(0.5 + 0.7548776662466927 * static_cast<double>(i), 1.0);
     double v = std::fmod(0.5 + 0.5698402909980532 * static_cast<double>(i), 1.0);
     if (u + v > 1) u = 1 - u, v = 1 - v;

@@ -5,7 +5,7 @@
 namespace luxrig {
 namespace {
 
-/// Of a figure of height 1 that stands on the origin and looks along +Y.
+/// For a figure of height 1 that stands on the origin and faces +Y.
 double figure_distance(const Vec3& p) {
   struct Limb {
     Vec3 a, b;
@@ -34,7 +34,7 @@ void add_statue(SolidModel& model, const Vec3& base_m, double height_m, double t
                 SolidModel::MaterialIndex material) {
   const Mat3 turn = Eigen::AngleAxisd(-turn_rad, Vec3::UnitZ()).toRotationMatrix();
   const Vec3 wide(0.36 * height_m, 0.36 * height_m, 0);
-  // Its foot is a cell inside what it stands on.
+  // Its foot is one cell inside the object under it.
   const Eigen::AlignedBox3d box_m(base_m - wide - Vec3(0, 0, 2 * cell_m),
                                   base_m + wide + Vec3(0, 0, 1.05 * height_m + 2 * cell_m));
   model.body(mesh_level_set(box_m, cell_m,

@@ -9,8 +9,8 @@ namespace luxrig {
 namespace {
 
 constexpr std::uint32_t kNoNetVertex = 0xffffffff;
-/// No crossing lies nearer to a corner of the grid than about this part of a cell: else vertices of neighbouring cells
-/// could fall together.
+/// No crossing is nearer to a grid corner than about this share of a cell. Otherwise vertices of neighbouring cells
+/// could coincide.
 constexpr double kOffCorner = 0.02;
 
 class SurfaceNet {
@@ -33,7 +33,7 @@ class SurfaceNet {
     vertex_of_cell_.assign(value_.size(), kNoNetVertex);
     each({0, 0, 0}, corners_ - Eigen::Vector3i::Ones(), [&](const Eigen::Vector3i& cell) { place(cell); });
     for (int axis = 0; axis < 3; ++axis) {
-      // The outermost corners are all outside: no edge along the box's faces crosses the surface.
+      // The outermost corners are all outside, so no edge along the box's faces crosses the surface.
       Eigen::Vector3i low(1, 1, 1);
       low[axis] = 0;
       each(low, corners_ - Eigen::Vector3i::Ones(), [&](const Eigen::Vector3i& corner) { span(corner, axis); });
@@ -53,7 +53,7 @@ class SurfaceNet {
   }
   [[nodiscard]] double value(const Eigen::Vector3i& c) const { return value_[index(c)]; }
 
-  /// A vertex in the middle of where the surface crosses the cell's edges.
+  /// A vertex in the middle of the points where the surface crosses the cell's edges.
   void place(const Eigen::Vector3i& cell) {
     Vec3 sum = Vec3::Zero();
     int crossings = 0;
@@ -71,7 +71,7 @@ class SurfaceNet {
     mesh_.vertices_m.push_back(low_m_ + cell_m_ / crossings * sum);
   }
 
-  /// Two triangles over the four cells around an edge of the grid that crosses the surface.
+  /// Two triangles over the four cells around a grid edge that crosses the surface.
   void span(const Eigen::Vector3i& corner, int axis) {
     const bool inside = value(corner) < 0;
     if (inside == (value(corner + Eigen::Vector3i::Unit(axis)) < 0)) return;

@@ -49,7 +49,7 @@ class Museum {
   }
 
  private:
-  /// Between each two neighbouring halls a wall with a doorway somewhere near its middle.
+  /// A wall between each two neighbouring halls, with a doorway near its middle.
   void walls(double floor_m) {
     const double bottom = floor_m - kMuseumReach_m, top = floor_m + kHalls_m + kMuseumReach_m;
     model_.begin_object("wall");
@@ -74,7 +74,7 @@ class Museum {
     }
   }
 
-  /// A lamp, and but for the middle ones a partition, a bench and two plinths in any of nine places.
+  /// A lamp, and in all halls except the middle ones a partition, a bench and two plinths, each in one of nine places.
   void hall(int i, int j, double floor_m) {
     const Vec3 low(kAcross_m[i], kAlong_m[j], floor_m), high(kAcross_m[i + 1], kAlong_m[j + 1], floor_m + kHalls_m);
     room_.regions_m.emplace_back(low, high);
@@ -85,7 +85,7 @@ class Museum {
     room_.emitters.push_back(
         bare_lamp(centre + aside + Vec3(0, 0, kHalls_m - dice_.between(0.2, 0.5)), dice_.between(2500, 4500)));
     if (in_middle) return;
-    // Exhibits keep away from the doorways' ways: they stand in the corners of a smaller rectangle.
+    // Exhibits keep clear of the ways between doorways: they stand in the corners of a smaller rectangle.
     const int partition = static_cast<int>(dice_.between(0, 3.999));
     for (int corner = 0; corner < 4; ++corner) {
       const Vec3 at = centre + Vec3((corner & 1 ? 1 : -1) * dice_.between(2.5, 3.4),
@@ -119,7 +119,7 @@ class Museum {
     }
   }
 
-  /// A pedestal with a statue below the void, and a balustrade round that, 10 cm off the floor.
+  /// A pedestal with a statue below the void, inside a balustrade that starts 10 cm above the floor.
   void middle() {
     const Vec3 foot(kMuseumLength_m / 2, kMuseumWidth_m / 2, 0);
     model_.begin_object("pedestal");

@@ -70,7 +70,7 @@ class Office {
       model_.box({x, kOfficeWidth_m - 0.4, 0}, {x + 0.02, kOfficeWidth_m, 1.83}, grey_);
   }
 
-  /// Four desks about a cross of screens.
+  /// Four desks around a cross of screens.
   void group(const Vec3& middle) {
     const auto cloth = cloths_[static_cast<std::size_t>(dice_.between(0, 3)) % cloths_.size()];
     const double screen_m = dice_.between(1.2, 1.6);

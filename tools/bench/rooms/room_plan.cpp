@@ -27,7 +27,7 @@ void spread_receivers(LitRoom& room, int count, const Vec3& corner_m, const Vec3
   const int rows = (count + columns - 1) / columns;
   constexpr int kTries = 40;
   int placed = 0;
-  // The last row is often not full; going round again fills what refused cells left over.
+  // The last row is often not full. Further rounds replace the receivers of refused cells.
   for (int cell = 0; placed < count; ++cell) {
     LUXRIG_CHECK(cell < 100 * rows * columns, "no room for {} receivers of {}", count - placed, room.name);
     const int i = cell % columns, j = cell / columns % rows;

@@ -1,5 +1,5 @@
 #pragma once
-/// What the rooms share in placing lamps and receivers.
+/// Shared by the rooms: placing lamps and receivers.
 
 #include <functional>
 #include <random>
@@ -9,7 +9,7 @@
 
 namespace luxrig {
 
-/// Distance of receivers from the surface they measure: nothing that a surface's rounding could hide.
+/// Distance of receivers from their surface, more than the rounding of any surface.
 inline constexpr double kOffSurface_m = 0.001;
 
 /// Random numbers that are the same with every standard library.
@@ -30,9 +30,9 @@ class RoomDice {
 /// An isotropic lamp.
 [[nodiscard]] Emitter bare_lamp(const Vec3& position_m, double flux_lm);
 
-/// Adds `count` receivers on a jittered grid over the rectangle corner + [0,1] across + [0,1] up, its cells about
-/// square; a place that `fits` refuses is drawn again in its cell, and where a whole cell is refused its receiver goes
-/// to the next one.
+/// Adds `count` receivers on a jittered grid over the rectangle corner + [0,1] across + [0,1] up, with roughly square
+/// cells. A place that `fits` refuses is drawn again in its cell. If all places of a cell are refused, its receiver
+/// goes to the next cell.
 void spread_receivers(LitRoom& room, int count, const Vec3& corner_m, const Vec3& across_m, const Vec3& up_m,
                       const Vec3& normal, RoomDice& dice, const std::function<bool(const Vec3&)>& fits);
 

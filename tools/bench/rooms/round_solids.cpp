@@ -1,4 +1,4 @@
-/// The round ones of SolidModel's solids, as meshes.
+/// The round solids of SolidModel, as meshes.
 
 #include <cmath>
 
@@ -53,7 +53,7 @@ void SolidModel::arch(const Vec3& low, const Vec3& high, double pier_m, int segm
   const int along = high.x() - low.x() > high.y() - low.y() ? 0 : 1, across = 1 - along;
   const double length_m = high[along] - low[along], radius_m = length_m / 2 - pier_m;
   LUXRIG_CHECK(pier_m > 0 && radius_m > 0 && high.z() - low.z() > radius_m && segments >= 2, "pier {} m", pier_m);
-  // The underside from end to end: along the arch, and above low.z().
+  // The underside from end to end: along the arch, with heights above low.z().
   std::vector<Eigen::Vector2d> under_m = {{0, 0}};
   for (int s = 0; s <= segments; ++s) {
     const double angle = kPi * s / segments;
@@ -61,7 +61,7 @@ void SolidModel::arch(const Vec3& low, const Vec3& high, double pier_m, int segm
                          s == 0 || s == segments ? 0 : radius_m * std::sin(angle));
   }
   under_m.emplace_back(length_m, 0);
-  // Per station four corners: under and top, on the near and the far face.
+  // Four corners per station: under and top, on the near and the far face.
   std::vector<Vec3> v;
   const auto stations = static_cast<std::uint32_t>(under_m.size());
   for (const Eigen::Vector2d& at : under_m)
@@ -100,7 +100,7 @@ void SolidModel::knot(const Vec3& centre_m, double size_m, int along, int around
   for (int i = 0; i < along; ++i) {
     const double t = 2 * kPi * i / along;
     const Vec3 tangent = (torus_m(t + 1e-4) - torus_m(t - 1e-4)).normalized();
-    // The normal of the torus that the knot winds on closes on itself, unlike a frame carried along the curve.
+    // The normal of the torus under the knot is periodic, unlike a frame carried along the curve.
     const Vec3 outward(std::cos(3 * t) * std::cos(2 * t), std::cos(3 * t) * std::sin(2 * t), std::sin(3 * t));
     const Vec3 side = tangent.cross(outward).normalized(), normal = side.cross(tangent);
     for (int j = 0; j < around; ++j) {

@@ -23,7 +23,7 @@ class Sewers {
     blue_ = model_.material("blue drum", {0.04, 0.10, 0.32});
     wood_ = model_.material("crate", {0.42, 0.30, 0.18});
     run();
-    // The floor lies in the middle of a cell's height, where a surface net is flat.
+    // The floor is at mid-height of a cell, where a surface net is flat.
     const Eigen::AlignedBox3d bounds_m = around();
     model_.begin_object("tunnels");
     const ClosedMesh air = mesh_level_set(bounds_m, kTunnelCell_m, [&](const Vec3& p) {
@@ -102,7 +102,7 @@ class Sewers {
   std::uint64_t seed_;
   SolidModel model_;
   LitRoom room_{"sewers", {}, {}, {}};
-  std::vector<Vec3> bends_m_;  ///< pairs: the axes of straights
+  std::vector<Vec3> bends_m_;  ///< pairs: the axes of straight parts
   SolidModel::MaterialIndex rust_ = 0, blue_ = 0, wood_ = 0;
 };
 

@@ -9,7 +9,7 @@ namespace luxrig {
 namespace {
 
 constexpr double kStudioLength_m = 10, kStudioWidth_m = 7, kStudioHeight_m = 3;
-/// The wall of shelves between bed and living room, its passage on the window's side.
+/// The wall of shelves between bed and living room, with a passage on the window's side.
 constexpr double kShelves_m = 4.0, kShelvesDepth_m = 0.36, kShelvesTop_m = 2.7;
 
 class Studio {
@@ -43,7 +43,7 @@ class Studio {
   }
 
  private:
-  /// Five boards high, filled with leaning books and vases; a back in the middle lets nothing through.
+  /// Five boards, filled with leaning books and vases; a back in the middle blocks all light.
   void shelves(double x) {
     model_.begin_object("shelves");
     const double y0 = 0, y1 = kShelves_m, middle = x + kShelvesDepth_m / 2;
@@ -134,7 +134,7 @@ class Studio {
   void measure() {
     const RayScene rays(room_.scene);
     const SurfaceSpread spread(room_.scene, rays, room_.emitters.front().world_from_lamp.translation_m);
-    // As a person would ask: bed and tables more densely than the floor.
+    // As a person would ask: more receivers on bed and tables than on the floor.
     room_.regions_m.emplace_back(Vec3(0, 0, 0), Vec3(4.2, kStudioWidth_m, kStudioHeight_m));
     room_.regions_m.emplace_back(Vec3(5.2, 0, 0), Vec3(kStudioLength_m, kStudioWidth_m, kStudioHeight_m));
     for (const auto& region_m : room_.regions_m)

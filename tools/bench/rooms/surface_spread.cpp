@@ -8,12 +8,12 @@
 namespace luxrig {
 namespace {
 
-/// Random places per receiver from which it is chosen, and how many are tried at most for each of those.
+/// Random places per receiver to choose from, and the most tries for each of these places.
 constexpr std::size_t kPlacesPerReceiver = 8, kTriesPerPlace = 300;
 
 struct Facet {
   Vec3 a_m, ab_m, ac_m, normal;
-  double area_until_m2;  ///< of this and those before
+  double area_until_m2;  ///< of this triangle and all before it
 };
 
 std::vector<Facet> facets_of(const Scene& scene, const SurfacePart& part) {
@@ -41,8 +41,8 @@ std::vector<Facet> facets_of(const Scene& scene, const SurfacePart& part) {
   return facets;
 }
 
-/// Leaves `count` of the places, as far from each other as they come: again and again the one with the nearest
-/// neighbours goes.
+/// Keeps `count` of the places, as far apart as possible: removes the place with the nearest neighbours, again and
+/// again.
 std::vector<Receiver> thinned(const std::vector<Receiver>& places, std::size_t count, double area_m2) {
   const double reach_m = 2 * std::sqrt(area_m2 / (2 * std::sqrt(3.0) * static_cast<double>(count)));
   const auto weight = [&](std::size_t i, std::size_t j) {

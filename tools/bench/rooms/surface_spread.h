@@ -1,5 +1,5 @@
 #pragma once
-/// Receivers spread evenly over surfaces of any scene: made-up or read from a file.
+/// Spreads receivers evenly over surfaces of any scene, made-up or from a file.
 
 #include <cstdint>
 #include <string>
@@ -9,26 +9,27 @@
 
 namespace luxrig {
 
-/// Which part of a scene's surface receivers are to be on.
+/// The part of a scene's surface for the receivers.
 struct SurfacePart {
   std::vector<std::string> objects;      ///< by name; empty = all
   Eigen::AlignedBox3d box_world_m;       ///< within it
   Vec3 facing_world = Vec3::UnitZ();     ///< unit
-  double within_rad = rad_from_deg(20);  ///< of the normal from `facing_world`; kPi = any
-  bool either_side = false;              ///< the file's triangles may look either way: turned to `facing_world`
-  double headroom_m = 0.05;              ///< free above, where the surface looks up
-  double elbow_room_m = 0.03;            ///< free in front, and to four sides along the surface
+  double within_rad = rad_from_deg(20);  ///< largest angle between normal and `facing_world`; kPi = any
+  bool either_side = false;              ///< the file's triangles may face either way: flip them to `facing_world`
+  double headroom_m = 0.05;              ///< free space above, if the surface faces up
+  double elbow_room_m = 0.03;            ///< free space in front, and to four sides along the surface
 };
 
 class SurfaceSpread {
  public:
-  /// air_world_m   a point in the air: receivers must be in the same, as far as closed surfaces tell. Keeps both.
+  /// air_world_m   a point in the air: receivers must be in the same air, by the closed surfaces. Keeps both
+  ///               references.
   SurfaceSpread(const Scene& scene, const RayScene& rays, const Vec3& air_world_m);
 
   [[nodiscard]] bool in_air(const Vec3& point_world_m) const;
 
-  /// `count` receivers 1 mm off the part, as far from each other as they come: random places, thinned by weighted
-  /// sample elimination (C. Yuksel 2015). The same for a seed. Fewer where so few of the places tried are free.
+  /// `count` receivers 1 mm off the part, as far apart as possible: random places, thinned by weighted sample
+  /// elimination (C. Yuksel 2015). The same for the same seed. Fewer if too few of the tried places are free.
   [[nodiscard]] std::vector<Receiver> over(const SurfacePart& part, std::size_t count, std::uint64_t seed) const;
 
  private:

@@ -1,5 +1,5 @@
-/// The radiance cache: time for a changed light in a fixed scene against paths at equal error, what each of its parts
-/// buys, and its ways through voxels.
+/// The radiance cache: time for a changed light in a fixed scene against paths at equal error, the gain of each of its
+/// parts, and its ways through voxels.
 
 #include <fmt/format.h>
 
@@ -51,7 +51,7 @@ std::vector<NamedCacheSettings> steps() {
   return all;
 }
 
-/// The fastest run of an evaluator with an rms error of kEqualError, or its last.
+/// The fastest run of an evaluator with an rms error of kEqualError, or its last run.
 BenchRow fastest(const TransportCase& one, const Method& method, const Reference& reference,
                  const std::string& case_name, const BenchOptions& options) {
   std::optional<BenchRow> found;

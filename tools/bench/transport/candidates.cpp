@@ -18,12 +18,12 @@ double peak_gib() {
     if (line.rfind("VmHWM:", 0) == 0) return std::stod(line.substr(6)) / (1024.0 * 1024.0);
   return 0;
 }
-/// Starts the count anew; where the kernel does not allow it, peak_gib() is that of the whole process.
+/// Resets the peak. Where the kernel does not allow it, peak_gib() covers the whole process.
 void forget_peak() { std::ofstream("/proc/self/clear_refs") << "5"; }
 
 /// Time and accuracy of the matrix that placement searches in.
 void add_matrix(const TransportCase& one, const BenchOptions& options, std::vector<BenchRow>& rows) {
-  // Asked for as `matrix` alone it is to be quick: fewer runs, and no path tracing, which takes longer than the matrix.
+  // `--only matrix` must be quick: fewer runs, and no path tracing, which takes longer than the matrix.
   const bool brief = options.quick || options.only == "matrix";
   const CandidateSet many = places_in_the_flat(20'000);
   const std::span<const Receiver> receivers = one.room.receivers;
@@ -90,7 +90,7 @@ CandidateSet places_in_the_flat(std::size_t count) {
 CandidateOptions candidate_options(const BenchOptions& options, bool indirect) {
   CandidateOptions of;
   of.indirect = indirect;
-  // A ten-thousandth of the brightest entries: what is dimmer does not show among the lux that a lamp is hung for.
+  // Entries below a ten-thousandth of the brightest do not matter for the light that a lamp is hung for.
   if (indirect) of.least_lux = 0.01;
   of.threads = options.threads;
   return of;

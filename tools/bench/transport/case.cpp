@@ -26,7 +26,7 @@ class Hash {
   std::uint64_t bits_ = 0xcbf29ce484222325ULL;
 };
 
-/// One number per line: the error wanted of it, its own error, then the lux of each receiver.
+/// One number per line: its wanted error, its own error, then the lux of each receiver.
 std::filesystem::path file_of(const TransportCase& one, const BenchOptions& options, const ReferenceLevels& levels) {
   Hash of_levels;
   for (const double level : levels.wanted) of_levels.add(level);
@@ -72,7 +72,7 @@ std::uint64_t hash_of(const LitRoom& room) {
     hash.add(e.world_from_lamp.translation_m);
     hash.add(std::uint64_t(e.shape.kind));
     hash.add(e.shape.size_m);
-    // The distribution by what it does: intensities over a spiral.
+    // Hash the distribution by its intensities over a spiral.
     for (int i = 0; i < 64; ++i) {
       const double z = 1 - (2 * i + 1) / 64.0, flat = std::sqrt(1 - z * z), turn = 2.399963 * i;
       const Vec3 direction(flat * std::cos(turn), flat * std::sin(turn), z);

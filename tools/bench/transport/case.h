@@ -1,5 +1,5 @@
 #pragma once
-/// A lit room with the converged illuminance of its receivers, and the rows that `luxrig bench transport` makes of it.
+/// A lit room with the converged illuminance of its receivers, and its rows in `luxrig bench transport`.
 
 #include <functional>
 
@@ -9,23 +9,23 @@
 
 namespace luxrig {
 
-/// What all methods are measured against: path tracing with a small wanted error and a seed of its own.
+/// The reference for all methods: path tracing with a small wanted error and its own seed.
 struct Reference {
   Eigen::VectorXd lux;
-  double rms_error = 0;  ///< its own, by its standard errors; relative as below
-  double seconds = 0;    ///< what it took; 0 when it came from a file
+  double rms_error = 0;  ///< of itself, from its standard errors; relative as below
+  double seconds = 0;    ///< time to compute; 0 when read from a file
   std::string refused;   ///< why there is none
 };
 
 /// Errors are relative to max(lux, this share of the mean), rms over the receivers. One lamp of a flat leaves most
-/// rooms nearly dark, and of its column 10 % of the mean are what 1 % are of all lamps' light.
+/// rooms nearly dark: 10 % of the mean of its column are as much as 1 % of the mean of all lamps' light.
 constexpr double kFloorOfAll = 0.01, kFloorOfColumn = 0.1;
 
-/// Which lamps a reference is of; empty = all at level 1.
+/// The lamps of a reference; empty = all at level 1.
 struct ReferenceLevels {
-  std::vector<double> wanted;    ///< levels at which lux is given
-  std::vector<double> steering;  ///< levels under which path tracing reaches the wanted error
-  double floor = kFloorOfAll;    ///< its own error is stated by
+  std::vector<double> wanted;    ///< levels that lux is for
+  std::vector<double> steering;  ///< levels at which path tracing reaches the wanted error
+  double floor = kFloorOfAll;    ///< for its own error
 };
 
 struct TransportCase {
@@ -34,21 +34,22 @@ struct TransportCase {
   RayScene rays;
 };
 
-/// Relative errors' rms over the receivers, and their mean with its sign.
+/// rms of the relative errors over the receivers, and their signed mean.
 struct RoomError {
   double rms = 0, bias = 0;
 };
 [[nodiscard]] RoomError error_of(const Eigen::VectorXd& lux, const Eigen::VectorXd& reference_lux,
                                  double floor = kFloorOfAll);
 
-/// 64 bits that change with the geometry, the materials, the lamps or the receivers.
+/// 64 bits that change with geometry, materials, lamps or receivers.
 [[nodiscard]] std::uint64_t hash_of(const LitRoom& room);
 
-/// With options.references_folder, from its file there when one as good is kept; else computed, and kept.
+/// Read from options.references_folder, if a file there is as good as wanted; else computed and saved there.
 [[nodiscard]] Reference reference_of(const TransportCase& one, const BenchOptions& options,
                                      const ReferenceLevels& of_lamps = {});
 
-/// A row of the transport suite: measured.h's columns, then bias, reference_error and cpu_seconds, and `note` last.
+/// A row of the transport suite: the columns of measured.h, then bias, reference_error and cpu_seconds, and `note`
+/// last.
 [[nodiscard]] BenchRow transport_row(const std::string& case_name, const std::string& method, double error,
                                      const Measured& run, std::optional<double> wanted_error,
                                      std::optional<double> target_error, const RoomError& bias = {},
@@ -67,10 +68,11 @@ void add_growth_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
 void add_candidate_skip_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
 void add_evaluator_skip_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
 
-/// Writes what Radiance needs to compute the same receivers: NAME.rad, NAME.pts, NAME.lux. Empty, or what went wrong.
+/// Writes Radiance's input for the same receivers: NAME.rad, NAME.pts, NAME.lux. Returns an empty string, or the
+/// problem.
 [[nodiscard]] std::string export_for_radiance(const LitRoom& room, const std::filesystem::path& folder);
 
-/// True unless options.only says otherwise.
+/// Whether options.only selects the case.
 [[nodiscard]] bool wanted_case(const BenchOptions& options, const std::string& case_name);
 
 }  // namespace luxrig

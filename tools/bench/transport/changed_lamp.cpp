@@ -1,6 +1,6 @@
-/// One lamp of a rig is hung elsewhere while the scene stays: what its light at all receivers costs anew, at equal
-/// error. The cache and incremental columns keep what depends on scene and receivers; paths have nothing to keep. (A
-/// lamp that is only dimmed costs nothing with any of them: its column is multiplied.)
+/// One lamp of a rig moves in a fixed scene: the cost of its new light at all receivers, at equal error. The cache and
+/// incremental columns keep the parts that depend on scene and receivers; paths have nothing to keep. (A lamp that is
+/// only dimmed costs nothing with any method: its column is multiplied.)
 
 #include <fmt/format.h>
 
@@ -14,10 +14,10 @@ namespace luxrig {
 namespace {
 
 constexpr double kChangedLampError = 0.03, kChangedLampTimesFaster = 5;
-/// A run of more than this is the last of its method: finer ones would each take several times as long.
+/// A run longer than this is the last of its method: finer ones would each take several times as long.
 constexpr double kLongestSeconds = 10;
 
-/// The lamp 40 cm to a side, where nothing is near; as it was when there is no such side.
+/// The lamp 40 cm to a side with free space; unmoved if there is no such side.
 Emitter hung_elsewhere(const TransportCase& one, std::size_t lamp) {
   Emitter moved = one.room.emitters[lamp];
   const Vec3 at_m = moved.world_from_lamp.translation_m;
@@ -29,14 +29,14 @@ Emitter hung_elsewhere(const TransportCase& one, std::size_t lamp) {
   return moved;
 }
 
-/// A way to know a lamp's column, at one setting.
+/// One way to compute a lamp's column, at one setting.
 struct ColumnWay {
   std::function<Result<TransportMatrix>(const Emitter&, std::uint64_t seed)> column;
   std::optional<double> wanted;
   std::string setting;
   CallSeconds built;  ///< once for scene and receivers
 };
-/// The ways of a method from coarse to fine; nothing when there is no finer one.
+/// The ways of a method from coarse to fine; nothing after the finest.
 struct ColumnMethod {
   std::string name;
   std::function<std::optional<ColumnWay>(std::size_t step)> way;
@@ -120,7 +120,7 @@ ColumnMethod incremental(const TransportCase& one, const BenchOptions& options) 
       }};
 }
 
-/// Medians of three runs, error and times each by itself.
+/// Medians of three runs, separately for error and times.
 struct ColumnCost {
   RoomError error;
   Measured run;
@@ -169,7 +169,7 @@ void add_changed_lamp(LitRoom lit, const BenchOptions& options, std::vector<Benc
   std::vector<ColumnMethod> all = {cached(one, options), incremental(one, options)};
   for (const Method& method : methods())
     if (method.reflects) all.push_back(sampled(method, one, options));
-  // Of each method and lamp the first setting, from coarse to fine, that is good enough; else the best.
+  // For each method and lamp the first setting, from coarse to fine, that is good enough; else the best.
   std::vector<std::vector<ColumnCost>> found;
   for (const ColumnMethod& method : all) {
     std::vector<std::optional<ColumnCost>> best(lamps.size());
@@ -196,7 +196,7 @@ void add_changed_lamp(LitRoom lit, const BenchOptions& options, std::vector<Benc
       if (cost.run.refused.empty()) set_note(rows.back(), cost.note);
     }
   }
-  // The cache against the others: medians over the lamps.
+  // The cache compared with the others: medians over the lamps.
   const auto median = [&](std::size_t method, auto&& value) {
     std::vector<double> values;
     for (std::size_t k = 0; k < lamps.size(); ++k) values.push_back(value(found[method][k], found[0][k]));

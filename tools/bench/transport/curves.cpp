@@ -18,7 +18,7 @@ struct Target {
   const char* method;
   double error, seconds;
 };
-/// A run of more than this is the last of its method: finer ones would each take several times as long.
+/// A run longer than this is the last of its method: finer ones would each take several times as long.
 constexpr double kLongestCurveSeconds = 20;
 
 constexpr Target kTargets[] = {{"flat", "gather", 0.01, 0.5},
@@ -29,10 +29,10 @@ constexpr Target kTargets[] = {{"flat", "gather", 0.01, 0.5},
 struct Point {
   double wanted = 0;
   RoomError error;
-  Measured run;  ///< of median time
+  Measured run;  ///< with the median time
 };
 
-/// Median of `repeats` runs with different seeds: error and time each by itself.
+/// Medians of `repeats` runs with different seeds, separately for error and time.
 Point measured_at(const TransportCase& one, const Method& method, const Reference& reference, double wanted,
                   int repeats, const BenchOptions& options) {
   std::vector<Point> points;
@@ -61,7 +61,7 @@ Point measured_at(const TransportCase& one, const Method& method, const Referenc
   return median;
 }
 
-/// Direct light of every method against the direct evaluator's, which is exact for lamps without size.
+/// Direct light of every method compared with the direct evaluator's, which is exact for lamps without size.
 void add_direct_curve(const TransportCase& one, const BenchOptions& options, std::vector<BenchRow>& rows) {
   EvaluateOptions evaluate;
   evaluate.wanted_relative_error = 0.3;
@@ -105,7 +105,7 @@ void add_curves(const TransportCase& one, const BenchOptions& options, std::vect
     for (const Target& target : kTargets) {
       if (one.room.name != target.room || std::string(method.name) != target.method) continue;
       if (options.quick && target.error < 0.01) continue;
-      // The fastest setting whose error is small enough, or else the one of smallest error.
+      // The fastest setting with a small enough error, else the one with the smallest error.
       const Point* best = nullptr;
       for (const Point& point : points) {
         const bool enough = point.error.rms <= target.error, had = best && best->error.rms <= target.error;

@@ -1,6 +1,6 @@
-/// Are errors as stated, and is the wish kept? Many seeds in each room: how often a point's error is within two of its
-/// standard errors, and what the rms over the points and the worst of them come to. The same for what each lamp gives
-/// by itself, of one evaluation by all lamps: what levels are worked out from.
+/// Are stated errors honest, and are wanted errors reached? Many seeds in each room: how often a point's error is
+/// within two standard errors, and the rms and the worst over the points. The same for the light of each lamp alone,
+/// from one evaluation of all lamps: levels are computed from that.
 
 #include <fmt/format.h>
 
@@ -12,15 +12,15 @@
 namespace luxrig {
 namespace {
 
-/// A wanted error 0: not measured by it.
+/// Wanted error 0: this stop is not tested.
 struct Room {
   const char* name;
   LitRoom (*make)();
   double wanted_rms = 0.01, wanted_worst = 0.03;
-  bool columns = false;  ///< also those of its lamps, where it has several that light parts of it
+  bool columns = false;  ///< also of its single lamps, if several lamps light different parts
 };
 
-/// The closed box, varnished all over.
+/// The closed box, all surfaces varnished.
 LitRoom make_glossy_room() {
   LitRoom room = make_box_room();
   for (Material& material : room.scene.materials) {
@@ -30,7 +30,7 @@ LitRoom make_glossy_room() {
   return room;
 }
 
-/// The flat by one of its lamps: what gets through the doors is found by few paths.
+/// The flat with one of its lamps: few paths find the light through the doors.
 LitRoom make_flat_by_one_lamp() {
   LitRoom room = make_eight_room_flat();
   room.emitters = {room.emitters[2]};
@@ -44,12 +44,12 @@ constexpr Room kRooms[] = {{"box", [] { return make_box_room(); }},
                            {"polished-gallery", [] { return make_gallery_hall(1, true); }},
                            {"atrium", [] { return make_atrium(); }},
                            {"flat-by-one-lamp", make_flat_by_one_lamp, 0.1, 0}};
-/// Of the wanted rms.
+/// As a share of the wanted rms.
 constexpr double kReferenceError = 0.2;
 
 struct Stop {
   const char* name;
-  double rms, worst;  ///< wanted; one of them
+  double rms, worst;  ///< wanted; only one is set
 };
 
 int seeds_of(const BenchOptions& options) { return options.quick ? 4 : 20; }
@@ -94,7 +94,7 @@ void add_rows(const TransportCase& one, const Reference& reference, const Method
   rows.push_back(row);
 }
 
-/// Each lamp's lux at each point, and its standard error.
+/// Each lamp's lux at each point, with its standard error.
 struct Columns {
   Eigen::ArrayXXd lux, error_lux;
 };
@@ -106,7 +106,7 @@ Columns columns_of(const TransportMatrix& matrix) {
   return columns;
 }
 
-/// Errors are relative to a point's total light. The reference is by path, as good as that of all lamps.
+/// Errors are relative to a point's total light. The reference is by `path`, as good as that of all lamps.
 void add_column_rows(const TransportCase& one, double wanted, const BenchOptions& options,
                      std::vector<BenchRow>& rows) {
   EvaluateOptions evaluate;

@@ -1,5 +1,5 @@
-/// What the skips of the evaluators save in each room, and how far the answer moves by them: direct light against a
-/// shadow ray for every pair, luminaires with size against sampling all ways, cells of the cache that nobody reads.
+/// Savings from the skips of the evaluators in each room, and how far they move the answer: direct light against a
+/// shadow ray for every pair, luminaires with size against sampling every pair, and unused cells of the cache.
 
 #include <fmt/format.h>
 
@@ -13,7 +13,7 @@
 namespace luxrig {
 namespace {
 
-/// Median of some runs, for calls that take milliseconds; in one thread, so that both sides wait for nothing.
+/// Median of some runs, for calls that take milliseconds; in one thread, so that neither side waits for other threads.
 CallSeconds median_time(const BenchOptions& options, const std::function<void()>& call) {
   std::vector<CallSeconds> took;
   for (int i = 0; i < (options.quick ? 1 : 7); ++i) took.push_back(timed(call));
@@ -32,7 +32,7 @@ BenchRow skip_row(const std::string& name, const char* method, double error, dou
   return row;
 }
 
-/// A shadow ray for each pair of receiver and lamp, then the distance law: nothing is looked at before it.
+/// A shadow ray for each pair of receiver and lamp, then the distance law: nothing is checked beforehand.
 void add_direct(const TransportCase& one, const BenchOptions& options, std::vector<BenchRow>& rows) {
   const auto& receivers = one.room.receivers;
   const auto& lamps = one.room.emitters;
@@ -69,9 +69,9 @@ void add_direct(const TransportCase& one, const BenchOptions& options, std::vect
                           got->rays, pairs, fmt::format("of {} pairs {} behind and {} dark", pairs, behind, dark)));
 }
 
-/// The room's lamps as disks of 30 cm, each way to a receiver sampled with 256 rays; with proofs, a way that is
-/// proven clear takes none and one proven blocked takes one to a corner. The samples are the same, so the light must be
-/// too.
+/// The room's lamps as disks of 30 cm, with 256 sample rays from each receiver to each lamp. With proofs, a pair proven
+/// clear takes no ray and one proven blocked takes one ray to a corner. The samples are the same, so the light must be
+/// the same.
 void add_proofs(const TransportCase& one, const BenchOptions& options, std::vector<BenchRow>& rows) {
   std::vector<Emitter> disks = one.room.emitters;
   for (Emitter& disk : disks) {
@@ -113,7 +113,7 @@ void add_proofs(const TransportCase& one, const BenchOptions& options, std::vect
                           fmt::format("of {} ways {} proven clear and {} blocked", ways, clear, blocked)));
 }
 
-/// Cells that no receiver needs are left out.
+/// Leaves out cells that no receiver needs.
 void add_cells(const TransportCase& one, const BenchOptions& options, std::vector<BenchRow>& rows) {
   struct Cached {
     CallSeconds took;

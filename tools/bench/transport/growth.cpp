@@ -1,4 +1,5 @@
-/// How the cost of the candidate matrix grows with candidates and points, and a million candidates within their memory.
+/// Growth of the candidate matrix's cost with candidates and points, and a million candidates within their memory
+/// bound.
 
 #include <fmt/format.h>
 
@@ -11,10 +12,10 @@
 namespace luxrig {
 namespace {
 
-constexpr double kMayGrow = 0.15;  ///< beyond linear, for the clock
+constexpr double kMayGrow = 0.15;  ///< beyond linear, for timing noise
 constexpr double kBoundGib = 4;
 
-/// The part of the growth rows that one kind of light has: median processor seconds by points and candidates.
+/// The growth rows of one kind of light: median processor seconds by points and candidates.
 class Growth {
  public:
   Growth(const TransportCase& one, bool indirect, const BenchOptions& options, std::vector<BenchRow>& rows)
@@ -42,7 +43,7 @@ class Growth {
     last_ = std::move(run);
   }
 
-  /// A row for the step from `few` to `many`: how much more than linear.
+  /// A row for the step from `few` to `many`: by how much the cost grows beyond linear.
   void compare(const char* what, std::pair<std::size_t, std::size_t> few, std::pair<std::size_t, std::size_t> many) {
     const double work = static_cast<double>(many.first * many.second) / static_cast<double>(few.first * few.second);
     const double growth = cpu_seconds_.at(many) / cpu_seconds_.at(few);
@@ -76,7 +77,7 @@ void add_growth(const TransportCase& one, bool indirect, const BenchOptions& opt
     growth.compare("points", {150, 10'000}, {300, 10'000});
     return;
   }
-  // Reflected light of a hundred thousand is looked at for the usual number of points only.
+  // Reflected light of a hundred thousand is measured for the usual number of points only.
   for (const std::size_t points : {75, 150, 300, 600})
     for (const std::size_t candidates : {1'000, 10'000, 100'000})
       if (!indirect || candidates < 100'000 || points == 300) growth.measure(points, candidates);
@@ -84,7 +85,7 @@ void add_growth(const TransportCase& one, bool indirect, const BenchOptions& opt
   growth.compare("points", {75, 10'000}, {600, 10'000});
 }
 
-/// A million candidates (100 000 with quick): takes minutes, and is asked for by name only.
+/// A million candidates (100 000 with quick): takes minutes, and runs by name only.
 void add_million(const TransportCase& one, bool indirect, const BenchOptions& options, std::vector<BenchRow>& rows) {
   const std::size_t count = options.quick ? 100'000 : 1'000'000;
   const CandidateSet very_many = places_in_the_flat(count);
@@ -107,11 +108,11 @@ void add_growth_rows(const BenchOptions& options, std::vector<BenchRow>& rows) {
     return options.only.size() > std::string("matrix").size() && wanted_case(options, name);
   };
   const bool direct = wanted_case(options, "matrix-growth-direct"),
-             // Takes minutes; a first look at it is in matrix-indirect.
+             // Takes minutes; matrix-indirect gives a first impression.
       indirect = asked_by_name("matrix-growth-indirect") ||
                  (options.only.empty() && !options.quick && wanted_case(options, "matrix-growth-indirect")),
              million = asked_by_name("matrix-million-direct"),
-             // Longer still, so by its full name.
+             // Takes longer still, so only by its full name.
       million_indirect = options.only == "matrix-million-indirect";
   if (!direct && !indirect && !million && !million_indirect) return;
   const TransportCase flat(make_eight_room_flat());

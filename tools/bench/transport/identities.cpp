@@ -1,4 +1,4 @@
-/// What must hold whatever the accuracy: light adds up, and walls stop it.
+/// Properties that must hold at any accuracy: light adds up, and walls stop it.
 
 #include <fmt/format.h>
 
@@ -8,8 +8,8 @@
 namespace luxrig {
 namespace {
 
-/// Lamps one by one add up to all together. Every evaluator's matrix has a column per lamp; direct light is evaluated
-/// lamp by lamp as well, since it involves no sampling that might have gone otherwise.
+/// The lamps one by one add up to all lamps together. Every evaluator's matrix has a column per lamp. Direct light is
+/// also evaluated lamp by lamp, since it has no sampling that could differ.
 void add_superposition(const BenchOptions& options, std::vector<BenchRow>& rows) {
   const TransportCase one(make_eight_room_flat());
   for (const Method& method : methods()) {
@@ -37,8 +37,8 @@ void add_superposition(const BenchOptions& options, std::vector<BenchRow>& rows)
   }
 }
 
-/// Two closed rooms that share a wall of 15 cm, a lamp in one and receivers in the other, also far from the origin:
-/// the brightest of those over the mean where the lamp is.
+/// Two closed rooms that share a wall of 15 cm, also far from the origin: a lamp in one, receivers in the other. The
+/// brightest receiver there, relative to the mean in the lamp's room.
 void add_wall_leak(const BenchOptions& options, std::vector<BenchRow>& rows) {
   for (const double far_m : {0.0, 100'000.0}) {
     SolidModel model;

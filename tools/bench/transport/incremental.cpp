@@ -1,5 +1,5 @@
-/// Columns kept up to date: one of the gallery's twelve luminaires, one receiver or one object moves, and only what it
-/// touches is worked out anew.
+/// Columns kept up to date: one of the gallery's twelve luminaires, one receiver or one object moves, and only the
+/// affected entries are computed again.
 
 #include <fmt/format.h>
 
@@ -26,8 +26,8 @@ Transport make_transport(const TransportCase& one, const RayScene& rays, const I
   return transport;
 }
 
-/// The lamp's column by several settings: its error relative to what the receivers get in all (as a rig's owner sees
-/// it), and in the note that of the column by itself.
+/// The lamp's column with several settings. error: relative to the receivers' total light (as a rig's owner sees it).
+/// The note has the error of the column alone.
 void add_lamp(const TransportCase& one, const MovedTruth& truth, const BenchOptions& options,
               std::vector<BenchRow>& rows) {
   struct Setting {
@@ -83,7 +83,7 @@ void add_lamp(const TransportCase& one, const MovedTruth& truth, const BenchOpti
                                 setting.cells, setting.rays, own.rms, stated, transport.took.wall, transport.took.cpu,
                                 static_cast<double>(transport.made->bytes()) / 1e6));
       rows.push_back(row);
-      // Held to the target by the lamp's own column, which is the harder.
+      // Judged by the lamp's own column, which is harder.
       row.case_name = "moved-lamp-of-12-to-0.02";
       row.error = own.rms;
       row.target_error = kMovedError;
@@ -98,7 +98,7 @@ void add_lamp(const TransportCase& one, const MovedTruth& truth, const BenchOpti
   if (best) rows.push_back(*best);
 }
 
-/// Receivers go 30 cm into the room one by one; their lux from all lamps against paths.
+/// Receivers move 30 cm into the room one by one; their lux from all lamps is compared with paths.
 void add_receiver(const TransportCase& one, const BenchOptions& options, std::vector<BenchRow>& rows) {
   std::vector<std::size_t> numbers;
   std::vector<Receiver> there;
@@ -145,10 +145,10 @@ void add_receiver(const TransportCase& one, const BenchOptions& options, std::ve
 
 struct MovedObject {
   Scene after;
-  Eigen::AlignedBox3d changed_world_m;  ///< around where it was and where it is
+  Eigen::AlignedBox3d changed_world_m;  ///< around its old and its new place
 };
 
-/// The object 8 cm to a side.
+/// The object moved 8 cm to a side.
 MovedObject object_moved(const Scene& before, std::uint32_t object) {
   MovedObject moved{before, {}};
   std::vector<bool> moves(before.vertices_m.size(), false);
@@ -165,7 +165,7 @@ MovedObject object_moved(const Scene& before, std::uint32_t object) {
   return moved;
 }
 
-/// A sculpture goes 8 cm to a side on its plinth: the one by which most entries change.
+/// A sculpture moves 8 cm to a side on its plinth: the one that changes most entries.
 void add_object(const TransportCase& one, const BenchOptions& options, std::vector<BenchRow>& rows) {
   const Scene& before = one.room.scene;
   const auto was = make_direct_evaluator(one.rays)->evaluate(one.room.receivers, one.room.emitters, {});

@@ -1,4 +1,4 @@
-/// One luminaire of the gallery's twelve moves: what it takes to know its light at all receivers anew. The others'
+/// One luminaire of the gallery's twelve moves: the cost of computing its light at all receivers again. The others'
 /// columns stay, since illuminance is linear in them.
 
 #include "tools/bench/transport/moved.h"
@@ -51,7 +51,7 @@ void add_moved_rows(const BenchOptions& options, std::vector<BenchRow>& rows) {
   }
   const Reference reference = column_reference(one, kMoved, moved[0], options);
   const auto direct = make_direct_evaluator(one.rays)->evaluate(one.room.receivers, moved, {});
-  // What receivers get in all is only a scale: any evaluator will do.
+  // The receivers' total light is only a scale: any evaluator will do.
   std::vector<Emitter> all_lamps = one.room.emitters;
   all_lamps[kMoved] = moved[0];
   EvaluateOptions coarse;
@@ -69,7 +69,7 @@ void add_moved_rows(const BenchOptions& options, std::vector<BenchRow>& rows) {
                         total_lx = all->lux(Eigen::VectorXd::Ones(all->emitters()));
   add_incremental_rows(one, {moved[0], exact_lx, direct_lx, total_lx, reference.rms_error}, options, rows);
   for (const Method& method : methods()) {
-    // The evaluator may keep what it learns about the scene from the lamps as they hung before.
+    // The evaluator may keep everything that it learns about the scene from the lamps at their old places.
     const auto evaluator = method.make(one.rays);
     EvaluateOptions before;
     before.wanted_relative_error = kMovedError;

@@ -1,25 +1,25 @@
 #pragma once
-/// What the rows of one moved luminaire, receiver or object are held against.
+/// References for the rows of one moved luminaire, receiver or object.
 
 #include "tools/bench/transport/case.h"
 
 namespace luxrig {
 
 struct MovedTruth {
-  Emitter lamp;                ///< where it hangs now
+  Emitter lamp;                ///< at its new place
   Eigen::VectorXd lux;         ///< of it alone, converged
   Eigen::VectorXd direct_lux;  ///< its direct part, exact
-  Eigen::VectorXd total_lux;   ///< of all lamps, with this one where it hangs now
+  Eigen::VectorXd total_lux;   ///< of all lamps, with this one at its new place
   double reference_error = 0;  ///< standard error of lux, rms, relative as RoomError
 };
 
-/// The column of a lamp that hangs elsewhere, converged. All lamps are sampled, the others at a fiftieth: rooms that
-/// get a millionth of the lamp's light, which no figure here looks at, need then not be known to a per cent. `one` is
-/// as before when it returns.
+/// The converged column of a lamp at another place. All lamps are sampled, the others at a fiftieth. Otherwise rooms
+/// with a millionth of the lamp's light, which no figure here uses, would have to be known to a per cent. `one` is
+/// unchanged on return.
 [[nodiscard]] Reference column_reference(TransportCase& one, std::size_t number, const Emitter& lamp,
                                          const BenchOptions& options);
 
-/// rms of the moved lamp's error, relative to what the receivers get in all.
+/// rms of the moved lamp's error, relative to the receivers' total light.
 [[nodiscard]] double error_of_moved(const Eigen::VectorXd& lux, const Eigen::VectorXd& exact_lx,
                                     const Eigen::VectorXd& total_lx);
 

@@ -1,4 +1,4 @@
-/// What each skip of the candidate matrix saves in each room, and how far the answer moves by it.
+/// Savings from each skip of the candidate matrix in each room, and how far it moves the answer.
 
 #include <fmt/format.h>
 
@@ -14,7 +14,7 @@ namespace {
 struct CandidateSkip {
   const char* name;
   bool CandidateSkips::*field;
-  std::uint64_t CandidateStatistics::*count;  ///< what it skipped, of columns or pairs
+  std::uint64_t CandidateStatistics::*count;  ///< its skips, of columns or pairs
   const char* what;
 };
 constexpr CandidateSkip kSkips[] = {
@@ -24,11 +24,11 @@ constexpr CandidateSkip kSkips[] = {
     {"reach", &CandidateSkips::reach, &CandidateStatistics::pairs_out_of_reach, "pairs"},
     {"unlit", &CandidateSkips::unlit, &CandidateStatistics::columns_unlit, "columns"},
     {"foretold", &CandidateSkips::foretold, nullptr, ""}};
-/// Entries left out by `reach`: far below what anybody wants to know.
+/// Entries that `reach` leaves out: far below any useful illuminance.
 constexpr double kLeastLux = 0.01;
 
-/// Anywhere in the box around a room but its lowest fifth, walls and furniture included: what a lattice would give. An
-/// isotropic lamp and a spot that looks down, 1 000 lm each.
+/// Anywhere in the box around a room except its lowest fifth, walls and furniture included, as in a lattice. An
+/// isotropic lamp and a spot that faces down, 1 000 lm each.
 CandidateSet places_in(const TransportCase& one, std::size_t count) {
   const Eigen::AlignedBox3d box = one.rays.bounds_world_m();
   CandidateSet set;
@@ -82,7 +82,8 @@ void add_skips(const TransportCase& one, bool indirect, const BenchOptions& opti
     as.statistics = b;
     as.took = with.took;
     as.refused = with.refused.empty() ? without.refused : with.refused;
-    // Rays that go elsewhere move reflected light within its error: of entries 95 % should be within two of both.
+    // Rays in other directions move reflected light within its error: 95 % of entries should be within twice both
+    // errors.
     rows.push_back(candidate_row(
         fmt::format("skip-{}-{}-{}", one.room.name, indirect ? "indirect" : "direct", name),
         indirect ? moves.beyond_two_errors : moves.largest, as, std::nullopt, indirect ? 0.07 : 0.0, std::nullopt,
@@ -93,7 +94,7 @@ void add_skips(const TransportCase& one, bool indirect, const BenchOptions& opti
   };
   for (const CandidateSkip& skip : kSkips) {
     if (!indirect && (skip.field == &CandidateSkips::unlit || skip.field == &CandidateSkips::foretold))
-      continue;  // of reflected light
+      continue;  // for reflected light only
     CandidateSkips skips;
     skips.*skip.field = false;
     const CandidateStatistics& statistics = with.transport.statistics;

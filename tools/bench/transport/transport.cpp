@@ -1,4 +1,4 @@
-/// Evaluators in furnished rooms: the parts of the suite, each in its file.
+/// Evaluators in furnished rooms: the parts of the suite, each in its own file.
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 namespace luxrig {
 namespace {
 
-/// The rooms for another program, with our converged answer beside them.
+/// Writes the rooms for another program, with our converged answer beside them.
 std::vector<BenchRow> exported(const BenchOptions& options) {
   std::vector<BenchRow> rows;
   for (const auto make :

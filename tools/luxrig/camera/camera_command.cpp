@@ -60,7 +60,7 @@ Checked<OpenCamera> open_camera(const CameraArguments& arguments) {
   return open;
 }
 
-/// As a file of linear light can hold it: noise around dark has no light below 0 there.
+/// As a file of linear light: dark noise below 0 becomes 0 there.
 Picture picture_of(const TakenPicture& taken) {
   Picture picture;
   picture.width_px = taken.width_px;

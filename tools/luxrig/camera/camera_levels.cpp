@@ -21,9 +21,9 @@ using nlohmann::json;
 constexpr double kLowestLevel = 0.05, kLevelStill = 1e-3;
 constexpr std::chrono::milliseconds kAskEvery(200);
 constexpr std::chrono::seconds kLightWithin(60);
-constexpr int kSettled = 5;  ///< answers alike
+constexpr int kSettled = 5;  ///< equal answers
 
-/// The light that the camera's response makes of samples; of light already, itself.
+/// Light from the camera's response to the samples. Samples that are light already stay as they are.
 std::vector<float> judged_light(const RawPicture& picture, const SampleCurve& curve) {
   std::vector<float> light = judged_samples(picture);
   if (picture.is_light) return light;
@@ -31,7 +31,7 @@ std::vector<float> judged_light(const RawPicture& picture, const SampleCurve& cu
   return light;
 }
 
-/// Light in cd/m² becomes shares of the brightest.
+/// From cd/m² to shares of the brightest.
 void normalise(LevelSeries& series) {
   float most = 0;
   for (const LevelStep& step : series.steps)
@@ -60,7 +60,7 @@ class DaemonLight final : public LevelLight {
     std::vector<double> wanted(rig_.fixtures.size(), 0.0);
     wanted[fixture_] = level;
     if (auto applied = apply(wanted); !applied) return tl::unexpected(applied.error());
-    // The fade, and what lamps and daemon make of it.
+    // Wait for the fade, and for lamps and daemon to settle.
     int alike = 0;
     std::vector<double> last;
     for (const auto until = std::chrono::steady_clock::now() + kLightWithin;
@@ -199,11 +199,11 @@ Result<LevelSeries> take_level_series(LevelLight& light, const TakeRaw& take, co
     auto dark = one(0);
     if (!dark) return tl::unexpected(dark.error());
     series.dark = std::move(*dark);
-    // As exposures_between(): no common ratio.
+    // Steps as in exposures_between(), which avoid a common ratio.
     for (const double level : exposures_between(kLowestLevel, 1, wanted.steps)) {
       auto step = one(std::min(1.0, level));
       if (!step) return tl::unexpected(step.error());
-      // Limits may give one level twice.
+      // Limits may give the same level twice.
       if (series.steps.empty() || step->level > series.steps.back().level * 1.001)
         series.steps.push_back(std::move(*step));
     }

@@ -1,4 +1,4 @@
-// The series over a simulated rig: driven by its own protocol, seen by its own camera.
+// The series with a simulated rig: driven by the rig's own protocol, seen by its own camera.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -19,7 +19,7 @@ constexpr int kPictureWait_s = 180;
 constexpr std::chrono::milliseconds kStep(23);
 constexpr std::chrono::seconds kLampsSettle(1);  ///< simulated lamps follow with a lag of 0.05 s
 
-/// The fixture's bus, driven as the daemon does.
+/// Drives the fixture's bus as the daemon does.
 class SimulatedLight final : public LevelLight {
  public:
   SimulatedLight(const Rig& rig, std::size_t fixture, std::unique_ptr<Driver> driver)
@@ -94,7 +94,7 @@ Result<LevelSeries> simulated_level_series(const Rig& rig, const std::filesystem
   if (auto active = driver->activate(now()); !active) return tl::unexpected(active.error());
   SimulatedLight light(rig, wanted.fixture, std::move(driver));
   const auto picture = [&] {
-    // A picture takes seconds, and a driver that nobody steps takes its devices for gone.
+    // A picture takes seconds. A driver that is not stepped in that time would take its devices for lost.
     auto taken = std::async(std::launch::async, [&] { return picture_of_sim(ports->control, rig.cameras[camera]); });
     while (taken.wait_for(kStep) != std::future_status::ready) (void)light.still();
     return taken.get();

@@ -71,7 +71,7 @@ Result<ExposureSeries> take_series(CameraSource& source, const PictureCamera& ca
       step.frames.push_back(judged_samples(*picture));
       progress(static_cast<double>(++done) / static_cast<double>(wanted.steps * wanted.frames));
     }
-    // A camera of few exposure steps has one twice.
+    // A camera with few exposure steps may give the same one twice.
     if (series.steps.empty() || step.exposure_s > series.steps.back().exposure_s * 1.001)
       series.steps.push_back(std::move(step));
   }

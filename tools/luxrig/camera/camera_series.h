@@ -1,5 +1,5 @@
 #pragma once
-/// A series of exposures to judge a camera by: taken now, or from files.
+/// A series of exposures to judge a camera by: taken now, or read from files.
 
 #include <optional>
 
@@ -10,19 +10,19 @@
 namespace luxrig {
 
 struct SeriesWanted {
-  /// Left out: a sixteenth of the camera's exposure in the rig file, and sixteen times it.
+  /// Default: a sixteenth of the camera's exposure in the rig file, and sixteen times it.
   std::optional<double> shortest_s, longest_s;
   int steps = 9, frames = 5;
 };
 
-/// Activates the camera, takes the pictures, and deactivates it. Of a camera with colour the green samples count.
+/// Activates the camera, takes the pictures, and deactivates it. A colour camera is judged by its green samples.
 [[nodiscard]] Result<ExposureSeries> take_series(CameraSource& source, const PictureCamera& camera,
                                                  const SeriesWanted& wanted, const Progress& progress);
 
-/// The samples that are judged: green or grey, of pixels evenly chosen where there are many.
+/// The samples to judge by: green or grey. If there are many pixels, evenly chosen ones.
 [[nodiscard]] std::vector<float> judged_samples(const RawPicture& picture);
 
-/// Of files whose names state exposures ("wall_12.5ms_3.png").
+/// From files whose names state exposures ("wall_12.5ms_3.png").
 [[nodiscard]] Result<ExposureSeries> series_of_files(const PictureCamera& camera);
 
 }  // namespace luxrig

@@ -10,13 +10,13 @@
 namespace luxrig {
 namespace {
 
-constexpr double kDark_lx = 0.1;  // a full moon's light
+constexpr double kDark_lx = 0.1;  // full moon
 constexpr double kClose_m = 0.1;
 constexpr std::uint32_t kLampRays = 64;
 constexpr double kNearlyAll = 0.9;
 constexpr std::size_t kMostLampsNamed = 6;
 
-/// Where the light of a lamp ends: what becomes of nine rays in ten.
+/// Where the light of a lamp goes: the fate of nine rays in ten.
 std::string fate_of(const RayScene& scene, const Emitter& lamp) {
   std::vector<double> distances_m;
   std::uint32_t sent = 0;

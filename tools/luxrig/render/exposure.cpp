@@ -14,7 +14,7 @@ constexpr double kWhiteOverGrey = 100.0 / 3;  // with the tone curve of picture_
 constexpr double kBurnShare = 1.0 / 3;        // of white, where the tone curve is at 0.85 of sRGB
 constexpr double kLitShare = 1.0 / 50;
 
-/// A number at the start of `text`, which is left with the rest.
+/// A number at the start of `text`. The rest stays in `text`.
 std::optional<double> take_number(std::string_view& text) {
   if (text.starts_with('+')) text.remove_prefix(1);
   double value = 0;
@@ -67,7 +67,7 @@ std::optional<WhiteBalance> white_balance_of(const std::string& text) {
 
 double metered_white_cd_m2(const Picture& picture) {
   std::vector<double> luminances;
-  // A sky in the window is brighter than any room: exposed is for what the light falls on.
+  // A sky in the window is brighter than any room. Expose for the surfaces that its light falls on.
   for (std::size_t i = 0; i < picture.luminance_cd_m2.size(); ++i)
     if (const double luminance = luminance_of_rgb(picture.luminance_cd_m2[i].cast<double>());
         luminance > 0 && (picture.illuminance_lx.empty() || picture.illuminance_lx[i] >= 0))
@@ -84,7 +84,7 @@ double metered_white_cd_m2(const Picture& picture) {
 }
 
 LampWhite white_of_lamps(std::span<const Emitter> emitters, std::span<const double> levels) {
-  constexpr double kMostOff = 0.02;  // in u'v' from the black bodies: what people still call white
+  constexpr double kMostOff = 0.02;  // in u'v' from the black bodies: still called white
   Vec3 light = Vec3::Zero();
   for (std::size_t e = 0; e < emitters.size(); ++e) {
     if (!(levels[e] > 0)) continue;
@@ -95,7 +95,7 @@ LampWhite white_of_lamps(std::span<const Emitter> emitters, std::span<const doub
   if (!rgb) return {};
   const Eigen::Vector2d uv = uv_of(*rgb);
   LampWhite white;
-  // Lamps without a stated colour are D65, which is no black body.
+  // Lamps without a stated colour are D65, which no black body has.
   double nearest = std::min(kMostOff, (uv_of(white.rgb) - uv).norm());
   for (double mired = 1e6 / kMostCct_k; mired <= 1e6 / kLeastCct_k; mired += 1) {
     const double cct_k = std::clamp(1e6 / mired, kLeastCct_k, kMostCct_k);

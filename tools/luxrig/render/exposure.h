@@ -1,5 +1,5 @@
 #pragma once
-/// How a picture of light becomes a photograph: which luminance is white, and which colour.
+/// How a picture of light becomes a photograph: the luminance and the colour of white.
 
 #include <optional>
 #include <span>
@@ -9,21 +9,21 @@
 
 namespace luxrig {
 
-/// Of a photograph. Middle grey (0.18 of a linear scale) is then white_cd_m2 · 0.03.
+/// Settings of a photograph. Middle grey (0.18 on a linear scale) is then white_cd_m2 · 0.03.
 struct PhotographLook {
-  double white_cd_m2 = 100;       ///< from this luminance on all is white
-  Vec3 white_rgb = Vec3::Ones();  ///< light of this colour is shown neutral; linear Rec. 709, luminance 1
+  double white_cd_m2 = 100;       ///< luminance from which on everything is white
+  Vec3 white_rgb = Vec3::Ones();  ///< light of this colour looks neutral; linear Rec. 709, luminance 1
 };
 
-/// What `--exposure` says.
+/// Value of `--exposure`.
 struct Exposure {
-  double stops = 0;                   ///< above 0: brighter than metered, twice for each
+  double stops = 0;                   ///< +1 is twice as bright as metered
   std::optional<double> white_cd_m2;  ///< instead of metering
 };
-/// "+1", "-0.5": stops; "300cd/m2": luminance of white. Nothing for any other text.
+/// "+1", "-0.5": stops. "300cd/m2": luminance of white. Nothing for any other text.
 [[nodiscard]] std::optional<Exposure> exposure_of(const std::string& text);
 
-/// What `--white-balance` says.
+/// Value of `--white-balance`.
 struct WhiteBalance {
   bool of_lamps = true;  ///< else cct_k, or white (D65)
   std::optional<double> cct_k;
@@ -31,16 +31,16 @@ struct WhiteBalance {
 /// "lamps", "daylight", "2700" or "2700K". Nothing for any other text.
 [[nodiscard]] std::optional<WhiteBalance> white_balance_of(const std::string& text);
 
-/// Metered as a person would: middle grey is the log-average of what is seen without its darkest and brightest 1 %; but
-/// never so bright that what is lit (surfaces of more than 1/50 of the brightest) burns: all but 2 % of it stay below a
-/// third of white, so a small thing before a dark backdrop keeps its modelling. 100/3 where nothing shines.
+/// Metered as a person would: middle grey is the log-average of the visible surfaces without their darkest and
+/// brightest 1 %. But lit surfaces (above 1/50 of the brightest) must not burn out: all but 2 % of them stay below a
+/// third of white, so a small object before a dark backdrop keeps its modelling. 100/3 if nothing shines.
 [[nodiscard]] double metered_white_cd_m2(const Picture& picture);
 
 struct LampWhite {
   Vec3 rgb = Vec3::Ones();
-  std::optional<double> cct_k;  ///< none: daylight shines in, lights are coloured, or none is on: white is D65
+  std::optional<double> cct_k;  ///< none: daylight, coloured light or no light; white is then D65
 };
-/// Colour of black body nearest to the light of all lamps together, by their lumens at these levels.
+/// The black body nearest in colour to the light of all lamps together, weighted by lumens at these levels.
 [[nodiscard]] LampWhite white_of_lamps(std::span<const Emitter> emitters, std::span<const double> levels);
 
 }  // namespace luxrig

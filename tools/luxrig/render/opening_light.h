@@ -1,5 +1,5 @@
 #pragma once
-/// What a plan gives when the daemon lets it out first: its margins for what no luxmeter has confirmed included.
+/// The light of a plan when the daemon first lets it out, with its margins for limits that no luxmeter has confirmed.
 
 #include <string>
 
@@ -7,11 +7,11 @@
 
 namespace luxrig {
 
-/// Sets opening_lux of each point that gets less than the plan says, by more than 1 %. Nothing for a plan whose lights
-/// do not hang yet. rig: as it hangs.
+/// Sets opening_lux of each point that gets more than 1 % less than the plan states. Does nothing for a plan with
+/// lights that do not hang yet. rig: as it hangs.
 void add_opening_light(SolvedTasks& solved, const Rig& rig);
 
-/// For a person, a line per point; empty when the plan goes out as it is.
+/// Text for a person, a line per point; empty if the plan goes out unchanged.
 [[nodiscard]] std::string opening_light_text(const Plan& plan, const Rig& rig);
 
 }  // namespace luxrig

@@ -16,7 +16,7 @@ struct BeamAxis {
   bool lit;
 };
 
-/// From each lamp along its axis to what it meets; as far as the scene is large where it meets nothing.
+/// From each lamp along its axis to the first surface; if there is none, as far as the scene is large.
 std::vector<BeamAxis> beam_axes(const ShownRig& rig, const RayScene& rays) {
   const Eigen::AlignedBox3d bounds = rays.bounds_world_m();
   const double far_m = bounds.isEmpty() ? 3 : bounds.diagonal().norm();
@@ -25,7 +25,7 @@ std::vector<BeamAxis> beam_axes(const ShownRig& rig, const RayScene& rays) {
     const Fixture& fixture = rig.rig.fixtures[f];
     const bool lit = f < rig.levels.size() && rig.levels[f] > 0;
     if (fixture.housing && *fixture.housing != f) {
-      // Emitters of one housing follow its first one and share its beam.
+      // The emitters of a housing follow its first one and share its beam.
       if (!axes.empty()) axes.back().lit = axes.back().lit || lit;
       continue;
     }
@@ -49,7 +49,7 @@ Result<Figure> beam_figure(const ShownRig& rig, const RenderOptions& options) {
   for (const BeamAxis& axis : axes) {
     shown.push_back(axis.from_world_m);
     shown.push_back(axis.to_world_m);
-    // The foot itself lies on a surface.
+    // Slightly off the surface: the foot itself lies on it.
     wanted.push_back({axis.to_world_m + 0.01 * (axis.from_world_m - axis.to_world_m)});
     wanted.push_back({axis.from_world_m});
   }

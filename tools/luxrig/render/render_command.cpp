@@ -32,7 +32,7 @@ namespace {
 
 constexpr int kMostPasses = 4096;
 
-/// Those of a plan, whose placed lights are hung for it; or each fixture's highest.
+/// Levels of a plan, after its placed lights are hung; or the highest of each fixture.
 Checked<std::vector<double>> levels_of(const RenderOptions& options, Rig& rig) {
   if (!options.plan) {
     std::vector<double> levels;
@@ -49,7 +49,7 @@ Checked<std::vector<double>> levels_of(const RenderOptions& options, Rig& rig) {
   return levels_when_hung(*plan, rig, options.plan->string());
 }
 
-/// As asked for or metered, and in words what that is.
+/// As the options ask, or metered. Also gives a description in words.
 PhotographLook look_of(const RenderOptions& options, const Picture& picture, std::span<const Emitter> emitters,
                        std::span<const double> levels, std::string& words) {
   PhotographLook look;
@@ -143,7 +143,7 @@ int run_render(const RenderOptions& options) {
   return 0;
 }
 
-/// What is typed, before it is understood.
+/// The command line as typed, before it is parsed.
 struct RenderLine {
   RenderOptions options;
   std::filesystem::path plan;

@@ -13,34 +13,34 @@
 
 namespace luxrig {
 
-/// Pictures of why; what each draws is in render_show.h.
+/// Pictures that explain; render_show.h says what each draws.
 enum class ShowWhat { curvature, interest, features, histogram, domain, beams };
 
 struct RenderOptions {
   std::filesystem::path rig;
-  std::optional<std::filesystem::path> plan;  ///< none: every fixture at its highest allowed level
+  std::optional<std::filesystem::path> plan;  ///< none = every fixture at its highest allowed level
   std::filesystem::path output;               ///< .png or .jpg
   bool false_colour = false;                  ///< lux map with a scale
   int width_px = 960, height_px = 600;
-  std::optional<Vec3> eye_world_m, target_world_m;  ///< none: a view of the room that shows most of its points
-  std::optional<double> vertical_fov_deg;           ///< none: 60, for `show` 30
+  std::optional<Vec3> eye_world_m, target_world_m;  ///< none = a view of the room that shows most of its points
+  std::optional<double> vertical_fov_deg;           ///< none = 60, for `show` 30
   std::optional<ShowWhat> show;                     ///< instead of the lit room
-  std::optional<std::string> object;                ///< whose relief is shown; none: the only one from a mesh file
+  std::optional<std::string> object;                ///< object with the relief; none = the only one from a mesh file
   int lights = 3;                                   ///< directions to choose on the histogram
   Exposure exposure;
   WhiteBalance white_balance;
-  std::optional<double> max_lx;  ///< top of the false colour scale; none: from the picture
-  double max_error = 0.02;       ///< noise of the picture at which it is done
+  std::optional<double> max_lx;  ///< top of the false colour scale; none = from the picture
+  double max_error = 0.02;       ///< noise at which the picture is done
   double seconds = 20;           ///< or after this time
   std::optional<int> passes;     ///< or after so many samples per pixel: the same picture each time
   int threads = 0;
 };
 
-/// For `options.show`, which must be set. Returns the exit code: 0, 2 for bad input (told on stderr), 1 when the file
-/// cannot be written.
+/// For `options.show`, which must be set. Returns the exit code: 0, 2 for bad input (with a message on stderr), 1 if
+/// the file cannot be written.
 int run_show(const RenderOptions& options);
 
-/// The rig and a level per fixture: those of the plan, whose placed lights are hung for it; or each fixture's highest.
+/// The rig with a level per fixture: those of the plan, after its placed lights are hung; or each fixture's highest.
 [[nodiscard]] Checked<std::pair<Rig, std::vector<double>>> load_rig_for_picture(const RenderOptions& options);
 
 }  // namespace luxrig

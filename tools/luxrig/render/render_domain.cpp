@@ -14,8 +14,8 @@ namespace luxrig {
 namespace {
 
 const Vec3 kRoom = Vec3::Constant(0.78), kShownObject(0.60, 0.56, 0.50);
-/// Cells with less than this share of the heaviest are left out: they would be dots of nothing, and those of boxes
-/// stand between eye and object.
+/// Cells with less than this share of the heaviest are left out: they would be specks. Those of boxes would also stand
+/// between eye and object.
 constexpr double kLeastShareMounted = 0.02, kLeastShareOfBoxes = 0.15;
 
 struct WeighedCell {
@@ -31,7 +31,7 @@ struct WeighedDomain {
   std::uint32_t layers = 1;
 };
 
-/// Normal of the domain where a cell has its centre; towards the target where it cannot be found.
+/// Normal of the domain at a cell's centre; towards the target if it cannot be found.
 Vec3 normal_at(const LightDomain& domain, const DomainVotes::Cell& cell) {
   const Vec3 way_m = cell.centre_world_m - domain.centre_world_m();
   std::vector<DomainHit> hits;
@@ -48,7 +48,8 @@ Vec3 normal_at(const LightDomain& domain, const DomainVotes::Cell& cell) {
   return normal;
 }
 
-/// The rig's mounting surfaces, luminaires midway between its offsets on both their sides; without any, boxes.
+/// The rig's mounting surfaces, with luminaires midway between the offsets, on both sides. Without mounting surfaces,
+/// boxes.
 Result<LightDomain> domain_of(const ShownRig& rig, const ShownObject& object, const Mounting& mounting) {
   if (mounting.is_surface().empty()) return nested_box_domain(object.study.surface, {});
   const double off_m = (rig.rig.mounting.offset_min_m + rig.rig.mounting.offset_max_m) / 2;
@@ -93,7 +94,7 @@ Result<WeighedDomain> weigh(const ShownRig& rig, const ShownObject& object, cons
   return weighed;
 }
 
-/// From beside and above the viewer, who has their near sides before the object.
+/// From beside and above the viewer, for whom the near sides of the boxes would hide the object.
 CutAwayCamera view_of_boxes(std::span<const Vec3> shown, const Vec3& towards_viewer, double fov_rad,
                             const RenderOptions& options) {
   const Vec3 beside = Eigen::AngleAxisd(rad_from_deg(40), Vec3::UnitZ()) * towards_viewer;
@@ -148,7 +149,7 @@ Result<Figure> domain_figure(const ShownRig& rig, const ShownObject& object, con
     const double share = cell.weight / heaviest->weight;
     if (share < least_share) continue;
     Disc disc{cell.centre_world_m, cell.normal, cell.radius_m, 0, viridis(share).cast<float>(), 1};
-    // Boxes stand before the object: what counts little is small and pale, so that one sees through them.
+    // Boxes stand before the object. Cells of little weight are small and pale, so that the object shows through.
     if (!domain->mounted) {
       disc.radius_m *= std::sqrt(share);
       disc.opacity = std::min(1.0, 0.2 + share);

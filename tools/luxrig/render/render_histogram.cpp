@@ -14,11 +14,11 @@ namespace {
 
 const Vec3 kChosenRgb(0.84, 0.1, 0.1);
 const Vec3 kHeadRgb(0.1, 0.1, 0.1);
-/// What stands nearer than so many diagonals of the object hides directions; walls farther off do not, as lamps hang
-/// before them.
+/// Things nearer than this many diagonals of the object hide directions. Walls farther away do not, because lamps hang
+/// in front of them.
 constexpr double kReachDiagonals = 2;
 
-/// Where the two discs are in a picture.
+/// Places of the two discs in a picture.
 struct DiscLayout {
   double radius_px, middle_y_px, front_x_px, back_x_px;
 
@@ -62,7 +62,7 @@ ColourPicture discs_of(const DirectionHistogram& histogram, const DirectionMap& 
   return picture;
 }
 
-/// Lights that could be on the object: those that move, or if none does, those whose beam axis passes it.
+/// Lights that could be aimed at the object: those that move. If none moves, those whose beam axis passes it.
 std::vector<const Fixture*> fixtures_for(const ShownRig& rig, const ShownObject& object) {
   std::vector<const Fixture*> moving, passing;
   const Vec3 middle_m = object.study.surface.centroid_world_m();

@@ -13,11 +13,11 @@
 namespace luxrig {
 namespace {
 
-/// From this many triangles on, a line says that their curvature is looked at: it may take over two seconds.
+/// From this many triangles on, a line reports that their curvature is being computed: it may take over two seconds.
 constexpr std::size_t kManyTriangles = 50'000;
 
-/// From the middle of an object to where a person who cares for it stands: the side of the measurement points that are
-/// about it, else of the lamps; never from below, nor from straight above.
+/// From the middle of an object to where its viewer stands: the side of the measurement points around it, else of the
+/// lamps. Never from below or from straight above.
 Vec3 side_of_interest(const Rig& rig, const Vec3& middle_world_m, double diagonal_m) {
   Vec3 sum = Vec3::Zero();
   for (const Point& point : rig.points) {

@@ -1,6 +1,6 @@
 #pragma once
-/// `luxrig render --show`: pictures of why lights are where they are. One function per kind, each in a file of its
-/// kind; the first three are of the object's surface.
+/// `luxrig render --show`: pictures that explain why lights are where they are. One function per kind, each in its own
+/// file; the first three show the object's surface.
 
 #include "core/highlight/picture/object_view.h"
 #include "core/highlight/surface/relief_study.h"
@@ -9,23 +9,23 @@
 
 namespace luxrig {
 
-/// A rig in its scene, its lights hung and turned as the plan says if there is one.
+/// A rig in its scene. If there is a plan, its lights are hung and heads are turned as it says.
 struct ShownRig {
   Rig rig;
   Scene scene;
   std::vector<double> levels;  ///< per fixture
 };
 
-/// One of its objects, and all that its lights would be chosen from.
+/// One object of it, with everything that its lights would be chosen from.
 struct ShownObject {
   std::string name;
   Scene target;  ///< the object alone
   Scene rest;    ///< everything else
   ReliefStudy study;
-  Vec3 towards_viewer;  ///< unit; the side that the rig's points are on, or its lamps
+  Vec3 towards_viewer;  ///< unit; the side of the rig's points, else of its lamps
 };
 
-/// The picture without its title. Refusals say what would mend them.
+/// The picture without its title. A refusal says what would mend it.
 [[nodiscard]] Result<Figure> curvature_figure(const ShownObject& object, const RenderOptions& options);
 [[nodiscard]] Result<Figure> interest_figure(const ShownObject& object, const RenderOptions& options);
 [[nodiscard]] Result<Figure> feature_figure(const ShownObject& object, const RenderOptions& options);
@@ -35,23 +35,23 @@ struct ShownObject {
                                            const RenderOptions& options);
 [[nodiscard]] Result<Figure> beam_figure(const ShownRig& rig, const RenderOptions& options);
 
-/// The object whose relief is shown: the one asked for, else the only one from a mesh file. Refuses when there is none
-/// or more than one, naming them.
+/// The object with the relief: the one asked for, else the only one from a mesh file. Refuses if there is none or more
+/// than one, and names them.
 [[nodiscard]] Result<std::string> object_to_show(const Rig& rig, const std::optional<std::string>& wanted);
 
-/// As the options say, else as chosen; near_m is 0 where the eye is the caller's.
+/// As the options say, else as chosen. near_m is 0 if the caller sets the eye.
 [[nodiscard]] CutAwayCamera as_asked(CutAwayCamera chosen, const RenderOptions& options);
 
 /// Grey by how squarely the surface faces the eye, 0.55…1 times the colour.
 [[nodiscard]] Vec3f shaded(const Vec3& rgb, const Vec3& normal, const Vec3& towards_eye);
 
-/// Shadow edges of the object, with a line of progress.
+/// Shadow edges of the object, with a progress line.
 [[nodiscard]] Result<ShadowEdges> shown_shadow_edges(const ShownObject& object, const RenderOptions& options);
 
-/// What a person reads of how the relief was found: its scale, and how many interest points.
+/// How the relief was found, for a person: its scale and the number of interest points.
 [[nodiscard]] std::string relief_words(const ReliefStudy& study);
 
-constexpr double kShowFov_deg = 30;  ///< where none is asked for: an object is not drawn out of shape
+constexpr double kShowFov_deg = 30;  ///< default: narrow, so that an object is not distorted
 constexpr int kShowSamplesPerEdge = 3;
 
 }  // namespace luxrig

@@ -17,7 +17,7 @@ const Vec3 kPlainObject = Vec3::Constant(0.86);
 const Vec3 kUnknownCurvature(0.55, 0.55, 0.5);
 const Vec3 kInterestRgb(0.80, 0.27, 0.0);
 const Vec3 kSmallFeature = Vec3::Constant(0.45);
-/// Of features with fewer points no person sees a shape.
+/// Features with fewer points have no visible shape.
 constexpr std::uint32_t kFeaturePoints = 4;
 
 /// Okabe and Ito's colours for all kinds of colour vision, without black.
@@ -58,7 +58,7 @@ Result<SurfacePicture> object_picture(const ShownObject& object, const RenderOpt
   return picture;
 }
 
-/// What 95 % of the known area does not exceed, either way.
+/// Not exceeded in absolute value on 95 % of the known area.
 double usual_curvature_per_m(const TargetSurface& surface, std::span<const Curvature> curvature) {
   std::vector<std::pair<double, double>> sizes;  // and areas
   double area_m2 = 0;
@@ -76,7 +76,7 @@ double usual_curvature_per_m(const TargetSurface& surface, std::span<const Curva
   return sizes.empty() ? 0 : sizes.back().first;
 }
 
-/// Discs that lie on the surface at the interest points, as large as they have room for.
+/// Discs on the surface at the interest points, as large as they have room for.
 std::vector<Disc> interest_discs(const ShownObject& object, double size) {
   const ReliefStudy& study = object.study;
   double area_m2 = 0;
@@ -94,7 +94,7 @@ std::vector<Disc> interest_discs(const ShownObject& object, double size) {
 
 Result<Figure> curvature_figure(const ShownObject& object, const RenderOptions& options) {
   const ReliefStudy& study = object.study;
-  // Drawn between the corners of the mesh; the study has that of its own points only.
+  // Drawn between the corners of the mesh. The study has curvature at its own points only.
   const auto curvature =
       curvature_of(study.mesh, {{.threads = options.threads, .watch = {stop_on_signals(), {}}}, study.scale_m});
   if (!curvature) return tl::unexpected(curvature.error());

@@ -24,7 +24,7 @@ BitVolume BitVolume::reduced(int factor) const {
 }
 
 BitVolume BitVolume::dilated() const {
-  // Along x within words, with the bits that cross from one word to the next; then rows are merged with their eight
+  // First along x within words, with the bits that carry over to the next word. Then each row is merged with its eight
   // neighbours.
   BitVolume wide = *this;
   const std::uint64_t last = size_.x() % 64 == 0 ? ~std::uint64_t{0} : (std::uint64_t{1} << (size_.x() % 64)) - 1;

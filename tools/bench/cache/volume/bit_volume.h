@@ -31,10 +31,10 @@ class BitVolume {
   [[nodiscard]] std::size_t count() const;
   [[nodiscard]] std::size_t bytes() const { return words_.size() * sizeof(std::uint64_t); }
 
-  /// Each cell of factor³ voxels is set when one of its voxels is (thesis §3.2.3, by OR).
+  /// Each cell of factor³ voxels is set if one of its voxels is (thesis §3.2.3, by OR).
   [[nodiscard]] BitVolume reduced(int factor) const;
 
-  /// Set where this, or one of the 26 neighbours, is set.
+  /// Set where this voxel or one of its 26 neighbours is set.
   [[nodiscard]] BitVolume dilated() const;
 
   /// Voxels set in both. requires equal sizes.

@@ -2,9 +2,9 @@
 
 namespace luxrig {
 
-// Two sweeps of the 3×3×3 chamfer with all weights 1, which is exact for the chessboard distance (A. Rosenfeld and
-// J. Pfaltz, "Distance functions on digital pictures", 1968). It is done on a frame of far voxels, so that no
-// neighbour need be looked for.
+// Two sweeps of the 3×3×3 chamfer with all weights 1, which is exact for the chessboard distance (A. Rosenfeld and J.
+// Pfaltz, "Distance functions on digital pictures", 1968). A frame of far voxels around the volume makes checks for
+// missing neighbours unnecessary.
 DistanceField::DistanceField(const BitVolume& volume) : size_(volume.size()) {
   if (size_.minCoeff() <= 0) return;
   const int nx = size_.x() + 2, ny = size_.y() + 2, nz = size_.z() + 2;

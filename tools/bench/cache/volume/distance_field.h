@@ -1,5 +1,5 @@
 #pragma once
-/// How far each voxel is from the nearest set one.
+/// Distance of each voxel from the nearest set one.
 
 #include <cstdint>
 #include <vector>
@@ -9,7 +9,7 @@
 namespace luxrig {
 
 /// Chessboard distance (largest difference of the three indices), at most kFarthest; 0 in set voxels. It suits strides
-/// along rays, since the cubes it guards are made of whole voxels.
+/// along rays: the free cube that it guarantees is made of whole voxels.
 class DistanceField {
  public:
   static constexpr int kFarthest = 255;

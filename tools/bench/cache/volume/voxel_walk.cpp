@@ -26,7 +26,7 @@ void VoxelWalk::place_at(double t) {
   for (int i = 0; i < 3; ++i) {
     const double at = from_[i] + t * way_[i];
     voxel_[i] = static_cast<int>(std::clamp(std::floor(at), 0.0, static_cast<double>(size_[i] - 1)));
-    // A walk towards low coordinates that starts on a voxel's low face is about to leave it.
+    // A walk towards low coordinates that starts on a voxel's low face leaves it at once.
     if (way_[i] != 0) exit_[i] = (voxel_[i] + (step_[i] > 0 ? 1 : 0) - from_[i]) / way_[i];
   }
 }
@@ -47,8 +47,8 @@ std::optional<VoxelHit> first_voxel_by_walk(const BitVolume& volume, const Vec3&
 
 std::optional<VoxelHit> first_voxel_by_distance(const DistanceField& field, const Vec3& from_grid,
                                                 const Vec3& to_grid) {
-  // A voxel at chessboard distance d from the nearest set one may be left by d - 1 voxels along the fastest axis
-  // without meeting it, from wherever in it one stands. The hair less keeps rounding on the safe side.
+  // From any point of a voxel at chessboard distance d from the nearest set one, d - 1 voxels along the fastest axis
+  // are free. The tiny margin keeps rounding on the safe side.
   const double stride = (1 - 1e-9) / std::max((to_grid - from_grid).cwiseAbs().maxCoeff(), 1e-300);
   for (VoxelWalk walk(field.size(), from_grid, to_grid); !walk.done();) {
     const int distance = field.at(walk.voxel());

@@ -1,6 +1,6 @@
 #pragma once
-/// Rays through voxels, three ways: visiting each voxel (3-D DDA), skipping by a distance field, and the thesis's
-/// sparse march, which looks at few places and may miss what stands between them.
+/// Rays through voxels in three ways: visiting each voxel (3-D DDA), skipping by a distance field, and the thesis's
+/// sparse march, which samples few places and may miss voxels between them.
 
 #include <limits>
 #include <optional>
@@ -11,11 +11,11 @@
 
 namespace luxrig {
 
-/// The voxels that a segment passes, in order, none left out (J. Amanatides, A. Woo, "A Fast Voxel Traversal Algorithm
-/// for Ray Tracing", Eurographics 1987). Parameters t run from 0 at `from` to 1 at `to`.
+/// The voxels that a segment passes through, in order, none left out (J. Amanatides, A. Woo, "A Fast Voxel Traversal
+/// Algorithm for Ray Tracing", Eurographics 1987). Parameters t run from 0 at `from` to 1 at `to`.
 class VoxelWalk {
  public:
-  /// Points in frame grid (voxel units), finite. The part of the segment outside the grid is left out.
+  /// Points in frame grid (voxel units), finite. Skips the part of the segment outside the grid.
   VoxelWalk(const Eigen::Vector3i& size, const Vec3& from_grid, const Vec3& to_grid);
 
   [[nodiscard]] bool done() const { return done_; }
@@ -45,15 +45,15 @@ struct VoxelHit {
   double t;  ///< place along the segment, 0…1
 };
 
-/// First voxel that is set on the segment; exact for the voxels.
+/// The first set voxel on the segment; exact for the voxels.
 [[nodiscard]] std::optional<VoxelHit> first_voxel_by_walk(const BitVolume& volume, const Vec3& from_grid,
                                                           const Vec3& to_grid);
 
-/// The same answer; empty space is crossed in strides (thesis §3.1.6).
+/// The same answer; crosses empty space in strides (thesis §3.1.6).
 [[nodiscard]] std::optional<VoxelHit> first_voxel_by_distance(const DistanceField& field, const Vec3& from_grid,
                                                               const Vec3& to_grid);
 
-/// Sparse stratified march of the thesis (§3.2.4): one look in each of `steps` equal parts of the segment, at the
+/// Sparse stratified march of the thesis (§3.2.4): one sample in each of `steps` equal parts of the segment, at the
 /// share `jitter` (0…1) of the part. May miss voxels.
 [[nodiscard]] std::optional<VoxelHit> first_voxel_by_march(const BitVolume& volume, const Vec3& from_grid,
                                                            const Vec3& to_grid, int steps, double jitter);

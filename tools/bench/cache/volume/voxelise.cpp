@@ -7,8 +7,8 @@
 namespace luxrig {
 namespace {
 
-/// Points within this of a voxel's face [voxels] count as in both voxels: far more than rounding, far less than a
-/// voxel.
+/// Points within this distance of a voxel's face [voxels] count as in both voxels: far more than rounding, far less
+/// than a voxel.
 constexpr double kSlack = 1e-6;
 /// Triangles whose height is less than this share of their longest edge are voxelised as that edge.
 constexpr double kSliver = 1e-8;
@@ -61,7 +61,7 @@ class Rasteriser {
       low = low.cwiseMin(c);
       high = high.cwiseMax(c);
     }
-    // Edge functions n·p + d, positive inside, at the corner of a square that lies farthest inside.
+    // Edge functions n·p + d, positive inside, at the corner of a square that is farthest inside.
     struct Edge {
       double na, nb, at_origin;
     };
