@@ -9,7 +9,7 @@
 /// that the rig file gives and `spread_aims` of the head's range. Off the set it blurs the patch that the beam lights:
 /// in a cube of 4 m with a spot of 24° and 32 aims the r.m.s. error is 17 % of the mean indirect light at a wall
 /// reflectance of 0.5 (23 % at 0.3), so 3 % of the whole where interreflection is a sixth of the
-/// light. tests/sim/world/head_light_test.cpp measures it. A scenario that compares the truth after a movement with
+/// light (tests/sim/world/head_light_accuracy_test.cpp). A scenario that compares the truth after a movement with
 /// a plan to better than that gives the head's aim in the rig file.
 
 #include <vector>

@@ -23,8 +23,8 @@ struct Ran {
 Ran run_suite(const Breakage& breakage) {
   const std::string program = (test::program_folder() / "conformance_tests").string();
   const std::string command = std::string("exec env -u GTEST_TOTAL_SHARDS -u GTEST_SHARD_INDEX ") + kBreakVariable +
-                              "='" + breakage.name + "' '" + program + "' --gtest_filter='Registry/EveryDriver." + breakage.failing_test + "/" +
-                              breakage.driver + "' 2>&1";
+                              "='" + breakage.name + "' '" + program + "' --gtest_filter='Registry/EveryDriver." +
+                              breakage.failing_test + "/" + breakage.driver + "' 2>&1";
   Ran ran;
   std::FILE* const out = ::popen(command.c_str(), "r");
   if (out == nullptr) return ran;
