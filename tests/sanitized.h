@@ -2,17 +2,30 @@
 
 namespace luxrig::test {
 
-/// Built with AddressSanitizer or ThreadSanitizer: many times slower, and memory stays that would be given back.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-inline constexpr bool kSanitized = true;
+/// Built with ThreadSanitizer: what counts milliseconds counts wrongly.
+#if defined(__SANITIZE_THREAD__)
+inline constexpr bool kThreadSanitized = true;
 #elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-inline constexpr bool kSanitized = true;
+#if __has_feature(thread_sanitizer)
+inline constexpr bool kThreadSanitized = true;
 #else
-inline constexpr bool kSanitized = false;
+inline constexpr bool kThreadSanitized = false;
 #endif
 #else
-inline constexpr bool kSanitized = false;
+inline constexpr bool kThreadSanitized = false;
+#endif
+
+/// Built with AddressSanitizer or ThreadSanitizer: many times slower, and memory stays that would be given back.
+#if defined(__SANITIZE_ADDRESS__)
+inline constexpr bool kSanitized = true;
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+inline constexpr bool kSanitized = true;
+#else
+inline constexpr bool kSanitized = kThreadSanitized;
+#endif
+#else
+inline constexpr bool kSanitized = kThreadSanitized;
 #endif
 
 }  // namespace luxrig::test

@@ -8,7 +8,7 @@
 /// between the beams (Shepard 1968). At an aim of the set it is that aim's own value. The set holds the rig file's aim
 /// and `spread_aims` of the head's range. Off the set it blurs the patch lit by the beam: in a cube of 4 m with a spot
 /// of 24° and 32 aims the r.m.s. error is 17 % of the mean indirect light at a wall reflectance of 0.5 (23 % at 0.3),
-/// so 3 % of the whole if interreflection is a sixth of the light. tests/sim/world/head_light_test.cpp measures it. A
+/// so 3 % of the whole if interreflection is a sixth of the light. tests/sim/world/head_light_accuracy_test.cpp measures it. A
 /// scenario that compares the truth after a movement with a plan more precisely than that must have the head's aim in
 /// the rig file.
 

@@ -3,39 +3,14 @@
 #include <gtest/gtest.h>
 
 #include "core/photometry/sky.h"
+#include "tests/core/picture/picture_fixture.h"
 #include "tests/core/transport/lamp_pose.h"
 #include "tools/bench/rooms/enclosures.h"
 
 namespace luxrig {
 namespace {
 
-Camera looking(const Vec3& eye_m, const Vec3& target_m) {
-  Camera camera;
-  camera.eye_world_m = eye_m;
-  camera.target_world_m = target_m;
-  camera.width_px = 33;
-  camera.height_px = 21;
-  return camera;
-}
-
-const std::vector<Emitter> kPictureBulb = {{make_isotropic(1000), {Mat3::Identity(), {0.2, 0.1, 0.3}}}};
-
-TEST(Picture, ShowsTheIlluminanceThatTheEvaluatorMeasures) {
-  const RayScene rays(make_cube(2, 0.6));
-  const Vec3 target_m(0.3, 0.2, -1);
-  PictureOptions options;
-  options.wanted_relative_error = 0.005;
-  options.most_passes = 2000;
-  const auto picture =
-      render_picture(rays, kPictureBulb, std::vector{0.5}, looking({-0.7, -0.6, 0.4}, target_m), options);
-  ASSERT_TRUE(picture.has_value());
-  const auto measured =
-      make_path_evaluator(rays)->evaluate(std::vector<Receiver>{{target_m, Vec3::UnitZ()}}, kPictureBulb, {});
-  const double expected_lx = 0.5 * measured->lux_per_level(0, 0);
-  const std::size_t middle = 10 * 33 + 16;
-  EXPECT_NEAR(picture->illuminance_lx[middle], expected_lx, 0.05 * expected_lx);
-  EXPECT_NEAR(picture->luminance_cd_m2[middle].x(), 0.6 * picture->illuminance_lx[middle] / kPi, 1e-3 * expected_lx);
-}
+using namespace picture_fixture;
 
 TEST(Picture, StopsAtTheWantedNoiseAndSaysIt) {
   const RayScene rays(make_cube(2, 0.6));
@@ -88,18 +63,6 @@ TEST(Picture, AGlossyFloorReflectsTheRoom) {
   };
   EXPECT_NEAR(contrast(0), 1, 1e-3) << "matt: luminance is ρE/π everywhere";
   EXPECT_GT(contrast(0.3), 1.3);
-}
-
-TEST(Picture, IsTheSameForAnyNumberOfThreads) {
-  const RayScene rays(make_cube(2, 0.6));
-  PictureOptions options;
-  options.threads = 1;
-  const auto one =
-      render_picture(rays, kPictureBulb, std::vector{1.0}, looking({-0.7, -0.6, 0.4}, {0, 0, -1}), options);
-  options.threads = 3;
-  const auto three =
-      render_picture(rays, kPictureBulb, std::vector{1.0}, looking({-0.7, -0.6, 0.4}, {0, 0, -1}), options);
-  EXPECT_EQ(one->illuminance_lx, three->illuminance_lx);
 }
 
 TEST(Picture, WhereNothingIsSeenThereIsNoIlluminance) {

@@ -1,36 +1,14 @@
 // What a rig file asks, done as values: a result, the end in the middle, a refusal, and the same for a seed.
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <sstream>
-
-#include "core/tasks/rig_notes/rig_notes.h"
 #include "core/tasks/solve_tasks.h"
 #include "tests/core/tasks/opened_rigs.h"
+#include "tests/core/tasks/tasks_fixture.h"
 
 namespace luxrig {
 namespace {
 
-constexpr const char* kLevels = "[[task]]\nname = \"levels\"\nkind = \"emittance\"\n";
-
-std::filesystem::path room_folder() { return test::source_folder() / "tests/rigs/room"; }
-
-std::string room_text() {
-  std::ifstream in(room_folder() / "rig.toml");
-  std::stringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
-Session opened(const std::string& text) { return opened_rig(text, room_folder()); }
-
-/// Two bulbs somewhere under the ceiling, in place of the tasks of the room.
-std::string room_with_places() {
-  return replaced(room_text(), kLevels,
-                  "[mounting]\nsurfaces = [\"ceiling\"]\noffset_m = [0.1, 0.3]\n\n"
-                  "[[task]]\nname = \"bulbs\"\nkind = \"placement\"\nluminaire = \"bulb\"\nlights = 2\n"
-                  "fixtures = \"off\"\nseconds = 60\n");
-}
+using namespace tasks_fixture;
 
 TEST(Session, OfARigWithALampInAPointIsRefused) {
   const auto session =
@@ -115,36 +93,6 @@ TEST(SolveTasks, RefusesWhereLightThatStaysIsAboveALimit) {
   ASSERT_FALSE(solved);
   EXPECT_EQ(solved.error().cause, Cause::invalid);
   EXPECT_NE(solved.error().detail.find("plinth-top"), std::string::npos) << solved.error().detail;
-}
-
-TEST(SolveTasks, PlacesLightsTheSameForASeedAndAnyNumberOfThreads) {
-  const Session session = opened(room_with_places());
-  const double ceiling_m = room_of(session.rig, session.scene).max().z();
-  const TransportMatrix transport = transport_of(session, {});
-  std::string first;
-  for (const int threads : {1, 2}) {
-    ComputeOptions options;
-    options.threads = threads;
-    options.seed = 7;
-    const auto solved = solve_tasks(session, transport, options);
-    ASSERT_TRUE(solved) << solved.error().detail;
-    ASSERT_EQ(solved->plan.tasks[0].lights.size(), 2);
-    EXPECT_EQ(solved->rig.fixtures.size(), session.rig.fixtures.size() + 2);
-    Eigen::VectorXd level = Eigen::VectorXd::Zero(5);
-    for (std::size_t l = 0; l < 2; ++l) {
-      const PlannedLight& light = solved->plan.tasks[0].lights[l];
-      EXPECT_GE(light.position_world_m.z(), ceiling_m - 0.3 - 1e-6);
-      EXPECT_LE(light.position_world_m.z(), ceiling_m - 0.1 + 1e-6);
-      level[static_cast<Eigen::Index>(3 + l)] = light.level;
-    }
-    const Eigen::VectorXd lux = solved->transport.lux(level);
-    for (std::size_t i = 0; i < 2; ++i) {
-      EXPECT_DOUBLE_EQ(solved->plan.points[i].lux, lux[static_cast<Eigen::Index>(i)]);
-      EXPECT_GT(lux[static_cast<Eigen::Index>(i)], 30) << "two bulbs of 800 lm in a small room";
-    }
-    if (first.empty()) first = text_of(solved->plan);
-    EXPECT_EQ(text_of(solved->plan), first) << threads;
-  }
 }
 
 TEST(SolveTasks, ASearchEndedByAPersonGivesItsBestSoFar) {

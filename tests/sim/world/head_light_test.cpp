@@ -4,75 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 #include "core/tasks/rig_transport.h"
 #include "core/transport/evaluator.h"
-#include "tools/bench/rooms/enclosures.h"
+#include "tests/sim/world/head_light_fixture.h"
 
 namespace luxrig::sim {
 namespace {
 
-const JointRange kRange;  // ±270°, ±135°
-constexpr double kRoll_rad = 0.3;
-constexpr std::size_t kFixture = 5;  // any
-
-// A spot of 24° below the ceiling of a cube of 4 m edge of one reflectance; a dozen receivers on floor and walls.
-struct Room {
-  explicit Room(double reflectance) : rays(make_cube(4, reflectance)) {
-    pose = {(Eigen::AngleAxisd(0.4, Vec3::UnitZ()) * Eigen::AngleAxisd(0.2, Vec3::UnitX())).toRotationMatrix(),
-            {0.3, -0.2, 1.7}};
-    for (const double x_m : {-1.2, 0.1, 1.3}) {
-      for (const double y_m : {-1.1, 0.9}) receivers.push_back({{x_m, y_m, -2}, Vec3::UnitZ()});
-      receivers.push_back({{x_m, 2, -0.5}, -Vec3::UnitY()});
-      receivers.push_back({{2, x_m, 0.3}, -Vec3::UnitX()});
-    }
-  }
-
-  [[nodiscard]] TransportMatrix evaluate(const std::vector<Joints>& aims, std::uint64_t max_rays) const {
-    std::vector<Emitter> emitters;
-    for (const Joints& joints : aims) emitters.push_back({spot, world_from_lamp(pose, joints, kRoll_rad)});
-    EvaluateOptions options;
-    options.wanted_relative_error = 1e-4;  // max_rays says when to stop
-    options.max_rays = max_rays;
-    auto result = make_path_evaluator(rays)->evaluate(receivers, emitters, options);
-    EXPECT_TRUE(result) << (result ? "" : result.error().detail);
-    return result ? *result : TransportMatrix{};
-  }
-
-  [[nodiscard]] std::unique_ptr<const HeadLight> head_light(const std::vector<Joints>& aims,
-                                                            Eigen::MatrixXd indirect) const {
-    HeadSamples head;
-    head.fixture = kFixture;
-    head.world_from_mount = pose;
-    head.roll_rad = kRoll_rad;
-    head.luminaire.intensity = spot;
-    for (const Receiver& receiver : receivers) {
-      head.sees.push_back(!rays.occluded(receiver.position_world_m, receiver.normal_world, pose.translation_m));
-    }
-    for (const Joints& joints : aims) head.aims_mount.push_back(beam_mount(joints));
-    head.indirect_lux_per_level = std::move(indirect);
-    return make_head_light(receivers, {head});
-  }
-
-  [[nodiscard]] Eigen::VectorXd zeros() const {
-    return Eigen::VectorXd::Zero(static_cast<Eigen::Index>(receivers.size()));
-  }
-
-  RayScene rays;
-  Pose pose;
-  Intensity spot = make_spot(900, rad_from_deg(24), rad_from_deg(40));
-  std::vector<Receiver> receivers;
-};
-
-std::vector<Joints> random_aims(int count, unsigned seed) {
-  std::mt19937_64 random(seed);
-  std::uniform_real_distribution<double> pan_rad(kRange.pan_min_rad, kRange.pan_max_rad),
-      tilt_rad(kRange.tilt_min_rad, kRange.tilt_max_rad);
-  std::vector<Joints> aims;
-  for (int i = 0; i < count; ++i) aims.push_back({pan_rad(random), tilt_rad(random)});
-  return aims;
-}
+using namespace head_light_fixture;
 
 TEST(HeadLight, DirectPartIsThatOfTheDirectEvaluatorAtAnyAim) {
   const Room room(0.5);
@@ -212,30 +152,6 @@ TEST(HeadLight, AtAnAimOfItsSetTheIndirectPartIsThatAimsOwn) {
     dark->column(kFixture, joints, direct);
     EXPECT_GE((lux - direct).minCoeff(), 10 - 1e-9);
     EXPECT_LE((lux - direct).maxCoeff(), 10 + static_cast<double>(count - 1) + 1e-9);
-  }
-}
-
-// The figure that head_light.h states. Interpolation blurs the patch that the beam lights: the darker the walls, the
-// more of the indirect light is that patch's own.
-TEST(HeadLight, InBetweenTheIndirectPartIsAsFarOffAsTheHeaderStates) {
-  const std::vector<Joints> set = spread_aims(kRange, 32), aims = random_aims(48, 1);
-  for (const auto& [reflectance, stated] : {std::pair{0.3, 0.23}, {0.5, 0.17}}) {
-    const Room room(reflectance);
-    const TransportMatrix known = room.evaluate(set, 1'500'000), fresh = room.evaluate(aims, 1'500'000);
-    ASSERT_EQ(known.emitters(), static_cast<Eigen::Index>(set.size()));
-    ASSERT_EQ(fresh.emitters(), static_cast<Eigen::Index>(aims.size()));
-    const auto light = room.head_light(set, known.lux_per_level - known.direct_lux_per_level);
-    const double indirect_lx = (fresh.lux_per_level - fresh.direct_lux_per_level).mean();
-    Eigen::MatrixXd error_lx(fresh.receivers(), fresh.emitters());
-    Eigen::VectorXd lux = room.zeros();
-    for (Eigen::Index a = 0; a < fresh.emitters(); ++a) {
-      light->column(kFixture, aims[static_cast<std::size_t>(a)], lux);
-      error_lx.col(a) = lux - fresh.lux_per_level.col(a);
-    }
-    const double rms_lx = std::sqrt(error_lx.squaredNorm() / static_cast<double>(error_lx.size()));
-    // A quarter either way: room for other aims and for the noise of two evaluations.
-    EXPECT_NEAR(rms_lx / indirect_lx, stated, 0.25 * stated) << "reflectance " << reflectance;
-    EXPECT_LT(std::abs(error_lx.mean()) / indirect_lx, 0.05) << "reflectance " << reflectance;
   }
 }
 

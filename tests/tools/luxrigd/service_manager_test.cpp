@@ -39,7 +39,15 @@ class NotifySocket {
   int fd_ = -1;
 };
 
+/// What a service manager says to those whom it starts; the tests that follow are not started by one.
+struct Said {
+  ~Said() {
+    for (const char* name : {"NOTIFY_SOCKET", "WATCHDOG_USEC", "WATCHDOG_PID"}) ::unsetenv(name);
+  }
+};
+
 TEST(ServiceManager, IsToldThatWeAreReadyAndAliveTwiceInItsTime) {
+  const Said said;
   const NotifySocket systemd;
   ::setenv("NOTIFY_SOCKET", systemd.address().c_str(), 1);
   ::setenv("WATCHDOG_USEC", "1000000", 1);
@@ -59,6 +67,7 @@ TEST(ServiceManager, IsToldThatWeAreReadyAndAliveTwiceInItsTime) {
 }
 
 TEST(ServiceManager, IsLeftAloneWhereNobodyAsked) {
+  const Said said;
   ::unsetenv("NOTIFY_SOCKET");
   ServiceManager none;
   none.ready();

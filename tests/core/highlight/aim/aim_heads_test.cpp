@@ -9,59 +9,14 @@
 #include "core/highlight/aim/head_sight.h"
 #include "core/highlight/surface/relief_study.h"
 #include "core/transport/evaluator.h"
+#include "tests/core/highlight/aim/aim_heads_fixture.h"
 #include "tests/core/highlight/shapes.h"
 #include "tests/random.h"
-#include "tools/bench/rooms/relief_targets.h"
 
 namespace luxrig {
 namespace {
 
-/// The carved relief, coarsely, and heads on a rail 2 m before it.
-struct AimedRelief {
-  Scene scene = make_carved_relief(0.02);
-  RayScene room{scene};
-  ReliefStudy study;
-  ContrastSamples samples;
-
-  AimedRelief() : study(of(scene)), samples(one_ring_samples(study.surface, study.interest)) {}
-  static ReliefStudy of(const Scene& scene) {
-    ReliefStudyOptions options;
-    options.interest.most_points = 600;
-    auto study = study_relief(scene, options);
-    EXPECT_TRUE(study);
-    return std::move(*study);
-  }
-  Result<HeadAims> aims(std::vector<HangingHead> heads, AimWishes wishes = {}, AimOptions options = {}) const {
-    return HeadAims::make(samples, study.features, room, std::move(heads), std::move(wishes), options);
-  }
-};
-
-const AimedRelief& aimed_relief() {
-  static const AimedRelief relief;
-  return relief;
-}
-
-HangingHead head_at(const Vec3& place_m, double exponent = 60) {
-  HangingHead head;
-  head.world_from_mount.translation_m = place_m;
-  head.zoom = {{make_cosine_power(2000, exponent)}};
-  head.watts = 50;
-  return head;
-}
-
-std::vector<HangingHead> rail_of_heads(int count) {
-  std::vector<HangingHead> heads;
-  for (int i = 0; i < count; ++i)
-    heads.push_back(head_at({-1.8 + 3.6 * i / std::max(1, count - 1), -0.6 - 0.25 * (i % 3), 1.5}));
-  return heads;
-}
-
-HeadSetting looking(const HangingHead& head, const Vec3& aim_m, double level, std::size_t zoom = 0) {
-  const auto joints =
-      pan_tilt_towards(head.world_from_mount, aim_m - head.world_from_mount.translation_m, head.range, head.present);
-  EXPECT_TRUE(joints);
-  return {*joints, zoom, level};
-}
+using namespace aim_heads_fixture;
 
 TEST(HeadSight, AgreesWithTheDirectEvaluator) {
   const AimedRelief& relief = aimed_relief();
@@ -119,28 +74,6 @@ TEST(HeadAims, ScoreIsTheLocalContrastByBruteForce) {
   EXPECT_LE(score.coverage, 1);
 }
 
-TEST(HeadAims, OneHeadIsAsGoodAsAFineGridOfAimsAndLevels) {
-  const AimedRelief& relief = aimed_relief();
-  const std::vector<HangingHead> heads = {head_at({-1.2, -0.5, 0.8}, 200)};
-  AimWishes wishes;
-  wishes.travel_weight = 0;
-  AimOptions options;
-  options.search_points = 0;
-  const auto aims = relief.aims(heads, wishes, options);
-  ASSERT_TRUE(aims);
-  const auto found = aims->solve();
-  ASSERT_TRUE(found) << found.error().detail;
-  double best = 0;
-  for (double x = -0.7; x <= 0.7; x += 0.05)
-    for (double z = -0.5; z <= 0.5; z += 0.05)
-      for (const double level : {0.3, 0.6, 1.0}) {
-        const HeadSetting setting = looking(heads[0], {x, 0, z}, level);
-        best = std::max(best, aims->score(std::span(&setting, 1)).objective);
-      }
-  EXPECT_GE(found->score.objective, 0.99 * best);
-  EXPECT_GT(found->heads[0].setting.level, 0.99);  // nothing limits it
-}
-
 TEST(HeadAims, LightsNothingThatItMayNot) {
   const AimedRelief& relief = aimed_relief();
   std::vector<HangingHead> heads = rail_of_heads(3);
@@ -163,23 +96,6 @@ TEST(HeadAims, LightsNothingThatItMayNot) {
   EXPECT_LE(kept->score.objective, free->score.objective + 1e-9);
   for (HangingHead& head : heads) head.may_light = [](const Joints&) { return false; };
   EXPECT_FALSE(relief.aims(heads)->solve());
-}
-
-TEST(HeadAims, EightHeadsBeatTwoHundredRandomLooks) {
-  const AimedRelief& relief = aimed_relief();
-  const std::vector<HangingHead> heads = rail_of_heads(8);
-  const auto aims = relief.aims(heads);
-  ASSERT_TRUE(aims);
-  const auto found = aims->solve();
-  ASSERT_TRUE(found);
-  Random random(5);
-  for (int i = 0; i < 200; ++i) {
-    std::vector<HeadSetting> settings;
-    for (const HangingHead& head : heads)
-      settings.push_back(
-          looking(head, {random.between(-0.6, 0.6), 0, random.between(-0.4, 0.4)}, random.between(0, 1)));
-    EXPECT_GE(found->score.objective, aims->score(settings).objective);
-  }
 }
 
 TEST(HeadAims, KeepsEveryLimitOnAllSamples) {
@@ -290,26 +206,6 @@ TEST(HeadAims, ZoomsAndHeadsThatDoNotMove) {
   const auto without = relief.aims(narrow)->solve();
   ASSERT_TRUE(without);
   EXPECT_GE(found->score.objective, 0.98 * without->score.objective);
-}
-
-TEST(HeadAims, GivesTheSameBytesForAnyNumberOfThreads) {
-  const AimedRelief& relief = aimed_relief();
-  std::vector<AimResult> results;
-  for (const int threads : {1, 2, 8}) {
-    AimOptions options;
-    options.threads = threads;
-    options.search_points = 150;
-    const auto aims = relief.aims(rail_of_heads(3), {}, options);
-    ASSERT_TRUE(aims);
-    results.push_back(*aims->solve());
-  }
-  for (const AimResult& other : results) {
-    EXPECT_EQ(other.score.objective, results[0].score.objective);
-    for (std::size_t k = 0; k < 3; ++k) {
-      EXPECT_EQ(other.heads[k].setting.level, results[0].heads[k].setting.level);
-      EXPECT_EQ(other.heads[k].setting.joints.pan_rad, results[0].heads[k].setting.joints.pan_rad);
-    }
-  }
 }
 
 TEST(HeadAims, RefusesWhatCannotBe) {

@@ -8,12 +8,14 @@
 #include "core/highlight/lights/mounted_lights.h"
 #include "core/highlight/shadow/relief_contrast.h"
 #include "core/highlight/surface/relief_study.h"
-#include "core/photometry/beam.h"
+#include "tests/core/highlight/lights/judged_lights_fixture.h"
 #include "tests/core/highlight/shapes.h"
 #include "tools/bench/rooms/relief_targets.h"
 
 namespace luxrig {
 namespace {
+
+using namespace judged_lights_fixture;
 
 /// Samples in a row, each an interest point compared with its two neighbours; features of five in a row; lights drawn,
 /// each on a stretch of them.
@@ -174,25 +176,6 @@ TEST(JudgedSelection, LightThatStaysCountsAndDarkCandidatesAreNotTaken) {
   EXPECT_FALSE(empty.add());
 }
 
-ReliefStudy studied_for_lights(const Scene& scene) {
-  ReliefStudyOptions options;
-  options.interest.most_points = 200;
-  auto study = study_relief(scene, options);
-  EXPECT_TRUE(study);
-  return std::move(*study);
-}
-
-std::vector<Vec3> places_around(const ReliefStudy& study, int cell_side) {
-  NestedBoxOptions boxes;
-  boxes.boxes = 2;
-  boxes.cell_side = cell_side;
-  const auto domain = nested_box_domain(study.surface, boxes);
-  EXPECT_TRUE(domain);
-  std::vector<Vec3> places;
-  for (const auto& centre : domain->cell_centres()) places.push_back(centre.position_world_m);
-  return places;
-}
-
 TEST(JudgedLights, AreAsRaysHaveThemAndNoPlaceIsBetter) {
   const ReliefStudy study = studied_for_lights(make_carved_relief(0.02));
   const std::vector<Vec3> places = places_around(study, 3);
@@ -220,80 +203,6 @@ TEST(JudgedLights, AreAsRaysHaveThemAndNoPlaceIsBetter) {
     for (std::size_t i = 0; i < study.points.size(); i += 20)
       best_lx = std::max(best_lx, by_rays({{place, (study.points[i].position_world_m - place).normalized()}}));
   EXPECT_GT(judged->lights(1)->score.local_contrast_lx, 0.95 * best_lx);
-}
-
-TEST(JudgedLights, AreNeverBehindThoseThatVotesTake) {
-  for (const Scene& scene : {make_carved_relief(0.02), make_terrain(100, 50)}) {
-    const ReliefStudy study = studied_for_lights(scene);
-    const Intensity spot = make_spot(1000, rad_from_deg(20), rad_from_deg(40));
-    NestedBoxOptions boxes;
-    boxes.margin_m = boxes.step_m = study.surface.diagonal_m() / 2;
-    boxes.cell_side = 4;
-    const auto domain = nested_box_domain(study.surface, boxes);
-    ASSERT_TRUE(domain);
-    const auto edges = find_shadow_edges(study.rays, study.points, {});
-    ASSERT_TRUE(edges);
-    const auto votes = vote_on_domain(*domain, *edges, study.points, study.features.cluster_of_point, {});
-    ASSERT_TRUE(votes);
-    PotentialLightOptions of_lights;
-    of_lights.beam_angle_rad = cone_of_flux_rad(*spot, 0.9);
-    const auto voted = potential_lights(*votes, of_lights);
-    ASSERT_TRUE(voted);
-    std::vector<Vec3> places;
-    for (const auto& centre : domain->cell_centres()) places.push_back(centre.position_world_m);
-    const auto judged =
-        JudgedLights::make(study.surface, study.rays, study.interest, study.features, places, *voted, spot, {});
-    ASSERT_TRUE(judged);
-
-    for (const int lights : {2, 3, 4}) {
-      LightSelection by_votes(*voted);
-      JudgedSelection same = judged->selection();
-      while (same.taken().size() < static_cast<std::size_t>(lights)) {
-        const auto next = by_votes.add();
-        if (!next) break;
-        const PotentialLight& light = voted->lights[*next];
-        const auto candidates = judged->candidates();
-        const auto found = std::ranges::find_if(candidates, [&](const JudgedLight& one) {
-          return one.position_world_m == light.position_world_m && one.direction == light.direction;
-        });
-        ASSERT_NE(found, candidates.end());
-        const auto candidate = static_cast<std::uint32_t>(found - candidates.begin());
-        if (same.stands_apart(candidate)) same.add(candidate);
-      }
-      ASSERT_GT(same.taken().size(), 1u);
-      EXPECT_GE(judged->lights(lights)->score.judged, same.score().judged);
-      EXPECT_GE(judged->count_lights(lights)->by_number.back().score.judged, same.score().judged);
-    }
-  }
-}
-
-TEST(JudgedLights, AreTheSameForAnyNumberOfThreads) {
-  const ReliefStudy study = studied_for_lights(make_terrain(100, 50));
-  const std::vector<Vec3> places = places_around(study, 5);
-  std::vector<JudgedLightCount> counts;
-  for (const int threads : {1, 8}) {
-    JudgedLightOptions options;
-    options.threads = threads;
-    options.first_points = 60;
-    const auto judged = JudgedLights::make(study.surface, study.rays, study.interest, study.features, places, {},
-                                           make_spot(1000, rad_from_deg(20), rad_from_deg(40)), options);
-    ASSERT_TRUE(judged);
-    const auto count = judged->count_lights(4);
-    ASSERT_TRUE(count);
-    counts.push_back(*count);
-  }
-  ASSERT_EQ(counts[0].by_number.size(), 4u);
-  ASSERT_EQ(counts[1].by_number.size(), 4u);
-  EXPECT_EQ(counts[0].best, counts[1].best);
-  for (std::size_t n = 0; n < 4; ++n) {
-    EXPECT_EQ(counts[0].by_number[n].score.judged, counts[1].by_number[n].score.judged);
-    EXPECT_LE(0.98 * counts[0].by_number[n].score.exposed_contrast,
-              counts[0].by_number[counts[0].best].score.exposed_contrast);
-    for (std::size_t i = 0; i <= n; ++i) {
-      EXPECT_EQ(counts[0].by_number[n].lights[i].direction, counts[1].by_number[n].lights[i].direction);
-      EXPECT_EQ(counts[0].by_number[n].lights[i].lux, counts[1].by_number[n].lights[i].lux);
-    }
-  }
 }
 
 TEST(JudgedLights, RefuseWhatCannotBeLit) {

@@ -5,32 +5,17 @@
 #include <cmath>
 
 #include "core/highlight/picture/object_view.h"
+#include "tests/core/highlight/picture/surface_picture_fixture.h"
 #include "tests/core/highlight/shapes.h"
 
 namespace luxrig {
 namespace {
 
-const Vec3f kWhitePaper = Vec3f::Ones(), kGreyPlate = Vec3f::Constant(0.5f), kRedDisc(1, 0, 0);
+using namespace surface_picture_fixture;
 
 /// A plate in the plane y = 0, looked at from y = -2 along +Y: x to the right, z up, 100 px a metre in the plane.
 Scene plate_across_y(double left_m, double right_m) {
   return parametric(1, 1, [=](double u, double v) { return Vec3(left_m + u * (right_m - left_m), 0, 2 * v - 1); });
-}
-
-Camera before_the_plate() {
-  Camera camera;
-  camera.eye_world_m = Vec3(0, -2, 0);
-  camera.target_world_m = Vec3::Zero();
-  camera.width_px = 200;
-  camera.height_px = 160;
-  camera.vertical_fov_rad = 2 * std::atan(0.8 / 2);
-  return camera;
-}
-
-SurfacePicture picture_of(const Scene& scene, int samples_per_edge, double near_m = 0, int threads = 1) {
-  SurfacePicture picture(before_the_plate(), samples_per_edge, near_m, kWhitePaper);
-  EXPECT_TRUE(picture.draw(RayScene(scene), [](const Hit&, const Vec3&) { return kGreyPlate; }, threads, {}));
-  return picture;
 }
 
 const Vec3f& pixel(const ColourPicture& picture, double x_m, double z_m) {
@@ -55,12 +40,6 @@ TEST(SurfacePicture, AnEdgeIsAsGreyAsItCoversThePixel) {
     EXPECT_FLOAT_EQ(picture.rgb[static_cast<std::size_t>(200 * y + 69)].x(), 0.75f) << y;
     EXPECT_FLOAT_EQ(picture.rgb[static_cast<std::size_t>(200 * y + 70)].x(), 0.5f);
   }
-}
-
-TEST(SurfacePicture, TheSameForAnyNumberOfThreads) {
-  const auto one = picture_of(uv_sphere(0.6, 40), 2, 0, 1).resolved(),
-             three = picture_of(uv_sphere(0.6, 40), 2, 0, 3).resolved();
-  EXPECT_EQ(one.rgb, three.rgb);
 }
 
 TEST(SurfacePicture, WhatIsNearerThanTheCutIsLeftAway) {

@@ -7,37 +7,14 @@
 #include <limits>
 
 #include "core/highlight/shadow/direction_bins.h"
-#include "core/highlight/surface/interest_points.h"
+#include "tests/core/highlight/shadow/shadow_edges_fixture.h"
 #include "tests/core/highlight/shapes.h"
 #include "tools/bench/rooms/relief_targets.h"
 
 namespace luxrig {
 namespace {
 
-struct Bench {
-  TargetSurface surface;
-  std::vector<OrientedPoint> points;
-};
-
-Bench with_interest_points(const Scene& scene, std::size_t most) {
-  const auto surface = make_target_surface(scene);
-  const auto curvature = curvature_of(*surface, {{}, suggested_curvature_radius_m(*surface)});
-  InterestOptions options;
-  options.most_points = most;
-  const auto interest = interest_points(*surface, *curvature, options);
-  Bench bench{*surface, {}};
-  for (const std::uint32_t i : *interest) bench.points.push_back({surface->point_world_m(i), surface->normals[i]});
-  return bench;
-}
-
-ShadowEdges edges_with(const TargetRays& target, const std::vector<OrientedPoint>& points, int step, int threads = 0) {
-  ShadowEdgeOptions options;
-  options.step = step;
-  options.threads = threads;
-  const auto edges = find_shadow_edges(target, points, options);
-  EXPECT_TRUE(edges);
-  return *edges;
-}
+using namespace shadow_edges_fixture;
 
 /// A wall of height 1 round the origin, at distance 1: its horizon is at 45° all round.
 Scene ring_wall() {
@@ -133,20 +110,6 @@ TEST(ShadowEdges, OnePinholeThatIsMetTellsOfOthers) {
   EXPECT_GT(every.edges.size(), 500u);
   EXPECT_EQ(found.edges, every.edges);
   EXPECT_GT(found.rays, every.rays);  // what that costs
-}
-
-TEST(ShadowEdges, AreTheSameForAnyNumberOfThreads) {
-  const Scene scene = make_carved_relief(0.02);
-  const Bench bench = with_interest_points(scene, 50);
-  ASSERT_GT(bench.points.size(), 20u);
-  const TargetRays target(scene);
-  const ShadowEdges one = edges_with(target, bench.points, 4, 1);
-  for (const int threads : {2, 5}) {
-    const ShadowEdges many = edges_with(target, bench.points, 4, threads);
-    EXPECT_EQ(one.edges, many.edges);
-    EXPECT_EQ(one.begin, many.begin);
-    EXPECT_EQ(one.rays, many.rays);
-  }
 }
 
 TEST(ShadowEdges, AreTheSameAtAnySizeAndPlace) {

@@ -2,64 +2,15 @@
 
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <limits>
 
 #include "tests/core/highlight/shapes.h"
+#include "tests/core/highlight/surface/curvature_fixture.h"
 
 namespace luxrig {
 namespace {
 
-struct Measured {
-  TargetSurface surface;
-  std::vector<Curvature> curvature;
-};
-
-Measured measured(const Scene& scene, double radius_m, int threads = 0) {
-  auto surface = make_target_surface(scene);
-  EXPECT_TRUE(surface);
-  auto curvature = curvature_of(*surface, {{.threads = threads, .watch = {}}, radius_m});
-  EXPECT_TRUE(curvature);
-  return {*surface, *curvature};
-}
-
-/// Root mean square and largest error of mean and principal curvatures over points that `counts` picks.
-struct Errors {
-  double mean_rms = 0, mean_worst = 0, principal_rms = 0, direction_worst_rad = 0;
-  std::size_t points = 0, unknown = 0;
-};
-struct Truth {
-  double larger, smaller;
-  Vec3 larger_direction = Vec3::Zero();  // zero: none
-};
-Errors errors_against(const Measured& m, const std::function<std::optional<Truth>(const Vec3&)>& truth_at) {
-  Errors errors;
-  for (std::size_t i = 0; i < m.surface.points_m.size(); ++i) {
-    const auto truth = truth_at(m.surface.points_m[i]);
-    if (!truth) continue;
-    ++errors.points;
-    const Curvature& c = m.curvature[i];
-    if (!c.known()) {
-      ++errors.unknown;
-      continue;
-    }
-    const double off = c.mean_per_m() - (truth->larger + truth->smaller) / 2;
-    errors.mean_rms += off * off;
-    errors.mean_worst = std::max(errors.mean_worst, std::abs(off));
-    errors.principal_rms +=
-        (std::pow(c.larger_per_m - truth->larger, 2) + std::pow(c.smaller_per_m - truth->smaller, 2)) / 2;
-    if (!truth->larger_direction.isZero(0))
-      errors.direction_worst_rad =
-          std::max(errors.direction_worst_rad,
-                   std::acos(std::min(1.0, std::abs(c.larger_direction.dot(truth->larger_direction)))));
-  }
-  const auto known = static_cast<double>(errors.points - errors.unknown);
-  errors.mean_rms = std::sqrt(errors.mean_rms / known);
-  errors.principal_rms = std::sqrt(errors.principal_rms / known);
-  return errors;
-}
-
-constexpr auto kEverywhereOne = [](const Vec3&) { return std::optional(Truth{1.0, 1.0}); };
+using namespace curvature_fixture;
 
 TEST(Curvature, OfASphereIsOneOverItsRadiusAtAnyResolutionAndScale) {
   for (const int rings : {40, 90}) {
@@ -183,14 +134,6 @@ TEST(Curvature, TurnsAndScalesWithTheMesh) {
   }
 }
 
-TEST(Curvature, OfAFineMeshIsThatOfItsMergedSamples) {
-  // 0.3 m on a sphere of 200 rings: 300 vertices at the equator, more at the poles.
-  const Errors e = errors_against(measured(uv_sphere(1, 200), 0.3), kEverywhereOne);
-  EXPECT_EQ(e.unknown, 0u);
-  EXPECT_NEAR(e.mean_rms, 0.17 * 0.09, 0.01);
-  EXPECT_LT(e.mean_worst, 0.05);
-}
-
 TEST(Curvature, DoesNotDependOnTheOrderOfTheFile) {
   const Scene scene = noisy(torus(1, 0.4, 100, 40), 0.002, 1);
   const Measured one = measured(scene, 0.15), two = measured(shuffled(scene, 9), 0.15);
@@ -203,16 +146,6 @@ TEST(Curvature, DoesNotDependOnTheOrderOfTheFile) {
   for (std::size_t i = 0; i < two.curvature.size(); ++i) {
     const Vec3& p = two.surface.points_m[i];
     EXPECT_NEAR(two.curvature[i].mean_per_m(), mean.at({p.x(), p.y(), p.z()}), 1e-6);
-  }
-}
-
-TEST(Curvature, IsTheSameBytesForAnyNumberOfThreads) {
-  const Scene scene = noisy(torus(1, 0.4, 120, 50), 0.003, 2);
-  const Measured one = measured(scene, 0.15, 1);
-  for (const int threads : {2, 3, 8}) {
-    const Measured many = measured(scene, 0.15, threads);
-    for (std::size_t i = 0; i < one.curvature.size(); ++i)
-      ASSERT_EQ(std::memcmp(&one.curvature[i].larger_per_m, &many.curvature[i].larger_per_m, sizeof(double)), 0);
   }
 }
 

@@ -5,30 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "tests/core/highlight/shapes.h"
-#include "tools/bench/rooms/relief_targets.h"
+#include "tests/core/highlight/surface/even_surface_fixture.h"
 
 namespace luxrig {
 namespace {
 
-TargetSurface mesh_of(const Scene& scene) {
-  auto mesh = make_target_surface(scene);
-  EXPECT_TRUE(mesh);
-  return std::move(*mesh);
-}
-
-EvenSurface even_of(const TargetSurface& mesh, double scale_m, int threads = 0) {
-  auto even = even_surface(mesh, {{.threads = threads, .watch = {}}, scale_m});
-  EXPECT_TRUE(even);
-  return std::move(*even);
-}
-
-Scene turned(Scene scene, const Mat3& rotation) {
-  for (Vec3f& v : scene.vertices_m) v = (rotation * v.cast<double>()).cast<float>();
-  return scene;
-}
+using namespace even_surface_fixture;
 
 TEST(SizeOfASurface, IsTheDiagonalOfARectangleHoweverItIsMeshedAndTurned) {
   const Mat3 rotation = Eigen::AngleAxisd(1.1, Vec3(0.3, -0.5, 0.8).normalized()).toRotationMatrix();
@@ -111,32 +95,6 @@ TEST(EvenSurface, KeepsTheSidesOfASheetApart) {
   }
   EXPECT_NEAR(front_m2, 1, 1e-3);
   EXPECT_NEAR(back_m2, 1, 1e-3);
-}
-
-TEST(EvenSurface, TurnsWithItsObjectButForThePlacesTaken) {
-  const Mat3 rotation = Eigen::AngleAxisd(0.7, Vec3(0.3, -0.5, 0.8).normalized()).toRotationMatrix();
-  const Scene relief = make_carved_relief(0.01);
-  const TargetSurface mesh = mesh_of(relief), mesh_turned = mesh_of(turned(relief, rotation));
-  EXPECT_NEAR(mesh.size_m(), mesh_turned.size_m(), 1e-5);
-  const EvenSurface a = even_of(mesh, 0.05), b = even_of(mesh_turned, 0.05);
-  const auto points = static_cast<double>(a.surface.points_m.size());
-  EXPECT_NEAR(static_cast<double>(b.surface.points_m.size()), points, 0.06 * points);
-  // The share of it that is recessed, and how much.
-  const auto recess = [](const EvenSurface& even) {
-    double sum = 0;
-    for (std::size_t i = 0; i < even.curvature.size(); ++i)
-      sum += even.surface.areas_m2[i] * std::max(0.0, -even.curvature[i].mean_per_m());
-    return sum / even.surface.area_m2();
-  };
-  EXPECT_NEAR(recess(b), recess(a), 0.02 * recess(a));
-}
-
-TEST(EvenSurface, IsTheSameForAnyNumberOfThreads) {
-  const TargetSurface mesh = mesh_of(make_terrain(100, 60));
-  const EvenSurface one = even_of(mesh, 4, 1), three = even_of(mesh, 4, 3);
-  EXPECT_EQ(one.surface.points_m, three.surface.points_m);
-  EXPECT_EQ(one.surface.rings_, three.surface.rings_);
-  EXPECT_EQ(one.surface.ring_begin_, three.surface.ring_begin_);
 }
 
 TEST(EvenSurface, TakesAnyMeshAndRefusesScalesThatAreNone) {

@@ -2,16 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/core/solve/placement/choose_lights_fixture.h"
 #include "tests/core/solve/placement/lit_hall.h"
 
 namespace luxrig {
 namespace {
 
-ChooseOptions choose_most(std::size_t lights) {
-  ChooseOptions options;
-  options.most_lights = lights;
-  return options;
-}
+using namespace choose_lights_fixture;
 
 TEST(ChooseLights, FindsHowManyKnownLightsThereAre) {
   const LitHall hall(make_box_room(3), 0.25);
@@ -25,53 +22,6 @@ TEST(ChooseLights, FindsHowManyKnownLightsThereAre) {
     EXPECT_LE(curve.cuts[curve.chosen].error(), 1e-4);
     EXPECT_EQ(curve.cuts[curve.chosen].size(), count);
   }
-}
-
-TEST(ChooseLights, GivesACurveThatFallsAndLightsForEveryPointOfIt) {
-  const LitHall hall(make_box_room(1), 0.3);
-  LightingGoal goal;
-  goal.lux = Eigen::VectorXd::Constant(hall.light->points(), 200);
-  const ComplementSearch candidates(hall.view(), hall.poses, goal);
-  const LightCurve curve = choose_lights(*hall.light, goal, candidates, choose_most(10));
-  ASSERT_GE(curve.cuts.size(), 3u);
-  EXPECT_EQ(curve.cuts[0].size(), 0u);
-  EXPECT_EQ(curve.cuts[0].error(), 1);
-  for (std::size_t k = 1; k < curve.cuts.size(); ++k) {
-    EXPECT_LE(curve.cuts[k].size(), k);
-    EXPECT_LE(curve.cuts[k].error(), curve.cuts[k - 1].error());
-    const PlacedLights& cut = curve.cuts[k];
-    EXPECT_NEAR((cut.columns() * cut.levels() - goal.lux).norm() / goal.lux.norm(), cut.error(), 1e-12);
-  }
-  // Two more would not have lowered the error by a tenth each.
-  const std::size_t k = curve.chosen;
-  ASSERT_LT(k, curve.cuts.size());
-  if (k + 2 < curve.cuts.size()) {
-    EXPECT_GT(curve.cuts[k + 2].error(), 0.81 * curve.cuts[k].error());
-  }
-}
-
-TEST(ChooseLights, GivesTheSameForAnyNumberOfThreadsAndTheBestSoFarWhenStopped) {
-  const LitHall hall(make_box_room(2), 0.4);
-  LightingGoal goal;
-  goal.lux = Eigen::VectorXd::Constant(hall.light->points(), 200);
-  const ComplementSearch candidates(hall.view(), hall.poses, goal);
-  ChooseOptions options = choose_most(6);
-  options.most_columns = 3000;
-  options.exchange.threads = 1;
-  const LightCurve one = choose_lights(*hall.light, goal, candidates, options);
-  options.exchange.threads = 4;
-  const LightCurve four = choose_lights(*hall.light, goal, candidates, options);
-  ASSERT_EQ(one.cuts.size(), four.cuts.size());
-  for (std::size_t k = 0; k < one.cuts.size(); ++k) EXPECT_EQ(one.cuts[k].poses(), four.cuts[k].poses());
-
-  std::stop_source stop;
-  options.exchange.watch.stop = stop.get_token();
-  options.better = [&](const PlacedLights& best, std::size_t) {
-    if (best.size() == 2) stop.request_stop();
-  };
-  const LightCurve stopped = choose_lights(*hall.light, goal, candidates, options);
-  EXPECT_GE(stopped.cuts.size(), 3u);
-  EXPECT_LT(stopped.columns, one.columns);
 }
 
 TEST(ChooseLights, TakesAGoalOfZeroAndRoomsWithoutCandidates) {

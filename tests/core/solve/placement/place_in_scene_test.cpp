@@ -6,54 +6,12 @@
 #include <limits>
 
 #include "tests/core/solve/placement/mounted_room.h"
+#include "tests/core/solve/placement/place_in_scene_fixture.h"
 
 namespace luxrig {
 namespace {
 
-/// Points on the floor of the mounted room, and lux that lights off its ceiling give them, from the inverse square.
-struct LitFloor {
-  Scene scene = mounted_room();
-  RayScene rays{scene};
-  Mounting mounting = *Mounting::make(off_the_ceiling(), "rig.toml", scene, rays);
-  Emitter bulb{make_isotropic(1), {}};
-  std::vector<Receiver> receivers;
-
-  LitFloor() {
-    for (double y = 0.3; y < 3; y += 0.6)
-      for (double x = 0.25; x < 4; x += 0.5) receivers.push_back({Vec3(x, y, 0.01), Vec3::UnitZ()});
-  }
-  static MountingSpec off_the_ceiling() {
-    MountingSpec spec;
-    spec.surfaces = {{"ceiling", {}}};
-    spec.offset_min_m = 0.1;
-    spec.offset_max_m = 0.3;
-    spec.clearance_m = 0.2;
-    return spec;
-  }
-  [[nodiscard]] LightingGoal goal_of(const std::vector<LightInScene>& lights) const {
-    LightingGoal goal{Eigen::VectorXd::Zero(static_cast<Eigen::Index>(receivers.size()))};
-    for (std::size_t i = 0; i < receivers.size(); ++i)
-      for (const LightInScene& light : lights) {
-        const Vec3 to_m = light.position_world_m - receivers[i].position_world_m;
-        goal.lux[static_cast<Eigen::Index>(i)] +=
-            light.level / (4 * kPi) * to_m.z() / (to_m.squaredNorm() * to_m.norm());
-      }
-    return goal;
-  }
-  [[nodiscard]] Result<PlacedInScene> place(const LightingGoal& goal, const PlaceInSceneOptions& options) const {
-    return place_in_scene(scene, rays, mounting, bulb, receivers, goal, options);
-  }
-};
-
-PlaceInSceneOptions direct_light() {
-  PlaceInSceneOptions options;
-  options.max_level = 1e6;  // of one lumen each
-  options.indirect = false;
-  return options;
-}
-
-const std::vector<LightInScene> kThree = {
-    {{0.8, 0.7, 2.3}, {}, 900}, {{3.1, 2.2, 2.25}, {}, 600}, {{2.2, 1.1, 2.35}, {}, 300}};
+using namespace place_in_scene_fixture;
 
 double farthest_m(const std::vector<LightInScene>& known, const std::vector<LightInScene>& found) {
   double farthest = 0;
@@ -129,23 +87,6 @@ TEST(PlaceInScene, LightsThatLieOutsideAreSoughtAtTheEdge) {
   EXPECT_NEAR(at.z(), 2.2, 1e-6);
   EXPECT_NEAR(at.x(), 2, 0.02);
   EXPECT_NEAR(at.y(), 1.5, 0.02);
-}
-
-TEST(PlaceInScene, IsTheSameForAnyNumberOfThreads) {
-  const LitFloor room;
-  LightingGoal even = room.goal_of(kThree);
-  even.lux.setConstant(100);
-  std::vector<PlacedInScene> found;
-  for (const int threads : {1, 3}) {
-    PlaceInSceneOptions options = direct_light();
-    options.max_lights = 2;
-    options.threads = threads;
-    found.push_back(*room.place(even, options));
-  }
-  ASSERT_EQ(found[0].lights.size(), found[1].lights.size());
-  EXPECT_EQ(found[0].error, found[1].error);
-  for (std::size_t i = 0; i < found[0].lights.size(); ++i)
-    EXPECT_EQ(found[0].lights[i].position_world_m, found[1].lights[i].position_world_m);
 }
 
 TEST(PlaceInScene, StoppedItGivesTheBestSoFar) {

@@ -8,72 +8,12 @@
 #include "core/transport/sky/sky_opening_finder.h"
 #include "tests/core/transport/closed_forms.h"
 #include "tests/core/transport/sky/room_with_windows.h"
+#include "tests/core/transport/sky/sky_openings_fixture.h"
 
 namespace luxrig {
 namespace {
 
-Emitter lit_by(const Sky& sky) {
-  Emitter emitter;
-  emitter.sky = sky;
-  return emitter;
-}
-
-SkyOpenings found(const RoomWithWindows& room, std::uint64_t seed = 1, std::uint64_t* rays = nullptr, int threads = 1) {
-  const RayScene scene(room.scene());
-  const std::vector<Emitter> sky = {lit_by(make_overcast_sky(10'000))};
-  std::uint64_t cast = 0;
-  const SkyOpenings openings = find_sky_openings(scene, room.desks(), sky, seed, threads, {}, cast);
-  if (rays) *rays = cast;
-  return openings;
-}
-
-/// A rectangle of 2 m × 1 m that looks to -y, its lower edge at z = 1.
-SkyOpening window() {
-  SkyOpening opening;
-  opening.centre_world_m = {0.3, 0, 1.5};
-  opening.world_from_opening << 1, 0, 0, 0, 0, -1, 0, 1, 0;
-  opening.half_x_m = 1;
-  opening.half_y_m = 0.5;
-  opening.seen_from_world_m = {Vec3(-3, -3, -3), Vec3(3, 3, 3)};
-  return opening;
-}
-
-// ∫ cosθ dω over what the openings show, by their samples and by the form factor of a rectangle.
-TEST(SkyOpenings, SamplesAndTheirDensityMeasureTheFormFactor) {
-  SkyOpening other = window();
-  other.centre_world_m = {-1.7, 0.2, 1.9};
-  const SkyOpenings openings({window(), other}, 0);
-  std::mt19937_64 random(3);
-  std::uniform_real_distribution<double> unit(0, 1);
-  for (const Vec3& at_m : {Vec3(0, 2, 0.2), Vec3(-1, 0.7, 0.9), Vec3(1, 2.5, 1.0)}) {
-    const Vec3 normal = Vec3(0.1, -0.5, 1).normalized();
-    SkyOpenings::View view;
-    openings.view(at_m, normal, view);
-    ASSERT_TRUE(view.within);
-    double sum = 0, squares = 0;
-    constexpr int kSamples = 200'000;
-    for (int i = 0; i < kSamples; ++i) {
-      const DirectionSample drawn = openings.sample(view, at_m, unit(random), unit(random), unit(random));
-      ASSERT_NEAR(openings.density_per_sr(view, at_m, drawn.direction), drawn.density_per_sr,
-                  1e-6 * drawn.density_per_sr);
-      // Directions that pass both openings count once, but have the density of both.
-      const double value = std::max(0.0, normal.dot(drawn.direction)) / drawn.density_per_sr;
-      sum += value, squares += value * value;
-    }
-    const double mean = sum / kSamples, error = std::sqrt((squares / kSamples - mean * mean) / kSamples);
-    double expected = 0;  // midpoint rule over the directions of a fine grid
-    constexpr int kZ = 1200, kTurn = 2400;
-    for (int i = 0; i < kZ; ++i)
-      for (int j = 0; j < kTurn; ++j) {
-        const double height = (i + 0.5) / kZ, angle = 2 * kPi * (j + 0.5) / kTurn,
-                     level = std::sqrt(1 - height * height);
-        const Vec3 d(level * std::cos(angle), level * std::sin(angle), height);
-        const bool passes = d.y() < 0 && (window().passed_by(at_m, d) || other.passed_by(at_m, d));
-        if (passes) expected += std::max(0.0, normal.dot(d)) * 2 * kPi / kZ / kTurn;
-      }
-    EXPECT_NEAR(mean, expected, 4 * error + 1e-3 * expected);
-  }
-}
+using namespace sky_openings_fixture;
 
 TEST(SkyOpenings, LinesAndTheirDensityMeasureTheAreaThatFacesTheLight) {
   SkyOpening shifted = window();
@@ -155,21 +95,6 @@ TEST(SkyOpenings, NoneWhereThereIsNothingToGainAndNoRayWithoutASky) {
   EXPECT_TRUE(find_sky_openings(scene, {}, sky, 1, 1, {}, rays).empty());
   EXPECT_TRUE(find_sky_openings(RayScene{Scene{}}, room.desks(), sky, 1, 1, {}, rays).empty());
   EXPECT_EQ(rays, 0u);
-}
-
-TEST(SkyOpenings, AreTheSameForAnyNumberOfThreads) {
-  RoomWithWindows room;
-  room.near_window_m = {1, 3, 1, 2};
-  std::uint64_t rays_of_one = 0, rays_of_two = 0;
-  const SkyOpenings one = found(room, 5, &rays_of_one, 1), two = found(room, 5, &rays_of_two, 2);
-  ASSERT_EQ(one.openings().size(), two.openings().size());
-  EXPECT_EQ(rays_of_one, rays_of_two);
-  EXPECT_EQ(one.missed_share(), two.missed_share());
-  for (std::size_t i = 0; i < one.openings().size(); ++i) {
-    EXPECT_EQ(one.openings()[i].centre_world_m, two.openings()[i].centre_world_m);
-    EXPECT_EQ(one.openings()[i].half_x_m, two.openings()[i].half_x_m);
-    EXPECT_EQ(one.openings()[i].half_y_m, two.openings()[i].half_y_m);
-  }
 }
 
 TEST(SkyOpenings, ASunHasOneDirectionAndASkyHasNot) {

@@ -7,28 +7,12 @@
 #include "tests/core/transport/cube_radiosity.h"
 #include "tests/core/transport/lamp_pose.h"
 #include "tests/tools/bench/cache/cache_rooms.h"
-#include "tools/bench/rooms/lit_room.h"
+#include "tests/tools/bench/cache/radiance_cache_fixture.h"
 
 namespace luxrig {
 namespace {
 
-std::vector<Receiver> receivers_of(const std::vector<WallPoint>& points) {
-  std::vector<Receiver> receivers;
-  for (const WallPoint& p : points) receivers.push_back({p.position_m, p.normal});
-  return receivers;
-}
-
-/// Both ways to hold light, and the second with all that improves on the thesis.
-std::vector<CacheSettings> all_kinds() {
-  CacheSettings improved = quick_directions();
-  improved.first_visibility = improved.link_traversal = Traversal::rays;
-  improved.link_surface = LinkSurface::met;
-  improved.open_places = true;
-  improved.reconstruction = Reconstruction::gather;
-  improved.first_reflection = FirstReflection::exact;
-  improved.gather_rays = 64;
-  return {quick_sides(), quick_directions(), improved};
-}
+using namespace radiance_cache_fixture;
 
 TEST(RadianceCache, AClosedCubeGetsItsFluxOverOneMinusReflectance) {
   const auto receivers = receivers_of(cube_wall_grid(3, 6));
@@ -39,16 +23,6 @@ TEST(RadianceCache, AClosedCubeGetsItsFluxOverOneMinusReflectance) {
     const double expected_lx = mean_wall_illuminance_lx(1000, area_m2(cube), reflectance);
     EXPECT_NEAR(matrix.lux_per_level.mean(), expected_lx, 0.02 * expected_lx) << "reflectance " << reflectance;
   }
-}
-
-TEST(RadianceCache, AnIntegratingSphereReflectsTheSameLightEverywhere) {
-  const Scene sphere = make_icosphere(2, 3, 0.7);
-  const auto matrix = cached(sphere, receivers_of(spread_over_walls(sphere, 40, Vec3::Zero())),
-                             {bulb_at({0.3, -0.2, 0.4})}, quick_sides());
-  const double expected_lx = reflected_wall_illuminance_lx(1000, area_m2(sphere), 0.7);
-  for (Eigen::Index r = 0; r < matrix.receivers(); ++r)
-    EXPECT_NEAR(matrix.lux_per_level(r, 0) - matrix.direct_lux_per_level(r, 0), expected_lx,
-                0.03 * matrix.lux_per_level(r, 0));
 }
 
 TEST(RadianceCache, AgreesWithRadiosityAtPointsOfACubeWithinThreePercentAndWithinItsError) {
@@ -162,25 +136,6 @@ TEST(RadianceCache, ColumnsAreThoseOfTheEmittersAloneInAnyOrder) {
   }
 }
 
-TEST(RadianceCache, SameBitsForAnyNumberOfThreads) {
-  const auto receivers = receivers_of(cube_wall_grid(2, 4));
-  Scene scene = make_cube(2, 0.6);
-  scene.materials[0].reflectance_rgb = {0.7, 0.5, 0.2};
-  for (const CacheSettings& settings : all_kinds()) {
-    EvaluateOptions options;
-    options.colour = true;
-    options.threads = 1;
-    const auto one = cached(scene, receivers, {bulb_at({0.1, 0.2, 0.3})}, settings, options, 1);
-    for (const int threads : {2, 8}) {
-      options.threads = threads;
-      const auto many = cached(scene, receivers, {bulb_at({0.1, 0.2, 0.3})}, settings, options, threads);
-      EXPECT_EQ(one.lux_per_level, many.lux_per_level);
-      EXPECT_EQ(one.rgb_per_level, many.rgb_per_level);
-      EXPECT_EQ(one.replicates, many.replicates);
-    }
-  }
-}
-
 TEST(RadianceCache, CellsThatNobodyNeedsCanBeLeftOutWithoutAChange) {
   // The outer faces of the cube, and a second room behind a wall, are near surfaces but of no use.
   const Scene scene = two_rooms(0.6);
@@ -203,25 +158,6 @@ TEST(RadianceCache, CellsThatNobodyNeedsCanBeLeftOutWithoutAChange) {
     const auto a = few->evaluate(emitters, {}), b = all->evaluate(emitters, {});
     EXPECT_LT((a->lux_per_level - b->lux_per_level).cwiseAbs().maxCoeff(), 5e-4 * a->lux_per_level.maxCoeff());
   }
-}
-
-TEST(RadianceCache, InAFurnishedRoomSuchCellsMoveNothingBeyondItsError) {
-  const LitRoom room = make_box_room();
-  const RayScene rays(room.scene);
-  CacheSettings settings;
-  settings.voxels = 64;
-  settings.gather_rays = settings.light_samples = 512;
-  const auto few = RadianceCache::build(room.scene, rays, room.receivers, settings, {});
-  settings.only_needed = false;
-  const auto all = RadianceCache::build(room.scene, rays, room.receivers, settings, {});
-  ASSERT_TRUE(few && all);
-  EXPECT_LT(few->report().cells, all->report().cells * 2 / 3);
-  const auto a = few->evaluate(room.emitters, {}), b = all->evaluate(room.emitters, {});
-  ASSERT_TRUE(a && b);
-  const Eigen::VectorXd levels = Eigen::VectorXd::Ones(a->emitters());
-  const Eigen::ArrayXd moved = (a->lux(levels) - b->lux(levels)).array().abs(),
-                       error = a->standard_error_lux(levels).array();
-  EXPECT_TRUE((moved <= error).all()) << (moved / error).maxCoeff();
 }
 
 TEST(RadianceCache, MoreReflectionsAddLight) {

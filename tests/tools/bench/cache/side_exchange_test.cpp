@@ -3,30 +3,12 @@
 #include <gtest/gtest.h>
 
 #include "tests/tools/bench/cache/cache_rooms.h"
-#include "tools/bench/cache/volume/voxelise.h"
+#include "tests/tools/bench/cache/side_exchange_fixture.h"
 
 namespace luxrig {
 namespace {
 
-struct Exchange {
-  Scene scene;
-  RayScene rays;
-  SurfaceSides sides;
-  std::vector<bool> seen;
-
-  explicit Exchange(Scene of)
-      : scene(std::move(of)),
-        rays(scene),
-        sides(scene, rays, VoxelGrid::around(triangle_bounds_m(scene), 16), 4, 1),
-        seen(sides.groups(), false) {
-    for (const SurfacePiece& piece : sides.pieces())
-      if (piece.normal_world.cast<double>().dot(-piece.position_world_m) > 0)
-        seen[sides.group_of_side(piece.side)] = true;
-  }
-  SideExchange make(bool only_needed, int reflections, int threads = 2) const {
-    return {scene, rays, sides, seen, only_needed, reflections, 128, 1, 1, threads, {}};
-  }
-};
+using namespace side_exchange_fixture;
 
 TEST(SideExchange, InAClosedRoomOfEvenRadiosityEachReflectionKeepsItsShare) {
   for (const double reflectance : {0.3, 0.9}) {
@@ -69,15 +51,6 @@ TEST(SideExchange, WhatNobodySeesHasNoRowsAndNoRays) {
   for (std::size_t group = 0; group < room.sides.groups(); ++group)
     EXPECT_EQ(needed.row_of_group(group) != SurfaceSides::kNone, room.seen[group]) << group;
   EXPECT_EQ(room.make(true, 1).rays(), 0u) << "one reflection needs no exchange";
-}
-
-TEST(SideExchange, DoesNotDependOnTheNumberOfThreads) {
-  const Exchange room(make_icosphere(1, 2, 0.7));
-  const SideExchange one = room.make(true, 0, 1), many = room.make(true, 0, 4);
-  ASSERT_EQ(one.rows(), many.rows());
-  const auto n = static_cast<Eigen::Index>(one.rows());
-  const Eigen::VectorXd first = Eigen::VectorXd::LinSpaced(n, 0, 1);
-  EXPECT_EQ(one.later(first, 0), many.later(first, 0));
 }
 
 }  // namespace

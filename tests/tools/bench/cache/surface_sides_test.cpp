@@ -5,15 +5,14 @@
 #include <random>
 
 #include "tests/tools/bench/cache/cache_rooms.h"
+#include "tests/tools/bench/cache/surface_sides_fixture.h"
 #include "tools/bench/cache/volume/voxelise.h"
 #include "tools/bench/rooms/lit_room.h"
 
 namespace luxrig {
 namespace {
 
-SurfaceSides sides_of(const Scene& scene, const RayScene& rays, int cells, int group_cells = 4, int threads = 2) {
-  return {scene, rays, VoxelGrid::around(triangle_bounds_m(scene), cells), group_cells, threads};
-}
+using namespace surface_sides_fixture;
 
 TEST(SurfaceSides, AreasAddUpToThoseOfBothFacesOfEveryTriangle) {
   for (const Scene& scene : {make_cube(2, 0.5), make_icosphere(1.3, 3, 0.5), two_rooms(0.5), make_box_room().scene}) {
@@ -65,18 +64,6 @@ TEST(SurfaceSides, AFloorUnderAWallHasOneSideInEachRoomAndNoGroupReachesThrough)
       rooms_of_group[sides.group_of_side(piece.side)] |= left.contains(before) ? 1 : right.contains(before) ? 2 : 0;
     }
     for (const int rooms : rooms_of_group) EXPECT_NE(rooms, 3) << cells << " cells";
-  }
-}
-
-TEST(SurfaceSides, DoNotDependOnTheNumberOfThreads) {
-  const Scene scene = make_box_room().scene;
-  const RayScene rays(scene);
-  const SurfaceSides one = sides_of(scene, rays, 32, 4, 1), many = sides_of(scene, rays, 32, 4, 5);
-  ASSERT_EQ(one.pieces().size(), many.pieces().size());
-  ASSERT_EQ(one.groups(), many.groups());
-  for (std::size_t i = 0; i < one.pieces().size(); ++i) {
-    EXPECT_EQ(one.pieces()[i].side, many.pieces()[i].side);
-    EXPECT_EQ(one.pieces()[i].position_world_m, many.pieces()[i].position_world_m);
   }
 }
 

@@ -5,33 +5,13 @@
 #include <map>
 #include <random>
 
-#include "core/transport/candidates/air_regions.h"
+#include "tests/tools/bench/rooms/lit_room_fixture.h"
 
 namespace luxrig {
 namespace {
 
-struct Expected {
-  const char* name;
-  LitRoom (*make)(std::uint64_t);
-  std::size_t fewest_triangles, most_triangles, emitters, receivers;
-  bool closed;
-};
-constexpr Expected kRooms[] = {
-    {"box", [](std::uint64_t seed) { return make_box_room(seed); }, 100, 160, 2, 60, true},
-    {"flat", [](std::uint64_t seed) { return make_eight_room_flat(seed); }, 570, 640, 10, 300, true},
-    {"gallery", [](std::uint64_t seed) { return make_gallery_hall(seed); }, 37'000, 39'000, 12, 300, true},
-    {"atrium", [](std::uint64_t seed) { return make_atrium(seed); }, 8'000, 11'000, 46, 300, false},
-    {"office", [](std::uint64_t seed) { return make_open_plan_office(seed); }, 3'000, 3'200, 9, 300, true},
-    {"sewers", [](std::uint64_t seed) { return make_sewers(seed); }, 20'000, 28'000, 11, 300, true},
-    {"cloister", [](std::uint64_t seed) { return make_cloister(seed); }, 20'000, 26'000, 16, 300, false},
-    {"museum", [](std::uint64_t seed) { return make_museum(seed); }, 50'000, 100'000, 18, 360, true},
-    {"studio", [](std::uint64_t seed) { return make_studio(seed); }, 110'000, 170'000, 2, 300, true},
-    {"colonnades", [](std::uint64_t seed) { return make_colonnades(seed); }, 45'000, 65'000, 22, 300, false},
-};
+using namespace lit_room_fixture;
 
-void PrintTo(const Expected& expected, std::ostream* out) { *out << expected.name; }
-
-class LitRooms : public testing::TestWithParam<Expected> {};
 INSTANTIATE_TEST_SUITE_P(All, LitRooms, testing::ValuesIn(kRooms), [](const auto& of) { return of.param.name; });
 
 TEST_P(LitRooms, HaveTheSizeTheyPromise) {
@@ -66,24 +46,6 @@ TEST_P(LitRooms, AreTheSameForOneSeedAndDifferForTwo) {
   EXPECT_TRUE(other_receiver);
 }
 
-// Receivers and lamps share one air, also where a seed is of another kind than those that were looked at.
-TEST_P(LitRooms, HaveReceiversAndLampsInOneAirForAnySeed) {
-  for (const std::uint64_t seed : {0ULL, ~0ULL, 1ULL << 63, 0x5555555555555555ULL}) {
-    const LitRoom room = GetParam().make(seed);
-    EXPECT_EQ(room.receivers.size(), GetParam().receivers);
-    const AirRegions regions(room.scene);
-    const std::uint64_t air = regions.mark(room.emitters.front().world_from_lamp.translation_m);
-    for (const Receiver& r : room.receivers) ASSERT_EQ(regions.mark(r.position_world_m), air);
-    for (const Emitter& e : room.emitters) {
-      ASSERT_EQ(regions.mark(e.world_from_lamp.translation_m), air);
-      EXPECT_TRUE(room.interior_m.contains(e.world_from_lamp.translation_m));
-    }
-    for (std::size_t a = 0; a < room.regions_m.size(); ++a)
-      for (std::size_t b = 0; b < a; ++b)
-        EXPECT_LT(room.regions_m[a].intersection(room.regions_m[b]).sizes().minCoeff(), 1e-9);
-  }
-}
-
 // Each edge of a closed surface is walked once in each direction: by place, since boxes need not share vertices.
 TEST_P(LitRooms, AreBuiltOfClosedSolids) {
   const Scene scene = GetParam().make(1).scene;
@@ -100,40 +62,6 @@ TEST_P(LitRooms, AreBuiltOfClosedSolids) {
       walked[std::minmax(a, b)] += a < b ? 1 : -1;
     }
   for (const auto& [edge, count] : walked) ASSERT_EQ(count, 0);
-}
-
-/// How many solids the point is in: crossings of a ray, each with the sign of the side it comes from.
-int solids_around(const Scene& scene, const Vec3& point_m) {
-  const Vec3 towards = Vec3(0.3217, 0.5419, 0.7764).normalized();
-  int count = 0;
-  for (const auto& t : scene.triangles) {
-    const Vec3 a = scene.vertex_world_m(t[0]) - point_m, b = scene.vertex_world_m(t[1]) - point_m,
-               c = scene.vertex_world_m(t[2]) - point_m;
-    const double u = towards.dot(c.cross(b)), v = towards.dot(a.cross(c)), w = towards.dot(b.cross(a));
-    const bool leaving = u <= 0 && v <= 0 && w <= 0, entering = u >= 0 && v >= 0 && w >= 0;
-    if (!leaving && !entering) continue;
-    const Vec3 normal = (b - a).cross(c - a);
-    if (normal.dot(a) * normal.dot(towards) <= 0) continue;  // behind the point, or in the ray's plane
-    count += normal.dot(towards) > 0 ? 1 : -1;
-  }
-  return count;
-}
-
-TEST_P(LitRooms, HaveReceiversAndLampsInFreeSpace) {
-  for (const std::uint64_t seed : {1, 2}) {
-    const LitRoom room = GetParam().make(seed);
-    // Brute force: of large rooms some receivers only. AirRegions judges all of them above.
-    const std::size_t step = 1 + room.scene.triangles.size() / 20'000;
-    for (std::size_t i = 0; i < room.receivers.size(); i += step) {
-      const Receiver& r = room.receivers[i];
-      EXPECT_NEAR(r.normal_world.norm(), 1, 1e-12);
-      ASSERT_EQ(solids_around(room.scene, r.position_world_m), 0) << r.position_world_m.transpose();
-    }
-    for (const Emitter& e : room.emitters) ASSERT_EQ(solids_around(room.scene, e.world_from_lamp.translation_m), 0);
-  }
-  // The count itself: half a metre below the floor's top is in the floor's slab.
-  const LitRoom room = GetParam().make(1);
-  EXPECT_GT(solids_around(room.scene, {1.234, 1.111, -0.1}), 0);
 }
 
 TEST_P(LitRooms, LetNoRayOutWhenTheyAreClosed) {

@@ -12,7 +12,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -21,8 +20,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
-#include <thread>
 
+#include "tests/tools/luxrigd/state/saved_state.h"
 #include "tests/tools/programs/process.h"
 #include "tools/luxrigd/state/journal.h"
 
@@ -30,7 +29,9 @@
 namespace luxrig {
 namespace {
 
+using luxrig::testing::files_in;
 using luxrig::testing::Folder;
+using luxrig::testing::state_with;
 using luxrig::testing::text_of;
 
 /// The registers of a traced process that stands at a system call.
@@ -99,13 +100,6 @@ enum class How { save_first, keep };
 constexpr const char* kOld = "old plan";
 constexpr const char* kNew = "new plan";
 constexpr const char* kLater = "later plan";
-
-/// Larger than any buffer: a half of it is no JSON.
-JournalState state_with(const char* plan) {
-  JournalState state{std::string(plan) + std::string(100'000, '.'), false, {"yoke"}};
-  state.by_hand = {{false, plan, 0.5, 1.75e9, std::nullopt}};
-  return state;
-}
 
 bool is(const std::optional<JournalState>& state, const char* plan) {
   const JournalState wanted = state_with(plan);
@@ -227,14 +221,6 @@ class TracedSave {
   std::vector<SeenCall> calls_;
   bool harmed_ = false;
 };
-
-std::set<std::string> files_in(const std::filesystem::path& folder) {
-  std::set<std::string> names;
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, error))
-    names.insert(entry.path().filename().string());
-  return names;
-}
 
 struct Outcome {
   bool traced = false;
@@ -412,52 +398,6 @@ TEST(SaveAtomicityOfAStart, ABlackoutOutlivesWhateverHappensToTheReadingOfADamag
       (void)start_with(injection);
     }
   }
-}
-
-TEST(SaveAtomicityOfThreads, ManyWritersNeverShowAReaderHalfAState) {
-  constexpr int kThreads = 8, kSaves = 200;
-  const Folder folder;
-  Journal journal(folder / "");
-  ASSERT_TRUE(journal.save_first([](JournalState& state) { state = state_with(kOld); }));
-  std::atomic<bool> reading{true};
-  std::atomic<int> damaged{0}, backwards{0}, reads{0}, failed{0};
-  std::thread reader([&] {
-    double last = 0;
-    while (reading) {
-      const auto left = Journal(folder / "").load();
-      ++reads;
-      if (!left.complaints.empty() || !left.state || left.state->by_hand.size() != 1) {
-        ++damaged;
-        continue;
-      }
-      if (left.state->by_hand[0].value < last) ++backwards;
-      last = left.state->by_hand[0].value;
-    }
-  });
-  std::vector<std::thread> writers;
-  for (int t = 0; t < kThreads; ++t)
-    writers.emplace_back([&, t] {
-      for (int i = 0; i < kSaves; ++i) {
-        const auto count = [&](JournalState& state) {
-          state.by_hand[0].value += 1;
-          state.plan_json = std::string(static_cast<std::size_t>(1 + (t * kSaves + i) % 5000), 'p');
-        };
-        if (!(i % 2 == 0 ? journal.keep(count) : journal.save_first(count))) ++failed;
-      }
-    });
-  for (std::thread& writer : writers) writer.join();
-  reading = false;
-  reader.join();
-  EXPECT_EQ(damaged, 0);
-  EXPECT_EQ(backwards, 0) << "an older state came after a newer one";
-  EXPECT_EQ(failed, 0);
-  EXPECT_GT(reads, 0);
-  const auto left = journal.load();
-  ASSERT_TRUE(left.state);
-  EXPECT_EQ(left.state->by_hand[0].value, 0.5 + kThreads * kSaves);
-  EXPECT_EQ(left.state->by_hand[0].value, journal.state().by_hand[0].value);
-  EXPECT_EQ(left.state->plan_json, journal.state().plan_json);
-  EXPECT_EQ(files_in(folder / ""), std::set<std::string>{"state.json"});
 }
 
 }  // namespace

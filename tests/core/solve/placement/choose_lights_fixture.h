@@ -1,0 +1,14 @@
+#pragma once
+/// What the tests of choose_lights share.
+
+#include "core/solve/placement/choose_lights.h"
+
+namespace luxrig::choose_lights_fixture {
+
+inline ChooseOptions choose_most(std::size_t lights) {
+  ChooseOptions options;
+  options.most_lights = lights;
+  return options;
+}
+
+}  // namespace luxrig::choose_lights_fixture

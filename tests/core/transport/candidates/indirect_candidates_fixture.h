@@ -1,0 +1,15 @@
+#pragma once
+/// What the tests of indirect_candidates share.
+
+#include "core/transport/candidates/candidate_transport.h"
+
+namespace luxrig::indirect_candidates_fixture {
+
+inline CandidateOptions coarse() {
+  CandidateOptions options;
+  options.surface_cells = 2000;
+  options.most_rays_per_candidate = 512;
+  return options;
+}
+
+}  // namespace luxrig::indirect_candidates_fixture

@@ -1,0 +1,39 @@
+#pragma once
+/// What the tests of daylight_through_openings share.
+
+#include <gtest/gtest.h>
+
+#include "tests/core/transport/sky/room_with_windows.h"
+
+namespace luxrig::daylight_through_openings_fixture {
+
+inline std::vector<Emitter> under(const Sky& sky) {
+  std::vector<Emitter> emitters(1);
+  emitters[0].sky = sky;
+  return emitters;
+}
+
+inline TransportMatrix evaluated(const Evaluator& evaluator, const std::vector<Receiver>& receivers,
+                                 const std::vector<Emitter>& emitters, const EvaluateOptions& options) {
+  auto result = evaluator.evaluate(receivers, emitters, options);
+  EXPECT_TRUE(result.has_value()) << (result ? "" : result.error().detail);
+  return result ? std::move(*result) : TransportMatrix{};
+}
+
+/// A window of 4 % of its wall.
+inline RoomWithWindows with_a_small_window() {
+  RoomWithWindows room;
+  room.near_window_m = {1.5, 2.3, 1.2, 1.8};
+  return room;
+}
+
+inline RoomWithWindows with_windows_that_face_each_other() {
+  RoomWithWindows room;
+  room.near_window_m = {1.2, 2.6, 1.0, 2.2};
+  room.far_window_m = {1.0, 2.9, 0.9, 2.3};
+  return room;
+}
+
+inline void PrintTo(const OfRoom& of, std::ostream* out) { *out << of.name; }
+
+}  // namespace luxrig::daylight_through_openings_fixture
