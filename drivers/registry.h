@@ -20,7 +20,7 @@ struct Redirect {
   std::string path{};  ///< of a serial port; empty: the stand-in has none
 };
 
-/// One option a driver reads from its [[bus]] entry; the rig-file reference is compared with these.
+/// One option a driver reads from its [[bus]] entry; a row of its table in the rig-file reference.
 struct OptionDoc {
   std::string_view key, type, unit, fallback, range, summary;
 };

@@ -80,11 +80,4 @@ std::string_view type_text(ValueType type) {
   return "";
 }
 
-std::string reference_row(const KeySpec& spec) {
-  const bool value = spec.fallback != kRequired && spec.fallback != kNone;
-  return fmt::format("| `{}` | {} | {} | {} | {} | {} |", spec.key, type_text(spec.type), spec.unit,
-                     value ? fmt::format("`{}`", spec.fallback) : std::string(spec.fallback), range_text(spec),
-                     spec.summary);
-}
-
 }  // namespace luxrig

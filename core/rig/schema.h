@@ -1,6 +1,6 @@
 #pragma once
 /// Every key of the rig file and of register maps, once: type, unit, default, range and meaning. The reader checks
-/// values against this table (section.h), and a test holds rigs/REFERENCE.md against it.
+/// values against this table (section.h), and the tables of rigs/REFERENCE.md are written from it (tools/reference).
 
 #include <limits>
 #include <span>
@@ -50,11 +50,10 @@ inline constexpr std::string_view kRequired = "required";
 inline constexpr std::string_view kNone = "none";
 
 struct SectionSpec {
-  std::string_view name;     ///< "fixture", "scene.object"
-  bool list;                 ///< [[name]], any number of times; else [name], at most once
-  std::size_t most;          ///< entries allowed in a list
-  bool takes_other_keys;     ///< [[bus]]: the driver's own
-  std::string_view summary;  ///< one line for the reference
+  std::string_view name;  ///< "fixture", "scene.object"
+  bool list;              ///< [[name]], any number of times; else [name], at most once
+  std::size_t most;       ///< entries allowed in a list
+  bool takes_other_keys;  ///< [[bus]]: the driver's own
   /// Which file it stands in.
   enum class File { rig, register_map } file = File::rig;
 };
@@ -73,8 +72,5 @@ struct SectionSpec {
 /// "0 to 1", "above 0", "m, cm or mm", empty when anything goes.
 [[nodiscard]] std::string range_text(const KeySpec& spec);
 [[nodiscard]] std::string_view type_text(ValueType type);
-
-/// The row of the reference: "| `key` | type | unit | default | range | what |".
-[[nodiscard]] std::string reference_row(const KeySpec& spec);
 
 }  // namespace luxrig
