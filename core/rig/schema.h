@@ -1,11 +1,13 @@
 #pragma once
-/// Every key of the rig file and of register maps, once: type, unit, default, range and meaning. The reader checks
-/// values against this table (section.h), and the tables of rigs/REFERENCE.md are written from it (tools/reference).
+/// Every key of the rig file and of register maps, once: type, unit, default, range, example and meaning. The reader
+/// checks values against this table (section.h); the tables of rigs/REFERENCE.md (tools/reference) and the rig that
+/// tests read with every key set are made from it.
 
 #include <limits>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace luxrig {
 
@@ -44,6 +46,7 @@ struct KeySpec {
   std::string_view fallback;  ///< as TOML; or kRequired, or kNone (left out, it has no value)
   Bounds bounds;
   std::string_view choices;  ///< "m, cm, mm": the only texts allowed, in the order of the enumeration they become
+  std::string_view example;  ///< as TOML; not the default, so that a test sees that it is read
   std::string_view summary;
 };
 inline constexpr std::string_view kRequired = "required";
@@ -68,6 +71,8 @@ struct SectionSpec {
 
 /// "[[fixture]]", "[limits]".
 [[nodiscard]] std::string heading_of(const SectionSpec& section);
+
+[[nodiscard]] std::vector<std::string_view> choices_of(const KeySpec& spec);
 
 /// "0 to 1", "above 0", "m, cm or mm", empty when anything goes.
 [[nodiscard]] std::string range_text(const KeySpec& spec);

@@ -13,16 +13,6 @@ namespace {
 
 constexpr std::size_t kLongestText = 4096;  // a path
 
-std::vector<std::string_view> split_choices(std::string_view choices) {
-  std::vector<std::string_view> out;
-  while (!choices.empty()) {
-    const std::size_t comma = choices.find(", ");
-    out.push_back(choices.substr(0, comma));
-    choices.remove_prefix(comma == std::string_view::npos ? choices.size() : comma + 2);
-  }
-  return out;
-}
-
 std::string example_of(const KeySpec& spec) {
   switch (spec.type) {
     case ValueType::vector3:
@@ -337,7 +327,7 @@ int Section::choice(std::string_view key) {
   const Node* node = value(k);
   std::string given;
   if (!node || !text_from(k, *node, given)) return -1;
-  const auto known = split_choices(k.choices);
+  const auto known = choices_of(k);
   const auto at = std::find(known.begin(), known.end(), given);
   if (at != known.end()) return static_cast<int>(at - known.begin());
   const std::string_view near = nearest_name(given, known);
