@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include "core/check.h"
@@ -335,6 +336,21 @@ int Section::choice(std::string_view key) {
                 near.empty() ? fmt::format("allowed: {}", range_text(k))
                              : fmt::format("did you mean \"{}\"? (allowed: {})", near, range_text(k)));
   return -1;
+}
+
+double Section::number(std::string_view key) {
+  const std::string_view fallback = spec(key).fallback;
+  double value = 0;
+  const auto [end, error] = std::from_chars(fallback.data(), fallback.data() + fallback.size(), value);
+  LUXRIG_CHECK(error == std::errc{} && end == fallback.data() + fallback.size(), "{} has no default", key);
+  read(key, value);
+  return value;
+}
+
+bool Section::yes_no(std::string_view key) {
+  bool value = spec(key).fallback == "true";
+  read(key, value);
+  return value;
 }
 
 bool Section::read_deg(std::string_view key, double& out_rad) {
