@@ -4,13 +4,13 @@
 #include <charconv>
 
 #include "core/check.h"
+#include "core/rig/schema.h"
 #include "core/text/nearest.h"
 
 namespace luxrig {
 namespace {
 
 constexpr std::string_view kTo = " to ";
-constexpr std::string_view kRequired = "required";
 
 std::int64_t number_in(std::string_view text) {
   std::int64_t value = 0;

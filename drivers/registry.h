@@ -19,7 +19,7 @@ struct Redirect {
   std::string path{};  ///< of a serial port; empty = the stand-in has none
 };
 
-/// One option that a driver reads from its [[bus]] entry; a test compares the rig-file reference with these.
+/// One option that a driver reads from its [[bus]] entry: a row of its table in the rig-file reference.
 struct OptionDoc {
   std::string_view key, type, unit, fallback, range, summary;
 };

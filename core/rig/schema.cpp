@@ -27,6 +27,16 @@ std::string heading_of(const SectionSpec& section) {
   return section.list ? fmt::format("[[{}]]", section.name) : fmt::format("[{}]", section.name);
 }
 
+std::vector<std::string_view> choices_of(const KeySpec& spec) {
+  std::vector<std::string_view> out;
+  for (std::string_view rest = spec.choices; !rest.empty();) {
+    const std::size_t comma = rest.find(", ");
+    out.push_back(rest.substr(0, comma));
+    rest.remove_prefix(comma == std::string_view::npos ? rest.size() : comma + 2);
+  }
+  return out;
+}
+
 std::string range_text(const KeySpec& spec) {
   if (spec.type == ValueType::name) return "1 to 100 characters";
   if (!spec.choices.empty()) {
@@ -78,13 +88,6 @@ std::string_view type_text(ValueType type) {
       return "list of whole numbers";
   }
   return "";
-}
-
-std::string reference_row(const KeySpec& spec) {
-  const bool value = spec.fallback != kRequired && spec.fallback != kNone;
-  return fmt::format("| `{}` | {} | {} | {} | {} | {} |", spec.key, type_text(spec.type), spec.unit,
-                     value ? fmt::format("`{}`", spec.fallback) : std::string(spec.fallback), range_text(spec),
-                     spec.summary);
 }
 
 }  // namespace luxrig

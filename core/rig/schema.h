@@ -1,11 +1,13 @@
 #pragma once
-/// Every key of the rig file and of register maps, once: type, unit, default, range and meaning. The reader checks
-/// values against this table (section.h). A test compares it with rigs/REFERENCE.md.
+/// Every key of the rig file and of register maps, once: type, unit, default, range, example and meaning. The reader
+/// checks values against this table (section.h). The tables of rigs/REFERENCE.md (tools/reference) and the rig that
+/// tests read with every key set are made from it.
 
 #include <limits>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace luxrig {
 
@@ -44,6 +46,7 @@ struct KeySpec {
   std::string_view fallback;  ///< as TOML; or kRequired, or kNone (no value if left out)
   Bounds bounds;
   std::string_view choices;  ///< "m, cm, mm": the only texts allowed, in the order of their enumeration
+  std::string_view example;  ///< as TOML; not the default, so that a test sees that it is read
   std::string_view summary;
 };
 inline constexpr std::string_view kRequired = "required";
@@ -54,7 +57,6 @@ struct SectionSpec {
   bool list;                 ///< [[name]], any number of times; if false, [name], at most once
   std::size_t most;          ///< most entries of a list
   bool takes_other_keys;     ///< [[bus]]: the driver's own keys
-  std::string_view summary;  ///< one line for the reference
   /// File that it belongs to.
   enum class File { rig, register_map } file = File::rig;
 };
@@ -70,11 +72,10 @@ struct SectionSpec {
 /// "[[fixture]]", "[limits]".
 [[nodiscard]] std::string heading_of(const SectionSpec& section);
 
+[[nodiscard]] std::vector<std::string_view> choices_of(const KeySpec& spec);
+
 /// "0 to 1", "above 0", "m, cm or mm"; empty if anything is allowed.
 [[nodiscard]] std::string range_text(const KeySpec& spec);
 [[nodiscard]] std::string_view type_text(ValueType type);
-
-/// The row of the reference: "| `key` | type | unit | default | range | what |".
-[[nodiscard]] std::string reference_row(const KeySpec& spec);
 
 }  // namespace luxrig

@@ -2,13 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <set>
 #include <string>
 
 #include "drivers/options.h"
 #include "tests/drivers/test_rig.h"
-#include "tests/folders.h"
 
 namespace luxrig {
 namespace {
@@ -55,31 +53,6 @@ TEST(Registry, EveryDefaultOfAnOptionIsGoodItself) {
     }
     const Rig rig = rig_with(bus);
     for (const Problem& problem : entry.check(rig, 0)) ADD_FAILURE() << problem.text();
-  }
-}
-
-/// The rows of the options table under `### driver = "name"` in the rig-file reference.
-std::vector<std::string> reference_rows(std::string_view name) {
-  std::ifstream in(test::source_folder() / "rigs/REFERENCE.md");
-  const std::string heading = "### driver = \"" + std::string(name) + "\"";
-  std::vector<std::string> rows;
-  bool inside = false;
-  for (std::string line; std::getline(in, line);) {
-    if (line.starts_with("#")) inside = line == heading;
-    if (inside && line.starts_with("| `")) rows.push_back(line);
-  }
-  return rows;
-}
-
-TEST(Registry, IsDocumentedOptionByOptionInTheReference) {
-  for (const DriverEntry& entry : drivers()) {
-    std::vector<std::string> wanted;
-    for (const OptionDoc& doc : entry.options) {
-      const std::string fallback = doc.fallback == "required" ? "required" : "`" + std::string(doc.fallback) + "`";
-      wanted.push_back("| `" + std::string(doc.key) + "` | " + std::string(doc.type) + " | " + std::string(doc.unit) +
-                       " | " + fallback + " | " + std::string(doc.range) + " | " + std::string(doc.summary) + " |");
-    }
-    EXPECT_EQ(reference_rows(entry.name), wanted) << "rigs/REFERENCE.md, ### driver = \"" << entry.name << "\"";
   }
 }
 

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/rig/null_bus.h"
@@ -32,6 +33,7 @@ std::optional<Option> option_from(const Member& member, ProblemList& problems) {
 }  // namespace
 
 void RigReader::read_buses() {
+  const std::span<const KeySpec> known = keys_of("bus");
   each(root, "bus", [&](Section& s) {
     Bus bus;
     bus.place = s.place();
@@ -44,7 +46,7 @@ void RigReader::read_buses() {
           "lower it, or raise that limit");
     }
     for (const Member& member : s.table()) {
-      if (member.key == "name" || member.key == "driver" || member.key == "safe_level") continue;
+      if (std::any_of(known.begin(), known.end(), [&](const KeySpec& key) { return key.key == member.key; })) continue;
       if (auto option = option_from(member, problems)) bus.options.emplace(member.key, std::move(*option));
     }
     rig.buses.push_back(std::move(bus));

@@ -114,10 +114,8 @@ void RigReader::read_daylight() {
       require_all(s, kByPlace);
       sun = sun_by_place(s);
     }
-    double north_turn_rad = 0;
-    s.read_deg("north_deg", north_turn_rad);
-    bool sun_shines = true;
-    s.read("sun", sun_shines);
+    const double north_turn_rad = rad_from_deg(s.number("north_deg"));
+    const bool sun_shines = s.yes_no("sun");
     const bool sky_given = s.read("horizontal_lx", daylight.horizontal_lx);
     const bool sun_given = s.read("sun_normal_lx", daylight.sun_normal_lx);
     if (!sun_shines) s.refuse("sun_normal_lx", "sun_normal_lx has no effect with sun = false", "remove one of the two");

@@ -39,7 +39,7 @@ PatchKind patch_kind(Section& s, bool planned, ProblemList& problems) {
 }
 
 /// `joint` is "pan" or "tilt". False if it cannot be claimed.
-bool read_axis(Section& s, const std::string& joint, double acceleration_deg_s2, AxisPatch& axis) {
+bool read_axis(Section& s, const std::string& joint, AxisPatch& axis) {
   for (const char* key : {"_node", "_counts_per_degree", "_home_deg"}) {
     if (!s.has(joint + key)) s.require(joint + key, "which a head with an axes_bus needs");
   }
@@ -49,9 +49,13 @@ bool read_axis(Section& s, const std::string& joint, double acceleration_deg_s2,
                      "give the position units of the drive per degree of the joint");
   }
   s.read_deg(joint + "_home_deg", axis.home_rad);
-  axis.acceleration_rad_s2 = rad_from_deg(acceleration_deg_s2);
-  s.read_deg(joint + "_acceleration_deg_s2", axis.acceleration_rad_s2);
+  axis.acceleration_rad_s2 = rad_from_deg(s.number(joint + "_acceleration_deg_s2"));
   return s.read(joint + "_node", axis.node);
+}
+
+/// `stated_rad_s`: by its maker's file, which holds where the key is left out; 0: it states none.
+double speed_rad_s(Section& s, std::string_view key, double stated_rad_s) {
+  return stated_rad_s > 0 && !s.has(key) ? stated_rad_s : rad_from_deg(s.number(key));
 }
 
 /// `stated`: travel from its maker's file; null = none.
@@ -75,10 +79,8 @@ void read_travel(Section& s, const ModeSlots* stated, Fixture& fixture) {
     fixture.range.tilt_min_rad = rad_from_deg(range_deg.first);
     fixture.range.tilt_max_rad = rad_from_deg(range_deg.second);
   }
-  fixture.pan_speed_rad_s = stated && stated->pan_speed_rad_s > 0 ? stated->pan_speed_rad_s : rad_from_deg(180);
-  fixture.tilt_speed_rad_s = stated && stated->tilt_speed_rad_s > 0 ? stated->tilt_speed_rad_s : rad_from_deg(120);
-  s.read_deg("pan_speed_deg_s", fixture.pan_speed_rad_s);
-  s.read_deg("tilt_speed_deg_s", fixture.tilt_speed_rad_s);
+  fixture.pan_speed_rad_s = speed_rad_s(s, "pan_speed_deg_s", stated ? stated->pan_speed_rad_s : 0);
+  fixture.tilt_speed_rad_s = speed_rad_s(s, "tilt_speed_deg_s", stated ? stated->tilt_speed_rad_s : 0);
 }
 
 bool has_zoom_slot(const Fixture& fixture) {
@@ -111,14 +113,12 @@ void read_zoom(Section& s, const Luminaire* luminaire, const ModeSlots* stated, 
     fixture.range.beam_max_rad = stated->range.beam_max_rad;
   } else {
     std::tie(fixture.range.beam_min_rad, fixture.range.beam_max_rad) = *luminaire->zoom_beam_rad;
-    bool inverted = false;
-    s.read("zoom_inverted", inverted);
+    const bool inverted = s.yes_no("zoom_inverted");
     for (DmxSlot& slot : std::get<DmxPatch>(fixture.patch).slots)
       if (inverted && slot.use >= SlotUse::zoom && slot.use <= SlotUse::zoom_ultra) slot.travel = {1, 0};
   }
   fixture.joints.beam_rad = luminaire->beam_angle_rad;
-  fixture.zoom_speed_rad_s = stated && stated->zoom_speed_rad_s > 0 ? stated->zoom_speed_rad_s : rad_from_deg(30);
-  s.read_deg("zoom_speed_deg_s", fixture.zoom_speed_rad_s);
+  fixture.zoom_speed_rad_s = speed_rad_s(s, "zoom_speed_deg_s", stated ? stated->zoom_speed_rad_s : 0);
 }
 
 SlotOwner slot_owner_of(const Rig& rig, std::size_t luminaire) {
@@ -144,7 +144,7 @@ void RigReader::read_axes(Section& s, Fixture& fixture) {
   AxesPatch axes;
   const auto bus = buses.read_reference(s, "axes_bus");
   if (bus) axes.bus = *bus;
-  const bool pan = read_axis(s, "pan", 360, axes.pan), tilt = read_axis(s, "tilt", 240, axes.tilt);
+  const bool pan = read_axis(s, "pan", axes.pan), tilt = read_axis(s, "tilt", axes.tilt);
   const std::string what = "fixture " + in_quotes(fixture.name);
   if (bus && pan) patches.claim_node(*bus, axes.pan.node, {"the pan of " + what, s.place_of("pan_node")});
   if (bus && tilt) patches.claim_node(*bus, axes.tilt.node, {"the tilt of " + what, s.place_of("tilt_node")});

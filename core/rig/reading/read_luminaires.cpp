@@ -31,7 +31,6 @@ constexpr ModelKey kModelKeys[] = {
     {"near_field", " ies ", false},
 };
 constexpr double kSlack_deg = 1e-9;
-constexpr const char* kModelNames[] = {"ies", "isotropic", "spot", "cosine", "rectangle", "disk", "sphere", "cylinder"};
 
 std::string models_text(std::string_view models) {
   std::string text;
@@ -56,7 +55,8 @@ std::string why_not_stated(const StatedLight& stated) {
 }  // namespace
 
 void RigReader::check_model_keys(Section& s, LuminaireModel model, const StatedLight& stated) {
-  const std::string name = kModelNames[static_cast<int>(model)];
+  std::string name;
+  s.read("model", name);
   for (const ModelKey& key : kModelKeys) {
     const bool belongs = std::string_view(key.models).find(" " + name + " ") != std::string_view::npos;
     if (!belongs) {
@@ -112,8 +112,7 @@ void RigReader::read_spot(Section& s, Luminaire& luminaire) {
 }
 
 void RigReader::read_photometric_file(Section& s, Luminaire& luminaire) {
-  bool near_field = false;
-  s.read("near_field", near_field);
+  const bool near_field = s.yes_no("near_field");
   LuminairePart part;
   for (const auto& [key, to] : {std::pair{"file_variant", &part.variant}, {"file_emitter", &part.emitter}}) {
     std::string name;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include "core/check.h"
@@ -12,16 +13,6 @@ namespace luxrig {
 namespace {
 
 constexpr std::size_t kLongestText = 4096;  // a path
-
-std::vector<std::string_view> split_choices(std::string_view choices) {
-  std::vector<std::string_view> out;
-  while (!choices.empty()) {
-    const std::size_t comma = choices.find(", ");
-    out.push_back(choices.substr(0, comma));
-    choices.remove_prefix(comma == std::string_view::npos ? choices.size() : comma + 2);
-  }
-  return out;
-}
 
 std::string example_of(const KeySpec& spec) {
   switch (spec.type) {
@@ -337,7 +328,7 @@ int Section::choice(std::string_view key) {
   const Node* node = value(k);
   std::string given;
   if (!node || !text_from(k, *node, given)) return -1;
-  const auto known = split_choices(k.choices);
+  const auto known = choices_of(k);
   const auto at = std::find(known.begin(), known.end(), given);
   if (at != known.end()) return static_cast<int>(at - known.begin());
   const std::string_view near = nearest_name(given, known);
@@ -345,6 +336,21 @@ int Section::choice(std::string_view key) {
                 near.empty() ? fmt::format("allowed: {}", range_text(k))
                              : fmt::format("did you mean \"{}\"? (allowed: {})", near, range_text(k)));
   return -1;
+}
+
+double Section::number(std::string_view key) {
+  const std::string_view fallback = spec(key).fallback;
+  double value = 0;
+  const auto [end, error] = std::from_chars(fallback.data(), fallback.data() + fallback.size(), value);
+  LUXRIG_CHECK(error == std::errc{} && end == fallback.data() + fallback.size(), "{} has no default", key);
+  read(key, value);
+  return value;
+}
+
+bool Section::yes_no(std::string_view key) {
+  bool value = spec(key).fallback == "true";
+  read(key, value);
+  return value;
 }
 
 bool Section::read_deg(std::string_view key, double& out_rad) {

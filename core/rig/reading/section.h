@@ -61,6 +61,9 @@ class Section {
     return index >= 0;
   }
   bool read_deg(std::string_view key, double& out_rad);
+  /// The value of a key that has a default; the default if it is absent or wrong.
+  [[nodiscard]] double number(std::string_view key);
+  [[nodiscard]] bool yes_no(std::string_view key);
   /// A direction, made unit. Reports zero length.
   bool read_normal(std::string_view key, Vec3& out);
   /// Each text with its place.

@@ -45,9 +45,10 @@ std::string dump(const Rig& rig) {
   }
   for (const auto& l : rig.luminaires) {
     add(l.name, static_cast<int>(l.model), l.ies_path.string(), l.beam_angle_rad, l.field_angle_rad, l.lumens,
-        text_of(l.watts), l.zoom_beam_rad ? l.zoom_beam_rad->first : 0, l.intensity->flux_lm(),
-        l.intensity->intensity_cd(Vec3(0.1, 0, -1).normalized()), static_cast<int>(l.shape.kind),
-        text_of(l.shape.size_m), text_of(l.colour_rgb), l.emitters.size(), text_of(l.emitter_of));
+        text_of(l.watts), l.zoom_beam_rad ? l.zoom_beam_rad->first : 0, l.zoom_beam_rad ? l.zoom_beam_rad->second : 0,
+        l.intensity->flux_lm(), l.intensity->intensity_cd(Vec3(0.1, 0, -1).normalized()),
+        static_cast<int>(l.shape.kind), text_of(l.shape.size_m), text_of(l.colour_rgb), l.emitters.size(),
+        text_of(l.emitter_of));
   }
   for (const auto& b : rig.buses) {
     add(b.name, b.driver, text_of(b.safe_level), b.options.size());
@@ -124,32 +125,56 @@ std::string dump(const Rig& rig) {
   return out;
 }
 
+/// Of the example that a key of type file has, and of a second file beside it.
+std::string content_of(const std::filesystem::path& file, bool second) {
+  const std::string kind = file.extension().string();
+  if (kind == ".obj") return "v 0 0 0\n";
+  if (kind == ".csv") return fmt::format("name,x_m,y_m,z_m\n{},1,2,3\n", file.stem().string());
+  if (kind == ".ies")
+    return fmt::format("IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 1 1 2 .1 .1 0\n1 1 10\n0 45 90\n0\n100 {} 0\n",
+                       second ? 20 : 50);
+  if (kind == ".json")
+    return fmt::format(R"({{"$schema": "https://github.com/open-fixture-library/master/schemas/fixture.json",
+        "name": "x", "availableChannels": {{
+          "Dimmer": {{"capability": {{"type": "Intensity"}}}},
+          "Mode": {{"capabilities": [{{"dmxRange": [0, 239], "type": "NoFunction"}},
+                                    {{"dmxRange": [240, 255], "type": "Intensity"}}], "defaultValue": {}}}}},
+        "modes": [{{"name": "short", "channels": ["Dimmer", "Mode"]}},
+                  {{"name": "long", "channels": ["Mode", "Dimmer"]}}]}})",
+                       second ? 8 : 7);
+  return fmt::format(R"([device]
+name = "x"
+source = "y"
+[[register]]
+name = "out"
+what = "level"
+address = {}
+count = 2
+range = [0, 255]
+[[register]]
+name = "low"
+what = "illuminance"
+address = {}
+[[register]]
+name = "high"
+what = "illuminance"
+address = 40
+)",
+                     second ? 10 : 0, second ? 30 : 20);
+}
+
 class KeysRead : public testing::Test {
  protected:
   void SetUp() override {
     std::filesystem::create_directories(folder_);
     std::filesystem::copy_file(test::source_folder() / "tests/data/luminaires/two_heads.gldf",
                                folder_ / "two_heads.gldf", std::filesystem::copy_options::overwrite_existing);
-    for (const char* name : {"a", "b"}) {
-      std::ofstream(folder_ / (std::string(name) + ".obj")) << "v 0 0 0\n";
-      std::ofstream(folder_ / (std::string(name) + ".json"))
-          << R"({"$schema": "https://github.com/open-fixture-library/master/schemas/fixture.json", "name": "x",
-                 "availableChannels": {"Dimmer": {"capability": {"type": "Intensity"}},
-                                       "Mode": {"capabilities": [{"dmxRange": [0, 239], "type": "NoFunction"},
-                                                                 {"dmxRange": [240, 255], "type": "Intensity"}],
-                                                "defaultValue": )"
-          << (*name == 'a' ? 7 : 8) << R"(}}, "modes": [{"name": "short", "channels": ["Dimmer", "Mode"]},
-                            {"name": "long", "channels": ["Mode", "Dimmer"]}]})";
-      std::ofstream(folder_ / (std::string(name) + ".toml"))
-          << "[device]\nname = \"x\"\nsource = \"y\"\n"
-          << "[[register]]\nname = \"out\"\nwhat = \"level\"\naddress = " << (*name == 'a' ? 0 : 10)
-          << "\ncount = 2\nrange = [0, 255]\n"
-          << "[[register]]\nname = \"low\"\nwhat = \"illuminance\"\naddress = " << (*name == 'a' ? 20 : 30) << "\n"
-          << "[[register]]\nname = \"high\"\nwhat = \"illuminance\"\naddress = 40\n";
-      std::ofstream(folder_ / (std::string(name) + ".csv")) << "name,x_m,y_m,z_m\n" << name << ",1,2,3\n";
-      std::ofstream(folder_ / (std::string(name) + ".ies")) << "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 3 1 1 2 .1 .1 0\n"
-                                                               "1 1 10\n0 45 90\n0\n100 "
-                                                            << (*name == 'a' ? 50 : 20) << " 0\n";
+    for (const KeySpec& key : keys()) {
+      if (key.type != ValueType::file) continue;
+      for (const std::string& quoted : {std::string(key.example), kitchen_sink::other_than_example(key)}) {
+        const std::filesystem::path file = quoted.substr(1, quoted.size() - 2);
+        std::ofstream(folder_ / file) << content_of(file, quoted != key.example);
+      }
     }
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
@@ -169,8 +194,7 @@ class KeysRead : public testing::Test {
   static void rename(std::vector<Line>& lines, const Line& renamed) {
     const std::string old = renamed.text.substr(renamed.text.find(" = ") + 3);
     for (Line& line : lines) {
-      const bool refers = line.key == "bus" || line.key == "luminaire" || line.key == "point" || line.key == "aim";
-      if (refers && line.text.ends_with(" = " + old)) line.text = line.key + " = " + renamed.other;
+      if (line.key != "name" && line.text.ends_with(" = " + old)) line.text = line.key + " = " + renamed.other;
     }
   }
 
@@ -182,7 +206,7 @@ class KeysRead : public testing::Test {
 TEST_F(KeysRead, ChangingAnyKeyChangesTheRig) {
   std::set<std::pair<std::string, std::string>> changed;
   for (const char* daylight : {kitchen_sink::kSunByAngles, kitchen_sink::kSunByPlace}) {
-    const auto sink = kitchen_sink::lines(daylight);
+    const auto sink = kitchen_sink::lines(std::string(kitchen_sink::kRig) + daylight, SectionSpec::File::rig);
     const std::string before = read(sink);
     ASSERT_FALSE(before.starts_with("REFUSED")) << before;
     for (std::size_t i = 0; i < sink.size(); ++i) {
@@ -206,7 +230,7 @@ TEST_F(KeysRead, ChangingAnyKeyChangesTheRig) {
 TEST_F(KeysRead, LeavingAKeyOutIsWritingItsDefault) {
   std::set<std::pair<std::string, std::string>> tried;
   for (const char* daylight : {kitchen_sink::kSunByAngles, kitchen_sink::kSunByPlace}) {
-    const auto sink = kitchen_sink::lines(daylight);
+    const auto sink = kitchen_sink::lines(std::string(kitchen_sink::kRig) + daylight, SectionSpec::File::rig);
     for (std::size_t i = 0; i < sink.size(); ++i) {
       for (const KeySpec& key : keys()) {
         if (key.section != sink[i].section || key.key != sink[i].key) continue;

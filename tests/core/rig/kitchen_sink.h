@@ -1,444 +1,223 @@
 #pragma once
-/// A rig file with every key there is, and for each a second value.
+/// A file with every key there is, and for each a second value. Both come from the examples of the schema. Written here
+/// is what a row of the schema cannot say: which keys may stand in one entry, and which names they refer to.
 
+#include <algorithm>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "core/check.h"
+#include "core/rig/schema.h"
 
 namespace luxrig::kitchen_sink {
 
-// Each line "key = value  #> other" gives a second value that the key may have in this place; " ; " begins a line that
-// the second value needs.
-inline constexpr const char* kKitchenSink = R"(
-[rig]
-name = "sink"  #> "other"
-[scene]
-file = "a.obj"  #> "b.obj"
-unit = "cm"  #> "ft"
-up_axis = "z"  #> "x"
-default_reflectance = 0.4  #> [0.1, 0.2, 0.3]
-[[scene.reflectance]]
-material = "wall*"  #> "floor"
-reflectance = 0.6  #> [0.6, 0.6, 0.5]
-specular = 0.04  #> 0.05
-roughness = 0.2  #> 0.4
+// An outline. Its lines hold parts with "; " between them: a key alone has its example, and `rest` is every key of the
+// section that no entry here names. After #> stands the second value, with what it needs after " & "; a key alone has
+// one anyway, unless an entry before has one. Sections that are not here have one entry with all their keys.
+inline constexpr const char* kRig = R"(
 [[scene.object]]
-name = "vase"  #> "jug"
-file = "a.obj"  #> "b.obj"
-unit = "mm"  #> "in"
-up_axis = "x"  #> "z"
-height_m = 0.3  #> 0.4
-position_m = [1, 2, 3]  #> [1, 2, 4]
-turn_deg = 30  #> -30
-reflectance = 0.2  #> 0.3
+name; file; rest
 [[scene.object]]
-name = "cup"
-file = "a.obj"
+name = "cup"; file
 [[scene.object]]
-name = "bowl"
-file = "a.obj"
+name = "case"; box_m = [1, 1, 1]; transmittance
 [[scene.object]]
-name = "case"
-box_m = [1, 1, 1]
-transmittance = 0.9  #> 0.8
-[[scene.object]]
-name = "plinth"
-box_m = [1, 2, 3]  #> [1, 2, 4]
+name = "plinth"; box_m
 [[luminaire]]
-name = "measured"
-model = "ies"
-file = "a.ies"  #> "b.ies"
-near_field = true  #> false
-lumens = 500  #> 600
-watts = 10  #> 11
-cct_k = 3000  #> 4000
+name = "measured"; model = "ies"; file; near_field; lumens; watts; cct_k
 [[luminaire]]
-name = "pendant"
-model = "ies"
-file = "two_heads.gldf"
-file_variant = "v10"  #> "v15"
-file_emitter = "down"  #> "up"
+name = "pendant"; model = "ies"; file = "two_heads.gldf"; file_variant #> "v15"; file_emitter #> "up"
 [[luminaire]]
-name = "spot"
-model = "spot"
-beam_angle_deg = 20  #> 21
-field_angle_deg = 40  #> 41
-lumens = 900  #> 901
-watts = 12
+name; model = "spot"; beam_angle_deg; field_angle_deg; lumens; watts; rest
 [[luminaire]]
-name = "zoom"
-model = "spot"
-beam_angle_deg = 20  #> 21
-field_angle_deg = 40  #> 41
-zoom_deg = [6, 60]  #> [7, 60]
-lumens = 900
-watts = 9
+name = "zoom"; model = "spot"; beam_angle_deg; field_angle_deg; zoom_deg; lumens; watts
 [[luminaire]]
-name = "bulb"  #> "lamp"
-model = "isotropic"  #> "spot" ; beam_angle_deg = 20 ; field_angle_deg = 40
-lumens = 700
-colour = [1, 0.9, 0.8]  #> [1, 0.9, 0.7]
+name = "bulb"; model = "isotropic" #> "spot" & beam_angle_deg = 20 & field_angle_deg = 40; lumens; colour
 [[luminaire]]
-name = "downlight"
-model = "cosine"
-exponent = 4  #> 5
-lumens = 900
+name = "downlight"; model = "cosine"; exponent; lumens
 [[luminaire]]
-name = "panel"
-model = "rectangle"
-length_m = 1.2  #> 1.3
-width_m = 0.3  #> 0.4
-lumens = 900
+name = "panel"; model = "rectangle"; length_m; width_m; lumens
 [[luminaire]]
-name = "tube"
-model = "cylinder"
-diameter_m = 0.04  #> 0.05
-length_m = 1.2
-lumens = 900
+name = "tube"; model = "cylinder"; diameter_m; length_m; lumens
 [[luminaire]]
-name = "daylight"
-model = "isotropic"
-lumens = 900
-xy = [0.33, 0.34]  #> [0.33, 0.35]
+name = "daylight"; model = "isotropic"; lumens; xy
 [[luminaire]]
-name = "par"
-model = "isotropic"
+name = "par"; model = "isotropic"
 [[luminaire.emitters]]
-name = "warm"  #> "amber"
-lumens = 100  #> 200
-watts = 4  #> 5
-cct_k = 2700  #> 3000
+name; lumens; watts; cct_k; rest
 [[luminaire.emitters]]
-name = "red"
-lumens = 50
-watts = 5
-colour = [1, 0.1, 0]  #> [1, 0.2, 0]
+name = "red"; lumens; watts; colour
 [[luminaire.emitters]]
-name = "blue"
-lumens = 10
-watts = 5
-xy = [0.16, 0.07]  #> [0.16, 0.08]
+name = "blue"; lumens; watts; xy
 [[bus]]
-name = "dmx"  #> "net"
-driver = "sacn"  #> "artnet"
-safe_level = 0.4  #> 0.5
-priority = 100
+name; driver; rest; priority = 100
 [[bus]]
-name = "field"
-driver = "modbus_tcp"
+name = "field"; driver = "modbus_tcp"
 [[bus]]
-name = "can"
-driver = "canopen"
+name = "can"; driver = "canopen"
 [[fixture]]
-name = "fixed"  #> "still"
-luminaire = "spot"  #> "measured"
-position_m = [0, 0, 3]  #> [0, 0.5, 3]
-mount_deg = [10, 20, 30]  #> [10, 20, 31]
-pan_deg = 5  #> 6
-tilt_deg = 7  #> 8
-roll_deg = 9  #> 10
-bus = "field"  #> "dmx"
-unit = 4  #> 5
-register = 6  #> 7
-full_scale = 255  #> 256
-dimmer_curve = "square"  #> "s-curve"
-max_level = 0.9  #> 0.8
-safe_level = 0.3  #> 0.4
+name; luminaire #> "measured"; position_m; mount_deg; pan_deg; tilt_deg; roll_deg; bus = "field" #> "dmx"
+unit; register; full_scale; dimmer_curve; max_level; safe_level
 [[fixture]]
-name = "head"
-luminaire = "spot"
-position_m = [1, 0, 3]
-aim = "desk"  #> "floor"
-bus = "dmx"
-universe = 2  #> 3
-address = 20  #> 21
-slots = ["pan", "tilt", "dimmer"]  #> ["tilt", "pan", "dimmer"]
-pan_range_deg = [-180, 180]  #> [-180, 170]
-tilt_range_deg = [-100, 100]  #> [-100, 90]
-pan_speed_deg_s = 90  #> 91
-tilt_speed_deg_s = 80  #> 81
-park_pan_deg = 170  #> 160
-park_tilt_deg = 80  #> 70
-reset_s = 12  #> 13
-stage = 2  #> 3
+name = "head-1"; luminaire; position_m; aim #> "floor"; bus; universe; address; slots #> ["tilt", "pan", "dimmer"]; rest
 [[fixture]]
-name = "zoomer"
-luminaire = "zoom"
-position_m = [1, 0, 3]
-bus = "dmx"
-address = 90
-slots = ["pan", "tilt", "zoom", "zoom-fine", "dimmer"]  #> ["pan", "tilt", "zoom", "unused", "dimmer"]
-zoom_inverted = false  #> true
-zoom_speed_deg_s = 20  #> 21
+name = "head-2"; luminaire; position_m; aim_m; bus; address = 1; slots = ["dimmer", "unused"] #> ["dimmer"]
 [[fixture]]
-name = "mover"
-luminaire = "spot"
-position_m = [1, 0, 3]
-bus = "dmx"
-address = 60
-axes_bus = "can"  #> "field"
-pan_node = 5  #> 7
-tilt_node = 6  #> 8
-pan_counts_per_degree = 100  #> -100
-tilt_counts_per_degree = 200  #> 201
-pan_home_deg = -275  #> -276
-tilt_home_deg = -140  #> -141
-pan_acceleration_deg_s2 = 300  #> 301
-tilt_acceleration_deg_s2 = 200  #> 201
+name = "zoomer"; luminaire = "zoom"; position_m; bus; address = 90; zoom_inverted; zoom_speed_deg_s
+slots = ["pan", "tilt", "zoom", "zoom-fine", "dimmer"] #> ["pan", "tilt", "zoom", "unused", "dimmer"]
 [[fixture]]
-name = "aimed"
-luminaire = "spot"
-position_m = [1, 0, 3]
-aim_m = [0, 0, 0]  #> [0, 1, 0]
-bus = "dmx"
-address = 1
-slots = ["dimmer", "unused"]  #> ["dimmer"]
+name = "mover"; luminaire; position_m; bus; address = 60; axes_bus #> "field"; pan_node; tilt_node
+pan_counts_per_degree; tilt_counts_per_degree; pan_home_deg; tilt_home_deg
+pan_acceleration_deg_s2; tilt_acceleration_deg_s2
 [[fixture]]
-name = "made"
-luminaire = "spot"
-position_m = [1, 0, 3]
-bus = "dmx"
-address = 40
-personality = "a.json"  #> "b.json"
-mode = "short"  #> "long"
-dimmer = "Dimmer"  #> "Mode"
+name = "made"; luminaire; position_m; bus; address = 40; personality; mode #> "long"; dimmer #> "Mode"
 [[fixture]]
-name = "product"
-luminaire = "spot"
-position_m = [1, 0, 3]
-bus = "field"
-unit = 7
-register_map = "a.toml"  #> "b.toml"
-channel = 2  #> 1
+name = "product"; luminaire; position_m; bus = "field"; unit = 7; register_map; channel
 [[fixture]]
-name = "by-name"
-luminaire = "spot"
-position_m = [1, 0, 3]
-bus = "field"
-unit = 8
-register_map = "a.toml"
-output = "out2"  #> "out1"
+name = "by-name"; luminaire; position_m; bus = "field"; unit = 8; register_map; output #> "out2"
 [[fixture]]
-name = "contactor"
-luminaire = "spot"
-position_m = [1, 0, 3]
-bus = "dmx"
-address = 100
-switched = true  #> false
-max_level = 0
+name = "contactor"; luminaire; position_m; bus; address = 100; switched; max_level = 0
 [[luxmeter]]
-name = "meter"  #> "sensor"
-point = "desk"  #> "floor"
-tolerance = 0.03  #> 0.04
-range_lx = 1000  #> 2000
-bus = "field"  #> "dmx"
-unit = 2  #> 3
-register = 5  #> 6
-registers = 1  #> 2
-register_kind = "input"  #> "holding"
-word_order = "low-first"  #> "high-first"
-lux_per_count = 0.1  #> 0.2
+name; point #> "floor"; bus #> "dmx"; unit; register; rest
 [[luxmeter]]
-name = "free"
-position_m = [1, 1, 1]  #> [1, 1, 2]
-normal = [1, 0, 0]  #> [0, 1, 0]
-bus = "field"
-unit = 9
+name = "free"; position_m; normal; bus; unit = 9
 [[luxmeter]]
-name = "made"
-position_m = [1, 1, 1]
-bus = "field"
-unit = 10
-register_map = "a.toml"  #> "b.toml"
-reading = "low"  #> "high"
+name = "made"; position_m; bus; unit = 10; register_map; reading #> "high"
 [[camera]]
-name = "front"  #> "side"
-position_m = [0, -2, 1]  #> [0, -2, 2]
-aim = "desk"  #> "floor"
-fov_deg = 30  #> 31
-width_px = 640  #> 641
-height_px = 480  #> 481
+name; position_m; aim #> "floor"; rest
 [[camera]]
-name = "aside"
-position_m = [0, 5, 2]
-aim_m = [0, 0, 0]
-source = "v4l2"
-device = "/dev/video0"  #> "Sony Cam"
-format = "Y16"  #> "YUYV"
-exposure_ms = 20  #> 21
-gain = 3  #> 4
-dark_level = 0.02  #> 0.03
-response = "srgb"  #> "bt709"
-full_scale_cd_m2 = 500  #> 501
+name = "aside"; position_m = [0, 5, 2]; aim_m; source = "v4l2"; device; format; exposure_ms; gain
+dark_level; response; full_scale_cd_m2
 [[camera]]
-name = "folder"
-position_m = [0, 5, 2]
-aim_m = [0, 0, 0]
-source = "files"
-files = "shots"  #> "shots/*.png"
-response_file = "a.toml"  #> "b.toml"
+name = "folder"; position_m = [0, 5, 2]; aim_m; source = "files"; files; response_file
 [[camera]]
-name = "webcam"
-position_m = [0, 5, 2]
-aim_m = [0, 0, 0]
-source = "none"  #> "v4l2"
-[[camera]]
-name = "top"
-position_m = [0, 0, 2]
-aim_m = [0, 0, 0]  #> [0, 1, 0]
+name = "webcam"; position_m = [0, 5, 2]; aim_m; source = "none" #> "v4l2"
 [[point]]
-name = "desk"
-position_m = [1, 1, 0.8]  #> [1, 1, 0.9]
-normal = [0, 1, 1]  #> [0, 1, 2]
-goal_lx = 300  #> 301
-goal_xy = [0.4, 0.38]  #> [0.4, 0.39]
-weight = 2  #> 3
-max_lx = 400  #> 401
+name; position_m; goal_lx; goal_xy; rest
 [[point]]
-name = "floor"
-position_m = [0.5, 0, 0]
+name = "floor"; position_m = [0.5, 0, 0]
 [[point]]
-name = "spare"  #> "third"
-position_m = [5, 0, 0]
-goal_lx = 100
-goal_cct_k = 3000  #> 4000
-[points]
-file = "a.csv"  #> "b.csv"
+name = "spare"; position_m = [5, 0, 0]; goal_lx; goal_cct_k
 [[task]]
-name = "look"  #> "other"
-kind = "emittance"  #> "placement" ; luminaire = "spot"
-max_watts = 100  #> 90
+name; kind #> "placement" & luminaire = "track spot"; max_watts
 [[task]]
-name = "some"
-kind = "placement"
-luminaire = "spot"  #> "measured"
-max_lights = 7  #> 8
-error_wanted = 0.02  #> 0.03
-improvement = 0.1  #> 0.2
-method = "luxrig"  #> "gp16"
-aimed = true  #> false
-indirect = false  #> true
-fixtures = "off"  #> "full"
-seconds = 5  #> 6
-energy_front = 3  #> 4
-bound = true  #> false
+name = "some"; kind = "placement"; luminaire #> "measured"; max_lights; rest
 [[task]]
-name = "four"
-kind = "placement"
-luminaire = "spot"
-lights = 4  #> 5
+name = "four"; kind = "placement"; luminaire; lights
 [[task]]
-name = "relief"
-kind = "aim"
-object = "cup"  #> "bowl"
-scale_mm = 4  #> 5
-interest = 0.2  #> 0.3
-seen_by = "top"  #> "aside"
-max_object_lx = 900  #> 800
-contrast = "lux"  #> "relative"
-coverage_weight = 0.5  #> 0.6
-heads = ["head", "aime*"]  #> ["head"]
-key = "head"  #> "aimed"
-min_key_to_fill = 2  #> 1.5
-max_key_to_fill = 8  #> 9
-eyes = ["floor"]  #> ["desk"]
-max_eye_lx = 30  #> 31
-base_lx = 20  #> 21
-base_weight = 0.1  #> 0.2
-energy_weight = 0.3  #> 0.4
-travel_weight = 0.02  #> 0.03
+name = "relief"; kind = "aim"; object #> "cup"; scale_mm; interest; seen_by #> "aside"; max_object_lx; contrast
+coverage_weight; heads #> ["head-1"]; key #> "head-2"; min_key_to_fill; max_key_to_fill; eyes #> ["table top"]
+max_eye_lx; base_lx; base_weight; energy_weight; travel_weight
 [[task]]
-name = "detail"
-kind = "highlight"
-luminaire = "spot"
-object = "cup"
-max_lights = 3  #> 4
-[mounting]
-box_m = [[0, 0, 2], [4, 5, 3]]  #> [[4, 0, 2], [0, 5, 3.5]]
-surfaces = ["ceiling*", "plinth"]  #> ["ceiling*", "vase"]
-offset_m = [0.1, 0.2]  #> [0.1, 0.3]
-clearance_m = 0.3  #> 0.4
-spacing_m = 0.25  #> 0.5
+name = "detail"; kind = "highlight"; luminaire; object; max_lights
 [[keep_out]]
-name = "stalls"  #> "circle"
-box_m = [[0, 0, 0], [4, 5, 1]]  #> [[0, 0, 0], [4, 5, 2]]
-heads = ["head", "zoom*"]  #> ["head"]
-margin_deg = 3  #> 4
+name; box_m; heads #> ["zoomer"]; rest
 [[keep_out]]
-name = "mirror"
-centre_m = [1, 2, 3]  #> [1, 2, 4]
-radius_m = 0.5  #> 0.6
-[limits]
-max_level = 0.95  #> 0.9
-open_loop_margin = 0.1  #> 0.2
-max_watts = 500  #> 400
-[control]
-fade_s = 4  #> 5
-fade_curve = "linear"  #> "s-curve"
-correction_fade_s = 2  #> 3
-settle_s = 0.7  #> 0.8
-rounds = 4  #> 5
-tolerance = 0.03  #> 0.04
-goal_tolerance = 0.06  #> 0.07
-gain_min = 0.5  #> 0.4
-gain_max = 1.3  #> 1.4
-[safe]
-level = 0.2  #> 0.3
-hold_s = 6  #> 7
-fade_s = 8  #> 9
-scope = "all"  #> "rest-stays"
-on_meter_loss = true  #> false
-[startup]
-stage_s = 2  #> 3
-max_watts_per_s = 500  #> 600
-after_loss = true  #> false
-[daemon]
-http_port = 1234  #> 1235
-park_at_end = true  #> false
+name = "mirror"; centre_m; radius_m
 )";
-
 // The sun's angles and its place and time exclude one another: one of the two follows the rest.
 inline constexpr const char* kSunByAngles = R"([daylight]
-sky = "general"
-sky_type = 13  #> 14
-horizontal_lx = 12000  #> 13000
-sun_normal_lx = 70000  #> 71000
-sun_azimuth_deg = 150  #> 160
-sun_elevation_deg = 40  #> 41
-north_deg = 10  #> 11
+sky = "general"; sky_type; horizontal_lx; sun_normal_lx; sun_azimuth_deg; sun_elevation_deg; north_deg
 )";
 inline constexpr const char* kSunByPlace = R"([daylight]
-sky = "clear"  #> "overcast"
-sun = true  #> false
-latitude_deg = 52.5  #> 51
-longitude_deg = 13.4  #> 12
-time = "2026-06-21T12:00:00+02:00"  #> "2026-06-21T12:30:00+02:00"
-north_deg = -90  #> 90
+sky = "clear" #> "overcast"; sun; latitude_deg; longitude_deg; time #> "2026-06-21T12:30:00+02:00"; north_deg
+)";
+
+inline constexpr const char* kRegisterMap = R"([device]
+when_data_stops #> "dark"; rest
+[[register]]
+name; address; kind #> "holding"; rest
+[[register]]
+name = "arm"; address = 100; access #> "write"
+[[register]]
+name = "other"; address = 200
+[[setup]]
+register #> "other"; value
 )";
 
 struct Line {
-  std::string section, key, text, other;  ///< text: the whole line without its mark; other: second value
+  std::string section, key, text, other;  ///< text: the whole line; other: second value, empty when it has none
 };
 
-inline std::vector<Line> lines(const char* daylight) {
-  std::vector<Line> found;
-  std::string section, rest = std::string(kKitchenSink) + daylight;
-  while (!rest.empty()) {
-    std::string text = rest.substr(0, rest.find('\n'));
-    rest.erase(0, text.size() + 1);
-    Line line;
-    if (const auto mark = text.find("  #> "); mark != std::string::npos) {
-      line.other = text.substr(mark + 5);
-      for (auto at = line.other.find(" ; "); at != std::string::npos; at = line.other.find(" ; ")) {
-        line.other.replace(at, 3, "\n");
-      }
-      text.resize(mark);
+inline std::vector<std::string> split(const std::string& text, const std::string& between) {
+  std::vector<std::string> parts;
+  for (std::size_t from = 0; from <= text.size();) {
+    const std::size_t end = std::min(text.find(between, from), text.size());
+    if (end > from) parts.push_back(text.substr(from, end - from));
+    from = end + between.size();
+  }
+  return parts;
+}
+
+/// As good a value as the example: the next choice, a slightly larger number, a longer text.
+inline std::string other_than_example(const KeySpec& spec) {
+  std::string value(spec.example);
+  const std::vector<std::string_view> choices = choices_of(spec);
+  if (!choices.empty()) {
+    const auto at = std::find(choices.begin(), choices.end(), value.substr(1, value.size() - 2));
+    return "\"" + std::string(choices.end() - at > 1 ? at[1] : choices.front()) + "\"";
+  }
+  if (spec.type == ValueType::yes_no) return value == "true" ? "false" : "true";
+  if (spec.type == ValueType::file) return "\"other-" + value.substr(1);
+  if (const auto quote = value.rfind('"'); quote != std::string::npos) return value.insert(quote, " 2");
+  const std::size_t end = value.find_last_of("0123456789") + 1;
+  const std::size_t begin = value.find_last_not_of("0123456789.-", end - 1) + 1;  // npos + 1 is 0
+  const std::string last = value.substr(begin, end - begin);
+  const bool whole = last.find('.') == std::string::npos;
+  return value.replace(begin, end - begin, whole ? std::to_string(std::stol(last) + 1) : last + "1");
+}
+
+inline std::vector<Line> lines(const std::string& outline, SectionSpec::File file) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> entries;  // section, parts
+  std::set<std::pair<std::string, std::string>> named;
+  for (const std::string& text : split(outline, "\n")) {
+    if (text.starts_with('[')) {
+      const std::size_t from = text.find_first_not_of('[');
+      entries.push_back({text.substr(from, text.find(']') - from), {}});
+      continue;
     }
-    if (text.starts_with('['))
-      section = text.substr(text.find_first_not_of('['), text.find(']') - text.find_first_not_of('['));
-    line.section = section;
-    line.key = text.substr(0, text.find(" = "));
-    line.text = text;
-    found.push_back(line);
+    for (const std::string& part : split(text, "; ")) {
+      named.emplace(entries.back().first, part.substr(0, part.find(' ')));
+      entries.back().second.push_back(part);
+    }
+  }
+  for (const SectionSpec& section : sections()) {
+    const auto is_it = [&](const auto& entry) { return entry.first == section.name; };
+    if (section.file == file && std::none_of(entries.begin(), entries.end(), is_it))
+      entries.push_back({std::string(section.name), {"rest"}});
+  }
+
+  std::vector<Line> found;
+  std::set<std::pair<std::string, std::string>> varied;
+  for (const auto& [section, parts] : entries) {
+    found.push_back({section, "", heading_of(section_spec(section)), ""});
+    const std::span<const KeySpec> keys = keys_of(section);
+    std::vector<std::string> all;
+    for (const std::string& part : parts) {
+      if (part != "rest") {
+        all.push_back(part);
+        continue;
+      }
+      for (const KeySpec& spec : keys)
+        if (!named.contains(std::pair(section, std::string(spec.key)))) all.emplace_back(spec.key);
+    }
+    for (const std::string& part : all) {
+      const std::vector<std::string> values = split(part, " #> ");
+      Line line{section, part.substr(0, part.find(' ')), values[0], values.size() > 1 ? values[1] : ""};
+      if (line.text == line.key) {
+        const auto spec =
+            std::find_if(keys.begin(), keys.end(), [&](const KeySpec& key) { return key.key == line.key; });
+        LUXRIG_CHECK(spec != keys.end(), "no key {} in section {}", line.key, section);
+        line.text += " = " + std::string(spec->example);
+        if (line.other.empty() && !varied.contains({section, line.key})) line.other = other_than_example(*spec);
+      }
+      if (!line.other.empty()) varied.emplace(section, line.key);
+      for (auto at = line.other.find(" & "); at != std::string::npos; at = line.other.find(" & "))
+        line.other.replace(at, 3, "\n");
+      found.push_back(std::move(line));
+    }
   }
   return found;
 }

@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <array>
 #include <set>
 
-#include "core/rig/schema.h"
+#include "tests/core/rig/kitchen_sink.h"
 #include "tests/folders.h"
 
 namespace luxrig {
@@ -162,9 +161,10 @@ TEST(RegisterMapFile, RefusesWhatCannotBeMeant) {
 std::string dump_of(const RegisterMap& map) {
   std::string out;
   const auto add = [&](const auto&... values) { ((out += fmt::format("{} ", values)), ...), out += '\n'; };
-  add(map.name, map.source, map.assumed.size(), map.answer_time.value_or(Duration{}).count(), map.shortest_gap.count(),
-      map.largest_read, map.largest_write, fmt::format("{}", fmt::join(map.baud_rates, ",")),
-      static_cast<int>(map.when_data_stops), map.stops_after.value_or(Duration{}).count());
+  add(map.name, map.source, fmt::format("{}", fmt::join(map.assumed, ",")),
+      map.answer_time.value_or(Duration{}).count(), map.shortest_gap.count(), map.largest_read, map.largest_write,
+      fmt::format("{}", fmt::join(map.baud_rates, ",")), static_cast<int>(map.when_data_stops),
+      map.stops_after.value_or(Duration{}).count());
   for (const MappedRegister& reg : map.registers) {
     add(reg.name, static_cast<int>(reg.role), reg.address, static_cast<int>(reg.table), reg.format.registers,
         static_cast<int>(reg.format.number), reg.format.low_word_first, reg.format.low_byte_first, reg.scale, reg.unit,
@@ -176,60 +176,22 @@ std::string dump_of(const RegisterMap& map) {
 }
 
 TEST(RegisterMapFile, ChangingAnyKeyChangesTheMap) {
-  // Section, key, a value, another that is as good.
-  const std::vector<std::array<std::string, 4>> sink = {
-      {"[device]", "name", "\"a\"", "\"b\""},
-      {"", "source", "\"a\"", "\"b\""},
-      {"", "assumed", "[\"x\"]", "[]"},
-      {"", "answer_ms", "50", "60"},
-      {"", "shortest_gap_ms", "5", "6"},
-      {"", "largest_read", "8", "9"},
-      {"", "largest_write", "8", "9"},
-      {"", "baud_rates", "[9600]", "[9600, 19200]"},
-      {"", "when_data_stops", "\"watchdog\"", "\"dark\""},
-      {"", "stops_after_s", "3", "4"},
-      {"[[register]]", "name", "\"time\"", "\"times\""},
-      {"", "what", "\"status\"", "\"setting\""},
-      {"", "address", "5", "6"},
-      {"", "kind", "\"input\"", "\"holding\""},
-      {"", "type", "\"u32\"", "\"float32\""},
-      {"", "word_order", "\"low-first\"", "\"high-first\""},
-      {"", "byte_order", "\"low-first\"", "\"high-first\""},
-      {"", "count", "2", "3"},
-      {"", "step", "3", "4"},
-      {"", "scale", "0.5", "0.25"},
-      {"", "unit", "\"s\"", "\"ms\""},
-      {"", "range", "[1, 90]", "[1, 91]"},
-      {"", "power_on", "7", "8"},
-      {"[[register]]", "name", "\"arm\"", "\"arm\""},
-      {"", "address", "100", "101"},
-      {"", "access", "\"read-write\"", "\"write\""},
-      {"[[register]]", "name", "\"other\"", "\"another\""},
-      {"", "address", "200", "201"},
-      {"[[setup]]", "register", "\"arm\"", "\"other\""},
-      {"", "value", "1", "2"},
-  };
+  const auto sink = kitchen_sink::lines(kitchen_sink::kRegisterMap, SectionSpec::File::register_map);
   const auto text_with = [&](std::size_t changed) {
     std::string text;
-    for (std::size_t i = 0; i < sink.size(); ++i) {
-      const auto& [section, key, value, other] = sink[i];
-      if (!section.empty()) text += section + "\n";
-      text += key + " = " + (i == changed ? other : value) + "\n";
-    }
+    for (std::size_t i = 0; i < sink.size(); ++i)
+      text += (i == changed ? sink[i].key + " = " + sink[i].other : sink[i].text) + "\n";
     return text;
   };
   const auto before = parse_register_map(text_with(sink.size()), "map.toml");
   ASSERT_TRUE(before) << before.error().front().text();
   std::set<std::pair<std::string, std::string>> tried;
-  std::string section;
   for (std::size_t i = 0; i < sink.size(); ++i) {
-    if (!sink[i][0].empty())
-      section = sink[i][0].substr(sink[i][0].rfind('[') + 1, sink[i][0].find(']') - sink[i][0].rfind('[') - 1);
-    tried.emplace(section, sink[i][1]);
-    if (sink[i][2] == sink[i][3]) continue;
+    if (sink[i].other.empty()) continue;
     const auto after = parse_register_map(text_with(i), "map.toml");
-    ASSERT_TRUE(after) << sink[i][1] << ": " << after.error().front().text();
-    EXPECT_NE(dump_of(*after), dump_of(*before)) << sink[i][1] << " changes nothing";
+    ASSERT_TRUE(after) << sink[i].key << ": " << after.error().front().text();
+    EXPECT_NE(dump_of(*after), dump_of(*before)) << sink[i].key << " changes nothing";
+    tried.emplace(sink[i].section, sink[i].key);
   }
   for (const KeySpec& key : keys()) {
     if (section_spec(key.section).file != SectionSpec::File::register_map) continue;
