@@ -25,6 +25,8 @@ struct OfRoom {
   int paths;
 };
 
+void PrintTo(const OfRoom& of, std::ostream* out) { *out << of.name; }
+
 const Vec3 kTowardsSun = Vec3(0.2, -0.7, 0.6).normalized();
 
 class Daylit : public testing::TestWithParam<OfRoom> {};

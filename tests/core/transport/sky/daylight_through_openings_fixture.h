@@ -34,6 +34,4 @@ inline RoomWithWindows with_windows_that_face_each_other() {
   return room;
 }
 
-inline void PrintTo(const OfRoom& of, std::ostream* out) { *out << of.name; }
-
 }  // namespace luxrig::daylight_through_openings_fixture
