@@ -37,14 +37,14 @@ class Fingerprint {
 };
 
 /// A body of light is told by its flux and by its intensity in so many directions, evenly over the sphere.
-constexpr int kDirections = 256;
+constexpr int kDirectionsOfLight = 256;
 
 void add_intensity(Fingerprint& print, const Luminaire& luminaire) {
   print.add(luminaire.lumens);
   if (!luminaire.intensity) return;
   print.add(luminaire.intensity->flux_lm());
-  for (int i = 0; i < kDirections; ++i) {
-    const double z = 1 - (2 * i + 1.0) / kDirections, r = std::sqrt(1 - z * z);
+  for (int i = 0; i < kDirectionsOfLight; ++i) {
+    const double z = 1 - (2 * i + 1.0) / kDirectionsOfLight, r = std::sqrt(1 - z * z);
     const double turn_rad = i * std::numbers::pi * (3 - std::sqrt(5.0));
     print.add(luminaire.intensity->intensity_cd({r * std::cos(turn_rad), r * std::sin(turn_rad), z}));
   }
