@@ -17,7 +17,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+constexpr double kBoundless = std::numeric_limits<double>::infinity();
 const double kNoGoal = std::numeric_limits<double>::quiet_NaN();
 
 /// Every third is degenerate: equal and dark lights, no room below a limit, no level to have.
@@ -41,7 +41,7 @@ EmittanceProblem random_problem(unsigned seed, Index most_points, Index most_lig
     p.fixed_lx[i] = unit * 10 * uniform(random);
     p.goal_lx[i] = uniform(random) < 0.2 ? kNoGoal : unit * 300 * uniform(random);
     p.weight[i] = uniform(random) < 0.5 ? 1 : 2 * uniform(random);
-    p.max_lx[i] = uniform(random) < 0.5 ? kNoLimit : p.fixed_lx[i] + unit * 200 * uniform(random);
+    p.max_lx[i] = uniform(random) < 0.5 ? kBoundless : p.fixed_lx[i] + unit * 200 * uniform(random);
   }
   for (Index j = 0; j < lights; ++j) p.switched.push_back(uniform(random) < 0.6);
   if (seed % 3 == 2) {
@@ -62,12 +62,12 @@ double least_error_with(const EmittanceProblem& p, const VectorXd& set) {
   for (Index j = 0; j < set.size(); ++j)
     if (!p.switched[static_cast<std::size_t>(j)]) dims.push_back(j);
   for (Index i = 0; i < p.goal_lx.size(); ++i) {
-    if (p.lux_per_level.row(i).dot(set) + p.fixed_lx[i] > p.max_lx[i]) return kNoLimit;
+    if (p.lux_per_level.row(i).dot(set) + p.fixed_lx[i] > p.max_lx[i]) return kBoundless;
     if (!std::isnan(p.goal_lx[i])) goals.push_back(i);
     if (std::isfinite(p.max_lx[i])) limits.push_back(i);
   }
   const double watts_left = p.max_watts - p.watts.dot(set);
-  if (watts_left < 0) return kNoLimit;
+  if (watts_left < 0) return kBoundless;
   if (dims.empty() || goals.empty()) return error_of(p, set);
   const auto columns = static_cast<Index>(dims.size());
   MatrixXd A(static_cast<Index>(goals.size()), columns);
@@ -95,7 +95,7 @@ double least_error_with(const EmittanceProblem& p, const VectorXd& set) {
   const auto solved = solve_limited_nnls(problem, of_dims);
   if (!solved) {
     ADD_FAILURE() << solved.error().detail;
-    return kNoLimit;
+    return kBoundless;
   }
   VectorXd level = set;
   for (Index c = 0; c < columns; ++c) level[dims[static_cast<std::size_t>(c)]] = solved->least_squares.x[c];
@@ -106,7 +106,7 @@ double least_error_of_all_settings(const EmittanceProblem& p) {
   std::vector<Index> switched;
   for (Index j = 0; j < p.max_level.size(); ++j)
     if (p.switched[static_cast<std::size_t>(j)]) switched.push_back(j);
-  double least = kNoLimit;
+  double least = kBoundless;
   for (unsigned setting = 0; setting < 1u << switched.size(); ++setting) {
     VectorXd set = VectorXd::Zero(p.max_level.size());
     for (std::size_t k = 0; k < switched.size(); ++k)
@@ -174,21 +174,21 @@ EmittanceProblem one_point(std::vector<double> lux, std::vector<bool> switched, 
 }
 
 TEST(SwitchedLights, OneOfAHundredLuxIsOnFromHalfOfItUp) {
-  EXPECT_EQ(solve_emittance(one_point({100}, {true}, 60, kNoLimit))->level[0], 1);
-  EXPECT_EQ(solve_emittance(one_point({100}, {true}, 40, kNoLimit))->level[0], 0);
+  EXPECT_EQ(solve_emittance(one_point({100}, {true}, 60, kBoundless))->level[0], 1);
+  EXPECT_EQ(solve_emittance(one_point({100}, {true}, 40, kBoundless))->level[0], 0);
   EXPECT_EQ(solve_emittance(one_point({100}, {true}, 90, 99))->level[0], 0) << "it would be above the limit";
   EXPECT_EQ(solve_emittance(one_point({100}, {true}, 90, 100.001))->level[0], 1);
-  const auto tight = solve_emittance(one_point({100}, {true}, 60, kNoLimit));
+  const auto tight = solve_emittance(one_point({100}, {true}, 60, kBoundless));
   EXPECT_EQ(tight->points[0].binding, Binding::switched);
   EXPECT_NE(tight->points[0].reason.find("'a' can only be on or off"), std::string::npos) << tight->points[0].reason;
 }
 
 TEST(SwitchedLights, WhatDimsMakesUpForThem) {
-  const auto both = solve_emittance(one_point({100, 70, 50}, {true, true, false}, 190, kNoLimit));
+  const auto both = solve_emittance(one_point({100, 70, 50}, {true, true, false}, 190, kBoundless));
   EXPECT_EQ(both->level[0], 1);
   EXPECT_EQ(both->level[1], 1);
   EXPECT_NEAR(both->level[2], 0.4, 1e-6);
-  const auto one = solve_emittance(one_point({100, 70, 50}, {true, true, false}, 85, kNoLimit));
+  const auto one = solve_emittance(one_point({100, 70, 50}, {true, true, false}, 85, kBoundless));
   EXPECT_EQ(one->level[0], 0);
   EXPECT_EQ(one->level[1], 1);
   EXPECT_NEAR(one->level[2], 0.3, 1e-6);
