@@ -160,7 +160,7 @@ void turn_heads(Rig& rig, std::span<const Joints> joints);
 [[nodiscard]] Fixture hung_light(const Rig& rig, const std::string& name, std::size_t luminaire,
                                  const Vec3& position_world_m, const std::optional<Vec3>& aim_world_m);
 
-/// JSON with the keys of design.md `solve --json`, and these:
+/// JSON, as `luxrig solve --json` prints it. Among its keys:
 ///   top level  "luxrig_plan": 1, "rig", "made_for": {"goals", "limits", "light"} (fingerprints of the rig, in hex)
 ///   a light    "solved_level", "watts", "beam_angle_deg" if it zooms
 ///   a point    "weight", "max_lux", "why" if there is one, "xy" and "goal_xy" if goals have a colour

@@ -1,6 +1,6 @@
 #pragma once
 /// Transfers with one claimed USB device, without blocking. libusb_channel.h has the real channel, usbip_channel.h
-/// reaches a stand-in, and tests use tests/drivers/usb/scripted_usb.h.
+/// reaches a stand-in, and tests use tests/conformance/model_channel.h.
 ///
 /// Starting a transfer gives a ticket. take() returns ended transfers in the order in which they ended. Transfers of
 /// one endpoint are done in the order of their start; those of different endpoints are not ordered. No transfer has its

@@ -1,4 +1,4 @@
-// What shares nothing with the failed part goes on (design.md, what must always hold, 7).
+// Parts that share nothing with the failed one go on.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -202,7 +202,7 @@ TEST(ACoveredMeter, IsNotTakenAtItsWordUntilAPersonAppliesThePlanAgain) {
   EXPECT_LE(loop.worst_limit_share(), 1);
 }
 
-// "A meter that is stuck, dead or wrong cannot drive the light up" (design.md, what must always hold, 5).
+// "A meter that is stuck, dead or wrong cannot drive the light up".
 TEST(WhatMustAlwaysHold5, AMeterThatLiesFromTheFirstReadingCannotDriveTheLightUp) {
   for (const double factor : {0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 1.5, 10.0}) {
     for (const char* meter : {"meter-1", "meter-5"}) {

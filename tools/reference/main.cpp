@@ -1,6 +1,6 @@
-// luxrig-reference: rigs/REFERENCE.md from the standard input to the standard output, its tables written anew from the
-// keys of the schema and the options of the drivers. A table stands below the heading of its section or driver and
-// begins with the line kHead.
+// luxrig-reference: copies rigs/REFERENCE.md from standard input to standard output, with each table made from the keys
+// of the schema and the options of the drivers. A table stands below the heading of its section or driver and begins
+// with the line kHead.
 #include <fmt/format.h>
 
 #include <iostream>
@@ -41,7 +41,7 @@ std::map<std::string, std::string> tables() {
   return rows;
 }
 
-/// The page with its tables written anew. `wrong`: what keeps it from that.
+/// The page with its tables made again. `wrong`: why that cannot be done.
 std::string with_tables(std::istream& page, std::vector<std::string>& wrong) {
   std::map<std::string, std::string> missing = tables();
   std::string written, heading;
