@@ -47,7 +47,7 @@ INSTANTIATE_TEST_SUITE_P(OfTen, HostileShare, testing::Range(0, 10));
 
 TEST_P(HostileShare, OfScenesGivesNoNaNNothingNegativeAndNothingInfinite) {
   if (kScenes < 1000) std::cout << kScenes << " of 1000 scenes, as sanitizers slow them\n";
-  int refused = 0;
+  int asked = 0, refused = 0;
   for (int i = 0; i < kScenes; ++i) {
     const auto seed = static_cast<std::uint64_t>(GetParam() * 1000 + i);
     SCOPED_TRACE("seed " + std::to_string(seed));
@@ -59,6 +59,7 @@ TEST_P(HostileShare, OfScenesGivesNoNaNNothingNegativeAndNothingInfinite) {
       // Each scene by direct light, and by path and gather in turns: those take their 5 ms.
       if (entry.make != make_direct_evaluator && (entry.make == make_path_evaluator) != (i % 2 == 0)) continue;
       SCOPED_TRACE(entry.name);
+      ++asked;
       const auto matrix = entry.make(rays)->evaluate(made.receivers, made.emitters, options);
       if (!matrix) {
         ASSERT_EQ(matrix.error().cause, Cause::invalid) << matrix.error().detail;
@@ -74,7 +75,10 @@ TEST_P(HostileShare, OfScenesGivesNoNaNNothingNegativeAndNothingInfinite) {
       ASSERT_LE((*direct_lx - matrix->direct_lux_per_level).cwiseAbs().maxCoeff(), 1e-9 * direct_lx->maxCoeff());
     }
   }
-  EXPECT_LE(refused, kScenes / 2);
+  // A quarter of a thousand scenes at most is refused, or this would test little. Ten scenes are no measure of that: of
+  // ten some must be worked out.
+  if (kScenes == 1000) EXPECT_LE(refused, asked / 4);
+  EXPECT_LT(refused, asked);
 }
 
 }  // namespace
