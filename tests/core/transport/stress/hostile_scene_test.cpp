@@ -77,7 +77,9 @@ TEST_P(HostileShare, OfScenesGivesNoNaNNothingNegativeAndNothingInfinite) {
   }
   // A quarter of a thousand scenes at most is refused, or this would test little. Ten scenes are no measure of that: of
   // ten some must be worked out.
-  if (kScenes == 1000) EXPECT_LE(refused, asked / 4);
+  if (kScenes == 1000) {
+    EXPECT_LE(refused, asked / 4);
+  }
   EXPECT_LT(refused, asked);
 }
 
