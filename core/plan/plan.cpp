@@ -27,13 +27,22 @@ void put(OrderedJson& object, const char* key, const std::optional<Chromaticity>
   if (xy && xy->allFinite()) object[key] = {xy->x(), xy->y()};
 }
 
+/// In twelve digits: the same again when it is read and written.
+double written_deg(double rad) {
+  const double deg = deg_from_rad(rad);
+  if (std::abs(deg) < 1e-12) return 0;
+  return std::isfinite(deg) ? std::stod(fmt::format("{:.12g}", deg)) : deg;
+}
+
 OrderedJson json_of(const PlannedLight& light) {
   OrderedJson json = {{"name", light.name}, {"luminaire", light.luminaire}};
   put(json, "position", light.position_world_m);
   if (light.aim_world_m) put(json, "aim", *light.aim_world_m);
-  put(json, "pan_deg", light.pan_deg);
-  put(json, "tilt_deg", light.tilt_deg);
-  put(json, "beam_angle_deg", light.beam_angle_deg);
+  if (light.joints) {
+    put(json, "pan_deg", written_deg(light.joints->pan_rad));
+    put(json, "tilt_deg", written_deg(light.joints->tilt_rad));
+    if (light.joints->beam_rad != 0) put(json, "beam_angle_deg", written_deg(light.joints->beam_rad));
+  }
   put(json, "level", light.level);
   put(json, "solved_level", light.solved_level);
   put(json, "lumens", light.lumens);

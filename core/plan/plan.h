@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/photometry/light_colour.h"
+#include "core/plan/look.h"
 #include "core/plan/verdict.h"
 #include "core/result.h"
 #include "core/rig/rig.h"
@@ -19,9 +20,8 @@ struct PlannedLight {
   std::string luminaire;
   Vec3 position_world_m = Vec3::Zero();
   std::optional<Vec3> aim_world_m;
-  std::optional<double> pan_deg, tilt_deg;
-  std::optional<double> beam_angle_deg;  ///< as set by its zoom
-  double level = 0;                      ///< emittance factor 0…1
+  std::optional<Joints> joints{};  ///< beam_rad: as set by its zoom; 0 without one
+  double level = 0;                ///< emittance factor 0…1
   /// Level written by the solver. If `level` differs, a person changed it, and it is held. None = unknown.
   std::optional<double> solved_level{};
   double lumens = 0;              ///< level × rated flux
@@ -127,36 +127,24 @@ void judge(Plan& plan, double goal_tolerance);
 /// are set aside.
 [[nodiscard]] bool holds_a_look(const Plan& plan);
 
-/// A plan, applied to an existing rig.
-struct PlannedLook {
-  std::vector<double> levels;  ///< per fixture
-  std::vector<Joints> joints;  ///< per fixture; the rig's if it does not move or the plan has none for it
-  /// Per point: the plan's goal, or the predicted light if that is to be held. None = not corrected.
-  std::vector<std::optional<double>> goal_lx;
-  /// Per point: the lower of the rig's and the plan's limit.
-  std::vector<std::optional<double>> max_lx;
-  std::vector<double> weight;  ///< per point: the plan's, else the rig's
-  /// Per fixture: the solved level if a person has changed it; none = unchanged.
-  std::vector<std::optional<double>> solved_levels;
-};
-
-/// In the rig's order. Problems if the plan:
+/// The plan as a look of an existing rig, in the rig's order. A fixture that does not move, or has no joints in the
+/// plan, keeps the rig's. A point's goal is the plan's, or the predicted light if that is to be held; its limit is the
+/// lower of the rig's and the plan's. Problems if the plan:
 /// - is for another rig
 /// - names an unknown fixture, or a placed light that is not hung yet (then the mend says where and how)
 /// - leaves out a fixture
 /// - has a level outside 0…max_level or an angle outside a head's range
-[[nodiscard]] Checked<PlannedLook> look_for(const Plan& plan, const Rig& rig, const std::string& file_name);
+[[nodiscard]] Checked<Look> look_for(const Plan& plan, const Rig& rig, const std::string& file_name);
 
-/// Turns the heads of the rig: sets their joints, and drops the aim where they differ. One Joints per fixture.
-void turn_heads(Rig& rig, std::span<const Joints> joints);
+/// A plan whose placed lights hang, for light in the model.
+struct HungPlan {
+  Rig rig;  ///< each placed light that is not a fixture of the rig is a further fixture (hung_light), after its own
+  Look look;
+};
+[[nodiscard]] Checked<HungPlan> hang_plan(const Plan& plan, const Rig& rig, const std::string& file_name);
 
-/// Levels of the plan after each placed light that is not a fixture of the rig is hung at its place. Each becomes a
-/// fixture of `rig`, after its own. These have no bus (`bus` is past the last one): they are for light in the model,
-/// never for output. Heads point as planned.
-[[nodiscard]] Checked<std::vector<double>> levels_when_hung(const Plan& plan, Rig& rig, const std::string& file_name);
-
-/// A fixture without a bus: a luminaire at a position, pointing straight down or at an aim. requires luminaire < the
-/// rig's.
+/// A fixture without a bus (`bus` is past the last one), never for output: a luminaire at a position, pointing straight
+/// down or at an aim. requires luminaire < the rig's.
 [[nodiscard]] Fixture hung_light(const Rig& rig, const std::string& name, std::size_t luminaire,
                                  const Vec3& position_world_m, const std::optional<Vec3>& aim_world_m);
 

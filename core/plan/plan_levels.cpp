@@ -24,16 +24,15 @@ class PlanLevels {
   PlanLevels(const Plan& plan, const std::string& file_name) : plan_(plan), file_name_(file_name) {}
 
   /// If `hang` is null, a light that is not a fixture is a problem.
-  Checked<PlannedLook> read(const Rig& rig, Rig* hang) {
+  Checked<Look> read(const Rig& rig, Rig* hang) {
     if (plan_.rig != rig.name) {
       problem(fmt::format("/rig: this plan is for rig \"{}\", not for \"{}\"", plan_.rig, rig.name),
               "give a plan solved for this rig");
       return tl::unexpected(std::move(problems_));
     }
     for (std::size_t i = 0; i < rig.fixtures.size(); ++i) index_of_.emplace(rig.fixtures[i].name, i);
-    PlannedLook look;
+    Look look = hung_look(rig);
     look.levels.assign(rig.fixtures.size(), kUnset);
-    for (const Fixture& fixture : rig.fixtures) look.joints.push_back(fixture.joints);
     std::vector<bool> named(rig.fixtures.size(), false);
     const auto set = [&](std::size_t fixture, const PlannedLight& light, const std::string& path) {
       look.levels.resize(rig.fixtures.size(), kUnset);
@@ -44,8 +43,12 @@ class PlanLevels {
       if (light.solved_level && std::abs(light.level - *light.solved_level) > kRounding)
         look.solved_levels[fixture] = light.solved_level;
       named[fixture] = true;
-      if (fixture >= look.joints.size()) return look.joints.resize(fixture + 1, rig.fixtures[fixture].joints);
+      if (fixture >= look.joints.size()) {  // just hung
+        look.joints.push_back(rig.fixtures[fixture].joints);
+        return look.aim_world_m.push_back(rig.fixtures[fixture].aim_world_m);
+      }
       turn(rig.fixtures[fixture], light, path, look.joints[fixture]);
+      if (!same_aim(look.joints[fixture], rig.fixtures[fixture].joints)) look.aim_world_m[fixture] = light.aim_world_m;
     };
     for (std::size_t t = 0; t < plan_.tasks.size(); ++t) {
       const PlannedTask& task = plan_.tasks[t];
@@ -88,7 +91,7 @@ class PlanLevels {
 
   /// Only the plan's goals count: a point that has none in the plan, or is not in it, is not corrected. Its limits
   /// apply in addition to the rig's.
-  void take_goals(const Rig& rig, PlannedLook& look) const {
+  void take_goals(const Rig& rig, Look& look) const {
     std::map<std::string_view, const PlannedPoint*> planned_at;
     for (const PlannedPoint& planned : plan_.points) planned_at.emplace(planned.name, &planned);
     const bool holds = holds_a_look(plan_);
@@ -105,26 +108,21 @@ class PlanLevels {
   }
 
   void turn(const Fixture& fixture, const PlannedLight& light, const std::string& path, Joints& joints) {
-    if (!fixture.moves || !light.pan_deg || !light.tilt_deg) return;
-    const auto within = [&](double deg, double min_rad, double max_rad, const char* key) {
-      const double rad = rad_from_deg(deg);
+    if (!fixture.moves || !light.joints) return;
+    const auto within = [&](double rad, double min_rad, double max_rad, const char* key) {
       if (!(rad >= min_rad - kRounding_rad && rad <= max_rad + kRounding_rad))
-        problem(fmt::format("{}/{}: {} for fixture \"{}\" is outside {:g}…{:g}", path, key, deg, light.name,
-                            deg_from_rad(min_rad), deg_from_rad(max_rad)),
+        problem(fmt::format("{}/{}: {:.12g} for fixture \"{}\" is outside {:g}…{:g}", path, key, deg_from_rad(rad),
+                            light.name, deg_from_rad(min_rad), deg_from_rad(max_rad)),
                 "give an angle within the head's range, or solve again");
       return std::clamp(rad, min_rad, max_rad);
     };
     const JointRange& range = fixture.range;
-    const Joints planned{within(*light.pan_deg, range.pan_min_rad, range.pan_max_rad, "pan_deg"),
-                         within(*light.tilt_deg, range.tilt_min_rad, range.tilt_max_rad, "tilt_deg"),
-                         range.zooms() && light.beam_angle_deg
-                             ? within(*light.beam_angle_deg, range.beam_min_rad, range.beam_max_rad, "beam_angle_deg")
-                             : fixture.joints.beam_rad};
-    // A difference from converting through degrees is not another aim.
-    const bool same = std::abs(planned.pan_rad - fixture.joints.pan_rad) < kRounding_rad &&
-                      std::abs(planned.tilt_rad - fixture.joints.tilt_rad) < kRounding_rad &&
-                      std::abs(planned.beam_rad - fixture.joints.beam_rad) < kRounding_rad;
-    joints = same ? fixture.joints : planned;
+    const Joints& planned = *light.joints;
+    joints = {within(planned.pan_rad, range.pan_min_rad, range.pan_max_rad, "pan_deg"),
+              within(planned.tilt_rad, range.tilt_min_rad, range.tilt_max_rad, "tilt_deg"),
+              range.zooms() && planned.beam_rad != 0
+                  ? within(planned.beam_rad, range.beam_min_rad, range.beam_max_rad, "beam_angle_deg")
+                  : fixture.joints.beam_rad};
   }
 
   template <class Set>
@@ -235,24 +233,16 @@ bool holds_a_look(const Plan& plan) {
   return last != plan.tasks.rend() && last->kind == name_of(TaskKind::aim);
 }
 
-Checked<PlannedLook> look_for(const Plan& plan, const Rig& rig, const std::string& file_name) {
+Checked<Look> look_for(const Plan& plan, const Rig& rig, const std::string& file_name) {
   return PlanLevels(plan, file_name).read(rig, nullptr);
 }
 
-Checked<std::vector<double>> levels_when_hung(const Plan& plan, Rig& rig, const std::string& file_name) {
-  auto look = PlanLevels(plan, file_name).read(rig, &rig);
+Checked<HungPlan> hang_plan(const Plan& plan, const Rig& rig, const std::string& file_name) {
+  HungPlan hung{rig, {}};
+  auto look = PlanLevels(plan, file_name).read(hung.rig, &hung.rig);
   if (!look) return tl::unexpected(std::move(look.error()));
-  turn_heads(rig, look->joints);
-  return std::move(look->levels);
-}
-
-void turn_heads(Rig& rig, std::span<const Joints> joints) {
-  for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
-    Fixture& fixture = rig.fixtures[f];
-    if (fixture.joints == joints[f]) continue;
-    fixture.joints = joints[f];
-    fixture.aim_world_m.reset();
-  }
+  hung.look = std::move(*look);
+  return hung;
 }
 
 }  // namespace luxrig

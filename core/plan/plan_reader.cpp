@@ -208,9 +208,11 @@ PlannedLight light_of(const Reader& reader, const Json& json, const std::string&
   light.luminaire = reader.text(json, path, "luminaire", false);
   light.position_world_m = reader.vector(json, path, "position").value_or(Vec3::Constant(kAbsent));
   light.aim_world_m = reader.vector(json, path, "aim");
-  light.pan_deg = reader.optional_number(json, path, "pan_deg");
-  light.tilt_deg = reader.optional_number(json, path, "tilt_deg");
-  light.beam_angle_deg = reader.optional_number(json, path, "beam_angle_deg");
+  const auto pan_deg = reader.optional_number(json, path, "pan_deg");
+  const auto tilt_deg = reader.optional_number(json, path, "tilt_deg");
+  const auto beam_deg = reader.optional_number(json, path, "beam_angle_deg");
+  if (pan_deg && tilt_deg)
+    light.joints = Joints{rad_from_deg(*pan_deg), rad_from_deg(*tilt_deg), rad_from_deg(beam_deg.value_or(0))};
   light.level = reader.number(json, path, "level", true);
   light.solved_level = reader.optional_number(json, path, "solved_level");
   light.lumens = reader.number(json, path, "lumens", false);

@@ -11,6 +11,7 @@
 /// Pan is positive counter-clockwise seen from above. Tilt is positive from straight down towards +Y of the panned
 /// base. In frame mount the beam is d = (-sin p sin t, cos p sin t, -cos t).
 
+#include <cmath>
 #include <optional>
 
 #include "core/geometry.h"
@@ -23,6 +24,13 @@ struct Joints {
   double beam_rad = 0;  ///< beam angle set by the zoom; 0 = as the luminaire states
   bool operator==(const Joints&) const = default;
 };
+
+/// Whether both point the same way, within 1e-9 rad: angles written in degrees and read again still do.
+[[nodiscard]] inline bool same_aim(const Joints& a, const Joints& b) {
+  constexpr double kRounding_rad = 1e-9;
+  return std::abs(a.pan_rad - b.pan_rad) < kRounding_rad && std::abs(a.tilt_rad - b.tilt_rad) < kRounding_rad &&
+         std::abs(a.beam_rad - b.beam_rad) < kRounding_rad;
+}
 
 /// Range of a head's joints. It zooms only if beam_max_rad is above 0.
 struct JointRange {

@@ -211,7 +211,10 @@ struct Fixture {
   double reset_s = 0;                ///< how long it homes after power-on; only if it moves
   Place place;
 
-  [[nodiscard]] Pose world_from_lamp() const { return luxrig::world_from_lamp(world_from_mount, joints, roll_rad); }
+  [[nodiscard]] Pose world_from_lamp() const { return world_from_lamp(joints); }
+  [[nodiscard]] Pose world_from_lamp(const Joints& at) const {
+    return luxrig::world_from_lamp(world_from_mount, at, roll_rad);
+  }
   /// Bus of its AimCommands. Its LevelCommands go to `bus`.
   [[nodiscard]] std::size_t motion_bus() const { return axes ? axes->bus : bus; }
 };

@@ -83,12 +83,17 @@ void ShowController::State::release_what_is_over(Time now) {
   if (!fixtures.empty() || !points.empty()) release(now, fixtures, points);
 }
 
+/// What the look leaves out is the rig's.
 void ShowController::State::take_points(const Look& look) {
-  for (std::size_t p = 0; p < rig.points.size(); ++p) {
-    Point& point = points_as_planned[p];
-    point.goal_lx = look.goal_lx[p];
-    point.max_lx = look.max_lx.empty() ? rig_points[p].max_lx : look.max_lx[p];
-    point.weight = look.weight.empty() ? rig_points[p].weight : look.weight[p];
+  planned = look;
+  const std::size_t count = rig.points.size();
+  planned.goal_lx.resize(count);
+  planned.max_lx.resize(count);
+  planned.weight.resize(count);
+  for (std::size_t p = 0; p < count; ++p) {
+    if (look.goal_lx.empty()) planned.goal_lx[p] = rig.points[p].goal_lx;
+    if (look.max_lx.empty()) planned.max_lx[p] = rig.points[p].max_lx;
+    if (look.weight.empty()) planned.weight[p] = rig.points[p].weight;
   }
 }
 
@@ -111,11 +116,11 @@ void ShowController::State::take_levels_of_plan(Time now, const std::vector<doub
 
 void ShowController::State::tell_estimator() {
   for (std::size_t p = 0; p < rig.points.size(); ++p) {
-    rig.points[p].goal_lx = hand_goal[p] ? std::optional(hand_goal[p]->value) : points_as_planned[p].goal_lx;
-    rig.points[p].max_lx = points_as_planned[p].max_lx;
-    rig.points[p].weight = points_as_planned[p].weight;
+    points_in_force[p].goal_lx = hand_goal[p] ? std::optional(hand_goal[p]->value) : planned.goal_lx[p];
+    points_in_force[p].max_lx = planned.max_lx[p];
+    points_in_force[p].weight = planned.weight[p];
   }
-  estimator.set_points(rig.points);
+  estimator.set_points(points_in_force);
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
     estimator.set_held(f, hand_level[f] && !bypassed_lamp[f]);
     estimator.set_max_level(f, bypassed_lamp[f] ? 0 : most_of(f));
@@ -154,7 +159,7 @@ std::string ShowController::State::why_not(Time now, const ByHand& held) const {
   if (phase == Phase::frozen) return "the light is held, as something has failed";
   if (!cue) return "no plan is in force yet";
   if (held.what == ByHand::What::goal) {
-    const std::optional<double> max_lx = rig.points[held.index].max_lx;
+    const std::optional<double> max_lx = points_in_force[held.index].max_lx;
     if (max_lx && held.value > *max_lx) return fmt::format("its limit of {:g} lx wins", *max_lx);
     return held.index < why.size() ? why[held.index] : std::string();
   }
@@ -169,8 +174,10 @@ std::string ShowController::State::why_not(Time now, const ByHand& held) const {
   level[held.index] = held.value;
   std::string limits;
   for (std::size_t p = 0; p < rig.points.size(); ++p) {
-    if (!rig.points[p].max_lx || estimator.most_lux_at_point(p, level, now) <= *rig.points[p].max_lx) continue;
-    limits += fmt::format("{}\"{}\" ({:g} lx)", limits.empty() ? "" : ", ", rig.points[p].name, *rig.points[p].max_lx);
+    if (!points_in_force[p].max_lx || estimator.most_lux_at_point(p, level, now) <= *points_in_force[p].max_lx)
+      continue;
+    limits += fmt::format("{}\"{}\" ({:g} lx)", limits.empty() ? "" : ", ", points_in_force[p].name,
+                          *points_in_force[p].max_lx);
   }
   return limits.empty()
              ? fmt::format("{:.3f} is the most that limits leave", program.to_level[held.index])

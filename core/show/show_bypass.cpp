@@ -86,7 +86,7 @@ void ShowController::State::tell_bypassed(ShowStatus& status) const {
     if (meter.point) {
       const PointStatus& point = status.points[*meter.point];
       const std::string& name = rig.points[*meter.point].name;
-      if (rig.points[*meter.point].max_lx)
+      if (points_in_force[*meter.point].max_lx)
         risk += fmt::format("; the limit at {} is then watched by nobody: it is kept by the model alone, ± {:.0f} %",
                             name, share(point));
       else

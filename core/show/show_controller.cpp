@@ -57,7 +57,7 @@ std::vector<std::uint8_t> fixtures_that_tell_of_lamps(const Rig& rig) {
 
 }  // namespace
 
-ShowController::State::State(const Rig& rig_in, const LightModel& model)
+ShowController::State::State(const Rig& rig_in, const LightModel& model, std::span<const Joints> joints)
     : rig(rig_in),
       estimator(rig, model),
       health(rig),
@@ -75,16 +75,16 @@ ShowController::State::State(const Rig& rig_in, const LightModel& model)
       hand_level(rig.fixtures.size()),
       without_hands(rig.fixtures.size(), 0.0),
       hand_goal(rig.points.size()),
-      rig_points(rig.points),
-      points_as_planned(rig.points),
+      points_in_force(rig.points),
       drifts(rig.luxmeters.size()),
       bypassed_lamp(rig.fixtures.size()),
       bypassed_meter(rig.luxmeters.size()) {
   const std::vector<double> dark(rig.fixtures.size(), 0.0);
   for (const Fixture& fixture : rig.fixtures) {
     program.max_level.push_back(rig.max_level(fixture));
-    program.joints.push_back(fixture.joints);
   }
+  take_points(hung_look(rig));
+  program.joints = joints.empty() ? planned.joints : std::vector<Joints>(joints.begin(), joints.end());
   program.switched = switched_fixtures(rig);
   model_joints = program.joints;
   for (const std::size_t f : zones.heads()) {
@@ -157,7 +157,8 @@ void ShowController::State::guard(Time now, const std::vector<double>& from, con
         level[static_cast<Eigen::Index>(j)] =
             level_on_the_way(from[j], to[j], static_cast<double>(s) / kSamples, program.switched[j] != 0);
       const double most_lx = estimator.most_lux_at_point(worst.points[k], {level.data(), from.size()}, now);
-      safe = most_lx <= *rig.points[worst.points[k]].max_lx * kAllowed;  // all light; the row's limit lacks daylight
+      safe =
+          most_lx <= *points_in_force[worst.points[k]].max_lx * kAllowed;  // all light; the row's limit lacks daylight
     }
     if (safe) row *= max_lx / ends_lx * (1 - 1e-9);
   }
@@ -176,7 +177,7 @@ void ShowController::State::guard(Time now, const std::vector<double>& from, con
 }
 
 bool ShowController::State::turns(std::size_t fixture) const {
-  return rig.fixtures[fixture].moves && !(awaited->joints[fixture] == program.joints[fixture]);
+  return rig.fixtures[fixture].moves && !same_aim(awaited->look.joints[fixture], program.joints[fixture]);
 }
 
 /// What it turns is dark. `moving` until the light may come back.
@@ -186,14 +187,14 @@ void ShowController::State::take_look(Time now) {
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
     // What parks is dark: the light is as before without it.
     const bool parks = !parking.empty() && parking[f] != 0;
-    if (rig.fixtures[f].moves && !parks && !parked(f) && !(awaited->joints[f] == model_joints[f])) other_light = true;
+    if (rig.fixtures[f].moves && !parks && !parked(f) && !same_aim(awaited->look.joints[f], model_joints[f]))
+      other_light = true;
     if (!turns(f)) continue;
     any = true;
-    wait_s = std::max(wait_s, travel_s(rig.fixtures[f], program.joints[f], awaited->joints[f]) + kHeadDelay_s);
-    rig.fixtures[f].joints = program.joints[f] = awaited->joints[f];
-    rig.fixtures[f].aim_world_m.reset();
+    wait_s = std::max(wait_s, travel_s(rig.fixtures[f], program.joints[f], awaited->look.joints[f]) + kHeadDelay_s);
+    program.joints[f] = awaited->look.joints[f];
   }
-  take_points(*awaited);
+  take_points(awaited->look);
   // From the way to where it was told to look before: what is left of that comes first.
   if (any) arrive = std::max(arrive, now) + from_seconds(wait_s);
   if (other_light) {
@@ -201,7 +202,7 @@ void ShowController::State::take_look(Time now) {
     estimator = GainEstimator(rig, awaited->model);
     drifts.assign(rig.luxmeters.size(), {});
     std::fill(measured.begin(), measured.end(), std::nullopt);
-    model_joints = awaited->joints;
+    model_joints = awaited->look.joints;
   }
   tell_estimator();
   finish_parking();
@@ -357,7 +358,8 @@ void ShowController::State::advance(Time now) {
   }
 }
 
-ShowController::ShowController(const Rig& rig, LightModel model) : state_(std::make_unique<State>(rig, model)) {}
+ShowController::ShowController(const Rig& rig, LightModel model, std::span<const Joints> joints)
+    : state_(std::make_unique<State>(rig, model, joints)) {}
 ShowController::~ShowController() = default;
 ShowController::ShowController(ShowController&&) noexcept = default;
 
@@ -372,29 +374,26 @@ std::vector<double> ShowController::State::wanted_levels(std::span<const double>
 }
 
 void ShowController::apply(Time now, std::span<const double> levels) {
-  Look look;
+  Look look = state_->planned;
+  look.levels.assign(levels.begin(), levels.end());
   look.joints = state_->model_joints;
-  for (const Point& point : state_->points_as_planned) {
-    look.goal_lx.push_back(point.goal_lx);
-    look.max_lx.push_back(point.max_lx);
-    look.weight.push_back(point.weight);
-  }
-  apply(now, levels, std::move(look));
+  look.solved_levels.clear();
+  apply(now, std::move(look), {});
 }
 
-void ShowController::apply(Time now, std::span<const double> levels, Look look) {
+void ShowController::apply(Time now, Look look, LightModel model) {
   State& state = *state_;
   now = state.at_least_last(now);
   LUXRIG_CHECK(look.joints.size() == state.rig.fixtures.size() && look.goal_lx.size() == state.rig.points.size(),
                "a look of another rig");
   state.unpark();
-  std::vector<double> wanted = state.wanted_levels(levels);
+  std::vector<double> wanted = state.wanted_levels(look.levels);
   state.asked_safe = false;
   state.afresh = true;
   state.forget_drift();
   state.first_turn(now, look.joints);
   state.take_levels_of_plan(now, wanted, look);
-  state.awaited = std::move(look);
+  state.awaited = {std::move(look), std::move(model)};
   state.start_cue(now, std::move(wanted));
 }
 

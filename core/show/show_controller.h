@@ -18,6 +18,7 @@
 #include "core/estimation/light_model.h"
 #include "core/output/devices.h"
 #include "core/output/output_program.h"
+#include "core/plan/look.h"
 #include "core/plan/verdict.h"
 #include "core/rig/rig.h"
 #include "core/show/by_hand.h"
@@ -33,18 +34,6 @@ struct Alarm {
   std::string device;  ///< may be empty
   std::string text;    ///< what is wrong, and what would mend it
   Time since{};
-};
-
-/// Where heads look, what that gives, and what is wanted there.
-struct Look {
-  std::vector<Joints> joints;                   ///< per fixture
-  std::vector<std::optional<double>> goal_lx;   ///< per point
-  LightModel model;                             ///< with these joints
-  std::vector<std::optional<double>> max_lx{};  ///< per point; empty: the rig's
-  std::vector<double> weight{};                 ///< per point; empty: the rig's
-  /// Per fixture: what was solved where a person has written another level into the plan, which is then held by hand.
-  /// Empty: nobody has.
-  std::vector<std::optional<double>> solved_levels{};
 };
 
 struct PointStatus {
@@ -65,6 +54,7 @@ struct PointStatus {
 
 struct FixtureStatus {
   Joints joints;  ///< where it shall look
+  std::optional<Vec3> aim_world_m{};  ///< the point there, if the plan or the rig file knows it
   /// `level`: what is believed to be out. Of a lamp that does not answer, the last that it took; see level_known.
   double level = 0, drive = 0, target_level = 0;
   bool level_known = true;                   ///< false: its device is lost, and what it does with its lamp is not known
@@ -114,18 +104,10 @@ struct ShowStatus {
   std::vector<Bypassed> bypassed;  ///< fixtures, then luxmeters
 };
 
-/// What somebody else has sent until now, and goes on to if nobody does anything.
-struct LightInForce {
-  std::vector<double> level, safe;  ///< per fixture, 0…1
-  std::vector<Joints> joints;       ///< per fixture
-  double hold_s = 0, fade_s = 0;    ///< how long `level` is still held, and the way from there to `safe`
-  /// Per fixture, 1: nothing is sent for it, as a desk drives it or may; empty: all are sent.
-  std::vector<std::uint8_t> silent{};
-};
-
 class ShowController {
  public:
-  ShowController(const Rig& rig, LightModel model);
+  /// joints   where heads look in the model, one per fixture; empty: as the rig file says
+  ShowController(const Rig& rig, LightModel model, std::span<const Joints> joints = {});
   ~ShowController();
   ShowController(ShowController&&) noexcept;
 
@@ -149,11 +131,11 @@ class ShowController {
   /// margin, no limited point can exceed its limit.
   void apply(Time now, std::span<const double> levels);
 
-  /// The same with heads that look elsewhere, and other goals. What moves is faded out first, turned in the dark, and
+  /// A look with heads that look elsewhere, and other goals. model: with its joints. What moves is faded out first, turned in the dark, and
   /// faded in where it arrives, so that no beam crosses a limited place on its way; the first time heads are turned
   /// nobody knows from where, and the light waits for their longest way. What meters have taught is kept while no head
   /// turns.
-  void apply(Time now, std::span<const double> levels, Look look);
+  void apply(Time now, Look look, LightModel model);
 
   /// Sets levels and goals by hand. They stay until they are released, through corrections and later plans, within
   /// limits; the rest is solved around them at once, as far as the model knows. Blackout, failures and the safe look

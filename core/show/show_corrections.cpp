@@ -58,9 +58,9 @@ void ShowController::State::take_sample(Time now) {
 
   std::vector<LimitBreach> present;
   for (std::size_t p = 0; p < rig.points.size(); ++p) {
-    if (!rig.points[p].max_lx || !estimator.confirmed(p)) continue;
+    if (!points_in_force[p].max_lx || !estimator.confirmed(p)) continue;
     const double most_lx = estimator.most_lux_at_point(p, program.to_level, now);
-    if (most_lx <= *rig.points[p].max_lx * (1 + kBreachSlack)) continue;
+    if (most_lx <= *points_in_force[p].max_lx * (1 + kBreachSlack)) continue;
     const auto known =
         std::find_if(breaches.begin(), breaches.end(), [&](const LimitBreach& breach) { return breach.point == p; });
     present.push_back({p, most_lx, known == breaches.end() ? now : known->since});

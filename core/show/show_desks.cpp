@@ -24,8 +24,8 @@ constexpr Duration kListensAtMost = std::chrono::seconds(5);
 /// Limits for levels that nobody has worked out, and which heads a desk cannot light while they turn.
 void ShowController::State::guard_against_desks(Time now) {
   if (desks.empty()) return;
-  const bool limited =
-      std::any_of(rig.points.begin(), rig.points.end(), [](const Point& point) { return point.max_lx.has_value(); });
+  const bool limited = std::any_of(points_in_force.begin(), points_in_force.end(),
+                                   [](const Point& point) { return point.max_lx.has_value(); });
   WorstCase worst = estimator.worst_of_any(now);
   program.any_lux_per_level = std::move(worst.worst_lux_per_level);
   program.any_max_lx = std::move(worst.max_lx);
@@ -83,7 +83,7 @@ void ShowController::State::begin_after_listening(Time now) {
   if (!cue || waits_for_desks(now)) return;
   if (turned) {  // heads have not heard of it either
     turned = false;
-    first_turn(now, awaited ? awaited->joints : program.joints);
+    first_turn(now, awaited ? awaited->look.joints : program.joints);
   }
   start_cue(now, *cue);
 }
@@ -115,8 +115,8 @@ DeskFollowerSettings ShowController::State::desk_settings(const DeskRules& rules
     settings.dimmer_curve.push_back(rig.fixtures[f].dimmer_curve);
     settings.joints.push_back(program.joints[f]);
   }
-  settings.desk_may_turn =
-      std::none_of(rig.points.begin(), rig.points.end(), [](const Point& point) { return point.max_lx.has_value(); });
+  settings.desk_may_turn = std::none_of(points_in_force.begin(), points_in_force.end(),
+                                        [](const Point& point) { return point.max_lx.has_value(); });
   settings.fade = from_seconds(rig.control.fade_s);
   settings.curve = rig.control.fade_curve;
   return settings;

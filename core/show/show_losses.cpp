@@ -47,7 +47,8 @@ bool ShowController::State::limits_bear_waiting(Time now) const {
   for (std::size_t f = 0; f < most.size(); ++f)
     most[f] = std::max({most[f], before[f], program.blackout ? 0.0 : program.to_level[f]});
   for (std::size_t p = 0; p < rig.points.size(); ++p)
-    if (rig.points[p].max_lx && estimator.most_lux_at_point(p, most, now) > *rig.points[p].max_lx * (1 + kBreachSlack))
+    if (points_in_force[p].max_lx &&
+        estimator.most_lux_at_point(p, most, now) > *points_in_force[p].max_lx * (1 + kBreachSlack))
       return false;
   return true;
 }
@@ -101,7 +102,8 @@ std::vector<std::uint8_t> ShowController::State::watched_meters() const {
     const Luxmeter& meter = rig.luxmeters[i];
     if (health.meter_lost(i) || !believed[i] || !meter.point) continue;
     const bool was = i >= watched.size() || watched[i] != 0;
-    seen[i] = believed[i]->lux <= rig.points[*meter.point].max_lx.value_or(meter.range_lx) * (was ? 1 : kWellBelow);
+    seen[i] =
+        believed[i]->lux <= points_in_force[*meter.point].max_lx.value_or(meter.range_lx) * (was ? 1 : kWellBelow);
   }
   return seen;
 }
@@ -139,9 +141,9 @@ bool ShowController::State::in_doubt(std::size_t luxmeter) const {
 }
 
 void ShowController::State::tell_losses(ShowStatus& status) const {
-  std::vector<std::string> points, lamps;
-  for (const std::size_t p : estimator.beyond_dimming()) points.push_back(rig.points[p].name);
-  if (points.empty()) return;
+  std::vector<std::string> limited, lamps;
+  for (const std::size_t p : estimator.beyond_dimming()) limited.push_back(rig.points[p].name);
+  if (limited.empty()) return;
   Time since = Time::max();
   for (std::size_t f = 0; f < lost.size(); ++f) {
     if (!lost[f] || !lost[f]->lamp || !may_brighten(rig.fixtures[f])) continue;
@@ -152,7 +154,7 @@ void ShowController::State::tell_losses(ShowStatus& status) const {
       {true, "",
        fmt::format("nobody knows what light {} give{} now, and it could be above the limit of {}; look there, or cut "
                    "the power of {}",
-                   some_of(lamps), lamps.size() == 1 ? "s" : "", some_of(points), lamps.size() == 1 ? "it" : "them"),
+                   some_of(lamps), lamps.size() == 1 ? "s" : "", some_of(limited), lamps.size() == 1 ? "it" : "them"),
        since});
 }
 

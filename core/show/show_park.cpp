@@ -35,25 +35,16 @@ Result<void> ShowController::State::park(Time now, std::span<const std::size_t> 
     for (std::size_t f = 0; f < rig.fixtures.size(); ++f) chosen[f] = rig.fixtures[f].park.has_value();
   if (std::find(chosen.begin(), chosen.end(), 1) == chosen.end())
     return refusal("no head has a place to rest: give one park_pan_deg and park_tilt_deg");
-  Look look;
-  look.joints = awaited ? awaited->joints : program.joints;
   // A look that waits for heads to go dark is taken with this one.
-  for (const Point& point : points_as_planned) {
-    look.goal_lx.push_back(point.goal_lx);
-    look.max_lx.push_back(point.max_lx);
-    look.weight.push_back(point.weight);
-  }
-  if (awaited) {
-    look.goal_lx = awaited->goal_lx;
-    look.max_lx = awaited->max_lx;
-    look.weight = awaited->weight;
-    look.model = std::move(awaited->model);
-  }
+  Awaited next = awaited ? std::move(*awaited) : Awaited{planned, {}};
+  Look& look = next.look;
+  if (!awaited) look.joints = program.joints;
   std::vector<double> levels = cue ? *cue : std::vector<double>(rig.fixtures.size(), 0.0);
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
     if (chosen[f] == 0 && !parked(f)) continue;
     chosen[f] = 1;
     look.joints[f] = *rig.fixtures[f].park;
+    if (!look.aim_world_m.empty()) look.aim_world_m[f].reset();
     levels[f] = 0;
   }
   parking = std::move(chosen);
@@ -65,7 +56,7 @@ Result<void> ShowController::State::park(Time now, std::span<const std::size_t> 
     fade(now, dark, dark, 0, FadeCurve::linear);
     return {};
   }
-  awaited = std::move(look);
+  awaited = std::move(next);
   start_cue(now, std::move(levels));
   return {};
 }

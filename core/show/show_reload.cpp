@@ -22,7 +22,8 @@ void ShowController::State::exchange_rig(Time now, const Rig& other, const Light
   hand_goal = std::move(goals);
   const std::vector<double> present = present_levels(now);
   rig = other;
-  rig_points = points_as_planned = rig.points;
+  points_in_force = rig.points;
+  take_points(hung_look(rig));
   aimed_lx.clear();
   why.clear();
   breaches.clear();

@@ -78,7 +78,7 @@ struct Solving {
 };
 
 struct ShowController::State {
-  State(const Rig& rig, const LightModel& model);
+  State(const Rig& rig, const LightModel& model, std::span<const Joints> joints);
 
   Rig rig;
   GainEstimator estimator;
@@ -111,7 +111,11 @@ struct ShowController::State {
   std::vector<double> asked;                     ///< levels in force before limits dimmed them, as corrected so far
   std::vector<std::optional<LostFixture>> lost;  ///< per fixture
   std::vector<std::uint8_t> watched;             ///< per luxmeter: what the estimator was told
-  std::optional<Look> awaited;                   ///< taken as soon as what it turns is dark
+  struct Awaited {
+    Look look;
+    LightModel model;  ///< with its joints
+  };
+  std::optional<Awaited> awaited;                ///< taken as soon as the heads that it turns are dark
   Time arrive{};                                 ///< heads look where they shall from here on; no fade starts before
   bool turned = false;                           ///< heads have been told where to look
   std::vector<double> in_force;  ///< levels of somebody else's light, until a look of ours is on; or empty
@@ -135,8 +139,8 @@ struct ShowController::State {
   std::vector<std::optional<ByHand>> hand_level;  ///< per fixture
   std::vector<double> without_hands;  ///< levels of the plan, as corrected before hands came: where a release goes
   std::vector<std::optional<ByHand>> hand_goal;  ///< per point
-  std::vector<Point> rig_points;                 ///< as the rig file has them
-  std::vector<Point> points_as_planned;          ///< of the look in force, without goals by hand
+  Look planned;  ///< the look in force, as the plan has it: goals, limits and weights of all points
+  std::vector<Point> points_in_force;            ///< the rig's, with the goals, limits and weights in force
   bool unsolved = false;                         ///< something by hand is newer than the levels in force
   [[nodiscard]] Result<void> hold(Time now, std::span<const ByHand> wanted);
   std::size_t release(Time now, std::span<const std::size_t> fixtures, std::span<const std::size_t> points);

@@ -32,15 +32,15 @@ double ShowController::State::possible_gain(const Correction& correction) const 
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
     const std::optional<std::size_t> point = rig.luxmeters[i].point;
     if (!point || !measured[i]) continue;
-    const double goal_lx = rig.points[*point].goal_lx.value_or(0);
+    const double goal_lx = points_in_force[*point].goal_lx.value_or(0);
     if (goal_lx > 0) most = std::max(most, std::abs(correction.aimed_lx[*point] - measured[i]->lux) / goal_lx);
   }
   return most;
 }
 
 bool ShowController::State::arrived(std::size_t point, double lux) const {
-  if (!rig.points[point].goal_lx) return true;
-  const double goal_lx = *rig.points[point].goal_lx;
+  if (!points_in_force[point].goal_lx) return true;
+  const double goal_lx = *points_in_force[point].goal_lx;
   const double near_lx = std::max(kArrivedTolerance, rig.control.tolerance) * goal_lx;
   if (std::abs(lux - goal_lx) <= near_lx) return true;
   return point < why.size() && !why[point].empty() && std::abs(lux - aimed_lx[point]) <= near_lx;
@@ -51,7 +51,7 @@ bool ShowController::State::all_metered_goals_arrived() const {
   bool any = false;
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
     const std::optional<std::size_t> point = rig.luxmeters[i].point;
-    if (!point || !rig.points[*point].goal_lx) continue;
+    if (!point || !points_in_force[*point].goal_lx) continue;
     if (!measured[i] || !arrived(*point, measured[i]->lux)) return false;
     any = true;
   }
@@ -132,9 +132,10 @@ ShowStatus ShowController::State::status(Time now) const {
   std::vector<Joints> joints(rig.fixtures.size());
   program.joints_at(now, joints);
   for (std::size_t i = 0; i < rig.fixtures.size(); ++i) {
-    status.fixtures.push_back({joints[i], level[i], drive_from_level(rig.fixtures[i].dimmer_curve, level[i]),
-                               program.to_level[i], !health.lamp_silent(i), estimator.gain(i),
-                               estimator.gain_standard_error(i)});
+    const bool as_planned = i < planned.aim_world_m.size() && same_aim(joints[i], planned.joints[i]);
+    status.fixtures.push_back({joints[i], as_planned ? planned.aim_world_m[i] : std::nullopt, level[i],
+                               drive_from_level(rig.fixtures[i].dimmer_curve, level[i]), program.to_level[i],
+                               !health.lamp_silent(i), estimator.gain(i), estimator.gain_standard_error(i)});
   }
   for (const Identification& one : identified) {
     for (const std::size_t f : one.pattern.fixtures()) status.fixtures[f].identified = !one.pattern.over(now);
@@ -157,7 +158,7 @@ ShowStatus ShowController::State::status(Time now) const {
   status.luxmeters = believed;
   status.alarms = health.alarms();
   for (const LimitBreach& breach : breaches) {
-    const Point& point = rig.points[breach.point];
+    const Point& point = points_in_force[breach.point];
     status.alarms.push_back(
         {true, rig.luxmeters[*meter_at(breach.point)].name,
          fmt::format("point \"{}\" may have {:.1f} lx by its meter, its limit is {:.1f} lx; the fixtures that light it "

@@ -12,15 +12,15 @@ void ShowController::go_on_from(Time now, const LightInForce& light) {
   State& state = *state_;
   now = state.at_least_last(now);
   const std::size_t count = state.rig.fixtures.size();
-  LUXRIG_CHECK(light.level.size() == count && light.safe.size() == count && light.joints.size() == count,
+  const std::vector<Joints>& joints = light.look.joints;
+  LUXRIG_CHECK(light.look.levels.size() == count && light.safe_levels.size() == count && joints.size() == count,
                "light of another rig");
-  std::vector<double> level = light.level, safe = light.safe;
+  std::vector<double> level = light.look.levels, safe = light.safe_levels;
   bool all_known = true;
   for (std::size_t f = 0; f < count; ++f) {
-    Fixture& fixture = state.rig.fixtures[f];
+    const Fixture& fixture = state.rig.fixtures[f];
     if (!fixture.moves) continue;
-    fixture.joints = state.program.joints[f] = light.joints[f];
-    fixture.aim_world_m.reset();
+    state.program.joints[f] = joints[f];
     if (!fixture.axes) continue;
     all_known = false;
     level[f] = safe[f] = 0;

@@ -97,7 +97,7 @@ std::optional<std::size_t> ShowController::State::unseen_lamp_for(std::size_t po
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
     if (level[f] <= 0 || tells_of_lamp[f] != 0) continue;
     const LuxEstimate without{light.lux - level[f] * estimator.lux_per_level(point, f), light.half_width_lx};
-    if (verdict_of(without, *rig.points[point].goal_lx, allowed_lx) != Verdict::met && !seen_by_a_meter(f, level))
+    if (verdict_of(without, *points_in_force[point].goal_lx, allowed_lx) != Verdict::met && !seen_by_a_meter(f, level))
       return f;
   }
   return std::nullopt;
@@ -113,7 +113,7 @@ LuxEstimate ShowController::State::light_by_model(std::size_t point, std::span<c
 
 PointStatus ShowController::State::point_status(std::size_t p, std::span<const double> level, Time now) const {
   PointStatus status;
-  status.goal_lx = rig.points[p].goal_lx;
+  status.goal_lx = points_in_force[p].goal_lx;
   const Prediction prediction = estimator.at_point(p, level);
   status.predicted_lx = prediction.lux;
   status.standard_error_lx = prediction.standard_error_lx;
@@ -145,7 +145,7 @@ void ShowController::State::judge_goal(std::size_t p, std::span<const double> le
   if (!status.goal_lx) return;
   double largest_goal_lx = *status.goal_lx;
   if (largest_goal_lx == 0)
-    for (const Point& point : rig.points) largest_goal_lx = std::max(largest_goal_lx, point.goal_lx.value_or(0));
+    for (const Point& point : points_in_force) largest_goal_lx = std::max(largest_goal_lx, point.goal_lx.value_or(0));
   const double allowed_lx = tolerance_lx(*status.goal_lx, rig.control.goal_tolerance, largest_goal_lx);
   status.verdict = verdict_of(status.light, *status.goal_lx, allowed_lx);
   // A meter that stands there and contradicts the model: nobody knows which of them is right.
@@ -187,8 +187,8 @@ void ShowController::State::judge_goal(std::size_t p, std::span<const double> le
 /// that is not believed counts, too, since nobody knows why it is so.
 void ShowController::State::judge_limit(std::size_t p, std::span<const double> level, Time now,
                                         PointStatus& status) const {
-  if (!rig.points[p].max_lx) return;
-  const double max_lx = *rig.points[p].max_lx;
+  if (!points_in_force[p].max_lx) return;
+  const double max_lx = *points_in_force[p].max_lx;
   const auto say = [&](LimitVerdict verdict, std::string reason) {
     status.limit = verdict;
     status.limit_reason = std::move(reason);

@@ -50,11 +50,14 @@ Result<std::vector<double>> lux_at(const ReliefSurroundings& around, std::span<c
                                    std::span<const double> levels, const ComputeOptions& options,
                                    bool with_daylight = true) {
   std::vector<bool> lit(levels.size());
-  std::vector<double> of_lit;
-  for (std::size_t f = 0; f < levels.size(); ++f)
-    if ((lit[f] = levels[f] > 0)) of_lit.push_back(levels[f]);
+  Look of_lit;
+  for (std::size_t f = 0; f < levels.size(); ++f) {
+    if (!(lit[f] = levels[f] > 0)) continue;
+    of_lit.levels.push_back(levels[f]);
+    of_lit.joints.push_back(around.look.joints[f]);
+  }
   std::vector<double> lux(places.size(), 0);
-  if (places.empty() || (of_lit.empty() && !(with_daylight && around.rig.daylight))) return lux;
+  if (places.empty() || (of_lit.levels.empty() && !(with_daylight && around.rig.daylight))) return lux;
   Rig at = rig_at(around.rig, places, lit);
   if (!with_daylight) at.daylight.reset();
   ComputeOptions compute = options;
@@ -62,7 +65,8 @@ Result<std::vector<double>> lux_at(const ReliefSurroundings& around, std::span<c
   const auto transport = compute_transport(at, around.rays, compute, of_lit);
   if (!transport) return tl::unexpected(transport.error());
   const Eigen::VectorXd sum = transport->lux(levels_with_daylight(
-      *transport, Eigen::Map<const Eigen::VectorXd>(of_lit.data(), static_cast<Eigen::Index>(of_lit.size()))));
+      *transport,
+      Eigen::Map<const Eigen::VectorXd>(of_lit.levels.data(), static_cast<Eigen::Index>(of_lit.levels.size()))));
   for (std::size_t i = 0; i < lux.size(); ++i) lux[i] = sum[static_cast<Eigen::Index>(i)];
   return lux;
 }
@@ -104,13 +108,13 @@ std::vector<double> staying_levels(const ReliefSurroundings& around, std::span<c
 using BeamsOfLuminaires = std::map<std::pair<const Luminaire*, double>, Intensity>;
 
 /// Its zoom now, then a spread over what it goes through.
-std::vector<ZoomStop> zoom_stops(const Luminaire& luminaire, const Fixture& fixture, BeamsOfLuminaires& known) {
+std::vector<ZoomStop> zoom_stops(const Luminaire& luminaire, const Fixture& fixture, double now_rad,
+                                 BeamsOfLuminaires& known) {
   const auto stop_at = [&](double beam_rad) {
     Intensity& intensity = known[{&luminaire, beam_rad}];
     if (!intensity) intensity = intensity_at_beam(luminaire, beam_rad);
     return ZoomStop{intensity, beam_rad};
   };
-  const double now_rad = fixture.joints.beam_rad;
   std::vector<ZoomStop> stops = {stop_at(now_rad)};
   const JointRange& range = fixture.range;
   for (int k = 0; range.zooms() && k < kZoomStops; ++k) {
@@ -123,7 +127,7 @@ std::vector<ZoomStop> zoom_stops(const Luminaire& luminaire, const Fixture& fixt
 }
 
 /// All emitters of a housing as one light.
-HangingHead hanging_head(const Rig& rig, std::size_t index, BeamsOfLuminaires& known) {
+HangingHead hanging_head(const Rig& rig, std::size_t index, const Joints& present, BeamsOfLuminaires& known) {
   const Fixture& fixture = rig.fixtures[index];
   const Luminaire& luminaire = housing_luminaire(rig, index);
   HangingHead head;
@@ -131,13 +135,13 @@ HangingHead hanging_head(const Rig& rig, std::size_t index, BeamsOfLuminaires& k
   head.roll_rad = fixture.roll_rad;
   head.moves = fixture.moves;
   head.range = fixture.range;
-  head.present = fixture.joints;
+  head.present = present;
   if (fixture.moves) {
     head.pan_speed_rad_s = fixture.pan_speed_rad_s;
     head.tilt_speed_rad_s = fixture.tilt_speed_rad_s;
   }
   if (fixture.range.zooms()) head.zoom_speed_rad_s = fixture.zoom_speed_rad_s;
-  head.zoom = zoom_stops(luminaire, fixture, known);
+  head.zoom = zoom_stops(luminaire, fixture, present.beam_rad, known);
   head.max_level = rig.max_level(fixture);
   head.watts = luminaire.watts.value_or(0);
   return head;
@@ -198,7 +202,7 @@ Result<std::vector<AimLimit>> limits_of(const ReliefSurroundings& around, const 
   std::vector<OrientedPoint> places;
   for (std::size_t k = 0; k < std::min(kLimitedPlaces, all.size()); ++k)
     places.push_back(all[k * all.size() / std::min(kLimitedPlaces, all.size())]);
-  const auto fixed = lux_at(around, places, staying_levels(around, around.levels), options);
+  const auto fixed = lux_at(around, places, staying_levels(around, around.look.levels), options);
   if (!fixed) return tl::unexpected(fixed.error());
   for (std::size_t k = 0; k < places.size(); ++k)
     limits.push_back({around.rig.scene.objects[relief.object].name, places[k], *relief.max_lx, (*fixed)[k]});
@@ -207,7 +211,7 @@ Result<std::vector<AimLimit>> limits_of(const ReliefSurroundings& around, const 
 
 Result<std::vector<double>> staying_lux(const ReliefSurroundings& around, const StudiedObject& object,
                                         const ComputeOptions& options) {
-  return lux_at(around, object.samples.points, staying_levels(around, around.levels), options);
+  return lux_at(around, object.samples.points, staying_levels(around, around.look.levels), options);
 }
 
 Result<AimedFixtures> aim_fixtures(const ReliefSurroundings& around, const StudiedObject& object, const Task& task,
@@ -241,11 +245,11 @@ Result<AimedFixtures> aim_fixtures(const ReliefSurroundings& around, const Studi
   std::vector<HeadSetting> present;
   BeamsOfLuminaires known;
   for (std::size_t k = 0; k < spec.heads.size(); ++k) {
-    const Fixture& fixture = around.rig.fixtures[spec.heads[k]];
+    const Joints& joints = around.look.joints[spec.heads[k]];
     if (spec.key == spec.heads[k]) wishes.key = k;
-    heads.push_back(hanging_head(around.rig, spec.heads[k], known));
+    heads.push_back(hanging_head(around.rig, spec.heads[k], joints, known));
     heads.back().may_light = [&zones, head = spec.heads[k]](const Joints& at) { return !zones.met(head, at); };
-    present.push_back({fixture.joints, 0, present_levels[k]});
+    present.push_back({joints, 0, present_levels[k]});
   }
   AimOptions aim;
   aim.run() = options.of_part();
@@ -268,22 +272,24 @@ tl::unexpected<Fault> in_words(Fault fault, const std::string& of) {
   return tl::unexpected(std::move(fault));
 }
 
-Result<ObjectLight> light_on_object(const ReliefSurroundings& around, const StudiedObject& object,
-                                    std::span<const double> levels, const ComputeOptions& options) {
+Result<ObjectLight> light_on_object(const ReliefSurroundings& around, const StudiedObject& object, const Look& look,
+                                    const ComputeOptions& options) {
+  ReliefSurroundings now = around;
+  now.look = look;
   std::vector<OrientedPoint> places = places_of(object);
   ComputeOptions direct = options;
   direct.model = Model::direct;
-  auto by_direct = lux_at(around, places, levels, direct, false);
+  auto by_direct = lux_at(now, places, look.levels, direct, false);
   if (!by_direct) return tl::unexpected(by_direct.error());
   if (around.rig.daylight) {
     places = brightest(places, *by_direct, kPlacesInDaylight, 0);
-    by_direct = lux_at(around, places, levels, direct);
+    by_direct = lux_at(now, places, look.levels, direct);
     if (!by_direct) return tl::unexpected(by_direct.error());
   }
   places = brightest(places, *by_direct, kCheckedPlaces, object.study.scale_m / 2);
-  const auto lux = lux_at(around, places, levels, options);
+  const auto lux = lux_at(now, places, look.levels, options);
   if (!lux) return tl::unexpected(lux.error());
-  auto fixed = lux_at(around, places, staying_levels(around, levels), options);
+  auto fixed = lux_at(now, places, staying_levels(now, look.levels), options);
   if (!fixed) return tl::unexpected(fixed.error());
   ObjectLight light{std::move(*fixed), *lux};
   for (std::size_t i = 0; i < places.size(); ++i) light.sought_lx[i] -= light.fixed_lx[i];

@@ -16,7 +16,7 @@ struct ReliefSurroundings {
   const Rig& rig;
   const Scene& scene;
   const RayScene& rays;
-  std::vector<double> levels;  ///< per fixture, of those that are not sought
+  Look look;                   ///< levels of the fixtures that are not sought, and where all look
   std::vector<bool> sought;    ///< per fixture
   Eigen::VectorXd point_lux;   ///< what others give the rig's points
   double max_watts = 0;        ///< of those that are sought, together; may be infinite
@@ -61,9 +61,9 @@ struct ObjectLight {
   [[nodiscard]] double brightest_lx(double share) const;
 };
 
-/// Looks for them on the whole of its surface. levels: of all fixtures of the rig, as set.
+/// Looks for them on the whole of its surface. look: levels and joints of all fixtures of the rig, as set.
 [[nodiscard]] Result<ObjectLight> light_on_object(const ReliefSurroundings& around, const StudiedObject& object,
-                                                  std::span<const double> levels, const ComputeOptions& options);
+                                                  const Look& look, const ComputeOptions& options);
 
 /// The same fault with its task or object named first; its cause stays, so that a stop stays a stop.
 [[nodiscard]] tl::unexpected<Fault> in_words(Fault fault, const std::string& of);

@@ -29,12 +29,16 @@ Emitter emitter_of(const Luminaire& luminaire, const Pose& world_from_lamp, doub
   return emitter;
 }
 
-std::vector<Emitter> emitters_of(const Rig& rig) {
+std::vector<Emitter> emitters_of(const Rig& rig, std::span<const Joints> joints) {
+  LUXRIG_CHECK(joints.empty() || joints.size() == rig.fixtures.size(), "{} joints for {} fixtures", joints.size(),
+               rig.fixtures.size());
   std::vector<Emitter> emitters;
   emitters.reserve(rig.fixtures.size());
-  for (const Fixture& fixture : rig.fixtures)
-    emitters.push_back(
-        emitter_of(rig.luminaires.at(fixture.luminaire), fixture.world_from_lamp(), fixture.joints.beam_rad));
+  for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
+    const Fixture& fixture = rig.fixtures[f];
+    const Joints& at = joints.empty() ? fixture.joints : joints[f];
+    emitters.push_back(emitter_of(rig.luminaires.at(fixture.luminaire), fixture.world_from_lamp(at), at.beam_rad));
+  }
   return emitters;
 }
 
@@ -70,8 +74,8 @@ std::vector<Emitter> daylight_emitters_of(const Rig& rig) {
   return emitters;
 }
 
-std::vector<Emitter> all_emitters_of(const Rig& rig) {
-  std::vector<Emitter> emitters = emitters_of(rig);
+std::vector<Emitter> all_emitters_of(const Rig& rig, std::span<const Joints> joints) {
+  std::vector<Emitter> emitters = emitters_of(rig, joints);
   for (Emitter& emitter : daylight_emitters_of(rig)) emitters.push_back(std::move(emitter));
   return emitters;
 }

@@ -1,6 +1,7 @@
 #pragma once
 /// A Rig as transport sees it: what shines and what is lit.
 
+#include <span>
 #include <vector>
 
 #include "core/rig/rig.h"
@@ -13,17 +14,17 @@ namespace luxrig {
 /// beam_rad   of its zoom; 0: as its luminaire states
 [[nodiscard]] Emitter emitter_of(const Luminaire& luminaire, const Pose& world_from_lamp, double beam_rad = 0);
 
-/// One emitter per fixture, in the rig's order, at the luminaire's rated flux and aimed as the rig file says; with the
-/// luminaire's shape and colour, and its TILT factor at that aim.
-/// Column j of a TransportMatrix is then fixture j, and a level of 1 its rated flux.
-[[nodiscard]] std::vector<Emitter> emitters_of(const Rig& rig);
+/// One emitter per fixture, in the rig's order, at the luminaire's rated flux, with its shape, its colour, and its TILT
+/// factor at that aim. Column j of a TransportMatrix is then fixture j, and a level of 1 its rated flux.
+/// joints   where fixtures look, one per fixture; empty: as the rig file says
+[[nodiscard]] std::vector<Emitter> emitters_of(const Rig& rig, std::span<const Joints> joints = {});
 
 /// Sky and sun as separate emitters (Emitter::sky), those of them that shine: none without daylight. A clear or general
 /// sky whose sun is below the horizon is taken with the sun on it.
 [[nodiscard]] std::vector<Emitter> daylight_emitters_of(const Rig& rig);
 
-/// emitters_of(rig), then daylight_emitters_of(rig): columns from fixtures.size() on are daylight, at level 1.
-[[nodiscard]] std::vector<Emitter> all_emitters_of(const Rig& rig);
+/// emitters_of(rig, joints), then daylight_emitters_of(rig): columns from fixtures.size() on are daylight, at level 1.
+[[nodiscard]] std::vector<Emitter> all_emitters_of(const Rig& rig, std::span<const Joints> joints = {});
 
 /// Of a transport of all_emitters_of(rig): levels of all its columns, when the fixtures have these.
 [[nodiscard]] Eigen::VectorXd levels_with_daylight(const TransportMatrix& transport, const Eigen::VectorXd& levels);

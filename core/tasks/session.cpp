@@ -43,18 +43,18 @@ Checked<Session> session_of(Rig rig) {
   return session;
 }
 
-Result<TransportMatrix> compute_transport(const Session& session, const ComputeOptions& options,
-                                          const std::vector<double>& levels, ModelUsed* used) {
-  return compute_transport(session.rig, *session.rays, options, levels, used);
+Result<TransportMatrix> compute_transport(const Session& session, const ComputeOptions& options, const Look& look,
+                                          ModelUsed* used) {
+  return compute_transport(session.rig, *session.rays, options, look, used);
 }
 
 Result<TransportMatrix> compute_transport(const Rig& rig, const RayScene& rays, const ComputeOptions& options,
-                                          const std::vector<double>& levels, ModelUsed* used) {
+                                          const Look& look, ModelUsed* used) {
   const std::optional<double> seconds = options.max_seconds > 0 ? std::optional(options.max_seconds) : std::nullopt;
   const Stage stage(options.watch.without_stop(), options.stage, "starting", seconds);
   EvaluateOptions evaluate;
   options.want_error(evaluate);
-  evaluate.levels = levels;
+  evaluate.levels = look.levels;
   evaluate.run() = options;
   evaluate.enough = stage.stop();
   if (options.watch.tell)
@@ -69,7 +69,7 @@ Result<TransportMatrix> compute_transport(const Rig& rig, const RayScene& rays, 
   }
   evaluate.colour = rig.colour_goals();
   const auto receivers = receivers_of(rig);
-  const auto emitters = all_emitters_of(rig);
+  const auto emitters = all_emitters_of(rig, look.joints);
   const double wanted = options.worst_error.value_or(options.max_error);
   if (emitters.empty()) {  // a rig in which all light is yet to be placed
     if (used) *used = {"direct", "nothing shines", wanted, options.worst_error.has_value()};
@@ -79,7 +79,7 @@ Result<TransportMatrix> compute_transport(const Rig& rig, const RayScene& rays, 
     if (evaluate.colour) dark.rgb_per_level.assign(3, dark.lux_per_level);
     return dark;
   }
-  if (!levels.empty()) evaluate.levels.resize(emitters.size(), 1.0);
+  if (!look.levels.empty()) evaluate.levels.resize(emitters.size(), 1.0);
   EvaluatorChoice choice{nullptr, "asked for"};
   switch (options.model) {
     case Model::automatic: {

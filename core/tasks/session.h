@@ -56,16 +56,15 @@ struct ModelUsed {
   [[nodiscard]] std::string warning() const;
 };
 
-/// T of the rig's points (first) and luxmeters at its aims: a column per fixture, then daylight's
-/// (rig_transport.h, all_emitters_of). `levels`: of the fixtures, as in EvaluateOptions.
+/// T of the rig's points (first) and luxmeters: a column per fixture, then daylight's
+/// (rig_transport.h, all_emitters_of).
+/// look   joints: empty = as the rig file says; levels: as in EvaluateOptions, empty = all count alike
 [[nodiscard]] Result<TransportMatrix> compute_transport(const Session& session, const ComputeOptions& options,
-                                                        const std::vector<double>& levels = {},
-                                                        ModelUsed* used = nullptr);
+                                                        const Look& look = {}, ModelUsed* used = nullptr);
 
 /// The same for a rig in a scene, with lights hung that the session's rig does not have.
 [[nodiscard]] Result<TransportMatrix> compute_transport(const Rig& rig, const RayScene& rays,
-                                                        const ComputeOptions& options,
-                                                        const std::vector<double>& levels = {},
+                                                        const ComputeOptions& options, const Look& look = {},
                                                         ModelUsed* used = nullptr);
 
 /// The controller's share of a transport.

@@ -15,7 +15,7 @@ namespace luxrig {
 Result<ReliefSurroundings> TaskSolver::surroundings(std::vector<bool> sought, const Task& task) const {
   const auto max_watts = watts_left(0, 0, task);
   if (!max_watts) return tl::unexpected(max_watts.error());
-  ReliefSurroundings around{rig_,      session_.scene, *session_.rays, levels(), std::move(sought), lux_of_points(),
+  ReliefSurroundings around{rig_,      session_.scene, *session_.rays, look(), std::move(sought), lux_of_points(),
                             *max_watts};
   if (auto kept = limits_left(around.point_lux); !kept) return tl::unexpected(kept.error());
   return around;
@@ -27,7 +27,7 @@ Result<void> TaskSolver::settle_relief(const Task& task, const ReliefSpec& spec,
   // A stop has ended the search, not what becomes of it.
   ComputeOptions to_the_end = options_;
   to_the_end.watch = options_.watch.without_stop();
-  const auto light = light_on_object(around, object, levels(), to_the_end);
+  const auto light = light_on_object(around, object, look(), to_the_end);
   if (!light) return tl::unexpected(light.error());
   double share = spec.max_lx ? light->share_within(*spec.max_lx) : 1;
   const Eigen::VectorXd lux = lux_of_points();
@@ -84,14 +84,13 @@ Result<void> TaskSolver::aim(const Task& task) {
   for (std::size_t k = 0; k < heads.size(); ++k) {
     const AimedHead& head = aimed->heads[k];
     for (const std::size_t emitter : housing_of(rig_, heads[k])) {
-      Fixture& fixture = rig_.fixtures[emitter];
       level_[static_cast<Index>(emitter)] = head.setting.level;
-      if (!fixture.moves || !(head.setting.level > 0)) continue;  // a dark head stays where it looks
-      fixture.joints = head.setting.joints;
-      fixture.aim_world_m = head.aim_world_m;
+      if (!rig_.fixtures[emitter].moves || !(head.setting.level > 0)) continue;  // a dark head stays where it looks
+      look_.joints[emitter] = head.setting.joints;
+      look_.aim_world_m[emitter] = head.aim_world_m;
     }
   }
-  if (auto lit = light_anew(levels()); !lit) return lit;
+  if (auto lit = light_anew(look()); !lit) return lit;
 
   PlannedTask planned;
   if (auto settled = settle_relief(task, task.aim.relief, *around, *object, aimed->score, &aimed->before, planned);
@@ -125,7 +124,7 @@ Result<void> TaskSolver::highlight(const Task& task) {
     level_[before + static_cast<Index>(l)] = found->lights[l / emitters].level;
   }
   const ReliefSurroundings around{
-      rig_, session_.scene, *session_.rays, levels(), std::move(sought), dark->point_lux, dark->max_watts};
+      rig_, session_.scene, *session_.rays, look(), std::move(sought), dark->point_lux, dark->max_watts};
   PlannedTask planned;
   if (auto settled = settle_relief(task, spec.relief, around, *object, found->score, nullptr, planned); !settled)
     return settled;

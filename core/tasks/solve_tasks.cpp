@@ -15,16 +15,15 @@
 namespace luxrig {
 namespace {
 
-PlannedLight planned_light(const Rig& rig, const Fixture& fixture, double level) {
+PlannedLight planned_light(const Rig& rig, const Fixture& fixture, const Joints& joints,
+                           const std::optional<Vec3>& aim_world_m, double level) {
   const Luminaire& luminaire = rig.luminaires[fixture.luminaire];
   PlannedLight light;
   light.name = fixture.name;
   light.luminaire = luminaire.name;
   light.position_world_m = fixture.world_from_mount.translation_m;
-  light.aim_world_m = fixture.aim_world_m;
-  light.pan_deg = deg_from_rad(fixture.joints.pan_rad);
-  light.tilt_deg = deg_from_rad(fixture.joints.tilt_rad);
-  if (fixture.range.zooms()) light.beam_angle_deg = deg_from_rad(fixture.joints.beam_rad);
+  light.aim_world_m = aim_world_m;
+  light.joints = Joints{joints.pan_rad, joints.tilt_rad, fixture.range.zooms() ? joints.beam_rad : 0};
   light.level = level;
   light.solved_level = level;
   light.lumens = level * luminaire.lumens;
@@ -39,6 +38,7 @@ TaskSolver::TaskSolver(const Session& session, const TransportMatrix& transport,
       options_(options),
       zones_(session.rig),
       rig_(session.rig),
+      look_(hung_look(rig_)),
       transport_(transport),
       own_(static_cast<Index>(rig_.fixtures.size())),
       level_(Eigen::VectorXd::Zero(own_)),
@@ -123,11 +123,12 @@ SolvedTasks TaskSolver::done() {
     for (PlannedPoint& point : plan_.points) point.goal_lux.reset();
   judge(plan_, rig_.control.goal_tolerance);
   plan_.seconds = seconds_since(start_);
-  return {std::move(plan_), std::move(rig_), std::move(transport_), std::move(used_)};
+  return {std::move(plan_), std::move(rig_), look(), std::move(transport_), std::move(used_)};
 }
 
 PlannedLight TaskSolver::light_of(Index light) const {
-  return planned_light(rig_, rig_.fixtures[static_cast<std::size_t>(light)], level_[light]);
+  const auto f = static_cast<std::size_t>(light);
+  return planned_light(rig_, rig_.fixtures[f], look_.joints[f], look_.aim_world_m[f], level_[light]);
 }
 
 EmittanceProblem TaskSolver::problem_of(Index begin, Index end) const {
@@ -238,18 +239,22 @@ Result<void> TaskSolver::hang(const Task& task, std::size_t luminaire, std::span
       // As the rig file will call them: "<name>/<emitter>".
       const std::string called = name + rig_.luminaires[parts[e]].name.substr(whole.size());
       rig_.fixtures.push_back(hung_light(rig_, called, parts[e], light.position_world_m, light.aim_world_m));
+      look_.joints.push_back(rig_.fixtures.back().joints);
+      look_.aim_world_m.push_back(light.aim_world_m);
       evaluated.push_back(std::min(light.levels[e], most_level(static_cast<Index>(rig_.fixtures.size()) - 1)));
     }
   }
   level_.conservativeResizeLike(Eigen::VectorXd::Zero(static_cast<Index>(evaluated.size())));
-  return light_anew(evaluated);
+  Look shone = look_;
+  shone.levels = std::move(evaluated);
+  return light_anew(shone);
 }
 
-Result<void> TaskSolver::light_anew(const std::vector<double>& levels) {
+Result<void> TaskSolver::light_anew(const Look& look) {
   ComputeOptions compute = options_;
   compute.watch = options_.watch.without_stop();
   ModelUsed used;
-  auto transport = compute_transport(rig_, *session_.rays, compute, levels, &used);
+  auto transport = compute_transport(rig_, *session_.rays, compute, look, &used);
   if (!transport) return tl::unexpected(std::move(transport.error()));
   transport_ = std::move(*transport);
   used_ = std::move(used);

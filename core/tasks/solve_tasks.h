@@ -9,8 +9,9 @@ namespace luxrig {
 
 struct SolvedTasks {
   Plan plan;
-  Rig rig;                          ///< heads look where the plan has them look; placed lights are its last fixtures
-  TransportMatrix transport;        ///< of that rig
+  Rig rig;                          ///< placed lights are its last fixtures
+  Look look;                        ///< levels and joints as the plan has them
+  TransportMatrix transport;        ///< of that rig and look
   std::optional<ModelUsed> anew{};  ///< how that was computed, when it is no longer the one given
 };
 

@@ -35,7 +35,7 @@ class TaskSolver {
   /// Nothing of a head that looks into a keep-out zone.
   [[nodiscard]] double most_level(Index light) const {
     const auto f = static_cast<std::size_t>(light);
-    if (zones_.met(f, rig_.fixtures[f].joints)) return 0;
+    if (zones_.met(f, look_.joints[f])) return 0;
     return rig_.max_level(rig_.fixtures[f]);
   }
   [[nodiscard]] std::optional<double> watts_of(Index light) const {
@@ -43,6 +43,11 @@ class TaskSolver {
   }
   [[nodiscard]] PlannedLight light_of(Index light) const;
   [[nodiscard]] std::vector<double> levels() const { return {level_.data(), level_.data() + level_.size()}; }
+  [[nodiscard]] Look look() const {
+    Look look = look_;
+    look.levels = levels();
+    return look;
+  }
   /// What all light as it is set gives the rig's points.
   [[nodiscard]] Eigen::VectorXd lux_of_points() const;
   /// Levels of the lights from `begin` to `end` are sought; the others stay as they are.
@@ -55,7 +60,7 @@ class TaskSolver {
   /// The lights become fixtures of the model, and what they give is worked out anew.
   Result<void> hang(const Task& task, std::size_t luminaire, std::span<const LightInScene> lights);
   /// Transport of the rig as it hangs and looks now.
-  Result<void> light_anew(const std::vector<double>& levels);
+  Result<void> light_anew(const Look& look);
   /// Adds lights, power and time.
   void list(PlannedTask& planned, Index begin, Index end) const;
   /// Light that stays while the sought fixtures (one mark per fixture) are dark, which they must be.
@@ -70,7 +75,8 @@ class TaskSolver {
   const ComputeOptions& options_;
   Steady::time_point start_ = Steady::now();
   KeepOutZones zones_;
-  Rig rig_;  ///< with placed lights as further fixtures, and heads as aimed
+  Rig rig_;    ///< the session's, or one with placed lights as further fixtures
+  Look look_;  ///< joints and aims; its levels are level_
   TransportMatrix transport_;
   std::optional<ModelUsed> used_;  ///< of the last transport that was computed here
   Index own_;

@@ -14,10 +14,10 @@ void check_levels(const std::vector<double>& levels, std::size_t fixtures) {
 }
 
 void check_light(const luxrig::LightInForce& light, std::size_t fixtures) {
-  check_levels(light.level, fixtures);
-  check_levels(light.safe, fixtures);
-  LUXRIG_CHECK(light.joints.size() == fixtures, "{} joints for {} fixtures", light.joints.size(), fixtures);
-  for (const luxrig::Joints& joints : light.joints) {
+  check_levels(light.look.levels, fixtures);
+  check_levels(light.safe_levels, fixtures);
+  LUXRIG_CHECK(light.look.joints.size() == fixtures, "{} joints for {} fixtures", light.look.joints.size(), fixtures);
+  for (const luxrig::Joints& joints : light.look.joints) {
     for (const double angle_rad : {joints.pan_rad, joints.tilt_rad, joints.beam_rad})
       LUXRIG_CHECK(angle_rad >= -1e3 && angle_rad <= 1e3, "angle {}", angle_rad);
   }

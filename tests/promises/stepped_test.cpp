@@ -199,8 +199,8 @@ class SteppedSubject final : public Subject {
     options.stepped_driver = [this](const Rig&, std::size_t bus) -> std::unique_ptr<Driver> {
       return std::make_unique<HallBus>(devices_, sent_, bus == 0, bus == 2);
     };
-    daemon_ = std::make_unique<Daemon>(std::make_shared<Session>(Session{hall_.rig, Scene{}, nullptr}), hall_.model,
-                                       std::move(options));
+    daemon_ = std::make_unique<Daemon>(std::make_shared<Session>(Session{hall_.rig, Scene{}, nullptr}),
+                                       KeptLight{{}, hall_.model}, std::move(options));
     const auto started = daemon_->start();
     if (!started) broken_ = "does not start: " + started.error().detail;
     handlers_ = daemon_->handlers();

@@ -87,10 +87,9 @@ TEST(ByHandInTheHall, AnExchangedRigFadesToItsNewGoalsWithinItsNewLimits) {
     Look look;
     for (const Fixture& fixture : rig.fixtures) look.joints.push_back(fixture.joints);
     for (const Point& point : rig.points) look.goal_lx.push_back(point.goal_lx);
-    look.model = loop.hall.model;
-    std::vector<double> plan = loop.hall.plan;
-    for (double& level : plan) level *= 0.8;
-    loop.show.apply(loop.now, plan, look);
+    look.levels = loop.hall.plan;
+    for (double& level : look.levels) level *= 0.8;
+    loop.show.apply(loop.now, look, loop.hall.model);
     EXPECT_EQ(loop.levels(), before) << "a fade begins where the light was";
     loop.run(5);
     ASSERT_TRUE(loop.run_until(Phase::holding, 30)) << loop.describe();

@@ -66,7 +66,7 @@ class Watch {
       const std::uint32_t control = memory_.beats(LastLookMemory::Beat::control);
       // A bus whose device does not answer may wait for long, and so may the control loop; not all at once.
       if (any_.stands_still(control + memory_.beats(LastLookMemory::Beat::output)) >= kLooksUntilItHangs &&
-          memory_.take().sends)
+          memory_.take())
         return Call::hangs;
       // The light is held while its control loop hangs, but nobody watches limits, and nobody can change it.
       if (control_.stands_still(control) == kLooksUntilItIsEnded) end_daemon();
@@ -102,15 +102,15 @@ bool has_closed(int alive_fd) {
   return ::poll(&wait, 1, 0) == 1;
 }
 
-OutputProgram program_of(const Rig& rig, const LastLook& look, Time now) {
+OutputProgram program_of(const Rig& rig, const LightInForce& light, Time now) {
   OutputProgram program;
   program.revision = 1;
-  program.from_level = look.present;
-  program.to_level = look.safe;
-  program.start = now + from_seconds(look.hold_s);
-  program.duration = from_seconds(look.fade_s);
+  program.from_level = light.look.levels;
+  program.to_level = light.safe_levels;
+  program.start = now + from_seconds(light.hold_s);
+  program.duration = from_seconds(light.fade_s);
   program.curve = rig.control.fade_curve;
-  program.joints = look.joints;
+  program.joints = light.look.joints;
   for (const Fixture& fixture : rig.fixtures) program.max_level.push_back(rig.max_level(fixture));
   program.switched = switched_fixtures(rig);
   return program;
@@ -140,12 +140,12 @@ bool all_taken(const std::vector<std::unique_ptr<BusThread>>& buses) {
 }
 
 /// Sends until it is told to leave. watch: of a daemon that hangs.
-void look_after(const Rig& rig, const LastLook& look, const std::map<std::string, Redirect>& redirects, int pid_fd,
+void look_after(const Rig& rig, const LightInForce& light, const std::map<std::string, Redirect>& redirects, int pid_fd,
                 LastLookMemory& memory, int alive_fd, const Watch* watch) {
   if (watch != nullptr) memory.take_the_light();
   Teller teller(STDERR_FILENO);
   ProgramMailbox programs;
-  OutputProgram program = program_of(rig, look, now());
+  OutputProgram program = program_of(rig, light, now());
   std::vector<std::unique_ptr<BusThread>> buses;
   for (std::size_t b = 0; b < rig.buses.size(); ++b) {
     std::optional<Redirect> redirect;
@@ -158,7 +158,7 @@ void look_after(const Rig& rig, const LastLook& look, const std::map<std::string
       for (const DeskPart& part : input->parts()) {
         // A desk that drives the lamps itself goes on; of no other does the guardian know anything.
         program.desks.emplace_back();
-        for (const std::size_t f : part.fixtures) program.desks.back().silent |= look.silent[f] != 0;
+        for (const std::size_t f : part.fixtures) program.desks.back().silent |= light.silent[f] != 0;
       }
     }
     buses.push_back(std::make_unique<BusThread>(rig, b, std::move(driver), programs, first_desk));
@@ -169,7 +169,7 @@ void look_after(const Rig& rig, const LastLook& look, const std::map<std::string
   teller.tell(
       fmt::format("luxrig-guardian: the daemon {}: its last look is held for {:g} s, then the safe look, until it {} "
                   "(or kill {})\n",
-                  watch != nullptr ? "hangs" : "died", look.hold_s,
+                  watch != nullptr ? "hangs" : "died", light.hold_s,
                   watch != nullptr ? "goes on or is started anew" : "is started anew", ::getpid()));
   bool hangs = watch != nullptr;
   for (int looks = 0; g_signal == 0; ++looks) {
@@ -187,10 +187,10 @@ void look_after(const Rig& rig, const LastLook& look, const std::map<std::string
   // A daemon goes on from here: a goodbye would let fixtures go dark before its first frame.
   if (g_signal == SIGUSR1) {
     const Time at = now();
-    LightInForce light{look.present, look.safe,  look.joints, std::max(0.0, to_seconds(program.start - at)),
-                       look.fade_s,  look.silent};
-    program.levels_at(at, light.level);
-    hand_over(pid_fd, light);
+    LightInForce now_out = light;
+    now_out.hold_s = std::max(0.0, to_seconds(program.start - at));
+    program.levels_at(at, now_out.look.levels);
+    hand_over(pid_fd, now_out);
     ::_exit(kExitOk);
   }
 }
@@ -217,12 +217,12 @@ int guard(const GuardianArguments& arguments) {
   }
   Watch watch(*memory, arguments.alive_fd, g_signal_pipe[0]);
   const Call call = watch.wait();
-  if (const LastLook look = memory->take(); call != Call::sent_away && !memory->ended() && look.sends) {
-    look_after(*rig, look, *redirects, pid_fd, *memory, arguments.alive_fd, call == Call::hangs ? &watch : nullptr);
-  } else if (call == Call::sent_away && !memory->ended() && look.sends && g_signal == SIGUSR1 &&
-             has_closed(arguments.alive_fd)) {
+  const std::optional<LightInForce> light = memory->ended() ? std::nullopt : memory->take();
+  if (light && call != Call::sent_away) {
+    look_after(*rig, *light, *redirects, pid_fd, *memory, arguments.alive_fd, call == Call::hangs ? &watch : nullptr);
+  } else if (light && g_signal == SIGUSR1 && has_closed(arguments.alive_fd)) {
     // Sent away before we had looked: what the daemon sent last still stands.
-    hand_over(pid_fd, {look.present, look.safe, look.joints, look.hold_s, look.fade_s, look.silent});
+    hand_over(pid_fd, *light);
     return kExitOk;
   }
   std::error_code ignored;

@@ -31,23 +31,28 @@ struct EvaluateArguments {
 
 nlohmann::json array_of(const Vec3& v) { return nlohmann::json::array({v.x(), v.y(), v.z()}); }
 
-/// Levels of a plan, after its placed lights are hung; or all 1.
-Checked<std::vector<double>> wanted_levels(const EvaluateArguments& arguments, Rig& rig) {
-  if (!arguments.levels_plan) return std::vector<double>(rig.fixtures.size(), 1.0);
+/// The look of a plan, after its placed lights are hung; or as the rig hangs, with all levels 1.
+Checked<HungPlan> wanted_look(const EvaluateArguments& arguments, const Rig& rig) {
+  if (!arguments.levels_plan) {
+    HungPlan all_on{rig, hung_look(rig)};
+    all_on.look.levels.assign(rig.fixtures.size(), 1.0);
+    return all_on;
+  }
   auto text = read_file(*arguments.levels_plan);
   if (!text) return tl::unexpected(std::move(text.error()));
   const auto plan = plan_from_json(*text, arguments.levels_plan->string());
   if (!plan) return tl::unexpected(plan.error());
-  return levels_when_hung(*plan, rig, arguments.levels_plan->string());
+  return hang_plan(*plan, rig, arguments.levels_plan->string());
 }
 
 int run_evaluate(const EvaluateArguments& arguments) {
   const auto start = std::chrono::steady_clock::now();
-  auto session = open_session(arguments.rig);
+  const auto session = open_session(arguments.rig);
   if (!session) return report(session.error());
-  const auto levels = wanted_levels(arguments, session->rig);
-  if (!levels) return report(levels.error());
-  const Rig& rig = session->rig;
+  const auto wanted = wanted_look(arguments, session->rig);
+  if (!wanted) return report(wanted.error());
+  const Rig& rig = wanted->rig;
+  const Look& look = wanted->look;
 
   ComputeOptions compute = arguments.compute;
   compute.watch.stop = stop_on_signals();
@@ -55,12 +60,12 @@ int run_evaluate(const EvaluateArguments& arguments) {
   compute.watch.tell = terminal.tell();
   compute.stage = "evaluating";
   ModelUsed used;
-  const auto transport = compute_transport(*session, compute, *levels, &used);
+  const auto transport = compute_transport(rig, *session->rays, compute, look, &used);
   if (!transport) return report(transport.error());
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 
   const Eigen::VectorXd level = levels_with_daylight(
-      *transport, Eigen::Map<const Eigen::VectorXd>(levels->data(), static_cast<Eigen::Index>(levels->size())));
+      *transport, Eigen::Map<const Eigen::VectorXd>(look.levels.data(), static_cast<Eigen::Index>(look.levels.size())));
   const Eigen::VectorXd lux = transport->lux(level);
   const Eigen::VectorXd direct = transport->direct_lux(level);
   const Eigen::VectorXd error = transport->standard_error_lux(level);

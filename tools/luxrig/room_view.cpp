@@ -73,12 +73,13 @@ double openness(const RayScene& scene, const Camera& camera, double far_m) {
 
 }  // namespace
 
-Camera automatic_camera(const RayScene& scene, const Rig& rig, int width_px, int height_px, double vertical_fov_rad) {
+Camera automatic_camera(const RayScene& scene, const Rig& rig, std::span<const Joints> joints, int width_px,
+                        int height_px, double vertical_fov_rad) {
   std::vector<Receiver> wanted;
   for (const Point& point : rig.points) wanted.push_back({point.position_world_m, point.normal_world});
   Eigen::AlignedBox3d room = scene.bounds_world_m();
   if (wanted.empty()) {
-    const std::vector<Emitter> lamps = emitters_of(rig);
+    const std::vector<Emitter> lamps = emitters_of(rig, joints);
     wanted = lit_places(scene, lamps);
     if (!wanted.empty()) {
       // Ground that goes on for a kilometre, and things behind the walls, are not the room.

@@ -8,7 +8,7 @@ namespace luxrig {
 
 /// A view from the rim of the room, inside it, that shows most of the rig's points. In a rig without points it shows
 /// most of the places that lamps and openings light first.
-[[nodiscard]] Camera automatic_camera(const RayScene& scene, const Rig& rig, int width_px, int height_px,
-                                      double vertical_fov_rad);
+[[nodiscard]] Camera automatic_camera(const RayScene& scene, const Rig& rig, std::span<const Joints> joints,
+                                      int width_px, int height_px, double vertical_fov_rad);
 
 }  // namespace luxrig

@@ -106,7 +106,7 @@ void print_placed(const PlannedTask& task, const Task& asked, bool has_emitters)
       has_emitters ? " (what stands before the slash: its emitters are one fixture)" : "");
 }
 
-std::string degrees_text(const std::optional<double>& deg) { return deg ? fmt::format("{:.1f}°", *deg) : "-"; }
+std::string degrees_text(double rad) { return fmt::format("{:.1f}°", deg_from_rad(rad)); }
 
 void print_aim(const PlannedTask& task) {
   Table heads({"fixture", "looks at m", ">pan", ">tilt", ">beam", ">level", ">lumens", ">watts"});
@@ -115,7 +115,9 @@ void print_aim(const PlannedTask& task) {
                light.aim_world_m ? fmt::format("{:.3f} {:.3f} {:.3f}", light.aim_world_m->x(), light.aim_world_m->y(),
                                                light.aim_world_m->z())
                                  : "-",
-               degrees_text(light.pan_deg), degrees_text(light.tilt_deg), degrees_text(light.beam_angle_deg),
+               light.joints ? degrees_text(light.joints->pan_rad) : "-",
+               light.joints ? degrees_text(light.joints->tilt_rad) : "-",
+               light.joints && light.joints->beam_rad != 0 ? degrees_text(light.joints->beam_rad) : "-",
                percent(light.level), fmt::format("{:.0f}", light.lumens), watts_text(light.watts)});
   fmt::print("{}\n", heads.text());
 }

@@ -29,14 +29,14 @@ std::filesystem::path web_folder() { return shared_folder() / "web"; }
 
 }  // namespace
 
-Daemon::Daemon(std::shared_ptr<const Session> session, LightModel model, DaemonOptions options)
+Daemon::Daemon(std::shared_ptr<const Session> session, KeptLight light, DaemonOptions options)
     : options_(std::move(options)),
-      controller_(session->rig, model),
+      controller_(session->rig, light.model, light.joints),
       journal_(options_.state_folder),
       session_(std::move(session)),
       version_(version_of(session_->rig, session_->scene)),
-      model_(std::move(model)) {
-  for (const Fixture& fixture : session_->rig.fixtures) model_joints_.push_back(fixture.joints);
+      light_(std::move(light)) {
+  if (light_.joints.empty()) light_.joints = hung_look(session_->rig).joints;
 }
 
 Daemon::~Daemon() { stop(); }
@@ -177,7 +177,7 @@ void Daemon::look_after_guardian(Time at) {
     const auto light = send_guardian_away(*options_.state_folder, session_->rig.fixtures.size());
     if (guardian_) guardian_->leave();
     if (light) {
-      controller_.take_back(at, light->level);
+      controller_.take_back(at, light->look.levels);
       send_program();
     }
     guarded_->take_the_light_back();
@@ -205,22 +205,21 @@ void Daemon::tell_guardian(Time at) {
   const Rig& rig = session_->rig;
   const OutputProgram& program = controller_.program();
   const std::size_t count = rig.fixtures.size();
-  last_look_.present.resize(count);
-  last_look_.joints.resize(count);
-  program.levels_at(at, last_look_.present);
-  program.joints_at(at, last_look_.joints);
+  last_look_.look.levels.resize(count);
+  last_look_.look.joints.resize(count);
+  program.levels_at(at, last_look_.look.levels);
+  program.joints_at(at, last_look_.look.joints);
   // What limits allow changes with what meters teach: slowly.
   if (safe_levels_.empty() || at - safe_look_at_ > kSafeLookEvery) {
     safe_levels_ = controller_.safe_look(at);
     safe_look_at_ = at;
   }
-  last_look_.safe = safe_levels_;
+  last_look_.safe_levels = safe_levels_;
   // What could light a keep-out zone stays dark, also while nobody watches it.
   for (const HeadDim& dim : program.dims) {
-    if (dim.to == 0) last_look_.present[dim.fixture] = last_look_.safe[dim.fixture] = 0;
+    if (dim.to == 0) last_look_.look.levels[dim.fixture] = last_look_.safe_levels[dim.fixture] = 0;
   }
-  if (program.blackout) std::fill(last_look_.safe.begin(), last_look_.safe.end(), 0.0);
-  last_look_.sends = program.revision != 0;
+  if (program.blackout) std::fill(last_look_.safe_levels.begin(), last_look_.safe_levels.end(), 0.0);
   last_look_.hold_s = program.blackout ? 0 : rig.safe.hold_s;
   last_look_.fade_s = rig.safe.fade_s;
   last_look_.silent.assign(count, 0);
@@ -228,7 +227,7 @@ void Daemon::tell_guardian(Time at) {
     if (!desk.silent) continue;
     for (const std::size_t f : desk.fixtures) last_look_.silent[f] = 1;
   }
-  guarded_->put(last_look_);
+  guarded_->put(last_look_, program.revision != 0);
   look_after_guardian(at);
 }
 std::future<void> Daemon::queue(std::function<void(Time)> run) {

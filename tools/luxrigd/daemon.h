@@ -26,10 +26,10 @@
 
 namespace luxrig {
 
-/// A rig's plan, and what the rig gives with heads as the plan has them.
+/// A rig's plan, where its heads look, and what the rig gives then.
 struct SolvedRig {
   Plan plan;
-  LightModel model;
+  KeptLight light;
 };
 
 /// What has become of the state that the last daemon left.
@@ -48,18 +48,17 @@ struct DaemonOptions {
   std::function<std::unique_ptr<Driver>(const Rig&, std::size_t bus)> stepped_driver{};
   /// What a rig gives in the session's scene with heads that look elsewhere, for plans that turn them; called on
   /// whatever thread brings the plan. Empty: such plans are refused.
-  std::function<Result<LightModel>(const Session&, const Rig&)> light_model{};
+  std::function<Result<LightModel>(const Session&, const std::vector<Joints>&)> light_model{};
   /// Told whenever a model was worked out that is in force now, on whatever thread did it.
   std::function<void(const Session&, const KeptLight&)> keep_light{};
-  /// Solves the tasks of a rig file that was read again; turns the session's heads as its plan has them. Empty: there
-  /// is no reload.
-  std::function<Result<SolvedRig>(Session&)> solve{};
+  /// Solves the tasks of a rig file that was read again. Empty: there is no reload.
+  std::function<Result<SolvedRig>(const Session&)> solve{};
 };
 
 class Daemon {
  public:
-  /// model: of the session's rig, with heads as they look there.
-  Daemon(std::shared_ptr<const Session> session, LightModel model, DaemonOptions options);
+  /// light: of the session's rig; its joints may be empty: as the rig file says.
+  Daemon(std::shared_ptr<const Session> session, KeptLight light, DaemonOptions options);
   ~Daemon();
 
   /// Starts drivers and the page; returns the page's port. Sends nothing until the first plan.
@@ -174,7 +173,7 @@ class Daemon {
   std::optional<Guardian> guardian_;
   std::string unguarded_;
   std::optional<Time> unguarded_since_, stood_still_at_;
-  LastLook last_look_;
+  LightInForce last_look_;
   std::vector<double> safe_levels_;
   Time safe_look_at_{}, guardian_seen_{};
   int guardian_deaths_ = 0;
@@ -203,8 +202,7 @@ class Daemon {
   std::deque<Command> commands_;
 
   std::mutex model_mutex_;  // guards the two below
-  std::vector<Joints> model_joints_;
-  LightModel model_;
+  KeptLight light_;
 
   std::jthread drawing_, contacts_;  ///< last: they use what stands above
 };

@@ -51,8 +51,8 @@ std::string lines_of(const Rig& rig, const std::vector<ByHand>& held, Time at) {
   return text;
 }
 
-Look look_of(const PlannedLook& planned, LightModel model) {
-  return {planned.joints, planned.goal_lx, std::move(model), planned.max_lx, planned.weight, planned.solved_levels};
+bool same_aims(const std::vector<Joints>& a, const std::vector<Joints>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), same_aim);
 }
 
 }  // namespace
@@ -120,11 +120,18 @@ Checked<std::string> Daemon::apply_json(const std::string& plan_json) {
 }
 
 Checked<std::string> Daemon::apply(const Plan& plan, const std::string& plan_json, bool of_rig, Unsaved unsaved) {
-  const std::lock_guard one_at_a_time(change_mutex_);
-  const std::shared_ptr<const Session> session = this->session();
+  // Light is traced before anything is locked: what comes meanwhile is not kept waiting. If a reload came, once more.
+  std::shared_ptr<const Session> session = this->session();
   auto look = look_for(plan, session->rig, "plan");
   if (!look) return tl::unexpected(look.error());
   auto model = model_for(*session, look->joints);
+  const std::lock_guard one_at_a_time(change_mutex_);
+  if (const auto now_in_force = this->session(); now_in_force != session) {
+    session = now_in_force;
+    look = look_for(plan, session->rig, "plan");
+    if (!look) return tl::unexpected(look.error());
+    model = model_for(*session, look->joints);
+  }
   if (!model) {
     return tl::unexpected(std::vector<Problem>{
         {"plan", 0, 0, "what the rig gives with its heads turned so: " + model.error().detail, "solve again"}});
@@ -153,19 +160,19 @@ Checked<std::string> Daemon::apply(const Plan& plan, const std::string& plan_jso
     Time at;
     std::string waits;  ///< for what; empty: it does not
   };
-  const auto applied = ask_control_thread<Applied>([this, made_for = plan.made_for, levels = std::move(look->levels),
-                                                    wanted = look_of(*look, std::move(*model))](Time at) -> Applied {
-    controller_.apply(at, levels, wanted);
-    {
-      const std::lock_guard lock(mutex_);
-      plan_made_for_ = made_for;
-      plan_at_ = at;
-    }
-    const ShowStatus status = controller_.status(at);
-    // Heads that go dark first are how a plan begins.
-    const bool waits = status.plan_waits && status.phase != Phase::moving;
-    return {status.by_hand, at, waits ? status.detail : std::string()};
-  });
+  const auto applied = ask_control_thread<Applied>(
+      [this, made_for = plan.made_for, look = std::move(*look), model = std::move(*model)](Time at) -> Applied {
+        controller_.apply(at, look, model);
+        {
+          const std::lock_guard lock(mutex_);
+          plan_made_for_ = made_for;
+          plan_at_ = at;
+        }
+        const ShowStatus status = controller_.status(at);
+        // Heads that go dark first are how a plan begins.
+        const bool waits = status.plan_waits && status.phase != Phase::moving;
+        return {status.by_hand, at, waits ? status.detail : std::string()};
+      });
   if (!applied)
     return tl::unexpected(std::vector<Problem>{
         {"plan", 0, 0, "the control loop has not come to it yet: the plan is saved, and in force when it does",
@@ -178,17 +185,18 @@ Checked<std::string> Daemon::apply(const Plan& plan, const std::string& plan_jso
 }
 
 Result<LightModel> Daemon::model_for(const Session& session, const std::vector<Joints>& joints) {
-  const std::lock_guard lock(model_mutex_);
-  if (joints == model_joints_) return model_;
+  {
+    const std::lock_guard lock(model_mutex_);
+    if (same_aims(joints, light_.joints)) return light_.model;
+  }
   if (!options_.light_model) return refusal("nobody here can work it out");
-  Rig rig = session.rig;
-  turn_heads(rig, joints);
-  auto model = options_.light_model(session, rig);
+  auto model = options_.light_model(session, joints);
   if (!model) return model;
-  model_joints_ = joints;
-  model_ = std::move(*model);
-  if (options_.keep_light) options_.keep_light(session, {model_joints_, model_});
-  return model_;
+  const KeptLight light{joints, *model};
+  if (options_.keep_light) options_.keep_light(session, light);
+  const std::lock_guard lock(model_mutex_);
+  light_ = light;
+  return model;
 }
 
 // ---- what the last daemon left ----
@@ -510,15 +518,9 @@ Checked<std::string> Daemon::reload() {
       ask_control_thread<std::vector<Joints>>([this](Time) { return controller_.program().joints; });
   if (!joints_now)
     return tl::unexpected(std::vector<Problem>{{file, 0, 0, "the control loop did not answer", "try again"}});
-  Rig as_it_looks = session->rig;
-  turn_heads(as_it_looks, *joints_now);
-  std::vector<Joints> solved_joints;
-  for (const Fixture& fixture : session->rig.fixtures) solved_joints.push_back(fixture.joints);
   const auto model_of = [&](const std::vector<Joints>& joints) -> Result<LightModel> {
-    if (joints == solved_joints) return solved->model;
-    Rig turned = session->rig;
-    turn_heads(turned, joints);
-    return options_.light_model(*session, turned);
+    if (same_aims(joints, solved->light.joints)) return solved->light.model;
+    return options_.light_model(*session, joints);
   };
   auto model_now = model_of(*joints_now);
   if (!model_now) return tl::unexpected(problem_with(file.c_str(), model_now.error(), "try again"));
@@ -534,17 +536,15 @@ Checked<std::string> Daemon::reload() {
     return tl::unexpected(problem_with(file.c_str(), saved.error(), "free disk space or mend the permissions"));
   {
     const std::lock_guard lock(model_mutex_);
-    model_joints_ = look->joints;
-    model_ = *model;
-    if (options_.keep_light) options_.keep_light(*session, {model_joints_, model_});
+    light_ = {look->joints, *model};
+    if (options_.keep_light) options_.keep_light(*session, light_);
   }
   // All by value: the loop may come to it after we have given up waiting.
-  on_control_thread([this, session, version, made_for = plan->made_for, rig = std::move(as_it_looks),
-                     now_gives = std::move(*model_now), levels = look->levels,
-                     wanted = look_of(*look, std::move(*model)), same_light = version.light == version_before.light,
-                     room = std::move(room)](Time at) {
-    controller_.exchange_rig(at, rig, now_gives, same_light);
-    controller_.apply(at, levels, wanted);
+  on_control_thread([this, session, version, made_for = plan->made_for, now_gives = std::move(*model_now),
+                     look = std::move(*look), model = std::move(*model),
+                     same_light = version.light == version_before.light, room = std::move(room)](Time at) {
+    controller_.exchange_rig(at, session->rig, now_gives, same_light);
+    controller_.apply(at, look, model);
     safe_levels_.clear();
     const std::lock_guard lock(mutex_);
     session_ = session;

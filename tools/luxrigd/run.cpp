@@ -82,14 +82,13 @@ std::string goals_text(const ShowStatus& status, const Rig& rig) {
 }
 
 /// A rig file that was read again: its plan, and what the rig gives with heads turned as that has them.
-Result<SolvedRig> solve_again(Session& session, const ComputeOptions& compute) {
+Result<SolvedRig> solve_again(const Session& session, const ComputeOptions& compute) {
   return in_background<Result<SolvedRig>>([&]() -> Result<SolvedRig> {
     const auto transport = compute_transport(session, compute);
     if (!transport) return tl::unexpected(transport.error());
     auto solved = solve_what_hangs(session, *transport, compute);
     if (!solved) return tl::unexpected(solved.error());
-    session.rig = std::move(solved->rig);
-    return SolvedRig{std::move(solved->plan), light_model(session.rig, solved->transport)};
+    return SolvedRig{std::move(solved->plan), {solved->look.joints, light_model(session.rig, solved->transport)}};
   });
 }
 
@@ -101,12 +100,6 @@ Checked<Plan> solved_anew(const std::filesystem::path& rig_file, const ComputeOp
   if (!solved)
     return tl::unexpected(std::vector<Problem>{{rig_file.string(), 0, 0, solved.error().detail, "mend the rig file"}});
   return std::move(solved->plan);
-}
-
-std::vector<Joints> joints_of(const Rig& rig) {
-  std::vector<Joints> joints;
-  for (const Fixture& fixture : rig.fixtures) joints.push_back(fixture.joints);
-  return joints;
 }
 
 /// Ticks until `done` says so.
@@ -192,7 +185,7 @@ int run_rig(const RunArguments& arguments) {
   Teller teller(STDOUT_FILENO), progress(STDERR_FILENO);
   auto opened = open_session(arguments.rig);
   if (!opened) return report(opened.error());
-  const auto session = std::make_shared<Session>(std::move(*opened));
+  const auto session = std::make_shared<const Session>(std::move(*opened));
   const Rig& rig = session->rig;
   if (const auto unwired = null_buses_in_use(rig); !unwired.empty()) return report(unwired);
   const bool places =
@@ -239,17 +232,14 @@ int run_rig(const RunArguments& arguments) {
   ComputeOptions compute = arguments.compute;
   const std::uint64_t key = light_key(rig, session->scene, compute);
   const bool goes_on = !arguments.plan && !arguments.once && !arguments.fresh && !arguments.pictures;
-  std::optional<LightModel> model;
+  std::optional<KeptLight> light;
   std::optional<Plan> plan, hung;
+  Look look = hung_look(rig);
   Journal::Left left;
   if (goes_on) left = Journal(options.state_folder).load();
   if (goes_on && options.state_folder) {
-    auto kept = left.state && !left.state->plan_json.empty() ? kept_light(*options.state_folder, key, rig) : std::nullopt;
-    if (kept) {
-      turn_heads(session->rig, kept->joints);
-      model = std::move(kept->model);
-      say.say("transport: as it was worked out for this rig before");
-    }
+    if (left.state && !left.state->plan_json.empty()) light = kept_light(*options.state_folder, key, rig);
+    if (light) say.say("transport: as it was worked out for this rig before");
   }
   compute.watch.stop = stop;
   std::optional<TerminalWatch> terminal(std::in_place, [&](std::string text) { progress.tell(std::move(text)); });
@@ -257,15 +247,17 @@ int run_rig(const RunArguments& arguments) {
   if (arguments.plan) {
     auto read = plan_of_file(*arguments.plan);
     if (!read) return report(read.error());
-    const auto look = look_for(*read, rig, arguments.plan->string());
-    if (!look) return report(look.error());
-    turn_heads(session->rig, look->joints);
+    auto wanted = look_for(*read, rig, arguments.plan->string());
+    if (!wanted) return report(wanted.error());
+    look = std::move(*wanted);
     plan = std::move(*read);
   }
-  if (!model) {
+  if (!light) {
     ModelUsed used;
+    Look seen = look;  // any levels: all lamps count alike
+    seen.levels.clear();
     auto transport =
-        in_background<Result<TransportMatrix>>([&] { return compute_transport(*session, compute, {}, &used); });
+        in_background<Result<TransportMatrix>>([&] { return compute_transport(*session, compute, seen, &used); });
     if (!transport) return report(transport.error());
     say.say(fmt::format("transport: {} x {} by {}, error {:.2g} rms, {:.2g} at most, {} rays, {} threads",
                         transport->receivers(), transport->emitters(), used.name, used.rms_error, used.relative_error,
@@ -286,11 +278,11 @@ int run_rig(const RunArguments& arguments) {
       }
       say_solved(say, rig, solved->plan);
       plan = std::move(solved->plan);
-      session->rig = std::move(solved->rig);
+      look = std::move(solved->look);
       transport = std::move(solved->transport);
     }
-    model = light_model(rig, *transport);
-    if (options.state_folder) keep_light(*options.state_folder, {joints_of(rig), *model}, key);
+    light = KeptLight{look.joints, light_model(rig, *transport)};
+    if (options.state_folder) keep_light(*options.state_folder, *light, key);
   }
   compute.watch.tell = nullptr;
   terminal.reset();
@@ -308,19 +300,20 @@ int run_rig(const RunArguments& arguments) {
   options.http_port = arguments.http_port.value_or(rig.daemon.http_port);
   // A simulator of our own would die with us.
   options.guarded = !arguments.no_guardian && !sim && options.state_folder.has_value();
-  options.light_model = [compute](const Session& in, const Rig& turned) -> Result<LightModel> {
-    const auto anew =
-        in_background<Result<TransportMatrix>>([&] { return compute_transport(turned, *in.rays, compute); });
+  options.light_model = [compute](const Session& in, const std::vector<Joints>& joints) -> Result<LightModel> {
+    const auto anew = in_background<Result<TransportMatrix>>([&] {
+      return compute_transport(in, compute, {{}, joints});
+    });
     if (!anew) return tl::unexpected(anew.error());
-    return light_model(turned, *anew);
+    return light_model(in.rig, *anew);
   };
-  options.solve = [compute](Session& reread) { return solve_again(reread, compute); };
+  options.solve = [compute](const Session& reread) { return solve_again(reread, compute); };
   if (options.state_folder) {
     options.keep_light = [compute, folder = *options.state_folder](const Session& in, const KeptLight& light) {
       keep_light(folder, light, light_key(in.rig, in.scene, compute));
     };
   }
-  Daemon daemon(session, std::move(*model), options);
+  Daemon daemon(session, std::move(*light), options);
   const auto port = daemon.start();
   if (!port) return report(port.error());
   std::jthread blackout_by_signal = on_signal(SIGUSR1, [&] {

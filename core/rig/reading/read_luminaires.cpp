@@ -90,7 +90,7 @@ void RigReader::read_spot(Section& s, Luminaire& luminaire) {
     luminaire.zoom_beam_rad = {rad_from_deg(zoom_deg.first), rad_from_deg(zoom_deg.second)};
     const double beam_deg = deg_from_rad(luminaire.beam_angle_rad);
     const double ratio = luminaire.field_angle_rad / luminaire.beam_angle_rad;
-    if (beam_deg < zoom_deg.first - kZoomRounding_deg || beam_deg > zoom_deg.second + kSlack_deg) {
+    if (beam_deg < zoom_deg.first - kZoomRounding_deg || beam_deg > zoom_deg.second + kZoomRounding_deg) {
       problems.add(s.place_of("beam_angle_deg"),
                    fmt::format("beam_angle_deg {:g} is outside its zoom_deg of {:g} to {:g}", beam_deg, zoom_deg.first,
                                zoom_deg.second),

@@ -21,29 +21,23 @@ Rig rig_with_a_head() {
 TEST(Plan, TurnsHeadsAndNothingElse) {
   const Rig rig = rig_with_a_head();
   Plan plan = plan_for_two(0.5, 0.25);
-  for (PlannedLight& light : plan.tasks[0].lights) {
-    light.pan_deg = 90;
-    light.tilt_deg = -45;
-  }
+  for (PlannedLight& light : plan.tasks[0].lights) light.joints = Joints{rad_from_deg(90), rad_from_deg(-45)};
   const auto look = look_for(plan, rig, "plan.json");
   ASSERT_TRUE(look) << look.error()[0].text();
   EXPECT_EQ(look->joints[0], rig.fixtures[0].joints) << "it hangs as it hangs";
   EXPECT_DOUBLE_EQ(look->joints[1].pan_rad, rad_from_deg(90));
   EXPECT_DOUBLE_EQ(look->joints[1].tilt_rad, rad_from_deg(-45));
-  Rig turned = rig;
-  turned.fixtures[1].aim_world_m = Vec3(1, 2, 3);
-  turn_heads(turned, look->joints);
-  EXPECT_EQ(turned.fixtures[1].joints, look->joints[1]);
-  EXPECT_FALSE(turned.fixtures[1].aim_world_m);
 
-  // Without angles, or with those it has but for the way through degrees: where it looks.
-  plan.tasks[0].lights[1].tilt_deg.reset();
+  // Without angles: where it looks. So it is, too, when its own angles come back from a file.
+  std::optional<Joints>& joints = plan.tasks[0].lights[1].joints;
+  joints.reset();
   EXPECT_EQ(look_for(plan, rig, "plan.json")->joints[1], rig.fixtures[1].joints);
-  plan.tasks[0].lights[1].pan_deg = deg_from_rad(0.3) + 1e-12;
-  plan.tasks[0].lights[1].tilt_deg = deg_from_rad(0.4);
-  EXPECT_EQ(look_for(plan, rig, "plan.json")->joints[1], rig.fixtures[1].joints);
+  joints = rig.fixtures[1].joints;
+  const auto read = plan_from_json(to_json(plan), "plan.json");
+  ASSERT_TRUE(read);
+  EXPECT_TRUE(same_aim(look_for(*read, rig, "plan.json")->joints[1], rig.fixtures[1].joints));
 
-  plan.tasks[0].lights[1].tilt_deg = 60;  // 57.3° is its end
+  joints->tilt_rad = rad_from_deg(60);  // 57.3° is its end
   const auto refused = look_for(plan, rig, "plan.json");
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error()[0].what.find("/tasks/0/lights/1/tilt_deg"), std::string::npos);
@@ -64,8 +58,7 @@ TEST(Plan, ThatLightsAKeepOutZoneIsRefused) {
   rig.keep_outs[0].radius_m = 0.3;
   rig.keep_outs[0].heads = {1};
   Plan plan = plan_for_two(0.5, 0.25);
-  plan.tasks[0].lights[1].pan_deg = 0;
-  plan.tasks[0].lights[1].tilt_deg = 50;
+  plan.tasks[0].lights[1].joints = Joints{0, rad_from_deg(50)};
   const auto refused = look_for(plan, rig, "plan.json");
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error()[0].what,
@@ -74,7 +67,7 @@ TEST(Plan, ThatLightsAKeepOutZoneIsRefused) {
   plan.tasks[0].lights[1].level = 0;  // it may look there in the dark
   EXPECT_TRUE(look_for(plan, rig, "plan.json"));
   plan.tasks[0].lights[1].level = 0.25;
-  plan.tasks[0].lights[1].tilt_deg = 0;
+  plan.tasks[0].lights[1].joints->tilt_rad = 0;
   EXPECT_TRUE(look_for(plan, rig, "plan.json"));
 }
 
@@ -84,19 +77,16 @@ TEST(Plan, ZoomsHeadsThatCan) {
   rig.fixtures[1].range.beam_max_rad = rad_from_deg(50);
   rig.fixtures[1].joints.beam_rad = rad_from_deg(20);
   Plan plan = plan_for_two(0.5, 0.25);
-  for (PlannedLight& light : plan.tasks[0].lights) {
-    light.pan_deg = light.tilt_deg = 0;
-    light.beam_angle_deg = 45;
-  }
+  for (PlannedLight& light : plan.tasks[0].lights) light.joints = Joints{0, 0, rad_from_deg(45)};
   const auto again = plan_from_json(to_json(plan), "plan.json");
   ASSERT_TRUE(again) << again.error()[0].text();
   const auto look = look_for(*again, rig, "plan.json");
   ASSERT_TRUE(look) << look.error()[0].text();
   EXPECT_EQ(look->joints[0].beam_rad, 0) << "it has no zoom";
   EXPECT_DOUBLE_EQ(look->joints[1].beam_rad, rad_from_deg(45));
-  plan.tasks[0].lights[1].beam_angle_deg.reset();
+  plan.tasks[0].lights[1].joints->beam_rad = 0;
   EXPECT_EQ(look_for(plan, rig, "plan.json")->joints[1].beam_rad, rig.fixtures[1].joints.beam_rad);
-  plan.tasks[0].lights[1].beam_angle_deg = 51;
+  plan.tasks[0].lights[1].joints->beam_rad = rad_from_deg(51);
   const auto refused = look_for(plan, rig, "plan.json");
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error()[0].what.find("/tasks/0/lights/1/beam_angle_deg"), std::string::npos);

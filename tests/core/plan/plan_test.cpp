@@ -32,8 +32,8 @@ void expect_same(const Plan& a, const Plan& b) {
       EXPECT_TRUE(same(x.position_world_m, y.position_world_m));
       ASSERT_EQ(x.aim_world_m.has_value(), y.aim_world_m.has_value());
       EXPECT_TRUE(!x.aim_world_m || same(*x.aim_world_m, *y.aim_world_m));
-      EXPECT_EQ(x.pan_deg, y.pan_deg);
-      EXPECT_EQ(x.tilt_deg, y.tilt_deg);
+      ASSERT_EQ(x.joints.has_value(), y.joints.has_value());
+      if (x.joints) EXPECT_TRUE(same_aim(*x.joints, *y.joints));
       EXPECT_TRUE(same(x.level, y.level));
       EXPECT_TRUE(same(x.lumens, y.lumens));
     }
@@ -67,6 +67,7 @@ Plan random_plan(std::mt19937_64& random) {
     std::uniform_real_distribution<double> exponent(-300, 300), mantissa(-1, 1);
     return mantissa(random) * std::pow(10, exponent(random));
   };
+  std::uniform_real_distribution<double> angle_rad(-20, 20);
   const auto vector = [&] { return Vec3(number(), number(), number()); };
   const auto coin = [&] { return random() % 2 == 0; };
   Plan plan;
@@ -76,10 +77,10 @@ Plan random_plan(std::mt19937_64& random) {
   for (std::uint64_t t = 0; t < random() % 3; ++t) {
     PlannedTask task{"task", "emittance", number(), static_cast<int>(random() % 1000), number(), {}};
     for (std::uint64_t l = 0; l < random() % 5; ++l) {
-      PlannedLight made{"spot-" + std::to_string(l), "narrow", vector(), {}, {}, {}, number(), number()};
+      PlannedLight made{"spot-" + std::to_string(l), "narrow", vector(), {}, {}, number()};
+      made.lumens = number();
       if (coin()) made.aim_world_m = vector();
-      if (coin()) made.pan_deg = number();
-      if (coin()) made.tilt_deg = number();
+      if (coin()) made.joints = Joints{angle_rad(random), angle_rad(random), coin() ? 0.3 : 0.0};
       task.lights.push_back(made);
     }
     plan.tasks.push_back(task);
@@ -114,8 +115,7 @@ TEST(Plan, HasTheKeysOfTheContractInTheirOrder) {
   PlannedLight spot = light("spot-1", 0.25);
   spot.luminaire = "narrow";
   spot.aim_world_m = Vec3(1, 2, 3);
-  spot.pan_deg = 10;
-  spot.tilt_deg = 20;
+  spot.joints = Joints{rad_from_deg(10), rad_from_deg(20)};
   spot.lumens = 225;
   plan.tasks = {{"levels", "emittance", 0.125, 3, 0.25, {spot}}};
   plan.points = {{"desk", Vec3(0, 0, 1), Vec3(0, 0, 1), 300, 200, 1.5, 310, "why"}};
@@ -356,18 +356,20 @@ TEST(Plan, SetsAPlacedLightOnceItHangs) {
   const auto levels = levels_for(plan_that_places(), rig, "plan.json");
   ASSERT_TRUE(levels);
   EXPECT_EQ(*levels, (std::vector<double>{0.25, 0, 0.75})) << "fixtures as they were meanwhile";
-  const auto in_model = levels_when_hung(plan_that_places(), rig, "plan.json");
+  const auto in_model = hang_plan(plan_that_places(), rig, "plan.json");
   ASSERT_TRUE(in_model);
-  EXPECT_EQ(rig.fixtures.size(), 3u) << "nothing is hung twice";
+  EXPECT_EQ(in_model->rig.fixtures.size(), 3u) << "nothing is hung twice";
 }
 
 TEST(Plan, HangsPlacedLightsInTheModel) {
-  Rig rig = rig_with_a_bulb();
-  const auto levels = levels_when_hung(plan_that_places(), rig, "plan.json");
-  ASSERT_TRUE(levels);
-  EXPECT_EQ(*levels, (std::vector<double>{0.25, 0, 0.75}));
-  ASSERT_EQ(rig.fixtures.size(), 3u);
-  const Fixture& hung = rig.fixtures[2];
+  const Rig rig = rig_with_a_bulb();
+  const auto in_model = hang_plan(plan_that_places(), rig, "plan.json");
+  ASSERT_TRUE(in_model);
+  EXPECT_EQ(in_model->look.levels, (std::vector<double>{0.25, 0, 0.75}));
+  ASSERT_EQ(in_model->rig.fixtures.size(), 3u);
+  ASSERT_EQ(in_model->look.joints.size(), 3u);
+  const Fixture& hung = in_model->rig.fixtures[2];
+  EXPECT_EQ(in_model->look.joints[2], hung.joints);
   EXPECT_EQ(hung.name, "more 1");
   EXPECT_EQ(hung.luminaire, 1u);
   EXPECT_EQ(hung.bus, rig.buses.size()) << "it has none";
@@ -393,10 +395,9 @@ TEST(Plan, RefusesToHangWhatItCannot) {
                {itself, "/tasks/1/lights/0/aim"},
                {levels_task, "the rig has no fixture \"more 1\""}};
   for (const auto& bad : cases) {
-    Rig rig = rig_with_a_bulb();
-    const auto levels = levels_when_hung(bad.plan, rig, "plan.json");
-    ASSERT_FALSE(levels) << bad.says;
-    EXPECT_NE(levels.error()[0].what.find(bad.says), std::string::npos) << levels.error()[0].text();
+    const auto hung = hang_plan(bad.plan, rig_with_a_bulb(), "plan.json");
+    ASSERT_FALSE(hung) << bad.says;
+    EXPECT_NE(hung.error()[0].what.find(bad.says), std::string::npos) << hung.error()[0].text();
   }
 }
 

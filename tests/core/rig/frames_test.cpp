@@ -46,6 +46,21 @@ TEST(Frames, RollTurnsTheLampAboutItsBeamOnly) {
 }
 
 // The aim vectors of the protocol notes: mount = identity, pan ±270°, tilt ±135°.
+TEST(SameAim, HoldsThroughTwelveDigitsAndNotForAThousandthOfADegree) {
+  const Joints at{1.2345678901234567, -0.76543210987654321, 0.3};
+  Joints other = at;
+  EXPECT_TRUE(same_aim(at, other));
+  other.pan_rad += rad_from_deg(1e-10);  // the last of twelve digits
+  EXPECT_TRUE(same_aim(at, other));
+  for (double Joints::*joint : {&Joints::pan_rad, &Joints::tilt_rad, &Joints::beam_rad}) {
+    other = at;
+    other.*joint += rad_from_deg(0.001);
+    EXPECT_FALSE(same_aim(at, other));
+    other.*joint = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_FALSE(same_aim(at, other)) << "what is no number is no aim";
+  }
+}
+
 TEST(PanTiltTowards, MeetsTheTestVectors) {
   const JointRange range;
   const auto raw = [&](const Joints& j) {

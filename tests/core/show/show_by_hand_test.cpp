@@ -76,16 +76,22 @@ struct HandShow {
     Look look;
     for (const Fixture& fixture : rig.fixtures) look.joints.push_back(fixture.joints);
     look.goal_lx = std::move(goals);
-    look.model = model;
     look.solved_levels = std::move(solved);
     return look;
   }
 };
 
+Look with_levels(Look look, std::vector<double> levels) {
+  look.levels = std::move(levels);
+  return look;
+}
+
 TEST(ByHand, LevelsThatAPersonWroteIntoAPlanStayThroughCorrections) {
   HandShow show;
-  show.show->apply(show.now(), std::vector<double>{0.05, 0.05, 0.1},
-                   show.look({40, 40}, {std::optional(0.33), std::optional(0.33), std::nullopt}));
+  show.show->apply(
+      show.now(),
+      with_levels(show.look({40, 40}, {std::optional(0.33), std::optional(0.33), std::nullopt}), {0.05, 0.05, 0.1}),
+      show.model);
   show.run(40);
   EXPECT_EQ(show.status().phase, Phase::holding);
   EXPECT_NEAR(show.levels()[0], 0.05, 1e-9);
@@ -96,7 +102,7 @@ TEST(ByHand, LevelsThatAPersonWroteIntoAPlanStayThroughCorrections) {
   EXPECT_TRUE(status.by_hand[0].of_plan);
   EXPECT_EQ(status.by_hand[0].why, "");
   // The next plan ends it.
-  show.show->apply(show.now(), std::vector<double>{0.33, 0.33, 0.0}, show.look({40, 40}));
+  show.show->apply(show.now(), with_levels(show.look({40, 40}), {0.33, 0.33, 0.0}), show.model);
   show.run(20);
   EXPECT_TRUE(show.status().by_hand.empty());
   EXPECT_GT(show.levels()[0], 0.1);
@@ -105,7 +111,7 @@ TEST(ByHand, LevelsThatAPersonWroteIntoAPlanStayThroughCorrections) {
 TEST(ByHand, CorrectionsAimAtTheGoalsOfThePlanInForceNotAtTheRigFiles) {
   HandShow show;
   Look look = show.look({20, std::nullopt});
-  show.show->apply(show.now(), std::vector<double>{0.17, 0.3, 0.0}, look);
+  show.show->apply(show.now(), with_levels(look, {0.17, 0.3, 0.0}), show.model);
   show.run(40);
   EXPECT_NEAR(show.lux()[0], 20, 0.6);
   EXPECT_NEAR(show.levels()[1], 0.3, 0.03) << "a point without a goal pulls at nothing";
@@ -113,13 +119,13 @@ TEST(ByHand, CorrectionsAimAtTheGoalsOfThePlanInForceNotAtTheRigFiles) {
   // A plan solved for a lower limit keeps it; the next without one is back at the rig's.
   look = show.look({40, 40});
   look.max_lx = {30, std::nullopt};
-  show.show->apply(show.now(), std::vector<double>{0.4, 0.4, 0.0}, look);
+  show.show->apply(show.now(), with_levels(look, {0.4, 0.4, 0.0}), show.model);
   for (int i = 0; i < 40; ++i) {
     show.run(1);
     EXPECT_LE(show.lux()[0], 30) << i;
   }
   look.max_lx.clear();
-  show.show->apply(show.now(), std::vector<double>{0.4, 0.4, 0.0}, look);
+  show.show->apply(show.now(), with_levels(look, {0.4, 0.4, 0.0}), show.model);
   show.run(40);
   EXPECT_NEAR(show.lux()[0], 40, 1.2);
 }
@@ -255,7 +261,7 @@ TEST(ByHand, BeforeTheFirstPlanItIsKeptForIt) {
   ASSERT_TRUE(show.show->hold(show.now(), std::vector{level_by_hand(0, 0.1), goal_by_hand(1, 30)}));
   show.run(2);
   EXPECT_EQ(show.levels(), (std::vector<double>{0, 0, 0}));
-  show.show->apply(show.now(), std::vector<double>{0.36, 0.36, 0.0}, show.look({std::nullopt, 40}));
+  show.show->apply(show.now(), with_levels(show.look({std::nullopt, 40}), {0.36, 0.36, 0.0}), show.model);
   show.run(20);
   EXPECT_NEAR(show.levels()[0], 0.1, 1e-9);
   EXPECT_NEAR(show.lux()[1], 30, 1);
@@ -268,7 +274,7 @@ TEST(ByHand, EmittersOfAHousingKeepTheirSharesWhenTheHousingIsSet) {
   show.rig.fixtures[1].name = "par/green";
   for (const std::size_t f : {0, 1}) show.rig.fixtures[f].housing = 0;
   show.show = std::make_unique<ShowController>(show.rig, show.model);
-  show.show->apply(show.now(), std::vector<double>{0.2, 0.1, 0.3}, show.look({std::nullopt, std::nullopt}));
+  show.show->apply(show.now(), with_levels(show.look({std::nullopt, std::nullopt}), {0.2, 0.1, 0.3}), show.model);
   show.run(5);
   ByHand housing = level_by_hand(0, 0.3);
   housing.whole_housing = true;

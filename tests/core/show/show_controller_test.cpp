@@ -302,12 +302,12 @@ struct TurningShow : SmallShow {
     turned = model;
     turned.point_lux_per_level = turned.meter_lux_per_level = Eigen::MatrixXd{{100, 80}, {10, 20}};
   }
-  [[nodiscard]] Look look(double pan_rad, const LightModel& of) const {
+  [[nodiscard]] static Look look(double pan_rad, std::vector<double> levels) {
     Look look;
+    look.levels = std::move(levels);
     look.joints.resize(2);
     look.joints[1] = {pan_rad, 0};
     look.goal_lx = {45, 15};
-    look.model = of;
     return look;
   }
   void run_until(Phase phase) {
@@ -357,7 +357,7 @@ TEST(ShowController, TurnsAHeadInTheDarkAndKeepsTheOthersLit) {
   ASSERT_GT(before[1], 0.3);
   ASSERT_TRUE(small.status().converged);
 
-  small.show->apply(small.now(), std::vector<double>{0.2, 0.3}, small.look(1.5, small.turned));
+  small.show->apply(small.now(), small.look(1.5, {0.2, 0.3}), small.turned);
   EXPECT_EQ(small.status().phase, Phase::moving);
   EXPECT_EQ(small.status().points[0].goal_lx, 40) << "until it is taken";
   bool turned = false;
@@ -393,7 +393,7 @@ TEST(ShowController, ABlackoutTurnsHeadsAtOnceAndTheyComeBackLit) {
   TurningShow small;
   small.start().apply(small.now(), std::vector<double>{0.36, 0.36});
   small.run_until(Phase::holding);
-  small.show->apply(small.now(), std::vector<double>{0.2, 0.3}, small.look(1.5, small.turned));
+  small.show->apply(small.now(), small.look(1.5, {0.2, 0.3}), small.turned);
   small.run(0.1);
   small.show->blackout(small.now(), true);
   small.run(0.1);
@@ -410,13 +410,13 @@ TEST(ShowController, AnotherPlanOrTheSafeLookMayComeWhileAHeadGoesDark) {
   TurningShow small;
   small.start().apply(small.now(), std::vector<double>{0.36, 0.36});
   small.run_until(Phase::holding);
-  small.show->apply(small.now(), std::vector<double>{0.2, 0.3}, small.look(1.5, small.turned));
+  small.show->apply(small.now(), small.look(1.5, {0.2, 0.3}), small.turned);
   small.run(0.3);
   small.show->apply(small.now(), std::vector<double>{0.3, 0.3});  // as they look
   small.run_until(Phase::holding);
   EXPECT_EQ(small.show->program().joints[1].pan_rad, 0);
 
-  small.show->apply(small.now(), std::vector<double>{0.2, 0.3}, small.look(1.5, small.turned));
+  small.show->apply(small.now(), small.look(1.5, {0.2, 0.3}), small.turned);
   small.run(0.3);
   small.show->go_safe(small.now());
   small.run_until(Phase::safe);
@@ -427,11 +427,11 @@ TEST(ShowController, AHeadThatIsToldAnewOnItsWayIsDarkUntilItCanHaveGotThere) {
   TurningShow small;
   small.start().apply(small.now(), std::vector<double>{0.36, 0.36});
   small.run_until(Phase::holding);
-  small.show->apply(small.now(), std::vector<double>{0.2, 0.3}, small.look(1.5, small.turned));
+  small.show->apply(small.now(), small.look(1.5, {0.2, 0.3}), small.turned);
   while (small.show->program().joints[1].pan_rad == 0) small.run(0.05);
   // It has not begun yet to turn there, and has 3 rad to go, at 90° a second.
   const double told_s = small.now_s;
-  small.show->apply(small.now(), std::vector<double>{0.2, 0.3}, small.look(3, small.turned));
+  small.show->apply(small.now(), small.look(3, {0.2, 0.3}), small.turned);
   ASSERT_EQ(small.show->program().joints[1].pan_rad, 3);
   while (small.now_s < told_s + 3 / (kPi / 2) + 0.5 - 0.05) {
     small.run(0.05);
@@ -448,9 +448,9 @@ TEST(ShowController, OtherGoalsKeepWhatTheMetersTaught) {
   small.run_until(Phase::holding);
   const double gain = small.status().fixtures[0].gain;
   ASSERT_LT(gain, 0.97);
-  Look look = small.look(0, small.model);
+  Look look = small.look(0, small.levels());
   look.goal_lx = {30, 20};
-  small.show->apply(small.now(), small.levels(), look);
+  small.show->apply(small.now(), look, small.model);
   EXPECT_EQ(small.status().phase, Phase::fading);
   EXPECT_EQ(small.status().fixtures[0].gain, gain);
   small.run_until(Phase::holding);

@@ -193,7 +193,8 @@ TEST(ShowKeepOut, OwnMovesAreDarkAsEverAndTheSafeLookLightsNoZone) {
   ASSERT_EQ(small.level(), 0.6);
   Look look;
   look.joints = {{kTowardsTheZone_rad, 0.8, 0}, {}};
-  small.show.apply(at(small.now_s), std::vector<double>{0.6, 0.6}, look);  // no plan may, but nothing depends on that
+  look.levels = {0.6, 0.6};
+  small.show.apply(at(small.now_s), look, {});  // no plan may, but nothing depends on that
   small.run(8);
   EXPECT_EQ(small.level(), 0);
   EXPECT_EQ(small.show.safe_look(at(small.now_s))[0], 0);

@@ -149,11 +149,11 @@ TEST(ShowListening, LightThatAGuardianSentGoesOnWithoutAPauseAndWhatItWasSilentA
   for (const bool silent : {false, true}) {
     ListeningShow small({DeskMode::takeover, HandBack::fade});
     small.hear(DeskPresence::unknown);
-    LightInForce light{{0.4, 0.3}, {0, 0}, std::vector<Joints>(2), 60, 1};
+    LightInForce light{{{0.4, 0.3}, std::vector<Joints>(2)}, {0, 0}, 60, 1};
     light.silent = {silent ? std::uint8_t{1} : std::uint8_t{0}, 0};
     small.show->go_on_from(at(0), light);
     EXPECT_EQ(small.silent(), silent);
-    small.sent = light.level;
+    small.sent = light.look.levels;
     small.show->apply(at(0), std::vector<double>{0.8, 0.6});
     small.run(2);
     EXPECT_EQ(small.sent[1], 0.6) << "what is lit does not wait";

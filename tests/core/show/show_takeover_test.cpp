@@ -44,7 +44,7 @@ struct TakeoverShow {
   void begin(const LightInForce& light) {
     show = std::make_unique<ShowController>(rig, model);
     show->go_on_from(at(now_s), light);
-    last = light.level;
+    last = light.look.levels;
   }
   [[nodiscard]] std::vector<double> levels() const {
     std::vector<double> level(3);
@@ -63,22 +63,22 @@ struct TakeoverShow {
   }
 };
 
-const LightInForce kLight{{0.3, 0.8, 0.5}, {0.2, 0.2, 0.2}, {{0.7, 0.3}, {}, {}}, 1, 2};
+const LightInForce kLight{{{0.3, 0.8, 0.5}, {{0.7, 0.3}, {}, {}}}, {0.2, 0.2, 0.2}, 1, 2};
 
 TEST(ShowTakeover, WithoutAPlanTheLightIsHeldAndThenGoesToTheSafeLook) {
   TakeoverShow small;
   small.begin(kLight);
   EXPECT_NE(small.show->program().revision, 0u) << "it goes out at once";
-  EXPECT_EQ(small.levels(), kLight.level);
+  EXPECT_EQ(small.levels(), kLight.look.levels);
   EXPECT_EQ(small.show->program().joints[0], (Joints{0.7, 0.3}));
   small.run(0.9);
-  EXPECT_EQ(small.levels(), kLight.level);
+  EXPECT_EQ(small.levels(), kLight.look.levels);
   small.run(3);
-  EXPECT_EQ(small.levels(), kLight.safe);
+  EXPECT_EQ(small.levels(), kLight.safe_levels);
   EXPECT_LT(small.largest_step, 0.02);
   EXPECT_EQ(small.show->status(at(small.now_s)).phase, Phase::idle);
   small.show->apply(at(small.now_s), std::vector<double>{0.3, 0.1, 0.4});
-  EXPECT_EQ(small.levels(), kLight.safe);
+  EXPECT_EQ(small.levels(), kLight.safe_levels);
 }
 
 TEST(ShowTakeover, APlanFadesFromWhatIsOn) {
@@ -86,10 +86,10 @@ TEST(ShowTakeover, APlanFadesFromWhatIsOn) {
   small.begin(kLight);
   small.run(0.3);
   Look look;
-  look.joints = kLight.joints;
+  look.joints = kLight.look.joints;
   look.goal_lx = {30};
-  look.model = small.model;
-  small.show->apply(at(small.now_s), std::vector<double>{0.3, 0.4, 0.2}, look);
+  look.levels = {0.3, 0.4, 0.2};
+  small.show->apply(at(small.now_s), look, small.model);
   double least = 1;
   for (int i = 0; i < 150; ++i) {
     small.run(0.02);
@@ -107,8 +107,8 @@ TEST(ShowTakeover, AHeadThatMustTurnIsFadedOutFirst) {
   Look look;
   look.joints = {{-0.7, 0.3}, {}, {}};
   look.goal_lx = {30};
-  look.model = small.model;
-  small.show->apply(at(small.now_s), std::vector<double>{0.3, 0.4, 0.2}, look);
+  look.levels = {0.3, 0.4, 0.2};
+  small.show->apply(at(small.now_s), look, small.model);
   bool dark = false;
   for (int i = 0; i < 400; ++i) {
     small.run(0.02);
@@ -127,7 +127,7 @@ TEST(ShowTakeover, ALimitWithoutWhatMetersTaughtIsNoJump) {
   TakeoverShow small(40);
   small.begin(kLight);
   small.run(0.5);
-  EXPECT_EQ(small.levels(), kLight.level);
+  EXPECT_EQ(small.levels(), kLight.look.levels);
   small.show->apply(at(small.now_s), std::vector<double>{0.3, 0.8, 0.5});
   small.run(4);
   EXPECT_LT(small.largest_step, 0.02);
@@ -148,11 +148,11 @@ TEST(ShowTakeover, LampsThatAreOnDoNotComeUpByStages) {
   TakeoverShow small;
   small.rig.startup.stage_s = 2;
   LightInForce light = kLight;
-  light.joints[0] = {};  // where the plan wants it
+  light.look.joints[0] = {};  // where the plan wants it
   small.begin(light);
   small.show->apply(at(small.now_s), std::vector<double>{0.3, 0.8, 0.5});
   small.run(1);
-  EXPECT_EQ(small.levels(), kLight.level);
+  EXPECT_EQ(small.levels(), kLight.look.levels);
 }
 
 TEST(ShowTakeover, AHeadOnAxesStaysDarkUntilItIsKnownWhereItLooks) {

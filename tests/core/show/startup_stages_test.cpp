@@ -187,7 +187,7 @@ TEST(StartupStages, WhatBurnsAlreadyGoesOnAndTheRestComesByStages) {
     if (by_watts) small.rig.startup.max_watts_per_s = 100;
     small.start();
     const std::vector<double> wanted = {0.5, 1, 1, 0.9}, before = {0, 1, 0, 0.4};  // stage 2: a, c
-    LightInForce light{before, std::vector<double>(4, 0.2), std::vector<Joints>(4), 60, 1};
+    LightInForce light{{before, std::vector<Joints>(4)}, std::vector<double>(4, 0.2), 60, 1};
     small.show->go_on_from(at(0), light);
     small.run(0.1);
     ASSERT_EQ(small.levels(), before);

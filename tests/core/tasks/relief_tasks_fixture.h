@@ -107,6 +107,16 @@ inline Eigen::VectorXd levels_of(const SolvedTasks& solved) {
   return levels;
 }
 
+/// The rig of a solution with its heads where the look has them.
+inline Rig turned(const SolvedTasks& solved) {
+  Rig rig = solved.rig;
+  for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
+    rig.fixtures[f].joints = solved.look.joints[f];
+    rig.fixtures[f].aim_world_m = solved.look.aim_world_m[f];
+  }
+  return rig;
+}
+
 /// Has the mesh of the well beside the rig.
 class ReliefTask : public ::testing::Test {
  protected:

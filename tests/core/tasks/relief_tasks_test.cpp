@@ -116,26 +116,27 @@ TEST_F(AimTask, TurnsHeadsThatLookPastAnObjectTowardsIt) {
   const SolvedTasks solved = solved_of(session, direct_light());
   const Eigen::VectorXd levels = levels_of(solved);
   ASSERT_EQ(levels.size(), 2);
+  const Rig rig = turned(solved);
   for (std::size_t f = 0; f < 2; ++f) {
-    const Fixture &was = session.rig.fixtures[f], &is = solved.rig.fixtures[f];
+    const Fixture &was = session.rig.fixtures[f], &is = rig.fixtures[f];
     const PlannedLight& planned = solved.plan.tasks[0].lights[f];
     EXPECT_GT(off_beam_deg(was, kWellMiddle), 25) << was.name << " hangs so that it looks past it";
     EXPECT_LT(off_beam_deg(is, kWellMiddle), 10) << is.name << ": half of its beam angle";
     EXPECT_GT(planned.level, 0);
-    EXPECT_EQ(planned.pan_deg, deg_from_rad(is.joints.pan_rad));
-    EXPECT_EQ(planned.tilt_deg, deg_from_rad(is.joints.tilt_rad));
-    EXPECT_LE(std::abs(*planned.pan_deg), 200);
-    EXPECT_LE(std::abs(*planned.tilt_deg), 100);
+    ASSERT_TRUE(planned.joints);
+    EXPECT_EQ(*planned.joints, is.joints);
+    EXPECT_LE(std::abs(planned.joints->pan_rad), rad_from_deg(200));
+    EXPECT_LE(std::abs(planned.joints->tilt_rad), rad_from_deg(100));
     ASSERT_TRUE(is.aim_world_m);
     EXPECT_LT(off_beam_deg(is, *is.aim_world_m), 1e-3);
   }
   const Eigen::VectorXd full = Eigen::VectorXd::Ones(2);
   const WellLight before(session, session.rig, full, direct_light()),
-      after(session, solved.rig, levels, direct_light());
+      after(session, turned(solved), levels, direct_light());
   EXPECT_GT(after.mean_lx(), 10 * before.mean_lx());
   double by_hand_lx = 0;
   for (std::size_t f = 0; f < 2; ++f)
-    by_hand_lx += lux_by_hand(solved.rig, solved.rig.fixtures[f], levels[static_cast<Eigen::Index>(f)],
+    by_hand_lx += lux_by_hand(turned(solved), turned(solved).fixtures[f], levels[static_cast<Eigen::Index>(f)],
                               session.rig.points[0].position_world_m, Vec3::UnitZ());
   EXPECT_NEAR(solved.plan.points[0].lux, by_hand_lx, 1e-6 * by_hand_lx);
 }
@@ -146,7 +147,7 @@ TEST_F(AimTask, ShowsAWellBetterThanBothHeadsOnItsMiddleAtFullLevel) {
   const Session session = well(rig + replaced(kAim, "contrast = \"lux\"", "contrast = \"relative\"\nbase_lx = 50"));
   const SolvedTasks solved = solved_of(session, direct_light());
   const WellLight before(session, session.rig, Eigen::VectorXd::Ones(2), direct_light()),
-      after(session, solved.rig, levels_of(solved), direct_light());
+      after(session, turned(solved), levels_of(solved), direct_light());
   EXPECT_GT(after.contrast(), 1.1 * before.contrast());
   EXPECT_GT(after.mean_lx(), 40);
   const PlannedRelief& relief = *solved.plan.tasks[0].relief;
@@ -157,10 +158,10 @@ TEST_F(AimTask, KeepsTheLimitOfAPointThatItWouldElseBreak) {
   const Session free = well(std::string(kWellRig) + kAim), limited = well(with_limit(kWellRig, 40) + kAim);
   EXPECT_GT(solved_of(free, direct_light()).plan.points[0].lux, 60);
   const SolvedTasks solved = solved_of(limited, direct_light());
-  const Eigen::VectorXd lux = lux_anew(limited, solved.rig, levels_of(solved), direct_light());
+  const Eigen::VectorXd lux = lux_anew(limited, turned(solved), levels_of(solved), direct_light());
   EXPECT_LE(lux[0], 40 * (1 + 1e-9));
   EXPECT_NEAR(solved.plan.points[0].lux, lux[0], 1e-9 * lux[0]);
-  EXPECT_GT(WellLight(limited, solved.rig, levels_of(solved), direct_light()).mean_lx(), 40) << "lit all the same";
+  EXPECT_GT(WellLight(limited, turned(solved), levels_of(solved), direct_light()).mean_lx(), 40) << "lit all the same";
   ASSERT_EQ(solved.plan.limits.size(), 1);
   EXPECT_TRUE(solved.plan.limits[0].met);
 }
@@ -180,7 +181,8 @@ TEST_F(AimTask, KeepsRecessedPlacesWithinTheLimitOfTheObjectWithReflectedLightTo
   options.error_floor_lx = 1;
   const SolvedTasks solved = solved_of(session, options);
   const Eigen::VectorXd levels = levels_of(solved);
-  const WellLight all(session, solved.rig, levels, options), direct(session, solved.rig, levels, direct_light());
+  const WellLight all(session, turned(solved), levels, options),
+      direct(session, turned(solved), levels, direct_light());
   EXPECT_LE(all.most_recessed_lx(), 1.08 * 150) << "its samples and their normals are not quite the mesh's";
   EXPECT_GT(all.most_recessed_lx(), 0.8 * 150) << "no dimmer than the limit asks";
   EXPECT_GT(all.most_recessed_lx(), 1.1 * direct.most_recessed_lx()) << "the walls give something";
@@ -197,7 +199,8 @@ TEST_F(AimTask, GivesAnEyeNoMoreDirectLightThanItMayHave) {
     const Eigen::VectorXd levels = levels_of(solved);
     double lux = 0;
     for (std::size_t f = 0; f < 2; ++f)
-      lux += lux_by_hand(solved.rig, solved.rig.fixtures[f], levels[static_cast<Eigen::Index>(f)], eye, Vec3::Zero());
+      lux += lux_by_hand(turned(solved), turned(solved).fixtures[f], levels[static_cast<Eigen::Index>(f)], eye,
+                         Vec3::Zero());
     return lux;
   };
   EXPECT_GT(at_eye_lx(""), 300);
@@ -210,9 +213,9 @@ TEST_F(AimTask, LeavesAHeadDarkAndUnturnedWhoseWayToTheObjectIsKeptOut) {
                                "heads = [\"left\"]\n");
   const SolvedTasks solved = solved_of(session, direct_light());
   EXPECT_EQ(solved.plan.tasks[0].lights[0].level, 0);
-  EXPECT_EQ(solved.rig.fixtures[0].joints, session.rig.fixtures[0].joints);
+  EXPECT_EQ(turned(solved).fixtures[0].joints, session.rig.fixtures[0].joints);
   EXPECT_GT(solved.plan.tasks[0].lights[1].level, 0);
-  EXPECT_LT(off_beam_deg(solved.rig.fixtures[1], kWellMiddle), 10);
+  EXPECT_LT(off_beam_deg(turned(solved).fixtures[1], kWellMiddle), 10);
 }
 
 TEST_F(AimTask, StoppedWhileItAimsGivesItsBestSoFarWithinLimitsAndLeavesOutTheTasksAfterIt) {
@@ -232,9 +235,9 @@ TEST_F(AimTask, StoppedWhileItAimsGivesItsBestSoFarWithinLimitsAndLeavesOutTheTa
   ASSERT_GT(levels.maxCoeff(), 0);
   for (std::size_t f = 0; f < 2; ++f)
     if (levels[static_cast<Eigen::Index>(f)] > 0) {
-      EXPECT_LT(off_beam_deg(solved->rig.fixtures[f], kWellMiddle), 20);
+      EXPECT_LT(off_beam_deg(turned(*solved).fixtures[f], kWellMiddle), 20);
     }
-  const Eigen::VectorXd lux = lux_anew(session, solved->rig, levels, direct_light());
+  const Eigen::VectorXd lux = lux_anew(session, turned(*solved), levels, direct_light());
   EXPECT_LE(lux[0], 40 * (1 + 1e-9));
   EXPECT_NEAR(solved->plan.points[0].lux, lux[0], 1e-9 * lux[0]);
 }
@@ -319,13 +322,13 @@ TEST_F(HighlightTask, HangsLightsUnderTheCeilingThatShowAWellBetterThanLightsStr
     EXPECT_LE(at.head<2>().cwiseAbs().maxCoeff(), 2 + 1e-6);
     EXPECT_LT(off_beam_deg(light, kWellMiddle), 10) << "half of its beam angle";
     EXPECT_GT(levels[static_cast<Eigen::Index>(f)], 0);
-    by_hand_lx += lux_by_hand(solved.rig, light, levels[static_cast<Eigen::Index>(f)],
+    by_hand_lx += lux_by_hand(turned(solved), light, levels[static_cast<Eigen::Index>(f)],
                               session.rig.points[0].position_world_m, Vec3::UnitZ());
     above.fixtures[f].world_from_mount.translation_m = Vec3(0, 0, 2.9);
     above.fixtures[f].joints = {};
   }
   EXPECT_NEAR(solved.plan.points[0].lux, by_hand_lx, 1e-6 * by_hand_lx);
-  EXPECT_GT(WellLight(session, solved.rig, levels, direct_light()).contrast(),
+  EXPECT_GT(WellLight(session, turned(solved), levels, direct_light()).contrast(),
             1.5 * WellLight(session, above, levels, direct_light()).contrast());
 }
 
@@ -335,9 +338,9 @@ TEST_F(HighlightTask, KeepsTheLimitsOfAPointAndOfTheObjectThatItWouldElseBreak) 
     const SolvedTasks solved = solved_of(session, direct_light());
     const Eigen::VectorXd levels = levels_of(solved);
     EXPECT_GT(levels.maxCoeff(), 0);
-    beside_lx = lux_anew(session, solved.rig, levels, direct_light())[0];
+    beside_lx = lux_anew(session, turned(solved), levels, direct_light())[0];
     EXPECT_NEAR(solved.plan.points[0].lux, beside_lx, 1e-9 * beside_lx);
-    return WellLight(session, solved.rig, levels, direct_light());
+    return WellLight(session, turned(solved), levels, direct_light());
   };
   const std::string limited = replaced(kHighlight, "lights = 2\n", "lights = 2\nmax_object_lx = 120\n");
   double beside_lx = 0;
@@ -381,8 +384,8 @@ TEST_F(HighlightTask, StoppedWhileItAimsHangsItsBestSoFarWithinLimitsAndLeavesOu
   ASSERT_GE(solved->plan.tasks[0].lights.size(), 1);
   ASSERT_EQ(solved->rig.fixtures.size(), 2 + solved->plan.tasks[0].lights.size());
   const Eigen::VectorXd levels = levels_of(*solved);
-  EXPECT_GT(WellLight(session, solved->rig, levels, direct_light()).mean_lx(), 10);
-  const Eigen::VectorXd lux = lux_anew(session, solved->rig, levels, direct_light());
+  EXPECT_GT(WellLight(session, turned(*solved), levels, direct_light()).mean_lx(), 10);
+  const Eigen::VectorXd lux = lux_anew(session, turned(*solved), levels, direct_light());
   EXPECT_LE(lux[0], 40 * (1 + 1e-9));
   EXPECT_NEAR(solved->plan.points[0].lux, lux[0], 1e-9 * lux[0]);
 }
@@ -477,19 +480,19 @@ TEST_F(HighlightTask, KeepsTheWholeObjectWithinItsLimit) {
   const Session session =
       well(std::string(kWellRig) + replaced(kHighlight, "lights = 2\n", "lights = 2\nmax_object_lx = 120\n"));
   const SolvedTasks solved = solved_of(session, direct_light());
-  EXPECT_LE(WellLight(session, solved.rig, levels_of(solved), direct_light()).most_lx(), 1.08 * 120);
+  EXPECT_LE(WellLight(session, turned(solved), levels_of(solved), direct_light()).most_lx(), 1.08 * 120);
 }
 
 TEST_F(AimTask, KeepsTheWholeObjectWithinItsLimit) {
   const Session session = well(std::string(kWellRig) + kAim + "max_object_lx = 120\n");
   const SolvedTasks solved = solved_of(session, direct_light());
-  EXPECT_LE(WellLight(session, solved.rig, levels_of(solved), direct_light()).most_lx(), 1.08 * 120);
+  EXPECT_LE(WellLight(session, turned(solved), levels_of(solved), direct_light()).most_lx(), 1.08 * 120);
 }
 
 TEST_F(AimTask, LightsTheObjectInADarkRoomWithTheContrastThatIsTheDefault) {
   const Session session = well(std::string(kWellRig) + replaced(kAim, "contrast = \"lux\"\n", ""));
   const SolvedTasks solved = solved_of(session, direct_light());
-  EXPECT_GT(WellLight(session, solved.rig, levels_of(solved), direct_light()).mean_lx(), 10);
+  EXPECT_GT(WellLight(session, turned(solved), levels_of(solved), direct_light()).mean_lx(), 10);
 }
 
 }  // namespace

@@ -183,7 +183,7 @@ address = 1
 TEST(AutomaticCamera, OfARigWithoutPointsStandsInTheRoomAndSeesWhatItsLampsLight) {
   const LitRoom room = room_with(kSpotOnTheWall);
   const RayScene rays(room.scene);
-  const Camera camera = automatic_camera(rays, room.rig, 320, 200, rad_from_deg(60));
+  const Camera camera = automatic_camera(rays, room.rig, {}, 320, 200, rad_from_deg(60));
   EXPECT_TRUE(Eigen::AlignedBox3d(Vec3(-3, -2, 0), Vec3(3, 2, 3)).contains(camera.eye_world_m))
       << camera.eye_world_m.transpose();
   const Vec3 lit_m(2.999, 0, 1.15);
@@ -196,14 +196,14 @@ TEST(AutomaticCamera, IgnoresGroundThatGoesOnForAKilometre) {
   const LitRoom room = room_with(std::string(kSpotOnTheWall) +
                                  "[[scene.object]]\nname = \"ground\"\nbox_m = [1000, 1000, 0.1]\n"
                                  "position_m = [0, 0, -0.3]\n");
-  const Camera camera = automatic_camera(RayScene(room.scene), room.rig, 320, 200, rad_from_deg(60));
+  const Camera camera = automatic_camera(RayScene(room.scene), room.rig, {}, 320, 200, rad_from_deg(60));
   EXPECT_TRUE(Eigen::AlignedBox3d(Vec3(-3, -2, 0), Vec3(3, 2, 3)).contains(camera.eye_world_m))
       << camera.eye_world_m.transpose();
 }
 
 TEST(AutomaticCamera, OfARoomWithoutLampsStandsInIt) {
   const LitRoom room = room_with("");
-  const Camera camera = automatic_camera(RayScene(room.scene), room.rig, 320, 200, rad_from_deg(60));
+  const Camera camera = automatic_camera(RayScene(room.scene), room.rig, {}, 320, 200, rad_from_deg(60));
   EXPECT_TRUE(Eigen::AlignedBox3d(Vec3(-3, -2, 0), Vec3(3, 2, 3)).contains(camera.eye_world_m))
       << camera.eye_world_m.transpose();
 }
@@ -214,7 +214,7 @@ std::string dark_words(const LitRoom& room, double level, const LitRoom* seen = 
   const auto emitters = emitters_of(room.rig);
   const std::vector<double> levels(emitters.size(), level);
   const LitRoom& view = seen ? *seen : room;
-  const Camera camera = automatic_camera(RayScene(view.scene), view.rig, 32, 20, rad_from_deg(60));
+  const Camera camera = automatic_camera(RayScene(view.scene), view.rig, {}, 32, 20, rad_from_deg(60));
   PictureOptions how;
   how.most_passes = 1;
   const auto picture = render_picture(rays, emitters, levels, camera, how);

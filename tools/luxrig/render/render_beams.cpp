@@ -23,13 +23,13 @@ std::vector<BeamAxis> beam_axes(const ShownRig& rig, const RayScene& rays) {
   std::vector<BeamAxis> axes;
   for (std::size_t f = 0; f < rig.rig.fixtures.size(); ++f) {
     const Fixture& fixture = rig.rig.fixtures[f];
-    const bool lit = f < rig.levels.size() && rig.levels[f] > 0;
+    const bool lit = rig.look.levels[f] > 0;
     if (fixture.housing && *fixture.housing != f) {
       // The emitters of a housing follow its first one and share its beam.
       if (!axes.empty()) axes.back().lit = axes.back().lit || lit;
       continue;
     }
-    const Pose pose = fixture.world_from_lamp();
+    const Pose pose = fixture.world_from_lamp(rig.look.joints[f]);
     const Vec3 axis = pose.direction(-Vec3::UnitZ());
     const auto hit = rays.nearest(pose.translation_m, axis, Vec3::Zero());
     const std::string name = fixture.housing ? fixture.name.substr(0, fixture.name.rfind('/')) : fixture.name;

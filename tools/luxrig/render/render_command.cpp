@@ -32,12 +32,12 @@ namespace {
 
 constexpr int kMostPasses = 4096;
 
-/// Levels of a plan, after its placed lights are hung; or the highest of each fixture.
-Checked<std::vector<double>> levels_of(const RenderOptions& options, Rig& rig) {
+/// That of a plan, after its placed lights are hung; or each fixture at its highest level.
+Checked<HungPlan> wanted_look(const RenderOptions& options, const Rig& rig) {
   if (!options.plan) {
-    std::vector<double> levels;
-    for (const Fixture& fixture : rig.fixtures) levels.push_back(rig.max_level(fixture));
-    return levels;
+    HungPlan highest{rig, hung_look(rig)};
+    for (const Fixture& fixture : rig.fixtures) highest.look.levels.push_back(rig.max_level(fixture));
+    return highest;
   }
   std::ifstream in(*options.plan, std::ios::binary);
   std::stringstream text;
@@ -46,7 +46,7 @@ Checked<std::vector<double>> levels_of(const RenderOptions& options, Rig& rig) {
     return tl::unexpected(std::vector{Problem{options.plan->string(), 0, 0, "cannot be read", "name a plan file"}});
   const auto plan = plan_from_json(text.str(), options.plan->string());
   if (!plan) return tl::unexpected(plan.error());
-  return levels_when_hung(*plan, rig, options.plan->string());
+  return hang_plan(*plan, rig, options.plan->string());
 }
 
 /// As the options ask, or metered. Also gives a description in words.
@@ -71,12 +71,10 @@ PhotographLook look_of(const RenderOptions& options, const Picture& picture, std
 
 }  // namespace
 
-Checked<std::pair<Rig, std::vector<double>>> load_rig_for_picture(const RenderOptions& options) {
-  auto rig = load_rig(options.rig);
+Checked<HungPlan> load_rig_for_picture(const RenderOptions& options) {
+  const auto rig = load_rig(options.rig);
   if (!rig) return tl::unexpected(rig.error());
-  auto levels = levels_of(options, *rig);
-  if (!levels) return tl::unexpected(levels.error());
-  return std::pair{std::move(*rig), std::move(*levels)};
+  return wanted_look(options, *rig);
 }
 
 namespace {
@@ -90,15 +88,15 @@ int run_render(const RenderOptions& options) {
   if (options.show) return run_show(options);
   const auto loaded = load_rig_for_picture(options);
   if (!loaded) return report(loaded.error());
-  const auto& [rig, levels] = *loaded;
+  const Rig& rig = loaded->rig;
   const auto scene = build_scene(rig);
   if (!scene) return report(scene.error());
   const RayScene rays(*scene);
-  const std::vector<Emitter> emitters = all_emitters_of(rig);
-  std::vector<double> all_levels = levels;
+  const std::vector<Emitter> emitters = all_emitters_of(rig, loaded->look.joints);
+  std::vector<double> all_levels = loaded->look.levels;
   all_levels.resize(emitters.size(), 1.0);  // daylight
 
-  Camera camera = automatic_camera(rays, rig, options.width_px, options.height_px,
+  Camera camera = automatic_camera(rays, rig, loaded->look.joints, options.width_px, options.height_px,
                                    rad_from_deg(options.vertical_fov_deg.value_or(60)));
   if (options.eye_world_m) camera.eye_world_m = *options.eye_world_m;
   if (options.target_world_m) camera.target_world_m = *options.target_world_m;

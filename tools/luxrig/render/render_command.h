@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/picture/picture.h"
-#include "core/rig/rig.h"
+#include "core/plan/plan.h"
 #include "tools/luxrig/render/exposure.h"
 
 namespace luxrig {
@@ -40,7 +40,7 @@ struct RenderOptions {
 /// the file cannot be written.
 int run_show(const RenderOptions& options);
 
-/// The rig with a level per fixture: those of the plan, after its placed lights are hung; or each fixture's highest.
-[[nodiscard]] Checked<std::pair<Rig, std::vector<double>>> load_rig_for_picture(const RenderOptions& options);
+/// The rig and its look: that of the plan, after its placed lights are hung; or each fixture at its highest level.
+[[nodiscard]] Checked<HungPlan> load_rig_for_picture(const RenderOptions& options);
 
 }  // namespace luxrig

@@ -70,7 +70,7 @@ std::vector<const Fixture*> fixtures_for(const ShownRig& rig, const ShownObject&
     const Fixture& fixture = rig.rig.fixtures[f];
     if (fixture.housing && *fixture.housing != f) continue;
     if (fixture.moves) moving.push_back(&fixture);
-    const Pose pose = fixture.world_from_lamp();
+    const Pose pose = fixture.world_from_lamp(rig.look.joints[f]);
     const Vec3 way_m = middle_m - pose.translation_m, axis = pose.direction(-Vec3::UnitZ());
     if (way_m.dot(axis) > 0 && way_m.cross(axis).norm() < object.study.surface.diagonal_m())
       passing.push_back(&fixture);

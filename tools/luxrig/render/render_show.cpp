@@ -38,9 +38,9 @@ Vec3 side_of_interest(const Rig& rig, const Vec3& middle_world_m, double diagona
 Checked<ShownRig> open_shown_rig(const RenderOptions& options) {
   auto rig = load_rig_for_picture(options);
   if (!rig) return tl::unexpected(rig.error());
-  auto scene = build_scene(rig->first);
+  auto scene = build_scene(rig->rig);
   if (!scene) return tl::unexpected(scene.error());
-  return ShownRig{std::move(rig->first), std::move(*scene), std::move(rig->second)};
+  return ShownRig{std::move(rig->rig), std::move(*scene), std::move(rig->look)};
 }
 
 Result<ShownObject> open_shown_object(const ShownRig& rig, const RenderOptions& options) {

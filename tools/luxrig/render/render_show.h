@@ -9,11 +9,11 @@
 
 namespace luxrig {
 
-/// A rig in its scene. If there is a plan, its lights are hung and heads are turned as it says.
+/// A rig in its scene, and its look. If there is a plan, its lights are hung.
 struct ShownRig {
   Rig rig;
   Scene scene;
-  std::vector<double> levels;  ///< per fixture
+  Look look;
 };
 
 /// One object of it, with everything that its lights would be chosen from.

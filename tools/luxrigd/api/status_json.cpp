@@ -51,7 +51,7 @@ json fixture_json(const Rig& rig, std::size_t index, const FixtureStatus& status
               {"position", array_of(fixture.world_from_mount.translation_m)},
               {"pan_deg", deg_from_rad(status.joints.pan_rad)},
               {"tilt_deg", deg_from_rad(status.joints.tilt_rad)}};
-  if (fixture.aim_world_m) out["aim"] = array_of(*fixture.aim_world_m);
+  if (status.aim_world_m) out["aim"] = array_of(*status.aim_world_m);
   set(out, "level", status.level);
   set(out, "drive", status.drive);
   set(out, "target_level", status.target_level);

@@ -41,9 +41,9 @@ bool read_silent(const json& from, std::size_t fixtures, std::vector<std::uint8_
 
 std::string handed_light_text(const LightInForce& light) {
   json joints = json::array();
-  for (const Joints& one : light.joints) joints.push_back({one.pan_rad, one.tilt_rad, one.beam_rad});
-  return json({{"levels", light.level},
-               {"safe", light.safe},
+  for (const Joints& one : light.look.joints) joints.push_back({one.pan_rad, one.tilt_rad, one.beam_rad});
+  return json({{"levels", light.look.levels},
+               {"safe", light.safe_levels},
                {"joints_rad", joints},
                {"silent", light.silent},
                {"hold_s", light.hold_s},
@@ -56,8 +56,8 @@ std::optional<LightInForce> handed_light_of(const std::string& text, std::size_t
   if (!all.is_object()) return std::nullopt;
   const auto part = [&all](const char* key) { return all.contains(key) ? all[key] : json(); };
   LightInForce light;
-  if (!read_levels(part("levels"), fixtures, light.level) || !read_levels(part("safe"), fixtures, light.safe) ||
-      !read_silent(part("silent"), fixtures, light.silent))
+  if (!read_levels(part("levels"), fixtures, light.look.levels) ||
+      !read_levels(part("safe"), fixtures, light.safe_levels) || !read_silent(part("silent"), fixtures, light.silent))
     return std::nullopt;
   light.hold_s = number_within(part("hold_s"), 0, kLongestHold_s);
   light.fade_s = number_within(part("fade_s"), 0, kLongestHold_s);
@@ -70,7 +70,7 @@ std::optional<LightInForce> handed_light_of(const std::string& text, std::size_t
     const Joints read{number_within(one[0], -kMost_rad, kMost_rad), number_within(one[1], -kMost_rad, kMost_rad),
                       number_within(one[2], -kMost_rad, kMost_rad)};
     if (std::isnan(read.pan_rad + read.tilt_rad + read.beam_rad)) return std::nullopt;
-    light.joints.push_back(read);
+    light.look.joints.push_back(read);
   }
   return light;
 }

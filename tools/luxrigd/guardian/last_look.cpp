@@ -84,44 +84,45 @@ LastLookMemory::~LastLookMemory() {
   if (fd_ >= 0) ::close(fd_);
 }
 
-void LastLookMemory::put(const LastLook& look) {
+void LastLookMemory::put(const LightInForce& light, bool sends) {
   const std::uint32_t newest = header().newest.load(std::memory_order_relaxed);
   const std::uint32_t other = newest == 1 ? 1 : 0;
   double* at = copy(other);
-  *at++ = look.sends ? 1 : 0;
-  *at++ = look.hold_s;
-  *at++ = look.fade_s;
+  *at++ = sends ? 1 : 0;
+  *at++ = light.hold_s;
+  *at++ = light.fade_s;
   for (std::size_t f = 0; f < fixtures_; ++f) {
-    *at++ = look.present[f];
-    *at++ = look.safe[f];
-    *at++ = look.joints[f].pan_rad;
-    *at++ = look.joints[f].tilt_rad;
-    *at++ = look.joints[f].beam_rad;
-    *at++ = look.silent[f] != 0 ? 1 : 0;
+    *at++ = light.look.levels[f];
+    *at++ = light.safe_levels[f];
+    const Joints& joints = light.look.joints[f];
+    *at++ = joints.pan_rad;
+    *at++ = joints.tilt_rad;
+    *at++ = joints.beam_rad;
+    *at++ = light.silent[f] != 0 ? 1 : 0;
   }
   header().newest.store(other + 1, std::memory_order_release);
 }
 
-LastLook LastLookMemory::take() const {
+std::optional<LightInForce> LastLookMemory::take() const {
   const std::uint32_t newest = header().newest.load(std::memory_order_acquire);
-  if (newest != 1 && newest != 2) return {};
+  if (newest != 1 && newest != 2) return std::nullopt;
   const double* at = copy(newest - 1);
-  LastLook look;
-  look.sends = *at++ == 1;
-  look.hold_s = within(*at++, 0, kLongest_s);
-  look.fade_s = within(*at++, 0, kLongest_s);
+  if (*at++ != 1) return std::nullopt;
+  LightInForce light;
+  light.hold_s = within(*at++, 0, kLongest_s);
+  light.fade_s = within(*at++, 0, kLongest_s);
   for (std::size_t f = 0; f < fixtures_; ++f) {
-    look.present.push_back(within(*at++, 0, 1));
-    look.safe.push_back(within(*at++, 0, 1));
+    light.look.levels.push_back(within(*at++, 0, 1));
+    light.safe_levels.push_back(within(*at++, 0, 1));
     Joints joints;
     for (double* angle_rad : {&joints.pan_rad, &joints.tilt_rad, &joints.beam_rad}) {
       if (std::isfinite(*at)) *angle_rad = *at;
       ++at;
     }
-    look.joints.push_back(joints);
-    look.silent.push_back(*at++ == 1 ? 1 : 0);
+    light.look.joints.push_back(joints);
+    light.silent.push_back(*at++ == 1 ? 1 : 0);
   }
-  return look;
+  return light;
 }
 
 void LastLookMemory::beat(Beat whose) {

@@ -5,20 +5,12 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
-#include <vector>
+#include <optional>
 
+#include "core/plan/look.h"
 #include "core/result.h"
-#include "core/rig/frames.h"
 
 namespace luxrig {
-
-struct LastLook {
-  bool sends = false;                 ///< something goes out at all
-  double hold_s = 0, fade_s = 0;      ///< how long `present` is held, and the way from there to `safe`
-  std::vector<double> present, safe;  ///< per fixture, 0…1, within limits
-  std::vector<Joints> joints;         ///< per fixture
-  std::vector<std::uint8_t> silent;   ///< per fixture, 1: a desk drives it itself, and goes on
-};
 
 class LastLookMemory {
  public:
@@ -30,11 +22,11 @@ class LastLookMemory {
   LastLookMemory(LastLookMemory&& other) noexcept;
   LastLookMemory& operator=(LastLookMemory&&) = delete;
 
-  /// One writer. Vectors have an entry per fixture. Never blocks, allocates nothing.
-  void put(const LastLook& look);
-  /// Nothing before the first. What is not a number in it is dark, and levels are within 0…1: the writer may have died
-  /// of what wrote here.
-  [[nodiscard]] LastLook take() const;
+  /// One writer. Vectors have an entry per fixture. Never blocks, allocates nothing. sends: something goes out at all.
+  void put(const LightInForce& light, bool sends);
+  /// Nothing before the first, and while nothing goes out. Values that are no numbers are 0, and levels are within 0…1:
+  /// the writer may have died while it wrote wildly.
+  [[nodiscard]] std::optional<LightInForce> take() const;
 
   /// Who lives counts, here: the daemon's threads that send, its control loop, and the guardian. A count that stands
   /// still is a process, or a thread, that hangs.

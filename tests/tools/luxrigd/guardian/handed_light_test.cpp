@@ -9,14 +9,14 @@ namespace {
 
 using nlohmann::json;
 
-const LightInForce kHanded{{0.1, 1.0 / 3}, {0, 1}, {{-0.5, 0.25, 0.1}, {1.0 / 7, 0, 0}}, 1.5, 3, {0, 1}};
+const LightInForce kHanded{{{0.1, 1.0 / 3}, {{-0.5, 0.25, 0.1}, {1.0 / 7, 0, 0}}}, {0, 1}, 1.5, 3, {0, 1}};
 
 TEST(HandedLight, ArrivesAsItWas) {
   const auto read = handed_light_of(handed_light_text(kHanded) + "\n", 2);
   ASSERT_TRUE(read);
-  EXPECT_EQ(read->level, kHanded.level);
-  EXPECT_EQ(read->safe, kHanded.safe);
-  EXPECT_EQ(read->joints, kHanded.joints);
+  EXPECT_EQ(read->look.levels, kHanded.look.levels);
+  EXPECT_EQ(read->safe_levels, kHanded.safe_levels);
+  EXPECT_EQ(read->look.joints, kHanded.look.joints);
   EXPECT_EQ(read->silent, kHanded.silent);
   EXPECT_EQ(read->hold_s, kHanded.hold_s);
   EXPECT_EQ(read->fade_s, kHanded.fade_s);

@@ -14,33 +14,34 @@
 namespace luxrig {
 namespace {
 
-LastLook look_of(std::size_t fixtures, double level) {
-  LastLook look;
-  look.sends = true;
-  look.hold_s = 5;
-  look.fade_s = 3;
-  look.present.assign(fixtures, level);
-  look.safe.assign(fixtures, level / 2);
-  look.joints.assign(fixtures, {level, -level});
-  look.silent.assign(fixtures, level > 0.5 ? 1 : 0);
-  return look;
+LightInForce light_of(std::size_t fixtures, double level) {
+  LightInForce light;
+  light.hold_s = 5;
+  light.fade_s = 3;
+  light.look.levels.assign(fixtures, level);
+  light.safe_levels.assign(fixtures, level / 2);
+  light.look.joints.assign(fixtures, {level, -level});
+  light.silent.assign(fixtures, level > 0.5 ? 1 : 0);
+  return light;
 }
 
 TEST(LastLook, IsReadAsItWasPut) {
   auto memory = LastLookMemory::create(7);
   ASSERT_TRUE(memory);
-  EXPECT_FALSE(memory->take().sends);
+  EXPECT_FALSE(memory->take());
   for (const double level : {0.25, 0.75, 0.5}) {
-    memory->put(look_of(7, level));
-    const LastLook look = memory->take();
-    EXPECT_TRUE(look.sends);
-    EXPECT_EQ(look.hold_s, 5);
-    EXPECT_EQ(look.fade_s, 3);
-    EXPECT_EQ(look.present, std::vector<double>(7, level));
-    EXPECT_EQ(look.safe, std::vector<double>(7, level / 2));
-    EXPECT_EQ(look.joints[6].tilt_rad, -level);
-    EXPECT_EQ(look.silent[0], level > 0.5);
+    memory->put(light_of(7, level), true);
+    const auto light = memory->take();
+    ASSERT_TRUE(light);
+    EXPECT_EQ(light->hold_s, 5);
+    EXPECT_EQ(light->fade_s, 3);
+    EXPECT_EQ(light->look.levels, std::vector<double>(7, level));
+    EXPECT_EQ(light->safe_levels, std::vector<double>(7, level / 2));
+    EXPECT_EQ(light->look.joints[6].tilt_rad, -level);
+    EXPECT_EQ(light->silent[0], level > 0.5);
   }
+  memory->put(light_of(7, 0.5), false);
+  EXPECT_FALSE(memory->take()) << "nothing goes out";
   EXPECT_FALSE(memory->ended());
   memory->end();
   EXPECT_TRUE(memory->ended());
@@ -78,19 +79,20 @@ TEST(LastLook, OfAnotherRigIsRefused) {
 TEST(LastLook, OfAWriterGoneWrongIsStillWithinBounds) {
   auto memory = LastLookMemory::create(2);
   ASSERT_TRUE(memory);
-  LastLook look = look_of(2, 0.5);
-  look.present = {std::nan(""), 7};
-  look.safe = {-1, std::numeric_limits<double>::infinity()};
-  look.hold_s = std::nan("");
-  look.fade_s = 1e300;
-  look.joints[0].pan_rad = std::nan("");
-  memory->put(look);
-  const LastLook read = memory->take();
-  EXPECT_EQ(read.present, (std::vector<double>{0, 1}));
-  EXPECT_EQ(read.safe, (std::vector<double>{0, 0}));
-  EXPECT_EQ(read.hold_s, 0);
-  EXPECT_EQ(read.fade_s, 1e6);
-  EXPECT_EQ(read.joints[0].pan_rad, 0);
+  LightInForce light = light_of(2, 0.5);
+  light.look.levels = {std::nan(""), 7};
+  light.safe_levels = {-1, std::numeric_limits<double>::infinity()};
+  light.hold_s = std::nan("");
+  light.fade_s = 1e300;
+  light.look.joints[0].pan_rad = std::nan("");
+  memory->put(light, true);
+  const auto read = memory->take();
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->look.levels, (std::vector<double>{0, 1}));
+  EXPECT_EQ(read->safe_levels, (std::vector<double>{0, 0}));
+  EXPECT_EQ(read->hold_s, 0);
+  EXPECT_EQ(read->fade_s, 1e6);
+  EXPECT_EQ(read->look.joints[0].pan_rad, 0);
 }
 
 TEST(LastLook, IsWholeHoweverItsWriterDies) {
@@ -99,20 +101,21 @@ TEST(LastLook, IsWholeHoweverItsWriterDies) {
   for (int round = 0; round < 20; ++round) {
     const pid_t writer = ::fork();
     if (writer == 0) {
-      for (int i = 0;; ++i) memory->put(look_of(500, (i % 100) / 100.0));
+      for (int i = 0;; ++i) memory->put(light_of(500, (i % 100) / 100.0), true);
     }
     ::usleep(2000 + 531 * static_cast<useconds_t>(round));
     ::kill(writer, SIGKILL);
     ::waitpid(writer, nullptr, 0);
-    const LastLook look = memory->take();
-    if (!look.sends) continue;
+    const auto light = memory->take();
+    if (!light) continue;
+    const std::vector<double>& levels = light->look.levels;
     for (std::size_t f = 0; f < 500; ++f) {
-      ASSERT_EQ(look.present[f], look.present[0]);
-      ASSERT_EQ(look.safe[f], look.present[0] / 2);
-      ASSERT_EQ(look.joints[f].tilt_rad, -look.present[0]);
+      ASSERT_EQ(levels[f], levels[0]);
+      ASSERT_EQ(light->safe_levels[f], levels[0] / 2);
+      ASSERT_EQ(light->look.joints[f].tilt_rad, -levels[0]);
     }
   }
-  EXPECT_TRUE(memory->take().sends);
+  EXPECT_TRUE(memory->take());
 }
 
 TEST(GuardianWords, SayWhereABusIs) {
