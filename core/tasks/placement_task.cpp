@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "core/tasks/evaluator_choice.h"
 #include "core/tasks/rig_transport.h"
 
 namespace luxrig {
@@ -113,16 +112,12 @@ Result<PlacedInScene> search_places(const Rig& rig, const Scene& scene, const Ra
       evaluate.levels.push_back(level);
     }
     if (lamps.empty()) return Eigen::VectorXd::Zero(points * channels);
-    options.want_error(evaluate);
     set_error_floor(rig, evaluate);
-    evaluate.run() = place;
-    std::unique_ptr<Evaluator> evaluator = make_direct_evaluator(rays);
-    if (place.indirect) {
-      auto chosen = choose_evaluator(rays, receivers, lamps, evaluate);
-      if (!chosen) return tl::unexpected(chosen.error());
-      evaluator = std::move(chosen->evaluator);
-    }
-    const auto lit = evaluator->evaluate(receivers, lamps, evaluate);
+    ComputeOptions compute = options;
+    compute.run() = place;
+    compute.watch.tell = nullptr;
+    if (!place.indirect) compute.model = Model::direct;
+    const auto lit = light_of(rays, receivers, lamps, evaluate, compute);
     if (!lit) return tl::unexpected(lit.error());
     const Eigen::Map<const Eigen::VectorXd> at(evaluate.levels.data(),
                                                static_cast<Eigen::Index>(evaluate.levels.size()));

@@ -27,47 +27,47 @@ constexpr std::size_t kLimitedPlaces = 256;
 /// Of a zoom, in even ratios: a third wider from one to the next where it goes from 6° to 40°.
 constexpr int kZoomStops = 8;
 constexpr double kSameBeam = 0.02;
+/// Of errors at places that have no goals (EvaluateOptions::floor_of_mean).
+constexpr double kFloorOfMean = 0.1;
 
-/// The rig with other places to look at, and only those of its fixtures.
-Rig rig_at(const Rig& rig, std::span<const OrientedPoint> places, const std::vector<bool>& kept) {
-  Rig at = rig;
-  at.points.clear();
-  at.luxmeters.clear();
-  for (const OrientedPoint& place : places) {
-    Point point;
-    point.position_world_m = place.position_world_m;
-    point.normal_world = place.normal;
-    at.points.push_back(std::move(point));
+/// Lux at places of fixtures at their levels (those at 0 cost nothing), and daylight unless it is left out: of all, and
+/// of what stays while lights are sought.
+struct LuxOfPlaces {
+  std::vector<double> all, staying;
+};
+Result<LuxOfPlaces> lux_at(const ReliefSurroundings& around, std::span<const OrientedPoint> places, const Look& look,
+                           const ComputeOptions& options, bool with_daylight = true) {
+  LuxOfPlaces lux{std::vector<double>(places.size(), 0), std::vector<double>(places.size(), 0)};
+  std::vector<Receiver> receivers;
+  for (const OrientedPoint& place : places) receivers.push_back({place.position_world_m, place.normal});
+  std::vector<Emitter> lit;
+  EvaluateOptions wanted;
+  wanted.floor_of_mean = kFloorOfMean;
+  std::vector<double> staying_levels;
+  const std::vector<Emitter> fixtures = emitters_of(around.rig, look.joints);
+  for (std::size_t f = 0; f < look.levels.size(); ++f) {
+    if (!(look.levels[f] > 0)) continue;
+    lit.push_back(fixtures[f]);
+    wanted.levels.push_back(look.levels[f]);
+    staying_levels.push_back(around.sought[f] ? 0 : look.levels[f]);
   }
-  at.fixtures.clear();
-  for (std::size_t f = 0; f < rig.fixtures.size(); ++f)
-    if (kept[f]) at.fixtures.push_back(rig.fixtures[f]);
-  return at;
-}
-
-/// Lux at places of fixtures at their levels (those at 0 cost nothing), and daylight unless it is left out.
-Result<std::vector<double>> lux_at(const ReliefSurroundings& around, std::span<const OrientedPoint> places,
-                                   std::span<const double> levels, const ComputeOptions& options,
-                                   bool with_daylight = true) {
-  std::vector<bool> lit(levels.size());
-  Look of_lit;
-  for (std::size_t f = 0; f < levels.size(); ++f) {
-    if (!(lit[f] = levels[f] > 0)) continue;
-    of_lit.levels.push_back(levels[f]);
-    of_lit.joints.push_back(around.look.joints[f]);
-  }
-  std::vector<double> lux(places.size(), 0);
-  if (places.empty() || (of_lit.levels.empty() && !(with_daylight && around.rig.daylight))) return lux;
-  Rig at = rig_at(around.rig, places, lit);
-  if (!with_daylight) at.daylight.reset();
+  if (with_daylight)
+    for (Emitter& sky : daylight_emitters_of(around.rig)) {
+      lit.push_back(std::move(sky));
+      wanted.levels.push_back(1);
+      staying_levels.push_back(1);
+    }
+  if (places.empty() || lit.empty()) return lux;
   ComputeOptions compute = options;
   compute.watch.progress = nullptr;
-  const auto transport = compute_transport(at, around.rays, compute, of_lit);
+  const auto transport = light_of(around.rays, receivers, lit, wanted, compute);
   if (!transport) return tl::unexpected(transport.error());
-  const Eigen::VectorXd sum = transport->lux(levels_with_daylight(
-      *transport,
-      Eigen::Map<const Eigen::VectorXd>(of_lit.levels.data(), static_cast<Eigen::Index>(of_lit.levels.size()))));
-  for (std::size_t i = 0; i < lux.size(); ++i) lux[i] = sum[static_cast<Eigen::Index>(i)];
+  const auto sum = [&](const std::vector<double>& at, std::vector<double>& of) {
+    Eigen::Map<Eigen::VectorXd>(of.data(), static_cast<Eigen::Index>(of.size())) =
+        transport->lux(Eigen::Map<const Eigen::VectorXd>(at.data(), static_cast<Eigen::Index>(at.size())));
+  };
+  sum(wanted.levels, lux.all);
+  sum(staying_levels, lux.staying);
   return lux;
 }
 
@@ -97,11 +97,12 @@ std::vector<OrientedPoint> brightest(std::span<const OrientedPoint> places, std:
   return kept;
 }
 
-std::vector<double> staying_levels(const ReliefSurroundings& around, std::span<const double> levels) {
-  std::vector<double> staying(levels.begin(), levels.end());
-  for (std::size_t f = 0; f < staying.size(); ++f)
-    if (around.sought[f]) staying[f] = 0;
-  return staying;
+/// The fixtures that are not sought.
+Look look_that_stays(const ReliefSurroundings& around) {
+  Look look = around.look;
+  for (std::size_t f = 0; f < look.levels.size(); ++f)
+    if (around.sought[f]) look.levels[f] = 0;
+  return look;
 }
 
 /// Distributions by luminaire and beam angle: heads of one kind share theirs.
@@ -202,16 +203,18 @@ Result<std::vector<AimLimit>> limits_of(const ReliefSurroundings& around, const 
   std::vector<OrientedPoint> places;
   for (std::size_t k = 0; k < std::min(kLimitedPlaces, all.size()); ++k)
     places.push_back(all[k * all.size() / std::min(kLimitedPlaces, all.size())]);
-  const auto fixed = lux_at(around, places, staying_levels(around, around.look.levels), options);
+  const auto fixed = lux_at(around, places, look_that_stays(around), options);
   if (!fixed) return tl::unexpected(fixed.error());
   for (std::size_t k = 0; k < places.size(); ++k)
-    limits.push_back({around.rig.scene.objects[relief.object].name, places[k], *relief.max_lx, (*fixed)[k]});
+    limits.push_back({around.rig.scene.objects[relief.object].name, places[k], *relief.max_lx, fixed->all[k]});
   return limits;
 }
 
 Result<std::vector<double>> staying_lux(const ReliefSurroundings& around, const StudiedObject& object,
                                         const ComputeOptions& options) {
-  return lux_at(around, object.samples.points, staying_levels(around, around.look.levels), options);
+  auto lux = lux_at(around, object.samples.points, look_that_stays(around), options);
+  if (!lux) return tl::unexpected(std::move(lux.error()));
+  return std::move(lux->all);
 }
 
 Result<AimedFixtures> aim_fixtures(const ReliefSurroundings& around, const StudiedObject& object, const Task& task,
@@ -274,24 +277,20 @@ tl::unexpected<Fault> in_words(Fault fault, const std::string& of) {
 
 Result<ObjectLight> light_on_object(const ReliefSurroundings& around, const StudiedObject& object, const Look& look,
                                     const ComputeOptions& options) {
-  ReliefSurroundings now = around;
-  now.look = look;
   std::vector<OrientedPoint> places = places_of(object);
   ComputeOptions direct = options;
   direct.model = Model::direct;
-  auto by_direct = lux_at(now, places, look.levels, direct, false);
+  auto by_direct = lux_at(around, places, look, direct, false);
   if (!by_direct) return tl::unexpected(by_direct.error());
   if (around.rig.daylight) {
-    places = brightest(places, *by_direct, kPlacesInDaylight, 0);
-    by_direct = lux_at(now, places, look.levels, direct);
+    places = brightest(places, by_direct->all, kPlacesInDaylight, 0);
+    by_direct = lux_at(around, places, look, direct);
     if (!by_direct) return tl::unexpected(by_direct.error());
   }
-  places = brightest(places, *by_direct, kCheckedPlaces, object.study.scale_m / 2);
-  const auto lux = lux_at(now, places, look.levels, options);
+  places = brightest(places, by_direct->all, kCheckedPlaces, object.study.scale_m / 2);
+  auto lux = lux_at(around, places, look, options);
   if (!lux) return tl::unexpected(lux.error());
-  auto fixed = lux_at(now, places, staying_levels(now, look.levels), options);
-  if (!fixed) return tl::unexpected(fixed.error());
-  ObjectLight light{std::move(*fixed), *lux};
+  ObjectLight light{std::move(lux->staying), std::move(lux->all)};
   for (std::size_t i = 0; i < places.size(); ++i) light.sought_lx[i] -= light.fixed_lx[i];
   return light;
 }

@@ -16,7 +16,7 @@ struct ReliefSurroundings {
   const Rig& rig;
   const Scene& scene;
   const RayScene& rays;
-  Look look;                   ///< levels of the fixtures that are not sought, and where all look
+  Look look;                   ///< when the search begins: levels of the fixtures that are not sought, joints of all
   std::vector<bool> sought;    ///< per fixture
   Eigen::VectorXd point_lux;   ///< what others give the rig's points
   double max_watts = 0;        ///< of those that are sought, together; may be infinite

@@ -5,28 +5,11 @@
 #include <algorithm>
 
 #include "core/solve/placement/mounting.h"
-#include "core/tasks/evaluator_choice.h"
 #include "core/tasks/rig_notes/rig_notes.h"
 #include "core/tasks/rig_transport.h"
 #include "core/tasks/scene_builder.h"
 
 namespace luxrig {
-
-std::string ModelUsed::warning() const {
-  if (reached()) return "";
-  return fmt::format(
-      "not as exact as wanted: error {:.2g} {}, wanted {:g}{}: {} or ask for less (--{}-error, --error-floor)",
-      of_worst ? 2 * relative_error : rms_error, of_worst ? "of the worst point (two standard errors)" : "rms", wanted,
-      time_was_up ? fmt::format(", when {:g} s were over", max_seconds) : ", after the most rays that are cast",
-      time_was_up ? "give it more time (--max-seconds)" : "take another --model", of_worst ? "worst" : "max");
-}
-
-void ComputeOptions::want_error(EvaluateOptions& evaluate) const {
-  if (worst_error)
-    evaluate.wanted_relative_error = *worst_error;
-  else
-    evaluate.wanted_rms_error = max_error;
-}
 
 Checked<Session> session_of(Rig rig) {
   if (auto problems = lamps_in_points(rig); !problems.empty()) return tl::unexpected(std::move(problems));
@@ -44,72 +27,8 @@ Checked<Session> session_of(Rig rig) {
 }
 
 Result<TransportMatrix> compute_transport(const Session& session, const ComputeOptions& options, const Look& look,
-                                          ModelUsed* used) {
-  return compute_transport(session.rig, *session.rays, options, look, used);
-}
-
-Result<TransportMatrix> compute_transport(const Rig& rig, const RayScene& rays, const ComputeOptions& options,
-                                          const Look& look, ModelUsed* used) {
-  const std::optional<double> seconds = options.max_seconds > 0 ? std::optional(options.max_seconds) : std::nullopt;
-  const Stage stage(options.watch.without_stop(), options.stage, "starting", seconds);
-  EvaluateOptions evaluate;
-  options.want_error(evaluate);
-  evaluate.levels = look.levels;
-  evaluate.run() = options;
-  evaluate.enough = stage.stop();
-  if (options.watch.tell)
-    evaluate.watch.progress = [&](double done) {
-      stage.say(fmt::format("{:.0f} %", 100 * done));
-      if (options.watch.progress) options.watch.progress(done);
-    };
-  set_error_floor(rig, evaluate);
-  if (options.error_floor_lx) {
-    evaluate.floor_lx = *options.error_floor_lx / evaluate.wanted_standard_error();
-    evaluate.floor_of_mean = 0;
-  }
-  evaluate.colour = rig.colour_goals();
-  const auto receivers = receivers_of(rig);
-  const auto emitters = all_emitters_of(rig, look.joints);
-  const double wanted = options.worst_error.value_or(options.max_error);
-  if (emitters.empty()) {  // a rig in which all light is yet to be placed
-    if (used) *used = {"direct", "nothing shines", wanted, options.worst_error.has_value()};
-    TransportMatrix dark;
-    dark.lux_per_level = dark.direct_lux_per_level =
-        Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(receivers.size()), 0);
-    if (evaluate.colour) dark.rgb_per_level.assign(3, dark.lux_per_level);
-    return dark;
-  }
-  if (!look.levels.empty()) evaluate.levels.resize(emitters.size(), 1.0);
-  EvaluatorChoice choice{nullptr, "asked for"};
-  switch (options.model) {
-    case Model::automatic: {
-      auto chosen = choose_evaluator(rays, receivers, emitters, evaluate);
-      if (!chosen) return tl::unexpected(std::move(chosen.error()));
-      choice = std::move(*chosen);
-      break;
-    }
-    case Model::direct:
-      choice.evaluator = make_direct_evaluator(rays);
-      break;
-    case Model::gather:
-      choice.evaluator = make_gather_evaluator(rays);
-      break;
-    case Model::path:
-      choice.evaluator = make_path_evaluator(rays);
-      break;
-  }
-  auto transport = choice.evaluator->evaluate(receivers, emitters, evaluate);
-  if (used && transport)
-    *used = {.name = std::string(choice.evaluator->name()),
-             .reason = choice.reason,
-             .wanted = wanted,
-             .of_worst = options.worst_error.has_value(),
-             .relative_error = transport->relative_error,
-             .rms_error = transport->rms_error,
-             .error_floor_lx = evaluate.wanted_standard_error() * transport->floor_lx,
-             .time_was_up = stage.time_is_up(),
-             .max_seconds = options.max_seconds};
-  return transport;
+                                          ModelUsed* used, const KeptTransport* before) {
+  return compute_transport(session.rig, *session.rays, options, look, used, before);
 }
 
 std::vector<PlannedPoint> predicted_points(const Rig& rig, const TransportMatrix& transport,

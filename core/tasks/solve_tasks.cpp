@@ -40,6 +40,7 @@ TaskSolver::TaskSolver(const Session& session, const TransportMatrix& transport,
       rig_(session.rig),
       look_(hung_look(rig_)),
       transport_(transport),
+      lit_joints_(look_.joints),
       own_(static_cast<Index>(rig_.fixtures.size())),
       level_(Eigen::VectorXd::Zero(own_)),
       why_(rig_.points.size()) {
@@ -254,9 +255,11 @@ Result<void> TaskSolver::light_anew(const Look& look) {
   ComputeOptions compute = options_;
   compute.watch = options_.watch.without_stop();
   ModelUsed used;
-  auto transport = compute_transport(rig_, *session_.rays, compute, look, &used);
+  const KeptTransport before{lit_joints_, transport_};
+  auto transport = compute_transport(rig_, *session_.rays, compute, look, &used, &before);
   if (!transport) return tl::unexpected(std::move(transport.error()));
   transport_ = std::move(*transport);
+  lit_joints_ = look.joints;
   used_ = std::move(used);
   return {};
 }

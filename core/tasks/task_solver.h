@@ -78,6 +78,7 @@ class TaskSolver {
   Rig rig_;    ///< the session's, or one with placed lights as further fixtures
   Look look_;  ///< joints and aims; its levels are level_
   TransportMatrix transport_;
+  std::vector<Joints> lit_joints_;  ///< where fixtures look in that
   std::optional<ModelUsed> used_;  ///< of the last transport that was computed here
   Index own_;
   Eigen::VectorXd level_;

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -86,6 +87,13 @@ struct TransportMatrix {
   /// Standard error [lx] of lux(levels); zeros when exact.
   [[nodiscard]] Eigen::VectorXd standard_error_lux(const Eigen::VectorXd& levels) const;
 };
+
+/// One matrix of columns of two, of the same receivers. Errors are worked out again, at the options' levels.
+/// kept   per column: that column of `before`; none: the next one of `anew`, in order
+/// requires both with colours or both without; rays are those of `anew`
+[[nodiscard]] TransportMatrix joined_columns(const TransportMatrix& before, const TransportMatrix& anew,
+                                             std::span<const std::optional<std::size_t>> kept,
+                                             const EvaluateOptions& options);
 
 class Evaluator {
  public:

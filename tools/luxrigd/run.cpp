@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <future>
+#include <mutex>
 #include <thread>
 
 #include "core/parallel.h"
@@ -91,6 +92,29 @@ Result<SolvedRig> solve_again(const Session& session, const ComputeOptions& comp
     return SolvedRig{std::move(solved->plan), {solved->look.joints, light_model(session.rig, solved->transport)}};
   });
 }
+
+/// What was last worked out, so that a head that turns costs its own light and not that of all.
+class LastTransport {
+ public:
+  struct Known {
+    std::uint64_t key = 0;  ///< light_key
+    std::vector<Joints> joints;
+    TransportMatrix transport;
+  };
+  void put(Known known) {
+    auto last = std::make_shared<const Known>(std::move(known));
+    const std::lock_guard lock(mutex_);
+    last_ = std::move(last);
+  }
+  [[nodiscard]] std::shared_ptr<const Known> of(std::uint64_t key) const {
+    const std::lock_guard lock(mutex_);
+    return last_ && last_->key == key ? last_ : nullptr;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::shared_ptr<const Known> last_;
+};
 
 /// The plan of a rig file alone.
 Checked<Plan> solved_anew(const std::filesystem::path& rig_file, const ComputeOptions& compute) {
@@ -252,6 +276,7 @@ int run_rig(const RunArguments& arguments) {
     look = std::move(*wanted);
     plan = std::move(*read);
   }
+  const auto last = std::make_shared<LastTransport>();
   if (!light) {
     ModelUsed used;
     Look seen = look;  // any levels: all lamps count alike
@@ -282,6 +307,7 @@ int run_rig(const RunArguments& arguments) {
       transport = std::move(solved->transport);
     }
     light = KeptLight{look.joints, light_model(rig, *transport)};
+    last->put({key, look.joints, std::move(*transport)});
     if (options.state_folder) keep_light(*options.state_folder, *light, key);
   }
   compute.watch.tell = nullptr;
@@ -300,12 +326,18 @@ int run_rig(const RunArguments& arguments) {
   options.http_port = arguments.http_port.value_or(rig.daemon.http_port);
   // A simulator of our own would die with us.
   options.guarded = !arguments.no_guardian && !sim && options.state_folder.has_value();
-  options.light_model = [compute](const Session& in, const std::vector<Joints>& joints) -> Result<LightModel> {
-    const auto anew = in_background<Result<TransportMatrix>>([&] {
-      return compute_transport(in, compute, {{}, joints});
+  options.light_model = [compute, last](const Session& in, const std::vector<Joints>& joints) -> Result<LightModel> {
+    const std::uint64_t of = light_key(in.rig, in.scene, compute);
+    const auto known = last->of(of);
+    auto anew = in_background<Result<TransportMatrix>>([&] {
+      if (!known) return compute_transport(in, compute, {{}, joints});
+      const KeptTransport before{known->joints, known->transport};
+      return compute_transport(in, compute, {{}, joints}, nullptr, &before);
     });
     if (!anew) return tl::unexpected(anew.error());
-    return light_model(in.rig, *anew);
+    LightModel model = light_model(in.rig, *anew);
+    last->put({of, joints, std::move(*anew)});
+    return model;
   };
   options.solve = [compute](const Session& reread) { return solve_again(reread, compute); };
   if (options.state_folder) {

@@ -1,0 +1,148 @@
+#include "core/tasks/light.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/tasks/evaluator_choice.h"
+#include "core/tasks/rig_transport.h"
+#include "core/tasks/stage.h"
+
+namespace luxrig {
+namespace {
+
+Result<EvaluatorChoice> evaluator_for(const RayScene& scene, std::span<const Receiver> receivers,
+                                      std::span<const Emitter> emitters, const EvaluateOptions& wanted, Model model) {
+  switch (model) {
+    case Model::automatic:
+      break;
+    case Model::direct:
+      return EvaluatorChoice{make_direct_evaluator(scene), "asked for"};
+    case Model::gather:
+      return EvaluatorChoice{make_gather_evaluator(scene), "asked for"};
+    case Model::path:
+      return EvaluatorChoice{make_path_evaluator(scene), "asked for"};
+  }
+  return choose_evaluator(scene, receivers, emitters, wanted);
+}
+
+/// Asks for the error, and for its floor where that is given.
+void want_error(const ComputeOptions& options, EvaluateOptions& evaluate) {
+  if (options.worst_error)
+    evaluate.wanted_relative_error = *options.worst_error;
+  else
+    evaluate.wanted_rms_error = options.max_error;
+  if (!options.error_floor_lx) return;
+  evaluate.floor_lx = *options.error_floor_lx / evaluate.wanted_standard_error();
+  evaluate.floor_of_mean = 0;
+}
+
+void set_errors(const TransportMatrix& transport, const EvaluateOptions& evaluate, ModelUsed& used) {
+  used.relative_error = transport.relative_error;
+  used.rms_error = transport.rms_error;
+  used.error_floor_lx = evaluate.wanted_standard_error() * transport.floor_lx;
+}
+
+}  // namespace
+
+std::string ModelUsed::warning() const {
+  if (reached()) return "";
+  return fmt::format(
+      "not as exact as wanted: error {:.2g} {}, wanted {:g}{}: {} or ask for less (--{}-error, --error-floor)",
+      of_worst ? 2 * relative_error : rms_error, of_worst ? "of the worst point (two standard errors)" : "rms", wanted,
+      time_was_up ? fmt::format(", when {:g} s were over", max_seconds) : ", after the most rays that are cast",
+      time_was_up ? "give it more time (--max-seconds)" : "take another --model", of_worst ? "worst" : "max");
+}
+
+Result<TransportMatrix> light_of(const RayScene& scene, std::span<const Receiver> receivers,
+                                 std::span<const Emitter> emitters, EvaluateOptions wanted,
+                                 const ComputeOptions& options, ModelUsed* used) {
+  const std::optional<double> seconds = options.max_seconds > 0 ? std::optional(options.max_seconds) : std::nullopt;
+  const Stage stage(options.watch.without_stop(), options.stage, "starting", seconds);
+  want_error(options, wanted);
+  wanted.run() = options;
+  wanted.enough = stage.stop();
+  if (options.watch.tell)
+    wanted.watch.progress = [&](double done) {
+      stage.say(fmt::format("{:.0f} %", 100 * done));
+      if (options.watch.progress) options.watch.progress(done);
+    };
+  ModelUsed by;
+  by.wanted = options.worst_error.value_or(options.max_error);
+  by.of_worst = options.worst_error.has_value();
+  by.max_seconds = options.max_seconds;
+  TransportMatrix light;
+  if (emitters.empty()) {
+    by.name = "direct";
+    by.reason = "nothing shines";
+    light.lux_per_level = light.direct_lux_per_level =
+        Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(receivers.size()), 0);
+    if (wanted.colour) light.rgb_per_level.assign(3, light.lux_per_level);
+  } else {
+    auto choice = evaluator_for(scene, receivers, emitters, wanted, options.model);
+    if (!choice) return tl::unexpected(std::move(choice.error()));
+    auto found = choice->evaluator->evaluate(receivers, emitters, wanted);
+    if (!found) return found;
+    light = std::move(*found);
+    by.name = choice->evaluator->name();
+    by.reason = std::move(choice->reason);
+    by.time_was_up = stage.time_is_up();
+  }
+  set_errors(light, wanted, by);
+  if (used) *used = std::move(by);
+  return light;
+}
+
+Result<TransportMatrix> compute_transport(const Rig& rig, const RayScene& rays, const ComputeOptions& options,
+                                          const Look& look, ModelUsed* used, const KeptTransport* before) {
+  const auto receivers = receivers_of(rig);
+  const auto emitters = all_emitters_of(rig, look.joints);
+  EvaluateOptions wanted;
+  set_error_floor(rig, wanted);
+  wanted.colour = rig.colour_goals();
+  wanted.levels = look.levels;
+  if (!wanted.levels.empty()) wanted.levels.resize(emitters.size(), 1.0);
+  if (!before) return light_of(rays, receivers, emitters, wanted, options, used);
+
+  const std::size_t fixtures = rig.fixtures.size();
+  std::vector<std::optional<std::size_t>> kept(emitters.size());
+  std::vector<Emitter> changed;
+  EvaluateOptions of_changed = wanted;
+  of_changed.levels.clear();
+  Eigen::VectorXd kept_lux = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(receivers.size()));
+  for (std::size_t e = 0; e < emitters.size(); ++e) {
+    const double level = wanted.levels.empty() ? 1.0 : wanted.levels[e];
+    const auto looks_as_before = [&] {
+      const Joints& now = look.joints.empty() ? rig.fixtures[e].joints : look.joints[e];
+      return e < before->joints.size() && same_aim(now, before->joints[e]);
+    };
+    if (e >= fixtures || looks_as_before()) {
+      kept[e] = e < fixtures ? e : before->joints.size() + (e - fixtures);
+      kept_lux += level * before->transport.lux_per_level.col(static_cast<Eigen::Index>(*kept[e]));
+    } else {
+      changed.push_back(emitters[e]);
+      of_changed.levels.push_back(level);
+    }
+  }
+  // Errors are relative to all light, of which this is certain.
+  if (kept_lux.size() > 0) of_changed.floor_lx = std::max(of_changed.floor_lx, kept_lux.minCoeff());
+  ModelUsed by;
+  auto anew = light_of(rays, receivers, changed, of_changed, options, &by);
+  if (!anew) return anew;
+  want_error(options, wanted);
+  TransportMatrix all = joined_columns(before->transport, *anew, kept, wanted);
+  set_errors(all, wanted, by);
+  // At other levels what was exact enough may not be any more.
+  if (!by.reached() && !by.time_was_up && changed.size() < emitters.size())
+    return light_of(rays, receivers, emitters, wanted, options, used);
+  if (changed.empty()) {
+    by.name = "kept";
+    by.reason = "nothing has turned";
+  } else if (changed.size() < emitters.size()) {
+    by.reason += fmt::format("; {} of {} columns are known", emitters.size() - changed.size(), emitters.size());
+  }
+  if (used) *used = std::move(by);
+  return all;
+}
+
+}  // namespace luxrig
