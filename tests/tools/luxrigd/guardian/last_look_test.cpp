@@ -101,8 +101,15 @@ TEST(LastLook, IsWholeHoweverItsWriterDies) {
   for (int round = 0; round < 20; ++round) {
     const pid_t writer = ::fork();
     if (writer == 0) {
-      for (int i = 0;; ++i) memory->put(light_of(500, (i % 100) / 100.0), true);
+      for (int i = 0;; ++i) {
+        memory->put(light_of(500, (i % 100) / 100.0), true);
+        memory->beat(LastLookMemory::Beat::output);
+      }
     }
+    // It has begun: on a busy machine a process may take longer to do so than all the pauses here.
+    const std::uint32_t beats = memory->beats(LastLookMemory::Beat::output);
+    for (int waited = 0; memory->beats(LastLookMemory::Beat::output) == beats && waited < 30'000; ++waited)
+      ::usleep(1000);
     ::usleep(2000 + 531 * static_cast<useconds_t>(round));
     ::kill(writer, SIGKILL);
     ::waitpid(writer, nullptr, 0);
