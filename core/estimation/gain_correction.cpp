@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/estimation/gain_estimator.h"
+#include "core/rig/point_goals.h"
 #include "core/solve/emittance.h"
 
 namespace luxrig {
@@ -99,15 +100,15 @@ Correction GainEstimator::correct(std::span<const double> present, Time now, boo
   problem.watts = (watts_.transpose() * per_light).transpose();
   problem.max_watts = max_watts_;
   std::vector<Row> rows;
+  const PointGoals asked = point_goals(points_, false);
+  problem.goal_lx.head(points) = asked.goal_lx;
   for (Index i = 0; i < points; ++i) {
-    const Point& point = points_[static_cast<std::size_t>(i)];
     rows.push_back(row_of_point(static_cast<std::size_t>(i)));
     const RowVectorXd lux = rows.back().lux_per_level.cwiseProduct(rows.back().factor);
     problem.lux_per_level.row(i) = lux.head(fixtures()) * per_light;
     if (lux.size() > fixtures()) problem.fixed_lx[i] = lux[fixtures()];
-    problem.weight[i] = point.weight * (rows.back().luxmeter ? kMeteredWeight : 1);
-    if (point.goal_lx) problem.goal_lx[i] = *point.goal_lx;
-    problem.point_name.push_back(point.name);
+    problem.weight[i] = asked.weight[i] * (rows.back().luxmeter ? kMeteredWeight : 1);
+    problem.point_name.push_back(points_[static_cast<std::size_t>(i)].name);
   }
   for (Index j = 0; j < lights && points > 0; ++j) {
     const double brightest = problem.lux_per_level.col(j).head(points).maxCoeff();

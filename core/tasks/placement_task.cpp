@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/rig/point_goals.h"
+#include "core/tasks/light.h"
 #include "core/tasks/rig_transport.h"
 
 namespace luxrig {
@@ -19,12 +21,13 @@ struct GoalOfPoints {
 
 GoalOfPoints goal_of_points(const Rig& rig, const LightThere& there) {
   GoalOfPoints of;
+  const PointGoals asked = point_goals(rig.points, rig.colour_goals());
   std::vector<Eigen::Index> rows;
-  for (std::size_t i = 0; i < rig.points.size(); ++i) {
-    const Point& point = rig.points[i];
-    if (!(point.goal_lx && point.weight > 0) && !point.max_lx) continue;
-    of.receivers.push_back({point.position_world_m, point.normal_world});
-    rows.push_back(static_cast<Eigen::Index>(i));
+  for (std::size_t p = 0; p < rig.points.size(); ++p) {
+    const auto i = static_cast<Eigen::Index>(p);
+    if (!asked.asks(i) && !asked.limits(i)) continue;
+    of.receivers.push_back({rig.points[p].position_world_m, rig.points[p].normal_world});
+    rows.push_back(i);
   }
   const auto points = static_cast<Eigen::Index>(rows.size());
   const Eigen::Index channels = rig.colour_goals() ? 3 : 1;
@@ -33,17 +36,16 @@ GoalOfPoints goal_of_points(const Rig& rig, const LightThere& there) {
   goal.max_lux.resize(points);
   for (Eigen::Index k = 0; k < points; ++k) {
     const Eigen::Index i = rows[static_cast<std::size_t>(k)];
-    const Point& point = rig.points[static_cast<std::size_t>(i)];
-    goal.max_lux[k] = point.max_lx.value_or(std::numeric_limits<double>::infinity());
+    goal.max_lux[k] = asked.max_lx[i];
     for (Eigen::Index c = 0; c < channels; ++c) {
       const Eigen::Index row = c * points + k;
       const double is = channels == 1 ? there.lux[i] : there.rgb(i, c);
       goal.fixed_lux[row] = is;
-      if (!(point.goal_lx && point.weight > 0)) continue;
-      goal.lux[row] = *point.goal_lx * (channels == 1 ? 1.0 : (*point.goal_rgb)[c]);
+      if (!asked.asks(i)) continue;
+      goal.lux[row] = asked.goal_lx[i] * (channels == 1 ? 1.0 : asked.rgb(i, c));
       // What is there beyond a goal is not the placed lights' fault.
       goal.fixed_lux[row] = std::min(is, goal.lux[row]);
-      goal.row_weight[row] = point.weight / std::sqrt(static_cast<double>(channels));
+      goal.row_weight[row] = asked.weight[i] / std::sqrt(static_cast<double>(channels));
     }
   }
   return of;

@@ -12,6 +12,7 @@
 #include "core/output/keep_out.h"
 #include "core/picture/rig_camera.h"
 #include "core/rig/housing.h"
+#include "core/rig/point_goals.h"
 #include "core/rig/zoom.h"
 #include "core/scene/object_scene.h"
 #include "core/tasks/rig_transport.h"
@@ -190,13 +191,11 @@ Result<StudiedObject> study_object(const Session& session, const ReliefSpec& rel
 Result<std::vector<AimLimit>> limits_of(const ReliefSurroundings& around, const StudiedObject& object,
                                         const ReliefSpec& relief, const ComputeOptions& options) {
   std::vector<AimLimit> limits;
-  for (std::size_t i = 0; i < around.rig.points.size(); ++i) {
-    const Point& point = around.rig.points[i];
-    if (!point.max_lx) continue;
-    limits.push_back({point.name,
-                      {point.position_world_m, point.normal_world},
-                      *point.max_lx,
-                      around.point_lux[static_cast<Eigen::Index>(i)]});
+  const PointGoals asked = point_goals(around.rig.points, false);
+  for (Eigen::Index i = 0; i < asked.max_lx.size(); ++i) {
+    if (!asked.limits(i)) continue;
+    const Point& point = around.rig.points[static_cast<std::size_t>(i)];
+    limits.push_back({point.name, {point.position_world_m, point.normal_world}, asked.max_lx[i], around.point_lux[i]});
   }
   if (!relief.max_lx) return limits;
   const std::vector<OrientedPoint> all = places_of(object);

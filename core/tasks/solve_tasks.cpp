@@ -6,6 +6,7 @@
 #include <chrono>
 #include <limits>
 
+#include "core/rig/point_goals.h"
 #include "core/solve/emittance.h"
 #include "core/tasks/placement_task.h"
 #include "core/tasks/rig_transport.h"
@@ -139,27 +140,19 @@ EmittanceProblem TaskSolver::problem_of(Index begin, Index end) const {
   EmittanceProblem problem;
   problem.lux_per_level = transport_.lux_per_level.block(0, begin, points, end - begin);
   problem.fixed_lx = transport_.lux(levels_with_daylight(transport_, others)).head(points);
-  problem.goal_lx.setConstant(points, std::numeric_limits<double>::quiet_NaN());
-  problem.weight.setOnes(points);
-  problem.max_lx.setConstant(points, std::numeric_limits<double>::infinity());
-  const bool coloured = rig_.colour_goals();
-  if (coloured) {
-    problem.goal_rgb.setOnes(points, 3);
+  PointGoals goals = point_goals(rig_.points, rig_.colour_goals());
+  problem.goal_lx = std::move(goals.goal_lx);
+  problem.goal_rgb = std::move(goals.rgb);
+  problem.weight = std::move(goals.weight);
+  problem.max_lx = std::move(goals.max_lx);
+  for (const Point& point : rig_.points) problem.point_name.push_back(point.name);
+  if (rig_.colour_goals()) {
     problem.fixed_rgb.resize(points, 3);
     for (Index c = 0; c < 3; ++c) {
       const Eigen::MatrixXd& primary = transport_.rgb_per_level[static_cast<std::size_t>(c)];
       problem.rgb_per_level.push_back(primary.block(0, begin, points, end - begin));
       problem.fixed_rgb.col(c) = (primary * levels_with_daylight(transport_, others)).head(points);
     }
-  }
-  for (Index i = 0; i < points; ++i) {
-    const Point& point = rig_.points[static_cast<std::size_t>(i)];
-    // A goal without colour among others that have one does not count, and is only reported.
-    if (point.goal_lx && (point.goal_rgb || !coloured)) problem.goal_lx[i] = *point.goal_lx;
-    if (point.goal_rgb) problem.goal_rgb.row(i) = point.goal_rgb->transpose();
-    if (point.max_lx) problem.max_lx[i] = *point.max_lx;
-    problem.weight[i] = point.weight;
-    problem.point_name.push_back(point.name);
   }
   problem.max_level.resize(end - begin);
   problem.watts.resize(end - begin);
