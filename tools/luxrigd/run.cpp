@@ -93,8 +93,9 @@ Result<SolvedRig> solve_again(const Session& session, const ComputeOptions& comp
   });
 }
 
-/// What was last worked out, so that a head that turns costs its own light and not that of all.
-class LastTransport {
+/// What was worked out last and before that, so that a head that turns costs its own light and not that of all, and one
+/// that turns back costs nothing.
+class LastTransports {
  public:
   struct Known {
     std::uint64_t key = 0;  ///< light_key
@@ -104,16 +105,29 @@ class LastTransport {
   void put(Known known) {
     auto last = std::make_shared<const Known>(std::move(known));
     const std::lock_guard lock(mutex_);
-    last_ = std::move(last);
+    if (known_.size() == kMost) known_.erase(known_.begin());
+    known_.push_back(std::move(last));
   }
-  [[nodiscard]] std::shared_ptr<const Known> of(std::uint64_t key) const {
+  /// The one in which most fixtures look as asked.
+  [[nodiscard]] std::shared_ptr<const Known> nearest(std::uint64_t key, std::span<const Joints> joints) const {
     const std::lock_guard lock(mutex_);
-    return last_ && last_->key == key ? last_ : nullptr;
+    std::shared_ptr<const Known> best;
+    std::size_t most = 0;
+    for (const auto& known : known_) {
+      if (known->key != key || known->joints.size() != joints.size()) continue;
+      std::size_t same = 0;
+      for (std::size_t f = 0; f < joints.size(); ++f) same += same_aim(joints[f], known->joints[f]) ? 1 : 0;
+      if (best && same < most) continue;
+      best = known;
+      most = same;
+    }
+    return best;
   }
 
  private:
+  static constexpr std::size_t kMost = 2;
   mutable std::mutex mutex_;
-  std::shared_ptr<const Known> last_;
+  std::vector<std::shared_ptr<const Known>> known_;  ///< newest last
 };
 
 /// The plan of a rig file alone.
@@ -276,7 +290,7 @@ int run_rig(const RunArguments& arguments) {
     look = std::move(*wanted);
     plan = std::move(*read);
   }
-  const auto last = std::make_shared<LastTransport>();
+  const auto last = std::make_shared<LastTransports>();
   if (!light) {
     ModelUsed used;
     Look seen = look;  // any levels: all lamps count alike
@@ -292,6 +306,7 @@ int run_rig(const RunArguments& arguments) {
       auto solved = solve_what_hangs(*session, *transport, compute, false);
       if (!solved) return report(solved.error());
       hung = std::move(solved->plan);
+      last->put({key, look.joints, *transport});
     }
     if (!plan) {
       auto solved = in_background<Result<SolvedTasks>>([&] { return solve_what_hangs(*session, *transport, compute); });
@@ -328,7 +343,7 @@ int run_rig(const RunArguments& arguments) {
   options.guarded = !arguments.no_guardian && !sim && options.state_folder.has_value();
   options.light_model = [compute, last](const Session& in, const std::vector<Joints>& joints) -> Result<LightModel> {
     const std::uint64_t of = light_key(in.rig, in.scene, compute);
-    const auto known = last->of(of);
+    const auto known = last->nearest(of, joints);
     auto anew = in_background<Result<TransportMatrix>>([&] {
       if (!known) return compute_transport(in, compute, {{}, joints});
       const KeptTransport before{known->joints, known->transport};
