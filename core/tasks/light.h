@@ -35,8 +35,9 @@ struct ModelUsed {
   bool time_was_up = false;                  ///< it ended by ComputeOptions::max_seconds
   double max_seconds = 0;
 
-  /// Whether the rms is as wanted; of the worst, whether two of its standard errors are.
-  [[nodiscard]] bool reached() const { return (of_worst ? 2 * relative_error : rms_error) <= wanted; }
+  /// What is compared with `wanted`: the rms; of the worst, two of its standard errors.
+  [[nodiscard]] double error() const { return of_worst ? 2 * relative_error : rms_error; }
+  [[nodiscard]] bool reached() const { return error() <= wanted; }
   /// What a person should know when the wanted error was not reached, and what would mend it; else empty.
   [[nodiscard]] std::string warning() const;
 };
@@ -57,7 +58,9 @@ struct KeptTransport {
 /// (rig_transport.h, all_emitters_of).
 /// look     joints: empty = as the rig file says; levels: as in EvaluateOptions, empty = all count alike
 /// before   by the same rig, or its first fixtures, in the same scene, with the same options. Fixtures that look as they
-///          did, and daylight, are not computed again, unless the wanted error needs it.
+///          did, and daylight, are not computed again. Where the whole is then less exact than wanted (an error counts
+///          for more where other lamps have turned away), a second estimate is made, as coarse as will do, and the mean
+///          is the answer.
 [[nodiscard]] Result<TransportMatrix> compute_transport(const Rig& rig, const RayScene& rays,
                                                         const ComputeOptions& options, const Look& look = {},
                                                         ModelUsed* used = nullptr,

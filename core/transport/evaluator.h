@@ -95,6 +95,11 @@ struct TransportMatrix {
                                              std::span<const std::optional<std::size_t>> kept,
                                              const EvaluateOptions& options);
 
+/// Two independent estimates as one: `share` of `a`, the rest of `b`. Errors are worked out again, as above; rays are
+/// those of both.
+[[nodiscard]] TransportMatrix mean_of(const TransportMatrix& a, double share, const TransportMatrix& b,
+                                      const EvaluateOptions& options);
+
 class Evaluator {
  public:
   virtual ~Evaluator() = default;

@@ -23,38 +23,34 @@ Eigen::VectorXd TransportMatrix::standard_error_lux(const Eigen::VectorXd& level
   return error_lx;
 }
 
-TransportMatrix joined_columns(const TransportMatrix& before, const TransportMatrix& anew,
-                               std::span<const std::optional<std::size_t>> kept, const EvaluateOptions& options) {
-  const auto columns = static_cast<Eigen::Index>(kept.size());
-  const auto joined = [&](const Eigen::MatrixXd& old_columns, const Eigen::MatrixXd& new_columns) {
-    LUXRIG_CHECK(old_columns.rows() == new_columns.rows(), "columns of {} and of {} receivers", old_columns.rows(),
-                 new_columns.rows());
-    Eigen::MatrixXd all(old_columns.rows(), columns);
-    Eigen::Index next = 0;
-    for (Eigen::Index c = 0; c < columns; ++c) {
-      const auto& old = kept[static_cast<std::size_t>(c)];
-      all.col(c) = old ? old_columns.col(static_cast<Eigen::Index>(*old)) : new_columns.col(next++);
-    }
-    return all;
-  };
-  TransportMatrix matrix;
-  matrix.lux_per_level = joined(before.lux_per_level, anew.lux_per_level);
-  matrix.direct_lux_per_level = joined(before.direct_lux_per_level, anew.direct_lux_per_level);
-  const std::size_t replicates = std::max(before.replicates.size(), anew.replicates.size());
-  const auto replicate = [&](const TransportMatrix& of, std::size_t k) -> const Eigen::MatrixXd& {
-    if (of.replicates.empty()) return of.lux_per_level;  // exact
-    LUXRIG_CHECK(of.replicates.size() == replicates, "{} and {} replicates", of.replicates.size(), replicates);
-    return of.replicates[k];
-  };
-  for (std::size_t k = 0; k < replicates; ++k)
-    matrix.replicates.push_back(joined(replicate(before, k), replicate(anew, k)));
-  LUXRIG_CHECK(before.rgb_per_level.size() == anew.rgb_per_level.size(), "columns with colours and without");
-  for (std::size_t c = 0; c < before.rgb_per_level.size(); ++c)
-    matrix.rgb_per_level.push_back(joined(before.rgb_per_level[c], anew.rgb_per_level[c]));
-  matrix.rays = anew.rays;
-  if (replicates == 0) return matrix;
+namespace {
 
-  Eigen::VectorXd levels = Eigen::VectorXd::Ones(columns);
+/// The k-th estimate; an exact matrix is all of its own.
+const Eigen::MatrixXd& replicate_of(const TransportMatrix& matrix, std::size_t k, std::size_t replicates) {
+  if (matrix.replicates.empty()) return matrix.lux_per_level;
+  LUXRIG_CHECK(matrix.replicates.size() == replicates, "{} and {} replicates", matrix.replicates.size(), replicates);
+  return matrix.replicates[k];
+}
+
+/// join   of two matrices of columns, one
+template <class Join>
+TransportMatrix joined(const TransportMatrix& a, const TransportMatrix& b, const Join& join) {
+  TransportMatrix matrix;
+  matrix.lux_per_level = join(a.lux_per_level, b.lux_per_level);
+  matrix.direct_lux_per_level = join(a.direct_lux_per_level, b.direct_lux_per_level);
+  const std::size_t replicates = std::max(a.replicates.size(), b.replicates.size());
+  for (std::size_t k = 0; k < replicates; ++k)
+    matrix.replicates.push_back(join(replicate_of(a, k, replicates), replicate_of(b, k, replicates)));
+  LUXRIG_CHECK(a.rgb_per_level.size() == b.rgb_per_level.size(), "columns with colours and without");
+  for (std::size_t c = 0; c < a.rgb_per_level.size(); ++c)
+    matrix.rgb_per_level.push_back(join(a.rgb_per_level[c], b.rgb_per_level[c]));
+  return matrix;
+}
+
+/// From its replicates, at the options' levels.
+void find_errors(TransportMatrix& matrix, const EvaluateOptions& options) {
+  if (matrix.replicates.empty()) return;
+  Eigen::VectorXd levels = Eigen::VectorXd::Ones(matrix.emitters());
   if (!options.levels.empty())
     levels = Eigen::Map<const Eigen::VectorXd>(options.levels.data(), static_cast<Eigen::Index>(options.levels.size()));
   const Eigen::VectorXd lux = matrix.lux(levels), error_lux = matrix.standard_error_lux(levels);
@@ -66,6 +62,36 @@ TransportMatrix joined_columns(const TransportMatrix& before, const TransportMat
     squares += relative * relative;
   }
   matrix.rms_error = std::sqrt(squares / static_cast<double>(std::max<Eigen::Index>(1, lux.size())));
+}
+
+}  // namespace
+
+TransportMatrix joined_columns(const TransportMatrix& before, const TransportMatrix& anew,
+                               std::span<const std::optional<std::size_t>> kept, const EvaluateOptions& options) {
+  TransportMatrix matrix = joined(before, anew, [&](const Eigen::MatrixXd& known, const Eigen::MatrixXd& found) {
+    LUXRIG_CHECK(known.rows() == found.rows(), "columns of {} and of {} receivers", known.rows(), found.rows());
+    Eigen::MatrixXd all(known.rows(), static_cast<Eigen::Index>(kept.size()));
+    Eigen::Index next = 0;
+    for (Eigen::Index c = 0; c < all.cols(); ++c) {
+      const auto& old = kept[static_cast<std::size_t>(c)];
+      all.col(c) = old ? known.col(static_cast<Eigen::Index>(*old)) : found.col(next++);
+    }
+    return all;
+  });
+  matrix.rays = anew.rays;
+  find_errors(matrix, options);
+  return matrix;
+}
+
+TransportMatrix mean_of(const TransportMatrix& a, double share, const TransportMatrix& b,
+                        const EvaluateOptions& options) {
+  TransportMatrix matrix = joined(a, b, [&](const Eigen::MatrixXd& one, const Eigen::MatrixXd& other) {
+    LUXRIG_CHECK(one.rows() == other.rows() && one.cols() == other.cols(), "estimates of {} × {} and {} × {}",
+                 one.rows(), one.cols(), other.rows(), other.cols());
+    return Eigen::MatrixXd(share * one + (1 - share) * other);
+  });
+  matrix.rays = a.rays + b.rays;
+  find_errors(matrix, options);
   return matrix;
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/transport/evaluator.h"
+#include "core/transport/replicate_error.h"
 
 namespace luxrig {
 namespace {
@@ -17,8 +18,12 @@ TransportMatrix column(double off) {
   return matrix;
 }
 
-/// Standard error of the mean of 16 values that are `off` above and below it.
-double error_of(double off) { return off / std::sqrt(15.0); }
+/// Of the mean of 16 values that are `off` above and below it.
+double error_of(double off) {
+  std::vector<double> values;
+  for (int k = 0; k < 16; ++k) values.push_back(k % 2 == 0 ? off : -off);
+  return standard_error_of_mean(values);
+}
 
 TEST(JoinedColumns, StandInTheirPlacesWithTheErrorsOfTheirSum) {
   const TransportMatrix known = column(1), anew = column(2);
@@ -52,6 +57,13 @@ TEST(JoinedColumns, DarkReceiversHaveNoRelativeError) {
   const TransportMatrix both = joined_columns(dark, dark, std::vector<std::optional<std::size_t>>{0, std::nullopt}, {});
   EXPECT_EQ(both.relative_error, 0);
   EXPECT_EQ(both.rms_error, 0);
+}
+
+TEST(MeanOf, TwoEstimatesHasTheErrorOfTheirSharesInStep) {
+  const TransportMatrix both = mean_of(column(1), 0.25, column(2), {});
+  EXPECT_EQ(both.lux_per_level, column(1).lux_per_level);
+  EXPECT_NEAR(both.relative_error, error_of(0.25 * 1 + 0.75 * 2) / 10, 1e-12);
+  EXPECT_EQ(mean_of(column(0), 0.5, column(0), {}).relative_error, 0) << "exact stays exact";
 }
 
 }  // namespace
