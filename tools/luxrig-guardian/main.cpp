@@ -1,5 +1,5 @@
-// luxrig-guardian: waits for its daemon to die; then it holds the last look, and fades to the safe one. The daemon
-// starts it (tools/luxrigd/guardian/guardian.h); a person has no need to.
+// luxrig-guardian: waits for its daemon to die, then holds the last look and fades to the safe look. The daemon starts
+// it (tools/luxrigd/guardian/guardian.h); a person never needs to.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
@@ -49,8 +49,8 @@ std::optional<std::map<std::string, Redirect>> redirects_of(const std::vector<st
 
 enum class Call { died, hangs, sent_away };
 
-/// Looks after the daemon: by the pipe that closes when it dies, and by the counts of its threads. Looks are counted,
-/// not seconds: what holds us up as well holds nobody to be hung.
+/// Watches the daemon by the pipe that closes when it dies, and by the heartbeats of its threads. It counts looks, not
+/// seconds: if the whole computer stalls, the daemon does not count as hung.
 class Watch {
  public:
   Watch(LastLookMemory& memory, int alive_fd, int signals_fd)
@@ -62,13 +62,13 @@ class Watch {
       if (::poll(waits, 2, kLookEvery_ms) < 0 && errno != EINTR) return Call::died;
       memory_.beat(LastLookMemory::Beat::guardian);
       if (waits[1].revents != 0) return Call::sent_away;
-      if (waits[0].revents != 0) return Call::died;  // nobody ever writes: it has closed
+      if (waits[0].revents != 0) return Call::died;  // nothing is ever written: it has closed
       const std::uint32_t control = memory_.beats(LastLookMemory::Beat::control);
-      // A bus whose device does not answer may wait for long, and so may the control loop; not all at once.
+      // A bus whose device does not answer may wait for long, and so may the control loop, but not all at once.
       if (any_.stands_still(control + memory_.beats(LastLookMemory::Beat::output)) >= kLooksUntilItHangs &&
           memory_.take())
         return Call::hangs;
-      // The light is held while its control loop hangs, but nobody watches limits, and nobody can change it.
+      // The light is held while the control loop hangs, but limits are not watched and no command works.
       if (control_.stands_still(control) == kLooksUntilItIsEnded) end_daemon();
     }
   }
@@ -84,7 +84,7 @@ class Watch {
   struct Count {
     std::uint32_t last = 0;
     int looks = 0;
-    /// For how many looks; 0 before it has ever counted.
+    /// Number of looks without a change; 0 before the first heartbeat.
     int stands_still(std::uint32_t now) {
       looks = now == last && now != 0 ? looks + 1 : 0;
       last = now;
@@ -116,7 +116,7 @@ OutputProgram program_of(const Rig& rig, const LightInForce& light, Time now) {
   return program;
 }
 
-/// Behind the number in our file, for the daemon that has sent us away.
+/// Appends the light to our pid file, for the daemon that has sent us away.
 void hand_over(int pid_fd, const LightInForce& light) {
   const std::string text = handed_light_text(light) + "\n";
   (void)!::pwrite(pid_fd, text.data(), text.size(), ::lseek(pid_fd, 0, SEEK_END));
@@ -131,7 +131,7 @@ void on_signal(int signal) {
   (void)!::write(g_signal_pipe[1], &byte, 1);
 }
 
-/// Devices that only one process can have are the daemon's as long as it is there.
+/// Whether we have all devices. The daemon keeps those that only one process can open, as long as it lives.
 bool all_taken(const std::vector<std::unique_ptr<BusThread>>& buses) {
   return std::all_of(buses.begin(), buses.end(), [](const auto& bus) {
     const std::vector<Health> health = bus->health();
@@ -139,7 +139,7 @@ bool all_taken(const std::vector<std::unique_ptr<BusThread>>& buses) {
   });
 }
 
-/// Sends until it is told to leave. watch: of a daemon that hangs.
+/// Sends until a signal, or until a hung daemon ends in order. watch: set if the daemon hangs.
 void look_after(const Rig& rig, const LightInForce& light, const std::map<std::string, Redirect>& redirects, int pid_fd,
                 LastLookMemory& memory, int alive_fd, const Watch* watch) {
   if (watch != nullptr) memory.take_the_light();
@@ -151,12 +151,12 @@ void look_after(const Rig& rig, const LightInForce& light, const std::map<std::s
     std::optional<Redirect> redirect;
     if (const auto it = redirects.find(rig.buses[b].name); it != redirects.end()) redirect = it->second;
     auto driver = find_driver(rig.buses[b].driver)->make(rig, b, redirect);
-    // What only turns or measures stays as it is: an axis whose master has died stops by itself.
+    // Buses that only turn or measure stay as they are: an axis whose master has died stops by itself.
     if (driver->level_output() == nullptr) continue;
     const std::size_t first_desk = program.desks.size();
     if (const LevelInput* input = driver->level_input()) {
       for (const DeskPart& part : input->parts()) {
-        // A desk that drives the lamps itself goes on; of no other does the guardian know anything.
+        // A desk that drives the lamps itself goes on. The guardian knows nothing of other desks.
         program.desks.emplace_back();
         for (const std::size_t f : part.fixtures) program.desks.back().silent |= light.silent[f] != 0;
       }
@@ -178,13 +178,13 @@ void look_after(const Rig& rig, const LightInForce& light, const std::map<std::s
     memory.beat(LastLookMemory::Beat::guardian);
     if (!hangs) continue;
     if (waits[1].revents != 0) {
-      if (memory.ended()) return;  // in order, as far as it could
+      if (memory.ended()) return;  // it ended in order, as far as it could
       hangs = false;
     } else if (looks == kLooksUntilDevicesAreFreed && !all_taken(buses)) {
       watch->end_daemon();
     }
   }
-  // A daemon goes on from here: a goodbye would let fixtures go dark before its first frame.
+  // A daemon goes on from here. A goodbye would let fixtures go dark before its first frame.
   if (g_signal == SIGUSR1) {
     const Time at = now();
     LightInForce now_out = light;
@@ -208,7 +208,7 @@ int guard(const GuardianArguments& arguments) {
   }
   auto memory = LastLookMemory::open(arguments.look_fd, rig->fixtures.size());
   if (!memory) return report(memory.error());
-  // Held as long as this process lives: who reads the number knows by the lock that it is still its.
+  // The lock is held as long as this process lives: it tells a reader that the process id is still valid.
   const int pid_fd = ::open(arguments.pid_file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   const std::string number = std::to_string(::getpid()) + "\n";
   if (pid_fd < 0 || ::flock(pid_fd, LOCK_EX | LOCK_NB) != 0 || ::ftruncate(pid_fd, 0) != 0 ||
@@ -221,7 +221,7 @@ int guard(const GuardianArguments& arguments) {
   if (light && call != Call::sent_away) {
     look_after(*rig, *light, *redirects, pid_fd, *memory, arguments.alive_fd, call == Call::hangs ? &watch : nullptr);
   } else if (light && g_signal == SIGUSR1 && has_closed(arguments.alive_fd)) {
-    // Sent away before we had looked: what the daemon sent last still stands.
+    // Sent away before we took over: the daemon's last output still stands.
     hand_over(pid_fd, *light);
     return kExitOk;
   }

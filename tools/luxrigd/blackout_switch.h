@@ -1,6 +1,6 @@
 #pragma once
-/// Blackout's own way to the lamps: from whoever asks straight to the threads that send, past the control thread, which
-/// may be busy. The controller is told, too, and its program keeps the rig dark from then on.
+/// Blackout's direct path to the lamps: from the caller straight to the threads that send, past the control thread,
+/// which may be busy. The controller gets the order too, and its program keeps the rig dark from then on.
 
 #include <atomic>
 #include <cstdint>
@@ -10,7 +10,8 @@ namespace luxrig {
 
 class BlackoutSwitch {
  public:
-  /// Any thread. Dark from this instant when `on`; lifting waits for lift(). Returns the order's number.
+  /// Any thread. If `on`, output is dark from this instant; otherwise it stays dark until lift(). Returns the order's
+  /// number.
   std::uint64_t order(bool on) {
     const std::lock_guard lock(mutex_);
     const std::uint64_t number = 1 + number_.load(std::memory_order_relaxed);
@@ -19,18 +20,18 @@ class BlackoutSwitch {
     number_.store(number, std::memory_order_release);
     return number;
   }
-  /// The program that goes out now has no blackout: what order `number` asked for is done, unless somebody has asked
-  /// again.
+  /// Ends the darkness: the program that now goes out has no blackout. `number`: the order that asked for this. Does
+  /// nothing if a newer order exists.
   void lift(std::uint64_t number) {
     const std::lock_guard lock(mutex_);
     if (number == number_.load(std::memory_order_relaxed) && !wanted_) dark_.store(false, std::memory_order_release);
   }
-  /// What was asked for last.
+  /// Whether the newest order asks for blackout.
   [[nodiscard]] bool wanted() const {
     const std::lock_guard lock(mutex_);
     return wanted_;
   }
-  /// Of the newest order; read before dark().
+  /// Number of the newest order. Read it before dark().
   [[nodiscard]] std::uint64_t number() const { return number_.load(std::memory_order_acquire); }
   [[nodiscard]] bool dark() const { return dark_.load(std::memory_order_acquire); }
 

@@ -80,7 +80,7 @@ void BusThread::pause_until(Time wake_at) {
 }
 
 void BusThread::run(const std::stop_token& stop) {
-  // Fast, non-blocking buses get real-time scheduling; one that waits for a device's answer would gain nothing.
+  // Fast, non-blocking buses get real-time scheduling. A bus that waits for a device's answer would gain nothing.
   if (bounds_.write_period > Duration::zero() && bounds_.write_period < std::chrono::milliseconds(60)) {
     realtime_ = make_realtime(kOutputPriority);
   }
@@ -91,29 +91,29 @@ void BusThread::run(const std::stop_token& stop) {
   bool in_turn = true;
   while (!stop.stop_requested()) {
     const Time at = now();
-    if (writes_ && in_turn) {  // a frame between for a blackout makes no other late
+    if (writes_ && in_turn) {  // an extra frame for a blackout does not count as an interval
       if (last_start != Time{}) statistics_.record(at - last_start);
       last_start = at;
     }
     turn(at);
     if (in_turn) next += cycle;
-    // After a stall go on from here: a burst of old frames helps nobody.
+    // After a stall, continue from now: a burst of old frames is useless.
     if (const Time late = now(); late > next + cycle) next = late;
     const Time due = std::max(next, now());
     pause_until(is_to_be_dark() ? std::min(next, now() + kDarkAgain) : next);
-    in_turn = now() >= next;  // else somebody has woken us
+    in_turn = now() >= next;  // else wake() was called
     if (in_turn) lateness_.record(due, now());
   }
 }
 
-/// A blackout was asked for, and some lamp has not been told: a device has its shortest time between two writes.
+/// A blackout was ordered and has not reached every lamp: a device has a minimum time between two writes.
 bool BusThread::is_to_be_dark() const {
   return orders_.blackout != nullptr && lights() && orders_.blackout->dark() && dark_order() < orders_.blackout->number();
 }
 
 void BusThread::turn(Time at) {
   if (!active_) {
-    // A fault of activation is in the health report, and the driver goes on trying.
+    // A fault of activation shows in the health report, and the driver keeps trying.
     (void)driver_->activate(at);
     active_ = true;
     next_read_ = next_health_ = at;
@@ -143,14 +143,14 @@ void BusThread::listen(Time at) {
 }
 
 void BusThread::write(Time at) {
-  // The program that follows goes on from what the guardian has sent.
+  // The guardian sends, so the last frame is unknown to the return from a stall.
   if (orders_.guarded != nullptr && orders_.guarded->guardian_has_the_light()) return return_.forget();
-  // The number before what it asks for, and that before the program that may undo it.
+  // Read the number before the order itself, and both before the program that may undo it.
   const std::uint64_t order = orders_.blackout != nullptr ? orders_.blackout->number() : 0;
   const bool dark = orders_.blackout != nullptr && orders_.blackout->dark();
   programs_.take(program_);
-  if (program_.revision == 0 && !dark) {  // nobody has said yet what the light shall be: leave it as it is
-    // Axes are set up, and perhaps sent home, meanwhile.
+  if (program_.revision == 0 && !dark) {  // no program yet: leave the light as it is
+    // Axes are set up, and perhaps homed, while there is no program.
     if (driver_->level_output() == nullptr) (void)driver_->mover()->move(at, {});
     return;
   }
@@ -169,7 +169,7 @@ void BusThread::write(Time at) {
   }
   if (LevelInput* input = driver_->level_input()) {
     for (std::size_t part = 0; part < desks_ && first_desk_ + part < program_.desks.size(); ++part) {
-      // Under a blackout also lamps that a desk drives itself are sent, and are dark.
+      // In a blackout we also send, dark, the lamps that a desk drives itself.
       input->set_silent(at, part, program_.desks[first_desk_ + part].silent && !dark && !program_.blackout);
     }
   }

@@ -20,47 +20,47 @@
 
 namespace luxrig {
 
-/// What else says what goes out. Must outlive the thread; either may be none.
+/// Sources that decide the output besides the program. Both pointers must outlive the thread; either may be null.
 struct OutputOrders {
   const BlackoutSwitch* blackout = nullptr;
-  LastLookMemory* guarded = nullptr;  ///< while the guardian has the light, nothing is sent
-  std::function<void()> pressed{};    ///< called when the bus's blackout contact is; must not block
+  LastLookMemory* guarded = nullptr;  ///< nothing is sent while the guardian has the light
+  std::function<void()> pressed{};    ///< called when the bus's blackout contact is pressed; must not block
 };
 
 class BusThread {
  public:
   /// The rig and the mailbox must outlive the thread.
-  /// first_desk: where the parts of its driver's input begin in OutputProgram::desks.
+  /// first_desk: index in OutputProgram::desks of the first part of its driver's input.
   BusThread(const Rig& rig, std::size_t bus, std::unique_ptr<Driver> driver, ProgramMailbox& programs,
             std::size_t first_desk = 0, OutputOrders orders = {});
-  ~BusThread();  ///< stops, and lets the driver say goodbye
+  ~BusThread();  ///< stops, then deactivates the driver
 
   void start();
   void stop();
-  /// What its thread does in its turn; called by whoever steps time instead of start().
+  /// One cycle of its thread. Whoever steps time calls this instead of start().
   void turn(Time at);
 
-  /// The next frame goes out now instead of in its turn.
+  /// Sends the next frame at once instead of at its time.
   void wake();
-  /// The newest order of the blackout switch that every lamp here has been told.
+  /// Newest order of the blackout switch that has reached every lamp on this bus.
   [[nodiscard]] std::uint64_t dark_order() const { return dark_order_.load(std::memory_order_acquire); }
-  /// It has lamps.
+  /// Whether the bus drives lamps.
   [[nodiscard]] bool lights() const { return driver_->level_output() != nullptr && !level_commands_.empty(); }
 
   /// Readings since the last call, and the newest health report.
   std::vector<LuxReading> take_readings();
   [[nodiscard]] std::vector<Health> health() const;
-  /// What a DMX bus carries, a fifth of a second old at most.
+  /// Content of a DMX bus, at most a fifth of a second old.
   [[nodiscard]] std::vector<CarriedUniverse> carried() const;
   [[nodiscard]] std::size_t bus() const { return bus_; }
-  /// What desks want now, a frame for each part of its driver's input; empty without one, or before it was listened to.
+  /// Newest desk frames, one per part of the driver's input. Empty without an input, or before the first listen.
   [[nodiscard]] std::vector<DeskFrame> desk_frames() const;
   [[nodiscard]] std::size_t first_desk() const { return first_desk_; }
   [[nodiscard]] const CycleStatistics& statistics() const { return statistics_; }
   [[nodiscard]] const Lateness& lateness() const { return lateness_; }
   [[nodiscard]] bool realtime() const { return realtime_; }
   [[nodiscard]] bool writes() const { return writes_; }
-  /// Its blackout contact; nothing: it has none.
+  /// Its blackout contact; nullopt if it has none.
   [[nodiscard]] std::optional<Contact> contact() const {
     return has_contact_ ? std::optional(contact_.load()) : std::nullopt;
   }
@@ -94,17 +94,17 @@ class BusThread {
 
   std::vector<double> levels_;                ///< of all fixtures
   std::vector<Joints> joints_;                ///< of all fixtures
-  std::vector<LevelCommand> level_commands_;  ///< of the fixtures whose lamp is on this bus
-  std::vector<AimCommand> aim_commands_;      ///< of those that this bus turns
+  std::vector<LevelCommand> level_commands_;  ///< fixtures whose lamp is on this bus
+  std::vector<AimCommand> aim_commands_;      ///< fixtures that this bus turns or zooms
   OutputProgram program_;
   SmoothReturn return_;
 
-  mutable std::mutex mutex_;  ///< guards what follows; the thread only tries it
+  mutable std::mutex mutex_;  ///< guards the four below; the thread only tries to lock it
   std::vector<LuxReading> readings_;
   std::vector<Health> health_;
   std::vector<CarriedUniverse> carried_;
   std::vector<DeskFrame> desk_frames_;
-  std::vector<LuxReading> unsent_readings_;  ///< the thread's own, until the mutex is free
+  std::vector<LuxReading> unsent_readings_;  ///< used by the thread alone, until it gets the mutex
 
   std::jthread thread_;
 };

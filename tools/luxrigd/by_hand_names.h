@@ -1,6 +1,6 @@
 #pragma once
-/// Names that a person gives: of fixtures, housings and points to set them by hand, of fixtures, housings and luxmeters
-/// to bypass them; with * and ? for several.
+/// Names that a person types: fixtures, housings and points to set by hand; fixtures, housings and luxmeters to bypass.
+/// The wildcards * and ? match several.
 
 #include <string>
 #include <vector>
@@ -10,19 +10,19 @@
 
 namespace luxrig {
 
-/// One for each fixture so called, in the rig's order: `what` and `index` are set, and whole_housing where the name is
-/// that of a housing. Refused where a name is nobody's.
+/// One entry per matching fixture, in the rig's order. Sets `what` and `index`, and whole_housing if the name is a
+/// housing's. Refused if a name matches nothing.
 [[nodiscard]] Result<std::vector<ByHand>> fixtures_called(const Rig& rig, const std::vector<std::string>& names);
-/// The same of points.
+/// The same for points.
 [[nodiscard]] Result<std::vector<ByHand>> points_called(const Rig& rig, const std::vector<std::string>& names);
-/// Fixtures and points, each name at least one of the two; of a housing each of its fixtures.
+/// Fixtures and points; each name must match at least one of either. A housing stands for all its fixtures.
 [[nodiscard]] Result<std::vector<ByHand>> anything_called(const Rig& rig, const std::vector<std::string>& names);
 
-/// What can be bypassed, in the rig's order: of a housing each of its fixtures.
+/// Devices that can be bypassed, in the rig's order. A housing stands for all its fixtures.
 struct Devices {
   std::vector<std::size_t> fixtures, luxmeters;
 };
-/// Fixtures, housings and luxmeters; refused where a name is nobody's.
+/// Fixtures, housings and luxmeters. Refused if a name matches nothing.
 [[nodiscard]] Result<Devices> devices_called(const Rig& rig, const std::vector<std::string>& names);
 
 }  // namespace luxrig

@@ -27,7 +27,7 @@ struct ClaimName {
   socklen_t size = 0;
 };
 
-/// Abstract: it begins with a zero byte. What is too long ends in a number of its own.
+/// An abstract name begins with a zero byte. A name that is too long ends in its hash.
 ClaimName name_of_claim(const std::string& what) {
   std::string name = std::string(kClaimPrefix) + what;
   ClaimName made;
@@ -42,7 +42,7 @@ ClaimName name_of_claim(const std::string& what) {
   return made;
 }
 
-/// Who listens there; the process may have been the parent of one that holds it now.
+/// The process that made the claim; a child of it may hold it now.
 std::string holder_of(const ClaimName& name) {
   const int fd = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   ucred peer{};
@@ -92,7 +92,7 @@ Result<void> Claims::take(const std::string& what, Duration wait) {
     if (why != EADDRINUSE) return tl::unexpected(os_fault("claiming " + what, why));
     return tl::unexpected(Fault{Cause::refused, {}, fmt::format("{} is held {}", what, holder_of(name)), {}});
   }
-  (void)::listen(fd, 1);  // so that a second one can ask who we are
+  (void)::listen(fd, 1);  // so that another process can ask who we are
   descriptors_.push_back(fd);
   return {};
 }

@@ -1,7 +1,7 @@
 #pragma once
-/// What only one Luxrig may have at a time: its state folder, and each thing it sends to. A claim is a name in the
-/// network namespace (an abstract Unix socket), as networks and the light on them are: it ends with the last process
-/// that holds it, whatever kills that, and leaves no file behind.
+/// Resources that only one Luxrig may hold at a time: its state folder and each output it sends to. A claim is an
+/// abstract Unix socket. Its name is valid in one network namespace, as the networks that carry the light are. A claim
+/// ends with the last process that holds it, whatever kills that process, and leaves no file behind.
 
 #include <map>
 #include <string>
@@ -22,9 +22,9 @@ class Claims {
   Claims(const Claims&) = delete;
   Claims& operator=(const Claims&) = delete;
 
-  /// Cause::refused with who has it. wait: for one that is just ending.
+  /// Cause::refused, naming the holder. wait: how long to wait for a holder that is just ending.
   [[nodiscard]] Result<void> take(const std::string& what, Duration wait = {});
-  /// Descriptors that a child may inherit: it then holds the claims, too.
+  /// Descriptors that a child may inherit; it then holds the claims too.
   [[nodiscard]] const std::vector<int>& descriptors() const { return descriptors_; }
   void release();
 
@@ -32,7 +32,7 @@ class Claims {
   std::vector<int> descriptors_;
 };
 
-/// In words, each once: "sacn universe 1", "modbus_tcp 192.168.1.20:502 unit 3".
+/// The rig's outputs in words, each once: "sacn universe 1", "modbus_tcp 192.168.1.20:502 unit 3".
 [[nodiscard]] std::vector<std::string> outputs_of(const Rig& rig, const std::map<std::string, Redirect>& redirects);
 
 }  // namespace luxrig

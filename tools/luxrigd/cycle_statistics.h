@@ -1,5 +1,5 @@
 #pragma once
-/// How well a fixed-rate cycle keeps its time: written by the cycle's thread, read by any, without locks.
+/// Timing accuracy of a fixed-rate cycle: written by the cycle's thread, read by any thread, without locks.
 
 #include <algorithm>
 #include <array>
@@ -16,7 +16,7 @@ class CycleStatistics {
  public:
   explicit CycleStatistics(Duration period) : period_(period) {}
 
-  /// One interval between the starts of two cycles.
+  /// interval: between the starts of two successive cycles.
   void record(Duration interval) {
     const auto deviation_us = std::abs((interval - period_).count()) / 1000;
     slots_[slot_of(static_cast<std::uint64_t>(deviation_us))].fetch_add(1, std::memory_order_relaxed);
@@ -26,8 +26,8 @@ class CycleStatistics {
 
   [[nodiscard]] std::uint64_t count() const { return count_.load(std::memory_order_relaxed); }
   [[nodiscard]] std::int64_t max_us() const { return max_us_.load(std::memory_order_relaxed); }
-  /// |interval − period| [µs] that the given share of the intervals stays within: to 10 µs up to 2.56 ms, to 1 % above,
-  /// without an end.
+  /// Quantile of |interval − period| [µs]: the given share of intervals stays within it. Resolution 10 µs up to 2.56
+  /// ms, 1 % above that, up to half a day.
   [[nodiscard]] std::int64_t quantile_us(double share) const {
     const auto wanted = share * static_cast<double>(count());
     double seen = 0;
@@ -46,7 +46,7 @@ class CycleStatistics {
   [[nodiscard]] Copy copy() const { return {count(), quantile_us(0.5), quantile_us(0.99), max_us()}; }
 
  private:
-  // Slots of equal width, then as many for each doubling as halve it in steps of 1/128.
+  // Slots of equal width, then kPerDoubling slots for each doubling: each step is 1/128 of the doubling's start.
   static constexpr std::uint64_t kSlotUs = 10, kEven = 256, kPerDoubling = kEven / 2;
   static constexpr int kDoublings = 24;  ///< half a day
   static constexpr std::size_t kSlots = kEven + kDoublings * kPerDoubling;

@@ -22,7 +22,7 @@ constexpr Duration kSafeLookEvery = std::chrono::seconds(1), kGuardianLook = std
 constexpr int kMostDoublings = 6;
 constexpr auto kCommandBound = std::chrono::seconds(2);
 constexpr Duration kDarkWithin = std::chrono::seconds(1);
-/// A daemon that has just been killed, or the guardian of one that ended in order, is there for a moment yet.
+/// A daemon just killed, or the guardian of one that ended in order, may hold its claims for a moment.
 constexpr Duration kClaimWait = std::chrono::seconds(2);
 
 std::filesystem::path web_folder() { return shared_folder() / "web"; }
@@ -51,7 +51,7 @@ Result<int> Daemon::start() {
                                  claimed.error().detail));
   }
   const bool stepped = static_cast<bool>(options_.stepped_driver);
-  // The page's port first: when it is taken, nothing has been opened yet.
+  // The page's port first: if it is taken, nothing else has been opened.
   Result<int> port = 0;
   if (!stepped) {
     http_ = std::make_unique<HttpApi>(handlers(), web_folder());
@@ -64,7 +64,7 @@ Result<int> Daemon::start() {
     if (!memory) return tl::unexpected(memory.error());
     guarded_.emplace(std::move(*memory));
   }
-  // Drivers and buses keep this rig, also when a reload has exchanged it for one with the same outputs.
+  // Drivers and buses keep this rig even after a reload has exchanged it for one with the same outputs.
   first_session_ = session_;
   const Rig& rig = session_->rig;
   for (std::size_t b = 0; b < rig.buses.size(); ++b) {
@@ -80,7 +80,7 @@ Result<int> Daemon::start() {
                                                  orders()));
   }
   if (options_.guarded && options_.state_folder) {
-    // One that an earlier daemon left behind has the light until ours takes it, and tells what it was.
+    // A guardian left by an earlier daemon has the light until ours takes it, and hands over its last output.
     if (const auto light = send_guardian_away(*options_.state_folder, rig.fixtures.size())) {
       controller_.go_on_from(now(), *light);
       send_program();
@@ -88,14 +88,14 @@ Result<int> Daemon::start() {
   }
   if (stepped) return port;
   controller_.solve_beside([](std::function<void()> solve) {
-    // It keeps all that it needs, so that nobody has to wait for it at the end.
+    // The task owns everything it uses, so shutdown need not wait for it.
     try {
       std::thread([solve] {
         make_background();
         solve();
       }).detach();
     } catch (const std::system_error&) {
-      solve();  // no thread can be had: late is better than never
+      solve();  // no thread to be had: solve here, late
     }
   });
   if (auto claimed = claim_outputs(); !claimed) return tl::unexpected(claimed.error());
@@ -141,13 +141,13 @@ Result<void> Daemon::claim_outputs() {
   return {};
 }
 
-/// A picture of the room is no reason to be dark for longer. Not at low priority: it takes a second, and on a computer
-/// that is busy with other things it would never come.
+/// The picture is drawn beside the start, so that the light need not wait for it. Normal priority: it takes a second,
+/// and at low priority a busy computer might never get to it.
 void Daemon::draw_room_beside() {
   drawing_ = std::jthread([this, session = session_] {
     RoomView room = draw_room(*session);
     const std::lock_guard lock(mutex_);
-    if (session == session_) room_ = std::move(room);  // else a reload has brought its own
+    if (session == session_) room_ = std::move(room);  // else a reload has drawn its own
   });
 }
 
@@ -160,7 +160,7 @@ void Daemon::start_guardian(Time at) {
   settings.claims = output_claims_.descriptors();
   guardian_.reset();
   guardian_seen_ = at;
-  // It would read another rig than the one that runs.
+  // It would load another rig than the one in force.
   if (rig_file_watch_ && !rig_file_watch_->changed().empty()) {
     unguarded_ = "the rig file has changed since it was read: luxrig reload";
     return;
@@ -173,7 +173,7 @@ void Daemon::start_guardian(Time at) {
 void Daemon::look_after_guardian(Time at) {
   guarded_->beat(LastLookMemory::Beat::control);
   if (guarded_->guardian_has_the_light()) {
-    // We have stood still for so long that it has taken over: the light goes on from what it sends.
+    // We hung, and the guardian took over: the light goes on from its output.
     const auto light = send_guardian_away(*options_.state_folder, session_->rig.fixtures.size());
     if (guardian_) guardian_->leave();
     if (light) {
@@ -184,13 +184,14 @@ void Daemon::look_after_guardian(Time at) {
     stood_still_at_ = at;
     return start_guardian(at);
   }
-  // One that ends as soon as it is started, as its rig file has changed, say, is tried less and less often.
+  // A guardian that dies right after its start, because its rig file has changed for example, is retried less and less
+  // often.
   if (at - guardian_seen_ < kGuardianLook * (1 << guardian_deaths_)) return;
   guardian_seen_ = at;
   if (guardian_ && guardian_->alive(at)) {
     if (guardian_->looks()) {
       unguarded_since_.reset();
-      guardian_deaths_ = 0;  // it has lived for as long as this look was waited for
+      guardian_deaths_ = 0;  // it has survived the whole wait
     }
     return;
   }
@@ -199,7 +200,7 @@ void Daemon::look_after_guardian(Time at) {
   start_guardian(at);
 }
 
-/// What would go out if this process died now.
+/// Stores the light that the guardian sends if this process dies now.
 void Daemon::tell_guardian(Time at) {
   if (!guarded_) return;
   const Rig& rig = session_->rig;
@@ -209,13 +210,13 @@ void Daemon::tell_guardian(Time at) {
   last_look_.look.joints.resize(count);
   program.levels_at(at, last_look_.look.levels);
   program.joints_at(at, last_look_.look.joints);
-  // What limits allow changes with what meters teach: slowly.
+  // The safe look changes only slowly, with the calibration from meters.
   if (safe_levels_.empty() || at - safe_look_at_ > kSafeLookEvery) {
     safe_levels_ = controller_.safe_look(at);
     safe_look_at_ = at;
   }
   last_look_.safe_levels = safe_levels_;
-  // What could light a keep-out zone stays dark, also while nobody watches it.
+  // Heads that could light a keep-out zone stay dark while no control loop watches them.
   for (const HeadDim& dim : program.dims) {
     if (dim.to == 0) last_look_.look.levels[dim.fixture] = last_look_.safe_levels[dim.fixture] = 0;
   }
@@ -236,7 +237,7 @@ std::future<void> Daemon::queue(std::function<void(Time)> run) {
   return commands_.back().done.get_future();
 }
 
-/// Runs something between two ticks, and waits until it was done.
+/// Runs `run` between two ticks and waits for it, for two seconds at most.
 void Daemon::on_control_thread(std::function<void(Time)> run) {
   if (std::this_thread::get_id() == control_thread_) return run(now());
   queue(std::move(run)).wait_for(kCommandBound);
@@ -256,7 +257,7 @@ Result<void> Daemon::blackout(bool on) {
     send_program();
     blackout_.lift(newest);
   });
-  // The light first, the disk after; of several at once the last one counts.
+  // The light first, then the disk. Of several concurrent orders the last one counts.
   std::string not_dark;
   if (on && std::this_thread::get_id() != control_thread_) not_dark = wait_until_dark(order);
   const auto saved = journal_.keep([this](JournalState& state) { state.blackout = blackout_.wanted(); });
@@ -378,7 +379,7 @@ void Daemon::publish(Time at) {
   add_alarms(at);
   OutputFigures output;
   for (const auto& bus : buses_) {
-    // The figures of the fastest writing bus.
+    // The figures of the fastest bus that writes.
     const CycleStatistics& cycle = bus->statistics();
     if (!bus->writes()) continue;
     const double rate_hz = 1.0 / to_seconds(cycle.period());
@@ -406,7 +407,7 @@ void Daemon::stop() {
   if (stopped_) return;
   stopped_ = true;
   if (http_) {
-    // Handlers that wait for this thread are served; else each would hold up the end.
+    // Serve handlers that wait for this thread; each would delay the end otherwise.
     auto ended = std::async(std::launch::async, [this] { http_->stop(); });
     while (ended.wait_for(std::chrono::milliseconds(5)) != std::future_status::ready) run_commands(now());
   }

@@ -1,5 +1,5 @@
 #pragma once
-/// The running rig: drivers on their threads, the controller, the page. One thread (the caller's) drives it with
+/// The running rig: drivers on their threads, the controller, the page. One thread, the caller's, drives it with
 /// tick().
 
 #include <deque>
@@ -26,13 +26,13 @@
 
 namespace luxrig {
 
-/// A rig's plan, where its heads look, and what the rig gives then.
+/// A rig's plan, its heads' aims, and the light with these aims.
 struct SolvedRig {
   Plan plan;
   KeptLight light;
 };
 
-/// What has become of the state that the last daemon left.
+/// Outcome of taking up the state that the last daemon left.
 struct Resumed {
   bool plan = false;               ///< its plan is in force again
   std::vector<std::string> notes;  ///< for a person
@@ -41,63 +41,63 @@ struct Resumed {
 struct DaemonOptions {
   bool simulated = false;
   std::map<std::string, Redirect> redirects;          ///< by bus name; empty for the real devices
-  std::optional<std::filesystem::path> state_folder;  ///< none: nothing is remembered
+  std::optional<std::filesystem::path> state_folder;  ///< none = nothing is remembered
   bool guarded = false;  ///< a guardian takes the rig to its safe look when this process dies; needs a state folder
   int http_port = 9620;  ///< 0 = any
-  /// A test steps time (clock.h): no threads, no page; tick() is everybody's turn. Makes drivers, too.
+  /// For tests that step time (clock.h): makes the drivers; no threads, no page, and tick() also runs each bus.
   std::function<std::unique_ptr<Driver>(const Rig&, std::size_t bus)> stepped_driver{};
-  /// What a rig gives in the session's scene with heads that look elsewhere, for plans that turn them; called on
-  /// whatever thread brings the plan. Empty: such plans are refused.
+  /// Light model of the session's rig for other aims of its heads, for plans that turn them. Called on the thread that
+  /// brings the plan. If empty, such plans are refused.
   std::function<Result<LightModel>(const Session&, const std::vector<Joints>&)> light_model{};
-  /// Told whenever a model was worked out that is in force now, on whatever thread did it.
+  /// Called with each light model that was computed for a plan or a reload, on the thread that computed it.
   std::function<void(const Session&, const KeptLight&)> keep_light{};
-  /// Solves the tasks of a rig file that was read again. Empty: there is no reload.
+  /// Solves the tasks of a reloaded rig file. If empty, reload is refused.
   std::function<Result<SolvedRig>(const Session&)> solve{};
 };
 
 class Daemon {
  public:
-  /// light: of the session's rig; its joints may be empty: as the rig file says.
+  /// light: of the session's rig. Empty joints mean the aims in the rig file.
   Daemon(std::shared_ptr<const Session> session, KeptLight light, DaemonOptions options);
   ~Daemon();
 
-  /// Starts drivers and the page; returns the page's port. Sends nothing until the first plan.
+  /// Starts drivers and the page and returns the page's port. Sends nothing before the first plan.
   [[nodiscard]] Result<int> start();
 
-  /// Opens the page in one browser, once, within ten minutes.
+  /// Address that opens the page in one browser, once, within ten minutes.
   [[nodiscard]] std::string page_address() { return http_ ? http_->one_time_address() : ""; }
 
-  /// The plan, the blackout, what rests and what is set by hand as it was when the last daemon stopped, taken up again.
-  /// A plan that was solved from a rig file which has changed since is left: the caller has a newer one. One that a
-  /// person applied is taken up all the same, within the limits of the rig as it is now, and an alarm says so.
+  /// Restores the state in which the last daemon stopped: plan, blackout, parked heads, levels and goals set by hand,
+  /// bypassed devices. A plan that was solved from a rig file which has changed since is dropped: the caller has a
+  /// newer one. A plan that a person applied is kept, within the limits of the present rig, and an alarm says so.
   [[nodiscard]] Resumed resume(const Journal::Left& left);
 
-  /// Applies a plan as if a client had sent it. of_rig: it was solved from this rig file, nobody has chosen it.
+  /// Applies a plan as if a client had sent it. of_rig: it was solved from this rig file, not chosen by a person.
   [[nodiscard]] Checked<void> apply(const Plan& plan, bool of_rig = false);
 
-  /// The rig in force, which a reload exchanges.
+  /// The rig in force; a reload exchanges it.
   [[nodiscard]] std::shared_ptr<const Session> session() const;
 
-  /// Why nobody looks after the light if this process dies although somebody should; empty when all is well.
+  /// Why no guardian runs although one should; empty if all is well.
   [[nodiscard]] const std::string& unguarded() const { return unguarded_; }
 
-  /// Why commands will not find it; empty when all is well.
+  /// Why commands will not find this daemon; empty if all is well.
   [[nodiscard]] std::string unreachable() const { return http_ ? http_->unreachable() : std::string(); }
 
   /// One turn of the control loop; call every 20 ms or so.
   void tick();
   [[nodiscard]] const ShowStatus& status() const { return status_; }
   [[nodiscard]] const std::vector<Health>& devices() const { return devices_; }
-  /// What a client may ask.
+  /// Handlers for the requests of clients.
   [[nodiscard]] HttpHandlers handlers();
 
   void go_safe();
-  /// Any thread. Past the control thread; returns when every lamp has been told and the disk has it. Fails, though it
-  /// holds, where a bus has not taken it, or the disk.
+  /// Any thread; bypasses the control thread. Returns when every lamp has the order and the disk has the state. Fails
+  /// if a bus or the disk has not taken it; the blackout holds all the same.
   Result<void> blackout(bool on);
-  /// All heads that have a place to rest go there, dark; false: there are none.
+  /// Sends all heads that have a rest position there, dark. False if there are none.
   bool park();
-  /// Ends output (each driver says goodbye) and the page.
+  /// Ends output, with each driver's goodbye, and the page.
   void stop();
 
  private:
@@ -106,13 +106,13 @@ class Daemon {
     std::promise<void> done;
   };
   std::future<void> queue(std::function<void(Time)> run);
-  /// Runs what is queued; whether there was anything.
+  /// Runs the queued commands; true if there were any.
   bool run_commands(Time at);
   void on_control_thread(std::function<void(Time)> run);
-  /// Which lamps have not been told, in words; empty: all have.
+  /// Buses whose lamps do not have the order after one second, in words; empty if all have it.
   [[nodiscard]] std::string wait_until_dark(std::uint64_t order) const;
-  /// What `run` gives on the control thread; nothing when that does not come to it. Shared, as nobody waits longer than
-  /// a command's bound for it.
+  /// Result of `run` on the control thread; nullopt if that thread does not get to it in time. The promise is shared,
+  /// as the wait ends at the time limit of a command, and `run` may come later.
   template <class T>
   std::optional<T> ask_control_thread(std::function<T(Time)> run) {
     const auto answer = std::make_shared<std::promise<T>>();
@@ -130,33 +130,33 @@ class Daemon {
   void restore_bypassed(const std::vector<std::string>& saved, Resumed& resumed);
   [[nodiscard]] Checked<std::string> reload();
   void restore_by_hand(const std::vector<SavedByHand>& saved, Resumed& resumed);
-  /// What the controller holds by hand, to be remembered.
+  /// Levels and goals held by hand, as the journal stores them.
   [[nodiscard]] std::vector<SavedByHand> held_by_hand(const Rig& rig, Time at) const;
   void add_alarms(Time at);
-  /// A fixture by its name; an emitter's housing stands for its first.
+  /// Fixture by name; a housing's name gives its first emitter.
   [[nodiscard]] Result<std::size_t> fixture_called(const std::string& name) const;
   [[nodiscard]] std::string universes_json();
   void send_program();
   void publish(Time at);
-  /// What nobody else may have; fails where another has it.
+  /// Claims the rig's outputs; fails if another process holds one.
   [[nodiscard]] Result<void> claim_outputs();
   void draw_room_beside();
   [[nodiscard]] OutputOrders orders();
   [[nodiscard]] std::unique_ptr<Driver> make_driver(const Rig& rig, std::size_t bus) const;
-  /// Takes what was asked for by a contact, past everything that may wait.
+  /// Carries out a blackout that a contact asked for, without waiting for the control thread.
   void watch_contacts(const std::stop_token& stop);
   void add_contact_alarms(Time at);
   void start_guardian(Time at);
   void tell_guardian(Time at);
   void look_after_guardian(Time at);
-  /// What becomes of a plan that cannot be saved; is_saved: it is on disk already.
+  /// Treatment of a plan that cannot be saved. is_saved: it is on disk already.
   enum class Unsaved { is_refused, goes_on, is_saved };
-  /// plan_json: the same plan as a file, for the journal.
+  /// plan_json: text of the same plan, for the journal.
   [[nodiscard]] Checked<std::string> apply(const Plan& plan, const std::string& plan_json, bool of_rig,
                                            Unsaved unsaved);
-  /// As a client sent it.
+  /// A plan as a client sends it.
   [[nodiscard]] Checked<std::string> apply_json(const std::string& plan_json);
-  /// The look's model: the last one made, when heads looked so then, too.
+  /// Light model for these aims: the last one computed if the aims are the same.
   [[nodiscard]] Result<LightModel> model_for(const Session& session, const std::vector<Joints>& joints);
 
   DaemonOptions options_;
@@ -187,11 +187,11 @@ class Daemon {
   ShowStatus status_;            // control thread only
   std::vector<Health> devices_;  // control thread only
 
-  std::mutex change_mutex_;  // one plan or rig after the other
+  std::mutex change_mutex_;  // one change of plan or rig at a time
 
-  mutable std::mutex mutex_;  // guards what follows
+  mutable std::mutex mutex_;  // guards the members from here to commands_
   std::shared_ptr<const Session> session_;
-  std::shared_ptr<const Session> first_session_;  ///< drivers and buses look at that rig for ever
+  std::shared_ptr<const Session> first_session_;  ///< drivers and buses use this rig to the end
   RigVersion version_;                            ///< of session_
   std::optional<RigVersion> plan_made_for_;       ///< of the plan in force
   Time plan_at_{};
@@ -201,10 +201,10 @@ class Daemon {
   std::string status_json_ = "{}";
   std::deque<Command> commands_;
 
-  std::mutex model_mutex_;  // guards the two below
+  std::mutex model_mutex_;  // guards light_
   KeptLight light_;
 
-  std::jthread drawing_, contacts_;  ///< last: they use what stands above
+  std::jthread drawing_, contacts_;  ///< last: they use the members above
 };
 
 }  // namespace luxrig

@@ -1,5 +1,4 @@
-/// What clients may ask of the daemon: plans, parking, what is set by hand or bypassed, and a rig file that was read
-/// again.
+/// Commands of clients: plans, parking, levels and goals by hand, bypass, and the reload of the rig file.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -18,10 +17,10 @@
 namespace luxrig {
 namespace {
 
-constexpr Duration kContactFound = std::chrono::seconds(2);  // it is asked for the first time, or again
+constexpr Duration kContactFound = std::chrono::seconds(2);  // allowed for the first answer, or a retry
 constexpr Duration kStillSaid = std::chrono::seconds(60);
 
-/// By the wall clock, in seconds: for what is remembered.
+/// Wall-clock time [s], for saved state.
 double unix_now_s() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
@@ -39,7 +38,7 @@ std::string value_of(const ByHand& held) {
                                           : fmt::format("{:.4g} lx", held.value);
 }
 
-/// A line for each.
+/// One line per entry.
 std::string lines_of(const Rig& rig, const std::vector<ByHand>& held, Time at) {
   std::string text;
   for (const ByHand& one : held) {
@@ -69,7 +68,7 @@ Result<std::size_t> Daemon::fixture_called(const std::string& name) const {
   for (std::size_t f = 0; f < fixtures.size(); ++f) {
     const std::string& own = fixtures[f].name;
     names.push_back(own);
-    // An emitter is called "housing/emitter": the housing's name will do.
+    // An emitter's name is "housing/emitter": the housing's name alone also matches.
     if (own == name || (fixtures[f].housing && own.rfind(name + "/", 0) == 0)) return f;
   }
   return refusal(fmt::format("the rig has no fixture \"{}\": {}", name, mend_for_unknown(name, names, "it has none")));
@@ -120,7 +119,7 @@ Checked<std::string> Daemon::apply_json(const std::string& plan_json) {
 }
 
 Checked<std::string> Daemon::apply(const Plan& plan, const std::string& plan_json, bool of_rig, Unsaved unsaved) {
-  // Light is traced before anything is locked: what comes meanwhile is not kept waiting. If a reload came, once more.
+  // Light is traced before the lock, so that other commands need not wait. If a reload came in between, once more.
   std::shared_ptr<const Session> session = this->session();
   auto look = look_for(plan, session->rig, "plan");
   if (!look) return tl::unexpected(look.error());
@@ -143,7 +142,7 @@ Checked<std::string> Daemon::apply(const Plan& plan, const std::string& plan_jso
       note = fmt::format("made for another version of this rig ({} differ)", what_differs(*plan.made_for, version_));
     }
   }
-  // Acknowledged means: it survives a power cut. A rig that is to be lit at its start is lit all the same.
+  // An acknowledged plan survives a power cut. The plan at the start lights the rig even if it cannot be saved.
   const auto with_plan = [&](JournalState& state) {
     state.plan_json = plan_json;
     state.plan_of_rig = of_rig;
@@ -158,7 +157,7 @@ Checked<std::string> Daemon::apply(const Plan& plan, const std::string& plan_jso
   struct Applied {
     std::vector<ByHand> held;
     Time at;
-    std::string waits;  ///< for what; empty: it does not
+    std::string waits;  ///< reason; empty if it does not wait
   };
   const auto applied = ask_control_thread<Applied>(
       [this, made_for = plan.made_for, look = std::move(*look), model = std::move(*model)](Time at) -> Applied {
@@ -169,7 +168,7 @@ Checked<std::string> Daemon::apply(const Plan& plan, const std::string& plan_jso
           plan_at_ = at;
         }
         const ShowStatus status = controller_.status(at);
-        // Heads that go dark first are how a plan begins.
+        // Heads go dark first when a plan begins: that is no wait.
         const bool waits = status.plan_waits && status.phase != Phase::moving;
         return {status.by_hand, at, waits ? status.detail : std::string()};
       });
@@ -206,9 +205,9 @@ Resumed Daemon::resume(const Journal::Left& left) {
   resumed.notes = left.complaints;
   if (!left.state) return resumed;
   const JournalState& saved = *left.state;
-  // All of it at once: who kills this daemon while it takes up one after the other loses nothing.
+  // All at once: if this daemon is killed while it restores the parts, nothing is lost.
   (void)journal_.keep([&](JournalState& state) { state = saved; });
-  // First what makes it darker: it holds whatever becomes of the plan, and of the next save.
+  // Blackout first: it holds whatever happens to the plan and to the next save.
   if (saved.blackout) {
     (void)blackout(true);
     controller_.blackout(now(), true);
@@ -508,7 +507,7 @@ Checked<std::string> Daemon::reload() {
   auto solved = options_.solve(*session);
   if (!solved) return tl::unexpected(problem_with(file.c_str(), solved.error(), "mend the rig file"));
 
-  // The goals of the rig file where they are in force; a person's plan stays, within the limits of the new rig.
+  // The rig file's goals if they are in force; a person's plan stays, within the new rig's limits.
   const bool of_rig = remembered.plan_of_rig || remembered.plan_json.empty();
   const auto plan = of_rig ? std::move(solved->plan) : plan_from_json(remembered.plan_json, "the plan in force");
   if (!plan) return tl::unexpected(plan.error());
@@ -539,7 +538,7 @@ Checked<std::string> Daemon::reload() {
     light_ = {look->joints, *model};
     if (options_.keep_light) options_.keep_light(*session, light_);
   }
-  // All by value: the loop may come to it after we have given up waiting.
+  // All by value: the loop may run this after our wait has timed out.
   on_control_thread([this, session, version, made_for = plan->made_for, now_gives = std::move(*model_now),
                      look = std::move(*look), model = std::move(*model),
                      same_light = version.light == version_before.light, room = std::move(room)](Time at) {

@@ -1,5 +1,5 @@
 #pragma once
-/// How late a thread of ours wakes up. That is no failure of a device, and is told as what it is.
+/// How late our own threads wake up. This is no device failure, and is reported as what it is: a busy computer.
 
 #include <algorithm>
 #include <mutex>
@@ -12,14 +12,14 @@ namespace luxrig {
 class Lateness {
  public:
   static constexpr Duration kWorthSaying = std::chrono::milliseconds(250);
-  static constexpr Duration kRemembered = std::chrono::minutes(1);  ///< after the last time
+  static constexpr Duration kRemembered = std::chrono::minutes(1);  ///< after the last late wake-up
 
   struct Spell {
     Time since{}, last{};
     Duration most{};
   };
 
-  /// It should have woken at `due`, and did at `woke`.
+  /// The thread was due at `due` and woke at `woke`.
   void record(Time due, Time woke) {
     if (woke - due < kWorthSaying) return;
     const std::lock_guard lock(mutex_);
@@ -28,7 +28,7 @@ class Lateness {
     spell_->most = std::max(spell_->most, woke - due);
   }
 
-  /// Nothing when it has been in time for a minute.
+  /// nullopt if it has been on time for a minute.
   [[nodiscard]] std::optional<Spell> spell(Time now) const {
     const std::lock_guard lock(mutex_);
     return spell_ && now - spell_->last <= kRemembered ? spell_ : std::nullopt;

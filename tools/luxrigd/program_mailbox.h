@@ -1,6 +1,6 @@
 #pragma once
-/// Hands the newest OutputProgram from the control thread to the output threads. The reader never waits: when the
-/// writer is just copying, it keeps what it has for one more cycle.
+/// Hands the newest OutputProgram from the control thread to the output threads. The reader never waits: while the
+/// writer is copying, it keeps its program for one more cycle.
 
 #include <atomic>
 #include <mutex>
@@ -17,7 +17,7 @@ class ProgramMailbox {
     revision_.store(program.revision, std::memory_order_release);
   }
 
-  /// Copies the newest program into `mine` when it is newer; after the first time the sizes agree and nothing is
+  /// Copies the newest program into `mine` if it is newer. After the first time the sizes agree and nothing is
   /// allocated.
   void take(OutputProgram& mine) {
     if (revision_.load(std::memory_order_acquire) == mine.revision) return;

@@ -15,7 +15,8 @@ bool same(const RegisterFormat& a, const RegisterFormat& b) {
          a.low_byte_first == b.low_byte_first;
 }
 
-/// Register maps are told by their products: what one says is part of the program or of a file that is not reread.
+/// Register maps are compared by product name: their content is part of the program, or of a file that a reload does
+/// not read again.
 bool same(const std::shared_ptr<const RegisterMap>& a, const std::shared_ptr<const RegisterMap>& b) {
   return (a ? a->name : "") == (b ? b->name : "");
 }
@@ -74,7 +75,7 @@ bool same(const KeepOut& a, const KeepOut& b) {
          a.margin_rad == b.margin_rad && a.heads == b.heads;
 }
 
-/// Of what a fixture is asked for by its bus, the key that differs; null: none.
+/// The output key of a fixture that differs; null if none does.
 const char* output_key_that_differs(const Fixture& a, const Fixture& b) {
   if (a.name != b.name) return "name";
   if (a.bus != b.bus) return "bus";
@@ -127,7 +128,7 @@ std::vector<Problem> needs_a_restart(const Rig& running, const Rig& changed, boo
   if (same_zones && !changed.keep_outs.empty() && !same_light)
     needs(changed.keep_outs.front().place, "where things hang beside a [[keep_out]]");
   if (running.daemon.http_port != changed.daemon.http_port) needs(changed.daemon.place, "http_port of [daemon]");
-  // Whether a desk may turn heads rests on it.
+  // Limits decide whether a desk may turn heads.
   if (listens_to_desks(changed) && has_limits(running) != has_limits(changed))
     needs({1, 1}, "whether points have max_lux, beside a bus with an input for desks,");
   return problems;

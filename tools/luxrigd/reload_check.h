@@ -1,5 +1,5 @@
 #pragma once
-/// What of a rig file a running daemon cannot take: outputs, whose drivers go on as they are.
+/// Changes in a rig file that a running daemon cannot take: those of outputs, whose drivers keep running.
 
 #include <vector>
 
@@ -8,8 +8,8 @@
 
 namespace luxrig {
 
-/// Problems at their places in the new file, empty when it can be taken. same_light: scene, photometry and places are
-/// the same.
+/// Problems at their places in the new file; empty if it can be taken. same_light: scene, photometry and positions are
+/// unchanged.
 [[nodiscard]] std::vector<Problem> needs_a_restart(const Rig& running, const Rig& changed, bool same_light);
 
 }  // namespace luxrig

@@ -15,8 +15,7 @@
 namespace luxrig {
 namespace {
 
-/// What a file looks like from outside, when written and its size; its content is only read again when that has
-/// changed.
+/// Time of writing and size. The content is read again only when one of them has changed.
 using FileStamp = std::pair<std::filesystem::file_time_type, std::uintmax_t>;
 
 std::optional<FileStamp> stamp_of(const std::filesystem::path& file) {
@@ -28,7 +27,7 @@ std::optional<FileStamp> stamp_of(const std::filesystem::path& file) {
   return error ? std::nullopt : std::optional(stamp);
 }
 
-/// FNV-1a of the content; nothing when it cannot be read.
+/// FNV-1a of the content; nullopt if it cannot be read.
 std::optional<std::uint64_t> content_of(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   if (!in) return std::nullopt;
@@ -79,7 +78,7 @@ struct RigFileWatch::State {
     }
   }
 
-  /// Only this thread writes; the mutex is for whoever asks.
+  /// Only this thread writes; the mutex is for callers of changed().
   void look_at(WatchedFile& watched, bool first) {
     const std::optional<FileStamp> stamp = stamp_of(watched.file);
     if (!first && stamp == watched.stamp) return;

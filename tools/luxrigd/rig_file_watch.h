@@ -1,6 +1,6 @@
 #pragma once
-/// Notices that files of a rig are no longer what they were when it was read. A thread of its own looks now and then,
-/// so that a slow disk holds up nobody.
+/// Notices when a rig's files have changed since they were read. It polls on its own thread, so that a slow disk delays
+/// nothing else.
 
 #include <filesystem>
 #include <memory>
@@ -11,16 +11,16 @@
 
 namespace luxrig {
 
-/// The rig file, its meshes, photometry and makers' files.
+/// The rig file, its meshes, photometry and makers' fixture files.
 [[nodiscard]] std::vector<std::filesystem::path> files_of(const Rig& rig);
 
 class RigFileWatch {
  public:
-  /// Looks at once, then every `period`, from a thread of its own.
+  /// Looks at once, then every `period`, on its own thread.
   explicit RigFileWatch(std::vector<std::filesystem::path> files, Duration period = std::chrono::seconds(2));
   ~RigFileWatch();
 
-  /// Files whose content is another than it was at first, or that are gone.
+  /// Files that are gone, or whose content differs from the first look.
   [[nodiscard]] std::vector<std::filesystem::path> changed() const;
 
  private:

@@ -30,7 +30,7 @@ constexpr Duration kTick = std::chrono::milliseconds(20);
 constexpr Duration kMostParking = std::chrono::seconds(60);
 constexpr Duration kMostOnce = std::chrono::seconds(120);
 
-/// Runs work on a thread of low priority, so that output and control come first even while it uses all cores.
+/// Runs work on a low-priority thread, so that output and control come first even if it uses all cores.
 template <class T>
 T in_background(const std::function<T()>& work) {
   std::optional<T> result;
@@ -70,7 +70,7 @@ void say_solved(const RunReport& say, const Rig& rig, const Plan& plan) {
     if (point.verdict && *point.verdict != Verdict::met) say.say(fmt::format("  {}: {}", point.name, point.reason));
 }
 
-/// Goals and limits as they stand, in a line.
+/// State of goals and limits, in one line.
 std::string goals_text(const ShowStatus& status, const Rig& rig) {
   std::string text = text_of(status.goals);
   if (status.goals.goals() > 0) text += fmt::format(" (within {:.3g} %)", 100 * rig.control.goal_tolerance);
@@ -82,7 +82,7 @@ std::string goals_text(const ShowStatus& status, const Rig& rig) {
   return text;
 }
 
-/// A rig file that was read again: its plan, and what the rig gives with heads turned as that has them.
+/// Plan and light of a reloaded rig file, with heads aimed as its plan says.
 Result<SolvedRig> solve_again(const Session& session, const ComputeOptions& compute) {
   return in_background<Result<SolvedRig>>([&]() -> Result<SolvedRig> {
     const auto transport = compute_transport(session, compute);
@@ -93,8 +93,7 @@ Result<SolvedRig> solve_again(const Session& session, const ComputeOptions& comp
   });
 }
 
-/// What was worked out last and before that, so that a head that turns costs its own light and not that of all, and one
-/// that turns back costs nothing.
+/// The last two transport matrices: a head that turns costs only its own light, and one that turns back costs nothing.
 class LastTransports {
  public:
   struct Known {
@@ -108,7 +107,7 @@ class LastTransports {
     if (known_.size() == kMost) known_.erase(known_.begin());
     known_.push_back(std::move(last));
   }
-  /// The one in which most fixtures look as asked.
+  /// The one with the most fixtures aimed as asked.
   [[nodiscard]] std::shared_ptr<const Known> nearest(std::uint64_t key, std::span<const Joints> joints) const {
     const std::lock_guard lock(mutex_);
     std::shared_ptr<const Known> best;
@@ -130,7 +129,7 @@ class LastTransports {
   std::vector<std::shared_ptr<const Known>> known_;  ///< newest last
 };
 
-/// The plan of a rig file alone.
+/// Loads and solves a rig file; returns its plan.
 Checked<Plan> solved_anew(const std::filesystem::path& rig_file, const ComputeOptions& compute) {
   auto session = open_session(rig_file);
   if (!session) return tl::unexpected(std::move(session.error()));
@@ -140,7 +139,7 @@ Checked<Plan> solved_anew(const std::filesystem::path& rig_file, const ComputeOp
   return std::move(solved->plan);
 }
 
-/// Ticks until `done` says so.
+/// Ticks until `done` returns true.
 void tick_until(Daemon& daemon, const std::function<bool(Time)>& done) {
   Time next = now();
   while (true) {
@@ -152,7 +151,7 @@ void tick_until(Daemon& daemon, const std::function<bool(Time)>& done) {
   }
 }
 
-/// Until the look is held, or cannot be in reasonable time.
+/// Ticks until the look is held, or kMostOnce has passed.
 void tick_until_held(Daemon& daemon, RunReport& say, const std::stop_token& stop) {
   const Time begun = now();
   tick_until(daemon, [&](Time at) {
@@ -161,7 +160,7 @@ void tick_until_held(Daemon& daemon, RunReport& say, const std::stop_token& stop
   });
 }
 
-/// Takes pictures beside the control loop, which goes on.
+/// Takes pictures while the control loop runs on.
 Result<std::vector<TakenByCamera>> take_pictures(Daemon& daemon, RunReport& say, RigPictures& pictures,
                                                  const std::string& label) {
   auto taking = std::async(std::launch::async, [&] {
@@ -184,7 +183,7 @@ Result<std::vector<TakenByCamera>> take_pictures(Daemon& daemon, RunReport& say,
   return taken;
 }
 
-/// The rig as it hangs, with its cameras' pictures, then the plan with theirs.
+/// Shows and photographs the rig as it hangs, then the plan.
 Result<void> show_before_and_after(Daemon& daemon, RunReport& say, RigPictures& pictures, const Plan& hung,
                                    const Plan& plan, const std::stop_token& stop) {
   std::vector<TakenByCamera> before;
@@ -193,7 +192,7 @@ Result<void> show_before_and_after(Daemon& daemon, RunReport& say, RigPictures& 
             : hung.tasks.front().name == kAsItHangs
                 ? "the rig as it hangs, at full level: no task or goal before the aim sets any"
                 : "the rig as it hangs");
-    // As a client would: what heads that turn will light is worked out beside the control loop.
+    // Apply as a client would: light of turned heads is computed beside the control loop.
     auto applying = std::async(std::launch::async, [&] { return daemon.apply(after ? plan : hung); });
     tick_until(daemon, [&](Time) { return applying.wait_for(std::chrono::seconds(0)) == std::future_status::ready; });
     if (const auto applied = applying.get(); !applied) return refusal(applied.error().front().text());
@@ -217,7 +216,7 @@ int run_rig(const RunArguments& arguments) {
   ServiceManager service;
   keep_signal(SIGUSR1);
   const std::stop_token stop = stop_on_signals();
-  // Nobody need be there to be told: a terminal that hangs up, and a pipe that closes, end nothing.
+  // The run goes on without a reader: a terminal's hang-up or a closed pipe ends nothing.
   ::signal(SIGHUP, SIG_IGN);
   ::signal(SIGPIPE, SIG_IGN);
   Teller teller(STDOUT_FILENO), progress(STDERR_FILENO);
@@ -244,7 +243,7 @@ int run_rig(const RunArguments& arguments) {
   say.say(fmt::format("{}: {} triangles, {} fixtures, {} points, {} luxmeters", rig.name,
                       session->scene.triangles.size(), rig.fixtures.size(), rig.points.size(), rig.luxmeters.size()));
 
-  // 1. The simulated rig works out its own truth while we work out the plan.
+  // 1. The simulated rig computes its truth while we compute the plan.
   DaemonOptions options;
   std::optional<SimProcess> sim;
   std::optional<SimPorts> ports;
@@ -261,7 +260,7 @@ int run_rig(const RunArguments& arguments) {
                     arguments.sim_seed));
   }
 
-  // 2. What the rig gives, and a plan. Where an earlier daemon has left both, there is light at once.
+  // 2. The light model and a plan. If an earlier daemon left both, there is light at once.
   if (arguments.state_folder) {
     options.state_folder = arguments.state_folder;
   } else if (!arguments.sim && !arguments.sim_ports) {
@@ -339,7 +338,7 @@ int run_rig(const RunArguments& arguments) {
   if (ports) options.redirects = ports->buses;
   options.simulated = ports.has_value();
   options.http_port = arguments.http_port.value_or(rig.daemon.http_port);
-  // A simulator of our own would die with us.
+  // No guardian for our own simulator: it would die with us.
   options.guarded = !arguments.no_guardian && !sim && options.state_folder.has_value();
   options.light_model = [compute, last](const Session& in, const std::vector<Joints>& joints) -> Result<LightModel> {
     const std::uint64_t of = light_key(in.rig, in.scene, compute);
@@ -374,7 +373,8 @@ int run_rig(const RunArguments& arguments) {
   }
   bool resumed = false;
   if (goes_on) {
-    // A damaged or outdated state must not keep the rig dark: what cannot be taken up is said, and the fresh plan goes.
+    // A damaged or outdated state must not keep the rig dark: report the parts that cannot be restored, and use the
+    // fresh plan.
     const Resumed state = daemon.resume(left);
     resumed = state.plan;
     if (resumed) say.say("resumed the plan that was in force (--fresh starts from the rig file)");
@@ -386,7 +386,7 @@ int run_rig(const RunArguments& arguments) {
     if (const auto shown = show_before_and_after(daemon, say, pictures, *hung, *plan, stop); !shown)
       pictures_failed = report(shown.error());
   } else if (!resumed) {
-    if (!plan) {  // what was left could not be taken up
+    if (!plan) {  // the saved plan could not be restored
       auto solving = std::async(std::launch::async, [&] { return solved_anew(rig.file, compute); });
       tick_until(daemon, [&](Time) {
         service.alive(now());
@@ -431,7 +431,7 @@ int run_rig(const RunArguments& arguments) {
 
   service.ending();
 
-  // 5. Out: the safe look, then each driver's goodbye.
+  // 5. End: the safe look, then each driver's goodbye.
   const auto seen = arguments.once ? truth() : std::nullopt;
   if (rig.daemon.park_at_end && daemon.park()) {
     say.say("heads go dark and to where they rest");
@@ -452,7 +452,7 @@ int run_rig(const RunArguments& arguments) {
   say.say(daemon.status().phase == Phase::safe ? "ended in the safe look" : "ended before the safe look was reached");
   if (pictures_failed != kExitOk || !arguments.once) return pictures_failed;
 
-  // The values are those of the held look; the peaks and the limits are those of the whole run.
+  // Values are of the held look; peaks and limit violations are of the whole run.
   auto whole = seen;
   if (whole && after) {
     for (std::size_t i = 0; i < whole->points.size(); ++i)

@@ -13,19 +13,19 @@ struct RunArguments {
   std::filesystem::path rig;
   bool sim = false;  ///< start a simulated rig and send everything there
   std::uint64_t sim_seed = 1;
-  std::optional<std::filesystem::path> sim_ports;     ///< use the simulator that wrote this file instead
+  std::optional<std::filesystem::path> sim_ports;     ///< use the running simulator that wrote this file
   std::optional<std::filesystem::path> plan;          ///< apply this instead of solving
-  std::optional<std::filesystem::path> state_folder;  ///< default: a folder of the user's; none with --sim
-  bool fresh = false;                                 ///< what the state folder remembers is left aside, and replaced
-  bool no_guardian = false;                           ///< nobody takes the rig to its safe look when this dies
+  std::optional<std::filesystem::path> state_folder;  ///< default: in the user's home; none with --sim
+  bool fresh = false;                                 ///< ignore the saved state and replace it
+  bool no_guardian = false;                           ///< start no guardian
   std::optional<int> http_port;                       ///< default: the rig's
   bool once = false;                                  ///< end when the look is held
   std::optional<std::filesystem::path> json;          ///< where the table goes with `once`
-  std::optional<std::filesystem::path> pictures;      ///< folder; of the rig as it hangs, then of the plan
+  std::optional<std::filesystem::path> pictures;      ///< folder for pictures of the rig as it hangs, then of the plan
   ComputeOptions compute;
 };
 
-/// Exit code 0: ended on request, or with `once`: no goal missed and no limit exceeded.
+/// Exit code 0: ended on request; with `once`: no goal missed and no limit exceeded.
 int run_rig(const RunArguments& arguments);
 
 }  // namespace luxrig

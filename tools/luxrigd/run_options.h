@@ -1,5 +1,5 @@
 #pragma once
-/// The command-line options of `luxrig run` and luxrigd, said once.
+/// The command-line options of `luxrig run` and luxrigd, defined once.
 
 #include "tools/luxrigd/run.h"
 

@@ -42,7 +42,7 @@ void RunReport::follow(const ShowStatus& status, Time at) {
   const Phase before = phase_;
   phase_ = status.phase;
   round_ = status.round;
-  // The readings a correction starts from, and those it ends with.
+  // The readings before the first correction, and after the last.
   if (phase_ == Phase::correcting || (phase_ == Phase::holding && before != Phase::holding)) say_readings(status);
   say(fmt::format("{}: {}", name_of(status.phase), status.detail));
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// What a person at the terminal sees of a run, and its table as JSON.
+/// Report of a run at the terminal, and its table as JSON.
 
 #include <filesystem>
 #include <optional>
@@ -19,16 +19,16 @@ class RunReport {
   /// The teller must outlive it.
   RunReport(Teller& teller, const Rig& rig, Time process_start) : teller_(teller), rig_(&rig), start_(process_start) {}
 
-  /// The rig that a status is of from here on; it must outlive this, or the next call.
+  /// The rig of each status from here on. It must outlive this object, or the next call.
   void use(const Rig& rig) { rig_ = &rig; }
 
   /// One line, with the seconds since the process began.
   void say(const std::string& line) const;
-  /// Some lines as they are.
+  /// Prints lines unchanged.
   void print(const std::string& text) const { teller_.tell(text); }
-  /// Says what is new since the last call: phase, first readings, rounds, alarms.
+  /// Prints changes since the last call: phase, first readings, rounds, alarms.
   void follow(const ShowStatus& status, Time now);
-  /// The table: point, goal, predicted, measured, error, limit, truth when known.
+  /// Table with point, goal, predicted, measured, error, limit, and truth if known.
   [[nodiscard]] std::string table(const ShowStatus& status, const std::optional<SimTruth>& truth) const;
   /// The same as JSON; `converged_s`: seconds from process start to the end of the correction.
   [[nodiscard]] std::string json(const ShowStatus& status, const std::optional<SimTruth>& truth,

@@ -25,13 +25,13 @@ bool realtime_allowed() {
 }
 
 bool lock_memory() {
-  malloc_trim(0);  // what solving has freed
+  malloc_trim(0);  // return the solver's freed memory
   // Without ONFAULT every thread's whole stack and every arena would become resident.
   return mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0;
 }
 
 void make_background() {
-  // Linux keeps the nice value per thread; children inherit it.
+  // Linux keeps the nice value per thread; child threads inherit it.
   setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), 15);
 }
 

@@ -3,16 +3,16 @@
 
 namespace luxrig {
 
-/// Puts the calling thread under SCHED_FIFO. False where that is not allowed (no CAP_SYS_NICE, no rtprio limit).
+/// Puts the calling thread under SCHED_FIFO. False if not allowed (no CAP_SYS_NICE, no rtprio limit).
 bool make_realtime(int priority);
 
 /// Whether make_realtime would be allowed, tried on a thread of its own.
 bool realtime_allowed();
 
-/// Keeps the process's memory in RAM, so that the output thread never waits for a page. False where not allowed.
+/// Locks the process's memory in RAM, so that the output thread never waits for a page. False if not allowed.
 bool lock_memory();
 
-/// Lets the calling thread, and threads it starts, run only when others do not want to.
+/// Low priority (nice 15) for the calling thread and the threads it starts, so that others run first.
 void make_background();
 
 }  // namespace luxrig

@@ -34,7 +34,7 @@ ServiceManager::ServiceManager() {
   address_ = taken_from_environment("NOTIFY_SOCKET");
   const auto watchdog_us = number_in(taken_from_environment("WATCHDOG_USEC"));
   const auto whose = number_in(taken_from_environment("WATCHDOG_PID"));
-  // A path, or an abstract name that is written with an @.
+  // A path, or an abstract name, written with an @.
   if (address_.size() < 2 || address_.size() >= sizeof(sockaddr_un::sun_path) ||
       (address_.front() != '/' && address_.front() != '@'))
     return;

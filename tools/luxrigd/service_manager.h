@@ -1,5 +1,5 @@
 #pragma once
-/// Tells systemd that we are ready and alive: sd_notify(3), which is one datagram. Silent where nobody asked for it.
+/// Reports ready and alive to systemd: sd_notify(3), which is one datagram. Silent without NOTIFY_SOCKET.
 
 #include <string>
 #include <string_view>
@@ -10,7 +10,8 @@ namespace luxrig {
 
 class ServiceManager {
  public:
-  /// Takes NOTIFY_SOCKET and WATCHDOG_USEC out of the environment: what we start must not speak for us.
+  /// Removes NOTIFY_SOCKET, WATCHDOG_USEC and WATCHDOG_PID from the environment: child processes must not report for
+  /// us.
   ServiceManager();
   ~ServiceManager();
   ServiceManager(const ServiceManager&) = delete;
@@ -18,7 +19,7 @@ class ServiceManager {
 
   void ready() const { tell("READY=1"); }
   void ending() const { tell("STOPPING=1"); }
-  /// Call as often as you like: half as late as it may be at most, it is told.
+  /// Call as often as you like. It sends a heartbeat at half the watchdog's timeout.
   void alive(Time now);
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
-/// Tells a person, and waits for nobody: a pipe that nobody reads, a terminal that hung up or a full disk must not stop
-/// what lights. Lines go through a thread of its own.
+/// Prints lines for a person without ever blocking: an unread pipe, a hung-up terminal or a full disk must not stop the
+/// light. A thread of its own writes the lines.
 
 #include <memory>
 #include <string>
@@ -11,21 +11,21 @@ namespace luxrig {
 
 class Teller {
  public:
-  /// Writes to this descriptor, which it does not close.
+  /// fd: written to, not closed.
   explicit Teller(int fd);
-  ~Teller();  ///< waits a second for what is still to be written, no longer
+  ~Teller();  ///< waits at most one second for pending lines
   Teller(const Teller&) = delete;
   Teller& operator=(const Teller&) = delete;
 
-  /// Returns at once. What cannot be written is lost; of a reader that is too slow the oldest lines, and how many is
-  /// said when it reads again.
+  /// Returns at once. A line that cannot be written is lost. If the reader is too slow, the oldest lines are lost;
+  /// their number is printed when it reads again.
   void tell(std::string text);
-  /// False: not all has been written, or lost for an error, within `at_most`.
+  /// False if lines are still pending after `at_most`. Lines lost to a write error do not count.
   bool flush(Duration at_most);
 
  private:
   struct Shared;
-  std::shared_ptr<Shared> shared_;  ///< with the thread, which may be stuck in a write for ever
+  std::shared_ptr<Shared> shared_;  ///< with the thread, which may hang in a write for ever
 };
 
 }  // namespace luxrig

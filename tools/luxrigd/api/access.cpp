@@ -26,7 +26,7 @@ std::string random_hex() {
   return hex;
 }
 
-/// Takes as long wherever they differ.
+/// Compares in constant time, wherever they differ.
 bool same_secret(std::string_view a, std::string_view b) {
   if (a.size() != b.size()) return false;
   unsigned difference = 0;

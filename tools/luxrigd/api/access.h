@@ -1,5 +1,5 @@
 #pragma once
-/// Who may ask the daemon over its port: whoever has its token, and browsers that were opened with a one-time address.
+/// Access to the daemon's port: for holders of its token, and for browsers opened with a one-time address.
 
 #include <chrono>
 #include <deque>
@@ -20,17 +20,18 @@ class Access {
   /// The token, 32 random bytes in hex.
   [[nodiscard]] const std::string& token() const { return token_; }
 
-  /// Who asks, by `Authorization: Bearer` or the cookie; empty when nobody known. Any thread, like the others.
+  /// Identity of the caller, from `Authorization: Bearer` or the cookie; empty if unknown. Any thread, like the others.
   [[nodiscard]] std::string credential(const HttpRequest& request) const;
 
   /// A code that opens one browser, once, within ten minutes.
   [[nodiscard]] std::string one_time_code(Clock::time_point now = Clock::now());
-  /// Takes such a code and gives what a browser is to keep as its cookie; nothing when it is used, too old or none.
+  /// Consumes such a code and returns the session for the browser's cookie. nullopt if the code is used, too old or
+  /// unknown.
   [[nodiscard]] std::optional<std::string> open(const std::string& code, Clock::time_point now = Clock::now());
 
-  /// A browser sends the cookies of all ports of a host to each of them, so the name has the port.
+  /// Puts the port into the cookie's name: a browser sends a host's cookies to all its ports.
   void set_port(int port) { cookie_name_ = "luxrig_session_" + std::to_string(port); }
-  /// Set-Cookie's value.
+  /// Value of Set-Cookie.
   [[nodiscard]] std::string cookie(const std::string& session) const;
 
  private:
@@ -39,7 +40,7 @@ class Access {
     Clock::time_point until;
   };
   std::string token_, cookie_name_ = "luxrig_session";
-  mutable std::mutex mutex_;  // guards what follows
+  mutable std::mutex mutex_;  // guards the two below
   std::deque<Code> codes_;
   std::deque<std::string> sessions_;
 };

@@ -13,7 +13,7 @@ constexpr double kIdentifyFor_s = 5, kIdentifyAtMost_s = 60;
 constexpr double kLongestByHand_s = 366.0 * 86400;
 constexpr std::size_t kMaxPlanBytes = 16u << 20;
 
-/// A list of texts, not empty.
+/// A non-empty list of strings; nullopt if it is anything else.
 std::optional<std::vector<std::string>> names_in(const nlohmann::json& body, const char* key) {
   if (!body.is_object() || !body.contains(key) || !body[key].is_array() || body[key].empty()) return std::nullopt;
   std::vector<std::string> names;
@@ -33,7 +33,7 @@ HttpResponse fault_answer(const Fault& fault) {
   return http_refusal(theirs ? 400 : 500, fault.detail);
 }
 
-/// {"<key>": true, "text": …}, or why not.
+/// {"<key>": true, "text": …}, or the fault.
 HttpResponse done_answer(const Result<std::string>& done, const char* key) {
   if (!done) return fault_answer(done.error());
   return dumped_answer({{key, true}, {"text", *done}});
@@ -107,7 +107,7 @@ struct Routes {
     const auto body = json_body(request.body);
     const bool all = body.is_object() && body.contains("all") && body["all"] == true;
     const auto names = names_in(body, "names");
-    if (all == names.has_value())  // "all" must be meant: no list is no reason to release everything
+    if (all == names.has_value())  // "all" must be explicit: a missing list releases nothing
       return http_refusal(400, "send {\"names\": [\"a fixture or point\"]} or {\"all\": true}");
     return done_answer(handlers.release(names.value_or(std::vector<std::string>{})), "released");
   }

@@ -1,5 +1,5 @@
 #pragma once
-/// What a client may ask of the daemon: from the bodies of requests to calls of it.
+/// Client requests to the daemon: translates request bodies into calls of its handlers.
 
 #include <functional>
 #include <optional>
@@ -11,38 +11,38 @@
 
 namespace luxrig {
 
-/// What the daemon answers with. Called from the server's threads; each must be safe to call from any thread.
+/// The daemon's handlers. They are called from the server's threads; each must be safe to call from any thread.
 struct HttpHandlers {
   std::function<std::string()> status;     ///< JSON
   std::function<std::string()> universes;  ///< JSON
-  std::function<std::string()> room_json;  ///< empty: not drawn yet
-  std::function<std::string()> room_png;   ///< empty: there is no scene to draw
+  std::function<std::string()> room_json;  ///< empty until it is drawn
+  std::function<std::string()> room_png;   ///< empty without a scene
   std::function<Result<void>(bool on)> blackout;
-  /// Shows for so many seconds which fixture it is.
+  /// Identifies a fixture by its light, for this many seconds.
   std::function<Result<void>(const std::string& fixture, double seconds)> identify;
-  /// Heads of these names, or all when there are none.
+  /// Heads by name; empty list = all.
   std::function<Result<void>(const std::vector<std::string>& fixtures)> park;
-  std::function<void()> hand_back;  ///< desks that wait for it get the light
-  /// What a person should know about it all the same, in lines; empty: nothing.
+  std::function<void()> hand_back;  ///< gives the light to desks that wait for it
+  /// Returns notes for a person, in lines; empty if there are none.
   std::function<Checked<std::string>(const std::string& plan_json)> apply;
-  /// By hand, until released or for so many seconds. Names may have * and ?. Gives a line for a person.
+  /// Set by hand until released, or for `for_s` seconds. Names may contain * and ?. Returns text for a person.
   std::function<Result<std::string>(const std::vector<std::string>& fixtures, double level,
                                     std::optional<double> for_s)>
       level;
   std::function<Result<std::string>(const std::vector<std::string>& points, double lux, std::optional<double> for_s)>
       goal;
-  /// Fixtures and points; none: all.
+  /// Fixtures and points; empty list = all.
   std::function<Result<std::string>(const std::vector<std::string>& names)> release;
-  /// Takes fixtures and luxmeters of these names out of the show, or back in. Gives the risk, in lines.
+  /// Takes these fixtures and luxmeters out of the show, or back in. Returns the risks, in lines.
   std::function<Result<std::string>(const std::vector<std::string>& names, bool on)> bypass;
-  /// Reads the rig file again, whole or not at all.
+  /// Reloads the rig file, whole or not at all.
   std::function<Checked<std::string>()> reload;
 };
 
 /// The handlers are copied.
 [[nodiscard]] std::vector<HttpRoute> command_routes(HttpHandlers handlers);
 
-/// An answer that no cache keeps.
+/// A JSON answer that no cache keeps.
 [[nodiscard]] HttpResponse json_answer(std::string json);
 
 }  // namespace luxrig

@@ -14,7 +14,7 @@
 namespace luxrig {
 namespace {
 
-/// A file that only our user can read, whole at any time.
+/// Writes a file that only our user can read and that is whole at any time.
 Result<void> write_secret(const std::filesystem::path& file, const std::string& text) {
   const std::string aside = file.string() + ".new";
   ::unlink(aside.c_str());
@@ -38,7 +38,7 @@ struct HttpApi::State {
 
   [[nodiscard]] std::string one_time_address() { return address + "?open=" + access.one_time_code(); }
 
-  /// For everybody: the page's files, and whether the browser is known. A one-time address makes it known.
+  /// Answers any client: the page's files, and whether the browser is known. A one-time address makes it known.
   HttpResponse page(const HttpRequest& request) {
     const bool known = !access.credential(request).empty();
     if (request.path == "/api/session") return json_answer(known ? "{\"open\":true}" : "{\"open\":false}");
@@ -100,7 +100,7 @@ Result<int> HttpApi::start(int port) {
               fmt::format("port {} of 127.0.0.1 is taken, perhaps by another luxrig: stop that, or give --port", port),
               {}});
   }
-  // Whoever has the port has the socket and the token of that name.
+  // The owner of the port also owns the socket and token of that name.
   if (const auto met = meet(*bound); !met) state_->unreachable = met.error().detail;
   state_->access.set_port(*bound);
   state_->address = fmt::format("http://127.0.0.1:{}/", *bound);

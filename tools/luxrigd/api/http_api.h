@@ -1,6 +1,5 @@
 #pragma once
-/// HTTP on loopback: the page, the status, and the few things a client may ask, for those who may. Routes: API.md
-/// beside this file.
+/// HTTP on loopback: the page, the status and the commands, for clients with access. Routes: API.md beside this file.
 
 #include <filesystem>
 #include <memory>
@@ -16,12 +15,13 @@ class HttpApi {
   HttpApi(HttpHandlers handlers, std::filesystem::path web_folder);
   ~HttpApi();
 
-  /// Binds 127.0.0.1:port (0 = any) and this user's socket for it, leaves the token beside that, and serves on threads
-  /// of its own. Returns the port.
+  /// Binds 127.0.0.1:port (0 = any) and this user's socket for it, writes the token beside the socket, and serves on
+  /// its own threads. Returns the port.
   [[nodiscard]] Result<int> start(int port);
-  /// Why commands of this user will not find it, a full disk, say; empty: they will. The page is served all the same.
+  /// Why commands of this user will not find it, such as a full disk; empty if they will. The page is served all the
+  /// same.
   [[nodiscard]] const std::string& unreachable() const;
-  /// Opens one browser, once, within ten minutes.
+  /// Address that opens one browser, once, within ten minutes.
   [[nodiscard]] std::string one_time_address();
   void stop();
 

@@ -8,8 +8,8 @@
 namespace luxrig {
 
 struct RoomView {
-  std::string json;  ///< as GET /api/room answers
-  std::string png;   ///< empty when the scene is
+  std::string json;  ///< answer to GET /api/room
+  std::string png;   ///< empty if the scene is
 };
 
 [[nodiscard]] RoomView draw_room(const Session& session);

@@ -37,7 +37,7 @@ using nlohmann::json;
 
 json array_of(const Vec3& v) { return json::array({v.x(), v.y(), v.z()}); }
 
-/// Sets a number, or leaves the key out when it is not finite.
+/// Sets a number; leaves the key out if it is not finite.
 void set(json& object, const char* key, double value) {
   if (std::isfinite(value)) object[key] = value;
 }
@@ -196,7 +196,7 @@ std::string status_json(const StatusInput& input) {
   out["output"] = {{"rate_hz", input.output.rate_hz}, {"frames", input.output.frames},
                    {"p50_us", input.output.p50_us},   {"p99_us", input.output.p99_us},
                    {"max_us", input.output.max_us},   {"realtime", input.output.realtime}};
-  // Names come from files: bytes that are not UTF-8 are replaced, never thrown over.
+  // Names come from files: invalid UTF-8 is replaced and never throws.
   return out.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 

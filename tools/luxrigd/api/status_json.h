@@ -1,5 +1,5 @@
 #pragma once
-/// The status as JSON; keys are listed in API.md beside this file and are a contract.
+/// The status as JSON. Its keys are a contract; API.md beside this file lists them.
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
@@ -29,8 +29,8 @@ struct StatusInput {
 
 [[nodiscard]] std::string status_json(const StatusInput& input);
 
-/// Of one point: "lux" and "uncertainty_lux" (half of the 95 % interval), "verdict" and "reason", "limit" and
-/// "limit_reason"; each where there is something to say.
+/// One point: "lux" and "uncertainty_lux" (half of the 95 % interval), "verdict" and "reason", "limit" and
+/// "limit_reason". Each only if it has a value.
 void put_verdicts(nlohmann::json& out, const PointStatus& status);
 /// "goals": {"met", "missed", "unknown", "tolerance"} and "limits": {"kept", "exceeded", "unknown"}.
 void put_counts(nlohmann::json& out, const ShowStatus& show, double goal_tolerance);

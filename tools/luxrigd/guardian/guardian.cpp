@@ -27,7 +27,7 @@ constexpr auto kEndsWithin = std::chrono::seconds(1);
 constexpr auto kLook = std::chrono::milliseconds(10);
 constexpr Duration kHangs = std::chrono::seconds(1), kStartsWithin = std::chrono::seconds(10);
 
-/// The first that it will be able to write.
+/// The first pid file that can be written.
 Result<std::filesystem::path> pid_file_in(const std::filesystem::path& state_folder) {
   int why = ENOENT;
   for (const std::filesystem::path& file : guardian_pid_files(state_folder)) {
@@ -81,8 +81,8 @@ Result<void> Guardian::launch() {
     return tl::unexpected(os_fault("starting the guardian", failed));
   }
   if (pid == 0) {
-    // A Ctrl-C at the terminal is for the daemon, and its hanging up for nobody. Only calls that are safe between fork
-    // and exec from here on.
+    // Its own session, so that the terminal's Ctrl-C and hang-up do not reach it. From here on only calls that are safe
+    // between fork and exec.
     ::setsid();
     sigset_t none;
     sigemptyset(&none);
@@ -155,7 +155,7 @@ void Guardian::wait_for_its_end() {
 namespace {
 
 std::optional<LightInForce> send_away_by(const std::filesystem::path& pid_file, std::size_t fixtures) {
-  // A guardian that lives holds a lock on its file: a number alone may be another process's by now.
+  // A live guardian holds a lock on its file. The process id alone may belong to another process by now.
   const int fd = ::open(pid_file.c_str(), O_RDONLY | O_CLOEXEC);
   if (fd < 0) return std::nullopt;
   const auto gone = [fd] { return ::flock(fd, LOCK_EX | LOCK_NB) == 0; };

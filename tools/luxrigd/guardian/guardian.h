@@ -1,7 +1,7 @@
 #pragma once
-/// The daemon's side of its guardian, a small process (tools/luxrig-guardian) that waits for the daemon to die, or to
-/// hang. Then it holds the last look, fades to the safe look and goes on sending that, until the daemon, or one that is
-/// started anew, sends it away.
+/// The daemon's side of its guardian, a small process (tools/luxrig-guardian) that waits for the daemon to die or hang.
+/// Then it holds the last look, fades to the safe look and keeps sending that, until this daemon or a restarted one
+/// sends it away.
 
 #include <sys/types.h>
 
@@ -21,25 +21,25 @@ struct GuardianSettings {
   std::filesystem::path rig_file;
   std::size_t fixtures = 0;
   std::map<std::string, Redirect> redirects;  ///< by bus name
-  std::filesystem::path state_folder;         ///< where it says which process it is
-  std::vector<int> claims{};                  ///< it holds them, too (claims.h)
+  std::filesystem::path state_folder;         ///< where it writes its process id
+  std::vector<int> claims{};                  ///< it holds them too (claims.h)
 };
 
 class Guardian {
  public:
-  /// Starts luxrig-guardian, found beside this program. The memory must outlive it.
+  /// Starts luxrig-guardian from this program's folder. The memory must outlive it.
   [[nodiscard]] static Result<Guardian> start(GuardianSettings settings, LastLookMemory& memory, Time now);
   ~Guardian();
   Guardian(Guardian&& other) noexcept;
   Guardian& operator=(Guardian&&) = delete;
 
-  /// False: it has ended, or hung and was ended: nobody would look after the light.
+  /// False if it has ended, or hung and was killed: no guardian is left.
   [[nodiscard]] bool alive(Time now);
-  /// It has begun to look.
+  /// Whether it has begun to watch.
   [[nodiscard]] bool looks() const { return looks_; }
-  /// It was sent away: it is waited for, and ended if need be.
+  /// Kills a guardian that hangs or was sent away, and reaps it.
   void leave();
-  /// The daemon ends in order, after its drivers have said goodbye.
+  /// Orderly end of the daemon, after its drivers' goodbyes.
   void end();
 
  private:
@@ -51,15 +51,15 @@ class Guardian {
   static constexpr LastLookMemory::Beat kBeat = LastLookMemory::Beat::guardian;
   GuardianSettings settings_;
   LastLookMemory* memory_;
-  Time beat_at_;  ///< when the count was seen to change last
+  Time beat_at_;  ///< when its heartbeat count last changed
   std::uint32_t beats_;
   bool looks_ = false;
   pid_t pid_ = -1;
-  int alive_fd_ = -1;  ///< our end of a pipe that closes when we die
+  int alive_fd_ = -1;  ///< our end of a pipe; it closes when we die
 };
 
-/// A guardian that a dead daemon of the same state folder left behind stops sending, without a goodbye: a daemon is
-/// about to go on from there. Returns what it sent last; nothing when there was none, or it could not say.
+/// Stops the guardian that a dead daemon of the same state folder left behind. It sends no goodbye, as a daemon goes on
+/// from its light. Returns the light it sent last; nullopt if there was no guardian, or it could not report.
 [[nodiscard]] std::optional<LightInForce> send_guardian_away(const std::filesystem::path& state_folder,
                                                              std::size_t fixtures);
 

@@ -23,7 +23,7 @@ std::string redirect_text(const std::string& bus, const Redirect& to) {
 }
 
 std::optional<std::pair<std::string, Redirect>> redirect_of(const std::string& text) {
-  // A bus may have a = in its name; hosts and our paths have none.
+  // A bus name may contain =; hosts and our paths do not.
   const auto equals = text.rfind('=');
   if (equals == std::string::npos || equals + 1 == text.size()) return std::nullopt;
   const std::string bus = text.substr(0, equals), to = text.substr(equals + 1);

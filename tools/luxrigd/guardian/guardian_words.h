@@ -1,5 +1,5 @@
 #pragma once
-/// What daemon and guardian call the same by the same words.
+/// Names and formats that the daemon and its guardian share.
 
 #include <filesystem>
 #include <optional>
@@ -16,12 +16,12 @@ inline constexpr const char* kAliveOption = "--alive-fd";
 inline constexpr const char* kPidOption = "--pid-file";
 inline constexpr const char* kRedirectOption = "--redirect";
 
-/// "bus=host:port", or "bus=/path" of a serial line.
+/// "bus=host:port", or "bus=/path" for a serial line.
 [[nodiscard]] std::string redirect_text(const std::string& bus, const Redirect& to);
 [[nodiscard]] std::optional<std::pair<std::string, Redirect>> redirect_of(const std::string& text);
 
-/// Where a guardian may say which process it is: in the state folder, or where that cannot be written, among what lives
-/// as long as a process.
+/// Files in which a guardian may write its process id: in the state folder, or, if that cannot be written, in the
+/// runtime folder.
 [[nodiscard]] std::vector<std::filesystem::path> guardian_pid_files(const std::filesystem::path& state_folder);
 
 }  // namespace luxrig

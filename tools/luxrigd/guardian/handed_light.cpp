@@ -10,7 +10,7 @@ using nlohmann::json;
 
 constexpr double kLongestHold_s = 1e6;
 
-/// A finite number within bounds; NaN where it is not.
+/// The value if it is a number within bounds, else NaN.
 double number_within(const json& value, double least, double most) {
   const double number = value.is_number() ? value.get<double>() : std::nan("");
   return number >= least && number <= most ? number : std::nan("");
@@ -25,7 +25,7 @@ bool read_levels(const json& from, std::size_t fixtures, std::vector<double>& in
   return true;
 }
 
-/// What is not there is sent.
+/// A missing or empty list means that all fixtures are sent.
 bool read_silent(const json& from, std::size_t fixtures, std::vector<std::uint8_t>& into) {
   if (from.is_null() || (from.is_array() && from.empty())) return true;
   if (!from.is_array() || from.size() != fixtures) return false;

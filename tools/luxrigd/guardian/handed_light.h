@@ -1,6 +1,6 @@
 #pragma once
-/// What a guardian that is sent away tells the daemon that takes the light from it: what goes out at that instant. A
-/// line of JSON behind the number in its file. What is read is checked: the file may be anybody's.
+/// The light that a guardian hands to the daemon that sends it away: its output at that instant. One line of JSON after
+/// the process id in its pid file. It is checked on reading, as anyone may have written the file.
 
 #include <filesystem>
 #include <optional>
@@ -13,7 +13,7 @@ namespace luxrig {
 
 [[nodiscard]] std::string handed_light_text(const LightInForce& light);
 
-/// Nothing unless it has an entry for each of the fixtures, levels within 0…1, finite angles and times.
+/// nullopt unless it has an entry per fixture, levels within 0…1, finite angles and times.
 [[nodiscard]] std::optional<LightInForce> handed_light_of(const std::string& text, std::size_t fixtures);
 
 }  // namespace luxrig

@@ -30,7 +30,7 @@ double within(double value, double least, double most) {
 struct LastLookMemory::Header {
   std::uint64_t magic = kMagic;
   std::uint64_t fixtures = 0;
-  std::atomic<std::uint32_t> newest{0};  ///< 1 + the copy that is whole; 0: none yet
+  std::atomic<std::uint32_t> newest{0};  ///< 1 + index of the whole copy; 0 = none yet
   std::atomic<std::uint32_t> ended{0};
   std::atomic<std::uint32_t> guardian_has_the_light{0};
   std::atomic<std::uint32_t> beats[3]{};  ///< by Beat

@@ -1,6 +1,6 @@
 #pragma once
-/// What the light shall do when the daemon dies, in memory that it shares with its guardian. Two copies, of which one
-/// is whole at every instant: however the writer ends, the reader finds the last look that was put.
+/// The light to send when the daemon dies, in memory shared with its guardian. There are two copies, one of them whole
+/// at every instant: however the writer ends, the reader finds the last look that was put.
 
 #include <atomic>
 #include <cstdint>
@@ -14,33 +14,33 @@ namespace luxrig {
 
 class LastLookMemory {
  public:
-  /// Of this process and those that inherit fd().
+  /// Memory of this process and of those that inherit fd().
   [[nodiscard]] static Result<LastLookMemory> create(std::size_t fixtures);
-  /// The same, by a descriptor that somebody inherited; Cause::invalid when it is another rig's, or no such memory.
+  /// The same memory, by an inherited descriptor. Cause::invalid if it belongs to another rig or is no such memory.
   [[nodiscard]] static Result<LastLookMemory> open(int fd, std::size_t fixtures);
   ~LastLookMemory();
   LastLookMemory(LastLookMemory&& other) noexcept;
   LastLookMemory& operator=(LastLookMemory&&) = delete;
 
-  /// One writer. Vectors have an entry per fixture. Never blocks, allocates nothing. sends: something goes out at all.
+  /// One writer. Vectors have an entry per fixture. Never blocks, allocates nothing. sends: there is any output at all.
   void put(const LightInForce& light, bool sends);
-  /// Nothing before the first, and while nothing goes out. Values that are no numbers are 0, and levels are within 0…1:
-  /// the writer may have died while it wrote wildly.
+  /// nullopt before the first put, and while there is no output. Non-finite values become 0 and levels are clamped to
+  /// 0…1, as the writer may have corrupted the memory before it died.
   [[nodiscard]] std::optional<LightInForce> take() const;
 
-  /// Who lives counts, here: the daemon's threads that send, its control loop, and the guardian. A count that stands
-  /// still is a process, or a thread, that hangs.
+  /// Heartbeat counters: of the daemon's threads that send, of its control loop, and of the guardian. A count that
+  /// stands still means a process or thread that hangs.
   enum class Beat { output, control, guardian };
   void beat(Beat whose);
   [[nodiscard]] std::uint32_t beats(Beat whose) const;
 
-  /// The guardian takes the light from a daemon that hangs; only one of them sends. The daemon that has sent it away
-  /// takes it back.
+  /// The guardian takes the light from a daemon that hangs; only one of them sends. The daemon takes it back once it
+  /// has sent the guardian away.
   void take_the_light();
   void take_the_light_back();
   [[nodiscard]] bool guardian_has_the_light() const;
 
-  /// The daemon ends in order: its guardian has nothing to do.
+  /// Orderly end of the daemon: its guardian has nothing to do.
   void end();
   [[nodiscard]] bool ended() const;
   [[nodiscard]] int fd() const { return fd_; }

@@ -29,7 +29,7 @@ void forget_dead_daemons(const std::filesystem::path& folder) {
   for (std::filesystem::directory_iterator file(folder, error), end; !error && file != end; file.increment(error)) {
     std::filesystem::path socket = file->path();
     std::error_code gone;
-    // One that is just being made does not listen yet.
+    // A new socket does not listen yet.
     const auto age = std::filesystem::file_time_type::clock::now() - std::filesystem::last_write_time(socket, gone);
     if (socket.extension() != ".socket" || gone || age < kBeingMade || http_listens(socket)) continue;
     std::filesystem::remove(socket, gone);

@@ -7,7 +7,7 @@ namespace luxrig {
 namespace {
 
 constexpr double kLeastRate_per_s = 0.25;
-/// Of the fastest rate of the fade that goes on, which an s-curve has in its middle.
+/// Factor on the fastest rate of the running fade; an s-curve is fastest in its middle.
 constexpr double kFasterThanTheFade = 1.25, kPeakOfSCurve = 1.5;
 constexpr Duration kShortestStall = std::chrono::milliseconds(100);
 

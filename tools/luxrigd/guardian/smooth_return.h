@@ -1,6 +1,6 @@
 #pragma once
-/// After a stall the light goes on from what went out last: the program has moved on meanwhile, and a jump to where it
-/// is now would be seen.
+/// After a stall the light starts from the last frame sent. The program has moved on during the stall, and a jump to
+/// its present level would be visible.
 
 #include <span>
 #include <vector>
@@ -11,15 +11,16 @@ namespace luxrig {
 
 class SmoothReturn {
  public:
-  /// cycle: between two frames; a pause of more than four of them, or of a tenth of a second, is a stall.
+  /// cycle: between two frames. A pause of more than four cycles, or of a tenth of a second if that is longer, is a
+  /// stall.
   SmoothReturn(std::size_t fixtures, Duration cycle);
 
-  /// Somebody else sends in our place: what went out last is not known.
+  /// Another process sends in our place: the last frame sent is unknown.
   void forget() { sent_ = false; }
 
-  /// level: what the program wants at `now`; what shall go out instead. All lamps go the same share of their way, so
-  /// that what is within limits at both ends is within them on the way; the limits in force are applied once more.
-  /// What must be dark (blackout, a head at a keep-out zone) is dark at once. Allocates nothing.
+  /// level: in, the program's levels at `now`; out, the levels to send. All lamps move by the same share of their way:
+  /// if both ends are within limits, so is each step. The limits in force are applied once more. Fixtures that must be
+  /// dark (blackout, a head at a keep-out zone) go dark at once. Allocates nothing.
   void apply(Time now, const OutputProgram& program, bool dark, std::span<double> level);
 
   [[nodiscard]] bool returning() const { return returning_; }

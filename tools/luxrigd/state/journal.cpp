@@ -15,7 +15,7 @@
 namespace luxrig {
 namespace {
 
-/// Nothing when it is damaged: the rest of the state is worth more than a complaint.
+/// nullopt if it is damaged: the rest of the state is worth more than a complaint.
 std::optional<SavedByHand> by_hand_of(const nlohmann::json& entry) {
   const auto has = [&](const char* key, auto is) { return entry.contains(key) && (entry[key].*is)(); };
   using Json = nlohmann::json;
@@ -27,7 +27,8 @@ std::optional<SavedByHand> by_hand_of(const nlohmann::json& entry) {
   return saved;
 }
 
-/// "blackout": true anywhere in what is no JSON. (A regular expression over a long hostile text ends the program.)
+/// Finds "blackout": true anywhere in a text that is not JSON. (A regular expression on a long hostile text ends the
+/// program.)
 bool asks_for_blackout(std::string_view text) {
   constexpr std::string_view kKey = "\"blackout\"";
   const auto skip_space = [&] { text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size())); };
@@ -73,7 +74,7 @@ LegibleState legible_state_of(const std::string& text) {
   if (want("blackout", &Json::is_boolean)) {
     state.blackout = json["blackout"];
   } else {
-    // Torn by a failing disk: the word may still stand there, and dark is what was asked for last.
+    // Torn by a failing disk: the key may still be legible, and dark was the last order.
     state.blackout = asks_for_blackout(text);
   }
   if (want("plan", &Json::is_string)) state.plan_json = json["plan"].get<std::string>();
@@ -142,7 +143,7 @@ Result<void> Journal::save_first(const Change& change) {
   JournalState next = state_;
   change(next);
   if (auto saved = save(next); !saved) {
-    // The folder alone may have failed, with the refused state on disk already.
+    // Only syncing the folder may have failed, with the refused state on disk already.
     if (read_file(file()).value_or("") == state_text(next)) tell(save(state_));
     return saved;
   }

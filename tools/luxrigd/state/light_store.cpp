@@ -42,7 +42,7 @@ class WordReader {
     bad_ = bad_ || !std::isfinite(value);
     return value;
   }
-  /// Rows and columns, then entries by columns; of these sizes, or empty.
+  /// Rows, columns, then entries by columns. It must have these sizes, or be empty.
   template <class Matrix>
   void matrix(Matrix& into, std::size_t rows, std::size_t columns) {
     const std::uint64_t its_rows = word(), its_columns = word();

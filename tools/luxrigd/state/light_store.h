@@ -1,6 +1,5 @@
 #pragma once
-/// What a rig gives, kept in its state folder, so that a daemon that starts again need not trace it again before there
-/// is light.
+/// The rig's light model, kept in its state folder, so that a restarted daemon has light without tracing it again.
 
 #include <cstdint>
 #include <filesystem>
@@ -15,21 +14,21 @@
 namespace luxrig {
 
 struct KeptLight {
-  std::vector<Joints> joints;  ///< per fixture: where heads look in it
+  std::vector<Joints> joints;  ///< per fixture: the aims that the model holds for
   LightModel model;
 };
 
-/// What it depends on: the rig and its scene (RigVersion::light), how it was asked for, and this program.
+/// Hash of all inputs of the model: the rig and its scene (RigVersion::light), the compute options, and this program.
 [[nodiscard]] std::uint64_t light_key(const Rig& rig, const Scene& scene, const ComputeOptions& compute);
 
-/// What the last word of its bytes says of the words before: tells a torn or rotten file, not a forged one.
+/// Checksum over the words, stored as the last word. It detects a torn or rotten file, not a forged one.
 [[nodiscard]] std::uint64_t light_sum(std::span<const std::uint64_t> words);
 
-/// Bytes and back; nothing where they are damaged, of another key, or of other sizes than the rig's.
+/// Bytes and back. nullopt if they are damaged, have another key, or other sizes than the rig.
 [[nodiscard]] std::string light_bytes(const KeptLight& light, std::uint64_t key);
 [[nodiscard]] std::optional<KeptLight> light_of_bytes(std::string_view bytes, std::uint64_t key, const Rig& rig);
 
-/// light.bin in the folder. That it cannot be written is no harm: the next start takes longer.
+/// Reads and writes light.bin in the folder. A failed write does no harm: the next start takes longer.
 void keep_light(const std::filesystem::path& folder, const KeptLight& light, std::uint64_t key);
 [[nodiscard]] std::optional<KeptLight> kept_light(const std::filesystem::path& folder, std::uint64_t key,
                                                   const Rig& rig);

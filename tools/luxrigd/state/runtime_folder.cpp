@@ -21,7 +21,7 @@ std::vector<std::filesystem::path> candidates() {
   return folders;
 }
 
-/// Not through a link: in /tmp anybody may have made one.
+/// Symbolic links are refused: in /tmp anyone may have made one.
 bool is_private_folder(const std::filesystem::path& folder) {
   struct stat is {};
   return ::lstat(folder.c_str(), &is) == 0 && S_ISDIR(is.st_mode) && is.st_uid == ::geteuid() &&

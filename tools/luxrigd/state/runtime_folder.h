@@ -1,5 +1,5 @@
 #pragma once
-/// Where what lives as long as a process may be kept, out of other users' reach.
+/// Folder for files that live as long as a process, out of other users' reach.
 
 #include <filesystem>
 #include <optional>
@@ -7,11 +7,11 @@
 
 namespace luxrig {
 
-/// $XDG_RUNTIME_DIR/luxrig, /run/luxrig for root, /run/user/UID/luxrig, /tmp/luxrig-UID: those of them that are there,
-/// this user's and nobody else's (mode 700). A service and a terminal of the same user may differ in which comes first.
+/// Those of $XDG_RUNTIME_DIR/luxrig, /run/luxrig for root, /run/user/UID/luxrig and /tmp/luxrig-UID that exist and
+/// belong to this user alone (mode 700). A user's service and terminal may differ in which comes first.
 [[nodiscard]] std::vector<std::filesystem::path> runtime_folders();
 
-/// The first of them that is there or can be made. Nothing where none can be.
+/// The first of them that exists or can be made; nullopt if none can.
 [[nodiscard]] std::optional<std::filesystem::path> runtime_folder();
 
 }  // namespace luxrig
