@@ -1,7 +1,7 @@
 #pragma once
-/// What a daemon promises, as a model: what was acknowledged is in force until somebody changes it, also after any
-/// restart; what was refused has changed nothing; a blackout is dark. Random sequences of commands, faults, kills and
-/// disk errors are held against it, and one that breaks a promise is shrunk to the shortest that does.
+/// Model of a daemon's promises. An acknowledged change is in force until it is changed again, also after any restart.
+/// A refused one has changed nothing. A blackout is dark. Random sequences of commands, faults, kills and disk errors
+/// are checked against it. A sequence that breaks a promise is shrunk to the shortest that still does.
 
 #include <fmt/format.h>
 
@@ -21,11 +21,11 @@ enum class Act { blackout, lift, apply, hold, release, refuse, fault, well, disk
 
 struct Step {
   Act act = Act::wait;
-  std::size_t which = 0;  ///< plan, lamp, fault, or kind of request that is to be refused
+  std::size_t which = 0;  ///< plan, lamp, fault, or kind of request to refuse
   double value = 0;       ///< level or seconds
 };
 
-/// What the rig under test is asked to do; a command says whether it was acknowledged.
+/// Commands to the rig under test; each returns whether it was acknowledged.
 class Subject {
  public:
   virtual ~Subject() = default;
@@ -33,30 +33,30 @@ class Subject {
   virtual bool apply(std::size_t plan) = 0;
   virtual bool hold(std::size_t lamp, double level) = 0;
   virtual bool release() = 0;
-  /// Something that must be refused.
+  /// A request that must be refused.
   virtual bool nonsense(std::size_t kind) = 0;
   virtual void fault(std::size_t which, bool on) = 0;
   virtual void disk(bool fails) = 0;
-  /// Ends as by a power cut, or in order, and starts anew.
+  /// Ends, in order or as by a power cut, and starts again.
   virtual void restart(bool in_order) = 0;
-  /// The loop stands still for so long.
+  /// Stalls the control loop for this long.
   virtual void stall(double seconds) = 0;
   virtual void wait(double seconds) = 0;
 
   struct Seen {
     bool blackout = false;
-    std::optional<std::size_t> plan;       ///< in force; none: of no plan of ours
-    bool plan_waits = false;               ///< says that one waits until a failure is over
+    std::optional<std::size_t> plan;       ///< in force; none if it is not one of our plans
+    bool plan_waits = false;               ///< a plan waits until a failure is over
     std::map<std::size_t, double> by_hand; ///< lamps held
   };
   virtual Seen seen() = 0;
-  /// What went wrong by itself since the last call: light in a blackout, a limit exceeded, a jump; empty: nothing.
+  /// A fault of the light itself since the last call: light in a blackout, an exceeded limit, a jump. Empty if none.
   virtual std::string broken() = 0;
-  /// From now on every frame must be dark, or may be lit.
+  /// From now on every frame must be dark (true) or may be lit (false).
   virtual void expect_dark(bool dark) = 0;
 };
 
-/// A value as it is, and as it may be after a restart: what could not be saved may be either.
+/// The present value, and the values allowed after a restart: an unsaved change may be there or not.
 template <class T>
 struct Kept {
   T live{};
@@ -73,13 +73,13 @@ struct Kept {
 
 class Model {
  public:
-  /// The first promise that it breaks, in words; empty: none.
+  /// The first broken promise, in words; empty if none is.
   std::string run(Subject& subject, const std::vector<Step>& steps) {
     for (std::size_t i = 0; i < steps.size(); ++i) {
       const std::string why = take(subject, steps[i]);
       if (!why.empty()) return fmt::format("step {}: {}", i, why);
     }
-    // When all is well again, what waited for that comes into force.
+    // Once all faults are gone, a waiting plan comes into force.
     for (const Step& step : steps)
       if (step.act == Act::fault) subject.fault(step.which, false);
     subject.disk(false);
@@ -93,10 +93,10 @@ class Model {
 
  private:
   using Hands = std::map<std::size_t, double>;
-  /// A dead unit is asked again within some seconds, then light fades.
+  /// A dead unit is retried within some seconds, then the light fades in.
   static constexpr int kLongestRecovery_s = 30;
 
-  /// A command that says it is saved has saved everything that held.
+  /// An acknowledged save contains the whole present state.
   void all_saved() {
     blackout_.acknowledged(blackout_.live);
     plan_.acknowledged(plan_.live);
@@ -120,7 +120,7 @@ class Model {
         break;
       }
       case Act::apply: {
-        // Refused when it cannot be saved; then nothing has changed.
+        // Refused if it cannot be saved; then nothing has changed.
         if (subject.apply(step.which)) {
           plan_.live = step.which;
           all_saved();
@@ -253,7 +253,7 @@ inline std::string in_words(const std::vector<Step>& steps) {
   return text;
 }
 
-/// The shortest that `fails` still, by leaving out ever smaller parts.
+/// The shortest sequence that still `fails`, found by leaving out ever smaller parts.
 inline std::vector<Step> shrunk(std::vector<Step> steps, const std::function<bool(const std::vector<Step>&)>& fails) {
   for (std::size_t part = std::max<std::size_t>(1, steps.size() / 2);; part = std::max<std::size_t>(1, part / 2)) {
     bool shorter = false;

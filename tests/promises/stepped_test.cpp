@@ -1,4 +1,4 @@
-// The promises against the daemon itself, under a clock that the test steps, on a simulated hall.
+// Checks the promises on the daemon itself, under a clock that the test steps, in a simulated hall.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,8 +17,8 @@ namespace {
 
 constexpr Duration kTick = std::chrono::milliseconds(20);
 constexpr std::size_t kPlans = 3;
-constexpr std::size_t kOverWorks[] = {0, 3, 5, 10};  ///< lamps: what they give decides about the limits
-constexpr std::size_t kFrozen = 2;                   ///< of the faults
+constexpr std::size_t kOverWorks[] = {0, 3, 5, 10};  ///< lamps whose light decides about the limits
+constexpr std::size_t kFrozen = 2;                   ///< index of the fault
 constexpr double kLargestStep = 0.0376;  ///< as in tests/scenarios/closed_loop.h
 
 /// One bus of the simulated hall.
@@ -33,7 +33,7 @@ class HallBus final : public Driver, public LevelOutput, public LuxReader {
   }
   Result<void> activate(Time) override { return {}; }
   void deactivate(Time) override {}
-  /// The devices say it for all buses at once.
+  /// The first bus reports for all buses at once.
   [[nodiscard]] std::vector<Health> health(Time now) const override {
     return first_ ? devices_.health(now) : std::vector<Health>{};
   }
@@ -101,7 +101,8 @@ class SteppedSubject final : public Subject {
       std::optional<double> value;
     };
     const One faults[] = {{"meter-1", FaultKind::silent, {}}, {"meter-2", FaultKind::lost, 0.5},
-                          // Less than a weak lamp could explain; what it could explain nobody can tell from one.
+                          // A lower value than a weak lamp could explain; a plausible one could not be told from a weak
+                          // lamp.
                           {"meter-3", FaultKind::stuck, {}},  {"meter-4", FaultKind::lying, 0.3},
                           {"spot-9", FaultKind::silent, {}},  {"meters", FaultKind::dead, {}}};
     devices_.faults().set(faults[which].device, faults[which].kind, on, faults[which].value);
@@ -151,11 +152,11 @@ class SteppedSubject final : public Subject {
 
  private:
   static constexpr Duration kBegin = std::chrono::hours(1);
-  static constexpr std::size_t kTellingPoint = 20;  ///< nobody measures it, and it has no limit
+  static constexpr std::size_t kTellingPoint = 20;  ///< unmeasured, and without a limit
 
   static scenarios::Hall hall_of(std::uint64_t seed) {
     scenarios::Hall hall = scenarios::make_hall(seed % 5);
-    hall.rig.luminaires.resize(1);  // who tells of a lamp says which it is
+    hall.rig.luminaires.resize(1);  // the status names the luminaire of each fixture
     return hall;
   }
   static sim::Deviations deviations(std::uint64_t seed) {
@@ -183,7 +184,7 @@ class SteppedSubject final : public Subject {
     point.name = hall_.rig.points[kTellingPoint].name;
     point.goal_lux = goal_of(k);
     plan.points.push_back(point);
-    // More than the works may have: it is always their limits that decide.
+    // More than the works' limits allow: the limits always decide.
     for (std::size_t p = 0; p < scenarios::kWorks; ++p) {
       PlannedPoint work;
       work.name = hall_.rig.points[p].name;
@@ -220,7 +221,7 @@ class SteppedSubject final : public Subject {
       look();
     }
   }
-  /// At what has just gone out.
+  /// Checks the frame that has just gone out.
   void look() {
     const auto say = [&](std::string what) {
       if (broken_.empty()) broken_ = std::move(what);
@@ -263,7 +264,7 @@ std::string outcome(std::uint64_t seed, const std::vector<Step>& steps) {
   return Model().run(subject, steps);
 }
 
-// LUXRIG_PROMISES: how many; tools/nightly runs 10,000.
+// LUXRIG_PROMISES: number of sequences; tools/nightly runs 10,000.
 TEST(Promises, HoldThroughRandomCommandsFaultsKillsAndDiskErrors) {
   const char* wanted = std::getenv("LUXRIG_PROMISES");
   const std::uint64_t sequences = wanted != nullptr ? std::strtoull(wanted, nullptr, 10) : 300;
@@ -276,7 +277,7 @@ TEST(Promises, HoldThroughRandomCommandsFaultsKillsAndDiskErrors) {
   }
 }
 
-// A value from the middle of a fade says too little, and near enough to be believed.
+// A value frozen in mid-fade is too low, yet plausible enough to be believed.
 TEST(Promises, HoldWhenAMeterFreezesInTheMiddleOfAFade) {
   for (std::uint64_t seed = 1; seed <= 120; ++seed) {
     const double after_s = 0.1 * static_cast<double>(seed % 60);

@@ -57,7 +57,7 @@ TEST(BenchRow, RowsAreKeptAsTheyAreMade) {
   kept << std::ifstream(file, std::ios::binary).rdbuf();
   EXPECT_EQ(kept.str(), csv_of(rows));
   end_row_progress();
-  say_row_made(rows[0]);  // belongs to nothing that is kept
+  say_row_made(rows[0]);  // there is no list to keep it in
   std::ostringstream still;
   still << std::ifstream(file, std::ios::binary).rdbuf();
   EXPECT_EQ(still.str(), csv_of(rows));

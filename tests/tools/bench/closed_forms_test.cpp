@@ -8,7 +8,7 @@
 namespace luxrig {
 namespace {
 
-/// ∫ cosθ cosθ' / (π d²) over a parallel or perpendicular surface z = h given in polar or Cartesian pieces.
+/// ∫ cosθ cosθ' / (π d²) over a parallel or perpendicular surface z = h, in polar or Cartesian coordinates.
 double by_quadrature(const Vec3& normal, double h, double x0, double x1, double y0, double y1, bool polar) {
   return integral(gauss_rule(64), x0, x1, y0, y1, [&](double p, double q) {
     const Vec3 to = polar ? Vec3(p * std::cos(q), p * std::sin(q), h) : Vec3(p, q, h);
@@ -31,7 +31,7 @@ TEST(ClosedForms, OfDisksAndRectanglesAreTheirIntegrals) {
   for (const double h : {0.3, 1.0, 4.0}) {
     EXPECT_NEAR(form_factor_of_parallel_disk(0.7, h, 0), by_quadrature(Vec3::UnitZ(), h, 0, 0.7, 0, 2 * kPi, true),
                 1e-12);
-    // The element is at a off the axis: shift it, with the disk's points as seen from there.
+    // The element is offset by a from the axis: the disk's points are taken relative to it.
     for (const double a : {0.4, 1.5}) {
       const auto seen = [&](const Vec3& normal) {
         return integral(gauss_rule(96), 0, 0.7, 0, 2 * kPi, [&](double r, double q) {
@@ -64,8 +64,8 @@ TEST(ClosedForms, OfASphereIsItsIntegralAlsoWhenTheHorizonCutsIt) {
     }
 }
 
-// Flux is conserved, and away from the edges, where the bench asks, refinement hardly moves the answer: the error falls
-// with the square of the refinement, so that a third of the difference is left.
+// Flux is conserved. Away from the edges, where the bench samples, refinement hardly changes the result. The error
+// falls with the square of the refinement, so a third of the difference remains.
 TEST(BoxRadiosity, ConservesFluxAndHasConverged) {
   const Vec3 size_m(4, 3, 2.5);
   const std::array<double, 6> same = {0.6, 0.6, 0.6, 0.6, 0.6, 0.6};

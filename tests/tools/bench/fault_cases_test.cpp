@@ -47,7 +47,7 @@ TEST(FaultCases, OneAstrayOrNotRecoveredMissesTheTargetAndIsNamed) {
   EXPECT_EQ(row_of_faults("sacn", plan, "level", {}, 5).met(), std::optional(false)) << "no case is no proof";
 }
 
-/// In simulated time, so the same on any machine.
+/// Runs in simulated time, so it is the same on any machine.
 TEST(FaultsSuite, NoFaultOfANetworkOrOfACanBusLeavesAnythingInAStateNobodyAskedFor) {
   BenchOptions options;
   options.seeds = 4;
@@ -56,7 +56,7 @@ TEST(FaultsSuite, NoFaultOfANetworkOrOfACanBusLeavesAnythingInAStateNobodyAskedF
     options.only = bus;
     for (const BenchRow& row : bench_faults(options)) {
       ++kinds;
-      // A node that says it stands where it does not may take its head past the aim; that it comes back is in
+      // A node that reports a wrong position may take its head past the aim; its recovery is tested in
       // tests/conformance/axes_faults_test.cpp.
       if (row.case_name == "canopen-garbled-axis") continue;
       EXPECT_EQ(row.met(), std::optional(true)) << row.case_name << ": " << column(row, "note");

@@ -11,7 +11,7 @@
 namespace luxrig {
 namespace {
 
-/// What follows the comments and the name.
+/// The text after the comments and the name.
 std::string geometry_of(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   const std::string text{std::istreambuf_iterator<char>(in), {}};

@@ -24,7 +24,7 @@ PlacementCase made(const std::string& name, std::uint64_t seed) {
   return one ? std::move(*one) : PlacementCase{};
 }
 
-/// Without the one whose mesh is not here.
+/// All cases except one whose mesh is missing here.
 std::vector<std::string> names_here() {
   auto names = placement_case_names();
   std::erase(names, "real-apartment");
@@ -53,7 +53,7 @@ TEST_P(PlacementCases, AskForLightAtAFewHundredPointsInOneAir) {
     for (const Receiver& r : one.receivers) ASSERT_EQ(regions.mark(r.position_world_m), air);
     EXPECT_EQ(one.known_places_world_m.size(), one.known_lumens.size());
     for (const Vec3& place : one.known_places_world_m) EXPECT_TRUE(one.lights_in_world_m.contains(place));
-    // Some of the box is the receivers' air, so that lights can hang there.
+    // Part of the box must be the receivers' air, so that lights can hang there.
     int open = 0;
     for (int i = 0; i < 1000; ++i) {
       const Vec3 share((i % 10 + 0.5) / 10, (i / 10 % 10 + 0.5) / 10, (i / 100 + 0.5) / 10);
@@ -72,7 +72,7 @@ TEST_P(PlacementCases, AreTheSameForASeed) {
     EXPECT_EQ(a.receivers[r].position_world_m, b.receivers[r].position_world_m);
 }
 
-/// Lux by the inverse square law, with rays of the scene only.
+/// Lux by the inverse square law, using only rays of the scene.
 double by_hand_lux(const PlacementCase& one, const RayScene& rays, const Receiver& r) {
   double lux = 0;
   for (std::size_t k = 0; k < one.known_lumens.size(); ++k) {
@@ -106,7 +106,7 @@ TEST(KnownLights, GlobalGoalIsAboveTheDirectOneAndSaysItsError) {
   const Eigen::VectorXd reflected = global.goal_lux.col(0) - direct.goal_lux.col(0);
   EXPECT_GT((reflected + 4 * global.goal_standard_error_lux).minCoeff(), 0);
   EXPECT_GT(reflected.mean(), 0.2 * direct.goal_lux.mean());  // a light ceiling over dark carpet
-  // Asked for 10 % of each receiver's lux.
+  // The requested error is 10 % of each receiver's lux.
   EXPECT_LT((global.goal_standard_error_lux.array() / global.goal_lux.col(0).array()).maxCoeff(), 0.12);
 }
 

@@ -43,7 +43,7 @@ TEST(AnalyticCase, ErrorsAreOverTheReceiversAndOfThePartAskedFor) {
   TransportMatrix matrix;
   matrix.lux_per_level = Eigen::Vector3d(101, 10, 0.02);
   matrix.direct_lux_per_level = Eigen::Vector3d(50, 10, 0);
-  // The third is judged against a thousandth of the brightest: 0.01 / 0.1.
+  // The third error is relative to a thousandth of the brightest: 0.01 / 0.1.
   EXPECT_NEAR(error_of(one, matrix).worst, 0.1, 1e-12);
   EXPECT_NEAR(error_of(one, matrix).rms, std::sqrt((0.01 * 0.01 + 0.1 * 0.1) / 3), 1e-12);
   one.part = AnalyticCase::Part::direct;
@@ -113,7 +113,7 @@ TEST(TransportCase, RadianceGetsEveryTriangleLampAndReceiver) {
             1 + room.scene.materials.size() + room.scene.triangles.size() + 3 * room.emitters.size());
   EXPECT_EQ(lines_of(folder / "box.pts"), room.receivers.size());
   EXPECT_EQ(lines_of(folder / "box-lamp0.dat"), 2u + 181u);
-  // Shares of flux: cd over every degree of the isotropic lamp.
+  // Candela of the isotropic lamp, at every degree.
   std::ifstream in(folder / "box-lamp0.dat");
   std::string heading;
   std::getline(in, heading);

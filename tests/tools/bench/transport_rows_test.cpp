@@ -45,7 +45,7 @@ TEST(EntryMoves, AreOfEveryEntryThatEitherHas) {
   const auto a = columns_of({{100, 10, 0}, {0, 0, 4}}, 0.3f), b = columns_of({{101, 10, 0}, {0, 0, 0}}, 0.4f);
   const EntryMoves moves = moves_between(a, b, 3, 0);
   EXPECT_NEAR(moves.largest, 4.0 / 101, 1e-6);
-  // Three entries; 1 lx is twice hypot(0.3, 0.4), 4 lx more than twice 0.3.
+  // Three entries: 1 lx equals twice hypot(0.3, 0.4), 4 lx exceeds twice 0.3.
   EXPECT_NEAR(moves.beyond_two_errors, 1.0 / 3, 1e-12);
   EXPECT_NEAR(moves.sum, 3.0 / 114, 1e-6);
   const EntryMoves allowed = moves_between(a, b, 3, 4);

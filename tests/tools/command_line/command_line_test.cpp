@@ -1,4 +1,4 @@
-// Parsing, help, man page and completion of a small program.
+// Parsing, help, man pages and completion of a small program.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -18,7 +18,7 @@ namespace {
 
 enum class Shape { round, square };
 
-/// In characters, of UTF-8.
+/// Width in UTF-8 characters.
 std::size_t widest_line(const std::string& text) {
   std::size_t widest = 0, width = 0;
   for (const char c : text) {
@@ -53,7 +53,7 @@ class CommandLine : public ::testing::Test {
     list->add_subcommand("shapes", "all shapes");
     list->add_subcommand("files", "all files");
   }
-  /// Exit code; -1 when the program goes on.
+  /// Exit code; -1 if the program goes on.
   int parse(std::vector<std::string> words) {
     words.insert(words.begin(), "tool");
     std::vector<char*> argv;
@@ -65,7 +65,7 @@ class CommandLine : public ::testing::Test {
     return end.value_or(-1);
   }
   Offer offer(const std::vector<std::string>& words) { return offer_for(app, words); }
-  /// What is offered for the last word, with blanks between.
+  /// Completions of the last word, separated by blanks.
   std::string texts(const std::vector<std::string>& words) {
     std::string all;
     for (const Offer::Word& word : offer(words).words) all += (all.empty() ? "" : " ") + word.text;
@@ -171,7 +171,7 @@ TEST_F(CommandLine, FilesAreOfferedWhereTheyCanStandAndNowhereElse) {
   EXPECT_EQ(offer({""}).places, Places::none);
 }
 
-/// What a shell command prints.
+/// Output of a shell command.
 std::string told_by(const std::string& command) {
   std::string told;
   std::FILE* const shell = ::popen(command.c_str(), "r");

@@ -1,4 +1,4 @@
-// The HTTP server against neighbours that mean it no good, over real sockets.
+// The HTTP server against hostile peers, over real sockets.
 #include "tools/http/server.h"
 
 #include <gtest/gtest.h>
@@ -15,10 +15,10 @@
 namespace luxrig {
 namespace {
 
-/// Nobody is waited for.
+/// Bound for an answer that waits for no peer.
 constexpr std::chrono::milliseconds kAtOnce(100);
 
-/// How long the threads of this process have been ready to run while other work had the cores: proc(5), schedstat.
+/// Time for which this process's threads were ready to run while other work had the cores: proc(5), schedstat.
 std::chrono::nanoseconds kept_off_the_cores() {
   std::int64_t all_ns = 0;
   for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
@@ -29,8 +29,8 @@ std::chrono::nanoseconds kept_off_the_cores() {
   return std::chrono::nanoseconds(all_ns);
 }
 
-/// The time since it was made that this process took itself, at work or asleep. What waits for a peer counts in full,
-/// and what other processes took does not.
+/// Time since its construction that this process spent itself, working or asleep. Waiting for a peer counts in full;
+/// time taken by other processes does not.
 class OwnTime {
  public:
   [[nodiscard]] std::chrono::nanoseconds passed() const {
@@ -147,7 +147,7 @@ TEST_F(ServerTest, WhatFollowsARefusedRequestIsNotARequest) {
       EXPECT_TRUE(wire.ended());
     }
   }
-  // The same for other refusals: of a route, a method, a type, a length, and for bytes that are not HTTP.
+  // The same for other refusals: of a route, method, type or length, and of bytes that are not HTTP.
   for (const std::string& first :
        {post("/none", smuggled), "PUT" + post("/changed", smuggled).substr(4), std::string("\x16\x03\x01\x02\r\n\r\n"),
         post("/changed", smuggled, "Host: localhost\r\nContent-Type: text/plain\r\n"),
@@ -163,7 +163,7 @@ TEST_F(ServerTest, WhatFollowsARefusedRequestIsNotARequest) {
     EXPECT_TRUE(wire.ended());
   }
   EXPECT_EQ(changed, 0);
-  // Nor is what follows one that was taken: it is answered, and the connection ends.
+  // The same after an accepted request: it is answered, and the connection ends.
   Wire wire(port);
   wire.send(post("/changed", "{}") + smuggled);
   EXPECT_EQ(status_of(wire.receive(3s)), 200);
@@ -306,7 +306,7 @@ TEST_F(ServerTest, SlowRequestsEnd) {
   std::string got;
   for (int i = 0; i < 80 && !wire.ended(); ++i) {
     got += wire.receive(100ms);
-    wire.send("k");  // a byte now and then does not help
+    wire.send("k");  // an occasional byte does not keep it open
   }
   EXPECT_TRUE(wire.ended());
   EXPECT_LT(SteadyClock::now() - start, 5s + 10 * kAtOnce);

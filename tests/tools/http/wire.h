@@ -1,5 +1,5 @@
 #pragma once
-/// Plain sockets to a server on loopback, for requests that no honest client sends.
+/// Plain sockets to a loopback server, for requests that no honest client sends.
 
 #include <arpa/inet.h>
 #include <poll.h>
@@ -43,7 +43,7 @@ class Wire {
     }
     return true;
   }
-  /// Until it ends, `part` has come, or the time is over.
+  /// Receives until the connection ends, `part` has come, or `bound` has passed.
   [[nodiscard]] std::string receive(std::chrono::milliseconds bound, const std::string& part = "\n\n\n") {
     std::string got;
     const auto end = std::chrono::steady_clock::now() + bound;
@@ -61,7 +61,7 @@ class Wire {
     }
     return got;
   }
-  /// The other end has closed it.
+  /// Whether the peer has closed the connection.
   [[nodiscard]] bool ended() const { return ended_; }
 
  private:

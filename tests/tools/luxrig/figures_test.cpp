@@ -1,4 +1,4 @@
-// What the pictures of `luxrig render --show` have in them, on shapes whose answer is known.
+// Contents of the pictures of `luxrig render --show`, on shapes with known answers.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ RenderOptions small_picture() {
   return options;
 }
 
-/// A hill on a plane: z = height · exp(-r² / 2 width²). Curvature is below 0 from r = √2 · width on.
+/// A hill on a plane: z = height · exp(-r² / 2 width²). Curvature is negative from r = √2 · width on.
 constexpr double kHillWidth_m = 0.1, kHillHeight_m = 0.08;
 Scene hill() {
   return parametric(120, 120, [](double u, double v) {
@@ -52,7 +52,7 @@ TEST(Figures, ABallsCurvatureHasOneColour) {
   const auto figure = curvature_figure(object, options);
   ASSERT_TRUE(figure.has_value());
   ASSERT_TRUE(figure->scale.has_value());
-  // 1/R = 10 1/m, a little more by the fit: the scale's next step is 20.
+  // 1/R = 10 1/m, slightly more by the fit: the scale's next step is 20.
   EXPECT_DOUBLE_EQ(figure->scale->top, 20);
   const Vec3 expected = blue_white_red(0.5 + 10 / 40.0);
   int inside = 0;
@@ -144,7 +144,7 @@ TEST(Figures, TheHeaviestPlaceOfTheDomainIsMarkedWhereItsSpotIs) {
   const auto figure = domain_figure(rig, object, small_picture());
   ASSERT_TRUE(figure.has_value());
   ASSERT_EQ(figure->labels.size(), 1u);
-  // Its spot, in the top colour of the scale, is there; others may cover a part of it.
+  // Its spot, in the scale's top colour, is there; other spots may cover part of it.
   double nearest = 1;
   for (int dy = -2; dy <= 2; ++dy)
     for (int dx = -2; dx <= 2; ++dx) {

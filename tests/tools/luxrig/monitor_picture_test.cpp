@@ -20,7 +20,7 @@ TEST(MonitorPicture, ShowsSlotsByAddressAndLeavesOutDarkRows) {
   const std::string text = monitor_picture(status, universes, 80);
   EXPECT_NE(text.find("hall: holding: all well\nALARM    the cable is out\n"), std::string::npos) << text;
   EXPECT_NE(text.find("dmx, universe 3\n   1 255   ·"), std::string::npos) << text;
-  // 80 columns hold 16 slots a row: address 41 stands ninth in the row of 33.
+  // 80 columns hold 16 slots per row: address 41 is the ninth in the row of 33.
   EXPECT_NE(text.find("\n  33   ·   ·   ·   ·   ·   ·   ·   ·   7   ·"), std::string::npos) << text;
   EXPECT_EQ(text.find("\n  17 "), std::string::npos);
   EXPECT_NE(text.find("████    "), std::string::npos) << text;

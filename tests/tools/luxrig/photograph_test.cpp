@@ -1,4 +1,4 @@
-// Photographs of light: how they are exposed and balanced, what camera they are taken with, and why they are dark.
+// Photographs of light: exposure, white balance, the camera that takes them, and why they are dark.
 #include <gtest/gtest.h>
 #include <jpeglib.h>
 
@@ -21,7 +21,7 @@
 namespace luxrig {
 namespace {
 
-/// A square of `share` of the picture with these luminances (alternating, a texture), the rest at another.
+/// A textured square that fills `share` of the picture, alternating between two luminances, before a backdrop.
 Picture square_before(double backdrop_cd_m2, double share, double dim_cd_m2, double bright_cd_m2,
                       const Vec3& colour_rgb = Vec3::Ones()) {
   Picture picture;
@@ -86,7 +86,7 @@ TEST(WhiteOfLamps, IsTheBlackBodyNearestToTheLightOfThoseThatAreOn) {
   EXPECT_EQ(white_of_lamps(red, std::vector{1.0}).rgb, Vec3::Ones()) << "a red stage stays red";
 }
 
-/// Colour of the middle of a JPEG, 0…255.
+/// Colour in the middle of a JPEG, 0…255.
 Vec3 middle_of_jpeg(const std::filesystem::path& file) {
   std::FILE* in = std::fopen(file.c_str(), "rb");
   EXPECT_NE(in, nullptr);
@@ -141,7 +141,7 @@ struct LitRoom {
   Scene scene;
 };
 
-/// 6 × 4 × 3 m of walls around, with what is given in it.
+/// Walls of 6 × 4 × 3 m, with the given contents.
 LitRoom room_with(const std::string& further) {
   std::string text = "[rig]\nname = \"r\"\n[scene]\n";
   const auto slab = [&](const char* name, const char* at, const char* size) {
@@ -208,7 +208,7 @@ TEST(AutomaticCamera, OfARoomWithoutLampsStandsInIt) {
       << camera.eye_world_m.transpose();
 }
 
-/// As seen by the automatic camera of `seen`, or of the room itself.
+/// Why it is dark, as seen by the automatic camera of `seen`, or of the room itself.
 std::string dark_words(const LitRoom& room, double level, const LitRoom* seen = nullptr) {
   const RayScene rays(room.scene);
   const auto emitters = emitters_of(room.rig);

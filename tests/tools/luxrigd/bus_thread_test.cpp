@@ -13,7 +13,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Counts what reaches a device; as slow as told.
+/// Counts the writes that reach a device; each write lasts `takes`.
 class RecordingDriver final : public Driver, public LevelOutput {
  public:
   struct Record {
@@ -129,7 +129,7 @@ TEST(CycleStatistics, QuantilesCountDeviationsInBothDirections) {
   EXPECT_EQ(statistics.max_us(), 2000);
 }
 
-// It ended at 20 ms, whatever was worse.
+// The figures used to end at 20 ms, however bad the worst was.
 TEST(CycleStatistics, TellsToOnePercentHowBadTheWorstAre) {
   for (const std::int64_t late_us : std::initializer_list<std::int64_t>{15, 400, 2559, 2560, 2570, 19'990, 20'010, 130'000, 5'000'000, 3'600'000'000}) {
     CycleStatistics statistics(10ms);
@@ -147,7 +147,7 @@ TEST(BusThread, ABlackoutIsOutAtOnceAndToldOnlyWhenItIs) {
   programs.put(steady(rig, 0.5, 1));
   RecordingDriver::Record record;
   BlackoutSwitch blackout;
-  // Its turn comes every 2 s.
+  // Its cycle is 2 s.
   BusThread bus(rig, 0, std::make_unique<RecordingDriver>(record, 2s, 0ms), programs, 0, {&blackout, nullptr, {}});
   bus.start();
   ASSERT_TRUE(eventually([&] { return record.drive == 0.5; }));

@@ -1,4 +1,4 @@
-// A rig file that changes under a running daemon: what of it is noticed, what differs, and what needs a restart.
+// A rig file that changes under a running daemon: noticing it, naming the differences, and changes that need a restart.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -41,14 +41,14 @@ class RoomThatChanges : public ::testing::Test {
     std::filesystem::copy_file(source("tests/rigs/room/rig.toml"), file(),
                                std::filesystem::copy_options::overwrite_existing);
   }
-  /// What differs after the change, by name.
+  /// Names of the parts that differ after the change.
   std::string differs(const std::string& from, const std::string& to) {
     replace(from, to);
     const auto after = open();
     put_back();
     return what_differs(version_of(before_->rig, before_->scene), version_of(after->rig, after->scene));
   }
-  /// The first problem, empty when it can be taken.
+  /// The first problem; empty if the change can be taken.
   std::string refused(const std::string& from, const std::string& to) {
     replace(from, to);
     const auto after = open();

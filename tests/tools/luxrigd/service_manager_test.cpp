@@ -13,7 +13,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// What systemd would have at its end.
+/// systemd's end of the socket.
 class NotifySocket {
  public:
   NotifySocket() {
@@ -39,7 +39,7 @@ class NotifySocket {
   int fd_ = -1;
 };
 
-/// What a service manager says to those whom it starts; the tests that follow are not started by one.
+/// Clears a service manager's variables at the end, as later tests are not started by one.
 struct Said {
   ~Said() {
     for (const char* name : {"NOTIFY_SOCKET", "WATCHDOG_USEC", "WATCHDOG_PID"}) ::unsetenv(name);

@@ -59,7 +59,7 @@ TEST(Teller, NobodyWhoReadsIsNobodyWhoIsWaitedFor) {
     EXPECT_LT(now() - begun, 5s);
   }
   EXPECT_LT(now() - begun, 10s) << "nor at its end";
-  pipe.write = -1;  // its thread may still be in there, as it would be with a terminal
+  pipe.write = -1;  // not closed: the teller's thread may still be writing to it
 }
 
 TEST(Teller, AClosedPipeAndAFullDiskAreNoHarm) {

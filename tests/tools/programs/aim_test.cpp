@@ -1,4 +1,4 @@
-// Heads aimed at an object's relief: solved, shown, run; and plans that turn heads while the rig runs.
+// Heads aimed at an object's relief: solving, showing and running it; and plans that turn heads while the rig runs.
 #include <cmath>
 #include <fstream>
 
@@ -36,7 +36,7 @@ TEST(Aim, BringsOutTheFriezeWithinItsLimitsAndEvaluateAgrees) {
     turned = turned || light["pan_deg"] != plan["tasks"][0]["lights"][0]["pan_deg"];
   EXPECT_TRUE(turned);
   for (const json& limit : plan["limits"]) EXPECT_TRUE(limit["met"].get<bool>()) << limit;
-  // The heads of the plan, not of the rig file, light what evaluate sees.
+  // evaluate uses the heads' aims in the plan, not those in the rig file.
   const Ran lit = luxrig::testing::run({program("luxrig"), "evaluate", source("rigs/frieze"), "--levels",
                                         (folder / "plan.json").string(), "--max-error", "0.03", "--json"});
   ASSERT_EQ(lit.code, 0) << lit.output;
@@ -55,7 +55,7 @@ TEST(Aim, DoesNotDependOnTheThreads) {
   EXPECT_EQ(one["points"], two["points"]);
 }
 
-/// A small square well in a slab: relief that needs no scan.
+/// A slab with a small square well: relief that needs no scan.
 std::string rig_with_a_well(const Folder& folder, const std::string& task) {
   std::ofstream obj(folder / "well.obj");
   constexpr int kSide = 40;
@@ -147,7 +147,7 @@ max_object_lx = 5000
     const auto at = light["position"].get<std::vector<double>>(), aim = light["aim"].get<std::vector<double>>();
     EXPECT_GT(at[2], 2.7) << "off the ceiling, below it";
     EXPECT_LT(at[2], 3);
-    // On the well, give or take a beam.
+    // On the well, within a beam.
     EXPECT_LT(std::hypot(aim[0], aim[1]), 0.6) << light;
     EXPECT_GT(light["level"].get<double>(), 0);
   }
@@ -237,7 +237,7 @@ contrast = "lux"
     narrowed = narrowed || (warm["level"].get<double>() > 0 && beam_deg < 20);
     EXPECT_NEAR(warm["lumens"].get<double>(), 2 * cold["lumens"].get<double>(), 1e-6);
   }
-  // Contrast in lux over a well of 0.3 m: the flux of a narrow beam counts.
+  // Contrast in lux over a well of 0.3 m favours the flux of a narrow beam.
   EXPECT_TRUE(narrowed) << task["lights"];
   const Ran lit = luxrig::testing::run(
       {program("luxrig"), "evaluate", rig, "--levels", (folder / "plan.json").string(), "--model", "direct", "--json"});
@@ -272,7 +272,7 @@ TEST(Aim, AnAppliedPlanTurnsAHeadInTheDarkAndTheRigHoldsIt) {
   }
   EXPECT_TRUE(truth["violations"].empty()) << truth["violations"];
 
-  // Past the end of its travel: refused, and nothing moves.
+  // Beyond the end of its travel: refused, and nothing moves.
   for (json& light : plan["tasks"][0]["lights"])
     if (light["name"] == "head-1") light["tilt_deg"] = 170;
   std::ofstream(file) << plan;

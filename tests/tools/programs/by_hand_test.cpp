@@ -1,5 +1,4 @@
-// A rig that is changed while it runs, over the wire: levels and goals by hand, plans that carry goals, a rig file that
-// is read again.
+// Changes to a running rig, over the wire: levels and goals by hand, plans with goals, a reloaded rig file.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -56,7 +55,7 @@ TEST(ByHandOverTheWire, ALevelAndAGoalStayThroughCorrectionsAndARestartUntilThey
   EXPECT_NE(held.output.find("spot-1: level 0.05 by hand, until it is released"), std::string::npos) << held.output;
   ASSERT_EQ(client(rig, {"goal", "plinth-*", "30", "--for", "10min"}).code, 0);
   ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.last();
-  std::this_thread::sleep_for(11s);  // longer than the loop waits between two corrections of a drift
+  std::this_thread::sleep_for(11s);  // longer than the wait between two drift corrections
   json status = rig.status();
   EXPECT_NEAR(level_of(rig, "spot-1"), 0.05, 1e-6);
   EXPECT_NEAR(lux_of(status, "plinth-top"), 30, 1.5) << status;
@@ -115,7 +114,7 @@ TEST(ByHandOverTheWire, APlanWithLevelsByHandOrOtherGoalsIsNotUndoneByTheCorrect
   std::this_thread::sleep_for(11s);
   for (const char* fixture : {"spot-1", "bulb-1"}) EXPECT_NEAR(level_of(rig, fixture), 0.05, 1e-6) << fixture;
 
-  // The rig file gets another goal; solved and applied it holds, although the daemon has read the old one.
+  // The rig file gets another goal. Solved and applied, it holds, although the daemon has read the old file.
   edited.replace("goal_lx = 150", "goal_lx = 90");
   ASSERT_EQ(solve(), 0);
   ASSERT_EQ(client(rig, {"apply", plan_file}).code, 0);
@@ -169,7 +168,7 @@ TEST(ByHandOverTheWire, ARigFileThatChangedWhileNobodyRanIsNoticedAtTheStart) {
   EditedRig edited;
   LiveRig rig(edited.path());
   ASSERT_TRUE(rig.wait_phase("holding", 90s)) << rig.daemon().output();
-  // Nobody has chosen the plan in force: the new goals are solved.
+  // No person chose the plan in force: the new goals are solved.
   rig.daemon().signal(SIGKILL);
   edited.replace("goal_lx = 150", "goal_lx = 100");
   rig.start_daemon();
@@ -177,7 +176,7 @@ TEST(ByHandOverTheWire, ARigFileThatChangedWhileNobodyRanIsNoticedAtTheStart) {
   EXPECT_NE(rig.daemon().output().find("the rig file has changed since (goals differ)"), std::string::npos)
       << rig.daemon().output();
   EXPECT_NEAR(lux_of(rig.last(), "plinth-top"), 100, 4) << rig.last();
-  // A person has: it stays, and an alarm says so until another is applied.
+  // A person chose this one: it stays, with an alarm until another is applied.
   const auto plan_file = rig.file("plan.json").string();
   const auto solve = [&] {
     return luxrig::testing::run({program("luxrig"), "solve", edited.path(), "-o", plan_file, "--max-error", "0.05"})

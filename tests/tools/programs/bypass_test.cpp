@@ -1,4 +1,4 @@
-// A luxmeter that has failed is taken out of the show by a person, over the wire.
+// A person bypasses a failed luxmeter, over the wire.
 #include <gtest/gtest.h>
 
 #include "tests/tools/programs/live_rig.h"
@@ -18,7 +18,7 @@ bool is_bypassed(const json& status, const std::string& name) {
   return false;
 }
 
-// In this rig a lost luxmeter sends all light to the safe look.
+// In this rig a lost luxmeter sends all lamps to the safe look.
 TEST(Bypass, OfADeadMeterBringsTheLightBackSaysTheRiskAndOutlivesAKill) {
   LiveRig rig(source("tests/rigs/room"));
   ASSERT_TRUE(rig.wait_phase("holding", 90s)) << rig.daemon().output();

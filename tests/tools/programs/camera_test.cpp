@@ -1,4 +1,4 @@
-// luxrig camera: a picture, and the check of a camera, by files of a camera that encodes with a gamma of 2.2.
+// luxrig camera: taking a picture, and checking a camera from the files of one that encodes with a gamma of 2.2.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kWidth_px = 96, kHeight_px = 64;
 
-/// A bracket of exposures as a camera would save it: light over two decades, noise of half a count.
+/// An exposure bracket as a camera would save it: light over two decades, noise of half a count.
 void write_bracket(const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
   std::mt19937 random(1);
@@ -30,7 +30,8 @@ void write_bracket(const std::filesystem::path& folder) {
     }
 }
 
-/// Pictures at known levels of a light whose dimmer has that curve, seen by a linear camera beside other light.
+/// Pictures of a light at known levels, with this exponent as its dimmer curve, seen by a linear camera beside other
+/// light.
 void write_levels(const std::filesystem::path& folder, double exponent) {
   std::filesystem::create_directories(folder);
   std::mt19937 random(2);
@@ -153,7 +154,7 @@ TEST(CameraCommands, CheckTellsTheGammaAndItsCurveMakesPicturesLinear) {
   ASSERT_TRUE(out.is_object()) << as_json.output;
   EXPECT_NEAR(out["response"]["exponent"].get<double>(), 2.2, 0.03);
   EXPECT_FALSE(out["good"].get<bool>());
-  // With the curve, twice the exposure is twice the light.
+  // With the curve, twice the exposure gives twice the light.
   write_rig(folder / "rig.toml", "response_file = \"curve.csv\"\nfull_scale_cd_m2 = 400\n");
   const Ran second = camera({"check", rig});
   EXPECT_EQ(second.code, 0) << second.output;
@@ -164,7 +165,7 @@ TEST(CameraCommands, CheckTellsTheGammaAndItsCurveMakesPicturesLinear) {
   EXPECT_NE(shot.output.find("cd/m²"), std::string::npos) << shot.output;
   const std::string bytes = text_of(picture);
   ASSERT_EQ(bytes.size(), fmt::format("PF\n{} {}\n-1.0\n", kWidth_px, kHeight_px).size() + 12 * kWidth_px * kHeight_px);
-  // At 3/4 of the width light is 60 / 15 * 10^-1.5 of full, in all rows.
+  // At 3/4 of the width the light is 60 / 15 * 10^-1.5 of full scale, in all rows.
   double sum = 0;
   for (int y = 0; y < kHeight_px; ++y) {
     float light = 0;

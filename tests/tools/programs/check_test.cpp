@@ -1,4 +1,4 @@
-// What `check` notes, and that `evaluate` and `solve` come to an end with a rig that deserves such notes.
+// Notes of `check`, and that `evaluate` and `solve` end with a rig that deserves such notes.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -8,7 +8,7 @@
 namespace luxrig::testing {
 namespace {
 
-/// The reading room, to be spoilt.
+/// A reading room that tests can spoil.
 class SpoiltRoom {
  public:
   SpoiltRoom() {
@@ -26,7 +26,7 @@ class SpoiltRoom {
     write();
   }
   [[nodiscard]] std::string path() const { return (folder_ / "room").string(); }
-  /// The line that a text stands in, from 1.
+  /// Number of the line that contains a text, from 1.
   [[nodiscard]] int line_of(const std::string& text) const {
     const auto end = text_.begin() + static_cast<std::ptrdiff_t>(text_.find(text));
     return 1 + static_cast<int>(std::count(text_.begin(), end, '\n'));
@@ -169,7 +169,7 @@ normal = [0, 0, 1]
   }
 }
 
-/// Light comes in over its door, by chance: to know that to 0.3 % took minutes.
+/// Light enters rarely, over its door: an error of 0.3 % used to take minutes.
 constexpr const char* kCupboard = R"([[scene.object]]
 name = "left"
 box_m = [0.02, 0.5, 1.0]
@@ -218,7 +218,7 @@ TEST(Enough, WhenTheTimeIsUpWhatIsReachedIsSaidAndProgressBeforeThat) {
   EXPECT_LT(ran.output.find("evaluating: "), ran.output.find("{\n"));
   EXPECT_NE(ran.output.find("warning: not as exact as wanted"), std::string::npos) << ran.output;
   EXPECT_NE(ran.output.find("when 3 s were over: give it more time (--max-seconds)"), std::string::npos) << ran.output;
-  // The warning may come before or after what is printed: read up to where the JSON ends.
+  // The warning may come before or after the JSON: skip to where the JSON begins and read to its end.
   const std::string text = ran.output.substr(ran.output.find("{\n"));
   const json out = json::parse(text.substr(0, text.rfind('}') + 1), nullptr, false);
   ASSERT_TRUE(out.is_object()) << ran.output;

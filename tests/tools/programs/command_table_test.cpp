@@ -1,4 +1,4 @@
-// The table of subcommands, and what comes from it: help, man pages, completion.
+// The table of subcommands, and its products: help, man pages, completion.
 #include "tools/luxrig/command_table.h"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-/// In characters, of UTF-8.
+/// Width in UTF-8 characters.
 std::size_t width_of(const std::string& line) {
   return static_cast<std::size_t>(
       std::count_if(line.begin(), line.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
@@ -33,7 +33,7 @@ std::string help_of(std::vector<std::string> words) {
   return ran.output;
 }
 
-/// What the program offers a shell for the last word, without what it says of it.
+/// Completions that the program offers for the last word, without their descriptions.
 std::vector<std::string> offered(std::vector<std::string> words) {
   words.insert(words.begin(), {program("luxrig"), "--complete"});
   std::vector<std::string> lines = lines_of(luxrig::testing::run(words).output);
@@ -105,7 +105,7 @@ TEST(CommandTable, TheShellIsOfferedEveryCommandAndItsOptions) {
   std::vector<std::string> names;
   for (const Command& command : command_table()) names.emplace_back(command.name);
   EXPECT_EQ(offered({""}), names);
-  // What help tells of is what is offered.
+  // Help and completion list the same.
   for (const Command& command : command_table()) {
     const std::string help = help_of({command.name});
     const std::vector<std::string> options = offered({command.name, "--"});
@@ -114,7 +114,7 @@ TEST(CommandTable, TheShellIsOfferedEveryCommandAndItsOptions) {
   }
 }
 
-/// What bash, with the program's script, completes the last word to; with blanks between.
+/// Completions of the last word by bash with the program's script, separated by blanks.
 std::string completed(const std::vector<std::string>& words, const std::string& folder = "/") {
   const std::string luxrig = "'" + program("luxrig") + "'";
   std::string line = "cd '" + folder + "'; source <(" + luxrig + " completion bash)\nCOMP_WORDS=(" + luxrig;

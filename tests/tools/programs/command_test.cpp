@@ -10,7 +10,7 @@
 namespace luxrig::testing {
 namespace {
 
-/// What it printed as JSON, after the progress that a slow machine gets to see.
+/// The printed JSON, after the progress lines of a slow machine.
 json json_of(const Ran& ran) {
   const auto begin = ran.output.find("{\n");
   return begin == std::string::npos ? json() : json::parse(ran.output.substr(begin), nullptr, false);
@@ -158,7 +158,7 @@ TEST(Commands, SolveMixesColoursWithinALimitOfPowerAndThePlanRenders) {
   EXPECT_EQ(picture.code, 0) << picture.output;
 }
 
-/// Solves tests/rigs/hang to a plan; its JSON.
+/// Solves tests/rigs/hang; returns the plan's JSON.
 json places_found(const std::filesystem::path& plan, const std::vector<std::string>& further = {}) {
   std::vector<std::string> words = {program("luxrig"), "solve", source("tests/rigs/hang"), "-o", plan.string()};
   words.insert(words.end(), further.begin(), further.end());
@@ -178,7 +178,7 @@ TEST(Commands, SolvePlacesLightsAndEvaluateAndRenderShowThem) {
     EXPECT_TRUE(task.contains(key)) << key;
   EXPECT_LE(task["normalised_error"].get<double>(), 0.002);
   ASSERT_EQ(task["lights"].size(), 3u);
-  // The lights that the goals were made with: tests/rigs/hang.
+  // The lights from which the goals were made: tests/rigs/hang.
   const struct {
     Vec3 at;
     double level;
@@ -226,7 +226,7 @@ TEST(Commands, AnInterruptEndsASearchForPlacesWithTheBestSoFar) {
   const Folder folder;
   std::filesystem::copy(source("tests/rigs/hang"), folder / "hang");
   std::string text = text_of(folder / "hang/rig.toml");
-  // Goals that nothing can meet, and many of them: a search of a minute and more on the fastest machine.
+  // Many goals that cannot be met: the search takes over a minute on the fastest machine.
   text.replace(text.find("lights = 3"), 10, "lights = 30");
   text.replace(text.find("error_wanted = 0.0005"), 21, "error_wanted = 0");
   text.replace(text.find("spacing_m = 0.25"), 16, "spacing_m = 0.1");
@@ -240,7 +240,7 @@ TEST(Commands, AnInterruptEndsASearchForPlacesWithTheBestSoFar) {
   goals.close();
   const auto plan = folder / "plan.json";
   Process solve({program("luxrig"), "solve", (folder / "hang").string(), "-o", plan.string()}, folder / "log");
-  // The first line of progress that knows an error comes from a search that has something to keep.
+  // The first progress line with an error comes from a search that has a result to keep.
   ASSERT_TRUE(wait_for([&] { return solve.output().find(" lights, error ") != std::string::npos; }, 60s))
       << solve.output();
   solve.signal(SIGINT);
@@ -284,7 +284,7 @@ TEST(Commands, BadRigsAreRefusedWithTheirPlaceBeforeAnythingMoves) {
     const Ran ran =
         luxrig::testing::run({program("luxrig"), "run", entry.path().string(), "--sim", "--once", "--port", "0"});
     EXPECT_EQ(ran.code, 2) << entry.path() << ran.output;
-    // Its own place, or that of a file it names (a points file).
+    // A place in the rig file, or in a file it names (a points file).
     EXPECT_TRUE(std::regex_search(ran.output, std::regex("/tests/rigs/bad/[^:]+:[0-9]+:[0-9]+: ")))
         << entry.path() << ran.output;
     EXPECT_EQ(ran.output.find("simulated rig started"), std::string::npos) << entry.path();

@@ -1,4 +1,4 @@
-// What goes with real devices, over the wire: parking, keep-out zones, and what outputs do without data.
+// Features for real devices, over the wire: parking, keep-out zones, and outputs without data.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -38,14 +38,14 @@ TEST(Control, OutputsDoWithoutDataWhatCheckSays) {
   const auto passed_s = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - killed).count();
   };
-  // The last data came within refresh_ms = 400 before the end; a lamp then dims as lamps do.
+  // The last data came within refresh_ms = 400 before the end; then a lamp dims with its own decay.
   const auto may_dim_after_s = [&](const std::string& name) {
     for (const json& output : outputs)
       if (output["fixture"] == name && output["without_data"] == "goes_dark")
         return output["after_s"].get<double>() - 0.6;
     return 1e9;
   };
-  // Art-Net forgets a source after 10 s; whatever were to happen by then would show.
+  // Art-Net drops a source after 10 s; watch longer than that.
   std::map<std::string, double> dark_after_s;
   while (passed_s() < 13) {
     const double at_s = passed_s();
@@ -67,7 +67,7 @@ TEST(Control, OutputsDoWithoutDataWhatCheckSays) {
       EXPECT_GT(dark_after_s[name], may_dim_after_s(name));
       EXPECT_LT(dark_after_s[name], output["after_s"].get<double>() + 1);
     } else {
-      // Where it is the maker's choice: simulated fixtures and registers hold.
+      // If the behaviour is the maker's choice, simulated fixtures and registers hold.
       EXPECT_FALSE(dark_after_s.contains(name)) << name << " after " << dark_after_s[name] << " s";
     }
   }
@@ -98,7 +98,7 @@ TEST(Control, AParkedHeadRestsUntilTheNextPlanAlsoAfterARestart) {
   EXPECT_TRUE(wait_for(rests, 10s)) << rig.truth();
   EXPECT_GT(levels_of(rig.truth())["bulb"], 0.01);
   ASSERT_TRUE(rig.wait_status([](const json& s) { return s["fixtures"][0].value("parked", false); }, 2s)) << rig.last();
-  // Acknowledged is remembered.
+  // An acknowledged park is remembered.
   rig.daemon().signal(SIGKILL);
   rig.start_daemon();
   ASSERT_TRUE(rig.wait_status([](const json& s) { return s["fixtures"][0].value("parked", false); }, 60s))
@@ -107,7 +107,7 @@ TEST(Control, AParkedHeadRestsUntilTheNextPlanAlsoAfterARestart) {
     EXPECT_EQ(levels_of(rig.truth())["head"], 0);
     std::this_thread::sleep_for(100ms);
   }
-  // It parks at its end, too, and the rest goes to the safe look.
+  // It also parks at its end, and the other lamps go to the safe look.
   rig.daemon().signal(SIGTERM);
   EXPECT_TRUE(wait_for([&] { return rig.daemon().output().find("ended in the safe look") != std::string::npos; }, 20s))
       << rig.daemon().output();

@@ -1,5 +1,5 @@
-// A daemon that starts beside a lighting desk which has the light already, with the real programs: the lamps, in the
-// simulator's truth, never leave the desk's values. And one that starts where no desk is.
+// A daemon that starts beside a lighting desk which already drives the lamps, with the real programs. In the
+// simulator's truth the lamps never leave the desk's values. And a daemon that starts without a desk.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace luxrig::testing {
 namespace {
 
-/// tests/rigs/parking with a desk in standby, or one that takes over, and nothing to keep out of.
+/// tests/rigs/parking with a desk in standby, or one that takes over, and without keep-out zones.
 std::string room_with_desk(const Folder& folder, const std::string& protocol, const std::string& input, int port) {
   const std::string text =
       with_line(text_of(source("tests/rigs/parking/rig.toml")), "driver = \"sacn\"",
@@ -30,7 +30,7 @@ struct DeskFirst {
       if (f["name"] == "bulb") return f["level"];
     return -1;
   }
-  /// Of samples until the status says so, and for a second after.
+  /// Extremes of the lamp until the status condition holds, and for one second more.
   struct Extremes {
     double least = 1, most = 0, largest_step = 0, first_lit_s = -1;
     bool reached = false;
@@ -46,7 +46,7 @@ struct DeskFirst {
       const auto at = clock::now();
       seen.least = std::min(seen.least, level);
       seen.most = std::max(seen.most, level);
-      // A machine that stands still for a while sees much of a fade at once.
+      // A machine that stalls for a while sees much of a fade at once.
       if (at - looked < 50ms) seen.largest_step = std::max(seen.largest_step, std::abs(level - last));
       if (seen.first_lit_s < 0 && level > 0.004) seen.first_lit_s = std::chrono::duration<double>(at - begun).count();
       last = level;
@@ -73,7 +73,7 @@ bool follows(const json& status) {
 
 class DeskThere : public ::testing::TestWithParam<const char*> {};
 
-/// The desk sends to the lamps, and to Luxrig, as a multicast would.
+/// The desk sends to the lamps and to Luxrig, as a multicast would.
 TEST_P(DeskThere, BesideADeskInStandbyNoFrameOfANewDaemonReachesTheLamps) {
   for (const bool guarded : {false, true}) {
     DeskFirst bench(GetParam(), "standby",
@@ -85,7 +85,7 @@ TEST_P(DeskThere, BesideADeskInStandbyNoFrameOfANewDaemonReachesTheLamps) {
     slots[19] = 51;
     bench.desk.set(slots);
     bench.desk.also_send_to(bench.rig.bus_port("dmx"));
-    // Twice as often as a change would be, then as seldom as a desk repeats what does not change.
+    // At full frame rate, then at the slow rate at which a desk repeats an unchanged frame.
     for (const auto period : {25ms, 900ms}) {
       bench.desk.appear(period);
       ASSERT_TRUE(
@@ -110,7 +110,7 @@ TEST_P(DeskThere, BesideADeskInStandbyNoFrameOfANewDaemonReachesTheLamps) {
   }
 }
 
-/// The desk sends to Luxrig alone: what a new daemon does not know yet it does not send.
+/// The desk sends only to Luxrig: a new daemon sends nothing until it knows the desk's values.
 TEST_P(DeskThere, ADeskThatTakesOverKeepsTheLightWhenTheDaemonIsStartedAnew) {
   DeskFirst bench(GetParam(), "takeover", {});
   ASSERT_TRUE(bench.rig.wait_phase("holding", 60s)) << bench.rig.daemon().output();
@@ -137,7 +137,7 @@ TEST_P(DeskThere, WithNoDeskHeardTheLightFadesInAfterListening) {
   ASSERT_TRUE(seen.reached) << bench.rig.daemon().output();
   EXPECT_GT(seen.most, 0.3);
   EXPECT_LT(seen.largest_step, 0.2) << "a fade of half a second, seen every 50 ms";
-  // Listening: 2.5 s of sACN, 4 s of Art-Net, from the first cycle on.
+  // It listens for 2.5 s (sACN) or 4 s (Art-Net) from the first cycle on.
   EXPECT_GT(seen.first_lit_s, std::string(GetParam()) == "sacn" ? 2.4 : 3.9);
 }
 

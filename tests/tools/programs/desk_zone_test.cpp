@@ -1,4 +1,4 @@
-// A lighting desk that turns a head through a keep-out zone, with the real programs: what the lamp does, from the
+// A lighting desk that turns a head through a keep-out zone, with the real programs. The lamp is judged by the
 // simulator's truth.
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace {
 constexpr double kPan_deg = -90;  ///< towards the audience of tests/rigs/parking
 constexpr double kTilt_deg = 60;
 
-/// The head of tests/rigs/parking: slots 1 to 5, and its ranges of 540 and 270 degrees. The lamp is dark.
+/// The head of tests/rigs/parking: slots 1 to 5, ranges 540 and 270 degrees. The lamp stays dark.
 test::DeskSlots aims(double pan_deg, double tilt_deg, int dimmer_dmx) {
   const auto coarse_and_fine = [](double share) { return static_cast<int>(std::lround(share * 65535)); };
   const int pan = coarse_and_fine((pan_deg + 270) / 540), tilt = coarse_and_fine((tilt_deg + 135) / 270);
@@ -27,7 +27,7 @@ test::DeskSlots aims(double pan_deg, double tilt_deg, int dimmer_dmx) {
   return slots;
 }
 
-/// tests/rigs/parking with a desk that takes over, and seats in the audience whose light the simulator knows.
+/// tests/rigs/parking with a desk that takes over, and seats in the audience whose light the simulator reports.
 std::string rig_with_desk(const Folder& folder, const std::string& protocol, int port, bool guarded) {
   std::string text = text_of(source("tests/rigs/parking/rig.toml"));
   text = with_line(text, "driver = \"sacn\"",
@@ -83,10 +83,10 @@ struct ZoneBench {
   LiveRig rig;
 };
 
-/// Whether the axis is within the field's half angle (10 degrees) of a place in the audience, by a grid of places.
+/// Whether the beam's axis is within the field's half angle (10 degrees) of the audience, on a grid of places.
 bool lights_the_audience(const HeadSample& head) {
   const auto rad = [](double deg) { return deg * std::numbers::pi / 180; };
-  // Pan 0 and tilt 0: down; a tilt turns it towards +y, a pan then about the vertical.
+  // Pan 0 and tilt 0 point down. Tilt turns towards +y, then pan about the vertical.
   const double out = std::sin(rad(head.tilt_deg));
   const double axis[] = {-out * std::sin(rad(head.pan_deg)), out * std::cos(rad(head.pan_deg)),
                          -std::cos(rad(head.tilt_deg))};
@@ -100,13 +100,13 @@ bool lights_the_audience(const HeadSample& head) {
   return false;
 }
 
-/// 8-bit steps, and what is left of a lamp's afterglow.
+/// 8-bit steps, and the rest of a lamp's afterglow.
 constexpr double kDark = 0.03;
 
 class DeskAndZone : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(DeskAndZone, AHeadThatIsTurnedThroughAZoneIsDarkWhileItCrosses) {
-  // What the seats get when nobody keeps the head out: the rest of this test can fail.
+  // Light on the seats with an unguarded head: shows that this test can fail.
   double unguarded_lx = 0;
   {
     ZoneBench open(GetParam(), false);
@@ -155,11 +155,11 @@ TEST_P(DeskAndZone, AHeadThatIsTurnedThroughAZoneIsDarkWhileItCrosses) {
 TEST_P(DeskAndZone, ADeskThatAimsIntoAZoneAndStaysHasADarkHeadThere) {
   ZoneBench bench(GetParam());
   ASSERT_TRUE(bench.rig.wait_phase("holding", 60s)) << bench.rig.daemon().output();
-  // With a zone near it, it is lit once nothing else can be where it looks.
+  // Near a zone, the head lights up only once it can be nowhere but at its aim.
   ASSERT_TRUE(wait_for([&] { return bench.look().level > 0.01; }, 10s)) << bench.rig.truth();
   std::this_thread::sleep_for(1s);
   const HeadSample planned = bench.look();
-  // It comes with the head on its way there.
+  // The desk appears already aiming into the zone.
   bench.rig.reset_peaks();
   bench.desk.set(aims(kPan_deg, kTilt_deg, 255));
   bench.desk.appear();
@@ -174,12 +174,12 @@ TEST_P(DeskAndZone, ADeskThatAimsIntoAZoneAndStaysHasADarkHeadThere) {
            });
   };
   EXPECT_TRUE(bench.rig.wait_status(reported, 3s)) << bench.rig.last();
-  // Another aim, and it is lit.
+  // At another aim it is lit.
   bench.desk.set(aims(kPan_deg + 80, kTilt_deg, 255));
   EXPECT_TRUE(bench.arrives(kPan_deg + 80, kTilt_deg, 0.95)) << bench.rig.truth();
   EXPECT_TRUE(bench.rig.wait_status([&](const json& s) { return !reported(s) && s["alarms"].empty(); }, 3s))
       << bench.rig.last();
-  // Back into the zone, and then the desk is lost: Luxrig turns it to its own aim, and lights it there.
+  // Back into the zone, then the desk is lost: Luxrig turns the head to its own aim and lights it there.
   bench.desk.set(aims(kPan_deg, kTilt_deg, 255));
   ASSERT_TRUE(bench.arrives(kPan_deg, kTilt_deg, 0)) << bench.rig.truth();
   bench.desk.vanish();
@@ -190,7 +190,7 @@ TEST_P(DeskAndZone, ADeskThatAimsIntoAZoneAndStaysHasADarkHeadThere) {
            now.level > 0.8 * planned.level;
   };
   EXPECT_TRUE(wait_for(own, 25s)) << bench.rig.truth();
-  // The daemon dies while a desk aims there: what its guardian holds and fades to lights no zone.
+  // The daemon dies while a desk aims there: the guardian's hold and fade light no zone.
   bench.desk.appear();
   ASSERT_TRUE(bench.arrives(kPan_deg, kTilt_deg, 0)) << bench.rig.truth();
   bench.rig.daemon().signal(SIGKILL);

@@ -1,4 +1,4 @@
-// A dead part as a person meets it, and a limit that nobody measures.
+// A dead part as a person sees it, and a limit at an unmeasured point.
 #include <gtest/gtest.h>
 
 #include <filesystem>

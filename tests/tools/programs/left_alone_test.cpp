@@ -1,4 +1,4 @@
-// A daemon that is stopped, hung up on, cut off and attacked: what it promised holds.
+// A daemon that is stopped, hung up, cut off and attacked keeps its promises.
 #include <algorithm>
 
 #include "tests/tools/programs/live_rig.h"
@@ -12,7 +12,7 @@ double least_level(const json& truth) {
   return least;
 }
 
-// Silent for 5 s: one of these lamps goes dark after 2 s without data.
+// Silent for 5 s; one of these lamps goes dark after 2 s without data.
 TEST(LeftAlone, ADaemonThatStandsStillLeavesTheLightToItsGuardianAndTakesItBack) {
   LiveRig rig(source("tests/rigs/without-data"));
   ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
@@ -42,13 +42,13 @@ TEST(LeftAlone, AGuardianThatStandsStillIsReplaced) {
   ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
   ASSERT_TRUE(wait_for([&] { return rig.guardian_pid() > 1; }, 5s)) << rig.daemon().output();
   const pid_t first = rig.guardian_pid();
-  std::this_thread::sleep_for(1s);  // it looks
+  std::this_thread::sleep_for(1s);  // it watches by now
   ASSERT_EQ(::kill(first, SIGSTOP), 0);
   EXPECT_TRUE(wait_for([&] { return rig.guardian_pid() > 1 && rig.guardian_pid() != first; }, 15s));
   EXPECT_TRUE(wait_for([&] { return !runs(first); }, 5s));
 }
 
-// Each death doubled for ever how long the next one went unnoticed.
+// Each death used to double, for good, the time until the next one was noticed.
 TEST(LeftAlone, AGuardianThatDiesNowAndThenIsReplacedAsSoonAsTheFirstTime) {
   LiveRig rig(source("tests/rigs/room"));
   ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
@@ -60,7 +60,7 @@ TEST(LeftAlone, AGuardianThatDiesNowAndThenIsReplacedAsSoonAsTheFirstTime) {
   for (int death = 0; death < 5; ++death) {
     ASSERT_TRUE(wait_for([&] { return rig.guardian_pid() > 1 && runs(rig.guardian_pid()); }, 5s)) << death;
     const pid_t guardian = rig.guardian_pid();
-    std::this_thread::sleep_for(3s);  // it looks, and has for a while
+    std::this_thread::sleep_for(3s);  // it has watched for a while
     ASSERT_EQ(::kill(guardian, SIGKILL), 0);
     ASSERT_TRUE(wait_for([&] { return rig.guardian_pid() > 1 && rig.guardian_pid() != guardian; }, 5s)) << death;
     ASSERT_TRUE(rig.wait_status([&](const json& s) { return !unguarded(s); }, 6s)) << rig.last()["alarms"].dump(1);
@@ -89,7 +89,7 @@ TEST(LeftAlone, ATerminalThatHangsUpEndsNothing) {
   EXPECT_EQ(rig.guardian_pid(), guardian);
 }
 
-// A log that cannot be written was an outage; the guardian died exactly when it was needed.
+// A log that cannot be written used to stop the daemon; the guardian died just when it was needed.
 TEST(LeftAlone, WithAFullLogTheRigIsLitAndItsGuardianKeepsIt) {
   LiveRig rig(source("tests/rigs/without-data"));
   ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();

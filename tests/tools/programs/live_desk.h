@@ -1,5 +1,5 @@
 #pragma once
-/// A lighting desk that sends beside running programs, as fast as a desk does, and what a rig file needs to hear it.
+/// A lighting desk that sends, at a desk's rate, beside running programs; and the rig file text needed to hear it.
 
 #include <mutex>
 
@@ -10,22 +10,22 @@ namespace luxrig::testing {
 
 class LiveDesk {
  public:
-  /// protocol: "sacn" or "artnet"; its universe.
+  /// protocol: "sacn" or "artnet".
   explicit LiveDesk(std::string protocol, int universe = 1)
       : protocol_(std::move(protocol)), universe_(universe), desk_("127.0.0.2"), slots_(512, 0) {}
   ~LiveDesk() { vanish(); }
   LiveDesk(const LiveDesk&) = delete;
   LiveDesk& operator=(const LiveDesk&) = delete;
 
-  /// Where Luxrig shall hear it: `input_port`.
+  /// Port on which Luxrig hears it: `input_port`.
   [[nodiscard]] int port() const { return desk_.port(); }
-  /// Another receiver: lamps that it drives itself.
+  /// Adds a receiver: lamps that the desk drives itself.
   void also_send_to(int port) { further_ports_.push_back(port); }
   void set(test::DeskSlots slots) {
     const std::lock_guard lock(mutex_);
     slots_ = std::move(slots);
   }
-  /// Sends from now on, every so often.
+  /// Sends from now on, once per period.
   void appear(std::chrono::milliseconds period = 25ms) {
     thread_ = std::jthread([this, period](const std::stop_token& stop) {
       auto next = std::chrono::steady_clock::now();
@@ -38,7 +38,7 @@ class LiveDesk {
       }
     });
   }
-  /// Without a goodbye.
+  /// Stops without a goodbye.
   void vanish() { thread_ = {}; }
 
  private:
@@ -65,7 +65,7 @@ class LiveDesk {
   std::jthread thread_;
 };
 
-/// The text of a rig file with another driver and further options for its bus, instead of a line in it.
+/// The rig file's text with one line replaced, such as by another driver and further options of its bus.
 inline std::string with_line(std::string text, const std::string& line, const std::string& instead) {
   const auto at = text.find(line + "\n");
   EXPECT_NE(at, std::string::npos) << line;

@@ -23,7 +23,7 @@ class LiveRig {
     start_sim();
     start_daemon();
   }
-  /// A guardian outlives the daemon that a test kills.
+  /// Also ends the guardian, which outlives a daemon that the test kills.
   ~LiveRig() {
     daemon_.reset();
     for (int i = 0; i < 10; ++i) {
@@ -38,7 +38,7 @@ class LiveRig {
 
   void start_daemon() {
     port_ = 0;
-    std::filesystem::remove(folder_ / "daemon.log");  // it has the port of the one before
+    std::filesystem::remove(folder_ / "daemon.log");  // it contains the last daemon's port
     std::vector<std::string> words = {program("luxrig"),
                                       "run",
                                       rig_,
@@ -54,7 +54,7 @@ class LiveRig {
     daemon_ = std::make_unique<Process>(std::move(words), folder_ / "daemon.log");
   }
 
-  /// Of the process that looks after the light, or 0.
+  /// Process id of the guardian; 0 if there is none.
   [[nodiscard]] pid_t guardian_pid() const {
     const std::string text = text_of(folder_ / "state" / "guardian.pid");
     return text.empty() ? 0 : std::atoi(text.c_str());
@@ -68,7 +68,7 @@ class LiveRig {
   }
   void kill_sim() { sim_.reset(); }
 
-  /// Status of the daemon; null when it does not answer.
+  /// Status of the daemon; null if it does not answer.
   json status() {
     if (port_ == 0) find_port();
     if (port_ == 0) return {};
@@ -99,13 +99,13 @@ class LiveRig {
     const auto answer = http_post_json({"127.0.0.1", control["port"]}, "/fault", body.dump());
     ASSERT_TRUE(answer && answer->status == 200) << (answer ? answer->body : "no answer");
   }
-  /// Peaks of the truth are those from now on.
+  /// Restarts the peaks of the truth.
   void reset_peaks() {
     const auto control = json::parse(text_of(ports()))["control"];
     const auto answer = http_post_json({"127.0.0.1", control["port"]}, "/reset_peaks", "{}");
     ASSERT_TRUE(answer && answer->status == 200);
   }
-  /// Of a bus of the simulated rig.
+  /// Port of a bus of the simulated rig.
   [[nodiscard]] int bus_port(const std::string& bus) const {
     return json::parse(text_of(ports()))["buses"][bus]["port"];
   }

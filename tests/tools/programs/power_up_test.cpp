@@ -1,5 +1,5 @@
-// Light that comes on by stages, with the real programs: when each lamp begins, from the simulator's truth, also when
-// the daemon dies in the middle of it.
+// Power-up by stages, with the real programs: when each lamp begins, in the simulator's truth, also if the daemon dies
+// in between.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,16 +13,16 @@ namespace luxrig::testing {
 namespace {
 
 constexpr double kStage_s = 2;
-/// Below is a lamp's last step of 8 bits, or its first: it counts as dark.
+/// A lower level is a lamp's last or first 8-bit step: it counts as dark.
 constexpr double kLit = 0.004;
 
 struct LampsAt {
-  double at_s = 0;  ///< of the simulator
+  double at_s = 0;  ///< simulator time
   std::map<std::string, double> level;
 };
 
 struct PowerUp {
-  /// With another line in the rig file, and options of the daemon.
+  /// Replaces a line of the rig file, and passes options to the daemon.
   explicit PowerUp(const std::string& line = "stage_s = 2", const std::string& instead = "stage_s = 2",
                    std::vector<std::string> options = {})
       : rig(rig_file(folder, line, instead), std::move(options)) {}
@@ -39,7 +39,7 @@ struct PowerUp {
     for (const json& f : truth.value("fixtures", json::array())) lamps.level[f["name"]] = f["level"].get<double>();
     return lamps;
   }
-  /// Samples until `done` or the bound; notes when each lamp was lit first.
+  /// Samples until `done` or the bound; records when each lamp was first lit.
   bool watch(const std::function<bool(const LampsAt&)>& done, std::chrono::seconds bound) {
     const auto end = std::chrono::steady_clock::now() + bound;
     while (std::chrono::steady_clock::now() < end) {
@@ -72,8 +72,8 @@ TEST(PowerUp, StagesComeOneAfterTheOtherAtTheirTimes) {
       [](const json& s) { return s["detail"].get<std::string>().starts_with("lamps come on by stages"); }, 2s))
       << bench.rig.last();
   bench.watch([](const LampsAt&) { return false; }, 2s);
-  // The head may have to look for its zero (2 s) and to turn by 540 degrees (0.75 s), and obeys after half a second;
-  // the first look may come as much after the daemon's start.
+  // The head may have to home (2 s) and turn by 540 degrees (0.75 s), and obeys after half a second. The first look may
+  // come half a second after the daemon's start.
   EXPECT_GT(bench.first_lit_s.at("one") - begun_s, 2.6);
   EXPECT_NEAR(bench.after_one_s("two"), kStage_s, 0.25);
   EXPECT_NEAR(bench.after_one_s("three"), 2 * kStage_s, 0.25);
@@ -97,7 +97,7 @@ TEST(PowerUp, NoSecondAddsMoreWattsThanAllowed) {
   ASSERT_GT(watts(seen.back()), 60);
   for (std::size_t i = 0, j = 0; i < seen.size(); ++i) {
     while (j < seen.size() && seen[j].at_s < seen[i].at_s + 0.5) ++j;
-    // A true lamp's curve is steeper than its nominal one here and there.
+    // A true lamp's curve is in places steeper than its nominal one.
     if (j == seen.size()) break;
     EXPECT_LT(watts(seen[j]) - watts(seen[i]), 1.25 * 100 * (seen[j].at_s - seen[i].at_s)) << seen[i].at_s;
   }
@@ -137,14 +137,14 @@ TEST(PowerUp, ADaemonThatDiesInTheMiddleIsFollowedByOneThatGoesOn) {
   EXPECT_GT(least_one, 0.95 * std::min(held.level.at("one"), last.level.at("one")));
   EXPECT_GT(least_two, 0.95 * std::min(held.level.at("two"), last.level.at("two")));
   EXPECT_LT(steepest, 0.15) << "a rise over 0.8 s, seen every 50 ms";
-  // What had not begun keeps its distance, from the new daemon's first frame on.
+  // Lamps that had not begun keep their delays, from the new daemon's first frame on.
   EXPECT_GT(bench.first_lit_s.at("three") - held.at_s, kStage_s);
   EXPECT_LT(std::abs(bench.first_lit_s.at("three") - bench.first_lit_s.at("head")), 0.5);
   for (const auto& [name, level] : last.level) EXPECT_GT(level, 0.05) << name;
 }
 
 TEST(PowerUp, AHeadThatWasParkedStaysDarkWhenTheNextDaemonComesUpByStages) {
-  // As after a power cut: no guardian has kept the light.
+  // As after a power cut: no guardian has held the light.
   PowerUp bench("reset_s = 2\nstage = 3", "reset_s = 2", {"--no-guardian"});
   ASSERT_TRUE(bench.rig.wait_phase("holding", 60s)) << bench.rig.daemon().output();
   const Ran parked = luxrig::testing::run({program("luxrig"), "park", "--port", std::to_string(bench.rig.port())});
@@ -152,7 +152,7 @@ TEST(PowerUp, AHeadThatWasParkedStaysDarkWhenTheNextDaemonComesUpByStages) {
   ASSERT_TRUE(bench.watch([](const LampsAt& now) { return now.level.at("head") == 0; }, 10s));
   bench.rig.daemon().signal(SIGKILL);
   bench.rig.start_daemon();
-  // It begins in the dark.
+  // It starts dark.
   ASSERT_TRUE(bench.watch([](const LampsAt& now) { return now.level.at("one") < kLit; }, 20s));
   bench.seen.clear();
   bench.first_lit_s.clear();

@@ -1,5 +1,5 @@
 #pragma once
-/// Programs under test, started and ended by it.
+/// Starts and ends programs under test.
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ inline std::string text_of(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// A folder that goes with the test.
+/// A temporary folder, removed at the end of the test.
 class Folder {
  public:
   Folder() {
@@ -48,7 +48,7 @@ class Folder {
   std::filesystem::path path_;
 };
 
-/// Waits until `done`, at most `bound`; false when it never was.
+/// Waits until `done`, for `bound` at most; false if it never was.
 inline bool wait_for(const std::function<bool()>& done, std::chrono::milliseconds bound) {
   const auto end = std::chrono::steady_clock::now() + bound;
   while (!done()) {
@@ -58,7 +58,7 @@ inline bool wait_for(const std::function<bool()>& done, std::chrono::millisecond
   return true;
 }
 
-/// False also for a process that has ended and waits for its parent to notice.
+/// Also false for a zombie, which has ended but not been reaped.
 inline bool runs(pid_t pid) {
   const std::string stat = text_of("/proc/" + std::to_string(pid) + "/stat");
   const auto name_end = stat.rfind(')');
@@ -92,7 +92,7 @@ class Process {
 
   void signal(int number) const { ::kill(pid_, number); }
 
-  /// Exit code; -1 when it had to be killed after `bound`, -2 when a signal ended it.
+  /// Exit code; -1 if it had to be killed after `bound`, -2 if a signal ended it.
   int wait(std::chrono::seconds bound) {
     int status = 0;
     rusage used{};
@@ -109,7 +109,7 @@ class Process {
     return WIFEXITED(status) ? WEXITSTATUS(status) : -2;
   }
   [[nodiscard]] std::string output() const { return text_of(log_); }
-  /// Of all its threads, once it has ended by itself.
+  /// Processor time of all its threads, once it has ended by itself.
   [[nodiscard]] double processor_seconds() const { return processor_seconds_; }
 
  private:
@@ -124,7 +124,7 @@ struct Ran {
   double processor_seconds = 0;
 };
 
-/// Runs to its end. bound: against programs that hang; a busy machine computes for minutes what takes it seconds alone.
+/// Runs a program to its end. bound: against programs that hang; a busy machine may need minutes for seconds of work.
 inline Ran run(const std::vector<std::string>& words, std::chrono::seconds bound = 300s) {
   const Folder folder;
   Process process(words, folder / "log");

@@ -29,7 +29,7 @@ class LiveSubject final : public promises::Subject {
   bool blackout(bool on) override {
     const Ran ran = asked({"blackout", on ? "on" : "off"});
     if (ran.code == 0 || !field_may_be_dead()) return ran.code == 0;
-    // What hangs on a dead bus cannot be made dark; then that is all it may complain of.
+    // Lamps on a dead bus cannot be made dark: this is the only complaint allowed then.
     const auto says = [&](const char* what) { return ran.output.find(what) != std::string::npos; };
     return says("lamps may be lit: bus \"field\"") && !says("forgotten");
   }
@@ -82,7 +82,7 @@ class LiveSubject final : public promises::Subject {
   void wait(double seconds) override { watch(seconds); }
 
   Seen seen() override {
-    // What it says is a tenth of a second old at most.
+    // The status is at most a tenth of a second old.
     std::this_thread::sleep_for(200ms);
     Seen seen;
     if (!rig_.wait_status([](const json&) { return true; }, 10s)) {
@@ -115,7 +115,7 @@ class LiveSubject final : public promises::Subject {
 
  private:
   static constexpr const char* kTellingPoint = "floor";
-  static constexpr auto kLampGoesOut = 1s;  ///< far more than it takes
+  static constexpr auto kLampGoesOut = 1s;  ///< generous
   static constexpr auto kBusIsFoundAgain = 10s;
   static constexpr const char* kLampOnField = "bulb-1";
 
@@ -154,7 +154,7 @@ class LiveSubject final : public promises::Subject {
   std::chrono::steady_clock::time_point dark_since_;
 };
 
-// LUXRIG_PROMISES_LIVE: how many, and LUXRIG_PROMISES_FIRST: from which on; tools/nightly runs 200.
+// LUXRIG_PROMISES_LIVE: number of sequences, LUXRIG_PROMISES_FIRST: the first one; tools/nightly runs 200.
 TEST(PromisesOverTheWire, HoldThroughRandomCommandsFaultsKillsAndDiskErrors) {
   const auto number = [](const char* name, std::uint64_t otherwise) {
     const char* wanted = std::getenv(name);

@@ -1,5 +1,4 @@
-// What README.md tells a newcomer to type: the commands exist, take the options written there, and the way from a new
-// rig to a picture works.
+// The commands in README.md exist and take the options written there, and its path from a new rig to a picture works.
 
 #include <regex>
 #include <set>
@@ -9,7 +8,7 @@
 namespace luxrig::testing {
 namespace {
 
-/// Of "- `check RIG`: …; `--outputs` tells …" below "## Commands": the words of each code span.
+/// Words of each code span in lines such as "- `check RIG`: …; `--outputs` tells …" below "## Commands".
 std::vector<std::vector<std::string>> commands_of_readme() {
   std::string text = text_of(source("README.md"));
   text.erase(0, text.find("## Commands"));
@@ -32,7 +31,7 @@ std::vector<std::vector<std::string>> commands_of_readme() {
   return commands;
 }
 
-/// Those that `luxrig --help` lists.
+/// Subcommands that `luxrig --help` lists.
 std::set<std::string> subcommands() {
   const std::string help = luxrig::testing::run({program("luxrig"), "--help"}).output;
   std::set<std::string> names;

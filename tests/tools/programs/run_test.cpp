@@ -35,8 +35,8 @@ TEST(Run, OnceReachesTheGoalsWritesTheTableAndEndsCleanly) {
   EXPECT_TRUE(metered);
 }
 
-// In the reading room light for measured goals leaves one that nobody measures a fifth short, at the edge of what is
-// known: it is called missed or unknown, by the noise of the readings. Neither may be wrong.
+// In the reading room, light for the measured goals leaves an unmeasured goal a fifth short, at the edge of what is
+// known. The noise of the readings decides whether it is called missed or unknown; neither may be wrong.
 TEST(Run, EveryShippedRigReachesItsMeasuredGoalsWithinItsLimitsAndCallsNoGoalMissedThatIsMet) {
   for (const char* name : {"gallery", "studio", "reading-room"}) {
     const Folder folder;
@@ -58,7 +58,7 @@ TEST(Run, EveryShippedRigReachesItsMeasuredGoalsWithinItsLimitsAndCallsNoGoalMis
       }
       if (!point.contains("measured_lux")) continue;
       EXPECT_NE(point.value("verdict", ""), "missed") << point;
-      // A metered point without a goal has a limit only.
+      // A metered point without a goal has only a limit.
       EXPECT_TRUE(!point.contains("error") || std::abs(point["error"].get<double>()) <= 0.03 || point["why"] != "")
           << point;
       if (point.contains("max_lux")) {
@@ -134,7 +134,7 @@ TEST(Run, CutAndGarbledMetersAreNamedWithinTwoSecondsAndForgottenWhenWell) {
   }
 }
 
-// The second restart lit the rig by itself: resuming the plan saved that there was no blackout.
+// The second restart used to light the rig by itself: resuming the plan saved a state without blackout.
 TEST(Run, ABlackoutOutlivesRestartsAndADamagedState) {
   LiveRig rig(source("tests/rigs/room"));
   ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
@@ -154,7 +154,7 @@ TEST(Run, ABlackoutOutlivesRestartsAndADamagedState) {
   EXPECT_NE(rig.daemon().output().find("state is damaged"), std::string::npos) << rig.daemon().output();
 }
 
-// A daemon that was killed while it took up one after the other had saved that there was no plan.
+// A daemon that was killed while it restored the parts one by one used to save a state without a plan.
 TEST(Run, AtNoInstantOfAStartDoesTheDiskForgetWhatHolds) {
   LiveRig rig(source("tests/rigs/room"));
   ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
@@ -184,7 +184,7 @@ TEST(Run, AtNoInstantOfAStartDoesTheDiskForgetWhatHolds) {
   }
 }
 
-// It could not start, and had sent the guardian away before.
+// It used to fail to start, after it had sent the guardian away.
 TEST(Run, AStateThatCannotBeSavedIsSaidAndTheRigIsLit) {
   LiveRig rig(source("tests/rigs/room"));
   ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
@@ -201,7 +201,7 @@ TEST(Run, AStateThatCannotBeSavedIsSaidAndTheRigIsLit) {
   ASSERT_TRUE(rig.wait_status([&](const json& s) { return s["phase"] == "holding" && forgets(s); }, 60s))
       << rig.daemon().output() << rig.last().dump(1);
   EXPECT_GT(rig.level_sum(), 0.1);
-  // What a person asks is not acknowledged then; a blackout is in force all the same.
+  // A person's command is not acknowledged then; a blackout is in force all the same.
   const std::string port = std::to_string(rig.port());
   EXPECT_NE(luxrig::testing::run({program("luxrig"), "blackout", "--port", port}).code, 0);
   ASSERT_TRUE(rig.wait_status([&](const json& s) { return s["blackout"] == true; }, 5s));
@@ -238,7 +238,7 @@ TEST(Run, ADaemonThatDiesLeavesTheSafeLookToItsGuardianUntilTheNextOne) {
   LiveRig rig(source("tests/rigs/room"));
   ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
   ASSERT_TRUE(wait_for([&] { return rig.guardian_pid() > 1; }, 5s)) << rig.daemon().output();
-  // One that dies itself is replaced.
+  // A guardian that dies is replaced.
   const pid_t first = rig.guardian_pid();
   ::kill(first, SIGKILL);
   ASSERT_TRUE(wait_for([&] { return rig.guardian_pid() > 1 && rig.guardian_pid() != first; }, 5s));
@@ -249,7 +249,7 @@ TEST(Run, ADaemonThatDiesLeavesTheSafeLookToItsGuardianUntilTheNextOne) {
     return lux;
   };
   const double held_lux = room_lux();
-  // [safe] level = 0.1; what a lamp makes of it is its own.
+  // [safe] level = 0.1; a lamp's own curve decides its light.
   const auto all_safe = [&] {
     const json truth = rig.truth();
     return std::all_of(truth.at("fixtures").begin(), truth.at("fixtures").end(),
@@ -264,7 +264,7 @@ TEST(Run, ADaemonThatDiesLeavesTheSafeLookToItsGuardianUntilTheNextOne) {
     std::this_thread::sleep_for(50ms);
   }
   ASSERT_TRUE(wait_for(all_safe, 4s)) << rig.truth();
-  // sACN receivers let a source go after 2.5 s: it must go on sending.
+  // sACN receivers drop a source after 2.5 s: the guardian must keep sending.
   std::this_thread::sleep_for(3500ms);
   EXPECT_TRUE(all_safe()) << rig.truth();
   const pid_t guardian = rig.guardian_pid();
@@ -272,7 +272,7 @@ TEST(Run, ADaemonThatDiesLeavesTheSafeLookToItsGuardianUntilTheNextOne) {
   ASSERT_TRUE(rig.wait_phase("holding", 60s)) << rig.daemon().output();
   EXPECT_FALSE(runs(guardian)) << "the dead daemon's guardian must have left";
   EXPECT_NEAR(room_lux(), held_lux, 0.05 * held_lux);
-  // An end in order leaves no guardian.
+  // An orderly end leaves no guardian.
   const pid_t last = rig.guardian_pid();
   EXPECT_GT(last, 1);
   rig.daemon().signal(SIGTERM);
@@ -292,7 +292,7 @@ TEST(Run, ADaemonStartedAnewFadesFromWhatItsGuardianSends) {
   const std::vector<double> planned = levels();
   for (const bool in_safe_look : {false, true}) {
     rig.daemon().signal(SIGKILL);
-    // hold_s = 2, fade_s = 1: within the hold, or when the safe look of 0.1 is there.
+    // hold_s = 2, fade_s = 1: wait within the hold, or until the safe look of 0.1 is reached.
     std::this_thread::sleep_for(in_safe_look ? 4500ms : 300ms);
     const std::vector<double> before = levels();
     rig.start_daemon();
@@ -306,7 +306,7 @@ TEST(Run, ADaemonStartedAnewFadesFromWhatItsGuardianSends) {
       looked = at;
       for (std::size_t f = 0; f < level.size(); ++f) {
         least[f] = std::min(least[f], level[f]);
-        // A machine that stands still for a while sees much of a fade at once.
+        // A machine that stalls for a while sees much of a fade at once.
         if (seconds < 0.1) largest_step = std::max(largest_step, std::abs(level[f] - last[f]));
       }
       last = level;
@@ -319,7 +319,7 @@ TEST(Run, ADaemonStartedAnewFadesFromWhatItsGuardianSends) {
         },
         60s))
         << rig.daemon().output();
-    // A daemon that takes longer than the hold finds the safe look; none finds the dark.
+    // A daemon that starts after the hold finds the safe look; it never finds the dark.
     for (std::size_t f = 0; f < before.size(); ++f)
       EXPECT_GT(least[f], 0.8 * std::min({before[f], planned[f], 0.1})) << "lamp " << f << ", " << in_safe_look;
     EXPECT_LT(largest_step, 0.15) << in_safe_look;
@@ -355,7 +355,7 @@ TEST(Run, IdentifyShowsInTheRoomWhichLampItIsAndMonitorWhatGoesOut) {
   EXPECT_EQ(monitor.code, 0);
   EXPECT_NE(monitor.output.find(name + " shows which one it is"), std::string::npos) << monitor.output;
   EXPECT_NE(monitor.output.find("universe 1"), std::string::npos) << monitor.output;
-  // 4 s of blinks, half a second back, and the fade over which the limits of a desk's light are let go.
+  // 4 s of blinking, half a second back, then the fade that releases the limits of a desk's light.
   EXPECT_TRUE(wait_for([&] { return std::abs(room_lux() - before_lux) < 0.03 * before_lux; }, 15s))
       << before_lux << " lx before, " << room_lux() << " lx now, " << rig.status().dump();
   const Ran unknown = luxrig::testing::run({program("luxrig"), "identify", name + "x", "--port", port});

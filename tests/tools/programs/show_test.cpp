@@ -1,4 +1,4 @@
-// `luxrig render --show`: what it draws, and what it says when it cannot.
+// `luxrig render --show`: its drawings, and its messages when it cannot draw.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ Ran show(const std::string& rig, const std::string& what, const std::filesystem:
   return luxrig::testing::run(command);
 }
 
-/// A rig with one object, from this text of an OBJ file.
+/// A rig with one object, given as the text of an OBJ file.
 std::string rig_with(const Folder& folder, const std::string& obj) {
   std::ofstream(folder / "thing.obj") << obj;
   std::ofstream(folder / "rig.toml") << "[rig]\nname = \"one\"\n\n[[scene.object]]\nname = \"thing\"\n"

@@ -1,4 +1,4 @@
-// luxrig-sim as a user starts it, spoken to by plain sockets.
+// luxrig-sim as a user starts it, over plain sockets.
 #include <arpa/inet.h>
 #include <poll.h>
 #include <sys/socket.h>
@@ -25,7 +25,7 @@ class Simulator {
     if (ready) ports_ = json::parse(*ready_line(), nullptr, false);
   }
 
-  /// What follows the word.
+  /// The rest of the line after the word.
   std::optional<std::string> ready_line() const {
     const std::string output = process_.output();
     const auto at = output.find("ready ");
@@ -134,7 +134,7 @@ TEST(SimProcess, AnswersPlainSocketsAsTheDevicesWould) {
   desk.send(spot_full());
   ASSERT_TRUE(wait_for([&] { return sim.point("plinth-top").value("lux", 0.0) > 50; }, 2s)) << sim.get("/truth");
 
-  // Meter 1 stands on the plinth, looks five times a second and has 0.001 lx a count, high word first.
+  // Meter 1 stands on the plinth, measures five times a second and has 0.001 lx per count, high word first.
   const Client master(SOCK_STREAM, sim.port("field"));
   const double lux = sim.point("plinth-top")["lux"];
   double read_lx = 0;
@@ -174,7 +174,7 @@ TEST(SimProcess, SwitchesFaultsAndForgetsPeaksOnRequest) {
   master.send(read);
   EXPECT_EQ(master.received(1000).size(), 13u);
 
-  // The bulb on and off again over Modbus: the peak stays until it is forgotten.
+  // The bulb on and off again over Modbus: the peak stays until it is reset.
   master.send({0, 2, 0, 0, 0, 6, 10, 6, 0, 0, 0x03, 0xe8});
   EXPECT_EQ(master.received(1000).size(), 12u);
   ASSERT_TRUE(wait_for([&] { return sim.point("floor").value("lux", 0.0) > 1; }, 2s));

@@ -1,4 +1,4 @@
-// What --version tells, and how the build finds the commit.
+// The output of --version, and how the build finds the commit.
 #include <regex>
 
 #include "tests/tools/programs/process.h"
@@ -6,7 +6,7 @@
 namespace luxrig::testing {
 namespace {
 
-/// What a shell prints for these lines, without the newline at the end.
+/// Output of a shell for these lines, without the final newline.
 std::string shell(const std::string& lines) {
   Ran ran = luxrig::testing::run({"/bin/bash", "-c", "set -e; exec 2>&1; unset GIT_DIR; " + lines});
   EXPECT_EQ(ran.code, 0) << lines << ran.output;
@@ -14,7 +14,7 @@ std::string shell(const std::string& lines) {
   return ran.output;
 }
 
-/// The commit of the source, or nothing where it is no repository of its own.
+/// The commit of the source; empty if it is not a repository of its own.
 std::string commit_of_source() {
   const std::string git = "git -C '" + source("") + "' rev-parse ";
   return shell("[[ -z $(" + git + "--show-prefix 2>/dev/null || echo none) ]] && " + git + "--short HEAD || true");
@@ -31,7 +31,7 @@ TEST(Version, OfEveryProgramNamesTheCommitItWasBuiltOf) {
   }
 }
 
-/// A folder as the build has it, and what the build would make of it.
+/// A source folder, and the version file that the build makes of it.
 class Source {
  public:
   /// "0.1.0 (8022d83)".

@@ -1,5 +1,4 @@
-// What is typed at the command line: mistyped words are refused with what was meant, help is in words, and `init` makes
-// a rig that runs.
+// Command-line input: mistyped words are refused with a suggestion, help is in words, and `init` makes a rig that runs.
 #include "sim/faults/faults.h"
 #include "tests/tools/programs/live_rig.h"
 
@@ -94,7 +93,7 @@ TEST(Words, ARigThatCameWithLuxrigIsFoundByItsName) {
 TEST(Words, TheSimulatorsControlPortMendsWhatItRefusesAndNeedsNoBody) {
   LiveRig rig(source("tests/rigs/room"));
   const int port = json::parse(text_of(rig.file("ports.json")))["control"]["port"].get<int>();
-  // What `curl -X POST` sends: no body, and no length of one.
+  // As `curl -X POST` sends it: no body and no content length.
   const auto ask = [&](const std::string& request, const std::string& body) {
     const std::string length = body.empty() ? "" : "Content-Type: application/json\r\nContent-Length: " + std::to_string(body.size()) + "\r\n";
     const std::string whole = request + " HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n" + length + "\r\n" + body;

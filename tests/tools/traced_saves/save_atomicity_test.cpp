@@ -1,5 +1,5 @@
-// A save meets every end and every error at each of its system calls, one after the other: a child that saves is
-// traced, and killed or lied to at call n, for all n.
+// Every kill and every error at each system call of a save: a child that saves is traced, and call n is made to kill it
+// or fail, for all n.
 #include <elf.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -34,7 +34,7 @@ using luxrig::testing::Folder;
 using luxrig::testing::state_with;
 using luxrig::testing::text_of;
 
-/// The registers of a traced process that stands at a system call.
+/// Registers of a traced process stopped at a system call.
 class CallRegisters {
  public:
   explicit CallRegisters(pid_t pid) : pid_(pid) {
@@ -78,16 +78,16 @@ enum class Harm { none, killed_before, killed_after, refused, cut_short };
 struct Injection {
   Harm harm = Harm::none;
   std::size_t call = 0;
-  int error = 0;  ///< of refused
+  int error = 0;  ///< errno, for refused
 };
 
-/// One system call of the save, as it was seen.
+/// One observed system call of the save.
 struct SeenCall {
   long number = 0;
-  std::string file{};  ///< of fsync: what was synced
+  std::string file{};  ///< of fsync: the synced file
 };
 
-/// What the child says, in memory that both have.
+/// The child's results, in shared memory.
 struct Said {
   bool saved = false;
   bool holds_new = false;  ///< Journal::state()
@@ -107,7 +107,7 @@ bool is(const std::optional<JournalState>& state, const char* plan) {
          state->by_hand.size() == 1 && state->by_hand[0].name == plan;
 }
 
-/// Memory and locks are no part of a save: they are not refused.
+/// Calls for memory and locks are not part of a save, and are never refused.
 bool is_of_files(long number) {
   static const std::set<long> others = {
       SYS_brk,   SYS_mmap,         SYS_munmap,         SYS_mprotect,  SYS_mremap, SYS_madvise,
@@ -117,7 +117,7 @@ bool is_of_files(long number) {
 
 class TracedSave {
  public:
-  /// A child that calls `first`, then stops for the parent to look, then calls `later`.
+  /// Forks a child that calls `first`, stops for the parent to look, then calls `later`.
   template <class First, class Later>
   TracedSave(First first, Later later) {
     void* shared = ::mmap(nullptr, sizeof(Said), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
@@ -144,13 +144,13 @@ class TracedSave {
   TracedSave(const TracedSave&) = delete;
   TracedSave& operator=(const TracedSave&) = delete;
 
-  /// False where processes may not be traced.
+  /// False if processes may not be traced here.
   [[nodiscard]] bool begin() {
     return waits() && WIFSTOPPED(status_) &&
            ::ptrace(PTRACE_SETOPTIONS, pid_, nullptr, PTRACE_O_TRACESYSGOOD | PTRACE_O_EXITKILL) == 0;
   }
 
-  /// Runs the child to its stop, or its end. False: something that this test does not know happened.
+  /// Runs the child to its stop or its end. False if an unexpected event occurs.
   [[nodiscard]] bool run(const Injection& injection) {
     while (true) {
       if (!to_next_stop()) return false;
@@ -190,7 +190,7 @@ class TracedSave {
       if (!exit.put()) return false;
     }
   }
-  /// The rest, untraced. False unless it ended well.
+  /// Runs the rest untraced. False unless it ends well.
   [[nodiscard]] bool finish() {
     if (::ptrace(PTRACE_DETACH, pid_, nullptr, nullptr) != 0 || !waits()) return false;
     pid_ = -1;
@@ -227,7 +227,7 @@ struct Outcome {
   std::vector<SeenCall> calls;
 };
 
-/// One save of kNew, over kOld or where nothing is yet, with one harm.
+/// One save of kNew with one injected fault, over kOld or into an empty folder.
 Outcome save_with(How how, bool over_old, const Injection& injection) {
   const Folder folder;
   const auto place = folder / "made/state";
@@ -295,7 +295,7 @@ Outcome save_with(How how, bool over_old, const Injection& injection) {
   return outcome;
 }
 
-/// May be named in messages.
+/// Name for messages.
 std::string name_of(const Injection& injection, const std::vector<SeenCall>& calls) {
   static const std::map<Harm, const char*> words = {{Harm::none, "nothing"},
                                                     {Harm::killed_before, "killed before"},
@@ -330,7 +330,7 @@ TEST_P(SaveAtomicity, WhateverHappensAtAnyOfItsSystemCalls) {
   }
 }
 
-// A kill does not lose what the kernel has not written yet; a power cut does.
+// A kill does not lose data that the kernel has not written yet; a power cut does.
 TEST_P(SaveAtomicity, IsOnDiskInTheRightOrderForAPowerCut) {
   const auto [how, over_old] = GetParam();
   const Outcome whole = save_with(how, over_old, {});
@@ -360,7 +360,7 @@ INSTANTIATE_TEST_SUITE_P(Journal, SaveAtomicity,
                                   (std::get<1>(its.param) ? "OverOld" : "TheFirst");
                          });
 
-// A start that was killed between moving a damaged file aside and saving what was legible of it let a blackout go.
+// A start that was killed between moving a damaged file aside and saving its legible part used to lose a blackout.
 TEST(SaveAtomicityOfAStart, ABlackoutOutlivesWhateverHappensToTheReadingOfADamagedState) {
   constexpr const char* kDamaged = "{\n \"blackout\": true,\n \"by_hand\": [], \"pla";
   const auto start_with = [&](const Injection& injection) {

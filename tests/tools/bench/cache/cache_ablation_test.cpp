@@ -9,7 +9,7 @@
 namespace luxrig {
 namespace {
 
-/// A clock that goes on by a second whenever it is read.
+/// A clock that advances by a second at each reading.
 StopWatch stepped() {
   return [now = 0.0]() mutable { return now += 1; };
 }
@@ -61,7 +61,7 @@ TEST(CacheAblation, WalkAndDistanceFieldGiveTheSameAnswersAndTheMarchMissesWalls
   EXPECT_EQ(rows[0].missed + rows[0].invented, 0);
   EXPECT_NEAR(rows[1].missed, rows[2].missed, 1e-3);
   EXPECT_NEAR(rows[1].invented, rows[2].invented, 1e-3);
-  EXPECT_LT(rows[1].missed, 0.3);  // of walls within a cell of a line's end, which is left out
+  EXPECT_LT(rows[1].missed, 0.3);  // walls within a cell of a line's end, which is left out
   EXPECT_GT(rows[3].missed, rows[1].missed + 0.1) << "six looks";
   EXPECT_GT(rows[3].missed, rows[5].missed);
   EXPECT_TRUE(compare_traversals(Scene{}, rays, 64, 100, 1, stepped()).empty());

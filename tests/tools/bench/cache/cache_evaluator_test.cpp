@@ -1,4 +1,4 @@
-// The cache as an Evaluator: what all must hold, and when it stops.
+// The cache as an Evaluator: the conformance tests, and when it stops.
 #include "tests/core/transport/evaluator_conformance.h"
 #include "tests/tools/bench/cache/cache_rooms.h"
 

@@ -7,7 +7,7 @@
 
 namespace luxrig {
 
-/// Two closed rooms of 2 m that share a wall of 15 cm, floor and ceiling in one piece.
+/// Two closed rooms of 2 m that share a wall of 15 cm, with floor and ceiling in one piece.
 inline Scene two_rooms(double reflectance) {
   Scene scene;
   scene.materials = {{"paint", Vec3::Constant(reflectance)}};
@@ -16,7 +16,7 @@ inline Scene two_rooms(double reflectance) {
   return scene;
 }
 
-/// A room of 6 m by 5 m by 2.7 m whose door, 1.5 m wide, opens to a ground that reaches `half_m` each way.
+/// A room of 6 m by 5 m by 2.7 m. Its door, 1.5 m wide, opens to a ground that extends `half_m` each way.
 inline Scene room_open_to_a_ground(double half_m, double reflectance) {
   Scene scene;
   scene.materials = {{"paint", Vec3::Constant(reflectance)}};
@@ -36,7 +36,7 @@ inline Emitter bulb_at(const Vec3& position_m, double flux_lm = 1000) {
   return {make_isotropic(flux_lm), {Mat3::Identity(), position_m}};
 }
 
-/// Settings that take little time.
+/// Settings for a short run.
 inline CacheSettings quick_sides() {
   CacheSettings settings;
   settings.voxels = 64;

@@ -66,7 +66,7 @@ TEST(LightView, InOpenAirThereIsNothingToFallOn) {
   EXPECT_TRUE(light_view(nothing, bulb_at(Vec3::Zero()), SobolSequence(1), 64).hits.empty());
 }
 
-/// An even sky: 1 cd/m² above the horizon.
+/// A uniform sky: 1 cd/m² above the horizon.
 class EvenSky final : public SkyLuminance {
  public:
   double luminance_cd_m2(const Vec3& d) const override { return d.z() > 0 ? 1 : 0; }

@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of radiance_cache share.
+/// Shared by the tests of radiance_cache.
 
 #include "tests/tools/bench/cache/cache_rooms.h"
 
@@ -11,7 +11,7 @@ inline std::vector<Receiver> receivers_of(const std::vector<WallPoint>& points) 
   return receivers;
 }
 
-/// Both ways to hold light, and the second with all that improves on the thesis.
+/// Both ways to store light, and the second also with all improvements on the thesis.
 inline std::vector<CacheSettings> all_kinds() {
   CacheSettings improved = quick_directions();
   improved.first_visibility = improved.link_traversal = Traversal::rays;

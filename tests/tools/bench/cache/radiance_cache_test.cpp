@@ -137,12 +137,12 @@ TEST(RadianceCache, ColumnsAreThoseOfTheEmittersAloneInAnyOrder) {
 }
 
 TEST(RadianceCache, CellsThatNobodyNeedsCanBeLeftOutWithoutAChange) {
-  // The outer faces of the cube, and a second room behind a wall, are near surfaces but of no use.
+  // The outer faces of the cube and a second room behind a wall are near surfaces, but their cells are not needed.
   const Scene scene = two_rooms(0.6);
   std::vector<Receiver> receivers = {{{0.5, 0.5, 0.01}, Vec3::UnitZ()}, {{1, 1.2, 0.75}, Vec3::UnitZ()}};
   const RayScene rays(scene);
   for (CacheSettings settings : all_kinds()) {
-    // Exact ways only: a march through walls would reach the other room.
+    // Exact traversals only: a march through walls would reach the other room.
     settings.first_visibility = settings.link_traversal = Traversal::rays;
     settings.open_places = true;
     settings.voxels = 64;
@@ -150,7 +150,7 @@ TEST(RadianceCache, CellsThatNobodyNeedsCanBeLeftOutWithoutAChange) {
     settings.only_needed = false;
     const auto all = RadianceCache::build(scene, rays, receivers, settings, {});
     ASSERT_TRUE(few && all);
-    // Cells of directions at a wall's corners reach through it, sides do not.
+    // At a wall's corners, cells of directions reach through it; sides do not.
     const double most = settings.contents == CacheContents::sides ? 0.5 : 0.95;
     EXPECT_LT(few->report().cells, most * static_cast<double>(all->report().cells));
     EXPECT_LT(few->report().rays, all->report().rays);
@@ -255,7 +255,7 @@ TEST(RadianceCache, OddScenesGiveFiniteLightOfNoLessThanDirect) {
       settings.voxels = 24;
       settings.gather_rays = settings.light_samples = 32;
       const auto matrix = cached(scene, receivers, emitters, settings);
-      // All but the first triangle are so much larger than what is lit that cells cannot tell them apart.
+      // All triangles but the first are so much larger than the lit part that cells cannot separate them.
       if (settings.contents == CacheContents::sides && scale >= 1000 && matrix.receivers() == 0) {
         ++refused;
         continue;

@@ -30,7 +30,7 @@ TEST(SeenPart, IsTheRoomAndItsYardWhereTheGroundReachesFarther) {
   const Eigen::AlignedBox3d part_m = seen_part_m(scene, rays, receivers, 1);
   EXPECT_TRUE(part_m.contains(Vec3(0, 0, 0)) && part_m.contains(Vec3(6, 5, 2.7))) << part_m.min().transpose();
   EXPECT_LT(part_m.sizes().maxCoeff(), 20);
-  // One who stands outside and looks along the ground sees more of it.
+  // From outside, looking along the ground, more of it is seen.
   const std::vector<Receiver> outside = {{{3, -20, 1.6}, -Vec3::UnitY()}};
   EXPECT_GT(seen_part_m(scene, rays, outside, 1).sizes().maxCoeff(), 50);
 }

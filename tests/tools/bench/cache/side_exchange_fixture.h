@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of side_exchange share.
+/// Shared by the tests of side_exchange.
 
 #include "tests/tools/bench/cache/cache_rooms.h"
 #include "tools/bench/cache/side_exchange.h"

@@ -7,7 +7,7 @@
 namespace luxrig {
 namespace {
 
-/// Mean over a grid of directions, times 4π: exact around, the midpoint rule in height.
+/// Integral over the sphere: mean over a grid of directions, times 4π. Exact in azimuth, midpoint rule in height.
 template <class F>
 auto integral_over_sphere(const F& f) {
   constexpr int kLevels = 600, kTurns = 64;
@@ -38,7 +38,7 @@ TEST(SphericalHarmonics, CosineLobeIsTheProjectionOfTheClampedCosine) {
     const Harmonics projected =
         integral_over_sphere([&](const Vec3& d) -> Harmonics { return harmonics(d) * std::max(0.0, d.dot(axis)); });
     EXPECT_LT((projected - cosine_lobe(axis)).cwiseAbs().maxCoeff(), 2e-3);
-    // 99.2 % of the lobe's energy, 2π/3, is in three orders.
+    // Three orders contain 99.2 % of the lobe's energy, 2π/3.
     EXPECT_NEAR(cosine_lobe(axis).squaredNorm() / (2 * kPi / 3), 0.9922, 1e-4);
   }
 }

@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of surface_sides share.
+/// Shared by the tests of surface_sides.
 
 #include "tests/tools/bench/cache/cache_rooms.h"
 #include "tools/bench/cache/surface_sides.h"

@@ -47,7 +47,7 @@ TEST(SurfaceSides, EveryPlaceOfASurfaceFindsASideThatLooksItsWayAndIsNear) {
                       other.normal_world.cast<double>().dot(normal) > 0.4);
     EXPECT_TRUE(near);
   }
-  // Small sides that share a cell and joined different neighbours may be taken for one another.
+  // Small sides that share a cell but joined different neighbours may be confused.
   EXPECT_GT(static_cast<double>(own), 0.97 * static_cast<double>(sides.pieces().size()));
 }
 

@@ -18,7 +18,7 @@ double volume_of(const ClosedMesh& mesh) {
   return six_m3 / 6;
 }
 
-/// Every edge is walked as often one way as the other.
+/// Every edge appears equally often in both directions.
 bool is_closed(const ClosedMesh& mesh) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> walked;
   for (const auto& t : mesh.triangles)
@@ -41,7 +41,8 @@ TEST(LevelSet, OfABallHasItsVolumeToSecondOrderAndLooksOutward) {
     EXPECT_TRUE(is_closed(ball));
     const double exact_m3 = 4 * kPi / 3;
     errors[halving] = std::abs(volume_of(ball) / exact_m3 - 1);  // positive: outward
-    // The mean of points of the ball that share a cell: under it by the sagitta of the cell's diagonal at most.
+    // A vertex is the mean of points of the ball that share a cell: at most the sagitta of the cell's diagonal below
+    // the surface.
     for (const Vec3& v : ball.vertices_m) EXPECT_NEAR(v.norm(), 1, 3 * cell_m * cell_m / 8 + 1e-3);
   }
   EXPECT_LT(errors[0], 0.05);
@@ -64,7 +65,7 @@ TEST(LevelSet, IsFlatWhereAPlaneCutsABall) {
 TEST(LevelSet, IsClosedWhereTheBoxCutsItAndWhenTheFunctionIsZeroOnTheGrid) {
   EXPECT_TRUE(is_closed(mesh_level_set(box_of(1), 0.25, [](const Vec3&) { return -1.0; })));
   EXPECT_TRUE(is_closed(mesh_level_set(box_of(1), 0.25, [](const Vec3& p) { return p.cwiseAbs().maxCoeff() - 0.5; })));
-  // A chessboard of cubes: at each edge of the grid four of them may meet.
+  // A chessboard of cubes: up to four of them meet at each edge of the grid.
   EXPECT_TRUE(is_closed(mesh_level_set(box_of(1), 0.25, [](const Vec3& p) {
     return static_cast<int>(std::floor(4 * p.x()) + std::floor(4 * p.y()) + std::floor(4 * p.z())) % 2 == 0 ? 0.1
                                                                                                             : -0.1;
@@ -95,7 +96,7 @@ TEST(SolidModel, ArchHasTheVolumeOfItsBlockWithoutTheOpening) {
     for (const Vec3f& v : scene.vertices_m) mesh.vertices_m.push_back(v.cast<double>());
     mesh.triangles = scene.triangles;
     EXPECT_TRUE(is_closed(mesh));
-    // Half of a regular polygon of twice as many sides, inscribed.
+    // Half of an inscribed regular polygon of twice as many sides.
     const double radius_m = 1.25, opening_m2 = radius_m * radius_m / 2 * kSegments * std::sin(kPi / kSegments);
     EXPECT_NEAR(volume_of(mesh), 0.4 * (3 * 2 - opening_m2), 1e-5);
     EXPECT_FALSE(model.occupied(along_x ? Vec3(1.5, 0.2, 0.9) : Vec3(0.2, 1.5, 0.9), 0));

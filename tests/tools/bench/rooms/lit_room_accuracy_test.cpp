@@ -12,7 +12,7 @@ using namespace lit_room_fixture;
 
 INSTANTIATE_TEST_SUITE_P(All, LitRooms, testing::ValuesIn(kRooms), [](const auto& of) { return of.param.name; });
 
-// Receivers and lamps share one air, also where a seed is of another kind than those that were looked at.
+// Receivers and lamps share one air region, also for seeds unlike those inspected by hand.
 TEST_P(LitRooms, HaveReceiversAndLampsInOneAirForAnySeed) {
   for (const std::uint64_t seed : {0ULL, ~0ULL, 1ULL << 63, 0x5555555555555555ULL}) {
     const LitRoom room = GetParam().make(seed);
@@ -30,7 +30,7 @@ TEST_P(LitRooms, HaveReceiversAndLampsInOneAirForAnySeed) {
   }
 }
 
-/// How many solids the point is in: crossings of a ray, each with the sign of the side it comes from.
+/// Number of solids around the point: crossings of a ray, each with the sign of the side it comes from.
 int solids_around(const Scene& scene, const Vec3& point_m) {
   const Vec3 towards = Vec3(0.3217, 0.5419, 0.7764).normalized();
   int count = 0;
@@ -50,7 +50,7 @@ int solids_around(const Scene& scene, const Vec3& point_m) {
 TEST_P(LitRooms, HaveReceiversAndLampsInFreeSpace) {
   for (const std::uint64_t seed : {1, 2}) {
     const LitRoom room = GetParam().make(seed);
-    // Brute force: of large rooms some receivers only. AirRegions judges all of them above.
+    // Brute force: in large rooms only some receivers. AirRegions checks all of them above.
     const std::size_t step = 1 + room.scene.triangles.size() / 20'000;
     for (std::size_t i = 0; i < room.receivers.size(); i += step) {
       const Receiver& r = room.receivers[i];
@@ -59,7 +59,7 @@ TEST_P(LitRooms, HaveReceiversAndLampsInFreeSpace) {
     }
     for (const Emitter& e : room.emitters) ASSERT_EQ(solids_around(room.scene, e.world_from_lamp.translation_m), 0);
   }
-  // The count itself: half a metre below the floor's top is in the floor's slab.
+  // Check of the count itself: a point 0.1 m below the floor is in the floor's slab.
   const LitRoom room = GetParam().make(1);
   EXPECT_GT(solids_around(room.scene, {1.234, 1.111, -0.1}), 0);
 }

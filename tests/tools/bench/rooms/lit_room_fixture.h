@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of lit_room share.
+/// Shared by the tests of lit_room.
 
 #include <gtest/gtest.h>
 

@@ -46,7 +46,8 @@ TEST_P(LitRooms, AreTheSameForOneSeedAndDifferForTwo) {
   EXPECT_TRUE(other_receiver);
 }
 
-// Each edge of a closed surface is walked once in each direction: by place, since boxes need not share vertices.
+// Each edge of a closed surface appears once in each direction. Edges are compared by position, as boxes need not share
+// vertices.
 TEST_P(LitRooms, AreBuiltOfClosedSolids) {
   const Scene scene = GetParam().make(1).scene;
   using Place = std::array<float, 3>;

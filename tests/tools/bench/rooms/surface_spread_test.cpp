@@ -49,7 +49,7 @@ TEST(SurfaceSpread, IsOnTheFreeFloorOnlyAMillimetreOffIt) {
     EXPECT_FALSE(in(r.position_world_m, 0.971, 2.029, 0.971, 3.029)) << "in the block, or by its side";
     EXPECT_FALSE(in(r.position_world_m, 4, 5, 1, 3)) << "below the board";
   }
-  // Below the board there is room for those who stoop.
+  // With less headroom, receivers also lie below the board.
   room.floor.headroom_m = 0.4;
   int below = 0;
   for (const Receiver& r : spread.over(room.floor, 200, 1)) below += in(r.position_world_m, 4, 5, 1, 3);
@@ -64,7 +64,7 @@ TEST(SurfaceSpread, KeepsReceiversApartAndCoversTheFloor) {
   for (std::size_t i = 0; i < receivers.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       nearest_m = std::min(nearest_m, (receivers[i].position_world_m - receivers[j].position_world_m).norm());
-  // In the densest packing of 200 on 22 m² they would be this far apart; random ones come as near as a tenth of that.
+  // The distance in the densest packing of 200 on 22 m²; random points come as near as a tenth of it.
   const double packed_m = std::sqrt(2 / std::sqrt(3.0) * 22 / 200);
   EXPECT_GT(nearest_m, 0.55 * packed_m);
   for (double x = 0.1; x < 6; x += 0.2)

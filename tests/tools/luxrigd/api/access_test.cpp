@@ -13,7 +13,7 @@ HttpRequest with(const std::string& name, const std::string& value) {
   return request;
 }
 
-/// What a browser sends back.
+/// The cookie that a browser returns.
 std::string returned(const std::string& set_cookie) { return set_cookie.substr(0, set_cookie.find(';')); }
 
 TEST(Access, TheTokenIsKnownAndNothingElse) {

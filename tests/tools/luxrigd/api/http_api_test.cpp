@@ -22,10 +22,10 @@
 namespace luxrig {
 namespace {
 
-/// What `post` and `get` send besides: the token of the daemon under test.
+/// Token of the daemon under test; `post` and `get` send it.
 std::string g_token;
 
-/// Sends raw bytes, returns the answer's first line and body.
+/// Sends raw bytes; returns the answer.
 std::string ask(int port, const std::string& request, bool wait_for_end = true) {
   const int client = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   sockaddr_in to{};
@@ -272,10 +272,10 @@ TEST_F(HttpApiTest, SixteenMegabytesOfBracketsAreRefusedAndCostNothingThatStays)
       if (int kb = 0; word == key && in >> kb) return kb;
     return 0;
   };
-  // What the test itself needs is there before it measures.
+  // Allocate the test's own data before measuring.
   const std::string body(16u << 20, '[');
   const std::string plan = post("/api/apply", body, kJson), level = post("/api/level", body, kJson);
-  std::ofstream("/proc/self/clear_refs") << 5;  // the peak is that from now on
+  std::ofstream("/proc/self/clear_refs") << 5;  // resets the peak
   const int before_kb = kilobytes("VmRSS:");
   for (int i = 0; i < 3; ++i) {
     EXPECT_NE(ask(port, plan).find(" 400 "), std::string::npos);

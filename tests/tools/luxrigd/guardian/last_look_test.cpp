@@ -106,7 +106,7 @@ TEST(LastLook, IsWholeHoweverItsWriterDies) {
         memory->beat(LastLookMemory::Beat::output);
       }
     }
-    // It has begun: on a busy machine a process may take longer to do so than all the pauses here.
+    // Wait until it has begun: on a busy machine, starting a process may take longer than all the pauses here.
     const std::uint32_t beats = memory->beats(LastLookMemory::Beat::output);
     for (int waited = 0; memory->beats(LastLookMemory::Beat::output) == beats && waited < 30'000; ++waited)
       ::usleep(1000);

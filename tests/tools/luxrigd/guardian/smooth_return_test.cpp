@@ -38,7 +38,7 @@ TEST(SmoothReturn, WithoutAStallNothingIsChanged) {
   }
 }
 
-// It jumped 123 of 255 in a frame.
+// It used to jump by 123 of 255 in one frame.
 TEST(SmoothReturn, AfterAStallInAFadeNoFrameIsFarFromTheOneBefore) {
   std::mt19937 random(5);
   for (int trial = 0; trial < 200; ++trial) {

@@ -73,7 +73,7 @@ TEST(Journal, ReadsWhatAnOlderVersionWrote) {
   EXPECT_TRUE(left.complaints.empty());
 }
 
-// "luxrig_state":"1" ended every start of the daemon; a cut file let a blackout go.
+// "luxrig_state":"1" used to end every start of the daemon; a truncated file lost a blackout.
 TEST(Journal, OfADamagedFileWhatIsLegibleHoldsAboveAllTheBlackout) {
   struct Case {
     const char* text;
@@ -96,7 +96,7 @@ TEST(Journal, OfADamagedFileWhatIsLegibleHoldsAboveAllTheBlackout) {
     ASSERT_EQ(left.complaints.size(), 1u) << one.text;
     EXPECT_NE(left.complaints[0].find("damaged"), std::string::npos) << left.complaints[0];
     EXPECT_EQ(luxrig::testing::text_of(folder / "state.json.damaged"), one.text) << "kept for a person";
-    // The daemon may be killed before it has saved what was legible.
+    // The daemon may be killed before it has saved the legible part.
     EXPECT_EQ(Journal(folder / "").load().state->blackout, one.blackout) << one.text;
   }
 }
@@ -105,7 +105,7 @@ TEST(Journal, HalfWrittenStateNeverReplacesTheOldOne) {
   const Folder folder;
   Journal journal(folder / "");
   ASSERT_TRUE(save(journal, {"old", false, {}}));
-  // What a power cut in the middle of a save leaves behind.
+  // A power cut in the middle of a save leaves this.
   std::ofstream(folder / "state.json.new") << "{\"luxrig_state\":1,\"pl";
   ASSERT_TRUE(journal.load().state);
   EXPECT_EQ(journal.load().state->plan_json, "old");
@@ -113,7 +113,7 @@ TEST(Journal, HalfWrittenStateNeverReplacesTheOldOne) {
   EXPECT_EQ(journal.load().state->plan_json, "new");
 }
 
-// A plan that was refused as the disk was full was on disk after the next save.
+// A plan that was refused because of a full disk used to be on disk after the next save.
 TEST(Journal, WhatIsRefusedIsNeverSavedAndWhatIsDoneGoesWithTheNextSave) {
   const Folder folder;
   std::ofstream(folder / "state") << "a file stands in the way";
@@ -133,7 +133,7 @@ TEST(Journal, WhatIsRefusedIsNeverSavedAndWhatIsDoneGoesWithTheNextSave) {
   EXPECT_TRUE(left.state->plan_json.empty());
 }
 
-// Saves of several threads shared one temporary file: 149 of 240 failed, and disk and memory differed.
+// Saves of several threads used to share one temporary file: 149 of 240 failed, and disk and memory differed.
 TEST(Journal, SavesOfSeveralThreadsComeOneAfterTheOther) {
   const Folder folder;
   Journal journal(folder / "");

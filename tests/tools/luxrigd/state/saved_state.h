@@ -1,5 +1,5 @@
 #pragma once
-/// A state to save, and what a folder of states holds.
+/// A state to save, and the content of a folder of states.
 
 #include <filesystem>
 #include <set>
@@ -9,7 +9,7 @@
 
 namespace luxrig::testing {
 
-/// Larger than any buffer: a half of it is no JSON.
+/// Larger than any buffer; half of it is not valid JSON.
 inline JournalState state_with(const char* plan) {
   JournalState state{std::string(plan) + std::string(100'000, '.'), false, {"yoke"}};
   state.by_hand = {{false, plan, 0.5, 1.75e9, std::nullopt}};

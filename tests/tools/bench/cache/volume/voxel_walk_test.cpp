@@ -7,7 +7,7 @@
 namespace luxrig {
 namespace {
 
-/// Length of the part of a segment within a voxel, by clipping at its six faces: an answer that no walk is needed for.
+/// Length of a segment within a voxel, by clipping at its six faces: independent of any walk.
 double length_within(const Eigen::Vector3i& voxel, const Vec3& from, const Vec3& to) {
   double begin = 0, end = 1;
   for (int i = 0; i < 3; ++i) {
@@ -61,7 +61,7 @@ TEST(VoxelWalk, VisitsEveryVoxelThatTheSegmentPassesInOrderAndNoOther) {
         for (int x = 0; x < segments.size.x(); ++x) {
           const Eigen::Vector3i voxel(x, y, z);
           const double length = length_within(voxel, from, to);
-          // A segment in a face belongs to both voxels; a walk takes one of them.
+          // A segment in a face belongs to both voxels; a walk visits one of them.
           bool in_face = false;
           for (int axis = 0; axis < 3; ++axis)
             in_face = in_face || (from[axis] == to[axis] && from[axis] == std::round(from[axis]));
@@ -123,7 +123,7 @@ TEST(VoxelWalk, TheSparseMarchFindsOnlySetVoxelsAndMissesThinOnes) {
     found_by_walk += first_voxel_by_walk(volume, from, to).has_value();
   }
   EXPECT_EQ(found_by_walk, 4000);
-  // Ten looks over about 40 voxels see a wall of one voxel one time in four.
+  // Ten samples over about 40 voxels hit a wall one voxel thick one time in four.
   EXPECT_NEAR(found_by_march, 1000, 250);
 }
 

@@ -21,7 +21,7 @@ Scene scene_of(const std::vector<std::array<Vec3f, 3>>& triangles) {
   return scene;
 }
 
-/// Points spread over each triangle, its corners and edges among them; each with the box of voxels it may lie in.
+/// Visits points spread over each triangle, including corners and edges, each with the box of voxels it may lie in.
 template <class Check>
 void for_each_surface_point(const Scene& scene, int steps, Check&& check) {
   for (const auto& t : scene.triangles) {
@@ -80,11 +80,11 @@ TEST(Voxelise, SetsLittleMoreThanTheVoxelsThatTheTriangleTouches) {
     near += volume.intersected(touched.dilated()).count();
     EXPECT_LT(volume.count(), 2 * touched.count());
   }
-  EXPECT_LT(set - near, set / 1000);  // but for tips of narrow triangles
+  EXPECT_LT(set - near, set / 1000);  // except at tips of narrow triangles
 }
 
 TEST(Voxelise, AWallHasNoHoleThatARayCanPass) {
-  // A tilted wall through the whole box, of many triangles; the rays cross it far from its rim.
+  // A tilted wall of many triangles through the whole box; the rays cross it far from its rim.
   std::vector<std::array<Vec3f, 3>> triangles;
   const auto at = [](int i, int j) {
     const float x = static_cast<float>(i) / 10 - 1, y = static_cast<float>(j) / 10 - 1;
