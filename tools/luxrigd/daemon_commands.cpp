@@ -198,7 +198,7 @@ Result<LightModel> Daemon::model_for(const Session& session, const std::vector<J
   return model;
 }
 
-// ---- what the last daemon left ----
+// ---- state of the last daemon ----
 
 Resumed Daemon::resume(const Journal::Left& left) {
   Resumed resumed;

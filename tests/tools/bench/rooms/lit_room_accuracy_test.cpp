@@ -59,7 +59,7 @@ TEST_P(LitRooms, HaveReceiversAndLampsInFreeSpace) {
     }
     for (const Emitter& e : room.emitters) ASSERT_EQ(solids_around(room.scene, e.world_from_lamp.translation_m), 0);
   }
-  // Check of the count itself: a point 0.1 m below the floor is in the floor's slab.
+  // Check of the count itself: a point at z = -0.1 m is in the floor's slab.
   const LitRoom room = GetParam().make(1);
   EXPECT_GT(solids_around(room.scene, {1.234, 1.111, -0.1}), 0);
 }
