@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of doubt share.
+/// Shared by the tests of doubt.
 
 #include "tests/scenarios/closed_loop.h"
 

@@ -31,7 +31,7 @@ TEST(GainEstimator, BringsMeteredGoalsWithinTwoPercentInThreeRoundsAndNeverExcee
       "allow; "
       "%d over a metered limit, %d over any; most light %.3f of the limit; %d readings rejected\n",
       kRigs, met, met_or_said, over_metered, over, most, rejected);
-  // Before meters are read, limits dim some lamps more than others, which costs four rigs of 500 a fourth round.
+  // Before meters are read, limits dim some lamps more than others. This costs four of 500 rigs a fourth round.
   EXPECT_GT(met_or_said, 0.98 * kRigs);
   EXPECT_EQ(over_metered, 0);
   EXPECT_EQ(over, 0);

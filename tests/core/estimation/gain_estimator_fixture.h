@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of gain_estimator share.
+/// Shared by the tests of gain_estimator.
 
 #include <gtest/gtest.h>
 
@@ -22,9 +22,9 @@ inline constexpr double kTolerance = 0.04;
 
 inline Time at_s(double seconds) { return Time{} + from_seconds(seconds); }
 
-/// Twelve spots over a wall with six metered points and three that nobody measures; points 0 and 1 must not get too
-/// much light. The truth differs from the model: output −20…+5 %, exponent of the dimmer's curve 1.8…2.2 where 2 is
-/// stated, every entry of the matrix ±15 % (poses), meters off by up to their tolerance and 0.3 % of noise.
+/// Twelve spots over a wall with six metered points and three unmetered ones. Points 0 and 1 have a limit. The truth
+/// differs from the model: output −20…+5 %, exponent of the dimmer's curve 1.8…2.2 instead of the stated 2, every entry
+/// of the matrix ±15 % (poses), meters off by up to their tolerance and 0.3 % of noise.
 struct World {
   Rig rig;
   LightModel model;
@@ -35,8 +35,8 @@ struct World {
 
   VectorXd daylight_truth;  ///< per point [lx]
 
-  /// daylight_share: most of it at a point, as a share of what the lights give there; in truth 20 % less to 5 % more
-  /// overall and, as the lights, off by wrong_entries here and there.
+  /// daylight_share: largest daylight at a point, as a share of the light that the lights give there. The true daylight
+  /// is 20 % less to 5 % more overall; single entries are off by wrong_entries, as for the lights.
   explicit World(unsigned seed, double wrong_entries = 0.15, double daylight_share = 0) : random(seed) {
     std::uniform_real_distribution<double> uniform;
     const Index fixtures = 12, meters = 6, points = 9;
@@ -107,7 +107,7 @@ struct World {
     return all;
   }
 
-  /// Most true lux over limit on the fade between two looks, as the output thread would send it.
+  /// Largest ratio of true lux to limit during the fade between two looks, as the output thread would send it.
   [[nodiscard]] double worst_share_of_limit(const GainEstimator& estimator, const std::vector<double>& from,
                                             const std::vector<double>& to, Time now, std::size_t points) const {
     const WorstCase worst = estimator.worst_case(from, to, now);
@@ -126,14 +126,14 @@ struct World {
 
 struct Outcome {
   double worst_error = 0;        ///< of a metered reading against its goal
-  double worst_error_aimed = 0;  ///< the same, but where a reason was given against what was then aimed at
+  double worst_error_aimed = 0;  ///< the same, but against the aimed value where a reason was given
   double most_share_metered = 0, most_share = 0;
   int rejected = 0;
 };
 
 using Spoil = std::function<void(int round, std::vector<LuxReading>&)>;
 
-/// Fade up from dark, then `rounds` of reading and correcting.
+/// Fades up from dark, then reads and corrects `rounds` times.
 inline Outcome run(World& world, int rounds, const Spoil& spoil = nullptr) {
   GainEstimator estimator(world.rig, world.model);
   Outcome outcome;

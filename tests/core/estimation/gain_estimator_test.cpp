@@ -58,10 +58,10 @@ TEST(GainEstimator, CountsDaylightInWhatItPredictsAndLeavesLessOfALimit) {
   EXPECT_NEAR(estimator.most_lux_at_point(1, std::vector<double>{0.5}, at_s(0)), 70, 1e-9);
   EXPECT_NEAR(estimator.within_limits(std::vector<double>{0.5}, at_s(0))[0], 0.4, 1e-9);
   const Correction correction = estimator.correct(std::vector<double>{0.1}, at_s(0));
-  // Least (200 c + 30 − 100)² + 0.5² (200 c − 20)²: half a weight holds back what no meter has confirmed.
+  // Minimum of (200 c + 30 − 100)² + 0.5² (200 c − 20)²: half a weight holds back unconfirmed changes.
   EXPECT_NEAR(correction.level[0], 0.3, 1e-6);
   EXPECT_NEAR(correction.aimed_lx[0], 90, 1e-3);
-  // With the lights out there is still something to learn from a meter: how much daylight there is.
+  // With the lights out a meter still shows how much daylight there is.
   const LuxReading reading{0, 29, at_s(1)};
   EXPECT_TRUE(estimator.update(at_s(1), std::span(&reading, 1), std::vector<double>{0}).front().believed);
   EXPECT_TRUE(estimator.confirmed(0));
@@ -142,7 +142,7 @@ TEST(GainEstimator, CallsAMeterStuckThatKeepsItsValueWhileTheLightCreeps) {
   EXPECT_FALSE(estimator.confirmed(0));
 }
 
-// What it said before it froze stays; what it froze at in the middle of a fade teaches nothing, near as it may be.
+// Its lessons from before it froze stay. The value it froze at during a fade teaches nothing, however near it is.
 TEST(GainEstimator, DoesNotBelieveAMeterThatFreezesInTheMiddleOfAFade) {
   World world(3);
   GainEstimator estimator(world.rig, world.model);
@@ -171,7 +171,7 @@ TEST(GainEstimator, DoesNotBelieveAMeterThatFreezesInTheMiddleOfAFade) {
     EXPECT_FALSE(judgement.believed);
   }
   EXPECT_EQ(frozen.lux, lux);
-  // Nor when the light is what it was when it froze; but as soon as its value changes.
+  // It teaches nothing either when the light is back at the frozen value, but does as soon as its value changes.
   frozen.taken = at_s(9);
   estimator.shows(frozen, at(0.95));
   EXPECT_TRUE(estimator.update(at_s(9), std::span(&frozen, 1), at(0.95)).front().stuck);
@@ -203,7 +203,7 @@ TEST(GainEstimator, FindsTheOutputOfASingleLampAndSaysHowSureItIs) {
   EXPECT_NEAR(estimator.gain_standard_error(0), std::sqrt(prior * variance / (prior + variance)), 1e-3);
   EXPECT_LT(estimator.gain_standard_error(0), before);
   EXPECT_NEAR(estimator.at_meter(0, level).lux, 80, 0.2);
-  // Repeating it does not make the lamp known better than the model is.
+  // Repeated readings do not make the lamp's gain more exact than the model.
   const double once = estimator.gain_standard_error(0);
   for (int k = 2; k < 50; ++k) {
     const LuxReading again{0, 80 + 0.001 * k, at_s(k)};
@@ -294,7 +294,7 @@ TEST(GainEstimator, HandlesARigWithoutMetersPointsOrFixtures) {
   EXPECT_NEAR(estimator.correct(level, at_s(0)).aimed_lx[0], 60, 1e-6);
 }
 
-// A meter sees no colour: what it asks for is more or less of the light there is.
+// A meter sees no colour: it only asks for more or less of the present light.
 TEST(GainEstimator, CorrectsTheEmittersOfAHousingTogether) {
   Rig rig;
   rig.fixtures.resize(4);
@@ -318,7 +318,7 @@ TEST(GainEstimator, CorrectsTheEmittersOfAHousingTogether) {
               model.point_lux_per_level.row(0).dot(Eigen::Map<const Eigen::RowVectorXd>(correction.level.data(), 4)) *
                   estimator.gain(0),
               1e-6);
-  // A dark lamp has no colour to keep, and stays dark.
+  // A dark lamp has no colour to keep. It stays dark.
   const Correction dark = estimator.correct(std::vector<double>{0, 0, 0, 0.3}, Time{});
   EXPECT_EQ(dark.level[0] + dark.level[1] + dark.level[2], 0);
   EXPECT_GT(dark.level[3], 0.3);

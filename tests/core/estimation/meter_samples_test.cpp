@@ -45,7 +45,7 @@ TEST(MeterSamples, CountsOnlyReadingsTakenSinceTheLightStandsStill) {
 
 TEST(MeterSamples, WaitsLongerForReadingsThatStillGoOneWay) {
   MeterSamples samples(1);
-  const auto settling_lx = [](double at_s) { return 5 + 95 * std::exp(-at_s); };  // a lamp of a second
+  const auto settling_lx = [](double at_s) { return 5 + 95 * std::exp(-at_s); };  // a lamp with a time constant of 1 s
   double ready_s = 0;
   for (int i = 1; i <= 60 && ready_s == 0; ++i) {
     samples.add(at(0.2 * i), reading(settling_lx(0.2 * i), 0.2 * i));

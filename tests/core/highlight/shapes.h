@@ -1,5 +1,5 @@
 #pragma once
-/// Meshes of shapes whose curvature is known in closed form.
+/// Meshes of shapes with curvature known in closed form.
 
 #include <array>
 #include <cmath>
@@ -19,8 +19,8 @@ inline Scene with_one_material(Scene scene) {
   return scene;
 }
 
-/// f(u, v) over [0, 1]² in nu × nv squares, two triangles each, facing ∂u × ∂v. Seams are left open by index: vertices
-/// at 0 and 1 are separate ones.
+/// f(u, v) over [0, 1]² in nu × nv squares of two triangles each, facing ∂u × ∂v. Seams are open: the vertices at 0 and
+/// 1 have separate indices.
 inline Scene parametric(int nu, int nv, const std::function<Vec3(double, double)>& f) {
   Scene scene;
   for (int i = 0; i <= nu; ++i)
@@ -36,7 +36,7 @@ inline Scene parametric(int nu, int nv, const std::function<Vec3(double, double)
   return with_one_material(scene);
 }
 
-/// Of poles and slivers there: rings are evenly spaced in angle.
+/// Has poles with slivers: rings are evenly spaced in angle.
 inline Scene uv_sphere(double radius_m, int rings) {
   return parametric(2 * rings, rings, [=](double u, double v) {
     const double phi = 2 * kPi * (u - std::floor(u)), theta = kPi * (1 - v);
@@ -66,7 +66,7 @@ inline Scene saddle(double radius_m, double half_m, int split) {
   });
 }
 
-/// A ceiling: half_m to each side of the middle, at a height, facing down.
+/// A ceiling that faces down: half_m to each side of the middle, at the given height.
 inline Scene ceiling(double half_m, double height_m, const Vec3& middle_m = Vec3::Zero()) {
   return parametric(2, 2, [=](double u, double v) {
     return Vec3(middle_m + Vec3(half_m * (2 * v - 1), half_m * (2 * u - 1), height_m));
@@ -80,7 +80,7 @@ inline Scene joined(Scene a, const Scene& b) {
   return with_one_material(a);
 }
 
-/// Every vertex moved by normal noise along a random direction; the same for the same place.
+/// Moves every vertex by normal noise along a random direction. Vertices at the same place move alike.
 inline Scene noisy(Scene scene, double sigma_m, unsigned seed) {
   Random random(seed);
   std::map<std::array<float, 3>, Vec3f> moved;
@@ -104,7 +104,7 @@ inline Scene transformed(Scene scene, double scale, const Mat3& rotation, const 
   return scene;
 }
 
-/// Vertices and triangles in another order: the same surface.
+/// The same surface with its vertices and triangles in another order.
 inline Scene shuffled(const Scene& scene, unsigned seed) {
   Random random(seed);
   std::vector<std::uint32_t> order(scene.vertices_m.size());

@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of picture share.
+/// Shared by the tests of picture.
 
 #include "core/picture/picture.h"
 

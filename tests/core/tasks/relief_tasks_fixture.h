@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of relief_tasks share.
+/// Shared by the tests of relief_tasks.
 
 #include <unistd.h>
 

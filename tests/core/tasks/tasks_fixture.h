@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of tasks share.
+/// Shared by the tests of tasks.
 
 #include <fstream>
 #include <sstream>

@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of bsdf share.
+/// Shared by the tests of bsdf.
 
 #include "core/transport/bsdf.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of glass share.
+/// Shared by the tests of glass.
 
 #include "core/transport/evaluator.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of camera share.
+/// Shared by the tests of camera.
 
 #include <gtest/gtest.h>
 

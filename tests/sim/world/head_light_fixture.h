@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of head_light share.
+/// Shared by the tests of head_light.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of aim_heads share.
+/// Shared by the tests of aim_heads.
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 
 namespace luxrig::aim_heads_fixture {
 
-/// The carved relief, coarsely, and heads on a rail 2 m before it.
+/// A coarse version of the carved relief, and heads on a rail 2 m in front of it.
 struct AimedRelief {
   Scene scene = make_carved_relief(0.02);
   RayScene room{scene};

@@ -79,7 +79,7 @@ TEST(HeadAims, LightsNothingThatItMayNot) {
   std::vector<HangingHead> heads = rail_of_heads(3);
   const auto free = relief.aims(heads)->solve();
   ASSERT_TRUE(free);
-  // The first head may not look to where it would, nor anywhere near.
+  // The first head may not look where it would, nor near it.
   ASSERT_GT(free->heads[0].setting.level, 0);
   const Vec3 forbidden = lamp_pose(heads[0], free->heads[0].setting.joints).direction({0, 0, -1});
   const double least_rad = rad_from_deg(6);
@@ -152,14 +152,14 @@ TEST(HeadAims, HeadsMoveAsLittleAsTheyCanAndStayWhereTheyLookWhenDark) {
   const AimedRelief& relief = aimed_relief();
   std::vector<HangingHead> heads = rail_of_heads(2);
   heads[0].present = {rad_from_deg(200), rad_from_deg(-40)};
-  heads[1].world_from_mount.translation_m = {0, 3, 0};  // behind it: sees nothing of the front
+  heads[1].world_from_mount.translation_m = {0, 3, 0};  // behind the relief: sees nothing of its front
   const auto aims = relief.aims(heads);
   ASSERT_TRUE(aims);
   const auto found = aims->solve();
   ASSERT_TRUE(found);
   const HeadSetting& key = found->heads[0].setting;
   const Vec3 beam = lamp_pose(heads[0], key.joints).direction({0, 0, -1});
-  // The same beam in any other posture is farther away.
+  // The same beam in any other posture needs a longer move.
   for (const double turn : {-2 * kPi, 2 * kPi}) {
     const Joints other{key.joints.pan_rad + turn, key.joints.tilt_rad};
     if (other.pan_rad < heads[0].range.pan_min_rad || other.pan_rad > heads[0].range.pan_max_rad) continue;
@@ -200,7 +200,7 @@ TEST(HeadAims, ZoomsAndHeadsThatDoNotMove) {
   ASSERT_TRUE(found);
   EXPECT_EQ(found->heads[1].setting.joints.pan_rad, heads[1].present.pan_rad);
   EXPECT_EQ(found->heads[1].setting.joints.tilt_rad, heads[1].present.tilt_rad);
-  // Another stop to choose from is no loss: both are judged by the lux of the same strongest beam.
+  // One more zoom setting to choose from loses nothing: both are judged by the lux of the same strongest beam.
   std::vector<HangingHead> narrow = heads;
   narrow[0].zoom = {heads[0].zoom[1]};
   const auto without = relief.aims(narrow)->solve();
@@ -248,8 +248,7 @@ TEST(HeadAims, RefusesWhatCannotBe) {
   EXPECT_NE(smooth.error().detail.find("no interest points"), std::string::npos);
 }
 
-// A key light that is darker than the rest is none; and what is shared is shared so that nobody is left out for coming
-// last.
+// A key light must not be darker than the fill. The shared limit must leave light for the last head, too.
 TEST(HeadAims, KeepsTheKeyAboveTheFillWhateverTheOrder) {
   for (std::size_t key = 0; key < 3; ++key) {
     AimWishes wishes;
@@ -264,7 +263,7 @@ TEST(HeadAims, KeepsTheKeyAboveTheFillWhateverTheOrder) {
     EXPECT_TRUE(found->score.within_limits);
     EXPECT_GE(found->score.key_to_fill, 1.5 * (1 - 1e-9)) << key;
     EXPECT_LE(found->score.key_to_fill, 6 * (1 + 1e-9)) << key;
-    // Without the ratio the same heads do at least nearly as well; with it they are not lost.
+    // Without the ratio the same heads do at least nearly as well; with it they keep most of their value.
     AimWishes free = wishes;
     free.key.reset();
     const auto without = aimed_relief().aims(rail_of_heads(3), free)->solve();
@@ -279,11 +278,11 @@ TEST(HeadAims, KeepsTheKeyAboveTheFillWhateverTheOrder) {
   EXPECT_FALSE(aimed_relief().aims(rail_of_heads(3), crossed));
 }
 
-// A rig may say that a place stays dark: that is a limit like another, not a mistake.
+// A rig may require a dark place. This is a limit like any other, not an error.
 TEST(HeadAims, KeepsAPlaceDark) {
   const std::vector<HangingHead> heads = rail_of_heads(3);
   AimWishes wishes;
-  // Where every head is seen: none may shine at all.
+  // In sight of every head: none may shine at all.
   wishes.limits = {{"drawing", {{0, -0.5, 0.3}, Vec3::Zero()}, 0, 0}};
   const auto aims = aimed_relief().aims(heads, wishes);
   ASSERT_TRUE(aims) << aims.error().detail;
@@ -291,7 +290,7 @@ TEST(HeadAims, KeepsAPlaceDark) {
   ASSERT_TRUE(found) << found.error().detail;
   EXPECT_TRUE(found->score.within_limits);
   EXPECT_LE(found->score.limit_lx[0], 0);
-  // Behind the slab, where no head reaches, it costs nothing.
+  // Behind the slab, out of reach of all heads, the limit costs nothing.
   wishes.limits = {{"store", {{0, 0.1, 0}, {0, 1, 0}}, 0, 0}};
   const auto behind = aimed_relief().aims(heads, wishes)->solve();
   ASSERT_TRUE(behind);

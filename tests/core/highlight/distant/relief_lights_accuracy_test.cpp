@@ -83,7 +83,7 @@ TEST(ReliefLights, TurnWithTheObjectAndDoNotMindAScannersNoise) {
 }
 
 TEST(ReliefLights, ComeFromWhereTheyArePreferredIfTheObjectLeavesItOpen) {
-  // A bowl in level ground: as good from any side.
+  // A bowl in level ground: all sides are equally good.
   const ReliefStudy study = studied(parametric(120, 120,
                                                [](double u, double v) {
                                                  const double x = 4 * u - 2, y = 4 * v - 2;
@@ -94,7 +94,7 @@ TEST(ReliefLights, ComeFromWhereTheyArePreferredIfTheObjectLeavesItOpen) {
   ASSERT_TRUE(plain);
   for (const double azimuth_deg : {10.0, 100.0, 235.0}) {
     ReliefLightOptions options;
-    options.preference = 0.1;  // samples leave some 2 % between one side of the bowl and another
+    options.preference = 0.1;  // samples make the sides of the bowl differ by some 2 %
     options.preferred = Vec3(std::cos(rad_from_deg(azimuth_deg)), std::sin(rad_from_deg(azimuth_deg)), 0.5);
     const auto one = searched(study, options).lights(1);
     ASSERT_TRUE(one);

@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of relief_lights share.
+/// Shared by the tests of relief_lights.
 
 #include <gtest/gtest.h>
 

@@ -18,7 +18,7 @@ namespace {
 
 using namespace relief_lights_fixture;
 
-/// Level ground with a straight groove along Y, half a metre wide and as deep.
+/// Level ground with a straight groove along Y, half a metre wide and half a metre deep.
 Scene grooved_ground() {
   return parametric(120, 60, [](double u, double v) {
     const double x = 6 * u - 3;
@@ -62,7 +62,7 @@ TEST(TabledContrast, IsThatOfRays) {
     }
     const double by_rays = contrast_by_rays(study, directions);
     EXPECT_NEAR(contrast.of(bins).local_contrast_lx, by_rays, 1e-5);
-    // The last of them on top of the others.
+    // Add the last bin to the light of the others.
     const std::uint32_t last = bins.back();
     bins.pop_back();
     EXPECT_NEAR(contrast.with_each_bin(contrast.illuminance_lx(bins))[last], by_rays, 1e-5);
@@ -73,7 +73,7 @@ TEST(TabledContrast, IsThatOfRays) {
 }
 
 TEST(TabledContrast, ExposedIsAShareOfTheBrighterOrOfTheMean) {
-  // Two level places, one in the dark; and one that looks sideways, lit at half.
+  // Two level places, one of them dark, and one that faces sideways, lit at half.
   ContrastSamples samples;
   samples.interest = 1;
   samples.points = {
@@ -102,7 +102,7 @@ TEST(ReliefLights, ShineAcrossAGroove) {
   EXPECT_LT(std::abs(direction.y()), std::sin(rad_from_deg(8)));
   EXPECT_GT(direction.z(), 0.1);
   EXPECT_GT(std::abs(direction.x()), 0.3);
-  // Three times what light along it does, as steep.
+  // Three times the contrast of an equally steep light along the groove.
   const Vec3 along(0, std::abs(direction.x()), direction.z());
   EXPECT_GT(contrast_by_rays(study, {direction}), 3 * contrast_by_rays(study, {along}));
 }
@@ -117,7 +117,7 @@ TEST(ReliefLights, KeepTheirDistanceAndAreBetterThanWhereTheyStart) {
   ASSERT_TRUE(from_start && greedy);
   for (const auto* lights : {&*from_start, &*greedy}) {
     ASSERT_EQ(lights->directions.size(), 3u);
-    // Of bins 40°; a peak may lie a bin's width beside its bin.
+    // 40° holds between bins; a peak may lie a bin's width beside its bin.
     for (std::size_t i = 0; i < 3; ++i)
       for (std::size_t j = 0; j < i; ++j)
         EXPECT_LT(lights->directions[i].dot(lights->directions[j]), std::cos(rad_from_deg(40 - 2 * 3.7)));

@@ -19,7 +19,7 @@ LightDomain domain_over(const Scene& scene, const Vec3& centre, const LightDomai
   return std::move(*domain);
 }
 
-/// Points at random places within a box with edges drawn at random, not found: what is voted does not depend on how.
+/// Points at random places in a box, with random edges instead of found ones: the votes do not depend on their origin.
 struct DrawnEdges {
   std::vector<OrientedPoint> points;
   ShadowEdges edges;
@@ -147,9 +147,9 @@ TEST(DomainVotes, LuminairesMayHangOnTheEnvironmentItself) {
   }
 }
 
-/// A floor, a wall at x = 0 from z = 0 to 1, and floor above it; long in y. A point of the lower floor at -w sees its
-/// shadow edge pass through the wall's upper edge: so on a level surface at z = h every edge, whatever its azimuth,
-/// ends at x = w (h - 1).
+/// A floor, a wall at x = 0 from z = 0 to 1, and an upper floor; long in y. A point of the lower floor at -w sees its
+/// shadow edges along the wall's upper edge. So on a level surface at z = h every edge ends at x = w (h - 1), whatever
+/// its azimuth.
 struct WallAndPoints {
   Scene scene = parametric(3, 1, [](double u, double v) {
     const std::array<Vec3, 4> profile = {Vec3(-4, 0, 0), Vec3(0, 0, 0), Vec3(0, 0, 1), Vec3(4, 0, 1)};
@@ -171,7 +171,7 @@ struct WallAndPoints {
 
 TEST(DomainVotes, GatherWhereTheGeometryOfAWallSays) {
   const WallAndPoints wall(1);
-  // A strip of ceiling wide enough for all of |y| < 2.
+  // A strip of ceiling wide enough for all |y| < 2.
   const Scene strip = parametric(2, 2, [](double u, double v) { return Vec3(-4 + 16 * v, 4 * u - 2, 3); });
   const LightDomain domain = domain_over(strip, Vec3(-1, 0, 0), {{0}, 16});
   const auto votes = vote_on_domain(domain, wall.edges, wall.points, wall.features, {});
@@ -191,7 +191,7 @@ TEST(DomainVotes, GatherWhereTheGeometryOfAWallSays) {
                                      [](const auto& a, const auto& b) { return a.weight < b.weight; });
   EXPECT_NEAR(best->position_world_m.x(), 2 - 0.08, 0.1);
   EXPECT_NEAR(best->position_world_m.z(), 3, 1e-5);
-  // It shines back over the wall's edge at the points.
+  // It shines over the wall's edge back at the points.
   const Vec3 towards = (Vec3(-1, 0, 0) - best->position_world_m).normalized();
   EXPECT_GT(best->direction.dot(towards), std::cos(rad_from_deg(5)));
 }
@@ -280,7 +280,7 @@ TEST(DomainVotes, OfDegenerateDomainsAreFiniteOrRefused) {
     }
     for (const DomainVote& vote : votes->votes) {
       EXPECT_TRUE(std::isfinite(votes->weight(vote)));
-      EXPECT_LT(votes->weight(vote), 1e6 * (1 + 1e-6));  // not nearer than 1 mm
+      EXPECT_LT(votes->weight(vote), 1e6 * (1 + 1e-6));  // distances count as at least 1 mm
       EXPECT_NEAR(vote.direction.norm(), 1, 1e-6);
     }
     PotentialLightOptions options;
@@ -309,7 +309,7 @@ TEST(CoverageVotes, OfASphereComeFromThePlacesThatSeeThem) {
   for (const std::uint32_t i : covering->surface_point) {
     for (const auto& cell : domain->cell_centres()) {
       const Vec3 way = cell.position_world_m - surface->point_world_m(i);
-      // Facets stand before their corners' horizon by up to half the angle between them.
+      // Facets rise above their corners' horizon by up to half the angle between them.
       const double sine = way.normalized().dot(surface->normals[i]);
       if (std::abs(sine) < 0.15) {
         ++unsure;

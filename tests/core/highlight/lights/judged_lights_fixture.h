@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of judged_lights share.
+/// Shared by the tests of judged_lights.
 
 #include <gtest/gtest.h>
 

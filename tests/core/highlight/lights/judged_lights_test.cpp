@@ -17,8 +17,8 @@ namespace {
 
 using namespace judged_lights_fixture;
 
-/// Samples in a row, each an interest point compared with its two neighbours; features of five in a row; lights drawn,
-/// each on a stretch of them.
+/// Samples in a row: each is an interest point compared with its two neighbours, five in a row are a feature. Random
+/// lights each light a stretch of the row.
 struct DrawnRow {
   ContrastSamples samples;
   FeatureClusters features;
@@ -50,7 +50,7 @@ struct DrawnRow {
     return {samples, features, lights, Vec3::Zero(), std::move(wishes)};
   }
 
-  /// By hand: contrast × (1 + weight × share of features with an edge).
+  /// Independent formula: contrast × (1 + weight × share of features with an edge).
   [[nodiscard]] double judged(const std::vector<std::uint32_t>& taken, const JudgedWishes& wishes) const {
     std::vector<double> lux(samples.points.size(), 0);
     std::vector<int> shown(features.sizes.size(), 0);
@@ -149,7 +149,7 @@ TEST(JudgedSelection, AddedAndRemovedIsAsBefore) {
   selection.remove(2);
   EXPECT_EQ(selection.score().judged, before.judged);
   EXPECT_EQ(selection.add(), third);
-  // Of those that are left one more is taken until none keeps its distance.
+  // Adds one light after the other until none keeps its distance.
   while (selection.add()) {
   }
   for (std::size_t i = 0; i < selection.taken().size(); ++i)
@@ -197,7 +197,7 @@ TEST(JudgedLights, AreAsRaysHaveThemAndNoPlaceIsBetter) {
     EXPECT_NEAR(chosen->score.local_contrast_lx / by_rays(lights), 1, 1e-4);
     EXPECT_GT(chosen->score.coverage, 0);
   }
-  // One light against every place, aimed at every twentieth interest point.
+  // One light is tested against every place, aimed at every twentieth interest point.
   double best_lx = 0;
   for (const Vec3& place : places)
     for (std::size_t i = 0; i < study.points.size(); i += 20)
@@ -213,7 +213,7 @@ TEST(JudgedLights, RefuseWhatCannotBeLit) {
     return JudgedLights::make(study.surface, study.rays, study.interest, study.features, places, {}, spot, options);
   };
   ASSERT_TRUE(made(above, {}));
-  EXPECT_EQ(made(above, {})->lights(3)->lights.size(), 1u);  // two there would be one brighter light
+  EXPECT_EQ(made(above, {})->lights(3)->lights.size(), 1u);  // two lights there would be one brighter light
   EXPECT_FALSE(made(above, {})->lights(0));
   EXPECT_FALSE(made(above, {})->lights(65));
   EXPECT_FALSE(made(below, {}));  // open ground, from behind

@@ -26,8 +26,8 @@ TEST(LightDomain, EveryLayerIsHitWhereItsPlaneIs) {
     const Vec3 d = random.direction();
     if (d.z() > 0.35) directions.push_back((random.between(0.5, 2) * d).cast<float>());
   }
-  directions.push_back(Vec3f(0, 0, 1));  // a corner of eight triangles: hit once
-  directions.push_back(Vec3f(1, 1, 2));  // along the edges between two
+  directions.push_back(Vec3f(0, 0, 1));  // a corner of eight triangles is hit once
+  directions.push_back(Vec3f(1, 1, 2));  // along the edges between two triangles
   directions.push_back(Vec3f(0, 0, -1));
   std::vector<DomainHit> hits;
   const Vec3 from(0, 0, 0.25);
@@ -46,7 +46,7 @@ TEST(LightDomain, EveryLayerIsHitWhereItsPlaneIs) {
 }
 
 TEST(LightDomain, LayersOfABoxAreBoxes) {
-  // The six sides of a cube, welded, seen from inside: layers are smaller cubes without gaps at the edges.
+  // The six sides of a cube, welded, seen from inside. Layers are smaller cubes without gaps at the edges.
   Scene cube;
   for (int i = 0; i < 8; ++i) cube.vertices_m.push_back(Vec3f(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1));
   const std::array<std::array<std::uint32_t, 4>, 6> sides = {

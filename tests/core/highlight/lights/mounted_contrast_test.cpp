@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kFloorSquares = 20;
 
-/// Level, 4 m to a side about the origin, in squares of 20 cm.
+/// Level, 4 m to a side, centred on the origin, in squares of 20 cm.
 struct LevelFloor {
   Scene scene =
       parametric(kFloorSquares, kFloorSquares, [](double u, double v) { return Vec3(4 * u - 2, 4 * v - 2, 0); });
@@ -58,7 +58,7 @@ TEST(MountedContrast, OfAFarLightIsThatOfADistantOne) {
   const Vec3 direction = Vec3(1, 0.3, 0.2).normalized();
   const double far_m = 1e4;
   const std::vector<DistantBeam> distant = {{direction, 2}};
-  // An even 2 · far² cd: 2 lx there.
+  // A uniform 2 · far² cd: 2 lx there.
   const std::vector<MountedBeam> mounted = {
       aimed_beam(far_m * direction, -direction, make_isotropic(2 * far_m * far_m * 4 * kPi))};
   const auto a = relief_contrast(*surface, target, all, distant, 0, 1);
@@ -72,7 +72,7 @@ TEST(MountedContrast, OfAFarLightIsThatOfADistantOne) {
 }
 
 TEST(MountedContrast, TargetEnvironmentAndPeopleStandInTheWay) {
-  // A lamp 1 m above the floor's middle; a wall from x = 0.5 m on, half as high, shades what lies beyond x = 1 m.
+  // A lamp 1 m above the floor's middle. A wall from x = 0.5 m on, half as high, shades the floor beyond x = 1 m.
   const LevelFloor floor;
   const std::vector<MountedBeam> beams = {aimed_beam({0.01, 0.01, 1}, -Vec3::UnitZ(), make_lambertian(100))};
   const RayScene wall(parametric(1, 1, [](double u, double v) { return Vec3(0.505, 20 * u - 10, 0.5 * v + 0.0001); }));
@@ -83,7 +83,7 @@ TEST(MountedContrast, TargetEnvironmentAndPeopleStandInTheWay) {
     const double x = floor.surface.points_m[i].x();
     expected_lit += x < 0.505 || x > 1 + 1e-6 ? 1.0 / static_cast<double>(floor.all.size()) : 0;
   }
-  // The wall's top, 0.5 m up at x = 0.505, throws its shadow's edge to 0.01 + 0.495 · 2 = 1 m.
+  // The wall's top, 0.5 m up at x = 0.505, casts its shadow edge at 0.01 + 0.495 · 2 = 1 m.
   for (const Surroundings& surroundings : {Surroundings{&wall, nullptr}, Surroundings{nullptr, &wall}}) {
     const auto seen = relief_contrast(floor.surface, floor.target, surroundings, floor.all, beams, 0, 1, features);
     EXPECT_NEAR(seen.lit_points, expected_lit, 1.5 * 21 / static_cast<double>(floor.all.size()));

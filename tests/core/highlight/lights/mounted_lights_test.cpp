@@ -11,7 +11,7 @@
 namespace luxrig {
 namespace {
 
-/// A direction at most so far from another, evenly over the cap.
+/// A direction at most this far from another, uniform over the cap.
 Vec3 direction_near(Random& random, const Vec3& middle, double within_rad) {
   const double z = random.between(std::cos(within_rad), 1), angle = random.between(0, 2 * kPi);
   const Vec3 x = middle.unitOrthogonal(), y = middle.cross(x);
@@ -72,7 +72,7 @@ TEST(DirectionModes, AreFixedPointsOfTheShift) {
           sum += weights[i] * directions[i].cast<double>();
       off += (sum.normalized() - mode.direction).norm() > 0.1 * window_rad ? 1 : 0;
     }
-    // Of few directions one at the window's rim, in for the bin that it is in, out by itself, moves the mean.
+    // With few directions the mean moves if one is at the window's rim: its bin is in the window, the direction is not.
     EXPECT_LE(off, modes.size() / 10);
     for (std::size_t i = 0; i < modes.size(); ++i)
       for (std::size_t j = 0; j < i; ++j) {
@@ -82,7 +82,7 @@ TEST(DirectionModes, AreFixedPointsOfTheShift) {
   }
 }
 
-/// One cell whose votes come from blobs: (direction from the points to the cell, feature, votes).
+/// One cell with votes from blobs: (direction from the points to the cell, feature, votes).
 DomainVotes one_cell(const std::vector<std::tuple<Vec3, std::uint32_t, int>>& blobs, unsigned seed) {
   Random random(seed);
   DomainVotes votes;
@@ -92,7 +92,7 @@ DomainVotes one_cell(const std::vector<std::tuple<Vec3, std::uint32_t, int>>& bl
     for (int i = 0; i < count; ++i) {
       const Vec3 d = direction_near(random, direction, rad_from_deg(3));
       votes.votes.push_back({point, feature, d.cast<float>(), 4});
-      if (i % 2 == 1) ++point;  // two votes from each
+      if (i % 2 == 1) ++point;  // two votes from each point
     }
     votes.features = std::max(votes.features, feature + 1);
   }
@@ -121,7 +121,7 @@ TEST(PotentialLights, ShineAgainstTheirVotes) {
   EXPECT_EQ(lights->of(0)[1].feature, 2u);
   options.least_share = 0.5;
   EXPECT_EQ(potential_lights(votes, options)->lights.size(), 1u);
-  options.beam_angle_rad = 2 * kPi;  // a bare lamp: all votes are one light's
+  options.beam_angle_rad = 2 * kPi;  // a bare lamp: all votes belong to one light
   EXPECT_EQ(potential_lights(votes, options)->lights[0].votes, 406u);
   options.least_votes = 1000;
   EXPECT_FALSE(potential_lights(votes, options));
@@ -167,8 +167,8 @@ struct DrawnTable {
   }
 };
 
-/// The thesis's words, vote by vote: rank by summed weight, take the best, strike all votes of the features that it has
-/// any vote of, rank again.
+/// The thesis's procedure, vote by vote: rank by summed weight, take the best, strike all votes of the features that
+/// voted for it, rank again.
 std::vector<std::uint32_t> chosen_vote_by_vote(std::vector<DrawnVote> votes, std::uint32_t lights,
                                                std::vector<double>& weights) {
   std::vector<std::uint32_t> chosen;
@@ -199,7 +199,7 @@ TEST(LightSelection, TakesWhatStrikingVotesByHandLeaves) {
       EXPECT_EQ(*light, expected[i]);
     }
     EXPECT_FALSE(selection.add());
-    // Everything that has a vote is served.
+    // Every feature with a vote is served.
     std::vector<std::uint8_t> voted(60, 0);
     for (const DrawnVote& vote : table.votes) voted[vote.feature] = 1;
     EXPECT_DOUBLE_EQ(selection.coverage(), static_cast<double>(std::ranges::count(voted, 1)) / 60);

@@ -21,7 +21,7 @@ TEST(DirectionMap, IsItsOwnInverse) {
 }
 
 TEST(DirectionMap, AreasAreSolidAngles) {
-  // A cap of angle θ has the share 1 - cos θ of a half of the sphere, and so of a disc of radius 1.
+  // A cap of angle θ takes the share 1 - cos θ of a hemisphere, so also of a disc of radius 1.
   Random random(4);
   const Vec3 viewer = random.direction();
   const DirectionMap map(viewer);
@@ -39,7 +39,7 @@ TEST(DirectionMap, AreasAreSolidAngles) {
 }
 
 TEST(DirectionMap, LeftIsLeftAndUpIsUpOnBothHalves) {
-  // Who stands before the object at -Y and looks along +Y has +X to the right.
+  // A viewer in front of the object at -Y, looking along +Y, has +X to the right.
   const DirectionMap map(-Vec3::UnitY());
   const auto front = map.place_of(Vec3(0.2, -1, 0.1)), back = map.place_of(Vec3(0.2, 1, 0.1));
   EXPECT_FALSE(front.behind);

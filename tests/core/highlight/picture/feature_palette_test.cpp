@@ -13,14 +13,14 @@ TEST(FeaturePalette, TwoColoursDoForAChain) {
   std::vector<OrientedPoint> points;
   FeatureClusters features;
   for (std::uint32_t cluster = 0; cluster < 9; ++cluster)
-    for (std::uint32_t i = 0; i < 9 - cluster; ++i) {  // largest first: along the chain
+    for (std::uint32_t i = 0; i < 9 - cluster; ++i) {  // largest first, along the chain
       points.push_back({Vec3(cluster, 0.1 * i, 0), Vec3::UnitZ()});
       features.cluster_of_point.push_back(cluster);
     }
   for (std::uint32_t cluster = 0; cluster < 9; ++cluster) features.sizes.push_back(9 - cluster);
   const auto colours = feature_colours(points, features, 1.0, 2);
   for (std::uint32_t cluster = 0; cluster < 9; ++cluster) EXPECT_EQ(colours[cluster], cluster % 2);
-  // Where none is near another, all have the first.
+  // Where no cluster is near another, all have the first colour.
   for (const std::uint32_t colour : feature_colours(points, features, 0.5, 2)) EXPECT_EQ(colour, 0u);
 }
 
@@ -51,7 +51,7 @@ TEST(FeaturePalette, NeighboursDifferWhereThereAreEnoughColours) {
 }
 
 TEST(FeaturePalette, TheRarestAmongNeighboursWhereThereAreNot) {
-  // All near each other: five clusters, two colours; they take turns.
+  // All near each other: five clusters, two colours, which alternate.
   std::vector<OrientedPoint> points;
   FeatureClusters features;
   for (std::uint32_t cluster = 0; cluster < 5; ++cluster) {

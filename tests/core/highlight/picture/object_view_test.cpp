@@ -57,7 +57,7 @@ TEST(ObjectView, ACameraThatShowsFillsTheFrameAsFarAsAsked) {
     const double wide = right - left, high = bottom - top;
     EXPECT_NEAR(std::max(wide, high), fill, 1e-7);
     EXPECT_NEAR(wide > high ? (left + right) / 2 : (top + bottom) / 2, 0.5, 1e-7);
-    // The other way it is within what was asked, too.
+    // The shorter side keeps the requested margin, too.
     for (const double edge : {left, 1 - right, top, 1 - bottom}) EXPECT_GE(edge, (1 - fill) / 2 - 1e-7);
   }
 }
@@ -90,8 +90,8 @@ TEST(ObjectView, TheCameraThatSeesLooksFromTheWantedSide) {
 TEST(ObjectView, TheCameraThatSeesGoesRoundWhatStandsInTheWay) {
   const std::vector<Vec3> shown = {Vec3(-1, -1, -1), Vec3(1, 1, 1)};
   const std::vector<Sight> wanted = {{Vec3(0, 0, 0)}};
-  // A plate among what is shown hides the middle from half of the sides; walls that are nearer than anything shown do
-  // not, as they are left away.
+  // A shown plate hides the middle from half of the sides. Walls nearer than anything shown do not, as they are left
+  // out.
   const RayScene plate(plate_across_x(0.5, 0.9));
   const auto past = camera_that_sees(plate, shown, wanted, 0.9, 0.6, 100, 100);
   EXPECT_DOUBLE_EQ(past.seen, 1);

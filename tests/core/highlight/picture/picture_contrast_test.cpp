@@ -31,7 +31,7 @@ PictureContrast contrast_at_middle(const Picture& picture, double scale_m) {
   return picture_contrast(picture, camera_above(), RayScene(ceiling(5, 0)), std::span(&kMiddleOfPicture, 1), scale_m);
 }
 
-// Halves of a and b: deviation (a - b)/2 over the mean (a + b)/2.
+// Half of the pixels a, half b: deviation (a - b)/2 over the mean (a + b)/2.
 TEST(PictureContrast, IsTheDeviationOverTheMeanWhateverTheExposure) {
   for (const double exposure : {1e-3, 1.0, 1e5}) {
     const auto contrast = contrast_at_middle(painted([&](int x, int) { return exposure * (x < 40 ? 3 : 1); }), 0.1);

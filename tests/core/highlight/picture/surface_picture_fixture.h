@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of surface_picture share.
+/// Shared by the tests of surface_picture.
 
 #include <gtest/gtest.h>
 

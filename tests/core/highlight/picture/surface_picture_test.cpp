@@ -13,7 +13,7 @@ namespace {
 
 using namespace surface_picture_fixture;
 
-/// A plate in the plane y = 0, looked at from y = -2 along +Y: x to the right, z up, 100 px a metre in the plane.
+/// A plate in the plane y = 0, seen from y = -2 along +Y: x to the right, z up, 100 px a metre in the plane.
 Scene plate_across_y(double left_m, double right_m) {
   return parametric(1, 1, [=](double u, double v) { return Vec3(left_m + u * (right_m - left_m), 0, 2 * v - 1); });
 }
@@ -23,7 +23,7 @@ const Vec3f& pixel(const ColourPicture& picture, double x_m, double z_m) {
   return picture.rgb[y * 200 + x];
 }
 
-/// Area, in pixels, of what is of this colour.
+/// Area of this colour, in pixels.
 double red_px(const ColourPicture& picture) {
   double sum = 0;
   for (const Vec3f& rgb : picture.rgb) sum += std::max(0.0f, rgb.x() - rgb.y());
@@ -66,15 +66,15 @@ TEST(SurfacePicture, ADiscIsSeenBeforeASurfaceAndHiddenBehindIt) {
     picture.draw(std::span(&disc, 1));
     return red_px(picture.resolved());
   };
-  // Twice as near, twice as large: 0.1 m are 20 px, of an area of π 20².
+  // At half the distance, twice as large: 0.1 m are 20 px, the area is π 20².
   EXPECT_NEAR(red_of({Vec3(0.1, -1, 0.1), Vec3::UnitY(), 0.1, 0, kRedDisc, 1}), kPi * 400, 10);
   EXPECT_NEAR(red_of({Vec3(0.1, -1, 0.1), Vec3::UnitY(), 0.1, 0, kRedDisc, 0.25}), kPi * 100, 3);
   EXPECT_EQ(red_of({Vec3(0.1, 0.2, 0.1), Vec3::UnitY(), 0.1, 0, kRedDisc, 1}), 0);
-  // Turned by 60° it is half as high (nearly: perspective), and edge on nothing.
+  // Turned by 60° it is half as high (nearly: perspective); edge-on it shows nothing.
   EXPECT_NEAR(red_of({Vec3(0, -0.5, 0), Vec3(0, 0.5, std::sqrt(0.75)), 0.02, 0, kRedDisc, 1}),
               kPi * std::pow(2 / 1.5 * 2, 2) / 2, 0.5);
   EXPECT_EQ(red_of({Vec3(0, -0.5, 0), Vec3::UnitZ(), 0.1, 0, kRedDisc, 1}), 0);
-  // One that faces the eye wherever it is.
+  // A disc that faces the eye wherever it is.
   EXPECT_NEAR(red_of({Vec3(0, -1, 0), Vec3::Zero(), 0.1, 0, kRedDisc, 1}), kPi * 400, 10);
 }
 
@@ -102,7 +102,7 @@ TEST(SurfacePicture, OfTwoDiscsTheNearerCovers) {
 }
 
 TEST(SurfacePicture, ALineIsHiddenFromWhereItPassesASurface) {
-  // It passes the plate at x = 0, where it is seen at the middle of the picture.
+  // It passes through the plate at x = 0, seen at the middle of the picture.
   const DrawnLine line{Vec3(-0.4, -0.5, 0), Vec3(0.4, 0.5, 0), 4, kRedDisc, 0, 0};
   SurfacePicture picture = picture_of(plate_across_y(-0.9, 0.9), 2);
   picture.draw(line);

@@ -58,7 +58,7 @@ TEST(DistantLights, OneIsTheBinWithMostVotesAndWeakLobesAreCut) {
 
 TEST(DistantLights, AreFewerWhereFewBinsAreVotedFor) {
   auto histogram = votes_around({});
-  EXPECT_FALSE(distant_lights(histogram, {}));  // nothing to bring out: said, not answered with a guess
+  EXPECT_FALSE(distant_lights(histogram, {}));  // nothing to bring out: an error, not a guess
   histogram.votes[5] = 3;
   histogram.mean_direction[5] = histogram.bins.direction_of(5);
   EXPECT_EQ(distant_lights(histogram, {4, 0.33})->size(), 1u);
@@ -97,7 +97,7 @@ TEST(DistantLights, RakeAcrossTheRelief) {
   const TargetRays target(scene);
   const Chosen c = chosen(scene, target, 300, 1);
   ASSERT_EQ(c.lights.size(), 1u);
-  // As the thesis has it for its terrain (§6.4.3): at an oblique angle, above the ground.
+  // As in the thesis for its terrain (§6.4.3): at an oblique angle, above the ground.
   const double up = c.lights[0].direction.z();
   EXPECT_GT(up, 0.02);
   EXPECT_LT(up, 0.8);
@@ -139,8 +139,8 @@ TEST(CoverageLights, OfASphereLightHalfEach) {
 }
 
 TEST(ReliefContrast, OfAStepIsWhatItsGeometrySays) {
-  // A level floor, a wall at x = 0 from z = 0 to 1, and floor above: light from -X at 45° leaves x in 0…-1 lit, from +X
-  // shades the lower floor up to x = -1.
+  // A level floor, a wall at x = 0 from z = 0 to 1, and an upper floor. Light from -X at 45° leaves x in 0…-1 lit;
+  // light from +X shades the lower floor up to x = -1.
   const Scene scene = parametric(3, 1, [](double u, double v) {
     const std::array<Vec3, 4> profile = {Vec3(-4, 0, 0), Vec3(-0.5, 0, 0), Vec3(0, 0, 1), Vec3(4, 0, 1)};
     const Vec3 at = profile[static_cast<std::size_t>(std::lround(3 * u))];
@@ -155,7 +155,7 @@ TEST(ReliefContrast, OfAStepIsWhatItsGeometrySays) {
   const Vec3 low(std::cos(0.3), 0, std::sin(0.3));
   const ReliefContrast shaded = relief_contrast(*surface, target, foot, beams_of({low}), 0, 1);
   EXPECT_EQ(shaded.lit_points, 0);
-  EXPECT_EQ(shaded.points_with_transition, 1);  // the floor farther off is lit
+  EXPECT_EQ(shaded.points_with_transition, 1);  // the floor beyond is lit
   EXPECT_NEAR(shaded.local_contrast_lx, std::sin(0.3), 0.3);
   EXPECT_GT(shaded.local_contrast_lx, 0.2);
   const ReliefContrast above = relief_contrast(*surface, target, foot, beams_of({Vec3::UnitZ()}), 0, 1);

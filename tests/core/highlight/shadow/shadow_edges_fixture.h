@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of shadow_edges share.
+/// Shared by the tests of shadow_edges.
 
 #include <gtest/gtest.h>
 

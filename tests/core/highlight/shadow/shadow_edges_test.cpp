@@ -16,7 +16,7 @@ namespace {
 
 using namespace shadow_edges_fixture;
 
-/// A wall of height 1 round the origin, at distance 1: its horizon is at 45° all round.
+/// A wall of height 1 round the origin, at distance 1: its horizon is at 45° in all directions.
 Scene ring_wall() {
   return parametric(720, 1, [](double u, double v) {
     const double phi = 2 * kPi * (u - std::floor(u));
@@ -36,7 +36,7 @@ TEST(ShadowEdges, OfARingWallAreAtItsHorizon) {
 }
 
 TEST(ShadowEdges, OfAPlateAboveAreBelowAndAboveIt) {
-  // A square plate of 0.4 × 0.4 at x = 1, facing the point: edges on both sides of it, within its azimuths only.
+  // A square plate of 0.4 × 0.4 at x = 1, facing the point: edges on both sides of it, only within its azimuths.
   Scene plate;
   plate.vertices_m = {{1, -0.2f, 0.4f}, {1, 0.2f, 0.4f}, {1, 0.2f, 0.8f}, {1, -0.2f, 0.8f}};
   plate.triangles = {{0, 1, 2}, {0, 2, 3}};
@@ -67,7 +67,7 @@ TEST(ShadowEdges, TwoVotesWhereTheSkyOpensForOneStep) {
   EXPECT_EQ(edges, (std::vector<ShadowEdge>{{7, 10}, {7, 10}, {7, 20}}));
 }
 
-/// As edges come: by azimuth, then elevation.
+/// Edges are ordered by azimuth, then elevation.
 int in_order(const ShadowEdge& edge) { return edge.azimuth * kScanElevations + edge.elevation; }
 
 TEST(ShadowEdges, OfTheSearchAreThoseOfEveryRay) {
@@ -83,14 +83,14 @@ TEST(ShadowEdges, OfTheSearchAreThoseOfEveryRay) {
     EXPECT_LT(
         histogram_error(vote_directions(found, bench.points, bins, 0), vote_directions(every, bench.points, bins, 0)),
         0.01);
-    // Nothing is found that is not there.
+    // No false edges are found.
     for (std::size_t i = 0; i < bench.points.size(); ++i)
       ASSERT_TRUE(std::ranges::includes(every.of(i), found.of(i), {}, in_order, in_order)) << i;
   }
 }
 
 TEST(ShadowEdges, OnePinholeThatIsMetTellsOfOthers) {
-  // A screen of 200 × 200 over the point with a hole in every tenth place, smaller than the gaps between first rays.
+  // A screen of 200 × 200 above the point with a hole in every tenth place, smaller than the gaps between first rays.
   Scene screen;
   const int split = 200;
   for (int i = 0; i <= split; ++i)
@@ -109,7 +109,7 @@ TEST(ShadowEdges, OnePinholeThatIsMetTellsOfOthers) {
   const ShadowEdges every = edges_with(target, points, 1), found = edges_with(target, points, 4);
   EXPECT_GT(every.edges.size(), 500u);
   EXPECT_EQ(found.edges, every.edges);
-  EXPECT_GT(found.rays, every.rays);  // what that costs
+  EXPECT_GT(found.rays, every.rays);  // the cost of it
 }
 
 TEST(ShadowEdges, AreTheSameAtAnySizeAndPlace) {
@@ -123,7 +123,7 @@ TEST(ShadowEdges, AreTheSameAtAnySizeAndPlace) {
     std::vector<OrientedPoint> points = bench.points;
     for (OrientedPoint& p : points) p.position_world_m = scale * p.position_world_m + other.origin_world_m;
     const ShadowEdges two = edges_with(TargetRays(other), points, 4);
-    // A millimetre at 5 000 km is off by a nanometre: a few rays that graze an edge fall on its other side.
+    // A millimetre at 5 000 km is off by a nanometre: a few rays that graze an edge fall on the other side.
     EXPECT_NEAR(static_cast<double>(two.edges.size()), static_cast<double>(one.edges.size()),
                 0.01 * static_cast<double>(one.edges.size()));
   }
@@ -165,7 +165,7 @@ TEST(ShadowEdges, ReachOnlyWhereSurroundingsLetThem) {
   const TargetRays target(ring_wall());
   const std::vector<OrientedPoint> points = {{Vec3::Zero(), Vec3::UnitZ()}};
   const ShadowEdges edges = edges_with(target, points, 4);
-  // A wall at x = 5, far wider and higher than anything: all edges towards it are stopped, half of them.
+  // A wall at x = 5, very wide and high: it stops all edges towards it, half of them.
   Scene wall;
   wall.vertices_m = {{5, -1e4f, -1e4f}, {5, 1e4f, -1e4f}, {5, 1e4f, 1e4f}, {5, -1e4f, 1e4f}};
   wall.triangles = {{0, 1, 2}, {0, 2, 3}};
@@ -175,7 +175,7 @@ TEST(ShadowEdges, ReachOnlyWhereSurroundingsLetThem) {
   EXPECT_NEAR(static_cast<double>(left.edges.size()), 180, 2);
   const ScanFrame frame(points[0].normal);
   for (const ShadowEdge& edge : left.edges) EXPECT_LT(frame.direction(edge.azimuth, edge.elevation).x(), 1e-3f);
-  // Lights nearer than the wall do not mind it.
+  // The wall does not affect lights nearer than it.
   EXPECT_EQ(reachable_edges(edges, points, surroundings, 4, 0).edges, edges.edges);
   EXPECT_EQ(reachable_edges(edges, points, RayScene(Scene{}), infinite, 0).edges, edges.edges);
 }
@@ -201,7 +201,8 @@ TEST(DirectionBins, AreOfEqualAreaAndHoldTheirMiddles) {
   }
   const double mean = static_cast<double>(all) / bins.count();  // ± 4.6 standard deviations
   for (const int c : count) EXPECT_NEAR(c, mean, 4.6 * std::sqrt(mean));
-  EXPECT_GT(farthest, std::cos(rad_from_deg(14.7)));  // cells of 14.7° across: none reaches that far from its middle
+  EXPECT_GT(farthest, std::cos(rad_from_deg(14.7)));  // cells are 14.7° across: no ray is that far from its cell's
+                                                      // middle
   for (const Vec3& axis : {Vec3(0, 0, 1), Vec3(0, 0, -1), Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(-1, -1e-300, 0)})
     EXPECT_LT(bins.bin_of(axis), bins.count());
 }

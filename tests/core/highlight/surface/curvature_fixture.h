@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of curvature share.
+/// Shared by the tests of curvature.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ inline Measured measured(const Scene& scene, double radius_m, int threads = 0) {
   return {*surface, *curvature};
 }
 
-/// Root mean square and largest error of mean and principal curvatures over points that `counts` picks.
+/// Root mean square and largest error of mean and principal curvatures over the points that `counts` selects.
 struct Errors {
   double mean_rms = 0, mean_worst = 0, principal_rms = 0, direction_worst_rad = 0;
   std::size_t points = 0, unknown = 0;

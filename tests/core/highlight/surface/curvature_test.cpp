@@ -96,7 +96,7 @@ TEST(Curvature, UnderNoiseIsOffAsItsStatedErrorSays) {
   const Errors e = errors_against(m, kEverywhereOne);
   EXPECT_EQ(e.unknown, 0u);
   EXPECT_LT(e.mean_rms, 0.06);
-  // Errors in units of the stated one, where triangles are even (off the poles); the bias of the scale taken out.
+  // Errors in units of the stated one, on even triangles (off the poles), without the bias of the scale.
   double sum = 0, square = 0, count = 0;
   for (std::size_t i = 0; i < m.curvature.size(); ++i) {
     if (std::abs(m.surface.points_m[i].z()) > 0.7) continue;
@@ -150,7 +150,8 @@ TEST(Curvature, DoesNotDependOnTheOrderOfTheFile) {
 }
 
 TEST(Curvature, SurvivesWhatScannersProduce) {
-  // Slivers without area, a fin where three sheets meet, a stray vertex, an island of one triangle, half of it missing.
+  // Slivers without area, a fin where three sheets meet, a stray vertex, an island of one triangle; half the surface is
+  // missing.
   Scene scene = noisy(uv_sphere(1, 60), 0.001, 4);
   const auto n = static_cast<std::uint32_t>(scene.vertices_m.size());
   scene.triangles.resize(scene.triangles.size() / 2);
@@ -174,7 +175,7 @@ TEST(Curvature, SurvivesWhatScannersProduce) {
 }
 
 TEST(Curvature, KeepsTheTwoSidesOfAThinSheetApart) {
-  // A shell of 1.00 and 0.99 m: closer than the scale, and bent the same way with opposite signs.
+  // Shells of 1.00 and 0.99 m: closer than the scale, of the same curvature with opposite signs.
   Scene scene = uv_sphere(1, 60);
   const Scene inner = uv_sphere(0.99, 60);
   const auto n = static_cast<std::uint32_t>(scene.vertices_m.size());
@@ -189,7 +190,7 @@ TEST(Curvature, KeepsTheTwoSidesOfAThinSheetApart) {
 }
 
 TEST(Curvature, LongFacetsCountByTheirArea) {
-  // A cylinder of two rings: neighbours of the rim are facets only.
+  // A cylinder of two rings: the neighbours of the rim are only facets.
   const Errors e = errors_against(measured(cylinder(1, 2, 120, 1), 0.3), [](const Vec3&) { return Truth{1, 0}; });
   EXPECT_EQ(e.unknown, 0u);
   EXPECT_LT(e.mean_worst, 0.05);

@@ -21,7 +21,7 @@ TEST(EvenSurface, TurnsWithItsObjectButForThePlacesTaken) {
   const EvenSurface a = even_of(mesh, 0.05), b = even_of(mesh_turned, 0.05);
   const auto points = static_cast<double>(a.surface.points_m.size());
   EXPECT_NEAR(static_cast<double>(b.surface.points_m.size()), points, 0.06 * points);
-  // The share of it that is recessed, and how much.
+  // The recessed share of the surface, and its depth.
   const auto recess = [](const EvenSurface& even) {
     double sum = 0;
     for (std::size_t i = 0; i < even.curvature.size(); ++i)

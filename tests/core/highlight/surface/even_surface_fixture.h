@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of even_surface share.
+/// Shared by the tests of even_surface.
 
 #include <gtest/gtest.h>
 

@@ -32,7 +32,7 @@ TEST(EvenSurface, HasPointsAllOverASphereWithTheirShareOfIt) {
   const TargetSurface& surface = even.surface;
   EXPECT_NEAR(surface.area_m2(), mesh.area_m2(), 1e-3 * mesh.area_m2());
   const double off_m = 0.003 * mesh.size_m(), apart_m = 0.2 * scale_m;
-  // Discs of half the distance do not overlap; discs of the whole distance leave no gap.
+  // Discs of half the distance do not overlap; discs of the full distance leave no gap.
   const auto count = static_cast<double>(surface.points_m.size());
   EXPECT_LT(count * kPi * apart_m * apart_m / 4, mesh.area_m2());
   EXPECT_GT(count * kPi * apart_m * apart_m, mesh.area_m2());
@@ -71,7 +71,7 @@ TEST(EvenSurface, OfACoarseMeshIsThatOfAFineOne) {
     return parametric(split, split, [](double u, double v) { return Vec3(2 * u, 3 * v, 0); });
   };
   const EvenSurface coarse = even_of(mesh_of(plane(1)), scale_m), fine = even_of(mesh_of(plane(150)), scale_m);
-  // How densely places taken at random lie depends a little on what they are taken from.
+  // The density of random places depends slightly on their source surface.
   EXPECT_NEAR(static_cast<double>(coarse.surface.points_m.size()), static_cast<double>(fine.surface.points_m.size()),
               0.12 * static_cast<double>(fine.surface.points_m.size()));
   for (const EvenSurface* even : {&coarse, &fine}) {
@@ -101,11 +101,11 @@ TEST(EvenSurface, TakesAnyMeshAndRefusesScalesThatAreNone) {
   for (const double bad : {0.0, -1.0, std::numeric_limits<double>::infinity(), std::nan("")})
     EXPECT_FALSE(even_surface(mesh_of(uv_sphere(1, 10)), {{}, bad})) << bad;
   EXPECT_TRUE(even_of(mesh_of(Scene{}), 1).surface.points_m.empty());
-  // Far too fine: said, with what would do, instead of all memory taken.
+  // Far too fine: refused with a workable value, instead of filling the memory.
   const auto too_fine = even_surface(mesh_of(uv_sphere(1, 10)), {{}, 1e-5});
   ASSERT_FALSE(too_fine);
   EXPECT_NE(too_fine.error().detail.find("too fine"), std::string::npos) << too_fine.error().detail;
-  // Thin facets all along the object, which would take hundreds of pieces each.
+  // Thin facets all along the object, each worth hundreds of pieces.
   Scene slivers;
   for (int i = 0; i < 200'000; ++i) {
     const auto first = static_cast<std::uint32_t>(slivers.vertices_m.size());
@@ -116,7 +116,7 @@ TEST(EvenSurface, TakesAnyMeshAndRefusesScalesThatAreNone) {
   const auto sliced = even_surface(mesh_of(with_one_material(slivers)), {{}, 0.03});
   ASSERT_FALSE(sliced);
   EXPECT_NE(sliced.error().detail.find("pieces"), std::string::npos) << sliced.error().detail;
-  // Triangles with nothing in common, millimetres and kilometres of them.
+  // Unconnected triangles, from millimetres to kilometres.
   Random random(5);
   for (const double size_m : {1e-3, 1.0, 1e3}) {
     Scene soup;

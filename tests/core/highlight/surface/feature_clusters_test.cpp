@@ -17,7 +17,7 @@ FeatureClusters clustered(const std::vector<OrientedPoint>& points, double link_
   return *clusters;
 }
 
-/// Single linkage as the header defines it but with all pairs within reach, O(n² log n): the reference.
+/// Single linkage as the header defines it, but over all pairs within reach, O(n² log n): the reference.
 std::vector<std::uint32_t> by_all_pairs(const std::vector<OrientedPoint>& points, double link_m, double angle_rad) {
   struct Pair {
     double distance_m;
@@ -57,7 +57,7 @@ TEST(FeatureClusters, AreThoseOfAllPairsWhereReachIsShort) {
       const Vec3 at = random.in_cube();
       points.push_back({Vec3(at.x(), at.y(), 0.1 * at.z()), (Vec3(0, 0, 1) + 0.7 * random.direction()).normalized()});
     }
-    // 0.16 of a plate of side 2: six neighbours on average; none has more than twelve.
+    // 0.16 on a plate of side 2: six neighbours on average, at most twelve.
     const auto mine = clustered(points, 0.16).cluster_of_point;
     const auto reference = by_all_pairs(points, 0.16, rad_from_deg(36));
     for (std::size_t i = 0; i < points.size(); ++i)
@@ -67,7 +67,7 @@ TEST(FeatureClusters, AreThoseOfAllPairsWhereReachIsShort) {
 }
 
 TEST(FeatureClusters, PartWhereASurfaceTurnsByMoreThanTheAngle) {
-  // Two strips that meet at a right angle, and one that is level with the first but 1 m away.
+  // Two strips that meet at a right angle, and one level with the first but 1 m away.
   std::vector<OrientedPoint> points;
   for (int i = 0; i < 50; ++i) points.push_back({{0.01 * i, 0, 0}, {0, 0, 1}});
   for (int i = 0; i < 50; ++i) points.push_back({{0.5, 0, 0.01 * i}, {-1, 0, 0}});
@@ -78,7 +78,7 @@ TEST(FeatureClusters, PartWhereASurfaceTurnsByMoreThanTheAngle) {
 }
 
 TEST(FeatureClusters, DoNotCreepRoundABend) {
-  // Each point is within 36° of its neighbour, but a cluster's mean is what counts: a full circle is not one feature.
+  // Each point is within 36° of its neighbour, but the cluster's mean counts: a full circle is not one feature.
   std::vector<OrientedPoint> points;
   for (int i = 0; i < 360; ++i) {
     const Vec3 out(std::cos(rad_from_deg(i)), std::sin(rad_from_deg(i)), 0);
@@ -90,7 +90,7 @@ TEST(FeatureClusters, DoNotCreepRoundABend) {
 TEST(FeatureClusters, OfNothingOrNonsense) {
   EXPECT_TRUE(clustered({}, 1).sizes.empty());
   EXPECT_EQ(clustered({{Vec3::Zero(), Vec3::UnitZ()}}, 1).sizes, std::vector<std::uint32_t>{1});
-  // A hundred points at one place, and some without a normal, which join nothing.
+  // A hundred points at one place, and some without a normal, which join no cluster.
   std::vector<OrientedPoint> same(100, {Vec3(1, 2, 3), Vec3::UnitX()});
   EXPECT_LE(clustered(same, 0.1).sizes.size(), 100u);
   same.assign(5, {Vec3::Zero(), Vec3::Zero()});

@@ -79,7 +79,7 @@ TEST(InterestPoints, AreNotThereWhereNothingIsRecessed) {
     const Prepared p = prepared(scene, 0.2);
     InterestOptions options;
     options.wanted_share = 1;
-    // Of a noisy plane, chance makes 2.5 % look recessed by two standard errors.
+    // On a noisy plane chance makes 2.5 % look recessed by two standard errors.
     EXPECT_LE(found(p, options).size(), p.surface.points_m.size() * 4 / 100);
   }
 }
@@ -115,7 +115,7 @@ TEST(ReliefTargets, AreWhatTheirHeaderSays) {
   const Scene relief = make_carved_relief(0.01);
   const auto surface = make_target_surface(relief);
   ASSERT_TRUE(surface);
-  // Closed: each edge belongs to as many triangles one way as the other.
+  // Closed: each edge has as many triangles one way as the other.
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
   for (const auto& t : surface->triangles)
     for (std::size_t i = 0; i < 3; ++i) {

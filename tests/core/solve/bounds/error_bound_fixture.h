@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of error_bound share.
+/// Shared by the tests of error_bound.
 
 #include <algorithm>
 #include <cmath>

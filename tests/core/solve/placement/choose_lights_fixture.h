@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of choose_lights share.
+/// Shared by the tests of choose_lights.
 
 #include "core/solve/placement/choose_lights.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of place_in_scene share.
+/// Shared by the tests of place_in_scene.
 
 #include "core/solve/placement/place_in_scene.h"
 #include "tests/core/solve/placement/mounted_room.h"

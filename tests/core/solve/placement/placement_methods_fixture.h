@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of placement_methods share.
+/// Shared by the tests of placement_methods.
 
 #include <string>
 

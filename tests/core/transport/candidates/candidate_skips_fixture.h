@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of candidate_skips share.
+/// Shared by the tests of candidate_skips.
 
 #include <random>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of candidate_transport share.
+/// Shared by the tests of candidate_transport.
 
 #include <gtest/gtest.h>
 

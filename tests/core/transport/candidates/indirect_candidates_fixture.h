@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of indirect_candidates share.
+/// Shared by the tests of indirect_candidates.
 
 #include "core/transport/candidates/candidate_transport.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of reflected_field share.
+/// Shared by the tests of reflected_field.
 
 #include "core/transport/candidates/incremental_transport.h"
 #include "core/transport/candidates/reflected_field.h"

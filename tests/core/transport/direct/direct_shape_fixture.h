@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of direct_shape share.
+/// Shared by the tests of direct_shape.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of gather_evaluator share.
+/// Shared by the tests of gather_evaluator.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of path_evaluator share.
+/// Shared by the tests of path_evaluator.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of daylight_through_openings share.
+/// Shared by the tests of daylight_through_openings.
 
 #include <gtest/gtest.h>
 

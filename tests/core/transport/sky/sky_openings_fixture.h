@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of sky_openings share.
+/// Shared by the tests of sky_openings.
 
 #include "core/photometry/sky.h"
 #include "core/transport/sky/sky_opening_finder.h"

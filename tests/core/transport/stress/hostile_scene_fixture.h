@@ -1,5 +1,5 @@
 #pragma once
-/// What the tests of hostile_scene share.
+/// Shared by the tests of hostile_scene.
 
 #include "tests/core/transport/stress/hostile_scene.h"
 
