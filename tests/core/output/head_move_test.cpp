@@ -1,4 +1,5 @@
-// The closed form of a head's move, against the trapezoid that it describes: integrated, and held against its limits.
+// The closed form of a head's move, against the trapezoid that it describes: integrated, and checked against its
+// limits.
 #include "core/output/head_move.h"
 
 #include <gtest/gtest.h>
@@ -10,8 +11,7 @@
 namespace luxrig {
 namespace {
 
-/// Where an axis is that runs the quickest move from rest to rest over `way` within its limits, t seconds after its
-/// start.
+/// Position of an axis t seconds after the start of the quickest move from rest to rest over `way` within its limits.
 double way_at(double t, double way, const AxisLimits& limits) {
   const double peak = std::min(limits.speed, std::sqrt(way * limits.acceleration));
   const double ramp_s = peak / limits.acceleration, total_s = way / peak + ramp_s;
@@ -22,9 +22,9 @@ double way_at(double t, double way, const AxisLimits& limits) {
 }
 
 TEST(Trapezoid, IsTheClosedForm) {
-  EXPECT_DOUBLE_EQ(trapezoid_s(100, 50, 25), 4);  // 2 s up and 2 s down with 50 in between for no time at all
+  EXPECT_DOUBLE_EQ(trapezoid_s(100, 50, 25), 4);  // 2 s up and 2 s down, no time at full speed
   EXPECT_DOUBLE_EQ(trapezoid_s(200, 50, 25), 6);  // two more at full speed
-  EXPECT_DOUBLE_EQ(trapezoid_s(25, 50, 25), 2);   // half-way up to speed
+  EXPECT_DOUBLE_EQ(trapezoid_s(25, 50, 25), 2);   // reaches half of the speed
   EXPECT_DOUBLE_EQ(trapezoid_s(0, 50, 25), 0);
 }
 
@@ -48,7 +48,7 @@ TEST(HeadMove, BothAxesArriveTogetherOnAStraightLineWithinTheirLimits) {
     if (tilt_way > 0) {
       EXPECT_NEAR(trapezoid_s(tilt_way, move.tilt.speed, move.tilt.acceleration), move.seconds, 1e-9 * move.seconds);
     }
-    // No axis alone is slower, and the limits of one of them bind.
+    // No axis alone is slower. The limits of one of them bind.
     EXPECT_GE(move.seconds, trapezoid_s(pan_way, pan.speed, pan.acceleration) * (1 - 1e-9));
     EXPECT_GE(move.seconds, trapezoid_s(tilt_way, tilt.speed, tilt.acceleration) * (1 - 1e-9));
     EXPECT_TRUE(std::abs(move.pan.acceleration / pan.acceleration - 1) < 1e-9 ||

@@ -1,5 +1,5 @@
-/// Beams against keep-out zones: the exact test against points sampled in the zone, the test of ranges of postures
-/// against postures sampled in the range.
+/// Beams against keep-out zones. The exact test is checked against points sampled in the zone, the test of ranges of
+/// postures against postures sampled in the range.
 #include "core/output/keep_out.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 
 double between_rad(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
-/// Least angle to any of many points of the box's surface, refined round the best.
+/// Least angle to any of many points on the box's surface, refined around the best.
 double sampled_angle_to_box_rad(const Vec3& from, const Vec3& direction, const Eigen::AlignedBox3d& box) {
   constexpr int kGrid = 16;
   double best_rad = kPi;
@@ -75,14 +75,14 @@ TEST(KeepOut, TheAngleToABoxIsThatToItsNearestPoint) {
 }
 
 TEST(KeepOut, TheAngleToABallIsToItsOutline) {
-  // A ball of 1 m seen from 2 m away is 30° to each side.
+  // A ball of 1 m radius seen from 2 m away is 30° to each side.
   EXPECT_NEAR(angle_to_ball_rad({0, 0, 0}, Vec3::UnitY(), {2, 0, 0}, 1), rad_from_deg(60), 1e-12);
   EXPECT_NEAR(angle_to_ball_rad({0, 0, 0}, -Vec3::UnitX(), {2, 0, 0}, 1), rad_from_deg(150), 1e-12);
   EXPECT_EQ(angle_to_ball_rad({0, 0, 0}, Vec3::UnitX(), {2, 0, 0}, 1), 0);
   EXPECT_EQ(angle_to_ball_rad({1.5, 0, 0}, Vec3::UnitZ(), {2, 0, 0}, 1), 0);
 }
 
-/// A spot of 10° beam and 20° field, 4 m up, that may turn everywhere.
+/// A spot of 10° beam and 20° field, 4 m up, free to turn in every direction.
 Rig rig_with(const KeepOut& zone, const Mat3& mount = Mat3::Identity()) {
   Rig rig;
   rig.luminaires.emplace_back();
@@ -94,7 +94,7 @@ Rig rig_with(const KeepOut& zone, const Mat3& mount = Mat3::Identity()) {
   rig.fixtures.emplace_back();
   rig.fixtures.back().moves = true;
   rig.fixtures.back().world_from_mount = {mount, Vec3(0, 0, 4)};
-  rig.fixtures.emplace_back();  // one that no zone holds for
+  rig.fixtures.emplace_back();  // a fixture without a zone
   rig.keep_outs = {zone};
   rig.keep_outs.back().heads = {0};
   return rig;
@@ -110,7 +110,7 @@ KeepOut ball(const Vec3& centre_m, double radius_m, double margin_deg = 0) {
 }
 
 TEST(KeepOut, TheBeamCountsToItsFieldAngleItsZoomAndTheMargin) {
-  // A point nearly, straight below.
+  // Nearly a point, straight below.
   const KeepOutZones zones(rig_with(ball({0, 0, 0}, 1e-9, 3)));
   const auto at = [](double tilt_deg, double beam_deg) {
     return Joints{0, rad_from_deg(tilt_deg), rad_from_deg(beam_deg)};
@@ -144,7 +144,7 @@ TEST(KeepOut, WhatShinesAllRoundMeetsEveryZone) {
   EXPECT_TRUE(KeepOutZones(rig).met(0, {}));
 }
 
-/// Ranges of postures: no sampled posture that meets the zone is missed, and what is reported without one is near.
+/// Ranges of postures: no sampled posture in the zone is missed, and false alarms are near the zone.
 TEST(KeepOut, NoPostureOfARangeIsMissed) {
   Random random(5);
   int clear = 0, met = 0, near = 0;

@@ -11,8 +11,8 @@
 
 #include "tests/core/output/at.h"
 
-// Counts what this program allocates, to show that the output path allocates nothing. Not inlined: g++ would compare
-// malloc in one with free in the other and warn of a mismatch.
+// Counts allocations of this program, to show that the output path makes none. Not inlined: g++ would compare malloc in
+// one with free in the other and warn of a mismatch.
 static std::atomic<std::size_t> allocations{0};
 [[gnu::noinline]] void* operator new(std::size_t size) {
   allocations.fetch_add(1, std::memory_order_relaxed);
@@ -20,7 +20,7 @@ static std::atomic<std::size_t> allocations{0};
   throw std::bad_alloc();
 }
 [[gnu::noinline]] void* operator new[](std::size_t size) { return operator new(size); }
-// What std::stable_sort asks for: else the sanitizer's own would meet the delete below.
+// std::stable_sort calls this one. Without it the sanitizer's new would meet the delete below.
 [[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
   allocations.fetch_add(1, std::memory_order_relaxed);
   return std::malloc(size > 0 ? size : 1);
@@ -88,7 +88,7 @@ TEST(DimmerCurve, RisesAndItsInverseGivesTheLevelBack) {
       EXPECT_LT(level_from_drive(curve, i / 1000.0), level_from_drive(curve, (i + 1) / 1000.0));
       EXPECT_LT(drive_from_level(curve, i / 1000.0), drive_from_level(curve, (i + 1) / 1000.0));
     }
-    // Relative, down to levels far below one DMX step: a dim light is as exact as a bright one.
+    // Relative, down to levels far below one DMX step: dim light is as exact as bright light.
     for (double level = 1; level > 1e-12; level *= 0.9) {
       EXPECT_NEAR(level_from_drive(curve, drive_from_level(curve, level)) / level, 1, 1e-14);
     }
@@ -249,7 +249,7 @@ TEST(OutputProgram, GivesDarkNeverNaNForDegenerateInput) {
   for (const double seconds : {-1.0, 0.0, 0.5, 2.0}) {
     for (const double level : levels(program, at(seconds))) {
       EXPECT_TRUE(std::isfinite(level));
-      EXPECT_EQ(level, 0);  // the second row's limit is no number
+      EXPECT_EQ(level, 0);  // the second row's limit is NaN
     }
   }
   program.max_lx[1] = kInfinity;

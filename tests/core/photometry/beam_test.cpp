@@ -56,7 +56,7 @@ TEST(ConeOfFlux, HasClosedFormsForCosinePowersAndIsotropicLight) {
 }
 
 TEST(ConeOfFlux, OfANarrowGaussianFollowsItsTail) {
-  // Within γ a Gaussian holds 1 - 2^-(γ/b)²; cut off and re-scaled by a thousandth at twice its field angle.
+  // Within γ a Gaussian holds 1 - 2^-(γ/b)². It is cut off at twice its field angle and re-scaled by a thousandth.
   const double beam = rad_from_deg(4);
   const Intensity spot = make_spot(1000, beam, beam * std::sqrt(std::log2(10.0)));
   EXPECT_NEAR(cone_of_flux_rad(*spot, 0.5) / beam, 1, 0.03);

@@ -136,7 +136,7 @@ TEST(EulumdatSymmetry, AboutC0C180) {
 }
 
 TEST(EulumdatSymmetry, AboutC90C270HoldsTheHalfThroughC0) {
-  // In the order of the file: C270, C315, C0, C45, C90.
+  // In file order: C270, C315, C0, C45, C90.
   const EulumdatFile file = parsed_eulumdat(Text(3, kEight, {0, 90}, {1, 10, 1, 20, 1, 30, 1, 40, 1, 50}).joined());
   EXPECT_EQ(file.stored_first(), 6u);
   const Intensity light = make_intensity(file);
@@ -196,7 +196,7 @@ TEST(Eulumdat, ReturnsItsOwnValuesAtItsOwnAngles) {
     for (std::size_t i = 0; i < file->stored_planes(); ++i) {
       const double c = file->c_deg[(file->stored_first() + i) % file->c_deg.size()];
       for (std::size_t g = 0; g < file->gamma_deg.size(); ++g) {
-        if (file->gamma_deg[g] == 0 || file->gamma_deg[g] == 180) continue;  // every plane meets there
+        if (file->gamma_deg[g] == 0 || file->gamma_deg[g] == 180) continue;  // all planes meet there
         const double stored = file->cd_per_klm[i * file->gamma_deg.size() + g] * scale;
         ASSERT_NEAR(light->intensity_cd(direction(file->gamma_deg[g], c)), stored, 1e-8 * light->max_intensity_cd())
             << name << " " << c << " " << file->gamma_deg[g];
@@ -206,7 +206,7 @@ TEST(Eulumdat, ReturnsItsOwnValuesAtItsOwnAngles) {
 }
 
 struct BadLine {
-  std::size_t line;  ///< 1-based: what is put where
+  std::size_t line;  ///< 1-based line to replace
   const char* text;
   const char* what;
 };
@@ -243,7 +243,7 @@ TEST(Eulumdat, SaysWhereAndWhatIsWrong) {
     const Problem& problem = file.error().front();
     EXPECT_NE(problem.what.find(one.what), std::string::npos) << problem.text();
     EXPECT_EQ(problem.file, "lamp.ldt");
-    // Lists that do not ascend are reported where they begin.
+    // Lists that do not ascend are reported at their first line.
     const int line = std::string(one.what).find("ascend") == std::string::npos ? static_cast<int>(one.line)
                      : one.line == 46                                          ? 43
                                                                                : 51;
@@ -252,7 +252,7 @@ TEST(Eulumdat, SaysWhereAndWhatIsWrong) {
   }
   const auto dark = parse_eulumdat(Text(1, {0}, {0, 90}, {0, 0}).joined(), "f");
   ASSERT_FALSE(dark.has_value());
-  EXPECT_EQ(dark.error().front().line, 46);  // where the intensities begin
+  EXPECT_EQ(dark.error().front().line, 46);  // first line of the intensities
 }
 
 TEST(Eulumdat, ReadsUtf16) {

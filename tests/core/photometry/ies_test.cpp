@@ -37,7 +37,7 @@ std::string file_text(const std::vector<double>& vertical, const std::vector<dou
          joined(candela);
 }
 
-/// Flux by the midpoint rule over the whole sphere, through intensity_cd alone.
+/// Flux by the midpoint rule over the whole sphere; uses only intensity_cd.
 double brute_flux_lm(const IntensityDistribution& of, int rings, int spokes) {
   double sum = 0;
   for (int i = 0; i < rings; ++i) {
@@ -53,7 +53,7 @@ struct RealFile {
   const char* name;
   const char* edition;
   std::size_t vertical, horizontal;
-  double flux_lm;  ///< by bands, from the catalogue the files came with
+  double flux_lm;  ///< by bands, from the catalogue of the files
 };
 class RealFiles : public testing::TestWithParam<RealFile> {};
 
@@ -86,7 +86,7 @@ TEST_P(RealFiles, ReturnTheirOwnValuesAtTheirOwnAngles) {
   for (std::size_t h = 0; h < file->horizontal_deg.size(); ++h) {
     for (std::size_t v = 0; v < file->vertical_deg.size(); ++v) {
       const double gamma_deg = file->vertical_deg[v];
-      if (gamma_deg == 0 || gamma_deg == 180) continue;  // every plane meets there
+      if (gamma_deg == 0 || gamma_deg == 180) continue;  // all planes meet there
       const double stored = file->candela[h * file->vertical_deg.size() + v];
       EXPECT_NEAR(light->intensity_cd(direction(gamma_deg, file->horizontal_deg[h])), stored, 1e-8 * largest)
           << gamma_deg << " " << file->horizontal_deg[h];
@@ -225,7 +225,7 @@ TEST(IesFlux, IsExactForDistributionsWithAClosedForm) {
   EXPECT_NEAR(intensity_of(file_text({0, 90}, {0}, {100, 100}))->flux_lm(), 200 * kPi, 1e-9);
   // Falling linearly from nadir to horizon: 2πI ∫ (1 - 2γ/π) sin γ dγ = 2πI (1 - 2/π).
   EXPECT_NEAR(intensity_of(file_text({0, 90}, {0}, {100, 0}))->flux_lm(), 200 * kPi * (1 - 2 / kPi), 1e-9);
-  // The same in needlessly many, and in very unequal, steps.
+  // The same in needlessly many steps of very unequal size.
   std::vector<double> angles, values;
   for (int i = 0; i <= 3000; ++i) angles.push_back(90.0 * i * i / 9e6);
   for (const double angle : angles) values.push_back(100 * (1 - angle / 90));
@@ -254,7 +254,7 @@ TEST(IesIntensity, ConeEndsWhereTheLightDoes) {
 }
 
 TEST(IesIntensity, AgreesWithASearchThroughUnevenAngles) {
-  // Uneven angles take another way to their cell than even ones: both must interpolate as written here.
+  // Uneven angles find their cell in another way than even ones: both must interpolate as written here.
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(0, 1);
   for (int round = 0; round < 20; ++round) {

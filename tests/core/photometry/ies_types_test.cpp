@@ -1,4 +1,4 @@
-// What beyond type C an IES file may hold: types A and B, tilt, the shapes of openings.
+// IES files beyond type C: types A and B, tilt, shapes of luminous openings.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -35,7 +35,7 @@ IesFile grid_file(int type, const std::vector<double>& vertical, const std::vect
                 joined_numbers(vertical) + joined_numbers(horizontal) + joined_numbers(candela));
 }
 
-/// Formulas of the header, written out once more.
+/// The header's formulas, written independently.
 Vec3 direction_b(double v_deg, double h_deg) {
   const double v = rad_from_deg(v_deg), h = rad_from_deg(h_deg);
   return {std::cos(h) * std::sin(v), -std::sin(h), -std::cos(h) * std::cos(v)};
@@ -88,7 +88,7 @@ TEST(IesTypesAAndB, HaveTheFluxOfTheirInterpolant) {
     for (double& value : candela) value = std::round(1000 * unit(random));
     const std::vector<double> angles{-90, -50, 0, 20, 90};
     const Intensity light = make_intensity(grid_file(type, angles, angles, candela));
-    // Midpoint rule in the type's own angles: solid angle is cos(latitude) times their products.
+    // Midpoint rule in the type's own angles: solid angle is cos(latitude) times the product of its angle steps.
     constexpr int kSteps = 900;
     double sum = 0;
     for (int i = 0; i < kSteps; ++i) {
@@ -105,7 +105,7 @@ TEST(IesTypesAAndB, HaveTheFluxOfTheirInterpolant) {
 }
 
 TEST(IesTypesAAndB, MirrorAnglesThatStartAtZero) {
-  // Four values for (V, H) in {0, 90}²; each of the four quadrants sees them.
+  // Four values for (V, H) in {0, 90}². Each of the four quadrants sees them.
   for (const int type : {2, 3}) {
     const Intensity light = make_intensity(grid_file(type, {0, 45, 90}, {0, 45, 90}, {9, 8, 7, 6, 5, 4, 3, 2, 1}));
     for (const double v : {-45.0, 45.0}) {

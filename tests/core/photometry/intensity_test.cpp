@@ -44,7 +44,7 @@ TEST_P(SpotProfile, HasHalfAtTheBeamAngleAndATenthAtTheFieldAngle) {
   const Intensity spot = make_spot(1000, rad_from_deg(beam_deg), rad_from_deg(field_deg));
   const double peak_cd = spot->intensity_cd(-Vec3::UnitZ());
   EXPECT_DOUBLE_EQ(peak_cd, spot->max_intensity_cd());
-  // A small angle keeps about 1e-16/γ of its digits on the way through a direction vector.
+  // A small angle loses about 1e-16/γ of its accuracy on the way through a direction vector.
   EXPECT_NEAR(spot->intensity_cd(at_gamma(0.5 * rad_from_deg(beam_deg))) / peak_cd, 0.5, 1e-10);
   EXPECT_NEAR(spot->intensity_cd(at_gamma(0.5 * rad_from_deg(field_deg))) / peak_cd, 0.1, 1e-10);
 }
@@ -76,11 +76,11 @@ INSTANTIATE_TEST_SUITE_P(FromPinSpotToFlood, SpotProfile,
                                          Angles{90, 120}, Angles{10, 20}, Angles{120, 179.9}, Angles{1, 40},
                                          Angles{0.1, 170}));
 
-/// ∫ I/I0 dΩ of the profile that the header states, by Simpson's rule in ln (γ/b)^p; within the first step 1.
+/// ∫ I/I0 dΩ of the profile in the header, by Simpson's rule in ln (γ/b)^p. Below the first step it counts as 1.
 double profile_sr(double beam_rad, double field_rad) {
   constexpr int kSteps = 20'000;
   const double b = beam_rad / 2, f = field_rad / 2, p = std::log(std::log2(10.0)) / std::log(f / b);
-  const double from = -60, to = std::min(p * std::log(2 * f / b), 7.1);  // 2^-e^7.1 is no number
+  const double from = -60, to = std::min(p * std::log(2 * f / b), 7.1);  // 2^-e^7.1 underflows
   const double step = (to - from) / kSteps;
   double sum = 0;
   for (int i = 0; i <= kSteps; ++i) {
@@ -91,7 +91,7 @@ double profile_sr(double beam_rad, double field_rad) {
   return 2 * kPi * (sum * step / 3 / p + 2 * std::pow(std::sin(b * std::exp(from / p) / 2), 2));
 }
 
-/// A narrow beam in a wide field, whose light is nearly all outside of the beam, once never came to an end.
+/// A narrow beam in a wide field with nearly all light outside the beam: this search once never ended.
 TEST(Spot, OfAnyTwoAnglesHasThePeakThatItsFluxGives) {
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> share(0, 1);
@@ -112,7 +112,7 @@ TEST(Spot, IsAGaussianWhereTheRatioOfItsAnglesIsThatOfAGaussian) {
   const double half_rad = 0.5 * beam_rad;
   const double at_quarter_cd = spot->intensity_cd(at_gamma(0.5 * half_rad));
   EXPECT_NEAR(at_quarter_cd / spot->max_intensity_cd(), std::exp2(-0.25), 1e-9);
-  // A narrow Gaussian holds I0 π b² / ln 2 in all (sin γ ≈ γ), nine tenths of it down to a tenth of its peak.
+  // A narrow Gaussian holds I0 π b² / ln 2 in all (sin γ ≈ γ), nine tenths of it above a tenth of its peak.
   const double whole_lm = spot->max_intensity_cd() * kPi * half_rad * half_rad / std::log(2.0);
   EXPECT_NEAR(brute_flux_lm(*spot, half_rad * ratio) / (0.9 * whole_lm), 1, 1e-4);
 }

@@ -7,7 +7,7 @@
 namespace luxrig {
 namespace {
 
-/// Chromaticity of a linear Rec. 709 colour, by the primaries' own matrix (IEC 61966-2-1).
+/// Chromaticity of a linear Rec. 709 colour, by the matrix of its primaries (IEC 61966-2-1).
 std::pair<double, double> chromaticity(const Vec3& rgb) {
   const double x = 0.4124564 * rgb.x() + 0.3575761 * rgb.y() + 0.1804375 * rgb.z();
   const double y = 0.2126729 * rgb.x() + 0.7151522 * rgb.y() + 0.0721750 * rgb.z();

@@ -1,5 +1,5 @@
 #pragma once
-/// The shipped photometric files, and directions as they number them.
+/// The shipped photometric files, and directions in their angles.
 
 #include <cmath>
 #include <filesystem>

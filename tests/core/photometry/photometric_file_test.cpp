@@ -1,4 +1,4 @@
-// Every real file there is here: it loads with the flux its catalogue states, or is refused for a reason.
+// All real files of this repository: each loads with the flux its catalogue states, or is refused with a reason.
 #include "core/photometry/photometric_file.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 
 std::filesystem::path folder() { return test::source_folder() / "tests/data/photometry"; }
 
-/// Flux [lm] by zones, or why the file is refused.
+/// Flux [lm] by zones, or the reason for a refusal.
 struct Expected {
   double flux_lm;
   const char* refused;
@@ -48,7 +48,7 @@ const std::map<std::string, Expected> kCatalogue = {
     {"three_lobe_umbrella.ies", {1005.1, ""}},
     {"tilt_include_geometry2.ies", {13227.6, ""}},
     {"trapezoid.ies", {14428.9, ""}},
-    {"type_b_full.ies", {60462.4, ""}},  // no figure in the catalogue: checked against the integral alone
+    {"type_b_full.ies", {60462.4, ""}},  // no figure in the catalogue: checked only against the integral
     {"x_arrow.ies", {524.6, ""}},
 };
 

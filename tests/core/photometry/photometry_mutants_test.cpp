@@ -1,4 +1,4 @@
-// 3,000 damaged copies of real files for each reader: refused with a line, or a sound distribution.
+// 3,000 damaged copies of real files for each reader. Each is refused with a line number or gives a valid distribution.
 #include <gtest/gtest.h>
 
 #include <fstream>

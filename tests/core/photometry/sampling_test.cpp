@@ -1,5 +1,5 @@
-// Directions drawn from distributions: the density is what sample() draws with, it integrates to one, and weighing by
-// it gives the flux. Every property is checked on every kind of distribution.
+// Directions drawn from distributions: sample() draws with the stated density, the density integrates to one, and
+// weights by it give the flux. Every property is checked on every kind of distribution.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -71,8 +71,8 @@ double ring_integral(const F& f, double from_rad, double to_rad, double from_azi
 }
 
 TEST_P(Sampling, DensityIntegratesToOne) {
-  // Degrees and their halves are edges of the files' cells, so that each ring is smooth; azimuths of the files too.
-  // Spots are round, and may have all their fall within a tenth of a degree.
+  // The files' cells have their edges at whole and half degrees, so each ring is smooth; the same for azimuths. Spots
+  // are round and may fall off within a tenth of a degree.
   const auto density = [&](const Vec3& d) { return light->density_per_sr(d); };
   const bool spot = std::string_view(GetParam().name).substr(0, 4) == "spot";
   const double whole =
@@ -115,7 +115,7 @@ TEST_P(Sampling, DrawsDirectionsAsItsDensitySays) {
         std::min(kSpokes - 1, static_cast<int>((azimuth < 0 ? azimuth + 2 * kPi : azimuth) / (2 * kPi) * kSpokes));
     seen[r * kSpokes + s] += 1;
   }
-  // Bins too small for the normal law go together.
+  // Bins too small for the normal law are merged.
   double chi_square = 0, rest_expected = 0, rest_seen = 0;
   int bins = 0;
   for (std::size_t i = 0; i < expected.size(); ++i) {
@@ -214,7 +214,7 @@ INSTANTIATE_TEST_SUITE_P(Of, Sampling, testing::ValuesIn(kCases),
                          [](const auto& of) { return std::string(of.param.name); });
 
 TEST(PencilBeam, HasTheFluxOfItsOnlyBand) {
-  // ∫₀ʷ (1 - x / w) sin x dx = 1 - sin w / w, at either pole.
+  // ∫₀ʷ (1 - x / w) sin x dx = 1 - sin w / w, at each pole.
   const double width = rad_from_deg(1);
   const double expected_lm = 2 * kPi * 1000 * (1 - std::sin(width) / width);
   EXPECT_NEAR(round_band(0, 1, 1000, 0)->flux_lm() / expected_lm, 1, 1e-9);
@@ -226,7 +226,7 @@ TEST(LambertianCylinder, HasTheFluxOfItsWholeSurface) {
     const Intensity light = make_lambertian_cylinder(700, d, l);
     const auto intensity = [&](const Vec3& direction) { return light->intensity_cd(direction); };
     EXPECT_NEAR(ring_integral(intensity, 0, kPi, 0, 2 * kPi, 2000, 1), 700, 1e-6);
-    // Brightest where its outline is largest: tan γ = 4 l / (π d).
+    // Brightest in the direction of the largest outline: tan γ = 4 l / (π d).
     const double gamma = std::atan2(l, kPi / 4 * d);
     EXPECT_NEAR(light->intensity_cd(direction_of(std::cos(gamma), 1)), light->max_intensity_cd(), 1e-9);
   }

@@ -19,7 +19,7 @@ LuminousShape disk(double diameter_m) { return {Kind::disk, {diameter_m, 0, 0}};
 LuminousShape sphere(double diameter_m) { return {Kind::sphere, {diameter_m, 0, 0}}; }
 LuminousShape cylinder(double diameter_m, double length_m) { return {Kind::cylinder, {diameter_m, 0, length_m}}; }
 
-/// Distance to the nearest place of the shape along a ray, from the shape's definition; written for the test.
+/// Distance along a ray to the first hit of the shape, from the shape's definition; independent of the code under test.
 std::optional<double> met_at_m(const LuminousShape& shape, const Vec3& from_m, const Vec3& d) {
   const double radius = shape.size_m.x() / 2;
   const auto in_plane = [&](double z, auto&& inside) -> std::optional<double> {
@@ -59,7 +59,7 @@ std::optional<double> met_at_m(const LuminousShape& shape, const Vec3& from_m, c
   return {};
 }
 
-/// How far a place is off the shape's surface.
+/// Distance of a place from the shape's surface.
 double off_surface_m(const LuminousShape& shape, const Vec3& p) {
   const double radius = shape.size_m.x() / 2, rho = p.head<2>().norm();
   const auto past = [](double value, double limit) { return std::max(0.0, value - limit); };
@@ -120,7 +120,7 @@ const Scene kScenes[] = {
 class AnyShape : public testing::TestWithParam<Scene> {};
 INSTANTIATE_TEST_SUITE_P(Seen, AnyShape, testing::ValuesIn(kScenes), [](const auto& of) { return of.param.name; });
 
-/// Directions spread evenly over a cap that holds the whole shape.
+/// Uniform directions over a cap that holds the whole shape.
 class Cap {
  public:
   Cap(const LuminousShape& shape, const Vec3& from_m) : axis_(-from_m.normalized()) {
@@ -142,7 +142,7 @@ class Cap {
 TEST_P(AnyShape, DensityIntegratesToOneAndItsInverseToTheSolidAngle) {
   const auto& [name, shape, from_m] = GetParam();
   Random random(1);
-  // Over random directions; the shape's solid angle by whether they meet it.
+  // Over random directions: the shape's solid angle by the share that meets it.
   const Cap cap(shape, from_m);
   constexpr int kDirections = 100'000;
   double total = 0, total2 = 0, hits = 0;
@@ -190,14 +190,14 @@ TEST_P(AnyShape, SamplesLieOnTheNearSideOfTheShapeWithTheDensityTheyState) {
   Random random(2);
   const double size_m = bounding_radius_m(shape);
   for (int i = 0; i < 5'000; ++i) {
-    // The square's edges too, where rounding may miss the rim.
+    // Also the square's edges, where rounding may miss the rim.
     const double u = i < 100 ? i / 99.0 : i < 200 ? (i % 2) : random.between(0, 1);
     const double v = i < 200 ? (i % 100) / 99.0 : random.between(0, 1);
     const auto s = sample_seen_from(shape, from_m, u, v);
     ASSERT_GT(s.density_per_sr, 0) << u << " " << v;
     EXPECT_NEAR(s.direction.norm(), 1, 1e-14);
     EXPECT_LT(off_surface_m(shape, from_m + s.distance_m * s.direction), 1e-12 * (size_m + from_m.norm())) << i;
-    // On an edge between a cylinder's wall and its end, either has a right to the direction.
+    // On the edge between a cylinder's wall and its end, either is right.
     if (shape.kind != Kind::cylinder || i >= 200) {
       EXPECT_NEAR(density_seen_from(shape, from_m, s.direction), s.density_per_sr, 1e-9 * s.density_per_sr)
           << u << " " << v;
@@ -212,7 +212,7 @@ TEST_P(AnyShape, SamplesLieOnTheNearSideOfTheShapeWithTheDensityTheyState) {
 
 TEST_P(AnyShape, DirectionsAreDrawnWithTheDensityThatIsStated) {
   const auto& [name, shape, from_m] = GetParam();
-  // Moments of the direction: from samples as drawn, and from even directions weighted with the density.
+  // Moments of the direction: from samples as drawn, and from uniform directions weighted with the density.
   Random random(3);
   const Cap cap(shape, from_m);
   constexpr int kCount = 100'000;
@@ -299,7 +299,7 @@ TEST_P(AnyShape, ProjectedAreaIsTheShadowThatTheShapeThrows) {
         hits += met_at_m(shape, radius_m * (1.01 * at + 5 * d), -d).has_value();
       }
     const double shadow_m2 = hits / (kSide * kSide) * std::pow(2.02 * radius_m, 2);
-    // Jittered strata: only those on the outline are in doubt, with at most 1/4 variance each.
+    // Jittered strata: only those on the outline are uncertain, with at most 1/4 variance each.
     const double outline_m2 = std::sqrt(4.0 * kSide / 4) * std::pow(2.02 * radius_m / kSide, 2);
     EXPECT_NEAR(projected_area_m2(shape, d), shadow_m2, 5 * outline_m2) << d.transpose();
   }
@@ -311,7 +311,7 @@ TEST_P(AnyShape, LeavingPlacesAreSpreadEvenlyOverTheShadow) {
   const double radius_m = bounding_radius_m(shape);
   for (int i = 0; i < 3; ++i) {
     const Vec3 d = random.direction(), x = d.unitOrthogonal(), y = d.cross(x);
-    // Second moments about two axes across, of the places and of the shadow.
+    // Second moments about two transverse axes, of the places and of the shadow.
     constexpr int kSide = 150;
     Eigen::Vector4d places = Eigen::Vector4d::Zero(), shadow = Eigen::Vector4d::Zero();
     double lit = 0;
@@ -320,7 +320,7 @@ TEST_P(AnyShape, LeavingPlacesAreSpreadEvenlyOverTheShadow) {
         const double u = (j + random.between(0, 1)) / kSide, v = (k + random.between(0, 1)) / kSide;
         const Vec3 place = sample_leaving_place_m(shape, d, u, v);
         ASSERT_LT(off_surface_m(shape, place), 1e-12 * radius_m);
-        // The side that looks along d: nothing of the shape is in front of it.
+        // The side that faces d: nothing of the shape is in front of it.
         const auto met = met_at_m(shape, place + 10 * radius_m * d, -d);
         if (met) {
           EXPECT_NEAR(*met, 10 * radius_m, 1e-6 * radius_m);
@@ -373,7 +373,7 @@ TEST(ShapeSampling, ShapesWithoutSizeAreNotSeen) {
       EXPECT_EQ(density_seen_from(shape, from_m, -from_m.normalized()), 0);
     }
   }
-  // A cylinder without length is its two ends.
+  // A cylinder without length is just its two ends.
   EXPECT_NEAR(sample_seen_from(cylinder(1, 0), from_m, 0.4, 0.7).density_per_sr,
               sample_seen_from(disk(1), from_m, 0.4, 0.7).density_per_sr, 1e-9);
 }
@@ -401,12 +401,12 @@ TEST(ShapeSampling, AnySizeFromAnyDistanceGivesFinitePlacesOnTheShape) {
     ASSERT_NEAR(s.direction.norm(), 1, 1e-12) << i;
     ASSERT_TRUE(s.distance_m > 0 && std::isfinite(s.distance_m));
     const double off_m = off_surface_m(shape, from_m + s.distance_m * s.direction);
-    // From just above the plane the rim is seen so nearly edge-on that rounding of the direction moves the place.
+    // From just above the plane the rim is nearly edge-on, so rounding of the direction moves the place.
     const double edge_on = size_m / std::abs(from_m.z());
     ASSERT_LT(off_m, (1e-11 + 4e-15 * edge_on) * (size_m + from_m.norm())) << i << " " << edge_on;
     const double density = density_seen_from(shape, from_m, s.direction);
     const bool at_rim = u < 1e-3 || u > 1 - 1e-3 || v < 1e-3 || v > 1 - 1e-3;
-    // Where the direction is rounded by as much as the shape is wide, it may fall beside it.
+    // If the direction's rounding is as large as the shape is wide, the ray may miss it.
     const double thin_seen = thin_m / s.distance_m * std::abs(from_m.z()) / from_m.norm();
     if (!at_rim && shape.kind != Kind::cylinder && thin_seen > 1e-8) {
       ASSERT_NEAR(density, s.density_per_sr, 1e-4 * s.density_per_sr) << i << " kind " << i % 4;

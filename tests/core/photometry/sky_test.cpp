@@ -52,8 +52,8 @@ TEST(UniformSky, HasIlluminanceOfPiTimesItsLuminance) {
 }
 
 TEST(GeneralSky, HasTheStandardsRatiosToTheZenith) {
-  // By hand from the formula for type 12 (CIE clear) with the sun at 40°, 90° away from the sun on the horizon circle
-  // at 20° altitude.
+  // Independent calculation for type 12 (CIE clear) with the sun at 40°, at 20° altitude and 90° of azimuth from the
+  // sun.
   const Sky clear = make_clear_sky(towards(0, 40), 12'000);
   const Vec3 d = towards(90, 20);
   const double chi = std::acos(d.dot(towards(0, 40)));
@@ -64,7 +64,7 @@ TEST(GeneralSky, HasTheStandardsRatiosToTheZenith) {
   const double expected =
       (1 - std::exp(-0.32 / std::sin(rad_from_deg(20)))) * indicatrix(chi) / ((1 - std::exp(-0.32)) * indicatrix(zs));
   EXPECT_NEAR(clear->luminance_cd_m2(d) / clear->luminance_cd_m2(Vec3::UnitZ()), expected, 1e-9);
-  // The older clear sky has 0.91 for 1 - 10 e^(-3π/2).
+  // The older clear sky has 0.91 instead of 1 - 10 e^(-3π/2).
   EXPECT_NEAR(indicatrix(1.0), 0.91 + 10 * std::exp(-3.0) + 0.45 * std::cos(1.0) * std::cos(1.0), 5e-4);
   // Type 1 approaches the overcast sky: its horizon has 1 / (1 + 4 e^-0.7) of the zenith's luminance.
   const Sky type_1 = make_general_sky(1, towards(0, 40), 12'000);
@@ -184,7 +184,7 @@ TEST(Sun, GivesItsNormalIlluminanceTimesTheSineOfItsAltitude) {
 
 TEST(Sun, ThatTheHorizonHalvesShinesWithItsUpperHalf) {
   const Sky sun = make_sun(towards(0, 1e-9), 1000);
-  // Half disk of radius r, its moment about the horizon: L · 2r³/3.
+  // Half disk of radius r; its moment about the horizon is L · 2r³/3.
   const double r = 0.5 * kSunDiameter_rad;
   EXPECT_NEAR(sun->horizontal_illuminance_lx() / (1000 / (kPi * r * r) * 2 * r * r * r / 3), 1, 1e-3);
   EXPECT_EQ(sun->luminance_cd_m2(towards(0, -0.1)), 0);

@@ -1,4 +1,4 @@
-// Tables nobody would write but files hold: dark rows and columns, values of very different size, narrow bands.
+// Tables that are absurd but occur in files: dark rows and columns, values of very different size, narrow bands.
 #include "core/photometry/sphere_table.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ std::vector<double> ascending(std::mt19937_64& random, double from, double to) {
   std::uniform_real_distribution<double> unit(0, 1);
   std::vector<double> knots{from, to};
   const int inner = static_cast<int>(random() % 5);
-  // Now and then very near another one.
+  // Now and then very near another angle.
   for (int i = 0; i < inner; ++i) knots.push_back(from + (to - from) * std::pow(unit(random), random() % 2 ? 1 : 8));
   std::sort(knots.begin(), knots.end());
   knots.erase(std::unique(knots.begin(), knots.end(), [](double a, double b) { return b - a < 1e-6; }), knots.end());
@@ -25,7 +25,7 @@ std::vector<double> ascending(std::mt19937_64& random, double from, double to) {
   return knots;
 }
 
-/// Of 200 orders of magnitude, with whole rows or columns dark.
+/// Values over 200 orders of magnitude, with whole rows or columns dark.
 std::vector<double> hostile_values(std::mt19937_64& random, std::size_t columns, std::size_t polars) {
   std::uniform_real_distribution<double> exponent(-188, 12);
   std::uniform_real_distribution<double> peak_exponent(-6, 12);
@@ -83,15 +83,14 @@ TEST(SphereTable, DrawsFromAnyTableEvenAtTheEdgesOfTheSquare) {
       ASSERT_GE(value, 0);
       ASSERT_LE(value, table.largest() * (1 + 1e-12));
       if (i < 20) continue;
-      // Both are the same but for the rounding of the direction's angles, which a steep neighbour enlarges.
+      // They differ only by the rounding of the direction's angles, which a steep neighbour magnifies.
       ASSERT_NEAR(table.at(direction), value, 1e-6 * table.largest()) << "table " << round << " at " << u << ", " << v;
     }
   }
   EXPECT_EQ(drawn_from, 3000);
 }
 
-// A table of angle steps far apart in value: the share of directions that fall into the bright half is that of its
-// flux.
+// A table with very different values: the share of directions drawn in the bright half equals its share of the flux.
 TEST(SphereTable, DrawsTheBrightHalfAsOftenAsItsFluxSays) {
   const SphereTable table(Symmetry::none, {0, 0.25 * kPi, 0.5 * kPi}, {0, kPi, 2 * kPi},
                           {1e12, 1, 0, 3e-40, 0, 0, 1e12, 1, 0});
@@ -100,7 +99,7 @@ TEST(SphereTable, DrawsTheBrightHalfAsOftenAsItsFluxSays) {
   constexpr int kDraws = 100'000;
   int seen = 0;
   for (int i = 0; i < kDraws; ++i) seen += table.sample(unit(random), unit(random)).direction.x() > 0;
-  // By azimuth the value falls linearly from 0 to π and rises again: three quarters of it lie where x > 0.
+  // By azimuth the value falls linearly from 0 to π and rises again: three quarters of the flux lie where x > 0.
   EXPECT_NEAR(seen, 0.75 * kDraws, 5 * std::sqrt(kDraws * 0.75 * 0.25));
 }
 

@@ -25,7 +25,7 @@ TEST(SunPosition, HasTheDeclinationOfMeeusExample25a) {
 }
 
 TEST(SunPosition, StandsOverTheTropicsAtTheSolsticesAndOverTheEquatorAtTheEquinox) {
-  // Solstice of June 2024: 20 June 20:51 UTC; equinox of March 2024: 20 March 03:06 UTC (almanac).
+  // June solstice of 2024: 20 June 20:51 UTC; March equinox of 2024: 20 March 03:06 UTC (almanac).
   EXPECT_NEAR(deg_from_rad(sun_position({2024, 6, 20, 20.85}, 0.5 * kPi, 0).altitude_rad), 23.436, 0.01);
   EXPECT_NEAR(deg_from_rad(sun_position({2024, 3, 20, 3.1}, 0.5 * kPi, 0).altitude_rad), 0, 0.01);
 }
@@ -52,7 +52,7 @@ TEST(TowardsSky, HasNorthAlongYAndEastAlongXUnlessTurned) {
   EXPECT_NEAR((towards_sky_world(0, 0) - Vec3::UnitY()).norm(), 0, 1e-15);
   EXPECT_NEAR((towards_sky_world(0.5 * kPi, 0) - Vec3::UnitX()).norm(), 0, 1e-15);
   EXPECT_NEAR((towards_sky_world(1, 0.5 * kPi) - Vec3::UnitZ()).norm(), 0, 1e-15);
-  // North a quarter turn counter-clockwise of +Y lies along -X.
+  // With north a quarter turn counter-clockwise of +Y, it lies along -X.
   EXPECT_NEAR((towards_sky_world(0, 0, 0.5 * kPi) + Vec3::UnitX()).norm(), 0, 1e-15);
 }
 

@@ -31,7 +31,7 @@ TEST(Pfm, GivesBackWhatWasWritten) {
   }
 }
 
-// "PF", size, negative scale for little-endian; rows from the bottom up.
+// "PF", size, negative scale for little-endian; rows bottom up.
 TEST(Pfm, IsTheFormatThatOthersRead) {
   const Picture picture = some_picture(2, 2);
   const std::string bytes = to_pfm(picture);

@@ -147,7 +147,7 @@ TEST(Picture, PixelAndRayAgree) {
         EXPECT_NEAR(place->x_px, x_px, 1e-9);
         EXPECT_NEAR(place->y_px, y_px, 1e-9);
       }
-  // The picture is 2 tan(fov / 2) of the distance high.
+  // The picture is 2 tan(fov / 2) times the distance high.
   const Vec3 middle_m = camera.eye_world_m + 3 * (camera.target_world_m - camera.eye_world_m).normalized();
   EXPECT_NEAR(pixel_of(camera, middle_m)->px_per_m, camera.height_px / (6 * std::tan(0.3)), 1e-9);
   EXPECT_FALSE(pixel_of(camera, camera.eye_world_m - (camera.target_world_m - camera.eye_world_m))) << "behind";

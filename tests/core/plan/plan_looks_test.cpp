@@ -1,4 +1,4 @@
-// What a plan asks of heads, and of a rig with regions kept out of.
+// Demands of plans on heads, and on a rig with keep-out zones.
 #include <gtest/gtest.h>
 
 #include "tests/core/plan/plans.h"
@@ -28,7 +28,7 @@ TEST(Plan, TurnsHeadsAndNothingElse) {
   EXPECT_DOUBLE_EQ(look->joints[1].pan_rad, rad_from_deg(90));
   EXPECT_DOUBLE_EQ(look->joints[1].tilt_rad, rad_from_deg(-45));
 
-  // Without angles: where it looks. So it is, too, when its own angles come back from a file.
+  // Without angles the head stays where it looks. So it does when its own angles come back from a file.
   std::optional<Joints>& joints = plan.tasks[0].lights[1].joints;
   joints.reset();
   EXPECT_EQ(look_for(plan, rig, "plan.json")->joints[1], rig.fixtures[1].joints);
@@ -37,7 +37,7 @@ TEST(Plan, TurnsHeadsAndNothingElse) {
   ASSERT_TRUE(read);
   EXPECT_TRUE(same_aim(look_for(*read, rig, "plan.json")->joints[1], rig.fixtures[1].joints));
 
-  joints->tilt_rad = rad_from_deg(60);  // 57.3° is its end
+  joints->tilt_rad = rad_from_deg(60);  // 57.3° is the end of its travel
   const auto refused = look_for(plan, rig, "plan.json");
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error()[0].what.find("/tasks/0/lights/1/tilt_deg"), std::string::npos);
@@ -52,7 +52,7 @@ TEST(Plan, ThatLightsAKeepOutZoneIsRefused) {
   luminaire.field_angle_rad = rad_from_deg(20);
   rig.keep_outs.emplace_back();
   rig.keep_outs[0].name = "stalls";
-  // Ahead of it when it looks level along +y.
+  // In its beam when it looks level along +y.
   rig.keep_outs[0].centre_world_m = rig.fixtures[1].world_from_mount.translation_m +
                                     rig.fixtures[1].world_from_mount.direction({0, 5, -5 * std::tan(rad_from_deg(40))});
   rig.keep_outs[0].radius_m = 0.3;
@@ -92,7 +92,7 @@ TEST(Plan, ZoomsHeadsThatCan) {
   EXPECT_NE(refused.error()[0].what.find("/tasks/0/lights/1/beam_angle_deg"), std::string::npos);
 }
 
-// An aim's levels are its own wish; an emittance task after it goes back to goals, which are the plan's.
+// An aim's levels are its own. A later emittance task uses goals again, which are the plan's.
 TEST(Plan, HoldsTheLookOfAnAimUnlessLevelsAreSetAfterIt) {
   const Rig rig = rig_with_a_head();
   Plan plan = plan_for_two(0.5, 0.25);

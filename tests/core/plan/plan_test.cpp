@@ -298,7 +298,7 @@ TEST(Plan, IsRefusedForAnotherRigOrWithLevelsThatTheRigCannotGive) {
   EXPECT_TRUE(levels_for(plan_for_two(0.4, 0.4), limited, "plan.json"));
 }
 
-/// "left" and "right" at these levels, and a bulb that hangs nowhere yet.
+/// "left" and "right" at these levels, and a bulb not hung yet.
 Plan plan_that_places() {
   Plan plan = plan_for_two(0.25, 0.5);
   PlannedLight placed = light("more 1", 0.75);
@@ -423,7 +423,7 @@ TEST(Plan, CarriesPowerAndColour) {
   EXPECT_EQ(back->tasks[0].front[1].normalised_error, 0.4);
   EXPECT_EQ(back->points[0].xy, point.xy);
   EXPECT_EQ(back->points[0].goal_xy, point.goal_xy);
-  // One from before there were colours says nothing of them.
+  // An older plan, from before colours existed, has none.
   const auto old = plan_from_json(to_json(plan_for_two(0.5, 0.25)), "plan.json");
   ASSERT_TRUE(old);
   EXPECT_FALSE(old->tasks[0].watts);
@@ -436,7 +436,7 @@ TEST(Plan, CarriesPowerAndColour) {
   EXPECT_NE(wrong.error()[0].text().find("/points/0/xy"), std::string::npos) << wrong.error()[0].text();
 }
 
-// What a stranger is told to hang is the lamp, not one of its emitters.
+// The person who hangs lamps is given the lamp's name, not that of an emitter.
 TEST(Plan, NamesTheHousingOfEmittersThatDoNotHangYet) {
   Rig rig = two_fixture_rig();
   rig.luminaires.resize(2);

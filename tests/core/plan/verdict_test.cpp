@@ -65,7 +65,7 @@ TEST(Verdict, IsRarelyWrongWhenTheStatedErrorIsRight) {
 TEST(Verdict, OfAReadingCountsTheMetersTolerance) {
   EXPECT_NEAR(estimate_of_reading(200, 0, 0.05, 0).half_width_lx, 0.95 * 10, 1e-12);
   EXPECT_NEAR(estimate_of_reading(200, 0.005, 0, 0).half_width_lx, 1.96, 1e-12);
-  // A meter that is good to 5 % confirms no goal to 5 %.
+  // A meter with an error of 5 % cannot confirm a goal to 5 %.
   EXPECT_EQ(verdict_of(estimate_of_reading(200, 0.005, 0.05, 0.1), 200, 10), Verdict::met);
   EXPECT_EQ(verdict_of(estimate_of_reading(200, 0.005, 0.055, 0.1), 200, 10), Verdict::unknown);
 }

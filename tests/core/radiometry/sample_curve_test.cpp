@@ -15,7 +15,7 @@ TEST(SampleCurve, FollowsPublishedValuesOfSrgbAndBt709) {
   EXPECT_NEAR(srgb.light(0.5), 0.21404, 1e-5);
   EXPECT_NEAR(srgb.light(1), 1, 1e-12);
   const SampleCurve bt709 = SampleCurve::bt709();
-  EXPECT_NEAR(bt709.light(0.081), 0.018, 1e-4);  // the published constants are rounded: its parts do not quite meet
+  EXPECT_NEAR(bt709.light(0.081), 0.018, 1e-4);  // the published constants are rounded: the two parts do not quite meet
   EXPECT_NEAR(bt709.light(0.5), 0.25959, 2e-5);
 }
 

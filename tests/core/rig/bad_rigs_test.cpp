@@ -1,8 +1,8 @@
-// Every file in tests/rigs/bad says in its first lines what is wrong with it, and where:
+// Every file in tests/rigs/bad states its errors and their places in its first lines:
 //   # expect: <line>:<column>: <part of the message>
 //   # also:   <line>:<column>: <part of the message>     (any number)
-// A place in another file has that file's name before it. Nothing else may be reported, or one mistake would
-// hide among its echoes; problems of a photometric file are its own parser's and not counted.
+// A place in another file has that file's name before it. Nothing else may be reported, or an error would hide among
+// its consequences. Problems of a photometric file belong to its own parser and are not counted.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ std::vector<std::string> bad_rigs() {
   return names;
 }
 
-/// "file:line:column: text" as a problem must be, file relative to the folder.
+/// Expected form of a problem, "file:line:column: text", with file relative to the folder.
 std::vector<std::string> expectations(const std::filesystem::path& path) {
   std::vector<std::string> out;
   std::ifstream in(path);
@@ -54,7 +54,7 @@ TEST_P(BadRig, IsRefusedWithPlaceAndMendAndNothingElse) {
   const auto expected = expectations(path);
   ASSERT_FALSE(expected.empty()) << "its first line must be # expect: line:column: text";
 
-  const std::clock_t start = std::clock();  // of the processor: a busy machine is not the reader's fault
+  const std::clock_t start = std::clock();  // processor time: a busy machine does not count
   const Checked<Rig> rig = load_rig(path);
   EXPECT_LT(std::clock() - start, CLOCKS_PER_SEC);
 

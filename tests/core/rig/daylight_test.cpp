@@ -1,4 +1,4 @@
-// [daylight] of the rig file: what it makes of the sun, and how bright it all is.
+// [daylight] of the rig file: position of the sun, brightness of sun and sky.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -85,7 +85,7 @@ TEST(DaylightOfARig, UnmeasuredSkiesHaveTheMeanForTheSunsHeight) {
   const Daylight partly = daylight_of(std::string("sky = \"general\"\nsky_type = 8") + sun);
   EXPECT_NEAR(partly.horizontal_lx, 22'800, 1e-6);
   EXPECT_NEAR(partly.sun_normal_lx, 127'500 * std::exp(-1.6), 1e-6);
-  // What was measured holds.
+  // Measured values take precedence.
   const Daylight given = daylight_of(std::string("sky = \"clear\"\nhorizontal_lx = 7\nsun_normal_lx = 9") + sun);
   EXPECT_EQ(given.horizontal_lx, 7);
   EXPECT_EQ(given.sun_normal_lx, 9);
@@ -115,7 +115,8 @@ TEST(Moment, IsReadWithItsOffset) {
   EXPECT_NEAR(time->hours, 10 + 30 / 60.0 + 45 / 3600.0, 1e-12);
   EXPECT_NEAR(utc_time("2026-06-21 12:30Z")->hours, 12.5, 1e-12);
   EXPECT_NEAR(utc_time("2026-06-21T01:00-09:30")->hours, 10.5, 1e-12);
-  EXPECT_NEAR(utc_time("2026-01-01T00:15:00+05:45")->hours, -5.5, 1e-12);  // the evening before; sun_position takes it
+  EXPECT_NEAR(utc_time("2026-01-01T00:15:00+05:45")->hours, -5.5, 1e-12);  // the evening before; sun_position accepts
+                                                                           // it
   EXPECT_TRUE(utc_time("2024-02-29T00:00Z"));
   EXPECT_TRUE(utc_time("2000-02-29T00:00Z"));
 }

@@ -19,7 +19,7 @@ Vec3 beam_world(const Pose& world_from_mount, const Joints& joints) {
   return world_from_lamp(world_from_mount, joints).direction(-Vec3::UnitZ());
 }
 
-/// 16-bit value of an angle within its travel, as a DMX slot pair carries it.
+/// 16-bit value of an angle within its travel, as in a pair of DMX slots.
 int dmx16(double angle_rad, double min_rad, double max_rad) {
   return static_cast<int>(std::lround((angle_rad - min_rad) / (max_rad - min_rad) * 65535));
 }
@@ -85,7 +85,7 @@ TEST(PanTiltTowards, MeetsTheTestVectors) {
 }
 
 TEST(PanTiltTowards, OnATieDoesNotFlip) {
-  // From the middle both postures for +X need a quarter turn of each joint.
+  // From the middle, both postures for +X need a quarter turn of each joint.
   const auto from_middle = pan_tilt_towards({}, Vec3::UnitX(), {}, {});
   ASSERT_TRUE(from_middle);
   EXPECT_NEAR(from_middle->pan_rad, rad_from_deg(-90), kTight_rad);
@@ -107,7 +107,7 @@ TEST(PanTiltTowards, PointsWhereItWasAskedFromAnyMount) {
   }
 }
 
-/// Every posture within range, by trying all images: the independent reference.
+/// All postures within range, by trying every image: the independent reference.
 std::vector<Joints> all_postures(const Vec3& d, const JointRange& range) {
   std::vector<Joints> out;
   const double tilt = std::acos(std::clamp(-d.z(), -1.0, 1.0)), pan = std::atan2(-d.x(), d.y());
@@ -161,7 +161,7 @@ TEST(PanTiltTowards, TakesTheNearestOfAllPosturesAndImages) {
 }
 
 TEST(PanTiltTowards, GoesOnTurningInsteadOfUnwindingWhenTheTravelAllows) {
-  // At pan 260° asked to look at pan -80° (= 280°, past the stop) a head with more travel goes on to 280°.
+  // At pan 260°, a head with more travel goes on to 280° when asked for pan -80° (= 280°).
   const JointRange wide{rad_from_deg(-360), rad_from_deg(360), rad_from_deg(-135), rad_from_deg(135)};
   const Vec3 d = beam_world({}, joints_deg(-80, 60));
   const auto joints = pan_tilt_towards({}, d, wide, joints_deg(260, 60));
@@ -188,7 +188,7 @@ TEST(PanTiltTowards, StraightDownFromOutsideTheTravelGoesToItsNearestStop) {
 TEST(PanTiltTowards, SaysWhenADirectionIsOutOfReach) {
   EXPECT_FALSE(pan_tilt_towards({}, Vec3::UnitZ(), {}, {}));  // straight up: tilt 180° of 135°
   EXPECT_FALSE(pan_tilt_towards({}, -Vec3::UnitZ(), {-1, 1, 0.5, 1}, {}));
-  EXPECT_FALSE(pan_tilt_towards({}, Vec3::UnitY(), {1, -1, -2, 2}, {}));  // a range reversed holds nothing
+  EXPECT_FALSE(pan_tilt_towards({}, Vec3::UnitY(), {1, -1, -2, 2}, {}));  // an inverted range holds nothing
 }
 
 TEST(PanTiltTowardsDeathTest, RefusesADirectionThatIsNone) {

@@ -1,5 +1,5 @@
-// Every key of the schema is really read: changing its value changes the Rig, and leaving it out is the same as
-// writing the default that the reference states.
+// Every key of the schema is really read: a change of its value changes the Rig. Leaving it out equals writing the
+// default that the reference states.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ std::string text_of(const std::optional<MeshFile>& mesh) {
               : "none";
 }
 
-/// Everything in a Rig but places, as text.
+/// All of a Rig except places, as text.
 std::string dump(const Rig& rig) {
   std::string out;
   const auto add = [&](const auto&... values) { ((out += fmt::format("{} ", values)), ...), out += '\n'; };
@@ -125,7 +125,7 @@ std::string dump(const Rig& rig) {
   return out;
 }
 
-/// Of the example that a key of type file has, and of a second file beside it.
+/// Content for the example of a key of type file, and for a second file beside it.
 std::string content_of(const std::filesystem::path& file, bool second) {
   const std::string kind = file.extension().string();
   if (kind == ".obj") return "v 0 0 0\n";
@@ -179,7 +179,7 @@ class KeysRead : public testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  /// The sink with some of its lines replaced, as a dump; or its problems.
+  /// The sink with some lines replaced, as a dump; or its problems.
   std::string read(const std::vector<Line>& lines) {
     std::string text;
     for (const Line& line : lines) text += line.text + "\n";
@@ -190,7 +190,7 @@ class KeysRead : public testing::Test {
     return "REFUSED " + problems;
   }
 
-  /// Renaming or repointing something must not only be noticed as a dangling reference.
+  /// A changed name or reference must do more than raise a dangling reference.
   static void rename(std::vector<Line>& lines, const Line& renamed) {
     const std::string old = renamed.text.substr(renamed.text.find(" = ") + 3);
     for (Line& line : lines) {
@@ -241,7 +241,7 @@ TEST_F(KeysRead, LeavingAKeyOutIsWritingItsDefault) {
         } else if (key.fallback != kNone) {
           with[i].text = sink[i].key + " = " + std::string(key.fallback);
           const std::string written = read(with);
-          if (written.starts_with("REFUSED")) continue;  // a default may not suit the rest here; it must somewhere
+          if (written.starts_with("REFUSED")) continue;  // a default may not fit the rest here; it must fit somewhere
           EXPECT_EQ(read(without), written) << "[" << sink[i].section << "] " << with[i].text;
         }
         tried.emplace(key.section, key.key);

@@ -1,6 +1,6 @@
 #pragma once
-/// A file with every key there is, and for each a second value. Both come from the examples of the schema. Written here
-/// is what a row of the schema cannot say: which keys may stand in one entry, and which names they refer to.
+/// A file with every key of the schema, and a second value for each. Both values come from the schema's examples. This
+/// file adds the facts that a row of the schema cannot hold: valid combinations of keys, and the names they refer to.
 
 #include <algorithm>
 #include <set>
@@ -13,9 +13,10 @@
 
 namespace luxrig::kitchen_sink {
 
-// An outline. Its lines hold parts with "; " between them: a key alone has its example, and `rest` is every key of the
-// section that no entry here names. After #> stands the second value, with what it needs after " & "; a key alone has
-// one anyway, unless an entry before has one. Sections that are not here have one entry with all their keys.
+// An outline. Its lines hold parts separated by "; ". A bare key has its example as value; `rest` stands for every key
+// of the section that no entry here names. After #> stands the second value, with further parts it needs after " & ". A
+// bare key has a second value anyway, unless an earlier entry has one. Sections that are absent here have one entry
+// with all their keys.
 inline constexpr const char* kRig = R"(
 [[scene.object]]
 name; file; rest
@@ -117,7 +118,7 @@ name; box_m; heads #> ["zoomer"]; rest
 [[keep_out]]
 name = "mirror"; centre_m; radius_m
 )";
-// The sun's angles and its place and time exclude one another: one of the two follows the rest.
+// The sun's angles exclude its place and time: one of these two follows the rest.
 inline constexpr const char* kSunByAngles = R"([daylight]
 sky = "general"; sky_type; horizontal_lx; sun_normal_lx; sun_azimuth_deg; sun_elevation_deg; north_deg
 )";
@@ -138,7 +139,7 @@ register #> "other"; value
 )";
 
 struct Line {
-  std::string section, key, text, other;  ///< text: the whole line; other: second value, empty when it has none
+  std::string section, key, text, other;  ///< text: the whole line; other: second value, empty if there is none
 };
 
 inline std::vector<std::string> split(const std::string& text, const std::string& between) {
@@ -151,7 +152,7 @@ inline std::vector<std::string> split(const std::string& text, const std::string
   return parts;
 }
 
-/// As good a value as the example: the next choice, a slightly larger number, a longer text.
+/// A value as valid as the example: the next choice, a slightly larger number, a longer text.
 inline std::string other_than_example(const KeySpec& spec) {
   std::string value(spec.example);
   const std::vector<std::string_view> choices = choices_of(spec);

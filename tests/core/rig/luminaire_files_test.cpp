@@ -1,4 +1,4 @@
-// GLDF and TM-33 files: the part that is meant, the flux it states, and refusals that name what there is.
+// GLDF and TM-33 files: the selected part, the flux it states, and refusals that list the parts of the file.
 #include <gtest/gtest.h>
 #include <zip.h>
 
@@ -27,7 +27,7 @@ std::string refusal_of(const Checked<PhotometricFile>& file) { return file ? "re
 
 double flux_lm(const Checked<PhotometricFile>& file) { return file ? file->intensity->flux_lm() : -1; }
 
-/// Towards nadir over towards 45° aside.
+/// Intensity towards nadir over that at 45°.
 double narrowness(const Checked<PhotometricFile>& file) {
   return file->intensity->intensity_cd(-Vec3::UnitZ()) /
          file->intensity->intensity_cd(Vec3(std::sqrt(0.5), 0, -std::sqrt(0.5)));
@@ -139,7 +139,7 @@ TEST(LuminaireFiles, ArePartOfARig) {
   EXPECT_NE(useless.error().back().what.find("file_variant has no effect"), std::string::npos);
 }
 
-/// The archive with another product.xml.
+/// The archive with its product.xml replaced.
 std::string repacked(const std::string& product, const std::string& ldt) {
   zip_error_t error;
   zip_error_init(&error);

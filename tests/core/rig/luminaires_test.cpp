@@ -1,4 +1,4 @@
-// What [[luminaire]] becomes: distribution, shape and colour, and fixtures of luminaires with emitters.
+// Results of [[luminaire]]: distribution, shape and colour, and fixtures of luminaires with emitters.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -85,7 +85,7 @@ TEST(Luminaires, ShineFromTheFilesOpeningOnlyWhenAskedTo) {
                                        "rig.toml", kData);
     return rig && !rig->notes.empty() ? rig->notes.back().what : std::string();
   };
-  EXPECT_NE(notes("sample9.ldt").find("a box"), std::string::npos);  // said, since simplified
+  EXPECT_NE(notes("sample9.ldt").find("a box"), std::string::npos);  // reported, as it is simplified
   EXPECT_NE(notes("defined.ies").find("no luminous opening"), std::string::npos);
   EXPECT_EQ(notes("comet.ies"), "");
 }
@@ -248,12 +248,13 @@ TEST(Points, HaveGoalsOfAColour) {
   EXPECT_FALSE(plain->colour_goals());
 }
 
-// LM-63 draws type A with its beam level; aim_m is where a person wants the beam, whatever the type.
+// LM-63 draws type A with its beam level; aim_m is the place for the beam, whatever the type.
 TEST(Luminaires, OfEveryIesTypeShineWhereTheyAreAimed) {
   const auto folder = std::filesystem::path(testing::TempDir()) / "luxrig_ies_aims";
   std::filesystem::create_directories(folder);
   for (const int type : {1, 2, 3}) {
-    // Bright at (0, 0), half as bright 10° from it, dark from 30° on; A and B with a wider half-axis to see its side.
+    // Bright at (0, 0), half as bright at 10° from it, dark from 30° on. A and B have one wider half-axis to show their
+    // side.
     std::ofstream(folder / "lamp.ies")
         << "IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 "
         << (type == 1 ? "4 1 1 2 0 0 0\n1 1 1\n0 10 30 90\n0\n1000 500 0 0\n"

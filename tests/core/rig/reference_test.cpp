@@ -14,7 +14,7 @@ namespace {
 
 const std::filesystem::path kSource = test::source_folder();
 
-/// Lines of the page up to the drivers' own part, whose examples are no part of that rig.
+/// Lines of the page up to the drivers' part, whose examples do not belong to that rig.
 std::vector<std::string> lines_of_reference() {
   std::vector<std::string> lines;
   std::ifstream in(kSource / "rigs/REFERENCE.md");

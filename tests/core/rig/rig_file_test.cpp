@@ -114,7 +114,7 @@ TEST(RigFile, SaysWhichFileWasNotFound) {
 }
 
 TEST(RigFile, RefusesAFileOver16MiBUnread) {
-  const std::clock_t start = std::clock();  // of the processor: a busy machine is not the reader's fault
+  const std::clock_t start = std::clock();  // processor time: a busy machine does not count
   std::string text = kSmall;
   text.resize((std::size_t{16} << 20) + 1, '\n');
   const Checked<Rig> rig = parse(text);
@@ -209,15 +209,15 @@ TEST(RigFile, LetsUniversesAndBusesShareNumbers) {
 }
 
 TEST(RigFile, HangsABaseTurnedAsTheReferenceSays) {
-  // Yaw 90° turns the base's y (away) from the world's +y to -x; tilt 90° then looks along it.
+  // Yaw 90° turns the base's y (away) from the world's +y to -x; the beam at tilt 90° then follows it.
   const Checked<Rig> yawed = parse(kSmall + fixture("a", "address = 1\nmount_deg = [90, 0, 0]\ntilt_deg = 90"));
   ASSERT_TRUE(yawed) << listed(yawed.error());
   EXPECT_LT((yawed->fixtures[0].world_from_lamp().direction(-Vec3::UnitZ()) + Vec3::UnitX()).norm(), 1e-12);
-  // Pitch 180° stands it on its head: the beam of the untilted head goes up.
+  // Pitch 180° turns it upside down: the beam of the untilted head goes up.
   const Checked<Rig> standing = parse(kSmall + fixture("a", "address = 1\nmount_deg = [0, 180, 0]"));
   ASSERT_TRUE(standing) << listed(standing.error());
   EXPECT_LT((standing->fixtures[0].world_from_lamp().direction(-Vec3::UnitZ()) - Vec3::UnitZ()).norm(), 1e-12);
-  // Roll 90° about y alone: straight down becomes -x.
+  // Roll 90° is about y alone: straight down becomes -x.
   const Checked<Rig> rolled = parse(kSmall + fixture("a", "address = 1\nmount_deg = [0, 0, 90]"));
   ASSERT_TRUE(rolled) << listed(rolled.error());
   EXPECT_LT((rolled->fixtures[0].world_from_lamp().direction(-Vec3::UnitZ()) + Vec3::UnitX()).norm(), 1e-12);
@@ -321,7 +321,7 @@ std::string text_of_large_rig(int fixtures, int points) {
   return text;
 }
 
-/// Processor time of the quickest of three, since the machine may be shared.
+/// Processor time of the fastest of three runs, since the machine may be shared.
 double seconds_to_load(const std::string& text) {
   double least_s = 1e9;
   for (int i = 0; i < 3; ++i) {
@@ -338,7 +338,7 @@ TEST(RigFile, LoadsFiveHundredFixturesAndTwentyThousandPointsInTimeThatGrowsAsTh
   ASSERT_TRUE(rig) << listed(rig.error());
   EXPECT_EQ(rig->points.size(), 20000u);
   EXPECT_NE(rig->fixtures[511].joints.tilt_rad, 0);
-  // Four times the file: 16 would be quadratic.
+  // The file is four times as long: a factor of 16 would be quadratic.
   EXPECT_LT(seconds_to_load(large), 9 * seconds_to_load(text_of_large_rig(128, 5000)));
 }
 

@@ -78,7 +78,7 @@ TEST(Housing, IsNamedAsTheRigFileNamesIt) {
   EXPECT_EQ(housing_name(*rig, 1), "head");
   EXPECT_EQ(housing_of(*rig, 1), (std::vector<std::size_t>{0, 1}));
   EXPECT_EQ(housing_luminaire(*rig, 1).name, "spot");
-  // An emitter by itself is a luminaire like another.
+  // A single emitter is a luminaire like any other.
   EXPECT_EQ(housing_of(*rig, 2), std::vector<std::size_t>{2});
 }
 

@@ -11,8 +11,8 @@
 namespace luxrig {
 namespace {
 
-/// Light let through by a sheet of index n, passage a head-on: every internal reflection added up, Fresnel's equations
-/// in their angles.
+/// Transmittance of a sheet; `passage` is that of one head-on passage inside. Sums every internal reflection, with
+/// Fresnel's equations in their angles.
 double summed_transmittance(double index, double passage, double incidence_rad) {
   const double inside_rad = std::asin(std::sin(incidence_rad) / index);
   const double sine = std::sin(incidence_rad - inside_rad) / std::sin(incidence_rad + inside_rad);
@@ -30,7 +30,7 @@ Pane triangle(const Vec3& a, const Vec3& b, const Vec3& c, double transmittance 
   return {{a, b, c}, transmittance, object};
 }
 
-/// A square pane across z, its diagonal from corner to corner.
+/// A square pane across z, with its diagonal from corner to corner.
 std::vector<Pane> square(double z_m, double half_m, std::uint32_t object, double transmittance = 0.9) {
   const Vec3 a(-half_m, -half_m, z_m), b(half_m, -half_m, z_m), c(half_m, half_m, z_m), d(-half_m, half_m, z_m);
   return {triangle(a, b, c, transmittance, object), triangle(a, c, d, transmittance, object)};
@@ -45,7 +45,7 @@ TEST(Panes, LetThroughWhatTheyAreStatedTo) {
       const double now = pane_transmittance(stated, std::cos(rad_from_deg(deg)));
       EXPECT_GE(now, 0);
       EXPECT_LE(now, 1);
-      // Towards Brewster's angle one polarisation gains a little before the other loses.
+      // Towards Brewster's angle one polarisation gains slightly before the other loses.
       EXPECT_LE(now, before + 1e-3) << stated << " at " << deg;
       before = now;
     }
@@ -59,7 +59,7 @@ TEST(Panes, FollowFresnelWithAllInternalReflections) {
     const double incidence_rad = rad_from_deg(deg);
     EXPECT_NEAR(pane_transmittance(clear, std::cos(incidence_rad)), summed_transmittance(1.52, 1, incidence_rad), 1e-9)
         << deg;
-    // Grey glass: what one passage leaves is found from the stated value.
+    // Grey glass: the absorption of one passage follows from the stated value.
     const double r = std::pow(0.52 / 2.52, 2), passage = 0.6;
     const double stated = (1 - r) * (1 - r) * passage / (1 - r * r * passage * passage);
     EXPECT_NEAR(pane_transmittance(stated, -std::cos(incidence_rad)),
@@ -84,7 +84,7 @@ TEST(Panes, CountOncePerPaneAlsoThroughTheirDiagonal) {
 }
 
 TEST(Panes, OfACaseAreMetAsOftenAsALineCrossesIt) {
-  // A box about the origin by its six faces; the number of crossings is counted from its planes.
+  // The six faces of a box about the origin; the number of crossings is counted from its planes.
   std::vector<Pane> box;
   const Vec3 half_m(0.5, 0.4, 0.3);
   for (int axis = 0; axis < 3; ++axis) {
@@ -138,7 +138,7 @@ TEST(Panes, TakeDegenerateAndEndlessInput) {
   }
   EXPECT_TRUE(Panes().empty());
   EXPECT_TRUE(Panes(std::span(odd).last(3)).empty());
-  // Far from the origin the ends of a way still touch what they stand on.
+  // Far from the origin the ends of a segment still touch their surfaces.
   Scene scene;
   scene.panes = square(0, 1, 0);
   for (Pane& pane : scene.panes)

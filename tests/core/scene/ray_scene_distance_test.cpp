@@ -1,4 +1,4 @@
-// The nearest surface: against the distance to a box's walls, and to triangles one by one.
+// The nearest surface: checked against the distance to a box's walls, and against triangles one by one.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -53,7 +53,7 @@ TEST(NearestSurface, IsNoneBeyondTheBoundOrWithoutTriangles) {
   EXPECT_FALSE(RayScene(Scene{}).nearest_surface(Vec3::Zero(), kAnyDistance_m));
 }
 
-/// Nearest point by another way: the foot on the plane when all three edges have it inside, else the nearest edge.
+/// Nearest point by another method: the foot on the plane if all three edges have it inside, else on the nearest edge.
 double to_triangle_m(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 normal = (b - a).cross(c - a);
   const Vec3 foot = p - normal * (normal.dot(p - a) / normal.squaredNorm());

@@ -1,4 +1,5 @@
-/// Light must not leak through closed walls, nor walls shade themselves, from 1 mm to 10 km and far from the origin.
+/// Light must not leak through closed walls, nor may walls shade themselves, from 1 mm to 10 km and far from the
+/// origin.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +19,7 @@ struct Box {
     half_m = size_m * Vec3(random.between(0.2, 1), random.between(0.2, 1), random.between(0.2, 1));
     if (random.below(3) > 0) turn = random.rotation();
     if (random.below(2) > 0) scene.origin_world_m = 1e7 * random.in_cube();
-    // Up to ten sizes from the scene's origin, as one room of many.
+    // Up to ten sizes from the scene's origin, like one room of many.
     if (random.below(2) > 0) middle_m = 10 * size_m * random.in_cube();
     split = 1 + static_cast<int>(random.below(4));
     for (int axis = 0; axis < 3; ++axis)
@@ -90,14 +91,14 @@ TEST(RayLeaks, ALampOutsideAClosedBoxReachesNoPointInside) {
       const OnWall wall(random, box, false);
       const Vec3 from_at = in_the_air ? Vec3(0.99 * random.in_cube()) : wall.at;
       const Vec3 from = box.place(from_at), normal = in_the_air ? Vec3(Vec3::Zero()) : wall.normal_world;
-      // The way out leads through a face, a grid line, an edge or a corner; the lamp stands just behind or far off.
+      // The way out leads through a face, a grid line, an edge or a corner; the lamp is just behind it or far off.
       const OnWall exit(random, box, true);
       const double beyond = std::pow(10, random.between(-2, 3));
       const Vec3 to = box.place(exit.at + beyond * (exit.at - from_at));
       const Vec3 past_m = ((exit.at + beyond * (exit.at - from_at)).cwiseAbs() - Vec3::Ones()).cwiseProduct(box.half_m);
-      // Within 2 e of a wall's plane a lamp counts as lying on that wall, and that wall lets its light pass.
+      // Within 2 e of a wall's plane a lamp counts as on that wall, which then lets its light pass.
       if (past_m.maxCoeff() < 0 || past_m.cwiseAbs().minCoeff() < 4 * rays.surface_error_m(to)) continue;
-      // Behind the surface or in its plane, nobody asks.
+      // Behind the surface or in its plane: never asked.
       if (!in_the_air && normal.dot(to - from) < 8 * rays.surface_error_m(to)) continue;
       ++configurations;
       const bool at_edge = (exit.at.cwiseAbs().array() == 1).count() > 1;
@@ -109,7 +110,7 @@ TEST(RayLeaks, ALampOutsideAClosedBoxReachesNoPointInside) {
     }
   }
   EXPECT_GE(configurations, 10'000);
-  // None with g++'s order of draws; one in some 170,000 with clang's, which passes within rounding of an edge too.
+  // None with g++'s order of draws; one in some 170,000 with clang's, which also passes within rounding of an edge.
   EXPECT_LE(leaks, 1) << "of " << configurations;
   EXPECT_LE(leaks_many, 1);
   // Aimed exactly at the edge between two walls, one ray in 16,000 slips through Embree's robust mode (11 of 170,000).
@@ -126,13 +127,13 @@ TEST(RayLeaks, ALampOutsideReachesNoPointExactlyOnAnEdge) {
       OnWall wall(random, box, true);
       const auto axis = static_cast<int>(random.below(3));
       if (std::abs(wall.at[axis]) == 1) continue;
-      // Two walls meet there. Where three do, exactly, a ray may slip out by the third.
+      // Two walls meet there. Exactly at the corner of three, a ray may slip out by the third.
       wall.at *= 0.999;
       for (int k = 0; k < 3; ++k)
         if (std::abs(wall.normal_world.dot(box.turn.col(k))) > 0.5 || k == axis)
           wall.at[k] = std::copysign(1, wall.at[k]);
       const Vec3 from = box.place(wall.at);
-      // Out through the other wall, not grazing it: there the point lies in both, and has no inside.
+      // Out through the other wall, not grazing it: grazing, the point lies in both walls and has no inside.
       const Vec3 way = random.in_cube().normalized();
       if (way[axis] * wall.at[axis] < 0.3 || (box.turn * way).dot(wall.normal_world) < 0.01) continue;
       ++configurations;
@@ -152,7 +153,7 @@ TEST(RayLeaks, ALampInAnEmptyBoxReachesEveryPointOfItsWalls) {
     for (int i = 0; i < 60; ++i) {
       const OnWall wall(random, box, false), lamp(random, box, true);
       const Vec3 from = box.place(wall.at);
-      // In the air, flush with another wall, in an edge or corner, or close to the very wall, so that light grazes it.
+      // In the air, flush with another wall, in an edge or corner, or so close to the wall itself that light grazes it.
       Vec3 to_at = i % 3 == 0 ? Vec3(0.999 * random.in_cube()) : lamp.at;
       if (i % 3 == 2) {
         int own = 0;
@@ -178,8 +179,8 @@ TEST(RayLeaks, ALampInAnEmptyBoxReachesEveryPointOfItsWalls) {
 }
 
 TEST(RayLeaks, ASheetCloseToALampOrAReceiverStopsItsLight) {
-  // A sheet 4 e and more before the lamp, or 8 e off the receiver's surface, at any slant: a third of a millimetre was
-  // overlooked when shadow rays just stopped short.
+  // A sheet 4 e or more before the lamp, or 8 e off the receiver's surface, at any slant. When shadow rays just stopped
+  // short, a third of a millimetre was overlooked.
   Random random(4);
   for (int i = 0; i < 600; ++i) {
     const double size_m = std::pow(10, random.between(-3, 4));
@@ -207,7 +208,7 @@ TEST(RayLeaks, ASheetCloseToALampOrAReceiverStopsItsLight) {
     const Vec3 lamp(size_m * random.between(-1, 1), size_m * random.between(-1, 1), size_m);
     const auto world = [&](const Vec3& p) { return Vec3(turn * p + scene.origin_world_m); };
     EXPECT_TRUE(rays.occluded(world(from), turn * Vec3::UnitZ(), world(lamp))) << i << " " << size_m;
-    // Light past the sheet's edge is not held up by the ceiling, however it slants in.
+    // The ceiling does not stop slanting light that passes the sheet's edge.
     const Vec3 aside(1.9 * size_m, 0, size_m);
     EXPECT_FALSE(rays.occluded(world({1.9 * size_m, 1.6 * size_m, 0}), turn * Vec3::UnitZ(), world(aside))) << i;
   }
@@ -282,7 +283,7 @@ TEST(RayLeaks, NothingComesThroughAWallOfFifteenCentimetres) {
         return p;
       };
       const Vec3 lamp = at + side(4, 0, i % 4), point = at + side(4.15, 8, (i / 4) % 4);
-      // On the floor, also in its corner with the wall; or in the air, looking at the wall.
+      // On the floor, also in its corner with the wall; or in the air, facing the wall.
       const int kind = (i / 4) % 4;
       if (kind == 0 || (kind == 1 && point.z() > at.z())) continue;
       const Vec3 normal = kind == 3 ? Vec3(-Vec3::UnitX()) : Vec3(Vec3::UnitZ());

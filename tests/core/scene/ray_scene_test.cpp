@@ -86,8 +86,8 @@ TEST_P(AtEverySize, NoRayLeavesAClosedBox) {
   }
 }
 
-// Embree rounds, so a ray to the very corner of three sides may pass between them: 1 in 10 000 of these does, and the
-// header says so. Rays of no such aim never do (above).
+// Embree rounds, so a ray to the exact corner of three sides may pass between them: 1 in 10 000 of these does, as the
+// header states. Other rays never do (above).
 TEST_P(AtEverySize, RaysAimedAtEdgesAndCornersHardlyEverSlipThrough) {
   const auto& [name, half_m, origin] = GetParam();
   const RayScene rays(box(half_m, 4, origin));
@@ -152,7 +152,7 @@ TEST_P(AtEverySize, NoSurfaceShadesItselfNorALampThatLiesInAnother) {
   }
 }
 
-/// What a ray meets, in double precision, by trying every triangle.
+/// First hit of a ray, in double precision, by trying every triangle.
 struct Brute {
   const Scene& scene;
   struct Found {
@@ -202,7 +202,7 @@ TEST_P(AtEverySize, SeesWhatBruteForceInDoublePrecisionSees) {
   Random random(16);
   int compared = 0;
   for (int i = 0; i < 4000; ++i) {
-    // A random point on a random triangle, and a direction to one of its sides.
+    // A random point on a random triangle, and a direction on one of its sides.
     const auto& triangle = scene.triangles[random.below(scene.triangles.size())];
     double u = random.between(0, 1), v = random.between(0, 1);
     if (u + v > 1) {
@@ -217,7 +217,7 @@ TEST_P(AtEverySize, SeesWhatBruteForceInDoublePrecisionSees) {
     const Vec3 direction = random.direction();
     if (normal.dot(direction) < 0) normal = -normal;
     const double error = rays.surface_error_m(from);
-    // Where a hair's breadth decides, either answer is right.
+    // Where rounding decides, either answer is right.
     const auto surely = brute.nearest(from, direction, 4 * error, 8 * error);
     const auto perhaps = brute.nearest(from, direction, 1e-9 * half_m.x(), -8 * error);
     if (surely.triangle != perhaps.triangle || surely.distance_m != perhaps.distance_m) continue;

@@ -1,12 +1,12 @@
 #pragma once
-/// A room on ground of any size, anywhere: what happens in the room should not depend on either.
+/// A room on ground of any size, anywhere: neither should affect results in the room.
 
 #include "core/rig/rig.h"
 
 namespace luxrig {
 
-/// A rig of boxes about `at`: a room of 6 x 5 x 3 m on a ground of any size whose middle lies `aside`, a lamp under its
-/// ceiling with a sheet hung below it, and a point on its floor.
+/// A rig of boxes about `at`: a room of 6 x 5 x 3 m on a ground of any size with its middle `aside`, a lamp under the
+/// ceiling with a sheet hung below it, and a point on the floor.
 inline Rig room_on_ground(double ground_m, const Vec3& aside_m, const Vec3& at_m, double sheet_below_lamp_m) {
   Rig rig;
   const auto add = [&](const char* name, const Vec3& size_m, const Vec3& position_m) {

@@ -34,7 +34,7 @@ TEST(Shaft, WhereItIsClearNoRayIsStoppedAndWhereItIsBlockedNoneGetsThrough) {
     const Vec3 at = scene.origin_world_m;
     const Vec3 from = at + size_m * random.in_cube(), middle = at + size_m * random.in_cube();
     const Vec3 normal = i % 5 == 0 ? Vec3((middle - from).normalized()) : Vec3(random.in_cube().normalized());
-    if (i % 5 == 0) {  // a wall half-way, of four sides of any lengths
+    if (i % 5 == 0) {  // a wall half-way, with four sides of any length
       const Vec3 half = 0.5 * (from + middle) - at, u = normal.unitOrthogonal(), v = normal.cross(u);
       const auto base = static_cast<std::uint32_t>(scene.vertices_m.size());
       for (const auto& [a, b] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}})
@@ -91,7 +91,8 @@ TEST(Shaft, WhereItIsClearNoRayIsStoppedAndWhereItIsBlockedNoneGetsThrough) {
 }
 
 TEST(Shaft, TwoTrianglesThatShareAnEdgeBlockOnlyWhatLiesBehindBoth) {
-  // A flag folded over its edge, and a quadrilateral with a notch: between corners behind either there is a way past.
+  // A flag folded over its edge, and a quadrilateral with a notch: a line between corners behind one or the other may
+  // pass.
   const Vec3 from(0, 0, 0);
   const std::array<Vec3, 3> low = {Vec3(-1, 0, 1), Vec3(1, 0, 1), Vec3(0, -1, 1)};
   const std::array<Vec3, 3> high = {Vec3(-1, 0, 1), Vec3(1, 0, 1), Vec3(0, 1, 1)};
@@ -103,7 +104,7 @@ TEST(Shaft, TwoTrianglesThatShareAnEdgeBlockOnlyWhatLiesBehindBoth) {
   EXPECT_FALSE(hull_lies_behind(from, before, both, of)) << "in front";
   const std::array<std::array<Vec3, 3>, 2> folded = {low, {Vec3(-1, 0, 1), Vec3(1, 0, 1), Vec3(0, -0.5, 1.5)}};
   EXPECT_FALSE(hull_lies_behind(from, near, folded, of));
-  // The straight way from (1.9, -0.3, 2) to (1.9, 0.3, 2) passes the end of the shared edge at x = 2.
+  // Seen at z = 2 the shared edge ends at x = 1; the line between these points passes it at x = 1.5.
   const std::array<std::array<Vec3, 3>, 2> bow = {std::array{Vec3(-1, 0, 1), Vec3(0.5, 0, 1), Vec3(1.5, -1, 1)},
                                                   {Vec3(-1, 0, 1), Vec3(0.5, 0, 1), Vec3(1.5, 1, 1)}};
   const std::array<Vec3, 2> past = {Vec3(1.5, -0.9, 2), Vec3(1.5, 0.9, 2)};

@@ -1,4 +1,4 @@
-// MVR files: real ones against what their XML states, and small ones made here.
+// MVR files: real ones against the values in their XML, and small ones made here.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -78,7 +78,7 @@ TEST(Mvr, TheParHasItsGdtfsBeam) {
   EXPECT_LT((rig->fixtures[0].world_from_mount.translation_m - Vec3(5, 5, 5 - 0.134)).norm(), 1e-9) << "at its lens";
 }
 
-// The matrix that the MVR specification prints in its examples: rows are where x, y and z go, then the origin in mm.
+// The matrix in the examples of the MVR specification: rows are the directions of x, y and z, then the origin in mm.
 TEST(Mvr, TheMatrixOfTheSpecificationsExampleStandsAndTurnsAsItsRowsSay) {
   const Checked<MvrScene> scene = parse_mvr_scene(
       R"(<GeneralSceneDescription verMajor="1" verMinor="6"><Scene><Layers><Layer name="l"><ChildList><Fixture name="a">)"

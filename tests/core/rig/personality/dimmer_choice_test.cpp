@@ -1,5 +1,5 @@
-// Which channel of a maker's file dims, and what a level sends to it. The files here are made for the purpose, after
-// products whose files misled an earlier reader.
+// Choice of the dimmer channel in a maker's file, and the value sent at a level. These files are made for the test,
+// after products whose files misled an earlier reader.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,12 +21,12 @@ std::string ofl_of(const std::string& channels, const std::string& names) {
          channels + R"(}, "modes": [{"name": "m", "channels": [)" + names + "]}]}";
 }
 
-/// A mode fitted as one light, or why it cannot be.
+/// A mode fitted as one light, or the reason why it cannot be.
 struct Fitted {
   std::optional<ModeSlots> slots;
   std::string problem;
 
-  /// What a slot sends at a level.
+  /// Value of a slot at a level.
   int sent(std::size_t slot, double level) const {
     const DmxSlot& s = slots->slots.at(slot).slot;
     if (s.use == SlotUse::constant) return s.constant_dmx;
@@ -109,7 +109,7 @@ personality = "switch.json"
   std::filesystem::remove_all(folder);
 }
 
-// As Ayrton's MagicBlade FX: "Blackout" in a corner of the speed slot has the attribute Dimmer. It was taken for the
+// As Ayrton's MagicBlade FX: "Blackout", in a corner of the speed slot, has the attribute Dimmer. It was taken for the
 // dimmer, and the real one was held at 255.
 TEST(DimmerChoice, ABlackoutInASpeedSlotIsNoDimmer) {
   const std::string speed =
@@ -138,7 +138,7 @@ TEST(DimmerChoice, ABlackoutInASpeedSlotIsNoDimmer) {
 const char* const kTwoDimmers = R"("Color Presets Dimmer": {"defaultValue": 0, "capability": {"type": "Intensity"}},
     "Dimmer": {"defaultValue": 7, "capability": {"type": "Intensity"}})";
 
-// As elation/platinum-seven: the first was taken, which only dims built-in colours, and no limit held.
+// As elation/platinum-seven: the first channel was taken, which only dims built-in colours, so no limit held.
 TEST(DimmerChoice, OfTwoThatCouldBeItNeitherIsTakenAndBothAreNamed) {
   const Fitted seven = fit_ofl(kTwoDimmers, R"("Color Presets Dimmer", "Dimmer")");
   ASSERT_FALSE(seven.slots);
@@ -154,7 +154,7 @@ TEST(DimmerChoice, OfTwoThatCouldBeItNeitherIsTakenAndBothAreNamed) {
   EXPECT_FALSE(mixed.slots) << "held full beside emitters, it would be a guess as well";
 }
 
-// As 84 modes of the Open Fixture Library have them.
+// As in 84 modes of the Open Fixture Library.
 TEST(DimmerChoice, HueAndSaturationAreNoneThoughTheirFileCallsThemIntensities) {
   const Fitted lamp = fit_ofl(R"("Hue 1": {"defaultValue": 3, "capability": {"type": "Intensity"}},
       "Saturation 1": {"capability": {"type": "Intensity"}}, "Intensity 1": {"capability": {"type": "Intensity"}})",
@@ -183,7 +183,7 @@ TEST(DimmerChoice, TheRigFileChoosesAndTheOtherStaysAtItsDefault) {
   EXPECT_NE(unknown.problem.find("\"Dimmer\""), std::string::npos) << unknown.problem;
 }
 
-// As Capture writes it for a fixture that it has no file of: all of it was held at 255 but the first.
+// As Capture writes it for a fixture without a file: all slots but the first were held at 255.
 TEST(DimmerChoice, AStandInWhoseEverySlotIsADimmerIsRefusedWithTheReason) {
   std::string channels;
   for (int i = 1; i <= 12; ++i) {
@@ -199,7 +199,7 @@ TEST(DimmerChoice, AStandInWhoseEverySlotIsADimmerIsRefusedWithTheReason) {
 }
 
 TEST(DimmerChoice, ALevelRunsThroughTheDimmersOwnRangeAndOverItsLeastLight) {
-  // Dark up to 15, then from a tenth of the light on.
+  // Dark up to 15, then from a tenth of the light up.
   const Fitted lamp = fit_ofl(R"("D": {"capabilities": [
       {"dmxRange": [0, 15], "type": "Intensity", "brightness": "off"},
       {"dmxRange": [16, 215], "type": "Intensity", "brightnessStart": "10%", "brightnessEnd": "100%"},

@@ -1,4 +1,4 @@
-// GDTF files of real fixtures against what their description.xml states, read by eye (tests/data/fixtures/README.md).
+// GDTF files of real fixtures against the values in their description.xml, read by eye (tests/data/fixtures/README.md).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -93,7 +93,7 @@ TEST(Gdtf, ReadsTheAlphaSpotsChannelsAsStated) {
   const PersonalityChannel& lamp = channel_named(mode, "Head_LampControl");
   EXPECT_FALSE(strikes_lamp(lamp.functions[0], 50)) << "Lamp Off";
   EXPECT_TRUE(strikes_lamp(lamp.functions[0], 200)) << "Lamp On";
-  // Cyan exists while the colour wheel's channel is at 0, nothing but that.
+  // Only cyan exists while the colour wheel's channel is at 0.
   const PersonalityChannel& cyan = channel_named(mode, "Head_ColorSub_C");
   ASSERT_TRUE(cyan.functions[0].when && cyan.functions[1].when);
   EXPECT_EQ(mode.channels[cyan.functions[0].when->channel].name, "Head_Color2");
@@ -125,7 +125,7 @@ TEST(Gdtf, LampOnMacroTellsTheValueAndHowLong) {
   ASSERT_NE(lamp, control.functions.end());
   EXPECT_EQ(lamp->default_dmx, 135u);
   EXPECT_DOUBLE_EQ(lamp->hold_s, 3.06);
-  // Its yoke is drawn turned by a quarter about z: {0,1,0}{-1,0,0}.
+  // Its yoke is drawn with a quarter turn about z: {0,1,0}{-1,0,0}.
   EXPECT_NEAR(mode.pan_offset_deg, -90, 1e-6);
   EXPECT_NEAR(mode.base_from_lamp.translation_m.z(), -0.000614 - 0.414878, 1e-9);
 }
@@ -158,7 +158,7 @@ TEST(Gdtf, ASetWithoutAValueIsLeftOutAndToldOf) {
   }));
   const PersonalityChannel& red = channel_named(personality->modes[0], "Beam_ColorAdd_R");
   EXPECT_EQ(red.functions[0].sets.size(), 2u);
-  // A function without a value is another matter.
+  // A function without a value is a different case.
   const auto wrong = parse_gdtf_description(
       description("<DMXChannel Offset=\"1\" Geometry=\"Base\"><LogicalChannel Attribute=\"Dimmer\"><ChannelFunction "
                   "DMXFrom=\"x/1\"/></LogicalChannel></DMXChannel>"),
@@ -229,7 +229,7 @@ TEST(Gdtf, NestingAndReferencesThatMultiplyAreBounded) {
   ASSERT_FALSE(nested);
   EXPECT_NE(nested.error()[0].what.find("nested deeper"), std::string::npos);
 
-  // Ten references in each of twelve levels: 10^12 instances, if nobody counted.
+  // Ten references in each of twelve levels would be 10^12 instances without a limit.
   std::string geometries = "<Geometry Name=\"Base\"><GeometryReference Name=\"r\" Geometry=\"g0\"/></Geometry>";
   for (int level = 0; level < 12; ++level) {
     geometries += "<Geometry Name=\"g" + std::to_string(level) + "\">";

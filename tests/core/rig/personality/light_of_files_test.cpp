@@ -1,6 +1,6 @@
-// What a level puts out, against what makers' files say by themselves: full level is the brightest that a file
-// describes, level 0 is dark, and what nobody chose stands at its stated default. The files are read here once more, by
-// the few words of their format that matter, so that a mistake of the reader cannot pass.
+// Output of a level, against the makers' files: full level is the brightest that a file describes, level 0 is dark, and
+// channels without a choice stay at their stated default. The test reads the files itself, by the few relevant words of
+// their format, so that an error of the reader cannot pass.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ using Json = nlohmann::ordered_json;
 
 std::vector<std::filesystem::path> fixture_folders() {
   std::vector<std::filesystem::path> folders{test::source_folder() / "tests/data/fixtures"};
-  // A copy of the Open Fixture Library, or any folder of such files, for a run over all of it.
+  // A copy of the Open Fixture Library, or any folder of such files, to run over all of it.
   if (const char* more = std::getenv("LUXRIG_FIXTURE_LIBRARY")) folders.emplace_back(more);
   return folders;
 }
@@ -35,7 +35,7 @@ std::vector<std::filesystem::path> files_of(const char* extension) {
   return files;
 }
 
-/// DMX value of a channel of the mode, in its own bytes, at a level.
+/// DMX value of a channel of the mode at a level, in the channel's own bytes.
 std::uint32_t sent(const ModeSlots& slots, const PersonalityChannel& channel, double level) {
   const DmxSlot& first = slots.slots[static_cast<std::size_t>(channel.offsets.front())].slot;
   if (first.use == SlotUse::dimmer)
@@ -59,7 +59,7 @@ bool told_of(const ModeSlots& slots, const std::string& text) {
                      [&](const std::string& line) { return line.find(text) != std::string::npos; });
 }
 
-/// A channel of an OFL file as its JSON has it.
+/// A channel of an OFL file, from its JSON.
 class OflChannel {
  public:
   OflChannel(const Json& fixture, const std::string& name) {
@@ -82,7 +82,7 @@ class OflChannel {
     if (!stated.empty()) bytes_ = std::stoi(stated) / 8;
   }
 
-  /// The capability at a value of so many bytes.
+  /// The capability at a value of this many bytes.
   Json at(std::uint32_t value, int bytes) const {
     if (json_.contains("capability")) return json_.at("capability");
     const double scaled = std::floor(value * std::pow(256.0, bytes_ - bytes));
@@ -91,7 +91,7 @@ class OflChannel {
     return Json();
   }
 
-  /// Light that the channel gives or passes; nothing where that is not a matter of brightness.
+  /// Share of light that the channel gives or passes; empty if it does not affect brightness.
   std::optional<double> light(std::uint32_t value, int bytes) const {
     const Json capability = at(value, bytes);
     if (capability.is_null()) return std::nullopt;
@@ -192,7 +192,7 @@ void check_ofl_mode(const Json& fixture, const Personality& personality, const P
       EXPECT_GT(stated.light(full, bytes).value_or(-1), 0.9) << where << ": no light passes";
     }
   }
-  if (!lit) return;  // nothing to dim is told by the reader
+  if (!lit) return;  // the reader reports that there is nothing to dim
   EXPECT_TRUE(dark || told_of(slots, "of its light at level 0")) << personality.name << ", " << mode.name;
 }
 

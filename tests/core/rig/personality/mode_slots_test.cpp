@@ -1,4 +1,5 @@
-// From a mode to the slots of a fixture: what carries the light, what is held where. Numbers are the sample files' own.
+// From a mode to the slots of a fixture: slots that carry the light, and slots held at a value. Numbers are those of
+// the sample files.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -76,7 +77,7 @@ TEST(ModeSlots, AHeadHasItsAxesItsDimmerAndWhatLetsLightOut) {
 }
 
 TEST(ModeSlots, AShutterThatIsShutByDefaultIsOpened) {
-  // MAC 700: closed 0 to 19, open 20 to 49; its lamp is struck by that channel, too, so by hand.
+  // MAC 700: closed 0 to 19, open 20 to 49. The same channel strikes its lamp, so that stays manual.
   const Rig rig = good_rig("personality = \"ofl/martin/mac-700-wash.json\"\nmode = \"Extended 23-channel\"\n");
   ASSERT_FALSE(rig.fixtures.empty());
   EXPECT_EQ(slots_in(rig)[0].constant_dmx, 34);
@@ -115,7 +116,7 @@ TEST(ModeSlots, TheRigFileMayNarrowTheTravel) {
   const Rig rig = good_rig(
       "personality = \"Clay Paky@Alpha Spot QWO 800.gdtf\"\npan_range_deg = [-90, 180]\ntilt_range_deg = [0, 125]\n");
   const std::vector<DmxSlot>& slots = slots_in(rig);
-  // 270 at 0, -270 at full: -90 lies at 360/540 of it, 180 at 90/540.
+  // 270 at 0, -270 at full: -90 lies at 360/540 of the travel, 180 at 90/540.
   EXPECT_NEAR(slots[25].travel.at_start, 360.0 / 540, 1e-12);
   EXPECT_NEAR(slots[25].travel.at_end, 90.0 / 540, 1e-12);
   EXPECT_NEAR(slots[27].travel.at_start, 0.5, 1e-12);

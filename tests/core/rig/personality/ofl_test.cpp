@@ -1,4 +1,4 @@
-// Open Fixture Library files of real fixtures against what their JSON states, and small ones made here.
+// Open Fixture Library files of real fixtures against the values in their JSON, and small ones made here.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -54,7 +54,7 @@ TEST(Ofl, FineChannelsMakeOneValueWhereverTheyStand) {
   EXPECT_EQ(layout(mode_named(pan_tilt, "8 bit")), (Layout{{"Pan", {0}}, {"Tilt", {1}}}));
   EXPECT_EQ(layout(mode_named(pan_tilt, "16 bit (alternate)")), (Layout{{"Pan", {0, 2}}, {"Tilt", {1, 3}}}));
   EXPECT_EQ(layout(mode_named(pan_tilt, "24 bit (alternate)")), (Layout{{"Pan", {0, 2, 4}}, {"Tilt", {1, 3, 5}}}));
-  // 50 % in the resolution that the mode has, rounded down; the middle of the travel is straight down.
+  // 50 % at the mode's resolution, rounded down; the middle of the travel is straight down.
   EXPECT_EQ(mode_named(pan_tilt, "8 bit").channels[0].default_dmx, 127u);
   EXPECT_EQ(mode_named(pan_tilt, "16 bit").channels[0].default_dmx, 32767u);
   EXPECT_EQ(mode_named(pan_tilt, "24 bit").channels[0].default_dmx, 8388607u);
@@ -152,7 +152,7 @@ TEST(Ofl, PixelsAreRepeatedInTheOrderAskedFor) {
   EXPECT_EQ(names("[\"(2, 2)\", \"(1, 1)\"]"), (Names{"R (2, 2)", "R (1, 1)"}));
 }
 
-// As cameo/hydrabeam-300-rgbw: each head's mode says what its next slot is.
+// As cameo/hydrabeam-300-rgbw: each head's mode tells the meaning of its next slot.
 TEST(Ofl, APixelsSwitchingChannelsAreWhatTheyAreByDefaultToo) {
   const std::string more = R"("matrix": {"pixelCount": [2, 1, 1]}, "templateChannels": {
     "Mode $pixelKey": {"defaultValue": 20, "capabilities": [

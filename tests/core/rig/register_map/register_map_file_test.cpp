@@ -80,7 +80,7 @@ TEST(RegisterMapFile, SaysWhatABitCannotBe) {
   EXPECT_NE(what_of("kind = \"input\"\nwhat = \"failure\"\n").find("a failure that is no bit"), std::string::npos);
   EXPECT_NE(what_of("kind = \"coil\"\nwhat = \"illuminance\"\n").find("an illuminance of one bit"), std::string::npos);
   EXPECT_NE(what_of("kind = \"coil\"\npower_on = 2\n").find("power_on 2 of one bit"), std::string::npos);
-  // A coil and a register of one address are two things.
+  // A coil and a register with the same address are different things.
   EXPECT_EQ(what_of("kind = \"coil\"\n[[register]]\nname = \"s\"\naddress = 1\n"), "");
   EXPECT_NE(what_of("kind = \"coil\"\n[[register]]\nname = \"s\"\naddress = 1\nkind = \"coil\"\n")
                 .find("share coil register 1"),
@@ -157,7 +157,7 @@ TEST(RegisterMapFile, RefusesWhatCannotBeMeant) {
   }
 }
 
-/// Everything in a map but places, as text.
+/// All of a map except places, as text.
 std::string dump_of(const RegisterMap& map) {
   std::string out;
   const auto add = [&](const auto&... values) { ((out += fmt::format("{} ", values)), ...), out += '\n'; };

@@ -12,7 +12,7 @@
 namespace luxrig {
 namespace {
 
-/// A folder of its own for the files a test writes.
+/// A folder for the files of one test.
 class MeshFiles : public testing::Test {
  protected:
   MeshFiles() {
@@ -63,7 +63,7 @@ std::string sheet_ply(int side) {
   return bytes;
 }
 
-/// A glTF whose one triangle (a right one in x and y, of glTF's +Y-up frame) hangs in the given nodes.
+/// A glTF with one right triangle in x and y (glTF's frame, +Y up) in the given nodes.
 std::string triangle_gltf(const std::string& nodes, const std::string& uri) {
   return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[)" + nodes +
          R"(],"meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],
@@ -111,7 +111,7 @@ TEST_F(MeshFiles, TurnsEveryUpAxisToZKeepingItRightHanded) {
   const std::string text = "v 0 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 3\nf 1 2 3\nf 1 3 4\nf 1 4 2\n";
   const auto corner = [&](UpAxis up, std::size_t vertex) {
     const auto scene = load("up.obj", text, up);
-    // OBJ vertices come back unshared: look for the file's vertex by its length, which a turn keeps.
+    // OBJ vertices come back unshared: find the file's vertex by its length, which a rotation keeps.
     for (const auto& v : scene->vertices_m) {
       if (std::abs(v.norm() - static_cast<float>(vertex)) < 1e-6f) return Vec3(v.cast<double>());
     }
@@ -175,7 +175,7 @@ TEST_F(MeshFiles, CountsWhatItCleansAndKeepsTheRest) {
   ASSERT_TRUE(scene.has_value()) << scene.error().front().text();
   EXPECT_EQ(scene->triangles.size(), 2u);
   EXPECT_EQ(scene->cleaning.non_finite_vertices, 1u);
-  EXPECT_EQ(scene->cleaning.degenerate_triangles, 2u);  // collinear, and a corner twice
+  EXPECT_EQ(scene->cleaning.degenerate_triangles, 2u);  // collinear, and a repeated corner
   ASSERT_EQ(scene->warnings.size(), 1u);
   for (const auto& vertex : scene->vertices_m) EXPECT_TRUE(vertex.allFinite());
 }
@@ -237,12 +237,12 @@ TEST_F(MeshFiles, KeepsOnlyTheMaterialsThatATriangleUses) {
                           "mtllib paint.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nusemtl thin\nf 1 2 4\n"
                           "usemtl snow\nf 1 2 3\nusemtl oak\nf 1 3 2\nusemtl snow\nf 2 4 3\n");
   ASSERT_TRUE(scene.has_value()) << scene.error().front().text();
-  ASSERT_EQ(scene->materials.size(), 2u);  // idle has no face, and that of thin no area
+  ASSERT_EQ(scene->materials.size(), 2u);  // idle has no face, and the faces of thin have no area
   ASSERT_EQ(scene->triangles.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) {
     const Material& material = scene->materials[scene->material_of_triangle[i]];
     const auto& index = scene->triangles[i];
-    // The one oak face is the one that looks down.
+    // The only oak face looks down.
     const Vec3f a = scene->vertices_m[index[0]];
     const float up = (scene->vertices_m[index[1]] - a).cross(scene->vertices_m[index[2]] - a).z();
     EXPECT_EQ(material.name, up < 0 ? "oak" : "snow");

@@ -1,4 +1,4 @@
-// What people's mesh files hold: text as Windows saves it, pictures, vertex colours, glTF's extensions, 3DS.
+// Contents of real mesh files: text as Windows saves it, pictures, vertex colours, glTF's extensions, 3DS.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -122,7 +122,7 @@ TEST_F(FormatFiles, DecimalCommasAreRefusedWithLineAndColumn) {
 TEST_F(FormatFiles, APictureCountsAsItsMeanInLinearLightTimesTheColour) {
   for (const std::string name : {"grey.png", "grey.jpg", "progressive.jpg", "glass.png"}) {
     std::filesystem::remove(folder_ / "WALL.PNG");
-    picture(name, "WALL.PNG");  // told by content, whatever its name, and whatever the capitals in the .mtl
+    picture(name, "WALL.PNG");  // recognised by content, whatever its name or the capitals in the .mtl
     write("a.mtl", "newmtl wall\nKd 0.5 1 1\nmap_Kd -s 2 2 1 -o 0.5 C:\\textures\\wall.png\n");
     const auto scene = load("a.obj", "mtllib a.mtl\nusemtl wall\n" + kSquare + kFace);
     ASSERT_TRUE(scene) << scene.error().front().text();

@@ -39,7 +39,7 @@ struct GltfMaker {
   nlohmann::json& primitive() { return root["meshes"][0]["primitives"][0]; }
   nlohmann::json& attributes() { return primitive()["attributes"]; }
 
-  /// A unit square in x and y (glTF's up is y), two triangles, upper left of the picture at (0, 1).
+  /// A unit square in x and y (glTF's up is y), two triangles, the picture's upper left at (0, 1).
   static GltfMaker square() {
     GltfMaker out;
     out.attributes()["POSITION"] = out.accessor<float>({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}, 5126, "VEC3", 4);

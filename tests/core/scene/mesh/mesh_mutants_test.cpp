@@ -1,4 +1,4 @@
-// Files from strangers: thousands of garbled ones of each format, each refused with a remedy or read, never a crash.
+// Untrusted files: thousands of garbled ones of each format. Each is refused with a remedy or read, without a crash.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -60,7 +60,7 @@ std::string mutant_of(std::string bytes, std::mt19937& random) {
   return bytes;
 }
 
-/// `read` says whether it took the file; returns how many of all were taken.
+/// `read` tells whether it accepted the file. Returns the number accepted.
 template <class Read>
 int feed(const std::vector<std::string>& seeds, const Read& read) {
   std::mt19937 random(20);

@@ -15,7 +15,7 @@
 namespace luxrig {
 namespace {
 
-/// One file for the test, gone with it.
+/// One file for the test, deleted with it.
 class PlyFiles : public testing::Test {
  protected:
   PlyFiles() {
@@ -40,7 +40,7 @@ class PlyFiles : public testing::Test {
   std::filesystem::path folder_;
 };
 
-/// A value in either byte order (this machine is little-endian, as the tests of meshes assume).
+/// A value in either byte order (this machine is little-endian, as the mesh tests assume).
 template <class T>
 void put(std::string& bytes, T value, bool big_endian) {
   char raw[sizeof value];
@@ -146,14 +146,14 @@ TEST_F(PlyFiles, RefusesEveryTruncation) {
   for (const int index : {0, 1, 2}) put(binary, index, false);
   ASSERT_EQ(refusal(binary), "");
   for (std::size_t size = 0; size < binary.size(); ++size) EXPECT_NE(refusal(binary.substr(0, size)), "") << size;
-  // An ascii file may lack its last line end, no more.
+  // An ascii file may lack its last newline, but nothing else.
   for (std::size_t size = 0; size + 1 < kTriangle.size(); ++size) {
     EXPECT_NE(refusal(kTriangle.substr(0, size)), "") << size;
   }
 }
 
 TEST_F(PlyFiles, AgreesWithItselfAcrossTheEdgesOfItsBlocks) {
-  // 20,000 vertices in words of 1 to 20 characters: many straddle a block of 64 KiB.
+  // 20,000 vertices in words of 1 to 20 characters: many cross the border of a 64 KiB block.
   std::mt19937 random(7);
   std::string bytes = replaced(kTriangle.substr(0, kTriangle.find("0 0 0")), "vertex 3", "vertex 20000");
   std::vector<double> wanted;
