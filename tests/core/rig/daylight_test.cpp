@@ -115,8 +115,7 @@ TEST(Moment, IsReadWithItsOffset) {
   EXPECT_NEAR(time->hours, 10 + 30 / 60.0 + 45 / 3600.0, 1e-12);
   EXPECT_NEAR(utc_time("2026-06-21 12:30Z")->hours, 12.5, 1e-12);
   EXPECT_NEAR(utc_time("2026-06-21T01:00-09:30")->hours, 10.5, 1e-12);
-  EXPECT_NEAR(utc_time("2026-01-01T00:15:00+05:45")->hours, -5.5, 1e-12);  // the evening before; sun_position accepts
-                                                                           // it
+  EXPECT_NEAR(utc_time("2026-01-01T00:15:00+05:45")->hours, -5.5, 1e-12);  // the evening before; sun_position takes it
   EXPECT_TRUE(utc_time("2024-02-29T00:00Z"));
   EXPECT_TRUE(utc_time("2000-02-29T00:00Z"));
 }

@@ -1,4 +1,4 @@
-/// Where a head can be: never outside of what is said, whatever head of the stated speed and delay it is.
+/// Possible positions of a head: a head of the stated speed and delay is never outside them.
 #include "core/show/head_whereabouts.h"
 
 #include <gtest/gtest.h>
@@ -62,7 +62,7 @@ TEST(HeadWhereabouts, HeadsOfEverySpeedAndDelayAreWithin) {
         obeys = run % 3 != 0 || random.below(3) != 0;
       }
       if (obeys) told.push_back({now_s, wanted});
-      // The head obeys what it was told its delay ago, each joint at its own speed or faster.
+      // The head obeys the command of its delay ago, each joint at its own speed or faster.
       while (told.size() > 1 && told[1].first <= now_s - delay_s) told.pop_front();
       if (!told.empty() && told.front().first <= now_s - delay_s) {
         const auto go = [](double from, double to, double way) { return from + std::clamp(to - from, -way, way); };
@@ -108,7 +108,7 @@ TEST(HeadWhereabouts, AxesAreOnTheLineUntilTheyHaveArrived) {
   EXPECT_EQ(where.box(), JointBox::at({}));
   run(seconds / 2 + 0.6, to);
   EXPECT_EQ(where.box(), JointBox::at(to));
-  // Told anew on the way, it may have got anywhere between.
+  // With a new command on the way, it may be anywhere between.
   run(0.3, {0, 0, 0});
   run(0.04, {0, 1, 0});
   EXPECT_EQ(where.box(), (JointBox{{0, 0, 0}, {2, 1, 0}}));

@@ -1,4 +1,4 @@
-/// A fixture shows which one it is, within limits, and is afterwards as it was.
+/// A fixture blinks to show which one it is, within limits, and then returns to its former state.
 #include "core/show/identify.h"
 
 #include <gtest/gtest.h>
@@ -88,7 +88,7 @@ TEST(Identify, ALampBlinksByHalfSecondsAndIsThenAsItWas) {
   ASSERT_NEAR(small.now_s, start_s + 3.65, 1e-6);
   EXPECT_EQ(small.levels(), before);
   EXPECT_FALSE(small.status().fixtures[0].identified);
-  // What meters read while it blinked taught nothing, and it goes on measuring.
+  // Readings taken while it blinked taught nothing. It goes on measuring.
   small.run(10);
   EXPECT_EQ(small.status().phase, Phase::holding);
   for (std::size_t f = 0; f < 4; ++f) EXPECT_NEAR(small.levels()[f], before[f], 0.01) << f;

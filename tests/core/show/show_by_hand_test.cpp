@@ -1,4 +1,4 @@
-// What a person sets while the show runs stays, within limits, and the rest is solved around it.
+// Levels set by a person while the show runs stay, within limits, and the rest is solved around them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -241,7 +241,7 @@ TEST(ByHand, BlackoutAndTheSafeLookWinAndWhatWasHeldComesBack) {
   show.show->blackout(show.now(), false);
   show.run(10);
   EXPECT_NEAR(show.levels()[0], 0.2, 1e-9);
-  // A bus is lost: the light is held, then goes to the safe look; when it is back, so is what was held.
+  // A bus is lost: the light is held, then goes to the safe look. When the bus is back, so is the held light.
   Health lost;
   lost.device = "lights";
   lost.life = Life::faulted;

@@ -1,4 +1,4 @@
-/// A lighting desk beside the show: limits, meters, what a person is told.
+/// A lighting desk beside the show: limits, meters, messages to a person.
 #include <gtest/gtest.h>
 
 #include <cmath>

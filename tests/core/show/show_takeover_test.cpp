@@ -1,4 +1,4 @@
-/// A controller that takes the light from somebody else: no lamp jumps, and limits are kept as soon as they can be.
+/// A controller that takes the light over from another: no lamp jumps, and limits are kept as soon as possible.
 #include <gtest/gtest.h>
 
 #include <algorithm>

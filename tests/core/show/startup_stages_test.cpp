@@ -1,4 +1,4 @@
-/// Power-up by stages: what is added in a second, in what order, and what waits for nothing.
+/// Power-up by stages: power added per second, order, and lamps that need not wait.
 #include "core/output/startup_stages.h"
 
 #include <gtest/gtest.h>
@@ -221,7 +221,7 @@ TEST(StartupStages, AHeadThatParksBeforeItsTurnIsNeverLit) {
     small.rig.fixtures[1].park = Joints{0.8, 0.8};
     small.rig.startup.stage_s = 2;
     small.start();
-    // As a daemon does that is started anew: the plan, and what was parked.
+    // As a restarted daemon does: the plan, and the parked heads.
     small.show->apply(at(0), std::vector<double>(4, 1.0));
     if (power_first) small.run(1);
     ASSERT_TRUE(small.show->park(at(small.now_s), {}));

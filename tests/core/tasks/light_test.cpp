@@ -1,4 +1,4 @@
-/// Light that is known is kept: only what has turned or is new is computed.
+/// Known light is kept: only turned or new lamps are computed.
 
 #include "core/tasks/light.h"
 

@@ -1,4 +1,4 @@
-// Who watches is told what a stage does; time that is up, or a person, ends it.
+// Watchers get the progress of a stage; a time limit or a person ends it.
 #include "core/tasks/stage.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 #pragma once
-/// What every evaluator must hold, whatever its method. A new one is a line in the table of a program that includes
+/// Requirements for every evaluator, whatever its method. A new one is a line in the table of a program that includes
 /// this.
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-/// What evaluators leave out moves no answer by more than its stated error, in furnished rooms.
+/// Skips of evaluators change no result by more than its stated error, in furnished rooms.
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 
 namespace luxrig {
 
-/// What an evaluator is asked for: the error, and a seed.
+/// Options of an evaluator: the wanted error, and a seed.
 inline EvaluateOptions within(double relative_error, std::uint64_t seed = 1) {
   EvaluateOptions options;
   options.wanted_relative_error = relative_error;

@@ -201,8 +201,7 @@ TEST(DirectionBins, AreOfEqualAreaAndHoldTheirMiddles) {
   }
   const double mean = static_cast<double>(all) / bins.count();  // ± 4.6 standard deviations
   for (const int c : count) EXPECT_NEAR(c, mean, 4.6 * std::sqrt(mean));
-  EXPECT_GT(farthest, std::cos(rad_from_deg(14.7)));  // cells are 14.7° across: no ray is that far from its cell's
-                                                      // middle
+  EXPECT_GT(farthest, std::cos(rad_from_deg(14.7)));  // cells of 14.7° across: no ray is so far from its middle
   for (const Vec3& axis : {Vec3(0, 0, 1), Vec3(0, 0, -1), Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(-1, -1e-300, 0)})
     EXPECT_LT(bins.bin_of(axis), bins.count());
 }
