@@ -1,5 +1,5 @@
 #pragma once
-/// Which alarms are worth a line, so that a failure that lasts an hour fills no log.
+/// Decides which alarms to log, so that a failure that lasts an hour does not fill the log.
 
 #include <span>
 #include <vector>
@@ -8,15 +8,15 @@
 
 namespace luxrig {
 
-/// Of one cause, with the same names in quotes, and in the same words but for figures, which may grow.
+/// True for the same device, severity and start, and the same text apart from figures outside quoted names.
 [[nodiscard]] bool is_same_alarm(const Alarm& a, const Alarm& b);
 
 class AlarmLog {
  public:
-  static constexpr Duration kAgain = std::chrono::minutes(10);  ///< it lasts: said again
-  static constexpr Duration kRest = std::chrono::minutes(1);    ///< it comes and goes: said once in this
+  static constexpr Duration kAgain = std::chrono::minutes(10);  ///< a lasting alarm is logged again
+  static constexpr Duration kRest = std::chrono::minutes(1);    ///< an alarm that comes and goes is logged once in this
 
-  /// Those to say now: each when it begins, and again by the two rules above.
+  /// The alarms to log now: each when it begins, then again by the two rules above.
   [[nodiscard]] std::vector<Alarm> to_say(std::span<const Alarm> alarms, Time now);
 
  private:

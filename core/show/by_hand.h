@@ -1,6 +1,6 @@
 #pragma once
-/// What a person has set by hand while the show runs: the level of a lamp, or the goal of a point. It stays until it is
-/// released, within limits, and the rest is solved around it.
+/// A level of a lamp or a goal of a point that a person has set while the show runs. It stays until it is released,
+/// within limits. The rest is solved around it.
 
 #include <optional>
 #include <string>
@@ -16,13 +16,13 @@ struct ByHand {
   std::size_t index = 0;  ///< fixture or point of the rig
   double value = 0;       ///< level 0…1, or lux
   Time since{};
-  std::optional<Time> until{};  ///< released by itself then
-  /// What is named is the housing of the fixture: its emitters keep their shares, and the brightest gets the level.
+  std::optional<Time> until{};  ///< released automatically then
+  /// The whole housing of the fixture: its emitters keep their ratio, and the brightest gets the level.
   bool whole_housing = false;
-  bool of_plan = false;  ///< a level that a person wrote into the plan in force; the next plan ends it
-  std::string why{};     ///< in a status: what keeps it from being so at present; empty: it is so
+  bool of_plan = false;  ///< level that a person wrote into the plan in force; the next plan ends it
+  std::string why{};     ///< in a status: why it is not in effect; empty if it is
 
-  /// Why it cannot be asked for (a level above 1, lux below 0); empty when it can. Of a fixture on or off: 0 or 1.
+  /// Why it is refused (a level outside 0…1, a goal outside 0…1e6 lx); empty if valid. An on-off fixture takes 0 or 1.
   [[nodiscard]] std::string complaint(bool switched) const;
 };
 

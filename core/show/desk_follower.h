@@ -1,13 +1,13 @@
 #pragma once
-/// Who has the light of one part of the rig: a lighting desk, Luxrig, or both. Time is an argument.
+/// Who controls the light of one part of the rig: a lighting desk, Luxrig, or both. Time is an argument.
 ///
-///   listening ──desk heard──▶ following            takeover and standby begin silent: a desk may have the light
-///       └──nobody──▶ own                           from dark, by fade, where Luxrig's light has come on meanwhile
-///   own ──desk heard──▶ following (at once or by fade), or waiting until somebody asks
-///   following ──desk lost──▶ own: from its last values, by fade
+///   listening ──desk heard──▶ following   takeover and standby start silent: a desk may already have the light
+///       └──no desk──▶ own                 fades in from dark if Luxrig's light has come on since
+///   own ──desk heard──▶ following         at once or by fade; or `waiting` until a person asks
+///   following ──desk lost──▶ own          fades from the desk's last values
 ///
-/// Every way from one to the other begins at what goes out at that moment, so that nothing flashes. In standby Luxrig
-/// falls silent when the way to the desk's values is done.
+/// Every change starts at the light that goes out at that moment, so nothing flashes. In standby Luxrig falls silent
+/// when the fade to the desk's values is done.
 
 #include <span>
 
@@ -21,33 +21,33 @@ enum class DeskPhase { listening, own, waiting, following };
 struct DeskFollowerSettings {
   DeskRules rules;
   std::vector<std::size_t> fixtures;      ///< of the part, ascending
-  std::vector<DimmerCurve> dimmer_curve;  ///< of each: a desk's drive is no level yet
-  std::vector<Joints> joints;             ///< of each
-  /// Limits of the model hold for heads as Luxrig turns them, so where there are limits a desk cannot turn them.
+  std::vector<DimmerCurve> dimmer_curve;  ///< per fixture; converts a desk's drive to a level
+  std::vector<Joints> joints;             ///< per fixture
+  /// The model's limits hold for heads as Luxrig aims them. Where there are limits, a desk cannot turn heads.
   bool desk_may_turn = true;
   Duration fade{};
   FadeCurve curve = FadeCurve::s_curve;
 };
 
-/// What goes out at this moment, for all fixtures of the rig.
+/// The light that goes out now, for all fixtures of the rig.
 struct PresentLight {
   std::span<const double> level;
   std::span<const Joints> joints;
-  std::span<const Joints> own_joints;  ///< where Luxrig alone would have heads look
+  std::span<const Joints> own_joints;  ///< aim by Luxrig alone
 };
 
 class DeskFollower {
  public:
   explicit DeskFollower(DeskFollowerSettings settings);
 
-  /// Commands for fixtures of other parts are left out; a drive outside 0…1 or not a number counts as its nearest
-  /// bound, or 0. True when the blend is another one than before.
+  /// Ignores commands for fixtures of other parts. A drive outside 0…1 counts as the nearest bound, NaN as 0. True if
+  /// the blend has changed.
   bool hear(Time now, const DeskFrame& frame, const PresentLight& present);
-  /// Light is sent already, by somebody whom Luxrig follows: nobody needs to be listened for in silence.
+  /// Luxrig takes over light that is already being sent, so it need not listen for a desk in silence.
   void have_light(Time now);
-  /// Somebody asks that a desk that is back gets the light. Nothing happens unless one waits for it.
+  /// Gives the light to a desk that is back, by fade. Does nothing unless one waits for it.
   bool hand_back(Time now, const PresentLight& present);
-  /// Falls silent when the time has come; call often. True when the blend is another one than before.
+  /// In standby, falls silent when the fade to the desk is done. Call often. True if the blend has changed.
   bool step(Time now);
 
   [[nodiscard]] const DeskBlend& blend() const { return blend_; }
@@ -70,8 +70,8 @@ class DeskFollower {
   Time since_{};
   DeskPresence presence_ = DeskPresence::unknown;
   std::string source_;
-  std::vector<std::uint8_t> joints_known_;  ///< per fixture: desk_joints are the desk's
-  std::vector<Joints> own_joints_;          ///< as last seen, to tell whose change was the latest
+  std::vector<std::uint8_t> joints_known_;  ///< per fixture, 1: desk_joints came from the desk
+  std::vector<Joints> own_joints_;          ///< as last seen, to find whose change was the latest
 };
 
 }  // namespace luxrig

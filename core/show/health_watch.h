@@ -1,6 +1,6 @@
 #pragma once
-/// Which devices can be relied on: from what drivers report, and from what the luxmeters say or do not say.
-/// Decides nothing about the light; the show does that (show_controller.h).
+/// Which devices can be relied on, from driver reports and from the luxmeters' readings or silence. Decides nothing
+/// about the light; the show does that (show_controller.h).
 
 #include <map>
 #include <optional>
@@ -17,16 +17,17 @@ namespace luxrig {
 
 class HealthWatch {
  public:
-  /// A luxmeter that gave nothing usable for so long is lost. Alarms are up within 2 s.
+  /// A luxmeter without a usable reading for this long is lost. Alarms are up within 2 s.
   static constexpr Duration kSilentAfter = std::chrono::milliseconds(1500);
-  /// Time in which nobody here looked, or asked the meter, is not its silence. One that is never asked is lost after:
+  /// Gaps between steps beyond kLongestStep do not count as a meter's silence, nor does time in which its driver did
+  /// not ask it. A meter that is never asked is lost after kUnaskedFor.
   static constexpr Duration kUnaskedFor = std::chrono::seconds(10);
   static constexpr Duration kLongestStep = std::chrono::milliseconds(200);
 
   explicit HealthWatch(const Rig& rig);
 
-  /// Per fixture and luxmeter, something: a person knows of its failure. It raises no alarm, and no light is lost by
-  /// it; a luxmeter counts as lost, but not in any_meter_lost().
+  /// Per fixture and per luxmeter; a value means bypassed. A bypassed device raises no alarm, and its loss is no lost
+  /// light. A bypassed luxmeter counts as lost, but not in any_meter_lost().
   void set_bypassed(const std::vector<std::optional<Time>>& lamps, const std::vector<std::optional<Time>>& meters);
 
   /// The drivers' latest report; replaces the one before.
@@ -34,42 +35,41 @@ class HealthWatch {
 
   /// A usable reading came from this meter.
   void heard(std::size_t luxmeter, Time taken);
-  /// Something came that is no reading (NaN, negative).
+  /// The meter sent something that is no reading (NaN, negative).
   void garbled(std::size_t luxmeter, Time now);
-  /// What the model says to the meter's settled reading; why = empty: it can be believed.
+  /// The model's judgement of the meter's settled reading. why: empty = believed.
   void judged(std::size_t luxmeter, Time now, const std::string& why);
 
-  /// For so long a device may be reported as faulted before it is lost. Alarms do not wait.
+  /// How long a device may be reported as faulted before it is lost. Alarms do not wait.
   struct Patience {
-    Duration lamps{}, meters{};  ///< what turns heads has none: nobody knows where the beam is
+    Duration lamps{}, meters{};  ///< none for devices that turn heads: the beam may be anywhere
   };
-  /// Works out the state at `now`; the time of silence counts from the first call.
+  /// Works out the state at `now`. Silence counts from the first call.
   void step(Time now, const Patience& patience);
   void step(Time now) { step(now, Patience{}); }
 
-  /// Something was reported as faulted last.
+  /// The latest report contains a fault.
   [[nodiscard]] bool any_faulted() const;
 
-  /// A bus or device that carries light is faulted (or one that the rig does not know).
+  /// A bus or device that carries or turns light is lost, unless bypassed, or one that the rig does not know.
   [[nodiscard]] bool light_lost() const { return light_lost_; }
-  /// Nothing is left that goes on: every fixture is lost, or something that the rig does not know, and perhaps all
-  /// hangs on it.
+  /// Every fixture in use is lost, or a device that the rig does not know (everything may hang on it).
   [[nodiscard]] bool all_lost() const { return all_lost_; }
-  /// The bus of its lamp is faulted, or its dimmer.
+  /// Its dimmer or the bus of its lamp is lost.
   [[nodiscard]] bool lamp_lost(std::size_t fixture) const { return lamp_lost_[fixture]; }
-  /// The same, or it is in doubt: reported as faulted, for less than its patience.
+  /// The same, or in doubt: reported as faulted for less than its patience.
   [[nodiscard]] bool lamp_silent(std::size_t fixture) const { return lamp_silent_[fixture]; }
-  /// It obeys, and its device says that something is wrong with it: its lamp has burnt out, it is too hot.
+  /// It obeys, but its device reports a fault: its lamp has burnt out, or it is too hot.
   [[nodiscard]] bool lamp_failing(std::size_t fixture) const { return lamp_failing_[fixture]; }
-  /// What turns it does not hear or obey: its bus, or an axis.
+  /// Its motion bus or one of its axes is lost: it cannot be turned.
   [[nodiscard]] bool motion_lost(std::size_t fixture) const { return motion_lost_[fixture]; }
   [[nodiscard]] bool any_meter_lost() const;
   [[nodiscard]] bool meter_lost(std::size_t luxmeter) const {
     return meters_[luxmeter].trust.lost() || meters_[luxmeter].bypassed;
   }
   [[nodiscard]] bool meter_implausible(std::size_t luxmeter) const { return !meters_[luxmeter].implausible.empty(); }
-  /// One for each cause, whatever hangs on it; a text says nothing that changes while it lasts. Those that carry light
-  /// first.
+  /// One per cause, whatever hangs on it. A text does not change while the alarm lasts. Order: as reported, then
+  /// devices that answer again but are not relied on yet, then silent or implausible luxmeters.
   [[nodiscard]] const std::vector<Alarm>& alarms() const { return alarms_; }
 
  private:
@@ -78,8 +78,8 @@ class HealthWatch {
     std::size_t bus = 0;
     int unit = 0;
     Time heard{}, heard_before{};
-    Duration unseen{};               ///< of the time since `heard`: nobody here looked
-    std::uint64_t asked_before = 0;  ///< by its driver, when it was heard last
+    Duration unseen{};               ///< gaps between steps since `heard`
+    std::uint64_t asked_before = 0;  ///< requests by its driver when it was last heard
     Time garbled{};
     bool was_garbled = false;
     std::string implausible;  ///< why; empty = believed
@@ -93,13 +93,13 @@ class HealthWatch {
     std::size_t index = 0;
   };
 
-  /// By its name; "BUS: anything" is a part of that bus, such as a node.
+  /// Looks a device up by name. "BUS: anything" is a part of that bus, such as a node.
   [[nodiscard]] Known known(const std::string& device) const;
   [[nodiscard]] Alarm alarm_of(const Health& health, const Known& known) const;
   void warn_of(const Health& health);
   void join_units();
   void step_meter(Time now, std::size_t luxmeter, bool faulted, Duration patience);
-  /// Of a device that answers again, but has failed too often to be relied on at once.
+  /// For a device that answers again, but has failed too often to be relied on at once.
   [[nodiscard]] static Alarm alarm_of_doubted(const std::string& device, const Trust& trust);
   [[nodiscard]] bool all_bypassed_on(std::size_t bus) const;
   void step_trusts(Time now, const Patience& patience);

@@ -1,7 +1,7 @@
 #pragma once
-/// Which lamp is that? A fixture that blinks, or a head that nods, for a while; then everything is as it was. It is a
-/// desk of our own that has a say in one housing (desk_follower.h): limits hold, no meter is believed meanwhile, and
-/// the way back needs no memory of what was before.
+/// Answers "which lamp is that?": a fixture blinks, or a head nods, for a while; then everything is as before. It acts
+/// as a desk of our own that controls one housing (desk_follower.h). So limits hold, no meter is believed for that
+/// time, and the way back needs no memory of the state before.
 
 #include <algorithm>
 #include <span>
@@ -19,10 +19,10 @@ class IdentifyPattern {
   IdentifyPattern(const Rig& rig, std::vector<std::size_t> fixtures, std::span<const double> present_level,
                   std::span<const Joints> present_joints, bool may_turn, Time start, Duration how_long);
 
-  /// What it wants at `now`: its fixtures dark or bright by turns of half a second, dark first where they were bright.
-  /// A head that may turn stays bright and nods by 5°, away from the nearer end of its travel. Absent once it is over.
+  /// The frame at `now`: fixtures are dark or bright by turns of half a second, dark first if they were bright. A head
+  /// that may turn stays bright and nods by 5°, away from the nearer end of its travel. Absent once it is over.
   [[nodiscard]] DeskFrame frame_at(Time now) const;
-  /// Every posture that the first of its fixtures goes through where it nods.
+  /// Every posture that the first of its fixtures takes while it nods.
   [[nodiscard]] JointBox nodding() const { return JointBox::at(joints_.front()).joined(JointBox::at(nod_.front())); }
   void prolong(Time end) { end_ = std::max(end_, end); }
   [[nodiscard]] bool over(Time now) const { return now >= end_; }
@@ -30,8 +30,8 @@ class IdentifyPattern {
 
  private:
   std::vector<std::size_t> fixtures_;
-  std::vector<double> bright_drive_;  ///< of each
-  std::vector<Joints> joints_, nod_;  ///< of each, as it looked and as it nods
+  std::vector<double> bright_drive_;  ///< per fixture
+  std::vector<Joints> joints_, nod_;  ///< per fixture: aim at the start, and the other end of the nod
   bool bright_first_ = true, turns_ = false;
   Time start_{}, end_{};
 };

@@ -1,6 +1,6 @@
 #pragma once
-/// What a ShowController keeps; private to show_controller.cpp and its neighbours show_….cpp (what happens), and
-/// show_status.cpp (what is told).
+/// State of a ShowController. Private to show_controller.cpp and its neighbours show_….cpp (behaviour), and
+/// show_status.cpp (reports).
 
 #include <atomic>
 #include <cstdint>
@@ -19,11 +19,11 @@
 
 namespace luxrig {
 
-/// Noise of a reading that no correction could take away: nearer than this to what was aimed at is there.
+/// Noise of a reading that no correction could remove: a value within this share of its target has arrived.
 inline constexpr double kArrivedTolerance = 0.03;
 
-/// most_lux_at_point holds 1 % for a meter's noise on top of its tolerance, and corrections aim at the limit itself:
-/// half of that may be used up before a reading counts, or noise alone would start one correction after another.
+/// most_lux_at_point holds 1 % for a meter's noise on top of its tolerance, and corrections aim at the limit itself.
+/// Half of that may be used up before a reading counts; else noise alone would start one correction after another.
 inline constexpr double kBreachSlack = 0.005;
 
 /// A point above its limit, by its meter; kept while it lasts.
@@ -36,40 +36,39 @@ struct LimitBreach {
 /// A fixture whose lamp or axes do not answer, while the rest goes on.
 struct LostFixture {
   Time since{};
-  double level = 0;      ///< that it is held at
-  double most = 0;       ///< that it may have taken last
-  bool lamp = true;      ///< false: only what turns it
-  bool to_safe = false;  ///< it has been held for long enough
+  double level = 0;      ///< it is held at this
+  double most = 0;       ///< highest that it may have taken last
+  bool lamp = true;      ///< false: only its motion is lost
+  bool to_safe = false;  ///< held for long enough
   std::optional<Time> well_since{};
 };
 
-/// A device that comes and goes is not back; the drivers' own reports come several times in this while.
+/// A device is back only after this long without a fault; drivers report several times within it.
 inline constexpr Duration kHealthyFor = std::chrono::milliseconds(500);
 
-/// One late answer is no failure: a device that is reported as faulted is done without after this. What a limit may
-/// have meanwhile is looked at first (limits_bear_waiting).
+/// One late answer is no failure: a device that is reported as faulted is lost after this. Limits are checked first
+/// (limits_bear_waiting).
 inline constexpr Duration kPatience = std::chrono::milliseconds(1200);
-/// Since a lamp took its last level, drivers have known within this, and the show after its patience, that it takes
-/// none.
+/// From the last level that a lamp took until the show knows of its loss: the driver's detection, then kPatience.
 inline constexpr Duration kNoticedWithin = std::chrono::milliseconds(3200);
 
-/// Housings that blink, or have: each keeps its place among the desks.
+/// A housing that blinks or has blinked; it keeps its place among the desks.
 struct Identification {
   std::size_t desk = 0;
   IdentifyPattern pattern;
 };
 
-/// A head that keep-out zones hold for.
+/// A head that is watched for keep-out zones.
 struct GuardedHead {
   std::size_t fixture = 0;
   HeadWhereabouts where;
-  std::optional<Joints> told{};     ///< when last looked
-  std::optional<JointBox> swept{};  ///< what `zone` was worked out for
+  std::optional<Joints> told{};     ///< order at the last step
+  std::optional<JointBox> swept{};  ///< postures that `zone` was computed for
   std::optional<Joints> swept_to{};
   std::optional<std::size_t> zone{};  ///< that its beam could meet now
 };
 
-/// A correction that is being worked out beside the loop.
+/// A correction that is solved beside the loop.
 struct Solving {
   enum class For { round, drift, hands } what = For::round;
   std::uint64_t facts = 0;  ///< State::facts when it was asked for
@@ -88,38 +87,38 @@ struct ShowController::State {
 
   KeepOutZones zones;
   std::vector<GuardedHead> guarded;         ///< one for each of program.dims
-  std::vector<Joints> model_joints;         ///< per fixture: where heads look in the estimator's model
-  std::vector<std::uint8_t> parking;        ///< per fixture, 1: parks when it is dark; empty: none
-  std::vector<std::uint8_t> tells_of_lamp;  ///< per fixture, 1: its device would say that its lamp has burnt out
+  std::vector<Joints> model_joints;         ///< per fixture: aim in the estimator's model
+  std::vector<std::uint8_t> parking;        ///< per fixture, 1: parks when it is dark; empty = none
+  std::vector<std::uint8_t> tells_of_lamp;  ///< per fixture, 1: its device reports a burnt-out lamp
   std::vector<std::uint8_t> powerless;      ///< per fixture, 1: its lamp is lost, and starts as after a power cut
   bool power_came = false;                  ///< light has been asked for once
 
   std::vector<DeskFollower> desks;      ///< one for each of program.desks
-  std::vector<std::string> desk_names;  ///< of the rig's; those that identify fixtures have none
-  std::optional<Time> listens_until{};  ///< a first look waits so long for what is heard of desks
+  std::vector<std::string> desk_names;  ///< of the rig's desks; empty for those that identify fixtures
+  std::optional<Time> listens_until{};  ///< a first look waits until then for desks to be heard
   std::vector<Identification> identified;
-  bool shared = false;  ///< a desk had a say in the light when last looked
+  bool shared = false;  ///< a desk shared control of the light at the last step
 
   Phase phase = Phase::idle;
   Time phase_since{};
   Time last{};              ///< the latest instant given to any call
   Time healthy_since{};     ///< meaningful while not failing
-  bool failing = true;      ///< something that the light depends on is lost; true until a step has looked
-  bool asked_safe = false;  ///< by go_safe: no return by itself
-  std::string failure;      ///< what froze the show, for the detail line
+  bool failing = true;      ///< the light depends on something lost; true until the first step
+  bool asked_safe = false;  ///< by go_safe: no automatic return
+  std::string failure;      ///< cause of the freeze, for the detail line
   std::optional<std::vector<double>> cue;        ///< levels in force, as corrected so far
   std::vector<double> asked;                     ///< levels in force before limits dimmed them, as corrected so far
   std::vector<std::optional<LostFixture>> lost;  ///< per fixture
-  std::vector<std::uint8_t> watched;             ///< per luxmeter: what the estimator was told
+  std::vector<std::uint8_t> watched;             ///< per luxmeter, 1: watches its limit, as the estimator knows
   struct Awaited {
     Look look;
     LightModel model;  ///< with its joints
   };
   std::optional<Awaited> awaited;                ///< taken as soon as the heads that it turns are dark
-  Time arrive{};                                 ///< heads look where they shall from here on; no fade starts before
-  bool turned = false;                           ///< heads have been told where to look
-  std::vector<double> in_force;  ///< levels of somebody else's light, until a look of ours is on; or empty
-  bool afresh = false;           ///< a person applied a plan, and the meters have not all been believed since
+  Time arrive{};                                 ///< heads have arrived by then; no fade starts before
+  bool turned = false;                           ///< heads have got their first aim
+  std::vector<double> in_force;  ///< levels that were on before our look, until it is on; else empty
+  bool afresh = false;           ///< a person applied a plan; not all meters have been believed since
   int round = 0;
   bool converged = false;
   Time corrected_at{};                              ///< when the last correction was decided
@@ -130,48 +129,48 @@ struct ShowController::State {
   std::vector<bool> sample_changed;                 ///< whether it differed from the one before
   std::vector<std::optional<LuxReading>> believed;  ///< per luxmeter: last reading while it was not lost
   std::vector<std::optional<LuxReading>> heard;     ///< per luxmeter: last reading, believed or not
-  std::vector<double> taken_level;                  ///< per fixture: the last that its device took, so far as is known
-  std::vector<double> aimed_lx;  ///< per point: what the last correction could reach; empty before the first
-  std::vector<std::string> why;  ///< per point: what keeps it from its goal; empty before the first
+  std::vector<double> taken_level;                  ///< per fixture: last level that its device took, as far as known
+  std::vector<double> aimed_lx;  ///< per point: reachable by the last correction; empty before
+  std::vector<std::string> why;  ///< per point: why its goal is not met; empty before the first
   std::vector<LimitBreach> breaches;
 
   // Set by hand (show_by_hand.cpp).
   std::vector<std::optional<ByHand>> hand_level;  ///< per fixture
-  std::vector<double> without_hands;  ///< levels of the plan, as corrected before hands came: where a release goes
+  std::vector<double> without_hands;  ///< plan levels as corrected before settings by hand; a release goes there
   std::vector<std::optional<ByHand>> hand_goal;  ///< per point
-  Look planned;  ///< the look in force, as the plan has it: goals, limits and weights of all points
-  std::vector<Point> points_in_force;            ///< the rig's, with the goals, limits and weights in force
-  bool unsolved = false;                         ///< something by hand is newer than the levels in force
+  Look planned;  ///< the look in force as planned: goals, limits and weights of all points
+  std::vector<Point> points_in_force;            ///< the rig's points, with goals, limits and weights in force
+  bool unsolved = false;                         ///< a setting by hand is newer than the levels in force
   [[nodiscard]] Result<void> hold(Time now, std::span<const ByHand> wanted);
   std::size_t release(Time now, std::span<const std::size_t> fixtures, std::span<const std::size_t> points);
   void release_what_is_over(Time now);
   void take_points(const Look& look);
   void take_levels_of_plan(Time now, const std::vector<double>& levels, const Look& look);
-  /// Tells goals, limits, who is held and who is lost to the estimator.
+  /// Passes goals, limits, held and lost fixtures to the estimator.
   void tell_estimator();
   void start_with_hands(Time now);
-  /// The levels with those that are held in their place.
+  /// The levels, with those held by hand put in.
   [[nodiscard]] std::vector<double> with_hands(std::vector<double> levels) const;
   [[nodiscard]] std::vector<ByHand> by_hand() const;
   [[nodiscard]] std::string why_not(Time now, const ByHand& held) const;
 
   // All meters against the model, and each against what it read before (show_scale.cpp).
-  /// A meter's reading over what the model states, when it was first believed and now, as logarithms.
+  /// A meter's reading over the model, as a logarithm: when it was first believed, and its change since.
   struct Drift {
     bool anchored = false;
     double log_ratio = 0;
-    std::vector<double> level;  ///< per fixture, then
+    std::vector<double> level;  ///< per fixture, at that time
     Time since{};
     double log_change = 0;
-    int seen = 0;  ///< samples in a row that are farther off than anything explains
+    int seen = 0;  ///< samples in a row beyond what known causes explain
     Time known_since{};
   };
   struct ScaleDoubt {
-    double log_share = 0;  ///< below 0: meters read less than they would
+    double log_share = 0;  ///< below 0: meters read too little
     std::string reason;
   };
-  static constexpr double kDarkForDrift_lx = 2;  ///< below, a meter's offset counts
-  std::optional<double> off_together;            ///< logarithm of all readings over the model, where it is surely not 0
+  static constexpr double kDarkForDrift_lx = 2;  ///< below this, a meter's offset matters
+  std::optional<double> off_together;            ///< logarithm of all readings over the model, if surely not 0
   Time off_together_since{};
   std::vector<Drift> drifts;  ///< per luxmeter
   void watch_scale(Time now);
@@ -190,17 +189,17 @@ struct ShowController::State {
   [[nodiscard]] bool any_lamp_bypassed() const;
   void close_bypassed(Time now);
   void tell_bypassed(ShowStatus& status) const;
-  /// The most that a plan may ask of it; 0 of one that is parked.
+  /// Highest level that a plan may ask for; 0 for a parked fixture.
   [[nodiscard]] double most_of(std::size_t fixture) const;
 
   // A rig file read again (show_reload.cpp).
   void exchange_rig(Time now, const Rig& other, const LightModel& model, bool same_light);
 
-  ShowController::Beside beside;     ///< may be none
-  std::shared_ptr<Solving> solving;  ///< what has been asked for and not been taken up
-  std::uint64_t facts = 0;           ///< counts what makes another correction of one that was asked for before
+  ShowController::Beside beside;     ///< may be empty
+  std::shared_ptr<Solving> solving;  ///< asked for, and not taken up yet
+  std::uint64_t facts = 0;           ///< counts changes that outdate a correction asked for before
 
-  // What happens (show_controller.cpp).
+  // Behaviour (show_controller.cpp).
   [[nodiscard]] Time at_least_last(Time now);
   void enter(Phase next, Time now);
   [[nodiscard]] std::vector<double> present_levels(Time now, bool under_ceilings = true) const;
@@ -209,7 +208,7 @@ struct ShowController::State {
   void start_cue(Time now, std::vector<double> levels);
   void go_to_asked(Time now, std::vector<double> present);
   [[nodiscard]] std::vector<double> wanted_levels(std::span<const double> levels) const;
-  [[nodiscard]] bool turns(std::size_t fixture) const;  ///< by the awaited look
+  [[nodiscard]] bool turns(std::size_t fixture) const;  ///< the awaited look turns it
   void take_look(Time now);
   void freeze(Time now);
   void resume(Time now);
@@ -228,11 +227,11 @@ struct ShowController::State {
   // Lighting desks (show_desks.cpp).
   void guard_against_desks(Time now);
   void put_desk(std::size_t index);
-  /// Calls back with what goes out now but for a blackout, which is none of a desk's business.
+  /// Calls back with the light that goes out now, as without a blackout: that does not concern desks.
   template <class Call>
   bool with_present_light(Time now, Call call);
   [[nodiscard]] bool desk_shares(Time now) const;
-  [[nodiscard]] bool listens_in_silence() const;  ///< nobody knows yet whether a desk has light of ours
+  [[nodiscard]] bool listens_in_silence() const;  ///< not known yet whether a desk has our light
   [[nodiscard]] bool waits_for_desks(Time now);
   void begin_after_listening(Time now);
   void step_desks(Time now);
@@ -255,33 +254,33 @@ struct ShowController::State {
     return !program.parked.empty() && program.parked[fixture] != 0;
   }
   void finish_parking();
-  /// Nobody knows yet where heads look: light waits for their longest way there, and for their finding their zero.
+  /// The heads' positions are not known yet: light waits for their longest way, and for homing.
   void first_turn(Time now, std::span<const Joints> joints);
 
-  // What fails alone (show_losses.cpp).
+  // Partial failures (show_losses.cpp).
   void watch_losses(Time now);
-  /// No limit would be exceeded were any lamp stuck at the most that it has had lately, while the others go on.
+  /// No limit would be exceeded if any lamps were stuck at their recent maximum while the others go on.
   [[nodiscard]] bool limits_bear_waiting(Time now) const;
   void tell_lost_lamps();
   void leave_out_lost(std::vector<double>& levels) const;
   [[nodiscard]] bool any_lost() const;
-  [[nodiscard]] bool too_much_lost() const;  ///< of what gives light, for the show to go on
+  [[nodiscard]] bool too_much_lost() const;  ///< so much light is lost that the show stops
   [[nodiscard]] std::vector<std::uint8_t> watched_meters() const;
-  /// A lost fixture gives it light, or might: nobody knows how much.
+  /// Fixtures that do not answer may light it, by an unknown amount.
   [[nodiscard]] bool in_doubt(std::size_t luxmeter) const;
   void tell_losses(ShowStatus& status) const;
 
   // Power (show_startup.cpp).
-  /// Levels as they come on the first time, by stages, from what is lit already; false when nothing is staged.
+  /// Brings the first light up by stages, from what is lit already. False if nothing is staged.
   bool start_lamps(Time now, const std::vector<double>& present, const std::vector<double>& levels);
   void watch_power(Time now);
 
-  // What is known (show_status.cpp).
+  // Status (show_status.cpp, show_verdicts.cpp).
   [[nodiscard]] std::vector<double> safe_levels() const;
   /// Largest |aimed − measured| / goal over the metered goals; 0 without any.
   [[nodiscard]] double possible_gain(const Correction& correction) const;
   [[nodiscard]] std::optional<std::size_t> meter_at(std::size_t point) const;
-  /// Whether a point at `lux` is where corrections want it: at its goal, or at the best that the limits allow.
+  /// True if `lux` is where corrections want the point: at its goal, or at the best that limits allow.
   [[nodiscard]] bool arrived(std::size_t point, double lux) const;
   [[nodiscard]] bool all_metered_goals_arrived() const;
   [[nodiscard]] PointStatus point_status(std::size_t point, std::span<const double> level, Time now) const;
@@ -290,17 +289,17 @@ struct ShowController::State {
                                            const Prediction& prediction) const;
   [[nodiscard]] std::vector<double> with_lost_lamps_at(std::span<const double> level, bool full) const;
   [[nodiscard]] bool any_lamp_lost() const;
-  /// Were its lamp out, that meter would show it.
+  /// A meter would show it if this lamp were out.
   [[nodiscard]] bool seen_by_a_meter(std::size_t fixture, std::span<const double> level) const;
-  /// A lamp without which the point would not be at its goal, and of which nobody knows whether it burns.
+  /// A lamp without which the point would miss its goal, and whose failure neither its device nor a meter would show.
   [[nodiscard]] std::optional<std::size_t> unseen_lamp_for(std::size_t point, std::span<const double> level,
                                                            const LuxEstimate& light, double allowed_lx) const;
-  /// What is believed to be out: of a desk that drives lamps itself, what it sends; of a lamp that does not answer, the
-  /// last that it took.
+  /// Levels believed to be out. Where a desk drives lamps itself: the values it sends. For a lamp that does not answer:
+  /// the last level it took.
   [[nodiscard]] std::vector<double> levels_out(Time now) const;
   void judge_goal(std::size_t point, std::span<const double> level, PointStatus& status) const;
   void judge_limit(std::size_t point, std::span<const double> level, Time now, PointStatus& status) const;
-  /// Remembers what lamps took whose devices answer.
+  /// Remembers the levels of lamps whose devices answer.
   void remember_levels(Time now);
   [[nodiscard]] std::string detail(Time now, const VerdictCounts& goals) const;
   [[nodiscard]] std::string who_shares(Time now) const;

@@ -1,7 +1,7 @@
 #pragma once
-/// Whether a device is relied on, by how it answered lately. One late answer is no failure, and one good answer no
-/// recovery: a device that fails for longer than `patience` is lost, and one that was lost is good again after a row of
-/// good answers, the longer the more often it failed.
+/// Whether to rely on a device, judged by its recent answers. One late answer is no failure, and one good answer no
+/// recovery. A device that fails for longer than `patience` is lost. A lost device is good again after a run of good
+/// answers; the more often it failed, the longer the run.
 
 #include <algorithm>
 #include <chrono>
@@ -16,8 +16,8 @@ class Trust {
   static constexpr Duration kRemembers = std::chrono::minutes(10);
   static constexpr Duration kFirstRow = std::chrono::seconds(1), kLongestRow = std::chrono::seconds(10);
 
-  /// What was seen since the last call. failing: it is reported as faulted, or is silent. missed: one answer or more
-  /// did not come, or was spoiled. answered: there was a good answer; true where that cannot be told.
+  /// What was seen since the last call. failing: reported as faulted, or silent. missed: at least one answer did not
+  /// come, or was garbled. answered: a good answer came; true where that is not known.
   void step(Time now, bool failing, bool missed, bool answered, Duration patience) {
     while (!falls_.empty() && now - falls_.front() > kRemembers) falls_.pop_front();
     if (failing || missed) {
@@ -26,7 +26,7 @@ class Trust {
       bad_ = true;
       good_since_ = now;
     }
-    if (!failing && (answered || failing_)) bad_ = false;  // what is no longer reported has answered
+    if (!failing && (answered || failing_)) bad_ = false;  // no longer reported as faulted: it has answered
     if (!failing) {
       failing_ = false;
       if (lost_ && !bad_ && now - good_since_ >= row()) lost_ = false;
@@ -42,7 +42,7 @@ class Trust {
 
   [[nodiscard]] bool lost() const { return lost_; }
   [[nodiscard]] Time lost_since() const { return lost_since_; }
-  /// For so long it must answer well to be good again. A clean failure is over with the first answer.
+  /// How long it must answer well to be good again. A single failure is over with the first answer.
   [[nodiscard]] Duration row() const {
     if (falls_.size() <= 1) return {};
     return std::min(kLongestRow, kFirstRow * (1 << std::min<std::size_t>(falls_.size() - 2, 4)));
