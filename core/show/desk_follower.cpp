@@ -70,7 +70,7 @@ void DeskFollower::have_light(Time now) {
 }
 
 bool DeskFollower::hear(Time now, const DeskFrame& frame, const PresentLight& present) {
-  // Before the values: a way begins at what goes out now, not at what the desk has just asked for.
+  // Before the values: a fade starts at the light that goes out now, not at the desk's new values.
   presence_ = frame.presence;
   source_ = frame.source;
   const bool moved = follow_presence(now, present);
@@ -84,7 +84,7 @@ bool DeskFollower::follow_presence(Time now, const PresentLight& present) {
     case DeskPhase::listening:
       if (presence_ == DeskPresence::unknown) return false;
       if (presence_ == DeskPresence::present) {
-        // Nothing is known to go out, unless Luxrig had begun (merge).
+        // No light is known to go out yet, unless Luxrig has begun (merge).
         begin(now, true, Duration{}, present);
         enter(now, DeskPhase::following);
       } else {

@@ -12,7 +12,7 @@ namespace {
 constexpr Duration kObeysWithin = std::chrono::milliseconds(500);
 static_assert(kHeadDelay_s == 0.5);
 
-/// Towards the box from both sides; what of it lies outside is taken in at once.
+/// Moves both bounds towards the ordered range; they take in at once any part of it outside them.
 void close_in(double& least, double& most, double told_least, double told_most, double way) {
   least = std::min(told_least, least + way);
   most = std::max(told_most, most - way);
@@ -72,7 +72,7 @@ void HeadWhereabouts::step_axes(Time now, const JointBox& told, bool obeys) {
   const bool one_posture = told.least == told.most;
   const bool anew = !line_to_ || !one_posture || !(told.least == *line_to_);
   if (!obeys || anew) {
-    // From anywhere that it can have got to.
+    // It starts from anywhere that it can have got to.
     if (line_to_) box_ = box_.joined(JointBox::at(*line_to_));
     line_to_.reset();
     if (!one_posture) box_ = box_.joined(told);
@@ -87,7 +87,7 @@ void HeadWhereabouts::step_axes(Time now, const JointBox& told, bool obeys) {
     const auto way = [](double at, double least, double most) {
       return std::max(std::abs(at - least), std::abs(at - most));
     };
-    // In step, the longest ways of both take longest.
+    // The joints turn in step, so the longest way of each takes the longest time.
     const HeadMove move =
         head_move(way(to.pan_rad, box_.least.pan_rad, box_.most.pan_rad),
                   way(to.tilt_rad, box_.least.tilt_rad, box_.most.tilt_rad),

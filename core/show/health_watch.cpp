@@ -141,7 +141,7 @@ Alarm HealthWatch::alarm_of(const Health& health, const Known& known) const {
   return alarm;
 }
 
-/// A dimmer that obeys, and says that something is wrong all the same: a lamp has burnt out, it is too hot.
+/// A dimmer that obeys but reports a fault: a lamp has burnt out, or it is too hot.
 void HealthWatch::warn_of(const Health& health) {
   const auto found = known_.find(health.device);
   if (found == known_.end() || found->second.role != Role::fixture) return;
@@ -153,7 +153,7 @@ void HealthWatch::warn_of(const Health& health) {
        health.since});
 }
 
-/// Devices behind one Modbus unit that all fail for the same reason: the unit does.
+/// Joins alarms of devices behind one Modbus unit that fail for the same reason: the unit itself has failed.
 void HealthWatch::join_units() {
   struct Unit {
     std::vector<const Health*> fixtures, meters;
@@ -179,7 +179,7 @@ void HealthWatch::join_units() {
     for (const Health* device : devices) text += fmt::format("{}\"{}\"", text.empty() ? "" : ", ", device->device);
     return text;
   };
-  for (const auto& entry : units) {  // lambdas take no structured bindings in C++20 as clang has it
+  for (const auto& entry : units) {  // clang's lambdas in C++20 capture no structured bindings
     const auto& [bus, number, detail] = entry.first;
     const Unit& unit = entry.second;
     if (unit.fixtures.size() + unit.meters.size() < 2) continue;
@@ -189,7 +189,7 @@ void HealthWatch::join_units() {
                               std::any_of(unit.meters.begin(), unit.meters.end(), same));
     };
     const auto first = std::find_if(alarms_.begin(), alarms_.end(), of_unit);
-    if (first == alarms_.end()) continue;  // all of it is bypassed
+    if (first == alarms_.end()) continue;  // all are bypassed
     std::string text = fmt::format("unit {} of bus \"{}\" does not answer ({}): ", number,
                                    bus < bus_names_.size() ? bus_names_[bus] : std::string(), detail);
     if (!unit.fixtures.empty())
@@ -217,7 +217,7 @@ void HealthWatch::step_meter(Time now, std::size_t luxmeter, bool faulted, Durat
   const bool implausible = !meter.implausible.empty();
   const auto counted = counted_.find(meter.name);
   const bool missed = counted != counted_.end() && counted->second.missed;
-  // Silence and what the model says of it have lasted for long enough when they are known.
+  // Silence and implausible readings have already lasted long enough when they are noticed.
   meter.trust.step(now, faulted || silent || implausible, missed, heard, silent || implausible ? Duration{} : patience);
   if (faulted || meter.bypassed) return;  // the device or its bus has its own alarm
   if (!silent && !implausible) {
@@ -254,14 +254,14 @@ void HealthWatch::set_bypassed(const std::vector<std::optional<Time>>& lamps,
   for (std::size_t i = 0; i < meters.size(); ++i) meters_[i].bypassed = meters[i].has_value();
 }
 
-/// No fixture of the bus is in use.
+/// Every fixture of the bus is bypassed.
 bool HealthWatch::all_bypassed_on(std::size_t bus) const {
   for (std::size_t f = 0; f < lamp_bypassed_.size(); ++f)
     if ((bus_of_fixture_[f] == bus || motion_bus_of_fixture_[f] == bus) && !lamp_bypassed_[f]) return false;
   return true;
 }
 
-/// Who is lost, by what is reported now and was before.
+/// Updates which devices are lost, from present and earlier reports.
 void HealthWatch::step_trusts(Time now, const Patience& patience) {
   for (auto& entry : counted_) {
     entry.second.missed = entry.second.faulted = false;
@@ -272,7 +272,7 @@ void HealthWatch::step_trusts(Time now, const Patience& patience) {
     const Role role = known(health.device).role;
     const bool single = role == Role::fixture || role == Role::axis || role == Role::luxmeter;
     device.faulted = health.life == Life::faulted;
-    device.missed = single && health.errors > device.errors;  // a bus counts those of all that hang on it
+    device.missed = single && health.errors > device.errors;  // a bus counts the errors of all its devices
     device.answered = !single || health.received == 0 || health.received > device.received;
     device.errors = health.errors;
     device.received = health.received;
@@ -280,7 +280,7 @@ void HealthWatch::step_trusts(Time now, const Patience& patience) {
   for (auto entry = counted_.begin(); entry != counted_.end();) {
     Counted& device = entry->second;
     const Role role = known(entry->first).role;
-    if (role == Role::luxmeter) {  // step_meter knows more
+    if (role == Role::luxmeter) {  // step_meter does this
       ++entry;
       continue;
     }
@@ -332,7 +332,7 @@ void HealthWatch::step(Time now, const Patience& patience) {
     if ((bus || role == Role::bus_part) && device.faulted) bus_silent[index] = true;
     if (role == Role::fixture) lamp_silent_[index] = device.faulted;
     if (!device.trust.lost()) continue;
-    // Which fixtures hang on a part of a bus, nobody here knows.
+    // It is not known which fixtures hang on a part of a bus, so it counts as the bus.
     if (bus || role == Role::bus_part) bus_lost[index] = true;
     const bool of_one = role == Role::fixture || role == Role::axis;
     const bool of_bus = role == Role::light_bus || role == Role::axes_bus || role == Role::bus_part;
@@ -354,7 +354,7 @@ void HealthWatch::step(Time now, const Patience& patience) {
     in_use_lost += !lamp_bypassed_[f] && lamp_lost_[f];
   }
   if (in_use > 0 && in_use == in_use_lost) all_lost_ = true;
-  // What hangs on a dead bus is lost with it; once is enough to say so.
+  // Devices on a dead bus are lost with it; one alarm is enough.
   std::erase_if(alarms_, [&](const Alarm& alarm) {
     const auto [role, index] = known(alarm.device);
     if (role == Role::bus_part) return bool{bus_faulted[index]};

@@ -12,7 +12,7 @@ constexpr Duration kHalfTurn = std::chrono::milliseconds(500);
 constexpr double kLeastBright = 0.5;
 constexpr double kNod_rad = 5 * std::numbers::pi / 180;
 
-/// From `at_rad` by kNod_rad to the side with more room.
+/// `at_rad`, moved by kNod_rad to the side with more room.
 double nodded_rad(double at_rad, double min_rad, double max_rad) {
   const double way_rad = max_rad - at_rad >= at_rad - min_rad ? kNod_rad : -kNod_rad;
   return std::clamp(at_rad + way_rad, std::min(min_rad, at_rad), std::max(max_rad, at_rad));

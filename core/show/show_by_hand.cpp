@@ -13,7 +13,7 @@
 namespace luxrig {
 namespace {
 
-/// A level lower than it was set by more than this is said to be kept down.
+/// A level that is lower than its setting by more than this counts as kept down.
 constexpr double kSameLevel = 1e-3;
 constexpr double kMostGoal_lx = 1e6;
 
@@ -83,7 +83,7 @@ void ShowController::State::release_what_is_over(Time now) {
   if (!fixtures.empty() || !points.empty()) release(now, fixtures, points);
 }
 
-/// What the look leaves out is the rig's.
+/// Values that the look leaves out come from the rig.
 void ShowController::State::take_points(const Look& look) {
   planned = look;
   const std::size_t count = rig.points.size();
@@ -97,12 +97,12 @@ void ShowController::State::take_points(const Look& look) {
   }
 }
 
-/// A plan ends what the one before had by hand; what was set at the running show stays.
+/// A plan ends the settings by hand of the plan before. Settings made in the running show stay.
 void ShowController::State::take_levels_of_plan(Time now, const std::vector<double>& levels, const Look& look) {
   without_hands = levels;
   for (std::size_t f = 0; f < levels.size(); ++f) {
     if (hand_level[f] && !hand_level[f]->of_plan) {
-      unsolved = true;  // the plan did not know of it
+      unsolved = true;  // the plan was made without it
       continue;
     }
     hand_level[f].reset();
@@ -152,7 +152,7 @@ std::vector<ByHand> ShowController::State::by_hand() const {
   return all;
 }
 
-/// What keeps what is set by hand from being so.
+/// Why a setting by hand is not in effect; empty if it is.
 std::string ShowController::State::why_not(Time now, const ByHand& held) const {
   if (program.blackout) return "blackout";
   if (phase == Phase::safe || phase == Phase::safe_fading) return "safe look";
@@ -169,7 +169,7 @@ std::string ShowController::State::why_not(Time now, const ByHand& held) const {
   const double most = program.max_level[held.index];
   if (held.value > most + kSameLevel) return fmt::format("the most it may have is {:g} (max_level)", most);
   if (program.to_level[held.index] >= held.value - kSameLevel) return {};
-  // Alone at that level, or with what is lit beside it: whose limit would be broken.
+  // Limits that would be exceeded with this lamp at its set level, beside the present light.
   std::vector<double> level = program.to_level;
   level[held.index] = held.value;
   std::string limits;

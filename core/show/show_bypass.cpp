@@ -1,4 +1,4 @@
-// Devices that a person has taken out of the show since they have failed: what is done without them, and the risk.
+// Devices that a person has taken out of the show because they failed: the show without them, and the risk.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -35,7 +35,7 @@ void ShowController::State::bypass(Time now, std::span<const std::size_t> fixtur
     set(bypassed_meter.at(m), changed);
     if (!changed) continue;
     meters = true;
-    // What it taught may be as wrong as what it says; what it taught before it failed, nobody can tell apart.
+    // What it taught may be as wrong as its readings now: it is not known when it failed.
     estimator.forget(m);
     measured[m].reset();
     drifts[m] = Drift{};
@@ -48,11 +48,11 @@ void ShowController::State::bypass(Time now, std::span<const std::size_t> fixtur
   breaches.clear();
   if (lamps) return start_with_hands(now);  // the rest is solved without them
   tell_estimator();
-  // Limits that rested on what it taught hold by the model alone from here on.
+  // Limits that relied on it hold by the model alone from here on.
   if (cue && phase != Phase::idle) start_cue(now, asked);
 }
 
-/// A bypassed lamp is dark: from now on nothing lights it, no desk either.
+/// Once a bypassed lamp is dark, nothing lights it, not even a desk.
 void ShowController::State::close_bypassed(Time now) {
   for (std::size_t f = 0; f < bypassed_lamp.size(); ++f) {
     if (!bypassed_lamp[f] || program.max_level[f] <= 0 || program.to_level[f] > 0 || !program.done(now)) continue;

@@ -38,7 +38,7 @@ const char* name_of(Phase phase) {
 
 namespace {
 
-/// Per fixture, 1: its product has a bit for a lamp that has burnt out.
+/// Per fixture, 1: its product has a bit for a burnt-out lamp.
 std::vector<std::uint8_t> fixtures_that_tell_of_lamps(const Rig& rig) {
   std::vector<std::uint8_t> tell(rig.fixtures.size(), 0);
   for (std::size_t f = 0; f < tell.size(); ++f) {
@@ -89,12 +89,12 @@ ShowController::State::State(const Rig& rig_in, const LightModel& model, std::sp
   model_joints = program.joints;
   for (const std::size_t f : zones.heads()) {
     guarded.push_back({f, HeadWhereabouts(rig.fixtures[f])});
-    program.dims.push_back({f, 0, 0, {}, {}, false, {}});  // nobody knows yet where it looks
+    program.dims.push_back({f, 0, 0, {}, {}, false, {}});  // its aim is not known yet
   }
   fade(Time{}, dark, dark, 0, FadeCurve::linear);
 }
 
-/// Commands are obeyed whatever the clock says; time itself never goes back.
+/// Commands are obeyed whatever the clock says, but time never goes back.
 Time ShowController::State::at_least_last(Time now) { return last = std::max(last, now); }
 
 void ShowController::State::enter(Phase next, Time now) {
@@ -103,13 +103,13 @@ void ShowController::State::enter(Phase next, Time now) {
   phase_since = now;
 }
 
-/// As they would be without a blackout, so that what happens under it goes on from there. Under ceilings: also what
-/// power-up still keeps down.
+/// The levels as without a blackout, so that changes under it go on from there. under_ceilings: with the ceilings of
+/// power-up applied.
 std::vector<double> ShowController::State::present_levels(Time now, bool under_ceilings) const {
   std::vector<double> level(rig.fixtures.size());
   OutputProgram lit = program;
   lit.blackout = false;
-  lit.desks.clear();  // Luxrig's own, whatever a desk makes of it
+  lit.desks.clear();  // Luxrig's own levels, without desks
   if (!under_ceilings) lit.lamp_starts.clear();
   lit.levels_at(now, level);
   return level;
@@ -129,10 +129,10 @@ void ShowController::State::fade(Time now, std::vector<double> from, std::vector
   drifted = 0;
 }
 
-/// Rows for the output. Where the whole way is known to stay within a limit, the row is loosened until it just lets
-/// both ends pass: a row is one factor for all levels, and what it must assume for the dim end would dim the bright
-/// one, with a jump, at the moment the fade starts. Levels that the rows in force let pass stay allowed until a meter
-/// says more.
+/// Sets the limit rows of the output. A row is one factor for all levels: its assumption for the dim end of a fade
+/// would dim the bright end, with a jump when the fade starts. So where the whole way is known to stay within a limit,
+/// the row is loosened until it just lets both ends pass. Levels that the rows in force let pass stay allowed until a
+/// meter says more.
 void ShowController::State::guard(Time now, const std::vector<double>& from, const std::vector<double>& to) {
   constexpr int kSamples = 8;
   constexpr double kOfRounding = 1 + 1e-9, kAllowed = 1 + kBreachSlack;
@@ -146,7 +146,7 @@ void ShowController::State::guard(Time now, const std::vector<double>& from, con
     const double ends_lx = std::max(row.dot(begin), row.dot(end));
     if (ends_lx <= max_lx) continue;
     bool safe = true;
-    // Who sent the light that was there before knew more than the open-loop margin.
+    // The sender of the earlier light knew more than the open-loop margin.
     const auto was = static_cast<Eigen::Index>(in_force.size());
     const bool was_so =
         was == lights && ends_lx <= row.dot(Eigen::Map<const Eigen::VectorXd>(in_force.data(), was)) * kOfRounding;
@@ -180,12 +180,12 @@ bool ShowController::State::turns(std::size_t fixture) const {
   return rig.fixtures[fixture].moves && !same_aim(awaited->look.joints[fixture], program.joints[fixture]);
 }
 
-/// What it turns is dark. `moving` until the light may come back.
+/// Call it when the heads that the look turns are dark. The next fade waits until they arrive (`arrive`).
 void ShowController::State::take_look(Time now) {
   double wait_s = 0;
   bool any = false, other_light = false;
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
-    // What parks is dark: the light is as before without it.
+    // Parking heads are dark: the model of the light stays valid without them.
     const bool parks = !parking.empty() && parking[f] != 0;
     if (rig.fixtures[f].moves && !parks && !parked(f) && !same_aim(awaited->look.joints[f], model_joints[f]))
       other_light = true;
@@ -195,10 +195,10 @@ void ShowController::State::take_look(Time now) {
     program.joints[f] = awaited->look.joints[f];
   }
   take_points(awaited->look);
-  // From the way to where it was told to look before: what is left of that comes first.
+  // A head that is still turning finishes that way first.
   if (any) arrive = std::max(arrive, now) + from_seconds(wait_s);
   if (other_light) {
-    // Gains would still hold; what is wrong locally would not, and telling them apart takes readings.
+    // Gains would still hold, local errors of the model would not; telling them apart takes readings.
     estimator = GainEstimator(rig, awaited->model);
     drifts.assign(rig.luxmeters.size(), {});
     std::fill(measured.begin(), measured.end(), std::nullopt);
@@ -217,10 +217,10 @@ void ShowController::State::start_cue(Time now, std::vector<double> levels) {
   aimed_lx.clear();
   why.clear();
   breaches.clear();
-  // Goes there when everything is back. Before the first step nothing is known to fail.
+  // The fade waits until everything is back. Before the first step no failure is known.
   const bool waits = phase == Phase::frozen || phase == Phase::safe_fading || phase == Phase::safe;
   if ((failing && waits) || waits_for_desks(now)) return;
-  // Ceilings stay, and a fade that began below one would add to what it adds.
+  // Without power-up ceilings: they stay in force, and a fade that started below one would add its rise to theirs.
   std::vector<double> present = present_levels(now, false);
   if (awaited) {
     const std::vector<double> lit_now = present_levels(now);
@@ -230,13 +230,13 @@ void ShowController::State::start_cue(Time now, std::vector<double> levels) {
       const bool parks = !parking.empty() && parking[f] != 0;
       if (!turns(f) && !parks) continue;
       any = any || !parks;
-      if (lit_now[f] <= 0) present[f] = 0;  // a ceiling that opens meanwhile must not let it through
+      if (lit_now[f] <= 0) present[f] = 0;  // a ceiling that opens during the fade must not light it
       lit = lit || present[f] > 0;
       without[f] = 0;
     }
-    // What stays goes, too, to where limits are kept without what meters have taught, or it would jump there.
+    // The other lamps also fade to levels that keep limits without knowledge from meters, or they would jump there.
     if (any) without = GainEstimator(rig, awaited->model).within_limits(without, now);
-    // Once, that is: what is within limits then may be so by another rounding.
+    // Only once: the next result may differ by rounding.
     if ((lit || (without != present && phase != Phase::moving)) && !program.blackout) {
       fade(now, std::move(present), std::move(without), rig.control.fade_s, rig.control.fade_curve);
       enter(Phase::moving, now);
@@ -248,7 +248,7 @@ void ShowController::State::start_cue(Time now, std::vector<double> levels) {
   asked = with_hands(*cue);
   ++facts;
   drop_solving();
-  // What is held by hand goes there at once; the rest follows when it is solved around that.
+  // Levels held by hand go out at once; the rest follows when it is solved around them.
   if (unsolved && !beside) {
     unsolved = false;
     Correction correction = estimator.correct(asked, now, true);
@@ -282,7 +282,7 @@ void ShowController::State::resume(Time now) { start_cue(now, asked); }
 
 void ShowController::State::fade_to_safe(Time now) {
   std::vector<double> present = present_levels(now);
-  program.lamp_starts.clear();  // the safe look waits for nothing
+  program.lamp_starts.clear();  // the safe look does not wait for stages
   fade(now, std::move(present), estimator.within_limits(safe_levels(), now), rig.safe.fade_s, rig.control.fade_curve);
   converged = false;
   breaches.clear();
@@ -290,7 +290,7 @@ void ShowController::State::fade_to_safe(Time now) {
 }
 
 void ShowController::State::look_at_failures(Time now) {
-  // Where a loss is a power cut, one that is over by then would let all its lamps come on at once.
+  // With after_loss, a power cut shorter than the patience would let all its lamps come on at once.
   const bool waits = !rig.startup.after_loss && limits_bear_waiting(now);
   health.step(now, {waits ? kPatience : Duration{}, kPatience});
   const bool was_failing = failing;
@@ -334,7 +334,7 @@ void ShowController::State::advance(Time now) {
     return start_cue(now, *cue);
   }
   if (shared) return;            // a desk's light says nothing about the plan's
-  if (program.blackout) return;  // nothing to measure in the dark; lifting it fades anew
+  if (program.blackout) return;  // nothing to measure in the dark; lifting it fades again
   switch (phase) {
     case Phase::fading:
     case Phase::correcting:
@@ -349,7 +349,7 @@ void ShowController::State::advance(Time now) {
       bool any_living = false;
       for (std::size_t i = 0; i < rig.luxmeters.size(); ++i)
         any_living = any_living || (!health.meter_lost(i) && !in_doubt(i));
-      if (!any_living) return enter(Phase::holding, now);  // nobody can tell; open loop
+      if (!any_living) return enter(Phase::holding, now);  // no meter to go by: open loop
       if (sampled_at == now) solve(now, Solving::For::round);
       return;
     }

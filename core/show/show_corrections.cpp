@@ -1,4 +1,4 @@
-/// What meters say of the light, and what is made of it: corrections, and drift while the light stands still.
+/// How meter readings are used: corrections, and drift while the light stands still.
 
 #include <algorithm>
 #include <cmath>
@@ -9,10 +9,10 @@
 namespace luxrig {
 namespace {
 
-// While the light stands still, the meters are looked at once a second (they are slow, and so is a lamp's ageing).
+// While the light stands still, meters are sampled once a second (meters and lamp ageing are slow).
 constexpr Duration kSampleEvery = std::chrono::seconds(1);
-// A drift must be seen in three samples, so that somebody walking past a meter moves no light; and lamps drift over
-// hours, so more than one correction in ten seconds would only follow noise.
+// A drift must be seen in three samples, so that a person walking past a meter moves no light. Lamps drift over hours,
+// so more than one correction in ten seconds would only follow noise.
 constexpr int kDriftSamples = 3;
 constexpr Duration kDriftCorrectionEvery = std::chrono::seconds(10);
 // Level changes smaller than half a step of a 12-bit dimmer are not worth a fade.
@@ -20,8 +20,8 @@ constexpr double kSmallestChange = 1e-4;
 
 }  // namespace
 
-/// When every living meter has its sample: learn from it. Lost ones take part as soon as they have one, since a
-/// believable sample is how a meter that was not believed comes back.
+/// Learns from a sample of every living meter. Lost meters take part as soon as they have one, since a believable
+/// sample is how a meter that was not believed comes back.
 void ShowController::State::take_sample(Time now) {
   if (program.blackout || shared || !program.done(now) || too_much_lost() || dimmed_for_a_zone(now))
     return;  // not the light that was asked for
@@ -43,7 +43,7 @@ void ShowController::State::take_sample(Time now) {
   for (const Judgement& judgement : estimator.update(now, readings, program.to_level)) {
     health.judged(judgement.luxmeter, now, judgement.why);
     if (!judgement.believed) {
-      measured[judgement.luxmeter].reset();  // what it taught before stays: the limits rest on it
+      measured[judgement.luxmeter].reset();  // what it taught before stays: limits rely on it
       continue;
     }
     measured[judgement.luxmeter] = *samples.sample(judgement.luxmeter);
@@ -68,7 +68,7 @@ void ShowController::State::take_sample(Time now) {
   breaches = std::move(present);
 }
 
-/// Asks for the levels that readings and hands call for, of which take_solved() makes what it was asked for.
+/// Starts solving for the levels that readings and settings by hand require; take_solved() puts them to use.
 void ShowController::State::solve(Time now, Solving::For what) {
   solving = std::make_shared<Solving>();
   solving->what = what;
@@ -80,7 +80,7 @@ void ShowController::State::solve(Time now, Solving::For what) {
     solving->done = true;
     return take_solved(now);
   }
-  // With what is known now: what is learned meanwhile counts the next time.
+  // With present knowledge: what is learned during the solve counts the next time.
   beside(
       [to = solving, known = std::make_shared<const GainEstimator>(estimator), levels = std::move(levels), now, hands] {
         to->correction = known->correct(levels, now, hands);
@@ -88,7 +88,7 @@ void ShowController::State::solve(Time now, Solving::For what) {
       });
 }
 
-/// Something newer is asked for. What nobody has solved around hands is still to be.
+/// Drops a solve that is outdated. If it was for settings by hand, that is still to be solved.
 void ShowController::State::drop_solving() {
   unsolved = unsolved || (solving && solving->what == Solving::For::hands);
   solving.reset();
@@ -99,7 +99,7 @@ void ShowController::State::take_solved(Time now) {
   const bool fades = phase == Phase::fading || phase == Phase::settling || phase == Phase::measuring ||
                      phase == Phase::correcting || phase == Phase::holding;
   const bool hands = solving->what == Solving::For::hands;
-  // Lamps that start after a power cut do so one after the other, to their end.
+  // Lamps that come on by stages finish that first.
   if (hands && fades && !program.lamp_starts.empty() && !program.done(now)) return;
   const std::shared_ptr<Solving> solved = std::exchange(solving, nullptr);
   const bool holds = solved->facts == facts && cue && !program.blackout;
@@ -122,7 +122,7 @@ void ShowController::State::take_solved(Time now) {
   look_at_drift(now, std::move(solved->correction));
 }
 
-/// After a sample: another round when it would bring a metered goal nearer, or when a limit is in question.
+/// After a sample: another round if it would bring a metered goal nearer, or if a limit is in question.
 void ShowController::State::correct_or_hold(Time now, Correction correction) {
   double change = 0;
   for (std::size_t i = 0; i < correction.level.size(); ++i) {
@@ -143,7 +143,7 @@ void ShowController::State::correct_or_hold(Time now, Correction correction) {
       correction.level[i] = program.to_level[i];
       continue;
     }
-    // What limits dimmed for a lost lamp comes back with it.
+    // A lamp that limits dimmed for a lost lamp comes back with it.
     const bool same = std::abs(correction.level[i] - program.to_level[i]) <= kSmallestChange;
     (*cue)[i] = correction.level[i];
     if (!same || !any_lost()) asked[i] = correction.level[i];
@@ -168,9 +168,9 @@ void ShowController::State::look_at_drift(Time now, Correction correction) {
     correct_or_hold(now, std::move(correction));
 }
 
-/// A meter that contradicts only what it said before may have been right before or now; taking its word now could drive
-/// the light up (somebody's coat over it), so a person must ask for that by applying the plan again. Only in the safe
-/// look, where no limit rests on what it taught; and never one whose value stood still while the light changed.
+/// A meter that contradicts only its own past may have been right then, or may be right now. Trusting it now could
+/// drive the light up (a coat over it), so a person must ask for that by applying the plan again. Only in the safe
+/// look, where no limit relies on what it taught. Never for a meter whose value stood still while the light changed.
 void ShowController::State::doubt_the_past(Time now) {
   if (!afresh || sampled_at != now) return;
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {

@@ -1,4 +1,4 @@
-/// What lighting desks that have a say in the light mean for the show.
+/// Effects on the show of lighting desks that share control of the light.
 
 #include <fmt/format.h>
 
@@ -12,16 +12,16 @@
 namespace luxrig {
 namespace {
 
-/// From the last blink back to what was.
+/// From the last blink back to the light before.
 constexpr Duration kIdentifyFade = std::chrono::milliseconds(500);
-/// Drivers say within 4 s of their start whether a desk is there: sACN after 2.5 s, the longest that a source which is
-/// not lost is silent, and 1.5 s in which one that was heard then has no say yet; Art-Net after 4 s, the slowest
-/// refresh. A bus that cannot say (it is not open yet) must not keep the rest of the rig dark for longer.
+/// Drivers report within 4 s of their start whether a desk is there. sACN takes 2.5 s, the longest silence of a source
+/// that is not lost, plus 1.5 s in which a newly heard source has no control yet. Art-Net takes 4 s, the slowest
+/// refresh. A bus that cannot report (not open yet) must not keep the rest of the rig dark for longer.
 constexpr Duration kListensAtMost = std::chrono::seconds(5);
 
 }  // namespace
 
-/// Limits for levels that nobody has worked out, and which heads a desk cannot light while they turn.
+/// Sets limits for levels that were not computed, and which heads a desk cannot light while they turn.
 void ShowController::State::guard_against_desks(Time now) {
   if (desks.empty()) return;
   const bool limited = std::any_of(points_in_force.begin(), points_in_force.end(),
@@ -30,7 +30,7 @@ void ShowController::State::guard_against_desks(Time now) {
   program.any_lux_per_level = std::move(worst.worst_lux_per_level);
   program.any_max_lx = std::move(worst.max_lx);
   if (rig.limits.max_watts) {
-    // The last row of the program's own is that of power, whatever the levels.
+    // The program's last row is that of power; it holds for any levels.
     const Eigen::Index row = program.any_max_lx.size();
     program.any_lux_per_level.conservativeResize(row + 1, static_cast<Eigen::Index>(rig.fixtures.size()));
     program.any_max_lx.conservativeResize(row + 1);
@@ -60,7 +60,7 @@ bool ShowController::State::with_present_light(Time now, Call call) {
   return call(PresentLight{level, joints, program.joints});
 }
 
-/// Somebody else has a say, or the light is not ours at all.
+/// A desk shares control, or the light is not ours at all.
 bool ShowController::State::desk_shares(Time now) const {
   return program.desk_has_a_say(now) ||
          std::any_of(program.desks.begin(), program.desks.end(), [](const DeskBlend& desk) { return desk.silent; });
@@ -72,7 +72,7 @@ bool ShowController::State::listens_in_silence() const {
   });
 }
 
-/// A first look that came on meanwhile would be there at once, past its fade and its stages, when nobody is heard.
+/// A first look that came on while listening would skip its fade and stages when no desk is heard.
 bool ShowController::State::waits_for_desks(Time now) {
   if (phase != Phase::idle || !in_force.empty() || !listens_in_silence()) return false;
   if (!listens_until) listens_until = now + kListensAtMost;
@@ -81,7 +81,7 @@ bool ShowController::State::waits_for_desks(Time now) {
 
 void ShowController::State::begin_after_listening(Time now) {
   if (!cue || waits_for_desks(now)) return;
-  if (turned) {  // heads have not heard of it either
+  if (turned) {  // heads have not got their aim either
     turned = false;
     first_turn(now, awaited ? awaited->look.joints : program.joints);
   }
@@ -98,7 +98,7 @@ void ShowController::State::step_desks(Time now) {
   }
   const bool was_shared = std::exchange(shared, desk_shares(now));
   if (shared) converged = false;
-  // What meters read while a desk had a say is not believed, and limits are still being let go.
+  // Readings under a desk's control are not believed, and limits are still being released.
   if (was_shared && !shared) {
     samples.restart(std::max(now + program.limits_released, program.start + program.duration) +
                     from_seconds(rig.control.settle_s));
@@ -161,7 +161,7 @@ Result<void> ShowController::State::identify(Time now, std::size_t fixture, Dura
   std::vector<Joints> joints(rig.fixtures.size());
   program.levels_at(now, level);
   program.joints_at(now, joints);
-  // One that would nod into a zone blinks instead.
+  // A head that would nod into a zone blinks instead.
   IdentifyPattern nods(rig, fixtures, level, joints, settings.desk_may_turn, now, how_long);
   settings.desk_may_turn = settings.desk_may_turn && !zones.may_meet(fixture, nods.nodding());
   IdentifyPattern pattern(rig, fixtures, level, joints, settings.desk_may_turn, now, how_long);

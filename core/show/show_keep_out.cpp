@@ -1,4 +1,4 @@
-/// Heads whose beams could meet a keep-out zone are dark before they can, and lit again when they no longer can.
+/// Heads go dark before their beam can meet a keep-out zone, and are lit again when it no longer can.
 
 #include <fmt/format.h>
 
@@ -10,10 +10,10 @@ namespace luxrig {
 namespace {
 
 constexpr Duration kDimsOver = std::chrono::milliseconds(200), kLightsOver = std::chrono::milliseconds(500);
-/// The dark is on the wire of the lamp, and the lamp follows it, before a head that was held may turn.
+/// Time for the dark level to reach the lamp, and for the lamp to follow, before a held head may turn.
 constexpr Duration kDarkBeforeTurning = std::chrono::milliseconds(100);
 
-/// Somebody drives it whose wishes are not known: a desk beside a silent Luxrig that does not hear what it turns.
+/// A desk drives the head while Luxrig is silent, and its aim is not known here.
 bool turned_elsewhere(const OutputProgram& program, std::size_t fixture) {
   return std::any_of(program.desks.begin(), program.desks.end(), [fixture](const DeskBlend& desk) {
     const auto found = std::find(desk.fixtures.begin(), desk.fixtures.end(), fixture);
@@ -24,8 +24,7 @@ bool turned_elsewhere(const OutputProgram& program, std::size_t fixture) {
 
 }  // namespace
 
-/// At each step, for what may happen until the next: what heads want to look at now, and at the end of whatever fade
-/// goes on.
+/// At each step, covers what may happen until the next: the aims wanted now, and those at the end of the running fade.
 void ShowController::State::guard_heads(Time now) {
   if (guarded.empty()) return;
   std::vector<Joints> wanted(rig.fixtures.size()), at_last(rig.fixtures.size());
@@ -40,7 +39,7 @@ void ShowController::State::guard_heads(Time now) {
   }
 }
 
-/// wanted: now; at_last: when the fade that goes on is done.
+/// wanted: aim now; at_last: aim at the end of the running fade.
 void ShowController::State::guard_head(Time now, GuardedHead& head, HeadDim& dim, const Joints& wanted,
                                        const Joints& at_last, bool lit) {
   const std::size_t f = head.fixture;
@@ -64,7 +63,7 @@ void ShowController::State::guard_head(Time now, GuardedHead& head, HeadDim& dim
     head.swept_to = straight_to;
   }
   if (head.zone && dim.to > 0) {
-    // From where it was told to look last it meets nothing; there it stays until it is dark.
+    // At its last ordered aim the beam meets nothing; the head stays there until it is dark.
     const bool gently = lit && head.told.has_value();
     dim = {f,      gently ? dim.share(now) : 0.0, 0, now, gently ? kDimsOver : Duration{},
            gently, head.told.value_or(Joints{})};
@@ -90,7 +89,7 @@ void ShowController::State::tell_zones(ShowStatus& status) const {
     if (shown.kept_dark && head.zone)
       shown.waits_for = fmt::format("its beam to be clear of keep-out zone \"{}\"", zones.name(*head.zone));
     if (!head.told || dim.to > 0) continue;
-    // On the way through nobody needs to do anything; one that rests there stays dark until somebody does.
+    // A head that passes through needs no action. One that rests there stays dark until a person acts.
     const std::optional<std::size_t> zone = zones.met(head.fixture, *head.told);
     if (!zone || !(program.to_level[head.fixture] > 0 || shared)) continue;
     if (shown.kept_dark)

@@ -1,4 +1,4 @@
-/// Failure domains: what hangs on a lost bus or dimmer is held and then goes to its safe level, and the rest goes on.
+/// Failure domains: fixtures on a lost bus or dimmer are held, then go to their safe level; the rest goes on.
 
 #include <fmt/format.h>
 
@@ -9,18 +9,18 @@
 namespace luxrig {
 namespace {
 
-/// Of what a meter reads: less than this from lamps that may do anything, and it tells of the others.
+/// A meter with at most this share of its light from fixtures that do not answer still measures the others.
 constexpr double kShareThatTells = 0.02;
-/// A meter that showed more than its point may have is trusted to watch over it again below this share of the limit.
+/// A meter that showed more than its point's limit is trusted to watch it again below this share of the limit.
 constexpr double kWellBelow = 0.95;
 
-/// What an output may do without data beside keeping its level or going dark: anything, unless its maker says.
+/// Without data, an output may do more than keep its level or go dark, unless a register map states its behaviour.
 bool may_brighten(const Fixture& fixture) {
   const auto* modbus = std::get_if<ModbusPatch>(&fixture.patch);
   return modbus == nullptr || modbus->map == nullptr;
 }
 
-/// In quotes; of many the first and how many more, so that a phone shows them.
+/// Names in quotes; of many, the first few and the number of others, so that a phone shows them.
 std::string some_of(const std::vector<std::string>& names) {
   constexpr std::size_t kMostNames = 4;
   std::string text;
@@ -53,7 +53,7 @@ bool ShowController::State::limits_bear_waiting(Time now) const {
   return true;
 }
 
-/// Nothing is told apart when the rig goes to its safe look as a whole, but for what a person has taken out of it.
+/// Single losses are not tracked when the rig goes to its safe look as a whole, except those of bypassed fixtures.
 void ShowController::State::watch_losses(Time now) {
   bool changed = false;
   std::vector<double> present, before;
@@ -88,14 +88,14 @@ void ShowController::State::watch_losses(Time now) {
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i)
     if (in_doubt(i)) {
       measured[i].reset();
-      health.judged(i, now, "");  // what it shows is no fault of its own
+      health.judged(i, now, "");  // its reading is no fault of its own
     }
   const bool goes_on = phase == Phase::moving || phase == Phase::fading || phase == Phase::settling ||
                        phase == Phase::measuring || phase == Phase::correcting || phase == Phase::holding;
   if (goes_on && cue && !failing) start_cue(now, asked);
 }
 
-/// 1 where a meter is read and shows no more than its point may have.
+/// 1 where a meter is read and shows no more than its point's limit.
 std::vector<std::uint8_t> ShowController::State::watched_meters() const {
   std::vector<std::uint8_t> seen(rig.luxmeters.size(), 0);
   for (std::size_t i = 0; i < seen.size(); ++i) {
@@ -112,7 +112,7 @@ void ShowController::State::tell_lost_lamps() {
   std::vector<std::optional<GainEstimator::Lost>> lamps(rig.fixtures.size());
   for (std::size_t f = 0; f < lamps.size(); ++f) {
     if (!lost[f] || !lost[f]->lamp) continue;
-    // For as long as the present look is held anyway, it is taken to hold, too.
+    // While the present look is held anyway, the lamp is assumed to hold its level, too.
     const bool unknown = lost[f]->to_safe && may_brighten(rig.fixtures[f]);
     lamps[f] = GainEstimator::Lost{lost[f]->most, unknown ? 1.0 : lost[f]->most};
   }
@@ -120,8 +120,8 @@ void ShowController::State::tell_lost_lamps() {
   ++facts;
 }
 
-/// What lost fixtures are sent in place of the look: where they were, then their safe level, unless they were darker.
-/// They may take it at any instant, and limits count on what they had.
+/// Puts in the levels sent to lost fixtures: held at first, then their safe level unless they were darker. They may
+/// take it at any instant, so limits count on the level before.
 void ShowController::State::leave_out_lost(std::vector<double>& levels) const {
   if (!any_lost()) return;
   const std::vector<double> safe = safe_levels();
@@ -133,7 +133,7 @@ bool ShowController::State::in_doubt(std::size_t luxmeter) const {
   std::vector<std::uint8_t> chosen(rig.fixtures.size(), 0);
   bool any = false;
   for (std::size_t f = 0; f < chosen.size(); ++f) {
-    // From the first report on: what is learned until a lamp is lost could not be told from what is true.
+    // From the first report on: readings until a lamp is lost cannot be told from true ones.
     chosen[f] = lost[f].has_value() || health.lamp_silent(f);
     any = any || chosen[f] != 0;
   }

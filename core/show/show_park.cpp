@@ -1,4 +1,4 @@
-/// Heads that rest: dark, and where they were told to.
+/// Parked heads: dark, at their rest position.
 
 #include <fmt/format.h>
 
@@ -35,7 +35,7 @@ Result<void> ShowController::State::park(Time now, std::span<const std::size_t> 
     for (std::size_t f = 0; f < rig.fixtures.size(); ++f) chosen[f] = rig.fixtures[f].park.has_value();
   if (std::find(chosen.begin(), chosen.end(), 1) == chosen.end())
     return refusal("no head has a place to rest: give one park_pan_deg and park_tilt_deg");
-  // A look that waits for heads to go dark is taken with this one.
+  // A look that still waits for heads to go dark is taken with this one.
   Awaited next = awaited ? std::move(*awaited) : Awaited{planned, {}};
   Look& look = next.look;
   if (!awaited) look.joints = program.joints;
@@ -49,7 +49,7 @@ Result<void> ShowController::State::park(Time now, std::span<const std::size_t> 
   }
   parking = std::move(chosen);
   first_turn(now, look.joints);
-  if (phase == Phase::idle && !cue && in_force.empty()) {  // nothing is lit, and nothing shall be
+  if (phase == Phase::idle && !cue && in_force.empty()) {  // nothing is lit, and no light is due
     program.joints = std::move(look.joints);
     finish_parking();
     const std::vector<double> dark(rig.fixtures.size(), 0.0);
@@ -61,7 +61,7 @@ Result<void> ShowController::State::park(Time now, std::span<const std::size_t> 
   return {};
 }
 
-/// They are dark: from now on nothing lights or turns them.
+/// The heads are dark: from now on nothing lights or turns them.
 void ShowController::State::finish_parking() {
   if (parking.empty()) return;
   program.parked = std::exchange(parking, {});

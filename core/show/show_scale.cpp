@@ -1,5 +1,5 @@
-// What no meter can say of itself: whether all of them are off together against the model, or drift against what they
-// said before at the same levels.
+// Errors that no meter shows by itself: all meters are off together against the model, or drift against their own
+// earlier readings at the same levels.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,14 +10,16 @@
 namespace luxrig {
 namespace {
 
-/// Standard errors by which the common scale must be off: honest rigs are within.
+/// The common scale is off beyond this many standard errors; correct rigs are within.
 constexpr double kSurelyOff = 3;
-/// Once said, it stands until it is nearer than this share of what had it said: noise shall not make it come and go.
+/// Once raised, an alarm stands until the error is below this share of its threshold, so that noise does not make it
+/// come and go.
 constexpr double kStands = 0.8;
-/// A change of reading over model at one place that is called drift, beyond what a dimmer's curve and ageing explain.
+/// A change of reading over model at one place counts as drift above this, beyond what a dimmer's curve and ageing
+/// explain.
 constexpr double kDrift = 0.08;
 constexpr double kAgeingPerHour = 0.001;
-/// As many samples in a row, so that somebody walking past is no drift.
+/// This many samples in a row, so that a person walking past is no drift.
 constexpr int kDriftSeen = 3;
 
 std::string less_or_more(double log_share) {
@@ -56,7 +58,7 @@ void ShowController::State::watch_scale(Time now) {
 
 bool ShowController::State::drifts_away(std::size_t luxmeter) const { return drifts[luxmeter].seen >= kDriftSeen; }
 
-/// Whatever moved more than half of the meters one way moved what the model has learned from them.
+/// Median change if more than half of the meters drift: what the model has learned from them has then moved, too.
 std::optional<double> ShowController::State::drift_together() const {
   std::vector<double> change;
   std::size_t known = 0;

@@ -1,4 +1,4 @@
-/// Light that comes on by stages: the first time, and where power comes back.
+/// Light that comes on by stages: the first time, and when power comes back.
 
 #include <algorithm>
 #include <utility>
@@ -18,11 +18,11 @@ bool ShowController::State::start_lamps(Time now, const std::vector<double>& pre
     burning[f] = present[f] / program.max_level[f];
     from[f] = std::max(from[f], present[f]);
   }
-  // Somebody has lit all of them before: this look comes as looks do.
+  // All of them were lit before by another sender: this look fades in as usual.
   if (!any_dark && !in_force.empty()) return false;
   const std::vector<std::uint8_t> all(rig.fixtures.size(), 1);
   program.lamp_starts = luxrig::lamp_starts(rig, program.max_level, all, now, arrive, burning);
-  // The ceilings are the fade: a fade below them would add watts beside theirs.
+  // The ceilings do the fading: a fade below them would add watts to theirs.
   const Time begin = std::max(now, arrive);
   fade(now, std::move(from), levels, to_seconds(std::max(Duration{}, all_up(program.lamp_starts) - begin)),
        FadeCurve::linear);

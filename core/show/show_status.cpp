@@ -1,4 +1,4 @@
-// What the show knows, for a person: the status, and the judgements that the state machine shares with it.
+// The status for a person, and the judgements that the state machine shares with it.
 #include <fmt/format.h>
 
 #include <algorithm>

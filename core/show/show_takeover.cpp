@@ -1,4 +1,4 @@
-/// Light that somebody else has sent until now: the guardian of a daemon that died.
+/// Takes over light from another sender: the guardian of a daemon that died.
 
 #include <algorithm>
 #include <utility>
@@ -30,7 +30,7 @@ void ShowController::go_on_from(Time now, const LightInForce& light) {
     const std::vector<std::size_t>& fixtures = state.desks[d].blend().fixtures;
     const bool silent = std::any_of(fixtures.begin(), fixtures.end(),
                                     [&](std::size_t f) { return f < light.silent.size() && light.silent[f] != 0; });
-    if (silent) continue;  // somebody may drive them: it is listened for as ever
+    if (silent) continue;  // a desk may drive them: listen first, as always
     state.desks[d].have_light(now);
     state.put_desk(d);
   }

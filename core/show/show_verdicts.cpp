@@ -1,5 +1,5 @@
-// What the show knows of its points: how bright they are, whether their goals are met and their limits kept
-// (core/plan/verdict.h has the definition).
+// Status of points: how bright they are, whether their goals are met and their limits kept (core/plan/verdict.h has the
+// definition).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,11 +10,11 @@
 namespace luxrig {
 namespace {
 
-/// What a lamp gives to a meter is known as badly as the model: that much more than a jump that the meter would be
-/// asked about.
+/// A lamp's light at a meter is known only as well as the model. So it must exceed the meter's smallest jump by this
+/// factor.
 constexpr double kSurelySeen = 1.5;
 
-/// Why the light is not that of the plan; empty when it is.
+/// Why the light is not the plan's; empty if it is.
 const char* why_not_the_plan(Phase phase, bool blackout) {
   if (blackout) return "blackout";
   switch (phase) {
@@ -56,13 +56,13 @@ std::vector<double> ShowController::State::levels_out(Time now) const {
   return level;
 }
 
-/// Lamps that do not answer may give anything between nothing and all.
+/// Lamps that do not answer may give anything from nothing to full.
 std::vector<double> ShowController::State::with_lost_lamps_at(std::span<const double> level, bool full) const {
   std::vector<double> out(level.begin(), level.end());
   for (std::size_t f = 0; f < out.size(); ++f)
     if (health.lamp_silent(f))
       out[f] = full ? most_of(f) : 0;
-    else if (!full && health.lamp_failing(f))  // it obeys, with a lamp that may be out
+    else if (!full && health.lamp_failing(f))  // it obeys, but its lamp may be out
       out[f] = 0;
   return out;
 }
@@ -133,7 +133,7 @@ PointStatus ShowController::State::point_status(std::size_t p, std::span<const d
   } else {
     status.light = light_by_model(p, level, prediction);
   }
-  // Nobody knows which of them is right: the light may be so much more or less.
+  // It is not known which of them is right: the light may be higher or lower by this much.
   const ScaleDoubt doubt = scale_doubt_of(p);
   status.light.half_width_lx += status.light.lux * (std::exp(std::abs(doubt.log_share)) - 1);
   judge_goal(p, level, status);
@@ -148,7 +148,7 @@ void ShowController::State::judge_goal(std::size_t p, std::span<const double> le
     for (const Point& point : points_in_force) largest_goal_lx = std::max(largest_goal_lx, point.goal_lx.value_or(0));
   const double allowed_lx = tolerance_lx(*status.goal_lx, rig.control.goal_tolerance, largest_goal_lx);
   status.verdict = verdict_of(status.light, *status.goal_lx, allowed_lx);
-  // A meter that stands there and contradicts the model: nobody knows which of them is right.
+  // The meter at the point contradicts the model: it is not known which of them is right.
   if (const auto meter = meter_at(p); meter && health.meter_implausible(*meter) && status.verdict == Verdict::met)
     status.verdict = Verdict::unknown;
   std::optional<std::size_t> unseen;
@@ -182,9 +182,9 @@ void ShowController::State::judge_goal(std::size_t p, std::span<const double> le
                             state.empty() ? status.why : state, settles);
 }
 
-/// Outputs are scaled so that limits hold in the worst case of what is believed (OutputProgram). Two things speak
-/// against that: light that is not ours (a desk drives the lamps itself, or a lamp does not answer), and a reading. One
-/// that is not believed counts, too, since nobody knows why it is so.
+/// Outputs are scaled so that limits hold in the worst case of what is believed (OutputProgram). Two things can
+/// contradict that: light that is not ours (a desk drives the lamps itself, or a lamp does not answer), and a reading.
+/// A reading that is not believed counts, too, since the cause is not known.
 void ShowController::State::judge_limit(std::size_t p, std::span<const double> level, Time now,
                                         PointStatus& status) const {
   if (!points_in_force[p].max_lx) return;
