@@ -1,7 +1,7 @@
 #pragma once
-/// Answers "which lamp is that?": a fixture blinks, or a head nods, for a while; then everything is as before. It acts
-/// as a desk of our own that controls one housing (desk_follower.h). So limits hold, no meter is believed for that
-/// time, and the way back needs no memory of the state before.
+/// Shows which lamp is which: a fixture blinks, or a head nods, for a while; then everything is as before. It acts as a
+/// desk of our own that controls one housing (desk_follower.h). So limits hold, no meter is believed for that time, and
+/// the way back needs no memory of the state before.
 
 #include <algorithm>
 #include <span>

@@ -133,7 +133,7 @@ bool ShowController::State::in_doubt(std::size_t luxmeter) const {
   std::vector<std::uint8_t> chosen(rig.fixtures.size(), 0);
   bool any = false;
   for (std::size_t f = 0; f < chosen.size(); ++f) {
-    // From the first report on: readings until a lamp is lost cannot be told from true ones.
+    // From the first report on: until the loss is certain, false readings look like true ones.
     chosen[f] = lost[f].has_value() || health.lamp_silent(f);
     any = any || chosen[f] != 0;
   }
