@@ -9,10 +9,11 @@
 namespace luxrig {
 namespace {
 
-/// A trial pays when reflected light may well be negligible: below this reflectance, or from this wanted error on.
+/// A trial pays when reflected light may be negligible: below this reflectance, or from this wanted error on.
 constexpr double kDarkReflectance = 0.1;
 constexpr double kCoarseError = 0.08;
-/// Measured by `luxrig bench transport`: from here on sharing wins, down to here its error is what it says.
+/// Measured by `luxrig bench transport`: sharing wins from this many receivers on, and its stated error holds down to
+/// this wanted error.
 constexpr std::size_t kSharingReceivers = 24;
 constexpr double kSharingError = 0.001;
 

@@ -14,13 +14,13 @@
 namespace luxrig {
 namespace {
 
-constexpr double kBeamShare = 0.9;  // of the flux, in what counts as the beam (thesis §6.5)
+constexpr double kBeamShare = 0.9;  // share of the flux inside the beam (thesis §6.5)
 
-/// Where [mounting] has lights hang, or nested boxes around the object.
+/// The surfaces of [mounting] for lights, or nested boxes around the object.
 Result<LightDomain> domain_of(const ReliefSurroundings& around, const StudiedObject& object, const Mounting& mounting) {
   const MountingSpec& spec = around.rig.mounting;
   if (spec.surfaces.empty()) {
-    // Boxes as far as the mounting's box reaches.
+    // Boxes out to the extent of the mounting's box.
     NestedBoxOptions boxes;
     boxes.margin_m = boxes.step_m =
         std::max(mounting.box_world_m().diagonal().norm() / 8, object.study.surface.diagonal_m() / 4);
@@ -36,7 +36,7 @@ Result<LightDomain> domain_of(const ReliefSurroundings& around, const StudiedObj
     marks[t] = fits(around.scene.materials[around.scene.material_of_triangle[t]].name) ||
                fits(around.scene.object_names[around.scene.object_of_triangle[t]]);
   LightDomainOptions layers;
-  // On both sides: which of them is in the room, visibility and may_hang tell.
+  // On both sides: visibility and may_hang decide which of them is in the room.
   layers.layer_offsets_m = {spec.offset_min_m, -spec.offset_min_m};
   if (spec.offset_max_m > spec.offset_min_m) {
     layers.layer_offsets_m.push_back(spec.offset_max_m);
@@ -45,7 +45,7 @@ Result<LightDomain> domain_of(const ReliefSurroundings& around, const StudiedObj
   return mesh_light_domain(around.scene, marks, object.study.surface.centroid_world_m(), layers);
 }
 
-/// Where a light may hang: the middles of the domain's cells, moved as far as box and offsets go.
+/// Places where a light may hang: the centres of the domain's cells, snapped within box and offsets.
 std::vector<Vec3> hangable_places(const LightDomain& domain, const Mounting& mounting) {
   std::vector<Vec3> places;
   for (const LightDomain::CellCentre& centre : domain.cell_centres())
@@ -148,7 +148,7 @@ Result<PlacedReliefLights> find_relief_lights(const ReliefSurroundings& around, 
   for (const JudgedLight& light : chosen.lights) {
     HangingHead head;
     head.world_from_mount.translation_m = light.position_world_m;
-    head.range = {-kPi, kPi, -kPi, kPi};  // it is hung so: no joint stops it
+    head.range = {-kPi, kPi, -kPi, kPi};  // it is hung in any direction: no joint stops it
     head.present = pan_tilt_towards(head.world_from_mount, light.direction, head.range, {}).value_or(Joints{});
     head.zoom = {{luminaire.intensity}};
     head.max_level = around.rig.limits.max_level;
@@ -167,7 +167,7 @@ Result<PlacedReliefLights> find_relief_lights(const ReliefSurroundings& around, 
   found.tried = aimed->tried;
   for (std::size_t l = 0; l < aimed->heads.size(); ++l) {
     const AimedHead& head = aimed->heads[l];
-    if (!(head.setting.level > 0)) continue;  // the limits leave it nothing to give
+    if (!(head.setting.level > 0)) continue;  // the limits leave it no light
     LightInScene light;
     light.position_world_m = chosen.lights[l].position_world_m;
     light.aim_world_m = head.aim_world_m;

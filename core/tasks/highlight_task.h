@@ -1,6 +1,6 @@
 #pragma once
-/// One highlight task: lights that do not hang yet, found on what may carry them
-/// (core/highlight/lights/judged_lights.h), then aimed and dimmed as heads that hang are (aim_heads.h).
+/// One highlight task: places new lights where the mounting allows (core/highlight/lights/judged_lights.h), then aims
+/// and dims them like heads that already hang (aim_heads.h).
 
 #include "core/solve/placement/mounting.h"
 #include "core/solve/placement/place_in_scene.h"
@@ -11,11 +11,11 @@ namespace luxrig {
 struct PlacedReliefLights {
   std::vector<LightInScene> lights;
   AimScore score;
-  std::vector<double> contrast_lx;  ///< of one light, two, … at full level; empty when their number was given
+  std::vector<double> contrast_lx;  ///< of one light, two, … at full level; empty if the number was given
   std::size_t tried = 0;
 };
 
-/// Refuses when no light that may hang brings out anything of the object, saying why.
+/// Refuses with a reason if no light that may hang brings out any of the object's relief.
 [[nodiscard]] Result<PlacedReliefLights> find_relief_lights(const ReliefSurroundings& around,
                                                             const StudiedObject& object, const Task& task,
                                                             const Mounting& mounting, const ComputeOptions& options);

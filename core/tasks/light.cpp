@@ -28,7 +28,7 @@ Result<EvaluatorChoice> evaluator_for(const RayScene& scene, std::span<const Rec
   return choose_evaluator(scene, receivers, emitters, wanted);
 }
 
-/// Asks for the error, and for its floor where that is given.
+/// Sets the wanted error, and its floor if given.
 void want_error(const ComputeOptions& options, EvaluateOptions& evaluate) {
   if (options.worst_error)
     evaluate.wanted_relative_error = *options.worst_error;
@@ -39,12 +39,13 @@ void want_error(const ComputeOptions& options, EvaluateOptions& evaluate) {
   evaluate.floor_of_mean = 0;
 }
 
-/// A second estimate makes good what is over the wanted error by no more than this; beyond, it costs as much as all.
+/// A second estimate is made if the error exceeds the wanted one by at most this factor; beyond, it costs as much as
+/// computing all again.
 constexpr double kMostOver = 2;
-/// Of the wanted error, what both together aim at: estimates of errors are estimates.
+/// Share of the wanted error that both estimates together aim at: error estimates are estimates, too.
 constexpr double kAim = 0.95;
 
-/// So that second estimates of different looks are independent.
+/// Makes second estimates of different looks independent.
 std::uint64_t joints_hash(const Rig& rig, const Look& look) {
   std::uint64_t hash = 0;
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
@@ -146,7 +147,7 @@ Result<TransportMatrix> compute_transport(const Rig& rig, const RayScene& rays, 
       of_changed.levels.push_back(level);
     }
   }
-  // Errors are relative to all light, of which this is certain.
+  // Errors are relative to all light; this much of it is certain.
   if (kept_lux.size() > 0) of_changed.floor_lx = std::max(of_changed.floor_lx, kept_lux.minCoeff());
   ModelUsed by;
   auto anew = light_of(rays, receivers, changed, of_changed, options, &by);
@@ -157,7 +158,7 @@ Result<TransportMatrix> compute_transport(const Rig& rig, const RayScene& rays, 
   if (!by.reached() && !by.time_was_up && changed.size() < emitters.size()) {
     const double over = by.error() / by.wanted;
     if (over > kMostOver) return light_of(rays, receivers, emitters, wanted, options, used);
-    // Of independent estimates, each weighed by the inverse of its variance, the mean has the sum of these.
+    // For independent estimates, weighted by the inverse of their variances, the mean has the sum of these inverses.
     const double second = 1 / std::sqrt(1 / (kAim * kAim) - 1 / (over * over));
     ComputeOptions coarse = options;
     coarse.seed = options.seed ^ joints_hash(rig, look);

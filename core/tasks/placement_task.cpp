@@ -13,7 +13,7 @@
 namespace luxrig {
 namespace {
 
-/// The goal of the points that have one, or a limit; with colour, three channels.
+/// The goal for the points with a goal or a limit; with colour, three channels.
 struct GoalOfPoints {
   std::vector<Receiver> receivers;
   LightingGoal goal;
@@ -43,7 +43,7 @@ GoalOfPoints goal_of_points(const Rig& rig, const LightThere& there) {
       goal.fixed_lux[row] = is;
       if (!asked.asks(i)) continue;
       goal.lux[row] = asked.goal_lx[i] * (channels == 1 ? 1.0 : asked.rgb(i, c));
-      // What is there beyond a goal is not the placed lights' fault.
+      // Light that is there above a goal is not the placed lights' fault.
       goal.fixed_lux[row] = std::min(is, goal.lux[row]);
       goal.row_weight[row] = asked.weight[i] / std::sqrt(static_cast<double>(channels));
     }
@@ -51,7 +51,7 @@ GoalOfPoints goal_of_points(const Rig& rig, const LightThere& there) {
   return of;
 }
 
-/// What each emitter of a luminaire gives, per unit of the luminaire with all of them at rated flux.
+/// Light of each emitter of a luminaire, per unit of the luminaire with all emitters at rated flux.
 void set_emitters(const Rig& rig, std::size_t luminaire, LightingGoal& goal, Eigen::Index channels) {
   const std::vector<std::size_t> emitters = rig.emitters_or_itself(luminaire);
   const auto count = static_cast<Eigen::Index>(emitters.size());
@@ -103,7 +103,7 @@ Result<PlacedInScene> search_places(const Rig& rig, const Scene& scene, const Ra
     EvaluateOptions evaluate;
     evaluate.colour = channels == 3;
     for (std::size_t i = 0; i < poses.size(); ++i) {
-      // A lamp's emitters shine alike but in colour: together they are one lamp of their mixture.
+      // A lamp's emitters have the same distribution and differ in colour: together they are one lamp of their mixture.
       const Eigen::VectorXd light =
           goal.emitters * levels.segment(static_cast<Eigen::Index>(i) * goal.emitters.cols(), goal.emitters.cols());
       const double level = channels == 3 ? luminance_of_rgb(light) : light[0];

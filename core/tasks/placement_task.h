@@ -1,6 +1,5 @@
 #pragma once
-/// One placement task, watched: time that is up and an interrupt end it with the best so far, and a person sees how far
-/// it is.
+/// One placement task, watched: a timeout or an interrupt ends it with the best so far, and a person sees its progress.
 
 #include "core/rig/rig.h"
 #include "core/solve/placement/mounting.h"
@@ -9,15 +8,15 @@
 
 namespace luxrig {
 
-/// Light that does not come from the lights that are sought.
+/// Light from sources other than the lights to be placed.
 struct LightThere {
   Eigen::VectorXd lux;
   Eigen::MatrixXd rgb;  ///< points × 3, linear Rec. 709; empty when no goal has a colour
 };
 
-/// there       of every point of the rig: light that is there anyway
-/// max_watts   of the lights that are to be placed, together
-/// lights      none when it meets every goal
+/// there       light at every point of the rig without the new lights
+/// max_watts   of all new lights together
+/// lights      none if `there` meets every goal
 /// options.watch.stop and the task's `seconds` end the search.
 [[nodiscard]] Result<PlacedInScene> search_places(const Rig& rig, const Scene& scene, const RayScene& rays,
                                                   const Mounting& mounting, const Task& task, const LightThere& there,

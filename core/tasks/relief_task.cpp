@@ -20,19 +20,20 @@
 namespace luxrig {
 namespace {
 
-/// The object is brightest by all light where it is by direct light, or close to it. All light is computed at so many
-/// of its brightest places. With daylight, they are picked from so many that the lamps make brightest.
+/// The object is brightest by all light where it is by direct light, or close to it. All light is computed at this many
+/// of its brightest places. With daylight, they are picked from this many that the lamps make brightest.
 constexpr std::size_t kCheckedPlaces = 48, kPlacesInDaylight = 4000;
-/// Places all over the surface where a search keeps the object's limit, besides those where it judges the relief.
+/// Places all over the surface where a search keeps the object's limit, in addition to those where it judges the
+/// relief.
 constexpr std::size_t kLimitedPlaces = 256;
-/// Of a zoom, in even ratios: a third wider from one to the next where it goes from 6° to 40°.
+/// Stops of a zoom, in even ratios: each a third wider than the one before from 6° to 40°.
 constexpr int kZoomStops = 8;
 constexpr double kSameBeam = 0.02;
-/// Of errors at places that have no goals (EvaluateOptions::floor_of_mean).
+/// Floor of errors at places without goals (EvaluateOptions::floor_of_mean).
 constexpr double kFloorOfMean = 0.1;
 
-/// Lux at places of fixtures at their levels (those at 0 cost nothing), and daylight unless it is left out: of all, and
-/// of what stays while lights are sought.
+/// Illuminance at places by fixtures at their levels (those at 0 cost nothing), and by daylight unless left out: by all
+/// light, and by the light that stays while lights are sought.
 struct LuxOfPlaces {
   std::vector<double> all, staying;
 };
@@ -72,7 +73,7 @@ Result<LuxOfPlaces> lux_at(const ReliefSurroundings& around, std::span<const Ori
   return lux;
 }
 
-/// Points all over its surface.
+/// Points all over the object's surface.
 std::vector<OrientedPoint> places_of(const StudiedObject& object) {
   const TargetSurface& surface = object.study.surface;
   std::vector<OrientedPoint> places;
@@ -98,7 +99,7 @@ std::vector<OrientedPoint> brightest(std::span<const OrientedPoint> places, std:
   return kept;
 }
 
-/// The fixtures that are not sought.
+/// The look of the fixtures that are not sought; the sought ones are dark.
 Look look_that_stays(const ReliefSurroundings& around) {
   Look look = around.look;
   for (std::size_t f = 0; f < look.levels.size(); ++f)
@@ -109,7 +110,7 @@ Look look_that_stays(const ReliefSurroundings& around) {
 /// Distributions by luminaire and beam angle: heads of one kind share theirs.
 using BeamsOfLuminaires = std::map<std::pair<const Luminaire*, double>, Intensity>;
 
-/// Its zoom now, then a spread over what it goes through.
+/// Its present zoom, then stops over its zoom range.
 std::vector<ZoomStop> zoom_stops(const Luminaire& luminaire, const Fixture& fixture, double now_rad,
                                  BeamsOfLuminaires& known) {
   const auto stop_at = [&](double beam_rad) {
@@ -149,7 +150,7 @@ HangingHead hanging_head(const Rig& rig, std::size_t index, const Joints& presen
   return head;
 }
 
-/// Eyes and cameras.
+/// Adds limits at eyes and cameras.
 void add_limits_of_eyes(const ReliefSurroundings& around, const AimSpec& aim, std::vector<AimLimit>& limits) {
   if (!aim.max_eye_lx) return;
   for (const std::size_t eye : aim.eyes)

@@ -1,5 +1,5 @@
 #pragma once
-/// Tasks for an object's relief, done in the rig's scene: heads aimed, or lights found that do not hang yet.
+/// Tasks for an object's relief, done in the rig's scene: aim heads, or find places for new lights.
 
 #include <span>
 
@@ -11,15 +11,15 @@
 
 namespace luxrig {
 
-/// What stays as it is while lights are sought.
+/// Everything that stays fixed while lights are sought.
 struct ReliefSurroundings {
   const Rig& rig;
   const Scene& scene;
   const RayScene& rays;
-  Look look;                   ///< when the search begins: levels of the fixtures that are not sought, joints of all
+  Look look;                   ///< at the start: levels of the fixtures that are not sought, joints of all
   std::vector<bool> sought;    ///< per fixture
-  Eigen::VectorXd point_lux;   ///< what others give the rig's points
-  double max_watts = 0;        ///< of those that are sought, together; may be infinite
+  Eigen::VectorXd point_lux;   ///< light of the others at the rig's points
+  double max_watts = 0;        ///< of all sought lights together; may be infinite
 };
 
 struct StudiedObject {
@@ -27,45 +27,45 @@ struct StudiedObject {
   ContrastSamples samples;
 };
 
-/// Refuses, naming the object, when it has no relief, or none that the camera sees.
+/// Refuses, naming the object, if it has no relief, or none that the camera sees.
 [[nodiscard]] Result<StudiedObject> study_object(const Session& session, const ReliefSpec& relief,
                                                  const ComputeOptions& options);
 
 struct AimedFixtures {
   std::vector<AimedHead> heads;  ///< one per head of the task
-  AimScore score, before;        ///< `before`: as they looked and shone when asked
+  AimScore score, before;        ///< `before`: with the aims and levels at the start
   std::size_t tried = 0;
 };
 
-/// present_levels   of the heads, for AimedFixtures::before
-/// Refuses when no head sees the object or light that stays breaks a limit alone.
+/// present_levels: of the heads, for AimedFixtures::before. Refuses if no head sees the object, or if light that stays
+/// exceeds a limit by itself.
 [[nodiscard]] Result<AimedFixtures> aim_fixtures(const ReliefSurroundings& around, const StudiedObject& object,
                                                  const Task& task, std::span<const double> present_levels,
                                                  const ComputeOptions& options);
 
-/// The rig's points with a limit, and some of the object's places where it has one, with what stays there.
+/// The rig's points with a limit, and some places of the object if it has one, with the light that stays there.
 [[nodiscard]] Result<std::vector<AimLimit>> limits_of(const ReliefSurroundings& around, const StudiedObject& object,
                                                       const ReliefSpec& relief, const ComputeOptions& options);
 
-/// What stays at each of the object's samples [lx].
+/// Light that stays at each of the object's samples [lx].
 [[nodiscard]] Result<std::vector<double>> staying_lux(const ReliefSurroundings& around, const StudiedObject& object,
                                                       const ComputeOptions& options);
 
-/// All light, with what is reflected, at the object's brightest places.
+/// All light, direct and reflected, at the object's brightest places.
 struct ObjectLight {
-  std::vector<double> fixed_lx, sought_lx;  ///< of what stays, and of the lights that were sought
+  std::vector<double> fixed_lx, sought_lx;  ///< light that stays, and of the sought lights
 
-  /// By how much the lights that were sought must be dimmed so that nowhere is more: 0…1.
+  /// Factor 0…1 that dims the sought lights so that no place exceeds max_lx.
   [[nodiscard]] double share_within(double max_lx) const;
-  /// When they are dimmed by `share`.
+  /// Brightest place with the sought lights dimmed by `share`.
   [[nodiscard]] double brightest_lx(double share) const;
 };
 
-/// Looks for them on the whole of its surface. look: levels and joints of all fixtures of the rig, as set.
+/// Searches the whole surface. look: levels and joints of all fixtures of the rig, as set.
 [[nodiscard]] Result<ObjectLight> light_on_object(const ReliefSurroundings& around, const StudiedObject& object,
                                                   const Look& look, const ComputeOptions& options);
 
-/// The same fault with its task or object named first; its cause stays, so that a stop stays a stop.
+/// The fault with its task or object named first. The cause is kept, so a stop stays a stop.
 [[nodiscard]] tl::unexpected<Fault> in_words(Fault fault, const std::string& of);
 
 }  // namespace luxrig

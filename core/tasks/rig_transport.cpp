@@ -12,7 +12,7 @@
 namespace luxrig {
 namespace {
 
-/// Between the lamp's own up and the world's.
+/// Angle between the lamp's own up and the world's.
 double tilt_off_upright_rad(const Pose& world_from_lamp) {
   const Vec3 up_world = world_from_lamp.rotation.col(2);
   return std::atan2(std::hypot(up_world.x(), up_world.y()), up_world.z());

@@ -7,7 +7,7 @@
 namespace luxrig {
 namespace {
 
-/// FNV-1a over 64-bit words, each stirred: no cryptography, only "is it the same".
+/// FNV-1a over 64-bit words, each mixed first: no cryptography, only "is it the same".
 class Fingerprint {
  public:
   void add(std::uint64_t word) {
@@ -36,7 +36,7 @@ class Fingerprint {
   std::uint64_t hash_ = 0xcbf29ce484222325U;
 };
 
-/// A body of light is told by its flux and by its intensity in so many directions, evenly over the sphere.
+/// A light distribution is identified by its flux and by its intensity in this many directions, evenly over the sphere.
 constexpr int kDirectionsOfLight = 256;
 
 void add_intensity(Fingerprint& print, const Luminaire& luminaire) {

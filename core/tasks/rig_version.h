@@ -1,6 +1,6 @@
 #pragma once
-/// Fingerprints of a rig: whether a plan or a saved state was made for the rig as its file has it now. Of values, not
-/// of text: a comment or another order of keys changes nothing, another mesh under the same name does.
+/// Fingerprints of a rig, to check if a plan or a saved state was made for the rig as its file is now. They cover
+/// values, not text: comments and the order of keys change nothing, another mesh under the same name does.
 
 #include "core/plan/plan.h"
 #include "core/rig/rig.h"
@@ -8,7 +8,7 @@
 
 namespace luxrig {
 
-/// Where moving heads look at present does not count: a plan sets it.
+/// Present aims of moving heads do not count: a plan sets them.
 [[nodiscard]] RigVersion version_of(const Rig& rig, const Scene& scene);
 
 }  // namespace luxrig

@@ -14,7 +14,7 @@
 namespace luxrig {
 namespace {
 
-/// A scene that reaches no farther from its middle has the middle as origin: float tells 8 µm there.
+/// A scene that extends no farther than this from its middle has the middle as origin: float resolves 8 µm there.
 constexpr double kFarFromMiddle_m = 100;
 
 /// A closed box about the origin, normals outwards; its one material has the object's name.
@@ -136,7 +136,7 @@ class Builder {
       } else if (!material.coloured) {
         stated = &rig_.scene.default_reflectance_rgb;
       }
-      if (stated == nullptr) {  // what the file says counts
+      if (stated == nullptr) {  // the file's value counts
         if (material.too_bright) {
           scene_.warnings.push_back(whose + ": material " + in_quotes(material.name) +
                                     ": its colour above 0.95 is taken as 0.95");
@@ -159,7 +159,7 @@ class Builder {
     }
   }
 
-  /// Puts the parts together about an origin, so that floats are small where it matters.
+  /// Joins the parts around an origin that keeps floats small where it matters.
   void join() {
     Eigen::AlignedBox3d bounds;
     for (const auto& [object, part] : parts_) bounds.extend(bounds_of(part));
@@ -174,8 +174,8 @@ class Builder {
     }
   }
 
-  /// Amid what the rig hangs and measures; without any, amid the corners of all triangles, which are many where a
-  /// venue is modelled and few in the ground around. One far-off thing does not move a median.
+  /// The median of all that the rig hangs and measures. Without any, the median of all triangle corners: they are many
+  /// where a venue is modelled and few in the ground around. A single far-off thing does not move a median.
   [[nodiscard]] Vec3 middle_of_use(const Eigen::AlignedBox3d& bounds) const {
     std::vector<Vec3> places;
     for (const Fixture& fixture : rig_.fixtures) places.push_back(fixture.world_from_lamp().translation_m);

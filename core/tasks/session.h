@@ -1,5 +1,5 @@
 #pragma once
-/// A rig and its scene, and what its light is.
+/// A rig and its scene, and the light in it.
 
 #include <memory>
 #include <string>
@@ -20,19 +20,19 @@ struct Session {
   std::unique_ptr<RayScene> rays;
 };
 
-/// Builds the scene and checks where lights may hang and whether a point lies in a lamp. All problems, or a Session.
+/// Builds the scene. Checks where lights may hang, and that no point lies in a lamp. All problems, or a Session.
 [[nodiscard]] Checked<Session> session_of(Rig rig);
 
-/// Of its rig in its scene (light.h).
+/// For the session's rig in its scene (light.h).
 [[nodiscard]] Result<TransportMatrix> compute_transport(const Session& session, const ComputeOptions& options,
                                                         const Look& look = {}, ModelUsed* used = nullptr,
                                                         const KeptTransport* before = nullptr);
 
-/// The controller's share of a transport.
+/// The part of a transport that the controller needs.
 [[nodiscard]] LightModel light_model(const Rig& rig, const TransportMatrix& transport);
 
-/// What the rig's points get at given levels of the fixtures, daylight included. With a transport by primary, also in
-/// which colour.
+/// Light at the rig's points for given levels of the fixtures, daylight included; with colours if the transport has
+/// primaries.
 [[nodiscard]] std::vector<PlannedPoint> predicted_points(const Rig& rig, const TransportMatrix& transport,
                                                          const Eigen::VectorXd& levels);
 

@@ -1,4 +1,4 @@
-// Tasks for an object's relief: heads aimed, lights found.
+// Tasks for an object's relief: aim heads, find lights.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ Result<ReliefSurroundings> TaskSolver::surroundings(std::vector<bool> sought, co
 Result<void> TaskSolver::settle_relief(const Task& task, const ReliefSpec& spec, const ReliefSurroundings& around,
                                        const StudiedObject& object, const AimScore& score, const AimScore* before,
                                        PlannedTask& planned) {
-  // A stop has ended the search, not what becomes of it.
+  // A stop ends the search, not the use of its result.
   ComputeOptions to_the_end = options_;
   to_the_end.watch = options_.watch.without_stop();
   const auto light = light_on_object(around, object, look(), to_the_end);
@@ -64,7 +64,7 @@ Result<void> TaskSolver::aim(const Task& task) {
   std::vector<bool> sought(rig_.fixtures.size(), false);
   std::vector<double> present;
   for (const std::size_t head : heads) {
-    // As bright as all its emitters at one level would be.
+    // The level at which all its emitters together give the present flux.
     double now_lm = 0;
     for (const std::size_t emitter : housing_of(rig_, head)) {
       sought[emitter] = true;
@@ -85,7 +85,7 @@ Result<void> TaskSolver::aim(const Task& task) {
     const AimedHead& head = aimed->heads[k];
     for (const std::size_t emitter : housing_of(rig_, heads[k])) {
       level_[static_cast<Index>(emitter)] = head.setting.level;
-      if (!rig_.fixtures[emitter].moves || !(head.setting.level > 0)) continue;  // a dark head stays where it looks
+      if (!rig_.fixtures[emitter].moves || !(head.setting.level > 0)) continue;  // a dark head keeps its aim
       look_.joints[emitter] = head.setting.joints;
       look_.aim_world_m[emitter] = head.aim_world_m;
     }
@@ -107,7 +107,7 @@ Result<void> TaskSolver::highlight(const Task& task) {
   const auto start = Steady::now();
   const HighlightSpec& spec = task.highlight;
   const auto mounting = Mounting::make(rig_.mounting, rig_.file, session_.scene, *session_.rays);
-  if (!mounting) return refusal(mounting.error()[0].text());  // session_of() has made it before
+  if (!mounting) return refusal(mounting.error()[0].text());  // session_of() has already made it
   const auto dark = surroundings(std::vector<bool>(rig_.fixtures.size(), false), task);
   if (!dark) return tl::unexpected(dark.error());
   const auto object = study_object(session_, spec.relief, options_);

@@ -80,7 +80,7 @@ void TaskSolver::light_as_hung() {
 Result<void> TaskSolver::placement(const Task& task) {
   const auto start = Steady::now();
   const auto mounting = Mounting::make(rig_.mounting, rig_.file, session_.scene, *session_.rays);
-  if (!mounting) return refusal(mounting.error()[0].text());  // session_of() has made it before
+  if (!mounting) return refusal(mounting.error()[0].text());  // session_of() has already made it
   const PlacementSpec& spec = task.placement;
   for (Index j = 0; j < own_ && spec.fixtures != FixturesMeanwhile::as_set; ++j)
     level_[j] = spec.fixtures == FixturesMeanwhile::full ? most_level(j) : 0;
@@ -120,7 +120,7 @@ SolvedTasks TaskSolver::done() {
     plan_.limits.push_back({rig_.points[i].name, *rig_.points[i].max_lx, lux, lux <= *rig_.points[i].max_lx});
   }
   plan_.made_for = version_of(session_.rig, session_.scene);
-  // What an aim has made of the levels is the wish from then on.
+  // After an aim, the light predicted by the plan is held: the points' goals are set aside.
   if (holds_a_look(plan_))
     for (PlannedPoint& point : plan_.points) point.goal_lux.reset();
   judge(plan_, rig_.control.goal_tolerance);
@@ -203,7 +203,7 @@ Result<void> TaskSolver::solve_levels_of(Index begin, Index end, double max_watt
   if (auto kept = limits_left(problem.fixed_lx); !kept) return kept;
   const Stage stage(options_.watch.without_stop(), planned.name,
                     fmt::format("levels of {} lights at {} points", end - begin, rig_.points.size()));
-  // An interrupt has ended the search, not what becomes of it.
+  // An interrupt ends the search, not the use of its result.
   auto solution = solve_emittance(problem, planned.kind == name_of(TaskKind::placement) ? Watch{} : options_.watch);
   if (!solution) return tl::unexpected(std::move(solution.error()));
   level_.segment(begin, end - begin) = solution->level;
@@ -230,7 +230,7 @@ Result<void> TaskSolver::hang(const Task& task, std::size_t luminaire, std::span
     const std::string& whole = rig_.luminaires[luminaire].name;
     const auto parts = rig_.emitters_or_itself(luminaire);
     for (std::size_t e = 0; e < parts.size(); ++e) {
-      // As the rig file will call them: "<name>/<emitter>".
+      // Named as in the rig file: "<name>/<emitter>".
       const std::string called = name + rig_.luminaires[parts[e]].name.substr(whole.size());
       rig_.fixtures.push_back(hung_light(rig_, called, parts[e], light.position_world_m, light.aim_world_m));
       look_.joints.push_back(rig_.fixtures.back().joints);
@@ -293,7 +293,7 @@ Result<SolvedTasks> solve_tasks(const Session& session, const TransportMatrix& t
   TaskSolver solver(session, transport, options);
   for (const Task& task : session.rig.tasks) {
     if (auto done = done_by(solver, task); !done) return tl::unexpected(std::move(done.error()));
-    // A search that was interrupted has given its best so far: that is what the person wants to see.
+    // An interrupted search has given its best so far, which the person wants to see.
     if (task.kind != TaskKind::emittance && options.watch.stop.stop_requested()) break;
   }
   return solver.done();

@@ -6,7 +6,7 @@
 namespace luxrig {
 namespace {
 
-constexpr double kLongest_s = 1e8;  // what a condition variable can still wait for
+constexpr double kLongest_s = 1e8;  // a condition variable can still wait this long
 
 }  // namespace
 
@@ -22,7 +22,7 @@ Stage::Stage(const Watch& watch, std::string name, std::string first, std::optio
     std::unique_lock lock(mutex_);
     if (changed_.wait_for(lock, time, [this] { return ended_; })) return;
     time_is_up_ = true;
-    lock.unlock();  // a callback of the token may ask this stage
+    lock.unlock();  // a callback of the token may query this stage
     source_.request_stop();
   });
 }

@@ -1,6 +1,6 @@
 #pragma once
-/// A rig's tasks, one after the other: what each has set counts in the next. Private to solve_tasks.cpp (levels,
-/// places) and solve_relief.cpp (aims and lights for an object's relief).
+/// Solves a rig's tasks one after the other; the settings of each count in the next. Private to solve_tasks.cpp
+/// (levels, places) and solve_relief.cpp (aims and lights for an object's relief).
 
 #include <chrono>
 
@@ -20,9 +20,9 @@ class TaskSolver {
   Result<void> placement(const Task& task);
   Result<void> aim(const Task& task);
   Result<void> highlight(const Task& task);
-  /// Every lamp as bright as it may be within limits of lux.
+  /// Every lamp as bright as permitted within limits of lux.
   void light_as_hung();
-  /// Once, at the end.
+  /// Call once, at the end.
   SolvedTasks done();
 
  private:
@@ -32,7 +32,7 @@ class TaskSolver {
     return std::chrono::duration<double>(Steady::now() - start).count();
   }
 
-  /// Nothing of a head that looks into a keep-out zone.
+  /// 0 for a head that looks into a keep-out zone.
   [[nodiscard]] double most_level(Index light) const {
     const auto f = static_cast<std::size_t>(light);
     if (zones_.met(f, look_.joints[f])) return 0;
@@ -48,25 +48,25 @@ class TaskSolver {
     look.levels = levels();
     return look;
   }
-  /// What all light as it is set gives the rig's points.
+  /// Illuminance at the rig's points by all light as set.
   [[nodiscard]] Eigen::VectorXd lux_of_points() const;
-  /// Levels of the lights from `begin` to `end` are sought; the others stay as they are.
+  /// Seeks levels of the lights from `begin` to `end`; the others stay as they are.
   [[nodiscard]] EmittanceProblem problem_of(Index begin, Index end) const;
-  /// A fault when light that stays breaks limits by itself: no level of what is sought could keep them.
+  /// A fault if light that stays exceeds limits by itself: no level of the sought lights could keep them.
   [[nodiscard]] Result<void> limits_left(const Eigen::VectorXd& fixed_lx) const;
-  /// Power that a task's lights from `begin` to `end` may take: +inf where nothing limits it.
+  /// Power that a task's lights from `begin` to `end` may take; +inf = no limit.
   [[nodiscard]] Result<double> watts_left(Index begin, Index end, const Task& task) const;
   Result<void> solve_levels_of(Index begin, Index end, double max_watts, PlannedTask& planned);
-  /// The lights become fixtures of the model, and what they give is worked out anew.
+  /// Adds the lights as fixtures of the model, and computes their light.
   Result<void> hang(const Task& task, std::size_t luminaire, std::span<const LightInScene> lights);
-  /// Transport of the rig as it hangs and looks now.
+  /// Updates the transport for the rig as it hangs and the aims of `look`.
   Result<void> light_anew(const Look& look);
   /// Adds lights, power and time.
   void list(PlannedTask& planned, Index begin, Index end) const;
-  /// Light that stays while the sought fixtures (one mark per fixture) are dark, which they must be.
+  /// Light that stays while the sought fixtures (one mark per fixture) are dark. They must be dark when this is called.
   Result<ReliefSurroundings> surroundings(std::vector<bool> sought, const Task& task) const;
-  /// The sought fixtures, whose levels and aims are set, dimmed by one share until limits hold for all light, what is
-  /// reflected, too; then listed. before: none of lights that did not hang
+  /// Dims the sought fixtures, whose levels and aims are set, by one factor until limits hold for all light, reflected
+  /// light included. Fills `planned`, except for list(). before: none for lights that did not hang.
   Result<void> settle_relief(const Task& task, const ReliefSpec& spec, const ReliefSurroundings& around,
                              const StudiedObject& object, const AimScore& score, const AimScore* before,
                              PlannedTask& planned);
@@ -78,8 +78,8 @@ class TaskSolver {
   Rig rig_;    ///< the session's, or one with placed lights as further fixtures
   Look look_;  ///< joints and aims; its levels are level_
   TransportMatrix transport_;
-  std::vector<Joints> lit_joints_;  ///< where fixtures look in that
-  std::optional<ModelUsed> used_;  ///< of the last transport that was computed here
+  std::vector<Joints> lit_joints_;  ///< aims in transport_
+  std::optional<ModelUsed> used_;  ///< of the last transport computed here
   Index own_;
   Eigen::VectorXd level_;
   std::vector<std::string> why_;

@@ -5,13 +5,13 @@
 namespace luxrig {
 namespace {
 
-/// Along no edge of anything that is built straight.
+/// Oblique directions: along no edge of anything built straight.
 const std::array<Vec3, 5> kDirections = {Vec3(0.31, 0.47, 0.83).normalized(), Vec3(-0.53, 0.29, 0.79).normalized(),
                                          Vec3(0.23, -0.71, -0.67).normalized(), Vec3(-0.43, -0.37, 0.82).normalized(),
                                          Vec3(0.61, 0.59, -0.53).normalized()};
 constexpr int kEnough = 4;
 constexpr int kMostCrossings = 1000;
-/// An object of so much of the scene's volume may be the room itself.
+/// An object with this share of the scene's volume may be the room itself.
 constexpr double kRoomShare = 0.5;
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-/// Inside of which closed object is a place? Private to rig_notes.
+/// Finds the closed object that a place is in. Private to rig_notes.
 
 #include <optional>
 
@@ -8,15 +8,15 @@
 
 namespace luxrig {
 
-/// The object of the rig file (never the scene's own mesh, nor one as large as a room) inside of which a place is: rays
-/// from there leave it an odd number of times, nearly whatever their direction. Index into Scene::object_names.
+/// The object of the rig file around a place: rays from the place leave it an odd number of times, in nearly every
+/// direction. Never the scene's own mesh, nor an object as large as a room. Index into Scene::object_names.
 class ClosedObjects {
  public:
   ClosedObjects(const Scene& scene, const RayScene& rays);
   [[nodiscard]] std::optional<std::uint32_t> around(const Vec3& position_world_m) const;
 
  private:
-  /// Bit by bit, the objects whose surface a ray meets an odd number of times.
+  /// Per object: the ray crosses its surface an odd number of times.
   [[nodiscard]] std::vector<bool> crossed_oddly(const Vec3& from_world_m, const Vec3& direction_world) const;
 
   const Scene& scene_;

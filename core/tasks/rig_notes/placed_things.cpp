@@ -41,7 +41,7 @@ std::string extent_text(const Eigen::AlignedBox3d& box_m) {
 }
 
 std::string position_text(const Vec3& position_m) {
-  const Vec3 mm = (1000 * position_m).array().round() + 0.0;  // no zero with a sign
+  const Vec3 mm = (1000 * position_m).array().round() + 0.0;  // no negative zero
   return fmt::format("{:.3f} {:.3f} {:.3f}", mm.x() / 1000, mm.y() / 1000, mm.z() / 1000);
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What a rig file puts somewhere, as notes speak of it. Internal to core/transport.
+/// Things that a rig file places, as named in notes. Internal to core/tasks/rig_notes.
 
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@ struct PlacedThing {
   [[nodiscard]] std::string text() const { return fmt::format("{} \"{}\"", kind, name); }
 };
 
-/// Housings: of one whose emitters are set one by one, the first speaks for all.
+/// One per housing: if its emitters are set one by one, the first stands for all.
 struct PlacedFixture : PlacedThing {
   std::size_t index;  ///< of the rig's fixtures
 };
@@ -25,7 +25,7 @@ struct PlacedFixture : PlacedThing {
 /// The rig's points, then its luxmeters: in the order of receivers_of().
 [[nodiscard]] std::vector<PlacedThing> placed_receivers(const Rig& rig);
 
-/// Where all of these are.
+/// Positions of all of these.
 [[nodiscard]] std::vector<Vec3> placed_positions(const Rig& rig);
 
 /// "4.00 x 3.00 x 2.80 m"

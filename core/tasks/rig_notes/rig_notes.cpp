@@ -12,19 +12,19 @@
 namespace luxrig {
 namespace {
 
-/// Of each kind of thing so many notes one by one, then the rest in one.
+/// For each kind of thing, this many single notes, then one for the rest.
 constexpr std::size_t kMostNotes = 8;
-/// A fixture that sees no point is outside when it is so far out, as a share of the scene's diagonal.
+/// A fixture that sees no point is outside if it is this far out, as a share of the scene's diagonal.
 constexpr double kOutShare = 0.01;
-/// A fixture is far away at so many diagonals, and no less than so far.
+/// A fixture is far away from this many diagonals on, and at least this distance.
 constexpr double kTooFarDiagonals = 2, kFar_m = 10;
-/// A lamp this near to a point is in it, to all intents.
+/// A lamp this near to a point counts as in it.
 constexpr double kInPoint_m = 0.02;
-/// A surface this near before a point, which takes up so much of what the point sees within so far.
+/// A surface this near before a point, which fills this share of the point's view within this reach.
 constexpr double kBefore_m = 0.03, kBeforeReach_m = 0.15, kBeforeShare = 0.9;
 constexpr int kLooks = 48;
-/// Light that is no light: below this share of the point's goal; of a point without one, of the rig's smallest goal,
-/// limit or mean.
+/// Counts as no light: below this share of the point's goal; for a point without one, of the rig's smallest goal, limit
+/// or mean.
 constexpr double kNoLightOfGoal = 0.01, kNoLight = 0.001;
 constexpr double kErrorOfNotes = 0.3;
 constexpr std::uint64_t kMostRays = 20'000'000;
@@ -203,7 +203,7 @@ class Notes {
     options.watch.stop = stop_;
     set_error_floor(rig_, options);
     const auto direct = make_direct_evaluator(rays_)->evaluate(receivers_, emitters, options);
-    if (!direct) return;  // what is wrong with it, evaluate says
+    if (!direct) return;  // evaluate reports the fault later
     const Eigen::VectorXd direct_lx = direct->lux(Eigen::VectorXd::Ones(direct->emitters()));
     double least_lx = std::max(options.floor_lx, options.floor_of_mean * direct_lx.mean());
     if (!(least_lx > 0)) least_lx = 1;
@@ -234,7 +234,7 @@ class Notes {
     }
   }
 
-  /// It turns, and so may light what it does not light now.
+  /// A head may turn and light the place, even if it does not now.
   bool in_sight_of_a_head(const Receiver& receiver) const {
     return std::any_of(fixtures_.begin(), fixtures_.end(), [&](const PlacedFixture& fixture) {
       return rig_.fixtures[fixture.index].moves && faces_and_sees(receiver, fixture.position_world_m);
@@ -251,7 +251,7 @@ class Notes {
   std::vector<PlacedFixture> fixtures_;
   std::vector<PlacedThing> things_;  ///< as receivers_
   std::vector<Receiver> receivers_;
-  std::vector<Light> light_;  ///< per receiver, with every lamp at full level; looked for only where it may be none
+  std::vector<Light> light_;  ///< per receiver, with every lamp at full level; computed only where it may be none
   std::vector<Problem> notes_;
   std::size_t kept_ = 0;
   Place last_;

@@ -18,17 +18,17 @@ constexpr std::array<MeshUnit, 5> kUnitsByLength = {
 constexpr std::array<UpAxis, 3> kUpAxes = {UpAxis::x, UpAxis::y, UpAxis::z};
 constexpr std::array kAxisNames = {"x", "y", "z"};
 
-/// A reading is right when it has so much of what is placed within the scene.
+/// A reading is right if it puts this share of the placed things within the scene.
 constexpr double kNearlyAll = 0.9;
-/// Another axis must bring so much more of it within.
+/// Another axis must bring at least this share more of them within.
 constexpr double kPlainlyMore = 0.25;
-/// Too small: most points are so many of the scene's diagonals away from it. A foot taken for a metre is less.
+/// Too small: most points are this many scene diagonals away from it. A foot taken for a metre gives less.
 constexpr double kFarDiagonals = 8;
-/// Not too small but elsewhere: what is placed is spread over no more than so many of the scene's diagonals.
+/// Not too small but elsewhere: placed things spread over at most this many scene diagonals.
 constexpr double kSameSize = 2;
-/// Outside by more than so much of the scene's diagonal: not what merely stands on a floor.
+/// Outside by more than this share of the scene's diagonal, so that things on a floor do not count.
 constexpr double kOutside = 0.1;
-/// Too large: higher than a building, and so many times as high as the highest thing in it.
+/// Too large: higher than a building, and this many times as high as the highest thing in it.
 constexpr double kTowering_m = 100, kToweringTimes = 30;
 
 Eigen::AlignedBox3d bounds_of_mesh(const Scene& scene) {
@@ -58,12 +58,12 @@ class Reading {
   }
 
  private:
-  using Note = std::pair<std::string, std::string>;  // what, mend
+  using Note = std::pair<std::string, std::string>;  // the fault, the remedy
 
   [[nodiscard]] const MeshFile& mesh() const { return *spec_.mesh; }
   static std::string name_of_axis(UpAxis axis) { return kAxisNames[static_cast<std::size_t>(axis)]; }
 
-  /// The mesh's bounds, had the file been read so.
+  /// The mesh's bounds if the file were read this way.
   Eigen::AlignedBox3d read_as(UpAxis up, double metres_per_unit) const { return read_as(bounds_, up, metres_per_unit); }
   Eigen::AlignedBox3d read_as(const Eigen::AlignedBox3d& as_now, UpAxis up, double metres_per_unit) const {
     const Mat3 turn = rotation_to_z_up(up) * rotation_to_z_up(mesh().up_axis).transpose();
@@ -73,7 +73,7 @@ class Reading {
     return box;
   }
 
-  /// How many from `begin` on are within the bounds, or out by no more than a share of their diagonal.
+  /// Number of things from `begin` on that are within the bounds, or out by at most a share of their diagonal.
   std::size_t within(Eigen::AlignedBox3d box, double share, std::size_t begin = 0) const {
     const double margin_m = share * box.diagonal().norm();
     return static_cast<std::size_t>(
@@ -84,7 +84,7 @@ class Reading {
     return static_cast<double>(count) >= kNearlyAll * static_cast<double>(of);
   }
 
-  /// By the room alone: a ground of 20 km is on its edge then, and would have all within.
+  /// Uses the room alone: with the wrong axis, a 20 km ground would stand on edge and contain everything.
   std::optional<Note> wrong_axis() const {
     const std::size_t now = within(room_, 0.02);
     if (all_.size() < 2 || nearly_all(now, all_.size())) return std::nullopt;
@@ -117,7 +117,7 @@ class Reading {
                     position_text(way_m))};
   }
 
-  /// Points belong in a scene or on it, whatever its lamps do. Where none is, another unit may bring all in.
+  /// Points belong in a scene or on it, wherever its lamps are. If none is, another unit may bring all in.
   std::optional<Note> all_outside() const {
     const std::size_t judged = all_.size() - fixtures_;
     if (judged == 0 || within(bounds_, kOutside, fixtures_) > 0) return std::nullopt;
@@ -149,7 +149,7 @@ class Reading {
     const std::size_t begin = fixtures_ < all_.size() ? fixtures_ : 0;  // without points, by the fixtures
     const std::size_t judged = all_.size() - begin;
     if (judged == 0) return std::nullopt;
-    // A lone object is smaller than the distance of the lamps about it.
+    // A single object is smaller than the distance to the lamps around it.
     const double far = begin > 0 ? kFarDiagonals : 3 * kFarDiagonals;
     const bool too_small = 2 * within(bounds_, far, begin) < judged;
     double highest_m = all_.front().z();
@@ -163,7 +163,7 @@ class Reading {
         "the scene is {} in size, far too {} for what is in it: fixtures, points and "
         "luxmeters are spread over {}",
         size_text(bounds_.sizes()), too_small ? "small" : "large", size_text(things.sizes()));
-    // Well within, if any reading does that; else near by, as lamps above a mere floor are.
+    // Well within, if a reading gives that; else nearby, like lamps above a bare floor.
     for (const double margin : {0.02, 0.25})
       for (const UpAxis up : axes_to_try())
         for (const MeshUnit& unit : kUnitsByLength) {

@@ -1,14 +1,14 @@
 #pragma once
-/// Was the scene's file read as it was meant? Private to rig_notes.
+/// Checks whether the scene's file was read as meant. Private to rig_notes.
 
 #include "core/scene/scene.h"
 #include "core/tasks/rig_notes/placed_things.h"
 
 namespace luxrig {
 
-/// The note on a wrong `unit` or `up_axis`: with another reading nearly everything that the rig places would be within
-/// the scene, and now it is not; or the scene is as high as no building. Nothing when there is no such doubt, or no
-/// mesh file.
+/// The note on a wrong `unit` or `up_axis`: another reading would put nearly everything that the rig places within the
+/// scene, and this one does not; or the scene is higher than any building. None without such a doubt, or without a mesh
+/// file.
 [[nodiscard]] std::optional<Problem> doubt_of_reading(const Rig& rig, const Scene& scene);
 
 }  // namespace luxrig
