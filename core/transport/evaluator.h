@@ -88,15 +88,15 @@ struct TransportMatrix {
   [[nodiscard]] Eigen::VectorXd standard_error_lux(const Eigen::VectorXd& levels) const;
 };
 
-/// One matrix of columns of two, of the same receivers. Errors are worked out again, at the options' levels.
-/// kept   per column: that column of `before`; none: the next one of `anew`, in order
-/// requires both with colours or both without; rays are those of `anew`
+/// Joins columns of two matrices with the same receivers. Errors are computed for the result, at the options' levels.
+/// kept   per column: index of a column of `before`; none = the next column of `anew`, in order
+/// Requires both with colours or both without; rays are those of `anew`.
 [[nodiscard]] TransportMatrix joined_columns(const TransportMatrix& before, const TransportMatrix& anew,
                                              std::span<const std::optional<std::size_t>> kept,
                                              const EvaluateOptions& options);
 
-/// Two independent estimates as one: `share` of `a`, the rest of `b`. Errors are worked out again, as above; rays are
-/// those of both.
+/// Weighted mean of two independent estimates: `share` of `a`, the rest of `b`. Errors as above; rays are those of
+/// both.
 [[nodiscard]] TransportMatrix mean_of(const TransportMatrix& a, double share, const TransportMatrix& b,
                                       const EvaluateOptions& options);
 
