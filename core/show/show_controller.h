@@ -53,7 +53,7 @@ struct PointStatus {
 };
 
 struct FixtureStatus {
-  Joints joints;  ///< ordered aim
+  Joints joints;                      ///< ordered aim
   std::optional<Vec3> aim_world_m{};  ///< the aimed point, if the plan or the rig file states it
   /// `level` is believed to be out. For a lamp that does not answer: the last level it took; see level_known.
   double level = 0, drive = 0, target_level = 0;

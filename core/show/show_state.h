@@ -117,8 +117,8 @@ struct ShowController::State {
   std::optional<Awaited> awaited;                ///< taken as soon as the heads that it turns are dark
   Time arrive{};                                 ///< heads have arrived by then; no fade starts before
   bool turned = false;                           ///< heads have got their first aim
-  std::vector<double> in_force;  ///< levels that were on before our look, until it is on; else empty
-  bool afresh = false;           ///< a person applied a plan; not all meters have been believed since
+  std::vector<double> in_force;                  ///< levels that were on before our look, until it is on; else empty
+  bool afresh = false;                           ///< a person applied a plan; not all meters have been believed since
   int round = 0;
   bool converged = false;
   Time corrected_at{};                              ///< when the last correction was decided
@@ -130,17 +130,17 @@ struct ShowController::State {
   std::vector<std::optional<LuxReading>> believed;  ///< per luxmeter: last reading while it was not lost
   std::vector<std::optional<LuxReading>> heard;     ///< per luxmeter: last reading, believed or not
   std::vector<double> taken_level;                  ///< per fixture: last level that its device took, as far as known
-  std::vector<double> aimed_lx;  ///< per point: reachable by the last correction; empty before
-  std::vector<std::string> why;  ///< per point: why its goal is not met; empty before the first
+  std::vector<double> aimed_lx;                     ///< per point: reachable by the last correction; empty before
+  std::vector<std::string> why;                     ///< per point: why its goal is not met; empty before the first
   std::vector<LimitBreach> breaches;
 
   // Set by hand (show_by_hand.cpp).
   std::vector<std::optional<ByHand>> hand_level;  ///< per fixture
   std::vector<double> without_hands;  ///< plan levels as corrected before settings by hand; a release goes there
   std::vector<std::optional<ByHand>> hand_goal;  ///< per point
-  Look planned;  ///< the look in force as planned: goals, limits and weights of all points
-  std::vector<Point> points_in_force;            ///< the rig's points, with goals, limits and weights in force
-  bool unsolved = false;                         ///< a setting by hand is newer than the levels in force
+  Look planned;                        ///< the look in force as planned: goals, limits and weights of all points
+  std::vector<Point> points_in_force;  ///< the rig's points, with goals, limits and weights in force
+  bool unsolved = false;               ///< a setting by hand is newer than the levels in force
   [[nodiscard]] Result<void> hold(Time now, std::span<const ByHand> wanted);
   std::size_t release(Time now, std::span<const std::size_t> fixtures, std::span<const std::size_t> points);
   void release_what_is_over(Time now);

@@ -79,7 +79,7 @@ class TaskSolver {
   Look look_;  ///< joints and aims; its levels are level_
   TransportMatrix transport_;
   std::vector<Joints> lit_joints_;  ///< aims in transport_
-  std::optional<ModelUsed> used_;  ///< of the last transport computed here
+  std::optional<ModelUsed> used_;   ///< of the last transport computed here
   Index own_;
   Eigen::VectorXd level_;
   std::vector<std::string> why_;

@@ -100,11 +100,14 @@ class SteppedSubject final : public Subject {
       FaultKind kind;
       std::optional<double> value;
     };
-    const One faults[] = {{"meter-1", FaultKind::silent, {}}, {"meter-2", FaultKind::lost, 0.5},
+    const One faults[] = {{"meter-1", FaultKind::silent, {}},
+                          {"meter-2", FaultKind::lost, 0.5},
                           // A lower value than a weak lamp could explain; a plausible one could not be told from a weak
                           // lamp.
-                          {"meter-3", FaultKind::stuck, {}},  {"meter-4", FaultKind::lying, 0.3},
-                          {"spot-9", FaultKind::silent, {}},  {"meters", FaultKind::dead, {}}};
+                          {"meter-3", FaultKind::stuck, {}},
+                          {"meter-4", FaultKind::lying, 0.3},
+                          {"spot-9", FaultKind::silent, {}},
+                          {"meters", FaultKind::dead, {}}};
     devices_.faults().set(faults[which].device, faults[which].kind, on, faults[which].value);
   }
   void disk(bool fails) override {
