@@ -62,6 +62,7 @@ void add_curve_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
 void add_identity_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
 void add_moved_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
 void add_changed_lamp_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
+void add_turned_head_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
 void add_cache_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
 void add_candidate_rows(const BenchOptions& options, std::vector<BenchRow>& rows);
 void add_growth_rows(const BenchOptions& options, std::vector<BenchRow>& rows);

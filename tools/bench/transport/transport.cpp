@@ -41,9 +41,9 @@ std::vector<BenchRow> exported(const BenchOptions& options) {
 std::vector<BenchRow> bench_transport(const BenchOptions& options) {
   if (!options.export_folder.empty()) return exported(options);
   std::vector<BenchRow> rows;
-  for (const auto add :
-       {add_identity_rows, add_moved_rows, add_candidate_rows, add_growth_rows, add_candidate_skip_rows,
-        add_evaluator_skip_rows, add_changed_lamp_rows, add_cache_rows, add_error_bar_rows_of_rooms, add_curve_rows})
+  for (const auto add : {add_identity_rows, add_moved_rows, add_candidate_rows, add_growth_rows,
+                         add_candidate_skip_rows, add_evaluator_skip_rows, add_changed_lamp_rows, add_turned_head_rows,
+                         add_cache_rows, add_error_bar_rows_of_rooms, add_curve_rows})
     add(options, rows);
   return rows;
 }
