@@ -308,10 +308,10 @@ struct Point {
   Place place;
 };
 
-enum class PlacementSearch { luxrig, gpk15, gp16, lin2013, annealing, pursuit };
+enum class PlacementSearch { luxrig, gpk15, gp16 };
 /// Names as in core/solve/placement/placement_methods.h.
 [[nodiscard]] constexpr const char* name_of(PlacementSearch search) {
-  constexpr const char* kNames[] = {"luxrig", "gpk15", "gp16", "lin2013", "annealing", "pursuit"};
+  constexpr const char* kNames[] = {"luxrig", "gpk15", "gp16"};
   return kNames[static_cast<int>(search)];
 }
 

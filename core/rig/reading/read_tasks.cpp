@@ -52,8 +52,7 @@ void RigReader::read_placement(Section& s, PlacementSpec& placement) {
   read_placed(s, TaskKind::placement, placement.luminaire, placement.lights, placement.max_lights);
   s.read("error_wanted", placement.error_wanted);
   s.read("improvement", placement.improvement);
-  if (s.read_choice("method", placement.method) && !s.has("lights") &&
-      (placement.method == PlacementSearch::gpk15 || placement.method == PlacementSearch::annealing))
+  if (s.read_choice("method", placement.method) && !s.has("lights") && placement.method == PlacementSearch::gpk15)
     s.refuse("method", fmt::format("{} does not choose how many lights", name_of(placement.method)),
              "add lights = N, or choose another method");
   s.read("aimed", placement.aimed);

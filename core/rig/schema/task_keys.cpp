@@ -66,9 +66,9 @@ constexpr KeySpec kTaskKeys[] = {
      "",
      "0.1",
      "share of the error that one more light must take away to be worth hanging, when `lights` is left out"},
-    {"task", "method", text, "", R"("luxrig")", kAny, "luxrig, gpk15, gp16, lin2013, annealing, pursuit", R"("gp16")",
+    {"task", "method", text, "", R"("luxrig")", kAny, "luxrig, gpk15, gp16", R"("gp16")",
      "how places are searched. `luxrig`: one light after the other, all refined together, taken out and put back; the "
-     "others are published methods to compare with (`gpk15` and `annealing` need `lights`)"},
+     "others are those of the thesis that luxrig began with (`gpk15` needs `lights`)"},
     {"task", "aimed", yes_no, "", "false", kAny, "", "true",
      "whether lights may look anywhere, which is searched with their places; else they hang straight down"},
     {"task", "indirect", yes_no, "", "true", kAny, "", "false",

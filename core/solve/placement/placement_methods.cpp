@@ -85,23 +85,10 @@ Result<FoundLights> place_by_luxrig(const PlacementProblem& problem, const Place
   return found;
 }
 
-/// The method as it could have been with a simplex for many unknowns.
-template <Result<FoundLights> (*method)(const PlacementProblem&, const PlacementOptions&)>
-Result<FoundLights> with_subplex(const PlacementProblem& problem, const PlacementOptions& options) {
-  PlacementOptions changed = options;
-  changed.subplex = true;
-  return method(problem, changed);
-}
-
 constexpr PlacementMethod kMethods[] = {
     {"luxrig", "one by one, all refined by least squares, exchanged", true, true, place_by_luxrig},
     {"gpk15", "Gkaravelis, Papaioannou & Kalampokis 2015: annealing by complements", true, false, place_by_gpk15},
     {"gp16", "Gkaravelis & Papaioannou 2016: light tree, annealed cuts", true, true, place_by_gp16},
-    {"gpk15-subplex", "gpk15, refined by subplex instead of Nelder-Mead", true, false, with_subplex<place_by_gpk15>},
-    {"gp16-subplex", "gp16, refined by subplex instead of Nelder-Mead", true, true, with_subplex<place_by_gp16>},
-    {"lin2013", "Lin et al. 2013: coarse to fine, light tree, simplex", true, true, place_by_lin2013},
-    {"annealing", "annealing by random mutations", true, false, place_by_annealing},
-    {"pursuit", "non-negative orthogonal matching pursuit over candidates", true, true, place_by_pursuit},
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-/// All placement methods by name: luxrig's own and those it is compared with.
+/// The placement methods of a rig file by name: luxrig's own and the thesis's.
 
 #include <span>
 #include <string_view>

@@ -19,7 +19,6 @@ struct CoverageLight {
 /// other bins. This repeats, and ends early when no bin lights anything more.
 /// most_points   a larger surface is judged by evenly strided points; 0 = all
 /// The same for any number of threads.
-/// it; 0: by all. The same for any number of threads.
 [[nodiscard]] std::vector<CoverageLight> coverage_lights(const TargetSurface& surface, const TargetRays& target,
                                                          const DirectionBins& bins, int lights, std::size_t most_points,
                                                          int threads);

@@ -46,7 +46,7 @@ std::vector<BenchRow> bench_placement_curves(const BenchOptions& options) {
       ready_s = (*ready)->seconds().wall;
       const std::size_t lights = curve.lights > 0 ? curve.lights : (*ready)->of().known_lumens.size();
       for (std::size_t m = 0; m < std::size(kCurveMethods); ++m) {
-        solved[m].push_back(solve_case(**ready, *find_placement_method(kCurveMethods[m]),
+        solved[m].push_back(solve_case(**ready, *find_compared_method(kCurveMethods[m]),
                                        {.lights = lights,
                                         .seed = key,
                                         .threads = options.threads,

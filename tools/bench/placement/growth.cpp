@@ -41,7 +41,7 @@ void add_growth_row(const std::string& name, std::size_t points, double candidat
     return;
   }
   const Solved solved =
-      solve_case(**ready, *find_placement_method("luxrig"), {.lights = 10, .threads = options.threads});
+      solve_case(**ready, *find_compared_method("luxrig"), {.lights = 10, .threads = options.threads});
   rows.push_back(placement_row(name, "luxrig", **ready, solved));
   set_further(rows.back(), "note",
               fmt::format("ready after {:.2f} s, peak of all so far {:.0f} MiB", (*ready)->seconds().wall, peak_mib()));

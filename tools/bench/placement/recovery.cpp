@@ -34,7 +34,7 @@ double quantile(std::vector<double> values, double share) {
 
 std::vector<BenchRow> bench_placement_recovery(const BenchOptions& options) {
   std::vector<BenchRow> rows;
-  const PlacementMethod& luxrig = *find_placement_method("luxrig");
+  const PlacementMethod& luxrig = *find_compared_method("luxrig");
   for (const RecoverySuite& suite : kRecoveries) {
     const std::string name = fmt::format("{}-{}", suite.case_name, suite.number_given ? "given" : "open");
     if (name.rfind(options.only, 0) != 0) continue;

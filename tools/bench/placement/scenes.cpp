@@ -80,7 +80,7 @@ std::vector<BenchRow> bench_placement_scenes(const BenchOptions& options) {
     // Returns the number of lights; 0 if left out or refused.
     const auto run = [&](const std::string& row_name, const char* method_name, std::size_t lights) -> std::size_t {
       if (!options.method.empty() && options.method != method_name) return 0;
-      const PlacementMethod& method = *find_placement_method(method_name);
+      const PlacementMethod& method = *find_compared_method(method_name);
       const Solved solved =
           solve_case(**ready, method, {.lights = lights, .threads = options.threads, .most_seconds = kSearchSeconds});
       std::optional<double> bound;

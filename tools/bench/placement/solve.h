@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "core/solve/placement/mounted_light.h"
-#include "core/solve/placement/placement_methods.h"
 #include "core/solve/placement/search_space.h"
 #include "tools/bench/measured.h"
+#include "tools/bench/methods/compared_methods.h"
 #include "tools/bench/placement_cases/placement_case.h"
 
 namespace luxrig {

@@ -1,4 +1,3 @@
-#include "core/solve/placement/methods/anneal_candidates.h"
 #include "core/solve/placement/methods/baselines.h"
 #include "core/solve/placement/methods/method_parts.h"
 #include "core/solve/placement/methods/starts.h"
@@ -7,7 +6,8 @@ namespace luxrig {
 namespace {
 
 constexpr int kComplementIterations = 1000;  // as the thesis says
-constexpr int kRandomIterations = 100'000;
+
+}  // namespace
 
 Result<FoundLights> annealed_and_refined(const PlacementProblem& problem, const PlacementOptions& options,
                                          AnnealOptions annealing) {
@@ -40,18 +40,9 @@ Result<FoundLights> annealed_and_refined(const PlacementProblem& problem, const 
   });
 }
 
-}  // namespace
-
 Result<FoundLights> place_by_gpk15(const PlacementProblem& problem, const PlacementOptions& options) {
   AnnealOptions annealing;
   annealing.iterations = kComplementIterations;
-  return annealed_and_refined(problem, options, annealing);
-}
-
-Result<FoundLights> place_by_annealing(const PlacementProblem& problem, const PlacementOptions& options) {
-  AnnealOptions annealing;
-  annealing.iterations = kRandomIterations;
-  annealing.nearest = 0;
   return annealed_and_refined(problem, options, annealing);
 }
 

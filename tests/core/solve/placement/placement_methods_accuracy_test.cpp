@@ -4,9 +4,9 @@
 #include <string>
 
 #include "core/rig/rig.h"
-#include "core/solve/placement/placement_methods.h"
 #include "tests/core/solve/placement/lit_hall.h"
 #include "tests/core/solve/placement/placement_methods_fixture.h"
+#include "tools/bench/methods/compared_methods.h"
 
 namespace luxrig {
 namespace {
@@ -36,9 +36,9 @@ TEST(PlacementMethods, FindKnownLightsAsWellAsTheyShould) {
   const std::vector<std::pair<std::string, double>> reached = {
       {"luxrig", 1e-4},       {"gpk15", 0.06},   {"gp16", 0.06},      {"gpk15-subplex", 0.06},
       {"gp16-subplex", 0.06}, {"lin2013", 0.15}, {"annealing", 0.06}, {"pursuit", 0.2}};
-  ASSERT_EQ(reached.size(), placement_methods().size());
+  ASSERT_EQ(reached.size(), compared_methods().size());
   for (const auto& [name, error] : reached) {
-    const PlacementMethod& method = *find_placement_method(name);
+    const PlacementMethod& method = *find_compared_method(name);
     const auto got = method.run(problem_of(hall, goal), options_of(method, 3));
     ASSERT_TRUE(got.has_value()) << name;
     EXPECT_EQ(got->lights.size(), 3u) << name;
@@ -61,7 +61,7 @@ TEST(PlacementMethods, KeepToColours) {
   ASSERT_TRUE(hall.light->column({{3.1, 2.2, 1.9}}, lux, nullptr));
   goal.lux.tail(points) = 200 * lux;
   goal.fixed_lux = Eigen::VectorXd::Constant(3 * points, 1);
-  for (const PlacementMethod& method : placement_methods()) {
+  for (const PlacementMethod& method : compared_methods()) {
     PlacementOptions options = options_of(method, 2);
     options.most_columns = 1000;
     options.iterations = 300;

@@ -4,9 +4,9 @@
 #include <optional>
 
 #include "core/rig/rig.h"
-#include "core/solve/placement/placement_methods.h"
 #include "tests/core/solve/placement/lit_hall.h"
 #include "tests/core/solve/placement/placement_methods_fixture.h"
+#include "tools/bench/methods/compared_methods.h"
 
 namespace luxrig {
 namespace {
@@ -16,7 +16,7 @@ using namespace placement_methods_fixture;
 TEST(PlacementMethods, GiveTheSameForASeedAndAnyNumberOfThreads) {
   const LitHall hall(make_box_room(1), kHallLattice_m);
   const LightingGoal goal{Eigen::VectorXd::Constant(hall.light->points(), 200), {}};
-  for (const PlacementMethod& method : placement_methods()) {
+  for (const PlacementMethod& method : compared_methods()) {
     std::optional<FoundLights> first;
     for (const int threads : {1, 3}) {
       PlacementOptions options = options_of(method, 3);

@@ -12,6 +12,7 @@
 #include "core/solve/placement/number_of_lights.h"
 #include "tests/core/solve/placement/lit_hall.h"
 #include "tests/core/solve/placement/placement_methods_fixture.h"
+#include "tools/bench/methods/compared_methods.h"
 
 namespace luxrig {
 namespace {
@@ -19,14 +20,16 @@ namespace {
 using namespace placement_methods_fixture;
 
 TEST(PlacementMethods, AreFoundByName) {
+  for (const PlacementMethod& method : compared_methods()) EXPECT_EQ(find_compared_method(method.name), &method);
+  EXPECT_EQ(find_compared_method("gpk16"), nullptr);
   for (const PlacementMethod& method : placement_methods()) EXPECT_EQ(find_placement_method(method.name), &method);
-  EXPECT_EQ(find_placement_method("gpk16"), nullptr);
+  EXPECT_EQ(find_placement_method("lin2013"), nullptr) << "only compared with";
 }
 
 TEST(PlacementMethods, ChooseANumberWhereTheyCan) {
   const LitHall hall(make_box_room(3), kHallLattice_m);
   const LightingGoal goal = hall.goal_of({{0.9, 0.8, 2.1}, {3.1, 2.2, 1.9}, {2.2, 1.4, 2.3}}, {800, 500, 300});
-  for (const PlacementMethod& method : placement_methods()) {
+  for (const PlacementMethod& method : compared_methods()) {
     PlacementOptions options = options_of(method, 0);
     options.lights = 0;
     options.most_columns = 6000;
@@ -51,10 +54,10 @@ TEST(PlacementMethods, MoreStartsAreNeverWorse) {
     options.lights = 3;
     options.iterations = 100;
     options.most_columns = 300;
-    const auto one = find_placement_method(name)->run(problem_of(hall, goal), options);
+    const auto one = find_compared_method(name)->run(problem_of(hall, goal), options);
     options.starts = 4;
     options.most_columns *= 4;
-    const auto four = find_placement_method(name)->run(problem_of(hall, goal), options);
+    const auto four = find_compared_method(name)->run(problem_of(hall, goal), options);
     EXPECT_LE(four->lights.error(), one->lights.error()) << name;
     EXPECT_GT(four->columns, one->columns) << name;
   }
@@ -63,7 +66,7 @@ TEST(PlacementMethods, MoreStartsAreNeverWorse) {
 TEST(PlacementMethods, TellOfBetterOnesAndEndWhenStopped) {
   const LitHall hall(make_box_room(1), kHallLattice_m);
   const LightingGoal goal{Eigen::VectorXd::Constant(hall.light->points(), 200), {}};
-  for (const PlacementMethod& method : placement_methods()) {
+  for (const PlacementMethod& method : compared_methods()) {
     std::stop_source stop;
     PlacementOptions options = options_of(method, 3);
     options.number.wanted_error = 0;
@@ -119,7 +122,7 @@ TEST(PlacementMethods, TakeHostileInput) {
       {ColumnsView(points, dark_begin, no_rows, no_lux), {{{100, 100, 100}}}},
       {ColumnsView(five), std::vector<LightPose>(5, middle)},
       {ColumnsView(points, none_begin, no_rows, no_lux), {}}};
-  for (const PlacementMethod& method : placement_methods())
+  for (const PlacementMethod& method : compared_methods())
     for (const LightingGoal& goal : {uniform, zero, bounded, too_bright, nothing_counts, off})
       for (const auto& [columns, poses] : sets) {
         PlacementOptions options = options_of(method, 2);
@@ -150,7 +153,7 @@ TEST(PlacementMethods, SayWhatIsWrong) {
   weights_too_few.row_weight = Eigen::VectorXd::Ones(points - 1);
   PlacementOptions options;
   options.lights = 2;
-  for (const PlacementMethod& method : placement_methods()) {
+  for (const PlacementMethod& method : compared_methods()) {
     for (const LightingGoal& goal : {not_a_number, too_few, weights_too_few}) {
       const auto got = method.run(problem_of(hall, goal), options);
       ASSERT_FALSE(got.has_value()) << method.name;
@@ -214,7 +217,7 @@ TEST(CandidateLights, NearestIsWhatComparingAllGives) {
 }
 
 TEST(PlacementMethods, OfARigFileAreAllThere) {
-  for (int i = 0; i <= static_cast<int>(PlacementSearch::pursuit); ++i) {
+  for (int i = 0; i <= static_cast<int>(PlacementSearch::gp16); ++i) {
     const char* name = name_of(static_cast<PlacementSearch>(i));
     EXPECT_NE(find_placement_method(name), nullptr) << name;
   }

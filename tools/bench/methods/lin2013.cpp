@@ -1,6 +1,6 @@
-#include "core/solve/placement/methods/baselines.h"
-#include "core/solve/placement/methods/coarse_to_fine.h"
 #include "core/solve/placement/methods/method_parts.h"
+#include "tools/bench/methods/coarse_to_fine.h"
+#include "tools/bench/methods/compared_methods.h"
 
 namespace luxrig {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/solve/placement/methods/coarse_to_fine.h"
+#include "tools/bench/methods/coarse_to_fine.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

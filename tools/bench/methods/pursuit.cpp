@@ -1,5 +1,5 @@
-#include "core/solve/placement/methods/baselines.h"
 #include "core/solve/placement/methods/method_parts.h"
+#include "tools/bench/methods/compared_methods.h"
 
 namespace luxrig {
 
