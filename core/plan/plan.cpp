@@ -84,7 +84,16 @@ OrderedJson json_of(const PlannedTask& task) {
     OrderedJson tried = {{"lights", number.lights}};
     put(tried, "normalised_error", number.normalised_error);
     put(tried, "local_contrast", number.local_contrast_lx);
+    put(tried, "relative_contrast", number.relative_contrast);
     json["numbers"].push_back(std::move(tried));
+  }
+  for (const PlannedDirection& direction : task.directions) {
+    OrderedJson held;
+    put(held, "direction", direction.towards_world);
+    put(held, "azimuth_deg", written_deg(direction.azimuth_rad));
+    put(held, "elevation_deg", written_deg(direction.elevation_rad));
+    put(held, "position", direction.position_world_m);
+    json["directions"].push_back(std::move(held));
   }
   for (const PlannedPower& power : task.front) json["front"].push_back(json_of(power));
   return json;

@@ -34,6 +34,7 @@ struct PlannedNumber {
   int lights = 0;
   double normalised_error = 0;
   std::optional<double> local_contrast_lx{};
+  std::optional<double> relative_contrast{};  ///< kind "directions" has this
 };
 
 /// Error that the lights would leave within a power limit.
@@ -53,6 +54,14 @@ struct PlannedRelief {
   std::optional<double> key_to_fill{};
 };
 
+/// Where a lamp that a person carries should be held.
+struct PlannedDirection {
+  Vec3 towards_world = Vec3::UnitZ();    ///< unit, from the object to the lamp
+  double azimuth_rad = 0;                ///< from +x, counter-clockwise as seen from above
+  double elevation_rad = 0;              ///< above the horizontal
+  Vec3 position_world_m = Vec3::Zero();  ///< at the task's distance
+};
+
 struct PlannedTask {
   std::string name, kind;
   double normalised_error = 0;
@@ -69,7 +78,8 @@ struct PlannedTask {
   bool switches_proven = true;            ///< false = other settings of on-or-off lamps could be better
   std::optional<double> watts{};          ///< of its lights together; none if one is unknown
   std::vector<PlannedPower> front{};      ///< kind "placement": error at lower power limits
-  std::optional<PlannedRelief> relief{};  ///< kinds "aim" and "highlight"; their normalised_error is 0
+  std::optional<PlannedRelief> relief{};  ///< kinds "aim", "highlight" and "directions"; their normalised_error is 0
+  std::vector<PlannedDirection> directions{};  ///< kind "directions": its relief is by beams of 1 lx from there
 };
 
 struct PlannedPoint {
@@ -156,6 +166,8 @@ struct HungPlan {
 ///   placement  "fixtures" (like "lights"), "numbers": [{"lights", "normalised_error", "local_contrast"}],
 ///              "lower_bound", "lower_bound_of_number", "front": [{"max_watts", "watts", "normalised_error"}]
 ///   relief     "local_contrast", "relative_contrast", "coverage", the same with "before_", "object_lux", "key_to_fill"
+///   directions "directions": [{"direction", "azimuth_deg", "elevation_deg", "position"}], "numbers" with
+///              "relative_contrast"
 /// Numbers are finite, or the key is absent.
 [[nodiscard]] std::string to_json(const Plan& plan);
 /// Never throws. Problems of syntax have line and column; others have a path (/tasks/0/lights/3/level) in `what`.

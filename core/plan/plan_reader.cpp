@@ -251,7 +251,14 @@ PlannedTask task_of(const Reader& reader, const Json& json, const std::string& p
   reader.each(json, path, "numbers", false, [&](const Json& number, const std::string& number_path) {
     task.numbers.push_back({reader.count<int>(number, number_path, "lights"),
                             reader.number(number, number_path, "normalised_error", false),
-                            reader.optional_number(number, number_path, "local_contrast")});
+                            reader.optional_number(number, number_path, "local_contrast"),
+                            reader.optional_number(number, number_path, "relative_contrast")});
+  });
+  reader.each(json, path, "directions", false, [&](const Json& held, const std::string& held_path) {
+    task.directions.push_back({reader.vector(held, held_path, "direction").value_or(Vec3::Constant(kAbsent)),
+                               rad_from_deg(reader.number(held, held_path, "azimuth_deg", false)),
+                               rad_from_deg(reader.number(held, held_path, "elevation_deg", false)),
+                               reader.vector(held, held_path, "position").value_or(Vec3::Constant(kAbsent))});
   });
   task.watts = reader.optional_number(json, path, "watts");
   reader.each(json, path, "front", false, [&](const Json& power, const std::string& power_path) {

@@ -367,10 +367,18 @@ struct HighlightSpec {
   int max_lights = 8;
 };
 
-enum class TaskKind { emittance, placement, aim, highlight };
+/// kind == directions: where a lamp that a person carries should be held. Nothing of the rig is set.
+struct DirectionsSpec {
+  ReliefSpec relief;
+  std::optional<int> lights;  ///< none = until contrast no longer rises
+  int max_lights = 4;
+  double distance_m = 1.5;  ///< of the lamp from the object; nothing else may stand nearer in its direction
+};
+
+enum class TaskKind { emittance, placement, aim, highlight, directions };
 /// Name in the rig file.
 [[nodiscard]] constexpr const char* name_of(TaskKind kind) {
-  constexpr const char* kNames[] = {"emittance", "placement", "aim", "highlight"};
+  constexpr const char* kNames[] = {"emittance", "placement", "aim", "highlight", "directions"};
   return kNames[static_cast<int>(kind)];
 }
 
@@ -381,10 +389,13 @@ struct Task {
   PlacementSpec placement{};
   AimSpec aim{};
   HighlightSpec highlight{};
+  DirectionsSpec directions{};
   std::optional<double> max_watts{};  ///< of the lights it sets or places, together
 
   /// Finds places for lights that are not hung yet.
   [[nodiscard]] bool places_lights() const { return kind == TaskKind::placement || kind == TaskKind::highlight; }
+  /// Sets fixtures of the rig.
+  [[nodiscard]] bool sets_levels() const { return kind == TaskKind::emittance || kind == TaskKind::aim; }
 };
 
 /// Region where lights may be placed.

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/rig/housing.h"
+#include "core/tasks/directions_task.h"
 #include "core/tasks/highlight_task.h"
 #include "core/tasks/solve_tasks.h"
 #include "core/tasks/task_solver.h"
@@ -134,6 +135,29 @@ Result<void> TaskSolver::highlight(const Task& task) {
     planned.numbers.push_back(
         {static_cast<int>(k) + 1, std::numeric_limits<double>::quiet_NaN(), found->contrast_lx[k]});
   planned.iterations = static_cast<int>(found->tried);
+  planned.seconds = seconds_since(start);
+  plan_.tasks.push_back(std::move(planned));
+  return {};
+}
+
+Result<void> TaskSolver::directions(const Task& task) {
+  const auto start = Steady::now();
+  auto found = find_directions(session_, task, options_);
+  if (!found) return tl::unexpected(found.error());
+  PlannedTask planned;
+  planned.name = task.name;
+  planned.kind = name_of(task.kind);
+  planned.directions = std::move(found->directions);
+  PlannedRelief relief;
+  relief.local_contrast_lx = found->local_contrast_lx;
+  relief.relative_contrast = found->exposed_contrast;
+  relief.coverage = found->coverage;
+  relief.object_lux = std::numeric_limits<double>::quiet_NaN();
+  planned.relief = relief;
+  for (std::size_t k = 0; k < found->exposed_by_count.size(); ++k)
+    planned.numbers.push_back(
+        {static_cast<int>(k) + 1, std::numeric_limits<double>::quiet_NaN(), {}, found->exposed_by_count[k]});
+  for (Index j = 0; j < own_; ++j) planned.fixtures.push_back(light_of(j));
   planned.seconds = seconds_since(start);
   plan_.tasks.push_back(std::move(planned));
   return {};

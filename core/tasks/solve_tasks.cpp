@@ -282,6 +282,8 @@ Result<void> done_by(TaskSolver& solver, const Task& task) {
       return solver.aim(task);
     case TaskKind::highlight:
       return solver.highlight(task);
+    case TaskKind::directions:
+      return solver.directions(task);
   }
   return refusal("an unknown kind of task");
 }
@@ -302,7 +304,7 @@ Result<SolvedTasks> solve_tasks(const Session& session, const TransportMatrix& t
 bool levels_set_before(const Rig& rig, const std::string& task_name) {
   for (const Task& task : rig.tasks) {
     if (task.name == task_name) return false;
-    if (task.kind == TaskKind::emittance || task.kind == TaskKind::aim) return true;
+    if (task.sets_levels()) return true;
   }
   return false;
 }
@@ -312,7 +314,7 @@ Result<SolvedTasks> solve_what_hangs(const Session& session, const TransportMatr
   TaskSolver solver(session, transport, options);
   bool any = false;
   for (const Task& task : session.rig.tasks) {
-    if (task.places_lights() || (task.kind == TaskKind::aim && !aim)) continue;
+    if (!task.sets_levels() || (task.kind == TaskKind::aim && !aim)) continue;
     any = true;
     if (auto done = done_by(solver, task); !done) return tl::unexpected(std::move(done.error()));
   }

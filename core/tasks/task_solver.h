@@ -20,6 +20,7 @@ class TaskSolver {
   Result<void> placement(const Task& task);
   Result<void> aim(const Task& task);
   Result<void> highlight(const Task& task);
+  Result<void> directions(const Task& task);
   /// Every lamp as bright as permitted within limits of lux.
   void light_as_hung();
   /// Call once, at the end.

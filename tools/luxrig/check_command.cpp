@@ -107,6 +107,11 @@ std::string task_text(const Rig& rig, const Task& task) {
                          lights_text(h.lights, h.max_lights, rig.luminaires[h.luminaire].name),
                          mounting_text(rig.mounting));
     }
+    case TaskKind::directions: {
+      const DirectionsSpec& d = task.directions;
+      return fmt::format("{}, by {}, held {:g} m from it", relief_text(rig, d.relief),
+                         lights_text(d.lights, d.max_lights, "lamps in hand"), d.distance_m);
+    }
   }
   return "";
 }

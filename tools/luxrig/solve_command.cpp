@@ -122,6 +122,28 @@ void print_aim(const PlannedTask& task) {
   fmt::print("{}\n", heads.text());
 }
 
+void print_directions(const PlannedTask& task, const DirectionsSpec& spec) {
+  Table lamps({"lamp", ">azimuth", ">elevation", fmt::format("held at m, {:g} m away", spec.distance_m)});
+  for (std::size_t k = 0; k < task.directions.size(); ++k) {
+    const PlannedDirection& held = task.directions[k];
+    const Vec3& at = held.position_world_m;
+    lamps.row({fmt::format("{}", k + 1), degrees_text(held.azimuth_rad), degrees_text(held.elevation_rad),
+               fmt::format("{:.2f} {:.2f} {:.2f}", at.x(), at.y(), at.z())});
+  }
+  fmt::print("{} (from +x, counter-clockwise from above; above the horizontal)\n{}\n", task.name, lamps.text());
+  std::string tried;
+  for (const PlannedNumber& number : task.numbers)
+    tried +=
+        fmt::format("{}{}: {:.3f}", tried.empty() ? "" : ", ", number.lights, number.relative_contrast.value_or(0));
+  if (!tried.empty()) fmt::print("lamps and their relative contrast: {}\n", tried);
+  fmt::print(
+      "{} ({}): local contrast {:.2f} lx by lamps of 1 lx each, relative {:.3f}, features with a shadow's edge {}, "
+      "{:.1f} "
+      "s\n\n",
+      task.name, task.kind, task.relief->local_contrast_lx, task.relief->relative_contrast,
+      percent(task.relief->coverage), task.seconds);
+}
+
 void print_relief(const Rig& rig, const PlannedTask& task) {
   const PlannedRelief& relief = *task.relief;
   const char* const when = levels_set_before(rig, task.name) ? "before" : "as they hang, at full level";
@@ -208,6 +230,7 @@ int run_solve(const SolveArguments& arguments) {
   if (last_levels != plan->tasks.rend() && !last_levels->relief) print_levels(*last_levels);
   for (std::size_t t = 0; t < plan->tasks.size(); ++t) {
     const Task& task = session->rig.tasks[t];
+    if (task.kind == TaskKind::directions) print_directions(plan->tasks[t], task.directions);
     if (!task.places_lights()) continue;
     const PlacementSpec& spec = task.placement;
     print_placed(plan->tasks[t], task,
@@ -216,7 +239,7 @@ int run_solve(const SolveArguments& arguments) {
   fmt::print("{}\n", points.text());
   for (const PlannedTask& task : plan->tasks) {
     if (task.relief) {
-      print_relief(session->rig, task);
+      if (task.directions.empty()) print_relief(session->rig, task);
       continue;
     }
     fmt::print("{} ({}): normalised error {:.2f} %{}, {} iterations, {:.1f} ms\n", task.name, task.kind,

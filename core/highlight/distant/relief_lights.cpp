@@ -67,6 +67,9 @@ ReliefLightSearch::ReliefLightSearch(ContrastSamples samples, LitTable table, co
     for (std::uint32_t b = 0; b < bins.count(); ++b)
       liking_[b] -= options.preference * (1 - directions_[b].dot(preferred)) / 2;
   }
+  if (options.may_light)
+    for (std::uint32_t b = 0; b < bins.count(); ++b)
+      if (!options.may_light(directions_[b])) liking_[b] = 0;
   alone_lx_ = sums().with_each_bin({});
   alone_smooth_ = smoothed(alone_lx_);
 }
@@ -173,6 +176,12 @@ Result<ReliefLights> ReliefLightSearch::lights(int lights, std::span<const Vec3>
   return result;
 }
 
+double ReliefLightSearch::exposed_contrast_of(std::span<const Vec3> directions) const {
+  std::vector<std::uint32_t> bins;
+  for (const Vec3& direction : directions) bins.push_back(table_.bins.bin_of(direction));
+  return sums().of(bins).exposed_contrast;
+}
+
 Result<ReliefLightCount> ReliefLightSearch::count_lights(int most_lights) const {
   if (most_lights < 1 || most_lights > kMostReliefLights)
     return refusal(fmt::format("1 to {} lights can be placed, not {}", kMostReliefLights, most_lights));
@@ -182,9 +191,7 @@ Result<ReliefLightCount> ReliefLightSearch::count_lights(int most_lights) const 
         count.by_number.empty() ? lights(n) : lights(n, std::span<const Vec3>(count.by_number.back().directions));
     if (!next) return tl::unexpected(next.error());
     if (next->directions.size() < static_cast<std::size_t>(n)) break;  // no room for more
-    std::vector<std::uint32_t> bins;
-    for (const Vec3& direction : next->directions) bins.push_back(table_.bins.bin_of(direction));
-    count.exposed_contrast.push_back(sums().of(bins).exposed_contrast);
+    count.exposed_contrast.push_back(exposed_contrast_of(next->directions));
     count.by_number.push_back(std::move(*next));
   }
   count.best = number_at_peak(count.exposed_contrast);

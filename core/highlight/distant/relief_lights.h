@@ -1,6 +1,8 @@
 #pragma once
 /// Directions of distant lights that bring out an object's relief, judged by measured contrast.
 
+#include <functional>
+
 #include "core/highlight/distant/bin_neighbours.h"
 #include "core/highlight/distant/tabled_contrast.h"
 #include "core/run.h"
@@ -20,6 +22,8 @@ struct ReliefLightOptions : Run {
   /// reduced by the share `preference`. Symmetric objects have such directions. Zero = none.
   Vec3 preferred = Vec3::Zero();
   double preference = 0.05;
+  /// Whether a light may stand in this direction (unit, from the object); empty: anywhere. Asked once per bin.
+  std::function<bool(const Vec3& towards)> may_light{};
 };
 
 struct ReliefLights {
@@ -51,6 +55,9 @@ class ReliefLightSearch {
 
   /// For one light up to most_lights.
   [[nodiscard]] Result<ReliefLightCount> count_lights(int most_lights) const;
+
+  /// Of beams of 1 lx from the bins of these directions (contrast_samples.h), 0…1.
+  [[nodiscard]] double exposed_contrast_of(std::span<const Vec3> directions) const;
 
   /// Local contrast of one beam of 1 lx from each bin [lx].
   [[nodiscard]] const std::vector<double>& of_each_bin() const { return alone_lx_; }

@@ -1,4 +1,4 @@
-// Tasks that bring out the relief of an object: aim, highlight.
+// Tasks that bring out the relief of an object: aim, highlight, directions.
 #include <fmt/format.h>
 #include <fnmatch.h>
 
@@ -57,6 +57,12 @@ void RigReader::read_relief(Section& s, ReliefSpec& relief) {
 void RigReader::read_highlight(Section& s, HighlightSpec& highlight) {
   read_placed(s, TaskKind::highlight, highlight.luminaire, highlight.lights, highlight.max_lights);
   read_relief(s, highlight.relief);
+}
+
+void RigReader::read_directions(Section& s, DirectionsSpec& directions) {
+  read_number_of_lights(s, directions.lights, directions.max_lights);
+  read_relief(s, directions.relief);
+  s.read("distance_m", directions.distance_m);
 }
 
 void RigReader::read_aim_task(Section& s, AimSpec& aim) {

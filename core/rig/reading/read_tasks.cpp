@@ -14,11 +14,13 @@ struct KindKeys {
   std::vector<const char*> keys;
 };
 const KindKeys kKeysOfKinds[] = {
-    {{TaskKind::placement, TaskKind::highlight}, {"luminaire", "lights", "max_lights"}},
+    {{TaskKind::placement, TaskKind::highlight}, {"luminaire"}},
+    {{TaskKind::placement, TaskKind::highlight, TaskKind::directions}, {"lights", "max_lights"}},
     {{TaskKind::placement},
      {"error_wanted", "improvement", "method", "indirect", "fixtures", "seconds", "aimed", "energy_front", "bound"}},
-    {{TaskKind::aim, TaskKind::highlight},
-     {"object", "scale_mm", "interest", "seen_by", "max_object_lx", "coverage_weight"}},
+    {{TaskKind::aim, TaskKind::highlight, TaskKind::directions}, {"object", "scale_mm", "interest", "seen_by"}},
+    {{TaskKind::aim, TaskKind::highlight}, {"max_object_lx", "coverage_weight"}},
+    {{TaskKind::directions}, {"distance_m"}},
     {{TaskKind::aim},
      {"contrast", "heads", "key", "min_key_to_fill", "max_key_to_fill", "eyes", "max_eye_lx", "base_lx", "base_weight",
       "energy_weight", "travel_weight"}},
@@ -40,6 +42,10 @@ void RigReader::read_placed(Section& s, TaskKind kind, std::size_t& luminaire, s
                             int& max_lights) {
   if (const auto index = luminaires.read_reference(s, "luminaire")) luminaire = *index;
   if (!s.has("luminaire")) s.require("luminaire", fmt::format("which kind = \"{}\" needs", name_of(kind)));
+  read_number_of_lights(s, lights, max_lights);
+}
+
+void RigReader::read_number_of_lights(Section& s, std::optional<int>& lights, int& max_lights) {
   s.read("lights", lights);
   if (s.has("lights")) {
     for (const char* key : {"max_lights", "improvement"})
@@ -93,6 +99,7 @@ void RigReader::read_tasks() {
       if (task.kind == TaskKind::placement) read_placement(s, task.placement);
       if (task.kind == TaskKind::aim) read_aim_task(s, task.aim);
       if (task.kind == TaskKind::highlight) read_highlight(s, task.highlight);
+      if (task.kind == TaskKind::directions) read_directions(s, task.directions);
     }
     s.read("max_watts", task.max_watts);
     const auto need_watts = [&](const Place& place, const std::string& what) {

@@ -93,6 +93,8 @@ struct RigReader {
   void read_relief(Section& section, ReliefSpec& relief);
   void read_aim_task(Section& section, AimSpec& aim);
   void read_highlight(Section& section, HighlightSpec& highlight);
+  void read_directions(Section& section, DirectionsSpec& directions);
+  void read_number_of_lights(Section& section, std::optional<int>& lights, int& max_lights);
   /// Indices of the entries whose names match a key's patterns, rising. A pattern without a match is reported.
   [[nodiscard]] std::vector<std::size_t> read_patterns(Section& section, std::string_view key,
                                                        const std::vector<std::string_view>& names,

@@ -34,10 +34,11 @@ constexpr KeySpec kTaskKeys[] = {
     {"points", "file", file, "", kRequired, kAny, "", R"("points.csv")", "CSV file; see The points file"},
 
     {"task", "name", name, "", kRequired, kAny, "", R"("levels")", "name of the task"},
-    {"task", "kind", text, "", kRequired, kAny, "emittance, placement, aim, highlight", R"("emittance")",
+    {"task", "kind", text, "", kRequired, kAny, "emittance, placement, aim, highlight, directions", R"("emittance")",
      "`emittance`: the level of every fixture; `placement`: where further lights should hang, and their levels; `aim`: "
      "where heads that hang look and how bright they are, so that an object's relief reads; `highlight`: where further "
-     "lights should hang for that"},
+     "lights should hang for that; `directions`: from where a lamp that a person carries should light the object for "
+     "that, which sets nothing"},
     {"task",
      "max_watts",
      number,
@@ -51,9 +52,10 @@ constexpr KeySpec kTaskKeys[] = {
     {"task", "luminaire", text, "", kNone, kAny, "", R"("track spot")",
      "name of the `[[luminaire]]` to place (kind `placement` and `highlight`; required there)"},
     {"task", "lights", whole_number, "", kNone, kLights, "", "4",
-     "how many (kind `placement` and `highlight`); left out, as few as will do, or until contrast rises no more"},
+     "how many (kind `placement`, `highlight` and `directions`); left out, as few as will do, or until contrast rises "
+     "no more"},
     {"task", "max_lights", whole_number, "", kNone, kLights, "", "7",
-     "most of them, when `lights` is left out; left out too, 20 (`placement`) or 8 (`highlight`)"},
+     "most of them, when `lights` is left out; left out too, 20 (`placement`), 8 (`highlight`) or 4 (`directions`)"},
     {"task", "error_wanted", number, "", "0.001", kShare, "", "0.02",
      "normalised error at which the search ends: root mean square of what is missing over that of the goals (only with "
      "kind `placement`, as all keys from here to `bound`)"},
@@ -101,7 +103,8 @@ constexpr KeySpec kTaskKeys[] = {
      "whether to prove, too, how close as many lights could come at all (seconds to a minute); how close any number "
      "could is always worked out where the goal was not reached"},
     {"task", "object", text, "", kNone, kAny, "", R"("vase")",
-     "name of the `[[scene.object]]`, a mesh, whose relief shall read (kind `aim` and `highlight`; required there)"},
+     "name of the `[[scene.object]]`, a mesh, whose relief shall read (kind `aim`, `highlight` and `directions`; "
+     "required there)"},
     {"task",
      "scale_mm",
      number,
@@ -110,7 +113,8 @@ constexpr KeySpec kTaskKeys[] = {
      {0, 1e5, true},
      "",
      "4",
-     "size of the relief that counts (kind `aim` and `highlight`): radius of the fits that give its curvature; left "
+     "size of the relief that counts (kind `aim`, `highlight` and `directions`): radius of the fits that give its "
+     "curvature; left "
      "out, from the mesh"},
     {"task",
      "interest",
@@ -120,10 +124,10 @@ constexpr KeySpec kTaskKeys[] = {
      {0, 1, true},
      "",
      "0.2",
-     "share of its surface that counts, the most recessed first (kind `aim` and `highlight`)"},
+     "share of its surface that counts, the most recessed first (kind `aim`, `highlight` and `directions`)"},
     {"task", "seen_by", text, "", kNone, kAny, "", R"("front")",
-     "name of a `[[camera]]`: only what it sees of the relief counts (kind `aim` and `highlight`); left out, all "
-     "sides"},
+     "name of a `[[camera]]`: only what it sees of the relief counts (kind `aim`, `highlight` and `directions`); "
+     "left out, all sides"},
     {"task", "max_object_lx", number, "lx", kNone, kLux, "", "900",
      "never more than this anywhere on the object (kind `aim` and `highlight`)"},
     {"task", "contrast", text, "", R"("relative")", kAny, "lux, relative", R"("lux")",
@@ -132,6 +136,16 @@ constexpr KeySpec kTaskKeys[] = {
      "`relative` to both, as an eye or a camera sees that adapts; then lights are as bright as limits let them"},
     {"task", "coverage_weight", number, "", "0.25", kWeight, "", "0.5",
      "what it is worth that every feature has a shadow's edge, beside contrast (kind `aim` and `highlight`)"},
+    {"task",
+     "distance_m",
+     number,
+     "m",
+     "1.5",
+     {0, 1e4, true},
+     "",
+     "2",
+     "how far from the middle of the object the lamp is held; directions in which another thing stands nearer are left "
+     "out (only with kind `directions`)"},
     {"task", "heads", texts, "", kNone, kAny, "", R"(["head-*"])",
      "fixtures to aim and dim, by name (`*` and `?`); left out, all that move. One that does not move is only "
      "dimmed; one with emitters is one light, its emitters at one level (only with kind `aim`, as all keys below)"},

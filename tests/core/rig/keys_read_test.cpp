@@ -89,13 +89,15 @@ std::string dump(const Rig& rig) {
         p.energy_front, p.bound, text_of(t.max_watts));
     const AimSpec& a = t.aim;
     const HighlightSpec& h = t.highlight;
-    for (const ReliefSpec& r : {a.relief, h.relief})
+    const DirectionsSpec& d = t.directions;
+    for (const ReliefSpec& r : {a.relief, h.relief, d.relief})
       add(r.object, text_of(r.scale_m), r.interest, text_of(r.max_lx), text_of(r.camera), r.relative,
           r.coverage_weight);
     for (const std::size_t head : a.heads) add("head", head);
     for (const std::size_t eye : a.eyes) add("eye", eye);
     add(text_of(a.key), a.min_key_to_fill, text_of(a.max_key_to_fill), text_of(a.max_eye_lx), a.energy_weight,
-        a.base_weight, a.travel_weight, a.base_lx, h.luminaire, text_of(h.lights), h.max_lights);
+        a.base_weight, a.travel_weight, a.base_lx, h.luminaire, text_of(h.lights), h.max_lights, text_of(d.lights),
+        d.max_lights, d.distance_m);
   }
   for (const PictureCamera& c : rig.cameras)
     add(c.name, text_of(c.position_world_m), text_of(c.aim_world_m), c.vertical_fov_rad, c.width_px, c.height_px,

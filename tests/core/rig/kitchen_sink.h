@@ -113,6 +113,8 @@ coverage_weight; heads #> ["head-1"]; key #> "head-2"; min_key_to_fill; max_key_
 max_eye_lx; base_lx; base_weight; energy_weight; travel_weight
 [[task]]
 name = "detail"; kind = "highlight"; luminaire; object; max_lights
+[[task]]
+name = "held"; kind = "directions"; object; distance_m
 [[keep_out]]
 name; box_m; heads #> ["zoomer"]; rest
 [[keep_out]]

@@ -41,5 +41,19 @@ TEST_F(HighlightTask, GivesTheSamePlanForASeedWithAnyNumberOfThreads) {
   }
 }
 
+TEST_F(ReliefTask, GivesTheSameDirectionsForASeedWithAnyNumberOfThreads) {
+  const Session session =
+      well(std::string(kWellRig) + "[[task]]\nname = \"held\"\nkind = \"directions\"\nobject = \"slab\"\nlights = 2\n");
+  std::string first;
+  for (const int threads : {1, 2}) {
+    ComputeOptions options = direct_light();
+    options.threads = threads;
+    const SolvedTasks solved = solved_of(session, options);
+    EXPECT_EQ(solved.plan.tasks[0].directions.size(), 2);
+    if (first.empty()) first = text_of(solved.plan);
+    EXPECT_EQ(text_of(solved.plan), first) << threads;
+  }
+}
+
 }  // namespace
 }  // namespace luxrig
