@@ -38,7 +38,7 @@ void ShowController::State::bypass(Time now, std::span<const std::size_t> fixtur
     // What it taught may be as wrong as its readings now: it is not known when it failed.
     estimator.forget(m);
     measured[m].reset();
-    drifts[m] = Drift{};
+    scale.forget(m);
     believed[m].reset();
     heard[m].reset();
     health.judged(m, now, "");

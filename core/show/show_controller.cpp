@@ -76,7 +76,7 @@ ShowController::State::State(const Rig& rig_in, const LightModel& model, std::sp
       without_hands(rig.fixtures.size(), 0.0),
       hand_goal(rig.points.size()),
       points_in_force(rig.points),
-      drifts(rig.luxmeters.size()),
+      scale(rig),
       bypassed_lamp(rig.fixtures.size()),
       bypassed_meter(rig.luxmeters.size()) {
   const std::vector<double> dark(rig.fixtures.size(), 0.0);
@@ -200,7 +200,7 @@ void ShowController::State::take_look(Time now) {
   if (other_light) {
     // Gains would still hold, local errors of the model would not; telling them apart takes readings.
     estimator = GainEstimator(rig, awaited->model);
-    drifts.assign(rig.luxmeters.size(), {});
+    scale.forget_all();
     std::fill(measured.begin(), measured.end(), std::nullopt);
     model_joints = awaited->look.joints;
   }
@@ -390,7 +390,7 @@ void ShowController::apply(Time now, Look look, LightModel model) {
   std::vector<double> wanted = state.wanted_levels(look.levels);
   state.asked_safe = false;
   state.afresh = true;
-  state.forget_drift();
+  state.scale.forget_drift();
   state.first_turn(now, look.joints);
   state.take_levels_of_plan(now, wanted, look);
   state.awaited = {std::move(look), std::move(model)};

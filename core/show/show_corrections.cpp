@@ -48,7 +48,7 @@ void ShowController::State::take_sample(Time now) {
     }
     measured[judgement.luxmeter] = *samples.sample(judgement.luxmeter);
   }
-  watch_scale(now);
+  scale.look(now, estimator, measured, program.to_level);
   samples.next();
   sampled_at = now;
   bool all_believed = true;
@@ -177,7 +177,7 @@ void ShowController::State::doubt_the_past(Time now) {
     if (!health.meter_implausible(i) || !sample_changed[i]) continue;
     estimator.forget(i);
     ++facts;
-    drifts[i] = Drift{};
+    scale.forget(i);
   }
 }
 

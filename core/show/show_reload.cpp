@@ -35,7 +35,7 @@ void ShowController::State::exchange_rig(Time now, const Rig& other, const Light
     for (std::size_t f = 0; f < rig.fixtures.size(); ++f) estimator.set_max_level(f, program.max_level[f]);
   } else {
     estimator = GainEstimator(rig, model);
-    drifts.assign(rig.luxmeters.size(), {});
+    scale.forget_all();
     std::fill(measured.begin(), measured.end(), std::nullopt);
     model_joints = program.joints;
   }

@@ -15,6 +15,7 @@
 #include "core/show/head_whereabouts.h"
 #include "core/show/health_watch.h"
 #include "core/show/identify.h"
+#include "core/show/scale_watch.h"
 #include "core/show/show_controller.h"
 
 namespace luxrig {
@@ -154,34 +155,7 @@ struct ShowController::State {
   [[nodiscard]] std::vector<ByHand> by_hand() const;
   [[nodiscard]] std::string why_not(Time now, const ByHand& held) const;
 
-  // All meters against the model, and each against what it read before (show_scale.cpp).
-  /// A meter's reading over the model, as a logarithm: when it was first believed, and its change since.
-  struct Drift {
-    bool anchored = false;
-    double log_ratio = 0;
-    std::vector<double> level;  ///< per fixture, at that time
-    Time since{};
-    double log_change = 0;
-    int seen = 0;  ///< samples in a row beyond what known causes explain
-    Time known_since{};
-  };
-  struct ScaleDoubt {
-    double log_share = 0;  ///< below 0: meters read too little
-    std::string reason;
-  };
-  static constexpr double kDarkForDrift_lx = 2;  ///< below this, a meter's offset matters
-  std::optional<double> off_together;            ///< logarithm of all readings over the model, if surely not 0
-  Time off_together_since{};
-  std::vector<Drift> drifts;  ///< per luxmeter
-  void watch_scale(Time now);
-  [[nodiscard]] bool drifts_away(std::size_t luxmeter) const;
-  [[nodiscard]] std::optional<double> drift_together() const;
-  [[nodiscard]] ScaleDoubt scale_doubt_of(std::size_t point) const;
-  [[nodiscard]] std::string off_together_text() const;
-  [[nodiscard]] std::string drift_together_text(double log_share) const;
-  [[nodiscard]] std::string drift_text(std::size_t luxmeter) const;
-  void tell_scale(ShowStatus& status) const;
-  void forget_drift();
+  ScaleWatch scale;
 
   // Bypassed (show_bypass.cpp).
   std::vector<std::optional<Time>> bypassed_lamp, bypassed_meter;  ///< per fixture and luxmeter: since when

@@ -170,7 +170,7 @@ ShowStatus ShowController::State::status(Time now) const {
   for (ByHand& held : status.by_hand) held.why = why_not(now, held);
   tell_losses(status);
   tell_bypassed(status);
-  tell_scale(status);
+  scale.tell(status, measured);
   tell_zones(status);
   for (std::size_t d = 0; d < desks.size(); ++d) {
     if (desk_names[d].empty()) continue;

@@ -134,7 +134,7 @@ PointStatus ShowController::State::point_status(std::size_t p, std::span<const d
     status.light = light_by_model(p, level, prediction);
   }
   // It is not known which of them is right: the light may be higher or lower by this much.
-  const ScaleDoubt doubt = scale_doubt_of(p);
+  const ScaleWatch::Doubt doubt = scale.doubt_at(meter_at(p), measured);
   status.light.half_width_lx += status.light.lux * (std::exp(std::abs(doubt.log_share)) - 1);
   judge_goal(p, level, status);
   judge_limit(p, level, now, status);
@@ -157,7 +157,7 @@ void ShowController::State::judge_goal(std::size_t p, std::span<const double> le
   if (unseen) status.verdict = Verdict::unknown;
   const std::string state = why_not_the_plan(phase, program.blackout);
   std::string settles;
-  if (const ScaleDoubt doubt = scale_doubt_of(p); !doubt.reason.empty()) {
+  if (const ScaleWatch::Doubt doubt = scale.doubt_at(meter_at(p), measured); !doubt.reason.empty()) {
     settles = doubt.reason;
   } else if (unseen) {
     settles = fmt::format("nobody sees whether fixture \"{}\" burns; a luxmeter in its light would settle it",
@@ -212,7 +212,7 @@ void ShowController::State::judge_limit(std::size_t p, std::span<const double> l
                fmt::format("with its luxmeter's tolerance it may have {:.1f} lx, the limit is {:g} lx; look for light "
                            "that is not the rig's",
                            breach->most_lx, max_lx));
-  if (const ScaleDoubt doubt = scale_doubt_of(p);
+  if (const ScaleWatch::Doubt doubt = scale.doubt_at(meter_at(p), measured);
       status.measured_lx && doubt.log_share < 0 && *status.measured_lx * std::exp(-doubt.log_share) > max_lx)
     return say(LimitVerdict::unknown,
                fmt::format("it may have {:.1f} lx, the limit is {:g} lx: {}",
