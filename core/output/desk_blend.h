@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/output/devices.h"
-#include "core/rig/rig.h"
+#include "core/rig/brief.h"
 
 namespace luxrig {
 

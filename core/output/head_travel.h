@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "core/rig/rig.h"
+#include "core/rig/equipment.h"
 
 namespace luxrig {
 

@@ -2,7 +2,7 @@
 /// Converts a camera of the rig to a picture camera.
 
 #include "core/picture/picture.h"
-#include "core/rig/rig.h"
+#include "core/rig/equipment.h"
 
 namespace luxrig {
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "core/rig/patch.h"
 #include "core/rig/problem_list.h"
 #include "core/rig/register_map/register_map.h"
-#include "core/rig/rig.h"
 
 namespace luxrig {
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <span>
 
-#include "core/rig/rig.h"
+#include "core/rig/brief.h"
 
 namespace luxrig {
 

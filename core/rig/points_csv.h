@@ -16,7 +16,7 @@
 
 #include "core/photometry/light_colour.h"
 #include "core/result.h"
-#include "core/rig/rig.h"
+#include "core/rig/brief.h"
 
 namespace luxrig {
 

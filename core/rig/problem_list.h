@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/result.h"
-#include "core/rig/rig.h"
+#include "core/rig/scene_spec.h"
 
 namespace luxrig {
 

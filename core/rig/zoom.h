@@ -1,7 +1,7 @@
 #pragma once
 /// Luminaires that zoom: their light at beam angles other than the one in the rig file.
 
-#include "core/rig/rig.h"
+#include "core/rig/equipment.h"
 
 namespace luxrig {
 

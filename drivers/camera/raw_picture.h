@@ -5,7 +5,7 @@
 
 #include "core/output/devices.h"
 #include "core/radiometry/sample_curve.h"
-#include "core/rig/rig.h"
+#include "core/rig/equipment.h"
 
 namespace luxrig {
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "core/rig/patch.h"
 #include "core/rig/register_map/register_value.h"
-#include "core/rig/rig.h"
 
 namespace luxrig::modbus {
 

@@ -1,7 +1,7 @@
 #pragma once
 /// A dimmer channel with its lamp: drive in, share of full light out.
 
-#include "core/rig/rig.h"
+#include "core/rig/equipment.h"
 
 namespace luxrig::sim {
 

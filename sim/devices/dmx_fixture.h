@@ -8,7 +8,7 @@
 #include <optional>
 #include <span>
 
-#include "core/rig/rig.h"
+#include "core/rig/equipment.h"
 
 namespace luxrig::sim {
 

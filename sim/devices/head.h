@@ -2,7 +2,7 @@
 /// The joints of a pan-tilt head: each turns at its own constant speed to its target, within its range.
 /// Acceleration is not modelled: a head that ramps arrives later by about (speed / acceleration).
 
-#include "core/rig/rig.h"
+#include "core/rig/equipment.h"
 
 namespace luxrig::sim {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "core/rig/patch.h"
 #include "core/rig/reading/section.h"
-#include "core/rig/rig.h"
 
 namespace luxrig {
 

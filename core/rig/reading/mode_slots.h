@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/rig/personality/personality.h"
+#include "core/rig/equipment.h"
 #include "core/rig/reading/dmx_slots.h"
 
 namespace luxrig {

@@ -7,7 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/rig/rig.h"
+#include "core/rig/brief.h"
+#include "core/rig/patch.h"
 #include "core/time.h"
 
 namespace luxrig {

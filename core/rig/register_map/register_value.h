@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "core/rig/rig.h"
+#include "core/rig/patch.h"
 
 namespace luxrig {
 

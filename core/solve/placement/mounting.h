@@ -15,7 +15,7 @@
 
 #include "core/geometry.h"
 #include "core/result.h"
-#include "core/rig/rig.h"
+#include "core/rig/brief.h"
 #include "core/scene/ray_scene.h"
 #include "core/scene/scene.h"
 

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "core/output/head_move.h"
-#include "core/rig/rig.h"
+#include "core/rig/equipment.h"
 #include "drivers/can/cia402/axis.h"
 
 namespace luxrig::cia402 {

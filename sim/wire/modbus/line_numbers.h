@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/rig/rig.h"
+#include "core/rig/patch.h"
 
 namespace luxrig::sim {
 

@@ -3,7 +3,6 @@
 
 #include <optional>
 
-#include "core/rig/rig.h"
 #include "tests/core/solve/placement/lit_hall.h"
 #include "tests/core/solve/placement/placement_methods_fixture.h"
 #include "tools/bench/methods/compared_methods.h"
