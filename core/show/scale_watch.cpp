@@ -69,15 +69,16 @@ void ScaleWatch::look(Time now, const GainEstimator& estimator, Measured measure
 
 bool ScaleWatch::drifts_away(std::size_t luxmeter) const { return drifts_[luxmeter].seen >= kDriftSeen; }
 
-/// Whatever moved more than half of the meters one way moved what the model has learned from them.
+/// Median change if more than half of the meters drift one way: what the model has learned from them has then moved, too.
 std::optional<double> ScaleWatch::drift_together(Measured measured) const {
-  std::vector<double> change;
+  std::vector<double> less, more;
   std::size_t known = 0;
   for (std::size_t i = 0; i < drifts_.size(); ++i) {
     if (!drifts_[i].anchored || !measured[i]) continue;
     ++known;
-    if (drifts_away(i)) change.push_back(drifts_[i].log_change);
+    if (drifts_away(i)) (drifts_[i].log_change < 0 ? less : more).push_back(drifts_[i].log_change);
   }
+  std::vector<double>& change = less.size() > more.size() ? less : more;
   if (change.size() < 2 || 2 * change.size() <= known) return std::nullopt;
   std::nth_element(change.begin(), change.begin() + static_cast<std::ptrdiff_t>(change.size() / 2), change.end());
   return change[change.size() / 2];
@@ -115,8 +116,10 @@ void ScaleWatch::tell(ShowStatus& status, Measured measured) const {
   Time since = Time::max();
   for (std::size_t i = 0; i < drifts_.size(); ++i) {
     if (!measured[i] || !drifts_away(i)) continue;
-    since = std::min(since, drifts_[i].known_since);
-    if (!together) status.alarms.push_back({false, names_[i], drift_text(i), drifts_[i].known_since});
+    if (together && (drifts_[i].log_change < 0) == (*together < 0))
+      since = std::min(since, drifts_[i].known_since);
+    else
+      status.alarms.push_back({false, names_[i], drift_text(i), drifts_[i].known_since});
   }
   if (together) status.alarms.push_back({false, "", drift_together_text(*together), since});
 }
