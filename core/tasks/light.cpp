@@ -66,6 +66,116 @@ void set_errors(const TransportMatrix& transport, const EvaluateOptions& evaluat
   used.error_floor_lx = evaluate.wanted_standard_error() * transport.floor_lx;
 }
 
+std::optional<double> limit_of(const ComputeOptions& options) {
+  return options.max_seconds > 0 ? std::optional(options.max_seconds) : std::nullopt;
+}
+
+/// What light is wanted of, and in which stage: its time limit is that of all computations together.
+struct Request {
+  const Stage& stage;
+  const RayScene& scene;
+  std::span<const Receiver> receivers;
+  std::span<const Emitter> emitters;
+  EvaluateOptions wanted;
+  ComputeOptions options;
+
+  [[nodiscard]] Result<TransportMatrix> light(ModelUsed* used) const;
+};
+
+Result<TransportMatrix> Request::light(ModelUsed* used) const {
+  EvaluateOptions evaluate = wanted;
+  want_error(options, evaluate);
+  evaluate.run() = options;
+  evaluate.enough = stage.stop();
+  if (options.watch.tell)
+    evaluate.watch.progress = [&](double done) {
+      stage.say(fmt::format("{:.0f} %", 100 * done));
+      if (options.watch.progress) options.watch.progress(done);
+    };
+  ModelUsed by;
+  by.wanted = options.worst_error.value_or(options.max_error);
+  by.of_worst = options.worst_error.has_value();
+  by.max_seconds = options.max_seconds;
+  TransportMatrix light;
+  if (emitters.empty()) {
+    by.name = "direct";
+    by.reason = "nothing shines";
+    light.lux_per_level = light.direct_lux_per_level =
+        Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(receivers.size()), 0);
+    if (evaluate.colour) light.rgb_per_level.assign(3, light.lux_per_level);
+  } else {
+    auto choice = evaluator_for(scene, receivers, emitters, evaluate, options.model);
+    if (!choice) return tl::unexpected(std::move(choice.error()));
+    auto found = choice->evaluator->evaluate(receivers, emitters, evaluate);
+    if (!found) return found;
+    light = std::move(*found);
+    by.name = choice->evaluator->name();
+    by.reason = std::move(choice->reason);
+    by.time_was_up = stage.time_is_up();
+  }
+  set_errors(light, evaluate, by);
+  if (used) *used = std::move(by);
+  return light;
+}
+
+/// Which columns are known, and what light is wanted of the other emitters.
+struct Columns {
+  std::vector<std::optional<std::size_t>> kept;  ///< per emitter: its column in the transport before
+  std::vector<Emitter> changed;
+  EvaluateOptions of_changed;
+};
+
+Columns columns_of(const Rig& rig, const Look& look, const KeptTransport& before, const Request& request) {
+  const std::size_t fixtures = rig.fixtures.size(), count = request.emitters.size();
+  Columns columns{std::vector<std::optional<std::size_t>>(count), {}, request.wanted};
+  columns.of_changed.levels.clear();
+  Eigen::VectorXd kept_lux = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(request.receivers.size()));
+  for (std::size_t e = 0; e < count; ++e) {
+    const double level = request.wanted.levels.empty() ? 1.0 : request.wanted.levels[e];
+    const auto looks_as_before = [&] {
+      const Joints& now = look.joints.empty() ? rig.fixtures[e].joints : look.joints[e];
+      return e < before.joints.size() && same_aim(now, before.joints[e]);
+    };
+    if (e >= fixtures || looks_as_before()) {
+      columns.kept[e] = e < fixtures ? e : before.joints.size() + (e - fixtures);
+      kept_lux += level * before.transport.lux_per_level.col(static_cast<Eigen::Index>(*columns.kept[e]));
+    } else {
+      columns.changed.push_back(request.emitters[e]);
+      columns.of_changed.levels.push_back(level);
+    }
+  }
+  // Errors are relative to all light; this much of it is certain.
+  if (kept_lux.size() > 0) columns.of_changed.floor_lx = std::max(columns.of_changed.floor_lx, kept_lux.minCoeff());
+  return columns;
+}
+
+/// The mean of light that is not exact enough and a second estimate of all, as coarse as will do. nullopt: that would
+/// cost as much as computing all again, or has not done.
+/// seed   of the second estimate
+/// used   of `light`; then of the mean
+Result<std::optional<TransportMatrix>> made_exact(const Request& request, const TransportMatrix& light,
+                                                  std::uint64_t seed, ModelUsed& used) {
+  const double over = used.error() / used.wanted;
+  if (over > kMostOver) return std::nullopt;
+  // For independent estimates, weighted by the inverse of their variances, the mean has the sum of these inverses.
+  const double second = 1 / std::sqrt(1 / (kAim * kAim) - 1 / (over * over));
+  Request coarse = request;
+  coarse.options.seed = seed;
+  coarse.options.max_error *= second;
+  if (coarse.options.worst_error) *coarse.options.worst_error *= second;
+  ModelUsed by;
+  const auto again = coarse.light(&by);
+  if (!again) return tl::unexpected(again.error());
+  const double share = 1 / (over * over) / (1 / (over * over) + 1 / (second * second));
+  EvaluateOptions wanted = request.wanted;
+  want_error(request.options, wanted);
+  TransportMatrix mean = mean_of(light, share, *again, wanted);
+  set_errors(mean, wanted, used);
+  used.time_was_up = by.time_was_up;
+  if (!used.reached() && !used.time_was_up) return std::nullopt;
+  return mean;
+}
+
 }  // namespace
 
 std::string ModelUsed::warning() const {
@@ -80,44 +190,13 @@ std::string ModelUsed::warning() const {
 Result<TransportMatrix> light_of(const RayScene& scene, std::span<const Receiver> receivers,
                                  std::span<const Emitter> emitters, EvaluateOptions wanted,
                                  const ComputeOptions& options, ModelUsed* used) {
-  const std::optional<double> seconds = options.max_seconds > 0 ? std::optional(options.max_seconds) : std::nullopt;
-  const Stage stage(options.watch.without_stop(), options.stage, "starting", seconds);
-  want_error(options, wanted);
-  wanted.run() = options;
-  wanted.enough = stage.stop();
-  if (options.watch.tell)
-    wanted.watch.progress = [&](double done) {
-      stage.say(fmt::format("{:.0f} %", 100 * done));
-      if (options.watch.progress) options.watch.progress(done);
-    };
-  ModelUsed by;
-  by.wanted = options.worst_error.value_or(options.max_error);
-  by.of_worst = options.worst_error.has_value();
-  by.max_seconds = options.max_seconds;
-  TransportMatrix light;
-  if (emitters.empty()) {
-    by.name = "direct";
-    by.reason = "nothing shines";
-    light.lux_per_level = light.direct_lux_per_level =
-        Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(receivers.size()), 0);
-    if (wanted.colour) light.rgb_per_level.assign(3, light.lux_per_level);
-  } else {
-    auto choice = evaluator_for(scene, receivers, emitters, wanted, options.model);
-    if (!choice) return tl::unexpected(std::move(choice.error()));
-    auto found = choice->evaluator->evaluate(receivers, emitters, wanted);
-    if (!found) return found;
-    light = std::move(*found);
-    by.name = choice->evaluator->name();
-    by.reason = std::move(choice->reason);
-    by.time_was_up = stage.time_is_up();
-  }
-  set_errors(light, wanted, by);
-  if (used) *used = std::move(by);
-  return light;
+  const Stage stage(options.watch.without_stop(), options.stage, "starting", limit_of(options));
+  return Request{stage, scene, receivers, emitters, std::move(wanted), options}.light(used);
 }
 
 Result<TransportMatrix> compute_transport(const Rig& rig, const RayScene& rays, const ComputeOptions& options,
                                           const Look& look, ModelUsed* used, const KeptTransport* before) {
+  const Stage stage(options.watch.without_stop(), options.stage, "starting", limit_of(options));
   const auto receivers = receivers_of(rig);
   const auto emitters = all_emitters_of(rig, look.joints);
   EvaluateOptions wanted;
@@ -125,62 +204,30 @@ Result<TransportMatrix> compute_transport(const Rig& rig, const RayScene& rays, 
   wanted.colour = rig.colour_goals();
   wanted.levels = look.levels;
   if (!wanted.levels.empty()) wanted.levels.resize(emitters.size(), 1.0);
-  if (!before) return light_of(rays, receivers, emitters, wanted, options, used);
+  const Request all{stage, rays, receivers, emitters, wanted, options};
+  if (!before) return all.light(used);
 
-  const std::size_t fixtures = rig.fixtures.size();
-  std::vector<std::optional<std::size_t>> kept(emitters.size());
-  std::vector<Emitter> changed;
-  EvaluateOptions of_changed = wanted;
-  of_changed.levels.clear();
-  Eigen::VectorXd kept_lux = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(receivers.size()));
-  for (std::size_t e = 0; e < emitters.size(); ++e) {
-    const double level = wanted.levels.empty() ? 1.0 : wanted.levels[e];
-    const auto looks_as_before = [&] {
-      const Joints& now = look.joints.empty() ? rig.fixtures[e].joints : look.joints[e];
-      return e < before->joints.size() && same_aim(now, before->joints[e]);
-    };
-    if (e >= fixtures || looks_as_before()) {
-      kept[e] = e < fixtures ? e : before->joints.size() + (e - fixtures);
-      kept_lux += level * before->transport.lux_per_level.col(static_cast<Eigen::Index>(*kept[e]));
-    } else {
-      changed.push_back(emitters[e]);
-      of_changed.levels.push_back(level);
-    }
-  }
-  // Errors are relative to all light; this much of it is certain.
-  if (kept_lux.size() > 0) of_changed.floor_lx = std::max(of_changed.floor_lx, kept_lux.minCoeff());
+  const Columns columns = columns_of(rig, look, *before, all);
   ModelUsed by;
-  auto anew = light_of(rays, receivers, changed, of_changed, options, &by);
+  const auto anew = Request{stage, rays, receivers, columns.changed, columns.of_changed, options}.light(&by);
   if (!anew) return anew;
   want_error(options, wanted);
-  TransportMatrix all = joined_columns(before->transport, *anew, kept, wanted);
-  set_errors(all, wanted, by);
-  if (!by.reached() && !by.time_was_up && changed.size() < emitters.size()) {
-    const double over = by.error() / by.wanted;
-    if (over > kMostOver) return light_of(rays, receivers, emitters, wanted, options, used);
-    // For independent estimates, weighted by the inverse of their variances, the mean has the sum of these inverses.
-    const double second = 1 / std::sqrt(1 / (kAim * kAim) - 1 / (over * over));
-    ComputeOptions coarse = options;
-    coarse.seed = options.seed ^ joints_hash(rig, look);
-    for (double* const asked : {&coarse.max_error, coarse.worst_error ? &*coarse.worst_error : nullptr})
-      if (asked) *asked *= second;
-    ModelUsed by_second;
-    auto again = light_of(rays, receivers, emitters, wanted, coarse, &by_second);
-    if (!again) return again;
-    const double share = 1 / (over * over) / (1 / (over * over) + 1 / (second * second));
-    all = mean_of(all, share, *again, wanted);
-    set_errors(all, wanted, by);
-    by.time_was_up = by_second.time_was_up;
-    if (!by.reached() && !by.time_was_up) return light_of(rays, receivers, emitters, wanted, options, used);
+  TransportMatrix joined = joined_columns(before->transport, *anew, columns.kept, wanted);
+  set_errors(joined, wanted, by);
+  if (!by.reached() && !by.time_was_up && columns.changed.size() < emitters.size()) {
+    auto exact = made_exact(all, joined, options.seed ^ joints_hash(rig, look), by);
+    if (!exact) return tl::unexpected(exact.error());
+    if (!*exact) return all.light(used);
+    joined = std::move(**exact);
   }
-  if (changed.empty()) {
+  if (columns.changed.empty()) {
     by.name = "kept";
     by.reason = "nothing has turned";
-  } else if (changed.size() < emitters.size()) {
-    by.reason += fmt::format("; {} of {} columns are known", emitters.size() - changed.size(), emitters.size());
+  } else if (columns.changed.size() < emitters.size()) {
+    by.reason += fmt::format("; {} of {} columns are known", emitters.size() - columns.changed.size(), emitters.size());
   }
   if (used) *used = std::move(by);
-  return all;
+  return joined;
 }
 
 }  // namespace luxrig

@@ -20,7 +20,7 @@ struct ComputeOptions : Run {
   double max_error = 0.01;               ///< wanted root mean square of the points' standard errors
   std::optional<double> worst_error;     ///< instead: wanted error of each point (EvaluateOptions::kStopMargin)
   std::optional<double> error_floor_lx;  ///< standard error that is small enough at any point; none = by the goals
-  double max_seconds = 120;              ///< of each computation of transport; 0 = no limit
+  double max_seconds = 120;              ///< of a call of light_of or compute_transport; 0 = no limit
   bool strict = false;                   ///< a command fails when the wanted error is not reached
   std::string stage = "transport";       ///< name of a computation of transport for `watch.tell`
 };
