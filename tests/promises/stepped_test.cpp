@@ -203,6 +203,7 @@ class SteppedSubject final : public Subject {
     options.stepped_driver = [this](const Rig&, std::size_t bus) -> std::unique_ptr<Driver> {
       return std::make_unique<HallBus>(devices_, sent_, bus == 0, bus == 2);
     };
+    options.light_model = [this](const Session&, const std::vector<Joints>&) { return hall_.model; };
     daemon_ = std::make_unique<Daemon>(std::make_shared<Session>(Session{hall_.rig, Scene{}, nullptr}),
                                        KeptLight{{}, hall_.model}, std::move(options));
     const auto started = daemon_->start();

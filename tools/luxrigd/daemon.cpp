@@ -29,15 +29,12 @@ std::filesystem::path web_folder() { return shared_folder() / "web"; }
 
 }  // namespace
 
-Daemon::Daemon(std::shared_ptr<const Session> session, KeptLight light, DaemonOptions options)
+Daemon::Daemon(std::shared_ptr<const Session> session, const KeptLight& light, DaemonOptions options)
     : options_(std::move(options)),
       controller_(session->rig, light.model, light.joints),
       journal_(options_.state_folder),
       session_(std::move(session)),
-      version_(version_of(session_->rig, session_->scene)),
-      light_(std::move(light)) {
-  if (light_.joints.empty()) light_.joints = hung_look(session_->rig).joints;
-}
+      version_(version_of(session_->rig, session_->scene)) {}
 
 Daemon::~Daemon() { stop(); }
 

@@ -26,12 +26,6 @@
 
 namespace luxrig {
 
-/// A rig's plan, its heads' aims, and the light with these aims.
-struct SolvedRig {
-  Plan plan;
-  KeptLight light;
-};
-
 /// Outcome of taking up the state that the last daemon left.
 struct Resumed {
   bool plan = false;               ///< its plan is in force again
@@ -46,19 +40,16 @@ struct DaemonOptions {
   int http_port = 9620;  ///< 0 = any
   /// For tests that step time (clock.h): makes the drivers; no threads, no page, and tick() also runs each bus.
   std::function<std::unique_ptr<Driver>(const Rig&, std::size_t bus)> stepped_driver{};
-  /// Light model of the session's rig for other aims of its heads, for plans that turn them. Called on the thread that
-  /// brings the plan. If empty, such plans are refused.
+  /// Light model of the session's rig for heads at these joints. Called on the thread that brings the plan.
   std::function<Result<LightModel>(const Session&, const std::vector<Joints>&)> light_model{};
-  /// Called with each light model that was computed for a plan or a reload, on the thread that computed it.
-  std::function<void(const Session&, const KeptLight&)> keep_light{};
   /// Solves the tasks of a reloaded rig file. If empty, reload is refused.
-  std::function<Result<SolvedRig>(const Session&)> solve{};
+  std::function<Result<Plan>(const Session&)> solve{};
 };
 
 class Daemon {
  public:
   /// light: of the session's rig. Empty joints mean the aims in the rig file.
-  Daemon(std::shared_ptr<const Session> session, KeptLight light, DaemonOptions options);
+  Daemon(std::shared_ptr<const Session> session, const KeptLight& light, DaemonOptions options);
   ~Daemon();
 
   /// Starts drivers and the page and returns the page's port. Sends nothing before the first plan.
@@ -156,8 +147,6 @@ class Daemon {
                                            Unsaved unsaved);
   /// A plan as a client sends it.
   [[nodiscard]] Checked<std::string> apply_json(const std::string& plan_json);
-  /// Light model for these aims: the last one computed if the aims are the same.
-  [[nodiscard]] Result<LightModel> model_for(const Session& session, const std::vector<Joints>& joints);
 
   DaemonOptions options_;
   ShowController controller_;
@@ -200,9 +189,6 @@ class Daemon {
   RoomView room_;
   std::string status_json_ = "{}";
   std::deque<Command> commands_;
-
-  std::mutex model_mutex_;  // guards light_
-  KeptLight light_;
 
   std::jthread drawing_, contacts_;  ///< last: they use the members above
 };

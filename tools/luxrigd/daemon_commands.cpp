@@ -50,10 +50,6 @@ std::string lines_of(const Rig& rig, const std::vector<ByHand>& held, Time at) {
   return text;
 }
 
-bool same_aims(const std::vector<Joints>& a, const std::vector<Joints>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), same_aim);
-}
-
 }  // namespace
 
 std::shared_ptr<const Session> Daemon::session() const {
@@ -123,13 +119,13 @@ Checked<std::string> Daemon::apply(const Plan& plan, const std::string& plan_jso
   std::shared_ptr<const Session> session = this->session();
   auto look = look_for(plan, session->rig, "plan");
   if (!look) return tl::unexpected(look.error());
-  auto model = model_for(*session, look->joints);
+  auto model = options_.light_model(*session, look->joints);
   const std::lock_guard one_at_a_time(change_mutex_);
   if (const auto now_in_force = this->session(); now_in_force != session) {
     session = now_in_force;
     look = look_for(plan, session->rig, "plan");
     if (!look) return tl::unexpected(look.error());
-    model = model_for(*session, look->joints);
+    model = options_.light_model(*session, look->joints);
   }
   if (!model) {
     return tl::unexpected(std::vector<Problem>{
@@ -181,21 +177,6 @@ Checked<std::string> Daemon::apply(const Plan& plan, const std::string& plan_jso
   if (!applied->held.empty())
     note += (note.empty() ? "" : "\n") + lines_of(session->rig, applied->held, applied->at);
   return note;
-}
-
-Result<LightModel> Daemon::model_for(const Session& session, const std::vector<Joints>& joints) {
-  {
-    const std::lock_guard lock(model_mutex_);
-    if (same_aims(joints, light_.joints)) return light_.model;
-  }
-  if (!options_.light_model) return refusal("nobody here can work it out");
-  auto model = options_.light_model(session, joints);
-  if (!model) return model;
-  const KeptLight light{joints, *model};
-  if (options_.keep_light) options_.keep_light(session, light);
-  const std::lock_guard lock(model_mutex_);
-  light_ = light;
-  return model;
 }
 
 // ---- state of the last daemon ----
@@ -509,7 +490,8 @@ Checked<std::string> Daemon::reload() {
 
   // The rig file's goals if they are in force; a person's plan stays, within the new rig's limits.
   const bool of_rig = remembered.plan_of_rig || remembered.plan_json.empty();
-  const auto plan = of_rig ? std::move(solved->plan) : plan_from_json(remembered.plan_json, "the plan in force");
+  const auto plan =
+      of_rig ? Checked<Plan>(std::move(*solved)) : plan_from_json(remembered.plan_json, "the plan in force");
   if (!plan) return tl::unexpected(plan.error());
   auto look = look_for(*plan, session->rig, of_rig ? file : "the plan in force");
   if (!look) return tl::unexpected(std::move(look.error()));
@@ -517,13 +499,9 @@ Checked<std::string> Daemon::reload() {
       ask_control_thread<std::vector<Joints>>([this](Time) { return controller_.program().joints; });
   if (!joints_now)
     return tl::unexpected(std::vector<Problem>{{file, 0, 0, "the control loop did not answer", "try again"}});
-  const auto model_of = [&](const std::vector<Joints>& joints) -> Result<LightModel> {
-    if (same_aims(joints, solved->light.joints)) return solved->light.model;
-    return options_.light_model(*session, joints);
-  };
-  auto model_now = model_of(*joints_now);
+  auto model_now = options_.light_model(*session, *joints_now);
   if (!model_now) return tl::unexpected(problem_with(file.c_str(), model_now.error(), "try again"));
-  auto model = model_of(look->joints);
+  auto model = options_.light_model(*session, look->joints);
   if (!model) return tl::unexpected(problem_with(file.c_str(), model.error(), "try again"));
   RoomView room = draw_room(*session);
 
@@ -533,31 +511,32 @@ Checked<std::string> Daemon::reload() {
   });
   if (!saved)
     return tl::unexpected(problem_with(file.c_str(), saved.error(), "free disk space or mend the permissions"));
-  {
-    const std::lock_guard lock(model_mutex_);
-    light_ = {look->joints, *model};
-    if (options_.keep_light) options_.keep_light(*session, light_);
-  }
   // All by value: the loop may run this after our wait has timed out.
-  on_control_thread([this, session, version, made_for = plan->made_for, now_gives = std::move(*model_now),
-                     look = std::move(*look), model = std::move(*model),
-                     same_light = version.light == version_before.light, room = std::move(room)](Time at) {
-    controller_.exchange_rig(at, session->rig, now_gives, same_light);
-    controller_.apply(at, look, model);
-    safe_levels_.clear();
-    const std::lock_guard lock(mutex_);
-    session_ = session;
-    version_ = version;
-    plan_made_for_ = made_for;
-    plan_at_ = at;
-    room_ = room;
-    rig_file_changed_at_.reset();
-  });
+  const auto done = ask_control_thread<bool>(
+      [this, session, version, made_for = plan->made_for, now_gives = std::move(*model_now), look = std::move(*look),
+       model = std::move(*model), same_light = version.light == version_before.light, room = std::move(room)](Time at) {
+        controller_.exchange_rig(at, session->rig, now_gives, same_light);
+        controller_.apply(at, look, model);
+        safe_levels_.clear();
+        const std::lock_guard lock(mutex_);
+        session_ = session;
+        version_ = version;
+        plan_made_for_ = made_for;
+        plan_at_ = at;
+        room_ = room;
+        rig_file_changed_at_.reset();
+        return true;
+      });
   {
     auto watch = std::make_shared<RigFileWatch>(files_of(session->rig));
     const std::lock_guard lock(mutex_);
     watch.swap(rig_file_watch_);
   }
+  if (!done)
+    return tl::unexpected(std::vector<Problem>{{file, 0, 0,
+                                                "the control loop has not come to it yet: the rig file is read, and in "
+                                                "force when it does",
+                                                "look at luxrig status before you reload again"}});
   const std::string differs = what_differs(version_before, version);
   return fmt::format("{} is in force{}; {}", file, differs.empty() ? "" : " (" + differs + " differ)",
                      of_rig ? "its goals were solved" : "the plan that was applied stays, within its limits");

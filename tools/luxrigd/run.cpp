@@ -16,6 +16,7 @@
 #include "tools/luxrig/open_session.h"
 #include "tools/luxrigd/api/rig_pictures.h"
 #include "tools/luxrigd/daemon.h"
+#include "tools/luxrigd/light_of_looks.h"
 #include "tools/luxrigd/run_report.h"
 #include "tools/luxrigd/scheduling.h"
 #include "tools/luxrigd/service_manager.h"
@@ -29,17 +30,6 @@ namespace {
 constexpr Duration kTick = std::chrono::milliseconds(20);
 constexpr Duration kMostParking = std::chrono::seconds(60);
 constexpr Duration kMostOnce = std::chrono::seconds(120);
-
-/// Runs work on a low-priority thread, so that output and control come first even if it uses all cores.
-template <class T>
-T in_background(const std::function<T()>& work) {
-  std::optional<T> result;
-  std::thread([&] {
-    make_background();
-    result.emplace(work());
-  }).join();
-  return std::move(*result);
-}
 
 Checked<Plan> plan_of_file(const std::filesystem::path& path) {
   const auto text = read_file(path);
@@ -82,61 +72,16 @@ std::string goals_text(const ShowStatus& status, const Rig& rig) {
   return text;
 }
 
-/// Plan and light of a reloaded rig file, with heads aimed as its plan says.
-Result<SolvedRig> solve_again(const Session& session, const ComputeOptions& compute) {
-  return in_background<Result<SolvedRig>>([&]() -> Result<SolvedRig> {
+/// What the rig file asks for, for heads as they hang. Its light is known then.
+Result<Plan> solve_again(const Session& session, const ComputeOptions& compute, LightOfLooks& light) {
+  return in_background([&]() -> Result<Plan> {
     const auto transport = compute_transport(session, compute);
     if (!transport) return tl::unexpected(transport.error());
     auto solved = solve_what_hangs(session, *transport, compute);
     if (!solved) return tl::unexpected(solved.error());
-    return SolvedRig{std::move(solved->plan), {solved->look.joints, light_model(session.rig, solved->transport)}};
+    light.know(session, solved->look.joints, std::move(solved->transport));
+    return std::move(solved->plan);
   });
-}
-
-/// The last two transport matrices: a head that turns costs only its own light, and one that turns back costs nothing.
-class LastTransports {
- public:
-  struct Known {
-    std::uint64_t key = 0;  ///< light_key
-    std::vector<Joints> joints;
-    TransportMatrix transport;
-  };
-  void put(Known known) {
-    auto last = std::make_shared<const Known>(std::move(known));
-    const std::lock_guard lock(mutex_);
-    if (known_.size() == kMost) known_.erase(known_.begin());
-    known_.push_back(std::move(last));
-  }
-  /// The one with the most fixtures aimed as asked.
-  [[nodiscard]] std::shared_ptr<const Known> nearest(std::uint64_t key, std::span<const Joints> joints) const {
-    const std::lock_guard lock(mutex_);
-    std::shared_ptr<const Known> best;
-    std::size_t most = 0;
-    for (const auto& known : known_) {
-      if (known->key != key || known->joints.size() != joints.size()) continue;
-      std::size_t same = 0;
-      for (std::size_t f = 0; f < joints.size(); ++f) same += same_aim(joints[f], known->joints[f]) ? 1 : 0;
-      if (best && same < most) continue;
-      best = known;
-      most = same;
-    }
-    return best;
-  }
-
- private:
-  static constexpr std::size_t kMost = 2;
-  mutable std::mutex mutex_;
-  std::vector<std::shared_ptr<const Known>> known_;  ///< newest last
-};
-
-/// Loads and solves a rig file; returns its plan.
-Checked<Plan> solved_anew(const std::filesystem::path& rig_file, const ComputeOptions& compute) {
-  auto session = open_session(rig_file);
-  if (!session) return tl::unexpected(std::move(session.error()));
-  auto solved = solve_again(*session, compute);
-  if (!solved)
-    return tl::unexpected(std::vector<Problem>{{rig_file.string(), 0, 0, solved.error().detail, "mend the rig file"}});
-  return std::move(solved->plan);
 }
 
 /// Ticks until `done` returns true.
@@ -267,18 +212,16 @@ int run_rig(const RunArguments& arguments) {
     options.state_folder = default_state_folder(rig.name);
   }
   ComputeOptions compute = arguments.compute;
-  const std::uint64_t key = light_key(rig, session->scene, compute);
   const bool goes_on = !arguments.plan && !arguments.once && !arguments.fresh && !arguments.pictures;
   std::optional<KeptLight> light;
   std::optional<Plan> plan, hung;
   Look look = hung_look(rig);
   Journal::Left left;
   if (goes_on) left = Journal(options.state_folder).load();
-  if (goes_on && options.state_folder) {
-    if (left.state && !left.state->plan_json.empty()) light = kept_light(*options.state_folder, key, rig);
-    if (light) say.say("transport: as it was worked out for this rig before");
-  }
   compute.watch.stop = stop;
+  const auto looks = std::make_shared<LightOfLooks>(compute, options.state_folder);
+  if (goes_on && left.state && !left.state->plan_json.empty()) light = looks->read_saved(*session);
+  if (light) say.say("transport: as it was worked out for this rig before");
   std::optional<TerminalWatch> terminal(std::in_place, [&](std::string text) { progress.tell(std::move(text)); });
   compute.watch.tell = terminal->tell();
   if (arguments.plan) {
@@ -289,13 +232,11 @@ int run_rig(const RunArguments& arguments) {
     look = std::move(*wanted);
     plan = std::move(*read);
   }
-  const auto last = std::make_shared<LastTransports>();
   if (!light) {
     ModelUsed used;
     Look seen = look;  // any levels: all lamps count alike
     seen.levels.clear();
-    auto transport =
-        in_background<Result<TransportMatrix>>([&] { return compute_transport(*session, compute, seen, &used); });
+    auto transport = in_background([&] { return compute_transport(*session, compute, seen, &used); });
     if (!transport) return report(transport.error());
     say.say(fmt::format("transport: {} x {} by {}, error {:.2g} rms, {:.2g} at most, {} rays, {} threads",
                         transport->receivers(), transport->emitters(), used.name, used.rms_error, used.relative_error,
@@ -305,10 +246,10 @@ int run_rig(const RunArguments& arguments) {
       auto solved = solve_what_hangs(*session, *transport, compute, false);
       if (!solved) return report(solved.error());
       hung = std::move(solved->plan);
-      last->put({key, look.joints, *transport});
+      looks->know(*session, look.joints, *transport);
     }
     if (!plan) {
-      auto solved = in_background<Result<SolvedTasks>>([&] { return solve_what_hangs(*session, *transport, compute); });
+      auto solved = in_background([&] { return solve_what_hangs(*session, *transport, compute); });
       if (!solved) return report(solved.error());
       for (const Task& task : rig.tasks) {
         if (task.places_lights())
@@ -321,8 +262,7 @@ int run_rig(const RunArguments& arguments) {
       transport = std::move(solved->transport);
     }
     light = KeptLight{look.joints, light_model(rig, *transport)};
-    last->put({key, look.joints, std::move(*transport)});
-    if (options.state_folder) keep_light(*options.state_folder, *light, key);
+    looks->know(*session, look.joints, std::move(*transport));
   }
   compute.watch.tell = nullptr;
   terminal.reset();
@@ -340,25 +280,10 @@ int run_rig(const RunArguments& arguments) {
   options.http_port = arguments.http_port.value_or(rig.daemon.http_port);
   // No guardian for our own simulator: it would die with us.
   options.guarded = !arguments.no_guardian && !sim && options.state_folder.has_value();
-  options.light_model = [compute, last](const Session& in, const std::vector<Joints>& joints) -> Result<LightModel> {
-    const std::uint64_t of = light_key(in.rig, in.scene, compute);
-    const auto known = last->nearest(of, joints);
-    auto anew = in_background<Result<TransportMatrix>>([&] {
-      if (!known) return compute_transport(in, compute, {{}, joints});
-      const KeptTransport before{known->joints, known->transport};
-      return compute_transport(in, compute, {{}, joints}, nullptr, &before);
-    });
-    if (!anew) return tl::unexpected(anew.error());
-    LightModel model = light_model(in.rig, *anew);
-    last->put({of, joints, std::move(*anew)});
-    return model;
+  options.light_model = [looks](const Session& in, const std::vector<Joints>& joints) {
+    return looks->model(in, joints);
   };
-  options.solve = [compute](const Session& reread) { return solve_again(reread, compute); };
-  if (options.state_folder) {
-    options.keep_light = [compute, folder = *options.state_folder](const Session& in, const KeptLight& light) {
-      keep_light(folder, light, light_key(in.rig, in.scene, compute));
-    };
-  }
+  options.solve = [compute, looks](const Session& reread) { return solve_again(reread, compute, *looks); };
   Daemon daemon(session, std::move(*light), options);
   const auto port = daemon.start();
   if (!port) return report(port.error());
@@ -387,13 +312,15 @@ int run_rig(const RunArguments& arguments) {
       pictures_failed = report(shown.error());
   } else if (!resumed) {
     if (!plan) {  // the saved plan could not be restored
-      auto solving = std::async(std::launch::async, [&] { return solved_anew(rig.file, compute); });
+      auto solving = std::async(std::launch::async, [&] { return solve_again(*session, compute, *looks); });
       tick_until(daemon, [&](Time) {
         service.alive(now());
         return solving.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
       });
       auto solved = solving.get();
-      if (!solved) return report(solved.error());
+      if (!solved) {
+        return report(std::vector<Problem>{{rig.file.string(), 0, 0, solved.error().detail, "mend the rig file"}});
+      }
       plan = std::move(*solved);
     }
     if (const auto applied = daemon.apply(*plan, !arguments.plan); !applied) return report(applied.error());

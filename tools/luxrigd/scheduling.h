@@ -1,6 +1,9 @@
 #pragma once
 /// How threads share the processor: output first, solvers last.
 
+#include <optional>
+#include <thread>
+
 namespace luxrig {
 
 /// Puts the calling thread under SCHED_FIFO. False if not allowed (no CAP_SYS_NICE, no rtprio limit).
@@ -14,5 +17,16 @@ bool lock_memory();
 
 /// Low priority (nice 15) for the calling thread and the threads it starts, so that others run first.
 void make_background();
+
+/// Result of work on a thread of low priority. Returns when it is done.
+template <class Work>
+auto in_background(const Work& work) {
+  std::optional<decltype(work())> result;
+  std::thread([&] {
+    make_background();
+    result.emplace(work());
+  }).join();
+  return std::move(*result);
+}
 
 }  // namespace luxrig
