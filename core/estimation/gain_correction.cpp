@@ -152,9 +152,9 @@ Correction GainEstimator::correct(std::span<const double> present, Time now, boo
       const auto& max_lx = points_[static_cast<std::size_t>(i)].max_lx;
       if (!max_lx) continue;
       const Row& row = rows[static_cast<std::size_t>(i)];
-      const double day_lx = most_without_fixtures(row, now), room = std::max(0.0, *max_lx - day_lx);
+      const double day_lx = max_without_fixtures(row, now), room = std::max(0.0, *max_lx - day_lx);
       const double lux = lux_per_level.row(i).dot(level);
-      const double most = most_lux(row, vector_of(list_of(per_light * level)), now) - day_lx;
+      const double most = max_lux(row, vector_of(list_of(per_light * level)), now) - day_lx;
       over = over || most > room;
       problem.max_lx[i] = daylight_lx[i] + (lux > 0 && most > 0 ? room * std::min(1.0, lux / most) : room / local_);
     }

@@ -17,13 +17,13 @@ using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 
-constexpr double kLeastLocalSd = 0.02;  ///< a lower bound, even if a rig trusts its model fully
+constexpr double kMinLocalSd = 0.02;  ///< a lower bound, even if a rig trusts its model fully
 /// A value that stays constant to the last bit while the light changes by this share is stuck. The share is no larger
 /// than the noise of a reading that limits allow for, so that a value frozen during a fade cannot carry light past
 /// them.
 constexpr double kStuckChange = 0.01;
 constexpr double kSameLevels = 0.005;     ///< evidence at levels closer than this share replaces the old
-constexpr std::size_t kMostEvidence = 6;  ///< per meter; older evidence is dropped
+constexpr std::size_t kMaxEvidence = 6;   ///< per meter; older evidence is dropped
 
 /// |ln(b/a)|, at most 1; 1 where one of them is 0.
 double log_ratio(double a, double b) {
@@ -84,7 +84,7 @@ GainEstimator::GainEstimator(const Rig& rig, const LightModel& model)
   local_ = 1 / (1 - margin);
   prior_gain_ = std::clamp(1.0, gain_min_, gain_max_);
   prior_gain_sd_ = (gain_max_ - gain_min_) / 4;
-  prior_local_sd_ = std::max(kLeastLocalSd, margin / 3);
+  prior_local_sd_ = std::max(kMinLocalSd, margin / 3);
   estimate(Time{});
 }
 
@@ -302,7 +302,7 @@ void GainEstimator::learn(const LuxReading& reading, const VectorXd& level) {
   };
   std::erase_if(evidence_, same);
   const auto of_meter = [&](const Evidence& e) { return e.luxmeter == reading.luxmeter; };
-  if (static_cast<std::size_t>(std::count_if(evidence_.begin(), evidence_.end(), of_meter)) >= kMostEvidence)
+  if (static_cast<std::size_t>(std::count_if(evidence_.begin(), evidence_.end(), of_meter)) >= kMaxEvidence)
     evidence_.erase(std::find_if(evidence_.begin(), evidence_.end(), of_meter));
   evidence_.push_back({reading.luxmeter, reading.lux, reading.taken, level});
 }

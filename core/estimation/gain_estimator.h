@@ -159,9 +159,9 @@ class GainEstimator {
   /// The most lux that can truly be at this point at these levels, given bounds and evidence. Without a meter there:
   /// the model with upper gains, over (1 − open_loop_margin). With one: the last believed reading / (1 − tolerance),
   /// plus 1 % for its noise, carried over to these levels in the worst way that the bounds allow.
-  [[nodiscard]] double most_lux_at_point(std::size_t point, std::span<const double> level, Time now) const;
+  [[nodiscard]] double max_lux_at_point(std::size_t point, std::span<const double> level, Time now) const;
   /// The same if lost lamps were at these levels, too.
-  [[nodiscard]] double most_lux_as_given(std::size_t point, std::span<const double> level, Time now) const;
+  [[nodiscard]] double max_lux_as_given(std::size_t point, std::span<const double> level, Time now) const;
 
   /// Rows for OutputProgram. If row · level ≤ max_lx, then bounds and evidence exclude more than max_lx. This holds for
   /// every level on the straight way `from` -> `to` (a fade moves all fixtures by the same share and switches as
@@ -174,7 +174,7 @@ class GainEstimator {
   /// Worth of each lamp to the goals, by the model.
   [[nodiscard]] LampWorth worth() const;
 
-  /// `level`, with the fixtures that light a limited point dimmed (scale_to_limits) so that most_lux_at_point ≤ max_lx
+  /// `level`, with the fixtures that light a limited point dimmed (scale_to_limits) so that max_lux_at_point ≤ max_lx
   /// everywhere. On-or-off fixtures go off if that does not suffice.
   [[nodiscard]] std::vector<double> within_limits(std::span<const double> level, Time now) const;
 
@@ -220,7 +220,7 @@ class GainEstimator {
   [[nodiscard]] Row row_of_point(std::size_t point) const;
   [[nodiscard]] Prediction predict(const Row& row, const Eigen::VectorXd& level) const;
   [[nodiscard]] Eigen::RowVectorXd unmeasured_worst(const Row& row) const;
-  [[nodiscard]] double most_lux(const Row& row, const Eigen::VectorXd& level, Time now) const;
+  [[nodiscard]] double max_lux(const Row& row, const Eigen::VectorXd& level, Time now) const;
   [[nodiscard]] const Evidence* latest(std::size_t luxmeter) const;
   [[nodiscard]] double covariance(const Row& one, const Eigen::VectorXd& one_level, const Evidence& other) const;
   [[nodiscard]] Eigen::VectorXd as_given(std::span<const double> level) const;  ///< with the 1 for daylight
@@ -238,7 +238,7 @@ class GainEstimator {
   [[nodiscard]] Eigen::Index fixtures() const { return max_level_.size(); }
   [[nodiscard]] Eigen::MatrixXd fixtures_per_light(const Eigen::VectorXd& present) const;
   void switch_off_brightest(const Row& row, std::span<double> level) const;
-  [[nodiscard]] double most_without_fixtures(const Row& row, Time now) const;
+  [[nodiscard]] double max_without_fixtures(const Row& row, Time now) const;
   void learn(const LuxReading& reading, const Eigen::VectorXd& level);
   void estimate(Time now);
 

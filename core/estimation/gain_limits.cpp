@@ -24,7 +24,7 @@ RowVectorXd GainEstimator::unmeasured_worst(const Row& row) const {
   return worst;
 }
 
-double GainEstimator::most_lux(const Row& row, const VectorXd& level, Time now) const {
+double GainEstimator::max_lux(const Row& row, const VectorXd& level, Time now) const {
   const double unmeasured = unmeasured_worst(row).dot(level);
   if (!row.luxmeter || latest(*row.luxmeter) == nullptr) return unmeasured + row.unseen_lx;
   const Evidence& e = *latest(*row.luxmeter);
@@ -59,19 +59,19 @@ double GainEstimator::most_lux(const Row& row, const VectorXd& level, Time now) 
 }
 
 /// Light of daylight and of lamps that do not respond.
-double GainEstimator::most_without_fixtures(const Row& row, Time now) const {
+double GainEstimator::max_without_fixtures(const Row& row, Time now) const {
   if (meter_.cols() == fixtures() && !any_lost()) return 0;
-  return most_lux(row, vector_of(std::vector<double>(static_cast<std::size_t>(fixtures()), 0.0)), now);
+  return max_lux(row, vector_of(std::vector<double>(static_cast<std::size_t>(fixtures()), 0.0)), now);
 }
 
-double GainEstimator::most_lux_at_point(std::size_t point, std::span<const double> level, Time now) const {
-  return most_lux(row_of_point(point), vector_of(level), now);
+double GainEstimator::max_lux_at_point(std::size_t point, std::span<const double> level, Time now) const {
+  return max_lux(row_of_point(point), vector_of(level), now);
 }
 
-double GainEstimator::most_lux_as_given(std::size_t point, std::span<const double> level, Time now) const {
+double GainEstimator::max_lux_as_given(std::size_t point, std::span<const double> level, Time now) const {
   Row row = row_of_point(point);
   row.unseen_lx = 0;
-  return most_lux(row, as_given(level), now);
+  return max_lux(row, as_given(level), now);
 }
 
 bool GainEstimator::any_lost() const {
@@ -139,8 +139,8 @@ WorstCase GainEstimator::worst_case(std::span<const double> from, std::span<cons
     const std::size_t p = worst.points[static_cast<std::size_t>(k)];
     const double max_lx = *points_[p].max_lx;
     const Row row = row_of_point(p);
-    // most_lux() is convex in the levels: beyond its value without fixtures, it grows at most in proportion.
-    const double daylight_lx = most_without_fixtures(row, now);
+    // max_lux() is convex in the levels: beyond its value without fixtures, it grows at most in proportion.
+    const double daylight_lx = max_without_fixtures(row, now);
     worst.max_lx[k] = std::max(0.0, max_lx - daylight_lx);
     worst.worst_lux_per_level.row(k) = without_lost(unmeasured_worst(row).head(fixtures()));
     if (!row.luxmeter) continue;
@@ -153,7 +153,7 @@ WorstCase GainEstimator::worst_case(std::span<const double> from, std::span<cons
       for (Index j = 0; j < fixtures(); ++j)
         level[j] = level_on_the_way(begin[j], end[j], static_cast<double>(s) / kFadeSamples,
                                     switched_[static_cast<std::size_t>(j)] != 0);
-      const double lux = estimate.dot(level.head(fixtures())), most = most_lux(row, level, now);
+      const double lux = estimate.dot(level.head(fixtures())), most = max_lux(row, level, now);
       if (lux > 0 && (s == kFadeSamples || most >= 0.9 * max_lx)) factor = std::max(factor, (most - daylight_lx) / lux);
     }
     if (factor > 0) worst.worst_lux_per_level.row(k) = factor * estimate;
@@ -171,7 +171,7 @@ WorstCase GainEstimator::worst_of_any(Time now) const {
   for (Index k = 0; k < count; ++k) {
     const std::size_t p = worst.points[static_cast<std::size_t>(k)];
     const Row row = row_of_point(p);
-    worst.max_lx[k] = std::max(0.0, *points_[p].max_lx - most_without_fixtures(row, now));
+    worst.max_lx[k] = std::max(0.0, *points_[p].max_lx - max_without_fixtures(row, now));
     worst.worst_lux_per_level.row(k) = without_lost(unmeasured_worst(row).head(fixtures()));
   }
   return worst;
@@ -197,12 +197,12 @@ LampWorth GainEstimator::worth() const {
 /// Of the on-or-off fixtures, by the model.
 void GainEstimator::switch_off_brightest(const Row& row, std::span<double> level) const {
   std::size_t brightest = level.size();
-  double most_lx = 0;
+  double worst_case_lx = 0;
   for (std::size_t j = 0; j < level.size(); ++j) {
     const double lux = level[j] > 0 && switched_[j] != 0 ? row.lux_per_level[static_cast<Index>(j)] : 0;
-    if (lux <= most_lx) continue;
+    if (lux <= worst_case_lx) continue;
     brightest = j;
-    most_lx = lux;
+    worst_case_lx = lux;
   }
   if (brightest < level.size()) level[brightest] = 0;
 }
@@ -229,20 +229,20 @@ std::vector<double> GainEstimator::dimmed_to_limits(std::span<const double> give
   for (std::size_t p = 0; p < points_.size(); ++p) {
     if (!points_[p].max_lx) continue;
     const Row row = row_of_point(p);
-    const auto most_at = [&](std::span<const double> at) { return most_lux(row, vector_of(at), now); };
+    const auto max_at = [&](std::span<const double> at) { return max_lux(row, vector_of(at), now); };
     const auto set_alone = [&] {
       std::vector<double> set = level;
       for (std::size_t j = 0; j < set.size(); ++j)
         if (switched_[j] == 0) set[j] = 0;
       return set;
     };
-    if (most_at(level) <= *points_[p].max_lx) continue;
-    double set_lx = most_at(set_alone());  // with daylight
+    if (max_at(level) <= *points_[p].max_lx) continue;
+    double set_lx = max_at(set_alone());  // with daylight
     for (std::size_t j = 0; j < level.size() && set_lx > *points_[p].max_lx; ++j) {
       switch_off_brightest(row, level);
-      set_lx = most_at(set_alone());
+      set_lx = max_at(set_alone());
     }
-    const double most = most_at(level), room = *points_[p].max_lx - set_lx;
+    const double most = max_at(level), room = *points_[p].max_lx - set_lx;
     if (most <= *points_[p].max_lx) continue;
     const double share = room > 0 ? std::pow(room / (most - set_lx), 1 / (1 - kCurveError)) : 0;
     for (std::size_t j = 0; j < level.size(); ++j)

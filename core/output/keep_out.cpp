@@ -9,8 +9,8 @@ namespace luxrig {
 namespace {
 
 /// Most parts of a range of postures to examine. If they do not suffice, the beam counts as meeting the zone.
-constexpr int kMostParts = 1000;
-constexpr int kMostHalvings = 10;  ///< of a straight line
+constexpr int kMaxParts = 1000;
+constexpr int kMaxHalvings = 10;  ///< of a straight line
 constexpr double kFieldShare = 0.1;
 constexpr double kGammaStep_rad = rad_from_deg(0.5), kAzimuthStep_rad = rad_from_deg(5);
 
@@ -50,7 +50,7 @@ Joints middle_of(const JointBox& box) {
 }
 
 /// Largest |sin| between two angles.
-double most_sine(double from_rad, double to_rad) {
+double max_sine(double from_rad, double to_rad) {
   const double half_turn = std::floor((to_rad - kPi / 2) / kPi) * kPi + kPi / 2;
   if (half_turn >= from_rad) return 1;
   return std::max(std::abs(std::sin(from_rad)), std::abs(std::sin(to_rad)));
@@ -75,11 +75,11 @@ double field_half_angle_rad(const Luminaire& luminaire, double beam_rad) {
     const double zoomed = beam_rad > 0 && luminaire.beam_angle_rad > 0 ? beam_rad / luminaire.beam_angle_rad : 1.0;
     return std::min(kPi, zoomed * luminaire.field_angle_rad / 2);
   }
-  const double least_cd = kFieldShare * luminaire.intensity->max_intensity_cd();
+  const double min_cd = kFieldShare * luminaire.intensity->max_intensity_cd();
   for (double gamma = kPi; gamma > 0; gamma -= kGammaStep_rad) {
     for (double azimuth = 0; azimuth < 2 * kPi; azimuth += kAzimuthStep_rad) {
       const Vec3 direction(std::sin(gamma) * std::cos(azimuth), std::sin(gamma) * std::sin(azimuth), -std::cos(gamma));
-      if (luminaire.intensity->intensity_cd(direction) >= least_cd) return std::min(kPi, gamma + kGammaStep_rad);
+      if (luminaire.intensity->intensity_cd(direction) >= min_cd) return std::min(kPi, gamma + kGammaStep_rad);
     }
   }
   return kGammaStep_rad;
@@ -101,13 +101,13 @@ double angle_to_box_rad(const Vec3& from_m, const Vec3& direction, const Eigen::
   for (unsigned i = 0; i < 8; ++i)
     corner[i] = Vec3((i & 1u) != 0 ? high.x() : low.x(), (i & 2u) != 0 ? high.y() : low.y(),
                      (i & 4u) != 0 ? high.z() : low.z());
-  double least_rad = kPi;
+  double min_rad = kPi;
   for (unsigned i = 0; i < 8; ++i) {
     for (const unsigned bit : {1u, 2u, 4u}) {
-      if ((i & bit) == 0) least_rad = std::min(least_rad, angle_to_edge_rad(direction, corner[i], corner[i | bit]));
+      if ((i & bit) == 0) min_rad = std::min(min_rad, angle_to_edge_rad(direction, corner[i], corner[i | bit]));
     }
   }
-  return least_rad;
+  return min_rad;
 }
 
 KeepOutZones::KeepOutZones(const Rig& rig) : zones_(rig.keep_outs) {
@@ -157,12 +157,12 @@ bool KeepOutZones::box_meets(const KeepOut& zone, const Beam& beam, const JointB
   const double half_angle = half_angle_rad(beam, whole.most.beam_rad);
   std::vector<JointBox> parts = {whole};
   for (int looked = 0; !parts.empty(); ++looked) {
-    if (looked >= kMostParts) return true;
+    if (looked >= kMaxParts) return true;
     const JointBox part = parts.back();
     parts.pop_back();
     const double pan_rad = (part.most.pan_rad - part.least.pan_rad) / 2;
     const double tilt_rad = (part.most.tilt_rad - part.least.tilt_rad) / 2;
-    const double pan_reach_rad = pan_rad * most_sine(part.least.tilt_rad, part.most.tilt_rad);
+    const double pan_reach_rad = pan_rad * max_sine(part.least.tilt_rad, part.most.tilt_rad);
     const Joints middle = middle_of(part);
     const double room = room_rad(zone, beam, middle, half_angle);
     if (room <= 0) return true;
@@ -195,7 +195,7 @@ bool KeepOutZones::line_meets(const KeepOut& zone, const Beam& beam, const Joint
   const JointBox at_begin{on_line(from.least, to, begin), on_line(from.most, to, begin)};
   const JointBox at_end{on_line(from.least, to, end), on_line(from.most, to, end)};
   if (!box_meets(zone, beam, at_begin.joined(at_end))) return false;
-  if (depth >= kMostHalvings || box_meets(zone, beam, at_begin) || box_meets(zone, beam, at_end)) return true;
+  if (depth >= kMaxHalvings || box_meets(zone, beam, at_begin) || box_meets(zone, beam, at_end)) return true;
   const double middle = (begin + end) / 2;
   return line_meets(zone, beam, from, to, begin, middle, depth + 1) ||
          line_meets(zone, beam, from, to, middle, end, depth + 1);

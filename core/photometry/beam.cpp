@@ -15,7 +15,7 @@ Vec3 direction(double gamma_rad, double c_rad) {
 
 double half_cone_rad(const IntensityDistribution& of) { return std::min(kPi, 0.5 * of.emission_cone_rad()); }
 
-double angle_in_plane(const IntensityDistribution& of, double c_rad, double least_cd) {
+double angle_in_plane(const IntensityDistribution& of, double c_rad, double min_cd) {
   constexpr int kSteps = 3600;  // to either side
   const double half = half_cone_rad(of);
   const auto intensity = [&](double angle) { return of.intensity_cd(direction(angle, c_rad)); };
@@ -29,17 +29,17 @@ double angle_in_plane(const IntensityDistribution& of, double c_rad, double leas
       peak = step;
     }
   }
-  if (most < least_cd) return 0;
+  if (most < min_cd) return 0;
   double spread = 0;
   for (const int side : {-1, 1}) {
     int step = peak;
-    while (std::abs(step + side) <= kSteps && intensity(angle_of(step + side)) >= least_cd) step += side;
+    while (std::abs(step + side) <= kSteps && intensity(angle_of(step + side)) >= min_cd) step += side;
     double inside = angle_of(step);
     if (std::abs(step + side) <= kSteps) {
       double outside = angle_of(step + side);
       for (int halving = 0; halving < 40; ++halving) {
         const double middle = 0.5 * (inside + outside);
-        (intensity(middle) >= least_cd ? inside : outside) = middle;
+        (intensity(middle) >= min_cd ? inside : outside) = middle;
       }
     }
     spread += side * inside;
@@ -51,8 +51,8 @@ double angle_in_plane(const IntensityDistribution& of, double c_rad, double leas
 
 PlaneAngles angles_to_share(const IntensityDistribution& of, double share) {
   LUXRIG_CHECK(share > 0 && share <= 1, "share {}", share);
-  const double least_cd = share * of.max_intensity_cd();
-  return {angle_in_plane(of, 0, least_cd), angle_in_plane(of, 0.5 * kPi, least_cd)};
+  const double min_cd = share * of.max_intensity_cd();
+  return {angle_in_plane(of, 0, min_cd), angle_in_plane(of, 0.5 * kPi, min_cd)};
 }
 
 double cone_of_flux_rad(const IntensityDistribution& of, double share) {

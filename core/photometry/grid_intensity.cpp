@@ -42,7 +42,7 @@ double half_cone_across_pole_rad(const SphereTable& table) {
   const auto& polar = table.polar_rad();
   const auto& azimuth = table.azimuth_rad();
   const bool round = table.symmetry() == SphereTable::Symmetry::round;
-  double least_cosine = 1;
+  double min_cosine = 1;
   for (std::size_t p = 0; p + 1 < polar.size(); ++p) {
     const double sine = std::max(0.0, std::min(std::sin(polar[p]), std::sin(polar[p + 1])));
     for (std::size_t a = 0; a + 1 < azimuth.size(); ++a) {
@@ -52,10 +52,10 @@ double half_cone_across_pole_rad(const SphereTable& table) {
                         table.value(last, p + 1) == 0;
       if (dark) continue;
       const double cosine = round ? -1 : std::min(std::cos(azimuth[a]), std::cos(azimuth[a + 1]));
-      least_cosine = std::min(least_cosine, cosine < 0 ? -1 : sine * cosine);
+      min_cosine = std::min(min_cosine, cosine < 0 ? -1 : sine * cosine);
     }
   }
-  return std::acos(least_cosine);
+  return std::acos(min_cosine);
 }
 
 class GridIntensity final : public IntensityDistribution {

@@ -23,7 +23,7 @@ std::optional<Vec3> with_luminance_1(const Vec3& rgb) {
 }
 
 Vec3 rgb_of_cct(double cct_k) {
-  LUXRIG_CHECK(cct_k >= kLeastCct_k && cct_k <= kMostCct_k, "{} K", cct_k);
+  LUXRIG_CHECK(cct_k >= kMinCct_k && cct_k <= kMaxCct_k, "{} K", cct_k);
   const double t = 1000 / cct_k;
   const double x = cct_k < 4000 ? 0.179910 + t * (0.8776956 + t * (-0.2343589 - t * 0.2661239))
                                 : 0.240390 + t * (0.2226347 + t * (2.1070379 - t * 3.0258469));

@@ -15,7 +15,7 @@ namespace luxrig {
 /// `rgb` scaled to a luminance of 1; nullopt if it has none, or is negative or not finite.
 [[nodiscard]] std::optional<Vec3> with_luminance_1(const Vec3& rgb);
 
-inline constexpr double kLeastCct_k = 1667, kMostCct_k = 25000;
+inline constexpr double kMinCct_k = 1667, kMaxCct_k = 25000;
 
 /// Chromaticity, CIE 1931 2° observer.
 using Chromaticity = Eigen::Vector2d;  ///< x, y
@@ -34,7 +34,7 @@ struct ColourWithin709 {
 [[nodiscard]] ColourWithin709 within_rec709(const Vec3& rgb);
 
 /// Colour of a black body. Negative primaries (below 1900 K) are set to 0.
-/// requires   kLeastCct_k ≤ cct_k ≤ kMostCct_k (asserted)
+/// requires   kMinCct_k ≤ cct_k ≤ kMaxCct_k (asserted)
 /// accuracy   0.001 in x and y
 /// source     cubic fit of the Planckian locus by Kim et al., US patent 7024034 (2006); Rec. 709 primaries, white D65
 [[nodiscard]] Vec3 rgb_of_cct(double cct_k);

@@ -17,10 +17,10 @@ constexpr double kRounding_rad = 1e-9;
 // Widest piece for which the series below are good to 1e-15.
 constexpr double kWidestPiece_rad = 0.05;
 // Shares are kept off the ends, where a value of 0 would give a direction of density 0.
-constexpr double kLeastShare = 1e-12;
+constexpr double kMinShare = 1e-12;
 // Values below this share of the largest count as dark: the squares of smaller ones would underflow to 0 / 0.
 constexpr double kFaintest = 1e-60;
-constexpr double kLeastPeak = 1e-60, kMostPeak = 1e60;
+constexpr double kMinPeak = 1e-60, kMaxPeak = 1e60;
 
 /// sin x - x and 1 - cos x for small x, without cancellation.
 struct Small {
@@ -83,9 +83,9 @@ Ascending::Ascending(std::vector<double> knots) : knots_(std::move(knots)) {
   }
   if (even) inverse_step_ = 1 / step;
   // Enough buckets that no two knots share one, if possible. One comparison then finds the interval.
-  double least_gap = range;
-  for (std::size_t i = 1; i < knots_.size(); ++i) least_gap = std::min(least_gap, knots_[i] - knots_[i - 1]);
-  const double wanted = std::ceil(1.001 * range / std::max(least_gap, 1e-6 * range));
+  double min_gap = range;
+  for (std::size_t i = 1; i < knots_.size(); ++i) min_gap = std::min(min_gap, knots_[i] - knots_[i - 1]);
+  const double wanted = std::ceil(1.001 * range / std::max(min_gap, 1e-6 * range));
   one_each_ = wanted <= 4096;
   const std::size_t buckets = one_each_ ? static_cast<std::size_t>(wanted) : 2 * knots_.size();
   buckets_per_unit_ = static_cast<double>(buckets) / range;
@@ -133,7 +133,7 @@ SphereTable::SphereTable(Symmetry symmetry, std::vector<double> polar_rad, std::
   const std::size_t columns = symmetry_ == Symmetry::round ? 1 : azimuth_.knots().size();
   LUXRIG_CHECK(values_.size() == polars * columns, "{} values for {} x {} angles", values_.size(), columns, polars);
   largest_ = *std::max_element(values_.begin(), values_.end());
-  LUXRIG_CHECK(largest_ >= kLeastPeak && largest_ <= kMostPeak, "largest value {}", largest_);
+  LUXRIG_CHECK(largest_ >= kMinPeak && largest_ <= kMaxPeak, "largest value {}", largest_);
   for (double& value : values_) value = value < kFaintest * largest_ ? 0 : value;
 
   const auto& azimuth = azimuth_.knots();
@@ -271,11 +271,11 @@ SphereTable::Sample SphereTable::sample(double u, double v) const {
   const double before = cumulative_.knots()[at];
   const double share = (v - before) / (cumulative_.knots()[at + 1] - before);
   const Piece& piece = pieces_[at];
-  const Polar polar = draw_polar(piece, std::clamp(share, kLeastShare, 1 - kLeastShare));
+  const Polar polar = draw_polar(piece, std::clamp(share, kMinShare, 1 - kMinShare));
   const auto& knots = polar_.knots();
   // Kept off the ends, where a row may be dark.
   const double t = std::clamp((polar.angle_rad - knots[piece.band]) / (knots[piece.band + 1] - knots[piece.band]),
-                              kLeastShare, 1 - kLeastShare);
+                              kMinShare, 1 - kMinShare);
 
   if (symmetry_ == Symmetry::round) {
     const Turn turn(u);
@@ -287,7 +287,7 @@ SphereTable::Sample SphereTable::sample(double u, double v) const {
   const int images = copies(symmetry_);
   const double turned = u * images;
   const int image = std::clamp(static_cast<int>(turned), 0, images - 1);
-  double along = std::clamp(turned - image, kLeastShare, 1 - kLeastShare);
+  double along = std::clamp(turned - image, kMinShare, 1 - kMinShare);
   along = image % 2 == 1 ? 1 - along : along;
 
   const auto& azimuth = azimuth_.knots();
@@ -308,7 +308,7 @@ SphereTable::Sample SphereTable::sample(double u, double v) const {
   }
   const std::size_t high = low + 1;
   const double start = reached(low);
-  const double of_cell = std::clamp((target - start) / (reached(high) - start), kLeastShare, 1 - kLeastShare);
+  const double of_cell = std::clamp((target - start) / (reached(high) - start), kMinShare, 1 - kMinShare);
   const auto blend = [&](std::size_t a) {
     return value(a, piece.band) + t * (value(a, piece.band + 1) - value(a, piece.band));
   };

@@ -94,10 +94,10 @@ class Spot final : public IntensityDistribution {
       if (i <= 40) add(beam_rad_ * std::pow(i, 1 / power_));     // 2^-i: its foot
     }
     std::sort(angles.begin(), angles.end());
-    const double least_gap_rad = 1e-9 * end_rad;
+    const double min_gap_rad = 1e-9 * end_rad;
     std::vector<double> kept{0}, values{1};
     for (const double angle_rad : angles) {
-      if (angle_rad - kept.back() < least_gap_rad || end_rad - angle_rad < least_gap_rad) continue;
+      if (angle_rad - kept.back() < min_gap_rad || end_rad - angle_rad < min_gap_rad) continue;
       kept.push_back(angle_rad);
       values.push_back(profile(angle_rad));
     }

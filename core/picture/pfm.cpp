@@ -10,7 +10,7 @@
 namespace luxrig {
 namespace {
 
-constexpr int kMostSide_px = 16384;
+constexpr int kMaxSide_px = 16384;
 static_assert(std::endian::native == std::endian::little, "samples are copied as they are");
 
 /// The next word of the header, consumed with one white space; empty if there is none.
@@ -46,8 +46,8 @@ Result<Picture> picture_from_pfm(std::string_view bytes) {
   if (next_word(bytes) != "PF" || !read_all_of(next_word(bytes), picture.width_px) ||
       !read_all_of(next_word(bytes), picture.height_px) || !read_all_of(next_word(bytes), scale))
     return refusal("not a colour picture of the format PFM");
-  if (picture.width_px < 1 || picture.width_px > kMostSide_px || picture.height_px < 1 ||
-      picture.height_px > kMostSide_px)
+  if (picture.width_px < 1 || picture.width_px > kMaxSide_px || picture.height_px < 1 ||
+      picture.height_px > kMaxSide_px)
     return refusal(fmt::format("a picture of {} x {} pixels", picture.width_px, picture.height_px));
   if (!(scale < 0)) return refusal("a picture with big-endian samples");
   const auto row = static_cast<std::size_t>(picture.width_px), rows = static_cast<std::size_t>(picture.height_px);

@@ -79,13 +79,13 @@ class Renderer {
     const auto pixels = static_cast<std::size_t>(camera_.width_px) * static_cast<std::size_t>(camera_.height_px);
     sums_.assign(pixels, {});
     bool more = true;
-    while (more && picture_.passes < options_.most_passes) {
+    while (more && picture_.passes < options_.max_passes) {
       if (!pass()) return tl::unexpected(Fault{Cause::cancelled, "", "stopped while rendering", {}});
       ++picture_.passes;
       picture_.relative_error = noise();
       more = picture_.passes < 4 || picture_.relative_error > options_.wanted_relative_error;
       if (options_.after_pass) {
-        const double by_passes = static_cast<double>(picture_.passes) / options_.most_passes;
+        const double by_passes = static_cast<double>(picture_.passes) / options_.max_passes;
         const double by_noise = std::pow(options_.wanted_relative_error / std::max(picture_.relative_error, 1e-9), 2);
         more =
             options_.after_pass(more ? std::min(1.0, std::max(by_passes, by_noise)) : 1.0, picture_.relative_error) &&
@@ -345,7 +345,7 @@ Result<Picture> render_picture(const RayScene& scene, std::span<const Emitter> e
     return refusal(fmt::format("field of view of {:g}°; above 0 and below 180", deg_from_rad(camera.vertical_fov_rad)));
   const double ahead_m = (camera.target_world_m - camera.eye_world_m).norm();
   if (!(ahead_m > 0) || !std::isfinite(ahead_m)) return refusal("camera's target lies in its eye, or is not finite");
-  if (options.most_passes < 1) return refusal("passes must be at least 1");
+  if (options.max_passes < 1) return refusal("passes must be at least 1");
   if (levels.size() != emitters.size())
     return refusal(fmt::format("{} levels for {} emitters", levels.size(), emitters.size()));
   EvaluateOptions checked;

@@ -33,7 +33,7 @@ struct PixelPlace {
 
 /// Its progress callback is not used: see after_pass.
 struct PictureOptions : Run {
-  int most_passes = 64;                 ///< samples per pixel
+  int max_passes = 64;                  ///< samples per pixel
   double wanted_relative_error = 0.02;  ///< stops when the picture's noise (Picture::relative_error) is this low
   /// Called after each pass with the progress (0…1) and the noise so far; false ends the picture. A caller with a clock
   /// can keep a time budget.

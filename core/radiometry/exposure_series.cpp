@@ -9,7 +9,7 @@
 namespace luxrig {
 namespace {
 
-constexpr std::size_t kLeastPixels = 64, kGroupPixels = 8, kMostGroups = 256;
+constexpr std::size_t kMinPixels = 64, kGroupPixels = 8, kMaxGroups = 256;
 constexpr double kGroupWidth = 0.03;  // a pixel brighter by this much starts another group
 constexpr double kNearlyAll = 0.999, kPlateau = 0.01, kClippedAllowed = 0.001;
 constexpr double kSharesOfRatios[2] = {1.0, 1.7};
@@ -18,7 +18,7 @@ Result<void> check_series(const ExposureSeries& series) {
   if (series.steps.size() < 3) return refusal("a series needs three exposures at least");
   if (series.full_scale_counts < 1) return refusal("a converter without steps");
   const std::size_t pixels = series.steps[0].frames.empty() ? 0 : series.steps[0].frames[0].size();
-  if (pixels < kLeastPixels) return refusal(fmt::format("pictures of {} pixels", pixels));
+  if (pixels < kMinPixels) return refusal(fmt::format("pictures of {} pixels", pixels));
   double last_s = 0;
   for (const ExposureStep& step : series.steps) {
     if (!std::isfinite(step.exposure_s) || !(step.exposure_s > last_s))
@@ -92,7 +92,7 @@ std::vector<std::size_t> cuts_of(const ExposureSeries& series, const SampleGroup
   const auto width_from = [&](std::size_t pixel) {
     return std::max(kGroupWidth * told(pixel), 1.0 / series.full_scale_counts);
   };
-  const std::size_t most = std::max(kGroupPixels, order.size() / kMostGroups);
+  const std::size_t most = std::max(kGroupPixels, order.size() / kMaxGroups);
   std::vector<std::size_t> cuts = {0};
   double width = width_from(order.front());
   for (std::size_t i = 1; i < order.size(); ++i) {
@@ -203,7 +203,7 @@ Result<SampleGroups> group_samples(const ExposureSeries& series) {
       });
       if (inside) bright.push_back(p);
     }
-    if (bright.size() < kLeastPixels) continue;
+    if (bright.size() < kMinPixels) continue;
     bright.erase(bright.begin(), bright.begin() + static_cast<std::ptrdiff_t>(bright.size() / 2));
     out.flicker = std::max(out.flicker, flicker_of(series.steps[s], bright));
   }

@@ -9,7 +9,7 @@
 namespace luxrig {
 namespace {
 
-constexpr int kShareLevels = 20, kMostRounds = 200;
+constexpr int kShareLevels = 20, kMaxRounds = 200;
 constexpr double kLowestShare = 0.05, kHighestShare = 0.95;  ///< of full samples. Source: EMVA 1288, as in line_fit.cpp
 constexpr double kLevelKnownTo = 0.003;                      ///< no sample is taken as known better, relative
 constexpr double kPlacesDiffer = 3;                          ///< least ratio of brightest to darkest place at a level
@@ -86,7 +86,7 @@ struct ProductFit {
   }
 
   void run() {
-    for (int round = 0; round < kMostRounds; ++round) {
+    for (int round = 0; round < kMaxRounds; ++round) {
       for (std::size_t g = 0; g < places.size(); ++g) {
         double up = 0, down = 0;
         for (const PlacePoint& p : places[g]) {

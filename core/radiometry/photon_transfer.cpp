@@ -7,7 +7,7 @@ namespace luxrig {
 namespace {
 
 constexpr int kTransferRounds = 4;
-constexpr double kLeastNoise_counts = 0.65;  // including rounding noise; less than this is not noise of its own
+constexpr double kMinNoise_counts = 0.65;    // including rounding noise; less than this is not noise of its own
 constexpr double kKnown = 0.1;               // relative standard error of the slope
 
 struct TransferPoint {
@@ -29,8 +29,8 @@ std::optional<PhotonTransfer> photon_transfer(const SampleGroups& groups, int fu
       const double noise_counts = std::sqrt(sample.variance) * counts;
       // Rounding adds a twelfth of a count squared if samples have noise.
       const double encoded = noise_counts * noise_counts - 1.0 / 12;
-      if (light > 0.2 * full) quiet += noise_counts < kLeastNoise_counts;
-      if (noise_counts < kLeastNoise_counts || encoded <= 0) continue;
+      if (light > 0.2 * full) quiet += noise_counts < kMinNoise_counts;
+      if (noise_counts < kMinNoise_counts || encoded <= 0) continue;
       const double slope = curve.slope(sample.mean);
       points.push_back({light, slope * slope * encoded, std::sqrt(2.0 / static_cast<double>(sample.samples))});
     }

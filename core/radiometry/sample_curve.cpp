@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kCurvePoints = 2049;  // straight lines between this many are off by less than 1e-6 of full scale
 constexpr std::size_t kCurveSlices = 1024;
-constexpr std::size_t kMostCurvePoints = 70'000;
+constexpr std::size_t kMaxCurvePoints = 70'000;
 constexpr std::string_view kCurveHead = "sample,light";
 
 double light_of_srgb(double x) { return x <= 0.04045 ? x / 12.92 : std::pow((x + 0.055) / 1.055, 2.4); }
@@ -111,7 +111,7 @@ Result<SampleCurve> sample_curve_from_csv(std::string_view text) {
     if (comma == std::string_view::npos || !read_curve_number(row.substr(0, comma), sample) ||
         !read_curve_number(row.substr(comma + 1), light))
       return refusal(fmt::format("line {} of a response curve has no two numbers", line));
-    if (points.size() >= kMostCurvePoints) return refusal("a response curve has too many points");
+    if (points.size() >= kMaxCurvePoints) return refusal("a response curve has too many points");
     points.emplace_back(sample, light);
   }
   return SampleCurve::through(std::move(points));

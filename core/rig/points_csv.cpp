@@ -17,7 +17,7 @@
 namespace luxrig {
 namespace {
 
-constexpr std::size_t kMostBytes = std::size_t{64} << 20;
+constexpr std::size_t kMaxBytes = std::size_t{64} << 20;
 
 enum Column { kName, kX, kY, kZ, kNx, kNy, kNz, kGoal, kGoalX, kGoalY, kGoalCct, kWeightColumn, kMax, kColumns };
 constexpr std::array<std::string_view, kColumns> kColumnNames = {
@@ -81,7 +81,7 @@ std::optional<std::vector<Cell>> split(std::string_view line, int line_number, P
 
 class PointsReader {
  public:
-  PointsReader(const std::string& file_name, std::size_t most) : problems_(file_name), most_(most) {}
+  PointsReader(const std::string& file_name, std::size_t most) : problems_(file_name), max_(most) {}
 
   void line(std::string_view text, int number) {
     const std::string_view content = trimmed(text);
@@ -145,7 +145,7 @@ class PointsReader {
   }
 
   void row(const std::vector<Cell>& cells, int number) {
-    if (rows_.size() >= most_) {
+    if (rows_.size() >= max_) {
       problems_.add({number, 1}, "more than 100000 points", "leave some out");
       stopped_ = true;
       return;
@@ -250,7 +250,7 @@ class PointsReader {
   }
 
   ProblemList problems_;
-  std::size_t most_;
+  std::size_t max_;
   std::vector<Column> columns_;
   std::vector<PointsTable::Row> rows_;
   bool has_header_ = false, stopped_ = false;
@@ -277,7 +277,7 @@ PointsTable load_points_csv(const std::filesystem::path& path, std::size_t most)
   };
   std::error_code error;
   const auto size = std::filesystem::file_size(path, error);
-  if (!error && size > kMostBytes) return refuse("the file is over 64 MiB", "leave some points out");
+  if (!error && size > kMaxBytes) return refuse("the file is over 64 MiB", "leave some points out");
   std::ifstream in(path, std::ios::binary);
   if (error || !in) return refuse("the file cannot be read", "check who may read it");
   std::string text(size, '\0');

@@ -19,7 +19,7 @@ class ProblemList {
   void add(Problem problem);
 
   /// Full at a number of problems that sends a person off to mend the first ones. Further ones are counted, not kept.
-  [[nodiscard]] bool full() const { return problems_.size() >= kMost; }
+  [[nodiscard]] bool full() const { return problems_.size() >= kMax; }
   [[nodiscard]] bool empty() const { return problems_.empty(); }
   [[nodiscard]] const std::string& file() const { return file_; }
 
@@ -27,7 +27,7 @@ class ProblemList {
   [[nodiscard]] std::vector<Problem> take();
 
  private:
-  static constexpr std::size_t kMost = 1000;
+  static constexpr std::size_t kMax = 1000;
   std::string file_;
   std::vector<Problem> problems_;
   std::size_t dropped_ = 0;

@@ -11,7 +11,7 @@
 namespace luxrig {
 namespace {
 
-constexpr std::size_t kMostRigBytes = std::size_t{16} << 20;
+constexpr std::size_t kMaxRigBytes = std::size_t{16} << 20;
 
 tl::unexpected<std::vector<Problem>> refuse(const std::filesystem::path& file, std::string what, std::string mend) {
   return tl::unexpected(std::vector<Problem>{{file.string(), 0, 0, std::move(what), std::move(mend)}});
@@ -177,7 +177,7 @@ void RigReader::read_all() {
 }
 
 Checked<Rig> parse_rig(std::string_view text, const std::filesystem::path& file, const std::filesystem::path& folder) {
-  if (text.size() > kMostRigBytes) {
+  if (text.size() > kMaxRigBytes) {
     return refuse(file, fmt::format("the file has {} bytes", text.size()),
                   "a rig file may have at most 16 MiB; put many points into a [points] file");
   }
@@ -199,7 +199,7 @@ Checked<Rig> load_rig(const std::filesystem::path& path) {
   std::ifstream in(file, std::ios::binary);
   std::string text;
   // One byte beyond the limit shows that a file is too long.
-  text.resize(kMostRigBytes + 1);
+  text.resize(kMaxRigBytes + 1);
   in.read(text.data(), static_cast<std::streamsize>(text.size()));
   if (!in.is_open() || in.bad()) return refuse(file, "the file cannot be read", "check who may read it");
   text.resize(static_cast<std::size_t>(in.gcount()));

@@ -139,7 +139,7 @@ void RayScene::occluded_many(const Vec3& from_world_m, const Vec3& from_normal_w
   for (std::size_t begin = 0; begin < to_world_m.size(); begin += kBatch) {
     const std::size_t end = std::min(begin + kBatch, to_world_m.size());
     std::size_t count = 0;
-    double least_cosine = 1;
+    double min_cosine = 1;
     for (std::size_t i = begin; i < end; ++i) {
       occluded[i] = 0;
       to_m[count] = to_world_m[i] - state.origin_world_m;
@@ -148,12 +148,12 @@ void RayScene::occluded_many(const Vec3& from_world_m, const Vec3& from_normal_w
       if (!state.aim(from_m, from_normal_world, to_m[count], error_m[count], ray)) continue;
       ray.id = static_cast<unsigned>(count);
       const Vec3 way = to_m[count] - from_m, first = to_m[0] - from_m;
-      least_cosine = std::min(least_cosine, way.dot(first) / std::sqrt(way.squaredNorm() * first.squaredNorm()));
+      min_cosine = std::min(min_cosine, way.dot(first) / std::sqrt(way.squaredNorm() * first.squaredNorm()));
       of[count++] = i;
     }
     if (count == 0) continue;
     targets.context.flags =
-        least_cosine > kCoherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
+        min_cosine > kCoherent ? RTC_INTERSECT_CONTEXT_FLAG_COHERENT : RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     if (count < 3)
       for (std::size_t k = 0; k < count; ++k) rtcOccluded1(state.scene, &targets.context, &rays[k]);
     else

@@ -9,9 +9,9 @@ namespace {
 
 using Box = Eigen::AlignedBox3d;
 
-constexpr double kMostThings = 0.8;                 ///< share of the things that defines their spread
-constexpr double kLeastSpread_m = 5, kAround = 30;  ///< multiple of the spread that still counts as surroundings
-constexpr std::size_t kMostPlanes = 64;
+constexpr double kMaxThings = 0.8;                ///< share of the things that defines their spread
+constexpr double kMinSpread_m = 5, kAround = 30;  ///< multiple of the spread that still counts as surroundings
+constexpr std::size_t kMaxPlanes = 64;
 /// Tolerance for faces of one plane: cutting a face of 20 km leaves differences this small.
 constexpr double kSamePlane_m = 0.01, kSameNormal = 0.9999;
 
@@ -38,7 +38,7 @@ Cluster cluster_of(std::span<const Vec3> things_world_m) {
   std::transform(things_world_m.begin(), things_world_m.end(), sorted.begin(),
                  [&](const Vec3& at) { return (at - cluster.middle_world_m).norm(); });
   std::sort(sorted.begin(), sorted.end());
-  cluster.spread_m = sorted[static_cast<std::size_t>(kMostThings * static_cast<double>(sorted.size() - 1))];
+  cluster.spread_m = sorted[static_cast<std::size_t>(kMaxThings * static_cast<double>(sorted.size() - 1))];
   return cluster;
 }
 
@@ -69,7 +69,7 @@ class Faces {
     const Vec3 origin = box.center();
     std::vector<Plane> planes;
     each([&](const std::array<Vec3, 3>& corners) {
-      if (planes.size() >= kMostPlanes || inside(corners)) return;
+      if (planes.size() >= kMaxPlanes || inside(corners)) return;
       const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
       const Plane plane{normal, normal.dot(corners[0] - origin)};
       const bool known = std::any_of(planes.begin(), planes.end(), [&](const Plane& p) {
@@ -107,7 +107,7 @@ RoomBounds room_bounds_of(const Scene& scene, std::span<const Vec3> things_world
   const Box all = faces.bounds();
   if (all.isEmpty() || things_world_m.empty()) return {all, all};
   const auto [middle_world_m, spread_m] = cluster_of(things_world_m);
-  const Vec3 reach_m = Vec3::Constant(kAround * std::max(kLeastSpread_m, spread_m));
+  const Vec3 reach_m = Vec3::Constant(kAround * std::max(kMinSpread_m, spread_m));
   const Box about(middle_world_m - reach_m, middle_world_m + reach_m);
   if (about.contains(all)) return {all, all};
   const Box built = faces.bounds_within(about);

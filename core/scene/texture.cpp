@@ -6,8 +6,8 @@
 namespace luxrig {
 namespace {
 
-constexpr std::size_t kMostTexels = 512;  // along a side
-constexpr double kMostSteps = 24;         // along the longest edge of a triangle
+constexpr std::size_t kMaxTexels = 512;  // along a side
+constexpr double kMaxSteps = 24;         // along the longest edge of a triangle
 
 const std::array<double, 256>& srgb_table() {
   static const std::array<double, 256> table = [] {
@@ -27,7 +27,7 @@ double linear_of_srgb(double encoded) {
 Texture::Rows::Rows(std::size_t width, std::size_t height)
     : width_(width),
       height_(height),
-      reduce_((std::max(width, height) + kMostTexels - 1) / kMostTexels),
+      reduce_((std::max(width, height) + kMaxTexels - 1) / kMaxTexels),
       texture_(std::make_shared<Texture>()) {
   Level base;
   base.width = (width + reduce_ - 1) / reduce_;
@@ -88,7 +88,7 @@ Vec3 Texture::mean_over(const std::array<std::array<float, 2>, 3>& corners) cons
     const Vec2 size(static_cast<double>(level.width), static_cast<double>(level.height));
     const double longest = std::max(
         {(b - a).cwiseProduct(size).norm(), (c - a).cwiseProduct(size).norm(), (c - b).cwiseProduct(size).norm()});
-    if (longest > kMostSteps) continue;
+    if (longest > kMaxSteps) continue;
     // The centres of steps² equal parts of the triangle.
     const int steps = std::max(1, static_cast<int>(std::ceil(longest)));
     Vec3 sum = Vec3::Zero();

@@ -9,7 +9,7 @@ namespace luxrig {
 namespace {
 
 constexpr Duration kHalfTurn = std::chrono::milliseconds(500);
-constexpr double kLeastBright = 0.5;
+constexpr double kMinBright = 0.5;
 constexpr double kNod_rad = 5 * std::numbers::pi / 180;
 
 /// `at_rad`, moved by kNod_rad to the side with more room.
@@ -28,7 +28,7 @@ IdentifyPattern::IdentifyPattern(const Rig& rig, std::vector<std::size_t> fixtur
   for (const std::size_t f : fixtures_) {
     const Fixture& fixture = rig.fixtures[f];
     brightest = std::max(brightest, present_level[f]);
-    bright_drive_.push_back(drive_from_level(fixture.dimmer_curve, std::max(kLeastBright, present_level[f])));
+    bright_drive_.push_back(drive_from_level(fixture.dimmer_curve, std::max(kMinBright, present_level[f])));
     const Joints at = present_joints[f];
     joints_.push_back(at);
     turns_ = turns_ || (may_turn && fixture.moves);
@@ -38,7 +38,7 @@ IdentifyPattern::IdentifyPattern(const Rig& rig, std::vector<std::size_t> fixtur
                                 nodded_rad(at.tilt_rad, fixture.range.tilt_min_rad, fixture.range.tilt_max_rad),
                                 at.beam_rad});
   }
-  bright_first_ = brightest < kLeastBright;
+  bright_first_ = brightest < kMinBright;
 }
 
 DeskFrame IdentifyPattern::frame_at(Time now) const {

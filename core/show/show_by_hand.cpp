@@ -15,14 +15,14 @@ namespace {
 
 /// A level that is lower than its setting by more than this counts as kept down.
 constexpr double kSameLevel = 1e-3;
-constexpr double kMostGoal_lx = 1e6;
+constexpr double kMaxGoal_lx = 1e6;
 
 }  // namespace
 
 std::string ByHand::complaint(bool switched) const {
   if (what == What::goal) {
-    if (value >= 0 && value <= kMostGoal_lx) return {};
-    return fmt::format("a goal is 0 to {:g} lx, not {:g}", kMostGoal_lx, value);
+    if (value >= 0 && value <= kMaxGoal_lx) return {};
+    return fmt::format("a goal is 0 to {:g} lx, not {:g}", kMaxGoal_lx, value);
   }
   if (!(value >= 0 && value <= 1)) return fmt::format("a level is 0 (dark) to 1 (full), not {:g}", value);
   if (switched && value > 0 && value < 1) return fmt::format("it is on or off: give 0 or 1, not {:g}", value);
@@ -109,7 +109,7 @@ void ShowController::State::take_levels_of_plan(Time now, const std::vector<doub
     if (look.solved_levels.empty() || !look.solved_levels[f]) continue;
     hand_level[f] = ByHand{ByHand::What::level, f, levels[f], now};
     hand_level[f]->of_plan = true;
-    without_hands[f] = std::min(*look.solved_levels[f], most_of(f));
+    without_hands[f] = std::min(*look.solved_levels[f], max_of(f));
   }
   for (const auto& goal : hand_goal) unsolved = unsolved || goal.has_value();
 }
@@ -123,7 +123,7 @@ void ShowController::State::tell_estimator() {
   estimator.set_points(points_in_force);
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
     estimator.set_held(f, hand_level[f] && !bypassed_lamp[f]);
-    estimator.set_max_level(f, bypassed_lamp[f] ? 0 : most_of(f));
+    estimator.set_max_level(f, bypassed_lamp[f] ? 0 : max_of(f));
   }
   tell_lost_lamps();
 }
@@ -174,8 +174,7 @@ std::string ShowController::State::why_not(Time now, const ByHand& held) const {
   level[held.index] = held.value;
   std::string limits;
   for (std::size_t p = 0; p < rig.points.size(); ++p) {
-    if (!points_in_force[p].max_lx || estimator.most_lux_at_point(p, level, now) <= *points_in_force[p].max_lx)
-      continue;
+    if (!points_in_force[p].max_lx || estimator.max_lux_at_point(p, level, now) <= *points_in_force[p].max_lx) continue;
     limits += fmt::format("{}\"{}\" ({:g} lx)", limits.empty() ? "" : ", ", points_in_force[p].name,
                           *points_in_force[p].max_lx);
   }

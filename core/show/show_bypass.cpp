@@ -11,7 +11,7 @@ bool ShowController::State::any_lamp_bypassed() const {
   return std::any_of(bypassed_lamp.begin(), bypassed_lamp.end(), [](const auto& since) { return since.has_value(); });
 }
 
-double ShowController::State::most_of(std::size_t fixture) const {
+double ShowController::State::max_of(std::size_t fixture) const {
   return parked(fixture) ? 0 : rig.max_level(rig.fixtures[fixture]);
 }
 
@@ -28,7 +28,7 @@ void ShowController::State::bypass(Time now, std::span<const std::size_t> fixtur
     set(bypassed_lamp.at(f), changed);
     if (!changed) continue;
     lamps = true;
-    if (!on) program.max_level[f] = most_of(f);
+    if (!on) program.max_level[f] = max_of(f);
   }
   for (const std::size_t m : luxmeters) {
     bool changed = false;

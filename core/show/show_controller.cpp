@@ -156,9 +156,9 @@ void ShowController::State::guard(Time now, const std::vector<double>& from, con
       for (std::size_t j = 0; j < from.size(); ++j)
         level[static_cast<Eigen::Index>(j)] =
             level_on_the_way(from[j], to[j], static_cast<double>(s) / kSamples, program.switched[j] != 0);
-      const double most_lx = estimator.most_lux_at_point(worst.points[k], {level.data(), from.size()}, now);
-      safe =
-          most_lx <= *points_in_force[worst.points[k]].max_lx * kAllowed;  // all light; the row's limit lacks daylight
+      const double worst_case_lx = estimator.max_lux_at_point(worst.points[k], {level.data(), from.size()}, now);
+      safe = worst_case_lx <=
+             *points_in_force[worst.points[k]].max_lx * kAllowed;  // all light; the row's limit lacks daylight
     }
     if (safe) row *= max_lx / ends_lx * (1 - 1e-9);
   }
@@ -367,9 +367,9 @@ std::vector<double> ShowController::State::wanted_levels(std::span<const double>
   LUXRIG_CHECK(levels.size() == rig.fixtures.size(), "{} levels for {} fixtures", levels.size(), rig.fixtures.size());
   std::vector<double> wanted(levels.begin(), levels.end());
   for (std::size_t i = 0; i < wanted.size(); ++i)
-    wanted[i] = wanted[i] > 0 ? std::min(wanted[i], most_of(i)) : 0.0;  // NaN is dark
+    wanted[i] = wanted[i] > 0 ? std::min(wanted[i], max_of(i)) : 0.0;  // NaN is dark
   for (std::size_t i = 0; i < wanted.size(); ++i)
-    if (program.switched[i] != 0) wanted[i] = std::min(switched_level(wanted[i]), most_of(i));
+    if (program.switched[i] != 0) wanted[i] = std::min(switched_level(wanted[i]), max_of(i));
   return wanted;
 }
 

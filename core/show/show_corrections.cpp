@@ -59,11 +59,11 @@ void ShowController::State::take_sample(Time now) {
   std::vector<LimitBreach> present;
   for (std::size_t p = 0; p < rig.points.size(); ++p) {
     if (!points_in_force[p].max_lx || !estimator.confirmed(p)) continue;
-    const double most_lx = estimator.most_lux_at_point(p, program.to_level, now);
-    if (most_lx <= *points_in_force[p].max_lx * (1 + kBreachSlack)) continue;
+    const double worst_case_lx = estimator.max_lux_at_point(p, program.to_level, now);
+    if (worst_case_lx <= *points_in_force[p].max_lx * (1 + kBreachSlack)) continue;
     const auto known =
         std::find_if(breaches.begin(), breaches.end(), [&](const LimitBreach& breach) { return breach.point == p; });
-    present.push_back({p, most_lx, known == breaches.end() ? now : known->since});
+    present.push_back({p, worst_case_lx, known == breaches.end() ? now : known->since});
   }
   breaches = std::move(present);
 }

@@ -22,11 +22,11 @@ bool may_brighten(const Fixture& fixture) {
 
 /// Names in quotes; of many, the first few and the number of others, so that a phone shows them.
 std::string some_of(const std::vector<std::string>& names) {
-  constexpr std::size_t kMostNames = 4;
+  constexpr std::size_t kMaxNames = 4;
   std::string text;
-  for (std::size_t i = 0; i < names.size() && i < kMostNames; ++i)
+  for (std::size_t i = 0; i < names.size() && i < kMaxNames; ++i)
     text += fmt::format("{}\"{}\"", i == 0 ? "" : ", ", names[i]);
-  if (names.size() > kMostNames) text += fmt::format(" and {} more", names.size() - kMostNames);
+  if (names.size() > kMaxNames) text += fmt::format(" and {} more", names.size() - kMaxNames);
   return text;
 }
 
@@ -48,7 +48,7 @@ bool ShowController::State::limits_bear_waiting(Time now) const {
     most[f] = std::max({most[f], before[f], program.blackout ? 0.0 : program.to_level[f]});
   for (std::size_t p = 0; p < rig.points.size(); ++p)
     if (points_in_force[p].max_lx &&
-        estimator.most_lux_at_point(p, most, now) > *points_in_force[p].max_lx * (1 + kBreachSlack))
+        estimator.max_lux_at_point(p, most, now) > *points_in_force[p].max_lx * (1 + kBreachSlack))
       return false;
   return true;
 }

@@ -78,7 +78,7 @@ void ShowController::State::unpark() {
     if (program.parked[f] == 0) continue;
     program.parked[f] = 0;
     if (bypassed_lamp[f]) continue;
-    program.max_level[f] = most_of(f);
+    program.max_level[f] = max_of(f);
     estimator.set_max_level(f, program.max_level[f]);
   }
   program.parked.clear();

@@ -30,7 +30,7 @@ void ShowController::State::exchange_rig(Time now, const Rig& other, const Light
   awaited.reset();
   drop_solving();
   parking.clear();
-  for (std::size_t f = 0; f < rig.fixtures.size(); ++f) program.max_level[f] = bypassed_lamp[f] ? 0 : most_of(f);
+  for (std::size_t f = 0; f < rig.fixtures.size(); ++f) program.max_level[f] = bypassed_lamp[f] ? 0 : max_of(f);
   if (same_light) {
     for (std::size_t f = 0; f < rig.fixtures.size(); ++f) estimator.set_max_level(f, program.max_level[f]);
   } else {

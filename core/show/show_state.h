@@ -23,14 +23,14 @@ namespace luxrig {
 /// Noise of a reading that no correction could remove: a value within this share of its target has arrived.
 inline constexpr double kArrivedTolerance = 0.03;
 
-/// most_lux_at_point holds 1 % for a meter's noise on top of its tolerance, and corrections aim at the limit itself.
+/// max_lux_at_point holds 1 % for a meter's noise on top of its tolerance, and corrections aim at the limit itself.
 /// Half of that may be used up before a reading counts; else noise alone would start one correction after another.
 inline constexpr double kBreachSlack = 0.005;
 
 /// A point above its limit, by its meter; kept while it lasts.
 struct LimitBreach {
   std::size_t point = 0;
-  double most_lx = 0;
+  double worst_case_lx = 0;
   Time since{};
 };
 
@@ -164,7 +164,7 @@ struct ShowController::State {
   void close_bypassed(Time now);
   void tell_bypassed(ShowStatus& status) const;
   /// Highest level that a plan may ask for; 0 for a parked fixture.
-  [[nodiscard]] double most_of(std::size_t fixture) const;
+  [[nodiscard]] double max_of(std::size_t fixture) const;
 
   // A rig file read again (show_reload.cpp).
   void exchange_rig(Time now, const Rig& other, const LightModel& model, bool same_light);

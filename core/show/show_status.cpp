@@ -163,7 +163,7 @@ ShowStatus ShowController::State::status(Time now) const {
         {true, rig.luxmeters[*meter_at(breach.point)].name,
          fmt::format("point \"{}\" may have {:.1f} lx by its meter, its limit is {:.1f} lx; the fixtures that light it "
                      "are being dimmed; look for light that is not the rig's",
-                     point.name, breach.most_lx, *point.max_lx),
+                     point.name, breach.worst_case_lx, *point.max_lx),
          breach.since});
   }
   status.by_hand = by_hand();

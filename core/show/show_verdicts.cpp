@@ -61,7 +61,7 @@ std::vector<double> ShowController::State::with_lost_lamps_at(std::span<const do
   std::vector<double> out(level.begin(), level.end());
   for (std::size_t f = 0; f < out.size(); ++f)
     if (health.lamp_silent(f))
-      out[f] = full ? most_of(f) : 0;
+      out[f] = full ? max_of(f) : 0;
     else if (!full && health.lamp_failing(f))  // it obeys, but its lamp may be out
       out[f] = 0;
   return out;
@@ -211,7 +211,7 @@ void ShowController::State::judge_limit(std::size_t p, std::span<const double> l
     return say(LimitVerdict::unknown,
                fmt::format("with its luxmeter's tolerance it may have {:.1f} lx, the limit is {:g} lx; look for light "
                            "that is not the rig's",
-                           breach->most_lx, max_lx));
+                           breach->worst_case_lx, max_lx));
   if (const ScaleWatch::Doubt doubt = scale.doubt_at(meter_at(p), measured);
       status.measured_lx && doubt.log_share < 0 && *status.measured_lx * std::exp(-doubt.log_share) > max_lx)
     return say(LimitVerdict::unknown,
@@ -221,14 +221,14 @@ void ShowController::State::judge_limit(std::size_t p, std::span<const double> l
   const bool driven_by_desk =
       std::any_of(program.desks.begin(), program.desks.end(), [](const DeskBlend& desk) { return desk.silent; });
   if (driven_by_desk || any_lamp_lost()) {
-    const double most_lx = estimator.most_lux_as_given(p, with_lost_lamps_at(level, true), now);
+    const double worst_case_lx = estimator.max_lux_as_given(p, with_lost_lamps_at(level, true), now);
     const char* whose = driven_by_desk ? "a desk drives lamps that light it" : "a lamp that lights it does not answer";
     if (status.light.lux - status.light.half_width_lx > max_lx)
       return say(LimitVerdict::exceeded,
                  fmt::format("{}: {:.1f} lx by the model, the limit is {:g} lx", whose, status.light.lux, max_lx));
-    if (most_lx > max_lx)
+    if (worst_case_lx > max_lx)
       return say(LimitVerdict::unknown, fmt::format("{}: it may have {:.1f} lx, the limit is {:g} lx; measure by hand",
-                                                    whose, most_lx, max_lx));
+                                                    whose, worst_case_lx, max_lx));
   }
   say(LimitVerdict::kept, "");
 }

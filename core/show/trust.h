@@ -22,7 +22,7 @@ class Trust {
     while (!falls_.empty() && now - falls_.front() > kRemembers) falls_.pop_front();
     if (failing || missed) {
       if (!bad_) falls_.push_back(now);
-      if (falls_.size() > kMostFalls) falls_.pop_front();
+      if (falls_.size() > kMaxFalls) falls_.pop_front();
       bad_ = true;
       good_since_ = now;
     }
@@ -47,10 +47,10 @@ class Trust {
     if (falls_.size() <= 1) return {};
     return std::min(kLongestRow, kFirstRow * (1 << std::min<std::size_t>(falls_.size() - 2, 4)));
   }
-  [[nodiscard]] std::size_t falls() const { return falls_.size(); }  ///< in the last ten minutes, at most kMostFalls
+  [[nodiscard]] std::size_t falls() const { return falls_.size(); }  ///< in the last ten minutes, at most kMaxFalls
 
  private:
-  static constexpr std::size_t kMostFalls = 100;
+  static constexpr std::size_t kMaxFalls = 100;
   std::deque<Time> falls_;  ///< when it turned from good to bad
   Time good_since_{}, failing_since_{}, lost_since_{};
   bool bad_ = false, failing_ = false, lost_ = false;

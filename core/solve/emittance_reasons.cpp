@@ -18,7 +18,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kMet = 0.01;
-constexpr std::size_t kMostNames = 3;  ///< in a sentence; the lists have all of them
+constexpr std::size_t kMaxNames = 3;  ///< in a sentence; the lists have all of them
 
 std::string name_of(const std::vector<std::string>& names, int index, const char* kind) {
   const auto at = static_cast<std::size_t>(index);
@@ -27,18 +27,18 @@ std::string name_of(const std::vector<std::string>& names, int index, const char
 
 std::string list(const std::vector<std::string>& names, const std::vector<int>& indices, const char* kind) {
   std::string text;
-  for (std::size_t k = 0; k < std::min(indices.size(), kMostNames); ++k)
+  for (std::size_t k = 0; k < std::min(indices.size(), kMaxNames); ++k)
     text += (k == 0 ? "" : ", ") + name_of(names, indices[k], kind);
-  if (indices.size() > kMostNames) text += fmt::format(" and {} more", indices.size() - kMostNames);
+  if (indices.size() > kMaxNames) text += fmt::format(" and {} more", indices.size() - kMaxNames);
   return text;
 }
 
 std::string limits_text(const EmittanceProblem& problem, const std::vector<int>& points) {
   std::string text;
-  for (std::size_t k = 0; k < std::min(points.size(), kMostNames); ++k)
+  for (std::size_t k = 0; k < std::min(points.size(), kMaxNames); ++k)
     text += fmt::format("{}the limit of {:.4g} lx at {}", k == 0 ? "" : ", ", problem.max_lx[points[k]],
                         name_of(problem.point_name, points[k], "point"));
-  if (points.size() > kMostNames) text += fmt::format(" and {} more", points.size() - kMostNames);
+  if (points.size() > kMaxNames) text += fmt::format(" and {} more", points.size() - kMaxNames);
   return text;
 }
 

@@ -41,7 +41,7 @@ void want_error(const ComputeOptions& options, EvaluateOptions& evaluate) {
 
 /// A second estimate is made if the error exceeds the wanted one by at most this factor; beyond, it costs as much as
 /// computing all again.
-constexpr double kMostOver = 2;
+constexpr double kMaxOver = 2;
 /// Share of the wanted error that both estimates together aim at: error estimates are estimates, too.
 constexpr double kAim = 0.95;
 
@@ -156,7 +156,7 @@ Columns columns_of(const Rig& rig, const Look& look, const KeptTransport& before
 Result<std::optional<TransportMatrix>> made_exact(const Request& request, const TransportMatrix& light,
                                                   std::uint64_t seed, ModelUsed& used) {
   const double over = used.error() / used.wanted;
-  if (over > kMostOver) return std::nullopt;
+  if (over > kMaxOver) return std::nullopt;
   // For independent estimates, weighted by the inverse of their variances, the mean has the sum of these inverses.
   const double second = 1 / std::sqrt(1 / (kAim * kAim) - 1 / (over * over));
   Request coarse = request;

@@ -172,7 +172,7 @@ Result<StudiedObject> study_object(const Session& session, const ReliefSpec& rel
   ReliefStudyOptions how;
   how.scale_m = relief.scale_m.value_or(0);
   how.interest.wanted_share = relief.interest;
-  how.interest.most_points = kAimPoints;
+  how.interest.max_points = kAimPoints;
   how.run() = options.of_part();
   auto study = study_relief(*object, how);
   if (!study) return in_words(study.error(), fmt::format("object \"{}\"", name));

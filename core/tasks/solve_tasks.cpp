@@ -63,7 +63,7 @@ Result<void> TaskSolver::emittance(const Task& task) {
 }
 
 void TaskSolver::light_as_hung() {
-  for (Index j = 0; j < own_; ++j) level_[j] = most_level(j);
+  for (Index j = 0; j < own_; ++j) level_[j] = max_level(j);
   const Eigen::VectorXd lux = lux_of_points();
   double share = 1;
   for (std::size_t i = 0; i < rig_.points.size(); ++i)
@@ -83,7 +83,7 @@ Result<void> TaskSolver::placement(const Task& task) {
   if (!mounting) return refusal(mounting.error()[0].text());  // session_of() has already made it
   const PlacementSpec& spec = task.placement;
   for (Index j = 0; j < own_ && spec.fixtures != FixturesMeanwhile::as_set; ++j)
-    level_[j] = spec.fixtures == FixturesMeanwhile::full ? most_level(j) : 0;
+    level_[j] = spec.fixtures == FixturesMeanwhile::full ? max_level(j) : 0;
   const Index before = level_.size();
   const EmittanceProblem nothing_yet = problem_of(before, before);
   if (auto kept = limits_left(nothing_yet.fixed_lx); !kept) return kept;
@@ -157,9 +157,9 @@ EmittanceProblem TaskSolver::problem_of(Index begin, Index end) const {
   problem.max_level.resize(end - begin);
   problem.watts.resize(end - begin);
   for (Index j = begin; j < end; ++j) {
-    problem.max_level[j - begin] = most_level(j);
+    problem.max_level[j - begin] = max_level(j);
     problem.watts[j - begin] = watts_of(j).value_or(0);
-    problem.switched.push_back(rig_.fixtures[static_cast<std::size_t>(j)].switched && most_level(j) > 0);
+    problem.switched.push_back(rig_.fixtures[static_cast<std::size_t>(j)].switched && max_level(j) > 0);
     problem.light_name.push_back(rig_.fixtures[static_cast<std::size_t>(j)].name);
   }
   return problem;
@@ -235,7 +235,7 @@ Result<void> TaskSolver::hang(const Task& task, std::size_t luminaire, std::span
       rig_.fixtures.push_back(hung_light(rig_, called, parts[e], light.position_world_m, light.aim_world_m));
       look_.joints.push_back(rig_.fixtures.back().joints);
       look_.aim_world_m.push_back(light.aim_world_m);
-      evaluated.push_back(std::min(light.levels[e], most_level(static_cast<Index>(rig_.fixtures.size()) - 1)));
+      evaluated.push_back(std::min(light.levels[e], max_level(static_cast<Index>(rig_.fixtures.size()) - 1)));
     }
   }
   level_.conservativeResizeLike(Eigen::VectorXd::Zero(static_cast<Index>(evaluated.size())));

@@ -34,7 +34,7 @@ class TaskSolver {
   }
 
   /// 0 for a head that looks into a keep-out zone.
-  [[nodiscard]] double most_level(Index light) const {
+  [[nodiscard]] double max_level(Index light) const {
     const auto f = static_cast<std::size_t>(light);
     if (zones_.met(f, look_.joints[f])) return 0;
     return rig_.max_level(rig_.fixtures[f]);

@@ -12,7 +12,7 @@
 namespace luxrig {
 namespace {
 
-constexpr std::uintmax_t kMostPictureBytes = 256u << 20;
+constexpr std::uintmax_t kMaxPictureBytes = 256u << 20;
 
 class FileCamera final : public CameraSource {
  public:
@@ -69,7 +69,7 @@ Result<RawPicture> read_picture_file(const std::filesystem::path& file, const Pi
   std::error_code error;
   const auto size = std::filesystem::file_size(file, error);
   if (error) return bad(Cause::system, error.message() + ": check its permissions");
-  if (size > kMostPictureBytes) return bad(Cause::protocol, "larger than 256 MiB: give a smaller picture");
+  if (size > kMaxPictureBytes) return bad(Cause::protocol, "larger than 256 MiB: give a smaller picture");
   std::ifstream in(file, std::ios::binary);
   const std::string bytes((std::istreambuf_iterator<char>(in)), {});
   auto picture = decode_picture(bytes);

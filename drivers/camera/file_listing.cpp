@@ -11,7 +11,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostFiles = 100'000;
+constexpr std::size_t kMaxFiles = 100'000;
 
 bool is_digit(char letter) { return letter >= '0' && letter <= '9'; }
 bool is_letter(char letter) { return (letter >= 'a' && letter <= 'z') || (letter >= 'A' && letter <= 'Z'); }
@@ -60,7 +60,7 @@ Result<std::vector<fs::path>> picture_files(const fs::path& folder_or_pattern) {
               {},
               fmt::format("{}: {}: write files as a folder that is there", folder.string(), error.message()),
               {}});
-  for (const fs::directory_iterator end; !error && it != end && files.size() < kMostFiles; it.increment(error))
+  for (const fs::directory_iterator end; !error && it != end && files.size() < kMaxFiles; it.increment(error))
     if (is_picture_name(it->path()) && fnmatch(pattern.c_str(), it->path().filename().c_str(), 0) == 0)
       files.push_back(it->path());
   if (files.empty())

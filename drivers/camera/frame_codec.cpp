@@ -86,9 +86,9 @@ int counts_of(PixelFormat format, bool limited_range) {
 
 Result<RawPicture> decode_frame(const FrameLayout& layout, std::span<const std::uint8_t> bytes) {
   if (layout.format == PixelFormat::any) return bad_frame("frames without a format");
-  if (layout.width_px < 1 || layout.height_px < 1 || layout.width_px > kMostPictureSide_px ||
-      layout.height_px > kMostPictureSide_px ||
-      static_cast<long long>(layout.width_px) * layout.height_px > kMostPicturePixels)
+  if (layout.width_px < 1 || layout.height_px < 1 || layout.width_px > kMaxPictureSide_px ||
+      layout.height_px > kMaxPictureSide_px ||
+      static_cast<long long>(layout.width_px) * layout.height_px > kMaxPicturePixels)
     return bad_frame(fmt::format("frames of {} x {} pixels", layout.width_px, layout.height_px));
   const bool yuyv = layout.format == PixelFormat::yuyv;
   if (yuyv && layout.width_px % 2 != 0) return bad_frame(fmt::format("YUYV of {} pixels a line", layout.width_px));

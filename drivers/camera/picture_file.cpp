@@ -39,8 +39,8 @@ bool header_number(std::string_view& rest, T& out) {
 
 /// A picture of that size without samples; a fault if the size is impossible.
 Result<RawPicture> sized(int width_px, int height_px, int channels) {
-  if (width_px < 1 || height_px < 1 || width_px > kMostPictureSide_px || height_px > kMostPictureSide_px ||
-      static_cast<long long>(width_px) * height_px > kMostPicturePixels)
+  if (width_px < 1 || height_px < 1 || width_px > kMaxPictureSide_px || height_px > kMaxPictureSide_px ||
+      static_cast<long long>(width_px) * height_px > kMaxPicturePixels)
     return bad_picture(fmt::format("a picture of {} x {} pixels", width_px, height_px));
   RawPicture picture;
   picture.width_px = width_px;

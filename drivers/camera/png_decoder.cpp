@@ -37,7 +37,7 @@ struct PngHead {
 /// Reads everything before the samples; false with a reason in the input.
 bool read_png_head(png_structp png, png_infop info, PngHead* head) {
   if (setjmp(png_jmpbuf(png))) return false;  // NOLINT: libpng's way
-  png_set_user_limits(png, kMostPictureSide_px, kMostPictureSide_px);
+  png_set_user_limits(png, kMaxPictureSide_px, kMaxPictureSide_px);
   png_set_chunk_malloc_max(png, 1u << 20);
   png_set_chunk_cache_max(png, 64);
   png_read_info(png, info);
@@ -81,7 +81,7 @@ Result<RawPicture> decode_png(std::string_view bytes) {
   PngHead head{};
   if (!read_png_head(png, info, &head)) return bad_png(input.reason);
   if ((head.channels != 1 && head.channels != 3) || (head.bits != 8 && head.bits != 16) ||
-      static_cast<long long>(head.width) * static_cast<long long>(head.height) > kMostPicturePixels)
+      static_cast<long long>(head.width) * static_cast<long long>(head.height) > kMaxPicturePixels)
     return bad_png("an unusual kind");
   const std::size_t row_bytes = png_get_rowbytes(png, info), per_sample = head.bits == 16 ? 2 : 1;
   const std::size_t row_samples = static_cast<std::size_t>(head.width) * static_cast<std::size_t>(head.channels);

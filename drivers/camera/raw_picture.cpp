@@ -8,7 +8,7 @@
 namespace luxrig {
 namespace {
 
-constexpr std::uintmax_t kMostCurveBytes = 4u << 20;
+constexpr std::uintmax_t kMaxCurveBytes = 4u << 20;
 
 }  // namespace
 
@@ -25,7 +25,7 @@ Result<SampleCurve> curve_of(const PictureTaking& taking) {
   }
   std::error_code error;
   const auto size = std::filesystem::file_size(taking.curve_file, error);
-  if (error || size > kMostCurveBytes)
+  if (error || size > kMaxCurveBytes)
     return refusal(fmt::format("{} {}", taking.curve_file.string(),
                                error ? "cannot be read: " + error.message() : "is too large for a response curve"));
   std::ifstream in(taking.curve_file, std::ios::binary);

@@ -19,8 +19,8 @@ struct RawPicture {
 };
 
 /// Larger pictures are refused from any source.
-inline constexpr int kMostPictureSide_px = 16384;
-inline constexpr long long kMostPicturePixels = 100'000'000;
+inline constexpr int kMaxPictureSide_px = 16384;
+inline constexpr long long kMaxPicturePixels = 100'000'000;
 
 /// A rig's response curve; Cause::invalid if its file cannot be used.
 [[nodiscard]] Result<SampleCurve> curve_of(const PictureTaking& taking);

@@ -21,7 +21,7 @@ namespace luxrig {
 namespace {
 
 constexpr std::uint32_t kVideoBuffers = 4;
-constexpr std::size_t kMostFrameBytes = 512u << 20;
+constexpr std::size_t kMaxFrameBytes = 512u << 20;
 
 struct FourCc {
   PixelFormat format;
@@ -151,8 +151,8 @@ class V4l2Channel final : public VideoChannel {
           Fault{Cause::refused, {}, "the camera sends half pictures (interlaced): choose a size without", {}});
     FrameLayout layout;
     layout.format = format;
-    layout.width_px = static_cast<int>(std::min<std::uint32_t>(pix.width, kMostPictureSide_px + 1));
-    layout.height_px = static_cast<int>(std::min<std::uint32_t>(pix.height, kMostPictureSide_px + 1));
+    layout.width_px = static_cast<int>(std::min<std::uint32_t>(pix.width, kMaxPictureSide_px + 1));
+    layout.height_px = static_cast<int>(std::min<std::uint32_t>(pix.height, kMaxPictureSide_px + 1));
     layout.bytes_per_line = pix.bytesperline != 0 ? pix.bytesperline : pix.width * bytes_per_pixel(format);
     // If the device does not say, Y'CbCr has limited range and Rec. 601.
     layout.limited_range = format == PixelFormat::yuyv && pix.quantization != V4L2_QUANTIZATION_FULL_RANGE &&
@@ -281,7 +281,7 @@ class V4l2Channel final : public VideoChannel {
       buffer.memory = V4L2_MEMORY_MMAP;
       buffer.index = i;
       if (call(VIDIOC_QUERYBUF, &buffer) != 0) return tl::unexpected(failed("its buffers"));
-      if (buffer.length == 0 || buffer.length > kMostFrameBytes)
+      if (buffer.length == 0 || buffer.length > kMaxFrameBytes)
         return tl::unexpected(Fault{Cause::protocol, {}, fmt::format("buffers of {} bytes", buffer.length), {}});
       void* data =
           ::mmap(nullptr, buffer.length, PROT_READ | PROT_WRITE, MAP_SHARED, fd_, static_cast<off_t>(buffer.m.offset));

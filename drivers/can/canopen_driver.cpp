@@ -24,7 +24,7 @@ using std::chrono::milliseconds;
 constexpr Duration kCallBound = milliseconds(20);  ///< nothing waits; this allows for a slow machine
 constexpr Duration kShortestReopen = milliseconds(100), kLongestReopen = milliseconds(1000);
 constexpr Duration kShortestQueuePause = milliseconds(20), kLongestQueuePause = milliseconds(200);
-constexpr int kMostFramesAtOnce = 2000;  ///< per call, so that a flood cannot delay it
+constexpr int kMaxFramesAtOnce = 2000;  ///< per call, so that a flood cannot delay it
 constexpr double kTravelSlack_rad = 1e-6;
 
 cia402::AxesOptions axes_options(const Bus& bus) {
@@ -180,7 +180,7 @@ class CanopenDriver final : public Driver, public Mover {
   }
 
   void listen(Time now) {
-    for (int i = 0; i < kMostFramesAtOnce; ++i) {
+    for (int i = 0; i < kMaxFramesAtOnce; ++i) {
       const auto frame = channel_->receive();
       if (!frame) break;
       state_.heard(*frame);

@@ -37,21 +37,21 @@ std::uint16_t get16(std::span<const std::uint8_t> in, std::size_t at) {
 
 constexpr std::uint16_t kCoilOn = 0xff00;  // 6.5
 
-std::size_t most_of(Function function) {
+std::size_t max_of(Function function) {
   switch (function) {
     case Function::read_coils:
     case Function::read_discrete:
-      return kMostReadBits;
+      return kMaxReadBits;
     case Function::read_holding:
     case Function::read_input:
-      return kMostReadRegisters;
+      return kMaxReadRegisters;
     case Function::write_coil:
     case Function::write_single:
       return 1;
     case Function::write_coils:
-      return kMostWriteCoils;
+      return kMaxWriteCoils;
     case Function::write_multiple:
-      return kMostWriteRegisters;
+      return kMaxWriteRegisters;
   }
   return 0;
 }
@@ -67,7 +67,7 @@ std::size_t value_field(const Request& request) {
 
 std::vector<std::uint8_t> encode_pdu(const Request& request) {
   const std::size_t count = reads(request.function) ? request.count : request.values.size();
-  LUXRIG_CHECK(count >= 1 && count <= most_of(request.function), "{} registers with function {}", count,
+  LUXRIG_CHECK(count >= 1 && count <= max_of(request.function), "{} registers with function {}", count,
                static_cast<int>(request.function));
   LUXRIG_CHECK(request.first_register >= 0 && static_cast<std::size_t>(request.first_register) + count <= 65536,
                "registers {} + {}", request.first_register, count);

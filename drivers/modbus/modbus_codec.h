@@ -15,10 +15,10 @@
 namespace luxrig::modbus {
 
 inline constexpr std::size_t kLongestAdu = 260;
-inline constexpr std::size_t kMostReadRegisters = 125;   ///< functions 3 and 4
-inline constexpr std::size_t kMostWriteRegisters = 123;  ///< function 16
-inline constexpr std::size_t kMostReadBits = 2000;       ///< functions 1 and 2
-inline constexpr std::size_t kMostWriteCoils = 1968;     ///< function 15
+inline constexpr std::size_t kMaxReadRegisters = 125;   ///< functions 3 and 4
+inline constexpr std::size_t kMaxWriteRegisters = 123;  ///< function 16
+inline constexpr std::size_t kMaxReadBits = 2000;       ///< functions 1 and 2
+inline constexpr std::size_t kMaxWriteCoils = 1968;     ///< function 15
 
 enum class Function : std::uint8_t {
   read_coils = 1,

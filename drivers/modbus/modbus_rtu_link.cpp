@@ -25,7 +25,7 @@ using std::chrono::milliseconds;
 constexpr milliseconds kLongestChatter(50);  // on a line that should be silent
 // USB adapters pass bytes on every 16 ms, so a pause within a frame may be that long.
 constexpr milliseconds kAdapterPause(20);
-constexpr std::size_t kMostBytesHeard = 2048;
+constexpr std::size_t kMaxBytesHeard = 2048;
 
 const char* name_of(Parity parity) { return parity == Parity::none ? "none" : parity == Parity::even ? "even" : "odd"; }
 
@@ -184,7 +184,7 @@ Result<std::vector<std::uint16_t>> RtuLink::exchange(const Request& request, mil
     if (!taken) return tl::unexpected(taken.error());
     search = find_rtu_answer(request, heard);
     // Bytes that have arrived by the deadline are still read after it: perhaps only we are late.
-    if (search.answer || heard.size() > kMostBytesHeard) break;
+    if (search.answer || heard.size() > kMaxBytesHeard) break;
   }
   if (!search.answer) {
     if (heard.empty()) {

@@ -18,7 +18,7 @@ namespace luxrig::modbus {
 namespace {
 
 constexpr std::size_t kRememberedUnanswered = 16;
-constexpr int kMostDrains = 16;
+constexpr int kMaxDrains = 16;
 /// Extra time to read the rest of an answer that has begun, even if we come to it late.
 constexpr std::chrono::milliseconds kRestOfAnswer(20);
 
@@ -76,7 +76,7 @@ bool TcpLink::found_closed() {
 
 Result<void> TcpLink::drop_unasked() {
   std::array<std::uint8_t, kLongestAdu> bin{};
-  for (int i = 0; i < kMostDrains; ++i) {
+  for (int i = 0; i < kMaxDrains; ++i) {
     const auto got = ::recv(fd_, bin.data(), bin.size(), MSG_DONTWAIT);
     if (got < 0 && (errno == EAGAIN || errno == EINTR)) return {};
     if (got < 0) return tl::unexpected(lost(Cause::network, os_fault("the connection", errno).detail));

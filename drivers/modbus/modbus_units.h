@@ -17,7 +17,7 @@ namespace luxrig::modbus {
 struct UnitRules {
   std::chrono::milliseconds timeout{};
   std::chrono::milliseconds gap{};  ///< between two requests
-  std::size_t largest_read = kMostReadRegisters, largest_write = kMostWriteRegisters;
+  std::size_t largest_read = kMaxReadRegisters, largest_write = kMaxWriteRegisters;
   std::shared_ptr<const RegisterMap> map;  ///< null = none of its devices has one
 };
 

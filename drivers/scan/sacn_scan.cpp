@@ -11,7 +11,7 @@ namespace luxrig {
 namespace {
 
 constexpr int kPacketsPerStep = 256;
-constexpr std::size_t kMostSources = 4096;  ///< bounds memory if a network invents sources
+constexpr std::size_t kMaxSources = 4096;  ///< bounds memory if a network invents sources
 
 class SacnScan final : public Scan {
  public:
@@ -30,7 +30,7 @@ class SacnScan final : public Scan {
       const auto datagram = channel_->receive();
       if (!datagram) break;
       const auto packet = sacn::decode_discovery(datagram->bytes);
-      if (!packet || (sources_.size() >= kMostSources && !sources_.contains(packet->cid))) continue;
+      if (!packet || (sources_.size() >= kMaxSources && !sources_.contains(packet->cid))) continue;
       Source& source = sources_[packet->cid];
       source.address = text_of(datagram->from.ipv4);
       source.name = packet->source_name;

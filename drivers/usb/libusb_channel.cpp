@@ -18,7 +18,7 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kStringTimeout(50), kCancelTimeout(200);
-constexpr std::size_t kMostHubs = 7;  // USB 2.0: deepest nesting
+constexpr std::size_t kMaxHubs = 7;  // USB 2.0: deepest nesting
 
 Fault usb_fault(const std::string& doing, int error) {
   switch (error) {
@@ -162,7 +162,7 @@ class LibusbChannel final : public UsbChannel {
       if (libusb_get_device_descriptor(list[i], &descriptor) != 0) continue;
       candidate.vendor = descriptor.idVendor;
       candidate.product = descriptor.idProduct;
-      std::array<std::uint8_t, kMostHubs> ports{};
+      std::array<std::uint8_t, kMaxHubs> ports{};
       const int depth = libusb_get_port_numbers(list[i], ports.data(), static_cast<int>(ports.size()));
       candidate.port =
           port_path(libusb_get_bus_number(list[i]), {ports.data(), static_cast<std::size_t>(std::max(depth, 0))});

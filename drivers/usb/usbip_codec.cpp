@@ -85,7 +85,7 @@ std::optional<Answer> decode_answer(std::span<const std::uint8_t, kHeaderBytes> 
   answer.status = static_cast<std::int32_t>(get(header, 20));
   if (answer.unlink) return answer;
   answer.length = get(header, 24);
-  if (answer.length > kMostBytes) return std::nullopt;
+  if (answer.length > kMaxBytes) return std::nullopt;
   return answer;
 }
 

@@ -15,7 +15,7 @@ namespace luxrig::usbip {
 
 inline constexpr std::size_t kImportReplyBytes = 320, kHeaderBytes = 48;
 /// Luxrig makes no longer transfers, so a larger length is garbage.
-inline constexpr std::uint32_t kMostBytes = 4096;
+inline constexpr std::uint32_t kMaxBytes = 4096;
 
 [[nodiscard]] std::vector<std::uint8_t> import_request(std::string_view bus_id);
 /// The imported device's number, bus << 16 | device. Empty if the server refused or the reply is malformed.

@@ -10,7 +10,7 @@ void AxisMechanics::step(double dt_s, double torque_deg_s2, bool stuck) {
     speed_deg_s_ = 0;
     return;
   }
-  const double torque = std::clamp(torque_deg_s2, -truth_.most_torque_deg_s2, truth_.most_torque_deg_s2);
+  const double torque = std::clamp(torque_deg_s2, -truth_.max_torque_deg_s2, truth_.max_torque_deg_s2);
   double speed = speed_deg_s_ + torque * dt_s;
   // Friction takes at most all of the speed: it never reverses a motor.
   const double friction = (truth_.dry_friction_deg_s2 + truth_.viscous_friction_per_s * std::abs(speed)) * dt_s;

@@ -9,7 +9,7 @@ namespace luxrig::sim {
 struct AxisTruth {
   double dry_friction_deg_s2 = 60;
   double viscous_friction_per_s = 0.5;
-  double most_torque_deg_s2 = 3000;  ///< of the motor
+  double max_torque_deg_s2 = 3000;   ///< of the motor
   double backlash_deg = 0.02;        ///< total play of the gear
   double stop_min_deg = -360, stop_max_deg = 360;
   double switch_min_deg = -350, switch_max_deg = 350;  ///< the limit switches close below and above

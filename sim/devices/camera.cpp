@@ -40,7 +40,7 @@ Result<Picture> photograph(const RayScene& scene, const Rig& rig, const std::vec
     levels.push_back(1);
   }
   PictureOptions how;
-  how.most_passes = shot.passes;
+  how.max_passes = shot.passes;
   how.wanted_relative_error = 0;
   how.seed = shot.seed;
   how.threads = shot.threads;

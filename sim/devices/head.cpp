@@ -6,8 +6,8 @@
 namespace luxrig::sim {
 namespace {
 
-double turned_towards(double from_rad, double to_rad, double most_rad) {
-  return from_rad + std::clamp(to_rad - from_rad, -most_rad, most_rad);
+double turned_towards(double from_rad, double to_rad, double max_rad) {
+  return from_rad + std::clamp(to_rad - from_rad, -max_rad, max_rad);
 }
 
 }  // namespace

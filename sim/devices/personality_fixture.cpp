@@ -43,8 +43,7 @@ class FixtureFirmware {
   }
 
   /// Physical angle of the attribute's first channel, in the rig file's convention.
-  std::optional<double> angle_rad(std::string_view attribute, double offset_deg, double least_rad,
-                                  double most_rad) const {
+  std::optional<double> angle_rad(std::string_view attribute, double offset_deg, double min_rad, double max_rad) const {
     for (std::size_t c = 0; c < mode_.channels.size(); ++c) {
       if (mode_.channels[c].is_virtual()) continue;
       const ChannelFunction* f = at_work(c);
@@ -52,8 +51,8 @@ class FixtureFirmware {
       // A file without stated travel has 0 to 1. Then the rig file's travel applies.
       const bool stated = std::abs(f->physical_to - f->physical_from) > 1.5;
       const double angle = stated ? rad_from_deg(f->physical_at(values_[c]) + offset_deg)
-                                  : least_rad + (most_rad - least_rad) * share_in(*f, values_[c]);
-      return std::clamp(angle, least_rad, most_rad);
+                                  : min_rad + (max_rad - min_rad) * share_in(*f, values_[c]);
+      return std::clamp(angle, min_rad, max_rad);
     }
     return std::nullopt;
   }

@@ -4,7 +4,7 @@ namespace luxrig::sim {
 namespace {
 
 // Bytes of a packet without parameter data, and offsets of the UIDs.
-constexpr std::size_t kLeastLength = 24, kTo = 3, kFrom = 9, kUidBytes = 6;
+constexpr std::size_t kMinLength = 24, kTo = 3, kFrom = 9, kUidBytes = 6;
 
 int sum_of(std::span<const std::uint8_t> bytes) {
   int sum = 0;
@@ -25,9 +25,9 @@ void put(std::vector<std::uint8_t>& bytes, std::uint64_t number, int size) {
 }  // namespace
 
 std::optional<RdmFrame> read_rdm(std::span<const std::uint8_t> bytes) {
-  if (bytes.size() < kLeastLength + 2 || bytes[0] != 0xcc || bytes[1] != 0x01) return std::nullopt;
+  if (bytes.size() < kMinLength + 2 || bytes[0] != 0xcc || bytes[1] != 0x01) return std::nullopt;
   const std::size_t length = bytes[2];
-  if (length < kLeastLength || bytes.size() < length + 2 || length - kLeastLength != bytes[23]) return std::nullopt;
+  if (length < kMinLength || bytes.size() < length + 2 || length - kMinLength != bytes[23]) return std::nullopt;
   if (sum_of(bytes.first(length)) != (bytes[length] << 8 | bytes[length + 1])) return std::nullopt;
   RdmFrame frame;
   frame.to = big_endian_48(bytes.subspan(kTo));
@@ -38,13 +38,13 @@ std::optional<RdmFrame> read_rdm(std::span<const std::uint8_t> bytes) {
   frame.sub_device = bytes[18] << 8 | bytes[19];
   frame.command_class = bytes[20];
   frame.pid = bytes[21] << 8 | bytes[22];
-  const auto data = bytes.subspan(kLeastLength, bytes[23]);
+  const auto data = bytes.subspan(kMinLength, bytes[23]);
   frame.data.assign(data.begin(), data.end());
   return frame;
 }
 
 std::vector<std::uint8_t> write_rdm(const RdmFrame& frame) {
-  std::vector<std::uint8_t> bytes = {0xcc, 0x01, static_cast<std::uint8_t>(kLeastLength + frame.data.size())};
+  std::vector<std::uint8_t> bytes = {0xcc, 0x01, static_cast<std::uint8_t>(kMinLength + frame.data.size())};
   put(bytes, frame.to, 6);
   put(bytes, frame.from, 6);
   bytes.insert(bytes.end(), {frame.transaction, frame.port_or_type, frame.messages});

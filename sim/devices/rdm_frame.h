@@ -9,7 +9,7 @@
 namespace luxrig::sim {
 
 inline constexpr std::uint64_t kRdmEverybody = 0xFFFFFFFFFFFF;
-inline constexpr std::size_t kMostRdmData = 231;
+inline constexpr std::size_t kMaxRdmData = 231;
 
 /// A request, or an answer valid for a controller: everything between start code and checksum.
 struct RdmFrame {
@@ -25,7 +25,7 @@ struct RdmFrame {
 
 /// From the start code on. Empty if lengths or checksum are wrong.
 [[nodiscard]] std::optional<RdmFrame> read_rdm(std::span<const std::uint8_t> bytes);
-/// requires at most kMostRdmData of data.
+/// requires at most kMaxRdmData of data.
 [[nodiscard]] std::vector<std::uint8_t> write_rdm(const RdmFrame& frame);
 /// A responder's answer to DISC_UNIQUE_BRANCH: no break, no start code.
 [[nodiscard]] std::vector<std::uint8_t> write_branch_answer(std::uint64_t uid);

@@ -22,7 +22,7 @@ constexpr int kUnknownPid = 0, kFormatError = 1, kWriteProtect = 4, kUnsupported
 constexpr int kSubDeviceOutOfRange = 9;
 
 constexpr int kLastSlot = 512;
-constexpr std::size_t kMostLabelBytes = 32;
+constexpr std::size_t kMaxLabelBytes = 32;
 constexpr Duration kBallastTakes = std::chrono::milliseconds(300);
 constexpr std::uint8_t kTimerTenths = 3;
 constexpr double kRoom_c = 25, kRiseAtFull_c = 40, kWarming_s = 120;
@@ -33,7 +33,7 @@ void append_16(std::vector<std::uint8_t>& bytes, int value) {
 }
 
 std::vector<std::uint8_t> label_bytes(const std::string& text) {
-  const auto size = static_cast<std::ptrdiff_t>(std::min(text.size(), kMostLabelBytes));
+  const auto size = static_cast<std::ptrdiff_t>(std::min(text.size(), kMaxLabelBytes));
   return {text.begin(), text.begin() + size};
 }
 
@@ -106,10 +106,10 @@ std::vector<std::uint8_t> RdmResponder::receive(Time now, std::span<const std::u
       reply = {kAckTimer, {0, kTimerTenths}};
     }
     overflow_pid_.reset();
-    if (reply.data.size() > kMostRdmData) {
-      overflow_.assign(reply.data.begin() + kMostRdmData, reply.data.end());
+    if (reply.data.size() > kMaxRdmData) {
+      overflow_.assign(reply.data.begin() + kMaxRdmData, reply.data.end());
       overflow_pid_ = request->pid;
-      reply.data.resize(kMostRdmData);
+      reply.data.resize(kMaxRdmData);
       reply.type = kAckOverflow;
     }
     answer.port_or_type = static_cast<std::uint8_t>(reply.type);
@@ -221,7 +221,7 @@ RdmResponder::Reply RdmResponder::set(const RdmFrame& request) {
   if (identity_.write_protected && request.pid != kIdentify) return {kNack, {0, kWriteProtect}};
   switch (request.pid) {
     case kLabel:
-      if (data.size() > kMostLabelBytes) return {kNack, {0, kFormatError}};
+      if (data.size() > kMaxLabelBytes) return {kNack, {0, kFormatError}};
       identity_.label.assign(data.begin(), data.end());
       return {};
     case kPersonality:

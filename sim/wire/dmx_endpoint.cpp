@@ -11,9 +11,9 @@
 namespace luxrig::sim {
 namespace {
 
-constexpr int kMostPacketsAtOnce = 256;  // per serve(), so that a flood cannot delay the world
+constexpr int kMaxPacketsAtOnce = 256;  // per serve(), so that a flood cannot delay the world
 constexpr Duration kOvertakenAfter = std::chrono::milliseconds(40);  // the next frame has arrived by then
-constexpr std::size_t kMostArrived = 4096;                           // waiting under the fault `slow`
+constexpr std::size_t kMaxArrived = 4096;                            // waiting under the fault `slow`
 
 }  // namespace
 
@@ -57,7 +57,7 @@ void DmxEndpoint::serve(Time now) {
 
 void DmxEndpoint::obey(Time now, const Arrived& packet) {
   for (Answer& answer : receive(now, packet.address, packet.bytes)) {
-    if (owed_.size() >= kMostArrived) break;
+    if (owed_.size() >= kMaxArrived) break;
     owed_.push_back({now + answer.late, packet.address, packet.port, std::move(answer.packet)});
   }
 }
@@ -77,7 +77,7 @@ void DmxEndpoint::send_owed(Time now) {
 
 void DmxEndpoint::take(Time now) {
   std::array<std::uint8_t, 2048> buffer;
-  for (int i = 0; i < kMostPacketsAtOnce && socket_.descriptor.open(); ++i) {
+  for (int i = 0; i < kMaxPacketsAtOnce && socket_.descriptor.open(); ++i) {
     sockaddr_in from{};
     socklen_t from_length = sizeof from;
     const auto received = ::recvfrom(socket_.descriptor.get(), buffer.data(), buffer.size(), 0,
@@ -87,14 +87,14 @@ void DmxEndpoint::take(Time now) {
       break;
     }
     const Disturbance disturbance = parts_.faults.disturbance({&parts_.rig.buses[parts_.bus].name, 1}, packets_++);
-    if (disturbance.silent || arrived_.size() >= kMostArrived) continue;
+    if (disturbance.silent || arrived_.size() >= kMaxArrived) continue;
     Packet bytes(buffer.begin(), buffer.begin() + received);
     // UDP has its own checksum, so the fault imitates a broken sender: it changes the header.
     if (disturbance.garbled && !bytes.empty())
       bytes[disturbance.random % std::min<std::size_t>(bytes.size(), 8)] ^= 0xff;
     Time due = now + disturbance.delay;
     Arrived packet{due, ntohl(from.sin_addr.s_addr), ntohs(from.sin_port), std::move(bytes)};
-    if (disturbance.reordered && overtaken_.size() < kMostArrived) {
+    if (disturbance.reordered && overtaken_.size() < kMaxArrived) {
       packet.due += kOvertakenAfter;
       overtaken_.push_back(std::move(packet));
       continue;

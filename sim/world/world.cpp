@@ -13,7 +13,7 @@
 namespace luxrig::sim {
 namespace {
 
-constexpr std::size_t kMostViolations = 1000;
+constexpr std::size_t kMaxViolations = 1000;
 constexpr int kTicksPerSample = 20;  // 5 readings a second
 
 class MatrixWorld final : public World {
@@ -165,7 +165,7 @@ class MatrixWorld final : public World {
         const auto latest = std::find_if(violations_.rbegin(), violations_.rend(),
                                          [p](const Violation& violation) { return violation.point == p; });
         if (latest != violations_.rend()) latest->lux = std::max(latest->lux, lux);
-      } else if (violations_.size() < kMostViolations) {
+      } else if (violations_.size() < kMaxViolations) {
         violations_.push_back({p, *limits_lx_[p], lux, now()});
         open_violation_[p] = true;
       }

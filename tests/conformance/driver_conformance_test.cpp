@@ -18,7 +18,7 @@ using std::chrono::milliseconds;
 /// How long a busy test machine may keep a thread from running: no driver can state a bound for that.
 constexpr Duration kBusyMachine = milliseconds(250);
 /// Cycles until heads on axes, the slowest that there are, have homed and travelled.
-constexpr int kMostCycles = 600;
+constexpr int kMaxCycles = 600;
 
 std::size_t entries_in(const char* folder) {
   std::size_t count = 0;
@@ -39,7 +39,7 @@ const std::vector<Kind>& kinds() {
 bool reaches(Subject& subject, double drive) {
   subject.settle(drive);
   const auto there = [&] { return subject.at(drive) && subject.bus().life == Life::active; };
-  for (int i = 0; i < kMostCycles && !there(); ++i) subject.cycle(drive);
+  for (int i = 0; i < kMaxCycles && !there(); ++i) subject.cycle(drive);
   return there();
 }
 
@@ -118,15 +118,15 @@ TEST_P(EveryDriver, ReturnsWithinItsBoundWhateverItsPeerDoes) {
   for (const sim::FaultKind fault : {sim::FaultKind::silent, sim::FaultKind::slow, sim::FaultKind::garbled,
                                      sim::FaultKind::lost, sim::FaultKind::dead}) {
     // A driver that waits too long does so every time; a machine that is busy for a moment does not.
-    Duration least_over_bound = Duration::max();
-    for (int attempt = 0; attempt < 3 && least_over_bound > kBusyMachine; ++attempt) {
+    Duration min_over_bound = Duration::max();
+    for (int attempt = 0; attempt < 3 && min_over_bound > kBusyMachine; ++attempt) {
       const auto subject = activated();
       subject->cycle(0.2);
       subject->set_fault(fault);
       for (int i = 0; i < 10; ++i) subject->cycle(0.2 + 0.01 * i);
-      least_over_bound = std::min(least_over_bound, subject->worst_over_bound);
+      min_over_bound = std::min(min_over_bound, subject->worst_over_bound);
     }
-    EXPECT_LE(least_over_bound, kBusyMachine) << name_of(fault);
+    EXPECT_LE(min_over_bound, kBusyMachine) << name_of(fault);
   }
 }
 
@@ -154,7 +154,7 @@ TEST_P(EveryDriver, IsFaultedInTimeWhenItsPeerGoesAndComesBackByItselfWithTheCur
     EXPECT_TRUE(subject->at_either(0.25, 0.75));
   }
   EXPECT_LE(subject->now - back, std::chrono::seconds(4));
-  for (int i = 0; i < kMostCycles && !subject->at(0.75); ++i) {
+  for (int i = 0; i < kMaxCycles && !subject->at(0.75); ++i) {
     subject->cycle(0.75);
     EXPECT_TRUE(subject->at_either(0.25, 0.75));
   }
@@ -201,7 +201,7 @@ TEST_P(EveryDriver, LeavesWhatWasAgreedWhenItStopsAndStartsAgain) {
 
 TEST_P(EveryDriver, OfWhichThereAreTwoGoTheirOwnWays) {
   const auto one = activated(), other = activated();
-  for (int i = 0; i < kMostCycles && !(i >= 8 && one->at(0.25) && other->at(0.75)); ++i) {
+  for (int i = 0; i < kMaxCycles && !(i >= 8 && one->at(0.25) && other->at(0.75)); ++i) {
     one->cycle(0.25);
     other->cycle(0.75);
   }

@@ -342,7 +342,7 @@ TEST(ModbusProducts, AGapThatADeviceWantsIsKept) {
 
 TEST(ModbusRtuLine, ADeadUnitOfEightDelaysTheOthersByOneTimeoutAtMost) {
   constexpr Duration kLatest = milliseconds(200 + 200 + 150);
-  constexpr double kFewestRounds = 25;  // of 30
+  constexpr double kMinRounds = 25;  // of 30
   Rig rig = line_rig();
   for (int unit = 1; unit <= 8; ++unit) add_meter(rig, "meter-" + std::to_string(unit), unit, 2);
   RealLine line(rig);
@@ -352,8 +352,8 @@ TEST(ModbusRtuLine, ADeadUnitOfEightDelaysTheOthersByOneTimeoutAtMost) {
   // The dead unit is asked in each 6 s, so a driver that waits for it twice is late in every one of them. A machine that
   // is held up for some tenths of a second now and then is not.
   Duration longest = Duration::max();
-  double most_rounds = 0;
-  for (int attempt = 0; attempt < 8 && (longest >= kLatest || most_rounds < kFewestRounds); ++attempt) {
+  double max_rounds = 0;
+  for (int attempt = 0; attempt < 8 && (longest >= kLatest || max_rounds < kMinRounds); ++attempt) {
     line.readings.clear();
     line.run(6.0, 0);
     Duration longest_here{};
@@ -368,12 +368,12 @@ TEST(ModbusRtuLine, ADeadUnitOfEightDelaysTheOthersByOneTimeoutAtMost) {
     }
     EXPECT_TRUE(line.readings[3].empty());
     longest = std::min(longest, longest_here);
-    most_rounds = std::max(most_rounds, fewest_rounds);
+    max_rounds = std::max(max_rounds, fewest_rounds);
   }
-  EXPECT_GE(most_rounds, kFewestRounds) << "of 30";
+  EXPECT_GE(max_rounds, kMinRounds) << "of 30";
   EXPECT_LT(longest, kLatest) << "a round, a timeout, and the machine";
   RecordProperty("longest_ms", static_cast<int>(to_seconds(longest) * 1000));
-  RecordProperty("rounds", static_cast<int>(most_rounds));
+  RecordProperty("rounds", static_cast<int>(max_rounds));
   line.far.faults().clear();
   line.run(3.0, 0);
   EXPECT_FALSE(line.readings[3].empty());

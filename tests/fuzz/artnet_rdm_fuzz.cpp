@@ -14,7 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   // On the heap, so that a byte read past its end is found.
   const std::vector<std::uint8_t> packet(data, data + size);
   if (const auto tod = decode_tod_data(packet)) {
-    if (tod->port_address < 0 || tod->port_address > kHighestPortAddress || tod->uids.size() > kMostTodUids) {
+    if (tod->port_address < 0 || tod->port_address > kHighestPortAddress || tod->uids.size() > kMaxTodUids) {
       std::abort();
     }
     const auto again = decode_tod_data(encode(*tod));

@@ -32,7 +32,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
   std::size_t encoded = 0;
   for (const Message& message : at_once) {
-    if (message.data.size() > kMostData) std::abort();
+    if (message.data.size() > kMaxData) std::abort();
     const auto bytes = encode(static_cast<Label>(message.label), message.data);
     if (std::search(stream.begin(), stream.end(), bytes.begin(), bytes.end()) == stream.end()) std::abort();
     encoded += bytes.size();

@@ -25,14 +25,14 @@ inline void require_said(const std::vector<Problem>& problems) {
 /// unit and have a density that is the distribution's own.
 inline void require_sound(const IntensityDistribution& light) {
   require(std::isfinite(light.flux_lm()) && light.flux_lm() > 0);
-  const double most_cd = light.max_intensity_cd() * (1 + 1e-9);
+  const double max_cd = light.max_intensity_cd() * (1 + 1e-9);
   for (int i = 0; i <= 24; ++i) {
     for (int j = -12; j <= 12; ++j) {
       const double gamma = i * kPi / 24;
       const double c = j * kPi / 12;
       const Vec3 direction(std::sin(gamma) * std::cos(c), std::sin(gamma) * std::sin(c), -std::cos(gamma));
       const double intensity_cd = light.intensity_cd(direction);
-      require(std::isfinite(intensity_cd) && intensity_cd >= 0 && intensity_cd <= most_cd);
+      require(std::isfinite(intensity_cd) && intensity_cd >= 0 && intensity_cd <= max_cd);
       require(gamma <= 0.5 * light.emission_cone_rad() + 1e-6 || intensity_cd == 0);
     }
   }

@@ -11,7 +11,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::array<std::uint8_t, kHeaderBytes> header{};
   std::copy_n(data, std::min(size, header.size()), header.begin());
   if (const auto answer = decode_answer(header)) {
-    if (answer->length > kMostBytes) std::abort();
+    if (answer->length > kMaxBytes) std::abort();
     (void)status_of(answer->status);
   }
   return 0;

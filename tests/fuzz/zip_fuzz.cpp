@@ -6,7 +6,7 @@
 #include "tests/fuzz/personality_properties.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  constexpr std::size_t kMost = 1 << 20;
+  constexpr std::size_t kMax = 1 << 20;
   const std::string bytes(reinterpret_cast<const char*>(data), size);
   const auto archive = luxrig::ZipArchive::open(bytes, "fuzz.zip");
   if (!archive) {
@@ -14,9 +14,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return 0;
   }
   for (std::size_t i = 0; i < archive->names().size() && i < 8; ++i) {
-    const auto content = archive->read(archive->names()[i], kMost);
+    const auto content = archive->read(archive->names()[i], kMax);
     if (content) {
-      LUXRIG_CHECK(content->size() <= kMost, "{} bytes", content->size());
+      LUXRIG_CHECK(content->size() <= kMax, "{} bytes", content->size());
     } else {
       luxrig::fuzz::check_problems(content.error());
     }

@@ -8,7 +8,7 @@ namespace {
 
 TEST(Show, BringsEveryMeteredGoalWithinThreePercentAndNeverExceedsALimitForFiftySeeds) {
   double worst_error = 0, worst_share = 0, longest_s = 0;
-  int most_rounds = 0;
+  int max_rounds = 0;
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     ClosedLoop loop(make_hall(seed), seeded(seed));
     loop.run(1);
@@ -20,7 +20,7 @@ TEST(Show, BringsEveryMeteredGoalWithinThreePercentAndNeverExceedsALimitForFifty
     EXPECT_LE(status.round, loop.hall.rig.control.rounds);
     EXPECT_GE(status.round, 1) << "open loop cannot be right, the truth is 10 % off";
     longest_s = std::max(longest_s, loop.seconds() - 1);
-    most_rounds = std::max(most_rounds, status.round);
+    max_rounds = std::max(max_rounds, status.round);
     loop.run(5);
     EXPECT_LE(loop.worst_measured_error(), 0.03) << "seed " << seed << " " << loop.describe();
     // The truth can be further off by what the meter itself may be wrong.
@@ -32,7 +32,7 @@ TEST(Show, BringsEveryMeteredGoalWithinThreePercentAndNeverExceedsALimitForFifty
     worst_share = std::max(worst_share, loop.worst_limit_share());
   }
   std::printf("50 seeds: worst measured error %.2f %%, most lux over limit %.3f, longest %.1f s, most rounds %d\n",
-              100 * worst_error, worst_share, longest_s, most_rounds);
+              100 * worst_error, worst_share, longest_s, max_rounds);
 }
 
 TEST(Show, GoesAsNearToAGoalAtItsLimitAsTheMetersToleranceLetsItAndSaysSo) {

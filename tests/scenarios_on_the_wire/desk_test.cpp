@@ -61,9 +61,9 @@ struct FollowedRig {
     far.step_to(now);
     now += driver->bounds().write_period;
     const std::vector<double> drives = far.drives();
-    most_jump = std::max(most_jump, std::abs(drives[1] - last_free_));
+    max_jump = std::max(max_jump, std::abs(drives[1] - last_free_));
     last_free_ = drives[1];
-    most_limited = std::max(most_limited, drives[0]);
+    max_limited = std::max(max_limited, drives[0]);
   }
   void run(double seconds) {
     const Time end = now + from_seconds(seconds);
@@ -78,7 +78,7 @@ struct FollowedRig {
   std::optional<ShowController> show;
   Time now = at_ms(0);
   std::optional<int> desk_dmx;
-  double most_jump = 0, most_limited = 0;
+  double max_jump = 0, max_limited = 0;
 
  private:
   std::uint8_t sequence_ = 0;
@@ -95,8 +95,8 @@ TEST_P(FollowedDesk, TheBrighterOfBothReachesTheLampsWithinTheLimit) {
   rig.run(3);  // sACN samples for 1.5 s
   EXPECT_NEAR(rig.far.drives()[1], 1, 0.003);
   // 50 lx, less the margin of a model that no meter confirms, over 100 lx per level.
-  EXPECT_GT(rig.most_limited, 0.3);
-  EXPECT_LE(rig.most_limited, 0.5 * 0.75 / 1.0 + 0.002);
+  EXPECT_GT(rig.max_limited, 0.3);
+  EXPECT_LE(rig.max_limited, 0.5 * 0.75 / 1.0 + 0.002);
   rig.desk_dmx = 26;
   rig.run(1);
   EXPECT_NEAR(rig.far.drives()[1], 0.2, 0.003);
@@ -107,17 +107,17 @@ TEST_P(FollowedDesk, IsTakenOverFromWithoutAFlashWhenItIsLostAndGetsTheLightBack
   rig.desk_dmx = 204;
   rig.run(6);
   EXPECT_NEAR(rig.far.drives()[1], 0.8, 0.003);
-  rig.most_jump = 0;
+  rig.max_jump = 0;
   rig.desk_dmx.reset();
   rig.run(2);
   EXPECT_NEAR(rig.far.drives()[1], 0.8, 0.003);  // it may be back at any moment
   rig.run(12);
   EXPECT_NEAR(rig.far.drives()[1], 0.2, 0.003);
-  EXPECT_LE(rig.most_jump, 1.5 * 0.6 * 0.0228 / 2 + 2.0 / 255);  // an s-curve's steepest, and a step of 8 bits
+  EXPECT_LE(rig.max_jump, 1.5 * 0.6 * 0.0228 / 2 + 2.0 / 255);  // an s-curve's steepest, and a step of 8 bits
   rig.desk_dmx = 204;
   rig.run(5);
   EXPECT_NEAR(rig.far.drives()[1], 0.8, 0.003);
-  EXPECT_LE(rig.most_jump, 1.5 * 0.6 * 0.0228 / 2 + 2.0 / 255);
+  EXPECT_LE(rig.max_jump, 1.5 * 0.6 * 0.0228 / 2 + 2.0 / 255);
 }
 
 TEST_P(FollowedDesk, IsStoodByForInSilence) {

@@ -12,7 +12,7 @@ namespace luxrig {
 namespace {
 
 constexpr double kWidth_px = 900, kHeight_px = 560, kLeft_px = 80, kRight_px = 260, kTop_px = 50, kBottom_px = 60;
-constexpr double kLeast = 1e-16;  ///< smallest error that is drawn
+constexpr double kMin = 1e-16;  ///< smallest error that is drawn
 
 /// A logarithmic axis that covers whole decades.
 struct Axis {
@@ -45,22 +45,22 @@ std::string write_plot(const std::vector<BenchRow>& rows, const std::string& tit
   if (std::all_of(rows.begin(), rows.end(), [](const BenchRow& row) { return std::isnan(row.error); }))
     return "nothing to draw";
   // Logarithms need positive values: exact results are drawn at 1e-16.
-  const auto error_of = [](const BenchRow& row) { return std::clamp(row.error, kLeast, 1e16); };
+  const auto error_of = [](const BenchRow& row) { return std::clamp(row.error, kMin, 1e16); };
   const auto seconds_of = [](const BenchRow& row) { return std::max(row.seconds, 1e-6); };
   Axis x{kLeft_px, kWidth_px - kRight_px}, y{kHeight_px - kBottom_px, kTop_px};
-  double least_s = 1e9, most_s = 1e-9, least = 1e9, most = 1e-16;
+  double min_s = 1e9, max_s = 1e-9, least = 1e9, most = 1e-16;
   std::map<std::string, std::vector<const BenchRow*>> lines;
   bool one_case = true;  // then it is in the title
   for (const BenchRow& row : rows) {
     if (std::isnan(row.error)) continue;
-    least_s = std::min(least_s, seconds_of(row));
-    most_s = std::max(most_s, seconds_of(row));
-    least = std::min(least, row.quartiles ? std::max(row.quartiles->first, kLeast) : error_of(row));
+    min_s = std::min(min_s, seconds_of(row));
+    max_s = std::max(max_s, seconds_of(row));
+    least = std::min(least, row.quartiles ? std::max(row.quartiles->first, kMin) : error_of(row));
     most = std::max(most, row.quartiles ? row.quartiles->second : error_of(row));
     lines[row.case_name + ", " + row.method].push_back(&row);
     one_case = one_case && row.case_name == rows.front().case_name;
   }
-  x.cover(least_s, most_s);
+  x.cover(min_s, max_s);
   y.cover(least, most);
   const std::unique_ptr<cairo_surface_t, decltype(&cairo_surface_destroy)> surface(
       cairo_image_surface_create(CAIRO_FORMAT_RGB24, static_cast<int>(kWidth_px), static_cast<int>(kHeight_px)),
@@ -103,8 +103,8 @@ std::string write_plot(const std::vector<BenchRow>& rows, const std::string& tit
       // Side by side, where many lines have a point at the same time.
       const double at_px = x.at(seconds_of(*row)) + (row->quartiles ? 2.5 * static_cast<double>(index % 6) - 6 : 0);
       if (row->quartiles)
-        line(pen, at_px, y.at(std::max(row->quartiles->first, kLeast)), at_px,
-             y.at(std::max(row->quartiles->second, kLeast)));
+        line(pen, at_px, y.at(std::max(row->quartiles->first, kMin)), at_px,
+             y.at(std::max(row->quartiles->second, kMin)));
       cairo_arc(pen, x.at(seconds_of(*row)), y.at(error_of(*row)), 4, 0, 6.2832);
       cairo_fill(pen);
     }

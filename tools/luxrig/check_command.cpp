@@ -119,7 +119,7 @@ std::string task_text(const Rig& rig, const Task& task) {
 /// How each fixture with a maker's file was understood. One fixture of a housing stands for all of it, and fixtures
 /// with the same setting share a line.
 void print_personalities(const Rig& rig) {
-  constexpr std::size_t kMostNamed = 4;
+  constexpr std::size_t kMaxNamed = 4;
   std::vector<std::pair<std::string, std::vector<std::string>>> told;  // text, and the fixtures that it is true for
   for (std::size_t i = 0; i < rig.fixtures.size(); ++i) {
     const Fixture& fixture = rig.fixtures[i];
@@ -139,8 +139,8 @@ void print_personalities(const Rig& rig) {
     }
   }
   for (const auto& [text, names] : told) {
-    const bool all = names.size() <= kMostNamed;
-    const auto named = std::span(names).first(all ? names.size() : kMostNamed - 1);
+    const bool all = names.size() <= kMaxNamed;
+    const auto named = std::span(names).first(all ? names.size() : kMaxNamed - 1);
     fmt::print("  personality of {}{}: {}\n", fmt::join(named, ", "),
                all ? "" : fmt::format(" and {} more", names.size() - named.size()), text);
   }

@@ -200,8 +200,8 @@ tl::expected<Setting, std::string> setting_of(const std::string& what, const std
   }
   const bool printable =
       std::all_of(value.begin(), value.end(), [](char letter) { return letter >= 0x20 && letter < 0x7F; });
-  if (value.size() > rdm::kMostLabel || !printable) {
-    return tl::unexpected(fmt::format("a label has at most {} plain (ASCII) characters: use fewer", rdm::kMostLabel));
+  if (value.size() > rdm::kMaxLabel || !printable) {
+    return tl::unexpected(fmt::format("a label has at most {} plain (ASCII) characters: use fewer", rdm::kMaxLabel));
   }
   return Setting{rdm::Pid::device_label, {value.begin(), value.end()}};
 }

@@ -11,13 +11,13 @@ namespace luxrig {
 namespace {
 
 constexpr std::uint32_t kRaysPerLamp = 32;
-constexpr std::size_t kMostLampsAsked = 256;
+constexpr std::size_t kMaxLampsAsked = 256;
 
 /// Places where the lamps' light falls first.
 std::vector<Receiver> lit_places(const RayScene& scene, const std::vector<Emitter>& lamps) {
   std::vector<Receiver> places;
   const SobolSequence samples(mixed(1, 0x711e));
-  for (std::size_t e = 0; e < std::min(lamps.size(), kMostLampsAsked); ++e)
+  for (std::size_t e = 0; e < std::min(lamps.size(), kMaxLampsAsked); ++e)
     for (std::uint32_t i = 0; i < kRaysPerLamp; ++i) {
       const auto [u, v] = samples.pair(i, 0, 0);
       const DirectionSample drawn = lamps[e].intensity->sample(u, v);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kOutputPriority = 50;
 constexpr Duration kHealthPeriod = std::chrono::milliseconds(200);
-constexpr std::size_t kMostUnsentReadings = 1000;
+constexpr std::size_t kMaxUnsentReadings = 1000;
 constexpr Duration kDarkAgain = std::chrono::milliseconds(5);
 
 }  // namespace
@@ -187,7 +187,7 @@ void BusThread::read(Time at) {
   const std::unique_lock lock(mutex_, std::try_to_lock);
   if (!lock) return;
   readings_.insert(readings_.end(), unsent_readings_.begin(), unsent_readings_.end());
-  if (readings_.size() > kMostUnsentReadings) readings_.erase(readings_.begin(), readings_.end() - kMostUnsentReadings);
+  if (readings_.size() > kMaxUnsentReadings) readings_.erase(readings_.begin(), readings_.end() - kMaxUnsentReadings);
   unsent_readings_.clear();
 }
 

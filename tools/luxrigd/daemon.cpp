@@ -19,7 +19,7 @@ namespace {
 
 constexpr Duration kPublishPeriod = std::chrono::milliseconds(100);
 constexpr Duration kSafeLookEvery = std::chrono::seconds(1), kGuardianLook = std::chrono::seconds(1);
-constexpr int kMostDoublings = 6;
+constexpr int kMaxDoublings = 6;
 constexpr auto kCommandBound = std::chrono::seconds(2);
 constexpr Duration kDarkWithin = std::chrono::seconds(1);
 /// A daemon just killed, or the guardian of one that ended in order, may hold its claims for a moment.
@@ -193,7 +193,7 @@ void Daemon::look_after_guardian(Time at) {
     return;
   }
   if (!unguarded_since_) unguarded_since_ = at;
-  guardian_deaths_ = std::min(guardian_deaths_ + 1, kMostDoublings);
+  guardian_deaths_ = std::min(guardian_deaths_ + 1, kMaxDoublings);
   start_guardian(at);
 }
 

@@ -28,8 +28,8 @@ namespace luxrig {
 namespace {
 
 constexpr Duration kTick = std::chrono::milliseconds(20);
-constexpr Duration kMostParking = std::chrono::seconds(60);
-constexpr Duration kMostOnce = std::chrono::seconds(120);
+constexpr Duration kMaxParking = std::chrono::seconds(60);
+constexpr Duration kMaxOnce = std::chrono::seconds(120);
 
 Checked<Plan> plan_of_file(const std::filesystem::path& path) {
   const auto text = read_file(path);
@@ -96,12 +96,12 @@ void tick_until(Daemon& daemon, const std::function<bool(Time)>& done) {
   }
 }
 
-/// Ticks until the look is held, or kMostOnce has passed.
+/// Ticks until the look is held, or kMaxOnce has passed.
 void tick_until_held(Daemon& daemon, RunReport& say, const std::stop_token& stop) {
   const Time begun = now();
   tick_until(daemon, [&](Time at) {
     say.follow(daemon.status(), at);
-    return daemon.status().phase == Phase::holding || stop.stop_requested() || at - begun > kMostOnce;
+    return daemon.status().phase == Phase::holding || stop.stop_requested() || at - begun > kMaxOnce;
   });
 }
 
@@ -352,7 +352,7 @@ int run_rig(const RunArguments& arguments) {
       }
     }
     return stop.stop_requested() || pictures_failed != kExitOk ||
-           (arguments.once && (settled || at - process_start > kMostOnce));
+           (arguments.once && (settled || at - process_start > kMaxOnce));
   });
   const ShowStatus final_status = daemon.status();
 
@@ -365,7 +365,7 @@ int run_rig(const RunArguments& arguments) {
     const Time begun = now();
     tick_until(daemon, [&](Time at) {
       const Phase phase = daemon.status().phase;
-      return daemon.status().resting || phase == Phase::frozen || phase == Phase::safe || at - begun > kMostParking;
+      return daemon.status().resting || phase == Phase::frozen || phase == Phase::safe || at - begun > kMaxParking;
     });
   }
   say.say("fading to the safe look");

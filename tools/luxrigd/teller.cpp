@@ -13,7 +13,7 @@
 namespace luxrig {
 namespace {
 
-constexpr std::size_t kMostLines = 1000;
+constexpr std::size_t kMaxLines = 1000;
 constexpr auto kAtTheEnd = std::chrono::seconds(1);
 
 void write_or_lose(int fd, const std::string& text) {
@@ -69,7 +69,7 @@ Teller::~Teller() {
 
 void Teller::tell(std::string text) {
   const std::lock_guard lock(shared_->mutex);
-  if (shared_->lines.size() == kMostLines) {
+  if (shared_->lines.size() == kMaxLines) {
     shared_->lines.pop_front();
     ++shared_->lost;
   }

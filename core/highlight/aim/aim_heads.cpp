@@ -260,7 +260,7 @@ Result<AimResult> HeadAims::solve() const {
   for (std::size_t k = 0; k < count; ++k)
     first_aims.push_back(voted_aims(state.heads[k],
                                     *std::min_element(state.cone_rad[k].begin(), state.cone_rad[k].end()),
-                                    state.full.sights[k], state.full.samples, state.options.most_aims));
+                                    state.full.sights[k], state.full.samples, state.options.max_aims));
   if (std::all_of(first_aims.begin(), first_aims.end(), [](const std::vector<Vec3>& aims) { return aims.empty(); }))
     return refusal("no head can be turned to anything that it sees of the object: move one, or widen its range");
   SearchedAims found = search_aims(state, first_aims);

@@ -22,7 +22,7 @@ constexpr std::size_t kAimPoints = 1000;
 /// A stop ends the search with the best so far.
 struct AimOptions : Run {
   std::size_t search_points = 800;  ///< interest points used by the search, evenly strided; the score uses all
-  std::size_t most_aims = 24;       ///< candidates per head
+  std::size_t max_aims = 24;        ///< candidates per head
 };
 
 struct AimedHead {

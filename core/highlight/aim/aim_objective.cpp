@@ -68,8 +68,8 @@ void AimObjective::add(AimSum& sum, const AimColumn& column, double level, HeadR
   sum.travel_total_s += travel_s;
 }
 
-double AimObjective::most_level(const AimSum& others, const AimColumn& column, HeadRole role, double max_level,
-                                double watts, bool ratios) const {
+double AimObjective::highest_level(const AimSum& others, const AimColumn& column, HeadRole role, double max_level,
+                                   double watts, bool ratios) const {
   double most = max_level;
   const auto keep = [&](double room, double per_level) {
     if (per_level > 0) most = std::min(most, std::max(0.0, room / per_level));

@@ -97,8 +97,8 @@ class AimObjective {
   /// Largest level at which the added light breaks no limit; 0 if one is already broken.
   /// watts    of the head at full level
   /// ratios   also keep the ratio of key to fill
-  [[nodiscard]] double most_level(const AimSum& others, const AimColumn& column, HeadRole role, double max_level,
-                                  double watts, bool ratios = true) const;
+  [[nodiscard]] double highest_level(const AimSum& others, const AimColumn& column, HeadRole role, double max_level,
+                                     double watts, bool ratios = true) const;
   [[nodiscard]] AimScore score(const AimSum& sum) const;
 
  private:

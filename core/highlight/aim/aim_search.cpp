@@ -14,8 +14,8 @@ namespace {
 constexpr double kLevelShares[] = {0, 0.05, 0.1, 0.2, 0.35, 0.5, 0.75, 1};
 /// If heads share a limit, a head's room may be what the others give up.
 constexpr double kOthersShares[] = {1, 0.7, 0.4};
-constexpr int kMostSweeps = 12;
-constexpr double kLeastGain = 1e-6;  ///< of the objective
+constexpr int kMaxSweeps = 12;
+constexpr double kMinGain = 1e-6;  ///< of the objective
 /// First and last step of aim refinement, as shares of the beam.
 constexpr double kFirstStep = 0.25, kLastStep = 0.015;
 constexpr double kWidestStep_rad = rad_from_deg(20);
@@ -56,14 +56,14 @@ class AimSearch {
     for (const Start start : {Start::dark, Start::bright, Start::shared, Start::present}) {
       if (!limited_ && (start == Start::shared || start == Start::present)) continue;
       Look look = begun(start);
-      for (int sweep = 0; sweep < kMostSweeps && !stopped() && swept(look); ++sweep) {
+      for (int sweep = 0; sweep < kMaxSweeps && !stopped() && swept(look); ++sweep) {
       }
       if (best.settings.empty() || look.objective > best.objective) best = std::move(look);
     }
     for (double step = kFirstStep; step >= kLastStep && !stopped();) {
       const double was = best.objective;
       for (std::size_t k = 0; k < state_.heads.size(); ++k) refine(best, k, step);
-      if (best.objective < was + kLeastGain) step /= 2;
+      if (best.objective < was + kMinGain) step /= 2;
     }
     return {std::move(best.settings), tried_};
   }
@@ -125,9 +125,10 @@ class AimSearch {
       const AimSum others = start == Start::bright ? without(look, k) : judge_.objective->nothing();
       // A ratio between heads has no meaning while the others are dark.
       const bool alone = start != Start::bright;
-      look.settings[k].level = judge_.objective->most_level(others, look.columns[k], role_of(k),
-                                                            state_.heads[k].max_level, state_.heads[k].watts, !alone) /
-                               (alone ? static_cast<double>(count) : 1.0);
+      look.settings[k].level =
+          judge_.objective->highest_level(others, look.columns[k], role_of(k), state_.heads[k].max_level,
+                                          state_.heads[k].watts, !alone) /
+          (alone ? static_cast<double>(count) : 1.0);
     }
     look.objective = judge_.objective->score(without(look, count)).objective;
     return look;
@@ -138,7 +139,7 @@ class AimSearch {
                                  const AimColumn& column) const {
     Tried best;
     const double most =
-        judge_.objective->most_level(others, column, role_of(k), state_.heads[k].max_level, state_.heads[k].watts);
+        judge_.objective->highest_level(others, column, role_of(k), state_.heads[k].max_level, state_.heads[k].watts);
     for (const double share : kLevelShares) {
       if (share > 0 && !(most > 0)) break;
       AimSum sum = others;
@@ -170,7 +171,7 @@ class AimSearch {
       const auto best = std::max_element(tried.begin(), tried.end(), [](const Tried& a, const Tried& b) {
         return a.objective < b.objective;  // the first of equal ones
       });
-      if (best->objective < look.objective + kLeastGain) continue;
+      if (best->objective < look.objective + kMinGain) continue;
       const auto at = static_cast<std::size_t>(best - tried.begin());
       const Candidate& taken = columns_[k][at % candidates];
       for (std::size_t j = 0; j < look.settings.size(); ++j)
@@ -227,7 +228,7 @@ class AimSearch {
     std::size_t best = 0;
     for (std::size_t w = 1; w < tried.size(); ++w)
       if (tried[w].objective > tried[best].objective) best = w;
-    if (tried[best].objective > look.objective + kLeastGain)
+    if (tried[best].objective > look.objective + kMinGain)
       set(look, k, ways[best].setting, tried[best].level, std::move(ways[best].column), tried[best].objective);
   }
 

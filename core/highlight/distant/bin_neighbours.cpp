@@ -16,11 +16,11 @@ BinNeighbours bins_within(const DirectionBins& bins, double angle_rad) {
     from_pole_rad[b] = std::acos(std::clamp(direction[b].z(), -1.0, 1.0));
   }
   // Bins come in rings from the pole; the search ends at those farther from it by more than the angle.
-  const double least_cosine = std::cos(angle_rad), past_rad = angle_rad + 1e-9;
+  const double min_cosine = std::cos(angle_rad), past_rad = angle_rad + 1e-9;
   std::vector<std::vector<std::uint32_t>> near(bins.count());
   for (std::uint32_t a = 0; a < bins.count(); ++a) {
     for (std::uint32_t b = a + 1; b < bins.count() && from_pole_rad[b] - from_pole_rad[a] <= past_rad; ++b) {
-      if (direction[a].dot(direction[b]) < least_cosine) continue;
+      if (direction[a].dot(direction[b]) < min_cosine) continue;
       near[a].push_back(b);
       near[b].push_back(a);
     }

@@ -9,11 +9,11 @@
 namespace luxrig {
 namespace {
 
-constexpr std::size_t kMostRelightRounds = 12;
-constexpr int kMostReliefLights = 64;
+constexpr std::size_t kMaxRelightRounds = 12;
+constexpr int kMaxReliefLights = 64;
 constexpr double kSpreadReach = 2.5;  // of its standard deviation
 /// Least gain for which a light moves: less is within the change between two meshes of the same object.
-constexpr double kLeastRelightGain = 0.01;
+constexpr double kMinRelightGain = 0.01;
 
 double angle_rad(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
@@ -28,8 +28,8 @@ Result<ReliefLightSearch> ReliefLightSearch::make(const TargetSurface& surface, 
                                                   const ReliefLightOptions& options) {
   if (options.side < 1 || options.side > 64)
     return refusal(fmt::format("bins of the sphere come 1 to 64 to a side, not {}", options.side));
-  if (!(options.least_angle_rad >= 0 && options.least_angle_rad <= kPi))
-    return refusal(fmt::format("lights cannot be {} rad apart", options.least_angle_rad));
+  if (!(options.min_angle_rad >= 0 && options.min_angle_rad <= kPi))
+    return refusal(fmt::format("lights cannot be {} rad apart", options.min_angle_rad));
   if (!(options.spread_rad >= 0 && options.spread_rad <= 1))
     return refusal(fmt::format("spread of {} rad is not within 0 to 1", options.spread_rad));
   if (!(options.lift_m >= 0) || !std::isfinite(options.lift_m))
@@ -114,12 +114,12 @@ Vec3 ReliefLightSearch::peak_near(std::uint32_t bin, const std::vector<double>& 
 }
 
 Result<ReliefLights> ReliefLightSearch::lights(int lights, std::span<const Vec3> start) const {
-  if (lights < 1 || lights > kMostReliefLights)
-    return refusal(fmt::format("1 to {} lights can be placed, not {}", kMostReliefLights, lights));
+  if (lights < 1 || lights > kMaxReliefLights)
+    return refusal(fmt::format("1 to {} lights can be placed, not {}", kMaxReliefLights, lights));
   if (start.size() > static_cast<std::size_t>(lights))
     return refusal(fmt::format("{} lights cannot start from {}", lights, start.size()));
   const TabledContrast contrast = sums();
-  const double most_cosine = std::cos(options_.least_angle_rad);
+  const double max_cosine = std::cos(options_.min_angle_rad);
   std::vector<std::uint32_t> chosen;
   for (const Vec3& direction : start) {
     if (!direction.allFinite() || direction.isZero(0)) return refusal("a light to start from has no direction");
@@ -132,7 +132,7 @@ Result<ReliefLights> ReliefLightSearch::lights(int lights, std::span<const Vec3>
   };
   const auto too_near = [&](std::uint32_t bin, const std::vector<std::uint32_t>& others) {
     return std::ranges::any_of(
-        others, [&](std::uint32_t other) { return directions_[bin].dot(directions_[other]) > most_cosine; });
+        others, [&](std::uint32_t other) { return directions_[bin].dot(directions_[other]) > max_cosine; });
   };
   // The best bin apart from the others; kNone if no lit bin is left.
   const auto best_beside = [&](const std::vector<std::uint32_t>& others) {
@@ -157,14 +157,14 @@ Result<ReliefLights> ReliefLightSearch::lights(int lights, std::span<const Vec3>
     peaks.push_back(peak_near(next.bin, next.smooth));
     settled = 1;
   }
-  for (std::size_t step = 0; settled < chosen.size() && step < kMostRelightRounds * chosen.size(); ++step) {
+  for (std::size_t step = 0; settled < chosen.size() && step < kMaxRelightRounds * chosen.size(); ++step) {
     if (options_.watch.stop.stop_requested()) return relief_search_stopped();
     const std::size_t k = step % chosen.size();
     std::vector<std::uint32_t> others = chosen;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
     const Choice next = best_beside(others);
     ++settled;
-    const double least = too_near(chosen[k], others) ? 0 : (1 + kLeastRelightGain) * next.smooth[chosen[k]];
+    const double least = too_near(chosen[k], others) ? 0 : (1 + kMinRelightGain) * next.smooth[chosen[k]];
     if (next.bin != TargetSurface::kNone && next.bin != chosen[k] && next.smooth[next.bin] > least) {
       chosen[k] = next.bin;
       settled = 1;
@@ -182,11 +182,11 @@ double ReliefLightSearch::exposed_contrast_of(std::span<const Vec3> directions) 
   return sums().of(bins).exposed_contrast;
 }
 
-Result<ReliefLightCount> ReliefLightSearch::count_lights(int most_lights) const {
-  if (most_lights < 1 || most_lights > kMostReliefLights)
-    return refusal(fmt::format("1 to {} lights can be placed, not {}", kMostReliefLights, most_lights));
+Result<ReliefLightCount> ReliefLightSearch::count_lights(int max_lights) const {
+  if (max_lights < 1 || max_lights > kMaxReliefLights)
+    return refusal(fmt::format("1 to {} lights can be placed, not {}", kMaxReliefLights, max_lights));
   ReliefLightCount count;
-  for (int n = 1; n <= most_lights; ++n) {
+  for (int n = 1; n <= max_lights; ++n) {
     auto next =
         count.by_number.empty() ? lights(n) : lights(n, std::span<const Vec3>(count.by_number.back().directions));
     if (!next) return tl::unexpected(next.error());

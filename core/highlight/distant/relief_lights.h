@@ -13,7 +13,7 @@ struct ReliefLightOptions : Run {
   int side = 16;  ///< of the sphere's bins: 3 072 of 3.7°
   /// Closer lights cast nearly the same shadows and act as one brighter light. Contrast is convex in the lights'
   /// levels, so only this limit keeps the best lights apart.
-  double least_angle_rad = rad_from_deg(30);
+  double min_angle_rad = rad_from_deg(30);
   /// A light is judged by the mean contrast around its direction, weighted by exp(-angle² / 2 spread²): heads cannot be
   /// aimed more exactly, and narrower peaks come from single facets. 0 = by its direction alone.
   double spread_rad = rad_from_deg(4);
@@ -53,8 +53,8 @@ class ReliefLightSearch {
   /// start   directions to begin with, such as those with most votes; at most `lights`
   [[nodiscard]] Result<ReliefLights> lights(int lights, std::span<const Vec3> start = {}) const;
 
-  /// For one light up to most_lights.
-  [[nodiscard]] Result<ReliefLightCount> count_lights(int most_lights) const;
+  /// For one light up to max_lights.
+  [[nodiscard]] Result<ReliefLightCount> count_lights(int max_lights) const;
 
   /// Of beams of 1 lx from the bins of these directions (contrast_samples.h), 0…1.
   [[nodiscard]] double exposed_contrast_of(std::span<const Vec3> directions) const;

@@ -137,9 +137,9 @@ Result<DomainVotes> vote_on_domain(const LightDomain& domain, const ShadowEdges&
 
   DomainVotes votes;
   const std::uint64_t layers = domain.layer_of(domain.groups() - 1) + 1u;
-  if (options.most_votes > 0) {
+  if (options.max_votes > 0) {
     const std::uint64_t expected = layers * edges.edges.size();
-    votes.every = static_cast<std::uint32_t>((expected + options.most_votes - 1) / options.most_votes);
+    votes.every = static_cast<std::uint32_t>((expected + options.max_votes - 1) / options.max_votes);
   }
   votes.point_factor.assign(options.reflectance.begin(), options.reflectance.end());
   std::vector<GatheredPart> parts((points.size() + kPointsPerDomainTask - 1) / kPointsPerDomainTask);

@@ -62,7 +62,7 @@ struct DomainVoteOptions : Run {
   std::span<const double> reflectance;  ///< per point, 0…1; empty = unknown, taken as 1
   /// If rays times layers exceed this, only every n-th ray is traced, with the least n that does not exceed it. This
   /// limits the memory, here to 218 MB (twice that if every ray crosses every layer twice). 0 = all.
-  std::size_t most_votes = std::size_t{1} << 22;
+  std::size_t max_votes = std::size_t{1} << 22;
 };
 
 /// Continues the open ray of each shadow edge, which the target lets pass, to every layer of the domain. A hit votes

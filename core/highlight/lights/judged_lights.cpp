@@ -16,16 +16,16 @@ namespace {
 
 constexpr double kJudgedBeamShare = 0.9;  ///< of the flux within the beam (thesis §6.5)
 constexpr double kSeenOfReference = 0.02;
-constexpr std::size_t kMostAimsOfPlace = 3;
+constexpr std::size_t kMaxAimsOfPlace = 3;
 /// Most candidates kept within half the least angle of one another, and from one place.
-constexpr std::size_t kMostFromDirection = 12, kMostFromPlace = 2;
-constexpr int kMostJudgedLights = 64;
+constexpr std::size_t kMaxFromDirection = 12, kMaxFromPlace = 2;
+constexpr int kMaxJudgedLights = 64;
 /// Lights chosen by votes that are kept as a start, whatever their own score.
-constexpr std::size_t kMostBegun = 16;
+constexpr std::size_t kMaxBegun = 16;
 constexpr int kAimsAround = 8;
 /// As shares of the beam's angle.
 constexpr double kFirstAimStep = 0.25, kLastAimStep = 1.0 / 64;
-constexpr int kMostMovesOfStep = 4;
+constexpr int kMaxMovesOfStep = 4;
 
 struct PlaceOfAims {
   Vec3 position_world_m;
@@ -61,7 +61,7 @@ std::vector<TriedAim> begun_aims(const PotentialLights& voted, const std::vector
   std::vector<TriedAim> begun;
   if (voted.lights.empty()) return begun;
   LightSelection selection(voted);
-  while (begun.size() < kMostBegun) {
+  while (begun.size() < kMaxBegun) {
     const auto light = selection.add();
     if (!light) break;
     const PotentialLight& taken = voted.lights[*light];
@@ -92,7 +92,7 @@ std::vector<TriedAim> tried_aims(const PlaceOfAims& place, std::uint32_t index, 
   std::vector<Vec3> aims = place.voted;
   if (!directions.empty()) {
     const auto modes = direction_modes(directions, weights, window_rad);
-    for (std::size_t m = 0; m < std::min(modes.size(), kMostAimsOfPlace); ++m) aims.push_back(modes[m].direction);
+    for (std::size_t m = 0; m < std::min(modes.size(), kMaxAimsOfPlace); ++m) aims.push_back(modes[m].direction);
   }
   std::vector<TriedAim> tried;
   std::vector<double> exact;
@@ -111,7 +111,7 @@ std::vector<TriedAim> kept_aims(std::vector<TriedAim> begun, std::vector<TriedAi
                                 const JudgedLightOptions& options) {
   std::stable_sort(tried.begin(), tried.end(),
                    [](const TriedAim& a, const TriedAim& b) { return a.contrast_lx > b.contrast_lx; });
-  const double cosine = std::cos(options.least_angle_rad / 2);
+  const double cosine = std::cos(options.min_angle_rad / 2);
   std::vector<std::size_t> of_place(places.size(), 0);
   const auto is_begun = [&](const TriedAim& aim) {
     return std::ranges::any_of(
@@ -120,12 +120,12 @@ std::vector<TriedAim> kept_aims(std::vector<TriedAim> begun, std::vector<TriedAi
   std::vector<TriedAim> kept;
   std::vector<Vec3> from;
   for (const TriedAim& aim : tried) {
-    if (kept.size() == options.most_candidates) break;
+    if (kept.size() == options.max_candidates) break;
     if (is_begun(aim)) continue;
-    if (of_place[aim.place] == kMostFromPlace) continue;
+    if (of_place[aim.place] == kMaxFromPlace) continue;
     const Vec3 mine = (places[aim.place].position_world_m - middle_world_m).normalized();
     const auto near = std::ranges::count_if(from, [&](const Vec3& other) { return other.dot(mine) > cosine; });
-    if (static_cast<std::size_t>(near) >= kMostFromDirection) continue;
+    if (static_cast<std::size_t>(near) >= kMaxFromDirection) continue;
     ++of_place[aim.place];
     kept.push_back(aim);
     from.push_back(mine);
@@ -139,13 +139,13 @@ tl::unexpected<Fault> judged_search_stopped() {
 }
 
 std::string complaint_of(const JudgedLightOptions& options) {
-  if (!(options.least_angle_rad >= 0 && options.least_angle_rad <= kPi))
-    return fmt::format("lights cannot be {} rad apart", options.least_angle_rad);
+  if (!(options.min_angle_rad >= 0 && options.min_angle_rad <= kPi))
+    return fmt::format("lights cannot be {} rad apart", options.min_angle_rad);
   if (!(options.coverage_weight >= 0) || !std::isfinite(options.coverage_weight))
     return fmt::format("a coverage weight of {} is not 0 or more", options.coverage_weight);
   if (!(options.lift_m >= 0) || !std::isfinite(options.lift_m))
     return fmt::format("rays cannot start {} m off the surface", options.lift_m);
-  if (options.first_points < 1 || options.most_candidates < 1) return "no points or no candidates to judge by";
+  if (options.first_points < 1 || options.max_candidates < 1) return "no points or no candidates to judge by";
   return "";
 }
 
@@ -266,7 +266,7 @@ Result<JudgedLights> JudgedLights::make(const TargetSurface& surface, const Targ
 JudgedSelection JudgedLights::selection() const {
   JudgedWishes wishes;
   wishes.coverage_weight = state_->options.coverage_weight;
-  wishes.least_angle_rad = state_->options.least_angle_rad;
+  wishes.min_angle_rad = state_->options.min_angle_rad;
   wishes.seen_lx = state_->seen_lx;
   return {state_->samples, state_->features, state_->candidates, state_->middle_world_m, std::move(wishes)};
 }
@@ -277,7 +277,7 @@ void JudgedLights::refine_aims(JudgedSelection& selection) const {
     const std::uint32_t place = selection.taken()[i].place;
     const HeadSight sight = state_->sight(place);
     for (double step = kFirstAimStep; step >= kLastAimStep; step /= 2) {
-      for (int move = 0; move < kMostMovesOfStep; ++move) {
+      for (int move = 0; move < kMaxMovesOfStep; ++move) {
         const Vec3 middle = selection.taken()[i].direction;
         const Vec3 x = middle.unitOrthogonal(), y = middle.cross(x);
         const double off_rad = std::min(rad_from_deg(20), step * state_->beam_rad);
@@ -314,20 +314,20 @@ std::optional<JudgedSelection> JudgedLights::begun_by_votes(int lights) const {
 }
 
 Result<JudgedLightSet> JudgedLights::lights(int lights) const {
-  if (lights < 1 || lights > kMostJudgedLights)
-    return refusal(fmt::format("1 to {} lights can be placed, not {}", kMostJudgedLights, lights));
+  if (lights < 1 || lights > kMaxJudgedLights)
+    return refusal(fmt::format("1 to {} lights can be placed, not {}", kMaxJudgedLights, lights));
   std::optional<JudgedSelection> chosen = selection(), begun = begun_by_votes(lights);
   if (!complete(*chosen, lights) || (begun && !complete(*begun, lights))) return judged_search_stopped();
   if (begun && begun->score().judged > chosen->score().judged) chosen.emplace(*begun);
   return JudgedLightSet{{chosen->taken().begin(), chosen->taken().end()}, chosen->score()};
 }
 
-Result<JudgedLightCount> JudgedLights::count_lights(int most_lights) const {
-  if (most_lights < 1 || most_lights > kMostJudgedLights)
-    return refusal(fmt::format("1 to {} lights can be placed, not {}", kMostJudgedLights, most_lights));
+Result<JudgedLightCount> JudgedLights::count_lights(int max_lights) const {
+  if (max_lights < 1 || max_lights > kMaxJudgedLights)
+    return refusal(fmt::format("1 to {} lights can be placed, not {}", kMaxJudgedLights, max_lights));
   JudgedLightCount count;
   std::optional<JudgedSelection> chosen = selection();
-  for (int n = 1; n <= most_lights; ++n) {
+  for (int n = 1; n <= max_lights; ++n) {
     std::optional<JudgedSelection> begun = begun_by_votes(n);
     if (!complete(*chosen, n) || (begun && !complete(*begun, n))) return judged_search_stopped();
     if (begun && begun->taken().size() >= chosen->taken().size() && begun->score().judged > chosen->score().judged)

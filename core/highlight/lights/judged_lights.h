@@ -14,10 +14,10 @@ namespace luxrig {
 
 struct JudgedLightOptions : Run {
   Surroundings surroundings;
-  double coverage_weight = 0.1, least_angle_rad = rad_from_deg(30);  ///< as JudgedWishes
-  /// All places are first judged by this many interest points, evenly strided. Then the most_candidates best, but not
+  double coverage_weight = 0.1, min_angle_rad = rad_from_deg(30);  ///< as JudgedWishes
+  /// All places are first judged by this many interest points, evenly strided. Then the max_candidates best, but not
   /// too many from one direction, are judged by all interest points.
-  std::size_t first_points = 150, most_candidates = 480;
+  std::size_t first_points = 150, max_candidates = 480;
   double lift_m = 0;  ///< rays start this far off the surface; hides smaller relief
 };
 
@@ -62,8 +62,8 @@ class JudgedLights {
   /// The better of two starts, both settled and refined: one by one by contrast, and with the lights that votes would
   /// choose. Refuses a number outside 1…64.
   [[nodiscard]] Result<JudgedLightSet> lights(int lights) const;
-  /// For one light up to most_lights, each started from the one before or from the lights that votes would choose.
-  [[nodiscard]] Result<JudgedLightCount> count_lights(int most_lights) const;
+  /// For one light up to max_lights, each started from the one before or from the lights that votes would choose.
+  [[nodiscard]] Result<JudgedLightCount> count_lights(int max_lights) const;
 
   [[nodiscard]] std::span<const JudgedLight> candidates() const;
   [[nodiscard]] const ContrastSamples& samples() const;

@@ -10,7 +10,7 @@ namespace luxrig {
 namespace {
 
 /// Least gain for which a light is replaced: less is rounding, and could make two alternate for ever.
-constexpr double kLeastJudgedGain = 1e-6;
+constexpr double kMinJudgedGain = 1e-6;
 /// Possible excess of a sum's contrast over that of its parts, by float rounding.
 constexpr double kBoundSlack = 1e-5;
 
@@ -117,8 +117,8 @@ void JudgedSelection::add(std::uint32_t candidate) {
 
 bool JudgedSelection::stands_apart(const JudgedLight& light, std::span<const Vec3> from_others) const {
   const Vec3 mine = from(light);
-  const double most_cosine = std::cos(wishes_.least_angle_rad);
-  return std::ranges::none_of(from_others, [&](const Vec3& theirs) { return mine.dot(theirs) > most_cosine; });
+  const double max_cosine = std::cos(wishes_.min_angle_rad);
+  return std::ranges::none_of(from_others, [&](const Vec3& theirs) { return mine.dot(theirs) > max_cosine; });
 }
 
 bool JudgedSelection::stands_apart(std::uint32_t candidate) const {
@@ -132,16 +132,16 @@ void JudgedSelection::remove(std::size_t i) {
   taken_shown_.erase(taken_shown_.begin() + static_cast<std::ptrdiff_t>(i));
 }
 
-bool JudgedSelection::settle(int most_rounds) {
+bool JudgedSelection::settle(int max_rounds) {
   bool any = false;
   std::size_t settled = 0;  // lights in a row that cannot be improved
-  for (std::size_t step = 0; settled < taken_.size() && step < static_cast<std::size_t>(most_rounds) * taken_.size();
+  for (std::size_t step = 0; settled < taken_.size() && step < static_cast<std::size_t>(max_rounds) * taken_.size();
        ++step) {
     const std::size_t k = step % taken_.size();
     const Others others = others_than(k);
     ++settled;
     const auto best = best_beside(others);
-    if (!best || !(best->judged > (1 + kLeastJudgedGain) * beside(others, taken_[k], taken_shown_[k]))) continue;
+    if (!best || !(best->judged > (1 + kMinJudgedGain) * beside(others, taken_[k], taken_shown_[k]))) continue;
     taken_[k] = candidates_[best->candidate];
     taken_shown_[k] = shown_[best->candidate];
     settled = 1;
@@ -154,8 +154,7 @@ bool JudgedSelection::improve(std::size_t i, const JudgedLight& light) {
   LUXRIG_CHECK(i < taken_.size(), "light {} of {} taken", i, taken_.size());
   const Others others = others_than(i);
   Shown shown = shown_by(light);
-  if (!(beside(others, light, shown) > (1 + kLeastJudgedGain) * beside(others, taken_[i], taken_shown_[i])))
-    return false;
+  if (!(beside(others, light, shown) > (1 + kMinJudgedGain) * beside(others, taken_[i], taken_shown_[i]))) return false;
   taken_[i] = light;
   taken_shown_[i] = std::move(shown);
   return true;

@@ -22,7 +22,7 @@ struct JudgedWishes {
   double coverage_weight = 0.1;
   /// Least angle between lights as seen from the object. Contrast is convex in the lights' levels: without a limit the
   /// best set is one place many times over.
-  double least_angle_rad = rad_from_deg(30);
+  double min_angle_rad = rad_from_deg(30);
   double seen_lx = 0;            ///< a shadow edge shows its feature if its lit side gets more than this
   std::vector<float> fixed_lux;  ///< light that stays on, at each sample point; empty = darkness
 };
@@ -53,8 +53,8 @@ class JudgedSelection {
   [[nodiscard]] bool stands_apart(std::uint32_t candidate) const;
   void remove(std::size_t i);  ///< the i-th chosen; later ones move up
   /// Replaces each light in turn by the best candidate with the others fixed, until no replacement gains or after
-  /// most_rounds. True if any light was replaced.
-  bool settle(int most_rounds = 8);
+  /// max_rounds. True if any light was replaced.
+  bool settle(int max_rounds = 8);
   /// Replaces the i-th chosen light by this one if that is judged better. True if so.
   bool improve(std::size_t i, const JudgedLight& light);
 

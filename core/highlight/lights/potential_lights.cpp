@@ -51,7 +51,7 @@ void drop_small(const PotentialLightOptions& options, LightsOfCell& found) {
   LightsOfCell kept;
   for (std::size_t i = 0; i < found.lights.size(); ++i) {
     const PotentialLight& light = found.lights[i];
-    if (light.votes < options.least_votes || light.weight < options.least_share * most) continue;
+    if (light.votes < options.min_votes || light.weight < options.min_share * most) continue;
     kept.lights.push_back(light);
     const auto at = [&](std::size_t k) { return found.votes.begin() + static_cast<std::ptrdiff_t>(k); };
     kept.votes.insert(kept.votes.end(), at(i == 0 ? 0 : found.ends[i - 1]), at(found.ends[i]));
@@ -65,8 +65,8 @@ void drop_small(const PotentialLightOptions& options, LightsOfCell& found) {
 Result<PotentialLights> potential_lights(const DomainVotes& votes, const PotentialLightOptions& options) {
   if (!(options.beam_angle_rad >= rad_from_deg(0.1) && options.beam_angle_rad <= 2 * kPi))
     return refusal(fmt::format("a beam of {} degrees", deg_from_rad(options.beam_angle_rad)));
-  if (!(options.least_share >= 0 && options.least_share <= 1))
-    return refusal(fmt::format("a least share of {} is not within 0 to 1", options.least_share));
+  if (!(options.min_share >= 0 && options.min_share <= 1))
+    return refusal(fmt::format("a least share of {} is not within 0 to 1", options.min_share));
   const double window_rad = options.beam_angle_rad / 2;
   std::vector<LightsOfCell> cells(votes.cells.size());
   parallel_for(cells.size(), options.threads, [&](std::size_t c) {
@@ -97,7 +97,7 @@ Result<PotentialLights> potential_lights(const DomainVotes& votes, const Potenti
     return refusal(
         fmt::format("no place of the light domain has {} votes within one beam: of {} votes in {} cells all "
                     "were dropped",
-                    options.least_votes, votes.votes.size(), votes.cells.size()));
+                    options.min_votes, votes.votes.size(), votes.cells.size()));
   return all;
 }
 

@@ -13,8 +13,8 @@ struct PotentialLightOptions : Run {
   /// Full angle of the luminaire's beam: cone_of_flux_rad(intensity, 0.9) of core/photometry/beam.h.
   double beam_angle_rad = rad_from_deg(30);
   /// Lights with fewer votes than this, or less weight than this share of the heaviest in their cell, are dropped.
-  std::uint32_t least_votes = 8;
-  double least_share = 0.1;
+  std::uint32_t min_votes = 8;
+  double min_share = 0.1;
 };
 
 struct PotentialLight {

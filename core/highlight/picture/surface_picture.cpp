@@ -145,10 +145,9 @@ void SurfacePicture::draw(const DrawnLine& line) {
   const Vec3 ahead = (camera_.target_world_m - camera_.eye_world_m).normalized();
   Vec3 from_m = line.from_world_m - camera_.eye_world_m, to_m = line.to_world_m - camera_.eye_world_m;
   if (from_m.dot(ahead) > to_m.dot(ahead)) std::swap(from_m, to_m);
-  const double least_m = 1e-3 * (to_m - from_m).norm();
-  if (!(to_m.dot(ahead) > least_m)) return;
-  if (from_m.dot(ahead) < least_m)
-    from_m += (least_m - from_m.dot(ahead)) / (to_m - from_m).dot(ahead) * (to_m - from_m);
+  const double min_m = 1e-3 * (to_m - from_m).norm();
+  if (!(to_m.dot(ahead) > min_m)) return;
+  if (from_m.dot(ahead) < min_m) from_m += (min_m - from_m.dot(ahead)) / (to_m - from_m).dot(ahead) * (to_m - from_m);
   const auto from = place_in_picture(camera_, camera_.eye_world_m + from_m);
   const auto to = place_in_picture(camera_, camera_.eye_world_m + to_m);
   if (!from || !to) return;

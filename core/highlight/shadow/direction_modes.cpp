@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kBinsPerWindow = 8, kStartsPerWindow = 2;
 constexpr int kFinestModeSide = 1024;
-constexpr int kMostShifts = 100;
+constexpr int kMaxShifts = 100;
 constexpr std::size_t kModeLeaf = 8;
 
 struct WeighedDirection {
@@ -89,7 +89,7 @@ std::vector<DirectionMode> direction_modes(std::span<const Vec3f> directions, st
   std::vector<DirectionMode> found;
   for (const WeighedDirection& start : starts) {
     DirectionMode mode{start.direction, 0};
-    for (int shift = 0; shift < kMostShifts; ++shift) {
+    for (int shift = 0; shift < kMaxShifts; ++shift) {
       const Vec3 sum = mean_around(mode.direction, mode.weight);
       // No direction near a start that is the mean of far ones; or directions that cancel, in a window of half a
       // sphere.

@@ -8,7 +8,7 @@
 namespace luxrig {
 namespace {
 
-constexpr int kMostRounds = 200;
+constexpr int kMaxRounds = 200;
 
 struct VotedBin {
   std::uint32_t bin;
@@ -81,7 +81,7 @@ Result<std::vector<DistantLight>> distant_lights(const DirectionHistogram& histo
   }
 
   std::vector<Vec3> means = first_means(bins, static_cast<std::size_t>(options.lights));
-  for (int round = 0; round < kMostRounds; ++round) {
+  for (int round = 0; round < kMaxRounds; ++round) {
     bool changed = round == 0;
     for (VotedBin& bin : bins) {
       std::size_t nearest = 0;

@@ -19,7 +19,7 @@ struct TargetRays::State {
   std::vector<std::array<std::uint32_t, 3>> triangles;
   double diagonal_m = 0;
 
-  [[nodiscard]] double least_lift_m() const;
+  [[nodiscard]] double min_lift_m() const;
   State() = default;
   State(const State&) = delete;
   State& operator=(const State&) = delete;
@@ -113,14 +113,14 @@ void cast_at_target(RTCScene scene, const Vec3f& start, const Aim& aim, std::spa
 
 }  // namespace
 
-double TargetRays::State::least_lift_m() const { return diagonal_m * 0x1p-18 * std::numbers::sqrt2 / 2; }
+double TargetRays::State::min_lift_m() const { return diagonal_m * 0x1p-18 * std::numbers::sqrt2 / 2; }
 
 void TargetRays::blocked(const Vec3& from_world_m, const Vec3& normal_world, double lift_m,
                          std::span<const Vec3f> directions_world, std::span<std::uint8_t> blocked) const {
   LUXRIG_CHECK(blocked.size() == directions_world.size(), "{} answers for {} directions", blocked.size(),
                directions_world.size());
   const State& state = *state_;
-  const double lifted_m = lift_m + state.least_lift_m();
+  const double lifted_m = lift_m + state.min_lift_m();
   const Vec3f start = (from_world_m - state.middle_world_m + lifted_m * normal_world).cast<float>();
   cast_at_target(
       state.scene, start, [&](std::size_t i, Vec3f& direction, float&) { direction = directions_world[i]; }, blocked);
@@ -130,15 +130,15 @@ void TargetRays::blocked_before(const Vec3& from_world_m, const Vec3& normal_wor
                                 std::span<const Vec3> to_world_m, std::span<std::uint8_t> blocked) const {
   LUXRIG_CHECK(blocked.size() == to_world_m.size(), "{} answers for {} places", blocked.size(), to_world_m.size());
   const State& state = *state_;
-  const double least_m = state.least_lift_m();
-  const Vec3f start = (from_world_m - state.middle_world_m + (lift_m + least_m) * normal_world).cast<float>();
+  const double min_m = state.min_lift_m();
+  const Vec3f start = (from_world_m - state.middle_world_m + (lift_m + min_m) * normal_world).cast<float>();
   cast_at_target(
       state.scene, start,
       [&](std::size_t i, Vec3f& direction, float& end) {
         const Vec3 way_m = to_world_m[i] - state.middle_world_m - start.cast<double>();
         const double length_m = way_m.norm();
         direction = way_m.cast<float>();
-        end = length_m > 0 ? static_cast<float>(1 - least_m / length_m) : 0;
+        end = length_m > 0 ? static_cast<float>(1 - min_m / length_m) : 0;
       },
       blocked);
 }

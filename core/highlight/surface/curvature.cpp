@@ -18,7 +18,7 @@ namespace {
 constexpr double kWiden = 2;             ///< once, if samples are few
 constexpr double kManyNeighbours = 300;  ///< samples are merged if they average more than this
 constexpr double kMergeCells = 8;        ///< per radius
-constexpr double kMostPieces = 4096;     ///< of one facet; one that needs more counts by its corners alone
+constexpr double kMaxPieces = 4096;      ///< of one facet; one that needs more counts by its corners alone
 constexpr double kPieceEdge = 1.0 / 3;   ///< of the radius: longest edge of the pieces of long facets
 constexpr double kOneSided = 0.6;        ///< least length of the mean normal of a neighbourhood with a single sheet
 constexpr double kRefitTilt = 0.1;       ///< slope of the fit above which it is repeated over its own plane
@@ -138,7 +138,7 @@ Result<std::vector<Curvature>> curvature_at(const TargetSurface& surface, std::s
   std::vector<Curvature> curvatures(count);
   if (count == 0) return curvatures;
 
-  std::vector<SurfaceSample> samples = surface_samples(surface, radius_m, kPieceEdge * radius_m, kMostPieces);
+  std::vector<SurfaceSample> samples = surface_samples(surface, radius_m, kPieceEdge * radius_m, kMaxPieces);
   // Mean number of samples within a radius, estimated from some of them.
   {
     const SampleGrid grid(samples, radius_m);

@@ -14,7 +14,7 @@
 namespace luxrig {
 namespace {
 
-constexpr double kMostPoints = 1e6, kMostSlivers = 3e7;
+constexpr double kMaxPoints = 1e6, kMaxSlivers = 3e7;
 constexpr double kSpacing = 0.2;                  ///< of the scale: least distance of points that face alike
 constexpr double kWidestSpacing = 0.35;           ///< used if that gives too many points; rings need it
 constexpr double kRing = 0.7;                     ///< of the scale: distance of the points a point is compared with
@@ -108,15 +108,15 @@ Result<EvenSurface> even_surface(const TargetSurface& mesh, const EvenSurfaceOpt
   if (!(options.scale_m > 0) || !std::isfinite(options.scale_m))
     return refusal(fmt::format("a surface cannot be told by points at a scale of {} m", options.scale_m));
   // At most about one point per square of their distance.
-  const double least_apart_m = std::sqrt(mesh.area_m2() / kMostPoints);
-  if (least_apart_m > kWidestSpacing * options.scale_m)
+  const double min_apart_m = std::sqrt(mesh.area_m2() / kMaxPoints);
+  if (min_apart_m > kWidestSpacing * options.scale_m)
     return refusal(
         fmt::format("a scale of {:.3g} m is too fine for a surface of {:.3g} m²: it can be told from {:.3g} m up",
-                    options.scale_m, mesh.area_m2(), least_apart_m / kWidestSpacing));
-  const double apart_m = std::max(kSpacing * options.scale_m, least_apart_m), distance_m = kRing * options.scale_m;
+                    options.scale_m, mesh.area_m2(), min_apart_m / kWidestSpacing));
+  const double apart_m = std::max(kSpacing * options.scale_m, min_apart_m), distance_m = kRing * options.scale_m;
   const double piece_m = 0.75 * apart_m;
   // Long thin facets need many pieces for little area.
-  if (const double pieces = pieces_of_surface(mesh, piece_m, piece_m); pieces > kMostSlivers)
+  if (const double pieces = pieces_of_surface(mesh, piece_m, piece_m); pieces > kMaxSlivers)
     return refusal(
         fmt::format("its {} facets are so long that they would have to be cut into {:.1g} pieces at a scale of "
                     "{:.3g} m: take a larger scale, or mesh it anew with even triangles",

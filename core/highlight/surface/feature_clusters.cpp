@@ -63,11 +63,11 @@ class JoinedClusters {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;
   }
-  void join_if_alike(std::uint32_t i, std::uint32_t j, double least_cosine) {
+  void join_if_alike(std::uint32_t i, std::uint32_t j, double min_cosine) {
     const std::uint32_t a = root(i), b = root(j);
     if (a == b) return;
     const Vec3 &p = normals_[a], &q = normals_[b];
-    if (!(p.dot(q) >= least_cosine * p.norm() * q.norm()) || p.isZero(0) || q.isZero(0)) return;
+    if (!(p.dot(q) >= min_cosine * p.norm() * q.norm()) || p.isZero(0) || q.isZero(0)) return;
     // The lower index stays as root; path halving keeps the trees shallow.
     parent_[std::max(a, b)] = std::min(a, b);
     normals_[std::min(a, b)] = p + q;
@@ -89,8 +89,8 @@ Result<FeatureClusters> cluster_features(std::span<const OrientedPoint> points, 
   FeatureClusters result;
   if (points.empty()) return result;
   JoinedClusters joined(points);
-  const double least_cosine = std::cos(options.largest_angle_rad);
-  for (const Link& link : links_between(points, options.link_m)) joined.join_if_alike(link.a, link.b, least_cosine);
+  const double min_cosine = std::cos(options.largest_angle_rad);
+  for (const Link& link : links_between(points, options.link_m)) joined.join_if_alike(link.a, link.b, min_cosine);
   constexpr std::uint32_t kUnnumbered = ~0u;
   std::vector<std::uint32_t> number(points.size(), kUnnumbered);
   for (std::uint32_t i = 0; i < points.size(); ++i) {

@@ -9,10 +9,10 @@
 namespace luxrig {
 namespace {
 
-bool is_recessed(const Curvature& c, double least_turn_rad) {
+bool is_recessed(const Curvature& c, double min_turn_rad) {
   if (!c.known()) return false;
   const double depth_per_m = -c.mean_per_m();
-  return depth_per_m * c.radius_m > least_turn_rad && depth_per_m > 2 * c.mean_error_per_m;
+  return depth_per_m * c.radius_m > min_turn_rad && depth_per_m > 2 * c.mean_error_per_m;
 }
 
 /// The most recessed point of each occupied cell; by_depth is in order of depth.
@@ -51,7 +51,7 @@ Result<std::vector<std::uint32_t>> interest_points(const TargetSurface& surface,
   double known_m2 = 0;
   for (std::uint32_t i = 0; i < curvature.size(); ++i) {
     if (curvature[i].known()) known_m2 += surface.areas_m2[i];
-    if (is_recessed(curvature[i], options.least_turn_rad) && (!below || curvature[i].mean_per_m() < *below))
+    if (is_recessed(curvature[i], options.min_turn_rad) && (!below || curvature[i].mean_per_m() < *below))
       points.push_back(i);
   }
   std::stable_sort(points.begin(), points.end(), [&](std::uint32_t i, std::uint32_t j) {
@@ -64,14 +64,14 @@ Result<std::vector<std::uint32_t>> interest_points(const TargetSurface& surface,
       sum_m2 += surface.areas_m2[points[count++]];
     points.resize(count);
   }
-  if (options.most_points > 0 && points.size() > options.most_points) {
+  if (options.max_points > 0 && points.size() > options.max_points) {
     // The finest grid that keeps the limit, to a hundredth of its cell.
     double fine_m = 0, coarse_m = 2 * surface.diagonal_m();
     std::vector<std::uint32_t> kept = {points.front()};
     for (int round = 0; round < 60 && coarse_m - fine_m > 0.01 * coarse_m; ++round) {
       const double middle_m = fine_m > 0 ? (fine_m + coarse_m) / 2 : coarse_m / 2;
       std::vector<std::uint32_t> tried = one_per_cell(surface, points, middle_m);
-      if (tried.size() <= options.most_points) {
+      if (tried.size() <= options.max_points) {
         coarse_m = middle_m;
         kept = std::move(tried);
       } else {

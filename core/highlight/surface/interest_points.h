@@ -15,10 +15,10 @@ struct InterestOptions {
   double wanted_share = 0.1;
   /// A place is not recessed if the surface turns by less than this over the radius of its fit [rad], or by less than
   /// twice the standard error of the curvature.
-  double least_turn_rad = 0.02;
+  double min_turn_rad = 0.02;
   /// Upper limit of points; 0 = none. If there are more, the most recessed of each cell of a grid stays, with the
   /// finest grid that keeps the limit.
-  std::size_t most_points = 0;
+  std::size_t max_points = 0;
 };
 
 /// Indices of points of the surface, rising. Empty for an object without recesses (a plain sphere, a plane).

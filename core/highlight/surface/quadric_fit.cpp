@@ -7,15 +7,15 @@ namespace luxrig {
 namespace {
 
 /// Fewer samples determine the six coefficients but not their error.
-constexpr int kLeastSamples = 9;
+constexpr int kMinSamples = 9;
 /// Least pivot of the normal equations, scaled to a diagonal of 1. Samples all around give 1e-2 and more, a half-disc
 /// 1e-3, a curve of second order only rounding, 1e-15.
-constexpr double kLeastPivot = 1e-6;
+constexpr double kMinPivot = 1e-6;
 
 }  // namespace
 
 std::optional<QuadricFit> QuadricSums::fit() const {
-  if (count_ < kLeastSamples || !(sum_ > 0)) return std::nullopt;
+  if (count_ < kMinSamples || !(sum_ > 0)) return std::nullopt;
   // Few samples with all of the weight count as few samples.
   const double effective = sum_ * sum_ / sum_of_squares_;
   if (!(effective > 6.5)) return std::nullopt;
@@ -36,7 +36,7 @@ std::optional<QuadricFit> QuadricSums::fit() const {
   const Eigen::LLT<Eigen::Matrix<double, 6, 6>> factor(scaled);
   if (factor.info() != Eigen::Success) return std::nullopt;
   const double pivot = factor.matrixLLT().diagonal().minCoeff();
-  if (!(pivot * pivot > kLeastPivot)) return std::nullopt;
+  if (!(pivot * pivot > kMinPivot)) return std::nullopt;
   QuadricFit fit;
   fit.coefficients = scale.cwiseProduct(factor.solve(scale.cwiseProduct(right)));
   const double left = std::max(0.0, zz_ - fit.coefficients.dot(right)) / sum_;

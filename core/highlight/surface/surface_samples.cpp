@@ -51,7 +51,7 @@ double pieces_of_surface(const TargetSurface& surface, double longest_m, double 
 }
 
 std::vector<SurfaceSample> surface_samples(const TargetSurface& surface, double longest_m, double edge_m,
-                                           double most_pieces) {
+                                           double max_pieces) {
   std::vector<double> areas_m2 = surface.areas_m2;
   std::vector<SurfaceSample> pieces;
   for (const auto& t : surface.triangles) {
@@ -59,7 +59,7 @@ std::vector<SurfaceSample> surface_samples(const TargetSurface& surface, double 
     const double longest_edge_m = longest_edge_of(p);
     if (longest_edge_m <= longest_m) continue;
     const Vec3 cross = (p[1] - p[0]).cross(p[2] - p[0]);
-    if (pieces_of(cross.norm() / 2, longest_edge_m, edge_m) > most_pieces) continue;
+    if (pieces_of(cross.norm() / 2, longest_edge_m, edge_m) > max_pieces) continue;
     cut_up(p, cross.normalized(), edge_m, pieces);
     for (const std::uint32_t corner : t) areas_m2[corner] -= cross.norm() / 6;
   }

@@ -7,11 +7,11 @@
 namespace luxrig {
 
 /// The surface's points. Facets with an edge above longest_m are cut into pieces with edges up to edge_m instead,
-/// unless a facet would give more than most_pieces: then it counts by its corners alone. Areas sum to the surface's.
+/// unless a facet would give more than max_pieces: then it counts by its corners alone. Areas sum to the surface's.
 [[nodiscard]] std::vector<SurfaceSample> surface_samples(const TargetSurface& surface, double longest_m, double edge_m,
-                                                         double most_pieces);
+                                                         double max_pieces);
 
-/// Approximate number of those pieces, without most_pieces; takes less time and no memory.
+/// Approximate number of those pieces, without max_pieces; takes less time and no memory.
 [[nodiscard]] double pieces_of_surface(const TargetSurface& surface, double longest_m, double edge_m);
 
 }  // namespace luxrig

@@ -9,16 +9,16 @@
 namespace luxrig {
 namespace {
 
-constexpr std::size_t kMostChoicesNamed = 12;
+constexpr std::size_t kMaxChoicesNamed = 12;
 
 std::string names_of(const std::vector<Choice>& choices) {
   std::string text;
-  for (std::size_t i = 0; i < std::min(choices.size(), kMostChoicesNamed); ++i) {
+  for (std::size_t i = 0; i < std::min(choices.size(), kMaxChoicesNamed); ++i) {
     text += (i == 0 ? "" : ", ") + in_quotes(choices[i].name);
     if (!choices[i].description.empty() && choices[i].description != choices[i].name)
       text += fmt::format(" ({})", in_quotes(choices[i].description));
   }
-  if (choices.size() > kMostChoicesNamed) text += fmt::format(" and {} more", choices.size() - kMostChoicesNamed);
+  if (choices.size() > kMaxChoicesNamed) text += fmt::format(" and {} more", choices.size() - kMaxChoicesNamed);
   return text;
 }
 

@@ -14,8 +14,8 @@
 namespace luxrig {
 namespace {
 
-constexpr std::size_t kMostPhotometryBytes = std::size_t{64} << 20;
-constexpr double kMostRated_lm = 1e8;
+constexpr std::size_t kMaxPhotometryBytes = std::size_t{64} << 20;
+constexpr double kMaxRated_lm = 1e8;
 
 using Names = std::vector<std::string>;
 
@@ -174,7 +174,7 @@ class GldfProduct {
     }
     if (const pugi::xml_node flux = child_called(option, "RatedLuminousFlux")) {
       const std::optional<double> lm = finite_number(flux.child_value());
-      if (!lm || !(*lm > 0) || *lm > kMostRated_lm) {
+      if (!lm || !(*lm > 0) || *lm > kMaxRated_lm) {
         return refuse(flux, fmt::format("RatedLuminousFlux {} is no flux", in_quotes(flux.child_value())),
                       "write lumens, above 0");
       }
@@ -235,7 +235,7 @@ Checked<PhotometricFile> read_gldf(std::string bytes, const std::string& file, c
     return refuse("no product.xml in the archive",
                   gdtf ? "this is a GDTF file: name it in a fixture's personality" : "a GLDF file has one at its root");
   }
-  const Checked<std::string> xml = archive->read(*product, kMostXmlBytes);
+  const Checked<std::string> xml = archive->read(*product, kMaxXmlBytes);
   if (!xml) return tl::unexpected(xml.error());
   Checked<GldfLight> light = parse_gldf_product(*xml, file + "/" + *product, part);
   if (!light) return tl::unexpected(std::move(light.error()));
@@ -244,7 +244,7 @@ Checked<PhotometricFile> read_gldf(std::string bytes, const std::string& file, c
     return refuse(fmt::format("{} is not in the archive", in_quotes("ldc/" + light->photometry_file)),
                   "export the file again with its photometry");
   }
-  const Checked<std::string> text = archive->read(*entry, kMostPhotometryBytes);
+  const Checked<std::string> text = archive->read(*entry, kMaxPhotometryBytes);
   if (!text) return tl::unexpected(text.error());
   const std::string inner = file + "/" + made_plain(*entry);
   Checked<PhotometricFile> out =

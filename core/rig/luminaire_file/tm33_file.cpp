@@ -18,10 +18,10 @@ using file_text::At;
 using file_text::number_text;
 using file_text::ProblemLog;
 
-constexpr std::size_t kMostTm33Values = 4'000'000;
-constexpr std::size_t kMostTm33Angles = 10'000;
-constexpr double kMostTm33Candela = 1e12;
-constexpr double kLeastTm33Flux_lm = 1e-6;
+constexpr std::size_t kMaxTm33Values = 4'000'000;
+constexpr std::size_t kMaxTm33Angles = 10'000;
+constexpr double kMaxTm33Candela = 1e12;
+constexpr double kMinTm33Flux_lm = 1e-6;
 constexpr double kTm33FluxTolerance = 0.05;
 constexpr double kSameTm33Angle_deg = 1e-6;
 
@@ -54,8 +54,8 @@ class Tm33Reader {
       return tl::unexpected(problems_.take());
     PhotometricFile out;
     const double largest_cd = *std::max_element(file_.candela.begin(), file_.candela.end());
-    if (4 * kPi * largest_cd >= kLeastTm33Flux_lm) out.intensity = make_intensity(file_);
-    if (!out.intensity || !(out.intensity->flux_lm() >= kLeastTm33Flux_lm)) {
+    if (4 * kPi * largest_cd >= kMinTm33Flux_lm) out.intensity = make_intensity(file_);
+    if (!out.intensity || !(out.intensity->flux_lm() >= kMinTm33Flux_lm)) {
       problems_.add(at_of(xml_, data_), "the luminaire gives no light", "give a file with candela values");
       return tl::unexpected(problems_.take());
     }
@@ -122,13 +122,13 @@ class Tm33Reader {
       const double horizontal_deg = angle("horz", round ? 0 : -90, round ? 360 : 90);
       const double vertical_deg = angle("vert", round ? 0 : -90, round ? 180 : 90);
       const std::optional<double> cd = finite_number(node.child_value());
-      if (!cd || *cd < 0 || *cd * *multiplier > kMostTm33Candela) {
+      if (!cd || *cd < 0 || *cd * *multiplier > kMaxTm33Candela) {
         problems_.add(at_of(xml_, node),
                       fmt::format("intensity {} is not a number of candela", in_quotes(node.child_value())),
                       "write a plain number, 0 or more, with a decimal point");
       }
       if (problems_.full()) return false;
-      if (values.size() == kMostTm33Values) {
+      if (values.size() == kMaxTm33Values) {
         problems_.add(at_of(xml_, node), "more than 4 million intensities", "give a coarser grid");
         return false;
       }
@@ -161,7 +161,7 @@ class Tm33Reader {
     file_.horizontal_deg = distinct(std::move(horizontal_deg));
     file_.vertical_deg = distinct(std::move(vertical_deg));
     const std::size_t columns = file_.horizontal_deg.size(), rows = file_.vertical_deg.size();
-    if (rows < 2 || columns > kMostTm33Angles || rows > kMostTm33Angles || columns * rows > kMostTm33Values) {
+    if (rows < 2 || columns > kMaxTm33Angles || rows > kMaxTm33Angles || columns * rows > kMaxTm33Values) {
       problems_.add(at_of(xml_, data_),
                     fmt::format("{} horizontal and {} vertical angles make no distribution", columns, rows),
                     "give a full grid of at least two vertical angles and at most 4 million values");

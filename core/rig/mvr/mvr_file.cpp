@@ -14,9 +14,9 @@
 namespace luxrig {
 namespace {
 
-constexpr std::size_t kMostMvrFixtures = 10'000, kMostMvrGeometries = 100'000, kMostMvrNotes = 100;
+constexpr std::size_t kMaxMvrFixtures = 10'000, kMaxMvrGeometries = 100'000, kMaxMvrNotes = 100;
 constexpr int kDeepestSymbol = 8;
-constexpr std::size_t kMostGdtfBytes = std::size_t{64} << 20, kMostGdtfBytesInAll = std::size_t{512} << 20;
+constexpr std::size_t kMaxGdtfBytes = std::size_t{64} << 20, kMaxGdtfBytesInAll = std::size_t{512} << 20;
 constexpr double kMetresPerMillimetre = 0.001, kFarthest_m = 9.9e6;  // a rig allows 1e7; lamps are offset
 
 /// A matrix as MVR writes it: the x, y and z axes, then the origin in millimetres.
@@ -85,7 +85,7 @@ class MvrReader {
 
  private:
   void note(std::string text) {
-    if (out_.notes.size() < kMostMvrNotes) out_.notes.push_back(std::move(text));
+    if (out_.notes.size() < kMaxMvrNotes) out_.notes.push_back(std::move(text));
   }
 
   /// In the world; nullopt and a problem if its matrix is wrong.
@@ -127,8 +127,8 @@ class MvrReader {
       if (problems_.full()) return;
       const std::string_view kind = node.name();
       if (kind == "Fixture") {
-        if (out_.fixtures.size() == kMostMvrFixtures) {
-          problems_.add(xml_.place_of(node), fmt::format("more than {} fixtures", kMostMvrFixtures),
+        if (out_.fixtures.size() == kMaxMvrFixtures) {
+          problems_.add(xml_.place_of(node), fmt::format("more than {} fixtures", kMaxMvrFixtures),
                         "split the file: a rig has at most so many");
           return;
         }
@@ -154,10 +154,10 @@ class MvrReader {
       if (problems_.full()) return;
       const bool model = std::string_view(node.name()) == "Geometry3D";
       if (!model && std::string_view(node.name()) != "Symbol") continue;
-      if (++models_looked_at_ > kMostMvrGeometries || depth > kDeepestSymbol) {
+      if (++models_looked_at_ > kMaxMvrGeometries || depth > kDeepestSymbol) {
         if (!std::exchange(too_many_models_, true))
           note(fmt::format("more than {} models, or symbols within symbols more than {} deep: the rest is left out",
-                           kMostMvrGeometries, kDeepestSymbol));
+                           kMaxMvrGeometries, kDeepestSymbol));
         return;
       }
       const auto pose = placed(node, parent);
@@ -236,7 +236,7 @@ Checked<MvrFile> read_mvr(std::string bytes, const std::string& file) {
     return tl::unexpected(std::vector<Problem>{
         {file, 0, 0, "no GeneralSceneDescription.xml in the archive", "an MVR file has one at its root"}});
   }
-  const Checked<std::string> xml = archive->read(*description, kMostXmlBytes);
+  const Checked<std::string> xml = archive->read(*description, kMaxXmlBytes);
   if (!xml) return tl::unexpected(xml.error());
   Checked<MvrScene> scene = parse_mvr_scene(*xml, file + "/" + *description);
   if (!scene) return tl::unexpected(scene.error());
@@ -245,8 +245,8 @@ Checked<MvrFile> read_mvr(std::string bytes, const std::string& file) {
   for (const MvrFixture& fixture : out.scene.fixtures) {
     if (fixture.gdtf_file.empty() || out.gdtf_files.contains(fixture.gdtf_file)) continue;
     const std::string* entry = archive->find(fixture.gdtf_file, ".gdtf");
-    if (entry == nullptr || total > kMostGdtfBytesInAll) continue;
-    Checked<std::string> content = archive->read(*entry, kMostGdtfBytes);
+    if (entry == nullptr || total > kMaxGdtfBytesInAll) continue;
+    Checked<std::string> content = archive->read(*entry, kMaxGdtfBytes);
     if (!content) return tl::unexpected(content.error());
     total += content->size();
     out.gdtf_files.emplace(fixture.gdtf_file, std::move(*content));

@@ -30,10 +30,10 @@ std::string quoted(const std::string& text) {
 }
 
 /// For a comment on one line: plain text has no line ends.
-std::string cut(const std::string& text, std::size_t most_characters) {
-  std::string out = text.substr(0, 4 * most_characters);  // a character has at most four bytes
+std::string cut(const std::string& text, std::size_t max_characters) {
+  std::string out = text.substr(0, 4 * max_characters);  // a character has at most four bytes
   while (!out.empty() && !is_plain_text(out)) out.pop_back();
-  while (length_in_characters(out) > most_characters) {
+  while (length_in_characters(out) > max_characters) {
     out.pop_back();
     while (!out.empty() && !is_plain_text(out)) out.pop_back();
   }

@@ -12,17 +12,17 @@
 namespace luxrig {
 namespace {
 
-constexpr std::size_t kMostSceneryTriangles = 5'000'000, kMostModelBytes = std::size_t{256} << 20;
-constexpr std::size_t kMostSceneryNotes = 50;
+constexpr std::size_t kMaxSceneryTriangles = 5'000'000, kMaxModelBytes = std::size_t{256} << 20;
+constexpr std::size_t kMaxSceneryNotes = 50;
 
 /// The archive's root, as the folder that holds the model.
 class ArchiveBeside final : public FilesBeside {
  public:
   explicit ArchiveBeside(const ZipArchive& archive) : archive_(archive) {}
-  std::optional<std::string> read(const std::string& name, std::size_t most_bytes) const override {
+  std::optional<std::string> read(const std::string& name, std::size_t max_bytes) const override {
     const std::string* const entry = archive_.find(name);
     if (entry == nullptr) return std::nullopt;
-    auto content = archive_.read(*entry, most_bytes);
+    auto content = archive_.read(*entry, max_bytes);
     return content ? std::optional(std::move(*content)) : std::nullopt;
   }
 
@@ -39,7 +39,7 @@ class SceneryWriter {
     obj_ = "# Scenery of an MVR file: metres, +Z up\nmtllib scene.mtl\n";
     mtl_ = "# Colours as linear light\n";
     for (const MvrGeometry& geometry : mvr_.scene.geometries) {
-      if (out_.triangles > kMostSceneryTriangles) {
+      if (out_.triangles > kMaxSceneryTriangles) {
         note("FILL IN: the scenery has more than five million triangles: the rest is left out");
         break;
       }
@@ -54,7 +54,7 @@ class SceneryWriter {
 
  private:
   void note(std::string text) {
-    if (out_.notes.size() < kMostSceneryNotes) out_.notes.push_back(std::move(text));
+    if (out_.notes.size() < kMaxSceneryNotes) out_.notes.push_back(std::move(text));
   }
 
   /// Read once; null and one note if it cannot be read.
@@ -71,7 +71,7 @@ class SceneryWriter {
       note(what + " is not in the archive: it is left out");
       return std::nullopt;
     }
-    auto bytes = mvr_.archive->read(*entry, kMostModelBytes);
+    auto bytes = mvr_.archive->read(*entry, kMaxModelBytes);
     if (!bytes) {
       note(what + ": " + bytes.error().front().what + ": it is left out");
       return std::nullopt;

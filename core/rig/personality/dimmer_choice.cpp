@@ -11,11 +11,11 @@
 namespace luxrig {
 namespace {
 
-constexpr double kLeastChange = 0.05;  // of full light: a smaller change is not dimming
+constexpr double kMinChange = 0.05;    // of full light: a smaller change is not dimming
 constexpr double kAsBright = 0.99;     // of the brightest place
 constexpr double kNoLight = 1e-6;
-constexpr double kLeastPart = 0.25;  // least share of a channel's values for its main dimmer function
-constexpr std::size_t kFewestOfStandIn = 3;
+constexpr double kMinPart = 0.25;  // least share of a channel's values for its main dimmer function
+constexpr std::size_t kMinOfStandIn = 3;
 
 double brightest_of(const ChannelFunction& f) { return std::max(f.physical_from, f.physical_to); }
 double darkest_of(const ChannelFunction& f) { return std::min(f.physical_from, f.physical_to); }
@@ -64,7 +64,7 @@ std::optional<LevelRange> level_range(const PersonalityChannel& channel, const s
   bool runs_elsewhere = false;
   for (const ChannelFunction& f : channel.functions) {
     if (!is_active(f, dmx) || !kind(f)) continue;
-    const bool changes = f.dmx.to > f.dmx.from && brightest_of(f) - darkest_of(f) > kLeastChange * full;
+    const bool changes = f.dmx.to > f.dmx.from && brightest_of(f) - darkest_of(f) > kMinChange * full;
     const bool as_bright = brightest_of(f) >= kAsBright * full;
     runs_elsewhere |= changes && !as_bright;
     if (!as_bright) continue;
@@ -92,7 +92,7 @@ bool dims_light(const PersonalityChannel& channel, const std::vector<std::uint32
   });
   if (only_light || range->steps) return only_light;
   const DmxInterval values{std::min(range->least, range->full), std::max(range->least, range->full)};
-  return width_of(values) >= kLeastPart * (static_cast<double>(channel.max_dmx()) + 1);
+  return width_of(values) >= kMinPart * (static_cast<double>(channel.max_dmx()) + 1);
 }
 
 DimmerChoice choose_dimmers(const PersonalityMode& mode, const std::vector<std::uint32_t>& dmx,
@@ -146,7 +146,7 @@ std::string stand_in_problem(const PersonalityMode& mode) {
     if (slots++ == 0) first = channel.name;
     last = channel.name;
   }
-  if (slots < kFewestOfStandIn) return {};
+  if (slots < kMinOfStandIn) return {};
   return fmt::format(
       "calls all of its {} slots dimmers of one part, {} to {}: a stand-in that a program writes for a fixture it has "
       "no file of, which does not say what any slot does",

@@ -26,7 +26,7 @@ using FunctionKind = std::function<bool(const ChannelFunction&)>;
 /// Brightness of a channel along its DMX values.
 struct LevelRange {
   std::uint32_t least = 0, full = 0;  ///< values of least and of full light; either may be the larger
-  double least_share = 0;             ///< light at `least`, as a share of full light
+  double min_share = 0;               ///< light at `least`, as a share of full light
   std::optional<std::uint32_t> dark;  ///< a value outside that range where the file states no light
   bool steps = false;                 ///< nothing between: off at `least`, on at `full`
 };

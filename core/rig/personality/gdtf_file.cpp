@@ -11,7 +11,7 @@
 namespace luxrig {
 namespace {
 
-constexpr std::size_t kMostModes = 256;
+constexpr std::size_t kMaxModes = 256;
 
 DmxProfile profile_of(const pugi::xml_node& node) {
   DmxProfile profile;
@@ -51,10 +51,10 @@ Checked<Personality> parse_gdtf_description(std::string_view text, const std::st
   out.name = plain_attribute(type, "Name");
   for (const pugi::xml_node& node : type.child("PhysicalDescriptions").child("DMXProfiles").children("DMXProfile"))
     out.profiles.push_back(profile_of(node));
-  std::size_t room = kMostGdtfParts;
+  std::size_t room = kMaxGdtfParts;
   for (const pugi::xml_node& node : type.child("DMXModes").children("DMXMode")) {
-    if (out.modes.size() == kMostModes) {
-      problems.add(xml->place_of(node), fmt::format("more than {} modes", kMostModes), "do not trust the file");
+    if (out.modes.size() == kMaxModes) {
+      problems.add(xml->place_of(node), fmt::format("more than {} modes", kMaxModes), "do not trust the file");
       break;
     }
     if (problems.full()) break;
@@ -74,7 +74,7 @@ Checked<Personality> read_gdtf(std::string bytes, const std::string& file) {
     return tl::unexpected(std::vector<Problem>{
         {file, 0, 0, "no description.xml in the archive", "a GDTF file has one at its root; get the file again"}});
   }
-  const Checked<std::string> xml = archive->read(*description, kMostXmlBytes);
+  const Checked<std::string> xml = archive->read(*description, kMaxXmlBytes);
   if (!xml) return tl::unexpected(xml.error());
   return parse_gdtf_description(*xml, file + "/" + *description);
 }

@@ -10,7 +10,7 @@
 namespace luxrig {
 namespace {
 
-constexpr std::size_t kMostFunctions = 512, kMostSets = 1024;
+constexpr std::size_t kMaxFunctions = 512, kMaxSets = 1024;
 
 std::uint32_t highest_of(int bytes) { return bytes >= 4 ? 0xFFFFFFFFu : (1u << (8 * bytes)) - 1; }
 
@@ -22,8 +22,8 @@ class FunctionReader {
   GdtfFunctions read(const pugi::xml_node& channel) {
     for (const pugi::xml_node& logical : channel.children("LogicalChannel")) {
       for (const pugi::xml_node& node : logical.children("ChannelFunction")) {
-        if (out_.functions.size() == kMostFunctions) {
-          problems_.add(xml_.place_of(node), fmt::format("more than {} functions of a channel", kMostFunctions),
+        if (out_.functions.size() == kMaxFunctions) {
+          problems_.add(xml_.place_of(node), fmt::format("more than {} functions of a channel", kMaxFunctions),
                         "do not trust the file");
           return std::move(out_);
         }
@@ -87,7 +87,7 @@ class FunctionReader {
   void read_sets(const pugi::xml_node& node, ChannelFunction& function) {
     std::vector<pugi::xml_node> set_nodes;
     for (const pugi::xml_node& set_node : node.children("ChannelSet")) {
-      if (set_nodes.size() == kMostSets) return;
+      if (set_nodes.size() == kMaxSets) return;
       ChannelSet set;
       set.name = plain_attribute(set_node, "Name");
       const std::string from = plain_attribute(set_node, "DMXFrom");

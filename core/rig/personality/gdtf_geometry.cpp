@@ -13,7 +13,7 @@
 namespace luxrig {
 namespace {
 
-constexpr std::size_t kMostInstances = 4096;
+constexpr std::size_t kMaxInstances = 4096;
 constexpr double kLargestPart_m = 100;  // 100 nested levels of it stay within the size of a rig
 constexpr double kStraight = 0.01;      // largest sine between parallel axes, since drawings are inexact
 
@@ -109,9 +109,9 @@ class GeometryWalk {
 
  private:
   bool full() {
-    if (instances.size() < kMostInstances) return false;
+    if (instances.size() < kMaxInstances) return false;
     if (!told_full_) {
-      problems_.add(xml_.place_of(geometries_), fmt::format("more than {} geometries in a mode", kMostInstances),
+      problems_.add(xml_.place_of(geometries_), fmt::format("more than {} geometries in a mode", kMaxInstances),
                     "no such fixture is known; do not trust the file");
     }
     told_full_ = true;

@@ -14,7 +14,7 @@
 namespace luxrig {
 namespace {
 
-constexpr std::size_t kMostChannels = 2048;
+constexpr std::size_t kMaxChannels = 2048;
 
 /// The part of a link before its first dot: "Head_Gobo1.Gobo1.Gobo1 Index" names a function of channel Head_Gobo1.
 std::string_view channel_of_link(std::string_view link) { return link.substr(0, link.find('.')); }
@@ -36,13 +36,13 @@ class GdtfModeReader {
     if (instances_.empty()) return std::move(mode_);
     for (const pugi::xml_node& channel : node.child("DMXChannels").children("DMXChannel")) {
       read_channel(channel);
-      if (problems_.full() || mode_.channels.size() > kMostChannels || room_ == 0) break;
+      if (problems_.full() || mode_.channels.size() > kMaxChannels || room_ == 0) break;
     }
-    if (mode_.channels.size() > kMostChannels || room_ == 0) {
-      problems_.add(xml_.place_of(node),
-                    fmt::format("more than {} channels in a mode, or {} functions and sets in all", kMostChannels,
-                                kMostGdtfParts),
-                    "no such fixture is known; do not trust the file");
+    if (mode_.channels.size() > kMaxChannels || room_ == 0) {
+      problems_.add(
+          xml_.place_of(node),
+          fmt::format("more than {} channels in a mode, or {} functions and sets in all", kMaxChannels, kMaxGdtfParts),
+          "no such fixture is known; do not trust the file");
     }
     resolve_conditions();
     read_relations(node);
@@ -108,7 +108,7 @@ class GdtfModeReader {
     const std::string break_text = plain_attribute(node, "DMXBreak");
     const std::string file_name = geometry + "_" + attribute;
     bool placed = false;
-    for (std::size_t i = 0; i < instances_.size() && mode_.channels.size() <= kMostChannels && room_ > 0; ++i) {
+    for (std::size_t i = 0; i < instances_.size() && mode_.channels.size() <= kMaxChannels && room_ > 0; ++i) {
       const GdtfInstance& instance = instances_[i];
       if (instance.defined_as != geometry) continue;
       placed = true;
@@ -201,7 +201,7 @@ class GdtfModeReader {
     for (const pugi::xml_node& relation : node.child("Relations").children("Relation")) {
       const auto master = linked(plain_attribute(relation, "Master"), std::nullopt);
       const auto follower = linked(plain_attribute(relation, "Follower"), master);
-      if (!master || !follower || *master == *follower || mode_.relations.size() >= kMostChannels) {
+      if (!master || !follower || *master == *follower || mode_.relations.size() >= kMaxChannels) {
         note(relation, "a relation between channels that the mode does not have is left out");
         continue;
       }

@@ -8,7 +8,7 @@ namespace luxrig {
 
 /// Most functions and sets of all modes together, where a referenced geometry counts once per reference. Without a
 /// limit, references could make a small file endless.
-inline constexpr std::size_t kMostGdtfParts = 500'000;
+inline constexpr std::size_t kMaxGdtfParts = 500'000;
 
 /// `type`: the <FixtureType> around it. `personality` already has its profiles, and collects notes. `room`: how many
 /// more functions and sets are allowed.

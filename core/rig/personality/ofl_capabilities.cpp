@@ -11,7 +11,7 @@
 namespace luxrig {
 namespace {
 
-constexpr std::size_t kMostCapabilities = 1024;
+constexpr std::size_t kMaxCapabilities = 1024;
 
 // GDTF attributes for types that only need another name. Types not listed keep their own.
 constexpr std::pair<std::string_view, std::string_view> kPlainTypes[] = {
@@ -181,8 +181,8 @@ OflFunctions read_ofl_functions(const OflFixture& fixture, const std::string& ke
   out.highlight_dmx = value("highlightValue");
   const std::uint32_t most = bytes >= 4 ? 0xFFFFFFFFu : (1u << (8 * bytes)) - 1;
   for (const OflJson* capability : ofl_capabilities(channel)) {
-    if (out.functions.size() == kMostCapabilities) {
-      problem(fmt::format("more than {} capabilities", kMostCapabilities), "do not trust the file");
+    if (out.functions.size() == kMaxCapabilities) {
+      problem(fmt::format("more than {} capabilities", kMaxCapabilities), "do not trust the file");
       break;
     }
     ChannelFunction function;

@@ -15,9 +15,9 @@
 namespace luxrig {
 namespace {
 
-constexpr std::size_t kMostOflBytes = std::size_t{4} << 20;
-constexpr int kMostOflDepth = 40;
-constexpr std::size_t kMostOflModes = 256, kMostOflSlots = 512, kMostOflTemplates = 500;
+constexpr std::size_t kMaxOflBytes = std::size_t{4} << 20;
+constexpr int kMaxOflDepth = 40;
+constexpr std::size_t kMaxOflModes = 256, kMaxOflSlots = 512, kMaxOflTemplates = 500;
 
 int depth_of_brackets(std::string_view text) {
   int depth = 0, deepest = 0;
@@ -63,20 +63,20 @@ class OflReader {
     out.manufacturer = made_plain(manufacturer);
     out.name = ofl_text(ofl_member(json_, "name"));
     if (matrix_.too_large) {
-      problem(fmt::format("a matrix of more than {} pixels", kMostPixels),
+      problem(fmt::format("a matrix of more than {} pixels", kMaxPixels),
               "no such fixture is known; do not trust the file");
       return out;
     }
-    if (ofl_member(json_, "templateChannels").size() > kMostOflTemplates) {
-      problem(fmt::format("more than {} template channels", kMostOflTemplates), "do not trust the file");
+    if (ofl_member(json_, "templateChannels").size() > kMaxOflTemplates) {
+      problem(fmt::format("more than {} template channels", kMaxOflTemplates), "do not trust the file");
       return out;
     }
     const OflJson& modes = ofl_member(json_, "modes");
     if (!modes.is_array() || modes.empty()) problem("the fixture has no modes", "add one, as the format asks");
     if (!modes.is_array()) return out;
     for (const OflJson& mode : modes) {
-      if (out.modes.size() == kMostOflModes) {
-        problem(fmt::format("more than {} modes", kMostOflModes), "do not trust the file");
+      if (out.modes.size() == kMaxOflModes) {
+        problem(fmt::format("more than {} modes", kMaxOflModes), "do not trust the file");
         break;
       }
       if (problems_.full()) break;
@@ -201,7 +201,7 @@ class OflReader {
     const OflJson& channels = ofl_member(mode, "channels");
     if (!channels.is_array()) return names;
     for (const OflJson& entry : channels) {
-      if (names.size() > kMostOflSlots) break;
+      if (names.size() > kMaxOflSlots) break;
       if (!entry.is_object()) {
         names.push_back(ofl_text(entry));
         continue;
@@ -225,7 +225,7 @@ class OflReader {
     const std::size_t outer = per_pixel ? keys.size() : templates.size(),
                       inner = per_pixel ? templates.size() : keys.size();
     for (std::size_t i = 0; i < outer; ++i)
-      for (std::size_t j = 0; j < inner && names.size() <= kMostOflSlots; ++j)
+      for (std::size_t j = 0; j < inner && names.size() <= kMaxOflSlots; ++j)
         names.push_back(with_pixel(templates[per_pixel ? j : i], keys[per_pixel ? i : j]));
   }
 
@@ -244,8 +244,8 @@ class OflReader {
     std::map<std::string, std::map<std::size_t, int>> slots;  // by coarse name: byte -> offset
     std::vector<Known> order;
     const std::vector<std::string> names = slot_names(json, mode.name);
-    if (names.size() > kMostOflSlots) {
-      problem(fmt::format("mode {} has more than {} slots", in_quotes(mode.name), kMostOflSlots), "a universe has 512");
+    if (names.size() > kMaxOflSlots) {
+      problem(fmt::format("mode {} has more than {} slots", in_quotes(mode.name), kMaxOflSlots), "a universe has 512");
       return mode;
     }
     for (std::size_t i = 0; i < names.size(); ++i) {
@@ -326,12 +326,12 @@ Checked<Personality> parse_ofl(std::string_view text, const std::string& manufac
     problems.add(place, std::move(what), std::move(mend));
     return tl::unexpected(problems.take());
   };
-  if (text.size() > kMostOflBytes) {
+  if (text.size() > kMaxOflBytes) {
     return refuse({}, fmt::format("the file has {} bytes", text.size()),
-                  fmt::format("it may have at most {} MiB", kMostOflBytes >> 20));
+                  fmt::format("it may have at most {} MiB", kMaxOflBytes >> 20));
   }
-  if (depth_of_brackets(text) > kMostOflDepth)
-    return refuse({}, fmt::format("nested deeper than {}", kMostOflDepth), "no such file needs that; do not trust it");
+  if (depth_of_brackets(text) > kMaxOflDepth)
+    return refuse({}, fmt::format("nested deeper than {}", kMaxOflDepth), "no such file needs that; do not trust it");
   OflJson json;
   try {  // only an exception of the parser has the place of an error
     json = OflJson::parse(text);

@@ -37,13 +37,13 @@ void read_counted(const OflJson& count, OflMatrix& out) {
   for (std::size_t i = 0; i < 3; ++i) {
     const auto number = ofl_entity(count[i], "");
     if (!number || !(*number >= 1)) return;
-    if (*number > static_cast<double>(kMostPixels)) {
+    if (*number > static_cast<double>(kMaxPixels)) {
       out.too_large = true;
       return;
     }
     size[i] = static_cast<int>(*number);
   }
-  if (static_cast<std::size_t>(size[0]) * size[1] * size[2] > kMostPixels) {
+  if (static_cast<std::size_t>(size[0]) * size[1] * size[2] > kMaxPixels) {
     out.too_large = true;
     return;
   }
@@ -70,7 +70,7 @@ void read_keyed(const OflJson& layers, OflMatrix& out) {
       for (std::size_t x = 0; x < layers[z][y].size(); ++x) {
         const std::string key = ofl_text(layers[z][y][x]);
         if (key.empty() || out.has(key)) continue;  // one pixel may fill several cells
-        if (out.pixels.size() == kMostPixels) {
+        if (out.pixels.size() == kMaxPixels) {
           out.too_large = true;
           return;
         }
@@ -117,7 +117,7 @@ OflMatrix read_ofl_matrix(const OflJson& matrix) {
   if (const OflJson& keys = ofl_member(matrix, "pixelKeys"); keys.is_array()) read_keyed(keys, out);
   if (const OflJson& groups = ofl_member(matrix, "pixelGroups"); groups.is_object()) {
     for (const auto& [name, members] : groups.items()) {
-      if (out.groups.size() == kMostPixels) {
+      if (out.groups.size() == kMaxPixels) {
         out.too_large = true;
         break;
       }

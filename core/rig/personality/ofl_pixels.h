@@ -8,7 +8,7 @@
 
 namespace luxrig {
 
-inline constexpr std::size_t kMostPixels = 4096;
+inline constexpr std::size_t kMaxPixels = 4096;
 
 struct OflMatrix {
   struct Pixel {

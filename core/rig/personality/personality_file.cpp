@@ -15,7 +15,7 @@ Checked<Personality> load_personality(const std::filesystem::path& path) {
   std::error_code error;
   const auto size = std::filesystem::file_size(path, error);
   if (error) return refuse("no such file, or it cannot be read", "put it there, or correct the path");
-  if (size > kMostZipBytes) return refuse("the file is larger than any fixture's", "do not trust it");
+  if (size > kMaxZipBytes) return refuse("the file is larger than any fixture's", "do not trust it");
   std::ifstream in(path, std::ios::binary);
   std::string bytes(static_cast<std::size_t>(size), '\0');
   in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));

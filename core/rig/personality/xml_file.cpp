@@ -20,7 +20,7 @@ tl::unexpected<std::vector<Problem>> refuse_xml(const std::string& file, const P
 pugi::xml_node too_deep(const pugi::xml_node& root) {
   int depth = 1;
   for (pugi::xml_node at = root; at;) {
-    if (depth > kMostXmlDepth) return at;
+    if (depth > kMaxXmlDepth) return at;
     if (at.first_child()) {
       at = at.first_child();
       ++depth;
@@ -41,9 +41,9 @@ pugi::xml_node too_deep(const pugi::xml_node& root) {
 Checked<XmlFile> XmlFile::parse(std::string_view text, std::string file) {
   XmlFile xml;
   xml.file_ = std::move(file);
-  if (text.size() > kMostXmlBytes) {
+  if (text.size() > kMaxXmlBytes) {
     return refuse_xml(xml.file_, {}, fmt::format("the XML has {} bytes", text.size()),
-                      fmt::format("it may have at most {} MiB", kMostXmlBytes >> 20));
+                      fmt::format("it may have at most {} MiB", kMaxXmlBytes >> 20));
   }
   xml.line_starts_.push_back(0);
   for (std::size_t i = 0; i < text.size(); ++i)
@@ -62,7 +62,7 @@ Checked<XmlFile> XmlFile::parse(std::string_view text, std::string file) {
   }
   if (!xml.root()) return refuse_xml(xml.file_, {1, 1}, "the XML has no content", "export the file again");
   if (const pugi::xml_node deep = too_deep(xml.root())) {
-    return refuse_xml(xml.file_, xml.place_of(deep), fmt::format("nested deeper than {}", kMostXmlDepth),
+    return refuse_xml(xml.file_, xml.place_of(deep), fmt::format("nested deeper than {}", kMaxXmlDepth),
                       "no such file needs that; do not trust it");
   }
   return xml;

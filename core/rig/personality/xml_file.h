@@ -12,8 +12,8 @@
 
 namespace luxrig {
 
-inline constexpr std::size_t kMostXmlBytes = std::size_t{32} << 20;
-inline constexpr int kMostXmlDepth = 100;
+inline constexpr std::size_t kMaxXmlBytes = std::size_t{32} << 20;
+inline constexpr int kMaxXmlDepth = 100;
 
 class XmlFile {
  public:

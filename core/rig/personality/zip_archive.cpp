@@ -11,7 +11,7 @@
 namespace luxrig {
 namespace {
 
-constexpr std::size_t kMostInflation = 1000;     // deflate can reach 1032; real descriptions reach 30
+constexpr std::size_t kMaxInflation = 1000;      // deflate can reach 1032; real descriptions reach 30
 constexpr std::size_t kFreeOfRatio = 64 * 1024;  // an entry this small is not a bomb
 
 tl::unexpected<std::vector<Problem>> refuse_zip(const std::string& file, std::string what, std::string mend) {
@@ -38,9 +38,9 @@ struct ZipArchive::Handle {
 };
 
 Checked<ZipArchive> ZipArchive::open(std::string bytes, const std::string& file) {
-  if (bytes.size() > kMostZipBytes) {
+  if (bytes.size() > kMaxZipBytes) {
     return refuse_zip(file, fmt::format("the archive has {} bytes", bytes.size()),
-                      fmt::format("it may have at most {} MiB", kMostZipBytes >> 20));
+                      fmt::format("it may have at most {} MiB", kMaxZipBytes >> 20));
   }
   ZipArchive archive;
   archive.file_ = file;
@@ -60,9 +60,9 @@ Checked<ZipArchive> ZipArchive::open(std::string bytes, const std::string& file)
                       "GDTF and MVR files are zip archives; get the file again from where it came");
   }
   const zip_int64_t count = zip_get_num_entries(archive.handle_->zip, 0);
-  if (count < 0 || static_cast<std::size_t>(count) > kMostZipEntries) {
+  if (count < 0 || static_cast<std::size_t>(count) > kMaxZipEntries) {
     return refuse_zip(file, fmt::format("the archive has {} entries", count),
-                      fmt::format("it may have at most {}", kMostZipEntries));
+                      fmt::format("it may have at most {}", kMaxZipEntries));
   }
   for (zip_int64_t i = 0; i < count; ++i) {
     const char* name = zip_get_name(archive.handle_->zip, static_cast<zip_uint64_t>(i), ZIP_FL_ENC_GUESS);
@@ -86,7 +86,7 @@ const std::string* ZipArchive::find(std::string_view name, std::string_view exte
   return matching([&](const std::string& entry) { return same_but_for_case(entry, longer); });
 }
 
-Checked<std::string> ZipArchive::read(const std::string& name, std::size_t most_bytes) const {
+Checked<std::string> ZipArchive::read(const std::string& name, std::size_t max_bytes) const {
   const auto at = std::find(names_.begin(), names_.end(), name);
   if (at == names_.end()) return refuse_zip(file_, in_quotes(name) + " is not in the archive", "add it");
   const auto index = static_cast<zip_uint64_t>(at - names_.begin());
@@ -95,10 +95,10 @@ Checked<std::string> ZipArchive::read(const std::string& name, std::size_t most_
   const bool known = zip_stat_index(handle_->zip, index, 0, &stat) == 0;
   if (known && (stat.valid & ZIP_STAT_ENCRYPTION_METHOD) && stat.encryption_method != ZIP_EM_NONE)
     return refuse_zip(file_, in_quotes(name) + " is encrypted", "pack the archive without a password");
-  std::size_t most = most_bytes;
+  std::size_t most = max_bytes;
   if (known && (stat.valid & ZIP_STAT_COMP_SIZE)) {
-    const std::size_t packed = std::min<std::size_t>(stat.comp_size, kMostZipBytes);
-    most = std::min(most, std::max(kFreeOfRatio, packed * kMostInflation));
+    const std::size_t packed = std::min<std::size_t>(stat.comp_size, kMaxZipBytes);
+    most = std::min(most, std::max(kFreeOfRatio, packed * kMaxInflation));
   }
   const std::unique_ptr<zip_file_t, int (*)(zip_file_t*)> in(zip_fopen_index(handle_->zip, index, 0), zip_fclose);
   if (!in) {

@@ -10,8 +10,8 @@
 
 namespace luxrig {
 
-inline constexpr std::size_t kMostZipBytes = std::size_t{256} << 20;
-inline constexpr std::size_t kMostZipEntries = 10'000;
+inline constexpr std::size_t kMaxZipBytes = std::size_t{256} << 20;
+inline constexpr std::size_t kMaxZipEntries = 10'000;
 
 class ZipArchive {
  public:
@@ -23,9 +23,9 @@ class ZipArchive {
   /// The entry of that name in the archive's root: the exact name, else ignoring case, else without its extension if
   /// `extension` ("." included) is given. Never an entry in a folder.
   [[nodiscard]] const std::string* find(std::string_view name, std::string_view extension = {}) const;
-  /// The content of an entry. At most `most_bytes`, and at most 1000 times its compressed size. Reading stops at that
+  /// The content of an entry. At most `max_bytes`, and at most 1000 times its compressed size. Reading stops at that
   /// limit, whatever size the archive states.
-  [[nodiscard]] Checked<std::string> read(const std::string& name, std::size_t most_bytes) const;
+  [[nodiscard]] Checked<std::string> read(const std::string& name, std::size_t max_bytes) const;
 
  private:
   struct Handle;

@@ -177,7 +177,7 @@ class ModeFitter {
   /// If the lowest value of a dimmer still gives light, a shutter beside it shuts at level 0, or a remark says so.
   /// `one_level`: false for one dimmer per emitter, all behind the same shutter.
   void shut_where_level_0_is_not_dark(bool one_level) {
-    for (const auto& [dimmer, least_share] : bright_at_0_) {
+    for (const auto& [dimmer, min_share] : bright_at_0_) {
       bool shut = false;
       for (std::size_t c = 0; c < mode_.channels.size() && one_level; ++c) {
         const PersonalityChannel& channel = mode_.channels[c];
@@ -192,7 +192,7 @@ class ModeFitter {
       }
       if (!shut)
         tell("{} gives {:.3g} % of its light at level 0: its file states nothing darker",
-             in_quotes(mode_.channels[dimmer].name), 100 * least_share);
+             in_quotes(mode_.channels[dimmer].name), 100 * min_share);
     }
   }
 
@@ -246,7 +246,7 @@ class ModeFitter {
   /// requires range_of(c, of)
   void carry(std::size_t c, const FunctionKind& of, std::optional<std::size_t> emitter, const std::string& what) {
     const LevelRange range = *range_of(c, of);
-    DmxTravel travel{share_of(c, range.least), share_of(c, range.full), range.least_share, std::nullopt};
+    DmxTravel travel{share_of(c, range.least), share_of(c, range.full), range.min_share, std::nullopt};
     if (range.dark) travel.at_dark = share_of(c, *range.dark);
     place(c, SlotUse::dimmer, emitter, travel);
     out_.steps |= range.steps;
@@ -259,7 +259,7 @@ class ModeFitter {
              ? ""
              : fmt::format(", {}{} to {}", range.dark ? fmt::format("dark at {}, then ", *range.dark) : "", range.least,
                            range.full));
-    if (range.least_share > 0 && !range.dark) bright_at_0_.emplace_back(c, range.least_share);
+    if (range.min_share > 0 && !range.dark) bright_at_0_.emplace_back(c, range.min_share);
     const ChannelFunction& f = *active_function(channel, held_.dmx, of);
     if (f.profile && is_dimmer(f)) {
       out_.dimmer_curve = curve_like(personality_.profiles[*f.profile]);

@@ -20,7 +20,7 @@ constexpr const char* kHowToGiveTheSun =
     "add sun_azimuth_deg and sun_elevation_deg, or latitude_deg, longitude_deg and time";
 
 /// A weaker sun counts as none.
-constexpr double kLeastSun_lx = 1e-3;
+constexpr double kMinSun_lx = 1e-3;
 
 struct SunOfMoment {
   SunPosition position;
@@ -140,7 +140,7 @@ void RigReader::read_daylight() {
         daylight_availability(cover_of(daylight), sun->position.altitude_rad, sun->orbit_factor);
     if (!sky_given) daylight.horizontal_lx = mean.sky_horizontal_lx;
     if (!sun_given) daylight.sun_normal_lx = mean.sun_normal_lx;
-    if (!sun_shines || daylight.sun_normal_lx < kLeastSun_lx || daylight.towards_sun_world.z() <= 0) {
+    if (!sun_shines || daylight.sun_normal_lx < kMinSun_lx || daylight.towards_sun_world.z() <= 0) {
       daylight.sun_normal_lx = 0;
     }
     if (daylight.horizontal_lx <= 0) daylight.sky = SkyKind::none;

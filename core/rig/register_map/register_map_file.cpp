@@ -13,8 +13,8 @@
 namespace luxrig {
 namespace {
 
-constexpr std::size_t kMostMapBytes = std::size_t{1} << 20;
-constexpr std::size_t kMostMapped = 4096;  // numbers of one product
+constexpr std::size_t kMaxMapBytes = std::size_t{1} << 20;
+constexpr std::size_t kMaxMapped = 4096;  // numbers of one product
 
 /// Types as written in the file.
 enum class RegisterType { u16, s16, u32, s32, float32 };
@@ -217,8 +217,8 @@ class MapReader {
       return;
     }
     for (int i = 0; i < count; ++i) {
-      if (map_.registers.size() >= kMostMapped) {
-        if (!too_many_) problems_.add(s.place(), fmt::format("more than {} registers", kMostMapped), "leave some out");
+      if (map_.registers.size() >= kMaxMapped) {
+        if (!too_many_) problems_.add(s.place(), fmt::format("more than {} registers", kMaxMapped), "leave some out");
         too_many_ = true;
         return;
       }
@@ -292,7 +292,7 @@ class MapReader {
 }  // namespace
 
 Checked<RegisterMap> parse_register_map(std::string_view text, const std::string& file) {
-  if (text.size() > kMostMapBytes) {
+  if (text.size() > kMaxMapBytes) {
     return tl::unexpected(std::vector<Problem>{
         {file, 0, 0, fmt::format("the file has {} bytes", text.size()), "a register map may have at most 1 MiB"}});
   }
@@ -303,7 +303,7 @@ Checked<RegisterMap> parse_register_map(std::string_view text, const std::string
 
 Checked<RegisterMap> load_register_map(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
-  std::string text(kMostMapBytes + 1, '\0');
+  std::string text(kMaxMapBytes + 1, '\0');
   in.read(text.data(), static_cast<std::streamsize>(text.size()));
   if (!in.is_open() || in.bad()) {
     return tl::unexpected(

@@ -8,9 +8,9 @@
 namespace luxrig {
 namespace {
 
-constexpr std::size_t kMostTextureBytes = std::size_t{256} << 20;
-constexpr std::size_t kMostTextures = 1000;
-constexpr int kMostEntriesLookedAt = 100'000;
+constexpr std::size_t kMaxTextureBytes = std::size_t{256} << 20;
+constexpr std::size_t kMaxTextures = 1000;
+constexpr int kMaxEntriesLookedAt = 100'000;
 
 std::string lower_case(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
@@ -20,11 +20,11 @@ std::string lower_case(std::string text) {
 
 }  // namespace
 
-std::optional<std::string> whole_file(const std::filesystem::path& path, std::size_t most_bytes) {
+std::optional<std::string> whole_file(const std::filesystem::path& path, std::size_t max_bytes) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error)) return std::nullopt;  // a pipe would block
   const auto bytes = std::filesystem::file_size(path, error);
-  if (error || bytes > most_bytes) return std::nullopt;
+  if (error || bytes > max_bytes) return std::nullopt;
   std::ifstream in(path, std::ios::binary);
   std::string content(bytes, '\0');
   in.read(content.data(), static_cast<std::streamsize>(bytes));
@@ -60,7 +60,7 @@ std::optional<std::filesystem::path> FolderBeside::find(const std::string& name)
     int looked_at = 0;
     for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
          entry.increment(error)) {
-      if (++looked_at > kMostEntriesLookedAt) break;
+      if (++looked_at > kMaxEntriesLookedAt) break;
       if (lower_case(entry->path().filename().string()) != last) continue;
       if (auto found = inside(entry->path())) return found;
     }
@@ -68,16 +68,16 @@ std::optional<std::filesystem::path> FolderBeside::find(const std::string& name)
   return std::nullopt;
 }
 
-std::optional<std::string> FolderBeside::read(const std::string& name, std::size_t most_bytes) const {
+std::optional<std::string> FolderBeside::read(const std::string& name, std::size_t max_bytes) const {
   const auto path = find(name);
-  return path ? whole_file(*path, most_bytes) : std::nullopt;
+  return path ? whole_file(*path, max_bytes) : std::nullopt;
 }
 
 std::shared_ptr<const Texture> TextureShelf::of_file(const std::string& name, std::vector<std::string>& warnings) {
   if (const auto known = textures_.find(name); known != textures_.end()) return known->second;
-  const auto bytes = beside_.read(name, kMostTextureBytes);
+  const auto bytes = beside_.read(name, kMaxTextureBytes);
   if (bytes) return of_bytes(name, *bytes, warnings);
-  if (textures_.size() < kMostTextures) textures_.emplace(name, nullptr);
+  if (textures_.size() < kMaxTextures) textures_.emplace(name, nullptr);
   warnings.push_back("texture " + in_quotes(name) +
                      " is not beside the mesh: what it covers gets the rig's reflectance");
   return nullptr;
@@ -86,12 +86,12 @@ std::shared_ptr<const Texture> TextureShelf::of_file(const std::string& name, st
 std::shared_ptr<const Texture> TextureShelf::of_bytes(const std::string& name, std::string_view bytes,
                                                       std::vector<std::string>& warnings) {
   if (const auto known = textures_.find(name); known != textures_.end()) return known->second;
-  DecodedTexture decoded = textures_.size() < kMostTextures ? decode_texture(bytes)
-                                                            : DecodedTexture{nullptr, "is one of more than a thousand"};
+  DecodedTexture decoded = textures_.size() < kMaxTextures ? decode_texture(bytes)
+                                                           : DecodedTexture{nullptr, "is one of more than a thousand"};
   if (!decoded.texture)
     warnings.push_back("texture " + in_quotes(name) + " " + decoded.trouble +
                        ": what it covers gets the rig's reflectance");
-  if (textures_.size() < kMostTextures) textures_.emplace(name, decoded.texture);
+  if (textures_.size() < kMaxTextures) textures_.emplace(name, decoded.texture);
   return decoded.texture;
 }
 

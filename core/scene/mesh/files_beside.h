@@ -15,23 +15,23 @@ namespace luxrig {
 class FilesBeside {
  public:
   virtual ~FilesBeside() = default;
-  /// The content of the named file; nullopt if there is none, or it is larger than `most_bytes`.
-  [[nodiscard]] virtual std::optional<std::string> read(const std::string& name, std::size_t most_bytes) const = 0;
+  /// The content of the named file; nullopt if there is none, or it is larger than `max_bytes`.
+  [[nodiscard]] virtual std::optional<std::string> read(const std::string& name, std::size_t max_bytes) const = 0;
 };
 
 /// Files below the folder of a mesh, links followed. A Windows path is also found by its last part, ignoring case.
 class FolderBeside final : public FilesBeside {
  public:
   explicit FolderBeside(const std::filesystem::path& mesh);
-  [[nodiscard]] std::optional<std::string> read(const std::string& name, std::size_t most_bytes) const override;
+  [[nodiscard]] std::optional<std::string> read(const std::string& name, std::size_t max_bytes) const override;
 
  private:
   [[nodiscard]] std::optional<std::filesystem::path> find(const std::string& name) const;
   std::filesystem::path folder_;  // canonical
 };
 
-/// The whole of a regular file; nullopt if it cannot be read, or is larger than `most_bytes`.
-[[nodiscard]] std::optional<std::string> whole_file(const std::filesystem::path& path, std::size_t most_bytes);
+/// The whole of a regular file; nullopt if it cannot be read, or is larger than `max_bytes`.
+[[nodiscard]] std::optional<std::string> whole_file(const std::filesystem::path& path, std::size_t max_bytes);
 
 /// The textures of one mesh, each read once.
 class TextureShelf {

@@ -11,8 +11,8 @@
 namespace luxrig {
 namespace {
 
-constexpr std::size_t kMostBufferBytes = std::size_t{8} << 30;
-constexpr std::size_t kMostRows = 150'000'000, kMostRowsOfNothing = 1'000'000;
+constexpr std::size_t kMaxBufferBytes = std::size_t{8} << 30;
+constexpr std::size_t kMaxRows = 150'000'000, kMaxRowsOfNothing = 1'000'000;
 
 std::size_t bytes_of_type(int type) {
   switch (type) {
@@ -234,7 +234,7 @@ tl::expected<std::string_view, GltfRefusal> GltfDocument::buffer(std::size_t ind
   const std::string uri = text_member(*one, "uri");
   if (uri.empty() && index == 0) return binary_;
   std::optional<std::string> bytes =
-      uri.starts_with("data:") ? data_of_uri(uri) : beside_->read(name_of_uri(uri), kMostBufferBytes);
+      uri.starts_with("data:") ? data_of_uri(uri) : beside_->read(name_of_uri(uri), kMaxBufferBytes);
   if (!bytes) {
     return tl::unexpected(uri.starts_with("data:")
                               ? broken("has a buffer that is no base64")
@@ -289,7 +289,7 @@ tl::expected<Accessor, GltfRefusal> GltfDocument::accessor(std::size_t index) {
   const std::size_t size = bytes_of_type(out.type_) * out.components_;
   if (!count || size == 0)
     return tl::unexpected(broken("has " + name + " without a count, a component type and a type"));
-  if (*count > kMostRows)
+  if (*count > kMaxRows)
     return tl::unexpected(GltfRefusal{"has more than 150 million corners", "give a simplified mesh"});
   out.count_ = *count;
   const nlohmann::json* const normalised = member_of(*one, "normalized");
@@ -305,7 +305,7 @@ tl::expected<Accessor, GltfRefusal> GltfDocument::accessor(std::size_t index) {
                             (bytes->size() - offset - size) / out.stride_ < out.count_ - 1)))
       return tl::unexpected(broken("has " + name + " past the end of its buffer view"));
     out.bytes_ = bytes->substr(std::min(offset, bytes->size()));
-  } else if (out.count_ > kMostRowsOfNothing) {
+  } else if (out.count_ > kMaxRowsOfNothing) {
     return tl::unexpected(broken("has " + name + " of a million zeros"));
   }
   const nlohmann::json* const sparse = member_of(*one, "sparse");

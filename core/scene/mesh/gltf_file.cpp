@@ -11,7 +11,7 @@
 namespace luxrig {
 namespace {
 
-constexpr std::size_t kMostGltfVertices = 3 * kMaxTriangles, kMostNodes = 10'000'000, kMostInstances = 10'000'000;
+constexpr std::size_t kMaxGltfVertices = 3 * kMaxTriangles, kMaxNodes = 10'000'000, kMaxInstances = 10'000'000;
 
 /// Extensions that may be required and do no harm: supported here, or irrelevant to light.
 bool is_known(std::string_view extension) {
@@ -77,7 +77,7 @@ class GltfReader {
     const nlohmann::json* const scene = document_.entry("scenes", wanted.value_or(0));
     const nlohmann::json* const all = member_of(document_.root(), "nodes");
     const std::size_t count = all != nullptr && all->is_array() ? all->size() : 0;
-    if (count > kMostNodes) return refuse({"has more than ten million nodes", "give a simplified scene"});
+    if (count > kMaxNodes) return refuse({"has more than ten million nodes", "give a simplified scene"});
     std::vector<std::pair<std::size_t, Eigen::Matrix4d>> open;
     std::vector<bool> seen(count);
     const auto push = [&](const nlohmann::json* list, const Eigen::Matrix4d& parent) {
@@ -165,7 +165,7 @@ class GltfReader {
     }
     if (!count) return std::vector<Eigen::Matrix4d>{here};
     instances_ += *count;
-    if (instances_ > kMostInstances) {
+    if (instances_ > kMaxInstances) {
       refuse({"has more than ten million instances", "give a simplified scene"});
       return std::nullopt;
     }
@@ -230,7 +230,7 @@ class GltfReader {
     if (failed) return false;
     const std::size_t rows = positions->count(), corners = indices ? indices->count() : rows;
     const std::size_t triangles = mode == 4 ? corners / 3 : corners < 3 ? 0 : corners - 2;
-    if (rows > 0 && (places.size() > (kMostGltfVertices - mesh_.vertices.size()) / rows))
+    if (rows > 0 && (places.size() > (kMaxGltfVertices - mesh_.vertices.size()) / rows))
       return refuse({"has more than 150 million vertices", "give a simplified mesh"});
     if (triangles > 0 && places.size() > (kMaxTriangles - mesh_.corner_counts.size()) / triangles)
       return refuse({"has more than 50 million triangles", "give a simplified mesh"});

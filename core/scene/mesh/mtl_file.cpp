@@ -8,7 +8,7 @@
 namespace luxrig {
 namespace {
 
-constexpr std::size_t kMostMtlMaterials = 100'000;
+constexpr std::size_t kMaxMtlMaterials = 100'000;
 
 /// The file of a map statement. Before it come options, each with its own number of arguments.
 std::string file_of_map(TextLine& line) {
@@ -40,7 +40,7 @@ class MtlReader {
     while (auto line = lines.next()) {
       const std::string_view key = line->next();
       if (key == "newmtl") {
-        if (out_.materials.size() == kMostMtlMaterials) {
+        if (out_.materials.size() == kMaxMtlMaterials) {
           problems_.add(*line, "has more than 100 000 materials", "export it with fewer");
           break;
         }

@@ -13,7 +13,7 @@
 namespace luxrig {
 namespace {
 
-constexpr std::size_t kMostMtlBytes = std::size_t{64} << 20;
+constexpr std::size_t kMaxMtlBytes = std::size_t{64} << 20;
 
 /// A corner of a face: a vertex, and perhaps a point of the picture; from 1, or from -1 backwards.
 struct ObjCorner {
@@ -207,7 +207,7 @@ class ObjReader {
   }
 
   bool read_library(const std::string& name) {
-    auto bytes = beside_.read(name, kMostMtlBytes);
+    auto bytes = beside_.read(name, kMaxMtlBytes);
     if (!bytes) return false;
     auto file = parse_mtl(std::move(*bytes), made_plain(name));
     if (!file) {

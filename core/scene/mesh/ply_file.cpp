@@ -159,8 +159,8 @@ class Values {
 };
 
 double to_coordinate(double value) {
-  constexpr double kMost = std::numeric_limits<float>::max();
-  return std::abs(value) <= kMost ? value : std::numeric_limits<double>::quiet_NaN();
+  constexpr double kMax = std::numeric_limits<float>::max();
+  return std::abs(value) <= kMax ? value : std::numeric_limits<double>::quiet_NaN();
 }
 
 /// The value of full white, by type.
@@ -175,8 +175,8 @@ int colour_of(std::string_view property) {
 }
 
 std::uint32_t to_index(double value) {
-  constexpr double kMost = std::numeric_limits<std::uint32_t>::max();
-  return value >= 0 && value <= kMost ? static_cast<std::uint32_t>(value) : std::numeric_limits<std::uint32_t>::max();
+  constexpr double kMax = std::numeric_limits<std::uint32_t>::max();
+  return value >= 0 && value <= kMax ? static_cast<std::uint32_t>(value) : std::numeric_limits<std::uint32_t>::max();
 }
 
 class BodyReader {

@@ -11,8 +11,8 @@
 namespace luxrig {
 namespace {
 
-constexpr std::size_t kMostPixels = std::size_t{1} << 26;
-constexpr int kMostScans = 200;  // a progressive JPEG of a few bytes may promise more than a day's work
+constexpr std::size_t kMaxPixels = std::size_t{1} << 26;
+constexpr int kMaxScans = 200;  // a progressive JPEG of a few bytes may promise more than a day's work
 
 DecodedTexture not_read(std::string trouble) { return {nullptr, std::move(trouble)}; }
 
@@ -20,7 +20,7 @@ DecodedTexture decode_png(std::string_view bytes) {
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
   if (png_image_begin_read_from_memory(&image, bytes.data(), bytes.size()) == 0) return not_read("is a damaged PNG");
-  if (std::size_t{image.width} * image.height > kMostPixels) {
+  if (std::size_t{image.width} * image.height > kMaxPixels) {
     png_image_free(&image);
     return not_read("has more than 64 million pixels");
   }
@@ -52,7 +52,7 @@ void note_message(j_common_ptr info, int level) {
 }
 
 void stop_long_work(j_common_ptr info) {
-  if (reinterpret_cast<j_decompress_ptr>(info)->input_scan_number > kMostScans) jump_out(info);
+  if (reinterpret_cast<j_decompress_ptr>(info)->input_scan_number > kMaxScans) jump_out(info);
 }
 
 enum class JpegEnd { read, damaged, too_large };
@@ -74,7 +74,7 @@ JpegEnd read_jpeg(std::string_view bytes, JpegErrors& errors, std::unique_ptr<Te
   info.progress = &progress;
   jpeg_mem_src(&info, reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<unsigned long>(bytes.size()));
   jpeg_read_header(&info, TRUE);
-  if (std::size_t{info.image_width} * info.image_height > kMostPixels) {
+  if (std::size_t{info.image_width} * info.image_height > kMaxPixels) {
     jpeg_destroy_decompress(&info);
     return JpegEnd::too_large;
   }

@@ -16,16 +16,16 @@ using Eigen::VectorXd;
 /// a linear term.
 constexpr double kPriceGoal = 300;
 /// A column that pulls less than this, in norms of the goal, is not taken up: its charge is negligible.
-constexpr double kLeastPull = 1e-6;
-constexpr int kMostTakenUp = 400;
+constexpr double kMinPull = 1e-6;
+constexpr int kMaxTakenUp = 400;
 
 bool later(double a, double b) { return a > b; }
 
 }  // namespace
 
 BlockBound::BlockBound(const VectorXd& goal, std::vector<BlockLight> home, const std::vector<BlockLight>& foreign,
-                       std::size_t most_foreign, double rounding)
-    : goal_(goal), home_(home.size()), most_foreign_(most_foreign), rounding_(rounding) {
+                       std::size_t max_foreign, double rounding)
+    : goal_(goal), home_(home.size()), max_foreign_(max_foreign), rounding_(rounding) {
   sort_into_cells(home);
   const auto prices_row = static_cast<std::uint32_t>(goal.size());
   const auto is_priced = [](const BlockLight& light) {
@@ -35,7 +35,7 @@ BlockBound::BlockBound(const VectorXd& goal, std::vector<BlockLight> home, const
       std::any_of(home.begin(), home.end(), is_priced) || std::any_of(foreign.begin(), foreign.end(), is_priced);
   price_goal_ = priced ? kPriceGoal * std::max(goal.norm(), 1e-3) : 0;
   const auto take = [&](const BlockLight& light, double sign) {
-    column_begin_.push_back(static_cast<std::uint32_t>(most_.size()));
+    column_begin_.push_back(static_cast<std::uint32_t>(max_.size()));
     for (std::size_t c = 0; c < light.row.size(); ++c) {
       double squares = 0;
       for (std::size_t k = 0; k < light.row[c].size(); ++k) {
@@ -49,15 +49,15 @@ BlockBound::BlockBound(const VectorXd& goal, std::vector<BlockLight> home, const
         price_norm_ = std::max(price_norm_, std::abs(light.price[c]));
       }
       begin_.push_back(row_.size());
-      most_.push_back(light.most[c]);
+      max_.push_back(light.most[c]);
       number_.push_back(light.column[c]);
       inverse_norm_.push_back(squares > 0 ? 1 / std::sqrt(squares) : 0);
     }
   };
   for (const BlockLight& light : home) take(light, 1);
-  home_columns_ = most_.size();
+  home_columns_ = max_.size();
   for (const BlockLight& light : foreign) take(light, -1);
-  column_begin_.push_back(static_cast<std::uint32_t>(most_.size()));
+  column_begin_.push_back(static_cast<std::uint32_t>(max_.size()));
 
   NnlsProblem problem;
   problem.columns = ColumnsView(goal.size() + (priced ? 1 : 0), begin_, row_, std::span<const double>(value_));
@@ -69,7 +69,7 @@ BlockBound::BlockBound(const VectorXd& goal, std::vector<BlockLight> home, const
   auto shared = share_problem(problem);
   LUXRIG_CHECK(shared.has_value(), "{}", shared.has_value() ? "" : shared.error().detail);
   few_ = std::make_unique<NnlsOfFew>(*shared);
-  product_.resize(static_cast<Index>(most_.size()));
+  product_.resize(static_cast<Index>(max_.size()));
 }
 
 /// Recursive halving: each light goes to the nearer of two lights that are far apart.
@@ -153,7 +153,7 @@ double BlockBound::proven(const Node& node, const VectorXd& residual) {
     for (std::size_t light = first_light; light < end_light; ++light) {
       double of = 0;
       for (std::size_t c = column_begin_[light]; c < column_begin_[light + 1]; ++c)
-        of += most_[c] * std::max(0.0, product_[static_cast<Index>(c)] + slack);
+        of += max_[c] * std::max(0.0, product_[static_cast<Index>(c)] + slack);
       worst = std::max(worst, of);
     }
     return worst;
@@ -165,7 +165,7 @@ double BlockBound::proven(const Node& node, const VectorXd& residual) {
     charge += last;
   }
   if (column_begin_.size() - 1 > home_)
-    charge += static_cast<double>(most_foreign_) * worst_of(home_, column_begin_.size() - 1);
+    charge += static_cast<double>(max_foreign_) * worst_of(home_, column_begin_.size() - 1);
   const double gain = 2 * y.dot(goal_), cost = y.squaredNorm();
   const double sums = 2 * y.cwiseAbs().dot(goal_.cwiseAbs()) + cost + 2 * charge;
   return gain - cost - 2 * charge - rounding_ * sums;
@@ -186,7 +186,7 @@ void BlockBound::evaluate(Node& node, std::span<const Index> start) {
   std::copy_if(start.begin(), start.end(), std::back_inserter(columns), allowed);
   few_->choose(columns);
   VectorXd residual = few_->residual();
-  const double least = kLeastPull * std::max(goal_.norm(), 1e-3);
+  const double least = kMinPull * std::max(goal_.norm(), 1e-3);
   const auto steepest = [&](std::size_t first, std::size_t end, double& most, Index& at) {
     products(first, end - first, residual);
     for (std::size_t c = first; c < end; ++c)
@@ -196,11 +196,11 @@ void BlockBound::evaluate(Node& node, std::span<const Index> start) {
       }
   };
   Index last = -1;
-  for (int taken = 0; taken < kMostTakenUp; ++taken) {
+  for (int taken = 0; taken < kMaxTakenUp; ++taken) {
     double most = least;
     Index at = -1;
     for (const auto& [first, end] : ranges) steepest(first, end, most, at);
-    if (at < 0) steepest(home_columns_, most_.size(), most, at);
+    if (at < 0) steepest(home_columns_, max_.size(), most, at);
     if (at < 0 || at == last) break;
     last = at;
     few_->add(at);

@@ -47,10 +47,10 @@ struct BurningColumn {
 
 class BlockBound {
  public:
-  /// most_foreign   lights that may burn elsewhere
+  /// max_foreign   lights that may burn elsewhere
   /// rounding       error of a product with a column, for |y| = 1 and a price of 1
   BlockBound(const Eigen::VectorXd& goal, std::vector<BlockLight> home, const std::vector<BlockLight>& foreign,
-             std::size_t most_foreign, double rounding);
+             std::size_t max_foreign, double rounding);
 
   [[nodiscard]] std::size_t lights() const { return home_; }
   /// Lower bound on f(count).
@@ -91,12 +91,12 @@ class BlockBound {
   [[nodiscard]] std::size_t end_column(const Cell& cell) const { return column_begin_[cell.first + cell.count]; }
 
   Eigen::VectorXd goal_;  ///< without the price row
-  std::size_t home_ = 0, home_columns_ = 0, most_foreign_ = 0;
+  std::size_t home_ = 0, home_columns_ = 0, max_foreign_ = 0;
   double rounding_ = 0, price_goal_ = 0, price_norm_ = 0;
   std::vector<std::uint64_t> begin_ = {0};
   std::vector<std::uint32_t> row_;
   std::vector<double> value_;
-  std::vector<double> inverse_norm_, most_;
+  std::vector<double> inverse_norm_, max_;
   std::vector<std::uint32_t> number_;        ///< the caller's number of each column
   std::vector<std::uint32_t> column_begin_;  ///< of each light, home lights first
   std::vector<Cell> cells_ = {Cell{0, 0}};   ///< the first is a placeholder

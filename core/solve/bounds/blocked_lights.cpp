@@ -16,7 +16,7 @@ constexpr double kShortestCandidate = 1e-140;
 
 }  // namespace
 
-BlockedLights::BlockedLights(const BoundProblem& of, double goal_norm, double least_similarity) {
+BlockedLights::BlockedLights(const BoundProblem& of, double goal_norm, double min_similarity) {
   const VectorXd weight = of.weights();
   goal = weight.cwiseProduct(of.goal) / goal_norm;
   std::vector<std::uint32_t> light = of.light_of_column;
@@ -26,7 +26,7 @@ BlockedLights::BlockedLights(const BoundProblem& of, double goal_norm, double le
   }
   std::size_t lights = 0;
   for (const std::uint32_t l : light) lights = std::max<std::size_t>(lights, l + std::size_t{1});
-  blocks = light_blocks(of.columns, weight, light, lights, least_similarity);
+  blocks = light_blocks(of.columns, weight, light, lights, min_similarity);
   rows_of_block.resize(blocks.count);
   row_in_block.assign(static_cast<std::size_t>(goal.size()), 0);
   for (Index i = 0; i < goal.size(); ++i) {
@@ -86,7 +86,7 @@ double BlockedLights::price(const Piece& piece, const VectorXd& price_of_row) co
   return sum;
 }
 
-std::vector<std::unique_ptr<BlockBound>> BlockedLights::priced(const VectorXd& price_of_row, std::size_t most_lights,
+std::vector<std::unique_ptr<BlockBound>> BlockedLights::priced(const VectorXd& price_of_row, std::size_t max_lights,
                                                                int threads) const {
   std::vector<std::vector<BlockLight>> home(blocks.count), foreign(blocks.count);
   for (std::size_t l = 0; l < of_light.size(); ++l) {
@@ -117,7 +117,7 @@ std::vector<std::unique_ptr<BlockBound>> BlockedLights::priced(const VectorXd& p
     VectorXd block_goal(static_cast<Index>(rows_of_block[b].size()));
     for (std::size_t i = 0; i < rows_of_block[b].size(); ++i)
       block_goal[static_cast<Index>(i)] = goal[rows_of_block[b][i]];
-    bounds[b] = std::make_unique<BlockBound>(block_goal, std::move(home[b]), foreign[b], most_lights,
+    bounds[b] = std::make_unique<BlockBound>(block_goal, std::move(home[b]), foreign[b], max_lights,
                                              rounding_of_sums(goal.size()));
   });
   return bounds;

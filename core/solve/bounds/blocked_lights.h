@@ -33,10 +33,10 @@ struct BlockedLights {
   double dark = 0;  ///< squared error of rows that no light reaches
 
   /// `of` must have no complaint(); goal_norm = ‖W b‖ > 0.
-  BlockedLights(const BoundProblem& of, double goal_norm, double least_similarity);
+  BlockedLights(const BoundProblem& of, double goal_norm, double min_similarity);
   /// One bound per block. Light that spills from one block into another has these prices; any prices are valid.
   [[nodiscard]] std::vector<std::unique_ptr<BlockBound>> priced(const Eigen::VectorXd& price_of_row,
-                                                                std::size_t most_lights, int threads) const;
+                                                                std::size_t max_lights, int threads) const;
 
  private:
   [[nodiscard]] Column cut(std::span<const std::uint32_t> rows, std::span<const double> values) const;

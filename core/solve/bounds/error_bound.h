@@ -54,18 +54,18 @@ struct PriceGuess {
 
 /// When stopped, the result is the bounds proven so far.
 struct CountBoundOptions : Run {
-  std::size_t most_lights = 20;
-  /// Bounds are made for these numbers of lights; they also hold for fewer. Empty = greedy solutions of most_lights and
+  std::size_t max_lights = 20;
+  /// Bounds are made for these numbers of lights; they also hold for fewer. Empty = greedy solutions of max_lights and
   /// of three fractions of it.
   std::vector<PriceGuess> guesses;
   /// Cost of a guess, and quality of its bound: rounds that improve prices, nodes split per round, nodes split at the
   /// end. In a flat of 300 points and 18 500 candidates a node takes about a millisecond.
   std::size_t price_rounds = 12, nodes_a_round = 150, nodes = 1000;
   /// Points that share a smaller fraction of their lights belong to different blocks (light_blocks.h).
-  double least_similarity = 0.12;
+  double min_similarity = 0.12;
 };
 
-/// [k], k = 0 … most_lights: lower bound with k lights. Never rises with k. Asserted: no complaint().
+/// [k], k = 0 … max_lights: lower bound with k lights. Never rises with k. Asserted: no complaint().
 [[nodiscard]] std::vector<double> error_bounds_by_count(const BoundProblem& of, const CountBoundOptions& options);
 
 }  // namespace luxrig

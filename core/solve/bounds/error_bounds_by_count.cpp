@@ -50,12 +50,12 @@ constexpr std::size_t kNodesAtATime = 4;
 class PricedBounds {
  public:
   PricedBounds(const BlockedLights& lights, const VectorXd& price_of_row, const CountBoundOptions& options)
-      : bounds_(lights.priced(price_of_row, options.most_lights, options.threads)),
+      : bounds_(lights.priced(price_of_row, options.max_lights, options.threads)),
         options_(options),
         dark_(lights.dark) {
     value_.resize(bounds_.size());
     parallel_for(bounds_.size(), options.threads, [&](std::size_t b) {
-      for (std::size_t count = 0; count <= std::min(bounds_[b]->lights(), options.most_lights); ++count)
+      for (std::size_t count = 0; count <= std::min(bounds_[b]->lights(), options.max_lights); ++count)
         value_[b].push_back(bounds_[b]->value(count));
     });
   }
@@ -65,8 +65,8 @@ class PricedBounds {
   }
 
   /// Refines the bounds at the minimum until they cannot improve.
-  void refine(std::size_t lights, std::size_t most_nodes) {
-    for (std::size_t nodes = 0; nodes < most_nodes && !options_.watch.stop.stop_requested();) {
+  void refine(std::size_t lights, std::size_t max_nodes) {
+    for (std::size_t nodes = 0; nodes < max_nodes && !options_.watch.stop.stop_requested();) {
       const LightShares shares = share_out_lights(value_, lights);
       std::vector<std::size_t> before(bounds_.size()), after(bounds_.size());
       parallel_for(bounds_.size(), options_.threads, [&](std::size_t b) {
@@ -114,9 +114,9 @@ class PricedBounds {
   double dark_;
 };
 
-/// Solutions with most_lights, three quarters, half and a quarter of it; each step adds the light whose column is
+/// Solutions with max_lights, three quarters, half and a quarter of it; each step adds the light whose column is
 /// nearest to the residual.
-std::vector<PriceGuess> greedy_guesses(const BoundProblem& of, const BlockedLights& lights, std::size_t most_lights) {
+std::vector<PriceGuess> greedy_guesses(const BoundProblem& of, const BlockedLights& lights, std::size_t max_lights) {
   auto shared = share_problem({of.columns, of.goal, of.row_weight, {}});
   LUXRIG_CHECK(shared.has_value(), "{}", shared.has_value() ? "" : shared.error().detail);
   const ScaledColumns& scaled = (*shared)->scaled();
@@ -124,9 +124,9 @@ std::vector<PriceGuess> greedy_guesses(const BoundProblem& of, const BlockedLigh
   const VectorXd weight = of.weights();
   std::vector<PriceGuess> guesses;
   VectorXd pull;
-  for (std::size_t k = 0; k <= most_lights; ++k) {
+  for (std::size_t k = 0; k <= max_lights; ++k) {
     const VectorXd residual = few.residual();
-    if (k == most_lights || k == (most_lights + 3) / 4 || k == most_lights / 2 || k == 3 * most_lights / 4)
+    if (k == max_lights || k == (max_lights + 3) / 4 || k == max_lights / 2 || k == 3 * max_lights / 4)
       guesses.push_back({k, weight.cwiseProduct(residual)});
     scaled.gradient(residual, pull);
     double best = 0;
@@ -144,7 +144,7 @@ std::vector<PriceGuess> greedy_guesses(const BoundProblem& of, const BlockedLigh
   return guesses;
 }
 
-constexpr double kLeastTurn = 0.05;
+constexpr double kMinTurn = 0.05;
 
 /// Improves prices round by round: a step along the scarcity, of the length that would close the gap to the squared
 /// error reached (Polyak 1969), shorter after each overshoot.
@@ -153,7 +153,7 @@ VectorXd better_prices(const BlockedLights& lights, VectorXd price, const PriceG
   VectorXd best = price;
   double turn = 1;
   proven = 0;
-  for (std::size_t round = 0; round < options.price_rounds && turn > kLeastTurn; ++round) {
+  for (std::size_t round = 0; round < options.price_rounds && turn > kMinTurn; ++round) {
     if (options.watch.stop.stop_requested()) break;
     PricedBounds priced(lights, price, options);
     priced.refine(guess.lights, options.nodes_a_round);
@@ -176,10 +176,10 @@ VectorXd better_prices(const BlockedLights& lights, VectorXd price, const PriceG
 
 std::vector<double> error_bounds_by_count(const BoundProblem& of, const CountBoundOptions& options) {
   LUXRIG_CHECK(of.complaint().empty(), "{}", of.complaint());
-  std::vector<double> bounds(options.most_lights + 1, 0.0);
+  std::vector<double> bounds(options.max_lights + 1, 0.0);
   const double goal_norm = of.weights().cwiseProduct(of.goal).norm();
   if (!(goal_norm > 0)) return bounds;
-  const BlockedLights lights(of, goal_norm, options.least_similarity);
+  const BlockedLights lights(of, goal_norm, options.min_similarity);
   const auto prove = [&](std::size_t k, double squared_error) {
     const double error =
         std::sqrt(std::max(0.0, squared_error - rounding_of_sums(of.goal.size()))) * (1 - rounding_of_sums(1));
@@ -187,11 +187,11 @@ std::vector<double> error_bounds_by_count(const BoundProblem& of, const CountBou
   };
   prove(0, lights.goal.squaredNorm());
   std::vector<PriceGuess> guesses = options.guesses;
-  if (guesses.empty()) guesses = greedy_guesses(of, lights, options.most_lights);
+  if (guesses.empty()) guesses = greedy_guesses(of, lights, options.max_lights);
   for (PriceGuess& guess : guesses) {
     LUXRIG_CHECK(guess.residual.size() == of.goal.size(), "{} residuals for {} rows", guess.residual.size(),
                  of.goal.size());
-    guess.lights = std::min(guess.lights, options.most_lights);
+    guess.lights = std::min(guess.lights, options.max_lights);
     const VectorXd residual = guess.residual / goal_norm;
     if (!residual.allFinite()) continue;
     double proven = 0;
@@ -200,10 +200,10 @@ std::vector<double> error_bounds_by_count(const BoundProblem& of, const CountBou
     prove(guess.lights, proven);
     PricedBounds priced(lights, price, options);
     priced.refine(guess.lights, options.nodes);
-    for (std::size_t k = 0; k <= options.most_lights && !options.watch.stop.stop_requested(); ++k)
+    for (std::size_t k = 0; k <= options.max_lights && !options.watch.stop.stop_requested(); ++k)
       prove(k, priced.squared_error(k));
   }
-  for (std::size_t k = options.most_lights; k-- > 0;) bounds[k] = std::max(bounds[k], bounds[k + 1]);
+  for (std::size_t k = options.max_lights; k-- > 0;) bounds[k] = std::max(bounds[k], bounds[k + 1]);
   return bounds;
 }
 

@@ -10,7 +10,7 @@ namespace luxrig {
 namespace {
 
 /// Similarities are shares; this many evenly chosen lights are enough for them.
-constexpr std::size_t kMostSampledLights = 4096;
+constexpr std::size_t kMaxSampledLights = 4096;
 
 /// Joins rows, most similar first.
 class RowLinkage {
@@ -95,12 +95,12 @@ class RowLinkage {
 }  // namespace
 
 LightBlocks light_blocks(const ColumnsView& columns, const Eigen::VectorXd& row_weight,
-                         std::span<const std::uint32_t> light_of_column, std::size_t lights, double least_similarity) {
+                         std::span<const std::uint32_t> light_of_column, std::size_t lights, double min_similarity) {
   LUXRIG_CHECK(row_weight.size() == columns.rows(), "{} weights for {} rows", row_weight.size(), columns.rows());
   LUXRIG_CHECK(light_of_column.size() == static_cast<std::size_t>(columns.columns()), "{} lights for {} columns",
                light_of_column.size(), columns.columns());
   const auto rows = static_cast<std::size_t>(columns.rows());
-  const std::size_t step = 1 + (lights - std::min<std::size_t>(lights, 1)) / kMostSampledLights;
+  const std::size_t step = 1 + (lights - std::min<std::size_t>(lights, 1)) / kMaxSampledLights;
   const std::size_t words = (lights / step + 64) / 64;
   std::vector<std::uint64_t> reached(rows * words, 0);  // by which sampled lights
   std::vector<char> lit(rows, 0);
@@ -129,7 +129,7 @@ LightBlocks light_blocks(const ColumnsView& columns, const Eigen::VectorXd& row_
     }
 
   LightBlocks blocks;
-  blocks.of_row = RowLinkage(std::move(similarity)).joined(static_cast<float>(least_similarity));
+  blocks.of_row = RowLinkage(std::move(similarity)).joined(static_cast<float>(min_similarity));
   std::vector<std::uint32_t> number(rows, kNoBlock);
   for (std::size_t i = 0; i < rows; ++i) {
     if (!lit[i]) {

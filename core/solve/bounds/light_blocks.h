@@ -2,7 +2,7 @@
 /// Groups of points that the same lights reach, found from a matrix alone: for light, the rooms of a flat.
 ///
 /// The similarity of two points is the number of lights that reach both, divided by the number that reach either. The
-/// most similar blocks are joined (average linkage) until none are as similar as `least_similarity`. Blocks of less
+/// most similar blocks are joined (average linkage) until none are as similar as `min_similarity`. Blocks of less
 /// than a fiftieth of the points join the most similar block, unless they share no light with any.
 
 #include <cstdint>
@@ -25,6 +25,6 @@ struct LightBlocks {
 /// row_weight        ≥ 0, one per row; no light reaches a row of weight 0
 [[nodiscard]] LightBlocks light_blocks(const ColumnsView& columns, const Eigen::VectorXd& row_weight,
                                        std::span<const std::uint32_t> light_of_column, std::size_t lights,
-                                       double least_similarity);
+                                       double min_similarity);
 
 }  // namespace luxrig

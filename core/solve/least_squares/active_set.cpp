@@ -47,12 +47,12 @@ class ActiveSet {
         return at_;
       }
       // Bland's rule (least index) once the vertex looks degenerate; it cannot cycle.
-      const bool least_index = without_progress > 2 * size;
-      if (stationary_ && !release(least_index)) {
+      const bool min_index = without_progress > 2 * size;
+      if (stationary_ && !release(min_index)) {
         at_.converged = true;
         return at_;
       }
-      const double moved = step(least_index);
+      const double moved = step(min_index);
       if (moved > 1e-15) {
         without_progress = 0;
         released_ = Released{};
@@ -71,7 +71,7 @@ class ActiveSet {
   };
 
   /// Releases the constraint with the worst multiplier; false when all have the right sign: z is then the optimum.
-  bool release(bool least_index) {
+  bool release(bool min_index) {
     const VectorXd gradient = r_.transpose() * (r_ * at_.z - q_);
     const VectorXd multiplier = row_multipliers(p_.G, at_, gradient);
     VectorXd total = gradient;
@@ -86,19 +86,19 @@ class ActiveSet {
           at_.state[j] == BoundState::lower ? -total[static_cast<Index>(j)] : total[static_cast<Index>(j)];
       if (wrong <= worst) continue;
       released_ = Released{static_cast<Index>(j), -1};
-      if (least_index) break;
+      if (min_index) break;
       worst = wrong;
     }
-    if (!(least_index && released_.bound >= 0)) {
+    if (!(min_index && released_.bound >= 0)) {
       Index least = p_.G.rows();
       for (std::size_t k = 0; k < at_.working_rows.size(); ++k) {
         const Index row = at_.working_rows[k];
         const double wrong = -multiplier[static_cast<Index>(k)];
-        if (refused_row_[static_cast<std::size_t>(row)] || wrong <= worst || (least_index && row > least)) continue;
+        if (refused_row_[static_cast<std::size_t>(row)] || wrong <= worst || (min_index && row > least)) continue;
         released_ = Released{-1, row};
         place = k;
         least = row;
-        if (!least_index) worst = wrong;
+        if (!min_index) worst = wrong;
       }
     }
     if (released_.bound >= 0) {
@@ -147,7 +147,7 @@ class ActiveSet {
   }
 
   /// Goes as far as the constraints allow and adds the blocking one. Returns the length of the step.
-  double step(bool least_index) {
+  double step(bool min_index) {
     const std::vector<Index> free = free_variables(at_.state);
     const VectorXd p = direction(free);
     const double length = p.cwiseAbs().size() == 0 ? 0 : p.cwiseAbs().maxCoeff();
@@ -156,7 +156,7 @@ class ActiveSet {
     const auto better = [&](double here, double rate) {
       if (here >= 1) return false;
       if (bound < 0 && row < 0) return true;
-      if (least_index) return here < share;
+      if (min_index) return here < share;
       return here < share || (here == share && rate > rate_best);
     };
     for (const Index j : free) {

@@ -13,7 +13,7 @@ using Eigen::VectorXd;
 
 /// Columns whose squared distance from the span of the others is below this are not factored again through L Lᵀ: they
 /// would lose their digits. Rotations keep them.
-constexpr double kLeastPivotToFactor = 1e-4;
+constexpr double kMinPivotToFactor = 1e-4;
 
 /// Rotates two columns of L into one another, moving the first up a row.
 [[gnu::always_inline]] inline void rotated(double* first, double* second, double c, double s, std::size_t count) {
@@ -52,7 +52,7 @@ void GramCholesky::reserve(Index size) {
   l_.swap(larger);
 }
 
-std::vector<char> GramCholesky::append(MatrixXd& cross, MatrixXd& own, double least_pivot) {
+std::vector<char> GramCholesky::append(MatrixXd& cross, MatrixXd& own, double min_pivot) {
   const Index p = size_, k = own.cols();
   std::vector<char> taken(static_cast<std::size_t>(k), 0);
   if (p > 0) {
@@ -61,7 +61,7 @@ std::vector<char> GramCholesky::append(MatrixXd& cross, MatrixXd& own, double le
   }
   std::vector<Index> order;
   for (Index c = 0; c < k; ++c) {
-    if (!(own(c, c) >= least_pivot)) continue;
+    if (!(own(c, c) >= min_pivot)) continue;
     taken[static_cast<std::size_t>(c)] = 1;
     order.push_back(c);
     const Index below = k - c - 1;
@@ -119,7 +119,7 @@ bool GramCholesky::remove_by_factoring(std::span<const Index> places) {
       ++next;
       continue;
     }
-    if (l_(row, row) * l_(row, row) < kLeastPivotToFactor) return false;
+    if (l_(row, row) * l_(row, row) < kMinPivotToFactor) return false;
     kept.push_back(row);
   }
   const auto left = static_cast<Index>(kept.size());

@@ -16,10 +16,10 @@ class GramCholesky {
   void clear() { size_ = 0; }
 
   /// Appends, in order, those of K columns whose squared distance from the span of all earlier ones is at least
-  /// least_pivot. Returns which were appended.
+  /// min_pivot. Returns which were appended.
   /// cross   size() × K: products of the present columns with the new ones; overwritten
   /// own     K × K: products of the new columns with one another; its lower half is overwritten
-  std::vector<char> append(Eigen::MatrixXd& cross, Eigen::MatrixXd& own, double least_pivot);
+  std::vector<char> append(Eigen::MatrixXd& cross, Eigen::MatrixXd& own, double min_pivot);
 
   /// Appends one column whose row of L was computed more accurately than from products (passive_columns.h).
   void append_row(const Eigen::VectorXd& row, double pivot);

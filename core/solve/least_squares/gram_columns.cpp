@@ -12,7 +12,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// Squared distance from the span below which products of columns are too coarse to measure it.
-constexpr double kLeastGramPivot = 1e-5;
+constexpr double kMinGramPivot = 1e-5;
 
 /// Products of columns with eight others at a time, which are interleaved in rows of eight.
 class Products {
@@ -61,7 +61,7 @@ class GramColumns final : public PassiveColumns {
     }
     MatrixXd own;
     products_.of(columns, columns, true, own);
-    std::vector<char> taken = factor_.append(cross_, own, kLeastGramPivot);
+    std::vector<char> taken = factor_.append(cross_, own, kMinGramPivot);
     for (std::size_t k = 0; k < columns.size(); ++k)
       if (taken[k]) order_.push_back(columns[k]);
     return taken;
@@ -95,7 +95,7 @@ class GramColumns final : public PassiveColumns {
     VectorXd row = cross_.col(0);
     factor_.forward(row);
     double pivot_squared = 1 - row.squaredNorm();
-    if (pivot_squared < kLeastGramPivot) {
+    if (pivot_squared < kMinGramPivot) {
       VectorXd own = VectorXd::Zero(p_.rows());
       p_.view().add(column, p_.inverse_norm(column), own.data());
       VectorXd combination = row;

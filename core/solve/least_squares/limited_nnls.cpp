@@ -21,7 +21,7 @@ constexpr double kNoBound = std::numeric_limits<double>::infinity();
 constexpr double kTolerance = 1e-14;
 /// The least violation of feasible limits is rounding; that of a conflict is above this, relative to d.
 constexpr double kConflict = 1e-9;
-constexpr int kMostRounds = 200;
+constexpr int kMaxRounds = 200;
 /// Weight of limits against the goal. A heavy weight finds the multipliers in few rounds but costs the goal digits, so
 /// the last rounds use a light one.
 constexpr double kFirstWeight = 100, kLightWeight = 1;
@@ -106,7 +106,7 @@ struct LeastViolation {
   VectorXd z, left;
   double norm = 0, relative = 0;
 };
-LeastViolation least_violation(const ScaledLimits& s, const std::vector<Index>& which, const NnlsOptions& options) {
+LeastViolation min_violation(const ScaledLimits& s, const std::vector<Index>& which, const NnlsOptions& options) {
   BuiltColumns built;
   const auto rows = static_cast<Index>(which.size());
   std::vector<Index> place(static_cast<std::size_t>(s.rows.rows()), -1);
@@ -145,7 +145,7 @@ std::vector<Index> needed(const ScaledLimits& s, const LeastViolation& proof, co
   for (std::size_t k = conflict.size(); k-- > 0 && conflict.size() > 1;) {
     std::vector<Index> without = conflict;
     without.erase(without.begin() + static_cast<std::ptrdiff_t>(k));
-    if (least_violation(s, without, options).relative > kConflict) conflict = std::move(without);
+    if (min_violation(s, without, options).relative > kConflict) conflict = std::move(without);
   }
   return conflict;
 }
@@ -185,7 +185,7 @@ class Multipliers {
     options_.stop = options.stop;
     renew(kFirstWeight, VectorXd());
     double before = kNoBound;
-    for (; rounds < kMostRounds; ++rounds) {
+    for (; rounds < kMaxRounds; ++rounds) {
       solver_->set_goal(stacked_goal());
       const NnlsSolution inner = solver_->solve();
       iterations += inner.iterations;
@@ -204,7 +204,7 @@ class Multipliers {
       }
       if (near_enough || (change > 0.9 * before && change < 1e-12)) {  // as near as doubles get
         converged = true;
-        if (rounds + 1 == kMostRounds || s_.most.size() == 0) return;
+        if (rounds + 1 == kMaxRounds || s_.most.size() == 0) return;
         renew(kLightWeight, inner.x);
         before = kNoBound;
         continue;
@@ -311,7 +311,7 @@ Result<LimitedNnlsSolution> solve_limited_nnls(const NnlsProblem& problem, const
   if (s.most.size() > 0 && s.most.minCoeff() < 0) {  // x = 0 does not keep them
     std::vector<Index> all(static_cast<std::size_t>(s.most.size()));
     for (std::size_t k = 0; k < all.size(); ++k) all[k] = static_cast<Index>(k);
-    const LeastViolation least = least_violation(s, all, options);
+    const LeastViolation least = min_violation(s, all, options);
     if (least.relative > kConflict) {
       for (const Index k : needed(s, least, options)) solution.conflict.push_back(s.which[static_cast<std::size_t>(k)]);
       z = least.z;

@@ -58,7 +58,7 @@ struct NnlsSolution {
 
 struct NnlsOptions {
   /// Most columns to enter at a time; 0 = as many as pay off, 1 = as Lawson & Hanson.
-  int most_entering = 0;
+  int max_entering = 0;
   std::stop_token stop;
 };
 

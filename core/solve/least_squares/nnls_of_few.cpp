@@ -13,7 +13,7 @@ using Eigen::VectorXd;
 
 constexpr double kGradientTolerance = 1e-13;
 /// Squared distance from the span below which products cannot tell a column from rounding.
-constexpr double kLeastPivot = 1e-11;
+constexpr double kMinPivot = 1e-11;
 /// If a refused column pulls more than this, the matrix itself is solved.
 constexpr double kWorthwhilePull = 1e-11;
 /// Below this the squared error is summed from the residuals: the difference of products has lost its digits.
@@ -140,7 +140,7 @@ bool NnlsOfFew::take_up(std::size_t place) {
     row[a] = sum / above[a];
     pivot -= row[a] * row[a];
   }
-  if (!(pivot > kLeastPivot)) return false;
+  if (!(pivot > kMinPivot)) return false;
   row[p] = std::sqrt(pivot);
   passive_.push_back(place);
   is_passive_[place] = 1;

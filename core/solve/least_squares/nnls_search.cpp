@@ -99,18 +99,18 @@ void NnlsSearch::run(const NnlsOptions& options) {
   converged_ = p_.nothing_wanted();
   stopped_ = false;
   if (converged_) z_.setZero();
-  careful_ = options.most_entering == 1;
+  careful_ = options.max_entering == 1;
   // Measured on random and on nearly equal columns: more at a time wastes products.
-  most_ = options.most_entering > 0 ? at(options.most_entering) : at(std::max<Index>(1, p_.rows() / 8));
-  block_ = std::min(most_, std::max<std::size_t>(1, at(p_.rows()) / 16));
+  max_ = options.max_entering > 0 ? at(options.max_entering) : at(std::max<Index>(1, p_.rows() / 8));
+  block_ = std::min(max_, std::max<std::size_t>(1, at(p_.rows()) / 16));
   refused_.assign(refused_.size(), 0);
   visited_.clear();
   renew_residual();
   if (converged_) return;
   if (!descend()) return;
-  least_ = p_.norm(residual_);
-  const Index most_rounds = 100 + 10 * std::min<Index>(p_.columns(), 100'000'000);
-  while (iterations_ < most_rounds) {
+  min_ = p_.norm(residual_);
+  const Index max_rounds = 100 + 10 * std::min<Index>(p_.columns(), 100'000'000);
+  while (iterations_ < max_rounds) {
     if (options.stop.stop_requested()) {
       stopped_ = true;
       break;
@@ -242,14 +242,14 @@ bool NnlsSearch::descend() {
 
 void NnlsSearch::after_round(const std::vector<Index>& columns) {
   const double now = p_.norm(residual_);
-  if (now < least_ * (1 - 16 * kEpsilon)) {  // real progress: refused columns may be tried again
-    least_ = now;
+  if (now < min_ * (1 - 16 * kEpsilon)) {  // real progress: refused columns may be tried again
+    min_ = now;
     refused_.assign(refused_.size(), 0);
     visited_.clear();
     std::size_t stayed = 0;
     for (const Index j : columns) stayed += place_[at(j)] == Place::passive ? 1 : 0;
     if (columns.size() == block_ && 4 * stayed >= 3 * columns.size())
-      block_ = std::min(most_, 2 * block_);
+      block_ = std::min(max_, 2 * block_);
     else if (2 * stayed < columns.size())
       block_ = std::max<std::size_t>(1, block_ / 2);
     return;

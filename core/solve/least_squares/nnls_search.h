@@ -49,8 +49,8 @@ class NnlsSearch {
   std::vector<Index> at_upper_;
   std::unordered_set<std::uint64_t> visited_;
   std::uint64_t key_ = 0;
-  std::size_t block_ = 1, most_ = 1;  ///< columns to enter at a time, now and at most
-  double least_ = 0;                  ///< smallest error reached
+  std::size_t block_ = 1, max_ = 1;  ///< columns to enter at a time, now and at most
+  double min_ = 0;                   ///< smallest error reached
   int iterations_ = 0;
   bool converged_ = false, stopped_ = false, careful_ = false;
 };

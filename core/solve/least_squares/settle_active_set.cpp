@@ -12,7 +12,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int kMostSettlingRounds = 30, kRefinements = 3;
+constexpr int kMaxSettlingRounds = 30, kRefinements = 3;
 /// Multipliers and rooms nearer to 0 than this are rounding.
 constexpr double kRoundingOfSigns = 1e-14, kRoundingOfRows = 1e-13;
 /// A row depends on earlier rows if its squared remainder after them is below this share of its square.
@@ -46,7 +46,7 @@ class Settling {
   bool run(const std::stop_token& stop) {
     std::size_t fewest = at_.state.size() + static_cast<std::size_t>(p_.G.rows()) + 1;
     int idle = 0;
-    for (int round = 0; round < kMostSettlingRounds && idle < 6 && !stop.stop_requested(); ++round) {
+    for (int round = 0; round < kMaxSettlingRounds && idle < 6 && !stop.stop_requested(); ++round) {
       ++at_.iterations;
       if (!solve()) return false;
       const std::size_t changed = change();

@@ -28,8 +28,8 @@ double rounding_of(const LimitedLeastSquares& p, Index row) {
 class SettingSearch {
  public:
   SettingSearch(const LimitedLeastSquares& problem, const std::vector<Index>& switched, const std::stop_token& stop,
-                int most_nodes)
-      : switched_(switched), stop_(stop), most_nodes_(most_nodes), reduced_(problem) {
+                int max_nodes)
+      : switched_(switched), stop_(stop), max_nodes_(max_nodes), reduced_(problem) {
     // ‖E z − f‖² = ‖R z − Qᵀf‖² + a constant: every node then has as many rows as unknowns.
     const Index n = problem.E.cols();
     const Eigen::HouseholderQR<MatrixXd> qr(problem.E);
@@ -67,7 +67,7 @@ class SettingSearch {
   }
 
   void visit() {
-    if (found_.stopped || (found_.nodes >= most_nodes_ && best_ < HUGE_VAL)) {
+    if (found_.stopped || (found_.nodes >= max_nodes_ && best_ < HUGE_VAL)) {
       found_.proven = false;
       return;
     }
@@ -136,7 +136,7 @@ class SettingSearch {
 
   const std::vector<Index>& switched_;
   const std::stop_token& stop_;
-  int most_nodes_;
+  int max_nodes_;
   LimitedLeastSquares reduced_;
   std::vector<Setting> setting_;  ///< of each of switched_
   double best_ = HUGE_VAL;
@@ -159,8 +159,8 @@ LimitedLeastSquares with_set(const LimitedLeastSquares& problem, const std::vect
 }
 
 SwitchedSettings solve_switched_least_squares(const LimitedLeastSquares& problem, const std::vector<Index>& switched,
-                                              const std::stop_token& stop, int most_nodes) {
-  return SettingSearch(problem, switched, stop, most_nodes).run();
+                                              const std::stop_token& stop, int max_nodes) {
+  return SettingSearch(problem, switched, stop, max_nodes).run();
 }
 
 }  // namespace luxrig

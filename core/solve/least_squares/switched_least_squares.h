@@ -11,7 +11,7 @@ namespace luxrig {
 
 struct SwitchedSettings {
   std::vector<bool> on;     ///< per unknown; false for unknowns that are not switched
-  bool proven = false;      ///< no other setting is better; false = the search ended at most_nodes
+  bool proven = false;      ///< no other setting is better; false = the search ended at max_nodes
   bool stopped = false;     ///< on request; `on` is the best so far
   int nodes = 0;            ///< problems solved
   Eigen::VectorXd relaxed;  ///< z, if all of them could dim
@@ -21,7 +21,7 @@ struct SwitchedSettings {
 /// an answer.
 [[nodiscard]] SwitchedSettings solve_switched_least_squares(const LimitedLeastSquares& problem,
                                                             const std::vector<Eigen::Index>& switched,
-                                                            const std::stop_token& stop, int most_nodes = 5'000);
+                                                            const std::stop_token& stop, int max_nodes = 5'000);
 
 /// The problem that remains when these are on and no longer unknown (their upper is 0). slack < 0 means that they alone
 /// exceed a limit.

@@ -7,8 +7,8 @@
 namespace luxrig {
 namespace {
 
-/// Lights added beyond the chosen number: that number / kBeyondOf, at least kLeastBeyond.
-constexpr std::size_t kLeastBeyond = 2;
+/// Lights added beyond the chosen number: that number / kBeyondOf, at least kMinBeyond.
+constexpr std::size_t kMinBeyond = 2;
 constexpr std::size_t kBeyondOf = 5;
 /// In units of the wanted error.
 constexpr double kNearlyWanted = 10;
@@ -38,7 +38,7 @@ class Choice {
 
  private:
   [[nodiscard]] bool ended() const {
-    return options_.exchange.watch.stop.stop_requested() || exchange_.columns() >= options_.most_columns;
+    return options_.exchange.watch.stop.stop_requested() || exchange_.columns() >= options_.max_columns;
   }
   [[nodiscard]] double error(std::size_t lights) const {
     return curve_.cuts[std::min(lights, curve_.cuts.size() - 1)].error();
@@ -73,10 +73,10 @@ class Choice {
       exchange_.refine(lights);
       offer(lights);
     }
-    while (!ended() && lights.size() < options_.most_lights && lights.error() > options_.number.wanted_error) {
+    while (!ended() && lights.size() < options_.max_lights && lights.error() > options_.number.wanted_error) {
       if (!exchange_.with_one_more(lights, 1, random_)) break;
       offer(lights);
-      if (lights.size() >= curve_.chosen + std::max(kLeastBeyond, curve_.chosen / kBeyondOf)) break;
+      if (lights.size() >= curve_.chosen + std::max(kMinBeyond, curve_.chosen / kBeyondOf)) break;
     }
     return lights;
   }
@@ -107,7 +107,7 @@ class Choice {
     const std::size_t was = curve_.chosen;
     PlacedLights lights = curve_.cuts[was];
     if (lights.error() <= options_.number.wanted_error) return false;
-    for (int more = 0; more < 2 && lights.size() < options_.most_lights && !ended(); ++more) {
+    for (int more = 0; more < 2 && lights.size() < options_.max_lights && !ended(); ++more) {
       if (!exchange_.with_one_more(lights, 1, random_)) break;
       exchange_.singly(lights, random_);
       offer(lights);
@@ -140,9 +140,9 @@ class Choice {
     const double was = lights.error();
     if (was <= options_.number.wanted_error || lights.size() == 0) return false;
     if (!exchange_.singly(lights, random_) && !exchange_.by_twos(lights) &&
-        !exchange_.through_more(lights, kLeastBeyond, random_))
+        !exchange_.through_more(lights, kMinBeyond, random_))
       return false;
-    return offer(lights) && lights.error() < (1 - options_.least_progress) * was;
+    return offer(lights) && lights.error() < (1 - options_.min_progress) * was;
   }
 
   const ChooseOptions& options_;
@@ -156,7 +156,7 @@ class Choice {
 
 LightCurve choose_lights(const MovableLight& light, const LightingGoal& goal, const ComplementSearch& candidates,
                          const ChooseOptions& options) {
-  LUXRIG_CHECK(options.most_lights > 0, "{} lights", options.most_lights);
+  LUXRIG_CHECK(options.max_lights > 0, "{} lights", options.max_lights);
   return Choice(light, goal, candidates, options).run();
 }
 

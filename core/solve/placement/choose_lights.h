@@ -15,11 +15,11 @@
 namespace luxrig {
 
 struct ChooseOptions {
-  std::size_t most_lights = 64;
+  std::size_t max_lights = 64;
   NumberRule number;
-  double least_progress = 0.003;  ///< least share of the error that a round over all lights must remove to go on
+  double min_progress = 0.003;  ///< least share of the error that a round over all lights must remove to go on
   /// Limit of columns to compute; the search may exceed it by the columns of one round.
-  std::size_t most_columns = 400'000;
+  std::size_t max_columns = 400'000;
   /// Refine fewer lights than chosen as carefully as more, so that the user can pick another number.
   bool whole_curve = false;
   std::uint64_t seed = 1;

@@ -13,7 +13,7 @@ namespace {
 using ByCandidate = ComplementSearch::ByCandidate;
 
 /// A column with less than this share of its square left is a mix of the chosen ones: it gains only rounding.
-constexpr double kLeastLeft = 1e-4;
+constexpr double kMinLeft = 1e-4;
 
 /// Columns per block: a megabyte with 300 points.
 constexpr std::size_t kBlock = 512;
@@ -154,7 +154,7 @@ Eigen::VectorXd ComplementSearch::gains(const About& about, std::initializer_lis
       if (!(pull > 0)) continue;
       const double whole = squared_norm_(i, static_cast<Eigen::Index>(e));
       const double left = whole - used_lights.of(products.row(i).data(), used_of_all);
-      if (left > kLeastLeft * whole) gain[i] += pull * pull / left;
+      if (left > kMinLeft * whole) gain[i] += pull * pull / left;
     }
   }
   return gain;

@@ -20,7 +20,7 @@ Result<CorrectedLights> correct_lights(const MovableLight& light, const Lighting
   auto of_present = std::make_unique<LightingGoal>(goal);
   PlacedLights present(light, *of_present);
   for (const LightPose& pose : lights.poses()) present.add(pose);
-  for (int round = 1; round <= options.most_rounds; ++round) {
+  for (int round = 1; round <= options.max_rounds; ++round) {
     auto lux = lux_of(present.poses(), present.levels());
     if (!lux) {
       if (!best) return tl::unexpected(lux.error());
@@ -29,7 +29,7 @@ Result<CorrectedLights> correct_lights(const MovableLight& light, const Lighting
     const Eigen::VectorXd fault = *lux - present.lux();
     const double error = error_of(goal, *lux + fixed);
     const bool better = !best || error < best->error;
-    const bool last = best && error > (1 - options.least_improvement) * best->error;
+    const bool last = best && error > (1 - options.min_improvement) * best->error;
     auto corrected = std::make_unique<LightingGoal>(goal);
     corrected->fixed_lux = fixed + fault;
     PlacedLights next(light, *corrected);

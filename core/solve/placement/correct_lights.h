@@ -30,8 +30,8 @@ struct CorrectedLights {
 };
 
 struct CorrectOptions {
-  int most_rounds = 4;
-  double least_improvement = 0.05;  ///< share of the error; a round that improves less is the last
+  int max_rounds = 4;
+  double min_improvement = 0.05;  ///< share of the error; a round that improves less is the last
 };
 
 /// The best of the rounds by the better model; never worse than the given lights.

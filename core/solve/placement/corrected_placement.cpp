@@ -17,14 +17,14 @@ Result<CorrectedPlacement> place_and_correct(const PlacementMethod& method, cons
     how.better = {};
     how.whole_curve = false;
     how.start = from.poses();
-    how.most_columns = static_cast<std::size_t>(correction.share * static_cast<double>(options.most_columns));
+    how.max_columns = static_cast<std::size_t>(correction.share * static_cast<double>(options.max_columns));
     const auto more = method.run(again, how);
     if (!more) return from;
     placed.columns += more->columns;
     return more->lights;
   };
   CorrectOptions rounds;
-  rounds.most_rounds = correction.most_rounds;
+  rounds.max_rounds = correction.max_rounds;
   auto corrected =
       correct_lights(*problem.light, *problem.goal, placed.found.lights, correction.lux_of, search_again, rounds);
   if (corrected)

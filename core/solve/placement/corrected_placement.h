@@ -17,8 +17,8 @@ struct CorrectedPlacement {
 
 struct CorrectedPlacementOptions {
   LuxOfLights lux_of;   ///< the better model; empty = no correction
-  int most_rounds = 3;  ///< evaluations of it
-  double share = 0.5;   ///< of most_columns, for each search that continues after a correction
+  int max_rounds = 3;   ///< evaluations of it
+  double share = 0.5;   ///< of max_columns, for each search that continues after a correction
 };
 
 /// Cause: that of the method.

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kQuickSteps = 4;       ///< of refinement, for lights that may be dropped again
 constexpr std::size_t kRefined = 3;  ///< trial positions of a light that are refined
-constexpr double kLeastProgress = 0.999;
+constexpr double kMinProgress = 0.999;
 
 /// Pairs each light with the one that shares most light at the same points.
 std::vector<std::pair<std::size_t, std::size_t>> neighbours(const PlacedLights& lights) {
@@ -45,7 +45,7 @@ void keep_best_ways(std::vector<PlacedLights>& ways, std::size_t count) {
 
 RefineOptions LightExchange::steps(int most) const {
   RefineOptions refine;
-  refine.most_steps = most;
+  refine.max_steps = most;
   refine.longest_step_m = options_.longest_step_m;
   refine.stop = options_.watch.stop;
   return refine;
@@ -105,8 +105,7 @@ bool LightExchange::singly(PlacedLights& lights, std::mt19937_64& random) {
   std::vector<std::size_t> better;
   for (std::size_t light = 0; light < trials.size(); ++light) {
     columns_ += trials[light].columns;
-    if (trials[light].lights && trials[light].lights->error() < kLeastProgress * lights.error())
-      better.push_back(light);
+    if (trials[light].lights && trials[light].lights->error() < kMinProgress * lights.error()) better.push_back(light);
   }
   if (better.empty()) return false;
   std::sort(better.begin(), better.end(), [&](std::size_t a, std::size_t b) {
@@ -118,7 +117,7 @@ bool LightExchange::singly(PlacedLights& lights, std::mt19937_64& random) {
     PlacedLights both = lights;
     ++columns_;
     if (both.replace(better[i], trials[better[i]].lights->poses()[better[i]]) &&
-        both.error() < kLeastProgress * lights.error())
+        both.error() < kMinProgress * lights.error())
       lights = std::move(both);
   }
   refine(lights);
@@ -159,7 +158,7 @@ bool LightExchange::by_twos(PlacedLights& lights) {
     columns_ += trial.columns;
     if (trial.lights && (!best || trial.lights->error() < best->lights->error())) best = &trial;
   }
-  if (!best || !(best->lights->error() < kLeastProgress * lights.error())) return false;
+  if (!best || !(best->lights->error() < kMinProgress * lights.error())) return false;
   lights = *best->lights;
   refine(lights);
   return true;
@@ -173,7 +172,7 @@ bool LightExchange::through_more(PlacedLights& lights, std::size_t beyond, std::
     way = without_one(way);
     singly(way, random);
   }
-  if (way.size() > lights.size() || !(way.error() < kLeastProgress * lights.error())) return false;
+  if (way.size() > lights.size() || !(way.error() < kMinProgress * lights.error())) return false;
   lights = std::move(way);
   refine(lights);
   return true;

@@ -56,7 +56,7 @@ class LightExchange {
   /// gains.
   bool with_one_more(PlacedLights& lights, std::size_t choice, std::mt19937_64& random);
   /// Moves all places to the bottom of their basin.
-  void refine(PlacedLights& lights) { columns_ += refine_lights(lights, steps(RefineOptions{}.most_steps)); }
+  void refine(PlacedLights& lights) { columns_ += refine_lights(lights, steps(RefineOptions{}.max_steps)); }
 
   /// Columns computed by all of these calls so far.
   [[nodiscard]] std::size_t columns() const { return columns_; }

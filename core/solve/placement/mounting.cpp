@@ -82,10 +82,10 @@ Checked<Mounting> Mounting::make(const MountingSpec& spec, const std::filesystem
 }
 
 bool Mounting::clear_of_others(const Vec3& place_world_m) const {
-  const double least_m = spec_.clearance_m - rounding_at(place_world_m);
-  if (!(least_m > 0)) return true;
-  const auto near = rays_->nearest_surface(place_world_m, least_m, is_other_);
-  return !near || near->distance_m >= least_m;
+  const double min_m = spec_.clearance_m - rounding_at(place_world_m);
+  if (!(min_m > 0)) return true;
+  const auto near = rays_->nearest_surface(place_world_m, min_m, is_other_);
+  return !near || near->distance_m >= min_m;
 }
 
 bool Mounting::may_hang(const Vec3& place_world_m) const {
@@ -182,15 +182,15 @@ std::vector<Vec3> Mounting::places_off_surfaces(double spacing_m) const {
 Result<std::vector<Vec3>> Mounting::candidates(int threads) const {
   double spacing_m = this->spacing_m();
   const double count = places_at(spacing_m);
-  if (count > static_cast<double>(kMostPlaces)) {
+  if (count > static_cast<double>(kMaxPlaces)) {
     return refusal(
         fmt::format("[mounting] spacing_m = {:g} makes {:.3g} places to try, more than {}: widen it, leave it "
                     "out, or make box_m smaller",
-                    spacing_m, count, kMostPlaces));
+                    spacing_m, count, kMaxPlaces));
   }
   std::vector<Vec3> places_m, good_m;
   // The lattice may miss surfaces smaller than the spacing.
-  for (int finer = 0; finer < 6 && good_m.empty() && places_at(spacing_m) <= static_cast<double>(kMostPlaces);
+  for (int finer = 0; finer < 6 && good_m.empty() && places_at(spacing_m) <= static_cast<double>(kMaxPlaces);
        ++finer, spacing_m /= 2) {
     places_m = is_surface_.empty() ? places_in_air(spacing_m) : places_off_surfaces(spacing_m);
     std::vector<std::uint8_t> good(places_m.size(), 0);

@@ -23,7 +23,7 @@ namespace luxrig {
 
 class Mounting {
  public:
-  static constexpr std::size_t kMostPlaces = 1'000'000;
+  static constexpr std::size_t kMaxPlaces = 1'000'000;
 
   /// scene, rays   the same geometry; `rays` must outlive it
   /// rig_file      for problems: a pattern that matches no material or object, or nothing that bounds the places
@@ -43,7 +43,7 @@ class Mounting {
 
   /// Places to try, evenly spaced: a lattice in the box, or one laid on each surface and lifted off both of its sides.
   /// A light may hang at all of them. The result does not depend on threads.
-  /// Cause::invalid, with the figures, when the spacing gives more than kMostPlaces, or no place is left.
+  /// Cause::invalid, with the figures, when the spacing gives more than kMaxPlaces, or no place is left.
   [[nodiscard]] Result<std::vector<Vec3>> candidates(int threads) const;
 
   /// Between neighbouring candidates.

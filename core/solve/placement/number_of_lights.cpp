@@ -3,7 +3,7 @@
 namespace luxrig {
 namespace {
 
-/// Share of least_improvement used while the error is coarse.
+/// Share of min_improvement used while the error is coarse.
 constexpr double kCoarseShare = 0.05;
 
 }  // namespace
@@ -13,7 +13,7 @@ std::size_t fewest_worth_it(std::size_t count, const std::function<double(std::s
   for (std::size_t k = 0; k < count; ++k)
     if (error(k) <= rule.wanted_error) return k;
   for (std::size_t k = 0; k + 1 < count; ++k) {
-    const double least = (error(k) > rule.coarse_error ? kCoarseShare : 1) * rule.least_improvement, keep = 1 - least;
+    const double least = (error(k) > rule.coarse_error ? kCoarseShare : 1) * rule.min_improvement, keep = 1 - least;
     if (error(k + 1) > keep * error(k) && (k + 2 >= count || error(k + 2) > keep * keep * error(k))) return k;
   }
   return count > 0 ? count - 1 : 0;

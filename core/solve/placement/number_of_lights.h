@@ -10,7 +10,7 @@ struct NumberRule {
   double wanted_error = 1e-4;  ///< the fewest lights with at most this error are chosen
   /// Otherwise the fewest where one more light lowers the error by less than this share, and two more by less than this
   /// share each: the thesis's ε_improv.
-  double least_improvement = 0.1;
+  double min_improvement = 0.1;
   /// Above this (the thesis's ε_opt) a much smaller improvement is enough: in many rooms, the first lights each do
   /// little.
   double coarse_error = 0.3;

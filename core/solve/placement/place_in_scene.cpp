@@ -20,7 +20,7 @@ constexpr std::size_t kAims = 26;
 
 /// Columns of a search: they take most of its time. Reflected light of an aimed light costs about a hundred times as
 /// much.
-constexpr std::size_t kMostColumns = 150'000, kReflectedColumns = 80'000, kMostTracedColumns = 4'000;
+constexpr std::size_t kMaxColumns = 150'000, kReflectedColumns = 80'000, kMaxTracedColumns = 4'000;
 
 bool reflects(const RayScene& rays) {
   return std::any_of(rays.materials().begin(), rays.materials().end(), [](const Material& material) {
@@ -103,10 +103,10 @@ Result<PlacedInScene> place_in_scene(const Scene& scene, const RayScene& rays, c
 
   PlacementOptions place;
   place.lights = options.lights.value_or(0);
-  place.most_lights = options.max_lights;
+  place.max_lights = options.max_lights;
   place.number.wanted_error = options.error_wanted;
-  place.number.least_improvement = options.improvement;
-  place.most_columns = !of_space.indirect ? kMostColumns : options.aimed ? kMostTracedColumns : kReflectedColumns;
+  place.number.min_improvement = options.improvement;
+  place.max_columns = !of_space.indirect ? kMaxColumns : options.aimed ? kMaxTracedColumns : kReflectedColumns;
   place.whole_curve = true;
   place.run() = options.of_part();
   if (options.better) place.better = [&](const BestSoFar& best) { options.better(best.poses.size(), best.error); };
@@ -133,7 +133,7 @@ Result<PlacedInScene> place_in_scene(const Scene& scene, const RayScene& rays, c
     placed.lower_bound = goal_error_bound(problem.columns, bounded, options.watch.stop);
     if (options.bound_of_number) {
       CountBoundOptions counted;
-      counted.most_lights = placed.lights.size();
+      counted.max_lights = placed.lights.size();
       // With the search's own light: the residual of corrected lights comes from the evaluator.
       counted.guesses = {{placed.lights.size(), done->found.lights.residual()}};
       counted.run() = options.of_part();

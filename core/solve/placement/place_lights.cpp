@@ -5,7 +5,7 @@
 namespace luxrig {
 namespace {
 
-constexpr std::uint64_t kMostStarts = 1'000;
+constexpr std::uint64_t kMaxStarts = 1'000;
 /// If the error of one of two starts is below this share of the other's, no race is needed.
 constexpr double kClearlyBetter = 0.85;
 constexpr int kRaceRounds = 2;
@@ -18,7 +18,7 @@ class Search {
 
   Placement run() {
     int idle = 0;
-    for (std::uint64_t start = 0; !ended() && start < kMostStarts && idle < options_.most_idle_starts; ++start) {
+    for (std::uint64_t start = 0; !ended() && start < kMaxStarts && idle < options_.max_idle_starts; ++start) {
       ++best_.starts;
       const double best_error = best_.lights.error();
       std::mt19937_64 random(options_.seed * 0x9E3779B97F4A7C15ull + start);
@@ -27,7 +27,7 @@ class Search {
       begin_otherwise(lights, start);
       while (!ended() && exchanged(lights, random)) offer(lights);
       offer(lights);
-      idle = best_.lights.error() < (1 - options_.least_progress) * best_error ? 0 : idle + 1;
+      idle = best_.lights.error() < (1 - options_.min_progress) * best_error ? 0 : idle + 1;
     }
     best_.columns = exchange_.columns();
     return std::move(best_);
@@ -36,7 +36,7 @@ class Search {
  private:
   [[nodiscard]] bool ended() const {
     return options_.exchange.watch.stop.stop_requested() || best_.lights.error() <= options_.wanted_error ||
-           exchange_.columns() >= options_.most_columns;
+           exchange_.columns() >= options_.max_columns;
   }
 
   /// Replaces the lights with the other start if the goal is hard and that start is better.
@@ -60,7 +60,7 @@ class Search {
 
   /// False when nothing improves it enough.
   bool exchanged(PlacedLights& lights, std::mt19937_64& random) {
-    const double enough = (1 - options_.least_progress) * lights.error();
+    const double enough = (1 - options_.min_progress) * lights.error();
     const auto more_than_enough = [&](bool changed) { return changed && lights.error() < enough; };
     return more_than_enough(exchange_.singly(lights, random)) || more_than_enough(exchange_.by_twos(lights)) ||
            more_than_enough(exchange_.through_more(lights, 2, random)) ||

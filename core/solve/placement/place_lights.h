@@ -17,9 +17,9 @@ struct PlaceOptions {
   std::size_t lights = 1;
   double wanted_error = 1e-4;  ///< PlacedLights::error(); ends the search
   /// Limit of columns to compute; the search may exceed it by the columns of one round.
-  std::size_t most_columns = 200'000;
-  int most_idle_starts = 2;       ///< this many starts in a row without improvement also end it
-  double least_progress = 0.003;  ///< least share of the error that a round over all lights must remove to go on
+  std::size_t max_columns = 200'000;
+  int max_idle_starts = 2;      ///< this many starts in a row without improvement also end it
+  double min_progress = 0.003;  ///< least share of the error that a round over all lights must remove to go on
   std::uint64_t seed = 1;
   std::vector<LightPose> start{};  ///< lights to begin with, at most as many as wanted; empty = none
   OtherStart other{};              ///< used without `start`, if lights added one by one end above kHardGoalError

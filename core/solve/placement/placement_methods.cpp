@@ -60,7 +60,7 @@ Result<FoundLights> place_by_luxrig(const PlacementProblem& problem, const Place
     PlaceOptions place;
     place.lights = options.lights;
     place.wanted_error = options.number.wanted_error;
-    place.most_columns = options.most_columns;
+    place.max_columns = options.max_columns;
     place.seed = options.seed;
     place.start = options.start;
     place.other = annealed_candidates(problem, options);
@@ -70,9 +70,9 @@ Result<FoundLights> place_by_luxrig(const PlacementProblem& problem, const Place
     return FoundLights{std::move(got.lights), got.columns};
   }
   ChooseOptions choose;
-  choose.most_lights = options.most_lights;
+  choose.max_lights = options.max_lights;
   choose.number = options.number;
-  choose.most_columns = options.most_columns;
+  choose.max_columns = options.max_columns;
   choose.seed = options.seed;
   choose.start = options.start;
   choose.other = annealed_candidates(problem, options);

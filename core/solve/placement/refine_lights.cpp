@@ -7,7 +7,7 @@
 namespace luxrig {
 namespace {
 
-constexpr double kFirstDamping = 1e-2, kMostDamping = 1e8, kLeastDamping = 1e-9;
+constexpr double kFirstDamping = 1e-2, kMaxDamping = 1e8, kMinDamping = 1e-9;
 
 /// Linear model at the present places.
 struct PlaceModel {
@@ -50,12 +50,12 @@ std::size_t refine_lights(PlacedLights& lights, const RefineOptions& options) {
   std::size_t columns = 0;
   double damping = kFirstDamping;
   int small = 0;
-  for (int step = 0; step < options.most_steps && lights.error() > options.least_error; ++step) {
+  for (int step = 0; step < options.max_steps && lights.error() > options.min_error; ++step) {
     const PlaceModel model(lights);
     columns += model.lit.size();
     if (model.lit.empty()) break;
     bool better = false;
-    while (!better && damping <= kMostDamping) {
+    while (!better && damping <= kMaxDamping) {
       if (options.stop.stop_requested()) return columns;
       const Eigen::VectorXd moves = model.step(damping);
       if (!moves.allFinite()) {
@@ -77,9 +77,9 @@ std::size_t refine_lights(PlacedLights& lights, const RefineOptions& options) {
       moved.move(poses);
       columns += model.lit.size();
       if (moved.error() < lights.error()) {
-        small = moved.error() > (1 - options.least_improvement) * lights.error() ? small + 1 : 0;
+        small = moved.error() > (1 - options.min_improvement) * lights.error() ? small + 1 : 0;
         lights = std::move(moved);
-        damping = std::max(kLeastDamping, damping / 5);
+        damping = std::max(kMinDamping, damping / 5);
         better = true;
       } else {
         damping *= 6;

@@ -13,11 +13,11 @@
 namespace luxrig {
 
 struct RefineOptions {
-  int most_steps = 30;
+  int max_steps = 30;
   double longest_step_m = 0.5;      ///< of one light in one step
   double longest_turn_rad = 0.3;    ///< of its aim
-  double least_error = 1e-7;        ///< PlacedLights::error(); ends the search
-  double least_improvement = 1e-3;  ///< share of the error; two successive steps below it also end it
+  double min_error = 1e-7;          ///< PlacedLights::error(); ends the search
+  double min_improvement = 1e-3;    ///< share of the error; two successive steps below it also end it
   std::stop_token stop;
 };
 

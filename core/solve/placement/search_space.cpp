@@ -8,7 +8,7 @@
 namespace luxrig {
 namespace {
 
-constexpr double kLeastShare = 1e-3;  ///< of a column's brightest entry
+constexpr double kMinShare = 1e-3;  ///< of a column's brightest entry
 
 /// Direct columns, and the field's contribution to each.
 struct LitColumn {
@@ -23,7 +23,7 @@ LitColumn with_reflected(const CandidateColumns& direct, std::size_t column, con
   for (std::uint64_t e = direct.begin[column]; e < direct.begin[column + 1]; ++e)
     lux[direct.receiver[e]] += static_cast<double>(direct.direct_lux[e]);
   LitColumn lit;
-  const double least = kLeastShare * lux.maxCoeff();
+  const double least = kMinShare * lux.maxCoeff();
   for (Eigen::Index r = 0; r < points; ++r) {
     if (!(lux[r] > least)) continue;
     lit.row.push_back(static_cast<std::uint32_t>(r));
@@ -58,7 +58,7 @@ Result<SearchSpace> SearchSpace::make(const Scene& scene, const RayScene& rays, 
   of_candidates.surface_cells = options.surface_cells;
   of_candidates.wanted_relative_error = options.reflected_error;
   if (by_field) {
-    auto field = ReflectedField::make(scene, rays, receivers, lamp, places_world_m, options.most_nodes, of_candidates);
+    auto field = ReflectedField::make(scene, rays, receivers, lamp, places_world_m, options.max_nodes, of_candidates);
     if (!field) return tl::unexpected(field.error());
     space.reflected_ = std::make_unique<ReflectedField>(std::move(*field));
   }

@@ -19,7 +19,7 @@ struct SearchSpaceOptions : Run {
   bool indirect = false;
   /// For reflected light: places where it is sampled, cells of the surfaces (candidate_transport.h), and its wanted
   /// relative error there.
-  std::size_t most_nodes = 4'000;
+  std::size_t max_nodes = 4'000;
   std::size_t surface_cells = 1'500;
   double reflected_error = 0.1;
   std::function<bool(const Vec3&)> may_hang;  ///< for places that are not candidates; empty = anywhere

@@ -10,7 +10,7 @@ const std::array<Vec3, 5> kDirections = {Vec3(0.31, 0.47, 0.83).normalized(), Ve
                                          Vec3(0.23, -0.71, -0.67).normalized(), Vec3(-0.43, -0.37, 0.82).normalized(),
                                          Vec3(0.61, 0.59, -0.53).normalized()};
 constexpr int kEnough = 4;
-constexpr int kMostCrossings = 1000;
+constexpr int kMaxCrossings = 1000;
 /// An object with this share of the scene's volume may be the room itself.
 constexpr double kRoomShare = 0.5;
 
@@ -26,7 +26,7 @@ ClosedObjects::ClosedObjects(const Scene& scene, const RayScene& rays)
 std::vector<bool> ClosedObjects::crossed_oddly(const Vec3& from_world_m, const Vec3& direction_world) const {
   std::vector<bool> odd(bounds_.size(), false);
   Vec3 from_m = from_world_m, leaving = Vec3::Zero();
-  for (int crossings = 0; crossings < kMostCrossings; ++crossings) {
+  for (int crossings = 0; crossings < kMaxCrossings; ++crossings) {
     const auto hit = rays_.nearest(from_m, direction_world, leaving);
     if (!hit) break;
     const std::uint32_t object = scene_.object_of_triangle[hit->triangle];

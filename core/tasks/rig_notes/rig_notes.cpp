@@ -13,7 +13,7 @@ namespace luxrig {
 namespace {
 
 /// For each kind of thing, this many single notes, then one for the rest.
-constexpr std::size_t kMostNotes = 8;
+constexpr std::size_t kMaxNotes = 8;
 /// A fixture that sees no point is outside if it is this far out, as a share of the scene's diagonal.
 constexpr double kOutShare = 0.01;
 /// A fixture is far away from this many diagonals on, and at least this distance.
@@ -27,7 +27,7 @@ constexpr int kLooks = 48;
 /// or mean.
 constexpr double kNoLightOfGoal = 0.01, kNoLight = 0.001;
 constexpr double kErrorOfNotes = 0.3;
-constexpr std::uint64_t kMostRays = 20'000'000;
+constexpr std::uint64_t kMaxRays = 20'000'000;
 
 class Notes {
  public:
@@ -69,7 +69,7 @@ class Notes {
   };
 
   void add(const PlacedThing& thing, Note note) {
-    if (kept_++ < kMostNotes) {
+    if (kept_++ < kMaxNotes) {
       notes_.push_back({rig_.file.string(), thing.place.line, thing.place.column, thing.text() + " " + note.what,
                         std::move(note.mend)});
       return;
@@ -79,9 +79,9 @@ class Notes {
   }
 
   void summarise(const char* things) {
-    if (kept_ > kMostNotes)
+    if (kept_ > kMaxNotes)
       notes_.push_back({rig_.file.string(), last_.line, last_.column,
-                        fmt::format("{} more {} likewise: {}", kept_ - kMostNotes, things,
+                        fmt::format("{} more {} likewise: {}", kept_ - kMaxNotes, things,
                                     more_.size() > 200 ? more_.substr(0, more_.find(',', 200)) + " …" : more_),
                         "mend those above first"});
     kept_ = 0;
@@ -199,19 +199,19 @@ class Notes {
     EvaluateOptions options;
     options.wanted_relative_error = kErrorOfNotes;
     options.threads = threads_;
-    options.max_rays = kMostRays;
+    options.max_rays = kMaxRays;
     options.watch.stop = stop_;
     set_error_floor(rig_, options);
     const auto direct = make_direct_evaluator(rays_)->evaluate(receivers_, emitters, options);
     if (!direct) return;  // evaluate reports the fault later
     const Eigen::VectorXd direct_lx = direct->lux(Eigen::VectorXd::Ones(direct->emitters()));
-    double least_lx = std::max(options.floor_lx, options.floor_of_mean * direct_lx.mean());
-    if (!(least_lx > 0)) least_lx = 1;
+    double min_lx = std::max(options.floor_lx, options.floor_of_mean * direct_lx.mean());
+    if (!(min_lx > 0)) min_lx = 1;
     std::vector<double> no_light_lx;
     std::vector<Receiver> dark;
     std::vector<std::size_t> dark_index;
     for (std::size_t r = 0; r < receivers_.size(); ++r) {
-      double enough_lx = kNoLight * least_lx / 0.1;
+      double enough_lx = kNoLight * min_lx / 0.1;
       if (r < rig_.points.size() && rig_.points[r].goal_lx && *rig_.points[r].goal_lx > 0)
         enough_lx = kNoLightOfGoal * *rig_.points[r].goal_lx;
       if (direct_lx[static_cast<Eigen::Index>(r)] >= enough_lx || in_sight_of_a_head(receivers_[r])) continue;

@@ -93,7 +93,7 @@ BlockerShadow::BlockerShadow(const FlatBlocker& blocker, const Vec3& from_world_
   Vec3 middle = Vec3::Zero();
   for (std::uint32_t k = 0; k < blocker.sides; ++k) middle += corners[k] / blocker.sides;
   inward_[0] = normal;
-  least_m_[0] = normal.dot(corners[0]) + kErrorsBehind * error_m;
+  min_m_[0] = normal.dot(corners[0]) + kErrorsBehind * error_m;
   for (std::uint32_t k = 0; k < blocker.sides; ++k) {
     const Vec3 a = corners[k] - from_world_m, b = corners[(k + 1) % blocker.sides] - from_world_m;
     Vec3 inward = a.cross(b).normalized();
@@ -103,7 +103,7 @@ BlockerShadow::BlockerShadow(const FlatBlocker& blocker, const Vec3& from_world_
     // A point behind the plane is at least as far from this side of the shadow as its ray's crossing of the plane. To
     // require several e at the crossing, the test must scale with depth: the ray crosses at the share height / (height
     // + depth) of its length. Done in hides_box().
-    least_m_[k + 1] = inward.dot(from_world_m);
+    min_m_[k + 1] = inward.dot(from_world_m);
   }
   planes_ = blocker.sides + 1;
   height_m_ = height_m;
@@ -118,11 +118,11 @@ bool BlockerShadow::hides_box(const Vec3& low_world_m, const Vec3& high_world_m)
            std::min(n.y() * low_world_m.y(), n.y() * high_world_m.y()) +
            std::min(n.z() * low_world_m.z(), n.z() * high_world_m.z());
   };
-  if (!(least(inward_[0]) > least_m_[0])) return false;
-  const double depth_m = -least(-inward_[0]) - least_m_[0];
+  if (!(least(inward_[0]) > min_m_[0])) return false;
+  const double depth_m = -least(-inward_[0]) - min_m_[0];
   const double beside_m = beside_m_ * (1 + depth_m / height_m_);
   for (std::uint32_t k = 1; k < planes_; ++k)
-    if (!(least(inward_[k]) > least_m_[k] + beside_m)) return false;
+    if (!(least(inward_[k]) > min_m_[k] + beside_m)) return false;
   return true;
 }
 

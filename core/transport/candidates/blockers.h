@@ -46,7 +46,7 @@ class BlockerShadow {
 
  private:
   std::array<Vec3, 5> inward_;  ///< unit normals: of the plane, away from the point; then of the shadow's sides
-  std::array<double, 5> least_m_{};
+  std::array<double, 5> min_m_{};
   std::uint32_t planes_ = 0;
   double height_m_ = 0;  ///< of the point over the plane
   double beside_m_ = 0;  ///< margin at the crossing with the plane

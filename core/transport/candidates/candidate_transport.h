@@ -38,7 +38,7 @@ struct CandidateSkips {
   bool other_air = true;
   bool behind = true;    ///< pairs with the candidate behind the receiver's plane, in groups. Exact.
   bool blockers = true;  ///< groups of candidates in the shadow of one wall. Exact.
-  bool reach = true;     ///< entries below CandidateOptions::least_lux
+  bool reach = true;     ///< entries below CandidateOptions::min_lux
   /// No indirect light for candidates whose first few rays all miss the surfaces that send light to a receiver. Within
   /// the standard error.
   bool unlit = true;
@@ -50,9 +50,9 @@ struct CandidateSkips {
 struct CandidateOptions : Run {
   bool indirect = true;  ///< false = direct light only, exact
   /// Wanted median of standard error / lux over the entries kept. It sets the number of rays per candidate, up to
-  /// most_rays_per_candidate.
+  /// max_rays_per_candidate.
   double wanted_relative_error = 0.02;
-  std::uint32_t most_rays_per_candidate = 4096;
+  std::uint32_t max_rays_per_candidate = 4096;
   /// Approximate number of cells of the surfaces, for each of eight estimates; light is evaluated at four places in
   /// each. Where light and importance both vary within a cell (a shadow edge that falls on both), reflected light is
   /// slightly too low: measured -0.5 % of all light of the entries that see the lamp, in a furnished flat with cells of
@@ -60,14 +60,14 @@ struct CandidateOptions : Run {
   std::size_t surface_cells = 12'000;
   /// Entries below this [lx per unit emittance] are left out. Direct light that must be below it is not traced, so no
   /// entry changes by more. 0 = keep everything.
-  double least_lux = 0;
+  double min_lux = 0;
   /// For all allocations here, including the returned matrix.
   std::size_t memory_bound_bytes = std::size_t{4} << 30;
   CandidateSkips skips;
 };
 
 /// Columns of T in sequence: the entries of column c (counted from first_column) are those from begin[c] to begin[c +
-/// 1], receivers rising. Missing entries are 0 or below CandidateOptions::least_lux.
+/// 1], receivers rising. Missing entries are 0 or below CandidateOptions::min_lux.
 struct CandidateColumns {
   std::size_t first_column = 0;
   std::vector<std::uint64_t> begin = {0};

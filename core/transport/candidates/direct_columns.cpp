@@ -76,18 +76,18 @@ bool direct_of_block(const VisibilityScene& scene, std::span<const Receiver> rec
       CandidateStatistics& count = counted[r];
       float* row = lux.data() + r * positions * kinds;
       std::vector<double> possible_lux(group.size());
-      VisiblePoints visible(scene, receivers[r], options.skips, peak_cd, options.least_lux);
+      VisiblePoints visible(scene, receivers[r], options.skips, peak_cd, options.min_lux);
       visible.visit(
           tree, lamps_world_m,
           [&](std::uint32_t point) {
-            double most_lux = 0;
+            double max_lux = 0;
             for (std::size_t g = 0; g < group.size(); ++g) {
               possible_lux[g] = unobstructed_lux(luminaires[group[g]], lamps_world_m[point], receivers[r]);
               if (possible_lux[g] == 0) ++count.pairs_dark;
-              most_lux = std::max(most_lux, possible_lux[g]);
+              max_lux = std::max(max_lux, possible_lux[g]);
             }
-            if (most_lux == 0) return false;
-            if (options.skips.reach && most_lux < options.least_lux) {
+            if (max_lux == 0) return false;
+            if (options.skips.reach && max_lux < options.min_lux) {
               for (const double possible : possible_lux) count.pairs_out_of_reach += possible > 0;
               return false;
             }

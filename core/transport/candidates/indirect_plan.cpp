@@ -19,13 +19,13 @@ constexpr std::size_t kTried = 48;
 constexpr std::uint32_t kFewTried = 32, kManyTried = 256;
 /// Rays may always add this share of the square of the fields' own error, even if the fields use up the wanted error: a
 /// smaller share would cost many rays and gain little.
-constexpr double kLeastRayShare = 0.25;
+constexpr double kMinRayShare = 0.25;
 constexpr double kAloneShare = 0.5;
-constexpr std::size_t kFewestCells = 200;
+constexpr std::size_t kMinCells = 200;
 /// One node per this many positions. With many positions, fewer: even sparser nodes are then close together.
 constexpr std::size_t kPositionsPerNode = 3;
 constexpr std::size_t kManyNodes = 16'384, kManyPositionsPerNode = 16;
-constexpr std::size_t kFewestPositions = 256;
+constexpr std::size_t kMinPositions = 256;
 /// Fraction of the memory bound for the nodes' values.
 constexpr std::size_t kNodesShare = 4;
 
@@ -36,7 +36,7 @@ double median_error(const IndirectColumns& indirect, const VisibilityScene& visi
                     const CandidateOptions& options, std::uint64_t& rays) {
   std::vector<ErrorHistogram> errors(positions_m.size());
   std::vector<std::uint64_t> cast(positions_m.size(), 0);
-  const double least_lux = options.skips.reach ? options.least_lux : 0;
+  const double min_lux = options.skips.reach ? options.min_lux : 0;
   parallel_for(positions_m.size(), options.threads, [&](std::size_t i) {
     if (options.watch.stop.stop_requested()) return;
     const CandidateLuminaire& luminaire = luminaires[i % luminaires.size()];
@@ -53,7 +53,7 @@ double median_error(const IndirectColumns& indirect, const VisibilityScene& visi
         if (visibility.rays->occluded(receivers[r].position_world_m, receivers[r].normal_world, at_m)) all_lux = 0;
       }
       all_lux += static_cast<double>(lux[r]);
-      if (all_lux > 0 && all_lux >= least_lux) errors[i].add(static_cast<double>(error_lux[r]) / all_lux);
+      if (all_lux > 0 && all_lux >= min_lux) errors[i].add(static_cast<double>(error_lux[r]) / all_lux);
     }
   });
   ErrorHistogram all;
@@ -102,7 +102,7 @@ double cell_size_m(const Scene& scene, std::size_t cells) {
 InterpolationNodes choose_nodes(const CandidateSet& candidates, std::span<const std::uint8_t> usable,
                                 std::size_t receivers, const CandidateOptions& options) {
   const auto count = static_cast<std::size_t>(std::count(usable.begin(), usable.end(), std::uint8_t{1}));
-  if (!options.skips.foretold || count < kFewestPositions) return {};
+  if (!options.skips.foretold || count < kMinPositions) return {};
   const std::size_t floats = (IndirectColumns::kReplicates + 1) * (receivers + kRowUnit) * candidates.luminaires.size();
   const std::size_t fit = options.memory_bound_bytes / kNodesShare / (floats * sizeof(float));
   const double step_m = InterpolationNodes::step_for(
@@ -147,15 +147,15 @@ Result<IndirectColumns> plan_indirect(const Scene& scene, const VisibilityScene&
       (SurfaceCells::kPlaces + 1) * IndirectColumns::kReplicates * (receivers.size() + kRowUnit) * sizeof(float) +
       sizeof(SurfaceCells::Cell);
   const std::size_t cells_in_bound = options.memory_bound_bytes / 2 / bytes_per_cell;
-  if (cells_in_bound < kFewestCells)
+  if (cells_in_bound < kMinCells)
     return tl::unexpected(
         Fault{Cause::invalid,
               "",
               fmt::format("the surfaces' importance for {} receivers needs {} bytes; the bound is {}", receivers.size(),
-                          2 * kFewestCells * bytes_per_cell, options.memory_bound_bytes),
+                          2 * kMinCells * bytes_per_cell, options.memory_bound_bytes),
               {}});
   IndirectSettings settings;
-  const std::size_t cells = std::clamp(options.surface_cells, kFewestCells, std::max(kFewestCells, cells_in_bound));
+  const std::size_t cells = std::clamp(options.surface_cells, kMinCells, std::max(kMinCells, cells_in_bound));
   settings.cell_m = cell_size_m(scene, cells);
   auto fields = importance_fields(scene, visibility, receivers, grown_from_m, settings, options);
   if (!fields) return tl::unexpected(std::move(fields.error()));
@@ -176,9 +176,8 @@ Result<IndirectColumns> plan_indirect(const Scene& scene, const VisibilityScene&
   const double of_one_ray = std::max(0.0, (few * few - many * many) / (1.0 / kFewTried - 1.0 / kManyTried));
   const double of_fields = std::max(0.0, many * many - of_one_ray / kManyTried);
   const double wanted = options.wanted_relative_error;
-  const double left = std::max({wanted * wanted - of_fields, kLeastRayShare * of_fields, 1e-12});
-  const double most =
-      std::max(2.0, options.most_rays_per_candidate / static_cast<double>(IndirectColumns::kReplicates));
+  const double left = std::max({wanted * wanted - of_fields, kMinRayShare * of_fields, 1e-12});
+  const double most = std::max(2.0, options.max_rays_per_candidate / static_cast<double>(IndirectColumns::kReplicates));
   const auto rays_for = [&](double share) {
     const double rays = std::clamp(share * of_one_ray / left, std::min<double>(kFewTried, most), most);
     return static_cast<std::uint32_t>(IndirectColumns::kReplicates) * 2 * static_cast<std::uint32_t>(rays / 2);

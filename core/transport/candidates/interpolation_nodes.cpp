@@ -14,12 +14,12 @@ constexpr std::int64_t kReachCubes = 2;
 /// Least extent of nodes that defines a slope, as a share of the reach (squared): below it the plane is taken as flat.
 constexpr double kRidge = 1e-3;
 /// Largest noise of the combined nodes, as a share of that of one (squared): above it the place is outside its nodes.
-constexpr double kMostNoise = 0.6;
-constexpr std::size_t kFewestNodes = 4;
+constexpr double kMaxNoise = 0.6;
+constexpr std::size_t kMinNodes = 4;
 /// Reach of means where no plane fits, in steps.
 constexpr double kMeanReach = 3;
 constexpr double kFiner = 0.8;
-constexpr double kMostCubesPerSide = 1 << 20;
+constexpr double kMaxCubesPerSide = 1 << 20;
 
 using Cube = Eigen::Matrix<std::int64_t, 3, 1>;
 
@@ -67,19 +67,19 @@ InterpolationNodes::InterpolationNodes(std::span<const Vec3> positions_world_m, 
 }
 
 double InterpolationNodes::step_for(std::span<const Vec3> positions_world_m, std::span<const std::uint8_t> usable,
-                                    std::size_t most_nodes) {
+                                    std::size_t max_nodes) {
   const Eigen::AlignedBox3d box = box_of(positions_world_m, usable);
-  if (box.isEmpty() || most_nodes == 0) return 0;
+  if (box.isEmpty() || max_nodes == 0) return 0;
   const double size_m = box.sizes().maxCoeff();
   if (!(size_m > 0)) return 0;
   const auto all = static_cast<std::size_t>(std::count_if(usable.begin(), usable.end(), [](auto u) { return u != 0; }));
   double fits_m = 0;
   std::unordered_set<std::uint64_t> cubes;
-  for (double step_m = 1.01 * size_m; step_m * kMostCubesPerSide > size_m; step_m *= kFiner) {
+  for (double step_m = 1.01 * size_m; step_m * kMaxCubesPerSide > size_m; step_m *= kFiner) {
     cubes.clear();
-    for (std::size_t p = 0; p < positions_world_m.size() && cubes.size() <= most_nodes; ++p)
+    for (std::size_t p = 0; p < positions_world_m.size() && cubes.size() <= max_nodes; ++p)
       if (usable[p]) cubes.insert(key_of(cube_of(positions_world_m[p], box.min(), step_m)));
-    if (cubes.size() > most_nodes) break;
+    if (cubes.size() > max_nodes) break;
     fits_m = step_m;
     if (cubes.size() == all) break;  // any finer, and no place would have a neighbour within reach
   }
@@ -114,7 +114,7 @@ void InterpolationNodes::shares(const RayScene& scene, const Vec3& position_worl
         shares.push_back({found->second, static_cast<float>(weight)});
         bases.push_back(basis);
       }
-  if (shares.size() < kFewestNodes) return shares.clear();
+  if (shares.size() < kMinNodes) return shares.clear();
   for (int k = 1; k < 4; ++k) moments(k, k) += kRidge * moments(0, 0);
   const Eigen::LDLT<Eigen::Matrix4d> factor(moments);
   const Eigen::Vector4d first = factor.solve(Eigen::Vector4d::UnitX());
@@ -132,7 +132,7 @@ void InterpolationNodes::shares(const RayScene& scene, const Vec3& position_worl
   // Without the ridge the weights sum to 1; with it, nearly.
   float sum = 0;
   for (const WeightedRow& share : shares) sum += share.weight;
-  if (!(sum > 0.5f) || !(noise < kMostNoise)) return shares.clear();
+  if (!(sum > 0.5f) || !(noise < kMaxNoise)) return shares.clear();
   for (WeightedRow& share : shares) share.weight /= sum;
 }
 

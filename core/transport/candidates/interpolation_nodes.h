@@ -24,10 +24,10 @@ class InterpolationNodes {
   /// usable   per position
   InterpolationNodes(std::span<const Vec3> positions_world_m, std::span<const std::uint8_t> usable, double step_m);
 
-  /// Step of the finest grid with at most `most_nodes` nodes, to a fifth, but not finer than needed to make every
-  /// position a node; 0 if `most_nodes` is 0.
+  /// Step of the finest grid with at most `max_nodes` nodes, to a fifth, but not finer than needed to make every
+  /// position a node; 0 if `max_nodes` is 0.
   [[nodiscard]] static double step_for(std::span<const Vec3> positions_world_m, std::span<const std::uint8_t> usable,
-                                       std::size_t most_nodes);
+                                       std::size_t max_nodes);
 
   [[nodiscard]] std::size_t size() const { return nodes_.size(); }
   [[nodiscard]] double step_m() const { return step_m_; }

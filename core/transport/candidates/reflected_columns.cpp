@@ -16,12 +16,12 @@ constexpr std::size_t kGuidesShare = 16;
 constexpr double kErrorShare = 0.35;
 /// Error that interpolation may add to a typical entry of a candidate, as a share of the wanted error; and the most
 /// that one receiver's squared error counts, in units of that error squared.
-constexpr double kMostError = 1;
-constexpr double kMostCounted = 4;
+constexpr double kMaxError = 1;
+constexpr double kMaxCounted = 4;
 /// Least share of the weights of an interpolated result that must come from nodes with known error.
-constexpr float kLeastForetold = 0.5f;
+constexpr float kMinForetold = 0.5f;
 constexpr std::size_t kPlacesPerGuide = 8;
-constexpr std::size_t kFewestPerGuide = 64;
+constexpr std::size_t kMinPerGuide = 64;
 constexpr std::size_t kPositionsPerTask = 16;
 
 }  // namespace
@@ -45,7 +45,7 @@ ReflectedColumns::ReflectedColumns(const RayScene& scene, IndirectColumns indire
 void ReflectedColumns::make_groups(std::size_t places) {
   const PointTree tree(positions_world_m_);
   const std::size_t per_guide =
-      std::max(kFewestPerGuide, kPlacesPerGuide * positions_world_m_.size() / std::max<std::size_t>(1, places));
+      std::max(kMinPerGuide, kPlacesPerGuide * positions_world_m_.size() / std::max<std::size_t>(1, places));
   groups_.clear();
   group_of_.resize(positions_world_m_.size());
   for (const PointTree::Node& node : tree.nodes) {
@@ -187,7 +187,7 @@ bool ReflectedColumns::interpolate(const Asked& one, std::span<const WeightedRow
       error_shares.push_back({share.row, std::abs(share.weight)});
       sum += error_shares.back().weight;
     }
-  if (!(sum > kLeastForetold)) return false;
+  if (!(sum > kMinForetold)) return false;
   for (WeightedRow& share : error_shares) share.weight /= sum;
   std::fill(squared_error_lux2.begin(), squared_error_lux2.end(), 0.0f);
   add_weighted_rows(squared_errors_[one.luminaire].data(), error_shares, squared_error_lux2);
@@ -195,7 +195,7 @@ bool ReflectedColumns::interpolate(const Asked& one, std::span<const WeightedRow
   // shadow edge, whose error is stated anyway, do not decide for all.
   const std::size_t stride = indirect_.stride();
   constexpr double kCount = IndirectColumns::kReplicates;
-  const double most = kMostError * options_.wanted_relative_error;
+  const double most = kMaxError * options_.wanted_relative_error;
   double off = 0;
   std::size_t lit = 0;
   for (std::size_t r = 0; r < stride; ++r) {
@@ -207,8 +207,8 @@ bool ReflectedColumns::interpolate(const Asked& one, std::span<const WeightedRow
     }
     if (!(mean > 0)) continue;
     const double noise = (squares - kCount * mean * mean) / (kCount * (kCount - 1));
-    off += std::clamp(static_cast<double>(squared_error_lux2[r]) / (most * most * (mean * mean + noise)), -kMostCounted,
-                      kMostCounted);
+    off += std::clamp(static_cast<double>(squared_error_lux2[r]) / (most * most * (mean * mean + noise)), -kMaxCounted,
+                      kMaxCounted);
     ++lit;
   }
   if (off > static_cast<double>(lit)) return false;

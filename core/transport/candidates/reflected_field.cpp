@@ -16,7 +16,7 @@ constexpr std::size_t kFewPlaces = 60;
 
 Result<ReflectedField> ReflectedField::make(const Scene& scene, const RayScene& rays,
                                             std::span<const Receiver> receivers, const Emitter& luminaire,
-                                            std::span<const Vec3> places_world_m, std::size_t most_nodes,
+                                            std::span<const Vec3> places_world_m, std::size_t max_nodes,
                                             const CandidateOptions& options) {
   std::vector<std::uint8_t> usable(places_world_m.size());
   const ReceiversAir air(scene, rays, receivers);
@@ -27,7 +27,7 @@ Result<ReflectedField> ReflectedField::make(const Scene& scene, const RayScene& 
   // If every place were a node, none would be more accurate than a single evaluation.
   const auto all = static_cast<std::size_t>(std::count(usable.begin(), usable.end(), 1));
   const double step_m =
-      InterpolationNodes::step_for(places_world_m, usable, std::min(most_nodes, std::max(all / 2, kFewPlaces)));
+      InterpolationNodes::step_for(places_world_m, usable, std::min(max_nodes, std::max(all / 2, kFewPlaces)));
   if (step_m > 0) field.nodes_ = InterpolationNodes(places_world_m, usable, step_m);
   field.receivers_ = receivers.size();
   field.stride_ = (receivers.size() + kRowUnit - 1) / kRowUnit * kRowUnit;

@@ -16,11 +16,11 @@ class ReflectedField {
  public:
   /// scene, rays   the same geometry; rays must outlive it
   /// luminaire     hung with this rotation, which add() also assumes. No shape, no sky
-  /// places        to choose nodes from, evenly spread, `most_nodes` at most
+  /// places        to choose nodes from, evenly spread, `max_nodes` at most
   /// options       as for candidate_transport(); they set the errors here
   [[nodiscard]] static Result<ReflectedField> make(const Scene& scene, const RayScene& rays,
                                                    std::span<const Receiver> receivers, const Emitter& luminaire,
-                                                   std::span<const Vec3> places_world_m, std::size_t most_nodes,
+                                                   std::span<const Vec3> places_world_m, std::size_t max_nodes,
                                                    const CandidateOptions& options);
 
   /// Adds reflected lux per unit emittance and, if wanted, its slopes (receivers × first 3 columns). From any thread.

@@ -15,7 +15,7 @@
 namespace luxrig {
 namespace {
 
-constexpr std::size_t kMostPositionsPerBlock = 8192;
+constexpr std::size_t kMaxPositionsPerBlock = 8192;
 /// Bytes per receiver and column in a block: direct light, indirect light and its error, and an entry of the result.
 constexpr std::size_t kBytesPerPair = 3 * sizeof(float) + sizeof(std::uint32_t) + 3 * sizeof(float);
 
@@ -34,8 +34,8 @@ Result<void> check(std::span<const Receiver> receivers, const CandidateSet& cand
   for (std::size_t p = 0; p < candidates.positions_world_m.size(); ++p)
     if (!candidates.positions_world_m[p].allFinite())
       return refusal(fmt::format("candidate position {} is not finite", p));
-  if (!(options.least_lux >= 0) || !std::isfinite(options.least_lux))
-    return refusal(fmt::format("least lux is {:g}; it must be finite and at least 0", options.least_lux));
+  if (!(options.min_lux >= 0) || !std::isfinite(options.min_lux))
+    return refusal(fmt::format("least lux is {:g}; it must be finite and at least 0", options.min_lux));
   return {};
 }
 
@@ -78,7 +78,7 @@ class Stream {
     const std::size_t per_position =
         std::max<std::size_t>(1, receivers_.size() * luminaires_.size()) * kBytesPerPair + sizeof(Vec3);
     const std::size_t room = options_.memory_bound_bytes > fixed_bytes ? options_.memory_bound_bytes - fixed_bytes : 0;
-    const std::size_t per_block = std::min(kMostPositionsPerBlock, room / per_position);
+    const std::size_t per_block = std::min(kMaxPositionsPerBlock, room / per_position);
     if (per_block == 0 && positions > 0)
       return refusal(fmt::format("one candidate position needs {} bytes besides {} for the surfaces; the bound is {}",
                                  per_position, fixed_bytes, options_.memory_bound_bytes));
@@ -135,7 +135,7 @@ class Stream {
   /// Entries of the block, columns in order.
   void gather(std::size_t first_position, std::size_t columns) {
     const std::size_t rows = receivers_.size();
-    const auto least = static_cast<float>(options_.skips.reach ? options_.least_lux : 0);
+    const auto least = static_cast<float>(options_.skips.reach ? options_.min_lux : 0);
     const auto total = [&](std::size_t r, std::size_t c) {
       return direct(r, c) + (reflected_ ? indirect_lux_[c * rows + r] : 0.0f);
     };

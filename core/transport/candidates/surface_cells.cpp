@@ -10,13 +10,13 @@ namespace {
 
 constexpr std::uint32_t kSeveral = 0x80000000;
 /// Longer lists are not searched: a ray is faster.
-constexpr std::size_t kMostListed = 48;
+constexpr std::size_t kMaxListed = 48;
 /// Margin around each cube in its tests, as a share of its size; smaller lifts stay within the tested region.
 constexpr double kMargin = 0.06;
 constexpr double kCellLift = 0.03;
 /// Above this number, cubes are not tested (all then count as having several planes).
-constexpr double kMostCubes = 5e7;
-constexpr std::uint32_t kMostPieces = 8;
+constexpr double kMaxCubes = 5e7;
+constexpr std::uint32_t kMaxPieces = 8;
 
 /// Separating axes of a triangle and a cube (T. Akenine-Möller, "Fast 3D Triangle-Box Overlap Testing", 2001).
 bool overlaps(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& middle, double half) {
@@ -60,7 +60,7 @@ void SurfaceCells::mark_cubes(const Scene& scene) {
   const Eigen::AlignedBox3d bounds_m = rays_->bounds_world_m();
   if (bounds_m.isEmpty()) return;
   const Vec3 extent = ((bounds_m.max() - start_world_m_) / cell_m_).array().floor() + 2;
-  if (!(extent.prod() < kMostCubes)) return;
+  if (!(extent.prod() < kMaxCubes)) return;
   size_ = extent.cast<int>();
   plane_in_cube_.assign(static_cast<std::size_t>(extent.prod()), kNone);
   const double half_m = cell_m_ * (0.5 + kMargin);
@@ -145,7 +145,7 @@ bool SurfaceCells::sees_within(const Cube& cube, const Vec3& position_world_m, c
   const bool listed = plane >= kSeveral && plane != kNone;
   const std::size_t begin = listed ? list_begin_[plane - kSeveral] : 0,
                     end = listed ? list_begin_[plane - kSeveral + 1] : 0;
-  if (!listed || end - begin > kMostListed) return sees(position_world_m, normal_world, cell, rays);
+  if (!listed || end - begin > kMaxListed) return sees(position_world_m, normal_world, cell, rays);
   const double lift_m = kCellLift * cell_m_;
   const Vec3 from_m = position_world_m + lift_m * normal_world;
   const Vec3 way_m = cell.first_world_m + lift_m * cell.first_normal_world - from_m;
@@ -187,7 +187,7 @@ void SurfaceCells::stand_in(Cell& cell, std::uint64_t key, const Place& place, F
     if (mixed(key + i, 2 * n + lamp) % n == 0) cell.places[i] = place;
 }
 
-std::uint32_t SurfaceCells::cell_at(const Vec3& position_world_m, const Vec3& normal_world, std::uint32_t most_cells,
+std::uint32_t SurfaceCells::cell_at(const Vec3& position_world_m, const Vec3& normal_world, std::uint32_t max_cells,
                                     Found by) {
   const Cube cube = cube_at(position_world_m);
   const std::uint64_t key = key_of(cube, normal_world);
@@ -201,9 +201,9 @@ std::uint32_t SurfaceCells::cell_at(const Vec3& position_world_m, const Vec3& no
     }
     std::uint32_t pieces = 0;
     for (std::uint32_t c = first; c != kNone; c = cells_[c].next) ++pieces;
-    if (pieces >= kMostPieces) return kNone;
+    if (pieces >= kMaxPieces) return kNone;
   }
-  if (cells_.size() >= most_cells) return kNone;
+  if (cells_.size() >= max_cells) return kNone;
   const auto made = static_cast<std::uint32_t>(cells_.size());
   Cell cell{{}, position_world_m, normal_world, 0, 0, first};
   cell.places.fill({position_world_m, normal_world});

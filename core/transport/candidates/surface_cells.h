@@ -43,8 +43,8 @@ class SurfaceCells {
   /// offset_share   start of the grid, as a share of a cell in each axis
   SurfaceCells(const Scene& scene, const RayScene& rays, double cell_m, const Vec3& offset_share);
 
-  /// The cell of a place on a surface; made if there is none yet and there are fewer than `most_cells`.
-  std::uint32_t cell_at(const Vec3& position_world_m, const Vec3& normal_world, std::uint32_t most_cells, Found by);
+  /// The cell of a place on a surface; made if there is none yet and there are fewer than `max_cells`.
+  std::uint32_t cell_at(const Vec3& position_world_m, const Vec3& normal_world, std::uint32_t max_cells, Found by);
 
   /// The same without making one: the nearest cell around it, or kNone. Adds the rays cast to `rays`.
   [[nodiscard]] std::uint32_t find(const Vec3& position_world_m, const Vec3& normal_world, std::uint64_t& rays) const;

@@ -19,12 +19,12 @@ constexpr int kNearGrid = 4;
 /// behind two doors, which light reaches last, count as much as bright ones.
 constexpr double kConverged = 3e-4;
 constexpr double kRoughlyConverged = 5e-2;  ///< enough to decide where rays are worthwhile
-constexpr float kLeast = 1e-30f;            ///< zero, for divisions
+constexpr float kMin = 1e-30f;              ///< zero, for divisions
 /// Columns solved together: few enough for the rows of all patches to stay in a core's own cache.
 constexpr std::size_t kStrip = 2 * kRowUnit;
 /// Neighbouring cells that share the results of their rays.
 constexpr std::uint32_t kCellsPerGuide = 32;
-constexpr std::uint32_t kMostSweeps = 400;
+constexpr std::uint32_t kMaxSweeps = 400;
 constexpr double kCellsPerPatch = 1.5;
 
 constexpr std::uint64_t kGridKey = 0x67726964, kReceiverKey = 0x72656376, kPlaceKey = 0x706c6163, kCellKey = 0x63656c6c,
@@ -87,7 +87,7 @@ void SurfaceImportance::make_patches(const Scene& scene) {
   SurfaceCells coarse(scene, scene_, kCellsPerPatch * settings_.cell_m, grid_offset(mixed(settings_.seed, kPatchKey)));
   for (const auto& cell : surfaces_.cells())
     patch_of_cell_.push_back(coarse.cell_at(cell.places[0].position_world_m, cell.places[0].normal_world,
-                                            settings_.most_cells, SurfaceCells::Found::from_surface));
+                                            settings_.max_cells, SurfaceCells::Found::from_surface));
   patches_ = static_cast<std::uint32_t>(coarse.cells().size());
   for (std::uint32_t& patch : patch_of_cell_)
     if (patch == SurfaceCells::kNone) patch = patches_++;  // in a cube with too many pieces: its own patch
@@ -99,7 +99,7 @@ void SurfaceImportance::discover(std::span<const Vec3> also_from_world_m) {
   const auto look = [&](const Vec3& from_m, const Vec3& direction, const Vec3& normal, SurfaceCells::Found by) {
     ++rays_;
     if (const auto hit = scene_.nearest(from_m, direction, normal))
-      surfaces_.cell_at(hit->position_world_m, hit->normal_world, settings_.most_cells, by);
+      surfaces_.cell_at(hit->position_world_m, hit->normal_world, settings_.max_cells, by);
   };
   for (std::size_t r = 0; r < receivers_.size(); ++r) {
     const SobolSequence samples(mixed(mixed(settings_.seed, kReceiverKey), r));
@@ -134,7 +134,7 @@ SurfaceImportance::Bounce SurfaceImportance::trace(const SurfaceCells::Place& fr
   if (!(bounce.reflectance > 0)) return bounce;
   const Vec3 &at_m = hit->position_world_m, &facing = hit->normal_world;
   const std::uint32_t cell =
-      may_make_cells ? surfaces_.cell_at(at_m, facing, settings_.most_cells, SurfaceCells::Found::from_surface)
+      may_make_cells ? surfaces_.cell_at(at_m, facing, settings_.max_cells, SurfaceCells::Found::from_surface)
                      : surfaces_.find(at_m, facing, rays_);
   if (cell != SurfaceCells::kNone) bounce.row = nearest_row(cell, at_m);
   return bounce;
@@ -307,13 +307,13 @@ void SurfaceImportance::update_receiver(const VisibilityScene& visibility, std::
     for (const WeightedRow& from : from_rows_[p]) gathered[p] += from.weight * first_[from.row * stride_ + receiver];
     value[p] = gathered[p];
   }
-  for (std::uint32_t sweep = 0; sweep < kMostSweeps; ++sweep) {
+  for (std::uint32_t sweep = 0; sweep < kMaxSweeps; ++sweep) {
     double change = 0, count = 0;
     for (std::uint32_t i = 0; i < patches_; ++i) {
       const std::size_t p = sweep % 2 == 0 ? i : patches_ - 1 - i;
       float fresh = gathered[p];
       for (const WeightedRow& from : from_patches_[p]) fresh += from.weight * value[from.row];
-      change += std::abs(fresh - value[p]) / std::max(fresh, kLeast);
+      change += std::abs(fresh - value[p]) / std::max(fresh, kMin);
       count += fresh > 0;
       value[p] = fresh;
     }
@@ -385,7 +385,7 @@ void SurfaceImportance::solve_strip(std::size_t from, std::size_t width, double 
       add_weighted_rows(first.data(), from_rows_[p], std::span(gathered).subspan(p * width, width));
   }
   std::array<float, kStrip> fresh{};
-  for (std::uint32_t sweep = 0; sweep < kMostSweeps && !stop_.stop_requested(); ++sweep, ++sweeps_) {
+  for (std::uint32_t sweep = 0; sweep < kMaxSweeps && !stop_.stop_requested(); ++sweep, ++sweeps_) {
     double change = 0, count = 0;
     for (std::uint32_t i = 0; i < patches_; ++i) {
       const std::size_t p = sweep % 2 == 0 ? i : patches_ - 1 - i;
@@ -395,7 +395,7 @@ void SurfaceImportance::solve_strip(std::size_t from, std::size_t width, double 
       float patch_change[4] = {}, patch_count[4] = {};
       for (std::size_t r = 0; r < width; r += 4)
         for (std::size_t k = 0; k < 4; ++k) {
-          patch_change[k] += std::abs(fresh[r + k] - to[r + k]) / std::max(fresh[r + k], kLeast);
+          patch_change[k] += std::abs(fresh[r + k] - to[r + k]) / std::max(fresh[r + k], kMin);
           patch_count[k] += fresh[r + k] > 0 ? 1.0f : 0.0f;
           to[r + k] = fresh[r + k];
         }

@@ -32,7 +32,7 @@ struct ImportanceSettings {
   /// directions where the first found much, gathers light.
   std::uint32_t rays_per_cell = 16;
   std::uint32_t guided_rays_per_cell = 32;
-  std::uint32_t most_cells = 200'000;
+  std::uint32_t max_cells = 200'000;
   std::uint64_t seed = 1;   ///< of this field
   bool keep_links = false;  ///< needed by update_receiver()
 };

@@ -13,7 +13,7 @@ bool VisiblePoints::wholly_behind(const PointTree::Node& node) const {
 bool VisiblePoints::wholly_out_of_reach(const PointTree::Node& node) const {
   const Vec3& p = from_.position_world_m;
   const double nearest_m2 = (p.cwiseMax(node.low_m).cwiseMin(node.high_m) - p).squaredNorm();
-  return peak_cd_ < least_lux_ * nearest_m2;
+  return peak_cd_ < min_lux_ * nearest_m2;
 }
 
 bool VisiblePoints::hidden(const PointTree::Node& node) {

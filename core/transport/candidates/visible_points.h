@@ -18,10 +18,10 @@ struct VisibilityScene {
 
 class VisiblePoints {
  public:
-  /// peak_cd, least_lux   skip groups so far away that a source of peak_cd there gives less than least_lux
+  /// peak_cd, min_lux   skip groups so far away that a source of peak_cd there gives less than min_lux
   VisiblePoints(const VisibilityScene& scene, const Receiver& from, const CandidateSkips& skips, double peak_cd,
-                double least_lux)
-      : scene_(scene), from_(from), skips_(skips), peak_cd_(peak_cd), least_lux_(skips.reach ? least_lux : 0) {}
+                double min_lux)
+      : scene_(scene), from_(from), skips_(skips), peak_cd_(peak_cd), min_lux_(skips.reach ? min_lux : 0) {}
 
   /// Calls wants(point) for each point in front of the receiver that no group test decided. If it returns true, a
   /// shadow ray is cast, and seen(point) is called if nothing is in between. Counts skipped points by reason.
@@ -42,7 +42,7 @@ class VisiblePoints {
       behind += size;
       return;
     }
-    if (least_lux_ > 0 && wholly_out_of_reach(node)) {
+    if (min_lux_ > 0 && wholly_out_of_reach(node)) {
       out_of_reach += size;
       return;
     }
@@ -83,7 +83,7 @@ class VisiblePoints {
   VisibilityScene scene_;
   const Receiver& from_;
   const CandidateSkips& skips_;
-  double peak_cd_, least_lux_;
+  double peak_cd_, min_lux_;
   struct Remembered {
     std::uint32_t blocker = ~0u;
     BlockerShadow shadow;

@@ -125,10 +125,10 @@ void look_with_eight(CubaturePiece& piece, F&& f) {
 }  // namespace cubature
 
 /// Sum of the integrals of f(function, t, w) over `pieces`, until the estimated error is below `wanted_relative` of the
-/// value or `most_evaluations` are used. `pieces` also serves as working memory.
+/// value or `max_evaluations` are used. `pieces` also serves as working memory.
 template <class F>
-CubatureResult integrate_pieces(std::vector<CubaturePiece>& pieces, double wanted_relative,
-                                std::size_t most_evaluations, F&& f) {
+CubatureResult integrate_pieces(std::vector<CubaturePiece>& pieces, double wanted_relative, std::size_t max_evaluations,
+                                F&& f) {
   CubatureResult result;
   const auto less = [](const CubaturePiece& a, const CubaturePiece& b) { return a.error < b.error; };
   const auto sum = [&] {  // in full each time: differences would accumulate rounding
@@ -143,7 +143,7 @@ CubatureResult integrate_pieces(std::vector<CubaturePiece>& pieces, double wante
   std::make_heap(pieces.begin(), pieces.end(), less);
   sum();
   while (!pieces.empty() && result.error > wanted_relative * std::abs(result.value) &&
-         result.evaluations < most_evaluations) {
+         result.evaluations < max_evaluations) {
     double error_left = result.error;  // accurate enough to know when to sum again
     do {
       std::pop_heap(pieces.begin(), pieces.end(), less);
@@ -166,7 +166,7 @@ CubatureResult integrate_pieces(std::vector<CubaturePiece>& pieces, double wante
       std::push_heap(pieces.begin(), pieces.end(), less);
       pieces.push_back(second);
       std::push_heap(pieces.begin(), pieces.end(), less);
-    } while (error_left > wanted_relative * std::abs(result.value) && result.evaluations < most_evaluations);
+    } while (error_left > wanted_relative * std::abs(result.value) && result.evaluations < max_evaluations);
     sum();
   }
   return result;

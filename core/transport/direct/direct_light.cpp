@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::size_t kDirectReplicates = 16;
 constexpr std::uint32_t kFirstSamples = 16;  ///< per replicate
-constexpr std::uint32_t kMostSamples = 1u << 26;
+constexpr std::uint32_t kMaxSamples = 1u << 26;
 /// Shadow edges mostly run along or across a lamp, and so along the strata of the samples: of N strata one is cut, and
 /// each replicate finds it lit or dark, with probabilities p and 1-p. If all 16 agree by chance (one time in eight for
 /// p anywhere in 0…1), their spread shows nothing. The rule of succession, p = 1/18, gives the error to expect: √(p
@@ -235,7 +235,7 @@ class Evaluation {
         most = std::max(most, levels_[pairs_[i].emitter] * pairs_[i].error_lx());
       for (std::size_t i = pairs_of_[r]; i < pairs_of_[r + 1]; ++i) {
         const Pair& pair = pairs_[i];
-        if (levels_[pair.emitter] * pair.error_lx() < 0.5 * most || pair.samples >= kMostSamples) continue;
+        if (levels_[pair.emitter] * pair.error_lx() < 0.5 * most || pair.samples >= kMaxSamples) continue;
         if (pair.rays > left) continue;
         left -= pair.rays;
         round.push_back(i);

@@ -10,10 +10,10 @@ namespace {
 /// Up to this number of places, all are weighed at every point: cells would cost more than they save.
 constexpr std::size_t kFewPlaces = 100;
 /// Limits of cells times places (their rests are in memory), and of cells.
-constexpr std::size_t kMostCellEntries = 4'000'000, kMostCells = 8192;
+constexpr std::size_t kMaxCellEntries = 4'000'000, kMaxCells = 8192;
 /// Share of the places' possible light in a cell that is left to the rest; and the most places weighed.
 constexpr double kShareOfRest = 0.02;
-constexpr std::size_t kMostWeighed = 48;
+constexpr std::size_t kMaxWeighed = 48;
 
 }  // namespace
 
@@ -73,7 +73,7 @@ LampCells::LampCells(WeighedLamps lamps, std::vector<LampProfile> profiles, std:
   luminaires_ = all_.lamps.place.empty() ? 0 : all_.lamps.place.back() + 1;
   if (luminaires_ <= kFewPlaces || box_world_m_.isEmpty()) return;
   const Eigen::Array3d size_m = box_world_m_.sizes().array().max(1e-3 * box_world_m_.sizes().maxCoeff());
-  const double wanted = static_cast<double>(std::min(kMostCells, kMostCellEntries / luminaires_));
+  const double wanted = static_cast<double>(std::min(kMaxCells, kMaxCellEntries / luminaires_));
   if (!(wanted >= 1) || !(size_m > 0).all() || !size_m.allFinite()) return;
   const double side_m = std::cbrt(size_m.prod() / wanted);
   count_ = (size_m / side_m).floor().max(1).cast<int>();
@@ -127,7 +127,7 @@ LampCells::Cell LampCells::cell_of(const Vec3& centre_world_m, double radius_m) 
   for (; weighed < order.size(); ++weighed) {
     const double could = could_lx[order[weighed]];
     if (!std::isfinite(could)) continue;
-    if (left <= kShareOfRest * sum || weighed >= kMostWeighed) break;
+    if (left <= kShareOfRest * sum || weighed >= kMaxWeighed) break;
     left -= could;
   }
   cell.places.assign(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(weighed));

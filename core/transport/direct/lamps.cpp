@@ -15,7 +15,7 @@ namespace luxrig {
 namespace {
 
 /// Importance of a lamp that is off, relative to the brightest: its column is wanted, but should cost less.
-constexpr double kLeastImportance = 0.02;
+constexpr double kMinImportance = 0.02;
 
 auto kind_and_place_of(const Emitter& emitter) {
   const Vec3& p = emitter.world_from_lamp.translation_m;
@@ -37,7 +37,7 @@ Lamps::Lamps(std::span<const Emitter> emitters, std::span<const double> levels,
   for (const double level : levels) brightest = std::max(brightest, level);
   const auto importance_of = [&](std::size_t e) {
     if (levels.empty() || !(brightest > 0)) return 1.0;
-    return std::max(levels[e], kLeastImportance * brightest);
+    return std::max(levels[e], kMinImportance * brightest);
   };
   std::vector<std::size_t> order(emitters.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -122,7 +122,7 @@ void Lamps::form_groups() {
   const auto skies = static_cast<std::size_t>(
       std::count_if(places_.begin(), places_.end(), [](const Place& p) { return p.kind == Kind::sky; }));
   const std::size_t luminaires = luminous_places_ = places_.size() - skies;
-  const std::size_t groups = std::min(luminaires, kMostGroups);
+  const std::size_t groups = std::min(luminaires, kMaxGroups);
   group_of_emitter_.resize(place_of_emitter_.size());
   for (std::size_t p = 0; p < places_.size(); ++p) {
     const std::size_t g = p < luminaires ? p * groups / luminaires : groups + p - luminaires;

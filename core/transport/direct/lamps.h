@@ -188,7 +188,7 @@ class Lamps {
   /// Light that leaves a group: a lamp by its share and a direction by (u, v), a place on it by (s, t).
   [[nodiscard]] LampRay emit(std::size_t group, double u, double v, double s, double t) const;
 
-  static constexpr std::size_t kMostGroups = 64;  ///< of luminaires; each sky is one more
+  static constexpr std::size_t kMaxGroups = 64;  ///< of luminaires; each sky is one more
   [[nodiscard]] std::size_t groups() const { return groups_.size(); }
   /// Approximate share of a group in all light, weighted by importance; above 0 unless it gives none. Shares sum to 1.
   [[nodiscard]] double group_share(std::size_t group) const { return groups_[group].share; }

@@ -12,7 +12,7 @@ namespace {
 
 /// Smallest angle [rad] at which a distribution changes by its own size.
 constexpr double kSharpest = 0.01;
-constexpr double kMostPerSide = 16;
+constexpr double kMaxPerSide = 16;
 
 double point_lux(const Vec3& towards_m, const Vec3& normal_world, const Emitter& emitter) {
   const double height_m = normal_world.dot(towards_m);
@@ -29,7 +29,7 @@ double pieces_per_side(double radius_m, double distance_m, const IntensityDistri
   const double seen_rad = distance_m > radius_m ? 2 * std::asin(radius_m / distance_m) : kPi;
   const double beam_sr = intensity.flux_lm() / intensity.max_intensity_cd();
   const double beam_rad = 2 * std::sqrt(beam_sr / kPi);
-  return std::clamp(std::ceil(0.5 * seen_rad / beam_rad), 1.0, kMostPerSide);
+  return std::clamp(std::ceil(0.5 * seen_rad / beam_rad), 1.0, kMaxPerSide);
 }
 
 }  // namespace
@@ -73,7 +73,7 @@ ShapeLight shape_light(const Vec3& position_world_m, const Vec3& normal_world, c
       for (double w = 0; w < per_side; ++w)
         pieces.push_back({i, t / per_side, (t + 1) / per_side, w / per_side, (w + 1) / per_side});
   const CubatureResult sum = integrate_pieces(
-      pieces, options.wanted_relative_error, options.most_evaluations, [&](std::size_t i, double t, double w) {
+      pieces, options.wanted_relative_error, options.max_evaluations, [&](std::size_t i, double t, double w) {
         const PatchPlace place = patches[i].at(t, w);
         const double cosine = viewer.normal.dot(place.direction);
         if (!(cosine > 0) || !(place.sr > 0)) return 0.0;

@@ -13,7 +13,7 @@ struct ShapeLight {
 
 struct ShapeLightOptions {
   double wanted_relative_error = 1e-5;
-  std::size_t most_evaluations = 20'000;  ///< stops there and reports the error reached
+  std::size_t max_evaluations = 20'000;  ///< stops there and reports the error reached
 };
 
 /// Illuminance [lx at level 1] at a surface point from an unobstructed emitter (not a sky), with the luminance that

@@ -129,13 +129,13 @@ void cut_disk(double radius_m, double plane_z_m, const Viewer& viewer, double ha
   disk.middle_x_m = -p.dot(disk.x_axis);
   disk.middle_y_m = -p.dot(disk.y_axis);
   disk.reach_m = reach_in_plane_m({p, viewer.normal, half_cone_rad}, height_m);
-  double least_x_m = -disk.reach_m;
+  double min_x_m = -disk.reach_m;
   const double level = viewer.normal.z() * disk.towards * height_m;  // n · (x, y, ±h) = slope x + level
   if (slope > 1e-12)
-    least_x_m = std::max(least_x_m, -level / slope);
+    min_x_m = std::max(min_x_m, -level / slope);
   else if (!(level > 0))
     return;
-  disk.along = {asin_within((least_x_m - disk.middle_x_m) / radius_m),
+  disk.along = {asin_within((min_x_m - disk.middle_x_m) / radius_m),
                 asin_within((disk.reach_m - disk.middle_x_m) / radius_m)};
   if (!disk.along.empty()) patches.push_back(disk);
 }
@@ -153,9 +153,9 @@ void cut_ball(double radius_m, const Viewer& viewer, std::vector<ShapePatch>& pa
   ball.y_axis = aside > 1e-12 ? Vec3(sideways / aside) : ball.x_axis.unitOrthogonal();
   ball.z_axis = ball.x_axis.cross(ball.y_axis);
   // n · direction ∝ facing cos a + aside sin a, which is above the horizon from a = -atan(facing / aside) on.
-  const double least_rad = aside > 1e-12 ? -std::atan2(facing, aside) : (facing > 0 ? -kPi / 2 : kPi / 2);
-  ball.along = {least_rad > -kPi / 2 ? asin_within(std::sin(least_rad) / ball.sin_half) : -kPi / 2, kPi / 2};
-  if (least_rad < kPi / 2 && !ball.along.empty()) patches.push_back(ball);
+  const double min_rad = aside > 1e-12 ? -std::atan2(facing, aside) : (facing > 0 ? -kPi / 2 : kPi / 2);
+  ball.along = {min_rad > -kPi / 2 ? asin_within(std::sin(min_rad) / ball.sin_half) : -kPi / 2, kPi / 2};
+  if (min_rad < kPi / 2 && !ball.along.empty()) patches.push_back(ball);
 }
 
 void cut_cylinder(double radius_m, double half_length_m, const Viewer& viewer, std::vector<ShapePatch>& patches) {

@@ -11,13 +11,13 @@
 namespace luxrig {
 namespace {
 
-constexpr std::size_t kMostPlanes = 64, kMostImages = 4096;
+constexpr std::size_t kMaxPlanes = 64, kMaxImages = 4096;
 /// Planes smaller than this share of the largest are left to other ways.
-constexpr double kLeastArea = 1e-3;
+constexpr double kMinArea = 1e-3;
 /// Rougher surfaces show no highlights that other ways would miss.
-constexpr double kMostAlpha = 0.25;
+constexpr double kMaxAlpha = 0.25;
 /// Images that bring less than this share of the total are not searched for.
-constexpr double kLeastShare = 1e-3;
+constexpr double kMinImageShare = 1e-3;
 /// Triangles are in one plane if normals agree to this, and offsets to this share of the scene's size.
 constexpr double kSameNormal = 1e-5, kSameOffset = 1e-6;
 
@@ -35,9 +35,9 @@ ImageChoice chosen_by(const std::vector<double>& weights) {
   const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
   if (!(sum > 0) || !std::isfinite(sum)) return choice;
   double kept = 0, up_to = 0;
-  for (const double w : weights) kept += w >= kLeastShare * sum ? w : 0;
+  for (const double w : weights) kept += w >= kMinImageShare * sum ? w : 0;
   for (std::size_t i = 0; i < weights.size(); ++i) {
-    if (!(weights[i] >= kLeastShare * sum)) continue;
+    if (!(weights[i] >= kMinImageShare * sum)) continue;
     up_to += weights[i] / kept;
     choice.images.push_back({static_cast<std::uint32_t>(i), up_to});
   }
@@ -55,7 +55,7 @@ double ImageChoice::probability(std::uint32_t image) const {
 
 MirrorImages::MirrorImages(const RayScene& scene, const Lamps& lamps)
     : lamps_(lamps), places_(lamps.luminous_places()) {
-  if (places_ == 0 || places_ > kMostImages) return;
+  if (places_ == 0 || places_ > kMaxImages) return;
   find_planes(scene);
   std::vector<double> weights;
   for (const Plane& plane : planes_)
@@ -65,7 +65,7 @@ MirrorImages::MirrorImages(const RayScene& scene, const Lamps& lamps)
 
 void MirrorImages::find_planes(const RayScene& scene) {
   const auto materials = scene.materials();
-  const auto shows = [&](const Material& m) { return m.specular_reflectance > 0 && Bsdf::alpha_of(m) <= kMostAlpha; };
+  const auto shows = [&](const Material& m) { return m.specular_reflectance > 0 && Bsdf::alpha_of(m) <= kMaxAlpha; };
   if (std::none_of(materials.begin(), materials.end(), shows)) return;
   const Vec3 centre_world_m = scene.bounds_world_m().center();
   const double size_m = std::max(scene.bounds_world_m().diagonal().norm(), 1e-100);
@@ -113,8 +113,8 @@ void MirrorImages::find_planes(const RayScene& scene) {
   });
   std::vector<std::uint32_t> kept_as(found.size(), kNoPlane);
   for (const std::uint32_t at : order) {
-    if (planes_.size() == std::min(kMostPlanes, kMostImages / places_)) break;
-    if (found[at].area_m2 < kLeastArea * found[order.front()].area_m2) continue;
+    if (planes_.size() == std::min(kMaxPlanes, kMaxImages / places_)) break;
+    if (found[at].area_m2 < kMinArea * found[order.front()].area_m2) continue;
     kept_as[at] = static_cast<std::uint32_t>(planes_.size());
     planes_.push_back(found[at]);
   }

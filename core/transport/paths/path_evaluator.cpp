@@ -38,16 +38,16 @@ constexpr double kCut = 0.1;
 /// With shared tails: initial records per receiver and replicate for a standard error of 1 % and their limits; later
 /// one record for a fixed number of paths of the receivers, each with a fixed number of its own paths. Few records that
 /// end in one another follow the same few ways repeatedly and are too bright; twice as many records halve that.
-constexpr double kFirstRecords = 8, kFewestFirst = 6, kMostFirst = 48;
-constexpr std::size_t kFewestRecords = 256;
+constexpr double kFirstRecords = 8, kMinFirst = 6, kMaxFirst = 48;
+constexpr std::size_t kMinRecords = 256;
 constexpr std::size_t kPathsPerRecord = 4;
 constexpr std::uint32_t kRecordPaths = 4, kHitsPerRecordPath = 4;
 /// With fewer receivers, own paths gain more than shared noise.
-constexpr std::size_t kFewestSharing = 24;
+constexpr std::size_t kMinSharing = 24;
 /// Upper limit of the share that a bright place sends to a receiver: usually its light takes two surfaces or more, or
 /// one that also sends it elsewhere.
-constexpr double kMostSentOn = 0.5;
-constexpr std::size_t kMostRecords = 1u << 15, kMostRecordBytes = 256u << 20;
+constexpr double kMaxSentOn = 0.5;
+constexpr std::size_t kMaxRecords = 1u << 15, kMaxRecordBytes = 256u << 20;
 /// One in so many paths continues beside its record, to measure the records' bias; fewer once the bias is known to this
 /// share of the wanted error.
 constexpr std::uint32_t kCheckedPaths = 8, kSeldomCheckedPaths = 64;
@@ -85,8 +85,8 @@ class PathEvaluation {
         sampler_(scene, lamps_, bsdfs_, images_, importance_),
         levels_(levels_of(options, emitters.size())),
         hits_(lamps_, receivers.size()),
-        spent_(receivers.size(), options, std::min(kMostSentOn, largest_reflectance(scene)),
-               shares_tails && receivers.size() >= kFewestSharing ? kRecordPaths : 1),
+        spent_(receivers.size(), options, std::min(kMaxSentOn, largest_reflectance(scene)),
+               shares_tails && receivers.size() >= kMinSharing ? kRecordPaths : 1),
         sums_(0, channels_, levels_) {
     for (std::size_t e = 0; e < emitters.size(); ++e) {
       importance_[e] = lamps_.importance(e);
@@ -185,7 +185,7 @@ class PathEvaluation {
     for (const PathTask& task : chunk) plans_.push_back(hits_.plan(task.receiver, kHitsPerPath, task.end - task.begin));
     fill_pools(chunk);
     join_hits(chunk);
-    const bool shares_now = tails_ && (chunk.size() >= kFewestSharing || tails_->records(0).size() > 0);
+    const bool shares_now = tails_ && (chunk.size() >= kMinSharing || tails_->records(0).size() > 0);
     if (shares_now) grow_tails(chunk);
     trace_paths(chunk, shares_now, progress);
   }
@@ -297,10 +297,10 @@ class PathEvaluation {
     }
     if (from.empty()) return;  // all continue by themselves
     const std::size_t wanted = tails_->records(0).size() == 0
-                                   ? std::max(kFewestRecords, first_records_each() * chunk.size())
-                                   : paths / (chunk.size() < kFewestSharing ? kPathsPerRecord / 2 : kPathsPerRecord);
-    const std::size_t memory_allows = kMostRecordBytes / (kPathReplicates * 2 * 3 * sizeof(float) * emitters_.size());
-    const std::size_t room = std::min(kMostRecords, memory_allows) - std::min(kMostRecords, tails_->records(0).size());
+                                   ? std::max(kMinRecords, first_records_each() * chunk.size())
+                                   : paths / (chunk.size() < kMinSharing ? kPathsPerRecord / 2 : kPathsPerRecord);
+    const std::size_t memory_allows = kMaxRecordBytes / (kPathReplicates * 2 * 3 * sizeof(float) * emitters_.size());
+    const std::size_t room = std::min(kMaxRecords, memory_allows) - std::min(kMaxRecords, tails_->records(0).size());
     matrix_.rays += tails_->grow(from, std::min(wanted, room), kRecordPaths, pools_, plans, cuts_lx, options_.threads,
                                  options_.watch);
     // Where everything shines, records have no place: paths end by themselves and find as much as one does.
@@ -311,7 +311,7 @@ class PathEvaluation {
   /// Initial records per receiver: their bias should fall with the wanted error.
   std::size_t first_records_each() const {
     const double records = kFirstRecords * std::pow(0.01 / options_.wanted_standard_error(), 1.5);
-    return static_cast<std::size_t>(std::clamp(records, kFewestFirst, kMostFirst));
+    return static_cast<std::size_t>(std::clamp(records, kMinFirst, kMaxFirst));
   }
 
   void estimate(std::size_t r) {

@@ -14,16 +14,16 @@ constexpr std::uint32_t kFirstRoundSamples = 8;
 constexpr std::uint64_t kRaysPerPath = 12;
 /// If no reflected light was found, an error of zero is believed only from this many samples on.
 constexpr std::uint32_t kSamplesToBelieveNothing = 256;
-constexpr std::uint32_t kMostRoundSamples = 1u << 30;
+constexpr std::uint32_t kMaxRoundSamples = 1u << 30;
 /// Rounds multiply samples by 1 to 2 in this many steps, ending slightly beyond the need.
 constexpr int kStepsToDouble = 8;
 constexpr double kStepMargin = 1.05;
 /// More paths that end in records do not reduce a receiver's error when there is no room for more records: once error²
 /// × samples has grown by this factor, it continues without records.
-constexpr double kMostScatter = 3;
+constexpr double kMaxScatter = 3;
 constexpr std::uint32_t kSamplesToTellScatter = 32;
 /// With a wanted rms error, a receiver is left out of a round if it would get less than its samples divided by this.
-constexpr double kFewestShare = 32;
+constexpr double kMaxSamplesPerNew = 32;
 
 }  // namespace
 
@@ -47,7 +47,7 @@ std::vector<PathTask> PathRounds::wanting() const {
     for (std::size_t r = 0; r < progress_.size(); ++r) {
       const std::uint32_t have = progress_[r].samples;
       const double more = overshoot(r) == HUGE_VAL ? have : std::min<double>(have, wanted[r] - have);
-      if (!(more * kFewestShare > have) || have >= kMostRoundSamples) continue;
+      if (!(more * kMaxSamplesPerNew > have) || have >= kMaxRoundSamples) continue;
       wanting.push_back({r, have, have + static_cast<std::uint32_t>(std::ceil(more))});
     }
     return wanting;
@@ -55,7 +55,7 @@ std::vector<PathTask> PathRounds::wanting() const {
   for (std::size_t r = 0; r < progress_.size(); ++r) {
     const std::uint32_t have = progress_[r].samples;
     const double over = overshoot(r);
-    if (!(over > 1) || have >= kMostRoundSamples) continue;
+    if (!(over > 1) || have >= kMaxRoundSamples) continue;
     const double parts = std::ceil(kStepsToDouble * (over * over * kStepMargin - 1));
     const double share = std::clamp(parts, 1.0, static_cast<double>(kStepsToDouble)) / kStepsToDouble;
     wanting.push_back({r, have, have + std::max(1u, static_cast<std::uint32_t>(have * share))});
@@ -115,8 +115,8 @@ void PathRounds::judge_sharing(std::size_t receiver) {
   ReceiverProgress& one = progress_[receiver];
   if (one.samples < kSamplesToTellScatter) return;
   const double scatter = one.error_lx * one.error_lx * one.samples;
-  one.least_scatter = std::min(one.least_scatter, scatter);
-  one.alone = one.alone || scatter > kMostScatter * one.least_scatter;
+  one.min_scatter = std::min(one.min_scatter, scatter);
+  one.alone = one.alone || scatter > kMaxScatter * one.min_scatter;
 }
 
 void PathRounds::find_floor() {

@@ -22,7 +22,7 @@ struct ReceiverProgress {
   double taken_lx = 0;              ///< from tail records, summed over samples and replicates
   double scatter = 0;               ///< approximate relative error² × samples, from the last rounds
   std::uint32_t scatter_of = 0;     ///< samples when it was last updated
-  double least_scatter = HUGE_VAL;  ///< least error_lx² × samples so far
+  double min_scatter = HUGE_VAL;    ///< least error_lx² × samples so far
   bool found = false;               ///< any reflected light
   bool alone = false;               ///< records' noise dominates: from now on its paths do not use records
 };

@@ -5,14 +5,14 @@
 namespace luxrig {
 namespace {
 
-constexpr std::size_t kMostEnds = (256u << 20) / sizeof(TailEnd);
+constexpr std::size_t kMaxEnds = (256u << 20) / sizeof(TailEnd);
 
 }  // namespace
 
 bool ReceiverEnds::have_room(std::size_t paths) const {
   std::size_t kept = 0;
   for (const TailEnds& ends : ends_) kept += ends.ends.size();
-  return kept + paths <= kMostEnds;
+  return kept + paths <= kMaxEnds;
 }
 
 std::vector<std::uint64_t> ReceiverEnds::look_up(std::span<const std::size_t> receivers, int threads) {

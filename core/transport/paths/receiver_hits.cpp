@@ -13,7 +13,7 @@ constexpr double kUnlearnt = 0.1;
 /// Hits cost one ray and serve all receivers, so pools hold more than one receiver needs: receivers' errors are then
 /// less correlated, and paths are joined with more different hits.
 constexpr std::size_t kReceiversPerHit = 8;
-constexpr std::size_t kFewestHits = 32, kMostHits = 4096;  ///< of a group, unless one receiver needs more
+constexpr std::size_t kMinHits = 32, kMaxHits = 4096;  ///< of a group, unless one receiver needs more
 
 }  // namespace
 
@@ -52,7 +52,7 @@ std::vector<std::uint32_t> ReceiverHits::pool_counts(const Lamps& lamps, std::sp
       most = std::max(most, wanted);
       all += wanted;
     }
-    const std::size_t shared = std::clamp(all / kReceiversPerHit, kFewestHits, kMostHits);
+    const std::size_t shared = std::clamp(all / kReceiversPerHit, kMinHits, kMaxHits);
     counts[g] = std::bit_ceil(static_cast<std::uint32_t>(std::max(most, shared)));
   }
   return counts;

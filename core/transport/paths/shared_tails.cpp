@@ -109,8 +109,8 @@ void SharedTails::settle(std::size_t k, std::uint32_t first) {
   TailRecords& records = replicate.records;
   const std::size_t emitters = columns_ / 3;
   std::vector<float> sum(columns_);
-  constexpr int kMostSweeps = 200;
-  for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+  constexpr int kMaxSweeps = 200;
+  for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
     double moved = 0, all = 0;
     std::size_t link = 0;
     for (std::uint32_t record = first; record < records.size(); ++record) {

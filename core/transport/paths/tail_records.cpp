@@ -9,7 +9,7 @@ namespace {
 
 /// Mean number of records in a record's cell above which cells are narrowed. With records spread over all surfaces of a
 /// venue it is 3 to 4.
-constexpr double kMostCrowded = 8;
+constexpr double kMaxCrowded = 8;
 
 }  // namespace
 
@@ -50,8 +50,8 @@ void TailRecords::build_grid() {
   // Records are on surfaces: the approximate spacing if they were spread over the box's six sides.
   const Vec3 size = box.sizes();
   const double area_m2 = 2 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
-  const auto least_cell_m = static_cast<float>(1e-6 * size.norm() + 1e-15);  // its square is not 0 in float
-  cell_m_ = std::max(static_cast<float>(1.5 * std::sqrt(area_m2 / static_cast<double>(places_.size()))), least_cell_m);
+  const auto min_cell_m = static_cast<float>(1e-6 * size.norm() + 1e-15);  // its square is not 0 in float
+  cell_m_ = std::max(static_cast<float>(1.5 * std::sqrt(area_m2 / static_cast<double>(places_.size()))), min_cell_m);
   std::size_t buckets = 16;
   while (buckets < 2 * places_.size()) buckets *= 2;
   std::vector<std::uint32_t> bucket_of_record(places_.size());
@@ -69,7 +69,7 @@ void TailRecords::build_grid() {
     return squares / static_cast<double>(places_.size());
   };
   // A few distant records, seen through a door, must not put the whole room with the others into one cell.
-  while (spread() > kMostCrowded && cell_m_ > 2 * least_cell_m) cell_m_ *= 0.5f;
+  while (spread() > kMaxCrowded && cell_m_ > 2 * min_cell_m) cell_m_ *= 0.5f;
   for (std::size_t b = 0; b < buckets; ++b) bucket_begin_[b + 1] += bucket_begin_[b];
   packed_.resize(places_.size());
   std::vector<std::uint32_t> next(bucket_begin_.begin(), bucket_begin_.end() - 1);

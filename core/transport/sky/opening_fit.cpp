@@ -9,18 +9,18 @@
 namespace luxrig {
 namespace {
 
-constexpr std::size_t kMostOpenings = 24;
+constexpr std::size_t kMaxOpenings = 24;
 /// An opening is worth its cost if this many glimpses pass it and it is a small part of their sky.
-constexpr std::size_t kFewestThrough = 6;
-constexpr double kLeastGain = 1.0;  ///< mean of log(2π / solid angle)
+constexpr std::size_t kMinThrough = 6;
+constexpr double kMinGain = 1.0;  ///< mean of log(2π / solid angle)
 /// Share of glimpses that may stay unexplained.
 constexpr double kLeftOver = 0.01;
 /// Margin beside a rectangle, as a share of its size, within which rays still belong to it; and margin added at the
 /// end.
 constexpr double kBeside = 0.1, kFitMargin = 0.02;
-constexpr int kMostGrowth = 32;
+constexpr int kMaxGrowth = 32;
 /// Planes seen edge-on are rejected.
-constexpr double kLeastSlope = 0.1;
+constexpr double kMinSlope = 0.1;
 
 /// A plane with axes: x is level.
 struct OpeningPlane {
@@ -47,7 +47,7 @@ struct OpeningPlane {
   /// Where an outgoing ray meets the plane; empty if it does not.
   [[nodiscard]] std::optional<Eigen::Vector2d> met(const Vec3& from_world_m, const Vec3& direction_world) const {
     const Vec3 from_m = axes.transpose() * (from_world_m - origin_world_m), d = axes.transpose() * direction_world;
-    if (!(from_m.z() < 0) || !(d.z() > kLeastSlope)) return std::nullopt;
+    if (!(from_m.z() < 0) || !(d.z() > kMinSlope)) return std::nullopt;
     return Eigen::Vector2d(from_m.head<2>() - from_m.z() / d.z() * d.head<2>());
   }
 };
@@ -71,15 +71,14 @@ class OpeningFit {
     for (const OpeningRim& rim : rims_) propose(rim, candidates);
     std::vector<SkyOpening> openings;
     std::size_t left = glimpses_.size();
-    while (openings.size() < kMostOpenings &&
+    while (openings.size() < kMaxOpenings &&
            static_cast<double>(left) > kLeftOver * static_cast<double>(glimpses_.size())) {
       Candidate* best = nullptr;
       for (Candidate& candidate : candidates) {
         rate(candidate);
         if (!best || candidate.gain > best->gain) best = &candidate;
       }
-      if (!best || best->through < kFewestThrough || best->gain < kLeastGain * static_cast<double>(best->through))
-        break;
+      if (!best || best->through < kMinThrough || best->gain < kMinGain * static_cast<double>(best->through)) break;
       openings.push_back(opening_of(*best));
       for (std::size_t i = 0; i < glimpses_.size(); ++i) {
         const SkyGlimpse& g = glimpses_[i];
@@ -113,7 +112,7 @@ class OpeningFit {
     const Eigen::SelfAdjointEigenSolver<Mat3> axes(scatter);
     if (axes.info() == Eigen::Success) add(rim, middle_m, axes.eigenvectors().col(0), candidates);
     for (const auto& stop : rim.stops) {
-      if (std::abs(stop.normal_world.dot(glimpse.direction_world)) < kLeastSlope) continue;
+      if (std::abs(stop.normal_world.dot(glimpse.direction_world)) < kMinSlope) continue;
       add(rim, stop.position_world_m, stop.normal_world, candidates);
       // The outer edge of a thick wall, if its inner face does not end the view.
       for (const auto& other : rim.stops)
@@ -146,7 +145,7 @@ class OpeningFit {
 
   /// Adds the rays that pass it or just miss it, and the rims around them, until it no longer grows.
   void grow(Candidate& candidate) const {
-    for (int round = 0; round < kMostGrowth; ++round) {
+    for (int round = 0; round < kMaxGrowth; ++round) {
       const Box2 reach = widened(candidate.box, kBeside);
       Box2 grown = candidate.box;
       for (std::size_t i = 0; i < glimpses_.size(); ++i) {

@@ -14,9 +14,9 @@ namespace {
 
 /// Paths that search for the sky: a few first, which distinguish open country from rooms, then more until enough see
 /// it.
-constexpr std::size_t kFirstPaths = 256, kPathsPerRound = 2048, kMostFinderRounds = 8, kRoundsToBelieveNothing = 2;
+constexpr std::size_t kFirstPaths = 256, kPathsPerRound = 2048, kMaxFinderRounds = 8, kRoundsToBelieveNothing = 2;
 constexpr std::uint32_t kLegs = 3;
-constexpr std::size_t kWantedGlimpses = 400, kFewestGlimpses = 12;
+constexpr std::size_t kWantedGlimpses = 400, kMinGlimpses = 12;
 /// If more of the cosine-weighted hemisphere than this is sky, the whole sky is a good enough target.
 constexpr double kOpenShare = 0.4;
 constexpr std::uint32_t kOpenProbes = 12;
@@ -35,7 +35,7 @@ class Finder {
   SkyOpenings run(std::uint64_t& rays) {
     const std::vector<SkyGlimpse> glimpses = look_around();
     rays += rays_;
-    if (glimpses.size() < kFewestGlimpses || watch_.stop.stop_requested()) return {};
+    if (glimpses.size() < kMinGlimpses || watch_.stop.stop_requested()) return {};
     const std::vector<OpeningRim> rims = feel_rims(glimpses);
     rays += rays_;
     if (watch_.stop.stop_requested()) return {};
@@ -54,7 +54,7 @@ class Finder {
   std::vector<SkyGlimpse> look_around() {
     std::vector<SkyGlimpse> glimpses;
     std::size_t paths = 0;
-    for (std::size_t round = 0; round <= kMostFinderRounds; ++round) {
+    for (std::size_t round = 0; round <= kMaxFinderRounds; ++round) {
       const std::size_t count = round == 0 ? kFirstPaths : kPathsPerRound;
       std::vector<std::optional<SkyGlimpse>> found(count);
       std::vector<std::uint8_t> open(count, 0);
@@ -77,7 +77,7 @@ class Finder {
         ++from_rooms;
         glimpses.push_back(*found[i]);
       }
-      if (round == 0 && seen > kFewestGlimpses && 10 * from_rooms < seen) return {};
+      if (round == 0 && seen > kMinGlimpses && 10 * from_rooms < seen) return {};
       if (glimpses.size() >= kWantedGlimpses) break;
       if (round >= kRoundsToBelieveNothing && glimpses.empty()) break;
     }

@@ -11,9 +11,9 @@ namespace luxrig {
 namespace {
 
 /// Least share of directions drawn over the whole sky if openings are known.
-constexpr double kLeastWholeShare = 0.12;
+constexpr double kMinWholeShare = 0.12;
 /// Least share of the sky that counts as visible if no opening shows any.
-constexpr double kLeastLitShare = 0.02;
+constexpr double kMinLitShare = 0.02;
 
 /// The part of an opening above or below a point's horizon, as a shape around its own centre.
 struct SeenPart {
@@ -84,7 +84,7 @@ bool SkyOpening::passed_by(const Vec3& position_world_m, const Vec3& direction_w
 SkyOpenings::SkyOpenings(std::vector<SkyOpening> openings, double missed_share)
     : openings_(std::move(openings)),
       missed_share_(missed_share),
-      inside_whole_share_(std::clamp(2 * missed_share, kLeastWholeShare, 1.0)) {}
+      inside_whole_share_(std::clamp(2 * missed_share, kMinWholeShare, 1.0)) {}
 
 void SkyOpenings::view(const Vec3& position_world_m, const Vec3& normal_world, View& view) const {
   view.within = false;
@@ -176,7 +176,7 @@ double SkyOpenings::outside_density_per_sr(const Outside& outside, const Vec3& p
 
 double SkyOpenings::lit_share(const View& view, const Vec3& position_world_m, const Vec3* towards_world) const {
   if (!view.within) return 1;
-  const double least = std::max(kLeastLitShare, missed_share_);
+  const double least = std::max(kMinLitShare, missed_share_);
   if (!towards_world) return std::min(1.0, least + view.sum / kPi);
   for (const SkyOpening& opening : openings_) {
     // The light is not from exactly one direction: beyond the rim some of it still enters.

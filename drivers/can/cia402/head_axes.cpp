@@ -24,8 +24,8 @@ std::uint32_t whole_counts(double counts) {
 }
 
 std::int32_t whole_position(double counts) {
-  constexpr double kMost = std::numeric_limits<std::int32_t>::max();
-  return static_cast<std::int32_t>(std::clamp(std::round(counts), -kMost, kMost));
+  constexpr double kMax = std::numeric_limits<std::int32_t>::max();
+  return static_cast<std::int32_t>(std::clamp(std::round(counts), -kMax, kMax));
 }
 
 AxisSettings settings_of(const AxisPatch& patch, double min_rad, double max_rad, double speed_rad_s,

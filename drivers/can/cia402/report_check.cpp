@@ -88,7 +88,7 @@ void ReportCheck::contradicted(Time now, std::string how) {
     contradictions_ = 0;
     first_contradiction_ = now;
   }
-  if (++contradictions_ > kMostContradictions && !doubted()) doubt(now, std::move(how));
+  if (++contradictions_ > kMaxContradictions && !doubted()) doubt(now, std::move(how));
 }
 
 void ReportCheck::doubt(Time now, std::string why) {

@@ -22,7 +22,7 @@ struct DriveReport {
 class ReportCheck {
  public:
   static constexpr std::size_t kBytes = 7;  ///< of the mapped PDO
-  static constexpr int kMostContradictions = 2;
+  static constexpr int kMaxContradictions = 2;
   static constexpr Duration kContradictionsWithin = std::chrono::milliseconds(500);
   static constexpr int kSettledAfter = 15;  ///< reports in a row
 

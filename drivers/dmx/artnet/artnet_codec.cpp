@@ -23,7 +23,7 @@ constexpr std::size_t kSubUni = 14;
 constexpr std::size_t kNet = 15;
 constexpr std::size_t kLength = 16;
 constexpr std::size_t kData = 18;
-constexpr std::size_t kMostSlots = 512;
+constexpr std::size_t kMaxSlots = 512;
 
 // ArtPoll
 constexpr std::size_t kPollFlags = 12;
@@ -56,7 +56,7 @@ constexpr std::size_t kSwOut = 190;
 constexpr std::size_t kMac = 201;
 constexpr std::size_t kBindIp = 207;
 constexpr std::size_t kBindIndex = 211;
-constexpr std::size_t kMostPorts = 4;
+constexpr std::size_t kMaxPorts = 4;
 constexpr std::size_t kStatus2 = 212, kStatus3 = 217;
 constexpr std::uint8_t kPortPutsOut = 0x80;
 constexpr std::uint8_t kSending = 0x80, kMerging = 0x08, kMergesLtp = 0x02;
@@ -93,8 +93,8 @@ std::string text_of_port_address(int port_address) {
 }
 
 std::vector<std::uint8_t> encode(const Dmx& packet) {
-  LUXRIG_CHECK(packet.slots.size() >= 2 && packet.slots.size() <= kMostSlots && packet.slots.size() % 2 == 0,
-               "{} slots", packet.slots.size());
+  LUXRIG_CHECK(packet.slots.size() >= 2 && packet.slots.size() <= kMaxSlots && packet.slots.size() % 2 == 0, "{} slots",
+               packet.slots.size());
   LUXRIG_CHECK(packet.port_address >= 0 && packet.port_address <= kHighestPortAddress, "port address {}",
                packet.port_address);
   std::vector<std::uint8_t> out = header(kData + packet.slots.size(), kOpDmx);
@@ -113,7 +113,7 @@ std::optional<Dmx> decode_dmx(std::span<const std::uint8_t> bytes) {
   const std::size_t length = static_cast<std::size_t>(bytes[kLength]) << 8 | bytes[kLength + 1];
   if (bytes[kProtocol] != 0 || bytes[kProtocol + 1] < kProtocolVersion || (bytes[kNet] & 0x80) != 0)
     return std::nullopt;
-  if (length < 2 || length > kMostSlots || length % 2 != 0 || bytes.size() != kData + length) return std::nullopt;
+  if (length < 2 || length > kMaxSlots || length % 2 != 0 || bytes.size() != kData + length) return std::nullopt;
   Dmx packet;
   packet.sequence = bytes[kSequence];
   packet.physical = bytes[kPhysical];
@@ -148,7 +148,7 @@ bool is_sync(std::span<const std::uint8_t> bytes) {
 }
 
 std::vector<std::uint8_t> encode(const Address& packet) {
-  LUXRIG_CHECK(packet.port >= 0 && packet.port < static_cast<int>(kMostPorts), "port {}", packet.port);
+  LUXRIG_CHECK(packet.port >= 0 && packet.port < static_cast<int>(kMaxPorts), "port {}", packet.port);
   std::vector<std::uint8_t> out = header(kAddressSize, kOpAddress);
   out[kAddressNet] = kNoChange;
   out[kAddressBind] = static_cast<std::uint8_t>(packet.bind_index);
@@ -169,7 +169,7 @@ std::optional<Address> decode_address(std::span<const std::uint8_t> bytes) {
   if (command == static_cast<int>(AddressCommand::cancel_merge)) packet.command = AddressCommand::cancel_merge;
   for (const AddressCommand merge : {AddressCommand::merge_ltp, AddressCommand::merge_htp}) {
     const int port = command - static_cast<int>(merge);
-    if (port < 0 || port >= static_cast<int>(kMostPorts)) continue;
+    if (port < 0 || port >= static_cast<int>(kMaxPorts)) continue;
     packet.command = merge;
     packet.port = port;
   }
@@ -189,7 +189,7 @@ std::optional<PollReply> decode_poll_reply(std::span<const std::uint8_t> bytes) 
   reply.bind_index = in[kBindIndex];
   std::copy_n(in.begin() + kMac, reply.mac.size(), reply.mac.begin());
   const std::size_t ports = static_cast<std::size_t>(in[kNumPorts]) << 8 | in[kNumPorts + 1];
-  if (ports > kMostPorts) return std::nullopt;
+  if (ports > kMaxPorts) return std::nullopt;
   for (std::size_t port = 0; port < ports; ++port) {
     if ((in[kPortTypes + port] & kPortPutsOut) == 0) continue;
     const std::uint8_t state = in[kGoodOutput + port];
@@ -200,7 +200,7 @@ std::optional<PollReply> decode_poll_reply(std::span<const std::uint8_t> bytes) 
 }
 
 std::vector<std::uint8_t> encode(const PollReply& reply, std::uint32_t ipv4) {
-  LUXRIG_CHECK(!reply.outputs.empty() && reply.outputs.size() <= kMostPorts, "{} ports", reply.outputs.size());
+  LUXRIG_CHECK(!reply.outputs.empty() && reply.outputs.size() <= kMaxPorts, "{} ports", reply.outputs.size());
   std::vector<std::uint8_t> out(kReplySize, 0);  // ArtPollReply has no protocol version
   std::copy(kId.begin(), kId.end(), out.begin());
   out[kOpCode] = kOpPollReply & 0xFF;

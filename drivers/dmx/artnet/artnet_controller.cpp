@@ -8,7 +8,7 @@ namespace luxrig::artnet {
 namespace {
 
 // Bounds memory: more nodes than this are a flood, not a rig.
-constexpr std::size_t kMostNodes = 1024;
+constexpr std::size_t kMaxNodes = 1024;
 
 }  // namespace
 
@@ -41,7 +41,7 @@ bool Controller::poll_due(Time now) {
 bool Controller::hear(Time now, const Datagram& datagram) {
   const auto reply = decode_poll_reply(datagram.bytes);
   if (!reply) return false;
-  if (!nodes_.contains(datagram.from) && nodes_.size() >= kMostNodes) return true;
+  if (!nodes_.contains(datagram.from) && nodes_.size() >= kMaxNodes) return true;
   const auto [found, is_new] = nodes_.try_emplace(datagram.from);
   Node& node = found->second;
   std::vector<PortOutput>& outputs = node.outputs[reply->bind_index];

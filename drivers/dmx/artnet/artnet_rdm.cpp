@@ -4,7 +4,7 @@ namespace luxrig::artnet {
 namespace {
 
 constexpr int kDatagramsPerListen = 256;
-constexpr std::size_t kMostAnswers = 64;  // a client takes them every few milliseconds
+constexpr std::size_t kMaxAnswers = 64;  // a client takes them every few milliseconds
 
 }  // namespace
 
@@ -42,7 +42,7 @@ bool ArtnetRdmLink::hear(const Datagram& datagram) {
   }
   auto carried = decode_art_rdm(datagram.bytes);
   if (!carried || carried->port_address != port_address_) return false;
-  if (answers_.size() < kMostAnswers) answers_.push_back(std::move(carried->rdm));
+  if (answers_.size() < kMaxAnswers) answers_.push_back(std::move(carried->rdm));
   return true;
 }
 

@@ -14,7 +14,7 @@ constexpr std::uint8_t kRdmProtocolVersion = 14, kRdmVersion = 1;  // RDM 1.0, a
 
 // Offsets common to all four.
 constexpr std::size_t kRdmVer = 12, kRdmPort = 13, kRdmBindIndex = 20, kRdmNet = 21, kRdmCommand = 22;
-constexpr std::size_t kAdCount = 23, kAddresses = 24, kMostAddresses = 32;  // ArtTodRequest
+constexpr std::size_t kAdCount = 23, kAddresses = 24, kMaxAddresses = 32;   // ArtTodRequest
 constexpr std::size_t kRdmAddress = 23, kControlSize = 24;                  // the others
 constexpr std::size_t kUidTotal = 24, kBlockCount = 26, kUidCount = 27, kTod = 28, kUidSize = 6;
 constexpr std::uint8_t kTodFull = 0x00, kTodNak = 0xFF;
@@ -42,10 +42,10 @@ int rdm_port_address(std::span<const std::uint8_t> bytes) { return bytes[kRdmNet
 }  // namespace
 
 std::vector<std::uint8_t> encode_tod_request(std::span<const int> port_addresses) {
-  LUXRIG_CHECK(!port_addresses.empty() && port_addresses.size() <= kMostAddresses, "{} port addresses",
+  LUXRIG_CHECK(!port_addresses.empty() && port_addresses.size() <= kMaxAddresses, "{} port addresses",
                port_addresses.size());
   // Older nodes need room for all 32.
-  auto out = rdm_header(kAddresses + kMostAddresses, kOpTodRequest, port_addresses.front());
+  auto out = rdm_header(kAddresses + kMaxAddresses, kOpTodRequest, port_addresses.front());
   out[kAdCount] = static_cast<std::uint8_t>(port_addresses.size());
   for (std::size_t i = 0; i < port_addresses.size(); ++i) {
     LUXRIG_CHECK(port_addresses[i] >> 8 == out[kRdmNet], "port address {} is of another net", port_addresses[i]);
@@ -57,7 +57,7 @@ std::vector<std::uint8_t> encode_tod_request(std::span<const int> port_addresses
 std::optional<std::vector<int>> decode_tod_request(std::span<const std::uint8_t> bytes) {
   if (!is_rdm_packet(bytes, kOpTodRequest, kAddresses)) return std::nullopt;
   const std::size_t count = bytes[kAdCount];
-  if (bytes[kRdmCommand] != kTodFull || count > kMostAddresses || bytes.size() < kAddresses + count) {
+  if (bytes[kRdmCommand] != kTodFull || count > kMaxAddresses || bytes.size() < kAddresses + count) {
     return std::nullopt;
   }
   std::vector<int> port_addresses;
@@ -78,7 +78,7 @@ std::optional<TodControl> decode_tod_control(std::span<const std::uint8_t> bytes
 }
 
 std::vector<std::uint8_t> encode(const TodData& packet) {
-  LUXRIG_CHECK(packet.uids.size() <= kMostTodUids, "{} UIDs", packet.uids.size());
+  LUXRIG_CHECK(packet.uids.size() <= kMaxTodUids, "{} UIDs", packet.uids.size());
   auto out = rdm_header(kTod, kOpTodData, packet.port_address);
   out[kRdmVer] = kRdmVersion;
   out[kRdmPort] = static_cast<std::uint8_t>(packet.port);
@@ -95,7 +95,7 @@ std::vector<std::uint8_t> encode(const TodData& packet) {
 std::optional<TodData> decode_tod_data(std::span<const std::uint8_t> bytes) {
   if (!is_rdm_packet(bytes, kOpTodData, kTod)) return std::nullopt;
   const std::size_t count = bytes[kUidCount];
-  if (count > kMostTodUids || bytes.size() < kTod + count * kUidSize) return std::nullopt;
+  if (count > kMaxTodUids || bytes.size() < kTod + count * kUidSize) return std::nullopt;
   if (bytes[kRdmCommand] != kTodFull && bytes[kRdmCommand] != kTodNak) return std::nullopt;
   TodData packet;
   packet.port_address = rdm_port_address(bytes);
@@ -111,7 +111,7 @@ std::optional<TodData> decode_tod_data(std::span<const std::uint8_t> bytes) {
 }
 
 std::vector<std::uint8_t> encode(const ArtRdm& packet) {
-  LUXRIG_CHECK(!packet.rdm.empty() && packet.rdm.size() <= rdm::kMostBytes && packet.rdm[0] == rdm::kStartCode,
+  LUXRIG_CHECK(!packet.rdm.empty() && packet.rdm.size() <= rdm::kMaxBytes && packet.rdm[0] == rdm::kStartCode,
                "{} bytes", packet.rdm.size());
   auto out = rdm_header(kRdmPacket, kOpRdm, packet.port_address);
   out[kRdmVer] = kRdmVersion;
@@ -121,7 +121,7 @@ std::vector<std::uint8_t> encode(const ArtRdm& packet) {
 
 std::optional<ArtRdm> decode_art_rdm(std::span<const std::uint8_t> bytes) {
   if (!is_rdm_packet(bytes, kOpRdm, kRdmPacket + 1) || bytes[kRdmCommand] != 0) return std::nullopt;
-  const auto travelled = bytes.subspan(kRdmPacket, std::min(bytes.size() - kRdmPacket, rdm::kMostBytes - 1));
+  const auto travelled = bytes.subspan(kRdmPacket, std::min(bytes.size() - kRdmPacket, rdm::kMaxBytes - 1));
   ArtRdm packet;
   packet.port_address = rdm_port_address(bytes);
   packet.rdm.push_back(rdm::kStartCode);

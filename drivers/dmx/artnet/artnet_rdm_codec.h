@@ -11,7 +11,7 @@
 
 namespace luxrig::artnet {
 
-inline constexpr std::size_t kMostTodUids = 200;  ///< in one ArtTodData
+inline constexpr std::size_t kMaxTodUids = 200;  ///< in one ArtTodData
 
 /// Asks the nodes that output these universes for their table of devices (TOD). requires 1…32 port addresses, all of
 /// one net.
@@ -37,7 +37,7 @@ struct TodData {
   int block = 0;     ///< from 0
   std::vector<rdm::Uid> uids;
 };
-/// requires at most kMostTodUids.
+/// requires at most kMaxTodUids.
 [[nodiscard]] std::vector<std::uint8_t> encode(const TodData& packet);
 [[nodiscard]] std::optional<TodData> decode_tod_data(std::span<const std::uint8_t> bytes);
 
@@ -45,7 +45,7 @@ struct ArtRdm {
   int port_address = 0;
   std::vector<std::uint8_t> rdm;  ///< from start code to checksum, although the start code is not transmitted
 };
-/// requires an RDM packet of at most rdm::kMostBytes.
+/// requires an RDM packet of at most rdm::kMaxBytes.
 [[nodiscard]] std::vector<std::uint8_t> encode(const ArtRdm& packet);
 /// Does not check the RDM in it; rdm::decode does.
 [[nodiscard]] std::optional<ArtRdm> decode_art_rdm(std::span<const std::uint8_t> bytes);

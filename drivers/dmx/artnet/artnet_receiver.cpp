@@ -9,8 +9,8 @@
 namespace luxrig::artnet {
 namespace {
 
-constexpr std::size_t kMostSenders = 2, kPortsPerPage = 4;
-constexpr std::size_t kMostPollers = 32;  // more are a flood, not controllers
+constexpr std::size_t kMaxSenders = 2, kPortsPerPage = 4;
+constexpr std::size_t kMaxPollers = 32;  // more are a flood, not controllers
 
 }  // namespace
 
@@ -40,7 +40,7 @@ Receiver::Verdict Receiver::receive(Time now, const SocketAddress& from, std::sp
     const bool asked = std::any_of(ports_.begin(), ports_.end(), [&](const auto& entry) {
       return entry.first >= poll->lowest_port_address && entry.first <= poll->highest_port_address;
     });
-    if (!asked || (polled_.size() >= kMostPollers && !polled_.contains(from))) return Verdict::not_for_us;
+    if (!asked || (polled_.size() >= kMaxPollers && !polled_.contains(from))) return Verdict::not_for_us;
     polled_.try_emplace(from, now + settings_.reply_delay);
     return Verdict::taken;
   }
@@ -64,7 +64,7 @@ Receiver::Verdict Receiver::take(Time now, std::uint32_t from, const Dmx& packet
   auto sender = std::find_if(port.senders.begin(), port.senders.end(),
                              [from](const Sender& known) { return known.ipv4 == from; });
   if (sender == port.senders.end()) {
-    if (port.senders.size() >= kMostSenders) return Verdict::third_sender;
+    if (port.senders.size() >= kMaxSenders) return Verdict::third_sender;
     sender = port.senders.insert(port.senders.end(), Sender{from, now, 0, {}});
     if (port.senders.size() > 1) port.held.reset();  // merging starts, synchronisation ends
   } else if (packet.sequence != 0 && sender->sequence != 0 && is_out_of_order(packet.sequence, sender->sequence)) {

@@ -41,8 +41,8 @@ std::optional<Message> StreamDecoder::next() {
     }
     if (bytes_.size() - at < 4) break;
     const auto length = static_cast<std::size_t>(bytes_[at + 2] | bytes_[at + 3] << 8);
-    if (length <= kMostData && bytes_.size() - at < length + kFraming) break;
-    if (length > kMostData || bytes_[at + 4 + length] != kEnd) {
+    if (length <= kMaxData && bytes_.size() - at < length + kFraming) break;
+    if (length > kMaxData || bytes_[at + 4 + length] != kEnd) {
       ++at;
       ++dropped_;
       continue;

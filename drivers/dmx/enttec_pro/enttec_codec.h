@@ -12,7 +12,7 @@
 
 namespace luxrig::enttec {
 
-inline constexpr std::size_t kMostData = 600;
+inline constexpr std::size_t kMaxData = 600;
 
 /// The labels that Luxrig sends or understands; a widget has more.
 enum class Label : std::uint8_t {
@@ -34,7 +34,7 @@ struct Message {
   friend bool operator==(const Message&, const Message&) = default;
 };
 
-/// requires at most kMostData bytes.
+/// requires at most kMaxData bytes.
 [[nodiscard]] std::vector<std::uint8_t> encode(Label label, std::span<const std::uint8_t> data);
 [[nodiscard]] std::vector<std::uint8_t> encode_output(const DmxSlots& slots);
 

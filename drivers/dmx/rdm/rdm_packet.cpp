@@ -147,7 +147,7 @@ std::uint16_t checksum_of(std::span<const std::uint8_t> bytes) {
 }
 
 std::vector<std::uint8_t> encode(const Packet& packet) {
-  LUXRIG_CHECK(packet.data.size() <= kMostData, "{} bytes", packet.data.size());
+  LUXRIG_CHECK(packet.data.size() <= kMaxData, "{} bytes", packet.data.size());
   std::vector<std::uint8_t> bytes = {kStartCode, kSubStartCode,
                                      static_cast<std::uint8_t>(kHeaderSize + packet.data.size())};
   bytes.reserve(kHeaderSize + packet.data.size() + kChecksumSize);

@@ -12,8 +12,8 @@
 namespace luxrig::rdm {
 
 inline constexpr std::uint8_t kStartCode = 0xCC;
-inline constexpr std::size_t kMostData = 231;   ///< bytes of parameter data in one packet
-inline constexpr std::size_t kMostBytes = 257;  ///< of a packet, from start code to checksum
+inline constexpr std::size_t kMaxData = 231;   ///< bytes of parameter data in one packet
+inline constexpr std::size_t kMaxBytes = 257;  ///< of a packet, from start code to checksum
 
 /// Permanent identity of a device: ESTA's number of the manufacturer, and the manufacturer's own number.
 struct Uid {
@@ -112,9 +112,9 @@ struct Packet {
   std::uint16_t sub_device = 0;    ///< 0 = the device itself; 0xFFFF = all its sub-devices
   CommandClass command_class = CommandClass::get;
   Pid pid = Pid::device_info;
-  std::vector<std::uint8_t> data;  ///< at most kMostData
+  std::vector<std::uint8_t> data;  ///< at most kMaxData
 };
-/// From start code to checksum. requires data.size() <= kMostData.
+/// From start code to checksum. requires data.size() <= kMaxData.
 [[nodiscard]] std::vector<std::uint8_t> encode(const Packet& packet);
 /// From the start code on; bytes after the checksum are ignored. Empty unless the lengths agree, the checksum is right
 /// and the command class is one of the six.

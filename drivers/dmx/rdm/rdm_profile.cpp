@@ -5,7 +5,7 @@
 namespace luxrig::rdm {
 namespace {
 
-constexpr int kMostSensors = 16;
+constexpr int kMaxSensors = 16;
 
 /// Asks one device; `gone` holds the fault of a device or line that no longer answers.
 struct Reader {
@@ -73,7 +73,7 @@ Result<DeviceProfile> read_profile(const Ask& ask, const Uid& uid) {
   if (has(Pid::lamp_state)) {
     if (const auto data = reader.get(Pid::lamp_state)) profile.lamp = decode_lamp_state(*data);
   }
-  for (int i = 0; has(Pid::sensor_definition) && i < std::min(info->sensors, kMostSensors); ++i) {
+  for (int i = 0; has(Pid::sensor_definition) && i < std::min(info->sensors, kMaxSensors); ++i) {
     const auto number = static_cast<std::uint8_t>(i);
     const auto data = reader.get(Pid::sensor_definition, {number});
     const auto definition = data ? decode_sensor_definition(*data) : std::nullopt;

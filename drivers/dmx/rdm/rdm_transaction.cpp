@@ -8,9 +8,9 @@ namespace luxrig::rdm {
 namespace {
 
 constexpr int kQuestions = 3;
-constexpr int kMostQueued = 32;  // messages about other parameters before the expected one
-constexpr std::size_t kMostCollected = 65536;
-constexpr int kMostRestarts = 2;
+constexpr int kMaxQueued = 32;  // messages about other parameters before the expected one
+constexpr std::size_t kMaxCollected = 65536;
+constexpr int kMaxRestarts = 2;
 constexpr Duration kTimerUnit = std::chrono::milliseconds(100);
 // Status types of QUEUED_MESSAGE: repeat the last message; advisories and worse, if there is no message.
 constexpr std::uint8_t kLastMessage = 0x01, kAdvisory = 0x02;
@@ -21,7 +21,7 @@ int number_16(const std::vector<std::uint8_t>& data) { return data[0] << 8 | dat
 
 Transaction::Transaction(Request request, const Uid& controller, std::uint8_t& number, TransactionTiming timing)
     : request_(std::move(request)), controller_(controller), number_(number), timing_(timing) {
-  LUXRIG_CHECK(request_.data.size() <= kMostData, "{} bytes", request_.data.size());
+  LUXRIG_CHECK(request_.data.size() <= kMaxData, "{} bytes", request_.data.size());
   LUXRIG_CHECK(request_.command_class == CommandClass::get || request_.command_class == CommandClass::set, "class {}",
                static_cast<int>(request_.command_class));
 }
@@ -48,7 +48,7 @@ std::optional<Packet> Transaction::due(Time now) {
       ++restarts_;
       next(Stage::session_end, now);
     }
-    if (lost_ >= kQuestions || restarts_ > kMostRestarts) {
+    if (lost_ >= kQuestions || restarts_ > kMaxRestarts) {
       fail(Cause::timeout, fmt::format("no answer about {} to {} questions of {:.0f} ms: is it switched on and on this "
                                        "line?",
                                        text_of(request_.pid), kQuestions, 1000 * to_seconds(timing_.answer)));
@@ -134,9 +134,9 @@ void Transaction::accept(Time now, const Packet& packet) {
 
 void Transaction::take_ack(Time now, const Packet& packet) {
   if (stage_ == Stage::queue) {
-    if (++queue_asked_ > kMostQueued) {
+    if (++queue_asked_ > kMaxQueued) {
       return fail(Cause::timeout, fmt::format("no answer about {} among {} queued messages: ask again later",
-                                              text_of(request_.pid), kMostQueued));
+                                              text_of(request_.pid), kMaxQueued));
     }
     const bool about_it = packet.pid == request_.pid && packet.command_class == response_to(request_.command_class);
     if (!about_it) {
@@ -147,9 +147,9 @@ void Transaction::take_ack(Time now, const Packet& packet) {
       return next(Stage::queue, now);
     }
   }
-  if (parts_.size() + packet.data.size() > kMostCollected) {
+  if (parts_.size() + packet.data.size() > kMaxCollected) {
     return fail(Cause::protocol, fmt::format("the answer about {} does not end: {} bytes and more",
-                                             text_of(request_.pid), kMostCollected));
+                                             text_of(request_.pid), kMaxCollected));
   }
   parts_.insert(parts_.end(), packet.data.begin(), packet.data.end());
   if (static_cast<ResponseType>(packet.port_or_type) == ResponseType::ack_overflow) {

@@ -51,7 +51,7 @@ std::optional<std::vector<Pid>> decode_supported_parameters(Data data) {
 }
 
 std::optional<std::string> decode_label(Data data) {
-  if (data.size() > kMostLabel) return std::nullopt;
+  if (data.size() > kMaxLabel) return std::nullopt;
   std::string text;
   for (const std::uint8_t byte : data) {
     if (byte == 0) break;

@@ -13,7 +13,7 @@
 
 namespace luxrig::rdm {
 
-inline constexpr std::size_t kMostLabel = 32;  ///< bytes
+inline constexpr std::size_t kMaxLabel = 32;  ///< bytes
 
 struct DeviceInfo {
   std::uint16_t protocol_version = 0x0100;

@@ -55,7 +55,7 @@ constexpr std::uint8_t kVectorSetProperty = 2;    // VECTOR_DMP_SET_PROPERTY
 constexpr std::uint8_t kAddressTypeValue = 0xA1;
 constexpr std::uint16_t kPduFlags = 0x7000;
 constexpr std::uint8_t kPreview = 0x80, kTerminated = 0x40, kForceSync = 0x20;
-constexpr std::size_t kMostSlots = 512;
+constexpr std::size_t kMaxSlots = 512;
 
 void put16(std::vector<std::uint8_t>& out, std::size_t at, std::size_t value) {
   out[at] = static_cast<std::uint8_t>(value >> 8);
@@ -123,7 +123,7 @@ std::optional<std::string> name_in(std::span<const std::uint8_t> in) {
 }  // namespace
 
 std::vector<std::uint8_t> encode(const DataPacket& packet) {
-  LUXRIG_CHECK(packet.slots.size() <= kMostSlots, "{} slots", packet.slots.size());
+  LUXRIG_CHECK(packet.slots.size() <= kMaxSlots, "{} slots", packet.slots.size());
   std::vector<std::uint8_t> out =
       packet_of(kSlots + packet.slots.size(), kVectorRootData, packet.cid, kVectorFramingData);
   std::copy_n(packet.source_name.begin(), fitting_bytes(packet.source_name), out.begin() + kSourceName);
@@ -146,7 +146,7 @@ std::vector<std::uint8_t> encode(const DataPacket& packet) {
 }
 
 std::optional<DataPacket> decode(std::span<const std::uint8_t> bytes) {
-  if (bytes.size() < kSlots || bytes.size() > kSlots + kMostSlots) return std::nullopt;
+  if (bytes.size() < kSlots || bytes.size() > kSlots + kMaxSlots) return std::nullopt;
   const bool well_formed = has_layers(bytes, kVectorRootData, kVectorFramingData) &&
                            length_is_right(bytes, kDmpLength) && bytes[kDmpVector] == kVectorSetProperty &&
                            bytes[kAddressType] == kAddressTypeValue && get16(bytes, kFirstAddress) == 0 &&

@@ -10,7 +10,7 @@ namespace luxrig::sacn {
 namespace {
 
 // Bounds memory: more are a flood of forged packets, not a rig.
-constexpr std::size_t kMostSources = 16, kMostSyncUniverses = 64;
+constexpr std::size_t kMaxSources = 16, kMaxSyncUniverses = 64;
 
 /// Names come from the network and go into reports: no control characters.
 std::string printable(std::string text) {
@@ -41,14 +41,14 @@ Receiver::Verdict Receiver::receive(Time now, std::span<const std::uint8_t> byte
 }
 
 Receiver::Verdict Receiver::take_sync(Time now, const SyncPacket& packet) {
-  if (!syncs_.contains(packet.sync_universe) && syncs_.size() >= kMostSyncUniverses) return Verdict::ignored;
+  if (!syncs_.contains(packet.sync_universe) && syncs_.size() >= kMaxSyncUniverses) return Verdict::ignored;
   Sync& sync = syncs_[packet.sync_universe];
   const auto known = sync.sequence.find(packet.cid);
   if (known != sync.sequence.end() && now - sync.last <= kSourceLoss &&
       is_out_of_order(packet.sequence, known->second)) {
     return Verdict::out_of_order;
   }
-  if (known == sync.sequence.end() && sync.sequence.size() >= kMostSources) sync.sequence.clear();
+  if (known == sync.sequence.end() && sync.sequence.size() >= kMaxSources) sync.sequence.clear();
   sync.sequence[packet.cid] = packet.sequence;
   sync.last = now;
   for (auto& [number, universe] : universes_) {
@@ -73,7 +73,7 @@ Receiver::Verdict Receiver::take_data(Time now, const DataPacket& packet) {
   // Losses are judged after all arrived packets are read (heard). A late reader must not declare a source lost whose
   // packets wait behind another's.
   const auto known = universe.sources.find(packet.cid);
-  if (known == universe.sources.end() && (packet.terminated || universe.sources.size() >= kMostSources)) {
+  if (known == universe.sources.end() && (packet.terminated || universe.sources.size() >= kMaxSources)) {
     return packet.terminated ? Verdict::terminated : Verdict::ignored;
   }
   const bool is_new = known == universe.sources.end();
@@ -107,7 +107,7 @@ void Receiver::take_levels(Time now, Source& source, const DataPacket& packet) {
   source.last = now;
   source.sync_universe = packet.sync_universe;
   source.force_sync = packet.force_sync;
-  if (packet.sync_universe != 0 && groups_.size() < universes_.size() + kMostSyncUniverses) {
+  if (packet.sync_universe != 0 && groups_.size() < universes_.size() + kMaxSyncUniverses) {
     groups_.insert(packet.sync_universe);
   }
   ++tick_;

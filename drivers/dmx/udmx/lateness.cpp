@@ -5,12 +5,12 @@
 namespace luxrig::udmx {
 namespace {
 
-constexpr Duration kMostBetweenSteps = std::chrono::milliseconds(100);
+constexpr Duration kMaxBetweenSteps = std::chrono::milliseconds(100);
 
 }  // namespace
 
 void Lateness::step(Time now, bool up_to_date) {
-  const Duration passed = std::clamp(now - last_.value_or(now), Duration{}, kMostBetweenSteps);
+  const Duration passed = std::clamp(now - last_.value_or(now), Duration{}, kMaxBetweenSteps);
   last_ = now;
   const auto before = clock_ / kPart;
   clock_ += passed;

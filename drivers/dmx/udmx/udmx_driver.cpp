@@ -17,8 +17,8 @@ using udmx::SlotRange;
 constexpr OptionDoc kUdmxOptions[] = {kUsbSerialOption, kUsbPortOption, kUsbUniverseOption};
 
 constexpr std::uint8_t kSetChannelRange = 2;  // anyma's uDMX_cmds.h; value: count, index: first slot, from 0
-constexpr int kMostFailures = 3;              // in a row
-constexpr int kMostStalls = 100;              // in a row, about 2 s: healthy units stall occasionally
+constexpr int kMaxFailures = 3;               // in a row
+constexpr int kMaxStalls = 100;               // in a row, about 2 s: healthy units stall occasionally
 constexpr milliseconds kLastWait(20);         // in real time, before a transfer counts as slow or hung
 
 class UdmxDriver final : public UsbDmxDriver {
@@ -54,7 +54,7 @@ class UdmxDriver final : public UsbDmxDriver {
         life_.count_error();
         lateness_.went_wrong();
         known_.reset();  // part of it may have arrived
-        if (++stalls_ < kMostStalls) return;
+        if (++stalls_ < kMaxStalls) return;
         return lost(now, {Cause::refused, {}, fmt::format("{} requests in a row were refused: no uDMX?", stalls_), {}});
       case UsbStatus::gone:
         return lost(now, {Cause::network, {}, "the widget has been unplugged: plug it in again", {}});
@@ -69,7 +69,7 @@ class UdmxDriver final : public UsbDmxDriver {
     life_.count_error();
     lateness_.went_wrong();
     known_.reset();
-    if (++failures_ < kMostFailures) return;
+    if (++failures_ < kMaxFailures) return;
     lost(now, {Cause::timeout,
                {},
                fmt::format("{} transfers in a row went wrong, the last {}: unplug the widget and plug it in again",

@@ -13,7 +13,7 @@ using std::chrono::milliseconds;
 
 constexpr Duration kUsbReopenEvery = std::chrono::seconds(1);
 constexpr milliseconds kUsbCloseBound(50);
-constexpr int kMostEndedPerCycle = 64;  // a device that answers without end must not delay the output
+constexpr int kMaxEndedPerCycle = 64;  // a device that answers without end must not delay the output
 constexpr int kHighestUsbUniverse = 63999;
 
 }  // namespace
@@ -131,7 +131,7 @@ std::optional<UsbCompletion> UsbDmxDriver::wait_for(Time now, UsbTicket ticket, 
 }
 
 void UsbDmxDriver::take_ended(Time now, milliseconds wait) {
-  for (int i = 0; i < kMostEndedPerCycle && usb().is_open(); ++i) {
+  for (int i = 0; i < kMaxEndedPerCycle && usb().is_open(); ++i) {
     const auto completion = usb().take(i == 0 ? wait : milliseconds(0));
     if (!completion) return;
     ended(now, *completion);

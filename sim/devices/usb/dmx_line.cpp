@@ -5,7 +5,7 @@
 namespace luxrig::sim {
 namespace {
 
-constexpr Duration kLeastBreak = std::chrono::microseconds(88), kLeastMark = std::chrono::microseconds(8);
+constexpr Duration kMinBreak = std::chrono::microseconds(88), kMinMark = std::chrono::microseconds(8);
 constexpr Duration kDataLost = std::chrono::seconds(1);
 constexpr std::uint16_t kEightNTwo = 0x1008, kFormatBits = 0x1fff;
 constexpr std::uint16_t kDivisor250k = 12;
@@ -31,14 +31,14 @@ void DmxLine::set_break(Time at, bool asserted) {
   if (state_ != State::in_break) return;
   shortest_break_ = std::min(shortest_break_, at - break_at_);
   break_end_ = at;
-  state_ = at - break_at_ >= kLeastBreak ? State::after_break : State::idle;
+  state_ = at - break_at_ >= kMinBreak ? State::after_break : State::idle;
 }
 
 void DmxLine::receive(Time start, Duration slot, const LineSettings& settings, std::span<const std::uint8_t> bytes) {
   if (bytes.empty()) return;
   const bool is_dmx =
       (settings.format & kFormatBits) == kEightNTwo && settings.divisor == kDivisor250k && settings.rts_low;
-  if (!is_dmx || state_ != State::after_break || start - break_end_ < kLeastMark || bytes.size() > 1 + kDmxSlots) {
+  if (!is_dmx || state_ != State::after_break || start - break_end_ < kMinMark || bytes.size() > 1 + kDmxSlots) {
     spoiled_ += bytes.size();
     if (state_ == State::after_break) state_ = State::idle;
     return;

@@ -7,7 +7,7 @@ namespace luxrig::sim {
 namespace {
 
 constexpr std::uint8_t kSom = 0x7e, kEom = 0xe7;
-constexpr std::size_t kLongest = 600, kMostSaid = 4096;
+constexpr std::size_t kLongest = 600, kMaxSaid = 4096;
 constexpr std::uint8_t kFirmware[] = {0x44, 0x01}, kRdmFirmware[] = {0x04, 0x02};  // 1.68, 2.4
 constexpr std::uint8_t kSerialBcd[] = {0x12, 0x34, 0x56, 0x02};
 
@@ -110,7 +110,7 @@ void EnttecWidget::ask_line(Time now, std::span<const std::uint8_t> packet) {
 }
 
 void EnttecWidget::answer(std::uint8_t label, std::span<const std::uint8_t> data) {
-  if (character_.silent || said_.size() > kMostSaid) return;
+  if (character_.silent || said_.size() > kMaxSaid) return;
   said_.insert(said_.end(), character_.noise.begin(), character_.noise.end());
   const std::uint8_t head[] = {kSom, label, static_cast<std::uint8_t>(data.size()),
                                static_cast<std::uint8_t>(data.size() >> 8)};

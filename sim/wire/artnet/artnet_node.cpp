@@ -15,7 +15,7 @@ using Bytes = std::span<const std::uint8_t>;
 constexpr int kOpPoll = 0x2000, kOpPollReply = 0x2100, kOpDmx = 0x5000, kOpSync = 0x5200;
 constexpr Duration kSourceTimeout = std::chrono::seconds(10);
 constexpr Duration kSyncTimeout = std::chrono::seconds(4);
-constexpr std::size_t kMostSources = 2;
+constexpr std::size_t kMaxSources = 2;
 
 // ID "Art-Net\0", OpCode low byte first, protocol version 14 or later, high byte first.
 bool header_fits(Bytes packet, int op_code) {
@@ -77,7 +77,7 @@ void ArtnetNode::take(Time now, std::uint32_t from, const ArtDmx& dmx) {
   auto source = std::find_if(port.sources.begin(), port.sources.end(),
                              [from](const Source& known) { return known.address == from; });
   if (source == port.sources.end()) {
-    if (port.sources.size() >= kMostSources) return;  // a third source is ignored
+    if (port.sources.size() >= kMaxSources) return;  // a third source is ignored
     // Slots that the first source does not send keep the held look; a second source does not affect them.
     const Levels unsaid = port.sources.empty() ? port.look.value_or(Levels{}) : Levels{};
     source = port.sources.insert(port.sources.end(), Source{from, now, 0, unsaid});

@@ -9,8 +9,8 @@ namespace {
 
 constexpr int kOpTodRequest = 0x8000, kOpTodData = 0x8100, kOpTodControl = 0x8200, kOpRdm = 0x8300;
 constexpr std::uint8_t kFlush = 1;
-constexpr std::size_t kMostUids = 200;    // in one ArtTodData
-constexpr std::size_t kMostPorts = 32;    // in one ArtTodRequest
+constexpr std::size_t kMaxUids = 200;     // in one ArtTodData
+constexpr std::size_t kMaxPorts = 32;     // in one ArtTodRequest
 constexpr std::size_t kShortestRdm = 25;  // without its start code: 24 bytes after it, checksum included
 constexpr std::uint8_t kArtNet[] = {'A', 'r', 't', '-', 'N', 'e', 't', 0};
 
@@ -50,7 +50,7 @@ std::vector<ArtnetRdmGate::Answer> ArtnetRdmGate::receive(Time now, std::span<co
   const int op_code = op_code_of(packet);
   if (op_code == kOpTodRequest) {
     const std::size_t count = packet[23];
-    if (packet[22] != 0 || count > kMostPorts || packet.size() < 24 + count) return answers;
+    if (packet[22] != 0 || count > kMaxPorts || packet.size() < 24 + count) return answers;
     for (std::size_t i = 0; i < count; ++i) {
       const auto port = ports_.find(packet[21] << 8 | packet[24 + i]);
       if (port != ports_.end()) tell_table(port->first, port->second, answers);
@@ -80,8 +80,8 @@ std::vector<ArtnetRdmGate::Answer> ArtnetRdmGate::receive(Time now, std::span<co
 
 void ArtnetRdmGate::tell_table(int port_address, const Port& port, std::vector<Answer>& answers) const {
   const std::size_t total = port.table.size();
-  for (std::size_t begin = 0, block = 0; begin < total || block == 0; begin += kMostUids, ++block) {
-    const std::size_t end = std::min(begin + kMostUids, total);
+  for (std::size_t begin = 0, block = 0; begin < total || block == 0; begin += kMaxUids, ++block) {
+    const std::size_t end = std::min(begin + kMaxUids, total);
     std::vector<std::uint8_t> packet = head_of(kOpTodData, port_address);
     packet[13] = static_cast<std::uint8_t>(port.number);
     packet[20] = static_cast<std::uint8_t>(port.bind_index);

@@ -13,7 +13,7 @@ namespace {
 constexpr Duration kAxisStep = std::chrono::milliseconds(1);
 constexpr double kSwitchPastTravel_deg = 5, kStopPastSwitch_deg = 3;
 constexpr double kFollowingWindow_deg = 2;
-constexpr std::size_t kMostDelayed = 4096;
+constexpr std::size_t kMaxDelayed = 4096;
 
 std::uint32_t refusal_of(double value) { return value < 2 ? kNotMappable : value < 3 ? kPdoTooLong : kOutOfRange; }
 
@@ -28,7 +28,7 @@ AxisTruth axis_truth(const AxisPatch& patch, double min_rad, double max_rad) {
   truth.stop_max_deg = truth.switch_max_deg + kStopPastSwitch_deg;
   truth.index_deg = home;
   truth.counts_per_degree = patch.counts_per_degree;
-  truth.most_torque_deg_s2 = std::max(truth.most_torque_deg_s2, 3 * deg_from_rad(patch.acceleration_rad_s2));
+  truth.max_torque_deg_s2 = std::max(truth.max_torque_deg_s2, 3 * deg_from_rad(patch.acceleration_rad_s2));
   return truth;
 }
 
@@ -71,7 +71,7 @@ BusFrame AxisBus::garbled(BusFrame frame, std::uint64_t random) {
 void AxisBus::receive(Time now, const BusFrame& frame) {
   const std::string& bus = parts_.rig.buses[parts_.bus].name;
   const Disturbance disturbance = parts_.faults.disturbance({&bus, 1}, exchanges_++);
-  if (disturbance.silent || off_ || arriving_.size() >= kMostDelayed) return;
+  if (disturbance.silent || off_ || arriving_.size() >= kMaxDelayed) return;
   Time due = now + disturbance.delay;
   if (!arriving_.empty()) due = std::max(due, arriving_.back().when);
   for (int i = 0; i < (disturbance.duplicated ? 2 : 1); ++i) arriving_.push_back({due, frame});
@@ -96,7 +96,7 @@ void AxisBus::collect(Time now) {
     const std::array<std::string, 2> names{bus, axis.name};
     for (const BusFrame& frame : axis.node->take_sent()) {
       const Disturbance disturbance = parts_.faults.disturbance(names, exchanges_++);
-      if (disturbance.silent || off_ || leaving_.size() >= kMostDelayed) continue;
+      if (disturbance.silent || off_ || leaving_.size() >= kMaxDelayed) continue;
       Time due = now + disturbance.delay;
       if (!leaving_.empty()) due = std::max(due, leaving_.back().when);
       const BusFrame said = disturbance.garbled ? garbled(frame, disturbance.random) : frame;

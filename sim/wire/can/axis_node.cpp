@@ -10,7 +10,7 @@ namespace {
 constexpr std::string_view kNodeName = "Simulated axis";
 constexpr ObjectKey kNameObject{0x1008, 0};
 constexpr std::uint32_t kPdoIsOff = 0x80000000;
-constexpr std::size_t kMostUnsent = 1000;
+constexpr std::size_t kMaxUnsent = 1000;
 
 std::uint32_t word_in(const BusFrame& frame, std::size_t from, int bytes) {
   std::uint32_t value = 0;
@@ -27,7 +27,7 @@ AxisNode::AxisNode(int node, const AxisTruth& truth, double angle_deg, std::uint
     : node_(node), following_window_(following_window), drive_(truth, angle_deg) {}
 
 void AxisNode::send(std::uint32_t id, std::initializer_list<std::uint8_t> payload) {
-  if (sent_.size() < kMostUnsent)
+  if (sent_.size() < kMaxUnsent)
     sent_.push_back(bus_frame(id + static_cast<std::uint32_t>(node_), {payload.begin(), payload.size()}));
 }
 
@@ -277,7 +277,7 @@ void AxisNode::send_pdo(int number) {
     const std::uint32_t value = objects_->value({static_cast<int>(entry >> 16), static_cast<int>(entry >> 8 & 0xFF)});
     for (int b = 0; b < static_cast<int>(entry & 0xFF) / 8; ++b) frame.data[frame.size++] = byte_of(value, b);
   }
-  if (sent_.size() < kMostUnsent) sent_.push_back(frame);
+  if (sent_.size() < kMaxUnsent) sent_.push_back(frame);
 }
 
 // --- the SDO server ---

@@ -11,8 +11,8 @@
 namespace luxrig::sim {
 namespace {
 
-constexpr int kMostCanFramesAtOnce = 1000;  // per serve(), so that a flood cannot delay the world
-constexpr std::size_t kMostMasters = 4;
+constexpr int kMaxCanFramesAtOnce = 1000;  // per serve(), so that a flood cannot delay the world
+constexpr std::size_t kMaxMasters = 4;
 constexpr Duration kForgetMaster = std::chrono::seconds(5);
 
 /// A CAN bus as datagrams on loopback: recent senders of frames receive the nodes' frames.
@@ -54,7 +54,7 @@ class CanEndpoint final : public BusEndpoint {
   void take(Time now) {
     std::erase_if(masters_, [now](const Master& master) { return now - master.heard > kForgetMaster; });
     std::array<std::uint8_t, 64> buffer;
-    for (int i = 0; i < kMostCanFramesAtOnce && socket_.descriptor.open(); ++i) {
+    for (int i = 0; i < kMaxCanFramesAtOnce && socket_.descriptor.open(); ++i) {
       sockaddr_in from{};
       socklen_t length = sizeof from;
       const auto received = ::recvfrom(socket_.descriptor.get(), buffer.data(), buffer.size(), 0,
@@ -70,7 +70,7 @@ class CanEndpoint final : public BusEndpoint {
       });
       if (known != masters_.end()) {
         known->heard = now;
-      } else if (masters_.size() < kMostMasters) {
+      } else if (masters_.size() < kMaxMasters) {
         masters_.push_back({from, now});
       }
       bus_.receive(now, *frame);

@@ -30,7 +30,7 @@ class ModbusRtuEndpoint final : public BusEndpoint {
     const auto later = std::find_if(waiting_.begin(), waiting_.end(), [&](const LinePiece& p) { return p.due > now; });
     std::for_each(waiting_.begin(), later, [&](const LinePiece& piece) { line_->put(piece.bytes); });
     waiting_.erase(waiting_.begin(), later);
-    if (waiting_.size() > kMostPieces) waiting_.clear();
+    if (waiting_.size() > kMaxPieces) waiting_.clear();
   }
 
   void descriptors(std::vector<int>& into) const override {
@@ -38,7 +38,7 @@ class ModbusRtuEndpoint final : public BusEndpoint {
   }
 
  private:
-  static constexpr std::size_t kMostPieces = 256;
+  static constexpr std::size_t kMaxPieces = 256;
 
   EndpointParts parts_;
   RigUnits units_;

@@ -11,9 +11,9 @@
 namespace luxrig::sim {
 namespace {
 
-constexpr std::size_t kMostConnections = 16;
-constexpr std::size_t kMostWaiting = 64;  // answers not read by a peer, or requested in advance
-constexpr std::size_t kMostUnsentBytes = 65536;
+constexpr std::size_t kMaxConnections = 16;
+constexpr std::size_t kMaxWaiting = 64;  // answers not read by a peer, or requested in advance
+constexpr std::size_t kMaxUnsentBytes = 65536;
 
 }  // namespace
 
@@ -41,7 +41,7 @@ void ModbusServer::serve(Time now) {
   while (listener_.descriptor.open()) {
     Descriptor socket(::accept4(listener_.descriptor.get(), nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
     if (!socket.open()) break;
-    if (connections_.size() >= kMostConnections) continue;
+    if (connections_.size() >= kMaxConnections) continue;
     const int at_once = 1;  // a second answer must not wait for the acknowledgement of the first
     ::setsockopt(socket.get(), IPPROTO_TCP, TCP_NODELAY, &at_once, sizeof at_once);
     connections_.emplace_back().socket = std::move(socket);
@@ -65,7 +65,7 @@ bool ModbusServer::serve(Connection& connection, Time now) {
       if (!connection.waiting.empty()) due = std::max(due, connection.waiting.back().due);
       connection.waiting.push_back({due, std::move(reply.bytes)});
     }
-    if (connection.waiting.size() > kMostWaiting) return false;
+    if (connection.waiting.size() > kMaxWaiting) return false;
   }
   while (!connection.waiting.empty() && connection.waiting.front().due <= now) {
     const auto& bytes = connection.waiting.front().bytes;
@@ -81,7 +81,7 @@ bool ModbusServer::serve(Connection& connection, Time now) {
     }
     connection.unsent.erase(connection.unsent.begin(), connection.unsent.begin() + sent);
   }
-  if (connection.unsent.size() > kMostUnsentBytes) return false;
+  if (connection.unsent.size() > kMaxUnsentBytes) return false;
   return !connection.session.broken() || !connection.unsent.empty();
 }
 

@@ -11,9 +11,9 @@ using Bytes = std::span<const std::uint8_t>;
 
 // MBAP header: transaction 2, protocol 2 (0), length 2 (unit and PDU), unit 1.
 constexpr std::size_t kHeader = 7;
-constexpr int kLeastLength = 2, kMostLength = 254;  // unit + PDU of 1…253 bytes
-constexpr int kMostRead = 125, kMostWrite = 123;
-constexpr int kMostReadBits = 2000, kMostWriteBits = 1968;
+constexpr int kMinLength = 2, kMaxLength = 254;  // unit + PDU of 1…253 bytes
+constexpr int kMaxRead = 125, kMaxWrite = 123;
+constexpr int kMaxReadBits = 2000, kMaxWriteBits = 1968;
 constexpr int kCoilOn = 0xff00;
 
 std::vector<std::uint8_t> refusal(std::uint8_t function, int code) {
@@ -29,7 +29,7 @@ std::vector<std::uint8_t> read_registers(int unit, Bytes request, ModbusUnits& u
   const std::uint8_t function = request[0];
   if (request.size() != 5) return refusal(function, ModbusException::illegal_value);
   const int first = big_endian_16(request, 1), count = big_endian_16(request, 3);
-  if (count < 1 || count > kMostRead) return refusal(function, ModbusException::illegal_value);
+  if (count < 1 || count > kMaxRead) return refusal(function, ModbusException::illegal_value);
   if (first + count > 65536) return refusal(function, ModbusException::illegal_address);
   if (const auto refused = units.refuses(unit, function, count)) return refusal(function, *refused);
   std::vector<std::uint16_t> values(static_cast<std::size_t>(count), 0);
@@ -54,7 +54,7 @@ std::vector<std::uint8_t> write_one(int unit, Bytes request, ModbusUnits& units)
 std::vector<std::uint8_t> write_registers(int unit, Bytes request, ModbusUnits& units) {
   if (request.size() < 6) return refusal(request[0], ModbusException::illegal_value);
   const int first = big_endian_16(request, 1), count = big_endian_16(request, 3);
-  if (count < 1 || count > kMostWrite || request[5] != 2 * count ||
+  if (count < 1 || count > kMaxWrite || request[5] != 2 * count ||
       request.size() != 6 + 2 * static_cast<std::size_t>(count)) {
     return refusal(request[0], ModbusException::illegal_value);
   }
@@ -74,7 +74,7 @@ std::vector<std::uint8_t> read_bits(int unit, Bytes request, ModbusUnits& units)
   if (!units.has_bits(unit)) return refusal(function, ModbusException::illegal_function);
   if (request.size() != 5) return refusal(function, ModbusException::illegal_value);
   const int first = big_endian_16(request, 1), count = big_endian_16(request, 3);
-  if (count < 1 || count > kMostReadBits) return refusal(function, ModbusException::illegal_value);
+  if (count < 1 || count > kMaxReadBits) return refusal(function, ModbusException::illegal_value);
   if (first + count > 65536) return refusal(function, ModbusException::illegal_address);
   if (const auto refused = units.refuses(unit, function, count)) return refusal(function, *refused);
   std::vector<std::uint16_t> bits(static_cast<std::size_t>(count), 0);
@@ -106,7 +106,7 @@ std::vector<std::uint8_t> write_coils(int unit, Bytes request, ModbusUnits& unit
   if (!units.has_bits(unit)) return refusal(request[0], ModbusException::illegal_function);
   if (request.size() < 6) return refusal(request[0], ModbusException::illegal_value);
   const int first = big_endian_16(request, 1), count = big_endian_16(request, 3), bytes = (count + 7) / 8;
-  if (count < 1 || count > kMostWriteBits || request[5] != bytes ||
+  if (count < 1 || count > kMaxWriteBits || request[5] != bytes ||
       request.size() != 6 + static_cast<std::size_t>(bytes)) {
     return refusal(request[0], ModbusException::illegal_value);
   }
@@ -149,7 +149,7 @@ std::vector<ModbusReply> ModbusSession::receive(Bytes bytes, ModbusUnits& units)
   while (pending_.size() - at >= kHeader) {
     const Bytes rest = Bytes(pending_).subspan(at);
     const int length = big_endian_16(rest, 4);
-    if (big_endian_16(rest, 2) != 0 || length < kLeastLength || length > kMostLength) {
+    if (big_endian_16(rest, 2) != 0 || length < kMinLength || length > kMaxLength) {
       broken_ = true;
       pending_.clear();
       return replies;

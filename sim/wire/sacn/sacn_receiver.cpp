@@ -11,8 +11,8 @@ namespace {
 using Bytes = std::span<const std::uint8_t>;
 
 // Bounds memory against a flood of forged sources or universes.
-constexpr std::size_t kMostSacnSources = 16;
-constexpr std::size_t kMostUniverses = 256;
+constexpr std::size_t kMaxSacnSources = 16;
+constexpr std::size_t kMaxUniverses = 256;
 
 // Flags are 0x7; the length counts from the field itself to the end of the PDU (E1.31 §4.1, E1.17 §2.2).
 bool flags_and_length_fit(Bytes packet, std::size_t offset) {
@@ -79,8 +79,7 @@ std::optional<SacnSync> decode_sacn_sync(Bytes packet) {
 
 SacnReceiver::Verdict SacnReceiver::receive(Time now, Bytes packet) {
   if (const auto sync = decode_sacn_sync(packet)) {
-    if (sync->sync_universe == 0 ||
-        (last_sync_.size() >= kMostUniverses && !last_sync_.contains(sync->sync_universe))) {
+    if (sync->sync_universe == 0 || (last_sync_.size() >= kMaxUniverses && !last_sync_.contains(sync->sync_universe))) {
       return Verdict::ignored;
     }
     last_sync_[sync->sync_universe] = now;
@@ -99,7 +98,7 @@ SacnReceiver::Verdict SacnReceiver::receive(Time now, Bytes packet) {
   if (!data) return Verdict::not_sacn;
   if (data->preview) return Verdict::preview;          // §6.2.6: never to live outputs
   if (data->start_code != 0) return Verdict::ignored;  // only levels reach fixtures
-  if (universes_.size() >= kMostUniverses && !universes_.contains(data->universe)) return Verdict::ignored;
+  if (universes_.size() >= kMaxUniverses && !universes_.contains(data->universe)) return Verdict::ignored;
 
   Universe& universe = universes_[data->universe];
   forget_lost(universe, now);  // so a returning source is new, with new sequence numbers (§6.7.1)
@@ -112,7 +111,7 @@ SacnReceiver::Verdict SacnReceiver::receive(Time now, Bytes packet) {
     merge(universe);
     return Verdict::terminated;
   }
-  if (known == universe.sources.end() && universe.sources.size() >= kMostSacnSources) return Verdict::ignored;
+  if (known == universe.sources.end() && universe.sources.size() >= kMaxSacnSources) return Verdict::ignored;
 
   Source& source = universe.sources[data->cid];
   source.last_seen = now;

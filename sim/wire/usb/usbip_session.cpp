@@ -16,7 +16,7 @@ constexpr std::string_view kBusId = "1-1", kPath = "/sys/devices/luxrig-sim/usb1
 constexpr std::uint32_t kBusNumber = 1, kDeviceNumber = 2, kLowSpeed = 1, kFullSpeed = 2;
 // As in errno on Linux, where the protocol comes from.
 constexpr std::int32_t kBrokenPipe = -32, kConnectionReset = -104;
-constexpr std::size_t kMostUrbBytes = 4096, kMostUrbs = 64, kMostSaidBytes = 1 << 20;
+constexpr std::size_t kMaxUrbBytes = 4096, kMaxUrbs = 64, kMaxSaidBytes = 1 << 20;
 
 void append_32(std::vector<std::uint8_t>& bytes, std::uint32_t value) {
   append_big_endian_16(bytes, static_cast<int>(value >> 16));
@@ -97,7 +97,7 @@ bool UsbipSession::take_command() {
     urb.length = big_endian_32(heard_, 24);
     std::size_t waiting = 0;
     for (const auto& [address, queue] : queues_) waiting += queue.size();
-    if (endpoint > 15 || urb.length > kMostUrbBytes || waiting >= kMostUrbs) {
+    if (endpoint > 15 || urb.length > kMaxUrbBytes || waiting >= kMaxUrbs) {
       broken_ = true;
       return false;
     }
@@ -165,7 +165,7 @@ void UsbipSession::answer(const Urb& urb) {
   append_32(said_, 0xffffffff);  // not isochronous
   said_.resize(start + kUrbHeader);
   if (urb.in && good) said_.insert(said_.end(), reply.data.begin(), reply.data.end());
-  if (said_.size() > kMostSaidBytes) broken_ = true;
+  if (said_.size() > kMaxSaidBytes) broken_ = true;
 }
 
 void UsbipSession::unlink(std::uint32_t sequence, std::uint32_t unlinked) {
@@ -179,7 +179,7 @@ void UsbipSession::unlink(std::uint32_t sequence, std::uint32_t unlinked) {
   for (int i = 0; i < 3; ++i) append_32(said_, 0);
   append_32(said_, static_cast<std::uint32_t>(found ? kConnectionReset : 0));
   said_.resize(start + kUrbHeader);
-  if (said_.size() > kMostSaidBytes) broken_ = true;
+  if (said_.size() > kMaxSaidBytes) broken_ = true;
 }
 
 }  // namespace luxrig::sim

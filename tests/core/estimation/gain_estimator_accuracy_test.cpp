@@ -21,9 +21,9 @@ TEST(GainEstimator, BringsMeteredGoalsWithinTwoPercentInThreeRoundsAndNeverExcee
     const Outcome outcome = run(world, 3);
     met += outcome.worst_error <= 0.02;
     met_or_said += outcome.worst_error_aimed <= 0.02;
-    over_metered += outcome.most_share_metered > 1;
-    over += outcome.most_share > 1;
-    most = std::max(most, outcome.most_share);
+    over_metered += outcome.max_share_metered > 1;
+    over += outcome.max_share > 1;
+    most = std::max(most, outcome.max_share);
     rejected += outcome.rejected;
   }
   std::printf(

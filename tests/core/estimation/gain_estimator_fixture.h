@@ -127,7 +127,7 @@ struct World {
 struct Outcome {
   double worst_error = 0;        ///< of a metered reading against its goal
   double worst_error_aimed = 0;  ///< the same, but against the aimed value where a reason was given
-  double most_share_metered = 0, most_share = 0;
+  double max_share_metered = 0, max_share = 0;
   int rejected = 0;
 };
 
@@ -140,7 +140,7 @@ inline Outcome run(World& world, int rounds, const Spoil& spoil = nullptr) {
   double now_s = 0;
   const auto fade = [&](const std::vector<double>& from, const std::vector<double>& to) {
     for (const std::size_t points : {world.rig.luxmeters.size(), world.rig.points.size()}) {
-      double& share = points == world.rig.points.size() ? outcome.most_share : outcome.most_share_metered;
+      double& share = points == world.rig.points.size() ? outcome.max_share : outcome.max_share_metered;
       share = std::max(share, world.worst_share_of_limit(estimator, from, to, at_s(now_s), points));
     }
   };

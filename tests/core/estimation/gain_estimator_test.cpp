@@ -26,8 +26,8 @@ TEST(GainEstimator, DoesTheSameWithDaylightThatIsNotQuiteWhatTheModelSays) {
     World world(seed, 0.15, 0.8);
     const Outcome outcome = run(world, 3);
     met_or_said += outcome.worst_error_aimed <= 0.02;
-    over += outcome.most_share > 1;
-    most = std::max(most, outcome.most_share);
+    over += outcome.max_share > 1;
+    most = std::max(most, outcome.max_share);
     rejected += outcome.rejected;
   }
   std::printf(
@@ -55,7 +55,7 @@ TEST(GainEstimator, CountsDaylightInWhatItPredictsAndLeavesLessOfALimit) {
   GainEstimator estimator(rig, model);
   EXPECT_NEAR(estimator.at_point(0, std::vector<double>{0.5}).lux, 130, 1e-9);
   EXPECT_NEAR(estimator.at_meter(0, std::vector<double>{0}).lux, 30, 1e-9);
-  EXPECT_NEAR(estimator.most_lux_at_point(1, std::vector<double>{0.5}, at_s(0)), 70, 1e-9);
+  EXPECT_NEAR(estimator.max_lux_at_point(1, std::vector<double>{0.5}, at_s(0)), 70, 1e-9);
   EXPECT_NEAR(estimator.within_limits(std::vector<double>{0.5}, at_s(0))[0], 0.4, 1e-9);
   const Correction correction = estimator.correct(std::vector<double>{0.1}, at_s(0));
   // Minimum of (200 c + 30 − 100)² + 0.5² (200 c − 20)²: half a weight holds back unconfirmed changes.
@@ -106,7 +106,7 @@ TEST(GainEstimator, CannotBeDrivenOverALimitByMetersThatAreDeadStuckOrWrong) {
           reading.lux = kind.says(reading.lux, first[reading.luxmeter]);
         }
       });
-      EXPECT_LE(outcome.most_share, 1) << kind.name << " seed " << seed;
+      EXPECT_LE(outcome.max_share, 1) << kind.name << " seed " << seed;
       EXPECT_GT(outcome.rejected, 0) << kind.name << " seed " << seed;
     }
   }
@@ -270,10 +270,10 @@ TEST(GainEstimator, BoundsLightAtOnceAboveTheTruthAndNearItWhereItWasMeasured) {
   for (unsigned seed = 0; seed < 50; ++seed) {
     World world(seed);
     GainEstimator estimator(world.rig, world.model);
-    const double before = estimator.most_lux_at_point(0, world.plan, at_s(1));
+    const double before = estimator.max_lux_at_point(0, world.plan, at_s(1));
     estimator.update(at_s(1), world.readings(world.plan, at_s(1)), world.plan);
     const double truth = world.true_lux(world.plan)[0];
-    const double after = estimator.most_lux_at_point(0, world.plan, at_s(1));
+    const double after = estimator.max_lux_at_point(0, world.plan, at_s(1));
     EXPECT_GE(after, truth);
     EXPECT_LE(after, truth * 1.11);
     EXPECT_GT(before, after);

@@ -22,7 +22,7 @@ double sampled_angle_to_box_rad(const Vec3& from, const Vec3& direction, const E
     for (const double side : {0.0, 1.0}) {
       double low_u = 0, high_u = 1, low_v = 0, high_v = 1;
       for (int round = 0; round < 8; ++round) {
-        double at_u = 0, at_v = 0, least_rad = 10;
+        double at_u = 0, at_v = 0, min_rad = 10;
         for (int i = 0; i <= kGrid; ++i) {
           for (int j = 0; j <= kGrid; ++j) {
             Vec3 share;
@@ -32,10 +32,10 @@ double sampled_angle_to_box_rad(const Vec3& from, const Vec3& direction, const E
             share[(axis + 2) % 3] = v;
             const Vec3 point = box.min() + share.cwiseProduct(box.sizes());
             const double angle_rad = between_rad(direction, point - from);
-            if (angle_rad < least_rad) least_rad = angle_rad, at_u = u, at_v = v;
+            if (angle_rad < min_rad) min_rad = angle_rad, at_u = u, at_v = v;
           }
         }
-        best_rad = std::min(best_rad, least_rad);
+        best_rad = std::min(best_rad, min_rad);
         const double half_u = (high_u - low_u) / kGrid * 3, half_v = (high_v - low_v) / kGrid * 3;
         low_u = std::max(0.0, at_u - half_u), high_u = std::min(1.0, at_u + half_u);
         low_v = std::max(0.0, at_v - half_v), high_v = std::min(1.0, at_v + half_v);

@@ -33,7 +33,7 @@ TEST(LightColour, OfBlackBodiesIsThatOfThePlanckianLocus) {
 
 TEST(LightColour, AlwaysHasALuminanceOfOneAndNoNegativePrimary) {
   double blue_before = -1;
-  for (double cct_k = kLeastCct_k; cct_k <= kMostCct_k; cct_k += 37) {
+  for (double cct_k = kMinCct_k; cct_k <= kMaxCct_k; cct_k += 37) {
     const Vec3 rgb = rgb_of_cct(cct_k);
     EXPECT_NEAR(luminance_of_rgb(rgb), 1, 1e-12);
     EXPECT_GE(rgb.minCoeff(), 0);

@@ -37,7 +37,7 @@ Intensity round_band(double from_deg, double to_deg, double from_cd, double to_c
 struct Case {
   const char* name;
   std::function<Intensity()> make;
-  double most_variance;  ///< of intensity / density, relative to its mean squared
+  double max_variance;  ///< of intensity / density, relative to its mean squared
 };
 
 class Sampling : public testing::TestWithParam<Case> {
@@ -146,7 +146,7 @@ TEST_P(Sampling, WeighedByItsDensityGivesTheFlux) {
   const double variance = squares / kDraws - mean * mean;
   RecordProperty("relative_variance", std::to_string(variance));
   EXPECT_NEAR(mean, 1, 1e-6 + 5 * std::sqrt(std::max(0.0, variance) / kDraws));
-  EXPECT_LE(variance, GetParam().most_variance);
+  EXPECT_LE(variance, GetParam().max_variance);
 }
 
 TEST_P(Sampling, HasADensityWhereverThereIsLight) {

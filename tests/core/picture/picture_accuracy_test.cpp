@@ -16,7 +16,7 @@ TEST(Picture, ShowsTheIlluminanceThatTheEvaluatorMeasures) {
   const Vec3 target_m(0.3, 0.2, -1);
   PictureOptions options;
   options.wanted_relative_error = 0.005;
-  options.most_passes = 2000;
+  options.max_passes = 2000;
   const auto picture =
       render_picture(rays, kPictureBulb, std::vector{0.5}, looking({-0.7, -0.6, 0.4}, target_m), options);
   ASSERT_TRUE(picture.has_value());

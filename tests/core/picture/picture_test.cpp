@@ -18,7 +18,7 @@ TEST(Picture, StopsAtTheWantedNoiseAndSaysIt) {
   for (const double wanted : {0.2, 0.05, 0.02}) {
     PictureOptions options;
     options.wanted_relative_error = wanted;
-    options.most_passes = 1000;
+    options.max_passes = 1000;
     const auto picture =
         render_picture(rays, kPictureBulb, std::vector{1.0}, looking({-0.7, -0.6, 0.4}, {0, 0, -1}), options);
     ASSERT_TRUE(picture.has_value());
@@ -53,7 +53,7 @@ TEST(Picture, AGlossyFloorReflectsTheRoom) {
     cube.materials[0].roughness = 0.2;
     const RayScene rays(cube);
     PictureOptions options;
-    options.most_passes = 16;
+    options.max_passes = 16;
     const auto picture =
         render_picture(rays, kPictureBulb, std::vector{1.0}, looking({-0.7, -0.6, 0.4}, {0.3, 0.2, -1}), options);
     float ratio = 0;

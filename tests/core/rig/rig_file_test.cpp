@@ -323,13 +323,13 @@ std::string text_of_large_rig(int fixtures, int points) {
 
 /// Processor time of the fastest of three runs, since the machine may be shared.
 double seconds_to_load(const std::string& text) {
-  double least_s = 1e9;
+  double min_s = 1e9;
   for (int i = 0; i < 3; ++i) {
     const std::clock_t start = std::clock();
     EXPECT_TRUE(parse(text));
-    least_s = std::min(least_s, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
+    min_s = std::min(min_s, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
   }
-  return least_s;
+  return min_s;
 }
 
 TEST(RigFile, LoadsFiveHundredFixturesAndTwentyThousandPointsInTimeThatGrowsAsTheFile) {

@@ -160,7 +160,7 @@ struct Brute {
     std::uint32_t triangle = 0;
   };
   /// margin: how far inside its edges a hit must lie (negative: how far outside it may)
-  [[nodiscard]] Found nearest(const Vec3& from, const Vec3& direction, double least_m, double margin_m) const {
+  [[nodiscard]] Found nearest(const Vec3& from, const Vec3& direction, double min_m, double margin_m) const {
     Found found;
     for (std::uint32_t i = 0; i < scene.triangles.size(); ++i) {
       const Vec3 a = scene.vertex_world_m(scene.triangles[i][0]);
@@ -168,7 +168,7 @@ struct Brute {
       const Vec3 c = scene.vertex_world_m(scene.triangles[i][2]);
       const Vec3 normal = (b - a).cross(c - a).normalized();
       const double t = (a - from).dot(normal) / direction.dot(normal);
-      if (!(t > least_m && t < found.distance_m)) continue;
+      if (!(t > min_m && t < found.distance_m)) continue;
       const Vec3 p = from + t * direction;
       const auto inside = [&](const Vec3& u, const Vec3& v) {
         return normal.cross((v - u).normalized()).dot(p - u) >= margin_m;

@@ -122,14 +122,14 @@ TEST(ShowController, KeepsALimitOfPowerInWhatGoesOut) {
   small.rig.limits.max_watts = 30;
   small.rig.points[0].max_lx.reset();
   small.start().apply(small.now(), std::vector<double>{0.9, 0.6});  // 75 W
-  double most_watts = 0;
+  double max_watts = 0;
   for (int i = 0; i < 80; ++i) {
     small.run(0.1);
     const std::vector<double> level = small.levels();
-    most_watts = std::max(most_watts, 50 * (level[0] + level[1]));
+    max_watts = std::max(max_watts, 50 * (level[0] + level[1]));
   }
-  EXPECT_LE(most_watts, 30);
-  EXPECT_GT(most_watts, 29.9) << "goals of 40 lx want 39 W and more";
+  EXPECT_LE(max_watts, 30);
+  EXPECT_GT(max_watts, 29.9) << "goals of 40 lx want 39 W and more";
 }
 
 TEST(ShowController, ClampsLevelsThatAreOutOfRangeOrNoNumbers) {

@@ -84,12 +84,12 @@ TEST(ShowDesk, CannotPushALimitedPointAboveItsLimitWhateverItAsks) {
           std::vector<double> level(2);
           small.show->program().levels_at(at(s), level);
           // The most that the bounds of the model allow: gain_max, and everywhere off by the open-loop margin.
-          const double most_lx = (100 * level[0] + 10 * level[1]) * 1.15 / 0.75;
+          const double worst_case_lx = (100 * level[0] + 10 * level[1]) * 1.15 / 0.75;
           // Where a meter has confirmed the model, Luxrig's own light may rest on that.
           const double known_lx = (100 * 0.9 * level[0] + 10 * 0.95 * level[1]) / (1 - 0.05);
-          ASSERT_LE(small.status().desks[0].phase == DeskPhase::own ? known_lx : most_lx, 50 * (1 + 1e-9));
+          ASSERT_LE(small.status().desks[0].phase == DeskPhase::own ? known_lx : worst_case_lx, 50 * (1 + 1e-9));
           ASSERT_LE(level[1], 0.8);
-          brightest = std::max(brightest, most_lx);
+          brightest = std::max(brightest, worst_case_lx);
         }
       }
       EXPECT_GT(brightest, 45);

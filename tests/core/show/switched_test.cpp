@@ -206,7 +206,7 @@ struct Hall {
 
 TEST(Switched, ShowsKeepTheirLimitsAndDoNotRattleTheirRelays) {
   int met = 0, goals = 0, on_at_the_end = 0, forced_off = 0, flips = 0;
-  double most_share = 0;
+  double max_share = 0;
   for (unsigned seed = 0; seed < 300; ++seed) {
     const Hall hall(seed);
     ShowController show(hall.rig, hall.model);
@@ -225,7 +225,7 @@ TEST(Switched, ShowsKeepTheirLimitsAndDoNotRattleTheirRelays) {
       for (std::size_t i = 0; i < hall.rig.points.size(); ++i) {
         if (!hall.rig.points[i].max_lx) continue;
         const double share = lux[static_cast<Index>(i)] / *hall.rig.points[i].max_lx;
-        most_share = std::max(most_share, share);
+        max_share = std::max(max_share, share);
         ASSERT_LE(share, 1) << "seed " << seed << " at " << now_s << " s, point " << i;
       }
       for (std::size_t m = 0; m < 4; ++m) {
@@ -250,7 +250,7 @@ TEST(Switched, ShowsKeepTheirLimitsAndDoNotRattleTheirRelays) {
       "of 300 shows: %d of %d metered goals read within 10 %%; relays on at the end %d, kept off by a limit %d, "
       "switched %d "
       "times; most light %.3f of a limit\n",
-      met, goals, on_at_the_end, forced_off, flips, most_share);
+      met, goals, on_at_the_end, forced_off, flips, max_share);
   EXPECT_GT(on_at_the_end, 150);
   EXPECT_GT(forced_off, 20);
   EXPECT_LE(flips, on_at_the_end + 2 * forced_off) << "each is switched on once, and off at most once";

@@ -24,11 +24,11 @@ const double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// Points × lights with goals, fixed light, weights, limits and highest levels; every fourth is degenerate (equal or
 /// zero columns and rows, lights without level, no room below a limit), every fifth in wild units.
-EmittanceProblem random_problem(int seed, Index most_points, Index most_lights) {
+EmittanceProblem random_problem(int seed, Index max_points, Index max_lights) {
   std::mt19937 random(static_cast<unsigned>(seed));
   std::uniform_real_distribution<double> uniform;
   const auto pick = [&](Index n) { return std::uniform_int_distribution<Index>(0, n - 1)(random); };
-  const Index points = 1 + pick(most_points), lights = 1 + pick(most_lights);
+  const Index points = 1 + pick(max_points), lights = 1 + pick(max_lights);
   EmittanceProblem p;
   p.lux_per_level.resize(points, lights);
   for (double& value : p.lux_per_level.reshaped()) value = std::max(0.0, 300 * uniform(random) - 100);

@@ -50,9 +50,9 @@ class WellLight {
       for (int j = kFirst; j <= kLast; ++j) rig.points.push_back(place_in_well(i, j));
     lux_ = lux_anew(session, rig, levels, options);
   }
-  [[nodiscard]] double most_lx() const { return lux_.maxCoeff(); }
+  [[nodiscard]] double max_lx() const { return lux_.maxCoeff(); }
   /// On the well's floor, one of its recessed places.
-  [[nodiscard]] double most_recessed_lx() const {
+  [[nodiscard]] double max_recessed_lx() const {
     double most = 0;
     for (int i = kFirst; i <= kLast; ++i)
       for (int j = kFirst; j <= kLast; ++j)
@@ -183,9 +183,9 @@ TEST_F(AimTask, KeepsRecessedPlacesWithinTheLimitOfTheObjectWithReflectedLightTo
   const Eigen::VectorXd levels = levels_of(solved);
   const WellLight all(session, turned(solved), levels, options),
       direct(session, turned(solved), levels, direct_light());
-  EXPECT_LE(all.most_recessed_lx(), 1.08 * 150) << "its samples and their normals are not quite the mesh's";
-  EXPECT_GT(all.most_recessed_lx(), 0.8 * 150) << "no dimmer than the limit asks";
-  EXPECT_GT(all.most_recessed_lx(), 1.1 * direct.most_recessed_lx()) << "the walls give something";
+  EXPECT_LE(all.max_recessed_lx(), 1.08 * 150) << "its samples and their normals are not quite the mesh's";
+  EXPECT_GT(all.max_recessed_lx(), 0.8 * 150) << "no dimmer than the limit asks";
+  EXPECT_GT(all.max_recessed_lx(), 1.1 * direct.max_recessed_lx()) << "the walls give something";
 }
 
 TEST_F(AimTask, GivesAnEyeNoMoreDirectLightThanItMayHave) {
@@ -345,14 +345,14 @@ TEST_F(HighlightTask, KeepsTheLimitsOfAPointAndOfTheObjectThatItWouldElseBreak) 
   const std::string limited = replaced(kHighlight, "lights = 2\n", "lights = 2\nmax_object_lx = 120\n");
   double beside_lx = 0;
   const WellLight free = light_of(std::string(kWellRig) + kHighlight, beside_lx);
-  EXPECT_GT(free.most_recessed_lx(), 200);
+  EXPECT_GT(free.max_recessed_lx(), 200);
   EXPECT_GT(beside_lx, 60);
   const WellLight of_object = light_of(kWellRig + limited, beside_lx);
-  EXPECT_LE(of_object.most_recessed_lx(), 1.03 * 120);
-  EXPECT_GT(of_object.most_lx(), 0.8 * 120) << "no dimmer than the limit asks";
+  EXPECT_LE(of_object.max_recessed_lx(), 1.03 * 120);
+  EXPECT_GT(of_object.max_lx(), 0.8 * 120) << "no dimmer than the limit asks";
   const WellLight of_both = light_of(with_limit(kWellRig, 20) + limited, beside_lx);
   EXPECT_LE(beside_lx, 20 * (1 + 1e-9));
-  EXPECT_LE(of_both.most_recessed_lx(), 1.03 * 120);
+  EXPECT_LE(of_both.max_recessed_lx(), 1.03 * 120);
 }
 
 TEST_F(HighlightTask, TakesTheNumberOfLightsThatNoFewerOutdoAndListsTheOthers) {
@@ -480,13 +480,13 @@ TEST_F(HighlightTask, KeepsTheWholeObjectWithinItsLimit) {
   const Session session =
       well(std::string(kWellRig) + replaced(kHighlight, "lights = 2\n", "lights = 2\nmax_object_lx = 120\n"));
   const SolvedTasks solved = solved_of(session, direct_light());
-  EXPECT_LE(WellLight(session, turned(solved), levels_of(solved), direct_light()).most_lx(), 1.08 * 120);
+  EXPECT_LE(WellLight(session, turned(solved), levels_of(solved), direct_light()).max_lx(), 1.08 * 120);
 }
 
 TEST_F(AimTask, KeepsTheWholeObjectWithinItsLimit) {
   const Session session = well(std::string(kWellRig) + kAim + "max_object_lx = 120\n");
   const SolvedTasks solved = solved_of(session, direct_light());
-  EXPECT_LE(WellLight(session, turned(solved), levels_of(solved), direct_light()).most_lx(), 1.08 * 120);
+  EXPECT_LE(WellLight(session, turned(solved), levels_of(solved), direct_light()).max_lx(), 1.08 * 120);
 }
 
 TEST_F(AimTask, LightsTheObjectInADarkRoomWithTheContrastThatIsTheDefault) {

@@ -29,7 +29,7 @@ TEST(SimCamera, SeesTheTrueLightOfTheWorld) {
   view.width_px = 48;
   view.height_px = 32;
   PictureOptions options;
-  options.most_passes = 64;
+  options.max_passes = 64;
   options.wanted_relative_error = 0;
   const auto rendered = render_picture(room.room, emitters_of(room.rig), room.light.levels, view, options);
   ASSERT_TRUE(rendered);

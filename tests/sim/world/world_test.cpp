@@ -46,14 +46,14 @@ TEST(World, AnotherSeedIsAnotherWorld) { EXPECT_NE(readings_of_show(7, 10ms), re
 TEST(World, DeviationsStayWithinWhatIsStated) {
   Rig rig = tiny_rig();
   Deviations deviations;
-  double least_output = 2, most_output = 0;
+  double min_output = 2, max_output = 0;
   Vec3 squares = Vec3::Zero();
   int fixtures = 0;
   for (std::uint64_t seed = 1; seed <= 500; ++seed) {
     deviations.seed = seed;
     for (const FixtureTruth& truth : draw_fixtures(rig, deviations)) {
-      least_output = std::min(least_output, truth.output);
-      most_output = std::max(most_output, truth.output);
+      min_output = std::min(min_output, truth.output);
+      max_output = std::max(max_output, truth.output);
       EXPECT_LE(std::abs(truth.curve_exponent - 1), 0.08);
       const Vec3 offset_m = truth.world_from_mount.translation_m - rig.fixtures[0].world_from_mount.translation_m;
       EXPECT_LE(offset_m.cwiseAbs().maxCoeff(), 3 * 0.01 + 1e-12);
@@ -66,10 +66,10 @@ TEST(World, DeviationsStayWithinWhatIsStated) {
     const auto world = tiny_world(rig, deviations);
     for (const double gain : world->meter_gains()) EXPECT_LE(std::abs(gain - 1), 0.25 * 0.04);
   }
-  EXPECT_GE(least_output, 0.80);
-  EXPECT_LE(most_output, 1.05);
-  EXPECT_LT(least_output, 0.81);  // and the whole range is used
-  EXPECT_GT(most_output, 1.04);
+  EXPECT_GE(min_output, 0.80);
+  EXPECT_LE(max_output, 1.05);
+  EXPECT_LT(min_output, 0.81);  // and the whole range is used
+  EXPECT_GT(max_output, 1.04);
   // Standard deviation 0.01 m; clamping at 3 takes 0.25 % off it (see devices_test.cpp); 1500 draws know it to 2 %.
   for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(std::sqrt(squares[axis] / fixtures), 0.01, 0.0007);
 }

@@ -216,7 +216,7 @@ std::string dark_words(const LitRoom& room, double level, const LitRoom* seen = 
   const LitRoom& view = seen ? *seen : room;
   const Camera camera = automatic_camera(RayScene(view.scene), view.rig, {}, 32, 20, rad_from_deg(60));
   PictureOptions how;
-  how.most_passes = 1;
+  how.max_passes = 1;
   const auto picture = render_picture(rays, emitters, levels, camera, how);
   EXPECT_TRUE(picture.has_value());
   return why_dark(*picture, rays, room.rig, emitters, levels, "in p.json");

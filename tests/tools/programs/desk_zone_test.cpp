@@ -55,7 +55,7 @@ struct ZoneBench {
       if (f["name"] == "head") return {truth["time_s"], f["pan_deg"], f["tilt_deg"], f["level"]};
     return {};
   }
-  double most_at_a_seat_lx() {
+  double max_at_a_seat_lx() {
     double most = 0;
     const json truth = rig.truth();
     for (const json& p : truth.at("points"))
@@ -117,7 +117,7 @@ TEST_P(DeskAndZone, AHeadThatIsTurnedThroughAZoneIsDarkWhileItCrosses) {
     open.rig.reset_peaks();
     open.desk.set(aims(kPan_deg - 80, kTilt_deg, 255));
     ASSERT_TRUE(open.arrives(kPan_deg - 80, kTilt_deg, 0.95)) << open.rig.truth();
-    unguarded_lx = open.most_at_a_seat_lx();
+    unguarded_lx = open.max_at_a_seat_lx();
     ASSERT_GT(unguarded_lx, 50);
   }
   ZoneBench bench(GetParam());
@@ -149,7 +149,7 @@ TEST_P(DeskAndZone, AHeadThatIsTurnedThroughAZoneIsDarkWhileItCrosses) {
     EXPECT_GT(samples.back().level, 0.8) << "light comes back";
     side = -side;
   }
-  EXPECT_LT(bench.most_at_a_seat_lx(), 0.12 * unguarded_lx) << "of " << unguarded_lx;
+  EXPECT_LT(bench.max_at_a_seat_lx(), 0.12 * unguarded_lx) << "of " << unguarded_lx;
 }
 
 TEST_P(DeskAndZone, ADeskThatAimsIntoAZoneAndStaysHasADarkHeadThere) {

@@ -6,7 +6,7 @@
 namespace luxrig::testing {
 namespace {
 
-double least_level(const json& truth) {
+double min_level(const json& truth) {
   double least = 1;
   for (const json& f : truth.at("fixtures")) least = std::min(least, f["level"].get<double>());
   return least;
@@ -19,13 +19,13 @@ TEST(LeftAlone, ADaemonThatStandsStillLeavesTheLightToItsGuardianAndTakesItBack)
   ASSERT_TRUE(wait_for([&] { return rig.guardian_pid() > 1; }, 5s)) << rig.daemon().output();
   const pid_t guardian = rig.guardian_pid();
   std::this_thread::sleep_for(1s);
-  const double lit = least_level(rig.truth());
+  const double lit = min_level(rig.truth());
   ASSERT_GT(lit, 0.01);
   rig.daemon().signal(SIGSTOP);
   const auto stopped = std::chrono::steady_clock::now();
   double least = 1;
   while (std::chrono::steady_clock::now() - stopped < 5s) {
-    least = std::min(least, least_level(rig.truth()));
+    least = std::min(least, min_level(rig.truth()));
     std::this_thread::sleep_for(50ms);
   }
   rig.daemon().signal(SIGCONT);
@@ -99,13 +99,13 @@ TEST(LeftAlone, WithAFullLogTheRigIsLitAndItsGuardianKeepsIt) {
                         " --max-error 0.02 --port 0 --sim-ports " + rig.file("ports.json").string() + " --state " +
                         rig.file("state").string() + " > /dev/full 2>&1";
   Process daemon({"/bin/sh", "-c", command}, rig.file("shell.log"));
-  ASSERT_TRUE(wait_for([&] { return rig.guardian_pid() > 1 && least_level(rig.truth()) > 0.1; }, 60s));
+  ASSERT_TRUE(wait_for([&] { return rig.guardian_pid() > 1 && min_level(rig.truth()) > 0.1; }, 60s));
   daemon.signal(SIGKILL);
   (void)daemon.wait(5s);
   const auto killed = std::chrono::steady_clock::now();
   double least = 1;
   while (std::chrono::steady_clock::now() - killed < 4s) {
-    least = std::min(least, least_level(rig.truth()));
+    least = std::min(least, min_level(rig.truth()));
     std::this_thread::sleep_for(50ms);
   }
   EXPECT_GT(least, 0.05) << "the watched lamp goes dark 2 s after the last word";

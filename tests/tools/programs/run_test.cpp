@@ -342,12 +342,12 @@ TEST(Run, IdentifyShowsInTheRoomWhichLampItIsAndMonitorWhatGoesOut) {
   };
   const double before_lux = room_lux();
   ASSERT_EQ(luxrig::testing::run({program("luxrig"), "identify", name, "--seconds", "4", "--port", port}).code, 0);
-  double least_lux = before_lux, most_lux = before_lux;
+  double min_lux = before_lux, max_lux = before_lux;
   ASSERT_TRUE(wait_for(
       [&] {
         const double lux = room_lux();
-        least_lux = std::min(least_lux, lux), most_lux = std::max(most_lux, lux);
-        return most_lux - least_lux > 0.1 * before_lux;
+        min_lux = std::min(min_lux, lux), max_lux = std::max(max_lux, lux);
+        return max_lux - min_lux > 0.1 * before_lux;
       },
       4s))
       << before_lux;

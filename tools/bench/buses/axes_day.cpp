@@ -66,11 +66,11 @@ class DayOfHeads {
   }
   [[nodiscard]] double furthest_deg() const {
     const std::vector<Joints> joints = world_->joints();
-    double most_rad = 0;
+    double max_rad = 0;
     for (std::size_t i = 0; i < joints.size(); ++i)
-      most_rad = std::max(
-          {most_rad, std::abs(joints[i].pan_rad - aim_[i].pan_rad), std::abs(joints[i].tilt_rad - aim_[i].tilt_rad)});
-    return deg_from_rad(most_rad);
+      max_rad = std::max(
+          {max_rad, std::abs(joints[i].pan_rad - aim_[i].pan_rad), std::abs(joints[i].tilt_rad - aim_[i].tilt_rad)});
+    return deg_from_rad(max_rad);
   }
   [[nodiscard]] std::uint64_t frames() const {
     std::uint64_t all = 0;

@@ -14,7 +14,7 @@
 namespace luxrig {
 namespace {
 
-constexpr double kMostEncodeShare = 0.1;  // of a core
+constexpr double kMaxEncodeShare = 0.1;  // of a core
 constexpr const char* kDmxDay = "dmx-day";
 
 /// Accepts every packet.
@@ -83,7 +83,7 @@ BenchRow measure_encoding(const std::string& driver_name, int frames) {
   row.case_name = fmt::format("dmx-encode-{}-universes", kLoadUniverses);
   row.method = driver_name;
   row.error = std::nan("");
-  row.target_seconds = kMostEncodeShare * kLoadPeriod_s;
+  row.target_seconds = kMaxEncodeShare * kLoadPeriod_s;
   BusLoad load;
   EncodePath path(driver_name, frames * kLoadPeriod_s);
   std::vector<double> evaluating, encoding;

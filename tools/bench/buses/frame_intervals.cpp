@@ -9,7 +9,7 @@
 namespace luxrig {
 
 void TimeCounts::add(double seconds) {
-  const double us = std::clamp(std::ceil(1e6 * seconds), 0.0, static_cast<double>(kMost_us));
+  const double us = std::clamp(std::ceil(1e6 * seconds), 0.0, static_cast<double>(kMax_us));
   ++counts_[static_cast<std::size_t>(us)];
   ++count_;
   largest_ = std::max(largest_, seconds);
@@ -18,7 +18,7 @@ void TimeCounts::add(double seconds) {
 double TimeCounts::quantile(double share) const {
   const double wanted = share * static_cast<double>(count_);
   double seen = 0;
-  for (std::size_t us = 0; us < kMost_us; ++us) {
+  for (std::size_t us = 0; us < kMax_us; ++us) {
     seen += counts_[us];
     if (seen >= wanted && seen > 0) return std::min(1e-6 * static_cast<double>(us), largest_);
   }

@@ -18,8 +18,8 @@ class TimeCounts {
   [[nodiscard]] std::string histogram() const;
 
  private:
-  static constexpr std::size_t kMost_us = 100'000;
-  std::array<std::uint32_t, kMost_us + 1> counts_{};  ///< [i]: more than i-1, at most i; the last has all longer ones
+  static constexpr std::size_t kMax_us = 100'000;
+  std::array<std::uint32_t, kMax_us + 1> counts_{};  ///< [i]: more than i-1, at most i; the last has all longer ones
   std::uint64_t count_ = 0;
   double largest_ = 0;
 };

@@ -21,7 +21,7 @@ constexpr std::size_t kReplicates = kCacheReplicates;
 /// Reflections are followed until one adds less than this share of the sum. Phantom surfaces can reflect more light
 /// than they get (the thesis's own remark on eq. 3.10), so the number is limited, too.
 constexpr double kNegligible = 1e-3;
-constexpr int kMostReflections = 24;
+constexpr int kMaxReflections = 24;
 
 double unit_number(std::uint64_t key) { return static_cast<double>(key >> 11) * 0x1p-53; }
 
@@ -178,9 +178,9 @@ class DirectionCache final : public RadianceCache::Method {
           const double cosine = -way.dot(hit.normal_world);
           if (!(cosine > 0)) continue;
           // Places nearer than half a cell stand for the whole cell, whose light must not grow without bound.
-          const double distance_m = way.norm(), least_m = 0.5 * cells_.cell_m();
+          const double distance_m = way.norm(), min_m = 0.5 * cells_.cell_m();
           if (!cells_.visible(*rays, settings_, at_m, hit_m, jitter, rays_of_cell[c])) continue;
-          const Vec3 rgb = hit.flux_lm / kPi * (cosine / distance_m) / std::pow(std::max(distance_m, least_m), 2) *
+          const Vec3 rgb = hit.flux_lm / kPi * (cosine / distance_m) / std::pow(std::max(distance_m, min_m), 2) *
                            diffuse_equivalent_rgb(materials_[material_of_triangle_[hit.triangle]]);
           layout_.add(harmonics(way / distance_m), grey_ ? rgb : Vec3(rgb.cwiseProduct(emitter.colour_rgb)),
                       fields[k].row(static_cast<Eigen::Index>(c)));
@@ -261,7 +261,7 @@ class DirectionCache final : public RadianceCache::Method {
     for (const Field& field : fields) first += field / static_cast<float>(kReplicates);
     // The two buffers of §3.2.2: `last` is read, the next one is written, and they swap.
     Field later = Field::Zero(first.rows(), first.cols()), last = first;
-    const int most = settings_.reflections == 0 ? kMostReflections : settings_.reflections - 1 - (gathers ? 1 : 0);
+    const int most = settings_.reflections == 0 ? kMaxReflections : settings_.reflections - 1 - (gathers ? 1 : 0);
     for (int i = 0; i < most; ++i) {
       if (options.watch.stop.stop_requested()) return false;
       last = bounced(last, options);

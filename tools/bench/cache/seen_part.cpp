@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint64_t kSeenSamples = 0x7365656e;
 constexpr std::size_t kSightRays = 16384;
-constexpr std::size_t kMostReceivers = 1024;
+constexpr std::size_t kMaxReceivers = 1024;
 constexpr double kLeftOut = 0.005;  ///< of the rays, at either end
 constexpr double kMargin = 0.5;     ///< of the longest side
 /// A scene less than this many times as long is kept whole: cells are then only a little larger.
@@ -24,7 +24,7 @@ Eigen::AlignedBox3d seen_part_m(const Scene& scene, const RayScene& rays, std::s
                                 std::uint64_t seed) {
   const Eigen::AlignedBox3d whole_m = triangle_bounds_m(scene);
   if (receivers.empty() || whole_m.isEmpty()) return whole_m;
-  const std::size_t used = std::min(receivers.size(), kMostReceivers);
+  const std::size_t used = std::min(receivers.size(), kMaxReceivers);
   const auto of_each = static_cast<std::uint32_t>(kSightRays / used);
   std::array<std::vector<double>, 3> met_m;
   Eigen::AlignedBox3d part_m;

@@ -25,14 +25,14 @@ constexpr std::uint64_t kGatherSamples = 0x676174686572, kSideLightSamples = 0x6
                         kBrightSamples = 0x627269676874;
 constexpr std::size_t kSideReplicates = kCacheReplicates;
 /// The thinnest walls to expect, as a share of the covered part of the scene.
-constexpr double kLeastWall = 0.01;
+constexpr double kMinWall = 0.01;
 
 /// A side is bright for an emitter if it reflects at least this share of all that the emitter's light reflects.
 constexpr double kBrightShare = 1.0 / 256;
 /// If this many of a receiver's rays hit a side, they measure its form factor well enough.
 constexpr double kRaysThatMeasure = 64;
 /// The most unknowns for which later reflections are solved in advance, and the most numbers kept then.
-constexpr std::size_t kMostSolvedRows = 2048, kMostSolvedReads = 20'000'000;
+constexpr std::size_t kMaxSolvedRows = 2048, kMaxSolvedReads = 20'000'000;
 /// With cells n times as large the error of resolution is n times as large or more, so this share of the difference
 /// between both belongs to the finer one. Later reflections use the larger cells in both, which the difference does not
 /// show. Measured in the rooms of `luxrig bench transport`: twice the share covers both.
@@ -73,8 +73,8 @@ class SideCache final : public RadianceCache::Method {
                                                options.threads, options.watch.stop);
     if (options.watch.stop.stop_requested()) return false;
     read_groups();
-    if (exchange_->rows() > 0 && exchange_->rows() <= kMostSolvedRows &&
-        exchange_->rows() * receivers.size() <= kMostSolvedReads) {
+    if (exchange_->rows() > 0 && exchange_->rows() <= kMaxSolvedRows &&
+        exchange_->rows() * receivers.size() <= kMaxSolvedReads) {
       const Eigen::MatrixXf reads(group_reads_);
       reads_of_later_.resize(static_cast<std::size_t>(channels_));
       parallel_for(reads_of_later_.size(), options.threads,
@@ -334,7 +334,7 @@ class SideCache final : public RadianceCache::Method {
     std::uint64_t cast = 0;
     const auto pieces = sides_.pieces_of_side(side);
     const double area_m2 = sides_.area_of_side_m2(side);
-    const double most_rays = kRaysThatMeasure / (static_cast<double>(rays_per_replicate_) * kSideReplicates);
+    const double max_rays = kRaysThatMeasure / (static_cast<double>(rays_per_replicate_) * kSideReplicates);
     for (std::size_t r = begin; r < end; ++r) {
       const Receiver& receiver = receivers[r];
       const auto share_of = [&](const SurfacePiece& piece) {
@@ -346,7 +346,7 @@ class SideCache final : public RadianceCache::Method {
       };
       double most = 0;
       for (const SurfacePiece& piece : pieces) most = std::max(most, share_of(piece));
-      const bool measure = most < most_rays;
+      const bool measure = most < max_rays;
       measured[r - begin] = measure;
       if (!measure || most == 0) continue;
       for (std::uint32_t k = 0; k < kSideReplicates; ++k) {
@@ -392,13 +392,13 @@ BuiltMethod build_side_cache(const Scene& scene, const RayScene& rays, std::span
   const Eigen::AlignedBox3d part_m = seen_part_m(scene, rays, receivers, options.seed);
   if (!part_m.isEmpty()) {
     // The two sides of a wall are distinguished if it is thicker than this.
-    const double least_wall_m = 6 * rays.surface_error_m(scene.origin_world_m + part_m.center());
+    const double min_wall_m = 6 * rays.surface_error_m(scene.origin_world_m + part_m.center());
     const double part_side_m = part_m.sizes().maxCoeff(), whole_side_m = triangle_bounds_m(scene).sizes().maxCoeff();
-    if (least_wall_m > kLeastWall * part_side_m)
+    if (min_wall_m > kMinWall * part_side_m)
       return refusal(fmt::format(
           "the radiance cache cannot tell both sides of a wall of {:.2g} m apart beside surfaces of {:.3g} m: choose "
           "the model path or gather, or leave out what lies far off",
-          least_wall_m, whole_side_m));
+          min_wall_m, whole_side_m));
   }
   auto cache = std::make_unique<SideCache>(scene, rays, receivers, part_m, settings, options);
   if (!cache->build(scene, options))

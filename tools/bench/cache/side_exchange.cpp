@@ -15,7 +15,7 @@ namespace {
 constexpr std::uint64_t kExchangeSamples = 0x6c696e6b73;  // separates these random numbers from others
 /// Reflections are left out once the rest is below this share of the first.
 constexpr double kNegligibleShare = 1e-5;
-constexpr int kMostExchanges = 400;
+constexpr int kMaxExchanges = 400;
 
 /// Pieces of each group, by rising sum of area, to draw places from.
 struct GroupPlaces {
@@ -122,7 +122,7 @@ Eigen::VectorXd SideExchange::later(const Eigen::VectorXd& first, int channel) c
   const Eigen::VectorXd& reflectance = reflectance_[static_cast<std::size_t>(channel)];
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(first.size()), last = first, next(first.size());
   const double negligible = kNegligibleShare * first.lpNorm<1>();
-  const int most = reflections_ > 0 ? reflections_ - 1 : kMostExchanges;
+  const int most = reflections_ > 0 ? reflections_ - 1 : kMaxExchanges;
   for (int reflection = 0; reflection < most; ++reflection) {
     for (Eigen::Index row = 0; row < first.size(); ++row) {
       double lux = 0;

@@ -9,8 +9,8 @@
 
 namespace luxrig {
 
-inline constexpr int kMostCoefficients = 9;
-using Harmonics = Eigen::Matrix<double, kMostCoefficients, 1>;
+inline constexpr int kMaxCoefficients = 9;
+using Harmonics = Eigen::Matrix<double, kMaxCoefficients, 1>;
 
 [[nodiscard]] constexpr int coefficients_of_order(int order) { return order * order; }
 

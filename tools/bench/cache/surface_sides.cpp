@@ -15,7 +15,7 @@ constexpr double kLift = 0.02;
 /// Pieces to a cell's face; one more for each triangle that crosses the cell.
 constexpr double kPiecesPerFace = 16;
 /// Maximum: surfaces outside the grid belong to its outermost cells, however large they are.
-constexpr double kMostPieces = 64;
+constexpr double kMaxPieces = 64;
 /// Polygons thinner than this [cells] along an axis lie in one cell along it.
 constexpr double kThin = 1e-9;
 /// Parts of triangles smaller than this [cell faces] are left out. Where a cell's border runs along a triangle's edge,
@@ -149,7 +149,7 @@ void SurfaceSides::cut_up(const Scene& scene, int threads) {
                                          .cross(part.corners[static_cast<std::size_t>(i + 1)] - part.corners[0])
                                          .norm();
                      if (!(area > kDust)) return;
-                     const int count = 1 + static_cast<int>(std::min(area * kPiecesPerFace, kMostPieces));
+                     const int count = 1 + static_cast<int>(std::min(area * kPiecesPerFace, kMaxPieces));
                      const double area_m2 = area / count * cells_.voxel_m * cells_.voxel_m;
                      for (int i = 0; i < count; ++i) {
                        // The R2 sequence (M. Roberts, 2018), evenly spread for any count.

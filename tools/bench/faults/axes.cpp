@@ -129,9 +129,9 @@ class AxisCases {
 
   /// A moving axis cannot stop at once. After a new aim behind it, it may run on as far as its deceleration requires.
   void run_out() {
-    const auto stop_deg = [](const sim::AxisDrive& drive, double most_deg_s2) {
+    const auto stop_deg = [](const sim::AxisDrive& drive, double max_deg_s2) {
       const double speed = drive.speed_deg_s();
-      return speed * std::abs(speed) / (2 * most_deg_s2) + 0.05 * speed;  // and the handshake
+      return speed * std::abs(speed) / (2 * max_deg_s2) + 0.05 * speed;  // and the handshake
     };
     pan_.take(deg_from_rad(joints().pan_rad) + stop_deg(pan_drive(), 180));
     tilt_.take(deg_from_rad(joints().tilt_rad) + stop_deg(tilt_drive(), 120));

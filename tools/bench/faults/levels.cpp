@@ -196,8 +196,8 @@ class LevelCases {
     bool dark_allowed = false;
   };
 
-  bool wait_until_well(double most_s) {
-    const Time until = now_ + from_seconds(most_s);
+  bool wait_until_well(double max_s) {
+    const Time until = now_ + from_seconds(max_s);
     while (now_ < until && !(well_since_ && now_ - *well_since_ >= kWellFor)) cycle();
     return well_since_ && now_ - *well_since_ >= kWellFor;
   }

@@ -51,7 +51,7 @@ void add_aim_rows(HighlightObject& object, const BenchOptions& options, std::vec
     const std::string name = fmt::format("aims-{}-{}", object.name(), count);
     if (!highlight_wanted(options, name)) continue;
     ReliefStudyOptions of_study = options_of_study(options);
-    of_study.interest.most_points = std::min(of_study.interest.most_points, kAimPoints);
+    of_study.interest.max_points = std::min(of_study.interest.max_points, kAimPoints);
     const auto studied = study_relief(object.scene(), of_study);
     LUXRIG_CHECK(studied, "{}", studied.error().detail);
     const ReliefStudy& study = *studied;

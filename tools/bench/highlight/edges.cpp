@@ -21,7 +21,7 @@ std::vector<OrientedPoint> voting_points(HighlightObject& object, const BenchOpt
   if (options.quick) return object.study().points;
   const ReliefStudy& study = object.study();
   InterestOptions more = options_of_study(options).interest;
-  more.most_points = kHundredMillionRays * 3 / 2;
+  more.max_points = kHundredMillionRays * 3 / 2;
   const auto curvature = curvature_of(study.mesh, {{.threads = options.threads, .watch = {}}, study.scale_m});
   if (!curvature) return study.points;
   const auto interest = interest_points(study.mesh, *curvature, more);

@@ -16,7 +16,7 @@ namespace luxrig {
 namespace {
 
 constexpr double kWithinExhaustive = 0.05;
-constexpr int kRandomPlacements = 200, kMostNumber = 12, kQuickNumber = 4;
+constexpr int kRandomPlacements = 200, kMaxNumber = 12, kQuickNumber = 4;
 constexpr std::size_t kCoveragePoints = 3000;
 
 Vec3 random_direction(std::mt19937_64& random) {
@@ -160,7 +160,7 @@ void add_number_rows(HighlightObject& object, const BenchOptions& options, std::
   const CallSeconds took = timed([&] {
     const auto search = ReliefLightSearch::make(study.surface, study.rays, study.interest, of_search);
     LUXRIG_CHECK(search, "{}", search.error().detail);
-    count = search->count_lights(options.quick ? kQuickNumber : kMostNumber);
+    count = search->count_lights(options.quick ? kQuickNumber : kMaxNumber);
     rays = search->table().rays;
   });
   LUXRIG_CHECK(count, "{}", count.error().detail);

@@ -20,7 +20,7 @@ namespace luxrig {
 namespace {
 
 constexpr double kMountedWithin = 0.05;  // below exhaustive
-constexpr int kMountedRandom = 200, kMostMounted = 12, kQuickMounted = 4;
+constexpr int kMountedRandom = 200, kMaxMounted = 12, kQuickMounted = 4;
 constexpr double kMountedLumens = 1000, kMountedBeam_rad = rad_from_deg(20), kMountedField_rad = rad_from_deg(40);
 constexpr double kBoxStep_m = 0.5;
 
@@ -284,7 +284,7 @@ void add_mounted_rows(HighlightObject& object, const BenchOptions& options, std:
 void add_mounted_number_rows(HighlightObject& object, const BenchOptions& options, std::vector<BenchRow>& rows) {
   const std::string name = "mounted-number-" + object.name();
   if (!highlight_wanted(options, name)) return;
-  const int most = options.quick ? kQuickMounted : kMostMounted;
+  const int most = options.quick ? kQuickMounted : kMaxMounted;
   MountedCase of(object, options);
   const auto add = [&](std::string method, const std::vector<AimedPlace>& lights, const SampleContrast& contrast,
                        double peak, const CallSeconds& took) {

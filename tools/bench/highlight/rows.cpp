@@ -30,7 +30,7 @@ constexpr std::size_t kStudyPoints = 3000, kQuickStudyPoints = 300;
 
 ReliefStudyOptions options_of_study(const BenchOptions& options) {
   ReliefStudyOptions study;
-  study.interest.most_points = options.quick ? kQuickStudyPoints : kStudyPoints;
+  study.interest.max_points = options.quick ? kQuickStudyPoints : kStudyPoints;
   study.threads = options.threads;
   return study;
 }

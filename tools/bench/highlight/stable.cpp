@@ -39,15 +39,15 @@ double moved_rad(const std::vector<Vec3>& before, std::vector<Vec3> after) {
   if (before.size() != after.size()) return kPi;
   std::vector<std::size_t> order(after.size());
   for (std::size_t k = 0; k < order.size(); ++k) order[k] = k;
-  double least_rad = kPi;
+  double min_rad = kPi;
   do {
     double worst_rad = 0;
     for (std::size_t k = 0; k < order.size(); ++k)
       worst_rad =
           std::max(worst_rad, std::atan2(before[k].cross(after[order[k]]).norm(), before[k].dot(after[order[k]])));
-    least_rad = std::min(least_rad, worst_rad);
+    min_rad = std::min(min_rad, worst_rad);
   } while (std::next_permutation(order.begin(), order.end()));
-  return least_rad;
+  return min_rad;
 }
 
 }  // namespace

@@ -7,10 +7,9 @@
 namespace luxrig {
 
 std::vector<CoverageLight> coverage_lights(const TargetSurface& surface, const TargetRays& target,
-                                           const DirectionBins& bins, int lights, std::size_t most_points,
-                                           int threads) {
+                                           const DirectionBins& bins, int lights, std::size_t max_points, int threads) {
   const std::size_t all = surface.points_m.size();
-  const std::size_t count = most_points == 0 ? all : std::min(all, most_points);
+  const std::size_t count = max_points == 0 ? all : std::min(all, max_points);
   std::vector<Vec3f> directions;
   for (std::uint32_t b = 0; b < bins.count(); ++b) directions.push_back(bins.direction_of(b).cast<float>());
 

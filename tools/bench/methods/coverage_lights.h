@@ -17,10 +17,10 @@ struct CoverageLight {
 /// Every point of the surface votes, with its area, for the middle of each bin from which light reaches it. The bin
 /// with most votes is taken (on a tie, the lower one), and the votes of the points that it lights are removed from all
 /// other bins. This repeats, and ends early when no bin lights anything more.
-/// most_points   a larger surface is judged by evenly strided points; 0 = all
+/// max_points   a larger surface is judged by evenly strided points; 0 = all
 /// The same for any number of threads.
 [[nodiscard]] std::vector<CoverageLight> coverage_lights(const TargetSurface& surface, const TargetRays& target,
-                                                         const DirectionBins& bins, int lights, std::size_t most_points,
+                                                         const DirectionBins& bins, int lights, std::size_t max_points,
                                                          int threads);
 
 }  // namespace luxrig

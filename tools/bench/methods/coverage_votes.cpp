@@ -65,9 +65,8 @@ Result<CoverageVotes> vote_for_coverage(const LightDomain& domain, const TargetS
   if (!(options.nearest_m >= 0) || !std::isfinite(options.nearest_m) || !(options.reach_m > nearest_m))
     return refusal(fmt::format("luminaires cannot be {} to {} m from the target", nearest_m, options.reach_m));
   const std::vector<LightDomain::CellCentre> centres = domain.cell_centres();
-  std::size_t count = options.most_points == 0 ? all : std::min(all, options.most_points);
-  if (options.most_votes > 0)
-    count = std::min(count, std::max<std::size_t>(1, 2 * options.most_votes / centres.size()));
+  std::size_t count = options.max_points == 0 ? all : std::min(all, options.max_points);
+  if (options.max_votes > 0) count = std::min(count, std::max<std::size_t>(1, 2 * options.max_votes / centres.size()));
 
   CoverageVotes result;
   double area_m2 = 0;

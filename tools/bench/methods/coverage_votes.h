@@ -13,8 +13,8 @@ struct CoverageVoteOptions : Run {
   Surroundings surroundings;
   double nearest_m = 0;  ///< as in DomainVoteOptions
   double reach_m = std::numeric_limits<double>::infinity();
-  std::size_t most_points = 2000;                 ///< a larger surface is judged by evenly strided points
-  std::size_t most_votes = std::size_t{1} << 23;  ///< even fewer points, if half of all cells reach each
+  std::size_t max_points = 2000;                 ///< a larger surface is judged by evenly strided points
+  std::size_t max_votes = std::size_t{1} << 23;  ///< even fewer points, if half of all cells reach each
 };
 
 struct CoverageVotes {

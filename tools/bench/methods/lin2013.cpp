@@ -19,10 +19,10 @@ class LinCuts {
     PlacedLights lights = state.placed(columns_);
     columns_ +=
         refine_with_levels_by_simplex(lights, *problem_.light, *problem_.goal,
-                                      simplex_of(problem_, options_, options_.most_columns, columns_, options_.better));
+                                      simplex_of(problem_, options_, options_.max_columns, columns_, options_.better));
     return lights;
   }
-  [[nodiscard]] bool ended() const { return options_.watch.stop.stop_requested() || columns_ >= options_.most_columns; }
+  [[nodiscard]] bool ended() const { return options_.watch.stop.stop_requested() || columns_ >= options_.max_columns; }
   [[nodiscard]] std::size_t columns() const { return columns_; }
 
  private:
@@ -38,7 +38,7 @@ Result<FoundLights> place_by_lin2013(const PlacementProblem& problem, const Plac
   const auto candidates = CandidateLights::make(problem);
   if (!candidates) return tl::unexpected(candidates.error());
   std::vector<TreeCut> cuts = coarse_to_fine_cuts(*candidates, options.watch.stop);
-  const std::size_t most = options.lights > 0 ? options.lights : options.most_lights;
+  const std::size_t most = options.lights > 0 ? options.lights : options.max_lights;
   std::vector<std::pair<std::size_t, double>> tree;
   for (const TreeCut& cut : cuts) tree.emplace_back(cut.candidates.size(), cut.error);
   while (!cuts.empty() && cuts.back().candidates.size() > most) cuts.pop_back();
@@ -53,7 +53,7 @@ Result<FoundLights> place_by_lin2013(const PlacementProblem& problem, const Plac
       found.cuts.push_back(found.lights);
       while (++cut < cuts.size() && !at.ended() && found.lights.error() > options.number.wanted_error) {
         found.cuts.push_back(at.refined(cuts[cut]));
-        if (found.cuts.back().error() > (1 - options.number.least_improvement) * found.lights.error()) break;
+        if (found.cuts.back().error() > (1 - options.number.min_improvement) * found.lights.error()) break;
         found.lights = found.cuts.back();
       }
     }

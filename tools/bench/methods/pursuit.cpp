@@ -10,7 +10,7 @@ Result<FoundLights> place_by_pursuit(const PlacementProblem& problem, const Plac
   const auto report = reporter(options.better, columns);
   ChosenCandidates chosen(*candidates);
   std::vector<std::pair<std::size_t, double>> cuts = {{0, chosen.error()}};
-  pursue(chosen, options.lights > 0 ? options.lights : options.most_lights, options.number.wanted_error,
+  pursue(chosen, options.lights > 0 ? options.lights : options.max_lights, options.number.wanted_error,
          options.watch.stop, [&](const ChosenCandidates& so_far) {
            cuts.emplace_back(so_far.size(), so_far.error());
            if (report) report(so_far);

@@ -64,7 +64,7 @@ void add_whole(const NnlsBenchProblem& one, int runs, bool slow, std::vector<Ben
                           solution.iterations, "checking the input included"));
   if (slow) {
     NnlsOptions single;
-    single.most_entering = 1;
+    single.max_entering = 1;
     NnlsSolution other;
     const double seconds = median_seconds(1, [&] { other = *solve_nnls(problem, single); });
     rows.push_back(nnls_row(one, "one-at-a-time", other.kkt.worst(), seconds, {}, other.residual_norm, in_use(other.x),

@@ -20,7 +20,7 @@ constexpr CurveCase kCurveCases[] = {{"apartment-known", 0},    {"office-known",
                                      {"studio-two-lights", 2},  {"atrium-uniform", 17}};
 constexpr const char* kCurveMethods[] = {"luxrig", "gpk15", "gpk15-subplex", "gp16-subplex", "lin2013", "annealing"};
 constexpr double kTimes_s[] = {0.1, 0.2, 0.3, 0.5, 0.7, 1, 1.5, 2, 3, 5, 7, 10};
-constexpr double kLeastDrawn = 1e-6;  ///< the plot's axis is logarithmic
+constexpr double kMinDrawn = 1e-6;  ///< the plot's axis is logarithmic
 
 double error_at(const Solved& solved, double ready_s, double at_s) {
   double error = 1;
@@ -50,7 +50,7 @@ std::vector<BenchRow> bench_placement_curves(const BenchOptions& options) {
                                        {.lights = lights,
                                         .seed = key,
                                         .threads = options.threads,
-                                        .most_seconds = kTimes_s[std::size(kTimes_s) - 1]}));
+                                        .max_seconds = kTimes_s[std::size(kTimes_s) - 1]}));
         say_row_made(name, kCurveMethods[m]);
       }
     }
@@ -63,9 +63,9 @@ std::vector<BenchRow> bench_placement_curves(const BenchOptions& options) {
           return errors[static_cast<std::size_t>(share * static_cast<double>(errors.size() - 1) + 0.5)];
         };
         BenchRow row = empty_placement_row(name, kCurveMethods[m]);
-        row.error = std::max(kLeastDrawn, quartile(0.5));
+        row.error = std::max(kMinDrawn, quartile(0.5));
         row.seconds = at_s;
-        row.quartiles = {std::max(kLeastDrawn, quartile(0.25)), std::max(kLeastDrawn, quartile(0.75))};
+        row.quartiles = {std::max(kMinDrawn, quartile(0.25)), std::max(kMinDrawn, quartile(0.75))};
         set_further(row, "note", fmt::format("quartiles {:.3g} to {:.3g}", quartile(0.25), quartile(0.75)));
         say_row_made(row);
         rows.push_back(std::move(row));

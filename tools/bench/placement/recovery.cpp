@@ -16,7 +16,7 @@ namespace {
 struct RecoverySuite {
   const char* case_name;
   bool number_given;
-  std::optional<double> most_error, most_seconds;  ///< wanted of nine in ten
+  std::optional<double> max_error, max_seconds;  ///< wanted of nine in ten
 };
 constexpr RecoverySuite kRecoveries[] = {
     {"apartment-known", true, 0.002, 2}, {"apartment-known", false, 0.002, 4}, {"office-known", true, 0.003, 3},
@@ -38,7 +38,7 @@ std::vector<BenchRow> bench_placement_recovery(const BenchOptions& options) {
   for (const RecoverySuite& suite : kRecoveries) {
     const std::string name = fmt::format("{}-{}", suite.case_name, suite.number_given ? "given" : "open");
     if (name.rfind(options.only, 0) != 0) continue;
-    if (options.quick && name != options.only && !suite.most_error) continue;
+    if (options.quick && name != options.only && !suite.max_error) continue;
     const int seeds = options.quick ? 3 : options.seeds.value_or(100);
     std::vector<double> errors, walls, cpus, places_m, fluxes;
     double found = 0;
@@ -68,8 +68,8 @@ std::vector<BenchRow> bench_placement_recovery(const BenchOptions& options) {
       set_further(row, "farthest_m", fmt::format("{:.3g}", quantile(places_m, share)));
       set_further(row, "worst_flux", fmt::format("{:.3g}", quantile(fluxes, share)));
       if (share == 0.9) {
-        row.target_error = suite.most_error;
-        row.target_seconds = suite.most_seconds;
+        row.target_error = suite.max_error;
+        row.target_seconds = suite.max_seconds;
       }
       rows.push_back(std::move(row));
     }

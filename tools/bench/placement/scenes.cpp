@@ -17,7 +17,7 @@ namespace {
 struct SceneTarget {
   const char* case_name;
   std::size_t lights;  ///< given; 0 = open
-  std::optional<double> most_error, most_seconds;
+  std::optional<double> max_error, max_seconds;
 };
 const SceneTarget kSceneTargets[] = {
     {"apartment-known", 8, 0.08, {}},  {"apartment-known", 0, 0.002, 4.0},
@@ -40,7 +40,7 @@ constexpr double kSearchSeconds = 60, kBoundSeconds = 60;
 /// For at most as many lights. Lights of the search may lie off the candidates; bounds are for the candidates.
 double bound_for(const ReadyCase& ready, const Solved& solved, bool quick) {
   CountBoundOptions options;
-  options.most_lights = solved.poses.size();
+  options.max_lights = solved.poses.size();
   options.guesses = {{solved.poses.size(), solved.residual}};
   if (quick) {
     options.price_rounds = 3;
@@ -82,15 +82,15 @@ std::vector<BenchRow> bench_placement_scenes(const BenchOptions& options) {
       if (!options.method.empty() && options.method != method_name) return 0;
       const PlacementMethod& method = *find_compared_method(method_name);
       const Solved solved =
-          solve_case(**ready, method, {.lights = lights, .threads = options.threads, .most_seconds = kSearchSeconds});
+          solve_case(**ready, method, {.lights = lights, .threads = options.threads, .max_seconds = kSearchSeconds});
       std::optional<double> bound;
       const bool ours = std::string_view(method_name) == "luxrig";
       if (options.bounds && ours && !global && solved.refused.empty() && solved.error > kRecoveredError)
         bound = bound_for(**ready, solved, options.quick);
       rows.push_back(placement_row(row_name, method_name, **ready, solved, bound));
       if (ours && row_name == name) {
-        rows.back().target_error = target.most_error;
-        rows.back().target_seconds = target.most_seconds;
+        rows.back().target_error = target.max_error;
+        rows.back().target_seconds = target.max_seconds;
       }
       say_row_made(rows.back());
       return solved.poses.size();

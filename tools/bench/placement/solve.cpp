@@ -93,8 +93,8 @@ Solved solve_case(const ReadyCase& ready, const PlacementMethod& method, const S
   options.seed = how.seed;
   options.threads = how.threads;
   options.number.wanted_error = how.wanted_error;
-  options.most_columns = ready.of().global ? kGlobalColumns : kSearchColumns;
-  const StopAfter time_up(how.most_seconds);
+  options.max_columns = ready.of().global ? kGlobalColumns : kSearchColumns;
+  const StopAfter time_up(how.max_seconds);
   options.watch.stop = time_up.token();
   const auto start = Steady::now();
   options.better = [&](const BestSoFar& best) {
@@ -103,7 +103,7 @@ Solved solve_case(const ReadyCase& ready, const PlacementMethod& method, const S
   };
   solved.seconds = timed([&] {
     CorrectedPlacementOptions correction;
-    correction.most_rounds = kGatherRounds;
+    correction.max_rounds = kGatherRounds;
     if (ready.of().global)
       correction.lux_of = [&](std::span<const LightPose> poses, const Eigen::VectorXd& levels) {
         return gathered_lux(ready, poses, levels, how.threads);

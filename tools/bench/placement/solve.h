@@ -64,7 +64,7 @@ struct SolveCaseOptions {
   std::uint64_t seed = 1;
   int threads = 0;
   double wanted_error = 1e-4;
-  std::optional<double> most_seconds{};  ///< of the search, which then ends with the best so far
+  std::optional<double> max_seconds{};  ///< of the search, which then ends with the best so far
 };
 
 /// Global cases end with correct_lights() against gathered light of 1 %.

@@ -20,7 +20,7 @@ std::vector<Facet> facets_of(const Scene& scene, const SurfacePart& part) {
   std::vector<bool> wanted(scene.object_names.size());
   for (std::size_t o = 0; o < wanted.size(); ++o)
     wanted[o] = part.objects.empty() || std::count(part.objects.begin(), part.objects.end(), scene.object_names[o]);
-  const double least_cos = std::cos(part.within_rad) - 1e-9;
+  const double min_cos = std::cos(part.within_rad) - 1e-9;
   double area_m2 = 0;
   std::vector<Facet> facets;
   for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
@@ -35,7 +35,7 @@ std::vector<Facet> facets_of(const Scene& scene, const SurfacePart& part) {
     if (!(size_m2 > 0)) continue;
     Vec3 normal = twice_m2 / (2 * size_m2);
     if (part.either_side && normal.dot(part.facing_world) < 0) normal = -normal;
-    if (normal.dot(part.facing_world) < least_cos) continue;
+    if (normal.dot(part.facing_world) < min_cos) continue;
     facets.push_back({a_m, b_m - a_m, c_m - a_m, normal, area_m2 += size_m2});
   }
   return facets;

@@ -91,7 +91,7 @@ CandidateOptions candidate_options(const BenchOptions& options, bool indirect) {
   CandidateOptions of;
   of.indirect = indirect;
   // Entries below a ten-thousandth of the brightest do not matter for the light that a lamp is hung for.
-  if (indirect) of.least_lux = 0.01;
+  if (indirect) of.min_lux = 0.01;
   of.threads = options.threads;
   return of;
 }

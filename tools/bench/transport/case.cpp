@@ -85,8 +85,8 @@ std::uint64_t hash_of(const LitRoom& room) {
 }
 
 RoomError error_of(const Eigen::VectorXd& lux, const Eigen::VectorXd& reference_lux, double floor) {
-  const double least_lx = floor * reference_lux.mean();
-  const Eigen::ArrayXd relative = (lux - reference_lux).array() / reference_lux.array().max(least_lx);
+  const double min_lx = floor * reference_lux.mean();
+  const Eigen::ArrayXd relative = (lux - reference_lux).array() / reference_lux.array().max(min_lx);
   return {std::sqrt(relative.square().mean()), relative.mean()};
 }
 

@@ -174,14 +174,14 @@ void add_object(const TransportCase& one, const BenchOptions& options, std::vect
     return ((was->lux_per_level - is.lux_per_level).array().abs() > 1e-9 * was->lux_per_level.maxCoeff()).count();
   };
   std::optional<MovedObject> most;
-  Eigen::Index most_changes = -1;
+  Eigen::Index max_changes = -1;
   for (std::uint32_t o = 0; o < before.object_names.size(); ++o) {
     if (before.object_names[o] != "sculpture") continue;
     MovedObject moved = object_moved(before, o);
     const RayScene rays(moved.after);
     const auto is = make_direct_evaluator(rays)->evaluate(one.room.receivers, one.room.emitters, {});
-    if (!is || changes(*is) <= most_changes) continue;
-    most_changes = changes(*is);
+    if (!is || changes(*is) <= max_changes) continue;
+    max_changes = changes(*is);
     most = std::move(moved);
   }
   if (!most) return;
@@ -215,7 +215,7 @@ void add_object(const TransportCase& one, const BenchOptions& options, std::vect
       rows.back(),
       fmt::format("{} entries of {} change; {} rays where all lamps at all receivers take {}; the scene made ready "
                   "for rays again {:.3g} s",
-                  most_changes, lux.size(), *cast, is->rays, scene_took.wall));
+                  max_changes, lux.size(), *cast, is->rays, scene_took.wall));
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ constexpr CandidateSkip kSkips[] = {
     {"unlit", &CandidateSkips::unlit, &CandidateStatistics::columns_unlit, "columns"},
     {"foretold", &CandidateSkips::foretold, nullptr, ""}};
 /// Entries that `reach` leaves out: far below any useful illuminance.
-constexpr double kLeastLux = 0.01;
+constexpr double kMinLux = 0.01;
 
 /// Anywhere in the box around a room except its lowest fifth, walls and furniture included, as in a lattice. An
 /// isotropic lamp and a spot that faces down, 1 000 lm each.
@@ -66,7 +66,7 @@ MatrixRun run_of(const TransportCase& one, const CandidateSet& set, const Candid
 void add_skips(const TransportCase& one, bool indirect, const BenchOptions& options, std::vector<BenchRow>& rows) {
   const CandidateSet set = places_in(one, options.quick ? 300 : indirect ? 500 : 10'000);
   CandidateOptions of = candidate_options(options, indirect);
-  of.least_lux = kLeastLux;
+  of.min_lux = kMinLux;
   if (options.quick) of.surface_cells = 2'000;
   const int runs = options.quick || indirect ? 1 : 3;
   const MatrixRun with = run_of(one, set, of, runs);
@@ -100,12 +100,12 @@ void add_skips(const TransportCase& one, bool indirect, const BenchOptions& opti
     const CandidateStatistics& statistics = with.transport.statistics;
     const std::uint64_t of_all =
         set.columns() * (std::string_view(skip.what) == "pairs" ? one.room.receivers.size() : 1);
-    add(skip.name, skips, skip.field == &CandidateSkips::reach ? kLeastLux : 0,
+    add(skip.name, skips, skip.field == &CandidateSkips::reach ? kMinLux : 0,
         skip.count ? fmt::format("skips {} of {} {}; ", statistics.*skip.count, of_all, skip.what)
                    : fmt::format("{} nodes and {} others of {} columns looked at; ", statistics.nodes,
                                  statistics.columns_looked_at, of_all));
   }
-  add("all", {false, false, false, false, false, false}, kLeastLux, "");
+  add("all", {false, false, false, false, false, false}, kMinLux, "");
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ constexpr double kDark_lx = 0.1;  // full moon
 constexpr double kClose_m = 0.1;
 constexpr std::uint32_t kLampRays = 64;
 constexpr double kNearlyAll = 0.9;
-constexpr std::size_t kMostLampsNamed = 6;
+constexpr std::size_t kMaxLampsNamed = 6;
 
 /// Where the light of a lamp goes: the fate of nine rays in ten.
 std::string fate_of(const RayScene& scene, const Emitter& lamp) {
@@ -47,8 +47,8 @@ std::string why_dark(const Picture& picture, const RayScene& scene, const Rig& r
     if (lx >= 0) lux.push_back(lx);
   if (lux.empty()) return "the picture shows nothing: no surface is in view; look elsewhere with --eye and --target";
   std::sort(lux.begin(), lux.end());
-  const double most_lx = lux[static_cast<std::size_t>(0.999 * static_cast<double>(lux.size() - 1))];
-  if (most_lx >= kDark_lx) return "";
+  const double max_lx = lux[static_cast<std::size_t>(0.999 * static_cast<double>(lux.size() - 1))];
+  if (max_lx >= kDark_lx) return "";
   std::vector<std::size_t> on;
   bool daylight = false;
   double lumens = 0;
@@ -66,14 +66,14 @@ std::string why_dark(const Picture& picture, const RayScene& scene, const Rig& r
     return fmt::format("the picture is dark: no lamp gives light, all {} are at level 0 {}", rig.fixtures.size(),
                        when_set);
   }
-  std::string text = fmt::format("the picture is dark: nothing in view gets more than {:.2g} lx", most_lx);
+  std::string text = fmt::format("the picture is dark: nothing in view gets more than {:.2g} lx", max_lx);
   if (daylight) text += "; no daylight comes in where the camera looks";
   if (on.empty()) return text;
   text += fmt::format(". {} on {}, {:.3g} lm together:",
                       on.size() == 1 ? "One lamp is" : fmt::format("{} lamps are", on.size()), when_set, lumens);
-  for (std::size_t i = 0; i < std::min(on.size(), kMostLampsNamed); ++i)
+  for (std::size_t i = 0; i < std::min(on.size(), kMaxLampsNamed); ++i)
     text += fmt::format("{} {} {}", i == 0 ? "" : ",", rig.fixtures[on[i]].name, fate_of(scene, emitters[on[i]]));
-  if (on.size() > kMostLampsNamed) text += fmt::format(", and {} more", on.size() - kMostLampsNamed);
+  if (on.size() > kMaxLampsNamed) text += fmt::format(", and {} more", on.size() - kMaxLampsNamed);
   return text;
 }
 

@@ -60,7 +60,7 @@ std::optional<WhiteBalance> white_balance_of(const std::string& text) {
   if (text == "daylight") return balance;
   std::string_view rest = text;
   const auto number = take_number(rest);
-  if (!number || *number < kLeastCct_k || *number > kMostCct_k || (!rest.empty() && rest != "K")) return std::nullopt;
+  if (!number || *number < kMinCct_k || *number > kMaxCct_k || (!rest.empty() && rest != "K")) return std::nullopt;
   balance.cct_k = *number;
   return balance;
 }
@@ -78,13 +78,13 @@ double metered_white_cd_m2(const Picture& picture) {
   double sum = 0;
   for (std::size_t i = cut; i < luminances.size() - cut; ++i) sum += std::log(luminances[i]);
   const double grey_cd_m2 = std::exp(sum / static_cast<double>(luminances.size() - 2 * cut));
-  const double least_lit = kLitShare * at_share(luminances, 0.999);
-  luminances.erase(luminances.begin(), std::lower_bound(luminances.begin(), luminances.end(), least_lit));
+  const double min_lit = kLitShare * at_share(luminances, 0.999);
+  luminances.erase(luminances.begin(), std::lower_bound(luminances.begin(), luminances.end(), min_lit));
   return std::max(kWhiteOverGrey * grey_cd_m2, at_share(luminances, 0.98) / kBurnShare);
 }
 
 LampWhite white_of_lamps(std::span<const Emitter> emitters, std::span<const double> levels) {
-  constexpr double kMostOff = 0.02;  // in u'v' from the black bodies: still called white
+  constexpr double kMaxOff = 0.02;  // in u'v' from the black bodies: still called white
   Vec3 light = Vec3::Zero();
   for (std::size_t e = 0; e < emitters.size(); ++e) {
     if (!(levels[e] > 0)) continue;
@@ -96,9 +96,9 @@ LampWhite white_of_lamps(std::span<const Emitter> emitters, std::span<const doub
   const Eigen::Vector2d uv = uv_of(*rgb);
   LampWhite white;
   // Lamps without a stated colour are D65, which no black body has.
-  double nearest = std::min(kMostOff, (uv_of(white.rgb) - uv).norm());
-  for (double mired = 1e6 / kMostCct_k; mired <= 1e6 / kLeastCct_k; mired += 1) {
-    const double cct_k = std::clamp(1e6 / mired, kLeastCct_k, kMostCct_k);
+  double nearest = std::min(kMaxOff, (uv_of(white.rgb) - uv).norm());
+  for (double mired = 1e6 / kMaxCct_k; mired <= 1e6 / kMinCct_k; mired += 1) {
+    const double cct_k = std::clamp(1e6 / mired, kMinCct_k, kMaxCct_k);
     const Vec3 body = rgb_of_cct(cct_k);
     const double off = (uv_of(body) - uv).norm();
     if (off < nearest) nearest = off, white = {body, cct_k};

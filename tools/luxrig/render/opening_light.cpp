@@ -10,7 +10,7 @@ namespace luxrig {
 namespace {
 
 constexpr double kWorthSaying = 0.01;
-constexpr std::size_t kMostLines = 12;
+constexpr std::size_t kMaxLines = 12;
 
 }  // namespace
 
@@ -30,11 +30,11 @@ std::string opening_light_text(const Plan& plan, const Rig& rig) {
   std::string text;
   std::size_t count = 0;
   for (const PlannedPoint& point : plan.points)
-    if (point.opening_lux && ++count <= kMostLines)
+    if (point.opening_lux && ++count <= kMaxLines)
       text += fmt::format("  {}: {:.1f} lx in place of {:.1f} lx\n", point.name, *point.opening_lux, point.lux);
   if (count == 0) return text;
-  if (count > kMostLines)
-    text += fmt::format("  and {} more: opening_lux of the points in the plan (-o, --json)\n", count - kMostLines);
+  if (count > kMaxLines)
+    text += fmt::format("  and {} more: opening_lux of the points in the plan (-o, --json)\n", count - kMaxLines);
   const bool metered = std::any_of(rig.luxmeters.begin(), rig.luxmeters.end(), [&](const Luxmeter& meter) {
     return meter.point && rig.points[*meter.point].max_lx;
   });

@@ -30,7 +30,7 @@
 namespace luxrig {
 namespace {
 
-constexpr int kMostPasses = 4096;
+constexpr int kMaxPasses = 4096;
 
 /// That of a plan, after its placed lights are hung; or each fixture at its highest level.
 Checked<HungPlan> wanted_look(const RenderOptions& options, const Rig& rig) {
@@ -104,7 +104,7 @@ int run_render(const RenderOptions& options) {
   how.threads = options.threads;
   how.wanted_relative_error = options.max_error;
   how.watch.stop = stop_on_signals();
-  how.most_passes = options.passes.value_or(kMostPasses);
+  how.max_passes = options.passes.value_or(kMaxPasses);
   const Progress progress = progress_line("rendering");
   const auto start = std::chrono::steady_clock::now();
   how.after_pass = [&](double done, double) {

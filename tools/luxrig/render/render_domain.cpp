@@ -16,7 +16,7 @@ namespace {
 const Vec3 kRoom = Vec3::Constant(0.78), kShownObject(0.60, 0.56, 0.50);
 /// Cells with less than this share of the heaviest are left out: they would be specks. Those of boxes would also stand
 /// between eye and object.
-constexpr double kLeastShareMounted = 0.02, kLeastShareOfBoxes = 0.15;
+constexpr double kMinShareMounted = 0.02, kMinShareOfBoxes = 0.15;
 
 struct WeighedCell {
   Vec3 centre_world_m;
@@ -121,11 +121,11 @@ Result<Figure> domain_figure(const ShownRig& rig, const ShownObject& object, con
     shown.push_back(point.position_world_m);
     wanted.push_back({point.position_world_m, point.normal, 1.0 / static_cast<double>(object.study.points.size())});
   }
-  const double least_share = domain->mounted ? kLeastShareMounted : kLeastShareOfBoxes;
+  const double min_share = domain->mounted ? kMinShareMounted : kMinShareOfBoxes;
   double weight_sum = 0;
   for (const WeighedCell& cell : domain->cells) weight_sum += cell.weight;
   for (const WeighedCell& cell : domain->cells) {
-    if (cell.weight >= least_share * heaviest->weight) shown.push_back(cell.centre_world_m);
+    if (cell.weight >= min_share * heaviest->weight) shown.push_back(cell.centre_world_m);
     wanted.push_back({cell.centre_world_m, Vec3::Zero(), cell.weight / weight_sum});
   }
   const double fov_rad = rad_from_deg(options.vertical_fov_deg.value_or(kShowFov_deg));
@@ -147,7 +147,7 @@ Result<Figure> domain_figure(const ShownRig& rig, const ShownObject& object, con
   std::vector<Disc> discs;
   for (const WeighedCell& cell : domain->cells) {
     const double share = cell.weight / heaviest->weight;
-    if (share < least_share) continue;
+    if (share < min_share) continue;
     Disc disc{cell.centre_world_m, cell.normal, cell.radius_m, 0, viridis(share).cast<float>(), 1};
     // Boxes stand before the object. Cells of little weight are small and pale, so that the object shows through.
     if (!domain->mounted) {
@@ -181,7 +181,7 @@ Result<Figure> domain_figure(const ShownRig& rig, const ShownObject& object, con
   figure.key.push_back({FigureMark::dot, kShownObject, object.name});
   figure.key.push_back({FigureMark::none, Vec3::Zero(),
                         fmt::format("{} places; those below {:g} % of the heaviest are left out", domain->cells.size(),
-                                    100 * least_share)});
+                                    100 * min_share)});
   return figure;
 }
 

@@ -126,9 +126,9 @@ Result<Figure> interest_figure(const ShownObject& object, const RenderOptions& o
   auto picture = object_picture(object, options, [](const SurfaceCorners&) { return kPlainObject; });
   if (!picture) return tl::unexpected(picture.error());
   picture->draw(interest_discs(object, 0.7));
-  double least_recess_per_m = -std::numeric_limits<double>::infinity(), area_m2 = 0;
+  double min_recess_per_m = -std::numeric_limits<double>::infinity(), area_m2 = 0;
   for (const std::uint32_t i : object.study.interest) {
-    least_recess_per_m = std::max(least_recess_per_m, object.study.curvature[i].mean_per_m());
+    min_recess_per_m = std::max(min_recess_per_m, object.study.curvature[i].mean_per_m());
     area_m2 += object.study.surface.areas_m2[i];
   }
   Figure figure;
@@ -138,7 +138,7 @@ Result<Figure> interest_figure(const ShownObject& object, const RenderOptions& o
   figure.key = {{FigureMark::dot, kInterestRgb,
                  fmt::format("interest point ({} in all, those behind not seen)", object.study.interest.size())},
                 {FigureMark::none, Vec3::Zero(),
-                 fmt::format("mean curvature below {:.3g} 1/m; together {:.2g} % of the surface", least_recess_per_m,
+                 fmt::format("mean curvature below {:.3g} 1/m; together {:.2g} % of the surface", min_recess_per_m,
                              100 * area_m2 / object.study.surface.area_m2())}};
   return figure;
 }

@@ -66,9 +66,9 @@ std::optional<LightInForce> handed_light_of(const std::string& text, std::size_t
     return std::nullopt;
   for (const json& one : joints) {
     if (!one.is_array() || one.size() != 3) return std::nullopt;
-    constexpr double kMost_rad = 1e3;
-    const Joints read{number_within(one[0], -kMost_rad, kMost_rad), number_within(one[1], -kMost_rad, kMost_rad),
-                      number_within(one[2], -kMost_rad, kMost_rad)};
+    constexpr double kMax_rad = 1e3;
+    const Joints read{number_within(one[0], -kMax_rad, kMax_rad), number_within(one[1], -kMax_rad, kMax_rad),
+                      number_within(one[2], -kMax_rad, kMax_rad)};
     if (std::isnan(read.pan_rad + read.tilt_rad + read.beam_rad)) return std::nullopt;
     light.look.joints.push_back(read);
   }

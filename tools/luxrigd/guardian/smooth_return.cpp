@@ -6,7 +6,7 @@
 namespace luxrig {
 namespace {
 
-constexpr double kLeastRate_per_s = 0.25;
+constexpr double kMinRate_per_s = 0.25;
 /// Factor on the fastest rate of the running fade; an s-curve is fastest in its middle.
 constexpr double kFasterThanTheFade = 1.25, kPeakOfSCurve = 1.5;
 constexpr Duration kShortestStall = std::chrono::milliseconds(100);
@@ -35,7 +35,7 @@ void SmoothReturn::apply(Time now, const OutputProgram& program, bool dark, std:
     double way = 0;
     for (std::size_t f = 0; f < level.size(); ++f)
       if (!on_or_off(f)) way = std::max(way, std::abs(wanted_[f] - last_[f]));
-    const double step = std::max(kLeastRate_per_s, fade_rate_per_s(program, now)) * to_seconds(cycle_);
+    const double step = std::max(kMinRate_per_s, fade_rate_per_s(program, now)) * to_seconds(cycle_);
     returning_ = way > step;
     if (returning_) {
       for (std::size_t f = 0; f < level.size(); ++f)

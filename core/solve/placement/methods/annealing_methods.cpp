@@ -34,7 +34,7 @@ Result<FoundLights> annealed_and_refined(const PlacementProblem& problem, const 
     if (of_start.better) of_start.better(first);
     const ChosenCandidates best = anneal(std::move(first), of_start, random);
     FoundLights found{best.placed(columns)};
-    columns += refine_by_simplex(found.lights, simplex_of(problem, options, start.most_columns, columns, start.better));
+    columns += refine_by_simplex(found.lights, simplex_of(problem, options, start.max_columns, columns, start.better));
     found.columns = columns;
     return found;
   });

@@ -35,14 +35,14 @@ class CutWalk {
     ChosenCandidates chosen(candidates_);
     std::vector<PlacedLights> looked_at;
     std::size_t within = 0;
-    while (within < cuts.size() && cuts[within].candidates.size() <= options_.most_lights) ++within;
+    while (within < cuts.size() && cuts[within].candidates.size() <= options_.max_lights) ++within;
     for (std::size_t i = first_cut(cuts, within); i < within; ++i) {
       ChosenCandidates state(candidates_);
       state.choose(cuts[i].candidates);
       state = anneal(std::move(state), annealing_, random_);
       const double was = chosen.error();
       looked_at.push_back(state.placed(columns_));
-      if (chosen.size() > 0 && !(state.error() <= (1 - options_.number.least_improvement) * was)) break;
+      if (chosen.size() > 0 && !(state.error() <= (1 - options_.number.min_improvement) * was)) break;
       chosen = std::move(state);
       if (chosen.error() <= options_.number.wanted_error || options_.watch.stop.stop_requested()) break;
     }
@@ -54,7 +54,7 @@ class CutWalk {
   [[nodiscard]] std::size_t first_cut(const std::vector<TreeCut>& cuts, std::size_t within) const {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < within; ++i) least = std::min(least, cuts[i].error);
-    const double enough = std::max(options_.number.coarse_error, (1 + options_.number.least_improvement) * least);
+    const double enough = std::max(options_.number.coarse_error, (1 + options_.number.min_improvement) * least);
     std::size_t first = 0;
     while (first < within && cuts[first].error > enough) ++first;
     return first;
@@ -62,7 +62,7 @@ class CutWalk {
   FoundLights refined(const ChosenCandidates& chosen, std::vector<PlacedLights> looked_at) {
     FoundLights found{chosen.placed(columns_)};
     columns_ +=
-        refine_by_simplex(found.lights, simplex_of(problem_, options_, start_.most_columns, columns_, start_.better));
+        refine_by_simplex(found.lights, simplex_of(problem_, options_, start_.max_columns, columns_, start_.better));
     found.columns = columns_;
     found.cuts = std::move(looked_at);
     return found;

@@ -8,7 +8,7 @@ namespace luxrig {
 namespace {
 
 /// Share of the goal's norm below which a leaf is dropped.
-constexpr double kLeastLeaf = 1e-3;
+constexpr double kMinLeaf = 1e-3;
 
 std::vector<std::size_t> leaves_of(const CandidateLights& candidates, const std::stop_token& stop) {
   NnlsOptions options;
@@ -20,7 +20,7 @@ std::vector<std::size_t> leaves_of(const CandidateLights& candidates, const std:
   for (const std::size_t candidate : candidates.lit())
     for (std::size_t e = 0; e < candidates.emitters(); ++e) {
       const auto column = static_cast<Eigen::Index>(candidate * candidates.emitters() + e);
-      if (!(scaled.z_of(column, solution->x[column]) > kLeastLeaf)) continue;
+      if (!(scaled.z_of(column, solution->x[column]) > kMinLeaf)) continue;
       leaves.push_back(candidate);
       break;
     }

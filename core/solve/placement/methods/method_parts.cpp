@@ -10,13 +10,13 @@ std::optional<Fault> missing_number(const PlacementOptions& options) {
   return fault;
 }
 
-SimplexOptions simplex_of(const PlacementProblem& problem, const PlacementOptions& options, std::size_t most_columns,
+SimplexOptions simplex_of(const PlacementProblem& problem, const PlacementOptions& options, std::size_t max_columns,
                           std::size_t columns, const std::function<void(const BestSoFar&)>& better) {
   SimplexOptions simplex;
   simplex.subplex = options.subplex;
   simplex.cell_m = problem.spacing_m;
   simplex.wanted_error = options.number.wanted_error;
-  simplex.most_columns = most_columns > columns ? most_columns - columns : 0;
+  simplex.max_columns = max_columns > columns ? max_columns - columns : 0;
   simplex.stop = options.watch.stop;
   if (better)
     simplex.better = [better, columns](const BestSoFar& best) {

@@ -13,7 +13,7 @@ namespace luxrig {
 
 /// Simplex options for lights at candidates, with `columns` of the budget already used.
 [[nodiscard]] SimplexOptions simplex_of(const PlacementProblem& problem, const PlacementOptions& options,
-                                        std::size_t most_columns, std::size_t columns,
+                                        std::size_t max_columns, std::size_t columns,
                                         const std::function<void(const BestSoFar&)>& better);
 
 /// Reports lights at candidates.

@@ -36,13 +36,13 @@ struct BestSoFar {
 
 struct PlacementOptions : Run {
   std::size_t lights = 0;        ///< 0 = the method chooses the number
-  std::size_t most_lights = 64;  ///< that it may choose
+  std::size_t max_lights = 64;   ///< that it may choose
   /// wanted_error also ends a search with a given number. coarse_error is GP16's ε_opt: GP16 does not refine
   /// numbers of lights with a larger error.
   NumberRule number;
-  std::size_t most_columns = 200'000;  ///< limit of columns to compute; the last step may exceed it
+  std::size_t max_columns = 200'000;   ///< limit of columns to compute; the last step may exceed it
   int iterations = 0;                  ///< of one annealing; 0 = as many as the method was described or tuned with
-  /// Number of starts of a method that draws at random; the best stays, and most_columns is for all together.
+  /// Number of starts of a method that draws at random; the best stays, and max_columns is for all together.
   int starts = 1;
   /// For baselines that refine by Nelder & Mead's simplex: use Rowan's subplex (1990), which runs that simplex in
   /// subspaces of a few unknowns and does not fail with thirty of them.

@@ -14,7 +14,7 @@ namespace {
 /// Size of the first simplex, as a share of the way to the bounds.
 constexpr double kFirstStep = 0.5;
 /// A level rises by at most this many times its start.
-constexpr double kMostRise = 3;
+constexpr double kMaxRise = 3;
 
 struct SimplexProblem {
   Eigen::VectorXd lower, upper;  ///< of unknowns that start at 0
@@ -53,8 +53,8 @@ void run_simplex(const SimplexProblem& problem, const SimplexOptions& options) {
   nlopt_set_upper_bounds(solver.get(), problem.upper.data());
   nlopt_set_initial_step(solver.get(), first_step.data());
   nlopt_set_stopval(solver.get(), options.wanted_error);
-  nlopt_set_ftol_rel(solver.get(), options.least_change);
-  nlopt_set_maxeval(solver.get(), options.most_evaluations_per_unknown * static_cast<int>(count));
+  nlopt_set_ftol_rel(solver.get(), options.min_change);
+  nlopt_set_maxeval(solver.get(), options.max_evaluations_per_unknown * static_cast<int>(count));
   double error = 0;
   nlopt_optimize(solver.get(), unknowns.data(), &error);
 }
@@ -77,7 +77,7 @@ std::size_t refine_by_simplex(PlacedLights& lights, const SimplexOptions& option
   SimplexProblem problem;
   problem.upper = bounds_of_pose(freedoms, options).replicate(count, 1);
   problem.lower = -problem.upper;
-  problem.ended = [&] { return options.stop.stop_requested() || columns >= options.most_columns; };
+  problem.ended = [&] { return options.stop.stop_requested() || columns >= options.max_columns; };
   problem.error = [&](const Eigen::VectorXd& unknowns) {
     for (Eigen::Index k = 0; k < count; ++k) {
       const auto of = unknowns.segment(k * freedoms, freedoms);
@@ -119,7 +119,7 @@ std::size_t refine_with_levels_by_simplex(PlacedLights& lights, const MovableLig
       // A light that starts dark is measured by the brightest.
       double& unit = scale[k * emitters + e] = level > 0 ? level : largest_level > 0 ? largest_level : 1;
       problem.lower[at + freedoms + e] = -level / unit;
-      problem.upper[at + freedoms + e] = std::clamp((goal.max_level - level) / unit, 0.0, kMostRise);
+      problem.upper[at + freedoms + e] = std::clamp((goal.max_level - level) / unit, 0.0, kMaxRise);
     }
   }
   const Eigen::VectorXd wanted = goal.weighted();
@@ -127,7 +127,7 @@ std::size_t refine_with_levels_by_simplex(PlacedLights& lights, const MovableLig
   std::vector<LightPose> best_poses = start.poses();
   double best = start.error();
   Eigen::VectorXd lux;
-  problem.ended = [&] { return options.stop.stop_requested() || columns >= options.most_columns; };
+  problem.ended = [&] { return options.stop.stop_requested() || columns >= options.max_columns; };
   problem.error = [&](const Eigen::VectorXd& unknowns) {
     std::vector<LightPose> poses = start.poses();
     Eigen::VectorXd rest = wanted, levels = start.levels();

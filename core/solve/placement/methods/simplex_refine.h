@@ -16,9 +16,9 @@ struct SimplexOptions {
   double cell_m = 0.3;         ///< largest move of a light along each axis
   double turn_rad = 0.3;       ///< largest turn of its aim about each of two axes
   double wanted_error = 1e-4;  ///< ends the search
-  double least_change = 1e-4;  ///< relative change of the error across the simplex; less ends the search
-  int most_evaluations_per_unknown = 200;
-  std::size_t most_columns = 200'000;  ///< also ends the search
+  double min_change = 1e-4;    ///< relative change of the error across the simplex; less ends the search
+  int max_evaluations_per_unknown = 200;
+  std::size_t max_columns = 200'000;  ///< also ends the search
   std::stop_token stop;
   std::function<void(const BestSoFar&)> better;  ///< with the columns of this call
 };

@@ -22,7 +22,7 @@ FoundLights best_of_starts(const PlacementOptions& options,
   parallel_for(count, options.threads, [&](std::size_t i) {
     if (i > first_to_reach || (i > 0 && options.watch.stop.stop_requested())) return;
     PlacementStart start{
-        static_cast<int>(i), options.seed * 0x9E3779B97F4A7C15ull + i, options.most_columns / count, {}};
+        static_cast<int>(i), options.seed * 0x9E3779B97F4A7C15ull + i, options.max_columns / count, {}};
     if (options.better)
       start.better = [&, i](const BestSoFar& better) {
         const std::lock_guard lock(mutex);

@@ -10,7 +10,7 @@ namespace luxrig {
 struct PlacementStart {
   int index = 0;
   std::uint64_t seed = 0;
-  std::size_t most_columns = 0;                  ///< its share
+  std::size_t max_columns = 0;                   ///< its share
   std::function<void(const BestSoFar&)> better;  ///< passes on results that are the best of all starts
 };
 

@@ -22,7 +22,7 @@ struct AimedRelief {
   AimedRelief() : study(of(scene)), samples(one_ring_samples(study.surface, study.interest)) {}
   static ReliefStudy of(const Scene& scene) {
     ReliefStudyOptions options;
-    options.interest.most_points = 600;
+    options.interest.max_points = 600;
     auto study = study_relief(scene, options);
     EXPECT_TRUE(study);
     return std::move(*study);

@@ -82,9 +82,9 @@ TEST(HeadAims, LightsNothingThatItMayNot) {
   // The first head may not look where it would, nor near it.
   ASSERT_GT(free->heads[0].setting.level, 0);
   const Vec3 forbidden = lamp_pose(heads[0], free->heads[0].setting.joints).direction({0, 0, -1});
-  const double least_rad = rad_from_deg(6);
+  const double min_rad = rad_from_deg(6);
   heads[0].may_light = [&](const Joints& at) {
-    return std::acos(std::clamp(lamp_pose(heads[0], at).direction({0, 0, -1}).dot(forbidden), -1.0, 1.0)) > least_rad;
+    return std::acos(std::clamp(lamp_pose(heads[0], at).direction({0, 0, -1}).dot(forbidden), -1.0, 1.0)) > min_rad;
   };
   heads[1].may_light = [](const Joints&) { return false; };
   const auto kept = relief.aims(heads)->solve();

@@ -12,7 +12,7 @@ namespace luxrig::relief_lights_fixture {
 
 inline ReliefStudy studied(const Scene& scene, std::size_t most) {
   ReliefStudyOptions options;
-  options.interest.most_points = most;
+  options.interest.max_points = most;
   auto study = study_relief(scene, options);
   EXPECT_TRUE(study);
   return std::move(*study);

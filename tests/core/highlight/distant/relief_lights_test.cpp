@@ -110,7 +110,7 @@ TEST(ReliefLights, ShineAcrossAGroove) {
 TEST(ReliefLights, KeepTheirDistanceAndAreBetterThanWhereTheyStart) {
   const ReliefStudy study = studied(make_terrain(100, 60), 200);
   ReliefLightOptions options;
-  options.least_angle_rad = rad_from_deg(40);
+  options.min_angle_rad = rad_from_deg(40);
   const ReliefLightSearch search = searched(study, options);
   const std::vector<Vec3> start = {Vec3(0.1, 0, 1), Vec3(-1, 0.2, 0.1), Vec3(0, -0.3, 1)};
   const auto from_start = search.lights(3, start), greedy = search.lights(3);
@@ -185,7 +185,7 @@ TEST(ReliefLights, RefuseWhatMakesNoSense) {
   options.preference = 1.5;
   EXPECT_FALSE(made(options));
   options = {};
-  options.least_angle_rad = -1;
+  options.min_angle_rad = -1;
   EXPECT_FALSE(made(options));
   options = {};
   options.spread_rad = std::numeric_limits<double>::quiet_NaN();

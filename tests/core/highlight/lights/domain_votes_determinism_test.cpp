@@ -37,7 +37,7 @@ TEST(DomainVotes, AreTheSameForAnyNumberOfThreads) {
     EXPECT_TRUE(lights);
     CoverageVoteOptions coverage;
     coverage.threads = threads;
-    coverage.most_points = 100;
+    coverage.max_points = 100;
     auto covering = vote_for_coverage(*domain, *surface, target, coverage);
     EXPECT_TRUE(covering);
     return std::tuple(std::move(*votes), std::move(*lights), std::move(*covering));

@@ -200,13 +200,13 @@ TEST(DomainVotes, AreBoundedInNumber) {
   const DrawnEdges drawn(40, 100, 4);
   const LightDomain domain = domain_over(ceiling(1000, 1), Vec3::Zero(), {even_layers_m(2), 4});
   DomainVoteOptions options;
-  options.most_votes = 1000;
+  options.max_votes = 1000;
   const auto few = vote_on_domain(domain, drawn.edges, drawn.points, drawn.features, options);
   ASSERT_TRUE(few);
   EXPECT_EQ(few->every, 8u);
   EXPECT_LE(few->votes.size(), 1000u);
   EXPECT_EQ(few->counts.rays, 500u);
-  options.most_votes = 0;
+  options.max_votes = 0;
   const auto all = vote_on_domain(domain, drawn.edges, drawn.points, drawn.features, options);
   EXPECT_EQ(all->counts.rays, 4000u);
 }
@@ -284,7 +284,7 @@ TEST(DomainVotes, OfDegenerateDomainsAreFiniteOrRefused) {
       EXPECT_NEAR(vote.direction.norm(), 1, 1e-6);
     }
     PotentialLightOptions options;
-    options.least_votes = 1;
+    options.min_votes = 1;
     const auto lights = potential_lights(*votes, options);
     ASSERT_TRUE(lights);
     for (const PotentialLight& light : lights->lights) {
@@ -300,7 +300,7 @@ TEST(CoverageVotes, OfASphereComeFromThePlacesThatSeeThem) {
   const auto surface = make_target_surface(scene);
   const auto domain = nested_box_domain(*surface, {1, 1, 1, 4});
   CoverageVoteOptions options;
-  options.most_points = 300;
+  options.max_points = 300;
   const auto covering = vote_for_coverage(*domain, *surface, target, options);
   ASSERT_TRUE(covering);
   std::uint64_t expected = 0, unsure = 0;

@@ -11,7 +11,7 @@ namespace luxrig::judged_lights_fixture {
 
 inline ReliefStudy studied_for_lights(const Scene& scene) {
   ReliefStudyOptions options;
-  options.interest.most_points = 200;
+  options.interest.max_points = 200;
   auto study = study_relief(scene, options);
   EXPECT_TRUE(study);
   return std::move(*study);

@@ -71,9 +71,9 @@ struct DrawnRow {
     const auto seen = static_cast<double>(std::ranges::count(shown, 1)) / static_cast<double>(shown.size());
     return contrast * (1 + wishes.coverage_weight * seen);
   }
-  [[nodiscard]] bool apart(std::uint32_t a, std::uint32_t b, double least_rad) const {
+  [[nodiscard]] bool apart(std::uint32_t a, std::uint32_t b, double min_rad) const {
     const Vec3 x = lights[a].position_world_m.normalized(), y = lights[b].position_world_m.normalized();
-    return std::atan2(x.cross(y).norm(), x.dot(y)) >= least_rad;
+    return std::atan2(x.cross(y).norm(), x.dot(y)) >= min_rad;
   }
 };
 
@@ -108,16 +108,16 @@ TEST(JudgedSelection, OneIsTheBestAndOfAPairNoneCanBeBetteredAlone) {
     selection.settle();
     const std::uint32_t a = index_of(row, selection.taken()[0]), b = index_of(row, selection.taken()[1]);
     const double pair = row.judged({a, b}, wishes);
-    EXPECT_TRUE(row.apart(a, b, wishes.least_angle_rad));
+    EXPECT_TRUE(row.apart(a, b, wishes.min_angle_rad));
     EXPECT_NEAR(selection.score().judged / pair, 1, 1e-5);
     double best_pair = 0;
     for (std::uint32_t i = 0; i < 30; ++i) {
       for (const std::uint32_t kept : {a, b}) {
-        const bool allowed = i != kept && row.apart(i, kept, wishes.least_angle_rad);
+        const bool allowed = i != kept && row.apart(i, kept, wishes.min_angle_rad);
         EXPECT_LE(allowed ? row.judged({i, kept}, wishes) : 0, pair * (1 + 1e-5));
       }
       for (std::uint32_t j = 0; j < i; ++j)
-        if (row.apart(i, j, wishes.least_angle_rad)) best_pair = std::max(best_pair, row.judged({i, j}, wishes));
+        if (row.apart(i, j, wishes.min_angle_rad)) best_pair = std::max(best_pair, row.judged({i, j}, wishes));
     }
     EXPECT_LE(pair, best_pair * (1 + 1e-5));
     EXPECT_GT(pair, 0.9 * best_pair);
@@ -155,7 +155,7 @@ TEST(JudgedSelection, AddedAndRemovedIsAsBefore) {
   for (std::size_t i = 0; i < selection.taken().size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       EXPECT_TRUE(row.apart(index_of(row, selection.taken()[i]), index_of(row, selection.taken()[j]),
-                            selection.wishes().least_angle_rad));
+                            selection.wishes().min_angle_rad));
   EXPECT_LT(selection.taken().size(), 25u);
 }
 
@@ -220,7 +220,7 @@ TEST(JudgedLights, RefuseWhatCannotBeLit) {
   EXPECT_FALSE(made(nowhere, {}));
   EXPECT_FALSE(made({}, {}));
   JudgedLightOptions options;
-  options.least_angle_rad = -1;
+  options.min_angle_rad = -1;
   EXPECT_FALSE(made(above, options));
   options = {};
   options.first_points = 0;

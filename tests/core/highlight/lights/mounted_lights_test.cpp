@@ -106,7 +106,7 @@ TEST(PotentialLights, ShineAgainstTheirVotes) {
   const DomainVotes votes = one_cell({{a, 0, 200}, {a, 2, 100}, {b, 1, 100}, {c, 3, 6}}, 5);
   PotentialLightOptions options;
   options.beam_angle_rad = rad_from_deg(20);
-  options.least_share = 0;
+  options.min_share = 0;
   const auto lights = potential_lights(votes, options);
   ASSERT_TRUE(lights);
   ASSERT_EQ(lights->lights.size(), 2u);  // six votes are too few
@@ -119,11 +119,11 @@ TEST(PotentialLights, ShineAgainstTheirVotes) {
   EXPECT_EQ(lights->of(0)[0].points, 100u);
   EXPECT_DOUBLE_EQ(lights->of(0)[0].weight, 50);
   EXPECT_EQ(lights->of(0)[1].feature, 2u);
-  options.least_share = 0.5;
+  options.min_share = 0.5;
   EXPECT_EQ(potential_lights(votes, options)->lights.size(), 1u);
   options.beam_angle_rad = 2 * kPi;  // a bare lamp: all votes belong to one light
   EXPECT_EQ(potential_lights(votes, options)->lights[0].votes, 406u);
-  options.least_votes = 1000;
+  options.min_votes = 1000;
   EXPECT_FALSE(potential_lights(votes, options));
   options = {};
   options.beam_angle_rad = 0;

@@ -76,7 +76,7 @@ Chosen chosen(const Scene& scene, const TargetRays& target, std::size_t most, in
   const auto surface = make_target_surface(scene);
   const auto curvature = curvature_of(*surface, {{}, suggested_curvature_radius_m(*surface)});
   InterestOptions options;
-  options.most_points = most;
+  options.max_points = most;
   const auto interest = interest_points(*surface, *curvature, options);
   std::vector<OrientedPoint> points;
   for (const std::uint32_t i : *interest) points.push_back({surface->point_world_m(i), surface->normals[i]});

@@ -17,7 +17,7 @@ inline Bench with_interest_points(const Scene& scene, std::size_t most) {
   const auto surface = make_target_surface(scene);
   const auto curvature = curvature_of(*surface, {{}, suggested_curvature_radius_m(*surface)});
   InterestOptions options;
-  options.most_points = most;
+  options.max_points = most;
   const auto interest = interest_points(*surface, *curvature, options);
   Bench bench{*surface, {}};
   for (const std::uint32_t i : *interest) bench.points.push_back({surface->point_world_m(i), surface->normals[i]});

@@ -88,7 +88,7 @@ TEST(InterestPoints, ThinnedOutStaySpreadOverTheFeature) {
   const Prepared p = prepared(grooved_plate(), 0.1);
   InterestOptions options;
   options.wanted_share = 0.03;
-  options.most_points = 60;
+  options.max_points = 60;
   const auto points = found(p, options);
   EXPECT_LE(points.size(), 60u);
   EXPECT_GE(points.size(), 40u);

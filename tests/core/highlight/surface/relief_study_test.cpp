@@ -12,7 +12,7 @@ namespace {
 
 TEST(ReliefStudy, KeepsFeaturesTogetherWhenPointsAreLeftOut) {
   ReliefStudyOptions options;
-  options.interest.most_points = 400;
+  options.interest.max_points = 400;
   const auto made = study_relief(make_carved_relief(0.02), options);
   ASSERT_TRUE(made);
   const std::vector<std::uint32_t> interest = made->interest, cluster = made->features.cluster_of_point;

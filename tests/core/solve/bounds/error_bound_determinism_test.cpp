@@ -14,7 +14,7 @@ TEST(ErrorBoundsByCount, AreTheSameForAnyNumberOfThreads) {
   std::vector<std::vector<double>> all;
   for (const int threads : {1, 2, 5}) {
     CountBoundOptions options;
-    options.most_lights = 4;
+    options.max_lights = 4;
     options.threads = threads;
     all.push_back(error_bounds_by_count(tiny.candidates(), options));
   }

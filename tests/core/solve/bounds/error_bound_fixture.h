@@ -69,7 +69,7 @@ struct TinyLights {
   }
 
   /// Least errors with at most 0 … most lights, by trying all choices.
-  [[nodiscard]] std::vector<double> least_errors(std::size_t most) const {
+  [[nodiscard]] std::vector<double> min_errors(std::size_t most) const {
     const VectorXd b = weighted_goal();
     const MatrixXd all = weighted();
     std::vector<double> least(most + 1, b.norm() > 0 ? 1.0 : 0.0);

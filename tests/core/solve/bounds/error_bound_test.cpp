@@ -51,36 +51,36 @@ TEST(ErrorBound, HoldsForAnyLevels) {
 
 // Of thousands of problems, with prices made up as well as sensible ones, and blocks from one to as many as rows.
 TEST(ErrorBoundsByCount, AreNeverAboveWhatAnyChoiceOfLightsReaches) {
-  constexpr std::size_t kMost = 3;
-  double bound_sum = 0, least_sum = 0;
+  constexpr std::size_t kMax = 3;
+  double bound_sum = 0, min_sum = 0;
   for (unsigned seed = 1; seed <= 4000; ++seed) {
     const TinyLights tiny(seed);
     Random random(seed);
     CountBoundOptions options;
-    options.most_lights = kMost;
+    options.max_lights = kMax;
     options.threads = 1;
     options.price_rounds = random.below(4);
     options.nodes_a_round = 10;
     options.nodes = random.below(60);
-    options.least_similarity = random.between(0, 1);
+    options.min_similarity = random.between(0, 1);
     const bool made_up = seed % 2 == 0;
     if (made_up) {
       PriceGuess guess{random.below(5), tiny.weighted_goal()};
       for (double& r : guess.residual) r *= random.between(-1, 1);
       options.guesses = {guess};
     }
-    const std::vector<double> least = tiny.least_errors(kMost);
+    const std::vector<double> least = tiny.min_errors(kMax);
     const std::vector<double> bound = error_bounds_by_count(tiny.candidates(), options);
-    ASSERT_EQ(bound.size(), kMost + 1);
-    for (std::size_t k = 0; k <= kMost; ++k) {
+    ASSERT_EQ(bound.size(), kMax + 1);
+    for (std::size_t k = 0; k <= kMax; ++k) {
       EXPECT_LE(bound[k], least[k] + kEnumerationRounding) << seed << ", " << k << " lights";
       if (k > 0) {
         EXPECT_LE(bound[k], bound[k - 1]) << seed;
       }
-      if (!made_up && options.nodes > 30) bound_sum += bound[k], least_sum += least[k];
+      if (!made_up && options.nodes > 30) bound_sum += bound[k], min_sum += least[k];
     }
   }
-  EXPECT_GT(bound_sum, 0.8 * least_sum);
+  EXPECT_GT(bound_sum, 0.8 * min_sum);
 }
 
 // In one block nothing is lost: branch and bound ends at the least error.
@@ -88,13 +88,13 @@ TEST(ErrorBoundsByCount, InOneBlockReachTheLeastError) {
   for (unsigned seed = 1; seed <= 400; ++seed) {
     const TinyLights tiny(seed);
     CountBoundOptions options;
-    options.most_lights = 3;
+    options.max_lights = 3;
     options.threads = 1;
     options.price_rounds = 0;
     options.nodes = 2000;
-    options.least_similarity = -1;
+    options.min_similarity = -1;
     for (std::size_t k = 1; k <= 3; ++k) options.guesses.push_back({k, VectorXd::Zero(tiny.goal.size())});
-    const std::vector<double> least = tiny.least_errors(3);
+    const std::vector<double> least = tiny.min_errors(3);
     const std::vector<double> bound = error_bounds_by_count(tiny.candidates(), options);
     for (std::size_t k = 1; k <= 3; ++k) {
       EXPECT_LE(bound[k], least[k] + kEnumerationRounding) << seed << ", " << k << " lights";
@@ -111,7 +111,7 @@ TEST(ErrorBound, NamesRowsThatNothingReachesAndCountsThem) {
   EXPECT_EQ(unreachable_rows(of), std::vector<Index>{1});
   EXPECT_NEAR(error_bound(of, VectorXd::Unit(2, 0)), std::sqrt(1.0 / 3), 1e-12);
   CountBoundOptions options;
-  options.most_lights = 1;
+  options.max_lights = 1;
   const std::vector<double> bound = error_bounds_by_count(of, options);
   EXPECT_NEAR(bound[0], 1, 1e-12);
   EXPECT_NEAR(bound[1], std::sqrt(1.0 / 3), 1e-6);

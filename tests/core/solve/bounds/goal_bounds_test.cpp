@@ -41,7 +41,7 @@ TEST(GoalBounds, AreBelowTheBestOfAllPairsOfCandidatesInOneChannelAndInThree) {
       }
     }
     CountBoundOptions options;
-    options.most_lights = 2;
+    options.max_lights = 2;
     const std::vector<double> bounds = goal_error_bounds_by_count(hall.view(), goal, options);
     const double any = goal_error_bound(hall.view(), goal);
     // Candidates' columns are float.

@@ -29,13 +29,13 @@ struct LeastSquaresCase {
 
 /// Twelve kinds: plain, non-negative, sparse, with equal, zero or nearly equal columns, of low rank, in units from
 /// 1e-12 to 1e12, reached exactly, with upper bounds, with weights, and several of these together.
-inline LeastSquaresCase least_squares_case(int seed, Eigen::Index most_rows, Eigen::Index most_columns) {
+inline LeastSquaresCase least_squares_case(int seed, Eigen::Index max_rows, Eigen::Index max_columns) {
   using Eigen::Index;
   std::mt19937 random(static_cast<unsigned>(seed));
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> uniform(-1, 1);
-  const Index m = std::uniform_int_distribution<Index>(1, most_rows)(random);
-  const Index n = std::uniform_int_distribution<Index>(1, most_columns)(random);
+  const Index m = std::uniform_int_distribution<Index>(1, max_rows)(random);
+  const Index n = std::uniform_int_distribution<Index>(1, max_columns)(random);
   std::uniform_int_distribution<Index> pick(0, n - 1);
   LeastSquaresCase c;
   c.A.resize(m, n);

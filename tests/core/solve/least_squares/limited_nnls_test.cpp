@@ -24,13 +24,13 @@ struct LimitedCase {
 
 /// Limits of both signs; those of every third problem are such that some x keeps all, the rest as it comes; every
 /// fourth has equal and opposite ones, dependent ones, and empty rows.
-LimitedCase limited_case(int seed, Index most_rows, Index most_columns, Index most_limits) {
+LimitedCase limited_case(int seed, Index max_rows, Index max_columns, Index max_limits) {
   std::mt19937 random(static_cast<unsigned>(seed) + 77);
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> uniform;
-  LimitedCase c{least_squares_case(seed, most_rows, most_columns), {}, {}};
+  LimitedCase c{least_squares_case(seed, max_rows, max_columns), {}, {}};
   const LeastSquaresCase& ls = c.least_squares;
-  const Index n = ls.A.cols(), k = std::uniform_int_distribution<Index>(1, most_limits)(random);
+  const Index n = ls.A.cols(), k = std::uniform_int_distribution<Index>(1, max_limits)(random);
   VectorXd keeps(n);
   for (Index j = 0; j < n; ++j) {
     const double norm = ls.A.col(j).norm();

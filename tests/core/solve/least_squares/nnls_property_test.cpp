@@ -136,7 +136,7 @@ TEST(NnlsProperties, OneAtATimeAndManyAtATimeEndTheSame) {
   for (int seed = 0; seed < 40; ++seed) {
     const LeastSquaresCase c = least_squares_case(12 * seed + 2, 120, 600);
     NnlsOptions one;
-    one.most_entering = 1;
+    one.max_entering = 1;
     const auto fast = solve_nnls(c.sparse()), slow = solve_nnls(c.sparse(), one);
     ASSERT_TRUE(fast && slow);
     EXPECT_NEAR(fast->residual_norm, slow->residual_norm, 1e-12 * c.goal.norm()) << seed;

@@ -22,9 +22,9 @@ struct Case {
 
 /// A random problem of one of eight kinds: plain, non-negative, duplicate, zero or nearly equal columns, low rank,
 /// scales from 1e-12 to 1e12, a right-hand side that is reached exactly.
-Case random_case(int seed, Index most_columns) {
+Case random_case(int seed, Index max_columns) {
   std::mt19937 random(static_cast<unsigned>(seed));
-  std::uniform_int_distribution<Index> rows(1, 30), columns(1, most_columns);
+  std::uniform_int_distribution<Index> rows(1, 30), columns(1, max_columns);
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> uniform(-1, 1);
   const Index m = rows(random), n = columns(random);

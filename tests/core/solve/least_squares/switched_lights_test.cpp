@@ -21,11 +21,11 @@ constexpr double kBoundless = std::numeric_limits<double>::infinity();
 const double kNoGoal = std::numeric_limits<double>::quiet_NaN();
 
 /// Every third is degenerate: equal and dark lights, no room below a limit, no level to have.
-EmittanceProblem random_problem(unsigned seed, Index most_points, Index most_lights) {
+EmittanceProblem random_problem(unsigned seed, Index max_points, Index max_lights) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform;
   const auto pick = [&](Index n) { return std::uniform_int_distribution<Index>(0, n - 1)(random); };
-  const Index points = 1 + pick(most_points), lights = 1 + pick(most_lights);
+  const Index points = 1 + pick(max_points), lights = 1 + pick(max_lights);
   const double unit = seed % 7 == 6 ? std::pow(10.0, 12 * uniform(random) - 6) : 1;
   EmittanceProblem p;
   p.lux_per_level.resize(points, lights);
@@ -57,7 +57,7 @@ EmittanceProblem random_problem(unsigned seed, Index most_points, Index most_lig
 double error_of(const EmittanceProblem& p, const VectorXd& level) { return std::sqrt(objective(p, level)); }
 
 /// What dims is solved beside this setting; +inf when the setting alone is above a limit.
-double least_error_with(const EmittanceProblem& p, const VectorXd& set) {
+double min_error_with(const EmittanceProblem& p, const VectorXd& set) {
   std::vector<Index> dims, goals, limits;
   for (Index j = 0; j < set.size(); ++j)
     if (!p.switched[static_cast<std::size_t>(j)]) dims.push_back(j);
@@ -102,7 +102,7 @@ double least_error_with(const EmittanceProblem& p, const VectorXd& set) {
   return error_of(p, level);
 }
 
-double least_error_of_all_settings(const EmittanceProblem& p) {
+double min_error_of_all_settings(const EmittanceProblem& p) {
   std::vector<Index> switched;
   for (Index j = 0; j < p.max_level.size(); ++j)
     if (p.switched[static_cast<std::size_t>(j)]) switched.push_back(j);
@@ -111,7 +111,7 @@ double least_error_of_all_settings(const EmittanceProblem& p) {
     VectorXd set = VectorXd::Zero(p.max_level.size());
     for (std::size_t k = 0; k < switched.size(); ++k)
       if ((setting >> k & 1u) != 0) set[switched[k]] = p.max_level[switched[k]];
-    least = std::min(least, least_error_with(p, set));
+    least = std::min(least, min_error_with(p, set));
   }
   return least;
 }
@@ -141,7 +141,7 @@ TEST(SwitchedLights, AreSetAsTheBestOfAllSettings) {
     EXPECT_TRUE(solution->switches_proven);
     EXPECT_LT(solution->kkt_residual, 1e-8) << "seed " << seed;
     VectorXd none = VectorXd::Zero(p.max_level.size());
-    const double error = error_of(p, solution->level), least = least_error_of_all_settings(p), dark = error_of(p, none);
+    const double error = error_of(p, solution->level), least = min_error_of_all_settings(p), dark = error_of(p, none);
     EXPECT_LE(error, least * (1 + 1e-6) + 1e-8 * dark) << "seed " << seed;
     EXPECT_GE(error, least * (1 - 1e-6) - 1e-8 * dark) << "seed " << seed << ": better than any setting?";
     EmittanceProblem dimmed = p;

@@ -16,7 +16,7 @@ TEST(ChooseLights, GivesTheSameForAnyNumberOfThreadsAndTheBestSoFarWhenStopped) 
   goal.lux = Eigen::VectorXd::Constant(hall.light->points(), 200);
   const ComplementSearch candidates(hall.view(), hall.poses, goal);
   ChooseOptions options = choose_most(6);
-  options.most_columns = 3000;
+  options.max_columns = 3000;
   options.exchange.threads = 1;
   const LightCurve one = choose_lights(*hall.light, goal, candidates, options);
   options.exchange.threads = 4;

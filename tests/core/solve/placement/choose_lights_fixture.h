@@ -7,7 +7,7 @@ namespace luxrig::choose_lights_fixture {
 
 inline ChooseOptions choose_most(std::size_t lights) {
   ChooseOptions options;
-  options.most_lights = lights;
+  options.max_lights = lights;
   return options;
 }
 

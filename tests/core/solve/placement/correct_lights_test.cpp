@@ -40,7 +40,7 @@ TEST(CorrectLights, BringsAQuickModelToWhatABetterOneSays) {
   refine_lights(quick);
   const double before = (*lux_of(quick.poses(), quick.levels()) - goal.lux).norm() / goal.lux.norm();
   CorrectOptions rounds;
-  rounds.most_rounds = 12;
+  rounds.max_rounds = 12;
   const auto corrected = correct_lights(
       *hall.light, goal, quick, lux_of,
       [](const LightingGoal&, const PlacedLights& start) {

@@ -23,7 +23,7 @@ LitRoom empty_room() {
 PlaceOptions place_count(std::size_t lights) {
   PlaceOptions options;
   options.lights = lights;
-  options.most_columns = 20'000;
+  options.max_columns = 20'000;
   return options;
 }
 

@@ -58,7 +58,7 @@ TEST(PlaceLights, BeginsAHardGoalInAnotherWayTooAndKeepsTheBetter) {
   const ComplementSearch candidates(hall.view(), hall.poses, even);
   PlaceOptions options;
   options.lights = 6;
-  options.most_columns = 1500;
+  options.max_columns = 1500;
   options.exchange.complements = 1;
   options.exchange.near_places = 0;
   const Placement alone = place_lights(*hall.light, even, candidates, options);
@@ -83,7 +83,7 @@ TEST(PlaceLights, BeginsAHardGoalInAnotherWayTooAndKeepsTheBetter) {
   // Of great use: better lights than the first start ends with, and two that are not needed.
   PlaceOptions patient = options;
   patient.other = {};
-  patient.most_columns = 3000;
+  patient.max_columns = 3000;
   patient.exchange = {};
   const Placement better = place_lights(*hall.light, even, candidates, patient);
   ASSERT_LT(better.lights.error(), 0.99 * alone.lights.error());

@@ -15,7 +15,7 @@ TEST(PlaceLights, GivesTheSameBytesForAnyNumberOfThreads) {
   for (const int threads : {1, 2, 8}) {
     PlaceOptions options;
     options.lights = 3;
-    options.most_columns = 1500;
+    options.max_columns = 1500;
     options.exchange.threads = threads;
     got.push_back(place_lights(*hall.light, goal, candidates, options));
   }

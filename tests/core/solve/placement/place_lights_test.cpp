@@ -66,7 +66,7 @@ TEST(PlaceLights, TakesGoalsOfZeroPointsOutOfReachAndEqualCandidates) {
     const ComplementSearch candidates(view, poses, goal);
     PlaceOptions options;
     options.lights = 4;
-    options.most_columns = 2000;
+    options.max_columns = 2000;
     const Placement got = place_lights(*hall.light, goal, candidates, options);
     EXPECT_LE(got.lights.error(), 1e-4);
     EXPECT_TRUE(got.lights.levels().allFinite());

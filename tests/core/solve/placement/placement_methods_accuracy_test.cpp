@@ -62,7 +62,7 @@ TEST(PlacementMethods, KeepToColours) {
   goal.fixed_lux = Eigen::VectorXd::Constant(3 * points, 1);
   for (const PlacementMethod& method : compared_methods()) {
     PlacementOptions options = options_of(method, 2);
-    options.most_columns = 1000;
+    options.max_columns = 1000;
     options.iterations = 300;
     const auto got = method.run(problem_of(hall, goal), options);
     ASSERT_TRUE(got.has_value()) << method.name;

@@ -19,7 +19,7 @@ TEST(PlacementMethods, GiveTheSameForASeedAndAnyNumberOfThreads) {
     std::optional<FoundLights> first;
     for (const int threads : {1, 3}) {
       PlacementOptions options = options_of(method, 3);
-      options.most_columns = 1500;
+      options.max_columns = 1500;
       options.iterations = 200;
       options.starts = 3;
       options.threads = threads;

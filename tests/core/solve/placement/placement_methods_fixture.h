@@ -17,8 +17,8 @@ inline PlacementProblem problem_of(const LitHall& hall, const LightingGoal& goal
 inline PlacementOptions options_of(const PlacementMethod& method, std::size_t lights) {
   PlacementOptions options;
   options.lights = method.takes_number ? lights : 0;
-  options.most_lights = 8;
-  options.most_columns = 20'000;
+  options.max_lights = 8;
+  options.max_columns = 20'000;
   if (std::string(method.name) == "annealing") options.iterations = 20'000;
   return options;
 }

@@ -32,7 +32,7 @@ TEST(PlacementMethods, ChooseANumberWhereTheyCan) {
   for (const PlacementMethod& method : compared_methods()) {
     PlacementOptions options = options_of(method, 0);
     options.lights = 0;
-    options.most_columns = 6000;
+    options.max_columns = 6000;
     const auto got = method.run(problem_of(hall, goal), options);
     ASSERT_EQ(got.has_value(), method.chooses_number) << method.name;
     if (!got) {
@@ -53,10 +53,10 @@ TEST(PlacementMethods, MoreStartsAreNeverWorse) {
     PlacementOptions options;
     options.lights = 3;
     options.iterations = 100;
-    options.most_columns = 300;
+    options.max_columns = 300;
     const auto one = find_compared_method(name)->run(problem_of(hall, goal), options);
     options.starts = 4;
-    options.most_columns *= 4;
+    options.max_columns *= 4;
     const auto four = find_compared_method(name)->run(problem_of(hall, goal), options);
     EXPECT_LE(four->lights.error(), one->lights.error()) << name;
     EXPECT_GT(four->columns, one->columns) << name;
@@ -71,7 +71,7 @@ TEST(PlacementMethods, TellOfBetterOnesAndEndWhenStopped) {
     PlacementOptions options = options_of(method, 3);
     options.number.wanted_error = 0;
     options.starts = 1000;  // more than a test has time for
-    options.most_columns = 1'000'000'000;
+    options.max_columns = 1'000'000'000;
     options.iterations = 100;
     options.watch.stop = stop.get_token();
     double last = std::numeric_limits<double>::infinity();
@@ -126,7 +126,7 @@ TEST(PlacementMethods, TakeHostileInput) {
     for (const LightingGoal& goal : {uniform, zero, bounded, too_bright, nothing_counts, off})
       for (const auto& [columns, poses] : sets) {
         PlacementOptions options = options_of(method, 2);
-        options.most_columns = 100;
+        options.max_columns = 100;
         options.iterations = 50;
         const auto got = method.run({hall.light.get(), &goal, columns, poses, kHallLattice_m}, options);
         ASSERT_TRUE(got.has_value()) << method.name << ": " << got.error().detail;

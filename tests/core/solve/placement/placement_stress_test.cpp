@@ -33,7 +33,7 @@ TEST_P(PlacementStress, FindsTheSameLightsAtAnyScaleAndPlace) {
   const ComplementSearch candidates(hall.view(), hall.poses, goal);
   PlaceOptions options;
   options.lights = 2;
-  options.most_columns = 20'000;
+  options.max_columns = 20'000;
   options.exchange = ExchangeOptions::for_spacing(0.25 * scale);
   const Placement got = place_lights(*hall.light, goal, candidates, options);
   // A millimetre at 10⁶ m is what doubles and float rays leave of a room there.
@@ -62,8 +62,8 @@ TEST(PlacementStress, PointsThatNothingReachesStayDarkAndTheOthersAreLit) {
   goal.row_weight = Eigen::VectorXd::Ones(goal.lux.size());
   const ComplementSearch candidates(hall.view(), hall.poses, goal);
   ChooseOptions options;
-  options.most_lights = 4;
-  options.most_columns = 5'000;
+  options.max_lights = 4;
+  options.max_columns = 5'000;
   const LightCurve curve = choose_lights(*hall.light, goal, candidates, options);
   const PlacedLights& best = curve.cuts[curve.chosen];
   ASSERT_GT(best.size(), 0u);

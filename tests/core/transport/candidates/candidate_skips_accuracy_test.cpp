@@ -20,8 +20,8 @@ TEST(CandidateSkips, InAFurnishedRoomReflectedLightStaysWithinItsErrorWithoutAny
   const CandidateSet set = places_in(rays, 60);
   CandidateOptions options;
   options.surface_cells = 700;
-  options.most_rays_per_candidate = 256;
-  options.least_lux = 0.05;
+  options.max_rays_per_candidate = 256;
+  options.min_lux = 0.05;
   const auto all = candidate_transport(room.scene, rays, room.receivers, set, options);
   ASSERT_TRUE(all);
   for (const auto skip : kAll) {

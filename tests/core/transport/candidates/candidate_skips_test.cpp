@@ -40,7 +40,7 @@ TEST(CandidateSkips, ReachMovesNoEntryByMoreThanTheLeastLux) {
   const CandidateSet set = places_in(rays, 400);
   CandidateOptions options;
   options.indirect = false;
-  options.least_lux = 2;
+  options.min_lux = 2;
   const auto with = candidate_transport(room.scene, rays, room.receivers, set, options);
   options.skips.reach = false;
   const auto without = candidate_transport(room.scene, rays, room.receivers, set, options);

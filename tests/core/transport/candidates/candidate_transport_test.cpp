@@ -90,7 +90,7 @@ TEST(CandidateTransport, ReachDropsWhatIsBelowItAndNothingElse) {
   const CandidateSet set{lattice_m(0.3), {isotropic_luminaire()}};
   const auto all = computed(scene, rays, receivers, set, direct_only());
   CandidateOptions options = direct_only();
-  options.least_lux = 12;
+  options.min_lux = 12;
   const auto near = computed(scene, rays, receivers, set, options);
   EXPECT_LT(near.matrix.entries(), all.matrix.entries() * 3 / 4);
   EXPECT_LT(near.statistics.rays, all.statistics.rays);
@@ -166,7 +166,7 @@ TEST(CandidateTransport, RefusesWhatItCannotWorkOn) {
   refused({{{1, 1, 1}}, {disk}}, {}, "has a size");
   refused({{{1, 1, 1}}, {Emitter{}}}, {}, "no intensity");
   CandidateOptions options;
-  options.least_lux = -1;
+  options.min_lux = -1;
   refused({{{1, 1, 1}}, {isotropic_luminaire()}}, options, "least lux");
   options = {};
   options.wanted_relative_error = 0;
@@ -213,7 +213,7 @@ TEST(CandidateTransport, CandidatesInReceiversAndOnSurfacesGiveFiniteNumbers) {
     CandidateOptions options;
     options.indirect = indirect;
     options.surface_cells = 500;  // nothing here asks for accuracy
-    options.most_rays_per_candidate = 256;
+    options.max_rays_per_candidate = 256;
     const auto got = computed(scene, rays, receivers, set, options);
     EXPECT_GT(got.matrix.entries(), 0u);
     for (const auto* part : {&got.matrix.total_lux, &got.matrix.direct_lux, &got.matrix.standard_error_lux})

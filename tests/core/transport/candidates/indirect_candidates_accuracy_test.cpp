@@ -24,7 +24,7 @@ TEST(IndirectCandidates, AgreeWithRadiosityInACube) {
   const std::vector<Vec3> sources_m = {{0, 0, 0}, {0.3, 0.2, 1.8}, {-1, 0.5, -1.85}, {1.2, -1.1, 0.4}};
   CandidateOptions options = coarse();
   options.wanted_relative_error = 0.005;
-  options.most_rays_per_candidate = 2048;
+  options.max_rays_per_candidate = 2048;
   const auto got = computed(scene, rays, receivers, {sources_m, {isotropic_luminaire()}}, options);
   int inside = 0, all = 0;
   for (std::size_t c = 0; c < sources_m.size(); ++c) {
@@ -54,7 +54,7 @@ TEST(IndirectCandidates, AgreeWithPathsThroughADoorWithinTheirErrors) {
   CandidateOptions options = coarse();
   options.surface_cells = 2500;
   options.wanted_relative_error = 0.01;
-  options.most_rays_per_candidate = 2048;
+  options.max_rays_per_candidate = 2048;
   const auto got = computed(scene, rays, receivers, {positions_m, {isotropic_luminaire()}}, options);
   std::vector<Emitter> emitters;
   for (const Vec3& at : positions_m) emitters.push_back({make_isotropic(1000), {Mat3::Identity(), at}});
@@ -90,7 +90,7 @@ TEST(IndirectCandidates, SkipsMoveNoAnswerByMoreThanItsError) {
   const CandidateSet set{lattice_m(0.7), {isotropic_luminaire(), spot_luminaire({1, 0.2, -1})}};
   CandidateOptions options = coarse();
   options.surface_cells = 400;
-  options.most_rays_per_candidate = 256;
+  options.max_rays_per_candidate = 256;
   options.skips = {false, false, false, false, false, false};
   const auto all = computed(scene, rays, receivers, set, options);
   for (const auto skip :

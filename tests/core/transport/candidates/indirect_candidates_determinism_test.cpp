@@ -20,7 +20,7 @@ TEST(IndirectCandidates, AreTheSameBytesOnAnyThreadsAndInAnyMemory) {
   const CandidateSet set{lattice_m(0.7), {isotropic_luminaire()}};
   CandidateOptions options = coarse();
   options.surface_cells = 300;
-  options.most_rays_per_candidate = 256;
+  options.max_rays_per_candidate = 256;
   options.threads = 1;
   const auto one = computed(scene, rays, receivers, set, options);
   for (const int threads : {2, 8}) {

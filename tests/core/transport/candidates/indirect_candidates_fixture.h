@@ -8,7 +8,7 @@ namespace luxrig::indirect_candidates_fixture {
 inline CandidateOptions coarse() {
   CandidateOptions options;
   options.surface_cells = 2000;
-  options.most_rays_per_candidate = 512;
+  options.max_rays_per_candidate = 512;
   return options;
 }
 

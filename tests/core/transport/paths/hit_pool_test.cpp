@@ -23,7 +23,7 @@ TEST(LampGroups, SharesAddUpAndGroupsKeepTheFluxOfTheirLamps) {
   for (const std::size_t count : {1u, 7u, 64u, 65u, 1000u}) {
     const auto bulbs = row_of_bulbs(count);
     const Lamps lamps(bulbs);
-    ASSERT_LE(lamps.groups(), Lamps::kMostGroups);
+    ASSERT_LE(lamps.groups(), Lamps::kMaxGroups);
     double shares = 0, all_lm = 0;
     std::vector<double> group_lm(lamps.groups(), 0.0);
     for (std::size_t e = 0; e < count; ++e) {

@@ -38,12 +38,12 @@ TEST(TailRecords, TheNearestIsThatOfASearchThroughAll) {
       for (int i = 0; i < 500; ++i) {
         const Vec3 from_m = about_m + scale * Vec3(6 * unit(random), 4 * unit(random), 0);
         const auto nearest = records.nearest(from_m, Vec3::UnitZ());
-        double least_m = HUGE_VAL;
-        for (const Place& place : places) least_m = std::min(least_m, (place.position_world_m - from_m).norm());
+        double min_m = HUGE_VAL;
+        for (const Place& place : places) min_m = std::min(min_m, (place.position_world_m - from_m).norm());
         if (!nearest) continue;
         ++found;
-        ASSERT_NEAR(nearest->distance_m, least_m, 1e-5 * scale) << count << " records at scale " << scale;
-        ASSERT_NEAR((records.place(nearest->record).position_world_m - from_m).norm(), least_m, 1e-5 * scale);
+        ASSERT_NEAR(nearest->distance_m, min_m, 1e-5 * scale) << count << " records at scale " << scale;
+        ASSERT_NEAR((records.place(nearest->record).position_world_m - from_m).norm(), min_m, 1e-5 * scale);
       }
       // None is farther off than one and a half times their spacing.
       EXPECT_EQ(found, count == 400 ? 500 : found);
@@ -125,10 +125,10 @@ TEST(TailRecords, AFewFarOffDoNotMakeOneCellOfARoom) {
     for (const Place& from : scattered(random, 200, Vec3::Zero(), 0.9)) {
       const auto nearest = records.nearest(from.position_world_m, Vec3::UnitZ());
       ASSERT_TRUE(nearest) << far_m;
-      double least_m = HUGE_VAL;
+      double min_m = HUGE_VAL;
       for (const Place& place : places)
-        least_m = std::min(least_m, (place.position_world_m - from.position_world_m).norm());
-      EXPECT_NEAR(nearest->distance_m, least_m, 2e-7 * far_m + 1e-6) << far_m << ": but for rounding to floats";
+        min_m = std::min(min_m, (place.position_world_m - from.position_world_m).norm());
+      EXPECT_NEAR(nearest->distance_m, min_m, 2e-7 * far_m + 1e-6) << far_m << ": but for rounding to floats";
     }
   }
 }

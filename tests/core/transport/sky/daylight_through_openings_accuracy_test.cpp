@@ -126,7 +126,7 @@ TEST(DaylightThroughOpenings, APictureShowsTheIlluminanceThatTheEvaluatorMeasure
   camera.width_px = camera.height_px = 5;
   PictureOptions options;
   options.wanted_relative_error = 0.05;
-  options.most_passes = 1000;
+  options.max_passes = 1000;
   const auto picture = render_picture(rays, emitters, std::vector{1.0}, camera, options);
   ASSERT_TRUE(picture.has_value());
   double mean_lx = 0;

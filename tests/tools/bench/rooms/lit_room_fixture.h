@@ -10,7 +10,7 @@ namespace luxrig::lit_room_fixture {
 struct Expected {
   const char* name;
   LitRoom (*make)(std::uint64_t);
-  std::size_t fewest_triangles, most_triangles, emitters, receivers;
+  std::size_t fewest_triangles, max_triangles, emitters, receivers;
   bool closed;
 };
 

@@ -19,7 +19,7 @@ TEST_P(LitRooms, HaveTheSizeTheyPromise) {
     const LitRoom room = GetParam().make(seed);
     EXPECT_EQ(room.name, GetParam().name);
     EXPECT_GE(room.scene.triangles.size(), GetParam().fewest_triangles);
-    EXPECT_LE(room.scene.triangles.size(), GetParam().most_triangles);
+    EXPECT_LE(room.scene.triangles.size(), GetParam().max_triangles);
     EXPECT_EQ(room.emitters.size(), GetParam().emitters);
     EXPECT_EQ(room.receivers.size(), GetParam().receivers);
     EXPECT_EQ(room.scene.material_of_triangle.size(), room.scene.triangles.size());
