@@ -63,8 +63,8 @@ const Option* find(const Bus& bus, std::string_view key) {
 
 Problem problem_at(const Rig& rig, const Bus& bus, std::string_view key, std::string what, std::string mend) {
   const Option* option = find(bus, key);
-  const Place place = option != nullptr ? option->place : bus.place;
-  return {rig.file.string(), place.line, place.column, std::move(what), std::move(mend)};
+  const FilePosition in_file = option != nullptr ? option->in_file : bus.in_file;
+  return {rig.file.string(), in_file.line, in_file.column, std::move(what), std::move(mend)};
 }
 
 std::vector<Problem> check_options(const Rig& rig, const Bus& bus, std::span<const OptionDoc> docs) {

@@ -67,7 +67,7 @@ std::vector<Problem> check_buses(const Rig& rig) {
     if (is_null_bus(bus)) continue;
     const DriverEntry* entry = find_driver(bus.driver);
     if (entry == nullptr) {
-      problems.push_back({rig.file.string(), bus.place.line, bus.place.column,
+      problems.push_back({rig.file.string(), bus.in_file.line, bus.in_file.column,
                           fmt::format("bus \"{}\" has an unknown driver \"{}\"", bus.name, bus.driver),
                           mend_for_unknown(bus.driver, names, "no driver is built in")});
       continue;

@@ -16,11 +16,11 @@ constexpr double kSmoothing = 1e-4;  ///< of third differences, relative to the 
 struct Spline {
   double low = 0, high = 1;
 
-  struct Place {
+  struct Basis {
     Eigen::Index first;
     std::array<double, 4> value, slope;
   };
-  [[nodiscard]] Place at(double x) const {
+  [[nodiscard]] Basis at(double x) const {
     const double step = (high - low) / kPieces;
     const double scaled = std::clamp((x - low) / step, 0.0, static_cast<double>(kPieces));
     const int piece = std::min(static_cast<int>(scaled), kPieces - 1);
@@ -29,7 +29,7 @@ struct Spline {
             {v * v * v / 6, (3 * u * u * u - 6 * u * u + 4) / 6, (3 * v * v * v - 6 * v * v + 4) / 6, u * u * u / 6},
             {-v * v / 2 / step, (3 * u * u - 4 * u) / 2 / step, -(3 * v * v - 4 * v) / 2 / step, u * u / 2 / step}};
   }
-  [[nodiscard]] static double sum(const Eigen::VectorXd& c, const Place& place, const std::array<double, 4>& part) {
+  [[nodiscard]] static double sum(const Eigen::VectorXd& c, const Basis& place, const std::array<double, 4>& part) {
     double out = 0;
     for (int i = 0; i < 4; ++i) out += c[place.first + i] * part[static_cast<std::size_t>(i)];
     return out;
@@ -37,7 +37,7 @@ struct Spline {
 };
 
 struct CurvePoint {
-  Spline::Place place;
+  Spline::Basis place;
   double exposure_s, sample, variance, mean_variance;
 };
 
@@ -95,7 +95,7 @@ Result<SampleCurve> fit_curve(const SampleGroups& groups) {
   for (Eigen::Index i = 0; i + 3 < kCoefficients; ++i) {
     differences(i, i) = -1, differences(i, i + 1) = 3, differences(i, i + 2) = -3, differences(i, i + 3) = 1;
   }
-  const Spline::Place end = spline.at(spline.high);
+  const Spline::Basis end = spline.at(spline.high);
   Eigen::VectorXd one_at_end = Eigen::VectorXd::Zero(kCoefficients);
   for (int k = 0; k < 4; ++k) one_at_end[end.first + k] = end.value[static_cast<std::size_t>(k)];
   for (int round = 0; round < kCurveRounds; ++round) {
@@ -114,7 +114,7 @@ Result<SampleCurve> fit_curve(const SampleGroups& groups) {
   // Extended down to no light and up to saturation by straight lines. Where noise makes the curve fall, it is kept
   // level.
   const auto light_at = [&](double x) {
-    const Spline::Place place = spline.at(x);
+    const Spline::Basis place = spline.at(x);
     const double edge = std::clamp(x, spline.low, spline.high);
     return Spline::sum(c, place, place.value) + (x - edge) * Spline::sum(c, place, place.slope);
   };

@@ -20,7 +20,7 @@ struct Point {
   std::optional<Vec3> goal_rgb{};     ///< colour of that goal, linear Rec. 709 with a luminance of 1; none = any
   double weight = 1;
   std::optional<double> max_lx;  ///< hard limit
-  Place place;
+  FilePosition in_file;
 };
 
 enum class PlacementSearch { luxrig, gpk15, gp16 };
@@ -100,7 +100,7 @@ enum class TaskKind { emittance, placement, aim, highlight, directions };
 struct Task {
   std::string name;
   TaskKind kind = TaskKind::emittance;
-  Place place;
+  FilePosition in_file;
   PlacementSpec placement{};
   AimSpec aim{};
   HighlightSpec highlight{};
@@ -117,14 +117,14 @@ struct Task {
 struct MountingSpec {
   struct Pattern {
     std::string text;  ///< shell pattern: * and ?
-    Place place;
+    FilePosition in_file;
   };
   std::optional<Eigen::AlignedBox3d> box_world_m;   ///< none = the scene's bounds
   std::vector<Pattern> surfaces;                    ///< by name of material or object; empty = anywhere in the air
   double offset_min_m = 0.05, offset_max_m = 0.15;  ///< from those surfaces
   double clearance_m = 0.1;                         ///< from all others
   std::optional<double> spacing_m;                  ///< between the places tried first
-  Place place;
+  FilePosition in_file;
 };
 
 /// A region that no lit beam of a head may meet: an audience, a camera, a mirror. Box or sphere.
@@ -135,7 +135,7 @@ struct KeepOut {
   double radius_m = 0;                  ///< > 0
   double margin_rad = rad_from_deg(2);  ///< beside the beam's field angle
   std::vector<std::size_t> heads;       ///< fixtures it applies to, rising; all of them move
-  Place place;
+  FilePosition in_file;
 };
 
 struct Limits {
@@ -143,7 +143,7 @@ struct Limits {
   double open_loop_margin = 0.25;  ///< share of a max_lx kept free until a meter has confirmed the model there
   /// Electrical power of all fixtures and placed lights together, taken as rated watts times level.
   std::optional<double> max_watts{};
-  Place place;
+  FilePosition in_file;
 };
 
 enum class FadeCurve { linear, s_curve };
@@ -157,7 +157,7 @@ struct ControlSpec {
   double tolerance = 0.02;                 ///< |measured - goal| / goal below which no correction round is run
   double goal_tolerance = 0.1;             ///< |true - goal| / goal at which a goal still counts as met
   double gain_min = 0.6, gain_max = 1.15;  ///< range of a fixture's true output that the model allows, as a factor
-  Place place;
+  FilePosition in_file;
 };
 
 /// What goes to the safe look when a device fails: only the fixtures on it, or all.
@@ -169,7 +169,7 @@ struct SafeSpec {
   double fade_s = 3;
   SafeScope scope = SafeScope::rest_stays;
   bool on_meter_loss = false;  ///< true = a lost meter sends all light to the safe look
-  Place place;
+  FilePosition in_file;
 };
 
 /// How light comes on after power-up. Nothing is staged by default.
@@ -177,7 +177,7 @@ struct StartupSpec {
   double stage_s = 0;                       ///< from the start of one stage to the start of the next
   std::optional<double> max_watts_per_s{};  ///< highest rise of power, all fixtures together
   bool after_loss = false;                  ///< a device back after a loss had no power, and is staged, too
-  Place place;
+  FilePosition in_file;
 };
 
 /// Light from outside. Directions are final: north and the time of day are already applied.
@@ -188,13 +188,13 @@ struct Daylight {
   double horizontal_lx = 0;  ///< of the sky without the sun, on an unobstructed horizontal plane; > 0 with a sky
   double sun_normal_lx = 0;  ///< of the sun, on a plane facing it; 0 = no sun
   Vec3 towards_sun_world = Vec3::UnitZ();  ///< unit; below the horizon there is no sun
-  Place place;
+  FilePosition in_file;
 };
 
 struct DaemonSpec {
   int http_port = 9620;  ///< on loopback
   bool park_at_end = false;
-  Place place;
+  FilePosition in_file;
 };
 
 }  // namespace luxrig

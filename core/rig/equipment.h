@@ -36,7 +36,7 @@ struct Luminaire {
   /// follows this one. This one is then all of them together at rated flux.
   std::vector<std::size_t> emitters{};
   std::optional<std::size_t> emitter_of{};  ///< the luminaire that this one is an emitter of
-  Place place;
+  FilePosition in_file;
 };
 
 /// drive (0…1, as sent) -> level (0…1, share of rated flux), as the maker states it.
@@ -79,7 +79,7 @@ struct Fixture {
   std::optional<Joints> park{};      ///< rest position; only if it moves
   int stage = 1;                     ///< of power-up; the lowest comes first
   double reset_s = 0;                ///< how long it homes after power-on; only if it moves
-  Place place;
+  FilePosition in_file;
 
   [[nodiscard]] Pose world_from_lamp() const { return world_from_lamp(joints); }
   [[nodiscard]] Pose world_from_lamp(const Joints& at) const {
@@ -102,7 +102,7 @@ struct Luxmeter {
   double range_lx = 200000;          ///< full scale
   std::size_t bus = 0;
   ModbusMeterPatch patch;
-  Place place;
+  FilePosition in_file;
 };
 
 /// Source of a real camera's pictures. none = only the simulated rig has them.
@@ -134,7 +134,7 @@ struct PictureCamera {
   double vertical_fov_rad = rad_from_deg(40);
   int width_px = 960, height_px = 640;
   PictureTaking taking;
-  Place place;
+  FilePosition in_file;
 };
 
 }  // namespace luxrig

@@ -18,7 +18,7 @@ std::vector<Problem> null_buses_in_use(const Rig& rig) {
         std::find_if(rig.luxmeters.begin(), rig.luxmeters.end(), [&](const Luxmeter& m) { return m.bus == b; });
     if (lamp == rig.fixtures.end() && meter == rig.luxmeters.end()) continue;
     problems.push_back(
-        {rig.file.string(), bus.place.line, bus.place.column,
+        {rig.file.string(), bus.in_file.line, bus.in_file.column,
          fmt::format("bus \"{}\" is a null bus: what hangs on it, such as {}, can be planned and not run", bus.name,
                      lamp != rig.fixtures.end() ? lamp->name : meter->name),
          "give it the driver of the real one, and what hangs on it its address"});

@@ -107,7 +107,7 @@ struct AxesPatch {
 using OptionValue = std::variant<bool, std::int64_t, double, std::string>;
 struct Option {
   OptionValue value;
-  Place place;
+  FilePosition in_file;
 };
 
 struct Bus {
@@ -115,7 +115,7 @@ struct Bus {
   std::string driver;                     ///< a name in the driver registry
   std::optional<double> safe_level;       ///< for its fixtures without their own; none = that of [safe]
   std::map<std::string, Option> options;  ///< every further key
-  Place place;
+  FilePosition in_file;
 };
 
 /// How registers become lux.

@@ -54,10 +54,10 @@ void PatchMap::report(const std::vector<Bus>& buses, ProblemList& problems) cons
       // Marks the free run as taken, so that two clashing fixtures are not offered the same address.
       const int free = free_address(taken, claim->count);
       if (free > 0) std::fill_n(taken.begin() + free, claim->count, claim);
-      problems.add(claim->owner.place,
+      problems.add(claim->owner.in_file,
                    fmt::format("{} takes slot {} of universe {} on bus {}, but {} (line {}) has {}", claim->owner.name,
                                run_of(claim->first, claim->count), where.second, buses[where.first].name,
-                               other->owner.name, other->owner.place.line, run_of(other->first, other->count)),
+                               other->owner.name, other->owner.in_file.line, run_of(other->first, other->count)),
                    free > 0 ? fmt::format("address {} is free for it", free)
                             : fmt::format("universe {} has no room for it: use another", where.second));
     }
@@ -72,18 +72,18 @@ void PatchMap::report(const std::vector<Bus>& buses, ProblemList& problems) cons
       }
       if (!other) continue;
       problems.add(
-          claim.owner.place,
+          claim.owner.in_file,
           fmt::format("{} uses {} register {} of unit {} on bus {}, but {} (line {}) uses {}", claim.owner.name,
                       name_of(where.table), run_of(claim.first, claim.count), where.unit, buses[where.bus].name,
-                      other->owner.name, other->owner.place.line, run_of(other->first, other->count)),
+                      other->owner.name, other->owner.in_file.line, run_of(other->first, other->count)),
           "give each its own unit or register");
     }
   }
   for (const auto& [where, owners] : nodes_) {
     for (std::size_t i = 1; i < owners.size(); ++i) {
-      problems.add(owners[i].place,
+      problems.add(owners[i].in_file,
                    fmt::format("{} is node {} on bus {}, and so is {} (line {})", owners[i].name, where.second,
-                               buses[where.first].name, owners.front().name, owners.front().place.line),
+                               buses[where.first].name, owners.front().name, owners.front().in_file.line),
                    "give each drive a node of its own");
     }
   }

@@ -15,7 +15,7 @@ class PatchMap {
  public:
   struct Owner {
     std::string name;  ///< as printed in messages: fixture "spot-1"
-    Place place;       ///< of its address
+    FilePosition in_file;  ///< of its address
   };
   /// requires 1 ≤ first, first + count - 1 ≤ 512
   void claim_slots(std::size_t bus, int universe, int first, int count, Owner owner);

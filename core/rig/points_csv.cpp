@@ -28,7 +28,7 @@ constexpr std::array<std::string_view, kColumns> kKeys = {
 
 struct Cell {
   std::string text;
-  Place place;
+  FilePosition in_file;
 };
 
 std::string_view trimmed(std::string_view text) {
@@ -42,7 +42,7 @@ std::optional<std::vector<Cell>> split(std::string_view line, int line_number, P
   std::vector<Cell> cells;
   std::size_t at = 0;
   const auto place_at = [&](std::size_t byte) {
-    return Place{line_number, 1 + static_cast<int>(length_in_characters(line.substr(0, byte)))};
+    return FilePosition{line_number, 1 + static_cast<int>(length_in_characters(line.substr(0, byte)))};
   };
   while (true) {
     while (at < line.size() && (line[at] == ' ' || line[at] == '\t')) ++at;
@@ -63,7 +63,7 @@ std::optional<std::vector<Cell>> split(std::string_view line, int line_number, P
       }
       const std::size_t comma = std::min(line.find(',', at), line.size());
       if (!closed || !trimmed(line.substr(at, comma - at)).empty()) {
-        problems.add(cell.place, closed ? "text after a closing quote" : "a quote is not closed",
+        problems.add(cell.in_file, closed ? "text after a closing quote" : "a quote is not closed",
                      "put the whole cell in double quotes, and write \"\" for a quote in it");
         return std::nullopt;
       }
@@ -109,21 +109,21 @@ class PointsReader {
  private:
   bool header(const std::vector<Cell>& cells) {
     bool good = true;
-    const auto refuse = [&](const Place& place, std::string what, std::string mend) {
-      problems_.add(place, std::move(what), std::move(mend));
+    const auto refuse = [&](const FilePosition& in_file, std::string what, std::string mend) {
+      problems_.add(in_file, std::move(what), std::move(mend));
       good = false;
     };
     for (const Cell& cell : cells) {
       const auto at = std::find(kColumnNames.begin(), kColumnNames.end(), cell.text);
       if (at == kColumnNames.end()) {
-        refuse(cell.place, fmt::format("unknown column {}", in_quotes(cell.text)),
+        refuse(cell.in_file, fmt::format("unknown column {}", in_quotes(cell.text)),
                mend_for_unknown(cell.text, kColumnNames, "remove it"));
         columns_.push_back(kColumns);
         continue;
       }
       const auto column = static_cast<Column>(at - kColumnNames.begin());
       if (std::find(columns_.begin(), columns_.end(), column) != columns_.end()) {
-        refuse(cell.place, fmt::format("column {} stands there twice", cell.text), "remove one of them");
+        refuse(cell.in_file, fmt::format("column {} stands there twice", cell.text), "remove one of them");
       }
       columns_.push_back(column);
     }
@@ -132,14 +132,15 @@ class PointsReader {
     };
     for (const Column column : {kName, kX, kY, kZ}) {
       if (!has(column)) {
-        refuse(cells.front().place, fmt::format("no column {}", kColumnNames[column]), "add it to the header line");
+        refuse(cells.front().in_file, fmt::format("no column {}", kColumnNames[column]), "add it to the header line");
       }
     }
     if ((has(kNx) || has(kNy) || has(kNz)) && !(has(kNx) && has(kNy) && has(kNz))) {
-      refuse(cells.front().place, "a normal needs the columns nx, ny and nz", "add those that are missing");
+      refuse(cells.front().in_file, "a normal needs the columns nx, ny and nz", "add those that are missing");
     }
     if (has(kGoalX) != has(kGoalY)) {
-      refuse(cells.front().place, "a chromaticity needs the columns goal_x and goal_y", "add the one that is missing");
+      refuse(cells.front().in_file, "a chromaticity needs the columns goal_x and goal_y",
+             "add the one that is missing");
     }
     return good;
   }
@@ -151,14 +152,14 @@ class PointsReader {
       return;
     }
     if (cells.size() != columns_.size()) {
-      problems_.add(cells.front().place,
+      problems_.add(cells.front().in_file,
                     fmt::format("{} cells, but the header has {} columns", cells.size(), columns_.size()),
                     "give every line as many cells as the header");
       return;
     }
     PointsTable::Row out;
     std::array<std::optional<double>, kColumns> values;
-    Place normal_place;
+    FilePosition normal_place;
     bool good = true;
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const Column column = columns_[i];
@@ -166,7 +167,7 @@ class PointsReader {
         good &= read_name(cells[i], out);
       } else {
         good &= read_number(cells[i], column, values[column]);
-        if (column == kNx) normal_place = cells[i].place;
+        if (column == kNx) normal_place = cells[i].in_file;
       }
     }
     if (!good) return;
@@ -193,7 +194,7 @@ class PointsReader {
     if (!x && !y && !cct_k) return true;
     const auto refuse = [&](Column at, std::string what, std::string mend) {
       const auto column = std::find(columns_.begin(), columns_.end(), at) - columns_.begin();
-      problems_.add(cells[static_cast<std::size_t>(column)].place, std::move(what), std::move(mend));
+      problems_.add(cells[static_cast<std::size_t>(column)].in_file, std::move(what), std::move(mend));
       return false;
     };
     if (x.has_value() != y.has_value())
@@ -213,7 +214,7 @@ class PointsReader {
   bool read_name(const Cell& cell, PointsTable::Row& out) {
     const std::size_t length = length_in_characters(cell.text);
     if (length == 0 || length > kLongestName || !is_plain_text(cell.text)) {
-      problems_.add(cell.place,
+      problems_.add(cell.in_file,
                     length == 0             ? "a point without a name"
                     : length > kLongestName ? fmt::format("a name of {} characters", length)
                                             : fmt::format("name {} is not plain text", in_quotes(cell.text)),
@@ -221,7 +222,7 @@ class PointsReader {
       return false;
     }
     out.point.name = cell.text;
-    out.place = cell.place;
+    out.in_file = cell.in_file;
     return true;
   }
 
@@ -233,7 +234,7 @@ class PointsReader {
     const char* end = cell.text.data() + cell.text.size();
     const auto [stop, error] = std::from_chars(cell.text.data(), end, x);
     if (cell.text.empty() || error != std::errc{} || stop != end || !std::isfinite(x)) {
-      problems_.add(cell.place, fmt::format("{} is {}, not a finite number", title, in_quotes(cell.text)),
+      problems_.add(cell.in_file, fmt::format("{} is {}, not a finite number", title, in_quotes(cell.text)),
                     "write a number with a decimal point, as 1.25");
       return false;
     }
@@ -241,7 +242,7 @@ class PointsReader {
     const auto spec =
         std::find_if(point_keys.begin(), point_keys.end(), [&](const KeySpec& k) { return k.key == kKeys[column]; });
     if (!spec->bounds.contain(x)) {
-      problems_.add(cell.place, fmt::format("{} is {}, which is out of range", title, x),
+      problems_.add(cell.in_file, fmt::format("{} is {}, which is out of range", title, x),
                     fmt::format("allowed: {}", range_text(*spec)));
       return false;
     }

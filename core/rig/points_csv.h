@@ -24,7 +24,7 @@ struct PointsTable {
   struct Row {
     Point point;
     std::optional<Chromaticity> goal_xy;  ///< not yet in point.goal_rgb, since it may have to be moved
-    Place place;                          ///< of the name, in the CSV file
+    FilePosition in_file;                 ///< of the name, in the CSV file
   };
   std::vector<Row> rows;          ///< rows without a problem
   std::vector<Problem> problems;  ///< file:line:column of the CSV file; at most 1000

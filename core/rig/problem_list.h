@@ -13,8 +13,8 @@ class ProblemList {
  public:
   explicit ProblemList(std::string file) : file_(std::move(file)) {}
 
-  void add(const Place& place, std::string what, std::string mend) {
-    add({file_, place.line, place.column, std::move(what), std::move(mend)});
+  void add(const FilePosition& in_file, std::string what, std::string mend) {
+    add({file_, in_file.line, in_file.column, std::move(what), std::move(mend)});
   }
   void add(Problem problem);
 

@@ -19,13 +19,13 @@ tl::unexpected<std::vector<Problem>> refuse(const std::filesystem::path& file, s
 
 }  // namespace
 
-void NameIndex::add(const std::string& name, std::size_t index, const Place& place, ProblemList& problems) {
-  const auto [at, is_new] = entries_.try_emplace(name, Entry{index, place});
+void NameIndex::add(const std::string& name, std::size_t index, const FilePosition& in_file, ProblemList& problems) {
+  const auto [at, is_new] = entries_.try_emplace(name, Entry{index, in_file});
   if (is_new) return;
-  problems.add(
-      place,
-      fmt::format("a second {} is called {} (the first is in line {})", kind_, in_quotes(name), at->second.place.line),
-      fmt::format("give each {} its own name", kind_));
+  problems.add(in_file,
+               fmt::format("a second {} is called {} (the first is in line {})", kind_, in_quotes(name),
+                           at->second.in_file.line),
+               fmt::format("give each {} its own name", kind_));
 }
 
 std::optional<std::size_t> NameIndex::find(const std::string& name) const {
@@ -57,8 +57,8 @@ void RigReader::each(const NodeTable& table, std::string_view section, const std
   if (!member) return;
   const auto* list = std::get_if<NodeList>(&member->node.value);
   const auto* single = std::get_if<NodeTable>(&member->node.value);
-  const auto wrong_shape = [&](const Place& place) {
-    problems.add(place, fmt::format("{} is not {}", section, spec.list ? "a list of tables" : "a table"),
+  const auto wrong_shape = [&](const FilePosition& in_file) {
+    problems.add(in_file, fmt::format("{} is not {}", section, spec.list ? "a list of tables" : "a table"),
                  fmt::format("head {} with {}", spec.list ? "each entry" : "it", heading_of(spec)));
   };
   if (spec.list ? list == nullptr : single == nullptr) {
@@ -66,7 +66,7 @@ void RigReader::each(const NodeTable& table, std::string_view section, const std
     return;
   }
   if (single) {
-    Section entry(*single, member->node.place, section, problems);
+    Section entry(*single, member->node.in_file, section, problems);
     body(entry);
     return;
   }
@@ -77,10 +77,10 @@ void RigReader::each(const NodeTable& table, std::string_view section, const std
   }
   for (const Node& node : *list) {
     if (const auto* entry_table = std::get_if<NodeTable>(&node.value)) {
-      Section entry(*entry_table, node.place, section, problems);
+      Section entry(*entry_table, node.in_file, section, problems);
       body(entry);
     } else {
-      wrong_shape(node.place);
+      wrong_shape(node.in_file);
     }
   }
 }
@@ -120,14 +120,14 @@ void RigReader::read_settings() {
   }
   each(root, "rig", [&](Section& s) { s.read("name", rig.name); });
   each(root, "limits", [&](Section& s) {
-    rig.limits.place = s.place();
+    rig.limits.in_file = s.in_file();
     s.read("max_level", rig.limits.max_level);
     s.read("open_loop_margin", rig.limits.open_loop_margin);
     s.read("max_watts", rig.limits.max_watts);
   });
   each(root, "control", [&](Section& s) {
     ControlSpec& c = rig.control;
-    c.place = s.place();
+    c.in_file = s.in_file();
     s.read("fade_s", c.fade_s);
     s.read_choice("fade_curve", c.fade_curve);
     s.read("correction_fade_s", c.correction_fade_s);
@@ -139,7 +139,7 @@ void RigReader::read_settings() {
     s.read("gain_max", c.gain_max);
   });
   each(root, "safe", [&](Section& s) {
-    rig.safe.place = s.place();
+    rig.safe.in_file = s.in_file();
     s.read("hold_s", rig.safe.hold_s);
     s.read("fade_s", rig.safe.fade_s);
     s.read_choice("scope", rig.safe.scope);
@@ -152,7 +152,7 @@ void RigReader::read_settings() {
     }
   });
   each(root, "daemon", [&](Section& s) {
-    rig.daemon.place = s.place();
+    rig.daemon.in_file = s.in_file();
     s.read("http_port", rig.daemon.http_port);
     s.read("park_at_end", rig.daemon.park_at_end);
   });

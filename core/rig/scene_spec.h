@@ -11,7 +11,7 @@
 namespace luxrig {
 
 /// Position in the rig file, for problems found later.
-struct Place {
+struct FilePosition {
   int line = 0;
   int column = 0;
 };
@@ -19,7 +19,7 @@ struct Place {
 struct ReflectanceRule {
   std::string material_pattern;  ///< shell pattern: * and ?
   Vec3 reflectance_rgb = Vec3::Constant(0.5);
-  Place place;
+  FilePosition in_file;
   double specular = 0;     ///< gloss: reflectance of the coat at normal incidence, 0…0.95
   double roughness = 0.3;  ///< of the coat, 0.05…1
 };
@@ -34,7 +34,7 @@ struct SceneObject {
   std::optional<double> height_m;        ///< mesh scaled evenly to this height
   std::optional<Vec3> reflectance_rgb;   ///< of all its materials; if not given, rules and file colours apply
   std::optional<double> transmittance;   ///< of each face, at normal incidence; set = glass (core/scene/panes.h)
-  Place place;
+  FilePosition in_file;
 };
 
 struct SceneSpec {
@@ -42,7 +42,7 @@ struct SceneSpec {
   Vec3 default_reflectance_rgb = Vec3::Constant(0.5);  ///< if neither a rule nor the file gives one
   std::vector<ReflectanceRule> reflectances;           ///< first match wins, before the file's own colour
   std::vector<SceneObject> objects;
-  Place place;
+  FilePosition in_file;
 };
 
 }  // namespace luxrig

@@ -78,6 +78,17 @@ bool HealthWatch::any_meter_lost() const {
                      [](const Meter& meter) { return meter.trust.lost() && !meter.bypassed; });
 }
 
+std::string HealthWatch::cause(bool of_light) const {
+  const Alarm* first = nullptr;
+  for (const Alarm& alarm : alarms_) {
+    if (!alarm.severe) continue;
+    if (!first) first = &alarm;
+    const Role role = known(alarm.device).role;
+    if ((role == Role::luxmeter || role == Role::meter_bus) != of_light) return alarm.text;
+  }
+  return first ? first->text : "";
+}
+
 HealthWatch::Known HealthWatch::known(const std::string& device) const {
   if (const auto found = known_.find(device); found != known_.end()) return found->second;
   for (auto colon = device.find(": "); colon != std::string::npos; colon = device.find(": ", colon + 1)) {

@@ -39,7 +39,7 @@ class Builder {
   Checked<Scene> build() {
     scene_.object_names.emplace_back("scene");
     if (rig_.scene.mesh) {
-      if (auto part = load(*rig_.scene.mesh, "scene", rig_.scene.place)) {
+      if (auto part = load(*rig_.scene.mesh, "scene", rig_.scene.in_file)) {
         set_reflectances(*part, "scene", std::nullopt);
         parts_.emplace_back(0, std::move(*part));
       }
@@ -53,17 +53,17 @@ class Builder {
   }
 
  private:
-  void problem(const Place& place, std::string what, std::string mend) {
-    problems_.push_back({rig_.file.string(), place.line, place.column, std::move(what), std::move(mend)});
+  void problem(const FilePosition& in_file, std::string what, std::string mend) {
+    problems_.push_back({rig_.file.string(), in_file.line, in_file.column, std::move(what), std::move(mend)});
   }
 
-  std::optional<PlacedMesh> load(const MeshFile& file, const std::string& name, const Place& place) {
+  std::optional<PlacedMesh> load(const MeshFile& file, const std::string& name, const FilePosition& in_file) {
     auto mesh = load_placed_mesh(file);
     if (!mesh) {
       for (Problem& one : mesh.error()) {
         std::string where = one.line > 0 ? ", line " + std::to_string(one.line) : "";
         if (one.line > 0 && one.column > 0) where += ", column " + std::to_string(one.column);
-        problem(place, name + ": " + one.file + where + " " + one.what, std::move(one.mend));
+        problem(in_file, name + ": " + one.file + where + " " + one.what, std::move(one.mend));
       }
       return std::nullopt;
     }
@@ -75,16 +75,16 @@ class Builder {
     const auto index = static_cast<std::uint32_t>(scene_.object_names.size());
     scene_.object_names.push_back(object.name);
     if (!object.position_world_m.allFinite() || !std::isfinite(object.turn_rad)) {
-      problem(object.place, "object '" + object.name + "' stands nowhere", "give a finite position and turn");
+      problem(object.in_file, "object '" + object.name + "' stands nowhere", "give a finite position and turn");
       return;
     }
     std::optional<PlacedMesh> part;
     if (object.mesh) {
-      part = load(*object.mesh, "object '" + object.name + "'", object.place);
+      part = load(*object.mesh, "object '" + object.name + "'", object.in_file);
     } else if (object.box_m.allFinite() && object.box_m.minCoeff() > 0) {
       part = box(object.name, object.box_m);
     } else {
-      problem(object.place, "object '" + object.name + "' is a box without volume", "give three lengths above 0");
+      problem(object.in_file, "object '" + object.name + "' is a box without volume", "give three lengths above 0");
     }
     if (!part || !place(object, *part)) return;
     if (object.transmittance) return glaze(*part, *object.transmittance, index);
@@ -106,7 +106,7 @@ class Builder {
       const double height_m = bounds.sizes().z();
       scale = *object.height_m / height_m;
       if (!(height_m > 0) || !std::isfinite(scale) || !(scale > 0)) {
-        problem(object.place, "object '" + object.name + "' is flat and cannot be scaled to a height",
+        problem(object.in_file, "object '" + object.name + "' is flat and cannot be scaled to a height",
                 "leave height_m out, or correct up_axis");
         return false;
       }
@@ -154,7 +154,7 @@ class Builder {
     for (std::size_t i = 0; i < rule_used_.size(); ++i) {
       if (rule_used_[i]) continue;
       const ReflectanceRule& rule = rig_.scene.reflectances[i];
-      scene_.warnings.push_back("line " + std::to_string(rule.place.line) + ": reflectance rule '" +
+      scene_.warnings.push_back("line " + std::to_string(rule.in_file.line) + ": reflectance rule '" +
                                 rule.material_pattern + "' matches no material");
     }
   }
@@ -195,8 +195,8 @@ class Builder {
     return middle.cwiseMax(bounds.min()).cwiseMin(bounds.max());
   }
 
-  [[nodiscard]] const Place& place_of(std::uint32_t object) const {
-    return object == 0 ? rig_.scene.place : rig_.scene.objects[object - 1].place;
+  [[nodiscard]] const FilePosition& place_of(std::uint32_t object) const {
+    return object == 0 ? rig_.scene.in_file : rig_.scene.objects[object - 1].in_file;
   }
 
   const Rig& rig_;

@@ -37,7 +37,8 @@ tl::unexpected<Fault> CameraSource::faulted(Time now, const Fault& fault) {
 std::vector<Problem> check_cameras(const Rig& rig) {
   std::vector<Problem> problems;
   const auto add = [&](const PictureCamera& camera, std::string what, std::string mend) {
-    problems.push_back({rig.file.string(), camera.place.line, camera.place.column, std::move(what), std::move(mend)});
+    problems.push_back(
+        {rig.file.string(), camera.in_file.line, camera.in_file.column, std::move(what), std::move(mend)});
   };
   for (const PictureCamera& camera : rig.cameras) {
     if (camera.taking.source == PictureSource::none) continue;

@@ -48,8 +48,8 @@ std::span<const OptionDoc> canopen_options() { return kCanopenOptions; }
 std::vector<Problem> check_canopen(const Rig& rig, std::size_t bus) {
   const Bus& entry = rig.buses[bus];
   std::vector<Problem> problems = check_options(rig, entry, kCanopenOptions);
-  const auto report = [&](const Place& place, std::string what, std::string mend) {
-    problems.push_back({rig.file.string(), place.line, place.column, std::move(what), std::move(mend)});
+  const auto report = [&](const FilePosition& in_file, std::string what, std::string mend) {
+    problems.push_back({rig.file.string(), in_file.line, in_file.column, std::move(what), std::move(mend)});
   };
   int master = 0;
   if (problems.empty()) {
@@ -66,7 +66,7 @@ std::vector<Problem> check_canopen(const Rig& rig, std::size_t bus) {
   }
   for (const Fixture& fixture : rig.fixtures) {
     if (fixture.bus == bus) {
-      report(fixture.place,
+      report(fixture.in_file,
              fmt::format("fixture \"{}\" has its dimmer on the bus \"{}\", which only turns heads", fixture.name,
                          entry.name),
              "give it a DMX or Modbus bus, and name this one as its axes_bus");
@@ -74,7 +74,7 @@ std::vector<Problem> check_canopen(const Rig& rig, std::size_t bus) {
     if (!fixture.axes || fixture.axes->bus != bus) continue;
     for (const AxisPatch& axis : {fixture.axes->pan, fixture.axes->tilt}) {
       if (axis.node < 1 || axis.node > 127 || axis.node == master) {
-        report(fixture.place,
+        report(fixture.in_file,
                axis.node == master ? fmt::format("fixture \"{}\": node {} is Luxrig's own", fixture.name, axis.node)
                                    : fmt::format("fixture \"{}\": there is no node {}", fixture.name, axis.node),
                axis.node == master ? "give the drive another node number, or the bus another master_node"
@@ -83,7 +83,7 @@ std::vector<Problem> check_canopen(const Rig& rig, std::size_t bus) {
       const double travel = std::max(std::abs(axis.counts_at(fixture.range.pan_max_rad)),
                                      std::abs(axis.counts_at(fixture.range.pan_min_rad)));
       if (!(travel < 2e9)) {
-        report(fixture.place,
+        report(fixture.in_file,
                fmt::format("fixture \"{}\": its travel is {:.3g} counts, more than a position of 32 bit holds",
                            fixture.name, travel),
                "correct counts_per_degree, or set the drive to a coarser unit");
@@ -92,7 +92,7 @@ std::vector<Problem> check_canopen(const Rig& rig, std::size_t bus) {
   }
   for (const Luxmeter& meter : rig.luxmeters) {
     if (meter.bus != bus) continue;
-    report(meter.place,
+    report(meter.in_file,
            fmt::format("luxmeter \"{}\" is on the bus \"{}\", which only turns heads", meter.name, entry.name),
            "put it on a bus with driver = \"modbus_tcp\"");
   }

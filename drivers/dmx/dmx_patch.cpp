@@ -230,27 +230,27 @@ std::vector<DeskCommand> DmxPatchbay::decode(std::size_t universe, const DmxSlot
 std::vector<Problem> check_dmx_patch(const Rig& rig, std::size_t bus, int lowest_universe, int highest_universe) {
   std::vector<Problem> problems;
   const std::string& name = rig.buses[bus].name;
-  const auto report = [&](const Place& place, std::string what, std::string mend) {
-    problems.push_back({rig.file.string(), place.line, place.column, std::move(what), std::move(mend)});
+  const auto report = [&](const FilePosition& in_file, std::string what, std::string mend) {
+    problems.push_back({rig.file.string(), in_file.line, in_file.column, std::move(what), std::move(mend)});
   };
   for (const Fixture& fixture : rig.fixtures) {
     if (fixture.bus != bus) continue;
     const auto* patch = std::get_if<DmxPatch>(&fixture.patch);
     if (patch == nullptr) {
-      report(fixture.place,
+      report(fixture.in_file,
              fmt::format("fixture \"{}\" has a Modbus register, but its bus \"{}\" carries DMX", fixture.name, name),
              "give it universe and address in place of unit and register, or another bus");
       continue;
     }
     if (patch->universe < lowest_universe || patch->universe > highest_universe) {
-      report(fixture.place,
+      report(fixture.in_file,
              fmt::format("fixture \"{}\": universe {} does not exist on a {} bus", fixture.name, patch->universe,
                          rig.buses[bus].driver),
              fmt::format("choose a universe in {}…{}", lowest_universe, highest_universe));
     }
     const auto last = patch->address + static_cast<std::int64_t>(patch->slots.size()) - 1;
     if (patch->address < 1 || last > static_cast<std::int64_t>(kDmxSlots)) {
-      report(fixture.place,
+      report(fixture.in_file,
              fmt::format("fixture \"{}\" takes slots {}…{} of a universe that has 1…512", fixture.name, patch->address,
                          last),
              fmt::format("choose an address in 1…{}",
@@ -259,7 +259,7 @@ std::vector<Problem> check_dmx_patch(const Rig& rig, std::size_t bus, int lowest
   }
   for (const Luxmeter& meter : rig.luxmeters) {
     if (meter.bus != bus) continue;
-    report(meter.place,
+    report(meter.in_file,
            fmt::format("luxmeter \"{}\" is on the bus \"{}\", which carries DMX and cannot be read from", meter.name,
                        name),
            "put it on a bus with driver = \"modbus_tcp\"");

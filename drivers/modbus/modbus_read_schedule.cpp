@@ -17,11 +17,12 @@ ReadSchedule::ReadSchedule(const Rig& rig, std::size_t bus, Duration poll, const
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
     if (rig.luxmeters[i].bus == bus) meters_.push_back(i);
   }
-  const auto place = [&](std::size_t meter) {
+  const auto in_file = [&](std::size_t meter) {
     const ModbusMeterPatch& patch = rig.luxmeters[meter].patch;
     return std::make_tuple(patch.unit, patch.input_registers, patch.first_register);
   };
-  std::stable_sort(meters_.begin(), meters_.end(), [&](std::size_t a, std::size_t b) { return place(a) < place(b); });
+  std::stable_sort(meters_.begin(), meters_.end(),
+                   [&](std::size_t a, std::size_t b) { return in_file(a) < in_file(b); });
   for (const std::size_t meter : meters_) patches_.push_back(rig.luxmeters[meter].patch);
   due_at_.resize(meters_.size());
 }

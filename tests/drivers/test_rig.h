@@ -16,7 +16,7 @@ inline Bus bus_of(std::string driver, std::vector<std::pair<std::string, OptionV
   Bus bus;
   bus.name = "the-bus";
   bus.driver = std::move(driver);
-  bus.place = {7, 1};
+  bus.in_file = {7, 1};
   int line = 8;
   for (auto& [key, value] : options) bus.options[key] = {value, {line++, 5}};
   return bus;
@@ -40,7 +40,7 @@ inline Fixture& add_dmx(Rig& rig, std::string name, int universe, int address,
   Fixture fixture;
   fixture.name = std::move(name);
   fixture.patch = DmxPatch{universe, address, std::move(slots)};
-  fixture.place = {20 + static_cast<int>(rig.fixtures.size()), 3};
+  fixture.in_file = {20 + static_cast<int>(rig.fixtures.size()), 3};
   rig.fixtures.push_back(std::move(fixture));
   return rig.fixtures.back();
 }
@@ -75,7 +75,7 @@ inline Fixture& add_modbus(Rig& rig, std::string name, int unit, int reg, int fu
   Fixture fixture;
   fixture.name = std::move(name);
   fixture.patch = ModbusPatch{unit, reg, full_scale};
-  fixture.place = {20 + static_cast<int>(rig.fixtures.size()), 3};
+  fixture.in_file = {20 + static_cast<int>(rig.fixtures.size()), 3};
   rig.fixtures.push_back(std::move(fixture));
   return rig.fixtures.back();
 }
@@ -86,7 +86,7 @@ inline Luxmeter& add_meter(Rig& rig, std::string name, int unit, int first_regis
   meter.patch.unit = unit;
   meter.patch.first_register = first_register;
   meter.range_lx = 100000;
-  meter.place = {40 + static_cast<int>(rig.luxmeters.size()), 3};
+  meter.in_file = {40 + static_cast<int>(rig.luxmeters.size()), 3};
   rig.luxmeters.push_back(std::move(meter));
   return rig.luxmeters.back();
 }

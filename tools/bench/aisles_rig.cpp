@@ -63,10 +63,10 @@ class Aisles {
   }
 
   /// Place of a work, and the direction that its wall faces (along y).
-  struct Place {
+  struct Site {
     double x, y, faces;
   };
-  [[nodiscard]] Place place(int wall, double along_m) const {
+  [[nodiscard]] Site place(int wall, double along_m) const {
     const bool south = wall % 2 == 0;
     const int aisle = wall / 2;
     const bool partition = south ? aisle > 0 : aisle + 1 < walls_ / 2;
@@ -76,7 +76,7 @@ class Aisles {
 
   void works() {
     for (int i = 0; i < points_; ++i) {
-      const Place at = place(i / kWorksPerWall, kBetweenWorks_m * (i % kWorksPerWall + 0.5));
+      const Site at = place(i / kWorksPerWall, kBetweenWorks_m * (i % kWorksPerWall + 0.5));
       const bool drawing = i % 5 == 3;
       out_ += fmt::format(
           "[[point]]\nname = \"work {}\"\nposition_m = [{:.4f}, {:.4f}, {:.3f}]\nnormal = [0, {:g}, 0]\ngoal_lx = {}\n",
@@ -97,7 +97,7 @@ class Aisles {
       const int of_this = fixtures_ / points_ + (i < fixtures_ % points_ ? 1 : 0);
       for (int k = 0; k < of_this; ++k) {
         const double aside = (k + 1.0) / (of_this + 1.0) - 0.5;
-        const Place at = place(i / kWorksPerWall, kBetweenWorks_m * (i % kWorksPerWall + 0.5 + 0.8 * aside));
+        const Site at = place(i / kWorksPerWall, kBetweenWorks_m * (i % kWorksPerWall + 0.5 + 0.8 * aside));
         ++made;
         out_ += fmt::format(
             "[[fixture]]\nname = \"spot {}\"\nluminaire = \"{}\"\nposition_m = [{:.4f}, {:.4f}, {}]\naim = \"work "

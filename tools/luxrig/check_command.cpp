@@ -221,7 +221,7 @@ std::vector<Problem> all_notes(const Session& session) {
   for (const std::size_t head : zones.heads()) {
     const Fixture& fixture = rig.fixtures[head];
     if (const auto zone = zones.met(head, fixture.joints))
-      notes.push_back({rig.file.string(), fixture.place.line, fixture.place.column,
+      notes.push_back({rig.file.string(), fixture.in_file.line, fixture.in_file.column,
                        fmt::format("{} looks into keep-out zone \"{}\" as it hangs", fixture.name, zones.name(*zone)),
                        "it stays dark until it is turned"});
   }

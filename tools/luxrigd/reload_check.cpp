@@ -102,32 +102,33 @@ bool listens_to_desks(const Rig& rig) {
 
 std::vector<Problem> needs_a_restart(const Rig& running, const Rig& changed, bool same_light) {
   std::vector<Problem> problems;
-  const auto needs = [&](const Place& place, const std::string& what) {
-    problems.push_back({changed.file.string(), place.line, place.column, what + " has changed, which needs a restart",
-                        "restart the daemon, or put it back and reload"});
+  const auto needs = [&](const FilePosition& in_file, const std::string& what) {
+    problems.push_back({changed.file.string(), in_file.line, in_file.column,
+                        what + " has changed, which needs a restart", "restart the daemon, or put it back and reload"});
   };
   if (running.name != changed.name) needs({1, 1}, "the rig's name");
   if (running.buses.size() != changed.buses.size()) needs({1, 1}, "the number of [[bus]]");
   for (std::size_t b = 0; b < std::min(running.buses.size(), changed.buses.size()); ++b)
     if (!same(running.buses[b], changed.buses[b]))
-      needs(changed.buses[b].place, fmt::format("[[bus]] \"{}\"", changed.buses[b].name));
+      needs(changed.buses[b].in_file, fmt::format("[[bus]] \"{}\"", changed.buses[b].name));
   if (running.fixtures.size() != changed.fixtures.size()) needs({1, 1}, "the number of [[fixture]]");
   for (std::size_t f = 0; f < std::min(running.fixtures.size(), changed.fixtures.size()); ++f)
     if (const char* key = output_key_that_differs(running.fixtures[f], changed.fixtures[f]))
-      needs(changed.fixtures[f].place, fmt::format("[[fixture]] \"{}\": {}", changed.fixtures[f].name, key));
+      needs(changed.fixtures[f].in_file, fmt::format("[[fixture]] \"{}\": {}", changed.fixtures[f].name, key));
   if (running.luxmeters.size() != changed.luxmeters.size()) needs({1, 1}, "the number of [[luxmeter]]");
   for (std::size_t m = 0; m < std::min(running.luxmeters.size(), changed.luxmeters.size()); ++m) {
     const Luxmeter &a = running.luxmeters[m], &b = changed.luxmeters[m];
     if (a.name != b.name || a.bus != b.bus || !same(a.patch, b.patch))
-      needs(b.place, fmt::format("[[luxmeter]] \"{}\": its name, bus or registers", b.name));
+      needs(b.in_file, fmt::format("[[luxmeter]] \"{}\": its name, bus or registers", b.name));
   }
   const bool same_zones =
       std::equal(running.keep_outs.begin(), running.keep_outs.end(), changed.keep_outs.begin(), changed.keep_outs.end(),
                  [](const KeepOut& a, const KeepOut& b) { return same(a, b); });
-  if (!same_zones) needs(changed.keep_outs.empty() ? Place{1, 1} : changed.keep_outs.front().place, "[[keep_out]]");
+  if (!same_zones)
+    needs(changed.keep_outs.empty() ? FilePosition{1, 1} : changed.keep_outs.front().in_file, "[[keep_out]]");
   if (same_zones && !changed.keep_outs.empty() && !same_light)
-    needs(changed.keep_outs.front().place, "where things hang beside a [[keep_out]]");
-  if (running.daemon.http_port != changed.daemon.http_port) needs(changed.daemon.place, "http_port of [daemon]");
+    needs(changed.keep_outs.front().in_file, "where things hang beside a [[keep_out]]");
+  if (running.daemon.http_port != changed.daemon.http_port) needs(changed.daemon.in_file, "http_port of [daemon]");
   // Limits decide whether a desk may turn heads.
   if (listens_to_desks(changed) && has_limits(running) != has_limits(changed))
     needs({1, 1}, "whether points have max_lux, beside a bus with an input for desks,");

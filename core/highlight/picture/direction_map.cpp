@@ -15,9 +15,9 @@ DirectionMap::DirectionMap(const Vec3& towards_viewer) {
   up_ = front_.cross(right_);
 }
 
-DirectionMap::Place DirectionMap::place_of(const Vec3& direction) const {
+DirectionMap::MapPoint DirectionMap::place_of(const Vec3& direction) const {
   const Vec3 d = direction.normalized();
-  Place place;
+  MapPoint place;
   place.behind = d.dot(front_) < 0;
   // √2 sin(θ/2) = sin θ / √(1 + cos θ): on the rim, at 90°, it is 1.
   const double scale = 1 / std::sqrt(1 + std::abs(d.dot(front_)));
@@ -26,7 +26,7 @@ DirectionMap::Place DirectionMap::place_of(const Vec3& direction) const {
   return place;
 }
 
-Vec3 DirectionMap::direction_at(const Place& place) const {
+Vec3 DirectionMap::direction_at(const MapPoint& place) const {
   const double radius = std::hypot(place.x, place.y), within = radius > 1 ? 1 / radius : 1;
   const double x = place.x * within, y = place.y * within;
   const double square = std::min(1.0, x * x + y * y);

@@ -10,7 +10,7 @@ namespace luxrig {
 /// solid angles have equal areas (J. Snyder, "Map projections: a working manual", 1987, p. 182).
 class DirectionMap {
  public:
-  struct Place {
+  struct MapPoint {
     bool behind = false;
     double x = 0, y = 0;  ///< to the right and up, within the unit circle
   };
@@ -18,8 +18,8 @@ class DirectionMap {
   /// towards_viewer   need not be unit; not zero (asserted). Up is +Z, or +Y for a viewer straight above or below.
   explicit DirectionMap(const Vec3& towards_viewer);
 
-  [[nodiscard]] Place place_of(const Vec3& direction) const;  ///< need not be unit; not zero
-  [[nodiscard]] Vec3 direction_at(const Place& place) const;  ///< unit; a place outside the circle is moved onto it
+  [[nodiscard]] MapPoint place_of(const Vec3& direction) const;  ///< need not be unit; not zero
+  [[nodiscard]] Vec3 direction_at(const MapPoint& place) const;  ///< unit; a place outside the circle is moved onto it
 
  private:
   Vec3 right_, up_, front_;

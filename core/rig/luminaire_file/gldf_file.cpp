@@ -36,8 +36,8 @@ class GldfProduct {
 
  private:
   void refuse(const pugi::xml_node& node, std::string what, std::string mend) {
-    const Place place = xml_.place_of(node ? node : xml_.root());
-    problems_.push_back({xml_.file(), place.line, place.column, std::move(what), std::move(mend)});
+    const FilePosition in_file = xml_.place_of(node ? node : xml_.root());
+    problems_.push_back({xml_.file(), in_file.line, in_file.column, std::move(what), std::move(mend)});
   }
 
   /// The element with that id in a list of <GeneralDefinitions>; a problem if it is missing.
@@ -215,8 +215,8 @@ Checked<GldfLight> parse_gldf_product(std::string_view text, const std::string& 
   const Checked<XmlFile> xml = XmlFile::parse(decoded ? std::string_view(*decoded) : text, file);
   if (!xml) return tl::unexpected(xml.error());
   if (local_name(xml->root()) != "Root" || !child_called(xml->root(), "GeneralDefinitions")) {
-    const Place place = xml->place_of(xml->root());
-    return tl::unexpected(std::vector<Problem>{{file, place.line, place.column,
+    const FilePosition in_file = xml->place_of(xml->root());
+    return tl::unexpected(std::vector<Problem>{{file, in_file.line, in_file.column,
                                                 "not the product of a GLDF file: no <Root> with <GeneralDefinitions>",
                                                 "get the file again from where it came"}});
   }

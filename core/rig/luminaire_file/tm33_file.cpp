@@ -26,8 +26,8 @@ constexpr double kTm33FluxTolerance = 0.05;
 constexpr double kSameTm33Angle_deg = 1e-6;
 
 At at_of(const XmlFile& xml, const pugi::xml_node& node) {
-  const Place place = xml.place_of(node);
-  return {place.line, place.column};
+  const FilePosition in_file = xml.place_of(node);
+  return {in_file.line, in_file.column};
 }
 
 /// Letters and digits only: files have "CIE-C", "CIE _ C" and "Symm _ Quad".
@@ -218,8 +218,8 @@ Checked<PhotometricFile> parse_tm33(std::string_view text, const std::string& fi
   const Checked<XmlFile> xml = XmlFile::parse(decoded ? std::string_view(*decoded) : text, file);
   if (!xml) return tl::unexpected(xml.error());
   const auto refuse = [&](const pugi::xml_node& node, std::string what, std::string mend) {
-    const Place place = xml->place_of(node);
-    return tl::unexpected(std::vector<Problem>{{file, place.line, place.column, std::move(what), std::move(mend)}});
+    const FilePosition in_file = xml->place_of(node);
+    return tl::unexpected(std::vector<Problem>{{file, in_file.line, in_file.column, std::move(what), std::move(mend)}});
   };
   const std::string_view root = local_name(xml->root());
   if (root != "LuminaireOpticalData" && !root.starts_with("IESTM33")) {

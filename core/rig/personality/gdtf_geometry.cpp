@@ -164,10 +164,11 @@ bool lies_below(const std::vector<GdtfInstance>& instances, std::size_t inner, s
 }  // namespace
 
 std::vector<GdtfInstance> gdtf_instances(const XmlFile& xml, const pugi::xml_node& geometries,
-                                         const std::string& root_name, const Place& place, ProblemList& problems) {
+                                         const std::string& root_name, const FilePosition& in_file,
+                                         ProblemList& problems) {
   const pugi::xml_node root = geometry_named(geometries, root_name);
   if (!root) {
-    problems.add(place, fmt::format("the mode's geometry {} does not exist", in_quotes(root_name)),
+    problems.add(in_file, fmt::format("the mode's geometry {} does not exist", in_quotes(root_name)),
                  "choose one of the fixture's geometries in the fixture builder");
     return {};
   }

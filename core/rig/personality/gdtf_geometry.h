@@ -29,7 +29,7 @@ struct GdtfInstance {
 /// Depth first, a parent before its children; the first is the mode's own geometry. Problems: a missing geometry, a
 /// reference that leads nowhere or to itself, more than 4096 geometries.
 [[nodiscard]] std::vector<GdtfInstance> gdtf_instances(const XmlFile& xml, const pugi::xml_node& geometries,
-                                                       const std::string& root_name, const Place& place,
+                                                       const std::string& root_name, const FilePosition& in_file,
                                                        ProblemList& problems);
 
 /// Sets the mode's pan and tilt offsets and where its light leaves, from the geometries that pan and tilt turn; or what

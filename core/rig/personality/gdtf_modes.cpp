@@ -251,7 +251,7 @@ class GdtfModeReader {
   PersonalityMode mode_;
   std::vector<GdtfInstance> instances_;
   std::vector<Link> links_;
-  std::vector<Place> places_;
+  std::vector<FilePosition> places_;
 };
 
 }  // namespace

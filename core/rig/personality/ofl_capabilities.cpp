@@ -165,7 +165,7 @@ OflFunctions read_ofl_functions(const OflFixture& fixture, const std::string& ke
                                 ProblemList& problems) {
   OflFunctions out;
   const auto problem = [&](std::string what, std::string mend) {
-    problems.add(Place{}, fmt::format("channel {}: {}", in_quotes(key), what), std::move(mend));
+    problems.add(FilePosition{}, fmt::format("channel {}: {}", in_quotes(key), what), std::move(mend));
   };
   const std::string stated = ofl_text(ofl_member(channel, "dmxValueResolution"));
   const int resolution = stated == "8bit" ? 1 : stated == "16bit" ? 2 : stated == "24bit" ? 3 : ofl_resolution(channel);

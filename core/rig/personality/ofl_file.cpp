@@ -38,13 +38,13 @@ int depth_of_brackets(std::string_view text) {
   return deepest;
 }
 
-Place place_in_text(std::string_view text, std::size_t byte) {
-  Place place{1, 1};
+FilePosition place_in_text(std::string_view text, std::size_t byte) {
+  FilePosition in_file{1, 1};
   for (std::size_t i = 0; i + 1 < byte && i < text.size(); ++i) {
-    ++place.column;
-    if (text[i] == '\n') place = {place.line + 1, 1};
+    ++in_file.column;
+    if (text[i] == '\n') in_file = {in_file.line + 1, 1};
   }
-  return place;
+  return in_file;
 }
 
 class OflReader {
@@ -94,7 +94,7 @@ class OflReader {
     std::string pixel;
   };
 
-  void problem(std::string what, std::string mend) { problems_.add(Place{}, std::move(what), std::move(mend)); }
+  void problem(std::string what, std::string mend) { problems_.add(FilePosition{}, std::move(what), std::move(mend)); }
 
   static bool adds_colours(const OflJson& json) {
     for (const char* list : {"availableChannels", "templateChannels"}) {
@@ -264,7 +264,7 @@ class OflReader {
       }
     }
     for (const Known& known : order) add_channel(known, slots[known.coarse], mode);
-    lay_out_slots(mode, std::vector<Place>(mode.channels.size()), problems_);
+    lay_out_slots(mode, std::vector<FilePosition>(mode.channels.size()), problems_);
     // Unused slots at the end still belong to the fixture.
     if (!names.empty()) mode.break_footprints = {static_cast<int>(names.size())};
     centre_angles(mode);
@@ -322,8 +322,8 @@ bool is_known_schema(const std::string& schema) {
 
 Checked<Personality> parse_ofl(std::string_view text, const std::string& manufacturer, const std::string& file) {
   ProblemList problems(file);
-  const auto refuse = [&](const Place& place, std::string what, std::string mend) {
-    problems.add(place, std::move(what), std::move(mend));
+  const auto refuse = [&](const FilePosition& in_file, std::string what, std::string mend) {
+    problems.add(in_file, std::move(what), std::move(mend));
     return tl::unexpected(problems.take());
   };
   if (text.size() > kMaxOflBytes) {

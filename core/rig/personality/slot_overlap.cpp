@@ -9,7 +9,7 @@
 
 namespace luxrig {
 
-void lay_out_slots(PersonalityMode& mode, const std::vector<Place>& places, ProblemList& problems) {
+void lay_out_slots(PersonalityMode& mode, const std::vector<FilePosition>& places, ProblemList& problems) {
   std::map<int, int> footprints;  // by break
   std::map<std::pair<int, int>, std::size_t> taken;
   for (std::size_t c = 0; c < mode.channels.size(); ++c) {

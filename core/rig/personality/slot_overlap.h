@@ -10,6 +10,6 @@ namespace luxrig {
 
 /// Sets the footprints of the mode from its channels. Problems, at `places[i]` for channel i: a slot outside 1…512, a
 /// slot shared by two channels.
-void lay_out_slots(PersonalityMode& mode, const std::vector<Place>& places, ProblemList& problems);
+void lay_out_slots(PersonalityMode& mode, const std::vector<FilePosition>& places, ProblemList& problems);
 
 }  // namespace luxrig

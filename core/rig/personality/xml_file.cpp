@@ -11,9 +11,9 @@
 namespace luxrig {
 namespace {
 
-tl::unexpected<std::vector<Problem>> refuse_xml(const std::string& file, const Place& place, std::string what,
+tl::unexpected<std::vector<Problem>> refuse_xml(const std::string& file, const FilePosition& in_file, std::string what,
                                                 std::string mend) {
-  return tl::unexpected(std::vector<Problem>{{file, place.line, place.column, std::move(what), std::move(mend)}});
+  return tl::unexpected(std::vector<Problem>{{file, in_file.line, in_file.column, std::move(what), std::move(mend)}});
 }
 
 /// The first node that is nested too deep, if any. No recursion, since the depth is not known yet.
@@ -68,9 +68,9 @@ Checked<XmlFile> XmlFile::parse(std::string_view text, std::string file) {
   return xml;
 }
 
-Place XmlFile::place_of(const pugi::xml_node& node) const { return place_at(node.offset_debug()); }
+FilePosition XmlFile::place_of(const pugi::xml_node& node) const { return place_at(node.offset_debug()); }
 
-Place XmlFile::place_at(std::ptrdiff_t offset) const {
+FilePosition XmlFile::place_at(std::ptrdiff_t offset) const {
   if (offset < 0) return {};
   const auto at = static_cast<std::size_t>(offset);
   const auto after = std::upper_bound(line_starts_.begin(), line_starts_.end(), at);

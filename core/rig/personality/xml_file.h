@@ -23,10 +23,10 @@ class XmlFile {
 
   [[nodiscard]] pugi::xml_node root() const { return document_->document_element(); }
   [[nodiscard]] const std::string& file() const { return file_; }
-  [[nodiscard]] Place place_of(const pugi::xml_node& node) const;
+  [[nodiscard]] FilePosition place_of(const pugi::xml_node& node) const;
 
  private:
-  [[nodiscard]] Place place_at(std::ptrdiff_t offset) const;
+  [[nodiscard]] FilePosition place_at(std::ptrdiff_t offset) const;
   std::shared_ptr<pugi::xml_document> document_;  ///< pugi's nodes point to it
   std::vector<std::size_t> line_starts_;
   std::string file_;

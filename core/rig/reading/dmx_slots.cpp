@@ -42,36 +42,36 @@ class SlotReader {
   SlotReader(const std::optional<SlotOwner>& owner, bool turned_elsewhere, ProblemList& problems)
       : owner_(owner), turned_elsewhere_(turned_elsewhere), problems_(problems) {}
 
-  std::optional<NamedSlot> slot(const std::string& text, const Place& place) {
-    if (text.starts_with(slot_name(SlotUse::constant))) return constant(text, place);
-    if (text.starts_with(kEmitter)) return of_emitter(text, place);
+  std::optional<NamedSlot> slot(const std::string& text, const FilePosition& in_file) {
+    if (text.starts_with(slot_name(SlotUse::constant))) return constant(text, in_file);
+    if (text.starts_with(kEmitter)) return of_emitter(text, in_file);
     const auto* at = std::find(std::begin(kSlotNames), std::end(kSlotNames), text);
     if (at == std::end(kSlotNames)) {
-      problems_.add(place, fmt::format("no slot is called {}", in_quotes(text)),
+      problems_.add(in_file, fmt::format("no slot is called {}", in_quotes(text)),
                     mend_for_unknown(text, kSlotNames, "see `slots` in rigs/REFERENCE.md"));
       return std::nullopt;
     }
     const auto use = static_cast<SlotUse>(at - std::begin(kSlotNames));
     if (dims(use) && has_emitters()) {
-      problems_.add(place,
+      problems_.add(in_file,
                     fmt::format("slot {} of a fixture whose luminaire {} has emitters", in_quotes(text),
                                 in_quotes(owner_->luminaire)),
                     fmt::format("name the emitter it sets ({}); hold a master dimmer open with \"constant:255\"",
                                 slots_for(*owner_)));
       return std::nullopt;
     }
-    return NamedSlot{{use, 0}, std::nullopt, place};
+    return NamedSlot{{use, 0}, std::nullopt, in_file};
   }
 
   /// Checks that the slots of a fixture fit together.
-  bool check(const std::vector<NamedSlot>& slots, const Place& list) {
+  bool check(const std::vector<NamedSlot>& slots, const FilePosition& list) {
     bool good = true;
     std::set<std::pair<SlotUse, std::size_t>> uses;
     for (const NamedSlot& slot : slots) {
       const SlotUse use = slot.slot.use;
       if (use == SlotUse::constant || use == SlotUse::unused || uses.emplace(use, slot.emitter.value_or(0)).second)
         continue;
-      problems_.add(slot.place, fmt::format("a second {} slot", title(use, slot.emitter)),
+      problems_.add(slot.in_file, fmt::format("a second {} slot", title(use, slot.emitter)),
                     "leave one; a further cell or lamp is a fixture of its own");
       good = false;
     }
@@ -123,22 +123,22 @@ class SlotReader {
     return emitter && dims(use) ? emitter_slot(owner_->emitters[*emitter], use) : std::string(slot_name(use));
   }
 
-  std::optional<NamedSlot> constant(const std::string& text, const Place& place) {
+  std::optional<NamedSlot> constant(const std::string& text, const FilePosition& in_file) {
     int value = -1;
     const char* end = text.data() + text.size();
     const auto [stop, error] = std::from_chars(text.data() + slot_name(SlotUse::constant).size(), end, value);
     if (error == std::errc{} && stop == end && value >= 0 && value <= 255)
-      return NamedSlot{{SlotUse::constant, value}, std::nullopt, place};
-    problems_.add(place, fmt::format("slot {} has no value from 0 to 255", in_quotes(text)),
+      return NamedSlot{{SlotUse::constant, value}, std::nullopt, in_file};
+    problems_.add(in_file, fmt::format("slot {} has no value from 0 to 255", in_quotes(text)),
                   "write it as \"constant:255\"");
     return std::nullopt;
   }
 
-  std::optional<NamedSlot> of_emitter(const std::string& text, const Place& place) {
-    if (!owner_) return NamedSlot{{SlotUse::unused, 0}, std::nullopt, place};
+  std::optional<NamedSlot> of_emitter(const std::string& text, const FilePosition& in_file) {
+    if (!owner_) return NamedSlot{{SlotUse::unused, 0}, std::nullopt, in_file};
     if (!has_emitters()) {
       problems_.add(
-          place,
+          in_file,
           fmt::format("slot {}, but luminaire {} has no emitters", in_quotes(text), in_quotes(owner_->luminaire)),
           "write \"dimmer\", or give the luminaire its emitters");
       return std::nullopt;
@@ -149,12 +149,13 @@ class SlotReader {
     const auto at = std::find(owner_->emitters.begin(), owner_->emitters.end(), name);
     if (at == owner_->emitters.end()) {
       const std::vector<std::string_view> known(owner_->emitters.begin(), owner_->emitters.end());
-      problems_.add(place, fmt::format("luminaire {} has no emitter {}", in_quotes(owner_->luminaire), in_quotes(name)),
+      problems_.add(in_file,
+                    fmt::format("luminaire {} has no emitter {}", in_quotes(owner_->luminaire), in_quotes(name)),
                     mend_for_unknown(name, known, "add it to the luminaire's emitters"));
       return std::nullopt;
     }
     const SlotUse use = fine ? SlotUse::dimmer_fine : ultra ? SlotUse::dimmer_ultra : SlotUse::dimmer;
-    return NamedSlot{{use, 0}, static_cast<std::size_t>(at - owner_->emitters.begin()), place};
+    return NamedSlot{{use, 0}, static_cast<std::size_t>(at - owner_->emitters.begin()), in_file};
   }
 
   const std::optional<SlotOwner>& owner_;
@@ -168,20 +169,20 @@ bool read_slots(Section& s, const std::optional<SlotOwner>& owner, std::vector<N
   ProblemList& problems = s.problems();
   if (!s.has("slots")) {
     if (!owner || owner->emitters.empty()) {
-      slots = {{DmxSlot{}, std::nullopt, s.place()}};
+      slots = {{DmxSlot{}, std::nullopt, s.in_file()}};
       return true;
     }
-    problems.add(s.place(),
+    problems.add(s.in_file(),
                  fmt::format("[[fixture]] has no \"slots\", which its luminaire {} with emitters needs",
                              in_quotes(owner->luminaire)),
                  fmt::format("add slots = [{}], in the order of its DMX footprint", slots_for(*owner)));
     return false;
   }
-  std::vector<std::pair<std::string, Place>> texts;
+  std::vector<std::pair<std::string, FilePosition>> texts;
   if (!s.read_texts("slots", texts)) return false;
   SlotReader reader(owner, s.has("axes_bus"), problems);
-  for (const auto& [text, place] : texts) {
-    if (auto slot = reader.slot(text, place)) slots.push_back(*slot);
+  for (const auto& [text, in_file] : texts) {
+    if (auto slot = reader.slot(text, in_file)) slots.push_back(*slot);
     if (problems.full()) break;
   }
   return slots.size() == texts.size() && reader.check(slots, s.place_of("slots"));

@@ -20,7 +20,7 @@ struct SlotOwner {
 struct NamedSlot {
   DmxSlot slot;                        ///< a dimmer if it belongs to an emitter
   std::optional<std::size_t> emitter;  ///< in SlotOwner::emitters
-  Place place;
+  FilePosition in_file;
 };
 
 /// Reads the key `slots`, or its default. False and problems if it is wrong; `slots` then holds the good ones. Without

@@ -21,7 +21,7 @@ namespace {
 constexpr int kMaxDottedParts = 16;
 
 struct ParseRefusal {
-  Place place;
+  FilePosition in_file;
   std::string what, mend;
 };
 
@@ -35,7 +35,7 @@ struct ParseRefusal {
 /// Must agree with toml++ up to the first error of toml++; after that, toml++ reads nothing.
 std::optional<ParseRefusal> look_ahead(std::string_view text) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-  Place here{1, 1};
+  FilePosition here{1, 1};
   int dots = 0;
   std::size_t i = 0;
   const auto at = [&](std::string_view token) { return text.substr(i, token.size()) == token; };
@@ -147,22 +147,22 @@ std::optional<ParseRefusal> look_ahead(std::string_view text) {
   return std::nullopt;
 }
 
-Place place_of(const toml::source_region& region, const Place& otherwise) {
+FilePosition place_of(const toml::source_region& region, const FilePosition& otherwise) {
   if (region.begin.line == 0) return otherwise;  // a table implied only by its children
   return {static_cast<int>(region.begin.line), static_cast<int>(region.begin.column)};
 }
 
-NodeTable plain_table(const toml::table& table, const Place& parent);
+NodeTable plain_table(const toml::table& table, const FilePosition& parent);
 
-Node plain(const toml::node& node, const Place& parent) {
+Node plain(const toml::node& node, const FilePosition& parent) {
   Node out;
-  out.place = place_of(node.source(), parent);
+  out.in_file = place_of(node.source(), parent);
   if (const auto* table = node.as_table()) {
-    out.value = plain_table(*table, out.place);
+    out.value = plain_table(*table, out.in_file);
   } else if (const auto* list = node.as_array()) {
     NodeList items;
     items.reserve(list->size());
-    for (const toml::node& item : *list) items.push_back(plain(item, out.place));
+    for (const toml::node& item : *list) items.push_back(plain(item, out.in_file));
     out.value = std::move(items);
   } else if (const auto* text = node.as_string()) {
     out.value = text->get();
@@ -178,11 +178,11 @@ Node plain(const toml::node& node, const Place& parent) {
   return out;
 }
 
-NodeTable plain_table(const toml::table& table, const Place& parent) {
+NodeTable plain_table(const toml::table& table, const FilePosition& parent) {
   NodeTable out;  // sorted, as in toml++
   out.reserve(table.size());
   for (const auto& [key, node] : table) {
-    const Place key_place = place_of(key.source(), parent);
+    const FilePosition key_place = place_of(key.source(), parent);
     out.push_back({std::string(key.str()), key_place, plain(node, key_place)});
   }
   return out;
@@ -203,11 +203,11 @@ const char* kind_of(const Node& node) {
 }
 
 Checked<NodeTable> parse_document(std::string_view text, const std::string& file_name) {
-  const auto refuse = [&](const Place& place, std::string what, std::string mend) {
+  const auto refuse = [&](const FilePosition& in_file, std::string what, std::string mend) {
     return tl::unexpected(
-        std::vector<Problem>{{file_name, place.line, place.column, std::move(what), std::move(mend)}});
+        std::vector<Problem>{{file_name, in_file.line, in_file.column, std::move(what), std::move(mend)}});
   };
-  if (const auto refusal = look_ahead(text)) return refuse(refusal->place, refusal->what, refusal->mend);
+  if (const auto refusal = look_ahead(text)) return refuse(refusal->in_file, refusal->what, refusal->mend);
   const toml::parse_result result = toml::parse(text, file_name);
   if (!result) {
     const toml::parse_error& error = result.error();

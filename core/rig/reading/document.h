@@ -20,12 +20,12 @@ struct DateOrTime {};                   ///< no key of a rig takes one
 
 struct Node {
   std::variant<bool, std::int64_t, double, std::string, NodeList, NodeTable, DateOrTime> value;
-  Place place;
+  FilePosition in_file;
 };
 
 struct Member {
   std::string key;
-  Place key_place;
+  FilePosition key_place;
   Node node;
 };
 

@@ -63,7 +63,7 @@ class ModeFitter {
     if (const std::string stand_in = stand_in_problem(mode_); !stand_in.empty())
       return refuse(stand_in, "get the maker's GDTF file, or write its slots by hand");
     out_.slots.assign(static_cast<std::size_t>(mode_.footprint()),
-                      NamedSlot{{SlotUse::unused, 0}, std::nullopt, wanted_.place});
+                      NamedSlot{{SlotUse::unused, 0}, std::nullopt, wanted_.in_file});
     if (!carry_light() || !carry_joints()) return std::nullopt;
     for (std::size_t c = 0; c < mode_.channels.size(); ++c)
       if (!carried_[c]) hold(c);
@@ -74,7 +74,7 @@ class ModeFitter {
 
  private:
   std::optional<ModeSlots> refuse(const std::string& what, std::string mend) {
-    problems_.add(wanted_.place, fmt::format("mode {} {}", in_quotes(mode_.name), what), std::move(mend));
+    problems_.add(wanted_.in_file, fmt::format("mode {} {}", in_quotes(mode_.name), what), std::move(mend));
     return std::nullopt;
   }
 
@@ -138,7 +138,7 @@ class ModeFitter {
       if (!chosen && mode_.channels[c].name == wanted_.dimmer) chosen = c;
     }
     if (!wanted_.dimmer.empty() && !chosen) {
-      problems_.add(wanted_.dimmer_place,
+      problems_.add(wanted_.dimmer_in_file,
                     fmt::format("mode {} has no dimmer {}", in_quotes(mode_.name), in_quotes(wanted_.dimmer)),
                     mend_for_unknown(wanted_.dimmer, known, "it has none at all: choose another mode"));
       return std::nullopt;
@@ -304,11 +304,11 @@ class ModeFitter {
     }
     out_.moves = true;
     const bool pan_good =
-        carry_axis(pans, pan, SlotUse::pan, "pan", mode_.pan_offset_deg, wanted_.pan_range_deg, wanted_.pan_place,
+        carry_axis(pans, pan, SlotUse::pan, "pan", mode_.pan_offset_deg, wanted_.pan_range_deg, wanted_.pan_in_file,
                    out_.range.pan_min_rad, out_.range.pan_max_rad, out_.pan_speed_rad_s);
     const bool tilt_good =
         carry_axis(tilts, tilt, SlotUse::tilt, "tilt", mode_.tilt_offset_deg, wanted_.tilt_range_deg,
-                   wanted_.tilt_place, out_.range.tilt_min_rad, out_.range.tilt_max_rad, out_.tilt_speed_rad_s);
+                   wanted_.tilt_in_file, out_.range.tilt_min_rad, out_.range.tilt_max_rad, out_.tilt_speed_rad_s);
     return pan_good && tilt_good && carry_zoom();
   }
 
@@ -327,20 +327,20 @@ class ModeFitter {
     const double beam_deg = wanted_.beam_deg.value_or(range_deg.first);
     if (!(range_deg.first < range_deg.second) || beam_deg < range_deg.first - kSlack_deg ||
         beam_deg > range_deg.second + kSlack_deg) {
-      problems_.add(wanted_.place,
+      problems_.add(wanted_.in_file,
                     fmt::format("mode {} has a zoom that does not make the beam angle of {:g}° of its luminaire",
                                 in_quotes(mode_.name), beam_deg),
                     "correct beam_angle_deg and zoom_deg of the luminaire, or choose another mode");
       return false;
     }
-    return carry_axis(zooms, zoom, SlotUse::zoom, "zoom", 0, range_deg, wanted_.place, out_.range.beam_min_rad,
+    return carry_axis(zooms, zoom, SlotUse::zoom, "zoom", 0, range_deg, wanted_.in_file, out_.range.beam_min_rad,
                       out_.range.beam_max_rad, out_.zoom_speed_rad_s);
   }
 
   template <class Of>
   bool carry_axis(const std::vector<std::size_t>& channels, const Of& of, SlotUse use, const char* name,
                   double offset_deg, const std::optional<std::pair<double, double>>& wanted_deg,
-                  const Place& place_of_range, double& min_rad, double& max_rad, double& speed_rad_s) {
+                  const FilePosition& place_of_range, double& min_rad, double& max_rad, double& speed_rad_s) {
     std::optional<std::pair<double, double>> stated_deg;
     for (const std::size_t c : channels) {
       const ChannelFunction& f = *active_function(mode_.channels[c], held_.dmx, of);

@@ -18,7 +18,8 @@ struct ModeWanted {
   bool turned_elsewhere = false;                      ///< pan and tilt are drives on another bus
   std::string dimmer;                                 ///< its dimmer channel; empty = the maker's file must show it
   std::optional<std::pair<double, double>> pan_range_deg, tilt_range_deg;
-  Place place, pan_place, tilt_place, dimmer_place;  ///< of `mode`, `pan_range_deg`, `tilt_range_deg`, `dimmer`
+  FilePosition in_file, pan_in_file, tilt_in_file,
+      dimmer_in_file;  ///< of `mode`, `pan_range_deg`, `tilt_range_deg`, `dimmer`
 };
 
 struct ModeSlots {

@@ -13,17 +13,17 @@ namespace {
 std::optional<Option> option_from(const Member& member, ProblemList& problems) {
   const Node& node = member.node;
   const auto refuse = [&](std::string what, std::string mend) {
-    problems.add(node.place, std::move(what), std::move(mend));
+    problems.add(node.in_file, std::move(what), std::move(mend));
     return std::nullopt;
   };
-  if (const auto* yes_no = std::get_if<bool>(&node.value)) return Option{*yes_no, node.place};
-  if (const auto* whole = std::get_if<std::int64_t>(&node.value)) return Option{*whole, node.place};
+  if (const auto* yes_no = std::get_if<bool>(&node.value)) return Option{*yes_no, node.in_file};
+  if (const auto* whole = std::get_if<std::int64_t>(&node.value)) return Option{*whole, node.in_file};
   if (const auto* number = std::get_if<double>(&node.value)) {
-    if (std::isfinite(*number)) return Option{*number, node.place};
+    if (std::isfinite(*number)) return Option{*number, node.in_file};
     return refuse(fmt::format("{} is not a finite number", in_quotes(member.key)), "write a finite number");
   }
   if (const auto* text = std::get_if<std::string>(&node.value)) {
-    if (is_plain_text(*text)) return Option{*text, node.place};
+    if (is_plain_text(*text)) return Option{*text, node.in_file};
     return refuse(fmt::format("{} has a control character", in_quotes(member.key)), "use printable characters only");
   }
   return refuse(fmt::format("{} is {}", in_quotes(member.key), kind_of(node)),
@@ -36,7 +36,7 @@ void RigReader::read_buses() {
   const std::span<const KeySpec> known = keys_of("bus");
   each(root, "bus", [&](Section& s) {
     Bus bus;
-    bus.place = s.place();
+    bus.in_file = s.in_file();
     if (s.read("name", bus.name)) buses.add(bus.name, rig.buses.size(), s.place_of("name"), problems);
     s.read("driver", bus.driver);
     if (s.read("safe_level", bus.safe_level) && *bus.safe_level > rig.limits.max_level) {
@@ -57,11 +57,11 @@ void RigReader::read_luxmeters() {
   NameIndex luxmeters("luxmeter");
   each(root, "luxmeter", [&](Section& s) {
     Luxmeter meter;
-    meter.place = s.place();
+    meter.in_file = s.in_file();
     if (s.read("name", meter.name)) luxmeters.add(meter.name, rig.luxmeters.size(), s.place_of("name"), problems);
 
     if (s.has("point") == s.has("position_m")) {
-      problems.add(s.place(),
+      problems.add(s.in_file(),
                    fmt::format("[[luxmeter]] has {}",
                                s.has("point") ? "both a point and a position_m" : "neither a point nor a position_m"),
                    "say where it stands by one of the two");
@@ -83,12 +83,12 @@ void RigReader::read_luxmeters() {
       meter.bus = *bus;
       if (good && !is_null_bus(rig.buses[*bus])) {
         const ModbusMeterPatch& patch = meter.patch;
-        const Place place = s.place_of(s.has("register")       ? "register"
-                                       : s.has("register_map") ? "register_map"
-                                       : s.has("unit")         ? "unit"
-                                                               : "name");
+        const FilePosition in_file = s.place_of(s.has("register")       ? "register"
+                                                : s.has("register_map") ? "register_map"
+                                                : s.has("unit")         ? "unit"
+                                                                        : "name");
         patches.claim_registers(*bus, patch.unit, patch.input_registers ? RegisterTable::input : RegisterTable::holding,
-                                patch.first_register, patch.registers, {"luxmeter " + in_quotes(meter.name), place});
+                                patch.first_register, patch.registers, {"luxmeter " + in_quotes(meter.name), in_file});
       }
     }
     rig.luxmeters.push_back(std::move(meter));

@@ -37,7 +37,7 @@ void RigReader::read_picture_taking(Section& s, PictureTaking& taking) {
 void RigReader::read_cameras() {
   each(root, "camera", [&](Section& s) {
     PictureCamera camera;
-    camera.place = s.place();
+    camera.in_file = s.in_file();
     if (s.read("name", camera.name)) {
       cameras.add(camera.name, rig.cameras.size(), s.place_of("name"), problems);
       // Its pictures are saved in files of that name.
@@ -47,7 +47,7 @@ void RigReader::read_cameras() {
     }
     s.read("position_m", camera.position_world_m);
     if (s.has("aim") == s.has("aim_m")) {
-      problems.add(s.place(),
+      problems.add(s.in_file(),
                    fmt::format("[[camera]] has {}", s.has("aim") ? "both aim and aim_m" : "neither aim nor aim_m"),
                    "say what it looks at by one of the two");
     } else if (s.has("aim")) {

@@ -87,7 +87,7 @@ bool brighter_near_the_sun(const Daylight& daylight) {
 void RigReader::read_daylight() {
   each(root, "daylight", [&](Section& s) {
     Daylight daylight;
-    daylight.place = s.place();
+    daylight.in_file = s.in_file();
     std::size_t kind = 0;  // of the schema's choices, which begin after SkyKind::none
     const bool sky_known = s.read_choice("sky", kind);
     if (sky_known) daylight.sky = static_cast<SkyKind>(kind + 1);
@@ -123,10 +123,10 @@ void RigReader::read_daylight() {
       for (const char* key : {"north_deg", "sun_normal_lx"})
         s.refuse(key, fmt::format("{} has no effect without the sun's position", key), kHowToGiveTheSun);
       if (!s.has("horizontal_lx")) {
-        problems.add(s.place(), "[daylight] does not say how bright the sky is",
+        problems.add(s.in_file(), "[daylight] does not say how bright the sky is",
                      fmt::format("add horizontal_lx, or {}", std::string_view(kHowToGiveTheSun).substr(4)));
       } else if (sky_known && type_known && brighter_near_the_sun(daylight)) {
-        problems.add(s.place(), "this sky is brighter near the sun, and nothing says where that stands",
+        problems.add(s.in_file(), "this sky is brighter near the sun, and nothing says where that stands",
                      kHowToGiveTheSun);
       }
     }
@@ -146,7 +146,7 @@ void RigReader::read_daylight() {
     if (daylight.horizontal_lx <= 0) daylight.sky = SkyKind::none;
     if (sun->position.altitude_rad <= 0) {
       rig.notes.push_back(
-          {problems.file(), s.place().line, s.place().column,
+          {problems.file(), s.in_file().line, s.in_file().column,
            fmt::format("the sun stands {:.1f}° below the horizon: {}", -deg_from_rad(sun->position.altitude_rad),
                        sky_given ? "the sky shines alone" : "there is no daylight"),
            "check time, place and offset, if that is not meant"});

@@ -96,10 +96,10 @@ std::optional<ModeSlots> RigReader::read_slots_of_mode(Section& s, const std::op
   s.read("pan_range_deg", wanted.pan_range_deg);
   s.read("tilt_range_deg", wanted.tilt_range_deg);
   s.read("dimmer", wanted.dimmer);
-  wanted.dimmer_place = s.place_of("dimmer");
-  wanted.place = s.place_of(s.has("mode") ? "mode" : "personality");
-  wanted.pan_place = s.place_of(s.has("pan_range_deg") ? "pan_range_deg" : "personality");
-  wanted.tilt_place = s.place_of(s.has("tilt_range_deg") ? "tilt_range_deg" : "personality");
+  wanted.dimmer_in_file = s.place_of("dimmer");
+  wanted.in_file = s.place_of(s.has("mode") ? "mode" : "personality");
+  wanted.pan_in_file = s.place_of(s.has("pan_range_deg") ? "pan_range_deg" : "personality");
+  wanted.tilt_in_file = s.place_of(s.has("tilt_range_deg") ? "tilt_range_deg" : "personality");
   std::optional<ModeSlots> slots = slots_of_mode(*personality, personality->modes[*mode], wanted, problems);
   if (slots) {
     std::string text;
@@ -127,7 +127,7 @@ bool RigReader::read_dmx(Section& s, const std::optional<SlotOwner>& owner, bool
       s.refuse(key, key + " has no effect without a personality",
                "add personality, a GDTF or Open Fixture Library file");
     if (planned && owner && !owner->emitters.empty() && !s.has("slots"))
-      for (std::size_t e = 0; e < owner->emitters.size(); ++e) named.push_back({DmxSlot{}, e, s.place()});
+      for (std::size_t e = 0; e < owner->emitters.size(); ++e) named.push_back({DmxSlot{}, e, s.in_file()});
     else
       good &= read_slots(s, owner, named);
   }

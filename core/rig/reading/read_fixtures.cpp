@@ -33,7 +33,7 @@ PatchKind patch_kind(Section& s, bool planned, ProblemList& problems) {
   if (dmx != modbus) return dmx ? PatchKind::dmx : PatchKind::modbus;
   if (planned && !dmx) return PatchKind::dmx;
   problems.add(
-      s.place(), dmx ? "[[fixture]] has both a DMX and a Modbus address" : "[[fixture]] has no address",
+      s.in_file(), dmx ? "[[fixture]] has both a DMX and a Modbus address" : "[[fixture]] has no address",
       "give it universe, address and slots (DMX), or unit and register_map, or unit, register and full_scale (Modbus)");
   return PatchKind::none;
 }
@@ -185,7 +185,7 @@ void RigReader::read_park(Section& s, Fixture& fixture) {
 void RigReader::read_aim(Section& s, Fixture& fixture) {
   const bool joints = s.has("pan_deg") || s.has("tilt_deg");
   if (s.has("aim") + s.has("aim_m") + joints > 1) {
-    problems.add(s.place(), "[[fixture]] says more than once where it looks",
+    problems.add(s.in_file(), "[[fixture]] says more than once where it looks",
                  "keep one of aim, aim_m, and pan_deg with tilt_deg");
     return;
   }
@@ -255,7 +255,7 @@ void RigReader::read_switched(Section& s, bool has_emitters, bool steps, Fixture
 void RigReader::read_fixtures() {
   each(root, "fixture", [&](Section& s) {
     Fixture fixture;
-    fixture.place = s.place();
+    fixture.in_file = s.in_file();
     if (s.read("name", fixture.name)) fixtures.add(fixture.name, rig.fixtures.size(), s.place_of("name"), problems);
     std::optional<SlotOwner> slot_owner;
     if (const auto index = luminaires.read_reference(s, "luminaire")) {

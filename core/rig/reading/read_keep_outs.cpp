@@ -17,10 +17,10 @@ void RigReader::read_keep_outs() {
   const std::vector<std::string_view> known(head_names.begin(), head_names.end());
   each(root, "keep_out", [&](Section& s) {
     KeepOut zone;
-    zone.place = s.place();
+    zone.in_file = s.in_file();
     if (s.read("name", zone.name)) names.add(zone.name, rig.keep_outs.size(), s.place_of("name"), problems);
     if (s.has("box_m") == s.has("centre_m")) {
-      problems.add(s.place(),
+      problems.add(s.in_file(),
                    fmt::format("[[keep_out]] has {}", s.has("box_m") ? "both box_m and centre_m" : "no extent"),
                    "give it box_m, or centre_m with radius_m");
     } else if (s.has("box_m")) {
@@ -50,7 +50,7 @@ void RigReader::read_keep_outs() {
 
 void RigReader::read_startup() {
   each(root, "startup", [&](Section& s) {
-    rig.startup.place = s.place();
+    rig.startup.in_file = s.in_file();
     s.read("stage_s", rig.startup.stage_s);
     s.read("max_watts_per_s", rig.startup.max_watts_per_s);
     s.read("after_loss", rig.startup.after_loss);

@@ -177,11 +177,11 @@ void RigReader::read_luminous_surface(Section& s, Luminaire& luminaire) {
   }
 }
 
-void RigReader::note_colour_moved(const std::string& file, const Place& place, const std::string& whose,
+void RigReader::note_colour_moved(const std::string& file, const FilePosition& in_file, const std::string& whose,
                                   const Chromaticity& wanted, const Vec3& taken_rgb) {
   const Chromaticity taken = xy_of_rgb(taken_rgb);
   rig.notes.push_back(
-      {file, place.line, place.column,
+      {file, in_file.line, in_file.column,
        fmt::format("{} xy [{:g}, {:g}] lies outside Rec. 709, in which colours are computed: [{:.4f}, {:.4f}] is taken",
                    whose, wanted.x(), wanted.y(), taken.x(), taken.y()),
        "lux stay right; expect the real colour to be more saturated than predicted"});
@@ -247,7 +247,7 @@ std::vector<Luminaire> RigReader::read_emitters(Section& s, const std::string& l
   NameIndex names("emitter");
   each(s.table(), "luminaire.emitters", [&](Section& e) {
     Luminaire emitter;
-    emitter.place = e.place();
+    emitter.in_file = e.in_file();
     std::string name;
     if (e.read("name", name)) {
       names.add(name, emitters.size(), e.place_of("name"), problems);
@@ -285,7 +285,7 @@ void RigReader::add_up(const std::vector<Luminaire>& emitters, Luminaire& lumina
 void RigReader::read_luminaires() {
   each(root, "luminaire", [&](Section& s) {
     Luminaire luminaire;
-    luminaire.place = s.place();
+    luminaire.in_file = s.in_file();
     if (s.read("name", luminaire.name)) {
       luminaires.add(luminaire.name, rig.luminaires.size(), s.place_of("name"), problems);
     }
@@ -306,7 +306,7 @@ void RigReader::read_luminaires() {
       const Luminaire& emitter = *at;
       const auto is_called_so = [&](const Luminaire& other) { return other.name == emitter.name; };
       if (std::none_of(emitters.begin(), at, is_called_so))  // a second one is reported
-        luminaires.add(emitter.name, rig.luminaires.size(), emitter.place, problems);
+        luminaires.add(emitter.name, rig.luminaires.size(), emitter.in_file, problems);
       Luminaire part = luminaire;
       part.name = emitter.name;
       part.lumens = emitter.lumens;
@@ -315,7 +315,7 @@ void RigReader::read_luminaires() {
       if (part.intensity && part.lumens > 0) part.intensity = scaled_to_flux(part.intensity, part.lumens);
       part.emitters.clear();
       part.emitter_of = whole;
-      part.place = emitter.place;
+      part.in_file = emitter.in_file;
       rig.luminaires.push_back(std::move(part));
     }
   });

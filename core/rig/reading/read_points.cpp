@@ -8,30 +8,31 @@ namespace luxrig {
 void RigReader::read_points_file(Section& s) {
   const auto path = read_file(s, "file");
   if (!path) return;
-  const Place place = s.place_of("file");
+  const FilePosition in_file = s.place_of("file");
   const std::size_t room = section_spec("point").most - std::min(rig.points.size(), section_spec("point").most);
   PointsTable table = load_points_csv(*path, room);
   for (Problem& problem : table.problems) problems.add(std::move(problem));
   for (PointsTable::Row& row : table.rows) {
-    row.point.place = place;
+    row.point.in_file = in_file;
     if (const auto taken = points.find(row.point.name)) {
-      problems.add({path->string(), row.place.line, row.place.column,
+      problems.add({path->string(), row.in_file.line, row.in_file.column,
                     fmt::format("a second point is called {}", in_quotes(row.point.name)),
                     "give each point its own name"});
     } else {
-      points.add(row.point.name, rig.points.size(), place, problems);
+      points.add(row.point.name, rig.points.size(), in_file, problems);
     }
-    if (row.goal_xy) set_goal_xy(row.point, *row.goal_xy, path->string(), row.place);
+    if (row.goal_xy) set_goal_xy(row.point, *row.goal_xy, path->string(), row.in_file);
     rig.points.push_back(std::move(row.point));
-    point_places.emplace_back(path->string(), row.place);
+    point_places.emplace_back(path->string(), row.in_file);
   }
 }
 
-void RigReader::set_goal_xy(Point& point, const Chromaticity& xy, const std::string& file, const Place& place) {
+void RigReader::set_goal_xy(Point& point, const Chromaticity& xy, const std::string& file,
+                            const FilePosition& in_file) {
   const ColourWithin709 colour = within_rec709(rgb_of_xy(xy));
   point.goal_rgb = colour.rgb;
   if (colour.moved)
-    note_colour_moved(file, place, fmt::format("the goal of point {},", in_quotes(point.name)), xy, colour.rgb);
+    note_colour_moved(file, in_file, fmt::format("the goal of point {},", in_quotes(point.name)), xy, colour.rgb);
 }
 
 void RigReader::read_goal(Section& s, Point& point) {
@@ -67,8 +68,8 @@ void RigReader::check_goal_colours() {
     }
   }
   if (!coloured || grey == 0) return;
-  const auto& [file, place] = point_places[first];
-  problems.add({file, place.line, place.column,
+  const auto& [file, in_file] = point_places[first];
+  problems.add({file, in_file.line, in_file.column,
                 fmt::format("the goal of point {} has no colour{}, but that of point {} has one",
                             in_quotes(rig.points[first].name), grey > 1 ? fmt::format(" (as {} more)", grey - 1) : "",
                             in_quotes(coloured->name)),
@@ -78,7 +79,7 @@ void RigReader::check_goal_colours() {
 void RigReader::read_points() {
   each(root, "point", [&](Section& s) {
     Point point;
-    point.place = s.place();
+    point.in_file = s.in_file();
     point.position_world_m.setConstant(std::numeric_limits<double>::quiet_NaN());  // until known
     if (s.read("name", point.name)) points.add(point.name, rig.points.size(), s.place_of("name"), problems);
     s.read("position_m", point.position_world_m);
@@ -87,14 +88,14 @@ void RigReader::read_points() {
     s.read("weight", point.weight);
     s.read("max_lx", point.max_lx);
     rig.points.push_back(std::move(point));
-    point_places.emplace_back(problems.file(), s.place());
+    point_places.emplace_back(problems.file(), s.in_file());
   });
   each(root, "points", [&](Section& s) { read_points_file(s); });
   check_goal_colours();
   for (const Point& point : rig.points) {
     // Legal, since the limit wins, but seldom intended.
     if (point.goal_lx && point.max_lx && *point.goal_lx > *point.max_lx) {
-      rig.notes.push_back({problems.file(), point.place.line, point.place.column,
+      rig.notes.push_back({problems.file(), point.in_file.line, point.in_file.column,
                            fmt::format("point {} has a goal of {} lx above its max_lx of {} lx", in_quotes(point.name),
                                        *point.goal_lx, *point.max_lx),
                            "the limit wins; lower the goal if that is not meant"});

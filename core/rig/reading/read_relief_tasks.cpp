@@ -13,15 +13,15 @@ namespace luxrig {
 
 std::vector<std::size_t> RigReader::read_patterns(Section& s, std::string_view key,
                                                   const std::vector<std::string_view>& names, std::string_view what) {
-  std::vector<std::pair<std::string, Place>> patterns;
+  std::vector<std::pair<std::string, FilePosition>> patterns;
   s.read_texts(key, patterns);
   std::vector<std::size_t> found;
-  for (const auto& [pattern, place] : patterns) {
+  for (const auto& [pattern, in_file] : patterns) {
     const std::size_t before = found.size();
     for (std::size_t i = 0; i < names.size(); ++i)
       if (fnmatch(pattern.c_str(), std::string(names[i]).c_str(), 0) == 0) found.push_back(i);
     if (found.size() == before)
-      problems.add(place, fmt::format("{} {} fits no {}", key, in_quotes(pattern), what),
+      problems.add(in_file, fmt::format("{} {} fits no {}", key, in_quotes(pattern), what),
                    mend_for_unknown(pattern, names, fmt::format("add a [[{}]] of that name", what)));
   }
   std::sort(found.begin(), found.end());
@@ -73,7 +73,7 @@ void RigReader::read_aim_task(Section& s, AimSpec& aim) {
   NameIndex heads("fixture");
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
     head_names.push_back(housing_name(rig, f));
-    if (!heads.find(head_names[f])) heads.add(head_names[f], f, rig.fixtures[f].place, problems);
+    if (!heads.find(head_names[f])) heads.add(head_names[f], f, rig.fixtures[f].in_file, problems);
   }
   fixture_names.assign(head_names.begin(), head_names.end());
   for (const Point& point : rig.points) point_names.push_back(point.name);
@@ -83,14 +83,14 @@ void RigReader::read_aim_task(Section& s, AimSpec& aim) {
     for (std::size_t f = 0; f < rig.fixtures.size(); ++f)
       if (rig.fixtures[f].moves) aim.heads.push_back(f);
     if (aim.heads.empty() && problems.empty())
-      problems.add(s.place(), "there is nothing to aim: no fixture has pan and tilt",
+      problems.add(s.in_file(), "there is nothing to aim: no fixture has pan and tilt",
                    "give a fixture pan and tilt slots, or name the heads that shall at least be dimmed");
   }
   for (std::size_t& head : aim.heads) head = rig.fixtures[head].housing.value_or(head);
   aim.heads.erase(std::unique(aim.heads.begin(), aim.heads.end()), aim.heads.end());
   for (const std::size_t head : aim.heads)
     if (rig.fixtures[head].switched)
-      problems.add(s.has("heads") ? s.place_of("heads") : s.place(),
+      problems.add(s.has("heads") ? s.place_of("heads") : s.in_file(),
                    fmt::format("fixture {} is on or off, and an aim sets levels", in_quotes(rig.fixtures[head].name)),
                    "name the other heads as heads = […], or put its lamp on a dimmer");
   if ((aim.key = heads.read_reference(s, "key")) &&

@@ -26,7 +26,7 @@ void RigReader::read_mesh(Section& s, std::optional<MeshFile>& out) {
 void RigReader::read_box_or_mesh(Section& s, SceneObject& object) {
   const bool box = s.has("box_m"), mesh = s.has("file");
   if (box == mesh) {
-    problems.add(s.place(),
+    problems.add(s.in_file(),
                  fmt::format("[[scene.object]] has {} box_m {} file", box ? "both" : "neither", box ? "and" : "nor"),
                  "give it either a box_m = [width, depth, height] or a mesh file");
   }
@@ -38,14 +38,14 @@ void RigReader::read_box_or_mesh(Section& s, SceneObject& object) {
 
 void RigReader::read_scene() {
   each(root, "scene", [&](Section& scene) {
-    rig.scene.place = scene.place();
+    rig.scene.in_file = scene.in_file();
     read_mesh(scene, rig.scene.mesh);
     scene.read("default_reflectance", rig.scene.default_reflectance_rgb);
     const Member* member = luxrig::find(root, "scene");
     const auto& table = std::get<NodeTable>(member->node.value);
     each(table, "scene.reflectance", [&](Section& s) {
       ReflectanceRule rule;
-      rule.place = s.place();
+      rule.in_file = s.in_file();
       s.read("material", rule.material_pattern);
       s.read("reflectance", rule.reflectance_rgb);
       s.read("specular", rule.specular);
@@ -54,7 +54,7 @@ void RigReader::read_scene() {
     });
     each(table, "scene.object", [&](Section& s) {
       SceneObject object;
-      object.place = s.place();
+      object.in_file = s.in_file();
       if (s.read("name", object.name)) {
         objects.add(object.name, rig.scene.objects.size(), s.place_of("name"), problems);
       }

@@ -68,31 +68,31 @@ void RigReader::read_placement(Section& s, PlacementSpec& placement) {
   s.read("energy_front", placement.energy_front);
   s.read("bound", placement.bound);
   if (std::none_of(rig.points.begin(), rig.points.end(), [](const Point& p) { return p.goal_lx && p.weight > 0; })) {
-    problems.add(s.place(), "there is nothing to place lights for: no point has a goal",
+    problems.add(s.in_file(), "there is nothing to place lights for: no point has a goal",
                  "give each [[point]] that matters a goal_lx");
   }
 }
 
-void RigReader::need_watts_of(std::size_t luminaire, const Place& place, const std::string& what) {
+void RigReader::need_watts_of(std::size_t luminaire, const FilePosition& in_file, const std::string& what) {
   // After another problem, an entry may stand in for one that is missing.
   if (!problems.empty() && lacks_watts.empty()) return;
   const Luminaire& lamp = rig.luminaires[luminaire];
   if (lamp.watts || !lacks_watts.insert(lamp.emitter_of.value_or(luminaire)).second) return;
   const Luminaire& whole = rig.luminaires[lamp.emitter_of.value_or(luminaire)];
-  problems.add(place, fmt::format("{} needs the watts of luminaire {}", what, in_quotes(whole.name)),
+  problems.add(in_file, fmt::format("{} needs the watts of luminaire {}", what, in_quotes(whole.name)),
                fmt::format("add watts to {} (line {}), or remove the limit",
-                           whole.emitters.empty() ? "it" : "each of its emitters", whole.place.line));
+                           whole.emitters.empty() ? "it" : "each of its emitters", whole.in_file.line));
 }
 
-void RigReader::need_watts_of_fixtures(const Place& place, const std::string& what) {
-  for (const Fixture& fixture : rig.fixtures) need_watts_of(fixture.luminaire, place, what);
+void RigReader::need_watts_of_fixtures(const FilePosition& in_file, const std::string& what) {
+  for (const Fixture& fixture : rig.fixtures) need_watts_of(fixture.luminaire, in_file, what);
 }
 
 void RigReader::read_tasks() {
   NameIndex tasks("task");
   each(root, "task", [&](Section& s) {
     Task task;
-    task.place = s.place();
+    task.in_file = s.in_file();
     if (s.read("name", task.name)) tasks.add(task.name, rig.tasks.size(), s.place_of("name"), problems);
     if (s.read_choice("kind", task.kind)) {
       refuse_keys_of_other_kinds(s, task.kind);
@@ -102,29 +102,29 @@ void RigReader::read_tasks() {
       if (task.kind == TaskKind::directions) read_directions(s, task.directions);
     }
     s.read("max_watts", task.max_watts);
-    const auto need_watts = [&](const Place& place, const std::string& what) {
-      if (task.kind == TaskKind::placement) return need_watts_of(task.placement.luminaire, place, what);
-      if (task.kind == TaskKind::highlight) return need_watts_of(task.highlight.luminaire, place, what);
-      need_watts_of_fixtures(place, what);
+    const auto need_watts = [&](const FilePosition& in_file, const std::string& what) {
+      if (task.kind == TaskKind::placement) return need_watts_of(task.placement.luminaire, in_file, what);
+      if (task.kind == TaskKind::highlight) return need_watts_of(task.highlight.luminaire, in_file, what);
+      need_watts_of_fixtures(in_file, what);
     };
     if (task.max_watts) need_watts(s.place_of("max_watts"), "max_watts of this task");
     if (task.placement.energy_front > 0) need_watts(s.place_of("energy_front"), "energy_front");
     if (task.aim.energy_weight > 0) need_watts(s.place_of("energy_weight"), "energy_weight");
-    if (rig.limits.max_watts && task.places_lights()) need_watts(rig.limits.place, "max_watts of [limits]");
+    if (rig.limits.max_watts && task.places_lights()) need_watts(rig.limits.in_file, "max_watts of [limits]");
     rig.tasks.push_back(std::move(task));
   });
-  if (rig.limits.max_watts) need_watts_of_fixtures(rig.limits.place, "max_watts of [limits]");
+  if (rig.limits.max_watts) need_watts_of_fixtures(rig.limits.in_file, "max_watts of [limits]");
   if (rig.tasks.empty()) rig.tasks.push_back({"levels", TaskKind::emittance, {}});
 }
 
 void RigReader::read_mounting() {
   each(root, "mounting", [&](Section& s) {
     MountingSpec& mounting = rig.mounting;
-    mounting.place = s.place();
+    mounting.in_file = s.in_file();
     s.read("box_m", mounting.box_world_m);
-    std::vector<std::pair<std::string, Place>> patterns;
+    std::vector<std::pair<std::string, FilePosition>> patterns;
     const bool surfaces_known = s.read_texts("surfaces", patterns) || !s.has("surfaces");
-    for (auto& [text, place] : patterns) mounting.surfaces.push_back({std::move(text), place});
+    for (auto& [text, in_file] : patterns) mounting.surfaces.push_back({std::move(text), in_file});
     std::pair<double, double> offset_m{mounting.offset_min_m, mounting.offset_max_m};
     s.read("offset_m", offset_m);
     mounting.offset_min_m = offset_m.first;

@@ -31,7 +31,7 @@ class NameIndex {
   explicit NameIndex(std::string kind) : kind_(std::move(kind)) {}
 
   /// Reports a name that is already taken.
-  void add(const std::string& name, std::size_t index, const Place& place, ProblemList& problems);
+  void add(const std::string& name, std::size_t index, const FilePosition& in_file, ProblemList& problems);
   [[nodiscard]] std::optional<std::size_t> find(const std::string& name) const;
   /// Reads the key that names an entry; an unknown name is reported with the nearest known one.
   std::optional<std::size_t> read_reference(Section& section, std::string_view key) const;
@@ -40,7 +40,7 @@ class NameIndex {
   std::string kind_;
   struct Entry {
     std::size_t index;
-    Place place;
+    FilePosition in_file;
   };
   std::unordered_map<std::string, Entry> entries_;
 };
@@ -68,7 +68,7 @@ struct RigReader {
       cameras{"camera"};
   PatchMap patches;
   /// Place of each point, in the rig file or the points file.
-  std::vector<std::pair<std::string, Place>> point_places;
+  std::vector<std::pair<std::string, FilePosition>> point_places;
   std::map<std::string, std::shared_ptr<const Personality>> personalities;  ///< by path; null = cannot be used
   std::map<std::string, std::shared_ptr<const RegisterMap>> register_maps;  ///< by path; null = cannot be used
   std::map<std::size_t, StatedLight> stated_lights;                         ///< by luminaire
@@ -127,17 +127,17 @@ struct RigReader {
   void read_photometric_file(Section& section, Luminaire& luminaire);
   void read_luminous_surface(Section& section, Luminaire& luminaire);
   void read_colour(Section& section, Vec3& colour_rgb);
-  void note_colour_moved(const std::string& file, const Place& place, const std::string& whose,
+  void note_colour_moved(const std::string& file, const FilePosition& in_file, const std::string& whose,
                          const Chromaticity& wanted, const Vec3& taken_rgb);
   /// Reads only the emitters' own keys.
   std::vector<Luminaire> read_emitters(Section& section, const std::string& luminaire_name);
   static void add_up(const std::vector<Luminaire>& emitters, Luminaire& luminaire);
   void read_goal(Section& section, Point& point);
-  void set_goal_xy(Point& point, const Chromaticity& xy, const std::string& file, const Place& place);
+  void set_goal_xy(Point& point, const Chromaticity& xy, const std::string& file, const FilePosition& in_file);
   void check_goal_colours();
   /// Reports a luminaire without watts, once.
-  void need_watts_of(std::size_t luminaire, const Place& place, const std::string& what);
-  void need_watts_of_fixtures(const Place& place, const std::string& what);
+  void need_watts_of(std::size_t luminaire, const FilePosition& in_file, const std::string& what);
+  void need_watts_of_fixtures(const FilePosition& in_file, const std::string& what);
   /// Reads the DMX patch, and its slots as named. True if they can be claimed. `of_mode`: set if a personality can be
   /// used.
   bool read_dmx(Section& section, const std::optional<SlotOwner>& owner, bool planned, Fixture& fixture,

@@ -44,8 +44,8 @@ std::string example_of(const KeySpec& spec) {
 
 }  // namespace
 
-Section::Section(const NodeTable& table, const Place& place, std::string_view section, ProblemList& problems)
-    : table_(table), place_(place), section_(section_spec(section)), keys_(keys_of(section)), problems_(problems) {
+Section::Section(const NodeTable& table, const FilePosition& in_file, std::string_view section, ProblemList& problems)
+    : table_(table), place_(in_file), section_(section_spec(section)), keys_(keys_of(section)), problems_(problems) {
   if (section_.takes_other_keys) return;
   const auto children = [&] {
     std::vector<std::string_view> names;
@@ -68,9 +68,9 @@ Section::Section(const NodeTable& table, const Place& place, std::string_view se
   }
 }
 
-Place Section::place_of(std::string_view key) const {
+FilePosition Section::place_of(std::string_view key) const {
   const Member* member = find(table_, key);
-  return member ? member->node.place : place_;
+  return member ? member->node.in_file : place_;
 }
 
 const KeySpec& Section::spec(std::string_view key) const {
@@ -104,16 +104,16 @@ bool Section::number_from(const KeySpec& spec, const Node& node, double& out) {
   } else if (const auto* number = std::get_if<double>(&node.value)) {
     x = *number;
   } else {
-    problems_.add(node.place, fmt::format("{} must be a number, not {}", spec.key, kind_of(node)), example_of(spec));
+    problems_.add(node.in_file, fmt::format("{} must be a number, not {}", spec.key, kind_of(node)), example_of(spec));
     return false;
   }
   if (!std::isfinite(x)) {
-    problems_.add(node.place, fmt::format("{} is not a finite number", spec.key),
+    problems_.add(node.in_file, fmt::format("{} is not a finite number", spec.key),
                   range_text(spec).empty() ? "write a finite number" : "allowed: " + range_text(spec));
     return false;
   }
   if (!spec.bounds.contain(x)) {
-    problems_.add(node.place, fmt::format("{} is {}, which is out of range", spec.key, x),
+    problems_.add(node.in_file, fmt::format("{} is {}, which is out of range", spec.key, x),
                   fmt::format("allowed: {}{}{}", range_text(spec), spec.unit.empty() ? "" : " ", spec.unit));
     return false;
   }
@@ -124,22 +124,22 @@ bool Section::number_from(const KeySpec& spec, const Node& node, double& out) {
 bool Section::text_from(const KeySpec& spec, const Node& node, std::string& out) {
   const auto* given = std::get_if<std::string>(&node.value);
   if (!given) {
-    problems_.add(node.place, fmt::format("{} must be text, not {}", spec.key, kind_of(node)), "write it in quotes");
+    problems_.add(node.in_file, fmt::format("{} must be text, not {}", spec.key, kind_of(node)), "write it in quotes");
     return false;
   }
   if (given->empty()) {
-    problems_.add(node.place, fmt::format("{} is empty", spec.key),
+    problems_.add(node.in_file, fmt::format("{} is empty", spec.key),
                   spec.fallback == kRequired ? fmt::format("write {}", spec.summary) : "write it, or remove the key");
     return false;
   }
   const std::size_t most = spec.type == ValueType::name ? kLongestName : kLongestText;
   if (const std::size_t length = length_in_characters(*given); length > most) {
-    problems_.add(node.place, fmt::format("{} has {} characters", spec.key, length),
+    problems_.add(node.in_file, fmt::format("{} has {} characters", spec.key, length),
                   fmt::format("use at most {}", most));
     return false;
   }
   if (!is_plain_text(*given)) {
-    problems_.add(node.place, fmt::format("{} {} has a control character", spec.key, in_quotes(*given)),
+    problems_.add(node.in_file, fmt::format("{} {} has a control character", spec.key, in_quotes(*given)),
                   "use printable characters only");
     return false;
   }
@@ -161,7 +161,7 @@ bool Section::read(std::string_view key, int& out) {
   if (!node) return false;
   double x = 0;
   if (!std::holds_alternative<std::int64_t>(node->value)) {
-    problems_.add(node->place, fmt::format("{} must be a whole number, not {}", key, kind_of(*node)), example_of(k));
+    problems_.add(node->in_file, fmt::format("{} must be a whole number, not {}", key, kind_of(*node)), example_of(k));
     return false;
   }
   if (!number_from(k, *node, x)) return false;
@@ -176,7 +176,7 @@ bool Section::read(std::string_view key, bool& out) {
   if (!node) return false;
   const bool* given = std::get_if<bool>(&node->value);
   if (!given) {
-    problems_.add(node->place, fmt::format("{} must be true or false, not {}", key, kind_of(*node)), example_of(k));
+    problems_.add(node->in_file, fmt::format("{} must be true or false, not {}", key, kind_of(*node)), example_of(k));
     return false;
   }
   out = *given;
@@ -211,7 +211,7 @@ bool Section::three_numbers_from(const KeySpec& spec, const Node& node, Vec3& ou
   const auto* list = std::get_if<NodeList>(&node.value);
   if (!list || list->size() != 3) {
     const std::string_view what = spec.type == ValueType::box ? "a corner of " : "";
-    problems_.add(node.place,
+    problems_.add(node.in_file,
                   list ? fmt::format("{}{} has {} entries", what, spec.key, list->size())
                        : fmt::format("{}{} must be {}, not {}", what, spec.key,
                                      what.empty() ? type_text(spec.type) : "[x, y, z]", kind_of(node)),
@@ -228,7 +228,7 @@ bool Section::three_numbers_from(const KeySpec& spec, const Node& node, Vec3& ou
 const NodeList* Section::pair_from(const KeySpec& spec, const Node& node, std::string_view parts) {
   const auto* list = std::get_if<NodeList>(&node.value);
   if (list && list->size() == 2) return list;
-  problems_.add(node.place,
+  problems_.add(node.in_file,
                 list ? fmt::format("{} has {} {}", spec.key, list->size(), parts)
                      : fmt::format("{} must be {}, not {}", spec.key, type_text(spec.type), kind_of(node)),
                 example_of(spec));
@@ -247,7 +247,7 @@ bool Section::read(std::string_view key, Eigen::AlignedBox3d& out) {
   if (!one_good || !other_good) return false;
   const Eigen::AlignedBox3d box(one.cwiseMin(other), one.cwiseMax(other));
   if (!(box.sizes().minCoeff() > 0)) {
-    problems_.add(node->place, fmt::format("{} has no volume", key),
+    problems_.add(node->in_file, fmt::format("{} has no volume", key),
                   "give two opposite corners that differ in x, y and z");
     return false;
   }
@@ -266,7 +266,7 @@ bool Section::read(std::string_view key, std::pair<double, double>& out) {
   const bool from_good = number_from(k, (*list)[0], from), to_good = number_from(k, (*list)[1], to);
   if (!from_good || !to_good) return false;
   if (!(from < to)) {
-    problems_.add(node->place, fmt::format("{} runs from {} to {}", key, from, to),
+    problems_.add(node->in_file, fmt::format("{} runs from {} to {}", key, from, to),
                   from > to ? fmt::format("write the smaller first: [{}, {}]", to, from)
                             : "the second must be larger than the first");
     return false;
@@ -286,7 +286,7 @@ bool Section::read(std::string_view key, Eigen::Vector2d& out) {
   const bool x_good = number_from(k, (*list)[0], xy[0]), y_good = number_from(k, (*list)[1], xy[1]);
   if (!x_good || !y_good) return false;
   if (xy.sum() > 1) {
-    problems_.add(node->place, fmt::format("{} [{:g}, {:g}] add up to {:g}", key, xy[0], xy[1], xy.sum()),
+    problems_.add(node->in_file, fmt::format("{} [{:g}, {:g}] add up to {:g}", key, xy[0], xy[1], xy.sum()),
                   "x and y of a chromaticity (CIE 1931) add up to 1 at most");
     return false;
   }
@@ -301,7 +301,7 @@ bool Section::read(std::string_view key, std::vector<int>& out) {
   if (!node) return false;
   const auto* list = std::get_if<NodeList>(&node->value);
   if (!list) {
-    problems_.add(node->place, fmt::format("{} must be a list of whole numbers, not {}", key, kind_of(*node)),
+    problems_.add(node->in_file, fmt::format("{} must be a list of whole numbers, not {}", key, kind_of(*node)),
                   example_of(k));
     return false;
   }
@@ -310,7 +310,7 @@ bool Section::read(std::string_view key, std::vector<int>& out) {
   for (const Node& item : *list) {
     double x = 0;
     if (!std::holds_alternative<std::int64_t>(item.value)) {
-      problems_.add(item.place, fmt::format("{} must hold whole numbers, not {}", key, kind_of(item)), example_of(k));
+      problems_.add(item.in_file, fmt::format("{} must hold whole numbers, not {}", key, kind_of(item)), example_of(k));
       good = false;
     } else if (number_from(k, item, x)) {
       numbers.push_back(static_cast<int>(x));
@@ -332,7 +332,7 @@ int Section::choice(std::string_view key) {
   const auto at = std::find(known.begin(), known.end(), given);
   if (at != known.end()) return static_cast<int>(at - known.begin());
   const std::string_view near = nearest_name(given, known);
-  problems_.add(node->place, fmt::format("{} cannot be {}", key, in_quotes(given)),
+  problems_.add(node->in_file, fmt::format("{} cannot be {}", key, in_quotes(given)),
                 near.empty() ? fmt::format("allowed: {}", range_text(k))
                              : fmt::format("did you mean \"{}\"? (allowed: {})", near, range_text(k)));
   return -1;
@@ -372,20 +372,20 @@ bool Section::read_normal(std::string_view key, Vec3& out) {
   return true;
 }
 
-bool Section::read_texts(std::string_view key, std::vector<std::pair<std::string, Place>>& out) {
+bool Section::read_texts(std::string_view key, std::vector<std::pair<std::string, FilePosition>>& out) {
   const KeySpec& k = spec(key);
   LUXRIG_CHECK(k.type == ValueType::texts, "{} is not a list of text", key);
   const Node* node = value(k);
   if (!node) return false;
   const auto* list = std::get_if<NodeList>(&node->value);
   if (!list) {
-    problems_.add(node->place, fmt::format("{} must be a list of text, not {}", key, kind_of(*node)), example_of(k));
+    problems_.add(node->in_file, fmt::format("{} must be a list of text, not {}", key, kind_of(*node)), example_of(k));
     return false;
   }
-  std::vector<std::pair<std::string, Place>> texts;
+  std::vector<std::pair<std::string, FilePosition>> texts;
   bool good = true;
   for (const Node& item : *list) {
-    texts.emplace_back("", item.place);
+    texts.emplace_back("", item.in_file);
     good &= text_from(k, item, texts.back().first);
   }
   if (good) out = std::move(texts);

@@ -25,12 +25,12 @@ namespace luxrig {
 class Section {
  public:
   /// Reports unknown keys at once.
-  Section(const NodeTable& table, const Place& place, std::string_view section, ProblemList& problems);
+  Section(const NodeTable& table, const FilePosition& in_file, std::string_view section, ProblemList& problems);
 
   [[nodiscard]] bool has(std::string_view key) const { return find(table_, key) != nullptr; }
   /// Of the value, or of the table if the key is absent.
-  [[nodiscard]] Place place_of(std::string_view key) const;
-  [[nodiscard]] const Place& place() const { return place_; }
+  [[nodiscard]] FilePosition place_of(std::string_view key) const;
+  [[nodiscard]] const FilePosition& in_file() const { return place_; }
   [[nodiscard]] const NodeTable& table() const { return table_; }
   [[nodiscard]] ProblemList& problems() { return problems_; }
 
@@ -67,7 +67,7 @@ class Section {
   /// A direction, made unit. Reports zero length.
   bool read_normal(std::string_view key, Vec3& out);
   /// Each text with its place.
-  bool read_texts(std::string_view key, std::vector<std::pair<std::string, Place>>& out);
+  bool read_texts(std::string_view key, std::vector<std::pair<std::string, FilePosition>>& out);
 
   /// Reports a key that has no effect here: "beam_angle_deg has no effect: only with model = "spot"".
   void refuse(std::string_view key, std::string why, std::string mend);
@@ -85,7 +85,7 @@ class Section {
   int choice(std::string_view key);
 
   const NodeTable& table_;
-  Place place_;
+  FilePosition place_;
   const SectionSpec& section_;
   std::span<const KeySpec> keys_;
   ProblemList& problems_;

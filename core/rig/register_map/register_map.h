@@ -40,7 +40,7 @@ struct MappedRegister {
   std::optional<std::pair<double, double>> range_raw;  ///< always set for a level: dark, full
   int power_on_raw = 0;
   int of_several = 0;  ///< with `count` in the file: 1, 2 …; 0 = single
-  Place place;         ///< in the map file
+  FilePosition in_file;  ///< in the map file
 };
 
 enum class DataLoss { hold, dark, watchdog };

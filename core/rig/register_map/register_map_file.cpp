@@ -56,13 +56,13 @@ class MapReader {
     if (member == nullptr) return;
     const auto* list = std::get_if<NodeList>(&member->node.value);
     const auto* single = std::get_if<NodeTable>(&member->node.value);
-    const auto wrong_shape = [&](const Place& place) {
-      problems_.add(place, fmt::format("{} is not {}", name, spec.list ? "a list of tables" : "a table"),
+    const auto wrong_shape = [&](const FilePosition& in_file) {
+      problems_.add(in_file, fmt::format("{} is not {}", name, spec.list ? "a list of tables" : "a table"),
                     fmt::format("head {} with {}", spec.list ? "each entry" : "it", heading_of(spec)));
     };
     if (spec.list ? list == nullptr : single == nullptr) return wrong_shape(member->key_place);
     if (single != nullptr) {
-      Section section(*single, member->node.place, name, problems_);
+      Section section(*single, member->node.in_file, name, problems_);
       return body(section);
     }
     if (list->size() > spec.most) {
@@ -72,10 +72,10 @@ class MapReader {
     }
     for (const Node& node : *list) {
       if (const auto* table = std::get_if<NodeTable>(&node.value)) {
-        Section section(*table, node.place, name, problems_);
+        Section section(*table, node.in_file, name, problems_);
         body(section);
       } else {
-        wrong_shape(node.place);
+        wrong_shape(node.in_file);
       }
     }
   }
@@ -83,9 +83,9 @@ class MapReader {
   void read_device(Section& s) {
     s.read("name", map_.name);
     s.read("source", map_.source);
-    std::vector<std::pair<std::string, Place>> assumed;
+    std::vector<std::pair<std::string, FilePosition>> assumed;
     s.read_texts("assumed", assumed);
-    for (auto& [text, place] : assumed) map_.assumed.push_back(std::move(text));
+    for (auto& [text, in_file] : assumed) map_.assumed.push_back(std::move(text));
     const auto read_ms = [&](std::string_view key) -> std::optional<Duration> {
       double ms = 0;
       return s.read(key, ms) ? std::optional(from_seconds(ms * 1e-3)) : std::nullopt;
@@ -192,7 +192,7 @@ class MapReader {
 
   void read_register(Section& s) {
     MappedRegister reg;
-    reg.place = s.place();
+    reg.in_file = s.in_file();
     bool good = s.read("name", reg.name);
     s.read_choice("what", reg.role);
     good &= s.read("address", reg.address);
@@ -218,7 +218,7 @@ class MapReader {
     }
     for (int i = 0; i < count; ++i) {
       if (map_.registers.size() >= kMaxMapped) {
-        if (!too_many_) problems_.add(s.place(), fmt::format("more than {} registers", kMaxMapped), "leave some out");
+        if (!too_many_) problems_.add(s.in_file(), fmt::format("more than {} registers", kMaxMapped), "leave some out");
         too_many_ = true;
         return;
       }
@@ -273,9 +273,9 @@ class MapReader {
         if (is_new) continue;
         if (problems_.full()) return;
         const MappedRegister& other = map_.registers[at->second];
-        problems_.add(reg.place,
+        problems_.add(reg.in_file,
                       fmt::format("{} and {} (line {}) share {} register {}", in_quotes(reg.name),
-                                  in_quotes(other.name), other.place.line, name_of(reg.table), reg.address + word),
+                                  in_quotes(other.name), other.in_file.line, name_of(reg.table), reg.address + word),
                       "give each its own address");
         break;
       }

@@ -28,7 +28,7 @@ std::size_t at(Index j) { return static_cast<std::size_t>(j); }
 
 NnlsSearch::NnlsSearch(const ScaledColumns& problem, std::unique_ptr<PassiveColumns> passive)
     : p_(problem), passive_(std::move(passive)), z_(VectorXd::Zero(problem.columns())) {
-  place_.assign(at(p_.columns()), Place::lower);
+  place_.assign(at(p_.columns()), VariableState::lower);
   allowed_.assign(at(p_.columns()), 1);
   refused_.assign(at(p_.columns()), 0);
   residual_ = p_.goal();
@@ -36,15 +36,15 @@ NnlsSearch::NnlsSearch(const ScaledColumns& problem, std::unique_ptr<PassiveColu
 
 void NnlsSearch::allow(Index column, bool allowed) {
   allowed_[at(column)] = allowed ? 1 : 0;
-  if (allowed || place_[at(column)] == Place::lower) return;
-  if (place_[at(column)] == Place::passive) {
+  if (allowed || place_[at(column)] == VariableState::lower) return;
+  if (place_[at(column)] == VariableState::passive) {
     const auto& order = passive_->order();
     const Index where[1] = {std::find(order.begin(), order.end(), column) - order.begin()};
     passive_->remove(where);
     key_ ^= key_of(column);
   }
   std::erase(at_upper_, column);
-  place_[at(column)] = Place::lower;
+  place_[at(column)] = VariableState::lower;
   z_[column] = 0;
 }
 
@@ -54,7 +54,7 @@ void NnlsSearch::start_from(const VectorXd& x) {
   std::vector<Index> positive, places;
   for (Index k = 0; k < passive_->size(); ++k) places.push_back(k);
   passive_->remove(places);
-  place_.assign(place_.size(), Place::lower);
+  place_.assign(place_.size(), VariableState::lower);
   at_upper_.clear();
   key_ = 0;
   z_.setZero();
@@ -68,7 +68,7 @@ void NnlsSearch::start_from(const VectorXd& x) {
     for (std::size_t k = 0; k < count; ++k) {
       const Index j = positive[first + k];
       if (!taken[k]) continue;
-      place_[at(j)] = Place::passive;
+      place_[at(j)] = VariableState::passive;
       key_ ^= key_of(j);
       z_[j] = std::min(p_.z_of(j, x[j]), p_.upper(j));
     }
@@ -83,7 +83,7 @@ VectorXd NnlsSearch::x() const {
 
 void NnlsSearch::goal_changed(const VectorXd& x) {
   for (Index j = 0; j < x.size(); ++j)
-    z_[j] = place_[at(j)] == Place::upper ? p_.upper(j) : std::min(p_.z_of(j, x[j]), p_.upper(j));
+    z_[j] = place_[at(j)] == VariableState::upper ? p_.upper(j) : std::min(p_.z_of(j, x[j]), p_.upper(j));
 }
 
 std::vector<Index> NnlsSearch::support() const {
@@ -132,9 +132,9 @@ void NnlsSearch::run(const NnlsOptions& options) {
 std::vector<Index> NnlsSearch::entering(std::size_t most) {
   p_.gradient(residual_, gradient_);
   std::vector<Index> columns;
-  const auto pull = [&](Index j) { return place_[at(j)] == Place::upper ? -gradient_[j] : gradient_[j]; };
+  const auto pull = [&](Index j) { return place_[at(j)] == VariableState::upper ? -gradient_[j] : gradient_[j]; };
   for (Index j = 0; j < gradient_.size(); ++j) {
-    if (place_[at(j)] == Place::passive || refused_[at(j)] || !allowed_[at(j)] || !(p_.upper(j) > 0)) continue;
+    if (place_[at(j)] == VariableState::passive || refused_[at(j)] || !allowed_[at(j)] || !(p_.upper(j) > 0)) continue;
     if (!(pull(j) > kSearchTolerance)) continue;
     columns.push_back(j);
   }
@@ -158,8 +158,8 @@ bool NnlsSearch::enter(const std::vector<Index>& columns) {
   }
   for (std::size_t k = 0; k < columns.size(); ++k) {
     if (!taken[k]) continue;
-    if (place_[at(columns[k])] == Place::upper) std::erase(at_upper_, columns[k]);
-    place_[at(columns[k])] = Place::passive;
+    if (place_[at(columns[k])] == VariableState::upper) std::erase(at_upper_, columns[k]);
+    place_[at(columns[k])] = VariableState::passive;
     key_ ^= key_of(columns[k]);
   }
   if (!any) refused_[at(columns.front())] = 1;
@@ -174,7 +174,7 @@ bool NnlsSearch::leave_at_bounds(const VectorXd& d) {
     const bool low = z_[j] <= 0 && d[k] < 0, high = z_[j] >= p_.upper(j) && d[k] > 0;
     if (!low && !high) continue;
     places.push_back(k);
-    place_[at(j)] = low ? Place::lower : Place::upper;
+    place_[at(j)] = low ? VariableState::lower : VariableState::upper;
     if (high) at_upper_.push_back(j);
     key_ ^= key_of(j);
   }
@@ -247,7 +247,7 @@ void NnlsSearch::after_round(const std::vector<Index>& columns) {
     refused_.assign(refused_.size(), 0);
     visited_.clear();
     std::size_t stayed = 0;
-    for (const Index j : columns) stayed += place_[at(j)] == Place::passive ? 1 : 0;
+    for (const Index j : columns) stayed += place_[at(j)] == VariableState::passive ? 1 : 0;
     if (columns.size() == block_ && 4 * stayed >= 3 * columns.size())
       block_ = std::min(max_, 2 * block_);
     else if (2 * stayed < columns.size())

@@ -30,7 +30,7 @@ class NnlsSearch {
   [[nodiscard]] bool stopped() const { return stopped_; }
 
  private:
-  enum class Place : char { lower, upper, passive };
+  enum class VariableState : char { lower, upper, passive };
 
   [[nodiscard]] std::vector<Index> entering(std::size_t most);
   bool enter(const std::vector<Index>& columns);
@@ -44,7 +44,7 @@ class NnlsSearch {
   const ScaledColumns& p_;
   std::unique_ptr<PassiveColumns> passive_;
   VectorXd z_, residual_, gradient_;
-  std::vector<Place> place_;
+  std::vector<VariableState> place_;
   std::vector<char> allowed_, refused_;
   std::vector<Index> at_upper_;
   std::unordered_set<std::uint64_t> visited_;

@@ -48,7 +48,7 @@ Checked<Mounting> Mounting::make(const MountingSpec& spec, const std::filesystem
   mounting.box_world_m_ = spec.box_world_m.value_or(rays.bounds_world_m());
   std::vector<Problem> problems;
   if (mounting.box_world_m_.isEmpty()) {
-    problems.push_back({rig_file.string(), std::max(1, spec.place.line), std::max(1, spec.place.column),
+    problems.push_back({rig_file.string(), std::max(1, spec.in_file.line), std::max(1, spec.in_file.column),
                         "there is no scene, so nothing bounds where lights may hang",
                         "give [mounting] a box_m = [[x, y, z], [x, y, z]], or the rig a [scene]"});
   }
@@ -56,7 +56,7 @@ Checked<Mounting> Mounting::make(const MountingSpec& spec, const std::filesystem
     const auto names = names_of(scene);
     if (std::any_of(names.begin(), names.end(), [&](std::string_view n) { return fits(pattern.text, std::string(n)); }))
       continue;
-    problems.push_back({rig_file.string(), pattern.place.line, pattern.place.column,
+    problems.push_back({rig_file.string(), pattern.in_file.line, pattern.in_file.column,
                         fmt::format("surfaces {} fits no material or object of the scene", in_quotes(pattern.text)),
                         mend_for_unknown(pattern.text, names, "name one of the scene's")});
   }

@@ -8,7 +8,7 @@ std::vector<PlacedFixture> placed_fixtures(const Rig& rig) {
     const Fixture& fixture = rig.fixtures[i];
     if (fixture.housing.value_or(i) != i) continue;
     const std::string name = fixture.housing ? fixture.name.substr(0, fixture.name.rfind('/')) : fixture.name;
-    placed.push_back({{"fixture", name, fixture.world_from_lamp().translation_m, fixture.place}, i});
+    placed.push_back({{"fixture", name, fixture.world_from_lamp().translation_m, fixture.in_file}, i});
   }
   return placed;
 }
@@ -16,9 +16,9 @@ std::vector<PlacedFixture> placed_fixtures(const Rig& rig) {
 std::vector<PlacedThing> placed_receivers(const Rig& rig) {
   std::vector<PlacedThing> placed;
   for (const luxrig::Point& point : rig.points)
-    placed.push_back({"point", point.name, point.position_world_m, point.place});
+    placed.push_back({"point", point.name, point.position_world_m, point.in_file});
   for (const Luxmeter& meter : rig.luxmeters)
-    placed.push_back({"luxmeter", meter.name, meter.position_world_m, meter.place});
+    placed.push_back({"luxmeter", meter.name, meter.position_world_m, meter.in_file});
   return placed;
 }
 

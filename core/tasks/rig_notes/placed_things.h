@@ -11,7 +11,7 @@ struct PlacedThing {
   const char* kind;  ///< "fixture", "point" or "luxmeter"
   std::string name;
   Vec3 position_world_m;
-  Place place;
+  FilePosition in_file;
 
   [[nodiscard]] std::string text() const { return fmt::format("{} \"{}\"", kind, name); }
 };

@@ -70,11 +70,11 @@ class Notes {
 
   void add(const PlacedThing& thing, Note note) {
     if (kept_++ < kMaxNotes) {
-      notes_.push_back({rig_.file.string(), thing.place.line, thing.place.column, thing.text() + " " + note.what,
+      notes_.push_back({rig_.file.string(), thing.in_file.line, thing.in_file.column, thing.text() + " " + note.what,
                         std::move(note.mend)});
       return;
     }
-    last_ = thing.place;
+    last_ = thing.in_file;
     more_ += (more_.empty() ? "" : ", ") + thing.name;
   }
 
@@ -254,7 +254,7 @@ class Notes {
   std::vector<Light> light_;  ///< per receiver, with every lamp at full level; computed only where it may be none
   std::vector<Problem> notes_;
   std::size_t kept_ = 0;
-  Place last_;
+  FilePosition last_;
   std::string more_;
 };
 
@@ -279,7 +279,7 @@ std::vector<Problem> lamps_in_points(const Rig& rig) {
     for (const PlacedThing& thing : things) {
       const double distance_m = (fixture.position_world_m - thing.position_world_m).norm();
       if (distance_m > smallest_distance_m(fixture.position_world_m, thing.position_world_m)) continue;
-      problems.push_back({rig.file.string(), fixture.place.line, fixture.place.column,
+      problems.push_back({rig.file.string(), fixture.in_file.line, fixture.in_file.column,
                           fmt::format("{} lies in {} (both at {}), which would get infinitely many lux from it",
                                       fixture.text(), thing.text(), position_text(thing.position_world_m)),
                           "move one of them"});

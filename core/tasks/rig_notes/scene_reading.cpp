@@ -54,7 +54,7 @@ class Reading {
     if (!what) what = wrong_axis();
     if (!what) what = all_outside();
     if (!what) return std::nullopt;
-    return Problem{file, spec_.place.line, spec_.place.column, what->first, what->second};
+    return Problem{file, spec_.in_file.line, spec_.in_file.column, what->first, what->second};
   }
 
  private:

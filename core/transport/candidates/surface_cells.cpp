@@ -177,7 +177,7 @@ std::uint32_t SurfaceCells::piece(std::uint32_t first, const Cube& cube, const V
 
 /// Reservoir sampling: a new place may represent its cell. For equal chances, the n-th hit replaces the previous choice
 /// with probability 1/n.
-void SurfaceCells::stand_in(Cell& cell, std::uint64_t key, const Place& place, Found by) {
+void SurfaceCells::stand_in(Cell& cell, std::uint64_t key, const CellPoint& place, Found by) {
   if (by == Found::from_receiver) return;
   const bool lamp = by == Found::from_lamp;
   const std::uint32_t n = ++(lamp ? cell.hits_from_lamps : cell.hits_from_surfaces);

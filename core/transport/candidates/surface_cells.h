@@ -28,12 +28,12 @@ class SurfaceCells {
   /// partly under a table, lamp light falls on the other part.
   static constexpr std::size_t kPlaces = 4;
 
-  struct Place {
+  struct CellPoint {
     Vec3 position_world_m;
     Vec3 normal_world;
   };
   struct Cell {
-    std::array<Place, kPlaces> places;  ///< represent the cell; the same one several times if few were hit
+    std::array<CellPoint, kPlaces> places;  ///< represent the cell; the same one several times if few were hit
     Vec3 first_world_m;                 ///< the first hit; places that see it belong to the cell
     Vec3 first_normal_world;
     std::uint32_t hits_from_surfaces = 0, hits_from_lamps = 0;
@@ -74,7 +74,7 @@ class SurfaceCells {
   /// Piece of the cell chain that the place belongs to.
   [[nodiscard]] std::uint32_t piece(std::uint32_t first, const Cube& cube, const Vec3& position_world_m,
                                     const Vec3& normal_world, std::uint64_t& rays) const;
-  static void stand_in(Cell& cell, std::uint64_t key, const Place& place, Found by);
+  static void stand_in(Cell& cell, std::uint64_t key, const CellPoint& place, Found by);
   void mark_cubes(const Scene& scene);
   void grow();
 

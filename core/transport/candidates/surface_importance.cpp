@@ -120,7 +120,7 @@ void SurfaceImportance::discover(std::span<const Vec3> also_from_world_m) {
   bounces_.resize(surfaces_.cells().size() * settings_.rays_per_cell, kNothing);
 }
 
-SurfaceImportance::Bounce SurfaceImportance::trace(const SurfaceCells::Place& from, const Vec3& direction,
+SurfaceImportance::Bounce SurfaceImportance::trace(const SurfaceCells::CellPoint& from, const Vec3& direction,
                                                    bool may_make_cells) {
   Bounce bounce{
       {static_cast<float>(direction.x()), static_cast<float>(direction.y()), static_cast<float>(direction.z())},
@@ -164,7 +164,7 @@ void SurfaceImportance::trace_bounces(std::uint32_t cell) {
   for (std::uint32_t i = 0; i < settings_.rays_per_cell; ++i) {
     const auto [u, v] = samples.pair(i, 0, 0);
     // A copy of the cell's present place: the cell may get another place, and cells may move in memory.
-    const SurfaceCells::Place from = surfaces_.cells()[cell].places[i % kPlaces];
+    const SurfaceCells::CellPoint from = surfaces_.cells()[cell].places[i % kPlaces];
     Bounce bounce = trace(from, cosine_direction(from.normal_world, u, v), true);
     bounce.weight = bounce.reflectance / static_cast<float>(settings_.rays_per_cell);
     bounces_.push_back(bounce);
@@ -218,7 +218,7 @@ void SurfaceImportance::gather_bounces() {
     guide.finish();
     for (std::uint32_t i = node.begin; i < node.end; ++i) {
       const std::uint32_t c = tree.order[i];
-      const auto weighted = [&](const SurfaceCells::Place& from, const Vec3& direction, double guide_density) {
+      const auto weighted = [&](const SurfaceCells::CellPoint& from, const Vec3& direction, double guide_density) {
         const double cosine_density = std::max(0.0, from.normal_world.dot(direction)) / kPi;
         if (!(cosine_density > 0)) return kNothing;
         Bounce bounce = trace(from, direction, false);
@@ -247,7 +247,7 @@ void SurfaceImportance::gather_bounces() {
 }
 
 /// cosθr cosθy / (π d²) at a place; nearby, its mean over a square of the size that the place represents.
-double SurfaceImportance::kernel(const Receiver& receiver, const SurfaceCells::Place& place) const {
+double SurfaceImportance::kernel(const Receiver& receiver, const SurfaceCells::CellPoint& place) const {
   const auto at = [&](const Vec3& at_m) {
     const Vec3 towards_m = at_m - receiver.position_world_m;
     const double squared_m2 = towards_m.squaredNorm();
@@ -281,7 +281,7 @@ void SurfaceImportance::see_receiver(const VisibilityScene& visibility, const Po
   visible.visit(
       tree, places_m,
       [&](std::uint32_t row) {
-        const SurfaceCells::Place& place = surfaces_.cells()[row / kPlaces].places[row % kPlaces];
+        const SurfaceCells::CellPoint& place = surfaces_.cells()[row / kPlaces].places[row % kPlaces];
         return (value = kernel(receivers_[receiver], place)) > 0;
       },
       [&](std::uint32_t row) { first_[row * stride_ + receiver] = static_cast<float>(value); });

@@ -71,7 +71,7 @@ class SurfaceImportance {
 
   void discover(std::span<const Vec3> also_from_world_m);
   void trace_bounces(std::uint32_t cell);
-  [[nodiscard]] Bounce trace(const SurfaceCells::Place& from, const Vec3& direction, bool may_make_cells);
+  [[nodiscard]] Bounce trace(const SurfaceCells::CellPoint& from, const Vec3& direction, bool may_make_cells);
   void make_patches(const Scene& scene);
   void gather_bounces();
   void see_receiver(const VisibilityScene& visibility, const PointTree& tree, std::span<const Vec3> places_m,
@@ -81,7 +81,7 @@ class SurfaceImportance {
   [[nodiscard]] std::size_t rows_count() const { return surfaces_.cells().size() * kPlaces; }
   [[nodiscard]] std::uint32_t nearest_row(std::uint32_t cell, const Vec3& position_world_m) const;
   void link_patches();
-  [[nodiscard]] double kernel(const Receiver& receiver, const SurfaceCells::Place& place) const;
+  [[nodiscard]] double kernel(const Receiver& receiver, const SurfaceCells::CellPoint& place) const;
   void solve(double converged);
   void solve_strip(std::size_t from, std::size_t width, double converged);
   void add_terms();

@@ -56,16 +56,16 @@ Lamps::Lamps(std::span<const Emitter> emitters, std::span<const double> levels,
     have_size_ = have_size_ || !point;
     if (!point || places_.empty() || places_.back().kind != Kind::point ||
         places_.back().position_world_m != position_world_m) {
-      Place place{sky     ? Kind::sky
-                  : point ? Kind::point
-                          : Kind::shape,
-                  position_world_m,
-                  lamps_.size(),
-                  lamps_.size(),
-                  emitter.shape,
-                  0.5 * emitter.shape.size_m.norm(),
-                  emitter.world_from_lamp.rotation,
-                  sky ? only_direction(*emitter.sky) : std::nullopt};
+      Site place{sky     ? Kind::sky
+                 : point ? Kind::point
+                         : Kind::shape,
+                 position_world_m,
+                 lamps_.size(),
+                 lamps_.size(),
+                 emitter.shape,
+                 0.5 * emitter.shape.size_m.norm(),
+                 emitter.world_from_lamp.rotation,
+                 sky ? only_direction(*emitter.sky) : std::nullopt};
       places_.push_back(place);
     }
     Lamp lamp{e, -Vec3::UnitZ(), -2, Mat3::Identity(), emitter.intensity.get(), emitter.sky.get(), importance_of(e), 0,
@@ -95,7 +95,7 @@ void Lamps::form_cells(const Eigen::AlignedBox3d& bounds_world_m) {
   WeighedLamps w;
   std::map<const IntensityDistribution*, std::uint32_t> profile_of;
   for (std::size_t p = 0; p < places_.size(); ++p) {
-    const Place& place = places_[p];
+    const Site& place = places_[p];
     if (place.kind == Kind::sky) continue;
     for (std::size_t i = place.begin; i < place.end; ++i) {
       const Lamp& lamp = lamps_[i];
@@ -120,7 +120,7 @@ void Lamps::form_cells(const Eigen::AlignedBox3d& bounds_world_m) {
 
 void Lamps::form_groups() {
   const auto skies = static_cast<std::size_t>(
-      std::count_if(places_.begin(), places_.end(), [](const Place& p) { return p.kind == Kind::sky; }));
+      std::count_if(places_.begin(), places_.end(), [](const Site& p) { return p.kind == Kind::sky; }));
   const std::size_t luminaires = luminous_places_ = places_.size() - skies;
   const std::size_t groups = std::min(luminaires, kMaxGroups);
   group_of_emitter_.resize(place_of_emitter_.size());
@@ -135,7 +135,7 @@ void Lamps::form_groups() {
 void Lamps::share_out() {
   double luminaires = 0;
   std::size_t skies = 0;
-  for (const Place& place : places_)
+  for (const Site& place : places_)
     for (std::size_t i = place.begin; i < place.end; ++i) {
       Lamp& lamp = lamps_[i];
       if (lamp.sky) ++skies;
@@ -160,7 +160,7 @@ void Lamps::share_out() {
   }
 }
 
-double Lamps::inward_share(const Lamp& lamp, const Place& place) const {
+double Lamps::inward_share(const Lamp& lamp, const Site& place) const {
   if ((place.position_world_m - centre_world_m_).norm() <= radius_m_) return 1;
   constexpr std::uint32_t kProbes = 64;
   const SobolSequence probes(0x1a4b);
@@ -235,7 +235,7 @@ LampChoice Lamps::choose(const Vec3& position_world_m, const Vec3& normal_world,
   if (k == cell.places.size())
     for (std::size_t r = 0; r < cell.rest.size() && !taken(cell.rest[r], static_cast<double>(cell.rest_lx[r])); ++r) {
     }
-  const Place& place = places_[choice.place];
+  const Site& place = places_[choice.place];
   const double probability = weight / sum;
   if (place.kind != Kind::sky) return ask_place(choice.place, probability, position_world_m, normal_world, u, v);
   const double whole = whole_sky_share(place, weights);
@@ -260,7 +260,7 @@ LampChoice Lamps::ask_place(std::size_t which, double probability, const Vec3& p
                             const Vec3& normal_world, double u, double v) const {
   LampChoice choice;
   choice.place = which;
-  const Place& place = places_[which];
+  const Site& place = places_[which];
   if (place.kind == Kind::point) {
     const Vec3 towards_m = place.position_world_m - position_world_m;
     const double distance_m = towards_m.norm();
@@ -283,7 +283,7 @@ LampChoice Lamps::place_towards(std::size_t which, const Vec3& position_world_m,
                                 const Vec3& direction_world) const {
   LampChoice choice;
   choice.place = which;
-  const Place& place = places_[which];
+  const Site& place = places_[which];
   const Vec3 from_m = at_lamp_m(place, position_world_m);
   const Vec3 direction = place.world_from_lamp.transpose() * direction_world;
   const double density = density_seen_from(place.shape, from_m, direction);
@@ -295,7 +295,7 @@ LampChoice Lamps::place_towards(std::size_t which, const Vec3& position_world_m,
 
 void Lamps::fill_in(LampChoice& choice, const Vec3& position_world_m, double distance_m, double density_per_sr,
                     const Vec3& normal_world, const Vec3& direction_world) const {
-  const Place& place = places_[choice.place];
+  const Site& place = places_[choice.place];
   const double cosine = normal_world.dot(direction_world);
   const double area_m2 = projected_area_m2(place.shape, -(place.world_from_lamp.transpose() * direction_world));
   if (!(cosine > 0) || !(area_m2 > 0)) return;
@@ -314,7 +314,7 @@ double Lamps::choice_density(std::size_t emitter, const Vec3& position_world_m, 
   const std::size_t p = place_of_emitter_[emitter];
   const double probability = place_probability(p, weights, sum);
   if (!(probability > 0)) return 0;
-  const Place& place = places_[p];
+  const Site& place = places_[p];
   if (place.kind == Kind::sky)
     return probability * sky_density_per_sr(place, position_world_m, direction_world, weights);
   return probability * density_in_place(p, position_world_m, direction_world);
@@ -327,14 +327,14 @@ double Lamps::place_probability(std::size_t p, const Weights& weights, double su
 }
 
 double Lamps::density_in_place(std::size_t which, const Vec3& position_world_m, const Vec3& direction_world) const {
-  const Place& place = places_[which];
+  const Site& place = places_[which];
   if (place.kind == Kind::point) return 1;
   return density_seen_from(place.shape, at_lamp_m(place, position_world_m),
                            place.world_from_lamp.transpose() * direction_world);
 }
 
 double Lamps::importance_cd(std::size_t which, const Vec3& leaving_world) const {
-  const Place& place = places_[which];
+  const Site& place = places_[which];
   double candela = 0;
   for (std::size_t i = place.begin; i < place.end; ++i) {
     const Lamp& lamp = lamps_[i];
@@ -345,7 +345,7 @@ double Lamps::importance_cd(std::size_t which, const Vec3& leaving_world) const 
 }
 
 double Lamps::place_share(std::size_t which) const {
-  const Place& place = places_[which];
+  const Site& place = places_[which];
   double share = 0;
   for (std::size_t i = place.begin; i < place.end; ++i)
     share += lamps_[i].share * groups_[group_of_emitter_[lamps_[i].emitter]].share;
@@ -362,7 +362,7 @@ LampRay Lamps::emit(std::size_t group, double u, double v, double s, double t) c
   // The remainder of u after the choice is again uniform.
   const double rest = std::clamp((u - lamp.share_begin) / lamp.share, 0.0, 1 - 0x1p-53);
   ray.emitter = lamp.emitter;
-  const Place& place = places_[place_of_emitter_[lamp.emitter]];
+  const Site& place = places_[place_of_emitter_[lamp.emitter]];
   if (place.kind == Kind::sky) return emit_sky(lamp, rest, v, s, t);
   const DirectionSample sample = lamp.intensity->sample(rest, v);
   if (!(sample.density_per_sr > 0)) return ray;

@@ -60,7 +60,7 @@ class Lamps {
   template <class Lit>
   std::uint64_t light(const RayScene* scene, const Vec3& position_world_m, const Vec3& normal_world, Lit&& lit) const {
     std::uint64_t rays = 0;
-    for (const Place& place : places_) {
+    for (const Site& place : places_) {
       if (place.kind != Kind::point) continue;
       const Vec3 towards_m = place.position_world_m - position_world_m;
       const double height_m = normal_world.dot(towards_m);
@@ -117,7 +117,7 @@ class Lamps {
   /// of its group makes a first hit here, in the unit of choice.density).
   template <class Lit>
   void light(const LampChoice& choice, Lit&& lit) const {
-    const Place& place = places_[choice.place];
+    const Site& place = places_[choice.place];
     const double per_density = choice.factor / choice.density;
     for (std::size_t i = place.begin; i < place.end; ++i) {
       const Lamp& lamp = lamps_[i];
@@ -148,7 +148,7 @@ class Lamps {
   void each_towards(const Vec3& position_world_m, const Vec3& normal_world, const Vec3& direction_world, double free_m,
                     const Weights& weights, double sum, Lit&& lit) const {
     for (const std::size_t p : shapes_) {
-      const Place& place = places_[p];
+      const Site& place = places_[p];
       const Vec3 towards_m = place.position_world_m - position_world_m;
       if (towards_m.cross(direction_world).squaredNorm() > place.radius_m * place.radius_m) continue;
       const double in_place = density_in_place(p, position_world_m, direction_world),
@@ -241,7 +241,7 @@ class Lamps {
     double share;
     std::size_t begin, end;  ///< into lamps_
   };
-  struct Place {
+  struct Site {
     Kind kind;
     Vec3 position_world_m;
     std::size_t begin, end;  ///< into lamps_
@@ -254,8 +254,8 @@ class Lamps {
   void form_cells(const Eigen::AlignedBox3d& bounds_world_m);
   void share_out();
   /// Approximate share of a lamp's light that can meet the sphere around all geometry.
-  [[nodiscard]] double inward_share(const Lamp& lamp, const Place& place) const;
-  [[nodiscard]] static Vec3 at_lamp_m(const Place& place, const Vec3& position_world_m) {
+  [[nodiscard]] double inward_share(const Lamp& lamp, const Site& place) const;
+  [[nodiscard]] static Vec3 at_lamp_m(const Site& place, const Vec3& position_world_m) {
     return place.world_from_lamp.transpose() * (position_world_m - place.position_world_m);
   }
   void fill_in(LampChoice& choice, const Vec3& position_world_m, double distance_m, double density_per_sr,
@@ -263,17 +263,17 @@ class Lamps {
   void weigh_skies(const Vec3& position_world_m, const Vec3& normal_world, Weights& weights) const;
   [[nodiscard]] LampRay emit_sky(const Lamp& lamp, double u, double v, double s, double t) const;
   /// Density [1/sr] with which choose() draws a direction towards the sky.
-  [[nodiscard]] double sky_density_per_sr(const Place& place, const Vec3& position_world_m, const Vec3& direction_world,
+  [[nodiscard]] double sky_density_per_sr(const Site& place, const Vec3& position_world_m, const Vec3& direction_world,
                                           const Weights& weights) const;
   /// Share of the directions towards the sky that are drawn from the whole sky.
-  [[nodiscard]] double whole_sky_share(const Place& place, const Weights& weights) const {
+  [[nodiscard]] double whole_sky_share(const Site& place, const Weights& weights) const {
     return openings_ && !place.towards_sun_world ? openings_->whole_sky_share(weights.view) : 1;
   }
   /// Density [1/m², across the line] with which emit() draws the line of light through a point.
   [[nodiscard]] double line_density_per_m2(const Vec3& towards_world, const Vec3& position_world_m) const;
 
   std::vector<Lamp> lamps_;
-  std::vector<Place> places_;
+  std::vector<Site> places_;
   LampCells cells_;
   std::vector<Group> groups_;
   std::size_t luminous_places_ = 0;

@@ -12,7 +12,7 @@ void Lamps::weigh_skies(const Vec3& position_world_m, const Vec3& normal_world, 
   if (openings_) openings_->view(position_world_m, normal_world, weights.view);
   if (!(normal_world.z() > -0.99999)) return;
   for (std::size_t p = places_.size(); p > 0 && places_[p - 1].kind == Kind::sky; --p) {
-    const Place& place = places_[p - 1];
+    const Site& place = places_[p - 1];
     const Vec3* towards = place.towards_sun_world ? &*place.towards_sun_world : nullptr;
     const double lit = openings_ ? openings_->lit_share(weights.view, position_world_m, towards) : 1;
     double& weight = weights.places[weights.places.size() + p - 1 - places_.size()];
@@ -21,7 +21,7 @@ void Lamps::weigh_skies(const Vec3& position_world_m, const Vec3& normal_world, 
   }
 }
 
-double Lamps::sky_density_per_sr(const Place& place, const Vec3& position_world_m, const Vec3& direction_world,
+double Lamps::sky_density_per_sr(const Site& place, const Vec3& position_world_m, const Vec3& direction_world,
                                  const Weights& weights) const {
   const double of_sky = lamps_[place.begin].sky->density_per_sr(direction_world);
   const double whole = whole_sky_share(place, weights);

@@ -166,9 +166,9 @@ double MirrorImages::density_per_m2(const ImageChoice& choice, const Vec3& from_
   return image ? probability * density_per_m2(*image, position_world_m) : 0;
 }
 
-MirrorImages::Place MirrorImages::draw(const ImageChoice& choice, const Vec3& from_world_m, double select, double u,
-                                       double v) const {
-  Place place;
+MirrorImages::ImagePoint MirrorImages::draw(const ImageChoice& choice, const Vec3& from_world_m, double select,
+                                            double u, double v) const {
+  ImagePoint place;
   if (choice.images.empty()) return place;
   const auto at = std::min(std::upper_bound(choice.images.begin(), choice.images.end(), select,
                                             [](double s, const ImageChoice::Image& one) { return s < one.up_to; }),

@@ -46,15 +46,15 @@ class MirrorImages {
   /// Weighted by the mirrored illuminance without obstacles.
   [[nodiscard]] ImageChoice seen_from(const Vec3& position_world_m, const Vec3& normal_world) const;
 
-  struct Place {
+  struct ImagePoint {
     std::uint32_t plane = kNoPlane;  ///< kNoPlane = none could be drawn
     std::size_t place_of_lamp = 0;
     Vec3 position_world_m = Vec3::Zero(), normal_world = Vec3::UnitZ();  ///< towards the viewer
     double density_per_m2 = 0;                                           ///< including the probability of the image
   };
   /// A place on a plane near the image of a lamp; the plane may have no surface there.
-  [[nodiscard]] Place draw(const ImageChoice& choice, const Vec3& from_world_m, double select, double u,
-                           double v) const;
+  [[nodiscard]] ImagePoint draw(const ImageChoice& choice, const Vec3& from_world_m, double select, double u,
+                                double v) const;
   /// Density [1/m²] with which draw() gives a place of a plane together with a place of lamps.
   [[nodiscard]] double density_per_m2(const ImageChoice& choice, const Vec3& from_world_m, std::uint32_t plane,
                                       std::size_t place_of_lamp, const Vec3& position_world_m) const;

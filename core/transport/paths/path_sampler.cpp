@@ -424,14 +424,14 @@ std::optional<std::uint32_t> PathSampler::record_for(const Vec3& position_world_
   const auto found = records.nearest(position_world_m, normal_world);
   if (!found) return std::nullopt;
   if (found->record == so_far) return so_far;  // the path to it was clear
-  const TailRecords::Place& place = records.place(found->record);
+  const TailRecords::Vertex& place = records.place(found->record);
   if (found->distance_m <= place.clear_m) return found->record;
   ++rays;
   if (!sees_record(position_world_m, normal_world, place, found->distance_m)) return std::nullopt;
   return found->record;
 }
 
-bool PathSampler::sees_record(const Vec3& position_world_m, const Vec3& normal_world, const TailRecords::Place& record,
+bool PathSampler::sees_record(const Vec3& position_world_m, const Vec3& normal_world, const TailRecords::Vertex& record,
                               double distance_m) const {
   // Above both surfaces by a share of their distance, so that a nearly plane surface does not block itself.
   const double lift_m = 0.05 * distance_m;

@@ -140,7 +140,7 @@ class PathSampler {
 
   /// Whether the path between a place of a surface and a record on it is clear; one ray.
   [[nodiscard]] bool sees_record(const Vec3& position_world_m, const Vec3& normal_world,
-                                 const TailRecords::Place& record, double distance_m) const;
+                                 const TailRecords::Vertex& record, double distance_m) const;
 
  private:
   /// Light of a hit through a vertex, if nothing is in between.

@@ -42,12 +42,12 @@ std::uint64_t SharedTails::grow(std::span<const Receiver> receivers, std::size_t
 void SharedTails::add_places(std::size_t k, std::span<const Receiver> receivers, std::size_t count) {
   Replicate& replicate = replicates_[k];
   const SobolSequence samples(mixed(mixed(seed_, kTailPlaceKey), k));
-  std::vector<TailRecords::Place> places;
+  std::vector<TailRecords::Vertex> places;
   replicate.seen_by.clear();
   for (std::size_t i = 0; i < count; ++i) {
     Receiver from = receivers[i % receivers.size()];
     const std::uint32_t index = replicate.drawn + static_cast<std::uint32_t>(i);
-    std::optional<TailRecords::Place> found;
+    std::optional<TailRecords::Vertex> found;
     for (std::uint32_t leg = 0; leg < (i % kFartherPlaces == 0 ? 2 : 1); ++leg) {
       const auto [u, v] = samples.pair(index, leg, 0);
       ++replicate.rays;
@@ -56,7 +56,7 @@ void SharedTails::add_places(std::size_t k, std::span<const Receiver> receivers,
       if (!hit) break;
       from = {hit->position_world_m, hit->normal_world};
       const Bsdf& bsdf = bsdfs_[scene_.material_index_of(hit->triangle)];
-      if (bsdf.matt() && !bsdf.black()) found = TailRecords::Place{hit->position_world_m, hit->normal_world, 0};
+      if (bsdf.matt() && !bsdf.black()) found = TailRecords::Vertex{hit->position_world_m, hit->normal_world, 0};
     }
     if (!found) continue;
     places.push_back(*found);
@@ -80,7 +80,7 @@ void SharedTails::sample(std::size_t k, std::uint32_t first, std::uint32_t paths
   share.link = true;
   for (auto record = first; record < records.size(); ++record) {
     if (watch.stop.stop_requested()) return;
-    const TailRecords::Place& place = records.place(record);
+    const TailRecords::Vertex& place = records.place(record);
     auto start = PathSampler::at({place.position_world_m, place.normal_world});
     start.images = sampler_.images_from_anywhere();
     const HitPlan& plan = plans[replicate.seen_by[record - first]];
@@ -147,10 +147,10 @@ void SharedTails::blend(std::size_t k) {
   std::vector<std::uint32_t> beside;
   for (std::uint32_t i = 0; i < size; ++i) {
     records.find_beside(i, beside);
-    const TailRecords::Place& here = records.place(i);
+    const TailRecords::Vertex& here = records.place(i);
     for (const std::uint32_t j : beside) {
       if (j < i) continue;  // already done
-      const TailRecords::Place& there = records.place(j);
+      const TailRecords::Vertex& there = records.place(j);
       const double distance_m = (there.position_world_m - here.position_world_m).norm();
       if (distance_m > kBlendClear * std::max(here.clear_m, there.clear_m)) {
         ++replicate.rays;

@@ -13,7 +13,7 @@ constexpr double kMaxCrowded = 8;
 
 }  // namespace
 
-void TailRecords::append(std::span<const Place> places, std::size_t columns) {
+void TailRecords::append(std::span<const Vertex> places, std::size_t columns) {
   places_.insert(places_.end(), places.begin(), places.end());
   columns_ = columns;
   values_.resize(places_.size() * columns, 0.0f);
@@ -45,7 +45,7 @@ void TailRecords::sum_up(std::size_t record, std::span<const double> levels) {
 
 void TailRecords::build_grid() {
   Eigen::AlignedBox3d box;
-  for (const Place& place : places_) box.extend(place.position_world_m);
+  for (const Vertex& place : places_) box.extend(place.position_world_m);
   origin_world_m_ = box.min();
   // Records are on surfaces: the approximate spacing if they were spread over the box's six sides.
   const Vec3 size = box.sizes();

@@ -20,7 +20,7 @@ namespace luxrig {
 
 class TailRecords {
  public:
-  struct Place {
+  struct Vertex {
     Vec3 position_world_m;
     Vec3 normal_world;
     double clear_m;  ///< up to this distance nothing is between the record and its neighbours on the surface
@@ -28,7 +28,7 @@ class TailRecords {
 
   /// Adds records of value 0; existing ones keep index and value. told() of all records is then 0.
   /// columns: emitters × channels, the same each time
-  void append(std::span<const Place> places, std::size_t columns);
+  void append(std::span<const Vertex> places, std::size_t columns);
 
   struct Found {
     std::uint32_t record;
@@ -41,7 +41,7 @@ class TailRecords {
   void find_beside(std::uint32_t record, std::vector<std::uint32_t>& beside) const;
 
   [[nodiscard]] std::size_t size() const { return places_.size(); }
-  [[nodiscard]] const Place& place(std::size_t record) const { return places_[record]; }
+  [[nodiscard]] const Vertex& place(std::size_t record) const { return places_[record]; }
 
   void set_clear_m(std::size_t record, double clear_m) { places_[record].clear_m = clear_m; }
 
@@ -70,7 +70,7 @@ class TailRecords {
   [[nodiscard]] std::size_t bucket_of(const Cell& cell) const;
   void build_grid();
 
-  std::vector<Place> places_;
+  std::vector<Vertex> places_;
   std::size_t columns_ = 0;
   std::vector<float> values_, told_;
   struct Sums {

@@ -164,7 +164,7 @@ std::vector<Problem> check_usb_dmx(const Rig& rig, std::size_t bus, std::span<co
       if (fixture.bus != bus || dmx == nullptr) continue;
       if (wanted == 0) wanted = dmx->universe;
       if (dmx->universe == wanted) continue;
-      problems.push_back({rig.file.string(), fixture.place.line, fixture.place.column,
+      problems.push_back({rig.file.string(), fixture.in_file.line, fixture.in_file.column,
                           fmt::format("fixture \"{}\" is in universe {}, but bus \"{}\" is one {} widget, which puts "
                                       "out one universe, {}",
                                       fixture.name, dmx->universe, entry.name, entry.driver, wanted),

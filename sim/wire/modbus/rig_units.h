@@ -52,7 +52,7 @@ class RigUnits final : public ModbusUnits {
     double power_on = 0;
     std::vector<std::string> about{};  ///< fixtures of a failure bit
   };
-  struct Place {
+  struct WordOfNumber {
     std::size_t number = 0;  ///< in numbers_
     std::size_t word = 0;
   };
@@ -81,7 +81,7 @@ class RigUnits final : public ModbusUnits {
   bool closed_when_pressed_ = false;  ///< state of the blackout contact
   LampFaults lamp_faults_;
   std::vector<Number> numbers_;
-  std::map<Address, Place> places_;
+  std::map<Address, WordOfNumber> places_;
   std::map<int, Unit> units_;
   Time now_{};
   std::uint64_t exchanges_ = 0, faults_seen_ = 0;

@@ -42,9 +42,9 @@ std::vector<std::string> expectations(const std::filesystem::path& path) {
 }
 
 bool meets(const Problem& problem, const std::string& expected) {
-  const std::string place = std::filesystem::path(problem.file).filename().string() + ":" +
-                            std::to_string(problem.line) + ":" + std::to_string(problem.column) + ": ";
-  return expected.starts_with(place) && problem.what.find(expected.substr(place.size())) != std::string::npos;
+  const std::string in_file = std::filesystem::path(problem.file).filename().string() + ":" +
+                              std::to_string(problem.line) + ":" + std::to_string(problem.column) + ": ";
+  return expected.starts_with(in_file) && problem.what.find(expected.substr(in_file.size())) != std::string::npos;
 }
 
 class BadRig : public testing::TestWithParam<std::string> {};

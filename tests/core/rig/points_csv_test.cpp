@@ -43,8 +43,8 @@ TEST(PointsCsv, ReadsQuotesCommentsByteOrderMarkAndCarriageReturns) {
       "\xEF\xBB\xBFname,x_m,y_m,z_m\r\n\r\n# not a point\r\n \"a \"\"b\"\", c\" , 1 ,2,3\r\nd,4,5,6", "p.csv", 10);
   ASSERT_EQ(table.rows.size(), 2u) << listed(table);
   EXPECT_EQ(table.rows[0].point.name, "a \"b\", c");
-  EXPECT_EQ(table.rows[0].place.line, 4);
-  EXPECT_EQ(table.rows[0].place.column, 2);
+  EXPECT_EQ(table.rows[0].in_file.line, 4);
+  EXPECT_EQ(table.rows[0].in_file.column, 2);
   EXPECT_EQ(table.rows[1].point.position_world_m, Vec3(4, 5, 6));
 }
 
@@ -84,12 +84,12 @@ TEST(PointsCsv, RefusesMoreRowsThanAllowed) {
 
 TEST(PointsCsv, GivesBackWhatWasWrittenForRandomPoints) {
   std::mt19937 random(3);
-  std::uniform_real_distribution<double> place(-1e6, 1e6), lux(1e-3, 1e6);
+  std::uniform_real_distribution<double> place_m(-1e6, 1e6), lux(1e-3, 1e6);
   std::string text = "name,x_m,y_m,z_m,goal_lx\n";
   std::vector<std::pair<Vec3, double>> written;
   char line[200];
   for (int i = 0; i < 1000; ++i) {
-    written.emplace_back(Vec3(place(random), place(random), place(random)), lux(random));
+    written.emplace_back(Vec3(place_m(random), place_m(random), place_m(random)), lux(random));
     const auto& [p, goal] = written.back();
     std::snprintf(line, sizeof line, "p%d,%.17g,%.17g,%.17g,%.17g\n", i, p.x(), p.y(), p.z(), goal);
     text += line;

@@ -54,6 +54,25 @@ TEST(HealthWatch, IsContentWhileEveryMeterSpeaksAndNothingIsFaulted) {
   }
 }
 
+TEST(HealthWatch, NamesAsCauseWhatIsLostAndNotWhatElseIsWrong) {
+  HealthWatch watch(small_rig());
+  EXPECT_EQ(watch.cause(true), "");
+  hear_both(watch, 0);
+  Health warm;
+  warm.device = "right";
+  warm.life = Life::active;
+  warm.detail = "reports too hot";
+  const std::vector<Health> report = {warm, faulted("meter-1", 0), faulted("left", 0)};
+  watch.report(report);
+  step_until(watch, 0, 1);
+  ASSERT_EQ(watch.alarms().size(), 3u);
+  EXPECT_NE(watch.cause(true).find("\"left\""), std::string::npos) << watch.cause(true);
+  EXPECT_NE(watch.cause(false).find("\"meter-1\""), std::string::npos) << watch.cause(false);
+  watch.report(std::span(report).first(2));
+  step_until(watch, 1, 2);
+  EXPECT_NE(watch.cause(true).find("meter-1"), std::string::npos) << "a warning is no cause";
+}
+
 TEST(HealthWatch, WarnsOfADimmerThatObeysAndSaysThatSomethingIsWrongAndLeavesTheLightAlone) {
   HealthWatch watch(small_rig());
   Health failing;

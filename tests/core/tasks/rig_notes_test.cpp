@@ -32,19 +32,19 @@ class RigNotes : public testing::Test {
       Fixture fixture;
       fixture.name = "lamp " + std::to_string(i + 1);
       fixture.world_from_mount.translation_m = Vec3(1.5 + 1.5 * i, 2.5, 2.8);
-      fixture.place = {10 + i, 1};
+      fixture.in_file = {10 + i, 1};
       rig.fixtures.push_back(fixture);
       Point point;
       point.name = "desk " + std::to_string(i + 1);
       point.position_world_m = Vec3(1.5 + 1.5 * i, 1.5, 0.8);
       point.goal_lx = 300;
-      point.place = {20 + i, 1};
+      point.in_file = {20 + i, 1};
       rig.points.push_back(point);
     }
     Luxmeter meter;
     meter.name = "meter";
     meter.position_world_m = Vec3(1, 4, 0.8);
-    meter.place = {30, 1};
+    meter.in_file = {30, 1};
     rig.luxmeters.push_back(meter);
   }
   ~RigNotes() override { std::filesystem::remove(file_); }
@@ -132,7 +132,7 @@ TEST_F(RigNotes, ARoomOnItsGroundThatIsReadWithTheWrongAxisUpIsNoted) {
                                          "v -10000 10000 -0.01\nf 9 10 11 12\n";
   EXPECT_TRUE(notes().empty()) << notes()[0].text();
   rig.scene.mesh->up_axis = UpAxis::y;
-  expect_one(rig.scene.place.line, {"set up_axis = \"z\" in [scene]"});
+  expect_one(rig.scene.in_file.line, {"set up_axis = \"z\" in [scene]"});
 }
 
 TEST_F(RigNotes, TheRoomOfARigIsWithoutItsGround) {
@@ -193,7 +193,7 @@ TEST_F(RigNotes, LightThatIsYetToBePlacedMayReachAnything) {
 }
 
 TEST_F(RigNotes, AMeshWithZUpThatIsReadWithYUpIsNotedAndTheOtherWayRound) {
-  rig.scene.place = {3, 1};
+  rig.scene.in_file = {3, 1};
   rig.scene.objects.clear();
   rig.scene.mesh->up_axis = UpAxis::y;
   expect_one(3, {"is read with y up", "with z up, 7 of them", "set up_axis = \"z\""});
@@ -204,7 +204,7 @@ TEST_F(RigNotes, AMeshWithZUpThatIsReadWithYUpIsNotedAndTheOtherWayRound) {
 }
 
 TEST_F(RigNotes, AMeshInAnotherUnitIsNoted) {
-  rig.scene.place = {3, 1};
+  rig.scene.in_file = {3, 1};
   rig.scene.objects.clear();
   write_room(1000);  // millimetres, read as metres
   expect_one(3, {"6000.00 x 5000.00 x 3000.00 m in size, far too large", "set unit = \"mm\"", "6.00 x 5.00 x 3.00 m"});
@@ -216,7 +216,7 @@ TEST_F(RigNotes, AMeshInAnotherUnitIsNoted) {
 }
 
 TEST_F(RigNotes, AMeshInMetresReadAsFeetIsNotedWhereAllPointsAreOutsideOfIt) {
-  rig.scene.place = {3, 1};
+  rig.scene.in_file = {3, 1};
   rig.scene.objects.clear();
   rig.scene.mesh->metres_per_unit = 0.3048;  // 1.8 x 1.5 x 0.9 m: not far too small, and in the open all are in sight
   for (Point& point : rig.points) point.position_world_m += Vec3(1, 1, 0);
@@ -230,7 +230,7 @@ TEST_F(RigNotes, AMeshInMetresReadAsFeetIsNotedWhereAllPointsAreOutsideOfIt) {
 }
 
 TEST_F(RigNotes, ARigInOtherCoordinatesThanItsSceneIsNoted) {
-  rig.scene.place = {3, 1};
+  rig.scene.in_file = {3, 1};
   rig.scene.objects.clear();
   for (Fixture& fixture : rig.fixtures) fixture.world_from_mount.translation_m += Vec3(1e5, -2e4, 0);
   for (Point& point : rig.points) point.position_world_m += Vec3(1e5, -2e4, 0);

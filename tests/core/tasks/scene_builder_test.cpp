@@ -21,7 +21,7 @@ Rig rig_with_room() {
   Rig rig;
   rig.file = "rig.toml";
   rig.scene.mesh = room();
-  rig.scene.place = {4, 1};
+  rig.scene.in_file = {4, 1};
   return rig;
 }
 
@@ -31,7 +31,7 @@ SceneObject box_object(const std::string& name, const Vec3& size_m, const Vec3& 
   object.box_m = size_m;
   object.position_world_m = position_m;
   object.turn_rad = turn_rad;
-  object.place = {20, 3};
+  object.in_file = {20, 3};
   return object;
 }
 

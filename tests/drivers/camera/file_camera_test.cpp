@@ -113,7 +113,7 @@ TEST(Cameras, AreCheckedWithoutTouchingThem) {
   PictureCamera spec;
   spec.name = "cam";
   spec.width_px = 15;
-  spec.place = {4, 1};
+  spec.in_file = {4, 1};
   rig.cameras.push_back(spec);
   EXPECT_TRUE(check_cameras(rig).empty()) << "it has no source";
   rig.cameras[0].taking.source = PictureSource::v4l2;

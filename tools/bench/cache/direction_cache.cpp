@@ -85,14 +85,14 @@ class DirectionCache final : public RadianceCache::Method {
   }
 
  private:
-  struct Place {
+  struct CellPoint {
     DirectionCells::Shares shares;
     std::size_t count = 0;
   };
   /// A place above a receiver.
   struct Read {
     std::uint32_t receiver, replicate;
-    Place place;
+    CellPoint place;
   };
   /// A surface that a receiver's ray hits.
   struct Gathered {
@@ -100,10 +100,10 @@ class DirectionCache final : public RadianceCache::Method {
     Vec3 position_world_m;
     Vec3 normal_world;
     Vec3 reflectance_rgb;
-    Place place;
+    CellPoint place;
   };
 
-  void mark(const Place& place, const Vec3& surface_world_m, const Vec3& normal) {
+  void mark(const CellPoint& place, const Vec3& surface_world_m, const Vec3& normal) {
     for (std::size_t i = 0; i < place.count; ++i)
       cells_.need(place.shares[i].cell, surface_world_m - cells_.origin_world_m(), normal);
   }
@@ -228,7 +228,7 @@ class DirectionCache final : public RadianceCache::Method {
     return out;
   }
 
-  [[nodiscard]] Vec3 at(const Field& field, const Place& place, const Harmonics& lobe) const {
+  [[nodiscard]] Vec3 at(const Field& field, const CellPoint& place, const Harmonics& lobe) const {
     Eigen::RowVectorXf mixture = Eigen::RowVectorXf::Zero(field.cols());
     for (std::size_t i = 0; i < place.count; ++i) mixture += place.shares[i].weight * field.row(place.shares[i].cell);
     return layout_.illuminance(mixture, lobe);

@@ -28,15 +28,15 @@ struct DiscLayout {
         front_x_px(options.width_px / 4.0),
         back_x_px(options.width_px * 3 / 4.0) {}
 
-  [[nodiscard]] std::optional<DirectionMap::Place> place_at(double x_px, double y_px) const {
+  [[nodiscard]] std::optional<DirectionMap::MapPoint> place_at(double x_px, double y_px) const {
     for (const bool behind : {false, true}) {
       const double x = (x_px - (behind ? back_x_px : front_x_px)) / radius_px, y = (middle_y_px - y_px) / radius_px;
-      if (x * x + y * y <= 1) return DirectionMap::Place{behind, x, y};
+      if (x * x + y * y <= 1) return DirectionMap::MapPoint{behind, x, y};
     }
     return std::nullopt;
   }
 
-  [[nodiscard]] FigureLabel label_at(const DirectionMap::Place& place) const {
+  [[nodiscard]] FigureLabel label_at(const DirectionMap::MapPoint& place) const {
     FigureLabel label;
     label.x_px = (place.behind ? back_x_px : front_x_px) + radius_px * place.x;
     label.y_px = middle_y_px - radius_px * place.y;

@@ -14,7 +14,7 @@ TEST(DirectionMap, IsItsOwnInverse) {
   for (int i = 0; i < 500; ++i) {
     const DirectionMap map(i == 0 ? Vec3(Vec3::UnitZ()) : Vec3(3 * random.direction()));
     const Vec3 direction = random.direction();
-    const DirectionMap::Place place = map.place_of(2 * direction);
+    const DirectionMap::MapPoint place = map.place_of(2 * direction);
     EXPECT_LE(std::hypot(place.x, place.y), 1 + 1e-12);
     EXPECT_LT((map.direction_at(place) - direction).norm(), 1e-7);
   }
@@ -29,7 +29,7 @@ TEST(DirectionMap, AreasAreSolidAngles) {
     const Vec3 around = viewer.cross(random.direction()).normalized();
     for (const double towards : {1.0, -1.0}) {
       const Vec3 direction = towards * (Eigen::AngleAxisd(rad_from_deg(deg), around) * viewer);
-      const DirectionMap::Place place = map.place_of(direction);
+      const DirectionMap::MapPoint place = map.place_of(direction);
       EXPECT_NEAR(place.x * place.x + place.y * place.y, 1 - std::cos(rad_from_deg(deg)), 1e-12);
       if (deg < 90) {  // on the rim rounding decides
         EXPECT_EQ(place.behind, towards < 0);
@@ -44,7 +44,7 @@ TEST(DirectionMap, LeftIsLeftAndUpIsUpOnBothHalves) {
   const auto front = map.place_of(Vec3(0.2, -1, 0.1)), back = map.place_of(Vec3(0.2, 1, 0.1));
   EXPECT_FALSE(front.behind);
   EXPECT_TRUE(back.behind);
-  for (const DirectionMap::Place& place : {front, back}) {
+  for (const DirectionMap::MapPoint& place : {front, back}) {
     EXPECT_GT(place.x, 0.1);
     EXPECT_GT(place.y, 0.05);
   }

@@ -11,12 +11,12 @@
 namespace luxrig {
 namespace {
 
-using Place = TailRecords::Place;
+using Vertex = TailRecords::Vertex;
 
 /// On a floor of 6 m by 4 m about a point.
-std::vector<Place> scattered(std::mt19937_64& random, std::size_t count, const Vec3& about_m, double scale) {
+std::vector<Vertex> scattered(std::mt19937_64& random, std::size_t count, const Vec3& about_m, double scale) {
   std::uniform_real_distribution<double> unit(0, 1);
-  std::vector<Place> places;
+  std::vector<Vertex> places;
   for (std::size_t i = 0; i < count; ++i)
     places.push_back({about_m + scale * Vec3(6 * unit(random), 4 * unit(random), 0), Vec3::UnitZ(), 0});
   return places;
@@ -28,7 +28,7 @@ TEST(TailRecords, TheNearestIsThatOfASearchThroughAll) {
   for (const double scale : {1e-3, 1.0, 1e3}) {
     for (const std::size_t count : {1u, 2u, 7u, 400u}) {
       const Vec3 about_m = Vec3(10, -20, 3) * scale;
-      const std::vector<Place> places = scattered(random, count, about_m, scale);
+      const std::vector<Vertex> places = scattered(random, count, about_m, scale);
       TailRecords records;
       // In two goes, as they grow.
       records.append(std::span(places).first(count / 2), 3);
@@ -39,7 +39,7 @@ TEST(TailRecords, TheNearestIsThatOfASearchThroughAll) {
         const Vec3 from_m = about_m + scale * Vec3(6 * unit(random), 4 * unit(random), 0);
         const auto nearest = records.nearest(from_m, Vec3::UnitZ());
         double min_m = HUGE_VAL;
-        for (const Place& place : places) min_m = std::min(min_m, (place.position_world_m - from_m).norm());
+        for (const Vertex& place : places) min_m = std::min(min_m, (place.position_world_m - from_m).norm());
         if (!nearest) continue;
         ++found;
         ASSERT_NEAR(nearest->distance_m, min_m, 1e-5 * scale) << count << " records at scale " << scale;
@@ -55,10 +55,10 @@ TEST(TailRecords, TheNearestIsThatOfASearchThroughAll) {
 TEST(TailRecords, ThoseBesideEachOtherAreSoMutuallyAndLieAlikeInOnePlane) {
   std::mt19937_64 random(2);
   const double apart_m = 3;
-  std::vector<Place> places = scattered(random, 300, Vec3::Zero(), 1);
+  std::vector<Vertex> places = scattered(random, 300, Vec3::Zero(), 1);
   // A ceiling that looks down, a wall, and a floor above all that.
   for (int i = 0; i < 300; ++i) {
-    Place other = places[static_cast<std::size_t>(i)];
+    Vertex other = places[static_cast<std::size_t>(i)];
     const int kind = i % 3;
     other.position_world_m.z() = kind == 0 ? apart_m : kind == 1 ? 0.5 * other.position_world_m.y() : 2 * apart_m;
     if (kind == 1) other.position_world_m.y() = 0;
@@ -86,7 +86,7 @@ TEST(TailRecords, TakesCoincidentCollinearAndFarPlaces) {
   std::vector<std::uint32_t> beside;
   for (const double offset_m : {0.0, 1e7}) {
     for (const double step_m : {0.0, 1e-9, 1.0}) {
-      std::vector<Place> places;
+      std::vector<Vertex> places;
       for (int i = 0; i < 50; ++i) places.push_back({Vec3(offset_m + step_m * i, offset_m, 0), Vec3::UnitZ(), 0});
       TailRecords records;
       records.append(places, 6);
@@ -108,7 +108,7 @@ TEST(TailRecords, AFewFarOffDoNotMakeOneCellOfARoom) {
   std::mt19937_64 random(4);
   std::uniform_real_distribution<double> unit(-1, 1);
   for (const double far_m : {10.0, 1e3, 1e4}) {
-    std::vector<Place> places = scattered(random, 3000, Vec3::Zero(), 1);
+    std::vector<Vertex> places = scattered(random, 3000, Vec3::Zero(), 1);
     for (int i = 0; i < 30; ++i) places.push_back({far_m * Vec3(unit(random), unit(random), 0), Vec3::UnitZ(), 0});
     TailRecords records;
     records.append(places, 3);
@@ -122,11 +122,11 @@ TEST(TailRecords, AFewFarOffDoNotMakeOneCellOfARoom) {
     }
     EXPECT_LT(all, 8 * 3000u) << far_m;
     EXPECT_GT(all, 1000u) << far_m << ": and they still learn from each other";
-    for (const Place& from : scattered(random, 200, Vec3::Zero(), 0.9)) {
+    for (const Vertex& from : scattered(random, 200, Vec3::Zero(), 0.9)) {
       const auto nearest = records.nearest(from.position_world_m, Vec3::UnitZ());
       ASSERT_TRUE(nearest) << far_m;
       double min_m = HUGE_VAL;
-      for (const Place& place : places)
+      for (const Vertex& place : places)
         min_m = std::min(min_m, (place.position_world_m - from.position_world_m).norm());
       EXPECT_NEAR(nearest->distance_m, min_m, 2e-7 * far_m + 1e-6) << far_m << ": but for rounding to floats";
     }

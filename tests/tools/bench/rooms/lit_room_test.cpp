@@ -50,15 +50,15 @@ TEST_P(LitRooms, AreTheSameForOneSeedAndDifferForTwo) {
 // vertices.
 TEST_P(LitRooms, AreBuiltOfClosedSolids) {
   const Scene scene = GetParam().make(1).scene;
-  using Place = std::array<float, 3>;
-  std::map<std::pair<Place, Place>, int> walked;
+  using Corner = std::array<float, 3>;
+  std::map<std::pair<Corner, Corner>, int> walked;
   const auto place = [&](std::uint32_t v) {
     const Vec3f& p = scene.vertices_m[v];
-    return Place{p.x(), p.y(), p.z()};
+    return Corner{p.x(), p.y(), p.z()};
   };
   for (const auto& t : scene.triangles)
     for (std::size_t k = 0; k < 3; ++k) {
-      const Place a = place(t[k]), b = place(t[(k + 1) % 3]);
+      const Corner a = place(t[k]), b = place(t[(k + 1) % 3]);
       ASSERT_NE(a, b);
       walked[std::minmax(a, b)] += a < b ? 1 : -1;
     }
