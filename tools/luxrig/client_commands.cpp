@@ -9,10 +9,10 @@
 #include "tools/command_line/choice.h"
 #include "tools/command_line/completion.h"
 #include "tools/luxrig/commands.h"
-#include "tools/luxrig/status_fields.h"
-#include "tools/luxrigd/guardian/meeting_place.h"
 #include "tools/process/client.h"
 #include "tools/process/files.h"
+#include "tools/process/meeting_place.h"
+#include "tools/process/status_fields.h"
 #include "tools/terminal/command.h"
 
 namespace luxrig {

@@ -11,8 +11,8 @@
 
 #include "tools/luxrig/commands.h"
 #include "tools/luxrig/monitor_picture.h"
-#include "tools/luxrigd/guardian/meeting_place.h"
 #include "tools/process/client.h"
+#include "tools/process/meeting_place.h"
 #include "tools/terminal/command.h"
 
 namespace luxrig {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/luxrig/status_fields.h"
+#include "tools/process/status_fields.h"
 #include "tools/terminal/table.h"
 
 namespace luxrig {

@@ -4,9 +4,9 @@
 #include <memory>
 
 #include "tools/luxrig/commands.h"
-#include "tools/luxrig/status_fields.h"
-#include "tools/luxrigd/guardian/meeting_place.h"
 #include "tools/process/client.h"
+#include "tools/process/meeting_place.h"
+#include "tools/process/status_fields.h"
 #include "tools/terminal/command.h"
 #include "tools/terminal/table.h"
 

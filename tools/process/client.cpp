@@ -5,8 +5,8 @@
 #include <cstdio>
 
 #include "tools/command_line/completion.h"
-#include "tools/luxrig/status_fields.h"
-#include "tools/luxrigd/guardian/meeting_place.h"
+#include "tools/process/meeting_place.h"
+#include "tools/process/status_fields.h"
 #include "tools/terminal/command.h"
 
 namespace luxrig {

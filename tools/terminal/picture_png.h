@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/picture/picture.h"
-#include "tools/luxrig/render/exposure.h"
+#include "tools/terminal/exposure.h"
 
 namespace luxrig {
 

@@ -13,8 +13,8 @@
 #include "core/tasks/rig_transport.h"
 #include "core/tasks/scene_builder.h"
 #include "tools/luxrig/render/dark_picture.h"
-#include "tools/luxrig/render/exposure.h"
 #include "tools/luxrig/room_view.h"
+#include "tools/terminal/exposure.h"
 #include "tools/terminal/picture_png.h"
 #include "tools/terminal/png_canvas.h"
 

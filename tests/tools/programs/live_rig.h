@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/tools/programs/process.h"
-#include "tools/luxrigd/guardian/meeting_place.h"
+#include "tools/process/meeting_place.h"
 
 namespace luxrig::testing {
 

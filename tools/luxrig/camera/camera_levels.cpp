@@ -10,8 +10,8 @@
 #include "core/plan/plan.h"
 #include "drivers/camera/file_listing.h"
 #include "tools/luxrig/camera/camera_series.h"
-#include "tools/luxrig/status_fields.h"
-#include "tools/luxrigd/guardian/meeting_place.h"
+#include "tools/process/meeting_place.h"
+#include "tools/process/status_fields.h"
 
 namespace luxrig {
 namespace {

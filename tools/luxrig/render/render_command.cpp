@@ -21,9 +21,9 @@
 #include "tools/command_line/installed.h"
 #include "tools/luxrig/commands.h"
 #include "tools/luxrig/render/dark_picture.h"
-#include "tools/luxrig/render/exposure.h"
 #include "tools/luxrig/room_view.h"
 #include "tools/terminal/command.h"
+#include "tools/terminal/exposure.h"
 #include "tools/terminal/picture_png.h"
 #include "tools/terminal/png_canvas.h"
 

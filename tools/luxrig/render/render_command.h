@@ -9,7 +9,7 @@
 
 #include "core/picture/picture.h"
 #include "core/plan/plan.h"
-#include "tools/luxrig/render/exposure.h"
+#include "tools/terminal/exposure.h"
 
 namespace luxrig {
 

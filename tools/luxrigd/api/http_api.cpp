@@ -8,8 +8,8 @@
 
 #include "tools/http/server.h"
 #include "tools/luxrigd/api/access.h"
-#include "tools/luxrigd/guardian/meeting_place.h"
-#include "tools/luxrigd/state/runtime_folder.h"
+#include "tools/process/meeting_place.h"
+#include "tools/process/runtime_folder.h"
 
 namespace luxrig {
 namespace {

@@ -5,7 +5,7 @@
 #include <charconv>
 #include <functional>
 
-#include "tools/luxrigd/state/runtime_folder.h"
+#include "tools/process/runtime_folder.h"
 
 namespace luxrig {
 

@@ -16,8 +16,8 @@
 
 #include "core/plan/plan.h"
 #include "tests/sanitized.h"
-#include "tools/luxrigd/guardian/meeting_place.h"
-#include "tools/luxrigd/state/runtime_folder.h"
+#include "tools/process/meeting_place.h"
+#include "tools/process/runtime_folder.h"
 
 namespace luxrig {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/luxrigd/state/runtime_folder.h"
+#include "tools/process/runtime_folder.h"
 
 #include <sys/stat.h>
 #include <unistd.h>

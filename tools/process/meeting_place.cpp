@@ -1,4 +1,4 @@
-#include "tools/luxrigd/guardian/meeting_place.h"
+#include "tools/process/meeting_place.h"
 
 #include <fmt/format.h>
 #include <sys/socket.h>
@@ -7,7 +7,7 @@
 #include <chrono>
 #include <fstream>
 
-#include "tools/luxrigd/state/runtime_folder.h"
+#include "tools/process/runtime_folder.h"
 
 namespace luxrig {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/luxrig/render/exposure.h"
+#include "tools/terminal/exposure.h"
 
 #include <algorithm>
 #include <charconv>

@@ -1,4 +1,4 @@
-#include "tools/luxrigd/guardian/meeting_place.h"
+#include "tools/process/meeting_place.h"
 
 #include <gtest/gtest.h>
 #include <sys/socket.h>
