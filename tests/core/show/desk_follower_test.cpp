@@ -11,7 +11,7 @@
 namespace luxrig {
 namespace {
 
-/// One fixture that Luxrig wants at `own`, and a desk.
+/// One fixture that Luxrig drives to `own`, and a desk.
 struct Shared {
   explicit Shared(DeskRules rules, double own_level = 0.2, double fade_s = 4) {
     DeskFollowerSettings settings;
@@ -82,7 +82,7 @@ TEST(DeskFollower, MergesTheBrighterAndGivesAMovementToWhoeverMadeTheLast) {
 
 TEST(DeskFollower, TakesOverFromLuxrigWhileTheDeskIsThereSecondBySecond) {
   Shared shared({DeskMode::takeover, HandBack::fade}, 0.2, 4);
-  EXPECT_TRUE(shared.silent());  // a desk may have the light: nobody knows yet
+  EXPECT_TRUE(shared.silent());  // a desk may have the light: not known yet
   shared.hear(0, kUnknown, 0);
   EXPECT_TRUE(shared.silent());
   shared.hear(1, kPresent, 1.0);
@@ -116,7 +116,7 @@ TEST(DeskFollower, StandsByInSilenceAndTakesTheLightFromTheLastValuesSeen) {
   EXPECT_NEAR(shared.level(12.5), 0.7, 1e-12);
   EXPECT_NEAR(shared.level(14.5), 0.45, 1e-12);
   EXPECT_NEAR(shared.level(16.5), 0.2, 1e-12);
-  // Back: Luxrig goes to the desk's values first, and is silent only when both say the same.
+  // Back: Luxrig goes to the desk's values first, and falls silent only when both are equal.
   shared.hear(20, kPresent, 0.6);
   EXPECT_FALSE(shared.silent());
   EXPECT_NEAR(shared.level(22), 0.4, 1e-12);
@@ -131,7 +131,7 @@ TEST(DeskFollower, HandsBackAtOnceWhenTheRuleSaysSo) {
   Shared shared({DeskMode::standby, HandBack::at_once});
   shared.hear(0, kAbsent, 0);
   EXPECT_FALSE(shared.silent());
-  EXPECT_DOUBLE_EQ(shared.level(0), 0);  // nothing was sent until now: from dark, by fade
+  EXPECT_DOUBLE_EQ(shared.level(0), 0);  // nothing sent so far: from dark, by fade
   EXPECT_DOUBLE_EQ(shared.level(2), 0.1);
   EXPECT_DOUBLE_EQ(shared.level(4), 0.2);
   shared.hear(5, kPresent, 0.9);
@@ -141,9 +141,9 @@ TEST(DeskFollower, HandsBackAtOnceWhenTheRuleSaysSo) {
 
 TEST(DeskFollower, HandsBackOnlyWhenAskedWhenTheRuleSaysSo) {
   Shared shared({DeskMode::takeover, HandBack::when_asked}, 0.2, 4);
-  shared.ask(0);  // nobody is there
+  shared.ask(0);  // no desk there
   shared.hear(1, kPresent, 0.8);
-  EXPECT_EQ(shared.follower->phase(), DeskPhase::following);  // it had the light before Luxrig came
+  EXPECT_EQ(shared.follower->phase(), DeskPhase::following);  // the desk had the light before Luxrig started
   shared.hear(5, kAbsent, 0.8);
   shared.hear(20, kPresent, 1.0);
   EXPECT_EQ(shared.follower->phase(), DeskPhase::waiting);
@@ -205,7 +205,7 @@ TEST(OutputProgram, LetsLimitsForAnyLevelsGoByFadeOnceNoDeskHasASay) {
   shared.program.max_lx = shared.program.any_max_lx = Eigen::VectorXd::Constant(1, 50);
   shared.program.limits_released = from_seconds(2);
   shared.hear(0, kPresent, 1.0);
-  EXPECT_NEAR(shared.level(1), 0.5, 1e-9);  // whatever the desk asks
+  EXPECT_NEAR(shared.level(1), 0.5, 1e-9);  // whatever the desk asks for
   shared.hear(10, kAbsent, 1.0);
   double last = shared.level(10);
   for (int i = 0; i <= 500; ++i) {

@@ -1,4 +1,4 @@
-/// Possible positions of a head: a head of the stated speed and delay is never outside them.
+/// Possible positions of a head: a head with the stated speed and delay is never outside them.
 #include "core/show/head_whereabouts.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ TEST(HeadWhereabouts, IsAnywhereAtFirstAndThereWhenItMustHaveArrived) {
   EXPECT_EQ(where.box().least.pan_rad, -4);
   EXPECT_EQ(where.box().most.tilt_rad, 2);
   const Joints told{1, 0.5, 0};
-  // The longest way: 5 rad of pan at 2 rad/s, 2.5 rad of tilt at 1 rad/s, and half a second.
+  // The longest move: 5 rad of pan at 2 rad/s, 2.5 rad of tilt at 1 rad/s, plus half a second.
   double arrived_s = -1;
   for (int i = 0; i <= 400 && arrived_s < 0; ++i) {
     where.step(at(0.02 * i), JointBox::at(told), true);
@@ -62,7 +62,7 @@ TEST(HeadWhereabouts, HeadsOfEverySpeedAndDelayAreWithin) {
         obeys = run % 3 != 0 || random.below(3) != 0;
       }
       if (obeys) told.push_back({now_s, wanted});
-      // The head obeys the command of its delay ago, each joint at its own speed or faster.
+      // The head obeys the command sent one delay ago, each joint at its own speed or faster.
       while (told.size() > 1 && told[1].first <= now_s - delay_s) told.pop_front();
       if (!told.empty() && told.front().first <= now_s - delay_s) {
         const auto go = [](double from, double to, double way) { return from + std::clamp(to - from, -way, way); };
@@ -108,7 +108,7 @@ TEST(HeadWhereabouts, AxesAreOnTheLineUntilTheyHaveArrived) {
   EXPECT_EQ(where.box(), JointBox::at({}));
   run(seconds / 2 + 0.6, to);
   EXPECT_EQ(where.box(), JointBox::at(to));
-  // With a new command on the way, it may be anywhere between.
+  // With a new command under way, the head may be anywhere between.
   run(0.3, {0, 0, 0});
   run(0.04, {0, 1, 0});
   EXPECT_EQ(where.box(), (JointBox{{0, 0, 0}, {2, 1, 0}}));

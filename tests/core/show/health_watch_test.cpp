@@ -37,7 +37,7 @@ void hear_both(HealthWatch& watch, double at_s) {
   watch.heard(1, at(at_s));
 }
 
-/// As the show does, ten times a second.
+/// Like the show, ten times a second.
 void step_until(HealthWatch& watch, double from_s, double to_s) {
   const int steps = static_cast<int>((to_s - from_s) * 10 + 0.5);
   for (int i = 1; i <= steps; ++i) watch.step(at(from_s + 0.1 * i));
@@ -303,7 +303,7 @@ TEST(HealthWatch, OurOwnLatenessIsNoSilenceOfAMeter) {
   HealthWatch watch(small_rig());
   hear_both(watch, 10);
   watch.step(at(10));
-  watch.step(at(13));  // the machine was busy: nobody looked for three seconds
+  watch.step(at(13));  // the machine was busy: no step for three seconds
   EXPECT_FALSE(watch.any_meter_lost());
   step_until(watch, 13, 14);
   watch.heard(0, at(14));

@@ -82,13 +82,13 @@ TEST(Identify, ALampBlinksByHalfSecondsAndIsThenAsItWas) {
     EXPECT_NE(small.status().detail.find("left shows which one it is"), std::string::npos) << small.status().detail;
     for (std::size_t f = 1; f < 4; ++f) EXPECT_EQ(small.levels()[f], before[f]) << f;
   }
-  EXPECT_TRUE(small.status().desks.empty());  // no desk that a person knows of
+  EXPECT_TRUE(small.status().desks.empty());
   EXPECT_TRUE(small.status().alarms.empty());
   small.run(0.4);
   ASSERT_NEAR(small.now_s, start_s + 3.65, 1e-6);
   EXPECT_EQ(small.levels(), before);
   EXPECT_FALSE(small.status().fixtures[0].identified);
-  // Readings taken while it blinked taught nothing. It goes on measuring.
+  // Readings taken during the blinking teach nothing. Measuring continues.
   small.run(10);
   EXPECT_EQ(small.status().phase, Phase::holding);
   for (std::size_t f = 0; f < 4; ++f) EXPECT_NEAR(small.levels()[f], before[f], 0.01) << f;
@@ -196,7 +196,7 @@ TEST(Identify, IsRefusedWhereItWouldMeanNothing) {
   EXPECT_FALSE(small.show->identify(at(1), 0, from_seconds(1)));
   small.show->blackout(at(2), false);
   ASSERT_TRUE(small.show->identify(at(2), 0, from_seconds(9)));
-  small.show->blackout(at(3), true);  // wins
+  small.show->blackout(at(3), true);  // blackout wins
   small.now_s = 3.2;
   small.show->step(at(3.2));
   EXPECT_EQ(small.levels(), std::vector<double>(4, 0.0));

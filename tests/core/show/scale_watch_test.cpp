@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kMeters = 5;
 
-/// Five meters, each below a lamp of its own that gives it 100 lx; what they read is what the test says.
+/// Five meters, each below its own lamp that gives it 100 lx. The test sets their readings.
 class ScaleWatchTest : public ::testing::Test {
  protected:
   static Rig rig_of_five() {
@@ -29,7 +29,7 @@ class ScaleWatchTest : public ::testing::Test {
     return model;
   }
 
-  /// One sample a second: each meter reads this share of what the model states; 0: it says nothing.
+  /// One sample a second: each meter reads this share of the model's value. 0 = no reading.
   void read(const std::vector<double>& shares, int samples = 5) {
     for (int sample = 0; sample < samples; ++sample) {
       now += std::chrono::seconds(1);

@@ -1,4 +1,4 @@
-// Levels set by a person while the show runs stay, within limits, and the rest is solved around them.
+// Levels set by hand during the show stay, within limits. The rest is solved around them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -70,7 +70,7 @@ struct HandShow {
       show->step(now());
     }
   }
-  /// As a plan that was solved for these levels, some of which a person has changed.
+  /// Like a plan solved for these levels, some of which were then changed by hand.
   [[nodiscard]] Look look(std::vector<std::optional<double>> goals,
                           std::vector<std::optional<double>> solved = {}) const {
     Look look;
@@ -116,7 +116,7 @@ TEST(ByHand, CorrectionsAimAtTheGoalsOfThePlanInForceNotAtTheRigFiles) {
   EXPECT_NEAR(show.lux()[0], 20, 0.6);
   EXPECT_NEAR(show.levels()[1], 0.3, 0.03) << "a point without a goal pulls at nothing";
   EXPECT_FALSE(show.status().points[1].goal_lx);
-  // A plan solved for a lower limit keeps it; the next without one is back at the rig's.
+  // A plan solved for a lower limit keeps it. The next plan without one returns to the rig's limit.
   look = show.look({40, 40});
   look.max_lx = {30, std::nullopt};
   show.show->apply(show.now(), with_levels(look, {0.4, 0.4, 0.0}), show.model);

@@ -11,7 +11,7 @@
 namespace luxrig {
 namespace {
 
-/// Two fixtures, each over one point with a meter, 100 lx per level and 10 lx of the other's.
+/// Two fixtures, each over one point with a meter: 100 lx per level, and 10 lx from the other fixture.
 struct SmallShow {
   Rig rig;
   LightModel model;
@@ -114,7 +114,7 @@ TEST(ShowController, ReducesAPlanBeforeAMeterHasConfirmedThatTheLimitHolds) {
   EXPECT_LE(worst_lx, 50);
 }
 
-// Whatever is applied, and however the corrections go.
+// Whatever is applied, and whatever the corrections.
 TEST(ShowController, KeepsALimitOfPowerInWhatGoesOut) {
   SmallShow small;
   small.rig.luminaires.resize(1);
@@ -292,7 +292,7 @@ TEST(ShowController, NeverJumpsUpNorLeavesItsBoundsWhateverIsFedToIt) {
   }
 }
 
-/// The right fixture is a head: 90°/s, and what it gives depends on where it looks.
+/// The right fixture is a head: 90°/s. Its light on the points depends on its aim.
 struct TurningShow : SmallShow {
   LightModel turned;
   TurningShow() {
@@ -319,7 +319,7 @@ struct TurningShow : SmallShow {
 TEST(ShowController, LightsNothingUntilItsHeadsCanHaveTurned) {
   TurningShow small;
   small.start().apply(small.now(), std::vector<double>{0.3, 0.3});
-  // From either end of 360° to the middle: two seconds, and half a second until it moves.
+  // From either end of 360° to the middle: two seconds, plus half a second until it moves.
   const double applied_s = small.now_s;
   while (small.now_s < applied_s + 2.4) {
     small.run(0.05);
@@ -339,7 +339,7 @@ TEST(ShowController, WaitsForAZoomAsForPanAndTilt) {
   head.joints.beam_rad = 0.3;
   head.zoom_speed_rad_s = 0.1;
   small.start().apply(small.now(), std::vector<double>{0.3, 0.3});
-  // From the wide end, 0.4 rad away: four seconds, and half a second until it moves; its pan takes two.
+  // From the wide end, 0.4 rad away: four seconds, plus half a second until it moves. Its pan takes two.
   const double applied_s = small.now_s;
   while (small.now_s < applied_s + 4.4) {
     small.run(0.05);
@@ -364,7 +364,7 @@ TEST(ShowController, TurnsAHeadInTheDarkAndKeepsTheOthersLit) {
   double turned_s = 0, left = before[0];
   for (int i = 0; i < 100; ++i) {
     small.run(0.05);
-    // It goes to where its limit holds without what the meters have taught, but never by a jump.
+    // The level goes to where its limit holds without the meters' corrections, but never by a jump.
     EXPECT_NEAR(small.levels()[0], left, 0.02) << small.now_s;
     left = small.levels()[0];
     EXPECT_GT(left, 0.1);
@@ -375,14 +375,14 @@ TEST(ShowController, TurnsAHeadInTheDarkAndKeepsTheOthersLit) {
       EXPECT_EQ(small.levels()[1], 0);
       EXPECT_EQ(small.status().points[0].goal_lx, 45);
     }
-    // 1.5 rad at 90°/s, and the half second.
+    // 1.5 rad at 90°/s, plus half a second.
     if (turned && small.now_s < turned_s + 1.4) {
       EXPECT_EQ(small.levels()[1], 0) << small.now_s - turned_s;
     }
     if (small.status().phase == Phase::settling) break;
   }
   ASSERT_TRUE(turned);
-  small.model = small.turned;  // what the room truly gives from now on
+  small.model = small.turned;  // the room's true light from now on
   small.run_until(Phase::holding);
   const ShowStatus status = small.status();
   EXPECT_EQ(status.fixtures[1].joints.pan_rad, 1.5);
@@ -429,7 +429,7 @@ TEST(ShowController, AHeadThatIsToldAnewOnItsWayIsDarkUntilItCanHaveGotThere) {
   small.run_until(Phase::holding);
   small.show->apply(small.now(), small.look(1.5, {0.2, 0.3}), small.turned);
   while (small.show->program().joints[1].pan_rad == 0) small.run(0.05);
-  // It has not begun yet to turn there, and has 3 rad to go, at 90° a second.
+  // It has not begun to turn there, and has 3 rad to go, at 90° a second.
   const double told_s = small.now_s;
   small.show->apply(small.now(), small.look(3, {0.2, 0.3}), small.turned);
   ASSERT_EQ(small.show->program().joints[1].pan_rad, 3);
@@ -441,7 +441,7 @@ TEST(ShowController, AHeadThatIsToldAnewOnItsWayIsDarkUntilItCanHaveGotThere) {
   EXPECT_GT(small.levels()[1], 0);
 }
 
-// Goals alone: the meters' lessons stay, and no head goes dark.
+// Goals alone: the meters' corrections stay, and no head goes dark.
 TEST(ShowController, OtherGoalsKeepWhatTheMetersTaught) {
   TurningShow small;
   small.start().apply(small.now(), std::vector<double>{0.36, 0.36});

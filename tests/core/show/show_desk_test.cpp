@@ -1,4 +1,4 @@
-/// A lighting desk beside the show: limits, meters, messages to a person.
+/// A lighting desk beside the show: limits, meters, messages to the user.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -83,9 +83,9 @@ TEST(ShowDesk, CannotPushALimitedPointAboveItsLimitWhateverItAsks) {
         for (double s = small.now_s; s < small.now_s + 1.5; s += 0.1) {
           std::vector<double> level(2);
           small.show->program().levels_at(at(s), level);
-          // The most that the bounds of the model allow: gain_max, and everywhere off by the open-loop margin.
+          // The maximum that the model's bounds allow: gain_max, and everywhere off by the open-loop margin.
           const double worst_case_lx = (100 * level[0] + 10 * level[1]) * 1.15 / 0.75;
-          // Where a meter has confirmed the model, Luxrig's own light may rest on that.
+          // Where a meter has confirmed the model, Luxrig's own light may rely on it.
           const double known_lx = (100 * 0.9 * level[0] + 10 * 0.95 * level[1]) / (1 - 0.05);
           ASSERT_LE(small.status().desks[0].phase == DeskPhase::own ? known_lx : worst_case_lx, 50 * (1 + 1e-9));
           ASSERT_LE(level[1], 0.8);
@@ -144,7 +144,7 @@ TEST(ShowDesk, FadesFromTheDesksLastLookWithoutAFlash) {
   EXPECT_TRUE(small.status().desks[0].silent);
   small.desk(DeskPresence::absent, 0.9, 0.1);
   std::vector<double> last = {0.9, 0.1};
-  for (int i = 0; i < 40; ++i) {  // before meters are believed again, and correct
+  for (int i = 0; i < 40; ++i) {  // before meters are trusted again, and correct
     small.run(0.05);
     EXPECT_FALSE(small.status().desks[0].silent);
     const std::vector<double> now = small.levels();

@@ -1,4 +1,4 @@
-/// No lit beam meets a keep-out zone, however a desk turns a head, and wherever it may be on its way.
+/// No lit beam meets a keep-out zone, however a desk turns a head, and wherever the head may be on its way.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@
 namespace luxrig {
 namespace {
 
-/// A head 4 m above a stage, with a zone to one side of it, and a lamp that stays. No meters.
+/// A head 4 m above a stage, with a zone to one side of it, and a fixed lamp. No meters.
 Rig stage() {
   Rig rig;
   rig.name = "stage";
@@ -47,7 +47,7 @@ Rig stage() {
 
 constexpr double kTowardsTheZone_rad = -kPi / 2;  // of pan: towards +x
 
-/// The rig with a true head: obeys after a delay, each joint at its own speed, as fast as stated or faster.
+/// The rig with a true head: obeys after a delay, each joint at its own speed, the stated one or faster.
 struct Stage {
   Rig rig;
   KeepOutZones zones;
@@ -71,7 +71,7 @@ struct Stage {
     show.program().joints_at(at(now_s), joints);
     return joints[0];
   }
-  /// What goes out and what the head does, every 5 ms; the show every 20 ms.
+  /// Output and head motion every 5 ms; the show every 20 ms.
   void run(double seconds) {
     for (int i = 0; i < static_cast<int>(std::lround(seconds * 200)); ++i) {
       now_s += 0.005;
@@ -126,7 +126,7 @@ TEST(ShowKeepOut, HoweverADeskTurnsALitHeadNoBeamMeetsTheZone) {
     lit_while_turning_s += small.lit_while_turning_s;
     in_zone_s += small.in_zone_s;
   }
-  // It is not simply dark, and the zone is really crossed.
+  // It is not simply dark, and it does cross the zone.
   EXPECT_GT(lit_s, 300);
   EXPECT_GT(lit_while_turning_s, 50);
   EXPECT_GT(in_zone_s, 20);
@@ -152,7 +152,7 @@ TEST(ShowKeepOut, AHeadIsDarkBeforeItIsLetGoAndLitAgainWhenItIsThrough) {
             0u);
   small.run(0.15);
   EXPECT_EQ(small.asked(), other);
-  // 2.6 rad at 3 rad/s, half a second, and the way back to light.
+  // 2.6 rad at 3 rad/s, plus half a second, plus the fade back to light.
   small.run(1.0);
   EXPECT_EQ(small.level(), 0);
   small.run(1.0);
@@ -207,7 +207,7 @@ TEST(ShowKeepOut, OwnMovesAreDarkAsEverAndTheSafeLookLightsNoZone) {
 TEST(ShowKeepOut, IdentifyBlinksWhereANodWouldReachTheZone) {
   for (const bool near : {false, true}) {
     Rig rig = stage();
-    // The edge of the zone lies some degrees on.
+    // The edge of the zone is some degrees further on.
     rig.fixtures[0].joints = {near ? kTowardsTheZone_rad : kTowardsTheZone_rad + kPi, near ? 0.2 : 0.8, 0};
     Stage small(rig);
     const KeepOutZones zones(rig);

@@ -1,4 +1,4 @@
-/// A show that begins while a lighting desk may have the light: it listens first.
+/// A show that starts while a lighting desk may have the light: it listens first.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,15 +10,15 @@
 namespace luxrig {
 namespace {
 
-/// Two lamps: a desk may have the first; the second is on a bus without one, and its stage comes later.
+/// Two lamps. A desk may have the first. The second is on a bus without a desk, and its stage comes later.
 struct ListeningShow {
   Rig rig;
   std::unique_ptr<ShowController> show;
   double now_s = 0;
   DeskFrame frame;
-  std::vector<double> sent{0, 0};  ///< what a lamp has: what was sent last
-  double largest_step = 0;         ///< of the first, when it was sent before, in 20 ms
-  double first_sent_s = -1;        ///< the first lamp is sent something above 0
+  std::vector<double> sent{0, 0};  ///< last level sent to each lamp
+  double largest_step = 0;         ///< of the first lamp, once it has been sent a level, in 20 ms
+  double first_sent_s = -1;        ///< first time the first lamp is sent a level above 0
 
   explicit ListeningShow(DeskRules rules) {
     rig.name = "small";
@@ -88,7 +88,7 @@ TEST(ShowListening, StagesAndHeadsBeginWhenTheWaitingIsOver) {
   small.show->apply(at(0), std::vector<double>{0.8, 0.6});
   small.run(3);
   small.hear(DeskPresence::absent);
-  // The head's longest way takes half a second, and half a second until it obeys. Then two stages.
+  // The head's longest move takes half a second, after half a second of delay. Then two stages.
   small.run(0.98);
   EXPECT_EQ(small.sent, (std::vector<double>{0, 0}));
   small.run(1.5);
@@ -159,7 +159,7 @@ TEST(ShowListening, LightThatAGuardianSentGoesOnWithoutAPauseAndWhatItWasSilentA
     EXPECT_EQ(small.sent[1], 0.6) << "what is lit does not wait";
     EXPECT_EQ(small.silent(), silent);
     EXPECT_EQ(small.sent[0], silent ? 0.4 : 0.8);
-    // A desk comes: it gets what Luxrig has by fade, and has what nobody else sent.
+    // A desk comes: it gets Luxrig's lights by fade, and has those that no other source sent.
     small.hear(DeskPresence::present, 0.2);
     small.run(0.02);
     EXPECT_NEAR(small.sent[0], silent ? 0.2 : 0.8, 0.01);

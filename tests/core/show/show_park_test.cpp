@@ -1,4 +1,4 @@
-/// Heads that rest: dark first, then turned, and so until the next apply.
+/// Parked heads: dark first, then turned. They stay so until the next apply.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,7 +9,7 @@
 namespace luxrig {
 namespace {
 
-/// Two heads, of which one has a place to rest, and a lamp over a metered point with a goal.
+/// Two heads, one with a parking position, and a lamp over a metered point with a goal.
 struct ParkShow {
   Rig rig;
   LightModel model;
@@ -89,7 +89,7 @@ TEST(ShowPark, GoesDarkThenTurnsAndTheRestGoesOn) {
   }
   EXPECT_GT(turned_at_s, 0);
   EXPECT_TRUE(small.status().resting);
-  // It corrects with what is left, and the one that rests stays dark.
+  // The show corrects with the other lights, and the parked head stays dark.
   small.run(30);
   EXPECT_EQ(small.levels()[0], 0);
   EXPECT_GT(small.levels()[2], before[2]);

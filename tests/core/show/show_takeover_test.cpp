@@ -1,4 +1,4 @@
-/// A controller that takes the light over from another: no lamp jumps, and limits are kept as soon as possible.
+/// A controller takes the light over from another: no lamp jumps, and limits are met as soon as possible.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -123,7 +123,7 @@ TEST(ShowTakeover, AHeadThatMustTurnIsFadedOutFirst) {
 }
 
 TEST(ShowTakeover, ALimitWithoutWhatMetersTaughtIsNoJump) {
-  // 60 · 0.3 + 10 · 0.8 + 50 · 0.5 = 51 lx of the model: meters had taught the dead one that it is less.
+  // 60 · 0.3 + 10 · 0.8 + 50 · 0.5 = 51 lx in the model: meters had taught the dead controller that it is less.
   TakeoverShow small(40);
   small.begin(kLight);
   small.run(0.5);
@@ -136,7 +136,7 @@ TEST(ShowTakeover, ALimitWithoutWhatMetersTaughtIsNoJump) {
     return 60 * level[0] + 10 * level[1] + 50 * level[2];
   };
   EXPECT_LE(lux(), 40 * (1 + 1e-6)) << "by the fade's end the limit holds by what is known";
-  // From then on as ever: no level beyond it, whatever is asked.
+  // From then on as usual: no level beyond it, whatever is asked.
   small.show->apply(at(small.now_s), std::vector<double>{1, 1, 1});
   for (int i = 0; i < 200; ++i) {
     small.run(0.02);
@@ -148,7 +148,7 @@ TEST(ShowTakeover, LampsThatAreOnDoNotComeUpByStages) {
   TakeoverShow small;
   small.rig.startup.stage_s = 2;
   LightInForce light = kLight;
-  light.look.joints[0] = {};  // where the plan wants it
+  light.look.joints[0] = {};  // the pose of the plan
   small.begin(light);
   small.show->apply(at(small.now_s), std::vector<double>{0.3, 0.8, 0.5});
   small.run(1);
@@ -163,7 +163,7 @@ TEST(ShowTakeover, AHeadOnAxesStaysDarkUntilItIsKnownWhereItLooks) {
   EXPECT_EQ(small.levels()[1], 0.8);
   small.last = small.levels();
   small.show->apply(at(small.now_s), std::vector<double>{0.3, 0.8, 0.5});
-  small.run(3);  // its longest way takes 4 s and more
+  small.run(3);  // its longest move takes over 4 s
   EXPECT_EQ(small.levels()[0], 0);
   EXPECT_EQ(small.levels()[1], 0.8) << "the others are held meanwhile";
   small.run(8);

@@ -84,7 +84,7 @@ TEST(StartupStages, StagesFollowOneAnotherByNumber) {
   EXPECT_EQ(small.levels(), (std::vector<double>{0, 1, 0, 0.25}));
   small.run(1.1);
   EXPECT_EQ(small.levels(), (std::vector<double>{0.5, 1, 1, 0.25}));
-  // The next look comes as looks do.
+  // The next look comes in the usual way.
   small.show->apply(at(small.now_s), std::vector<double>(4, 0.2));
   small.run(1);
   EXPECT_EQ(small.levels(), std::vector<double>(4, 0.2));
@@ -151,7 +151,7 @@ TEST(StartupStages, BlackoutAndTheSafeLookNeverWait) {
   EXPECT_EQ(small.levels(), (std::vector<double>{0, 0.8, 0, 0.8}));  // no jump
   small.run(2.1);
   ASSERT_EQ(small.phase(), Phase::safe);
-  for (const double level : small.levels()) EXPECT_NEAR(level, 0.3, 1e-12);  // those that had not begun, too
+  for (const double level : small.levels()) EXPECT_NEAR(level, 0.3, 1e-12);  // including those that had not begun
 }
 
 TEST(StartupStages, WhatWasLostStartsAnewOnlyWhereThatMeansAPowerCut) {
@@ -179,7 +179,7 @@ TEST(StartupStages, WhatWasLostStartsAnewOnlyWhereThatMeansAPowerCut) {
   }
 }
 
-/// A daemon died in the middle of it, and its guardian held what was lit until a controller of ours took over.
+/// A daemon died in the middle of it. Its guardian held the lit lamps until our controller took over.
 TEST(StartupStages, WhatBurnsAlreadyGoesOnAndTheRestComesByStages) {
   for (const bool by_watts : {false, true}) {
     StartingShow small;
@@ -206,7 +206,7 @@ TEST(StartupStages, WhatBurnsAlreadyGoesOnAndTheRestComesByStages) {
       last = level;
     }
     EXPECT_EQ(last, wanted);
-    // A stage's time after what burns went on; 0.6 · 400 W at 100 W/s are done by then. c is behind a's 100 W.
+    // One stage time after the burning lamps went on. 0.6 · 400 W at 100 W/s are done by then; c waits for a's 100 W.
     EXPECT_NEAR(begun[0], 3, 0.05);
     EXPECT_NEAR(begun[2], by_watts ? 4 : 3, 0.05);
   }
@@ -221,7 +221,7 @@ TEST(StartupStages, AHeadThatParksBeforeItsTurnIsNeverLit) {
     small.rig.fixtures[1].park = Joints{0.8, 0.8};
     small.rig.startup.stage_s = 2;
     small.start();
-    // As a restarted daemon does: the plan, and the parked heads.
+    // Like a restarted daemon: the plan, and the parked heads.
     small.show->apply(at(0), std::vector<double>(4, 1.0));
     if (power_first) small.run(1);
     ASSERT_TRUE(small.show->park(at(small.now_s), {}));
@@ -241,7 +241,7 @@ TEST(StartupStages, AHeadIsDarkUntilItHasFoundItsZero) {
   rig.fixtures[1].reset_s = 20;
   ShowController show(rig, LightModel{});
   show.apply(at(0), std::vector<double>(4, 1.0));
-  // 20 s of finding its zero, then at most 1 rad, and half a second.
+  // 20 s of homing, then at most 1 rad, plus half a second.
   std::vector<double> level(4);
   show.program().levels_at(at(21.4), level);
   EXPECT_EQ(level[1], 0);

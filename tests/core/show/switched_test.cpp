@@ -1,4 +1,4 @@
-// Lamps that are on or off: what goes out, what limits make of it, and whole shows with them.
+// Lamps that are on or off: the output, the effect of limits, and whole shows with them.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -153,8 +153,8 @@ TEST(Switched, APlanSetsItToNothingElseThanOnOrOff) {
   EXPECT_NE(half.error()[0].text().find("\"left\", which is on or off"), std::string::npos) << half.error()[0].text();
 }
 
-/// Six lamps, of which two or three are on or off, over five points, four of them metered and two with a limit. The
-/// truth is off the model as a rig's is: output, meters, single entries.
+/// Six lamps, two or three of them on or off, over five points: four metered, two with a limit. The truth deviates from
+/// the model like a real rig: output, meters, single entries.
 struct Hall {
   Rig rig;
   LightModel model;

@@ -1,4 +1,4 @@
-/// Directions for a lamp in a hand, of the well that the tests of relief tasks share.
+/// Directions for a hand-held lamp, for the well that the tests of relief tasks share.
 
 #include "core/tasks/directions_task.h"
 
@@ -14,7 +14,7 @@ namespace {
 using namespace relief_tasks_fixture;
 
 const char* const kDirections = "[[task]]\nname = \"held\"\nkind = \"directions\"\nobject = \"slab\"\nlights = 2\n";
-/// Half a metre beside the slab, as high as the room: open is only the side of −y.
+/// Half a metre beside the slab, as high as the room: only the −y side is open.
 const char* const kWalls =
     "[[scene.object]]\nname = \"right\"\nbox_m = [0.1, 8, 6]\nposition_m = [0.6, 0, -2]\n"
     "[[scene.object]]\nname = \"left\"\nbox_m = [0.1, 8, 6]\nposition_m = [-0.6, 0, -2]\n"
@@ -34,7 +34,7 @@ TEST_F(DirectionsTask, RakeAcrossTheWellFromApartAndAboveTheSlab) {
   ASSERT_EQ(found->directions.size(), 2);
   for (const PlannedDirection& held : found->directions) {
     EXPECT_NEAR(held.towards_world.norm(), 1, 1e-12);
-    // Its walls are at most as steep as 3.8 deep over 12 wide: a shadow's edge in it needs light that rakes.
+    // Its walls are at most as steep as 3.8 deep over 12 wide: only raking light puts a shadow edge in it.
     EXPECT_GT(held.elevation_rad, 0);
     EXPECT_LT(held.elevation_rad, rad_from_deg(75));
     EXPECT_NEAR(std::sin(held.elevation_rad), held.towards_world.z(), 1e-12);
@@ -58,8 +58,8 @@ TEST_F(DirectionsTask, LeaveOutWhereAWallStandsNearer) {
     EXPECT_LT(std::abs(held.position_world_m.x()), 0.6);
     EXPECT_LT(held.position_world_m.y(), 0.6);
   }
-  // The same walls do not matter to a lamp that is held before them. The slab looks alike from all sides, so which of
-  // its directions win is left to rounding.
+  // The same walls do not matter to a lamp held in front of them. The slab looks alike from all sides, so rounding
+  // decides which of its directions win.
   const std::string near = "distance_m = 0.4\n";
   const Session close = well(std::string(kWellRig) + kDirections + near + kWalls);
   const Session open = well(std::string(kWellRig) + kDirections + near);
@@ -120,7 +120,7 @@ TEST_F(DirectionsTask, SetNothingAndAreInThePlanAsItIsReadAgain) {
     EXPECT_NEAR(is.elevation_rad, was.elevation_rad, 1e-9);
   }
   EXPECT_TRUE(look_for(*read, session.rig, "plan.json")) << "a plan like any other";
-  // A daemon has nothing to do with it.
+  // This needs no daemon.
   const auto hung = solve_what_hangs(session, transport_of(session, direct_light()), direct_light());
   ASSERT_TRUE(hung) << hung.error().detail;
   for (const PlannedTask& one : hung->plan.tasks) EXPECT_NE(one.kind, "directions");

@@ -1,4 +1,4 @@
-// When evaluators may stop: an error that is small enough in lux, and a person who has waited enough.
+// When evaluators may stop: the error is small enough in lux, or the user has waited long enough.
 #include "core/transport/error_floor.h"
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 namespace luxrig {
 namespace {
 
-/// Two rooms of 4 x 4 x 3 m with a door between them that the lamp in the first hardly finds.
+/// Two rooms of 4 x 4 x 3 m joined by a door that few paths from the lamp in the first pass.
 struct TwoRooms {
   TwoRooms() {
     scene.materials.resize(1);
@@ -112,7 +112,7 @@ TEST(Enough, InTheMiddleOfTheWorkGivesAnAnswerThatAgreesWithTheFullOne) {
   const Eigen::VectorXd one = Eigen::VectorXd::Ones(1);
   const Eigen::VectorXd difference = (full->lux(one) - part->lux(one)).cwiseAbs();
   const Eigen::VectorXd error = full->standard_error_lux(one) + part->standard_error_lux(one);
-  // Far below the floor few paths find light at all, and their spread says little of the error.
+  // Far below the floor few paths find light at all, and their spread is a poor estimate of the error.
   const double below_floor_lx = 1e-3 * rooms.options.floor_lx;
   for (Eigen::Index r = 0; r < difference.size(); ++r)
     EXPECT_LT(difference[r], std::max(4 * error[r], below_floor_lx)) << r;

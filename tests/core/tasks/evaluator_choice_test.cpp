@@ -19,7 +19,7 @@ std::vector<Receiver> receivers_in_cube(std::size_t count) {
 
 const std::vector<Emitter> kBulb = {{make_isotropic(1000), {Mat3::Identity(), {0.2, 0.1, 0.3}}}};
 
-/// Name of what is chosen in a cube of one reflectance; its reason goes to the test's log.
+/// Name of the evaluator chosen in a cube of one reflectance. The reason goes to the test's log.
 std::string chosen(double reflectance, std::size_t receivers, double wanted) {
   const RayScene scene(make_cube(2, reflectance));
   EvaluateOptions options;
@@ -68,7 +68,7 @@ TEST(EvaluatorChoice, WhatIsChosenKeepsTheWantedError) {
   }
 }
 
-// Whether reflected light matters is told by few rays, however small the error over all receivers shall be at last.
+// Few rays decide whether reflected light matters, however small the final error over all receivers is to be.
 TEST(EvaluatorChoice, IsMadeByAFewRaysUnderAWantedRmsErrorToo) {
   const RayScene scene(make_cube(2, 0.05));
   EvaluateOptions options;

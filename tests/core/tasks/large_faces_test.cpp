@@ -28,7 +28,7 @@ double distance_m(const Vec3& p, const Vec3& a, const Vec3& b) {
   return (a + at * (b - a) - p).norm();
 }
 
-/// A closed box, each face with corners of its own, as most exporters write them.
+/// A closed box whose faces do not share corners, as most exporters write them.
 PlacedMesh closed_box(const Vec3& half_m, const Mat3& turn, const Vec3& middle_m) {
   PlacedMesh mesh;
   for (int axis = 0; axis < 3; ++axis)
@@ -58,7 +58,7 @@ TEST(LargeFaces, AreCutWithoutGapsOverlapsOrLongEdges) {
     ASSERT_LT(cut.triangles.size(), 20'000u);
     ASSERT_EQ(cut.triangles.size(), cut.material_of_triangle.size());
     EXPECT_NEAR(area_m2(cut), area_m2(whole), 1e-9 * area_m2(whole));
-    // A closed surface has each edge twice, once each way: by the places of its ends, to the last bit.
+    // A closed surface has each edge twice, once in each direction: by the coordinates of its ends, to the last bit.
     std::map<std::array<double, 6>, int> edges;
     for (const auto& triangle : cut.triangles)
       for (std::size_t k = 0; k < 3; ++k) {

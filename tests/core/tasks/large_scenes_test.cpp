@@ -1,4 +1,4 @@
-/// Ground of 20 km, map coordinates, every face twice: a room gets the light it gets on a small plot about the origin.
+/// Ground of 20 km, map coordinates, every face twice: a room gets the same light as on a small plot at the origin.
 
 #include <gtest/gtest.h>
 
@@ -69,7 +69,7 @@ TEST_P(LargeScenes, HaveTheDirectLightOfASmallPlot) {
   EXPECT_LT((there.lux_per_level - here.lux_per_level).cwiseAbs().maxCoeff(), 1e-7 * here.lux_per_level.maxCoeff());
 }
 
-/// Of one seed the paths are the same but where rounding sends one elsewhere: nearer than two seeds are.
+/// With one seed the paths are the same except where rounding diverts one: nearer than with two seeds.
 TEST_P(LargeScenes, HaveTheReflectedLightOfASmallPlot) {
   const Eigen::Vector2d levels(1, 1);
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {

@@ -50,7 +50,7 @@ TEST_F(KeptLight, WhereNothingTurnsNoRayIsCast) {
 }
 
 TEST_F(KeptLight, OnlyTheFixtureThatTurnsIsComputed) {
-  options_.max_error = 0.02;  // what is known is twice as exact
+  options_.max_error = 0.02;  // the known light is twice as exact
   Look turned = hung_;
   turned.joints[1].tilt_rad += 0.4;
   ModelUsed used;

@@ -1,4 +1,4 @@
-// Scenery of MVR files as the scene of a rig: a real one, and small ones made here.
+// Scenery of MVR files as the scene of a rig: a real file, and small ones made here.
 #include "core/rig/mvr/mvr_scenery.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 namespace luxrig {
 namespace {
 
-/// A zip archive of files that are stored as they are.
+/// A zip archive with stored (uncompressed) files.
 std::string zip_of(const std::vector<std::pair<std::string, std::string>>& files) {
   const auto crc_of = [](const std::string& bytes) {
     std::uint32_t crc = 0xffffffff;
@@ -55,7 +55,7 @@ std::string mvr_of(const std::string& auxiliary, const std::string& children,
   return zip_of(files);
 }
 
-/// The rig that an import of these bytes leaves, and its scene.
+/// The rig that an import of these bytes produces, and its scene.
 struct Imported {
   ImportedRig rig;
   Scene scene;
@@ -138,7 +138,7 @@ TEST(MvrScenery, ATheatreByAnotherProgramIsImportedWhole) {
   EXPECT_EQ(got.rig.fixtures, 72u);
   EXPECT_EQ(got.rig.models, 28u) << "72 more are bodies of fixtures";
   EXPECT_GT(got.scene.triangles.size(), 10'000u);
-  // A house of tens of metres, fixtures within it.
+  // A house of tens of metres, with fixtures inside.
   const auto bounds = bounds_of_scene(got.scene);
   EXPECT_GT(bounds.sizes().minCoeff(), 5);
   EXPECT_LT(bounds.sizes().maxCoeff(), 100);

@@ -54,7 +54,7 @@ TEST(ObjectScene, AndTheRestTogetherAreTheWhole) {
     EXPECT_EQ(object->triangles.size() + rest->triangles.size(), scene.triangles.size());
     EXPECT_EQ(rest->material_of_triangle.size(), rest->triangles.size());
     EXPECT_EQ(rest->object_of_triangle.size(), rest->triangles.size());
-    // Each triangle is in one of them, in its order, at its place and of its material.
+    // Each triangle is in one of them, in its order, at its position and with its material.
     std::size_t in_object = 0, in_rest = 0;
     for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
       const bool of_it = scene.object_names[scene.object_of_triangle[t]] == name;

@@ -1,5 +1,5 @@
 #pragma once
-/// Rigs that tests write as text, opened; their light, and what a plan says.
+/// Rigs written as text by tests, opened; their light, and the text of a plan.
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ inline std::string replaced(std::string text, const std::string& from, const std
   return text.replace(at, from.size(), to);
 }
 
-/// folder   where files stand that the rig names
+/// folder   of the files that the rig names
 inline Checked<Session> open_rig(const std::string& text, const std::filesystem::path& folder) {
   auto rig = parse_rig(text, folder / "rig.toml", folder);
   if (!rig) return tl::unexpected(rig.error());
@@ -37,7 +37,7 @@ inline TransportMatrix transport_of(const Session& session, const ComputeOptions
   return std::move(*transport);
 }
 
-/// What a plan says but for the time it took.
+/// The text of a plan without its run time.
 inline std::string text_of(Plan plan) {
   plan.seconds = 0;
   for (PlannedTask& task : plan.tasks) task.seconds = 0;

@@ -11,7 +11,7 @@
 
 namespace luxrig::relief_tasks_fixture {
 
-// A well in a slab, the smallest relief that is one: 0.6 m wide, its rim at 1.08 m.
+// A well in a slab, the smallest relief of that kind: 0.6 m wide, its rim at 1.08 m.
 inline constexpr int kWellSquares = 24;
 
 inline constexpr double kWellStep_m = 0.025, kWellDepth_m = 0.08, kWellRadius_m = 0.12, kRim_m = 1.08;
@@ -77,7 +77,7 @@ name = "beside"
 position_m = [0.35, 0, 1.1]
 )";
 
-/// Contrast in lux: relative to darkness, the faint edge of a beam would do as well.
+/// Contrast in lux: relative to darkness, the faint edge of a beam would count as much.
 inline constexpr const char* kAim =
     "[[task]]\nname = \"relief\"\nkind = \"aim\"\nobject = \"slab\"\ncontrast = \"lux\"\n";
 
@@ -86,7 +86,7 @@ inline constexpr const char* kHighlight =
     "[[task]]\nname = \"detail\"\nkind = \"highlight\"\nluminaire = \"spot\"\nobject = \"slab\"\nlights = 2\n"
     "[mounting]\nsurfaces = [\"ceiling\"]\noffset_m = [0.05, 0.15]\n";
 
-/// "beside" with a limit of its own.
+/// "beside" with its own limit.
 inline std::string with_limit(const std::string& rig, double max_lx) {
   return replaced(rig, "position_m = [0.35, 0, 1.1]\n",
                   "position_m = [0.35, 0, 1.1]\nmax_lx = " + std::to_string(max_lx) + "\n");
@@ -107,7 +107,7 @@ inline Eigen::VectorXd levels_of(const SolvedTasks& solved) {
   return levels;
 }
 
-/// The rig of a solution with its heads where the look has them.
+/// The rig of a solution, its heads posed by the look.
 inline Rig turned(const SolvedTasks& solved) {
   Rig rig = solved.rig;
   for (std::size_t f = 0; f < rig.fixtures.size(); ++f) {
@@ -117,7 +117,7 @@ inline Rig turned(const SolvedTasks& solved) {
   return rig;
 }
 
-/// Has the mesh of the well beside the rig.
+/// Adds the mesh of the well beside the rig.
 class ReliefTask : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -141,7 +141,7 @@ class ReliefTask : public ::testing::Test {
   }
 
   [[nodiscard]] Session well(const std::string& rig) const { return opened_rig(rig, folder_); }
-  /// What is said when it is refused, which it must be.
+  /// The error text of the refusal, which must come.
   [[nodiscard]] std::string refusal_of(const std::string& rig) const {
     const Session session = well(rig);
     const auto solved = solve_tasks(session, transport_of(session, direct_light()), direct_light());
@@ -150,7 +150,7 @@ class ReliefTask : public ::testing::Test {
     EXPECT_EQ(solved.error().cause, Cause::invalid);
     return solved.error().detail;
   }
-  /// In place of the well, what no light could show.
+  /// In place of the well, a shape that no light could show.
   void flatten() const {
     std::ofstream(folder_ / "well.obj") << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n";
   }

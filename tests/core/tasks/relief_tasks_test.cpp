@@ -1,4 +1,4 @@
-// Heads aimed at an object's relief, and lights found for it, checked by light that is worked out anew.
+// Heads aimed at an object's relief, and lights found for it, checked against recomputed light.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -18,7 +18,7 @@ using namespace relief_tasks_fixture;
 
 const Vec3 kWellMiddle(0, 0, kRim_m - kWellDepth_m / 2);
 
-/// A vertex of the well, lifted off it by a hair.
+/// A vertex of the well, lifted slightly off it.
 Point place_in_well(int i, int j) {
   const double x = well_place_m(i), y = well_place_m(j), d = 1e-4;
   Point place;
@@ -32,7 +32,7 @@ Point place_in_well(int i, int j) {
 
 constexpr const char* kDaylight = "[daylight]\nsky = \"uniform\"\nhorizontal_lx = 5000\n";
 
-/// At the rig's points, computed anew.
+/// At the rig's points, recomputed.
 Eigen::VectorXd lux_anew(const Session& session, const Rig& rig, const Eigen::VectorXd& levels,
                          const ComputeOptions& options) {
   const auto transport = compute_transport(rig, *session.rays, options);
@@ -51,7 +51,7 @@ class WellLight {
     lux_ = lux_anew(session, rig, levels, options);
   }
   [[nodiscard]] double max_lx() const { return lux_.maxCoeff(); }
-  /// On the well's floor, one of its recessed places.
+  /// On the well's floor, one of its recessed positions.
   [[nodiscard]] double max_recessed_lx() const {
     double most = 0;
     for (int i = kFirst; i <= kLast; ++i)
@@ -60,7 +60,7 @@ class WellLight {
     return most;
   }
   [[nodiscard]] double mean_lx() const { return lux_.mean(); }
-  /// Of each place to the neighbour it differs most from, as an eye sees it: 0…1, mean.
+  /// Of each position to the neighbour it differs most from, as an eye sees it: 0…1, mean.
   [[nodiscard]] double contrast() const {
     double sum = 0;
     for (int i = kFirst; i <= kLast; ++i)
@@ -80,7 +80,7 @@ class WellLight {
   Eigen::VectorXd lux_;
 };
 
-/// By hand: what a fixture gives a place that nothing hides from it. normal: none for an eye
+/// By hand: a fixture's light at a position with a free line of sight. normal: none for an eye
 double lux_by_hand(const Rig& rig, const Fixture& fixture, double level, const Vec3& place, const Vec3& normal) {
   const Pose lamp = fixture.world_from_lamp();
   const Vec3 way = place - lamp.translation_m, direction = way.normalized();
@@ -89,14 +89,14 @@ double lux_by_hand(const Rig& rig, const Fixture& fixture, double level, const V
          way.squaredNorm();
 }
 
-/// Between the middle of a beam and the way to a place.
+/// Between the axis of a beam and the direction to a position.
 double off_beam_deg(const Fixture& fixture, const Vec3& place) {
   const Pose lamp = fixture.world_from_lamp();
   const Vec3 beam = lamp.direction({0, 0, -1});
   return deg_from_rad(std::acos(std::clamp(beam.dot((place - lamp.translation_m).normalized()), -1.0, 1.0)));
 }
 
-/// Asks for an end as soon as a task says that it does this.
+/// Requests a stop as soon as a task reports this.
 class StopsAt {
  public:
   StopsAt(ComputeOptions& options, const std::string& what) {
@@ -167,7 +167,7 @@ TEST_F(AimTask, KeepsTheLimitOfAPointThatItWouldElseBreak) {
 }
 
 TEST_F(AimTask, KeepsRecessedPlacesWithinTheLimitOfTheObjectWithReflectedLightToo) {
-  // White walls around the slab give back what passes it.
+  // White walls around the slab reflect the light that passes it.
   std::string rig = replaced(kWellRig, "[0.35, 0, 1.1]", "[0, 0, 1.6]");
   int walls = 0;
   for (const auto& [x, y] : {std::pair(-1, 0), std::pair(1, 0), std::pair(0, -1), std::pair(0, 1)})
@@ -189,7 +189,7 @@ TEST_F(AimTask, KeepsRecessedPlacesWithinTheLimitOfTheObjectWithReflectedLightTo
 }
 
 TEST_F(AimTask, GivesAnEyeNoMoreDirectLightThanItMayHave) {
-  // On the way from the left head to the well, a person's eye; nothing that would hide it.
+  // An eye on the line from the left head to the well, with nothing that would hide it.
   const Vec3 eye = (Vec3(-1.2, 0.3, 2.8) + kWellMiddle) / 2;
   const std::string point = fmt::format("[[point]]\nname = \"eye\"\nposition_m = [{}, {}, {}]\nnormal = [0, 0, 1]\n",
                                         eye.x(), eye.y(), eye.z());
@@ -243,7 +243,7 @@ TEST_F(AimTask, StoppedWhileItAimsGivesItsBestSoFarWithinLimitsAndLeavesOutTheTa
 }
 
 TEST_F(AimTask, StoppedBeforeItAimsIsCancelledAndTheNextTryIsAsIfNothingHadBeen) {
-  // A bulb that the aim leaves as it is, so that its light is worked out first.
+  // A bulb that the aim leaves unchanged, so its light is computed first.
   const Session session = well(replaced(kWellRig, "[[point]]\n", R"([[fixture]]
 name = "bulb"
 luminaire = "bulb"

@@ -11,8 +11,8 @@
 namespace luxrig {
 namespace {
 
-/// A room of 6 x 5 x 3 m (z up, its corner in the origin) from an OBJ file, with a plinth in it, three lamps under the
-/// ceiling, three points at table height and a luxmeter: nothing wrong with it.
+/// A room of 6 x 5 x 3 m (z up, its corner at the origin) from an OBJ file, with a plinth in it, three lamps under the
+/// ceiling, three points at table height and a luxmeter: no faults.
 class RigNotes : public testing::Test {
  protected:
   RigNotes() {
@@ -58,7 +58,7 @@ class RigNotes : public testing::Test {
     out << "f 1 2 4 3\nf 5 6 8 7\nf 1 2 6 5\nf 3 4 8 7\nf 1 3 7 5\nf 2 4 8 6\n";
   }
 
-  /// Of 20 km, 1 cm below the room.
+  /// 20 km wide, 1 cm below the room.
   void add_ground() {
     SceneObject ground;
     ground.name = "ground";
@@ -74,7 +74,7 @@ class RigNotes : public testing::Test {
     const RayScene rays(*scene);
     return notes_on(rig, *scene, rays, 2);
   }
-  /// There is one note, at that line, whose text has all of these.
+  /// There is exactly one note, at that line, and its text contains all of these.
   void expect_one(int line, std::initializer_list<const char*> parts) {
     const std::vector<Problem> all = notes();
     std::string text;
@@ -222,7 +222,7 @@ TEST_F(RigNotes, AMeshInMetresReadAsFeetIsNotedWhereAllPointsAreOutsideOfIt) {
   for (Point& point : rig.points) point.position_world_m += Vec3(1, 1, 0);
   expect_one(3, {"is read as 1.83 x 1.52 x 0.91 m in size, with all 4 points and luxmeters outside",
                  "set unit = \"m\" in [scene], which makes it 6.00 x 5.00 x 3.00 m"});
-  // A lone object on which the points are: nothing to note of how it is read.
+  // A lone object with the points on it: no note about how it is read.
   rig.scene.mesh->metres_per_unit = 0.1;
   rig.luxmeters.clear();
   for (Point& point : rig.points) point.position_world_m = Vec3(0.3, 0.25, 0.31);

@@ -32,7 +32,7 @@ TEST(RigTransport, EmittersFollowTheOrderOfTheFixturesAndTheirAim) {
   EXPECT_EQ(emitters[0].intensity, rig.luminaires[1].intensity);
   EXPECT_EQ(emitters[1].intensity, rig.luminaires[0].intensity);
   for (int i = 0; i < 3; ++i) EXPECT_EQ(emitters[i].world_from_lamp.translation_m, Vec3(i, 2, 3));
-  // Tilted by 90° a head looks along +Y of its base (frames.h).
+  // Tilted by 90° a head aims along +Y of its base (frames.h).
   EXPECT_LT((emitters[1].world_from_lamp.direction(-Vec3::UnitZ()) - Vec3::UnitY()).norm(), 1e-12);
   EXPECT_LT((emitters[0].world_from_lamp.direction(-Vec3::UnitZ()) + Vec3::UnitZ()).norm(), 1e-12);
 }
@@ -54,7 +54,7 @@ TEST(RigTransport, ATiltedLampGivesWhatItsFactorsSay) {
   rig.luminaires[1].tilt = rig.luminaires[0].tilt;
   const auto emitters = emitters_of(rig);
   EXPECT_EQ(emitters[0].intensity, rig.luminaires[1].intensity);         // hangs straight
-  EXPECT_NEAR(emitters[1].intensity->flux_lm(), 100 * 0.6 / 0.8, 1e-9);  // looks level
+  EXPECT_NEAR(emitters[1].intensity->flux_lm(), 100 * 0.6 / 0.8, 1e-9);  // aims level
   rig.fixtures[0].joints = {1, rad_from_deg(135)};
   EXPECT_NEAR(emitters_of(rig)[0].intensity->flux_lm(), 200 * 0.5 / 0.8, 1e-9);
 }

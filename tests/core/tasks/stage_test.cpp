@@ -1,4 +1,4 @@
-// Watchers get the progress of a stage; a time limit or a person ends it.
+// Watchers get the progress of a stage. A time limit or the user ends it.
 #include "core/tasks/stage.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace luxrig {
 namespace {
 
-/// Waits for a request of stop, which must come: minutes are for a machine that stands still.
+/// Waits for a stop request, which must come. The limit is minutes only for a stalled machine.
 bool is_requested(const std::stop_token& token) {
   std::promise<void> requested;
   const std::stop_callback on_request(token, [&] { requested.set_value(); });

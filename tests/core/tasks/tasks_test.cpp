@@ -1,4 +1,4 @@
-// What a rig file asks, done as values: a result, the end in the middle, a refusal, and the same for a seed.
+// The tasks of a rig file as values: a result, a stop midway, a refusal, and the same result for the same seed.
 #include <gtest/gtest.h>
 
 #include "core/tasks/solve_tasks.h"
@@ -44,7 +44,7 @@ TEST(ComputeTransport, EndsWhenItsTimeIsUpAndSaysSo) {
   const Session session = opened(room_text());
   ComputeOptions options;
   options.model = Model::gather;
-  options.max_error = 1e-9;  // for ever
+  options.max_error = 1e-9;  // never reached
   options.error_floor_lx = 1e-9;
   options.max_seconds = 0.2;
   ModelUsed used;
