@@ -1,5 +1,5 @@
 #pragma once
-/// A lighting desk on loopback. Its packets are written here from the standards, byte by byte.
+/// A lighting desk on loopback. It builds its packets from the standards, byte by byte.
 
 #include <arpa/inet.h>
 #include <gtest/gtest.h>
@@ -46,7 +46,7 @@ inline DeskPacket sacn_packet(int universe, std::uint8_t sequence, const DeskSlo
   return packet;
 }
 
-/// Art-Net 4, ArtDmx. sequence: 1…255, 0: does not count.
+/// Art-Net 4, ArtDmx. sequence: 1…255; 0 = not counted.
 inline DeskPacket artdmx_packet(int universe, std::uint8_t sequence, const DeskSlots& slots) {
   DeskPacket packet(530, 0);
   const std::string id = "Art-Net";
@@ -62,12 +62,12 @@ inline DeskPacket artdmx_packet(int universe, std::uint8_t sequence, const DeskS
 
 class LoopbackDesk {
  public:
-  /// from: an address of loopback that it sends from. Art-Net tells senders apart by theirs.
+  /// from: the loopback address it sends from. Art-Net tells senders apart by address.
   explicit LoopbackDesk(const char* from = "127.0.0.1") : fd_(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
     sockaddr_in own = loopback(0);
     EXPECT_EQ(::inet_pton(AF_INET, from, &own.sin_addr), 1);
     EXPECT_EQ(::bind(fd_, reinterpret_cast<const sockaddr*>(&own), sizeof(own)), 0);
-    // A port that is free: that of a socket that was bound just now.
+    // A free port: taken from a socket bound just now.
     const int probe = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
     sockaddr_in address = loopback(0);
     socklen_t size = sizeof(address);
@@ -80,7 +80,7 @@ class LoopbackDesk {
   LoopbackDesk(const LoopbackDesk&) = delete;
   LoopbackDesk& operator=(const LoopbackDesk&) = delete;
 
-  /// Where Luxrig shall hear it.
+  /// The port where Luxrig listens for it.
   [[nodiscard]] int port() const { return port_; }
   void send(const DeskPacket& packet) const { send_to(port_, packet); }
   void send_to(int port, const DeskPacket& packet) const {

@@ -1,5 +1,5 @@
 #pragma once
-/// Damaged copies of a good file, for readers that must refuse or read whatever comes.
+/// Damaged copies of a good file, for readers that must refuse or read any input.
 
 #include <algorithm>
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace luxrig {
 
-/// One to eight times: a byte changed, a piece cut out, doubled or moved, a number put in the place of another, or the
-/// end cut off.
+/// Damages the text one to eight times: changes a byte; cuts out, doubles or moves a piece; replaces a number; or cuts
+/// off the end.
 inline std::string mutant_of(std::string text, Random& random) {
   static const char* const kNumbers[] = {"0", "-1", "1e308", "-1e308", "nan", "inf", "99999999999", "1,5", "0x10", ""};
   for (std::size_t times = 1 + random.below(8); times > 0 && !text.empty(); --times) {

@@ -1,5 +1,5 @@
 #pragma once
-/// Random numbers, places and directions for tests.
+/// Random numbers, points and directions for tests.
 
 #include <cmath>
 #include <random>

@@ -2,7 +2,7 @@
 
 namespace luxrig::test {
 
-/// Built with ThreadSanitizer: what counts milliseconds counts wrongly.
+/// Built with ThreadSanitizer: measured milliseconds are wrong.
 #if defined(__SANITIZE_THREAD__)
 inline constexpr bool kThreadSanitized = true;
 #elif defined(__has_feature)
@@ -15,7 +15,7 @@ inline constexpr bool kThreadSanitized = false;
 inline constexpr bool kThreadSanitized = false;
 #endif
 
-/// Built with AddressSanitizer or ThreadSanitizer: many times slower, and memory stays that would be given back.
+/// Built with AddressSanitizer or ThreadSanitizer: many times slower, and freed memory is kept.
 #if defined(__SANITIZE_ADDRESS__)
 inline constexpr bool kSanitized = true;
 #elif defined(__has_feature)

@@ -1,5 +1,5 @@
 #pragma once
-/// Rigs built in code: a test of a driver needs no file.
+/// Rigs built in code, so that a driver test needs no file.
 
 #include <string>
 #include <utility>
@@ -22,7 +22,7 @@ inline Bus bus_of(std::string driver, std::vector<std::pair<std::string, OptionV
   return bus;
 }
 
-/// Something good for an option that has no default.
+/// A valid value for an option that has no default.
 inline std::string required_value(const OptionDoc& doc) {
   return doc.range.find("path") == std::string_view::npos ? "127.0.0.1" : "/dev/luxrig-no-such-port";
 }
@@ -59,8 +59,7 @@ inline Fixture& add_head(Rig& rig, std::string name, int universe, int address) 
   return fixture;
 }
 
-/// Its pan and tilt become drives on the first bus: quick ones, 1000 and -800 counts per degree, home past their
-/// travel.
+/// Turns pan and tilt into drives on the first bus: fast, 1000 and -800 counts per degree, home beyond their travel.
 inline Fixture& add_axes(Fixture& fixture, int pan_node, int tilt_node) {
   fixture.moves = true;
   fixture.pan_speed_rad_s = rad_from_deg(1000);

@@ -1,5 +1,5 @@
-/// The Art-Net receiver: input = packets, each with its sender and how long after the last it comes. Whatever comes,
-/// only polls are answered, with replies that a controller can read; two senders at most count; who is silent is lost.
+/// The Art-Net receiver: input = packets, each with its sender and the delay since the last. It answers only polls,
+/// with replies that a controller can read; at most two senders count; a silent sender is lost.
 #include <algorithm>
 #include <cstdlib>
 #include <vector>
@@ -20,7 +20,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const SocketAddress from{static_cast<std::uint32_t>(rest[0] >> 6), kPort};
     now += std::chrono::milliseconds(50 * (rest[0] & 0x3f));
     const std::size_t length = std::min<std::size_t>(rest[1] << 8 | rest[2], rest.size() - 3);
-    // On the heap, so that a byte read past its end is found.
+    // On the heap, so that a read past its end is found.
     const std::vector<std::uint8_t> packet(rest.begin() + 3, rest.begin() + 3 + static_cast<std::ptrdiff_t>(length));
     rest = rest.subspan(3 + length);
     if (const auto address = decode_address(packet)) {

@@ -1,5 +1,5 @@
-/// The simulated Art-Net node: input = packets, each with its sender and how long after the last it comes. Only polls
-/// are answered, always with whole replies that name its own ports; only its own ports ever show levels.
+/// The simulated Art-Net node: input = packets, each with its sender and the delay since the last. It answers only
+/// polls, always with whole replies that name its own ports; only its own ports ever show levels.
 #include <algorithm>
 #include <cstdlib>
 #include <vector>
@@ -17,7 +17,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::uint32_t from = rest[0] >> 6;
     now += std::chrono::milliseconds(50 * (rest[0] & 0x3f));
     const std::size_t length = std::min<std::size_t>(rest[1] << 8 | rest[2], rest.size() - 3);
-    // On the heap, so that a byte read past its end is found.
+    // On the heap, so that a read past its end is found.
     const std::vector<std::uint8_t> packet(rest.begin() + 3, rest.begin() + 3 + static_cast<std::ptrdiff_t>(length));
     rest = rest.subspan(3 + length);
     const auto replies = node.receive(now, from, packet);

@@ -1,4 +1,4 @@
-/// RDM over Art-Net, both sides: no packet may crash the decoders or the simulated node's RDM half, what is accepted
+/// RDM over Art-Net, both sides: no packet may crash the decoders or the simulated node's RDM half, an accepted packet
 /// encodes to the same fields, and the node answers only about its own ports.
 #include <cstdlib>
 #include <map>
@@ -11,7 +11,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace luxrig;
   using namespace luxrig::artnet;
-  // On the heap, so that a byte read past its end is found.
+  // On the heap, so that a read past its end is found.
   const std::vector<std::uint8_t> packet(data, data + size);
   if (const auto tod = decode_tod_data(packet)) {
     if (tod->port_address < 0 || tod->port_address > kHighestPortAddress || tod->uids.size() > kMaxTodUids) {

@@ -1,6 +1,6 @@
-/// The simulated axis, by whatever a master may send: it must take every frame, send only its own, keep its joint
-/// between the end stops, and know no position after a reset. Input: for each frame the identifier (2 bytes), how many
-/// bytes and how long until the next, the bytes.
+/// The simulated axis with any frames from a master: it must take every frame, send only its own, keep its joint
+/// between the end stops, and know no position after a reset. Input: for each frame the identifier (2 bytes), its size
+/// and the delay until the next, then its bytes.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>

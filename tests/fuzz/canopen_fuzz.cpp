@@ -1,7 +1,7 @@
-/// What nodes say, through every decoder of the canopen driver: SDO answers, heartbeats, emergency messages, PDOs and
-/// error frames, to an axis that has one order. Whatever they say, it must offer no other set-point, go past no limit,
-/// take the torque off no axis that may still be turning, and speak only with its own node. Input: for each frame what
-/// it is, how many bytes, the bytes; a cycle after each.
+/// Any answers of nodes, through every decoder of the canopen driver: SDO answers, heartbeats, emergency messages, PDOs
+/// and error frames, to an axis that has one order. The axis must offer no other set-point, exceed no limit, take the
+/// torque off no axis that may still be turning, and speak only with its own node. Input: for each frame its kind, its
+/// size, its bytes; a cycle after each.
 #include <algorithm>
 #include <cstdlib>
 
@@ -15,7 +15,7 @@ using namespace luxrig;
 constexpr std::uint32_t kIds[] = {0x585, 0x705, 0x185, 0x285, 0x085, 0x586, 0x000, 0x080};
 constexpr cia402::SetPoint kOrder{1234, 567, 890};
 
-std::optional<Time> stopping_since;  ///< no word since has let it turn
+std::optional<Time> stopping_since;  ///< no control word since has let it turn
 
 void check(Time now, const can::CanFrame& frame, const cia402::Axis& axis) {
   const auto word = [&](std::size_t at) {
@@ -29,7 +29,7 @@ void check(Time now, const can::CanFrame& frame, const cia402::Axis& axis) {
     case 0x205: {
       if (frame.size != 6) std::abort();
       const int control = frame.data[0] | frame.data[1] << 8;
-      // In homing the bit starts a search for home; in profile position it offers the target.
+      // In homing, this bit starts the search for home; in profile position, it offers the target.
       if ((control & 0x0F) == 0x0F) stopping_since.reset();
       if ((control & 0x0F) != 0x0F && !stopping_since) stopping_since = now;
       if ((control & 0x0F) != 0x0F && control != 0x0002 &&

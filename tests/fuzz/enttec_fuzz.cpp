@@ -1,5 +1,5 @@
-/// The ENTTEC stream decoder: cut anywhere, a stream gives the same messages, and each, encoded again, is its own
-/// bytes. First byte: how long the pieces are. The session takes it, too, and never says more than a bulk transfer
+/// The ENTTEC stream decoder: a stream cut anywhere gives the same messages, and each message encodes back to its own
+/// bytes. First byte: size of the pieces. The session takes the stream, too, and never sends more than a bulk transfer
 /// holds.
 #include <algorithm>
 #include <cstdlib>

@@ -1,4 +1,4 @@
-/// The simulated ENTTEC widget: what it says are whole messages, and its line shows nothing before a packet.
+/// The simulated ENTTEC widget: it sends only whole messages, and its line shows nothing before a packet.
 #include <algorithm>
 #include <cstdlib>
 

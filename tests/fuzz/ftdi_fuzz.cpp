@@ -1,4 +1,4 @@
-/// What a bulk transfer of an FTDI chip holds, and a string descriptor: never more than came in, and nothing is read
+/// The contents of an FTDI chip's bulk transfer, and a string descriptor: never more than came in, and nothing is read
 /// past its end. First byte: the packet size.
 #include <cstdlib>
 

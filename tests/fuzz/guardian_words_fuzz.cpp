@@ -1,4 +1,4 @@
-// Any text as a --redirect of the guardian: nothing, or a bus and where it goes, which are written and read the same.
+// Any text as a --redirect of the guardian: nothing, or a bus and its target, which are written and read the same.
 #include <cstdint>
 #include <string>
 

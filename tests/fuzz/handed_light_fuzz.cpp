@@ -1,5 +1,5 @@
-// Any bytes as the light that a guardian hands over: never a throw, what is taken is whole, within its bounds and of as
-// many fixtures as the rig has, and is written and read back the same.
+// Any bytes as the light that a guardian hands over: never a throw; accepted light is whole, within its bounds, has as
+// many fixtures as the rig, and is written and read back the same.
 #include <cstdint>
 #include <string>
 
@@ -24,7 +24,7 @@ void check_light(const luxrig::LightInForce& light, std::size_t fixtures) {
   LUXRIG_CHECK(light.silent.empty() || light.silent.size() == fixtures, "{} silent of {}", light.silent.size(),
                fixtures);
   for (const std::uint8_t silent : light.silent) LUXRIG_CHECK(silent <= 1, "silent {}", silent);
-  // The daemon counts both in nanoseconds from now on.
+  // From here on the daemon counts both in nanoseconds.
   for (const double time_s : {light.hold_s, light.fade_s})
     LUXRIG_CHECK(time_s >= 0 && time_s <= 1e6, "a time of {} s", time_s);
 }

@@ -1,5 +1,5 @@
-// Any bytes as what a neighbour sends: never a throw, never more than the limits, and no handler gets what is not for
-// it.
+// Any bytes as a request from the network: never a throw, never more than the limits, and no handler gets a request
+// meant for another.
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -41,7 +41,7 @@ luxrig::HttpHandlers checking_handlers() {
   return handlers;
 }
 
-/// What the server makes of bytes that arrive in parts: the answer's status, 0 when it waits for more.
+/// The server's answer to bytes that arrive in parts: its status; 0 = waits for more.
 int status_of(std::string_view bytes, std::size_t part, const std::vector<luxrig::HttpRoute>& routes) {
   static const luxrig::Access access;
   RequestReader reader;
@@ -74,11 +74,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
   const int whole = status_of(bytes, std::max<std::size_t>(size, 1), routes);
   LUXRIG_CHECK(whole == 0 || (whole >= 200 && whole < 600), "status {}", whole);
-  // What arrives byte by byte is taken or not as at once; of what is wrong, one may still wait for more.
+  // Bytes one by one are accepted exactly when they are at once; of bad requests, one way may still wait for more.
   const int bit_by_bit = status_of(bytes, 1, routes);
   const auto taken = [](int status) { return status >= 200 && status < 300; };
   LUXRIG_CHECK(taken(whole) == taken(bit_by_bit), "{} at once, {} byte by byte", whole, bit_by_bit);
-  // A body alone, past the head.
+  // The body alone, without the head.
   for (const luxrig::HttpRoute& route : routes) {
     luxrig::HttpRequest request;
     request.body = std::string(bytes);

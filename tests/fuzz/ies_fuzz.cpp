@@ -9,7 +9,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace luxrig;
   const std::string_view text(reinterpret_cast<const char*>(data), size);
-  // What stands after the first NUL is the tilt file, should the file ask for one.
+  // Bytes after the first NUL are the tilt file, if the file asks for one.
   const std::size_t nul = text.find('\0');
   const TiltFiles tilt_files = [&](std::string_view) -> std::optional<std::string> {
     if (nul == std::string_view::npos) return std::nullopt;

@@ -1,5 +1,5 @@
-// Any bytes as the light of a rig that was kept, as they are and with the right head and checksum put round them: never
-// a throw, what is taken is finite, of the rig's sizes, and is written and read back the same.
+// Any bytes as the stored light of a rig, as they are and with a valid head and checksum: never a throw; accepted light
+// is finite, of the rig's sizes, and is written and read back the same.
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -53,7 +53,7 @@ bool check_bytes(const std::string& bytes, const luxrig::Rig& rig) {
   return true;
 }
 
-/// The head of a light of these fixtures, the fuzzed words, and the checksum that is right for them.
+/// The head of a light of these fixtures, the fuzzed words, and their correct checksum.
 std::string with_head_and_sum(const std::uint8_t* data, std::size_t size, const luxrig::Rig& rig) {
   // The head is what light_bytes writes: a magic number, the key and the number of fixtures.
   const std::string head = luxrig::light_bytes({std::vector<luxrig::Joints>(rig.fixtures.size()), {}}, kKey);

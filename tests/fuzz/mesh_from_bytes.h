@@ -1,5 +1,5 @@
 #pragma once
-/// For fuzz targets: any bytes as a mesh file in a folder without others, loaded; what comes back keeps its promises.
+/// For fuzz targets: loads any bytes as a mesh file in a folder without others; the result keeps its promises.
 
 #include <unistd.h>
 
@@ -14,7 +14,7 @@
 
 namespace luxrig {
 
-/// One file of this process, rewritten for each input; its folder goes with the process.
+/// One file per process, rewritten for each input; its folder is removed with the process.
 class MeshFromBytes {
  public:
   explicit MeshFromBytes(const std::string& extension)

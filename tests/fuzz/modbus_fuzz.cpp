@@ -1,5 +1,5 @@
 /// Modbus answers two ways: through our decoder, and through a real exchange over libmodbus with a peer on loopback
-/// that answers every request with the fuzzer's bytes. Input: which request, whether the peer mends the transaction
+/// that answers every request with the fuzzer's bytes. Input: which request, whether the peer corrects the transaction
 /// number, then the answer.
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -21,7 +21,7 @@ namespace {
 using namespace luxrig::modbus;
 using Bytes = std::vector<std::uint8_t>;
 
-/// Listens once; each exchange gets a connection of its own.
+/// Listens once; each exchange gets its own connection.
 int listener(int& port) {
   static int kept_port = 0;
   static const int fd = [] {
@@ -66,8 +66,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       if (is_of_bits(request.function) && value > 1) std::abort();
   }
 
-  // The exchange costs a connection: it is for what the decoder believes, and for one in sixteen of what it does not,
-  // of those inputs that libmodbus could take for an answer.
+  // The exchange costs a connection: it is done for accepted answers and for one in sixteen of the rejected ones, among
+  // inputs that libmodbus could take for an answer.
   if (answer.size() < 8 || answer.size() > 600) return 0;
   std::uint32_t sum = 0;
   for (const std::uint8_t byte : answer) sum = sum * 31 + byte;
@@ -90,7 +90,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto values = link.exchange(request, std::chrono::milliseconds(1000));
   thread.join();
   ::close(peer);
-  // An exchange never believes what the decoder, given the same bytes, does not.
+  // An exchange never accepts bytes that the decoder rejects.
   if (values && decoded.verdict != Verdict::good) std::abort();
   if (values && *values != decoded.values) std::abort();
   return 0;

@@ -1,5 +1,5 @@
 #pragma once
-/// For fuzz targets: a request of each function, whose answer is whatever bytes come.
+/// For fuzz targets: one request of each function; the answer is any bytes.
 
 #include <cstdint>
 

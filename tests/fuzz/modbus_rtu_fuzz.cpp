@@ -1,6 +1,6 @@
 /// Any bytes on a serial line, heard by both ends: our search for an answer, and the simulated units. Input: which
-/// request, then what comes. What we find must stand there with a right checksum; a right answer put behind the bytes
-/// must be found unless the bytes hold one themselves; units never answer more than they were asked.
+/// request, then the bytes. A found answer must be in the bytes with a correct checksum; a correct answer appended to
+/// the bytes must be found unless they already hold one; units never answer more than was requested.
 #include <algorithm>
 #include <cstdint>
 
@@ -50,7 +50,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   } else {
     LUXRIG_CHECK(!search.what.empty(), "no word about {} bytes", heard.size());
     const Bytes asked = encode_rtu(request);
-    Bytes right = asked;  // of a single write the echo is the answer
+    Bytes right = asked;  // the answer to a single write is its echo
     if (reads(request.function)) {
       right = {asked[0], asked[1], static_cast<std::uint8_t>(data_bytes(request))};
       right.resize(3 + data_bytes(request), 0x5A);

@@ -1,5 +1,5 @@
 /// The simulated Modbus TCP server: the same bytes in one piece and in pieces must give the same answers; every answer
-/// is a whole frame that answers its request; a spoiled answer always differs from the good one.
+/// is a whole frame that matches its request; a spoiled answer always differs from the good one.
 #include <algorithm>
 #include <cstdlib>
 #include <map>
@@ -12,7 +12,7 @@ namespace {
 using namespace luxrig::sim;
 using Bytes = std::vector<std::uint8_t>;
 
-// Units 0 to 31 have holding registers 0 to 199, which take anything below 0xff00.
+// Units 0 to 31 have holding registers 0 to 199, which accept any value below 0xff00.
 class Units final : public ModbusUnits {
  public:
   bool has(int unit) const override { return unit < 32; }
@@ -84,7 +84,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   ModbusSession in_pieces;
   std::vector<Bytes> pieces;
   for (std::size_t at = 0; at < stream.size(); at += piece) {
-    // On the heap, so that a byte read past its end is found.
+    // On the heap, so that a read past its end is found.
     const auto part = stream.subspan(at, std::min(piece, stream.size() - at));
     for (const ModbusReply& reply : in_pieces.receive(Bytes(part.begin(), part.end()), same_units)) {
       pieces.push_back(reply.bytes);

@@ -1,4 +1,4 @@
-// Any bytes as an Open Fixture Library file: the same as of GDTF descriptions.
+// Any bytes as an Open Fixture Library file: the same properties as for GDTF descriptions.
 #include <cstdint>
 
 #include "core/rig/personality/ofl_file.h"

@@ -1,5 +1,5 @@
 #pragma once
-// What must hold of any personality that was accepted, whatever bytes it was made of.
+// Properties of every accepted personality, whatever bytes it came from.
 #include <cmath>
 #include <set>
 
@@ -31,7 +31,7 @@ inline void check_mode(const Personality& personality, const PersonalityMode& mo
       LUXRIG_CHECK(!function.when || function.when->channel < mode.channels.size(), "{}", function.name);
     }
   }
-  // Also with a zoom that is used: as it is, and with pan and tilt by drives on another bus.
+  // Also with a zoom in use: alone, and with pan and tilt by drives on another bus.
   for (const int i : {0, 1, 2, 3}) {
     const std::vector<std::string> emitters =
         i % 2 == 0 ? std::vector<std::string>{} : std::vector<std::string>{"red", "white"};

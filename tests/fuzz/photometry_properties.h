@@ -1,5 +1,5 @@
 #pragma once
-// What must hold of any photometric file that was accepted.
+// Properties of every accepted photometric file.
 
 #include <cmath>
 #include <cstdlib>
@@ -21,8 +21,8 @@ inline void require_said(const std::vector<Problem>& problems) {
   }
 }
 
-/// Every value finite, not negative and below the maximum; flux positive; dark outside the cone; directions drawn are
-/// unit and have a density that is the distribution's own.
+/// Every value is finite, not negative and below the maximum; the flux is positive; it is dark outside the cone;
+/// sampled directions are unit vectors with the distribution's own density.
 inline void require_sound(const IntensityDistribution& light) {
   require(std::isfinite(light.flux_lm()) && light.flux_lm() > 0);
   const double max_cd = light.max_intensity_cd() * (1 + 1e-9);

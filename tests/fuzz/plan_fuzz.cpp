@@ -1,4 +1,4 @@
-// Any bytes as a plan: never a throw, and what was read is written and read back the same.
+// Any bytes as a plan: never a throw, and an accepted plan is written and read back the same.
 #include <cstdint>
 #include <string>
 

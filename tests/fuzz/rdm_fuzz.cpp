@@ -1,5 +1,5 @@
-/// RDM decoders. The first byte says what the rest is: a packet, an answer to a branch, or parameter data; or packets
-/// to a transaction, each with how long after the last it comes.
+/// RDM decoders. The first byte selects the rest: a packet, an answer to a branch, parameter data, or packets to a
+/// transaction, each with the delay since the last.
 #include <algorithm>
 #include <cstdlib>
 #include <vector>
@@ -44,7 +44,7 @@ void read_values(std::span<const std::uint8_t> bytes) {
 }
 
 // Each packet: delay in units of 50 ms, response type, parameter (two bytes), messages, length, data. It comes from the
-// device that is asked, so that it is taken.
+// device under question, so that it is accepted.
 void talk(std::span<const std::uint8_t> bytes) {
   std::uint8_t number = 0;
   const Uid self{0x7ff0, 1}, device{0x7a70, 2};
@@ -74,7 +74,7 @@ void talk(std::span<const std::uint8_t> bytes) {
     transaction.hear(now, answer);
     step();
   }
-  // Left alone it ends, within its bound and after a few more questions.
+  // Without answers it ends, within its bound and after a few more questions.
   const int before = sent;
   for (int i = 0; i < 250; ++i) {
     now += std::chrono::milliseconds(50);

@@ -1,4 +1,4 @@
-// Runs a fuzz target over every file of the folders given, so that each finding stays found without clang.
+// Runs a fuzz target over every file of the given folders, so that past findings are checked without clang.
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>

@@ -1,5 +1,5 @@
-/// Whatever the sACN decoder accepts must encode to the very same bytes (but for what follows the NUL of the name and
-/// the option bits that mean nothing), and decode to the same values again.
+/// Any packet that the sACN decoder accepts must encode to the very same bytes (except those after the NUL of the name
+/// and option bits without meaning), and decode to the same values again.
 #include <cstdlib>
 
 #include "drivers/dmx/sacn/sacn_codec.h"

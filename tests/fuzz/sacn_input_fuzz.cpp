@@ -1,6 +1,6 @@
-/// The sACN receiver: input = packets, each with how long after the last it comes. Whatever comes, it tracks a bounded
-/// number of sources, joins a bounded number of groups, never shows preview or its own data, and forgets who is silent.
-/// The decoders of synchronisation and discovery accept only what encodes to the same bytes again.
+/// The sACN receiver: input = packets, each with the delay since the last. It tracks a bounded number of sources, joins
+/// a bounded number of groups, never shows preview or its own data, and forgets silent sources. The decoders of
+/// synchronisation and discovery accept only packets that encode to the same bytes again.
 #include <algorithm>
 #include <cstdlib>
 #include <vector>
@@ -12,7 +12,7 @@ namespace {
 using namespace luxrig;
 using namespace luxrig::sacn;
 
-/// But for what follows the NUL of a name, and reserved bytes.
+/// Except the bytes after the NUL of a name, and reserved bytes.
 void check_decoders(std::span<const std::uint8_t> bytes) {
   if (const auto sync = decode_sync(bytes)) {
     const auto again = decode_sync(encode(*sync));
@@ -44,7 +44,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   while (rest.size() >= 3) {
     now += std::chrono::milliseconds(10 * rest[0]);
     const std::size_t length = std::min<std::size_t>(rest[1] << 8 | rest[2], rest.size() - 3);
-    // On the heap, so that a byte read past its end is found.
+    // On the heap, so that a read past its end is found.
     const std::vector<std::uint8_t> packet(rest.begin() + 3, rest.begin() + 3 + static_cast<std::ptrdiff_t>(length));
     rest = rest.subspan(3 + length);
     check_decoders(packet);
@@ -61,7 +61,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     if (receiver.groups().size() > 70) std::abort();
   }
-  // Twice the timeout: the loss of one may wait for that of another.
+  // Twice the timeout: the loss of one source may wait for that of another.
   for (int i = 0; i < 2; ++i) now += kSourceLoss + std::chrono::milliseconds(1);
   for (const int universe : settings.universes) {
     if (receiver.heard(now, universe).presence == DeskPresence::present) std::abort();

@@ -1,5 +1,5 @@
-/// The simulated sACN gateway: input = packets, each with how long after the last it comes. Whatever comes, it shows
-/// levels only for universes that exist, forgets who is silent, and keeps a bounded number of sources.
+/// The simulated sACN gateway: input = packets, each with the delay since the last. It shows levels only for universes
+/// that exist, forgets silent sources, and keeps a bounded number of sources.
 #include <algorithm>
 #include <cstdlib>
 #include <vector>
@@ -16,7 +16,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   while (rest.size() >= 3) {
     now += std::chrono::milliseconds(10 * rest[0]);
     const std::size_t length = std::min<std::size_t>(rest[1] << 8 | rest[2], rest.size() - 3);
-    // On the heap, so that a byte read past its end is found.
+    // On the heap, so that a read past its end is found.
     const std::vector<std::uint8_t> packet(rest.begin() + 3, rest.begin() + 3 + static_cast<std::ptrdiff_t>(length));
     rest = rest.subspan(3 + length);
     const auto verdict = receiver.receive(now, packet);
@@ -35,7 +35,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (receiver.sources(universe, now) > 16) std::abort();
     if (verdict == SacnReceiver::Verdict::accepted) {
       if (receiver.sources(universe, now) == 0) std::abort();
-      // The only source, acting at once, shows what it sent.
+      // The only source, without synchronisation, shows the levels it sent.
       if (receiver.sources(universe, now) == 1 && decoded->sync_universe == 0) {
         const auto levels = receiver.levels(universe, now);
         if (!levels || !std::equal(decoded->slots.begin(), decoded->slots.end(), levels->begin())) std::abort();

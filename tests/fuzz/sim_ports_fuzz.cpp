@@ -1,4 +1,4 @@
-// Any bytes as the ports file of a simulated rig: refused with a remedy, or each bus with somewhere to send to.
+// Any bytes as the ports file of a simulated rig: refused with a remedy, or each bus with a target.
 #include <cstdint>
 #include <string>
 

@@ -1,5 +1,5 @@
-// Any bytes as the state of a daemon: never a throw, a blackout that stands there in so many words is never lost, and
-// what was read is written and read back the same.
+// Any bytes as the state of a daemon: never a throw, a blackout written out in full is never lost, and an accepted
+// state is written and read back the same.
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -24,7 +24,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const luxrig::LegibleState again = luxrig::legible_state_of(written);
   LUXRIG_CHECK(again.damage.empty(), "own text is damaged ({}): {}", again.damage, written);
   LUXRIG_CHECK(luxrig::state_text(again.state) == written, "not the same when written again: {}", written);
-  // Cut anywhere behind the word, as a failing disk does it.
+  // Cut anywhere after the blackout, as by a failing disk.
   if (read.state.blackout) {
     const std::size_t seen = written.find("\"blackout\": true") + sizeof("\"blackout\": true") - 1;
     const std::size_t cut = seen + size % (written.size() - seen + 1);

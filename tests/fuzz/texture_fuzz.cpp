@@ -1,4 +1,4 @@
-// Any bytes as a picture on a mesh: told why it is not read, or means between black and white; never a crash.
+// Any bytes as a picture on a mesh: a reason why it is not read, or means between black and white; never a crash.
 #include "core/check.h"
 #include "core/scene/texture.h"
 

@@ -1,4 +1,4 @@
-/// Answers of a USB/IP server, as the driver's side takes them apart.
+/// Answers of a USB/IP server, decoded by the driver's side.
 #include <algorithm>
 #include <array>
 #include <cstdlib>

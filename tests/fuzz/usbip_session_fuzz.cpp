@@ -1,5 +1,5 @@
-/// The simulated USB widgets behind their USB/IP server: whatever a client says, the session ends or stays within its
-/// bounds, and what it says back are whole answers. First byte: which widget, and how long the pieces are.
+/// The simulated USB widgets behind their USB/IP server: whatever a client sends, the session ends or stays within its
+/// bounds, and sends only whole answers. First byte: which widget, and the size of the pieces.
 #include <algorithm>
 #include <cstdlib>
 

@@ -1,4 +1,4 @@
-/// Cameras are judged rightly: by simulated sensors whose truth is known.
+/// The camera check judges simulated sensors of known truth correctly.
 #include "core/radiometry/camera_check.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 using sim::Encoding;
 using sim::SensorTruth;
 
-/// A scene of two decades of light, soft and still.
+/// A smooth, still scene that spans two decades of light.
 std::vector<double> scene_of(const SensorTruth& truth, double full_after_s = 0.02) {
   std::vector<double> scene;
   for (int y = 0; y < 120; ++y)
@@ -50,7 +50,7 @@ bool says(const CameraCheck& check, const char* text) {
   return false;
 }
 
-/// Root mean square of ln(light by the curve / true light), over light from 1 to 99 % of full, whatever the scale.
+/// Root mean square of ln(light by the curve / true light), over light from 1 to 99 % of full, at any scale.
 double curve_error(const SampleCurve& curve, const SensorTruth& truth) {
   double sum = 0, squares = 0;
   int count = 0;
@@ -97,7 +97,7 @@ TEST(CameraCheck, KnowsEightBitsWithLittleNoise) {
   EXPECT_NEAR(check.as_it_is.dark_share, 0, 0.0005);
   ASSERT_TRUE(check.noise);
   EXPECT_NEAR(check.noise->electrons_per_count, 20000 / 255.0, 0.05 * 20000 / 255.0);
-  truth.full_well_electrons = 4e6;  // noise is never a count
+  truth.full_well_electrons = 4e6;  // noise never reaches one count
   truth.read_noise_electrons = 50;
   EXPECT_FALSE(judged(truth).noise) << "told from rounding";
 }
@@ -106,7 +106,7 @@ struct Coded {
   Encoding encoding;
   double gamma;
   const char* name;
-  double exponent;  ///< 0: the standard's name says enough
+  double exponent;  ///< 0 = the standard's name is enough
 };
 
 class CameraWithACurve : public ::testing::TestWithParam<Coded> {};
@@ -132,7 +132,7 @@ TEST_P(CameraWithACurve, IsToldAsSuchAndItsCurveRecovered) {
     ASSERT_TRUE(check.curve);
     EXPECT_LT(curve_error(*check.curve, truth), full_well > 10000 ? 0.003 : 0.012);
     EXPECT_LT(check.through_curve.rms_residual, 0.002);
-    // With the curve in the rig file the same camera is good.
+    // The same camera is good with the curve in the rig file.
     const auto written = sample_curve_from_csv(to_csv(*check.curve));
     ASSERT_TRUE(written);
     EXPECT_TRUE(judged(truth, *written).good);
@@ -199,7 +199,7 @@ TEST(CameraCheck, SeesFlickerAndIsNotFooledByIt) {
 }
 
 TEST(CameraCheck, SeesAutomaticExposure) {
-  // The camera exposes as it likes: always so that the picture is as bright.
+  // The camera chooses its exposure so that every picture is equally bright.
   const SensorTruth truth;
   ExposureSeries series = series_of(truth);
   for (std::size_t s = 0; s < series.steps.size(); ++s)

@@ -21,7 +21,7 @@ struct Bench {
     EXPECT_NE(found, all.end()) << name;
     return *found;
   }
-  // Last reading of a meter between two instants, looking every 50 ms.
+  // Last reading of a meter between two instants, polled every 50 ms.
   std::optional<LuxReading> last_reading(std::size_t meter, Time from, Time to) {
     std::optional<LuxReading> last;
     for (Time now = from; now <= to; now += 50ms) {
@@ -82,7 +82,7 @@ TEST(InProcessRig, LatencyDelaysOrdersAndReadings) {
   EXPECT_EQ(bench.devices.world().levels()[0], 0);
   bench.devices.advance(at_s(100.11));
   EXPECT_EQ(bench.devices.world().levels()[0], 1);
-  ASSERT_TRUE(bench.devices.read(at_s(100.25))->empty());  // sampled at 0.2 s, on its way until 0.27 s
+  ASSERT_TRUE(bench.devices.read(at_s(100.25))->empty());  // sampled at 0.2 s, in transit until 0.27 s
   const auto readings = bench.devices.read(at_s(100.27));
   ASSERT_FALSE(readings->empty());
   EXPECT_EQ(readings->front().taken, at_s(100.2));
@@ -135,7 +135,7 @@ TEST(InProcessRig, EveryNamedFaultOfAMeterShowsOrIsALie) {
     if (kind == FaultKind::duplicated || kind == FaultKind::reset || kind == FaultKind::unmappable ||
         kind == FaultKind::bus_off || kind == FaultKind::reordered || kind == FaultKind::lamp_failure ||
         kind == FaultKind::pressed)
-      continue;  // of axes, of packets without an answer, of lamps
+      continue;  // faults of axes, of packets without an answer, of lamps
     Bench bench;
     bench.devices.faults().set("meter-1", kind, true,
                                kind == FaultKind::lost   ? std::optional(1.0)

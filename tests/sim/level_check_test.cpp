@@ -1,4 +1,4 @@
-/// Cameras are judged rightly by dimmer levels: by simulated sensors and dimmers whose truth is known.
+/// The camera check by dimmer levels judges simulated sensors and dimmers of known truth correctly.
 #include "core/radiometry/level_check.h"
 
 #include <gtest/gtest.h>
@@ -16,9 +16,9 @@ using sim::SensorTruth;
 
 struct LitScene {
   SensorTruth sensor;
-  double dimmer_exponent = 1;  ///< true curve over the stated, linear one
-  double decades = 2;          ///< of light over the places
-  double other_light = 0;      ///< of the dimmer's, at full
+  double dimmer_exponent = 1;  ///< exponent between the stated curve (linear) and the true one
+  double decades = 2;          ///< range of light over the picture
+  double other_light = 0;      ///< share of the dimmer's light at full
   SampleCurve configured = SampleCurve::linear();
 };
 
@@ -31,7 +31,7 @@ LevelStep step_of(const LitScene& lit, double level, std::uint64_t& number) {
   for (int y = 0; y < 120; ++y)
     for (int x = 0; x < 160; ++x) {
       const double place = std::pow(10.0, -lit.decades * x / 159.0) * (1 + 0.1 * std::sin(0.3 * y));
-      // Other light falls from the other side.
+      // Other light comes from the other side.
       const double other = lit.other_light * std::pow(10.0, -lit.decades * (159 - x) / 159.0);
       scene.push_back(0.9 * lit.sensor.full_well_electrons / kHeldExposure_s *
                       (place * dimmer.settled_level() + other));
@@ -115,13 +115,13 @@ TEST(LevelCheck, TellsACurvedCameraWhateverTheDimmerDoes) {
 TEST(LevelCheck, CannotTellAPowerOfTheCameraFromOneOfTheDimmerAndSaysSo) {
   LitScene camera;
   camera.sensor.encoding = Encoding::power;
-  camera.sensor.gamma = 2;  // samples are the root of light
+  camera.sensor.gamma = 2;  // samples are the square root of light
   LitScene dimmer;
   dimmer.dimmer_exponent = 0.5;
   for (const LitScene& lit : {camera, dimmer}) {
     const LevelCheck check = judged_by_levels(lit);
     EXPECT_FALSE(check.good);
-    // A curve that is steep in the dark makes a level of noise that is cut off at 0.
+    // A curve that is steep in the dark turns noise cut off at 0 into a level.
     EXPECT_NEAR(check.exponent, 0.5, 0.03);
     EXPECT_TRUE(told(check, "levels alone cannot tell apart"));
     EXPECT_TRUE(told(check, "check the camera by exposures"));

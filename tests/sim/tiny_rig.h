@@ -1,6 +1,6 @@
 #pragma once
-// A rig made by hand: two DMX fixtures (one a head) on "dmx", one Modbus dimmer and two meters on "field", one limited
-// point. Its light is a matrix, so no ray is traced.
+// A small rig built in code: two DMX fixtures (one a head) on "dmx", one Modbus dimmer and two meters on "field", one
+// limited point. Its light is a matrix, so no ray is traced.
 
 #include "core/rig/rig.h"
 #include "sim/world/world.h"

@@ -1,4 +1,4 @@
-/// Cameras whose pictures are files, and which device a rig file means.
+/// Cameras whose pictures are files, and which device a rig file refers to.
 #include <gtest/gtest.h>
 
 #include <cstdlib>

@@ -36,7 +36,7 @@ TEST(FrameCodec, ReadsColoursInTheirOrder) {
   EXPECT_FLOAT_EQ(rgb->samples[1], 0.2f);
 }
 
-/// Rec. ITU-R BT.601: 100 % bars in eight bits, Y Cb Cr as its table has them.
+/// Rec. ITU-R BT.601: 100 % bars in eight bits, Y Cb Cr as in its table.
 TEST(FrameCodec, ReadsYuyvByRec601sColourBars) {
   const struct {
     std::uint8_t y, cb, cr;

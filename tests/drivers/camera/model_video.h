@@ -1,6 +1,5 @@
 #pragma once
-/// A video device in the same process, under a stepped clock: waiting moves the clock on. Its sensor is a simulated
-/// one.
+/// A video device in the same process, under a stepped clock: waiting advances the clock. Its sensor is simulated.
 
 #include <algorithm>
 #include <deque>
@@ -10,20 +9,20 @@
 
 namespace luxrig {
 
-/// The device and what is wrong with it; outlives the channel.
+/// The device and its faults; outlives the channel.
 struct ModelVideo {
   bool plugged_in = true, in_use = false;
   std::vector<PixelFormat> formats = {PixelFormat::grey8, PixelFormat::grey12};
   int width_px = 16, height_px = 8;
   Duration clock = std::chrono::seconds(100), frame_interval = std::chrono::milliseconds(33);
-  int pipeline = 2;          ///< frames until a change of the exposure shows
-  bool has_times = true;     ///< frames say when they were taken
-  bool stalls = false;       ///< no frame comes
+  int pipeline = 2;          ///< frames until a change of exposure shows
+  bool has_times = true;     ///< frames carry their capture time
+  bool stalls = false;       ///< no frame arrives
   int damaged = 0, cut = 0;  ///< of the next frames
-  /// An exposure is kept as this much of it: 1 as it should be.
+  /// Factor on an exposure that is set; 1 = kept exactly.
   double keeps_exposure = 1;
-  bool resets_itself = false;  ///< automatic exposure comes back with every frame
-  /// Light of the scene: exposure times this is the sample, of full scale.
+  bool resets_itself = false;  ///< automatic exposure returns with every frame
+  /// Light of the scene: exposure × this = sample, as a share of full scale.
   double full_scale_per_s = 50;
   std::map<VideoControl, std::pair<ControlRange, std::int64_t>> controls = {
       {VideoControl::exposure_auto, {{0, 3, 1, 3}, 3}},   {VideoControl::exposure_auto_priority, {{0, 1, 1, 0}, 1}},
@@ -31,7 +30,7 @@ struct ModelVideo {
       {VideoControl::gamma, {{72, 500, 1, 220}, 220}},    {VideoControl::brightness, {{-64, 64, 1, 0}, 12}},
   };
   int opened = 0, closed = 0;
-  std::vector<std::pair<VideoControl, std::int64_t>> sets;  ///< controls that were set, in their order
+  std::vector<std::pair<VideoControl, std::int64_t>> sets;  ///< controls that were set, in order
 };
 
 class ModelVideoChannel final : public VideoChannel {
@@ -43,7 +42,7 @@ class ModelVideoChannel final : public VideoChannel {
     if (!device_.plugged_in) return fault(Cause::network, "not plugged in");
     open_ = true;
     ++device_.opened;
-    exposures_.assign(static_cast<std::size_t>(device_.pipeline), exposure_now());  // it works on frames already
+    exposures_.assign(static_cast<std::size_t>(device_.pipeline), exposure_now());  // it is already working on frames
     light_ = device_.full_scale_per_s;
     return {};
   }
@@ -74,7 +73,7 @@ class ModelVideoChannel final : public VideoChannel {
   Result<void> set(VideoControl control, std::int64_t value) override {
     if (gone()) return lost();
     device_.sets.emplace_back(control, value);
-    // As webcams do: what is chosen automatically cannot be set.
+    // As in webcams, a control that runs automatically cannot be set.
     if (control == VideoControl::exposure && device_.controls.contains(VideoControl::exposure_auto) &&
         device_.controls.at(VideoControl::exposure_auto).second != 1)
       return fault(Cause::refused, "its exposure is automatic");
@@ -97,7 +96,7 @@ class ModelVideoChannel final : public VideoChannel {
     return {};
   }
 
-  /// As a kernel does: at most four frames wait, older ones stay and newer ones are lost.
+  /// As in a kernel, at most four frames wait: older ones stay, newer ones are lost.
   Result<std::optional<VideoFrame>> take(std::chrono::milliseconds wait) override {
     if (gone()) return tl::unexpected(lost().error());
     const Duration until = device_.clock + wait;
@@ -132,7 +131,7 @@ class ModelVideoChannel final : public VideoChannel {
     return found == device_.controls.end() ? 0.01 : 1e-4 * static_cast<double>(found->second.second);
   }
   VideoFrame frame() {
-    // What the controls were some frames ago, and the light when the frame began.
+    // Uses the controls of some frames ago, and the light at the start of the frame.
     exposures_.push_back(exposure_now());
     while (exposures_.size() > static_cast<std::size_t>(device_.pipeline) + 1) exposures_.pop_front();
     if (device_.resets_itself) device_.controls.at(VideoControl::exposure_auto).second = 3;

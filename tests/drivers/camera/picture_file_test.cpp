@@ -1,4 +1,4 @@
-/// PNG vectors were made by hand (chunks and checksums by Python's struct and zlib), not by libpng.
+/// The PNG vectors were made by hand (chunks and checksums by Python's struct and zlib), not by libpng.
 #include "drivers/camera/picture_file.h"
 
 #include <gtest/gtest.h>
@@ -65,7 +65,7 @@ TEST(PictureFile, ReadsPngOfEveryKind) {
 
 TEST(PictureFile, RefusesDamagedPng) {
   const std::string whole = bytes_of(kGrey16);
-  for (std::size_t length = 0; length < whole.size() - 12; ++length)  // without its end chunk it is still whole
+  for (std::size_t length = 0; length < whole.size() - 12; ++length)  // without its end chunk it is still complete
     EXPECT_FALSE(decode_picture(whole.substr(0, length))) << length;
   std::string damaged = whole;
   damaged[45] = static_cast<char>(damaged[45] ^ 1);

@@ -1,4 +1,4 @@
-/// The driver of video cameras at a model device: settings that are kept or refused, fresh frames, faults.
+/// The driver of video cameras with a model device: settings kept or refused, fresh frames, faults.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -95,7 +95,7 @@ TEST_F(AtAModel, ThrowsAwayFramesFromBeforeTheCall) {
     device.clock += std::chrono::milliseconds(200);
     device.full_scale_per_s = 10;
     (void)camera->take_raw(at_ms(time_ms));
-    device.full_scale_per_s = 90;  // the light changes, then a picture is asked for
+    device.full_scale_per_s = 90;  // the light changes, then a picture is requested
     const auto taken = take();
     ASSERT_TRUE(taken);
     EXPECT_NEAR(taken->light[0].x(), 0.9, 0.001);
@@ -201,14 +201,14 @@ TEST_F(AtAModel, GivesTheCameraBackAsItWasFound) {
   const auto found = device.controls;
   ASSERT_TRUE(take());
   EXPECT_EQ(control(VideoControl::exposure), 100);
-  device.cut = 100;  // and through a failure that closes it
+  device.cut = 100;  // and after a failure that closes it
   EXPECT_FALSE(take());
   camera->deactivate(at_ms(time_ms));
   for (const auto& [which, value] : found) EXPECT_EQ(control(which), value.second) << name_of(which);
   EXPECT_EQ(device.opened, device.closed);
   device.cut = 0;
   ASSERT_TRUE(take());
-  camera.reset();  // ended without goodbye
+  camera.reset();  // ended without a goodbye
   for (const auto& [which, value] : found) EXPECT_EQ(control(which), value.second) << name_of(which);
 }
 

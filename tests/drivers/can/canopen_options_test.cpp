@@ -58,7 +58,7 @@ TEST(CanopenOptions, SayWhatIsWrongAndWhatWouldMendIt) {
   EXPECT_NE(only_problem(rig).find("luxmeter \"meter\" is on the bus"), std::string::npos);
 }
 
-/// Here, as on most build machines, the kernel has no CAN; where it has, the interface is missing.
+/// On most build machines, as here, the kernel has no CAN; elsewhere the interface is missing.
 TEST(CanSocket, SaysWhyItCannotBeOpened) {
   auto channel = can::make_can_socket({"nocan9", {0x705}});
   const auto opened = channel->open();

@@ -1,5 +1,5 @@
-// NMT, heartbeat, emergency messages, PDO set-up and the drive's state machine, against bytes that other programs
-// decode.
+// NMT, heartbeat, emergency messages, PDO set-up and the drive's state machine, against bytes decoded by other
+// programs.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <linux/can.h>
@@ -73,7 +73,7 @@ TEST(BusState, FollowsTheControllersErrorFrames) {
   state.heard(error_of(0x100));
   EXPECT_EQ(state.state(), ControllerState::active);
   state.heard(error_of(0x40));
-  state.heard(can::data_frame(0x705, from_hex("05")));  // heard without a word of the restart
+  state.heard(can::data_frame(0x705, from_hex("05")));  // heard without any sign of the restart
   EXPECT_EQ(state.state(), ControllerState::active);
   state.heard(error_of(0x204, 0x10));
   state.heard(can::data_frame(0x705, from_hex("05")));

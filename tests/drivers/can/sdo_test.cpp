@@ -10,7 +10,7 @@ namespace {
 
 std::vector<std::uint8_t> of(const SdoBytes& bytes) { return {bytes.begin(), bytes.end()}; }
 
-/// Requests and answers as decoders of others read them.
+/// Requests and answers as other decoders read them.
 TEST(SdoCodec, WritesAndReadsAsCiA301HasThem) {
   EXPECT_EQ(of(encode_download({0x6040, 0}, std::vector<std::uint8_t>{7, 0})), from_hex("2B40600007000000"));
   EXPECT_EQ(of(encode_download({0x607A, 0}, std::vector<std::uint8_t>{0x10, 0x27, 0, 0})),
@@ -80,7 +80,7 @@ TEST(SdoClient, WritesOnceAnswered) {
   EXPECT_EQ(sent_by(client, at_ms(0)), "2B40600007000000");
   EXPECT_EQ(sent_by(client, at_ms(499)), "");
   client.receive(answer_of("4B40600007000000"));  // an answer to a read
-  client.receive(answer_of("6041600000000000"));  // of another object
+  client.receive(answer_of("6041600000000000"));  // for another object
   client.receive(answer_of("604060"));
   EXPECT_FALSE(client.take_result());
   client.receive(answer_of("6040600000000000"));

@@ -1,4 +1,4 @@
-/// DMX drivers as the ears of a show: what a desk wants of each fixture, silence, and answers to the desk.
+/// DMX drivers as inputs of a show: the desk's request for each fixture, silence, and answers to the desk.
 #include <gtest/gtest.h>
 
 #include "drivers/dmx/artnet/artnet_codec.h"
@@ -77,7 +77,7 @@ TEST(DeskInput, SaysWhatADeskWantsOfEachFixtureOverSacn) {
     const auto sequence = static_cast<std::uint8_t>(i);
     bench.sacn(101, slots_with({{5, 255}}), sequence);
     bench.sacn(102, slots_with({{10, 128}, {11, 0}, {12, 0}, {13, 0}, {14, 0x80}, {15, 0x00}}), sequence);
-    bench.sacn(1, slots_with({{5, 77}}), sequence);  // Luxrig's own number: not the desk's
+    bench.sacn(1, slots_with({{5, 77}}), sequence);  // Luxrig's own number, not the desk's
     (void)bench.input->listen(at_ms(i * 25.0));
   }
   const auto frames = bench.input->listen(at_ms(2000));
@@ -144,7 +144,7 @@ TEST(DeskInput, ReadsBackThreeBytesAndPartsOfAChannelsValues) {
     const LevelCommand command{0, i / 100.0};
     ASSERT_TRUE(bay.set_levels({&command, 1}));
     DmxSlots slots = bay.universes()[0].slots;
-    slots[503] = 255;  // the falling cell is dark: the other's three bytes count alone
+    slots[503] = 255;  // the falling cell is dark: only the other's three bytes count
     EXPECT_NEAR(bay.decode(0, slots, all)[0].drive, command.drive, 1.0 / 16777215);
     slots[499] = slots[500] = slots[502] = 0;  // below its travel
     EXPECT_DOUBLE_EQ(bay.decode(0, slots, all)[0].drive, 0);
@@ -178,7 +178,7 @@ TEST(DeskInput, ReadsBackADimmerThatBeginsAboveDarkAndAShutterThatShutsAtLevel0)
 TEST(DeskInput, FallsSilentUniverseByUniverseWithThreeGoodbyes) {
   InputBench bench("sacn", {{"input", std::string("standby")}});
   bench.input->set_silent(at_ms(0), 0, true);
-  EXPECT_TRUE(bench.net->sent.empty());  // nothing was sent: there is nothing to end
+  EXPECT_TRUE(bench.net->sent.empty());  // nothing was sent, so there is nothing to end
   ASSERT_TRUE(bench.write(0));
   ASSERT_EQ(bench.net->sent.size(), 1u);
   EXPECT_EQ(sacn::decode(bench.net->sent[0].bytes)->universe, 2);
@@ -225,7 +225,7 @@ TEST(DeskInput, IsFoundByAnArtnetDeskAndFollowsIt) {
   EXPECT_EQ(frames[0].source, "10.0.0.99");
   ASSERT_EQ(frames[0].commands.size(), 1u);
   EXPECT_DOUBLE_EQ(frames[0].commands[0].drive, 0.2);
-  // Its own answer, which a broadcast brings back: it must not become its own subscriber.
+  // A broadcast brings back its own answer: it must not become its own subscriber.
   ASSERT_TRUE(answer);
   bench.artnet(*answer);
   ASSERT_TRUE(bench.write(2023));

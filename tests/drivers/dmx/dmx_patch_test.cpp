@@ -134,7 +134,7 @@ TEST(DmxPatch, RefusesAnAimOutsideTheRange) {
   EXPECT_TRUE(bay.set_aims({&edge, 1}));
 }
 
-/// A head that zooms from 10° to 50° by 16 bits, which sixteenths of make round numbers.
+/// A head that zooms from 10° to 50° in 16 bits; sixteenths give round numbers.
 Fixture& add_zooming_head(Rig& rig, bool inverted) {
   const DmxTravel travel = inverted ? DmxTravel{1, 0} : DmxTravel{};
   Fixture& head = add_dmx(rig, "head", 1, 1,
@@ -165,7 +165,7 @@ TEST(DmxPatch, ZoomsLinearlyInTheBeamAngleEitherWayRound) {
     std::bitset<kDmxSlots> given;
     given.set();
     DmxSlots sent{};
-    sent[3] = 0x80;  // 0x8000: half way, to half a step
+    sent[3] = 0x80;  // 0x8000: half way, to within half a step
     const auto wanted = bay.decode(0, sent, given);
     ASSERT_EQ(wanted.size(), 1u);
     ASSERT_TRUE(wanted[0].joints);

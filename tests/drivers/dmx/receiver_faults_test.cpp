@@ -1,5 +1,5 @@
-/// What receivers show while the network loses, doubles, reorders and spoils packets, from a seed: never a value that
-/// nobody sent, never an older one after a newer, and loss in the protocol's time.
+/// Receivers while the network loses, doubles, reorders and damages packets, from a seed: they never show a value that
+/// was not sent, never an older one after a newer, and report loss in the protocol's time.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,10 +15,10 @@ namespace {
 
 using Packet = std::vector<std::uint8_t>;
 
-/// Packets in, packets out: perhaps none, perhaps two, perhaps later than the ones behind them.
+/// Packets in, packets out: none, one or two, or delayed behind later ones.
 class FaultyNetwork {
  public:
-  /// fixed: bytes whose change a receiver can see. (A change of a level is what UDP's checksum is for.)
+  /// fixed: bytes whose change a receiver can detect. (UDP's checksum detects a change of a level.)
   FaultyNetwork(unsigned seed, std::vector<std::size_t> fixed) : random_(seed), fixed_(std::move(fixed)) {}
 
   std::vector<Packet> through(Packet packet) {
@@ -63,12 +63,12 @@ std::vector<std::size_t> bytes_of(std::initializer_list<std::pair<std::size_t, s
 constexpr int kFrames = 3000;
 constexpr double kFrame_ms = 25;
 
-/// All slots of frame k have the value k % 251, so that a mixture of two frames would show.
+/// All slots of frame k have the value k % 251, so that a mixture of two frames shows.
 std::vector<std::uint8_t> frame_slots(int k) {
   return std::vector<std::uint8_t>(512, static_cast<std::uint8_t>(k % 251));
 }
 
-/// How many frames old the look is; fails when it is no frame's.
+/// Age of the look in frames; fails if it matches no frame.
 int age_of(const HeardUniverse& heard, int k) {
   EXPECT_TRUE(std::all_of(heard.levels.slots.begin(), heard.levels.slots.end(),
                           [&](std::uint8_t slot) { return slot == heard.levels.slots[0]; }));
@@ -82,7 +82,7 @@ void watch(unsigned seed, const Hear& look_after_frame) {
   for (int k = 0; k < kFrames; ++k) {
     const std::optional<int> age = look_after_frame(k);
     if (!age) continue;
-    ASSERT_LE(*age, 30) << "seed " << seed << " frame " << k;  // a gap of so many frames in a row has no chance here
+    ASSERT_LE(*age, 30) << "seed " << seed << " frame " << k;  // a gap of that many frames has no chance here
     ASSERT_GE(k - *age, newest) << "seed " << seed << " frame " << k;
     newest = k - *age;
   }
@@ -118,7 +118,7 @@ TEST(ReceiverFaults, SacnShowsOnlyFramesThatWereSentInTheirOrderAndLosesTheDeskI
 TEST(ReceiverFaults, ArtnetShowsOnlyFramesThatWereSentInTheirOrderAndLosesTheDeskInTime) {
   const SocketAddress desk{0x0A000001, artnet::kPort};
   for (unsigned seed = 1; seed <= 20; ++seed) {
-    // Not the operation, bytes 8 and 9: one of another kind, an ArtSync, would be as good as sent.
+    // Not the operation code, bytes 8 and 9: another one, such as ArtSync, would be a valid packet.
     FaultyNetwork network(seed, bytes_of({{0, 8}, {10, 11}, {16, 18}}));
     artnet::ReceiverSettings settings;
     settings.port_addresses = {1};

@@ -1,5 +1,5 @@
 #pragma once
-/// A datagram channel without a network: records what is sent, says what the test wants said.
+/// A datagram channel without a network: it records what is sent and returns what the test scripts.
 
 #include <deque>
 #include <memory>
@@ -11,7 +11,7 @@
 
 namespace luxrig {
 
-/// What test and channel share; the driver owns the channel and may destroy it.
+/// State shared by test and channel; the driver owns the channel and may destroy it.
 struct DatagramScript {
   struct Sent {
     SocketAddress to;

@@ -72,7 +72,7 @@ TEST(Udp, TellsOfAClosedPortAndStillSendsToOneThatHasReopened) {
   const std::array<std::uint8_t, 1> byte = {7};
   EXPECT_TRUE(channel->send(address, byte));
   const Receiver receiver(address.port);
-  EXPECT_TRUE(channel->send(address, byte));  // although the earlier error is pending
+  EXPECT_TRUE(channel->send(address, byte));  // despite the pending earlier error
   ASSERT_TRUE(readable(receiver.fd()));
   const auto error = channel->take_error();
   ASSERT_TRUE(error);

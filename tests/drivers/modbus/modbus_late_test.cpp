@@ -1,4 +1,4 @@
-// A busy computer must not look like a dead device: what is late is told apart, us from them.
+// A busy computer must not look like a dead device: the driver tells its own lateness from the device's.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -12,7 +12,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// Answers at once, or not at all: no time passes on it but the test's.
+/// Answers at once or not at all; only the test's time passes.
 class SteppedLink final : public modbus::Link {
  public:
   explicit SteppedLink(std::function<bool(int unit)> answers) : answers_(std::move(answers)) {}
@@ -80,7 +80,7 @@ TEST(ModbusLateness, OneAnswerMissedAfterAStallOfOursIsNoFaultOfTheUnitNorOfTheB
   for (int i = 0; i < 20; ++i) bus.write(100, 0.01 * i);
   int missed = 0;
   bus.answers = [&](int unit) { return unit != 2 || missed++ > 0; };
-  bus.write(4000, 0.5);  // nobody ran for four seconds; then one answer comes too late
+  bus.write(4000, 0.5);  // four seconds without a call; then one answer arrives too late
   EXPECT_EQ(missed, 1);
   EXPECT_EQ(bus.faulted(), "");
   for (int i = 0; i < 20; ++i) {

@@ -19,7 +19,7 @@ RtuBytes joined(std::initializer_list<RtuBytes> parts) {
 }
 
 TEST(ModbusRtuFrame, MakesThePublishedFrames) {
-  // Relays: as Waveshare prints them for its Modbus RTU Relay.
+  // Relays: as printed by Waveshare for its Modbus RTU Relay.
   EXPECT_EQ(encode_rtu({1, Function::write_coil, 0, 0, {1}}), from_hex("01 05 0000 ff00 8c3a"));
   EXPECT_EQ(encode_rtu({1, Function::write_coil, 0, 0, {0}}), from_hex("01 05 0000 0000 cdca"));
   EXPECT_EQ(encode_rtu({1, Function::read_coils, 0, 8, {}}), from_hex("01 01 0000 0008 3dcc"));

@@ -183,7 +183,7 @@ TEST(ModbusUnitBackoff, AllSilentUnitsShareATwentiethOfTheTimeAndEachHasItsTurn)
   EXPECT_GE(to_seconds(in_vain), 0.9 * 600 / UnitBackoff::kProbeShare);
   EXPECT_LE(longest, std::chrono::seconds(2) + UnitBackoff::kProbeShare * kDead * kTimeout);
 
-  // Power is back: the others are not kept waiting for their share.
+  // Power is back: the others do not wait for their share.
   now += std::chrono::seconds(5);
   units.answered(3);
   std::set<int> next;
@@ -191,7 +191,7 @@ TEST(ModbusUnitBackoff, AllSilentUnitsShareATwentiethOfTheTimeAndEachHasItsTurn)
   EXPECT_GE(next.size(), static_cast<std::size_t>(kDead)) << "all but those asked within 2 s";
 }
 
-// A blackout is acknowledged by this.
+// This acknowledges a blackout.
 TEST(ModbusWriteSchedule, IsConfirmedWhenEachDeviceHasAcknowledgedWhatIsWantedLast) {
   Rig rig = rig_with(bus_of("modbus_tcp"));
   add_modbus(rig, "near", 1, 2);

@@ -19,7 +19,7 @@ namespace {
 using Bytes = std::vector<std::uint8_t>;
 using std::chrono::milliseconds;
 
-/// What a faultless server answers: writes are echoed, every register pair reads 0x0007A120.
+/// A faultless server: writes are echoed, every register pair reads 0x0007A120.
 Bytes right_answer(const Bytes& request) {
   Bytes answer(request.begin(), request.begin() + 8);
   if (request[7] == 3 || request[7] == 4) {
@@ -165,7 +165,7 @@ TEST(ModbusTcpDriver, ReturnsWithinItsBoundFromEveryKindOfBadPeer) {
        }},
   };
   for (const auto& [name, script] : peers) {
-    // A driver that waits too long does so every time; a machine that is busy for a moment does not.
+    // A driver that waits too long does so every time; a machine is busy only for a moment.
     Duration bound{}, least = Duration::max();
     for (int attempt = 0; attempt < 3 && least >= bound; ++attempt) {
       ModbusBench bench(script);
@@ -298,7 +298,7 @@ TEST(ModbusTcpDriver, NamesAnExceptionAndGoesOnWithTheOthers) {
   add_modbus(bench.rig, "good", 2, 0);
   bench.start();
   auto result = bench.write(0, 0.5);
-  // On a busy machine a call's time may be over before it has asked.
+  // On a busy machine a call's time may run out before it sends its request.
   for (int at_ms = 100; result && at_ms <= 1000; at_ms += 100) result = bench.write(at_ms, 0.5);
   ASSERT_FALSE(result);
   EXPECT_EQ(result.error().cause, Cause::refused);
@@ -358,7 +358,7 @@ TEST(ModbusTcpDriver, StartsFaultedWithoutAPeerAndConnectsByItselfWhenOneAppears
   while (!driver->level_output()->write(now, {&bright, 1}) && now < at_ms(2000)) now += milliseconds(100);
   EXPECT_LE(now, at_ms(1200));
   ASSERT_GE(peer.requests().size(), 1u);
-  EXPECT_EQ(peer.requests()[0], from_hex("0001 0000 0006 01 06 0000 02ee"));  // 750: the current one, first of all
+  EXPECT_EQ(peer.requests()[0], from_hex("0001 0000 0006 01 06 0000 02ee"));  // 750: the current value goes first
   EXPECT_EQ(driver->health(now).at(0).life, Life::active);
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// A TCP server on an ephemeral loopback port that answers Modbus requests as a test scripts it, right or wrong.
+/// A TCP server on an ephemeral loopback port that answers Modbus requests as scripted by a test, right or wrong.
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -24,7 +24,7 @@ namespace luxrig {
 struct ScriptedAnswer {
   std::vector<std::uint8_t> bytes;
   std::chrono::milliseconds before{0};   ///< pause before the first byte
-  std::chrono::milliseconds between{0};  ///< pause between bytes; 0: all at once
+  std::chrono::milliseconds between{0};  ///< pause between bytes; 0 = all at once
   bool close = false;                    ///< afterwards
 };
 
@@ -62,7 +62,7 @@ class ScriptedPeer {
 
   [[nodiscard]] int port() const { return port_; }
   [[nodiscard]] int connections() const { return connections_; }
-  [[nodiscard]] int closed() const { return closed_; }  ///< by itself, after an answer
+  [[nodiscard]] int closed() const { return closed_; }  ///< closed by itself, after an answer
   [[nodiscard]] std::vector<std::vector<std::uint8_t>> requests() const {
     const std::lock_guard lock(mutex_);
     return requests_;
@@ -73,7 +73,7 @@ class ScriptedPeer {
   }
 
  private:
-  /// False when the peer is to stop.
+  /// False when the peer should stop.
   bool pause(std::chrono::milliseconds time) const {
     pollfd wait{stop_, POLLIN, 0};
     return ::poll(&wait, 1, static_cast<int>(time.count())) == 0;
@@ -92,9 +92,9 @@ class ScriptedPeer {
       ::poll(wait, 3, -1);
       if (stopping_) break;
       if (wait[1].revents != 0) {
-        drop();  // one at a time: the newest counts
+        drop();  // one connection at a time: the newest counts
         client = ::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
-        const int at_once = 1;  // a second answer shall not wait for the first's acknowledgement
+        const int at_once = 1;  // a second answer must not wait for the first's acknowledgement
         ::setsockopt(client, IPPROTO_TCP, TCP_NODELAY, &at_once, sizeof(at_once));
         ++connections_;
         continue;

@@ -1,4 +1,4 @@
-/// What is there: a system's folders made up, and Art-Net and sACN over loopback.
+/// Finding devices: made-up system folders, and Art-Net and sACN over loopback.
 #include "drivers/scan/scan.h"
 
 #include <gtest/gtest.h>
@@ -59,10 +59,10 @@ TEST(SystemScan, FindsSerialPortsByTheirLastingNamesAndWhatTheyAre) {
   system.file("dev/ttyUSB0", "");
   system.link("dev/serial/by-id/usb-FTDI_FT232R_USB_UART_A50285BI-if00-port0", "../../ttyUSB0");
   system.file("sys/class/tty/tty1/dev", "4:1");               // a console
-  system.file("sys/devices/platform/serial8250/uevent", "");  // a port of the board with no chip
+  system.file("sys/devices/platform/serial8250/uevent", "");  // an on-board port without a chip
   system.file("sys/class/tty/ttyS3/type", "0");
   system.link("sys/class/tty/ttyS3/device", "../../../devices/platform/serial8250");
-  system.file("sys/class/tty/ttyS0/type", "4");  // one with
+  system.file("sys/class/tty/ttyS0/type", "4");  // one with a chip
   system.link("sys/class/tty/ttyS0/device", "../../../devices/platform/serial8250");
 
   const auto scan = make_serial_scan(system.options());

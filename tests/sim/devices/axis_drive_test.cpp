@@ -1,5 +1,5 @@
-// The simulated axis by itself: its state machine against CiA 402-2, its way against the closed form, its mechanics
-// against what friction, play and end stops must do.
+// The simulated axis alone: its state machine against CiA 402-2, its motion against the closed form, its mechanics
+// against the effects of friction, play and end stops.
 #include "sim/devices/axis_drive.h"
 
 #include <gtest/gtest.h>

@@ -34,7 +34,7 @@ TEST(SimCamera, SeesTheTrueLightOfTheWorld) {
   const auto rendered = render_picture(room.room, emitters_of(room.rig), room.light.levels, view, options);
   ASSERT_TRUE(rendered);
   EXPECT_NEAR(planned_cd_m2, mean_cd_m2(*rendered), 0.02 * planned_cd_m2);
-  // Lamps that give three quarters of what the rig file says are seen so.
+  // Lamps at three quarters of the rig file's output are seen so.
   for (double& level : room.light.levels) level *= 0.75;
   EXPECT_NEAR(mean_cd_m2(room.taken({}, {})), 0.75 * planned_cd_m2, 0.005 * planned_cd_m2);
 }
@@ -50,7 +50,7 @@ TEST(SimCamera, HasTheNoiseOfItsElectrons) {
     Shot second;
     second.number = 1;
     const Picture a = room.taken(sensor, {}), b = room.taken(sensor, second);
-    // The brightest hundredth is exposed to four fifths.
+    // The brightest hundredth is exposed to four fifths of full scale.
     std::vector<float> brightest;
     for (const Vec3f& pixel : a.luminance_cd_m2) brightest.push_back(pixel.maxCoeff());
     std::sort(brightest.begin(), brightest.end());

@@ -122,9 +122,9 @@ TEST(SimulatedLuxmeter, NoiseHasTheStatedSize) {
   }
   EXPECT_NEAR(sum / kSamples, 0, 5 * 0.003 / std::sqrt(kSamples));
   // Standard deviation of z ~ N(0, 1) clamped to ±3, with density φ and upper tail Q:
-  //   ∫₋₃³ z² φ dz + 9 · 2 Q(3) = (1 - 2 Q(3) - 6 φ(3)) + 18 Q(3),  φ(3) = 0.0044318, Q(3) = 0.0013499
-  //   = 0.9707091 + 0.0242981 = 0.9950072 = 0.9975005²
-  // 20000 draws know it to 1/sqrt(2N) = 0.5 %; four of those are allowed.
+  // ∫₋₃³ z² φ dz + 9 · 2 Q(3) = (1 - 2 Q(3) - 6 φ(3)) + 18 Q(3), φ(3) = 0.0044318, Q(3) = 0.0013499
+  // = 0.9707091 + 0.0242981 = 0.9950072 = 0.9975005²
+  // 20000 draws determine it to 1/sqrt(2N) = 0.5 %; four times that is allowed.
   EXPECT_NEAR(std::sqrt(squares / kSamples), 0.003 * 0.9975, 0.003 * 0.02);
 }
 

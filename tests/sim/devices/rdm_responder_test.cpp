@@ -1,4 +1,4 @@
-// The simulated RDM responder against literal bytes, its line, and the node it is behind.
+// The simulated RDM responder against literal bytes, its line, and the node in front of it.
 #include "sim/devices/rdm_responder.h"
 
 #include <gtest/gtest.h>
@@ -142,7 +142,7 @@ TEST(RdmResponder, NeedsTimeForLampHoursAndKeepsThemInItsQueue) {
   EXPECT_EQ(queued.command_class, 0x21);
   EXPECT_EQ(queued.data, (Bytes{0, 0, 3, 0xe8}));
   EXPECT_EQ(asked.get(0x0020, {2}, at_s(0.4)).pid, 0x0030);
-  EXPECT_EQ(asked.get(0x0020, {1}, at_s(0.4)).pid, 0x0401);  // the last one again
+  EXPECT_EQ(asked.get(0x0020, {1}, at_s(0.4)).pid, 0x0401);  // repeats the last one
 }
 
 TEST(RdmResponder, TellsLongAnswersInParts) {

@@ -33,7 +33,7 @@ class Client {
 
   [[nodiscard]] bool connected() const { return connected_; }
   void send(const Bytes& bytes) const { ::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL); }
-  /// What has come, after waiting for something at most that long; empty: nothing. `closed`: the peer hung up.
+  /// Bytes received after waiting at most that long; empty if none. `closed`: the peer hung up.
   Bytes received(int wait_ms, bool* closed = nullptr) const {
     pollfd readable{fd_, POLLIN, 0};
     if (::poll(&readable, 1, wait_ms) <= 0) return {};
@@ -53,7 +53,7 @@ struct Served {
   explicit Served(const std::string& dmx_driver)
       : rig(tiny_rig(dmx_driver)), world(tiny_world(rig)), server(std::move(*RigServer::open(rig, *world, faults))) {}
 
-  // Lets the server take what is on its way to it: waits for it to arrive, then serves at `now`.
+  // Waits until the bytes on their way to the server have arrived, then serves at `now`.
   void serve(Time now) {
     std::vector<pollfd> waiting;
     for (const int descriptor : server->descriptors()) waiting.push_back({descriptor, POLLIN, 0});

@@ -12,8 +12,8 @@ namespace {
 
 using namespace head_light_fixture;
 
-// The figure that head_light.h states. Interpolation blurs the patch that the beam lights: the darker the walls, the
-// more of the indirect light is that patch's own.
+// The error stated in head_light.h. Interpolation blurs the patch lit by the beam: the darker the walls, the larger
+// that patch's share of the indirect light.
 TEST(HeadLight, InBetweenTheIndirectPartIsAsFarOffAsTheHeaderStates) {
   const std::vector<Joints> set = spread_aims(kRange, 32), aims = random_aims(48, 1);
   for (const auto& [reflectance, stated] : {std::pair{0.3, 0.23}, {0.5, 0.17}}) {
@@ -30,7 +30,7 @@ TEST(HeadLight, InBetweenTheIndirectPartIsAsFarOffAsTheHeaderStates) {
       error_lx.col(a) = lux - fresh.lux_per_level.col(a);
     }
     const double rms_lx = std::sqrt(error_lx.squaredNorm() / static_cast<double>(error_lx.size()));
-    // A quarter either way: room for other aims and for the noise of two evaluations.
+    // A quarter either way leaves room for other aims and for the noise of two evaluations.
     EXPECT_NEAR(rms_lx / indirect_lx, stated, 0.25 * stated) << "reflectance " << reflectance;
     EXPECT_LT(std::abs(error_lx.mean()) / indirect_lx, 0.05) << "reflectance " << reflectance;
   }

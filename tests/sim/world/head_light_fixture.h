@@ -17,7 +17,7 @@ inline constexpr double kRoll_rad = 0.3;
 
 inline constexpr std::size_t kFixture = 5;  // any
 
-// A spot of 24° below the ceiling of a cube of 4 m edge of one reflectance; a dozen receivers on floor and walls.
+// A 24° spot below the ceiling of a cube of 4 m edge with one reflectance; a dozen receivers on floor and walls.
 struct Room {
   explicit Room(double reflectance) : rays(make_cube(4, reflectance)) {
     pose = {(Eigen::AngleAxisd(0.4, Vec3::UnitZ()) * Eigen::AngleAxisd(0.2, Vec3::UnitX())).toRotationMatrix(),
@@ -33,7 +33,7 @@ struct Room {
     std::vector<Emitter> emitters;
     for (const Joints& joints : aims) emitters.push_back({spot, world_from_lamp(pose, joints, kRoll_rad)});
     EvaluateOptions options;
-    options.wanted_relative_error = 1e-4;  // max_rays says when to stop
+    options.wanted_relative_error = 1e-4;  // max_rays ends it
     options.max_rays = max_rays;
     auto result = make_path_evaluator(rays)->evaluate(receivers, emitters, options);
     EXPECT_TRUE(result) << (result ? "" : result.error().detail);

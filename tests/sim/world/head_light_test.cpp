@@ -25,7 +25,7 @@ TEST(HeadLight, DirectPartIsThatOfTheDirectEvaluatorAtAnyAim) {
   const double brightest_lx = direct->lux_per_level.maxCoeff();
   ASSERT_GT(brightest_lx, 100);
   for (std::size_t a = 0; a < aims.size(); ++a) {
-    Eigen::VectorXd lux = Eigen::VectorXd::Constant(room.zeros().size(), 77);  // what was there before is overwritten
+    Eigen::VectorXd lux = Eigen::VectorXd::Constant(room.zeros().size(), 77);  // previous contents are overwritten
     light->column(kFixture, aims[a], lux);
     for (Eigen::Index r = 0; r < lux.size(); ++r) {
       const double exact_lx = direct->lux_per_level(r, static_cast<Eigen::Index>(a));
@@ -53,7 +53,7 @@ TEST(HeadLight, DirectPartOfALampWithSizeAndTiltIsThePlannersToo) {
   EXPECT_NE(emitters[0].intensity->flux_lm(), 900) << "the factor counts";
   EvaluateOptions options;
   options.wanted_relative_error = 1e-3;
-  // Without the room: a panel of this size would poke into its ceiling when it turns.
+  // Without the room: a panel of this size would cut into its ceiling when it turns.
   const Scene nothing;
   const RayScene empty(nothing);
   head.sees = seen_shares(empty, room.receivers, emitters[0]);
@@ -147,7 +147,7 @@ TEST(HeadLight, AtAnAimOfItsSetTheIndirectPartIsThatAimsOwn) {
     dark->column(kFixture, set[static_cast<std::size_t>(a)], direct);
     EXPECT_LT((lux - direct - indirect.col(a)).cwiseAbs().maxCoeff(), 1e-9) << a;
   }
-  for (const Joints& joints : random_aims(200, 4)) {  // in between: an average, never outside what is known
+  for (const Joints& joints : random_aims(200, 4)) {  // in between: an average, never outside the known values
     light->column(kFixture, joints, lux);
     dark->column(kFixture, joints, direct);
     EXPECT_GE((lux - direct).minCoeff(), 10 - 1e-9);

@@ -1,5 +1,5 @@
-// The simulated truth and the planner are two worlds with one physics: without deviations they agree, whatever the
-// luminaires are like.
+// The simulated truth and the planner are two worlds with the same physics: without deviations they agree, for any
+// luminaires.
 #include <gtest/gtest.h>
 
 #include "core/scene/ray_scene.h"
@@ -19,7 +19,7 @@ SceneObject slab(const std::string& name, const Vec3& size_m, const Vec3& at_m, 
   return object;
 }
 
-/// Floor and a red wall; a sphere, a tilted lamp that hangs aslant, and a moving panel; under a weak sky.
+/// Floor and a red wall; a sphere, a lamp hung at a tilt, and a moving panel; under a weak sky.
 Rig odd_rig() {
   Rig rig;
   rig.name = "odd";

@@ -12,7 +12,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// A small show: two writes at stated times, read in between, with calls to advance() at the given spacing.
+// A short show: two writes at stated times, reads in between, and calls to advance() at the given spacing.
 std::vector<double> readings_of_show(std::uint64_t seed, Duration spacing) {
   const Rig rig = tiny_rig();
   Deviations deviations;
@@ -70,7 +70,8 @@ TEST(World, DeviationsStayWithinWhatIsStated) {
   EXPECT_LE(max_output, 1.05);
   EXPECT_LT(min_output, 0.81);  // and the whole range is used
   EXPECT_GT(max_output, 1.04);
-  // Standard deviation 0.01 m; clamping at 3 takes 0.25 % off it (see devices_test.cpp); 1500 draws know it to 2 %.
+  // Standard deviation 0.01 m; clamping at 3 σ reduces it by 0.25 % (see devices_test.cpp); 1500 draws determine it to
+  // 2 %.
   for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(std::sqrt(squares[axis] / fixtures), 0.01, 0.0007);
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// A reply of a two-output node at net 1, sub-net 2, as an ArtPollReply dump of the fields that matter.
+/// A reply of a two-output node at net 1, sub-net 2: an ArtPollReply dump with the fields that matter.
 Bytes reply_bytes() {
   Bytes bytes(239, 0);
   const auto put = [&](std::size_t at, const Bytes& part) { std::copy(part.begin(), part.end(), bytes.begin() + at); };

@@ -21,7 +21,7 @@ Datagram reply_from(std::uint32_t ipv4, int port_address) {
   return {{ipv4, kPort}, encode(reply, ipv4)};
 }
 
-// The first packet is sent twice; a change that the rate held back behind it counted as sent: a blackout was
+// The first packet is sent twice. A change held back behind it by the rate limit once counted as sent: a blackout was
 // acknowledged while the lamps were lit.
 TEST(ArtnetController, LevelsAreSentWhenTheirPacketHasGoneOutAndNotBefore) {
   for (const int packets_before : {0, 1, 2, 50}) {

@@ -37,7 +37,7 @@ struct Bench {
     return driver->level_output()->write(at_ms(ms), {&command, 1});
   }
   void hear(const char* ip, const Bytes& bytes) { net->incoming.push_back({{*parse_ipv4(ip), 6454}, bytes}); }
-  /// What was sent since the last call: "poll" or the level of slot 5, with the address.
+  /// Sent since the last call: "poll" or the level of slot 5, with the address.
   std::vector<std::string> sent() {
     std::vector<std::string> all;
     for (const auto& [to, bytes] : net->sent) {
@@ -108,7 +108,7 @@ TEST(ArtnetDriver, SynchronisesNodesByBroadcastAfterEachFrameThatWasSent) {
   ASSERT_TRUE(bench.write(0, 1.0));
   EXPECT_EQ(bench.sent(),
             (Strings{"poll to 255.255.255.255:6454", "255 to 10.0.0.7:6454", "sync to 255.255.255.255:6454"}));
-  ASSERT_TRUE(bench.write(23, 1.0));  // the packet behind the jump
+  ASSERT_TRUE(bench.write(23, 1.0));  // the packet after the jump
   bench.sent();
   ASSERT_TRUE(bench.write(46, 1.0));
   EXPECT_EQ(bench.sent(), Strings{});
@@ -176,7 +176,7 @@ TEST(ArtnetDriver, CountsSequencesFromOneTo255WithoutZero) {
       if (!dmx) continue;
       EXPECT_NE(dmx->sequence, 0);
       if (cycle == 1) {
-        EXPECT_EQ(dmx->sequence, 21);  // past what a node may remember from before a restart
+        EXPECT_EQ(dmx->sequence, 21);  // past any number a node may remember from before a restart
       }
       if (cycle > 1) {
         EXPECT_EQ(dmx->sequence, last % 255 + 1);
@@ -205,7 +205,7 @@ TEST(ArtnetDriver, NamesTheNodeThatIsGoneAndGivesItTheCurrentLookWhenItIsBack) {
   EXPECT_EQ(bench.health(1).life, Life::faulted);
   bench.sent();
   EXPECT_FALSE(bench.write(12000, 0.8));
-  EXPECT_EQ(bench.sent(), Strings{});  // nobody to send to
+  EXPECT_EQ(bench.sent(), Strings{});  // no receiver
   bench.hear("10.0.0.7", reply_of("Stage left", 1));
   EXPECT_TRUE(bench.write(12023, 1.0));
   EXPECT_EQ(bench.sent(), (Strings{"255 to 10.0.0.7:6454"}));

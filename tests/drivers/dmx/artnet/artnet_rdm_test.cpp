@@ -1,4 +1,4 @@
-/// RDM over Art-Net: packets by the offsets of the specification, tables of devices, and the link.
+/// RDM over Art-Net: packets by the offsets of the specification, device tables, and the link.
 #include "drivers/dmx/artnet/artnet_rdm.h"
 
 #include <gtest/gtest.h>

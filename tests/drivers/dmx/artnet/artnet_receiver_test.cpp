@@ -52,9 +52,9 @@ TEST(ArtnetInput, KeepsToTheSequenceRuleUnlessItIsZero) {
   EXPECT_EQ(send(receiver, 1, kOne, 2, 100), Verdict::out_of_order);
   EXPECT_EQ(send(receiver, 2, kOne, 3, 81), Verdict::out_of_order);
   EXPECT_EQ(level(receiver, 3), 1);
-  EXPECT_EQ(send(receiver, 4, kOne, 4, 80), Verdict::taken);  // 20 behind: a desk that began anew
+  EXPECT_EQ(send(receiver, 4, kOne, 4, 80), Verdict::taken);  // 20 behind: a desk that restarted
   EXPECT_EQ(send(receiver, 5, kOne, 5, 255), Verdict::taken);
-  EXPECT_EQ(send(receiver, 6, kOne, 6, 1), Verdict::taken);  // 255 and round again, without 0
+  EXPECT_EQ(send(receiver, 6, kOne, 6, 1), Verdict::taken);  // 255, then wraps, skipping 0
   EXPECT_EQ(send(receiver, 7, kOne, 7, 0), Verdict::taken);
   EXPECT_EQ(send(receiver, 8, kOne, 8, 0), Verdict::taken);
   EXPECT_EQ(level(receiver, 9), 8);
@@ -83,10 +83,10 @@ TEST(ArtnetInput, ObeysArtAddressAboutMerging) {
   send(receiver, 50, kTwo, 92);
   EXPECT_EQ(level(receiver, 51), 200);
   receiver.receive(at_ms(60), kTwo, encode(Address{1, AddressCommand::cancel_merge, 0}));
-  EXPECT_EQ(level(receiver, 61), 200);  // only the next ArtDmx decides whose it is
+  EXPECT_EQ(level(receiver, 61), 200);  // only the next ArtDmx decides the owner
   send(receiver, 70, kTwo, 93);
   EXPECT_EQ(level(receiver, 71), 93);
-  // Of another page: none of its business.
+  // Packet for another page: ignored.
   receiver.receive(at_ms(80), kTwo, encode(Address{2, AddressCommand::merge_ltp, 0}));
   send(receiver, 90, kOne, 10);
   EXPECT_EQ(level(receiver, 91), 93);
@@ -95,7 +95,7 @@ TEST(ArtnetInput, ObeysArtAddressAboutMerging) {
 TEST(ArtnetInput, HoldsForArtSyncOfItsSenderAndFallsBackAfterFourSeconds) {
   Receiver receiver(node_of());
   send(receiver, 0, kOne, 10);
-  receiver.receive(at_ms(10), kTwo, encode_sync());  // not whose data it shows
+  receiver.receive(at_ms(10), kTwo, encode_sync());  // not the source of the data it shows
   send(receiver, 20, kOne, 20);
   EXPECT_EQ(level(receiver, 21), 20);
   receiver.receive(at_ms(30), kOne, encode_sync());
@@ -135,7 +135,7 @@ TEST(ArtnetInput, AnswersPollsOfItsPortsAPageForFourAndAfterItsDelay) {
   EXPECT_EQ(answers[1].reply.outputs.at(0).port_address, 0x14);
   EXPECT_EQ(answers[2].reply.outputs.at(0).port_address, 0x20);
   EXPECT_TRUE(receiver.answers_due(at_ms(301)).empty());
-  // What it says is what a controller hears.
+  // A controller hears the receiver's own replies.
   const auto heard = decode_poll_reply(encode(answers[0].reply, 0x0A000009));
   ASSERT_TRUE(heard);
   EXPECT_EQ(heard->outputs.size(), 4u);

@@ -1,4 +1,4 @@
-/// Bytes as ENTTEC's API specification 1.44 has them, and as OLA was seen to send and take them.
+/// Bytes as in ENTTEC's API specification 1.44, and as OLA was seen to send and accept.
 
 #include "drivers/dmx/enttec_pro/enttec_codec.h"
 
@@ -96,7 +96,7 @@ TEST(EnttecCodec, FindsTheNextMessageBehindNoiseAWrongEndAndAWrongLength) {
 
 TEST(EnttecCodec, AGarbledLengthHoldsBackUntilItIsGivenUp) {
   StreamDecoder decoder;
-  const auto stream = from_hex("7e 03 05 02 44 01 09 01 28 e7  7e 0a 04 00 01 02 03 04 e7");  // 517 bytes, it says
+  const auto stream = from_hex("7e 03 05 02 44 01 09 01 28 e7  7e 0a 04 00 01 02 03 04 e7");  // states 517 bytes
   EXPECT_TRUE(all(decoder, stream).empty());
   decoder.give_up();
   const auto message = decoder.next();

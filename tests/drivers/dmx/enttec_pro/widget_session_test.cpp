@@ -35,7 +35,7 @@ TEST(WidgetSession, AsksWhoIsThereBeforeItIsLiveAndNeverAgain) {
   EXPECT_FALSE(c.session.is_live());
   EXPECT_EQ(c.due(20), std::vector<int>{});
   c.session.receive(at_ms(21), kParameters);
-  EXPECT_FALSE(c.session.is_live());  // the names may still come
+  EXPECT_FALSE(c.session.is_live());  // the names may still arrive
   c.session.receive(at_ms(22), kOthers);
   EXPECT_TRUE(c.session.is_live());
   EXPECT_EQ(c.session.identity().serial, "02563412");
@@ -113,7 +113,7 @@ TEST(WidgetSession, ALengthThatWasGarbledCostsOneAnswer) {
 
 TEST(WidgetSession, BeforeLeavingOnlyWhatHasNotBeenSent) {
   Conversation c;
-  EXPECT_TRUE(c.session.unsent(c.slots).empty());  // not live: nobody has said what the light shall be
+  EXPECT_TRUE(c.session.unsent(c.slots).empty());  // not live: no levels have been set
   (void)c.due(0);
   c.session.receive(at_ms(1), kParameters);
   c.session.receive(at_ms(1), kOthers);

@@ -1,4 +1,4 @@
-/// Discovery of random lines: everybody well-behaved is found, whatever the others do, with a bounded number of
+/// Discovery of random lines: every well-behaved device is found, whatever the others do, with a bounded number of
 /// requests.
 #include "drivers/dmx/rdm/rdm_discovery.h"
 
@@ -14,8 +14,8 @@ namespace {
 enum class Habit {
   good,
   silent,          ///< never answers discovery
-  never_confirms,  ///< answers branches, not its mute
-  never_mutes,     ///< confirms its mute, and goes on answering
+  never_confirms,  ///< answers branches, but not its mute
+  never_mutes,     ///< confirms its mute, but goes on answering
   everywhere,      ///< answers any branch until it is muted, which it confirms
   for_ever         ///< answers any branch, and confirms nothing
 };
@@ -26,7 +26,7 @@ struct Device {
   bool muted = false;
 };
 
-/// How several answers at once sound.
+/// How several simultaneous answers sound.
 enum class Clash { bits_add_up, noise, strongest_wins };
 
 class Line final : public DiscoveryLine {
@@ -81,7 +81,7 @@ class Line final : public DiscoveryLine {
   Random random_;
 };
 
-/// Some of one batch, with neighbouring numbers, some from anywhere.
+/// Some from one batch, with neighbouring numbers; the rest random.
 std::vector<Device> random_devices(std::size_t count, Random& random) {
   std::set<std::uint64_t> numbers;
   while (numbers.size() < count) {
@@ -121,8 +121,8 @@ TEST(RdmDiscovery, FindsAllOfUpTo200WhateverCollisionsSoundLike) {
     EXPECT_EQ(result->found, with(line.devices(), {Habit::good})) << "seed " << seed;
     EXPECT_TRUE(result->unmutable.empty()) << "seed " << seed;
     EXPECT_TRUE(result->complete);
-    // Each device costs a mute, and at most one way down the tree, with four tries of a mute where answers add up to
-    // one that makes sense.
+    // Each device costs one mute and at most one descent of the tree, with four mute attempts where colliding answers
+    // decode to a valid one.
     EXPECT_LE(result->requests, 20 + 48 * static_cast<int>(count)) << "seed " << seed;
   }
 }
@@ -151,7 +151,7 @@ TEST(RdmDiscovery, FindsTheWellBehavedAmongOthers) {
   RecordProperty("most_requests", max_requests);
 }
 
-/// Whether an answer adds no bit to another's: whoever has it says nothing that could be heard beside the other.
+/// True if an answer adds no bit to another's, so that its sender cannot be heard beside the other.
 bool drowned_by(const Uid& who, const Uid& by) {
   const auto answer = encode_branch_answer(who), other = encode_branch_answer(by);
   for (std::size_t i = 0; i < answer.size(); ++i) {
@@ -183,7 +183,7 @@ TEST(RdmDiscovery, IsNotKeptFromEndingByWhoAnswersForRangesThatAreNotItsOwn) {
     drowned += all.size() - wanted.size();
     EXPECT_LE(result->requests, 20000) << "seed " << seed;
   }
-  EXPECT_LE(drowned, 2u);  // of some six hundred
+  EXPECT_LE(drowned, 2u);  // of about six hundred
 }
 
 TEST(RdmDiscovery, FindsAllThoughATenthOfThePacketsIsLost) {
@@ -199,7 +199,7 @@ TEST(RdmDiscovery, FindsAllThoughATenthOfThePacketsIsLost) {
     missed += wanted.size() - result->found.size();
     all += wanted.size();
   }
-  EXPECT_LE(missed * 200, all);  // one of two hundred
+  EXPECT_LE(missed * 200, all);  // one in two hundred
 }
 
 TEST(RdmDiscovery, EndsOnALineOfNothingButNoise) {

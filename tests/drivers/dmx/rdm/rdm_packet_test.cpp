@@ -1,4 +1,4 @@
-/// RDM packets against bytes that another program (OLA) made, and what parameters say.
+/// RDM packets against bytes made by another program (OLA), and the contents of parameters.
 #include "drivers/dmx/rdm/rdm_packet.h"
 
 #include <gtest/gtest.h>
@@ -81,7 +81,7 @@ TEST(RdmPacket, IsRefusedWithEveryOtherByteAndEveryTruncation) {
     EXPECT_FALSE(decode(std::span(good).first(at)));
   }
   Bytes longer = good;
-  longer.push_back(0);  // what follows is not the packet's
+  longer.push_back(0);  // bytes after the packet do not belong to it
   EXPECT_TRUE(decode(longer));
 }
 

@@ -1,4 +1,4 @@
-/// One question to a scripted device: what is sent when, and what is made of what comes back.
+/// One question to a scripted device: which requests are sent when, and how answers are interpreted.
 #include "drivers/dmx/rdm/rdm_transaction.h"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ struct Talk {
   explicit Talk(Pid pid, CommandClass command_class = CommandClass::get, Uid to = kDevice, Bytes data = {})
       : transaction({to, command_class, pid, std::move(data)}, kSelf, number, {}) {}
 
-  /// What is sent at that time; nothing when nothing is.
+  /// Request sent at that time; empty if none.
   std::optional<Packet> due(double ms) {
     auto packet = transaction.due(at_ms(ms));
     if (packet) last = *packet;
@@ -120,7 +120,7 @@ TEST(RdmTransaction, WaitsAsLongAsItIsToldThenAsksTheQueue) {
   ASSERT_TRUE(talk.due(502));
   EXPECT_EQ(talk.last.pid, Pid::queued_message);
   EXPECT_EQ(talk.last.data, Bytes{2});
-  talk.hear(503, ResponseType::ack, {1, 2}, Pid::dmx_start_address, 1);  // another message came first
+  talk.hear(503, ResponseType::ack, {1, 2}, Pid::dmx_start_address, 1);  // another message arrived first
   EXPECT_FALSE(talk.transaction.result());
   ASSERT_TRUE(talk.due(504));
   EXPECT_EQ(talk.last.pid, Pid::queued_message);
@@ -176,7 +176,7 @@ TEST(RdmTransaction, DoesNotWaitForTimersWithoutEnd) {
     again.hear(ms, ResponseType::ack_timer, {0, 0});
   }
   EXPECT_EQ(again.fault().cause, Cause::timeout);
-  EXPECT_LE(sent, 10002);  // one in each step of 1 ms: the caller's pace, for 10 s
+  EXPECT_LE(sent, 10002);  // one in each step of 1 ms, the caller's pace, for 10 s
 }
 
 TEST(RdmTransaction, CollectsPartsAndStartsAnewWhenOneIsLost) {

@@ -60,7 +60,7 @@ TEST(SacnCodec, PutsEachOptionIntoItsBit) {
 
 TEST(SacnCodec, CutsALongNameAtACharacterAndEndsItWithNul) {
   DataPacket packet = full_packet();
-  packet.source_name = std::string(62, 'x') + "ä";  // the last character would end in the place of the NUL
+  packet.source_name = std::string(62, 'x') + "ä";  // the last character would reach the place of the NUL
   const Bytes bytes = encode(packet);
   EXPECT_EQ(bytes[44 + 61], 'x');
   EXPECT_EQ(bytes[44 + 62], 0);

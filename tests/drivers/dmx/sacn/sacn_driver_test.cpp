@@ -88,7 +88,7 @@ TEST(SacnDriver, MarksPreviewDataAndSaysPrioritiesOfTheSlotsItsFixturesUse) {
   const sacn::DataPacket first = bench.packet(0);
   EXPECT_TRUE(first.preview);
   EXPECT_EQ(first.start_code, sacn::kSlotPriority);
-  EXPECT_EQ(first.slots[4], 1);  // 0 would say: no value
+  EXPECT_EQ(first.slots[4], 1);  // 0 would mean: no value
   EXPECT_EQ(first.slots[5], 0);
   ASSERT_TRUE(bench.write(23, 0.5));
   EXPECT_EQ(bench.packet(2).start_code, sacn::kLevels);

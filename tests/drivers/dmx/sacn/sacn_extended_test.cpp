@@ -53,7 +53,7 @@ TEST(SacnExtendedCodec, ReadsBackWhatItWritesAndNoTruncationOrChangeOfAFixedFiel
   for (std::size_t size = 0; size < sync.size(); ++size) EXPECT_FALSE(decode_sync({sync.data(), size}));
   for (std::size_t size = 0; size < list.size(); ++size) EXPECT_FALSE(decode_discovery({list.data(), size}));
   for (std::size_t at = 0; at < 44; ++at) {
-    if (at >= 22 && at < 38) continue;  // the CID is free
+    if (at >= 22 && at < 38) continue;  // the CID may be anything
     Bytes bad_sync = sync, bad_list = list;
     bad_sync[at] ^= 0x81;
     bad_list[at] ^= 0x81;

@@ -7,7 +7,7 @@
 namespace luxrig::sacn {
 namespace {
 
-/// A desk that sends one universe by hand.
+/// A desk that sends one universe, packet by packet.
 struct HandDesk {
   explicit HandDesk(int id, int priority = 100) {
     packet.cid[15] = static_cast<std::uint8_t>(id);
@@ -52,9 +52,9 @@ TEST(SacnInput, KnowsNothingDuringTheSamplingPeriodAndThenShowsTheHighestPriorit
 TEST(SacnInput, IsAbsentWhenNobodySends) {
   Receiver receiver(hearing());
   EXPECT_EQ(presence(receiver, 0), DeskPresence::unknown);
-  EXPECT_EQ(presence(receiver, 2499), DeskPresence::unknown);  // a source that is not lost may be as silent
+  EXPECT_EQ(presence(receiver, 2499), DeskPresence::unknown);  // a source that is not lost may be silent that long
   EXPECT_EQ(presence(receiver, 2500), DeskPresence::absent);
-  EXPECT_EQ(receiver.heard(at_ms(2500), 77).presence, DeskPresence::unknown);  // not a universe of its own
+  EXPECT_EQ(receiver.heard(at_ms(2500), 77).presence, DeskPresence::unknown);  // not one of its universes
 }
 
 /// Sends every 25 ms from 0 to the end, beyond sampling.
@@ -84,7 +84,7 @@ TEST(SacnInput, ALateReaderLosesNobodyWhosePacketsHaveArrived) {
   HandDesk one(1, 100), two(2, 100);
   warm_up(receiver, {{&one, 77}, {&two, 10}});
   EXPECT_EQ(presence(receiver, 2000), DeskPresence::present);
-  // Nobody read for four seconds; then what the kernel has kept is read, one after the other.
+  // Four seconds without a read; then the packets kept by the kernel are read one by one.
   two.send(receiver, 6000, 12);
   one.send(receiver, 6000, 78);
   EXPECT_EQ(presence(receiver, 6000), DeskPresence::present);
@@ -101,7 +101,7 @@ TEST(SacnInput, LosesASourceAfterTwoAndAHalfSecondsAndKeepsItsLastLevels) {  // 
   EXPECT_EQ(presence(receiver, 4501), DeskPresence::absent);
   EXPECT_EQ(level(receiver, 4501), 77);
   desk.packet.sequence = static_cast<std::uint8_t>(desk.packet.sequence - 5);
-  EXPECT_EQ(desk.send(receiver, 4600, 9), Verdict::taken);  // it is new: the sequence rule starts afresh
+  EXPECT_EQ(desk.send(receiver, 4600, 9), Verdict::taken);  // a new source: its sequence starts over
 }
 
 TEST(SacnInput, ReleasesATerminatedSourceAtOnceWithoutItsLevels) {  // 6.2.6
@@ -113,7 +113,7 @@ TEST(SacnInput, ReleasesATerminatedSourceAtOnceWithoutItsLevels) {  // 6.2.6
   EXPECT_EQ(desk.send(receiver, 2020, 200), Verdict::terminated);
   EXPECT_EQ(presence(receiver, 2021), DeskPresence::absent);
   EXPECT_EQ(level(receiver, 2021), 77);
-  EXPECT_EQ(desk.send(receiver, 2040, 200), Verdict::terminated);  // the second of three makes no source
+  EXPECT_EQ(desk.send(receiver, 2040, 200), Verdict::terminated);  // the second of three creates no source
   EXPECT_EQ(receiver.sources(at_ms(2041), 1), 0u);
 }
 
@@ -133,7 +133,7 @@ TEST(SacnInput, TakesNoPreviewNoTestCodeAndNotItsOwnPackets) {
   EXPECT_EQ(presence(receiver, 2500), DeskPresence::absent);
 }
 
-/// A new source has no say for 1.5 s (6.6). Between "sampled" and then there is no moment at which nobody is there.
+/// A new source counts only after 1.5 s (6.6). Between "sampled" and then, the state is never absent.
 TEST(SacnInput, IsNeverAbsentBesideASourceThatIsThereHoweverSeldomAndLateItIsHeard) {
   for (const int period_ms : {25, 900, 2400}) {
     for (int first_ms = 0; first_ms < period_ms; first_ms += 45) {
@@ -154,7 +154,7 @@ TEST(SacnInput, IsNeverAbsentBesideASourceThatIsThereHoweverSeldomAndLateItIsHea
 
 TEST(SacnInput, IsAbsentWithinFourSecondsWhateverComesAndGoes) {
   Receiver receiver(hearing());
-  for (int ms = 0; ms < 4000; ms += 100) {  // sources that are gone again before they have a say
+  for (int ms = 0; ms < 4000; ms += 100) {  // sources that are gone before they count
     HandDesk passing(1 + ms / 1000);
     passing.send(receiver, ms, 9);
     if (ms % 1000 == 900) {
@@ -199,7 +199,7 @@ TEST(SacnInput, NeverHandsToALowerPriorityWhileThatMayHaveBeenLostAtTheSameTime)
     main.send(receiver, ms, 10);
     backup.send(receiver, ms + 20, 255);  // at full
   }
-  // The cable is pulled: both are silent from here on, the backup 20 ms later.
+  // The cable is pulled: both are silent from here on, the backup from 20 ms later.
   for (double ms = 3025; ms < 8000; ms += 1) ASSERT_EQ(level(receiver, ms), 10) << ms;
   EXPECT_EQ(presence(receiver, 8000), DeskPresence::absent);
 }
@@ -224,7 +224,7 @@ TEST(SacnInput, ObeysPrioritiesSlotBySlotAndNoneAtZero) {
   HandDesk one(1, 100), two(2, 150);
   DataPacket priorities = one.packet;
   priorities.start_code = kSlotPriority;
-  priorities.slots[0] = 200;  // above the other's 150; 0 elsewhere: no value
+  priorities.slots[0] = 200;  // above the other's 150; elsewhere 0 = no value
   for (double ms = 0; ms <= 2000; ms += 25) {
     priorities.sequence = one.packet.sequence++;
     receiver.receive(at_ms(ms), encode(priorities));
@@ -241,7 +241,7 @@ TEST(SacnInput, ObeysPrioritiesSlotBySlotAndNoneAtZero) {
   const HeardUniverse alone = receiver.heard(at_ms(2006), 1);
   EXPECT_TRUE(alone.levels.given[0]);
   EXPECT_FALSE(alone.levels.given[1]);
-  // The priorities stop: back to that of the packets, after 2.5 s.
+  // The priorities stop: back to the packets' priority after 2.5 s.
   for (double ms = 2025; ms <= 4600; ms += 25) one.send(receiver, ms, 11);
   EXPECT_TRUE(receiver.heard(at_ms(4601), 1).levels.given[1]);
 }
@@ -295,7 +295,7 @@ TEST(SacnInput, FreezesOrGoesOnWhenSynchronisationIsLostAsTheSourceSays) {
     }
     desk.send(receiver, 4525, 61);
     EXPECT_EQ(level(receiver, 4526), force ? 61 : 5);
-    receiver.receive(at_ms(4600), sync(0));  // it is back: its numbers start afresh
+    receiver.receive(at_ms(4600), sync(0));  // it is back: its sequence starts over
     EXPECT_EQ(level(receiver, 4600), 61);
   }
 }

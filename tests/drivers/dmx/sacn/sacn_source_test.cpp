@@ -84,7 +84,7 @@ TEST(SacnSource, CountsEachUniverseByItselfAndWrapsAround) {
 }
 
 TEST(SacnSource, IsHeardAtItsSecondPacketAfterARestartWhateverWasSentBefore) {
-  // The receiver's rule of clause 6.7.2, with the number it remembers from before the restart.
+  // The receiver's rule of clause 6.7.2, with the sequence it remembers from before the restart.
   for (int remembered = 0; remembered < 256; ++remembered) {
     Source source({});
     const DmxSlots slots{};
@@ -142,7 +142,7 @@ TEST(SacnSource, ReadsACidAsUuidgenPrintsIt) {
   }
 }
 
-// A blackout is acknowledged by this.
+// This acknowledges a blackout.
 TEST(SacnSource, LevelsAreSentWhenTheirPacketHasGoneOutAndNotBefore) {
   for (const bool continuous : {false, true}) {
     for (const bool with_priorities : {false, true}) {

@@ -7,11 +7,11 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// Cycles of 20 ms in which something new is always asked.
+/// Cycles of 20 ms, each with a new request.
 struct Fade {
   Lateness lateness;
   Time now = Time{} + std::chrono::seconds(3);
-  /// A transfer each cycle, which has ended at the next.
+  /// One transfer per cycle, ended by the next.
   void cycles(int count, bool good) {
     for (int i = 0; i < count; ++i) {
       lateness.step(now, false);
@@ -46,7 +46,7 @@ TEST(Lateness, OfRefusalsThatTheNextTransferMendsIsNone) {
 TEST(Lateness, IsKnownThreeQuartersOfASecondAfterTheLastArrived) {
   Fade fade;
   fade.cycles(50, true);
-  fade.cycles(37, false);  // 0.74 s, of which 0.15 s are allowed
+  fade.cycles(37, false);  // 0.74 s, 0.15 s of them allowed
   EXPECT_FALSE(fade.lateness.should_be_known());
   fade.cycles(2, false);
   EXPECT_TRUE(fade.lateness.should_be_known());
@@ -80,7 +80,7 @@ TEST(Lateness, OfTheCallerDoesNotCount) {
   Fade fade;
   for (int i = 0; i < 20; ++i) {
     fade.cycles(5, true);
-    fade.now += milliseconds(900);  // nobody called
+    fade.now += milliseconds(900);  // no calls
   }
   EXPECT_EQ(fade.lateness.late_for(), Duration{});
   EXPECT_FALSE(fade.lateness.should_be_known());

@@ -1,4 +1,4 @@
-/// Values as FTDI's application notes and Linux' ftdi_sio have them.
+/// Values as in FTDI's application notes and Linux' ftdi_sio.
 
 #include "drivers/dmx/usb/ftdi.h"
 
@@ -43,7 +43,7 @@ TEST(Ftdi, EveryPacketLosesItsTwoStatusBytes) {
 
 TEST(Ftdi, TheTransmitterIsEmptyWhenItsLineStatusSaysSo) {
   EXPECT_TRUE(transmitter_is_empty(from_hex("01 60")));
-  EXPECT_FALSE(transmitter_is_empty(from_hex("01 20")));  // the holding register alone
+  EXPECT_FALSE(transmitter_is_empty(from_hex("01 20")));  // only the holding register
   EXPECT_FALSE(transmitter_is_empty(from_hex("01")));
 }
 

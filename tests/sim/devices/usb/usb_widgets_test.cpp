@@ -1,4 +1,4 @@
-/// The simulated widgets against published bytes, and the faults that they have.
+/// The simulated widgets against published bytes, and their faults.
 
 #include "sim/devices/usb/usb_widgets.h"
 
@@ -60,7 +60,7 @@ TEST(EnttecWidget, AsksItsLineWhenItsFirmwareHasRdm) {
     return asked.size() == 2 ? from_hex("cc 02 03") : WidgetBytes{};
   });
   EXPECT_EQ(widget_said(widget, "7e 03 02 00 00 00 e7"), from_hex("7e 03 05 00 04 02 09 01 28 e7"));
-  // A status byte, then what came from the line; silence is label 12.
+  // A status byte, then the bytes from the line; silence gives label 12.
   EXPECT_EQ(widget_said(widget, "7e 07 02 00 cc 01 e7"), from_hex("7e 05 04 00 00 cc 02 03 e7"));
   EXPECT_EQ(asked, from_hex("cc 01"));
   EXPECT_EQ(widget_said(widget, "7e 0b 03 00 cc 01 18 e7"), from_hex("7e 0c 00 00 e7"));

@@ -13,7 +13,7 @@ using std::chrono::milliseconds;
 
 struct Node : AxisNode {
   Node() : AxisNode(5, {}, 0, 200) { set_power(now, true); }
-  /// "605#40…" in; what it answers, joined by blanks.
+  /// Sends "605#40…"; returns the answers, separated by blanks.
   std::string answer(std::string_view frame) {
     const auto payload = from_hex(frame.substr(4));
     receive(now,
@@ -118,7 +118,7 @@ TEST(AxisNode, WhereNoPdoCarriesItsLimitsTheMappingIsRefusedByTheNameGiven) {
   struct Refusal {
     std::uint32_t code;
     const char* entry;
-    const char* count;  ///< of one, when the entry was taken
+    const char* count;  ///< answer to a count of one, if the entry was accepted
   };
   for (const Refusal& refusal : {Refusal{kNotMappable, "585#8001160141000406", "585#8001160041000406"},
                                  Refusal{kPdoTooLong, "585#6001160100000000", "585#8001160042000406"},

@@ -11,7 +11,7 @@ using namespace std::chrono_literals;
 using Bytes = std::vector<std::uint8_t>;
 
 // Unit 1: holding registers 2, 3 = 500000 and input registers 2, 3 = 0x1234, 0x5678. Unit 10: holding registers 10, 11,
-// which take up to 1000.
+// which accept up to 1000.
 class TwoUnits final : public ModbusUnits {
  public:
   bool has(int unit) const override { return unit == 1 || unit == 10; }
@@ -79,7 +79,7 @@ Bytes write_two() {
   };
 }
 
-// The bytes of all answers, one after another.
+// The bytes of all answers, in sequence.
 Bytes answers_of(ModbusSession& session, const Bytes& sent, ModbusUnits& units) {
   Bytes all;
   for (const ModbusReply& reply : session.receive(sent, units)) {
@@ -142,9 +142,9 @@ TEST(ModbusFarEnd, RefusesEveryOtherFunctionWithException1) {
 TEST(ModbusFarEnd, RefusesRegistersThatAreNotThereWithException2) {
   TwoUnits units;
   EXPECT_EQ(pdu({3, 0, 9, 0, 1}, units), (Bytes{0x83, 2}));
-  EXPECT_EQ(pdu({3, 0, 11, 0, 2}, units), (Bytes{0x83, 2}));       // the second of them
+  EXPECT_EQ(pdu({3, 0, 11, 0, 2}, units), (Bytes{0x83, 2}));       // the second one is missing
   EXPECT_EQ(pdu({4, 0, 10, 0, 1}, units), (Bytes{0x84, 2}));       // the other kind
-  EXPECT_EQ(pdu({6, 0, 12, 0, 1}, units), (Bytes{0x86, 2}));       //
+  EXPECT_EQ(pdu({6, 0, 12, 0, 1}, units), (Bytes{0x86, 2}));
   EXPECT_EQ(pdu({3, 0xff, 0xff, 0, 2}, units), (Bytes{0x83, 2}));  // past 65535
   EXPECT_EQ(pdu({16, 0xff, 0xff, 0, 2, 4, 0, 1, 0, 1}, units), (Bytes{0x90, 2}));
 }
@@ -153,7 +153,7 @@ TEST(ModbusFarEnd, RefusesCountsAndValuesOutOfRangeWithException3) {
   TwoUnits units;
   EXPECT_EQ(pdu({3, 0, 10, 0, 0}, units), (Bytes{0x83, 3}));
   EXPECT_EQ(pdu({3, 0, 10, 0, 126}, units), (Bytes{0x83, 3}));
-  EXPECT_EQ(pdu({3, 0, 10, 0, 125}, units), (Bytes{0x83, 2}));  // as many as may be asked for; they are not there
+  EXPECT_EQ(pdu({3, 0, 10, 0, 125}, units), (Bytes{0x83, 2}));  // the maximum count, but the registers do not exist
   EXPECT_EQ(pdu({4, 0, 10, 1, 0}, units), (Bytes{0x84, 3}));
   EXPECT_EQ(pdu({6, 0, 10, 3, 0xe9}, units), (Bytes{0x86, 3}));            // 1001
   EXPECT_EQ(pdu({16, 0, 10, 0, 0, 0}, units), (Bytes{0x90, 3}));           // none
@@ -263,7 +263,7 @@ TEST(ModbusFarEnd, AUnitInTroubleAnswersWithItsException) {
   EXPECT_EQ((units.registers[{10, false, 10}]), 0);
 }
 
-// What a master must check before it believes an answer to read_meter().
+// Checks a master must make before it accepts an answer to read_meter().
 bool believable(const Bytes& reply) {
   return reply.size() == 13 && Bytes(reply.begin(), reply.begin() + 9) == Bytes{0x00, 0x2a, 0, 0, 0, 7, 1, 3, 4};
 }

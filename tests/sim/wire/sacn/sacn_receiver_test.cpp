@@ -138,7 +138,7 @@ TEST(SacnFarEnd, RefusesEveryTruncationAndAnyTail) {
 }
 
 TEST(SacnFarEnd, RefusesEveryChangeOfABytesThatTheStandardFixes) {
-  const auto unread = [](std::size_t at, bool data) {  // what may differ from packet to packet
+  const auto unread = [](std::size_t at, bool data) {  // bytes that may differ from packet to packet
     if (at >= 22 && at < 38) return true;
     return data ? (at >= 44 && at < 115) || at >= 125 : at >= 44;
   };
@@ -194,7 +194,7 @@ TEST(SacnFarEnd, DropsExactlyTheTwentyNumbersThatAreOutOfOrder) {
     for (int next = 0; next < 256; ++next) {
       SacnReceiver receiver;
       ASSERT_EQ(receiver.receive(at_s(0), packet_of({.sequence = static_cast<std::uint8_t>(last)})), Verdict::accepted);
-      // The last number and the nineteen before it, counted on the clock of 256.
+      // The last number and the nineteen before it, modulo 256.
       bool stale = false;
       for (int back = 0; back < 20; ++back) stale = stale || (last - back + 256) % 256 == next;
       const Verdict verdict =
@@ -225,7 +225,7 @@ TEST(SacnFarEnd, ATerminatedSourceIsGoneAtOnceAndItsLevelsAreNotUsed) {
             Verdict::terminated);
   EXPECT_EQ(receiver.sources(3, at_s(0.1)), 0u);
   EXPECT_EQ(first_slot(receiver, at_s(0.1)), 200);  // the last look is held
-  // It is new when it returns: an old number is no longer stale.
+  // It counts as new when it returns: an old number is no longer stale.
   EXPECT_EQ(receiver.receive(at_s(0.2), packet_of({.source = 1, .sequence = 9, .level = 30})), Verdict::accepted);
   EXPECT_EQ(first_slot(receiver, at_s(0.2)), 30);
 }

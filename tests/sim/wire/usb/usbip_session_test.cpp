@@ -1,4 +1,4 @@
-/// Literal bytes of the USB/IP protocol, as Linux' Documentation/usb/usbip_protocol.rst lays them out.
+/// Literal bytes of the USB/IP protocol, as laid out in Linux' Documentation/usb/usbip_protocol.rst.
 
 #include "sim/wire/usb/usbip_session.h"
 
@@ -68,7 +68,7 @@ TEST(UsbipSession, RefusesADeviceThatItHasNot) {
 TEST(UsbipSession, DoesATransferAndAnswersWhenTheDeviceIsDone) {
   UsbipServer server;
   server.import();
-  EXPECT_TRUE(server.say(10, kSetRange).empty());  // low speed takes its time: 1.5 ms
+  EXPECT_TRUE(server.say(10, kSetRange).empty());  // low speed needs 1.5 ms
   server.session.serve(usbip_at(11.4));
   EXPECT_TRUE(server.session.take_output().empty());
   server.session.serve(usbip_at(11.6));
@@ -125,7 +125,7 @@ TEST(UsbipSession, ATransferThatHangsEndsWhenItIsUnlinked) {
   wanted.resize(48);
   EXPECT_EQ(server.session.take_output(), wanted);
   server.session.receive(usbip_at(10002), request);
-  wanted = from_hex("00000004 00000008 " + kUsbipZeros + "00000000");  // it is not there any more
+  wanted = from_hex("00000004 00000008 " + kUsbipZeros + "00000000");  // it is already gone
   wanted.resize(48);
   EXPECT_EQ(server.session.take_output(), wanted);
 }
