@@ -86,7 +86,7 @@ std::optional<LimitedLeastSquaresResult> solve_by_multipliers(const LimitedLeast
   LimitedLeastSquaresResult at;
   at.stopped = stop.stop_requested();
   if (at.stopped) return at;
-  if (!guess) return std::nullopt;
+  if (!guess || !guess->conflict.empty()) return std::nullopt;
   at.z = guess->least_squares.x;
   at.iterations = guess->least_squares.iterations;
   at.state.assign(static_cast<std::size_t>(at.z.size()), BoundState::free);
