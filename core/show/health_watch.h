@@ -71,8 +71,8 @@ class HealthWatch {
   /// One per cause, whatever hangs on it. A text does not change while the alarm lasts. Order: as reported, then
   /// devices that answer again but are not relied on yet, then silent or implausible luxmeters.
   [[nodiscard]] const std::vector<Alarm>& alarms() const { return alarms_; }
-  /// The text of the alarm that tells why light is lost, or (of_light false) why a meter is. If none does, of the first
-  /// severe one; empty: there is none.
+  /// Text of the alarm that says why light is lost, or with of_light = false why a meter is. If none says so, the first
+  /// severe alarm's; empty if there is none.
   [[nodiscard]] std::string cause(bool of_light) const;
 
  private:

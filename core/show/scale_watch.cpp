@@ -19,7 +19,7 @@ constexpr double kDrift = 0.08;
 constexpr double kAgeingPerHour = 0.001;
 /// This many samples in a row, so that a person walking past is no drift.
 constexpr int kDriftSeen = 3;
-/// Below, a meter's offset counts.
+/// Below this, a meter's offset matters.
 constexpr double kDarkForDrift_lx = 2;
 
 std::string less_or_more(double log_share) {

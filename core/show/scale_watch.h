@@ -1,6 +1,6 @@
 #pragma once
-/// Doubts that no meter can settle by itself: all meters may be off together against the model, or drift against their
-/// own earlier readings at the same levels.
+/// Errors that no meter shows by itself: all meters are off together against the model, or drift against their own
+/// earlier readings at the same levels.
 
 #include <optional>
 #include <span>
@@ -24,15 +24,16 @@ class ScaleWatch {
   void look(Time now, const GainEstimator& estimator, Measured measured, const std::vector<double>& levels);
 
   struct Doubt {
-    double log_share = 0;  ///< below 0: meters read less than they would
-    std::string reason;    ///< empty: none
+    double log_share = 0;  ///< below 0: meters read too little
+    std::string reason;    ///< empty if there is no doubt
   };
-  /// The largest at a point. meter   the luxmeter that stands there
+  /// The largest doubt at a point.
+  /// meter   the luxmeter there, if there is one
   [[nodiscard]] Doubt doubt_at(std::optional<std::size_t> meter, Measured measured) const;
-  /// Adds its alarms.
+  /// Adds the alarms to the status.
   void tell(ShowStatus& status, Measured measured) const;
 
-  /// Meters that drift start again: a person has applied the plan, and takes the light as it is.
+  /// Drifting meters start again from their next reading: a person has applied the plan, and accepts the light.
   void forget_drift();
   void forget(std::size_t luxmeter) { drifts_[luxmeter] = {}; }
   void forget_all() { drifts_.assign(drifts_.size(), {}); }
@@ -42,10 +43,10 @@ class ScaleWatch {
   struct Drift {
     bool anchored = false;
     double log_ratio = 0;
-    std::vector<double> levels;  ///< per fixture, then
+    std::vector<double> levels;  ///< per fixture, at that time
     Time since{};
     double log_change = 0;
-    int seen = 0;  ///< samples in a row that are farther off than anything explains
+    int seen = 0;  ///< samples in a row beyond what known causes explain
     Time known_since{};
   };
   [[nodiscard]] bool drifts_away(std::size_t luxmeter) const;
@@ -55,7 +56,7 @@ class ScaleWatch {
 
   std::vector<std::string> names_;      ///< per luxmeter
   std::vector<Drift> drifts_;           ///< per luxmeter
-  std::optional<double> off_together_;  ///< logarithm of all readings over the model, where it is surely not 0
+  std::optional<double> off_together_;  ///< logarithm of all readings over the model, if surely not 0
   Time off_together_since_{};
 };
 

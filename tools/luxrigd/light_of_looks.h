@@ -1,6 +1,6 @@
 #pragma once
-/// The light of a rig in the looks that its daemon is asked for. A look that is known is not computed again; of heads
-/// that turn only their own light is. The last one is saved, so that the next daemon has light at once.
+/// The light of a rig in the looks that its daemon is asked for. A known look is not computed again. When heads
+/// turn, only their light is computed. The last look's light is saved, so that the next daemon has light at once.
 
 #include <filesystem>
 #include <memory>
@@ -41,7 +41,7 @@ class LightOfLooks {
   std::shared_ptr<const Known> put(Known known);
   std::shared_ptr<const Known> put(std::uint64_t key, const Rig& rig, const std::vector<Joints>& joints,
                                    TransportMatrix transport);
-  /// Of those of this key with as many fixtures, that with the most aimed as asked; nullptr: none.
+  /// The known light of this key with the most fixtures aimed as asked; nullptr if there is none.
   [[nodiscard]] std::shared_ptr<const Known> nearest(std::uint64_t key, const std::vector<Joints>& joints,
                                                      bool with_transport) const;
 
