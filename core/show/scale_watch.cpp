@@ -69,7 +69,7 @@ void ScaleWatch::look(Time now, const GainEstimator& estimator, Measured measure
 
 bool ScaleWatch::drifts_away(std::size_t luxmeter) const { return drifts_[luxmeter].seen >= kDriftSeen; }
 
-/// Median change if more than half of the meters drift one way: what the model has learned from them has then moved, too.
+/// Median change if more than half of the meters drift one way: what the model learned from them has then moved, too.
 std::optional<double> ScaleWatch::drift_together(Measured measured) const {
   std::vector<double> less, more;
   std::size_t known = 0;
