@@ -31,14 +31,15 @@ std::optional<SavedByHand> by_hand_of(const nlohmann::json& entry) {
 /// program.)
 bool asks_for_blackout(std::string_view text) {
   constexpr std::string_view kKey = "\"blackout\"";
-  const auto skip_space = [&] { text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size())); };
-  for (auto at = text.find(kKey); at != std::string_view::npos; at = text.find(kKey)) {
-    text.remove_prefix(at + kKey.size());
-    skip_space();
-    if (!text.starts_with(':')) continue;
-    text.remove_prefix(1);
-    skip_space();
-    if (text.starts_with("true")) return true;
+  const auto space_skipped = [](std::string_view rest) {
+    return rest.substr(std::min(rest.find_first_not_of(" \t\r\n"), rest.size()));
+  };
+  // The quote that ends one find may begin the next one.
+  for (auto at = text.find(kKey); at != std::string_view::npos; at = text.find(kKey, at + kKey.size() - 1)) {
+    std::string_view rest = space_skipped(text.substr(at + kKey.size()));
+    if (!rest.starts_with(':')) continue;
+    rest.remove_prefix(1);
+    if (space_skipped(rest).starts_with("true")) return true;
   }
   return false;
 }

@@ -86,7 +86,7 @@ TEST(Journal, OfADamagedFileWhatIsLegibleHoldsAboveAllTheBlackout) {
         Case{"{\"luxrig_state\":1,\"plan\":7,\"blackout\":true}", true, ""},
         Case{"{\"luxrig_state\":1,\"plan\":\"p\",\"blackout\":\"yes\"}", false, "p"},
         Case{"{\n \"blackout\": true,\n \"by_hand\": [], \"pla", true, ""},
-        Case{"\x80\xff\"blackout\" : true", true, ""}}) {
+        Case{"\x80\xff\"blackout\" : true", true, ""}, Case{"{\"plan\":\"blackout\"blackout\":true", true, ""}}) {
     const Folder folder;
     std::ofstream(folder / "state.json") << one.text;
     const auto left = Journal(folder / "").load();
