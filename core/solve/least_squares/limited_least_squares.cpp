@@ -17,22 +17,6 @@ using Eigen::VectorXd;
 /// From this many unknowns on, changing many constraints at a time is faster (`luxrig bench nnls --only levels`).
 constexpr Index kMany = 200;
 
-/// A row without slack fixes all its unknowns at 0. As a limit it would leave no interior and unbounded multipliers.
-struct LitProblem {
-  explicit LitProblem(const LimitedLeastSquares& p) : upper(p.upper) {
-    for (Index i = 0; i < p.G.rows(); ++i) {
-      if (p.slack[i] > 0 || p.G.row(i).minCoeff() < 0) {
-        rows.push_back(i);
-        continue;
-      }
-      for (Index j = 0; j < p.G.cols(); ++j)
-        if (p.G(i, j) > 0) upper[j] = 0;
-    }
-  }
-  VectorXd upper;
-  std::vector<Index> rows;  ///< the other limits
-};
-
 }  // namespace
 
 std::vector<Index> free_variables(const std::vector<BoundState>& state) {
@@ -72,29 +56,23 @@ double kkt_violation(const LimitedLeastSquares& p, const LimitedLeastSquaresResu
 
 std::optional<LimitedLeastSquaresResult> solve_by_multipliers(const LimitedLeastSquares& p,
                                                               const std::stop_token& stop) {
-  const LitProblem lit(p);
-  NnlsProblem problem;
-  problem.columns = ColumnsView(p.E);
-  problem.goal = p.f;
-  problem.upper = lit.upper;
-  LinearLimits limits;
-  limits.rows = p.G(lit.rows, Eigen::all).sparseView();
-  limits.most = p.slack(lit.rows);
+  const NnlsProblem problem{ColumnsView(p.E), p.f, {}, p.upper};
+  const LinearLimits limits{p.G.sparseView(1, 0), p.slack};
   NnlsOptions options;
   options.stop = stop;
   const auto guess = solve_limited_nnls(problem, limits, options);
   LimitedLeastSquaresResult at;
   at.stopped = stop.stop_requested();
   if (at.stopped) return at;
-  if (!guess || !guess->conflict.empty()) return std::nullopt;
+  if (!guess) return std::nullopt;
   at.z = guess->least_squares.x;
   at.iterations = guess->least_squares.iterations;
   at.state.assign(static_cast<std::size_t>(at.z.size()), BoundState::free);
   for (Index j = 0; j < at.z.size(); ++j)
     if (at.z[j] == 0 || at.z[j] == p.upper[j])
       at.state[static_cast<std::size_t>(j)] = at.z[j] == 0 ? BoundState::lower : BoundState::upper;
-  for (std::size_t k = 0; k < lit.rows.size(); ++k)
-    if (guess->multiplier[static_cast<Index>(k)] > 0) at.working_rows.push_back(lit.rows[k]);
+  for (Index i = 0; i < guess->multiplier.size(); ++i)
+    if (guess->multiplier[i] > 0) at.working_rows.push_back(i);
   if (LimitedLeastSquaresResult settled = at; settle_active_set(p, settled, stop)) return settled;
   at = solve_by_active_set(p, stop, std::move(at));
   if (at.stopped) return at;

@@ -19,8 +19,6 @@ using Eigen::VectorXd;
 constexpr double kNoBound = std::numeric_limits<double>::infinity();
 /// Violations and changes of multipliers below this (rows and goal have norm 1) are rounding.
 constexpr double kTolerance = 1e-14;
-/// The least violation of feasible limits is rounding; that of a conflict is above this, relative to d.
-constexpr double kConflict = 1e-9;
 constexpr int kMaxRounds = 200;
 /// Weight of limits against the goal. A heavy weight finds the multipliers in few rounds but costs the goal digits, so
 /// the last rounds use a light one.
@@ -41,9 +39,9 @@ struct BuiltColumns {
   [[nodiscard]] ColumnsView view(Index rows) const { return {rows, begin, row, std::span<const double>(value)}; }
 };
 
-/// The limits in z: rows scaled to about 1, infinite ones left out.
+/// The limits in z: rows scaled to about 1, without limits of 0 (upper_within) and infinite ones.
 struct ScaledLimits {
-  Eigen::SparseMatrix<double> rows;  ///< kept limits × (columns and auxiliaries)
+  Eigen::SparseMatrix<double> rows;  ///< kept limits × columns
   VectorXd most;
   std::vector<Index> which;    ///< of the given limits
   std::vector<double> factor;  ///< by which each row was multiplied
@@ -51,13 +49,23 @@ struct ScaledLimits {
   double scale = 1;  ///< x = scale z / z_per_x
 };
 
-ScaledLimits scaled_limits(const ScaledColumns& p, const NnlsProblem& problem, const LinearLimits& limits) {
+/// Bounds of the columns: 0 where a limit of 0 allows no light. As a limit it would leave no interior.
+VectorXd upper_within(const NnlsProblem& problem, const LinearLimits& limits) {
+  VectorXd upper = problem.upper;
+  if (upper.size() == 0) upper = VectorXd::Constant(problem.columns.columns(), kNoBound);
+  for (Index j = 0; j < limits.rows.outerSize(); ++j)
+    for (Eigen::SparseMatrix<double>::InnerIterator it(limits.rows, j); it; ++it)
+      if (limits.most[it.row()] == 0 && it.value() > 0) upper[j] = 0;
+  return upper;
+}
+
+ScaledLimits scaled_limits(const ScaledColumns& p, const VectorXd& bound, const LinearLimits& limits) {
   ScaledLimits s;
-  const Index all = limits.rows.cols(), n = p.columns();
+  const Index n = p.columns();
   VectorXd squares = VectorXd::Zero(limits.rows.rows());
-  for (Index j = 0; j < all; ++j) {
+  for (Index j = 0; j < n; ++j) {
     double norm = 0;
-    if (j < n && p.inverse_norm(j) > 0) norm = 1 / p.inverse_norm(j);
+    if (p.inverse_norm(j) > 0) norm = 1 / p.inverse_norm(j);
     if (norm == 0) {  // no light at any point with weight: its own entries in the limits set the unit
       double largest = 0;
       for (Eigen::SparseMatrix<double>::InnerIterator it(limits.rows, j); it; ++it)
@@ -66,14 +74,13 @@ ScaledLimits scaled_limits(const ScaledColumns& p, const NnlsProblem& problem, c
     }
     s.z_per_x.push_back(norm);
     // A column matters only up to its largest contribution: a bound may hold it far below the goal.
-    const double upper = j < n && problem.upper.size() > 0 ? problem.upper[j] : kNoBound;
-    const double most = p.nothing_wanted() ? 1 : std::min(1.0, upper * (norm / p.in_units(1)));
+    const double most = p.nothing_wanted() ? 1 : std::min(1.0, bound[j] * (norm / p.in_units(1)));
     for (Eigen::SparseMatrix<double>::InnerIterator it(limits.rows, j); it; ++it)
       squares[it.row()] += std::pow(it.value() / norm * most, 2);
   }
   std::vector<Index> place(static_cast<std::size_t>(limits.rows.rows()), -1);
   for (Index i = 0; i < limits.rows.rows(); ++i) {
-    if (limits.most[i] == kNoBound) continue;
+    if (limits.most[i] == kNoBound || limits.most[i] == 0) continue;
     place[static_cast<std::size_t>(i)] = static_cast<Index>(s.which.size());
     s.which.push_back(i);
     s.factor.push_back(squares[i] > 0 ? 1 / std::sqrt(squares[i]) : 1);
@@ -88,66 +95,17 @@ ScaledLimits scaled_limits(const ScaledColumns& p, const NnlsProblem& problem, c
   for (Index k = 0; k < kept; ++k)
     s.most[k] = limits.most[s.which[static_cast<std::size_t>(k)]] * s.factor[static_cast<std::size_t>(k)] / s.scale;
   std::vector<Eigen::Triplet<double>> entries;
-  for (Index j = 0; j < all; ++j) {
+  for (Index j = 0; j < n; ++j) {
     const double norm = s.z_per_x[static_cast<std::size_t>(j)];
-    s.upper.push_back(j < n && problem.upper.size() > 0 ? problem.upper[j] * (norm / s.scale) : kNoBound);
+    s.upper.push_back(bound[j] * (norm / s.scale));
     for (Eigen::SparseMatrix<double>::InnerIterator it(limits.rows, j); it; ++it) {
       const Index k = place[static_cast<std::size_t>(it.row())];
       if (k >= 0) entries.emplace_back(k, j, it.value() / norm * s.factor[static_cast<std::size_t>(k)]);
     }
   }
-  s.rows.resize(kept, all);
+  s.rows.resize(kept, n);
   s.rows.setFromTriplets(entries.begin(), entries.end());
   return s;
-}
-
-/// Least violation of the given limits, and the violation of each.
-struct LeastViolation {
-  VectorXd z, left;
-  double norm = 0, relative = 0;
-};
-LeastViolation min_violation(const ScaledLimits& s, const std::vector<Index>& which, const NnlsOptions& options) {
-  BuiltColumns built;
-  const auto rows = static_cast<Index>(which.size());
-  std::vector<Index> place(static_cast<std::size_t>(s.rows.rows()), -1);
-  for (Index k = 0; k < rows; ++k) place[static_cast<std::size_t>(which[static_cast<std::size_t>(k)])] = k;
-  for (Index j = 0; j < s.rows.cols(); ++j) {
-    for (Eigen::SparseMatrix<double>::InnerIterator it(s.rows, j); it; ++it)
-      if (const Index k = place[static_cast<std::size_t>(it.row())]; k >= 0) built.put(k, it.value());
-    built.end_column();
-  }
-  NnlsProblem problem;
-  problem.goal.resize(rows);
-  problem.upper.resize(s.rows.cols() + rows);
-  for (Index j = 0; j < s.rows.cols(); ++j) problem.upper[j] = s.upper[static_cast<std::size_t>(j)];
-  for (Index k = 0; k < rows; ++k) {
-    built.put(k, 1);
-    built.end_column();
-    problem.goal[k] = s.most[which[static_cast<std::size_t>(k)]];
-    problem.upper[s.rows.cols() + k] = kNoBound;
-  }
-  problem.columns = built.view(rows);
-  const auto solution = solve_nnls(problem, options);
-  LeastViolation least;
-  if (!solution) return least;
-  least.z = solution->x.head(s.rows.cols());
-  least.left = solution->residual;
-  least.norm = solution->residual_norm;
-  least.relative = problem.goal.norm() > 0 ? least.norm / problem.goal.norm() : 0;
-  return least;
-}
-
-/// The limits that a proven conflict needs: each one is dropped if a conflict remains without it.
-std::vector<Index> needed(const ScaledLimits& s, const LeastViolation& proof, const NnlsOptions& options) {
-  std::vector<Index> conflict;
-  for (Index k = 0; k < proof.left.size(); ++k)
-    if (std::abs(proof.left[k]) > 1e-7 * proof.left.cwiseAbs().maxCoeff()) conflict.push_back(k);
-  for (std::size_t k = conflict.size(); k-- > 0 && conflict.size() > 1;) {
-    std::vector<Index> without = conflict;
-    without.erase(without.begin() + static_cast<std::ptrdiff_t>(k));
-    if (min_violation(s, without, options).relative > kConflict) conflict = std::move(without);
-  }
-  return conflict;
 }
 
 /// [A; √ρ C] with a column for each slack.
@@ -156,7 +114,7 @@ BuiltColumns stacked(const ScaledColumns& p, const ScaledLimits& s, double rho) 
   const double root = std::sqrt(rho);
   VectorXd column = VectorXd::Zero(p.rows());
   for (Index j = 0; j < s.rows.cols(); ++j) {
-    if (j < p.columns() && p.inverse_norm(j) > 0) {
+    if (p.inverse_norm(j) > 0) {
       column.setZero();
       p.view().add(j, p.inverse_norm(j), column.data());
       for (Index i = 0; i < p.rows(); ++i)
@@ -264,8 +222,7 @@ KktResiduals kkt_of(const ScaledColumns& p, const ScaledLimits& s, const VectorX
     if (z[j] != 0 && p.inverse_norm(j) > 0) p.view().add(j, -z[j] * p.inverse_norm(j), residual.data());
   VectorXd gradient;
   p.gradient(residual, gradient);
-  VectorXd pull = -(s.rows.transpose() * lambda);
-  pull.head(p.columns()) += gradient;
+  const VectorXd pull = gradient - s.rows.transpose() * lambda;
   KktResiduals kkt;
   for (Index j = 0; j < z.size(); ++j) kkt.add(z[j], s.upper[static_cast<std::size_t>(j)], pull[j]);
   const VectorXd over = s.rows * z - s.most;
@@ -277,16 +234,16 @@ KktResiduals kkt_of(const ScaledColumns& p, const ScaledLimits& s, const VectorX
 }
 
 std::string limits_complaint(const NnlsProblem& problem, const LinearLimits& limits) {
-  if (limits.rows.cols() < problem.columns.columns())
+  if (limits.rows.cols() != problem.columns.columns())
     return fmt::format("limits on {} columns of {}", limits.rows.cols(), problem.columns.columns());
   if (limits.rows.rows() != limits.most.size())
     return fmt::format("{} limits, {} right-hand sides", limits.rows.rows(), limits.most.size());
   for (Index j = 0; j < limits.rows.outerSize(); ++j)
     for (Eigen::SparseMatrix<double>::InnerIterator it(limits.rows, j); it; ++it)
-      if (!(std::abs(it.value()) <= 1e140))
+      if (!(it.value() >= 0 && it.value() <= 1e140))
         return fmt::format("limit {} has an entry of {} for column {}", it.row(), it.value(), j);
   for (Index i = 0; i < limits.most.size(); ++i)
-    if (!(std::abs(limits.most[i]) <= 1e140 || limits.most[i] == kNoBound))
+    if (!((limits.most[i] >= 0 && limits.most[i] <= 1e140) || limits.most[i] == kNoBound))
       return fmt::format("limit {} is {}", i, limits.most[i]);
   return {};
 }
@@ -304,47 +261,32 @@ Result<LimitedNnlsSolution> solve_limited_nnls(const NnlsProblem& problem, const
     return tl::unexpected(fault);
   }
   const ScaledColumns p(problem);
-  const ScaledLimits s = scaled_limits(p, problem, limits);
+  const VectorXd upper = upper_within(problem, limits);
+  const ScaledLimits s = scaled_limits(p, upper, limits);
   const Index n = p.columns();
+  Multipliers method(p, s);
+  method.run(options);
+  const VectorXd z = method.z.size() > 0 ? method.z : VectorXd::Zero(n);
   LimitedNnlsSolution solution;
-  VectorXd z;
-  if (s.most.size() > 0 && s.most.minCoeff() < 0) {  // x = 0 does not keep them
-    std::vector<Index> all(static_cast<std::size_t>(s.most.size()));
-    for (std::size_t k = 0; k < all.size(); ++k) all[k] = static_cast<Index>(k);
-    const LeastViolation least = min_violation(s, all, options);
-    if (least.relative > kConflict) {
-      for (const Index k : needed(s, least, options)) solution.conflict.push_back(s.which[static_cast<std::size_t>(k)]);
-      z = least.z;
-    }
-  }
-  solution.multiplier = VectorXd::Zero(limits.most.size());
-  VectorXd lambda = VectorXd::Zero(s.most.size());
-  if (solution.conflict.empty()) {
-    Multipliers method(p, s);
-    method.run(options);
-    z = method.z;
-    lambda = method.lambda();
-    solution.rounds = method.rounds;
-    solution.least_squares.iterations = method.iterations;
-    solution.least_squares.converged = method.converged;
-    solution.least_squares.orthogonal = method.orthogonal;
-  }
-  if (z.size() == 0) z = VectorXd::Zero(limits.rows.cols());
-  VectorXd x(limits.rows.cols());
-  for (Index j = 0; j < x.size(); ++j) {
+  solution.rounds = method.rounds;
+  solution.least_squares.iterations = method.iterations;
+  solution.least_squares.converged = method.converged;
+  solution.least_squares.orthogonal = method.orthogonal;
+  VectorXd x(n);
+  for (Index j = 0; j < n; ++j) {
     const auto at = static_cast<std::size_t>(j);
     x[j] = z[j] * (s.scale / s.z_per_x[at]);
-    if (j < n && problem.upper.size() > 0)
-      x[j] = z[j] >= s.upper[at] ? problem.upper[j] : std::min(x[j], problem.upper[j]);
+    x[j] = z[j] >= s.upper[at] ? upper[j] : std::min(x[j], upper[j]);
   }
   NnlsSolution& out = solution.least_squares;
-  out.x = x.head(n);
-  solution.auxiliary = x.tail(x.size() - n);
+  out.x = x;
   out.residual = problem.goal;
   for (Index j = 0; j < n; ++j)
     if (x[j] != 0) problem.columns.add(j, -x[j], out.residual.data());
   out.residual_norm = p.norm(out.residual);
-  if (solution.conflict.empty()) out.kkt = kkt_of(p, s, z, lambda);
+  const VectorXd& lambda = method.lambda();
+  out.kkt = kkt_of(p, s, z, lambda);
+  solution.multiplier = VectorXd::Zero(limits.most.size());
   for (std::size_t k = 0; k < s.which.size(); ++k)
     solution.multiplier[s.which[k]] = lambda[static_cast<Index>(k)] * s.scale * s.factor[k];
   return solution;

@@ -3,8 +3,8 @@
 #include <limits>
 
 #include "core/check.h"
+#include "core/solve/least_squares/limited_nnls.h"
 #include "core/solve/least_squares/nnls.h"
-#include "core/solve/lux_limits.h"
 
 namespace luxrig {
 
@@ -100,24 +100,31 @@ bool PlacedLights::keeps_limits() const {
 }
 
 void PlacedLights::solve_limited() {
-  Eigen::MatrixXd luminous(lux_.rows(), columns_.cols());
+  std::vector<Eigen::Index> limited;
+  for (Eigen::Index p = 0; p < goal_->max_lux.size(); ++p)
+    if (goal_->max_lux[p] < std::numeric_limits<double>::infinity()) limited.push_back(p);
+  const bool of_power = goal_->max_watts < std::numeric_limits<double>::infinity();
+  const auto points = static_cast<Eigen::Index>(limited.size());
+  Eigen::MatrixXd rows(points + (of_power ? 1 : 0), columns_.cols());
   for (Eigen::Index k = 0; k < lux_.cols(); ++k)
     for (Eigen::Index e = 0; e < emitters(); ++e)
-      luminous.col(k * emitters() + e) = goal_->luminous_emitter(e) * lux_.col(k);
-  LuxLimits limits{ColumnsView(luminous),
-                   goal_->fixed_lux.size() == 0 ? Eigen::VectorXd() : goal_->luminous(goal_->fixed_lux)};
-  for (Eigen::Index p = 0; p < goal_->max_lux.size(); ++p)
-    if (goal_->max_lux[p] < std::numeric_limits<double>::infinity()) limits.at_most(p, goal_->max_lux[p]);
-  if (goal_->max_watts < std::numeric_limits<double>::infinity())
-    limits.power_at_most(watts_per_level(), goal_->max_watts);
+      rows.col(k * emitters() + e).head(points) = goal_->luminous_emitter(e) * lux_.col(k)(limited);
+  LinearLimits limits;
+  limits.most.resize(rows.rows());
+  limits.most.head(points) = goal_->max_lux(limited);
+  if (goal_->fixed_lux.size() > 0) limits.most.head(points) -= goal_->luminous(goal_->fixed_lux)(limited);
+  if (of_power) {
+    rows.row(points) = watts_per_level().transpose();
+    limits.most[points] = goal_->max_watts;
+  }
+  // The fixed light may break a limit by itself: then nothing is added.
+  levels_.setZero(columns_.cols());
+  if (limits.most.size() > 0 && limits.most.minCoeff() < 0) return;
+  limits.rows = rows.sparseView(1, 0);
   const NnlsProblem problem{
       ColumnsView(columns_), weighted_goal_, {}, Eigen::VectorXd::Constant(columns_.cols(), goal_->max_level)};
-  const auto solved = solve_limited_nnls(problem, limits.limits());
-  // The fixed light may break a limit by itself: then nothing is added.
-  if (!solved || !solved->conflict.empty()) {
-    levels_.setZero(columns_.cols());
-    return;
-  }
+  const auto solved = solve_limited_nnls(problem, limits);
+  if (!solved) return;
   levels_ = solved->least_squares.x;
   // Limits hold to the solver's rounding; slightly less light makes them hold exactly.
   for (double less = 1e-12; less < 1e-3 && !keeps_limits(); less *= 10) levels_ *= 1 - less;

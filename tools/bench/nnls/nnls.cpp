@@ -7,8 +7,8 @@
 #include <ctime>
 #include <random>
 
+#include "core/solve/least_squares/limited_nnls.h"
 #include "core/solve/least_squares/nnls_of_few.h"
-#include "core/solve/lux_limits.h"
 #include "tools/bench/nnls/levels.h"
 #include "tools/bench/nnls/problems.h"
 #include "tools/bench/nnls/switched.h"
@@ -124,18 +124,28 @@ void add_limited(const NnlsBenchProblem& one, int runs, std::vector<BenchRow>& r
   const NnlsProblem problem = one.problem();
   const NnlsSolution free = *solve_nnls(problem);
   const Eigen::VectorXd lux = problem.goal - free.residual;
-  LuxLimits limits(problem.columns);
-  for (Eigen::Index i = 0; i < one.rows; i += 10) limits.at_most(i, 0.9 * lux.maxCoeff());
-  for (Eigen::Index i = 5; i < one.rows; i += 10) limits.at_least(i, 0.5 * lux.mean());
-  limits.power_at_most(Eigen::VectorXd::Ones(one.columns()), 0.95 * free.x.sum());
-  const LinearLimits linear = limits.limits();
+  const Eigen::Index points = (one.rows + 9) / 10;
+  LinearLimits limits;
+  limits.most = Eigen::VectorXd::Constant(points + 1, 0.9 * lux.maxCoeff());
+  limits.most[points] = 0.95 * free.x.sum();
+  std::vector<Eigen::Triplet<double>> entries;
+  Eigen::VectorXd column(one.rows);
+  for (Eigen::Index j = 0; j < one.columns(); ++j) {
+    column.setZero();
+    problem.columns.add(j, 1.0, column.data());
+    for (Eigen::Index k = 0; k < points; ++k)
+      if (column[10 * k] != 0) entries.emplace_back(k, j, column[10 * k]);
+    entries.emplace_back(points, j, 1.0);  // power
+  }
+  limits.rows.resize(points + 1, one.columns());
+  limits.rows.setFromTriplets(entries.begin(), entries.end());
   LimitedNnlsSolution solution;
-  const double seconds = median_seconds(runs, [&] { solution = *solve_limited_nnls(problem, linear); });
+  const double seconds = median_seconds(runs, [&] { solution = *solve_limited_nnls(problem, limits); });
   const auto binding = (solution.multiplier.array() > 0).count();
   rows.push_back(nnls_row(
-      one, "limited", solution.conflict.empty() ? solution.least_squares.kkt.worst() : std::nan(""), seconds, {},
-      solution.least_squares.residual_norm, in_use(solution.least_squares.x), solution.least_squares.iterations,
-      fmt::format("{} limits; {} bind; {} rounds of multipliers", limits.number(), binding, solution.rounds)));
+      one, "limited", solution.least_squares.kkt.worst(), seconds, {}, solution.least_squares.residual_norm,
+      in_use(solution.least_squares.x), solution.least_squares.iterations,
+      fmt::format("{} limits; {} bind; {} rounds of multipliers", limits.most.size(), binding, solution.rounds)));
 }
 
 }  // namespace

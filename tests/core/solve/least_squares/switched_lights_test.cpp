@@ -87,7 +87,7 @@ double min_error_with(const EmittanceProblem& p, const VectorXd& set) {
   for (Index r = 0; r + 1 < rows.rows(); ++r) {
     const Index i = limits[static_cast<std::size_t>(r)];
     for (Index c = 0; c < columns; ++c) rows(r, c) = p.lux_per_level(i, dims[static_cast<std::size_t>(c)]);
-    of_dims.most[r] = p.max_lx[i] - p.fixed_lx[i] - p.lux_per_level.row(i).dot(set);
+    of_dims.most[r] = std::max(0.0, p.max_lx[i] - p.fixed_lx[i] - p.lux_per_level.row(i).dot(set));
   }
   for (Index c = 0; c < columns; ++c) rows(rows.rows() - 1, c) = p.watts[dims[static_cast<std::size_t>(c)]];
   of_dims.most[rows.rows() - 1] = std::min(watts_left, 1e6);
