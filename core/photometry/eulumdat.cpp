@@ -305,10 +305,4 @@ Checked<EulumdatFile> parse_eulumdat(std::string_view text, const std::string& f
   return EulumdatParser(decoded ? std::string_view(*decoded) : text, file_name).parse();
 }
 
-Checked<EulumdatFile> load_eulumdat(const std::filesystem::path& path) {
-  const Checked<std::string> text = read_text(path, "EULUMDAT");
-  if (!text) return tl::unexpected(text.error());
-  return parse_eulumdat(*text, path.string());
-}
-
 }  // namespace luxrig

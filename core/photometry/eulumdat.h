@@ -5,7 +5,6 @@
 /// here, and along C0 (x) in IES files. If one file replaces the other, turn the fixture by 90°.
 
 #include <array>
-#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -67,8 +66,5 @@ struct EulumdatFile {
 /// The luminous area (fields 16…21), width along x and length along y. A round one with height is a cylinder. A
 /// rectangle with height loses its height.
 [[nodiscard]] LuminousOpening luminous_opening(const EulumdatFile& file);
-
-/// Reads and parses. Refuses files over 64 MiB.
-[[nodiscard]] Checked<EulumdatFile> load_eulumdat(const std::filesystem::path& path);
 
 }  // namespace luxrig

@@ -270,10 +270,4 @@ TiltFiles tilt_files_beside(const std::filesystem::path& path) {
   };
 }
 
-Checked<IesFile> load_ies(const std::filesystem::path& path) {
-  const Checked<std::string> text = read_text(path, "IES LM-63");
-  if (!text) return tl::unexpected(text.error());
-  return parse_ies(*text, path.string(), tilt_files_beside(path));
-}
-
 }  // namespace luxrig

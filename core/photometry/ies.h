@@ -81,7 +81,4 @@ using TiltFiles = std::function<std::optional<std::string>(std::string_view name
 /// Tilt files in the folder of this path only.
 [[nodiscard]] TiltFiles tilt_files_beside(const std::filesystem::path& path);
 
-/// Reads and parses. Looks for TILT=<name> beside the file. Refuses files over 64 MiB.
-[[nodiscard]] Checked<IesFile> load_ies(const std::filesystem::path& path);
-
 }  // namespace luxrig

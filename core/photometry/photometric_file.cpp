@@ -64,10 +64,4 @@ Checked<PhotometricFile> parse_photometric_text(std::string_view text, const std
   return out;
 }
 
-Checked<PhotometricFile> load_photometric_file(const std::filesystem::path& path) {
-  const Checked<std::string> text = read_text(path, "IES LM-63 or EULUMDAT");
-  if (!text) return tl::unexpected(text.error());
-  return parse_photometric_text(*text, path.string(), tilt_files_beside(path));
-}
-
 }  // namespace luxrig

@@ -1,7 +1,6 @@
 #pragma once
 /// Reads a luminaire's file in either format, by its content. A misleading file name gives a warning.
 
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -27,8 +26,5 @@ struct PhotometricFile {
 /// neither is read by its name (.ldt or .LDT is EULUMDAT, anything else IES), and refused by that parser.
 [[nodiscard]] Checked<PhotometricFile> parse_photometric_text(std::string_view text, const std::string& file_name,
                                                               const TiltFiles& tilt_files = {});
-
-/// Reads, parses and makes the distribution. Problems as from load_ies() and load_eulumdat().
-[[nodiscard]] Checked<PhotometricFile> load_photometric_file(const std::filesystem::path& path);
 
 }  // namespace luxrig

@@ -62,7 +62,6 @@ class JudgedSelection {
   [[nodiscard]] JudgedScore score() const;
   [[nodiscard]] const JudgedWishes& wishes() const { return wishes_; }
   /// Contrast of each candidate alone: upper bound of its gain over fixed light [lx].
-  [[nodiscard]] const std::vector<double>& alone_lx() const { return alone_lx_; }
   [[nodiscard]] std::uint64_t added_up() const { return added_up_; }  ///< candidates added to others, in all steps so
                                                                       ///< far
 

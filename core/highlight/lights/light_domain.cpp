@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/check.h"
 #include "core/highlight/lights/light_domain_state.h"
 
 namespace luxrig {
@@ -53,13 +52,6 @@ struct SurfacePiece {
 };
 
 }  // namespace
-
-std::vector<double> even_layers_m(int layers, double step_m) {
-  LUXRIG_CHECK(layers >= 1, "{} layers", layers);
-  std::vector<double> offsets_m;
-  for (int layer = 0; layer < layers; ++layer) offsets_m.push_back(layer * step_m);
-  return offsets_m;
-}
 
 LightDomain::LightDomain(std::unique_ptr<State> state) : state_(std::move(state)) {}
 LightDomain::~LightDomain() = default;

@@ -18,9 +18,6 @@ struct LightDomainOptions {
   int cell_side = 16;  ///< of DirectionBins: cells are 59° / side wide as seen from the target
 };
 
-/// 0, step, 2 step …: the thesis's layers. Asserted: layers ≥ 1.
-[[nodiscard]] std::vector<double> even_layers_m(int layers, double step_m = 0.1);
-
 struct NestedBoxOptions {
   int boxes = 3;        ///< each is a layer, smallest first
   double margin_m = 0;  ///< from the target's bounding box to the first; 0 = half that box's diagonal

@@ -385,7 +385,7 @@ void SurfaceImportance::solve_strip(std::size_t from, std::size_t width, double 
       add_weighted_rows(first.data(), from_rows_[p], std::span(gathered).subspan(p * width, width));
   }
   std::array<float, kStrip> fresh{};
-  for (std::uint32_t sweep = 0; sweep < kMaxSweeps && !stop_.stop_requested(); ++sweep, ++sweeps_) {
+  for (std::uint32_t sweep = 0; sweep < kMaxSweeps && !stop_.stop_requested(); ++sweep) {
     double change = 0, count = 0;
     for (std::uint32_t i = 0; i < patches_; ++i) {
       const std::size_t p = sweep % 2 == 0 ? i : patches_ - 1 - i;

@@ -57,7 +57,6 @@ class SurfaceImportance {
   static constexpr std::uint32_t kNoRow = ~0u;
   [[nodiscard]] const SurfaceCells& surfaces() const { return surfaces_; }
   [[nodiscard]] std::uint64_t rays() const { return rays_; }
-  [[nodiscard]] std::uint32_t sweeps() const { return sweeps_; }
   [[nodiscard]] std::size_t bytes() const;
 
  private:
@@ -104,7 +103,6 @@ class SurfaceImportance {
   std::vector<float> both_;         ///< their sum, if links are kept: rows × stride
   std::vector<std::uint8_t> live_;  ///< per row: W is above 0 for a receiver
   std::uint64_t rays_ = 0;
-  std::uint32_t sweeps_ = 0;
 };
 
 /// Effective diffuse reflectance: gloss counts as extra diffuse reflectance. A Fresnel coat of F0 reflects F0 + (1 -

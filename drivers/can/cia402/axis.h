@@ -56,7 +56,6 @@ class Axis {
   [[nodiscard]] std::int32_t velocity() const { return velocity_; }  ///< counts/s
   /// Why it does not follow its orders; empty if it does.
   [[nodiscard]] std::string trouble() const;
-  [[nodiscard]] bool referenced() const { return referenced_; }
   /// Worth knowing although it is in order; may be empty.
   [[nodiscard]] std::string remark() const;
 

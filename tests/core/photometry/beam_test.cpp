@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/photometry/ies.h"
+#include "tests/core/photometry/load_files.h"
 #include "tests/folders.h"
 
 namespace luxrig {

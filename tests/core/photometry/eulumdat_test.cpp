@@ -8,6 +8,7 @@
 #include <iterator>
 #include <sstream>
 
+#include "tests/core/photometry/load_files.h"
 #include "tests/core/photometry/photometric_data.h"
 
 namespace luxrig {

@@ -9,6 +9,7 @@
 #include <limits>
 #include <random>
 
+#include "tests/core/photometry/load_files.h"
 #include "tests/core/photometry/photometric_data.h"
 
 namespace luxrig {

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "core/photometry/ies.h"
+#include "tests/core/photometry/load_files.h"
 
 namespace luxrig {
 namespace {

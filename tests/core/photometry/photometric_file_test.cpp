@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "tests/core/photometry/load_files.h"
 #include "tests/folders.h"
 
 namespace luxrig {

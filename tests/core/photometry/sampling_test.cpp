@@ -11,6 +11,7 @@
 
 #include "core/photometry/ies.h"
 #include "core/photometry/intensity.h"
+#include "tests/core/photometry/load_files.h"
 #include "tests/folders.h"
 
 namespace luxrig {

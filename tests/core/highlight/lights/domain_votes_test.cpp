@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/highlight/lights/potential_lights.h"
+#include "tests/core/highlight/lights/even_layers.h"
 #include "tests/core/highlight/shapes.h"
 #include "tools/bench/methods/coverage_votes.h"
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <set>
 
+#include "tests/core/highlight/lights/even_layers.h"
 #include "tests/core/highlight/shapes.h"
 
 namespace luxrig {
