@@ -296,7 +296,9 @@ void ShowController::State::look_at_failures(Time now) {
   const bool was_failing = failing;
   failing = too_much_lost() || (rig.safe.on_meter_loss && health.any_meter_lost());
   if (was_failing && !failing) healthy_since = now;
-  if (std::string cause = failing ? health.cause(too_much_lost()) : ""; !cause.empty()) failure = std::move(cause);
+  if (failing) {
+    if (std::string cause = health.cause(too_much_lost()); !cause.empty()) failure = std::move(cause);
+  }
   for (std::size_t i = 0; i < rig.luxmeters.size(); ++i) {
     if (health.meter_lost(i)) measured[i].reset();
   }

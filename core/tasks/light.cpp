@@ -149,14 +149,12 @@ Columns columns_of(const Rig& rig, const Look& look, const KeptTransport& before
   return columns;
 }
 
-/// The mean of light that is not exact enough and a second estimate of all, as coarse as will do. nullopt: that would
-/// cost as much as computing all again, or has not done.
+/// The mean of light that is not exact enough and a second estimate of all, as coarse as will do.
 /// seed   of the second estimate
 /// used   of `light`; then of the mean
-Result<std::optional<TransportMatrix>> made_exact(const Request& request, const TransportMatrix& light,
-                                                  std::uint64_t seed, ModelUsed& used) {
+Result<TransportMatrix> mean_with_second(const Request& request, const TransportMatrix& light, std::uint64_t seed,
+                                         ModelUsed& used) {
   const double over = used.error() / used.wanted;
-  if (over > kMaxOver) return std::nullopt;
   // For independent estimates, weighted by the inverse of their variances, the mean has the sum of these inverses.
   const double second = 1 / std::sqrt(1 / (kAim * kAim) - 1 / (over * over));
   Request coarse = request;
@@ -165,14 +163,13 @@ Result<std::optional<TransportMatrix>> made_exact(const Request& request, const 
   if (coarse.options.worst_error) *coarse.options.worst_error *= second;
   ModelUsed by;
   const auto again = coarse.light(&by);
-  if (!again) return tl::unexpected(again.error());
+  if (!again) return again;
   const double share = 1 / (over * over) / (1 / (over * over) + 1 / (second * second));
   EvaluateOptions wanted = request.wanted;
   want_error(request.options, wanted);
   TransportMatrix mean = mean_of(light, share, *again, wanted);
   set_errors(mean, wanted, used);
   used.time_was_up = by.time_was_up;
-  if (!used.reached() && !used.time_was_up) return std::nullopt;
   return mean;
 }
 
@@ -214,11 +211,23 @@ Result<TransportMatrix> compute_transport(const Rig& rig, const RayScene& rays, 
   want_error(options, wanted);
   TransportMatrix joined = joined_columns(before->transport, *anew, columns.kept, wanted);
   set_errors(joined, wanted, by);
-  if (!by.reached() && !by.time_was_up && columns.changed.size() < emitters.size()) {
-    auto exact = made_exact(all, joined, options.seed ^ joints_hash(rig, look), by);
-    if (!exact) return tl::unexpected(exact.error());
-    if (!*exact) return all.light(used);
-    joined = std::move(**exact);
+  const auto is_too_coarse = [&] {
+    return !by.reached() && !by.time_was_up && columns.changed.size() < emitters.size();
+  };
+  if (is_too_coarse() && by.error() <= kMaxOver * by.wanted) {
+    auto mean = mean_with_second(all, joined, options.seed ^ joints_hash(rig, look), by);
+    if (!mean) return mean;
+    joined = std::move(*mean);
+  }
+  if (is_too_coarse()) {
+    ModelUsed of_all;
+    auto light = all.light(&of_all);
+    if (!light) return light;
+    if (of_all.error() <= by.error()) {
+      if (used) *used = std::move(of_all);
+      return light;
+    }
+    by.time_was_up = of_all.time_was_up;  // it ended less exact
   }
   if (columns.changed.empty()) {
     by.name = "kept";

@@ -23,7 +23,10 @@ std::optional<KeptLight> LightOfLooks::read_saved(const Session& session) {
   if (!folder_) return std::nullopt;
   const std::uint64_t key = light_key(session.rig, session.scene, compute_);
   auto light = kept_light(*folder_, key, session.rig);
-  if (light) put({key, *light, std::nullopt});
+  if (!light) return std::nullopt;
+  auto known = put({key, *light, std::nullopt});
+  const std::lock_guard lock(mutex_);
+  saved_ = std::move(known);
   return light;
 }
 
@@ -44,8 +47,16 @@ Result<LightModel> LightOfLooks::model(const Session& session, const std::vector
     if (!transport) return tl::unexpected(std::move(transport.error()));
     known = put(key, session.rig, joints, std::move(*transport));
   }
-  if (folder_) keep_light(*folder_, known->light, key);
+  save(known);
   return known->light.model;
+}
+
+void LightOfLooks::save(const std::shared_ptr<const Known>& known) {
+  if (!folder_) return;
+  const std::lock_guard lock(mutex_);
+  if (saved_ == known) return;
+  keep_light(*folder_, known->light, known->key);
+  saved_ = known;
 }
 
 std::shared_ptr<const LightOfLooks::Known> LightOfLooks::put(Known known) {

@@ -42,13 +42,15 @@ class LightOfLooks {
   std::shared_ptr<const Known> put(std::uint64_t key, const Rig& rig, const std::vector<Joints>& joints,
                                    TransportMatrix transport);
   /// The known light of this key with the most fixtures aimed as asked; nullptr if there is none.
+  void save(const std::shared_ptr<const Known>& known);
   [[nodiscard]] std::shared_ptr<const Known> nearest(std::uint64_t key, const std::vector<Joints>& joints,
                                                      bool with_transport) const;
 
   ComputeOptions compute_;
   std::optional<std::filesystem::path> folder_;
-  mutable std::mutex mutex_;                         ///< guards known_
+  mutable std::mutex mutex_;                         ///< guards what follows
   std::vector<std::shared_ptr<const Known>> known_;  ///< newest last
+  std::shared_ptr<const Known> saved_;               ///< the light in the folder
 };
 
 }  // namespace luxrig

@@ -92,8 +92,10 @@ TEST_F(RoomInLooks, TheLastLookIsSavedAlsoOneThatWasKnown) {
   ASSERT_TRUE(saved);
   EXPECT_EQ(saved->model.point_lux_per_level, before.point_lux_per_level);
   EXPECT_TRUE(std::equal(hung_.begin(), hung_.end(), saved->joints.begin(), same_aim));
+  std::filesystem::remove_all(folder / "state");
   EXPECT_EQ(model(next, hung_).point_lux_per_level, before.point_lux_per_level);
   EXPECT_FALSE(computed_);
+  EXPECT_FALSE(std::filesystem::exists(folder / "state")) << "the saved light was saved once more";
   (void)model(next, turned(0.3));
   EXPECT_TRUE(computed_) << "a saved model has no columns to keep";
 
