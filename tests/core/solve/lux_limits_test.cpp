@@ -11,7 +11,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Forty lights over two hundred points on a line, each as the inverse square says.
+/// Lights over points on a line, by the inverse square law.
 MatrixXd line_of_lights(Index points, Index lights) {
   MatrixXd T(points, lights);
   for (Index i = 0; i < points; ++i)

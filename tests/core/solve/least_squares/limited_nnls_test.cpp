@@ -22,8 +22,8 @@ struct LimitedCase {
   LinearLimits limits;
 };
 
-/// Limits of both signs; those of every third problem are such that some x keeps all, the rest as it comes; every
-/// fourth has equal and opposite ones, dependent ones, and empty rows.
+/// Rows of both signs for odd seeds. In two of three problems some x keeps all limits; in the third it is left to chance.
+/// Every fourth has opposite and dependent limits and empty rows.
 LimitedCase limited_case(int seed, Index max_rows, Index max_columns, Index max_limits) {
   std::mt19937 random(static_cast<unsigned>(seed) + 77);
   std::normal_distribution<double> normal;
@@ -56,7 +56,7 @@ LimitedCase limited_case(int seed, Index max_rows, Index max_columns, Index max_
   return c;
 }
 
-/// Relative to what the row's columns can give, each up to the goal's norm or to its bound.
+/// Relative to the most that the row's columns can give, each up to the goal's norm or its bound.
 VectorXd violation(const LimitedCase& c, const VectorXd& x) {
   const LeastSquaresCase& ls = c.least_squares;
   VectorXd over = VectorXd::Zero(c.C.rows());
@@ -109,7 +109,7 @@ TEST(LimitedNnls, OptimalityHoldsOnThousandsOfDegenerateProblems) {
               in_conflict, worst, worst_over);
 }
 
-/// The primal active-set method by QR, which takes full rank and limits that x = 0 keeps.
+/// Compared with the primal active-set method by QR, which needs full rank and limits that x = 0 keeps.
 TEST(LimitedNnls, FindsWhatThePrimalMethodFinds) {
   int compared = 0;
   double worst = 0;

@@ -1,4 +1,4 @@
-/// candidate_transport: same result for any number of threads.
+/// candidate_transport: the same for any number of threads.
 #include <gtest/gtest.h>
 
 #include "core/transport/candidates/candidate_transport.h"

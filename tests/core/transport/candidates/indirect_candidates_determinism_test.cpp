@@ -1,4 +1,4 @@
-/// indirect_candidates: same result for any number of threads.
+/// indirect_candidates: the same for any number of threads.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-/// direct_shape: same result for any number of threads.
+/// direct_shape: the same for any number of threads.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-/// gather_evaluator: same result for any number of threads.
+/// gather_evaluator: the same for any number of threads.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-/// path_evaluator: same result for any number of threads.
+/// path_evaluator: the same for any number of threads.
 #include <gtest/gtest.h>
 
 #include "core/transport/evaluator.h"

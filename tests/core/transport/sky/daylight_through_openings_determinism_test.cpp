@@ -1,4 +1,4 @@
-/// daylight_through_openings: same result for any number of threads.
+/// daylight_through_openings: the same for any number of threads.
 #include <gtest/gtest.h>
 
 #include "core/photometry/sky.h"

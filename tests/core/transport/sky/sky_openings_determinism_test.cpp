@@ -1,4 +1,4 @@
-/// sky_openings: same result for any number of threads.
+/// sky_openings: the same for any number of threads.
 #include <gtest/gtest.h>
 
 #include "core/transport/sky/sky_openings.h"

@@ -1,4 +1,4 @@
-/// hostile_scene: same result for any number of threads.
+/// hostile_scene: the same for any number of threads.
 
 #include <gtest/gtest.h>
 
