@@ -8,8 +8,7 @@
 
 namespace luxrig {
 
-/// Polygon: contour integral over its outline, clipped at the horizon (J. H. Lambert 1760; in vector form P. Moon
-/// 1936).
+/// Polygon: contour integral over its outline cut at the horizon (J. H. Lambert 1760; in vector form P. Moon 1936).
 inline double polygon_form(const std::vector<Vec3>& corners_m, const Vec3& p, const Vec3& n) {
   std::vector<Vec3> kept;
   for (std::size_t k = 0; k < corners_m.size(); ++k) {

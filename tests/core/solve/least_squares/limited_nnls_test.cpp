@@ -22,8 +22,8 @@ struct LimitedCase {
   LinearLimits limits;
 };
 
-/// Rows of both signs for odd seeds. In two of three problems some x keeps all limits; in the third it is left to chance.
-/// Every fourth has opposite and dependent limits and empty rows.
+/// Rows of both signs for odd seeds. In two of three problems some x keeps all limits; in the third that is left to
+/// chance. Every fourth has opposite and dependent limits and empty rows.
 LimitedCase limited_case(int seed, Index max_rows, Index max_columns, Index max_limits) {
   std::mt19937 random(static_cast<unsigned>(seed) + 77);
   std::normal_distribution<double> normal;
